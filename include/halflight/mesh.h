@@ -1,4 +1,4 @@
-/* halflight/mesh.h - triangles that share a scene with volumes.
+/* halflight/mesh.h - triangles, spheres and tubes that share a scene with volumes.
  *
  * Meshes are immutable and reference-counted: hl_mesh_retain() and hl_mesh_release(). Counter-clockwise
  * vertices face the viewer.
@@ -23,11 +23,23 @@ typedef struct hl_mesh_description {
   size_t vertex_count;
   const uint32_t (*triangles)[3]; /* [triangle_count]; indices of vertices */
   size_t triangle_count;
+  const float (*face_colors)[4];   /* [triangle_count]; as colors, which they stand in for; null: none */
+  const float (*spheres)[4];       /* [sphere_count]; centre and radius; world units */
+  const float (*sphere_colors)[4]; /* [sphere_count]; as colors; null: white */
+  size_t sphere_count;
+  /* Lines that are drawn as tubes: their points, one line after the other. */
+  const float (*line_points)[4]; /* [line_point_count]; a point, and the tube's radius there; world units */
+  const float (*line_colors)[4]; /* [line_point_count]; as colors; null: white */
+  size_t line_point_count;
+  const uint32_t *line_lengths; /* [line_count]; points of each line; their sum is line_point_count */
+  size_t line_count;
 } hl_mesh_description;
 
 HL_API void hl_mesh_description_defaults(hl_mesh_description *description);
 
-/* Copies the arrays. Triangles without an area, and those with a vertex that is no number, are left out. An
+/* Copies the arrays. A mesh has triangles, spheres or lines, or all of these. Triangles without an area,
+ * spheres and points of lines without a radius, and those with a coordinate that is no number, are left out.
+ * Spheres are exact; lines become closed tubes of twelve sides, whose triangles follow the given ones. An
  * index out of range is HL_ERROR_INPUT. *mesh is owned by the caller (release it). */
 HL_API HL_WARN_UNUSED hl_status hl_mesh_create(hl_context *context, const hl_mesh_description *description,
                                                hl_mesh **mesh, hl_error *error);
@@ -40,7 +52,7 @@ HL_API HL_WARN_UNUSED hl_status hl_mesh_load(hl_context *context, const char *pa
 /* Whether hl_mesh_load() reads files of this name: by its ending. */
 HL_API int hl_mesh_reads_name(const char *path);
 
-/* The mesh's arrays, valid as long as the mesh. Null for null. */
+/* The mesh's arrays, with the triangles of its tubes, valid as long as the mesh. Null for null. */
 HL_API const hl_mesh_description *hl_mesh_describe(const hl_mesh *mesh);
 
 /* The least and greatest coordinates of the vertices; world units. */

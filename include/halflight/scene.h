@@ -196,10 +196,11 @@ typedef struct hl_scene_volume {
   int multiple_scattering; /* non-zero: light is scattered again and again; default 0: once */
 } hl_scene_volume;
 
-/* A mesh among the volumes. Its colour is that of its vertices, where it has some, times `color`. */
+/* A mesh among the volumes. Its colour is that of its vertices, faces or spheres, where it has some, times
+ * `color`. */
 typedef struct hl_scene_mesh {
   const char *name; /* may be null */
-  const char *file; /* where the triangles came from, for hl_scene_to_json; may be null */
+  const char *file; /* where the mesh came from, for hl_scene_to_json; null: it writes the arrays */
   hl_mesh *mesh;    /* retained by the scene */
   double scale;     /* transform: scale, then rotate, then translate */
   double rotate_axis[3];
@@ -211,6 +212,7 @@ typedef struct hl_scene_mesh {
   int smooth;    /* non-zero: normals are interpolated between vertices */
   int two_sided; /* non-zero: the side that faces away from the eye is lit like the front */
   int visible, casts_shadow, receives_shadow;
+  double attenuation_color[3]; /* the fractions of `opacity` that it takes of red, green and blue light */
 } hl_scene_mesh;
 
 typedef enum hl_soft_method { HL_SOFT_CASCADE = 0, HL_SOFT_PAPER = 1, HL_SOFT_SUBLIGHTS = 2 } hl_soft_method;
@@ -381,6 +383,20 @@ HL_API HL_WARN_UNUSED hl_status hl_view_of_camera(const hl_scene_description *de
 HL_API HL_WARN_UNUSED hl_status hl_camera_frame_view(const hl_scene_description *description,
                                                      const hl_view *view, double zoom, hl_camera *camera,
                                                      hl_error *error);
+
+/* The usual size of a floor. */
+#define HL_FLOOR_SIZE 3.0
+
+/* A mesh's defaults, but those of a floor: matt and grey. */
+HL_API void hl_scene_floor_defaults(hl_scene_mesh *floor);
+
+/* Makes the triangles of a floor: a square below all that is seen, which lies at a right angle to `up` and
+ * touches it; null: what is up for the camera. Its sides are `size` times as long as what stands on it is
+ * wide, from 1 to 1000. *mesh is owned by the caller (release it); add it to the description's meshes. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_make_floor(hl_context *context,
+                                                    const hl_scene_description *description,
+                                                    const double up[3], double size, hl_mesh **mesh,
+                                                    hl_error *error);
 
 /* Turns the camera about its target to a view; the distance to the target is kept. */
 HL_API HL_WARN_UNUSED hl_status hl_camera_turn(const hl_view *view, hl_camera *camera);

@@ -99,6 +99,8 @@ class MeshSettings(TypedDict, total=False):
         The mesh takes light from what lies behind it. Default: True.
     receives_shadow : bool
         The mesh is darkened by shadows. Default: True.
+    attenuation_color : Sequence[float]
+        The fractions of the opacity that the mesh takes of red, green and blue light. Default: [1, 1, 1].
     """
 
     scale: float
@@ -111,6 +113,7 @@ class MeshSettings(TypedDict, total=False):
     visible: bool
     casts_shadow: bool
     receives_shadow: bool
+    attenuation_color: Sequence[float]
 
 
 class SkySettings(TypedDict, total=False):

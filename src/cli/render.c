@@ -215,7 +215,8 @@ static int job_write(render_job *job) {
 static void find_choice(render_job *job) {
   const hl_scene_description *description = job->result.description;
   bool wanted = job->values[RENDER_JSON].given || (!job->host.quiet && isatty(STDERR_FILENO));
-  if (!job->bare || job->values[RENDER_TF].given || render_look_recolors(job->values, true) || !wanted)
+  if (!job->bare || description->volume_count == 0 || job->values[RENDER_TF].given ||
+      render_look_recolors(job->values, true) || !wanted)
     return;
   if (hl_volume_guess(description->volumes[0].volume, job->input, &job->result.taken_for, NULL) != HL_OK)
     job->result.taken_for = NULL;

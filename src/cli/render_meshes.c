@@ -1,6 +1,5 @@
 /* cli/render_meshes.c - meshes among the operands of `halflight render`: they are added to the scene of the
  * others, in colours of their own. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,11 +19,11 @@ void render_part_meshes(char **operands, char **meshes, char **others) {
   meshes[count] = others[left] = NULL;
 }
 
-/* Makes a scene of the scene and more meshes. */
+/* Makes a scene of the scene and more meshes. replaced: the scene's own meshes are left out. */
 static hl_status extend(hl_context *context, const hl_scene_mesh *added, size_t count, bool bare,
-                        hl_scene **scene, hl_error *error) {
+                        bool replaced, hl_scene **scene, hl_error *error) {
   hl_scene_description description = *hl_scene_describe(*scene);
-  size_t before = description.mesh_count;
+  size_t before = replaced ? 0 : description.mesh_count;
   hl_scene_mesh *meshes = malloc((before + count) * sizeof *meshes);
   hl_scene *made = NULL;
   if (meshes == NULL) {
@@ -47,32 +46,12 @@ static hl_status extend(hl_context *context, const hl_scene_mesh *added, size_t 
   return HL_OK;
 }
 
-/* A scene for meshes without a volume: a clear one in their middle, whose voxels tell the distance of sheets.
- */
-static hl_status begin_scene(hl_context *context, const hl_scene_mesh *meshes, size_t count, hl_scene **scene,
-                             hl_error *error) {
-  enum { SHEETS_ACROSS = 200 };
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, longest = 0;
-  for (size_t m = 0; m < count; m++) {
-    double own[2][3];
-    hl_status status = hl_mesh_get_box(meshes[m].mesh, own[0], own[1]);
-    if (status != HL_OK) return status;
-    for (int axis = 0; axis < 3; axis++) {
-      low[axis] = fmin(low[axis], own[0][axis]);
-      high[axis] = fmax(high[axis], own[1][axis]);
-      longest = fmax(longest, high[axis] - low[axis]);
-    }
-  }
-  double voxel = longest / SHEETS_ACROSS;
-  char text[1000];
-  snprintf(
-      text, sizeof text,
-      "{\"halflight\": 1, \"volumes\": [{\"name\": \"clear\", \"shapes\": [{\"type\": \"box\", \"size\": "
-      "[%.9g, "
-      "%.9g, %.9g], \"position\": [%.17g, %.17g, %.17g]}], \"voxel_size\": %.9g, \"visible\": false, "
-      "\"casts_shadow\": false, \"transfer_function\": {\"opacity\": [[0, 0]], \"color\": [[0, 1, 1, 1]]}}]}",
-      voxel, voxel, voxel, (low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2, voxel);
-  return hl_scene_from_json(context, text, strlen(text), NULL, "meshes", scene, error);
+/* A scene for meshes without a volume: one triangle in their place, with the usual camera and light. */
+static hl_status begin_scene(hl_context *context, hl_scene **scene, hl_error *error) {
+  static const char text[] =
+      "{\"halflight\": 1, \"meshes\": [{\"vertices\": [[0, 0, 0], [1, 0, 0], [0, 1, 1]], "
+      "\"triangles\": [[0, 1, 2]]}]}";
+  return hl_scene_from_json(context, text, sizeof text - 1, NULL, "meshes", scene, error);
 }
 
 /* Loads the meshes; *count of them were, of which the caller releases each. */
@@ -84,7 +63,8 @@ static hl_status load_meshes(hl_context *context, char *const *paths, hl_scene_m
     hl_scene_mesh_defaults(mesh);
     mesh->file = paths[*count];
     status = hl_mesh_load(context, paths[*count], &mesh->mesh, error);
-    bool own = status == HL_OK && hl_mesh_describe(mesh->mesh)->colors != NULL;
+    const hl_mesh_description *d = status == HL_OK ? hl_mesh_describe(mesh->mesh) : NULL;
+    bool own = d != NULL && (d->colors != NULL || d->face_colors != NULL || d->sphere_colors != NULL);
     for (int c = 0; c < 3; c++)
       mesh->color[c] = own ? 1 : colors[*count % (sizeof colors / sizeof *colors)][c];
   }
@@ -97,8 +77,9 @@ int render_add_meshes(cli_host *host, char *const *paths, bool bare, hl_scene **
   hl_error error = {0};
   if (paths[0] == NULL) return EXIT_CODE_OK;
   hl_status status = load_meshes(host->context, paths, added, &count, &error);
-  if (status == HL_OK && *scene == NULL) status = begin_scene(host->context, added, count, scene, &error);
-  if (status == HL_OK) status = extend(host->context, added, count, bare, scene, &error);
+  bool alone = *scene == NULL;
+  if (status == HL_OK && alone) status = begin_scene(host->context, scene, &error);
+  if (status == HL_OK) status = extend(host->context, added, count, bare, alone, scene, &error);
   for (size_t m = 0; m < count; m++) hl_mesh_release(added[m].mesh);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }

@@ -204,6 +204,9 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                                 "(default phong;\nof smoke none)",
                         .setting_kind = HL_SETTINGS_VOLUME,
                         .setting = "shading"},
+    [RENDER_FLOOR] = {.name = "floor",
+                      .kind = OPTION_SWITCH,
+                      .help = "a floor below what is seen, three times as wide,\nwhich receives its shadow"},
 
     [RENDER_AMBIENT] = {.name = "ambient",
                         .kind = OPTION_COLOR,

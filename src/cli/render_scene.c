@@ -19,6 +19,7 @@ typedef struct scene_change {
   hl_scene_description description;
   hl_light *lights;         /* owned; [description.light_count] */
   hl_scene_volume *volumes; /* owned; [description.volume_count] */
+  hl_scene_mesh *meshes;    /* owned, with the floor, which is the last; null: no floor is added */
   hl_transfer_function
       *functions;          /* owned with their points; [description.volume_count]; null: none changed */
   hl_isosurface *surfaces; /* owned; [description.volume_count][values of --iso]; null: none */
@@ -194,6 +195,30 @@ static int change_volume(scene_change *change, size_t index) {
   return render_iso(change->host, values, index, volume, own);
 }
 
+/* --floor: adds a mesh below what is seen, when the camera is placed. */
+static int add_floor(scene_change *change) {
+  hl_scene_description *description = &change->description;
+  if (!change->values[RENDER_FLOOR].given) return EXIT_CODE_OK;
+  size_t count = description->mesh_count;
+  hl_error error = {0};
+  hl_mesh *floor = NULL;
+  hl_status status = hl_scene_make_floor(change->host->context, description, NULL, HL_FLOOR_SIZE, &floor,
+                                         &error);
+  if (status != HL_OK) return host_fail(change->host, PHASE_CHANGE, status, &error);
+  change->meshes = calloc(count + 1, sizeof *change->meshes);
+  if (change->meshes == NULL) {
+    hl_mesh_release(floor);
+    return fail(EXIT_CODE_FAILURE, "out of memory for the scene's meshes");
+  }
+  if (count > 0) memcpy(change->meshes, description->meshes, count * sizeof *change->meshes);
+  hl_scene_floor_defaults(&change->meshes[count]);
+  change->meshes[count].name = "floor";
+  change->meshes[count].mesh = floor;
+  description->meshes = change->meshes;
+  description->mesh_count = count + 1;
+  return EXIT_CODE_OK;
+}
+
 static int change_volumes(scene_change *change) {
   const cli_value *values = change->values;
   hl_scene_description *description = &change->description;
@@ -264,6 +289,8 @@ static void change_release(scene_change *change) {
       render_release_function(&change->functions[i]);
   free(change->functions);
   free(change->surfaces);
+  if (change->meshes != NULL) hl_mesh_release(change->meshes[change->description.mesh_count - 1].mesh);
+  free(change->meshes);
   free(change->volumes);
   free(change->lights);
 }
@@ -274,6 +301,7 @@ int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_s
   int exit_code = change_volumes(&change); /* first: the camera frames what is seen of the volumes */
 
   if (exit_code == EXIT_CODE_OK) exit_code = change_camera(&change);
+  if (exit_code == EXIT_CODE_OK) exit_code = add_floor(&change);
   if (exit_code == EXIT_CODE_OK) exit_code = change_lights(&change);
   if (exit_code == EXIT_CODE_OK) {
     render_change_look(values, bare, &change.description);

@@ -183,14 +183,17 @@ static double make_room(const frame_job *job, const frame_job *few, const hl_vie
 static hl_status begin(const hl_scene_description *description, double zoom, const hl_camera *camera,
                        hl_outline *outline, frame_job *job, hl_error *error) {
   bool perspective = camera->type == HL_CAMERA_PERSPECTIVE, possible = zoom >= 1e-6 && zoom <= 1e6;
-  possible = possible && description->volume_count > 0 && description->width > 0 && description->height > 0;
+  possible = possible && description->volume_count + description->mesh_count > 0 && description->width > 0 &&
+             description->height > 0;
   possible = possible && (!perspective || (camera->fovy_deg > 0 && camera->fovy_deg < 180));
   for (size_t n = 0; n < description->volume_count; n++)
     possible = possible && description->volumes[n].volume != NULL;
+  for (size_t n = 0; n < description->mesh_count; n++)
+    possible = possible && description->meshes[n].mesh != NULL;
   if (!possible)
-    return hl_fail(
-        error, HL_ERROR_ARGUMENT,
-        "a camera cannot be framed without a volume, or with such a zoom, picture or field of view");
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "a camera cannot be framed without a volume or a mesh, or with such a zoom, picture or "
+                   "field of view");
   job->outline = outline;
   job->aspect = (double)description->width / description->height;
   job->tangent_y = perspective ? tan(camera->fovy_deg * HL_PI / 360) : 0;

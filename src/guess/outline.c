@@ -10,6 +10,7 @@
 #include "core/memory.h"
 #include "guess/sample.h"
 #include "guess/seen_cells.h"
+#include "mesh/mesh.h"
 #include "scene/scene.h"
 
 enum { POINTS_AT_FIRST = 1024, DIRECTIONS = 400 };
@@ -153,7 +154,7 @@ hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_err
   return status;
 }
 
-/* Adds the outermost vertices of a mesh: those that lie farthest in many directions. */
+/* Adds the outermost vertices and spheres of a mesh: those that lie farthest in many directions. */
 static hl_status add_mesh(hl_outline *outline, const hl_scene_mesh *mesh, hl_error *error) {
   enum { MOST_CORNERS = 60000 };
   const hl_mesh_description *d = hl_mesh_describe(mesh->mesh);
@@ -165,8 +166,14 @@ static hl_status add_mesh(hl_outline *outline, const hl_scene_mesh *mesh, hl_err
     const float *p = d->positions[d->triangles[c / 3][c % 3]];
     status = add(&all, affine3_apply(placement, (vec3){p[0], p[1], p[2]}), 0, error);
   }
+  stride = d->sphere_count / MOST_CORNERS + 1;
+  for (size_t n = 0; n < d->sphere_count && status == HL_OK; n += stride) {
+    const float *s = d->spheres[n];
+    status = add(&all, affine3_apply(placement, (vec3){s[0], s[1], s[2]}), s[3] * mesh->scale, error);
+  }
   if (status == HL_OK) status = hl_outline_thin(&all, &few, error);
-  for (size_t n = 0; n < few.count && status == HL_OK; n++) status = add(outline, few.point[n], 0, error);
+  for (size_t n = 0; n < few.count && status == HL_OK; n++)
+    status = add(outline, few.point[n], few.radius[n], error);
   hl_outline_release(&all);
   hl_outline_release(&few);
   return status;
@@ -174,11 +181,13 @@ static hl_status add_mesh(hl_outline *outline, const hl_scene_mesh *mesh, hl_err
 
 hl_status hl_outline_find(const hl_scene_description *description, hl_outline *outline, hl_error *error) {
   hl_status status = HL_OK;
-  *outline = (hl_outline){.context = description->volumes[0].volume->context};
+  *outline = (hl_outline){.context = description->volume_count > 0 ? description->volumes[0].volume->context
+                                                                   : description->meshes[0].mesh->context};
   for (size_t n = 0; status == HL_OK && n < description->volume_count; n++)
     status = add_volume(outline, &description->volumes[n], error);
   for (size_t n = 0; status == HL_OK && n < description->mesh_count; n++)
-    if (description->meshes[n].visible) status = add_mesh(outline, &description->meshes[n], error);
+    if (description->meshes[n].visible && description->meshes[n].mesh != NULL)
+      status = add_mesh(outline, &description->meshes[n], error);
   bool nothing = outline->count == 0;
   for (size_t n = 0; nothing && status == HL_OK && n < description->volume_count; n++)
     status = add_box(outline, &description->volumes[n], error);

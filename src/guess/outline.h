@@ -14,7 +14,7 @@ typedef struct hl_outline {
 } hl_outline;
 
 /* The outline of all visible volumes or, where none of them shows anything, the corners of all volumes'
- * boxes. Fails for lack of memory alone; release it even then. description: at least one volume. */
+ * boxes. Fails for lack of memory alone; release it even then. description: at least one volume or mesh. */
 hl_status hl_outline_find(const hl_scene_description *description, hl_outline *outline, hl_error *error);
 void hl_outline_release(hl_outline *outline);
 

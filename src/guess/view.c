@@ -275,7 +275,8 @@ hl_status hl_view_automatic(const hl_scene_description *description, const hl_da
   const hl_scene_volume *first = &description->volumes[0];
   hl_view_about(description, (vec3){0, 0, 1}, view);
   /* Programs write left-posterior-superior for any data, so it says little unless the file is DICOM. */
-  if (hl_scene_is_anatomical(description) || !first_decides(description)) return HL_OK;
+  if (description->volume_count == 0 || hl_scene_is_anatomical(description) || !first_decides(description))
+    return HL_OK;
   hl_data_analysis made;
   hl_status status = analysis == NULL ? hl_data_analyse(first->volume, &made, error) : HL_OK;
   hl_upright upright;
@@ -308,10 +309,10 @@ static void look_from(const hl_scene_description *description, hl_side side, hl_
 
 hl_status hl_view_choose(const hl_scene_description *description, hl_side side, const double up[3],
                          hl_view *view, hl_error *error) {
-  if (description == NULL || view == NULL || description->volume_count == 0 || (int)side < 0 ||
-      side > HL_SIDE_ISO)
+  if (description == NULL || view == NULL || description->volume_count + description->mesh_count == 0 ||
+      (int)side < 0 || side > HL_SIDE_ISO)
     return hl_fail(error, HL_ERROR_ARGUMENT,
-                   "hl_view_choose: null description or view, no volume, or no such side");
+                   "hl_view_choose: null description or view, no volume and no mesh, or no such side");
   for (size_t v = 0; v < description->volume_count; v++)
     if (description->volumes[v].volume == NULL)
       return hl_fail(error, HL_ERROR_ARGUMENT, "hl_view_choose: volume %zu is null", v);

@@ -69,14 +69,27 @@ char *hl_json_path(const hl_json_reader *reader, const char *file);
 hl_status hl_json_read_transform(hl_json_reader *reader, const json_t *value, hl_setting_kind kind,
                                  void *target);
 
-/* The meshes that are read for one scene. Their names are borrowed from the JSON tree. */
+/* The meshes that are read for one scene, floors last. Their names are borrowed from the JSON tree. */
 typedef struct hl_mesh_shelf {
-  hl_scene_mesh *meshes; /* owned, with their files and triangles; [count] */
-  size_t count;
+  hl_scene_mesh *meshes; /* owned, with their files and triangles; [count + floor_count] */
+  double *floor_sizes;   /* owned; [floor_count] */
+  size_t count;          /* that are made */
+  size_t floor_count; /* that are not made yet: their place depends on the camera; they follow the others */
 } hl_mesh_shelf;
 
-/* The array "meshes" (null: none). The shelf is released by hl_json_release_meshes(), after a failure too. */
+/* The array "meshes" (null: none), but for its floors. The shelf is released by hl_json_release_meshes(),
+ * after a failure too. */
 hl_status hl_json_read_meshes(hl_json_reader *reader, const json_t *value, hl_mesh_shelf *shelf);
+
+/* Makes the floors, below the scene's volumes and the shelf's other meshes. */
+hl_status hl_json_add_floors(hl_json_reader *reader, const hl_scene_description *scene, hl_mesh_shelf *shelf);
+
+/* The arrays of a mesh that a scene gives itself: "vertices", "triangles", "spheres", "lines" and their
+ * colours. *mesh is owned by the caller. */
+hl_status hl_json_read_mesh_arrays(hl_json_reader *reader, const json_t *value, hl_mesh **mesh);
+
+/* The keys of these arrays; ends with null. */
+extern const char *const hl_json_mesh_keys[];
 void hl_json_release_meshes(hl_context *context, hl_mesh_shelf *shelf);
 
 /* The array "iso" (null: none) of a volume; the surfaces are owned by *volume. */

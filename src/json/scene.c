@@ -1,6 +1,7 @@
 /* json/scene.c - reads a scene file's top level, and loads the files that it names.
  *
- * The image's size and the volumes come before the camera, which by default frames the volumes.
+ * The image's size, the volumes and the meshes come before the camera, which by default frames them; floors
+ * come after it.
  */
 #include <string.h>
 
@@ -118,14 +119,16 @@ static hl_status read_camera(hl_json_reader *reader, const json_t *value, hl_sce
 
 static hl_status read_volumes(hl_json_reader *reader, const json_t *root, gathered *g) {
   const json_t *value = json_object_get(root, "volumes");
+  bool meshes = json_array_size(json_object_get(root, "meshes")) > 0;
+  if (value == NULL && meshes) return HL_OK;
   if (value == NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "volumes",
-                        "is missing: name at least one volume, [ { \"file\": ... } ]");
+                        "is missing: name at least one volume, [ { \"file\": ... } ], or meshes");
   g->shelf.groups = json_object_get(root, "groups");
   g->shelf.threads = g->description.render.threads;
   g->shelf.projected = g->description.render.compositing == HL_COMPOSITING_MAXIMUM;
   size_t mark = hl_json_enter(reader, "volumes");
-  hl_status status = hl_json_array(reader, value, 1, HL_LIMIT_VOLUMES);
+  hl_status status = hl_json_array(reader, value, meshes ? 0 : 1, HL_LIMIT_VOLUMES);
   if (status != HL_OK) return status;
   size_t count = json_array_size(value);
   size_t known = reader->like != NULL ? reader->like->volume_count : 0;
@@ -215,7 +218,12 @@ static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered
   if (status == HL_OK) status = hl_json_read_meshes(reader, json_object_get(root, "meshes"), &g->meshes);
   d->meshes = g->meshes.meshes;
   d->mesh_count = g->meshes.count;
+  if (status == HL_OK && d->volume_count + d->mesh_count == 0)
+    status = hl_json_fail(reader, HL_ERROR_INPUT, "meshes",
+                          "have nothing but a floor: add what stands on it");
   if (status == HL_OK) status = read_camera(reader, json_object_get(root, "camera"), d);
+  if (status == HL_OK) status = hl_json_add_floors(reader, d, &g->meshes);
+  d->mesh_count = g->meshes.count;
   if (status == HL_OK) status = hl_json_read_sky(reader, json_object_get(root, "sky"), &d->sky);
   return status == HL_OK ? read_lights(reader, root, g) : status;
 }

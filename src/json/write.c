@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "json/read.h"
 #include "json/shapes.h"
+#include "mesh/mesh.h"
 #include "scene/scene.h"
 #include "scene/settings.h"
 #include "text/json_value.h"
@@ -337,10 +338,64 @@ static void write_volume(writer *w, const hl_scene_volume *volume) {
   close_bracket(w, "}");
 }
 
+static void put_float(writer *w, float number) {
+  char text[HL_JSON_NUMBER_BYTES];
+  snprintf(text, sizeof text, "%.9g", (double)number);
+  put_text(w, text);
+}
+
+/* Rows of floats, all on one line; null: nothing is written. */
+static void write_floats(writer *w, const char *key, const float *rows, size_t count, size_t width) {
+  if (rows == NULL || count == 0) return;
+  begin_item(w, key);
+  for (size_t n = 0; n < count * width; n++) {
+    put_text(w, n == 0 ? "[[" : n % width == 0 ? "], [" : ", ");
+    put_float(w, rows[n]);
+  }
+  put_text(w, "]]");
+}
+
+static void write_triangles(writer *w, const uint32_t (*triangles)[3], size_t count) {
+  begin_item(w, "triangles");
+  put_text(w, "[");
+  for (size_t n = 0; n < count; n++) {
+    char text[60];
+    snprintf(text, sizeof text, "%s[%u, %u, %u]", n > 0 ? ", " : "", (unsigned)triangles[n][0],
+             (unsigned)triangles[n][1], (unsigned)triangles[n][2]);
+    put_text(w, text);
+  }
+  put_text(w, "]");
+}
+
+static void write_lines(writer *w, const hl_mesh_description *d) {
+  const float(*point)[4] = d->line_points;
+  open_bracket(w, "lines", "[");
+  for (size_t line = 0; line < d->line_count; point += d->line_lengths[line++])
+    write_floats(w, NULL, point[0], d->line_lengths[line], 4);
+  close_bracket(w, "]");
+}
+
+/* Writes the arrays that the mesh was made of; its tubes follow from its lines. */
+static void write_arrays(writer *w, const hl_mesh *mesh) {
+  const hl_mesh_description *d = &mesh->description;
+  if (mesh->given_triangles > 0) {
+    write_floats(w, "vertices", d->positions[0], mesh->given_vertices, 3);
+    write_triangles(w, d->triangles, mesh->given_triangles);
+    if (d->normals != NULL) write_floats(w, "normals", d->normals[0], mesh->given_vertices, 3);
+    if (d->colors != NULL) write_floats(w, "colors", d->colors[0], mesh->given_vertices, 4);
+    if (d->face_colors != NULL) write_floats(w, "face_colors", d->face_colors[0], mesh->given_triangles, 4);
+  }
+  if (d->sphere_count > 0) write_floats(w, "spheres", d->spheres[0], d->sphere_count, 4);
+  if (d->sphere_colors != NULL) write_floats(w, "sphere_colors", d->sphere_colors[0], d->sphere_count, 4);
+  if (d->line_count > 0) write_lines(w, d);
+  if (d->line_colors != NULL) write_floats(w, "line_colors", d->line_colors[0], d->line_point_count, 4);
+}
+
 static void write_mesh(writer *w, const hl_scene_mesh *mesh) {
   open_bracket(w, NULL, "{");
   if (mesh->name != NULL) write_name(w, "name", mesh->name);
-  write_name(w, "file", mesh->file);
+  if (mesh->file != NULL) write_name(w, "file", mesh->file);
+  else write_arrays(w, mesh->mesh);
   open_bracket(w, "transform", "{");
   write_key(w, HL_SETTINGS_MESH, "transform/scale", mesh);
   write_rotation(w, HL_SETTINGS_MESH, mesh);
@@ -372,9 +427,11 @@ static void write_scene(writer *w, const hl_scene_description *d) {
   for (size_t l = 0; l < d->light_count; l++) write_light(w, &d->lights[l]);
   close_bracket(w, "]");
   write_sky(w, &d->sky);
-  open_bracket(w, "volumes", "[");
-  for (size_t v = 0; v < d->volume_count; v++) write_volume(w, &d->volumes[v]);
-  close_bracket(w, "]");
+  if (d->volume_count > 0 || d->mesh_count == 0) {
+    open_bracket(w, "volumes", "[");
+    for (size_t v = 0; v < d->volume_count; v++) write_volume(w, &d->volumes[v]);
+    close_bracket(w, "]");
+  }
   write_meshes(w, d);
   open_bracket(w, "render", "{");
   write_settings(w, HL_SETTINGS_RENDER, 0, &d->render);
@@ -415,11 +472,20 @@ static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_er
                  index);
 }
 
+/* Numbers that a mesh is made of. */
+static size_t numbers_of(const hl_mesh *mesh) {
+  const hl_mesh_description *d = &mesh->description;
+  return 3 * mesh->given_vertices + 3 * mesh->given_triangles + 4 * d->sphere_count + 4 * d->line_point_count;
+}
+
 static hl_status check_mesh(const hl_scene_mesh *mesh, size_t index, hl_error *error) {
-  if (mesh->file == NULL)
+  enum { MOST_NUMBERS = 300000 }; /* a text of some megabytes */
+  if (mesh->file == NULL && numbers_of(mesh->mesh) > MOST_NUMBERS)
     return hl_fail(
         error, HL_ERROR_ARGUMENT,
-        "/meshes/%zu/file: the mesh came from memory: write it to a file and name that in the scene", index);
+        "/meshes/%zu/file: the mesh came from memory and has %zu numbers, of which a scene holds %d: "
+        "write it to a file and name that in the scene",
+        index, numbers_of(mesh->mesh), MOST_NUMBERS);
   if (is_utf8(mesh->file) && is_utf8(mesh->name)) return HL_OK;
   return hl_fail(error, HL_ERROR_ARGUMENT,
                  "/meshes/%zu: name or file is not UTF-8, as JSON texts must be: rename it", index);

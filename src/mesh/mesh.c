@@ -1,5 +1,4 @@
-/* mesh/mesh.c - hl_mesh: checked arrays of vertices and triangles, and arrays that grow while a file is
- * read. */
+/* mesh/mesh.c - hl_mesh: checked arrays of triangles, spheres and lines. */
 #include "mesh/mesh.h"
 
 #include <math.h>
@@ -17,12 +16,12 @@ void hl_mesh_retain(hl_mesh *mesh) {
 
 void hl_mesh_release(hl_mesh *mesh) {
   if (mesh == NULL || atomic_fetch_sub(&mesh->references, 1) > 1) return;
-  hl_context *context = mesh->context;
-  hl_release(context, (void *)mesh->description.positions);
-  hl_release(context, (void *)mesh->description.normals);
-  hl_release(context, (void *)mesh->description.colors);
-  hl_release(context, (void *)mesh->description.triangles);
-  hl_release(context, mesh);
+  const hl_mesh_description *d = &mesh->description;
+  const void *const arrays[] = {d->positions,   d->normals,     d->colors,        d->triangles,
+                                d->face_colors, d->spheres,     d->sphere_colors, d->line_points,
+                                d->line_colors, d->line_lengths};
+  for (size_t n = 0; n < sizeof arrays / sizeof *arrays; n++) hl_release(mesh->context, (void *)arrays[n]);
+  hl_release(mesh->context, mesh);
 }
 
 const hl_mesh_description *hl_mesh_describe(const hl_mesh *mesh) {
@@ -46,13 +45,19 @@ static bool has_area(const float a[3], const float b[3], const float c[3]) {
   return x != 0 || y != 0 || z != 0;
 }
 
-/* Keeps the triangles that can be seen, and finds the bounds of their vertices. Opens *mesh's arrays to
- * writing: they are its own. */
+static void grow_bounds(hl_mesh *mesh, const float at[3], double radius) {
+  for (int axis = 0; axis < 3; axis++) {
+    mesh->low[axis] = fmin(mesh->low[axis], (double)at[axis] - radius);
+    mesh->high[axis] = fmax(mesh->high[axis], (double)at[axis] + radius);
+  }
+}
+
+/* Keeps the triangles that can be seen. Opens the mesh's arrays to writing: they are its own. */
 static hl_status keep_triangles(hl_mesh *mesh, hl_error *error) {
   hl_mesh_description *d = &mesh->description;
   uint32_t(*triangles)[3] = (uint32_t(*)[3])d->triangles;
+  float(*face_colors)[4] = (float(*)[4])d->face_colors;
   size_t kept = 0;
-  for (int axis = 0; axis < 3; axis++) mesh->low[axis] = INFINITY, mesh->high[axis] = -INFINITY;
   for (size_t t = 0; t < d->triangle_count; t++) {
     const float *corner[3];
     for (int i = 0; i < 3; i++) {
@@ -62,18 +67,42 @@ static hl_status keep_triangles(hl_mesh *mesh, hl_error *error) {
                        (unsigned)triangles[t][i], d->vertex_count);
       corner[i] = d->positions[triangles[t][i]];
     }
+    if (t == mesh->given_triangles) mesh->given_triangles = kept;
     if (!is_finite(corner[0]) || !is_finite(corner[1]) || !is_finite(corner[2])) continue;
     if (!has_area(corner[0], corner[1], corner[2])) continue;
+    if (face_colors != NULL) memmove(face_colors[kept], face_colors[t], sizeof *face_colors);
     memmove(triangles[kept++], triangles[t], sizeof triangles[t]);
-    for (int i = 0; i < 9; i++) {
-      double at = corner[i / 3][i % 3];
-      mesh->low[i % 3] = fmin(mesh->low[i % 3], at);
-      mesh->high[i % 3] = fmax(mesh->high[i % 3], at);
-    }
+    for (int i = 0; i < 3; i++) grow_bounds(mesh, corner[i], 0);
   }
+  if (mesh->given_triangles > kept) mesh->given_triangles = kept;
   d->triangle_count = kept;
-  if (kept > 0) return HL_OK;
-  return hl_fail(error, HL_ERROR_INPUT, "the mesh has no triangle with an area: give at least one");
+  return HL_OK;
+}
+
+/* Keeps the spheres that have a place and a radius. */
+static void keep_spheres(hl_mesh *mesh) {
+  hl_mesh_description *d = &mesh->description;
+  float(*spheres)[4] = (float(*)[4])d->spheres, (*colors)[4] = (float(*)[4])d->sphere_colors;
+  size_t kept = 0;
+  for (size_t n = 0; n < d->sphere_count; n++) {
+    if (!is_finite(spheres[n]) || !isfinite(spheres[n][3]) || !(spheres[n][3] > 0)) continue;
+    if (colors != NULL) memmove(colors[kept], colors[n], sizeof *colors);
+    memmove(spheres[kept], spheres[n], sizeof *spheres);
+    grow_bounds(mesh, spheres[kept], (double)spheres[kept][3]);
+    kept++;
+  }
+  d->sphere_count = kept;
+}
+
+/* Keeps what can be seen, and finds its bounds. */
+static hl_status keep_visible(hl_mesh *mesh, hl_error *error) {
+  for (int axis = 0; axis < 3; axis++) mesh->low[axis] = INFINITY, mesh->high[axis] = -INFINITY;
+  hl_status status = keep_triangles(mesh, error);
+  if (status != HL_OK) return status;
+  keep_spheres(mesh);
+  if (mesh->description.triangle_count > 0 || mesh->description.sphere_count > 0) return HL_OK;
+  return hl_fail(error, HL_ERROR_INPUT,
+                 "the mesh has no triangle with an area, no sphere and no line: give at least one");
 }
 
 static uint64_t hash_of_edge(uint32_t a, uint32_t b) {
@@ -103,36 +132,91 @@ static bool is_closed(const hl_mesh_description *d) {
   return sum == 0 && volume > 0;
 }
 
-/* Gives the arrays to a mesh, which then owns them. */
-static hl_status own_arrays(hl_context *context, const hl_mesh_description *arrays, hl_mesh **mesh,
-                            hl_error *error) {
-  hl_mesh *made = hl_allocate_zeroed(context, 1, sizeof *made);
+hl_status hl_mesh_of_parts(mesh_parts *parts, hl_mesh **mesh, hl_error *error) {
+  size_t vertices = parts->vertex_count, triangles = parts->triangle_count;
+  hl_status status = hl_mesh_add_tubes(parts, error);
+  if (status != HL_OK) return status;
+  hl_mesh *made = hl_allocate_zeroed(parts->context, 1, sizeof *made);
   if (made == NULL) return hl_fail_memory(error, sizeof *made, "a mesh");
-  made->context = context;
-  made->description = *arrays;
+  made->context = parts->context;
+  made->given_vertices = vertices;
+  made->given_triangles = triangles;
+  made->description = hl_mesh_parts_describe(parts);
   atomic_init(&made->references, 1);
-  hl_status status = keep_triangles(made, error);
+  *parts = (mesh_parts){.context = parts->context, .path = parts->path};
+  status = keep_visible(made, error);
   if (status == HL_OK) {
     made->closed = is_closed(&made->description);
     *mesh = made;
-    return HL_OK;
+  } else {
+    hl_mesh_release(made);
   }
-  made->description = (hl_mesh_description){0}; /* the caller releases the arrays */
-  hl_mesh_release(made);
   return status;
 }
+
+/* ---- from memory ---- */
 
 static hl_status check_arrays(const hl_mesh_description *d, hl_error *error) {
   if (d->struct_size != sizeof *d)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_mesh_create: struct_size is %zu, not %zu: call hl_mesh_description_defaults() first",
                    d->struct_size, sizeof *d);
-  if (d->positions == NULL || d->triangles == NULL)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_mesh_create: positions or triangles are null");
+  bool nothing = d->positions == NULL && d->spheres == NULL && d->line_points == NULL;
+  if (nothing || (d->positions == NULL && d->vertex_count > 0) ||
+      (d->triangles == NULL && d->triangle_count > 0) || (d->positions != NULL && d->triangles == NULL) ||
+      (d->spheres == NULL && d->sphere_count > 0) || (d->line_points == NULL && d->line_point_count > 0) ||
+      (d->line_lengths == NULL && d->line_count > 0))
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_mesh_create: positions or triangles are null, or an array that has a count");
   if (d->vertex_count > UINT32_MAX || d->triangle_count > HL_LIMIT_TRIANGLES)
     return hl_fail(error, HL_ERROR_INPUT, "the mesh has %zu vertices and %zu triangles: at most %u and %d",
                    d->vertex_count, d->triangle_count, UINT32_MAX, HL_LIMIT_TRIANGLES);
-  return HL_OK;
+  if (d->sphere_count > HL_LIMIT_SPHERES || d->line_point_count > HL_LIMIT_LINE_POINTS)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "the mesh has %zu spheres and %zu points of lines: at most %d and %d", d->sphere_count,
+                   d->line_point_count, HL_LIMIT_SPHERES, HL_LIMIT_LINE_POINTS);
+  size_t left = d->line_point_count;
+  for (size_t n = 0; n < d->line_count; n++) {
+    if (d->line_lengths[n] > left) left = SIZE_MAX;
+    if (left == SIZE_MAX) break;
+    left -= d->line_lengths[n];
+  }
+  return left == 0 ? HL_OK
+                   : hl_fail(error, HL_ERROR_INPUT, "the lines' lengths do not sum to their %zu points",
+                             d->line_point_count);
+}
+
+/* A copy of an array that may be null. */
+static bool copy_array(hl_context *context, const void *from, size_t count, size_t size, void *to) {
+  if (from == NULL) return true;
+  void *copy = hl_allocate(context, count, size);
+  if (copy == NULL) return false;
+  memcpy(to, &copy, sizeof copy);
+  if (count > 0) memcpy(copy, from, count * size);
+  return true;
+}
+
+static bool copy_arrays(const hl_mesh_description *d, mesh_parts *parts) {
+  hl_context *context = parts->context;
+  parts->vertex_count = parts->vertex_room = d->vertex_count;
+  parts->triangle_count = parts->triangle_room = d->triangle_count;
+  parts->sphere_count = d->sphere_count;
+  parts->line_point_count = d->line_point_count;
+  parts->line_count = d->line_count;
+  return copy_array(context, d->positions, d->vertex_count, sizeof *d->positions, &parts->positions) &&
+         copy_array(context, d->normals, d->vertex_count, sizeof *d->normals, &parts->normals) &&
+         copy_array(context, d->colors, d->vertex_count, sizeof *d->colors, &parts->colors) &&
+         copy_array(context, d->triangles, d->triangle_count, sizeof *d->triangles, &parts->triangles) &&
+         copy_array(context, d->face_colors, d->triangle_count, sizeof *d->face_colors,
+                    &parts->face_colors) &&
+         copy_array(context, d->spheres, d->sphere_count, sizeof *d->spheres, &parts->spheres) &&
+         copy_array(context, d->sphere_colors, d->sphere_count, sizeof *d->sphere_colors,
+                    &parts->sphere_colors) &&
+         copy_array(context, d->line_points, d->line_point_count, sizeof *d->line_points,
+                    &parts->line_points) &&
+         copy_array(context, d->line_colors, d->line_point_count, sizeof *d->line_colors,
+                    &parts->line_colors) &&
+         copy_array(context, d->line_lengths, d->line_count, sizeof *d->line_lengths, &parts->line_lengths);
 }
 
 hl_status hl_mesh_create(hl_context *context, const hl_mesh_description *description, hl_mesh **mesh,
@@ -142,82 +226,9 @@ hl_status hl_mesh_create(hl_context *context, const hl_mesh_description *descrip
   *mesh = NULL;
   hl_status status = check_arrays(description, error);
   if (status != HL_OK) return status;
-  size_t vertices = description->vertex_count, triangles = description->triangle_count;
   mesh_parts parts = {.context = context, .path = "a mesh"};
-  status = hl_mesh_reserve_vertices(&parts, vertices, description->normals != NULL,
-                                    description->colors != NULL, error);
-  if (status == HL_OK) status = hl_mesh_reserve_triangles(&parts, triangles, error);
-  if (status == HL_OK) {
-    if (vertices > 0) memcpy(parts.positions, description->positions, vertices * sizeof *parts.positions);
-    if (parts.normals != NULL) memcpy(parts.normals, description->normals, vertices * sizeof *parts.normals);
-    if (parts.colors != NULL) memcpy(parts.colors, description->colors, vertices * sizeof *parts.colors);
-    if (triangles > 0) memcpy(parts.triangles, description->triangles, triangles * sizeof *parts.triangles);
-    parts.vertex_count = vertices;
-    parts.triangle_count = triangles;
-    status = hl_mesh_of_parts(&parts, mesh, error);
-  }
+  if (copy_arrays(description, &parts)) status = hl_mesh_of_parts(&parts, mesh, error);
+  else status = hl_fail_memory(error, description->vertex_count * sizeof *parts.positions, "a mesh");
   hl_mesh_parts_release(&parts);
   return status;
-}
-
-/* ---- arrays that grow ---- */
-
-hl_status hl_mesh_of_parts(mesh_parts *parts, hl_mesh **mesh, hl_error *error) {
-  const hl_mesh_description arrays = {.struct_size = sizeof arrays,
-                                      .positions = (const float(*)[3])parts->positions,
-                                      .normals = (const float(*)[3])parts->normals,
-                                      .colors = (const float(*)[4])parts->colors,
-                                      .vertex_count = parts->vertex_count,
-                                      .triangles = (const uint32_t(*)[3])parts->triangles,
-                                      .triangle_count = parts->triangle_count};
-  hl_status status = own_arrays(parts->context, &arrays, mesh, error);
-  if (status == HL_OK) *parts = (mesh_parts){.context = parts->context, .path = parts->path};
-  return status;
-}
-
-void hl_mesh_parts_release(mesh_parts *parts) {
-  hl_release(parts->context, parts->positions);
-  hl_release(parts->context, parts->normals);
-  hl_release(parts->context, parts->colors);
-  hl_release(parts->context, parts->triangles);
-  *parts = (mesh_parts){.context = parts->context, .path = parts->path};
-}
-
-static bool grow(hl_context *context, void **array, size_t room, size_t size) {
-  void *grown = hl_reallocate(context, *array, room, size);
-  if (grown != NULL) *array = grown;
-  return grown != NULL;
-}
-
-hl_status hl_mesh_reserve_vertices(mesh_parts *parts, size_t count, bool with_normals, bool with_colors,
-                                   hl_error *error) {
-  if (count <= parts->vertex_room && parts->positions != NULL) return HL_OK;
-  size_t room = count > 2 * parts->vertex_room ? count : 2 * parts->vertex_room;
-  bool done = grow(parts->context, (void **)&parts->positions, room, sizeof *parts->positions);
-  if (with_normals)
-    done = done && grow(parts->context, (void **)&parts->normals, room, sizeof *parts->normals);
-  if (with_colors) done = done && grow(parts->context, (void **)&parts->colors, room, sizeof *parts->colors);
-  if (!done) return hl_fail_memory(error, room * sizeof *parts->positions, "a mesh's vertices");
-  parts->vertex_room = room;
-  return HL_OK;
-}
-
-hl_status hl_mesh_reserve_triangles(mesh_parts *parts, size_t count, hl_error *error) {
-  if (count <= parts->triangle_room && parts->triangles != NULL) return HL_OK;
-  size_t room = count > 2 * parts->triangle_room ? count : 2 * parts->triangle_room;
-  if (!grow(parts->context, (void **)&parts->triangles, room, sizeof *parts->triangles))
-    return hl_fail_memory(error, room * sizeof *parts->triangles, "a mesh's triangles");
-  parts->triangle_room = room;
-  return HL_OK;
-}
-
-hl_status hl_mesh_add_triangle(mesh_parts *parts, uint32_t a, uint32_t b, uint32_t c, hl_error *error) {
-  if (parts->triangle_count == HL_LIMIT_TRIANGLES)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: more than %d triangles", parts->path,
-                   HL_LIMIT_TRIANGLES);
-  hl_status status = hl_mesh_reserve_triangles(parts, parts->triangle_count + 1, error);
-  if (status != HL_OK) return status;
-  uint32_t *triangle = parts->triangles[parts->triangle_count++];
-  triangle[0] = a, triangle[1] = b, triangle[2] = c;
-  return HL_OK;
 }

@@ -9,13 +9,14 @@
 
 #include "core/error.h"
 
-enum { HL_LIMIT_TRIANGLES = 1 << 28 };
+enum { HL_LIMIT_TRIANGLES = 1 << 28, HL_LIMIT_SPHERES = 1 << 26, HL_LIMIT_LINE_POINTS = 1 << 23 };
 
 struct hl_mesh {
   hl_context *context;
   atomic_int references;
-  hl_mesh_description description; /* its arrays are owned */
-  double low[3], high[3];          /* bounds of the vertices; world units */
+  hl_mesh_description description;        /* its arrays are owned */
+  size_t given_vertices, given_triangles; /* before those of the tubes */
+  double low[3], high[3];                 /* bounds of all that is seen; world units */
   bool closed; /* each edge has a triangle on either side: the mesh has an inside, and its fronts face
                   outwards */
 };
@@ -28,7 +29,15 @@ typedef struct mesh_parts {
   float (*normals)[3];      /* owned; [vertex_count]; null: none */
   float (*colors)[4];       /* owned; [vertex_count]; null: none */
   uint32_t (*triangles)[3]; /* owned; [triangle_count] */
+  float (*face_colors)[4];  /* owned; [triangle_count]; null: none */
   size_t vertex_count, vertex_room, triangle_count, triangle_room;
+  float (*spheres)[4];       /* owned; [sphere_count] */
+  float (*sphere_colors)[4]; /* owned; [sphere_count]; null: none */
+  size_t sphere_count;
+  float (*line_points)[4]; /* owned; [line_point_count] */
+  float (*line_colors)[4]; /* owned; [line_point_count]; null: none */
+  uint32_t *line_lengths;  /* owned; [line_count] */
+  size_t line_point_count, line_count;
 } mesh_parts;
 
 /* Makes room for so many vertices, or triangles, in all. with_normals, with_colors: arrays that vertices
@@ -37,11 +46,17 @@ hl_status hl_mesh_reserve_vertices(mesh_parts *parts, size_t count, bool with_no
                                    hl_error *error);
 hl_status hl_mesh_reserve_triangles(mesh_parts *parts, size_t count, hl_error *error);
 
-/* Adds a triangle. Room for it is made as needed. */
+/* Adds a triangle. Room for it is made as needed; face_colors has none. */
 hl_status hl_mesh_add_triangle(mesh_parts *parts, uint32_t a, uint32_t b, uint32_t c, hl_error *error);
 
-/* Checks the parts and moves them into a mesh, which is owned by the caller. */
+/* Adds the triangles of the tubes around the parts' lines. */
+hl_status hl_mesh_add_tubes(mesh_parts *parts, hl_error *error);
+
+/* Checks the parts, makes tubes of their lines, and moves all into a mesh, which is owned by the caller. */
 hl_status hl_mesh_of_parts(mesh_parts *parts, hl_mesh **mesh, hl_error *error);
+
+/* The parts' arrays, borrowed. */
+hl_mesh_description hl_mesh_parts_describe(const mesh_parts *parts);
 
 void hl_mesh_parts_release(mesh_parts *parts);
 

@@ -281,8 +281,8 @@ void hl_reference_transmittance(const reference *all, const reference_ray *ray, 
     }
     if (fmin(depth[0], fmin(depth[1], depth[2])) > DARK_DEPTH) break;
   }
-  double surfaces = hl_reference_surfaces_passing(all, ray);
-  for (int c = 0; c < 3; c++) passing[c] = surfaces * exp(-depth[c]);
+  hl_reference_surfaces_passing(all, ray, passing);
+  for (int c = 0; c < 3; c++) passing[c] *= exp(-depth[c]);
 }
 
 /* The colour of the light texture or emission image for the ray from a point of the light to `point`; false:

@@ -236,6 +236,7 @@ static hl_status prepare(reference *all, const hl_reference_options *options, hl
     if (status != HL_OK) return status;
     edge = fmin(edge, all->volumes[v].smallest_edge);
   }
+  if (scene->volume_count == 0) edge = hl_scene_smallest_edge(scene);
   all->step = options->step * edge;
   all->rays = options->rays > 0 ? options->rays : hl_reference_rays(all, edge);
   hl_status made = hl_reference_surfaces_create(all, error);

@@ -69,11 +69,12 @@ typedef struct reference_light {
   size_t point_count;
 } reference_light;
 
-/* A triangle of a mesh, in the world. */
+/* A triangle or a sphere of a mesh, in the world. */
 typedef struct reference_triangle {
-  vec3 corner[3];
+  vec3 corner[3]; /* of a sphere: two opposite corners of the box around it, and its centre */
+  double radius;  /* 0: a triangle */
   const hl_scene_mesh *mesh;
-  size_t index; /* in the mesh */
+  size_t index; /* among the mesh's triangles, or its spheres */
   double opacity;
 } reference_triangle;
 
@@ -294,8 +295,9 @@ void hl_reference_iso_next(const reference *all, reference_role role, const refe
                            reference_hit *hit);
 /* The unit vector to where the isosurface's inside, of greater values, is not; point: world. */
 vec3 hl_reference_iso_normal(const reference_hit *hit, vec3 point);
-/* The fraction of light that passes all surfaces on a ray, which may begin on a surface. */
-double hl_reference_surfaces_passing(const reference *all, const reference_ray *ray);
+/* The fractions of red, green and blue light that pass all surfaces on a ray, which may begin on a surface.
+ */
+void hl_reference_surfaces_passing(const reference *all, const reference_ray *ray, double passing[3]);
 /* Sets the worker's sample to what the surface sends back along the ray, with weight 1. */
 void hl_reference_surface_shade(const reference *all, const reference_hit *hit, const reference_ray *ray,
                                 reference_worker *worker);

@@ -24,12 +24,26 @@ static vec3 normal_of(const reference *all, const reference_hit *hit, vec3 flat)
 static void color_of(const reference_hit *hit, double color[3]) {
   const hl_scene_mesh *mesh = hit->triangle->mesh;
   const hl_mesh_description *d = &mesh->mesh->description;
-  const uint32_t *corner = d->triangles[hit->triangle->index];
+  size_t index = hit->triangle->index;
+  bool sphere = hit->triangle->radius > 0;
+  const float *own = sphere && d->sphere_colors != NULL  ? d->sphere_colors[index]
+                     : !sphere && d->face_colors != NULL ? d->face_colors[index]
+                                                         : NULL;
   for (int c = 0; c < 3; c++) {
-    double own = d->colors == NULL ? 1 : 0;
-    for (int i = 0; i < 3 && d->colors != NULL; i++) own += hit->weight[i] * d->colors[corner[i]][c];
-    color[c] = own * mesh->color[c];
+    double sum = own != NULL ? (double)own[c] : 1;
+    if (!sphere && own == NULL && d->colors != NULL) {
+      sum = 0;
+      for (int i = 0; i < 3; i++) sum += hit->weight[i] * d->colors[d->triangles[index][i]][c];
+    }
+    color[c] = sum * mesh->color[c];
   }
+}
+
+/* The normal of the triangle, or of the sphere at the point. */
+static vec3 flat_normal(const reference_hit *hit, vec3 point) {
+  const vec3 *corner = hit->triangle->corner;
+  if (hit->triangle->radius > 0) return vec3_normalise(vec3_subtract(point, corner[2]));
+  return vec3_normalise(vec3_cross(vec3_subtract(corner[1], corner[0]), vec3_subtract(corner[2], corner[0])));
 }
 
 /* Eqs. (3) and (4) for one light. */
@@ -65,11 +79,9 @@ static void add_sky(const reference *all, const reference_surface_point *at, ref
 /* The normal and the colour where the ray meets a triangle. Returns whether it meets the side behind. */
 static bool find_mesh_point(const reference *all, const reference_hit *hit, reference_surface_point *at) {
   const hl_scene_mesh *mesh = hit->triangle->mesh;
-  const vec3 *corner = hit->triangle->corner;
-  vec3 flat = vec3_normalise(
-      vec3_cross(vec3_subtract(corner[1], corner[0]), vec3_subtract(corner[2], corner[0])));
+  vec3 flat = flat_normal(hit, at->point);
   bool behind = vec3_dot(flat, at->to_eye) < 0;
-  at->normal = mesh->smooth ? normal_of(all, hit, flat) : flat;
+  at->normal = mesh->smooth && hit->triangle->radius == 0 ? normal_of(all, hit, flat) : flat;
   if (behind) at->normal = vec3_scale(at->normal, -1);
   color_of(hit, at->color);
   at->material = mesh->material;

@@ -1,5 +1,5 @@
-/* reference/surfaces.c - the meshes of a scene for the oracle: where rays meet triangles, found in a tree of
- * boxes. */
+/* reference/surfaces.c - the meshes of a scene for the oracle: where rays meet triangles and spheres, found
+ * in a tree of boxes. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -64,9 +64,27 @@ static size_t make_tree(reference_surfaces *all, size_t first, size_t count, int
   return made;
 }
 
+static double clamped(float opacity) { return fmin(fmax((double)opacity, 0), 1); }
+
+static void add_spheres(reference_surfaces *all, const hl_scene_mesh *mesh, affine3 placement) {
+  const hl_mesh_description *d = &mesh->mesh->description;
+  for (size_t n = 0; n < d->sphere_count; n++) {
+    const float *s = d->spheres[n];
+    double r = s[3] * mesh->scale;
+    vec3 centre = affine3_apply(placement, (vec3){s[0], s[1], s[2]}), reach = {r, r, r};
+    all->triangles[all->triangle_count++] = (reference_triangle){
+        .corner = {vec3_subtract(centre, reach), vec3_add(centre, reach), centre},
+        .radius = r,
+        .mesh = mesh,
+        .index = n,
+        .opacity = mesh->opacity * (d->sphere_colors != NULL ? clamped(d->sphere_colors[n][3]) : 1)};
+  }
+}
+
 static void add_mesh(reference_surfaces *all, const hl_scene_mesh *mesh) {
   const hl_mesh_description *d = &mesh->mesh->description;
   affine3 placement = hl_scene_mesh_to_world(mesh);
+  add_spheres(all, mesh, placement);
   for (size_t t = 0; t < d->triangle_count; t++) {
     reference_triangle *made = &all->triangles[all->triangle_count++];
     double opacity = 0;
@@ -74,7 +92,10 @@ static void add_mesh(reference_surfaces *all, const hl_scene_mesh *mesh) {
     for (int i = 0; i < 3; i++) {
       const float *p = d->positions[d->triangles[t][i]];
       made->corner[i] = affine3_apply(placement, (vec3){p[0], p[1], p[2]});
-      opacity += d->colors != NULL ? fmin(fmax(d->colors[d->triangles[t][i]][3], 0), 1) / 3 : 1.0 / 3;
+      const float *color = d->face_colors != NULL ? d->face_colors[t]
+                           : d->colors != NULL    ? d->colors[d->triangles[t][i]]
+                                                  : NULL;
+      opacity += color != NULL ? clamped(color[3]) / 3 : 1.0 / 3;
     }
     made->opacity = opacity * mesh->opacity;
   }
@@ -102,7 +123,8 @@ hl_status hl_reference_surfaces_create(reference *all, hl_error *error) {
   reference_surfaces *made = &all->surfaces;
   size_t triangles = 0, vertices = 0, at = 0;
   for (size_t m = 0; m < scene->mesh_count; m++) {
-    triangles += scene->meshes[m].mesh->description.triangle_count;
+    triangles += scene->meshes[m].mesh->description.triangle_count +
+                 scene->meshes[m].mesh->description.sphere_count;
     vertices += scene->meshes[m].mesh->description.vertex_count;
   }
   if (triangles == 0) return HL_OK;
@@ -133,7 +155,7 @@ void hl_reference_surfaces_release(reference *all) {
 
 /* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection" (1997); the distance, infinite
  * where the ray misses. */
-static double meet(const reference_triangle *triangle, const reference_ray *ray, double weight[3]) {
+static double meet_triangle(const reference_triangle *triangle, const reference_ray *ray, double weight[3]) {
   vec3 ab = vec3_subtract(triangle->corner[1], triangle->corner[0]);
   vec3 ac = vec3_subtract(triangle->corner[2], triangle->corner[0]);
   vec3 p = vec3_cross(ray->direction, ac), away = vec3_subtract(ray->origin, triangle->corner[0]);
@@ -145,6 +167,22 @@ static double meet(const reference_triangle *triangle, const reference_ray *ray,
   weight[0] = 1 - weight[1] - weight[2];
   if (weight[0] < 0 || weight[1] < 0 || weight[2] < 0) return INFINITY;
   return vec3_dot(ac, q) / determinant;
+}
+
+/* The first point of a sphere beyond a distance: |origin + s direction - centre| = r. */
+static double meet_sphere(const reference_triangle *sphere, const reference_ray *ray, double after) {
+  vec3 away = vec3_subtract(ray->origin, sphere->corner[2]);
+  double along = vec3_dot(away, ray->direction);
+  vec3 nearest = vec3_subtract(away, vec3_scale(ray->direction, along));
+  double square = sphere->radius * sphere->radius - vec3_dot(nearest, nearest);
+  if (square < 0) return INFINITY;
+  double first = -along - sqrt(square);
+  return first > after ? first : -along + sqrt(square);
+}
+
+static double meet(const reference_triangle *triangle, const reference_ray *ray, double after,
+                   double weight[3]) {
+  return triangle->radius > 0 ? meet_sphere(triangle, ray, after) : meet_triangle(triangle, ray, weight);
 }
 
 static bool meets_box(const reference_node *node, const reference_ray *ray, double nearest, double farthest) {
@@ -182,7 +220,7 @@ bool hl_reference_surface_next(const reference *all, reference_role role, const 
       continue;
     }
     for (size_t t = node->first; t < node->first + node->count; t++) {
-      double weight[3] = {0, 0, 0}, distance = meet(&surfaces->triangles[t], ray, weight);
+      double weight[3] = {0, 0, 0}, distance = meet(&surfaces->triangles[t], ray, after, weight);
       if (!(distance > after && distance < hit->distance) || !takes_part(&surfaces->triangles[t], role))
         continue;
       *hit = (reference_hit){.triangle = &surfaces->triangles[t],
@@ -195,12 +233,15 @@ bool hl_reference_surface_next(const reference *all, reference_role role, const 
   return hit->triangle != NULL || hit->iso != NULL;
 }
 
-double hl_reference_surfaces_passing(const reference *all, const reference_ray *ray) {
-  double passing = 1, least = all->step * LEAST_GAP;
+void hl_reference_surfaces_passing(const reference *all, const reference_ray *ray, double passing[3]) {
+  double least = all->step * LEAST_GAP;
   reference_hit hit;
-  for (double after = ray->nearest + least; passing > 0; after = hit.distance + 1e-9 * least) {
+  for (int c = 0; c < 3; c++) passing[c] = 1;
+  for (double after = ray->nearest + least; fmax(passing[0], fmax(passing[1], passing[2])) > 0;
+       after = hit.distance + 1e-9 * least) {
     if (!hl_reference_surface_next(all, REFERENCE_CASTS_SHADOW, ray, after, &hit)) break;
-    passing *= 1 - hit.opacity;
+    const hl_scene_mesh *mesh = hit.triangle != NULL ? hit.triangle->mesh : NULL;
+    for (int c = 0; c < 3; c++)
+      passing[c] *= 1 - hit.opacity * (mesh != NULL ? mesh->attenuation_color[c] : 1);
   }
-  return passing;
 }

@@ -302,7 +302,8 @@ static hl_status copy_arrays(hl_context *context, const hl_scene_description *sc
   framed->vertices = hl_allocate(context, vertices, sizeof *framed->vertices);
   if (framed->volumes == NULL || framed->lights == NULL || framed->meshes == NULL || framed->vertices == NULL)
     return hl_fail_memory(error, scene->volume_count * sizeof *framed->volumes, "the scene in frame space");
-  memcpy(framed->volumes, scene->volumes, scene->volume_count * sizeof *framed->volumes);
+  if (scene->volume_count > 0)
+    memcpy(framed->volumes, scene->volumes, scene->volume_count * sizeof *framed->volumes);
   if (scene->light_count > 0)
     memcpy(framed->lights, scene->lights, scene->light_count * sizeof *framed->lights);
   if (scene->mesh_count > 0)

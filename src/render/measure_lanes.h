@@ -83,7 +83,7 @@ LANES_INLINE int cover_block(const shade_job *job, const tile_slab *tile, int bl
   lanes opacity = lanes_keep(slab.seen, 1.0f - lanes_exp_negative(lanes_keep(slab.seen, slab.total * path)));
   lanes after = lanes_fma(opacity, 1.0f - before, before);
   lanes_store(alpha, after);
-  return lanes_bits(after < OPAQUE) != 0;
+  return lanes_bits(after < PIXEL_OPAQUE) != 0;
 }
 
 static uint32_t cover_tile(const shade_job *job, const tile_slab *tile, float *pixels, uint64_t *samples) {

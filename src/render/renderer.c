@@ -105,13 +105,6 @@ static hl_status check_room(hl_renderer *renderer, uint64_t bytes, hl_error *err
   return hl_check_room(renderer->context, bytes, &renderer->estimate, error);
 }
 
-static double smallest_edge(const hl_renderer *renderer) {
-  double edge = INFINITY;
-  for (size_t i = 0; i < renderer->prepared_count; i++)
-    edge = fmin(edge, mat3_shortest_column(renderer->prepared[i].grid.index_to_frame.linear));
-  return edge;
-}
-
 /* The data of one frame; released when it ends. */
 typedef struct frame_work {
   framed_scene framed;
@@ -246,7 +239,7 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
     frame->point_count += 8;
   }
   open_faces(scene, work->grids);
-  frame->voxel = smallest_edge(renderer);
+  frame->voxel = hl_scene_smallest_edge(scene);
   hl_status status = add_surfaces(context, scene, work, error);
   if (status == HL_OK) status = hl_frame_set_up_eye(frame, scene, error);
   if (status != HL_OK) return status;
@@ -275,6 +268,10 @@ static int attenuation_channels(const hl_scene_description *scene) {
   for (size_t i = 0; i < scene->volume_count; i++) {
     const double *color = scene->volumes[i].attenuation_color;
     if (scene->volumes[i].casts_shadow && (color[0] != color[1] || color[1] != color[2])) return 3;
+  }
+  for (size_t i = 0; i < scene->mesh_count; i++) {
+    const double *color = scene->meshes[i].attenuation_color;
+    if (scene->meshes[i].casts_shadow && (color[0] != color[1] || color[1] != color[2])) return 3;
   }
   return 1;
 }

@@ -256,7 +256,7 @@ LANES_INLINE int composite_packed(const shade_job *job, const packed_block *bloc
     opacity = lanes_unpack(&block->packing, opacity);
   }
   lanes alpha = composite(job->back_to_front, opacity, color, pixels);
-  return job->back_to_front || lanes_bits(alpha < OPAQUE) != 0;
+  return job->back_to_front || lanes_bits(alpha < PIXEL_OPAQUE) != 0;
 }
 
 /* The order in which a tile's blocks are packed: neighbours follow each other, so that the gradients of a

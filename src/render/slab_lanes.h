@@ -9,9 +9,6 @@
 #include "render/slab.h"
 #include "shadow/attenuate_lanes.h"
 
-/* The alpha from which a pixel counts as opaque: matter behind adds less than half a step of 10 bits. */
-static const float OPAQUE = 1.0f - 1.0f / 2048;
-
 /* The geometry of the pixels' rays, the same for all volumes. */
 typedef struct block_geometry {
   lanes3 position;    /* frame space, in the slab: where it is lit */
@@ -239,7 +236,7 @@ LANES_INLINE void find_normals(block_density *densities, int count) {
 /* A block's pixels in which something may be seen, one bit each. alpha: of the pixels before the slab. */
 LANES_INLINE uint32_t visible_in_block(const shade_job *job, const shade_patch *patches, int patch_count,
                                        int block, const float *alpha) {
-  lanes_int open = job->back_to_front ? lanes_set_int(-1) : lanes_load(alpha) < OPAQUE,
+  lanes_int open = job->back_to_front ? lanes_set_int(-1) : lanes_load(alpha) < PIXEL_OPAQUE,
             visible = lanes_set_int(0);
   for (int i = 0; i < patch_count; i++)
     if (patches[i].blocks >> block & 1 && patches[i].volume->visible)

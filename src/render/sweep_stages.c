@@ -138,7 +138,7 @@ static void composite_light_tile(sweep *sweep, light_shadow *shadow, attenuate_j
   for (int i = 0; i < job.volume_count; i++) worked |= job.volumes[i].blocks;
   attenuated_blocks blocks = sweep->content.hot->shadow.attenuate(&job, tile_x, tile_y);
   if (method->find_lit == NULL) buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | blocks.lit);
-  bool taken = hl_sweep_surfaces_attenuate(&job, surfaces);
+  bool taken = hl_sweep_surfaces_attenuate(sweep, &job, surfaces);
   if (blocks.taken == 0 && !taken) return;
   buffer->tile_touched[tile] = 1;
   buffer->changed[tile] = job.sheet;

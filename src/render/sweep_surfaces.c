@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "render/surface_point.h"
 #include "render/surface_samples.h"
 
 /* ---- begin and end ---- */
@@ -84,87 +85,6 @@ fragment_range hl_sweep_surfaces_reach_light(const sweep *sweep, int light, size
 
 /* ---- the picture: samples of surfaces ---- */
 
-/* A point of a surface that is lit: where a ray of the eye meets a fragment, with the normal and the colour
- * there. */
-typedef struct surface_point {
-  vec3 position, normal, towards_eye;
-  double color[3];
-} surface_point;
-
-static vec3 position_of(const sweep *sweep, const tile_slab *slab, const fragment *f) {
-  const view *eye = &sweep->frame->eye;
-  const sheet_stack *sheets = &sweep->geometry->sheets;
-  int block = f->pixel / BLOCK_PIXELS, lane = f->pixel % BLOCK_PIXELS;
-  double u, v;
-  vec3 start, way;
-  hl_fragment_middle(f->samples, &u, &v);
-  u += slab->x * TILE + block % 4 * BLOCK + lane % BLOCK;
-  v += slab->y * TILE + block / 4 * BLOCK + lane / BLOCK;
-  hl_view_ray(eye, u, v, &start, &way);
-  double rise = sheets->first + f->height - vec3_dot(sheets->normal, start);
-  return vec3_add(start, vec3_scale(way, rise / vec3_dot(sheets->normal, way)));
-}
-
-/* The weights of a triangle's corners at a point of its plane. */
-static void find_weights(const vec3 corner[3], vec3 cross, vec3 at, double weight[3]) {
-  double area = vec3_dot(cross, cross), sum = 0;
-  for (int i = 0; i < 3; i++) {
-    vec3 a = corner[(i + 1) % 3], b = corner[(i + 2) % 3];
-    double part = vec3_dot(cross, vec3_cross(vec3_subtract(a, at), vec3_subtract(b, at)));
-    weight[i] = area > 0 ? fmax(part / area, 0) : 1;
-    sum += weight[i];
-  }
-  for (int i = 0; i < 3; i++) weight[i] = sum > 0 ? weight[i] / sum : 1.0 / 3;
-}
-
-/* The cosine of the greatest angle between a triangle and a vertex's normal at which the surface counts as
- * rounded there: 40 degrees. Beyond it there is an edge. */
-static const double ROUNDED = 0.766;
-
-static vec3 smooth_normal(const surfaces *all, const uint32_t *corner, const double weight[3], vec3 flat) {
-  vec3 sum = {0, 0, 0};
-  for (int i = 0; i < 3; i++) {
-    vec3 own = hl_surface_vector(all->normals[corner[i]]);
-    double along = vec3_dot(own, flat);
-    if (fabs(along) < ROUNDED) own = flat;
-    else if (along < 0) own = vec3_scale(own, -1);
-    sum = vec3_add(sum, vec3_scale(own, weight[i]));
-  }
-  return vec3_normalise(sum);
-}
-
-static void find_color(const surface_mesh *mesh, const uint32_t *corner, const double weight[3],
-                       double color[3]) {
-  for (int c = 0; c < 3; c++) {
-    double own = 0;
-    for (int i = 0; i < 3 && mesh->colors != NULL; i++)
-      own += weight[i] * mesh->colors[corner[i] - mesh->first_vertex][c];
-    color[c] = mesh->scene->color[c] * (mesh->colors != NULL ? own : 1);
-  }
-}
-
-static surface_point find_point(const sweep *sweep, const tile_slab *slab, const fragment *f,
-                                const surface_mesh *mesh) {
-  const surfaces *all = sweep->frame->surfaces;
-  const uint32_t *corner = all->triangles[f->triangle];
-  const view *eye = &sweep->frame->eye;
-  surface_point point = {.position = position_of(sweep, slab, f)};
-  vec3 at[3];
-  double weight[3];
-  for (int i = 0; i < 3; i++) at[i] = hl_surface_vector(all->positions[corner[i]]);
-  vec3 cross = vec3_cross(vec3_subtract(at[1], at[0]), vec3_subtract(at[2], at[0])),
-       flat = vec3_normalise(cross);
-  find_weights(at, cross, point.position, weight);
-  point.towards_eye = eye->perspective ? vec3_normalise(vec3_subtract(eye->origin, point.position))
-                                       : vec3_scale(eye->direction, -1);
-  point.normal = mesh->scene->smooth ? smooth_normal(all, corner, weight, flat) : flat;
-  bool behind = vec3_dot(flat, point.towards_eye) < 0;
-  if (behind) point.normal = vec3_scale(point.normal, mesh->scene->two_sided ? -1 : 0);
-  find_color(mesh, corner, weight, point.color);
-  if (behind && !mesh->scene->two_sided) point.color[0] = point.color[1] = point.color[2] = 0;
-  return point;
-}
-
 static void set_sample(surface_samples *samples, int i, const surface_point *point) {
   const vec3 *vectors[] = {&point->position, &point->normal, &point->towards_eye};
   float(*rows[])[SURFACE_SAMPLES] = {samples->position, samples->normal, samples->towards_eye};
@@ -201,7 +121,7 @@ static void shade_batch(const sweep *sweep, const tile_slab *slab, const fragmen
   surface_samples samples;
   set_material(&samples, mesh->scene);
   for (int i = 0; i < SURFACE_SAMPLES; i++) {
-    surface_point point = find_point(sweep, slab, list[i < count ? i : 0], mesh);
+    surface_point point = hl_surface_point_of(sweep, slab, list[i < count ? i : 0]);
     set_sample(&samples, i, &point);
   }
   sweep->content.hot->render.surface(slab->job, &samples);
@@ -234,7 +154,7 @@ static void shade_fragments(const sweep *sweep, const tile_slab *slab, uint32_t 
   for (size_t i = 0; i < range.count; i++) {
     const fragment *f = &range.first[i];
     if ((blocks >> f->pixel / BLOCK_PIXELS & 1) == 0) continue;
-    const surface_mesh *own = hl_surface_of(sweep->frame->surfaces, f->triangle);
+    const surface_mesh *own = &sweep->frame->surfaces->meshes[f->mesh];
     if (filled > 0 && (own != mesh || filled == SURFACE_SAMPLES)) {
       shade_batch(sweep, slab, batch, filled, mesh);
       filled = 0;
@@ -276,7 +196,7 @@ static uint32_t open_blocks(const sweep *sweep, const tile_slab *slab, uint32_t 
     int block = __builtin_ctz(blocks);
     const float *alpha = pixels + (block * 4 + 3) * BLOCK_PIXELS;
     for (int lane = 0; lane < BLOCK_PIXELS; lane++)
-      if (alpha[lane] < 1 - 1.0f / 2048) open |= 1u << block;
+      if (alpha[lane] < PIXEL_OPAQUE) open |= 1u << block;
   }
   return open;
 }
@@ -310,16 +230,18 @@ uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint3
 
 /* ---- the lights ---- */
 
-bool hl_sweep_surfaces_attenuate(const attenuate_job *job, fragment_range range) {
+bool hl_sweep_surfaces_attenuate(const sweep *sweep, const attenuate_job *job, fragment_range range) {
   for (size_t i = 0; i < range.count; i++) {
     const fragment *f = &range.first[i];
+    const double *color = sweep->frame->surfaces->meshes[f->mesh].scene->attenuation_color;
     int block = f->pixel / BLOCK_PIXELS, lane = f->pixel % BLOCK_PIXELS;
     size_t row = (size_t)(block / 4 * BLOCK + lane / BLOCK),
            column = (size_t)(block % 4 * BLOCK + lane % BLOCK);
     for (int c = 0; c < job->channels; c++) {
       float *at = job->transmittance[c] + row * job->stride + column, before = *at;
-      *at = before * (1 - f->opacity);
-      if (job->older[c] != NULL) job->older[c][row * job->stride + column] *= 1 - f->opacity;
+      float passing = 1 - f->opacity * (float)color[c];
+      *at = before * passing;
+      if (job->older[c] != NULL) job->older[c][row * job->stride + column] *= passing;
       if (job->moment[c] != NULL)
         job->moment[c][row * job->moment_stride + column] += (before - *at) * job->position;
     }

@@ -19,7 +19,7 @@ uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint3
                                 fragment_range range);
 
 /* Step 17 for the surfaces of a slab in a tile of a light's buffer. Returns whether any took light. */
-bool hl_sweep_surfaces_attenuate(const attenuate_job *job, fragment_range range);
+bool hl_sweep_surfaces_attenuate(const sweep *sweep, const attenuate_job *job, fragment_range range);
 fragment_range hl_sweep_surfaces_reach_light(const sweep *sweep, int light, size_t tile, int slab);
 
 #endif

@@ -114,7 +114,8 @@ hl_status hl_description_check(const hl_scene_description *d, hl_error *error) {
     status = hl_check_count(&root, "volumes", d->volumes, d->volume_count, HL_LIMIT_VOLUMES);
   if (status == HL_OK) status = hl_check_count(&root, "meshes", d->meshes, d->mesh_count, HL_LIMIT_MESHES);
   if (status != HL_OK) return status;
-  if (d->volume_count == 0) return hl_check_refuse(&root, "volumes", "is empty: name at least one volume");
+  if (d->volume_count + d->mesh_count == 0)
+    return hl_check_refuse(&root, "volumes", "is empty: name at least one volume or mesh");
   for (size_t l = 0; l < d->light_count && status == HL_OK; l++)
     status = hl_light_check(&d->lights[l], l, error);
   for (size_t v = 0; v < d->volume_count && status == HL_OK; v++)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "mesh/mesh.h"
 #include "scene/camera.h"
 #include "scene/transfer_function.h"
 
@@ -98,8 +99,40 @@ double hl_scene_volume_empty_value(const hl_scene_volume *volume) {
   return v->minimum - (range > 0 ? range : fmax(1, fabs(v->minimum)));
 }
 
-static vec3 middle_of_volumes(const hl_scene_description *scene) {
+static void grow_box(vec3 *low, vec3 *high, vec3 p) {
+  *low = (vec3){fmin(low->x, p.x), fmin(low->y, p.y), fmin(low->z, p.z)};
+  *high = (vec3){fmax(high->x, p.x), fmax(high->y, p.y), fmax(high->z, p.z)};
+}
+
+/* The box of all meshes. */
+static void box_of_meshes(const hl_scene_description *scene, vec3 *low, vec3 *high) {
+  *low = (vec3){INFINITY, INFINITY, INFINITY}, *high = vec3_scale(*low, -1);
+  for (size_t i = 0; i < scene->mesh_count; i++) {
+    const hl_mesh *mesh = scene->meshes[i].mesh;
+    affine3 placement = hl_scene_mesh_to_world(&scene->meshes[i]);
+    for (int corner = 0; corner < 8; corner++)
+      grow_box(low, high,
+               affine3_apply(placement, (vec3){corner & 1 ? mesh->high[0] : mesh->low[0],
+                                               corner & 2 ? mesh->high[1] : mesh->low[1],
+                                               corner & 4 ? mesh->high[2] : mesh->low[2]}));
+  }
+}
+
+double hl_scene_smallest_edge(const hl_scene_description *scene) {
+  enum { SHEETS_ACROSS_MESHES = 200 };
+  double edge = INFINITY;
+  for (size_t i = 0; i < scene->volume_count; i++)
+    edge = fmin(edge, mat3_shortest_column(hl_scene_volume_index_to_world(&scene->volumes[i]).linear));
+  if (scene->volume_count > 0) return edge;
+  vec3 low, high;
+  box_of_meshes(scene, &low, &high);
+  double longest = fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z));
+  return longest > 0 ? longest / SHEETS_ACROSS_MESHES : 1;
+}
+
+static vec3 middle_of_content(const hl_scene_description *scene) {
   vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+  if (scene->volume_count == 0) box_of_meshes(scene, &low, &high);
   for (size_t i = 0; i < scene->volume_count; i++) {
     affine3 placement = hl_scene_volume_index_to_world(&scene->volumes[i]);
     double box[2][3];
@@ -107,20 +140,16 @@ static vec3 middle_of_volumes(const hl_scene_description *scene) {
     for (int corner = 0; corner < 8; corner++) {
       vec3 p = affine3_apply(placement,
                              (vec3){box[corner & 1][0], box[corner >> 1 & 1][1], box[corner >> 2][2]});
-      low = (vec3){fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z)};
-      high = (vec3){fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z)};
+      grow_box(&low, &high, p);
     }
   }
   return vec3_scale(vec3_add(low, high), 0.5);
 }
 
 hl_frame_space hl_scene_frame_space(const hl_scene_description *scene) {
-  double edge = INFINITY;
   int exponent;
-  for (size_t i = 0; i < scene->volume_count; i++)
-    edge = fmin(edge, mat3_shortest_column(hl_scene_volume_index_to_world(&scene->volumes[i]).linear));
-  (void)frexp(edge, &exponent);
-  return (hl_frame_space){middle_of_volumes(scene), ldexp(1, exponent - 1)};
+  (void)frexp(hl_scene_smallest_edge(scene), &exponent);
+  return (hl_frame_space){middle_of_content(scene), ldexp(1, exponent - 1)};
 }
 
 /* ---- lights that move with the camera, converted to the world.

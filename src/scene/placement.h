@@ -19,8 +19,12 @@ affine3 hl_scene_mesh_to_world(const hl_scene_mesh *mesh);
  * (clip is a box in the file's own world; where the grid is oblique to it, its bounds in index space). */
 void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double high[3]);
 
-/* Frame space, in which a scene is rendered: p -> (p - centre) / unit. centre is the middle of all volumes'
- * boxes, unit the power of two that the smallest voxel edge is 1 to 2 times as long as. */
+/* The smallest edge of a voxel. Without a volume: the longest side of the meshes' box in 200 parts. */
+double hl_scene_smallest_edge(const hl_scene_description *scene);
+
+/* Frame space, in which a scene is rendered: p -> (p - centre) / unit. centre is the middle of the boxes of
+ * all volumes, or, where there are none, of all meshes; unit is the power of two that the smallest voxel edge
+ * is 1 to 2 times as long as. */
 typedef struct hl_frame_space {
   vec3 centre;
   double unit;
@@ -29,7 +33,7 @@ typedef struct hl_frame_space {
 /* The distance, in frame units, below which a light with falloff gets no brighter. */
 #define HL_LEAST_LIGHT_DISTANCE 1e-3
 
-hl_frame_space hl_scene_frame_space(const hl_scene_description *scene); /* of one volume at least */
+hl_frame_space hl_scene_frame_space(const hl_scene_description *scene); /* of one volume or mesh at least */
 
 /* The empty value, of the volume's surroundings and of voxels that are not finite: the most frequent
  * transparent value; if no value is transparent, a value below the volume's range, which is then treated as

@@ -29,6 +29,13 @@ void hl_scene_volume_defaults(hl_scene_volume *volume) {
   hl_settings_defaults(HL_SETTINGS_TRANSFER_FUNCTION, &volume->transfer_function);
 }
 
+void hl_scene_floor_defaults(hl_scene_mesh *floor) {
+  if (floor == NULL) return;
+  hl_scene_mesh_defaults(floor);
+  for (int c = 0; c < 3; c++) floor->color[c] = 0.5;
+  floor->material.specular = 0;
+}
+
 void hl_scene_mesh_defaults(hl_scene_mesh *mesh) {
   if (mesh == NULL) return;
   *mesh = (hl_scene_mesh){.mesh = NULL};

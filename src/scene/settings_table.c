@@ -251,7 +251,11 @@ static const hl_setting mesh_rows[] = {
     {.key = "casts_shadow", FIELD(hl_scene_mesh, casts_shadow), A_FLAG, .standard = {1},
      .sentence = "The mesh takes light from what lies behind it."},
     {.key = "receives_shadow", FIELD(hl_scene_mesh, receives_shadow), A_FLAG, .standard = {1},
-     .sentence = "The mesh is darkened by shadows."}};
+     .sentence = "The mesh is darkened by shadows."},
+    {.key = "attenuation_color", FIELD(hl_scene_mesh, attenuation_color), .type = HL_SETTING_COLOR,
+     .unit = "", .high = 1, .standard = {1, 1, 1},
+     .sentence = "The fractions of the opacity that the mesh takes of red, green and blue light.",
+     .mend = "give fractions from 0 to 1, 1 for as much as the opacity says"}};
 
 static const hl_setting iso_rows[] = {
     {.key = "value", FIELD(hl_isosurface, value), .type = HL_SETTING_NUMBER, .unit = "data units",

@@ -5,7 +5,7 @@
 #ifndef HL_SURFACE_COVERAGE_H
 #define HL_SURFACE_COVERAGE_H
 
-#include "surface/triangle_bins.h"
+#include "surface/seen.h"
 
 /* The samples' positions in a pixel: sample i lies at ((i + 1/2) / 16, (hl_sample_row[i] + 1/2) / 16). No two
  * share a row or a column. */

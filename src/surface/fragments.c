@@ -1,76 +1,21 @@
-/* surface/fragments.c - rasterises the triangles of each tile, sorts their fragments, and finds what each
- * takes of the light that reaches it. */
+/* surface/fragments.c - rasterises the triangles and spheres of each tile into fragments. */
 #include "surface/fragments.h"
 
 #include <string.h>
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
-#include "surface/coverage.h"
+#include "scene/limits.h"
+#include "surface/fragment_order.h"
+#include "surface/primitive_bins.h"
+#include "surface/sphere_coverage.h"
+#include "surface/surface_plane.h"
 
-/* What is left of a pixel's light below which fragments behind are left out: as matter behind opaque pixels.
- */
-static const float NOTHING_LEFT = 1.0f / 2048;
-
-/* ---- heights ---- */
-
-/* The height at which a view's rays meet a triangle's plane n.X = d, linear functions of the pixel (derived:
- * the ray A + s B meets it at s = (d - n.A) / (n.B), at the height h.A + s h.B). In a perspective view A is
- * the eye and B depends on the pixel, else the other way round. */
-typedef struct triangle_plane {
-  double rise[3], way[3], above[3], climb[3]; /* d - n.A, n.B, h.A, h.B: for pixel (0, 0), and by u and v */
-  double lowest, highest;                     /* of the triangle; above the first sheet */
-  bool leaving;                               /* the view's rays leave a closed mesh here */
-} triangle_plane;
-
-static double linear(const double f[3], double u, double v) { return f[0] + f[1] * u + f[2] * v; }
-
-static void set_linear(double f[3], vec3 normal, vec3 at, vec3 by_u, vec3 by_v) {
-  f[0] = vec3_dot(normal, at), f[1] = vec3_dot(normal, by_u), f[2] = vec3_dot(normal, by_v);
-}
-
-static void plane_of_triangle(const fragments_source *source, uint32_t triangle, triangle_plane *plane) {
-  const view *view = source->view;
-  const uint32_t *corner = source->surfaces->triangles[triangle];
-  vec3 zero = {0, 0, 0}, h = source->sheets->normal, point[3];
-  for (int i = 0; i < 3; i++) point[i] = hl_surface_vector(source->surfaces->positions[corner[i]]);
-  vec3 n = vec3_normalise(vec3_cross(vec3_subtract(point[1], point[0]), vec3_subtract(point[2], point[0])));
-  vec3 a = view->perspective ? view->origin : view->corner,
-       b = view->perspective ? view->corner : view->direction;
-  vec3 au = view->perspective ? zero : view->du, av = view->perspective ? zero : view->dv;
-  vec3 bu = view->perspective ? view->du : zero, bv = view->perspective ? view->dv : zero;
-  set_linear(plane->rise, vec3_scale(n, -1), vec3_subtract(a, point[0]), au, av);
-  set_linear(plane->way, n, b, bu, bv);
-  set_linear(plane->above, h, a, au, av);
-  set_linear(plane->climb, h, b, bu, bv);
-  plane->above[0] -= source->sheets->first;
-  plane->lowest = INFINITY, plane->highest = -INFINITY;
-  for (int i = 0; i < 3; i++) {
-    double height = vec3_dot(h, point[i]) - source->sheets->first;
-    plane->lowest = fmin(plane->lowest, height);
-    plane->highest = fmax(plane->highest, height);
-  }
-}
-
-static double height_at(const triangle_plane *plane, double u, double v) {
-  return linear(plane->above, u, v) +
-         linear(plane->rise, u, v) / linear(plane->way, u, v) * linear(plane->climb, u, v);
-}
-
-/* How steep a surface may be, in frame units for each pixel: one that light almost grazes would be delayed
- * without end, and it is hardly lit. */
-static const double STEEPEST = 12;
+_Static_assert(HL_LIMIT_MESHES + HL_LIMIT_VOLUMES * HL_LIMIT_ISO <= 65536, "a fragment's mesh has 16 bits");
 
 /* The least delay, in distances of sheets: a surface along the sheets must not come to lie in an earlier slab
  * in the light's view than in the eye's, for rounding. */
 static const double LEAST_DELAY = 0.02;
-
-/* How much a plane's height changes from pixel to pixel. */
-static double slope_of(const triangle_plane *plane, double u, double v) {
-  double height = height_at(plane, u, v);
-  double slope = fabs(height_at(plane, u + 1, v) - height) + fabs(height_at(plane, u, v + 1) - height);
-  return slope < STEEPEST ? slope : STEEPEST; /* not a number: the steepest */
-}
 
 void hl_fragment_middle(uint16_t samples, double *u, double *v) {
   int count = 0, x = 0, y = 0;
@@ -105,9 +50,11 @@ typedef struct tile_record {
 
 typedef struct fragment_work {
   const fragments_source *source;
-  const triangle_bins *bins;
+  const seen_vertices *seen;
+  const primitive_bins *bins;
   fragment_worker *workers; /* [threads] */
-  tile_record *tiles;       /* [tiles] */
+  float *least;       /* [mesh_count]; the least fraction of their opacity that meshes take of any colour */
+  tile_record *tiles; /* [tiles] */
   int tiles_x, tiles_y;
 } fragment_work;
 
@@ -122,8 +69,8 @@ static bool make_room(hl_context *context, fragment **list, size_t *room, size_t
 }
 
 /* The pixel's number, block after block. */
-static uint16_t number_of_pixel(int column, int row) {
-  return (uint16_t)((row / BLOCK * 4 + column / BLOCK) * BLOCK_PIXELS + row % BLOCK * BLOCK + column % BLOCK);
+static uint8_t number_of_pixel(int column, int row) {
+  return (uint8_t)((row / BLOCK * 4 + column / BLOCK) * BLOCK_PIXELS + row % BLOCK * BLOCK + column % BLOCK);
 }
 
 static int32_t slab_of(const fragments_source *source, double height) {
@@ -147,26 +94,35 @@ static void mark(const fragment_work *work, int tile_x, int tile_y, int column, 
     }
 }
 
-/* The fraction that a mesh's surface stops at the middle of a triangle. */
-static float opacity_of(const surfaces *all, const surface_mesh *mesh, uint32_t triangle) {
-  double opacity = mesh->scene->opacity;
+static double clamped(float opacity) { return fmin(fmax((double)opacity, 0), 1); }
+
+/* The fraction of light that a mesh's surface stops, at the middle of a triangle. */
+static float opacity_of(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
+  double opacity = mesh->scene->opacity, sum = 0;
+  if (primitive >= all->triangle_count) {
+    if (mesh->sphere_colors == NULL) return (float)opacity;
+    return (float)(opacity *
+                   clamped(mesh->sphere_colors[primitive - all->triangle_count - mesh->first_sphere][3]));
+  }
+  if (mesh->face_colors != NULL)
+    return (float)(opacity * clamped(mesh->face_colors[primitive - mesh->first_triangle][3]));
   if (mesh->colors == NULL) return (float)opacity;
-  double sum = 0;
   for (int i = 0; i < 3; i++)
-    sum += fmin(fmax(mesh->colors[all->triangles[triangle][i] - mesh->first_vertex][3], 0), 1);
+    sum += clamped(mesh->colors[all->triangles[primitive][i] - mesh->first_vertex][3]);
   return (float)(opacity * sum / 3);
 }
 
 /* Adds a fragment of a light's view: to the slab at its delayed height, and to those above it that the plane
  * crosses within the pixel. Where light leaves a closed mesh it lights nothing: there is no delay. Derived: n
  * slabs that take 1 - (1 - a)^(1/n) each take a together. */
-static void add_of_light(const fragment_work *work, fragment_worker *worker, const triangle_plane *plane,
+static void add_of_light(const fragment_work *work, fragment_worker *worker, const surface_plane *plane,
                          fragment f, double slope) {
   const fragments_source *source = work->source;
   double spacing = source->sheets->spacing;
   double delay = plane->leaving ? 0 : source->delay * slope + LEAST_DELAY * spacing;
   double start = f.height + delay, end = fmin(f.height + source->rise * slope, plane->highest) + delay;
   int32_t first = slab_of(source, start), last = slab_of(source, end);
+  if (work->least[f.mesh] < 1) last = first; /* opacities by colour cannot be shared out among slabs */
   if (last - first >= MOST_SLABS) last = first + MOST_SLABS - 1;
   if (last > first && f.opacity < 1) f.opacity = 1 - powf(1 - f.opacity, 1.0f / (float)(last - first + 1));
   for (int32_t slab = first; slab <= last; slab++) {
@@ -176,168 +132,158 @@ static void add_of_light(const fragment_work *work, fragment_worker *worker, con
   }
 }
 
-static void add_pixel(const fragment_work *work, fragment_worker *worker, const triangle_plane *plane,
-                      fragment f, int x, int y) {
-  const fragments_source *source = work->source;
-  int column = x % TILE, row = y % TILE;
+/* A pixel of a view, and the middle of the samples that a surface covers of it. */
+typedef struct covered_pixel {
+  int x, y;
   double u, v;
-  hl_fragment_middle(f.samples, &u, &v);
-  double height = height_at(plane, x + u, y + v);
+} covered_pixel;
+
+static covered_pixel pixel_of(int x, int y, uint16_t samples) {
+  covered_pixel pixel = {x, y, 0, 0};
+  hl_fragment_middle(samples, &pixel.u, &pixel.v);
+  pixel.u += x;
+  pixel.v += y;
+  return pixel;
+}
+
+static void add_pixel(const fragment_work *work, fragment_worker *worker, const surface_plane *plane,
+                      fragment f, const covered_pixel *at) {
+  const fragments_source *source = work->source;
+  int column = at->x % TILE, row = at->y % TILE;
+  double height = hl_plane_height(plane, at->u, at->v);
   height = fmin(fmax(height, plane->lowest), plane->highest); /* not a number: the lowest */
   f.slab = slab_of(source, height);
   f.height = (float)height;
   f.pixel = number_of_pixel(column, row);
-  if (source->marks != NULL) mark(work, x / TILE, y / TILE, column, row, f.slab);
+  if (source->marks != NULL) mark(work, at->x / TILE, at->y / TILE, column, row, f.slab);
   if (f.opacity <= 0) return;
   size_t before = worker->count;
-  if (source->of_light) add_of_light(work, worker, plane, f, slope_of(plane, x + u, y + v));
+  if (source->of_light) add_of_light(work, worker, plane, f, hl_plane_slope(plane, at->u, at->v));
   else worker->scratch[worker->count++] = f;
   for (size_t i = before; source->marks != NULL && i < worker->count; i++)
-    mark(work, x / TILE, y / TILE, column, row, worker->scratch[i].slab);
+    mark(work, at->x / TILE, at->y / TILE, column, row, worker->scratch[i].slab);
 }
 
-/* Adds a triangle's fragments in a tile. */
-static void add_triangle(const fragment_work *work, fragment_worker *worker, int tile_x, int tile_y,
-                         uint32_t triangle) {
-  const fragments_source *source = work->source;
-  const surface_mesh *mesh = hl_surface_of(source->surfaces, triangle);
-  seen_polygon polygon;
-  uint16_t covered[TILE_PIXELS];
+/* The part of a primitive in a tile: what its samples cover. */
+typedef struct tile_part {
+  int tile_x, tile_y;
   pixel_span span;
-  triangle_plane plane;
-  hl_see_triangle(source->view, source->surfaces, triangle, &polygon);
-  if (!hl_cover_tile(&polygon, tile_x, tile_y, &span, covered)) return;
-  if (!make_room(source->context, &worker->scratch, &worker->room, worker->count + TILE_PIXELS * MOST_SLABS,
-                 2)) {
+  uint16_t covered[TILE_PIXELS];
+} tile_part;
+
+/* The next pixel of the view, after pixel number *at of the tile, of which samples are covered. */
+static bool next_pixel(const view *view, const tile_part *part, int *at, fragment *f, covered_pixel *pixel) {
+  const pixel_span *span = &part->span;
+  int width = span->x1 - span->x0 + 1, count = width * (span->y1 - span->y0 + 1);
+  for (; *at < count; ++*at) {
+    int column = span->x0 + *at % width, row = span->y0 + *at / width;
+    int x = part->tile_x * TILE + column, y = part->tile_y * TILE + row;
+    f->samples = part->covered[row * TILE + column];
+    if (f->samples == 0 || x >= view->width || y >= view->height) continue;
+    *pixel = pixel_of(x, y, f->samples);
+    ++*at;
+    return true;
+  }
+  return false;
+}
+
+static void add_triangle(const fragment_work *work, fragment_worker *worker, tile_part *part, fragment f) {
+  const fragments_source *source = work->source;
+  const surface_mesh *mesh = &source->surfaces->meshes[f.mesh];
+  seen_polygon polygon;
+  surface_plane plane;
+  covered_pixel pixel;
+  int at = 0;
+  hl_see_triangle(work->seen, f.primitive, &polygon);
+  if (!hl_cover_tile(&polygon, part->tile_x, part->tile_y, &part->span, part->covered)) return;
+  hl_plane_of_triangle(source->view, source->sheets, source->surfaces, f.primitive, &plane);
+  plane.leaving = mesh->scene->mesh->closed && hl_plane_linear(plane.way, part->tile_x * TILE + TILE / 2,
+                                                               part->tile_y * TILE + TILE / 2) > 0;
+  while (next_pixel(source->view, part, &at, &f, &pixel)) add_pixel(work, worker, &plane, f, &pixel);
+}
+
+/* The side of a sphere that rays enter or leave by. */
+static void add_side(const fragment_work *work, fragment_worker *worker, const tile_part *part, fragment f,
+                     bool leaving) {
+  const fragments_source *source = work->source;
+  const float *sphere = source->surfaces->spheres[f.primitive - source->surfaces->triangle_count];
+  covered_pixel pixel;
+  int at = 0;
+  while (next_pixel(source->view, part, &at, &f, &pixel)) {
+    surface_plane plane;
+    vec3 point;
+    if (!hl_meet_sphere(source->view, sphere, pixel.u, pixel.v, leaving, &point)) continue;
+    hl_plane_of_sphere(source->view, source->sheets, sphere, point, &plane);
+    plane.leaving = leaving;
+    add_pixel(work, worker, &plane, f, &pixel);
+  }
+}
+
+/* A view sees the far side of an opaque sphere only from within. */
+static bool has_far_side(const fragment_work *work, const float sphere[4], float opacity) {
+  const view *view = work->source->view;
+  if (work->source->rise > 0 || opacity < 1) return true;
+  vec3 away = vec3_subtract(view->origin, hl_surface_vector(sphere));
+  return view->perspective && vec3_length(away) <= 1.01 * (double)sphere[3];
+}
+
+static void add_sphere(const fragment_work *work, fragment_worker *worker, tile_part *part, fragment f) {
+  const fragments_source *source = work->source;
+  const float *sphere = source->surfaces->spheres[f.primitive - source->surfaces->triangle_count];
+  seen_bounds bounds;
+  if (!hl_see_sphere(source->view, sphere, &bounds) ||
+      !hl_cover_sphere(source->view, sphere, &bounds, part->tile_x, part->tile_y, &part->span, part->covered))
+    return;
+  add_side(work, worker, part, f, false);
+  if (has_far_side(work, sphere, f.opacity)) add_side(work, worker, part, f, true);
+}
+
+/* Adds a primitive's fragments in a tile. */
+static void add_primitive(const fragment_work *work, fragment_worker *worker, tile_part *part,
+                          size_t mesh_index, uint32_t primitive) {
+  const fragments_source *source = work->source;
+  const surface_mesh *mesh = &source->surfaces->meshes[mesh_index];
+  if (!make_room(source->context, &worker->scratch, &worker->room,
+                 worker->count + 2 * TILE_PIXELS * MOST_SLABS, 2)) {
     worker->failed = true;
     return;
   }
-  plane_of_triangle(source, triangle, &plane);
-  plane.leaving = mesh->scene->mesh->closed &&
-                  linear(plane.way, tile_x * TILE + TILE / 2, tile_y * TILE + TILE / 2) > 0;
   bool counts = source->of_light ? mesh->scene->casts_shadow : mesh->scene->visible;
-  fragment f = {.triangle = triangle, .opacity = counts ? opacity_of(source->surfaces, mesh, triangle) : 0};
-  for (int row = span.y0; row <= span.y1; row++)
-    for (int column = span.x0; column <= span.x1; column++) {
-      int x = tile_x * TILE + column, y = tile_y * TILE + row;
-      f.samples = covered[row * TILE + column];
-      if (f.samples != 0 && x < source->view->width && y < source->view->height)
-        add_pixel(work, worker, &plane, f, x, y);
+  fragment f = {.primitive = primitive,
+                .opacity = counts ? opacity_of(source->surfaces, mesh, primitive) : 0,
+                .mesh = (uint16_t)mesh_index};
+  if (primitive < source->surfaces->triangle_count) add_triangle(work, worker, part, f);
+  else add_sphere(work, worker, part, f);
+}
+
+static void add_primitives(const fragment_work *work, fragment_worker *worker, size_t tile) {
+  const surfaces *all = work->source->surfaces;
+  tile_part part = {.tile_x = (int)(tile % (size_t)work->tiles_x),
+                    .tile_y = (int)(tile / (size_t)work->tiles_x)};
+  size_t mesh = 0;
+  uint32_t end = 0; /* of the mesh's triangles, or spheres */
+  for (uint32_t i = work->bins->first[tile]; i < work->bins->first[tile + 1] && !worker->failed; i++) {
+    uint32_t primitive = work->bins->primitives[i];
+    if (primitive >= end) {
+      mesh = hl_surface_mesh_of(all, primitive);
+      end = hl_surface_mesh_end(all, mesh, primitive);
     }
-}
-
-/* ---- sorting ---- */
-
-/* Which of two fragments comes first: below 0 for a. */
-typedef int fragment_order(const fragment *a, const fragment *b);
-
-static int by_pixel_rising(const fragment *a, const fragment *b) {
-  if (a->pixel != b->pixel) return (int)a->pixel - (int)b->pixel;
-  if (a->height != b->height) return a->height < b->height ? -1 : 1;
-  return a->triangle < b->triangle ? -1 : a->triangle > b->triangle;
-}
-
-static int by_pixel_falling(const fragment *a, const fragment *b) {
-  if (a->pixel != b->pixel) return (int)a->pixel - (int)b->pixel;
-  if (a->height != b->height) return a->height > b->height ? -1 : 1;
-  return a->triangle < b->triangle ? -1 : a->triangle > b->triangle;
-}
-
-static int by_slab(const fragment *a, const fragment *b) {
-  return a->slab != b->slab ? (a->slab < b->slab ? -1 : 1) : by_pixel_rising(a, b);
-}
-
-/* Merges the sorted runs [0, middle) and [middle, count) of `from` into `to`. */
-static void merge(const fragment *from, size_t middle, size_t count, fragment *to, fragment_order *order) {
-  size_t a = 0, b = middle;
-  for (size_t i = 0; i < count; i++) {
-    bool first = b == count || (a < middle && order(&from[a], &from[b]) <= 0);
-    to[i] = first ? from[a++] : from[b++];
+    add_primitive(work, worker, &part, mesh, primitive);
   }
-}
-
-/* Sorts by merging, which takes no other memory than `spare`, as large as the list. */
-static void sort(fragment *list, fragment *spare, size_t count, fragment_order *order) {
-  fragment *from = list, *to = spare;
-  for (size_t run = 1; run < count; run *= 2) {
-    for (size_t at = 0; at < count; at += 2 * run) {
-      size_t left = count - at, both = left < 2 * run ? left : 2 * run;
-      merge(from + at, run < both ? run : both, both, to + at, order);
-    }
-    fragment *swapped = from;
-    from = to;
-    to = swapped;
-  }
-  if (from != list) memcpy(list, from, count * sizeof *list);
-}
-
-/* Finds the opacities of one pixel's fragments, which are in the order that the light or the eye meets them.
- * Those that take nothing get opacity 0. */
-static void resolve_pixel(fragment *list, size_t count) {
-  float left[FRAGMENT_SAMPLES], sum = FRAGMENT_SAMPLES;
-  for (int s = 0; s < FRAGMENT_SAMPLES; s++) left[s] = 1;
-  for (size_t i = 0; i < count; i++) {
-    float own = list[i].opacity, taken = 0, after = 0;
-    for (int s = 0; s < FRAGMENT_SAMPLES; s++) {
-      float part = list[i].samples >> s & 1 ? left[s] * own : 0;
-      taken += part;
-      left[s] -= part;
-      after += left[s];
-    }
-    bool reached = sum > NOTHING_LEFT * FRAGMENT_SAMPLES;
-    list[i].opacity = !reached ? 0 : after <= 0 ? 1 : taken / sum < 1 ? taken / sum : 1;
-    sum = after;
-  }
-}
-
-/* The same for a light's view whose buffer is also used for rays of other directions. A pixel that opaque
- * surfaces cover in a slab is opaque there, even where surfaces before it have taken all light of the view's
- * own ray: the other rays pass these by. Fragments of one slab become one; returns how many are left. */
-static size_t resolve_slabs(fragment *list, size_t count) {
-  size_t kept = 0;
-  uint32_t covered = 0;
-  for (size_t i = 0; i < count; i++) {
-    bool begins = i == 0 || list[i].slab != list[i - 1].slab;
-    covered = (begins ? 0 : covered) | (list[i].opacity >= 1 ? list[i].samples : 0u);
-    list[i].triangle = covered == 0xffff; /* of a light's fragments the triangle is not asked for any more */
-  }
-  resolve_pixel(list, count);
-  for (size_t i = 0; i < count; i++) {
-    if (list[i].triangle) list[i].opacity = 1;
-    if (kept > 0 && list[kept - 1].slab == list[i].slab)
-      list[kept - 1].opacity = 1 - (1 - list[kept - 1].opacity) * (1 - list[i].opacity);
-    else list[kept++] = list[i];
-  }
-  return kept;
-}
-
-static size_t resolve(fragment *list, size_t count, bool slabs) {
-  size_t kept = 0;
-  for (size_t i = 0, end; i < count; i = end) {
-    for (end = i + 1; end < count && list[end].pixel == list[i].pixel;) end++;
-    size_t left = end - i;
-    if (slabs) left = resolve_slabs(list + i, left);
-    else resolve_pixel(list + i, left);
-    for (size_t k = i; k < i + left; k++)
-      if (list[k].opacity > 0) list[kept++] = list[k];
-  }
-  return kept;
 }
 
 static void make_tile(void *data, size_t tile, int worker_index) {
   const fragment_work *work = data;
   const fragments_source *source = work->source;
   fragment_worker *worker = &work->workers[worker_index];
-  int tile_x = (int)(tile % (size_t)work->tiles_x), tile_y = (int)(tile / (size_t)work->tiles_x);
   work->tiles[tile] = (tile_record){.worker = worker_index};
   worker->count = 0;
-  for (uint32_t i = work->bins->first[tile]; i < work->bins->first[tile + 1] && !worker->failed; i++)
-    add_triangle(work, worker, tile_x, tile_y, work->bins->triangles[i]);
+  add_primitives(work, worker, tile);
   if (worker->failed || worker->count == 0) return;
-  sort(worker->scratch, worker->scratch + worker->room, worker->count,
-       source->falling ? by_pixel_falling : by_pixel_rising);
-  size_t kept = resolve(worker->scratch, worker->count, source->rise > 0);
-  sort(worker->scratch, worker->scratch + worker->room, kept, by_slab);
+  hl_sort_fragments(worker->scratch, worker->scratch + worker->room, worker->count,
+                    source->falling ? hl_by_pixel_falling : hl_by_pixel_rising);
+  size_t kept = hl_resolve_fragments(worker->scratch, worker->count, work->least, source->rise > 0);
+  hl_sort_fragments(worker->scratch, worker->scratch + worker->room, kept, hl_by_slab);
   if (!make_room(source->context, &worker->out, &worker->out_room, worker->out_count + kept, 1)) {
     worker->failed = true;
     return;
@@ -389,36 +335,83 @@ static hl_status rasterise(fragment_work *work, fragments *made, hl_error *error
   return status;
 }
 
-static hl_status bin_triangles(const fragments_source *source, triangle_bins *bins, hl_error *error) {
+/* Whether the eye sees none of a mesh's backs: it is closed, opaque, and the eye is outside. */
+static bool has_hidden_backs(const fragments_source *source, const surface_mesh *mesh) {
+  const hl_scene_mesh *scene = mesh->scene;
+  if (source->of_light || !scene->mesh->closed || scene->opacity < 1 || mesh->colors != NULL ||
+      mesh->face_colors != NULL)
+    return false;
+  vec3 corner[8], eye = source->view->origin;
+  if (!source->view->perspective) return true;
+  hl_surface_corners(scene, 0, corner);
+  for (int axis = 0; axis < 3; axis++) {
+    vec3 edge = vec3_subtract(corner[1 << axis], corner[0]);
+    double at = vec3_dot(vec3_subtract(eye, corner[0]), edge), length = vec3_dot(edge, edge);
+    if (at < -0.01 * length || at > 1.01 * length) return true;
+  }
+  return false;
+}
+
+static hl_status bin_primitives(const fragments_source *source, const seen_vertices *seen,
+                                primitive_bins *bins, hl_error *error) {
   const surfaces *all = source->surfaces;
-  bool *wanted = hl_allocate(source->context, all->mesh_count, sizeof *wanted);
-  if (wanted == NULL) return hl_fail_memory(error, all->mesh_count, "the meshes");
-  for (size_t m = 0; m < all->mesh_count; m++)
-    wanted[m] = all->meshes[m].scene->visible || (source->of_light && all->meshes[m].scene->casts_shadow);
-  hl_status status = hl_triangle_bins_create(source->context, source->pool, all, source->view, wanted, bins,
-                                             error);
+  binned *wanted = hl_allocate(source->context, all->mesh_count, sizeof *wanted);
+  if (wanted == NULL) return hl_fail_memory(error, all->mesh_count * sizeof *wanted, "the meshes");
+  for (size_t m = 0; m < all->mesh_count; m++) {
+    const surface_mesh *mesh = &all->meshes[m];
+    bool seen_here = mesh->scene->visible || (source->of_light && mesh->scene->casts_shadow);
+    wanted[m] = !seen_here ? BINNED_NOTHING : has_hidden_backs(source, mesh) ? BINNED_FRONTS : BINNED_ALL;
+  }
+  hl_status status = hl_primitive_bins_create(source->context, source->pool, seen, wanted, bins, error);
   hl_release(source->context, wanted);
+  return status;
+}
+
+static void find_least(const fragments_source *source, float *least) {
+  for (size_t m = 0; m < source->surfaces->mesh_count; m++) {
+    const double *color = source->surfaces->meshes[m].scene->attenuation_color;
+    least[m] = source->of_light ? (float)fmin(color[0], fmin(color[1], color[2])) : 1;
+  }
+}
+
+static hl_status make_tiles(fragment_work *work, fragments *made, hl_error *error) {
+  const fragments_source *source = work->source;
+  hl_context *context = source->context;
+  work->least = hl_allocate(context, source->surfaces->mesh_count, sizeof *work->least);
+  made->first = hl_allocate(context, made->tiles + 1, sizeof *made->first);
+  made->cursor = hl_allocate(context, made->tiles, sizeof *made->cursor);
+  work->workers = hl_allocate_zeroed(context, (size_t)hl_pool_threads(source->pool), sizeof *work->workers);
+  work->tiles = hl_allocate_zeroed(context, made->tiles, sizeof *work->tiles);
+  hl_status status;
+  if (made->first == NULL || made->cursor == NULL || work->workers == NULL || work->tiles == NULL ||
+      work->least == NULL) {
+    status = hl_fail_memory(error, made->tiles * sizeof *work->tiles, "the surfaces' fragments");
+  } else {
+    find_least(source, work->least);
+    status = rasterise(work, made, error);
+  }
+  hl_release(context, work->least);
+  hl_release(context, work->workers);
+  hl_release(context, work->tiles);
   return status;
 }
 
 hl_status hl_fragments_create(const fragments_source *source, fragments *made, hl_error *error) {
   hl_context *context = source->context;
-  triangle_bins bins = {0};
-  fragment_work work = {
-      source, &bins, NULL, NULL, hl_tiles(source->view->width), hl_tiles(source->view->height)};
+  seen_vertices seen = {0};
+  primitive_bins bins = {0};
+  fragment_work work = {.source = source,
+                        .seen = &seen,
+                        .bins = &bins,
+                        .tiles_x = hl_tiles(source->view->width),
+                        .tiles_y = hl_tiles(source->view->height)};
   *made = (fragments){.tiles = (size_t)work.tiles_x * (size_t)work.tiles_y};
-  hl_status status = bin_triangles(source, &bins, error);
-  if (status != HL_OK) return status;
-  made->first = hl_allocate(context, made->tiles + 1, sizeof *made->first);
-  made->cursor = hl_allocate(context, made->tiles, sizeof *made->cursor);
-  work.workers = hl_allocate_zeroed(context, (size_t)hl_pool_threads(source->pool), sizeof *work.workers);
-  work.tiles = hl_allocate_zeroed(context, made->tiles, sizeof *work.tiles);
-  if (made->first == NULL || made->cursor == NULL || work.workers == NULL || work.tiles == NULL)
-    status = hl_fail_memory(error, made->tiles * sizeof *work.tiles, "the surfaces' fragments");
-  else status = rasterise(&work, made, error);
-  hl_release(context, work.workers);
-  hl_release(context, work.tiles);
-  hl_triangle_bins_release(context, &bins);
+  hl_status status = hl_seen_vertices_create(context, source->pool, source->surfaces, source->view, &seen,
+                                             error);
+  if (status == HL_OK) status = bin_primitives(source, &seen, &bins, error);
+  if (status == HL_OK) status = make_tiles(&work, made, error);
+  hl_seen_vertices_release(context, &seen);
+  hl_primitive_bins_release(context, &bins);
   if (status != HL_OK) hl_fragments_release(context, made);
   return status;
 }

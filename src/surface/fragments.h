@@ -1,31 +1,15 @@
 /* surface/fragments.h - where the rays of one view meet surfaces.
  *
- * A fragment is what one triangle covers of one pixel. Each pixel has sixteen sample positions; a fragment
- * tells which of them it covers, at one height. Heights grow along every ray of a light, and grow or fall
- * along every ray of the eye: fragments sorted by height are sorted by depth.
- *
- * Opacity. Fragments of one pixel may cover the same samples or different ones. So that they can be
- * composited one after the other, each gets the fraction that it takes of the light which the fragments
- * before it let pass, averaged over the samples (derived: with t[i] the transmittance of sample i before the
- * fragment, it takes sum over its samples of t[i] a / sum over all samples of t[i]). Triangles that share an
- * edge thus leave no seam. */
+ * Heights grow along every ray of a light, and grow or fall along every ray of the eye: fragments sorted by
+ * height are sorted by depth.
+ */
 #ifndef HL_SURFACE_FRAGMENTS_H
 #define HL_SURFACE_FRAGMENTS_H
 
 #include "core/pool.h"
+#include "surface/fragment.h"
 #include "surface/surfaces.h"
 #include "view/view.h"
-
-enum { FRAGMENT_SAMPLES = 16 };
-
-typedef struct fragment {
-  float height;  /* above the first sheet; frame units */
-  float opacity; /* see above; above 0 */
-  uint32_t triangle;
-  int32_t slab;     /* k: between sheets k-1 and k */
-  uint16_t samples; /* covered, one bit each */
-  uint16_t pixel;   /* in its tile, block after block: 16 * block + lane */
-} fragment;
 
 /* The fragments of one view. */
 typedef struct fragments {
@@ -44,11 +28,11 @@ typedef struct fragments_source {
   const sheet_stack *sheets;
   bool falling;  /* the view meets great heights first */
   bool of_light; /* a light's view: of the meshes that cast shadows; else of those that are visible */
-  double delay;  /* pixels of the view: a fragment counts from the height that its triangle's plane has so far
+  double delay;  /* pixels of the view: a fragment counts from the height that its surface's plane has so far
                     away, so that a surface does not darken itself where buffers are interpolated */
-  double rise;   /* pixels of the view: a fragment of a light's view fills all slabs that its triangle's plane
-                    crosses   within so many, so that rays of other directions than the view's find no gap
-                    between   pixels of a   slanted surface; 0: one slab */
+  double rise;   /* pixels of the view: a fragment of a light's view fills all slabs that its surface's plane
+                    crosses within so many, so that rays of other directions than the view's find no gap
+                    between pixels of a slanted surface; 0: one slab */
   uint64_t *marks; /* [sheets][tile_words], bit = tile; may be null. Bits are set for each sheet that ends a
                       slab with a visible or shadow-casting surface in the tile, and in tiles beside it */
   int tile_words;

@@ -1,4 +1,4 @@
-/* surface/surfaces.h - the triangles of all meshes of a scene, in frame space.
+/* surface/surfaces.h - the triangles and spheres of all meshes of a scene, in frame space.
  *
  * In: the scene's meshes. Out: what fragments.c rasterises and the sweep shades. */
 #ifndef HL_SURFACE_SURFACES_H
@@ -10,20 +10,31 @@
 #include "core/vector.h"
 
 typedef struct surface_mesh {
-  const hl_scene_mesh *scene; /* in frame space; borrowed */
-  const float (*colors)[4];   /* borrowed; [vertices of the mesh]; null: none */
-  size_t first_vertex;        /* in positions and normals */
+  const hl_scene_mesh *scene;      /* in frame space; borrowed */
+  const float (*colors)[4];        /* borrowed; [vertices of the mesh]; null: none */
+  const float (*face_colors)[4];   /* borrowed; [triangle_count]; null: none */
+  const float (*sphere_colors)[4]; /* borrowed; [sphere_count]; null: none */
+  size_t first_vertex;             /* in positions and normals */
   uint32_t first_triangle, triangle_count;
+  uint32_t first_sphere, sphere_count; /* in spheres */
 } surface_mesh;
 
+/* A primitive is a triangle or a sphere: numbers below triangle_count are triangles, those after it spheres.
+ */
 typedef struct surfaces {
-  surface_mesh *meshes;     /* owned; [mesh_count]; their triangles follow each other */
+  surface_mesh *meshes;     /* owned; [mesh_count]; their primitives follow each other */
   float (*positions)[3];    /* owned; [vertex_count]; frame space */
   float (*normals)[3];      /* owned; [vertex_count]; unit, or 0 where a vertex has none; frame space */
   uint32_t (*triangles)[3]; /* owned; [triangle_count]; indices of positions */
+  float (*spheres)[4];      /* owned; [sphere_count]; centre and radius; frame space */
   size_t mesh_count, vertex_count;
-  uint32_t triangle_count;
+  uint32_t triangle_count, sphere_count;
 } surfaces;
+
+/* The number of primitives. */
+static inline uint32_t hl_surfaces_count(const surfaces *all) {
+  return all->triangle_count + all->sphere_count;
+}
 
 /* scene: in frame space; its meshes are borrowed until the release. */
 hl_status hl_surfaces_create(hl_context *context, const hl_scene_description *scene, surfaces *made,
@@ -33,8 +44,11 @@ void hl_surfaces_release(hl_context *context, surfaces *made);
 /* The bytes that hl_surfaces_create() allocates. */
 uint64_t hl_surfaces_bytes(const hl_scene_description *scene);
 
-/* The mesh that a triangle belongs to. */
-const surface_mesh *hl_surface_of(const surfaces *all, uint32_t triangle);
+/* The index of the mesh that a primitive belongs to. Slow: fragments know theirs. */
+size_t hl_surface_mesh_of(const surfaces *all, uint32_t primitive);
+
+/* The first primitive after those of the mesh that are of this one's kind. */
+uint32_t hl_surface_mesh_end(const surfaces *all, size_t mesh, uint32_t primitive);
 
 /* The corners of a box around a mesh; frame space. A flat mesh gets a box of thickness `least`. */
 void hl_surface_corners(const hl_scene_mesh *mesh, double least, vec3 corners[8]);

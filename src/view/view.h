@@ -16,6 +16,9 @@
 /* Pictures are made of tiles of 16x16 pixels, kept as sixteen blocks of 4x4 pixels: sixteen lanes each. */
 enum { TILE = 16, BLOCK = 4, TILE_BLOCKS = 16, BLOCK_PIXELS = 16, TILE_PIXELS = 256, ALL_BLOCKS = 0xffff };
 
+/* The alpha from which a pixel counts as opaque: matter behind adds less than half a step of 10 bits. */
+#define PIXEL_OPAQUE (1.0f - 1.0f / 2048)
+
 /* The number of tiles that cover `pixels` pixels. */
 static inline int hl_tiles(int pixels) { return (pixels + TILE - 1) / TILE; }
 

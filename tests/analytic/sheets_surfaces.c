@@ -283,7 +283,7 @@ static void test_volume_and_mesh(void **state) {
 
 /* ---- invariance ---- */
 
-/* Two boards, one of them translucent, in a haze that reaches so far from the middle. */
+/* Two boards, one of them translucent, and a sphere in a haze that reaches so far from the middle. */
 static void add_scenery(mesh_stage *all, double reach) {
   add_quad(all, (vec3){0, 0, -6}, (vec3){14, 2, 1}, (vec3){-2, 14, 3});
   add_quad(all, (vec3){2, 1, 3}, (vec3){5, 1, 3}, (vec3){-1, 6, -2})->opacity = 0.6;
@@ -338,6 +338,141 @@ static void test_against_the_reference(void **state) {
   close_meshes(&all);
 }
 
+/* ---- spheres and tubes ---- */
+
+static hl_scene_mesh *add_round(mesh_stage *all, const float (*spheres)[4], size_t count,
+                                const float (*points)[4], uint32_t length) {
+  hl_scene_mesh *mesh = &all->meshes[all->set.scene.mesh_count++];
+  hl_mesh_description d;
+  hl_error error = {0};
+  hl_mesh_description_defaults(&d);
+  d.spheres = spheres, d.sphere_count = count;
+  d.line_points = points, d.line_point_count = length, d.line_lengths = &length, d.line_count = length > 0;
+  hl_scene_mesh_defaults(mesh);
+  if (hl_mesh_create(all->set.context, &d, &mesh->mesh, &error) != HL_OK) fail_msg("%s", error.message);
+  mesh->material = (hl_material){.diffuse = 1};
+  for (int c = 0; c < 3; c++) mesh->color[c] = 1;
+  return mesh;
+}
+
+/* Spheres at odd fractions of pixels cover the disks that they are, whether the sheets are level or slanted,
+ * and translucent ones take light at the front and at the back. */
+static void test_sphere_coverage(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 8; k++) {
+    double opacity = k % 2 ? 0.4 : 1, taken = k % 2 ? 1 - 0.6 * 0.6 : 1;
+    const float sphere[1][4] = {{0.13f * (float)k, -0.21f, 1, 6.3f + 0.37f * (float)k}};
+    mesh_stage all;
+    open_meshes(&all);
+    add_round(&all, sphere, 1, NULL, 0)->opacity = opacity;
+    if (k >= 4) stage_add_directional(&all.set, (vec3){0.8, 0.3, -0.4});
+    stage_render_sheets(&all.set, pixels);
+    double sum = 0;
+    for (int i = 0; i < PIXELS; i++) {
+      double x = (i % SIDE + 0.5 - SIDE / 2) * 0.5 - (double)sphere[0][0],
+             y = -(i / SIDE + 0.5 - SIDE / 2) * 0.5 - (double)sphere[0][1], distance = sqrt(x * x + y * y);
+      double alpha = (double)pixels[4 * i + 3], inside = (double)sphere[0][3] - distance;
+      sum += alpha;
+      if (fabs(inside) > 0.36) assert_near(alpha, inside > 0 ? taken : 0, 1e-5);
+    }
+    assert_near(sum * 0.25, taken * HL_PI * (double)sphere[0][3] * (double)sphere[0][3], taken * 0.5);
+    close_meshes(&all);
+  }
+}
+
+/* A sphere under a distant light is lit by N.L on one side of the terminator and dark on the other, in every
+ * method: its own shadow neither reaches over the terminator nor leaves light behind it. */
+static void test_terminator(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  static const float sphere[1][4] = {{0, 0, 0, 12}};
+  const vec3 towards = vec3_normalise((vec3){0.8, 0.1, 0.35});
+  for (int k = 0; k < 4; k++) {
+    mesh_stage all;
+    open_meshes(&all);
+    add_round(&all, sphere, 1, NULL, 0);
+    choose_shadows(&all.set, stage_add_directional(&all.set, vec3_scale(towards, -1)), k, 4);
+    stage_render_sheets(&all.set, pixels);
+    int lit = 0, dark = 0;
+    for (int i = 0; i < PIXELS; i++) {
+      double x = (i % SIDE + 0.5 - SIDE / 2) * 0.5, y = -(i / SIDE + 0.5 - SIDE / 2) * 0.5,
+             z = sqrt(fmax(144 - x * x - y * y, 0));
+      if (x * x + y * y > 11.4 * 11.4) continue; /* the silhouette is antialiased */
+      double cosine = vec3_dot((vec3){x / 12, y / 12, z / 12}, towards);
+      assert_near((double)pixels[4 * i], fmax(cosine, 0), cosine > 0.25 ? 0.012 : 0.05);
+      lit += cosine > 0;
+      dark += cosine <= 0;
+    }
+    assert_true(lit > 300 && dark > 300);
+    close_meshes(&all);
+  }
+}
+
+/* A bent tube seen from above covers its length times its width, without a gap or a doubled part at the bend:
+ * all of it has the opacity of its two sides. */
+static void test_tube(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  static const float points[3][4] = {{-9, -4, 0, 2}, {1, -4, 0, 2}, {7, 6, 0, 2}};
+  for (int k = 0; k < 2; k++) {
+    mesh_stage all;
+    open_meshes(&all);
+    add_round(&all, NULL, 0, points, 3)->opacity = k == 0 ? 1 : 0.4;
+    stage_render_sheets(&all.set, pixels);
+    double sum = 0, taken = k == 0 ? 1 : 1 - 0.6 * 0.6;
+    for (int i = 0; i < PIXELS; i++) {
+      assert_true((double)pixels[4 * i + 3] < taken + 1e-5);
+      sum += (double)pixels[4 * i + 3] * 0.25;
+    }
+    double length = 10 + sqrt(36 + 100); /* both ends are half of a polygon in a disk of radius 2 */
+    assert_near(sum / taken, length * 4 + HL_PI * 4, 2);
+    close_meshes(&all);
+  }
+}
+
+/* A red pane colours the light that passes it, in every method; the floor behind it is red. */
+static void test_colored_pane(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 4; k++) {
+    mesh_stage all;
+    open_meshes(&all);
+    add_quad(&all, (vec3){0, 0, -4}, (vec3){15, 0, 0}, (vec3){0, 15, 0});
+    for (int pane = 0; pane < 2; pane++) {
+      hl_scene_mesh *mesh = add_quad(&all, (vec3){0, 0, 4 + 0.1 * pane}, (vec3){12, 0, 0}, (vec3){0, 12, 0});
+      mesh->visible = 0;
+      mesh->opacity = pane == 0 ? 0.5 : 1; /* opaque, but for red */
+      memcpy(mesh->attenuation_color, (double[3]){0, 0.2 + 0.3 * pane, 1}, sizeof mesh->attenuation_color);
+    }
+    choose_shadows(&all.set, stage_add_directional(&all.set, (vec3){0, 0, -1}), k, 5);
+    stage_render_sheets(&all.set, pixels);
+    const float *pixel = pixels + 4 * (SIDE / 2 * SIDE + SIDE / 2);
+    assert_near((double)pixel[0], 1, 0.01);
+    assert_near((double)pixel[1], 0.9 * 0.5, 0.01);
+    assert_near((double)pixel[2], 0, 0.01);
+    close_meshes(&all);
+  }
+}
+
+/* A scene of meshes alone is the scene that it is beside a clear volume. */
+static void test_no_volume(void **state) {
+  (void)state;
+  static float alone[PIXELS * 4];
+  mesh_stage all;
+  open_meshes(&all);
+  add_quad(&all, (vec3){0, 0, 0}, (vec3){9.9, 0, 0}, (vec3){0, 9.9, 0});
+  stage_add_directional(&all.set, (vec3){0.6, 0, -0.8});
+  all.set.scene.volume_count = 0;
+  stage_render_sheets(&all.set, alone);
+  const float *middle = alone + 4 * (SIDE / 2 * SIDE + SIDE / 2);
+  assert_near((double)middle[0], 0.8, 1e-3);
+  assert_near((double)middle[3], 1, 1e-6);
+  assert_near((double)alone[3], 0, 0);
+  all.set.scene.volume_count = 1; /* for its release */
+  close_meshes(&all);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_coverage),
                                      cmocka_unit_test(test_no_seams),
@@ -347,6 +482,11 @@ int main(void) {
                                      cmocka_unit_test(test_penumbra),
                                      cmocka_unit_test(test_volume_and_mesh),
                                      cmocka_unit_test(test_threads_and_instruction_sets),
-                                     cmocka_unit_test(test_against_the_reference)};
+                                     cmocka_unit_test(test_against_the_reference),
+                                     cmocka_unit_test(test_sphere_coverage),
+                                     cmocka_unit_test(test_terminator),
+                                     cmocka_unit_test(test_tube),
+                                     cmocka_unit_test(test_colored_pane),
+                                     cmocka_unit_test(test_no_volume)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,6 +35,7 @@ hl_scene_from_json_like name
 hl_scene_for_volume file
 hl_volume_guess file
 hl_view_choose up
+hl_scene_make_floor up
 hl_volume_from_shapes name
 hl_volume_load_with options
 hl_volume_from_shapes options

@@ -160,8 +160,38 @@ static void test_from_memory(void **state) {
   hl_context_destroy(context);
 }
 
+/* Tubes are closed; lines of one point, and what has no radius, are left out; faces keep their colours. */
+static void test_round(void **state) {
+  (void)state;
+  const float points[7][4] = {{0, 0, 0, 1}, {4, 0, 0, 1},   {4, 0, 0, 1},   {4, 4, 1, 1},
+                              {9, 9, 9, 1}, {0, 0, NAN, 1}, {4, 4, 9, 0.5f}};
+  const uint32_t lengths[3] = {4, 1, 2};
+  const float spheres[3][4] = {{0, 0, 0, 2}, {0, 0, 0, 0}, {INFINITY, 0, 0, 1}};
+  hl_context *context = NULL;
+  hl_mesh_description d;
+  hl_mesh *mesh = NULL;
+  hl_error error = {0};
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  hl_mesh_description_defaults(&d);
+  d.line_points = points, d.line_point_count = 7, d.line_lengths = lengths, d.line_count = 3;
+  d.spheres = spheres, d.sphere_count = 3;
+  assert_int_equal(hl_mesh_create(context, &d, &mesh, &error), HL_OK);
+  const hl_mesh_description *made = hl_mesh_describe(mesh);
+  assert_int_equal(made->sphere_count, 1);
+  assert_int_equal(made->line_count, 1);
+  assert_int_equal(made->line_point_count, 3);
+  assert_int_equal(made->triangle_count, 4 * 24 + 2 * 12); /* two pieces, two rims, two ends */
+  assert_true(mesh->closed);
+  hl_mesh_release(mesh);
+  d.line_point_count = 6;
+  assert_int_equal(hl_mesh_create(context, &d, &mesh, &error), HL_ERROR_INPUT);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_ply), cmocka_unit_test(test_cube_is_closed),
-                                     cmocka_unit_test(test_refused), cmocka_unit_test(test_from_memory)};
+                                     cmocka_unit_test(test_refused), cmocka_unit_test(test_from_memory),
+                                     cmocka_unit_test(test_round)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -297,7 +297,7 @@ static const refusal refusals[] = {
      HL_ERROR_INPUT, emission_on_point},
     {"/lights/0/emission: is on a light without a surface: give it a radius, an angle or two edges",
      HL_ERROR_INPUT, emission_on_sharp_light},
-    {"/volumes: is empty: name at least one volume", HL_ERROR_INPUT, volumes_none},
+    {"/volumes: is empty: name at least one volume or mesh", HL_ERROR_INPUT, volumes_none},
     {"/volumes/0/volume: is null: give a volume", HL_ERROR_ARGUMENT, volume_null},
     {"/volumes/0/transform/scale: 0 is not above 0: give a factor above 0", HL_ERROR_INPUT, scale_zero},
     {"/render/compositing: 2 is no known choice: use the enumerators of scene.h", HL_ERROR_INPUT,

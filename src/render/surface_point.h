@@ -1,0 +1,17 @@
+/* render/surface_point.h - the point of a surface that a fragment of the eye's view shows. */
+#ifndef HL_RENDER_SURFACE_POINT_H
+#define HL_RENDER_SURFACE_POINT_H
+
+#include "render/sweep.h"
+
+/* A point of a surface that is lit: where a ray of the eye meets a fragment, with the normal and the colour
+ * there. */
+typedef struct surface_point {
+  vec3 position, normal,
+      towards_eye; /* frame space; normal: towards the eye; 0 on the back of one-sided meshes */
+  double color[3]; /* linear RGB */
+} surface_point;
+
+surface_point hl_surface_point_of(const sweep *sweep, const tile_slab *slab, const fragment *f);
+
+#endif

@@ -1,0 +1,20 @@
+/* surface/primitive_bins.h - triangles and spheres sorted by the tiles of a view that they touch. */
+#ifndef HL_SURFACE_PRIMITIVE_BINS_H
+#define HL_SURFACE_PRIMITIVE_BINS_H
+
+#include "surface/seen.h"
+
+typedef struct primitive_bins {
+  uint32_t *first;      /* owned; [tiles + 1] */
+  uint32_t *primitives; /* owned; by tile, then in their order */
+} primitive_bins;
+
+/* What of a mesh is binned. */
+typedef enum binned { BINNED_NOTHING, BINNED_FRONTS, BINNED_ALL } binned;
+
+/* wanted: [mesh_count]; of BINNED_FRONTS the triangles that face the view. */
+hl_status hl_primitive_bins_create(hl_context *context, hl_pool *pool, const seen_vertices *seen,
+                                   const binned *wanted, primitive_bins *bins, hl_error *error);
+void hl_primitive_bins_release(hl_context *context, primitive_bins *bins);
+
+#endif

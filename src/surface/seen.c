@@ -1,0 +1,141 @@
+/* surface/seen.c - see seen.h. */
+#include "surface/seen.h"
+
+#include "core/memory.h"
+
+/* Pixels around the view within which triangles are kept whole. */
+static const double FRAME_AROUND = 4096;
+/* The least distance in front of a perspective view's eye, as a fraction of the distance of the plane at
+ * which rays are one long. */
+static const double NEAREST = 1e-4;
+
+/* (w, w u, w v) of a corner. */
+typedef struct corner {
+  double w, u, v;
+} corner;
+
+static corner corner_in_view(const view *view, vec3 point) {
+  vec3 p = mat3_apply(view->inverse, vec3_subtract(point, view->perspective ? view->origin : view->corner));
+  return (corner){view->perspective ? p.x : 1, p.y, p.z};
+}
+
+/* How far a corner lies inside the frame's side: 0 the eye, 1 and 2 left and right, 3 and 4 above and below.
+ */
+static double inside(const view *view, int side, corner c) {
+  switch (side) {
+    case 0: return c.w - NEAREST;
+    case 1: return c.u + FRAME_AROUND * c.w;
+    case 2: return (view->width + FRAME_AROUND) * c.w - c.u;
+    case 3: return c.v + FRAME_AROUND * c.w;
+    default: return (view->height + FRAME_AROUND) * c.w - c.v;
+  }
+}
+
+static int32_t subpixels_of(double pixels) { return (int32_t)floor(pixels * SUBPIXELS + 0.5); }
+
+/* ---- vertices ---- */
+
+enum { A_TASK = 1 << 14 };
+
+static void see_task(void *data, size_t index, int worker) {
+  (void)worker;
+  const seen_vertices *seen = data;
+  size_t first = index * A_TASK, end = first + A_TASK;
+  if (end > seen->all->vertex_count) end = seen->all->vertex_count;
+  for (size_t n = first; n < end; n++) {
+    corner c = corner_in_view(seen->view, hl_surface_vector(seen->all->positions[n]));
+    bool whole = true;
+    for (int side = 0; side < 5; side++) whole = whole && inside(seen->view, side, c) >= 0;
+    seen->at[n][0] = whole ? subpixels_of(c.u / c.w) : VERTEX_IS_CUT;
+    seen->at[n][1] = whole ? subpixels_of(c.v / c.w) : 0;
+  }
+}
+
+hl_status hl_seen_vertices_create(hl_context *context, hl_pool *pool, const surfaces *all, const view *view,
+                                  seen_vertices *seen, hl_error *error) {
+  *seen = (seen_vertices){view, all, hl_allocate(context, all->vertex_count, sizeof *seen->at)};
+  if (seen->at == NULL) return hl_fail_memory(error, all->vertex_count * sizeof *seen->at, "the vertices");
+  hl_pool_run(pool, (all->vertex_count + A_TASK - 1) / A_TASK, see_task, seen);
+  return HL_OK;
+}
+
+void hl_seen_vertices_release(hl_context *context, seen_vertices *seen) {
+  hl_release(context, seen->at);
+  seen->at = NULL;
+}
+
+/* ---- triangles ---- */
+
+/* Cuts a polygon by one side; returns how many corners are left. */
+static int clip(const view *view, int side, const corner *from, int count, corner *to) {
+  int kept = 0;
+  for (int i = 0; i < count; i++) {
+    corner a = from[i], b = from[(i + 1) % count];
+    double da = inside(view, side, a), db = inside(view, side, b);
+    if (da >= 0) to[kept++] = a;
+    if ((da >= 0) == (db >= 0)) continue;
+    double t = da / (da - db);
+    to[kept++] = (corner){a.w + t * (b.w - a.w), a.u + t * (b.u - a.u), a.v + t * (b.v - a.v)};
+  }
+  return kept;
+}
+
+static void see_cut_triangle(const seen_vertices *seen, const uint32_t *vertex, seen_polygon *polygon) {
+  const view *view = seen->view;
+  corner corners[2][CLIPPED_CORNERS + 1];
+  int count = 3, at = 0;
+  for (int i = 0; i < 3; i++)
+    corners[0][i] = corner_in_view(view, hl_surface_vector(seen->all->positions[vertex[i]]));
+  for (int side = 0; side < 5 && count > 0; side++) {
+    bool whole = true;
+    for (int i = 0; i < count; i++) whole = whole && inside(view, side, corners[at][i]) >= 0;
+    if (whole) continue;
+    count = clip(view, side, corners[at], count, corners[!at]);
+    at = !at;
+  }
+  polygon->count = count < 3 ? 0 : count;
+  for (int i = 0; i < polygon->count; i++) {
+    polygon->x[i] = subpixels_of(corners[at][i].u / corners[at][i].w);
+    polygon->y[i] = subpixels_of(corners[at][i].v / corners[at][i].w);
+  }
+}
+
+void hl_see_triangle(const seen_vertices *seen, uint32_t triangle, seen_polygon *polygon) {
+  const uint32_t *vertex = seen->all->triangles[triangle];
+  polygon->count = 3;
+  for (int i = 0; i < 3; i++) {
+    const int32_t *at = seen->at[vertex[i]];
+    if (at[0] == VERTEX_IS_CUT) {
+      see_cut_triangle(seen, vertex, polygon);
+      return;
+    }
+    polygon->x[i] = at[0];
+    polygon->y[i] = at[1];
+  }
+}
+
+/* ---- spheres ---- */
+
+/* The least and greatest u of points of a sphere, where w u = a and w > 0 are linear functions of the point,
+ * with gradients ga and gw, and have the values a and w at the centre. Derived: the plane a - w u = 0 touches
+ * the sphere where (a - w u)^2 = r^2 |ga - u gw|^2, a quadratic equation for u. */
+static void find_extent(double a, double w, vec3 ga, vec3 gw, double radius, double *least,
+                        double *greatest) {
+  double rr = radius * radius, p = w * w - rr * vec3_dot(gw, gw), q = a * w - rr * vec3_dot(ga, gw),
+         s = a * a - rr * vec3_dot(ga, ga), root = sqrt(fmax(q * q - p * s, 0));
+  *least = (q - root) / p;
+  *greatest = (q + root) / p;
+}
+
+bool hl_see_sphere(const view *view, const float sphere[4], seen_bounds *bounds) {
+  corner c = corner_in_view(view, hl_surface_vector(sphere));
+  vec3 none = {0, 0, 0}, nearer = view->perspective ? view->inverse.row[0] : none;
+  double reach = sphere[3] * vec3_length(nearer);
+  *bounds = (seen_bounds){0, 0, view->width, view->height};
+  if (c.w + reach < NEAREST) return false;
+  if (c.w - reach >= NEAREST) {
+    find_extent(c.u, c.w, view->inverse.row[1], nearer, sphere[3], &bounds->u0, &bounds->u1);
+    find_extent(c.v, c.w, view->inverse.row[2], nearer, sphere[3], &bounds->v0, &bounds->v1);
+  }
+  return bounds->u1 >= 0 && bounds->v1 >= 0 && bounds->u0 < view->width && bounds->v0 < view->height;
+}

@@ -1,0 +1,15 @@
+/* surface/sphere_coverage.h - which samples of a tile's pixels a sphere covers, and where rays meet it. */
+#ifndef HL_SURFACE_SPHERE_COVERAGE_H
+#define HL_SURFACE_SPHERE_COVERAGE_H
+
+#include "surface/coverage.h"
+
+/* As hl_cover_tile(), for a sphere that a view sees within bounds. */
+bool hl_cover_sphere(const view *view, const float sphere[4], const seen_bounds *bounds, int tile_x,
+                     int tile_y, pixel_span *span, uint16_t covered[TILE_PIXELS]);
+
+/* Where the ray of continuous pixel (u, v) enters and leaves a sphere; a ray that misses it: the point
+ * nearest to the ray, twice. False where the point lies behind a perspective view's eye. */
+bool hl_meet_sphere(const view *view, const float sphere[4], double u, double v, bool leaving, vec3 *point);
+
+#endif

@@ -1,0 +1,36 @@
+/* surface/surface_plane.h - the height at which a view's rays meet the plane of a triangle, or the plane that
+ * touches a sphere. */
+#ifndef HL_SURFACE_SURFACE_PLANE_H
+#define HL_SURFACE_SURFACE_PLANE_H
+
+#include "surface/surfaces.h"
+#include "view/view.h"
+
+/* Linear functions of the pixel: for pixel (0, 0), and by u and v. Derived: the ray A + s B meets the plane
+ * n.X = d at s = (d - n.A) / (n.B), at the height h.A + s h.B. In a perspective view A is the eye and B
+ * depends on the pixel, else the other way round. */
+typedef struct surface_plane {
+  double rise[3], way[3], above[3], climb[3]; /* d - n.A, n.B, h.A, h.B */
+  double lowest, highest;                     /* of the surface; above the first sheet */
+  bool leaving;                               /* the view's rays leave a closed surface here */
+} surface_plane;
+
+/* A function of surface_plane at a pixel. */
+static inline double hl_plane_linear(const double f[3], double u, double v) {
+  return f[0] + f[1] * u + f[2] * v;
+}
+
+void hl_plane_of_triangle(const view *view, const sheet_stack *sheets, const surfaces *all, uint32_t triangle,
+                          surface_plane *plane);
+
+/* The plane that touches a sphere at a point. */
+void hl_plane_of_sphere(const view *view, const sheet_stack *sheets, const float sphere[4], vec3 point,
+                        surface_plane *plane);
+
+/* Above the first sheet. */
+double hl_plane_height(const surface_plane *plane, double u, double v);
+
+/* How much the height changes from pixel to pixel. */
+double hl_plane_slope(const surface_plane *plane, double u, double v);
+
+#endif
