@@ -1,6 +1,9 @@
 """docs/accuracy.md: tables of what was measured."""
+import re
+
 import numpy
 
+import lines
 import measure
 import scenes
 
@@ -106,7 +109,17 @@ red is too bright, blue too dark, full colour is a difference of 0.2.
     return "".join(parts)
 
 
-def write(results, truth):
+def replace_lines(found):
+    """Writes the section about lines anew; the others stay."""
+    text = PATH.read_text()
+    written, count = re.subn(r"## Lines\n.*?(?=\n## )", lambda _: lines.section(found, table), text, flags=re.S)
+    if count != 1:
+        raise SystemExit(f"{PATH}: has no section about lines: run scripts/accuracy without --lines-only")
+    PATH.write_text(written)
+    print(f"wrote {PATH}")
+
+
+def write(results, truth, found):
     costs = "" if not all(r.costs for r in results) else f"""
 ## Cost
 
@@ -141,6 +154,7 @@ seen, 0 to 1 ([layers](layers.md)); its pixels count with their alpha. The *pict
 
 {error_table(results, "picture", "picture_worst")}
 
+{lines.section(found, table)}
 ## Hard shadows, by sheet spacing
 
 The picture with hard shadows against the reference's with hard shadows, RMSE; sheets a number of voxels apart.
