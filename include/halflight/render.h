@@ -68,8 +68,12 @@ typedef struct hl_reference_options {
   int light_points;   /* points on each extended light; default 1024 */
   double step;        /* marching step in smallest voxel edges; default 0.25 */
   int threads;        /* 0: one per processor */
-  int rays; /* rays along each side of a pixel, from 1 to 8, that are averaged; default 1. 0: as many as the
-               renderer averages where voxels are smaller than pixels */
+  int rays;  /* rays along each side of a pixel, from 1 to 8, that are averaged; default 1. 0: as many as the
+                renderer averages where voxels are smaller than pixels */
+  int paths; /* from each pixel, that estimate the light which media scatter more than once, from 1 to 2^24;
+                default 64 */
+  float *error; /* the caller's; [height][width][3]: the estimate's standard error; null: not wanted. Default
+                   null */
 } hl_reference_options;
 
 HL_API void hl_reference_options_defaults(hl_reference_options *options);

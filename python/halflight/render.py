@@ -112,8 +112,8 @@ class Renderer:
 
 
 @suggests
-def reference(scene: Scene, *, light_points: int = 1024, step: float = 0.25, rays: int = 0, layers: bool = False,
-              progress: Progress = None) -> Image:
+def reference(scene: Scene, *, light_points: int = 1024, step: float = 0.25, rays: int = 0, paths: int = 64,
+              layers: bool = False, progress: Progress = None) -> Image:
     """The scene's picture by the slow ray marcher that judges the sheets.
 
     Parameters
@@ -126,6 +126,8 @@ def reference(scene: Scene, *, light_points: int = 1024, step: float = 0.25, ray
         In smallest voxel edges.
     rays : int
         Along each side of a pixel, 1 to 8; 0: as many as the renderer averages.
+    paths : int
+        From each pixel, where media scatter light more than once: random, but the same at every call.
     layers, progress
         As for `Renderer.render`.
 
@@ -140,7 +142,7 @@ def reference(scene: Scene, *, light_points: int = 1024, step: float = 0.25, ray
     image = Image(_as_scene(scene))
     options = ffi.new("hl_reference_options *")
     lib.hl_reference_options_defaults(options)
-    options.light_points, options.step, options.rays = light_points, step, rays
+    options.light_points, options.step, options.rays, options.paths = light_points, step, rays, paths
     options.threads = lib.hl_scene_describe(scene._handle).render.threads
     wanted, found, keep = _add_layers(image) if layers else (ffi.NULL, dict[str, Pixels](), [])
     with told(progress):

@@ -122,6 +122,7 @@ static hl_status render_reference(render_job *job, const hl_scene_description *d
   hl_render_statistics *statistics = &job->result.statistics;
   hl_reference_options options;
   hl_reference_options_defaults(&options);
+  if (values[RENDER_PATHS].given) options.paths = (int)values[RENDER_PATHS].number[0];
   if (values[RENDER_LIGHT_POINTS].given) options.light_points = (int)values[RENDER_LIGHT_POINTS].number[0];
   if (values[RENDER_STEP].given) options.step = values[RENDER_STEP].number[0];
   options.threads = description->render.threads;

@@ -312,6 +312,14 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                      .count = 1,
                      .low = 0.001,
                      .high = 10},
+    [RENDER_PATHS] = {.name = "paths",
+                      .kind = OPTION_NUMBERS,
+                      .argument = "N",
+                      .help = "its paths a pixel, of light that media scatter\nagain (default 64)",
+                      .count = 1,
+                      .whole = true,
+                      .low = 1,
+                      .high = 1 << 24},
 
     [RENDER_DATA] =
         {.name = "data",
@@ -395,7 +403,7 @@ int render_check_options(const cli_value *values) {
   if (exit_code != EXIT_CODE_OK) return exit_code;
   if (values[RENDER_ORTHO].given && values[RENDER_FOVY].given)
     return fail(EXIT_CODE_USAGE, "--ortho and --fovy exclude each other: give one of them");
-  for (int which = RENDER_LIGHT_POINTS; which <= RENDER_STEP; which++)
+  for (int which = RENDER_LIGHT_POINTS; which <= RENDER_PATHS; which++)
     if (values[which].given && !values[RENDER_REFERENCE].given)
       return fail(EXIT_CODE_USAGE, "--%s is for --reference: give both or none", render_options[which].name);
   if (values[RENDER_LIGHT].given && fabs(values[RENDER_LIGHT].number[1]) > 90)

@@ -172,6 +172,26 @@ static void write_pixel(const reference_parts *ray, size_t light_count, float rg
   rgba[3] = (float)ray->weight;
 }
 
+/* Adds to the pixel's ambient light what paths find, and writes its standard error. */
+static void follow_paths(const picture *all, size_t x, size_t y, reference_worker *worker) {
+  size_t rays = (size_t)all->all->rays, pixel = y * (size_t)all->all->scene->width + x;
+  double sum[3] = {0, 0, 0}, squares[3] = {0, 0, 0}, count = all->all->paths;
+  for (int p = 0; p < all->all->paths && !hl_pool_stops(all->all->pool, worker->number); p++) {
+    vec3 origin, direction;
+    double one[3] = {0, 0, 0};
+    size_t ray = (size_t)p % (rays * rays);
+    eye_ray(all, x * rays + ray % rays, y * rays + ray / rays, &origin, &direction);
+    hl_reference_path(all->all, origin, direction, ((uint64_t)pixel << 24 | (uint64_t)p) * 0x2545f4914f6cdd1d,
+                      worker, one);
+    for (int c = 0; c < 3; c++) sum[c] += one[c], squares[c] += one[c] * one[c];
+  }
+  for (int c = 0; c < 3; c++) {
+    double mean = sum[c] / count, spread = fmax(squares[c] / count - mean * mean, 0);
+    worker->pixel.ambient[c] += mean;
+    if (all->all->error != NULL) all->all->error[3 * pixel + (size_t)c] = (float)sqrt(spread / count);
+  }
+}
+
 /* Averages a pixel's rays, and their first depths over the rays that meet something. */
 static void trace_pixel(const picture *all, size_t x, size_t y, int worker) {
   reference_worker *own = &all->workers[worker];
@@ -187,6 +207,7 @@ static void trace_pixel(const picture *all, size_t x, size_t y, int worker) {
     first += depth;
     hits++;
   }
+  if (all->all->paths > 0) follow_paths(all, x, y, own);
   write_pixel(&own->pixel, lights, all->pixels + y * all->row_stride + 4 * x);
   double depth_first = hits > 0 ? first / (double)hits : INFINITY;
   if (all->layers != NULL)
@@ -241,6 +262,9 @@ static hl_status prepare(reference *all, const hl_reference_options *options, hl
   all->rays = options->rays > 0 ? options->rays : hl_reference_rays(all, edge);
   hl_status made = hl_reference_surfaces_create(all, error);
   if (made != HL_OK) return made;
+  all->error = options->error;
+  for (size_t v = 0; v < scene->volume_count; v++)
+    if (scene->volumes[v].multiple_scattering) all->paths = options->paths;
   double coarser = fmax(options->step / USUAL_STEP, 1);
   all->most_opacity = fmin(MOST_OPACITY * coarser * coarser, COARSEST_OPACITY);
   for (size_t l = 0; l < scene->light_count; l++) {
@@ -314,7 +338,7 @@ static hl_status render(const reference *all, hl_pool *pool, float *pixels, size
 void hl_reference_options_defaults(hl_reference_options *options) {
   if (options == NULL) return;
   *options = (hl_reference_options){
-      .struct_size = sizeof *options, .light_points = 1024, .step = USUAL_STEP, .rays = 1};
+      .struct_size = sizeof *options, .light_points = 1024, .step = USUAL_STEP, .rays = 1, .paths = 64};
 }
 
 static hl_status check(const hl_reference_options *options, const hl_scene_description *scene,
@@ -336,6 +360,9 @@ static hl_status check(const hl_reference_options *options, const hl_scene_descr
   if (options->rays < 0 || options->rays > HL_REFERENCE_RAYS)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_reference_render: rays is %d, must be from 0 to %d",
                    options->rays, HL_REFERENCE_RAYS);
+  if (options->paths < 1 || options->paths > 1 << 24)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_reference_render: paths is %d, must be from 1 to %d",
+                   options->paths, 1 << 24);
   if (row_stride / 4 < (size_t)scene->width)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_reference_render: row_stride is %zu, a row needs %d x 4 floats", row_stride,

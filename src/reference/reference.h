@@ -15,6 +15,7 @@
  *     layers.c          that light by its sources, depth and normals
  *     surfaces.c        where rays meet meshes
  *     isosurfaces.c     where rays meet surfaces of one value
+ *     paths.c           light that media scatter more than once
  *     shade_surface.c   the light that a surface sends to the eye
  *     maximum.c         the greatest value along a ray, in place of light
  */
@@ -113,8 +114,10 @@ typedef struct reference {
   reference_light *lights;   /* owned; [scene->light_count] */
   reference_surfaces surfaces;
   reference_sky sky;
-  double step;         /* world units */
-  int rays;            /* rays along each side of a pixel */
+  double step;  /* world units */
+  int rays;     /* rays along each side of a pixel */
+  int paths;    /* from each pixel, of light scattered more than once; 0: no volume scatters it again */
+  float *error; /* the caller's; [height][width][3]: the standard error of that light; null: not wanted */
   double most_opacity; /* greatest opacity that one sample may add to a pixel */
   bool all_shadows;    /* layers need the transmittance of every light at every sample */
 } reference;
@@ -236,6 +239,11 @@ void hl_reference_transmittance(const reference *all, const reference_ray *ray, 
                                 double passing[3]);
 /* Henyey and Greenstein's phase function times 4 pi, for light from `towards` (unit vector) to the eye. */
 double hl_reference_phase(double anisotropy, vec3 to_eye, vec3 towards);
+
+/* Adds the light of one random path from the eye, that was scattered twice or more often. seed: the path's
+ * own. */
+void hl_reference_path(const reference *all, vec3 origin, vec3 direction, uint64_t seed,
+                       reference_worker *worker, double sum[3]);
 
 /* What the sky lights. */
 typedef struct reference_sky_receiver {

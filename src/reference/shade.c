@@ -82,13 +82,15 @@ static void shade_light(const reference *all, const reference_sample *at, const 
     vec3 reflected = vec3_subtract(vec3_scale(here->normal, 2 * cosine), arrived->towards);
     gloss = material->specular * pow(fmax(vec3_dot(at->to_eye, reflected), 0), material->shininess);
   }
-  double matt = here->amount * material->diffuse * fmax(cosine, 0) +
-                (1 - here->amount) *
-                    hl_reference_phase(at->volume->described->anisotropy, at->to_eye, arrived->towards);
-  if (matt <= 0 && gloss <= 0) return;
+  double surface = here->amount * material->diffuse * fmax(cosine, 0);
+  double medium = (1 - here->amount) *
+                  hl_reference_phase(at->volume->described->anisotropy, at->to_eye, arrived->towards);
+  if (surface + medium <= 0 && gloss <= 0) return;
   const double *reach = light_reach(all, at->volume, light, at->point, worker);
+  const double *albedo = at->volume->described->albedo;
   for (int c = 0; c < 3; c++)
-    part->picture[c] = (here->own[c] * matt + here->amount * gloss) * arrived->incoming[c] * reach[c];
+    part->picture[c] = (here->own[c] * (surface + medium * albedo[c]) + here->amount * gloss) *
+                       arrived->incoming[c] * reach[c];
 }
 
 /* The sky's part. */

@@ -190,6 +190,34 @@ static void test_half_space(void **state) {
   }
 }
 
+/* The reference's paths find what the half space returns, within four of their standard errors, and the same
+ * numbers at every run; more paths have smaller errors. */
+static void test_paths_of_the_reference(void **state) {
+  (void)state;
+  static float pixels[3][4 * PIXELS], errors[3 * PIXELS];
+  static const int paths[] = {6, 24, 6};
+  double h = chandrasekhar(0.9, 1), mean[3] = {0, 0, 0}, square[3] = {0, 0, 0};
+  for (int k = 0; k < 3; k++) {
+    stage set;
+    hl_reference_options options;
+    hl_reference_options_defaults(&options);
+    options.paths = paths[k];
+    options.threads = 1 + k;
+    options.step = 1;
+    options.error = errors;
+    (void)open_stage(&set, 0.9, true);
+    stage_render(&set, &options, pixels[k]);
+    stage_close(&set);
+    for (int i = 0; i < PIXELS; i++) {
+      mean[k] += (double)pixels[k][4 * i] / PIXELS;
+      square[k] += (double)errors[3 * i] * (double)errors[3 * i] / PIXELS / PIXELS;
+    }
+    assert_near(mean[k], 0.45 * h * h, 4 * sqrt(square[k]) + 0.02); /* the first scattering's step: 0.02 */
+  }
+  assert_memory_equal(pixels[0], pixels[2], sizeof pixels[0]);
+  assert_near(sqrt(square[0] / square[1]), 2, 0.4);
+}
+
 /* Where nothing is scattered again the picture is the same, whatever the albedo of what does not shine. */
 static void test_albedo_scales_one_scattering(void **state) {
   (void)state;
@@ -262,6 +290,7 @@ int main(void) {
       cmocka_unit_test(test_white_furnace),
       cmocka_unit_test(test_flux_leads_out),
       cmocka_unit_test(test_half_space),
+      cmocka_unit_test(test_paths_of_the_reference),
       cmocka_unit_test(test_albedo_scales_one_scattering),
       cmocka_unit_test(test_same_bytes),
       cmocka_unit_test(test_layers_are_the_picture),

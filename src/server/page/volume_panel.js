@@ -52,6 +52,8 @@ export function volumePanel({ store, start, current, overlay, chooseVolume }) {
       get: () => volume().shading ?? "phong", set: (value) => change("shading", (v) => ({ ...v, shading: value })),
     });
     const visible = toggle({ label: "Visible", get: () => volume().visible !== false, set: (on) => change("visible", (v) => ({ ...v, visible: on })) });
+    const multiple = toggle({ label: "Multiple scattering", get: () => volume().scattering?.multiple === true,
+      set: (on) => change("multiple", (v) => ({ ...v, scattering: { ...v.scattering, multiple: on } })) });
     const casts = toggle({ label: "Casts shadows", get: () => volume().casts_shadow !== false, set: (on) => change("casts", (v) => ({ ...v, casts_shadow: on })) });
     const material = materialSliders();
     const facts = make("p", { class: "facts" }, `${about.dimensions.join(" × ")} voxels, ${about.type}, values ${about.range.map(shortNumber).join(" to ")}`);
@@ -59,9 +61,9 @@ export function volumePanel({ store, start, current, overlay, chooseVolume }) {
       label: "Volume", choices: store.scene.volumes.map((v, n) => [String(n), v.name ?? (v.file ?? "shapes").split("/").pop()]),
       get: () => String(current.volume), set: (n) => chooseVolume(+n),
     });
-    parts = [...rows, shading, visible, casts, ...material, chooser];
+    parts = [...rows, shading, multiple, visible, casts, ...material, chooser];
     const several = store.scene.volumes.length > 1 ? [chooser.element] : [];
-    body.replaceChildren(...several, facts, ...rows.map((r) => r.element), reset, shading.element,
+    body.replaceChildren(...several, facts, ...rows.map((r) => r.element), reset, shading.element, multiple.element,
       ...material.map((m) => m.element), visible.element, casts.element);
     update();
   }

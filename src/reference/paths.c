@@ -1,0 +1,127 @@
+/* reference/paths.c - light that media scatter more than once, by following paths from the eye.
+ *
+ * A path flies as far as its random optical depth, is turned there by the medium's phase function, flies on,
+ * and takes from its second collision on what the lights send there unscattered: an estimate without bias of
+ * light that was scattered twice or more often. The first scattering is integrated (shade.c). Random numbers
+ * depend on the pixel and the path alone. Paths take the volumes' extinction as grey.
+ */
+#include "reference/reference.h"
+
+/* Paths go on this often before they may end at random. */
+enum { SURE_TURNS = 8, MOST_TURNS = 100000 };
+
+/* Steele, Lea and Flood, "Fast splittable pseudorandom number generators" (2014). */
+static double uniform(uint64_t *state) {
+  uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
+  z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+  z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
+  return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+/* Where a path is turned. */
+typedef struct collision {
+  const reference_volume *volume;
+  vec3 point, index_point;
+  double value;
+} collision;
+
+static double extinction_of(const crossing *part) {
+  if (!part->occupied) return 0;
+  return hl_reference_extinction(part->volume, hl_reference_value(part->volume, part->here));
+}
+
+/* Chooses one of the volumes at the march's place, by their extinctions. */
+static void choose_volume(const march *walk, double total, uint64_t *random, collision *met) {
+  double pick = uniform(random) * total;
+  for (size_t v = 0; v < walk->count; v++) {
+    const crossing *part = &walk->crossings[v];
+    double extinction = extinction_of(part);
+    if (extinction <= 0) continue;
+    met->volume = part->volume;
+    met->index_point = part->here;
+    pick -= extinction;
+    if (pick < 0) return;
+  }
+}
+
+/* Flies along a ray until something is met; false where nothing is. */
+static bool fly(const reference *all, reference_role role, const reference_ray *ray, reference_worker *worker,
+                uint64_t *random, collision *met) {
+  march walk;
+  double left = -log1p(-uniform(random));
+  hl_reference_march_begin(all, role, ray, worker->eye, &walk);
+  while (hl_reference_march_next(&walk)) {
+    double total = 0;
+    for (size_t v = 0; v < walk.count; v++) total += extinction_of(&walk.crossings[v]);
+    if (total * walk.length <= left) {
+      left -= total * walk.length;
+      continue;
+    }
+    choose_volume(&walk, total, random, met);
+    met->point = vec3_add(ray->origin, vec3_scale(ray->direction, walk.at - walk.length / 2 + left / total));
+    met->value = hl_reference_value(met->volume, met->index_point);
+    return true;
+  }
+  return false;
+}
+
+/* A direction by Henyey and Greenstein's function about the way before. */
+static vec3 turn(vec3 way, double g, uint64_t *random) {
+  double a = uniform(random), angle = 2 * HL_PI * uniform(random), cosine = 2 * a - 1;
+  if (fabs(g) > 1e-6) {
+    double part = (1 - g * g) / (1 - g + 2 * g * a); /* derived: the integral of p solved for the cosine */
+    cosine = (1 + g * g - part * part) / (2 * g);
+  }
+  double sine = sqrt(fmax(1 - cosine * cosine, 0));
+  vec3 u = vec3_perpendicular(way), v = vec3_cross(way, u);
+  return vec3_normalise(vec3_add(
+      vec3_scale(way, cosine), vec3_add(vec3_scale(u, sine * cos(angle)), vec3_scale(v, sine * sin(angle)))));
+}
+
+/* Adds what the lights send to a collision, by one random point of each. way: unit, of the path from the eye.
+ */
+static void add_lights(const reference *all, const collision *met, vec3 way, const double weight[3],
+                       reference_worker *worker, uint64_t *random, double sum[3]) {
+  for (size_t l = 0; l < all->scene->light_count; l++) {
+    reference_light one = all->lights[l];
+    if (one.points == NULL) continue; /* without shadows: scattered once */
+    vec3 point = one.points[(size_t)(uniform(random) * (double)one.point_count)];
+    if (!one.sphere) one.points = &point, one.point_count = 1;
+    arrival arrived;
+    double reach[3];
+    hl_reference_light_arrive(&one, met->point, &arrived);
+    hl_reference_light_reach(all, &one, met->point, true, worker, reach);
+    double turned = hl_reference_phase(met->volume->described->anisotropy, vec3_scale(way, -1),
+                                       arrived.towards);
+    for (int c = 0; c < 3; c++) sum[c] += weight[c] * turned * arrived.incoming[c] * reach[c];
+  }
+}
+
+static bool goes_on(double weight[3], int turns, uint64_t *random) {
+  double greatest = fmax(weight[0], fmax(weight[1], weight[2]));
+  if (!(greatest > 0)) return false;
+  if (turns < SURE_TURNS || greatest >= 1) return true;
+  if (uniform(random) >= greatest) return false;
+  for (int c = 0; c < 3; c++) weight[c] /= greatest;
+  return true;
+}
+
+void hl_reference_path(const reference *all, vec3 origin, vec3 direction, uint64_t seed,
+                       reference_worker *worker, double sum[3]) {
+  bool orthographic = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
+  reference_ray ray = {origin, direction, orthographic ? -INFINITY : 0, INFINITY};
+  double weight[3] = {1, 1, 1};
+  uint64_t random = seed;
+  for (int turns = 0; turns < MOST_TURNS && goes_on(weight, turns, &random); turns++) {
+    collision met = {0};
+    double color[3];
+    if (!fly(all, turns == 0 ? REFERENCE_SEEN : REFERENCE_CASTS_SHADOW, &ray, worker, &random, &met)) return;
+    const hl_scene_volume *volume = met.volume->described;
+    if (!volume->multiple_scattering || !volume->casts_shadow || volume->shading == HL_SHADING_FLAT) return;
+    hl_transfer_function_color(&volume->transfer_function, met.value, color);
+    hl_reference_tint(met.volume, met.index_point, color);
+    for (int c = 0; c < 3; c++) weight[c] *= color[c] * volume->albedo[c];
+    if (turns > 0) add_lights(all, &met, ray.direction, weight, worker, &random, sum);
+    ray = (reference_ray){met.point, turn(ray.direction, volume->anisotropy, &random), 0, INFINITY};
+  }
+}
