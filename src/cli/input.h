@@ -52,10 +52,10 @@ typedef struct cli_input {
 #define INPUT_OPTION_TIME INPUT_OPTION_INDEX("time", "of several time steps this one, from 0 (default: 0)")
 #define INPUT_OPTION_CHANNEL \
   INPUT_OPTION_INDEX("channel", "of several channels this one, from 0 (default: 0)")
-#define INPUT_OPTION_LEVEL \
-  INPUT_OPTION_INDEX(      \
-      "level",             \
-      "of several resolutions this one; 0 is the finest\n(default: the finest that fits into memory)")
+#define INPUT_OPTION_LEVEL                                                                                \
+  INPUT_OPTION_INDEX("level",                                                                             \
+                     "of several resolutions this one; 0 is the finest\n(default: the finest up to 2^30 " \
+                     "voxels that fits\ninto memory)")
 #define INPUT_OPTION_SPACING                                                                          \
   {                                                                                                   \
     .name = "spacing", .kind = OPTION_NUMBERS, .argument = "SX,SY,SZ",                                \

@@ -233,6 +233,7 @@ static int run_view(const cli_value *values, char **inputs) {
                              .title = title,
                              .folder = getcwd(folder, sizeof folder),
                              .open = open_file,
+                             .most_upload_bytes = job.host.memory_limit,
                              .port = values[VIEW_PORT].given ? (int)values[VIEW_PORT].number[0] : 0,
                              .stopped = host_interrupted,
                              .user_data = &job,

@@ -1,5 +1,5 @@
 /* server/films.c - films that a page asks for: every frame rendered as `halflight animate` does, and joined
- * by ffmpeg's program. */
+ * by ffmpeg's program, or put into a zip archive. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,15 +10,61 @@
 #include "film/film.h"
 #include "film/movie.h"
 #include "parts.h"
+#include "picture_zip.h"
 
 enum { MOST_FILM_BYTES = 1 << 30 };
 
+/* Where frames go: a film, or an archive of pictures. */
+typedef struct film_output {
+  bool zipped;
+  movie *movie; /* null: it has ended */
+  picture_zip zip;
+} film_output;
+
+static hl_status output_begin(film_output *out, const film_request *request, const char *path, int frames,
+                              hl_error *error) {
+  *out = (film_output){.zipped = strcmp(request->format, "zip") == 0};
+  if (!out->zipped) return movie_begin(path, request->frames_per_second, &out->movie, error);
+  if (picture_zip_begin(&out->zip, path, frames)) return HL_OK;
+  snprintf(error->message, sizeof error->message, "no archive of %d pictures: at most %d fit", frames,
+           (int)PICTURE_ZIP_MOST);
+  return HL_ERROR_IO;
+}
+
+static hl_status output_add(film_output *out, const unsigned char *png, size_t length, hl_error *error) {
+  hl_status status = HL_OK;
+  if (out->zipped) {
+    if (picture_zip_add(&out->zip, png, length)) return HL_OK;
+    snprintf(error->message, sizeof error->message,
+             "the pictures take more than 1 GiB, or the disk is full: make them smaller or fewer");
+    return HL_ERROR_IO;
+  }
+  status = movie_add(out->movie, png, length, error);
+  if (status != HL_OK) out->movie = NULL;
+  return status;
+}
+
+/* Ends the output, or abandons it after a failure. */
+static hl_status output_end(film_output *out, hl_status status, hl_error *error) {
+  bool good = !out->zipped || picture_zip_end(&out->zip);
+  if (!good && status == HL_OK) {
+    snprintf(error->message, sizeof error->message, "the pictures cannot be stored: is the disk full?");
+    status = HL_ERROR_IO;
+  }
+  if (out->zipped) return status;
+  if (status == HL_OK) return movie_end(out->movie, error);
+  movie_abandon(out->movie);
+  return status;
+}
+
 /* One frame as a PNG, into the film. */
-static hl_status add_frame(server *s, server_page *page, const hl_scene *scene, movie *m, hl_error *error) {
+static hl_status add_frame(server *s, server_page *page, const hl_scene *scene, film_output *out,
+                           hl_error *error) {
   hl_context *context = s->options.context;
   const hl_scene_description *d = hl_scene_describe(scene);
   hl_image *image = NULL;
   unsigned char *bytes = NULL;
+  char *text = NULL;
   size_t length = 0;
   hl_status status = page->renderer == NULL ? hl_renderer_create(context, &page->renderer, error) : HL_OK;
   if (status == HL_OK) status = hl_image_create(context, d->width, d->height, &image, error);
@@ -28,26 +74,26 @@ static hl_status add_frame(server *s, server_page *page, const hl_scene *scene, 
   if (status == HL_OK) {
     hl_image_write_options options;
     hl_scene_write_options(scene, &options);
-    options.background_transparent = 0;
-    status = hl_image_encode(context, image, "png", &options, &bytes, &length, error);
+    if (!out->zipped) options.background_transparent = 0;
+    else status = hl_scene_to_json(context, scene, &text, error);
+    options.scene_json = text; /* pictures carry their scene, films do not */
+    if (status == HL_OK) status = hl_image_encode(context, image, "png", &options, &bytes, &length, error);
   }
   hl_image_destroy(image);
-  if (status == HL_OK) status = movie_add(m, bytes, length, error);
-  else movie_abandon(m);
+  if (status == HL_OK) status = output_add(out, bytes, length, error);
   hl_bytes_release(context, bytes);
+  hl_text_release(context, text);
   return status;
 }
 
-/* On failure the film is abandoned. */
-static hl_status add_frames(server *s, server_page *page, const film *f, movie *m, hl_error *error) {
+static hl_status add_frames(server *s, server_page *page, const film *f, film_output *out, hl_error *error) {
   hl_status status = HL_OK;
   atomic_store(&page->film_frames, film_frames(f));
   for (int frame = 0; status == HL_OK && frame < film_frames(f); frame++) {
     hl_scene *scene = NULL;
     atomic_store(&page->film_done, frame);
     status = film_scene(f, frame, &scene, error);
-    if (status == HL_OK) status = add_frame(s, page, scene, m, error);
-    else movie_abandon(m);
+    if (status == HL_OK) status = add_frame(s, page, scene, out, error);
     hl_scene_release(scene);
   }
   return status;
@@ -81,7 +127,7 @@ static hl_status make(server *s, server_page *page, const hl_scene *scene, const
   server_upload place;
   char name[40];
   film *f = NULL;
-  movie *m = NULL;
+  film_output out = {.movie = NULL};
   hl_status status = film_create(&options, &f, error);
   if (status != HL_OK) return status;
   snprintf(name, sizeof name, "film.%s", request->format);
@@ -89,9 +135,9 @@ static hl_status make(server *s, server_page *page, const hl_scene *scene, const
     snprintf(error->message, sizeof error->message, "no temporary folder for the film");
     status = HL_ERROR_IO;
   }
-  if (status == HL_OK) status = movie_begin(place.path, request->frames_per_second, &m, error);
-  if (status == HL_OK) status = add_frames(s, page, f, m, error);
-  if (status == HL_OK) status = movie_end(m, error);
+  if (status == HL_OK) status = output_begin(&out, request, place.path, film_frames(f), error);
+  if (status == HL_OK) status = add_frames(s, page, f, &out, error);
+  status = output_end(&out, status, error);
   if (status == HL_OK) status = take_file(place.path, answer, error);
   upload_end(&place);
   film_destroy(f);
@@ -103,10 +149,10 @@ hl_status render_film(server *s, server_page *page, const hl_scene *scene, const
   answer->type = "video/mp4";
   if (strcmp(request->format, "webm") == 0) answer->type = "video/webm";
   if (strcmp(request->format, "gif") == 0) answer->type = "image/gif";
-  if (!movie_available()) {
-    snprintf(
-        error->message, sizeof error->message,
-        "ffmpeg is not installed where the viewer runs: copy the command, which leaves numbered pictures");
+  if (strcmp(request->format, "zip") == 0) answer->type = "application/zip";
+  else if (!movie_available()) {
+    snprintf(error->message, sizeof error->message,
+             "ffmpeg is not installed where the viewer runs: choose the format Pictures");
     return HL_ERROR_UNSUPPORTED;
   }
   hl_status status = make(s, page, scene, request, answer, error);

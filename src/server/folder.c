@@ -114,7 +114,9 @@ bool upload_begin(const char *name, server_upload *upload) {
 }
 
 bool upload_add(server_upload *upload, const char *bytes, size_t count) {
-  return upload->file != NULL && fwrite(bytes, 1, count, upload->file) == count;
+  if (upload->file == NULL || count > upload->room) return false;
+  upload->room -= count;
+  return fwrite(bytes, 1, count, upload->file) == count;
 }
 
 bool upload_finish(server_upload *upload) {

@@ -99,7 +99,7 @@ typedef struct frame_request {
 
 /* What a film's request asks for, besides a frame's. */
 typedef struct film_request {
-  const char *format; /* "mp4", "webm" or "gif" */
+  const char *format; /* "mp4", "webm", "gif", or "zip" of numbered pictures */
   const char *keys[MOST_FILM_KEYS];
   size_t key_count;
   int turntable, frames;
@@ -110,6 +110,7 @@ typedef struct film_request {
 typedef struct server_upload {
   char folder[PATH_BYTES / 2], path[PATH_BYTES];
   FILE *file;
+  uint64_t room; /* bytes that may still arrive */
 } server_upload;
 
 /* frames.c */

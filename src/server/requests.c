@@ -96,7 +96,12 @@ static unsigned check_upload(const server *s, struct MHD_Connection *connection,
   *line = "this viewer opens no files\n";
   if (s->options.folder == NULL) return 403;
   *line = "this is no file of volumes or scenes that Halflight reads\n";
-  return name != NULL && upload_begin(name, &r->upload) ? 0 : 400;
+  if (name == NULL || !upload_begin(name, &r->upload)) return 400;
+  const char *length = header(connection, "Content-Length");
+  uint64_t most = s->options.most_upload_bytes;
+  r->upload.room = most > 0 ? most : UINT64_MAX;
+  *line = "the file is larger than the viewer's memory: open it by a path, or raise --max-memory\n";
+  return length != NULL && strtoull(length, NULL, 10) > r->upload.room ? 413 : 0;
 }
 
 /* The HTTP status of a refused request, with its error line; 0: the request is allowed. */
@@ -233,8 +238,8 @@ static bool is_format(const char *format) {
 }
 
 static bool is_film_format(const char *format) {
-  return format != NULL &&
-         (strcmp(format, "mp4") == 0 || strcmp(format, "webm") == 0 || strcmp(format, "gif") == 0);
+  return format != NULL && (strcmp(format, "mp4") == 0 || strcmp(format, "webm") == 0 ||
+                            strcmp(format, "gif") == 0 || strcmp(format, "zip") == 0);
 }
 
 static frame_request read_query(struct MHD_Connection *connection, const request *r) {
@@ -280,7 +285,7 @@ static void post_film(server *s, struct MHD_Connection *connection, const reques
   else
     answer_problem(
         answer, 400,
-        "a film needs ?page=NAME&number=N&format=mp4|webm|gif (&turntable=N&frames=N&fps=N&key0=...)\n");
+        "a film needs ?page=NAME&number=N&format=mp4|webm|gif|zip (&turntable=N&frames=N&fps=N&key0=...)\n");
 }
 
 static void post_cancel(server *s, struct MHD_Connection *connection, const request *r,

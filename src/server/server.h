@@ -30,8 +30,9 @@ typedef struct server_options {
   const char *folder; /* absolute; pages may open what lies below it; null: nothing */
   /* Reads the file at `path`, which its scene calls `name`. */
   hl_status (*open)(void *user_data, const char *path, const char *name, hl_scene **scene, hl_error *error);
-  int port;              /* 0: a free one */
-  bool (*stopped)(void); /* asked some times a second; true ends server_run() */
+  uint64_t most_upload_bytes; /* of a file that is dropped; 0: no limit */
+  int port;                   /* 0: a free one */
+  bool (*stopped)(void);      /* asked some times a second; true ends server_run() */
   void *user_data;
   void (*ready)(void *user_data, const char *url); /* called once, when requests are answered */
 } server_options;

@@ -117,12 +117,23 @@ hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t tim
 
 /* ---- levels ---- */
 
+/* A level of more voxels shows nothing more in a picture a thousand pixels across, and takes minutes. */
+static const uint64_t VOXELS_OF_A_PICTURE = (uint64_t)1 << 30;
+
 /* UINT64_MAX on overflow. */
-static uint64_t level_bytes(const hl_level_size *level) {
-  uint64_t bytes = hl_storage_bytes(hl_voxel_type_storage(level->type));
+static uint64_t level_voxels(const hl_level_size *level) {
+  uint64_t voxels = 1;
   for (int axis = 0; axis < 3; axis++)
-    if (__builtin_mul_overflow(bytes, level->dimensions[axis], &bytes)) return UINT64_MAX;
-  return bytes;
+    if (__builtin_mul_overflow(voxels, level->dimensions[axis], &voxels)) return UINT64_MAX;
+  return voxels;
+}
+
+static uint64_t level_bytes(const hl_level_size *level) {
+  uint64_t bytes;
+  return __builtin_mul_overflow(level_voxels(level), hl_storage_bytes(hl_voxel_type_storage(level->type)),
+                                &bytes)
+             ? UINT64_MAX
+             : bytes;
 }
 
 hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
@@ -134,12 +145,15 @@ hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_l
   if (status != HL_OK || request->level >= 0) return status;
   size_t level = 0;
   while (level + 1 < count && limit > 0 && level_bytes(&levels[level]) > limit / 2) level++;
+  bool by_memory = level > 0;
+  while (level + 1 < count && level_voxels(&levels[level]) > VOXELS_OF_A_PICTURE) level++;
   selection->level = (int)level;
   if (level > 0)
     hl_log(request->context, HL_LOG_WARNING,
-           "%.300s: level %zu of %zu is taken, the finest that the memory limit leaves room for: choose by "
-           "\"level\" (--level)",
-           path, level, count);
+           "%.300s: level %zu of %zu is taken, %s: choose by \"level\" (--level)", path, level, count,
+           level_voxels(&levels[level - 1]) > VOXELS_OF_A_PICTURE || !by_memory
+               ? "as fine as pictures show"
+               : "the finest that the memory limit leaves room for");
   return HL_OK;
 }
 

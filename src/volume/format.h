@@ -66,7 +66,7 @@ typedef struct hl_level_size {
 } hl_level_size;
 
 /* Sets request->selection's level among `count`, the finest first: the wanted one, else the finest that
- * leaves half of the memory limit. */
+ * leaves half of the memory limit and has at most 2^30 voxels. */
 hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
                           size_t count, hl_error *error);
 

@@ -5,7 +5,6 @@
 #include "volume/tiff.h"
 
 #include <math.h>
-#include <stdatomic.h>
 #include <string.h>
 
 #include "core/context.h"
@@ -14,11 +13,12 @@
 #include "core/pool.h"
 #include "volume/colors.h"
 #include "volume/convert.h"
+#include "volume/parallel.h"
 #include "volume/tiff_file.h"
 #include "volume/tiff_plan.h"
 
 enum {
-  PARALLEL_VOXELS = 1 << 20, /* smaller volumes are read before other threads would have started */
+  PARALLEL_BYTES = 1 << 20, /* smaller volumes are read before other threads would have started */
 };
 
 /* A file and the offsets of its directories. */
@@ -43,12 +43,8 @@ typedef struct stack_reading {
   size_t slice_bytes;
   /* of the threads */
   hl_pool *pool;
-  tiff_file *open;   /* owned; [threads]: the file that each thread has open */
-  uint32_t *opened;  /* owned; [threads]: that file's index; UINT32_MAX: none */
-  hl_error *errors;  /* owned; [threads]: the error of the thread's first slice that failed */
-  size_t *failed;    /* owned; [threads]: the index of that slice; SIZE_MAX: none */
-  hl_status *status; /* owned; [threads] */
-  atomic_size_t done, first_failed;
+  tiff_file *open;  /* owned; [threads]: the file that each thread has open */
+  uint32_t *opened; /* owned; [threads]: that file's index; UINT32_MAX: none */
 } stack_reading;
 
 /* ---- the first file: its pages, and what its first page says ---- */
@@ -93,37 +89,24 @@ static size_t count_levels(tiff_file *file) {
   return TIFFGetField(file->tiff, TIFFTAG_SUBIFD, &count, &offsets) ? (size_t)count + 1 : 1;
 }
 
-static uint64_t volume_bytes(const stack_reading *r, const tiff_shape *shape) {
-  size_t stored = hl_storage_bytes(hl_voxel_type_storage(shape->type));
-  uint64_t bytes;
-  if (__builtin_mul_overflow((uint64_t)shape->width * shape->height, r->plan.slice_count * stored, &bytes))
-    return UINT64_MAX;
-  return bytes;
-}
-
-/* Sets the level and the shape of its pages: the level that the caller wants, else the finest one that takes
- * at most half of the memory limit. */
-static hl_status choose_level(stack_reading *r, tiff_file *file, uint64_t offset, hl_error *error) {
-  hl_selection *selection = &r->request->selection;
-  uint64_t limit = r->context->options.memory_limit;
-  int wanted = r->request->level;
-  if (wanted >= 0 && (size_t)wanted >= selection->levels)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: there is no level %d: the file has %zu, from 0", file->path,
-                   wanted, selection->levels);
+/* Sets the level and the shape of its pages. */
+static hl_status choose_level(stack_reading *r, tiff_file *file, uint64_t offset, size_t count,
+                              hl_error *error) {
+  hl_level_size *sizes = hl_allocate_zeroed(r->context, count, sizeof *sizes);
+  if (sizes == NULL) return hl_fail_memory(error, count * sizeof *sizes, file->path);
   hl_status status = HL_OK;
-  for (r->level = wanted >= 0 ? wanted : 0; status == HL_OK; r->level++) {
-    status = tiff_file_go(file, offset, r->level, error);
-    if (status == HL_OK) status = tiff_file_shape(file, &r->shape, error);
-    bool last = wanted >= 0 || (size_t)r->level + 1 >= selection->levels;
-    if (status == HL_OK && (last || limit == 0 || volume_bytes(r, &r->shape) <= limit / 2)) break;
+  for (size_t level = 0; level < count && status == HL_OK; level++) {
+    tiff_shape shape;
+    status = tiff_file_go(file, offset, (int)level, error);
+    if (status == HL_OK) status = tiff_file_shape(file, &shape, error);
+    if (status == HL_OK)
+      sizes[level] = (hl_level_size){{shape.width, shape.height, r->plan.slice_count}, shape.type};
   }
-  if (status == HL_OK && wanted < 0 && r->level > 0)
-    hl_log(r->context, HL_LOG_WARNING,
-           "%.300s: level %d of %zu is taken, the finest that the memory limit leaves room for: choose by "
-           "\"level\" (--level)",
-           file->path, r->level, selection->levels);
-  selection->level = r->level;
-  return status;
+  if (status == HL_OK) status = hl_level_choose(r->request, file->path, sizes, count, error);
+  r->level = r->request->selection.level;
+  hl_release(r->context, sizes);
+  if (status == HL_OK) status = tiff_file_go(file, offset, r->level, error);
+  return status == HL_OK ? tiff_file_shape(file, &r->shape, error) : status;
 }
 
 static hl_status check_size(const stack_reading *r, tiff_file *file, hl_error *error) {
@@ -144,7 +127,7 @@ static hl_status read_first(stack_reading *r, tiff_file *file, hl_error *error) 
   hl_status status = tiff_file_shape(file, &first, error);
   uint64_t start = TIFFCurrentDirOffset(file->tiff);
   read_resolution(file, resolution);
-  r->request->selection.levels = count_levels(file);
+  size_t levels = count_levels(file);
   if (status == HL_OK && TIFFGetField(file->tiff, TIFFTAG_IMAGEDESCRIPTION, &description)) {
     copy = hl_copy_text(r->context, description);
     if (copy == NULL) status = hl_fail_memory(error, strlen(description) + 1, file->path);
@@ -166,7 +149,7 @@ static hl_status read_first(stack_reading *r, tiff_file *file, hl_error *error) 
     r->files[0].path = hl_copy_text(r->context, file->path);
     if (r->files[0].path == NULL) status = hl_fail_memory(error, strlen(file->path), file->path);
   }
-  if (status == HL_OK) status = choose_level(r, file, start, error);
+  if (status == HL_OK) status = choose_level(r, file, start, levels, error);
   if (status == HL_OK) status = check_size(r, file, error);
   hl_release(r->context, stack.offsets);
   hl_release(r->context, copy);
@@ -202,7 +185,8 @@ static hl_status check_slices(const stack_reading *r, hl_error *error) {
 
 /* ---- slices ---- */
 
-static hl_status read_slice(stack_reading *r, size_t z, int worker, hl_error *error) {
+static hl_status read_slice(void *data, size_t z, int worker, hl_error *error) {
+  stack_reading *r = data;
   const tiff_slice *slice = &r->plan.slices[z];
   unsigned char *voxels = r->voxels + z * r->slice_bytes;
   if (!slice->is_there) {
@@ -232,74 +216,32 @@ static hl_status read_slice(stack_reading *r, size_t z, int worker, hl_error *er
   return status == HL_OK ? tiff_file_read(file, &shape, r->component, voxels, error) : status;
 }
 
-static void slice_task(void *data, size_t z, int worker) {
-  stack_reading *r = data;
-  if (z > atomic_load(&r->first_failed)) return;
-  hl_error error = {0};
-  hl_status status = read_slice(r, z, worker, &error);
-  if (status != HL_OK && z < r->failed[worker]) {
-    r->failed[worker] = z;
-    r->status[worker] = status;
-    r->errors[worker] = error;
-    size_t before = atomic_load(&r->first_failed);
-    while (z < before && !atomic_compare_exchange_weak(&r->first_failed, &before, z)) {}
-  }
-  size_t done = atomic_fetch_add(&r->done, 1) + 1;
-  if (worker == 0) hl_progress(r->context, "load", (double)done / (double)r->plan.slice_count);
-}
-
-/* The error of the first slice that failed, among all threads'. */
-static hl_status find_failure(const stack_reading *r, int threads, hl_error *error) {
-  for (int n = 0; n < threads; n++)
-    if (r->failed[n] != SIZE_MAX && r->failed[n] == atomic_load(&r->first_failed)) {
-      if (error != NULL) *error = r->errors[n];
-      return r->status[n];
-    }
-  return HL_OK;
-}
-
 static hl_status make_threads(stack_reading *r, int *threads, hl_error *error) {
-  bool parallel = r->plan.slice_count > 1 && volume_bytes(r, &r->shape) >= PARALLEL_VOXELS;
+  bool parallel = r->plan.slice_count > 1 && r->slice_bytes * r->plan.slice_count >= PARALLEL_BYTES;
   hl_status status = hl_pool_create(r->context, parallel ? 0 : 1, &r->pool, error);
   if (status != HL_OK) return status;
   size_t count = (size_t)(*threads = hl_pool_threads(r->pool));
   r->open = hl_allocate_zeroed(r->context, count, sizeof *r->open);
   r->opened = hl_allocate(r->context, count, sizeof *r->opened);
-  r->errors = hl_allocate_zeroed(r->context, count, sizeof *r->errors);
-  r->failed = hl_allocate(r->context, count, sizeof *r->failed);
-  r->status = hl_allocate_zeroed(r->context, count, sizeof *r->status);
-  if (r->open == NULL || r->opened == NULL || r->errors == NULL || r->failed == NULL || r->status == NULL)
-    return hl_fail_memory(error, count * sizeof *r->errors, r->files[0].path);
+  if (r->open == NULL || r->opened == NULL)
+    return hl_fail_memory(error, count * sizeof *r->open, r->files[0].path);
   for (size_t n = 0; n < count; n++) {
     r->open[n].descriptor = -1;
     r->opened[n] = UINT32_MAX;
-    r->failed[n] = SIZE_MAX;
   }
-  atomic_init(&r->done, 0);
-  atomic_init(&r->first_failed, SIZE_MAX);
   return HL_OK;
-}
-
-static void release_threads(stack_reading *r, int threads) {
-  for (int n = 0; n < threads && r->open != NULL; n++) tiff_file_close(&r->open[n]);
-  hl_pool_destroy(r->pool);
-  hl_release(r->context, r->open);
-  hl_release(r->context, r->opened);
-  hl_release(r->context, r->errors);
-  hl_release(r->context, r->failed);
-  hl_release(r->context, r->status);
 }
 
 static hl_status read_slices(stack_reading *r, hl_error *error) {
   int threads = 0;
   hl_status status = make_threads(r, &threads, error);
-  if (status == HL_OK) {
-    hl_pool_run(r->pool, r->plan.slice_count, slice_task, r);
-    status = find_failure(r, threads, error);
-    if (status == HL_OK && (hl_pool_cancelled(r->pool) || hl_cancelled(r->context)))
-      status = hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", r->files[0].path);
-  }
-  release_threads(r, threads);
+  if (status == HL_OK)
+    status = hl_parallel_read(r->context, r->pool, r->files[0].path, r->plan.slice_count, read_slice, r,
+                              error);
+  for (int n = 0; n < threads && r->open != NULL && r->opened != NULL; n++) tiff_file_close(&r->open[n]);
+  hl_pool_destroy(r->pool);
+  hl_release(r->context, r->open);
+  hl_release(r->context, r->opened);
   return status;
 }
 

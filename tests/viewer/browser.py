@@ -106,6 +106,15 @@ class Browser:
                     raise BrowserError(f"{method}: {answer['error']}")
                 return answer["result"]
 
+    def touch(self, *steps):
+        """Fingers go down at the first step, follow the others, and leave. A step: [[x, y] of each finger]."""
+        self.call("Emulation.setTouchEmulationEnabled", enabled=True, maxTouchPoints=5)
+        for n, places in enumerate(steps):
+            points = [{"x": x, "y": y, "id": finger} for finger, (x, y) in enumerate(places)]
+            self.call("Input.dispatchTouchEvent", type="touchMove" if n else "touchStart", touchPoints=points)
+        self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+        self.call("Emulation.setTouchEmulationEnabled", enabled=False)
+
     def run(self, script, timeout=30):
         """The value of a JavaScript expression; promises are awaited."""
         answer = self.call("Runtime.evaluate", timeout=timeout, expression=script, awaitPromise=True, returnByValue=True)

@@ -5,8 +5,10 @@ usage: files.py PROGRAM
 """
 import base64
 import http.client
+import io
 import json
 import os
+import pathlib
 import shutil
 import subprocess
 import sys
@@ -14,6 +16,9 @@ import tempfile
 import threading
 import time
 import urllib.parse
+import zipfile
+
+from PIL import Image
 
 import checks
 from browser import Browser
@@ -66,6 +71,13 @@ def uploads_are_checked(viewer):
     check(request(viewer, "POST", "upload", b"nonsense", name="a.nrrd")[0] == 400, "a file that is none")
     left = [name for name in os.listdir(os.environ["TMPDIR"]) if name.startswith("halflight-view")]
     check(left == [], f"nothing is left of them: {left}")
+    connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=60)
+    connection.putrequest("POST", f"/{viewer.token}/upload?name=large.nrrd")
+    connection.putheader("Content-Length", str(10 ** 15))
+    connection.endheaders()
+    answer = connection.getresponse()
+    check(answer.status == 413 and b"--max-memory" in answer.read(), "a file larger than memory")
+    connection.close()
     for _ in range(8):  # more than are kept
         check(request(viewer, "POST", "upload", volume, name="again.nrrd")[0] == 200, "many are opened in turn")
 
@@ -75,6 +87,19 @@ def films(viewer, scene):
     small = json.loads(json.dumps(scene))
     small["image"].update(width=48, height=40)
     asked = {"page": "film", "format": "mp4", "turntable": 5}
+    zipped = {**asked, "format": "zip", "page": "zip"}
+    status, body = request(viewer, "POST", "film", json.dumps(small), number=1, key0="lights.0.intensity=0:1,4:2", **zipped)
+    with open("small.json", "w") as file:
+        json.dump(small, file)
+    subprocess.run([PROGRAM, "animate", "small.json", "--turntable", "5", "--key", "lights.0.intensity=0:1,4:2", "-o", "pictures", "--quiet"],
+                   check=True)
+    own = [Image.open(pathlib.Path("pictures", name)) for name in sorted(os.listdir("pictures"))]
+    archive = zipfile.ZipFile(io.BytesIO(body))
+    check(status == 200 and archive.testzip() is None, f"pictures in an archive: {status}")
+    check(archive.namelist() == [f"frame-{n}.png" for n in range(5)], f"their names: {archive.namelist()}")
+    shown = [Image.open(io.BytesIO(archive.read(name))) for name in archive.namelist()]
+    check([p.tobytes() for p in shown] == [p.tobytes() for p in own], "they are those of halflight animate")
+    check(all("halflight:scene" in p.text for p in shown), "and carry their scenes")
     status, body = request(viewer, "POST", "film", json.dumps(small), number=1, key0="lights.0.intensity=0:1,4:2", **asked)
     if shutil.which("ffmpeg") is None:
         check(status == 400 and b"ffmpeg" in body, "without ffmpeg the page says so")
@@ -84,8 +109,6 @@ def films(viewer, scene):
     frames = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames,width,height", "-of", "csv=p=0",
                              "film.mp4"], capture_output=True, text=True).stdout.strip()
     check(status == 200 and frames == "48,40,5", f"a film of five frames: {frames}")
-    with open("small.json", "w") as file:
-        json.dump(small, file)
     subprocess.run([PROGRAM, "animate", "small.json", "--turntable", "5", "--key", "lights.0.intensity=0:1,4:2", "-o", "own.mp4", "--quiet"],
                    check=True)
     with open("own.mp4", "rb") as file:
@@ -99,7 +122,7 @@ def films(viewer, scene):
     for _ in range(200):
         time.sleep(0.1)
         progress = json.loads(request(viewer, "GET", "film.json", page="film")[1])
-        if progress["done"] > 0:
+        if progress["frames"] == 10000 and progress["done"] > 0:
             break
     check(progress["frames"] == 10000 and progress["done"] > 0, f"a film tells how far it is: {progress}")
     check(request(viewer, "POST", "cancel", page="film", number=4)[0] == 204, "it can be stopped")

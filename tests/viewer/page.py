@@ -36,6 +36,21 @@ def hands_on_the_camera(browser):
     changes(browser, "frame everything", lambda: press(browser, "Frame") or browser.wait(f"{STAGE} === 'moving'"), "camera")
 
 
+def fingers_on_the_camera(browser):
+    x, y = center(browser, "#view")
+    at = [x - 120, y + 90]
+    height = "import('./camera.js').then((m) => m.worldHeight(halflight.store.scene.camera))"
+    far, target = browser.run(height), scene_of(browser)["camera"]["target"]
+    changes(browser, "one finger", lambda: browser.touch([at], [[at[0] + 40, at[1] + 20]]), "camera")
+    check(abs(browser.run(height) / far - 1) < 1e-9 and scene_of(browser)["camera"]["target"] == target, "one finger turns")
+    changes(browser, "two fingers apart", lambda: browser.touch([at, [x, y + 90]], [[at[0] - 40, at[1]], [x + 40, y + 90]]), "camera")
+    check(browser.run(height) < 0.9 * far, "two fingers apart come nearer")
+    target = scene_of(browser)["camera"]["target"]
+    changes(browser, "two fingers aside", lambda: browser.touch([at, [x, y + 90]], [[at[0] + 40, at[1]], [x + 40, y + 90]]), "camera")
+    check(scene_of(browser)["camera"]["target"] != target, "two fingers aside pan")
+    changes(browser, "framed again", lambda: press(browser, "Frame") or browser.wait(f"{STAGE} === 'moving'"), "camera")
+
+
 def hands_on_the_light(browser):
     handle = center(browser, ".light-dot")
     changes(browser, "light drag", lambda: browser.drag(handle, [handle[0] + 70, handle[1] + 20]), "lights")
@@ -120,6 +135,7 @@ with tempfile.TemporaryDirectory() as folder:
         browser.resize(720, 420)
         browser.wait("halflight.store.scene.image.width === 380")
         hands_on_the_camera(browser)
+        fingers_on_the_camera(browser)
         hands_on_the_light(browser)
         hands_on_the_function(browser)
         other_panels(browser)

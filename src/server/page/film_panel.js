@@ -1,5 +1,5 @@
 // The panel of films: a turn, and numbers of the scene that go from value to value. The film is what `halflight
-// animate` makes; where ffmpeg is absent, its command leaves numbered pictures.
+// animate` makes; "Pictures" are numbered PNGs in a zip archive, which need no ffmpeg.
 
 import { button, make, row, section, select } from "./controls.js";
 import { download, quoted, sceneText, stem } from "./export.js";
@@ -18,7 +18,7 @@ export const numberAt = (scene, path) => TURNS[path] ?? path.split(".").reduce((
 
 export const animateCommand = (scene, title, { turntable, keys, fps, format }) =>
   [`halflight animate - ${turntable > 0 ? `--turntable ${turntable} ` : ""}`, ...keys.map((key) => `--key ${quoted(key)} `),
-    `--fps ${fps} -o ${quoted(`${stem(title)}.${format}`)} <<'END'\n${sceneText(scene)}END\n`].join("");
+    `--fps ${fps} -o ${quoted(format === "zip" ? stem(title) : `${stem(title)}.${format}`)} <<'END'\n${sceneText(scene)}END\n`].join("");
 
 function timeLeft(seconds) {
   return seconds < 90 ? `${Math.ceil(seconds)} s` : `${Math.ceil(seconds / 60)} min`;
@@ -34,7 +34,7 @@ export function filmPanel({ store, start, channel, report, copy }) {
   const at = number("Frame", 0, 0, 100000);
   let format = "mp4";
   const kind = select({
-    label: "Format", choices: [["mp4", "MP4"], ["webm", "WebM"], ["gif", "GIF"]], get: () => format, set: (value) => { format = value; },
+    label: "Format", choices: [["mp4", "MP4"], ["webm", "WebM"], ["gif", "GIF"], ["zip", "Pictures"]], get: () => format, set: (value) => { format = value; },
   });
   const bar = make("progress", { max: 1, value: 0, hidden: true, "aria-label": "The film" }), told = make("p", { class: "facts", role: "status" });
 

@@ -12,6 +12,7 @@ const REST_AFTER = 120; // milliseconds without a change
 const SETTLED_WITHIN = 350; // milliseconds for the first picture of full size, so that it is there half a second after
 const WIDEST = 4; // voxels between sheets while something moves, at most
 const LARGEST_PIXEL = 1.45; // voxels: the renderer averages several samples for larger pixels, which saves no time
+const SHADOW_PIXELS = 0.5; // of a moving picture's longer side, along that of a shadow buffer
 const ADAPTION = 0.6; // how much of an error in time one frame corrects, as an exponent
 
 // Sides that are multiples of 16 render without a copy.
@@ -123,7 +124,10 @@ export class Frames {
     const full = this.#full().pixels, least = Math.min(this.#leastPixels(), full);
     const at = Math.log((WIDEST * this.#work) / least) / Math.log((WIDEST * full) / least);
     const part = Math.min(Math.max(at, 0), 1);
-    return this.#scaled(least * (full / least) ** part, WIDEST ** (1 - part));
+    const scene = this.#scaled(least * (full / least) ** part, WIDEST ** (1 - part));
+    if (scene.render.shadow_resolution !== "auto") return scene;
+    const { width, height } = scene.image;
+    return { ...scene, render: { ...scene.render, shadow_resolution: Math.ceil(SHADOW_PIXELS * Math.max(width, height)) } };
   }
 
   // The picture at rest, in two steps, as long as nothing changes.

@@ -1,0 +1,32 @@
+/* server/picture_zip.h - numbered pictures in a zip archive, stored as they are: a film where ffmpeg is
+ * absent. */
+#ifndef HL_SERVER_PICTURE_ZIP_H
+#define HL_SERVER_PICTURE_ZIP_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+enum { PICTURE_ZIP_MOST = 65535 }; /* pictures, the most of a zip archive without extensions */
+
+typedef struct picture_zip_entry {
+  uint32_t at, length, checksum;
+} picture_zip_entry;
+
+typedef struct picture_zip {
+  FILE *file;                 /* owned */
+  picture_zip_entry *entries; /* owned; [count] */
+  size_t count, capacity;
+  int digits; /* of the numbers in the names */
+  bool failed;
+} picture_zip;
+
+/* Begins an archive of so many pictures, at most PICTURE_ZIP_MOST. */
+bool picture_zip_begin(picture_zip *zip, const char *path, int pictures);
+/* Adds the next picture, the bytes of a PNG; false where the file cannot be written or grows beyond 1 GiB. */
+bool picture_zip_add(picture_zip *zip, const unsigned char *png, size_t length);
+/* Writes the list and closes the file; releases the memory in any case. */
+bool picture_zip_end(picture_zip *zip);
+
+#endif
