@@ -5,11 +5,13 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import Any, Unpack
 
+import numpy
+
 from . import _settings, colors
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords, choice
 from .camera import Camera, camera_from
-from .keywords import PictureSettings, RenderSettings
+from .keywords import PictureSettings, RenderSettings, SkySettings
 from .lights import Light, light_from
 from .mesh import Mesh, mesh_from
 from .volume import Volume, as_volume, volume_from
@@ -38,6 +40,10 @@ class Settings(PictureSettings, RenderSettings, total=False):
         One sentence on the scene, for its file.
     meshes : a Mesh or a list of them
         Triangles among the volumes.
+    sky : float, colour or mapping
+        Light from all directions, which folds and hollows get less of: an even colour, or the keywords of
+        `halflight.keywords.SkySettings`, as ``{"type": "gradient", "zenith": (0.5, 0.7, 1)}``. An image is an array
+        of linear RGB, ``{"type": "image", "pixels": array}``.
     """
 
     camera: Camera | str | tuple[float, float]
@@ -47,6 +53,7 @@ class Settings(PictureSettings, RenderSettings, total=False):
     background: float | Sequence[float] | str
     description: str
     meshes: Mesh | Sequence[Mesh]
+    sky: float | Sequence[float] | str | Mapping[str, Any]
 
 
 _RENDER = _settings.names(lib.HL_SETTINGS_RENDER)
@@ -234,6 +241,19 @@ def _set_meshes(struct: Any, meshes: Mesh | Sequence[Mesh], keep: list[Any]) -> 
     struct.meshes, struct.mesh_count = array, len(given)
 
 
+def _set_sky(struct: Any, sky: Any, keep: list[Any]) -> None:
+    look = dict(sky) if isinstance(sky, Mapping) else {"type": "uniform", "color": colors.linear_color("sky", sky)}
+    check_keywords("sky", look, [*SkySettings.__annotations__, "pixels"])
+    if (pixels := look.pop("pixels", None)) is not None:
+        image = numpy.ascontiguousarray(pixels, numpy.float32)
+        if image.ndim != 3 or image.shape[2] != 3 or image.size == 0:
+            raise ValueError(f"sky: pixels of the shape {image.shape}: give (height, width, 3)")
+        keep.append(buffer := ffi.from_buffer("float[]", image))
+        struct.pixels, struct.height, struct.width = buffer, image.shape[0], image.shape[1]
+        struct.file = ffi.NULL
+    _settings.fill("sky: ", struct, lib.HL_SETTINGS_SKY, look)
+
+
 def _set_background(struct: Any, background: Any) -> None:
     struct.background_transparent = isinstance(background, str) and background == "transparent"
     if not struct.background_transparent:
@@ -294,6 +314,8 @@ def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], ch
         _set_meshes(struct, meshes, keep)
     if (ambient := settings.get("ambient")) is not None:
         struct.ambient = colors.linear_color("ambient", ambient)
+    if (sky := settings.get("sky")) is not None:
+        _set_sky(struct.sky, sky, keep)
     if (background := settings.get("background")) is not None:
         _set_background(struct, background)
     if (description := settings.get("description")) is not None:

@@ -255,10 +255,20 @@ static void change_render_settings(const cli_value *values, hl_render_settings *
   }
 }
 
+/* An even sky of this colour; none for black. */
+static void set_sky(const double color[3], hl_sky *sky) {
+  hl_scene_description plain;
+  hl_scene_description_defaults(&plain);
+  *sky = plain.sky;
+  if (color[0] > 0 || color[1] > 0 || color[2] > 0) sky->type = HL_SKY_UNIFORM;
+  memcpy(sky->color, color, sizeof sky->color);
+}
+
 static void change_settings(const cli_value *values, hl_scene_description *description) {
   change_render_settings(values, &description->render);
   if (values[RENDER_AMBIENT].given)
     memcpy(description->ambient, values[RENDER_AMBIENT].number, sizeof description->ambient);
+  if (values[RENDER_SKY].given) set_sky(values[RENDER_SKY].number, &description->sky);
   if (values[RENDER_EXPOSURE].given) description->exposure = values[RENDER_EXPOSURE].number[0];
   if (values[RENDER_TONE].given) description->tone = (hl_tone)values[RENDER_TONE].choice;
   const cli_value *background = &values[RENDER_BACKGROUND];

@@ -2,6 +2,8 @@
  * table that it fills. */
 #include "render/hot.h"
 
+#include "field/opacity_lanes.h"
+#include "field/sky_lanes.h"
 #include "fill/relevant_blocks_lanes.h"
 #include "fill/splat_lanes.h"
 #include "grid/bounds_lanes.h"
@@ -44,6 +46,7 @@ const hot_functions HL_HOT_TABLE = {
              brick_bits,
              HL_READS_COLUMNS},
     .view = {brick_ranges_in_view, coverage_tile},
+    .field = {field_opacity, field_cover, sky_row},
     .fill = {relevant_blocks_tile, splat_tile, gather_tile},
     .shadow = {attenuate_tile,
                lit_blocks_tile,

@@ -5,6 +5,7 @@
 #ifndef HL_RENDER_HOT_H
 #define HL_RENDER_HOT_H
 
+#include "field/field.h"
 #include "fill/fill.h"
 #include "grid/grid.h"
 #include "render/slab.h"
@@ -14,6 +15,7 @@
 typedef struct hot_functions {
   grid_functions grid;
   view_functions view;
+  field_functions field;
   fill_functions fill;
   shadow_functions shadow;
   render_functions render;

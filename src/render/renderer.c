@@ -12,6 +12,7 @@
 #include "render/frame.h"
 #include "render/maximum.h"
 #include "render/prepare.h"
+#include "render/sky.h"
 #include "scatter/scatter.h"
 #include "scene/check.h"
 
@@ -25,6 +26,7 @@ struct hl_renderer {
   size_t buffer_count;
   shadow_memory shadow_memory[FRAME_LIGHTS]; /* owned; of a sweep's lights */
   scatter_field scattered; /* owned; kept while the scene's matter and lights stay the same */
+  sky_field sky;           /* owned; the light of the scene's sky */
   hl_reserve reserve;      /* owned; blocks that frames and sweeps have returned */
   uint64_t estimate;       /* bytes; see render/estimate.h */
 };
@@ -65,6 +67,7 @@ void hl_renderer_destroy(hl_renderer *renderer) {
   release_volumes(renderer);
   release_buffers(renderer);
   hl_scatter_release(renderer->context, &renderer->scattered);
+  hl_sky_release(renderer->context, &renderer->sky);
   hl_reserve_release(&renderer->reserve);
   hl_pool_destroy(renderer->pool);
   hl_release(renderer->context, renderer);
@@ -296,6 +299,7 @@ static sweep sweep_of(hl_renderer *renderer, const hl_scene_description *scene, 
                  .first = index == 0,
                  .layer_pixels = &work->layers,
                  .scattered = renderer->scattered.light != NULL ? &renderer->scattered : NULL,
+                 .sky = renderer->sky.light.field != NULL ? &renderer->sky.light : NULL,
                  .maximum = &work->maximum,
                  .measures = index == work->measuring_sweep,
                  .channels = attenuation_channels(scene),
@@ -435,6 +439,17 @@ static void add_isosurfaces(const hl_renderer *renderer, framed_scene *framed) {
     }
 }
 
+static hl_status check_sky_room(void *data, uint64_t bytes, hl_error *error) {
+  return check_room(data, bytes, error);
+}
+
+static hl_status update_sky(hl_renderer *renderer, const hl_scene_description *scene, const frame_work *work,
+                            const hot_functions *hot, hl_error *error) {
+  const frame_sky of = {scene, renderer->prepared, work->grids, &work->frame};
+  return hl_frame_sky_update(renderer->context, renderer->pool, hot, &of,
+                             &(sky_room){check_sky_room, renderer}, &renderer->sky, error);
+}
+
 static hl_status render_frame(hl_renderer *renderer, const frame_request *request, frame_work *work,
                               hl_render_statistics *statistics, hl_error *error) {
   double start = hl_clock_seconds();
@@ -456,6 +471,7 @@ static hl_status render_frame(hl_renderer *renderer, const frame_request *reques
   if (status == HL_OK) add_isosurfaces(renderer, &work->framed);
   if (status == HL_OK) status = set_up_frame(renderer, scene, request, work, error);
   if (status == HL_OK) status = scatter_light(renderer, scene, work, error);
+  if (status == HL_OK) status = update_sky(renderer, scene, work, hot, error);
   if (status == HL_OK) status = check_sweeps_room(renderer, scene, work, error);
   statistics->seconds_prepare = hl_clock_seconds() - start;
   start = hl_clock_seconds();
@@ -496,9 +512,6 @@ static hl_status check_request(const hl_renderer *renderer, const hl_scene *scen
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_renderer_render: statistics->struct_size is %zu, expected %zu",
                    statistics->struct_size, sizeof *statistics);
-  if (description->sky.type != HL_SKY_NONE)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "/sky: is in pictures of the reference alone yet: remove it, or render with --reference");
   return hl_layers_check(layers, description, error);
 }
 

@@ -4,6 +4,7 @@
 
 #include "light/light_texture_lanes.h"
 #include "render/reaching_lanes.h"
+#include "render/sky_lanes.h"
 #include "render/voxel_color_lanes.h"
 #include "scatter/scatter_lanes.h"
 
@@ -197,7 +198,7 @@ LANES_INLINE color_lanes color_of_matter(const block_density *d, lanes3 position
 }
 
 /* Colours of the volumes, lit and averaged weighted by extinction. */
-LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_geometry *g,
+LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_slab *slab,
                                         const arriving_light *lights, const block_density *densities,
                                         int count, lanes total) {
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
@@ -205,7 +206,12 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_geomet
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (!d->there || !d->patch->volume->visible) continue;
-    color_lanes lit = illuminate(job, d, g, lights, color_of_matter(d, g->position));
+    color_lanes color = color_of_matter(d, slab->geometry.position);
+    color_lanes lit = illuminate(job, d, &slab->geometry, lights, color);
+    if (job->sky != NULL && d->patch->volume->lit) {
+      color_lanes sky = sky_of_volume(job, slab, d);
+      for (int c = 0; c < 3; c++) lit.c[c] = lanes_fma(sky.c[c], color.c[c], lit.c[c]);
+    }
     if (count == 1) return lit; /* its extinction is the total */
     lanes weight = lanes_select(d->extinction == total, lanes_set(1.0f), d->extinction * inverse);
     for (int c = 0; c < 3; c++) sum.c[c] = lanes_fma(lit.c[c], weight, sum.c[c]);
@@ -240,8 +246,7 @@ LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_den
       lights[k][i] = light_at(job, &job->lights[i], &tile->slabs[seen[k]], of[seen[k]], patch_count);
   for (int k = 0; k < count; k++) {
     const block_slab *slab = &tile->slabs[seen[k]];
-    color_lanes color = color_of_block(job, &slab->geometry, lights[k], of[seen[k]], patch_count,
-                                       slab->total);
+    color_lanes color = color_of_block(job, slab, lights[k], of[seen[k]], patch_count, slab->total);
     for (int c = 0; c < 3; c++) lit[seen[k]].c[c] = lanes_keep(slab->seen, color.c[c]);
   }
 }

@@ -6,6 +6,7 @@
 #ifndef HL_RENDER_SLAB_H
 #define HL_RENDER_SLAB_H
 
+#include "field/sky_field.h"
 #include "light/light_source.h"
 #include "light/light_texture.h"
 #include "scatter/scatter.h"
@@ -93,6 +94,7 @@ typedef struct shade_job {
   float emission;                 /* 1 in the first sweep, 0 in the others: volumes' emission is added once */
   int channels;                   /* of light attenuation: 1 or 3 */
   const scatter_field *scattered; /* light scattered more than once, in the first sweep; null: none */
+  const sky_light *sky;           /* null: none, or not in this sweep */
 } shade_job;
 
 /* Bytes of scratch memory for a patch: room for a block, and for up to sixteen slabs into which samples are

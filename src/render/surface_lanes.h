@@ -63,11 +63,32 @@ LANES_INLINE void add_light(const shade_job *job, const shade_light *light, cons
   }
 }
 
+/* Cells by which look-ups of the sky's light are moved off a mesh. */
+static const float MESH_LIFT = 1.25f;
+
+/* The sky's light: read a little outside of the surface, whose own matter hides what lies behind it. */
+LANES_INLINE void add_sky(const sky_light *sky, const surface_samples *samples, color_lanes *lit) {
+  lanes3 normal = load3(samples->normal);
+  lanes_int lit_side = dot3(normal, normal) > 0.0f;
+  sky_harmonics light;
+  if (samples->receives_shadow)
+    look_up_sky(sky, add_scaled3(load3(samples->position), normal, lanes_set(MESH_LIFT * sky->cell)), 0xffff,
+                &light);
+  else open_sky(sky, &light);
+  for (int c = 0; c < 3; c++) {
+    const lanes *of = light.of + (sky->channels == 1 ? 0 : c * FIELD_HARMONICS);
+    lanes light_here = lanes_keep(lit_side, light_of_surface(of, normal));
+    lit->c[c] = lanes_fma(light_here * (samples->diffuse * sky->color[c]), lanes_load(samples->color[c]),
+                          lit->c[c]);
+  }
+}
+
 static void shade_surface(const shade_job *job, surface_samples *samples) {
   color_lanes lit;
   for (int c = 0; c < 3; c++)
     lit.c[c] = lanes_load(samples->color[c]) *
                (samples->ambient * job->ambient[c] + samples->emission * job->emission);
+  if (job->sky != NULL) add_sky(job->sky, samples, &lit);
   for (int i = 0; i < job->light_count; i++) add_light(job, &job->lights[i], samples, &lit);
   for (int c = 0; c < 3; c++) lanes_store(samples->lit[c], lit.c[c]);
 }

@@ -299,6 +299,7 @@ static void set_up_jobs(sweep *sweep) {
   }
   for (int c = 0; c < 3 && sweep->first; c++) shade->ambient[c] = (float)sweep->scene->ambient[c];
   shade->emission = sweep->first ? 1 : 0;
+  shade->sky = sweep->first ? sweep->sky : NULL;
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     set_up_light(sweep, &sweep->lights[i], &sweep->shade_lights[i]);
     attenuate_job *job = &sweep->attenuate[i];

@@ -38,20 +38,9 @@ static void close_sky(sky_stage *all) {
 
 /* A rectangle about a centre with two half edges. */
 static hl_scene_mesh *add_quad(sky_stage *all, vec3 centre, vec3 u, vec3 v) {
-  static const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
-  float positions[4][3];
   hl_scene_mesh *mesh = &all->meshes[all->set.scene.mesh_count++];
-  hl_mesh_description d;
-  hl_error error = {0};
-  for (int i = 0; i < 4; i++) {
-    double a = i == 1 || i == 2 ? 1 : -1, b = i >= 2 ? 1 : -1;
-    vec3_store(positions[i], vec3_add(centre, vec3_add(vec3_scale(u, a), vec3_scale(v, b))));
-  }
-  hl_mesh_description_defaults(&d);
-  d.positions = (const float(*)[3])positions, d.vertex_count = 4;
-  d.triangles = triangles, d.triangle_count = 2;
   hl_scene_mesh_defaults(mesh);
-  if (hl_mesh_create(all->set.context, &d, &mesh->mesh, &error) != HL_OK) fail_msg("%s", error.message);
+  mesh->mesh = stage_make_quad(&all->set, centre, u, v);
   mesh->material = (hl_material){.diffuse = 1};
   for (int c = 0; c < 3; c++) mesh->color[c] = 1;
   return mesh;

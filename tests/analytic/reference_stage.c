@@ -133,6 +133,23 @@ hl_light *stage_add_spot(stage *set, vec3 position, vec3 direction, double openi
   return light;
 }
 
+hl_mesh *stage_make_quad(stage *set, vec3 centre, vec3 u, vec3 v) {
+  static const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
+  float positions[4][3];
+  hl_mesh_description d;
+  hl_mesh *mesh = NULL;
+  hl_error error = {0};
+  for (int i = 0; i < 4; i++) {
+    double a = i == 1 || i == 2 ? 1 : -1, b = i >= 2 ? 1 : -1;
+    vec3_store(positions[i], vec3_add(centre, vec3_add(vec3_scale(u, a), vec3_scale(v, b))));
+  }
+  hl_mesh_description_defaults(&d);
+  d.positions = (const float(*)[3])positions, d.vertex_count = 4;
+  d.triangles = triangles, d.triangle_count = 2;
+  require(hl_mesh_create(set->context, &d, &mesh, &error), &error);
+  return mesh;
+}
+
 void stage_set_texture(hl_light *light, int width, int height, const float *pixels, vec3 center, vec3 right,
                        vec3 up) {
   light->texture.pixels = pixels;

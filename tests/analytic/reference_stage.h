@@ -36,6 +36,9 @@ hl_light *stage_add_directional(stage *set, vec3 direction);
 hl_light *stage_add_point(stage *set, vec3 position);
 hl_light *stage_add_spot(stage *set, vec3 position, vec3 direction, double opening_deg, double falloff_deg);
 
+/* A rectangle of two triangles about a centre with two half edges; owned by the caller. */
+hl_mesh *stage_make_quad(stage *set, vec3 centre, vec3 u, vec3 v);
+
 /* pixels: [height][width][3], borrowed until the pictures are made. */
 void stage_set_texture(hl_light *light, int width, int height, const float *pixels, vec3 center, vec3 right,
                        vec3 up);

@@ -1,0 +1,137 @@
+/* field/field.h - light in a lattice of cells over the whole content, the same from wherever the eye looks.
+ *
+ * In: the grids and classifiers of a frame's volumes, its meshes, its sky. Out: how much each cell takes of
+ * light that crosses it along each axis (opacity.c), and what of the sky reaches it (sky_field.c), which
+ * samples look up (lookup_lanes.h).
+ *
+ * A lattice is walked in slices: planes of cells at a right angle to an axis. A slice's rows lie along
+ * `across`, one below the other along `down`, and are padded to whole vectors of lanes. */
+#ifndef HL_FIELD_FIELD_H
+#define HL_FIELD_FIELD_H
+
+#include "core/error.h"
+#include "core/memory.h"
+#include "core/vector.h"
+#include "grid/classifier.h"
+
+enum {
+  FIELD_LANES = 16,
+  FIELD_HARMONICS = 9,   /* spherical harmonics up to the second degree */
+  FIELD_DIRECTIONS = 36, /* the most directions about one end of an axis */
+  FIELD_SAMPLES = 4      /* the most samples along an edge of a cell */
+};
+
+typedef struct field_lattice {
+  int32_t count[3]; /* cells along x, y and z */
+  vec3 low;         /* the lattice's low corner; frame space */
+  double cell;      /* the edge of a cell, a cube; frame units */
+} field_lattice;
+
+typedef struct field_slices {
+  int axis, across, down;
+  int32_t slices, rows, columns, stride; /* stride: columns, padded */
+} field_slices;
+
+static inline field_slices hl_field_slices(const field_lattice *lattice, int axis) {
+  field_slices s = {.axis = axis, .across = axis == 0 ? 1 : 0, .down = axis == 2 ? 1 : 2};
+  s.slices = lattice->count[axis];
+  s.rows = lattice->count[s.down];
+  s.columns = lattice->count[s.across];
+  s.stride = (s.columns + FIELD_LANES - 1) / FIELD_LANES * FIELD_LANES;
+  return s;
+}
+
+static inline size_t hl_field_cells(const field_lattice *lattice) {
+  return (size_t)lattice->count[0] * (size_t)lattice->count[1] * (size_t)lattice->count[2];
+}
+
+/* A volume's matter. */
+typedef struct field_matter {
+  const grid *grid;
+  const classifier *classifier;
+  float to_index[3][4];  /* frame space to index space */
+  float low[3], high[3]; /* the box; index space */
+  float cast;            /* relative extinction; 0: it casts no shadow */
+  int visible;
+  int smooth; /* the voxels are coefficients of the interpolating kernel */
+} field_matter;
+
+/* A mesh's triangles and spheres; frame space. The last number of a colour is opacity; null: 1 everywhere. */
+typedef struct field_surface {
+  const float (*positions)[3];
+  const float (*colors)[4]; /* of the positions from first_vertex on */
+  size_t first_vertex;
+  const uint32_t (*triangles)[3];  /* [triangle_count]; indices of positions */
+  const float (*face_colors)[4];   /* [triangle_count] */
+  const float (*spheres)[4];       /* [sphere_count]; centre and radius */
+  const float (*sphere_colors)[4]; /* [sphere_count] */
+  uint32_t triangle_count, sphere_count;
+  double opacity;
+  bool visible, casts_shadow;
+} field_surface;
+
+/* What light loses in a cell, by the axis along which it crosses it. */
+typedef struct opacity_field {
+  field_lattice lattice;
+  float *depth[3]; /* [slices][rows][3][stride]; optical depths in powers of 1/2: along the axis, across and
+                      down */
+  unsigned char
+      *flags[3]; /* [slices][rows][stride / FIELD_LANES]; FIELD_MATTER and FIELD_RECEIVES of its cells */
+  unsigned char *seen; /* [z][y][x]; 1 where something may be visible, or near it */
+} opacity_field;
+
+enum { FIELD_MATTER = 1, FIELD_RECEIVES = 2 };
+
+/* ---- the functions of this room that are compiled for each instruction set ---- */
+
+/* Sixteen neighbouring cells along x. */
+typedef struct field_block {
+  const field_matter *matter; /* [count] */
+  int count;
+  float corner[3]; /* the low corner of the first cell; frame space */
+  float cell;
+  int samples;           /* along an edge of a cell */
+  const uint32_t *cells; /* [count]; the cells that a volume's bricks reach, one bit each */
+} field_block;
+
+/* Finds the optical depths of the block's cells along x, y and z, in powers of 1/2. */
+typedef void field_opacity_function(const field_block *block, float depth[3][FIELD_LANES]);
+
+/* A direction of the sky, as the slices before an axis's end see it. */
+typedef struct sky_direction {
+  int32_t offset;     /* to the first of four cells of the slice before, in floats */
+  float weight[4];    /* of that cell, the next one across, and the two below */
+  float across, down; /* how far the light moves aside in a slice, squared; in cells */
+  const float *basis; /* [channels x FIELD_HARMONICS]; the integrals of radiance times each harmonic */
+} sky_direction;
+
+typedef struct sky_slice {
+  const sky_direction *directions; /* [direction_count] */
+  int direction_count, channels;
+  const float *depth;         /* [rows][3][stride] */
+  const unsigned char *flags; /* [rows][stride / FIELD_LANES] */
+  int32_t stride, columns;
+  const float *old; /* [direction_count] planes: light that leaves the slice before */
+  float *left;      /* the same for this one */
+  int32_t plane_stride;
+  size_t plane;        /* floats from plane to plane */
+  float *field;        /* the slice's first cell */
+  size_t across, down; /* floats to the next cell in a row, and in the next row */
+  int passing; /* the number of a cell's transmittance, to which a third of this axis's is added; 0: none */
+} sky_slice;
+
+/* Moves the light of all directions one slice on, in one row, and adds it to the cells that something near
+ * them receives light in. */
+typedef void sky_row_function(const sky_slice *slice, int32_t row);
+
+/* Adds what surfaces cover of cells, as fractions, to the cells' depths: count is a multiple of FIELD_LANES.
+ */
+typedef void field_cover_function(const float *cover, size_t count, float *depth);
+
+typedef struct field_functions {
+  field_opacity_function *opacity;
+  field_cover_function *cover;
+  sky_row_function *sky_row;
+} field_functions;
+
+#endif

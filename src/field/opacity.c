@@ -1,0 +1,285 @@
+/* field/opacity.c - samples volumes into the cells of a lattice. */
+#include "field/opacity.h"
+
+#include <string.h>
+
+#include "field/surface_cover.h"
+
+/* Cells within this many of something visible receive light: look-ups are lifted by up to FIELD_LIFT cells
+ * and read the cells around. */
+enum { NEAR_CELLS = 3, MOST_CELLS_ALONG = 512, MOST_MATTER = 256 };
+
+field_lattice hl_field_lattice(const vec3 *points, int count, double voxel, double most_cells) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (int i = 0; i < count; i++) {
+    const double at[3] = {points[i].x, points[i].y, points[i].z};
+    for (int a = 0; a < 3; a++) low[a] = fmin(low[a], at[a]), high[a] = fmax(high[a], at[a]);
+  }
+  double size[3], cell = voxel;
+  for (int a = 0; a < 3; a++) {
+    size[a] = fmax(high[a] - low[a], voxel);
+    cell = fmax(cell, size[a] / (MOST_CELLS_ALONG - 2 * FIELD_MARGIN - 1));
+  }
+  for (;;) { /* grows by steps until the cells are few enough */
+    double cells = 1;
+    for (int a = 0; a < 3; a++) cells *= ceil(size[a] / cell) + 2 * FIELD_MARGIN;
+    if (cells <= most_cells) break;
+    cell *= fmax(cbrt(cells / most_cells), 1.005);
+  }
+  field_lattice lattice = {.cell = cell};
+  double corner[3];
+  for (int a = 0; a < 3; a++) {
+    lattice.count[a] = (int32_t)ceil(size[a] / cell) + 2 * FIELD_MARGIN;
+    corner[a] = (low[a] + high[a]) / 2 - cell * lattice.count[a] / 2;
+  }
+  lattice.low = vec3_of(corner);
+  return lattice;
+}
+
+void hl_opacity_lay_out(bool with_surfaces, opacity_field *field, opacity_scratch *scratch,
+                        hl_layout *layout) {
+  *scratch = (opacity_scratch){.seen = hl_layout_take(layout, hl_field_cells(&field->lattice), 1)};
+  for (int a = 0; a < 3; a++) {
+    field_slices s = hl_field_slices(&field->lattice, a);
+    size_t row = (size_t)s.slices * (size_t)s.rows;
+    field->depth[a] = hl_layout_take(layout, 3 * row * (size_t)s.stride, sizeof *field->depth[a]);
+    if (with_surfaces)
+      scratch->cover[a] = hl_layout_take(layout, hl_field_cells(&field->lattice), sizeof *scratch->cover[a]);
+    field->flags[a] = hl_layout_take(layout, row * (size_t)(s.stride / FIELD_LANES), 1);
+  }
+  field->seen = hl_layout_take(layout, hl_field_cells(&field->lattice), 1);
+}
+
+typedef struct opacity_job {
+  opacity_field *field;
+  const field_content *content;
+  const field_functions *functions;
+  int samples;
+  const float (*reach)[3]; /* [count]; half the box around a cell, in each volume's index space */
+} opacity_job;
+
+/* Whether a relevant brick of the grid holds points around `at` (index space). */
+static bool reaches_matter(const grid *grid, const float at[3], const float reach[3]) {
+  int32_t first[3], last[3];
+  for (int a = 0; a < 3; a++) {
+    float low = (floorf(at[a] - reach[a]) + 1) / HL_BRICK_CELLS,
+          high = (floorf(at[a] + reach[a]) + 1) / HL_BRICK_CELLS;
+    if (!(high >= 0 && low < (float)grid->brick_count[a])) return false;
+    first[a] = low < 0 ? 0 : (int32_t)low;
+    last[a] = high >= (float)grid->brick_count[a] ? grid->brick_count[a] - 1 : (int32_t)high;
+  }
+  for (int32_t z = first[2]; z <= last[2]; z++)
+    for (int32_t y = first[1]; y <= last[1]; y++)
+      for (int32_t x = first[0]; x <= last[0]; x++)
+        if (grid->relevant[((size_t)z * (size_t)grid->brick_count[1] + (size_t)y) *
+                               (size_t)grid->brick_count[0] +
+                           (size_t)x])
+          return true;
+  return false;
+}
+
+/* The cells of a block that a volume reaches, one bit each. */
+static uint32_t cells_of(const opacity_job *job, int volume, const float corner[3], int32_t valid) {
+  const field_matter *matter = &job->content->matter[volume];
+  float half = (float)job->field->lattice.cell / 2;
+  uint32_t bits = 0;
+  if (matter->grid->relevant_count == 0) return 0;
+  for (int32_t lane = 0; lane < FIELD_LANES && lane < valid; lane++) {
+    float at[3], x = corner[0] + half * (float)(2 * lane + 1), y = corner[1] + half, z = corner[2] + half;
+    for (int a = 0; a < 3; a++) {
+      const float *row = matter->to_index[a];
+      at[a] = row[0] * x + row[1] * y + row[2] * z + row[3];
+    }
+    if (reaches_matter(matter->grid, at, job->reach[volume])) bits |= 1u << lane;
+  }
+  return bits;
+}
+
+static void store_depths(opacity_field *field, const int32_t cell[3], int32_t valid,
+                         float depth[3][FIELD_LANES]) {
+  for (int a = 0; a < 3; a++) {
+    field_slices s = hl_field_slices(&field->lattice, a);
+    const int along[3] = {s.axis, s.across, s.down};
+    for (int32_t lane = 0; lane < FIELD_LANES && lane < valid; lane++) {
+      const int32_t at[3] = {cell[0] + lane, cell[1], cell[2]};
+      float *to = field->depth[a] +
+                  ((size_t)at[a] * (size_t)s.rows + (size_t)at[s.down]) * 3 * (size_t)s.stride +
+                  (size_t)at[s.across];
+      for (int k = 0; k < 3; k++) to[k * s.stride] = depth[along[k]][lane];
+    }
+  }
+}
+
+static void find_slab(void *data, size_t index, int worker) {
+  const opacity_job *job = data;
+  opacity_field *field = job->field;
+  const field_lattice *lattice = &field->lattice;
+  const field_content *content = job->content;
+  float cell = (float)lattice->cell, low[3];
+  (void)worker;
+  vec3_store(low, lattice->low);
+  for (int32_t y = 0; y < lattice->count[1]; y++)
+    for (int32_t x = 0; x < lattice->count[0]; x += FIELD_LANES) {
+      uint32_t cells[MOST_MATTER], any = 0, seen = 0;
+      const int32_t at[3] = {x, y, (int32_t)index}, valid = lattice->count[0] - x;
+      field_block block = {.matter = content->matter,
+                           .count = content->count,
+                           .cell = cell,
+                           .samples = job->samples,
+                           .cells = cells};
+      for (int a = 0; a < 3; a++) block.corner[a] = low[a] + cell * (float)at[a];
+      for (int v = 0; v < content->count; v++) {
+        cells[v] = cells_of(job, v, block.corner, valid);
+        any |= cells[v];
+        if (content->matter[v].visible) seen |= cells[v];
+      }
+      unsigned char *to = field->seen +
+                          ((size_t)index * (size_t)lattice->count[1] + (size_t)y) *
+                              (size_t)lattice->count[0] +
+                          (size_t)x;
+      for (int32_t lane = 0; lane < FIELD_LANES && lane < valid; lane++) to[lane] = seen >> lane & 1;
+      if (any == 0) continue;
+      float depth[3][FIELD_LANES];
+      job->functions->opacity(&block, depth);
+      store_depths(field, at, valid, depth);
+    }
+}
+
+/* ---- which cells receive light: those near something visible ---- */
+
+typedef struct spread_job {
+  const unsigned char *from;
+  unsigned char *to;
+  const field_lattice *lattice;
+  int axis;
+} spread_job;
+
+static void spread_slab(void *data, size_t index, int worker) {
+  const spread_job *job = data;
+  const int32_t *count = job->lattice->count;
+  const ptrdiff_t step[3] = {1, count[0], (ptrdiff_t)count[0] * count[1]};
+  (void)worker;
+  int32_t at[3] = {0, 0, (int32_t)index};
+  for (at[1] = 0; at[1] < count[1]; at[1]++)
+    for (at[0] = 0; at[0] < count[0]; at[0]++) {
+      ptrdiff_t here = at[0] + at[1] * step[1] + at[2] * step[2];
+      int32_t first = at[job->axis] < NEAR_CELLS ? -at[job->axis] : -NEAR_CELLS,
+              beyond = count[job->axis] - 1 - at[job->axis], last = beyond < NEAR_CELLS ? beyond : NEAR_CELLS;
+      unsigned char any = 0;
+      for (int32_t i = first; i <= last; i++) any |= job->from[here + i * step[job->axis]];
+      job->to[here] = any;
+    }
+}
+
+static void spread(opacity_field *field, unsigned char *scratch, hl_pool *pool) {
+  size_t slabs = (size_t)field->lattice.count[2];
+  unsigned char *from = field->seen, *to = scratch;
+  for (int axis = 0; axis < 3; axis++) {
+    hl_pool_run(pool, slabs, spread_slab, &(spread_job){from, to, &field->lattice, axis});
+    unsigned char *swap = from;
+    from = to;
+    to = swap;
+  }
+  memcpy(field->seen, scratch, hl_field_cells(&field->lattice));
+}
+
+typedef struct flags_job {
+  opacity_field *field;
+  int axis;
+} flags_job;
+
+static void find_flags(void *data, size_t slice, int worker) {
+  const flags_job *job = data;
+  opacity_field *field = job->field;
+  field_slices s = hl_field_slices(&field->lattice, job->axis);
+  const size_t step[3] = {1, (size_t)field->lattice.count[0],
+                          (size_t)field->lattice.count[0] * (size_t)field->lattice.count[1]};
+  (void)worker;
+  for (int32_t row = 0; row < s.rows; row++) {
+    size_t at = (slice * (size_t)s.rows + (size_t)row) * (size_t)s.stride;
+    const unsigned char *seen = field->seen + slice * step[s.axis] + (size_t)row * step[s.down];
+    for (int32_t column = 0; column < s.columns; column += FIELD_LANES) {
+      unsigned char flags = 0;
+      for (int32_t lane = 0; lane < FIELD_LANES && column + lane < s.columns; lane++) {
+        for (int k = 0; k < 3; k++)
+          if (field->depth[job->axis][3 * at + (size_t)(k * s.stride + column + lane)] > 0)
+            flags |= FIELD_MATTER;
+        if (seen[(size_t)(column + lane) * step[s.across]]) flags |= FIELD_RECEIVES;
+      }
+      field->flags[job->axis][(at + (size_t)column) / FIELD_LANES] = flags;
+    }
+  }
+}
+
+/* Samples are no farther apart than voxels, as long as they are few. */
+static int samples_of(double cell, double voxel) {
+  double samples = ceil(cell / voxel - 0.25);
+  return samples < 1 ? 1 : samples > FIELD_SAMPLES ? FIELD_SAMPLES : (int)samples;
+}
+
+static size_t floats_along(const field_lattice *lattice, int axis) {
+  field_slices s = hl_field_slices(lattice, axis);
+  return 3 * (size_t)s.slices * (size_t)s.rows * (size_t)s.stride;
+}
+
+typedef struct cover_job {
+  opacity_field *field;
+  const field_functions *functions;
+  float *const *cover;
+  int axis;
+} cover_job;
+
+/* Adds what surfaces take to the depths of a slice. */
+static void add_cover(void *data, size_t slice, int worker) {
+  const cover_job *job = data;
+  const field_lattice *lattice = &job->field->lattice;
+  field_slices s = hl_field_slices(lattice, job->axis);
+  const int along[3] = {s.axis, s.across, s.down};
+  const size_t step[3] = {1, (size_t)lattice->count[0],
+                          (size_t)lattice->count[0] * (size_t)lattice->count[1]};
+  (void)worker;
+  for (int32_t row = 0; row < s.rows; row++)
+    for (int k = 0; k < 3; k++) {
+      const float *from = job->cover[along[k]] + slice * step[s.axis] + (size_t)row * step[s.down];
+      float *to = job->field->depth[job->axis] +
+                  ((slice * (size_t)s.rows + (size_t)row) * 3 + (size_t)k) * (size_t)s.stride;
+      for (int32_t column = 0; column < s.columns; column += FIELD_LANES) {
+        float covered[FIELD_LANES] = {0};
+        for (int32_t lane = 0; lane < FIELD_LANES && column + lane < s.columns; lane++)
+          covered[lane] = from[(size_t)(column + lane) * step[s.across]];
+        job->functions->cover(covered, FIELD_LANES, to + column);
+      }
+    }
+}
+
+/* Adds what surfaces take. Triangles follow each other on one thread: a cell's sum has one order. */
+static void add_surfaces(const field_content *content, const field_functions *functions,
+                         const opacity_scratch *scratch, opacity_field *field, hl_pool *pool) {
+  if (content->surface_count == 0) return;
+  for (int a = 0; a < 3; a++)
+    hl_pool_clear(pool, scratch->cover[a], hl_field_cells(&field->lattice) * sizeof *scratch->cover[a]);
+  for (size_t i = 0; i < content->surface_count; i++)
+    hl_surface_cover(&content->surfaces[i], field, scratch->cover);
+  for (int a = 0; a < 3; a++)
+    hl_pool_run(pool, (size_t)field->lattice.count[a], add_cover,
+                &(cover_job){field, functions, scratch->cover, a});
+}
+
+void hl_opacity_find(const field_content *content, const field_functions *functions,
+                     const opacity_scratch *scratch, opacity_field *field, hl_pool *pool) {
+  float reach[MOST_MATTER][3];
+  for (int v = 0; v < content->count; v++)
+    for (int a = 0; a < 3; a++) {
+      const float *row = content->matter[v].to_index[a];
+      reach[v][a] = (fabsf(row[0]) + fabsf(row[1]) + fabsf(row[2])) * (float)(field->lattice.cell / 2);
+    }
+  for (int a = 0; a < 3; a++)
+    hl_pool_clear(pool, field->depth[a], floats_along(&field->lattice, a) * sizeof *field->depth[a]);
+  opacity_job job = {field, content, functions, samples_of(field->lattice.cell, content->voxel),
+                     (const float(*)[3])reach};
+  hl_pool_run(pool, (size_t)field->lattice.count[2], find_slab, &job);
+  add_surfaces(content, functions, scratch, field, pool);
+  spread(field, scratch->seen, pool);
+  for (int a = 0; a < 3; a++)
+    hl_pool_run(pool, (size_t)field->lattice.count[a], find_flags, &(flags_job){field, a});
+}

@@ -1,0 +1,36 @@
+/* field/opacity.h - how much light each cell takes. */
+#ifndef HL_FIELD_OPACITY_H
+#define HL_FIELD_OPACITY_H
+
+#include "core/pool.h"
+#include "field/field.h"
+
+/* What opacity is found from. */
+typedef struct field_content {
+  const field_matter *matter; /* [count] */
+  int count;
+  const field_surface *surfaces; /* [surface_count] */
+  size_t surface_count;
+  double voxel; /* the smallest edge of a voxel; frame units */
+} field_content;
+
+/* A lattice of at most `most_cells` cells around points of the content, none of which is smaller than a
+ * voxel, with room of FIELD_MARGIN cells on every side. */
+enum { FIELD_MARGIN = 3 };
+field_lattice hl_field_lattice(const vec3 *points, int count, double voxel, double most_cells);
+
+/* Memory that finding the opacity needs for a while. */
+typedef struct opacity_scratch {
+  unsigned char *seen; /* [z][y][x] */
+  float *cover[3]; /* [z][y][x]; the fractions that surfaces take along each axis; null without surfaces */
+} opacity_scratch;
+
+/* Takes the arrays of a field whose lattice is set, and of its scratch memory. */
+void hl_opacity_lay_out(bool with_surfaces, opacity_field *field, opacity_scratch *scratch,
+                        hl_layout *layout);
+
+/* Fills the field's arrays. */
+void hl_opacity_find(const field_content *content, const field_functions *functions,
+                     const opacity_scratch *scratch, opacity_field *field, hl_pool *pool);
+
+#endif

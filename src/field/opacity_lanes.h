@@ -1,0 +1,183 @@
+/* field/opacity_lanes.h - what sixteen cells take of light that crosses them along the axes.
+ *
+ * A cell is sampled on a lattice of its own. Along an axis its transmittance is the mean over the rows of
+ * samples, so that a cell that is half filled with dense matter lets half of the light through (derived). */
+#ifndef HL_FIELD_OPACITY_LANES_H
+#define HL_FIELD_OPACITY_LANES_H
+
+#include "field/field.h"
+#include "simd/lanes.h"
+
+/* The extinction of a volume at a density, per frame unit: the classifier's table, linear. */
+LANES_INLINE float field_extinction(const classifier *classifier, float density) {
+  float at = density * classifier->scale + classifier->offset;
+  at = at > 0 ? at < CLASSIFIER_ENTRIES ? at : CLASSIFIER_ENTRIES : 0;
+  int32_t entry = (int32_t)at;
+  float from = classifier->sums[entry][0];
+  return from + (classifier->sums[entry + 1][0] - from) * (at - (float)entry);
+}
+
+LANES_INLINE float stored_number(const unsigned char *row, hl_storage storage, int32_t x) {
+  if (storage == HL_STORAGE_U8) return row[x];
+  if (storage == HL_STORAGE_U16) return ((const uint16_t *)(const void *)row)[x];
+  return ((const float *)(const void *)row)[x];
+}
+
+/* Linear between the voxels around a position of index space; beyond the grid's faces the border continues.
+ */
+LANES_INLINE float linear_value(const grid *grid, hl_storage storage, const float at[3]) {
+  int32_t first[3], next[3];
+  float fraction[3];
+  for (int a = 0; a < 3; a++) {
+    float last = (float)(grid->dimension[a] - 1), within = at[a] > 0 ? at[a] < last ? at[a] : last : 0;
+    first[a] = (int32_t)within;
+    next[a] = first[a] + 1 < grid->dimension[a] ? first[a] + 1 : first[a];
+    fraction[a] = within - (float)first[a];
+  }
+  float along[2];
+  for (int z = 0; z < 2; z++) {
+    float value[2];
+    for (int y = 0; y < 2; y++) {
+      const unsigned char *row = hl_grid_row(grid, y ? next[1] : first[1], z ? next[2] : first[2]);
+      float a = stored_number(row, storage, first[0]), b = stored_number(row, storage, next[0]);
+      value[y] = a + (b - a) * fraction[0];
+    }
+    along[z] = value[0] + (value[1] - value[0]) * fraction[1];
+  }
+  return along[0] + (along[1] - along[0]) * fraction[2];
+}
+
+/* The cubic B-spline over coefficients. */
+LANES_INLINE float smooth_value(const grid *grid, const float at[3]) {
+  float weight[3][4], sum = 0;
+  int64_t first[3];
+  for (int a = 0; a < 3; a++) {
+    float base = __builtin_floorf(at[a]), t = at[a] - base, s = 1 - t;
+    first[a] = (int64_t)base - 1;
+    weight[a][0] = s * s * s / 6;
+    weight[a][1] = (4 - 6 * t * t + 3 * t * t * t) / 6;
+    weight[a][2] = (4 - 6 * s * s + 3 * s * s * s) / 6;
+    weight[a][3] = t * t * t / 6;
+  }
+  for (int z = 0; z < 4; z++)
+    for (int y = 0; y < 4; y++)
+      for (int x = 0; x < 4; x++)
+        sum += weight[0][x] * weight[1][y] * weight[2][z] *
+               hl_stored_value(grid, first[0] + x, first[1] + y, first[2] + z);
+  return sum;
+}
+
+LANES_INLINE float value_at(const field_matter *matter, hl_storage storage, const float at[3]) {
+  return matter->smooth ? smooth_value(matter->grid, at) : linear_value(matter->grid, storage, at);
+}
+
+/* Whether the transfer function may show something in the grid's cell around a position. */
+LANES_INLINE int cell_shows(const grid *grid, const float at[3]) {
+  int32_t cell[3];
+  if (grid->cell_bits == NULL) return 1;
+  for (int a = 0; a < 3; a++) {
+    int32_t last = grid->dimension[a];
+    cell[a] = at[a] > -1 ? (int32_t)(at[a] + 1) : 0;
+    if (cell[a] > last) cell[a] = last;
+  }
+  size_t brick = ((size_t)(cell[2] / HL_BRICK_CELLS) * (size_t)grid->brick_count[1] +
+                  (size_t)(cell[1] / HL_BRICK_CELLS)) *
+                     (size_t)grid->brick_count[0] +
+                 (size_t)(cell[0] / HL_BRICK_CELLS);
+  int bit = cell[0] % HL_BRICK_CELLS + 4 * (cell[1] % HL_BRICK_CELLS) + 16 * (cell[2] % HL_BRICK_CELLS);
+  return (int)(grid->cell_bits[brick] >> bit & 1);
+}
+
+LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage storage, const float at[3]) {
+  for (int a = 0; a < 3; a++)
+    if (!(at[a] >= matter->low[a] && at[a] <= matter->high[a])) return 0;
+  if (!cell_shows(matter->grid, at)) return 0;
+  float value = value_at(matter, storage, at);
+  return matter->cast * field_extinction(matter->classifier, value - matter->grid->empty);
+}
+
+/* Adds a volume's extinction to the samples of a cell; returns whether there is any. */
+LANES_INLINE int sample_cell(const field_block *block, const field_matter *matter, hl_storage storage,
+                             int lane, float (*samples)[FIELD_LANES]) {
+  int n = block->samples, any = 0;
+  float step = block->cell / (float)n;
+  const float corner[3] = {block->corner[0] + block->cell * (float)lane + step * 0.5f,
+                           block->corner[1] + step * 0.5f, block->corner[2] + step * 0.5f};
+  float start[3];
+  for (int a = 0; a < 3; a++) {
+    const float *row = matter->to_index[a];
+    start[a] = row[0] * corner[0] + row[1] * corner[1] + row[2] * corner[2] + row[3];
+  }
+  for (int k = 0; k < n; k++)
+    for (int j = 0; j < n; j++)
+      for (int i = 0; i < n; i++) {
+        float at[3];
+        for (int a = 0; a < 3; a++) {
+          const float *row = matter->to_index[a];
+          at[a] = start[a] + step * ((float)i * row[0] + (float)j * row[1] + (float)k * row[2]);
+        }
+        float extinction = extinction_at_position(matter, storage, at);
+        samples[(k * n + j) * n + i][lane] += extinction;
+        any |= extinction > 0;
+      }
+  return any;
+}
+
+LANES_INLINE int sample_cells(const field_block *block, int volume, float (*samples)[FIELD_LANES]) {
+  const field_matter *matter = &block->matter[volume];
+  int any = 0;
+  for (uint32_t left = block->cells[volume]; left != 0; left &= left - 1) {
+    int lane = __builtin_ctz(left);
+    switch (matter->grid->storage) {
+      case HL_STORAGE_U8: any |= sample_cell(block, matter, HL_STORAGE_U8, lane, samples); break;
+      case HL_STORAGE_U16: any |= sample_cell(block, matter, HL_STORAGE_U16, lane, samples); break;
+      case HL_STORAGE_F32: any |= sample_cell(block, matter, HL_STORAGE_F32, lane, samples); break;
+    }
+  }
+  return any;
+}
+
+/* -log2 of the mean over n x n rows of 2^-depth; a row's samples are `along` apart, rows `first` and
+ * `second`. */
+LANES_INLINE lanes depth_along(const float (*samples)[FIELD_LANES], int n, int along, int first, int second,
+                               float scale) {
+  lanes sum = lanes_set(0);
+  for (int b = 0; b < n; b++)
+    for (int a = 0; a < n; a++) {
+      lanes depth = lanes_set(0);
+      for (int i = 0; i < n; i++) depth = depth + lanes_load(samples[b * second + a * first + i * along]);
+      sum = sum + lanes_exp2(lanes_max(depth * scale, lanes_set(-100.0f)));
+    }
+  return lanes_max(-lanes_log2(sum * (1.0f / (float)(n * n))), lanes_set(0));
+}
+
+/* What passes surfaces that cover a cell: at least this fraction. */
+static const float LEAST_PASSING = 1.0f / 16384;
+
+static void field_cover(const float *cover, size_t count, float *depth) {
+  for (size_t i = 0; i < count; i += FIELD_LANES) {
+    lanes covered = lanes_load(cover + i);
+    if (lanes_bits(covered > 0.0f) == 0) continue;
+    lanes passing = lanes_max(1.0f - covered, lanes_set(LEAST_PASSING));
+    lanes_store(depth + i, lanes_load(depth + i) - lanes_log2(passing));
+  }
+}
+
+static void field_opacity(const field_block *block, float depth[3][FIELD_LANES]) {
+  float samples[FIELD_SAMPLES * FIELD_SAMPLES * FIELD_SAMPLES][FIELD_LANES];
+  int n = block->samples, any = 0;
+  for (int i = 0; i < n * n * n; i++) lanes_store(samples[i], lanes_set(0));
+  for (int v = 0; v < block->count; v++) {
+    if (block->matter[v].cast > 0) any |= sample_cells(block, v, samples);
+  }
+  if (!any) {
+    for (int a = 0; a < 3; a++) lanes_store(depth[a], lanes_set(0));
+    return;
+  }
+  const float scale = -1.44269504089f * block->cell / (float)n;
+  lanes_store(depth[0], depth_along(samples, n, 1, n, n * n, scale));
+  lanes_store(depth[1], depth_along(samples, n, n, 1, n * n, scale));
+  lanes_store(depth[2], depth_along(samples, n, n * n, 1, n, scale));
+}
+
+#endif

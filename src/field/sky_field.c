@@ -1,0 +1,304 @@
+/* field/sky_field.c - sweeps the light of a sky through a lattice, along the three axes and back.
+ *
+ * The sphere of directions is cut like a cube: each face, one end of an axis, into squares of equal angles.
+ * Light of one direction moves from slice to slice (sky_lanes.h). Cells keep the sum over directions of
+ * transmittance times the integrals of radiance and spherical harmonics: enough for a cosine's or a phase
+ * function's mean (lookup_lanes.h; Ramamoorthi and Hanrahan, "An efficient representation for irradiance
+ * environment maps", 2001). Each cell's sums have one order. */
+#include "field/sky_field.h"
+
+#include <string.h>
+
+#include "field/harmonics.h"
+#include "scene/sky.h"
+
+/* Cells by which look-ups are lifted off a surface. */
+static const double LIFT_CELLS = 0.75;
+
+enum { SIDE = 4, ENDS = 6, SIDE_SAMPLES = 64 };
+
+_Static_assert(SIDE *SIDE <= FIELD_DIRECTIONS, "room for a cube's face");
+
+/* The directions about one end of an axis. */
+typedef struct sky_end {
+  sky_direction directions[SIDE * SIDE];
+  float basis[SIDE * SIDE][3 * FIELD_HARMONICS];
+  int count; /* those that shine */
+} sky_end;
+
+/* ---- radiance ---- */
+
+/* How often a square is sampled along each side. */
+static int samples_of_sky(const hl_sky *sky) {
+  if (sky->type != HL_SKY_IMAGE) return 8;
+  int pixels = sky->width / (4 * SIDE) + 1;
+  return pixels < 8 ? 8 : pixels > SIDE_SAMPLES ? SIDE_SAMPLES : pixels;
+}
+
+/* The direction of a face's point: x and y from -1 to 1 in equal angles. The slopes are those of a ray that
+ * moves one along the axis. */
+static vec3 direction_of(const field_slices *s, int sign, double x, double y, double slope[2]) {
+  double v[3] = {0, 0, 0};
+  slope[0] = tan(HL_PI / 4 * x);
+  slope[1] = tan(HL_PI / 4 * y);
+  v[s->axis] = sign;
+  v[s->across] = slope[0];
+  v[s->down] = slope[1];
+  return vec3_normalise(vec3_of(v));
+}
+
+/* Adds the integrals of a square of a face. white: an even sky of radiance 1 in place of the sky. Derived:
+ * the solid angle of dx dy in equal angles is (pi / 4)^2 (1 + u^2) (1 + v^2) / (1 + u^2 + v^2)^(3/2), u and v
+ * the slopes. */
+static void integrate_square(const hl_sky *sky, const field_slices *s, int sign, int square,
+                             double integral[3][FIELD_HARMONICS]) {
+  const sky_axes axes = hl_sky_axes(sky);
+  int n = samples_of_sky(sky);
+  double step = 2.0 / (SIDE * n), left = -1 + 2.0 / SIDE * (square % SIDE),
+         top = -1 + 2.0 / SIDE * (square / SIDE);
+  memset(integral, 0, 3 * sizeof *integral);
+  for (int i = 0; i < n * n; i++) {
+    double slope[2], radiance[3], harmonics[FIELD_HARMONICS];
+    vec3 direction = direction_of(s, sign, left + step * (i % n + 0.5), top + step * (i / n + 0.5), slope);
+    double u = slope[0] * slope[0], v = slope[1] * slope[1], square_root = sqrt(1 + u + v);
+    double angle = HL_PI / 4 * step * HL_PI / 4 * step * (1 + u) * (1 + v) / (square_root * (1 + u + v));
+    hl_sky_radiance(sky, &axes, direction, radiance);
+    hl_harmonics(direction, harmonics);
+    for (int c = 0; c < 3; c++)
+      for (int k = 0; k < FIELD_HARMONICS; k++) integral[c][k] += radiance[c] * harmonics[k] * angle;
+  }
+}
+
+/* Sets the four cells that a direction's light comes from. Derived: a ray to the cell's middle left the slice
+ * before at (u, v) beside it. */
+static void set_taps(double u, double v, int32_t plane_stride, sky_direction *direction) {
+  double column = floor(u), row = floor(v), fu = u - column, fv = v - row;
+  direction->offset = (int32_t)row * plane_stride + (int32_t)column;
+  direction->weight[0] = (float)((1 - fu) * (1 - fv));
+  direction->weight[1] = (float)(fu * (1 - fv));
+  direction->weight[2] = (float)((1 - fu) * fv);
+  direction->weight[3] = (float)(fu * fv);
+  direction->across = (float)(u * u);
+  direction->down = (float)(v * v);
+}
+
+/* first: the channel that the field's first harmonics are of. */
+static void set_up_end(const sky_content *content, int end_index, int first, int channels,
+                       int32_t plane_stride, sky_end *end) {
+  field_slices s = hl_field_slices(&content->lattice, end_index / 2);
+  int sign = end_index % 2 ? -1 : 1;
+  end->count = 0;
+  for (int square = 0; square < SIDE * SIDE; square++) {
+    double integral[3][FIELD_HARMONICS], slope[2];
+    integrate_square(content->sky, &s, sign, square, integral);
+    float *basis = end->basis[end->count];
+    bool shines = false;
+    for (int c = 0; c < channels; c++)
+      for (int k = 0; k < FIELD_HARMONICS; k++) {
+        basis[c * FIELD_HARMONICS + k] = (float)integral[first + c][k];
+        shines |= integral[first + c][0] > 0;
+      }
+    if (!shines) continue;
+    sky_direction *direction = &end->directions[end->count++];
+    *direction = (sky_direction){.basis = basis};
+    (void)direction_of(&s, sign, -1 + (2 * (square % SIDE) + 1.0) / SIDE,
+                       -1 + (2 * (square / SIDE) + 1.0) / SIDE, slope);
+    set_taps(slope[0], slope[1], plane_stride, direction);
+  }
+}
+
+/* ---- the sweep ---- */
+
+typedef struct sweep_rows {
+  const field_functions *functions;
+  sky_slice slice;
+} sweep_rows;
+
+static void move_row(void *data, size_t row, int worker) {
+  const sweep_rows *rows = data;
+  (void)worker;
+  rows->functions->sky_row(&rows->slice, (int32_t)row);
+}
+
+/* The light of one direction in one slice, with a border of light that nothing hides. */
+typedef struct light_planes {
+  int32_t stride; /* of the longest rows */
+  size_t plane;   /* floats of a plane */
+  float *planes;  /* [2][SIDE * SIDE][plane] */
+} light_planes;
+
+static light_planes planes_of(const field_lattice *lattice) {
+  light_planes planes = {.stride = 0};
+  int32_t rows = 0;
+  for (int a = 0; a < 3; a++) {
+    field_slices s = hl_field_slices(lattice, a);
+    if (s.stride + 2 * FIELD_LANES > planes.stride) planes.stride = s.stride + 2 * FIELD_LANES;
+    if (s.rows + 2 > rows) rows = s.rows + 2;
+  }
+  planes.plane = (size_t)planes.stride * (size_t)rows;
+  return planes;
+}
+
+/* The field's light: which cells, and which of their harmonics. */
+typedef struct sky_target {
+  float *field;   /* of the first cell's first harmonic */
+  size_t step[3]; /* floats from cell to cell */
+} sky_target;
+
+static void sweep_end(const sky_content *content, const opacity_field *opacity, const light_planes *planes,
+                      const sky_target *target, int end_index, int first, int channels,
+                      const field_functions *functions, hl_pool *pool) {
+  field_slices s = hl_field_slices(&content->lattice, end_index / 2);
+  sky_end end;
+  set_up_end(content, end_index, first, channels, planes->stride, &end);
+  const bool adds_passing = end_index % 2 == 0 && first == 0;
+  if (end.count == 0 && !adds_passing) return;
+  size_t half = SIDE * SIDE * planes->plane;
+  hl_pool_fill(pool, planes->planes, 2 * half, 1);
+  for (int32_t i = 0; i < s.slices && !hl_pool_cancelled(pool); i++) {
+    size_t slice = (size_t)(end_index % 2 ? i : s.slices - 1 - i),
+           at = slice * (size_t)s.rows * (size_t)s.stride;
+    sweep_rows rows = {functions,
+                       {.directions = end.directions,
+                        .direction_count = end.count,
+                        .channels = channels,
+                        .depth = opacity->depth[s.axis] + 3 * at,
+                        .flags = opacity->flags[s.axis] + at / FIELD_LANES,
+                        .stride = s.stride,
+                        .columns = s.columns,
+                        .old = planes->planes + (i % 2 ? half : 0),
+                        .left = planes->planes + (i % 2 ? 0 : half),
+                        .plane_stride = planes->stride,
+                        .plane = planes->plane,
+                        .field = target->field + slice * target->step[s.axis],
+                        .across = target->step[s.across],
+                        .down = target->step[s.down],
+                        .passing = adds_passing ? FIELD_HARMONICS * content->channels : 0}};
+    hl_pool_run(pool, (size_t)s.rows, move_row, &rows);
+  }
+}
+
+/* ---- memory ---- */
+
+static size_t cell_floats(int channels) { return FIELD_HARMONICS * (size_t)channels + 1; }
+
+/* Look-ups read whole vectors from the last cell on. */
+static size_t field_floats(const sky_content *content) {
+  return hl_field_cells(&content->lattice) * cell_floats(content->channels) + FIELD_LANES;
+}
+
+typedef struct passing_arrays {
+  opacity_field opacity;
+  light_planes planes;
+  opacity_scratch scratch;
+  field_matter *matter;
+} passing_arrays;
+
+static void lay_out(const sky_content *content, passing_arrays *arrays, hl_layout *layout) {
+  arrays->opacity.lattice = content->lattice;
+  hl_opacity_lay_out(content->content.surface_count > 0, &arrays->opacity, &arrays->scratch, layout);
+  arrays->planes = planes_of(&content->lattice);
+  arrays->planes.planes = hl_layout_take(layout, 2 * SIDE * SIDE * arrays->planes.plane, sizeof(float));
+  arrays->matter = hl_layout_take(layout, (size_t)content->content.count, sizeof *arrays->matter);
+}
+
+uint64_t hl_sky_bytes(const sky_content *content, uint64_t *passing) {
+  passing_arrays arrays;
+  hl_layout counted = {0};
+  lay_out(content, &arrays, &counted);
+  *passing = counted.bytes;
+  return field_floats(content) * sizeof(float);
+}
+
+/* ---- the field ---- */
+
+static bool attenuates_in_color(const sky_content *content) {
+  for (int v = 0; v < content->content.count; v++) {
+    const double *color = content->colors[v];
+    if (content->content.matter[v].cast > 0 && (color[0] != color[1] || color[1] != color[2])) return true;
+  }
+  return false;
+}
+
+static void make(const sky_content *content, passing_arrays *arrays, const field_functions *functions,
+                 float *field, hl_pool *pool) {
+  bool colored = attenuates_in_color(content);
+  size_t cell = cell_floats(content->channels);
+  const int32_t *count = content->lattice.count;
+  sky_target target = {.step = {cell, cell * (size_t)count[0], cell * (size_t)count[0] * (size_t)count[1]}};
+  field_content matter = content->content;
+  matter.matter = arrays->matter;
+  for (int pass = 0; pass < (colored ? 3 : 1); pass++) {
+    for (int v = 0; v < matter.count; v++) {
+      arrays->matter[v] = content->content.matter[v];
+      arrays->matter[v].cast *= (float)content->colors[v][pass];
+    }
+    hl_opacity_find(&matter, functions, &arrays->scratch, &arrays->opacity, pool);
+    target.field = field + pass * FIELD_HARMONICS;
+    for (int end = 0; end < ENDS; end++)
+      sweep_end(content, &arrays->opacity, &arrays->planes, &target, end, pass,
+                colored ? 1 : content->channels, functions, pool);
+  }
+}
+
+static void find_open(const sky_content *content, sky_light *light) {
+  double sum[3][FIELD_HARMONICS] = {{0}};
+  for (int end = 0; end < ENDS; end++) {
+    field_slices s = hl_field_slices(&content->lattice, end / 2);
+    for (int square = 0; square < SIDE * SIDE; square++) {
+      double integral[3][FIELD_HARMONICS];
+      integrate_square(content->sky, &s, end % 2 ? -1 : 1, square, integral);
+      for (int c = 0; c < 3; c++)
+        for (int k = 0; k < FIELD_HARMONICS; k++) sum[c][k] += integral[c][k];
+    }
+  }
+  for (int c = 0; c < 3; c++)
+    for (int k = 0; k < FIELD_HARMONICS; k++) light->open[c][k] = (float)sum[c][k];
+}
+
+hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *content,
+                      const field_functions *functions, sky_field *made, hl_error *error) {
+  hl_sky white = *content->sky;
+  sky_content own = *content;
+  sky_light *light = &made->light;
+  passing_arrays arrays;
+  hl_layout counted = {0};
+  lay_out(content, &arrays, &counted);
+  size_t floats = field_floats(content);
+  *light = (sky_light){
+      .channels = content->channels, .cell = (float)content->lattice.cell, .color = {1, 1, 1}};
+  vec3_store(light->low, content->lattice.low);
+  light->lift = (float)(LIFT_CELLS * content->lattice.cell);
+  light->inverse_cell = (float)(1 / content->lattice.cell);
+  memcpy(light->count, content->lattice.count, sizeof light->count);
+  if (content->channels == 1) { /* one colour: its light is that of a white sky */
+    for (int c = 0; c < 3; c++) {
+      light->color[c] = (float)(white.color[c] * white.strength);
+      white.color[c] = 1;
+    }
+    white.strength = 1;
+    own.sky = &white;
+  }
+  find_open(&own, light);
+  if (made->bytes != floats * sizeof(float)) {
+    hl_release(context, made->memory);
+    made->bytes = 0;
+    made->memory = hl_allocate(context, floats, sizeof(float));
+    if (made->memory == NULL) return hl_fail_memory(error, floats * sizeof(float), "the light of the sky");
+    made->bytes = floats * sizeof(float);
+  }
+  hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};
+  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "the light of the sky");
+  lay_out(content, &arrays, &handed);
+  hl_pool_clear(pool, made->memory, made->bytes);
+  make(&own, &arrays, functions, made->memory, pool);
+  hl_release(context, handed.base);
+  light->field = made->memory;
+  return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering") : HL_OK;
+}
+
+void hl_sky_release(hl_context *context, sky_field *field) {
+  hl_release(context, field->memory);
+  hl_release(context, field->key);
+  *field = (sky_field){0};
+}

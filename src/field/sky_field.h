@@ -1,0 +1,46 @@
+/* field/sky_field.h - the sky's light in the cells of a lattice, kept from frame to frame. */
+#ifndef HL_FIELD_SKY_FIELD_H
+#define HL_FIELD_SKY_FIELD_H
+
+#include "core/pool.h"
+#include "field/opacity.h"
+#include "scene/scene.h"
+
+/* What samples look up. */
+typedef struct sky_light {
+  const float *field; /* [z][y][x][channels x FIELD_HARMONICS + 1]: harmonics, and the cell's transmittance;
+                         zero where nothing is near; null: no sky */
+  int32_t count[3];
+  float low[3], inverse_cell, cell; /* of the lattice */
+  float lift; /* by which look-ups are moved off a surface, along its normal; frame units */
+  int channels;
+  float color[3];                 /* a factor on the field's light */
+  float open[3][FIELD_HARMONICS]; /* [channels]; light that nothing hides, without the factor */
+} sky_light;
+
+typedef struct sky_field {
+  void *memory; /* owned; the field */
+  size_t bytes;
+  sky_light light;
+  unsigned char *key; /* owned; [key_bytes]; what the field was made of */
+  size_t key_bytes;
+} sky_field;
+
+/* What a field is made of. Matter's casts are 1 or 0; colors: relative extinctions, [matter][3]. */
+typedef struct sky_content {
+  const hl_sky *sky;
+  field_content content;
+  const double (*colors)[3]; /* attenuation colours */
+  field_lattice lattice;
+  int channels; /* 3 where light of the channels comes from other directions or is attenuated differently */
+} sky_content;
+
+/* The bytes that the field holds from frame to frame, and those that making it needs for a while. */
+uint64_t hl_sky_bytes(const sky_content *content, uint64_t *passing);
+
+/* Makes the field anew. */
+hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *content,
+                      const field_functions *functions, sky_field *made, hl_error *error);
+void hl_sky_release(hl_context *context, sky_field *field);
+
+#endif

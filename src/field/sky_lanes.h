@@ -1,0 +1,77 @@
+/* field/sky_lanes.h - the sky's light moved from slice to slice (derived).
+ *
+ * Light of one direction that reaches a cell's middle left four cells of the slice before: it is interpolated
+ * between them. What the cell itself takes counts for the next slice. Beyond the lattice all light is there.
+ */
+#ifndef HL_FIELD_SKY_LANES_H
+#define HL_FIELD_SKY_LANES_H
+
+#include "field/field.h"
+#include "simd/lanes.h"
+
+/* Adds sixteen cells' light, times each direction's integrals. */
+LANES_INLINE void add_harmonics(const sky_slice *slice, const lanes *reaching, int32_t column, float *cells,
+                                int count) {
+  float sums[3 * FIELD_HARMONICS][FIELD_LANES];
+  lanes sum[3 * FIELD_HARMONICS];
+  for (int k = 0; k < count; k++) sum[k] = lanes_set(0);
+  for (int d = 0; d < slice->direction_count; d++)
+    for (int k = 0; k < count; k++)
+      sum[k] = lanes_fma(reaching[d], lanes_set(slice->directions[d].basis[k]), sum[k]);
+  for (int k = 0; k < count; k++) lanes_store(sums[k], sum[k]);
+  int32_t valid = slice->columns - column;
+  for (int32_t lane = 0; lane < FIELD_LANES && lane < valid; lane++)
+    for (int k = 0; k < count; k++) cells[(size_t)lane * slice->across + (size_t)k] += sums[k][lane];
+}
+
+/* Adds a third of sixteen cells' transmittance along the axis. */
+LANES_INLINE void add_passing(const sky_slice *slice, lanes depth, int32_t column, float *cells) {
+  float passing[FIELD_LANES];
+  lanes_store(passing, lanes_exp2(lanes_max(-depth, lanes_set(-100.0f))) * (1.0f / 3));
+  for (int32_t lane = 0; lane < FIELD_LANES && lane < slice->columns - column; lane++)
+    cells[(size_t)lane * slice->across + (size_t)slice->passing] += passing[lane];
+}
+
+/* The transmittance of cells for light that moves by u across and v down while it crosses a slice: its depth
+ * is sqrt(d^2 + u^2 a^2 + v^2 b^2), d, a and b those along the axis, across and down. Derived: even matter
+ * has one depth d along all axes, and light passes sqrt(1 + u^2 + v^2) cells of it. A surface at a right
+ * angle to `down` has b alone; light stays in its cells for 1 / v slices, and passes the depth v b in each.
+ */
+LANES_INLINE lanes passing_cells(const lanes squared[3], const sky_direction *direction) {
+  lanes depth = lanes_add_scaled(lanes_add_scaled(squared[0], squared[1], direction->across), squared[2],
+                                 direction->down);
+  return lanes_exp2(lanes_max(-lanes_sqrt(depth), lanes_set(-100.0f)));
+}
+
+static void sky_row(const sky_slice *slice, int32_t row) {
+  const int32_t stride = slice->plane_stride;
+  const size_t at_row = (size_t)(row + 1) * (size_t)stride + FIELD_LANES;
+  for (int32_t column = 0; column < slice->columns; column += FIELD_LANES) {
+    size_t at = at_row + (size_t)column;
+    unsigned char flags = slice->flags[((size_t)row * (size_t)slice->stride + (size_t)column) / FIELD_LANES];
+    const float *depth = slice->depth + (size_t)row * 3 * (size_t)slice->stride + (size_t)column;
+    lanes reaching[FIELD_DIRECTIONS], squared[3];
+    for (int a = 0; a < 3; a++) {
+      lanes along = lanes_load(depth + a * slice->stride);
+      squared[a] = along * along;
+    }
+    for (int d = 0; d < slice->direction_count; d++) {
+      const sky_direction *direction = &slice->directions[d];
+      const float *from = slice->old + (size_t)d * slice->plane + at + direction->offset;
+      lanes light = lanes_load(from) * direction->weight[0];
+      light = lanes_add_scaled(light, lanes_load(from + 1), direction->weight[1]);
+      light = lanes_add_scaled(light, lanes_load(from + stride), direction->weight[2]);
+      light = lanes_add_scaled(light, lanes_load(from + stride + 1), direction->weight[3]);
+      reaching[d] = light;
+      if (flags & FIELD_MATTER) light = light * passing_cells(squared, direction);
+      lanes_store(slice->left + (size_t)d * slice->plane + at, light);
+    }
+    if (!(flags & FIELD_RECEIVES)) continue;
+    float *cells = slice->field + (size_t)row * slice->down + (size_t)column * slice->across;
+    if (slice->passing > 0) add_passing(slice, lanes_load(depth), column, cells);
+    if (slice->channels == 1) add_harmonics(slice, reaching, column, cells, FIELD_HARMONICS);
+    else add_harmonics(slice, reaching, column, cells, 3 * FIELD_HARMONICS);
+  }
+}
+
+#endif

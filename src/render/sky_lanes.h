@@ -1,0 +1,94 @@
+/* render/sky_lanes.h - the sky's light that a slab's samples send on.
+ *
+ * A cell of the sky's field is larger than what a surface hides of itself. So the field is read a little
+ * outside of a surface, and what the surface's own matter takes in between is found from the sample's density
+ * and gradient: along the normal it has the optical depth t, along a direction at the cosine mu to it t / mu.
+ * The mean over directions, 2 int mu exp(-t / mu) dmu for a surface and int exp(-t / mu) dmu for a medium, is
+ * a sum of two exponentials by Gauss's rule (derived). */
+#ifndef HL_RENDER_SKY_LANES_H
+#define HL_RENDER_SKY_LANES_H
+
+#include "field/lookup_lanes.h"
+#include "render/light_depth_lanes.h"
+
+/* The two nodes of Gauss's rule for the weight mu: 1 / mu and the weight. */
+static const float COSINE_RATE[2] = {2.8165f, 1.18350f}, COSINE_WEIGHT[2] = {0.363917f, 0.636083f};
+
+/* Optical depths along the normal, of the matter within `lift` of where the eye's ray enters the slab's
+ * matter, and what they gain until it leaves it. */
+typedef struct own_depths {
+  lanes enter, more;
+} own_depths;
+
+LANES_INLINE lanes depth_outwards(const classifier *classifier, lanes at, lanes outwards, lanes inverse) {
+  table_origin from = origin_at(classifier, at + outwards), to = origin_at(classifier, at);
+  return lanes_abs(integral_between(&from, &to)) * inverse;
+}
+
+LANES_INLINE own_depths depths_outwards(const shade_job *job, const block_density *d, lanes lift) {
+  const classifier *classifier = d->patch->volume->classifier;
+  lanes3 slope = scale3(d->slope, lanes_set(fabsf(classifier->scale)));
+  lanes steepness = lanes_max(lanes_sqrt(dot3(slope, slope)), lanes_set(1e-6f));
+  lanes_int above = coordinate_seen(d) > classifier->offset;
+  lanes outwards = lanes_select(above, -steepness, steepness) * lift, inverse = 1.0f / steepness;
+  lanes empty = lanes_set(classifier->offset);
+  lanes end[2] = {job->back_to_front ? d->after : d->before, job->back_to_front ? d->before : d->after},
+        depth[2];
+  for (int i = 0; i < 2; i++) {
+    lanes to_empty = empty - end[i]; /* beyond the empty value there is nothing */
+    lanes step = lanes_select(above, lanes_max(outwards, lanes_min(to_empty, lanes_set(0))),
+                              lanes_min(outwards, lanes_max(to_empty, lanes_set(0))));
+    depth[i] = depth_outwards(classifier, end[i], step, inverse);
+  }
+  return (own_depths){depth[0], depth[1] - depth[0]};
+}
+
+/* cast: the volume's relative extinction. */
+LANES_INLINE lanes own_of_surface(const block_slab *slab, own_depths own, float cast) {
+  lanes sum = lanes_set(0);
+  for (int i = 0; i < 2; i++)
+    sum = lanes_add_scaled(sum,
+                           own_transmittance(slab->depth, slab->left, own.enter * (COSINE_RATE[i] * cast),
+                                             own.more * (COSINE_RATE[i] * cast)),
+                           COSINE_WEIGHT[i]);
+  return lanes_min(sum, lanes_set(1.0f));
+}
+
+/* The light where nothing hides the sky. */
+LANES_INLINE void open_sky(const sky_light *sky, sky_harmonics *light) {
+  for (int c = 0; c < sky->channels; c++)
+    for (int k = 0; k < FIELD_HARMONICS; k++) light->of[c * FIELD_HARMONICS + k] = lanes_set(sky->open[c][k]);
+}
+
+/* What a volume's samples make of the sky: factors for its colour. */
+LANES_INLINE color_lanes sky_of_volume(const shade_job *job, const block_slab *slab, const block_density *d) {
+  const sky_light *sky = job->sky;
+  const shade_volume *volume = d->patch->volume;
+  lanes medium = 1.0f - d->surface, own = lanes_set(1.0f), haze = lanes_set(1.0f);
+  lanes3 onwards = scale3(slab->geometry.towards_eye, lanes_set(-1.0f));
+  lanes lift = d->surface * sky->lift, in_cell = d->sums.extinction * (0.5f * sky->cell) * medium;
+  sky_harmonics light;
+  own_depths depths;
+  if (volume->receives_shadow) {
+    look_up_sky(sky, add_scaled3(slab->geometry.position, d->normal, lift), lanes_bits(slab->seen), &light);
+    depths = depths_outwards(job, d, lift);
+  } else {
+    open_sky(sky, &light);
+  }
+  color_lanes sent;
+  for (int c = 0; c < sky->channels; c++) {
+    const lanes *of = light.of + c * FIELD_HARMONICS;
+    float cast = volume->cast[c];
+    if (volume->receives_shadow && (c == 0 || cast != volume->cast[c - 1])) {
+      own = own_of_surface(slab, depths, cast);
+      haze = exp_of_depth(in_cell * cast);
+    }
+    lanes surface = light_of_surface(of, d->normal) * own * (volume->diffuse * d->surface);
+    sent.c[c] = lanes_fma(light_of_medium(of, onwards, volume->anisotropy) * haze, medium, surface);
+  }
+  for (int c = sky->channels; c < 3; c++) sent.c[c] = sent.c[0];
+  for (int c = 0; c < 3; c++) sent.c[c] = sent.c[c] * sky->color[c];
+  return sent;
+}
+
+#endif
