@@ -170,6 +170,10 @@ HL_API void hl_volume_release(hl_volume *volume); /* null is allowed */
 
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_info(const hl_volume *volume, hl_volume_info *info);
 
+/* The unit of lengths in the volume's world, as its file tells: "metre", "millimetre", "micrometre" or
+ * "angstrom"; null where it is unknown. Static. */
+HL_API const char *hl_volume_unit(const hl_volume *volume);
+
 /* An array of the file that a volume was loaded from. */
 typedef struct hl_volume_array {
   size_t struct_size; /* set by the caller */

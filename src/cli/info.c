@@ -148,6 +148,7 @@ static int print_json(const char *path, const hl_volume *volume, const hl_volume
   json_numbers(&json, "max", high, 3);
   json_close(&json);
   json_text(&json, "space", hl_space_name(info->space));
+  json_text(&json, "unit", hl_volume_unit(volume));
   json_numbers(&json, "range", info->range, 2);
   json_number(&json, "mean", info->mean);
   json_whole_number(&json, "nonfinite_count", info->nonfinite_count);

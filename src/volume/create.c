@@ -354,6 +354,8 @@ hl_status hl_volume_get_series(const hl_volume *volume, size_t index, hl_volume_
   return HL_OK;
 }
 
+const char *hl_volume_unit(const hl_volume *volume) { return volume != NULL ? volume->unit : NULL; }
+
 hl_status hl_volume_get_selection(const hl_volume *volume, hl_volume_selection *selection) {
   if (volume == NULL || selection == NULL || selection->struct_size != sizeof *selection)
     return HL_ERROR_ARGUMENT;

@@ -20,6 +20,7 @@ typedef struct hl_load_request {
   double spacing[3];        /* world units; all 0: as in the file */
   int time, channel, level; /* HL_INDEX_DEFAULT, or an index */
   double window[2];         /* set by readers: data values between which greys are to be shown; equal: none */
+  const char *unit;         /* set by readers: of lengths, static; null: not told */
   bool is_anatomical;       /* set by readers of formats that hold bodies: the volume's space is meant */
   const char *series;       /* DICOM: number, UID or description; null: choose */
   hl_array_entry *arrays;   /* owned; [array_count]; in the file's order */

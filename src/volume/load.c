@@ -238,6 +238,7 @@ static hl_status finish(hl_load_request *request, hl_status status, hl_volume **
   if (request->window[0] < request->window[1])
     memcpy((*volume)->window, request->window, sizeof request->window);
   (*volume)->is_anatomical = request->is_anatomical;
+  (*volume)->unit = request->spacing[0] > 0 ? NULL : request->unit; /* a spacing of the caller has none */
   (*volume)->selection = request->selection;
   (*volume)->series = request->series_list;
   (*volume)->series_count = request->series_count;

@@ -270,6 +270,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   hl_status status = read_header(*stream, &header, error);
   if (status != HL_OK) return status;
   read_type(&header, &payload);
+  request->unit = "angstrom";
   place(&header, &payload.grid);
   status = read_stack(&header, (*stream)->path, &payload, &is_series, error);
   if (status == HL_OK) status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);

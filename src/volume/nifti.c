@@ -127,6 +127,14 @@ static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3
   return HL_OK;
 }
 
+/* The unit of lengths, the lower three bits of xyzt_units. */
+static const char *unit_of(const nifti_header *header) {
+  static const char *const units[8] = {NULL, "metre", "millimetre", "micrometre"};
+  enum { AT_1 = 123, AT_2 = 500 };
+  uint64_t code = header->layout->version == 1 ? header->bytes[AT_1] : load_bits(header, AT_2, 4);
+  return units[code & 7];
+}
+
 /* components: numbers that lie side by side in each voxel, as of colours. */
 static hl_status read_type(const nifti_header *header, hl_voxel_type *type, size_t *components,
                            hl_error *error) {
@@ -298,6 +306,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   place(&header, &payload.grid);
   payload.grid.space = HL_SPACE_RAS;
   request->is_anatomical = true;
+  request->unit = unit_of(&header);
   status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
   payload.big_endian = header.big_endian;
   if (side_by_side > 2) payload.colors = HL_COLORS_MEANT;

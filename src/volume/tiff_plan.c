@@ -126,6 +126,7 @@ static hl_status read_pixels(ome_reader *ome, const hl_xml_tag *tag, hl_error *e
   /* colours are the samples of a pixel: one page holds the planes of all of them */
   if (ome->components > 1 && ome->size[1] % ome->components == 0) ome->size[1] /= ome->components;
   for (int axis = 0; axis < 3; axis++) ome->plan->spacing[axis] = read_length(tag, "XYZ"[axis]);
+  if (ome->plan->spacing[0] > 0) ome->request->unit = "micrometre";
   ome->in_pixels = true;
   return HL_OK;
 }

@@ -56,6 +56,7 @@ struct hl_volume {
   affine3 index_to_world; /* voxel centres at integer indices */
   hl_voxel_type type;     /* as in the file */
   hl_space space;
+  const char *unit;   /* of lengths in the world, static; null: unknown */
   bool is_anatomical; /* the space is meant: DICOM's, NIfTI's; other programs write left-posterior-superior
                          for any data */
   double window[2];   /* data values between which the file asks to show greys; NAN: none */

@@ -124,6 +124,7 @@ static hl_status load_image(const hl_bundle *bundle, const hl_zarr_image *image,
   if (status != HL_OK) return status;
   const hl_zarr_array *array = &image->levels[request->selection.level].array;
   describe(image, request->selection.level, &payload, &choice);
+  if (image->has_unit) request->unit = "micrometre";
   status = choose_steps(image, array, bundle->path, request, &choice, error);
   if (status == HL_OK) status = hl_volume_check_grid(&payload.grid, bundle->path, error);
   if (status == HL_OK && request->array_count == 0)

@@ -248,6 +248,7 @@ static hl_status make_volume(reading *r, hl_load_request *request, hl_volume **v
   }
   void *voxels = r->voxels;
   take_window(r, request->window);
+  request->unit = "millimetre";
   request->is_anatomical = grid.space != HL_SPACE_UNKNOWN;
   r->voxels = NULL;
   return hl_volume_adopt(r->set->context, &grid, r->set->bundle->path, voxels, volume, error);

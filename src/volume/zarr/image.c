@@ -61,8 +61,8 @@ static double micrometres(const char *unit) {
 }
 
 /* Sets *unit, the factor of all lengths along the space axes: micrometres if each of the axes has a known
- * unit, else 1. */
-static void read_axes(const json_t *axes, int rank, hl_zarr_axis *axis, double unit[3]) {
+ * unit, else 1. Returns whether each has one. */
+static bool read_axes(const json_t *axes, int rank, hl_zarr_axis *axis, double unit[3]) {
   bool told = json_array_size(axes) == (size_t)rank, all = true;
   for (int n = 0; n < rank && told; n++) {
     const json_t *entry = json_array_get(axes, (size_t)n);
@@ -77,6 +77,7 @@ static void read_axes(const json_t *axes, int rank, hl_zarr_axis *axis, double u
     unit[axis[n]] = length;
   }
   for (int a = 0; a < 3 && !all; a++) unit[a] = 1;
+  return all;
 }
 
 /* ---- transformations ---- */
@@ -145,7 +146,8 @@ static hl_status read_levels(const hl_bundle *bundle, const char *folder, const 
     if (status == HL_OK && (rank < 2 || rank != image->levels[0].array.rank))
       status = hl_zarr_fail(bundle, folder, error, HL_ERROR_INPUT,
                             "levels must have two axes or more, and as many as the first level");
-    if (n == 0 && status == HL_OK) read_axes(json_object_get(multiscale, "axes"), rank, image->axis, unit);
+    if (n == 0 && status == HL_OK)
+      image->has_unit = read_axes(json_object_get(multiscale, "axes"), rank, image->axis, unit);
     const json_t *own = json_object_get(dataset, "coordinateTransformations"),
                  *all = json_object_get(multiscale, "coordinateTransformations");
     told = told || json_array_size(own) > 0 || json_array_size(all) > 0;

@@ -31,6 +31,7 @@ typedef struct hl_zarr_image {
   hl_zarr_axis axis[HL_ZARR_AXES_MOST]; /* of every level's array */
   hl_zarr_level *levels;                /* owned; [level_count]; the finest first */
   int level_count;
+  bool has_unit; /* lengths are micrometres */
   char name[HL_PRINTABLE_BYTES];
 } hl_zarr_image;
 
