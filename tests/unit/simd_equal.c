@@ -802,7 +802,7 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    NULL,
                                    v,
                                    round % 3 == 1 ? -0.7f : round % 3 * 0.4f,
-                                   (round + v) % 3 == 1 ? colors_bench : (voxel_colors){NULL},
+                                   (round + v) % 3 == 1 ? colors_bench : (voxel_colors){.voxels = NULL},
                                    {0.9f, 0.8f, 1},
                                    round % 4 == 1,
                                    round % 4 < 2};
