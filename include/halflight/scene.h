@@ -325,6 +325,22 @@ HL_API void hl_text_release(hl_context *context, char *text);
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char *file,
                                                     hl_scene **scene, hl_error *error);
 
+/* The same with one of the looks of hl_look_name(), whatever the volume holds. file may be null. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume_look(hl_context *context, hl_volume *volume,
+                                                         const char *file, const char *look, hl_scene **scene,
+                                                         hl_error *error);
+
+/* The names of looks: "auto", which the data choose, "surface", "translucent", "xray", "smoke" and "vessels".
+ * Null past the last. */
+HL_API const char *hl_look_name(size_t index);
+
+/* The transfer function and the shading of a look, for one volume of a scene. Free *function with
+ * hl_transfer_function_release(). */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_look(hl_context *context, const char *look,
+                                                          const hl_volume *volume,
+                                                          hl_transfer_function *function, hl_shading *shading,
+                                                          hl_error *error);
+
 /* The kind of data that hl_scene_for_volume() takes a volume for, and chooses its look by: "scanned body",
  * "scanned brain", "scanned matter", "labels", "field", "flow", "signed field", "smoke or cloud" or "one
  * value". file: as for that function. *kind is a constant text. */

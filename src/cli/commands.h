@@ -12,5 +12,6 @@ extern const cli_command bench_command;   /* bench.c */
 extern const cli_command make_command;    /* make.c */
 extern const cli_command view_command;    /* view.c */
 extern const cli_command animate_command; /* animate.c */
+extern const cli_command looks_command;   /* looks.c */
 
 #endif

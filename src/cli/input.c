@@ -193,7 +193,9 @@ static hl_status load_volume_scene(hl_context *context, const cli_input *input,
   hl_volume *volume = NULL;
   const char *file = strcmp(input->path, "-") == 0 ? STANDARD_INPUT : input->path;
   hl_status status = input_load_volume(context, input, options, &volume, error);
-  if (status == HL_OK) status = hl_scene_for_volume(context, volume, file, scene, error);
+  if (status == HL_OK)
+    status = hl_scene_for_volume_look(context, volume, file, input->look != NULL ? input->look : "auto",
+                                      scene, error);
   if (status == HL_OK && options != NULL) status = name_source(context, options, scene, error);
   hl_volume_release(volume);
   return status;

@@ -21,6 +21,7 @@ typedef struct cli_input {
   input_kind kind;
   unsigned char *bytes; /* owned; [length]: the content of a pipe or a picture; else null */
   size_t length;
+  const char *look; /* of a bare volume (hl_look_name); null: the one that the data choose */
 } cli_input;
 
 /* The rows of --array, --component, --time, --channel and --level in a subcommand's table of options;

@@ -102,11 +102,16 @@ int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_s
 /* True if --tf, --colormap, --range or --threshold was given. */
 bool render_recolors(const cli_value *values);
 
-/* For --look: true if it replaces the volumes' transfer functions; makes its transfer function for one volume
- * (free with hl_transfer_function_release); applies its other changes. bare: see render_change_scene(). */
+/* The library's look that --look asks for; null: none, or a maximum projection. */
+const char *render_look_name(const cli_value *values);
+
+/* For --look: true if it replaces the volumes' transfer functions; gives one volume its transfer function
+ * (free with hl_transfer_function_release) and shading; applies its other changes. bare: see
+ * render_change_scene().
+ */
 bool render_look_recolors(const cli_value *values, bool bare);
-hl_status render_look_function(cli_host *host, const cli_value *values, const hl_volume *volume,
-                               hl_transfer_function *function, hl_error *error);
+hl_status render_look_volume(cli_host *host, const cli_value *values, hl_scene_volume *volume,
+                             hl_error *error);
 void render_change_look(const cli_value *values, bool bare, hl_scene_description *description);
 
 /* True if the picture is a maximum projection, by --look or else by the scene. */

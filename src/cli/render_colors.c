@@ -278,51 +278,58 @@ int render_transfer_function(cli_host *host, const cli_value *values, const hl_s
 
 /* ---- looks ---- */
 
-enum { LOOK_AUTO, LOOK_MIP };
+enum { LOOK_AUTO, LOOK_SURFACE, LOOK_TRANSLUCENT, LOOK_XRAY, LOOK_SMOKE, LOOK_VESSELS, LOOK_MIP };
 
-const cli_choice look_choices[] = {{"auto", LOOK_AUTO}, {"mip", LOOK_MIP}, {NULL, 0}};
+/* The library's looks, and the maximum projection. */
+const cli_choice look_choices[] = {{"auto", LOOK_AUTO},
+                                   {"surface", LOOK_SURFACE},
+                                   {"translucent", LOOK_TRANSLUCENT},
+                                   {"xray", LOOK_XRAY},
+                                   {"smoke", LOOK_SMOKE},
+                                   {"vessels", LOOK_VESSELS},
+                                   {"mip", LOOK_MIP},
+                                   {NULL, 0}};
 
-typedef struct look {
-  const char *preset;   /* the transfer function of every volume; null: chosen from the volume */
-  bool keeps_functions; /* transfer functions that a scene gives are kept */
-  bool on_black;        /* the background of a bare volume */
-  hl_compositing compositing;
-} look;
-
-static const look looks[] = {
-    [LOOK_AUTO] = {.preset = NULL},
-    [LOOK_MIP] = {.preset = "mip",
-                  .keeps_functions = true,
-                  .on_black = true,
-                  .compositing = HL_COMPOSITING_MAXIMUM},
-};
-
-static const look *look_of(const cli_value *values) {
-  return values[RENDER_LOOK].given ? &looks[values[RENDER_LOOK].choice] : NULL;
+static bool is_mip(const cli_value *values) {
+  return values[RENDER_LOOK].given && values[RENDER_LOOK].choice == LOOK_MIP;
 }
 
+const char *render_look_name(const cli_value *values) {
+  if (!values[RENDER_LOOK].given || is_mip(values)) return NULL;
+  for (const cli_choice *choice = look_choices; choice->name != NULL; choice++)
+    if (choice->value == values[RENDER_LOOK].choice) return choice->name;
+  return NULL;
+}
+
+/* Bare volumes are made with their look; a scene's transfer functions stay in a maximum projection. */
 bool render_look_recolors(const cli_value *values, bool bare) {
-  const look *look = look_of(values);
-  return look != NULL && (bare || !look->keeps_functions);
+  return values[RENDER_LOOK].given && is_mip(values) == bare;
 }
 
-hl_status render_look_function(cli_host *host, const cli_value *values, const hl_volume *volume,
-                               hl_transfer_function *function, hl_error *error) {
-  const look *look = look_of(values);
-  if (look->preset == NULL) return hl_transfer_function_automatic(host->context, volume, function, error);
-  return hl_transfer_function_preset(host->context, look->preset, volume, function, error);
+hl_status render_look_volume(cli_host *host, const cli_value *values, hl_scene_volume *volume,
+                             hl_error *error) {
+  hl_transfer_function function = {0};
+  const char *name = render_look_name(values);
+  hl_shading shading = volume->shading;
+  hl_status status = name == NULL
+                         ? hl_transfer_function_preset(host->context, "mip", volume->volume, &function, error)
+                         : hl_transfer_function_look(host->context, name, volume->volume, &function, &shading,
+                                                     error);
+  if (status != HL_OK) return status;
+  volume->transfer_function = function;
+  if (!values[RENDER_SHADING].given && values[RENDER_LOOK].choice != LOOK_AUTO) volume->shading = shading;
+  return HL_OK;
 }
 
 void render_change_look(const cli_value *values, bool bare, hl_scene_description *description) {
-  const look *look = look_of(values);
-  if (look == NULL) return;
-  description->render.compositing = look->compositing;
-  for (int c = 0; c < 3 && bare && look->on_black; c++) description->background[c] = 0;
+  if (!values[RENDER_LOOK].given) return;
+  description->render.compositing = is_mip(values) ? HL_COMPOSITING_MAXIMUM : HL_COMPOSITING_LIGHT;
+  for (int c = 0; c < 3 && bare && is_mip(values); c++) description->background[c] = 0;
 }
 
 bool render_is_maximum(const cli_value *values, const hl_scene_description *description) {
-  const look *look = look_of(values);
-  return (look != NULL ? look->compositing : description->render.compositing) == HL_COMPOSITING_MAXIMUM;
+  if (values[RENDER_LOOK].given) return is_mip(values);
+  return description->render.compositing == HL_COMPOSITING_MAXIMUM;
 }
 
 /* Options that have no effect in a picture without light. */

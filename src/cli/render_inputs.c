@@ -84,13 +84,14 @@ static hl_space space_of(const hl_scene *scene) {
   return known ? info.space : HL_SPACE_UNKNOWN;
 }
 
-static int load_each(cli_host *host, const cli_value *values, const cli_input *inputs, size_t count,
+static int load_each(cli_host *host, const cli_value *values, cli_input *inputs, size_t count,
                      hl_scene **scenes) {
   hl_volume_load_options options;
   input_load_options(&values[RENDER_ARRAY], &values[RENDER_SPACING], &options);
   for (size_t n = 0; n < count; n++) {
     hl_error error = {0};
     bool bare = inputs[n].kind == INPUT_VOLUME;
+    inputs[n].look = render_look_name(values);
     hl_status status = input_load(host->context, &inputs[n], bare ? &options : NULL, &scenes[n], &error);
     if (bare) render_name_scene(inputs[n].path, true, &error);
     if (status != HL_OK) return host_fail(host, PHASE_READ, status, &error);

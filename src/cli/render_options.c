@@ -146,8 +146,8 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .kind = OPTION_CHOICE,
          .choices = look_choices,
          .group = "Look (of every volume)",
-         .help =
-             "chosen from the data (default), or a maximum\nprojection: the greatest value along each ray"},
+         .help = "auto, surface, translucent, xray, smoke or vessels,\nwhich 'halflight looks' shows; or "
+                 "mip: the greatest\nvalue along each ray (default auto: chosen from the\ndata)"},
     [RENDER_TF] =
         {.name = "tf",
          .kind = OPTION_TEXT,

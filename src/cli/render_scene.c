@@ -182,10 +182,9 @@ static int change_volume(scene_change *change, size_t index) {
   if (exit_code != EXIT_CODE_OK || (!looks && !iso && !render_recolors(values))) return exit_code;
   hl_transfer_function look = {0};
   hl_error error = {0};
-  hl_status status = looks ? render_look_function(change->host, values, volume->volume, &look, &error)
-                           : HL_OK;
+  hl_status status = looks ? render_look_volume(change->host, values, volume, &error) : HL_OK;
   if (status != HL_OK) return host_fail(change->host, PHASE_READ, status, &error);
-  if (looks) volume->transfer_function = look;
+  if (looks) look = volume->transfer_function;
   exit_code = render_transfer_function(change->host, values, &change->description, index,
                                        &change->functions[index]);
   volume->transfer_function = change->functions[index];

@@ -285,6 +285,7 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
                         &analysis->mean,  &analysis->lower, &analysis->upper};
   for (size_t n = 0; n < sizeof distance / sizeof *distance; n++) *distance[n] *= sample.range;
   hl_sample_release(&sample);
+  if (status == HL_OK && analysis->kind == HL_DATA_SURFACES) hl_data_find_materials(volume, analysis);
   return status == HL_OK ? hl_data_find_labels(volume, analysis, error) : status;
 }
 

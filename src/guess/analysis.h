@@ -18,7 +18,8 @@ typedef enum hl_data_kind {
   HL_DATA_FLOW = 6      /* a smooth quantity that fills its grid: turbulence, speed, temperature */
 } hl_data_kind;
 
-#define HL_MOST_LABELS 255
+#define HL_MOST_LABELS    255
+#define HL_MOST_MATERIALS 4
 
 /* "Objects" are the voxels that differ from the background. "Distances" are differences of values from the
  * background, positive towards the objects. */
@@ -41,9 +42,14 @@ typedef struct hl_data_analysis {
   double lower, upper;           /* differences from the middle, down and up, that hardly any voxel exceeds */
   double labels[HL_MOST_LABELS]; /* ascending data values, without the background */
   size_t label_count;
+  double valleys[HL_MOST_MATERIALS - 1]; /* distances that divide materials, rising; [material_count - 1] */
+  int material_count;                    /* of scanned objects; 0: not asked */
 } hl_data_analysis;
 
 hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error);
+
+/* Finds the materials of scanned objects: sets valleys and material_count. */
+void hl_data_find_materials(const hl_volume *volume, hl_data_analysis *analysis);
 
 /* ---- label maps: volumes whose values are names of regions ---- */
 

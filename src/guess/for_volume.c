@@ -7,6 +7,7 @@
 #include "guess/analysis.h"
 #include "guess/exposure.h"
 #include "guess/looks.h"
+#include "guess/styles.h"
 #include "guess/view.h"
 #include "scene/check.h"
 #include "scene/scene.h"
@@ -86,11 +87,9 @@ static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, h
   return status;
 }
 
-hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char *file, hl_scene **scene,
-                              hl_error *error) {
-  if (context == NULL || volume == NULL || scene == NULL)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_volume: null context, volume or scene");
-  *scene = NULL;
+/* style: null: the look that suits the volume alone. */
+static hl_status make_scene(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
+                            hl_scene **scene, hl_error *error) {
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(volume, &analysis, error);
   if (status != HL_OK) return status;
@@ -98,10 +97,10 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
   hl_scene_volume_defaults(&scene_volume);
   scene_volume.volume = volume;
   scene_volume.file = file;
-  const hl_look *look = hl_look_for(volume, file, &analysis);
+  const hl_look *base = hl_look_for(volume, file, &analysis), *look = style != NULL ? style : base;
   scene_volume.shading = look->shading;
   scene_volume.material = (hl_material){.ambient = 1, .diffuse = 0.85, .specular = 0.15, .shininess = 24};
-  status = hl_look_write(look, context, volume, &analysis, &scene_volume.transfer_function, error);
+  status = hl_look_write(base, style, context, volume, &analysis, &scene_volume.transfer_function, error);
   if (status != HL_OK) return status;
   hl_light lights[2];
   hl_scene_description description;
@@ -113,7 +112,8 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
   if (status == HL_OK) {
     choose_lights(look, lights, &description.light_count);
     description.lights = lights;
-    memcpy(description.background, (double[3]){0.022, 0.025, 0.030}, sizeof description.background);
+    if (!look->on_black)
+      memcpy(description.background, (double[3]){0.022, 0.025, 0.030}, sizeof description.background);
     for (int channel = 0; channel < 3; channel++) description.ambient[channel] = look->ambient;
     description.render.kernel = look->kernel;
     status = expose(look, &analysis, lights, &description, error);
@@ -121,4 +121,22 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
   if (status == HL_OK) status = hl_scene_create(context, &description, scene, error);
   hl_transfer_function_release(context, &scene_volume.transfer_function);
   return status;
+}
+
+hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char *file, hl_scene **scene,
+                              hl_error *error) {
+  if (context == NULL || volume == NULL || scene == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_volume: null context, volume or scene");
+  *scene = NULL;
+  return make_scene(context, volume, file, NULL, scene, error);
+}
+
+hl_status hl_scene_for_volume_look(hl_context *context, hl_volume *volume, const char *file, const char *look,
+                                   hl_scene **scene, hl_error *error) {
+  if (context == NULL || volume == NULL || look == NULL || scene == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_volume_look: null context, volume, look or scene");
+  const hl_look *style = NULL;
+  *scene = NULL;
+  hl_status status = hl_style_named(look, &style, error);
+  return status == HL_OK ? make_scene(context, volume, file, style, scene, error) : status;
 }

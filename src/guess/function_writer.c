@@ -36,10 +36,30 @@ static void write_solid(hl_function_writer *w, const palette *colors) {
   hl_add_color(w, top, colors->top);
 }
 
+/* Colours of several materials, from the lightest to the densest: of two, aluminium and copper; of more,
+ * sage, wood, stone and steel. From one to the next they change within a tenth of the way to the next valley.
+ */
+static void color_materials(hl_function_writer *w) {
+  static const double two[2][3] = {{0.68, 0.69, 0.70}, {0.72, 0.38, 0.18}};
+  static const double more[HL_MOST_MATERIALS][3] = {
+      {0.54, 0.57, 0.36}, {0.62, 0.40, 0.23}, {0.70, 0.68, 0.64}, {0.62, 0.72, 0.82}};
+  const hl_data_analysis *a = w->analysis;
+  const double(*colors)[3] = a->material_count == 2 ? two : more;
+  w->color_count = 0;
+  hl_add_color(w, a->faint, colors[0]);
+  for (int m = 0; m + 1 < a->material_count; m++) {
+    double next = m + 2 < a->material_count ? a->valleys[m + 1] : fmax(a->top, 1.001 * a->valleys[m]),
+           half = 0.1 * fmin(a->valleys[m] - (m > 0 ? a->valleys[m - 1] : a->faint), next - a->valleys[m]);
+    hl_add_color(w, a->valleys[m] - half, colors[m]);
+    hl_add_color(w, a->valleys[m] + half, colors[m + 1]);
+  }
+}
+
 void hl_write_matter(hl_function_writer *w) {
   static const palette ivory = {
       {0.60, 0.53, 0.41}, {0.76, 0.69, 0.56}, {0.78, 0.78, 0.75}, {0.74, 0.83, 0.92}};
   write_solid(w, &ivory);
+  if (w->analysis->material_count > 1) color_materials(w);
 }
 
 void hl_write_body(hl_function_writer *w) {

@@ -11,25 +11,31 @@
 
 #include "core/error.h"
 #include "guess/function_writer.h"
+#include "guess/styles.h"
 #include "scene/scene.h"
 #include "scene/transfer_function.h"
 #include "text/edit_distance.h"
 
 typedef enum subject { BODY, BRAIN, MATTER, LABELS, FIELD, FLOW, SIGNED, MEDIUM, CONSTANT } subject;
 
-/* Rows: name, writer, shading, kernel; intensities of key, fill and ambient light; left. Where left is not 0,
- * the exposure scales the intensities afterwards. */
+/* Rows: name, writer, shading, kernel; intensities of key, fill and ambient light; left; on_black. Where left
+ * is not 0, the exposure scales the intensities afterwards. */
 static const hl_look looks[] = {
-    [BODY] = {"scanned body", hl_write_body, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.80, 0.40, 0.18, 0.75},
-    [BRAIN] = {"scanned brain", hl_write_brain, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.80, 0.40, 0.18, 0.7},
-    [MATTER] = {"scanned matter", hl_write_matter, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.65, 0.35, 0.15,
-                0.7},
-    [LABELS] = {"labels", hl_write_labels, HL_SHADING_PHONG, HL_KERNEL_LINEAR, 0.90, 0.30, 0.22, 0},
-    [FIELD] = {"field", hl_write_field, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.70, 0.45, 0.35, 0.65},
-    [FLOW] = {"flow", hl_write_flow, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.50, 0.45, 0.40, 0.9},
-    [SIGNED] = {"signed field", hl_write_signed, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.30, 0.35, 0.25, 0.8},
-    [MEDIUM] = {"smoke or cloud", hl_write_medium, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.20, 0, 0.20, 0},
-    [CONSTANT] = {"one value", hl_write_constant, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.50, 0.35, 0.20, 0},
+    [BODY] = {"scanned body", hl_write_body, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.80, 0.40, 0.18, 0.75,
+              false},
+    [BRAIN] = {"scanned brain", hl_write_brain, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.80, 0.40, 0.18, 0.7,
+               false},
+    [MATTER] = {"scanned matter", hl_write_matter, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.65, 0.35, 0.15, 0.7,
+                false},
+    [LABELS] = {"labels", hl_write_labels, HL_SHADING_PHONG, HL_KERNEL_LINEAR, 0.90, 0.30, 0.22, 0, false},
+    [FIELD] = {"field", hl_write_field, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.70, 0.45, 0.35, 0.65, false},
+    [FLOW] = {"flow", hl_write_flow, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.50, 0.45, 0.40, 0.9, false},
+    [SIGNED] = {"signed field", hl_write_signed, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.30, 0.35, 0.25, 0.8,
+                false},
+    [MEDIUM] = {"smoke or cloud", hl_write_medium, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.20, 0, 0.20, 0,
+                false},
+    [CONSTANT] = {"one value", hl_write_constant, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.50, 0.35, 0.20, 0,
+                  false},
 };
 
 bool hl_is_hounsfield(const hl_volume *volume) {
@@ -80,12 +86,13 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
   return &looks[is];
 }
 
-/* Voxels with colours of their own: white leaves them as they are, and an alpha is the opacity of a voxel. */
-static void keep_colors(hl_function_writer *w, const hl_volume *volume) {
+/* Voxels with colours of their own: white leaves them as they are, and an alpha is the opacity of a voxel,
+ * unless a style says otherwise. */
+static void keep_colors(hl_function_writer *w, const hl_volume *volume, const hl_look *style) {
   static const double white[3] = {1, 1, 1};
   const double background = w->analysis->background;
   w->color_count = 0;
-  if (volume->component == HL_COMPONENT_COLOR) {
+  if (volume->component == HL_COMPONENT_COLOR && style == NULL) {
     w->opacity_count = 0;
     w->direction = 1;
     hl_add_opacity(w, volume->value_offset - background, 0);
@@ -94,12 +101,14 @@ static void keep_colors(hl_function_writer *w, const hl_volume *volume) {
   hl_add_color(w, 0, white);
 }
 
-hl_status hl_look_write(const hl_look *look, hl_context *context, const hl_volume *volume,
-                        const hl_data_analysis *analysis, hl_transfer_function *function, hl_error *error) {
+hl_status hl_look_write(const hl_look *look, const hl_look *style, hl_context *context,
+                        const hl_volume *volume, const hl_data_analysis *analysis,
+                        hl_transfer_function *function, hl_error *error) {
   hl_function_writer w;
   hl_begin_function(&w, analysis);
-  look->write(&w);
-  if (volume->colors != NULL) keep_colors(&w, volume);
+  if (style != NULL) hl_style_write(style, look, &w);
+  else look->write(&w);
+  if (volume->colors != NULL) keep_colors(&w, volume, style);
   return hl_finish_function(&w, context, volume, function, error);
 }
 
@@ -111,7 +120,8 @@ hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *v
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(volume, &analysis, error);
   if (status != HL_OK) return status;
-  return hl_look_write(hl_look_for(volume, NULL, &analysis), context, volume, &analysis, function, error);
+  return hl_look_write(hl_look_for(volume, NULL, &analysis), NULL, context, volume, &analysis, function,
+                       error);
 }
 
 hl_status hl_volume_guess(const hl_volume *volume, const char *file, const char **kind, hl_error *error) {
@@ -121,6 +131,29 @@ hl_status hl_volume_guess(const hl_volume *volume, const char *file, const char 
   hl_status status = hl_data_analyse(volume, &analysis, error);
   *kind = status == HL_OK ? hl_look_for(volume, file, &analysis)->name : NULL;
   return status;
+}
+
+/* ---- looks by name ---- */
+
+const char *hl_look_name(size_t index) {
+  if (index == 0) return "auto";
+  const hl_look *style = hl_style(index - 1);
+  return style != NULL ? style->name : NULL;
+}
+
+hl_status hl_transfer_function_look(hl_context *context, const char *look, const hl_volume *volume,
+                                    hl_transfer_function *function, hl_shading *shading, hl_error *error) {
+  if (context == NULL || look == NULL || volume == NULL || function == NULL || shading == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_transfer_function_look: null context, look, volume, function or shading");
+  const hl_look *style = NULL;
+  hl_data_analysis analysis;
+  hl_status status = hl_style_named(look, &style, error);
+  if (status == HL_OK) status = hl_data_analyse(volume, &analysis, error);
+  if (status != HL_OK) return status;
+  const hl_look *base = hl_look_for(volume, NULL, &analysis);
+  *shading = style != NULL ? style->shading : base->shading;
+  return hl_look_write(base, style, context, volume, &analysis, function, error);
 }
 
 /* ---- presets: named transfer functions that adapt to the volume.

@@ -265,6 +265,71 @@ static void lights_are_fitted(void **state) {
   hl_context_destroy(p.context);
 }
 
+/* Three materials in air: each has a colour of its own, and so have the materials of a scan with noise. */
+static double three(int i, int j, int k) {
+  if (distance(i, j, k, 24, 24, 24) > 20) return 10 + 4 * noise(i, j, k);
+  return (i < 20 ? 60 : i < 30 ? 120 : 200) + 8 * noise(i, j, k);
+}
+
+static void materials_have_colors_of_their_own(void **state) {
+  (void)state;
+  static const double at[3] = {60, 120, 200};
+  hl_context *context = make_context();
+  fill(three);
+  for (int w = 0; w < COUNT; w++) values[w] = roundf(values[w]);
+  hl_volume *volume = make_volume(context, N, values);
+  hl_transfer_function f;
+  double color[3][3];
+  assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
+  for (int m = 0; m < 3; m++) hl_transfer_function_color(&f, at[m], color[m]);
+  for (int m = 0; m < 3; m++) {
+    const double *a = color[m], *b = color[(m + 1) % 3];
+    assert_true(fabs(a[0] - b[0]) + fabs(a[1] - b[1]) + fabs(a[2] - b[2]) > 0.15);
+  }
+  hl_transfer_function_release(context, &f);
+  hl_volume_release(volume);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* Every look makes a scene of every kind of volume, with a function and a shading of its own; others are
+ * refused with the nearest name. */
+static void looks_by_name(void **state) {
+  (void)state;
+  static double (*const kinds[])(int, int, int) = {body, twigs, regions, mask, three};
+  hl_context *context = make_context();
+  hl_error error = {0};
+  hl_scene *scene = NULL;
+  hl_volume *volume = NULL;
+  for (size_t n = 0; n < sizeof kinds / sizeof *kinds; n++) {
+    fill(kinds[n]);
+    volume = make_volume(context, N, values);
+    for (size_t l = 0; hl_look_name(l) != NULL; l++) {
+      assert_int_equal(hl_scene_for_volume_look(context, volume, NULL, hl_look_name(l), &scene, &error),
+                       HL_OK);
+      const hl_scene_volume *shown = &hl_scene_describe(scene)->volumes[0];
+      hl_transfer_function f;
+      hl_shading shading;
+      assert_int_equal(hl_transfer_function_look(context, hl_look_name(l), volume, &f, &shading, &error),
+                       HL_OK);
+      assert_int_equal(shading, shown->shading);
+      assert_int_equal(f.opacity_count, shown->transfer_function.opacity_count);
+      assert_memory_equal(f.opacity, shown->transfer_function.opacity, f.opacity_count * sizeof *f.opacity);
+      bool seen = false;
+      for (size_t p = 0; p < f.opacity_count; p++) seen = seen || f.opacity[p].opacity > 0;
+      assert_true(seen);
+      hl_transfer_function_release(context, &f);
+      hl_scene_release(scene);
+    }
+    if (n + 1 < sizeof kinds / sizeof *kinds) hl_volume_release(volume);
+  }
+  assert_string_equal(hl_look_name(3), "xray");
+  assert_int_equal(hl_scene_for_volume_look(context, volume, NULL, "xrya", &scene, &error), HL_ERROR_INPUT);
+  assert_non_null(strstr(error.message, "xray"));
+  hl_volume_release(volume);
+  hl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(kinds_are_told_apart),
@@ -273,6 +338,8 @@ int main(void) {
       cmocka_unit_test(flows_show_their_extremes),
       cmocka_unit_test(lights_are_fitted),
       cmocka_unit_test(surfaces_are_measured),
+      cmocka_unit_test(materials_have_colors_of_their_own),
+      cmocka_unit_test(looks_by_name),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

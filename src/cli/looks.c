@@ -1,0 +1,263 @@
+/* cli/looks.c - `halflight looks VOLUME -o sheet.png`: a contact sheet of the looks of --look, each with its
+ * option under it. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "commands.h"
+#include "host.h"
+#include "input.h"
+#include "output.h"
+#include "render.h"
+#include "sheet_font.h"
+
+enum looks_option {
+  LOOKS_OUTPUT,
+  LOOKS_SIZE,
+  LOOKS_ARRAY,
+  LOOKS_COMPONENT,
+  LOOKS_SERIES,
+  LOOKS_TIME,
+  LOOKS_CHANNEL,
+  LOOKS_LEVEL,
+  LOOKS_SPACING,
+  LOOKS_THREADS,
+  LOOKS_MAX_MEMORY,
+  LOOKS_QUIET,
+  LOOKS_OPTION_COUNT
+};
+
+static const cli_option looks_options[LOOKS_OPTION_COUNT] = {
+    [LOOKS_OUTPUT] =
+        {.name = "output",
+         .letter = 'o',
+         .kind = OPTION_TEXT,
+         .argument = "OUT",
+         .group = "Options",
+         .help = "file to write: .png, .exr or .npy\n(default: VOLUME's name with -looks.png, in this "
+                 "folder)"},
+    [LOOKS_SIZE] = {.name = "size",
+                    .kind = OPTION_NUMBERS,
+                    .argument = "N",
+                    .help = "pixels of each picture's side (default 256)",
+                    .count = 1,
+                    .whole = true,
+                    .low = 16,
+                    .high = 2048},
+    [LOOKS_ARRAY] = INPUT_OPTION_ARRAY("What of VOLUME"),
+    [LOOKS_COMPONENT] = INPUT_OPTION_COMPONENT,
+    [LOOKS_SERIES] = INPUT_OPTION_SERIES,
+    [LOOKS_TIME] = INPUT_OPTION_TIME,
+    [LOOKS_CHANNEL] = INPUT_OPTION_CHANNEL,
+    [LOOKS_LEVEL] = INPUT_OPTION_LEVEL,
+    [LOOKS_SPACING] = INPUT_OPTION_SPACING,
+    [LOOKS_THREADS] = {.name = "threads",
+                       .kind = OPTION_NUMBERS,
+                       .argument = "N",
+                       .group = "How it runs",
+                       .help = "0: one per processor (default)",
+                       .count = 1,
+                       .whole = true,
+                       .setting_kind = HL_SETTINGS_RENDER,
+                       .setting = "threads"},
+    [LOOKS_MAX_MEMORY] =
+        {.name = "max-memory",
+         .kind = OPTION_BYTES,
+         .argument = "BYTES",
+         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
+    [LOOKS_QUIET] = {.name = "quiet",
+                     .kind = OPTION_SWITCH,
+                     .help = "no progress bar, no warnings, no summary"},
+};
+
+/* ---- the sheet ---- */
+
+enum { COLUMNS = 4, CAPTION = 20, LETTER_TOP = 3, LETTER_LEFT = 4 };
+
+typedef struct looks_job {
+  cli_host host;
+  const cli_value *values;
+  const char *input; /* as given */
+  char *output;      /* owned */
+  hl_volume *volume;
+  hl_renderer *renderer;
+  hl_image *sheet;
+  int side; /* pixels of a picture */
+} looks_job;
+
+static void put_pixel(hl_image *sheet, int x, int y, const float color[3]) {
+  float *to = hl_image_pixels(sheet) + 4 * ((size_t)y * (size_t)hl_image_width(sheet) + (size_t)x);
+  for (int c = 0; c < 3; c++) to[c] = color[c];
+  to[3] = 1;
+}
+
+static void put_letter(hl_image *sheet, int x, int y, int scale, char letter) {
+  static const float white[3] = {0.7f, 0.7f, 0.7f};
+  unsigned char rows[LETTER_HEIGHT];
+  letter_rows(letter, rows);
+  for (int row = 0; row < LETTER_HEIGHT * scale; row++)
+    for (int column = 0; column < LETTER_WIDTH * scale; column++)
+      if (rows[row / scale] >> (column / scale) & 1) put_pixel(sheet, x + column, y + row, white);
+}
+
+/* Writes "--look NAME" as far as it fits. */
+static void put_caption(const looks_job *job, int left, int top, const char *name) {
+  char text[64];
+  snprintf(text, sizeof text, "--look %s", name);
+  int longest = (int)strlen("--look translucent") * LETTER_STEP;
+  int scale = 2 * longest + LETTER_LEFT <= job->side ? 2 : 1, x = LETTER_LEFT, step = LETTER_STEP * scale;
+  for (const char *letter = text; *letter != '\0' && x + step <= job->side; letter++, x += step)
+    put_letter(job->sheet, left + x, top + LETTER_TOP, scale, *letter);
+}
+
+/* Copies a picture over its scene's background into the sheet. */
+static void put_picture(const looks_job *job, const hl_scene_description *scene, const hl_image *picture,
+                        int left, int top) {
+  float factor = (float)exp2(scene->exposure);
+  const float *from = hl_image_pixels_const(picture);
+  for (int y = 0; y < job->side; y++)
+    for (int x = 0; x < job->side; x++, from += 4) {
+      float color[3];
+      for (int c = 0; c < 3; c++) color[c] = from[c] * factor + (1 - from[3]) * (float)scene->background[c];
+      put_pixel(job->sheet, left + x, top + y, color);
+    }
+}
+
+/* ---- the looks ---- */
+
+/* The number of looks; the last one is the maximum projection. */
+static size_t count_looks(void) {
+  size_t count = 0;
+  while (look_choices[count].name != NULL) count++;
+  return count;
+}
+
+static hl_status scene_of(const looks_job *job, size_t index, hl_scene **scene, hl_error *error) {
+  hl_context *context = job->host.context;
+  const char *name = look_choices[index].name;
+  hl_scene *made = NULL;
+  hl_transfer_function maximum = {0};
+  bool projected = strcmp(name, "mip") == 0;
+  hl_status status = hl_scene_for_volume_look(context, job->volume, NULL, projected ? "auto" : name, &made,
+                                              error);
+  if (status != HL_OK) return status;
+  hl_scene_description description = *hl_scene_describe(made);
+  hl_scene_volume volume = description.volumes[0];
+  description.volumes = &volume;
+  description.width = description.height = job->side;
+  if (job->values[LOOKS_THREADS].given)
+    description.render.threads = (int)job->values[LOOKS_THREADS].number[0];
+  if (projected) {
+    status = hl_transfer_function_preset(context, "mip", job->volume, &maximum, error);
+    volume.transfer_function = maximum;
+    description.render.compositing = HL_COMPOSITING_MAXIMUM;
+    memset(description.background, 0, sizeof description.background);
+  }
+  if (status == HL_OK) status = hl_scene_create(context, &description, scene, error);
+  hl_transfer_function_release(context, &maximum);
+  hl_scene_release(made);
+  return status;
+}
+
+static hl_status add_look(looks_job *job, size_t index, hl_error *error) {
+  hl_scene *scene = NULL;
+  hl_image *picture = NULL;
+  int left = (int)(index % COLUMNS) * job->side, top = (int)(index / COLUMNS) * (job->side + CAPTION);
+  hl_status status = scene_of(job, index, &scene, error);
+  if (status == HL_OK) status = hl_image_create(job->host.context, job->side, job->side, &picture, error);
+  if (status == HL_OK)
+    status = hl_renderer_render(job->renderer, scene, hl_image_pixels(picture), 4 * (size_t)job->side, NULL,
+                                error);
+  if (status == HL_OK) {
+    put_picture(job, hl_scene_describe(scene), picture, left, top);
+    put_caption(job, left, top + job->side, look_choices[index].name);
+  }
+  hl_image_destroy(picture);
+  hl_scene_release(scene);
+  return status;
+}
+
+/* Makes the sheet, on a ground as dark as a bare volume's. */
+static hl_status make_sheet(looks_job *job, hl_error *error) {
+  static const float ground[3] = {0.01f, 0.011f, 0.013f};
+  size_t count = count_looks(), rows = (count + COLUMNS - 1) / COLUMNS;
+  int width = COLUMNS * job->side, height = (int)rows * (job->side + CAPTION);
+  hl_status status = hl_image_create(job->host.context, width, height, &job->sheet, error);
+  if (status == HL_OK) status = hl_renderer_create(job->host.context, &job->renderer, error);
+  for (int y = 0; y < height && status == HL_OK; y++)
+    for (int x = 0; x < width; x++) put_pixel(job->sheet, x, y, ground);
+  for (size_t n = 0; n < count && status == HL_OK; n++) status = add_look(job, n, error);
+  return status;
+}
+
+static int load_volume(looks_job *job) {
+  cli_input input = {0};
+  hl_error error = {0};
+  hl_volume_load_options load;
+  input_load_options(&job->values[LOOKS_ARRAY], &job->values[LOOKS_SPACING], &load);
+  int exit_code = input_open(job->input, job->values[LOOKS_MAX_MEMORY].bytes, &input);
+  if (exit_code == EXIT_CODE_OK && input.kind != INPUT_VOLUME)
+    exit_code = fail(EXIT_CODE_USAGE, "'%s' is a scene, which has its look: give a volume", job->input);
+  if (exit_code == EXIT_CODE_OK) {
+    hl_status status = input_load_volume(job->host.context, &input, &load, &job->volume, &error);
+    if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_READ, status, &error);
+  }
+  input_close(&input);
+  return exit_code;
+}
+
+static int make_and_write(looks_job *job) {
+  double started = clock_seconds();
+  hl_error error = {0};
+  int exit_code = load_volume(job);
+  if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&job->host.read, job->output, job->input);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  hl_status status = make_sheet(job, &error);
+  if (status == HL_OK) status = hl_image_write(job->host.context, job->sheet, job->output, NULL, &error);
+  host_clear_bar(&job->host);
+  if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
+  if (!job->host.quiet) say("%s: %zu looks in %.1f s", job->output, count_looks(), clock_seconds() - started);
+  return EXIT_CODE_OK;
+}
+
+static char *output_of(const cli_value *output, const char *input) {
+  if (!output->given) return output_default_name(input, "-looks.png");
+  char *copy = malloc(strlen(output->text) + 1);
+  return copy != NULL ? strcpy(copy, output->text) : NULL;
+}
+
+static int run_looks(const cli_value *values, char **operands) {
+  looks_job job = {
+      .values = values, .input = operands[0], .output = output_of(&values[LOOKS_OUTPUT], operands[0])};
+  job.side = values[LOOKS_SIZE].given ? (int)values[LOOKS_SIZE].number[0] : 256;
+  if (job.output == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  int exit_code = output_check(job.output, picture_extensions, operands, 1);
+  cli_host_options host_options = {.quiet = values[LOOKS_QUIET].given,
+                                   .progress = true,
+                                   .subject = base_name(operands[0]),
+                                   .memory_limit = values[LOOKS_MAX_MEMORY].bytes};
+  if (exit_code == EXIT_CODE_OK) {
+    exit_code = host_open(&host_options, &job.host);
+    if (exit_code == EXIT_CODE_OK) exit_code = make_and_write(&job);
+    hl_renderer_destroy(job.renderer);
+    hl_image_destroy(job.sheet);
+    hl_volume_release(job.volume);
+    host_close(&job.host);
+  }
+  free(job.output);
+  return exit_code;
+}
+
+const cli_command looks_command = {
+    .name = "looks",
+    .operands = "VOLUME",
+    .operand_count = 1,
+    .summary = "a contact sheet of the looks that a volume can have",
+    .description =
+        "Renders VOLUME (any that render reads) with each look of `halflight render --look`, side by side,\n"
+        "with the option under each picture.",
+    .options = looks_options,
+    .option_count = LOOKS_OPTION_COUNT,
+    .run = run_looks,
+};
