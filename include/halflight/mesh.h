@@ -44,8 +44,9 @@ HL_API void hl_mesh_description_defaults(hl_mesh_description *description);
 HL_API HL_WARN_UNUSED hl_status hl_mesh_create(hl_context *context, const hl_mesh_description *description,
                                                hl_mesh **mesh, hl_error *error);
 
-/* Reads PLY (ASCII and binary), STL (ASCII and binary) and OBJ files. Faces of more than three corners become
- * fans of triangles. Colours of 8 bits are sRGB, as other programs take them. */
+/* Reads PLY (ASCII and binary), STL (ASCII and binary), OBJ and glTF 2.0 files (.gltf, .glb: the scene's
+ * triangles with base colours; textures are left out). Faces of more than three corners become fans of
+ * triangles. Colours of 8 bits are sRGB, as other programs take them. */
 HL_API HL_WARN_UNUSED hl_status hl_mesh_load(hl_context *context, const char *path, hl_mesh **mesh,
                                              hl_error *error);
 

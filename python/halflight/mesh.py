@@ -1,4 +1,4 @@
-"""Meshes: triangles in the world of the volumes, which cast shadows on them and receive theirs."""
+"""Meshes: triangles, spheres and tubes in the world of the volumes, which cast shadows on them and receive theirs."""
 from __future__ import annotations
 
 import os
@@ -35,12 +35,12 @@ _FIELDS = _settings.names(lib.HL_SETTINGS_MESH, "color")
 
 
 class Mesh:
-    """Triangles that share a scene with volumes.
+    """Triangles, spheres and lines that share a scene with volumes.
 
     Parameters
     ----------
-    source : path, array_like of shape (n, 3), or an object that has vertices and faces
-        A PLY, STL or OBJ file; vertices (x, y, z) in world units; a mesh of PyVista or VTK's `PolyData` wrapped by
+    source : path, array_like of shape (n, 3), or an object that has vertices and faces, optional
+        A PLY, STL, OBJ or glTF file; vertices (x, y, z) in world units; a mesh of PyVista or VTK's `PolyData` wrapped by
         it, trimesh, or meshio. What is given is copied.
     triangles : array_like of int, shape (m, 3), optional
         Numbers of vertices, for vertices given as an array. Counter-clockwise ones face the viewer.
@@ -48,6 +48,18 @@ class Mesh:
         At the vertices, of any length.
     colors : array_like, shape (n, 3) or (n, 4), optional
         Of the vertices, with opacity: uint8 are sRGB, others linear from 0 to 1.
+    face_colors : array_like, shape (m, 3) or (m, 4), optional
+        Of the triangles.
+    spheres : array_like, shape (n, 3) or (n, 4), optional
+        Centres, with radii where `radius` does not give one for all. Spheres are exact.
+    sphere_colors : array_like, shape (n, 3) or (n, 4), optional
+        Of the spheres.
+    lines : sequence of array_like, each of shape (n, 3) or (n, 4), optional
+        Points of lines that are drawn as tubes, with radii where `radius` does not give one.
+    line_colors : array_like, shape (n, 3) or (n, 4), optional
+        Of the points of all lines, one after the other.
+    radius : float, optional
+        Of spheres and lines that have none of their own.
     **look : MeshLook
         `name`, `color`, `opacity`, `smooth`, `visible`, ..., and the material: see `halflight.keywords`.
 
@@ -56,13 +68,22 @@ class Mesh:
     >>> floor = Mesh([(0, 0, 0), (9, 0, 0), (9, 9, 0), (0, 9, 0)], [(0, 1, 2), (0, 2, 3)], color="white")
     >>> floor.triangle_count
     2
+    >>> Mesh(spheres=[(0, 0, 0), (2, 0, 0)], radius=0.8, sphere_colors=[(1, 0, 0), (0, 0, 1)], color=1)
+    <halflight.Mesh of 2 spheres>
+    >>> Mesh(lines=[[(0, 0, 0), (0, 0, 5)]], radius=0.2).triangle_count
+    96
     """
 
     __slots__ = ("__weakref__", "_file", "_handle", "look")
 
-    def __init__(self, source: Any, triangles: Any = None, *, normals: Any = None, colors: Any = None,
+    def __init__(self, source: Any = None, triangles: Any = None, *, normals: Any = None, colors: Any = None,
+                 face_colors: Any = None, spheres: Any = None, sphere_colors: Any = None,
+                 lines: Sequence[Any] | None = None, line_colors: Any = None, radius: float | None = None,
                  **look: Unpack[MeshLook]) -> None:
-        check_keywords("Mesh()", look, ["normals", "colors", *MeshLook.__annotations__])
+        check_keywords("Mesh()", look, ["normals", "colors", "face_colors", "spheres", "sphere_colors", "lines",
+                                        "line_colors", "radius", *MeshLook.__annotations__])
+        arrays = {"triangles": triangles, "normals": normals, "colors": colors, "face_colors": face_colors,
+                  "spheres": spheres, "sphere_colors": sphere_colors, "lines": lines, "line_colors": line_colors}
         self.look: Mapping[str, Any] = dict(look)
         self._handle: Any = None
         self._file: str | None = None
@@ -70,15 +91,38 @@ class Mesh:
             self._file, self._handle, self.look = source._file, source._handle, {**source.look, **look}
             return
         if isinstance(source, (str, os.PathLike)):
-            for word, value in (("triangles", triangles), ("normals", normals), ("colors", colors)):
+            for word, value in arrays.items():
                 if value is not None:
                     raise TypeError(f"{word}: a file says them itself")
             self._file = os.fspath(source)
             self._handle = made(lib.hl_mesh_load, "hl_mesh", lib.hl_mesh_release, context, os.fsencode(source),
                                 path=self._file)
             return
-        vertices, faces = (source, triangles) if triangles is not None else _vertices_and_faces(source)
-        self._handle = _create(vertices, faces, normals, colors)
+        if source is not None and triangles is None:
+            source, arrays["triangles"] = _vertices_and_faces(source)
+        elif source is None and spheres is None and lines is None:
+            raise TypeError("Mesh(): give a file, vertices and triangles, spheres or lines")
+        self._handle = _create(source, arrays, radius)
+
+    @classmethod
+    def floor(cls, scene: Any, size: float = 3, **look: Unpack[MeshLook]) -> Mesh:
+        """A square below all that a scene shows, `size` times as wide as what stands on it; matt and grey.
+
+        Parameters
+        ----------
+        scene : Scene
+            Whose volumes and meshes stand on the floor.
+        size : float
+            From 1 to 1000.
+        **look : MeshLook
+            As for `Mesh`.
+        """
+        place = ffi.new("hl_mesh **")
+        call(lib.hl_scene_make_floor, context, lib.hl_scene_describe(scene._handle), ffi.NULL, size, place)
+        made = cls.__new__(cls)
+        made._file, made._handle = None, ffi.gc(place[0], lib.hl_mesh_release)
+        made.look = {"color": 0.5, "specular": 0.0, **look}
+        return made
 
     def replace(self, **look: Unpack[MeshLook]) -> Mesh:
         """The same triangles with another look."""
@@ -97,6 +141,9 @@ class Mesh:
         return count
 
     def __repr__(self) -> str:
+        spheres = lib.hl_mesh_describe(self._handle).sphere_count
+        if self.triangle_count == 0:
+            return f"<halflight.Mesh of {spheres} spheres>"
         return f"<halflight.Mesh of {self.triangle_count} triangles{'' if self._file is None else f' {self._file}'}>"
 
     def _fill(self, struct: Any, keep: list[Any], place: str) -> None:
@@ -167,21 +214,52 @@ def _linear(given: Any) -> np.ndarray[Any, Any]:
     return np.ascontiguousarray(np.hstack([shown[:, :3], opacity]), np.float32)
 
 
-def _create(vertices: Any, triangles: Any, normals: Any, given: Any) -> Any:
+def _round(place: str, given: Any, radius: float | None) -> np.ndarray[Any, Any]:
+    """Points with radii."""
+    rows = _rows(place, given, (3, 4), np.float32)
+    if rows.shape[1] == 4:
+        return rows
+    if radius is None:
+        raise TypeError(f"{place}: rows of three numbers need radius=")
+    return np.ascontiguousarray(np.hstack([rows, np.full((len(rows), 1), radius)]), np.float32)
+
+
+def _put(description: Any, name: str, rows: np.ndarray[Any, Any]) -> None:
+    kind = "uint32_t" if rows.dtype == np.uint32 else "float"
+    setattr(description, name, ffi.cast(f"{kind} (*)[{rows.shape[1]}]", ffi.from_buffer(rows)))
+
+
+def _create(vertices: Any, given: Mapping[str, Any], radius: float | None) -> Any:
+    """An hl_mesh of arrays; given: those that are not None are used."""
     description = ffi.new("hl_mesh_description *")
     lib.hl_mesh_description_defaults(description)
-    arrays = {"positions": _rows("vertices", vertices, (3,), np.float32),
-              "triangles": _rows("triangles", triangles, (3,), np.uint32)}
-    if normals is not None:
-        arrays["normals"] = _rows("normals", normals, (3,), np.float32)
-    if given is not None:
-        arrays["colors"] = _linear(given)
-    for name, array in arrays.items():
-        if name != "triangles" and len(array) != len(arrays["positions"]):
-            raise ValueError(f"{name}: {len(array)} rows for {len(arrays['positions'])} vertices")
-        kind = "uint32_t" if name == "triangles" else "float"
-        setattr(description, name, ffi.cast(f"{kind} (*)[{array.shape[1]}]", ffi.from_buffer(array)))
-    description.vertex_count, description.triangle_count = len(arrays["positions"]), len(arrays["triangles"])
+    rows: dict[str, np.ndarray[Any, Any]] = {}
+    if vertices is not None:
+        rows["positions"] = _rows("vertices", vertices, (3,), np.float32)
+        rows["triangles"] = _rows("triangles", given["triangles"], (3,), np.uint32)
+    if given["normals"] is not None:
+        rows["normals"] = _rows("normals", given["normals"], (3,), np.float32)
+    if given["spheres"] is not None:
+        rows["spheres"] = _round("spheres", given["spheres"], radius)
+    lengths = np.zeros(0, np.uint32)
+    if given["lines"] is not None:
+        lines = [_round(f"lines[{n}]", line, radius) for n, line in enumerate(given["lines"])]
+        lengths = np.array([len(line) for line in lines], np.uint32)
+        rows["line_points"] = np.vstack(lines) if lines else np.zeros((0, 4), np.float32)
+        description.line_lengths, description.line_count = ffi.cast("uint32_t *", ffi.from_buffer(lengths)), len(lines)
+    for word in ("colors", "face_colors", "sphere_colors", "line_colors"):
+        if given[word] is not None:
+            rows[word] = _linear(given[word])
+    for word, wanted in (("normals", "positions"), ("colors", "positions"), ("face_colors", "triangles"),
+                         ("sphere_colors", "spheres"), ("line_colors", "line_points")):
+        count, found = len(rows.get(wanted, ())), len(rows.get(word, ()))
+        if word in rows and found != count:
+            thing = {"positions": "vertices", "line_points": "points of lines"}.get(wanted, wanted)
+            raise ValueError(f"{word}: {found} rows for {count} {thing}")
+    for name, array in rows.items():
+        _put(description, name, array)
+    description.vertex_count, description.triangle_count = len(rows.get("positions", ())), len(rows.get("triangles", ()))
+    description.sphere_count, description.line_point_count = len(rows.get("spheres", ())), len(rows.get("line_points", ()))
     place = ffi.new("hl_mesh **")
     call(lib.hl_mesh_create, context, description, place)
     return ffi.gc(place[0], lib.hl_mesh_release)

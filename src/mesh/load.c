@@ -10,7 +10,11 @@
 static const struct {
   const char *ending;
   mesh_reader *read;
-} formats[] = {{".ply", hl_mesh_read_ply}, {".stl", hl_mesh_read_stl}, {".obj", hl_mesh_read_obj}};
+} formats[] = {{".ply", hl_mesh_read_ply},
+               {".stl", hl_mesh_read_stl},
+               {".obj", hl_mesh_read_obj},
+               {".gltf", hl_mesh_read_gltf},
+               {".glb", hl_mesh_read_gltf}};
 
 int hl_mesh_reads_name(const char *path) {
   for (size_t n = 0; path != NULL && n < sizeof formats / sizeof *formats; n++)
@@ -21,6 +25,7 @@ int hl_mesh_reads_name(const char *path) {
 static mesh_reader *reader_of(const char *path, mesh_text text) {
   if (text.length >= 4 && memcmp(text.bytes, "ply", 3) == 0 && hl_is_space((char)text.bytes[3]))
     return hl_mesh_read_ply;
+  if (text.length >= 4 && memcmp(text.bytes, "glTF", 4) == 0) return hl_mesh_read_gltf;
   for (size_t n = 0; n < sizeof formats / sizeof *formats; n++)
     if (hl_text_ends(path, formats[n].ending)) return formats[n].read;
   return NULL;
@@ -38,8 +43,8 @@ hl_status hl_mesh_load(hl_context *context, const char *path, hl_mesh **mesh, hl
   mesh_parts parts = {.context = context, .path = path};
   mesh_reader *read = reader_of(path, text);
   if (read == NULL)
-    status = hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: is no mesh that is known: give .ply, .stl or .obj",
-                     path);
+    status = hl_fail(error, HL_ERROR_UNSUPPORTED,
+                     "%s: is no mesh that is known: give .ply, .stl, .obj, .gltf or .glb", path);
   else status = read(text, &parts, error);
   hl_release(context, bytes);
   if (status == HL_OK) {

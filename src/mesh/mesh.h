@@ -68,6 +68,6 @@ typedef struct mesh_text {
 
 /* Readers of formats: fill empty parts. */
 typedef hl_status mesh_reader(mesh_text text, mesh_parts *parts, hl_error *error);
-mesh_reader hl_mesh_read_ply, hl_mesh_read_stl, hl_mesh_read_obj;
+mesh_reader hl_mesh_read_ply, hl_mesh_read_stl, hl_mesh_read_obj, hl_mesh_read_gltf;
 
 #endif

@@ -76,3 +76,21 @@ def test_pyvista(clear):
     plane = pyvista.Plane(center=(10, 10, 0), i_size=20, j_size=20, i_resolution=1, j_resolution=1)
     assert middle(clear.replace(meshes=Mesh(plane))) == pytest.approx(
         middle(clear.replace(meshes=Mesh(SQUARE, TRIANGLES))), abs=1e-5)
+
+
+def test_spheres_lines_and_floors(clear):
+    red = Mesh(spheres=[(10, 10, 0)], radius=8, sphere_colors=[(0.5, 0, 0)], color=1)
+    assert middle(clear.replace(meshes=red)) == pytest.approx([0.5, 0, 0, 1], abs=1e-5)
+    glass = Mesh(spheres=[(10, 10, 0, 8)], opacity=0.5, color=1)
+    assert middle(clear.replace(meshes=glass))[3] == pytest.approx(0.75, abs=1e-5)
+    tube = Mesh(lines=[[(0, 10, 0), (20, 10, 0)]], radius=4, line_colors=[(0, 1, 0), (0, 0.5, 0)], color=1)
+    halfway = 0.75 - 0.5 * (10 / 32 / 2) / 20  # at the pixel's middle
+    assert middle(clear.replace(meshes=tube)) == pytest.approx([0, halfway, 0, 1], abs=1e-4)
+    faces = Mesh(SQUARE, TRIANGLES, face_colors=[(0, 0, 0.25), (0, 0, 0.25)], color=1)
+    assert middle(clear.replace(meshes=faces)) == pytest.approx([0, 0, 0.25, 1], abs=1e-5)
+    standing = clear.replace(meshes=red)
+    assert middle(clear.replace(meshes=Mesh.floor(standing)))[3] == 1
+    for wrong, text in (({"spheres": [(0, 0, 0)]}, "rows of three numbers need radius="), ({}, "give a file"),
+                        ({"spheres": [(0, 0, 0, 1)], "sphere_colors": [(1, 1, 1)] * 2}, "2 rows for 1 spheres")):
+        with pytest.raises((TypeError, ValueError), match=text):
+            Mesh(**wrong)

@@ -116,6 +116,65 @@ static void test_cube_is_closed(void **state) {
   hl_context_destroy(context);
 }
 
+/* A glTF file of one triangle: its 36 bytes of positions and 6 of indices in base64. */
+#define GLTF(node, more)                                                                                  \
+  "{\"asset\": {\"version\": \"2.0\"}, \"scenes\": [{\"nodes\": [0]}], \"nodes\": [" node                 \
+  "], \"meshes\": "                                                                                       \
+  "[{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"indices\": 1, \"material\": 0}]}], "          \
+  "\"materials\": "                                                                                       \
+  "[{\"alphaMode\": \"BLEND\", \"pbrMetallicRoughness\": {\"baseColorFactor\": [0.5, 0.25, 0.125, "       \
+  "0.75]}}], "                                                                                            \
+  "\"buffers\": [{\"byteLength\": 42, \"uri\": "                                                          \
+  "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA\"}], " \
+  "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36}, {\"buffer\": 0, \"byteOffset\": 36, "           \
+  "\"byteLength\": "                                                                                      \
+  "6}], \"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\"}, " \
+  "{\"bufferView\": 1, \"componentType\": 5123, \"count\": 3, \"type\": \"SCALAR\"}]" more "}"
+
+/* Nodes place their meshes, a mirror turns triangles over, and the base colour is that of the vertices. */
+static void test_gltf(void **state) {
+  (void)state;
+  static const char *const texts[] = {
+      GLTF("{\"mesh\": 0, \"translation\": [1, 2, 3], \"scale\": [2, 2, 2]}", ""),
+      GLTF("{\"mesh\": 0, \"matrix\": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -2, 0, 1, 2, 3, 1]}", "")};
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  for (int k = 0; k < 2; k++) {
+    hl_mesh *mesh = load(context, "a.gltf", texts[k], strlen(texts[k]), NULL);
+    const hl_mesh_description *d = hl_mesh_describe(mesh);
+    const float corners[3][3] = {{1, 2, 3}, {3, 2, 3}, {1, 4, 3}}, color[4] = {0.5f, 0.25f, 0.125f, 0.75f};
+    assert_int_equal(d->triangle_count, 1);
+    assert_memory_equal(d->positions, corners, sizeof corners);
+    assert_memory_equal(d->colors[2], color, sizeof color);
+    const uint32_t expected[2][3] = {{0, 1, 2}, {0, 2, 1}};
+    assert_memory_equal(d->triangles[0], expected[k], sizeof expected[k]);
+    hl_mesh_release(mesh);
+  }
+  hl_context_destroy(context);
+}
+
+/* A glTF file cut anywhere, or with any byte changed, is read or refused, and never more than that. */
+static void test_damaged_gltf(void **state) {
+  (void)state;
+  char text[2000];
+  const char *whole = GLTF("{\"mesh\": 0}", "");
+  size_t length = strlen(whole);
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  for (size_t n = 0; n < length; n++)
+    for (int way = 0; way < 3; way++) {
+      memcpy(text, whole, length);
+      if (way > 0) text[n] = (char)(text[n] + (way == 1 ? 1 : -7));
+      mesh_parts parts = {.context = context, .path = "a.gltf"};
+      hl_error error;
+      (void)hl_mesh_read_gltf((mesh_text){(const unsigned char *)text, way == 0 ? n : length}, &parts,
+                              &error);
+      hl_mesh_parts_release(&parts);
+    }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 static void test_refused(void **state) {
   (void)state;
   static const struct {
@@ -128,7 +187,15 @@ static void test_refused(void **state) {
       {"a.stl", "short", "is too short for an STL file"},
       {"a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty thing x\nend_header\n",
        "of an unknown type"},
-      {"a.off", "OFF\n", "is no mesh that is known: give .ply, .stl or .obj"}};
+      {"a.gltf", "[]", "is no JSON object"},
+      {"a.glb", "glTF", "is too short for a GLB file"},
+      {"a.gltf", GLTF("{\"mesh\": 0, \"children\": [0]}", ""), "a node is not there, has two parents"},
+      {"a.gltf",
+       "{\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}], \"meshes\": [{\"primitives\": "
+       "[{\"attributes\": {\"POSITION\": 0}}]}]}",
+       "accessor 0 leads outside of the file's buffers"},
+      {"a.gltf", "{\"buffers\": [{\"uri\": \"../secret\"}]}", "is no file beside it"},
+      {"a.off", "OFF\n", "is no mesh that is known: give .ply, .stl, .obj, .gltf or .glb"}};
   hl_context *context = NULL;
   assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
   for (size_t c = 0; c < sizeof cases / sizeof *cases; c++)
@@ -190,8 +257,10 @@ static void test_round(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_ply), cmocka_unit_test(test_cube_is_closed),
-                                     cmocka_unit_test(test_refused), cmocka_unit_test(test_from_memory),
-                                     cmocka_unit_test(test_round)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_ply),         cmocka_unit_test(test_cube_is_closed),
+      cmocka_unit_test(test_refused),     cmocka_unit_test(test_from_memory),
+      cmocka_unit_test(test_round),       cmocka_unit_test(test_gltf),
+      cmocka_unit_test(test_damaged_gltf)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
