@@ -250,7 +250,8 @@ class Volume:
         look["name"] = None if struct.name == ffi.NULL else text_of(struct.name)
         look["transfer_function"] = function_from(struct.transfer_function)
         look["clip"] = (tuple(struct.clip_min), tuple(struct.clip_max)) if struct.clipped else None
-        look["iso"] = isosurface.isosurfaces_from(struct)
+        if struct.iso_count > 0:
+            look["iso"] = isosurface.isosurfaces_from(struct)
         look["scale"] = tuple(struct.scale * one for one in struct.axis_scale)
         return look | self._changes
 
