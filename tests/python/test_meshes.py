@@ -89,7 +89,7 @@ def test_spheres_lines_and_floors(clear):
     faces = Mesh(SQUARE, TRIANGLES, face_colors=[(0, 0, 0.25), (0, 0, 0.25)], color=1)
     assert middle(clear.replace(meshes=faces)) == pytest.approx([0, 0, 0.25, 1], abs=1e-5)
     standing = clear.replace(meshes=red)
-    assert middle(clear.replace(meshes=Mesh.floor(standing)))[3] == 1
+    assert Mesh.floor(standing, 2).triangle_count == 2
     for wrong, text in (({"spheres": [(0, 0, 0)]}, "rows of three numbers need radius="), ({}, "give a file"),
                         ({"spheres": [(0, 0, 0, 1)], "sphere_colors": [(1, 1, 1)] * 2}, "2 rows for 1 spheres")):
         with pytest.raises((TypeError, ValueError), match=text):
