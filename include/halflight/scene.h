@@ -142,6 +142,10 @@ typedef struct hl_transfer_function {
   size_t opacity_count;
   const hl_color_point *color; /* sorted by value; linear RGB */
   size_t color_count;
+  /* What extinction is multiplied by, 0 to 1, where the data's gradient has a length (`value`: data units per
+   * world unit); sorted by value. None: 1 everywhere. */
+  const hl_opacity_point *gradient_opacity;
+  size_t gradient_opacity_count;
 } hl_transfer_function;
 
 typedef enum hl_shading {

@@ -37,6 +37,9 @@ class TransferFunction:
         Sorted by value; linear RGB.
     unit_distance : float
         World units.
+    gradient_opacity : sequence of (gradient, factor)
+        What extinction is multiplied by where the data's gradient has this length, in data units per world unit;
+        sorted. Empty: 1 everywhere.
 
     Examples
     --------
@@ -44,11 +47,11 @@ class TransferFunction:
     (1, 4)
     """
 
-    __slots__ = ("color", "opacity", "unit_distance")
+    __slots__ = ("color", "gradient_opacity", "opacity", "unit_distance")
 
     @suggests
     def __init__(self, opacity: Any, color: Any = (1.0, 1.0, 1.0),
-                 unit_distance: float = 1.0) -> None:
+                 unit_distance: float = 1.0, gradient_opacity: Any = ()) -> None:
         place = "TransferFunction: "
         self.unit_distance = number(f"{place}unit_distance", unit_distance)
         points = [numbers_of(f"{place}opacity[{n}]", point, 2) for n, point in enumerate(opacity)]
@@ -58,31 +61,39 @@ class TransferFunction:
         else:
             rows = [numbers_of(f"{place}color[{n}]", row, 4) for n, row in enumerate(color)]
         self.color = np.array(rows, dtype=np.float64)
+        factors = [numbers_of(f"{place}gradient_opacity[{n}]", point, 2) for n, point in enumerate(gradient_opacity)]
+        self.gradient_opacity = np.array(factors, dtype=np.float64).reshape(-1, 2)
 
     def __repr__(self) -> str:
         return (f"TransferFunction({self.opacity.tolist()}, color={self.color.tolist()}, "
-                f"unit_distance={self.unit_distance})")
+                f"unit_distance={self.unit_distance}"
+                + (f", gradient_opacity={self.gradient_opacity.tolist()})" if len(self.gradient_opacity) else ")"))
 
     def __eq__(self, other: object) -> bool:
         return (isinstance(other, TransferFunction) and self.unit_distance == other.unit_distance
-                and np.array_equal(self.opacity, other.opacity) and np.array_equal(self.color, other.color))
+                and np.array_equal(self.opacity, other.opacity) and np.array_equal(self.color, other.color)
+                and np.array_equal(self.gradient_opacity, other.gradient_opacity))
 
     __hash__ = None  # type: ignore[assignment]
 
     def _fill(self, struct: Any, keep: list[Any]) -> None:
         opacity = ffi.new("hl_opacity_point[]", [tuple(point) for point in self.opacity.tolist()])
         color = ffi.new("hl_color_point[]", [(row[0], row[1:]) for row in self.color.tolist()])
-        keep += [opacity, color]
+        gradient = ffi.new("hl_opacity_point[]", [tuple(point) for point in self.gradient_opacity.tolist()])
+        keep += [opacity, color, gradient]
         struct.unit_distance = self.unit_distance
         struct.opacity, struct.opacity_count = opacity, len(self.opacity)
         struct.color, struct.color_count = color, len(self.color)
+        struct.gradient_opacity, struct.gradient_opacity_count = gradient, len(self.gradient_opacity)
 
 
 def function_from(struct: Any) -> TransferFunction:
     """The transfer function of a struct."""
     opacity = [(struct.opacity[n].value, struct.opacity[n].opacity) for n in range(struct.opacity_count)]
     color = [(struct.color[n].value, *struct.color[n].color) for n in range(struct.color_count)]
-    return TransferFunction(opacity, color or (1.0, 1.0, 1.0), struct.unit_distance)
+    gradient = [(struct.gradient_opacity[n].value, struct.gradient_opacity[n].opacity)
+                for n in range(struct.gradient_opacity_count)]
+    return TransferFunction(opacity, color or (1.0, 1.0, 1.0), struct.unit_distance, gradient)
 
 
 def _made(function: Any, *arguments: Any, path: str | None = None) -> Any:
@@ -106,6 +117,7 @@ def named_function(tf: Any, volume: Any, old: TransferFunction) -> TransferFunct
     function = function_from(loaded)
     if loaded.opacity == ffi.NULL:
         function.opacity, function.unit_distance = old.opacity, old.unit_distance
+        function.gradient_opacity = old.gradient_opacity
     return function
 
 
@@ -119,7 +131,7 @@ def recolored(function: TransferFunction, cmap: Any, clim: list[float] | None, v
     points = colors.sampled("cmap", cmap, *clim)
     if points is None:
         points = function_from(_made(lib.hl_transfer_function_colormap, cmap.encode(), *clim)).color.tolist()
-    return TransferFunction(function.opacity, points, function.unit_distance)
+    return TransferFunction(function.opacity, points, function.unit_distance, function.gradient_opacity)
 
 
 def colormap_points(name: str) -> list[list[float]]:
@@ -147,7 +159,9 @@ def spread(function: TransferFunction, clim: list[float], values: tuple[float, f
     opacity, color = points.copy(), function.color.copy()
     opacity[:, 0] = clim[0] + (opacity[:, 0] - low) * factor
     color[:, 0] = clim[0] + (color[:, 0] - low) * factor
-    return TransferFunction(opacity, color, function.unit_distance)
+    gradient = function.gradient_opacity.copy()
+    gradient[:, 0] *= factor
+    return TransferFunction(opacity, color, function.unit_distance, gradient)
 
 
 _SHAPES = ("linear", "sigmoid", "geom")

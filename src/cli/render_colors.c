@@ -154,6 +154,8 @@ static void spread(hl_transfer_function *function, const double visible[2], cons
     opacity[n].value = range[0] + (opacity[n].value - visible[0]) * factor;
   for (size_t n = 0; n < function->color_count; n++)
     color[n].value = range[0] + (color[n].value - visible[0]) * factor;
+  hl_opacity_point *gradient = (hl_opacity_point *)function->gradient_opacity;
+  for (size_t n = 0; n < function->gradient_opacity_count; n++) gradient[n].value *= factor;
 }
 
 /* Makes values clear below the threshold and nearly opaque, over a voxel's edge, from it on. A ramp below the
@@ -177,26 +179,33 @@ static int make_opaque_from(const cli_host *host, const hl_volume *volume, doubl
   points[1] = (hl_opacity_point){threshold, 0.95};
   function->opacity = points;
   function->opacity_count = POINTS;
+  function->gradient_opacity_count = 0;
   function->unit_distance = fmin(fmin(info.spacing[0], info.spacing[1]), info.spacing[2]);
   return EXIT_CODE_OK;
 }
 
+static void *copy_points(const void *points, size_t bytes) {
+  void *copy = malloc(bytes + 1);
+  if (copy != NULL && bytes > 0) memcpy(copy, points, bytes);
+  return copy;
+}
+
 /* Copies the points; the copies are owned by the caller (render_release_function). */
 static int copy_function(const hl_transfer_function *from, hl_transfer_function *to) {
-  size_t opacity_bytes = from->opacity_count * sizeof *from->opacity,
-         color_bytes = from->color_count * sizeof *from->color;
-  hl_opacity_point *opacity = malloc(opacity_bytes + 1);
-  hl_color_point *color = malloc(color_bytes + 1);
-  if (opacity_bytes > 0 && opacity != NULL) memcpy(opacity, from->opacity, opacity_bytes);
-  if (color_bytes > 0 && color != NULL) memcpy(color, from->color, color_bytes);
-  *to = (hl_transfer_function){from->unit_distance, opacity, from->opacity_count, color, from->color_count};
-  return opacity != NULL && color != NULL ? EXIT_CODE_OK
-                                          : fail(EXIT_CODE_FAILURE, "out of memory for a transfer function");
+  *to = *from;
+  to->opacity = copy_points(from->opacity, from->opacity_count * sizeof *from->opacity);
+  to->color = copy_points(from->color, from->color_count * sizeof *from->color);
+  to->gradient_opacity = copy_points(from->gradient_opacity,
+                                     from->gradient_opacity_count * sizeof *from->gradient_opacity);
+  return to->opacity != NULL && to->color != NULL && to->gradient_opacity != NULL
+             ? EXIT_CODE_OK
+             : fail(EXIT_CODE_FAILURE, "out of memory for a transfer function");
 }
 
 void render_release_function(hl_transfer_function *function) {
   free((void *)function->opacity);
   free((void *)function->color);
+  free((void *)function->gradient_opacity);
 }
 
 /* Gives a function the points of `loaded`. Its own opacity is kept if `loaded` has none. */
@@ -207,6 +216,8 @@ static int replace(const hl_transfer_function *loaded, hl_transfer_function *fun
     both.unit_distance = old.unit_distance;
     both.opacity = old.opacity;
     both.opacity_count = old.opacity_count;
+    both.gradient_opacity = old.gradient_opacity;
+    both.gradient_opacity_count = old.gradient_opacity_count;
   }
   int exit_code = copy_function(&both, &copy);
   render_release_function(&old);

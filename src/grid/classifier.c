@@ -77,29 +77,45 @@ static float normal_edge(const hl_scene_volume *volume, double entries_per_value
  * scale of a narrower range. Narrower ranges are widened, and their values share one entry. */
 static const double NARROWEST_RANGE = 1e-34;
 
-static void lay_out(classifier *classifier, hl_layout *layout) {
+static void lay_out(const hl_transfer_function *function, classifier *classifier, hl_layout *layout) {
   enum { COUNT = CLASSIFIER_ENTRIES + 2 };
   classifier->sums = hl_layout_take(layout, COUNT, sizeof *classifier->sums);
   classifier->color = hl_layout_take(layout, COUNT, sizeof *classifier->color);
   classifier->next_visible = hl_layout_take(layout, COUNT, sizeof *classifier->next_visible);
+  if (function->gradient_opacity_count > 0)
+    classifier->steepness = hl_layout_take(layout, STEEPNESS_ENTRIES + 2, sizeof *classifier->steepness);
 }
 
-static hl_layout count_tables(void) {
+static hl_layout count_tables(const hl_transfer_function *function) {
   classifier classifier;
   hl_layout counted = {0};
-  lay_out(&classifier, &counted);
+  lay_out(function, &classifier, &counted);
   return counted;
 }
 
-uint64_t hl_classifier_bytes(void) { return count_tables().bytes; }
+uint64_t hl_classifier_bytes(const hl_transfer_function *function) { return count_tables(function).bytes; }
+
+/* Fills the factors of gradient opacity: the table reaches from a gradient of 0 to that of the last point. */
+static void fill_steepness(const hl_transfer_function *function, double value_scale, classifier *classifier) {
+  size_t count = function->gradient_opacity_count;
+  if (count == 0) return;
+  double last = function->gradient_opacity[count - 1].value;
+  if (!(last > 0)) last = 1;
+  for (int entry = 0; entry <= STEEPNESS_ENTRIES; entry++)
+    classifier->steepness[entry] = (float)hl_transfer_function_gradient_opacity(
+        function, last * entry / STEEPNESS_ENTRIES);
+  classifier->steepness[STEEPNESS_ENTRIES + 1] = classifier->steepness[STEEPNESS_ENTRIES];
+  classifier->steepness_scale = (float)fmin(fabs(value_scale) / last * STEEPNESS_ENTRIES, 1e30);
+}
 
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,
                                classifier *classifier, hl_error *error) {
+  const hl_transfer_function *function = &volume->transfer_function;
   *classifier = (struct classifier){0};
-  hl_layout counted = count_tables(), handed = {.base = hl_allocate(context, counted.bytes, 1)};
+  hl_layout counted = count_tables(function), handed = {.base = hl_allocate(context, counted.bytes, 1)};
   if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "a transfer-function table");
   memset(handed.base, 0, counted.bytes);
-  lay_out(classifier, &handed);
+  lay_out(function, classifier, &handed);
   double empty = grid->empty * grid->value_scale + grid->value_offset;
   double low = fmin(volume->volume->minimum, empty), high = fmax(volume->volume->maximum, empty);
   if (!(high > low)) high = low + fmax(1, 1e-12 * fabs(low)); /* adding 1 to 1e30 changes nothing */
@@ -108,6 +124,7 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
   classifier->offset = (float)((empty - low) * CLASSIFIER_ENTRIES / (high - low));
   classifier->normal_edge = normal_edge(volume, CLASSIFIER_ENTRIES / (high - low));
   fill_tables(volume, empty, low, high, classifier);
+  fill_steepness(function, grid->value_scale, classifier);
   return HL_OK;
 }
 

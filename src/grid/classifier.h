@@ -10,7 +10,7 @@
 
 #include "grid/grid.h"
 
-enum { CLASSIFIER_ENTRIES = 4096 };
+enum { CLASSIFIER_ENTRIES = 4096, STEEPNESS_ENTRIES = 4096 };
 
 typedef struct classifier {
   float scale, offset; /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
@@ -20,13 +20,18 @@ typedef struct classifier {
   float (*color)[4]; /* linear RGB; 0 */
   int32_t *next_visible;             /* the first entry from this one on with extinction > 0 */
   float first_visible, last_visible; /* table coordinates: outside of them nothing has extinction */
+  /* Gradient opacity: the factor of extinction by the gradient's length, [STEEPNESS_ENTRIES + 2], in the same
+   * block; null: 1 everywhere. Table coordinate = length * steepness_scale, clamped to [0,
+   * STEEPNESS_ENTRIES]; the length is in stored units per frame unit. */
+  float *steepness;
+  float steepness_scale;
   float normal_edge; /* the least gradient (table entries per frame unit) that counts as a surface */
 } classifier;
 
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,
                                classifier *classifier, hl_error *error);
 /* The bytes that hl_classifier_create() allocates. */
-uint64_t hl_classifier_bytes(void);
+uint64_t hl_classifier_bytes(const hl_transfer_function *function);
 void hl_classifier_release(hl_context *context, classifier *classifier);
 
 /* Data values below the result are transparent, whatever the transfer function says. If the transfer function

@@ -239,6 +239,10 @@ hl_status hl_finish_function(hl_function_writer *w, hl_context *context, const h
                              hl_transfer_function *function, hl_error *error) {
   put_in_order(w);
   double edge = mat3_shortest_column(volume->index_to_world.linear);
-  hl_transfer_function made = {edge, w->opacity, w->opacity_count, w->color, w->color_count};
+  hl_transfer_function made = {.unit_distance = edge,
+                               .opacity = w->opacity,
+                               .opacity_count = w->opacity_count,
+                               .color = w->color,
+                               .color_count = w->color_count};
   return hl_transfer_function_copy(context, &made, function, error);
 }

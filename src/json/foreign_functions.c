@@ -2,11 +2,10 @@
  * presets.
  *
  * Their colours are sRGB, mixed in the space that the file names. They become points in linear RGB, so close
- * together that straight lines between them come near that mixing. A warning names what is left out. */
+ * together that straight lines between them come near that mixing. */
 #include <math.h>
 #include <string.h>
 
-#include "core/context.h"
 #include "core/memory.h"
 #include "json/color_space.h"
 #include "json/parts.h"
@@ -35,9 +34,9 @@ static double ease(double t, const node *n) {
   return (3 * t2 - 2 * t3) + slope * (2 * t3 - 3 * t2 + t);
 }
 
-/* Writes nodes as opacity points. */
-static hl_status set_opacity(hl_context *context, const node *nodes, size_t count,
-                             hl_transfer_function *function, hl_error *error) {
+/* Writes nodes as opacity points, owned by the caller. */
+static hl_status make_opacity(hl_context *context, const node *nodes, size_t count,
+                              const hl_opacity_point **opacity, size_t *opacity_count, hl_error *error) {
   hl_opacity_point *points = hl_allocate(context, count * PIECES, sizeof *points);
   if (points == NULL) return hl_fail_memory(error, count * PIECES * sizeof *points, "a transfer function");
   size_t made = 0;
@@ -52,9 +51,18 @@ static hl_status set_opacity(hl_context *context, const node *nodes, size_t coun
           fmin(fmax(y + eased * (next - y), 0), 1)};
     }
   }
-  function->opacity = points;
-  function->opacity_count = made;
+  *opacity = points;
+  *opacity_count = made;
   return HL_OK;
+}
+
+/* Gradient opacity of 1 everywhere is none. */
+static void drop_even_gradient(hl_context *context, hl_transfer_function *function) {
+  for (size_t p = 0; p < function->gradient_opacity_count; p++)
+    if (function->gradient_opacity[p].opacity != 1) return;
+  hl_release(context, (void *)function->gradient_opacity);
+  function->gradient_opacity = NULL;
+  function->gradient_opacity_count = 0;
 }
 
 /* Writes nodes as colour points. */
@@ -156,7 +164,9 @@ hl_status hl_json_read_paraview(hl_json_reader *reader, const json_t *root, hl_t
   nodes = NULL;
   if (status == HL_OK && json_object_get(map, "Points") != NULL) {
     status = read_flat(reader, map, "Points", 1, &nodes, &count);
-    if (status == HL_OK) status = set_opacity(reader->context, nodes, count, function, reader->error);
+    if (status == HL_OK)
+      status = make_opacity(reader->context, nodes, count, &function->opacity, &function->opacity_count,
+                            reader->error);
     hl_release(reader->context, nodes);
   }
   return status;
@@ -195,17 +205,28 @@ static hl_status read_points(hl_json_reader *reader, const json_t *component, co
   return status;
 }
 
-/* Slicer's presets may make opacity depend on the gradient, which is not supported: warns. */
-static void warn_of_gradient(hl_json_reader *reader, const json_t *component) {
-  const json_t *points = json_object_get(json_object_get(component, "gradientOpacity"), "points");
-  if (json_is_true(json_object_get(component, "disableGradientOpacity"))) return;
-  for (size_t n = 0; n < json_array_size(points); n++) {
-    const json_t *y = json_object_get(json_array_get(points, n), "y");
-    if (!json_is_number(y) || json_number_value(y) == 1) continue;
-    hl_log(reader->context, HL_LOG_WARNING, "%s: opacity by gradient (gradientOpacity) is left out",
-           reader->name);
-    return;
-  }
+/* Reads a component's function of opacity. */
+static hl_status read_opacity(hl_json_reader *reader, const json_t *component, const char *key,
+                              const hl_opacity_point **opacity, size_t *opacity_count) {
+  node *nodes = NULL;
+  size_t count = 0;
+  hl_status status = read_points(reader, component, key, false, &nodes, &count);
+  if (status == HL_OK)
+    status = make_opacity(reader->context, nodes, count, opacity, opacity_count, reader->error);
+  hl_release(reader->context, nodes);
+  return status;
+}
+
+/* Opacity by gradient, where the preset has some and it changes anything. */
+static hl_status read_gradient(hl_json_reader *reader, const json_t *component,
+                               hl_transfer_function *function) {
+  if (json_is_true(json_object_get(component, "disableGradientOpacity")) ||
+      json_object_get(component, "gradientOpacity") == NULL)
+    return HL_OK;
+  hl_status status = read_opacity(reader, component, "gradientOpacity", &function->gradient_opacity,
+                                  &function->gradient_opacity_count);
+  if (status == HL_OK) drop_even_gradient(reader->context, function);
+  return status;
 }
 
 hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
@@ -222,14 +243,11 @@ hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, hl_tra
   node *nodes = NULL;
   size_t count = 0;
   status = hl_json_number(reader, component, "scalarOpacityUnitDistance", &function->unit_distance);
-  if (status == HL_OK) status = read_points(reader, component, "scalarOpacity", false, &nodes, &count);
-  if (status == HL_OK) status = set_opacity(reader->context, nodes, count, function, reader->error);
-  hl_release(reader->context, nodes);
-  nodes = NULL;
+  if (status == HL_OK)
+    status = read_opacity(reader, component, "scalarOpacity", &function->opacity, &function->opacity_count);
   if (status == HL_OK) status = read_points(reader, component, "rgbTransferFunction", true, &nodes, &count);
   if (status == HL_OK)
     status = set_color(reader->context, nodes, count, HL_SPACE_RGB, function, reader->error);
   hl_release(reader->context, nodes);
-  if (status == HL_OK) warn_of_gradient(reader, component);
-  return status;
+  return status == HL_OK ? read_gradient(reader, component, function) : status;
 }

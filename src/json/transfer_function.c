@@ -119,6 +119,12 @@ static hl_status read_points(hl_json_reader *reader, const json_t *value, bool i
     function->opacity = (hl_opacity_point *)rows;
     function->opacity_count = count;
   }
+  if (has(value, "gradient_opacity")) {
+    if ((status = read_rows(reader, value, "gradient_opacity", 2, &rows, &count)) != HL_OK) return status;
+    hl_release(reader->context, (void *)function->gradient_opacity);
+    function->gradient_opacity = (hl_opacity_point *)rows;
+    function->gradient_opacity_count = count;
+  }
   if (json_is_number(json_array_get(json_object_get(value, "color"), 0)))
     return read_plain_color(reader, value, function);
   if (has(value, "color")) {
@@ -213,8 +219,8 @@ static hl_status read_start(hl_json_reader *reader, const json_t *value, hl_func
 
 static hl_status read_members(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
                               hl_transfer_function *function) {
-  static const char *const keys[] = {"unit_distance", "opacity", "color", "colormap",
-                                     "range",         "preset",  "file",  NULL};
+  static const char *const keys[] = {
+      "unit_distance", "opacity", "gradient_opacity", "color", "colormap", "range", "preset", "file", NULL};
   hl_status status = hl_json_object(reader, value, keys);
   if (status == HL_OK) status = read_start(reader, value, subject, function);
   if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_TRANSFER_FUNCTION, 0, function);

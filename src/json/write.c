@@ -189,15 +189,18 @@ static void write_sky(writer *w, const hl_sky *sky) {
   close_bracket(w, "}");
 }
 
+static void write_opacity(writer *w, const char *key, const hl_opacity_point *points, size_t count) {
+  open_bracket(w, key, "[");
+  for (size_t p = 0; p < count; p++) write_row(w, NULL, (double[2]){points[p].value, points[p].opacity}, 2);
+  close_bracket(w, "]");
+}
+
 static void write_transfer_function(writer *w, const hl_transfer_function *function) {
   open_bracket(w, "transfer_function", "{");
   write_settings(w, HL_SETTINGS_TRANSFER_FUNCTION, 0, function);
-  open_bracket(w, "opacity", "[");
-  for (size_t p = 0; p < function->opacity_count; p++) {
-    const hl_opacity_point *point = &function->opacity[p];
-    write_row(w, NULL, (double[2]){point->value, point->opacity}, 2);
-  }
-  close_bracket(w, "]");
+  write_opacity(w, "opacity", function->opacity, function->opacity_count);
+  if (function->gradient_opacity_count > 0)
+    write_opacity(w, "gradient_opacity", function->gradient_opacity, function->gradient_opacity_count);
   open_bracket(w, "color", "[");
   for (size_t p = 0; p < function->color_count; p++) {
     const hl_color_point *point = &function->color[p];

@@ -170,11 +170,15 @@ vec3 hl_reference_gradient(const reference_volume *volume, vec3 point) {
   return vec3_scale(mat3_apply(volume->gradient_to_world, stored), volume->grid->value_scale);
 }
 
-double hl_reference_extinction(const reference_volume *volume, double value) {
+double hl_reference_extinction(const reference_volume *volume, double value, vec3 point) {
   const hl_transfer_function *function = &volume->described->transfer_function;
   if (value < volume->transparent_below) return 0;
   double opacity = hl_transfer_function_opacity(function, value);
-  return opacity > 0 ? -log1p(-fmin(opacity, 0.9999)) / function->unit_distance : 0;
+  if (!(opacity > 0)) return 0;
+  double extinction = -log1p(-fmin(opacity, 0.9999)) / function->unit_distance;
+  if (function->gradient_opacity_count == 0) return extinction;
+  return extinction *
+         hl_transfer_function_gradient_opacity(function, vec3_length(hl_reference_gradient(volume, point)));
 }
 
 /* ---- where the volume is transparent ----

@@ -275,7 +275,7 @@ void hl_reference_transmittance(const reference *all, const reference_ray *ray, 
       const crossing *part = &walk.crossings[v];
       if (!part->occupied) continue;
       double value = hl_reference_value(part->volume, part->here);
-      double extinction = hl_reference_extinction(part->volume, value);
+      double extinction = hl_reference_extinction(part->volume, value, part->here);
       for (int c = 0; c < 3; c++)
         depth[c] += extinction * walk.length * part->volume->described->attenuation_color[c];
     }

@@ -22,7 +22,7 @@ static double value_at(const crossing *part, double at) {
 static const double LEAST_OPACITY = 1e-7;
 
 static bool is_shown(const crossing *part, double value) {
-  return hl_reference_extinction(part->volume, value) > 0 &&
+  return value >= part->volume->transparent_below &&
          hl_transfer_function_opacity(&part->volume->described->transfer_function, value) > LEAST_OPACITY;
 }
 

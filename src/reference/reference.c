@@ -69,7 +69,8 @@ static double total_extinction(const march *walk) {
   for (size_t v = 0; v < walk->count; v++) {
     const crossing *part = &walk->crossings[v];
     if (part->occupied)
-      total += hl_reference_extinction(part->volume, hl_reference_value(part->volume, part->here));
+      total += hl_reference_extinction(part->volume, hl_reference_value(part->volume, part->here),
+                                       part->here);
   }
   return total;
 }
@@ -83,7 +84,7 @@ static void sample(const reference *all, const march *walk, vec3 point, vec3 to_
     const crossing *part = &walk->crossings[v];
     if (!part->occupied) continue;
     double value = hl_reference_value(part->volume, part->here);
-    double extinction = hl_reference_extinction(part->volume, value);
+    double extinction = hl_reference_extinction(part->volume, value, part->here);
     if (extinction <= 0) continue;
     if (made->weight == 0)
       for (size_t l = 0; l < all->scene->light_count; l++)

@@ -208,8 +208,9 @@ double hl_reference_value(const reference_volume *volume, vec3 point);
 void hl_reference_tint(const reference_volume *volume, vec3 point, double color[3]);
 /* Data value per world unit. */
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);
-/* sigma, 1 / world length; algorithm.md's sigma(f) = -ln(1 - alpha(f)) / u */
-double hl_reference_extinction(const reference_volume *volume, double value);
+/* sigma, 1 / world length; algorithm.md's sigma(f) = -ln(1 - alpha(f)) / u, times gradient opacity. value:
+ * that at the point. */
+double hl_reference_extinction(const reference_volume *volume, double value, vec3 point);
 
 /* Sets the volumes of a march. */
 typedef enum reference_role { REFERENCE_SEEN, REFERENCE_CASTS_SHADOW } reference_role;

@@ -291,16 +291,32 @@ static void move_volume(const hl_frame_space *space, hl_scene_volume *volume) {
   volume->transfer_function.unit_distance /= space->unit;
 }
 
+/* Gradients are per unit of length. points: room for the volume's gradient opacity. */
+static void move_gradients(const hl_frame_space *space, hl_transfer_function *function,
+                           hl_opacity_point *points) {
+  if (function->gradient_opacity_count == 0) return;
+  for (size_t p = 0; p < function->gradient_opacity_count; p++) {
+    points[p] = function->gradient_opacity[p];
+    points[p].value *= space->unit;
+  }
+  function->gradient_opacity = points;
+}
+
 static hl_status copy_arrays(hl_context *context, const hl_scene_description *scene, framed_scene *framed,
                              hl_error *error) {
-  size_t vertices = 0, meshes = scene->mesh_count;
+  size_t vertices = 0, meshes = scene->mesh_count, gradients = 0;
   for (size_t i = 0; i < scene->light_count; i++) vertices += scene->lights[i].vertex_count;
-  for (size_t i = 0; i < scene->volume_count; i++) meshes += scene->volumes[i].iso_count;
+  for (size_t i = 0; i < scene->volume_count; i++) {
+    meshes += scene->volumes[i].iso_count;
+    gradients += scene->volumes[i].transfer_function.gradient_opacity_count;
+  }
   framed->volumes = hl_allocate(context, scene->volume_count, sizeof *framed->volumes);
   framed->lights = hl_allocate(context, scene->light_count, sizeof *framed->lights);
   framed->meshes = hl_allocate(context, meshes, sizeof *framed->meshes);
   framed->vertices = hl_allocate(context, vertices, sizeof *framed->vertices);
-  if (framed->volumes == NULL || framed->lights == NULL || framed->meshes == NULL || framed->vertices == NULL)
+  framed->gradients = hl_allocate(context, gradients, sizeof *framed->gradients);
+  if (framed->volumes == NULL || framed->lights == NULL || framed->meshes == NULL ||
+      framed->vertices == NULL || framed->gradients == NULL)
     return hl_fail_memory(error, scene->volume_count * sizeof *framed->volumes, "the scene in frame space");
   if (scene->volume_count > 0)
     memcpy(framed->volumes, scene->volumes, scene->volume_count * sizeof *framed->volumes);
@@ -321,8 +337,13 @@ hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description
   hl_status status = copy_arrays(context, scene, framed, error);
   if (status != HL_OK) return status;
   double(*vertices)[3] = framed->vertices;
+  hl_opacity_point *gradients = framed->gradients;
   move_camera(&space, &framed->scene.camera);
-  for (size_t i = 0; i < scene->volume_count; i++) move_volume(&space, &framed->volumes[i]);
+  for (size_t i = 0; i < scene->volume_count; i++) {
+    move_volume(&space, &framed->volumes[i]);
+    move_gradients(&space, &framed->volumes[i].transfer_function, gradients);
+    gradients += scene->volumes[i].transfer_function.gradient_opacity_count;
+  }
   for (size_t i = 0; i < scene->mesh_count; i++) {
     move_point(&space, framed->meshes[i].translate);
     framed->meshes[i].scale /= space.unit;
@@ -337,4 +358,5 @@ void hl_framed_scene_release(hl_context *context, framed_scene *framed) {
   hl_release(context, framed->lights);
   hl_release(context, framed->meshes);
   hl_release(context, framed->vertices);
+  hl_release(context, framed->gradients);
 }

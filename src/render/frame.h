@@ -84,11 +84,12 @@ int hl_frame_visible_points(const frame *frame, vec3 *points);
 typedef struct framed_scene {
   hl_scene_description
       scene; /* in frame space; voxels, images and texts are borrowed from the scene in the world */
-  hl_scene_volume *volumes; /* owned; [volume_count] */
-  hl_light *lights;         /* owned; [light_count] */
-  hl_scene_mesh *meshes;    /* owned; [mesh_count], with room for the volumes' isosurfaces */
-  double (*vertices)[3];    /* owned; of all polygons */
-  double unit;              /* world length of 1 in frame space: the smallest voxel edge is from 1 to 2 */
+  hl_scene_volume *volumes;    /* owned; [volume_count] */
+  hl_light *lights;            /* owned; [light_count] */
+  hl_scene_mesh *meshes;       /* owned; [mesh_count], with room for the volumes' isosurfaces */
+  double (*vertices)[3];       /* owned; of all polygons */
+  hl_opacity_point *gradients; /* owned; of all volumes' gradient opacity */
+  double unit;                 /* world length of 1 in frame space: the smallest voxel edge is from 1 to 2 */
 } framed_scene;
 
 hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description *scene, framed_scene *framed,

@@ -48,7 +48,7 @@ static void measure_block(const shade_job *job, const tile_slab *tile, int block
   uint32_t bits = visible_in_block(job, tile->patches, patch_count, block, alpha);
   if (bits == 0) return;
   slab_of_block(job, tile, patch_count, block, bits, densities, &slab);
-  if (find_slab(job, densities, patch_count, &slab) == 0) return;
+  if (find_slab(job, tile, densities, &slab) == 0) return;
   lanes before = lanes_load(alpha), weight = slab.opacity * (1.0f - before), after = before + weight;
   lanes3 normal = normal_of_block(&slab, densities, patch_count);
   const lanes sums[4] = {depth_of(job, &slab, slab.geometry.position), normal.x, normal.y, normal.z};
@@ -79,6 +79,10 @@ LANES_INLINE int cover_block(const shade_job *job, const tile_slab *tile, int bl
   block_slab slab;
   slab_of_block(job, tile, tile->patch_count, block, bits, densities, &slab);
   classify_slab(densities, tile->patch_count, &slab);
+  if (is_weighed(tile)) {
+    place_slab(job, densities, tile->patch_count, &slab);
+    weigh_slab(job, densities, tile->patch_count, &slab);
+  }
   lanes before = lanes_load(alpha), path = geometry_of_block(job, slab.u, slab.v).path;
   lanes opacity = lanes_keep(slab.seen, 1.0f - lanes_exp_negative(lanes_keep(slab.seen, slab.total * path)));
   lanes after = lanes_fma(opacity, 1.0f - before, before);

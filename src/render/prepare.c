@@ -9,12 +9,17 @@
 #include "grid/relevant.h"
 #include "isosurface/isosurface.h"
 
+static bool same_points(const void *a, const void *b, size_t bytes) {
+  return bytes == 0 || memcmp(a, b, bytes) == 0;
+}
+
 static bool same_function(const hl_transfer_function *a, const hl_transfer_function *b) {
   return a->unit_distance == b->unit_distance && a->opacity_count == b->opacity_count &&
-         a->color_count == b->color_count &&
-         (a->opacity_count == 0 ||
-          memcmp(a->opacity, b->opacity, a->opacity_count * sizeof *a->opacity) == 0) &&
-         (a->color_count == 0 || memcmp(a->color, b->color, a->color_count * sizeof *a->color) == 0);
+         a->color_count == b->color_count && a->gradient_opacity_count == b->gradient_opacity_count &&
+         same_points(a->opacity, b->opacity, a->opacity_count * sizeof *a->opacity) &&
+         same_points(a->color, b->color, a->color_count * sizeof *a->color) &&
+         same_points(a->gradient_opacity, b->gradient_opacity,
+                     a->gradient_opacity_count * sizeof *a->gradient_opacity);
 }
 
 static bool same_clip(const prepared_volume *prepared, const hl_scene_volume *scene) {
@@ -27,11 +32,14 @@ static bool same_clip(const prepared_volume *prepared, const hl_scene_volume *sc
 typedef struct function_points {
   hl_opacity_point *opacity; /* owns the block */
   hl_color_point *color;
+  hl_opacity_point *gradient_opacity;
 } function_points;
 
 static void lay_out_points(const hl_transfer_function *function, function_points *points, hl_layout *layout) {
   points->opacity = hl_layout_take(layout, function->opacity_count, sizeof *points->opacity);
   points->color = hl_layout_take(layout, function->color_count, sizeof *points->color);
+  points->gradient_opacity = hl_layout_take(layout, function->gradient_opacity_count,
+                                            sizeof *points->gradient_opacity);
 }
 
 static hl_layout count_points(const hl_transfer_function *function) {
@@ -43,8 +51,8 @@ static hl_layout count_points(const hl_transfer_function *function) {
 
 uint64_t hl_prepared_bytes(const hl_scene_volume *scene, hl_kernel kernel, const grid_functions *functions,
                            int threads) {
-  return hl_grid_bytes(scene->volume, hl_kernel_get(kernel), functions, threads) + hl_classifier_bytes() +
-         count_points(&scene->transfer_function).bytes;
+  return hl_grid_bytes(scene->volume, hl_kernel_get(kernel), functions, threads) +
+         hl_classifier_bytes(&scene->transfer_function) + count_points(&scene->transfer_function).bytes;
 }
 
 static hl_status keep_key(hl_context *context, prepared_volume *prepared, const hl_scene_volume *scene,
@@ -58,9 +66,13 @@ static hl_status keep_key(hl_context *context, prepared_volume *prepared, const 
     memcpy(points.opacity, function->opacity, function->opacity_count * sizeof *points.opacity);
   if (function->color_count > 0)
     memcpy(points.color, function->color, function->color_count * sizeof *points.color);
+  if (function->gradient_opacity_count > 0)
+    memcpy(points.gradient_opacity, function->gradient_opacity,
+           function->gradient_opacity_count * sizeof *points.gradient_opacity);
   prepared->function = *function;
   prepared->function.opacity = points.opacity;
   prepared->function.color = points.color;
+  prepared->function.gradient_opacity = points.gradient_opacity;
   prepared->clipped = scene->clipped;
   memcpy(prepared->clip, scene->clip_min, sizeof scene->clip_min);
   memcpy(prepared->clip + 3, scene->clip_max, sizeof scene->clip_max);

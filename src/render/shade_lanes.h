@@ -223,7 +223,7 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_slab *
  * dependent operations, and the processor works on one slab while another's results are pending. lit: 0 where
  * nothing is seen. */
 LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_density *densities,
-                              int patch_count, color_lanes *lit, uint64_t *samples) {
+                              int patch_count, int weighed, color_lanes *lit, uint64_t *samples) {
   arriving_light lights[TILE_BLOCKS][MAXIMUM_SWEEP_LIGHTS];
   block_density *of[TILE_BLOCKS];
   int seen[TILE_BLOCKS], count = 0;
@@ -235,7 +235,10 @@ LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_den
     if (bits != 0) seen[count++] = s;
     else lit[s] = (color_lanes){{lanes_set(0), lanes_set(0), lanes_set(0)}};
   }
-  for (int k = 0; k < count; k++) place_slab(job, of[seen[k]], patch_count, &tile->slabs[seen[k]]);
+  for (int k = 0; k < count; k++) {
+    place_slab(job, of[seen[k]], patch_count, &tile->slabs[seen[k]]);
+    if (weighed) weigh_slab(job, of[seen[k]], patch_count, &tile->slabs[seen[k]]);
+  }
   for (int k = 0; k < count; k++) {
     block_slab *slab = &tile->slabs[seen[k]];
     find_slopes(job, slab, of[seen[k]], patch_count);
@@ -310,7 +313,7 @@ LANES_INLINE uint32_t shade_patches(const shade_job *job, const tile_slab *tile,
       keep_block(&packed, &slab, ways, patch_count, densities, &packed.blocks[block]);
     else pack_block(&packed, &slab, ways, patch_count, bits[block], densities, &packed.blocks[block]);
   }
-  light_slabs(job, &packed, densities, patch_count, lit, samples);
+  light_slabs(job, &packed, densities, patch_count, is_weighed(tile), lit, samples);
   uint32_t open = blocks & ~seen;
   for (; seen != 0; seen &= seen - 1) {
     int block = __builtin_ctz(seen);

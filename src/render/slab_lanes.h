@@ -5,7 +5,7 @@
 #ifndef HL_RENDER_SLAB_LANES_H
 #define HL_RENDER_SLAB_LANES_H
 
-#include "fill/gradient_lanes.h"
+#include "fill/steepness_lanes.h"
 #include "render/slab.h"
 #include "shadow/attenuate_lanes.h"
 
@@ -38,12 +38,9 @@ LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lan
   return g;
 }
 
-/* Step 12. df/dframe = (dindex/dframe)^T df/dindex, at a point of frame space; stored units. */
+/* Step 12, at a point of frame space; stored units per frame unit. */
 LANES_INLINE lanes3 gradient(const shade_volume *volume, lanes3 point, uint32_t active, uint32_t starts) {
-  const float(*m)[4] = volume->to_index;
-  lanes3 at = {row_of_point(m[0], point), row_of_point(m[1], point), row_of_point(m[2], point)};
-  lanes3 slope = slopes_at(volume->grid, volume->kernel, at, active, starts);
-  return add_scaled3(add_scaled3(scale3(set3(m[2]), slope.z), set3(m[1]), slope.y), set3(m[0]), slope.x);
+  return gradient_in_frame(volume->grid, volume->kernel, volume->to_index, point, active, starts);
 }
 
 /* One volume's way through the slab: its densities on the two sheets, and the part of the way that is in its
@@ -60,12 +57,14 @@ typedef struct block_density {
   lanes before, after; /* coordinates in the tables: where the slab's covered part starts and ends */
   way_sums sums;       /* between the two */
   lanes extinction;    /* averaged over the slab, 0 outside the box */
-  lanes seen;          /* where its matter is seen: fraction of the way through the slab's covered part */
-  lanes evenly;        /* where it would be seen if its extinction were even */
-  lanes_int sloped;    /* where the gradient is known */
-  lanes3 slope;        /* where the matter is seen; elsewhere 0 */
-  lanes3 normal;       /* unit, away from the matter */
-  lanes surface;       /* 1 for a surface, falling to 0 for a medium, which has no normal */
+  lanes centre;        /* in joined lanes: the extinction's centre of gravity in the slab, 0 to 1 */
+  lanes factor;     /* with gradient opacity: what it multiplies extinction by; sums and extinction have it */
+  lanes seen;       /* where its matter is seen: fraction of the way through the slab's covered part */
+  lanes evenly;     /* where it would be seen if its extinction were even */
+  lanes_int sloped; /* where the gradient is known */
+  lanes3 slope;     /* where the matter is seen; elsewhere 0 */
+  lanes3 normal;    /* unit, away from the matter */
+  lanes surface;    /* 1 for a surface, falling to 0 for a medium, which has no normal */
   lanes light_first,
       light_last; /* the light's way within its box to where the slab's covered part starts and ends */
 } block_density;
@@ -199,8 +198,9 @@ LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, bloc
     block_density *d = &densities[i];
     if (!d->there) continue;
     const shade_volume *volume = d->patch->volume;
-    d->slope = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
     d->sloped = slab->seen & (d->sums.extinction > 0.0f);
+    if (volume->classifier->steepness != NULL) continue; /* weigh_slab() found the slope */
+    d->slope = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
     if (!volume->phong) d->sloped &= d->sums.extinction * slab->part.length * g->path > THIN_DEPTH;
     uint32_t active = volume->visible && (volume->phong || (volume->lit && shadowed)) ? lanes_bits(d->sloped)
                                                                                       : 0;
@@ -287,23 +287,34 @@ LANES_INLINE void join_parts(const block_density *densities, int count, block_sl
 LANES_INLINE void classify_joined(block_density *densities, int count, block_slab *slab) {
   join_parts(densities, count, slab);
   int joined = lanes_bits(slab->joined) != 0;
-  slab->centre = lanes_set(0);
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
     if (!d->there) continue;
     classify_way(d, d->way.part);
     d->extinction = d->sums.extinction * d->way.part.length;
     if (!joined) continue;
-    if (d->patch->volume->visible)
-      slab->centre = lanes_fma(
-          d->extinction, lanes_fma(d->way.part.length, centre_of_way(d), d->way.part.begin), slab->centre);
+    d->centre = lanes_fma(d->way.part.length, centre_of_way(d), d->way.part.begin);
     classify_way(d, slab->part);
   }
 }
 
+/* Adds up the visible volumes' extinction, and finds the pixels in which there is some. */
+LANES_INLINE void total_slab(const block_density *densities, int count, block_slab *slab) {
+  int joined = lanes_bits(slab->joined) != 0;
+  slab->total = slab->centre = lanes_set(0);
+  for (int i = 0; i < count; i++) {
+    const block_density *d = &densities[i];
+    if (!d->there || !d->patch->volume->visible) continue;
+    slab->total = slab->total + d->extinction;
+    if (joined) slab->centre = lanes_fma(d->extinction, d->centre, slab->centre);
+  }
+  slab->centre = slab->centre / lanes_max(slab->total, lanes_set(1e-30f));
+  slab->seen = slab->open & (slab->total > 0.0f);
+  slab->opacity = lanes_set(0);
+}
+
 /* Step 13: the slab's extinction and the pixels in which it is visible. */
 LANES_INLINE void classify_slab(block_density *densities, int count, block_slab *slab) {
-  slab->total = lanes_set(0);
   if (count == 1) {
     slab->part = densities->way.part;
     slab->joined = lanes_set_int(0);
@@ -312,12 +323,7 @@ LANES_INLINE void classify_slab(block_density *densities, int count, block_slab 
   } else {
     classify_joined(densities, count, slab);
   }
-  for (int i = 0; i < count; i++)
-    if (densities[i].there && densities[i].patch->volume->visible)
-      slab->total = slab->total + densities[i].extinction;
-  slab->centre = slab->centre / lanes_max(slab->total, lanes_set(1e-30f));
-  slab->seen = slab->open & (slab->total > 0.0f);
-  slab->opacity = lanes_set(0);
+  total_slab(densities, count, slab);
 }
 
 /* Finds the slab's geometry and opacity, and where it is seen. */
@@ -336,16 +342,48 @@ LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int
   slab->place = seen_at;
 }
 
+/* Whether some volume's extinction depends on more than its value, so that weigh_slab() has work. */
+LANES_INLINE int is_weighed(const tile_slab *tile) {
+  for (int i = 0; i < tile->patch_count; i++)
+    if (tile->patches[i].volume->classifier->steepness != NULL) return 1;
+  return 0;
+}
+
+/* Gradient opacity, after place_slab(): multiplies the volumes' extinction by the factor of the gradient
+ * where their matter would be seen without it, and places the slab again. */
+LANES_INLINE void weigh_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
+  const block_geometry *g = &slab->geometry;
+  for (int i = 0; i < count; i++) {
+    block_density *d = &densities[i];
+    const shade_volume *volume = d->patch->volume;
+    if (!d->there || volume->classifier->steepness == NULL) continue;
+    lanes place = lanes_fma(slab->part.length, d->seen, slab->part.begin);
+    uint32_t active = lanes_bits(slab->seen & (d->sums.extinction > 0.0f));
+    d->slope = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
+    if (active != 0)
+      d->slope = gradient(volume, add_scaled3(g->start, g->step_sheet, place), active, slab->starts);
+    d->factor = factor_of_slope(volume->classifier, d->slope);
+    d->extinction = d->extinction * d->factor;
+    d->sums.extinction = d->sums.extinction * d->factor;
+    d->sums.integral = d->sums.integral * d->factor;
+    d->sums.moment = d->sums.moment * d->factor;
+  }
+  total_slab(densities, count, slab);
+  place_slab(job, densities, count, slab);
+}
+
 /* Steps 12 and 13 for a slab that slab_of_block() set up. Returns the pixels in which something is visible,
  * one bit each. If there are none, the opacity, 0, is the only result that is set. */
-LANES_INLINE uint32_t find_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
+LANES_INLINE uint32_t find_slab(const shade_job *job, const tile_slab *tile, block_density *densities,
+                                block_slab *slab) {
+  const int count = tile->patch_count;
   classify_slab(densities, count, slab);
-  uint32_t bits = lanes_bits(slab->seen);
-  if (bits == 0) return 0;
+  if (lanes_bits(slab->seen) == 0) return 0;
   place_slab(job, densities, count, slab);
+  if (is_weighed(tile)) weigh_slab(job, densities, count, slab);
   find_slopes(job, slab, densities, count);
   find_normals(densities, count);
-  return bits;
+  return lanes_bits(slab->seen);
 }
 
 #endif

@@ -305,6 +305,9 @@ static void set_up_jobs(sweep *sweep) {
     attenuate_job *job = &sweep->attenuate[i];
     *job = (attenuate_job){
         .path = sweep->shade_lights[i].path, .spacing = (float)spacing, .channels = sweep->channels};
+    vec3 way = sweep->lights[i].source->direction;
+    if (sweep->lights[i].source->parallel)
+      vec3_store(job->through, vec3_scale(way, spacing / fmax(vec3_dot(way, normal), 1e-3)));
     if (sweep->lights[i].shadow.method != NULL) job->stride = sweep->lights[i].shadow.buffer->stride;
   }
 }

@@ -117,7 +117,10 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
                                         .density = slab.current,
                                         .enter = slab.enter,
                                         .leave = slab.leave,
-                                        .uncut = slab.uncut};
+                                        .uncut = slab.uncut,
+                                        .grid = &sweep->content.grids[g],
+                                        .kernel = sweep->content.kernel,
+                                        .to_index = sweep->shade_volumes[g].to_index};
     for (int c = 0; c < HL_CHANNELS; c++) volumes[count].weight[c] = (float)scene->attenuation_color[c];
     count++;
   }

@@ -22,21 +22,21 @@ static hl_status check_order(const hl_checker *check, const char *key, size_t in
 }
 
 static hl_status check_value(const hl_checker *check, const char *key, size_t index, double value) {
-  char element[48];
+  char element[64];
   snprintf(element, sizeof element, "%s/%zu/0", key, index);
   return hl_check_range(check, element, value, -1e30, 1e30, "give a data value between -1e30 and 1e30");
 }
 
-static hl_status check_opacity_points(const hl_checker *check, const hl_transfer_function *function) {
-  hl_status status = hl_check_count(check, "opacity", function->opacity, function->opacity_count,
-                                    HL_LIMIT_POINTS);
-  for (size_t p = 0; status == HL_OK && p < function->opacity_count; p++) {
-    const hl_opacity_point *point = &function->opacity[p];
-    char element[48];
-    snprintf(element, sizeof element, "opacity/%zu/1", p);
-    if ((status = check_value(check, "opacity", p, point->value)) != HL_OK) return status;
+static hl_status check_opacity_points(const hl_checker *check, const char *key,
+                                      const hl_opacity_point *points, size_t count) {
+  hl_status status = hl_check_count(check, key, points, count, HL_LIMIT_POINTS);
+  for (size_t p = 0; status == HL_OK && p < count; p++) {
+    const hl_opacity_point *point = &points[p];
+    char element[64];
+    snprintf(element, sizeof element, "%s/%zu/1", key, p);
+    if ((status = check_value(check, key, p, point->value)) != HL_OK) return status;
     if (p > 0)
-      status = check_order(check, "opacity", p, p > 1 ? point[-2].value : 0, point[-1].value, point->value);
+      status = check_order(check, key, p, p > 1 ? point[-2].value : 0, point[-1].value, point->value);
     if (status == HL_OK)
       status = hl_check_range(check, element, point->opacity, 0, 1, "give an opacity from 0 to 1");
   }
@@ -65,7 +65,11 @@ hl_status hl_transfer_function_check(const hl_transfer_function *function, const
   hl_checker check = {error, ""};
   snprintf(check.place, sizeof check.place, "%s", place);
   hl_status status = hl_check_settings(&check, HL_SETTINGS_TRANSFER_FUNCTION, function, 0);
-  if (status == HL_OK) status = check_opacity_points(&check, function);
+  if (status == HL_OK)
+    status = check_opacity_points(&check, "opacity", function->opacity, function->opacity_count);
+  if (status == HL_OK)
+    status = check_opacity_points(&check, "gradient_opacity", function->gradient_opacity,
+                                  function->gradient_opacity_count);
   return status == HL_OK ? check_color_points(&check, function) : status;
 }
 

@@ -114,17 +114,22 @@ static hl_status copy_text(hl_context *context, const char *text, const char **c
 
 hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_function *from,
                                     hl_transfer_function *to, hl_error *error) {
-  void *opacity = NULL, *color = NULL;
+  void *opacity = NULL, *color = NULL, *gradient = NULL;
   hl_status status = copy_array(context, from->opacity, from->opacity_count, sizeof *from->opacity,
                                 "a transfer function", &opacity, error);
   if (status != HL_OK) return status;
   status = copy_array(context, from->color, from->color_count, sizeof *from->color, "a transfer function",
                       &color, error);
+  if (status == HL_OK)
+    status = copy_array(context, from->gradient_opacity, from->gradient_opacity_count,
+                        sizeof *from->gradient_opacity, "gradient opacity", &gradient, error);
   if (status != HL_OK) {
     hl_release(context, opacity);
+    hl_release(context, color);
     return status;
   }
-  *to = (hl_transfer_function){from->unit_distance, opacity, from->opacity_count, color, from->color_count};
+  *to = (hl_transfer_function){from->unit_distance, opacity,  from->opacity_count,         color,
+                               from->color_count,   gradient, from->gradient_opacity_count};
   return HL_OK;
 }
 

@@ -23,15 +23,24 @@ static size_t count_not_above(const void *points, size_t count, size_t stride, d
   return low;
 }
 
-double hl_transfer_function_opacity(const hl_transfer_function *function, double value) {
-  const hl_opacity_point *points = function->opacity;
-  if (function->opacity_count == 0 || isnan(value)) return 0;
-  size_t after = count_not_above(points, function->opacity_count, sizeof *points, value);
+/* points: at least one. */
+static double opacity_between(const hl_opacity_point *points, size_t count, double value) {
+  size_t after = count_not_above(points, count, sizeof *points, value);
   if (after == 0) return points[0].opacity;
-  if (after == function->opacity_count) return points[after - 1].opacity;
+  if (after == count) return points[after - 1].opacity;
   const hl_opacity_point *a = &points[after - 1], *b = &points[after];
   double t = (value - a->value) / (b->value - a->value);
   return a->opacity + t * (b->opacity - a->opacity);
+}
+
+double hl_transfer_function_opacity(const hl_transfer_function *function, double value) {
+  if (function->opacity_count == 0 || isnan(value)) return 0;
+  return opacity_between(function->opacity, function->opacity_count, value);
+}
+
+double hl_transfer_function_gradient_opacity(const hl_transfer_function *function, double gradient) {
+  if (function->gradient_opacity_count == 0) return 1;
+  return opacity_between(function->gradient_opacity, function->gradient_opacity_count, gradient);
 }
 
 void hl_transfer_function_color(const hl_transfer_function *function, double value, double color[3]) {
@@ -88,6 +97,7 @@ void hl_transfer_function_release(hl_context *context, hl_transfer_function *fun
   if (context == NULL || function == NULL) return;
   hl_release(context, (void *)function->opacity);
   hl_release(context, (void *)function->color);
+  hl_release(context, (void *)function->gradient_opacity);
   *function = (hl_transfer_function){0};
 }
 

@@ -9,6 +9,8 @@
 
 /* opacity (per unit_distance) and linear colour of a data value: piecewise linear, ends held. */
 double hl_transfer_function_opacity(const hl_transfer_function *function, double value);
+/* What gradient opacity multiplies extinction by, for a gradient's length; 1 without gradient opacity. */
+double hl_transfer_function_gradient_opacity(const hl_transfer_function *function, double gradient);
 void hl_transfer_function_color(const hl_transfer_function *function, double value, double color[3]);
 
 /* True if some value in [low, high] has opacity above zero. */

@@ -17,12 +17,16 @@ typedef struct attenuate_volume {
   uint32_t blocks;            /* blocks with density on either */
   float weight[HL_CHANNELS];  /* relative extinction of R, G, B */
   int uncut;                  /* the box does not cut the slab here */
+  const grid *grid;           /* of gradient opacity: the gradient's */
+  const kernel *kernel;
+  const float (*to_index)[4]; /* frame space to index space */
 } attenuate_volume;
 
 typedef struct attenuate_job {
   sheet_rays rays; /* light pixels -> frame space */
   float path; /* parallel light: sheet spacing / |l.h|; point light: the sheet spacing, which pixels divide by
                  their own |l.h| */
+  float through[3];      /* parallel: from one sheet to the next along the light's rays; frame units */
   float height, spacing; /* of the sheet above the first, and to the one before; frame units */
   int sheet;             /* k: the slab lies between sheets k-1 and k */
   const attenuate_volume *volumes;

@@ -2,6 +2,7 @@
 #ifndef HL_SHADOW_ATTENUATE_LANES_H
 #define HL_SHADOW_ATTENUATE_LANES_H
 
+#include "fill/steepness_lanes.h"
 #include "grid/classifier_lanes.h"
 #include "shadow/attenuate.h"
 #include "view/rays_lanes.h"
@@ -55,6 +56,29 @@ LANES_INLINE void cut_way(covered_span span, table_coordinate *a, table_coordina
   *b = split_coordinate(lanes_fma(way, lanes_min(span.begin + span.length, lanes_set(1.0f)), from));
 }
 
+/* Where a fraction of the way through the slab is reached on the rays of a block; frame space. Derived: on
+ * the ray E + s W with s = step / H, H = h.W, moving one sheet gives W ds / H. */
+LANES_INLINE lanes3 position_in_slab(const attenuate_job *job, lanes u, lanes v, lanes fraction) {
+  const sheet_rays *rays = &job->rays;
+  lanes3 step = set3(job->through), end = rays_positions(rays, u, v);
+  if (rays->perspective) step = scale3(rays_directions(rays, u, v), job->spacing / rays_climb(rays, u, v));
+  return add_scaled3(end, step, fraction - 1.0f);
+}
+
+/* What gradient opacity multiplies a volume's extinction by, in a block: at the centre of gravity of the
+ * slab's matter. corner: the block's first pixel. */
+LANES_INLINE lanes factor_in_block(const attenuate_job *job, const attenuate_volume *volume,
+                                   const int corner[2], const way_sums *sums, lanes a, lanes b,
+                                   covered_span span) {
+  way_means means = means_of_way(a, b, sums);
+  lanes centre = lanes_fma(span.length, means.from_a / (means.from_a + means.from_b), span.begin);
+  uint32_t active = lanes_bits(sums->extinction * span.length > 0.0f);
+  if (active == 0) return lanes_set(0);
+  lanes3 point = position_in_slab(job, block_u(corner[0]), block_v(corner[1]), centre);
+  return factor_of_slope(volume->classifier,
+                         gradient_in_frame(volume->grid, volume->kernel, volume->to_index, point, active, 1));
+}
+
 typedef struct attenuated_block {
   int taken, lit;
 } attenuated_block;
@@ -62,6 +86,7 @@ typedef struct attenuated_block {
 /* Attenuates one block. taken: whether it absorbed any light; lit: whether enough is left. */
 LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volume_count, int channels,
                                               int tile_x, int tile_y, int block) {
+  const int x = block % 4 * BLOCK, y = block / 4 * BLOCK, corner[2] = {tile_x * TILE + x, tile_y * TILE + y};
   lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (int i = 0; i < volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];
@@ -74,14 +99,15 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     covered_span span = covered_block(volume->enter, volume->leave, volume->uncut, block, job->height,
                                       job->spacing);
     if (volume->enter != NULL) cut_way(span, &a, &b);
-    lanes extinction = sums_of_way(volume->classifier, a, b).extinction * span.length;
+    way_sums sums = sums_of_way(volume->classifier, a, b);
+    lanes extinction = sums.extinction * span.length;
+    if (volume->classifier->steepness != NULL)
+      extinction = extinction * factor_in_block(job, volume, corner, &sums, a.x, b.x, span);
     for (int c = 0; c < channels; c++) depth[c] = lanes_add_scaled(depth[c], extinction, volume->weight[c]);
   }
   lanes any = channels == 1 ? depth[0] : depth[0] + depth[1] + depth[2];
   if (lanes_bits(any > 0.0f) == 0) return (attenuated_block){0, 1};
-  int x = block % 4 * BLOCK, y = block / 4 * BLOCK;
-  lanes path = path_through_sheet(&job->rays, job->path, block_u(tile_x * TILE + x),
-                                  block_v(tile_y * TILE + y));
+  lanes path = path_through_sheet(&job->rays, job->path, block_u(corner[0]), block_v(corner[1]));
   lanes greatest = lanes_set(0);
   for (int c = 0; c < channels; c++) {
     float *at = job->transmittance[c] + (size_t)y * job->stride + x;

@@ -124,6 +124,23 @@ static void make_balls_interpolating(stage *set) {
   set->type = HL_VOXEL_U8;
   set->scene.render.kernel = HL_KERNEL_INTERPOLATING;
 }
+/* Opacity where the balls' density rises, none in their middles. */
+static const hl_opacity_point STEEP[] = {{0.02, 0}, {0.08, 1}};
+static void make_gradient(stage *set) {
+  make_balls(set);
+  set->volumes[0].transfer_function.gradient_opacity = STEEP;
+  set->volumes[0].transfer_function.gradient_opacity_count = 2;
+  set->lights[0].angular_diameter_deg = 4;
+}
+static void make_gradient_medium(stage *set) {
+  make_gradient(set);
+  OPACITY(&set->volumes[0], HAZE);
+  set->volumes[0].shading = HL_SHADING_NONE;
+}
+static void make_gradient_backlit(stage *set) {
+  make_gradient(set);
+  memcpy(set->lights[0].direction, (double[3]){-0.5, 1, -0.4}, sizeof set->lights[0].direction);
+}
 static void make_balls_splat(stage *set) {
   make_balls_medium(set);
   set->scene.render.reconstruction = HL_RECONSTRUCTION_SPLAT;
@@ -422,6 +439,9 @@ static const scenario SCENARIOS[] = {
     {"spot-inside", make_spot_inside, 0.006, {0}},
     {"spot-in-smoke", make_spot_in_smoke, 0.006, {0}},
     {"balls-interpolating", make_balls_interpolating, 0.006, {0}},
+    {"gradient", make_gradient, 0.002, {0.0015, 0.002, 0.0015}},
+    {"gradient-medium", make_gradient_medium, 0.002, {0.0015, 0.002, 0.0015}},
+    {"gradient-backlit", make_gradient_backlit, 0.002, {0}},
 };
 
 const scenario *compare_scenarios(size_t *count) {

@@ -198,7 +198,8 @@ static void test_grid_period(void **state) {
   description.voxels = ones;
   hl_opacity_point opacity = {0, 0.9999};
   hl_color_point white = {0, {1, 1, 1}};
-  plane.transfer_function = (hl_transfer_function){0.01, &opacity, 1, &white, 1};
+  plane.transfer_function = (hl_transfer_function){
+      .unit_distance = 0.01, .opacity = &opacity, .opacity_count = 1, .color = &white, .color_count = 1};
   plane.shading = HL_SHADING_NONE;
   plane.casts_shadow = 0;
   if (hl_volume_create(open->context, &description, &plane.volume, &error) != HL_OK)

@@ -209,7 +209,7 @@ static void test_clear_ways_are_clear(void **state) {
       longest += clear >= 1;
       for (int i = 0; i < 20 && clear > 0; i++) {
         vec3 q = vec3_add(p, vec3_scale(direction, fmin(clear, 1) * i / 19.0));
-        assert_true(hl_reference_extinction(&f.volume, hl_reference_value(&f.volume, q)) == 0);
+        assert_true(hl_reference_extinction(&f.volume, hl_reference_value(&f.volume, q), q) == 0);
       }
     }
   }
@@ -226,8 +226,10 @@ static void test_nonfinite_voxels(void **state) {
   field f;
   field_open(&f, voxels);
   field_make(&f, HL_KERNEL_BSPLINE);
-  assert_true(hl_reference_extinction(&f.volume, hl_reference_value(&f.volume, (vec3){9, 9, 2})) == 0);
-  double solid = hl_reference_extinction(&f.volume, hl_reference_value(&f.volume, (vec3){9, 9, 10}));
+  assert_true(hl_reference_extinction(&f.volume, hl_reference_value(&f.volume, (vec3){9, 9, 2}),
+                                      (vec3){9, 9, 2}) == 0);
+  double solid = hl_reference_extinction(&f.volume, hl_reference_value(&f.volume, (vec3){9, 9, 10}),
+                                         (vec3){9, 9, 10});
   assert_near(solid, -log(0.5), 1e-12);
   for (double z = 0; z < 13; z += 0.25)
     assert_true(isfinite(vec3_length(hl_reference_gradient(&f.volume, (vec3){9, 9, z}))));

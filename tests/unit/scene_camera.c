@@ -63,7 +63,8 @@ static void frames_what_is_visible(void **state) {
   hl_volume_release(p.volume);
   p.volume = p.scene_volume.volume = make_volume(p.context, N, values);
   hl_opacity_point points[] = {{0.5, 0}, {0.6, 1}};
-  p.scene_volume.transfer_function = (hl_transfer_function){1, points, 2, NULL, 0};
+  p.scene_volume.transfer_function = (hl_transfer_function){
+      .unit_distance = 1, .opacity = points, .opacity_count = 2};
   for (int n = 0; n < 24; n++) {
     p.description.width = n % 3 == 0 ? 900 : 300;
     p.description.height = n % 3 == 1 ? 900 : 300;
@@ -151,7 +152,8 @@ static void frames_by_the_farthest_voxels(void **state) {
                                          : n % 3 == 1 ? HL_VOXEL_U16
                                                       : HL_VOXEL_F32,
                                          (unsigned)n);
-    scene->transfer_function = (hl_transfer_function){1, points, n % 4 ? 4 : 7, NULL, 0};
+    scene->transfer_function = (hl_transfer_function){
+        .unit_distance = 1, .opacity = points, .opacity_count = n % 4 ? 4 : 7};
     scene->scale = 1 + 0.1 * n;
     scene->rotate_angle_deg = 23 * n;
     memcpy(scene->rotate_axis, (double[3]){0.3, 1, 0.2 * n}, sizeof scene->rotate_axis);
@@ -293,7 +295,8 @@ static void parts_of_bar(parts *p, bool specks, hl_opacity_point points[2]) {
   p->volume = p->scene_volume.volume = bent_bar(p->context, specks);
   points[0] = (hl_opacity_point){0.5, 0};
   points[1] = (hl_opacity_point){1, 1};
-  p->scene_volume.transfer_function = (hl_transfer_function){1, points, 2, NULL, 0};
+  p->scene_volume.transfer_function = (hl_transfer_function){
+      .unit_distance = 1, .opacity = points, .opacity_count = 2};
   p->description.width = p->description.height = 100;
 }
 

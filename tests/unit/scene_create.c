@@ -413,7 +413,8 @@ static void transfer_function_closed_forms(void **state) {
   (void)state;
   hl_opacity_point points[] = {{0, 0}, {10, 0}, {10, 0.5}, {20, 1}, {30, 0}, {40, 0}, {40, 0.25}};
   hl_color_point colors[] = {{0, {0, 0, 1}}, {4, {1, 0, 0}}, {4, {0, 1, 0}}, {8, {0, 1, 1}}};
-  hl_transfer_function f = {1, points, 7, colors, 4};
+  hl_transfer_function f = {
+      .unit_distance = 1, .opacity = points, .opacity_count = 7, .color = colors, .color_count = 4};
   const double expected[][2] = {{-5, 0},   {9.999, 0}, {10, 0.5},  {15, 0.75},  {20, 1},
                                 {25, 0.5}, {35, 0},    {40, 0.25}, {1e9, 0.25}, {NAN, 0}};
   for (size_t n = 0; n < sizeof expected / sizeof *expected; n++)
@@ -447,7 +448,8 @@ static void visible_agrees_with_sampling(void **state) {
       points[p] = (hl_opacity_point){value, rand() % 3 == 0 ? rand() % 4 * 0.25 : 0};
       if (p % 2 == 1 || rand() % 2) value += 1 + rand() % 3;
     }
-    hl_transfer_function f = {1, points, 8, NULL, 0};
+    hl_transfer_function f = {
+        .unit_distance = 1, .opacity = points, .opacity_count = 8, .color = NULL, .color_count = 0};
     double low = rand() % 200 * 0.1 - 2, high = low + rand() % 60 * 0.1;
     int found = 0;
     for (int s = 0; s <= 1000; s++)
@@ -482,13 +484,15 @@ static void empty_value_is_the_commonest_transparent_one(void **state) {
   sv.volume = volume;
   hl_opacity_point low[] = {{1, 0}, {2, 1}}, band[] = {{4.5, 1}, {4.9, 0}, {5.1, 0}, {6, 1}},
                    none[] = {{0, 0.5}};
-  sv.transfer_function = (hl_transfer_function){1, low, 2, NULL, 0};
+  sv.transfer_function = (hl_transfer_function){.unit_distance = 1, .opacity = low, .opacity_count = 2};
   assert_true(hl_scene_volume_empty_value(&sv) == 0);
-  sv.transfer_function = (hl_transfer_function){1, band, 4, NULL,
-                                                0}; /* zero is opaque: the wall is the surroundings */
+  sv.transfer_function = (hl_transfer_function){
+      .unit_distance = 1,
+      .opacity = band,
+      .opacity_count = 4}; /* zero is opaque: the wall is the surroundings */
   assert_near(hl_scene_volume_empty_value(&sv), 5, 0.2);
   assert_true(hl_transfer_function_opacity(&sv.transfer_function, hl_scene_volume_empty_value(&sv)) == 0);
-  sv.transfer_function = (hl_transfer_function){1, none, 1, NULL, 0};
+  sv.transfer_function = (hl_transfer_function){.unit_distance = 1, .opacity = none, .opacity_count = 1};
   assert_true(hl_scene_volume_empty_value(&sv) < 0);
   hl_volume_release(volume);
   hl_context_destroy(context);

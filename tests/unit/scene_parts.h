@@ -60,7 +60,8 @@ static inline void parts_make(parts *p) {
   hl_scene_volume_defaults(&p->scene_volume);
   p->scene_volume.name = "cube";
   p->scene_volume.volume = p->volume;
-  p->scene_volume.transfer_function = (hl_transfer_function){1, p->opacity, 4, p->color, 3};
+  p->scene_volume.transfer_function = (hl_transfer_function){
+      .unit_distance = 1, .opacity = p->opacity, .opacity_count = 4, .color = p->color, .color_count = 3};
   hl_scene_description_defaults(&p->description);
   p->description.lights = &p->light;
   p->description.light_count = 1;

@@ -60,7 +60,11 @@ void bench_open(bench *bench, const size_t dimensions[3], hl_storage storage, co
   require(hl_volume_create(bench->context, &description, &bench->scene.volume, &error), &error);
   bench->opacity = (hl_opacity_point){0, 0.5};
   bench->color = (hl_color_point){0, {1, 1, 1}};
-  bench->scene.transfer_function = (hl_transfer_function){1, &bench->opacity, 1, &bench->color, 1};
+  bench->scene.transfer_function = (hl_transfer_function){.unit_distance = 1,
+                                                          .opacity = &bench->opacity,
+                                                          .opacity_count = 1,
+                                                          .color = &bench->color,
+                                                          .color_count = 1};
   affine3 placement = {axes, vec3_scale(middle, -1)};
   const grid_source source = {&bench->scene, hl_kernel_get(HL_KERNEL_BSPLINE), placement,
                               hl_scene_volume_empty_value(&bench->scene)};

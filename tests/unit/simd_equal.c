@@ -371,6 +371,11 @@ static void test_brick_ranges(void **unused) {
 
 /* A classifier of one ramp, from a bench. */
 static bench classifier_bench;
+/* The same with gradient opacity. */
+static classifier steep_classifier;
+static const classifier *classifier_of(int number) {
+  return number % 3 == 2 ? &steep_classifier : &classifier_bench.classifier;
+}
 
 /* Grids whose gradients are taken: of each type of voxel, and a thin one. */
 enum { GRADIENT_GRIDS = 4 };
@@ -408,6 +413,12 @@ static int open_classifier(void **unused) {
   bench_open(&classifier_bench, (size_t[3]){2, 2, 2}, HL_STORAGE_F32, voxels,
              mat3_from_columns((vec3){1, 0, 0}, (vec3){0, 1, 0}, (vec3){0, 0, 1}));
   bench_show(&classifier_bench, ramp, 4);
+  static float steepness[STEEPNESS_ENTRIES + 2];
+  uint32_t seed = 7;
+  fill_salted(steepness, STEEPNESS_ENTRIES + 2, &seed, 0, 1);
+  steep_classifier = classifier_bench.classifier;
+  steep_classifier.steepness = steepness;
+  steep_classifier.steepness_scale = 900;
   return 0;
 }
 
@@ -466,14 +477,18 @@ static void set_up_attenuate(attenuate_state *s, uint32_t *seed, int round) {
     fill_salted(s->density[v][0], 2 * TILE_PIXELS, seed, -0.1, 1.1);
     fill_salted(s->density[v][2], 2 * TILE_PIXELS, seed, 0, 2);
     if (round % 8 == 3) s->density[v][0][v] = NAN;
-    s->volumes[v] = (attenuate_volume){&classifier_bench.classifier,
+    static const float to_index[3][4] = {{0.4f, 0.1f, 0, 3}, {0, 0.3f, 0.1f, 2}, {0.1f, 0, 0.5f, 4}};
+    s->volumes[v] = (attenuate_volume){classifier_of(round + v),
                                        s->density[v][0],
                                        s->density[v][1],
                                        v == round % 3 ? s->density[v][2] : NULL,
                                        v == round % 3 ? s->density[v][3] : NULL,
                                        round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed)),
                                        {0, 0.5f, 1},
-                                       round % 5 == 4};
+                                       round % 5 == 4,
+                                       &gradient_bench[(round + v) % GRADIENT_GRIDS].grid,
+                                       hl_kernel_get((hl_kernel)(round % 3)),
+                                       to_index};
   }
   for (int c = 0; c < 2 * HL_CHANNELS; c++) {
     fill_salted(&s->out.field[c][0][0], TILE_PIXELS, seed, 0, 1);
@@ -782,7 +797,7 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
   for (int v = 0; v < 2; v++) {
     fill_salted(s->density[2 * v], 2 * TILE_PIXELS, seed, -0.1, 1.1);
     if (round % 8 == 3) s->density[2 * v][20] = NAN;
-    s->volumes[v] = (shade_volume){&classifier_bench.classifier,
+    s->volumes[v] = (shade_volume){classifier_of(round / 2 + v),
                                    &gradient_bench[(round + v) % GRADIENT_GRIDS].grid,
                                    hl_kernel_get((hl_kernel)(round % 3)),
                                    (round + v) % 2,

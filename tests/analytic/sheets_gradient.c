@@ -1,0 +1,227 @@
+/* analytic/sheets_gradient.c - gradient opacity: the length of a ramp's and of a paraboloid's gradient are
+ * known everywhere, so that what the eye sees and what light passes are. Asked of the sheets and of the
+ * reference. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+
+enum { SIDE = 24, PIXELS = SIDE * SIDE, N = 24 };
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+}
+
+static void render(stage *set, bool reference, float *pixels) {
+  hl_reference_options options;
+  hl_reference_options_defaults(&options);
+  options.light_points = 4;
+  if (reference) stage_render(set, &options, pixels);
+  else stage_render_sheets(set, pixels);
+}
+
+typedef double field_function(double x, double y, double z);
+
+/* A cube of N^3 voxels, each `edge` long, around the origin; the field is a function of world positions. */
+static hl_scene_volume *add_cube(stage *set, field_function *field, double edge) {
+  static float voxels[N * N * N];
+  float *out = voxels;
+  for (int k = 0; k < N; k++)
+    for (int j = 0; j < N; j++)
+      for (int i = 0; i < N; i++)
+        *out++ = (float)field((i + 0.5 - N / 2.0) * edge, (j + 0.5 - N / 2.0) * edge,
+                              (k + 0.5 - N / 2.0) * edge);
+  const double spacing[3] = {edge, edge, edge}, low = -N / 2.0 * edge;
+  return stage_add_grid(set, (size_t[3]){N, N, N}, spacing, (vec3){low, low, low}, voxels);
+}
+
+static void set_gradient(hl_scene_volume *volume, const hl_opacity_point *points, size_t count) {
+  volume->transfer_function.gradient_opacity = points;
+  volume->transfer_function.gradient_opacity_count = count;
+}
+
+static const float *middle(const float *pixels) { return &pixels[4 * (SIDE / 2 * SIDE + SIDE / 2)]; }
+
+/* ---- a ramp: its gradient has the length 3, whatever its voxels and units ---- */
+
+static double ramp(double x, double y, double z) {
+  (void)y, (void)z;
+  return 3 * x;
+}
+
+static const hl_opacity_point HALF_AT_THREE[] = {{1, 0}, {4, 0.75}}; /* 1/2 at 3 */
+
+/* Opacity 0.1 per unit over the cube's 12 units, half of it counted: alpha = 1 - 0.9^(12 / 2). */
+static void test_ramp(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  static const double edges[] = {0.5, 0.25, 2};
+  for (int k = 0; k < 18; k++) {
+    stage set;
+    stage_open(&set);
+    set.scene.width = set.scene.height = SIDE;
+    double edge = edges[k % 3];
+    set.scene.camera.height = N * edge;
+    stage_look(&set, (vec3){0, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+    if (k % 2) set.scene.camera.type = HL_CAMERA_PERSPECTIVE, set.scene.camera.fovy_deg = 5;
+    hl_scene_volume *cube = add_cube(&set, ramp, edge);
+    stage_set_opacity(&set, cube, 0.1, 2 * edge);
+    set_gradient(cube, HALF_AT_THREE, 2);
+    if (k % 4 > 1) cube->shading = HL_SHADING_PHONG;
+    set.scene.render.kernel = (hl_kernel)(k % 3 == 2 ? HL_KERNEL_LINEAR : HL_KERNEL_BSPLINE);
+    render(&set, k >= 12, pixels);
+    assert_near((double)middle(pixels)[3], 1 - pow(0.9, N / 2 / 2), k % 2 ? 2e-3 : 2e-5);
+    stage_close(&set);
+  }
+}
+
+/* ---- a paraboloid: its gradient's length is twice the distance from the middle, which the kernel keeps ----
+ */
+
+static double paraboloid(double x, double y, double z) { return x * x + y * y + z * z; }
+
+enum { SHELL_POINTS = 4 };
+static const hl_opacity_point SHELL[SHELL_POINTS] = {{0, 0}, {10, 0}, {13, 1}, {16, 0}};
+
+/* What SHELL says at a distance from the middle. */
+static double factor_at(double distance) {
+  double gradient = 2 * distance;
+  return fmax(0, fmin((gradient - 10) / 3, (16 - gradient) / 3));
+}
+
+/* The integral of the factor along a ray parallel to z that passes the middle at `beside`. */
+static double way_through_shell(double beside) {
+  enum { STEPS = 4000 };
+  double sum = 0;
+  for (int i = 0; i < STEPS; i++) {
+    double z = ((i + 0.5) / STEPS - 0.5) * N;
+    sum += factor_at(sqrt(beside * beside + z * z)) * N / STEPS;
+  }
+  return sum;
+}
+
+static void test_ball(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 4; k++) {
+    stage set;
+    stage_open(&set);
+    set.scene.width = set.scene.height = SIDE;
+    set.scene.camera.height = N;
+    stage_look(&set, (vec3){0, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+    hl_scene_volume *cube = add_cube(&set, paraboloid, 1);
+    stage_set_opacity(&set, cube, 0.3, 1);
+    set_gradient(cube, SHELL, SHELL_POINTS);
+    cube->clipped = 1; /* at the cube's faces gradients are shorter */
+    for (int a = 0; a < 3; a++) cube->clip_min[a] = -9, cube->clip_max[a] = 9;
+    set.scene.render.sheet_spacing = k % 2 ? 0.5 : 0.25;
+    render(&set, k >= 2, pixels);
+    for (int y = 4; y < SIDE - 4; y++)
+      for (int x = 4; x < SIDE - 4; x++) {
+        double way = way_through_shell(hypot(x + 0.5 - SIDE / 2.0, y + 0.5 - SIDE / 2.0));
+        assert_near((double)pixels[4 * (y * SIDE + x) + 3], 1 - pow(0.7, way),
+                    k >= 2  ? 1e-3
+                    : k % 2 ? 6e-3
+                            : 2.5e-3);
+      }
+    stage_close(&set);
+  }
+}
+
+/* ---- shadows: light loses to the ramp what the factor leaves of its extinction ---- */
+
+/* The light on a plate under the ramp, seen from below: the plate alone is seen, and the ramp casts its
+ * shadow. */
+static double light_below_ramp(bool reference, int method, const hl_opacity_point *points, double intensity) {
+  static float pixels[PIXELS * 4];
+  stage set;
+  stage_open(&set);
+  set.scene.width = set.scene.height = SIDE;
+  set.scene.camera.height = 10;
+  stage_look(&set, (vec3){0, 30, -50}, (vec3){0, 0, -16}, (vec3){0, 1, 0});
+  hl_scene_volume *cube = add_cube(&set, ramp, 1);
+  stage_set_opacity(&set, cube, 0.1, 2);
+  set_gradient(cube, points, 2);
+  cube->visible = 0;
+  hl_scene_volume *plate = stage_add_grid(&set, (size_t[3]){30, 30, 2}, (double[3]){1, 1, 1},
+                                          (vec3){-15, -15, -17}, NULL);
+  stage_set_opacity(&set, plate, 0.2, 1);
+  hl_light *light = stage_add_directional(&set, (vec3){0, 0, -1});
+  light->intensity = intensity;
+  if (method > 0) light->angular_diameter_deg = 6;
+  set.scene.render.shadows = method > 0 ? HL_SHADOWS_SOFT : HL_SHADOWS_HARD;
+  set.scene.render.soft_method = method == 3   ? HL_SOFT_SUBLIGHTS
+                                 : method == 2 ? HL_SOFT_PAPER
+                                               : HL_SOFT_CASCADE;
+  set.scene.render.light_samples = 4;
+  render(&set, reference, pixels);
+  double lit = (double)middle(pixels)[0] / (double)middle(pixels)[3];
+  stage_close(&set);
+  return lit;
+}
+
+static void test_ramp_shadow(void **state) {
+  (void)state;
+  static const hl_opacity_point all[] = {{0, 1}, {1, 1}}, none[] = {{0, 1}, {2, 0}};
+  for (int method = 0; method < 4; method++)
+    for (int reference = 0; reference < (method == 0 ? 2 : 1); reference++) {
+      double free = light_below_ramp(reference, method, none, 1),
+             half = light_below_ramp(reference, method, HALF_AT_THREE, 1),
+             whole = light_below_ramp(reference, method, all, 1);
+      assert_near(half / free, pow(0.9, N / 2.0 / 2), 4e-3);
+      assert_near(whole / free, pow(0.9, N / 2.0), 4e-3);
+      assert_true(free > 0.3);
+    }
+}
+
+/* ---- what the gradient hides casts no shadow within the matter either ---- */
+
+/* Half of the ramp's extinction is the same picture as a ramp of half the opacity: in a medium and on
+ * surfaces, lit by every method. */
+static void test_halved_ramp_is_a_thinner_one(void **state) {
+  (void)state;
+  static float pixels[2][PIXELS * 4];
+  for (int k = 0; k < 8; k++) {
+    for (int half = 0; half < 2; half++) {
+      stage set;
+      stage_open(&set);
+      set.scene.width = set.scene.height = SIDE;
+      set.scene.camera.height = 30;
+      stage_look(&set, (vec3){30, 20, 50}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+      hl_scene_volume *cube = add_cube(&set, ramp, 1);
+      double thin = 0.9 - 0.2 * (k / 4), thick = 1 - (1 - thin) * (1 - thin);
+      stage_set_opacity(&set, cube, half ? thin : thick, 4);
+      if (half == 0) set_gradient(cube, HALF_AT_THREE, 2);
+      if (k >= 4) cube->shading = HL_SHADING_PHONG;
+      stage_add_directional(&set, (vec3){-0.6, -0.3, -1});
+      if (k % 4 > 0) set.lights[0].angular_diameter_deg = 12;
+      set.scene.render.shadows = k % 4 > 0 ? HL_SHADOWS_SOFT : HL_SHADOWS_HARD;
+      set.scene.render.soft_method = (hl_soft_method)(k % 4 > 0 ? k % 4 - 1 : 0);
+      stage_render_sheets(&set, pixels[half]);
+      stage_close(&set);
+    }
+    double sum = 0;
+    for (int y = 6; y < SIDE - 6; y++) /* the ramp's gradient ends at its faces */
+      for (int x = 6; x < SIDE - 6; x++)
+        for (int c = 0; c < 4; c++) {
+          double d = (double)pixels[0][4 * (y * SIDE + x) + c] - (double)pixels[1][4 * (y * SIDE + x) + c];
+          sum += d * d / (4 * 12 * 12);
+        }
+    assert_near(sqrt(sum), 0, 0.02);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_ramp),
+      cmocka_unit_test(test_ball),
+      cmocka_unit_test(test_ramp_shadow),
+      cmocka_unit_test(test_halved_ramp_is_a_thinner_one),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
