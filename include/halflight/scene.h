@@ -167,6 +167,15 @@ typedef struct hl_isosurface {
   double opacity;  /* 0 to 1 */
 } hl_isosurface;
 
+/* A label of a label map: what the voxels with this value are. */
+typedef struct hl_label {
+  double value;     /* a whole number */
+  const char *name; /* may be null */
+  double color[3];  /* linear RGB */
+  double opacity;   /* 1: solid; below: a skin that takes this fraction of the light that crosses it */
+  int visible;
+} hl_label;
+
 typedef struct hl_scene_volume {
   const char *name;   /* may be null */
   const char *file;   /* where the voxels came from, for hl_scene_to_json; may be null */
@@ -198,6 +207,10 @@ typedef struct hl_scene_volume {
   double albedo[3];        /* the fraction of the light met that a medium scatters, times its colour, R, G, B;
                               default 1 */
   int multiple_scattering; /* non-zero: light is scattered again and again; default 0: once */
+  /* If there are any, the voxels are labels, and those that are listed and visible show: smooth, in their
+   * colours, over the transfer function, which is then made of them. [label_count]; rising by value. */
+  const hl_label *labels;
+  size_t label_count;
 } hl_scene_volume;
 
 /* A mesh among the volumes. Its colour is that of its vertices, faces or spheres, where it has some, times
@@ -357,6 +370,17 @@ HL_API const hl_scene_description *hl_scene_describe(const hl_scene *scene);
 
 HL_API void hl_scene_retain(hl_scene *scene);
 HL_API void hl_scene_release(hl_scene *scene); /* null is allowed */
+
+/* ---- label maps ---- */
+
+/* The labels that a volume's voxels have, 0 left out, rising; all visible and solid. Names and colours are
+ * those of the table (a path: FreeSurfer's or Slicer's colour table, ITK-SNAP's label descriptions, CSV;
+ * null: none), else of the file (.seg.nrrd), else colours that differ. *labels is owned by the caller
+ * (hl_labels_release). HL_ERROR_INPUT where a value is no whole number. */
+HL_API HL_WARN_UNUSED hl_status hl_labels_of_volume(hl_context *context, const hl_volume *map,
+                                                    const char *table, hl_label **labels, size_t *count,
+                                                    hl_error *error);
+HL_API void hl_labels_release(hl_context *context, hl_label *labels); /* null is allowed */
 
 /* ---- where the camera stands ---- */
 

@@ -39,6 +39,9 @@ enum render_option {
   RENDER_CLIP,
   RENDER_SHADING,
   RENDER_FLOOR,
+  RENDER_LABELS,
+  RENDER_LABEL_TABLE,
+  RENDER_SHOW,
   RENDER_AMBIENT,
   RENDER_SKY,
   RENDER_LIGHT,
@@ -84,6 +87,10 @@ int render_check_options(const cli_value *values);
 void render_part_meshes(char **operands, char **meshes, char **others);
 /* Adds meshes to a scene; *scene null: makes one for them. bare: the camera frames them too. */
 int render_add_meshes(cli_host *host, char *const *paths, bool bare, hl_scene **scene);
+
+/* Adds the label map of --labels to a scene, or makes one of its bare volume, with what --label-table and
+ * --show say. */
+int render_add_labels(cli_host *host, const cli_value *values, bool bare, hl_scene **scene);
 
 /* Loads the operands into one scene: a scene file, a picture that carries a scene, or one or more volumes,
  * and meshes; *bare: they are volumes. Several volumes share one world, and each keeps its own look. They are

@@ -127,5 +127,6 @@ int render_load_inputs(cli_host *host, const cli_value *values, char **operands,
   *bare = true;
   render_part_meshes(operands, meshes, others);
   if (others[0] != NULL) exit_code = load_volumes(host, values, others, bare, scene);
-  return exit_code == EXIT_CODE_OK ? render_add_meshes(host, meshes, *bare, scene) : exit_code;
+  if (exit_code == EXIT_CODE_OK) exit_code = render_add_meshes(host, meshes, *bare, scene);
+  return exit_code == EXIT_CODE_OK ? render_add_labels(host, values, *bare, scene) : exit_code;
 }

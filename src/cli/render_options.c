@@ -208,6 +208,27 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .kind = OPTION_SWITCH,
                       .help = "a floor below what is seen, three times as wide,\nwhich receives its shadow"},
 
+    [RENDER_LABELS] = {.name = "labels",
+                       .kind = OPTION_TEXT,
+                       .argument = "FILE",
+                       .group = "Label maps",
+                       .help =
+                           "a label map or segmentation (.seg.nrrd, NIfTI, ...)\nin the same world: smooth "
+                           "surfaces in colours"},
+    [RENDER_LABEL_TABLE] = {.name = "label-table",
+                            .kind = OPTION_TEXT,
+                            .argument = "FILE",
+                            .help =
+                                "names and colours of labels: FreeSurfer's, Slicer's\nor ITK-SNAP's table, "
+                                "or CSV"},
+    [RENDER_SHOW] = {.name = "show",
+                     .kind = OPTION_TEXT,
+                     .argument = "LABEL[=COLOR][:OPACITY],...",
+                     .help =
+                         "labels to show, by name or number, or all:\nliver,tumour=red:0.5; without --labels "
+                         "INPUT is the\nlabel map",
+                     .repeatable = true},
+
     [RENDER_AMBIENT] = {.name = "ambient",
                         .kind = OPTION_COLOR,
                         .argument = "COLOR",

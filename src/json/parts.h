@@ -58,6 +58,10 @@ typedef struct hl_volume_shelf {
 hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
                               hl_scene_volume *volume);
 
+/* The keys "labels" and "label_table" of a volume whose voxels are read; its labels (hl_labels_release) and
+ * transfer function are owned by *volume. */
+hl_status hl_json_read_labels(hl_json_reader *reader, const json_t *object, hl_scene_volume *volume);
+
 /* Puts the volumes of the reader's `like` on the shelf, which has room for them. */
 hl_status hl_json_shelve_known(hl_json_reader *reader, hl_volume_shelf *shelf);
 

@@ -14,12 +14,19 @@
 
 #define DATA_PREFIX "data:" /* begins the names of files in the context's data folder */
 
-static const char *const volume_keys[] = {"name",       "stand_in",          "file",    "shapes",
-                                          "voxel_size", "transform",         "shading", "transfer_function",
-                                          "material",   "attenuation_color", "visible", "casts_shadow",
-                                          "clip",       "receives_shadow",   "array",   "component",
-                                          "time",       "channel",           "level",   "spacing",
-                                          "series",     "scattering",        "iso",     NULL};
+static const char *const volume_keys[] = {"name",        "stand_in",
+                                          "file",        "shapes",
+                                          "voxel_size",  "transform",
+                                          "shading",     "transfer_function",
+                                          "material",    "attenuation_color",
+                                          "visible",     "casts_shadow",
+                                          "clip",        "receives_shadow",
+                                          "array",       "component",
+                                          "time",        "channel",
+                                          "level",       "spacing",
+                                          "series",      "scattering",
+                                          "iso",         "labels",
+                                          "label_table", NULL};
 
 #define GIVE_COMPONENT "give a number from 0 on, \"magnitude\", \"color\" or \"luminance\""
 
@@ -367,8 +374,9 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
   if (status == HL_OK) status = read_clip(reader, json_object_get(value, "clip"), volume);
   if (status == HL_OK) status = read_scattering(reader, json_object_get(value, "scattering"), volume);
   if (status == HL_OK) status = read_source(reader, value, shelf, volume);
-  if (status == HL_OK) status = choose_shading(reader, value, volume);
-  if (status != HL_OK) return status;
+  if (status == HL_OK) status = hl_json_read_labels(reader, value, volume);
+  if (status == HL_OK && volume->label_count == 0) status = choose_shading(reader, value, volume);
+  if (status != HL_OK || volume->label_count > 0) return status;
   if ((status = hl_json_read_iso(reader, json_object_get(value, "iso"), volume)) != HL_OK) return status;
   if (volume->iso_count > 0 && json_object_get(value, "transfer_function") == NULL)
     return hl_json_clear_function(reader, volume->volume, &volume->transfer_function);

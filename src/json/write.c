@@ -317,13 +317,29 @@ static void write_scattering(writer *w, const hl_scene_volume *volume) {
   close_bracket(w, "}");
 }
 
+static void write_labels(writer *w, const hl_scene_volume *volume) {
+  open_bracket(w, "labels", "[");
+  for (size_t n = 0; n < volume->label_count; n++) {
+    const hl_label *label = &volume->labels[n];
+    open_bracket(w, NULL, "{");
+    write_number(w, "value", label->value);
+    if (label->name != NULL) write_name(w, "name", label->name);
+    write_row(w, "color", label->color, 3);
+    write_number(w, "opacity", label->opacity);
+    write_flag(w, "visible", label->visible);
+    close_bracket(w, "}");
+  }
+  close_bracket(w, "]");
+}
+
 static void write_volume(writer *w, const hl_scene_volume *volume) {
   open_bracket(w, NULL, "{");
   if (volume->name != NULL) write_name(w, "name", volume->name);
   if (volume->shapes != NULL) write_shapes(w, volume->shapes);
   else write_source(w, volume);
   write_transform(w, volume);
-  write_transfer_function(w, &volume->transfer_function);
+  if (volume->label_count > 0) write_labels(w, volume);
+  else write_transfer_function(w, &volume->transfer_function);
   write_iso(w, volume);
   write_key(w, HL_SETTINGS_VOLUME, "shading", volume);
   write_material(w, &volume->material);

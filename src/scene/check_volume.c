@@ -4,6 +4,7 @@
 
 #include "core/vector.h"
 #include "scene/check.h"
+#include "scene/label_table.h"
 #include "scene/placement.h"
 
 /* Checks that points are sorted by value, with at most two at one value, which make a step. */
@@ -193,6 +194,29 @@ static hl_status check_iso(const hl_checker *check, const hl_scene_volume *volum
   return status;
 }
 
+static hl_status check_labels(const hl_checker *check, const hl_scene_volume *volume) {
+  hl_status status = hl_check_count(check, "labels", volume->labels, volume->label_count, HL_MOST_LABELS);
+  for (size_t n = 0; status == HL_OK && n < volume->label_count; n++) {
+    const hl_label *label = &volume->labels[n];
+    char key[64];
+    snprintf(key, sizeof key, "labels/%zu/value", n);
+    status = hl_check_range(check, key, label->value, -1e9, 1e9, "give the label's number");
+    if (status == HL_OK && label->value != floor(label->value))
+      status = hl_check_refuse(check, key, "is no whole number: give the label's");
+    if (status == HL_OK && n > 0 && label->value <= label[-1].value)
+      status = hl_check_refuse(check, key,
+                               "does not come after the label before: sort them by number, each once");
+    snprintf(key, sizeof key, "labels/%zu/opacity", n);
+    if (status == HL_OK)
+      status = hl_check_range(check, key, label->opacity, 0, 1, "give an opacity from 0 to 1");
+    for (int c = 0; c < 3 && status == HL_OK; c++) {
+      snprintf(key, sizeof key, "labels/%zu/color/%d", n, c);
+      status = hl_check_range(check, key, label->color[c], 0, 1, "give linear RGB, each from 0 to 1");
+    }
+  }
+  return status;
+}
+
 hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_error *error) {
   hl_checker check = {error, ""};
   snprintf(check.place, sizeof check.place, "/volumes/%zu", index);
@@ -203,7 +227,10 @@ hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_
   hl_status status = check_values(&check, volume->volume);
   if (status == HL_OK) status = check_transform(&check, volume);
   if (status == HL_OK) status = check_placement(&check, volume);
-  if (status == HL_OK) status = check_look(&check, volume);
+  if (status == HL_OK) status = check_labels(&check, volume);
+  if (status == HL_OK && volume->label_count == 0) status = check_look(&check, volume);
   if (status == HL_OK) status = check_iso(&check, volume);
+  if (status == HL_OK && volume->label_count > 0 && volume->iso_count > 0)
+    status = hl_check_refuse(&check, "iso", "and labels exclude each other: remove one");
   return status == HL_OK ? check_clip(&check, volume) : status;
 }

@@ -80,6 +80,7 @@ static double typical_value(const hl_volume *volume, int bin) {
 
 double hl_scene_volume_empty_value(const hl_scene_volume *volume) {
   const hl_volume *v = volume->volume;
+  if (v->has_surroundings) return v->surroundings;
   double width = (v->maximum - v->minimum) / HL_HISTOGRAM_BINS, empty = 0;
   bool found = false;
   uint64_t most = 0;

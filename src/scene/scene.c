@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "scene/check.h"
+#include "scene/draw_labels.h"
 #include "scene/placement.h"
 #include "scene/settings.h"
 
@@ -68,6 +69,7 @@ static void release_volume(hl_context *context, hl_scene_volume *volume) {
   hl_transfer_function_release(context, &volume->transfer_function);
   hl_release(context, (void *)volume->iso);
   hl_volume_release(volume->volume);
+  hl_release(context, (void *)volume->labels);
 }
 
 static void release_mesh(hl_context *context, hl_scene_mesh *mesh) {
@@ -83,6 +85,7 @@ static void destroy(hl_scene *scene) {
   hl_release(context, (void *)d->volumes);
   for (size_t m = 0; m < d->mesh_count; m++) release_mesh(context, (hl_scene_mesh *)&d->meshes[m]);
   hl_release(context, (void *)d->meshes);
+  hl_drawn_labels_release(context, scene);
   hl_placed_lights_release(context, &scene->placed);
   for (size_t l = 0; l < d->light_count; l++) {
     hl_release(context, (void *)d->lights[l].vertices);
@@ -141,19 +144,21 @@ static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, h
   to->name = to->file = to->shapes = to->array = to->series = NULL;
   to->transfer_function = (hl_transfer_function){0};
   to->iso = NULL;
+  to->labels = NULL;
   hl_volume_retain(to->volume);
   hl_status status = copy_text(context, from->name, &to->name, error);
   if (status == HL_OK) status = copy_text(context, from->file, &to->file, error);
   if (status == HL_OK) status = copy_text(context, from->shapes, &to->shapes, error);
   if (status == HL_OK) status = copy_text(context, from->array, &to->array, error);
   if (status == HL_OK) status = copy_text(context, from->series, &to->series, error);
-  if (status == HL_OK)
-    status = hl_transfer_function_copy(context, &from->transfer_function, &to->transfer_function, error);
-  if (status != HL_OK) return status;
+  if (status == HL_OK) status = hl_labels_copy(context, from->labels, from->label_count, &to->labels, error);
   void *iso = NULL;
-  status = copy_array(context, from->iso, from->iso_count, sizeof *from->iso, "isosurfaces", &iso, error);
+  if (status == HL_OK)
+    status = copy_array(context, from->iso, from->iso_count, sizeof *from->iso, "isosurfaces", &iso, error);
   to->iso = iso;
-  return status;
+  if (status != HL_OK) return status;
+  if (to->label_count > 0) return hl_labels_function(context, to, &to->transfer_function, error);
+  return hl_transfer_function_copy(context, &from->transfer_function, &to->transfer_function, error);
 }
 
 static hl_status copy_volumes(hl_scene *scene, const hl_scene_description *from, hl_error *error) {
@@ -304,6 +309,7 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   if (status == HL_OK) status = copy_meshes(made, description, error);
   if (status == HL_OK) status = copy_sky(made, &description->sky, error);
   if (status == HL_OK) status = hl_lights_place(context, &made->description, &made->placed, error);
+  if (status == HL_OK) status = hl_labels_draw(context, made, error);
   if (status != HL_OK) {
     destroy(made);
     return status;

@@ -15,11 +15,18 @@ struct hl_scene {
   hl_context *context;
   atomic_int references;
   hl_scene_description description; /* its arrays and texts are owned by the scene */
-  hl_scene_description
-      placed; /* the same with all lights in the world, for rendering; owns its array of lights */
+  hl_scene_description placed; /* the same for rendering: all lights in the world, and volumes of occupancy in
+                                  place of label maps; owns its array of lights */
+  hl_scene_volume *drawn;      /* owned, with a reference to each volume; placed.volumes where there are label
+                                  maps;      else null */
+  void *drawn_points;          /* owned; the drawn volumes' transfer functions */
 };
 
 /* Frees the pixels and file names of a light's texture and emission, where they are owned. */
 void hl_light_images_release(hl_context *context, hl_light *light);
+
+/* Copies labels with their names into one block (hl_release); null for none. */
+hl_status hl_labels_copy(hl_context *context, const hl_label *labels, size_t count, const hl_label **copy,
+                         hl_error *error);
 
 #endif

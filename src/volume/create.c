@@ -289,6 +289,8 @@ void hl_arrays_release(hl_context *context, hl_array_entry *arrays, size_t count
 void hl_volume_release(hl_volume *volume) {
   if (volume == NULL || atomic_fetch_sub(&volume->references, 1) != 1) return;
   hl_arrays_release(volume->context, volume->arrays, volume->array_count);
+  hl_release(volume->context, volume->segments);
+  if (volume->shelf != NULL) volume->release_shelf(volume->context, volume->shelf);
   hl_release(volume->context, volume->series);
   hl_release(volume->context, volume->owned_voxels);
   hl_release(volume->context, volume->colors);

@@ -4,6 +4,7 @@
  * Halflight does not need are skipped. Source: the format's definition by Teem, "Definition of NRRD File
  * Format". */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core/context.h"
@@ -12,6 +13,7 @@
 #include "volume/decoders.h"
 #include "volume/format.h"
 #include "volume/text.h"
+#include "volume/volume.h"
 
 enum { NRRD_MOST_AXES = 16, NRRD_KIND_BYTES = 32, NRRD_NAME_BYTES = 1024 };
 
@@ -38,8 +40,16 @@ typedef struct nrrd_header {
   hl_space space;
   char data_file[NRRD_NAME_BYTES]; /* "" if attached */
   size_t line_skip, byte_skip;
-  bool skip_to_last; /* byte skip -1: the voxels are the last bytes of the file */
+  bool skip_to_last;    /* byte skip -1: the voxels are the last bytes of the file */
+  hl_segment *segments; /* owned; [segment_count]: of a segmentation by Slicer */
+  size_t segment_count;
 } nrrd_header;
+
+static bool is_color(const double srgb[3]) {
+  for (int c = 0; c < 3; c++)
+    if (!(srgb[c] >= 0 && srgb[c] <= 1)) return false;
+  return true;
+}
 
 /* ---- the header ---- */
 
@@ -270,6 +280,48 @@ static field_function *find_field(const char *name) {
   return NULL;
 }
 
+/* ---- segmentations: pairs "Segment0_Name:=liver", as Slicer writes them in .seg.nrrd files ---- */
+
+/* Makes room for a segment. */
+static hl_status need_segment(nrrd_header *header, size_t number, hl_error *error) {
+  if (number < header->segment_count) return HL_OK;
+  hl_context *context = header->stream->context;
+  size_t count = number + 1;
+  hl_segment *segments = hl_reallocate(context, header->segments, count, sizeof *segments);
+  if (segments == NULL) return hl_fail_memory(error, count * sizeof *segments, "the names of segments");
+  memset(segments + header->segment_count, 0, (count - header->segment_count) * sizeof *segments);
+  header->segments = segments;
+  header->segment_count = count;
+  return HL_OK;
+}
+
+/* A pair "key:=value", of which only those about segments count. colon: in the line. */
+static hl_status read_pair(nrrd_header *header, char *line, char *colon, hl_error *error) {
+  static const char prefix[] = "Segment";
+  size_t number = 0;
+  *colon = 0;
+  if (strncmp(line, prefix, sizeof prefix - 1) != 0) return HL_OK;
+  const char *digit = line + sizeof prefix - 1, *value = colon + 2;
+  if (*digit < '0' || *digit > '9') return HL_OK;
+  for (; *digit >= '0' && *digit <= '9' && number < HL_MOST_SEGMENTS; digit++)
+    number = 10 * number + (size_t)(*digit - '0');
+  bool name = strcmp(digit, "_Name") == 0, color = strcmp(digit, "_Color") == 0;
+  bool label = strcmp(digit, "_LabelValue") == 0, layer = strcmp(digit, "_Layer") == 0;
+  if (number >= HL_MOST_SEGMENTS || !(name || color || label || layer)) return HL_OK;
+  hl_status status = need_segment(header, number, error);
+  if (status != HL_OK) return status;
+  hl_segment *segment = &header->segments[number];
+  double numbers[3];
+  if (name) snprintf(segment->name, sizeof segment->name, "%s", value);
+  else if (color)
+    segment->has_color = hl_text_numbers(value, segment->srgb, 3) == 3 && is_color(segment->srgb);
+  else if (hl_text_numbers(value, numbers, 1) != 1 || !(fabs(numbers[0]) < 1e6))
+    return refuse(header, line, value, error);
+  else if (label) segment->value = numbers[0];
+  else segment->layer = (int)numbers[0];
+  return HL_OK;
+}
+
 static hl_status read_field_line(nrrd_header *header, char *line, hl_error *error) {
   char shown[HL_PRINTABLE_BYTES];
   char *colon = strchr(line, ':');
@@ -278,7 +330,7 @@ static hl_status read_field_line(nrrd_header *header, char *line, hl_error *erro
         error, HL_ERROR_INPUT, header->stream, header->line,
         "expected \"field: value\", an empty line before the voxels, or a # comment, not \"%s\"",
         hl_text_printable(shown, line));
-  if (colon[1] == '=') return HL_OK;
+  if (colon[1] == '=') return read_pair(header, line, colon, error);
   *colon = 0;
   char *name = hl_text_trim(line), *value = hl_text_trim(colon + 1);
   field_function *read = find_field(name);
@@ -470,12 +522,13 @@ static bool has_content(const unsigned char *bytes, size_t length) {
   return length >= 4 && memcmp(bytes, "NRRD", 4) == 0;
 }
 
-static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
-  nrrd_header header = {.dimension = 0};
+static hl_status load_with(nrrd_header *read, hl_stream **stream, hl_load_request *request,
+                           hl_volume **volume, hl_error *error) {
   hl_payload payload;
   hl_payload_defaults(&payload);
-  hl_status status = read_header(*stream, &header, error);
+  hl_status status = read_header(*stream, read, error);
   if (status != HL_OK) return status;
+  const nrrd_header header = *read;
   bool is_series = false;
   status = place_grid(&header, &payload, &is_series, error);
   if (status == HL_OK) status = hl_component_only(request, (*stream)->path, is_series, &payload, error);
@@ -488,6 +541,19 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   if (header.data_file[0] != 0) status = hl_stream_switch(stream, header.data_file, error);
   if (status == HL_OK) status = skip_to_voxels(stream, &header, &payload, error);
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
+}
+
+static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+  hl_context *context = (*stream)->context;
+  nrrd_header header = {.dimension = 0};
+  hl_status status = load_with(&header, stream, request, volume, error);
+  if (status == HL_OK) {
+    (*volume)->segments = header.segments;
+    (*volume)->segment_count = header.segment_count;
+  } else {
+    hl_release(context, header.segments);
+  }
+  return status;
 }
 
 const hl_format hl_format_nrrd = {

@@ -39,6 +39,15 @@ typedef struct hl_series_entry {
   size_t dimensions[3];
 } hl_series_entry;
 
+/* A named label of a segmentation. */
+enum { HL_SEGMENT_NAME_BYTES = 128, HL_MOST_SEGMENTS = 4096 };
+typedef struct hl_segment {
+  char name[HL_SEGMENT_NAME_BYTES];
+  double value, srgb[3];
+  bool has_color;
+  int layer; /* the component whose voxels have it */
+} hl_segment;
+
 struct hl_volume {
   hl_context *context;
   atomic_int references;
@@ -70,6 +79,15 @@ struct hl_volume {
   hl_selection selection;
   hl_series_entry *series; /* owned; [series_count]; null unless loaded from DICOM files */
   size_t series_count, chosen_series;
+  hl_segment *segments; /* owned; [segment_count]; null unless the file names labels */
+  size_t segment_count;
+  bool has_surroundings; /* the data value of what is around the content is known */
+  double surroundings;
+  double surface_slope; /* of an occupancy: how much it rises per voxel where it passes 1/2 */
+  /* What other rooms keep with the volume: owned, released with it. */
+  atomic_flag shelf_lock; /* held while shelf is looked at */
+  void *shelf;
+  void (*release_shelf)(hl_context *context, void *shelf);
 };
 
 static inline size_t hl_storage_bytes(hl_storage storage) {

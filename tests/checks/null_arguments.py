@@ -35,6 +35,7 @@ hl_scene_from_json_like like
 hl_scene_from_json_like name
 hl_scene_for_volume file
 hl_volume_guess file
+hl_labels_of_volume table
 hl_view_choose up
 hl_scene_make_floor up
 hl_volume_from_shapes name
@@ -59,6 +60,7 @@ VALUES = {
     "const hl_shapes_options *": "&shapes_options",
     "hl_mesh *": "mesh", "const hl_mesh *": "mesh", "hl_mesh **": "&any",
     "const hl_mesh_description *": "&mesh_description",
+    "hl_label **": "&any", "hl_label *": "NULL",
     "hl_view *": "&view", "const hl_view *": "&view",
     "size_t length": "2", "size_t row_stride": "16", "int": "4", "size_t": "0", "double": "0.5",
 }

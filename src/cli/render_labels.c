@@ -1,0 +1,244 @@
+/* cli/render_labels.c - --labels, --label-table and --show of `halflight render`: a label map among the
+ * volumes, or the volume itself as one. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "render.h"
+#include "suggest.h"
+
+/* One of the labels that --show names: NAME|NUMBER|all[=COLOR][:OPACITY]. */
+typedef struct shown_label {
+  char name[128];
+  bool all, colored, found;
+  double color[3], opacity;
+} shown_label;
+
+enum { MOST_SHOWN = 512, MOST_LAYERS = 64 };
+
+typedef struct show_list {
+  shown_label labels[MOST_SHOWN];
+  size_t count;
+} show_list;
+
+static int fail_show(const char *item, const char *mend) {
+  return fail(EXIT_CODE_USAGE, "--show \"%.100s\": %s", item, mend);
+}
+
+/* Reads one item, of `length` characters. */
+static int read_item(const char *item, size_t length, shown_label *made) {
+  *made = (shown_label){.opacity = 1};
+  if (length == 0 || length >= sizeof made->name)
+    return fail_show(item, "give labels by name or number, with commas between them: liver,tumour=red:0.5");
+  memcpy(made->name, item, length);
+  made->name[length] = 0;
+  char *colon = strrchr(made->name, ':'), *rest;
+  if (colon != NULL) {
+    made->opacity = strtod(colon + 1, &rest);
+    if (colon[1] == 0 || *rest != 0 || !(made->opacity >= 0 && made->opacity <= 1))
+      return fail_show(made->name, "give an opacity from 0 to 1 after the colon");
+    *colon = 0;
+  }
+  char *equals = strrchr(made->name, '=');
+  if (equals != NULL) {
+    *equals = 0;
+    made->colored = true;
+    if (!parse_color(equals + 1, 0, 1, made->color))
+      return fail_show(equals + 1, "is no colour: give #rrggbb or a CSS name");
+  }
+  made->all = strcmp(made->name, "all") == 0;
+  return EXIT_CODE_OK;
+}
+
+static int read_show(const cli_value *value, show_list *list) {
+  list->count = 0;
+  for (int n = 0; n < value->count; n++)
+    for (const char *item = value->texts[n]; item != NULL;) {
+      const char *comma = strchr(item, ',');
+      size_t length = comma != NULL ? (size_t)(comma - item) : strlen(item);
+      if (list->count == MOST_SHOWN) return fail_show(item, "names too many labels");
+      int exit_code = read_item(item, length, &list->labels[list->count++]);
+      if (exit_code != EXIT_CODE_OK) return exit_code;
+      item = comma != NULL ? comma + 1 : NULL;
+    }
+  return EXIT_CODE_OK;
+}
+
+static bool is_named(const hl_label *label, const shown_label *shown) {
+  char *rest;
+  double number = strtod(shown->name, &rest);
+  return shown->all || (label->name != NULL && strcmp(label->name, shown->name) == 0) ||
+         (*rest == 0 && rest != shown->name && number == label->value);
+}
+
+/* Shows those labels that the list names, if it names any. */
+static void apply_show(show_list *list, hl_label *labels, size_t count) {
+  for (size_t n = 0; n < count && list->count > 0; n++) {
+    labels[n].visible = 0;
+    for (size_t s = 0; s < list->count; s++) {
+      shown_label *shown = &list->labels[s];
+      if (!is_named(&labels[n], shown)) continue;
+      shown->found = true;
+      labels[n].visible = 1;
+      labels[n].opacity = shown->opacity;
+      if (shown->colored) memcpy(labels[n].color, shown->color, sizeof labels[n].color);
+    }
+  }
+}
+
+/* The layers of a file, each a label map: volumes of which the caller releases labels and voxels. */
+typedef struct label_layers {
+  hl_scene_volume volumes[MOST_LAYERS];
+  size_t count;
+} label_layers;
+
+static const char *name_of_label(const void *data, size_t index) {
+  const label_layers *layers = data;
+  for (size_t layer = 0; layer < layers->count; layer++) {
+    const hl_scene_volume *volume = &layers->volumes[layer];
+    if (index < volume->label_count)
+      return volume->labels[index].name != NULL ? volume->labels[index].name : "";
+    index -= volume->label_count;
+  }
+  return NULL;
+}
+
+static int check_found(const show_list *list, const label_layers *layers) {
+  for (size_t s = 0; s < list->count; s++) {
+    if (list->labels[s].found || list->labels[s].all) continue;
+    const char *near = nearest_name(list->labels[s].name, name_of_label, layers);
+    return fail(EXIT_CODE_USAGE, "--show: there is no label \"%.100s\"%s%.100s%s", list->labels[s].name,
+                near != NULL ? ": did you mean \"" : "", near != NULL ? near : "", near != NULL ? "\"?" : "");
+  }
+  return EXIT_CODE_OK;
+}
+
+static size_t layers_of(const hl_volume *volume) {
+  for (size_t n = 0; n < hl_volume_array_count(volume); n++) {
+    hl_volume_array array = {.struct_size = sizeof array};
+    if (hl_volume_get_array(volume, n, &array) == HL_OK && array.chosen) return array.components;
+  }
+  return 1;
+}
+
+/* Loads one layer and its labels. */
+static hl_status load_layer(hl_context *context, const char *file, const char *table, hl_space space,
+                            label_layers *layers, hl_error *error) {
+  hl_volume_load_options options;
+  hl_volume_load_options_defaults(&options);
+  options.space = space;
+  options.component = (int)layers->count;
+  hl_scene_volume *made = &layers->volumes[layers->count];
+  hl_scene_volume_defaults(made);
+  hl_status status = hl_volume_load_with(context, file, &options, &made->volume, error);
+  if (status != HL_OK) return status;
+  layers->count++;
+  made->file = file;
+  if (layers_of(made->volume) > 1) made->component = options.component;
+  hl_label *labels = NULL;
+  status = hl_labels_of_volume(context, made->volume, table, &labels, &made->label_count, error);
+  made->labels = labels;
+  return status;
+}
+
+static void release_layers(hl_context *context, label_layers *layers) {
+  for (size_t n = 0; n < layers->count; n++) {
+    hl_labels_release(context, (hl_label *)layers->volumes[n].labels);
+    hl_volume_release(layers->volumes[n].volume);
+  }
+}
+
+/* Makes a scene of the scene's volumes, the first `kept` of them, and the layers. */
+static hl_status extend(hl_context *context, const label_layers *layers, size_t kept, bool bare,
+                        hl_scene **scene, hl_error *error) {
+  hl_scene_description description = *hl_scene_describe(*scene);
+  hl_scene_volume *volumes = calloc(kept + layers->count, sizeof *volumes);
+  hl_scene *made = NULL;
+  if (volumes == NULL) {
+    snprintf(error->message, sizeof error->message, "out of memory: %zu volumes", kept + layers->count);
+    return error->code = HL_ERROR_MEMORY;
+  }
+  if (kept > 0) memcpy(volumes, description.volumes, kept * sizeof *volumes);
+  description.volume_count = kept;
+  for (size_t n = 0; n < layers->count; n++)
+    if (layers->volumes[n].label_count > 0) volumes[description.volume_count++] = layers->volumes[n];
+  description.volumes = volumes;
+  hl_status status = hl_scene_create(context, &description, &made, error);
+  hl_view view;
+  if (status == HL_OK && bare) {
+    description = *hl_scene_describe(made); /* labels have become transfer functions */
+    status = hl_view_of_camera(&description, &view);
+    if (status == HL_OK) status = hl_camera_frame_view(&description, &view, 1, &description.camera, error);
+    hl_scene *framed = NULL;
+    if (status == HL_OK) status = hl_scene_create(context, &description, &framed, error);
+    hl_scene_release(made);
+    made = framed;
+  }
+  free(volumes);
+  if (status != HL_OK) return status;
+  hl_scene_release(*scene);
+  *scene = made;
+  return HL_OK;
+}
+
+/* The file of --labels, or else of the scene's only, bare volume, which the label map then replaces: *kept,
+ * the number of volumes that stay. Null, with a message: there is none. */
+static const char *file_of_labels(const cli_value *values, bool bare, const hl_scene_description *description,
+                                  size_t *kept) {
+  *kept = description->volume_count;
+  if (values[RENDER_LABELS].given) return values[RENDER_LABELS].text;
+  if (bare && *kept == 1 && description->volumes[0].file != NULL) {
+    *kept = 0;
+    return description->volumes[0].file;
+  }
+  (void)fail(EXIT_CODE_USAGE, "--%s is for a label map: give its file as --labels FILE, or alone as INPUT",
+             values[RENDER_SHOW].given ? "show" : "label-table");
+  return NULL;
+}
+
+/* The anatomical space of the scene's first volume, which label maps are turned into. */
+static hl_space space_of(const hl_scene_description *description, size_t kept) {
+  hl_volume_info info = {.struct_size = sizeof info};
+  bool known = kept > 0 && hl_volume_get_info(description->volumes[0].volume, &info) == HL_OK;
+  return known ? info.space : HL_SPACE_UNKNOWN;
+}
+
+/* Loads all layers of the file, of which the list's labels show. */
+static int load_layers(cli_host *host, const char *path, const char *table, hl_space space, show_list *show,
+                       label_layers *layers) {
+  hl_error error = {0};
+  for (size_t count = 1; layers->count < count;) {
+    hl_status status = load_layer(host->context, path, table, space, layers, &error);
+    if (status != HL_OK) return host_fail(host, PHASE_READ, status, &error);
+    count = layers_of(layers->volumes[0].volume);
+    if (count > MOST_LAYERS)
+      return fail(EXIT_CODE_UNSUPPORTED, "'%s': has %zu layers, at most %d are read", path, count,
+                  MOST_LAYERS);
+    hl_scene_volume *layer = &layers->volumes[layers->count - 1];
+    apply_show(show, (hl_label *)layer->labels, layer->label_count);
+  }
+  return check_found(show, layers);
+}
+
+int render_add_labels(cli_host *host, const cli_value *values, bool bare, hl_scene **scene) {
+  const cli_value *table = &values[RENDER_LABEL_TABLE];
+  if (!values[RENDER_LABELS].given && !table->given && !values[RENDER_SHOW].given) return EXIT_CODE_OK;
+  const hl_scene_description *description = hl_scene_describe(*scene);
+  size_t kept;
+  const char *path = file_of_labels(values, bare, description, &kept);
+  if (path == NULL) return EXIT_CODE_USAGE;
+  show_list *show = calloc(1, sizeof *show);
+  label_layers *layers = calloc(1, sizeof *layers);
+  int exit_code = show != NULL && layers != NULL ? read_show(&values[RENDER_SHOW], show)
+                                                 : fail(EXIT_CODE_FAILURE, "out of memory for labels");
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = load_layers(host, path, table->given ? table->text : NULL, space_of(description, kept), show,
+                            layers);
+  hl_error error = {0};
+  hl_status status = exit_code == EXIT_CODE_OK ? extend(host->context, layers, kept, bare, scene, &error)
+                                               : HL_OK;
+  if (layers != NULL) release_layers(host->context, layers);
+  free(layers);
+  free(show);
+  return status == HL_OK ? exit_code : host_fail(host, PHASE_READ, status, &error);
+}

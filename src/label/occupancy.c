@@ -1,0 +1,368 @@
+/* label/occupancy.c - see occupancy.h. */
+#include "label/occupancy.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+/* MARGIN: voxels around the labels, as far as their occupancy differs from 0. REACH: of the filters. */
+enum { MARGIN = 8, REACH = 7, TAPS = REACH + 1 };
+
+/* Smooths along an axis; half of a symmetric filter. Derived: a Gaussian of standard deviation 2 voxels, cut
+ * at 6, less half of its variance times its second difference. The variances cancel: flat and gently curved
+ * surfaces stay where they are (to the fourth power of the scale), and stairs are damped. */
+static const float SMOOTHING[TAPS] = {0.292382144f,  0.238724523f,  0.123441568f,  0.028311217f,
+                                      -0.011604395f, -0.014332039f, -0.006349609f, -0.004382337f};
+/* Likewise with a standard deviation of 1 voxel, cut at 3: what mending leaves rough. */
+static const float FINISHING[TAPS] = {
+    0.555422454f, 0.257481129f, -0.014940464f, -0.018044430f, -0.002207463f, 0, 0, 0};
+/* From values at the voxels' centres to the B-spline's coefficients. Derived: the spline's values 1/6, 2/3,
+ * 1/6 are 1 + d/6, d the second difference; its inverse is 1 - d/6 + d d/36 - ... */
+static const float TO_COEFFICIENTS[TAPS] = {1.5f, -10.0f / 36, 1.0f / 36, 0, 0, 0, 0, 0};
+
+/* Smoothing and mending take turns. Mending moves voxels' centres that are on the wrong side of the surface:
+ * by PUSH times as much as they are further than TOLERATED beyond 1/2. So thin things stay, and what
+ * smoothing moves by a fraction of a voxel stays smooth. */
+enum { ROUNDS = 3 };
+static const float TOLERATED = 0.12f, PUSH = 2.5f;
+
+/* Occupancy from -1/2 to 1.49 as a byte: stored = 64 + 128 * occupancy. */
+static const float STEPS = 128, ZERO = 64;
+
+/* Of a slice: its volume, in voxels; how fast that falls as the level rises; the sum of gradients at the
+ * surface. */
+enum { VOLUME, FALL, SLOPES, SURFACE_VOXELS, MEASURES };
+
+typedef struct occupancy_job {
+  const hl_volume *map;
+  hl_label_values stored;   /* as stored values */
+  size_t first[3], size[3]; /* the part of the grid */
+  int64_t (*bounds)[6];  /* [slices]; least and greatest coordinate of a shown voxel along x and y, then z */
+  unsigned char *inside; /* [size z][y][x]: 1 where the voxel has one of the labels; finally the result */
+  float *field;          /* [size z][y][x] */
+  float level;           /* of the field: where the surface is */
+  double (*measures)[MEASURES]; /* [slices] */
+  double slope;                 /* mean length of the gradient at the surface, per voxel */
+  const float *taps;
+  float *lines; /* [threads][longest line + 2 REACH], or [threads][size z + 2 REACH][size x] */
+  size_t line_floats;
+} occupancy_job;
+
+static bool is_shown(const hl_label_values *stored, double value) {
+  size_t low = 0, high = stored->count;
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (stored->values[middle] < value) low = middle + 1;
+    else high = middle;
+  }
+  return low < stored->count && stored->values[low] == value;
+}
+
+static double stored_at(const hl_volume *map, const void *row, size_t i) {
+  if (map->storage == HL_STORAGE_U8) return ((const uint8_t *)row)[i];
+  if (map->storage == HL_STORAGE_U16) return ((const uint16_t *)row)[i];
+  return (double)((const float *)row)[i];
+}
+
+/* Marks the shown voxels of a row, count of them from x on. Labels come in runs: each is looked up once. */
+static void mark_row(const occupancy_job *job, size_t x, size_t y, size_t z, size_t count,
+                     unsigned char *shown) {
+  const void *row = hl_volume_row(job->map, y, z);
+  double last = NAN;
+  unsigned char is = 0;
+  for (size_t i = 0; i < count; i++) {
+    double value = stored_at(job->map, row, x + i);
+    if (value != last) is = is_shown(&job->stored, last = value);
+    shown[i] = is;
+  }
+}
+
+/* ---- the part of the grid ---- */
+
+static void bound_slice(void *data, size_t z, int worker) {
+  occupancy_job *job = data;
+  int64_t *bounds = job->bounds[z];
+  size_t width = job->map->dimension[0];
+  unsigned char *row = (unsigned char *)(job->lines + (size_t)worker * job->line_floats);
+  bounds[0] = bounds[2] = INT64_MAX;
+  bounds[1] = bounds[3] = -1;
+  for (size_t y = 0; y < job->map->dimension[1]; y++) {
+    mark_row(job, 0, y, z, width, row);
+    const unsigned char *first = memchr(row, 1, width);
+    if (first == NULL) continue;
+    size_t last = width - 1;
+    while (row[last] == 0) last--;
+    int64_t x = first - row;
+    if (x < bounds[0]) bounds[0] = x;
+    if ((int64_t)last > bounds[1]) bounds[1] = (int64_t)last;
+    if ((int64_t)y < bounds[2]) bounds[2] = (int64_t)y;
+    bounds[3] = (int64_t)y;
+  }
+}
+
+/* False where no voxel is shown. */
+static bool find_part(occupancy_job *job) {
+  int64_t low[3] = {INT64_MAX, INT64_MAX, -1}, high[3] = {-1, -1, -1};
+  for (size_t z = 0; z < job->map->dimension[2]; z++) {
+    const int64_t *bounds = job->bounds[z];
+    if (bounds[1] < 0) continue;
+    for (int axis = 0; axis < 2; axis++) {
+      if (bounds[2 * axis] < low[axis]) low[axis] = bounds[2 * axis];
+      if (bounds[2 * axis + 1] > high[axis]) high[axis] = bounds[2 * axis + 1];
+    }
+    if (low[2] < 0) low[2] = (int64_t)z;
+    high[2] = (int64_t)z;
+  }
+  if (high[2] < 0) return false;
+  for (int axis = 0; axis < 3; axis++) {
+    int64_t last = (int64_t)job->map->dimension[axis] - 1;
+    int64_t begin = low[axis] - MARGIN < 0 ? 0 : low[axis] - MARGIN;
+    int64_t end = high[axis] + MARGIN > last ? last : high[axis] + MARGIN;
+    job->first[axis] = (size_t)begin;
+    job->size[axis] = (size_t)(end - begin + 1);
+  }
+  return true;
+}
+
+/* ---- filters ---- */
+
+/* A line of count values with REACH more on either side, filtered. */
+static void filter_line(const float *taps, const float *line, size_t count, float *out) {
+  const float *at = line + REACH;
+  for (size_t i = 0; i < count; i++) {
+    float sum = taps[0] * at[i];
+    for (int t = 1; t < TAPS; t++) sum += taps[t] * (at[(ptrdiff_t)i - t] + at[i + (size_t)t]);
+    out[i] = sum;
+  }
+}
+
+/* Filters a slice along x and y, in place. Beyond the part's ends the border's values continue. */
+static void filter_slice(void *data, size_t z, int worker) {
+  const occupancy_job *job = data;
+  const size_t nx = job->size[0], ny = job->size[1];
+  float *slice = job->field + z * nx * ny, *line = job->lines + (size_t)worker * job->line_floats;
+  for (size_t y = 0; y < ny; y++) {
+    float *row = slice + y * nx;
+    memcpy(line + REACH, row, nx * sizeof *row);
+    for (size_t i = 0; i < REACH; i++) line[i] = row[0], line[REACH + nx + i] = row[nx - 1];
+    filter_line(job->taps, line, nx, row);
+  }
+  float *kept = line; /* rows y - REACH .. y + REACH as they were, [2 REACH + 1][nx] */
+  for (size_t r = 0; r <= 2 * REACH; r++) {
+    size_t y = r < REACH ? 0 : r - REACH < ny ? r - REACH : ny - 1;
+    memcpy(kept + r * nx, slice + y * nx, nx * sizeof *slice);
+  }
+  for (size_t y = 0; y < ny; y++) {
+    float *row = slice + y * nx;
+    const float *rows[2 * REACH + 1];
+    for (size_t r = 0; r <= 2 * REACH; r++) rows[r] = kept + (y + r) % (2 * REACH + 1) * nx;
+    for (size_t i = 0; i < nx; i++) {
+      float sum = job->taps[0] * rows[REACH][i];
+      for (int t = 1; t < TAPS; t++) sum += job->taps[t] * (rows[REACH - t][i] + rows[REACH + t][i]);
+      row[i] = sum;
+    }
+    size_t next = y + REACH + 1 < ny ? y + REACH + 1 : ny - 1;
+    /* the rows after y are still as they were; the last one's copy continues beyond the end */
+    const float *from = y + REACH + 1 < ny ? slice + next * nx : rows[2 * REACH];
+    memmove(kept + y % (2 * REACH + 1) * nx, from, nx * sizeof *slice);
+  }
+}
+
+/* Filters the columns along z of one y, in place. */
+static void filter_columns(void *data, size_t y, int worker) {
+  const occupancy_job *job = data;
+  const size_t nx = job->size[0], nz = job->size[2], slice = nx * job->size[1];
+  float *column = job->field + y * nx, *lines = job->lines + (size_t)worker * job->line_floats;
+  for (size_t z = 0; z < nz + 2 * REACH; z++) {
+    size_t from = z < REACH ? 0 : z - REACH < nz ? z - REACH : nz - 1;
+    memcpy(lines + z * nx, column + from * slice, nx * sizeof *lines);
+  }
+  for (size_t z = 0; z < nz; z++) {
+    const float *at = lines + (z + REACH) * nx;
+    float *out = column + z * slice;
+    for (size_t i = 0; i < nx; i++) {
+      float sum = job->taps[0] * at[i];
+      for (int t = 1; t < TAPS; t++)
+        sum += job->taps[t] * (at[(ptrdiff_t)i - t * (ptrdiff_t)nx] + at[i + (size_t)t * nx]);
+      out[i] = sum;
+    }
+  }
+}
+
+static void filter(hl_pool *pool, occupancy_job *job, const float *taps) {
+  job->taps = taps;
+  hl_pool_run(pool, job->size[2], filter_slice, job);
+  hl_pool_run(pool, job->size[1], filter_columns, job);
+}
+
+/* ---- steps ---- */
+
+static void mark_slice(void *data, size_t z, int worker) {
+  (void)worker;
+  const occupancy_job *job = data;
+  size_t nx = job->size[0], at = z * nx * job->size[1];
+  for (size_t y = 0; y < job->size[1]; y++, at += nx) {
+    mark_row(job, job->first[0], job->first[1] + y, job->first[2] + z, nx, job->inside + at);
+    for (size_t i = 0; i < nx; i++) job->field[at + i] = job->inside[at + i];
+  }
+}
+
+static void mend_slice(void *data, size_t z, int worker) {
+  (void)worker;
+  const occupancy_job *job = data;
+  size_t count = job->size[0] * job->size[1], at = z * count;
+  for (size_t i = at; i < at + count; i++) {
+    float beyond = job->inside[i] ? 0.5f - job->field[i] : job->field[i] - 0.5f;
+    if (!(beyond > TOLERATED)) continue;
+    float moved = PUSH * (beyond - TOLERATED);
+    job->field[i] += job->inside[i] ? moved : -moved;
+  }
+}
+
+/* ---- volumes are kept ---- */
+
+/* Adds up a slice's volume, in voxels, and how fast it falls as the level rises. Derived: near a plane with
+ * the gradient g the part of a voxel above the level t is (f - t) / g + 1/2, clamped to [0, 1]. */
+static void measure_slice(void *data, size_t z, int worker) {
+  (void)worker;
+  const occupancy_job *job = data;
+  const size_t nx = job->size[0], ny = job->size[1], nz = job->size[2], slice = nx * ny;
+  double *measures = job->measures[z];
+  memset(measures, 0, sizeof job->measures[z]);
+  for (size_t y = 0; y < ny; y++)
+    for (size_t x = 0; x < nx; x++) {
+      const float *at = job->field + z * slice + y * nx + x;
+      float above = *at - job->level;
+      if (fabsf(above) > 1) {
+        measures[VOLUME] += above > 0;
+        continue;
+      }
+      float dx = (x + 1 < nx ? at[1] : *at) - (x > 0 ? at[-1] : *at),
+            dy = (y + 1 < ny ? at[nx] : *at) - (y > 0 ? *(at - nx) : *at),
+            dz = (z + 1 < nz ? at[slice] : *at) - (z > 0 ? *(at - slice) : *at);
+      float gradient = fmaxf(0.5f * sqrtf(dx * dx + dy * dy + dz * dz), 0.05f),
+            part = above / gradient + 0.5f;
+      measures[VOLUME] += (double)fminf(fmaxf(part, 0), 1);
+      if (!(part > 0 && part < 1)) continue;
+      measures[FALL] += 1 / (double)gradient;
+      measures[SLOPES] += (double)gradient;
+      measures[SURFACE_VOXELS]++;
+    }
+}
+
+/* The level at which the field encloses as much as the labels' voxels are, by Newton's method; near 1/2. */
+static void find_level(hl_pool *pool, occupancy_job *job) {
+  enum { STEPS_OF_NEWTON = 3 };
+  static const double FARTHEST = 0.25;
+  double wanted = 0;
+  size_t count = job->size[0] * job->size[1] * job->size[2];
+  for (size_t i = 0; i < count; i++) wanted += job->inside[i];
+  job->level = 0.5f;
+  job->slope = 0.25;
+  for (int step = 0; step < STEPS_OF_NEWTON; step++) {
+    double sum[MEASURES] = {0};
+    hl_pool_run(pool, job->size[2], measure_slice, job);
+    for (size_t z = 0; z < job->size[2]; z++)
+      for (int m = 0; m < MEASURES; m++) sum[m] += job->measures[z][m];
+    if (!(sum[FALL] > 0)) return;
+    job->slope = sum[SLOPES] / sum[SURFACE_VOXELS];
+    double level = (double)job->level + (sum[VOLUME] - wanted) / sum[FALL];
+    job->level = (float)fmin(fmax(level, 0.5 - FARTHEST), 0.5 + FARTHEST);
+  }
+}
+
+static void store_slice(void *data, size_t z, int worker) {
+  (void)worker;
+  const occupancy_job *job = data;
+  size_t count = job->size[0] * job->size[1], at = z * count;
+  for (size_t i = at; i < at + count; i++) {
+    float stored = ZERO + STEPS * (job->field[i] + 0.5f - job->level) + 0.5f;
+    job->inside[i] = (unsigned char)(stored < 0 ? 0 : stored > 255 ? 255 : stored);
+  }
+}
+
+static void smooth(hl_pool *pool, occupancy_job *job) {
+  hl_pool_run(pool, job->size[2], mark_slice, job);
+  for (int turn = 0; turn < ROUNDS; turn++) {
+    filter(pool, job, SMOOTHING);
+    hl_pool_run(pool, job->size[2], mend_slice, job);
+  }
+  filter(pool, job, FINISHING);
+  find_level(pool, job);
+  filter(pool, job, TO_COEFFICIENTS);
+  hl_pool_run(pool, job->size[2], store_slice, job);
+}
+
+/* ---- the volume ---- */
+
+static hl_status adopt(hl_context *context, const occupancy_job *job, unsigned char *voxels, hl_volume **made,
+                       hl_error *error) {
+  hl_volume_description grid;
+  hl_volume_description_defaults(&grid);
+  const affine3 placed = job->map->index_to_world;
+  vec3 origin = affine3_apply(placed,
+                              (vec3){(double)job->first[0], (double)job->first[1], (double)job->first[2]});
+  grid.origin[0] = origin.x, grid.origin[1] = origin.y, grid.origin[2] = origin.z;
+  for (int a = 0; a < 3; a++) {
+    vec3 axis = mat3_column(placed.linear, a);
+    grid.axis[a][0] = axis.x, grid.axis[a][1] = axis.y, grid.axis[a][2] = axis.z;
+    grid.dimensions[a] = job->size[a];
+  }
+  grid.type = HL_VOXEL_U8;
+  grid.value_scale = 1 / (double)STEPS;
+  grid.value_offset = -(double)(ZERO / STEPS);
+  grid.space = job->map->space;
+  hl_status status = hl_volume_adopt(context, &grid, "labels", voxels, made, error);
+  if (status == HL_OK) (*made)->has_surroundings = true; /* 0 */
+  if (status == HL_OK) (*made)->surface_slope = job->slope;
+  return status;
+}
+
+static hl_status fill(hl_context *context, hl_pool *pool, occupancy_job *job, hl_volume **made,
+                      hl_error *error) {
+  size_t count = job->size[0] * job->size[1] * job->size[2];
+  job->line_floats = (2 * REACH + 1 + job->size[2]) * (job->size[0] + 2 * REACH);
+  hl_release(context, job->lines);
+  job->lines = hl_allocate(context, (size_t)hl_pool_threads(pool) * job->line_floats, sizeof *job->lines);
+  job->inside = hl_allocate(context, count, 1);
+  job->field = hl_allocate(context, count, sizeof *job->field);
+  if (job->lines == NULL || job->inside == NULL || job->field == NULL) {
+    hl_release(context, job->inside);
+    return hl_fail_memory(error, 5 * count, "smooth labels");
+  }
+  smooth(pool, job);
+  if (hl_pool_cancelled(pool)) {
+    hl_release(context, job->inside);
+    return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while smoothing labels");
+  }
+  return adopt(context, job, job->inside, made, error);
+}
+
+hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, hl_label_values labels,
+                             hl_volume **made, hl_error *error) {
+  *made = NULL;
+  occupancy_job job = {.map = map, .line_floats = map->dimension[0] / sizeof(float) + 1};
+  double *stored = hl_allocate(context, labels.count, sizeof *stored);
+  job.bounds = hl_allocate(context, map->dimension[2], sizeof *job.bounds);
+  job.lines = hl_allocate(context, (size_t)hl_pool_threads(pool) * job.line_floats, sizeof *job.lines);
+  hl_status status = HL_OK;
+  job.measures = hl_allocate(context, map->dimension[2], sizeof *job.measures);
+  if (stored == NULL || job.bounds == NULL || job.lines == NULL || job.measures == NULL)
+    status = hl_fail_memory(error, map->dimension[2] * sizeof *job.bounds, "labels");
+  if (status == HL_OK) {
+    for (size_t n = 0; n < labels.count; n++)
+      stored[n] = (labels.values[n] - map->value_offset) / map->value_scale;
+    job.stored = (hl_label_values){stored, labels.count};
+    hl_pool_run(pool, map->dimension[2], bound_slice, &job);
+    if (hl_pool_cancelled(pool))
+      status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while reading labels");
+    else if (find_part(&job)) status = fill(context, pool, &job, made, error);
+  }
+  hl_release(context, job.field);
+  hl_release(context, job.lines);
+  hl_release(context, job.bounds);
+  hl_release(context, job.measures);
+  hl_release(context, stored);
+  return status;
+}

@@ -1,0 +1,162 @@
+/* scene/draw_labels.c - see draw_labels.h. */
+#include "scene/draw_labels.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "label/shelf.h"
+#include "scene/limits.h"
+
+/* ---- a function over the map's own values ---- */
+
+enum { OPACITY_A_LABEL = 4, COLORS_A_LABEL = 2 };
+
+hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
+                             hl_transfer_function *function, hl_error *error) {
+  size_t labels = volume->label_count, opacity_count = 0, color_count = 0;
+  hl_opacity_point *opacity = hl_allocate(context, OPACITY_A_LABEL * labels + 1, sizeof *opacity);
+  hl_color_point *color = hl_allocate(context, COLORS_A_LABEL * labels + 1, sizeof *color);
+  *function = (hl_transfer_function){
+      .unit_distance = mat3_shortest_column(volume->volume->index_to_world.linear),
+      .opacity = opacity,
+      .color = color};
+  if (opacity == NULL || color == NULL) {
+    hl_transfer_function_release(context, function);
+    return hl_fail_memory(error, OPACITY_A_LABEL * labels * sizeof *opacity, "a transfer function");
+  }
+  double end = -INFINITY, last = 0; /* where the label before ends, and its opacity */
+  opacity[opacity_count++] = (hl_opacity_point){labels > 0 ? volume->labels[0].value - 1 : 0, 0};
+  for (size_t n = 0; n < labels; n++) {
+    const hl_label *label = &volume->labels[n];
+    double begin = label->value - 0.5, shown = label->visible ? label->opacity : 0;
+    if (begin > end && last > 0) opacity[opacity_count++] = (hl_opacity_point){end, last};
+    if (begin > end && last > 0) opacity[opacity_count++] = (hl_opacity_point){end, last = 0};
+    opacity[opacity_count++] = (hl_opacity_point){begin, last};
+    opacity[opacity_count++] = (hl_opacity_point){begin, shown};
+    last = shown;
+    end = label->value + 0.5;
+    for (int side = 0; side < COLORS_A_LABEL; side++) {
+      hl_color_point *point = &color[color_count++];
+      point->value = side == 0 ? begin : end;
+      memcpy(point->color, label->color, sizeof point->color);
+    }
+  }
+  if (last > 0) opacity[opacity_count++] = (hl_opacity_point){end, last};
+  if (last > 0) opacity[opacity_count++] = (hl_opacity_point){end, 0};
+  function->opacity_count = opacity_count;
+  function->color_count = color_count;
+  return HL_OK;
+}
+
+/* ---- the volumes that are drawn ---- */
+
+enum { POINTS = 4 };
+
+/* A solid label's matter begins at this occupancy and is whole at the next: half a voxel and less, around
+ * 1/2. */
+static const double SOLID_FROM = 0.4, SOLID_TO = 0.6, SOLID_OPACITY = 0.9999;
+/* A translucent label is a skin between these occupancies. */
+static const double SKIN_FROM = 0.35, SKIN_TO = 0.65;
+
+/* The points of one drawn volume. */
+typedef struct drawn_points {
+  hl_opacity_point opacity[POINTS];
+  hl_color_point color;
+} drawn_points;
+
+/* Gives an occupancy its transfer function. A skin takes `opacity` of the light that crosses it at a right
+ * angle: a homogeneous layer of opacity o per u has the opacity o if it is u thick. */
+static void set_function(const hl_label *label, hl_scene_volume *drawn, drawn_points *points) {
+  mat3 placed = hl_scene_volume_index_to_world(drawn).linear;
+  hl_transfer_function *function = &drawn->transfer_function;
+  points->color = (hl_color_point){0, {label->color[0], label->color[1], label->color[2]}};
+  *function = (hl_transfer_function){.opacity = points->opacity, .color = &points->color, .color_count = 1};
+  if (label->opacity >= 1) {
+    points->opacity[0] = (hl_opacity_point){SOLID_FROM, 0};
+    points->opacity[1] = (hl_opacity_point){SOLID_TO, SOLID_OPACITY};
+    function->opacity_count = 2;
+    function->unit_distance = mat3_shortest_column(placed);
+    return;
+  }
+  const hl_opacity_point skin[POINTS] = {
+      {SKIN_FROM, 0}, {SKIN_FROM, label->opacity}, {SKIN_TO, label->opacity}, {SKIN_TO, 0}};
+  memcpy(points->opacity, skin, sizeof skin);
+  function->opacity_count = POINTS;
+  double edge = cbrt(vec3_length(mat3_column(placed, 0)) * vec3_length(mat3_column(placed, 1)) *
+                     vec3_length(mat3_column(placed, 2)));
+  function->unit_distance = (SKIN_TO - SKIN_FROM) / drawn->volume->surface_slope * edge;
+}
+
+static bool is_drawn(const hl_label *label) { return label->visible && label->opacity > 0; }
+
+static size_t count_drawn(const hl_scene_volume *volume) {
+  if (volume->label_count == 0) return 1;
+  size_t count = 0;
+  for (size_t n = 0; n < volume->label_count; n++) count += is_drawn(&volume->labels[n]);
+  return count;
+}
+
+/* Adds the volumes that draw a label map. */
+static hl_status draw_map(hl_context *context, hl_scene *scene, const hl_scene_volume *map,
+                          drawn_points **points, hl_error *error) {
+  hl_scene_description *placed = &scene->placed;
+  for (size_t n = 0; n < map->label_count; n++) {
+    const hl_label *label = &map->labels[n];
+    hl_volume *occupancy = NULL;
+    if (!is_drawn(label)) continue;
+    hl_status status = hl_label_occupancy_of(context, placed->render.threads, map->volume,
+                                             (hl_label_values){&label->value, 1}, &occupancy, error);
+    if (status != HL_OK) return status;
+    if (occupancy == NULL) continue;
+    hl_scene_volume *drawn = (hl_scene_volume *)&placed->volumes[placed->volume_count++];
+    *drawn = *map;
+    drawn->volume = occupancy;
+    drawn->labels = NULL;
+    drawn->label_count = 0;
+    set_function(label, drawn, (*points)++);
+  }
+  return HL_OK;
+}
+
+hl_status hl_labels_draw(hl_context *context, hl_scene *scene, hl_error *error) {
+  const hl_scene_description *d = &scene->description;
+  hl_scene_description *placed = &scene->placed;
+  size_t count = 0, maps = 0;
+  for (size_t v = 0; v < d->volume_count; v++) {
+    maps += d->volumes[v].label_count > 0;
+    count += count_drawn(&d->volumes[v]);
+  }
+  if (maps == 0) return HL_OK;
+  if (count > HL_LIMIT_VOLUMES)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "/volumes: %zu labels and volumes are visible, at most %d can be", count,
+                   HL_LIMIT_VOLUMES);
+  scene->drawn = hl_allocate_zeroed(context, count + 1, sizeof *scene->drawn);
+  scene->drawn_points = hl_allocate(context, count + 1, sizeof(drawn_points));
+  if (scene->drawn == NULL || scene->drawn_points == NULL)
+    return hl_fail_memory(error, count * sizeof *scene->drawn, "labels");
+  placed->volumes = scene->drawn;
+  placed->volume_count = 0;
+  drawn_points *points = scene->drawn_points;
+  hl_status status = HL_OK;
+  for (size_t v = 0; v < d->volume_count && status == HL_OK; v++) {
+    const hl_scene_volume *volume = &d->volumes[v];
+    if (volume->label_count > 0) {
+      status = draw_map(context, scene, volume, &points, error);
+    } else {
+      hl_volume_retain(volume->volume);
+      scene->drawn[placed->volume_count++] = *volume;
+    }
+  }
+  if (status == HL_OK && placed->volume_count == 0)
+    status = hl_fail(error, HL_ERROR_INPUT, "/volumes: no label that is visible has voxels: show others");
+  return status;
+}
+
+void hl_drawn_labels_release(hl_context *context, hl_scene *scene) {
+  if (scene->drawn == NULL) return;
+  for (size_t v = 0; v < scene->placed.volume_count; v++) hl_volume_release(scene->drawn[v].volume);
+  hl_release(context, scene->drawn);
+  hl_release(context, scene->drawn_points);
+}

@@ -1,0 +1,137 @@
+/* analytic/sheets_labels.c - pictures of label maps: what a skin and solid matter take of light, which labels
+ * show, and the same from the reference. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+
+enum { SIDE = 32, PIXELS = SIDE * SIDE, N = 40 };
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+}
+
+/* Two balls side by side, labels 1 (left) and 2 (right), radius 7, seen along -z. */
+static hl_scene_volume *open_balls(stage *set, const hl_label *labels, size_t count) {
+  static float voxels[N * N * N];
+  for (int k = 0; k < N; k++)
+    for (int j = 0; j < N; j++)
+      for (int i = 0; i < N; i++) {
+        double y = j - 19.5, z = k - 19.5, left = hypot(hypot(i - 10.5, y), z),
+               right = hypot(hypot(i - 29.5, y), z);
+        voxels[(k * N + j) * N + i] = left < 7 ? 1 : right < 7 ? 2 : 0;
+      }
+  stage_open(set);
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = N;
+  stage_look(set, (vec3){0, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  hl_scene_volume *map = stage_add_grid(set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1},
+                                        (vec3){-N / 2, -N / 2, -N / 2}, voxels);
+  map->labels = labels;
+  map->label_count = count;
+  map->shading = HL_SHADING_FLAT;
+  return map;
+}
+
+static void render(stage *set, bool reference, float *pixels) {
+  hl_reference_options options;
+  hl_reference_options_defaults(&options);
+  options.light_points = 4;
+  if (reference) stage_render(set, &options, pixels);
+  else stage_render_sheets(set, pixels);
+}
+
+/* The pixel at a world position. */
+static const float *pixel_at(const float *pixels, double x, double y) {
+  int column = (int)((x / N + 0.5) * SIDE), row = (int)((0.5 - y / N) * SIDE);
+  return &pixels[4 * (row * SIDE + column)];
+}
+
+/* A ray through the middle crosses the skin twice: it passes (1 - o)^2. */
+static void test_skin_takes_its_opacity(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  static const double opacities[] = {0.2, 0.5, 0.9};
+  for (int k = 0; k < 6; k++) {
+    double o = opacities[k % 3];
+    const hl_label labels[] = {{1, "left", {0.9, 0.2, 0.1}, o, 1}, {2, "right", {0.1, 0.3, 0.9}, 1, 1}};
+    stage set;
+    open_balls(&set, labels, 2);
+    render(&set, k >= 3, pixels);
+    const float *left = pixel_at(pixels, -9.4, 0), *right = pixel_at(pixels, 9.4, 0);
+    assert_near((double)left[3], 1 - (1 - o) * (1 - o), 0.05);
+    assert_near((double)right[3], 1, 2e-3);
+    for (int c = 0; c < 3; c++) {
+      assert_near((double)left[c], labels[0].color[c] * (double)left[3], 1e-5);
+      assert_near((double)right[c], labels[1].color[c] * (double)right[3], 1e-5);
+    }
+    assert_true(pixel_at(pixels, 0, 0)[3] == 0);
+    stage_close(&set);
+  }
+}
+
+static void test_hidden_labels_are_not_there(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 2; k++) {
+    const hl_label labels[] = {{1, NULL, {1, 1, 1}, 1, k}, {2, NULL, {1, 1, 1}, 1, 1 - k}};
+    stage set;
+    open_balls(&set, labels, 2);
+    render(&set, false, pixels);
+    assert_true(pixel_at(pixels, k ? 9.4 : -9.4, 0)[3] == 0);
+    assert_near((double)pixel_at(pixels, k ? -9.4 : 9.4, 0)[3], 1, 2e-3);
+    stage_close(&set);
+  }
+}
+
+/* Lit labels with shadows are near the reference's picture of them. */
+static void test_labels_against_the_reference(void **state) {
+  (void)state;
+  static float pixels[2][PIXELS * 4];
+  const hl_label labels[] = {{1, NULL, {0.9, 0.2, 0.1}, 0.6, 1}, {2, NULL, {0.1, 0.3, 0.9}, 1, 1}};
+  for (int reference = 0; reference < 2; reference++) {
+    stage set;
+    open_balls(&set, labels, 2)->shading = HL_SHADING_PHONG;
+    stage_add_directional(&set, (vec3){-1, -0.2, -0.8});
+    render(&set, reference, pixels[reference]);
+    stage_close(&set);
+  }
+  double sum = 0;
+  for (int i = 0; i < 4 * PIXELS; i++) {
+    double d = (double)pixels[0][i] - (double)pixels[1][i];
+    sum += d * d / (4 * PIXELS);
+  }
+  assert_near(sqrt(sum), 0, 0.012);
+}
+
+static void test_wrong_labels_are_refused(void **state) {
+  (void)state;
+  const hl_label half = {1.5, NULL, {1, 1, 1}, 1, 1}, bright = {1, NULL, {2, 1, 1}, 1, 1};
+  const hl_label twice[] = {{1, NULL, {1, 1, 1}, 1, 1}, {1, NULL, {1, 1, 1}, 1, 1}};
+  stage set;
+  open_balls(&set, &half, 1);
+  stage_refused(&set, "/volumes/0/labels/0/value: is no whole number: give the label's");
+  set.volumes[0].labels = &bright;
+  stage_refused(&set, "/volumes/0/labels/0/color/0: 2 is out of range: give linear RGB, each from 0 to 1");
+  set.volumes[0].labels = twice;
+  set.volumes[0].label_count = 2;
+  stage_refused(&set,
+                "/volumes/0/labels/1/value: does not come after the label before: sort them by number, each "
+                "once");
+  stage_close(&set);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_skin_takes_its_opacity),
+      cmocka_unit_test(test_hidden_labels_are_not_there),
+      cmocka_unit_test(test_labels_against_the_reference),
+      cmocka_unit_test(test_wrong_labels_are_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,150 @@
+/* tests/unit/scene_labels.c - labels from segmentations and tables, in scenes and back. */
+#define _GNU_SOURCE
+#include <stdio.h>
+#include <unistd.h>
+
+#include "scene/label_table.h"
+#include "scene/transfer_function.h"
+#include "scene_parts.h"
+
+static char path[] = "/tmp/halflight-labels-XXXXXX.seg.nrrd";
+
+static int make_file(void **state) {
+  (void)state;
+  int descriptor = mkstemps(path, 9);
+  return descriptor < 0 ? -1 : close(descriptor);
+}
+
+static int remove_file(void **state) {
+  (void)state;
+  return unlink(path);
+}
+
+/* A 3 x 2 x 2 segmentation with labels 1 and 4; the second layer, if there is one, has 1 everywhere. */
+static void write_segmentation(int layers) {
+  static const unsigned char voxels[12] = {0, 1, 1, 0, 4, 4, 0, 0, 0, 1, 1, 4};
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  fprintf(file,
+          "NRRD0004\ntype: uchar\ndimension: %d\nsizes: %s3 2 2\nkinds: %sdomain domain domain\n"
+          "encoding: raw\nSegment0_Name:=left lung\nSegment0_Color:=1 0.5 0\nSegment0_LabelValue:=1\n"
+          "Segment0_Layer:=0\nSegment1_Name:=heart\nSegment1_LabelValue:=4\nSegment2_Name:=all\n"
+          "Segment2_LabelValue:=1\nSegment2_Layer:=1\nSegment9999999_Name:=no\nSegmentation_x:=y\n\n",
+          layers == 2 ? 4 : 3, layers == 2 ? "2 " : "", layers == 2 ? "list " : "");
+  for (int i = 0; i < 12; i++) {
+    fputc(voxels[i], file);
+    if (layers == 2) fputc(1, file);
+  }
+  fclose(file);
+}
+
+static void segmentations_name_their_labels(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  for (int layer = 0; layer < 2; layer++) {
+    write_segmentation(layer + 1);
+    hl_volume_load_options options;
+    hl_volume_load_options_defaults(&options);
+    options.component = layer;
+    hl_volume *map = NULL;
+    hl_label *labels = NULL;
+    size_t count = 0;
+    assert_int_equal(hl_volume_load_with(context, path, &options, &map, NULL), HL_OK);
+    assert_int_equal(hl_labels_of_volume(context, map, NULL, &labels, &count, NULL), HL_OK);
+    assert_int_equal(count, layer == 0 ? 2 : 1);
+    assert_string_equal(labels[0].name, layer == 0 ? "left lung" : "all");
+    if (layer == 0) {
+      assert_true(labels[0].color[1] == hl_srgb_to_linear(0.5) && labels[0].color[2] == 0);
+      assert_true(labels[1].value == 4 && labels[1].visible && labels[1].opacity == 1);
+      assert_string_equal(labels[1].name, "heart");
+    }
+    hl_labels_release(context, labels);
+    hl_volume_release(map);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+static void tables_of_other_programs(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  const char *texts[] = {"# FreeSurfer\n4   Heart  255 0 128  0\n1 Left-Lung 0 255 0 0\n\n",
+                         "################\n# ITK-SnAP\n    4  255    0  128   1  1  1    \"Heart\"\n    1   "
+                         " 0  255  0  1  1 1 \"Left-Lung\"\n",
+                         "number,name,red,green,blue\n1,Left-Lung,0,255,0\r\n4,\"Heart\",1.0,0,0.50196\n",
+                         "1 Wrong 1 2 3\n4 Heart 255 0 128\n1 Left-Lung 0 255 0"};
+  for (size_t n = 0; n < sizeof texts / sizeof *texts; n++) {
+    hl_label_list list;
+    assert_int_equal(hl_label_table_parse(context, texts[n], strlen(texts[n]), "t", &list, NULL), HL_OK);
+    assert_int_equal(list.count, 2);
+    assert_string_equal(list.labels[0].name, "Left-Lung");
+    assert_string_equal(list.labels[1].name, "Heart");
+    assert_true(list.labels[1].value == 4 && list.labels[1].color[0] == 1);
+    assert_true(fabs(list.labels[1].color[2] - hl_srgb_to_linear(128 / 255.0)) < 1e-4);
+    hl_label_list_release(context, &list);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+static void wrong_tables_are_refused(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  const struct {
+    const char *text, *message;
+  } cases[] = {{"", "t: no label is in it: give lines of number, name, red, green, blue"},
+               {"1 a 1 2 3\nword", "t: line 2: begins with no number"},
+               {"1.5 a 1 2 3", "t: line 1: its number is no label's"},
+               {"1 a 300 0 0", "t: line 1: is no label"}};
+  for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+    hl_label_list list;
+    hl_error error = {0};
+    assert_int_equal(hl_label_table_parse(context, cases[n].text, strlen(cases[n].text), "t", &list, &error),
+                     HL_ERROR_INPUT);
+    assert_true(strncmp(error.message, cases[n].message, strlen(cases[n].message)) == 0);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+static void scenes_keep_their_labels(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  write_segmentation(1);
+  char text[600];
+  snprintf(text, sizeof text,
+           "{\"halflight\": 1, \"volumes\": [{\"file\": \"%s\", \"labels\": [{\"name\": \"heart\", "
+           "\"opacity\": 0.5}, "
+           "{\"value\": 1, \"color\": [0.25, 0, 1], \"visible\": false}]}]}",
+           path);
+  char *written[2] = {text, NULL};
+  for (int pass = 0; pass < 2; pass++) {
+    hl_scene *scene = NULL;
+    hl_error error = {0};
+    if (hl_scene_from_json(context, written[pass], strlen(written[pass]), NULL, "s", &scene, &error) != HL_OK)
+      fail_msg("%s", error.message);
+    const hl_scene_volume *volume = &hl_scene_describe(scene)->volumes[0];
+    assert_int_equal(volume->label_count, 2);
+    assert_true(volume->labels[0].value == 1 && !volume->labels[0].visible &&
+                volume->labels[0].color[0] == 0.25);
+    assert_true(volume->labels[1].value == 4 && volume->labels[1].opacity == 0.5);
+    assert_string_equal(volume->labels[1].name, "heart");
+    assert_true(hl_transfer_function_opacity(&volume->transfer_function, 4) == 0.5 &&
+                hl_transfer_function_opacity(&volume->transfer_function, 1) == 0);
+    if (pass == 0) assert_int_equal(hl_scene_to_json(context, scene, &written[1], NULL), HL_OK);
+    hl_scene_release(scene);
+  }
+  hl_text_release(context, written[1]);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(segmentations_name_their_labels),
+      cmocka_unit_test(tables_of_other_programs),
+      cmocka_unit_test(wrong_tables_are_refused),
+      cmocka_unit_test(scenes_keep_their_labels),
+  };
+  return cmocka_run_group_tests(tests, make_file, remove_file);
+}
