@@ -27,7 +27,7 @@ typedef struct collision {
 
 static double extinction_of(const crossing *part) {
   if (!part->occupied) return 0;
-  return hl_reference_extinction(part->volume, hl_reference_value(part->volume, part->here));
+  return hl_reference_extinction(part->volume, hl_reference_value(part->volume, part->here), part->here);
 }
 
 /* Chooses one of the volumes at the march's place, by their extinctions. */

@@ -42,6 +42,24 @@ static float value_between(const grid *grid, const double p[3]) {
   return value;
 }
 
+/* What gradient opacity multiplies extinction by at a point of index space; differences are of values a voxel
+ * apart. */
+static float gradient_factor(const scatter_volume *volume, const double p[3]) {
+  const classifier *classifier = volume->classifier;
+  vec3 gradient = {0, 0, 0};
+  for (int a = 0; a < 3; a++) {
+    double before[3] = {p[0], p[1], p[2]}, after[3] = {p[0], p[1], p[2]};
+    before[a] -= 0.5;
+    after[a] += 0.5;
+    double slope = (double)value_between(volume->grid, after) - (double)value_between(volume->grid, before);
+    gradient = vec3_add(gradient, vec3_scale(volume->grid->frame_to_index.linear.row[a], slope));
+  }
+  double x = fmin(vec3_length(gradient) * (double)classifier->steepness_scale, STEEPNESS_ENTRIES);
+  size_t low = (size_t)x;
+  return classifier->steepness[low] +
+         (float)(x - (double)low) * (classifier->steepness[low + 1] - classifier->steepness[low]);
+}
+
 /* The extinction of a volume at a point of frame space and the colour there; 0 where nothing is visible. */
 static float extinction_at(const scatter_volume *volume, vec3 point, float color[3]) {
   const classifier *classifier = volume->classifier;
@@ -56,7 +74,8 @@ static float extinction_at(const scatter_volume *volume, vec3 point, float color
   float f = entry - (float)low;
   for (int c = 0; c < 3; c++)
     color[c] = classifier->color[low][c] + f * (classifier->color[low + 1][c] - classifier->color[low][c]);
-  return classifier->sums[low][0] + f * (classifier->sums[low + 1][0] - classifier->sums[low][0]);
+  float found = classifier->sums[low][0] + f * (classifier->sums[low + 1][0] - classifier->sums[low][0]);
+  return found > 0 && classifier->steepness != NULL ? found * gradient_factor(volume, p) : found;
 }
 
 /* Adds a volume's extinction and scattering at a point, times weight; similarity as scatter.h says. */
