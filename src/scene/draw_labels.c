@@ -7,6 +7,9 @@
 #include "core/memory.h"
 #include "label/shelf.h"
 #include "scene/limits.h"
+#include "scene/placement.h"
+#include "scene/transfer_function.h"
+#include "volume/volume.h"
 
 /* ---- a function over the map's own values ---- */
 
@@ -98,9 +101,8 @@ static size_t count_drawn(const hl_scene_volume *volume) {
 }
 
 /* Adds the volumes that draw a label map. */
-static hl_status draw_map(hl_context *context, hl_scene *scene, const hl_scene_volume *map,
+static hl_status draw_map(hl_context *context, hl_scene_description *placed, const hl_scene_volume *map,
                           drawn_points **points, hl_error *error) {
-  hl_scene_description *placed = &scene->placed;
   for (size_t n = 0; n < map->label_count; n++) {
     const hl_label *label = &map->labels[n];
     hl_volume *occupancy = NULL;
@@ -119,34 +121,39 @@ static hl_status draw_map(hl_context *context, hl_scene *scene, const hl_scene_v
   return HL_OK;
 }
 
-hl_status hl_labels_draw(hl_context *context, hl_scene *scene, hl_error *error) {
-  const hl_scene_description *d = &scene->description;
-  hl_scene_description *placed = &scene->placed;
+hl_status hl_labels_draw(hl_context *context, hl_scene_description *placed, drawn_labels *drawn,
+                         hl_error *error) {
+  const hl_scene_volume *volumes = placed->volumes; /* label maps among them */
+  const size_t volume_count = placed->volume_count;
   size_t count = 0, maps = 0;
-  for (size_t v = 0; v < d->volume_count; v++) {
-    maps += d->volumes[v].label_count > 0;
-    count += count_drawn(&d->volumes[v]);
+  for (size_t v = 0; v < volume_count; v++) {
+    maps += volumes[v].label_count > 0;
+    count += count_drawn(&volumes[v]);
   }
   if (maps == 0) return HL_OK;
   if (count > HL_LIMIT_VOLUMES)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "/volumes: %zu labels and volumes are visible, at most %d can be", count,
                    HL_LIMIT_VOLUMES);
-  scene->drawn = hl_allocate_zeroed(context, count + 1, sizeof *scene->drawn);
-  scene->drawn_points = hl_allocate(context, count + 1, sizeof(drawn_points));
-  if (scene->drawn == NULL || scene->drawn_points == NULL)
-    return hl_fail_memory(error, count * sizeof *scene->drawn, "labels");
-  placed->volumes = scene->drawn;
+  drawn->volumes = hl_allocate_zeroed(context, count + 1, sizeof *drawn->volumes);
+  drawn->points = hl_allocate(context, count + 1, sizeof(drawn_points));
+  if (drawn->volumes == NULL || drawn->points == NULL) {
+    hl_release(context, drawn->volumes);
+    hl_release(context, drawn->points);
+    *drawn = (drawn_labels){0};
+    return hl_fail_memory(error, count * sizeof *drawn->volumes, "labels");
+  }
+  placed->volumes = drawn->volumes;
   placed->volume_count = 0;
-  drawn_points *points = scene->drawn_points;
+  drawn_points *points = drawn->points;
   hl_status status = HL_OK;
-  for (size_t v = 0; v < d->volume_count && status == HL_OK; v++) {
-    const hl_scene_volume *volume = &d->volumes[v];
+  for (size_t v = 0; v < volume_count && status == HL_OK; v++) {
+    const hl_scene_volume *volume = &volumes[v];
     if (volume->label_count > 0) {
-      status = draw_map(context, scene, volume, &points, error);
+      status = draw_map(context, placed, volume, &points, error);
     } else {
       hl_volume_retain(volume->volume);
-      scene->drawn[placed->volume_count++] = *volume;
+      drawn->volumes[placed->volume_count++] = *volume;
     }
   }
   if (status == HL_OK && placed->volume_count == 0)
@@ -154,9 +161,9 @@ hl_status hl_labels_draw(hl_context *context, hl_scene *scene, hl_error *error) 
   return status;
 }
 
-void hl_drawn_labels_release(hl_context *context, hl_scene *scene) {
-  if (scene->drawn == NULL) return;
-  for (size_t v = 0; v < scene->placed.volume_count; v++) hl_volume_release(scene->drawn[v].volume);
-  hl_release(context, scene->drawn);
-  hl_release(context, scene->drawn_points);
+void hl_drawn_labels_release(hl_context *context, const hl_scene_description *placed, drawn_labels *drawn) {
+  if (drawn->volumes == NULL) return;
+  for (size_t v = 0; v < placed->volume_count; v++) hl_volume_release(drawn->volumes[v].volume);
+  hl_release(context, drawn->volumes);
+  hl_release(context, drawn->points);
 }

@@ -3,8 +3,15 @@
 #ifndef HL_SCENE_DRAW_LABELS_H
 #define HL_SCENE_DRAW_LABELS_H
 
+#include <halflight/scene.h>
+
 #include "core/error.h"
-#include "scene/scene.h"
+
+/* The volumes that draw a scene's label maps; all null where there are no label maps. */
+typedef struct drawn_labels {
+  hl_scene_volume *volumes; /* owned, with a reference to each volume; the placed description's array */
+  void *points;             /* owned; the volumes' transfer functions */
+} drawn_labels;
 
 /* A transfer function over a label map's own values: each visible label from half a number below to half a
  * number above it, in its colour. It tells framing, exposure and legends what is seen. function's points are
@@ -12,9 +19,12 @@
 hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
                              hl_transfer_function *function, hl_error *error);
 
-/* Replaces the label maps of a scene's placed description by volumes of occupancy; the scene then owns its
- * array of volumes (hl_drawn_labels_release). Nothing happens where there are no label maps. */
-hl_status hl_labels_draw(hl_context *context, hl_scene *scene, hl_error *error);
-void hl_drawn_labels_release(hl_context *context, hl_scene *scene);
+/* Replaces the label maps of a placed description by volumes of occupancy, which `drawn` owns. The
+ * description's array of volumes is then that of `drawn`. Nothing happens where there are no label maps.
+ * After a failure, too, call hl_drawn_labels_release(). */
+hl_status hl_labels_draw(hl_context *context, hl_scene_description *placed, drawn_labels *drawn,
+                         hl_error *error);
+/* placed: the description that hl_labels_draw() changed. */
+void hl_drawn_labels_release(hl_context *context, const hl_scene_description *placed, drawn_labels *drawn);
 
 #endif

@@ -8,7 +8,6 @@
 
 #include "core/memory.h"
 #include "scene/check.h"
-#include "scene/draw_labels.h"
 #include "scene/placement.h"
 #include "scene/settings.h"
 
@@ -85,7 +84,7 @@ static void destroy(hl_scene *scene) {
   hl_release(context, (void *)d->volumes);
   for (size_t m = 0; m < d->mesh_count; m++) release_mesh(context, (hl_scene_mesh *)&d->meshes[m]);
   hl_release(context, (void *)d->meshes);
-  hl_drawn_labels_release(context, scene);
+  hl_drawn_labels_release(context, &scene->placed, &scene->drawn);
   hl_placed_lights_release(context, &scene->placed);
   for (size_t l = 0; l < d->light_count; l++) {
     hl_release(context, (void *)d->lights[l].vertices);
@@ -309,7 +308,7 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   if (status == HL_OK) status = copy_meshes(made, description, error);
   if (status == HL_OK) status = copy_sky(made, &description->sky, error);
   if (status == HL_OK) status = hl_lights_place(context, &made->description, &made->placed, error);
-  if (status == HL_OK) status = hl_labels_draw(context, made, error);
+  if (status == HL_OK) status = hl_labels_draw(context, &made->placed, &made->drawn, error);
   if (status != HL_OK) {
     destroy(made);
     return status;

@@ -7,6 +7,7 @@
 #include <halflight/scene.h>
 
 #include "scene/camera.h"
+#include "scene/draw_labels.h"
 #include "scene/placement.h"
 #include "scene/transfer_function.h"
 #include "volume/volume.h"
@@ -17,9 +18,7 @@ struct hl_scene {
   hl_scene_description description; /* its arrays and texts are owned by the scene */
   hl_scene_description placed; /* the same for rendering: all lights in the world, and volumes of occupancy in
                                   place of label maps; owns its array of lights */
-  hl_scene_volume *drawn;      /* owned, with a reference to each volume; placed.volumes where there are label
-                                  maps;      else null */
-  void *drawn_points;          /* owned; the drawn volumes' transfer functions */
+  drawn_labels drawn;          /* the volumes of occupancy */
 };
 
 /* Frees the pixels and file names of a light's texture and emission, where they are owned. */
