@@ -8,7 +8,7 @@
  * chunks balls under parallel lights 60 to 90 degrees wide showed rings. ENOUGH_CHUNKS: to stay below this
  * number, chunks grow, at most to THICK_CHUNK. LEAST_CHUNK: the least thickness of a chunk. Thickness in
  * pixels of omega. */
-static const double GREATEST_CHUNKS = 64, FAR_CHUNKS = 96, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3,
+static const double GREATEST_CHUNKS = 64, FAR_CHUNKS = 88, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3,
                     LEAST_CHUNK = 0.15;
 
 /* Divides omega from start to end into chunks of one length. A near light's omega grows without bound towards

@@ -113,7 +113,20 @@ static void move_axes(hl_context *context, const motion *by, hl_scene_volume *vo
   memset(volume->translate, 0, sizeof volume->translate);
 }
 
+/* Gradients are data units per world unit. points: room for the volume's gradient opacity, kept until the
+ * scene is created, which copies it. */
+static void move_gradients(const motion *by, hl_transfer_function *function, hl_opacity_point points[4]) {
+  assert_true(function->gradient_opacity_count <= 4);
+  if (function->gradient_opacity_count == 0) return;
+  for (size_t p = 0; p < function->gradient_opacity_count; p++) {
+    points[p] = function->gradient_opacity[p];
+    points[p].value /= by->scale;
+  }
+  function->gradient_opacity = points;
+}
+
 void stage_move(stage *set, const motion *by, int by_transform, double (*vertices)[3]) {
+  static hl_opacity_point gradients[sizeof set->volumes / sizeof *set->volumes][4];
   move_point(by, set->scene.camera.position);
   move_point(by, set->scene.camera.target);
   move_direction(by, set->scene.camera.up);
@@ -125,6 +138,7 @@ void stage_move(stage *set, const motion *by, int by_transform, double (*vertice
   for (size_t v = 0; v < set->scene.volume_count; v++) {
     hl_scene_volume *volume = &set->volumes[v];
     volume->transfer_function.unit_distance *= by->scale;
+    move_gradients(by, &volume->transfer_function, gradients[v]);
     if (volume->clipped || (by_transform && determinant(by->turn) > 0)) move_transform(by, volume);
     else move_axes(set->context, by, volume);
   }
