@@ -68,9 +68,10 @@ static void segmentations_name_their_labels(void **state) {
 static void tables_of_other_programs(void **state) {
   (void)state;
   hl_context *context = make_context();
-  const char *texts[] = {"# FreeSurfer\n4   Heart  255 0 128  0\n1 Left-Lung 0 255 0 0\n\n",
-                         "################\n# ITK-SnAP\n    4  255    0  128   1  1  1    \"Heart\"\n    1   "
-                         " 0  255  0  1  1 1 \"Left-Lung\"\n",
+  static const char snap[] =
+      "################\n# ITK-SnAP\n    4  255    0  128   1  1  1    \"Heart\"\n"
+      "    1    0  255  0  1  1 1 \"Left-Lung\"\n";
+  const char *texts[] = {"# FreeSurfer\n4   Heart  255 0 128  0\n1 Left-Lung 0 255 0 0\n\n", snap,
                          "number,name,red,green,blue\n1,Left-Lung,0,255,0\r\n4,\"Heart\",1.0,0,0.50196\n",
                          "1 Wrong 1 2 3\n4 Heart 255 0 128\n1 Left-Lung 0 255 0"};
   for (size_t n = 0; n < sizeof texts / sizeof *texts; n++) {
