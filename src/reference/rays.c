@@ -2,7 +2,7 @@
  *
  * In: the scene and the boxes of its volumes' visible bricks. Out: rays along each side of a pixel. Where
  * voxels are smaller than pixels, a pixel of the sheet renderer is the mean over the pixel's area
- * (docs/architecture.md); one ray through its centre would give another picture. */
+ * (docs/decisions.md); one ray through its centre would give another picture. */
 #include "reference/reference.h"
 
 enum { BRICK_CELLS = 4, LONGEST_SIDE = 4096, SURFACE_RAYS = 4 }; /* SURFACE_RAYS: for the edges of meshes */
