@@ -355,8 +355,8 @@ LANES_INLINE void weigh_slab(const shade_job *job, block_density *densities, int
   const block_geometry *g = &slab->geometry;
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
+    if (!d->there || d->patch->volume->classifier->steepness == NULL) continue;
     const shade_volume *volume = d->patch->volume;
-    if (!d->there || volume->classifier->steepness == NULL) continue;
     lanes place = lanes_fma(slab->part.length, d->seen, slab->part.begin);
     uint32_t active = lanes_bits(slab->seen & (d->sums.extinction > 0.0f));
     d->slope = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
