@@ -299,6 +299,6 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
 
 void hl_sky_release(hl_context *context, sky_field *field) {
   hl_release(context, field->memory);
-  hl_release(context, field->key);
+  hl_key_release(context, &field->key);
   *field = (sky_field){0};
 }

@@ -2,6 +2,7 @@
 #ifndef HL_FIELD_SKY_FIELD_H
 #define HL_FIELD_SKY_FIELD_H
 
+#include "core/key.h"
 #include "core/pool.h"
 #include "field/opacity.h"
 #include "scene/scene.h"
@@ -22,8 +23,7 @@ typedef struct sky_field {
   void *memory; /* owned; the field */
   size_t bytes;
   sky_light light;
-  unsigned char *key; /* owned; [key_bytes]; what the field was made of */
-  size_t key_bytes;
+  hl_key key; /* of what the field was made of */
 } sky_field;
 
 /* What a field is made of. Matter's casts are 1 or 0; colors: relative extinctions, [matter][3]. */

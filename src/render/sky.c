@@ -7,28 +7,13 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "grid/matter_key.h"
 #include "mesh/mesh.h"
 
 /* A field has at most so many cells. */
 static const double MOST_CELLS = 1200000;
 
 /* ---- the key ---- */
-
-typedef struct key_writer {
-  unsigned char *bytes; /* null: counts only */
-  size_t count;
-} key_writer;
-
-static void add_bytes(key_writer *key, const void *bytes, size_t count) {
-  if (key->bytes != NULL && count > 0) memcpy(key->bytes + key->count, bytes, count);
-  key->count += count;
-}
-
-static void add_numbers(key_writer *key, const double *numbers, size_t count) {
-  add_bytes(key, numbers, count * sizeof *numbers);
-}
-
-static void add_whole(key_writer *key, int64_t number) { add_bytes(key, &number, sizeof number); }
 
 /* A number for an image's pixels: FNV-1a over words of 32 bits, in 64 bits. */
 static uint64_t mark_of_pixels(const hl_sky *sky) {
@@ -42,81 +27,58 @@ static uint64_t mark_of_pixels(const hl_sky *sky) {
   return mark;
 }
 
-static void add_sky(key_writer *key, const hl_sky *sky, uint64_t mark) {
-  add_whole(key, (int64_t)sky->type);
-  add_whole(key, sky->hemisphere);
-  add_numbers(key, sky->color, 3);
-  add_numbers(key, sky->zenith, 3);
-  add_numbers(key, sky->horizon, 3);
-  add_numbers(key, sky->ground, 3);
-  add_numbers(key, sky->up, 3);
-  add_numbers(key, &sky->rotation_deg, 1);
-  add_numbers(key, &sky->strength, 1);
+static void add_sky(hl_key *key, const hl_sky *sky, uint64_t mark) {
+  hl_key_add_whole(key, (int64_t)sky->type);
+  hl_key_add_whole(key, sky->hemisphere);
+  hl_key_add_numbers(key, sky->color, 3);
+  hl_key_add_numbers(key, sky->zenith, 3);
+  hl_key_add_numbers(key, sky->horizon, 3);
+  hl_key_add_numbers(key, sky->ground, 3);
+  hl_key_add_numbers(key, sky->up, 3);
+  hl_key_add_numbers(key, &sky->rotation_deg, 1);
+  hl_key_add_numbers(key, &sky->strength, 1);
   if (sky->type != HL_SKY_IMAGE) return;
-  add_whole(key, sky->width);
-  add_whole(key, sky->height);
-  add_bytes(key, &mark, sizeof mark);
+  hl_key_add_whole(key, sky->width);
+  hl_key_add_whole(key, sky->height);
+  hl_key_add(key, &mark, sizeof mark);
 }
 
-static void add_volume(key_writer *key, const prepared_volume *prepared, const grid *grid) {
-  const hl_scene_volume *volume = prepared->scene;
-  const hl_transfer_function *function = &volume->transfer_function;
-  uintptr_t voxels = (uintptr_t)volume->volume; /* kept by the prepared volume while the field is */
-  add_bytes(key, &voxels, sizeof voxels);
-  for (int row = 0; row < 3; row++) add_numbers(key, &grid->index_to_frame.linear.row[row].x, 3);
-  add_numbers(key, &grid->index_to_frame.offset.x, 3);
-  add_numbers(key, grid->box_low, 3);
-  add_numbers(key, grid->box_high, 3);
-  add_numbers(key, &function->unit_distance, 1);
-  for (size_t p = 0; p < function->opacity_count; p++)
-    add_numbers(key, (double[2]){function->opacity[p].value, function->opacity[p].opacity}, 2);
-  add_numbers(key, volume->attenuation_color, 3);
-  add_whole(key, 4 * (int64_t)prepared->kernel + 2 * (volume->visible != 0) + (volume->casts_shadow != 0));
+static void add_volume(hl_key *key, const prepared_volume *prepared, const grid *grid) {
+  hl_matter_key_add(key, prepared->scene, grid); /* the prepared volume keeps the voxels */
+  hl_key_add_whole(key, 2 * (int64_t)prepared->kernel + (prepared->scene->visible != 0));
 }
 
 /* The triangles are those of the frame, and stand for meshes and isosurfaces alike. */
-static void add_surfaces(key_writer *key, const surfaces *all) {
+static void add_surfaces(hl_key *key, const surfaces *all) {
   for (size_t m = 0; m < all->mesh_count; m++) {
     const surface_mesh *mesh = &all->meshes[m];
-    add_numbers(key, &mesh->scene->opacity, 1);
-    add_whole(key, 2 * (mesh->scene->visible != 0) + (mesh->scene->casts_shadow != 0));
-    add_whole(key, mesh->triangle_count);
+    hl_key_add_numbers(key, &mesh->scene->opacity, 1);
+    hl_key_add_whole(key, 2 * (mesh->scene->visible != 0) + (mesh->scene->casts_shadow != 0));
+    hl_key_add_whole(key, mesh->triangle_count);
     if (mesh->colors != NULL)
-      add_bytes(key, mesh->colors, mesh->scene->mesh->description.vertex_count * sizeof *mesh->colors);
+      hl_key_add(key, mesh->colors, mesh->scene->mesh->description.vertex_count * sizeof *mesh->colors);
     if (mesh->face_colors != NULL)
-      add_bytes(key, mesh->face_colors, mesh->triangle_count * sizeof *mesh->face_colors);
+      hl_key_add(key, mesh->face_colors, mesh->triangle_count * sizeof *mesh->face_colors);
     if (mesh->sphere_colors != NULL)
-      add_bytes(key, mesh->sphere_colors, mesh->sphere_count * sizeof *mesh->sphere_colors);
-    add_whole(key, mesh->sphere_count);
+      hl_key_add(key, mesh->sphere_colors, mesh->sphere_count * sizeof *mesh->sphere_colors);
+    hl_key_add_whole(key, mesh->sphere_count);
   }
-  add_bytes(key, all->positions, all->vertex_count * sizeof *all->positions);
-  add_bytes(key, all->triangles, all->triangle_count * sizeof *all->triangles);
-  add_bytes(key, all->spheres, all->sphere_count * sizeof *all->spheres);
+  hl_key_add(key, all->positions, all->vertex_count * sizeof *all->positions);
+  hl_key_add(key, all->triangles, all->triangle_count * sizeof *all->triangles);
+  hl_key_add(key, all->spheres, all->sphere_count * sizeof *all->spheres);
 }
 
-static void write_key(const frame_sky *of, uint64_t mark, key_writer *key) {
-  key->count = 0;
-  add_sky(key, &of->scene->sky, mark);
+typedef struct sky_subject {
+  const frame_sky *of;
+  uint64_t mark; /* of the image's pixels; 0: there is none */
+} sky_subject;
+
+static void write_key(const void *data, hl_key *key) {
+  const sky_subject *subject = data;
+  const frame_sky *of = subject->of;
+  add_sky(key, &of->scene->sky, subject->mark);
   for (size_t v = 0; v < of->scene->volume_count; v++) add_volume(key, &of->volumes[v], &of->grids[v]);
   if (of->frame->surfaces != NULL) add_surfaces(key, of->frame->surfaces);
-}
-
-/* Whether the field's key is the frame's; else the field has the frame's key afterwards. */
-static hl_status renew_key(hl_context *context, const frame_sky *of, sky_field *field, bool *same,
-                           hl_error *error) {
-  const hl_sky *sky = &of->scene->sky;
-  uint64_t mark = sky->type == HL_SKY_IMAGE ? mark_of_pixels(sky) : 0;
-  key_writer key = {NULL, 0};
-  write_key(of, mark, &key);
-  key.bytes = hl_allocate(context, key.count, 1);
-  if (key.bytes == NULL) return hl_fail_memory(error, key.count, "the sky");
-  write_key(of, mark, &key);
-  *same = field->key != NULL && field->key_bytes == key.count &&
-          memcmp(field->key, key.bytes, key.count) == 0;
-  hl_release(context, field->key);
-  field->key = key.bytes;
-  field->key_bytes = key.count;
-  return HL_OK;
 }
 
 /* ---- the content ---- */
@@ -180,7 +142,8 @@ hl_status hl_frame_sky_update(hl_context *context, hl_pool *pool, const hot_func
     hl_sky_release(context, field);
     return HL_OK;
   }
-  hl_status status = renew_key(context, of, field, &same, error);
+  const sky_subject subject = {of, scene->sky.type == HL_SKY_IMAGE ? mark_of_pixels(&scene->sky) : 0};
+  hl_status status = hl_key_renew(context, write_key, &subject, &field->key, &same, error);
   if (status != HL_OK || same) return status;
   const surfaces *all = of->frame->surfaces;
   size_t surface_count = all == NULL ? 0 : all->mesh_count;

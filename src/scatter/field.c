@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "grid/matter_key.h"
 #include "scatter/parts.h"
 
 enum {
@@ -24,6 +25,7 @@ bool hl_scatter_wanted(const hl_scene_description *scene) {
 
 void hl_scatter_release(hl_context *context, scatter_field *field) {
   hl_release(context, field->light);
+  hl_key_release(context, &field->key);
   *field = (scatter_field){0};
 }
 
@@ -99,55 +101,34 @@ uint64_t hl_scatter_bytes(const hl_scene_description *scene) {
 
 /* ---- the key ---- */
 
-/* Fowler, Noll and Vo's hash FNV-1a of 64 bits. */
-static uint64_t add_bytes(uint64_t key, const void *bytes, size_t count) {
-  for (const unsigned char *b = bytes; count-- > 0; b++) key = (key ^ *b) * UINT64_C(0x100000001b3);
-  return key;
-}
-
-static uint64_t add_numbers(uint64_t key, const double *numbers, size_t count) {
-  return add_bytes(key, numbers, count * sizeof *numbers);
-}
-
-static uint64_t add_volume_key(uint64_t key, const scatter_volume *volume) {
+static void add_volume(hl_key *key, const scatter_volume *volume) {
   const hl_scene_volume *scene = volume->scene;
   const hl_transfer_function *function = &scene->transfer_function;
-  const double flags[] = {scene->casts_shadow, scatters(scene),         scene->anisotropy,
-                          scene->clipped,      function->unit_distance, (double)(uintptr_t)scene->volume};
-  key = add_numbers(key, flags, sizeof flags / sizeof *flags);
-  key = add_numbers(key, scene->albedo, 3);
-  key = add_numbers(key, scene->attenuation_color, 3);
-  key = add_numbers(key, scene->clip_min, 3);
-  key = add_numbers(key, scene->clip_max, 3);
-  key = add_numbers(key, &volume->grid->index_to_frame.linear.row[0].x, 9);
-  key = add_numbers(key, &volume->grid->index_to_frame.offset.x, 3);
-  key = add_bytes(key, function->opacity, function->opacity_count * sizeof *function->opacity);
-  return add_bytes(key, function->color, function->color_count * sizeof *function->color);
+  hl_matter_key_add(key, scene, volume->grid);
+  hl_key_add_whole(key, scatters(scene));
+  hl_key_add_numbers(key, &scene->anisotropy, 1);
+  hl_key_add_numbers(key, scene->albedo, 3);
+  hl_key_add_whole(key, (int64_t)function->color_count);
+  hl_key_add(key, function->color, function->color_count * sizeof *function->color);
 }
 
-static uint64_t add_light_key(uint64_t key, const hl_light *light, const hl_render_settings *render) {
-  const double words[] = {light->type,
-                          light->angular_diameter_deg,
-                          light->opening_angle_deg,
-                          light->falloff_angle_deg,
-                          light->radius,
-                          light->falloff,
-                          light->intensity,
-                          light->shadows,
-                          render->shadows};
+static void add_light(hl_key *key, const hl_light *light) {
+  const int64_t kinds[] = {light->type, light->falloff, light->shadows, (int64_t)light->vertex_count};
+  const double numbers[] = {light->angular_diameter_deg, light->opening_angle_deg, light->falloff_angle_deg,
+                            light->radius, light->intensity};
   const double *const vectors[] = {light->position, light->direction, light->edge1,
                                    light->edge2,    light->normal,    light->color};
-  key = add_numbers(key, words, sizeof words / sizeof *words);
-  for (size_t v = 0; v < sizeof vectors / sizeof *vectors; v++) key = add_numbers(key, vectors[v], 3);
-  return add_bytes(key, light->vertices, light->vertex_count * sizeof *light->vertices);
+  for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) hl_key_add_whole(key, kinds[k]);
+  hl_key_add_numbers(key, numbers, sizeof numbers / sizeof *numbers);
+  for (size_t v = 0; v < sizeof vectors / sizeof *vectors; v++) hl_key_add_numbers(key, vectors[v], 3);
+  hl_key_add(key, light->vertices, light->vertex_count * sizeof *light->vertices);
 }
 
-static uint64_t key_of(const scatter_scene *scene) {
-  uint64_t key = UINT64_C(0xcbf29ce484222325);
-  for (size_t v = 0; v < scene->scene->volume_count; v++) key = add_volume_key(key, &scene->volumes[v]);
-  for (size_t l = 0; l < scene->scene->light_count; l++)
-    key = add_light_key(key, &scene->scene->lights[l], &scene->scene->render);
-  return key != 0 ? key : 1; /* 0: no field */
+static void write_key(const void *data, hl_key *key) {
+  const scatter_scene *scene = data;
+  hl_key_add_whole(key, scene->scene->render.shadows);
+  for (size_t v = 0; v < scene->scene->volume_count; v++) add_volume(key, &scene->volumes[v]);
+  for (size_t l = 0; l < scene->scene->light_count; l++) add_light(key, &scene->scene->lights[l]);
 }
 
 /* ---- the whole ---- */
@@ -195,12 +176,13 @@ static hl_status find_field(const scatter_scene *scene, scatter_field *field, hl
 }
 
 hl_status hl_scatter_update(const scatter_scene *scene, scatter_field *field, hl_error *error) {
-  uint64_t key = key_of(scene);
-  if (field->key == key) return HL_OK;
-  hl_scatter_release(scene->context, field);
-  if (!place_nodes(scene, &field->nodes)) return HL_OK;
-  hl_status status = find_field(scene, field, error);
-  if (status == HL_OK) field->key = key;
-  else hl_scatter_release(scene->context, field);
+  bool same = false;
+  hl_status status = hl_key_renew(scene->context, write_key, scene, &field->key, &same, error);
+  if (status != HL_OK || same) return status;
+  hl_key key = field->key;
+  hl_release(scene->context, field->light);
+  *field = (scatter_field){.key = key};
+  if (place_nodes(scene, &field->nodes)) status = find_field(scene, field, error);
+  if (status != HL_OK) hl_scatter_release(scene->context, field);
   return status;
 }

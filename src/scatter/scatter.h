@@ -15,6 +15,7 @@
 
 #include <halflight/scene.h>
 
+#include "core/key.h"
 #include "core/pool.h"
 #include "grid/classifier.h"
 #include "light/light_source.h"
@@ -47,7 +48,7 @@ typedef struct scatter_field {
   float *flux;  /* in the block of light; [channels][3][count z][count y][count x]: the mean of that light
                    times its direction of  travel; null where all matter scatters evenly */
   int channels; /* 1: the same for red, green and blue; or 3 */
-  uint64_t key; /* of what it was found from */
+  hl_key key;   /* of what it was found from */
 } scatter_field;
 
 /* True if some volume asks for multiple scattering and can show it. */

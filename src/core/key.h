@@ -1,0 +1,33 @@
+/* core/key.h - keys of results that are kept: the bytes of all that a result depends on. */
+#ifndef HL_CORE_KEY_H
+#define HL_CORE_KEY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "core/error.h"
+
+typedef struct hl_key {
+  unsigned char *bytes; /* owned; null: bytes that are added are counted only */
+  size_t count;
+} hl_key;
+
+void hl_key_add(hl_key *key, const void *bytes, size_t count);
+
+static inline void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count) {
+  hl_key_add(key, numbers, count * sizeof *numbers);
+}
+
+static inline void hl_key_add_whole(hl_key *key, int64_t number) { hl_key_add(key, &number, sizeof number); }
+
+/* Adds all that a result depends on, the same bytes each time it is called for the same data. */
+typedef void hl_key_write(const void *data, hl_key *key);
+
+/* Tells whether the kept key is the data's. If not, it is the data's afterwards. After a failure the kept key
+ * is as before. */
+hl_status hl_key_renew(hl_context *context, hl_key_write *write, const void *data, hl_key *kept, bool *same,
+                       hl_error *error);
+
+void hl_key_release(hl_context *context, hl_key *key);
+
+#endif
