@@ -71,6 +71,26 @@ LANES_INLINE float value_at(const field_matter *matter, hl_storage storage, cons
   return matter->smooth ? smooth_value(matter->grid, at) : linear_value(matter->grid, storage, at);
 }
 
+/* What gradient opacity multiplies extinction by at a position of index space; differences are of values a
+ * voxel apart. */
+LANES_INLINE float factor_at_position(const field_matter *matter, hl_storage storage, const float at[3]) {
+  const classifier *classifier = matter->classifier;
+  float gradient[3] = {0, 0, 0};
+  for (int a = 0; a < 3; a++) {
+    float before[3] = {at[0], at[1], at[2]}, after[3] = {at[0], at[1], at[2]};
+    before[a] -= 0.5f;
+    after[a] += 0.5f;
+    float slope = value_at(matter, storage, after) - value_at(matter, storage, before);
+    for (int b = 0; b < 3; b++) gradient[b] += matter->to_index[a][b] * slope;
+  }
+  float length = __builtin_sqrtf(gradient[0] * gradient[0] + gradient[1] * gradient[1] +
+                                 gradient[2] * gradient[2]);
+  float entry = length * classifier->steepness_scale;
+  entry = entry < STEEPNESS_ENTRIES ? entry : STEEPNESS_ENTRIES;
+  const float *factors = classifier->steepness + (int32_t)entry;
+  return factors[0] + (factors[1] - factors[0]) * (entry - (float)(int32_t)entry);
+}
+
 /* Whether the transfer function may show something in the grid's cell around a position. */
 LANES_INLINE int cell_shows(const grid *grid, const float at[3]) {
   int32_t cell[3];
@@ -93,7 +113,9 @@ LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage
     if (!(at[a] >= matter->low[a] && at[a] <= matter->high[a])) return 0;
   if (!cell_shows(matter->grid, at)) return 0;
   float value = value_at(matter, storage, at);
-  return matter->cast * field_extinction(matter->classifier, value - matter->grid->empty);
+  float extinction = matter->cast * field_extinction(matter->classifier, value - matter->grid->empty);
+  if (!(extinction > 0) || matter->classifier->steepness == NULL) return extinction;
+  return extinction * factor_at_position(matter, storage, at);
 }
 
 /* Adds a volume's extinction to the samples of a cell; returns whether there is any. */

@@ -179,6 +179,18 @@ static void test_ramp_shadow(void **state) {
     }
 }
 
+/* Root mean square over the middle: the ramp's gradient ends at its faces. */
+static double difference_inside(const float *a, const float *b) {
+  double sum = 0;
+  for (int y = 6; y < SIDE - 6; y++)
+    for (int x = 6; x < SIDE - 6; x++)
+      for (int c = 4 * (y * SIDE + x); c < 4 * (y * SIDE + x + 1); c++) {
+        double d = (double)a[c] - (double)b[c];
+        sum += d * d / (4 * 12 * 12);
+      }
+  return sqrt(sum);
+}
+
 /* ---- what the gradient hides casts no shadow within the matter either ---- */
 
 /* Half of the ramp's extinction is the same picture as a ramp of half the opacity: in a medium and on
@@ -205,14 +217,48 @@ static void test_halved_ramp_is_a_thinner_one(void **state) {
       stage_render_sheets(&set, pixels[half]);
       stage_close(&set);
     }
-    double sum = 0;
-    for (int y = 6; y < SIDE - 6; y++) /* the ramp's gradient ends at its faces */
-      for (int x = 6; x < SIDE - 6; x++)
-        for (int c = 0; c < 4; c++) {
-          double d = (double)pixels[0][4 * (y * SIDE + x) + c] - (double)pixels[1][4 * (y * SIDE + x) + c];
-          sum += d * d / (4 * 12 * 12);
-        }
-    assert_near(sqrt(sum), 0, 0.02);
+    assert_near(difference_inside(pixels[0], pixels[1]), 0, 0.02);
+  }
+}
+
+/* ---- light from everywhere ---- */
+
+static void light_from_everywhere(stage *set, bool sky, hl_scene_volume *cube) {
+  if (sky) {
+    set->scene.sky.type = HL_SKY_UNIFORM;
+  } else {
+    stage_add_directional(set, (vec3){-0.6, -0.3, -1});
+    cube->multiple_scattering = 1;
+    for (int c = 0; c < 3; c++) cube->albedo[c] = 0.9;
+  }
+}
+
+/* The same for the light of a sky and for light that is scattered again. What a renderer kept of the cube
+ * without gradient opacity is not taken for the cube with it. */
+static void test_light_from_everywhere(void **state) {
+  (void)state;
+  static float pixels[3][PIXELS * 4];
+  for (int sky = 0; sky < 2; sky++) {
+    for (int half = 0; half < 2; half++) {
+      stage set;
+      hl_renderer *renderer = NULL;
+      stage_open(&set);
+      set.scene.width = set.scene.height = SIDE;
+      set.scene.camera.height = 30;
+      stage_look(&set, (vec3){30, 20, 50}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+      hl_scene_volume *cube = add_cube(&set, ramp, 1);
+      light_from_everywhere(&set, sky, cube);
+      stage_set_opacity(&set, cube, half ? 0.5 : 0.75, 4);
+      assert_int_equal(hl_renderer_create(set.context, &renderer, NULL), HL_OK);
+      stage_render_with(&set, renderer, pixels[2]);
+      if (half == 0) set_gradient(cube, HALF_AT_THREE, 2);
+      stage_render_with(&set, renderer, pixels[2]);
+      stage_render_sheets(&set, pixels[half]);
+      assert_memory_equal(pixels[half], pixels[2], sizeof pixels[2]);
+      hl_renderer_destroy(renderer);
+      stage_close(&set);
+    }
+    assert_near(difference_inside(pixels[0], pixels[1]), 0, 0.02);
   }
 }
 
@@ -222,6 +268,7 @@ int main(void) {
       cmocka_unit_test(test_ball),
       cmocka_unit_test(test_ramp_shadow),
       cmocka_unit_test(test_halved_ramp_is_a_thinner_one),
+      cmocka_unit_test(test_light_from_everywhere),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
