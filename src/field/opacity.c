@@ -68,14 +68,7 @@ static bool reaches_matter(const grid *grid, const float at[3], const float reac
     first[a] = low < 0 ? 0 : (int32_t)low;
     last[a] = high >= (float)grid->brick_count[a] ? grid->brick_count[a] - 1 : (int32_t)high;
   }
-  for (int32_t z = first[2]; z <= last[2]; z++)
-    for (int32_t y = first[1]; y <= last[1]; y++)
-      for (int32_t x = first[0]; x <= last[0]; x++)
-        if (grid->relevant[((size_t)z * (size_t)grid->brick_count[1] + (size_t)y) *
-                               (size_t)grid->brick_count[0] +
-                           (size_t)x])
-          return true;
-  return false;
+  return hl_any_brick_relevant(grid, first, last);
 }
 
 /* The cells of a block that a volume reaches, one bit each. */

@@ -93,19 +93,16 @@ LANES_INLINE float factor_at_position(const field_matter *matter, hl_storage sto
 
 /* Whether the transfer function may show something in the grid's cell around a position. */
 LANES_INLINE int cell_shows(const grid *grid, const float at[3]) {
-  int32_t cell[3];
+  int32_t cell[3], brick[3];
   if (grid->cell_bits == NULL) return 1;
   for (int a = 0; a < 3; a++) {
     int32_t last = grid->dimension[a];
     cell[a] = at[a] > -1 ? (int32_t)(at[a] + 1) : 0;
     if (cell[a] > last) cell[a] = last;
+    brick[a] = cell[a] / HL_BRICK_CELLS;
   }
-  size_t brick = ((size_t)(cell[2] / HL_BRICK_CELLS) * (size_t)grid->brick_count[1] +
-                  (size_t)(cell[1] / HL_BRICK_CELLS)) *
-                     (size_t)grid->brick_count[0] +
-                 (size_t)(cell[0] / HL_BRICK_CELLS);
   int bit = cell[0] % HL_BRICK_CELLS + 4 * (cell[1] % HL_BRICK_CELLS) + 16 * (cell[2] % HL_BRICK_CELLS);
-  return (int)(grid->cell_bits[brick] >> bit & 1);
+  return (int)(grid->cell_bits[hl_brick_index(grid, brick)] >> bit & 1);
 }
 
 LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage storage, const float at[3]) {

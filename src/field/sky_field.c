@@ -214,8 +214,7 @@ uint64_t hl_sky_bytes(const sky_content *content, uint64_t *passing) {
 
 static bool attenuates_in_color(const sky_content *content) {
   for (int v = 0; v < content->content.count; v++) {
-    const double *color = content->colors[v];
-    if (content->content.matter[v].cast > 0 && (color[0] != color[1] || color[1] != color[2])) return true;
+    if (content->content.matter[v].cast > 0 && !hl_is_grey(content->colors[v])) return true;
   }
   return false;
 }

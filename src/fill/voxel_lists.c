@@ -30,14 +30,7 @@ static bool voxel_relevant(const grid *grid, const int32_t v[3]) {
     first[axis] = clamp_brick(v[axis] - 1, grid->dimension[axis]);
     last[axis] = clamp_brick(v[axis] + 2, grid->dimension[axis]);
   }
-  for (int32_t z = first[2]; z <= last[2]; z++)
-    for (int32_t y = first[1]; y <= last[1]; y++)
-      for (int32_t x = first[0]; x <= last[0]; x++)
-        if (grid->relevant[((size_t)z * (size_t)grid->brick_count[1] + (size_t)y) *
-                               (size_t)grid->brick_count[0] +
-                           (size_t)x])
-          return true;
-  return false;
+  return hl_any_brick_relevant(grid, first, last);
 }
 
 static void visit_cell(const sort_job *job, size_t cell, uint32_t voxel) {

@@ -109,6 +109,22 @@ static inline size_t hl_grid_bricks(const grid *grid) {
   return (size_t)grid->brick_count[0] * (size_t)grid->brick_count[1] * (size_t)grid->brick_count[2];
 }
 
+/* The index of the brick with coordinates. */
+static inline size_t hl_brick_index(const grid *grid, const int32_t b[3]) {
+  return ((size_t)b[2] * (size_t)grid->brick_count[1] + (size_t)b[1]) * (size_t)grid->brick_count[0] +
+         (size_t)b[0];
+}
+
+/* Whether a brick from first to last, both included, is relevant. */
+static inline bool hl_any_brick_relevant(const grid *grid, const int32_t first[3], const int32_t last[3]) {
+  int32_t b[3];
+  for (b[2] = first[2]; b[2] <= last[2]; b[2]++)
+    for (b[1] = first[1]; b[1] <= last[1]; b[1]++)
+      for (b[0] = first[0]; b[0] <= last[0]; b[0]++)
+        if (grid->relevant[hl_brick_index(grid, b)]) return true;
+  return false;
+}
+
 /* Coordinates of the brick with an index. */
 static inline void hl_brick_coordinates(const grid *grid, uint32_t brick, int32_t b[3]) {
   b[0] = (int32_t)(brick % (uint32_t)grid->brick_count[0]);

@@ -29,11 +29,7 @@ static bool brick_crossed(const lattice *lattice, const int32_t at[3]) {
   float bounds[2];
   for (int axis = 0; axis < 3; axis++)
     if (at[axis] >= grid->brick_count[axis]) return false;
-  hl_bounds_of_brick(
-      grid,
-      ((size_t)at[2] * (size_t)grid->brick_count[1] + (size_t)at[1]) * (size_t)grid->brick_count[0] +
-          (size_t)at[0],
-      bounds);
+  hl_bounds_of_brick(grid, hl_brick_index(grid, at), bounds);
   return bounds[0] <= lattice->value && bounds[1] >= lattice->value;
 }
 

@@ -59,12 +59,6 @@ static bool is_shown(const hl_label_values *stored, double value) {
   return low < stored->count && stored->values[low] == value;
 }
 
-static double stored_at(const hl_volume *map, const void *row, size_t i) {
-  if (map->storage == HL_STORAGE_U8) return ((const uint8_t *)row)[i];
-  if (map->storage == HL_STORAGE_U16) return ((const uint16_t *)row)[i];
-  return (double)((const float *)row)[i];
-}
-
 /* Marks the shown voxels of a row, count of them from x on. Labels come in runs: each is looked up once. */
 static void mark_row(const occupancy_job *job, size_t x, size_t y, size_t z, size_t count,
                      unsigned char *shown) {
@@ -72,7 +66,7 @@ static void mark_row(const occupancy_job *job, size_t x, size_t y, size_t z, siz
   double last = NAN;
   unsigned char is = 0;
   for (size_t i = 0; i < count; i++) {
-    double value = stored_at(job->map, row, x + i);
+    double value = hl_stored_number(job->map->storage, row, x + i);
     if (value != last) is = is_shown(&job->stored, last = value);
     shown[i] = is;
   }

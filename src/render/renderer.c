@@ -268,14 +268,10 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
 static int attenuation_channels(const hl_scene_description *scene) {
   for (size_t i = 0; i < scene->light_count; i++)
     if (hl_light_emission_colored(&scene->lights[i])) return 3;
-  for (size_t i = 0; i < scene->volume_count; i++) {
-    const double *color = scene->volumes[i].attenuation_color;
-    if (scene->volumes[i].casts_shadow && (color[0] != color[1] || color[1] != color[2])) return 3;
-  }
-  for (size_t i = 0; i < scene->mesh_count; i++) {
-    const double *color = scene->meshes[i].attenuation_color;
-    if (scene->meshes[i].casts_shadow && (color[0] != color[1] || color[1] != color[2])) return 3;
-  }
+  for (size_t i = 0; i < scene->volume_count; i++)
+    if (scene->volumes[i].casts_shadow && !hl_is_grey(scene->volumes[i].attenuation_color)) return 3;
+  for (size_t i = 0; i < scene->mesh_count; i++)
+    if (scene->meshes[i].casts_shadow && !hl_is_grey(scene->meshes[i].attenuation_color)) return 3;
   return 1;
 }
 

@@ -119,10 +119,8 @@ static field_surface surface_of(const surfaces *all, const surface_mesh *mesh) {
 /* One channel will do where the sky has one colour and everything takes light of all colours alike. */
 static int channels_of(const hl_scene_description *scene) {
   if (scene->sky.type != HL_SKY_UNIFORM) return 3;
-  for (size_t v = 0; v < scene->volume_count; v++) {
-    const double *color = scene->volumes[v].attenuation_color;
-    if (scene->volumes[v].casts_shadow && (color[0] != color[1] || color[1] != color[2])) return 3;
-  }
+  for (size_t v = 0; v < scene->volume_count; v++)
+    if (scene->volumes[v].casts_shadow && !hl_is_grey(scene->volumes[v].attenuation_color)) return 3;
   return 1;
 }
 

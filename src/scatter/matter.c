@@ -15,14 +15,13 @@ typedef struct matter_job {
 } matter_job;
 
 static bool is_relevant(const grid *grid, const double p[3]) {
-  size_t brick[3];
+  int32_t brick[3];
   for (int a = 0; a < 3; a++) {
     if (!(p[a] >= grid->box_low[a] && p[a] <= grid->box_high[a])) return false;
     double cell = fmin(fmax(floor(p[a]) + 1, 0), HL_BRICK_CELLS * grid->brick_count[a] - 1);
-    brick[a] = (size_t)cell / HL_BRICK_CELLS;
+    brick[a] = (int32_t)cell / HL_BRICK_CELLS;
   }
-  return grid->relevant[(brick[2] * (size_t)grid->brick_count[1] + brick[1]) * (size_t)grid->brick_count[0] +
-                        brick[0]] != 0;
+  return grid->relevant[hl_brick_index(grid, brick)] != 0;
 }
 
 /* The value between the voxels around a point, linear along each axis. */

@@ -33,12 +33,6 @@ static bool add_value(found_labels *found, double value) {
   return true;
 }
 
-static double stored_at(const hl_volume *map, const void *row, size_t i) {
-  if (map->storage == HL_STORAGE_U8) return ((const uint8_t *)row)[i];
-  if (map->storage == HL_STORAGE_U16) return ((const uint16_t *)row)[i];
-  return (double)((const float *)row)[i];
-}
-
 static hl_status fail_value(double value, hl_error *error) {
   return hl_fail(error, HL_ERROR_INPUT, "the voxel value %.9g is no label: label maps hold whole numbers",
                  value);
@@ -51,7 +45,7 @@ static hl_status find_values(const hl_volume *map, found_labels *found, hl_error
       const void *row = hl_volume_row(map, j, k);
       double last = NAN;
       for (size_t i = 0; i < map->dimension[0]; i++) {
-        double stored = stored_at(map, row, i);
+        double stored = hl_stored_number(map->storage, row, i);
         if (stored == last) continue;
         last = stored;
         double value = stored * map->value_scale + map->value_offset;

@@ -28,6 +28,8 @@ hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_funct
 
 double hl_srgb_to_linear(double srgb);
 
+static inline bool hl_is_grey(const double color[3]) { return color[0] == color[1] && color[1] == color[2]; }
+
 /* Linear RGB at t in [0,1] (clamped); false if there is no such map. */
 bool hl_colormap_evaluate(const char *name, double t, double linear[3]);
 

@@ -370,12 +370,6 @@ hl_status hl_volume_get_selection(const hl_volume *volume, hl_volume_selection *
 double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k) {
   if (volume == NULL || i >= volume->dimension[0] || j >= volume->dimension[1] || k >= volume->dimension[2])
     return NAN;
-  const void *row = hl_volume_row(volume, j, k);
-  double stored = 0;
-  switch (volume->storage) {
-    case HL_STORAGE_U8: stored = ((const uint8_t *)row)[i]; break;
-    case HL_STORAGE_U16: stored = ((const uint16_t *)row)[i]; break;
-    case HL_STORAGE_F32: stored = (double)((const float *)row)[i]; break;
-  }
+  double stored = hl_stored_number(volume->storage, hl_volume_row(volume, j, k), i);
   return isfinite(stored) ? volume->value_scale * stored + volume->value_offset : NAN;
 }

@@ -108,6 +108,13 @@ static inline const void *hl_volume_row(const hl_volume *volume, size_t j, size_
   return (const unsigned char *)volume->voxels + k * volume->slice_bytes + j * volume->row_bytes;
 }
 
+/* A number of a row of stored values. */
+static inline double hl_stored_number(hl_storage storage, const void *row, size_t i) {
+  if (storage == HL_STORAGE_U8) return ((const uint8_t *)row)[i];
+  if (storage == HL_STORAGE_U16) return ((const uint16_t *)row)[i];
+  return (double)((const float *)row)[i];
+}
+
 /* Makes a volume of voxels that are already in stored form (hl_voxels_store), packed, in a block of
  * hl_allocate that the volume takes over, also on failure. description: the grid, the type in the file, and
  * value_scale and value_offset for values of the file's type. subject: starts the error lines. */
