@@ -140,6 +140,10 @@ void render_volume_name(const hl_scene_volume *volume, size_t index, char *name,
 /* Refuses --tf and --colormap NAME=... for names that no volume has. */
 int render_check_names(const cli_value *values, const hl_scene_description *description);
 
+/* The colour of a mesh or an isosurface that has none of its own, linear RGB: ivory, blue, ochre, green,
+ * rose, violet, and again. */
+const double *render_surface_color(size_t index);
+
 /* Refuses values of --iso that cannot be read. */
 int render_check_iso(const cli_value *iso);
 

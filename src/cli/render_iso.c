@@ -6,10 +6,6 @@
 
 #include "render.h"
 
-/* Colours of the first surfaces that name none, linear RGB: ivory, blue, ochre, green, rose, violet. */
-static const double colors[][3] = {{0.75, 0.71, 0.62}, {0.18, 0.40, 0.70}, {0.75, 0.42, 0.10},
-                                   {0.20, 0.50, 0.22}, {0.72, 0.28, 0.32}, {0.38, 0.28, 0.62}};
-
 enum { COLOR_BYTES = 64 };
 
 /* Reads VALUE[:COLOR[:OPACITY]]; false: it is something else. */
@@ -82,7 +78,7 @@ int render_iso(const cli_host *host, const cli_value *values, size_t index, hl_s
     if (!is_for(iso->texts[n], name)) continue;
     hl_isosurface *surface = &surfaces[count];
     hl_isosurface_defaults(surface);
-    memcpy(surface->color, colors[count % (sizeof colors / sizeof *colors)], sizeof surface->color);
+    memcpy(surface->color, render_surface_color(count), sizeof surface->color);
     (void)read_iso(text_of_surface(iso->texts[n]), surface); /* checked by render_check_iso() */
     if (warn_of_range(host, volume, surface->value) != EXIT_CODE_OK) return EXIT_CODE_FAILURE;
     count++;

@@ -6,9 +6,11 @@
 
 #include "render.h"
 
-/* Colours of the first meshes, linear RGB: ivory, blue, ochre, green, rose, violet. */
-static const double colors[][3] = {{0.75, 0.71, 0.62}, {0.18, 0.40, 0.70}, {0.75, 0.42, 0.10},
-                                   {0.20, 0.50, 0.22}, {0.72, 0.28, 0.32}, {0.38, 0.28, 0.62}};
+const double *render_surface_color(size_t index) {
+  static const double colors[][3] = {{0.75, 0.71, 0.62}, {0.18, 0.40, 0.70}, {0.75, 0.42, 0.10},
+                                     {0.20, 0.50, 0.22}, {0.72, 0.28, 0.32}, {0.38, 0.28, 0.62}};
+  return colors[index % (sizeof colors / sizeof *colors)];
+}
 
 void render_part_meshes(char **operands, char **meshes, char **others) {
   size_t count = 0, left = 0;
@@ -65,8 +67,7 @@ static hl_status load_meshes(hl_context *context, char *const *paths, hl_scene_m
     status = hl_mesh_load(context, paths[*count], &mesh->mesh, error);
     const hl_mesh_description *d = status == HL_OK ? hl_mesh_describe(mesh->mesh) : NULL;
     bool own = d != NULL && (d->colors != NULL || d->face_colors != NULL || d->sphere_colors != NULL);
-    for (int c = 0; c < 3; c++)
-      mesh->color[c] = own ? 1 : colors[*count % (sizeof colors / sizeof *colors)][c];
+    for (int c = 0; c < 3; c++) mesh->color[c] = own ? 1 : render_surface_color(*count)[c];
   }
   return status;
 }

@@ -198,10 +198,17 @@ static voxel_colors colors_of(const sweep *sweep, const hl_volume *volume) {
   return colors;
 }
 
+static void set_up_colors(sweep *sweep) {
+  bool any = false;
+  for (int g = 0; g < sweep->content.volume_count; g++)
+    any = any || sweep->content.volumes[g].scene->volume->colors != NULL;
+  for (int code = 0; any && code < SRGB_CODES; code++)
+    sweep->srgb_decode[code] = (float)hl_srgb_decode(code / 255.0);
+}
+
 static void set_up_shading(sweep *sweep) {
   int rank = 0;
-  for (int code = 0; code < SRGB_CODES; code++)
-    sweep->srgb_decode[code] = (float)hl_srgb_decode(code / 255.0);
+  set_up_colors(sweep);
   for (int g = 0; g < sweep->content.volume_count; g++) {
     const hl_scene_volume *volume = sweep->content.volumes[g].scene;
     shade_volume *shade = &sweep->shade_volumes[g];

@@ -221,6 +221,14 @@ void stage_render_with(stage *set, hl_renderer *renderer, float *pixels) {
   (void)render_with(set, renderer, pixels);
 }
 
+void stage_render_by(stage *set, bool reference, float *pixels) {
+  hl_reference_options options;
+  hl_reference_options_defaults(&options);
+  options.light_points = 4;
+  if (reference) stage_render(set, &options, pixels);
+  else stage_render_sheets(set, pixels);
+}
+
 hl_render_statistics stage_render_counted(stage *set, float *pixels) {
   hl_error error = {0};
   hl_renderer *renderer = NULL;

@@ -51,6 +51,8 @@ double stage_chord(vec3 low, vec3 high, vec3 origin, vec3 direction);
 
 /* pixels: [height][width][4]. options may be null. The test fails where rendering does. */
 void stage_render(stage *set, const hl_reference_options *options, float *pixels);
+/* By the reference, with 4 x 4 points of each light, or by the sheets. */
+void stage_render_by(stage *set, bool reference, float *pixels);
 /* The same by the sheets: with a renderer of the moment, which may count its work, or with the caller's. */
 void stage_render_sheets(stage *set, float *pixels);
 hl_render_statistics stage_render_counted(stage *set, float *pixels);

@@ -35,14 +35,6 @@ static hl_scene_volume *open_slab(stage *set, double opacity) {
   return slab;
 }
 
-static void render(stage *set, bool reference, float *pixels) {
-  hl_reference_options options;
-  hl_reference_options_defaults(&options);
-  options.light_points = 4;
-  if (reference) stage_render(set, &options, pixels);
-  else stage_render_sheets(set, pixels);
-}
-
 /* ---- flat ---- */
 
 static const double ASKED[3] = {0.2, 0.5, 0.8};
@@ -59,7 +51,7 @@ static void test_flat_colour_is_the_asked_one(void **state) {
     slab->material.emission = 3;
     set.scene.render.shadows = k / 3 % 2 ? HL_SHADOWS_SOFT : HL_SHADOWS_HARD;
     set.lights[1].angular_diameter_deg = 20;
-    render(&set, k >= 6, pixels);
+    stage_render_by(&set, k >= 6, pixels);
     for (int i = 0; i < PIXELS; i++) {
       const float *pixel = &pixels[4 * i];
       assert_true(pixel[3] > 0.1f);
@@ -85,7 +77,7 @@ static void test_flat_casts_and_receives_no_shadow(void **state) {
       plate->visible = 0;
       for (int c = 0; c < 3; c++) set.scene.ambient[c] = 0;
       set.scene.light_count = 1;
-      render(&set, reference == 1, pixels[flat]);
+      stage_render_by(&set, reference == 1, pixels[flat]);
       stage_close(&set);
     }
     assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
@@ -146,7 +138,7 @@ static void test_emission_of_a_medium(void **state) {
     slab->material.ambient = 0.6;
     slab->shading = k / 2 % 2 ? HL_SHADING_PHONG : HL_SHADING_NONE; /* its inside has no surface */
     set.lights[0].intensity = set.lights[1].intensity = 0;
-    render(&set, k >= 4, pixels);
+    stage_render_by(&set, k >= 4, pixels);
     for (int y = 0; y < SIDE; y++)
       for (int x = 0; x < SIDE; x++) {
         vec3 origin, direction;
@@ -170,9 +162,9 @@ static void test_emission_adds_to_light(void **state) {
     stage set;
     hl_scene_volume *slab = open_slab(&set, 0.3);
     slab->shading = HL_SHADING_PHONG;
-    render(&set, reference == 1, lit);
+    stage_render_by(&set, reference == 1, lit);
     slab->material.emission = 0.7;
-    render(&set, reference == 1, both);
+    stage_render_by(&set, reference == 1, both);
     for (int i = 0; i < PIXELS; i++)
       for (int c = 0; c < 3; c++)
         assert_near((double)both[4 * i + c], (double)lit[4 * i + c] + 0.7 * ASKED[c] * (double)lit[4 * i + 3],
@@ -231,7 +223,7 @@ static void test_three_scales_are_another_spacing(void **state) {
       hl_scene_volume *ball = add_ball(&set, spacing);
       if (scaled) memcpy(ball->axis_scale, STRETCH, sizeof STRETCH);
       if (scaled && k == 3) ball->scale = 2; /* times each of the three */
-      render(&set, k == 2, pixels[scaled]);
+      stage_render_by(&set, k == 2, pixels[scaled]);
       stage_close(&set);
     }
     assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
@@ -265,7 +257,7 @@ static void test_phase_function_of_a_medium(void **state) {
       set.lights[0].direction[2] = way.z;
       vec3 towards_eye = vec3_normalise((vec3){3, 2, 30});
       cosine = vec3_dot(vec3_normalise(ways[k % 3]), towards_eye);
-      render(&set, k / 3 % 2 == 1, scattered ? pixels : even);
+      stage_render_by(&set, k / 3 % 2 == 1, scattered ? pixels : even);
       stage_close(&set);
     }
     double phase = (1 - g * g) / pow(1 + g * g - 2 * g * cosine, 1.5);

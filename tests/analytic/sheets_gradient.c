@@ -17,14 +17,6 @@ static void assert_near(double value, double expected, double tolerance) {
     fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
 }
 
-static void render(stage *set, bool reference, float *pixels) {
-  hl_reference_options options;
-  hl_reference_options_defaults(&options);
-  options.light_points = 4;
-  if (reference) stage_render(set, &options, pixels);
-  else stage_render_sheets(set, pixels);
-}
-
 typedef double field_function(double x, double y, double z);
 
 /* A cube of N^3 voxels, each `edge` long, around the origin; the field is a function of world positions. */
@@ -74,7 +66,7 @@ static void test_ramp(void **state) {
     set_gradient(cube, HALF_AT_THREE, 2);
     if (k % 4 > 1) cube->shading = HL_SHADING_PHONG;
     set.scene.render.kernel = (hl_kernel)(k % 3 == 2 ? HL_KERNEL_LINEAR : HL_KERNEL_BSPLINE);
-    render(&set, k >= 12, pixels);
+    stage_render_by(&set, k >= 12, pixels);
     assert_near((double)middle(pixels)[3], 1 - pow(0.9, N / 2 / 2), k % 2 ? 2e-3 : 2e-5);
     stage_close(&set);
   }
@@ -120,7 +112,7 @@ static void test_ball(void **state) {
     cube->clipped = 1; /* at the cube's faces gradients are shorter */
     for (int a = 0; a < 3; a++) cube->clip_min[a] = -9, cube->clip_max[a] = 9;
     set.scene.render.sheet_spacing = k % 2 ? 0.5 : 0.25;
-    render(&set, k >= 2, pixels);
+    stage_render_by(&set, k >= 2, pixels);
     for (int y = 4; y < SIDE - 4; y++)
       for (int x = 4; x < SIDE - 4; x++) {
         double way = way_through_shell(hypot(x + 0.5 - SIDE / 2.0, y + 0.5 - SIDE / 2.0));
@@ -159,7 +151,7 @@ static double light_below_ramp(bool reference, int method, const hl_opacity_poin
                                  : method == 2 ? HL_SOFT_PAPER
                                                : HL_SOFT_CASCADE;
   set.scene.render.light_samples = 4;
-  render(&set, reference, pixels);
+  stage_render_by(&set, reference, pixels);
   double lit = (double)middle(pixels)[0] / (double)middle(pixels)[3];
   stage_close(&set);
   return lit;

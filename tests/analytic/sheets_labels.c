@@ -38,14 +38,6 @@ static hl_scene_volume *open_balls(stage *set, const hl_label *labels, size_t co
   return map;
 }
 
-static void render(stage *set, bool reference, float *pixels) {
-  hl_reference_options options;
-  hl_reference_options_defaults(&options);
-  options.light_points = 4;
-  if (reference) stage_render(set, &options, pixels);
-  else stage_render_sheets(set, pixels);
-}
-
 /* The pixel at a world position. */
 static const float *pixel_at(const float *pixels, double x, double y) {
   int column = (int)((x / N + 0.5) * SIDE), row = (int)((0.5 - y / N) * SIDE);
@@ -62,7 +54,7 @@ static void test_skin_takes_its_opacity(void **state) {
     const hl_label labels[] = {{1, "left", {0.9, 0.2, 0.1}, o, 1}, {2, "right", {0.1, 0.3, 0.9}, 1, 1}};
     stage set;
     open_balls(&set, labels, 2);
-    render(&set, k >= 3, pixels);
+    stage_render_by(&set, k >= 3, pixels);
     const float *left = pixel_at(pixels, -9.4, 0), *right = pixel_at(pixels, 9.4, 0);
     assert_near((double)left[3], 1 - (1 - o) * (1 - o), 0.05);
     assert_near((double)right[3], 1, 2e-3);
@@ -82,7 +74,7 @@ static void test_hidden_labels_are_not_there(void **state) {
     const hl_label labels[] = {{1, NULL, {1, 1, 1}, 1, k}, {2, NULL, {1, 1, 1}, 1, 1 - k}};
     stage set;
     open_balls(&set, labels, 2);
-    render(&set, false, pixels);
+    stage_render_by(&set, false, pixels);
     assert_true(pixel_at(pixels, k ? 9.4 : -9.4, 0)[3] == 0);
     assert_near((double)pixel_at(pixels, k ? -9.4 : 9.4, 0)[3], 1, 2e-3);
     stage_close(&set);
@@ -98,7 +90,7 @@ static void test_labels_against_the_reference(void **state) {
     stage set;
     open_balls(&set, labels, 2)->shading = HL_SHADING_PHONG;
     stage_add_directional(&set, (vec3){-1, -0.2, -0.8});
-    render(&set, reference, pixels[reference]);
+    stage_render_by(&set, reference, pixels[reference]);
     stage_close(&set);
   }
   double sum = 0;

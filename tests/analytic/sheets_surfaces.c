@@ -38,29 +38,30 @@ static void close_meshes(mesh_stage *all) {
   stage_close(&all->set);
 }
 
-static hl_scene_mesh *add_mesh(mesh_stage *all, const float (*positions)[3], size_t vertices,
-                               const uint32_t (*triangles)[3], size_t count) {
+/* Adds a mesh, which the stage then owns. */
+static hl_scene_mesh *add_made(mesh_stage *all, hl_mesh *made) {
   hl_scene_mesh *mesh = &all->meshes[all->set.scene.mesh_count++];
-  hl_mesh_description d;
-  hl_error error = {0};
-  hl_mesh_description_defaults(&d);
-  d.positions = positions, d.vertex_count = vertices, d.triangles = triangles, d.triangle_count = count;
   hl_scene_mesh_defaults(mesh);
-  if (hl_mesh_create(all->set.context, &d, &mesh->mesh, &error) != HL_OK) fail_msg("%s", error.message);
+  mesh->mesh = made;
   mesh->material = (hl_material){.diffuse = 1};
   for (int c = 0; c < 3; c++) mesh->color[c] = 1;
   return mesh;
 }
 
+static hl_scene_mesh *add_mesh(mesh_stage *all, const float (*positions)[3], size_t vertices,
+                               const uint32_t (*triangles)[3], size_t count) {
+  hl_mesh_description d;
+  hl_mesh *made = NULL;
+  hl_error error = {0};
+  hl_mesh_description_defaults(&d);
+  d.positions = positions, d.vertex_count = vertices, d.triangles = triangles, d.triangle_count = count;
+  if (hl_mesh_create(all->set.context, &d, &made, &error) != HL_OK) fail_msg("%s", error.message);
+  return add_made(all, made);
+}
+
 /* A rectangle about a centre with two half edges. */
 static hl_scene_mesh *add_quad(mesh_stage *all, vec3 centre, vec3 u, vec3 v) {
-  static const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
-  float positions[4][3];
-  for (int i = 0; i < 4; i++) {
-    double a = i == 1 || i == 2 ? 1 : -1, b = i >= 2 ? 1 : -1;
-    vec3_store(positions[i], vec3_add(centre, vec3_add(vec3_scale(u, a), vec3_scale(v, b))));
-  }
-  return add_mesh(all, (const float(*)[3])positions, 4, triangles, 2);
+  return add_made(all, stage_make_quad(&all->set, centre, u, v));
 }
 
 /* ---- coverage ---- */
@@ -342,17 +343,14 @@ static void test_against_the_reference(void **state) {
 
 static hl_scene_mesh *add_round(mesh_stage *all, const float (*spheres)[4], size_t count,
                                 const float (*points)[4], uint32_t length) {
-  hl_scene_mesh *mesh = &all->meshes[all->set.scene.mesh_count++];
+  hl_mesh *made = NULL;
   hl_mesh_description d;
   hl_error error = {0};
   hl_mesh_description_defaults(&d);
   d.spheres = spheres, d.sphere_count = count;
   d.line_points = points, d.line_point_count = length, d.line_lengths = &length, d.line_count = length > 0;
-  hl_scene_mesh_defaults(mesh);
-  if (hl_mesh_create(all->set.context, &d, &mesh->mesh, &error) != HL_OK) fail_msg("%s", error.message);
-  mesh->material = (hl_material){.diffuse = 1};
-  for (int c = 0; c < 3; c++) mesh->color[c] = 1;
-  return mesh;
+  if (hl_mesh_create(all->set.context, &d, &made, &error) != HL_OK) fail_msg("%s", error.message);
+  return add_made(all, made);
 }
 
 /* Spheres at odd fractions of pixels cover the disks that they are, whether the sheets are level or slanted,
