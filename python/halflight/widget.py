@@ -6,6 +6,7 @@ request can cancel the one under way.
 """
 from __future__ import annotations
 
+import contextvars
 import io
 import json
 import queue
@@ -111,21 +112,22 @@ class _Frames(threading.Thread):
     def __init__(self, named: _Named, title: str, send: Any) -> None:
         super().__init__(name="halflight.show", daemon=True)
         self.named, self.title, self.send = named, title, send
-        self.asked: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
+        self.asked: queue.SimpleQueue[tuple[contextvars.Context, dict[str, Any]] | None] = queue.SimpleQueue()
         self.newest: dict[tuple[str, str], int] = {}
         self.renderer = Renderer()
 
     def ask(self, message: dict[str, Any]) -> None:
         if message["kind"] == "frame":
             self.newest[self._lane(message)] = message["number"]
-        self.asked.put(message)
+        self.asked.put((contextvars.copy_context(), message))
 
     @staticmethod
     def _lane(message: dict[str, Any]) -> tuple[str, str]:
         return str(message["view"]), str(message.get("lane", ""))
 
     def run(self) -> None:
-        while (message := self.asked.get()) is not None:
+        while (asked := self.asked.get()) is not None:
+            request, message = asked
             answer = {"view": message["view"], "number": message["number"]}
             buffers: list[bytes] = []
             try:
@@ -135,7 +137,9 @@ class _Frames(threading.Thread):
                 pass
             except Exception as problem:  # the page shows it; the thread goes on
                 answer["problem"] = str(problem)
-            self.send(answer, buffers)
+            # In the request's context, the answer names the request it belongs to: ipykernel 7.4 routes the page's next
+            # message by the request that the answer named, and a thread's own context names none.
+            request.run(self.send, answer, buffers)
 
     def _do_start(self, message: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
         return {"text": json.dumps(_start(self.named.scene, self.title))}, []
