@@ -1,9 +1,11 @@
-/* halflight/layers.h - layers beside a picture: the share of each light, shadows, depth, normals.
+/* halflight/layers.h - layers beside a picture: the share of each light and of the sky, shadows, depth,
+ * normals.
  *
- * The sum of all lights' pictures, the ambient picture and the emission is the picture's RGB, up to rounding:
- * lights can be brightened, dimmed and coloured afterwards without rendering again. The other layers are
- * means along each ray, weighted by what each sample adds to the picture's alpha (its opacity times the
- * transmittance up to it). They are divided by alpha, not premultiplied. Top row first, like the picture. */
+ * The sum of all lights' pictures, the sky, the ambient picture and the emission is the picture's RGB, up to
+ * rounding: lights can be brightened, dimmed and coloured afterwards without rendering again. The other
+ * layers are means along each ray, weighted by what each sample adds to the picture's alpha (its opacity
+ * times the transmittance up to it). They are divided by alpha, not premultiplied. Top row first, like the
+ * picture. */
 #ifndef HALFLIGHT_LAYERS_H
 #define HALFLIGHT_LAYERS_H
 
@@ -34,6 +36,10 @@ typedef struct hl_layers {
   size_t light_count;            /* the scene's; or 0 */
   float *emission; /* [height][width][3]; what volumes add to the linear premultiplied RGB without any light:
                       by their material's emission, or because they are shaded flat */
+  float *sky; /* [height][width][3]; what the sky adds to the linear premultiplied RGB; 0 without a sky */
+  float *sky_shadow; /* [height][width][3]; what the sky would add in R, G and B if all matter were white,
+                        divided by what it would add then if nothing hid it: ambient occlusion, 1 where
+                        nothing is hidden; 0 where nothing would be added */
 } hl_layers;
 
 /* Depths are world lengths along the pixel's ray: from the eye, or, orthographic, from the plane through the

@@ -39,6 +39,9 @@ def _add_layers(image: Image) -> tuple[Any, dict[str, Pixels], list[Any]]:
     volumes = [struct.volumes[n] for n in range(struct.volume_count)]
     if any(one.shading == lib.HL_SHADING_FLAT or one.material.emission > 0 for one in volumes):
         layers.emission = add("emission", "RGB")
+    if struct.sky.type != lib.HL_SKY_NONE:
+        layers.sky = add("sky", "RGB")
+        layers.sky_shadow = add("sky_shadow", "RGB")
     for n, light in enumerate(lights):
         light.picture = add(f"light{n}", "RGB")
         light.shadow = add(f"light{n}_shadow", "RGB")
@@ -92,7 +95,7 @@ class Renderer:
         scene : Scene
             What is rendered.
         layers : bool
-            Keep each light, its shadow, ambient light, depths and normals apart, in ``Image.layers``.
+            Keep each light, its shadow, the sky and its shadow, ambient light, depths and normals apart, in ``Image.layers``.
         progress : bool or callable, optional
             True: a bar by tqdm, or a line on stderr. A callable gets the stage's name and a fraction, 0 to 1;
             what it raises stops the render.

@@ -27,6 +27,15 @@ static hl_status add_emission(hl_image *image, const hl_scene_description *descr
   return HL_OK;
 }
 
+/* Adds the layers "sky" and "sky_shadow" if there is a sky. */
+static hl_status add_sky(hl_image *image, const hl_scene_description *description, hl_layers *layers,
+                         hl_error *error) {
+  if (description->sky.type == HL_SKY_NONE) return HL_OK;
+  hl_status status = hl_image_add_layer(image, "sky", "RGB", &layers->sky, error);
+  return status == HL_OK ? hl_image_add_layer(image, "sky_shadow", "RGB", &layers->sky_shadow, error)
+                         : status;
+}
+
 hl_status render_layers_create(hl_image *image, const hl_scene_description *description,
                                render_layers *layers, hl_error *error) {
   size_t light_count = description->light_count;
@@ -40,6 +49,7 @@ hl_status render_layers_create(hl_image *image, const hl_scene_description *desc
   layers->all.light_count = light_count;
   hl_status status = hl_image_add_layer(image, "ambient", "RGB", &layers->all.ambient, error);
   if (status == HL_OK) status = add_emission(image, description, &layers->all, error);
+  if (status == HL_OK) status = add_sky(image, description, &layers->all, error);
   for (size_t i = 0; i < light_count && status == HL_OK; i++)
     status = add_light(image, i, &layers->lights[i], error);
   if (status == HL_OK)
@@ -65,7 +75,8 @@ static int protect_from_layer(const cli_host *host, const char *output, const ch
 }
 
 int render_layers_protect(const cli_host *host, const char *output, size_t light_count, const char *input) {
-  static const char *const names[] = {"ambient", "depth_first", "depth_mean", "normal"};
+  static const char *const names[] = {"ambient",     "emission",   "sky",   "sky_shadow",
+                                      "depth_first", "depth_mean", "normal"};
   int exit_code = EXIT_CODE_OK;
   if (!has_extension(output, ".npy")) return EXIT_CODE_OK; /* .exr holds them itself */
   for (size_t i = 0; i < sizeof names / sizeof *names && exit_code == EXIT_CODE_OK; i++)

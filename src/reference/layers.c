@@ -18,6 +18,8 @@ void hl_reference_parts_add(reference_parts *parts, const reference_parts *other
     parts->ambient[c] += scale * other->ambient[c];
     parts->emission[c] += scale * other->emission[c];
     parts->sky[c] += scale * other->sky[c];
+    parts->sky_reaching[c] += scale * other->sky_reaching[c];
+    parts->sky_open[c] += scale * other->sky_open[c];
   }
   for (size_t l = 0; l < light_count; l++)
     for (int c = 0; c < 3; c++) {
@@ -43,6 +45,11 @@ void hl_reference_parts_write(const reference_parts *parts, double depth_first, 
   for (size_t c = 0; c < 3; c++) {
     if (layers->ambient != NULL) layers->ambient[3 * pixel + c] = (float)parts->ambient[c];
     if (layers->emission != NULL) layers->emission[3 * pixel + c] = (float)parts->emission[c];
+    if (layers->sky != NULL) layers->sky[3 * pixel + c] = (float)parts->sky[c];
+    if (layers->sky_shadow != NULL)
+      layers->sky_shadow[3 * pixel + c] = parts->sky_open[c] > 0
+                                              ? (float)(parts->sky_reaching[c] / parts->sky_open[c])
+                                              : 0;
     if (layers->normal != NULL) layers->normal[3 * pixel + c] = alpha > 0 ? (float)(normal[c] / alpha) : 0;
   }
   for (size_t l = 0; l < layers->light_count; l++)

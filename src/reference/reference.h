@@ -167,6 +167,8 @@ typedef struct light_part {
 typedef struct reference_parts {
   double weight; /* sum of the weights; of a ray: alpha */
   double ambient[3], emission[3], sky[3];
+  double sky_reaching[3],
+      sky_open[3]; /* of white matter: the sky's light, and all of it that nothing hides */
   vec3 normal;
   double depth;
   light_part *lights; /* [light_count] */

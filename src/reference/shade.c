@@ -95,7 +95,7 @@ static void shade_light(const reference *all, const reference_sample *at, const 
 
 /* The sky's part. */
 static void shade_sky(const reference *all, const reference_sample *at, const surface *here,
-                      reference_worker *worker, double picture[3]) {
+                      reference_worker *worker, reference_parts *sample) {
   const hl_scene_volume *described = at->volume->described;
   reference_sky_light light;
   hl_reference_sky_arrive(all,
@@ -107,7 +107,11 @@ static void shade_sky(const reference *all, const reference_sample *at, const su
                                                     .receives_shadow = described->receives_shadow,
                                                     .diffuse = described->material.diffuse},
                           worker, &light);
-  for (int c = 0; c < 3; c++) picture[c] += at->weight * here->own[c] * light.reaching[c];
+  for (int c = 0; c < 3; c++) {
+    sample->sky[c] += at->weight * here->own[c] * light.reaching[c];
+    sample->sky_reaching[c] += at->weight * light.reaching[c];
+    sample->sky_open[c] += at->weight * light.open[c];
+  }
 }
 
 /* Flat colours receive no shadow: their shadow layers show full light. */
@@ -132,7 +136,7 @@ void hl_reference_shade(const reference *all, const reference_sample *at, refere
     sample->emission[c] += weight * here.own[c] * (flat ? 1 : material->emission);
     if (!flat) sample->ambient[c] += weight * here.own[c] * material->ambient * all->scene->ambient[c];
   }
-  if (!flat) shade_sky(all, at, &here, worker, sample->sky);
+  if (!flat) shade_sky(all, at, &here, worker, sample);
   if (flat) add_no_light(all, weight, sample);
   for (size_t l = 0; l < all->scene->light_count && !flat; l++) {
     light_part part;

@@ -22,6 +22,8 @@ uint64_t hl_pixels_bytes(const frame *frame, int sweep_count, const hl_layers *l
            floats = 4 * (uint64_t)sweep_count;
   if (layers != NULL && layers->ambient != NULL) floats += 4;
   if (layers != NULL && layers->emission != NULL) floats += 4;
+  if (layers != NULL && layers->sky != NULL) floats += 4;
+  if (layers != NULL && layers->sky_shadow != NULL) floats += 8;
   if (hl_layers_measure(layers)) floats += MEASURES;
   for (int i = 0; i < frame->light_count && layers != NULL && layers->light_count > 0; i++) {
     const hl_light_layers *light = &layers->lights[frame->lights[i].light_index];

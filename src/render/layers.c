@@ -45,6 +45,9 @@ hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_la
     return hl_fail_memory(error, pixels->light_count * sizeof *pixels->lights, "the lights' layers");
   if (wanted->ambient != NULL) pixels->ambient = allocate_pixels(&room, COLORS, &status, error);
   if (wanted->emission != NULL) pixels->emission = allocate_pixels(&room, COLORS, &status, error);
+  if (wanted->sky != NULL) pixels->sky = allocate_pixels(&room, COLORS, &status, error);
+  if (wanted->sky_shadow != NULL) pixels->sky_reaching = allocate_pixels(&room, COLORS, &status, error);
+  if (wanted->sky_shadow != NULL) pixels->sky_open = allocate_pixels(&room, COLORS, &status, error);
   if (hl_layers_measure(wanted)) pixels->measures = allocate_pixels(&room, MEASURES, &status, error);
   for (size_t i = 0; i < pixels->light_count && wanted->light_count > 0; i++) {
     const hl_light_layers *asked = &wanted->lights[frame->lights[i].light_index];
@@ -64,6 +67,9 @@ void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels) {
   hl_release(context, pixels->lights);
   hl_release(context, pixels->ambient);
   hl_release(context, pixels->emission);
+  hl_release(context, pixels->sky);
+  hl_release(context, pixels->sky_reaching);
+  hl_release(context, pixels->sky_open);
   hl_release(context, pixels->measures);
 }
 
@@ -110,6 +116,18 @@ static void write_colors(const layer_grid *grid, int row, const float *pixels, b
   }
 }
 
+/* Writes three channels of a row: the sky's light that arrives, divided by all of it. The field's directions
+ * are few: what arrives may exceed what an open sky sends by rounding. */
+static void write_sky_shadow(const layer_grid *grid, int row, const layer_pixels *pixels, float *to) {
+  to += 3 * (size_t)row * (size_t)grid->width;
+  for (int column = 0; column < grid->width; column++)
+    for (int c = 0; c < 3; c++, to++) {
+      float open = sum_of(grid, pixels->sky_open, COLORS, column, row, c, NULL),
+            reaching = sum_of(grid, pixels->sky_reaching, COLORS, column, row, c, NULL);
+      *to = open > 0 ? reaching < open ? reaching / open : 1 : 0;
+    }
+}
+
 static void write_measures(const layer_grid *grid, int row, const float *pixels, const hl_layers *to) {
   for (int column = 0; column < grid->width; column++) {
     size_t at = (size_t)row * (size_t)grid->width + (size_t)column;
@@ -139,6 +157,8 @@ static void write_row(void *data, size_t index, int worker) {
   int row = (int)index;
   if (to->ambient != NULL) write_colors(job->grid, row, pixels->ambient, false, false, to->ambient);
   if (to->emission != NULL) write_colors(job->grid, row, pixels->emission, false, false, to->emission);
+  if (to->sky != NULL) write_colors(job->grid, row, pixels->sky, false, false, to->sky);
+  if (to->sky_shadow != NULL) write_sky_shadow(job->grid, row, pixels, to->sky_shadow);
   if (hl_layers_measure(to)) write_measures(job->grid, row, pixels->measures, to);
   for (size_t i = 0; i < pixels->light_count && to->light_count > 0; i++) {
     const light_pixels *from = &pixels->lights[i];

@@ -1,9 +1,10 @@
 /* render/layers.h - layers: the sweep shades each tile once more for each layer.
  *
  * A light's picture is shaded with this light alone, without ambient light and emission. Its shadow is the
- * picture of white volumes without surfaces, lit by this light in white. Both are made by the same function
- * from the same densities, tile by tile after the picture's own. Depth and normals are measured in a sweep
- * that goes front to back for the eye. Without layers nothing of this runs. */
+ * picture of white volumes without surfaces, lit by this light in white. The sky's shadow
+ * is the quotient of two pictures of white volumes: lit by the sky, and by a sky that nothing hides. All are
+ * made by the same function from the same densities, tile by tile after the picture's own. Depth and normals
+ * are measured in a sweep that goes front to back for the eye. Without layers nothing of this runs. */
 #ifndef HL_RENDER_LAYERS_H
 #define HL_RENDER_LAYERS_H
 
@@ -23,11 +24,13 @@ typedef struct light_pixels {
 enum { COLORS = 4 }; /* R G B A */
 
 typedef struct layer_pixels {
-  const hl_layers *wanted;   /* the caller's; null: none */
-  float *ambient, *emission; /* R G B A */
-  float *measures;           /* MEASURES */
-  light_pixels *lights;      /* owned; [light_count] */
-  size_t light_count;        /* of the frame */
+  const hl_layers *wanted;         /* the caller's; null: none */
+  float *ambient, *emission, *sky; /* R G B A */
+  float *sky_reaching,
+      *sky_open;        /* R G B A; of white volumes: the sky's light, and all of it that nothing hides */
+  float *measures;      /* MEASURES */
+  light_pixels *lights; /* owned; [light_count] */
+  size_t light_count;   /* of the frame */
 } layer_pixels;
 
 /* Allocates the wanted layers of a frame. tiles: how many the frame has. */

@@ -45,7 +45,8 @@ typedef struct layer_pass {
   int light_count;
   float ambient[3], emission;
   const scatter_field *scattered; /* null: none */
-  bool white;                     /* of white volumes */
+  const sky_light *sky;           /* null: none */
+  const shade_volume *volumes;    /* in place of the sweep's; null: these */
   float *pixels;
   size_t tile_floats;
 } layer_pass;
@@ -53,11 +54,14 @@ typedef struct layer_pass {
 typedef struct sweep_layers {
   layer_pass *passes; /* owned; [pass_count] */
   int pass_count;
-  shade_light *white_lights;   /* owned; [light_count of the sweep] */
-  shade_volume *white_volumes; /* owned; [volume_count] */
-  shade_patch *white_patches;  /* owned; [threads][volume_count] */
-  classifier *white;           /* owned; [volume_count]; the volumes' tables, borrowed, with white colours */
-  float (*ones)[4];            /* owned; a colour table */
+  shade_light *white_lights; /* owned; [light_count of the sweep] */
+  shade_volume *white_media; /* owned; [volume_count]; without surfaces */
+  shade_volume *white_volumes,
+      *open_volumes;    /* owned; [volume_count]; with surfaces; and receiving no shadow */
+  shade_patch *patches; /* owned; [threads][volume_count]; of a pass's own volumes */
+  classifier *white;    /* owned; [volume_count]; the volumes' tables, borrowed, with white colours */
+  sky_light white_sky;  /* the sky without its colour */
+  float (*ones)[4];     /* owned; a colour table */
 } sweep_layers;
 
 /* The surfaces of the sweep's views; zeros where there are none. */

@@ -5,7 +5,8 @@
 
 #include "core/memory.h"
 
-/* Sets up copies of the volumes that are white media: their samples pass on all the light that arrives. */
+/* Sets up copies of the volumes with white matter: as media, which pass on all the light that arrives, and
+ * as they are, with and without what hides the sky. */
 static void set_up_white_volumes(sweep *sweep) {
   sweep_layers *layers = &sweep->layers;
   for (size_t i = 0; i < CLASSIFIER_ENTRIES + 2; i++)
@@ -13,13 +14,18 @@ static void set_up_white_volumes(sweep *sweep) {
   for (int g = 0; g < sweep->content.volume_count; g++) {
     layers->white[g] = sweep->content.volumes[g].classifier;
     layers->white[g].color = layers->ones;
-    layers->white_volumes[g] = sweep->shade_volumes[g];
-    layers->white_volumes[g].classifier = &layers->white[g];
-    layers->white_volumes[g].phong = 0;
-    layers->white_volumes[g].anisotropy = 0;
-    layers->white_volumes[g].colors.voxels = NULL;
-    layers->white_volumes[g].absorbs = layers->white_volumes[g].multiple = 0;
-    layers->white_volumes[g].lit = 1;
+    shade_volume white = sweep->shade_volumes[g];
+    white.classifier = &layers->white[g];
+    white.colors.voxels = NULL;
+    white.ambient = white.emission = 0;
+    white.multiple = 0;
+    layers->white_volumes[g] = layers->open_volumes[g] = white;
+    layers->open_volumes[g].receives_shadow = 0;
+    white.phong = 0;
+    white.anisotropy = 0;
+    white.absorbs = 0;
+    white.lit = 1;
+    layers->white_media[g] = white;
   }
 }
 
@@ -31,25 +37,31 @@ static void set_up_white_light(const shade_light *from, shade_light *white) {
   for (int c = 0; c < 3; c++) white->color[c] = 1;
 }
 
+/* Ambient light, emission, the sky, its two pictures of white volumes, measures. */
+enum { MOST_OTHER_PASSES = 6 };
+
 static hl_status allocate_passes(sweep *sweep, hl_error *error) {
   hl_context *context = sweep->content.context;
   sweep_layers *layers = &sweep->layers;
   size_t lights = (size_t)sweep->geometry->light_count, volumes = (size_t)sweep->content.volume_count;
-  layers->passes = hl_allocate_zeroed(context, 2 * lights + 3, sizeof *layers->passes);
+  layers->passes = hl_allocate_zeroed(context, 2 * lights + MOST_OTHER_PASSES, sizeof *layers->passes);
   layers->white_lights = hl_allocate_zeroed(context, lights, sizeof *layers->white_lights);
+  layers->white_media = hl_allocate_zeroed(context, volumes, sizeof *layers->white_media);
   layers->white_volumes = hl_allocate_zeroed(context, volumes, sizeof *layers->white_volumes);
-  layers->white_patches = hl_allocate(context, volumes * (size_t)hl_pool_threads(sweep->content.pool),
-                                      sizeof *layers->white_patches);
+  layers->open_volumes = hl_allocate_zeroed(context, volumes, sizeof *layers->open_volumes);
+  layers->patches = hl_allocate(context, volumes * (size_t)hl_pool_threads(sweep->content.pool),
+                                sizeof *layers->patches);
   layers->white = hl_allocate_zeroed(context, volumes, sizeof *layers->white);
   layers->ones = hl_allocate(context, CLASSIFIER_ENTRIES + 2, sizeof *layers->ones);
-  if (layers->passes == NULL || layers->white_lights == NULL || layers->white_volumes == NULL ||
-      layers->white_patches == NULL || layers->white == NULL || layers->ones == NULL)
+  if (layers->passes == NULL || layers->white_lights == NULL || layers->white_media == NULL ||
+      layers->white_volumes == NULL || layers->open_volumes == NULL || layers->patches == NULL ||
+      layers->white == NULL || layers->ones == NULL)
     return hl_fail_memory(error, (CLASSIFIER_ENTRIES + 2) * sizeof *layers->ones, "the layers");
   return HL_OK;
 }
 
-/* Adds a pass that shades the given lights, without ambient light and emission. Returns null where the layer
- * is not wanted. */
+/* Adds a pass that shades the given lights, without ambient light, sky and emission. Returns null where the
+ * layer is not wanted. */
 static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *lights, int light_count) {
   if (pixels == NULL) return NULL;
   layer_pass *pass = &sweep->layers.passes[sweep->layers.pass_count++];
@@ -59,6 +71,20 @@ static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *ligh
                        .pixels = pixels,
                        .tile_floats = COLORS * TILE_PIXELS};
   return pass;
+}
+
+static void add_sky_passes(sweep *sweep) {
+  const layer_pixels *pixels = sweep->layer_pixels;
+  sweep_layers *layers = &sweep->layers;
+  if (sweep->shade.sky == NULL) return;
+  layers->white_sky = *sweep->shade.sky;
+  for (int c = 0; c < 3; c++) layers->white_sky.color[c] = 1;
+  layer_pass *sky = add_pass(sweep, pixels->sky, NULL, 0);
+  if (sky != NULL) sky->sky = sweep->shade.sky;
+  layer_pass *reaching = add_pass(sweep, pixels->sky_reaching, NULL, 0);
+  if (reaching != NULL) reaching->sky = &layers->white_sky, reaching->volumes = layers->white_volumes;
+  layer_pass *open = add_pass(sweep, pixels->sky_open, NULL, 0);
+  if (open != NULL) open->sky = &layers->white_sky, open->volumes = layers->open_volumes;
 }
 
 hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
@@ -73,13 +99,14 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
     (void)add_pass(sweep, to->picture, &sweep->shade_lights[i], 1);
     set_up_white_light(&sweep->shade_lights[i], white);
     layer_pass *shadow = add_pass(sweep, to->shadow, white, 1);
-    if (shadow != NULL) shadow->white = true;
+    if (shadow != NULL) shadow->volumes = sweep->layers.white_media;
   }
   layer_pass *ambient = sweep->first ? add_pass(sweep, pixels->ambient, NULL, 0) : NULL;
   for (int c = 0; c < 3 && ambient != NULL; c++) ambient->ambient[c] = sweep->shade.ambient[c];
   if (ambient != NULL) ambient->scattered = sweep->shade.scattered;
   layer_pass *emission = sweep->first ? add_pass(sweep, pixels->emission, NULL, 0) : NULL;
   if (emission != NULL) emission->emission = sweep->shade.emission;
+  add_sky_passes(sweep);
   layer_pass *measures = sweep->measures ? add_pass(sweep, pixels->measures, NULL, 0) : NULL;
   if (measures != NULL) {
     measures->shade = sweep->content.hot->render.measure;
@@ -90,23 +117,22 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
 
 void hl_sweep_layers_end(sweep *sweep) {
   sweep_layers *layers = &sweep->layers;
-  void *owned[] = {layers->passes,        layers->white_lights, layers->white_volumes,
-                   layers->white_patches, layers->white,        layers->ones};
+  void *owned[] = {layers->passes,       layers->white_lights, layers->white_media, layers->white_volumes,
+                   layers->open_volumes, layers->patches,      layers->white,       layers->ones};
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->content.context, owned[i]);
 }
 
-/* The tile's patches, of the white volumes. */
-static const shade_patch *white_patches(const sweep *sweep, const tile_slab *slab) {
-  shade_patch *white = sweep->layers.white_patches +
-                       (size_t)slab->worker * (size_t)sweep->content.volume_count;
+/* The tile's patches, of the pass's own volumes. */
+static const shade_patch *patches_of(const sweep *sweep, const tile_slab *slab, const shade_volume *volumes) {
+  shade_patch *patches = sweep->layers.patches + (size_t)slab->worker * (size_t)sweep->content.volume_count;
   for (int i = 0; i < slab->patch_count; i++) {
-    white[i] = slab->patches[i];
-    white[i].volume = &sweep->layers.white_volumes[slab->patches[i].volume - sweep->shade_volumes];
+    patches[i] = slab->patches[i];
+    patches[i].volume = &volumes[slab->patches[i].volume - sweep->shade_volumes];
   }
-  return white;
+  return patches;
 }
 
-/* The slab's job with the pass's own lights, ambient light and emission. */
+/* The slab's job with the pass's own lights, ambient light, sky and emission. */
 static shade_job job_of_pass(const layer_pass *pass, const shade_job *slab) {
   shade_job job = *slab;
   job.lights = pass->lights;
@@ -114,18 +140,18 @@ static shade_job job_of_pass(const layer_pass *pass, const shade_job *slab) {
   memcpy(job.ambient, pass->ambient, sizeof job.ambient);
   job.emission = pass->emission;
   job.scattered = pass->scattered;
+  job.sky = pass->sky;
   return job;
 }
 
 void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab) {
   if (sweep->layers.pass_count == 0) return;
-  tile_slab white = *slab;
-  white.patches = white_patches(sweep, slab);
   for (int i = 0; i < sweep->layers.pass_count; i++) {
     const layer_pass *pass = &sweep->layers.passes[i];
     const shade_job job = job_of_pass(pass, slab->job);
+    tile_slab own = *slab;
+    if (pass->volumes != NULL) own.patches = patches_of(sweep, slab, pass->volumes);
     uint64_t samples = 0; /* statistics count the picture's own samples alone */
-    (void)pass->shade(&job, pass->white ? &white : slab, pass->pixels + slab->tile * pass->tile_floats,
-                      &samples);
+    (void)pass->shade(&job, &own, pass->pixels + slab->tile * pass->tile_floats, &samples);
   }
 }

@@ -145,9 +145,6 @@ hl_status hl_layers_check(const hl_layers *layers, const hl_scene_description *s
   if (scene->mesh_count > 0)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "/meshes: a scene with meshes has no layers yet: remove the meshes, or ask for no layers");
-  if (scene->sky.type != HL_SKY_NONE)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "/sky: a scene with a sky has no layers yet: remove the sky, or ask for no layers");
   if (scene->render.compositing == HL_COMPOSITING_MAXIMUM)
     return hl_fail(
         error, HL_ERROR_UNSUPPORTED,

@@ -1,0 +1,204 @@
+/* analytic/layers_sky.c - the sky's layers: closed forms of its shadow, and the sum of the layers.
+ *
+ * Each is asked of the sheets and of the reference. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+
+enum { SIDE = 10, PIXELS = SIDE * SIDE, MIDDLE = SIDE / 2 * SIDE + SIDE / 2 };
+
+/* Buffers of the layers that add up to the picture, and of the sky's shadow. */
+typedef struct sky_layers {
+  float pixels[PIXELS * 4], ambient[PIXELS * 3], emission[PIXELS * 3], sky[PIXELS * 3], shadow[PIXELS * 3],
+      light[PIXELS * 3];
+} sky_layers;
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+}
+
+/* directions: of the reference's sky; 0: the sheets. */
+static void render_layers(stage *set, int directions, sky_layers *made) {
+  const bool reference = directions > 0;
+  hl_error error = {0};
+  hl_scene *scene = NULL;
+  hl_renderer *renderer = NULL;
+  hl_reference_options options;
+  const hl_light_layers lights[1] = {{.picture = made->light}};
+  memset(made, 0xff, sizeof *made); /* NaN: every value must be written */
+  const hl_layers wanted = {.struct_size = sizeof wanted,
+                            .ambient = made->ambient,
+                            .emission = made->emission,
+                            .lights = lights,
+                            .light_count = set->scene.light_count,
+                            .sky = made->sky,
+                            .sky_shadow = made->shadow};
+  if (set->scene.light_count == 0) memset(made->light, 0, sizeof made->light);
+  hl_reference_options_defaults(&options);
+  options.light_points = directions;
+  hl_status status = hl_scene_create(set->context, &set->scene, &scene, &error);
+  if (status == HL_OK && reference)
+    status = hl_reference_render_layers(set->context, scene, &options, made->pixels, 4 * SIDE, &wanted,
+                                        &error);
+  if (status == HL_OK && !reference) status = hl_renderer_create(set->context, &renderer, &error);
+  if (status == HL_OK && !reference)
+    status = hl_renderer_render_layers(renderer, scene, made->pixels, 4 * SIDE, &wanted, NULL, &error);
+  if (status != HL_OK) fail_msg("%s", error.message);
+  hl_renderer_destroy(renderer);
+  hl_scene_release(scene);
+}
+
+static void open_sky(stage *set) {
+  stage_open(set);
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = 24;
+  set->scene.sky.type = HL_SKY_UNIFORM;
+}
+
+/* ---- the shadow ---- */
+
+/* The mean of (E2(t) + E2(T - t)) / 2 over the depth t in a slab of depth T, seen through the slab; E2(t) =
+ * int exp(-t / mu) dmu. cast: of the depth that hides the sky. */
+static double shadow_in_slab(double whole, double cast) {
+  double sum = 0, weights = 0;
+  for (int i = 0; i < 200; i++) {
+    double t = whole * (i + 0.5) / 200, weight = exp(-t), mean = 0;
+    for (int j = 0; j < 400; j++) {
+      double mu = (j + 0.5) / 400;
+      mean += (exp(-cast * t / mu) + exp(-cast * (whole - t) / mu)) / 800;
+    }
+    sum += weight * mean;
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+/* Neither the colour of haze nor that of an even sky is in the shadow; what hides the sky is, by its colour.
+ */
+static void test_shadow_in_slab(void **state) {
+  (void)state;
+  static sky_layers made;
+  const double sigma = 0.1;
+  stage set;
+  open_sky(&set);
+  hl_scene_volume *slab = stage_add_grid(&set, (size_t[3]){60, 60, 8}, (double[3]){2, 2, 1},
+                                         (vec3){-60, -60, -4}, NULL);
+  stage_set_opacity(&set, slab, 1 - exp(-sigma), 1);
+  stage_set_color(&set, slab, 0.1, 0.9, 0.3);
+  slab->attenuation_color[1] = 0.5;
+  slab->attenuation_color[2] = 0;
+  set.scene.sky.color[0] = 0.3;
+  set.scene.sky.strength = 3;
+  for (int i = 0; i < 4; i++) {
+    slab->receives_shadow = i < 2;
+    render_layers(&set, i % 2 == 1 ? 100 : 0, &made);
+    for (int c = 0; c < 3; c++) {
+      double expected = i < 2 ? shadow_in_slab(8 * sigma, slab->attenuation_color[c]) : 1;
+      assert_near(made.shadow[3 * MIDDLE + c], expected, 0.025);
+    }
+  }
+  stage_close(&set);
+}
+
+/* ---- the sum ---- */
+
+/* A ball of haze or with a surface above a plate that takes green light alone. */
+static void add_scene(stage *set, hl_shading shading) {
+  enum { N = 14 };
+  static const hl_opacity_point opacity[] = {{0, 0}, {0.3, 0}, {0.6, 0.8}};
+  static float voxels[N * N * N];
+  for (int i = 0; i < N * N * N; i++) {
+    double x = i % N - 6.5, y = i / N % N - 6.5, z = i / N / N - 6.5;
+    voxels[i] = (float)fmin(fmax(0.5 + (5 - sqrt(x * x + y * y + z * z)) / 3, 0), 1);
+  }
+  hl_scene_volume *ball = stage_add_grid(set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1}, (vec3){-7, -7, -7},
+                                         voxels);
+  ball->transfer_function.opacity = opacity;
+  ball->transfer_function.opacity_count = 3;
+  stage_set_color(set, ball, 0.9, 0.5, 0.3);
+  ball->shading = shading;
+  ball->material.emission = 0.2;
+  hl_scene_volume *plate = stage_add_box(set, (vec3){-9, -9, -9}, (vec3){9, 9, -8});
+  stage_set_opacity(set, plate, 0.7, 1);
+  plate->attenuation_color[0] = plate->attenuation_color[2] = 0;
+  stage_look(set, (vec3){30, -60, 40}, (vec3){0, 0, -2}, (vec3){0, 0, 1});
+}
+
+/* With the sky's light less by what hides it, and none of it twice: under an even sky and a gradient, for
+ * media and surfaces, sheets and reference, and where another light has a sweep of its own. */
+static void test_sum_is_the_picture(void **state) {
+  (void)state;
+  static sky_layers made;
+  for (int i = 0; i < 5; i++) {
+    stage set;
+    open_sky(&set);
+    add_scene(&set, i % 2 == 0 ? HL_SHADING_PHONG : HL_SHADING_NONE);
+    set.scene.sky.type = i < 2 ? HL_SKY_UNIFORM : HL_SKY_GRADIENT;
+    set.scene.ambient[1] = 0.1;
+    stage_add_directional(&set, (vec3){i == 2 ? 1 : -1, 0.5, -1});
+    if (i == 3) set.scene.camera.height = 90; /* several pixels are averaged */
+    render_layers(&set, i == 4 ? 40 : 0, &made);
+    double brightest = 0, darkest = 1;
+    for (int p = 0; p < PIXELS; p++)
+      for (int c = 0; c < 3; c++) {
+        double sum = (double)made.ambient[3 * p + c] + (double)made.emission[3 * p + c] +
+                     (double)made.sky[3 * p + c] + (double)made.light[3 * p + c];
+        assert_near(sum, made.pixels[4 * p + c], 2e-6);
+        brightest = fmax(brightest, made.sky[3 * p + c]);
+        if (made.pixels[4 * p + 3] > 0.5f) darkest = fmin(darkest, made.shadow[3 * p + c]);
+      }
+    assert_true(brightest > 0.2 && darkest < 0.8);
+    stage_close(&set);
+  }
+}
+
+/* White matter sends on what the sky would send if nothing hid it, times the shadow. */
+static void test_shadow_is_a_factor(void **state) {
+  (void)state;
+  static sky_layers hidden, open;
+  stage set;
+  open_sky(&set);
+  set.scene.sky.type = HL_SKY_GRADIENT;
+  add_scene(&set, HL_SHADING_PHONG);
+  for (size_t v = 0; v < 2; v++) stage_set_color(&set, &set.volumes[v], 1, 1, 1);
+  for (int i = 0; i < 2; i++) {
+    for (size_t v = 0; v < 2; v++) set.volumes[v].receives_shadow = 1;
+    render_layers(&set, i == 1 ? 40 : 0, &hidden);
+    for (size_t v = 0; v < 2; v++) set.volumes[v].receives_shadow = 0;
+    render_layers(&set, i == 1 ? 40 : 0, &open);
+    for (int k = 0; k < PIXELS * 3; k++)
+      if (hidden.shadow[k] < 1) assert_near(hidden.sky[k], open.sky[k] * hidden.shadow[k], 2e-6);
+  }
+  stage_close(&set);
+}
+
+/* A scene without a sky: zeros, as where nothing is seen. */
+static void test_no_sky(void **state) {
+  (void)state;
+  static sky_layers made;
+  stage set;
+  open_sky(&set);
+  set.scene.sky.type = HL_SKY_NONE;
+  add_scene(&set, HL_SHADING_PHONG);
+  for (int i = 0; i < 2; i++) {
+    render_layers(&set, i == 1 ? 40 : 0, &made);
+    for (int k = 0; k < PIXELS * 3; k++) assert_true(made.sky[k] == 0 && made.shadow[k] == 0);
+  }
+  stage_close(&set);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_shadow_in_slab),
+      cmocka_unit_test(test_sum_is_the_picture),
+      cmocka_unit_test(test_shadow_is_a_factor),
+      cmocka_unit_test(test_no_sky),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
