@@ -69,8 +69,8 @@ HL_API HL_WARN_UNUSED hl_status hl_image_to_srgb8(const hl_image *image,
                                                   const hl_image_write_options *options, uint8_t *bytes,
                                                   size_t row_stride, hl_error *error);
 
-/* Reads .png (sRGB decoded), .exr (R, G, B, A; missing A is 1) and .npy (float32, height x width x 1, 3 or
- * 4). */
+/* Reads .png (sRGB decoded), .exr (R, G, B, A; missing A is 1), .npy (float32, height x width x 1, 3 or 4)
+ * and .hdr (Radiance's RGBE; A is 1). */
 HL_API HL_WARN_UNUSED hl_status hl_image_read(hl_context *context, const char *path, hl_image **image,
                                               hl_error *error);
 

@@ -95,7 +95,8 @@ class Renderer:
         scene : Scene
             What is rendered.
         layers : bool
-            Keep each light, its shadow, the sky and its shadow, ambient light, depths and normals apart, in ``Image.layers``.
+            Keep each light, its shadow, the sky and its shadow, ambient light, depths and normals apart, in
+            ``Image.layers``.
         progress : bool or callable, optional
             True: a bar by tqdm, or a line on stderr. A callable gets the stage's name and a fraction, 0 to 1;
             what it raises stops the render.

@@ -159,6 +159,13 @@ int render_check_clip(const cli_value *clip);
 /* Cuts a volume's clip box by --clip. */
 int render_clip(const cli_value *clip, hl_scene_volume *volume);
 
+/* Refuses a value of --sky that cannot be read. */
+int render_check_sky(const cli_value *sky);
+
+/* Gives the scene the sky of --sky, if it was given: without a sky before, upright as the camera is. *pixels:
+ * an image's, borrowed by the description; the caller frees them. Returns the exit code. */
+int render_sky(cli_host *host, const cli_value *value, hl_scene_description *description, float **pixels);
+
 /* The layers that --layers asks for; their buffers are owned by the picture. */
 typedef struct render_layers {
   hl_layers all;

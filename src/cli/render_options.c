@@ -237,12 +237,14 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                                 "name (default 0.2; of bare\nvolumes chosen)",
                         .setting_kind = HL_SETTINGS_SCENE,
                         .setting = "ambient"},
-    [RENDER_SKY] = {.name = "sky",
-                    .kind = OPTION_COLOR,
-                    .argument = "COLOR",
-                    .help = "light from all directions, which folds and\nhollows get less of; 0: none",
-                    .setting_kind = HL_SETTINGS_SKY,
-                    .setting = "color"},
+    [RENDER_SKY] =
+        {.name = "sky",
+         .kind = OPTION_TEXT,
+         .argument = "SKY",
+         .help = "light from all directions, which folds and\nhollows get less of: a colour, a "
+                 "gradient\nZENITH:HORIZON[:GROUND], or an image's file\n(.exr, .hdr, .png, .npy); 0: none",
+         .setting_kind = HL_SETTINGS_SKY,
+         .setting = "color"},
     [RENDER_LIGHT] = {.name = "light",
                       .kind = OPTION_NUMBERS,
                       .argument = "AZ,EL",
@@ -425,6 +427,7 @@ int render_check_options(const cli_value *values) {
                   render_options[pictures[n]].name);
   int exit_code = render_check_clip(&values[RENDER_CLIP]);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_iso(&values[RENDER_ISO]);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_check_sky(&values[RENDER_SKY]);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   exit_code = check_linear_output(values, named);
   if (exit_code != EXIT_CODE_OK) return exit_code;

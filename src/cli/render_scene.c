@@ -22,6 +22,7 @@ typedef struct scene_change {
   hl_scene_mesh *meshes;    /* owned, with the floor, which is the last; null: no floor is added */
   hl_transfer_function
       *functions;          /* owned with their points; [description.volume_count]; null: none changed */
+  float *sky;              /* owned; the pixels of the image of --sky; null: none */
   hl_isosurface *surfaces; /* owned; [description.volume_count][values of --iso]; null: none */
 } scene_change;
 
@@ -254,20 +255,10 @@ static void change_render_settings(const cli_value *values, hl_render_settings *
   }
 }
 
-/* An even sky of this colour; none for black. */
-static void set_sky(const double color[3], hl_sky *sky) {
-  hl_scene_description plain;
-  hl_scene_description_defaults(&plain);
-  *sky = plain.sky;
-  if (color[0] > 0 || color[1] > 0 || color[2] > 0) sky->type = HL_SKY_UNIFORM;
-  memcpy(sky->color, color, sizeof sky->color);
-}
-
 static void change_settings(const cli_value *values, hl_scene_description *description) {
   change_render_settings(values, &description->render);
   if (values[RENDER_AMBIENT].given)
     memcpy(description->ambient, values[RENDER_AMBIENT].number, sizeof description->ambient);
-  if (values[RENDER_SKY].given) set_sky(values[RENDER_SKY].number, &description->sky);
   if (values[RENDER_EXPOSURE].given) description->exposure = values[RENDER_EXPOSURE].number[0];
   if (values[RENDER_TONE].given) description->tone = (hl_tone)values[RENDER_TONE].choice;
   const cli_value *background = &values[RENDER_BACKGROUND];
@@ -298,6 +289,7 @@ static void change_release(scene_change *change) {
       render_release_function(&change->functions[i]);
   free(change->functions);
   free(change->surfaces);
+  free(change->sky);
   if (change->meshes != NULL) hl_mesh_release(change->meshes[change->description.mesh_count - 1].mesh);
   free(change->meshes);
   free(change->volumes);
@@ -312,6 +304,8 @@ int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_s
   if (exit_code == EXIT_CODE_OK) exit_code = change_camera(&change);
   if (exit_code == EXIT_CODE_OK) exit_code = add_floor(&change);
   if (exit_code == EXIT_CODE_OK) exit_code = change_lights(&change);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = render_sky(host, &values[RENDER_SKY], &change.description, &change.sky);
   if (exit_code == EXIT_CODE_OK) {
     render_change_look(values, bare, &change.description);
     change_settings(values, &change.description);

@@ -108,7 +108,8 @@ static hl_status name_absolutely(view_job *job, hl_scene **scene, hl_error *erro
   hl_light *lights = malloc(d.light_count * sizeof *lights + 1);
   hl_scene_mesh *meshes = malloc(d.mesh_count * sizeof *meshes + 1);
   path_list *list = calloc(1, sizeof *list);
-  bool good = volumes != NULL && lights != NULL && meshes != NULL && list != NULL;
+  bool good = volumes != NULL && lights != NULL && meshes != NULL && list != NULL &&
+              make_absolute(&d.sky.file, list);
   for (size_t v = 0; good && v < d.volume_count; v++) {
     volumes[v] = d.volumes[v];
     good = make_absolute(&volumes[v].file, list);

@@ -13,7 +13,8 @@
 #include "core/memory.h"
 
 /* The registry of formats. */
-static const hl_image_format *const formats[] = {&hl_png_format, &hl_exr_format, &hl_npy_format};
+static const hl_image_format *const formats[] = {&hl_png_format, &hl_exr_format, &hl_npy_format,
+                                                 &hl_hdr_format};
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
 
@@ -26,6 +27,11 @@ static const hl_image_format *format_by_name(const char *path) {
   for (size_t i = 0; dot != NULL && i < FORMAT_COUNT; i++)
     if (strcasecmp(dot, formats[i]->extension) == 0) return formats[i];
   return NULL;
+}
+
+static const hl_image_format *written_format(const char *path) {
+  const hl_image_format *format = format_by_name(path);
+  return format != NULL && format->encode != NULL ? format : NULL;
 }
 
 static const hl_image_format *format_by_content(const unsigned char *bytes, size_t length) {
@@ -81,7 +87,7 @@ hl_status hl_image_write(hl_context *context, const hl_image *image, const char 
   if (options == NULL) options = &chosen;
   hl_status status = hl_image_check_options(options, "hl_image_write", error);
   if (status != HL_OK) return status;
-  const hl_image_format *format = format_by_name(path);
+  const hl_image_format *format = written_format(path);
   if (format == NULL)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "%s: unknown picture format: end the name in .png, .exr or .npy", path);
@@ -112,7 +118,7 @@ hl_status hl_image_encode(hl_context *context, const hl_image *image, const char
   if (status != HL_OK) return status;
   char extension[8];
   snprintf(extension, sizeof extension, ".%.6s", format_name);
-  const hl_image_format *format = format_by_name(extension);
+  const hl_image_format *format = written_format(extension);
   if (format == NULL)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "hl_image_encode: unknown picture format \"%.20s\": give png, exr or npy", format_name);
@@ -138,8 +144,9 @@ static hl_status fail_unknown(const char *path, hl_error *error) {
     return hl_fail_offset(error, HL_ERROR_INPUT, 0,
                           "%s: byte 0: not a %s file: its first bytes are not the mark of one", path,
                           named->title);
-  return hl_fail_offset(error, HL_ERROR_UNSUPPORTED, 0,
-                        "%s: byte 0: unknown picture format: expected a PNG, OpenEXR or NPY file", path);
+  return hl_fail_offset(
+      error, HL_ERROR_UNSUPPORTED, 0,
+      "%s: byte 0: unknown picture format: expected a PNG, OpenEXR, Radiance HDR or NPY file", path);
 }
 
 /* Limits the length of a file by the size in its header. Compressed pixels are never longer than one and a

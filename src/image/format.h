@@ -22,8 +22,8 @@ typedef struct hl_image_format {
   unsigned char mark[8]; /* first bytes of every file of the format */
   size_t mark_length;
 
-  /* Writes the whole picture to output->file; the caller commits or aborts. Failures of the file are
-   * HL_ERROR_IO lines that name output->path. */
+  /* Writes the whole picture to output->file; null: the format is read alone. The caller commits or aborts.
+   * Failures of the file are HL_ERROR_IO lines that name output->path. */
   hl_status (*encode)(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                       hl_error *error);
 
@@ -41,7 +41,7 @@ typedef struct hl_image_format {
                             hl_error *error);
 } hl_image_format;
 
-extern const hl_image_format hl_png_format, hl_exr_format, hl_npy_format;
+extern const hl_image_format hl_png_format, hl_exr_format, hl_npy_format, hl_hdr_format;
 
 /* Refuses impossible options; caller: the public function's name for errors. */
 hl_status hl_image_check_options(const hl_image_write_options *options, const char *caller, hl_error *error);

@@ -1,4 +1,5 @@
-/* tests/fuzz/picture.c - fuzz target: PNG (slides that lights project), OpenEXR and NPY pictures. */
+/* tests/fuzz/picture.c - fuzz target: PNG (slides that lights project), OpenEXR, Radiance HDR and NPY
+ * pictures. */
 #include <string.h>
 #include <zlib.h>
 

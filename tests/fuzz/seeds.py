@@ -172,6 +172,10 @@ def npy(shape, kind, size, fortran=False):
     return b"\x93NUMPY\x01\0" + struct.pack("<H", len(header)) + header + bytes(n % 60 for n in range(count * size))
 
 
+def hdr(size, rows):
+    return b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + size + b"\n" + rows
+
+
 def pictures():
     for colour, depths in ((0, (1, 2, 4, 8, 16)), (2, (8, 16)), (3, (1, 8)), (4, (8, 16)), (6, (8, 16))):
         for depth in depths:
@@ -185,6 +189,9 @@ def pictures():
     write("picture", "rgb-double.npy", npy((2, 3, 3), "<f8", 8))
     write("picture", "grey-big-endian.npy", npy((2, 3), ">f4", 4))
     write("picture", "fortran.npy", npy((2, 3, 4), "<f4", 4, True))
+    write("picture", "plain.hdr", hdr(b"+Y 2 -X 3", bytes(range(100, 124))))
+    write("picture", "runs-of-pixels.hdr", hdr(b"-Y 2 +X 9", bytes((7, 8, 9, 130, 1, 1, 1, 8)) * 2))
+    write("picture", "runs-of-bytes.hdr", hdr(b"-Y 2 +X 9", bytes((2, 2, 0, 9) + (137, 5) * 3 + (9, *range(120, 129))) * 2))
 
 
 scenes()

@@ -188,6 +188,14 @@ def test_layers_sum_to_the_picture(small):
     assert image.encode("png")[:4] == b"\x89PNG"
 
 
+def test_the_sky_s_layers(small):
+    image = Renderer().render(small.replace(sky=0.5), layers=True)
+    layers = image.layers
+    total = layers["ambient"] + layers["sky"] + sum(layers[f"light{n}"] for n in range(len(small.lights)))
+    assert np.allclose(total, np.asarray(image)[..., :3], atol=1e-5)
+    assert layers["sky"].max() > 0.05 and 0.1 < layers["sky_shadow"].max() <= 1
+
+
 def test_the_reference_agrees(small):
     scene = small.replace(shadows="hard", size=(32, 24))
     exact = halflight.reference(scene)

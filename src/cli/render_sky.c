@@ -1,0 +1,101 @@
+/* cli/render_sky.c - `--sky COLOR|GRADIENT|IMAGE`: light from all directions. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "output.h"
+#include "render.h"
+
+enum { COLOR_BYTES = 64, GRADIENT_COLORS = 3 };
+
+static bool names_image(const char *text) {
+  static const char *const extensions[] = {".exr", ".hdr", ".pic", ".png", ".npy"};
+  for (size_t n = 0; n < sizeof extensions / sizeof *extensions; n++)
+    if (has_extension(text, extensions[n])) return true;
+  return false;
+}
+
+/* Reads ZENITH:HORIZON[:GROUND] or one colour; returns the number of colours, 0 for anything else. */
+static int read_colors(const char *text, double colors[GRADIENT_COLORS][3]) {
+  const hl_setting *setting = hl_setting_find(HL_SETTINGS_SKY, "color");
+  for (int count = 0; count < GRADIENT_COLORS; count++) {
+    char color[COLOR_BYTES];
+    size_t length = strcspn(text, ":");
+    if (length >= sizeof color) return 0;
+    memcpy(color, text, length);
+    color[length] = '\0';
+    if (!parse_color(color, setting->low, setting->high, colors[count])) return 0;
+    if (text[length] == '\0') return count + 1;
+    text += length + 1;
+  }
+  return 0;
+}
+
+int render_check_sky(const cli_value *sky) {
+  double colors[GRADIENT_COLORS][3];
+  if (!sky->given || names_image(sky->text) || read_colors(sky->text, colors) > 0) return EXIT_CODE_OK;
+  return fail(EXIT_CODE_USAGE,
+              "--sky: '%s' is not a colour (a number, linear R,G,B, #rrggbb or a CSS name), a gradient "
+              "ZENITH:HORIZON[:GROUND] of colours, or an image's file (.exr, .hdr, .png, .npy)",
+              sky->text);
+}
+
+/* An image's colours without alpha: premultiplied, they are the image over black. */
+static float *take_pixels(const hl_image *image) {
+  size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
+  const float *from = hl_image_pixels_const(image);
+  float *pixels = malloc(count * 3 * sizeof *pixels);
+  for (size_t i = 0; i < count && pixels != NULL; i++)
+    for (size_t c = 0; c < 3; c++) pixels[3 * i + c] = from[4 * i + c];
+  return pixels;
+}
+
+static int load(cli_host *host, const char *path, hl_sky *sky, float **pixels) {
+  hl_error error = {0};
+  hl_image *image = NULL;
+  hl_status status = hl_image_read(host->context, path, &image, &error);
+  if (status == HL_OK && (*pixels = take_pixels(image)) == NULL) {
+    snprintf(error.message, sizeof error.message, "out of memory for '%.200s'", path);
+    status = error.code = HL_ERROR_MEMORY;
+  }
+  if (status == HL_OK) {
+    sky->type = HL_SKY_IMAGE;
+    sky->file = path;
+    sky->pixels = *pixels;
+    sky->width = hl_image_width(image);
+    sky->height = hl_image_height(image);
+  }
+  hl_image_destroy(image);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_CHANGE, status, &error);
+}
+
+/* One colour is an even sky; black is none. */
+static void set_colors(const char *text, hl_sky *sky) {
+  double colors[GRADIENT_COLORS][3];
+  int count = read_colors(text, colors);
+  if (count == 1) {
+    memcpy(sky->color, colors[0], sizeof sky->color);
+    bool shines = colors[0][0] > 0 || colors[0][1] > 0 || colors[0][2] > 0;
+    sky->type = shines ? HL_SKY_UNIFORM : HL_SKY_NONE;
+    return;
+  }
+  sky->type = HL_SKY_GRADIENT;
+  memcpy(sky->zenith, colors[0], sizeof sky->zenith);
+  memcpy(sky->horizon, colors[1], sizeof sky->horizon);
+  if (count == 3) memcpy(sky->ground, colors[2], sizeof sky->ground);
+}
+
+int render_sky(cli_host *host, const cli_value *value, hl_scene_description *description, float **pixels) {
+  hl_scene_description plain;
+  if (!value->given) return EXIT_CODE_OK;
+  hl_scene_description_defaults(&plain);
+  hl_sky made = plain.sky;
+  const hl_sky *before = &description->sky;
+  memcpy(made.up, before->type != HL_SKY_NONE ? before->up : description->camera.up, sizeof made.up);
+  int exit_code = EXIT_CODE_OK;
+  if (names_image(value->text)) exit_code = load(host, value->text, &made, pixels);
+  else set_colors(value->text, &made);
+  if (made.type == HL_SKY_NONE) made = plain.sky;
+  if (exit_code == EXIT_CODE_OK) description->sky = made;
+  return exit_code;
+}
