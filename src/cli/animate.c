@@ -79,19 +79,9 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
     [ANIMATE_KEEP_FRAMES] = {.name = "keep-frames",
                              .kind = OPTION_SWITCH,
                              .help = "leave the pictures beside the film, in its name with\n\"-frames\""},
-    [ANIMATE_DATA] = {.name = "data",
-                      .kind = OPTION_TEXT,
-                      .argument = "FOLDER",
-                      .help = "of the files that scenes call data:NAME (default:\n"
-                              "$HALFLIGHT_DATA, or ../shared/data)"},
-    [ANIMATE_MAX_MEMORY] = {.name = "max-memory",
-                            .kind = OPTION_BYTES,
-                            .argument = "BYTES",
-                            .help = "fail rather than hold more; suffix K, M, G or T\n"
-                                    "(default: the machine's memory)"},
-    [ANIMATE_QUIET] = {.name = "quiet",
-                       .kind = OPTION_SWITCH,
-                       .help = "no progress bar, no warnings, no summary"},
+    [ANIMATE_DATA] = HOST_OPTION_DATA(NULL),
+    [ANIMATE_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
+    [ANIMATE_QUIET] = HOST_OPTION_QUIET,
 };
 
 /* One run. */

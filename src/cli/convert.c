@@ -54,22 +54,10 @@ static const cli_option convert_options[CONVERT_OPTION_COUNT] = {
                           "uint8, int8, ... uint64, int64, float16, float32 or\nfloat64; whole numbers are "
                           "rounded (default: the volume's\nown, or the next that holds its values)",
                       .choices = types},
-    [CONVERT_ARRAY] = INPUT_OPTION_ARRAY("What of IN"),
-    [CONVERT_COMPONENT] = INPUT_OPTION_COMPONENT,
-    [CONVERT_SERIES] = INPUT_OPTION_SERIES,
-    [CONVERT_TIME] = INPUT_OPTION_TIME,
-    [CONVERT_CHANNEL] = INPUT_OPTION_CHANNEL,
-    [CONVERT_LEVEL] = INPUT_OPTION_LEVEL,
+    INPUT_OPTIONS(CONVERT_ARRAY, "What of IN"),
     [CONVERT_SPACING] = INPUT_OPTION_SPACING,
-    [CONVERT_MAX_MEMORY] =
-        {.name = "max-memory",
-         .kind = OPTION_BYTES,
-         .argument = "BYTES",
-         .group = "How it runs",
-         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
-    [CONVERT_QUIET] = {.name = "quiet",
-                       .kind = OPTION_SWITCH,
-                       .help = "no progress bar, no warnings, no summary"},
+    [CONVERT_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY("How it runs"),
+    [CONVERT_QUIET] = HOST_OPTION_QUIET,
 };
 
 /* Reads a number of voxels, if there is one, and moves *text past it. */

@@ -59,11 +59,7 @@ static const cli_option diff_options[DIFF_OPTION_COUNT] = {
                       .count = 1,
                       .above = true,
                       .high = INFINITY},
-    [DIFF_MAX_MEMORY] =
-        {.name = "max-memory",
-         .kind = OPTION_BYTES,
-         .argument = "BYTES",
-         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
+    [DIFF_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
     [DIFF_JSON] = {.name = "json", .kind = OPTION_SWITCH, .help = "metrics as JSON"},
 };
 

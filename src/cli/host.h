@@ -34,6 +34,27 @@ typedef struct cli_host_options {
   const char *data_folder;             /* null: HALFLIGHT_DATA, or ../shared/data */
 } cli_host_options;
 
+/* Rows of a subcommand's table of options, for what the context needs to know. heading: the group that begins
+ * with the row, or null. */
+#define HOST_OPTION_DATA(heading)                                                                    \
+  {                                                                                                  \
+    .name = "data", .kind = OPTION_TEXT, .argument = "FOLDER", .group = (heading),                   \
+    .help = "of the files that scenes call data:NAME (default:\n$HALFLIGHT_DATA, or ../shared/data)" \
+  }
+#define HOST_OPTION_THREADS(heading)                                                                         \
+  {                                                                                                          \
+    .name = "threads", .kind = OPTION_NUMBERS, .argument = "N", .group = (heading),                          \
+    .help = "0: one per processor (default)", .count = 1, .whole = true, .setting_kind = HL_SETTINGS_RENDER, \
+    .setting = "threads"                                                                                     \
+  }
+#define HOST_OPTION_MAX_MEMORY(heading)                                                        \
+  {                                                                                            \
+    .name = "max-memory", .kind = OPTION_BYTES, .argument = "BYTES", .group = (heading),       \
+    .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)" \
+  }
+#define HOST_OPTION_QUIET \
+  { .name = "quiet", .kind = OPTION_SWITCH, .help = "no progress bar, no warnings, no summary" }
+
 /* Makes the context and starts listening to SIGINT, SIGTERM and SIGHUP. Returns the exit code. `host` must
  * not move until host_close(). */
 int host_open(const cli_host_options *options, cli_host *host);

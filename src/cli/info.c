@@ -26,17 +26,8 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
                    .kind = OPTION_SWITCH,
                    .group = "Options",
                    .help = "as JSON, with 256 histogram bins"},
-    [INFO_ARRAY] = INPUT_OPTION_ARRAY(NULL),
-    [INFO_COMPONENT] = INPUT_OPTION_COMPONENT,
-    [INFO_SERIES] = INPUT_OPTION_SERIES,
-    [INFO_TIME] = INPUT_OPTION_TIME,
-    [INFO_CHANNEL] = INPUT_OPTION_CHANNEL,
-    [INFO_LEVEL] = INPUT_OPTION_LEVEL,
-    [INFO_MAX_MEMORY] =
-        {.name = "max-memory",
-         .kind = OPTION_BYTES,
-         .argument = "BYTES",
-         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
+    INPUT_OPTIONS(INFO_ARRAY, NULL),
+    [INFO_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
 };
 
 /* The file's arrays, and which array and component the volume was read from. */

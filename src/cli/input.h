@@ -31,14 +31,13 @@ typedef struct cli_input {
     .name = "array", .kind = OPTION_TEXT, .argument = "NAME", .group = (heading),                       \
     .help = "of the file's arrays this one (default: the active\none, else the first of one component)" \
   }
-#define INPUT_OPTION_COMPONENT                                                                          \
-  {                                                                                                     \
-    .name = "component", .kind = OPTION_NUMBERS, .argument = "N|WORD",                                  \
-    .help =                                                                                             \
-        "of several values per voxel, or volumes of a\nseries, this one, from 0; or their magnitude;\n" \
-        "or color: colours, opacity from alpha, if any;\nluminance: colours, opacity from luminance\n"  \
-        "(default: the only one; colours; of 2 or 3 the\nmagnitude, else 0)",                           \
-    .choices = input_components, .count = 1, .whole = true, .low = 0, .high = 1e9                       \
+#define INPUT_OPTION_COMPONENT                                                                              \
+  {                                                                                                         \
+    .name = "component", .kind = OPTION_NUMBERS, .argument = "N|WORD",                                      \
+    .help = "of several values per voxel, or volumes of a\nseries, this one, from 0; or their magnitude;\n" \
+            "or color: colours, opacity from alpha, if any;\nluminance: colours, opacity from luminance\n"  \
+            "(default: the only one; colours; of 2 or 3 the\nmagnitude, else 0)",                           \
+    .choices = input_components, .count = 1, .whole = true, .low = 0, .high = 1e9                           \
   }
 #define INPUT_OPTION_SERIES                                                                            \
   {                                                                                                    \
@@ -63,6 +62,11 @@ typedef struct cli_input {
     .help = "distance of voxels in world units (default: the\nfile's)", .count = 3, .separator = ',', \
     .low = 0, .above = true, .high = INFINITY                                                         \
   }
+/* All of these rows but the spacing, from `first` on in this order. */
+#define INPUT_OPTIONS(first, heading)                                                         \
+  [first] = INPUT_OPTION_ARRAY(heading), [(first) + READ_COMPONENT] = INPUT_OPTION_COMPONENT, \
+  [(first) + READ_SERIES] = INPUT_OPTION_SERIES, [(first) + READ_TIME] = INPUT_OPTION_TIME,   \
+  [(first) + READ_CHANNEL] = INPUT_OPTION_CHANNEL, [(first) + READ_LEVEL] = INPUT_OPTION_LEVEL
 extern const cli_choice input_components[];
 
 /* The order in which a subcommand's table has these options. */

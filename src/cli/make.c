@@ -52,22 +52,9 @@ static const cli_option make_options[MAKE_OPTION_COUNT] = {
     [MAKE_PRINT] = {.name = "print",
                     .kind = OPTION_SWITCH,
                     .help = "a ready-made shape's JSON on stdout, to begin with; no\nvolume"},
-    [MAKE_THREADS] = {.name = "threads",
-                      .kind = OPTION_NUMBERS,
-                      .argument = "N",
-                      .help = "0: one per processor (default)",
-                      .count = 1,
-                      .whole = true,
-                      .low = 0,
-                      .high = 1024},
-    [MAKE_MAX_MEMORY] =
-        {.name = "max-memory",
-         .kind = OPTION_BYTES,
-         .argument = "BYTES",
-         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
-    [MAKE_QUIET] = {.name = "quiet",
-                    .kind = OPTION_SWITCH,
-                    .help = "no progress bar, no warnings, no summary"},
+    [MAKE_THREADS] = HOST_OPTION_THREADS(NULL),
+    [MAKE_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
+    [MAKE_QUIET] = HOST_OPTION_QUIET,
 };
 
 static int print_list(void) {

@@ -133,12 +133,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .kind = OPTION_SWITCH,
                       .help = "parallel projection, the same framing"},
 
-    [RENDER_ARRAY] = INPUT_OPTION_ARRAY("Volume files"),
-    [RENDER_COMPONENT] = INPUT_OPTION_COMPONENT,
-    [RENDER_SERIES] = INPUT_OPTION_SERIES,
-    [RENDER_TIME] = INPUT_OPTION_TIME,
-    [RENDER_CHANNEL] = INPUT_OPTION_CHANNEL,
-    [RENDER_LEVEL] = INPUT_OPTION_LEVEL,
+    INPUT_OPTIONS(RENDER_ARRAY, "Volume files"),
     [RENDER_SPACING] = INPUT_OPTION_SPACING,
 
     [RENDER_LOOK] =
@@ -350,36 +345,19 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .low = 1,
                       .high = 1 << 24},
 
-    [RENDER_DATA] =
-        {.name = "data",
-         .kind = OPTION_TEXT,
-         .argument = "DIR",
-         .group = "Running",
-         .help =
-             "folder of the files that scenes call data:NAME\n(default: $HALFLIGHT_DATA, or ../shared/data)"},
+    [RENDER_DATA] = HOST_OPTION_DATA("Running"),
     [RENDER_PART] = FRAMES_OPTION_PART(
         NULL,
         "of a series of files: every N-th one, from the K-th on,\nso that N runs "
         "share the work"),
     [RENDER_RANKS] = FRAMES_OPTION_RANKS,
-    [RENDER_THREADS] = {.name = "threads",
-                        .kind = OPTION_NUMBERS,
-                        .argument = "N",
-                        .help = "0: one per processor (default)",
-                        .count = 1,
-                        .whole = true,
-                        .setting_kind = HL_SETTINGS_RENDER,
-                        .setting = "threads"},
+    [RENDER_THREADS] = HOST_OPTION_THREADS(NULL),
     [RENDER_INSTRUCTION_SET] =
         {.name = "instruction-set",
          .kind = OPTION_CHOICE,
          .choices = instruction_set_choices,
          .help = "any gives the same picture (default auto: the\nfastest that the processor has)"},
-    [RENDER_MAX_MEMORY] =
-        {.name = "max-memory",
-         .kind = OPTION_BYTES,
-         .argument = "BYTES",
-         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
+    [RENDER_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
     [RENDER_PRINT_SCENE] =
         {.name = "print-scene",
          .kind = OPTION_SWITCH,

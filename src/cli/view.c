@@ -46,24 +46,10 @@ static const cli_option view_options[VIEW_OPTION_COUNT] = {
                          .kind = OPTION_SWITCH,
                          .help =
                              "only print the URL (default: open a browser too, where\nthere is a screen)"},
-    [VIEW_ARRAY] = INPUT_OPTION_ARRAY("Volume files"),
-    [VIEW_COMPONENT] = INPUT_OPTION_COMPONENT,
-    [VIEW_SERIES] = INPUT_OPTION_SERIES,
-    [VIEW_TIME] = INPUT_OPTION_TIME,
-    [VIEW_CHANNEL] = INPUT_OPTION_CHANNEL,
-    [VIEW_LEVEL] = INPUT_OPTION_LEVEL,
+    INPUT_OPTIONS(VIEW_ARRAY, "Volume files"),
     [VIEW_SPACING] = INPUT_OPTION_SPACING,
-    [VIEW_DATA] =
-        {.name = "data",
-         .kind = OPTION_TEXT,
-         .argument = "FOLDER",
-         .group = "Running",
-         .help = "of the files that scenes call data:NAME (default:\n$HALFLIGHT_DATA, or ../shared/data)"},
-    [VIEW_MAX_MEMORY] =
-        {.name = "max-memory",
-         .kind = OPTION_BYTES,
-         .argument = "BYTES",
-         .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)"},
+    [VIEW_DATA] = HOST_OPTION_DATA("Running"),
+    [VIEW_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
     [VIEW_QUIET] = {.name = "quiet", .kind = OPTION_SWITCH, .help = "no progress bar, no warnings, no hints"},
 };
 
@@ -122,6 +108,7 @@ static hl_status name_absolutely(view_job *job, hl_scene **scene, hl_error *erro
     meshes[m] = d.meshes[m];
     good = make_absolute(&meshes[m].file, list);
   }
+  good = good && make_absolute(&d.sky.file, list);
   d.volumes = volumes;
   d.meshes = meshes;
   d.lights = lights;
