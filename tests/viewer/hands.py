@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 
 from PIL import Image
 
@@ -40,9 +41,7 @@ def equals_render(browser, name):
     subprocess.run([PROGRAM, "render", f"{name}/scene.json", "-o", f"{name}/picture.png", "--quiet"], check=True)
     with open(f"{name}/picture.png", "rb") as file:
         rendered = file.read()
-    shown = base64.b64decode(browser.run("""halflight.frames.finalPicture.arrayBuffer().then((b) =>
-      btoa(new Uint8Array(b).reduce((text, byte) => text + String.fromCharCode(byte), '')))"""))
-    check(shown == rendered, f"{name}: the final picture's bytes are not those of halflight render")
+    check(final_picture(browser) == rendered, f"{name}: the final picture's bytes are not those of halflight render")
     image = Image.open(io.BytesIO(rendered)).convert("RGBA")
     check(hashlib.sha256(image.tobytes()).hexdigest() == screen, f"{name}: the screen does not show the final picture's pixels")
 
@@ -54,7 +53,7 @@ def changes(browser, what, act, key):
     browser.wait(f"{STAGE} !== 'start'")
     after = scene_of(browser)
     check(rest(browser) != picture, f"{what}: the picture stays the same")
-    changed = {name for name in after if after[name] != before.get(name)}
+    changed = {name for name in {*before, *after} if after.get(name) != before.get(name)}
     check(changed == {key}, f"{what}: changes {changed}, not {key}")
 
 
@@ -64,10 +63,11 @@ def center(browser, selector):
       return [b.x + b.width / 2, b.y + b.height / 2]; }})()""")
 
 
-def set_control(browser, label, value, event="input"):
-    """Moves the slider, list or switch with this label as a hand would."""
+def set_control(browser, label, value, event="input", section=""):
+    """Moves the slider, list or switch with this label as a hand would; section: the title of the panel, where others have such a label too."""
     browser.run(f"""(() => {{
-      const label = [...document.querySelectorAll('aside label')].find((l) => l.textContent.trim() === {json.dumps(label)});
+      const label = [...document.querySelectorAll('aside label')].find((l) => l.textContent.trim() === {json.dumps(label)} &&
+        l.closest('details').querySelector('summary').textContent.includes({json.dumps(section)}));
       const control = document.getElementById(label.htmlFor);
       control.closest('details').open = true;
       if (control.type === 'checkbox' || control.type === 'radio') control.click();
@@ -78,3 +78,43 @@ def set_control(browser, label, value, event="input"):
 def press(browser, text):
     browser.run(f"""(() => {{ const b = [...document.querySelectorAll('button')].find((x) => x.textContent === {json.dumps(text)});
       if (b.closest('details')) b.closest('details').open = true; b.click(); }})()""")
+
+
+def press_named(browser, name):
+    """The button with this accessible name, or this text."""
+    browser.run(f"""[...document.querySelectorAll('button')].find((b) => (b.getAttribute('aria-label') ?? b.textContent) === {json.dumps(name)}).click()""")
+
+
+def open_section(browser, title):
+    browser.run(f"""[...document.querySelectorAll('details')].forEach((d) => {{
+      d.open = d.querySelector('summary').textContent === {json.dumps(title)}; }})""")
+    browser.wait("[...document.querySelectorAll('details')].some((d) => d.open)")
+
+
+def undone(browser, key, before, what):
+    """One undo brings the scene's part back as it was, one redo the change."""
+    after = scene_of(browser)[key]
+    changes(browser, f"{what}, undone", lambda: press_named(browser, "Undo"), key)
+    check(scene_of(browser)[key] == before, f"{what}: undo brings back what was")
+    changes(browser, f"{what}, redone", lambda: press_named(browser, "Redo"), key)
+    check(scene_of(browser)[key] == after, f"{what}: redo brings it again")
+
+
+def final_picture(browser):
+    """The bytes of the final picture."""
+    rest(browser)
+    return base64.b64decode(browser.run("""halflight.frames.finalPicture.arrayBuffer().then((b) =>
+      btoa(new Uint8Array(b).reduce((text, byte) => text + String.fromCharCode(byte), '')))"""))
+
+
+def copied_command(browser, title="picture"):
+    """The copied command makes the final picture, byte for byte. Returns the copied Python program."""
+    shown = final_picture(browser)
+    command, program = browser.run(f"""import('./export.js').then((m) =>
+      [m.commandLine(halflight.store.scene, {json.dumps(title)}), m.pythonProgram(halflight.store.scene, 'a"b.json')])""")
+    environment = dict(os.environ, PATH=f"{os.path.dirname(PROGRAM)}:{os.environ['PATH']}")
+    with tempfile.TemporaryDirectory(dir=".") as folder:
+        subprocess.run(["sh", "-eu", "-c", command], cwd=folder, check=True, env=environment, capture_output=True)
+        with open(f"{folder}/{title.removesuffix('.json')}.png", "rb") as file:
+            check(file.read() == shown, "the copied command makes the picture")
+    return program

@@ -60,7 +60,7 @@ def hands_on_the_light(browser):
     changes(browser, "ring drag", lambda: browser.drag([ring - 0.5, y], [ring + 24, y]), "lights")
     check(scene_of(browser)["lights"][0]["angular_diameter_deg"] > before + 5, "a wider ring is a larger light")
     changes(browser, "intensity", lambda: set_control(browser, "Intensity", 2.5), "lights")
-    changes(browser, "colour of the light", lambda: set_control(browser, "Colour", "#ff8040"), "lights")
+    changes(browser, "colour of the light", lambda: set_control(browser, "Colour", "#ff8040", section="Lights"), "lights")
     changes(browser, "hard shadows", lambda: set_control(browser, "Hard", ""), "render")
     changes(browser, "no shadows", lambda: set_control(browser, "Off", ""), "render")
     changes(browser, "soft shadows", lambda: set_control(browser, "Soft", ""), "render")

@@ -4,7 +4,6 @@
 usage: tools.py PROGRAM [FOLDER]
 FOLDER: where axe.min.js of axe-core may lie, which judges the page for screen readers; that part is left out without it.
 """
-import base64
 import glob
 import os
 import random
@@ -18,27 +17,19 @@ import numpy
 import checks
 from browser import Browser
 from checks import check
-from hands import PROGRAM, STAGE, center, changes, equals_render, rest, scene_of
+from hands import PROGRAM, STAGE, center, changes, copied_command, equals_render, final_picture, rest, scene_of
 from viewer import Viewer
 
 
 def exported_texts(browser):
     """The command and the Python program make the final picture, byte for byte."""
-    rest(browser)
-    shown = base64.b64decode(browser.run("""halflight.frames.finalPicture.arrayBuffer().then((b) =>
-      btoa(new Uint8Array(b).reduce((text, byte) => text + String.fromCharCode(byte), '')))"""))
-    command, program = browser.run("""import('./export.js').then((m) =>
-      [m.commandLine(halflight.store.scene, "it's; rm *.json"), m.pythonProgram(halflight.store.scene, 'a"b.json')])""")
+    program, shown = copied_command(browser, "it's; rm *.json"), final_picture(browser)
     folder = tempfile.mkdtemp(dir=".")
-    environment = dict(os.environ, PATH=f"{os.path.dirname(PROGRAM)}:{os.environ['PATH']}")
-    subprocess.run(["sh", "-eu", "-c", command], cwd=folder, check=True, env=environment, capture_output=True)
-    with open(f"{folder}/it's; rm *.png", "rb") as file:
-        check(file.read() == shown, "the copied command makes the picture")
     compile(program, "program", "exec")
     packages = glob.glob(f"{os.path.dirname(PROGRAM)}/../../python/stage/**/halflight", recursive=True)
     packages = [path for path in packages if os.path.exists(f"{path}/__init__.py")]
     if packages:  # the Python tests install it there
-        environment["PYTHONPATH"] = os.path.dirname(packages[0])
+        environment = dict(os.environ, PYTHONPATH=os.path.dirname(packages[0]))
         subprocess.run([sys.executable, "-c", program], cwd=folder, check=True, env=environment)
         with open(f"{folder}/a_b.png", "rb") as file:
             check(file.read() == shown, "the copied program makes the picture")

@@ -98,6 +98,24 @@ export function button(text, action, attributes = {}) {
   return make("button", { type: "button", onclick: action, ...attributes }, text);
 }
 
+// Numbered things of which one is chosen, and buttons that add and remove one. count(), chosen(): how many, and which.
+export function tabs({ label, noun, count, chosen, choose, add, remove }) {
+  const element = make("div", { class: "tabs", role: "tablist", "aria-label": label });
+  const more = button("+", add, { title: `Add: ${noun}`, "aria-label": `Add: ${noun}` });
+  const less = button("−", remove, { title: `Remove this ${noun}`, "aria-label": `Remove this ${noun}` });
+  element.append(more, less);
+  function update() {
+    while (element.childElementCount - 2 > count()) element.children[element.childElementCount - 3].remove();
+    while (element.childElementCount - 2 < count()) {
+      const n = element.childElementCount - 2;
+      more.before(button(`${n + 1}`, () => choose(n), { role: "tab", "aria-label": `${noun} ${n + 1}` }));
+    }
+    for (let n = 0; n < count(); n++) element.children[n].setAttribute("aria-selected", String(n === chosen()));
+    less.disabled = count() === 0;
+  }
+  return { element, update };
+}
+
 // A part of the side bar that folds. Returns { element, body }.
 export function section(title, open = true) {
   const body = make("div", { class: "section-body" });

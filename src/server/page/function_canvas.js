@@ -3,6 +3,7 @@
 
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
+import { blankContext, drawBars } from "./histogram.js";
 import { addPoint, addStop, colorAt, movePoint, moveStop, opacityAt, removePoint, removeStop } from "./transfer_function.js";
 
 const HEIGHT = 168, STRIP = 16, GAP = 8, MARGIN = 9; // pixels
@@ -157,30 +158,19 @@ export class FunctionCanvas {
   // ---- the drawing ----
 
   draw() {
-    const width = this.element.clientWidth, density = devicePixelRatio || 1;
-    if (width === 0) return;
-    this.#canvas.width = width * density;
-    this.#canvas.height = HEIGHT * density;
-    this.#canvas.style.height = `${HEIGHT}px`;
-    const context = this.#canvas.getContext("2d"), style = getComputedStyle(this.#canvas);
-    context.scale(density, density);
+    const context = blankContext(this.#canvas, this.element.clientWidth, HEIGHT), style = getComputedStyle(this.#canvas);
+    if (context === null) return;
     this.#drawBars(context, style);
     this.#drawLine(context, style);
     this.#drawStrip(context, style);
   }
 
   #drawBars(context, style) {
-    const { length } = this.#histogram, most = Math.log1p(Math.max(...this.#histogram));
-    const step = (this.#range[1] - this.#range[0]) / length, base = this.#y(0);
     context.fillStyle = style.getPropertyValue("--bars");
-    context.beginPath();
-    for (let bin = 0; bin < length && most > 0; bin++) {
-      const left = this.#x(this.#range[0] + bin * step), right = this.#x(this.#range[0] + (bin + 1) * step);
-      if (right < MARGIN || left > MARGIN + this.#width) continue;
-      const tall = (Math.log1p(this.#histogram[bin]) / most) * this.#plot * 0.92;
-      context.rect(left, base - tall, right - left + 0.3, tall);
-    }
-    context.fill();
+    drawBars(context, {
+      counts: this.#histogram, range: this.#range, x: (value) => this.#x(value), left: MARGIN, right: MARGIN + this.#width,
+      base: this.#y(0), height: 0.92 * this.#plot,
+    });
     context.strokeStyle = style.getPropertyValue("--grid");
     context.lineWidth = 1;
     context.beginPath();

@@ -86,6 +86,9 @@ export function functionPanel({ store, start, current, channel, report }) {
   }
 
   function build() {
+    element.hidden = !volume()?.transfer_function; // labels have colours and opacities of their own
+    parts = [];
+    if (element.hidden) return;
     const about = start.volumes[current.volume], range = about.range;
     const canvas = new FunctionCanvas({ get, set, histogram: about.histogram, range });
     const chosen = chosenPoint(canvas, get, set, range), ends = rangeRow(get, set);

@@ -50,6 +50,13 @@ export function withDirection(light, camera, direction) {
   return moved;
 }
 
+// A direction as directionOf() gives it, turned to the right and up by so many steps of some degrees.
+export function steppedDirection([right, up, towards], dx, dy, degrees) {
+  const azimuth = Math.atan2(right, towards) + dx * degrees * radians;
+  const elevation = Math.min(Math.max(Math.asin(Math.min(Math.max(up, -1), 1)) + dy * degrees * radians, -1.55), 1.55);
+  return [Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation), Math.cos(elevation) * Math.cos(azimuth)];
+}
+
 // Half of the light's width.
 function reach(light) {
   if (light.type === "rect") return Math.max(length(light.edge1), length(light.edge2)) / 2;

@@ -1,35 +1,11 @@
 // The panels of lights and shadows.
 
 import { hexOf, linearOf } from "./color.js";
-import { button, color, make, section, segments, select, slider, toggle } from "./controls.js";
+import { color, make, section, segments, select, slider, tabs, toggle } from "./controls.js";
 import { LARGEST_SIZE, newLight, sizeOf, withOtherFrame, withSize } from "./light.js";
 
 // Where a light's colour has been made so that its brightest part is 1: its strength is the intensity.
 const shown = (light) => light.color.map((c) => c / Math.max(...light.color, 1e-9));
-
-function tabs(store, current, changed) {
-  const element = make("div", { class: "tabs", role: "tablist", "aria-label": "Lights" });
-  const add = () => {
-    store.change("add light", (scene) => ({ ...scene, lights: [...scene.lights, newLight()] }));
-    changed(store.scene.lights.length - 1);
-  };
-  const remove = () => {
-    const index = current.light;
-    store.change("remove light", (scene) => ({ ...scene, lights: scene.lights.filter((_, l) => l !== index) }));
-    changed(Math.max(0, index - 1));
-  };
-  function update() {
-    const { lights } = store.scene;
-    element.replaceChildren(
-      ...lights.map((light, l) => make("button", {
-        type: "button", role: "tab", "aria-selected": String(l === current.light), onclick: () => changed(l),
-        "aria-label": `Light ${l + 1}`,
-      }, `${l + 1}`)),
-      button("+", add, { title: "Add a light", "aria-label": "Add a light" }),
-      button("−", remove, { title: "Remove this light", "aria-label": "Remove this light", disabled: lights.length === 0 }));
-  }
-  return { element, update };
-}
 
 export function lightPanel({ store, current, overlay }) {
   const { element, body } = section("Lights");
@@ -42,7 +18,16 @@ export function lightPanel({ store, current, overlay }) {
     overlay.draw();
   };
   overlay.onChooseLight = choose;
-  const list = tabs(store, current, choose);
+  const add = () => {
+    store.change("add light", (scene) => ({ ...scene, lights: [...scene.lights, newLight()] }));
+    choose(store.scene.lights.length - 1);
+  };
+  const remove = () => {
+    const index = current.light;
+    store.change("remove light", (scene) => ({ ...scene, lights: scene.lights.filter((_, l) => l !== index) }));
+    choose(Math.max(0, index - 1));
+  };
+  const list = tabs({ label: "Lights", noun: "light", count: () => store.scene.lights.length, chosen: () => current.light, choose, add, remove });
   const handles = toggle({
     label: "Handles in the picture", get: () => overlay.showsLights, set: (on) => { overlay.showsLights = on; },
   });

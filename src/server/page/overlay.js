@@ -5,7 +5,8 @@ import { corners, edges, placed, worldBox } from "./boxes.js";
 import { ClipHandles } from "./clip_handles.js";
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
-import { directionOf, sizeOf, withDirection, withSize } from "./light.js";
+import { directionOf, sizeOf, steppedDirection, withDirection, withSize } from "./light.js";
+import { SkyRing } from "./sky_ring.js";
 
 const MARKER = { size: 34, left: 64, bottom: 64 }; // pixels
 const BAR_WIDTH = 140; // pixels, at most
@@ -32,9 +33,11 @@ export class Overlay {
   #bar = make("svg:g", { class: "scale", "aria-hidden": "true" });
   #box = make("svg:path", { class: "clip-box", "aria-hidden": "true" });
   #clip;
+  #sky;
   #width = 1;
   #height = 1;
   #showBox = false;
+  #showSky = false;
   chosenLight = 0;
   onChooseLight = () => {};
 
@@ -44,7 +47,8 @@ export class Overlay {
     this.#store = store;
     this.#start = start;
     this.#clip = new ClipHandles(viewer);
-    svg.append(this.#box, this.#marker, this.#bar, this.#lights, this.#clip.element);
+    this.#sky = new SkyRing(store);
+    svg.append(this.#box, this.#marker, this.#bar, this.#sky.element, this.#lights, this.#clip.element);
     store.listen(() => this.draw());
     new ResizeObserver(() => this.draw()).observe(svg);
   }
@@ -61,6 +65,12 @@ export class Overlay {
     this.draw();
   }
 
+  // The horizon, and the handles of the sky.
+  set showsSky(shows) {
+    this.#showSky = shows;
+    this.draw();
+  }
+
   draw() {
     this.#width = this.#svg.clientWidth;
     this.#height = this.#svg.clientHeight;
@@ -68,7 +78,8 @@ export class Overlay {
     this.#drawMarker();
     this.#drawBar();
     this.#drawBox();
-    this.#clip.draw(this.#showBox, this.#width, this.#height);
+    this.#clip.draw(this.#showBox && this.#start.volumes.length > 0, this.#width, this.#height);
+    this.#sky.draw(this.#showSky, this.#sphere());
     this.#drawLights();
   }
 
@@ -204,11 +215,7 @@ export class Overlay {
     const light = this.#store.scene.lights[l], camera = this.#store.scene.camera;
     const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
     if (arrows[event.key]) {
-      const [right, up, towards] = directionOf(light, camera), [dx, dy] = arrows[event.key];
-      const step = (KEY_STEP * Math.PI) / 180;
-      const azimuth = Math.atan2(right, towards) + dx * step;
-      const elevation = Math.min(Math.max(Math.asin(Math.min(Math.max(up, -1), 1)) + dy * step, -1.55), 1.55);
-      const direction = [Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation), Math.cos(elevation) * Math.cos(azimuth)];
+      const direction = steppedDirection(directionOf(light, camera), ...arrows[event.key], KEY_STEP);
       this.#store.changeLight(l, "place", (changed) => withDirection(changed, camera, direction));
     } else if (event.key === "+" || event.key === "-") {
       this.resizeLight(l, sizeOf(light, camera) + (event.key === "+" ? 1 : -1));

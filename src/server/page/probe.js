@@ -1,5 +1,5 @@
-// The probe: what lies under the cursor. At rest three small pictures are asked for, as floats: of the data values in
-// place of colours, and of white matter without highlights, with and without shadows. A pixel of the first, divided by its opacity, is the
+// The probe: what of the volumes lies under the cursor. At rest three small pictures are asked for, as floats: of the data values in
+// place of colours, and of white matter without highlights, with and without shadows. Meshes are left out, but for their shadows; so is the sky. A pixel of the first, divided by its opacity, is the
 // mean value of what is seen there, weighted by how much each sample is seen; the ratio of the others is the part of
 // the lights that arrives there.
 
@@ -23,23 +23,35 @@ function small(scene) {
   };
 }
 
-const recolored = (scene, change) => ({
-  ...scene, volumes: scene.volumes.map((volume, v) => ({ ...volume, ...change(volume, v) })),
-});
+// The scene without sky and with unseen meshes, whose volumes have the colours colorAt(value, number of the volume).
+// tfColor(number): the rows of colours of a transfer function.
+function recolored({ sky: _, ...scene }, { colorAt, tfColor, change }) {
+  const paint = (things, v) => things.map((thing) => ({ ...thing, color: colorAt(thing.value, v) }));
+  const volumes = scene.volumes.map((volume, v) => ({
+    ...volume, ...change(volume),
+    ...(volume.transfer_function ? { transfer_function: { ...volume.transfer_function, color: tfColor(v) } } : {}),
+    ...(volume.labels ? { labels: paint(volume.labels, v) } : {}), ...(volume.iso ? { iso: paint(volume.iso, v) } : {}),
+  }));
+  return { ...scene, volumes, ...(scene.meshes ? { meshes: scene.meshes.map((mesh) => ({ ...mesh, visible: false })) } : {}) };
+}
 
-// Colours from 0 to 1 over each volume's range.
-export const valueScene = (scene, start) => recolored(small({ ...scene, render: { ...scene.render, shadows: "off" } }), (volume, v) => {
-  const [low, high] = start.volumes[v].range;
-  const color = high > low ? [[low, 0, 0, 0], [high, 1, 1, 1]] : [[low, 0, 0, 0]];
-  return { shading: "flat", transfer_function: { ...volume.transfer_function, color } };
-});
+// Colours from 0 to 1 over each volume's range, in even light.
+export function valueScene(scene, start) {
+  const ends = (v) => start.volumes[v].range;
+  return recolored({ ...small(scene), lights: [], ambient: [1, 1, 1] }, {
+    colorAt: (value, v) => Array(3).fill(ends(v)[1] > ends(v)[0] ? (value - ends(v)[0]) / (ends(v)[1] - ends(v)[0]) : 0),
+    tfColor: (v) => (ends(v)[1] > ends(v)[0] ? [[ends(v)[0], 0, 0, 0], [ends(v)[1], 1, 1, 1]] : [[ends(v)[0], 0, 0, 0]]),
+    change: () => ({ shading: "flat", material: { ambient: 1, diffuse: 0, specular: 0 }, scattering: {} }),
+  });
+}
 
-export const lightScene = (scene, shadows) => recolored({
-  ...small(scene), ambient: [0, 0, 0], lights: scene.lights.map((light) => ({ ...light, color: [1, 1, 1], ...(shadows ? {} : { shadows: "off" }) })),
-}, (volume) => ({
-  shading: volume.shading === "flat" ? "none" : volume.shading, material: { ...volume.material, specular: 0 },
-  transfer_function: { ...volume.transfer_function, color: [[0, 1, 1, 1]] },
-}));
+export function lightScene(scene, shadows) {
+  const lights = scene.lights.map((light) => ({ ...light, color: [1, 1, 1], ...(shadows ? {} : { shadows: "off" }) }));
+  return recolored({ ...small(scene), ambient: [0, 0, 0], lights }, {
+    colorAt: () => [1, 1, 1], tfColor: () => [[0, 1, 1, 1]],
+    change: (volume) => ({ shading: volume.shading === "flat" ? "none" : volume.shading, material: { ...volume.material, specular: 0, emission: 0 }, scattering: {} }),
+  });
+}
 
 export class Probe {
   #viewer;
@@ -92,8 +104,9 @@ export class Probe {
     if (this.#maps === null) return null;
     const { value, lit, unlit } = this.#maps, { width, height } = value;
     const at = 4 * (Math.min(Math.floor(y * height), height - 1) * width + Math.min(Math.floor(x * width), width - 1));
-    const opacity = value.rgba[at + 3], [low, high] = this.#viewer.start.volumes[this.#viewer.current.volume].range;
+    const opacity = value.rgba[at + 3];
     if (!(opacity > 0.002)) return { opacity, value: null, light: null };
+    const [low, high] = this.#viewer.start.volumes[this.#viewer.current.volume].range;
     return {
       opacity, value: low + (value.rgba[at] / opacity) * (high - low),
       light: unlit.rgba[at] > 1e-4 ? Math.min(lit.rgba[at] / unlit.rgba[at], 1) : null,

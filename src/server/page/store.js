@@ -22,7 +22,7 @@ export class Store {
   #last = { name: "", at: 0 };
 
   constructor(scene) {
-    this.scene = scene;
+    this.scene = { volumes: [], ...scene }; // a scene may be of meshes alone
   }
 
   // listener(scene, name) is called after every change.

@@ -4,19 +4,22 @@ import { copier, exportPanel } from "./export.js";
 import { filmPanel } from "./film_panel.js";
 import { Frames } from "./frames.js";
 import { functionPanel } from "./function_panel.js";
+import { labelPanel } from "./label_panel.js";
 import { lightPanel, shadowPanel } from "./light_panel.js";
 import { openPanel } from "./open_panel.js";
 import { Overlay } from "./overlay.js";
 import { Pointer } from "./pointer.js";
 import { Probe } from "./probe.js";
 import { helpSheet, installShortcuts } from "./shortcuts.js";
+import { skyPanel } from "./sky_panel.js";
 import { Store } from "./store.js";
+import { surfacePanel } from "./surface_panel.js";
 import { installTheme } from "./theme.js";
 import { viewPanel } from "./view_panel.js";
 import { volumePanel } from "./volume_panel.js";
 
 // One file each; in the order of the side bar.
-const PANELS = [functionPanel, lightPanel, shadowPanel, volumePanel, viewPanel, exportPanel, filmPanel, openPanel];
+const PANELS = [functionPanel, labelPanel, surfacePanel, lightPanel, shadowPanel, skyPanel, volumePanel, viewPanel, exportPanel, filmPanel, openPanel];
 
 const MARKUP = `
   <div class="viewer">

@@ -1,7 +1,8 @@
 // The panel of a volume: which one, its clip box, how it is shaded.
 
 import { worldBox } from "./boxes.js";
-import { button, make, row, section, segments, select, shortNumber, slider, toggle } from "./controls.js";
+import { hexOf, linearOf } from "./color.js";
+import { button, color, make, row, section, segments, select, shortNumber, slider, toggle } from "./controls.js";
 
 // Two sliders on one track: from where to where the volume is kept along an axis.
 function clipRow(axis, box, get, set) {
@@ -35,14 +36,36 @@ export function volumePanel({ store, start, current, overlay, chooseVolume }) {
   let parts = [];
 
   function materialSliders() {
-    const limits = [["ambient", "Ambient", 0, 2], ["diffuse", "Diffuse", 0, 2], ["specular", "Specular", 0, 2], ["shininess", "Shininess", 1, 200]];
+    const limits = [["ambient", "Ambient", 0, 2], ["diffuse", "Diffuse", 0, 2], ["specular", "Specular", 0, 2], ["shininess", "Shininess", 1, 200], ["emission", "Emission", 0, 4]];
     return limits.map(([key, label, low, high]) => slider({
       label, low, high, get: () => volume().material?.[key] ?? 0,
       set: (value) => change(key, (v) => ({ ...v, material: { ...v.material, [key]: value } })),
     }));
   }
 
+  // How much of the light a medium scatters, of which colour, and which way.
+  function scatteringParts() {
+    const scattering = () => volume().scattering ?? {}, albedo = () => scattering().albedo ?? [1, 1, 1];
+    const level = () => Math.max(...albedo()), tint = () => (level() > 0 ? albedo().map((c) => c / level()) : [1, 1, 1]);
+    const set = (name, part) => change(name, (v) => ({ ...v, scattering: { ...v.scattering, ...part } }));
+    const ofTint = (shade, most) => shade.map((c) => (most * c) / Math.max(...shade, 1e-9));
+    return [
+      toggle({ label: "Multiple scattering", get: () => scattering().multiple === true, set: (on) => set("multiple", { multiple: on }) }),
+      slider({
+        label: "Onwards", low: -0.95, high: 0.95, title: "Where a medium scatters light to: above 0 onwards, below 0 back, 0 evenly",
+        get: () => scattering().anisotropy ?? 0, set: (g) => set("anisotropy", { anisotropy: Math.abs(g) < 0.02 ? 0 : g }),
+      }),
+      slider({
+        label: "Albedo", low: 0, high: 1, title: "The fraction of light that a medium scatters; the rest is lost",
+        get: level, set: (most) => set("albedo", { albedo: ofTint(tint(), most) }),
+      }),
+      color({ label: "Tint", get: () => hexOf(tint()), set: (hex) => set("tint", { albedo: ofTint(linearOf(hex), level()) }) }),
+    ];
+  }
+
   function build() {
+    element.hidden = volume() === undefined;
+    if (element.hidden) return;
     const about = start.volumes[current.volume], box = worldBox(about);
     const clip = () => volume().clip ?? box;
     const rows = [0, 1, 2].map((axis) => clipRow(axis, box, clip, (changed, a) => change(`clip ${a}`, (v) => ({ ...v, clip: changed }))));
@@ -52,8 +75,7 @@ export function volumePanel({ store, start, current, overlay, chooseVolume }) {
       get: () => volume().shading ?? "phong", set: (value) => change("shading", (v) => ({ ...v, shading: value })),
     });
     const visible = toggle({ label: "Visible", get: () => volume().visible !== false, set: (on) => change("visible", (v) => ({ ...v, visible: on })) });
-    const multiple = toggle({ label: "Multiple scattering", get: () => volume().scattering?.multiple === true,
-      set: (on) => change("multiple", (v) => ({ ...v, scattering: { ...v.scattering, multiple: on } })) });
+    const scattering = scatteringParts();
     const casts = toggle({ label: "Casts shadows", get: () => volume().casts_shadow !== false, set: (on) => change("casts", (v) => ({ ...v, casts_shadow: on })) });
     const material = materialSliders();
     const facts = make("p", { class: "facts" }, `${about.dimensions.join(" × ")} voxels, ${about.type}, values ${about.range.map(shortNumber).join(" to ")}`);
@@ -61,10 +83,10 @@ export function volumePanel({ store, start, current, overlay, chooseVolume }) {
       label: "Volume", choices: store.scene.volumes.map((v, n) => [String(n), v.name ?? (v.file ?? "shapes").split("/").pop()]),
       get: () => String(current.volume), set: (n) => chooseVolume(+n),
     });
-    parts = [...rows, shading, multiple, visible, casts, ...material, chooser];
+    parts = [...rows, shading, ...scattering, visible, casts, ...material, chooser];
     const several = store.scene.volumes.length > 1 ? [chooser.element] : [];
-    body.replaceChildren(...several, facts, ...rows.map((r) => r.element), reset, shading.element, multiple.element,
-      ...material.map((m) => m.element), visible.element, casts.element);
+    body.replaceChildren(...several, facts, ...rows.map((r) => r.element), reset, shading.element,
+      ...[...material, ...scattering, visible, casts].map((part) => part.element));
     update();
   }
   const update = () => parts.forEach((part) => part.update());

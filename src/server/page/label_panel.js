@@ -1,0 +1,67 @@
+// The panel of a label map's labels: an eye, a colour, a name and an opacity each.
+
+import { hexOf, linearOf } from "./color.js";
+import { button, isActive, make, row, section } from "./controls.js";
+
+const MANY = 12; // labels, above which they can be searched
+
+const nameOf = (label) => label.name ?? `label ${label.value}`;
+
+// One label's row. get() gives the label; change(name, part) changes it; alone() hides all others.
+function labelRow({ get, change, alone }) {
+  const name = nameOf(get());
+  const eye = button("", () => change("eye", { visible: get().visible === false }), { class: "eye", "aria-label": `Show ${name}` });
+  const shade = make("input", { type: "color", "aria-label": `Colour of ${name}`, oninput: () => change("color", { color: linearOf(shade.value) }) });
+  const only = button(name, alone, { class: "file", title: `Show ${name} alone`, "aria-label": `Show ${name} alone` });
+  const opacity = make("input", {
+    type: "number", min: 0, max: 1, step: 0.1, "aria-label": `Opacity of ${name}`,
+    onchange: () => {
+      if (opacity.value !== "") change("opacity", { opacity: Math.min(Math.max(+opacity.value, 0), 1) });
+      update();
+    },
+  });
+  let drawn = null;
+  function update() {
+    const label = get();
+    if (label === drawn) return; // of hundreds of rows one changes
+    drawn = label;
+    eye.setAttribute("aria-pressed", String(label.visible !== false));
+    shade.value = hexOf(label.color);
+    if (!isActive(opacity)) opacity.value = +(label.opacity ?? 1).toFixed(3);
+  }
+  return { name, element: make("li", {}, eye, shade, only, opacity), update };
+}
+
+export function labelPanel({ store, current, report }) {
+  const { element, body } = section("Labels");
+  const labels = () => store.scene.volumes[current.volume]?.labels;
+  let rows = [];
+  const setAll = (name, change) => store.changeVolume(current.volume, `labels ${name}`, (v) => ({ ...v, labels: v.labels.map(change) }));
+
+  function change(index, name, part) {
+    const changed = labels().map((label, n) => (n === index ? { ...label, ...part } : label));
+    if (changed.some((label) => label.visible !== false)) setAll(`${index} ${name}`, (_, n) => changed[n]);
+    else report("One label has to show. Its name shows a label alone.");
+  }
+
+  function build() {
+    element.hidden = !labels();
+    rows = [];
+    if (element.hidden) return;
+    rows = labels().map((_, n) => labelRow({
+      get: () => labels()[n], change: (name, part) => change(n, name, part),
+      alone: () => setAll(`alone ${n}`, (label, m) => ({ ...label, visible: m === n })),
+    }));
+    const search = make("input", {
+      type: "search", "aria-label": "Search labels", placeholder: "search",
+      oninput: () => rows.forEach((one) => { one.element.hidden = !one.name.toLowerCase().includes(search.value.toLowerCase()); }),
+    });
+    const all = button("show all", () => setAll("all", (label) => ({ ...label, visible: true })));
+    body.replaceChildren(row("", make("span", { class: "pair" }, ...(rows.length > MANY ? [search] : []), all)),
+      make("ul", { class: "files labels" }, ...rows.map((one) => one.element)));
+    update();
+  }
+  const update = () => { if (!element.hidden) rows.forEach((one) => one.update()); };
+  build();
+  return { element, update, rebuild: build };
+}

@@ -1,0 +1,161 @@
+// The panel of a volume's isosurfaces: their values as lines over the histogram, their colours and opacities.
+
+import { hexOf, linearOf } from "./color.js";
+import { color, make, section, shortNumber, slider, tabs, toggle } from "./controls.js";
+import { blankContext, drawBars } from "./histogram.js";
+import { opacityAt, rangeOf } from "./transfer_function.js";
+
+const HEIGHT = 72, MARGIN = 9, GRIP = 10; // pixels
+const OUTWARDS = 0.6; // of the way from the last surface's value to what surrounds things: a further surface lies around it
+const PALETTE = ["#e8c39e", "#4fa3e0", "#d9534f", "#6cc070", "#c48be0", "#e0c04f"];
+
+// The lines over the histogram, which are dragged; the slider below does the same for the keyboard.
+function lines({ surfaces, chosen, choose, set, about }) {
+  const [low, high] = about.range[1] > about.range[0] ? about.range : [about.range[0] - 0.5, about.range[0] + 0.5];
+  const canvas = make("canvas", { class: "values", "aria-hidden": "true", onpointerdown: down });
+  const area = make("div", { class: "function-area" }, canvas);
+  const width = () => area.clientWidth - 2 * MARGIN;
+  const x = (value) => MARGIN + ((value - low) / (high - low)) * width();
+  const valueAt = (event) => {
+    const at = (event.clientX - canvas.getBoundingClientRect().left - MARGIN) / width();
+    return low + Math.min(Math.max(at, 0), 1) * (high - low);
+  };
+
+  function down(event) {
+    const value = valueAt(event), far = surfaces().map((surface) => Math.abs(x(surface.value) - x(value)));
+    const nearest = far.indexOf(Math.min(...far));
+    if (nearest < 0) return;
+    if (far[nearest] < GRIP) choose(nearest);
+    else set(value);
+    canvas.setPointerCapture(event.pointerId);
+    const move = (moved) => set(valueAt(moved));
+    canvas.addEventListener("pointermove", move);
+    for (const over of ["pointerup", "pointercancel"])
+      canvas.addEventListener(over, () => canvas.removeEventListener("pointermove", move), { once: true });
+  }
+
+  function update() {
+    const context = blankContext(canvas, area.clientWidth, HEIGHT);
+    if (context === null) return;
+    const style = getComputedStyle(canvas);
+    context.fillStyle = style.getPropertyValue("--bars");
+    drawBars(context, { counts: about.histogram, range: [low, high], x, left: MARGIN, right: MARGIN + width(), base: HEIGHT - 4, height: HEIGHT - 12 });
+    surfaces().forEach((surface, n) => {
+      context.fillStyle = hexOf(surface.color);
+      context.strokeStyle = style.getPropertyValue(n === chosen() ? "--accent" : "--line");
+      context.lineWidth = n === chosen() ? 2.5 : 1.5;
+      context.beginPath();
+      context.moveTo(x(surface.value), 8);
+      context.lineTo(x(surface.value), HEIGHT - 4);
+      context.stroke();
+      context.beginPath();
+      context.arc(x(surface.value), 9, 5, 0, 2 * Math.PI);
+      context.fill();
+      context.stroke();
+    });
+  }
+  new ResizeObserver(update).observe(area);
+  return { element: area, update };
+}
+
+// Where the first surface is looked for: the first value that the function makes half as opaque as any.
+function firstValue(tf, range) {
+  const most = Math.max(...tf.opacity.map((point) => point[1])), [low, high] = rangeOf(tf);
+  for (let n = 0; n <= 200 && most > 0; n++) {
+    const value = low + (n / 200) * (high - low);
+    if (opacityAt(tf, value) >= most / 2 && value > range[0] && value < range[1]) return value;
+  }
+  return (range[0] + range[1]) / 2;
+}
+
+const isClear = (tf) => tf.opacity.every((point) => point[1] === 0);
+const cleared = (tf) => ({ ...tf, opacity: tf.opacity.map(([value]) => [value, 0]) });
+
+// The middle of the fullest bin: mostly what surrounds things.
+function commonest({ histogram, range: [low, high] }) {
+  return low + ((histogram.indexOf(Math.max(...histogram)) + 0.5) / histogram.length) * (high - low);
+}
+
+export function surfacePanel({ store, start, current, report, channel }) {
+  const { element, body } = section("Isosurfaces", false);
+  const volume = () => store.scene.volumes[current.volume], about = () => start.volumes[current.volume];
+  const surfaces = () => volume().iso ?? [], surface = () => surfaces()[chosen];
+  const shown = new Map(); // by volume: the transfer function that "Surfaces alone" has hidden
+  let chosen = 0, parts = [];
+
+  const changeSurface = (name, part) => store.changeVolume(current.volume, `iso ${chosen} ${name}`, (v) => ({
+    ...v, iso: v.iso.map((one, n) => (n === chosen ? { ...one, ...part } : one)),
+  }));
+  const choose = (n) => { chosen = n; update(); };
+
+  function add() {
+    const last = surfaces().at(-1), tf = volume().transfer_function;
+    const value = last === undefined ? firstValue(tf, about().range) : last.value + OUTWARDS * (commonest(about()) - last.value);
+    const made = { value, color: linearOf(PALETTE[surfaces().length % PALETTE.length]), opacity: last === undefined ? 1 : 0.3 };
+    if (last === undefined && !isClear(tf)) shown.set(current.volume, tf);
+    store.changeVolume(current.volume, `iso add ${Math.random()}`, (v) => ({
+      ...v, iso: [...(v.iso ?? []), made], transfer_function: last === undefined ? cleared(tf) : tf,
+    }));
+    choose(surfaces().length - 1);
+  }
+
+  function remove() {
+    const gone = chosen, back = surfaces().length === 1 && isClear(volume().transfer_function) ? shown.get(current.volume) : undefined;
+    store.changeVolume(current.volume, `iso remove ${Math.random()}`, ({ iso, ...v }) => {
+      const rest = iso.filter((_, n) => n !== gone);
+      return { ...v, ...(back ? { transfer_function: back } : {}), ...(rest.length > 0 ? { iso: rest } : {}) };
+    });
+    choose(Math.max(0, gone - 1));
+  }
+
+  // Hides what else the volume shows, or brings it back; where it has come without any, as it is by default.
+  async function setAlone(alone) {
+    const tf = volume().transfer_function, { iso: _, transfer_function: __, ...bare } = volume(), index = current.volume;
+    const set = (wanted) => store.changeVolume(index, "iso alone", (v) => ({ ...v, transfer_function: wanted }));
+    if (alone) {
+      shown.set(index, tf);
+      set(cleared(tf));
+    } else if (shown.has(index)) set(shown.get(index));
+    else
+      try {
+        const volumes = store.scene.volumes.map((v, n) => (n === index ? bare : v));
+        set((await channel.completeScene({ ...store.scene, volumes })).volumes[index].transfer_function);
+      } catch (error) {
+        report(error.message);
+      }
+  }
+
+  const list = tabs({ label: "Isosurfaces", noun: "isosurface", count: () => surfaces().length, chosen: () => chosen, choose, add, remove });
+  function build() {
+    chosen = 0;
+    if (!volume()?.transfer_function || !about()) {
+      parts = [];
+      element.hidden = true;
+      return;
+    }
+    element.hidden = false;
+    const drawing = lines({ surfaces, chosen: () => chosen, choose, set: (value) => changeSurface("value", { value }), about: about() });
+    parts = [
+      slider({ label: "Value", low: about().range[0], high: about().range[1], get: () => surface().value, set: (value) => changeSurface("value", { value }) }),
+      color({ label: "Colour", get: () => hexOf(surface().color), set: (hex) => changeSurface("color", { color: linearOf(hex) }) }),
+      slider({ label: "Opacity", low: 0, high: 1, title: "The fraction of light that the surface stops", get: () => surface().opacity, set: (opacity) => changeSurface("opacity", { opacity }) }),
+      toggle({ label: "Surfaces alone", get: () => isClear(volume().transfer_function), set: setAlone }),
+      drawing,
+    ];
+    const none = make("p", { class: "facts" }, `+ adds the surface of one value, of ${about().range.map(shortNumber).join(" to ")}.`);
+    body.replaceChildren(list.element, none, drawing.element, ...parts.slice(0, 4).map((part) => part.element));
+    parts.unshift({ element: none, update: () => {} });
+    update();
+  }
+  function update() {
+    if (element.hidden) return;
+    chosen = Math.min(chosen, Math.max(surfaces().length - 1, 0));
+    list.update();
+    for (const [n, part] of parts.entries()) {
+      part.element.hidden = (surface() === undefined) !== (n === 0);
+      if (!part.element.hidden) part.update();
+    }
+  }
+  build();
+  return { element, update, rebuild: build };
+}

@@ -1,0 +1,186 @@
+#!/usr/bin/env python3
+"""The page's panels of sky, isosurfaces, scattering and labels in a headless Chromium: each control changes the picture at once, is
+undone, and leads to what `halflight render` makes of the exported scene.
+
+usage: panels.py PROGRAM
+"""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import checks
+from browser import Browser
+from checks import check
+from hands import (PROGRAM, center, changes, copied_command, equals_render, open_section, press_named, rest, scene_of, set_control,
+                   undone)
+from viewer import Viewer
+
+SIZE = (720, 420)  # of the window: the picture is small, and so quick
+
+
+def sky(browser):
+    open_section(browser, "Sky")
+    check(browser.run("document.querySelector('.sky-handle').getBoundingClientRect().width") == 0, "no sky, no ring")
+    changes(browser, "even sky", lambda: set_control(browser, "Even", "", section="Sky"), "sky")
+    first = scene_of(browser)["sky"]
+    changes(browser, "strength", lambda: set_control(browser, "Strength", 1.5, section="Sky"), "sky")
+    undone(browser, "sky", first, "strength")
+    changes(browser, "gradient", lambda: set_control(browser, "Gradient", "", section="Sky"), "sky")
+    changes(browser, "ground", lambda: set_control(browser, "Ground", "#ff2000", section="Sky"), "sky")
+    changes(browser, "horizon", lambda: set_control(browser, "Horizon", "#2040ff", section="Sky"), "sky")
+    changes(browser, "dark ground", lambda: set_control(browser, "Dark below the horizon", "", section="Sky"), "sky")
+    changes(browser, "up", lambda: set_control(browser, "Up", "+x", "change", section="Sky"), "sky")
+    check(scene_of(browser)["sky"]["up"] == [1, 0, 0], "up is the list's axis")
+    at = center(browser, ".sky-handle")
+    changes(browser, "zenith drag", lambda: browser.drag(at, [at[0] - 40, at[1] + 15]), "sky")
+    up = scene_of(browser)["sky"]["up"]
+    browser.run("document.querySelector('.sky-handle').focus()")
+    changes(browser, "zenith by keys", lambda: [browser.key("ArrowLeft") for _ in range(8)], "sky")
+    check(scene_of(browser)["sky"]["up"] != up and abs(sum(x * x for x in scene_of(browser)["sky"]["up"]) - 1) < 1e-12, "up is of length 1")
+    equals_render(browser, "sky")
+    changes(browser, "no sky", lambda: set_control(browser, "None", "", section="Sky"), "sky")
+    check("sky" not in scene_of(browser), "a scene without sky has no such key")
+
+
+def sky_image(browser):
+    """The rotation of an environment image by the slider, the ring and its keys."""
+    open_section(browser, "Sky")
+    changes(browser, "rotation", lambda: set_control(browser, "Rotation", 120, section="Sky"), "sky")
+    at = center(browser, ".sky-handle + .sky-handle")
+    changes(browser, "ring drag", lambda: browser.drag(at, [at[0] + 50, at[1]]), "sky")
+    turned = scene_of(browser)["sky"]["rotation_deg"]
+    check(turned != 120 and -180 <= turned <= 180, f"the ring turns the image: {turned}")
+    browser.run("document.querySelector('.sky-handle + .sky-handle').focus()")
+    changes(browser, "ring by keys", lambda: [browser.key("ArrowRight") for _ in range(5)], "sky")
+    check(abs((scene_of(browser)["sky"]["rotation_deg"] - turned) % 360 - 15) < 1e-9, "a key turns by three degrees")
+    changes(browser, "gradient instead", lambda: set_control(browser, "Gradient", "", section="Sky"), "sky")
+    changes(browser, "image again", lambda: set_control(browser, "Image", "", section="Sky"), "sky")
+    check(scene_of(browser)["sky"]["file"].endswith("sky.png"), "the image comes back")
+    equals_render(browser, "sky-image")
+
+
+def surfaces(browser):
+    open_section(browser, "Isosurfaces")
+    before = scene_of(browser)["volumes"]
+    changes(browser, "a first surface", lambda: press_named(browser, "Add: isosurface"), "volumes")
+    volume = scene_of(browser)["volumes"][0]
+    check(len(volume["iso"]) == 1 and all(point[1] == 0 for point in volume["transfer_function"]["opacity"]), "the surface stands alone")
+    probed(browser, volume["iso"][0]["value"])
+    changes(browser, "a second surface", lambda: press_named(browser, "Add: isosurface"), "volumes")
+    changes(browser, "opacity", lambda: set_control(browser, "Opacity", 0.7, section="Isosurfaces"), "volumes")
+    changes(browser, "colour", lambda: set_control(browser, "Colour", "#20c040", section="Isosurfaces"), "volumes")
+    browser.run("document.querySelector('canvas.values').scrollIntoView()")
+    at = browser.run("(({ x, y, width }) => [x + 0.3 * width, y + 40])(document.querySelector('canvas.values').getBoundingClientRect())")
+    value = scene_of(browser)["volumes"][0]["iso"][1]["value"]
+    changes(browser, "value on the histogram", lambda: browser.drag(at, [at[0] + 20, at[1]]), "volumes")
+    check(scene_of(browser)["volumes"][0]["iso"][1]["value"] > value, "the line is dragged")
+    changes(browser, "value", lambda: set_control(browser, "Value", 60, section="Isosurfaces"), "volumes")
+    equals_render(browser, "surfaces")
+    copied_command(browser)
+    changes(browser, "matter too", lambda: set_control(browser, "Surfaces alone", "", section="Isosurfaces"), "volumes")
+    check(scene_of(browser)["volumes"][0]["transfer_function"] == before[0]["transfer_function"], "the function comes back")
+    changes(browser, "surfaces alone", lambda: set_control(browser, "Surfaces alone", "", section="Isosurfaces"), "volumes")
+    changes(browser, "remove", lambda: press_named(browser, "Remove this isosurface"), "volumes")
+    changes(browser, "remove the last", lambda: press_named(browser, "Remove this isosurface"), "volumes")
+    check(scene_of(browser)["volumes"] == before, "what was there is there again")
+
+
+def scattering(browser):
+    open_section(browser, "Volume")
+    changes(browser, "a medium", lambda: set_control(browser, "Medium", "", section="Volume"), "volumes")
+    changes(browser, "onwards", lambda: set_control(browser, "Onwards", 0.6, section="Volume"), "volumes")
+    changes(browser, "albedo", lambda: set_control(browser, "Albedo", 0.5, section="Volume"), "volumes")
+    changes(browser, "tint", lambda: set_control(browser, "Tint", "#ff8080", section="Volume"), "volumes")
+    check(scene_of(browser)["volumes"][0]["scattering"]["albedo"][0] == 0.5, "the tint leaves the albedo")
+    changes(browser, "multiple", lambda: set_control(browser, "Multiple scattering", "", section="Volume"), "volumes")
+    changes(browser, "emission", lambda: set_control(browser, "Emission", 0.5, section="Volume"), "volumes")
+    equals_render(browser, "scattering")
+
+
+def labels(browser):
+    check(browser.run("![...document.querySelectorAll('summary')].some((s) => s.textContent === 'Transfer function' && s.checkVisibility())"),
+          "labels have no transfer function")
+    first = scene_of(browser)["volumes"]
+    changes(browser, "an eye", lambda: press_named(browser, "Show label 2"), "volumes")
+    undone(browser, "volumes", first, "an eye")
+    paint = "(() => { const c = document.querySelector('[aria-label=\"Colour of label 1\"]'); c.value = '#ff0000'; c.dispatchEvent(new Event('input')); })()"
+    changes(browser, "colour of a label", lambda: browser.run(paint), "volumes")
+    thin = "(() => { const c = document.querySelector('[aria-label=\"Opacity of label 1\"]'); c.value = 0.3; c.dispatchEvent(new Event('change')); })()"
+    changes(browser, "opacity of a label", lambda: browser.run(thin), "volumes")
+    changes(browser, "alone", lambda: press_named(browser, "Show label 2 alone"), "volumes")
+    shown = scene_of(browser)["volumes"]
+    press_named(browser, "Show label 2")
+    check(scene_of(browser)["volumes"] == shown, "one label stays")
+    equals_render(browser, "labels")
+    changes(browser, "all", lambda: press_named(browser, "show all"), "volumes")
+    probed(browser, 2)
+
+
+def probed(browser, *values):
+    """Where nothing is seen through, the probe finds each of these."""
+    browser.run("halflight.probe.on = true; 0")
+    rest(browser)
+    browser.wait("halflight.probe.at(0.5, 0.5) !== null")
+    found = browser.run("""Array.from({ length: 400 }, (_, n) => halflight.probe.at((n % 20) / 20, Math.floor(n / 20) / 20))
+      .filter((at) => at.opacity > 0.98).map((at) => at.value)""")
+    for value in values:
+        check(any(abs(one - value) < 0.01 for one in found), f"the probe finds no {value}: {found}")
+    browser.run("halflight.probe.on = false; 0")
+
+
+def meshes_alone(browser):
+    open_section(browser, "Sky")
+    changes(browser, "a sky over meshes", lambda: set_control(browser, "Even", "", section="Sky"), "sky")
+    equals_render(browser, "meshes")
+
+
+def write(name, voxels):
+    with open(name, "wb") as file:
+        file.write(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n\n" + bytes(voxels))
+
+
+def ball(x, y, z, radius):
+    return lambda at: (at[0] - x)**2 + (at[1] - y)**2 + (at[2] - z)**2 < radius**2
+
+
+def write_inputs():
+    """A soft ball, two labels, a sky image, and scenes of them."""
+    places = [(x, y, z) for z in range(16) for y in range(16) for x in range(16)]
+    write("soft.nrrd", [max(0, 200 - round(3.5 * ((x - 7.5)**2 + (y - 7.5)**2 + 1.5 * (z - 7.5)**2))) for x, y, z in places])
+    one, two = ball(5, 7, 7, 4), ball(11, 8, 8, 3)
+    write("labels.nrrd", [1 if one(at) else 2 if two(at) else 0 for at in places])
+    from PIL import Image
+    image = Image.new("RGB", (16, 8), (40, 40, 40))
+    image.paste((255, 200, 80), (2, 1, 7, 5))
+    image.save("sky.png")
+    quick = {"sheet_spacing": 1}
+    soft = {"file": "soft.nrrd", "transfer_function": {"opacity": [[60, 0], [150, 0.6]], "color": [0.7, 0.7, 0.7]}}
+    for name, scene in (("soft", {"volumes": [soft]}),
+                        ("image", {"volumes": [soft], "sky": {"type": "image", "file": "sky.png", "strength": 0.5}}),
+                        ("labels", {"volumes": [{"file": "labels.nrrd", "labels": True}]}),
+                        ("meshes", {"meshes": [{"spheres": [[0, 0, 0, 1]]}, {"floor": True}]})):
+        with open(f"{name}.json", "w") as file:
+            json.dump({"halflight": 1, "render": quick, **scene}, file)
+
+
+chromium = shutil.which("chromium")
+if chromium is None:
+    print("chromium is not installed")
+    sys.exit(77)
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    if subprocess.run([PROGRAM, "view", "none.nrrd", "--no-browser"], capture_output=True, check=False).returncode == 4:
+        print("built without the viewer")
+        sys.exit(77)
+    write_inputs()
+    for scene, parts in (("soft", (sky, surfaces, scattering)), ("image", (sky_image,)), ("labels", (labels,)), ("meshes", (meshes_alone,))):
+        with Viewer(PROGRAM, f"{scene}.json") as viewer, Browser(chromium, SIZE) as browser:
+            browser.open(viewer.url)
+            rest(browser)
+            for part in parts:
+                part(browser)
+            check(browser.problems == [], f"{scene}: the console has errors: {browser.problems}")
+    print(f"{checks.count} checks passed")
