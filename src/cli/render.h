@@ -127,10 +127,16 @@ bool render_is_maximum(const cli_value *values, const hl_scene_description *desc
 /* Where the picture is made without light, warns of options that concern light, and returns true. */
 bool render_warn_of_no_light(const cli_value *values, const hl_scene_description *description);
 
-/* The transfer function of volume number `index` with --tf, --range, --threshold and --colormap applied. Its
- * points are owned by the caller, after a failure too (render_release_function). Returns the exit code. */
+/* The colour that --look mip gives volume number `index` among several bare ones, so that channels differ;
+ * null: none, as the volume is alone or has a --tf. */
+const char *render_channel_color(const cli_value *values, const hl_scene_description *description,
+                                 size_t index);
+
+/* The transfer function of volume number `index` with --tf, --range, --threshold and --colormap applied, or
+ * `color` where no --colormap is for this volume and color is not null. Its points are owned by the caller,
+ * after a failure too (render_release_function). Returns the exit code. */
 int render_transfer_function(cli_host *host, const cli_value *values, const hl_scene_description *description,
-                             size_t index, hl_transfer_function *function);
+                             size_t index, const char *color, hl_transfer_function *function);
 void render_release_function(hl_transfer_function *function);
 
 /* The name of a volume in --tf NAME=... and --colormap NAME=...: its name in the scene, else its file's

@@ -261,11 +261,38 @@ bool render_recolors(const cli_value *values) {
          values[RENDER_THRESHOLD].given;
 }
 
+/* ---- looks ---- */
+
+enum { LOOK_AUTO, LOOK_SURFACE, LOOK_TRANSLUCENT, LOOK_XRAY, LOOK_SMOKE, LOOK_VESSELS, LOOK_MIP };
+
+/* The library's looks, and the maximum projection. */
+const cli_choice look_choices[] = {{"auto", LOOK_AUTO},
+                                   {"surface", LOOK_SURFACE},
+                                   {"translucent", LOOK_TRANSLUCENT},
+                                   {"xray", LOOK_XRAY},
+                                   {"smoke", LOOK_SMOKE},
+                                   {"vessels", LOOK_VESSELS},
+                                   {"mip", LOOK_MIP},
+                                   {NULL, 0}};
+
+static bool is_mip(const cli_value *values) {
+  return values[RENDER_LOOK].given && values[RENDER_LOOK].choice == LOOK_MIP;
+}
+
+const char *render_channel_color(const cli_value *values, const hl_scene_description *description,
+                                 size_t index) {
+  static const char *const colors[] = {"#00ff00", "#ff00ff", "#00ffff", "#ffff00", "#ff4000", "#4060ff"};
+  const hl_scene_volume *volume = &description->volumes[index];
+  bool alone = description->volume_count < 2, named = said_of(&values[RENDER_TF], volume, index) != NULL;
+  return alone || named || !is_mip(values) ? NULL : colors[index % (sizeof colors / sizeof *colors)];
+}
+
 int render_transfer_function(cli_host *host, const cli_value *values, const hl_scene_description *description,
-                             size_t index, hl_transfer_function *function) {
+                             size_t index, const char *color, hl_transfer_function *function) {
   const hl_scene_volume *volume = &description->volumes[index];
   const char *named = said_of(&values[RENDER_TF], volume, index);
   const char *colormap = said_of(&values[RENDER_COLORMAP], volume, index);
+  if (colormap == NULL) colormap = color;
   int exit_code = copy_function(&volume->transfer_function, function);
   if (exit_code == EXIT_CODE_OK && named != NULL) {
     hl_transfer_function loaded = {0};
@@ -285,24 +312,6 @@ int render_transfer_function(cli_host *host, const cli_value *values, const hl_s
                               values[RENDER_RANGE].given ? values[RENDER_RANGE].number : NULL,
                               render_is_maximum(values, description), function);
   return exit_code;
-}
-
-/* ---- looks ---- */
-
-enum { LOOK_AUTO, LOOK_SURFACE, LOOK_TRANSLUCENT, LOOK_XRAY, LOOK_SMOKE, LOOK_VESSELS, LOOK_MIP };
-
-/* The library's looks, and the maximum projection. */
-const cli_choice look_choices[] = {{"auto", LOOK_AUTO},
-                                   {"surface", LOOK_SURFACE},
-                                   {"translucent", LOOK_TRANSLUCENT},
-                                   {"xray", LOOK_XRAY},
-                                   {"smoke", LOOK_SMOKE},
-                                   {"vessels", LOOK_VESSELS},
-                                   {"mip", LOOK_MIP},
-                                   {NULL, 0}};
-
-static bool is_mip(const cli_value *values) {
-  return values[RENDER_LOOK].given && values[RENDER_LOOK].choice == LOOK_MIP;
 }
 
 const char *render_look_name(const cli_value *values) {

@@ -1,6 +1,7 @@
 /* cli/render_report.c - statistics of a finished rendering. */
 #define _GNU_SOURCE
 #include <stdio.h>
+#include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -114,7 +115,12 @@ void render_print_summary(const render_result *result) {
   say("%s: %dx%d, %s, %s, %.3g s (load %.3g, prepare %.3g, render %.3g, write %.3g)", result->output,
       description->width, description->height, light, sheets, seconds->total, seconds->load, seconds->prepare,
       seconds->render, seconds->write);
-  if (result->taken_for != NULL && isatty(STDERR_FILENO))
+  if (result->taken_for == NULL || !isatty(STDERR_FILENO)) return;
+  if (strcmp(result->taken_for, "labels") == 0)
+    say("%s: taken for labels, and drawn by value, with thin bands where one label blends into another: "
+        "'halflight render --labels FILE' draws each label by itself",
+        result->input);
+  else
     say("%s: taken for %s; the transfer function was chosen from this file alone: --print-scene writes it "
         "down, for --tf",
         result->input, result->taken_for);

@@ -138,3 +138,20 @@ const char *scene_setting_of(const char *word) {
     if (has_word(settings[n].words, word)) return settings[n].json;
   return NULL;
 }
+
+/* words: separated by blanks, in lower case */
+static const struct {
+  const char *advice, *words;
+} absent[] = {
+    {"pictures have no colour bar: 'halflight help colormaps' lists the maps, --range sets their ends",
+     "colorbar color-bar colourbar colour-bar legend scalar-bar scalarbar"},
+    {"nothing is written into pictures: with --ortho all lengths have one scale, to draw beside them",
+     "scalebar scale-bar ruler axes axis annotate annotation title caption"},
+};
+
+const char *advice_for_absent(const char *word) {
+  if (word[0] == '\0' || strchr(word, ' ') != NULL) return NULL;
+  for (size_t n = 0; n < sizeof absent / sizeof *absent; n++)
+    if (has_word(absent[n].words, word)) return absent[n].advice;
+  return NULL;
+}
