@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "commands.h"
 #include "message.h"
@@ -29,6 +30,11 @@ static const cli_command *find_command(const char *name) {
 static int refuse_command(const char *name) {
   const char *meant = nearest_name(name, command_name, NULL);
   if (meant != NULL) return fail(EXIT_CODE_USAGE, "unknown command '%s': did you mean '%s'?", name, meant);
+  if (access(name, F_OK) == 0)
+    return fail(EXIT_CODE_USAGE,
+                "a command is missing before '%s': 'halflight view %s' shows it, 'halflight render %s' makes "
+                "a picture",
+                name, name, name);
   return fail(EXIT_CODE_USAGE, "unknown command '%s': see 'halflight --help'", name);
 }
 

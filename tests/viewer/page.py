@@ -30,7 +30,10 @@ def hands_on_the_camera(browser):
     changes(browser, "wheel", lambda: browser.wheel(*at, -200), "camera")
     check(browser.run(distance) < far, "the wheel turned forwards comes nearer")
     changes(browser, "right drag", lambda: browser.drag(at, [at[0], at[1] + 40], button="right"), "camera")
+    # The fill light from the eye, which has a handle in the very middle once it is chosen, is not in the way.
+    changes(browser, "left drag from the middle", lambda: browser.drag([x, y], to), "camera")
     browser.run("document.getElementById('view').focus()")
+    changes(browser, "the first view", lambda: browser.key("Home"), "camera")
     changes(browser, "arrow key", lambda: browser.key("ArrowLeft"), "camera")
     changes(browser, "parallel projection", lambda: set_control(browser, "Parallel", ""), "camera")
     changes(browser, "frame everything", lambda: press(browser, "Frame") or browser.wait(f"{STAGE} === 'moving'"), "camera")

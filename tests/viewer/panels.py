@@ -14,7 +14,7 @@ import tempfile
 import checks
 from browser import Browser
 from checks import check
-from hands import (PROGRAM, center, changes, copied_command, equals_render, open_section, press_named, rest, scene_of, set_control,
+from hands import (PROGRAM, STAGE, center, changes, copied_command, equals_render, open_section, press_named, rest, scene_of, set_control,
                    undone)
 from viewer import Viewer
 
@@ -119,6 +119,19 @@ def labels(browser):
     probed(browser, 2)
 
 
+def as_labels(browser):
+    """A volume of numbers of things is shown as labels, and no longer when that is undone."""
+    before = scene_of(browser)["volumes"]
+    changes(browser, "as labels", lambda: press_named(browser, "show as labels") or browser.wait(f"{STAGE} === 'moving'"), "volumes")
+    check([label["value"] for label in scene_of(browser)["volumes"][0]["labels"]] == [1, 2], "both labels are there")
+    press_named(browser, "Show label 2")
+    equals_render(browser, "as-labels")
+    browser.run("halflight.store.undo(); halflight.store.undo(); 0")
+    check(scene_of(browser)["volumes"] == before, "both steps are undone")
+    check(browser.run("[...document.querySelectorAll('summary')].filter((s) => s.checkVisibility()).map((s) => s.textContent)")[0] == "Transfer function",
+          "the transfer function is back")
+
+
 def probed(browser, *values):
     """Where nothing is seen through, the probe finds each of these."""
     browser.run("halflight.probe.on = true; 0")
@@ -161,6 +174,7 @@ def write_inputs():
     for name, scene in (("soft", {"volumes": [soft]}),
                         ("image", {"volumes": [soft], "sky": {"type": "image", "file": "sky.png", "strength": 0.5}}),
                         ("labels", {"volumes": [{"file": "labels.nrrd", "labels": True}]}),
+                        ("numbers", {"volumes": [{"file": "labels.nrrd"}]}),
                         ("meshes", {"meshes": [{"spheres": [[0, 0, 0, 1]]}, {"floor": True}]})):
         with open(f"{name}.json", "w") as file:
             json.dump({"halflight": 1, "render": quick, **scene}, file)
@@ -176,7 +190,8 @@ with tempfile.TemporaryDirectory() as folder:
         print("built without the viewer")
         sys.exit(77)
     write_inputs()
-    for scene, parts in (("soft", (sky, surfaces, scattering)), ("image", (sky_image,)), ("labels", (labels,)), ("meshes", (meshes_alone,))):
+    for scene, parts in (("soft", (sky, surfaces, scattering)), ("image", (sky_image,)), ("labels", (labels,)), ("numbers", (as_labels,)),
+                         ("meshes", (meshes_alone,))):
         with Viewer(PROGRAM, f"{scene}.json") as viewer, Browser(chromium, SIZE) as browser:
             browser.open(viewer.url)
             rest(browser)

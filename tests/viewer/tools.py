@@ -111,7 +111,7 @@ def keyboard_only(browser):
           return e.id || e.getAttribute('aria-label') || e.getAttribute('class') || e.tagName; })()"""))
     # Of a group of choices Tab reaches the chosen one, arrow keys the others; the lights' handles are one each.
     missed = browser.run("""[...document.querySelectorAll('button, select, input, canvas[tabindex], summary, #view, .light, .clip-handle')].filter((e) =>
-      !e.dataset.reached && !e.disabled && e.type !== 'radio' && e.checkVisibility() && !e.closest('dialog')).map((e) => e.outerHTML.slice(0, 90))""")
+      !e.dataset.reached && !e.disabled && e.type !== 'radio' && e.getBoundingClientRect().width > 0 && !e.closest('dialog')).map((e) => e.outerHTML.slice(0, 90))""")
     check(missed == [], f"Tab does not reach {missed}")
     check("function" in reached or any("Opacity over values" in one for one in reached), "the drawing is reached")
 
@@ -139,7 +139,7 @@ def random_hands(browser, viewer, count=500):
             at = [box[0] + chance.random() * box[2], box[1] + chance.random() * box[3]]
             browser.drag(at, [at[0] + chance.randint(-60, 60), at[1] + chance.randint(-40, 40)], 3)
         else:
-            browser.run(f"""(() => {{ const all = {controls}.filter((e) => !/picture|scene|command|Python|film|pen/.test(e.textContent));
+            browser.run(f"""(() => {{ const all = {controls}.filter((e) => !/picture|scene|command|Python|film|pen/.test(e.textContent) && !e.closest('[hidden]'));
               const e = all[{chance.randrange(10**6)} % all.length];
               if (e.tagName === 'BUTTON' || e.type === 'checkbox' || e.type === 'radio') e.click();
               else if (e.tagName === 'SELECT') {{ e.selectedIndex = {chance.randrange(10**6)} % e.length; e.dispatchEvent(new Event('change')); }}

@@ -111,9 +111,12 @@ export function functionPanel({ store, start, current, channel, report }) {
       button("range", () => { canvas.shown = rangeOf(get()); })));
     body.replaceChildren(canvas.element, chosen.element, density.element, maps.element, presets.element, ends.element, zoomed);
     parts = [{ update: () => canvas.draw() }, chosen, density, ends];
-    update();
+    parts.forEach((part) => part.update());
   }
-  const update = () => parts.forEach((part) => part.update());
+  const update = () => {
+    if (element.hidden !== !volume()?.transfer_function) build();
+    else parts.forEach((part) => part.update());
+  };
   build();
   return { element, update, rebuild: build };
 }

@@ -59,9 +59,12 @@ export function labelPanel({ store, current, report }) {
     const all = button("show all", () => setAll("all", (label) => ({ ...label, visible: true })));
     body.replaceChildren(row("", make("span", { class: "pair" }, ...(rows.length > MANY ? [search] : []), all)),
       make("ul", { class: "files labels" }, ...rows.map((one) => one.element)));
-    update();
+    rows.forEach((one) => one.update());
   }
-  const update = () => { if (!element.hidden) rows.forEach((one) => one.update()); };
+  const update = () => {
+    if (rows.length !== (labels()?.length ?? 0)) build();
+    else rows.forEach((one) => one.update());
+  };
   build();
   return { element, update, rebuild: build };
 }

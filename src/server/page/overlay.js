@@ -147,6 +147,8 @@ export class Overlay {
     const [right, up, towards] = directionOf(light, camera), size = sizeOf(light, camera);
     const [ring, dot] = handle.children;
     handle.setAttribute("transform", `translate(${sphere.x + right * sphere.radius} ${sphere.y - up * sphere.radius})`);
+    // A light that fills in, from where the eye is, would be in the way of the hand that turns.
+    handle.toggleAttribute("hidden", light.shadows === "off" && l !== this.chosenLight);
     handle.setAttribute("class", `light${towards < 0 ? " behind" : ""}${l === this.chosenLight ? " chosen" : ""}`);
     handle.setAttribute("aria-valuetext",
       `${Math.round((Math.atan2(right, towards) * 180) / Math.PI)} degrees right, ` +

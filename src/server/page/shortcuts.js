@@ -30,6 +30,7 @@ export function installShortcuts(store, keyboard, area, actions) {
     ["z", "z", "look along z (Z: from the other end)", move((c) => lookAlong(c, 2, 1))],
     ["Z", "", "", move((c) => lookAlong(c, 2, -1))],
     ["r", "r", "frame everything", actions.reset],
+    ["Home", "Home", "the first view", actions.home],
     ["l", "l", "show the lights' handles", actions.lights],
     ["s", "s", "next kind of shadows: off, hard, soft", actions.shadows],
     ["u", "u", "undo (ctrl + z)", () => store.undo()],

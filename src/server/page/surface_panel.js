@@ -148,6 +148,7 @@ export function surfacePanel({ store, start, current, report, channel }) {
     update();
   }
   function update() {
+    if (element.hidden !== !volume()?.transfer_function) build();
     if (element.hidden) return;
     chosen = Math.min(chosen, Math.max(surfaces().length - 1, 0));
     list.update();

@@ -4,7 +4,7 @@ import { lookAlong, withType } from "./camera.js";
 import { hexOf, linearOf } from "./color.js";
 import { button, color, make, row, section, segments, slider } from "./controls.js";
 
-export function viewPanel({ store, frameEverything }) {
+export function viewPanel({ store, frameEverything, firstView }) {
   const { element, body } = section("View", false);
   const look = (axis, sign) => store.setCamera(lookAlong(store.scene.camera, axis, sign));
   const sides = make("span", { class: "buttons" }, ...[0, 1, 2].flatMap((axis) => [1, -1].map((sign) =>
@@ -26,7 +26,7 @@ export function viewPanel({ store, frameEverything }) {
     set: (name) => store.change("tone", (scene) => ({ ...scene, image: { ...scene.image, tone: name } })),
   });
   body.append(row(make("span", { class: "name" }, "From"), sides),
-    row("", button("frame everything", frameEverything)), projection.element, background.element, exposure.element,
+    row("", make("span", { class: "buttons" }, button("frame everything", frameEverything), button("first view", firstView))), projection.element, background.element, exposure.element,
     tone.element);
   const update = () => { for (const part of [projection, background, exposure, tone]) part.update(); };
   update();

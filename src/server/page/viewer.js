@@ -53,16 +53,16 @@ const MARKUP = `
   </div>`;
 
 const MOST_SIDE = 4096; // pixels of the picture
-const MESSAGE_TIME = 5000; // milliseconds
+const MESSAGE_TIME = 5000, GREETING_TIME = 60000; // milliseconds
 
-// Returns the function that shows a line over the picture for a while.
+// Returns the function that shows a line over the picture for a while, in milliseconds.
 function messageBox(box) {
   let timer = 0;
-  return (text) => {
+  return (text, time = MESSAGE_TIME) => {
     box.textContent = text;
     box.hidden = false;
     clearTimeout(timer);
-    timer = setTimeout(() => { box.hidden = true; }, MESSAGE_TIME);
+    timer = setTimeout(() => { box.hidden = true; }, time);
   };
 }
 
@@ -115,6 +115,7 @@ function actionsOf(viewer, find, root, update) {
   const { store, overlay } = viewer;
   return {
     reset: viewer.frameEverything,
+    home: viewer.firstView,
     lights: () => { overlay.showsLights = !overlay.showsLights; update(); },
     shadows: () => {
       const kinds = ["off", "hard", "soft"];
@@ -143,6 +144,7 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
   find("title").textContent = start.title;
   followSize(store, find("view"), ended.signal);
   viewer.overlay = new Overlay(find("overlay"), viewer);
+  viewer.firstView = () => store.setCamera(start.scene.camera);
   viewer.frameEverything = () => frameEverything(viewer);
   viewer.chooseVolume = (index) => {
     viewer.current.volume = index;
@@ -169,6 +171,7 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
   viewer.overlay.showsLights = true;
   update();
   frames.move();
-  report("Drag to turn. Drag the white dot to move the light. ? lists the rest.");
+  report("Drag to turn. Drag the ringed dot to move the light, its ring to soften shadows. ? lists the rest.", GREETING_TIME);
+  store.listen((_, name) => { if (name !== "size" && find("message").textContent.startsWith("Drag")) find("message").hidden = true; });
   return { store, frames, overlay: viewer.overlay, probe: viewer.probe, end: () => { ended.abort(); frames.end(); } };
 }

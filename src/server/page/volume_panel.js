@@ -29,7 +29,7 @@ function clipRow(axis, box, get, set) {
   return { element: row(make("span", { class: `name axis-name axis-${axis}` }, `Clip ${name}`), track, text), update };
 }
 
-export function volumePanel({ store, start, current, overlay, chooseVolume }) {
+export function volumePanel({ store, start, current, overlay, chooseVolume, channel, report }) {
   const { element, body } = section("Volume", false);
   const volume = () => store.scene.volumes[current.volume];
   const change = (name, set) => store.changeVolume(current.volume, name, set);
@@ -63,6 +63,18 @@ export function volumePanel({ store, start, current, overlay, chooseVolume }) {
     ];
   }
 
+  // Numbers of things in place of amounts: each gets a smooth surface, its name and its colour.
+  async function showLabels() {
+    const { transfer_function: _, iso: __, shading: ___, ...bare } = volume(), index = current.volume;
+    const volumes = store.scene.volumes.map((v, n) => (n === index ? { ...bare, labels: true } : v));
+    try {
+      const complete = await channel.completeScene({ ...store.scene, volumes });
+      store.changeVolume(index, "labels", () => complete.volumes[index]);
+    } catch (error) {
+      report(error.message);
+    }
+  }
+
   function build() {
     element.hidden = volume() === undefined;
     if (element.hidden) return;
@@ -76,6 +88,8 @@ export function volumePanel({ store, start, current, overlay, chooseVolume }) {
     });
     const visible = toggle({ label: "Visible", get: () => volume().visible !== false, set: (on) => change("visible", (v) => ({ ...v, visible: on })) });
     const scattering = scatteringParts();
+    const asLabels = row("", button("show as labels", showLabels, { title: "Where voxels are numbers of things" }));
+    const labelled = { element: asLabels, update: () => { asLabels.hidden = volume().labels !== undefined || about.type.startsWith("float"); } };
     const casts = toggle({ label: "Casts shadows", get: () => volume().casts_shadow !== false, set: (on) => change("casts", (v) => ({ ...v, casts_shadow: on })) });
     const material = materialSliders();
     const facts = make("p", { class: "facts" }, `${about.dimensions.join(" × ")} voxels, ${about.type}, values ${about.range.map(shortNumber).join(" to ")}`);
@@ -83,9 +97,9 @@ export function volumePanel({ store, start, current, overlay, chooseVolume }) {
       label: "Volume", choices: store.scene.volumes.map((v, n) => [String(n), v.name ?? (v.file ?? "shapes").split("/").pop()]),
       get: () => String(current.volume), set: (n) => chooseVolume(+n),
     });
-    parts = [...rows, shading, ...scattering, visible, casts, ...material, chooser];
+    parts = [...rows, labelled, shading, ...scattering, visible, casts, ...material, chooser];
     const several = store.scene.volumes.length > 1 ? [chooser.element] : [];
-    body.replaceChildren(...several, facts, ...rows.map((r) => r.element), reset, shading.element,
+    body.replaceChildren(...several, facts, ...rows.map((r) => r.element), reset, labelled.element, shading.element,
       ...[...material, ...scattering, visible, casts].map((part) => part.element));
     update();
   }

@@ -1,0 +1,2 @@
+touch scene.json
+halflight scene.json
