@@ -16,6 +16,8 @@ extern "Python" int python_wants_stop(void);
 extern "Python" int python_progress(const char *stage, double fraction);
 extern "Python" void python_log(int level, const char *message);
 extern "Python" void python_array_released(uintptr_t key);
+extern "Python" hl_status python_convert(const char *path, const void **bytes, size_t *byte_count, hl_error *error);
+extern "Python" void python_converted(const void *bytes);
 """
 
 

@@ -1,4 +1,5 @@
 /* python/native.c - callbacks of the context, which are C as long as possible (python/native.h). */
+#include <string.h>
 #include <time.h>
 
 #include <halflight/halflight.h>
@@ -10,6 +11,8 @@ static int python_wants_stop(void);
 static int python_progress(const char *stage, double fraction);
 static void python_log(int level, const char *message);
 static void python_array_released(uintptr_t key);
+static hl_status python_convert(const char *path, const void **bytes, size_t *byte_count, hl_error *error);
+static void python_converted(const void *bytes);
 
 /* Between two questions to Python: Ctrl-C is answered as soon as a person can tell. */
 static const double SECONDS_BETWEEN_QUESTIONS = 0.05;
@@ -54,12 +57,26 @@ static void on_log(void *user_data, hl_log_level level, const char *message) {
   python_log((int)level, message);
 }
 
+static hl_status on_convert(void *user_data, const char *format, const char *path, const void **bytes,
+                            size_t *byte_count, hl_error *error) {
+  (void)user_data;
+  if (strcmp(format, "OpenVDB") != 0) return HL_ERROR_UNSUPPORTED;
+  return python_convert(path, bytes, byte_count, error);
+}
+
+static void on_converted(void *user_data, const void *bytes, size_t byte_count) {
+  (void)user_data, (void)byte_count;
+  python_converted(bytes);
+}
+
 hl_status python_context_create(hl_context **context, hl_error *error) {
   hl_context_options options;
   hl_context_options_defaults(&options);
   options.cancelled = on_cancelled;
   options.progress = on_progress;
   options.log = on_log;
+  options.convert = on_convert;
+  options.converted = on_converted;
   return hl_context_create(&options, context, error);
 }
 

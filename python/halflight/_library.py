@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from . import _native
+from . import _native, _openvdb
 from .errors import HalflightWarning, InputError, UnsupportedError
 
 ffi = _native.ffi
@@ -35,6 +35,7 @@ class _Calls(threading.local):
 
 _calls = _Calls()
 _lent: dict[int, object] = {}  # arrays that volumes borrow, by the number that the library gives back
+_converted: dict[int, object] = {}  # what the library reads of converted files, by its address
 _numbers = itertools.count(1)
 
 
@@ -64,6 +65,26 @@ def python_log(level: int, message: Any) -> None:
 @ffi.def_extern()  # type: ignore[untyped-decorator]
 def python_array_released(key: int) -> None:
     _lent.pop(key, None)
+
+
+@ffi.def_extern(error=lib.HL_ERROR_CANCELLED, onerror=_remember)  # type: ignore[untyped-decorator]
+def python_convert(path: Any, content: Any, byte_count: Any, error: Any) -> int:
+    """OpenVDB to NanoVDB: the bytes are kept until `python_converted`."""
+    try:
+        converted = ffi.from_buffer(_openvdb.convert(os.fsdecode(ffi.string(path))))
+    except _openvdb.NoConverter:
+        return int(lib.HL_ERROR_UNSUPPORTED)
+    except OSError as failure:
+        error.message = str(failure).encode("utf-8", "replace")[:200]
+        return int(lib.HL_ERROR_INPUT)
+    content[0], byte_count[0] = converted, len(converted)
+    _converted[int(ffi.cast("uintptr_t", converted))] = converted
+    return int(lib.HL_OK)
+
+
+@ffi.def_extern()  # type: ignore[untyped-decorator]
+def python_converted(content: Any) -> None:
+    _converted.pop(int(ffi.cast("uintptr_t", content)), None)
 
 
 def text_of(characters: Any) -> str:

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include "core/context.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "volume/bundle_zip.h"
 #include "volume/decoders.h"
@@ -107,6 +108,43 @@ static hl_status fail_unknown(const hl_stream *stream, const unsigned char *byte
                  path, known);
 }
 
+static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
+
+/* The only file of an archive, or null; what macOS adds to archives is passed over. */
+static const hl_bundle_entry *only_file(const hl_bundle *bundle) {
+  const hl_bundle_entry *only = NULL;
+  for (size_t n = 0; n < bundle->count; n++) {
+    const char *name = bundle->entries[n].name, *slash = strrchr(name, '/');
+    if (strncmp(name, "__MACOSX/", 9) == 0 || (slash == NULL ? name : slash + 1)[0] == '.') continue;
+    if (only != NULL) return NULL;
+    only = &bundle->entries[n];
+  }
+  return only;
+}
+
+/* Unpacks a volume file into memory, and reads it. */
+static hl_status load_packed(const hl_bundle *bundle, const hl_bundle_entry *entry, hl_load_request *request,
+                             hl_volume **volume, hl_error *error) {
+  hl_context *context = request->context;
+  hl_source *source = NULL;
+  hl_stream *stream = NULL;
+  unsigned char *bytes = NULL;
+  size_t length = 0;
+  char *path = hl_path_join(context, bundle->path, entry->name);
+  if (path == NULL) return hl_fail_memory(error, strlen(entry->name), bundle->path);
+  hl_status status = hl_bundle_entry_open(bundle, entry, true, &source, error);
+  if (status == HL_OK) status = hl_source_read_whole(source, path, SIZE_MAX, &bytes, &length, error);
+  hl_source_close(source);
+  if (status == HL_OK && begins(bytes, length, "PK\3\4", 4))
+    status = hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: a zip archive within another: unpack it", path);
+  if (status == HL_OK) status = hl_stream_open_memory(context, path, bytes, length, &stream, error);
+  if (status == HL_OK) status = load(&stream, request, volume, error);
+  hl_stream_close(stream);
+  hl_release(context, bytes);
+  hl_release(context, path);
+  return status;
+}
+
 /* A folder, or a zip archive: asks every format. */
 static hl_status load_bundle(hl_bundle *bundle, hl_load_request *request, hl_volume **volume,
                              hl_error *error) {
@@ -115,10 +153,11 @@ static hl_status load_bundle(hl_bundle *bundle, hl_load_request *request, hl_vol
   for (int n = 0; n < FORMAT_COUNT && status == HL_OK && !claimed; n++)
     if (formats[n]->load_bundle != NULL)
       status = formats[n]->load_bundle(bundle, request, &claimed, volume, error);
-  if (status == HL_OK && !claimed)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: a %s in which no volume was found: give a volume file",
-                   bundle->path, bundle->is_archive ? "zip archive" : "folder");
-  return status;
+  if (status != HL_OK || claimed) return status;
+  const hl_bundle_entry *only = bundle->is_archive ? only_file(bundle) : NULL;
+  if (only != NULL) return load_packed(bundle, only, request, volume, error);
+  return hl_fail(error, HL_ERROR_INPUT, "%s: a %s in which no volume was found: give a volume file",
+                 bundle->path, bundle->is_archive ? "zip archive" : "folder");
 }
 
 static hl_status load_folder(const char *path, hl_load_request *request, hl_volume **volume,

@@ -127,20 +127,13 @@ static hl_status read_file(const slices_reading *r, size_t slice, bool quiet, ch
                            hl_slice_file *file, hl_error *error) {
   const hl_bundle_entry *entry = name_of(r, slice)->entry;
   hl_source *source = NULL;
-  size_t got = 0;
   snprintf(path, size, "%s/%s", r->bundle->path, entry->name);
   *file = (hl_slice_file){.context = r->request->context, .path = path};
   hl_status status = hl_bundle_entry_open(r->bundle, entry, quiet, &source, error);
   if (status != HL_OK) return status;
-  uint64_t length = hl_source_size(source);
-  if (length > FILE_BYTES_MOST)
-    status = hl_fail(error, HL_ERROR_INPUT, "%s: %llu bytes are too many for a picture", path,
-                     (unsigned long long)length);
-  unsigned char *bytes = status == HL_OK ? hl_allocate(file->context, (size_t)length, 1) : NULL;
+  unsigned char *bytes = NULL;
+  status = hl_source_read_whole(source, path, FILE_BYTES_MOST, &bytes, &file->length, error);
   file->bytes = bytes;
-  if (status == HL_OK && bytes == NULL) status = hl_fail_memory(error, (size_t)length, path);
-  if (status == HL_OK) status = hl_source_read(source, 0, bytes, (size_t)length, &got, error);
-  file->length = got;
   hl_source_close(source);
   return status;
 }
@@ -248,16 +241,28 @@ static hl_status load_slices(slices_reading *r, hl_volume **volume, hl_error *er
                 : hl_volume_adopt(r->request->context, &grid, path, voxels, volume, error);
 }
 
+/* Reads a TIFF file of an archive as a volume: it is unpacked into memory. */
+static hl_status load_packed(slices_reading *r, size_t slice, hl_volume **volume, hl_error *error) {
+  hl_stream *stream = NULL;
+  hl_slice_file file;
+  char path[PATH_BYTES];
+  hl_status status = read_file(r, slice, true, path, sizeof path, &file, error);
+  if (status == HL_OK)
+    status = hl_stream_open_memory(file.context, path, file.bytes, file.length, &stream, error);
+  if (status == HL_OK) status = hl_tiff_load(&stream, r->bundle, r->request, volume, error);
+  hl_stream_close(stream);
+  hl_release(file.context, (void *)file.bytes);
+  return status;
+}
+
 /* Reads the TIFF file of a slice as a volume. */
 static hl_status load_file(slices_reading *r, size_t slice, hl_volume **volume, hl_error *error) {
   hl_stream *stream = NULL;
-  if (r->bundle->is_archive)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: TIFF stacks in an archive are not read: unpack it",
-                   r->bundle->path);
+  if (r->bundle->is_archive) return load_packed(r, slice, volume, error);
   char *path = hl_path_join(r->request->context, r->bundle->path, name_of(r, slice)->entry->name);
   if (path == NULL) return hl_fail_memory(error, PATH_BYTES, r->bundle->path);
   hl_status status = hl_stream_open(r->request->context, path, true, &stream, error);
-  if (status == HL_OK) status = hl_tiff_load(&stream, r->request, volume, error);
+  if (status == HL_OK) status = hl_tiff_load(&stream, NULL, r->request, volume, error);
   hl_stream_close(stream);
   hl_release(r->request->context, path);
   return status;

@@ -255,3 +255,15 @@ hl_status hl_source_read(hl_source *source, uint64_t offset, void *bytes, size_t
   if (status == HL_OK && *count > 0) memcpy(bytes, known, *count);
   return status;
 }
+
+hl_status hl_source_read_whole(hl_source *source, const char *name, uint64_t most, unsigned char **bytes,
+                               size_t *length, hl_error *error) {
+  uint64_t size = hl_source_size(source);
+  *length = 0;
+  if (size > most || size > SIZE_MAX)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: %llu bytes, more than the %llu that are read at once", name,
+                   (unsigned long long)size, (unsigned long long)most);
+  *bytes = hl_allocate(source->context, (size_t)size, 1);
+  if (*bytes == NULL) return hl_fail_memory(error, (size_t)size, name);
+  return hl_source_read(source, 0, *bytes, (size_t)size, length, error);
+}

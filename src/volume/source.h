@@ -38,5 +38,9 @@ hl_status hl_source_peek(hl_source *source, uint64_t offset, size_t wanted, cons
 /* Copies `wanted` bytes from `offset` on; *count < wanted only at the end. */
 hl_status hl_source_read(hl_source *source, uint64_t offset, void *bytes, size_t wanted, size_t *count,
                          hl_error *error);
+/* Reads all bytes, and refuses more than `most`. *bytes: null before; owned by the caller (hl_release), also
+ * after a failure; *length: their number. name: of the file, for error lines. */
+hl_status hl_source_read_whole(hl_source *source, const char *name, uint64_t most, unsigned char **bytes,
+                               size_t *length, hl_error *error);
 
 #endif

@@ -11,8 +11,12 @@ static bool has_content(const unsigned char *bytes, size_t length) {
                          memcmp(bytes, "II+\0", 4) == 0 || memcmp(bytes, "MM\0+", 4) == 0);
 }
 
+static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+  return hl_tiff_load(stream, NULL, request, volume, error);
+}
+
 const hl_format hl_format_tiff = {.name = "TIFF",
                                   .endings = {".tif", ".tiff"},
                                   .beginning = "\"II*\" or \"MM\"",
                                   .has_content = has_content,
-                                  .load = hl_tiff_load};
+                                  .load = load};

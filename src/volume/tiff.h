@@ -2,8 +2,12 @@
 #ifndef HL_VOLUME_TIFF_H
 #define HL_VOLUME_TIFF_H
 
+#include "volume/bundle.h"
 #include "volume/format.h"
 
-hl_status hl_tiff_load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
+/* archive: holds the stream's file and the other files of its volume; null: these are in the file's folder.
+ */
+hl_status hl_tiff_load(hl_stream **stream, const hl_bundle *archive, hl_load_request *request,
+                       hl_volume **volume, hl_error *error);
 
 #endif

@@ -23,7 +23,10 @@ enum {
 
 /* A file and the offsets of its directories. */
 typedef struct stack_file {
-  char *path;        /* owned */
+  char *path;                  /* owned */
+  const unsigned char *memory; /* [memory_size]; the file's content; null: the file is read */
+  unsigned char *unpacked; /* owned; the memory, if it was read here, from a pipe or an archive; or null */
+  size_t memory_size;
   uint64_t *offsets; /* owned; [count] */
   size_t count;
 } stack_file;
@@ -31,8 +34,7 @@ typedef struct stack_file {
 typedef struct stack_reading {
   hl_context *context;
   hl_load_request *request;
-  const unsigned char *memory; /* the first file's content, or null */
-  size_t memory_size;
+  const hl_bundle *archive; /* holds the files; null: they are in a folder */
   tiff_plan plan;
   stack_file *files; /* owned; [plan.file_count] */
   int level;
@@ -119,8 +121,8 @@ static hl_status check_size(const stack_reading *r, tiff_file *file, hl_error *e
       (unsigned long long)file->size);
 }
 
-static hl_status read_first(stack_reading *r, tiff_file *file, hl_error *error) {
-  stack_file stack = {.path = NULL};
+/* stack: the file, which becomes the reading's first one. */
+static hl_status read_first(stack_reading *r, tiff_file *file, stack_file *stack, hl_error *error) {
   tiff_shape first;
   char *description = NULL, *copy = NULL;
   double resolution[2];
@@ -132,31 +134,43 @@ static hl_status read_first(stack_reading *r, tiff_file *file, hl_error *error) 
     copy = hl_copy_text(r->context, description);
     if (copy == NULL) status = hl_fail_memory(error, strlen(description) + 1, file->path);
   }
-  if (status == HL_OK) status = tiff_file_pages(file, &stack.offsets, &stack.count, error);
+  if (status == HL_OK) status = tiff_file_pages(file, &stack->offsets, &stack->count, error);
   bool ome = copy != NULL && strstr(copy, "<OME") != NULL;
-  if (status == HL_OK && !ome) status = drop_other_pages(file, &first, &stack, error);
+  if (status == HL_OK && !ome) status = drop_other_pages(file, &first, stack, error);
   if (status == HL_OK)
-    status = tiff_plan_make(r->request, file->path, copy, stack.count, first.components, resolution, &r->plan,
-                            error);
+    status = tiff_plan_make(r->request, file->path, copy, stack->count, first.components, resolution,
+                            &r->plan, error);
   if (status == HL_OK) {
     r->width = first.width, r->height = first.height;
     r->files = hl_allocate_zeroed(r->context, r->plan.file_count, sizeof *r->files);
     if (r->files == NULL) status = hl_fail_memory(error, r->plan.file_count * sizeof *r->files, file->path);
   }
   if (status == HL_OK) {
-    r->files[0] = stack;
-    stack.offsets = NULL;
-    r->files[0].path = hl_copy_text(r->context, file->path);
-    if (r->files[0].path == NULL) status = hl_fail_memory(error, strlen(file->path), file->path);
+    r->files[0] = *stack;
+    *stack = (stack_file){.path = NULL};
   }
   if (status == HL_OK) status = choose_level(r, file, start, levels, error);
   if (status == HL_OK) status = check_size(r, file, error);
-  hl_release(r->context, stack.offsets);
   hl_release(r->context, copy);
   return status;
 }
 
 /* ---- the other files ---- */
+
+/* Unpacks another file of the archive into memory. */
+static hl_status unpack(stack_reading *r, stack_file *stack, hl_error *error) {
+  const char *name = stack->path + strlen(r->archive->path) + 1;
+  hl_source *source = NULL;
+  hl_status status = hl_bundle_find(r->archive, name, true, &source, error);
+  if (status == HL_OK && source == NULL)
+    return hl_fail(error, HL_ERROR_IO, "%s: cannot open: the archive has no such file", stack->path);
+  if (status == HL_OK)
+    status = hl_source_read_whole(source, stack->path, SIZE_MAX, &stack->unpacked, &stack->memory_size,
+                                  error);
+  stack->memory = stack->unpacked;
+  hl_source_close(source);
+  return status;
+}
 
 static hl_status find_pages(stack_reading *r, size_t index, hl_error *error) {
   stack_file *stack = &r->files[index];
@@ -165,7 +179,9 @@ static hl_status find_pages(stack_reading *r, size_t index, hl_error *error) {
   stack->path = folder == NULL ? NULL : hl_path_join(r->context, folder, r->plan.files[index]);
   hl_release(r->context, folder);
   if (stack->path == NULL) return hl_fail_memory(error, 100, r->plan.files[index]);
-  hl_status status = tiff_file_open(r->context, stack->path, NULL, 0, false, &file, error);
+  hl_status status = r->archive != NULL ? unpack(r, stack, error) : HL_OK;
+  if (status == HL_OK)
+    status = tiff_file_open(r->context, stack->path, stack->memory, stack->memory_size, false, &file, error);
   if (status == HL_OK) status = tiff_file_pages(&file, &stack->offsets, &stack->count, error);
   tiff_file_close(&file);
   return status;
@@ -200,9 +216,7 @@ static hl_status read_slice(void *data, size_t z, int worker, hl_error *error) {
     tiff_file_close(file);
     r->opened[worker] = slice->file;
     file->warnings = TIFF_NO_WARNINGS; /* they were logged when the pages were found */
-    bool first = slice->file == 0;
-    status = tiff_file_open(r->context, stack->path, first ? r->memory : NULL, first ? r->memory_size : 0,
-                            true, file, error);
+    status = tiff_file_open(r->context, stack->path, stack->memory, stack->memory_size, true, file, error);
     if (status != HL_OK) r->opened[worker] = UINT32_MAX;
   }
   tiff_shape shape;
@@ -293,34 +307,45 @@ static hl_status make_volume(stack_reading *r, hl_volume **volume, hl_error *err
                 : hl_volume_adopt(r->context, &grid, path, voxels, volume, error);
 }
 
+static void release_file(hl_context *context, stack_file *file) {
+  hl_release(context, file->path);
+  hl_release(context, file->unpacked);
+  hl_release(context, file->offsets);
+}
+
 static void release(stack_reading *r) {
-  for (size_t n = 0; r->files != NULL && n < r->plan.file_count; n++) {
-    hl_release(r->context, r->files[n].path);
-    hl_release(r->context, r->files[n].offsets);
-  }
+  for (size_t n = 0; r->files != NULL && n < r->plan.file_count; n++) release_file(r->context, &r->files[n]);
   hl_release(r->context, r->files);
   hl_release(r->context, r->voxels);
   tiff_plan_release(&r->plan);
 }
 
-hl_status hl_tiff_load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
-  stack_reading r = {.context = request->context, .request = request};
+/* Finds the first file's content in memory, if the stream is no plain file. */
+static hl_status take_first(hl_stream *stream, stack_file *first, hl_error *error) {
+  first->path = hl_copy_text(stream->context, stream->path);
+  if (first->path == NULL) return hl_fail_memory(error, strlen(stream->path), stream->path);
+  if (hl_stream_memory(stream, &first->memory, &first->memory_size) || hl_stream_is_plain_file(stream))
+    return HL_OK;
+  hl_status status = hl_stream_read_rest(stream, &first->unpacked, &first->memory_size, error);
+  first->memory = first->unpacked;
+  return status;
+}
+
+hl_status hl_tiff_load(hl_stream **stream, const hl_bundle *archive, hl_load_request *request,
+                       hl_volume **volume, hl_error *error) {
+  stack_reading r = {.context = request->context, .request = request, .archive = archive};
   tiff_file file = {.descriptor = -1};
-  const char *path = (*stream)->path;
-  unsigned char *whole = NULL;
-  hl_status status = HL_OK;
-  if (!hl_stream_memory(*stream, &r.memory, &r.memory_size) && !hl_stream_is_plain_file(*stream)) {
-    status = hl_stream_read_rest(*stream, &whole, &r.memory_size, error);
-    r.memory = whole;
-  }
+  stack_file first = {.path = NULL};
+  hl_status status = take_first(*stream, &first, error);
   if (status == HL_OK)
-    status = tiff_file_open(request->context, path, r.memory, r.memory_size, true, &file, error);
-  if (status == HL_OK) status = read_first(&r, &file, error);
+    status = tiff_file_open(request->context, first.path, first.memory, first.memory_size, true, &file,
+                            error);
+  if (status == HL_OK) status = read_first(&r, &file, &first, error);
   tiff_file_close(&file);
   for (size_t n = 1; status == HL_OK && n < r.plan.file_count; n++) status = find_pages(&r, n, error);
   if (status == HL_OK) status = check_slices(&r, error);
   if (status == HL_OK) status = make_volume(&r, volume, error);
   release(&r);
-  hl_release(request->context, whole);
+  release_file(request->context, &first);
   return status;
 }

@@ -379,6 +379,18 @@ def test_syntaxes():
     write_slices(root / "jpeg12", deep, positions, syntax=EXTENDED, extra=lambda n: {"t00280101": ("US", 12),
                                                                                      "t00280102": ("US", 11)})
     expect("JPEG slices of 12 bits", root / "jpeg12", deep * 2.0 - 1024, tolerance=2 * 2)  # coefficients are rounded
+    write_slices(root / "jpeg12c", deep[:2], positions[:2], syntax=EXTENDED, extra=lambda n: {
+        "t00280002": ("US", 3), "t00280004": ("CS", "RGB"), "t00280101": ("US", 12), "t00280102": ("US", 11)})
+    for path in (root / "jpeg12c").iterdir():
+        data = path.read_bytes()
+        frame, at = data.index(b"\xff\xd8"), data.index(b"\xff\xc1")
+        length, = struct.unpack_from("<I", data, frame - 4)
+        three = b"\3" + b"".join(bytes([c, 0x11, 0]) for c in (1, 2, 3))
+        path.write_bytes(data[:frame - 4] + struct.pack("<I", length + 6) + data[frame:at + 2] + struct.pack(">H", 17) +
+                         data[at + 4:at + 9] + three + data[at + 13:])
+    info, _, told = read(root / "jpeg12c")
+    check("colour JPEG of 12 bits is refused", info is None and told.count("\n") == 1 and
+          "lossy JPEG of 3 components of 12 bits: 1 of 12 bits is read, or 8 bits" in told, told)
     try:
         from PIL import features
     except ImportError:

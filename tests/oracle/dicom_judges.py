@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Holds the DICOM reader against pydicom (its own test files), GDCM (every codec) and dcm2niix (geometry).
+"""Holds the DICOM reader against pydicom (its own test files), GDCM (every codec but HTJ2K), OpenJPH (HTJ2K) and dcm2niix
+(geometry).
 
 usage: dicom_judges.py DUMP_VOLUME [DATA_FOLDER]
-Needs Debian's python3-pydicom, python3-gdcm, python3-nibabel and dcm2niix, and no network. Prints a line for each file;
+Needs Debian's python3-pydicom, python3-gdcm, python3-nibabel, openjph-tools and dcm2niix, and no network. Prints a line for each file;
 exit 1 if a value or a place differs.
 """
 import glob
@@ -101,6 +102,48 @@ def write_slice(path, plane, position, orientation, number, series="1.2.3"):
     data.save_as(str(path), write_like_original=False)
 
 
+HTJ2K = {"HTJ2KLossless": "1.2.840.10008.1.2.4.201", "HTJ2KLosslessRPCL": "1.2.840.10008.1.2.4.202",
+         "HTJ2K": "1.2.840.10008.1.2.4.203"}
+for name, uid in HTJ2K.items():  # that pydicom's older versions do not know
+    pydicom.uid.UID_dictionary.setdefault(uid, (name, "Transfer Syntax", "", "", name))
+
+
+def pack_htj2k(path, codec):
+    """Writes a file's plane anew as HTJ2K by OpenJPH, which reads unsigned pictures; returns what OpenJPH decodes."""
+    data = pydicom.dcmread(path)
+    plane = data.pixel_array
+    (folder / "plane.pgm").write_bytes(b"P5 %d %d %d\n" % (*plane.shape[::-1], 2 ** data.BitsStored - 1) +
+                                       plane.astype(">u2" if data.BitsStored > 8 else "u1").tobytes())
+    options = ["-qstep", "0.01"] if codec == "HTJ2K" else ["-reversible", "true"]
+    if codec == "HTJ2KLossless":
+        options += ["-prog_order", "LRCP"]
+    subprocess.run(["ojph_compress", "-i", folder / "plane.pgm", "-o", folder / "plane.j2c", *options],
+                   capture_output=True, check=True)
+    subprocess.run(["ojph_expand", "-i", folder / "plane.j2c", "-o", folder / "back.pgm"], capture_output=True, check=True)
+    data.PixelData = pydicom.encaps.encapsulate([(folder / "plane.j2c").read_bytes()])
+    data["PixelData"].VR = "OB"
+    data["PixelData"].is_undefined_length = True
+    data.file_meta.TransferSyntaxUID = HTJ2K[codec]
+    data.save_as(str(path), write_like_original=False)
+    back = (folder / "back.pgm").read_bytes()
+    return np.frombuffer(back[-plane.nbytes:], ">u2" if plane.itemsize == 2 else "u1").reshape(plane.shape)
+
+
+def judge_htj2k():
+    noise = np.random.RandomState(4)
+    for bits, shape in ((16, (37, 53)), (12, (64, 64)), (8, (21, 16)), (8, (130, 300))):
+        smooth = np.add.outer(np.arange(shape[0]) ** 2, 3 * np.arange(shape[1])) + noise.randint(0, 9, shape)
+        plane = (smooth % 2 ** bits).astype(np.uint8 if bits == 8 else np.uint16)
+        for codec in HTJ2K:
+            write_slice(folder / "packed", plane, (0, 0, 0), (1, 0, 0, 0, 1, 0), 1)
+            wanted = pack_htj2k(folder / "packed", codec)
+            info, found = read(folder / "packed")
+            good = found is not None and np.array_equal(wanted, plane) == (codec != "HTJ2K")
+            by = 0 if found is None else np.abs(found[0] - wanted).max()
+            tell(f"{codec} of {bits} bits, {shape}, by OpenJPH", good and by <= (1 if codec == "HTJ2K" else 0),
+                 info.get("error", f"by {by:g}"))
+
+
 def judge_codecs():
     noise = np.random.RandomState(2)
     planes = {"int16": noise.randint(-1500, 3000, (37, 53)).astype(np.int16),
@@ -143,6 +186,8 @@ def judge_geometry():
 
 
 def pack(path, codec):
+    if codec in HTJ2K:
+        return pack_htj2k(path, codec) is not None
     reader, change, writer = gdcm.ImageReader(), gdcm.ImageChangeTransferSyntax(), gdcm.ImageWriter()
     reader.SetFileName(str(path))
     reader.Read()
@@ -162,7 +207,12 @@ def judge_series(data_folder):
              ("bonsai/bonsai.nrrd", axial, (0, 0, 1.5), "JPEG2000Lossless"), ("engine/*", axial, (0, 0, -1), "JPEGLosslessProcess14_1"),
              ("stroke_t1_nii/*.nii*", sagittal, (1.5, 0, 0), "JPEGLSLossless"),
              ("hipip_signed/*.nrrd", axial, (0, 0, 2), "JPEGLosslessProcess14"),
-             ("headmr_mhd/*.mhd", axial, (0, -0.5, 4), "two series in one folder")]
+             ("headmr_mhd/*.mhd", axial, (0, -0.5, 4), "two series in one folder"),
+             ("cranium_mha/cranium.mha", axial, (0, 0, 3), "JPEG2000Lossless"),
+             ("stroke_t1_nii/*.nii*", sagittal, (1.5, 0, 0), "JPEG2000Lossless"),
+             ("hipip_signed/*.nrrd", axial, (0, 0, 2), "JPEG2000Lossless"),
+             ("engine/*", axial, (0, 0, 1), "HTJ2KLossless"), ("bonsai/bonsai.nrrd", axial, (0, 0, 1.5), "HTJ2KLosslessRPCL"),
+             ("stroke_t1_nii/*.nii*", axial, (0, 0.3, 2), "HTJ2KLossless")]
     random = np.random.RandomState(7)
     for number, (pattern, orientation, step, codec) in enumerate(cases):
         paths = sorted(glob.glob(f"{data_folder}/{pattern}"))
@@ -202,6 +252,7 @@ for path in sorted(glob.glob(base + "/test_files/**/*", recursive=True) + glob.g
         except pydicom.errors.InvalidDicomError:
             pass
 judge_codecs()
+judge_htj2k()
 judge_geometry()
 if len(sys.argv) > 2:
     judge_series(sys.argv[2])

@@ -112,6 +112,49 @@ def test_folders():
     check("stacks are time steps", info and info["dimensions"] == [13, 9, 12] and info["times"] == 3, told)
 
 
+def pack(name, paths):
+    with zipfile.ZipFile(root / name, "w", zipfile.ZIP_DEFLATED) as archive:
+        for path in paths:
+            archive.write(path, f"a/{path.name}")
+    return root / name
+
+
+def write_ome(folder):
+    """An OME-TIFF with a file for each slice; the slice of file n is plane n."""
+    data = "".join(f'<TiffData FirstZ="{z}" IFD="0" PlaneCount="1"><UUID FileName="m{z}.tif">urn:uuid:{z}</UUID></TiffData>'
+                   for z in range(len(DEEP)))
+    xml = ('<OME xmlns="http://www.openmicroscopy.org/Schemas/OME/2016-06"><Image ID="Image:0"><Pixels ID="Pixels:0" '
+           f'DimensionOrder="XYZCT" Type="uint16" SizeX="13" SizeY="9" SizeZ="{len(DEEP)}" SizeC="1" SizeT="1">'
+           f'<Channel ID="Channel:0:0" SamplesPerPixel="1"/>{data}</Pixels></Image></OME>')
+    folder.mkdir()
+    for z, plane in enumerate(DEEP):
+        Image.fromarray(plane).save(folder / f"m{z}.tif", tiffinfo={270: xml})
+    return sorted(folder.iterdir())
+
+
+def test_archives():
+    stacks = sorted((root / "stacks").iterdir())
+    info, told = read(pack("stacks.zip", stacks), "--time", "2")
+    check("stacks in an archive are time steps", info and info["dimensions"] == [13, 9, 12] and info["times"] == 3 and
+          abs(info["mean"] - np.concatenate([DEEP[:1], DEEP[1:] + 2]).mean()) < 1e-3, told)
+    expect("one stack in an archive", pack("one.zip", stacks[:1]), DEEP)
+    shutil.copy(stacks[0], root / "plain.tif")
+    expect("one file without a number in an archive", pack("plain.zip", [root / "plain.tif"]), DEEP)
+    found, told = read(pack("nested.zip", [root / "plain.zip"]))
+    check("an archive in an archive", found is None and "a zip archive within another: unpack it" in told, told)
+    ome = write_ome(root / "ome")
+    expect("an OME-TIFF of several files", root / "ome", DEEP)
+    expect("an OME-TIFF of several files in an archive", pack("ome.zip", ome), DEEP)
+    found, told = read(pack("ome-cut.zip", ome[:5]))
+    check("a file of an OME-TIFF is not in its archive", found is None and "the archive has no such file" in told, told)
+    whole = (root / "ome.zip").read_bytes()
+    for length in range(0, len(whole), len(whole) // 40):
+        (root / "cut.zip").write_bytes(whole[:length])
+        told = subprocess.run([PROGRAM, "info", root / "cut.zip"], capture_output=True, text=True, timeout=60)
+        if told.returncode != 3 or told.stderr.count("\n") != 1:
+            check(f"an archive cut after {length} bytes", False, told)
+
+
 def test_damage():
     for name, path in (("png", "s_6.png"), ("png16", "s-006.png"), ("tiff", "06.tif"), ("jpeg", "6.JPG")):
         folder = root / f"cut-{name}"
@@ -137,6 +180,7 @@ def test_damage():
 
 test_kinds()
 test_folders()
+test_archives()
 test_damage()
 shutil.rmtree(root)
 print(f"{len(problems)} problems")

@@ -6,7 +6,6 @@
 #include "volume/dicom/voxels.h"
 
 #include <math.h>
-#include <pthread.h>
 #include <stdatomic.h>
 #include <string.h>
 
@@ -15,6 +14,7 @@
 #include "core/pool.h"
 #include "volume/convert.h"
 #include "volume/dicom/frame.h"
+#include "volume/parallel.h"
 
 typedef struct reading {
   const hl_dicom_set *set;
@@ -22,8 +22,7 @@ typedef struct reading {
   size_t time;   /* the frame to take at each place */
   int component; /* the sample to take, or HL_COMPONENT_MAGNITUDE */
   hl_voxel_type type;
-  bool as_floats;    /* values are computed as floats; else stored values are kept */
-  bool swaps_floats; /* (unused by integers) */
+  bool as_floats; /* values are computed as floats; else stored values are kept */
   double slope, intercept,
       padding[2]; /* the same for all slices; slope and intercept only where as_floats is false */
   size_t slice_voxels, voxel_bytes;
@@ -31,12 +30,7 @@ typedef struct reading {
   hl_pool *pool;
   hl_dicom_workspace *spaces; /* owned; one for each worker */
   unsigned char **others;     /* owned; one slice for each worker, to fill gaps with; made when needed */
-  atomic_size_t done;
-  atomic_bool padded, failed;
-  pthread_mutex_t lock; /* guards error and failed_slice */
-  size_t failed_slice;
-  hl_error error;
-  hl_status status;
+  atomic_bool padded;         /* a slice has voxels of the padding value */
 } reading;
 
 /* ---- which type ---- */
@@ -166,28 +160,12 @@ static hl_status fill_gap(reading *r, const hl_dicom_slice *slice, int worker, u
 
 /* ---- all slices ---- */
 
-static void keep_error(reading *r, size_t index, hl_status status, const hl_error *error) {
-  pthread_mutex_lock(&r->lock);
-  if (!r->failed || index < r->failed_slice) {
-    r->failed = true;
-    r->failed_slice = index;
-    r->status = status;
-    r->error = *error;
-  }
-  pthread_mutex_unlock(&r->lock);
-}
-
-static void read_one(void *data, size_t index, int worker) {
+static hl_status read_one(void *data, size_t index, int worker, hl_error *error) {
   reading *r = data;
   const hl_dicom_slice *slice = &r->stack->slices[index];
   unsigned char *voxels = r->voxels + index * r->slice_voxels * r->voxel_bytes;
-  hl_error error = {0};
-  if (r->failed && index > r->failed_slice) return;
-  hl_status status = read_slice(r, slice->place, worker, voxels, &error);
-  if (status == HL_OK && slice->weight > 0) status = fill_gap(r, slice, worker, voxels, &error);
-  if (status != HL_OK) keep_error(r, index, status, &error);
-  size_t done = atomic_fetch_add(&r->done, 1) + 1;
-  if (worker == 0) hl_progress(r->set->context, "load", (double)done / (double)r->stack->grid.dimensions[2]);
+  hl_status status = read_slice(r, slice->place, worker, voxels, error);
+  return status == HL_OK && slice->weight > 0 ? fill_gap(r, slice, worker, voxels, error) : status;
 }
 
 /* Turns integers into floats in the same block, from the last to the first; padding becomes NAN. */
@@ -214,16 +192,38 @@ static hl_status widen_padded(reading *r, size_t count, hl_error *error) {
   return HL_OK;
 }
 
-static hl_status read_all(reading *r, hl_error *error) {
-  int threads = hl_pool_threads(r->pool);
-  r->spaces = hl_allocate_zeroed(r->set->context, (size_t)threads, sizeof *r->spaces);
-  r->others = hl_allocate_zeroed(r->set->context, (size_t)threads, sizeof *r->others);
-  if (r->spaces == NULL || r->others == NULL) return hl_fail_memory(error, 1000, "threads");
-  hl_pool_run(r->pool, r->stack->grid.dimensions[2], read_one, r);
-  if (hl_pool_cancelled(r->pool))
-    return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", r->set->bundle->path);
-  if (r->failed && error != NULL) *error = r->error;
-  return r->failed ? r->status : HL_OK;
+static hl_status make_threads(reading *r, size_t voxels, hl_error *error) {
+  enum { WORTH_THREADS = 1 << 20 }; /* voxels */
+  hl_status status = hl_pool_create(r->set->context, voxels < WORTH_THREADS ? 1 : 0, &r->pool, error);
+  if (status != HL_OK) return status;
+  size_t threads = (size_t)hl_pool_threads(r->pool);
+  r->spaces = hl_allocate_zeroed(r->set->context, threads, sizeof *r->spaces);
+  r->others = hl_allocate_zeroed(r->set->context, threads, sizeof *r->others);
+  return r->spaces != NULL && r->others != NULL ? HL_OK : hl_fail_memory(error, 1000, "threads");
+}
+
+/* Looks for padding in the middle slice: integers that become floats after all are read need both at once. */
+static hl_status find_padding(reading *r, hl_error *error) {
+  if (r->as_floats || isnan(r->padding[0])) return HL_OK;
+  size_t middle = r->stack->place_count / 2, bytes = r->slice_voxels * r->voxel_bytes;
+  unsigned char *slice = hl_allocate(r->set->context, bytes, 1);
+  hl_status status = slice == NULL ? hl_fail_memory(error, bytes, "a slice")
+                                   : read_slice(r, middle, 0, slice, error);
+  hl_release(r->set->context, slice);
+  if (status != HL_OK || !r->padded) return status;
+  r->padded = false;
+  r->as_floats = true;
+  r->voxel_bytes = sizeof(float);
+  return HL_OK;
+}
+
+static hl_status read_all(reading *r, size_t voxels, hl_error *error) {
+  hl_status status = find_padding(r, error);
+  if (status != HL_OK) return status;
+  r->voxels = hl_allocate(r->set->context, voxels, r->voxel_bytes);
+  if (r->voxels == NULL) return hl_fail_memory(error, voxels * r->voxel_bytes, r->set->bundle->path);
+  return hl_parallel_read(r->set->context, r->pool, r->set->bundle->path, r->stack->grid.dimensions[2],
+                          read_one, r, error);
 }
 
 /* The window that the middle slice asks for (PS3.3, C.11.2.1.2: its centre lies half a value lower). */
@@ -258,11 +258,8 @@ static hl_status read_volume(reading *r, hl_load_request *request, hl_volume **v
   const size_t *n = r->stack->grid.dimensions;
   size_t count = n[0] * n[1] * n[2];
   r->slice_voxels = n[0] * n[1];
-  r->voxels = hl_allocate(r->set->context, count, r->voxel_bytes);
-  if (r->voxels == NULL) return hl_fail_memory(error, count * r->voxel_bytes, r->set->bundle->path);
-  enum { WORTH_THREADS = 1 << 20 }; /* voxels */
-  hl_status status = hl_pool_create(r->set->context, count < WORTH_THREADS ? 1 : 0, &r->pool, error);
-  if (status == HL_OK) status = read_all(r, error);
+  hl_status status = make_threads(r, count, error);
+  if (status == HL_OK) status = read_all(r, count, error);
   for (int w = 0; r->pool != NULL && w < hl_pool_threads(r->pool); w++) {
     if (r->spaces != NULL) hl_dicom_workspace_release(&r->spaces[w]);
     if (r->others != NULL) hl_release(r->set->context, r->others[w]);
@@ -297,7 +294,6 @@ hl_status hl_dicom_voxels_read(hl_dicom_set *set, hl_dicom_stack *stack, hl_load
   if (r == NULL) return hl_fail_memory(error, sizeof *r, set->bundle->path);
   r->set = set;
   r->stack = stack;
-  pthread_mutex_init(&r->lock, NULL);
   hl_status status = choose(r, request, error);
   if (status == HL_OK) {
     choose_type(r);
@@ -307,7 +303,6 @@ hl_status hl_dicom_voxels_read(hl_dicom_set *set, hl_dicom_stack *stack, hl_load
   for (size_t n = 0; n < stack->place_count && status == HL_OK; n++)
     status = hl_dicom_find_frames(set, &set->files[frame_at(r, n)->file], error);
   if (status == HL_OK) status = read_volume(r, request, volume, error);
-  pthread_mutex_destroy(&r->lock);
   hl_release(set->context, r);
   return status;
 }
