@@ -44,13 +44,19 @@ HL_API void hl_mesh_description_defaults(hl_mesh_description *description);
 HL_API HL_WARN_UNUSED hl_status hl_mesh_create(hl_context *context, const hl_mesh_description *description,
                                                hl_mesh **mesh, hl_error *error);
 
-/* Reads PLY (ASCII and binary), STL (ASCII and binary), OBJ and glTF 2.0 files (.gltf, .glb: the scene's
- * triangles with base colours; textures are left out). Faces of more than three corners become fans of
- * triangles. Colours of 8 bits are sRGB, as other programs take them. */
+/* Reads PLY (ASCII and binary), STL (ASCII and binary), OBJ, glTF 2.0 files (.gltf, .glb: the scene's
+ * triangles with base colours; textures are left out) and VTK's PolyData (.vtp, legacy .vtk). Faces of more
+ * than three corners become fans of triangles. Colours of 8 bits are sRGB, as other programs take them.
+ *
+ * PolyData: vertices become spheres, lines tubes, of the radii that the point array "radius" tells (without
+ * it a 400th of the diagonal of the points' box). Colours are the active scalars, or else the first array of
+ * 8-bit RGB or RGBA, of points before those of cells; other scalars go through the colormap viridis over
+ * their whole range. */
 HL_API HL_WARN_UNUSED hl_status hl_mesh_load(hl_context *context, const char *path, hl_mesh **mesh,
                                              hl_error *error);
 
-/* Whether hl_mesh_load() reads files of this name: by its ending. */
+/* Whether hl_mesh_load() reads files of this name: by its ending, and, as .vtk files may hold volumes, too,
+ * by the first kilobyte of these. */
 HL_API int hl_mesh_reads_name(const char *path);
 
 /* The mesh's arrays, with the triangles of its tubes, valid as long as the mesh. Null for null. */

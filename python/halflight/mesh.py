@@ -40,7 +40,7 @@ class Mesh:
     Parameters
     ----------
     source : path, array_like of shape (n, 3), or an object that has vertices and faces, optional
-        A PLY, STL, OBJ or glTF file; vertices (x, y, z) in world units; a mesh of PyVista or VTK's `PolyData` wrapped by
+        A PLY, STL, OBJ, glTF or VTK PolyData file; vertices (x, y, z) in world units; a mesh of PyVista or VTK's `PolyData` wrapped by
         it, trimesh, or meshio. What is given is copied.
     triangles : array_like of int, shape (m, 3), optional
         Numbers of vertices, for vertices given as an array. Counter-clockwise ones face the viewer.

@@ -267,7 +267,7 @@ const cli_command render_command = {
     .description =
         "Renders INPUT, a scene (.json), a .png with a scene in it, or volume files (NRRD, MetaImage,\n"
         "NIfTI, VTK, NumPy, MRC, TIFF, raw), together where there are several; '-' is standard input.\n"
-        "Meshes (PLY, STL, OBJ) are added to them, or are the picture alone.\n"
+        "Meshes (PLY, STL, OBJ, glTF, VTK PolyData) are added to them, or are the picture alone.\n"
         "A volume needs no options: the camera frames it, the transfer function comes from its\n"
         "histogram, and a key light from the upper left casts soft shadows. Options override\n"
         "what the scene says; a default holds where neither says anything.",

@@ -1,34 +1,49 @@
 /* mesh/load.c - hl_mesh_load: chooses the reader of a file by its content, or else by its name. */
+#include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "core/context.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "mesh/mesh.h"
+#include "volume/legacy_arrays.h"
 #include "volume/text.h"
 
 static const struct {
   const char *ending;
   mesh_reader *read;
-} formats[] = {{".ply", hl_mesh_read_ply},
-               {".stl", hl_mesh_read_stl},
-               {".obj", hl_mesh_read_obj},
-               {".gltf", hl_mesh_read_gltf},
-               {".glb", hl_mesh_read_gltf}};
+} formats[] = {{".ply", hl_mesh_read_ply},   {".stl", hl_mesh_read_stl},  {".obj", hl_mesh_read_obj},
+               {".gltf", hl_mesh_read_gltf}, {".glb", hl_mesh_read_gltf}, {".vtp", hl_mesh_read_vtp}};
+
+/* Whether the first bytes of a file say that it is PolyData: other .vtk files are volumes. */
+static bool begins_as_polydata(const char *path) {
+  char bytes[1025];
+  struct stat about;
+  FILE *file = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
+  if (file == NULL) return false;
+  size_t length = fread(bytes, 1, sizeof bytes - 1, file);
+  bytes[length] = 0;
+  fclose(file);
+  for (size_t n = 0; n + 16 < length; n++)
+    if (hl_text_starts(bytes + n, "DATASET POLYDATA")) return true;
+  return false;
+}
 
 int hl_mesh_reads_name(const char *path) {
   for (size_t n = 0; path != NULL && n < sizeof formats / sizeof *formats; n++)
     if (hl_text_ends(path, formats[n].ending)) return 1;
-  return 0;
+  return path != NULL && hl_text_ends(path, ".vtk") && begins_as_polydata(path);
 }
 
 static mesh_reader *reader_of(const char *path, mesh_text text) {
   if (text.length >= 4 && memcmp(text.bytes, "ply", 3) == 0 && hl_is_space((char)text.bytes[3]))
     return hl_mesh_read_ply;
   if (text.length >= 4 && memcmp(text.bytes, "glTF", 4) == 0) return hl_mesh_read_gltf;
+  if (hl_legacy_vtk_has_content(text.bytes, text.length)) return hl_mesh_read_legacy_vtk;
   for (size_t n = 0; n < sizeof formats / sizeof *formats; n++)
     if (hl_text_ends(path, formats[n].ending)) return formats[n].read;
-  return NULL;
+  return hl_text_ends(path, ".vtk") ? hl_mesh_read_legacy_vtk : NULL;
 }
 
 hl_status hl_mesh_load(hl_context *context, const char *path, hl_mesh **mesh, hl_error *error) {
@@ -44,7 +59,7 @@ hl_status hl_mesh_load(hl_context *context, const char *path, hl_mesh **mesh, hl
   mesh_reader *read = reader_of(path, text);
   if (read == NULL)
     status = hl_fail(error, HL_ERROR_UNSUPPORTED,
-                     "%s: is no mesh that is known: give .ply, .stl, .obj, .gltf or .glb", path);
+                     "%s: is no mesh that is known: give .ply, .stl, .obj, .gltf, .glb, .vtp or .vtk", path);
   else status = read(text, &parts, error);
   hl_release(context, bytes);
   if (status == HL_OK) {

@@ -68,6 +68,7 @@ typedef struct mesh_text {
 
 /* Readers of formats: fill empty parts. */
 typedef hl_status mesh_reader(mesh_text text, mesh_parts *parts, hl_error *error);
-mesh_reader hl_mesh_read_ply, hl_mesh_read_stl, hl_mesh_read_obj, hl_mesh_read_gltf;
+mesh_reader hl_mesh_read_ply, hl_mesh_read_stl, hl_mesh_read_obj, hl_mesh_read_gltf, hl_mesh_read_vtp,
+    hl_mesh_read_legacy_vtk;
 
 #endif

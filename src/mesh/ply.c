@@ -1,12 +1,12 @@
 /* mesh/ply.c - PLY files (Turk 1994), ASCII and binary of either byte order: vertices with normals and
- * colours, and faces. Other elements and properties are passed over. */
+ * colours, and faces with colours. Other elements and properties are passed over. */
 #include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "image/srgb.h"
 #include "mesh/mesh.h"
-#include "volume/text.h"
+#include "volume/numbers.h"
 
 typedef enum ply_type {
   PLY_NONE,
@@ -22,10 +22,17 @@ typedef enum ply_type {
 static const struct {
   const char *names; /* alternatives */
   ply_type type;
+  hl_voxel_type voxel; /* the same type */
   int bytes;
-} types[] = {{"", PLY_NONE, 0},           {"char|int8", PLY_I8, 1},      {"uchar|uint8", PLY_U8, 1},
-             {"short|int16", PLY_I16, 2}, {"ushort|uint16", PLY_U16, 2}, {"int|int32", PLY_I32, 4},
-             {"uint|uint32", PLY_U32, 4}, {"float|float32", PLY_F32, 4}, {"double|float64", PLY_F64, 8}};
+} types[] = {{"", PLY_NONE, HL_VOXEL_U8, 0},
+             {"char|int8", PLY_I8, HL_VOXEL_I8, 1},
+             {"uchar|uint8", PLY_U8, HL_VOXEL_U8, 1},
+             {"short|int16", PLY_I16, HL_VOXEL_I16, 2},
+             {"ushort|uint16", PLY_U16, HL_VOXEL_U16, 2},
+             {"int|int32", PLY_I32, HL_VOXEL_I32, 4},
+             {"uint|uint32", PLY_U32, HL_VOXEL_U32, 4},
+             {"float|float32", PLY_F32, HL_VOXEL_F32, 4},
+             {"double|float64", PLY_F64, HL_VOXEL_F64, 8}};
 
 /* What a property is to a mesh. */
 typedef enum ply_role {
@@ -57,6 +64,7 @@ typedef struct ply_property {
 
 typedef struct ply_element {
   bool vertices, faces;
+  bool face_colors; /* faces that have colours */
   size_t count;
   ply_property property[MOST_PROPERTIES];
   int property_count;
@@ -69,6 +77,7 @@ typedef struct ply_reader {
   bool ascii, big_endian;
   ply_element element[MOST_ELEMENTS];
   int element_count;
+  size_t face_color_room; /* triangles that parts->face_colors has memory for */
   hl_error *error;
 } ply_reader;
 
@@ -142,7 +151,9 @@ static hl_status add_property(ply_reader *reader, char word[6][WORD_BYTES], int 
   if (property.type == PLY_NONE || (list && (property.count == PLY_NONE || property.count >= PLY_F32)))
     return fail(reader, "a property of an unknown type");
   property.role = role_of(word[list ? 4 : 2]);
-  if (list != (property.role == ROLE_CORNERS) || (element->faces != list)) property.role = ROLE_NONE;
+  bool of_faces = property.role == ROLE_CORNERS || property.role >= ROLE_COLOR;
+  if (list != (property.role == ROLE_CORNERS) || (element->faces && !of_faces) || (!element->faces && list))
+    property.role = ROLE_NONE;
   element->property[element->property_count++] = property;
   return HL_OK;
 }
@@ -178,30 +189,13 @@ static bool read_word(ply_reader *reader, double *value) {
   return hl_text_number(start, (size_t)(reader->at - start), value);
 }
 
-static double value_of(ply_type type, uint64_t bits) {
-  float single;
-  double both;
-  uint32_t word = (uint32_t)bits;
-  switch (type) {
-    case PLY_I8: return (int8_t)bits;
-    case PLY_I16: return (int16_t)bits;
-    case PLY_I32: return (int32_t)bits;
-    case PLY_F32: memcpy(&single, &word, sizeof single); return single;
-    case PLY_F64: memcpy(&both, &bits, sizeof both); return both;
-    default: return (double)bits;
-  }
-}
-
 /* The next number of a type. False at the end of the file. */
 static bool read_number(ply_reader *reader, ply_type type, double *value) {
   if (reader->ascii) return read_word(reader, value);
   int bytes = types[type].bytes;
   if (reader->end - reader->at < bytes) return false;
-  uint64_t bits = 0;
-  for (int i = 0; i < bytes; i++)
-    bits |= (uint64_t)(unsigned char)reader->at[reader->big_endian ? bytes - 1 - i : i] << 8 * i;
+  *value = hl_binary_number((const unsigned char *)reader->at, types[type].voxel, reader->big_endian);
   reader->at += bytes;
-  *value = value_of(type, bits);
   return true;
 }
 
@@ -213,14 +207,33 @@ static double fraction_of(ply_type type, double value) {
   return fmin(fmax(value / most, 0), 1);
 }
 
+/* Sets a channel of a colour; role: from ROLE_COLOR on. */
+static void set_color(float color[4], int role, ply_type type, double value) {
+  double fraction = fraction_of(type, value);
+  bool linear = type >= PLY_F32 || role == ROLE_COLOR + 3;
+  color[role - ROLE_COLOR] = (float)(linear ? fraction : hl_srgb_decode(fraction));
+}
+
 static void set_vertex(mesh_parts *parts, int role, ply_type type, double value) {
   size_t v = parts->vertex_count;
   if (role < ROLE_NORMAL) parts->positions[v][role] = (float)value;
   else if (role < ROLE_COLOR) parts->normals[v][role - ROLE_NORMAL] = (float)value;
-  else if (role < ROLE_COLOR + 3)
-    parts->colors[v][role - ROLE_COLOR] = (float)(type >= PLY_F32 ? fraction_of(type, value)
-                                                                  : hl_srgb_decode(fraction_of(type, value)));
-  else parts->colors[v][3] = (float)fraction_of(type, value);
+  else set_color(parts->colors[v], role, type, value);
+}
+
+/* Gives the triangles from the first one on, which are those of one face, its colour. */
+static hl_status color_faces(ply_reader *reader, size_t first, const float color[4]) {
+  mesh_parts *parts = reader->parts;
+  if (parts->triangle_count > reader->face_color_room || parts->face_colors == NULL) {
+    size_t room = 2 * parts->triangle_count + 1024;
+    float(*grown)[4] = hl_reallocate(parts->context, parts->face_colors, room, sizeof *grown);
+    if (grown == NULL) return hl_fail_memory(reader->error, room * sizeof *grown, parts->path);
+    parts->face_colors = grown;
+    reader->face_color_room = room;
+  }
+  for (size_t t = first; t < parts->triangle_count; t++)
+    memcpy(parts->face_colors[t], color, sizeof *parts->face_colors);
+  return HL_OK;
 }
 
 /* Reads a face's corners, which make a fan of triangles. */
@@ -252,6 +265,8 @@ static hl_status skip_list(ply_reader *reader, const ply_property *property) {
 }
 
 static hl_status read_item(ply_reader *reader, const ply_element *element) {
+  float color[4] = {1, 1, 1, 1};
+  size_t first = reader->parts->triangle_count;
   for (int p = 0; p < element->property_count; p++) {
     const ply_property *property = &element->property[p];
     hl_status status = HL_OK;
@@ -262,10 +277,12 @@ static hl_status read_item(ply_reader *reader, const ply_element *element) {
     else if (!read_number(reader, property->type, &value)) status = fail_short(reader);
     else if (element->vertices && property->role != ROLE_NONE)
       set_vertex(reader->parts, property->role, property->type, value);
+    else if (element->face_colors && property->role >= ROLE_COLOR)
+      set_color(color, property->role, property->type, value);
     if (status != HL_OK) return status;
   }
   if (element->vertices) reader->parts->vertex_count++;
-  return HL_OK;
+  return element->face_colors ? color_faces(reader, first, color) : HL_OK;
 }
 
 static bool has_role(const ply_element *element, int first, int last) {
@@ -313,6 +330,7 @@ static hl_status read_element(ply_reader *reader, ply_element *element) {
                    element->count, left - 1);
   if (element->vertices && reader->parts->vertex_count > 0) return fail(reader, "vertices twice");
   hl_status status = element->vertices ? begin_vertices(reader, element) : HL_OK;
+  element->face_colors = element->faces && has_role(element, ROLE_COLOR, ROLE_COLOR + 2);
   for (size_t n = 0; status == HL_OK && n < element->count; n++) status = read_item(reader, element);
   return status;
 }

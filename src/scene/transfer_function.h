@@ -1,4 +1,4 @@
-/* scene/transfer_function.h - evaluating transfer functions, and the named colormaps. */
+/* scene/transfer_function.h - evaluating transfer functions. */
 #ifndef HL_SCENE_TRANSFER_FUNCTION_H
 #define HL_SCENE_TRANSFER_FUNCTION_H
 
@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "core/error.h"
+#include "image/colormaps.h"
 
 /* opacity (per unit_distance) and linear colour of a data value: piecewise linear, ends held. */
 double hl_transfer_function_opacity(const hl_transfer_function *function, double value);
@@ -26,11 +27,6 @@ hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_funct
 
 #define HL_COLORMAP_POINTS 65 /* colour points that a colormap is made of */
 
-double hl_srgb_to_linear(double srgb);
-
 static inline bool hl_is_grey(const double color[3]) { return color[0] == color[1] && color[1] == color[2]; }
-
-/* Linear RGB at t in [0,1] (clamped); false if there is no such map. */
-bool hl_colormap_evaluate(const char *name, double t, double linear[3]);
 
 #endif

@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "volume/colors.h"
 #include "volume/convert.h"
+#include "volume/numbers.h"
 #include "volume/text.h"
 
 enum { PIECE_BYTES = 1 << 20, STAGE_VOXELS = 8192, SKIPPED_BYTES = 1 << 16 };
@@ -113,35 +114,6 @@ static hl_status read_binary(hl_stream *stream, const hl_payload *payload, unsig
   return HL_OK;
 }
 
-static bool is_separator(unsigned char c) { return hl_is_space((char)c) || c == ','; }
-
-/* Reads the next number; *found is false at the end. */
-static hl_status next_number(hl_stream *stream, double *value, bool *found, hl_error *error) {
-  const unsigned char *bytes;
-  size_t available, begin;
-  *found = false;
-  do {
-    hl_status status = hl_stream_peek(stream, HL_NUMBER_CHARACTERS, &bytes, &available, error);
-    if (status != HL_OK || available == 0) return status;
-    for (begin = 0; begin < available && is_separator(bytes[begin]); begin++) {}
-    if (begin > 0) hl_stream_take(stream, begin);
-  } while (begin > 0 && available - begin < HL_NUMBER_CHARACTERS);
-  bytes += begin;
-  available -= begin;
-  size_t length = 0;
-  while (length < available && length < HL_NUMBER_CHARACTERS && !is_separator(bytes[length]) &&
-         bytes[length] != '<')
-    length++;
-  if (length == 0) return HL_OK;
-  if (!hl_text_number((const char *)bytes, length, value))
-    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
-                          "%s, byte %llu: expected a number here", stream->path,
-                          (unsigned long long)stream->offset);
-  hl_stream_take(stream, length);
-  *found = true;
-  return HL_OK;
-}
-
 static bool fits_type(hl_voxel_type type, double value) {
   static const double low[HL_VOXEL_I64 + 1] = {[HL_VOXEL_I8] = INT8_MIN,
                                                [HL_VOXEL_I16] = INT16_MIN,
@@ -169,7 +141,7 @@ static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, u
                                  void *voxels, hl_error *error) {
   double value;
   bool found;
-  hl_status status = next_number(stream, &value, &found, error);
+  hl_status status = hl_next_number(stream, &value, &found, error);
   if (status != HL_OK) return status;
   if (!found)
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
@@ -316,7 +288,7 @@ static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_erro
   const unsigned char *bytes;
   size_t available;
   hl_status status = hl_stream_peek(stream, 1, &bytes, &available, error);
-  while (status == HL_OK && payload->text && available > 0 && is_separator(bytes[0])) {
+  while (status == HL_OK && payload->text && available > 0 && hl_is_separator(bytes[0])) {
     hl_stream_take(stream, 1);
     status = hl_stream_peek(stream, 1, &bytes, &available, error);
   }

@@ -36,6 +36,9 @@ TARGETS = {
 SHARED = ("all volume files, what they share included", ["volume/"],
           ["nrrd", "nifti", "metaimage", "legacy_vtk", "vti", "npy", "mrc", "dicom", "raw"])
 
+TARGETS["ply"] = ("PLY", ["mesh/ply.c"])
+TARGETS["gltf"] = ("glTF", ["mesh/gltf"])
+TARGETS["vtp"] = ("VTK PolyData", ["mesh/vtp.c", "mesh/legacy_polydata.c", "mesh/polydata.c"])
 TARGETS["tiff"] = ("TIFF, OME-TIFF, ImageJ", ["volume/tiff"])
 TARGETS["slices"] = ("pictures of slices", ["volume/slice"])
 SHARED[2].append("tiff")

@@ -132,6 +132,26 @@ void fuzz_load_volume(const char *name, const char *second_name, const uint8_t *
   load_otherwise(path, data, first_size);
 }
 
+static void check_mesh(const hl_mesh *mesh) {
+  const hl_mesh_description *d = hl_mesh_describe(mesh);
+  double low[3], high[3];
+  REQUIRE(d->triangle_count + d->sphere_count > 0 && hl_mesh_get_box(mesh, low, high) == HL_OK);
+  for (int axis = 0; axis < 3; axis++) REQUIRE(isfinite(low[axis]) && low[axis] <= high[axis]);
+  for (size_t t = 0; t < d->triangle_count; t++)
+    for (int i = 0; i < 3; i++) REQUIRE(d->triangles[t][i] < d->vertex_count);
+}
+
+void fuzz_load_mesh(const char *name, const uint8_t *data, size_t size) {
+  hl_mesh *mesh = NULL;
+  hl_error error = {0};
+  const char *path = fuzz_write_file(0, name, data, size);
+  hl_status status = hl_mesh_load(fuzz_context(), path, &mesh, &error);
+  if (fuzz_check_answer(status, &error, mesh != NULL)) check_mesh(mesh);
+  hl_mesh_release(mesh);
+  fuzz_remove_file(0);
+  fuzz_check_nothing_held();
+}
+
 unsigned fuzz_byte(fuzz_source *source) {
   if (source->left == 0) return 0;
   source->left--;

@@ -74,6 +74,28 @@ static void test_ply(void **state) {
   hl_context_destroy(context);
 }
 
+/* Faces with colours: a quad's two triangles have its colour, and a face without opacity is opaque. */
+static void test_ply_faces(void **state) {
+  (void)state;
+  static const char text[] = PLY_HEAD("ascii") "element face 2\nproperty list uchar int vertex_indices\nproperty uchar "
+                             "red\nproperty uchar green\nproperty uchar blue\nend_header\n"
+                             "0 0 0\n2 0 0\n2 3 0\n0 3 1\n4 0 1 2 3 255 0 188\n3 0 1 3 0 255 0\n";
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  hl_mesh *mesh = load(context, "f.ply", text, sizeof text - 1, NULL);
+  const hl_mesh_description *d = hl_mesh_describe(mesh);
+  assert_int_equal(d->triangle_count, 3);
+  assert_null(d->colors);
+  for (int t = 0; t < 2; t++) {
+    assert_true(d->face_colors[t][0] == 1 && d->face_colors[t][1] == 0 && d->face_colors[t][3] == 1);
+    assert_true(d->face_colors[t][2] > 0.50f && d->face_colors[t][2] < 0.51f);
+  }
+  assert_memory_equal(d->face_colors[2], ((float[4]){0, 1, 0, 1}), 16);
+  hl_mesh_release(mesh);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 /* The six faces of a cube as an OBJ of quads, as ASCII STL, and from memory turned inside out. */
 static void test_cube_is_closed(void **state) {
   (void)state;
@@ -195,7 +217,7 @@ static void test_refused(void **state) {
        "[{\"attributes\": {\"POSITION\": 0}}]}]}",
        "accessor 0 leads outside of the file's buffers"},
       {"a.gltf", "{\"buffers\": [{\"uri\": \"../secret\"}]}", "is no file beside it"},
-      {"a.off", "OFF\n", "is no mesh that is known: give .ply, .stl, .obj, .gltf or .glb"}};
+      {"a.off", "OFF\n", "is no mesh that is known: give .ply, .stl, .obj, .gltf, .glb, .vtp or .vtk"}};
   hl_context *context = NULL;
   assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
   for (size_t c = 0; c < sizeof cases / sizeof *cases; c++)
@@ -257,10 +279,13 @@ static void test_round(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_ply),         cmocka_unit_test(test_cube_is_closed),
-      cmocka_unit_test(test_refused),     cmocka_unit_test(test_from_memory),
-      cmocka_unit_test(test_round),       cmocka_unit_test(test_gltf),
-      cmocka_unit_test(test_damaged_gltf)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_ply),
+                                     cmocka_unit_test(test_ply_faces),
+                                     cmocka_unit_test(test_cube_is_closed),
+                                     cmocka_unit_test(test_refused),
+                                     cmocka_unit_test(test_from_memory),
+                                     cmocka_unit_test(test_round),
+                                     cmocka_unit_test(test_gltf),
+                                     cmocka_unit_test(test_damaged_gltf)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
