@@ -116,19 +116,38 @@ static hl_status take_file(const char *path, server_answer *answer, hl_error *er
   return HL_ERROR_MEMORY;
 }
 
-static hl_status make(server *s, server_page *page, const hl_scene *scene, const film_request *request,
-                      server_answer *answer, hl_error *error) {
+/* Destroy the film with film_destroy(). */
+static hl_status begin_film(const server *s, const hl_scene *scene, const film_request *request, film **f,
+                            hl_error *error) {
   film_options options = {.context = s->options.context,
                           .scene = scene,
                           .keys = request->keys,
                           .key_count = request->key_count,
                           .turntable = request->turntable,
                           .frames = request->frames};
+  return film_create(&options, f, error);
+}
+
+hl_status turn_to_frame(server *s, hl_scene **scene, const film_request *request, int frame,
+                        hl_error *error) {
+  film *f = NULL;
+  hl_scene *turned = NULL;
+  hl_status status = begin_film(s, *scene, request, &f, error);
+  if (status == HL_OK) status = film_scene(f, frame, &turned, error);
+  film_destroy(f);
+  if (status != HL_OK) return status;
+  hl_scene_release(*scene);
+  *scene = turned;
+  return HL_OK;
+}
+
+static hl_status make(server *s, server_page *page, const hl_scene *scene, const film_request *request,
+                      server_answer *answer, hl_error *error) {
   server_upload place;
   char name[40];
   film *f = NULL;
   film_output out = {.movie = NULL};
-  hl_status status = film_create(&options, &f, error);
+  hl_status status = begin_film(s, scene, request, &f, error);
   if (status != HL_OK) return status;
   snprintf(name, sizeof name, "film.%s", request->format);
   if (!upload_folder(name, &place)) {

@@ -118,7 +118,9 @@ bool pages_begin(server *s);
 void pages_end(server *s);
 /* film: null for a picture. */
 void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer);
-void answer_scene(server *s, long long opened, const char *text, size_t length, server_answer *answer);
+/* The scene with its defaults; with a film, as it is at that frame of the film. film: null for none. */
+void answer_scene(server *s, const frame_request *request, const film_request *film, int frame,
+                  server_answer *answer);
 /* Makes the page's frames below this number outdated. */
 void cancel_frames(server *s, const char *page, unsigned long long number);
 /* How far the page's film is; false: it has none. */
@@ -129,6 +131,9 @@ void answer_open(server *s, const char *path, const char *name, server_answer *a
 /* films.c */
 hl_status render_film(server *s, server_page *page, const hl_scene *scene, const film_request *request,
                       server_answer *answer, hl_error *error);
+
+/* Replaces a scene by what it is at a frame of its film. */
+hl_status turn_to_frame(server *s, hl_scene **scene, const film_request *film, int frame, hl_error *error);
 
 /* opened.c: scenes that are open. An entered one is held until it is left; null: it is open no longer. */
 server_opened *opened_enter(server *s, long long number);

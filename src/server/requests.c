@@ -269,9 +269,9 @@ static void post_frame(server *s, struct MHD_Connection *connection, const reque
         "a frame needs ?page=NAME&number=N&format=jpeg|png|exr|npy (&quality=10..100, &depth=8|16)\n");
 }
 
-static void post_film(server *s, struct MHD_Connection *connection, const request *r, server_answer *answer) {
-  frame_request wanted = read_query(connection, r);
-  film_request film = {.format = wanted.format};
+/* Numbers that are none are -1. */
+static film_request read_film(struct MHD_Connection *connection, const char *format) {
+  film_request film = {.format = format};
   for (char name[8]; film.key_count < MOST_FILM_KEYS; film.key_count++) {
     snprintf(name, sizeof name, "key%zu", film.key_count);
     if ((film.keys[film.key_count] = query(connection, name)) == NULL) break;
@@ -279,6 +279,24 @@ static void post_film(server *s, struct MHD_Connection *connection, const reques
   film.turntable = (int)query_number(connection, "turntable", 0, MOST_FILM_FRAMES, 0);
   film.frames = (int)query_number(connection, "frames", 0, MOST_FILM_FRAMES, 0);
   film.frames_per_second = (double)query_number(connection, "fps", 1, 240, 30);
+  return film;
+}
+
+/* The scene as it is, or at a frame of its film. */
+static void post_scene(server *s, struct MHD_Connection *connection, const request *r,
+                       server_answer *answer) {
+  frame_request wanted = read_query(connection, r);
+  film_request film = read_film(connection, NULL);
+  bool turns = query(connection, "frame") != NULL;
+  int frame = (int)query_number(connection, "frame", 0, MOST_FILM_FRAMES, 0);
+  if (frame >= 0 && film.turntable >= 0 && film.frames >= 0)
+    answer_scene(s, &wanted, turns ? &film : NULL, frame, answer);
+  else answer_problem(answer, 400, "a scene of a film needs ?frame=N&frames=N&turntable=N&key0=...\n");
+}
+
+static void post_film(server *s, struct MHD_Connection *connection, const request *r, server_answer *answer) {
+  frame_request wanted = read_query(connection, r);
+  film_request film = read_film(connection, wanted.format);
   if (names_page(&wanted) && is_film_format(film.format) && film.turntable >= 0 && film.frames >= 0 &&
       film.frames_per_second > 0)
     answer_frame(s, &wanted, &film, answer);
@@ -321,7 +339,7 @@ static void answer_post(server *s, struct MHD_Connection *connection, request *r
   else if (r->body == NULL) answer_problem(answer, 400, "the scene is missing\n");
   else if (frame) post_frame(s, connection, r, answer);
   else if (film) post_film(s, connection, r, answer);
-  else answer_scene(s, read_query(connection, r).opened, r->body, r->length, answer);
+  else post_scene(s, connection, r, answer);
 }
 
 /* Answers a complete request. The connection does not count as idle while its picture is made. */

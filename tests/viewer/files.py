@@ -7,6 +7,7 @@ import base64
 import http.client
 import io
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -23,7 +24,7 @@ from PIL import Image
 import checks
 from browser import Browser
 from checks import check
-from hands import PROGRAM, equals_render, press, rest, scene_of
+from hands import PROGRAM, center, equals_render, final_picture, open_section, press, rest, scene_of
 from viewer import Viewer
 
 
@@ -114,6 +115,10 @@ def films(viewer, scene):
     with open("own.mp4", "rb") as file:
         check(file.read() == body, "the film of halflight animate, byte for byte")
     check(request(viewer, "POST", "film", json.dumps(small), number=2, key0="lights.0.intensty=0:1", **asked)[0] == 400, "a wrong key")
+    status, body = request(viewer, "POST", "scene", json.dumps(small), key0="lights.0.intensity=0:1,4:2", frames=5, frame=1)
+    check(status == 200 and json.loads(body)["lights"][0]["intensity"] == 1.25, f"the scene at a frame: {status}")
+    for wrong in ({"frame": -1}, {"frame": "x"}, {"frame": 1, "frames": 0.5}, {"frame": 1, "key0": "lights=0:1"}):
+        check(request(viewer, "POST", "scene", json.dumps(small), **wrong)[0] == 400, f"no scene at {wrong}")
     small["image"].update(width=800, height=800)
     answers = []
     slow = threading.Thread(target=lambda: answers.append(request(viewer, "POST", "film", json.dumps(small), number=3,
@@ -154,6 +159,67 @@ def fair_shares(viewer, scene):
     check(min(counts) >= 3 and max(counts) < 2 * min(counts), f"two pages get fair shares: {counts}")
 
 
+def to_frame(browser, frame):
+    """Moves the timeline's slider, and waits for the frame's scene."""
+    browser.run("window.told = false; halflight.store.listen((_, name) => { window.told ||= name === 'time'; }); 0")
+    browser.run(f"(() => {{ const s = document.querySelector('[aria-label=Frame]'); s.value = {frame}; s.dispatchEvent(new Event('input')); }})()")
+    browser.wait("told")
+
+
+def timeline(browser):
+    """Keys of the camera and of a number: what the page shows at a frame is the frame of the copied command's film."""
+    open_section(browser, "Film")
+    browser.run("(() => { const n = document.querySelector('[aria-label=\"Frames of the film\"]'); n.value = 5; n.dispatchEvent(new Event('change')); })()")
+    press(browser, "key of the camera now")
+    first = scene_of(browser)["camera"]
+    to_frame(browser, 4)
+    browser.run("import('./camera.js').then((m) => halflight.store.setCamera(m.zoom(m.turn(halflight.store.scene.camera, 1.6, 0.2), 1.3)))")
+    press(browser, "key of the camera now")
+    last = scene_of(browser)["camera"]
+    browser.run("document.querySelector('[aria-label=\"A number of the scene\"]').value = 'lights.0.intensity'")
+    press(browser, "key of this number now")
+    to_frame(browser, 0)
+    browser.run("halflight.store.changeLight(0, 'intensity', (l) => ({ ...l, intensity: 3 }))")
+    press(browser, "key of this number now")
+    check(browser.run("[...document.querySelectorAll('.track-name')].map((n) => n.textContent)") == ["camera", "lights.0.intensity"], "two tracks")
+    check(browser.run("document.querySelectorAll('.key').length") == 4, "two keys each")
+    to_frame(browser, 2)
+
+    def reach(camera):
+        return math.dist(camera["position"], camera["target"])
+
+    at = scene_of(browser)
+    check(abs(reach(at["camera"]) / math.sqrt(reach(first) * reach(last)) - 1) < 1e-6, "half way the camera is at the mean of both distances")
+    arms = [[p - t for p, t in zip(c["position"], c["target"])] for c in (first, at["camera"], last)]
+    angles = [math.acos(sum(x * y for x, y in zip(a, b)) / math.hypot(*a) / math.hypot(*b)) for a, b in zip(arms, arms[1:])]
+    check(abs(angles[0] - angles[1]) < 1e-6, f"and has turned by half of the angle: {angles}")
+    shown = final_picture(browser)
+    browser.run("(() => { const s = [...document.querySelectorAll('select')].find((x) => x.value === 'mp4'); s.value = 'zip'; s.dispatchEvent(new Event('change')); })()")
+    browser.run("window.copied = ''; navigator.clipboard.writeText = async (text) => { copied = text; }; 0")
+    press(browser, "copy animate command")
+    browser.wait("copied !== ''")
+    environment = dict(os.environ, PATH=f"{os.path.dirname(PROGRAM)}:{os.environ['PATH']}")
+    subprocess.run(["sh", "-eu", "-c", browser.run("copied")], env=environment, check=True, capture_output=True)
+    names = sorted(os.listdir("dropped"))
+    check(len(names) == 5, f"five pictures: {names}")
+    own = Image.open(pathlib.Path("dropped", names[2])).convert("RGBA").tobytes()
+    check(own == Image.open(io.BytesIO(shown)).convert("RGBA").tobytes(), "the frame of the film is the one that was shown")
+    browser.run("(() => { const s = [...document.querySelectorAll('select')].find((x) => x.value === 'zip'); s.value = 'mp4'; s.dispatchEvent(new Event('change')); })()")
+    browser.run("document.querySelector('.key').focus()")
+    browser.key("ArrowRight")
+    check(browser.run("document.activeElement.dataset.frame") == "1", "an arrow key moves a key")
+    x, y = center(browser, ".key")
+    browser.drag([x, y], [x + 0.25 * browser.run("document.querySelector('.track-keys').clientWidth"), y])
+    check(browser.run("document.querySelector('.key').dataset.frame") == "2", "a key is dragged")
+    browser.run("document.querySelector('.key').focus()")
+    browser.key("Delete")
+    check(browser.run("document.querySelectorAll('.key').length") == 3, "Delete removes a key")
+    press(browser, "play")
+    browser.wait("halflight.frames.statistics.stage === 'moving'")
+    press(browser, "stop playing")
+    rest(browser)
+
+
 def on_the_page(browser):
     """The list and a dropped file open volumes; the film panel makes one."""
     rest(browser)
@@ -178,20 +244,17 @@ def on_the_page(browser):
     browser.key("ArrowLeft")
     check(browser.run(turned) != before, "keys work on after another file")
     rest(browser)
+    timeline(browser)
     if shutil.which("ffmpeg"):
         browser.run("""(() => {
           window.saved = []; URL.createObjectURL = (blob) => { saved.push([blob.type, blob.size]); return 'blob:none'; };
           HTMLAnchorElement.prototype.click = () => {};
-          document.querySelector('[aria-label^="Frames of a whole turn"]').value = 4;
         })()""")
-        browser.run("document.querySelector('[aria-label=\"A number of the scene\"]').value = 'lights.0.intensity'")
-        press(browser, "add its value now")
-        check(browser.run("document.querySelector('textarea').value.startsWith('lights.0.intensity=0:')"), "a key of the value now")
         press(browser, "make film")
         browser.wait("saved.length > 0", timeout=60)
         check(browser.run("saved[0][0] === 'video/mp4' && saved[0][1] > 1000"), "the page makes a film")
     command = browser.run("""import('./film_panel.js').then((m) => m.animateCommand(halflight.store.scene, 'a b.nrrd',
-      { turntable: 3, keys: ['lights.0.intensity=0:1,2:2'], fps: 10, format: 'gif' }))""")
+      { turntable: 3, frames: 3, keys: ['lights.0.intensity=0:1,2:2'], fps: 10, format: 'gif' }))""")
     environment = dict(os.environ, PATH=f"{os.path.dirname(PROGRAM)}:{os.environ['PATH']}")
     done = subprocess.run(["sh", "-eu", "-c", command], env=environment, capture_output=True, text=True)
     check(done.returncode == 0, f"the copied command runs: {done.stderr}")

@@ -1,11 +1,12 @@
-// The panel of films: a turn, and numbers of the scene that go from value to value. The film is what `halflight
-// animate` makes; "Pictures" are numbered PNGs in a zip archive, which need no ffmpeg.
+// The panel of films: a turn, and keys of the camera and of numbers of the scene, which the timeline shows. The film is
+// what `halflight animate` makes; "Pictures" are numbered PNGs in a zip archive, which need no ffmpeg.
 
-import { button, make, row, section, select } from "./controls.js";
+import { button, make, row, section, select, toggle } from "./controls.js";
 import { download, quoted, sceneText, stem } from "./export.js";
+import { CAMERA, keyTexts, withKey } from "./timeline.js";
+import { timelineStrip } from "./timeline_strip.js";
 
 const ASK_EVERY = 300; // milliseconds, for how far the film is
-const TURNS = { "camera.azimuth": 0, "camera.elevation": 0, "camera.roll": 0, "camera.zoom": 1 };
 
 // The paths of all numbers of a scene, as keys name them.
 export function numberPaths(value, path = "") {
@@ -14,65 +15,112 @@ export function numberPaths(value, path = "") {
   return Object.entries(value).flatMap(([key, part]) => numberPaths(part, path ? `${path}.${key}` : key));
 }
 
-export const numberAt = (scene, path) => TURNS[path] ?? path.split(".").reduce((at, key) => at?.[key], scene);
+export const numberAt = (scene, path) => path.split(".").reduce((at, key) => at?.[key], scene);
 
-export const animateCommand = (scene, title, { turntable, keys, fps, format }) =>
-  [`halflight animate - ${turntable > 0 ? `--turntable ${turntable} ` : ""}`, ...keys.map((key) => `--key ${quoted(key)} `),
+export const animateCommand = (scene, title, { turntable, frames, keys, fps, format }) =>
+  [`halflight animate - --frames ${frames} ${turntable > 0 ? `--turntable ${turntable} ` : ""}`, ...keys.map((key) => `--key ${quoted(key)} `),
     `--fps ${fps} -o ${quoted(format === "zip" ? stem(title) : `${stem(title)}.${format}`)} <<'END'\n${sceneText(scene)}END\n`].join("");
 
 function timeLeft(seconds) {
   return seconds < 90 ? `${Math.ceil(seconds)} s` : `${Math.ceil(seconds / 60)} min`;
 }
 
-export function filmPanel({ store, start, channel, report, copy }) {
-  const { element, body } = section("Film", false);
-  const number = (label, value, low, high) => make("input", { type: "number", min: low, max: high, step: 1, value, "aria-label": label });
-  const turn = number("Frames of a whole turn; 0 for none", 120, 0, 100000), fps = number("Frames a second", 30, 1, 240);
-  const keys = make("textarea", { rows: 2, spellcheck: "false", "aria-label": "Keys, one on each line: path=frame:value,frame:value", placeholder: "lights.0.intensity=0:1,60:3" });
-  const names = make("datalist", { id: "film-paths" });
-  const path = make("input", { type: "text", list: "film-paths", "aria-label": "A number of the scene", placeholder: "a number of the scene" });
-  const at = number("Frame", 0, 0, 100000);
-  let format = "mp4";
-  const kind = select({
-    label: "Format", choices: [["mp4", "MP4"], ["webm", "WebM"], ["gif", "GIF"], ["zip", "Pictures"]], get: () => format, set: (value) => { format = value; },
-  });
-  const bar = make("progress", { max: 1, value: 0, hidden: true, "aria-label": "The film" }), told = make("p", { class: "facts", role: "status" });
+// The film that is being put together: its tracks and length, the frame that the page shows, and the scene without what
+// that frame does to it.
+class Film {
+  tracks = [];
+  frames = 120;
+  fps = 30;
+  turns = false;
+  frame = 0;
+  format = "mp4";
+  playing = false;
+  scene;
+  changed = () => {};
+  #viewer;
+  #asking = false;
+  #again = false;
 
-  // The path's value now, at the frame: appended to the path's line, or on a new one.
-  function addKey() {
-    const value = numberAt(store.scene, path.value.trim());
-    if (typeof value !== "number") {
-      report("choose a number of the scene first");
-      return;
-    }
-    const lines = keys.value.split("\n").filter((line) => line.trim()), found = lines.findIndex((line) => line.startsWith(`${path.value.trim()}=`));
-    const point = `${+at.value}:${value}`;
-    if (found >= 0) lines[found] += `,${point}`;
-    else lines.push(`${path.value.trim()}=${point}`);
-    keys.value = lines.join("\n");
+  constructor(viewer) {
+    this.#viewer = viewer;
+    this.scene = viewer.store.scene;
+    viewer.store.listen((scene, name) => this.#follow(scene, name));
   }
 
-  const wanted = () => ({
-    turntable: Math.max(0, Math.round(+turn.value) || 0), fps: Math.round(+fps.value) || 30, format,
-    keys: keys.value.split("\n").map((line) => line.trim()).filter(Boolean),
-  });
+  // A turn goes out from the camera that a person has chosen, not from where the turn has taken it.
+  #follow(scene, name) {
+    if (name === "time") return;
+    this.playing = false;
+    this.scene = !this.turns || name === "camera" ? scene : { ...scene, camera: this.scene.camera };
+    this.changed();
+  }
+
+  get wanted() {
+    const { frames, fps, format } = this;
+    return { turntable: this.turns ? frames : 0, frames, fps, format, keys: keyTexts(this.tracks, this.scene.camera.type) };
+  }
+
+  set(part) {
+    Object.assign(this, part);
+    this.frame = Math.min(this.frame, this.frames - 1);
+    this.changed();
+  }
+
+  // Shows a frame; of those that are asked for meanwhile the last one.
+  async show(frame) {
+    this.set({ frame });
+    this.#again = true;
+    const { channel, store, report } = this.#viewer;
+    if (this.#asking || !channel.sceneAt || (this.tracks.length === 0 && !this.turns)) return;
+    this.#asking = true;
+    while (this.#again) {
+      this.#again = false;
+      try {
+        const at = await channel.sceneAt(this.scene, this.wanted, this.frame);
+        store.change("time", ({ image: { width, height } }) => ({ volumes: [], ...at, image: { ...at.image, width, height } }));
+      } catch (error) {
+        this.playing = false;
+        report(error.message);
+      }
+    }
+    this.#asking = false;
+    this.changed();
+  }
+
+  async play() {
+    this.set({ playing: !this.playing });
+    const began = performance.now() - (1000 * this.frame) / this.fps;
+    while (this.playing) {
+      await this.show(Math.floor(((performance.now() - began) / 1000) * this.fps) % this.frames);
+      await new Promise((resolve) => requestAnimationFrame(resolve));
+    }
+  }
+}
+
+// The buttons that make the film, its progress and an end.
+function maker(film, { start, channel }) {
+  const bar = make("progress", { max: 1, value: 0, hidden: true, "aria-label": "The film" }), told = make("p", { class: "facts", role: "status" });
+  const go = button("make film", run, { class: "primary" }), stop = button("stop", () => channel.stopFilm(), { hidden: true });
+
+  async function tellProgress(began) {
+    const { done, frames } = await channel.filmProgress().catch(() => ({ done: 0, frames: 0 }));
+    if (frames === 0) return;
+    bar.value = done / frames;
+    const left = done > 0 ? `, ${timeLeft(((performance.now() - began) / 1000 / done) * (frames - done))} left` : "";
+    told.textContent = `frame ${done + 1} of ${frames}${left}`;
+  }
 
   async function run() {
-    const began = performance.now(), name = `${stem(start.title)}.${format}`;
+    const began = performance.now(), wanted = film.wanted, name = `${stem(start.title)}.${wanted.format}`;
+    film.playing = false;
     go.hidden = true;
     stop.hidden = bar.hidden = false;
     told.textContent = "begins …";
-    const asking = setInterval(async () => {
-      const { done, frames } = await channel.filmProgress().catch(() => ({ done: 0, frames: 0 }));
-      if (frames === 0) return;
-      bar.value = done / frames;
-      const left = done > 0 ? `, ${timeLeft(((performance.now() - began) / 1000 / done) * (frames - done))} left` : "";
-      told.textContent = `frame ${done + 1} of ${frames}${left}`;
-    }, ASK_EVERY);
+    const asking = setInterval(() => tellProgress(began), ASK_EVERY);
     try {
-      const film = await channel.film(store.scene, wanted());
-      if (film !== null) download(film, name);
-      told.textContent = film === null ? "stopped" : `saved ${name}`;
+      const made = await channel.film(film.scene, wanted);
+      if (made !== null) download(made, name);
+      told.textContent = made === null ? "stopped" : `saved ${name}`;
     } catch (error) {
       told.textContent = error.message;
     }
@@ -80,18 +128,47 @@ export function filmPanel({ store, start, channel, report, copy }) {
     stop.hidden = bar.hidden = true;
     go.hidden = false;
   }
+  return [row("", make("span", { class: "buttons" }, go, stop)), bar, told];
+}
 
-  const go = button("make film", run, { class: "primary" });
-  const stop = button("stop", () => channel.stopFilm(), { hidden: true });
-  element.addEventListener("toggle", () => {
-    if (element.open) names.replaceChildren(...[...Object.keys(TURNS), ...numberPaths(store.scene)].map((value) => make("option", { value })));
+export function filmPanel(viewer) {
+  const { store, start, channel, report, copy, find } = viewer, film = new Film(viewer);
+  const { element, body } = section("Film", false);
+  const number = (label, key, low, high) => make("input", {
+    type: "number", min: low, max: high, step: 1, value: film[key], "aria-label": label,
+    onchange: (event) => film.set({ [key]: Math.min(Math.max(Math.round(+event.target.value) || film[key], low), high) }),
   });
+  const names = make("datalist", { id: "film-paths" });
+  const path = make("input", { type: "text", list: "film-paths", "aria-label": "A number of the scene", placeholder: "lights.0.intensity" });
+  const turn = toggle({ label: "Whole turn", get: () => film.turns, set: (turns) => film.set({ turns }) });
+  const kind = select({
+    label: "Format", choices: [["mp4", "MP4"], ["webm", "WebM"], ["gif", "GIF"], ["zip", "Pictures"]], get: () => film.format, set: (format) => film.set({ format }),
+  });
+  const strip = timelineStrip({ get: () => film, setTracks: (tracks) => film.set({ tracks }), show: (frame) => film.show(frame), play: () => film.play(), canShow: channel.sceneAt !== undefined });
+
+  const addKey = (name, value) => film.set({ tracks: withKey(film.tracks, name, film.frame, value) });
+  function addNumber() {
+    const name = path.value.trim(), value = numberAt(store.scene, name);
+    if (typeof value === "number") addKey(name, value);
+    else report("Choose a number of the scene first: the list has all of them.");
+  }
+
+  element.addEventListener("toggle", () => {
+    strip.element.hidden = !element.open;
+    if (element.open) names.replaceChildren(...numberPaths(store.scene).map((value) => make("option", { value })));
+    strip.update();
+  });
+  find("view").after(strip.element);
   body.append(
-    row(make("span", { class: "name" }, "Turn"), make("span", { class: "pair" }, turn, "frames at", fps, "a second")),
-    row(make("span", { class: "name" }, "Keys"), keys), names,
-    row("", path), row("", make("span", { class: "pair" }, button("add its value now", addKey), "at frame", at)),
-    ...(channel.film ? [kind.element, row("", make("span", { class: "buttons" }, go, stop)), bar, told] : []),
-    row("", button("copy animate command", () => copy(animateCommand(store.scene, start.title, wanted()), "the command"))));
+    row(make("span", { class: "name" }, "Length"), make("span", { class: "pair" }, number("Frames of the film", "frames", 2, 100000), "frames, at", number("Frames a second", "fps", 1, 240), "/ s")),
+    turn.element,
+    row(make("span", { class: "name" }, "Keys"), button("key of the camera now", () => addKey(CAMERA, store.scene.camera))),
+    names, row("", path), row("", button("key of this number now", addNumber)),
+    ...(channel.film ? [kind.element, ...maker(film, viewer)] : []),
+    row("", button("copy animate command", () => copy(animateCommand(film.scene, start.title, film.wanted), "the command"))),
+    make("p", { class: "facts" }, "Choose a frame below the picture, turn the camera or change a number, and add its key."));
+  film.changed = () => { strip.update(); turn.update(); };
   kind.update();
-  return { element, update: () => {} };
+  film.changed();
+  return { element, update: () => {}, film };
 }

@@ -61,9 +61,16 @@ export class HttpChannel {
     return (await check(await fetch("opening.json"))).json();
   }
 
+  // The scene at a frame of its film: exactly the one that the film shows there.
+  async sceneAt(scene, { turntable, keys, frames }, frame) {
+    const query = new URLSearchParams({ opened: this.#opened, turntable, frames, frame });
+    keys.forEach((key, n) => query.append(`key${n}`, key));
+    return (await check(await fetch(`scene?${query}`, { method: "POST", body: JSON.stringify(scene) }))).json();
+  }
+
   // A film of the scene, as a blob; null: it was stopped.
-  async film(scene, { turntable, keys, fps, format }) {
-    const query = new URLSearchParams({ page: `${this.#page}-film`, number: ++this.#number, opened: this.#opened, turntable, fps, format });
+  async film(scene, { turntable, keys, frames, fps, format }) {
+    const query = new URLSearchParams({ page: `${this.#page}-film`, number: ++this.#number, opened: this.#opened, turntable, frames, fps, format });
     keys.forEach((key, n) => query.append(`key${n}`, key));
     const response = await check(await fetch(`film?${query}`, { method: "POST", body: JSON.stringify(scene) }));
     return response.status === 204 ? null : response.blob();

@@ -35,7 +35,7 @@ export class Store {
   change(name, change) {
     const before = this.scene;
     this.scene = change(before);
-    if (name !== "camera" && name !== "size") this.#remember(name, before);
+    if (!["camera", "size", "time"].includes(name)) this.#remember(name, before);
     this.#tell(name);
   }
 

@@ -22,6 +22,15 @@ export function rotate(a, axis, angle) {
   return add(add(scale(a, cosine), scale(cross(axis, a), sine)), scale(axis, dot(axis, a) * (1 - cosine)));
 }
 
+// The turn that takes three perpendicular unit vectors to three others: { axis, angle }, by the quaternion of the matrix.
+export function turnOfFrames(from, to) {
+  const entry = (row, column) => from.reduce((sum, axis, n) => sum + to[n][row] * axis[column], 0);
+  const w = Math.sqrt(Math.max(0, 1 + entry(0, 0) + entry(1, 1) + entry(2, 2))) / 2;
+  let axis = [entry(2, 1) - entry(1, 2), entry(0, 2) - entry(2, 0), entry(1, 0) - entry(0, 1)];
+  if (length(axis) < 1e-9) axis = [0, 1, 2].map((k) => Math.sqrt(Math.max(0, (1 + entry(k, k)) / 2))); // none, or half a turn
+  return { axis: normalize(axis), angle: 2 * Math.acos(Math.min(w, 1)) };
+}
+
 // The turn that takes the unit vector `from` to `to` the shortest way, as a function of vectors.
 export function turnBetween(from, to) {
   let axis = cross(from, to);

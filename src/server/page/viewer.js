@@ -140,7 +140,7 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
   const root = element.firstElementChild, find = (id) => root.querySelector(`#${id}`);
   const ended = new AbortController();
   const store = new Store(start.scene), report = messageBox(find("message"));
-  const viewer = { store, start, channel, report, reopen, root, copy: copier(report, start.title), current: { volume: 0, light: 0 } };
+  const viewer = { store, start, channel, report, reopen, root, find, copy: copier(report, start.title), current: { volume: 0, light: 0 } };
   find("title").textContent = start.title;
   followSize(store, find("view"), ended.signal);
   viewer.overlay = new Overlay(find("overlay"), viewer);

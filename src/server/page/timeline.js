@@ -1,0 +1,72 @@
+// Keys over time, as the timeline shows them: tracks { path, points: [[frame, value], ...] }, of numbers of the scene and of
+// the camera as a whole, whose path is "camera" and whose values are cameras. Every function returns a new list of tracks.
+
+import { axes, distance, withType } from "./camera.js";
+import { add, rotate, scale, subtract, turnOfFrames } from "./vector.js";
+
+export const CAMERA = "camera";
+const STEP = Math.PI / 30; // of a turning camera between two points of its keys: the chord is 0.14 % nearer than the arc
+const ZOOM_STEP = 0.1; // of the logarithm of its distance
+const DIGITS = 7; // of numbers between keys
+
+const byFrame = (a, b) => a[0] - b[0];
+
+// A key at a frame; one that is there already gets the value.
+export function withKey(tracks, path, frame, value) {
+  const point = [frame, value], before = tracks.find((track) => track.path === path);
+  if (!before) return [...tracks, { path, points: [point] }];
+  const points = [...before.points.filter(([at]) => at !== frame), point].sort(byFrame);
+  return tracks.map((track) => (track === before ? { path, points } : track));
+}
+
+// The last key of a track takes the track with it.
+export function withoutKey(tracks, path, frame) {
+  return tracks.map((track) => (track.path === path ? { path, points: track.points.filter(([at]) => at !== frame) } : track))
+    .filter((track) => track.points.length > 0);
+}
+
+// The key at another frame, where it takes the place of one that is there.
+export function withMovedKey(tracks, path, from, to) {
+  const value = tracks.find((track) => track.path === path).points.find(([at]) => at === from)[1];
+  return withKey(withoutKey(tracks, path, from), path, to, value);
+}
+
+// The camera on the way from one to another, which it turns about its target at an even speed; part: from 0 to 1.
+export function cameraBetween(a, b, part) {
+  const [from, to] = [a, b].map((camera) => { const { right, up, towards } = axes(camera); return [right, up, towards]; });
+  const { axis, angle } = turnOfFrames(from, to), turned = (vector) => rotate(vector, axis, part * angle);
+  const mixed = (x, y) => x + part * (y - x), far = distance(a) * (distance(b) / distance(a)) ** part;
+  const target = add(a.target, scale(subtract(b.target, a.target), part));
+  return {
+    ...a, target, position: add(target, scale(turned(from[2]), far)), up: turned(from[1]),
+    ...(a.type === "orthographic" ? { height: a.height * (b.height / a.height) ** part } : { fovy_deg: mixed(a.fovy_deg, b.fovy_deg) }),
+  };
+}
+
+const cameraNumbers = (camera) => [
+  ...["position", "target", "up"].flatMap((key) => camera[key].map((x, k) => [`camera.${key}.${k}`, x])),
+  camera.type === "orthographic" ? ["camera.height", camera.height] : ["camera.fovy_deg", camera.fovy_deg],
+];
+
+// The frames and cameras of a camera's track, so close that straight lines between them follow the arc.
+function cameraPoints(points, type) {
+  const keys = points.map(([frame, camera]) => [frame, withType(camera, type)]);
+  return keys.flatMap(([frame, camera], n) => {
+    if (n === 0) return [[frame, camera, true]];
+    const [begin, before] = keys[n - 1], span = frame - begin;
+    const turn = turnOfFrames(...[before, camera].map((c) => { const { right, up, towards } = axes(c); return [right, up, towards]; })).angle;
+    const steps = Math.min(span, Math.max(1, Math.ceil(turn / STEP), Math.ceil(Math.abs(Math.log(distance(camera) / distance(before))) / ZOOM_STEP)));
+    const between = Array.from({ length: steps - 1 }, (_, s) => begin + Math.round(((s + 1) * span) / steps));
+    return [...between.map((at) => [at, cameraBetween(before, camera, (at - begin) / span), false]), [frame, camera, true]];
+  });
+}
+
+// What `halflight animate` takes as keys. type: of the scene's camera.
+export function keyTexts(tracks, type) {
+  return tracks.flatMap(({ path, points }) => {
+    if (path !== CAMERA) return [`${path}=${points.map(([frame, value]) => `${frame}:${value}`).join(",")}`];
+    const rows = cameraPoints(points, type).map(([frame, camera, exact]) =>
+      [frame, cameraNumbers(camera).map(([, x]) => (exact ? x : +x.toPrecision(DIGITS)))]);
+    return cameraNumbers(withType(points[0][1], type)).map(([name], n) => `${name}=${rows.map(([frame, numbers]) => `${frame}:${numbers[n]}`).join(",")}`);
+  });
+}

@@ -1,0 +1,70 @@
+// The timeline under the picture: a slider of frames, and a row for each track with its keys, which are dragged.
+
+import { button, make } from "./controls.js";
+import { CAMERA, withMovedKey, withoutKey } from "./timeline.js";
+
+// get() gives { tracks, frames, frame, fps }; setTracks(tracks) takes changed ones; show(frame) goes to a frame; play()
+// begins or ends playing; canShow: whether frames can be shown at all. Returns { element, update }.
+export function timelineStrip({ get, setTracks, show, play, canShow }) {
+  const slider = make("input", { type: "range", min: 0, step: 1, "aria-label": "Frame", oninput: () => show(+slider.value) });
+  const told = make("output", { class: "time" });
+  const player = button("play", play, { disabled: !canShow, title: "Plays the film in small pictures" });
+  const rows = make("div", {});
+  const element = make("div", { class: "timeline", hidden: true }, make("div", { class: "track" }, player, slider, told), rows);
+
+  const left = (frame) => `${(100 * frame) / Math.max(get().frames - 1, 1)}%`;
+
+  function drag(event, path, from) {
+    const area = event.currentTarget.parentNode.getBoundingClientRect();
+    let at = from;
+    const move = (moved) => {
+      const part = (moved.clientX - area.left) / area.width, last = get().frames - 1;
+      const to = Math.min(Math.max(Math.round(part * last), 0), last);
+      if (to === at) return;
+      const { tracks } = get(), points = tracks.find((track) => track.path === path).points;
+      if (points.some(([frame]) => frame === to)) return; // keys do not pass over each other
+      setTracks(withMovedKey(tracks, path, at, to));
+      at = to;
+    };
+    addEventListener("pointermove", move);
+    for (const over of ["pointerup", "pointercancel"]) addEventListener(over, () => removeEventListener("pointermove", move), { once: true });
+  }
+
+  function onKey(event, path, frame) {
+    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key] * (event.shiftKey ? 10 : 1);
+    const to = Math.min(Math.max(frame + step, 0), get().frames - 1);
+    if (event.key === "Delete" || event.key === "Backspace") setTracks(withoutKey(get().tracks, path, frame));
+    else if (step) {
+      if (to !== frame) setTracks(withMovedKey(get().tracks, path, frame, to));
+      rows.querySelector(`[data-path="${CSS.escape(path)}"][data-frame="${to}"]`)?.focus();
+    } else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  const keyMark = (path, [frame, value]) => {
+    const mark = button("", () => show(frame), {
+      class: "key", "data-path": path, "data-frame": frame, title: path === CAMERA ? `frame ${frame}` : `frame ${frame}: ${value}`,
+      "aria-label": `Key of ${path} at frame ${frame}. Arrow keys move it, Delete removes it.`,
+      onpointerdown: (event) => drag(event, path, frame), onkeydown: (event) => onKey(event, path, frame),
+    });
+    mark.style.left = left(frame);
+    return mark;
+  };
+
+  let drawn = null;
+  function update() {
+    const { tracks, frames, frame, fps, playing } = get();
+    slider.max = frames - 1;
+    slider.value = frame;
+    slider.style.setProperty("--filled", left(frame));
+    told.textContent = `${frame} of ${frames} · ${(frame / fps).toFixed(2)} s`;
+    player.textContent = playing ? "stop playing" : "play";
+    if (drawn?.tracks === tracks && drawn.frames === frames) return;
+    drawn = { tracks, frames };
+    rows.replaceChildren(...tracks.map(({ path, points }) => make("div", { class: "track" },
+      make("span", { class: "track-name", title: path }, path), make("span", { class: "track-keys" }, ...points.map((point) => keyMark(path, point))),
+      button("−", () => setTracks(get().tracks.filter((track) => track.path !== path)), { "aria-label": `Remove the keys of ${path}` }))));
+  }
+  return { element, update };
+}
