@@ -167,6 +167,29 @@ typedef struct hl_isosurface {
   double opacity;  /* 0 to 1 */
 } hl_isosurface;
 
+/* A part of space that is cut out of a volume: its inside, or with keep all but its inside. Lengths are in the
+ * units of the volume's own file, before the transform. */
+typedef enum hl_cut_type {
+  HL_CUT_PLANE = 0, /* the half space on the side that the normal points to */
+  HL_CUT_BOX = 1,
+  HL_CUT_SPHERE = 2
+} hl_cut_type;
+typedef enum hl_cut_keep { HL_CUT_KEEP_OUTSIDE = 0, HL_CUT_KEEP_INSIDE = 1 } hl_cut_keep;
+typedef struct hl_cut {
+  hl_cut_type type;
+  double point[3], normal[3]; /* plane: a point on it, and a direction of any length */
+  double min[3], max[3];      /* box */
+  double center[3], radius;   /* sphere */
+  hl_cut_keep keep;           /* which side is left: default the outside */
+} hl_cut;
+
+/* How surfaces are shaded within a voxel of a cut's face; at twice the depth they are as anywhere. */
+typedef enum hl_cut_shading {
+  HL_CUT_SHADING_FACE = 0,     /* by the face's own normal */
+  HL_CUT_SHADING_GRADIENT = 1, /* by the data's gradient, as if nothing were cut */
+  HL_CUT_SHADING_NONE = 2      /* as a medium, which has no normal */
+} hl_cut_shading;
+
 /* A label of a label map: what the voxels with this value are. */
 typedef struct hl_label {
   double value;     /* a whole number */
@@ -211,6 +234,10 @@ typedef struct hl_scene_volume {
    * colours, over the transfer function, which is then made of them. [label_count]; rising by value. */
   const hl_label *labels;
   size_t label_count;
+  const hl_cut *cuts; /* [cut_count]; what is left is in all that is kept and in nothing that is cut out */
+  size_t cut_count;
+  hl_cut_shading cut_shading;
+  int cut_casts_shadow; /* non-zero: what `cuts` remove goes on taking light; default 0 */
 } hl_scene_volume;
 
 /* A mesh among the volumes. Its colour is that of its vertices, faces or spheres, where it has some, times
@@ -307,6 +334,7 @@ HL_API void hl_light_defaults(hl_light *light);
 HL_API void hl_scene_volume_defaults(hl_scene_volume *volume);
 HL_API void hl_scene_mesh_defaults(hl_scene_mesh *mesh);
 HL_API void hl_isosurface_defaults(hl_isosurface *surface);
+HL_API void hl_cut_defaults(hl_cut *cut);
 
 /* Checks and copies the description, and retains the volumes. Errors name the field as a JSON pointer
  * ("/lights/0/radius"). */

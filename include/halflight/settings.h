@@ -24,7 +24,8 @@ typedef enum hl_setting_kind {
   HL_SETTINGS_RENDER = 7,            /* hl_render_settings; "render" */
   HL_SETTINGS_MESH = 8,              /* hl_scene_mesh; each of "meshes" */
   HL_SETTINGS_SKY = 9,               /* hl_sky; "sky" */
-  HL_SETTINGS_ISO = 10               /* hl_isosurface; each of a volume's "iso" */
+  HL_SETTINGS_ISO = 10,              /* hl_isosurface; each of a volume's "iso" */
+  HL_SETTINGS_CUT = 11               /* hl_cut; each of a volume's "cuts" */
 } hl_setting_kind;
 
 /* The type of the field, and of its value in a scene file. */

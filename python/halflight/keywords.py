@@ -35,6 +35,11 @@ class VolumeSettings(TypedDict, total=False):
         The volume takes light from what lies behind it. Default: True.
     receives_shadow : bool
         The volume is darkened by shadows. Default: True.
+    cut_shading : str
+        The normal of surfaces at the faces of `cuts`: the face's, the data's, or none, as in a medium.
+        "face", "gradient", "none". Default: "face".
+    cut_casts_shadow : bool
+        What `cuts` remove goes on taking light from what lies behind it. Default: False.
     """
 
     rotate_axis: Sequence[float]
@@ -48,6 +53,8 @@ class VolumeSettings(TypedDict, total=False):
     visible: bool
     casts_shadow: bool
     receives_shadow: bool
+    cut_shading: str
+    cut_casts_shadow: bool
 
 
 class MaterialSettings(TypedDict, total=False):
@@ -236,6 +243,8 @@ class FurtherSettings(TypedDict, total=False):
     visible: bool
     casts_shadow: bool
     receives_shadow: bool
+    cut_shading: str
+    cut_casts_shadow: bool
     emission: float
     exposure: float
     tone: str

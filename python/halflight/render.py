@@ -228,10 +228,11 @@ class Asked(FurtherSettings, total=False):
     level: int
     meshes: Mesh | Sequence[Mesh]
     iso: Any
+    cuts: Any
 
 
 _PLACE = ("spacing", "origin", "direction", "affine", "axes", "array", "component", "series", "time", "channel", "level")
-_MATERIAL = ("ambient", "diffuse", "specular", "shininess", "iso",
+_MATERIAL = ("ambient", "diffuse", "specular", "shininess", "iso", "cuts",
              *(word for word in FurtherSettings.__annotations__ if word in Look.__annotations__))
 _SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads", "meshes",
              *(word for word in FurtherSettings.__annotations__ if word in Settings.__annotations__))
@@ -267,7 +268,7 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
            layers: bool = False, progress: Progress = None, array: str | None = None,
            component: int | str | None = None, series: str | None = None, time: int | None = None,
            channel: int | None = None, level: int | None = None, meshes: Mesh | Sequence[Mesh] | None = None,
-           iso: Any = None, **further: Unpack[FurtherSettings]) -> Image:
+           iso: Any = None, cuts: Any = None, **further: Unpack[FurtherSettings]) -> Image:
     """A picture of a volume, in one call.
 
     An array's axes, and `spacing`, are in the order ``axes="zyx"``: ``array[z][y][x]``, spacing ``(dz, dy, dx)``.
@@ -316,6 +317,8 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
         Triangles among the volumes.
     iso : a value, (value, color, opacity), or a list of them, optional
         Surfaces on which the volume has one value, in place of what an automatic transfer function shows.
+    cuts : a mapping or a list of them, optional
+        What is cut out of the volume: {"type": "plane", "point": (x, y, z), "normal": (x, y, z)} and others, see `Look`.
     **further : FurtherSettings
         What `Volume` and `Scene` take besides: `exposure`, `soft_method`, `anisotropy`, ...
 
@@ -336,7 +339,7 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
         opacity=opacity, opacity_unit_distance=opacity_unit_distance, shade=shade, ambient=ambient, diffuse=diffuse,
         specular=specular, shininess=shininess, tf=tf, shadows=shadows, lights=lights, camera=camera, size=size,
         background=background, threads=threads, array=array, component=component, series=series, time=time,
-        channel=channel, level=level, meshes=meshes, iso=iso, **further)
+        channel=channel, level=level, meshes=meshes, iso=iso, cuts=cuts, **further)
     with told(progress):
         scene = scene_for(volume, **asked)
     return Renderer().render(scene, layers=layers, progress=progress)

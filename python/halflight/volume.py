@@ -8,7 +8,7 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from . import _settings, arrays, isosurface, neighbours
+from . import _settings, arrays, cuts, isosurface, neighbours
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords
 from .keywords import MaterialSettings, VolumeSettings
@@ -35,6 +35,10 @@ class Look(VolumeSettings, MaterialSettings, total=False):
     iso : a value, (value, color, opacity), or a list of them
         Surfaces on which the volume has one value, in place of what an automatic transfer function shows. Colour and
         opacity may be left out.
+    cuts : a mapping or a list of them
+        What is cut out of the volume, as in a scene file: {"type": "plane", "point": (x, y, z), "normal": (x, y, z)},
+        {"type": "box", "min": ..., "max": ...}, {"type": "sphere", "center": ..., "radius": ...}; with "keep":
+        "inside" all else is cut away.
     """
 
     name: str
@@ -42,6 +46,7 @@ class Look(VolumeSettings, MaterialSettings, total=False):
     clip: tuple[Sequence[float], Sequence[float]] | None
     scale: float | Sequence[float]
     iso: Any
+    cuts: Any
 
 
 _OF_FILES = ("array", "component", "series", "time", "channel", "level")
@@ -252,6 +257,8 @@ class Volume:
         look["clip"] = (tuple(struct.clip_min), tuple(struct.clip_max)) if struct.clipped else None
         if struct.iso_count > 0:
             look["iso"] = isosurface.isosurfaces_from(struct)
+        if struct.cut_count > 0:
+            look["cuts"] = cuts.cuts_from(struct)
         look["scale"] = tuple(struct.scale * one for one in struct.axis_scale)
         return look | self._changes
 
@@ -334,6 +341,8 @@ class Volume:
         if (iso := changes.pop("iso", None)) is not None:
             isosurface.fill(struct, iso, keep, place)
             changes.setdefault("transfer_function", TransferFunction([(0, 0)]) if struct.iso_count > 0 else None)
+        if (cut := changes.pop("cuts", None)) is not None:
+            cuts.fill(struct, cut, keep, place)
         if (function := changes.pop("transfer_function", None)) is not None:
             if not isinstance(function, TransferFunction):
                 raise TypeError(f"{place}transfer_function: {function!r} is no TransferFunction")

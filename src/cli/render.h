@@ -37,6 +37,11 @@ enum render_option {
   RENDER_THRESHOLD,
   RENDER_ISO,
   RENDER_CLIP,
+  RENDER_CUT_PLANE,
+  RENDER_CUT_BOX,
+  RENDER_CUT_SPHERE,
+  RENDER_CUT_SHADING,
+  RENDER_CUT_CASTS_SHADOW,
   RENDER_SHADING,
   RENDER_FLOOR,
   RENDER_LABELS,
@@ -158,6 +163,35 @@ int render_check_iso(const cli_value *iso);
  * volume borrows. Returns the exit code. */
 int render_iso(const cli_host *host, const cli_value *values, size_t index, hl_scene_volume *volume,
                hl_isosurface *surfaces);
+
+/* A coordinate on the command line: a bare number is a fraction of the box around the volume's voxels, a
+ * number with a unit is a coordinate of the file's world. */
+typedef struct render_coordinate {
+  bool given, fraction;
+  double number;
+} render_coordinate;
+
+/* Reads "0.25", "10mm" or nothing, and moves *text past it. False if something else is there. */
+bool render_read_coordinate(const char **text, render_coordinate *coordinate);
+
+/* The coordinate; otherwise: where it is left out; low, high: the ends of the volume's box. */
+double render_coordinate_of(const render_coordinate *coordinate, double otherwise, double low, double high);
+
+/* A range along an axis: "x=LO:HI". Moves *text past it; false if something else is there. */
+typedef struct render_axis_range {
+  int axis;
+  render_coordinate ends[2];
+} render_axis_range;
+bool render_read_range(const char **text, render_axis_range *range);
+
+/* Refuses values of --cut-plane, --cut-box and --cut-sphere that cannot be read. */
+int render_check_cuts(const cli_value *values);
+
+/* How many cuts the options ask for. */
+size_t render_cut_count(const cli_value *values);
+
+/* Adds the options' cuts to a volume's own. cuts: room for all of them, which the volume borrows. */
+int render_cuts(const cli_value *values, hl_scene_volume *volume, hl_cut *cuts);
 
 /* Refuses values of --clip that cannot be read. */
 int render_check_clip(const cli_value *clip);

@@ -10,42 +10,35 @@
 #include "input.h"
 #include "render.h"
 
-/* LO or HI; fraction: of the box around the volume's voxels, else a coordinate. */
-typedef struct clip_end {
-  bool given, fraction;
-  double number;
-} clip_end;
-
-typedef struct clip_range {
-  int axis;
-  clip_end ends[2];
-} clip_range;
-
-/* Reads "0.25", "10mm" or nothing, and moves *text past it. False if something else is there. */
-static bool read_end(const char **text, clip_end *end) {
+bool render_read_coordinate(const char **text, render_coordinate *coordinate) {
   size_t length = strspn(*text, "0123456789+-.eE");
   char *rest;
-  *end = (clip_end){.given = length > 0};
+  *coordinate = (render_coordinate){.given = length > 0};
   if (length == 0) return true;
-  end->number = strtod(*text, &rest);
-  if (rest != *text + length || !isfinite(end->number)) return false;
+  coordinate->number = strtod(*text, &rest);
+  if (rest != *text + length || !isfinite(coordinate->number)) return false;
   *text = rest + (strncmp(rest, "mm", 2) == 0 ? 2 : *rest == 'u' ? 1 : 0);
-  end->fraction = *text == rest;
-  return !end->fraction || (end->number >= 0 && end->number <= 1);
+  coordinate->fraction = *text == rest;
+  return !coordinate->fraction || (coordinate->number >= 0 && coordinate->number <= 1);
 }
 
-static bool read_range(const char *text, clip_range *range) {
-  range->axis = text[0] >= 'x' && text[0] <= 'z' ? text[0] - 'x' : -1;
-  if (range->axis < 0 || text[1] != '=') return false;
-  clip_end *low = &range->ends[0], *high = &range->ends[1];
-  const char *at = text + 2;
-  if (!read_end(&at, low) || *at++ != ':' || !read_end(&at, high) || *at != '\0') return false;
+bool render_read_range(const char **text, render_axis_range *range) {
+  range->axis = **text >= 'x' && **text <= 'z' ? **text - 'x' : -1;
+  if (range->axis < 0 || (*text)[1] != '=') return false;
+  render_coordinate *low = &range->ends[0], *high = &range->ends[1];
+  *text += 2;
+  if (!render_read_coordinate(text, low) || *(*text)++ != ':' || !render_read_coordinate(text, high)) return false;
   bool comparable = low->given && high->given && low->fraction == high->fraction;
   return (low->given || high->given) && (!comparable || low->number < high->number);
 }
 
+/* The whole text is a range. */
+static bool read_range(const char *text, render_axis_range *range) {
+  return render_read_range(&text, range) && *text == '\0';
+}
+
 int render_check_clip(const cli_value *clip) {
-  clip_range range;
+  render_axis_range range;
   for (int n = 0; n < clip->count; n++)
     if (!read_range(clip->texts[n], &range))
       return fail(EXIT_CODE_USAGE,
@@ -56,8 +49,7 @@ int render_check_clip(const cli_value *clip) {
   return EXIT_CODE_OK;
 }
 
-/* The coordinate of an end; otherwise: where it is left out; low, high: the ends of the volume's box. */
-static double coordinate_of(const clip_end *end, double otherwise, double low, double high) {
+double render_coordinate_of(const render_coordinate *end, double otherwise, double low, double high) {
   if (!end->given) return otherwise;
   return end->fraction ? low + end->number * (high - low) : end->number;
 }
@@ -74,11 +66,11 @@ int render_clip(const cli_value *clip, hl_scene_volume *volume) {
     volume->clipped = 1;
   }
   for (int n = 0; n < clip->count; n++) {
-    clip_range range;
+    render_axis_range range;
     if (!read_range(clip->texts[n], &range)) continue; /* refused before: render_check_clip() */
     double *least = &volume->clip_min[range.axis], *greatest = &volume->clip_max[range.axis];
-    *least = coordinate_of(&range.ends[0], *least, low[range.axis], high[range.axis]);
-    *greatest = coordinate_of(&range.ends[1], *greatest, low[range.axis], high[range.axis]);
+    *least = render_coordinate_of(&range.ends[0], *least, low[range.axis], high[range.axis]);
+    *greatest = render_coordinate_of(&range.ends[1], *greatest, low[range.axis], high[range.axis]);
     if (!(*least < *greatest))
       return fail(EXIT_CODE_USAGE,
                   "--clip: '%s': nothing is left between %.9g and %.9g; the volume goes from %.9g to %.9g",

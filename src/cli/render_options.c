@@ -193,6 +193,31 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .help = "keep a part along x, y or z: fractions\n(x=0:0.5), or the file's own units (x=10mm:40mm);\n"
                  "again for other axes",
          .repeatable = true},
+    [RENDER_CUT_PLANE] = {.name = "cut-plane",
+                          .kind = OPTION_TEXT,
+                          .argument = "X,Y,Z:NX,NY,NZ",
+                          .help = "cut away what lies beyond a plane through a point\n(fractions, or the "
+                                  "file's own units), in a direction;\nagain for more",
+                          .repeatable = true},
+    [RENDER_CUT_BOX] = {.name = "cut-box",
+                        .kind = OPTION_TEXT,
+                        .argument = "AXIS=LO:HI,...",
+                        .help = "cut a box out (x=0.5:,y=:0.5,z=0.5: is an octant);\nagain for more",
+                        .repeatable = true},
+    [RENDER_CUT_SPHERE] = {.name = "cut-sphere",
+                           .kind = OPTION_TEXT,
+                           .argument = "X,Y,Z:RADIUS",
+                           .help = "cut a sphere out (0.5,0.5,1:0.3); again for more",
+                           .repeatable = true},
+    [RENDER_CUT_SHADING] = {.name = "cut-shading",
+                            .kind = OPTION_CHOICE,
+                            .help = "how surfaces at the cuts' faces are lit: by the face,\nby the data's "
+                                    "gradient, or as a medium",
+                            .setting_kind = HL_SETTINGS_VOLUME,
+                            .setting = "cut_shading"},
+    [RENDER_CUT_CASTS_SHADOW] = {.name = "cut-casts-shadow",
+                                 .kind = OPTION_SWITCH,
+                                 .help = "what is cut away goes on casting its shadow"},
     [RENDER_SHADING] = {.name = "shading",
                         .kind = OPTION_CHOICE,
                         .help = "surfaces, a medium such as smoke, or the\ncolours themselves without light "
@@ -404,6 +429,7 @@ int render_check_options(const cli_value *values) {
       return fail(EXIT_CODE_USAGE, "--print-scene makes no picture: remove --%s",
                   render_options[pictures[n]].name);
   int exit_code = render_check_clip(&values[RENDER_CLIP]);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_check_cuts(values);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_iso(&values[RENDER_ISO]);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_sky(&values[RENDER_SKY]);
   if (exit_code != EXIT_CODE_OK) return exit_code;

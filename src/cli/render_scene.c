@@ -24,6 +24,8 @@ typedef struct scene_change {
       *functions;          /* owned with their points; [description.volume_count]; null: none changed */
   float *sky;              /* owned; the pixels of the image of --sky; null: none */
   hl_isosurface *surfaces; /* owned; [description.volume_count][values of --iso]; null: none */
+  hl_cut *cuts;            /* owned; of all volumes, with those of the options; null: none added */
+  hl_cut *next_cut;        /* where the next volume's begin */
 } scene_change;
 
 static void subtract(const double a[3], const double b[3], double difference[3]) {
@@ -178,7 +180,14 @@ static int change_volume(scene_change *change, size_t index) {
   const cli_value *values = change->values;
   hl_scene_volume *volume = &change->volumes[index];
   if (values[RENDER_SHADING].given) volume->shading = (hl_shading)values[RENDER_SHADING].choice;
+  if (values[RENDER_CUT_SHADING].given)
+    volume->cut_shading = (hl_cut_shading)values[RENDER_CUT_SHADING].choice;
+  if (values[RENDER_CUT_CASTS_SHADOW].given) volume->cut_casts_shadow = 1;
   int exit_code = values[RENDER_CLIP].given ? render_clip(&values[RENDER_CLIP], volume) : EXIT_CODE_OK;
+  if (exit_code == EXIT_CODE_OK && change->cuts != NULL) {
+    exit_code = render_cuts(values, volume, change->next_cut);
+    change->next_cut += volume->cut_count;
+  }
   bool looks = render_look_recolors(values, change->bare), iso = values[RENDER_ISO].given;
   if (exit_code != EXIT_CODE_OK || (!looks && !iso && !render_recolors(values))) return exit_code;
   hl_transfer_function look = {0};
@@ -220,11 +229,25 @@ static int add_floor(scene_change *change) {
   return EXIT_CODE_OK;
 }
 
+/* Makes room for the cuts of all volumes, their own and the options'. False: out of memory. */
+static bool make_room_for_cuts(scene_change *change) {
+  size_t added = render_cut_count(change->values), count = 0;
+  for (size_t v = 0; v < change->description.volume_count; v++)
+    count += change->description.volumes[v].cut_count + added;
+  if (added > 0) change->cuts = change->next_cut = calloc(count, sizeof *change->cuts);
+  return added == 0 || change->cuts != NULL;
+}
+
+static bool changes_cuts(const cli_value *values) {
+  return render_cut_count(values) > 0 || values[RENDER_CUT_SHADING].given || values[RENDER_CUT_CASTS_SHADOW].given;
+}
+
 static int change_volumes(scene_change *change) {
   const cli_value *values = change->values;
   hl_scene_description *description = &change->description;
   bool changed = render_look_recolors(values, change->bare) || render_recolors(values) ||
-                 values[RENDER_SHADING].given || values[RENDER_CLIP].given || values[RENDER_ISO].given;
+                 values[RENDER_SHADING].given || values[RENDER_CLIP].given || values[RENDER_ISO].given ||
+                 changes_cuts(values);
   if (!changed || description->volume_count == 0) return EXIT_CODE_OK;
   change->volumes = calloc(description->volume_count, sizeof *change->volumes);
   change->functions = calloc(description->volume_count, sizeof *change->functions);
@@ -232,7 +255,7 @@ static int change_volumes(scene_change *change) {
     change->surfaces = calloc(description->volume_count * (size_t)values[RENDER_ISO].count,
                               sizeof *change->surfaces);
   if (change->volumes == NULL || change->functions == NULL ||
-      (values[RENDER_ISO].given && change->surfaces == NULL))
+      (values[RENDER_ISO].given && change->surfaces == NULL) || !make_room_for_cuts(change))
     return fail(EXIT_CODE_FAILURE, "out of memory for the scene's volumes");
   memcpy(change->volumes, description->volumes, description->volume_count * sizeof *change->volumes);
   description->volumes = change->volumes;
@@ -291,6 +314,7 @@ static void change_release(scene_change *change) {
   free(change->functions);
   free(change->surfaces);
   free(change->sky);
+  free(change->cuts);
   if (change->meshes != NULL) hl_mesh_release(change->meshes[change->description.mesh_count - 1].mesh);
   free(change->meshes);
   free(change->volumes);

@@ -105,10 +105,16 @@ LANES_INLINE int cell_shows(const grid *grid, const float at[3]) {
   return (int)(grid->cell_bits[hl_brick_index(grid, brick)] >> bit & 1);
 }
 
+/* Whether cuts leave a position. */
+LANES_INLINE int cuts_leave_position(const grid *grid, const float at[3]) {
+  return grid->cut_count == 0 || grid->cut_casts_shadow ||
+         hl_cuts_leave(grid->cuts, grid->cut_count, (vec3){at[0], at[1], at[2]});
+}
+
 LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage storage, const float at[3]) {
   for (int a = 0; a < 3; a++)
     if (!(at[a] >= matter->low[a] && at[a] <= matter->high[a])) return 0;
-  if (!cell_shows(matter->grid, at)) return 0;
+  if (!cell_shows(matter->grid, at) || !cuts_leave_position(matter->grid, at)) return 0;
   float value = value_at(matter, storage, at);
   float extinction = matter->cast * field_extinction(matter->classifier, value - matter->grid->empty);
   if (!(extinction > 0) || matter->classifier->steepness == NULL) return extinction;

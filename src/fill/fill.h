@@ -30,12 +30,22 @@ typedef struct filled_blocks {
 typedef filled_blocks fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need,
                                          uint32_t others, float *density);
 
+/* A cut of a grid as a view sees it. */
+typedef struct run_cut {
+  const cut_shape *shape;
+  float rows[3][4]; /* index space to the shape's own */
+  float size[3];    /* how long these rows are in frame space */
+} run_cut;
+
 /* Some consecutive sheets of one grid, and the slabs between them. */
 enum { RUN_SLABS = 4 };
 typedef struct slab_run {
   const grid *grid;
   sheet_rays rays[RUN_SLABS + 1]; /* pixels -> index space */
   float low[3], high[3];          /* index space: nothing between these is cut by the volume's box */
+  const run_cut *cuts;            /* [cut_count] */
+  int cut_count;
+  float beside; /* how far beside the slabs cuts count; frame units */
 } slab_run;
 
 /* The needed blocks of a tile in which a slab may hold something visible, for each slab, and whether the

@@ -75,6 +75,45 @@ LANES_INLINE uint32_t visible_boxes(const grid *grid, const lanes_box *box) {
   return lanes_bits(inside & (visible | (wide & (visible_coarsely | too_wide))));
 }
 
+/* The blocks whose boxes lie within a cut's shape, and outside. */
+typedef struct sides_of_cut {
+  lanes_int within, outside;
+} sides_of_cut;
+
+/* beside: as in slab_run. The box in the shape's own space, where planes, boxes and spheres are simple: its
+ * middle, and half its extent along each axis. */
+LANES_INLINE sides_of_cut sides_of_boxes(const run_cut *cut, const lanes_box *box, float beside) {
+  lanes middle[3], half[3], farthest = lanes_set(0), nearest = lanes_set(0), far = farthest, near = nearest;
+  for (int a = 0; a < 3; a++) {
+    middle[a] = (box->low[a] + box->high[a]) * 0.5f;
+    half[a] = (box->high[a] - box->low[a]) * 0.5f;
+  }
+  for (int r = 0; r < (cut->shape->type == HL_CUT_PLANE ? 1 : 3); r++) {
+    const float *row = cut->rows[r];
+    lanes at = row_of_point(row, (lanes3){middle[0], middle[1], middle[2]});
+    lanes reach = half[0] * fabsf(row[0]) + half[1] * fabsf(row[1]) + half[2] * fabsf(row[2]) +
+                  beside * cut->size[r];
+    if (cut->shape->type == HL_CUT_PLANE) return (sides_of_cut){at - reach > 0.0f, at + reach < 0.0f};
+    lanes most = lanes_abs(at) + reach, least = lanes_max(lanes_abs(at) - reach, lanes_set(0));
+    farthest = lanes_max(farthest, most);
+    nearest = lanes_max(nearest, least);
+    far = lanes_fma(most, most, far);
+    near = lanes_fma(least, least, near);
+  }
+  if (cut->shape->type == HL_CUT_BOX) return (sides_of_cut){farthest < 1.0f, nearest > 1.0f};
+  return (sides_of_cut){far < 1.0f, near > 1.0f};
+}
+
+/* Takes the blocks that cuts remove from `visible`, and those near a cut's face from `uncut`. */
+LANES_INLINE void apply_cuts(const slab_run *run, const lanes_box *box, uint32_t *visible, uint32_t *uncut) {
+  for (int i = 0; i < run->cut_count; i++) {
+    sides_of_cut sides = sides_of_boxes(&run->cuts[i], box, run->beside);
+    bool inside = run->cuts[i].shape->keep_inside;
+    *visible &= ~lanes_bits(inside ? sides.outside : sides.within);
+    *uncut &= lanes_bits(inside ? sides.within : sides.outside);
+  }
+}
+
 /* The blocks whose boxes lie where the volume's box cuts nothing. */
 LANES_INLINE uint32_t uncut_blocks(const slab_run *run, const lanes_box *box) {
   lanes_int uncut = lanes_set_int(-1);
@@ -94,9 +133,10 @@ static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, ui
     if (slab == 0 || (slabs >> (slab - 1) & 1) == 0) on_sheet[slab] = box_on_sheet(rays, u, v);
     on_sheet[slab + 1] = box_on_sheet(rays + 1, u, v);
     lanes_box box = box_of_slab(&on_sheet[slab], &on_sheet[slab + 1]);
-    uint32_t visible = visible_boxes(run->grid, &box);
+    uint32_t visible = visible_boxes(run->grid, &box), whole = uncut_blocks(run, &box);
+    apply_cuts(run, &box, &visible, &whole);
     /* an eye within the slab cuts blocks too: rays begin at it */
-    int uncut = rays[0].step * rays[1].step > 0 && (visible & ~uncut_blocks(run, &box)) == 0;
+    int uncut = rays[0].step * rays[1].step > 0 && (visible & ~whole) == 0;
     found->uncut = (uint16_t)((found->uncut & ~(1u << slab)) | (uint32_t)uncut << slab);
     found->blocks[slab] = (uint16_t)(visible & need);
   }

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/pool.h"
 #include "grid/kernel.h"
+#include "scene/cut.h"
 #include "scene/scene.h"
 
 enum {
@@ -68,6 +69,9 @@ typedef struct grid {
   uint32_t relevant_count;
   int32_t relevant_low[3], relevant_high[3]; /* the least and greatest coordinates of relevant bricks */
   bool cut; /* some relevant brick reaches the box's faces: rays need to know where they cross them */
+  const cut_shape *cuts;  /* borrowed; [cut_count]; what they remove of the box is not there */
+  size_t cut_count;
+  bool cut_casts_shadow; /* lights meet what the cuts remove */
   float *finite_voxels; /* a copy of the voxels with non-finite ones replaced by empty, of which
  interpolating kernels keep coefficients (prefilter.h); or null */
   uint64_t kept_voxels; /* 64 for each relevant brick, fewer at the borders */

@@ -14,6 +14,13 @@ void hl_matter_key_add(hl_key *key, const hl_scene_volume *volume, const grid *g
   hl_key_add_numbers(key, &grid->index_to_frame.offset.x, 3);
   hl_key_add_numbers(key, grid->box_low, 3); /* the box that clipping leaves */
   hl_key_add_numbers(key, grid->box_high, 3);
+  hl_key_add_whole(key, 2 * (int64_t)grid->cut_count + grid->cut_casts_shadow);
+  for (size_t i = 0; i < grid->cut_count; i++) {
+    const cut_shape *cut = &grid->cuts[i];
+    hl_key_add_whole(key, 2 * (int64_t)cut->type + cut->keep_inside);
+    for (int row = 0; row < 3; row++) hl_key_add_numbers(key, &cut->to_shape.linear.row[row].x, 3);
+    hl_key_add_numbers(key, &cut->to_shape.offset.x, 3);
+  }
   hl_key_add_numbers(key, &function->unit_distance, 1);
   add_points(key, function->opacity, function->opacity_count);
   add_points(key, function->gradient_opacity, function->gradient_opacity_count);

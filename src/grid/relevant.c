@@ -42,6 +42,21 @@ static bool overlaps_box(const grid *grid, const int32_t b[3]) {
   return true;
 }
 
+/* How far around a brick its voxels are needed for what cuts leave beside it: the kernel's radius, and a cell.
+ */
+enum { BESIDE_CUT = 3 };
+
+/* Whether brick b and its surroundings are cut away for the eye and for lights. */
+static bool is_cut_away(const grid *grid, const int32_t b[3]) {
+  double low[3], high[3];
+  if (grid->cut_count == 0 || grid->cut_casts_shadow) return false;
+  for (int axis = 0; axis < 3; axis++) {
+    low[axis] = (double)b[axis] * HL_BRICK_CELLS - 1 - BESIDE_CUT;
+    high[axis] = low[axis] + HL_BRICK_CELLS + 2 * BESIDE_CUT;
+  }
+  return hl_cuts_remove_box(grid->cuts, grid->cut_count, low, high);
+}
+
 static void mark_bricks(void *data, size_t index, int worker) {
   (void)worker;
   brick_job *job = data;
@@ -52,7 +67,7 @@ static void mark_bricks(void *data, size_t index, int worker) {
     for (b[0] = 0; b[0] < grid->brick_count[0]; b[0]++, at++) {
       float bounds[2];
       hl_bounds_of_brick(grid, at, bounds);
-      grid->relevant[at] = overlaps_box(grid, b) &&
+      grid->relevant[at] = overlaps_box(grid, b) && !is_cut_away(grid, b) &&
                            hl_classifier_range_visible(job->classifier, grid, bounds[0], bounds[1]);
     }
 }
@@ -283,7 +298,7 @@ static void find_cell_bits(grid *grid, const classifier *classifier, brick_bits_
 /* Finds which faces of the box cut something visible: those that relevant bricks reach, a slab's neighbours
  * included. */
 static void find_faces(grid *grid, bool any_relevant) {
-  grid->cut = false;
+  grid->cut = any_relevant && grid->cut_count > 0;
   for (int axis = 0; axis < 3; axis++) {
     double low = (double)grid->relevant_low[axis] * HL_BRICK_CELLS - 1,
            high = (double)(grid->relevant_high[axis] + 1) * HL_BRICK_CELLS - 1;

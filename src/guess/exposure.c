@@ -12,6 +12,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "guess/sample.h"
+#include "scene/cut.h"
 #include "scene/placement.h"
 #include "scene/scene.h"
 #include "volume/colors.h"
@@ -138,6 +139,7 @@ static pixel look_along(const exposure *e, vec3 origin, vec3 direction) {
     const long at[3] = {lround(place.x), lround(place.y), lround(place.z)};
     double near = hl_volume_value(volume, (size_t)at[0], (size_t)at[1], (size_t)at[2]), slope[3], own[3],
            sent[3];
+    if (!hl_scene_volume_left(e->volume, place)) continue;
     if (!isfinite(near) || !(e->opacity[entry_of(e, near)] > 0)) continue;
     double value = smooth_value(volume, at, slope);
     if (!isfinite(value)) continue;

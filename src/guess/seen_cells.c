@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "guess/sample.h"
+#include "scene/cut.h"
 
 #define FAINT           0.02 /* fraction of the greatest opacity below which voxels at the rim do not count */
 #define LOST            0.04 /* least optical depth of a column that is seen */
@@ -104,6 +105,21 @@ static double looked_at(const hl_seen *seen, int axis, int cell) {
   if (high > seen->end[axis]) high = seen->end[axis];
   ptrdiff_t count = (high - begin + stride - 1) / stride - (low - begin + stride - 1) / stride;
   return count > 0 ? (double)count : 1;
+}
+
+/* Forgets the cells that the volume's cuts remove. */
+static void forget_cut_cells(hl_seen *seen) {
+  const int *n = seen->size;
+  const double step = (double)seen->step;
+  if (seen->cut->cut_count == 0) return;
+  for (int k = 0; k < n[2]; k++)
+    for (int j = 0; j < n[1]; j++)
+      for (int i = 0; i < n[0]; i++) {
+        double low[3] = {i * step - 0.5, j * step - 0.5, k * step - 0.5};
+        double high[3] = {low[0] + step, low[1] + step, low[2] + step};
+        if (hl_scene_volume_removes_box(seen->cut, low, high))
+          seen->mean[((size_t)k * (size_t)n[1] + (size_t)j) * (size_t)n[0] + (size_t)i] = 0;
+      }
 }
 
 static void make_means(hl_seen *seen) {
@@ -242,7 +258,7 @@ static hl_status make_cells(hl_seen *seen, hl_error *error) {
 hl_status hl_seen_find(const hl_scene_volume *volume, hl_seen *seen, bool *any, hl_error *error) {
   const hl_transfer_function *function = &volume->transfer_function;
   double greatest = greatest_opacity(function, volume->volume->minimum, volume->volume->maximum);
-  *seen = (hl_seen){.volume = volume->volume, .function = function};
+  *seen = (hl_seen){.volume = volume->volume, .cut = volume, .function = function};
   *any = volume->visible && greatest > 0 && find_range(volume, seen);
   if (!*any) return HL_OK;
   seen->faint = (float)(-log1p(-FAINT * fmin(greatest, OPAQUE)) / function->unit_distance * (1 - 1e-6));
@@ -250,6 +266,7 @@ hl_status hl_seen_find(const hl_scene_volume *volume, hl_seen *seen, bool *any, 
   if (status == HL_OK) status = make_cells(seen, error);
   if (status != HL_OK) return status;
   make_means(seen);
+  forget_cut_cells(seen);
   status = find_seen_cells(seen, hl_scene_volume_index_to_world(volume), error);
   if (status == HL_OK) status = forget_specks(seen, error);
   if (status == HL_OK) mark_beside(seen);
@@ -269,10 +286,18 @@ static float least_depth(const hl_seen *seen, size_t cell) {
   return seen->kind[cell] == HL_SEEN ? fminf(seen->faint, seen->mean[cell] / 2) : seen->faint;
 }
 
+/* A row of voxels, and its first cell. */
+typedef struct voxel_row {
+  const void *voxels;
+  ptrdiff_t j, k;
+  size_t cells;
+} voxel_row;
+
 /* The first voxel that counts, from `from` on towards `to`; to + way if there is none. way is 1 or -1. */
-static ptrdiff_t first_that_counts(const hl_seen *seen, const void *row, size_t cells, ptrdiff_t from,
-                                   ptrdiff_t to, int way) {
+static ptrdiff_t first_that_counts(const hl_seen *seen, const voxel_row *row, ptrdiff_t from, ptrdiff_t to,
+                                   int way) {
   const ptrdiff_t step = (ptrdiff_t)seen->step;
+  const size_t cells = row->cells;
   for (ptrdiff_t i = from; way * (to - i) >= 0;) {
     ptrdiff_t cell = i / step, next = way > 0 ? (cell + 1) * step : cell * step - 1;
     if (way * (next - to) > 0) next = to + way;
@@ -282,18 +307,19 @@ static ptrdiff_t first_that_counts(const hl_seen *seen, const void *row, size_t 
     }
     float least = least_depth(seen, cells + (size_t)cell);
     for (; i != next; i += way)
-      if (depth_at(seen, row, i) >= least) return i;
+      if (depth_at(seen, row->voxels, i) >= least &&
+          hl_scene_volume_left(seen->cut, (vec3){(double)i, (double)row->j, (double)row->k}))
+        return i;
   }
   return to + way;
 }
 
 bool hl_seen_row(const hl_seen *seen, ptrdiff_t j, ptrdiff_t k, ptrdiff_t *first, ptrdiff_t *last) {
-  const void *row = hl_volume_row(seen->volume, (size_t)j, (size_t)k);
-  size_t cells = cell_of(seen, 0, j, k);
+  const voxel_row row = {hl_volume_row(seen->volume, (size_t)j, (size_t)k), j, k, cell_of(seen, 0, j, k)};
   ptrdiff_t end = seen->end[0] - 1;
-  *first = first_that_counts(seen, row, cells, seen->first[0], end, 1);
+  *first = first_that_counts(seen, &row, seen->first[0], end, 1);
   if (*first > end) return false;
-  *last = first_that_counts(seen, row, cells, end, *first, -1);
+  *last = first_that_counts(seen, &row, end, *first, -1);
   return true;
 }
 

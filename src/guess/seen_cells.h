@@ -14,6 +14,7 @@ enum { HL_SEEN_NOTHING = 0, HL_SEEN_BESIDE = 1, HL_SEEN = 2 }; /* BESIDE: next t
 
 typedef struct hl_seen {
   const hl_volume *volume;
+  const hl_scene_volume *cut; /* what its cuts remove is not seen */
   ptrdiff_t first[3], end[3]; /* voxels inside the volume's box */
   size_t step;                /* voxels along each edge of a cell */
   size_t stride;              /* from one examined row to the next, along y and z */

@@ -5,20 +5,39 @@
 
 #include "core/memory.h"
 
-/* One cut: the half space normal . p + offset >= 0 is kept. Vertices on cut edges are made anew for each
- * triangle: the mesh is open there anyway. */
+/* One face: the half space normal . p + offset >= 0, or the inside of a sphere, |q|^2 <= 1. Vertices on cut
+ * edges are made anew for each triangle: the mesh is open there anyway. */
 typedef struct cutting {
   hl_context *context;
   iso_triangles *made;
   double normal[3], offset;
+  const affine3 *sphere; /* index space to q; null: a half space */
+  bool both;             /* keeps both sides, cut apart */
 } cutting;
 
-static double height(const cutting *cut, uint32_t vertex) {
+static vec3 position_of(const cutting *cut, uint32_t vertex) {
   const float *p = cut->made->positions[vertex];
-  return cut->normal[0] * p[0] + cut->normal[1] * p[1] + cut->normal[2] * p[2] + cut->offset;
+  return (vec3){p[0], p[1], p[2]};
 }
 
-/* The vertex where the edge from a to b crosses the plane; the same for both triangles beside the edge. */
+static double height(const cutting *cut, uint32_t vertex) {
+  vec3 p = position_of(cut, vertex);
+  if (cut->sphere == NULL) return vec3_dot(vec3_of(cut->normal), p) + cut->offset;
+  vec3 q = affine3_apply(*cut->sphere, p);
+  return 1 - vec3_dot(q, q);
+}
+
+/* How far along the edge from a to b the face lies: the root of |q + t d|^2 = 1 between 0 and 1. */
+static double crossing_of_sphere(const cutting *cut, uint32_t a, uint32_t b) {
+  vec3 q = affine3_apply(*cut->sphere, position_of(cut, a));
+  vec3 d = vec3_subtract(affine3_apply(*cut->sphere, position_of(cut, b)), q);
+  double squared = vec3_dot(d, d), along = vec3_dot(q, d), rest = vec3_dot(q, q) - 1;
+  double root = sqrt(fmax(along * along - squared * rest, 0));
+  double t = (rest > 0 ? -along - root : root - along) / squared;
+  return fmin(fmax(t, 0), 1);
+}
+
+/* The vertex where the edge from a to b crosses the face; the same for both triangles beside the edge. */
 static uint32_t cross_edge(cutting *cut, uint32_t a, uint32_t b) {
   if (a > b) {
     uint32_t kept = a;
@@ -26,6 +45,7 @@ static uint32_t cross_edge(cutting *cut, uint32_t a, uint32_t b) {
   }
   iso_triangles *made = cut->made;
   double from = height(cut, a), t = from / (from - height(cut, b));
+  if (cut->sphere != NULL) t = crossing_of_sphere(cut, a, b);
   uint32_t vertex = (uint32_t)made->vertex_count++;
   for (int axis = 0; axis < 3; axis++) {
     const double p = made->positions[a][axis], n = made->normals[a][axis];
@@ -35,13 +55,14 @@ static uint32_t cross_edge(cutting *cut, uint32_t a, uint32_t b) {
   return vertex;
 }
 
-/* Cuts a triangle, and writes its parts at *to. */
-static void cut_triangle(cutting *cut, const uint32_t corner[3], uint32_t (*triangles)[3], size_t *to) {
+/* Cuts a triangle, and writes its parts on one side at *to. */
+static void cut_triangle(cutting *cut, const uint32_t corner[3], bool above, uint32_t (*triangles)[3],
+                         size_t *to) {
   uint32_t kept[4];
   int count = 0;
   for (int i = 0; i < 3; i++) {
     uint32_t a = corner[i], b = corner[(i + 1) % 3];
-    bool here = height(cut, a) >= 0, next = height(cut, b) >= 0;
+    bool here = (height(cut, a) >= 0) == above, next = (height(cut, b) >= 0) == above;
     if (here) kept[count++] = a;
     if (here != next) kept[count++] = cross_edge(cut, a, b);
   }
@@ -50,40 +71,49 @@ static void cut_triangle(cutting *cut, const uint32_t corner[3], uint32_t (*tria
   }
 }
 
+static int corners_above(const cutting *cut, const uint32_t corner[3]) {
+  return (height(cut, corner[0]) >= 0) + (height(cut, corner[1]) >= 0) + (height(cut, corner[2]) >= 0);
+}
+
 static size_t count_cut(const cutting *cut) {
   size_t count = 0;
   for (size_t t = 0; t < cut->made->triangle_count; t++) {
-    const uint32_t *corner = cut->made->triangles[t];
-    int kept = 0;
-    for (int i = 0; i < 3; i++) kept += height(cut, corner[i]) >= 0;
-    count += kept > 0 && kept < 3;
+    int above = corners_above(cut, cut->made->triangles[t]);
+    count += above > 0 && above < 3;
   }
   return count;
 }
 
-static bool is_kept_whole(const cutting *cut, const uint32_t corner[3]) {
-  return height(cut, corner[0]) >= 0 && height(cut, corner[1]) >= 0 && height(cut, corner[2]) >= 0;
-}
-
-/* Each triangle that is cut adds one triangle and two vertices at most. */
-static hl_status keep_half(cutting *cut, hl_error *error) {
+/* Each triangle that is cut adds one triangle and two vertices at most, or twice as many where both sides are
+ * kept. */
+static hl_status make_room(cutting *cut, size_t more, uint32_t (**triangles)[3], hl_error *error) {
   iso_triangles *made = cut->made;
-  size_t more = count_cut(cut), count = 0;
-  void *positions = hl_reallocate(cut->context, made->positions, made->vertex_count + 2 * more,
+  void *positions = hl_reallocate(cut->context, made->positions, made->vertex_count + 4 * more,
                                   sizeof *made->positions);
   if (positions != NULL) made->positions = positions;
-  void *normals = hl_reallocate(cut->context, made->normals, made->vertex_count + 2 * more,
+  void *normals = hl_reallocate(cut->context, made->normals, made->vertex_count + 4 * more,
                                 sizeof *made->normals);
   if (normals != NULL) made->normals = normals;
-  uint32_t(*triangles)[3] = hl_allocate(cut->context, made->triangle_count + more, sizeof *triangles);
-  if (positions == NULL || normals == NULL || triangles == NULL) {
-    hl_release(cut->context, triangles);
-    return hl_fail_memory(error, (made->triangle_count + more) * sizeof *triangles, "an isosurface");
-  }
+  *triangles = hl_allocate(cut->context, made->triangle_count + 2 * more, sizeof **triangles);
+  if (positions != NULL && normals != NULL && *triangles != NULL) return HL_OK;
+  hl_release(cut->context, *triangles);
+  return hl_fail_memory(error, (made->triangle_count + 2 * more) * sizeof **triangles, "an isosurface");
+}
+
+static hl_status cut_all(cutting *cut, hl_error *error) {
+  iso_triangles *made = cut->made;
+  uint32_t(*triangles)[3];
+  size_t count = 0;
+  hl_status status = make_room(cut, count_cut(cut), &triangles, error);
+  if (status != HL_OK) return status;
   for (size_t t = 0; t < made->triangle_count; t++) {
-    if (is_kept_whole(cut, made->triangles[t]))
+    int above = corners_above(cut, made->triangles[t]);
+    if (above == 3 || (above == 0 && cut->both)) {
       memcpy(triangles[count++], made->triangles[t], sizeof *triangles);
-    else cut_triangle(cut, made->triangles[t], triangles, &count);
+      continue;
+    }
+    cut_triangle(cut, made->triangles[t], true, triangles, &count);
+    if (cut->both && above > 0) cut_triangle(cut, made->triangles[t], false, triangles, &count);
   }
   hl_release(cut->context, made->triangles);
   made->triangles = triangles;
@@ -106,7 +136,54 @@ hl_status hl_iso_clip_box(hl_context *context, iso_triangles *triangles, const d
     cutting cut = {.context = context, .made = triangles};
     cut.normal[axis] = face % 2 ? -1 : 1;
     cut.offset = face % 2 ? high[axis] : -low[axis];
-    if (cuts(&cut)) status = keep_half(&cut, error);
+    if (cuts(&cut)) status = cut_all(&cut, error);
+  }
+  return status;
+}
+
+/* ---- cuts: the triangles are cut apart at all faces of a shape, and those on its wrong side removed ---- */
+
+static int faces_of(const cut_shape *shape) { return shape->type == HL_CUT_BOX ? 6 : 1; }
+
+/* A plane's face is where x is 0, a box's where x, y or z are -1 or 1. */
+static cutting face_of(const cut_shape *shape, int face) {
+  double sign = face % 2 ? -1 : 1, edge = shape->type == HL_CUT_BOX ? 1 : 0;
+  const double *offset = &shape->to_shape.offset.x;
+  vec3 row = shape->to_shape.linear.row[face / 2];
+  cutting cut = {.offset = sign * offset[face / 2] + edge, .both = true};
+  cut.normal[0] = sign * row.x, cut.normal[1] = sign * row.y, cut.normal[2] = sign * row.z;
+  if (shape->type == HL_CUT_SPHERE) cut.sphere = &shape->to_shape;
+  return cut;
+}
+
+static vec3 middle_of(const iso_triangles *made, const uint32_t corner[3]) {
+  vec3 sum = {0, 0, 0};
+  for (int i = 0; i < 3; i++) {
+    const float *p = made->positions[corner[i]];
+    sum = vec3_add(sum, (vec3){p[0], p[1], p[2]});
+  }
+  return vec3_scale(sum, 1.0 / 3);
+}
+
+static void remove_triangles(iso_triangles *made, const cut_shape *shape) {
+  size_t count = 0;
+  for (size_t t = 0; t < made->triangle_count; t++)
+    if (hl_cuts_leave(shape, 1, middle_of(made, made->triangles[t])))
+      memmove(made->triangles[count++], made->triangles[t], sizeof *made->triangles);
+  made->triangle_count = count;
+}
+
+hl_status hl_iso_cut(hl_context *context, iso_triangles *triangles, const cut_shape *shapes, size_t count,
+                     hl_error *error) {
+  hl_status status = HL_OK;
+  for (size_t i = 0; i < count && status == HL_OK; i++) {
+    for (int face = 0; face < faces_of(&shapes[i]) && status == HL_OK; face++) {
+      cutting cut = face_of(&shapes[i], face);
+      cut.context = context;
+      cut.made = triangles;
+      status = cut_all(&cut, error);
+    }
+    remove_triangles(triangles, &shapes[i]);
   }
   return status;
 }

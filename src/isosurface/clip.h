@@ -1,4 +1,4 @@
-/* isosurface/clip.h - triangles cut at half spaces. */
+/* isosurface/clip.h - triangles cut at the faces of boxes and of cuts. */
 #ifndef HL_ISOSURFACE_CLIP_H
 #define HL_ISOSURFACE_CLIP_H
 
@@ -7,5 +7,9 @@
 /* Keeps what lies in a box of index space. */
 hl_status hl_iso_clip_box(hl_context *context, iso_triangles *triangles, const double low[3],
                           const double high[3], hl_error *error);
+
+/* Keeps what cuts leave; index space. */
+hl_status hl_iso_cut(hl_context *context, iso_triangles *triangles, const cut_shape *shapes, size_t count,
+                     hl_error *error);
 
 #endif

@@ -75,6 +75,7 @@ hl_status hl_isosurface_create(hl_pool *pool, const hl_scene_volume *volume, con
   if (status == HL_OK) status = hl_iso_extract(pool, &lattice, &made, error);
   if (status == HL_OK) status = hl_iso_refine(pool, &lattice, &made, error);
   if (status == HL_OK) status = hl_iso_clip_box(context, &made, grid->box_low, grid->box_high, error);
+  if (status == HL_OK) status = hl_iso_cut(context, &made, grid->cuts, grid->cut_count, error);
   hl_lattice_release(&lattice);
   if (status == HL_OK && hl_pool_cancelled(pool))
     status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing");

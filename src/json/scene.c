@@ -29,6 +29,7 @@ static void release(hl_context *context, gathered *g) {
   for (size_t v = 0; v < g->description.volume_count; v++) {
     hl_transfer_function_release(context, &g->volumes[v].transfer_function);
     hl_release(context, (void *)g->volumes[v].iso);
+    hl_release(context, (void *)g->volumes[v].cuts);
     hl_labels_release(context, (hl_label *)g->volumes[v].labels);
   }
   for (size_t v = 0; v < g->shelf.count; v++) {

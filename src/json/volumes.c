@@ -26,7 +26,9 @@ static const char *const volume_keys[] = {"name",        "stand_in",
                                           "level",       "spacing",
                                           "series",      "scattering",
                                           "iso",         "labels",
-                                          "label_table", NULL};
+                                          "label_table", "cuts",
+                                          "cut_shading", "cut_casts_shadow",
+                                          NULL};
 
 #define GIVE_COMPONENT "give a number from 0 on, \"magnitude\", \"color\" or \"luminance\""
 
@@ -372,6 +374,7 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
                                      HL_SETTINGS_MATERIAL, &volume->material);
   if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_VOLUME, 0, volume);
   if (status == HL_OK) status = read_clip(reader, json_object_get(value, "clip"), volume);
+  if (status == HL_OK) status = hl_json_read_cuts(reader, json_object_get(value, "cuts"), volume);
   if (status == HL_OK) status = read_scattering(reader, json_object_get(value, "scattering"), volume);
   if (status == HL_OK) status = read_source(reader, value, shelf, volume);
   if (status == HL_OK) status = hl_json_read_labels(reader, value, volume);

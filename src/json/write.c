@@ -306,6 +306,18 @@ static void write_iso(writer *w, const hl_scene_volume *volume) {
   close_bracket(w, "]");
 }
 
+static void write_cuts(writer *w, const hl_scene_volume *volume) {
+  if (volume->cut_count > 0) open_bracket(w, "cuts", "[");
+  for (size_t i = 0; i < volume->cut_count; i++) {
+    open_bracket(w, NULL, "{");
+    write_settings(w, HL_SETTINGS_CUT, (int)volume->cuts[i].type, &volume->cuts[i]);
+    close_bracket(w, "}");
+  }
+  if (volume->cut_count > 0) close_bracket(w, "]");
+  if (volume->cut_shading != HL_CUT_SHADING_FACE) write_key(w, HL_SETTINGS_VOLUME, "cut_shading", volume);
+  if (volume->cut_casts_shadow) write_key(w, HL_SETTINGS_VOLUME, "cut_casts_shadow", volume);
+}
+
 static void write_scattering(writer *w, const hl_scene_volume *volume) {
   const double *albedo = volume->albedo;
   bool white = albedo[0] == 1 && albedo[1] == 1 && albedo[2] == 1;
@@ -354,6 +366,7 @@ static void write_volume(writer *w, const hl_scene_volume *volume) {
     write_key(w, HL_SETTINGS_VOLUME, "clip/max", volume);
     close_bracket(w, "}");
   }
+  write_cuts(w, volume);
   close_bracket(w, "}");
 }
 

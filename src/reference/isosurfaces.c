@@ -30,7 +30,8 @@ static void find_roots(const crossing *part, double from, double to, double a, d
     double value = described->iso[i].value;
     if ((a > value) == (b > value)) continue;
     double root = bisect(part, value, (bracket){from, to, b > value});
-    if (root < hit->distance)
+    vec3 at = vec3_add(part->origin, vec3_scale(part->direction, root));
+    if (root < hit->distance && hl_reference_left(part->volume, at))
       *hit = (reference_hit){.iso = &described->iso[i],
                              .volume = part->volume,
                              .distance = root,

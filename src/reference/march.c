@@ -1,6 +1,6 @@
 /* reference/march.c - a ray through the boxes of several volumes.
  *
- * The distances at which the ray enters and leaves boxes cut it into stretches, each of which crosses the
+ * The distances at which the ray enters and leaves boxes, and crosses the faces of cuts, cut it into stretches, each of which crosses the
  * same volumes from end to end. A stretch is walked in equal steps, no longer than the requested step, and
  * each step is sampled at its middle. A homogeneous box is therefore integrated exactly, wherever its faces
  * lie. */
@@ -37,10 +37,30 @@ void hl_reference_march_begin(const reference *all, reference_role role, const r
     const reference_volume *volume = &all->volumes[v];
     if (!(role == REFERENCE_SEEN ? volume->described->visible : volume->described->casts_shadow)) continue;
     crossing *part = &crossings[walk->count];
-    *part = (crossing){.volume = volume};
+    *part = (crossing){.volume = volume,
+                       .uncut = volume->described->cut_count == 0 ||
+                                (role == REFERENCE_CASTS_SHADOW && volume->described->cut_casts_shadow)};
     hl_reference_cross_box(part, ray, ray->nearest, ray->farthest);
     if (part->enter < part->leave) walk->count++;
   }
+}
+
+/* Where the ray next crosses a face of a cut. */
+static double next_face(const crossing *part, double after) {
+  return part->uncut ? INFINITY : hl_reference_next_face(part->volume, part->origin, part->direction, after);
+}
+
+/* Leaves only those volumes active that the cuts leave between the faces of the stretch. True: some is. */
+static bool leave_uncut(march *walk) {
+  double middle = (walk->start + walk->end) / 2;
+  bool inside = false;
+  for (size_t c = 0; c < walk->count; c++) {
+    crossing *part = &walk->crossings[c];
+    vec3 here = vec3_add(part->origin, vec3_scale(part->direction, middle));
+    part->active = part->active && (part->uncut || hl_reference_left(part->volume, here));
+    inside |= part->active;
+  }
+  return inside;
 }
 
 /* Moves to the next stretch of the ray that crosses at least one box. */
@@ -53,11 +73,11 @@ static bool next_stretch(march *walk) {
       crossing *part = &walk->crossings[c];
       part->active = part->enter <= walk->start && part->leave > walk->start;
       inside |= part->active;
-      if (part->active) walk->end = fmin(walk->end, part->leave);
+      if (part->active) walk->end = fmin(walk->end, fmin(part->leave, next_face(part, walk->start)));
       if (part->enter > walk->start) walk->end = fmin(walk->end, part->enter);
     }
     if (walk->end == INFINITY) return false;
-    if (inside) break;
+    if (inside && leave_uncut(walk)) break;
   }
   walk->next = 0;
   walk->steps = fmax(ceil((walk->end - walk->start) / walk->longest_step), 1);

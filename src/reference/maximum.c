@@ -58,8 +58,8 @@ static void ask_at_peak(search *found, double low, double high) {
   (void)ask(found, (low + high) / 2);
 }
 
-/* One volume's greatest shown value; -infinity if it shows none. */
-static double greatest_along(const crossing *part, double step) {
+/* The greatest shown value between two faces; -infinity if none is shown. */
+static double greatest_between(const crossing *part, double step) {
   search found = {part, -INFINITY, 0};
   double steps = fmax(ceil((part->leave - part->enter) / step), 1),
          length = (part->leave - part->enter) / steps;
@@ -77,6 +77,21 @@ static double greatest_along(const crossing *part, double step) {
   if (found.greatest > -INFINITY)
     ask_at_peak(&found, fmax(found.where - length, part->enter), fmin(found.where + length, part->leave));
   return found.greatest;
+}
+
+/* One volume's greatest shown value; -infinity if it shows none. */
+static double greatest_along(const crossing *whole, double step) {
+  double greatest = -INFINITY;
+  crossing part = *whole;
+  for (; part.enter < whole->leave; part.enter = part.leave) {
+    part.leave = whole->leave;
+    if (!part.uncut)
+      part.leave = fmin(part.leave, hl_reference_next_face(part.volume, part.origin, part.direction, part.enter));
+    vec3 middle = vec3_add(part.origin, vec3_scale(part.direction, (part.enter + part.leave) / 2));
+    if (part.uncut || hl_reference_left(part.volume, middle))
+      greatest = fmax(greatest, greatest_between(&part, step));
+  }
+  return greatest;
 }
 
 void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, reference_worker *worker,

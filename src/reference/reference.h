@@ -6,6 +6,7 @@
  *     reference.c       camera, rows of pixels, the entry point
  *     march.c           a ray through the volumes' boxes, step by step, jumping over empty bricks
  *     field.c           reconstruction of one volume at a point: value, gradient, extinction, empty bricks
+ *     cuts.c            what cuts leave of a volume
  *     tint.c            the colours of a volume's own voxels
  *     coefficients.c    what the interpolating kernel sums in place of voxels
  *     rays.c            how many rays a pixel of a small picture has
@@ -132,7 +133,8 @@ typedef struct crossing {
   const reference_volume *volume;
   vec3 origin, direction; /* index space; distances along the ray in world units */
   double enter, leave;    /* distances; the ray misses the box where enter >= leave */
-  bool active;            /* the ray is inside the box now */
+  bool uncut;             /* the cuts of the volume do not count */
+  bool active;            /* the ray is inside what is left of the box now */
   bool occupied;          /* active, and the brick may be visible */
   vec3 here;              /* index space; the current sample, where active */
 } crossing;
@@ -203,6 +205,16 @@ double hl_reference_clearance(const reference_volume *volume, vec3 point, vec3 d
 /* Fills volume->coefficients. */
 hl_status hl_reference_coefficients_create(hl_context *context, reference_volume *volume, hl_error *error);
 void hl_reference_volume_release(hl_context *context, reference_volume *volume);
+
+/* ---- cuts (cuts.c) ---- */
+
+/* Whether the cuts of a volume leave a point of index space. */
+bool hl_reference_left(const reference_volume *volume, vec3 point);
+/* The least distance above `after` at which a ray of index space crosses the face of a cut; infinite: none.
+ */
+double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 direction, double after);
+/* Shades a sample near a cut's face. normal, surface: those of the data. */
+void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 *normal, double *surface);
 
 double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]);
 double hl_reference_value(const reference_volume *volume, vec3 point);

@@ -128,6 +128,8 @@ void hl_reference_shade(const reference *all, const reference_sample *at, refere
   hl_transfer_function_color(&described->transfer_function, at->value, here.own);
   hl_reference_tint(at->volume, at->index_point, here.own);
   here.normal = find_normal(at->volume, at->index_point, at->value, &here.amount);
+  if (described->shading == HL_SHADING_PHONG)
+    hl_reference_cut_face(at->volume, at->index_point, &here.normal, &here.amount);
   sample->weight += weight;
   sample->normal = vec3_add(sample->normal, vec3_scale(here.normal, weight * here.amount));
   const hl_material *material = &described->material;

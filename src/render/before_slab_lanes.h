@@ -7,6 +7,7 @@
 #ifndef HL_RENDER_BEFORE_SLAB_LANES_H
 #define HL_RENDER_BEFORE_SLAB_LANES_H
 
+#include "render/cut_lanes.h"
 #include "render/pack_lanes.h"
 #include "shadow/shadow_lookup_lanes.h"
 
@@ -18,6 +19,13 @@ typedef struct near_pixels {
   lanes3 along_u, along_v;              /* one pixel along u and along v, on the sheet; frame space */
   const sublight_shifts *shifts;        /* of sub-lights' buffers; else null */
 } near_pixels;
+
+/* A light as a slab's samples see it. */
+typedef struct seen_light {
+  lanes3 towards;          /* unit direction to the light */
+  lanes path;              /* of the light through the slab */
+  const near_pixels *near; /* of its buffer; null where that is read at its nearest pixel */
+} seen_light;
 
 /* The root of 1/6. Bilinear look-ups, averaged over all positions between pixels, weigh by a tent of variance
  * 1/6 (derived). */
@@ -84,6 +92,23 @@ typedef struct faces_of_axis {
  * all: the light to both of its sides then enters the box by another face, far away. */
 static const float ALONG_FACE = 0.5f;
 
+/* The same as find_faces() returns, for a cut: its face ahead is a plane where the light's ray meets it. */
+LANES_INLINE lanes face_of_cut(const shade_cut *cut, lanes3 position, lanes3 towards, const near_pixels *near,
+                               lanes through) {
+  ray_section way = cross_cut(cut, position, towards);
+  lanes ahead = cut->keep_inside ? way.last : way.first;
+  lanes_int met = (way.first < way.last) & (way.last > 0.0f) & (ahead < 1e20f);
+  if (lanes_bits(met) == 0) return lanes_set(0);
+  ahead = lanes_max(lanes_keep(met, ahead), lanes_set(0));
+  cut_height height = height_over_cut(cut, add_scaled3(position, towards, ahead));
+  lanes slowness = 1.0f / some_speed(dot3(height.gradient, towards));
+  lanes reach = (lanes_abs(dot3(height.gradient, near->along_u)) +
+                 lanes_abs(dot3(height.gradient, near->along_v))) *
+                lanes_abs(slowness);
+  lanes close = lanes_clamp(2.0f - ahead / lanes_max(reach, lanes_set(1e-30f)), 0, 1);
+  return lanes_keep(met, close * lanes_clamp(2.0f - reach / through, 0, 1));
+}
+
 /* Finds the distances of a box's faces from the lit position. Derived (slab method): a step s beside a point
  * moves a face on the light's way by -row.s / row.l, l the light's direction. Returns 1 where light to some
  * near pixel may pass beside a face through which the light to this position comes, falling to 0 where the
@@ -109,35 +134,54 @@ LANES_INLINE lanes find_faces(const shade_volume *volume, const block_geometry *
     likely = lanes_max(likely, close[axis]);
     longest = lanes_min(longest, (volume->high[axis] - volume->low[axis]) * lanes_abs(slowness));
   }
-  if (lanes_bits(likely > 0.0f) == 0) return likely;
   lanes through = longest * ALONG_FACE;
-  likely = lanes_set(0);
-  for (int axis = 0; axis < 3; axis++)
-    likely = lanes_max(likely, close[axis] * lanes_clamp(2.0f - reach[axis] / through, 0, 1));
+  if (lanes_bits(likely > 0.0f) != 0) {
+    likely = lanes_set(0);
+    for (int axis = 0; axis < 3; axis++)
+      likely = lanes_max(likely, close[axis] * lanes_clamp(2.0f - reach[axis] / through, 0, 1));
+  }
+  for (int i = 0; i < volume->light_cut_count; i++)
+    likely = lanes_max(likely, face_of_cut(&volume->cuts[i], g->position, towards, near, through));
   return likely;
 }
 
-/* The light's way within the box before the slab, for a point u, v and along steps away from the sample.
- * within: the light's way from the slab's first sheet to the point. */
-LANES_INLINE lanes way_before(const faces_of_axis faces[3], lanes u, lanes v, lanes along, lanes within) {
-  lanes leave = lanes_set(1e30f), enter = within;
+/* A point beside a sample: u, v and along steps away. within: the light's way from the slab's first sheet to
+ * the point. */
+typedef struct point_beside {
+  lanes u, v, along, within;
+} point_beside;
+
+/* The light's way within the box before the slab. */
+LANES_INLINE lanes way_before(const shade_volume *volume, const faces_of_axis faces[3],
+                              const block_geometry *g, const seen_light *light, point_beside point) {
+  lanes leave = lanes_set(1e30f), enter = point.within;
   for (int axis = 0; axis < 3; axis++) {
     const faces_of_axis *f = &faces[axis];
-    lanes less = lanes_fma(f->u, u, lanes_fma(f->v, v, f->along * along));
+    lanes less = lanes_fma(f->u, point.u, lanes_fma(f->v, point.v, f->along * point.along));
     leave = lanes_min(leave, f->ahead - less);
     enter = lanes_max(enter, f->behind - less);
+  }
+  if (volume->light_cut_count > 0) {
+    lanes3 at = add_scaled3(g->position, light->near->along_u, point.u);
+    at = add_scaled3(add_scaled3(at, light->near->along_v, point.v), g->step_sheet, point.along);
+    shorten_way(volume, at, light->towards, &enter, &leave);
   }
   return lanes_max(leave - enter, lanes_set(0));
 }
 
-LANES_INLINE ways_before find_ways_before(const faces_of_axis faces[3], const block_slab *slab, lanes path,
-                                          const near_pixels *near) {
-  lanes none = lanes_set(0), begin = slab->part.begin, end = begin + slab->part.length;
+LANES_INLINE ways_before find_ways_before(const shade_volume *volume, const faces_of_axis faces[3],
+                                          const block_slab *slab, const seen_light *light) {
+  const block_geometry *g = &slab->geometry;
+  const near_pixels *near = light->near;
+  lanes none = lanes_set(0), begin = slab->part.begin, end = begin + slab->part.length, path = light->path;
   ways_before ways;
-  ways.first = way_before(faces, none, none, begin - slab->place, begin * path);
-  ways.last = way_before(faces, none, none, end - slab->place, end * path);
+  ways.first = way_before(volume, faces, g, light,
+                          (point_beside){none, none, begin - slab->place, begin * path});
+  ways.last = way_before(volume, faces, g, light,
+                         (point_beside){none, none, end - slab->place, end * path});
   for (int i = 0; i < NEAR_PIXELS; i++)
-    ways.near[i] = way_before(faces, near->u[i], near->v[i], none, slab->place * path);
+    ways.near[i] = way_before(volume, faces, g, light,
+                              (point_beside){near->u[i], near->v[i], none, slab->place * path});
   return ways;
 }
 

@@ -65,8 +65,12 @@ LANES_INLINE ways_in_box ways_of_light(const shade_volume *volume, lanes3 start,
     enter.first = lanes_max(enter.first, near);
     enter.last = lanes_max(enter.last, lanes_fma(-step, slowness, near));
   }
-  return (ways_in_box){lanes_max(lanes_min(path.first, leave.first) - enter.first, lanes_set(0)),
-                       lanes_max(lanes_min(path.last, leave.last) - enter.last, lanes_set(0))};
+  leave = (ways_in_box){lanes_min(path.first, leave.first), lanes_min(path.last, leave.last)};
+  if (volume->light_cut_count > 0)
+    return (ways_in_box){way_left(volume, start, towards, enter.first, leave.first),
+                         way_left(volume, add3(start, way), towards, enter.last, leave.last)};
+  return (ways_in_box){lanes_max(leave.first - enter.first, lanes_set(0)),
+                       lanes_max(leave.last - enter.last, lanes_set(0))};
 }
 
 /* The density, as a coordinate in the table, where a volume's matter is seen. */
@@ -176,6 +180,7 @@ LANES_INLINE plane_matter plane_of(const block_density *d, lanes3 towards, lanes
                             lanes_set(classifier->last_visible));
   lanes deep = lanes_abs(seen - edge) / lanes_max(a_voxel, lanes_set(1e-6f));
   plane.likely = lanes_keep(facing, lanes_clamp(lanes_line(deep, -1.0f / SKIN_VOXELS, 2.0f), 0, 1));
+  if (volume->cut_count > 0) plane.likely = plane.likely * (1.0f - d->skin);
   plane.likely = plane.likely * lanes_clamp((dot3(d->normal, towards) - 0.1f) * (1.0f / (0.2f - 0.1f)), 0, 1);
   plane.below = origin_at(classifier, lanes_fma(-plane.fall, way, seen));
   return plane;
@@ -226,13 +231,6 @@ LANES_INLINE void add_plane(const shade_job *job, const block_density *d, const 
     for (int i = 0; i < NEAR_PIXELS; i++) depths->near[c][i] = lanes_fma(cast, there[i], depths->near[c][i]);
   }
 }
-
-/* A light as a slab's samples see it. */
-typedef struct seen_light {
-  lanes3 towards;          /* unit direction to the light */
-  lanes path;              /* of the light through the slab */
-  const near_pixels *near; /* of its buffer; null where that is read at its nearest pixel */
-} seen_light;
 
 /* Adds what a plane's matter absorbs too much in sub-lights' buffers because slabs are shifted. Derived: the
  * light passes the m-th slab before this one between the densities f_m and f_(m+1) = f_m - k path; a shift
@@ -287,7 +285,7 @@ LANES_INLINE void add_face(const shade_job *job, const block_slab *slab, const b
   lanes likely = find_faces(volume, &slab->geometry, light->towards, light->near, faces) * share;
   lanes_int there = (likely > 0.0f) & slab->seen & (d->sums.extinction > 0.0f);
   if (lanes_bits(there) == 0) return;
-  ways_before ways = find_ways_before(faces, slab, light->path, light->near);
+  ways_before ways = find_ways_before(volume, faces, slab, light);
   depths->face |= there;
   depths->beside = lanes_max(depths->beside, lanes_keep(there, likely));
   /* where several boxes meet in the slab, each volume fills a part of it */

@@ -28,6 +28,32 @@ static bool same_clip(const prepared_volume *prepared, const hl_scene_volume *sc
                              memcmp(prepared->clip + 3, scene->clip_max, sizeof scene->clip_max) == 0);
 }
 
+static bool same_cuts(const prepared_volume *prepared, const hl_scene_volume *scene) {
+  const grid *grid = &prepared->grid;
+  if (grid->cut_count != scene->cut_count) return false;
+  for (size_t i = 0; i < scene->cut_count; i++) {
+    cut_shape shape = hl_cut_shape(scene, i);
+    if (!hl_cut_same(&prepared->cuts[i], &shape)) return false;
+  }
+  return grid->cut_count == 0 || grid->cut_casts_shadow == (scene->cut_casts_shadow != 0);
+}
+
+static hl_status keep_cuts(hl_context *context, prepared_volume *prepared, const hl_scene_volume *scene,
+                           hl_error *error) {
+  grid *grid = &prepared->grid;
+  hl_release(context, prepared->cuts);
+  grid->cuts = prepared->cuts = NULL;
+  grid->cut_count = 0;
+  if (scene->cut_count == 0) return HL_OK;
+  prepared->cuts = hl_allocate(context, scene->cut_count, sizeof *prepared->cuts);
+  if (prepared->cuts == NULL) return hl_fail_memory(error, scene->cut_count * sizeof(cut_shape), "cuts");
+  for (size_t i = 0; i < scene->cut_count; i++) prepared->cuts[i] = hl_cut_shape(scene, i);
+  grid->cuts = prepared->cuts;
+  grid->cut_count = scene->cut_count;
+  grid->cut_casts_shadow = scene->cut_casts_shadow != 0;
+  return HL_OK;
+}
+
 /* Room for a copy of a transfer function's points. */
 typedef struct function_points {
   hl_opacity_point *opacity; /* owns the block */
@@ -96,6 +122,7 @@ void hl_prepared_release(hl_context *context, prepared_volume *prepared) {
   release_function(context, prepared);
   release_iso(context, prepared);
   hl_grid_release(context, &prepared->grid);
+  hl_release(context, prepared->cuts);
   hl_volume_release(prepared->volume);
   memset(prepared, 0, sizeof *prepared);
 }
@@ -130,7 +157,8 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
   hl_status status = HL_OK;
   double empty = hl_scene_volume_empty_value(scene);
   bool same_voxels = has_same_voxels(prepared, scene, kernel);
-  bool same = same_voxels && same_function(&prepared->function, &scene->transfer_function);
+  bool same_cut = same_voxels && same_cuts(prepared, scene);
+  bool same = same_cut && same_function(&prepared->function, &scene->transfer_function);
   if (!same_voxels) {
     hl_prepared_release(context, prepared);
     const grid_source source = {scene, hl_kernel_get(kernel), index_to_frame, empty};
@@ -149,6 +177,8 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
     return hl_fail(error, HL_ERROR_INPUT, "a volume's axes are singular: the three must span space");
   if (same) return HL_OK;
   release_function(context, prepared);
+  if (!same_cut) release_iso(context, prepared);
+  if (!same_cut && (status = keep_cuts(context, prepared, scene, error)) != HL_OK) return status;
   status = hl_classifier_create(context, scene, &prepared->grid, &prepared->classifier, error);
   if (status == HL_OK) status = keep_key(context, prepared, scene, error);
   if (status != HL_OK) return status;

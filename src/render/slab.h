@@ -25,6 +25,12 @@ typedef struct voxel_colors {
   const float *decode;         /* [256]: the linear values of sRGB's codes */
 } voxel_colors;
 
+/* A cut's shape (scene/cut.h). */
+typedef struct shade_cut {
+  int type, keep_inside;
+  float rows[3][4]; /* frame space to the shape's own */
+} shade_cut;
+
 typedef struct shade_volume {
   const classifier *classifier;
   const grid *grid;
@@ -43,6 +49,9 @@ typedef struct shade_volume {
   float albedo[3];                       /* of the medium, times its colour */
   int absorbs;                           /* not all of the albedo is 1 */
   int multiple;                          /* light that was scattered lights it again */
+  const shade_cut *cuts;                 /* [cut_count] */
+  int cut_count, light_cut_count;        /* for the eye, and for lights: these, or none */
+  int cut_shading;                       /* hl_cut_shading */
 } shade_volume;
 
 /* One volume's densities in a tile, on cache lines of its own: each thread writes its patches beside
@@ -99,7 +108,7 @@ typedef struct shade_job {
 
 /* Bytes of scratch memory for a patch: room for a block, and for up to sixteen slabs into which samples are
  * packed (pack_lanes.h). */
-enum { SHADE_SCRATCH_BYTES = 17 * 1600 };
+enum { SHADE_SCRATCH_BYTES = 17 * 1664 };
 
 /* The slab before the current sheet, in one tile. */
 typedef struct tile_slab {

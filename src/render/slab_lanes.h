@@ -6,6 +6,7 @@
 #define HL_RENDER_SLAB_LANES_H
 
 #include "fill/steepness_lanes.h"
+#include "render/cut_lanes.h"
 #include "render/slab.h"
 #include "shadow/attenuate_lanes.h"
 
@@ -65,6 +66,7 @@ typedef struct block_density {
   lanes3 slope;     /* where the matter is seen; elsewhere 0 */
   lanes3 normal;    /* unit, away from the matter */
   lanes surface;    /* 1 for a surface, falling to 0 for a medium, which has no normal */
+  lanes skin;       /* 1 at a cut's face that is shaded, 0 two voxels behind it */
   lanes light_first,
       light_last; /* the light's way within its box to where the slab's covered part starts and ends */
 } block_density;
@@ -228,9 +230,46 @@ LANES_INLINE void find_normal(block_density *d) {
   d->normal = scale3(slope, outward);
 }
 
-LANES_INLINE void find_normals(block_density *densities, int count) {
-  for (int i = 0; i < count; i++)
-    if (densities[i].there && densities[i].patch->volume->visible) find_normal(&densities[i]);
+/* Within two voxels behind the nearest face of a cut, the normal turns to the face's own, or the surface to a
+ * medium. */
+LANES_INLINE void find_cut_face(const block_slab *slab, block_density *d) {
+  const shade_volume *volume = d->patch->volume;
+  const block_geometry *g = &slab->geometry;
+  lanes3 point = add_scaled3(g->start, g->step_sheet,
+                             lanes_fma(slab->part.length, d->seen, slab->part.begin));
+  lanes3 face = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  lanes least = lanes_set(1e30f);
+  for (int i = 0; i < volume->cut_count; i++) {
+    cut_height over = height_over_cut(&volume->cuts[i], point);
+    lanes outward = lanes_set(volume->cuts[i].keep_inside ? 1.0f : -1.0f) /
+                    lanes_sqrt(dot3(over.gradient, over.gradient));
+    lanes depth = lanes_max(-over.height * outward, lanes_set(0));
+    lanes_int nearer = depth < least;
+    least = lanes_select(nearer, depth, least);
+    face.x = lanes_select(nearer, over.gradient.x * outward, face.x);
+    face.y = lanes_select(nearer, over.gradient.y * outward, face.y);
+    face.z = lanes_select(nearer, over.gradient.z * outward, face.z);
+  }
+  d->skin = lanes_clamp(2.0f - least * (1.0f / volume->voxel), 0, 1);
+  lanes rest = 1.0f - d->skin;
+  if (volume->cut_shading == HL_CUT_SHADING_FACE) {
+    lanes3 sum = add_scaled3(scale3(face, d->skin), d->normal, d->surface * rest);
+    d->normal = scale3(sum, 1.0f / lanes_max(lanes_sqrt(dot3(sum, sum)), lanes_set(1e-6f)));
+    d->surface = lanes_fma(d->surface, rest, d->skin);
+  } else {
+    d->surface = d->surface * rest;
+  }
+}
+
+LANES_INLINE void find_normals(const block_slab *slab, block_density *densities, int count) {
+  for (int i = 0; i < count; i++) {
+    if (!densities[i].there || !densities[i].patch->volume->visible) continue;
+    find_normal(&densities[i]);
+    densities[i].skin = lanes_set(0);
+    const shade_volume *volume = densities[i].patch->volume;
+    if (volume->cut_count > 0 && volume->phong && volume->cut_shading != HL_CUT_SHADING_GRADIENT)
+      find_cut_face(slab, &densities[i]);
+  }
 }
 
 /* A block's pixels in which something may be seen, one bit each. alpha: of the pixels before the slab. */
@@ -382,7 +421,7 @@ LANES_INLINE uint32_t find_slab(const shade_job *job, const tile_slab *tile, blo
   place_slab(job, densities, count, slab);
   if (is_weighed(tile)) weigh_slab(job, densities, count, slab);
   find_slopes(job, slab, densities, count);
-  find_normals(densities, count);
+  find_normals(slab, densities, count);
   return lanes_bits(slab->seen);
 }
 

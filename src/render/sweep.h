@@ -118,6 +118,7 @@ struct sweep {
   shade_job *slab_shades;            /* [stretch]; of the picture's slabs */
   attenuate_job *slab_attenuates;    /* [lights][stretch]; of the lights' slabs */
   shade_volume *shade_volumes;       /* [volumes] */
+  shade_cut *shade_cuts;             /* of all volumes, one after the other */
   shade_patch *shade_patches;        /* [threads][volumes] */
   unsigned char *scratch;            /* [threads][volumes][SHADE_SCRATCH_BYTES] */
   attenuate_volume *scratch_volumes; /* [threads][volumes] */

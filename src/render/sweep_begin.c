@@ -119,6 +119,9 @@ static void lay_out(sweep *sweep, size_t tasks, int threads, hl_layout *layout) 
   sweep->slab_shades = hl_layout_take(layout, stretch, sizeof *sweep->slab_shades);
   sweep->slab_attenuates = hl_layout_take(layout, lights * stretch, sizeof *sweep->slab_attenuates);
   sweep->shade_volumes = hl_layout_take(layout, volumes, sizeof *sweep->shade_volumes);
+  size_t cuts = 0;
+  for (size_t g = 0; g < volumes; g++) cuts += sweep->content.grids[g].cut_count;
+  sweep->shade_cuts = hl_layout_take(layout, cuts, sizeof *sweep->shade_cuts);
   sweep->shade_patches = hl_layout_take(layout, places, sizeof *sweep->shade_patches);
   sweep->scratch = hl_layout_take(layout, places, SHADE_SCRATCH_BYTES);
   sweep->scratch_volumes = hl_layout_take(layout, places, sizeof *sweep->scratch_volumes);
@@ -164,8 +167,8 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, shadow_buffer *bu
   if (status != HL_OK || shadow->method == NULL) return status;
   status = hl_light_shadow_begin(shadow, sweep->ring, buffer, memory, error);
   if (status == HL_OK)
-    status = hl_view_sheets_begin(&sweep->content, &shadow->plan.view, shadow->plan.spare, &light->sheets,
-                                  error);
+    status = hl_view_sheets_begin(&sweep->content, &shadow->plan.view, true, shadow->plan.spare,
+                                  &light->sheets, error);
   return status;
 }
 
@@ -204,6 +207,29 @@ static void set_up_colors(sweep *sweep) {
     any = any || sweep->content.volumes[g].scene->volume->colors != NULL;
   for (int code = 0; any && code < SRGB_CODES; code++)
     sweep->srgb_decode[code] = (float)hl_srgb_decode(code / 255.0);
+}
+
+static void set_up_cut(const grid *grid, const cut_shape *shape, shade_cut *cut) {
+  affine3 from_frame = affine3_multiply(shape->to_shape, grid->frame_to_index);
+  const double *offset = &from_frame.offset.x;
+  *cut = (shade_cut){.type = (int)shape->type, .keep_inside = shape->keep_inside};
+  for (int r = 0; r < 3; r++) {
+    vec3_store(cut->rows[r], from_frame.linear.row[r]);
+    cut->rows[r][3] = (float)offset[r];
+  }
+}
+
+static void set_up_cuts(sweep *sweep) {
+  shade_cut *cut = sweep->shade_cuts;
+  for (int g = 0; g < sweep->content.volume_count; g++) {
+    const grid *grid = &sweep->content.grids[g];
+    shade_volume *shade = &sweep->shade_volumes[g];
+    shade->cuts = cut;
+    shade->cut_count = (int)grid->cut_count;
+    shade->light_cut_count = grid->cut_casts_shadow ? 0 : shade->cut_count;
+    shade->cut_shading = (int)sweep->content.volumes[g].scene->cut_shading;
+    for (size_t i = 0; i < grid->cut_count; i++) set_up_cut(grid, &grid->cuts[i], cut++);
+  }
 }
 
 static void set_up_shading(sweep *sweep) {
@@ -253,6 +279,7 @@ static void set_up_shading(sweep *sweep) {
       shade->high[axis] = (float)grid->box_high[axis];
     }
   }
+  set_up_cuts(sweep);
 }
 
 static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *light) {
@@ -353,7 +380,8 @@ static hl_status begin_views(sweep *sweep, shadow_buffer *buffers, shadow_memory
     status = plan_light(sweep, i, points, error);
   choose_stretch(sweep);
   if (status == HL_OK)
-    status = hl_view_sheets_begin(&sweep->content, &sweep->frame->eye, PIXEL_TO_SPARE, &sweep->image, error);
+    status = hl_view_sheets_begin(&sweep->content, &sweep->frame->eye, false, PIXEL_TO_SPARE, &sweep->image,
+                                  error);
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++)
     status = begin_light(sweep, &sweep->lights[i], &buffers[sweep->geometry->light[i]], &memory[i], error);
   hl_release(context, points);

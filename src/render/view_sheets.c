@@ -3,7 +3,7 @@
 
 #include "core/memory.h"
 
-enum { ENTRY_FLOATS = 2 * TILE_PIXELS };
+enum { INTERVAL_FLOATS = 2 * TILE_PIXELS };
 
 #define NO_ENTRY UINT32_MAX
 
@@ -14,18 +14,126 @@ static bool any_cut(const sheet_content *content) {
   return any;
 }
 
+/* ---- cuts ---- */
+
+/* The cuts of a grid that count in a view. */
+static size_t cuts_of(const view_sheets *sheets, int grid) {
+  const struct grid *of = &sheets->content->grids[grid];
+  return sheets->of_light && of->cut_casts_shadow ? 0 : of->cut_count;
+}
+
+/* The number of cuts before a grid's; grid: volume_count for all. */
+static size_t cuts_before(const view_sheets *sheets, int grid) {
+  size_t count = 0;
+  for (int g = 0; g < grid; g++) count += cuts_of(sheets, g);
+  return count;
+}
+
+/* The most cuts of a grid that keep an outside. */
+static size_t most_removed(const view_sheets *sheets) {
+  size_t most = 0;
+  for (int g = 0; g < sheets->content->volume_count; g++) {
+    size_t here = 0;
+    for (size_t i = 0; i < cuts_of(sheets, g); i++) here += !sheets->content->grids[g].cuts[i].keep_inside;
+    most = here > most ? here : most;
+  }
+  return most;
+}
+
+static void set_up_cut(const view_sheets *sheets, const grid *grid, const cut_shape *shape, size_t at) {
+  /* a plane's inside is a box without other faces */
+  const double edge = 1e15, plane_low[3] = {0, -edge, -edge}, plane_high[3] = {edge, edge, edge};
+  const double box_low[3] = {-1, -1, -1}, box_high[3] = {1, 1, 1};
+  const sheet_stack *stack = sheets->content->sheets;
+  bool plane = shape->type == HL_CUT_PLANE;
+  affine3 from_frame = affine3_multiply(shape->to_shape, grid->frame_to_index);
+  hl_box_rays(sheets->view, stack->normal, stack->first, from_frame, plane ? plane_low : box_low,
+              plane ? plane_high : box_high, &sheets->cut_rays[at]);
+  sheets->cut_rays[at].sphere = shape->type == HL_CUT_SPHERE;
+  run_cut *cut = &sheets->cuts[at];
+  const double *offset = &shape->to_shape.offset.x;
+  cut->shape = shape;
+  for (int r = 0; r < 3; r++) {
+    vec3_store(cut->rows[r], shape->to_shape.linear.row[r]);
+    cut->rows[r][3] = (float)offset[r];
+    cut->size[r] = (float)vec3_length(from_frame.linear.row[r]);
+  }
+}
+
+static void set_up_cuts(view_sheets *sheets) {
+  size_t at = 0;
+  for (int g = 0; g < sheets->content->volume_count && sheets->cuts != NULL; g++)
+    for (size_t i = 0; i < cuts_of(sheets, g); i++)
+      set_up_cut(sheets, &sheets->content->grids[g], &sheets->content->grids[g].cuts[i], at++);
+}
+
+/* Fills a row of entries beyond the box's: shortens the box's sections to the insides that are kept, and
+ * stores the sections that cuts remove. */
+static void enter_cuts(const view_sheets *sheets, slab_place place, float *enter) {
+  int grid = (int)sheets->occupancy.patch_grid[place.patch];
+  size_t tiles_x = (size_t)sheets->occupancy.tiles_x, first = cuts_before(sheets, grid);
+  int x = (int)(place.tile % tiles_x), y = (int)(place.tile / tiles_x);
+  float *leave = enter + TILE_PIXELS, *removed = enter + (ptrdiff_t)2 * INTERVAL_FLOATS;
+  for (size_t i = first; i < first + cuts_of(sheets, grid); i++) {
+    if (!sheets->cuts[i].shape->keep_inside) {
+      sheets->content->hot->view.coverage(&sheets->cut_rays[i], x, y, removed, removed + TILE_PIXELS);
+      removed += INTERVAL_FLOATS;
+      continue;
+    }
+    float kept[INTERVAL_FLOATS];
+    sheets->content->hot->view.coverage(&sheets->cut_rays[i], x, y, kept, kept + TILE_PIXELS);
+    for (int p = 0; p < TILE_PIXELS; p++) {
+      enter[p] = kept[p] > enter[p] ? kept[p] : enter[p];
+      leave[p] = kept[TILE_PIXELS + p] < leave[p] ? kept[TILE_PIXELS + p] : leave[p];
+    }
+  }
+}
+
 /* A patch's entries: where its rays enter and leave the box. One task at a time uses a patch. Rows of entries
  * are handed out in order, so that only as much memory is touched as patches ask for. */
-static const float *entries_of(view_sheets *sheets, slab_place place) {
+static float *entries_of(view_sheets *sheets, slab_place place) {
   uint32_t *entry = &sheets->entry_of[place.patch];
-  if (*entry != NO_ENTRY) return sheets->entries + *entry * (size_t)ENTRY_FLOATS;
+  if (*entry != NO_ENTRY) return sheets->entries + *entry * sheets->entry_floats;
   *entry = __atomic_fetch_add(&sheets->entry_count, 1, __ATOMIC_RELAXED);
-  float *enter = sheets->entries + *entry * (size_t)ENTRY_FLOATS;
+  float *enter = sheets->entries + *entry * sheets->entry_floats;
   size_t tiles_x = (size_t)sheets->occupancy.tiles_x;
   sheets->content->hot->view.coverage(&sheets->box_rays[sheets->occupancy.patch_grid[place.patch]],
                                       (int)(place.tile % tiles_x), (int)(place.tile / tiles_x), enter,
                                       enter + TILE_PIXELS);
+  if (sheets->cuts != NULL) enter_cuts(sheets, place, enter);
   return enter;
+}
+
+/* Takes the removed section of a ray from the section of a slab. One section is left: where a cut removes the
+ * middle of a slab, the second part moves up to the first. */
+static void remove_section(float from, float to, float *enter, float *leave) {
+  if (!(from < to) || to <= *enter || from >= *leave) return;
+  if (from > *enter && to < *leave) *leave -= to - from;
+  else if (from > *enter) *leave = from;
+  else if (to < *leave) *enter = to;
+  else *leave = *enter;
+}
+
+/* Where a patch's rays enter and leave what cuts leave of a slab; null: see entries_of(). */
+static const float *entries_of_slab(view_sheets *sheets, slab_place place) {
+  float *enter = entries_of(sheets, place), *here = enter + INTERVAL_FLOATS, *removed = here + INTERVAL_FLOATS;
+  int grid = (int)sheets->occupancy.patch_grid[place.patch];
+  const cut_shape *cuts = sheets->content->grids[grid].cuts;
+  size_t count = 0;
+  for (size_t i = 0; i < cuts_of(sheets, grid); i++) count += !cuts[i].keep_inside;
+  if (count == 0) return enter;
+  const sheet_stack *stack = sheets->content->sheets;
+  float top = (float)(place.sheet * stack->spacing), bottom = (float)((place.sheet - 1) * stack->spacing);
+  for (int p = 0; p < TILE_PIXELS; p++) {
+    float from = enter[p] > bottom ? enter[p] : bottom, to = enter[TILE_PIXELS + p];
+    to = to < top ? to : top;
+    for (size_t i = 0; i < count && from < to; i++)
+      remove_section(removed[i * INTERVAL_FLOATS + (size_t)p],
+                     removed[i * INTERVAL_FLOATS + TILE_PIXELS + (size_t)p], &from, &to);
+    here[p] = from;
+    here[TILE_PIXELS + p] = to;
+  }
+  return here;
 }
 
 static hl_status sort_voxels(view_sheets *sheets, hl_error *error) {
@@ -68,7 +176,11 @@ static void lay_out(view_sheets *sheets, hl_layout *layout) {
   if (!any_cut(sheets->content)) return;
   sheets->entry_of = hl_layout_take(layout, patches, sizeof *sheets->entry_of);
   sheets->box_rays = hl_layout_take(layout, grids, sizeof *sheets->box_rays);
-  sheets->entries = hl_layout_take(layout, patches, ENTRY_FLOATS * sizeof *sheets->entries);
+  size_t cuts = cuts_before(sheets, sheets->content->volume_count), removed = most_removed(sheets);
+  if (cuts > 0) sheets->cuts = hl_layout_take(layout, cuts, sizeof *sheets->cuts);
+  if (cuts > 0) sheets->cut_rays = hl_layout_take(layout, cuts, sizeof *sheets->cut_rays);
+  sheets->entry_floats = (removed == 0 ? 1 : 2 + removed) * INTERVAL_FLOATS;
+  sheets->entries = hl_layout_take(layout, patches, sheets->entry_floats * sizeof *sheets->entries);
 }
 
 uint64_t hl_view_sheets_bytes(const sheet_content *content, const view *view, double spare) {
@@ -97,6 +209,7 @@ static hl_status keep_patches(view_sheets *sheets, hl_error *error) {
     hl_box_rays(sheets->view, stack->normal, stack->first, grid->frame_to_index, grid->box_low,
                 grid->box_high, &sheets->box_rays[g]);
   }
+  set_up_cuts(sheets);
   return HL_OK;
 }
 
@@ -116,6 +229,9 @@ static void reach_run(view_sheets *sheets, int first) {
     const grid *grid = &content->grids[g];
     slab_run *run = run_of_grid(sheets, first, g);
     run->grid = grid;
+    run->cuts = sheets->cuts == NULL ? NULL : sheets->cuts + cuts_before(sheets, g);
+    run->cut_count = sheets->cuts == NULL ? 0 : (int)cuts_of(sheets, g);
+    run->beside = (float)sheets->beside;
     for (int axis = 0; axis < 3; axis++) {
       double reach = sheets->beside * vec3_length(grid->frame_to_index.linear.row[axis]);
       run->low[axis] = (float)(grid->box_low[axis] + reach);
@@ -154,10 +270,10 @@ void hl_view_sheets_reach(view_sheets *sheets, int sheet) {
   for (int ahead = sheet; ahead < end_of_bundle(sheets, sheet); ahead++) reach_sheet(sheets, ahead);
 }
 
-hl_status hl_view_sheets_begin(const sheet_content *content, const view *view, double spare,
+hl_status hl_view_sheets_begin(const sheet_content *content, const view *view, bool of_light, double spare,
                                view_sheets *sheets, hl_error *error) {
   const occupancy_source source = {content->grids, content->volume_count, view, content->sheets, spare};
-  *sheets = (view_sheets){.content = content, .view = view};
+  *sheets = (view_sheets){.content = content, .view = view, .of_light = of_light};
   hl_status status = hl_occupancy_build(content->context, content->pool, content->hot->view.brick_ranges,
                                         &source, &sheets->occupancy, error);
   if (status == HL_OK) status = sort_voxels(sheets, error);
@@ -305,7 +421,7 @@ patch_slab hl_patch_slab(view_sheets *sheets, slab_place place, uint32_t need, u
   if (more != 0) *pixels += fill_bundle(sheets, place, more, run);
   bool cut = sheets->content->grids[sheets->occupancy.patch_grid[patch]].cut;
   bool uncut = run->relevant.uncut >> slab & 1;
-  const float *enter = !cut ? NULL : uncut ? sheets->entries : entries_of(sheets, place);
+  const float *enter = !cut ? NULL : uncut ? sheets->entries : entries_of_slab(sheets, place);
   return (patch_slab){.before = density_on_sheet(sheets, patch, place.sheet - 1),
                       .current = density_on_sheet(sheets, patch, place.sheet),
                       .enter = enter,

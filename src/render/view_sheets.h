@@ -45,6 +45,7 @@ typedef struct patch_run {
 typedef struct view_sheets {
   const sheet_content *content;
   const view *view;
+  bool of_light; /* else the eye's */
   double beside; /* the eye's view: the longest way of light through a slab, frame units. A light's: 0 */
   occupancy occupancy;
   voxel_lists *lists;   /* owned; [grids]; splat only */
@@ -61,13 +62,18 @@ typedef struct view_sheets {
   /* the next two: only where a box cuts anything visible; else null */
   uint32_t *entry_of;   /* [patches]; its row of entries; NO_ENTRY where none was asked for */
   box_rays *box_rays;   /* [grids] */
-  float *entries;       /* [patches][2][256], used up to entry_count: where rays enter a box and leave it */
+  float *entries;       /* [patches][entry_floats], used up to entry_count: where rays enter a box and leave it */
   uint32_t entry_count; /* atomic */
+  size_t entry_floats;  /* a row: [2][256] for the box and what keeps an inside; where cuts keep an outside,
+                           [2][256] more for the slab at hand, and [2][256] for each of these cuts */
+  /* the next two: of all grids' cuts, one grid after the other; null where there are none for this view */
+  run_cut *cuts;
+  box_rays *cut_rays;
 } view_sheets;
 
-/* content and view are borrowed until the end. spare: as hl_occupancy_build has it. hl_view_sheets_end
+/* content and view are borrowed until the end. of_light: cuts that leave shadows do not count. spare: as hl_occupancy_build has it. hl_view_sheets_end
  * releases what a failed begin leaves. */
-hl_status hl_view_sheets_begin(const sheet_content *content, const view *view, double spare,
+hl_status hl_view_sheets_begin(const sheet_content *content, const view *view, bool of_light, double spare,
                                view_sheets *sheets, hl_error *error);
 void hl_view_sheets_end(view_sheets *sheets);
 /* The bytes that hl_view_sheets_begin would hold; without the lists of splatted voxels, whose size is known

@@ -21,7 +21,8 @@ static bool is_relevant(const grid *grid, const double p[3]) {
     double cell = fmin(fmax(floor(p[a]) + 1, 0), HL_BRICK_CELLS * grid->brick_count[a] - 1);
     brick[a] = (int32_t)cell / HL_BRICK_CELLS;
   }
-  return grid->relevant[hl_brick_index(grid, brick)] != 0;
+  return grid->relevant[hl_brick_index(grid, brick)] != 0 &&
+         (grid->cut_casts_shadow || hl_cuts_leave(grid->cuts, grid->cut_count, vec3_of(p)));
 }
 
 /* The value between the voxels around a point, linear along each axis. */

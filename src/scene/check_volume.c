@@ -112,6 +112,28 @@ static hl_status check_clip(const hl_checker *check, const hl_scene_volume *volu
   return status;
 }
 
+static hl_status check_cut(const hl_cut *cut, const char *place, hl_error *error) {
+  hl_status status = hl_settings_check_key(HL_SETTINGS_CUT, "type", cut, place, error);
+  if (status == HL_OK) status = hl_settings_check(HL_SETTINGS_CUT, cut, (int)cut->type, place, error);
+  for (int a = 0; a < 3 && status == HL_OK && cut->type == HL_CUT_BOX; a++)
+    if (cut->min[a] >= cut->max[a])
+      return hl_fail(error, HL_ERROR_INPUT, "%s/max/%d: %.9g is not above min, %.9g: the box is empty, enlarge it",
+                     place, a, cut->max[a], cut->min[a]);
+  return status;
+}
+
+static hl_status check_cuts(const hl_checker *check, const hl_scene_volume *volume) {
+  hl_status status = hl_check_count(check, "cuts", volume->cuts, volume->cut_count, HL_LIMIT_CUTS);
+  if (status == HL_OK) status = hl_check_key(check, HL_SETTINGS_VOLUME, "cut_shading", volume);
+  if (status == HL_OK) status = hl_check_key(check, HL_SETTINGS_VOLUME, "cut_casts_shadow", volume);
+  for (size_t i = 0; i < volume->cut_count && status == HL_OK; i++) {
+    char place[120];
+    snprintf(place, sizeof place, "%s/cuts/%zu", check->place, i);
+    status = check_cut(&volume->cuts[i], place, check->error);
+  }
+  return status;
+}
+
 static double farthest_corner(const hl_scene_volume *volume, affine3 placement) {
   double farthest = 0;
   for (int corner = 0; corner < 8; corner++) {
@@ -232,5 +254,6 @@ hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_
   if (status == HL_OK) status = check_iso(&check, volume);
   if (status == HL_OK && volume->label_count > 0 && volume->iso_count > 0)
     status = hl_check_refuse(&check, "iso", "and labels exclude each other: remove one");
-  return status == HL_OK ? check_clip(&check, volume) : status;
+  if (status == HL_OK) status = check_clip(&check, volume);
+  return status == HL_OK ? check_cuts(&check, volume) : status;
 }

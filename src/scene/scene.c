@@ -49,6 +49,12 @@ void hl_isosurface_defaults(hl_isosurface *surface) {
   hl_settings_defaults(HL_SETTINGS_ISO, surface);
 }
 
+void hl_cut_defaults(hl_cut *cut) {
+  if (cut == NULL) return;
+  *cut = (hl_cut){.type = HL_CUT_PLANE};
+  hl_settings_defaults(HL_SETTINGS_CUT, cut);
+}
+
 void hl_scene_description_defaults(hl_scene_description *description) {
   if (description == NULL) return;
   *description = (hl_scene_description){.struct_size = sizeof(hl_scene_description)};
@@ -67,6 +73,7 @@ static void release_volume(hl_context *context, hl_scene_volume *volume) {
   hl_release(context, (void *)volume->shapes);
   hl_transfer_function_release(context, &volume->transfer_function);
   hl_release(context, (void *)volume->iso);
+  hl_release(context, (void *)volume->cuts);
   hl_volume_release(volume->volume);
   hl_release(context, (void *)volume->labels);
 }
@@ -143,6 +150,7 @@ static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, h
   to->name = to->file = to->shapes = to->array = to->series = NULL;
   to->transfer_function = (hl_transfer_function){0};
   to->iso = NULL;
+  to->cuts = NULL;
   to->labels = NULL;
   hl_volume_retain(to->volume);
   hl_status status = copy_text(context, from->name, &to->name, error);
@@ -151,10 +159,13 @@ static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, h
   if (status == HL_OK) status = copy_text(context, from->array, &to->array, error);
   if (status == HL_OK) status = copy_text(context, from->series, &to->series, error);
   if (status == HL_OK) status = hl_labels_copy(context, from->labels, from->label_count, &to->labels, error);
-  void *iso = NULL;
+  void *iso = NULL, *cuts = NULL;
   if (status == HL_OK)
     status = copy_array(context, from->iso, from->iso_count, sizeof *from->iso, "isosurfaces", &iso, error);
   to->iso = iso;
+  if (status == HL_OK)
+    status = copy_array(context, from->cuts, from->cut_count, sizeof *from->cuts, "cuts", &cuts, error);
+  to->cuts = cuts;
   if (status != HL_OK) return status;
   if (to->label_count > 0) return hl_labels_function(context, to, &to->transfer_function, error);
   return hl_transfer_function_copy(context, &from->transfer_function, &to->transfer_function, error);

@@ -57,6 +57,14 @@ static const hl_setting_choice skies[] = {{"none", HL_SKY_NONE},
                                           {"gradient", HL_SKY_GRADIENT},
                                           {"image", HL_SKY_IMAGE},
                                           {NULL, 0}};
+static const hl_setting_choice cut_types[] = {
+    {"plane", HL_CUT_PLANE}, {"box", HL_CUT_BOX}, {"sphere", HL_CUT_SPHERE}, {NULL, 0}};
+static const hl_setting_choice cut_keeps[] = {
+    {"outside", HL_CUT_KEEP_OUTSIDE}, {"inside", HL_CUT_KEEP_INSIDE}, {NULL, 0}};
+static const hl_setting_choice cut_shadings[] = {{"face", HL_CUT_SHADING_FACE},
+                                                 {"gradient", HL_CUT_SHADING_GRADIENT},
+                                                 {"none", HL_CUT_SHADING_NONE},
+                                                 {NULL, 0}};
 static const hl_setting_choice automatic_resolution[] = {{"auto", 0}, {NULL, 0}};
 
 #define ONE(type) (1u << (type))
@@ -223,7 +231,13 @@ static const hl_setting volume_rows[] = {
     {.key = "clip/min", FIELD(hl_scene_volume, clip_min), A_POINT,
      .sentence = "The least corner of the box that is kept, in the units of the volume's own file."},
     {.key = "clip/max", FIELD(hl_scene_volume, clip_max), A_POINT,
-     .sentence = "The greatest corner of the box that is kept."}};
+     .sentence = "The greatest corner of the box that is kept."},
+    {.key = "cut_shading", FIELD(hl_scene_volume, cut_shading), A_CHOICE(cut_shadings), .optional = 1,
+     .option = "cut-shading",
+     .sentence = "The normal of surfaces at the faces of `cuts`: the face's, the data's, or none, as in a medium."},
+    {.key = "cut_casts_shadow", FIELD(hl_scene_volume, cut_casts_shadow), A_FLAG, .optional = 1,
+     .option = "cut-casts-shadow",
+     .sentence = "What `cuts` remove goes on taking light from what lies behind it."}};
 
 static const hl_setting mesh_rows[] = {
     {.key = "transform/scale", FIELD(hl_scene_mesh, scale), .type = HL_SETTING_NUMBER, .unit = "",
@@ -268,6 +282,25 @@ static const hl_setting iso_rows[] = {
     {.key = "opacity", FIELD(hl_isosurface, opacity), .type = HL_SETTING_NUMBER, .unit = "", .high = 1,
      .standard = {1}, .sentence = "The fraction of light that the surface stops, from any angle.",
      .mend = "give a fraction from {low} to {high}"}};
+
+static const hl_setting cut_rows[] = {
+    {.key = "type", FIELD(hl_cut, type), A_CHOICE(cut_types), .sentence = "The shape of the cut."},
+    {.key = "point", FIELD(hl_cut, point), A_POINT, .only_for = ONE(HL_CUT_PLANE), .option = "cut-plane",
+     .sentence = "A point of the plane, in the units of the volume's own file."},
+    {.key = "normal", FIELD(hl_cut, normal), A_DIRECTION, .standard = {0, 0, 1},
+     .only_for = ONE(HL_CUT_PLANE), .option = "cut-plane",
+     .sentence = "The direction in which all is cut away."},
+    {.key = "min", FIELD(hl_cut, min), A_POINT, .only_for = ONE(HL_CUT_BOX), .option = "cut-box",
+     .sentence = "The least corner of the box, in the units of the volume's own file."},
+    {.key = "max", FIELD(hl_cut, max), A_POINT, .standard = {1, 1, 1}, .only_for = ONE(HL_CUT_BOX),
+     .option = "cut-box", .sentence = "The greatest corner of the box."},
+    {.key = "center", FIELD(hl_cut, center), A_POINT, .only_for = ONE(HL_CUT_SPHERE), .option = "cut-sphere",
+     .sentence = "The sphere's centre, in the units of the volume's own file."},
+    {.key = "radius", FIELD(hl_cut, radius), .type = HL_SETTING_NUMBER, .unit = "world units",
+     .high = HL_LIMIT_LENGTH, .open_low = 1, .standard = {1}, .only_for = ONE(HL_CUT_SPHERE),
+     .option = "cut-sphere", .sentence = "The sphere's radius.", .mend = "give a radius above 0"},
+    {.key = "keep", FIELD(hl_cut, keep), A_CHOICE(cut_keeps), .optional = 1,
+     .sentence = "What is left: all outside the shape, or only its inside."}};
 
 static const hl_setting render_rows[] = {
     {.key = "shadows", FIELD(hl_render_settings, shadows), A_CHOICE(shadows), .standard = {HL_SHADOWS_SOFT},
@@ -351,6 +384,7 @@ static const struct {
     [HL_SETTINGS_MESH] = TABLE(mesh_rows),
     [HL_SETTINGS_SKY] = TABLE(sky_rows),
     [HL_SETTINGS_ISO] = TABLE(iso_rows),
+    [HL_SETTINGS_CUT] = TABLE(cut_rows),
     [HL_SETTINGS_TRANSFER_FUNCTION] = TABLE(transfer_function_rows),
 };
 

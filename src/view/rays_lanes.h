@@ -67,22 +67,52 @@ LANES_INLINE lanes3 rays_positions(const sheet_rays *rays, lanes u, lanes v) {
                   lanes_fma(p.z, s, lanes_set(rays->base[2]))};
 }
 
-/* ---- where rays enter and leave a box: the slab method ---- */
+/* ---- where rays enter and leave a box or a sphere ---- */
+
+/* The sections of rays from `first` to `last`, in their own steps. */
+typedef struct ray_section {
+  lanes first, last;
+} ray_section;
+
+/* The slab method. */
+LANES_INLINE ray_section section_in_box(const box_rays *rays, lanes u, lanes v) {
+  ray_section section = {lanes_set(rays->least), lanes_set(1e30f)};
+  for (int axis = 0; axis < 3; axis++) {
+    lanes start = linear_in_view(rays->start[axis], rays->start_u[axis], rays->start_v[axis], u, v);
+    lanes direction = linear_in_view(rays->direction[axis], rays->direction_u[axis], rays->direction_v[axis],
+                                     u, v);
+    /* a ray parallel to two faces: a tiny direction sends its crossings far away, to the right sides */
+    direction = lanes_select(lanes_abs(direction) < 1e-12f, lanes_set(1e-12f), direction);
+    lanes a = (rays->low[axis] - start) / direction, b = (rays->high[axis] - start) / direction;
+    section.first = lanes_max(section.first, lanes_min(a, b));
+    section.last = lanes_min(section.last, lanes_max(a, b));
+  }
+  return section;
+}
+
+/* The roots of |start + s direction| = 1; none where start and direction are q and d: (q.d)^2 <= d.d (q.q -
+ * 1). */
+LANES_INLINE ray_section roots_of_sphere(lanes3 start, lanes3 direction) {
+  lanes squared = dot3(direction, direction), along = dot3(start, direction);
+  lanes rest = lanes_fma(along, along, squared * (1.0f - dot3(start, start)));
+  lanes root = lanes_sqrt(lanes_max(rest, lanes_set(0)));
+  lanes_int met = rest > 0.0f;
+  return (ray_section){lanes_select(met, (-along - root) / squared, lanes_set(1e30f)),
+                       lanes_select(met, (root - along) / squared, lanes_set(-1e30f))};
+}
+
+LANES_INLINE ray_section section_in_sphere(const box_rays *rays, lanes u, lanes v) {
+  ray_section section = roots_of_sphere(rays_linear(rays->start, rays->start_u, rays->start_v, u, v),
+                                        rays_linear(rays->direction, rays->direction_u, rays->direction_v, u, v));
+  section.first = lanes_max(section.first, lanes_set(rays->least));
+  return section;
+}
 
 static void coverage_tile(const box_rays *rays, int tile_x, int tile_y, float *enter, float *leave) {
   for (int block = 0; block < TILE_BLOCKS; block++) {
     lanes u = block_u(tile_x * TILE + block % 4 * BLOCK), v = block_v(tile_y * TILE + block / 4 * BLOCK);
-    lanes first = lanes_set(rays->least), last = lanes_set(1e30f);
-    for (int axis = 0; axis < 3; axis++) {
-      lanes start = linear_in_view(rays->start[axis], rays->start_u[axis], rays->start_v[axis], u, v);
-      lanes direction = linear_in_view(rays->direction[axis], rays->direction_u[axis],
-                                       rays->direction_v[axis], u, v);
-      /* a ray parallel to two faces: a tiny direction sends its crossings far away, to the right sides */
-      direction = lanes_select(lanes_abs(direction) < 1e-12f, lanes_set(1e-12f), direction);
-      lanes a = (rays->low[axis] - start) / direction, b = (rays->high[axis] - start) / direction;
-      first = lanes_max(first, lanes_min(a, b));
-      last = lanes_min(last, lanes_max(a, b));
-    }
+    ray_section section = rays->sphere ? section_in_sphere(rays, u, v) : section_in_box(rays, u, v);
+    lanes first = section.first, last = section.last;
     lanes base = linear_in_view(rays->start_height, rays->start_height_u, rays->start_height_v, u, v);
     lanes climb = linear_in_view(rays->climb, rays->climb_u, rays->climb_v, u, v);
     lanes a = lanes_fma(first, climb, base), b = lanes_fma(last, climb, base);

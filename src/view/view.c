@@ -124,6 +124,7 @@ void hl_box_rays(const view *view, vec3 normal, double first_height, affine3 fra
     rays->high[axis] = (float)high[axis];
   }
   rays->least = view->perspective ? -(float)ahead : -1e30f;
+  rays->sphere = 0;
 }
 
 /* ---- bounds of boxes in a view ---- */

@@ -99,6 +99,7 @@ typedef struct box_rays {
   float climb, climb_u, climb_v;
   float low[3], high[3]; /* the box, index space */
   float least;           /* the least s: the eye of a perspective view */
+  int sphere;            /* in place of the box, the points nearer than 1 to the origin */
 } box_rays;
 
 /* enter, leave: [256], one tile, block after block; heights above the first sheet. A ray that misses the box

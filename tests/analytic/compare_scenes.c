@@ -386,6 +386,50 @@ static void make_spot_in_smoke(stage *set) { /* a sharp cone across the view; wi
   stage_set_texture(light, 12, 9, slide(), (vec3){-15, -8, 6}, (vec3){3, -3, 0}, (vec3){1, 0, 3});
 }
 
+/* ---- cuts ---- */
+
+static const hl_cut TWO_PLANES[] = {
+    {.type = HL_CUT_PLANE, .point = {1.3, -2, 1}, .normal = {0.3, -1, 0.5}},
+    {.type = HL_CUT_PLANE, .point = {0, 0, 7.7}, .normal = {-0.2, 0.1, 1}}};
+static const hl_cut OCTANT[] = {{.type = HL_CUT_BOX, .min = {-0.4, -30, 0.3}, .max = {30, 0.2, 30}}};
+static const hl_cut BITE[] = {{.type = HL_CUT_SPHERE, .center = {3, -9, 6}, .radius = 9.5},
+                              {.type = HL_CUT_SPHERE, .center = {0, 0, 0}, .radius = 13, .keep = HL_CUT_KEEP_INSIDE}};
+static void make_cut(stage *set, field_function *field, const hl_cut *cuts, size_t count) {
+  hl_scene_volume *volume = add_cube(set, field, 28);
+  volume->cuts = cuts;
+  volume->cut_count = count;
+  look_from_corner(set);
+  stage_add_directional(set, (vec3){0.2, 0.7, -0.9})->angular_diameter_deg = 4;
+}
+static void make_cut_medium(stage *set, const hl_cut *cuts, size_t count) {
+  make_cut(set, full, cuts, count);
+  OPACITY(&set->volumes[0], THIN);
+  set->volumes[0].shading = HL_SHADING_NONE;
+}
+static void make_planes(stage *set) { make_cut_medium(set, TWO_PLANES, 2); }
+static void make_octant(stage *set) { make_cut_medium(set, OCTANT, 1); }
+static void make_bite(stage *set) { make_cut_medium(set, BITE, 2); }
+static void make_planes_dense(stage *set) { make_cut(set, full, TWO_PLANES, 2); }
+static void make_octant_dense(stage *set) { make_cut(set, full, OCTANT, 1); }
+static void make_bite_dense(stage *set) { make_cut(set, full, BITE, 2); }
+static void make_octant_backlit(stage *set) {
+  make_octant(set);
+  memcpy(set->lights[0].direction, (double[3]){-0.5, 1, -0.4}, sizeof set->lights[0].direction);
+}
+static void make_octant_perspective(stage *set) {
+  make_octant(set);
+  stage_look(set, (vec3){23, -26, 18}, (vec3){3, -3, 0}, (vec3){0, 0, 1});
+  perspective(set, 60);
+}
+static void make_cut_shadow(stage *set) {
+  make_octant(set);
+  set->volumes[0].cut_casts_shadow = 1;
+}
+static void make_cut_none(stage *set) {
+  make_octant_dense(set);
+  set->volumes[0].cut_shading = HL_CUT_SHADING_NONE;
+}
+
 /* Soft bars are about 1.3 times the error when they were set. A step of opacity on a wall lit at a grazing
  * angle wants shadow pixels well below a voxel (half a voxel is what there is); the borders of holes lie half
  * way between empty and the least value in the reference, nearer to the least in the sheets. */
@@ -442,6 +486,16 @@ static const scenario SCENARIOS[] = {
     {"gradient", make_gradient, 0.002, {0.0015, 0.002, 0.0015}},
     {"gradient-medium", make_gradient_medium, 0.002, {0.0015, 0.002, 0.0015}},
     {"gradient-backlit", make_gradient_backlit, 0.002, {0}},
+    {"cut-planes", make_planes, 0.006, {0}},
+    {"cut-octant", make_octant, 0.006, {0}},
+    {"cut-bite", make_bite, 0.006, {0}},
+    {"cut-planes-dense", make_planes_dense, 0.006, {0}},
+    {"cut-octant-dense", make_octant_dense, 0.006, {0}},
+    {"cut-bite-dense", make_bite_dense, 0.006, {0}},
+    {"cut-octant-backlit", make_octant_backlit, 0.006, {0}},
+    {"cut-octant-perspective", make_octant_perspective, 0.006, {0}},
+    {"cut-shadow", make_cut_shadow, 0.006, {0}},
+    {"cut-none", make_cut_none, 0.006, {0}},
 };
 
 const scenario *compare_scenarios(size_t *count) {

@@ -1,0 +1,123 @@
+/* cli/render_cut.c - `--cut-plane POINT:NORMAL`, `--cut-box RANGES` and `--cut-sphere CENTRE:RADIUS`: parts that
+ * are cut out of each volume, in its file's world. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "input.h"
+#include "render.h"
+
+/* The options by the type of their cuts. */
+static const int option_of[] = {[HL_CUT_PLANE] = RENDER_CUT_PLANE,
+                                [HL_CUT_BOX] = RENDER_CUT_BOX,
+                                [HL_CUT_SPHERE] = RENDER_CUT_SPHERE};
+enum { CUT_TYPES = 3 };
+
+/* A cut as typed: a plane's point or a sphere's centre, and what follows the colon; or a box's ranges. */
+typedef struct typed_cut {
+  render_coordinate point[3], radius;
+  double normal[3];
+  render_axis_range box[3]; /* by axis; those not given have no ends */
+} typed_cut;
+
+static bool read_point(const char **text, render_coordinate point[3]) {
+  for (int a = 0; a < 3; a++) {
+    if (!render_read_coordinate(text, &point[a]) || !point[a].given) return false;
+    if (*(*text)++ != (a < 2 ? ',' : ':')) return false;
+  }
+  return true;
+}
+
+static bool read_normal(const char *text, double normal[3]) {
+  for (int a = 0; a < 3; a++) {
+    char *rest;
+    normal[a] = strtod(text, &rest);
+    if (rest == text || !isfinite(normal[a]) || *rest != (a < 2 ? ',' : '\0')) return false;
+    text = rest + 1;
+  }
+  return normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
+}
+
+static bool read_box(const char *text, render_axis_range box[3]) {
+  render_axis_range range;
+  do {
+    if (!render_read_range(&text, &range)) return false;
+    if (box[range.axis].ends[0].given || box[range.axis].ends[1].given) return false;
+    box[range.axis] = range;
+  } while (*text++ == ',');
+  return text[-1] == '\0';
+}
+
+static bool read_radius(const char *text, render_coordinate *radius) {
+  return render_read_coordinate(&text, radius) && radius->given && radius->number > 0 && *text == '\0';
+}
+
+static bool read_cut(hl_cut_type type, const char *text, typed_cut *cut) {
+  *cut = (typed_cut){0};
+  if (type == HL_CUT_BOX) return read_box(text, cut->box);
+  if (!read_point(&text, cut->point)) return false;
+  return type == HL_CUT_PLANE ? read_normal(text, cut->normal) : read_radius(text, &cut->radius);
+}
+
+int render_check_cuts(const cli_value *values) {
+  static const char *const wanted[] = {
+      [HL_CUT_PLANE] = "X,Y,Z:NX,NY,NZ: a point, in fractions of the volume's box or in its own unit (40mm), and the "
+                       "direction in which all is cut away (0.5,0.5,0.5:1,0,0)",
+      [HL_CUT_BOX] = "AXIS=LO:HI,...: ranges along x, y and z, each once, in fractions of the volume's box or in its "
+                     "own unit (x=0.5:,y=:0.5,z=40mm:)",
+      [HL_CUT_SPHERE] = "X,Y,Z:RADIUS, in fractions of the volume's box, the radius of its longest side, or in its own "
+                        "unit (0.5,0.5,1:0.3)"};
+  for (int type = 0; type < CUT_TYPES; type++) {
+    const cli_value *value = &values[option_of[type]];
+    typed_cut cut;
+    for (int n = 0; n < value->count; n++)
+      if (!read_cut((hl_cut_type)type, value->texts[n], &cut))
+        return fail(EXIT_CODE_USAGE, "--%s: '%s' is not %s", render_options[option_of[type]].name, value->texts[n],
+                    wanted[type]);
+  }
+  return EXIT_CODE_OK;
+}
+
+size_t render_cut_count(const cli_value *values) {
+  size_t count = 0;
+  for (int type = 0; type < CUT_TYPES; type++) count += (size_t)values[option_of[type]].count;
+  return count;
+}
+
+/* low, high: the box around the volume's voxels. A box's end that is left out lies beyond it. */
+static void place_cut(const typed_cut *typed, const double low[3], const double high[3], hl_cut *cut) {
+  double longest = 0;
+  for (int a = 0; a < 3; a++) {
+    double side = high[a] - low[a];
+    const render_coordinate *ends = typed->box[a].ends;
+    longest = fmax(longest, side);
+    cut->point[a] = cut->center[a] = render_coordinate_of(&typed->point[a], 0, low[a], high[a]);
+    cut->min[a] = render_coordinate_of(&ends[0], low[a] - side, low[a], high[a]);
+    cut->max[a] = render_coordinate_of(&ends[1], high[a] + side, low[a], high[a]);
+    cut->normal[a] = typed->normal[a];
+  }
+  cut->radius = typed->radius.fraction ? typed->radius.number * longest : typed->radius.number;
+}
+
+int render_cuts(const cli_value *values, hl_scene_volume *volume, hl_cut *cuts) {
+  double low[3], high[3];
+  hl_volume_info info = {.struct_size = sizeof info};
+  size_t count = volume->cut_count;
+  if (hl_volume_get_info(volume->volume, &info) != HL_OK)
+    return fail(EXIT_CODE_FAILURE, "--cut-plane: the volume's place is not known");
+  input_world_box(&info, low, high);
+  if (count > 0) memcpy(cuts, volume->cuts, count * sizeof *cuts);
+  for (int type = 0; type < CUT_TYPES; type++)
+    for (int n = 0; n < values[option_of[type]].count; n++) {
+      hl_cut *cut = &cuts[count];
+      typed_cut typed;
+      hl_cut_defaults(cut);
+      cut->type = (hl_cut_type)type;
+      if (!read_cut(cut->type, values[option_of[type]].texts[n], &typed)) continue; /* refused before */
+      place_cut(&typed, low, high, cut);
+      count++;
+    }
+  volume->cuts = cuts;
+  volume->cut_count = count;
+  return EXIT_CODE_OK;
+}

@@ -1,0 +1,309 @@
+/* analytic/sheets_cuts.c - planes, boxes and spheres that cut a volume: what is left of even matter, by its
+ * length along rays; cut faces under light; shadows of what is cut away; by the sheets and by the reference. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+
+enum { SIDE = 40, FLOATS = SIDE * SIDE * 4, VOXELS = 20 };
+
+static const double HALF = VOXELS / 2.0, OPACITY = 0.08;
+
+static void open_stage(stage *set, const hl_context_options *options) {
+  stage_open_with(set, options);
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = 38;
+  stage_look(set, (vec3){23, 41, 60}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+}
+
+/* Even matter in a cube around the origin. */
+static hl_scene_volume *add_cube(stage *set, double opacity) {
+  hl_scene_volume *cube = stage_add_grid(set, (size_t[3]){VOXELS, VOXELS, VOXELS}, (double[3]){1, 1, 1},
+                                         (vec3){-HALF, -HALF, -HALF}, NULL);
+  stage_set_opacity(set, cube, opacity, 1);
+  return cube;
+}
+
+static void cut(hl_scene_volume *volume, const hl_cut *cuts, size_t count) {
+  volume->cuts = cuts;
+  volume->cut_count = count;
+}
+
+/* ---- lengths: found by many points along a ray, independent of any formula for crossings ---- */
+
+static double part(vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+static bool is_left(const hl_cut *cut, vec3 p) {
+  bool inside = true;
+  if (cut->type == HL_CUT_PLANE)
+    inside = vec3_dot(vec3_of(cut->normal), vec3_subtract(p, vec3_of(cut->point))) > 0;
+  if (cut->type == HL_CUT_SPHERE) inside = vec3_length(vec3_subtract(p, vec3_of(cut->center))) < cut->radius;
+  for (int a = 0; a < 3 && cut->type == HL_CUT_BOX; a++)
+    inside = inside && part(p, a) > cut->min[a] && part(p, a) < cut->max[a];
+  return inside == (cut->keep == HL_CUT_KEEP_INSIDE);
+}
+
+static double length_left(const hl_scene_volume *volume, vec3 origin, vec3 way) {
+  enum { STEPS = 40000 };
+  const double from = 20, to = 140;
+  int left = 0;
+  for (int i = 0; i < STEPS; i++) {
+    vec3 p = vec3_add(origin, vec3_scale(way, from + (to - from) * (i + 0.5) / STEPS));
+    bool here = fabs(p.x) < HALF && fabs(p.y) < HALF && fabs(p.z) < HALF;
+    for (size_t c = 0; c < volume->cut_count && here; c++) here = is_left(&volume->cuts[c], p);
+    left += here;
+  }
+  return left * (to - from) / STEPS;
+}
+
+static void assert_lengths(stage *set, bool reference, double tolerance) {
+  static float pixels[FLOATS];
+  stage_render_by(set, reference, pixels);
+  for (int p = 0; p < SIDE * SIDE; p += 7) {
+    vec3 origin, way;
+    stage_eye_ray(set, p % SIDE, p / SIDE, &origin, &way);
+    double alpha = 1 - pow(1 - OPACITY, length_left(&set->volumes[0], origin, way));
+    if (!(fabs((double)pixels[4 * p + 3] - alpha) <= tolerance))
+      fail_msg("pixel %d: alpha is %.6f, not %.6f", p, (double)pixels[4 * p + 3], alpha);
+  }
+}
+
+static const hl_cut PLANE[] = {{.type = HL_CUT_PLANE, .point = {1, 2, -1.3}, .normal = {3, -1, 4}}};
+static const hl_cut WEDGE[] = {{.type = HL_CUT_PLANE, .point = {1, 2, 0}, .normal = {3, -1, 4}},
+                               {.type = HL_CUT_PLANE, .point = {0, -2, 0}, .normal = {0, -1, 0.2}},
+                               {.type = HL_CUT_PLANE, .point = {-6, 0, 0}, .normal = {-2, 1, 1}}};
+static const hl_cut OCTANT[] = {{.type = HL_CUT_BOX, .min = {0.3, -1.2, 0}, .max = {40, 40, 40}}};
+static const hl_cut KEPT[] = {
+    {.type = HL_CUT_BOX, .min = {-5.5, -7.1, -4}, .max = {6, 3, 20}, .keep = HL_CUT_KEEP_INSIDE}};
+static const hl_cut BALL[] = {{.type = HL_CUT_SPHERE, .center = {2, 4, 7}, .radius = 8}};
+static const hl_cut SHELL[] = {
+    {.type = HL_CUT_SPHERE, .center = {0, 0, 0}, .radius = 9, .keep = HL_CUT_KEEP_INSIDE},
+    {.type = HL_CUT_SPHERE, .center = {0, 0, 0}, .radius = 6},
+    {.type = HL_CUT_PLANE, .point = {0, 0, 2}, .normal = {0, 0, 1}}};
+
+static const struct {
+  const hl_cut *cuts;
+  size_t count;
+} SHAPES[] = {{PLANE, 1}, {WEDGE, 3}, {OCTANT, 1}, {KEPT, 1}, {BALL, 1}, {SHELL, 3}};
+
+static void test_lengths(void **state) {
+  (void)state;
+  for (size_t i = 0; i < sizeof SHAPES / sizeof *SHAPES; i++)
+    for (int perspective = 0; perspective < 2; perspective++) {
+      stage set;
+      open_stage(&set, NULL);
+      if (perspective) set.scene.camera.type = HL_CAMERA_PERSPECTIVE;
+      cut(add_cube(&set, OPACITY), SHAPES[i].cuts, SHAPES[i].count);
+      assert_lengths(&set, true, 0.0005);
+      assert_lengths(&set, false, 0.0005);
+      stage_close(&set);
+    }
+}
+
+/* ---- the same box by a clip box and by cuts ---- */
+
+/* The root mean square of differences. The sheets of two scenes with other content lie elsewhere: single
+ * pixels at edges differ more. */
+static double difference(const float *a, const float *b) {
+  double sum = 0;
+  for (int i = 0; i < FLOATS; i++) sum += ((double)a[i] - (double)b[i]) * ((double)a[i] - (double)b[i]);
+  return sqrt(sum / FLOATS);
+}
+
+static const hl_cut SIX_PLANES[] = {{.type = HL_CUT_PLANE, .point = {-5.5, 0, 0}, .normal = {-1, 0, 0}},
+                                    {.type = HL_CUT_PLANE, .point = {6, 0, 0}, .normal = {2, 0, 0}},
+                                    {.type = HL_CUT_PLANE, .point = {0, -7.1, 0}, .normal = {0, -1, 0}},
+                                    {.type = HL_CUT_PLANE, .point = {0, 3, 0}, .normal = {0, 1, 0}},
+                                    {.type = HL_CUT_PLANE, .point = {0, 0, -4}, .normal = {0, 0, -1}},
+                                    {.type = HL_CUT_PLANE, .point = {0, 0, 2.3}, .normal = {0, 0, 1}}};
+static const hl_cut A_BOX[] = {
+    {.type = HL_CUT_BOX, .min = {-5.5, -7.1, -4}, .max = {6, 3, 2.3}, .keep = HL_CUT_KEEP_INSIDE}};
+
+static const hl_opacity_point SURFACE[] = {{0, 0}, {0.2, 0}, {0.45, 0.7}, {1, 0.9}};
+
+static void open_noise(stage *set, hl_soft_method method, hl_instruction_set instructions) {
+  static float voxels[VOXELS * VOXELS * VOXELS];
+  for (int i = 0; i < VOXELS * VOXELS * VOXELS; i++)
+    voxels[i] = stage_noise(0.4 * (i % VOXELS), 0.4 * (i / VOXELS % VOXELS), 0.4 * (i / VOXELS / VOXELS));
+  hl_context_options options;
+  hl_context_options_defaults(&options);
+  options.instruction_set = instructions;
+  open_stage(set, &options);
+  hl_scene_volume *noise = stage_add_grid(set, (size_t[3]){VOXELS, VOXELS, VOXELS}, (double[3]){1, 1, 1},
+                                          (vec3){-HALF, -HALF, -HALF}, voxels);
+  noise->transfer_function.opacity = SURFACE;
+  noise->transfer_function.opacity_count = 4;
+  noise->shading = HL_SHADING_PHONG;
+  noise->cut_shading = HL_CUT_SHADING_GRADIENT;
+  stage_add_directional(set, (vec3){-0.5, -0.8, -0.6})->angular_diameter_deg = 5;
+  set->scene.render.shadows = HL_SHADOWS_SOFT;
+  set->scene.render.soft_method = method;
+}
+
+static void test_as_a_clip_box(void **state) {
+  (void)state;
+  static float clipped[FLOATS], planes[FLOATS], box[FLOATS];
+  for (int method = 0; method < 3; method++) {
+    stage set;
+    open_noise(&set, (hl_soft_method)method, HL_INSTRUCTION_SET_AUTO);
+    memcpy(set.volumes[0].clip_min, A_BOX[0].min, sizeof A_BOX[0].min);
+    memcpy(set.volumes[0].clip_max, A_BOX[0].max, sizeof A_BOX[0].max);
+    set.volumes[0].clipped = 1;
+    stage_render_sheets(&set, clipped);
+    set.volumes[0].clipped = 0;
+    cut(&set.volumes[0], SIX_PLANES, 6);
+    stage_render_sheets(&set, planes);
+    cut(&set.volumes[0], A_BOX, 1);
+    stage_render_sheets(&set, box);
+    stage_close(&set);
+    print_message("# method %d: planes differ from a clip box by %.5f, a box by %.5f\n", method,
+                  difference(planes, clipped), difference(box, clipped));
+    assert_true(difference(planes, clipped) < 0.002);
+    assert_true(difference(box, clipped) < 0.002);
+  }
+}
+
+/* ---- light ---- */
+
+/* Dense even matter has no gradient: only cut faces give it a normal. A face's brightness is its cosine to the
+ * light times what is left of the light where the eye sees it: 1 / (1 + c / g), c and g the cosines of the eye
+ * and of the light (derived, as in sheets_faces.c). */
+static void test_faces_by_their_own_normal(void **state) {
+  (void)state;
+  static float pixels[FLOATS];
+  static const hl_cut planes[] = {{.type = HL_CUT_PLANE, .point = {0, 0, 0}, .normal = {1, 2, 2}}};
+  const vec3 normal = {1.0 / 3, 2.0 / 3, 2.0 / 3}, light = vec3_normalise((vec3){-0.9, -0.5, -0.8});
+  for (int by_reference = 0; by_reference < 2; by_reference++)
+    for (int shading = 0; shading < 3; shading++) {
+      stage set;
+      open_stage(&set, NULL);
+      hl_scene_volume *cube = add_cube(&set, 0.99);
+      cube->shading = HL_SHADING_PHONG;
+      cube->material = (hl_material){.diffuse = 1};
+      cube->cut_shading = (hl_cut_shading)shading;
+      cut(cube, planes, 1);
+      stage_add_directional(&set, light);
+      stage_render_by(&set, by_reference, pixels);
+      vec3 origin, way;
+      int p = SIDE / 2 * SIDE + SIDE / 2;
+      stage_eye_ray(&set, p % SIDE, p / SIDE, &origin, &way);
+      double g = -vec3_dot(normal, light), c = -vec3_dot(normal, way), left = 1 / (1 + c / g);
+      double expected = shading == HL_CUT_SHADING_FACE ? g * left : left;
+      if (!(fabs((double)pixels[4 * p] - expected) <= 0.02))
+        fail_msg("shading %d, reference %d: %.4f is not %.4f", shading, by_reference, (double)pixels[4 * p],
+                 expected);
+      stage_close(&set);
+    }
+}
+
+/* Thin matter seen along -z and lit along x: the half at lower x is cut away, and the eye sees a sample at x
+ * through the light's way x, or x + HALF. */
+static void test_shadow_of_what_is_cut_away(void **state) {
+  (void)state;
+  static float pixels[FLOATS];
+  static const hl_cut planes[] = {{.type = HL_CUT_PLANE, .point = {0, 0, 0}, .normal = {-1, 0, 0}}};
+  for (int by_reference = 0; by_reference < 2; by_reference++)
+    for (int casts = 0; casts < 2; casts++) {
+      stage set;
+      open_stage(&set, NULL);
+      stage_look(&set, (vec3){0, 0, 60}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+      hl_scene_volume *cube = add_cube(&set, OPACITY);
+      cube->cut_casts_shadow = casts;
+      cut(cube, planes, 1);
+      stage_add_directional(&set, (vec3){1, 0, 0});
+      stage_render_by(&set, by_reference, pixels);
+      for (int x = SIDE / 2; x < SIDE; x++) {
+        vec3 origin, way;
+        stage_eye_ray(&set, x, SIDE / 2, &origin, &way);
+        if (origin.x < 1 || origin.x > HALF - 1) continue;
+        double path = origin.x + (casts ? HALF : 0), alpha = 1 - pow(1 - OPACITY, 2 * HALF);
+        double expected = alpha * pow(1 - OPACITY, path), found = pixels[4 * (SIDE / 2 * SIDE + x)];
+        if (!(fabs(found - expected) <= 0.004))
+          fail_msg("casts %d, reference %d, x = %.3f: %.4f is not %.4f", casts, by_reference, origin.x, found,
+                   expected);
+      }
+      stage_close(&set);
+    }
+}
+
+/* ---- isosurfaces ---- */
+
+/* Of a ball's surface of half opacity, the eye looks through the near and the far half: 1 - 0.5^2, or through
+ * the one that a plane leaves. */
+static void test_isosurface(void **state) {
+  (void)state;
+  static float voxels[VOXELS * VOXELS * VOXELS], pixels[FLOATS];
+  for (int i = 0; i < VOXELS * VOXELS * VOXELS; i++) {
+    vec3 p = {i % VOXELS - HALF + 0.5, i / VOXELS % VOXELS - HALF + 0.5, i / VOXELS / VOXELS - HALF + 0.5};
+    voxels[i] = (float)-vec3_dot(p, p);
+  }
+  static const hl_cut planes[] = {{.type = HL_CUT_PLANE, .point = {0, 0, 0}, .normal = {0, 0, 1}}};
+  static const hl_cut boxes[] = {{.type = HL_CUT_BOX, .min = {-3, -3, 0}, .max = {3, 3, 20}}};
+  static const hl_cut balls[] = {{.type = HL_CUT_SPHERE, .center = {0, 0, 7}, .radius = 3}};
+  static const struct {
+    const hl_cut *cut;
+    double across; /* the half width of what is cut away, seen along z; a square or a circle */
+  } cases[] = {{planes, 100}, {boxes, 3}, {balls, 2.8}};
+  static const hl_isosurface surface = {.value = -7 * 7 - 1, .color = {1, 1, 1}, .opacity = 0.5};
+  for (int by_reference = 0; by_reference < 2; by_reference++)
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+      stage set;
+      open_stage(&set, NULL);
+      stage_look(&set, (vec3){0, 0, 60}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+      hl_scene_volume *ball = stage_add_grid(&set, (size_t[3]){VOXELS, VOXELS, VOXELS}, (double[3]){1, 1, 1},
+                                             (vec3){-HALF, -HALF, -HALF}, voxels);
+      stage_set_opacity(&set, ball, 0, 1);
+      ball->iso = &surface;
+      ball->iso_count = 1;
+      cut(ball, cases[k].cut, 1);
+      stage_render_by(&set, by_reference, pixels);
+      for (int p = 0; p < SIDE * SIDE; p++) {
+        vec3 origin, way;
+        stage_eye_ray(&set, p % SIDE, p / SIDE, &origin, &way);
+        double r = hypot(origin.x, origin.y), most = fmax(fabs(origin.x), fabs(origin.y));
+        double off = k == 2 ? r - cases[k].across : most - cases[k].across;
+        if (r > 5.5 || fabs(off) < 1) continue;
+        double expected = off < 0 ? 0.5 : 0.75, found = pixels[4 * p + 3];
+        if (!(fabs(found - expected) <= 0.002))
+          fail_msg("cut %zu, reference %d, (%.2f, %.2f): alpha %.4f is not %.4f", k, by_reference, origin.x,
+                   origin.y, found, expected);
+      }
+      stage_close(&set);
+    }
+}
+
+/* ---- bytes ---- */
+
+static void test_same_bytes(void **state) {
+  (void)state;
+  static float first[FLOATS], other[FLOATS];
+  static const hl_cut cuts[] = {{.type = HL_CUT_BOX, .min = {0, 0.4, 0.2}, .max = {40, 40, 40}},
+                                {.type = HL_CUT_SPHERE, .center = {-6, 5, 6}, .radius = 5.5},
+                                {.type = HL_CUT_PLANE, .point = {0, -6, 0}, .normal = {0.2, -1, 0}}};
+  static const hl_instruction_set sets[] = {HL_INSTRUCTION_SET_SCALAR, HL_INSTRUCTION_SET_AUTO};
+  for (int method = 0; method < 3; method++) {
+    for (int way = 0; way < 3; way++) {
+      stage set;
+      open_noise(&set, (hl_soft_method)method, sets[way > 0]);
+      set.volumes[0].cut_shading = HL_CUT_SHADING_FACE;
+      set.scene.render.threads = way == 2 ? 3 : 1;
+      cut(&set.volumes[0], cuts, 3);
+      stage_render_sheets(&set, way == 0 ? first : other);
+      stage_close(&set);
+      if (way > 0) assert_memory_equal(first, other, sizeof first);
+    }
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_lengths),          cmocka_unit_test(test_as_a_clip_box),
+      cmocka_unit_test(test_faces_by_their_own_normal), cmocka_unit_test(test_shadow_of_what_is_cut_away),
+      cmocka_unit_test(test_isosurface),       cmocka_unit_test(test_same_bytes),
+  };
+  return cmocka_run_group_tests_name("sheets_cuts", tests, NULL, NULL);
+}
