@@ -167,8 +167,8 @@ typedef struct hl_isosurface {
   double opacity;  /* 0 to 1 */
 } hl_isosurface;
 
-/* A part of space that is cut out of a volume: its inside, or with keep all but its inside. Lengths are in the
- * units of the volume's own file, before the transform. */
+/* A part of space that is cut out of a volume: its inside, or with keep all but its inside. Lengths are in
+ * the units of the volume's own file, before the transform. */
 typedef enum hl_cut_type {
   HL_CUT_PLANE = 0, /* the half space on the side that the normal points to */
   HL_CUT_BOX = 1,

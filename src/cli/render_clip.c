@@ -27,7 +27,8 @@ bool render_read_range(const char **text, render_axis_range *range) {
   if (range->axis < 0 || (*text)[1] != '=') return false;
   render_coordinate *low = &range->ends[0], *high = &range->ends[1];
   *text += 2;
-  if (!render_read_coordinate(text, low) || *(*text)++ != ':' || !render_read_coordinate(text, high)) return false;
+  if (!render_read_coordinate(text, low) || *(*text)++ != ':' || !render_read_coordinate(text, high))
+    return false;
   bool comparable = low->given && high->given && low->fraction == high->fraction;
   return (low->given || high->given) && (!comparable || low->number < high->number);
 }

@@ -1,5 +1,5 @@
-/* cli/render_cut.c - `--cut-plane POINT:NORMAL`, `--cut-box RANGES` and `--cut-sphere CENTRE:RADIUS`: parts that
- * are cut out of each volume, in its file's world. */
+/* cli/render_cut.c - `--cut-plane POINT:NORMAL`, `--cut-box RANGES` and `--cut-sphere CENTRE:RADIUS`: parts
+ * that are cut out of each volume, in its file's world. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,9 +8,8 @@
 #include "render.h"
 
 /* The options by the type of their cuts. */
-static const int option_of[] = {[HL_CUT_PLANE] = RENDER_CUT_PLANE,
-                                [HL_CUT_BOX] = RENDER_CUT_BOX,
-                                [HL_CUT_SPHERE] = RENDER_CUT_SPHERE};
+static const int option_of[] = {
+    [HL_CUT_PLANE] = RENDER_CUT_PLANE, [HL_CUT_BOX] = RENDER_CUT_BOX, [HL_CUT_SPHERE] = RENDER_CUT_SPHERE};
 enum { CUT_TYPES = 3 };
 
 /* A cut as typed: a plane's point or a sphere's centre, and what follows the colon; or a box's ranges. */
@@ -61,19 +60,22 @@ static bool read_cut(hl_cut_type type, const char *text, typed_cut *cut) {
 
 int render_check_cuts(const cli_value *values) {
   static const char *const wanted[] = {
-      [HL_CUT_PLANE] = "X,Y,Z:NX,NY,NZ: a point, in fractions of the volume's box or in its own unit (40mm), and the "
-                       "direction in which all is cut away (0.5,0.5,0.5:1,0,0)",
-      [HL_CUT_BOX] = "AXIS=LO:HI,...: ranges along x, y and z, each once, in fractions of the volume's box or in its "
-                     "own unit (x=0.5:,y=:0.5,z=40mm:)",
-      [HL_CUT_SPHERE] = "X,Y,Z:RADIUS, in fractions of the volume's box, the radius of its longest side, or in its own "
-                        "unit (0.5,0.5,1:0.3)"};
+      [HL_CUT_PLANE] =
+          "X,Y,Z:NX,NY,NZ: a point, in fractions of the volume's box or in its own unit (40mm), and the "
+          "direction in which all is cut away (0.5,0.5,0.5:1,0,0)",
+      [HL_CUT_BOX] =
+          "AXIS=LO:HI,...: ranges along x, y and z, each once, in fractions of the volume's box or in its "
+          "own unit (x=0.5:,y=:0.5,z=40mm:)",
+      [HL_CUT_SPHERE] =
+          "X,Y,Z:RADIUS, in fractions of the volume's box, the radius of its longest side, or in its own "
+          "unit (0.5,0.5,1:0.3)"};
   for (int type = 0; type < CUT_TYPES; type++) {
     const cli_value *value = &values[option_of[type]];
     typed_cut cut;
     for (int n = 0; n < value->count; n++)
       if (!read_cut((hl_cut_type)type, value->texts[n], &cut))
-        return fail(EXIT_CODE_USAGE, "--%s: '%s' is not %s", render_options[option_of[type]].name, value->texts[n],
-                    wanted[type]);
+        return fail(EXIT_CODE_USAGE, "--%s: '%s' is not %s", render_options[option_of[type]].name,
+                    value->texts[n], wanted[type]);
   }
   return EXIT_CODE_OK;
 }

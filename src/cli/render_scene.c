@@ -239,7 +239,8 @@ static bool make_room_for_cuts(scene_change *change) {
 }
 
 static bool changes_cuts(const cli_value *values) {
-  return render_cut_count(values) > 0 || values[RENDER_CUT_SHADING].given || values[RENDER_CUT_CASTS_SHADOW].given;
+  return render_cut_count(values) > 0 || values[RENDER_CUT_SHADING].given ||
+         values[RENDER_CUT_CASTS_SHADOW].given;
 }
 
 static int change_volumes(scene_change *change) {

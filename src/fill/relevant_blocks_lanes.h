@@ -100,8 +100,8 @@ LANES_INLINE sides_of_cut sides_of_boxes(const run_cut *cut, const lanes_box *bo
     far = lanes_fma(most, most, far);
     near = lanes_fma(least, least, near);
   }
-  if (cut->shape->type == HL_CUT_BOX) return (sides_of_cut){farthest < 1.0f, nearest > 1.0f};
-  return (sides_of_cut){far < 1.0f, near > 1.0f};
+  if (cut->shape->type == HL_CUT_BOX) return (sides_of_cut){farthest<1.0f, nearest> 1.0f};
+  return (sides_of_cut){far<1.0f, near> 1.0f};
 }
 
 /* Takes the blocks that cuts remove from `visible`, and those near a cut's face from `uncut`. */

@@ -69,12 +69,12 @@ typedef struct grid {
   uint32_t relevant_count;
   int32_t relevant_low[3], relevant_high[3]; /* the least and greatest coordinates of relevant bricks */
   bool cut; /* some relevant brick reaches the box's faces: rays need to know where they cross them */
-  const cut_shape *cuts;  /* borrowed; [cut_count]; what they remove of the box is not there */
+  const cut_shape *cuts; /* borrowed; [cut_count]; what they remove of the box is not there */
   size_t cut_count;
   bool cut_casts_shadow; /* lights meet what the cuts remove */
-  float *finite_voxels; /* a copy of the voxels with non-finite ones replaced by empty, of which
- interpolating kernels keep coefficients (prefilter.h); or null */
-  uint64_t kept_voxels; /* 64 for each relevant brick, fewer at the borders */
+  float *finite_voxels;  /* a copy of the voxels with non-finite ones replaced by empty, of which
+  interpolating kernels keep coefficients (prefilter.h); or null */
+  uint64_t kept_voxels;  /* 64 for each relevant brick, fewer at the borders */
 } grid;
 
 /* ---- the functions of this room that are compiled for each instruction set ---- */

@@ -42,7 +42,8 @@ static bool overlaps_box(const grid *grid, const int32_t b[3]) {
   return true;
 }
 
-/* How far around a brick its voxels are needed for what cuts leave beside it: the kernel's radius, and a cell.
+/* How far around a brick its voxels are needed for what cuts leave beside it: the kernel's radius, and a
+ * cell.
  */
 enum { BESIDE_CUT = 3 };
 

@@ -12,10 +12,10 @@ static hl_status read_cut(hl_json_reader *reader, const json_t *value, hl_cut *c
   hl_cut_defaults(cut);
   hl_status status = hl_json_settings_object(reader, value, HL_SETTINGS_CUT, -1, NULL);
   if (status == HL_OK && json_object_get(value, "type") == NULL)
-    status = hl_json_fail(reader, HL_ERROR_INPUT, "type", "is missing: give \"plane\", \"box\" or \"sphere\"");
+    status = hl_json_fail(reader, HL_ERROR_INPUT, "type",
+                          "is missing: give \"plane\", \"box\" or \"sphere\"");
   if (status == HL_OK) status = hl_json_setting(reader, value, HL_SETTINGS_CUT, "type", cut);
-  if (status == HL_OK)
-    status = hl_json_settings_object(reader, value, HL_SETTINGS_CUT, (int)cut->type, NULL);
+  if (status == HL_OK) status = hl_json_settings_object(reader, value, HL_SETTINGS_CUT, (int)cut->type, NULL);
   for (const char *const *key = needed[cut->type]; status == HL_OK && *key != NULL; key++)
     if (json_object_get(value, *key) == NULL)
       status = hl_json_fail(reader, HL_ERROR_INPUT, *key, "is missing: give %s and %s", needed[cut->type][0],

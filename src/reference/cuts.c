@@ -50,7 +50,8 @@ static double next_of_cut(const hl_cut *cut, vec3 o, vec3 d, double after) {
   if (cut->type == HL_CUT_PLANE) {
     vec3 normal = vec3_of(cut->normal);
     double speed = vec3_dot(normal, d);
-    return speed == 0 ? next : sooner(vec3_dot(normal, vec3_subtract(vec3_of(cut->point), o)) / speed, after, next);
+    return speed == 0 ? next
+                      : sooner(vec3_dot(normal, vec3_subtract(vec3_of(cut->point), o)) / speed, after, next);
   }
   if (cut->type == HL_CUT_SPHERE) { /* the roots of a t^2 + 2 b t + c */
     vec3 from = vec3_subtract(o, vec3_of(cut->center));

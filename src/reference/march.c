@@ -1,9 +1,9 @@
 /* reference/march.c - a ray through the boxes of several volumes.
  *
- * The distances at which the ray enters and leaves boxes, and crosses the faces of cuts, cut it into stretches, each of which crosses the
- * same volumes from end to end. A stretch is walked in equal steps, no longer than the requested step, and
- * each step is sampled at its middle. A homogeneous box is therefore integrated exactly, wherever its faces
- * lie. */
+ * The distances at which the ray enters and leaves boxes, and crosses the faces of cuts, cut it into
+ * stretches, each of which crosses the same volumes from end to end. A stretch is walked in equal steps, no
+ * longer than the requested step, and each step is sampled at its middle. A homogeneous box is therefore
+ * integrated exactly, wherever its faces lie. */
 #include "reference/reference.h"
 
 /* Entry and exit of the index-space box, by slabs. */

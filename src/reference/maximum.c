@@ -86,7 +86,8 @@ static double greatest_along(const crossing *whole, double step) {
   for (; part.enter < whole->leave; part.enter = part.leave) {
     part.leave = whole->leave;
     if (!part.uncut)
-      part.leave = fmin(part.leave, hl_reference_next_face(part.volume, part.origin, part.direction, part.enter));
+      part.leave = fmin(part.leave,
+                        hl_reference_next_face(part.volume, part.origin, part.direction, part.enter));
     vec3 middle = vec3_add(part.origin, vec3_scale(part.direction, (part.enter + part.leave) / 2));
     if (part.uncut || hl_reference_left(part.volume, middle))
       greatest = fmax(greatest, greatest_between(&part, step));

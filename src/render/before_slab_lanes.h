@@ -74,6 +74,41 @@ LANES_INLINE near_pixels pixels_of_sublights(const sublight_shifts *shifts) {
   return near;
 }
 
+/* A way from a point towards the light, shortened to what cuts leave of it next to the point. enter, leave:
+ * distances from the point. */
+LANES_INLINE void shorten_way(const shade_volume *volume, lanes3 from, lanes3 towards, lanes *enter,
+                              lanes *leave) {
+  for (int i = 0; i < volume->light_cut_count; i++) {
+    const shade_cut *cut = &volume->cuts[i];
+    ray_section way = cross_cut(cut, from, towards);
+    if (cut->keep_inside) {
+      *enter = lanes_max(*enter, way.first);
+      *leave = lanes_min(*leave, way.last);
+    } else {
+      lanes_int ahead = (way.first < way.last) & (way.last > *enter);
+      *leave = lanes_select(ahead, lanes_min(*leave, lanes_max(way.first, *enter)), *leave);
+    }
+  }
+}
+
+/* The length of a way from a point towards the light that cuts leave. */
+LANES_INLINE lanes way_left(const shade_volume *volume, lanes3 from, lanes3 towards, lanes enter,
+                            lanes leave) {
+  lanes removed = lanes_set(0);
+  for (int i = 0; i < volume->light_cut_count; i++)
+    if (volume->cuts[i].keep_inside) {
+      ray_section way = cross_cut(&volume->cuts[i], from, towards);
+      enter = lanes_max(enter, way.first);
+      leave = lanes_min(leave, way.last);
+    }
+  for (int i = 0; i < volume->light_cut_count; i++)
+    if (!volume->cuts[i].keep_inside) {
+      ray_section way = cross_cut(&volume->cuts[i], from, towards);
+      removed = removed + lanes_max(lanes_min(leave, way.last) - lanes_max(enter, way.first), lanes_set(0));
+    }
+  return lanes_max(leave - enter - removed, lanes_set(0));
+}
+
 /* Lengths of light's ways within a volume's box before the slab's first sheet: to where the eye's ray enters
  * and leaves the slab's part in the box, and to the near pixels. */
 typedef struct ways_before {
@@ -177,8 +212,7 @@ LANES_INLINE ways_before find_ways_before(const shade_volume *volume, const face
   ways_before ways;
   ways.first = way_before(volume, faces, g, light,
                           (point_beside){none, none, begin - slab->place, begin * path});
-  ways.last = way_before(volume, faces, g, light,
-                         (point_beside){none, none, end - slab->place, end * path});
+  ways.last = way_before(volume, faces, g, light, (point_beside){none, none, end - slab->place, end * path});
   for (int i = 0; i < NEAR_PIXELS; i++)
     ways.near[i] = way_before(volume, faces, g, light,
                               (point_beside){near->u[i], near->v[i], none, slab->place * path});

@@ -3,7 +3,8 @@
 #ifndef HL_RENDER_CUT_LANES_H
 #define HL_RENDER_CUT_LANES_H
 
-#include "render/slab.h"
+#include "render/cut.h"
+#include "scene/cut.h"
 #include "view/rays_lanes.h"
 
 LANES_INLINE lanes3 point_in_cut(const shade_cut *cut, lanes3 p) {
@@ -56,9 +57,9 @@ LANES_INLINE cut_height height_over_cut(const shade_cut *cut, lanes3 point) {
   if (cut->type == HL_CUT_SPHERE) {
     lanes length = lanes_max(lanes_sqrt(dot3(q, q)), lanes_set(1e-6f));
     lanes3 unit = scale3(q, 1.0f / length);
-    return (cut_height){length - 1.0f,
-                        add_scaled3(add_scaled3(scale3(set3(cut->rows[0]), unit.x), set3(cut->rows[1]), unit.y),
-                                    set3(cut->rows[2]), unit.z)};
+    return (cut_height){length - 1.0f, add_scaled3(add_scaled3(scale3(set3(cut->rows[0]), unit.x),
+                                                               set3(cut->rows[1]), unit.y),
+                                                   set3(cut->rows[2]), unit.z)};
   }
   const lanes at[3] = {q.x, q.y, q.z};
   cut_height highest = {.height = lanes_set(-1e30f)};
@@ -75,40 +76,6 @@ LANES_INLINE cut_height height_over_cut(const shade_cut *cut, lanes3 point) {
                                 lanes_select(higher, gradient.z, highest.gradient.z)};
   }
   return highest;
-}
-
-/* A way from a point towards the light, shortened to what cuts leave of it next to the point. enter, leave:
- * distances from the point. */
-LANES_INLINE void shorten_way(const shade_volume *volume, lanes3 from, lanes3 towards, lanes *enter,
-                              lanes *leave) {
-  for (int i = 0; i < volume->light_cut_count; i++) {
-    const shade_cut *cut = &volume->cuts[i];
-    ray_section way = cross_cut(cut, from, towards);
-    if (cut->keep_inside) {
-      *enter = lanes_max(*enter, way.first);
-      *leave = lanes_min(*leave, way.last);
-    } else {
-      lanes_int ahead = (way.first < way.last) & (way.last > *enter);
-      *leave = lanes_select(ahead, lanes_min(*leave, lanes_max(way.first, *enter)), *leave);
-    }
-  }
-}
-
-/* The length of a way from a point towards the light that cuts leave. */
-LANES_INLINE lanes way_left(const shade_volume *volume, lanes3 from, lanes3 towards, lanes enter, lanes leave) {
-  lanes removed = lanes_set(0);
-  for (int i = 0; i < volume->light_cut_count; i++)
-    if (volume->cuts[i].keep_inside) {
-      ray_section way = cross_cut(&volume->cuts[i], from, towards);
-      enter = lanes_max(enter, way.first);
-      leave = lanes_min(leave, way.last);
-    }
-  for (int i = 0; i < volume->light_cut_count; i++)
-    if (!volume->cuts[i].keep_inside) {
-      ray_section way = cross_cut(&volume->cuts[i], from, towards);
-      removed = removed + lanes_max(lanes_min(leave, way.last) - lanes_max(enter, way.first), lanes_set(0));
-    }
-  return lanes_max(leave - enter - removed, lanes_set(0));
 }
 
 #endif

@@ -26,7 +26,7 @@ typedef struct prepared_volume {
   hl_transfer_function function; /* points owned; the classifier was made of these */
   double clip[6];
   int clipped;
-  cut_shape *cuts; /* owned; the grid's cuts */
+  cut_shape *cuts;   /* owned; the grid's cuts */
   prepared_iso *iso; /* owned; [iso_count] */
   size_t iso_count;
 } prepared_volume;

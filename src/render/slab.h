@@ -9,6 +9,7 @@
 #include "field/sky_field.h"
 #include "light/light_source.h"
 #include "light/light_texture.h"
+#include "render/cut.h"
 #include "scatter/scatter.h"
 #include "shadow/attenuate.h"
 #include "shadow/shadow_buffer.h"
@@ -24,12 +25,6 @@ typedef struct voxel_colors {
   int32_t step_bytes[3];       /* from voxel to voxel along i, j, k */
   const float *decode;         /* [256]: the linear values of sRGB's codes */
 } voxel_colors;
-
-/* A cut's shape (scene/cut.h). */
-typedef struct shade_cut {
-  int type, keep_inside;
-  float rows[3][4]; /* frame space to the shape's own */
-} shade_cut;
 
 typedef struct shade_volume {
   const classifier *classifier;

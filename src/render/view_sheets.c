@@ -116,7 +116,8 @@ static void remove_section(float from, float to, float *enter, float *leave) {
 
 /* Where a patch's rays enter and leave what cuts leave of a slab; null: see entries_of(). */
 static const float *entries_of_slab(view_sheets *sheets, slab_place place) {
-  float *enter = entries_of(sheets, place), *here = enter + INTERVAL_FLOATS, *removed = here + INTERVAL_FLOATS;
+  float *enter = entries_of(sheets, place), *here = enter + INTERVAL_FLOATS,
+        *removed = here + INTERVAL_FLOATS;
   int grid = (int)sheets->occupancy.patch_grid[place.patch];
   const cut_shape *cuts = sheets->content->grids[grid].cuts;
   size_t count = 0;

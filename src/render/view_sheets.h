@@ -60,9 +60,9 @@ typedef struct view_sheets {
   int run_count;
   patch_run *patch_runs; /* [patches] */
   /* the next two: only where a box cuts anything visible; else null */
-  uint32_t *entry_of;   /* [patches]; its row of entries; NO_ENTRY where none was asked for */
-  box_rays *box_rays;   /* [grids] */
-  float *entries;       /* [patches][entry_floats], used up to entry_count: where rays enter a box and leave it */
+  uint32_t *entry_of; /* [patches]; its row of entries; NO_ENTRY where none was asked for */
+  box_rays *box_rays; /* [grids] */
+  float *entries; /* [patches][entry_floats], used up to entry_count: where rays enter a box and leave it */
   uint32_t entry_count; /* atomic */
   size_t entry_floats;  /* a row: [2][256] for the box and what keeps an inside; where cuts keep an outside,
                            [2][256] more for the slab at hand, and [2][256] for each of these cuts */
@@ -71,8 +71,8 @@ typedef struct view_sheets {
   box_rays *cut_rays;
 } view_sheets;
 
-/* content and view are borrowed until the end. of_light: cuts that leave shadows do not count. spare: as hl_occupancy_build has it. hl_view_sheets_end
- * releases what a failed begin leaves. */
+/* content and view are borrowed until the end. of_light: cuts that leave shadows do not count. spare: as
+ * hl_occupancy_build has it. hl_view_sheets_end releases what a failed begin leaves. */
 hl_status hl_view_sheets_begin(const sheet_content *content, const view *view, bool of_light, double spare,
                                view_sheets *sheets, hl_error *error);
 void hl_view_sheets_end(view_sheets *sheets);

@@ -117,8 +117,9 @@ static hl_status check_cut(const hl_cut *cut, const char *place, hl_error *error
   if (status == HL_OK) status = hl_settings_check(HL_SETTINGS_CUT, cut, (int)cut->type, place, error);
   for (int a = 0; a < 3 && status == HL_OK && cut->type == HL_CUT_BOX; a++)
     if (cut->min[a] >= cut->max[a])
-      return hl_fail(error, HL_ERROR_INPUT, "%s/max/%d: %.9g is not above min, %.9g: the box is empty, enlarge it",
-                     place, a, cut->max[a], cut->min[a]);
+      return hl_fail(error, HL_ERROR_INPUT,
+                     "%s/max/%d: %.9g is not above min, %.9g: the box is empty, enlarge it", place, a,
+                     cut->max[a], cut->min[a]);
   return status;
 }
 

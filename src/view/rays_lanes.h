@@ -102,8 +102,9 @@ LANES_INLINE ray_section roots_of_sphere(lanes3 start, lanes3 direction) {
 }
 
 LANES_INLINE ray_section section_in_sphere(const box_rays *rays, lanes u, lanes v) {
-  ray_section section = roots_of_sphere(rays_linear(rays->start, rays->start_u, rays->start_v, u, v),
-                                        rays_linear(rays->direction, rays->direction_u, rays->direction_v, u, v));
+  ray_section section = roots_of_sphere(
+      rays_linear(rays->start, rays->start_u, rays->start_v, u, v),
+      rays_linear(rays->direction, rays->direction_u, rays->direction_v, u, v));
   section.first = lanes_max(section.first, lanes_set(rays->least));
   return section;
 }

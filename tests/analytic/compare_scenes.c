@@ -388,12 +388,12 @@ static void make_spot_in_smoke(stage *set) { /* a sharp cone across the view; wi
 
 /* ---- cuts ---- */
 
-static const hl_cut TWO_PLANES[] = {
-    {.type = HL_CUT_PLANE, .point = {1.3, -2, 1}, .normal = {0.3, -1, 0.5}},
-    {.type = HL_CUT_PLANE, .point = {0, 0, 7.7}, .normal = {-0.2, 0.1, 1}}};
+static const hl_cut TWO_PLANES[] = {{.type = HL_CUT_PLANE, .point = {1.3, -2, 1}, .normal = {0.3, -1, 0.5}},
+                                    {.type = HL_CUT_PLANE, .point = {0, 0, 7.7}, .normal = {-0.2, 0.1, 1}}};
 static const hl_cut OCTANT[] = {{.type = HL_CUT_BOX, .min = {-0.4, -30, 0.3}, .max = {30, 0.2, 30}}};
-static const hl_cut BITE[] = {{.type = HL_CUT_SPHERE, .center = {3, -9, 6}, .radius = 9.5},
-                              {.type = HL_CUT_SPHERE, .center = {0, 0, 0}, .radius = 13, .keep = HL_CUT_KEEP_INSIDE}};
+static const hl_cut BITE[] = {
+    {.type = HL_CUT_SPHERE, .center = {3, -9, 6}, .radius = 9.5},
+    {.type = HL_CUT_SPHERE, .center = {0, 0, 0}, .radius = 13, .keep = HL_CUT_KEEP_INSIDE}};
 static void make_cut(stage *set, field_function *field, const hl_cut *cuts, size_t count) {
   hl_scene_volume *volume = add_cube(set, field, 28);
   volume->cuts = cuts;

@@ -1,5 +1,6 @@
 /* analytic/sheets_cuts.c - planes, boxes and spheres that cut a volume: what is left of even matter, by its
- * length along rays; cut faces under light; shadows of what is cut away; by the sheets and by the reference. */
+ * length along rays; cut faces under light; shadows of what is cut away; by the sheets and by the reference.
+ */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -169,9 +170,9 @@ static void test_as_a_clip_box(void **state) {
 
 /* ---- light ---- */
 
-/* Dense even matter has no gradient: only cut faces give it a normal. A face's brightness is its cosine to the
- * light times what is left of the light where the eye sees it: 1 / (1 + c / g), c and g the cosines of the eye
- * and of the light (derived, as in sheets_faces.c). */
+/* Dense even matter has no gradient: only cut faces give it a normal. A face's brightness is its cosine to
+ * the light times what is left of the light where the eye sees it: 1 / (1 + c / g), c and g the cosines of
+ * the eye and of the light (derived, as in sheets_faces.c). */
 static void test_faces_by_their_own_normal(void **state) {
   (void)state;
   static float pixels[FLOATS];
@@ -301,9 +302,12 @@ static void test_same_bytes(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_lengths),          cmocka_unit_test(test_as_a_clip_box),
-      cmocka_unit_test(test_faces_by_their_own_normal), cmocka_unit_test(test_shadow_of_what_is_cut_away),
-      cmocka_unit_test(test_isosurface),       cmocka_unit_test(test_same_bytes),
+      cmocka_unit_test(test_lengths),
+      cmocka_unit_test(test_as_a_clip_box),
+      cmocka_unit_test(test_faces_by_their_own_normal),
+      cmocka_unit_test(test_shadow_of_what_is_cut_away),
+      cmocka_unit_test(test_isosurface),
+      cmocka_unit_test(test_same_bytes),
   };
   return cmocka_run_group_tests_name("sheets_cuts", tests, NULL, NULL);
 }

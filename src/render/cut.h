@@ -1,0 +1,11 @@
+/* render/cut.h - a cut of a volume, as samples see it. */
+#ifndef HL_RENDER_CUT_H
+#define HL_RENDER_CUT_H
+
+/* A cut's shape (scene/cut.h). */
+typedef struct shade_cut {
+  int type, keep_inside;
+  float rows[3][4]; /* frame space to the shape's own */
+} shade_cut;
+
+#endif

@@ -1,0 +1,30 @@
+"""Cuts of volumes: the keyword `cuts`."""
+import numpy as np
+import pytest
+
+import halflight
+
+BLOCK = np.full((8, 8, 8), 200, np.uint8)
+PLANE = {"type": "plane", "point": (3.5, 3.5, 3.5), "normal": (1, 0, 0)}
+
+
+def test_cuts_are_told_again():
+    cuts = [PLANE, {"type": "box", "min": (0, 0, 0), "max": (3, 4, 5), "keep": "inside"},
+            {"type": "sphere", "center": (1, 2, 3), "radius": 2}]
+    look = halflight.Volume(BLOCK, cuts=cuts, cut_shading="none").look
+    assert look["cuts"] == [{**cuts[0], "keep": "outside"}, cuts[1], {**cuts[2], "keep": "outside"}]
+    assert look["cut_shading"] == "none"
+
+
+def test_a_plane_takes_half():
+    kinds = {"camera": "front", "size": (32, 32), "background": "transparent"}
+    whole, half = (np.asarray(halflight.render(BLOCK, cuts=cuts, **kinds)) for cuts in ([], PLANE))
+    assert 0 < (half[..., 3] > 0).sum() < (whole[..., 3] > 0).sum() + 1
+    assert not np.array_equal(whole, half)
+
+
+@pytest.mark.parametrize("cut", [{"type": "cone"}, {"type": "plane", "point": (0, 0, 0)}, {**PLANE, "radius": 3}, 3])
+def test_wrong_cuts(cut):
+    with pytest.raises(TypeError):
+        halflight.Volume(BLOCK, cuts=[cut]).look
+        halflight.render(BLOCK, cuts=[cut])
