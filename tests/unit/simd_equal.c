@@ -770,6 +770,12 @@ static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
   }
 }
 
+/* A plane, a box and a sphere across the volumes. */
+static const shade_cut cuts_bench[] = {
+    {HL_CUT_PLANE, 0, {{0.6f, 0.3f, 0.7f, -2}, {0}, {0}}},
+    {HL_CUT_BOX, 0, {{0.3f, 0.02f, 0, 0.1f}, {0, 0.25f, 0.03f, 0.2f}, {-0.02f, 0, 0.3f, 0}}},
+    {HL_CUT_SPHERE, 1, {{0.2f, 0, 0, 0.1f}, {0, 0.2f, 0, 0}, {0, 0, 0.2f, 0.1f}}}};
+
 static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
   memset(s, 0, sizeof *s);
   s->job = (shade_job){.rays = random_rays(seed, round),
@@ -820,7 +826,11 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    (round + v) % 3 == 1 ? colors_bench : (voxel_colors){.voxels = NULL},
                                    {0.9f, 0.8f, 1},
                                    round % 4 == 1,
-                                   round % 4 < 2};
+                                   round % 4 < 2,
+                                   cuts_bench,
+                                   round % 3 == 1 ? 3 : 0,
+                                   round % 6 == 1 ? 3 : 0,
+                                   round % 2};
     s->patches[v] = (shade_patch){&s->volumes[v],
                                   s->density[2 * v],
                                   s->density[2 * v + 1],
