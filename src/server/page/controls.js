@@ -100,20 +100,19 @@ export function button(text, action, attributes = {}) {
 
 // Numbered things of which one is chosen, and buttons that add and remove one. count(), chosen(): how many, and which.
 export function tabs({ label, noun, count, chosen, choose, add, remove }) {
-  const element = make("div", { class: "tabs", role: "tablist", "aria-label": label });
+  const list = make("span", { role: "tablist", "aria-label": label });
   const more = button("+", add, { title: `Add: ${noun}`, "aria-label": `Add: ${noun}` });
   const less = button("−", remove, { title: `Remove this ${noun}`, "aria-label": `Remove this ${noun}` });
-  element.append(more, less);
   function update() {
-    while (element.childElementCount - 2 > count()) element.children[element.childElementCount - 3].remove();
-    while (element.childElementCount - 2 < count()) {
-      const n = element.childElementCount - 2;
-      more.before(button(`${n + 1}`, () => choose(n), { role: "tab", "aria-label": `${noun} ${n + 1}` }));
+    while (list.childElementCount > count()) list.lastElementChild.remove();
+    while (list.childElementCount < count()) {
+      const n = list.childElementCount;
+      list.append(button(`${n + 1}`, () => choose(n), { role: "tab", "aria-label": `${noun} ${n + 1}` }));
     }
-    for (let n = 0; n < count(); n++) element.children[n].setAttribute("aria-selected", String(n === chosen()));
-    less.disabled = count() === 0;
+    [...list.children].forEach((tab, n) => tab.setAttribute("aria-selected", String(n === chosen())));
+    list.hidden = less.disabled = count() === 0;
   }
-  return { element, update };
+  return { element: make("div", { class: "tabs" }, list, more, less), update };
 }
 
 // A part of the side bar that folds. Returns { element, body }.

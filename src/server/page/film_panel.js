@@ -75,9 +75,10 @@ class Film {
     this.#asking = true;
     while (this.#again) {
       this.#again = false;
+      const before = this.scene;
       try {
-        const at = await channel.sceneAt(this.scene, this.wanted, this.frame);
-        store.change("time", ({ image: { width, height } }) => ({ volumes: [], ...at, image: { ...at.image, width, height } }));
+        const at = await channel.sceneAt(before, this.wanted, this.frame);
+        if (this.scene === before) store.change("time", ({ image: { width, height } }) => ({ volumes: [], ...at, image: { ...at.image, width, height } }));
       } catch (error) {
         this.playing = false;
         report(error.message);

@@ -112,6 +112,7 @@ export class FunctionCanvas {
 
   #moved({ kind, index }, value, opacity) {
     const tf = this.#get();
+    if (!(kind === "point" ? tf.opacity : tf.color)[index]) return tf; // a preset has come meanwhile
     return kind === "point" ? movePoint(tf, index, value, opacity, this.#range) : moveStop(tf, index, value);
   }
 
