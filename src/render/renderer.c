@@ -25,6 +25,7 @@ struct hl_renderer {
   shadow_buffer *buffers; /* owned; [buffer_count]; LIGHT_SECTORS for each of the scene's lights */
   size_t buffer_count;
   shadow_memory shadow_memory[FRAME_LIGHTS]; /* owned; of a sweep's lights */
+  surfaces surfaces;       /* owned; of the last frame's meshes, kept while they stay where they are */
   scatter_field scattered; /* owned; kept while the scene's matter and lights stay the same */
   sky_field sky;           /* owned; the light of the scene's sky */
   hl_reserve reserve;      /* owned; blocks that frames and sweeps have returned */
@@ -68,6 +69,7 @@ void hl_renderer_destroy(hl_renderer *renderer) {
   release_buffers(renderer);
   hl_scatter_release(renderer->context, &renderer->scattered);
   hl_sky_release(renderer->context, &renderer->sky);
+  hl_surfaces_release(renderer->context, &renderer->surfaces);
   hl_reserve_release(&renderer->reserve);
   hl_pool_destroy(renderer->pool);
   hl_release(renderer->context, renderer);
@@ -113,7 +115,6 @@ typedef struct frame_work {
   framed_scene framed;
   frame frame;
   grid *grids;         /* [volumes] */
-  surfaces surfaces;   /* of the meshes */
   frame_sweep *sweeps; /* [LIGHT_SECTORS * lights + 1] */
   int sweep_count;
   float *pixels; /* [sweeps][tiles][16][4][16]; owned, or the caller's if in_place */
@@ -132,7 +133,6 @@ static void release_work(hl_renderer *renderer, frame_work *work) {
   hl_release(context, work->frame.lights);
   hl_release(context, work->grids);
   hl_release(context, work->sweeps);
-  hl_surfaces_release(context, &work->surfaces);
   if (!work->in_place) hl_reserve_return(&renderer->reserve, work->pixels);
   hl_release(context, work->tile_rows);
   hl_layer_pixels_release(context, &work->layers);
@@ -215,14 +215,15 @@ static void open_faces(const hl_scene_description *scene, grid *grids) {
 }
 
 /* Brings the meshes to frame space, and adds their boxes to the content. */
-static hl_status add_surfaces(hl_context *context, const hl_scene_description *scene, frame_work *work,
+static hl_status add_surfaces(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work,
                               hl_error *error) {
   frame *frame = &work->frame;
-  if (scene->mesh_count == 0) return HL_OK;
+  hl_status status = hl_surfaces_update(renderer->context, renderer->pool, scene, &renderer->surfaces, error);
+  if (status != HL_OK || scene->mesh_count == 0) return status;
   for (size_t i = 0; i < scene->mesh_count; i++, frame->point_count += 8)
     hl_surface_corners(&scene->meshes[i], frame->voxel, frame->points + frame->point_count);
-  frame->surfaces = &work->surfaces;
-  return hl_surfaces_create(context, scene, &work->surfaces, error);
+  frame->surfaces = &renderer->surfaces;
+  return HL_OK;
 }
 
 static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene,
@@ -243,7 +244,7 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   }
   open_faces(scene, work->grids);
   frame->voxel = hl_scene_smallest_edge(scene);
-  hl_status status = add_surfaces(context, scene, work, error);
+  hl_status status = add_surfaces(renderer, scene, work, error);
   if (status == HL_OK) status = hl_frame_set_up_eye(frame, scene, error);
   if (status != HL_OK) return status;
   frame->spacing = fmin(scene->render.sheet_spacing, hl_is_maximum(scene) ? MAXIMUM_SPACING : GRID_MARGIN) *

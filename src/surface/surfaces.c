@@ -30,37 +30,71 @@ static void add_face_normals(surfaces *made, const surface_mesh *mesh) {
   }
 }
 
-static void place_spheres(surfaces *made, const surface_mesh *mesh, affine3 placement) {
-  const hl_mesh_description *d = &mesh->scene->mesh->description;
+static void place_spheres(surfaces *made, const surface_mesh *mesh) {
+  const hl_mesh_description *d = &mesh->mesh->description;
   for (size_t n = 0; n < d->sphere_count; n++) {
     float *sphere = made->spheres[mesh->first_sphere + n];
-    vec3_store(sphere, affine3_apply(placement, hl_surface_vector(d->spheres[n])));
+    vec3_store(sphere, affine3_apply(mesh->placement, hl_surface_vector(d->spheres[n])));
     sphere[3] = (float)(d->spheres[n][3] * mesh->scene->scale);
   }
 }
 
-static void place_mesh(surfaces *made, const surface_mesh *mesh) {
-  const hl_mesh_description *d = &mesh->scene->mesh->description;
-  affine3 placement = hl_scene_mesh_to_world(mesh->scene);
-  place_spheres(made, mesh, placement);
-  for (size_t v = 0; v < d->vertex_count; v++) {
-    float *position = made->positions[mesh->first_vertex + v],
-          *normal = made->normals[mesh->first_vertex + v];
-    vec3_store(position, affine3_apply(placement, hl_surface_vector(d->positions[v])));
+/* A mesh that is being placed, by tasks of so many vertices or triangles. */
+enum { A_TASK = 1 << 15 };
+typedef struct placing {
+  surfaces *made;
+  const surface_mesh *mesh;
+} placing;
+
+static size_t task_count(size_t items) { return (items + A_TASK - 1) / A_TASK; }
+static size_t task_end(size_t task, size_t items) {
+  return (task + 1) * A_TASK < items ? (task + 1) * A_TASK : items;
+}
+
+static void place_vertices(void *data, size_t task, int worker) {
+  (void)worker;
+  const placing *placing = data;
+  const hl_mesh_description *d = &placing->mesh->mesh->description;
+  const affine3 placement = placing->mesh->placement;
+  for (size_t v = task * A_TASK; v < task_end(task, d->vertex_count); v++) {
+    size_t to = placing->mesh->first_vertex + v;
+    float *normal = placing->made->normals[to];
+    vec3_store(placing->made->positions[to], affine3_apply(placement, hl_surface_vector(d->positions[v])));
     memset(normal, 0, 3 * sizeof *normal);
     if (d->normals != NULL)
       vec3_store(normal, mat3_apply(placement.linear, hl_surface_vector(d->normals[v])));
   }
-  for (uint32_t t = 0; t < mesh->triangle_count; t++)
+}
+
+static void place_triangles(void *data, size_t task, int worker) {
+  (void)worker;
+  const placing *placing = data;
+  const surface_mesh *mesh = placing->mesh;
+  const uint32_t(*triangles)[3] = mesh->mesh->description.triangles;
+  for (size_t t = task * A_TASK; t < task_end(task, mesh->triangle_count); t++)
     for (int i = 0; i < 3; i++)
-      made->triangles[mesh->first_triangle + t][i] = (uint32_t)mesh->first_vertex + d->triangles[t][i];
-  if (d->normals == NULL) add_face_normals(made, mesh);
-  for (size_t v = 0; v < d->vertex_count; v++) {
-    float *normal = made->normals[mesh->first_vertex + v];
+      placing->made->triangles[mesh->first_triangle + t][i] = (uint32_t)mesh->first_vertex + triangles[t][i];
+}
+
+static void make_units(void *data, size_t task, int worker) {
+  (void)worker;
+  const placing *placing = data;
+  for (size_t v = task * A_TASK; v < task_end(task, placing->mesh->mesh->description.vertex_count); v++) {
+    float *normal = placing->made->normals[placing->mesh->first_vertex + v];
     vec3 unit = vec3_normalise(hl_surface_vector(normal));
     if (!(vec3_length(unit) < 2)) unit = (vec3){0, 0, 0}; /* not a number */
     vec3_store(normal, unit);
   }
+}
+
+static void place_mesh(hl_pool *pool, surfaces *made, const surface_mesh *mesh) {
+  const hl_mesh_description *d = &mesh->mesh->description;
+  placing placing = {made, mesh};
+  place_spheres(made, mesh);
+  hl_pool_run(pool, task_count(d->vertex_count), place_vertices, &placing);
+  hl_pool_run(pool, task_count(d->triangle_count), place_triangles, &placing);
+  if (d->normals == NULL) add_face_normals(made, mesh); /* one order of each vertex's sum */
+  hl_pool_run(pool, task_count(d->vertex_count), make_units, &placing);
 }
 
 static hl_status count_primitives(const hl_scene_description *scene, surfaces *made, hl_error *error) {
@@ -68,6 +102,7 @@ static hl_status count_primitives(const hl_scene_description *scene, surfaces *m
   for (size_t m = 0; m < scene->mesh_count; m++) {
     const hl_mesh_description *d = &scene->meshes[m].mesh->description;
     made->meshes[m] = (surface_mesh){.scene = &scene->meshes[m],
+                                     .placement = hl_scene_mesh_to_world(&scene->meshes[m]),
                                      .colors = d->colors,
                                      .face_colors = d->face_colors,
                                      .sphere_colors = d->sphere_colors,
@@ -90,31 +125,64 @@ static hl_status count_primitives(const hl_scene_description *scene, surfaces *m
   return HL_OK;
 }
 
-hl_status hl_surfaces_create(hl_context *context, const hl_scene_description *scene, surfaces *made,
+static hl_status make_arrays(hl_context *context, const hl_scene_description *scene, surfaces *made,
                              hl_error *error) {
+  made->positions = hl_allocate(context, made->vertex_count, sizeof *made->positions);
+  made->normals = hl_allocate(context, made->vertex_count, sizeof *made->normals);
+  made->triangles = hl_allocate(context, made->triangle_count, sizeof *made->triangles);
+  made->spheres = hl_allocate(context, made->sphere_count, sizeof *made->spheres);
+  if (made->positions != NULL && made->normals != NULL && made->triangles != NULL && made->spheres != NULL)
+    return HL_OK;
+  return hl_fail_memory(error, hl_surfaces_bytes(scene), "the meshes");
+}
+
+static hl_status create(hl_context *context, hl_pool *pool, const hl_scene_description *scene, surfaces *made,
+                        hl_error *error) {
   *made = (surfaces){.meshes = hl_allocate(context, scene->mesh_count, sizeof *made->meshes)};
   hl_status status = made->meshes != NULL ? count_primitives(scene, made, error)
                                           : hl_fail_memory(error, sizeof *made->meshes, "the meshes");
-  if (status == HL_OK) {
-    made->positions = hl_allocate(context, made->vertex_count, sizeof *made->positions);
-    made->normals = hl_allocate(context, made->vertex_count, sizeof *made->normals);
-    made->triangles = hl_allocate(context, made->triangle_count, sizeof *made->triangles);
-    made->spheres = hl_allocate(context, made->sphere_count, sizeof *made->spheres);
-    if (made->positions == NULL || made->normals == NULL || made->triangles == NULL || made->spheres == NULL)
-      status = hl_fail_memory(error, hl_surfaces_bytes(scene), "the meshes");
+  if (status == HL_OK) status = make_arrays(context, scene, made, error);
+  for (size_t m = 0; status == HL_OK && m < made->mesh_count; m++) {
+    made->meshes[m].mesh = scene->meshes[m].mesh;
+    hl_mesh_retain(made->meshes[m].mesh);
+    place_mesh(pool, made, &made->meshes[m]);
   }
-  for (size_t m = 0; status == HL_OK && m < made->mesh_count; m++) place_mesh(made, &made->meshes[m]);
+  if (status == HL_OK && hl_pool_cancelled(pool))
+    status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
   if (status != HL_OK) hl_surfaces_release(context, made);
   return status;
 }
 
-void hl_surfaces_release(hl_context *context, surfaces *made) {
-  hl_release(context, made->meshes);
-  hl_release(context, made->positions);
-  hl_release(context, made->normals);
-  hl_release(context, made->triangles);
-  hl_release(context, made->spheres);
-  *made = (surfaces){0};
+/* Whether the same meshes stand in the same places. */
+static bool is_current(const surfaces *kept, const hl_scene_description *scene) {
+  if (kept->mesh_count != scene->mesh_count) return false;
+  for (size_t m = 0; m < kept->mesh_count; m++) {
+    affine3 placement = hl_scene_mesh_to_world(&scene->meshes[m]);
+    if (kept->meshes[m].mesh != scene->meshes[m].mesh ||
+        memcmp(&kept->meshes[m].placement, &placement, sizeof placement) != 0)
+      return false;
+  }
+  return true;
+}
+
+hl_status hl_surfaces_update(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
+                             surfaces *kept, hl_error *error) {
+  if (!is_current(kept, scene)) {
+    hl_surfaces_release(context, kept);
+    return scene->mesh_count > 0 ? create(context, pool, scene, kept, error) : HL_OK;
+  }
+  for (size_t m = 0; m < kept->mesh_count; m++) kept->meshes[m].scene = &scene->meshes[m];
+  return HL_OK;
+}
+
+void hl_surfaces_release(hl_context *context, surfaces *kept) {
+  for (size_t m = 0; m < kept->mesh_count; m++) hl_mesh_release(kept->meshes[m].mesh);
+  hl_release(context, kept->meshes);
+  hl_release(context, kept->positions);
+  hl_release(context, kept->normals);
+  hl_release(context, kept->triangles);
+  hl_release(context, kept->spheres);
+  *kept = (surfaces){0};
 }
 
 size_t hl_surface_mesh_of(const surfaces *all, uint32_t primitive) {

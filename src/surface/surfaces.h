@@ -1,16 +1,20 @@
 /* surface/surfaces.h - the triangles and spheres of all meshes of a scene, in frame space.
  *
- * In: the scene's meshes. Out: what fragments.c rasterises and the sweep shades. */
+ * In: the scene's meshes. Out: what fragments.c rasterises and the sweep shades. They are kept between frames
+ * as long as the same meshes stand in the same places. */
 #ifndef HL_SURFACE_SURFACES_H
 #define HL_SURFACE_SURFACES_H
 
 #include <halflight/scene.h>
 
 #include "core/error.h"
+#include "core/pool.h"
 #include "core/vector.h"
 
 typedef struct surface_mesh {
-  const hl_scene_mesh *scene;      /* in frame space; borrowed */
+  const hl_scene_mesh *scene;      /* in frame space; borrowed, of the frame */
+  hl_mesh *mesh;                   /* retained: its arrays are borrowed */
+  affine3 placement;               /* of the mesh in frame space */
   const float (*colors)[4];        /* borrowed; [vertices of the mesh]; null: none */
   const float (*face_colors)[4];   /* borrowed; [triangle_count]; null: none */
   const float (*sphere_colors)[4]; /* borrowed; [sphere_count]; null: none */
@@ -36,12 +40,13 @@ static inline uint32_t hl_surfaces_count(const surfaces *all) {
   return all->triangle_count + all->sphere_count;
 }
 
-/* scene: in frame space; its meshes are borrowed until the release. */
-hl_status hl_surfaces_create(hl_context *context, const hl_scene_description *scene, surfaces *made,
-                             hl_error *error);
-void hl_surfaces_release(hl_context *context, surfaces *made);
+/* Brings surfaces up to date: all zero at first, later those of an earlier frame. scene: in frame space; the
+ * descriptions of its meshes are borrowed for the frame. */
+hl_status hl_surfaces_update(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
+                             surfaces *kept, hl_error *error);
+void hl_surfaces_release(hl_context *context, surfaces *kept);
 
-/* The bytes that hl_surfaces_create() allocates. */
+/* The bytes that hl_surfaces_update() allocates. */
 uint64_t hl_surfaces_bytes(const hl_scene_description *scene);
 
 /* The index of the mesh that a primitive belongs to. Slow: fragments know theirs. */

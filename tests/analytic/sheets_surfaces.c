@@ -313,6 +313,45 @@ static void test_threads_and_instruction_sets(void **state) {
     }
 }
 
+/* Changes between the frames of one renderer, which keeps what it can. */
+static void change(mesh_stage *all, int step) {
+  hl_scene_mesh *board = &all->meshes[0], *pane = &all->meshes[1];
+  if (step == 1) stage_look(&all->set, (vec3){-35, -40, 40}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+  if (step == 2) board->color[0] = 0.2, pane->opacity = 0.9;
+  if (step == 3) pane->translate[0] += 3;
+  if (step == 4) board->rotate_angle_deg = 20;
+  if (step == 5) board->scale = 0.7;
+  if (step == 6) all->set.scene.mesh_count = 1;
+  if (step == 7) all->set.scene.mesh_count = 0;
+  if (step == 8) all->set.scene.mesh_count = 2;
+  if (step != 9) return;
+  hl_mesh_release(board->mesh);
+  board->mesh = stage_make_quad(&all->set, (vec3){1, 0, -6}, (vec3){12, 2, 1}, (vec3){-2, 9, 3});
+}
+
+/* After each change a renderer that has drawn other frames gives the bytes of a fresh one. */
+static void test_kept_between_frames(void **state) {
+  (void)state;
+  static float fresh[PIXELS * 4], kept[PIXELS * 4], before[PIXELS * 4];
+  mesh_stage all;
+  hl_renderer *renderer = NULL;
+  open_meshes(&all);
+  add_scenery(&all, 7);
+  choose_shadows(&all.set, &all.set.lights[0], 0, 0);
+  all.set.scene.width = all.set.scene.height = SIDE / 4;
+  assert_int_equal(hl_renderer_create(all.set.context, &renderer, NULL), HL_OK);
+  for (int step = 0; step < 10; step++) {
+    change(&all, step);
+    stage_render_sheets(&all.set, fresh);
+    stage_render_with(&all.set, renderer, kept);
+    assert_memory_equal(fresh, kept, sizeof fresh);
+    if (step > 0) assert_memory_not_equal(before, kept, sizeof kept);
+    memcpy(before, kept, sizeof kept);
+  }
+  hl_renderer_destroy(renderer);
+  close_meshes(&all);
+}
+
 /* Hard shadows against the reference, which has sixteen rays a pixel. */
 static void test_against_the_reference(void **state) {
   (void)state;
@@ -480,6 +519,7 @@ int main(void) {
                                      cmocka_unit_test(test_penumbra),
                                      cmocka_unit_test(test_volume_and_mesh),
                                      cmocka_unit_test(test_threads_and_instruction_sets),
+                                     cmocka_unit_test(test_kept_between_frames),
                                      cmocka_unit_test(test_against_the_reference),
                                      cmocka_unit_test(test_sphere_coverage),
                                      cmocka_unit_test(test_terminator),
