@@ -10,6 +10,22 @@ void hl_key_add(hl_key *key, const void *bytes, size_t count) {
   key->count += count;
 }
 
+/* Fowler, Noll and Vo's FNV-1a, over words of 64 bits; four sums, so that one need not wait for another. */
+uint64_t hl_key_mark(const void *bytes, size_t count) {
+  enum { WORD = sizeof(uint64_t), SUMS = 4 };
+  const uint64_t prime = 0x100000001b3u;
+  uint64_t sums[SUMS] = {0xcbf29ce484222325u, 1, 2, 3};
+  const unsigned char *from = bytes;
+  for (size_t at = 0; at < count; at += WORD) {
+    uint64_t word = 0, *sum = &sums[at / WORD % SUMS];
+    memcpy(&word, from + at, count - at < WORD ? count - at : WORD);
+    *sum = (*sum ^ word) * prime;
+    *sum ^= *sum >> 32; /* so that high bits count, too */
+  }
+  for (int s = 1; s < SUMS; s++) sums[0] = (sums[0] ^ sums[s]) * prime;
+  return (sums[0] ^ count) * prime;
+}
+
 hl_status hl_key_renew(hl_context *context, hl_key_write *write, const void *data, hl_key *kept, bool *same,
                        hl_error *error) {
   hl_key counted = {NULL, 0};

@@ -20,6 +20,9 @@ static inline void hl_key_add_numbers(hl_key *key, const double *numbers, size_t
 
 static inline void hl_key_add_whole(hl_key *key, int64_t number) { hl_key_add(key, &number, sizeof number); }
 
+/* A number for bytes, to stand for them in keys: by chance alike for other bytes once in 2^64. */
+uint64_t hl_key_mark(const void *bytes, size_t count);
+
 /* Adds all that a result depends on, the same bytes each time it is called for the same data. */
 typedef void hl_key_write(const void *data, hl_key *key);
 

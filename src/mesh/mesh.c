@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/key.h"
 #include "core/memory.h"
 
 void hl_mesh_description_defaults(hl_mesh_description *description) {
@@ -132,6 +133,18 @@ static bool is_closed(const hl_mesh_description *d) {
   return sum == 0 && volume > 0;
 }
 
+static uint64_t mark_of(const hl_mesh_description *d) {
+  const uint64_t marks[] = {
+      hl_key_mark(d->positions, d->vertex_count * sizeof *d->positions),
+      hl_key_mark(d->triangles, d->triangle_count * sizeof *d->triangles),
+      hl_key_mark(d->spheres, d->sphere_count * sizeof *d->spheres),
+      hl_key_mark(d->colors, d->colors == NULL ? 0 : d->vertex_count * sizeof *d->colors),
+      hl_key_mark(d->face_colors, d->face_colors == NULL ? 0 : d->triangle_count * sizeof *d->face_colors),
+      hl_key_mark(d->sphere_colors,
+                  d->sphere_colors == NULL ? 0 : d->sphere_count * sizeof *d->sphere_colors)};
+  return hl_key_mark(marks, sizeof marks);
+}
+
 hl_status hl_mesh_of_parts(mesh_parts *parts, hl_mesh **mesh, hl_error *error) {
   size_t vertices = parts->vertex_count, triangles = parts->triangle_count;
   hl_status status = hl_mesh_add_tubes(parts, error);
@@ -147,6 +160,7 @@ hl_status hl_mesh_of_parts(mesh_parts *parts, hl_mesh **mesh, hl_error *error) {
   status = keep_visible(made, error);
   if (status == HL_OK) {
     made->closed = is_closed(&made->description);
+    made->mark = mark_of(&made->description);
     *mesh = made;
   } else {
     hl_mesh_release(made);

@@ -4,6 +4,7 @@
 
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 #include <halflight/mesh.h>
 
@@ -17,8 +18,9 @@ struct hl_mesh {
   hl_mesh_description description;        /* its arrays are owned */
   size_t given_vertices, given_triangles; /* before those of the tubes */
   double low[3], high[3];                 /* bounds of all that is seen; world units */
-  bool closed; /* each edge has a triangle on either side: the mesh has an inside, and its fronts face
-                  outwards */
+  bool closed;   /* each edge has a triangle on either side: the mesh has an inside, and its fronts face
+                    outwards */
+  uint64_t mark; /* of all that hides light: triangles, spheres and their colours; for keys of kept results */
 };
 
 /* A mesh that is being read: growing arrays. */

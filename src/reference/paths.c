@@ -1,9 +1,9 @@
 /* reference/paths.c - light that media scatter more than once, by following paths from the eye.
  *
  * A path flies as far as its random optical depth, is turned there by the medium's phase function, flies on,
- * and takes from its second collision on what the lights send there unscattered: an estimate without bias of
- * light that was scattered twice or more often. The first scattering is integrated (shade.c). Random numbers
- * depend on the pixel and the path alone. Paths take the volumes' extinction as grey.
+ * and takes from its second collision on what the lights and the sky send there unscattered: an estimate
+ * without bias of light that was scattered twice or more often. The first scattering is integrated (shade.c).
+ * Random numbers depend on the pixel and the path alone. Paths take the volumes' extinction as grey.
  */
 #include "reference/reference.h"
 
@@ -97,6 +97,19 @@ static void add_lights(const reference *all, const collision *met, vec3 way, con
   }
 }
 
+/* Adds what the sky sends to a collision, from one random cell. */
+static void add_sky(const reference *all, const collision *met, vec3 way, const double weight[3],
+                    reference_worker *worker, uint64_t *random, double sum[3]) {
+  if (all->sky.count == 0) return;
+  const reference_sky_cell *cell = &all->sky.cells[(size_t)(uniform(random) * (double)all->sky.count)];
+  const reference_ray ray = {.origin = met->point, .direction = cell->direction, .farthest = INFINITY};
+  double passing[3],
+      turned = hl_reference_phase(met->volume->described->anisotropy, vec3_scale(way, -1), cell->direction),
+      part = all->sky.solid_angle * (double)all->sky.count / (4 * HL_PI);
+  hl_reference_transmittance(all, &ray, worker->shadow, passing);
+  for (int c = 0; c < 3; c++) sum[c] += weight[c] * turned * part * cell->radiance[c] * passing[c];
+}
+
 static bool goes_on(double weight[3], int turns, uint64_t *random) {
   double greatest = fmax(weight[0], fmax(weight[1], weight[2]));
   if (!(greatest > 0)) return false;
@@ -122,6 +135,7 @@ void hl_reference_path(const reference *all, vec3 origin, vec3 direction, uint64
     hl_reference_tint(met.volume, met.index_point, color);
     for (int c = 0; c < 3; c++) weight[c] *= color[c] * volume->albedo[c];
     if (turns > 0) add_lights(all, &met, ray.direction, weight, worker, &random, sum);
+    if (turns > 0) add_sky(all, &met, ray.direction, weight, worker, &random, sum);
     ray = (reference_ray){met.point, turn(ray.direction, volume->anisotropy, &random), 0, INFINITY};
   }
 }

@@ -265,12 +265,14 @@ typedef struct reference_sky_receiver {
   vec3 point, normal, to_eye; /* world; unit vectors; the normal is 0 in a medium */
   double surface;             /* 0: medium, 1: surface */
   double diffuse, anisotropy; /* of the surface; of the medium */
+  const double *albedo;       /* [3]; of the medium; null: 1 */
   bool receives_shadow;
 } reference_sky_receiver;
 
-/* A sky's light at a receiver: all of it, and what reaches it; an even sky of radiance 1 gives 1. */
+/* A sky's light at a receiver: all of it, what reaches it, and of this what it sends on; an even sky of
+ * radiance 1 gives 1. */
 typedef struct reference_sky_light {
-  double open[3], reaching[3];
+  double open[3], reaching[3], sent[3];
 } reference_sky_light;
 
 /* Cuts the scene's sky into about cell_count cells. */

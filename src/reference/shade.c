@@ -105,10 +105,11 @@ static void shade_sky(const reference *all, const reference_sample *at, const su
                                                     .surface = here->amount,
                                                     .anisotropy = described->anisotropy,
                                                     .receives_shadow = described->receives_shadow,
-                                                    .diffuse = described->material.diffuse},
+                                                    .diffuse = described->material.diffuse,
+                                                    .albedo = described->albedo},
                           worker, &light);
   for (int c = 0; c < 3; c++) {
-    sample->sky[c] += at->weight * here->own[c] * light.reaching[c];
+    sample->sky[c] += at->weight * here->own[c] * light.sent[c];
     sample->sky_reaching[c] += at->weight * light.reaching[c];
     sample->sky_open[c] += at->weight * light.open[c];
   }

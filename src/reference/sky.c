@@ -85,7 +85,7 @@ hl_status hl_reference_sky_create(reference *all, int cell_count, hl_error *erro
  * medium 1 / (4 pi) times radiance, phase and solid angle, where p is the phase function times 4 pi. */
 void hl_reference_sky_arrive(const reference *all, const reference_sky_receiver *at, reference_worker *worker,
                              reference_sky_light *light) {
-  *light = (reference_sky_light){{0, 0, 0}, {0, 0, 0}};
+  *light = (reference_sky_light){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
   for (size_t i = 0; i < all->sky.count && !hl_pool_stops(all->pool, worker->number); i++) {
     const reference_sky_cell *cell = &all->sky.cells[i];
     double cosine = fmax(vec3_dot(at->normal, cell->mean), 0) * at->surface * at->diffuse / HL_PI;
@@ -98,6 +98,8 @@ void hl_reference_sky_arrive(const reference *all, const reference_sky_receiver 
     for (int c = 0; c < 3; c++) {
       light->open[c] += weight * cell->radiance[c];
       light->reaching[c] += weight * cell->radiance[c] * passing[c];
+      double albedo = at->albedo != NULL ? at->albedo[c] : 1;
+      light->sent[c] += (cosine + albedo * scattered) * all->sky.solid_angle * cell->radiance[c] * passing[c];
     }
   }
 }

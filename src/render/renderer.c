@@ -172,6 +172,7 @@ static void choose_measuring_sweep(frame_work *work) {
 /* What the caller wants: a picture of a scene, and its layers. */
 typedef struct frame_request {
   const hl_scene_description *world;
+  uint64_t sky_mark;       /* of the pixels of its sky's image */
   const hl_layers *layers; /* null: none */
   float *pixels;           /* the caller's */
   size_t row_stride;       /* floats */
@@ -305,7 +306,7 @@ static sweep sweep_of(hl_renderer *renderer, const hl_scene_description *scene, 
 
 /* Finds the light that is scattered more than once, where the scene asks for it. */
 static hl_status scatter_light(hl_renderer *renderer, const hl_scene_description *scene,
-                               const frame_work *work, hl_error *error) {
+                               const frame_work *work, uint64_t sky_mark, hl_error *error) {
   hl_context *context = renderer->context;
   if (!hl_scatter_wanted(scene)) {
     hl_scatter_release(context, &renderer->scattered);
@@ -317,7 +318,7 @@ static hl_status scatter_light(hl_renderer *renderer, const hl_scene_description
   if (volumes == NULL) return hl_fail_memory(error, scene->volume_count * sizeof *volumes, "the volumes");
   for (size_t v = 0; v < scene->volume_count; v++)
     volumes[v] = (scatter_volume){&scene->volumes[v], &work->grids[v], &renderer->prepared[v].classifier};
-  const scatter_scene all = {context, renderer->pool, scene, volumes};
+  const scatter_scene all = {context, renderer->pool, scene, volumes, sky_mark};
   status = hl_scatter_update(&all, &renderer->scattered, error);
   hl_release(context, volumes);
   return status;
@@ -441,8 +442,8 @@ static hl_status check_sky_room(void *data, uint64_t bytes, hl_error *error) {
 }
 
 static hl_status update_sky(hl_renderer *renderer, const hl_scene_description *scene, const frame_work *work,
-                            const hot_functions *hot, hl_error *error) {
-  const frame_sky of = {scene, renderer->prepared, work->grids, &work->frame};
+                            const hot_functions *hot, uint64_t mark, hl_error *error) {
+  const frame_sky of = {scene, renderer->prepared, work->grids, &work->frame, mark};
   return hl_frame_sky_update(renderer->context, renderer->pool, hot, &of,
                              &(sky_room){check_sky_room, renderer}, &renderer->sky, error);
 }
@@ -467,8 +468,8 @@ static hl_status render_frame(hl_renderer *renderer, const frame_request *reques
     status = hl_prepare_isosurfaces(renderer->context, renderer->pool, scene, renderer->prepared, error);
   if (status == HL_OK) add_isosurfaces(renderer, &work->framed);
   if (status == HL_OK) status = set_up_frame(renderer, scene, request, work, error);
-  if (status == HL_OK) status = scatter_light(renderer, scene, work, error);
-  if (status == HL_OK) status = update_sky(renderer, scene, work, hot, error);
+  if (status == HL_OK) status = scatter_light(renderer, scene, work, request->sky_mark, error);
+  if (status == HL_OK) status = update_sky(renderer, scene, work, hot, request->sky_mark, error);
   if (status == HL_OK) status = check_sweeps_room(renderer, scene, work, error);
   statistics->seconds_prepare = hl_clock_seconds() - start;
   start = hl_clock_seconds();
@@ -519,7 +520,7 @@ hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene
   if (status != HL_OK) return status;
   hl_render_statistics counted = {.struct_size = sizeof counted};
   frame_work work = {0};
-  const frame_request request = {&scene->placed, layers, pixels, row_stride};
+  const frame_request request = {&scene->placed, scene->sky_mark, layers, pixels, row_stride};
   status = render_frame(renderer, &request, &work, &counted, error);
   release_work(renderer, &work);
   hl_reserve_end_frame(&renderer->reserve);

@@ -209,7 +209,7 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_slab *
     color_lanes color = color_of_matter(d, slab->geometry.position);
     color_lanes lit = illuminate(job, d, &slab->geometry, lights, color);
     if (job->sky != NULL && d->patch->volume->lit) {
-      color_lanes sky = sky_of_volume(job, slab, d);
+      color_lanes sky = sky_of_volume(job, slab, d, &color);
       for (int c = 0; c < 3; c++) lit.c[c] = lanes_fma(sky.c[c], color.c[c], lit.c[c]);
     }
     if (count == 1) return lit; /* its extinction is the total */

@@ -9,76 +9,35 @@
 #include "core/memory.h"
 #include "grid/matter_key.h"
 #include "mesh/mesh.h"
+#include "scene/sky.h"
 
 /* A field has at most so many cells. */
 static const double MOST_CELLS = 1200000;
 
 /* ---- the key ---- */
 
-/* A number for an image's pixels: FNV-1a over words of 32 bits, in 64 bits. */
-static uint64_t mark_of_pixels(const hl_sky *sky) {
-  uint64_t mark = 0xcbf29ce484222325u;
-  size_t count = 3 * (size_t)sky->width * (size_t)sky->height;
-  for (size_t i = 0; i < count; i++) {
-    uint32_t word;
-    memcpy(&word, &sky->pixels[i], sizeof word);
-    mark = (mark ^ word) * 0x100000001b3u;
-  }
-  return mark;
-}
-
-static void add_sky(hl_key *key, const hl_sky *sky, uint64_t mark) {
-  hl_key_add_whole(key, (int64_t)sky->type);
-  hl_key_add_whole(key, sky->hemisphere);
-  hl_key_add_numbers(key, sky->color, 3);
-  hl_key_add_numbers(key, sky->zenith, 3);
-  hl_key_add_numbers(key, sky->horizon, 3);
-  hl_key_add_numbers(key, sky->ground, 3);
-  hl_key_add_numbers(key, sky->up, 3);
-  hl_key_add_numbers(key, &sky->rotation_deg, 1);
-  hl_key_add_numbers(key, &sky->strength, 1);
-  if (sky->type != HL_SKY_IMAGE) return;
-  hl_key_add_whole(key, sky->width);
-  hl_key_add_whole(key, sky->height);
-  hl_key_add(key, &mark, sizeof mark);
-}
-
 static void add_volume(hl_key *key, const prepared_volume *prepared, const grid *grid) {
   hl_matter_key_add(key, prepared->scene, grid); /* the prepared volume keeps the voxels */
   hl_key_add_whole(key, 2 * (int64_t)prepared->kernel + (prepared->scene->visible != 0));
 }
 
-/* The triangles are those of the frame, and stand for meshes and isosurfaces alike. */
-static void add_surfaces(hl_key *key, const surfaces *all) {
-  for (size_t m = 0; m < all->mesh_count; m++) {
-    const surface_mesh *mesh = &all->meshes[m];
-    hl_key_add_numbers(key, &mesh->scene->opacity, 1);
-    hl_key_add_whole(key, 2 * (mesh->scene->visible != 0) + (mesh->scene->casts_shadow != 0));
-    hl_key_add_whole(key, mesh->triangle_count);
-    if (mesh->colors != NULL)
-      hl_key_add(key, mesh->colors, mesh->scene->mesh->description.vertex_count * sizeof *mesh->colors);
-    if (mesh->face_colors != NULL)
-      hl_key_add(key, mesh->face_colors, mesh->triangle_count * sizeof *mesh->face_colors);
-    if (mesh->sphere_colors != NULL)
-      hl_key_add(key, mesh->sphere_colors, mesh->sphere_count * sizeof *mesh->sphere_colors);
-    hl_key_add_whole(key, mesh->sphere_count);
-  }
-  hl_key_add(key, all->positions, all->vertex_count * sizeof *all->positions);
-  hl_key_add(key, all->triangles, all->triangle_count * sizeof *all->triangles);
-  hl_key_add(key, all->spheres, all->sphere_count * sizeof *all->spheres);
+/* Meshes and isosurfaces alike. */
+static void add_mesh(hl_key *key, const hl_scene_mesh *mesh) {
+  hl_key_add(key, &mesh->mesh->mark, sizeof mesh->mesh->mark);
+  hl_key_add_numbers(key, &mesh->opacity, 1);
+  hl_key_add_whole(key, 2 * (mesh->visible != 0) + (mesh->casts_shadow != 0));
+  hl_key_add_numbers(key, &mesh->scale, 1);
+  hl_key_add_numbers(key, mesh->translate, 3);
+  hl_key_add_numbers(key, mesh->rotate_axis, 3);
+  hl_key_add_numbers(key, &mesh->rotate_angle_deg, 1);
 }
 
-typedef struct sky_subject {
-  const frame_sky *of;
-  uint64_t mark; /* of the image's pixels; 0: there is none */
-} sky_subject;
-
 static void write_key(const void *data, hl_key *key) {
-  const sky_subject *subject = data;
-  const frame_sky *of = subject->of;
-  add_sky(key, &of->scene->sky, subject->mark);
+  const frame_sky *of = data;
+  const surfaces *all = of->frame->surfaces;
+  hl_sky_key_add(key, &of->scene->sky, of->mark);
   for (size_t v = 0; v < of->scene->volume_count; v++) add_volume(key, &of->volumes[v], &of->grids[v]);
-  if (of->frame->surfaces != NULL) add_surfaces(key, of->frame->surfaces);
+  for (size_t m = 0; all != NULL && m < all->mesh_count; m++) add_mesh(key, all->meshes[m].scene);
 }
 
 /* ---- the content ---- */
@@ -140,8 +99,7 @@ hl_status hl_frame_sky_update(hl_context *context, hl_pool *pool, const hot_func
     hl_sky_release(context, field);
     return HL_OK;
   }
-  const sky_subject subject = {of, scene->sky.type == HL_SKY_IMAGE ? mark_of_pixels(&scene->sky) : 0};
-  hl_status status = hl_key_renew(context, write_key, &subject, &field->key, &same, error);
+  hl_status status = hl_key_renew(context, write_key, of, &field->key, &same, error);
   if (status != HL_OK || same) return status;
   const surfaces *all = of->frame->surfaces;
   size_t surface_count = all == NULL ? 0 : all->mesh_count;

@@ -12,6 +12,7 @@ typedef struct frame_sky {
   const prepared_volume *volumes;    /* [scene->volume_count] */
   const grid *grids;                 /* the same */
   const frame *frame;
+  uint64_t mark; /* of the pixels of the sky's image */
 } frame_sky;
 
 /* Checks a field against a frame and makes it anew where it does not fit; without a sky it is released.

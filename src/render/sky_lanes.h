@@ -60,8 +60,31 @@ LANES_INLINE void open_sky(const sky_light *sky, sky_harmonics *light) {
     for (int k = 0; k < FIELD_HARMONICS; k++) light->of[c * FIELD_HARMONICS + k] = lanes_set(sky->open[c][k]);
 }
 
+/* The sky's light at a sample, in each channel: on a medium, on a surface, and its mean over all directions.
+ */
+typedef struct sky_parts {
+  lanes medium[3], surface[3], mean[3];
+} sky_parts;
+
+/* What a volume sends on of the sky's light, without its colour: a medium its albedo. Where it scatters light
+ * more than once, the fraction w of a medium's light is in the grid of scattered light (scatter/parts.h), w
+ * the albedo with the colour; of a surface, which the sky lights by its own law, w of the mean. */
+LANES_INLINE lanes sent_on(const shade_volume *volume, const sky_parts *parts, lanes surface, int c,
+                           lanes color) {
+  lanes medium = parts->medium[c], on_surface = parts->surface[c];
+  float albedo = volume->albedo[c];
+  if (volume->multiple) {
+    lanes left = color * albedo;
+    medium = medium * (1.0f - left);
+    on_surface = on_surface - parts->mean[c] * left * surface * albedo;
+  }
+  if (volume->absorbs) medium = medium * albedo;
+  return lanes_fma(medium, 1.0f - surface, on_surface);
+}
+
 /* What a volume's samples make of the sky: factors for its colour. */
-LANES_INLINE color_lanes sky_of_volume(const shade_job *job, const block_slab *slab, const block_density *d) {
+LANES_INLINE color_lanes sky_of_volume(const shade_job *job, const block_slab *slab, const block_density *d,
+                                       const color_lanes *color) {
   const sky_light *sky = job->sky;
   const shade_volume *volume = d->patch->volume;
   lanes medium = 1.0f - d->surface, own = lanes_set(1.0f), haze = lanes_set(1.0f);
@@ -75,7 +98,7 @@ LANES_INLINE color_lanes sky_of_volume(const shade_job *job, const block_slab *s
   } else {
     open_sky(sky, &light);
   }
-  color_lanes sent;
+  sky_parts parts;
   for (int c = 0; c < sky->channels; c++) {
     const lanes *of = light.of + c * FIELD_HARMONICS;
     float cast = volume->cast[c];
@@ -83,11 +106,16 @@ LANES_INLINE color_lanes sky_of_volume(const shade_job *job, const block_slab *s
       own = own_of_surface(slab, depths, cast);
       haze = exp_of_depth(in_cell * cast);
     }
-    lanes surface = light_of_surface(of, d->normal) * own * (volume->diffuse * d->surface);
-    sent.c[c] = lanes_fma(light_of_medium(of, onwards, volume->anisotropy) * haze, medium, surface);
+    parts.surface[c] = light_of_surface(of, d->normal) * own * (volume->diffuse * d->surface);
+    parts.medium[c] = light_of_medium(of, onwards, volume->anisotropy) * haze;
+    parts.mean[c] = of[0] * (float)HARMONIC_0 * haze;
   }
-  for (int c = sky->channels; c < 3; c++) sent.c[c] = sent.c[0];
-  for (int c = 0; c < 3; c++) sent.c[c] = sent.c[c] * sky->color[c];
+  color_lanes sent;
+  for (int c = 0; c < 3; c++) {
+    if (c >= sky->channels)
+      parts.surface[c] = parts.surface[0], parts.medium[c] = parts.medium[0], parts.mean[c] = parts.mean[0];
+    sent.c[c] = sent_on(volume, &parts, d->surface, c, color->c[c]) * sky->color[c];
+  }
   return sent;
 }
 

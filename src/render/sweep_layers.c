@@ -18,12 +18,11 @@ static void set_up_white_volumes(sweep *sweep) {
     white.classifier = &layers->white[g];
     white.colors.voxels = NULL;
     white.ambient = white.emission = 0;
-    white.multiple = 0;
+    white.absorbs = white.multiple = 0;
     layers->white_volumes[g] = layers->open_volumes[g] = white;
     layers->open_volumes[g].receives_shadow = 0;
     white.phong = 0;
     white.anisotropy = 0;
-    white.absorbs = 0;
     white.lit = 1;
     layers->white_media[g] = white;
   }

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "grid/matter_key.h"
 #include "scatter/parts.h"
+#include "scene/sky.h"
 
 enum {
   LONGEST = 48 /* nodes along the longest side of the matter */,
@@ -36,6 +37,8 @@ static bool is_uneven(const hl_scene_description *scene) {
     uneven = uneven || (scatters(&scene->volumes[v]) && scene->volumes[v].anisotropy != 0);
   return uneven;
 }
+
+static bool has_sky(const hl_scene_description *scene) { return scene->sky.type != HL_SKY_NONE; }
 
 /* ---- where the nodes are ---- */
 
@@ -73,10 +76,14 @@ static bool place_nodes(const scatter_scene *scene, scatter_nodes *nodes) {
 
 /* ---- memory ---- */
 
-static void lay_out(size_t nodes, bool with_flux, scatter_arrays *arrays, scatter_work *work,
+static void lay_out(size_t nodes, bool with_flux, bool with_sky, scatter_arrays *arrays, scatter_work *work,
                     hl_layout *layout) {
   arrays->extinction = hl_layout_take(layout, 3 * nodes, sizeof(float));
   arrays->scattering = hl_layout_take(layout, 3 * nodes, sizeof(float));
+  bool with_own = with_flux && with_sky;
+  arrays->own = with_own ? hl_layout_take(layout, 3 * nodes, sizeof(float)) : arrays->extinction;
+  work->sky = with_sky ? hl_layout_take(layout, nodes, sizeof(float)) : NULL;
+  work->sky_flux = with_own ? hl_layout_take(layout, 3 * nodes, sizeof(float)) : NULL;
   arrays->direct = hl_layout_take(layout, 3 * nodes, sizeof(float));
   for (int line = 0; line < SCATTER_LINES; line++) {
     work->pass[line] = hl_layout_take(layout, nodes, sizeof(float));
@@ -94,7 +101,7 @@ uint64_t hl_scatter_bytes(const hl_scene_description *scene) {
   scatter_arrays arrays;
   scatter_work work;
   hl_layout counted = {0};
-  lay_out(nodes, is_uneven(scene), &arrays, &work, &counted);
+  lay_out(nodes, is_uneven(scene), has_sky(scene), &arrays, &work, &counted);
   return counted.bytes + (is_uneven(scene) ? 12 : 3) * nodes * sizeof(float) +
          scene->volume_count * sizeof(scatter_volume);
 }
@@ -127,23 +134,68 @@ static void add_light(hl_key *key, const hl_light *light) {
 static void write_key(const void *data, hl_key *key) {
   const scatter_scene *scene = data;
   hl_key_add_whole(key, scene->scene->render.shadows);
+  hl_sky_key_add(key, &scene->scene->sky, scene->sky_mark);
   for (size_t v = 0; v < scene->scene->volume_count; v++) add_volume(key, &scene->volumes[v]);
   for (size_t l = 0; l < scene->scene->light_count; l++) add_light(key, &scene->scene->lights[l]);
 }
 
 /* ---- the whole ---- */
 
-static void solve_channels(const scatter_scene *scene, const scatter_arrays *arrays, scatter_work *work,
-                           scatter_field *field) {
-  const scatter_nodes *nodes = &field->nodes;
-  size_t count = hl_scatter_node_count(nodes);
-  for (int c = 0; c < field->channels; c++) {
-    size_t medium = arrays->channels == 3 ? (size_t)c * count : 0;
-    if (c == 0 || arrays->channels == 3)
-      hl_scatter_begin_lines(scene->pool, nodes, arrays->extinction + medium, work);
-    hl_scatter_solve(scene->pool, nodes, arrays->extinction + medium, arrays->scattering + medium,
-                     arrays->direct + (size_t)c * count, work, field->light + (size_t)c * count,
-                     field->flux != NULL ? field->flux + (size_t)(3 * c) * count : NULL);
+/* One channel's arrays. */
+typedef struct channel {
+  const float *extinction, *scattering, *own, *direct;
+  const scatter_inflow *inflow; /* null: no sky */
+  float *light, *flux;
+} channel;
+
+/* The fraction of the light met that is scattered: of all matter. */
+static float mean_albedo(const channel *of, size_t count) {
+  double met = 0, kept = 0;
+  for (size_t n = 0; n < count; n++) met += of->own[n], kept += of->extinction[n] - of->scattering[n];
+  return met > 0 ? (float)(1 - kept / met) : 0;
+}
+
+/* Takes (1 - w) of the sky's unscattered light off; similarity keeps what is absorbed, so that the albedo w
+ * is 1 - (extinction - scattering) / own. Empty nodes, beside matter, have the albedo of all. */
+static void leave_sky(const channel *of, const scatter_work *work, size_t count) {
+  float elsewhere = mean_albedo(of, count);
+  for (size_t n = 0; n < count; n++) {
+    float kept = of->extinction[n] - of->scattering[n],
+          albedo = of->own[n] > 0 ? 1 - kept / of->own[n] : elsewhere;
+    of->light[n] -= (1 - albedo) * work->sky[n];
+    for (size_t a = 0; a < 3 && of->flux != NULL; a++)
+      of->flux[a * count + n] -= (1 - albedo) * work->sky_flux[a * count + n];
+  }
+}
+
+/* begun: the lines are prepared for this extinction. */
+static void solve_channel(const scatter_scene *scene, const scatter_nodes *nodes, const channel *of,
+                          bool begun, scatter_work *work) {
+  const bool two = of->inflow != NULL && of->own != of->extinction;
+  if (two) hl_scatter_begin_lines(scene->pool, nodes, of->own, work);
+  else if (!begun) hl_scatter_begin_lines(scene->pool, nodes, of->extinction, work);
+  if (of->inflow != NULL)
+    hl_scatter_enter(scene->pool, nodes, of->own, of->inflow, work, work->vectors[0], work->sky,
+                     work->sky_flux);
+  if (two) hl_scatter_begin_lines(scene->pool, nodes, of->extinction, work);
+  hl_scatter_solve(scene->pool, nodes, of->extinction, of->scattering, of->direct, of->inflow, work,
+                   of->light, of->flux);
+  if (of->inflow != NULL) leave_sky(of, work, hl_scatter_node_count(nodes));
+}
+
+static void solve_channels(const scatter_scene *scene, const scatter_arrays *arrays,
+                           const scatter_inflow inflow[3], scatter_work *work, scatter_field *field) {
+  size_t count = hl_scatter_node_count(&field->nodes);
+  for (size_t c = 0; c < (size_t)field->channels; c++) {
+    size_t medium = arrays->channels == 3 ? c * count : 0;
+    const channel of = {.extinction = arrays->extinction + medium,
+                        .scattering = arrays->scattering + medium,
+                        .own = arrays->own + medium,
+                        .direct = arrays->direct + c * count,
+                        .inflow = has_sky(scene->scene) ? &inflow[c] : NULL,
+                        .light = field->light + c * count,
+                        .flux = field->flux != NULL ? field->flux + 3 * c * count : NULL};
+    solve_channel(scene, &field->nodes, &of, c > 0 && arrays->channels == 1, work);
   }
 }
 
@@ -153,22 +205,25 @@ static hl_status find_field(const scatter_scene *scene, scatter_field *field, hl
   scatter_work work;
   hl_layout counted = {0};
   bool with_flux = is_uneven(scene->scene);
-  lay_out(count, with_flux, &arrays, &work, &counted);
+  lay_out(count, with_flux, has_sky(scene->scene), &arrays, &work, &counted);
   hl_layout handed = {.base = hl_allocate(scene->context, counted.bytes, 1)};
   field->light = hl_allocate(scene->context, (with_flux ? 12 : 3) * count, sizeof *field->light);
   if (handed.base == NULL || field->light == NULL) {
     hl_release(scene->context, handed.base);
     return hl_fail_memory(error, counted.bytes, "multiple scattering");
   }
-  lay_out(count, with_flux, &arrays, &work, &handed);
+  lay_out(count, with_flux, has_sky(scene->scene), &arrays, &work, &handed);
   field->flux = with_flux ? field->light + 3 * count : NULL;
   hl_scatter_fill_matter(scene, &field->nodes, &arrays);
   hl_scatter_fill_direct(scene, &field->nodes, &arrays);
   bool grey = arrays.channels == 1;
   for (size_t c = 1; c < 3; c++)
     grey = grey && memcmp(arrays.direct, arrays.direct + c * count, count * sizeof(float)) == 0;
+  scatter_inflow inflow[3] = {{{0}, {0}}, {{0}, {0}}, {{0}, {0}}};
+  if (has_sky(scene->scene)) hl_scatter_sky_inflow(&scene->scene->sky, inflow);
+  for (size_t c = 1; c < 3; c++) grey = grey && memcmp(inflow, inflow + c, sizeof *inflow) == 0;
   field->channels = grey ? 1 : 3;
-  solve_channels(scene, &arrays, &work, field);
+  solve_channels(scene, &arrays, inflow, &work, field);
   hl_release(scene->context, handed.base);
   if (hl_pool_cancelled(scene->pool))
     return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while light is scattered");

@@ -78,17 +78,22 @@ static float extinction_at(const scatter_volume *volume, vec3 point, float color
   return found > 0 && classifier->steepness != NULL ? found * gradient_factor(volume, p) : found;
 }
 
-/* Adds a volume's extinction and scattering at a point, times weight; similarity as scatter.h says. */
-static void add_volume(const scatter_volume *volume, vec3 point, float weight, float extinction[3],
-                       float scattering[3]) {
+/* Of the medium that scatters evenly, and of the medium as it is. */
+typedef struct matter {
+  float extinction[3], scattering[3], own[3];
+} matter;
+
+/* Adds a volume's matter at a point, times weight; similarity as scatter.h says. */
+static void add_volume(const scatter_volume *volume, vec3 point, float weight, matter *sum) {
   const hl_scene_volume *scene = volume->scene;
   float color[3], found = extinction_at(volume, point, color);
   if (!(found > 0)) return;
   for (int c = 0; c < 3; c++) {
     float taken = weight * found * (float)scene->attenuation_color[c];
     float scattered = scene->multiple_scattering ? taken * color[c] * (float)scene->albedo[c] : 0;
-    extinction[c] += taken - scattered * (float)scene->anisotropy;
-    scattering[c] += scattered - scattered * (float)scene->anisotropy;
+    sum->extinction[c] += taken - scattered * (float)scene->anisotropy;
+    sum->scattering[c] += scattered - scattered * (float)scene->anisotropy;
+    sum->own[c] += taken;
   }
 }
 
@@ -99,7 +104,8 @@ static int samples_of(const scatter_volume *volume, float spacing) {
 }
 
 static void fill_node(const matter_job *job, const int32_t at[3], size_t node) {
-  float extinction[3] = {0, 0, 0}, scattering[3] = {0, 0, 0}, spacing = job->nodes->spacing;
+  matter sum = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  float spacing = job->nodes->spacing;
   for (size_t v = 0; v < job->scene->scene->volume_count; v++) {
     const scatter_volume *volume = &job->scene->volumes[v];
     if (!volume->scene->casts_shadow || volume->grid->relevant_count == 0) continue;
@@ -110,12 +116,14 @@ static void fill_node(const matter_job *job, const int32_t at[3], size_t node) {
       double p[3];
       for (int a = 0; a < 3; a++)
         p[a] = job->nodes->origin[a] + spacing * (at[a] + (of[a] + 0.5) / side - 0.5);
-      add_volume(volume, vec3_of(p), weight, extinction, scattering);
+      add_volume(volume, vec3_of(p), weight, &sum);
     }
   }
   for (int c = 0; c < 3; c++) {
-    job->arrays->extinction[(size_t)c * job->node_count + node] = extinction[c];
-    job->arrays->scattering[(size_t)c * job->node_count + node] = scattering[c];
+    size_t to = (size_t)c * job->node_count + node;
+    job->arrays->extinction[to] = sum.extinction[c];
+    job->arrays->scattering[to] = sum.scattering[c];
+    if (job->arrays->own != job->arrays->extinction) job->arrays->own[to] = sum.own[c];
   }
 }
 

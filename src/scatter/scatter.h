@@ -4,6 +4,7 @@
  *
  *     matter.c      extinction and scattering at the grid's nodes, from the volumes
  *     direct.c      the lights' unscattered light at the nodes
+ *     sky.c         the sky's light that enters the grid
  *     transport.c   how scattered light spreads
  *     field.c       the whole, and the key by which a result is kept
  *
@@ -33,6 +34,7 @@ typedef struct scatter_scene {
   hl_pool *pool;
   const hl_scene_description *scene; /* in frame space */
   const scatter_volume *volumes;     /* [scene->volume_count] */
+  uint64_t sky_mark;                 /* of the pixels of the sky's image */
 } scatter_scene;
 
 /* Where the nodes are, in frame space: node (x, y, z) at origin + spacing * (x, y, z). */
@@ -44,7 +46,8 @@ typedef struct scatter_nodes {
 typedef struct scatter_field {
   scatter_nodes nodes;
   float *light; /* owned; [channels][count z][count y][count x]: the mean over all directions of light that
-                   was scattered, in the units of a light's color; null: none */
+                   was scattered, and of what samples leave out of the sky's (parts.h), in the units of a
+                   light's color; null: none */
   float *flux;  /* in the block of light; [channels][3][count z][count y][count x]: the mean of that light
                    times its direction of  travel; null where all matter scatters evenly */
   int channels; /* 1: the same for red, green and blue; or 3 */

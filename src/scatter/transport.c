@@ -7,12 +7,12 @@
  *
  *     t_i (u_i - S_i) = (u_{i+1} - u_i) / d_{i+1/2} - (u_i - u_{i-1}) / d_{i-1/2}
  *
- * and no light enters at the ends. Elimination from one end on, in a form without differences and without
- * division by d, which empty space may make 0 (derived; after Rybicki and Hummer, "An accelerated lambda
- * iteration method for multilevel radiative transfer", 1991, appendix A):
+ * and the light I enters at the ends, none but a sky's. Elimination from one end on, in a form without
+ * differences and without division by d, which empty space may make 0 (derived; after Rybicki and Hummer, "An
+ * accelerated lambda iteration method for multilevel radiative transfer", 1991, appendix A):
  *
  *     f_i = t_i + f_{i-1} g_{i-1},  y_i = t_i S_i + y_{i-1} g_{i-1},  g_i = 1 / (1 + f_i d_{i+1/2}),  f = 1
- * before the first u_i = (u_{i+1} + y_i d_{i+1/2}) g_i,  at the last node u = y / (1 + f)
+ * and y = I before the first, u_i = (u_{i+1} + y_i d_{i+1/2}) g_i,  at the last node u = (y + I) / (1 + f)
  *
  * The mean over all directions is the weighted sum over the 13 lines between a node and its 26 neighbours, by
  * the weights of the cubature of degree 7 of Lebedev ("Values of the nodes and weights of ninth to
@@ -49,9 +49,17 @@ static float weight_of(int line) { return line < 3 ? 2.0f / 21 : line < 9 ? 8.0f
 /* The distance of neighbouring nodes on a line, in units of the spacing. */
 static float length_of(int line) { return line < 3 ? 1.0f : line < 9 ? 1.41421356f : 1.73205081f; }
 
+vec3 hl_scatter_way(int line, bool onwards) {
+  const int *way = ways[line];
+  return vec3_scale(vec3_normalise((vec3){way[0], way[1], way[2]}), onwards ? 1 : -1);
+}
+
+float hl_scatter_line_weight(int line) { return weight_of(line); }
+
 typedef struct lines_job {
   const scatter_nodes *nodes;
   const float *extinction;
+  const scatter_inflow *inflow; /* null: none */
   const float *sent; /* [nodes]; energy that a node sends out in all directions, per unit of length */
   scatter_work *work;
   float *mean; /* [nodes] */
@@ -100,11 +108,20 @@ static void begin_line(void *data, size_t line, int worker) {
   }
 }
 
-/* y along a row. */
+/* The light that enters a line at its first node, and at its last. */
+static float entering(const lines_job *job, int line) {
+  return job->inflow != NULL ? job->inflow->along[line] : 0;
+}
+static float entering_last(const lines_job *job, int line) {
+  return job->inflow != NULL ? job->inflow->against[line] : 0;
+}
+
+/* y along a row. y begins with the light that enters, at every node: those that have one before them take it
+ * back. */
 static void go_forward(const lines_job *job, int line, const line_row *row) {
   const float *pass = job->work->pass[line] + row->at;
-  float *from = job->work->along[line] + row->at, *to = from + row->step;
-  for (int32_t x = row->low; x < row->high; x++) to[x] += from[x] * pass[x];
+  float *from = job->work->along[line] + row->at, *to = from + row->step, entered = entering(job, line);
+  for (int32_t x = row->low; x < row->high; x++) to[x] += from[x] * pass[x] - entered;
 }
 
 /* u along a row, from y. */
@@ -114,8 +131,9 @@ static void go_back(const lines_job *job, int line, const line_row *row) {
   float *here = job->work->along[line] + row->at;
   const float *next = here + row->step;
   int32_t count = job->nodes->count[0];
-  for (int32_t x = row->high > row->low ? row->high : 0; x < count; x++) here[x] *= pass[x];
-  for (int32_t x = 0; x < row->low && row->high > row->low; x++) here[x] *= pass[x];
+  float last = entering_last(job, line);
+  for (int32_t x = row->high > row->low ? row->high : 0; x < count; x++) here[x] = (here[x] + last) * pass[x];
+  for (int32_t x = 0; x < row->low && row->high > row->low; x++) here[x] = (here[x] + last) * pass[x];
   if (row->step == 1)
     for (int32_t x = row->high - 1; x >= row->low; x--)
       here[x] = (next[x] + here[x] * (half * (e[x] + ahead[x]))) * pass[x];
@@ -130,7 +148,8 @@ static void solve_line(void *data, size_t line, int worker) {
   const int32_t *count = job->nodes->count;
   size_t rows = (size_t)count[1] * (size_t)count[2];
   float length = length_of((int)line) * job->nodes->spacing, *along = job->work->along[line];
-  for (size_t n = 0; n < rows * (size_t)count[0]; n++) along[n] = length * job->sent[n];
+  float entered = entering(job, (int)line);
+  for (size_t n = 0; n < rows * (size_t)count[0]; n++) along[n] = length * job->sent[n] + entered;
   for (size_t r = 0; r < rows; r++) {
     line_row row = row_of(job->nodes, (int)line, r);
     go_forward(job, (int)line, &row);
@@ -150,7 +169,8 @@ static void flux_line(void *data, size_t line, int worker) {
   float length = length_of((int)line) * job->nodes->spacing, *along = job->work->along[line],
         *sent = job->work->flux[line], *before = job->work->before[line];
   const float *pass = job->work->pass[line], *e = job->extinction;
-  for (size_t n = 0; n < nodes; n++) sent[n] = length * job->sent[n], before[n] = 1;
+  float entered = entering(job, (int)line);
+  for (size_t n = 0; n < nodes; n++) sent[n] = length * job->sent[n] + entered, before[n] = 1;
   /* along holds u; sent becomes y, before f */
   for (size_t r = 0; r < rows; r++) {
     line_row row = row_of(job->nodes, (int)line, r);
@@ -158,7 +178,7 @@ static void flux_line(void *data, size_t line, int worker) {
       size_t at = row.at + (size_t)x;
       before[at] += length * e[at];
       if (x < row.low || x >= row.high) continue;
-      sent[at + row.step] += sent[at] * pass[at];
+      sent[at + row.step] += sent[at] * pass[at] - entered;
       before[at + row.step] = before[at] * pass[at];
     }
   }
@@ -248,21 +268,37 @@ static void solve_symmetric(hl_pool *pool, lines_job *job, const float *root, fl
   }
 }
 
-void hl_scatter_solve(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
-                      const float *scattering, const float *direct, scatter_work *work, float *light,
+static void find_flux(hl_pool *pool, lines_job *job, float *flux) {
+  if (flux == NULL) return;
+  job->mean = flux;
+  hl_pool_run(pool, SCATTER_LINES, flux_line, job);
+  hl_pool_run(pool, (size_t)job->nodes->count[2], sum_flux, job);
+}
+
+void hl_scatter_enter(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
+                      const scatter_inflow *inflow, scatter_work *work, float *scratch, float *light,
                       float *flux) {
+  lines_job job = {.nodes = nodes, .extinction = extinction, .work = work, .inflow = inflow};
+  memset(scratch, 0, hl_scatter_node_count(nodes) * sizeof *scratch);
+  spread(pool, &job, scratch, light);
+  find_flux(pool, &job, flux);
+}
+
+void hl_scatter_solve(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
+                      const float *scattering, const float *direct, const scatter_inflow *inflow,
+                      scatter_work *work, float *light, float *flux) {
   size_t count = hl_scatter_node_count(nodes);
-  float *root = work->vectors[0], *sent = work->vectors[3], *rest = work->vectors[2];
+  float *root = work->vectors[0], *sent = work->vectors[3], *rest = work->vectors[2],
+        *right = work->vectors[4];
   lines_job job = {.nodes = nodes, .extinction = extinction, .work = work};
   for (size_t n = 0; n < count; n++) root[n] = sqrtf(scattering[n]), sent[n] = scattering[n] * direct[n];
-  spread(pool, &job, sent, rest);
-  float *right = work->vectors[4];
+  job.inflow = inflow;
+  spread(pool, &job, sent, rest); /* u without more scattering, and what enters: G D b + E */
+  job.inflow = NULL;
   for (size_t n = 0; n < count; n++) right[n] = root[n] * rest[n];
   solve_symmetric(pool, &job, root, right, light);
   for (size_t n = 0; n < count; n++) sent[n] = scattering[n] * direct[n] + root[n] * light[n];
+  job.inflow = inflow;
   spread(pool, &job, sent, light);
-  if (flux == NULL) return;
-  job.mean = flux;
-  hl_pool_run(pool, SCATTER_LINES, flux_line, &job);
-  hl_pool_run(pool, (size_t)nodes->count[2], sum_flux, &job);
+  find_flux(pool, &job, flux);
 }

@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "core/key.h"
 #include "core/memory.h"
 #include "scene/check.h"
 #include "scene/placement.h"
@@ -318,6 +319,9 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   if (status == HL_OK) status = copy_volumes(made, description, error);
   if (status == HL_OK) status = copy_meshes(made, description, error);
   if (status == HL_OK) status = copy_sky(made, &description->sky, error);
+  const hl_sky *sky = &made->description.sky;
+  if (status == HL_OK && sky->pixels != NULL)
+    made->sky_mark = hl_key_mark(sky->pixels, 3 * (size_t)sky->width * (size_t)sky->height * sizeof(float));
   if (status == HL_OK) status = hl_lights_place(context, &made->description, &made->placed, error);
   if (status == HL_OK) status = hl_labels_draw(context, &made->placed, &made->drawn, error);
   if (status != HL_OK) {

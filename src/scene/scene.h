@@ -19,6 +19,7 @@ struct hl_scene {
   hl_scene_description placed; /* the same for rendering: all lights in the world, and volumes of occupancy in
                                   place of label maps; owns its array of lights */
   drawn_labels drawn;          /* the volumes of occupancy */
+  uint64_t sky_mark;           /* of the pixels of the sky's image; for keys of kept results */
 };
 
 /* Frees the pixels and file names of a light's texture and emission, where they are owned. */

@@ -65,3 +65,19 @@ void hl_sky_radiance(const hl_sky *sky, const sky_axes *axes, vec3 direction, do
     radiance[c] *= sky->strength;
   }
 }
+
+void hl_sky_key_add(hl_key *key, const hl_sky *sky, uint64_t mark) {
+  hl_key_add_whole(key, (int64_t)sky->type);
+  hl_key_add_whole(key, sky->hemisphere);
+  hl_key_add_numbers(key, sky->color, 3);
+  hl_key_add_numbers(key, sky->zenith, 3);
+  hl_key_add_numbers(key, sky->horizon, 3);
+  hl_key_add_numbers(key, sky->ground, 3);
+  hl_key_add_numbers(key, sky->up, 3);
+  hl_key_add_numbers(key, &sky->rotation_deg, 1);
+  hl_key_add_numbers(key, &sky->strength, 1);
+  if (sky->type != HL_SKY_IMAGE) return;
+  hl_key_add_whole(key, sky->width);
+  hl_key_add_whole(key, sky->height);
+  hl_key_add(key, &mark, sizeof mark);
+}

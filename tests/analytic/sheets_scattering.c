@@ -76,7 +76,8 @@ static void close_block(block *b) {
 }
 
 static void solve(block *b) {
-  hl_scatter_solve(b->pool, &b->nodes, b->extinction, b->scattering, b->direct, &b->work, b->light, b->flux);
+  hl_scatter_solve(b->pool, &b->nodes, b->extinction, b->scattering, b->direct, NULL, &b->work, b->light,
+                   b->flux);
 }
 
 /* Deep inside, where light b arrives everywhere, each collision keeps the fraction w: w b + w^2 b + ... */

@@ -1,0 +1,183 @@
+/* analytic/sheets_scattered_sky.c - the sky's light, scattered again and again: the white furnace, a half
+ * space, paths of the reference. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+#include "scatter/parts.h"
+
+enum { SIDE = 16, PIXELS = SIDE * SIDE, MIDDLE = SIDE / 2 * SIDE + SIDE / 2 };
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+}
+
+/* A block of white matter 48 x 48 x 24 under an even sky of radiance 1. */
+static hl_scene_volume *open_stage(stage *set, double opacity, double albedo) {
+  stage_open(set);
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = 6;
+  for (int c = 0; c < 3; c++) set->scene.ambient[c] = 0;
+  set->scene.sky.type = HL_SKY_UNIFORM;
+  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){48, 48, 24}, (double[3]){1, 1, 1},
+                                           (vec3){-24, -24, -12}, NULL);
+  stage_set_opacity(set, volume, opacity, 1);
+  stage_set_color(set, volume, 1, 1, 1);
+  volume->shading = HL_SHADING_NONE;
+  for (int c = 0; c < 3; c++) volume->albedo[c] = albedo;
+  volume->multiple_scattering = 1;
+  stage_look(set, (vec3){0, 0, 40}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  return volume;
+}
+
+/* White furnace: matter that keeps all light, in light 1 from everywhere, sends 1 everywhere: it vanishes
+ * before a sky of 1. Thin and thick, scattering evenly, onwards and back, from a corner. */
+static void test_white_furnace(void **state) {
+  (void)state;
+  static const double opacities[] = {0.02, 0.4, 0.9}, anisotropies[] = {0, 0.6, -0.4};
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 5; k++) {
+    stage set;
+    hl_scene_volume *volume = open_stage(&set, opacities[k < 3 ? k : 1], 1);
+    volume->anisotropy = anisotropies[k < 3 ? 0 : k - 2];
+    set.scene.camera.height = 70;
+    stage_look(&set, (vec3){50, -70, 40}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+    stage_render_sheets(&set, pixels);
+    double most = 0, seen = 0;
+    for (int i = 0; i < PIXELS; i++) {
+      double alpha = (double)pixels[4 * i + 3];
+      seen += alpha;
+      for (int c = 0; c < 3; c++) most = fmax(most, fabs((double)pixels[4 * i + c] - alpha));
+    }
+    assert_true(seen > 20);
+    assert_near(most, 0, 0.01);
+    stage_close(&set);
+  }
+}
+
+/* An even sky enters alike along each line, in each colour. */
+static void test_inflow_of_an_even_sky(void **state) {
+  (void)state;
+  scatter_inflow inflow[3];
+  hl_scene_description plain;
+  hl_scene_description_defaults(&plain);
+  plain.sky.type = HL_SKY_UNIFORM;
+  plain.sky.color[1] = 0.5;
+  hl_scatter_sky_inflow(&plain.sky, inflow);
+  for (int line = 0; line < SCATTER_LINES; line++)
+    for (int c = 0; c < 3; c++) {
+      assert_near((double)inflow[c].along[line], c == 1 ? 0.5 : 1, 1e-6);
+      assert_near((double)inflow[c].against[line], c == 1 ? 0.5 : 1, 1e-6);
+    }
+}
+
+/* A sky's inflow has the sky's mean, and comes from where the sky is bright. */
+static void test_inflow_of_a_hemisphere(void **state) {
+  (void)state;
+  scatter_inflow inflow[3];
+  hl_scene_description plain;
+  hl_scene_description_defaults(&plain);
+  plain.sky.type = HL_SKY_UNIFORM;
+  plain.sky.hemisphere = 1;
+  hl_scatter_sky_inflow(&plain.sky, inflow);
+  double mean = 0;
+  for (int line = 0; line < SCATTER_LINES; line++)
+    mean += (double)hl_scatter_line_weight(line) / 2 *
+            ((double)inflow[0].along[line] + (double)inflow[0].against[line]);
+  assert_near(mean, 0.5, 1e-6);
+  int up = 2; /* the line along z: light that travels down comes from the zenith */
+  assert_true(inflow[0].against[up] > 0.95f && inflow[0].along[up] == 0);
+}
+
+/* Chandrasekhar's H of even scattering ("Radiative transfer", 1950, chapter V): 1 / H(m) = sqrt(1 - w) + w/2
+ * times the integral of n H(n) / (m + n) over n from 0 to 1; by iteration. */
+static double chandrasekhar(double albedo) {
+  enum { N = 200 };
+  static double h[N + 1];
+  for (int i = 0; i <= N; i++) h[i] = 1;
+  for (int turn = 0; turn < 200; turn++)
+    for (int i = 0; i <= N; i++) {
+      double m = i < N ? (i + 0.5) / N : 1, sum = 0;
+      for (int k = 0; k < N; k++) sum += (k + 0.5) / N * h[k] / (m + (k + 0.5) / N) / N;
+      h[i] = 1 / (sqrt(1 - albedo) + albedo / 2 * sum);
+    }
+  return h[N];
+}
+
+/* A half space under an even sky of 1 sends out 1 - sqrt(1 - w) H(m) (Chandrasekhar 1950; a layer returns to
+ * m of even light what it returns of light from m, all in all). */
+static void test_half_space(void **state) {
+  (void)state;
+  static const double albedos[] = {0.5, 0.9, 0.99};
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 3; k++) {
+    stage set;
+    (void)open_stage(&set, 0.6, albedos[k]);
+    stage_render_sheets(&set, pixels);
+    double expected = 1 - sqrt(1 - albedos[k]) * chandrasekhar(albedos[k]);
+    assert_near((double)pixels[4 * MIDDLE], expected, 0.05 * expected);
+    stage_close(&set);
+  }
+}
+
+/* The reference's paths find that the white furnace vanishes, within four of their standard errors. */
+static void test_paths_of_the_reference(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4], errors[PIXELS * 3];
+  hl_reference_options options;
+  hl_reference_options_defaults(&options);
+  options.paths = 8;
+  options.light_points = 100;
+  options.step = 1;
+  options.error = errors;
+  stage set;
+  (void)open_stage(&set, 0.1, 1);
+  set.scene.camera.height = 40;
+  stage_render(&set, &options, pixels);
+  double mean = 0, alpha = 0, square = 0;
+  for (int i = 0; i < PIXELS; i++) {
+    mean += (double)pixels[4 * i] / PIXELS;
+    alpha += (double)pixels[4 * i + 3] / PIXELS;
+    square += (double)errors[3 * i] * (double)errors[3 * i] / PIXELS / PIXELS;
+  }
+  assert_true(alpha > 0.5);
+  assert_near(mean, alpha, 4 * sqrt(square) + 0.01);
+  stage_close(&set);
+}
+
+/* A medium sends on its albedo of the sky's light, by sheets and reference. */
+static void test_albedo(void **state) {
+  (void)state;
+  static float white[PIXELS * 4], grey[PIXELS * 4];
+  for (int i = 0; i < 2; i++) {
+    hl_reference_options options;
+    hl_reference_options_defaults(&options);
+    options.light_points = 12;
+    options.step = 1;
+    for (int k = 0; k < 2; k++) {
+      stage set;
+      open_stage(&set, 0.1, k == 0 ? 1 : 0.25)->multiple_scattering = 0;
+      float *pixels = k == 0 ? white : grey;
+      if (i == 0) stage_render_sheets(&set, pixels);
+      else stage_render(&set, &options, pixels);
+      stage_close(&set);
+    }
+    assert_true(white[4 * MIDDLE] > 0.1f);
+    for (int p = 0; p < PIXELS * 4; p++)
+      assert_near((double)grey[p], (double)white[p] * (p % 4 == 3 ? 1 : 0.25), 1e-6);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_white_furnace),          cmocka_unit_test(test_inflow_of_an_even_sky),
+      cmocka_unit_test(test_inflow_of_a_hemisphere), cmocka_unit_test(test_half_space),
+      cmocka_unit_test(test_paths_of_the_reference), cmocka_unit_test(test_albedo),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
