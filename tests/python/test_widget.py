@@ -1,4 +1,5 @@
 """The viewer in a notebook, without a notebook: its module, its frames, its scene."""
+import contextvars
 import io
 import json
 import queue
@@ -57,7 +58,7 @@ def test_newer_frames_cancel():
     scene = halflight.Scene(ARRAY, size=(32, 32))
     thread, answers = frames_of(scene)
     thread.newest["v", ""] = 9
-    thread.asked.put({"kind": "frame", "view": "v", "number": 8, "scene": "", "format": "png"})
+    thread.asked.put((contextvars.copy_context(), {"kind": "frame", "view": "v", "number": 8, "scene": "", "format": "png"}))
     told, buffers = answers.get(timeout=60)
     assert "type" not in told and "problem" not in told and buffers == []
     thread.asked.put(None)
