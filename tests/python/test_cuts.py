@@ -3,15 +3,18 @@ import numpy as np
 import pytest
 
 import halflight
+from halflight import Scene, Volume
 
 BLOCK = np.full((8, 8, 8), 200, np.uint8)
 PLANE = {"type": "plane", "point": (3.5, 3.5, 3.5), "normal": (1, 0, 0)}
 
 
-def test_cuts_are_told_again():
+def test_scenes_keep_cuts(tmp_path):
+    np.save(tmp_path / "block.npy", BLOCK)
     cuts = [PLANE, {"type": "box", "min": (0, 0, 0), "max": (3, 4, 5), "keep": "inside"},
             {"type": "sphere", "center": (1, 2, 3), "radius": 2}]
-    look = halflight.Volume(BLOCK, cuts=cuts, cut_shading="none").look
+    made = Scene(Volume(str(tmp_path / "block.npy"), cuts=cuts, cut_shading="none"), size=(16, 16))
+    look = Scene.from_json(made.to_json()).volumes[0].look
     assert look["cuts"] == [{**cuts[0], "keep": "outside"}, cuts[1], {**cuts[2], "keep": "outside"}]
     assert look["cut_shading"] == "none"
 
@@ -26,5 +29,4 @@ def test_a_plane_takes_half():
 @pytest.mark.parametrize("cut", [{"type": "cone"}, {"type": "plane", "point": (0, 0, 0)}, {**PLANE, "radius": 3}, 3])
 def test_wrong_cuts(cut):
     with pytest.raises(TypeError):
-        halflight.Volume(BLOCK, cuts=[cut]).look
         halflight.render(BLOCK, cuts=[cut])
