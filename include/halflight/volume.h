@@ -109,7 +109,7 @@ HL_API const char *hl_component_name(int component);
 HL_API int hl_component_of_name(const char *name);
 
 /* Instead of the index of a time step or channel: the first; of a resolution: the finest that the memory
- * limit leaves room for. */
+ * limit leaves room for and the picture shows (`pixels`). */
 enum { HL_INDEX_DEFAULT = -1 };
 
 typedef struct hl_volume_load_options {
@@ -129,6 +129,9 @@ typedef struct hl_volume_load_options {
                          default     unknown: the file's */
   int time, channel, level; /* the time step, channel and resolution (0: the finest) to read of several, from
                                0 on; default HL_INDEX_DEFAULT */
+  int pixels; /* the longer side, in pixels, of a picture that the volume fills: of several levels the
+                 coarsest is read whose longest axis has a voxel for each of them; 0 (default):
+                 unknown. Unused where `level` is given */
 } hl_volume_load_options;
 
 HL_API void hl_volume_load_options_defaults(hl_volume_load_options *options);

@@ -179,6 +179,9 @@ static hl_status name_source(hl_context *context, const hl_volume_load_options *
   volume.series = options->series;
   volume.component = options->component;
   volume.time = options->time, volume.channel = options->channel, volume.level = options->level;
+  hl_volume_selection read = {.struct_size = sizeof read};
+  if (options->pixels > 0 && hl_volume_get_selection(volume.volume, &read) == HL_OK && read.levels > 1)
+    volume.level = read.level; /* the scene may be drawn in another size */
   memcpy(volume.spacing, options->spacing, sizeof volume.spacing);
   description.volumes = &volume;
   hl_status status = hl_scene_create(context, &description, &named, error);

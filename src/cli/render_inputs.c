@@ -4,6 +4,7 @@
  * those of the first volume; the camera frames all volumes, and the sheets are as close as the finest of the
  * volumes needs them.
  */
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -84,10 +85,24 @@ static hl_space space_of(const hl_scene *scene) {
   return known ? info.space : HL_SPACE_UNKNOWN;
 }
 
+/* The pixels along the picture's longer side, times the zoom: a volume on the command line fills the picture.
+ */
+static int pixels_of(const cli_value *values) {
+  hl_scene_description description;
+  hl_scene_description_defaults(&description);
+  double width = values[RENDER_SIZE].given ? values[RENDER_SIZE].number[0] : description.width;
+  double height = values[RENDER_SIZE].given ? values[RENDER_SIZE].number[1] : description.height;
+  double zoom = values[RENDER_ZOOM].given && values[RENDER_ZOOM].number[0] > 1 ? values[RENDER_ZOOM].number[0]
+                                                                               : 1;
+  double pixels = ceil(fmax(width, height) * zoom);
+  return pixels < INT_MAX ? (int)pixels : INT_MAX;
+}
+
 static int load_each(cli_host *host, const cli_value *values, cli_input *inputs, size_t count,
                      hl_scene **scenes) {
   hl_volume_load_options options;
   input_load_options(&values[RENDER_ARRAY], &values[RENDER_SPACING], &options);
+  options.pixels = pixels_of(values);
   for (size_t n = 0; n < count; n++) {
     hl_error error = {0};
     bool bare = inputs[n].kind == INPUT_VOLUME;

@@ -120,6 +120,14 @@ hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t tim
 /* A level of more voxels shows nothing more in a picture a thousand pixels across, and takes minutes. */
 static const uint64_t VOXELS_OF_A_PICTURE = (uint64_t)1 << 30;
 
+/* Whether a level's longest axis has a voxel for each pixel of the picture that it fills. */
+static bool fills_picture(const hl_level_size *level, int pixels) {
+  size_t longest = 0;
+  for (int axis = 0; axis < 3; axis++)
+    if (level->dimensions[axis] > longest) longest = level->dimensions[axis];
+  return longest >= (size_t)pixels;
+}
+
 /* UINT64_MAX on overflow. */
 static uint64_t level_voxels(const hl_level_size *level) {
   uint64_t voxels = 1;
@@ -145,15 +153,16 @@ hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_l
   if (status != HL_OK || request->level >= 0) return status;
   size_t level = 0;
   while (level + 1 < count && limit > 0 && level_bytes(&levels[level]) > limit / 2) level++;
-  bool by_memory = level > 0;
+  size_t by_memory = level;
   while (level + 1 < count && level_voxels(&levels[level]) > VOXELS_OF_A_PICTURE) level++;
+  while (level + 1 < count && request->pixels > 0 && fills_picture(&levels[level + 1], request->pixels))
+    level++;
   selection->level = (int)level;
   if (level > 0)
     hl_log(request->context, HL_LOG_WARNING,
            "%.300s: level %zu of %zu is taken, %s: choose by \"level\" (--level)", path, level, count,
-           level_voxels(&levels[level - 1]) > VOXELS_OF_A_PICTURE || !by_memory
-               ? "as fine as pictures show"
-               : "the finest that the memory limit leaves room for");
+           level > by_memory ? "as fine as the picture shows"
+                             : "the finest that the memory limit leaves room for");
   return HL_OK;
 }
 

@@ -19,6 +19,7 @@ typedef struct hl_load_request {
   int component;            /* HL_COMPONENT_DEFAULT, HL_COMPONENT_MAGNITUDE, or an index */
   double spacing[3];        /* world units; all 0: as in the file */
   int time, channel, level; /* HL_INDEX_DEFAULT, or an index */
+  int pixels;               /* of the picture's longer side; 0: unknown */
   double window[2];         /* set by readers: data values between which greys are to be shown; equal: none */
   const char *unit;         /* set by readers: of lengths, static; null: not told */
   bool is_anatomical;       /* set by readers of formats that hold bodies: the volume's space is meant */
@@ -67,7 +68,8 @@ typedef struct hl_level_size {
 } hl_level_size;
 
 /* Sets request->selection's level among `count`, the finest first: the wanted one, else the finest that
- * leaves half of the memory limit and has at most 2^30 voxels. */
+ * leaves half of the memory limit and has at most 2^30 voxels, or a coarser one that is as fine as the
+ * request's pixels show. */
 hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
                           size_t count, hl_error *error);
 

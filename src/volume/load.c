@@ -231,6 +231,8 @@ static hl_status check_options(const hl_volume_load_options *options, hl_error *
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "%s: time %d, channel %d, level %d: give an index or HL_INDEX_DEFAULT for each", subject,
                    options->time, options->channel, options->level);
+  if (options->pixels < 0)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: pixels is %d: give 0 or more", subject, options->pixels);
   if (options->space != HL_SPACE_UNKNOWN && hl_space_name(options->space) == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "%s: there is no space %d", subject, (int)options->space);
   bool given = options->spacing[0] != 0 || options->spacing[1] != 0 || options->spacing[2] != 0;
@@ -306,6 +308,7 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
                              .time = options->time,
                              .channel = options->channel,
                              .level = options->level,
+                             .pixels = options->pixels,
                              .selection = {1, 1, 1, 0, 0, 0}};
   memcpy(request.spacing, options->spacing, sizeof request.spacing);
   hl_stream *stream = NULL;

@@ -128,15 +128,39 @@ hl_status tiff_file_fail(const tiff_file *file, const char *what, hl_error *erro
                  file->message);
 }
 
+/* The bytes of the directory at an offset, by its number of entries. Refuses more of them than any program
+ * writes: libtiff's time grows with their square. */
+static hl_status measure_directory(tiff_file *file, uint64_t offset, uint64_t *bytes, hl_error *error) {
+  enum { ENTRIES_MOST = 512 };
+  unsigned char head[8] = {0};
+  bool big = TIFFIsBigTIFF(file->tiff) != 0, high_first = TIFFIsBigEndian(file->tiff) != 0;
+  size_t count_bytes = big ? 8 : 2;
+  uint64_t entries = 0, before = file->at;
+  file->at = offset;
+  read_bytes(file, head, (tmsize_t)count_bytes);
+  file->at = before;
+  for (size_t n = 0; n < count_bytes; n++)
+    entries = entries << 8 | head[high_first ? n : count_bytes - 1 - n];
+  if (entries > ENTRIES_MOST)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: a page of %llu tags: at most %d are read", file->path,
+                   (unsigned long long)entries, ENTRIES_MOST);
+  *bytes = big ? 8 + 20 * entries + 8 : 2 + 12 * entries + 4;
+  return HL_OK;
+}
+
 hl_status tiff_file_go(tiff_file *file, uint64_t offset, int level, hl_error *error) {
+  uint64_t bytes;
   file->message[0] = 0;
-  if (!TIFFSetSubDirectory(file->tiff, offset)) return tiff_file_fail(file, "a damaged page", error);
+  if (TIFFCurrentDirOffset(file->tiff) != offset && !TIFFSetSubDirectory(file->tiff, offset))
+    return tiff_file_fail(file, "a damaged page", error);
   if (level == 0) return HL_OK;
   uint16_t count = 0;
   uint64_t *offsets = NULL;
   if (!TIFFGetField(file->tiff, TIFFTAG_SUBIFD, &count, &offsets) || level > count)
     return hl_fail(error, HL_ERROR_INPUT, "%s: a page has %d resolutions, the first page %d or more",
                    file->path, (int)count + 1, level + 1);
+  hl_status status = measure_directory(file, offsets[level - 1], &bytes, error);
+  if (status != HL_OK) return status;
   return TIFFSetSubDirectory(file->tiff, offsets[level - 1])
              ? HL_OK
              : tiff_file_fail(file, "a damaged page of a lower resolution", error);
@@ -215,6 +239,7 @@ bool tiff_shapes_equal(const tiff_shape *a, const tiff_shape *b) {
 
 hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl_error *error) {
   size_t capacity = 0;
+  uint64_t bytes, all_bytes = 0;
   *offsets = NULL;
   *count = 0;
   file->message[0] = 0;
@@ -227,6 +252,11 @@ hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl
       capacity = wanted;
     }
     (*offsets)[(*count)++] = TIFFCurrentDirOffset(file->tiff);
+    hl_status status = measure_directory(file, (*offsets)[*count - 1], &bytes, error);
+    if (status != HL_OK) return status;
+    all_bytes += bytes;
+    if (all_bytes > file->size)
+      return hl_fail(error, HL_ERROR_INPUT, "%s: damaged pages: their tags lie over each other", file->path);
     if (*count > PAGES_MOST)
       return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: more than %d pages", file->path, (int)PAGES_MOST);
     if (*count % 64 == 0 && hl_cancelled(file->context))
@@ -299,7 +329,7 @@ typedef struct page_reading {
   int component; /* index of the wanted component, or an HL_COMPONENT_ value */
   uint32_t chunk_width, chunk_height;
   bool tiled;
-  size_t row_bytes, chunk_bytes; /* of a decoded chunk */
+  size_t row_bytes, chunk_bytes; /* of the rows of a chunk that the page has */
   unsigned char *chunk;          /* owned; [chunk_bytes] */
   unsigned char *samples;        /* owned; a row of samples of the type */
   unsigned char *picked;         /* owned; a row of one component */
@@ -365,19 +395,19 @@ static void take_row(page_reading *r, const unsigned char *row, unsigned plane, 
   }
 }
 
-/* Decodes chunk `index`; samples that the file does not contain are 0. */
+/* Decodes the first rows of chunk `index`; samples that the file does not contain are 0. */
 static hl_status decode(page_reading *r, uint32_t index, uint32_t rows, hl_error *error) {
   tiff_file *file = r->file;
   file->message[0] = 0;
   int failed = 0;
   uint64_t stored = TIFFGetStrileByteCountWithErr(file->tiff, index, &failed);
+  size_t wanted = r->row_bytes * rows;
   if (stored == 0 && !failed) {
-    memset(r->chunk, 0, r->chunk_bytes);
+    memset(r->chunk, 0, wanted);
     return HL_OK;
   }
-  size_t wanted = r->row_bytes * rows;
   tmsize_t got = failed     ? -1
-                 : r->tiled ? TIFFReadEncodedTile(file->tiff, index, r->chunk, (tmsize_t)r->chunk_bytes)
+                 : r->tiled ? TIFFReadEncodedTile(file->tiff, index, r->chunk, (tmsize_t)wanted)
                             : TIFFReadEncodedStrip(file->tiff, index, r->chunk, (tmsize_t)wanted);
   return got >= 0 && (size_t)got >= wanted ? HL_OK : tiff_file_fail(file, "a damaged page", error);
 }
@@ -411,7 +441,12 @@ static hl_status read_chunks(page_reading *r, hl_error *error) {
   return status;
 }
 
-/* The size of a chunk. Refuses a chunk if libtiff computes another length for its rows. */
+/* Tiles may be larger than a page. Those that are more than this many times larger, and than a megabyte, are
+ * refused: hundreds of tiny pages in a small file would take seconds. */
+enum { TILE_IN_PAGES = 1024, SMALL_TILE_BYTES = 1 << 20 };
+
+/* The size of a chunk, of which no more rows are decoded than the page has. Refuses a chunk if libtiff
+ * computes another length for its rows. */
 static hl_status measure_chunks(page_reading *r, hl_error *error) {
   const tiff_shape *shape = r->shape;
   TIFF *tiff = r->file->tiff;
@@ -429,13 +464,17 @@ static hl_status measure_chunks(page_reading *r, hl_error *error) {
   if (r->chunk_width < 1 || r->chunk_height < 1)
     return hl_fail(error, HL_ERROR_INPUT, "%s: a page in chunks of %u x %u pixels", r->file->path,
                    r->chunk_width, r->chunk_height);
+  uint64_t height = r->chunk_height < shape->height ? r->chunk_height : shape->height;
   uint64_t samples = (uint64_t)r->chunk_width * (shape->planar ? 1 : shape->components), bits, bytes;
   uint64_t told = r->tiled ? TIFFTileRowSize64(tiff) : TIFFScanlineSize64(tiff);
   if (__builtin_mul_overflow(samples, shape->bits, &bits) || (bits + 7) / 8 != told ||
-      __builtin_mul_overflow(told, r->chunk_height, &bytes) || bytes > PTRDIFF_MAX)
+      __builtin_mul_overflow(told, height, &bytes) || bytes > PTRDIFF_MAX)
     return tiff_file_fail(r->file, "a page whose rows have another length than its pixels", error);
   if ((double)bytes > 65536.0 * (double)r->file->size)
     return tiff_file_fail(r->file, "a page whose chunks are larger than the file can fill", error);
+  if (bytes > SMALL_TILE_BYTES && r->chunk_width / TILE_IN_PAGES > shape->width)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: tiles of %u x %u pixels in a page of %u x %u", r->file->path,
+                   r->chunk_width, r->chunk_height, shape->width, shape->height);
   r->row_bytes = (size_t)told;
   r->chunk_bytes = (size_t)bytes;
   return HL_OK;

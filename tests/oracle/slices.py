@@ -8,6 +8,7 @@ lengths. Exit 77: numpy or Pillow is missing.
 import json
 import pathlib
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -155,6 +156,27 @@ def test_archives():
             check(f"an archive cut after {length} bytes", False, told)
 
 
+def write_overlapping_pages(path, entries, pages, start=0x30008):
+    """A chain of TIFF pages, each of which begins 12 bytes after the one before: their tags are the same bytes."""
+    def unit(tag, value):
+        return struct.pack("<HHHIH", entries, tag, 3, 1, value)
+    units = [unit(254, 1)] * (entries + pages + 1)
+    units[entries - 12:entries - 3] = [unit(*tag) for tag in ((256, 1), (257, 1), (258, 8), (259, 1), (262, 1), (273, 8), (277, 1),
+                                                              (278, 1), (279, 1))]
+    data = bytearray(b"II*\0" + struct.pack("<I", start) + bytes(start - 8) + b"".join(units) + bytes(64))
+    for n in range(pages):
+        struct.pack_into("<I", data, start + 2 + 12 * (n + entries), start + 12 * (n + 1) if n + 1 < pages else 0)
+    path.write_bytes(data)
+    return path
+
+
+def test_hostile_pages():
+    """Libtiff's time grows with pages times the square of their tags: 3.4 s, and minutes, were it given these."""
+    for entries, pages, words in ((500, 480, "their tags lie over each other"), (4000, 3900, "a page of 4000 tags")):
+        found, told = read(write_overlapping_pages(root / f"{entries}.tif", entries, pages))
+        check(f"pages that share {entries} tags", found is None and words in told.splitlines()[-1], told)
+
+
 def test_damage():
     for name, path in (("png", "s_6.png"), ("png16", "s-006.png"), ("tiff", "06.tif"), ("jpeg", "6.JPG")):
         folder = root / f"cut-{name}"
@@ -181,6 +203,7 @@ def test_damage():
 test_kinds()
 test_folders()
 test_archives()
+test_hostile_pages()
 test_damage()
 shutil.rmtree(root)
 print(f"{len(problems)} problems")

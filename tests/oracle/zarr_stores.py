@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Zarr hierarchies that are written here, byte by byte, and what must be read from them.
 
-usage: zarr_stores.py DUMP_VOLUME
+usage: zarr_stores.py DUMP_VOLUME HALFLIGHT
 Versions 2 and 3, every type and byte order, raw, zlib and gzip, shards, check sums, missing chunks, order of axes;
 OME-Zarr's axes, units, levels, collections; archives; links and paths that lead out; damaged files. Chunks packed by zstd
 and Blosc are left to scripts/judges. Exit 77: numpy is missing.
@@ -350,6 +350,24 @@ def check_refusals(root):
     return failures
 
 
+def check_levels(root):
+    """By default the level that the picture shows: one with a voxel for each pixel along the longest axis, if there is one."""
+    levels, failures = [], 0
+    for n in range(3):
+        write_level(root / "pyramid" / str(n), sample("uint8", (8 >> n, 40 >> n, 80 >> n), seed=n), "0.4", (4, 20, 40))
+        levels.append((str(n), [{"type": "scale", "scale": [2**n] * 3}]))
+    write_image(root / "pyramid", image_attributes("0.4", "zyx", levels), "0.4")
+    for options, level in (("--size 81x9", 0), ("--size 80x9", 0), ("--size 40x30", 1), ("--size 9x40", 1), ("--size 20x9", 2),
+                           ("--size 9x9", 2), ("--size 9x9 --level 1", 1), ("--size 20x9 --zoom 2", 1)):
+        told = subprocess.run([PROGRAM, "render", str(root / "pyramid"), *options.split(), "--quiet", "--print-scene"], check=True,
+                              capture_output=True, timeout=60)
+        found = json.loads(told.stdout)["volumes"][0].get("level")
+        if found != level:
+            print("%s: level %s, not %d" % (options, found, level))
+            failures += 1
+    return failures
+
+
 def check_damage(root):
     """Archives cut at every length and changed at every byte: a volume, or an error of one line."""
     sources = []
@@ -381,7 +399,7 @@ def main():
         for name, cases in (("arrays", array_cases), ("fill values", fill_cases), ("images", image_cases),
                             ("groups", grouped_cases)):
             failures += run(DUMP, name, list(cases(root)))
-        failures += check_refusals(root) + check_damage(root)
+        failures += check_refusals(root) + check_levels(root) + check_damage(root)
     finally:
         shutil.rmtree(root, ignore_errors=True)
     print("%d problems" % failures)
@@ -389,5 +407,5 @@ def main():
 
 
 if __name__ == "__main__":
-    DUMP = sys.argv[1]
+    DUMP, PROGRAM = sys.argv[1:3]
     sys.exit(main())
