@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from . import _native, _openvdb
+from . import _native
 from .errors import HalflightWarning, InputError, UnsupportedError
 
 ffi = _native.ffi
@@ -70,6 +70,7 @@ def python_array_released(key: int) -> None:
 @ffi.def_extern(error=lib.HL_ERROR_CANCELLED, onerror=_remember)  # type: ignore[untyped-decorator]
 def python_convert(path: Any, content: Any, byte_count: Any, error: Any) -> int:
     """OpenVDB to NanoVDB: the bytes are kept until `python_converted`."""
+    from . import _openvdb  # here: what it needs takes 8 ms to import
     try:
         converted = ffi.from_buffer(_openvdb.convert(os.fsdecode(ffi.string(path))))
     except _openvdb.NoConverter:
