@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "guess/looks.h"
 #include "guess/sample.h"
 #include "scene/cut.h"
 
@@ -15,6 +16,11 @@
 #define CELLS           1e6    /* the most cells of a lattice */
 #define VOXELS_EXAMINED 6e6    /* of one volume; in larger ones rows are skipped */
 #define SPECKS_AT_MOST  0.03   /* fraction of the seen cells; more specks than that are matter */
+
+#define TISSUE          (-300)      /* Hounsfield units: tissue is denser, foam and clothes are not */
+#define BODY_AT_LEAST   0.8         /* fraction of the dense cells */
+#define HOLDER_AT_LEAST (1.0 / 500) /* fraction of the body's cells */
+#define HOLDER_AT_MOST  (1.0 / 30)
 
 enum { BINS = 4096, SPECK = 3, SPECK_RATIO = 50, SMALL_RATIO = 5000 };
 
@@ -203,6 +209,41 @@ static hl_status forget_specks(hl_seen *seen, hl_error *error) {
   return status;
 }
 
+/* ---- what holds a patient ---- */
+
+/* Whether there is one body of a patient, and beside it head rests, straps or a table. */
+static bool has_holder(const hl_bodies *bodies) {
+  double most = bodies->places[bodies->largest], all = 0;
+  bool any = false;
+  for (uint32_t b = 1; b <= bodies->count; b++) {
+    double places = bodies->places[b];
+    all += places;
+    any = any || (places >= HOLDER_AT_LEAST * most && places <= HOLDER_AT_MOST * most);
+  }
+  return any && most >= BODY_AT_LEAST * all;
+}
+
+/* In CT scans whose transfer function shows tissue, what holds the patient does not count: where only dense
+ * cells are looked at, air or foam separates it from the body. */
+static hl_status forget_holders(hl_seen *seen, hl_error *error) {
+  hl_context *context = seen->volume->context;
+  size_t cells = (size_t)seen->size[0] * (size_t)seen->size[1] * (size_t)seen->size[2];
+  float least = (float)depth_of(seen->function, TISSUE);
+  if (!hl_is_hounsfield(seen->volume) || !(least > 0)) return HL_OK;
+  unsigned char *dense = hl_allocate(context, cells, 1);
+  if (dense == NULL) return hl_fail_memory(error, cells, "a volume's dense cells");
+  for (size_t c = 0; c < cells; c++) dense[c] = seen->kind[c] == HL_SEEN && seen->mean[c] >= least;
+  hl_bodies bodies;
+  hl_status status = hl_bodies_find(context, dense, seen->size, &bodies, error);
+  if (status == HL_OK && has_holder(&bodies))
+    for (size_t c = 0; c < cells; c++)
+      if (bodies.places[bodies.body[c]] <= HOLDER_AT_MOST * bodies.places[bodies.largest])
+        seen->kind[c] = HL_SEEN_NOTHING;
+  hl_bodies_release(context, &bodies);
+  hl_release(context, dense);
+  return status;
+}
+
 /* Marks the cells around a seen one, which may hold the rim of its matter. */
 static void mark_neighbours(hl_seen *seen, int i, int j, int k) {
   const int *n = seen->size;
@@ -269,6 +310,7 @@ hl_status hl_seen_find(const hl_scene_volume *volume, hl_seen *seen, bool *any, 
   forget_cut_cells(seen);
   status = find_seen_cells(seen, hl_scene_volume_index_to_world(volume), error);
   if (status == HL_OK) status = forget_specks(seen, error);
+  if (status == HL_OK) status = forget_holders(seen, error);
   if (status == HL_OK) mark_beside(seen);
   return status;
 }

@@ -2,7 +2,8 @@
  *
  * A cell counts as seen if its columns along at least two of the grid's axes absorb light. Cells that share
  * faces form bodies. Specks, bodies much smaller than the largest, do not count unless all specks together
- * are much. So neither faint matter nor the single voxels of noise widen the picture. */
+ * are much; nor does what holds a patient in a CT scan. So neither faint matter nor the single voxels of
+ * noise widen the picture. */
 #ifndef HL_GUESS_SEEN_CELLS_H
 #define HL_GUESS_SEEN_CELLS_H
 

@@ -329,6 +329,7 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
   mat3 inverse = made->world_to_index.linear;
   made->gradient_to_world = mat3_from_columns(inverse.row[0], inverse.row[1], inverse.row[2]);
   hl_scene_volume_box(described, made->low, made->high);
+  hl_reference_find_clip_faces(all->scene, made);
   made->smallest_edge = smallest_edge(described);
   made->surface_gradient = surface_gradient(&described->transfer_function, made->smallest_edge);
   made->empty_value = hl_scene_volume_empty_value(described);

@@ -7,6 +7,7 @@
  *     march.c           a ray through the volumes' boxes, step by step, jumping over empty bricks
  *     field.c           reconstruction of one volume at a point: value, gradient, extinction, empty bricks
  *     cuts.c            what cuts leave of a volume
+ *     clip_faces.c      what clipping does to normals
  *     tint.c            the colours of a volume's own voxels
  *     coefficients.c    what the interpolating kernel sums in place of voxels
  *     rays.c            how many rays a pixel of a small picture has
@@ -40,14 +41,15 @@ typedef struct reference_volume {
   const hl_volume *grid;
   hl_kernel kernel;
   affine3 world_to_index;
-  mat3 gradient_to_world;   /* inverse transpose of index-to-world */
-  double low[3], high[3];   /* the box, in index space */
-  double empty_value;       /* data value of voxels that are not finite */
-  double empty_stored;      /* data value of voxels that are not finite, as a stored value */
-  double transparent_below; /* data values below this are empty space; -infinity: none are */
-  double surface_gradient;  /* least gradient of a surface, data value per world unit */
-  double smallest_edge;     /* shortest edge of a voxel, world units */
-  size_t bricks[3];         /* i, j, k */
+  mat3 gradient_to_world;           /* inverse transpose of index-to-world */
+  double low[3], high[3];           /* the box, in index space */
+  double clip_low[3], clip_high[3]; /* its faces at which clipping cuts; else infinite */
+  double empty_value;               /* data value of voxels that are not finite */
+  double empty_stored;              /* data value of voxels that are not finite, as a stored value */
+  double transparent_below;         /* data values below this are empty space; -infinity: none are */
+  double surface_gradient;          /* least gradient of a surface, data value per world unit */
+  double smallest_edge;             /* shortest edge of a voxel, world units */
+  size_t bricks[3];                 /* i, j, k */
   double *coefficients;     /* owned; [k][j][i], stored values: what the interpolating kernel sums in place of
                              * voxels; else null */
   double least, greatest;   /* with coefficients: values beyond these count as these */
@@ -222,6 +224,10 @@ double hl_reference_value(const reference_volume *volume, vec3 point);
 void hl_reference_tint(const reference_volume *volume, vec3 point, double color[3]);
 /* Data value per world unit. */
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);
+/* Finds the faces at which clipping cuts the volume and no other one goes on; its box is known. */
+void hl_reference_find_clip_faces(const hl_scene_description *scene, reference_volume *volume);
+/* What a value one above the empty one adds there to the steepness away from the matter; world. */
+vec3 hl_reference_clip_slope(const reference_volume *volume, vec3 point);
 /* sigma, 1 / world length; algorithm.md's sigma(f) = -ln(1 - alpha(f)) / u, times gradient opacity. value:
  * that at the point. */
 double hl_reference_extinction(const reference_volume *volume, double value, vec3 point);

@@ -29,11 +29,14 @@ static const double *light_reach(const reference *all, const reference_volume *v
 static vec3 find_normal(const reference_volume *volume, vec3 index_point, double value, double *surface) {
   *surface = 0;
   if (volume->described->shading != HL_SHADING_PHONG) return (vec3){0, 0, 0};
-  vec3 gradient = hl_reference_gradient(volume, index_point);
-  double size = vec3_length(gradient);
+  double outward = value > volume->empty_value ? -1 : 1;
+  vec3 slope = vec3_scale(hl_reference_gradient(volume, index_point), outward);
+  vec3 clip = vec3_scale(hl_reference_clip_slope(volume, index_point), fabs(value - volume->empty_value));
+  slope = vec3_add(slope, clip);
+  double size = vec3_length(slope);
   if (!(size > 0)) return (vec3){0, 0, 0};
   *surface = fmin(size / volume->surface_gradient, 1);
-  return vec3_scale(gradient, (value > volume->empty_value ? -1 : 1) / size);
+  return vec3_scale(slope, 1 / size);
 }
 
 /* The fraction of the light that the volumes let through, whatever texture it projects; for a light with an

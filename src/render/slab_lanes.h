@@ -189,6 +189,12 @@ LANES_INLINE lanes3 slope_of_block(const block_density *d) {
   return (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
 }
 
+/* Where a volume's matter is seen; frame space. */
+LANES_INLINE lanes3 seen_position(const block_slab *slab, const block_density *d) {
+  const block_geometry *g = &slab->geometry;
+  return add_scaled3(g->start, g->step_sheet, lanes_fma(slab->part.length, d->seen, slab->part.begin));
+}
+
 /* Step 12, where the gradient is needed: for surfaces, and in dense slabs, where the light's optical depth
  * differs from the eye's. */
 LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, block_density *densities,
@@ -207,36 +213,54 @@ LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, bloc
     uint32_t active = volume->visible && (volume->phong || (volume->lit && shadowed)) ? lanes_bits(d->sloped)
                                                                                       : 0;
     if (active == 0) d->sloped = lanes_set_int(0);
-    else
-      d->slope = gradient(
-          volume,
-          add_scaled3(g->start, g->step_sheet, lanes_fma(slab->part.length, d->seen, slab->part.begin)),
-          active, slab->starts);
+    else d->slope = gradient(volume, seen_position(slab, d), active, slab->starts);
   }
+}
+
+/* Voxels below a face cut by clipping in which the face turns normals. */
+static const float CLIP_REACH = 2;
+
+/* What matter of density 1 adds to the steepness away from it where clipping cuts it: without the faces, the
+ * normals of a cut through even matter are those of its noise. Derived: cut matter is f B, with the slope B
+ * grad f + f grad B. B is the box smoothed by a triangle CLIP_REACH voxels to either side, with the slope (1
+ * - h / CLIP_REACH) / CLIP_REACH at the depth h below a face; B itself, 1/2 to 1 in the box, is taken for 1.
+ */
+LANES_INLINE lanes3 slope_of_clip(const shade_volume *volume, lanes3 position) {
+  lanes3 slope = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  for (int axis = 0; axis < 3; axis++) {
+    const float *row = volume->to_index[axis];
+    lanes at = row_of_point(row, position);
+    lanes low = lanes_max(lanes_line(at - volume->clip_low[axis], -1 / CLIP_REACH, 1.0f), lanes_set(0)),
+          high = lanes_max(lanes_line(volume->clip_high[axis] - at, -1 / CLIP_REACH, 1.0f), lanes_set(0));
+    slope = add_scaled3(slope, set3(row), (high - low) * (1 / CLIP_REACH));
+  }
+  return slope;
 }
 
 /* Finds a volume's normal. The slope is measured in steps of the transfer function's table: the squares of
  * data values of 1e-27 or 1e30 are beyond floats. Where components are below 1e-19 even so, the normal is
  * shorter than 1. */
-LANES_INLINE void find_normal(block_density *d) {
+LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
   const shade_volume *volume = d->patch->volume;
-  lanes3 slope = scale3(slope_of_block(d), lanes_set(fabsf(volume->classifier->scale)));
-  lanes steepness = lanes_sqrt(dot3(slope, slope)), density = d->way.first + d->way.last;
+  const float scale = fabsf(volume->classifier->scale);
+  lanes density = d->way.first + d->way.last;
+  lanes3 slope = scale3(slope_of_block(d), lanes_set(scale));
+  lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f));
+  if (volume->clip_faces && volume->phong)
+    slope = add_scaled3(slope, slope_of_clip(volume, seen_position(slab, d)),
+                        outward * lanes_abs(density) * (scale * 0.5f));
+  lanes steepness = lanes_sqrt(dot3(slope, slope));
   d->surface = volume->phong
                    ? lanes_min(steepness * (1.0f / volume->classifier->normal_edge), lanes_set(1.0f))
                    : lanes_set(0);
-  lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f)) /
-                  lanes_max(steepness, lanes_set(1e-18f));
-  d->normal = scale3(slope, outward);
+  d->normal = scale3(slope, outward / lanes_max(steepness, lanes_set(1e-18f)));
 }
 
 /* Within two voxels behind the nearest face of a cut, the normal turns to the face's own, or the surface to a
  * medium. */
 LANES_INLINE void find_cut_face(const block_slab *slab, block_density *d) {
   const shade_volume *volume = d->patch->volume;
-  const block_geometry *g = &slab->geometry;
-  lanes3 point = add_scaled3(g->start, g->step_sheet,
-                             lanes_fma(slab->part.length, d->seen, slab->part.begin));
+  lanes3 point = seen_position(slab, d);
   lanes3 face = {lanes_set(0), lanes_set(0), lanes_set(0)};
   lanes least = lanes_set(1e30f);
   for (int i = 0; i < volume->cut_count; i++) {
@@ -264,7 +288,7 @@ LANES_INLINE void find_cut_face(const block_slab *slab, block_density *d) {
 LANES_INLINE void find_normals(const block_slab *slab, block_density *densities, int count) {
   for (int i = 0; i < count; i++) {
     if (!densities[i].there || !densities[i].patch->volume->visible) continue;
-    find_normal(&densities[i]);
+    find_normal(slab, &densities[i]);
     densities[i].skin = lanes_set(0);
     const shade_volume *volume = densities[i].patch->volume;
     if (volume->cut_count > 0 && volume->phong && volume->cut_shading != HL_CUT_SHADING_GRADIENT)

@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include "core/memory.h"
+#include "grid/relevant.h"
 #include "image/srgb.h"
 #include "render/sweep_layers.h"
 #include "render/sweep_surfaces.h"
@@ -232,6 +233,18 @@ static void set_up_cuts(sweep *sweep) {
   }
 }
 
+/* Finds the faces at which clipping cuts through visible matter that no other volume continues. */
+static void find_clip_faces(const grid *grid, shade_volume *shade) {
+  for (int axis = 0; axis < 3; axis++) {
+    bool low = grid->box_low[axis] > -0.5 && grid->face_low[axis] > -FACE_FAR_OUT,
+         high = grid->box_high[axis] < (double)grid->dimension[axis] - 0.5 &&
+                grid->face_high[axis] < FACE_FAR_OUT;
+    shade->clip_low[axis] = low ? (float)grid->box_low[axis] : -FACE_FAR_OUT;
+    shade->clip_high[axis] = high ? (float)grid->box_high[axis] : FACE_FAR_OUT;
+    shade->clip_faces = shade->clip_faces || low || high;
+  }
+}
+
 static void set_up_shading(sweep *sweep) {
   int rank = 0;
   set_up_colors(sweep);
@@ -278,6 +291,7 @@ static void set_up_shading(sweep *sweep) {
       shade->low[axis] = (float)grid->box_low[axis];
       shade->high[axis] = (float)grid->box_high[axis];
     }
+    if (volume->cut_shading == HL_CUT_SHADING_FACE) find_clip_faces(grid, shade);
   }
   set_up_cuts(sweep);
 }

@@ -1,6 +1,8 @@
-/* analytic/sheets_faces.c - faces of a box that light grazes: the picture against the closed form. */
+/* analytic/sheets_faces.c - faces of a box that light grazes, and the normals of clipped ones: the picture
+ * against the closed form. */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -69,7 +71,101 @@ static void test_even_under_grazing_light(void **state) {
     for (size_t e = 0; e < sizeof EYES / sizeof *EYES; e++) assert_even(&CASES[i], EYES[e]);
 }
 
+/* ---- normals where clipping cuts a noisy ball ---- */
+
+static float noisy_ball[VOXELS * VOXELS * VOXELS];
+
+/* 1 within a radius of 11, falling to 0 over 4 voxels; noise of 2 % to either side. */
+static void make_noisy_ball(void) {
+  uint32_t random = 1;
+  for (int n = 0; n < VOXELS * VOXELS * VOXELS; n++) {
+    double x = n % VOXELS + 0.5 - HALF, y = n / VOXELS % VOXELS + 0.5 - HALF,
+           z = n / (VOXELS * VOXELS) + 0.5 - HALF, radius = sqrt(x * x + y * y + z * z);
+    random = random * 1664525 + 1013904223;
+    double noise = 0.04 * ((random >> 8) / 16777216.0 - 0.5);
+    noisy_ball[n] = (float)fmax(fmin((13 - radius) / 4, 1) * (1 + noise), 0);
+  }
+}
+
+/* Of the ball, what lies from low to high along z. */
+static void add_part(stage *set, double low, double high) {
+  static const hl_opacity_point opacity[] = {{0.3, 0}, {0.6, 0.98}};
+  hl_scene_volume *part = stage_add_grid(set, (size_t[3]){VOXELS, VOXELS, VOXELS}, (double[3]){1, 1, 1},
+                                         (vec3){-HALF, -HALF, -HALF}, noisy_ball);
+  part->transfer_function.opacity = opacity;
+  part->transfer_function.opacity_count = 2;
+  part->shading = HL_SHADING_PHONG;
+  part->material = (hl_material){.diffuse = 1, .shininess = 1};
+  part->clipped = 1;
+  for (int axis = 0; axis < 3; axis++) {
+    part->clip_min[axis] = axis == 2 ? low : -HALF;
+    part->clip_max[axis] = axis == 2 ? high : HALF;
+  }
+}
+
+static void open_cut_ball(stage *set, vec3 light) {
+  make_noisy_ball();
+  stage_open(set);
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = 30;
+  set->scene.render.sheet_spacing = 0.5;
+  set->scene.render.shadows = HL_SHADOWS_OFF;
+  stage_add_directional(set, light);
+  stage_look(set, (vec3){20, -30, 60}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+}
+
+/* The cut is as bright as the cosine of the light's angle to it, whatever the noise. */
+static void test_normal_of_a_cut(void **state) {
+  (void)state;
+  static float pixels[SIDE * SIDE * 4];
+  const vec3 light = {0.5, 0.3, -0.8};
+  stage set;
+  open_cut_ball(&set, light);
+  add_part(&set, -HALF, 0.3);
+  for (int reference = 0; reference < 2; reference++) {
+    double greatest = 0, sum = 0;
+    int count = 0;
+    stage_render_by(&set, reference, pixels);
+    for (int p = 0; p < SIDE * SIDE; p++) {
+      vec3 origin, way;
+      stage_eye_ray(&set, p % SIDE, p / SIDE, &origin, &way);
+      vec3 at = vec3_add(origin, vec3_scale(way, (0.3 - origin.z) / way.z));
+      if (at.x * at.x + at.y * at.y > INSIDE * INSIDE) continue;
+      double error = fabs((double)pixels[4 * p] - 0.8 / vec3_length(light));
+      sum += error, greatest = fmax(greatest, error), count++;
+    }
+    print_message("# %s: mean error %.4f, greatest %.4f\n", reference ? "reference" : "sheets", sum / count,
+                  greatest);
+    assert_true(count > 100);
+    assert_true(sum / count < 0.015);
+    assert_true(greatest < 0.06);
+  }
+  stage_close(&set);
+}
+
+/* Where another part goes on, the cut does not show. */
+static void test_joined_parts(void **state) {
+  (void)state;
+  static float pixels[2][SIDE * SIDE * 4];
+  for (int parts = 0; parts < 2; parts++) {
+    stage set;
+    open_cut_ball(&set, (vec3){0.9, 0.3, -0.4});
+    stage_look(&set, (vec3){-60, -30, 10}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+    add_part(&set, -HALF, parts ? 0.3 : HALF);
+    if (parts) add_part(&set, 0.3, HALF);
+    stage_render_sheets(&set, pixels[parts]);
+    stage_close(&set);
+  }
+  double greatest = 0;
+  for (int f = 0; f < SIDE * SIDE * 4; f++)
+    greatest = fmax(greatest, fabs((double)pixels[0][f] - (double)pixels[1][f]));
+  print_message("# two parts against the whole: %.4f\n", greatest);
+  assert_true(greatest < 0.005);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_even_under_grazing_light)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_even_under_grazing_light),
+                                     cmocka_unit_test(test_normal_of_a_cut),
+                                     cmocka_unit_test(test_joined_parts)};
   return cmocka_run_group_tests_name("sheets_faces", tests, NULL, NULL);
 }

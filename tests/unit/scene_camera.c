@@ -334,6 +334,40 @@ static void specks_do_not_count(void **state) {
   }
 }
 
+/* In a CT scan what holds the patient, foam and its plastic shell, does not count. */
+static void holders_do_not_count(void **state) {
+  (void)state;
+  enum { N = 64 };
+  static float values[N * N * N];
+  const hl_opacity_point points[] = {{-700, 0}, {-300, 0.5}, {40, 1}};
+  for (int n = 0; n < 6; n++) {
+    parts p;
+    hl_opacity_point unused[2];
+    double box[4];
+    parts_of_bar(&p, false, unused);
+    for (int v = 0; v < N * N * N; v++) {
+      int i = v % N, j = v / N % N, k = v / (N * N);
+      bool foam = i > 40 && j > 23 && j < 58 && abs(k - 25)<3, shell = i> 40 && j == 58 && abs(k - 25) < 2;
+      values[v] = hl_volume_value(p.volume, (size_t)i, (size_t)j, (size_t)k) > 0.5 ? 40.0f
+                  : shell                                                          ? 0.0f
+                  : foam                                                           ? -500.0f
+                                                                                   : -1000.0f;
+    }
+    values[(25 * N + 20) * N + 20] = 400; /* bone */
+    hl_volume_release(p.volume);
+    p.volume = p.scene_volume.volume = make_volume(p.context, N, values);
+    p.scene_volume.transfer_function.opacity = points;
+    p.scene_volume.transfer_function.opacity_count = 3;
+    hl_camera camera = {.type = n % 2 ? HL_CAMERA_ORTHOGRAPHIC : HL_CAMERA_PERSPECTIVE, .fovy_deg = 30};
+    assert_int_equal(hl_camera_frame(&p.description, n * 33, n * 13 - 30, 1, &camera), HL_OK);
+    box_of_bar(&camera, box);
+    assert_near(box[0] + box[1], 0, 0.2);
+    assert_near(box[2] + box[3], 0, 0.2);
+    assert_near(fmax(box[1] - box[0], box[3] - box[2]) / 2, 0.88, 0.06);
+    parts_release(&p);
+  }
+}
+
 /* All frames of a turn have one target and one distance and hold everything; the first one is filled and in
  * the middle. */
 static void a_turn_keeps_target_and_distance(void **state) {
@@ -519,6 +553,7 @@ int main(void) {
       cmocka_unit_test(frames_boxes_and_several_volumes),
       cmocka_unit_test(lights_stand_where_the_camera_sees_them),
       cmocka_unit_test(specks_do_not_count),
+      cmocka_unit_test(holders_do_not_count),
       cmocka_unit_test(a_turn_keeps_target_and_distance),
       cmocka_unit_test(views_are_found_again),
       cmocka_unit_test(sides_are_the_bodys_own),

@@ -1,0 +1,62 @@
+/* reference/clip_faces.c - the faces at which clipping cuts a volume's matter, and what they do to its
+ * normals.
+ *
+ * Derived: cut matter is f B, with the slope B grad f + f grad B, where f is the value above the empty one.
+ * B is the box smoothed by a triangle REACH voxels to either side: at the depth h below a face its slope is
+ * (1 - h / REACH) / REACH. B itself, 1/2 to 1 in the box, is taken for 1. */
+#include <math.h>
+
+#include "reference/reference.h"
+
+static const double REACH = 2, TOUCHING = 1e-3; /* voxels */
+
+/* The bounds of another volume's box in this one's index space. */
+static void bounds_of(const hl_scene_volume *other, affine3 world_to_index, double low[3], double high[3]) {
+  affine3 placement = affine3_multiply(world_to_index, hl_scene_volume_index_to_world(other));
+  double box[2][3];
+  hl_scene_volume_box(other, box[0], box[1]);
+  for (int a = 0; a < 3; a++) low[a] = INFINITY, high[a] = -INFINITY;
+  for (int c = 0; c < 8; c++) {
+    vec3 p = affine3_apply(placement, (vec3){box[c & 1][0], box[c >> 1 & 1][1], box[c >> 2][2]});
+    const double corner[3] = {p.x, p.y, p.z};
+    for (int a = 0; a < 3; a++) low[a] = fmin(low[a], corner[a]), high[a] = fmax(high[a], corner[a]);
+  }
+}
+
+/* Leaves out the faces that touch the other volume, which goes on there. */
+static void join(const hl_scene_volume *other, reference_volume *volume) {
+  double low[3], high[3];
+  bounds_of(other, volume->world_to_index, low, high);
+  for (int a = 0; a < 3; a++) {
+    bool beside = false;
+    for (int n = 1; n < 3; n++) {
+      int b = (a + n) % 3;
+      beside = beside || low[b] > volume->high[b] - TOUCHING || high[b] < volume->low[b] + TOUCHING;
+    }
+    if (!beside && fabs(high[a] - volume->low[a]) < TOUCHING) volume->clip_low[a] = -INFINITY;
+    if (!beside && fabs(low[a] - volume->high[a]) < TOUCHING) volume->clip_high[a] = INFINITY;
+  }
+}
+
+void hl_reference_find_clip_faces(const hl_scene_description *scene, reference_volume *volume) {
+  for (int a = 0; a < 3; a++) {
+    bool faces = volume->described->cut_shading == HL_CUT_SHADING_FACE;
+    bool low = faces && volume->low[a] > -0.5,
+         high = faces && volume->high[a] < (double)volume->grid->dimension[a] - 0.5;
+    volume->clip_low[a] = low ? volume->low[a] : -INFINITY;
+    volume->clip_high[a] = high ? volume->high[a] : INFINITY;
+  }
+  for (size_t i = 0; i < scene->volume_count; i++)
+    if (&scene->volumes[i] != volume->described && scene->volumes[i].casts_shadow)
+      join(&scene->volumes[i], volume);
+}
+
+vec3 hl_reference_clip_slope(const reference_volume *volume, vec3 point) {
+  const double p[3] = {point.x, point.y, point.z};
+  double slope[3];
+  for (int a = 0; a < 3; a++)
+    slope[a] = (fmax(1 - (volume->clip_high[a] - p[a]) / REACH, 0) -
+                fmax(1 - (p[a] - volume->clip_low[a]) / REACH, 0)) /
+               REACH;
+  return mat3_apply(volume->gradient_to_world, (vec3){slope[0], slope[1], slope[2]});
+}
