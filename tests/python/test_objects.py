@@ -220,10 +220,11 @@ def test_plot(small):
 
 
 def test_import_is_quick_and_needs_numpy_alone():
-    code = ("import sys, time, numpy; before = set(sys.modules); start = time.process_time(); import halflight; "
-            "print(time.process_time() - start, *sorted({m.partition('.')[0] for m in set(sys.modules) - before}))")
+    code = ("import sys, time; begin = time.process_time(); import numpy; before = set(sys.modules); start = time.process_time(); "
+            "import halflight; print((time.process_time() - start) / (start - begin), "
+            "*sorted({m.partition('.')[0] for m in set(sys.modules) - before}))")
     runs = [subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.split()
             for _ in range(3)]
     names = runs[0][1:]
     assert "matplotlib" not in names and "tqdm" not in names
-    assert min(float(run[0]) for run in runs) < 0.1  # of the processor's time: other programs do not count
+    assert min(float(run[0]) for run in runs) < 1  # of the processor's time that numpy takes, on the same machine
