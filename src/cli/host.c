@@ -121,6 +121,12 @@ static const char *choose_data_folder(const char *asked) {
   return asked != NULL ? asked : named != NULL && named[0] != '\0' ? named : "../shared/data";
 }
 
+/* The folder of scratch files. */
+static const char *choose_scratch_folder(void) {
+  const char *named = getenv("TMPDIR");
+  return named != NULL && named[0] != '\0' ? named : "/var/tmp";
+}
+
 int host_open(const cli_host_options *options, cli_host *host) {
   memset(host, 0, sizeof *host);
   host->quiet = options->quiet;
@@ -144,6 +150,7 @@ int host_open(const cli_host_options *options, cli_host *host) {
   context_options.converted = on_converted;
   context_options.memory_limit = host->memory_limit;
   context_options.instruction_set = options->instruction_set;
+  context_options.scratch_folder = choose_scratch_folder();
   context_options.data_folder = choose_data_folder(options->data_folder);
   hl_error error = {0};
   hl_status status = hl_context_create(&context_options, &host->context, &error);

@@ -40,6 +40,9 @@ void hl_context_options_defaults(hl_context_options *options) {
   options->struct_size = sizeof *options;
 }
 
+/* With the zero at the end; 0 of none. */
+static size_t bytes_of(const char *text) { return text != NULL ? strlen(text) + 1 : 0; }
+
 hl_status hl_context_create(const hl_context_options *options, hl_context **context, hl_error *error) {
   if (context == NULL) return hl_fail(error, HL_ERROR_ARGUMENT, "hl_context_create: context is null");
   *context = NULL;
@@ -65,11 +68,14 @@ hl_status hl_context_create(const hl_context_options *options, hl_context **cont
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "instruction set %s: this processor or build does not have it; its best is %s",
                    hl_instruction_set_name(chosen.instruction_set), hl_instruction_set_name(best));
-  size_t folder_bytes = chosen.data_folder != NULL ? strlen(chosen.data_folder) + 1 : 0;
-  hl_context *made = chosen.allocate(chosen.user_data, sizeof *made + folder_bytes, 64);
+  size_t data_bytes = bytes_of(chosen.data_folder), scratch_bytes = bytes_of(chosen.scratch_folder);
+  hl_context *made = chosen.allocate(chosen.user_data, sizeof *made + data_bytes + scratch_bytes, 64);
   if (made == NULL) return hl_fail_memory(error, sizeof *made, "a context");
   made->options = chosen;
-  if (folder_bytes > 0) made->options.data_folder = memcpy(made + 1, chosen.data_folder, folder_bytes);
+  char *texts = (char *)(made + 1);
+  if (data_bytes > 0) made->options.data_folder = memcpy(texts, chosen.data_folder, data_bytes);
+  if (scratch_bytes > 0)
+    made->options.scratch_folder = memcpy(texts + data_bytes, chosen.scratch_folder, scratch_bytes);
   atomic_init(&made->held, 0);
   atomic_init(&made->peak, 0);
   *context = made;

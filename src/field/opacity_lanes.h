@@ -38,8 +38,14 @@ LANES_INLINE float linear_value(const grid *grid, hl_storage storage, const floa
   for (int z = 0; z < 2; z++) {
     float value[2];
     for (int y = 0; y < 2; y++) {
-      const unsigned char *row = hl_grid_row(grid, y ? next[1] : first[1], z ? next[2] : first[2]);
-      float a = stored_number(row, storage, first[0]), b = stored_number(row, storage, next[0]);
+      int32_t j = y ? next[1] : first[1], k = z ? next[2] : first[2];
+      float a, b;
+      if (grid->pages == NULL) {
+        const unsigned char *row = hl_grid_row(grid, j, k);
+        a = stored_number(row, storage, first[0]), b = stored_number(row, storage, next[0]);
+      } else {
+        a = hl_stored_value(grid, first[0], j, k), b = hl_stored_value(grid, next[0], j, k);
+      }
       value[y] = a + (b - a) * fraction[0];
     }
     along[z] = value[0] + (value[1] - value[0]) * fraction[1];

@@ -125,6 +125,52 @@ LANES_INLINE tap_window window_at(const grid *grid, const lanes_int cell[3], uin
   return window;
 }
 
+/* The sums over voxels in memory. cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid.
+ * lowest: as sum_of_windows(). */
+LANES_INLINE lanes sum_in_memory(const grid *grid, const lanes_int cell[3], const int32_t *lowest,
+                                 uint32_t active, const lanes weight[3][4]) {
+#ifdef HL_WINDOWS
+  lanes sum;
+  if (sum_of_windows(grid, cell, lowest, active, weight, &sum)) return sum;
+#else
+  (void)lowest;
+#endif
+  tap_window window = window_at(grid, cell, active);
+  if (grid->storage == HL_STORAGE_U8) return sum_u8(grid, &window, weight);
+  if (grid->storage == HL_STORAGE_U16) return sum_u16(grid, &window, weight);
+  return sum_f32(grid, &window, weight);
+}
+
+/* The page of the first active lane's taps, as a grid; returns the active lanes with taps in this page. cell:
+ * tap 0 is at cell - 1. */
+LANES_INLINE uint32_t lanes_in_page(const grid *grid, const lanes_int cell[3], uint32_t active,
+                                    struct grid *view) {
+  int first = __builtin_ctz(active);
+  lanes_int same = lanes_from_bits(active);
+  size_t page[3];
+  for (int a = 0; a < 3; a++) {
+    lanes_int of_lane = (cell[a] - 1) >> grid->pages->shift;
+    page[a] = (size_t)of_lane[first];
+    same &= of_lane == of_lane[first];
+  }
+  hl_grid_of_page(grid, page, view);
+  return lanes_bits(same);
+}
+
+/* The same sums over voxels in pages, page by page: lanes do not depend on each other. */
+static __attribute__((noinline)) lanes sum_in_pages(const grid *grid, const lanes_int cell[3],
+                                                    uint32_t active, const lanes weight[3][4]) {
+  lanes sum = lanes_set(0);
+  for (uint32_t left = active; left != 0;) {
+    struct grid view;
+    uint32_t in_page = lanes_in_page(grid, cell, left, &view);
+    lanes some = sum_in_memory(&view, cell, NULL, in_page, weight);
+    sum = lanes_select(lanes_from_bits(in_page), some, sum);
+    left &= ~in_page;
+  }
+  return sum;
+}
+
 /* The weighted sum for the active lanes of a block. inside: all lanes are active, and all their taps lie in
  * the grid. */
 LANES_INLINE lanes gather_block(const fill_source *source, const block_points *points, uint32_t active,
@@ -145,14 +191,8 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_points *p
     for (int a = 0; a < 3; a++)
       if (outside >> a & 1) cell[a] = fold_border(cell[a], grid->dimension[a], weight[a]);
   }
-#ifdef HL_WINDOWS
-  lanes sum;
-  if (sum_of_windows(grid, cell, inside ? points->low : NULL, active, weights, &sum)) return sum;
-#endif
-  tap_window window = window_at(grid, cell, active);
-  if (storage == HL_STORAGE_U8) return sum_u8(grid, &window, weights);
-  if (storage == HL_STORAGE_U16) return sum_u16(grid, &window, weights);
-  return sum_f32(grid, &window, weights);
+  if (grid->pages != NULL) return sum_in_pages(grid, cell, active, weights);
+  return sum_in_memory(grid, cell, inside ? points->low : NULL, active, weights);
 }
 
 /* Fills one block's densities; returns whether any may show something. */

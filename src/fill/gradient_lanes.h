@@ -74,6 +74,40 @@ static lanes3 slopes_in_thin_grid(const grid *grid, const lanes_int cell[3], uin
   return slope;
 }
 
+/* The derivatives over voxels in memory. cell: tap 0 is at cell - 1; all taps of active lanes lie in the
+ * grid. */
+LANES_INLINE lanes3 slopes_in_memory(const grid *grid, const lanes_int cell[3], uint32_t active,
+                                     uint32_t starts, const tap_slope_weights *w) {
+  lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
+#ifdef HL_WINDOWS
+  if (slopes_of_windows(grid, cell, active, starts, w, &sum)) return sum;
+  sum = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
+#endif
+  if (fits_offsets(grid)) return slopes_of_taps(grid, cell, active, w);
+  for (uint32_t left = active; left != 0;) {
+    uint32_t block = left;
+    for (uint32_t less = drop_last_block(left, starts); less != 0; less = drop_last_block(less, starts))
+      block = less;
+    join_slopes(block, slopes_of_taps(grid, cell, block, w), &sum);
+    left &= ~block;
+  }
+  return sum;
+}
+
+/* The same over voxels in pages, page by page. */
+static __attribute__((noinline)) lanes3 slopes_in_pages(const grid *grid, const lanes_int cell[3],
+                                                        uint32_t active, uint32_t starts,
+                                                        const tap_slope_weights *w) {
+  lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  for (uint32_t left = active; left != 0;) {
+    struct grid view;
+    uint32_t in_page = lanes_in_page(grid, cell, left, &view);
+    join_slopes(in_page, slopes_in_memory(&view, cell, in_page, starts, w), &sum);
+    left &= ~in_page;
+  }
+  return sum;
+}
+
 /* Derivatives along the index axes, stored units per voxel, for the active lanes, at least one. starts: the
  * first lane of each block of pixels, one bit each. */
 LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int degree, lanes3 point,
@@ -97,20 +131,8 @@ LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int
       cell[a] = fold_border(cell[a], grid->dimension[a], w.weight[a]);
     }
   }
-#ifdef HL_WINDOWS
-  lanes3 slope = {lanes_set(0), lanes_set(0), lanes_set(0)};
-  if (slopes_of_windows(grid, cell, active, starts, &w, &slope)) return slope;
-#endif
-  if (fits_offsets(grid)) return slopes_of_taps(grid, cell, active, &w);
-  lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
-  for (uint32_t left = active; left != 0;) {
-    uint32_t block = left;
-    for (uint32_t less = drop_last_block(left, starts); less != 0; less = drop_last_block(less, starts))
-      block = less;
-    join_slopes(block, slopes_of_taps(grid, cell, block, &w), &sum);
-    left &= ~block;
-  }
-  return sum;
+  if (grid->pages != NULL) return slopes_in_pages(grid, cell, active, starts, &w);
+  return slopes_in_memory(grid, cell, active, starts, &w);
 }
 
 static lanes3 slopes_at(const grid *grid, const kernel *kernel, lanes3 point, uint32_t active,

@@ -23,9 +23,12 @@ static int32_t clamp_index(int64_t i, int32_t count) {
 }
 
 typedef struct brick_job {
+  const hl_context *context;
   const grid *grid;
   bound_rows_function *bound_rows;
-  float *columns; /* [threads][2][dimension 0] */
+  float *columns;        /* [threads][2][dimension 0] */
+  unsigned char *copies; /* [threads][WINDOW * WINDOW][copy_bytes]; rows of grids with pages */
+  size_t copy_bytes;
 } brick_job;
 
 /* The least and greatest values arrive as floats, which represent the values of every voxel type exactly. */
@@ -64,7 +67,9 @@ static void reduce_row(const grid *grid, const float *least, const float *greate
   }
 }
 
-static void bound_brick_row(const brick_job *job, int32_t by, int32_t bz, float *least, float *greatest) {
+/* copies: room for WINDOW * WINDOW rows, for grids with pages. */
+static void bound_brick_row(const brick_job *job, int32_t by, int32_t bz, float *least, float *greatest,
+                            unsigned char *copies) {
   const grid *grid = job->grid;
   size_t width = (size_t)grid->dimension[0];
   const void *rows[WINDOW * WINDOW];
@@ -74,7 +79,14 @@ static void bound_brick_row(const brick_job *job, int32_t by, int32_t bz, float 
   int32_t z0 = clamp_index((int64_t)bz * HL_BRICK_CELLS - BEFORE, grid->dimension[2]);
   int32_t z1 = clamp_index((int64_t)bz * HL_BRICK_CELLS + AFTER, grid->dimension[2]);
   for (int32_t z = z0; z <= z1; z++)
-    for (int32_t y = y0; y <= y1; y++) rows[row_count++] = hl_grid_row(grid, y, z);
+    for (int32_t y = y0; y <= y1; y++, row_count++)
+      if (grid->pages == NULL) {
+        rows[row_count] = hl_grid_row(grid, y, z);
+      } else {
+        void *copy = copies + (size_t)row_count * job->copy_bytes;
+        hl_pages_load_row(grid->pages, (size_t)y, (size_t)z, copy);
+        rows[row_count] = copy;
+      }
   job->bound_rows(rows, row_count, width, least, greatest);
   size_t at = ((size_t)bz * (size_t)grid->brick_count[1] + (size_t)by) * (size_t)grid->brick_count[0];
   reduce_row(grid, least, greatest, at);
@@ -85,7 +97,9 @@ static void bound_layer_of_bricks(void *data, size_t index, int worker) {
   size_t width = (size_t)job->grid->dimension[0];
   float *least = job->columns + (size_t)worker * 2 * width;
   for (int32_t by = 0; by < job->grid->brick_count[1]; by++)
-    bound_brick_row(job, by, (int32_t)index, least, least + width);
+    bound_brick_row(job, by, (int32_t)index, least, least + width,
+                    job->copies + (size_t)worker * WINDOW * WINDOW * job->copy_bytes);
+  if (job->grid->pages != NULL && worker == 0) hl_pages_trim(job->context, job->grid->pages);
 }
 
 void hl_bricks_lay_out(grid *grid, hl_layout *layout) {
@@ -99,11 +113,13 @@ void hl_bricks_lay_out(grid *grid, hl_layout *layout) {
 static void lay_out_columns(brick_job *job, int threads, hl_layout *layout) {
   size_t width = (size_t)job->grid->dimension[0];
   job->columns = hl_layout_take(layout, (size_t)threads * 2 * width, sizeof *job->columns);
+  job->copy_bytes = job->grid->pages != NULL ? width * hl_storage_bytes(job->grid->storage) : 0;
+  job->copies = hl_layout_take(layout, (size_t)threads * WINDOW * WINDOW, job->copy_bytes);
 }
 
 hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, grid *grid,
                           hl_error *error) {
-  brick_job job = {.grid = grid, .bound_rows = functions->rows[grid->storage]};
+  brick_job job = {.context = context, .grid = grid, .bound_rows = functions->rows[grid->storage]};
   hl_layout counted = {0};
   lay_out_columns(&job, hl_pool_threads(pool), &counted);
   hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};
@@ -297,14 +313,17 @@ static size_t cells_of(const cell_lookup *lookup) {
   return (size_t)lookup->count[0] * (size_t)lookup->count[1] * (size_t)lookup->count[2];
 }
 
-/* Whether 32 bits can number the cells; the look-ups' counts are set. */
-static bool cells_are_numbered(const grid *grid) { return cells_of(&grid->lookup[0]) < INT32_MAX; }
+/* Whether 2x2x2 cells have bounds: 32 bits can number them, and the voxels are in memory. The look-ups'
+ * counts are set. */
+static bool cells_have_bounds(const grid *grid) {
+  return grid->pages == NULL && cells_of(&grid->lookup[0]) < INT32_MAX;
+}
 
 void hl_cells_lay_out(grid *grid, hl_layout *layout) {
   for (int axis = 0; axis < 3; axis++)
     grid->lookup[0].count[axis] = grid->dimension[axis] / HL_LOOKUP_CELLS + 1;
   memcpy(grid->lookup[1].count, grid->brick_count, sizeof grid->brick_count);
-  if (!cells_are_numbered(grid)) return;
+  if (!cells_have_bounds(grid)) return;
   for (int i = 0; i < LOOKUP_SIZES; i++)
     grid->lookup[i].visible = hl_layout_take(layout, cells_of(&grid->lookup[i]) + READ_BEYOND, 1);
   grid->cell_bounds = hl_layout_take(layout, (size_t)grid->brick_count[2], sizeof *grid->cell_bounds);
@@ -331,7 +350,7 @@ static void lay_out_slices(cell_job *job, int threads, hl_layout *layout) {
 uint64_t hl_bounds_bytes(const grid *grid, int threads) {
   hl_layout columns = {0}, slices = {0};
   lay_out_columns(&(brick_job){.grid = grid}, threads, &columns);
-  if (!cells_are_numbered(grid)) return columns.bytes;
+  if (!cells_have_bounds(grid)) return columns.bytes;
   lay_out_slices(&(cell_job){.grid = grid}, threads, &slices);
   uint64_t cells = slices.bytes + (uint64_t)grid->brick_count[2] * greatest_layer_bytes(grid);
   return columns.bytes > cells ? columns.bytes : cells;
@@ -342,7 +361,7 @@ hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_function
   cell_job job = {.grid = grid, .functions = functions, .smooth = smooth, .context = context};
   size_t layers = (size_t)grid->brick_count[2];
   set_cell_range(volume, grid);
-  if (!cells_are_numbered(grid)) return HL_OK; /* bricks alone tell what is visible */
+  if (!cells_have_bounds(grid)) return HL_OK; /* bricks alone tell what is visible */
   hl_layout counted = {0};
   lay_out_slices(&job, hl_pool_threads(pool), &counted);
   hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};

@@ -15,6 +15,7 @@
 #include "grid/kernel.h"
 #include "scene/cut.h"
 #include "scene/scene.h"
+#include "volume/pages.h"
 
 enum {
   HL_BRICK_CELLS = 4,
@@ -35,9 +36,11 @@ typedef struct cell_lookup {
 } cell_lookup;
 
 typedef struct grid {
-  void *memory;       /* owned; all arrays but the volume's voxels and the layers of cell_bounds */
-  const void *voxels; /* [dimension[2]][dimension[1]][dimension[0]]; stored values; the volume's, or
-                         finite_voxels. Rows are packed */
+  void *memory;          /* owned; all arrays but the volume's voxels and the layers of cell_bounds */
+  const void *voxels;    /* [dimension[2]][dimension[1]][dimension[0]]; stored values; the volume's, or
+                            finite_voxels; null with pages. Rows are packed */
+  const hl_pages *pages; /* the volume's (volume/pages.h); null: its voxels are in memory. With pages, bricks
+                            alone tell where something is visible */
   size_t row_bytes, slice_bytes; /* of voxels: from row to row, and from slice to slice */
   /* u8 voxels once more, in columns eight voxels wide: eight rows of a column are 64 bytes in a line, so that
    * a window of 8x8 voxels comes from two columns by two loads (of 512 bits), and neighbouring windows come
@@ -136,9 +139,23 @@ static inline void hl_brick_coordinates(const grid *grid, uint32_t brick, int32_
   b[2] = (int32_t)(brick / (uint32_t)grid->brick_count[0] / (uint32_t)grid->brick_count[1]);
 }
 
-/* The first voxel of a row. */
+/* The first voxel of a row of a grid without pages. */
 static inline const unsigned char *hl_grid_row(const grid *grid, int64_t y, int64_t z) {
   return (const unsigned char *)grid->voxels + (size_t)z * grid->slice_bytes + (size_t)y * grid->row_bytes;
+}
+
+/* A grid whose voxels are those of one page of another: the same places, but only the page's voxels may be
+ * read. */
+static inline void hl_grid_of_page(const grid *grid, const size_t page[3], struct grid *view) {
+  const hl_pages *pages = grid->pages;
+  size_t before = ((page[2] * pages->slice_bytes + page[1] * pages->row_bytes) +
+                   page[0] * hl_storage_bytes(pages->storage))
+                  << pages->shift;
+  *view = *grid;
+  view->pages = NULL;
+  view->voxels = (const void *)((uintptr_t)hl_page_at(pages, page) - before);
+  view->row_bytes = pages->row_bytes;
+  view->slice_bytes = pages->slice_bytes;
 }
 
 /* The stored value of a voxel; beyond the grid's faces the border's values continue. */
@@ -146,6 +163,9 @@ static inline float hl_stored_value(const grid *grid, int64_t x, int64_t y, int6
   int64_t at[3] = {x, y, z};
   for (int a = 0; a < 3; a++)
     at[a] = at[a] < 0 ? 0 : at[a] >= grid->dimension[a] ? grid->dimension[a] - 1 : at[a];
+  if (grid->pages != NULL)
+    return (float)hl_stored_number(
+        grid->storage, hl_page_voxel(grid->pages, (size_t)at[0], (size_t)at[1], (size_t)at[2]), 0);
   const void *row = hl_grid_row(grid, at[1], at[2]);
   if (grid->storage == HL_STORAGE_U8) return ((const uint8_t *)row)[at[0]];
   if (grid->storage == HL_STORAGE_U16) return ((const uint16_t *)row)[at[0]];

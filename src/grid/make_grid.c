@@ -104,6 +104,7 @@ static void copy_slice(void *data, size_t index, int worker) {
 /* ---- the grid ---- */
 
 static void set_size(const hl_volume *volume, const kernel *kernel, grid *grid) {
+  grid->pages = volume->pages;
   grid->storage = kernel->interpolates ? HL_STORAGE_F32 : volume->storage;
   for (int axis = 0; axis < 3; axis++) {
     grid->dimension[axis] = (int32_t)volume->dimension[axis];
@@ -116,9 +117,9 @@ static void lay_out(grid *grid, const hl_volume *volume, const kernel *kernel,
                     const grid_functions *functions, hl_layout *layout) {
   if (volume->nonfinite_count > 0 || kernel->interpolates)
     grid->finite_voxels = hl_layout_take(layout, hl_volume_voxel_count(volume), sizeof *grid->finite_voxels);
-  lay_out_columns(grid, functions, layout);
+  if (grid->pages == NULL) lay_out_columns(grid, functions, layout);
   hl_bricks_lay_out(grid, layout);
-  if (kernel->degree == HL_BSPLINE_DEGREE) hl_cell_bits_lay_out(grid, layout);
+  if (grid->pages == NULL && kernel->degree == HL_BSPLINE_DEGREE) hl_cell_bits_lay_out(grid, layout);
   hl_cells_lay_out(grid, layout);
 }
 
@@ -129,6 +130,23 @@ uint64_t hl_grid_bytes(const hl_volume *volume, const kernel *kernel, const grid
   set_size(volume, kernel, &grid);
   lay_out(&grid, volume, kernel, functions, &counted);
   return counted.bytes + hl_bounds_bytes(&grid, threads);
+}
+
+/* What needs a copy of all voxels in memory. */
+static hl_status check_pages(const hl_volume *volume, const kernel *kernel, hl_error *error) {
+  if (volume->pages == NULL) return HL_OK;
+  if (kernel->interpolates)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "kernel \"%s\": a volume that is larger than memory needs another kernel, or a higher "
+                   "memory limit",
+                   kernel->name);
+  if (volume->nonfinite_count > 0)
+    return hl_fail(
+        error, HL_ERROR_UNSUPPORTED,
+        "a volume that is larger than memory has %llu voxels that are not finite: replace them, or "
+        "raise the memory limit",
+        (unsigned long long)volume->nonfinite_count);
+  return HL_OK;
 }
 
 static hl_status allocate(hl_context *context, const grid_functions *functions, const grid_source *source,
@@ -148,7 +166,9 @@ static hl_status allocate(hl_context *context, const grid_functions *functions, 
 hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_functions *functions,
                          const grid_source *source, grid *grid, hl_error *error) {
   const hl_volume *volume = source->volume->volume;
+  hl_status status = check_pages(volume, source->kernel, error);
   *grid = (struct grid){0};
+  if (status != HL_OK) return status;
   set_voxels(grid, volume->voxels, volume->row_bytes, volume->slice_bytes);
   grid->value_scale = volume->value_scale;
   grid->value_offset = volume->value_offset;
@@ -158,7 +178,7 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_function
     return hl_fail(error, HL_ERROR_INPUT, "a volume's axes are singular: the three must span space");
   hl_scene_volume_box(source->volume, grid->box_low, grid->box_high);
   set_size(volume, source->kernel, grid);
-  hl_status status = allocate(context, functions, source, grid, error);
+  status = allocate(context, functions, source, grid, error);
   if (status != HL_OK) return status;
   if (grid->finite_voxels != NULL) replace_voxels(pool, volume->storage, source->kernel, grid);
   if (grid->columns != NULL) hl_pool_run(pool, (size_t)grid->dimension[2], copy_slice, grid);

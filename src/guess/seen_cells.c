@@ -9,6 +9,7 @@
 #include "guess/looks.h"
 #include "guess/sample.h"
 #include "scene/cut.h"
+#include "volume/pages.h"
 
 #define FAINT           0.02 /* fraction of the greatest opacity below which voxels at the rim do not count */
 #define LOST            0.04 /* least optical depth of a column that is seen */
@@ -91,7 +92,7 @@ static size_t cell_of(const hl_seen *seen, ptrdiff_t i, ptrdiff_t j, ptrdiff_t k
 }
 
 static void add_row(hl_seen *seen, ptrdiff_t j, ptrdiff_t k) {
-  const void *row = hl_volume_row(seen->volume, (size_t)j, (size_t)k);
+  const void *row = hl_volume_row_in(seen->volume, (size_t)j, (size_t)k, seen->row);
   float *mean = &seen->mean[cell_of(seen, 0, j, k)];
   ptrdiff_t step = (ptrdiff_t)seen->step;
   for (ptrdiff_t i = seen->first[0]; i < seen->end[0];) {
@@ -130,8 +131,10 @@ static void forget_cut_cells(hl_seen *seen) {
 
 static void make_means(hl_seen *seen) {
   ptrdiff_t stride = (ptrdiff_t)seen->stride;
-  for (ptrdiff_t k = seen->first[2]; k < seen->end[2]; k += stride)
+  for (ptrdiff_t k = seen->first[2]; k < seen->end[2]; k += stride) {
     for (ptrdiff_t j = seen->first[1]; j < seen->end[1]; j += stride) add_row(seen, j, k);
+    if (seen->volume->pages != NULL) hl_pages_trim(seen->volume->context, seen->volume->pages);
+  }
   float *mean = seen->mean;
   for (int k = 0; k < seen->size[2]; k++) {
     double along_z = looked_at(seen, 2, k);
@@ -291,7 +294,9 @@ static hl_status make_cells(hl_seen *seen, hl_error *error) {
   }
   seen->kind = hl_allocate_zeroed(volume->context, cells, 1);
   seen->mean = hl_allocate_zeroed(volume->context, cells, sizeof *seen->mean);
-  return seen->kind != NULL && seen->mean != NULL
+  if (volume->pages != NULL)
+    seen->row = hl_allocate(volume->context, volume->dimension[0], hl_storage_bytes(volume->storage));
+  return seen->kind != NULL && seen->mean != NULL && (volume->pages == NULL || seen->row != NULL)
              ? HL_OK
              : hl_fail_memory(error, cells * sizeof *seen->mean, "a volume's cells");
 }
@@ -321,6 +326,7 @@ void hl_seen_release(hl_seen *seen) {
   hl_release(context, seen->bends);
   hl_release(context, seen->kind);
   hl_release(context, seen->mean);
+  hl_release(context, seen->row);
 }
 
 /* The least depth per length with which a voxel counts; in a seen cell, half of the cell's mean is enough. */
@@ -357,7 +363,10 @@ static ptrdiff_t first_that_counts(const hl_seen *seen, const voxel_row *row, pt
 }
 
 bool hl_seen_row(const hl_seen *seen, ptrdiff_t j, ptrdiff_t k, ptrdiff_t *first, ptrdiff_t *last) {
-  const voxel_row row = {hl_volume_row(seen->volume, (size_t)j, (size_t)k), j, k, cell_of(seen, 0, j, k)};
+  if (seen->volume->pages != NULL && j == seen->first[1])
+    hl_pages_trim(seen->volume->context, seen->volume->pages);
+  const voxel_row row = {hl_volume_row_in(seen->volume, (size_t)j, (size_t)k, seen->row), j, k,
+                         cell_of(seen, 0, j, k)};
   ptrdiff_t end = seen->end[0] - 1;
   *first = first_that_counts(seen, &row, seen->first[0], end, 1);
   if (*first > end) return false;

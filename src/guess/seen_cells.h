@@ -27,7 +27,8 @@ typedef struct hl_seen {
   unsigned char *bends;                 /* owned; [bins]; of floats */
   unsigned char *kind;                  /* owned; [size[2]][size[1]][size[0]]; HL_SEEN_... */
   float *mean;                          /* owned; likewise; mean depth per length of a cell's voxels */
-  float faint;                          /* depth per length from which voxels count beside seen cells */
+  void *row;   /* owned; a row of the volume's stored values; null: the volume is in memory */
+  float faint; /* depth per length from which voxels count beside seen cells */
 } hl_seen;
 
 /* *any: false where nothing of the volume can be seen. Fails for lack of memory alone; release in any case.

@@ -49,7 +49,7 @@ static size_t voxel_bytes(const grid *grid) {
 }
 
 void hl_field_window(const grid *grid, const int32_t first[3], const int32_t size[3], double *values) {
-  bool within = true;
+  bool within = grid->pages == NULL;
   for (int axis = 0; axis < 3; axis++)
     within = within && first[axis] >= 0 && first[axis] + size[axis] <= grid->dimension[axis];
   for (int32_t k = 0; k < size[2]; k++)

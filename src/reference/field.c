@@ -323,6 +323,9 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
   affine3 to_world = hl_scene_volume_index_to_world(described);
   const hl_volume *grid = described->volume;
   *made = (reference_volume){.described = described, .grid = grid, .kernel = all->scene->render.kernel};
+  if (grid->pages != NULL)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "the reference needs a volume's voxels in memory: raise the memory limit");
   if (!affine3_invert(to_world, &made->world_to_index))
     return hl_fail(error, HL_ERROR_INPUT, "volume %s: its axes lie in a plane: give three independent ones",
                    described->name != NULL ? described->name : "without a name");

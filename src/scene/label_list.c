@@ -40,6 +40,9 @@ static hl_status fail_value(double value, hl_error *error) {
 
 /* Labels come in runs: only a value that differs from the voxel before is looked up. */
 static hl_status find_values(const hl_volume *map, found_labels *found, hl_error *error) {
+  if (map->pages != NULL)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "labels of a volume that is larger than memory: raise the memory limit");
   for (size_t k = 0; k < map->dimension[2]; k++)
     for (size_t j = 0; j < map->dimension[1]; j++) {
       const void *row = hl_volume_row(map, j, k);

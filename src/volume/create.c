@@ -10,6 +10,7 @@
 
 #include "core/memory.h"
 #include "volume/convert.h"
+#include "volume/pages.h"
 #include "volume/statistics.h"
 
 const char *hl_component_name(int component) {
@@ -163,6 +164,26 @@ hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *desc
   return finish_volume(made, subject, volume, error);
 }
 
+hl_status hl_volume_adopt_pages(hl_context *context, const hl_volume_description *description,
+                                const char *subject, struct hl_pages *pages, hl_volume **volume,
+                                hl_error *error) {
+  *volume = NULL;
+  hl_status status = hl_volume_check_grid(description, subject, error);
+  hl_volume *made = status == HL_OK ? make_volume(context, description) : NULL;
+  if (made == NULL) {
+    hl_pages_release(context, pages);
+    return status != HL_OK ? status : hl_fail_memory(error, sizeof *made, subject);
+  }
+  made->pages = pages;
+  return finish_volume(made, subject, volume, error);
+}
+
+const void *hl_volume_row_in(const hl_volume *volume, size_t j, size_t k, void *buffer) {
+  if (volume->pages == NULL) return hl_volume_row(volume, j, k);
+  hl_pages_load_row(volume->pages, j, k, buffer);
+  return buffer;
+}
+
 /* Gathers one row of count voxels of the given size, stride_bytes apart. */
 static void gather_row(const unsigned char *source, ptrdiff_t stride_bytes, size_t voxel_bytes, size_t count,
                        unsigned char *row) {
@@ -293,6 +314,7 @@ void hl_volume_release(hl_volume *volume) {
   if (volume->shelf != NULL) volume->release_shelf(volume->context, volume->shelf);
   hl_release(volume->context, volume->series);
   hl_release(volume->context, volume->owned_voxels);
+  hl_pages_release(volume->context, volume->pages);
   hl_release(volume->context, volume->colors);
   if (volume->release != NULL) volume->release(volume->release_data, volume->voxels);
   hl_release(volume->context, volume);
@@ -370,6 +392,8 @@ hl_status hl_volume_get_selection(const hl_volume *volume, hl_volume_selection *
 double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k) {
   if (volume == NULL || i >= volume->dimension[0] || j >= volume->dimension[1] || k >= volume->dimension[2])
     return NAN;
-  double stored = hl_stored_number(volume->storage, hl_volume_row(volume, j, k), i);
+  double stored = volume->pages != NULL
+                      ? hl_stored_number(volume->storage, hl_page_voxel(volume->pages, i, j, k), 0)
+                      : hl_stored_number(volume->storage, hl_volume_row(volume, j, k), i);
   return isfinite(stored) ? volume->value_scale * stored + volume->value_offset : NAN;
 }

@@ -13,9 +13,12 @@
 #include "volume/colors.h"
 #include "volume/convert.h"
 #include "volume/numbers.h"
+#include "volume/pages.h"
 #include "volume/text.h"
 
 enum { PIECE_BYTES = 1 << 20, STAGE_VOXELS = 8192, SKIPPED_BYTES = 1 << 16 };
+/* Voxels that are stored in pages between two calls of hl_pages_trim(). */
+enum { TRIMMED_VOXELS = 512 * STAGE_VOXELS };
 
 static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
 
@@ -307,6 +310,28 @@ static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_erro
   return HL_OK;
 }
 
+/* Reads the voxels into pages; *pages is null on failure. */
+static hl_status read_pages(hl_stream *stream, const hl_payload *payload, hl_pages **pages, hl_error *error) {
+  hl_context *context = stream->context;
+  unsigned char raw[STAGE_VOXELS * 8], stored[STAGE_VOXELS * sizeof(float)];
+  size_t count = voxel_count(payload);
+  hl_status status = hl_pages_create(context, context->options.scratch_folder, &payload->grid, PAGE_SHIFT,
+                                     pages, error);
+  for (size_t done = 0; done < count && status == HL_OK;) {
+    size_t wanted = count - done < STAGE_VOXELS ? count - done : STAGE_VOXELS;
+    status = read_piece(stream, payload, done, wanted, raw, stored, error);
+    if (status == HL_OK) hl_pages_store(*pages, done, wanted, stored);
+    done += wanted;
+    if (status == HL_OK && done % TRIMMED_VOXELS == 0) hl_pages_trim(context, *pages);
+    if (status == HL_OK) status = report(stream, done, count, error);
+  }
+  if (status == HL_OK) status = check_end(stream, payload, error);
+  if (status == HL_OK) return HL_OK;
+  hl_pages_release(context, *pages);
+  *pages = NULL;
+  return status;
+}
+
 hl_volume_description hl_payload_grid(const hl_payload *payload, const double spacing[3]) {
   hl_volume_description grid = payload->grid;
   if (payload->components > 1 && payload->component == HL_COMPONENT_MAGNITUDE) {
@@ -326,6 +351,12 @@ hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const do
   hl_status status = check_promise(stream, payload, error);
   if (status != HL_OK) return status;
   hl_volume_description grid = hl_payload_grid(payload, spacing);
+  if (payload->components == 1 && !payload->text && hl_pages_wanted(stream->context, &grid)) {
+    hl_pages *pages;
+    status = read_pages(stream, payload, &pages, error);
+    return status == HL_OK ? hl_volume_adopt_pages(stream->context, &grid, stream->path, pages, volume, error)
+                           : status;
+  }
   bool colors = payload->components > 1 && hl_component_is_colors(payload->component);
   size_t stored_bytes = colors ? HL_COLOR_BYTES : hl_storage_bytes(hl_voxel_type_storage(grid.type));
   void *voxels = hl_allocate(stream->context, voxel_count(payload), stored_bytes);

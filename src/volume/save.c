@@ -31,6 +31,7 @@ typedef struct saving {
   double *sums;          /* owned; [grid.dimensions[0]]: of data values */
   uint32_t *counts;      /* owned; [grid.dimensions[0]]: finite voxels in each sum */
   unsigned char *row;    /* owned; [grid.dimensions[0]] voxels of the written type */
+  void *source_row;      /* owned; a row of the volume's stored values: for volumes with pages */
   unsigned char *packed; /* owned; [OUT_BYTES] */
   uint64_t clamped,
       holes; /* voxels beyond the type's range; not finite, where the type has no such numbers */
@@ -135,7 +136,7 @@ static double stored_value(hl_storage storage, const void *row, size_t index) {
 /* Adds the row (j, k) of the volume to the sums; begins them where it is the first. */
 static void add_row(saving *s, size_t j, size_t k) {
   const hl_volume *volume = s->volume;
-  const void *row = hl_volume_row(volume, j, k);
+  const void *row = hl_volume_row_in(volume, j, k, s->source_row);
   for (size_t i = s->begin[0], n = 0; i < s->end[0]; n++)
     for (size_t last = i + s->shrink; i < last && i < s->end[0]; i++) {
       double value = volume->value_scale * stored_value(volume->storage, row, i) + volume->value_offset;
@@ -288,8 +289,10 @@ static hl_status save(saving *s, const char *path, hl_error *error) {
   s->counts = hl_allocate(context, count, sizeof *s->counts);
   s->row = hl_allocate(context, count, hl_voxel_type_bytes(s->grid.type));
   s->packed = hl_allocate(context, OUT_BYTES, 1);
-  if (s->sums == NULL || s->counts == NULL || s->row == NULL || s->packed == NULL)
-    return hl_fail_memory(error, count * bytes + OUT_BYTES, path);
+  size_t source_bytes = s->volume->dimension[0] * hl_storage_bytes(s->volume->storage);
+  s->source_row = hl_allocate(context, source_bytes, 1);
+  if (s->sums == NULL || s->counts == NULL || s->row == NULL || s->packed == NULL || s->source_row == NULL)
+    return hl_fail_memory(error, count * bytes + OUT_BYTES + source_bytes, path);
   hl_status status = begin_packing(s, error);
   if (status != HL_OK) return status;
   status = write_file(s, path, error);
@@ -375,6 +378,7 @@ hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume, cons
   hl_release(context, s.counts);
   hl_release(context, s.row);
   hl_release(context, s.packed);
+  hl_release(context, s.source_row);
   return status;
 }
 

@@ -10,11 +10,14 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "volume/pages.h"
 
 enum { LANES = 8 };
 /* Voxels between two checks for cancellation: a few milliseconds; and as many as are copied together where
  * rows do not adjoin. Multiples of LANES. */
 enum { PIECE = 1 << 22, COPIED_PIECE = 1 << 16 };
+/* Pieces of volumes with pages between two calls of hl_pages_trim(). */
+enum { PIECES_HELD = 64 };
 
 /* The range of stored values; low > high if no voxel is finite. */
 typedef struct tally {
@@ -42,23 +45,24 @@ static int bin_of(binning bins, double stored) {
 /* An iteration over the voxels, piece by piece; begins with piece 0. */
 typedef struct walk {
   const hl_volume *volume;
-  void *buffer; /* owned by hl_volume_measure(); [COPIED_PIECE] stored values; null where the volume is packed
-                 */
+  void *buffer; /* owned by hl_volume_measure(); stored values of COPIED_PIECE voxels and of a row; null where
+                   the volume is packed */
   size_t count, first, piece; /* voxels; the current piece is [first, first + piece) */
   const void *voxels;         /* of the current piece */
   bool cancelled;
 } walk;
 
 /* The stored values of `count` voxels from number `first` on ([k][j][i]): the volume's own where it is
- * packed, else copied into buffer, which has room for them. */
-static const void *piece_of(const hl_volume *volume, size_t first, size_t count, void *buffer) {
+ * packed, else copied into buffer, which has room for them and a row after them. */
+static const void *piece_of(const hl_volume *volume, size_t first, size_t count, unsigned char *buffer) {
   size_t bytes = hl_storage_bytes(volume->storage), width = volume->dimension[0];
   if (hl_volume_is_packed(volume)) return (const unsigned char *)volume->voxels + first * bytes;
   for (size_t done = 0; done < count;) {
     size_t row = (first + done) / width, i = (first + done) % width;
     size_t taken = width - i < count - done ? width - i : count - done;
-    const unsigned char *from = hl_volume_row(volume, row % volume->dimension[1], row / volume->dimension[1]);
-    memcpy((unsigned char *)buffer + done * bytes, from + i * bytes, taken * bytes);
+    const unsigned char *from = hl_volume_row_in(volume, row % volume->dimension[1],
+                                                 row / volume->dimension[1], buffer + COPIED_PIECE * bytes);
+    memcpy(buffer + done * bytes, from + i * bytes, taken * bytes);
     done += taken;
   }
   return buffer;
@@ -71,6 +75,8 @@ static bool next_piece(walk *w) {
   w->piece = w->count - w->first < most ? w->count - w->first : most;
   w->cancelled = w->piece > 0 && hl_cancelled(w->volume->context);
   if (w->piece == 0 || w->cancelled) return false;
+  if (w->volume->pages != NULL && w->first / COPIED_PIECE % PIECES_HELD == 0)
+    hl_pages_trim(w->volume->context, w->volume->pages);
   w->voxels = piece_of(w->volume, w->first, w->piece, w->buffer);
   return true;
 }
@@ -207,7 +213,7 @@ hl_status hl_volume_measure(hl_volume *volume, const char *subject, hl_error *er
   hl_context *context = volume->context;
   bool packed = hl_volume_is_packed(volume), integers = volume->storage != HL_STORAGE_F32;
   size_t values = volume->storage == HL_STORAGE_U8 ? 256 : integers ? 65536 : 1;
-  size_t piece = packed ? 0 : COPIED_PIECE * hl_storage_bytes(volume->storage);
+  size_t piece = packed ? 0 : (COPIED_PIECE + volume->dimension[0]) * hl_storage_bytes(volume->storage);
   uint64_t *counts = hl_allocate_zeroed(context, values, sizeof *counts);
   void *buffer = packed ? NULL : hl_allocate(context, piece, 1);
   if (counts == NULL || (buffer == NULL && !packed)) {

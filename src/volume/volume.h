@@ -53,11 +53,12 @@ struct hl_volume {
   atomic_int references;
   size_t dimension[3]; /* i, j, k */
   hl_storage storage;
-  const void *voxels; /* [k][j][i]; stored values; owned unless borrowed. Rows are packed; rows and slices of
-                         borrowed voxels may lie further apart than they are long */
+  const void *voxels; /* [k][j][i]; stored values; owned unless borrowed; null with pages. Rows are packed;
+                         rows and slices of borrowed voxels may lie further apart than they are long */
   size_t row_bytes, slice_bytes; /* from row to row, and from slice to slice */
-  unsigned char *colors; /* owned; [k][j][i][4] (colors.h); null: the transfer function tells colours */
-  void *owned_voxels;    /* the block to hl_release; null if borrowed */
+  unsigned char *colors;  /* owned; [k][j][i][4] (colors.h); null: the transfer function tells colours */
+  struct hl_pages *pages; /* owned (pages.h): the voxels are in a scratch file; null: in memory */
+  void *owned_voxels;     /* the block to hl_release; null if borrowed */
   void (*release)(void *release_data, const void *voxels); /* gives borrowed voxels back; may be null */
   void *release_data;
   double value_scale; /* data value = value_scale * stored + value_offset */
@@ -97,16 +98,21 @@ static inline size_t hl_volume_voxel_count(const hl_volume *volume) {
   return volume->dimension[0] * volume->dimension[1] * volume->dimension[2];
 }
 
-/* Whether rows and slices adjoin. */
+/* Whether rows and slices adjoin, in memory. */
 static inline bool hl_volume_is_packed(const hl_volume *volume) {
   size_t row = volume->dimension[0] * hl_storage_bytes(volume->storage);
-  return volume->row_bytes == row && volume->slice_bytes == row * volume->dimension[1];
+  return volume->pages == NULL && volume->row_bytes == row &&
+         volume->slice_bytes == row * volume->dimension[1];
 }
 
-/* The first voxel of a row. */
+/* The first voxel of a row of a volume in memory. */
 static inline const void *hl_volume_row(const hl_volume *volume, size_t j, size_t k) {
   return (const unsigned char *)volume->voxels + k * volume->slice_bytes + j * volume->row_bytes;
 }
+
+/* The first voxel of a row of any volume: the volume's own, or in `buffer`, which has room for a row and is
+ * needed where the volume has pages. */
+const void *hl_volume_row_in(const hl_volume *volume, size_t j, size_t k, void *buffer);
 
 /* A number of a row of stored values. */
 static inline double hl_stored_number(hl_storage storage, const void *row, size_t i) {
@@ -120,6 +126,12 @@ static inline double hl_stored_number(hl_storage storage, const void *row, size_
  * value_scale and value_offset for values of the file's type. subject: starts the error lines. */
 hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *description, const char *subject,
                           void *voxels, hl_volume **volume, hl_error *error);
+
+/* Makes a volume of voxels that are in pages, which the volume takes over, also on failure; else as
+ * hl_volume_adopt(). */
+hl_status hl_volume_adopt_pages(hl_context *context, const hl_volume_description *description,
+                                const char *subject, struct hl_pages *pages, hl_volume **volume,
+                                hl_error *error);
 
 /* Releases a list of arrays. */
 void hl_arrays_release(hl_context *context, hl_array_entry *arrays, size_t count);

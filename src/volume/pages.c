@@ -1,0 +1,228 @@
+/* volume/pages.c - see pages.h. */
+#define _GNU_SOURCE
+#include "volume/pages.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+#include "volume/convert.h"
+
+/* ---- the scratch file ---- */
+
+/* Windows of voxels are loaded as a whole: up to so many slices lie before the first page and after the
+ * last. */
+enum { SLICES_AROUND = 16, LINE = 64 };
+
+static bool multiply_all(const size_t *factors, int count, size_t *product) {
+  *product = 1;
+  for (int n = 0; n < count; n++)
+    if (!hl_multiply(*product, factors[n], product)) return false;
+  return true;
+}
+
+/* Sets all sizes; false where they overflow. */
+static bool plan(const hl_volume_description *grid, int shift, hl_pages *pages) {
+  size_t side = (size_t)1 << shift, voxels[3];
+  *pages = (hl_pages){.storage = hl_voxel_type_storage(grid->type), .shift = shift};
+  for (int axis = 0; axis < 3; axis++) {
+    size_t n = pages->dimension[axis] = grid->dimensions[axis];
+    pages->count[axis] = n <= PAGE_OVERLAP ? 1 : (n - PAGE_OVERLAP + side - 1) >> shift;
+    voxels[axis] = n < side + PAGE_OVERLAP ? n : side + PAGE_OVERLAP;
+  }
+  pages->row_bytes = voxels[0] * hl_storage_bytes(pages->storage);
+  pages->slice_bytes = voxels[1] * pages->row_bytes;
+  pages->page_bytes = (voxels[2] * pages->slice_bytes + LINE - 1) / LINE * LINE;
+  const size_t factors[] = {pages->count[0], pages->count[1], pages->count[2], pages->page_bytes};
+  size_t bytes, around = 2 * SLICES_AROUND * (pages->slice_bytes + LINE);
+  return multiply_all(factors, 4, &bytes) && !__builtin_add_overflow(bytes, around, &pages->mapping_bytes) &&
+         pages->mapping_bytes <= (size_t)INT64_MAX;
+}
+
+static size_t page_count(const hl_pages *pages) {
+  return pages->count[0] * pages->count[1] * pages->count[2];
+}
+
+static hl_status fail_scratch(const char *folder, size_t bytes, int number, hl_error *error) {
+  return hl_fail(error, HL_ERROR_IO,
+                 "%s: no scratch file of %.1f MiB for a volume larger than memory: %s: make room, name "
+                 "another folder (TMPDIR), or raise the memory limit",
+                 folder, (double)bytes / (1 << 20), strerror(number));
+}
+
+/* Opens a file without a name. -1: failed, and errno says why. */
+static int open_nameless(hl_context *context, const char *folder) {
+  static const char ending[] = "/halflight-scratch-XXXXXX";
+  char *path = hl_allocate(context, strlen(folder) + sizeof ending, 1);
+  if (path == NULL) {
+    errno = ENOMEM;
+    return -1;
+  }
+  sprintf(path, "%s%s", folder, ending);
+  int file = mkstemp(path);
+  if (file >= 0) unlink(path);
+  int number = errno;
+  hl_release(context, path);
+  errno = number;
+  return file;
+}
+
+/* Takes the file's space on the disk before anything is written: a mapped file that finds none later would
+ * end the process. Asks first, so as not to fill a disk for the moment. Returns an error number or 0. */
+static int take_space(int file, size_t bytes) {
+  struct statvfs disk;
+  if (fstatvfs(file, &disk) == 0 && bytes / disk.f_frsize >= disk.f_bavail) return ENOSPC;
+  int number;
+  do number = posix_fallocate(file, 0, (off_t)bytes);
+  while (number == EINTR);
+  return number;
+}
+
+static hl_status map_scratch(hl_context *context, const char *folder, hl_pages *pages, hl_error *error) {
+  size_t bytes = pages->mapping_bytes;
+  int file = open_nameless(context, folder);
+  if (file < 0) return fail_scratch(folder, bytes, errno, error);
+  int number = take_space(file, bytes);
+  void *mapping = MAP_FAILED;
+  if (number == 0) {
+    mapping = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    if (mapping == MAP_FAILED) number = errno;
+  }
+  close(file);
+  if (number != 0) return fail_scratch(folder, bytes, number, error);
+  pages->mapping = mapping;
+  pages->first = pages->mapping + SLICES_AROUND * (pages->slice_bytes + LINE) / LINE * LINE;
+  return HL_OK;
+}
+
+hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volume_description *grid,
+                          int shift, hl_pages **pages, hl_error *error) {
+  *pages = NULL;
+  hl_pages *made = hl_allocate_zeroed(context, 1, sizeof *made);
+  if (made == NULL) return hl_fail_memory(error, sizeof *made, "a volume's pages");
+  hl_status status = HL_OK;
+  if (!plan(grid, shift, made))
+    status = hl_fail(error, HL_ERROR_INPUT, "%s: a volume too large for a file", folder);
+  if (status == HL_OK) status = map_scratch(context, folder, made, error);
+  size_t count = page_count(made);
+  if (status == HL_OK && (made->age = hl_allocate_zeroed(context, count, 1)) == NULL)
+    status = hl_fail_memory(error, count, "a volume's pages");
+  if (status == HL_OK) *pages = made;
+  else hl_pages_release(context, made);
+  return status;
+}
+
+void hl_pages_release(hl_context *context, hl_pages *pages) {
+  if (pages == NULL) return;
+  if (pages->mapping != NULL) munmap(pages->mapping, pages->mapping_bytes);
+  hl_release(context, pages->age);
+  hl_release(context, pages);
+}
+
+/* ---- which volumes ---- */
+
+/* Smaller volumes are not worth a file. */
+static const uint64_t LEAST_BYTES = 4 << 20;
+
+/* A renderer holds about so many bytes for each voxel beside it: bounds and look-ups (grid/bounds.h), and of
+ * u8 voxels a copy in columns. */
+static double bytes_beside(hl_storage storage) { return storage == HL_STORAGE_U8 ? 1.6 : 0.6; }
+
+bool hl_pages_wanted(const hl_context *context, const hl_volume_description *grid) {
+  const hl_context_options *options = &context->options;
+  if (options->scratch_folder == NULL || options->memory_limit == 0) return false;
+  hl_storage storage = hl_voxel_type_storage(grid->type);
+  double voxels = (double)grid->dimensions[0] * (double)grid->dimensions[1] * (double)grid->dimensions[2];
+  double bytes = (double)hl_storage_bytes(storage);
+  return voxels * bytes >= (double)LEAST_BYTES &&
+         voxels * (bytes + bytes_beside(storage)) > (double)options->memory_limit;
+}
+
+/* ---- memory ---- */
+
+/* The page's place, from the first byte to the last that no other page shares with it, in the system's
+ * units. */
+static void forget_page(const hl_pages *pages, size_t number, uintptr_t unit) {
+  uintptr_t first = (uintptr_t)pages->first + number * pages->page_bytes;
+  uintptr_t begin = (first + unit - 1) / unit * unit, end = (first + pages->page_bytes) / unit * unit;
+  if (begin < end) madvise((void *)begin, end - begin, MADV_DONTNEED);
+}
+
+void hl_pages_trim(const hl_context *context, const hl_pages *pages) {
+  uint64_t limit = context->options.memory_limit, held = hl_context_memory_held(context), used = 0;
+  if (limit == 0) return;
+  size_t count = page_count(pages);
+  for (size_t n = 0; n < count; n++)
+    if (__atomic_load_n(&pages->age[n], __ATOMIC_RELAXED) != PAGE_FORGOTTEN) used += pages->page_bytes;
+  if (held + used <= limit) return;
+  const uintptr_t unit = (uintptr_t)sysconf(_SC_PAGESIZE);
+  for (size_t n = 0; n < count; n++) {
+    unsigned char age = __atomic_load_n(&pages->age[n], __ATOMIC_RELAXED);
+    if (age == PAGE_HELD) forget_page(pages, n, unit);
+    if (age != PAGE_FORGOTTEN) __atomic_store_n(&pages->age[n], (unsigned char)(age - 1), __ATOMIC_RELAXED);
+  }
+}
+
+/* ---- copies ---- */
+
+/* The pages along an axis that hold a voxel: one, or two where it lies in the overlap. */
+static size_t first_page(const hl_pages *pages, int axis, size_t voxel, size_t *last) {
+  *last = hl_page_of(pages, axis, voxel);
+  size_t within = voxel - (*last << pages->shift), first = *last;
+  /* small pages may overlap with several */
+  while (first > 0 &&
+         within + ((*last - first + 1) << pages->shift) < ((size_t)1 << pages->shift) + PAGE_OVERLAP)
+    first--;
+  return first;
+}
+
+/* Copies the voxels of a row from i on into one row of pages. */
+static void store_in_pages(hl_pages *pages, const size_t page_y_z[2], const size_t at[3], size_t count,
+                           const unsigned char *values) {
+  size_t bytes = hl_storage_bytes(pages->storage), end = at[0] + count, last, ignored;
+  first_page(pages, 0, end - 1, &last);
+  for (size_t x = first_page(pages, 0, at[0], &ignored); x <= last; x++) {
+    size_t begin = x << pages->shift, stop = begin + ((size_t)1 << pages->shift) + PAGE_OVERLAP;
+    size_t from = at[0] > begin ? at[0] : begin, to = end < stop ? end : stop;
+    const size_t page[3] = {x, page_y_z[0], page_y_z[1]};
+    unsigned char *place = (unsigned char *)hl_page_at(pages, page) +
+                           (at[2] - (page[2] << pages->shift)) * pages->slice_bytes +
+                           (at[1] - (page[1] << pages->shift)) * pages->row_bytes + (from - begin) * bytes;
+    memcpy(place, values + (from - at[0]) * bytes, (to - from) * bytes);
+  }
+}
+
+static void store_in_row(hl_pages *pages, const size_t at[3], size_t count, const unsigned char *values) {
+  size_t last_y, last_z, first_y = first_page(pages, 1, at[1], &last_y),
+                         first_z = first_page(pages, 2, at[2], &last_z);
+  for (size_t z = first_z; z <= last_z; z++)
+    for (size_t y = first_y; y <= last_y; y++)
+      store_in_pages(pages, (const size_t[2]){y, z}, at, count, values);
+}
+
+void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *values) {
+  const size_t *n = pages->dimension, bytes = hl_storage_bytes(pages->storage);
+  for (size_t done = 0; done < count;) {
+    size_t row = (first + done) / n[0], i = (first + done) % n[0];
+    size_t taken = n[0] - i < count - done ? n[0] - i : count - done;
+    store_in_row(pages, (const size_t[3]){i, row % n[1], row / n[1]}, taken,
+                 (const unsigned char *)values + done * bytes);
+    done += taken;
+  }
+}
+
+void hl_pages_load_row(const hl_pages *pages, size_t j, size_t k, void *row) {
+  size_t bytes = hl_storage_bytes(pages->storage), width = pages->dimension[0];
+  for (size_t page = 0; page < pages->count[0]; page++) {
+    size_t begin = page << pages->shift,
+           end = page + 1 < pages->count[0] ? begin + ((size_t)1 << pages->shift) : width;
+    memcpy((unsigned char *)row + begin * bytes, hl_page_voxel(pages, begin, j, k), (end - begin) * bytes);
+  }
+}

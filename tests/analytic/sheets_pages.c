@@ -1,0 +1,360 @@
+/* analytic/sheets_pages.c - volumes whose voxels are in pages of a scratch file give the bytes of volumes in
+ * memory, whatever the size of volumes and pages, by every method of shadows. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "core/context.h"
+#include "reference_stage.h"
+#include "volume/pages.h"
+
+enum { SIDE = 24, FLOATS = SIDE * SIDE * 4, MOST_VOXELS = 40 * 40 * 40 };
+
+/* ---- the same volume in pages ---- */
+
+static hl_volume_description description_of(const hl_volume *volume) {
+  hl_volume_info info = {.struct_size = sizeof info};
+  assert_int_equal(hl_volume_get_info(volume, &info), HL_OK);
+  hl_volume_description description;
+  hl_volume_description_defaults(&description);
+  description.type = volume->type;
+  description.value_scale = volume->value_scale;
+  description.value_offset = volume->value_offset;
+  for (size_t a = 0; a < 3; a++) {
+    description.dimensions[a] = volume->dimension[a];
+    description.origin[a] = info.origin[a];
+    for (size_t b = 0; b < 3; b++) description.axis[a][b] = info.direction[b][a] * info.spacing[a];
+  }
+  return description;
+}
+
+/* Stores the voxels in pieces that begin and end anywhere in a row. */
+static hl_volume *in_pages(hl_context *context, const hl_volume *volume, int shift) {
+  hl_volume_description description = description_of(volume);
+  hl_pages *pages;
+  assert_int_equal(hl_pages_create(context, "/tmp", &description, shift, &pages, NULL), HL_OK);
+  size_t bytes = hl_storage_bytes(volume->storage), count = hl_volume_voxel_count(volume);
+  for (size_t done = 0, piece = 1; done < count; done += piece, piece = piece * 3 % 301 + 1) {
+    if (piece > count - done) piece = count - done;
+    hl_pages_store(pages, done, piece, (const unsigned char *)volume->voxels + done * bytes);
+  }
+  hl_volume *made = NULL;
+  assert_int_equal(hl_volume_adopt_pages(context, &description, "pages", pages, &made, NULL), HL_OK);
+  return made;
+}
+
+static hl_volume *packed_volume(hl_context *context, const size_t n[3], hl_voxel_type type) {
+  static unsigned char voxels[MOST_VOXELS * sizeof(float)];
+  hl_volume_description description;
+  hl_volume_description_defaults(&description);
+  memcpy(description.dimensions, n, sizeof description.dimensions);
+  description.type = type;
+  description.voxels = voxels;
+  for (size_t v = 0; v < n[0] * n[1] * n[2]; v++) {
+    unsigned value = (unsigned)(v * 2654435761u >> 11);
+    if (type == HL_VOXEL_U8) voxels[v] = (unsigned char)value;
+    else if (type == HL_VOXEL_U16) ((uint16_t *)(void *)voxels)[v] = (uint16_t)value;
+    else ((float *)(void *)voxels)[v] = (float)(value & 0xffff) / 65536;
+  }
+  hl_volume *made = NULL;
+  assert_int_equal(hl_volume_create(context, &description, &made, NULL), HL_OK);
+  return made;
+}
+
+static const size_t shapes[][3] = {{1, 1, 1},   {2, 3, 1},   {3, 40, 5},   {4, 4, 4},
+                                   {5, 6, 7},   {8, 11, 12}, {11, 19, 3},  {35, 36, 37},
+                                   {19, 1, 40}, {40, 4, 13}, {10, 33, 35}, {13, 40, 9}};
+enum { SHAPES = sizeof shapes / sizeof *shapes };
+static const hl_voxel_type types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
+
+/* Every voxel, every row, and the statistics. */
+static void test_voxels(void **state) {
+  (void)state;
+  stage set;
+  stage_open(&set);
+  for (int n = 0; n < SHAPES * 3 * 4; n++) {
+    const size_t *size = shapes[n % SHAPES];
+    hl_volume *packed = packed_volume(set.context, size, types[n / SHAPES % 3]);
+    hl_volume *paged = in_pages(set.context, packed, 1 + n / SHAPES / 3);
+    size_t bytes = size[0] * hl_storage_bytes(packed->storage);
+    unsigned char row[40 * sizeof(float)];
+    for (size_t k = 0; k < size[2]; k++)
+      for (size_t j = 0; j < size[1]; j++) {
+        assert_memory_equal(hl_volume_row_in(paged, j, k, row), hl_volume_row(packed, j, k), bytes);
+        for (size_t i = 0; i < size[0]; i++)
+          assert_true(hl_volume_value(paged, i, j, k) == hl_volume_value(packed, i, j, k));
+      }
+    assert_memory_equal(paged->histogram, packed->histogram, sizeof paged->histogram);
+    assert_true(paged->minimum == packed->minimum && paged->maximum == packed->maximum &&
+                paged->mean == packed->mean);
+    hl_volume_release(packed);
+    hl_volume_release(paged);
+  }
+  stage_close(&set);
+}
+
+/* ---- pictures ---- */
+
+/* Renders a scene with its volumes in memory and then in pages. */
+static void assert_same_in_pages(stage *set, int shift, const char *what) {
+  static float packed[FLOATS], paged[FLOATS];
+  set->scene.width = set->scene.height = SIDE;
+  stage_render_sheets(set, packed);
+  for (size_t v = 0; v < set->scene.volume_count; v++) {
+    hl_volume *old = set->volumes[v].volume;
+    set->volumes[v].volume = in_pages(set->context, old, shift);
+    hl_volume_release(old);
+  }
+  stage_render_sheets(set, paged);
+  bool any = false;
+  for (int i = 0; i < FLOATS; i++) {
+    any |= packed[i] > 0;
+    if (packed[i] != paged[i])
+      fail_msg("%s, pages of %d: pixel %d, %d: %.9g in memory, %.9g in pages", what, 1 << shift, i / 4 % SIDE,
+               i / 4 / SIDE, (double)packed[i], (double)paged[i]);
+  }
+  assert_true(any);
+}
+
+/* Noise in a box of 20 units, seen obliquely; the voxels' values differ from neighbour to neighbour. */
+static hl_scene_volume *add_noise(stage *set, const size_t n[3], hl_voxel_type type) {
+  static float voxels[MOST_VOXELS];
+  double spacing[3];
+  for (int a = 0; a < 3; a++) spacing[a] = 20 / (double)n[a];
+  for (size_t v = 0; v < n[0] * n[1] * n[2]; v++) {
+    double x = (double)(v % n[0]), y = (double)(v / n[0] % n[1]), z = (double)(v / n[0] / n[1]);
+    voxels[v] = stage_noise(x * 0.9, y * 1.1, z * 1.3);
+  }
+  set->type = type;
+  hl_scene_volume *made = stage_add_grid(set, n, spacing, (vec3){-10, -10, -10}, voxels);
+  stage_set_opacity(set, made, 0.4, 6);
+  stage_look(set, (vec3){31, 17, 23}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+  return made;
+}
+
+static void open_with(stage *set, hl_instruction_set instructions) {
+  hl_context_options options;
+  hl_context_options_defaults(&options);
+  options.instruction_set = instructions;
+  stage_open_with(set, &options);
+}
+
+static void test_shapes(void **state) {
+  (void)state;
+  for (int n = 0; n < SHAPES; n++) {
+    stage set;
+    stage_open(&set);
+    hl_scene_volume *volume = add_noise(&set, shapes[n], types[n % 3]);
+    volume->shading = n % 2 ? HL_SHADING_PHONG : HL_SHADING_NONE;
+    stage_add_directional(&set, (vec3){-3, -1, -2});
+    set.scene.render.kernel = n % 5 == 0 ? HL_KERNEL_LINEAR : HL_KERNEL_BSPLINE;
+    assert_same_in_pages(&set, 1 + n % 4, "shape");
+    stage_close(&set);
+  }
+}
+
+static void test_instruction_sets(void **state) {
+  (void)state;
+  for (int n = 0; n < 3 * HL_INSTRUCTION_SET_AVX512_VBMI; n++) {
+    hl_instruction_set instructions = (hl_instruction_set)(HL_INSTRUCTION_SET_SCALAR + n / 3);
+    if (!hl_cpu_has_instruction_set(instructions)) continue;
+    stage set;
+    open_with(&set, instructions);
+    add_noise(&set, (const size_t[3]){40, 38, 33}, types[n % 3])->shading = HL_SHADING_PHONG;
+    stage_add_point(&set, (vec3){14, -25, 30});
+    assert_same_in_pages(&set, 3, hl_instruction_set_name(instructions));
+    stage_close(&set);
+  }
+}
+
+/* ---- by every way to draw ---- */
+
+static const hl_opacity_point SOFT_EDGE[] = {{0, 0}, {0.35, 0}, {0.6, 0.7}, {1, 0.9}};
+static const hl_opacity_point STEEP[] = {{0, 0}, {0.05, 0.3}, {0.4, 1}};
+
+static void set_method(stage *set, hl_shadows shadows, hl_soft_method method) {
+  set->scene.render.shadows = shadows;
+  set->scene.render.soft_method = method;
+}
+
+static void draw_hard_splat(stage *set) {
+  set_method(set, HL_SHADOWS_HARD, HL_SOFT_CASCADE);
+  set->scene.render.reconstruction = HL_RECONSTRUCTION_SPLAT;
+}
+static void draw_paper(stage *set) { set_method(set, HL_SHADOWS_SOFT, HL_SOFT_PAPER); }
+static void draw_cascade(stage *set) { set_method(set, HL_SHADOWS_SOFT, HL_SOFT_CASCADE); }
+static void draw_sublights(stage *set) { set_method(set, HL_SHADOWS_SOFT, HL_SOFT_SUBLIGHTS); }
+static void draw_maximum(stage *set) { set->scene.render.compositing = HL_COMPOSITING_MAXIMUM; }
+static void draw_gradient_opacity(stage *set) {
+  set->volumes[0].transfer_function.gradient_opacity = STEEP;
+  set->volumes[0].transfer_function.gradient_opacity_count = 3;
+}
+static void draw_sky(stage *set) {
+  draw_gradient_opacity(set);
+  set->scene.sky.type = HL_SKY_UNIFORM;
+  for (int c = 0; c < 3; c++) set->scene.sky.color[c] = 0.7;
+}
+static void draw_scattering(stage *set) {
+  draw_gradient_opacity(set);
+  set->volumes[0].shading = HL_SHADING_NONE;
+  set->volumes[0].multiple_scattering = 1;
+}
+static void draw_clipped(stage *set) {
+  set->volumes[0].clipped = 1;
+  for (int a = 0; a < 3; a++) {
+    set->volumes[0].clip_min[a] = -7.3;
+    set->volumes[0].clip_max[a] = 8.1;
+  }
+}
+static void draw_isosurface(stage *set) {
+  static const hl_isosurface surface = {.value = 0.6, .opacity = 1, .color = {0.9, 0.5, 0.3}};
+  set->volumes[0].iso = &surface;
+  set->volumes[0].iso_count = 1;
+}
+static void draw_two(stage *set) {
+  set_method(set, HL_SHADOWS_SOFT, HL_SOFT_CASCADE);
+  add_noise(set, (const size_t[3]){13, 40, 9}, HL_VOXEL_F32);
+}
+
+typedef struct way {
+  const char *name;
+  void (*draw)(stage *set);
+} way;
+
+static const way ways[] = {{"hard, splat", draw_hard_splat},
+                           {"paper", draw_paper},
+                           {"cascade", draw_cascade},
+                           {"sublights", draw_sublights},
+                           {"maximum", draw_maximum},
+                           {"gradient opacity", draw_gradient_opacity},
+                           {"sky", draw_sky},
+                           {"scattering", draw_scattering},
+                           {"clipped", draw_clipped},
+                           {"isosurface", draw_isosurface},
+                           {"two volumes", draw_two}};
+
+static void test_ways(void **state) {
+  (void)state;
+  for (size_t n = 0; n < sizeof ways / sizeof *ways; n++) {
+    stage set;
+    stage_open(&set);
+    hl_scene_volume *volume = add_noise(&set, (const size_t[3]){37, 29, 34}, types[n % 3]);
+    volume->shading = HL_SHADING_PHONG;
+    volume->transfer_function.opacity = SOFT_EDGE;
+    volume->transfer_function.opacity_count = sizeof SOFT_EDGE / sizeof *SOFT_EDGE;
+    set.scene.camera.type = HL_CAMERA_PERSPECTIVE;
+    set.scene.camera.fovy_deg = 40;
+    stage_add_directional(&set, (vec3){-1, 0.5, -1})->angular_diameter_deg = 10;
+    stage_add_point(&set, (vec3){14, 25, 30})->radius = 3;
+    ways[n].draw(&set);
+    assert_same_in_pages(&set, 2 + (int)n % 3, ways[n].name);
+    stage_close(&set);
+  }
+}
+
+/* ---- memory ---- */
+
+/* Pages that were forgotten are read again, with the same voxels. */
+static void test_forgotten_pages(void **state) {
+  (void)state;
+  hl_context_options options;
+  hl_context_options_defaults(&options);
+  options.memory_limit = 1 << 20;
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(&options, &context, NULL), HL_OK);
+  hl_volume *packed = packed_volume(context, (const size_t[3]){35, 36, 37}, HL_VOXEL_U16);
+  hl_volume *paged = in_pages(context, packed, 4);
+  const hl_context_options unlimited = context->options;
+  const size_t count = 2 * 3 * 3;
+  for (int round = 0; round < 3; round++) {
+    context->options.memory_limit = 1; /* less than any page */
+    hl_pages_trim(context, paged->pages);
+    context->options = unlimited;
+    for (size_t n = 0; n < count; n++) assert_int_equal(paged->pages->age[n], PAGE_HELD);
+    for (size_t v = 0; v < 35 * 36 * 37; v++)
+      assert_true(hl_volume_value(paged, v % 35, v / 35 % 36, v / 35 / 36) ==
+                  hl_volume_value(packed, v % 35, v / 35 % 36, v / 35 / 36));
+  }
+  context->options.memory_limit = 1;
+  hl_pages_trim(context, paged->pages);
+  hl_pages_trim(context, paged->pages);
+  for (size_t n = 0; n < count; n++) assert_int_equal(paged->pages->age[n], PAGE_FORGOTTEN);
+  context->options = unlimited;
+  assert_true(hl_volume_value(paged, 34, 35, 36) == hl_volume_value(packed, 34, 35, 36));
+  hl_volume_release(packed);
+  hl_volume_release(paged);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+static void assert_starts(const char *text, const char *start) {
+  if (strncmp(text, start, strlen(start)) != 0) fail_msg("\"%s\" does not begin with \"%s\"", text, start);
+}
+
+static void test_no_room(void **state) {
+  (void)state;
+  hl_context *context = NULL;
+  hl_error error = {0};
+  hl_pages *pages = NULL;
+  hl_volume_description grid;
+  hl_volume_description_defaults(&grid);
+  grid.type = HL_VOXEL_U8;
+  for (int a = 0; a < 3; a++) grid.dimensions[a] = 10;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  assert_int_equal(hl_pages_create(context, "/nowhere", &grid, PAGE_SHIFT, &pages, &error), HL_ERROR_IO);
+  assert_starts(error.message, "/nowhere: no scratch file of 0.0 MiB for a volume larger than memory: ");
+  for (int a = 0; a < 3; a++) grid.dimensions[a] = (size_t)1 << 20; /* an exbibyte */
+  assert_int_equal(hl_pages_create(context, "/tmp", &grid, PAGE_SHIFT, &pages, &error), HL_ERROR_IO);
+  assert_starts(error.message, "/tmp: no scratch file of ");
+  assert_null(pages);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+static void assert_frame_refused(stage *set, const char *message) {
+  static float pixels[16 * 16 * 4];
+  hl_error error = {0};
+  hl_scene *scene = NULL;
+  hl_renderer *renderer = NULL;
+  assert_int_equal(hl_scene_create(set->context, &set->scene, &scene, NULL), HL_OK);
+  assert_int_equal(hl_renderer_create(set->context, &renderer, NULL), HL_OK);
+  assert_int_equal(hl_renderer_render(renderer, scene, pixels, 16 * 4, NULL, &error), HL_ERROR_UNSUPPORTED);
+  assert_string_equal(error.message, message);
+  hl_renderer_destroy(renderer);
+  hl_scene_release(scene);
+}
+
+/* What needs all voxels in memory is refused in one line. */
+static void test_refused(void **state) {
+  (void)state;
+  for (int n = 0; n < 2; n++) {
+    stage set;
+    stage_open(&set);
+    add_noise(&set, (const size_t[3]){9, 9, 9}, HL_VOXEL_F32);
+    hl_volume *old = set.volumes[0].volume;
+    ((float *)old->owned_voxels)[5] = n == 0 ? 1 : NAN;
+    set.volumes[0].volume = in_pages(set.context, old, 2);
+    hl_volume_release(old);
+    if (n == 0) set.scene.render.kernel = HL_KERNEL_INTERPOLATING;
+    assert_frame_refused(
+        &set,
+        n == 0 ? "kernel \"interpolating\": a volume that is larger than memory needs another kernel, or a "
+                 "higher memory limit"
+               : "a volume that is larger than memory has 1 voxels that are not finite: replace them, or "
+                 "raise the memory limit");
+    stage_close(&set);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_voxels),           cmocka_unit_test(test_shapes),
+                                     cmocka_unit_test(test_instruction_sets), cmocka_unit_test(test_ways),
+                                     cmocka_unit_test(test_forgotten_pages),  cmocka_unit_test(test_no_room),
+                                     cmocka_unit_test(test_refused)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
