@@ -36,10 +36,9 @@ enum { VOLUME, FALL, SLOPES, SURFACE_VOXELS, MEASURES };
 
 typedef struct occupancy_job {
   const hl_volume *map;
-  hl_label_values stored;   /* as stored values */
-  size_t first[3], size[3]; /* the part of the grid */
-  int64_t (*bounds)[6];  /* [slices]; least and greatest coordinate of a shown voxel along x and y, then z */
-  unsigned char *inside; /* [size z][y][x]: 1 where the voxel has one of the labels; finally the result */
+  double stored; /* the label, as a stored value */
+  hl_label_part part;
+  unsigned char *inside; /* [size z][y][x]: 1 where the voxel has the label; finally the result */
   float *field;          /* [size z][y][x] */
   float level;           /* of the field: where the surface is */
   double (*measures)[MEASURES]; /* [slices] */
@@ -49,74 +48,98 @@ typedef struct occupancy_job {
   size_t line_floats;
 } occupancy_job;
 
-static bool is_shown(const hl_label_values *stored, double value) {
-  size_t low = 0, high = stored->count;
+/* ---- the parts of the grid ---- */
+
+/* The least and the greatest coordinates of a label's voxels, both included. */
+typedef struct label_bounds {
+  int64_t low[3], high[3];
+} label_bounds;
+
+typedef struct parts_job {
+  const hl_volume *map;
+  const double *stored; /* [count]; rising: the labels, as stored values */
+  size_t count;
+  label_bounds *bounds; /* [threads][count] */
+} parts_job;
+
+/* The label's place in the list; count where it is not listed. */
+static size_t place_of(const parts_job *job, double stored) {
+  size_t low = 0, high = job->count;
   while (low < high) {
     size_t middle = low + (high - low) / 2;
-    if (stored->values[middle] < value) low = middle + 1;
+    if (job->stored[middle] < stored) low = middle + 1;
     else high = middle;
   }
-  return low < stored->count && stored->values[low] == value;
+  return low < job->count && job->stored[low] == stored ? low : job->count;
 }
 
-/* Marks the shown voxels of a row, count of them from x on. Labels come in runs: each is looked up once. */
-static void mark_row(const occupancy_job *job, size_t x, size_t y, size_t z, size_t count,
-                     unsigned char *shown) {
-  const void *row = hl_volume_row(job->map, y, z);
-  double last = NAN;
-  unsigned char is = 0;
-  for (size_t i = 0; i < count; i++) {
-    double value = hl_stored_number(job->map->storage, row, x + i);
-    if (value != last) is = is_shown(&job->stored, last = value);
-    shown[i] = is;
+static void widen(label_bounds *bounds, const int64_t low[3], const int64_t high[3]) {
+  for (int a = 0; a < 3; a++) {
+    if (low[a] < bounds->low[a]) bounds->low[a] = low[a];
+    if (high[a] > bounds->high[a]) bounds->high[a] = high[a];
   }
 }
 
-/* ---- the part of the grid ---- */
-
+/* Labels come in runs: each run is looked up once. */
 static void bound_slice(void *data, size_t z, int worker) {
-  occupancy_job *job = data;
-  int64_t *bounds = job->bounds[z];
-  size_t width = job->map->dimension[0];
-  unsigned char *row = (unsigned char *)(job->lines + (size_t)worker * job->line_floats);
-  bounds[0] = bounds[2] = INT64_MAX;
-  bounds[1] = bounds[3] = -1;
+  const parts_job *job = data;
+  label_bounds *bounds = job->bounds + (size_t)worker * job->count;
+  const size_t width = job->map->dimension[0];
   for (size_t y = 0; y < job->map->dimension[1]; y++) {
-    mark_row(job, 0, y, z, width, row);
-    const unsigned char *first = memchr(row, 1, width);
-    if (first == NULL) continue;
-    size_t last = width - 1;
-    while (row[last] == 0) last--;
-    int64_t x = first - row;
-    if (x < bounds[0]) bounds[0] = x;
-    if ((int64_t)last > bounds[1]) bounds[1] = (int64_t)last;
-    if ((int64_t)y < bounds[2]) bounds[2] = (int64_t)y;
-    bounds[3] = (int64_t)y;
+    const void *row = hl_volume_row(job->map, y, z);
+    for (size_t x = 0; x < width;) {
+      double stored = hl_stored_number(job->map->storage, row, x);
+      size_t from = x++;
+      while (x < width && hl_stored_number(job->map->storage, row, x) == stored) x++;
+      size_t place = place_of(job, stored);
+      if (place == job->count) continue;
+      widen(&bounds[place], (int64_t[3]){(int64_t)from, (int64_t)y, (int64_t)z},
+            (int64_t[3]){(int64_t)x - 1, (int64_t)y, (int64_t)z});
+    }
   }
 }
 
-/* False where no voxel is shown. */
-static bool find_part(occupancy_job *job) {
-  int64_t low[3] = {INT64_MAX, INT64_MAX, -1}, high[3] = {-1, -1, -1};
-  for (size_t z = 0; z < job->map->dimension[2]; z++) {
-    const int64_t *bounds = job->bounds[z];
-    if (bounds[1] < 0) continue;
-    for (int axis = 0; axis < 2; axis++) {
-      if (bounds[2 * axis] < low[axis]) low[axis] = bounds[2 * axis];
-      if (bounds[2 * axis + 1] > high[axis]) high[axis] = bounds[2 * axis + 1];
-    }
-    if (low[2] < 0) low[2] = (int64_t)z;
-    high[2] = (int64_t)z;
+/* The part with its margin; of the size 0 where there are no voxels. */
+static hl_label_part part_of(const hl_volume *map, const label_bounds *bounds) {
+  hl_label_part part = {{0}, {0}};
+  for (int axis = 0; axis < 3 && bounds->high[axis] >= 0; axis++) {
+    int64_t last = (int64_t)map->dimension[axis] - 1;
+    int64_t begin = bounds->low[axis] - MARGIN < 0 ? 0 : bounds->low[axis] - MARGIN;
+    int64_t end = bounds->high[axis] + MARGIN > last ? last : bounds->high[axis] + MARGIN;
+    part.first[axis] = (size_t)begin;
+    part.size[axis] = (size_t)(end - begin + 1);
   }
-  if (high[2] < 0) return false;
-  for (int axis = 0; axis < 3; axis++) {
-    int64_t last = (int64_t)job->map->dimension[axis] - 1;
-    int64_t begin = low[axis] - MARGIN < 0 ? 0 : low[axis] - MARGIN;
-    int64_t end = high[axis] + MARGIN > last ? last : high[axis] + MARGIN;
-    job->first[axis] = (size_t)begin;
-    job->size[axis] = (size_t)(end - begin + 1);
+  return part;
+}
+
+static double stored_of(const hl_volume *map, double value) {
+  return (value - map->value_offset) / map->value_scale;
+}
+
+hl_status hl_label_parts(hl_context *context, hl_pool *pool, const hl_volume *map, const double *labels,
+                         size_t count, hl_label_part *parts, hl_error *error) {
+  const size_t threads = (size_t)hl_pool_threads(pool);
+  double *stored = hl_allocate(context, count, sizeof *stored);
+  parts_job job = {map, stored, count, hl_allocate(context, threads * count, sizeof *job.bounds)};
+  hl_status status = HL_OK;
+  if (stored == NULL || job.bounds == NULL)
+    status = hl_fail_memory(error, threads * count * sizeof *job.bounds, "labels");
+  for (size_t n = 0; status == HL_OK && n < threads * count; n++)
+    job.bounds[n] = (label_bounds){{INT64_MAX, INT64_MAX, INT64_MAX}, {-1, -1, -1}};
+  if (status == HL_OK) {
+    for (size_t n = 0; n < count; n++) stored[n] = stored_of(map, labels[n]);
+    hl_pool_run(pool, map->dimension[2], bound_slice, &job);
+    if (hl_pool_cancelled(pool))
+      status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while reading labels");
   }
-  return true;
+  for (size_t n = 0; status == HL_OK && n < count; n++) {
+    for (size_t t = 1; t < threads; t++)
+      widen(&job.bounds[n], job.bounds[t * count + n].low, job.bounds[t * count + n].high);
+    parts[n] = part_of(map, &job.bounds[n]);
+  }
+  hl_release(context, job.bounds);
+  hl_release(context, stored);
+  return status;
 }
 
 /* ---- filters ---- */
@@ -134,7 +157,7 @@ static void filter_line(const float *taps, const float *line, size_t count, floa
 /* Filters a slice along x and y, in place. Beyond the part's ends the border's values continue. */
 static void filter_slice(void *data, size_t z, int worker) {
   const occupancy_job *job = data;
-  const size_t nx = job->size[0], ny = job->size[1];
+  const size_t nx = job->part.size[0], ny = job->part.size[1];
   float *slice = job->field + z * nx * ny, *line = job->lines + (size_t)worker * job->line_floats;
   for (size_t y = 0; y < ny; y++) {
     float *row = slice + y * nx;
@@ -166,7 +189,7 @@ static void filter_slice(void *data, size_t z, int worker) {
 /* Filters the columns along z of one y, in place. */
 static void filter_columns(void *data, size_t y, int worker) {
   const occupancy_job *job = data;
-  const size_t nx = job->size[0], nz = job->size[2], slice = nx * job->size[1];
+  const size_t nx = job->part.size[0], nz = job->part.size[2], slice = nx * job->part.size[1];
   float *column = job->field + y * nx, *lines = job->lines + (size_t)worker * job->line_floats;
   for (size_t z = 0; z < nz + 2 * REACH; z++) {
     size_t from = z < REACH ? 0 : z - REACH < nz ? z - REACH : nz - 1;
@@ -186,8 +209,8 @@ static void filter_columns(void *data, size_t y, int worker) {
 
 static void filter(hl_pool *pool, occupancy_job *job, const float *taps) {
   job->taps = taps;
-  hl_pool_run(pool, job->size[2], filter_slice, job);
-  hl_pool_run(pool, job->size[1], filter_columns, job);
+  hl_pool_run(pool, job->part.size[2], filter_slice, job);
+  hl_pool_run(pool, job->part.size[1], filter_columns, job);
 }
 
 /* ---- steps ---- */
@@ -195,17 +218,21 @@ static void filter(hl_pool *pool, occupancy_job *job, const float *taps) {
 static void mark_slice(void *data, size_t z, int worker) {
   (void)worker;
   const occupancy_job *job = data;
-  size_t nx = job->size[0], at = z * nx * job->size[1];
-  for (size_t y = 0; y < job->size[1]; y++, at += nx) {
-    mark_row(job, job->first[0], job->first[1] + y, job->first[2] + z, nx, job->inside + at);
-    for (size_t i = 0; i < nx; i++) job->field[at + i] = job->inside[at + i];
+  const size_t *first = job->part.first, nx = job->part.size[0];
+  size_t at = z * nx * job->part.size[1];
+  for (size_t y = 0; y < job->part.size[1]; y++, at += nx) {
+    const void *row = hl_volume_row(job->map, first[1] + y, first[2] + z);
+    for (size_t i = 0; i < nx; i++) {
+      job->inside[at + i] = hl_stored_number(job->map->storage, row, first[0] + i) == job->stored;
+      job->field[at + i] = job->inside[at + i];
+    }
   }
 }
 
 static void mend_slice(void *data, size_t z, int worker) {
   (void)worker;
   const occupancy_job *job = data;
-  size_t count = job->size[0] * job->size[1], at = z * count;
+  size_t count = job->part.size[0] * job->part.size[1], at = z * count;
   for (size_t i = at; i < at + count; i++) {
     float beyond = job->inside[i] ? 0.5f - job->field[i] : job->field[i] - 0.5f;
     if (!(beyond > TOLERATED)) continue;
@@ -221,7 +248,7 @@ static void mend_slice(void *data, size_t z, int worker) {
 static void measure_slice(void *data, size_t z, int worker) {
   (void)worker;
   const occupancy_job *job = data;
-  const size_t nx = job->size[0], ny = job->size[1], nz = job->size[2], slice = nx * ny;
+  const size_t nx = job->part.size[0], ny = job->part.size[1], nz = job->part.size[2], slice = nx * ny;
   double *measures = job->measures[z];
   memset(measures, 0, sizeof job->measures[z]);
   for (size_t y = 0; y < ny; y++)
@@ -250,14 +277,14 @@ static void find_level(hl_pool *pool, occupancy_job *job) {
   enum { STEPS_OF_NEWTON = 3 };
   static const double FARTHEST = 0.25;
   double wanted = 0;
-  size_t count = job->size[0] * job->size[1] * job->size[2];
+  size_t count = job->part.size[0] * job->part.size[1] * job->part.size[2];
   for (size_t i = 0; i < count; i++) wanted += job->inside[i];
   job->level = 0.5f;
   job->slope = 0.25;
   for (int step = 0; step < STEPS_OF_NEWTON; step++) {
     double sum[MEASURES] = {0};
-    hl_pool_run(pool, job->size[2], measure_slice, job);
-    for (size_t z = 0; z < job->size[2]; z++)
+    hl_pool_run(pool, job->part.size[2], measure_slice, job);
+    for (size_t z = 0; z < job->part.size[2]; z++)
       for (int m = 0; m < MEASURES; m++) sum[m] += job->measures[z][m];
     if (!(sum[FALL] > 0)) return;
     job->slope = sum[SLOPES] / sum[SURFACE_VOXELS];
@@ -269,7 +296,7 @@ static void find_level(hl_pool *pool, occupancy_job *job) {
 static void store_slice(void *data, size_t z, int worker) {
   (void)worker;
   const occupancy_job *job = data;
-  size_t count = job->size[0] * job->size[1], at = z * count;
+  size_t count = job->part.size[0] * job->part.size[1], at = z * count;
   for (size_t i = at; i < at + count; i++) {
     float stored = ZERO + STEPS * (job->field[i] + 0.5f - job->level) + 0.5f;
     job->inside[i] = (unsigned char)(stored < 0 ? 0 : stored > 255 ? 255 : stored);
@@ -277,15 +304,15 @@ static void store_slice(void *data, size_t z, int worker) {
 }
 
 static void smooth(hl_pool *pool, occupancy_job *job) {
-  hl_pool_run(pool, job->size[2], mark_slice, job);
+  hl_pool_run(pool, job->part.size[2], mark_slice, job);
   for (int turn = 0; turn < ROUNDS; turn++) {
     filter(pool, job, SMOOTHING);
-    hl_pool_run(pool, job->size[2], mend_slice, job);
+    hl_pool_run(pool, job->part.size[2], mend_slice, job);
   }
   filter(pool, job, FINISHING);
   find_level(pool, job);
   filter(pool, job, TO_COEFFICIENTS);
-  hl_pool_run(pool, job->size[2], store_slice, job);
+  hl_pool_run(pool, job->part.size[2], store_slice, job);
 }
 
 /* ---- the volume ---- */
@@ -296,12 +323,12 @@ static hl_status adopt(hl_context *context, const occupancy_job *job, unsigned c
   hl_volume_description_defaults(&grid);
   const affine3 placed = job->map->index_to_world;
   vec3 origin = affine3_apply(placed,
-                              (vec3){(double)job->first[0], (double)job->first[1], (double)job->first[2]});
+                              (vec3){(double)job->part.first[0], (double)job->part.first[1], (double)job->part.first[2]});
   grid.origin[0] = origin.x, grid.origin[1] = origin.y, grid.origin[2] = origin.z;
   for (int a = 0; a < 3; a++) {
     vec3 axis = mat3_column(placed.linear, a);
     grid.axis[a][0] = axis.x, grid.axis[a][1] = axis.y, grid.axis[a][2] = axis.z;
-    grid.dimensions[a] = job->size[a];
+    grid.dimensions[a] = job->part.size[a];
   }
   grid.type = HL_VOXEL_U8;
   grid.value_scale = 1 / (double)STEPS;
@@ -315,13 +342,13 @@ static hl_status adopt(hl_context *context, const occupancy_job *job, unsigned c
 
 static hl_status fill(hl_context *context, hl_pool *pool, occupancy_job *job, hl_volume **made,
                       hl_error *error) {
-  size_t count = job->size[0] * job->size[1] * job->size[2];
-  job->line_floats = (2 * REACH + 1 + job->size[2]) * (job->size[0] + 2 * REACH);
-  hl_release(context, job->lines);
+  size_t count = job->part.size[0] * job->part.size[1] * job->part.size[2];
+  job->line_floats = (2 * REACH + 1 + job->part.size[2]) * (job->part.size[0] + 2 * REACH);
   job->lines = hl_allocate(context, (size_t)hl_pool_threads(pool) * job->line_floats, sizeof *job->lines);
   job->inside = hl_allocate(context, count, 1);
   job->field = hl_allocate(context, count, sizeof *job->field);
-  if (job->lines == NULL || job->inside == NULL || job->field == NULL) {
+  job->measures = hl_allocate(context, job->part.size[2], sizeof *job->measures);
+  if (job->lines == NULL || job->inside == NULL || job->field == NULL || job->measures == NULL) {
     hl_release(context, job->inside);
     return hl_fail_memory(error, 5 * count, "smooth labels");
   }
@@ -333,30 +360,14 @@ static hl_status fill(hl_context *context, hl_pool *pool, occupancy_job *job, hl
   return adopt(context, job, job->inside, made, error);
 }
 
-hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, hl_label_values labels,
-                             hl_volume **made, hl_error *error) {
+hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, double label,
+                             const hl_label_part *part, hl_volume **made, hl_error *error) {
   *made = NULL;
-  occupancy_job job = {.map = map, .line_floats = map->dimension[0] / sizeof(float) + 1};
-  double *stored = hl_allocate(context, labels.count, sizeof *stored);
-  job.bounds = hl_allocate(context, map->dimension[2], sizeof *job.bounds);
-  job.lines = hl_allocate(context, (size_t)hl_pool_threads(pool) * job.line_floats, sizeof *job.lines);
-  hl_status status = HL_OK;
-  job.measures = hl_allocate(context, map->dimension[2], sizeof *job.measures);
-  if (stored == NULL || job.bounds == NULL || job.lines == NULL || job.measures == NULL)
-    status = hl_fail_memory(error, map->dimension[2] * sizeof *job.bounds, "labels");
-  if (status == HL_OK) {
-    for (size_t n = 0; n < labels.count; n++)
-      stored[n] = (labels.values[n] - map->value_offset) / map->value_scale;
-    job.stored = (hl_label_values){stored, labels.count};
-    hl_pool_run(pool, map->dimension[2], bound_slice, &job);
-    if (hl_pool_cancelled(pool))
-      status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while reading labels");
-    else if (find_part(&job)) status = fill(context, pool, &job, made, error);
-  }
+  if (part->size[0] == 0) return HL_OK;
+  occupancy_job job = {.map = map, .stored = stored_of(map, label), .part = *part};
+  hl_status status = fill(context, pool, &job, made, error);
   hl_release(context, job.field);
   hl_release(context, job.lines);
-  hl_release(context, job.bounds);
   hl_release(context, job.measures);
-  hl_release(context, stored);
   return status;
 }

@@ -1,7 +1,7 @@
-/* label/occupancy.h - labels of a label map as a smooth field whose surface is where theirs is.
+/* label/occupancy.h - a label of a label map as a smooth field whose surface is where its own is.
  *
- * A label map's voxels are the numbers of things. The occupancy of some labels is 1 within them and 0
- * outside, without the stairs of the voxels: reconstructed by the B-spline, it passes 1/2 at their surface.
+ * A label map's voxels are the numbers of things. The occupancy of a label is 1 within it and 0
+ * outside, without the stairs of the voxels: reconstructed by the B-spline, it passes 1/2 at its surface.
  */
 #ifndef HL_LABEL_OCCUPANCY_H
 #define HL_LABEL_OCCUPANCY_H
@@ -9,15 +9,19 @@
 #include "core/pool.h"
 #include "volume/volume.h"
 
-/* Labels, as data values. */
-typedef struct hl_label_values {
-  const double *values; /* [count]; rising */
-  size_t count;
-} hl_label_values;
+/* The part of a map's grid that holds a label, with a margin for its smooth surface. */
+typedef struct hl_label_part {
+  size_t first[3], size[3]; /* voxels along i, j, k; a size of 0: no voxel has the label */
+} hl_label_part;
 
-/* Makes the occupancy of the labels, over the part of the grid that holds them. *made is null where no voxel
- * has one of the labels. Memory: five bytes a voxel of that part, one of which stays. */
-hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, hl_label_values labels,
-                             hl_volume **made, hl_error *error);
+/* Finds the parts of several labels in one pass over the map. labels: [count]; data values, rising; parts:
+ * [count]. */
+hl_status hl_label_parts(hl_context *context, hl_pool *pool, const hl_volume *map, const double *labels,
+                         size_t count, hl_label_part *parts, hl_error *error);
+
+/* Makes the occupancy of a label over its part. *made is null where no voxel has the label. Memory: five
+ * bytes a voxel of the part, one of which stays. */
+hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, double label,
+                             const hl_label_part *part, hl_volume **made, hl_error *error);
 
 #endif

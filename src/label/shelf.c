@@ -1,16 +1,14 @@
 /* label/shelf.c - see shelf.h. */
 #include "label/shelf.h"
 
-#include <string.h>
-
 #include "core/memory.h"
 
 enum { PLACES = 1024 };
 
 typedef struct place {
-  double *labels; /* owned; [count]; null: the place is free */
-  size_t count;
-  hl_volume *made; /* null: no voxel has one of the labels */
+  bool used;
+  double label;
+  hl_volume *made; /* null: no voxel has the label */
 } place;
 
 typedef struct shelf {
@@ -23,27 +21,20 @@ static void lock(hl_volume *map) {
 }
 static void unlock(hl_volume *map) { atomic_flag_clear_explicit(&map->shelf_lock, memory_order_release); }
 
-static void clear_place(hl_context *context, place *place) {
-  hl_release(context, place->labels);
-  hl_volume_release(place->made);
-  *place = (struct place){0};
-}
-
 static void release_shelf(hl_context *context, void *kept) {
   shelf *shelf = kept;
-  for (int n = 0; n < PLACES; n++) clear_place(context, &shelf->places[n]);
+  for (int n = 0; n < PLACES; n++) hl_volume_release(shelf->places[n].made);
   hl_release(context, shelf);
 }
 
-/* Finds what was made of these labels before, and retains it. */
-static bool find(hl_volume *map, hl_label_values labels, hl_volume **made) {
+/* Finds what was made of the label before, and retains it. */
+static bool find(hl_volume *map, double label, hl_volume **made) {
   bool found = false;
   lock(map);
   const shelf *shelf = map->shelf;
   for (int n = 0; shelf != NULL && n < PLACES && !found; n++) {
     const place *place = &shelf->places[n];
-    found = place->labels != NULL && place->count == labels.count &&
-            memcmp(place->labels, labels.values, labels.count * sizeof *place->labels) == 0;
+    found = place->used && place->label == label;
     if (found) *made = place->made;
   }
   if (found) hl_volume_retain(*made);
@@ -52,11 +43,8 @@ static bool find(hl_volume *map, hl_label_values labels, hl_volume **made) {
 }
 
 /* Keeps what was made. Without memory it is not kept. */
-static void keep(hl_volume *map, hl_label_values labels, hl_volume *made) {
-  place old = {0},
-        fresh = {hl_allocate(map->context, labels.count, sizeof *fresh.labels), labels.count, made};
-  if (fresh.labels == NULL) return;
-  memcpy(fresh.labels, labels.values, labels.count * sizeof *fresh.labels);
+static void keep(hl_volume *map, double label, hl_volume *made) {
+  hl_volume *old = made;
   hl_volume_retain(made);
   lock(map);
   if (map->shelf == NULL) {
@@ -64,25 +52,63 @@ static void keep(hl_volume *map, hl_label_values labels, hl_volume *made) {
     map->release_shelf = release_shelf;
   }
   shelf *shelf = map->shelf;
-  if (shelf == NULL) {
-    old = fresh;
-  } else {
-    old = shelf->places[shelf->next];
-    shelf->places[shelf->next] = fresh;
+  if (shelf != NULL) {
+    old = shelf->places[shelf->next].made;
+    shelf->places[shelf->next] = (place){true, label, made};
     shelf->next = (shelf->next + 1) % PLACES;
   }
   unlock(map);
-  clear_place(map->context, &old);
+  hl_volume_release(old);
 }
 
-hl_status hl_label_occupancy_of(hl_context *context, int threads, hl_volume *map, hl_label_values labels,
-                                hl_volume **made, hl_error *error) {
-  *made = NULL;
-  if (find(map, labels, made)) return HL_OK;
+/* Labels that are not on the shelf. */
+typedef struct missing_labels {
+  double *labels;       /* owned; [count] */
+  size_t *places;       /* owned; of the labels in the caller's list */
+  hl_label_part *parts; /* owned */
+  size_t count;
+} missing_labels;
+
+static void release_missing(hl_context *context, missing_labels *missing) {
+  hl_release(context, missing->labels);
+  hl_release(context, missing->places);
+  hl_release(context, missing->parts);
+}
+
+static hl_status make_missing(hl_context *context, int threads, hl_volume *map, missing_labels *missing,
+                              hl_volume **made, hl_error *error) {
   hl_pool *pool = NULL;
   hl_status status = hl_pool_create(context, threads, &pool, error);
-  if (status == HL_OK) status = hl_label_occupancy(map->context, pool, map, labels, made, error);
+  if (status != HL_OK) return status;
+  status = hl_label_parts(context, pool, map, missing->labels, missing->count, missing->parts, error);
+  for (size_t n = 0; n < missing->count && status == HL_OK; n++) {
+    hl_volume **own = &made[missing->places[n]];
+    status = hl_label_occupancy(map->context, pool, map, missing->labels[n], &missing->parts[n], own, error);
+    if (status == HL_OK) keep(map, missing->labels[n], *own);
+  }
   hl_pool_destroy(pool);
-  if (status == HL_OK) keep(map, labels, *made);
+  return status;
+}
+
+hl_status hl_label_occupancies(hl_context *context, int threads, hl_volume *map, const double *labels,
+                               size_t count, hl_volume **made, hl_error *error) {
+  missing_labels missing = {hl_allocate(context, count, sizeof *missing.labels),
+                            hl_allocate(context, count, sizeof *missing.places),
+                            hl_allocate(context, count, sizeof *missing.parts), 0};
+  hl_status status = HL_OK;
+  for (size_t n = 0; n < count; n++) made[n] = NULL;
+  if (missing.labels == NULL || missing.places == NULL || missing.parts == NULL)
+    status = hl_fail_memory(error, count * sizeof *missing.parts, "labels");
+  for (size_t n = 0; n < count && status == HL_OK; n++) {
+    if (find(map, labels[n], &made[n])) continue;
+    missing.labels[missing.count] = labels[n];
+    missing.places[missing.count++] = n;
+  }
+  if (missing.count > 0) status = make_missing(context, threads, map, &missing, made, error);
+  for (size_t n = 0; n < count && status != HL_OK; n++) {
+    hl_volume_release(made[n]);
+    made[n] = NULL;
+  }
+  release_missing(context, &missing);
   return status;
 }

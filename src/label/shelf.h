@@ -4,9 +4,11 @@
 
 #include "label/occupancy.h"
 
-/* hl_label_occupancy(), or the one that was made of the map before. *made is retained for the caller; null
- * where no voxel has one of the labels. threads: 0: one per processor. Any thread may call it. */
-hl_status hl_label_occupancy_of(hl_context *context, int threads, hl_volume *map, hl_label_values labels,
-                                hl_volume **made, hl_error *error);
+/* The occupancies of labels: those that were made of the map before, and hl_label_occupancy() of the others,
+ * after one pass over the map for all of them. labels: [count]; data values, rising. made: [count]; retained
+ * for the caller; null where no voxel has the label; all null after a failure. threads: 0: one per processor.
+ * Any thread may call it. */
+hl_status hl_label_occupancies(hl_context *context, int threads, hl_volume *map, const double *labels,
+                               size_t count, hl_volume **made, hl_error *error);
 
 #endif

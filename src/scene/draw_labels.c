@@ -100,25 +100,37 @@ static size_t count_drawn(const hl_scene_volume *volume) {
   return count;
 }
 
+/* Adds a drawn label; takes the occupancy over. */
+static void add_drawn(hl_scene_description *placed, const hl_scene_volume *map, const hl_label *label,
+                      hl_volume *occupancy, drawn_points **points) {
+  if (occupancy == NULL) return;
+  hl_scene_volume *drawn = (hl_scene_volume *)&placed->volumes[placed->volume_count++];
+  *drawn = *map;
+  drawn->volume = occupancy;
+  drawn->labels = NULL;
+  drawn->label_count = 0;
+  set_function(label, drawn, (*points)++);
+}
+
 /* Adds the volumes that draw a label map. */
 static hl_status draw_map(hl_context *context, hl_scene_description *placed, const hl_scene_volume *map,
                           drawn_points **points, hl_error *error) {
-  for (size_t n = 0; n < map->label_count; n++) {
-    const hl_label *label = &map->labels[n];
-    hl_volume *occupancy = NULL;
-    if (!is_drawn(label)) continue;
-    hl_status status = hl_label_occupancy_of(context, placed->render.threads, map->volume,
-                                             (hl_label_values){&label->value, 1}, &occupancy, error);
-    if (status != HL_OK) return status;
-    if (occupancy == NULL) continue;
-    hl_scene_volume *drawn = (hl_scene_volume *)&placed->volumes[placed->volume_count++];
-    *drawn = *map;
-    drawn->volume = occupancy;
-    drawn->labels = NULL;
-    drawn->label_count = 0;
-    set_function(label, drawn, (*points)++);
-  }
-  return HL_OK;
+  size_t count = 0;
+  double *values = hl_allocate(context, map->label_count, sizeof *values);
+  hl_volume **made = hl_allocate(context, map->label_count, sizeof(hl_volume *));
+  hl_status status = HL_OK;
+  if (values == NULL || made == NULL)
+    status = hl_fail_memory(error, map->label_count * sizeof *values, "labels");
+  for (size_t n = 0; status == HL_OK && n < map->label_count; n++)
+    if (is_drawn(&map->labels[n])) values[count++] = map->labels[n].value;
+  if (status == HL_OK)
+    status = hl_label_occupancies(context, placed->render.threads, map->volume, values, count, made, error);
+  count = 0;
+  for (size_t n = 0; status == HL_OK && n < map->label_count; n++)
+    if (is_drawn(&map->labels[n])) add_drawn(placed, map, &map->labels[n], made[count++], points);
+  hl_release(context, values);
+  hl_release(context, made);
+  return status;
 }
 
 hl_status hl_labels_draw(hl_context *context, hl_scene_description *placed, drawn_labels *drawn,
