@@ -197,7 +197,20 @@ typedef struct hl_label {
   double color[3];  /* linear RGB */
   double opacity;   /* 1: solid; below: a skin that takes this fraction of the light that crosses it */
   int visible;
+  double tint; /* in a mask: how much the matter takes of `color`, from 0, its own colour, to 1 */
 } hl_label;
+
+/* A label map that masks, colours or reveals a volume: smooth at the labels' borders. Within a label the
+ * volume's extinction is multiplied by the label's opacity, or by 0 where it is not visible. */
+typedef struct hl_mask {
+  hl_volume *volume; /* the label map, in the world of the volume's file; any grid; retained by the scene;
+                        null: there is no mask */
+  const char *file;  /* where it came from, for hl_scene_to_json; may be null */
+  int component;     /* likewise; HL_COMPONENT_DEFAULT is the default */
+  const hl_label *labels; /* [label_count]; rising by value */
+  size_t label_count;
+  double rest; /* what extinction is multiplied by outside the labels: 0, hidden (the default), to 1 */
+} hl_mask;
 
 typedef struct hl_scene_volume {
   const char *name;   /* may be null */
@@ -238,6 +251,7 @@ typedef struct hl_scene_volume {
   size_t cut_count;
   hl_cut_shading cut_shading;
   int cut_casts_shadow; /* non-zero: what `cuts` remove goes on taking light; default 0 */
+  hl_mask mask; /* of a volume that is no label map itself */
 } hl_scene_volume;
 
 /* A mesh among the volumes. Its colour is that of its vertices, faces or spheres, where it has some, times

@@ -229,10 +229,12 @@ class Asked(FurtherSettings, total=False):
     meshes: Mesh | Sequence[Mesh]
     iso: Any
     cuts: Any
+    mask: Any
+    look: str
 
 
 _PLACE = ("spacing", "origin", "direction", "affine", "axes", "array", "component", "series", "time", "channel", "level")
-_MATERIAL = ("ambient", "diffuse", "specular", "shininess", "iso", "cuts",
+_MATERIAL = ("ambient", "diffuse", "specular", "shininess", "iso", "cuts", "mask", "look",
              *(word for word in FurtherSettings.__annotations__ if word in Look.__annotations__))
 _SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads", "meshes",
              *(word for word in FurtherSettings.__annotations__ if word in Settings.__annotations__))
@@ -268,7 +270,8 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
            layers: bool = False, progress: Progress = None, array: str | None = None,
            component: int | str | None = None, series: str | None = None, time: int | None = None,
            channel: int | None = None, level: int | None = None, meshes: Mesh | Sequence[Mesh] | None = None,
-           iso: Any = None, cuts: Any = None, **further: Unpack[FurtherSettings]) -> Image:
+           iso: Any = None, cuts: Any = None, mask: Any = None, look: str | None = None,
+           **further: Unpack[FurtherSettings]) -> Image:
     """A picture of a volume, in one call.
 
     An array's axes, and `spacing`, are in the order ``axes="zyx"``: ``array[z][y][x]``, spacing ``(dz, dy, dx)``.
@@ -319,6 +322,10 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
         Surfaces on which the volume has one value, in place of what an automatic transfer function shows.
     cuts : a mapping or a list of them, optional
         What is cut out of the volume: {"type": "plane", "point": (x, y, z), "normal": (x, y, z)} and others, see `Look`.
+    mask : a label map, or a mapping, optional
+        Where the volume shows, and in which colours: see `halflight.volume.Look`.
+    look : str, optional
+        "surface", "translucent", "xray", "smoke" or "vessels" in place of the automatic look.
     **further : FurtherSettings
         What `Volume` and `Scene` take besides: `exposure`, `soft_method`, `anisotropy`, ...
 
@@ -339,7 +346,7 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
         opacity=opacity, opacity_unit_distance=opacity_unit_distance, shade=shade, ambient=ambient, diffuse=diffuse,
         specular=specular, shininess=shininess, tf=tf, shadows=shadows, lights=lights, camera=camera, size=size,
         background=background, threads=threads, array=array, component=component, series=series, time=time,
-        channel=channel, level=level, meshes=meshes, iso=iso, cuts=cuts, **further)
+        channel=channel, level=level, meshes=meshes, iso=iso, cuts=cuts, mask=mask, look=look, **further)
     with told(progress):
         scene = scene_for(volume, **asked)
     return Renderer().render(scene, layers=layers, progress=progress)

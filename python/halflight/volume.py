@@ -8,7 +8,7 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from . import _settings, arrays, cuts, isosurface, neighbours
+from . import _settings, arrays, cuts, isosurface, mask, neighbours
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords
 from .keywords import MaterialSettings, VolumeSettings
@@ -39,6 +39,13 @@ class Look(VolumeSettings, MaterialSettings, total=False):
         What is cut out of the volume, as in a scene file: {"type": "plane", "point": (x, y, z), "normal": (x, y, z)},
         {"type": "box", "min": ..., "max": ...}, {"type": "sphere", "center": ..., "radius": ...}; with "keep":
         "inside" all else is cut away.
+    mask : a label map (path, array or Volume), or a mapping
+        Where the volume shows: within the map's labels. A mapping has the map as `volume`; as `show` the labels, by
+        name or number, alone or with a colour, an opacity from 0 to 1, or (colour, opacity); as `rest` what is
+        left outside of them; as `table` a file of names and colours: ``{"volume": "organs.seg.nrrd", "show":
+        {"bone": None, "tumour": "red", "liver": 0.3}, "rest": 0.02}``.
+    look : str
+        "surface", "translucent", "xray", "smoke" or "vessels": the transfer function and shading of that look.
     """
 
     name: str
@@ -47,6 +54,8 @@ class Look(VolumeSettings, MaterialSettings, total=False):
     scale: float | Sequence[float]
     iso: Any
     cuts: Any
+    mask: Any
+    look: str
 
 
 _OF_FILES = ("array", "component", "series", "time", "channel", "level")
@@ -219,8 +228,10 @@ class Volume:
 
     def _share(self, other: Volume) -> None:
         self._handle, self._file, self._loading = other._handle, other._file, other._loading
-        self._automatic, self._base, self._order = other._automatic, other._base, other._order
+        self._base, self._order = other._base, other._order
         self._changes = {**other._changes, **self._changes}
+        same = self._changes.get("look") == other._changes.get("look")
+        self._automatic = other._automatic if same else None
 
     def _load(self, path: str, spacing: arrays.Spacing | None, axes: str, chosen: dict[str, Any]) -> None:
         options = ffi.new("hl_volume_load_options *")
@@ -316,8 +327,11 @@ class Volume:
         if self._base is not None:
             return self._base
         if self._automatic is None:
-            self._automatic = made(lib.hl_scene_for_volume, "hl_scene", lib.hl_scene_release, context, self._handle,
-                                   self._file_text())
+            look = self._changes.get("look")
+            wanted = [] if look is None else [ffi.new("char[]", str(look).encode())]
+            function = lib.hl_scene_for_volume if look is None else lib.hl_scene_for_volume_look
+            self._automatic = made(function, "hl_scene", lib.hl_scene_release, context, self._handle,
+                                   self._file_text(), *wanted)
         return self._automatic, 0
 
     def _struct(self) -> Any:
@@ -338,6 +352,10 @@ class Volume:
                 raise TypeError(f"{place}name: {name!r} is no text")
             keep.append(text := ffi.new("char[]", name.encode()))
             struct.name = text
+        if (given := changes.pop("mask", None)) is not None:
+            mask.fill(struct, given, as_volume, keep, place)
+        if (look := changes.pop("look", None)) is not None and self._base is not None:
+            self._take_look(struct, look, keep)
         if (iso := changes.pop("iso", None)) is not None:
             isosurface.fill(struct, iso, keep, place)
             changes.setdefault("transfer_function", TransferFunction([(0, 0)]) if struct.iso_count > 0 else None)
@@ -364,6 +382,14 @@ class Volume:
         material = _settings.taken(changes, _MATERIAL)
         _settings.fill(place, struct.material, lib.HL_SETTINGS_MATERIAL, material)
         _settings.fill(place, struct, lib.HL_SETTINGS_VOLUME, changes)
+
+
+    def _take_look(self, struct: Any, look: Any, keep: list[Any]) -> None:
+        """Give an hl_scene_volume the transfer function and shading of a look."""
+        function, shading = ffi.new("hl_transfer_function *"), ffi.new("hl_shading *", struct.shading)
+        call(lib.hl_transfer_function_look, context, str(look).encode(), self._handle, function, shading)
+        keep += [function, ffi.gc(function, lambda made: lib.hl_transfer_function_release(context, made))]
+        struct.transfer_function, struct.shading = function[0], shading[0]
 
 
 def _sized(noun: str) -> Any:

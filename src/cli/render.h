@@ -45,6 +45,7 @@ enum render_option {
   RENDER_SHADING,
   RENDER_FLOOR,
   RENDER_LABELS,
+  RENDER_MASK,
   RENDER_LABEL_TABLE,
   RENDER_SHOW,
   RENDER_AMBIENT,
@@ -93,7 +94,8 @@ void render_part_meshes(char **operands, char **meshes, char **others);
 /* Adds meshes to a scene; *scene null: makes one for them. bare: the camera frames them too. */
 int render_add_meshes(cli_host *host, char *const *paths, bool bare, hl_scene **scene);
 
-/* Adds the label map of --labels to a scene, or makes one of its bare volume, with what --label-table and
+/* Adds the label map of --labels to a scene, gives its volumes that of --mask, or makes one of its bare
+ * volume, with what --label-table and
  * --show say. */
 int render_add_labels(cli_host *host, const cli_value *values, bool bare, hl_scene **scene);
 

@@ -1,5 +1,5 @@
-/* cli/render_labels.c - --labels, --label-table and --show of `halflight render`: a label map among the
- * volumes, or the volume itself as one. */
+/* cli/render_labels.c - --labels, --mask, --label-table and --show of `halflight render`: a label map among
+ * the volumes, over them, or the volume itself as one. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "render.h"
 #include "suggest.h"
 
-/* One of the labels that --show names: NAME|NUMBER|all[=COLOR][:OPACITY]. */
+/* One of the labels that --show names: NAME|NUMBER|all|rest[=COLOR][:OPACITY]. */
 typedef struct shown_label {
   char name[128];
   bool all, colored, found;
@@ -81,7 +81,9 @@ static void apply_show(show_list *list, hl_label *labels, size_t count) {
       shown->found = true;
       labels[n].visible = 1;
       labels[n].opacity = shown->opacity;
-      if (shown->colored) memcpy(labels[n].color, shown->color, sizeof labels[n].color);
+      if (!shown->colored) continue;
+      memcpy(labels[n].color, shown->color, sizeof labels[n].color);
+      labels[n].tint = 1; /* in a mask */
     }
   }
 }
@@ -220,25 +222,103 @@ static int load_layers(cli_host *host, const char *path, const char *table, hl_s
   return check_found(show, layers);
 }
 
-int render_add_labels(cli_host *host, const cli_value *values, bool bare, hl_scene **scene) {
-  const cli_value *table = &values[RENDER_LABEL_TABLE];
-  if (!values[RENDER_LABELS].given && !table->given && !values[RENDER_SHOW].given) return EXIT_CODE_OK;
+/* What --show says of the matter outside of a mask's labels, "rest:FACTOR"; 0 where it does not. */
+static double rest_of(show_list *show) {
+  double rest = 0;
+  for (size_t s = 0; s < show->count; s++) {
+    if (strcmp(show->labels[s].name, "rest") != 0) continue;
+    show->labels[s].found = true;
+    rest = show->labels[s].opacity;
+  }
+  return rest;
+}
+
+/* Makes a scene whose volumes have the mask; those that are label maps stay as they are. */
+static hl_status put_on_mask(hl_context *context, const hl_mask *mask, hl_scene **scene, hl_error *error) {
+  hl_scene_description description = *hl_scene_describe(*scene);
+  hl_scene_volume *volumes = calloc(description.volume_count + 1, sizeof *volumes);
+  hl_scene *made = NULL;
+  if (volumes == NULL) {
+    snprintf(error->message, sizeof error->message, "out of memory: %zu volumes", description.volume_count);
+    return error->code = HL_ERROR_MEMORY;
+  }
+  memcpy(volumes, description.volumes, description.volume_count * sizeof *volumes);
+  for (size_t v = 0; v < description.volume_count; v++)
+    if (volumes[v].label_count == 0) volumes[v].mask = *mask;
+  description.volumes = volumes;
+  hl_status status = hl_scene_create(context, &description, &made, error);
+  free(volumes);
+  if (status != HL_OK) return status;
+  hl_scene_release(*scene);
+  *scene = made;
+  return HL_OK;
+}
+
+/* Labels that do not show belong to the rest: the others are moved to the front. Returns how many there are.
+ */
+static size_t keep_shown(hl_label *labels, size_t count) {
+  size_t kept = 0;
+  for (size_t n = 0; n < count; n++)
+    if (labels[n].visible) labels[kept++] = labels[n];
+  return kept;
+}
+
+/* --mask: the label map of the file over the scene's volumes. */
+static int add_mask(cli_host *host, const char *path, const char *table, show_list *show,
+                    label_layers *layers, hl_scene **scene) {
+  hl_error error = {0};
   const hl_scene_description *description = hl_scene_describe(*scene);
+  const double rest = rest_of(show);
+  if (description->volume_count == 0)
+    return fail(EXIT_CODE_USAGE, "--mask is for volumes: the scene has none");
+  int exit_code = load_layers(host, path, table, space_of(description, 1), show, layers);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  if (layers->count > 1)
+    return fail(EXIT_CODE_UNSUPPORTED, "'%s': has %zu overlapping layers, a mask takes one: save it as one",
+                path, layers->count);
+  const hl_scene_volume *map = &layers->volumes[0];
+  const hl_mask mask = {.volume = map->volume,
+                        .file = path,
+                        .component = map->component,
+                        .labels = map->labels,
+                        .label_count = keep_shown((hl_label *)map->labels, map->label_count),
+                        .rest = rest};
+  hl_status status = put_on_mask(host->context, &mask, scene, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
+}
+
+/* --labels, or the bare volume itself. */
+static int add_map(cli_host *host, const cli_value *values, bool bare, show_list *show, label_layers *layers,
+                   hl_scene **scene) {
+  const cli_value *table = &values[RENDER_LABEL_TABLE];
+  const hl_scene_description *description = hl_scene_describe(*scene);
+  hl_error error = {0};
   size_t kept;
   const char *path = file_of_labels(values, bare, description, &kept);
   if (path == NULL) return EXIT_CODE_USAGE;
+  int exit_code = load_layers(host, path, table->given ? table->text : NULL, space_of(description, kept),
+                              show, layers);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  hl_status status = extend(host->context, layers, kept, bare, scene, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
+}
+
+int render_add_labels(cli_host *host, const cli_value *values, bool bare, hl_scene **scene) {
+  const cli_value *table = &values[RENDER_LABEL_TABLE], *mask = &values[RENDER_MASK];
+  bool labels = values[RENDER_LABELS].given;
+  if (!labels && !mask->given && !table->given && !values[RENDER_SHOW].given) return EXIT_CODE_OK;
+  if (labels && mask->given)
+    return fail(EXIT_CODE_USAGE, "--mask and --labels exclude each other: --show belongs to one of them");
   show_list *show = calloc(1, sizeof *show);
   label_layers *layers = calloc(1, sizeof *layers);
   int exit_code = show != NULL && layers != NULL ? read_show(&values[RENDER_SHOW], show)
                                                  : fail(EXIT_CODE_FAILURE, "out of memory for labels");
   if (exit_code == EXIT_CODE_OK)
-    exit_code = load_layers(host, path, table->given ? table->text : NULL, space_of(description, kept), show,
-                            layers);
-  hl_error error = {0};
-  hl_status status = exit_code == EXIT_CODE_OK ? extend(host->context, layers, kept, bare, scene, &error)
-                                               : HL_OK;
+    exit_code = mask->given
+                    ? add_mask(host, mask->text, table->given ? table->text : NULL, show, layers, scene)
+                    : add_map(host, values, bare, show, layers, scene);
   if (layers != NULL) release_layers(host->context, layers);
   free(layers);
   free(show);
-  return status == HL_OK ? exit_code : host_fail(host, PHASE_READ, status, &error);
+  return exit_code;
 }

@@ -235,6 +235,12 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                        .help =
                            "a label map or segmentation (.seg.nrrd, NIfTI, ...)\nin the same world: smooth "
                            "surfaces in colours"},
+    [RENDER_MASK] =
+        {.name = "mask",
+         .kind = OPTION_TEXT,
+         .argument = "FILE",
+         .help = "a label map that reveals, colours and fades the\nvolumes within its labels: those of "
+                 "--show, or all"},
     [RENDER_LABEL_TABLE] = {.name = "label-table",
                             .kind = OPTION_TEXT,
                             .argument = "FILE",
@@ -244,9 +250,9 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_SHOW] = {.name = "show",
                      .kind = OPTION_TEXT,
                      .argument = "LABEL[=COLOR][:OPACITY],...",
-                     .help =
-                         "labels to show, by name or number, or all:\nliver,tumour=red:0.5; without --labels "
-                         "INPUT is the\nlabel map",
+                     .help = "labels to show, by name or number, or all:\nliver,tumour=red:0.5; with --mask "
+                             "also rest:0.1;\nwithout "
+                             "either INPUT is the label map",
                      .repeatable = true},
 
     [RENDER_AMBIENT] = {.name = "ambient",

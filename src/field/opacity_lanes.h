@@ -117,14 +117,19 @@ LANES_INLINE int cuts_leave_position(const grid *grid, const float at[3]) {
          hl_cuts_leave(grid->cuts, grid->cut_count, (vec3){at[0], at[1], at[2]});
 }
 
-LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage storage, const float at[3]) {
+/* point: the same position in frame space. */
+LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage storage, const float at[3],
+                                          const float point[3]) {
   for (int a = 0; a < 3; a++)
     if (!(at[a] >= matter->low[a] && at[a] <= matter->high[a])) return 0;
   if (!cell_shows(matter->grid, at) || !cuts_leave_position(matter->grid, at)) return 0;
   float value = value_at(matter, storage, at);
   float extinction = matter->cast * field_extinction(matter->classifier, value - matter->grid->empty);
-  if (!(extinction > 0) || matter->classifier->steepness == NULL) return extinction;
-  return extinction * factor_at_position(matter, storage, at);
+  if (!(extinction > 0)) return extinction;
+  if (matter->classifier->steepness != NULL) extinction *= factor_at_position(matter, storage, at);
+  if (matter->classifier->mask.factors != NULL)
+    extinction *= hl_mask_factor(&matter->classifier->mask, point);
+  return extinction;
 }
 
 /* Adds a volume's extinction to the samples of a cell; returns whether there is any. */
@@ -147,7 +152,9 @@ LANES_INLINE int sample_cell(const field_block *block, const field_matter *matte
           const float *row = matter->to_index[a];
           at[a] = start[a] + step * ((float)i * row[0] + (float)j * row[1] + (float)k * row[2]);
         }
-        float extinction = extinction_at_position(matter, storage, at);
+        const float point[3] = {corner[0] + step * (float)i, corner[1] + step * (float)j,
+                                corner[2] + step * (float)k};
+        float extinction = extinction_at_position(matter, storage, at, point);
         samples[(k * n + j) * n + i][lane] += extinction;
         any |= extinction > 0;
       }

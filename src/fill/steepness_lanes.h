@@ -1,9 +1,9 @@
-/* fill/steepness_lanes.h - gradient opacity: what the length of a volume's gradient makes of its extinction.
- */
+/* fill/steepness_lanes.h - what the length of a volume's gradient, and its mask, make of its extinction. */
 #ifndef HL_FILL_STEEPNESS_LANES_H
 #define HL_FILL_STEEPNESS_LANES_H
 
 #include "fill/gradient_lanes.h"
+#include "fill/mask_lanes.h"
 
 /* The gradient at a point of frame space: df/dframe = (dindex/dframe)^T df/dindex; stored units per frame
  * unit. m: frame space to index space. */
@@ -22,6 +22,15 @@ LANES_INLINE lanes factor_of_slope(const classifier *classifier, lanes3 slope) {
   lanes_int entry = lanes_truncate(x);
   lanes_gather_pairs(classifier->steepness, entry, &a, &b);
   return lanes_fma(b - a, x - lanes_from_int(entry), a);
+}
+
+/* What extinction is multiplied by at a point of frame space. slope: the gradient there; not read without
+ * gradient opacity. */
+LANES_INLINE lanes factor_of_matter(const classifier *classifier, lanes3 slope, lanes3 point) {
+  lanes factor = lanes_set(1.0f);
+  if (classifier->steepness != NULL) factor = factor_of_slope(classifier, slope);
+  if (classifier->mask.factors != NULL) factor = factor * mask_factor(&classifier->mask, point);
+  return factor;
 }
 
 #endif

@@ -9,6 +9,7 @@
 #define HL_GRID_CLASSIFIER_H
 
 #include "grid/grid.h"
+#include "grid/mask_lattice.h"
 
 enum { CLASSIFIER_ENTRIES = 4096, STEEPNESS_ENTRIES = 4096 };
 
@@ -25,8 +26,14 @@ typedef struct classifier {
    * STEEPNESS_ENTRIES]; the length is in stored units per frame unit. */
   float *steepness;
   float steepness_scale;
+  mask_lattice mask; /* of the frame's scene */
   float normal_edge; /* the least gradient (table entries per frame unit) that counts as a surface */
 } classifier;
+
+/* Whether extinction depends on more than the value: it is multiplied by a factor. */
+static inline bool hl_classifier_is_weighed(const classifier *classifier) {
+  return classifier->steepness != NULL || classifier->mask.factors != NULL;
+}
 
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,
                                classifier *classifier, hl_error *error);

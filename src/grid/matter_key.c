@@ -25,5 +25,7 @@ void hl_matter_key_add(hl_key *key, const hl_scene_volume *volume, const grid *g
   add_points(key, function->opacity, function->opacity_count);
   add_points(key, function->gradient_opacity, function->gradient_opacity_count);
   hl_key_add_numbers(key, volume->attenuation_color, 3);
+  hl_key_add_whole(key, (int64_t)(uintptr_t)volume->mask.volume);
+  if (volume->mask.volume != NULL) hl_key_add_numbers(key, &volume->mask.rest, 1);
   hl_key_add_whole(key, volume->casts_shadow != 0);
 }

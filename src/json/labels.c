@@ -12,7 +12,7 @@
 #include "scene/label_table.h"
 #include "scene/scene.h"
 
-static const char *const label_keys[] = {"value", "name", "color", "opacity", "visible", NULL};
+static const char *const label_keys[] = {"value", "name", "color", "opacity", "visible", "tint", NULL};
 
 /* The labels of the volume, found when one is first asked for. */
 typedef struct known_labels {
@@ -73,6 +73,8 @@ static hl_status read_label(known_labels *known, const json_t *object, hl_label 
   if (status == HL_OK) status = take_known(known, object, name, label);
   if (status == HL_OK && name != NULL) label->name = name;
   if (status == HL_OK) status = hl_json_numbers(reader, object, "color", 3, label->color);
+  if (json_object_get(object, "color") != NULL) label->tint = 1; /* in a mask */
+  if (status == HL_OK) status = hl_json_number(reader, object, "tint", &label->tint);
   if (status == HL_OK) status = hl_json_number(reader, object, "opacity", &label->opacity);
   return status == HL_OK ? hl_json_flag(reader, object, "visible", &label->visible) : status;
 }
@@ -126,7 +128,7 @@ static hl_status read_any(known_labels *known, const json_t *value, hl_scene_vol
   return HL_OK;
 }
 
-hl_status hl_json_read_labels(hl_json_reader *reader, const json_t *object, hl_scene_volume *volume) {
+hl_status hl_json_read_label_list(hl_json_reader *reader, const json_t *object, hl_scene_volume *volume) {
   const json_t *value = json_object_get(object, "labels");
   const char *table = NULL;
   hl_status status = hl_json_text(reader, object, "label_table", &table);
@@ -135,9 +137,6 @@ hl_status hl_json_read_labels(hl_json_reader *reader, const json_t *object, hl_s
     return table == NULL
                ? HL_OK
                : hl_json_fail(reader, HL_ERROR_INPUT, "label_table", "is for labels: give \"labels\"");
-  if (json_object_get(object, "transfer_function") != NULL)
-    return hl_json_fail(reader, HL_ERROR_INPUT, "transfer_function",
-                        "and labels exclude each other: remove one");
   if (table != NULL && reader->like != NULL) table = NULL; /* no file is opened */
   known_labels known = {reader, volume->volume, NULL, false, NULL, 0};
   if (table != NULL && (known.table = hl_json_path(reader, table)) == NULL)
@@ -145,6 +144,14 @@ hl_status hl_json_read_labels(hl_json_reader *reader, const json_t *object, hl_s
   status = read_any(&known, value, volume);
   hl_labels_release(reader->context, known.labels);
   hl_release(reader->context, known.table);
-  if (status != HL_OK) return status;
+  return status;
+}
+
+hl_status hl_json_read_labels(hl_json_reader *reader, const json_t *object, hl_scene_volume *volume) {
+  if (json_object_get(object, "labels") != NULL && json_object_get(object, "transfer_function") != NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "transfer_function",
+                        "and labels exclude each other: remove one");
+  hl_status status = hl_json_read_label_list(reader, object, volume);
+  if (status != HL_OK || volume->label_count == 0) return status;
   return hl_labels_function(reader->context, volume, &volume->transfer_function, reader->error);
 }

@@ -62,6 +62,9 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
  * transfer function are owned by *volume. */
 hl_status hl_json_read_labels(hl_json_reader *reader, const json_t *object, hl_scene_volume *volume);
 
+/* The same without a transfer function. */
+hl_status hl_json_read_label_list(hl_json_reader *reader, const json_t *object, hl_scene_volume *volume);
+
 /* Puts the volumes of the reader's `like` on the shelf, which has room for them. */
 hl_status hl_json_shelve_known(hl_json_reader *reader, hl_volume_shelf *shelf);
 

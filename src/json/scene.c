@@ -31,6 +31,7 @@ static void release(hl_context *context, gathered *g) {
     hl_release(context, (void *)g->volumes[v].iso);
     hl_release(context, (void *)g->volumes[v].cuts);
     hl_labels_release(context, (hl_label *)g->volumes[v].labels);
+    hl_labels_release(context, (hl_label *)g->volumes[v].mask.labels);
   }
   for (size_t v = 0; v < g->shelf.count; v++) {
     hl_volume_release(g->shelf.loaded[v].volume);
@@ -133,9 +134,9 @@ static hl_status read_volumes(hl_json_reader *reader, const json_t *root, gather
   hl_status status = hl_json_array(reader, value, meshes ? 0 : 1, HL_LIMIT_VOLUMES);
   if (status != HL_OK) return status;
   size_t count = json_array_size(value);
-  size_t known = reader->like != NULL ? reader->like->volume_count : 0;
+  size_t known = reader->like != NULL ? 2 * reader->like->volume_count : 0;
   g->volumes = hl_allocate_zeroed(reader->context, count, sizeof *g->volumes);
-  g->shelf.loaded = hl_allocate_zeroed(reader->context, count + known, sizeof *g->shelf.loaded);
+  g->shelf.loaded = hl_allocate_zeroed(reader->context, 2 * count + known, sizeof *g->shelf.loaded);
   if (g->volumes == NULL || g->shelf.loaded == NULL)
     return hl_fail_memory(reader->error, count * sizeof *g->volumes, "a scene's volumes");
   status = known > 0 ? hl_json_shelve_known(reader, &g->shelf) : HL_OK;

@@ -28,6 +28,7 @@ static const char *const volume_keys[] = {"name",        "stand_in",
                                           "iso",         "labels",
                                           "label_table", "cuts",
                                           "cut_shading", "cut_casts_shadow",
+                                          "mask",
                                           NULL};
 
 #define GIVE_COMPONENT "give a number from 0 on, \"magnitude\", \"color\" or \"luminance\""
@@ -135,9 +136,23 @@ static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source
   return place;
 }
 
+static hl_status shelve_mask(hl_json_reader *reader, hl_volume_shelf *shelf, const hl_mask *mask) {
+  hl_volume_load_options options;
+  if (mask->volume == NULL || mask->file == NULL) return HL_OK;
+  char *copy = hl_copy_text(reader->context, mask->file);
+  if (copy == NULL) return hl_fail_memory(reader->error, strlen(mask->file) + 1, "a path");
+  hl_volume_load_options_defaults(&options);
+  options.component = mask->component;
+  hl_volume_retain(mask->volume);
+  put_on_shelf(shelf, copy, &options, mask->volume);
+  return HL_OK;
+}
+
 hl_status hl_json_shelve_known(hl_json_reader *reader, hl_volume_shelf *shelf) {
   for (size_t v = 0; v < reader->like->volume_count; v++) {
     const hl_scene_volume *known = &reader->like->volumes[v];
+    hl_status status = shelve_mask(reader, shelf, &known->mask);
+    if (status != HL_OK) return status;
     const char *source = known->file != NULL ? known->file : known->shapes;
     if (source == NULL) continue;
     char *copy = hl_copy_text(reader->context, source);
@@ -304,6 +319,31 @@ static hl_status read_source(hl_json_reader *reader, const json_t *value, hl_vol
   return status == HL_OK ? load(reader, file, &options, shelf, volume) : status;
 }
 
+/* The key "mask": a label map with its labels, "rest" and the keys of its file. Its labels are owned by
+ * *volume (hl_labels_release). */
+static hl_status read_mask(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
+                           hl_scene_volume *volume) {
+  static const char *const keys[] = {"file", "component", "labels", "label_table", "rest", NULL};
+  if (value == NULL) return HL_OK;
+  hl_scene_volume map;
+  hl_mask *mask = &volume->mask;
+  hl_scene_volume_defaults(&map);
+  size_t mark = hl_json_enter(reader, "mask");
+  hl_status status = hl_json_object(reader, value, keys);
+  if (status == HL_OK) status = read_source(reader, value, shelf, &map);
+  if (status == HL_OK && json_object_get(value, "labels") == NULL)
+    status = hl_json_fail(reader, HL_ERROR_INPUT, "labels", "is missing: give true for all, or a list");
+  if (status == HL_OK) status = hl_json_read_label_list(reader, value, &map);
+  if (status == HL_OK) status = hl_json_number(reader, value, "rest", &mask->rest);
+  mask->volume = map.volume;
+  mask->file = map.file;
+  mask->component = map.component;
+  mask->labels = map.labels;
+  mask->label_count = map.label_count;
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
 /* True for volumes of shapes, except for orbitals, whose values are signed floats. */
 static bool is_solid(const hl_scene_volume *volume) {
   return volume->shapes != NULL && volume->volume->storage != HL_STORAGE_F32;
@@ -378,6 +418,7 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
   if (status == HL_OK) status = read_scattering(reader, json_object_get(value, "scattering"), volume);
   if (status == HL_OK) status = read_source(reader, value, shelf, volume);
   if (status == HL_OK) status = hl_json_read_labels(reader, value, volume);
+  if (status == HL_OK) status = read_mask(reader, json_object_get(value, "mask"), shelf, volume);
   if (status == HL_OK && volume->label_count == 0) status = choose_shading(reader, value, volume);
   if (status != HL_OK || volume->label_count > 0) return status;
   if ((status = hl_json_read_iso(reader, json_object_get(value, "iso"), volume)) != HL_OK) return status;

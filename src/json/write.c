@@ -329,19 +329,31 @@ static void write_scattering(writer *w, const hl_scene_volume *volume) {
   close_bracket(w, "}");
 }
 
-static void write_labels(writer *w, const hl_scene_volume *volume) {
+/* masks: the labels are those of a mask, which tint. */
+static void write_labels(writer *w, const hl_label *labels, size_t count, bool masks) {
   open_bracket(w, "labels", "[");
-  for (size_t n = 0; n < volume->label_count; n++) {
-    const hl_label *label = &volume->labels[n];
+  for (size_t n = 0; n < count; n++) {
+    const hl_label *label = &labels[n];
     open_bracket(w, NULL, "{");
     write_number(w, "value", label->value);
     if (label->name != NULL) write_name(w, "name", label->name);
     write_row(w, "color", label->color, 3);
     write_number(w, "opacity", label->opacity);
     write_flag(w, "visible", label->visible);
+    if (masks) write_number(w, "tint", label->tint);
     close_bracket(w, "}");
   }
   close_bracket(w, "]");
+}
+
+static void write_mask(writer *w, const hl_mask *mask) {
+  if (mask->volume == NULL) return;
+  open_bracket(w, "mask", "{");
+  write_name(w, "file", mask->file);
+  if (mask->component >= 0) write_number(w, "component", mask->component);
+  write_labels(w, mask->labels, mask->label_count, true);
+  write_number(w, "rest", mask->rest);
+  close_bracket(w, "}");
 }
 
 static void write_volume(writer *w, const hl_scene_volume *volume) {
@@ -350,8 +362,9 @@ static void write_volume(writer *w, const hl_scene_volume *volume) {
   if (volume->shapes != NULL) write_shapes(w, volume->shapes);
   else write_source(w, volume);
   write_transform(w, volume);
-  if (volume->label_count > 0) write_labels(w, volume);
+  if (volume->label_count > 0) write_labels(w, volume->labels, volume->label_count, false);
   else write_transfer_function(w, &volume->transfer_function);
+  write_mask(w, &volume->mask);
   write_iso(w, volume);
   write_key(w, HL_SETTINGS_VOLUME, "shading", volume);
   write_material(w, &volume->material);
@@ -492,6 +505,12 @@ static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_er
     return hl_fail(
         error, HL_ERROR_ARGUMENT,
         "/volumes/%zu/file: the volume came from memory: write it to a file and name that in the scene",
+        index);
+  if (volume->mask.volume != NULL && volume->mask.file == NULL)
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "/volumes/%zu/mask/file: the mask came from memory: write it to a file and name that in the "
+        "scene",
         index);
   if (volume->shapes != NULL && !is_text_of_shapes(volume->shapes))
     return hl_fail(error, HL_ERROR_ARGUMENT,

@@ -38,9 +38,9 @@ typedef struct occupancy_job {
   const hl_volume *map;
   double stored; /* the label, as a stored value */
   hl_label_part part;
-  unsigned char *inside; /* [size z][y][x]: 1 where the voxel has the label; finally the result */
-  float *field;          /* [size z][y][x] */
-  float level;           /* of the field: where the surface is */
+  unsigned char *inside;        /* [size z][y][x]: 1 where the voxel has the label; finally the result */
+  float *field;                 /* [size z][y][x] */
+  float level;                  /* of the field: where the surface is */
   double (*measures)[MEASURES]; /* [slices] */
   double slope;                 /* mean length of the gradient at the surface, per voxel */
   const float *taps;
@@ -322,8 +322,8 @@ static hl_status adopt(hl_context *context, const occupancy_job *job, unsigned c
   hl_volume_description grid;
   hl_volume_description_defaults(&grid);
   const affine3 placed = job->map->index_to_world;
-  vec3 origin = affine3_apply(placed,
-                              (vec3){(double)job->part.first[0], (double)job->part.first[1], (double)job->part.first[2]});
+  vec3 origin = affine3_apply(
+      placed, (vec3){(double)job->part.first[0], (double)job->part.first[1], (double)job->part.first[2]});
   grid.origin[0] = origin.x, grid.origin[1] = origin.y, grid.origin[2] = origin.z;
   for (int a = 0; a < 3; a++) {
     vec3 axis = mat3_column(placed.linear, a);

@@ -175,7 +175,8 @@ double hl_reference_extinction(const reference_volume *volume, double value, vec
   if (value < volume->transparent_below) return 0;
   double opacity = hl_transfer_function_opacity(function, value);
   if (!(opacity > 0)) return 0;
-  double extinction = -log1p(-fmin(opacity, 0.9999)) / function->unit_distance;
+  double extinction = -log1p(-fmin(opacity, 0.9999)) / function->unit_distance *
+                      hl_reference_mask_factor(volume, point);
   if (function->gradient_opacity_count == 0) return extinction;
   return extinction *
          hl_transfer_function_gradient_opacity(function, vec3_length(hl_reference_gradient(volume, point)));
@@ -329,6 +330,12 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
   if (!affine3_invert(to_world, &made->world_to_index))
     return hl_fail(error, HL_ERROR_INPUT, "volume %s: its axes lie in a plane: give three independent ones",
                    described->name != NULL ? described->name : "without a name");
+  affine3 world_to_mask;
+  if (described->mask.volume != NULL) {
+    if (!affine3_invert(hl_scene_mask_index_to_world(described), &world_to_mask))
+      return hl_fail(error, HL_ERROR_INPUT, "a mask's axes lie in a plane: give three independent ones");
+    made->index_to_mask = affine3_multiply(world_to_mask, to_world);
+  }
   mat3 inverse = made->world_to_index.linear;
   made->gradient_to_world = mat3_from_columns(inverse.row[0], inverse.row[1], inverse.row[2]);
   hl_scene_volume_box(described, made->low, made->high);

@@ -8,7 +8,8 @@
  *     field.c           reconstruction of one volume at a point: value, gradient, extinction, empty bricks
  *     cuts.c            what cuts leave of a volume
  *     clip_faces.c      what clipping does to normals
- *     tint.c            the colours of a volume's own voxels
+ *     tint.c            the colours of a volume's own voxels, and of its mask
+ *     mask.c            what a mask makes of extinction and colour
  *     coefficients.c    what the interpolating kernel sums in place of voxels
  *     rays.c            how many rays a pixel of a small picture has
  *     lights.c          points on the lights, their images, and the transmittance towards them
@@ -53,6 +54,7 @@ typedef struct reference_volume {
   double *coefficients;     /* owned; [k][j][i], stored values: what the interpolating kernel sums in place of
                              * voxels; else null */
   double least, greatest;   /* with coefficients: values beyond these count as these */
+  affine3 index_to_mask;    /* from the volume's index space to that of its mask, where it has one */
   unsigned char *clearance; /* owned; [k][j][i] of bricks: 0 where the brick may be visible, else the distance
                              * in bricks (chessboard metric) to the nearest such brick, at most 255 */
 } reference_volume;
@@ -220,8 +222,12 @@ void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 *nor
 
 double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]);
 double hl_reference_value(const reference_volume *volume, vec3 point);
-/* Multiplies a colour by that of the volume's own voxels, if they have one. */
+/* Multiplies a colour by that of the volume's own voxels, if they have one, and gives it the mask's tint. */
 void hl_reference_tint(const reference_volume *volume, vec3 point, double color[3]);
+/* What the volume's mask multiplies extinction by at a point of the volume's index space; 1 without one. */
+double hl_reference_mask_factor(const reference_volume *volume, vec3 point);
+/* The colour that the mask gives, and how much of it matter takes, 0 to 1, which is returned. */
+double hl_reference_mask_color(const reference_volume *volume, vec3 point, double color[3]);
 /* Data value per world unit. */
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);
 /* Finds the faces at which clipping cuts the volume and no other one goes on; its box is known. */

@@ -1,5 +1,5 @@
 /* reference/tint.c - the colours of a volume's own voxels at a point: the trilinear mean of linear colours
- * times weights, divided by that of the weights. */
+ * times weights, divided by that of the weights; then the mask's. */
 #include "reference/reference.h"
 
 /* IEC 61966-2-1. */
@@ -15,9 +15,9 @@ static void add_voxel(const unsigned char *color, double share, double sum[3], d
   for (int c = 0; c < 3; c++) sum[c] += weight * linear_of(color[c]);
 }
 
-void hl_reference_tint(const reference_volume *volume, vec3 point, double color[3]) {
+/* Multiplies a colour by that of the voxels. */
+static void multiply_by_voxels(const reference_volume *volume, vec3 point, double color[3]) {
   const hl_volume *grid = volume->grid;
-  if (grid->colors == NULL) return;
   const double p[3] = {point.x, point.y, point.z};
   size_t first[3], next[3];
   double part[3], sum[3] = {0, 0, 0}, weights = 0;
@@ -39,4 +39,11 @@ void hl_reference_tint(const reference_volume *volume, vec3 point, double color[
     add_voxel(grid->colors + 4 * index, share, sum, &weights);
   }
   for (int c = 0; c < 3; c++) color[c] *= sum[c] / weights;
+}
+
+void hl_reference_tint(const reference_volume *volume, vec3 point, double color[3]) {
+  double tint[3];
+  if (volume->grid->colors != NULL) multiply_by_voxels(volume, point, color);
+  double part = hl_reference_mask_color(volume, point, tint);
+  for (int c = 0; c < 3 && part > 0; c++) color[c] += part * (tint[c] - color[c]);
 }

@@ -91,7 +91,7 @@ LANES_INLINE lanes extinction_towards(const block_density *d, lanes3 towards, la
   lanes start = lanes_fma(dot3(d->slope, towards), way * classifier->scale, seen);
   way_sums sums = sums_of_way(classifier, split_coordinate(lanes_clamp(start, 0, CLASSIFIER_ENTRIES)),
                               split_coordinate(seen));
-  if (classifier->steepness != NULL) late = late * d->factor;
+  if (hl_classifier_is_weighed(classifier)) late = late * d->factor;
   return lanes_select(d->sloped, late * sums.extinction, d->sums.extinction);
 }
 
@@ -202,7 +202,7 @@ LANES_INLINE void add_plane(const shade_job *job, const block_density *d, const 
   const shade_volume *volume = d->patch->volume;
   const classifier *classifier = volume->classifier;
   lanes depth = plane->inverse * plane->likely * share;
-  if (classifier->steepness != NULL) depth = depth * d->factor;
+  if (hl_classifier_is_weighed(classifier)) depth = depth * d->factor;
   const lanes end[2] = {back_to_front ? d->after : d->before, back_to_front ? d->before : d->after};
   const lanes way[2] = {back_to_front ? ways->all.last : ways->all.first,
                         back_to_front ? ways->all.first : ways->all.last};

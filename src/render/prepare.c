@@ -124,6 +124,7 @@ void hl_prepared_release(hl_context *context, prepared_volume *prepared) {
   hl_grid_release(context, &prepared->grid);
   hl_release(context, prepared->cuts);
   hl_volume_release(prepared->volume);
+  hl_volume_release(prepared->mask);
   memset(prepared, 0, sizeof *prepared);
 }
 
@@ -147,6 +148,14 @@ typedef struct preparation {
   const grid_functions *functions;
   hl_kernel kernel;
 } preparation;
+
+/* The mask is retained, so that another one has another address, which keys of kept light are made of. */
+static void hold_mask(prepared_volume *prepared, const hl_scene_volume *scene) {
+  hl_volume_retain(scene->mask.volume);
+  hl_volume_release(prepared->mask);
+  prepared->mask = scene->mask.volume;
+  hl_mask_lattice_set_up(&prepared->classifier.mask, scene);
+}
 
 static hl_status prepare_volume(const preparation *with, const hl_scene_volume *scene,
                                 prepared_volume *prepared, hl_error *error) {
@@ -175,11 +184,13 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
   prepared->grid.index_to_frame = index_to_frame;
   if (!affine3_invert(index_to_frame, &prepared->grid.frame_to_index))
     return hl_fail(error, HL_ERROR_INPUT, "a volume's axes are singular: the three must span space");
+  hold_mask(prepared, scene);
   if (same) return HL_OK;
   release_function(context, prepared);
   if (!same_cut) release_iso(context, prepared);
   if (!same_cut && (status = keep_cuts(context, prepared, scene, error)) != HL_OK) return status;
   status = hl_classifier_create(context, scene, &prepared->grid, &prepared->classifier, error);
+  hl_mask_lattice_set_up(&prepared->classifier.mask, scene);
   if (status == HL_OK) status = keep_key(context, prepared, scene, error);
   if (status != HL_OK) return status;
   hl_grid_mark_relevant(&prepared->grid, with->functions, &prepared->classifier, pool);

@@ -19,6 +19,7 @@ typedef struct prepared_iso {
 typedef struct prepared_volume {
   const hl_scene_volume *scene; /* the frame's scene */
   hl_volume *volume;            /* retained */
+  hl_volume *mask;              /* retained: the mask's lattice; null: none */
   grid grid;
   classifier classifier;
   double empty;                  /* data value */

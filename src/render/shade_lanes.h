@@ -191,9 +191,15 @@ LANES_INLINE color_lanes color_of_matter(const block_density *d, lanes3 position
   const shade_volume *volume = d->patch->volume;
   color_lanes color, own;
   table_values(volume->classifier->color, split_coordinate(coordinate_seen(d)), color.c);
-  if (volume->colors.voxels == NULL) return color;
-  voxel_color_at(&volume->colors, volume->to_index, position, own.c);
-  for (int c = 0; c < 3; c++) color.c[c] = color.c[c] * own.c[c];
+  if (volume->colors.voxels != NULL) {
+    (void)voxel_color_at(&volume->colors, volume->to_index, position, own.c);
+    for (int c = 0; c < 3; c++) color.c[c] = color.c[c] * own.c[c];
+  }
+  if (volume->tints.voxels != NULL) {
+    lanes tint = voxel_color_at(&volume->tints, volume->classifier->mask.to_index, position, own.c);
+    for (int c = 0; c < 3; c++)
+      color.c[c] = lanes_fma(own.c[c] - color.c[c], tint * (1.0f / 255), color.c[c]);
+  }
   return color;
 }
 

@@ -18,12 +18,12 @@ enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 
 struct surface_samples;
 
-/* The colours of a volume's own voxels. */
+/* The colours of a volume's own voxels, or of its mask. */
 typedef struct voxel_colors {
-  const unsigned char *voxels; /* [k][j][i][4] (volume/colors.h); null: there are none */
+  const unsigned char *voxels; /* [k][j][i][4] (volume/colors.h, label/mask.h); null: there are none */
   int32_t last[3];             /* the greatest index along i, j, k */
   int32_t step_bytes[3];       /* from voxel to voxel along i, j, k */
-  const float *decode;         /* [256]: the linear values of sRGB's codes */
+  const float *decode;         /* [256]: the linear values of codes */
 } voxel_colors;
 
 typedef struct shade_volume {
@@ -49,6 +49,7 @@ typedef struct shade_volume {
   const shade_cut *cuts;                 /* [cut_count] */
   int cut_count, light_cut_count;        /* for the eye, and for lights: these, or none */
   int cut_shading;                       /* hl_cut_shading */
+  voxel_colors tints;                    /* of the mask: colours go towards these, by their weights */
 } shade_volume;
 
 /* One volume's densities in a tile, on cache lines of its own: each thread writes its patches beside

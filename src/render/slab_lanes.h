@@ -59,7 +59,8 @@ typedef struct block_density {
   way_sums sums;       /* between the two */
   lanes extinction;    /* averaged over the slab, 0 outside the box */
   lanes centre;        /* in joined lanes: the extinction's centre of gravity in the slab, 0 to 1 */
-  lanes factor;     /* with gradient opacity: what it multiplies extinction by; sums and extinction have it */
+  lanes factor;     /* with gradient opacity or a mask: what extinction is multiplied by; sums and extinction
+                       have it */
   lanes seen;       /* where its matter is seen: fraction of the way through the slab's covered part */
   lanes evenly;     /* where it would be seen if its extinction were even */
   lanes_int sloped; /* where the gradient is known */
@@ -408,24 +409,25 @@ LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int
 /* Whether some volume's extinction depends on more than its value, so that weigh_slab() has work. */
 LANES_INLINE int is_weighed(const tile_slab *tile) {
   for (int i = 0; i < tile->patch_count; i++)
-    if (tile->patches[i].volume->classifier->steepness != NULL) return 1;
+    if (hl_classifier_is_weighed(tile->patches[i].volume->classifier)) return 1;
   return 0;
 }
 
-/* Gradient opacity, after place_slab(): multiplies the volumes' extinction by the factor of the gradient
- * where their matter would be seen without it, and places the slab again. */
+/* Gradient opacity and masks, after place_slab(): multiplies the volumes' extinction by the factor where
+ * their matter would be seen without it, and places the slab again. */
 LANES_INLINE void weigh_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
   const block_geometry *g = &slab->geometry;
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
-    if (!d->there || d->patch->volume->classifier->steepness == NULL) continue;
+    if (!d->there || !hl_classifier_is_weighed(d->patch->volume->classifier)) continue;
     const shade_volume *volume = d->patch->volume;
     lanes place = lanes_fma(slab->part.length, d->seen, slab->part.begin);
+    lanes3 point = add_scaled3(g->start, g->step_sheet, place);
     uint32_t active = lanes_bits(slab->seen & (d->sums.extinction > 0.0f));
     d->slope = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
-    if (active != 0)
-      d->slope = gradient(volume, add_scaled3(g->start, g->step_sheet, place), active, slab->starts);
-    d->factor = factor_of_slope(volume->classifier, d->slope);
+    if (active != 0 && volume->classifier->steepness != NULL)
+      d->slope = gradient(volume, point, active, slab->starts);
+    d->factor = factor_of_matter(volume->classifier, d->slope, point);
     d->extinction = d->extinction * d->factor;
     d->sums.extinction = d->sums.extinction * d->factor;
     d->sums.integral = d->sums.integral * d->factor;

@@ -124,6 +124,7 @@ struct sweep {
   attenuate_volume *scratch_volumes; /* [threads][volumes] */
   sweep_counts *counts;              /* [threads] */
   float *srgb_decode;                /* [256]: the linear values of sRGB's codes, for voxels with colours */
+  float *tint_decode;                /* [256]: the linear values of a mask's codes, their squares */
   double seconds_sort, seconds_tiles, seconds_soften;
   uint64_t waits; /* how often all threads have waited for each other */
 };

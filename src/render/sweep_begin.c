@@ -127,6 +127,7 @@ static void lay_out(sweep *sweep, size_t tasks, int threads, hl_layout *layout) 
   sweep->scratch = hl_layout_take(layout, places, SHADE_SCRATCH_BYTES);
   sweep->scratch_volumes = hl_layout_take(layout, places, sizeof *sweep->scratch_volumes);
   sweep->srgb_decode = hl_layout_take(layout, SRGB_CODES, sizeof *sweep->srgb_decode);
+  sweep->tint_decode = hl_layout_take(layout, SRGB_CODES, sizeof *sweep->tint_decode);
   sweep->counts = hl_layout_take(layout, (size_t)threads, sizeof *sweep->counts);
 }
 
@@ -189,10 +190,11 @@ static hl_status allocate(sweep *sweep, hl_error *error) {
   return HL_OK;
 }
 
-/* Volumes with colours have at most 2^29 voxels. */
-static voxel_colors colors_of(const sweep *sweep, const hl_volume *volume) {
-  voxel_colors colors = {.voxels = volume->colors, .decode = sweep->srgb_decode};
-  if (colors.voxels == NULL) return colors;
+/* Volumes with colours have at most 2^29 voxels. volume: null: there are none. */
+static voxel_colors colors_of(const hl_volume *volume, const float *decode) {
+  voxel_colors colors = {.decode = decode};
+  if (volume == NULL || volume->colors == NULL) return colors;
+  colors.voxels = volume->colors;
   int32_t step = HL_COLOR_BYTES;
   for (int axis = 0; axis < 3; axis++) {
     colors.last[axis] = (int32_t)volume->dimension[axis] - 1;
@@ -208,6 +210,8 @@ static void set_up_colors(sweep *sweep) {
     any = any || sweep->content.volumes[g].scene->volume->colors != NULL;
   for (int code = 0; any && code < SRGB_CODES; code++)
     sweep->srgb_decode[code] = (float)hl_srgb_decode(code / 255.0);
+  for (int code = 0; code < SRGB_CODES; code++)
+    sweep->tint_decode[code] = (float)(code * code) * (1.0f / (255 * 255));
 }
 
 static void set_up_cut(const grid *grid, const cut_shape *shape, shade_cut *cut) {
@@ -263,7 +267,8 @@ static void set_up_shading(sweep *sweep) {
                             .specular = (float)volume->material.specular,
                             .shininess = (float)volume->material.shininess,
                             .anisotropy = (float)volume->anisotropy,
-                            .colors = colors_of(sweep, volume->volume),
+                            .colors = colors_of(volume->volume, sweep->srgb_decode),
+                            .tints = colors_of(volume->mask.volume, sweep->tint_decode),
                             .multiple = volume->multiple_scattering};
     for (int c = 0; c < 3; c++) {
       shade->albedo[c] = (float)volume->albedo[c];

@@ -23,9 +23,10 @@ LANES_INLINE void add_corner(const voxel_colors *colors, lanes_int offset, lanes
 
 /* The mean of the eight voxels' linear colours, each weighted trilinearly and by its own weight (colors.h):
  * what colours multiplied by opacity give, divided by the opacity (Porter and Duff, "Compositing digital
- * images", 1984). Beyond the outermost voxels these go on. */
-LANES_INLINE void voxel_color_at(const voxel_colors *colors, const float to_index[3][4], lanes3 position,
-                                 lanes color[3]) {
+ * images", 1984). Beyond the outermost voxels these go on. Returns the mean weight, 0 to 255; where it is 0
+ * the colour is black. */
+LANES_INLINE lanes voxel_color_at(const voxel_colors *colors, const float to_index[3][4], lanes3 position,
+                                  lanes color[3]) {
   lanes_int near[3], far[3]; /* bytes along each axis */
   lanes part[3];
   color_sums sums = {{lanes_set(0), lanes_set(0), lanes_set(0)}, lanes_set(0)};
@@ -46,7 +47,9 @@ LANES_INLINE void voxel_color_at(const voxel_colors *colors, const float to_inde
     }
     add_corner(colors, offset, share, &sums);
   }
-  for (int c = 0; c < 3; c++) color[c] = sums.color[c] / sums.weight;
+  lanes weight = lanes_max(sums.weight, lanes_set(1e-6f));
+  for (int c = 0; c < 3; c++) color[c] = sums.color[c] / weight;
+  return sums.weight;
 }
 
 #endif

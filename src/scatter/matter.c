@@ -75,7 +75,12 @@ static float extinction_at(const scatter_volume *volume, vec3 point, float color
   for (int c = 0; c < 3; c++)
     color[c] = classifier->color[low][c] + f * (classifier->color[low + 1][c] - classifier->color[low][c]);
   float found = classifier->sums[low][0] + f * (classifier->sums[low + 1][0] - classifier->sums[low][0]);
-  return found > 0 && classifier->steepness != NULL ? found * gradient_factor(volume, p) : found;
+  if (!(found > 0)) return found;
+  if (classifier->steepness != NULL) found *= gradient_factor(volume, p);
+  if (classifier->mask.factors == NULL) return found;
+  const float at[3] = {(float)point.x, (float)point.y, (float)point.z};
+  hl_mask_tint(&classifier->mask, at, color);
+  return found * hl_mask_factor(&classifier->mask, at);
 }
 
 /* Of the medium that scatters evenly, and of the medium as it is. */

@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "core/vector.h"
+#include "label/mask.h"
 #include "scene/check.h"
 #include "scene/label_table.h"
 #include "scene/placement.h"
@@ -217,27 +218,46 @@ static hl_status check_iso(const hl_checker *check, const hl_scene_volume *volum
   return status;
 }
 
-static hl_status check_labels(const hl_checker *check, const hl_scene_volume *volume) {
-  hl_status status = hl_check_count(check, "labels", volume->labels, volume->label_count, HL_MOST_LABELS);
-  for (size_t n = 0; status == HL_OK && n < volume->label_count; n++) {
-    const hl_label *label = &volume->labels[n];
+/* key: of the list. */
+static hl_status check_labels(const hl_checker *check, const char *list, const hl_label *labels,
+                              size_t count) {
+  hl_status status = hl_check_count(check, list, labels, count, HL_MOST_LABELS);
+  for (size_t n = 0; status == HL_OK && n < count; n++) {
+    const hl_label *label = &labels[n];
     char key[64];
-    snprintf(key, sizeof key, "labels/%zu/value", n);
+    snprintf(key, sizeof key, "%s/%zu/value", list, n);
     status = hl_check_range(check, key, label->value, -1e9, 1e9, "give the label's number");
     if (status == HL_OK && label->value != floor(label->value))
       status = hl_check_refuse(check, key, "is no whole number: give the label's");
     if (status == HL_OK && n > 0 && label->value <= label[-1].value)
       status = hl_check_refuse(check, key,
                                "does not come after the label before: sort them by number, each once");
-    snprintf(key, sizeof key, "labels/%zu/opacity", n);
+    snprintf(key, sizeof key, "%s/%zu/opacity", list, n);
     if (status == HL_OK)
       status = hl_check_range(check, key, label->opacity, 0, 1, "give an opacity from 0 to 1");
+    snprintf(key, sizeof key, "%s/%zu/tint", list, n);
+    if (status == HL_OK) status = hl_check_range(check, key, label->tint, 0, 1, "give a tint from 0 to 1");
     for (int c = 0; c < 3 && status == HL_OK; c++) {
-      snprintf(key, sizeof key, "labels/%zu/color/%d", n, c);
+      snprintf(key, sizeof key, "%s/%zu/color/%d", list, n, c);
       status = hl_check_range(check, key, label->color[c], 0, 1, "give linear RGB, each from 0 to 1");
     }
   }
   return status;
+}
+
+static hl_status check_mask(const hl_checker *check, const hl_scene_volume *volume) {
+  const hl_mask *mask = &volume->mask;
+  if (mask->volume == NULL)
+    return mask->label_count == 0 ? HL_OK : hl_check_refuse(check, "mask", "has no label map: give its file");
+  if (volume->label_count > 0)
+    return hl_check_refuse(check, "mask", "and labels exclude each other: remove one");
+  size_t voxels = hl_volume_voxel_count(mask->volume);
+  if (voxels > HL_MASK_VOXELS)
+    return hl_fail(check->error, HL_ERROR_UNSUPPORTED, "%s/mask: has %zu voxels, at most %zu can be",
+                   check->place, voxels, HL_MASK_VOXELS);
+  hl_status status = check_labels(check, "mask/labels", mask->labels, mask->label_count);
+  return status == HL_OK ? hl_check_range(check, "mask/rest", mask->rest, 0, 1, "give a factor from 0 to 1")
+                         : status;
 }
 
 hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_error *error) {
@@ -250,7 +270,8 @@ hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_
   hl_status status = check_values(&check, volume->volume);
   if (status == HL_OK) status = check_transform(&check, volume);
   if (status == HL_OK) status = check_placement(&check, volume);
-  if (status == HL_OK) status = check_labels(&check, volume);
+  if (status == HL_OK) status = check_labels(&check, "labels", volume->labels, volume->label_count);
+  if (status == HL_OK) status = check_mask(&check, volume);
   if (status == HL_OK && volume->label_count == 0) status = check_look(&check, volume);
   if (status == HL_OK) status = check_iso(&check, volume);
   if (status == HL_OK && volume->label_count > 0 && volume->iso_count > 0)

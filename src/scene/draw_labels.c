@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "label/mask.h"
 #include "label/shelf.h"
 #include "scene/limits.h"
 #include "scene/placement.h"
@@ -133,13 +134,28 @@ static hl_status draw_map(hl_context *context, hl_scene_description *placed, con
   return status;
 }
 
+/* Adds a volume with its mask as a lattice. */
+static hl_status draw_masked(hl_context *context, hl_scene_description *placed, const hl_scene_volume *volume,
+                             hl_error *error) {
+  hl_volume *lattice = NULL;
+  if (volume->mask.volume != NULL) {
+    hl_status status = hl_label_mask(context, placed->render.threads, &volume->mask, &lattice, error);
+    if (status != HL_OK) return status;
+  }
+  hl_scene_volume *drawn = (hl_scene_volume *)&placed->volumes[placed->volume_count++];
+  *drawn = *volume;
+  hl_volume_retain(drawn->volume);
+  drawn->mask = (hl_mask){.volume = lattice, .rest = volume->mask.rest};
+  return HL_OK;
+}
+
 hl_status hl_labels_draw(hl_context *context, hl_scene_description *placed, drawn_labels *drawn,
                          hl_error *error) {
   const hl_scene_volume *volumes = placed->volumes; /* label maps among them */
   const size_t volume_count = placed->volume_count;
   size_t count = 0, maps = 0;
   for (size_t v = 0; v < volume_count; v++) {
-    maps += volumes[v].label_count > 0;
+    maps += volumes[v].label_count > 0 || volumes[v].mask.volume != NULL;
     count += count_drawn(&volumes[v]);
   }
   if (maps == 0) return HL_OK;
@@ -161,12 +177,8 @@ hl_status hl_labels_draw(hl_context *context, hl_scene_description *placed, draw
   hl_status status = HL_OK;
   for (size_t v = 0; v < volume_count && status == HL_OK; v++) {
     const hl_scene_volume *volume = &volumes[v];
-    if (volume->label_count > 0) {
-      status = draw_map(context, placed, volume, &points, error);
-    } else {
-      hl_volume_retain(volume->volume);
-      drawn->volumes[placed->volume_count++] = *volume;
-    }
+    status = volume->label_count > 0 ? draw_map(context, placed, volume, &points, error)
+                                     : draw_masked(context, placed, volume, error);
   }
   if (status == HL_OK && placed->volume_count == 0)
     status = hl_fail(error, HL_ERROR_INPUT, "/volumes: no label that is visible has voxels: show others");
@@ -175,7 +187,10 @@ hl_status hl_labels_draw(hl_context *context, hl_scene_description *placed, draw
 
 void hl_drawn_labels_release(hl_context *context, const hl_scene_description *placed, drawn_labels *drawn) {
   if (drawn->volumes == NULL) return;
-  for (size_t v = 0; v < placed->volume_count; v++) hl_volume_release(drawn->volumes[v].volume);
+  for (size_t v = 0; v < placed->volume_count; v++) {
+    hl_volume_release(drawn->volumes[v].volume);
+    hl_volume_release(drawn->volumes[v].mask.volume);
+  }
   hl_release(context, drawn->volumes);
   hl_release(context, drawn->points);
 }

@@ -7,10 +7,11 @@
 
 #include "core/error.h"
 
-/* The volumes that draw a scene's label maps; all null where there are no label maps. */
+/* The volumes that draw a scene's label maps; all null where there are neither label maps nor masks. */
 typedef struct drawn_labels {
-  hl_scene_volume *volumes; /* owned, with a reference to each volume; the placed description's array */
-  void *points;             /* owned; the volumes' transfer functions */
+  hl_scene_volume
+      *volumes; /* owned, with a reference to each volume and lattice; the placed description's array */
+  void *points; /* owned; the volumes' transfer functions */
 } drawn_labels;
 
 /* A transfer function over a label map's own values: each visible label from half a number below to half a
@@ -19,8 +20,9 @@ typedef struct drawn_labels {
 hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
                              hl_transfer_function *function, hl_error *error);
 
-/* Replaces the label maps of a placed description by volumes of occupancy, which `drawn` owns. The
- * description's array of volumes is then that of `drawn`. Nothing happens where there are no label maps.
+/* Replaces the label maps of a placed description by volumes of occupancy, and the volumes of masks by
+ * lattices (label/mask.h), all of which `drawn` owns. The description's array of volumes is then that of
+ * `drawn`. Nothing happens where there are neither label maps nor masks.
  * After a failure, too, call hl_drawn_labels_release(). */
 hl_status hl_labels_draw(hl_context *context, hl_scene_description *placed, drawn_labels *drawn,
                          hl_error *error);

@@ -24,12 +24,21 @@ affine3 hl_scene_mesh_to_world(const hl_scene_mesh *mesh) {
   return (affine3){turn, vec3_of(mesh->translate)};
 }
 
-affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume) {
+/* The world of the volume's file -> the scene's world. */
+static affine3 world_of_file(const hl_scene_volume *volume) {
   mat3 turn = rotation(volume->rotate_axis, volume->rotate_angle_deg);
   const double x = hl_scene_volume_scale(volume, 0), y = hl_scene_volume_scale(volume, 1),
                z = hl_scene_volume_scale(volume, 2);
   for (int r = 0; r < 3; r++) turn.row[r] = (vec3){turn.row[r].x * x, turn.row[r].y * y, turn.row[r].z * z};
-  return affine3_multiply((affine3){turn, vec3_of(volume->translate)}, volume->volume->index_to_world);
+  return (affine3){turn, vec3_of(volume->translate)};
+}
+
+affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume) {
+  return affine3_multiply(world_of_file(volume), volume->volume->index_to_world);
+}
+
+affine3 hl_scene_mask_index_to_world(const hl_scene_volume *volume) {
+  return affine3_multiply(world_of_file(volume), volume->mask.volume->index_to_world);
 }
 
 /* Bounds in index space of the clip box, whose corners are in the file's own world. */

@@ -12,6 +12,9 @@ double hl_scene_volume_scale(const hl_scene_volume *volume, int axis);
 /* Index space of scene volume -> world: the volume's own placement, then scale, rotate, translate. */
 affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume);
 
+/* The same for the volume's mask. */
+affine3 hl_scene_mask_index_to_world(const hl_scene_volume *volume);
+
 /* A mesh's own space -> world: scale, rotate, translate. */
 affine3 hl_scene_mesh_to_world(const hl_scene_mesh *mesh);
 

@@ -21,6 +21,7 @@ void hl_light_defaults(hl_light *light) {
 void hl_scene_volume_defaults(hl_scene_volume *volume) {
   if (volume == NULL) return;
   *volume = (hl_scene_volume){.component = HL_COMPONENT_DEFAULT,
+                              .mask.component = HL_COMPONENT_DEFAULT,
                               .axis_scale = {1, 1, 1},
                               .time = HL_INDEX_DEFAULT,
                               .channel = HL_INDEX_DEFAULT,
@@ -77,6 +78,9 @@ static void release_volume(hl_context *context, hl_scene_volume *volume) {
   hl_release(context, (void *)volume->cuts);
   hl_volume_release(volume->volume);
   hl_release(context, (void *)volume->labels);
+  hl_volume_release(volume->mask.volume);
+  hl_release(context, (void *)volume->mask.file);
+  hl_release(context, (void *)volume->mask.labels);
 }
 
 static void release_mesh(hl_context *context, hl_scene_mesh *mesh) {
@@ -153,13 +157,19 @@ static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, h
   to->iso = NULL;
   to->cuts = NULL;
   to->labels = NULL;
+  to->mask.file = NULL;
+  to->mask.labels = NULL;
   hl_volume_retain(to->volume);
+  hl_volume_retain(to->mask.volume);
   hl_status status = copy_text(context, from->name, &to->name, error);
   if (status == HL_OK) status = copy_text(context, from->file, &to->file, error);
   if (status == HL_OK) status = copy_text(context, from->shapes, &to->shapes, error);
   if (status == HL_OK) status = copy_text(context, from->array, &to->array, error);
   if (status == HL_OK) status = copy_text(context, from->series, &to->series, error);
   if (status == HL_OK) status = hl_labels_copy(context, from->labels, from->label_count, &to->labels, error);
+  if (status == HL_OK) status = copy_text(context, from->mask.file, &to->mask.file, error);
+  if (status == HL_OK)
+    status = hl_labels_copy(context, from->mask.labels, from->mask.label_count, &to->mask.labels, error);
   void *iso = NULL, *cuts = NULL;
   if (status == HL_OK)
     status = copy_array(context, from->iso, from->iso_count, sizeof *from->iso, "isosurfaces", &iso, error);

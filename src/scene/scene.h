@@ -17,8 +17,9 @@ struct hl_scene {
   atomic_int references;
   hl_scene_description description; /* its arrays and texts are owned by the scene */
   hl_scene_description placed; /* the same for rendering: all lights in the world, and volumes of occupancy in
-                                  place of label maps; owns its array of lights */
-  drawn_labels drawn;          /* the volumes of occupancy */
+                                  place of label maps, lattices (label/mask.h) in place of masks; owns its
+                                  array of lights */
+  drawn_labels drawn;          /* the volumes of occupancy and the lattices */
   uint64_t sky_mark;           /* of the pixels of the sky's image; for keys of kept results */
 };
 

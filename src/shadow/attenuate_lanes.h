@@ -65,8 +65,8 @@ LANES_INLINE lanes3 position_in_slab(const attenuate_job *job, lanes u, lanes v,
   return add_scaled3(end, step, fraction - 1.0f);
 }
 
-/* What gradient opacity multiplies a volume's extinction by, in a block: at the centre of gravity of the
- * slab's matter. corner: the block's first pixel. */
+/* What gradient opacity and a mask multiply a volume's extinction by, in a block: at the centre of gravity of
+ * the slab's matter. corner: the block's first pixel. */
 LANES_INLINE lanes factor_in_block(const attenuate_job *job, const attenuate_volume *volume,
                                    const int corner[2], const way_sums *sums, lanes a, lanes b,
                                    covered_span span) {
@@ -75,8 +75,10 @@ LANES_INLINE lanes factor_in_block(const attenuate_job *job, const attenuate_vol
   uint32_t active = lanes_bits(sums->extinction * span.length > 0.0f);
   if (active == 0) return lanes_set(0);
   lanes3 point = position_in_slab(job, block_u(corner[0]), block_v(corner[1]), centre);
-  return factor_of_slope(volume->classifier,
-                         gradient_in_frame(volume->grid, volume->kernel, volume->to_index, point, active, 1));
+  lanes3 slope = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  if (volume->classifier->steepness != NULL)
+    slope = gradient_in_frame(volume->grid, volume->kernel, volume->to_index, point, active, 1);
+  return factor_of_matter(volume->classifier, slope, point);
 }
 
 typedef struct attenuated_block {
@@ -101,7 +103,7 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     if (volume->enter != NULL) cut_way(span, &a, &b);
     way_sums sums = sums_of_way(volume->classifier, a, b);
     lanes extinction = sums.extinction * span.length;
-    if (volume->classifier->steepness != NULL)
+    if (hl_classifier_is_weighed(volume->classifier))
       extinction = extinction * factor_in_block(job, volume, corner, &sums, a.x, b.x, span);
     for (int c = 0; c < channels; c++) depth[c] = lanes_add_scaled(depth[c], extinction, volume->weight[c]);
   }

@@ -833,7 +833,8 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    cuts_bench,
                                    round % 3 == 1 ? 3 : 0,
                                    round % 6 == 1 ? 3 : 0,
-                                   round % 2};
+                                   round % 2,
+                                   round % 5 == 2 ? colors_bench : (voxel_colors){.voxels = NULL}};
     s->patches[v] = (shade_patch){&s->volumes[v],
                                   s->density[2 * v],
                                   s->density[2 * v + 1],

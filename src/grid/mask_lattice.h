@@ -1,0 +1,68 @@
+/* grid/mask_lattice.h - a volume's mask made ready: what extinction is multiplied by, and colours, on a
+ * lattice of its own, linear between its points. */
+#ifndef HL_GRID_MASK_LATTICE_H
+#define HL_GRID_MASK_LATTICE_H
+
+#include "scene/scene.h"
+
+typedef struct mask_lattice {
+  const uint16_t *factors; /* [k][j][i]; borrowed from the scene; 65535 is 1; null: there is no mask. One more
+                              may be read */
+  const unsigned char *colors; /* [k][j][i][4] (label/mask.h); null: the mask has no colours */
+  int32_t last[3];             /* the greatest index along i, j, k */
+  int32_t step[3];             /* from point to point along i, j, k; in points */
+  float to_index[3][4];        /* frame space to index space */
+  float rest;                  /* the factor outside the lattice */
+} mask_lattice;
+
+/* volume: in frame space; without a mask the lattice is empty. */
+void hl_mask_lattice_set_up(mask_lattice *lattice, const hl_scene_volume *volume);
+
+/* The points around a position, and the position's parts of the way between them. */
+typedef struct mask_cell {
+  int32_t near[3], far[3]; /* in points from the first, along each axis */
+  float part[3];
+} mask_cell;
+
+/* False where the position, in frame space, is outside the lattice. */
+static inline bool hl_mask_cell_at(const mask_lattice *lattice, const float point[3], mask_cell *cell) {
+  for (int a = 0; a < 3; a++) {
+    const float *row = lattice->to_index[a], last = (float)lattice->last[a];
+    float at = row[0] * point[0] + row[1] * point[1] + row[2] * point[2] + row[3];
+    if (!(at >= -0.5f && at <= last + 0.5f)) return false;
+    at = at < 0 ? 0 : at > last ? last : at;
+    int32_t first = (int32_t)at;
+    cell->part[a] = at - (float)first;
+    cell->near[a] = first * lattice->step[a];
+    cell->far[a] = cell->near[a] + (first < lattice->last[a] ? lattice->step[a] : 0);
+  }
+  return true;
+}
+
+static inline size_t hl_mask_corner(const mask_cell *cell, int corner, float *share) {
+  size_t at = 0;
+  *share = 1;
+  for (int a = 0; a < 3; a++) {
+    bool far = (corner >> a & 1) != 0;
+    at += (size_t)(far ? cell->far[a] : cell->near[a]);
+    *share *= far ? cell->part[a] : 1 - cell->part[a];
+  }
+  return at;
+}
+
+/* What extinction is multiplied by at a position in frame space. */
+static inline float hl_mask_factor(const mask_lattice *lattice, const float point[3]) {
+  mask_cell cell;
+  float sum = 0, share;
+  if (!hl_mask_cell_at(lattice, point, &cell)) return lattice->rest;
+  for (int corner = 0; corner < 8; corner++) {
+    size_t at = hl_mask_corner(&cell, corner, &share);
+    sum += share * (float)lattice->factors[at];
+  }
+  return sum * (1.0f / 65535);
+}
+
+/* Moves a colour towards the mask's at a position in frame space. */
+void hl_mask_tint(const mask_lattice *lattice, const float point[3], float color[3]);
+
+#endif

@@ -1,0 +1,209 @@
+/* label/mask.c - see mask.h. */
+#include "label/mask.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/pool.h"
+#include "label/shelf.h"
+#include "volume/colors.h"
+
+/* The sums of occupancies between which the labels' common share rises from 0 to 1. Each label has a part of
+ * that share like the square of its occupancy (derived: between two labels, whose occupancies a and 1 - a add
+ * up to 1, a^2 / (a^2 + (1 - a)^2) runs from 0 to 1 with the slope 2 in the middle, as steeply as the common
+ * share, and where three meet the parts still add up to 1). */
+static const float SHARE_FROM = 0.25f, SHARE_TO = 0.75f;
+/* How much the occupancies themselves count beside the share, for colours: where nothing is visible, the
+ * lattice goes on with the colours of the labels nearby. */
+static const float FAINT = 1e-3f;
+/* Occupancies are counted from here on: below are the tails of the smoothing and the steps of bytes. */
+static const float LEAST = 1.0f / 16;
+
+typedef struct mask_job {
+  const hl_mask *mask;
+  hl_volume *const *occupancies; /* [label_count]; null: no voxel has the label */
+  uint16_t *factors;             /* [k][j][i] */
+  unsigned char *colors;         /* [k][j][i][HL_COLOR_BYTES]; null: no label tints */
+  float *sums;                   /* [threads][slice floats] */
+  size_t slice_floats;
+} mask_job;
+
+/* Sums over the labels at the voxels of a slice, each [j][i]: occupancies, their squares, and those times
+ * opacity, times opacity and tint, and times these and the colour; then room for a line of occupancy. */
+enum { SUM_OCCUPANCY, SUM_SQUARES, SUM_FACTOR, SUM_TINT, SUM_RED, SUM_GREEN, SUM_BLUE, SUM_LINE, SUMS };
+
+/* The grid of an occupancy within the map's. */
+static void first_of(const hl_volume *map, const hl_volume *occupancy, size_t first[3]) {
+  affine3 inverse;
+  vec3 at = {0, 0, 0};
+  if (affine3_invert(map->index_to_world, &inverse))
+    at = affine3_apply(inverse, occupancy->index_to_world.offset);
+  first[0] = (size_t)llround(at.x);
+  first[1] = (size_t)llround(at.y);
+  first[2] = (size_t)llround(at.z);
+}
+
+static float coefficient(const hl_volume *o, size_t i, size_t j, size_t k) {
+  return ((const unsigned char *)hl_volume_row(o, j, k))[i];
+}
+
+/* The neighbours of a coordinate; beyond the ends the border continues. */
+static void neighbours(size_t at, size_t count, size_t found[3]) {
+  found[0] = at > 0 ? at - 1 : 0;
+  found[1] = at;
+  found[2] = at + 1 < count ? at + 1 : at;
+}
+
+/* The B-spline's value at a voxel's centre: weights 1/6, 2/3, 1/6 along each axis. line: the sums over j and
+ * k, [i]. */
+static void fill_line(const hl_volume *o, size_t j, size_t k, float *line) {
+  static const float WEIGHT[3] = {1.0f / 6, 2.0f / 3, 1.0f / 6};
+  size_t js[3], ks[3];
+  neighbours(j, o->dimension[1], js);
+  neighbours(k, o->dimension[2], ks);
+  for (size_t i = 0; i < o->dimension[0]; i++) line[i] = 0;
+  for (int b = 0; b < 9; b++) {
+    const float weight = WEIGHT[b % 3] * WEIGHT[b / 3];
+    for (size_t i = 0; i < o->dimension[0]; i++) line[i] += weight * coefficient(o, i, js[b % 3], ks[b / 3]);
+  }
+}
+
+static void add_voxel(float *const sums[SUMS], size_t at, const hl_label *label, float occupancy) {
+  if (!(occupancy > LEAST)) return;
+  float square = (occupancy - LEAST) * (occupancy - LEAST),
+        visible = label->visible ? square * (float)label->opacity : 0;
+  float tint = visible * (float)label->tint;
+  sums[SUM_OCCUPANCY][at] += occupancy;
+  sums[SUM_SQUARES][at] += square;
+  sums[SUM_FACTOR][at] += visible;
+  sums[SUM_TINT][at] += tint;
+  for (int c = 0; c < 3; c++) sums[SUM_RED + c][at] += tint * (float)label->color[c];
+}
+
+/* Adds a label's occupancy in the slice k of the map. */
+static void add_label(const mask_job *job, const hl_label *label, const hl_volume *o, size_t k,
+                      float *const sums[SUMS]) {
+  size_t first[3];
+  const size_t width = job->mask->volume->dimension[0];
+  first_of(job->mask->volume, o, first);
+  if (k < first[2] || k >= first[2] + o->dimension[2]) return;
+  for (size_t j = 0; j < o->dimension[1]; j++) {
+    float *line = sums[SUM_LINE];
+    fill_line(o, j, k - first[2], line);
+    float before = line[0];
+    for (size_t i = 0; i < o->dimension[0]; i++) {
+      float after = i + 1 < o->dimension[0] ? line[i + 1] : line[i];
+      float stored = (before + 4 * line[i] + after) / 6;
+      before = line[i];
+      add_voxel(sums, (first[1] + j) * width + first[0] + i, label,
+                stored * (float)o->value_scale + (float)o->value_offset);
+    }
+  }
+}
+
+static unsigned char code_of(float value) {
+  return (unsigned char)(value <= 0 ? 0 : value >= 1 ? 255 : value * 255 + 0.5f);
+}
+
+/* The matter at a voxel is a mixture of the labels and the rest, each with its factor: colours are weighted
+ * by what is visible of them. */
+static void store_voxel(const mask_job *job, float *const sums[SUMS], size_t at, size_t voxel) {
+  const float occupancy = sums[SUM_OCCUPANCY][at], tint = sums[SUM_TINT][at];
+  float share = (occupancy - SHARE_FROM) / (SHARE_TO - SHARE_FROM);
+  share = share < 0 ? 0 : share > 1 ? 1 : share;
+  const float each = occupancy > 0 ? 1 / sums[SUM_SQUARES][at] : 0;
+  const float labels = sums[SUM_FACTOR][at] * each, rest = (1 - share) * (float)job->mask->rest;
+  job->factors[voxel] = (uint16_t)((share * labels + rest) * (float)HL_MASK_STEPS + 0.5f);
+  if (job->colors == NULL) return;
+  unsigned char *color = job->colors + HL_COLOR_BYTES * voxel;
+  const float faint = share + FAINT * occupancy, visible = faint * labels + rest;
+  for (int c = 0; c < 3; c++) color[c] = tint > 0 ? code_of(sqrtf(sums[SUM_RED + c][at] / tint)) : 0;
+  color[3] = visible > 0 ? code_of(faint * tint * each / visible) : 0;
+}
+
+static void fill_slice(void *data, size_t k, int worker) {
+  const mask_job *job = data;
+  const hl_volume *map = job->mask->volume;
+  const size_t count = map->dimension[0] * map->dimension[1];
+  float *sums[SUMS], *own = job->sums + (size_t)worker * job->slice_floats;
+  for (int s = 0; s < SUMS; s++) sums[s] = own + (size_t)s * count;
+  memset(own, 0, SUM_LINE * count * sizeof *own);
+  for (size_t n = 0; n < job->mask->label_count; n++)
+    if (job->occupancies[n] != NULL) add_label(job, &job->mask->labels[n], job->occupancies[n], k, sums);
+  for (size_t at = 0; at < count; at++) store_voxel(job, sums, at, k * count + at);
+}
+
+static hl_status adopt(hl_context *context, mask_job *job, hl_volume **made, hl_error *error) {
+  const hl_volume *map = job->mask->volume;
+  hl_volume_description grid;
+  hl_volume_description_defaults(&grid);
+  const affine3 placed = map->index_to_world;
+  grid.origin[0] = placed.offset.x, grid.origin[1] = placed.offset.y, grid.origin[2] = placed.offset.z;
+  for (int a = 0; a < 3; a++) {
+    vec3 axis = mat3_column(placed.linear, a);
+    grid.axis[a][0] = axis.x, grid.axis[a][1] = axis.y, grid.axis[a][2] = axis.z;
+    grid.dimensions[a] = map->dimension[a];
+  }
+  grid.type = HL_VOXEL_U16;
+  grid.value_scale = 1 / HL_MASK_STEPS;
+  grid.space = map->space;
+  hl_status status = hl_volume_adopt(context, &grid, "a mask", job->factors, made, error);
+  job->factors = NULL;
+  if (status != HL_OK) return status;
+  (*made)->colors = job->colors;
+  job->colors = NULL;
+  return HL_OK;
+}
+
+static bool any_tint(const hl_mask *mask) {
+  for (size_t n = 0; n < mask->label_count; n++)
+    if (mask->labels[n].tint > 0 && mask->labels[n].visible) return true;
+  return false;
+}
+
+/* Fills the lattice of the labels' occupancies. */
+static hl_status fill(hl_context *context, int threads, mask_job *job, hl_volume **made, hl_error *error) {
+  hl_pool *pool = NULL;
+  hl_status status = hl_pool_create(context, threads, &pool, error);
+  if (status != HL_OK) return status;
+  const hl_volume *map = job->mask->volume;
+  const size_t count = hl_volume_voxel_count(map);
+  job->slice_floats = SUMS * map->dimension[0] * map->dimension[1];
+  job->sums = hl_allocate(context, (size_t)hl_pool_threads(pool) * job->slice_floats, sizeof *job->sums);
+  job->factors = hl_allocate_zeroed(context, count + 1, sizeof *job->factors);
+  bool colored = any_tint(job->mask);
+  if (colored) job->colors = hl_allocate(context, count, HL_COLOR_BYTES);
+  if (job->sums == NULL || job->factors == NULL || (colored && job->colors == NULL))
+    status = hl_fail_memory(error, count * HL_COLOR_BYTES, "a mask");
+  if (status == HL_OK) {
+    hl_pool_run(pool, map->dimension[2], fill_slice, job);
+    status = hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while making a mask")
+                                     : adopt(context, job, made, error);
+  }
+  hl_pool_destroy(pool);
+  hl_release(context, job->sums);
+  hl_release(context, job->factors);
+  hl_release(context, job->colors);
+  return status;
+}
+
+hl_status hl_label_mask(hl_context *context, int threads, const hl_mask *mask, hl_volume **made,
+                        hl_error *error) {
+  *made = NULL;
+  double *values = hl_allocate(context, mask->label_count + 1, sizeof *values);
+  hl_volume **occupancies = hl_allocate_zeroed(context, mask->label_count + 1, sizeof(hl_volume *));
+  hl_status status = HL_OK;
+  if (values == NULL || occupancies == NULL)
+    status = hl_fail_memory(error, mask->label_count * sizeof *values, "labels");
+  for (size_t n = 0; status == HL_OK && n < mask->label_count; n++) values[n] = mask->labels[n].value;
+  if (status == HL_OK)
+    status = hl_label_occupancies(context, threads, mask->volume, values, mask->label_count, occupancies,
+                                  error);
+  mask_job job = {.mask = mask, .occupancies = occupancies};
+  if (status == HL_OK) status = fill(context, threads, &job, made, error);
+  for (size_t n = 0; occupancies != NULL && n < mask->label_count; n++) hl_volume_release(occupancies[n]);
+  hl_release(context, occupancies);
+  hl_release(context, values);
+  return status;
+}

@@ -1,0 +1,58 @@
+/* reference/mask.c - a volume's mask at a point of the volume's index space: linear between the voxels of its
+ * lattice (label/mask.h), which has square roots of colours. Outside the lattice the rest's factor holds. */
+#include "reference/reference.h"
+
+/* The eight voxels around a point, and their shares. */
+typedef struct mask_voxels {
+  size_t voxel[8];
+  double share[8];
+} mask_voxels;
+
+static bool find_voxels(const reference_volume *volume, vec3 point, mask_voxels *found) {
+  const hl_volume *mask = volume->described->mask.volume;
+  vec3 in_mask = affine3_apply(volume->index_to_mask, point);
+  const double p[3] = {in_mask.x, in_mask.y, in_mask.z};
+  for (int corner = 0; corner < 8; corner++) {
+    found->voxel[corner] = 0;
+    found->share[corner] = 1;
+  }
+  for (int axis = 2; axis >= 0; axis--) {
+    double last = (double)mask->dimension[axis] - 1;
+    if (p[axis] < -0.5 || p[axis] > last + 0.5) return false;
+    double at = fmin(fmax(p[axis], 0), last), first = floor(at);
+    for (int corner = 0; corner < 8; corner++) {
+      bool next = (corner >> axis & 1) != 0;
+      size_t index = (size_t)(next ? fmin(first + 1, last) : first);
+      found->voxel[corner] = found->voxel[corner] * mask->dimension[axis] + index;
+      found->share[corner] *= next ? at - first : 1 - (at - first);
+    }
+  }
+  return true;
+}
+
+double hl_reference_mask_factor(const reference_volume *volume, vec3 point) {
+  const hl_mask *mask = &volume->described->mask;
+  mask_voxels found;
+  if (mask->volume == NULL) return 1;
+  if (!find_voxels(volume, point, &found)) return mask->rest;
+  double sum = 0;
+  for (int corner = 0; corner < 8; corner++)
+    sum += found.share[corner] * ((const uint16_t *)mask->volume->voxels)[found.voxel[corner]];
+  return sum * mask->volume->value_scale;
+}
+
+double hl_reference_mask_color(const reference_volume *volume, vec3 point, double color[3]) {
+  const hl_volume *mask = volume->described->mask.volume;
+  mask_voxels found;
+  double weights = 0;
+  if (mask == NULL || mask->colors == NULL || !find_voxels(volume, point, &found)) return 0;
+  color[0] = color[1] = color[2] = 0;
+  for (int corner = 0; corner < 8; corner++) {
+    const unsigned char *code = mask->colors + 4 * found.voxel[corner];
+    double weight = found.share[corner] * code[3] / 255;
+    weights += weight;
+    for (int c = 0; c < 3; c++) color[c] += weight * (code[c] / 255.0) * (code[c] / 255.0);
+  }
+  for (int c = 0; c < 3 && weights > 0; c++) color[c] /= weights;
+  return weights;
+}

@@ -1,0 +1,213 @@
+/* analytic/sheets_mask.c - a label map over a volume: what each label and the rest leave of the volume's
+ * extinction and colour is known in closed form far from borders and, summed up, across them. Asked of the
+ * sheets and of the reference. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+
+enum { SIDE = 32, PIXELS = SIDE * SIDE, N = 32, HALF = 16 };
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+}
+
+/* A label map of 16^3 voxels, each two units long, around the origin: labels 1 where x < 0 and 2 where x > 0,
+ * for |y| < 8; 0 elsewhere. */
+static hl_volume *make_map(stage *set) {
+  static unsigned char voxels[HALF * HALF * HALF];
+  hl_volume_description d;
+  hl_volume *map = NULL;
+  for (int k = 0; k < HALF; k++)
+    for (int j = 0; j < HALF; j++)
+      for (int i = 0; i < HALF; i++)
+        voxels[(k * HALF + j) * HALF + i] = j < HALF / 4 || j >= HALF - HALF / 4 ? 0 : i < HALF / 2 ? 1 : 2;
+  hl_volume_description_defaults(&d);
+  for (int a = 0; a < 3; a++) {
+    d.dimensions[a] = HALF;
+    d.axis[a][a] = 2;
+    d.origin[a] = -HALF + 1;
+  }
+  d.type = HL_VOXEL_U8;
+  d.voxels = voxels;
+  assert_int_equal(hl_volume_create(set->context, &d, &map, NULL), HL_OK);
+  return map;
+}
+
+/* A cube of 32^3 voxels with the same extinction everywhere, 0.05 a unit, seen along -z, with the mask; the
+ * caller releases volume->mask.volume. */
+static hl_scene_volume *open_masked(stage *set, const hl_label *labels, size_t count, double rest) {
+  stage_open(set);
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = N;
+  stage_look(set, (vec3){0, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  hl_scene_volume *cube = stage_add_grid(set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1},
+                                         (vec3){-N / 2, -N / 2, -N / 2}, NULL);
+  stage_set_opacity(set, cube, 0.05, 1);
+  stage_set_color(set, cube, 0.2, 0.4, 0.8);
+  cube->shading = HL_SHADING_FLAT;
+  cube->mask = (hl_mask){.volume = make_map(set), .labels = labels, .label_count = count, .rest = rest};
+  return cube;
+}
+
+static void close_masked(stage *set, hl_scene_volume *cube) {
+  hl_volume_release(cube->mask.volume);
+  stage_close(set);
+}
+
+static const float *pixel_at(const float *pixels, double x, double y) {
+  int column = (int)((x / N + 0.5) * SIDE), row = (int)((0.5 - y / N) * SIDE);
+  return &pixels[4 * (row * SIDE + column)];
+}
+
+/* A ray through a part with the factor f: alpha = 1 - 0.95^(32 f). */
+static double alpha_of(double factor) { return 1 - pow(0.95, N * factor); }
+
+static const hl_label LABELS[] = {
+    {.value = 1, .color = {0.81, 0.09, 0.25}, .opacity = 0.5, .visible = 1, .tint = 1},
+    {.value = 2, .color = {0.04, 0.64, 0.16}, .opacity = 1, .visible = 1, .tint = 0}};
+
+/* Each label's factor and colour far from its borders, and the rest's. */
+static void test_factors_and_colors(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 4; k++) {
+    stage set;
+    hl_scene_volume *cube = open_masked(&set, LABELS, 2, k % 2 ? 0.1 : 0);
+    stage_render_by(&set, k >= 2, pixels);
+    const float *left = pixel_at(pixels, -8, 0), *right = pixel_at(pixels, 8, 0),
+                *rest = pixel_at(pixels, 8, 14.5);
+    assert_near((double)left[3], alpha_of(0.5), 1e-4);
+    assert_near((double)right[3], alpha_of(1), 1e-4);
+    assert_near((double)rest[3], k % 2 ? alpha_of(0.1) : 0, 1e-4);
+    for (int c = 0; c < 3; c++) { /* codes of colours have 8 bits */
+      assert_near((double)left[c] / (double)left[3], LABELS[0].color[c], 4e-3);
+      assert_near((double)right[c] / (double)right[3], (double[3]){0.2, 0.4, 0.8}[c], 1e-4);
+    }
+    close_masked(&set, cube);
+  }
+}
+
+/* Across a border the factor runs from one label's to the other's; its mean over a line that is symmetric
+ * about the border is the mean of the two, so that the border is where the labels meet. */
+static void test_border_is_smooth_and_in_place(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int reference = 0; reference < 2; reference++) {
+    stage set;
+    hl_scene_volume *cube = open_masked(&set, LABELS, 2, 0);
+    stage_render_by(&set, reference, pixels);
+    double sum = 0, before = 0.5;
+    for (int x = 4; x < SIDE - 4; x++) {
+      double alpha = (double)pixels[4 * (SIDE / 2 * SIDE + x) + 3], factor = log1p(-alpha) / (N * log(0.95));
+      assert_true(factor >= before - 1e-3 && factor - before < 0.25);
+      sum += factor / (SIDE - 8);
+      before = factor;
+    }
+    assert_near(sum, 0.75, 2e-3);
+    close_masked(&set, cube);
+  }
+}
+
+/* A label that is not visible, or not listed, hides the matter. */
+static void test_hidden(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 2; k++) {
+    hl_label labels[2] = {LABELS[0], LABELS[1]};
+    labels[1].visible = 0;
+    stage set;
+    hl_scene_volume *cube = open_masked(&set, labels, k ? 1 : 2, k ? 0 : 1);
+    stage_render_by(&set, false, pixels);
+    assert_near((double)pixel_at(pixels, 8, 0)[3], 0, 1e-6);
+    assert_near((double)pixel_at(pixels, -8, 0)[3], alpha_of(0.5), 1e-4);
+    assert_near((double)pixel_at(pixels, 8, 14.5)[3], k ? 0 : alpha_of(1), 1e-4);
+    close_masked(&set, cube);
+  }
+}
+
+/* The mask moves with the volume: turned and moved with the camera, the picture stays. */
+static void test_moves_with_the_volume(void **state) {
+  (void)state;
+  static float pixels[2][PIXELS * 4];
+  for (int moved = 0; moved < 2; moved++) {
+    stage set;
+    hl_scene_volume *cube = open_masked(&set, LABELS, 2, 0.1);
+    if (moved) {
+      memcpy(cube->rotate_axis, (double[3]){0, 1, 0}, sizeof cube->rotate_axis);
+      cube->rotate_angle_deg = 90; /* z becomes x */
+      cube->translate[0] = 500;
+      stage_look(&set, (vec3){600, 0, 0}, (vec3){500, 0, 0}, (vec3){0, 1, 0});
+    }
+    stage_render_by(&set, false, pixels[moved]);
+    close_masked(&set, cube);
+  }
+  for (int i = 0; i < 4 * PIXELS; i++) assert_near((double)pixels[1][i], (double)pixels[0][i], 2e-3);
+}
+
+enum { COARSE = 12 };
+
+/* The masked cube as a lit medium of 12 x 12 pixels. method: -1: hard shadows. */
+static void render_lit(int method, bool reference, float *pixels) {
+  stage set;
+  hl_scene_volume *cube = open_masked(&set, LABELS, 2, 0.1);
+  set.scene.width = set.scene.height = COARSE;
+  cube->shading = HL_SHADING_NONE;
+  stage_add_directional(&set, (vec3){-1, -0.4, -0.6})->angular_diameter_deg = method < 0 ? 0 : 8;
+  set.scene.render.shadows = method < 0 ? HL_SHADOWS_HARD : HL_SHADOWS_SOFT;
+  if (method >= 0) set.scene.render.soft_method = (hl_soft_method)method;
+  stage_render_by(&set, reference, pixels);
+  close_masked(&set, cube);
+}
+
+/* What light loses on its way through the mask's parts: lit matter with shadows by every method is near the
+ * reference's picture of it. */
+static void test_shadows_against_the_reference(void **state) {
+  (void)state;
+  static float expected[COARSE * COARSE * 4], pixels[COARSE * COARSE * 4];
+  for (int method = -1; method < 3; method++) {
+    if (method <= 0) render_lit(method, true, expected);
+    render_lit(method, false, pixels);
+    double sum = 0;
+    for (int i = 0; i < COARSE * COARSE * 4; i++) {
+      double d = (double)pixels[i] - (double)expected[i];
+      sum += d * d / (COARSE * COARSE * 4);
+    }
+    assert_near(sqrt(sum), 0, 6e-3);
+  }
+}
+
+static void test_wrong_masks_are_refused(void **state) {
+  (void)state;
+  stage set;
+  hl_scene_volume *cube = open_masked(&set, LABELS, 2, 1.5);
+  stage_refused(&set, "/volumes/0/mask/rest: 1.5 is out of range: give a factor from 0 to 1");
+  hl_label wrong = LABELS[0];
+  wrong.tint = 2;
+  cube->mask.rest = 0;
+  cube->mask.labels = &wrong;
+  cube->mask.label_count = 1;
+  stage_refused(&set, "/volumes/0/mask/labels/0/tint: 2 is out of range: give a tint from 0 to 1");
+  hl_volume *map = cube->mask.volume;
+  cube->mask.volume = NULL;
+  stage_refused(&set, "/volumes/0/mask: has no label map: give its file");
+  cube->mask.volume = map;
+  close_masked(&set, cube);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_factors_and_colors),
+      cmocka_unit_test(test_border_is_smooth_and_in_place),
+      cmocka_unit_test(test_hidden),
+      cmocka_unit_test(test_moves_with_the_volume),
+      cmocka_unit_test(test_shadows_against_the_reference),
+      cmocka_unit_test(test_wrong_masks_are_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

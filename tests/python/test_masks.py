@@ -1,0 +1,63 @@
+"""Label maps over volumes, and looks."""
+import subprocess
+
+import numpy as np
+import pytest
+
+import halflight
+from halflight import Camera, Renderer, Scene, Volume
+
+LOOK = {"size": (32, 32), "lights": [], "ambient": 1,
+        "camera": Camera(position=(15.5, 15.5, 200), target=(15.5, 15.5, 15.5), up=(0, 1, 0), height=32)}
+EVEN = {"transfer_function": halflight.TransferFunction([(0, 0.05)], (0.2, 0.4, 0.8)), "shading": "flat"}
+
+
+@pytest.fixture
+def halves():
+    """Labels 1 where x is small and 2 where it is large."""
+    labels = np.ones((32, 32, 32), np.uint8)
+    labels[:, :, 16:] = 2
+    return labels
+
+
+def picture(volume):
+    return np.asarray(Renderer().render(Scene(volume, **LOOK)))
+
+
+def test_labels_hide_fade_and_colour(halves):
+    even = np.ones((32, 32, 32), np.uint8)
+    mask = {"volume": halves, "show": {1: ((0.81, 0.09, 0.25), 0.5)}}
+    pixels = picture(Volume(even, mask=mask, **EVEN))
+    left, right = pixels[16, 6], pixels[16, 26]
+    assert left[3] == pytest.approx(1 - 0.95**16, abs=1e-4)
+    assert left[:3] / left[3] == pytest.approx([0.81, 0.09, 0.25], abs=4e-3)
+    assert right == pytest.approx([0, 0, 0, 0], abs=1e-6)
+    rest = picture(Volume(even, mask=mask | {"rest": 1}, **EVEN))
+    assert rest[16, 26, 3] == pytest.approx(1 - 0.95**32, abs=1e-4)
+
+
+def test_one_label_alone_and_all(halves):
+    even = np.ones((32, 32, 32), np.uint8)
+    assert picture(Volume(even, mask=halves, **EVEN))[16, [6, 26], 3] == pytest.approx(1 - 0.95**32, abs=1e-4)
+    assert np.array_equal(picture(Volume(even, mask={"volume": halves, "show": 2}, **EVEN)),
+                          picture(Volume(even, mask={"volume": halves, "show": [2]}, **EVEN)))
+
+
+def test_wrong_masks(halves):
+    even = np.ones((32, 32, 32), np.uint8)
+    for mask, message in (({"show": 1}, "has no volume"), ({"volume": halves, "shown": 1}, "there is no 'shown'"),
+                          ({"volume": halves, "show": 7}, "there is no label 7")):
+        with pytest.raises((TypeError, ValueError), match=message):
+            Scene(Volume(even, mask=mask, **EVEN))
+
+
+def test_looks_are_the_programs(program, tmp_path):
+    z, y, x = np.mgrid[-1:1:24j, -1:1:24j, -1:1:24j]
+    np.save(tmp_path / "ball.npy", np.exp(-4 * (x**2 + y**2 + z**2)).astype(np.float32))
+    path = str(tmp_path / "ball.npy")
+    looked = Volume(path, look="xray").look
+    printed = subprocess.run([program, "render", path, "--look", "xray", "--print-scene"], check=True,
+                             capture_output=True, text=True).stdout
+    assert looked["transfer_function"] == Scene.from_json(printed).volumes[0].look["transfer_function"]
+    assert Volume(path).replace(look="xray").look == looked
+    assert looked["shading"] == Scene.from_json(printed).volumes[0].look["shading"]
