@@ -251,7 +251,7 @@ typedef struct hl_scene_volume {
   size_t cut_count;
   hl_cut_shading cut_shading;
   int cut_casts_shadow; /* non-zero: what `cuts` remove goes on taking light; default 0 */
-  hl_mask mask; /* of a volume that is no label map itself */
+  hl_mask mask;         /* of a volume that is no label map itself */
 } hl_scene_volume;
 
 /* A mesh among the volumes. Its colour is that of its vertices, faces or spheres, where it has some, times

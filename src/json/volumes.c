@@ -28,8 +28,7 @@ static const char *const volume_keys[] = {"name",        "stand_in",
                                           "iso",         "labels",
                                           "label_table", "cuts",
                                           "cut_shading", "cut_casts_shadow",
-                                          "mask",
-                                          NULL};
+                                          "mask",        NULL};
 
 #define GIVE_COMPONENT "give a number from 0 on, \"magnitude\", \"color\" or \"luminance\""
 
