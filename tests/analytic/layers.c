@@ -248,6 +248,7 @@ static void test_normal_of_ramp(void **state) {
                                          voxels);
   ramp->shading = HL_SHADING_PHONG;
   ramp->clipped = 1; /* away from the border, where the ramp ends */
+  ramp->cut_shading = HL_CUT_SHADING_GRADIENT; /* the normals of the ramp, at the faces as well */
   for (int a = 0; a < 3; a++) ramp->clip_min[a] = -5, ramp->clip_max[a] = 5;
   stage_set_opacity(&set, ramp, 0.3, 1);
   stage_look(&set, (vec3){40, -31, 52}, (vec3){0, 0, 0}, (vec3){0.2, 0.3, 1});
