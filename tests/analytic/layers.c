@@ -247,7 +247,7 @@ static void test_normal_of_ramp(void **state) {
   hl_scene_volume *ramp = stage_add_grid(&set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1}, (vec3){-7, -7, -7},
                                          voxels);
   ramp->shading = HL_SHADING_PHONG;
-  ramp->clipped = 1; /* away from the border, where the ramp ends */
+  ramp->clipped = 1;                           /* away from the border, where the ramp ends */
   ramp->cut_shading = HL_CUT_SHADING_GRADIENT; /* the normals of the ramp, at the faces as well */
   for (int a = 0; a < 3; a++) ramp->clip_min[a] = -5, ramp->clip_max[a] = 5;
   stage_set_opacity(&set, ramp, 0.3, 1);

@@ -139,7 +139,8 @@ void stage_move(stage *set, const motion *by, int by_transform, double (*vertice
     hl_scene_volume *volume = &set->volumes[v];
     volume->transfer_function.unit_distance *= by->scale;
     move_gradients(by, &volume->transfer_function, gradients[v]);
-    if (volume->clipped || (by_transform && determinant(by->turn) > 0)) move_transform(by, volume);
+    bool cut = volume->clipped || volume->cut_count > 0; /* clip boxes and cuts follow transforms alone */
+    if (cut || (by_transform && determinant(by->turn) > 0)) move_transform(by, volume);
     else move_axes(set->context, by, volume);
   }
 }

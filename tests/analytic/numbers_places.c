@@ -77,8 +77,8 @@ static void check_moves(const move_case *cases, size_t case_count, bool mirrored
     stage set;
     open_scene(&set, &all[i], i);
     stage_render_sheets(&set, expected);
-    bool clipped =
-        set.volumes[0].clipped; /* a clip box follows the volume's transform, which mirrors nothing */
+    /* A clip box and cuts follow the volume's transform, which mirrors nothing. */
+    bool clipped = set.volumes[0].clipped || set.volumes[0].cut_count > 0;
     stage_close(&set);
     for (size_t c = 0; c < case_count && !(mirrored && clipped); c++) {
       char what[100];

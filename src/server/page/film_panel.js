@@ -38,6 +38,7 @@ class Film {
   scene;
   changed = () => {};
   #viewer;
+  #edits = 0; // changes by a person; a window of another size is none
   #asking = false;
   #again = false;
 
@@ -50,7 +51,10 @@ class Film {
   // A turn goes out from the camera that a person has chosen, not from where the turn has taken it.
   #follow(scene, name) {
     if (name === "time") return;
-    this.playing = false;
+    if (name !== "size") {
+      this.#edits++;
+      this.playing = false;
+    }
     this.scene = !this.turns || name === "camera" ? scene : { ...scene, camera: this.scene.camera };
     this.changed();
   }
@@ -75,10 +79,10 @@ class Film {
     this.#asking = true;
     while (this.#again) {
       this.#again = false;
-      const before = this.scene;
+      const before = this.#edits;
       try {
-        const at = await channel.sceneAt(before, this.wanted, this.frame);
-        if (this.scene === before) store.change("time", ({ image: { width, height } }) => ({ volumes: [], ...at, image: { ...at.image, width, height } }));
+        const at = await channel.sceneAt(this.scene, this.wanted, this.frame);
+        if (this.#edits === before) store.change("time", ({ image: { width, height } }) => ({ volumes: [], ...at, image: { ...at.image, width, height } }));
       } catch (error) {
         this.playing = false;
         report(error.message);
