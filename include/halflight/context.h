@@ -92,8 +92,8 @@ typedef struct hl_context_options {
   void (*converted)(void *user_data, const void *bytes, size_t byte_count);
   /* A folder for scratch files, on a disk; copied; null (default): none. A volume file of one component whose
    * voxels and a renderer's tables of them would be more than memory_limit is read into a scratch file there,
-   * of 1.15 times the voxels' bytes, and rendered from it. The file has no name. Its bytes do not count
-   * against the limit: the system keeps in memory what there is room for. */
+   * of 1.15 times the voxels' bytes, and rendered from it. The file has no name. Parts of it are in memory
+   * where the limit leaves room beside what the context holds, and always up to 16 times 64^3 voxels. */
   const char *scratch_folder;
 } hl_context_options;
 

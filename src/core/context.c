@@ -78,6 +78,7 @@ hl_status hl_context_create(const hl_context_options *options, hl_context **cont
     made->options.scratch_folder = memcpy(texts + data_bytes, chosen.scratch_folder, scratch_bytes);
   atomic_init(&made->held, 0);
   atomic_init(&made->peak, 0);
+  atomic_init(&made->paged, 0);
   *context = made;
   return HL_OK;
 }

@@ -9,7 +9,8 @@
 
 struct hl_context {
   hl_context_options options;       /* callbacks filled in; instruction_set resolved */
-  atomic_uint_least64_t held, peak; /* bytes */
+  atomic_uint_least64_t held, peak; /* bytes of blocks */
+  atomic_uint_least64_t paged;      /* bytes of the pages of scratch files (volume/pages.h) held in memory */
 };
 
 void hl_log(const hl_context *context, hl_log_level level, const char *format, ...)

@@ -23,7 +23,6 @@ static int32_t clamp_index(int64_t i, int32_t count) {
 }
 
 typedef struct brick_job {
-  const hl_context *context;
   const grid *grid;
   bound_rows_function *bound_rows;
   float *columns;        /* [threads][2][dimension 0] */
@@ -99,7 +98,6 @@ static void bound_layer_of_bricks(void *data, size_t index, int worker) {
   for (int32_t by = 0; by < job->grid->brick_count[1]; by++)
     bound_brick_row(job, by, (int32_t)index, least, least + width,
                     job->copies + (size_t)worker * WINDOW * WINDOW * job->copy_bytes);
-  if (job->grid->pages != NULL && worker == 0) hl_pages_trim(job->context, job->grid->pages);
 }
 
 void hl_bricks_lay_out(grid *grid, hl_layout *layout) {
@@ -119,7 +117,7 @@ static void lay_out_columns(brick_job *job, int threads, hl_layout *layout) {
 
 hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, grid *grid,
                           hl_error *error) {
-  brick_job job = {.context = context, .grid = grid, .bound_rows = functions->rows[grid->storage]};
+  brick_job job = {.grid = grid, .bound_rows = functions->rows[grid->storage]};
   hl_layout counted = {0};
   lay_out_columns(&job, hl_pool_threads(pool), &counted);
   hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};
@@ -127,6 +125,7 @@ hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functio
   lay_out_columns(&job, hl_pool_threads(pool), &handed);
   memset(grid->relevant, 0, hl_grid_bricks(grid) + READ_BEYOND);
   hl_pool_run(pool, (size_t)grid->brick_count[2], bound_layer_of_bricks, &job);
+  if (grid->pages != NULL) hl_pages_forget(grid->pages);
   hl_release(context, job.columns);
   return HL_OK;
 }

@@ -131,10 +131,8 @@ static void forget_cut_cells(hl_seen *seen) {
 
 static void make_means(hl_seen *seen) {
   ptrdiff_t stride = (ptrdiff_t)seen->stride;
-  for (ptrdiff_t k = seen->first[2]; k < seen->end[2]; k += stride) {
+  for (ptrdiff_t k = seen->first[2]; k < seen->end[2]; k += stride)
     for (ptrdiff_t j = seen->first[1]; j < seen->end[1]; j += stride) add_row(seen, j, k);
-    if (seen->volume->pages != NULL) hl_pages_trim(seen->volume->context, seen->volume->pages);
-  }
   float *mean = seen->mean;
   for (int k = 0; k < seen->size[2]; k++) {
     double along_z = looked_at(seen, 2, k);
@@ -322,6 +320,7 @@ hl_status hl_seen_find(const hl_scene_volume *volume, hl_seen *seen, bool *any, 
 
 void hl_seen_release(hl_seen *seen) {
   hl_context *context = seen->volume->context;
+  if (seen->volume->pages != NULL) hl_pages_forget(seen->volume->pages);
   hl_release(context, seen->depth);
   hl_release(context, seen->bends);
   hl_release(context, seen->kind);
@@ -363,8 +362,6 @@ static ptrdiff_t first_that_counts(const hl_seen *seen, const voxel_row *row, pt
 }
 
 bool hl_seen_row(const hl_seen *seen, ptrdiff_t j, ptrdiff_t k, ptrdiff_t *first, ptrdiff_t *last) {
-  if (seen->volume->pages != NULL && j == seen->first[1])
-    hl_pages_trim(seen->volume->context, seen->volume->pages);
   const voxel_row row = {hl_volume_row_in(seen->volume, (size_t)j, (size_t)k, seen->row), j, k,
                          cell_of(seen, 0, j, k)};
   ptrdiff_t end = seen->end[0] - 1;

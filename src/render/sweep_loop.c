@@ -198,12 +198,6 @@ static void advance_lights(sweep *sweep, slab_stretch stretch) {
   sweep->seconds_soften += hl_clock_seconds() - start;
 }
 
-/* Volumes in scratch files: pages that this stretch did not cross need not stay in memory. */
-static void trim_pages(const sheet_content *content) {
-  for (int i = 0; i < content->volume_count; i++)
-    if (content->grids[i].pages != NULL) hl_pages_trim(content->context, content->grids[i].pages);
-}
-
 /* The paper's loop over the sheets (section 3.1, eighteen steps).
  *
  *    1. transform voxels to the half-way vector's frame      hl_sweep_begin
@@ -239,7 +233,6 @@ hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
       run_stretches(sweep, (slab_stretch){1, 1}, light);
     }
     advance_lights(sweep, light);
-    trim_pages(&sweep->content);
     if (!sweep->preparatory)
       hl_progress(sweep->content.context, "render", (double)(picture.end - 1) / sheets);
     if (hl_pool_cancelled(sweep->content.pool))

@@ -171,7 +171,7 @@ hl_status hl_volume_adopt_pages(hl_context *context, const hl_volume_description
   hl_status status = hl_volume_check_grid(description, subject, error);
   hl_volume *made = status == HL_OK ? make_volume(context, description) : NULL;
   if (made == NULL) {
-    hl_pages_release(context, pages);
+    hl_pages_release(pages);
     return status != HL_OK ? status : hl_fail_memory(error, sizeof *made, subject);
   }
   made->pages = pages;
@@ -314,7 +314,7 @@ void hl_volume_release(hl_volume *volume) {
   if (volume->shelf != NULL) volume->release_shelf(volume->context, volume->shelf);
   hl_release(volume->context, volume->series);
   hl_release(volume->context, volume->owned_voxels);
-  hl_pages_release(volume->context, volume->pages);
+  hl_pages_release(volume->pages);
   hl_release(volume->context, volume->colors);
   if (volume->release != NULL) volume->release(volume->release_data, volume->voxels);
   hl_release(volume->context, volume);

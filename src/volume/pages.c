@@ -18,8 +18,10 @@
 /* ---- the scratch file ---- */
 
 /* Windows of voxels are loaded as a whole: up to so many slices lie before the first page and after the
- * last. */
-enum { SLICES_AROUND = 16, LINE = 64 };
+ * last. Pages begin at a line of the cache, those of WHOLE_UNITS or more at the system's units of memory. */
+enum { SLICES_AROUND = 16, LINE = 64, UNIT = 4096, WHOLE_UNITS = 16 * UNIT };
+
+static size_t round_up(size_t bytes, size_t unit) { return (bytes + unit - 1) / unit * unit; }
 
 static bool multiply_all(const size_t *factors, int count, size_t *product) {
   *product = 1;
@@ -39,9 +41,10 @@ static bool plan(const hl_volume_description *grid, int shift, hl_pages *pages) 
   }
   pages->row_bytes = voxels[0] * hl_storage_bytes(pages->storage);
   pages->slice_bytes = voxels[1] * pages->row_bytes;
-  pages->page_bytes = (voxels[2] * pages->slice_bytes + LINE - 1) / LINE * LINE;
+  size_t page_bytes = voxels[2] * pages->slice_bytes;
+  pages->page_bytes = round_up(page_bytes, page_bytes < WHOLE_UNITS ? LINE : UNIT);
   const size_t factors[] = {pages->count[0], pages->count[1], pages->count[2], pages->page_bytes};
-  size_t bytes, around = 2 * SLICES_AROUND * (pages->slice_bytes + LINE);
+  size_t bytes, around = 2 * round_up(SLICES_AROUND * pages->slice_bytes, UNIT);
   return multiply_all(factors, 4, &bytes) && !__builtin_add_overflow(bytes, around, &pages->mapping_bytes) &&
          pages->mapping_bytes <= (size_t)INT64_MAX;
 }
@@ -98,7 +101,7 @@ static hl_status map_scratch(hl_context *context, const char *folder, hl_pages *
   close(file);
   if (number != 0) return fail_scratch(folder, bytes, number, error);
   pages->mapping = mapping;
-  pages->first = pages->mapping + SLICES_AROUND * (pages->slice_bytes + LINE) / LINE * LINE;
+  pages->first = pages->mapping + round_up(SLICES_AROUND * pages->slice_bytes, UNIT);
   return HL_OK;
 }
 
@@ -108,22 +111,24 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
   hl_pages *made = hl_allocate_zeroed(context, 1, sizeof *made);
   if (made == NULL) return hl_fail_memory(error, sizeof *made, "a volume's pages");
   hl_status status = HL_OK;
-  if (!plan(grid, shift, made))
-    status = hl_fail(error, HL_ERROR_INPUT, "%s: a volume too large for a file", folder);
+  bool possible = plan(grid, shift, made);
+  made->context = context;
+  if (!possible) status = hl_fail(error, HL_ERROR_INPUT, "%s: a volume too large for a file", folder);
   if (status == HL_OK) status = map_scratch(context, folder, made, error);
   size_t count = page_count(made);
-  if (status == HL_OK && (made->age = hl_allocate_zeroed(context, count, 1)) == NULL)
+  if (status == HL_OK && (made->state = hl_allocate_zeroed(context, count, 1)) == NULL)
     status = hl_fail_memory(error, count, "a volume's pages");
   if (status == HL_OK) *pages = made;
-  else hl_pages_release(context, made);
+  else hl_pages_release(made);
   return status;
 }
 
-void hl_pages_release(hl_context *context, hl_pages *pages) {
+void hl_pages_release(hl_pages *pages) {
   if (pages == NULL) return;
   if (pages->mapping != NULL) munmap(pages->mapping, pages->mapping_bytes);
-  hl_release(context, pages->age);
-  hl_release(context, pages);
+  atomic_fetch_sub(&pages->context->paged, pages->held_bytes);
+  hl_release(pages->context, pages->state);
+  hl_release(pages->context, pages);
 }
 
 /* ---- which volumes ---- */
@@ -147,26 +152,81 @@ bool hl_pages_wanted(const hl_context *context, const hl_volume_description *gri
 
 /* ---- memory ---- */
 
-/* The page's place, from the first byte to the last that no other page shares with it, in the system's
- * units. */
-static void forget_page(const hl_pages *pages, size_t number, uintptr_t unit) {
+/* A fault may map neighbouring units, too, up to the borders of a window of this many bytes (Linux,
+ * fault_around_bytes). */
+enum { FAULT_WINDOW = 1 << 16 };
+
+/* Lets the system take back the memory of a page, and of all units that its faults may have mapped. */
+static void drop(const hl_pages *pages, size_t number) {
   uintptr_t first = (uintptr_t)pages->first + number * pages->page_bytes;
-  uintptr_t begin = (first + unit - 1) / unit * unit, end = (first + pages->page_bytes) / unit * unit;
+  uintptr_t begin = first / FAULT_WINDOW * FAULT_WINDOW;
+  uintptr_t end = round_up(first + pages->page_bytes, FAULT_WINDOW);
+  uintptr_t least = (uintptr_t)pages->mapping, most = least + pages->mapping_bytes / UNIT * UNIT;
+  if (begin < least) begin = least;
+  if (end > most) end = most;
   if (begin < end) madvise((void *)begin, end - begin, MADV_DONTNEED);
 }
 
-void hl_pages_trim(const hl_context *context, const hl_pages *pages) {
-  uint64_t limit = context->options.memory_limit, held = hl_context_memory_held(context), used = 0;
-  if (limit == 0) return;
+static void count_held(hl_pages *pages, bool more) {
+  uint64_t bytes = more ? pages->page_bytes : 0 - (uint64_t)pages->page_bytes;
+  __atomic_fetch_add(&pages->held_bytes, bytes, __ATOMIC_RELAXED);
+  atomic_fetch_add(&pages->context->paged, bytes);
+}
+
+/* Forgets a page if it is in a state; other threads may change it meanwhile. */
+static void forget_if(hl_pages *pages, size_t number, unsigned char state) {
+  if (!__atomic_compare_exchange_n(&pages->state[number], &state, (unsigned char)PAGE_FORGOTTEN, false,
+                                   __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+    return;
+  drop(pages, number);
+  count_held(pages, false);
+}
+
+/* Moves the clock's hand by a page: forgets it if it was not needed since the hand was here. */
+static void move_hand(hl_pages *pages, size_t count) {
+  size_t number = __atomic_fetch_add(&pages->hand, 1, __ATOMIC_RELAXED) % count;
+  unsigned char state = __atomic_load_n(&pages->state[number], __ATOMIC_RELAXED);
+  if (state == PAGE_HELD) forget_if(pages, number, state);
+  else if (state == PAGE_NEEDED)
+    __atomic_compare_exchange_n(&pages->state[number], &state, (unsigned char)PAGE_HELD, false,
+                                __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+}
+
+/* The bytes of this volume's pages that may be held; UINT64_MAX: all. */
+static uint64_t room(const hl_pages *pages) {
+  hl_context *context = pages->context;
+  uint64_t limit = context->options.memory_limit, least = LEAST_PAGES * (uint64_t)pages->page_bytes;
+  if (limit == 0) return UINT64_MAX;
+  uint64_t others = atomic_load(&context->held) + atomic_load(&context->paged) -
+                    __atomic_load_n(&pages->held_bytes, __ATOMIC_RELAXED);
+  return limit < others + least ? least : limit - others;
+}
+
+/* Where pages hold more than there is room for, forgets a sixteenth more than necessary, so that the hand
+ * seldom moves. */
+static void make_room(hl_pages *pages) {
+  uint64_t most = room(pages);
+  if (__atomic_load_n(&pages->held_bytes, __ATOMIC_RELAXED) <= most) return;
   size_t count = page_count(pages);
-  for (size_t n = 0; n < count; n++)
-    if (__atomic_load_n(&pages->age[n], __ATOMIC_RELAXED) != PAGE_FORGOTTEN) used += pages->page_bytes;
-  if (held + used <= limit) return;
-  const uintptr_t unit = (uintptr_t)sysconf(_SC_PAGESIZE);
+  most -= most / 16;
+  for (size_t n = 0; n < 2 * count && __atomic_load_n(&pages->held_bytes, __ATOMIC_RELAXED) > most; n++)
+    move_hand(pages, count);
+}
+
+void hl_pages_hold(const hl_pages *held, size_t number) {
+  hl_pages *pages = (hl_pages *)held; /* volumes are constant for their readers; these counts are not */
+  unsigned char before = __atomic_exchange_n(&pages->state[number], (unsigned char)PAGE_NEEDED,
+                                             __ATOMIC_RELAXED);
+  if (before != PAGE_FORGOTTEN) return;
+  count_held(pages, true);
+  make_room(pages);
+}
+
+void hl_pages_forget(const hl_pages *pages) {
+  size_t count = page_count(pages);
   for (size_t n = 0; n < count; n++) {
-    unsigned char age = __atomic_load_n(&pages->age[n], __ATOMIC_RELAXED);
-    if (age == PAGE_HELD) forget_page(pages, n, unit);
-    if (age != PAGE_FORGOTTEN) __atomic_store_n(&pages->age[n], (unsigned char)(age - 1), __ATOMIC_RELAXED);
+    unsigned char state = __atomic_load_n(&pages->state[n], __ATOMIC_RELAXED);
+    if (state != PAGE_FORGOTTEN) forget_if((hl_pages *)pages, n, state);
   }
 }
 

@@ -3,29 +3,38 @@
  * The file holds pages: cubes of voxels. Page p of an axis holds the voxels from p * side to p * side + side
  * + PAGE_OVERLAP - 1, fewer at the grid's end. So every 4x4x4 neighbouring voxels lie in one page as a whole:
  * in the page of the first of them. The file is mapped: the system reads a page when one of its voxels is
- * needed, and forgets it when memory is short. A sheet crosses few pages, and neighbouring sheets cross the
- * same ones. The file has no name: it is gone when the volume or the process is. */
+ * needed. A sheet crosses few pages, and neighbouring sheets cross the same ones. The file has no name: it is
+ * gone when the volume or the process is.
+ *
+ * Pages and the context's blocks together take no more than the context's memory limit, but always as much as
+ * LEAST_PAGES: the need of one more page lets go of some that were not needed for long (the clock algorithm:
+ * F. J. Corbato, A Paging Experiment with the Multics System, 1968). Another thread may read such a page at
+ * that moment: then the system reads it anew. */
 #ifndef HL_VOLUME_PAGES_H
 #define HL_VOLUME_PAGES_H
 
 #include "volume/volume.h"
 
-/* How long ago a page was needed. */
-enum { PAGE_FORGOTTEN = 0, PAGE_HELD = 1, PAGE_NEEDED = 2 /* since the last hl_pages_trim() */ };
+/* Whether a page is held, and was needed since the clock's hand passed it. */
+enum { PAGE_FORGOTTEN = 0, PAGE_HELD = 1, PAGE_NEEDED = 2 };
 
 enum {
-  PAGE_SHIFT = 6,  /* a page's side is 2^6 = 64 voxels; tests use smaller pages */
-  PAGE_OVERLAP = 3 /* voxels along an axis that a page shares with the next */
+  PAGE_SHIFT = 6,   /* a page's side is 2^6 = 64 voxels; tests use smaller pages */
+  PAGE_OVERLAP = 3, /* voxels along an axis that a page shares with the next */
+  LEAST_PAGES = 16  /* pages that are held whatever the limit is */
 };
 
 typedef struct hl_pages {
   unsigned char *mapping; /* owned; [mapping_bytes]: the pages, with room for vector loads around them */
   size_t mapping_bytes;
   unsigned char *first; /* in the mapping; the first page */
+  hl_context *context;  /* counts the bytes of the pages held, and limits them */
   hl_storage storage;
-  size_t dimension[3]; /* voxels of the volume */
-  size_t count[3];     /* pages; page (x, y, z) is number (z * count[1] + y) * count[0] + x */
-  unsigned char *age;  /* owned; [pages]; PAGE_...; atomic */
+  size_t dimension[3];  /* voxels of the volume */
+  size_t count[3];      /* pages; page (x, y, z) is number (z * count[1] + y) * count[0] + x */
+  unsigned char *state; /* owned; [pages]; PAGE_...; atomic */
+  uint64_t held_bytes;  /* of the pages that are not forgotten; atomic */
+  size_t hand;          /* the clock's: the page it looks at next, modulo the number of pages; atomic */
   int shift;
   size_t row_bytes, slice_bytes, page_bytes; /* in a page, from row to row, and from slice to slice; and from
                                                 page to page */
@@ -35,7 +44,7 @@ typedef struct hl_pages {
  * caller, until a volume takes it over. */
 hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volume_description *grid,
                           int shift, hl_pages **pages, hl_error *error);
-void hl_pages_release(hl_context *context, hl_pages *pages); /* null is allowed */
+void hl_pages_release(hl_pages *pages); /* null is allowed */
 
 /* Whether the voxels of a volume and a renderer's tables of them are more than the memory limit allows, and
  * there is a scratch folder. */
@@ -47,10 +56,12 @@ void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *val
 /* Copies the voxels of a row. row: [dimension[0]] stored values. */
 void hl_pages_load_row(const hl_pages *pages, size_t j, size_t k, void *row);
 
-/* Lets the system take memory back from pages that were not needed since the last call, where all pages that
- * were needed before are more than the context's memory limit leaves room for. Other threads may read pages
- * meanwhile. Does nothing without a limit. */
-void hl_pages_trim(const hl_context *context, const hl_pages *pages);
+/* Lets go of all pages: after a pass over all voxels, and before other memory is allocated. Other threads may
+ * read pages meanwhile. */
+void hl_pages_forget(const hl_pages *pages);
+
+/* Holds a page from now on, in the place of others where the limit is reached. */
+void hl_pages_hold(const hl_pages *pages, size_t number);
 
 /* The page of a voxel along an axis. Those at the end of the grid may lie in the last page's overlap. */
 static inline size_t hl_page_of(const hl_pages *pages, int axis, size_t voxel) {
@@ -61,8 +72,7 @@ static inline size_t hl_page_of(const hl_pages *pages, int axis, size_t voxel) {
 /* The first voxel of a page, as stored; the page is needed. */
 static inline const unsigned char *hl_page_at(const hl_pages *pages, const size_t page[3]) {
   size_t number = (page[2] * pages->count[1] + page[1]) * pages->count[0] + page[0];
-  if (__atomic_load_n(&pages->age[number], __ATOMIC_RELAXED) != PAGE_NEEDED)
-    __atomic_store_n(&pages->age[number], (unsigned char)PAGE_NEEDED, __ATOMIC_RELAXED);
+  if (__atomic_load_n(&pages->state[number], __ATOMIC_RELAXED) != PAGE_NEEDED) hl_pages_hold(pages, number);
   return pages->first + number * pages->page_bytes;
 }
 

@@ -17,8 +17,6 @@
 #include "volume/text.h"
 
 enum { PIECE_BYTES = 1 << 20, STAGE_VOXELS = 8192, SKIPPED_BYTES = 1 << 16 };
-/* Voxels that are stored in pages between two calls of hl_pages_trim(). */
-enum { TRIMMED_VOXELS = 512 * STAGE_VOXELS };
 
 static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
 
@@ -322,12 +320,11 @@ static hl_status read_pages(hl_stream *stream, const hl_payload *payload, hl_pag
     status = read_piece(stream, payload, done, wanted, raw, stored, error);
     if (status == HL_OK) hl_pages_store(*pages, done, wanted, stored);
     done += wanted;
-    if (status == HL_OK && done % TRIMMED_VOXELS == 0) hl_pages_trim(context, *pages);
     if (status == HL_OK) status = report(stream, done, count, error);
   }
   if (status == HL_OK) status = check_end(stream, payload, error);
   if (status == HL_OK) return HL_OK;
-  hl_pages_release(context, *pages);
+  hl_pages_release(*pages);
   *pages = NULL;
   return status;
 }

@@ -16,8 +16,6 @@ enum { LANES = 8 };
 /* Voxels between two checks for cancellation: a few milliseconds; and as many as are copied together where
  * rows do not adjoin. Multiples of LANES. */
 enum { PIECE = 1 << 22, COPIED_PIECE = 1 << 16 };
-/* Pieces of volumes with pages between two calls of hl_pages_trim(). */
-enum { PIECES_HELD = 64 };
 
 /* The range of stored values; low > high if no voxel is finite. */
 typedef struct tally {
@@ -75,8 +73,6 @@ static bool next_piece(walk *w) {
   w->piece = w->count - w->first < most ? w->count - w->first : most;
   w->cancelled = w->piece > 0 && hl_cancelled(w->volume->context);
   if (w->piece == 0 || w->cancelled) return false;
-  if (w->volume->pages != NULL && w->first / COPIED_PIECE % PIECES_HELD == 0)
-    hl_pages_trim(w->volume->context, w->volume->pages);
   w->voxels = piece_of(w->volume, w->first, w->piece, w->buffer);
   return true;
 }
@@ -227,6 +223,7 @@ hl_status hl_volume_measure(hl_volume *volume, const char *subject, hl_error *er
                            : measure_f32(volume, buffer, &total);
   hl_release(context, counts);
   hl_release(context, buffer);
+  if (volume->pages != NULL) hl_pages_forget(volume->pages);
   if (!finished) return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", subject);
   return record(volume, total, subject, error);
 }

@@ -259,37 +259,116 @@ static void test_ways(void **state) {
 
 /* ---- memory ---- */
 
-/* Pages that were forgotten are read again, with the same voxels. */
-static void test_forgotten_pages(void **state) {
-  (void)state;
-  hl_context_options options;
-  hl_context_options_defaults(&options);
-  options.memory_limit = 1 << 20;
-  hl_context *context = NULL;
-  assert_int_equal(hl_context_create(&options, &context, NULL), HL_OK);
-  hl_volume *packed = packed_volume(context, (const size_t[3]){35, 36, 37}, HL_VOXEL_U16);
-  hl_volume *paged = in_pages(context, packed, 4);
-  const hl_context_options unlimited = context->options;
-  const size_t count = 2 * 3 * 3;
-  for (int round = 0; round < 3; round++) {
-    context->options.memory_limit = 1; /* less than any page */
-    hl_pages_trim(context, paged->pages);
-    context->options = unlimited;
-    for (size_t n = 0; n < count; n++) assert_int_equal(paged->pages->age[n], PAGE_HELD);
-    for (size_t v = 0; v < 35 * 36 * 37; v++)
-      assert_true(hl_volume_value(paged, v % 35, v / 35 % 36, v / 35 / 36) ==
-                  hl_volume_value(packed, v % 35, v / 35 % 36, v / 35 / 36));
+/* Leaves room for LEAST_PAGES pages alone: as if other volumes' pages took all that the limit allows. */
+static void leave_no_room(hl_context *context) {
+  context->options.memory_limit = (uint64_t)1 << 40;
+  atomic_store(&context->paged, (uint64_t)1 << 40);
+}
+
+static void make_room_again(hl_context *context) {
+  assert_int_equal(atomic_load(&context->paged), (uint64_t)1 << 40);
+  atomic_store(&context->paged, 0);
+}
+
+/* The bytes of a mapping that are in memory, by the system's own count. */
+static size_t resident_bytes(const unsigned char *mapping) {
+  FILE *maps = fopen("/proc/self/smaps", "r");
+  char line[512];
+  bool found = false;
+  size_t kilobytes = SIZE_MAX;
+  assert_non_null(maps);
+  while (kilobytes == SIZE_MAX && fgets(line, sizeof line, maps) != NULL) {
+    unsigned long long begin, end;
+    if (sscanf(line, "%llx-%llx ", &begin, &end) == 2) found = begin == (uintptr_t)mapping;
+    else if (found) sscanf(line, "Rss: %zu kB", &kilobytes);
   }
-  context->options.memory_limit = 1;
-  hl_pages_trim(context, paged->pages);
-  hl_pages_trim(context, paged->pages);
-  for (size_t n = 0; n < count; n++) assert_int_equal(paged->pages->age[n], PAGE_FORGOTTEN);
-  context->options = unlimited;
-  assert_true(hl_volume_value(paged, 34, 35, 36) == hl_volume_value(packed, 34, 35, 36));
+  fclose(maps);
+  assert_true(kilobytes != SIZE_MAX);
+  return kilobytes * 1024;
+}
+
+static void assert_held(const hl_pages *pages, size_t most) {
+  uint64_t held = 0;
+  for (size_t n = 0; n < pages->count[0] * pages->count[1] * pages->count[2]; n++)
+    held += pages->state[n] == PAGE_FORGOTTEN ? 0 : pages->page_bytes;
+  assert_int_equal(held, pages->held_bytes);
+  assert_in_range(held, 0, most * pages->page_bytes);
+}
+
+/* Where there is room for few pages, few are in memory, with the same voxels; none when all are forgotten. */
+static void test_few_pages(void **state) {
+  (void)state;
+  enum { WIDE = 40 };
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  hl_volume *packed = packed_volume(context, (const size_t[3]){WIDE, WIDE, WIDE}, HL_VOXEL_F32);
+  leave_no_room(context);
+  hl_volume *paged = in_pages(context, packed, 3);
+  const hl_pages *pages = paged->pages;
+  for (int round = 0; round < 2; round++) {
+    for (size_t v = 0; v < (size_t)WIDE * WIDE * WIDE; v++) {
+      size_t i = v % WIDE, j = v / WIDE % WIDE, k = v / WIDE / WIDE;
+      assert_true(hl_volume_value(paged, i, j, k) == hl_volume_value(packed, i, j, k));
+    }
+    assert_held(pages, LEAST_PAGES);
+    hl_pages_forget(pages);
+    assert_held(pages, 0);
+    assert_int_equal(resident_bytes(pages->mapping), 0);
+  }
   hl_volume_release(packed);
   hl_volume_release(paged);
+  make_room_again(context);
   assert_int_equal(hl_context_memory_held(context), 0);
   hl_context_destroy(context);
+}
+
+/* What a pass over 8 million voxels leaves in memory. */
+static void test_resident_bytes(void **state) {
+  (void)state;
+  enum { WIDE = 200, WINDOW = 1 << 16 };
+  hl_context *context = NULL;
+  hl_volume_description grid;
+  hl_pages *pages;
+  static unsigned char slice[WIDE * WIDE], row[WIDE];
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  leave_no_room(context);
+  hl_volume_description_defaults(&grid);
+  grid.type = HL_VOXEL_U8;
+  for (int a = 0; a < 3; a++) grid.dimensions[a] = WIDE;
+  assert_int_equal(hl_pages_create(context, "/tmp", &grid, PAGE_SHIFT, &pages, NULL), HL_OK);
+  for (size_t k = 0; k < WIDE; k++) {
+    memset(slice, (int)k, sizeof slice);
+    hl_pages_store(pages, k * sizeof slice, sizeof slice, slice);
+  }
+  size_t most = LEAST_PAGES * (pages->page_bytes + 2 * WINDOW);
+  assert_in_range(resident_bytes(pages->mapping), 1, most);
+  for (size_t k = 0; k < WIDE; k++)
+    for (size_t j = 0; j < WIDE; j++) {
+      hl_pages_load_row(pages, j, k, row);
+      assert_int_equal(row[j], k);
+    }
+  assert_in_range(resident_bytes(pages->mapping), 1, most);
+  hl_pages_release(pages);
+  make_room_again(context);
+  hl_context_destroy(context);
+}
+
+/* Pictures while pages come and go, on several threads. */
+static void test_pictures_of_few_pages(void **state) {
+  (void)state;
+  enum { MOST_THREADS = 64 }; /* each may hold one more than there is room for at a moment */
+  for (size_t n = 0; n < 4; n++) {
+    stage set;
+    stage_open(&set);
+    hl_scene_volume *volume = add_noise(&set, (const size_t[3]){40, 38, 39}, types[n % 3]);
+    volume->shading = HL_SHADING_PHONG;
+    stage_add_directional(&set, (vec3){-1, 0.5, -1})->angular_diameter_deg = 10;
+    ways[n].draw(&set);
+    leave_no_room(set.context);
+    assert_same_in_pages(&set, 2 + (int)n % 2, ways[n].name);
+    assert_held(set.volumes[0].volume->pages, LEAST_PAGES + MOST_THREADS);
+    stage_close(&set);
+  }
 }
 
 static void assert_starts(const char *text, const char *start) {
@@ -352,9 +431,14 @@ static void test_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_voxels),           cmocka_unit_test(test_shapes),
-                                     cmocka_unit_test(test_instruction_sets), cmocka_unit_test(test_ways),
-                                     cmocka_unit_test(test_forgotten_pages),  cmocka_unit_test(test_no_room),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_voxels),
+                                     cmocka_unit_test(test_shapes),
+                                     cmocka_unit_test(test_instruction_sets),
+                                     cmocka_unit_test(test_ways),
+                                     cmocka_unit_test(test_few_pages),
+                                     cmocka_unit_test(test_resident_bytes),
+                                     cmocka_unit_test(test_pictures_of_few_pages),
+                                     cmocka_unit_test(test_no_room),
                                      cmocka_unit_test(test_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
