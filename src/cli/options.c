@@ -15,12 +15,25 @@ static const char *choice_name(const void *choices, size_t index) {
   return choice->name;
 }
 
+/* How many rows a command has: those of its own table, then those of the table that it shares. */
+static size_t row_count(const cli_command *command) { return command->option_count + command->shared_count; }
+
+/* The option in a row; null: the command has not the option of this row. */
+static const cli_option *option_in(const cli_command *command, size_t row) {
+  if (row < command->option_count) return &command->options[row];
+  row -= command->option_count;
+  return command->has_shared(row) ? &command->shared[row] : NULL;
+}
+
+/* Names for suggestions: an option that is not there, or reserved, is passed over. */
 static const char *option_name(const void *data, size_t index) {
   const cli_command *command = data;
-  while (index < command->option_count && command->options[index].reserved) index++;
-  return index < command->option_count    ? command->options[index].name
-         : index == command->option_count ? "help"
-                                          : NULL;
+  size_t count = row_count(command);
+  for (; index < count; index++) {
+    const cli_option *option = option_in(command, index);
+    if (option != NULL && !option->reserved) return option->name;
+  }
+  return index == count ? "help" : NULL;
 }
 
 /* "off, hard, soft": the names of an option's choices, without the reserved ones. */
@@ -158,18 +171,23 @@ static bool looks_like_option(const char *text) {
   return text[0] == '-' && text[1] != '\0' && strchr("0123456789.", text[1]) == NULL;
 }
 
-static const cli_option *find_option(const cli_command *command, const char *name, size_t length) {
-  for (size_t i = 0; i < command->option_count; i++) {
-    const cli_option *option = &command->options[i];
-    if (strlen(option->name) == length && strncmp(option->name, name, length) == 0) return option;
+/* The row of the option with this name; the count of rows: there is none. */
+static size_t find_option(const cli_command *command, const char *name, size_t length) {
+  size_t row = 0;
+  for (; row < row_count(command); row++) {
+    const cli_option *option = option_in(command, row);
+    if (option != NULL && strlen(option->name) == length && strncmp(option->name, name, length) == 0) break;
   }
-  return NULL;
+  return row;
 }
 
-static const cli_option *find_letter(const cli_command *command, char letter) {
-  for (size_t i = 0; i < command->option_count; i++)
-    if (command->options[i].letter == letter && letter != '\0') return &command->options[i];
-  return NULL;
+static size_t find_letter(const cli_command *command, char letter) {
+  size_t row = 0;
+  for (; row < row_count(command); row++) {
+    const cli_option *option = option_in(command, row);
+    if (option != NULL && option->letter == letter && letter != '\0') break;
+  }
+  return row;
 }
 
 /* A copy of the option with the range and the choices of its setting. */
@@ -212,21 +230,20 @@ static int refuse_unknown(const cli_command *command, const char *argument) {
 static int parse_option(const cli_command *command, int argument_count, char **arguments, int *index,
                         cli_value *values) {
   const char *argument = arguments[*index], *attached = NULL;
-  const cli_option *option = NULL;
+  size_t row;
   if (argument[1] == '-') {
     size_t length = strcspn(argument + 2, "=");
-    option = find_option(command, argument + 2, length);
+    row = find_option(command, argument + 2, length);
     attached = argument[2 + length] == '=' ? argument + 3 + length : NULL;
   } else {
-    option = find_letter(command, argument[1]);
+    row = find_letter(command, argument[1]);
     attached = argument[2] != '\0' ? argument + 2 : NULL;
   }
-  if (option == NULL) return refuse_unknown(command, argument);
+  if (row == row_count(command)) return refuse_unknown(command, argument);
+  const cli_option full = with_setting(option_in(command, row)), *option = &full;
   if (option->reserved)
     return fail(EXIT_CODE_UNSUPPORTED, "--%s is not yet in this version (%s)", option->name, hl_version());
-  cli_value *value = &values[option - command->options];
-  const cli_option full = with_setting(option);
-  option = &full;
+  cli_value *value = &values[row];
   if (value->given && !option->repeatable)
     return fail(EXIT_CODE_USAGE, "--%s is given twice: give it once", option->name);
   if (option->kind == OPTION_SWITCH) {
@@ -308,16 +325,28 @@ static void print_option(const char *heading, const char *help) {
   }
 }
 
+/* Prints an option, below the heading of the group that it begins; group: null for none. */
+static void print_row(const cli_option *listed, const char *group) {
+  const cli_option option = with_setting(listed);
+  char heading[120];
+  if (group != NULL) printf("\n%s\n", group);
+  option_heading(&option, heading, sizeof heading);
+  print_option(heading, option.help);
+}
+
 void options_print_help(const cli_command *command) {
   printf("usage: halflight %s %s [OPTION ...]\n\n%s\n", command->name, command->operands,
          command->description);
-  for (size_t i = 0; i < command->option_count; i++) {
-    const cli_option full = with_setting(&command->options[i]), *option = &full;
-    if (option->reserved) continue;
-    if (option->group != NULL) printf("\n%s\n", option->group);
-    char heading[120];
-    option_heading(option, heading, sizeof heading);
-    print_option(heading, option->help);
+  const char *group = NULL; /* whose heading is due */
+  for (size_t row = 0; row < row_count(command); row++) {
+    const cli_option *listed = option_in(command, row);
+    const bool shared = row >= command->option_count;
+    if (shared && command->shared[row - command->option_count].group != NULL)
+      group = command->shared[row - command->option_count].group;
+    if (listed == NULL || listed->reserved) continue;
+    if (!shared) group = listed->group;
+    print_row(listed, group);
+    group = NULL;
   }
   print_option("-h, --help", "this text");
 }

@@ -69,7 +69,11 @@ typedef struct cli_command {
   const char *description;
   const cli_option *options;
   size_t option_count;
-  /* values: [option_count]; operands: null after the last. Returns the exit code. */
+  const cli_option *shared; /* another subcommand's table, some of whose options this one has too; or null */
+  size_t shared_count;
+  bool (*has_shared)(size_t row); /* whether it has the option in this row of `shared` */
+  /* values: [option_count + shared_count], of its own table first; operands: null after the last. Returns the
+   * exit code. */
   int (*run)(const cli_value *values, char **operands);
 } cli_command;
 

@@ -16,28 +16,14 @@
 #include "server/server.h"
 #endif
 
-enum {
-  VIEW_PORT,
-  VIEW_NO_BROWSER,
-  VIEW_ARRAY,
-  VIEW_COMPONENT,
-  VIEW_SERIES,
-  VIEW_TIME,
-  VIEW_CHANNEL,
-  VIEW_LEVEL,
-  VIEW_SPACING,
-  VIEW_DATA,
-  VIEW_MAX_MEMORY,
-  VIEW_QUIET,
-  VIEW_OPTION_COUNT
-};
+enum { VIEW_PORT, VIEW_NO_BROWSER, VIEW_OPTION_COUNT };
 
 static const cli_option view_options[VIEW_OPTION_COUNT] = {
     [VIEW_PORT] = {.name = "port",
                    .kind = OPTION_NUMBERS,
                    .argument = "N",
-                   .group = "Options",
-                   .help = "of 127.0.0.1, where the page is served (default: a\nfree one)",
+                   .group = "Page",
+                   .help = "of 127.0.0.1, where it is served (default: a free one)",
                    .count = 1,
                    .whole = true,
                    .low = 1,
@@ -46,12 +32,28 @@ static const cli_option view_options[VIEW_OPTION_COUNT] = {
                          .kind = OPTION_SWITCH,
                          .help =
                              "only print the URL (default: open a browser too, where\nthere is a screen)"},
-    INPUT_OPTIONS(VIEW_ARRAY, "Volume files"),
-    [VIEW_SPACING] = INPUT_OPTION_SPACING,
-    [VIEW_DATA] = HOST_OPTION_DATA("Running"),
-    [VIEW_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
-    [VIEW_QUIET] = {.name = "quiet", .kind = OPTION_SWITCH, .help = "no progress bar, no warnings, no hints"},
 };
+
+/* The options of `render` that say what is shown and how, but not those about one picture or its file. */
+static bool has_render_option(size_t row) {
+  switch ((enum render_option)row) {
+    case RENDER_OUTPUT:
+    case RENDER_FORMAT:
+    case RENDER_SIZE: /* the page's own */
+    case RENDER_DEPTH:
+    case RENDER_LAYERS:
+    case RENDER_RANGE_OF_ALL:
+    case RENDER_REFERENCE:
+    case RENDER_LIGHT_POINTS:
+    case RENDER_STEP:
+    case RENDER_PATHS:
+    case RENDER_PART:
+    case RENDER_RANKS:
+    case RENDER_PRINT_SCENE:
+    case RENDER_JSON: return false;
+    default: return true;
+  }
+}
 
 #ifdef HL_HAS_VIEWER
 
@@ -60,8 +62,8 @@ extern char **environ;
 /* One run. */
 typedef struct view_job {
   cli_host host;
-  const cli_value *values;
-  hl_scene *scene; /* owned */
+  const cli_value *values, *render; /* of the command's own options, and of those of `render` */
+  hl_scene *scene;                  /* owned */
 } view_job;
 
 /* ---- the scene ---- */
@@ -94,11 +96,10 @@ static hl_status name_absolutely(view_job *job, hl_scene **scene, hl_error *erro
   hl_light *lights = malloc(d.light_count * sizeof *lights + 1);
   hl_scene_mesh *meshes = malloc(d.mesh_count * sizeof *meshes + 1);
   path_list *list = calloc(1, sizeof *list);
-  bool good = volumes != NULL && lights != NULL && meshes != NULL && list != NULL &&
-              make_absolute(&d.sky.file, list);
+  bool good = volumes != NULL && lights != NULL && meshes != NULL && list != NULL;
   for (size_t v = 0; good && v < d.volume_count; v++) {
     volumes[v] = d.volumes[v];
-    good = make_absolute(&volumes[v].file, list);
+    good = make_absolute(&volumes[v].file, list) && make_absolute(&volumes[v].mask.file, list);
   }
   for (size_t l = 0; good && l < d.light_count; l++) {
     lights[l] = d.lights[l];
@@ -128,12 +129,9 @@ static hl_status name_absolutely(view_job *job, hl_scene **scene, hl_error *erro
 }
 
 static int load(view_job *job, char **inputs) {
-  cli_value values[RENDER_OPTION_COUNT] = {{0}};
-  for (int which = VIEW_ARRAY; which <= VIEW_SPACING; which++)
-    values[RENDER_ARRAY + which - VIEW_ARRAY] = job->values[which]; /* in the same order */
-  values[RENDER_MAX_MEMORY] = job->values[VIEW_MAX_MEMORY];
   bool bare;
-  int exit_code = render_load_inputs(&job->host, values, inputs, &bare, &job->scene);
+  int exit_code = render_load_inputs(&job->host, job->render, inputs, &bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->render, bare, &job->scene);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   hl_error error = {0};
   hl_status status = name_absolutely(job, &job->scene, &error);
@@ -201,16 +199,19 @@ static void make_title(char **inputs, char *title, size_t size) {
 }
 
 static int run_view(const cli_value *values, char **inputs) {
-  view_job job = {.values = values};
+  view_job job = {.values = values, .render = values + VIEW_OPTION_COUNT};
+  const cli_value *render = job.render;
   char title[300], problem[300], folder[PATH_MAX];
-  cli_host_options options = {.quiet = values[VIEW_QUIET].given,
+  cli_host_options options = {.quiet = render[RENDER_QUIET].given,
                               .progress = true,
                               .subject = base_name(inputs[0]),
-                              .memory_limit = values[VIEW_MAX_MEMORY].bytes,
-                              .data_folder = values[VIEW_DATA].text,
+                              .memory_limit = render[RENDER_MAX_MEMORY].bytes,
+                              .data_folder = render[RENDER_DATA].text,
+                              .instruction_set = (hl_instruction_set)render[RENDER_INSTRUCTION_SET].choice,
                               .cancelled = server_is_outdated,
                               .progressed = server_progress};
-  int exit_code = host_open(&options, &job.host);
+  int exit_code = render_check_options(render);
+  if (exit_code == EXIT_CODE_OK) exit_code = host_open(&options, &job.host);
   if (exit_code == EXIT_CODE_OK) exit_code = load(&job, inputs);
   if (exit_code == EXIT_CODE_OK) {
     host_clear_bar(&job.host);
@@ -253,8 +254,12 @@ const cli_command view_command = {
         "Opens INPUT, as for render, in a page of the browser, and prints the page's URL on stdout. Turn "
         "the\n"
         "volume, drag the light, edit the transfer function; save the picture, the scene, or the command\n"
-        "that renders it. The page is served to this machine alone; Ctrl-C ends the viewer.",
+        "that renders it. The page is served to this machine alone; Ctrl-C ends the viewer. Options of\n"
+        "render say what the page begins with.",
     .options = view_options,
     .option_count = VIEW_OPTION_COUNT,
+    .shared = render_options,
+    .shared_count = RENDER_OPTION_COUNT,
+    .has_shared = has_render_option,
     .run = run_view,
 };

@@ -269,7 +269,14 @@ static void post_frame(server *s, struct MHD_Connection *connection, const reque
         "a frame needs ?page=NAME&number=N&format=jpeg|png|exr|npy (&quality=10..100, &depth=8|16)\n");
 }
 
-/* Numbers that are none are -1. */
+/* Whether the query has more keys than a film may have. */
+static bool has_too_many_keys(struct MHD_Connection *connection) {
+  char name[16];
+  snprintf(name, sizeof name, "key%d", MOST_FILM_KEYS);
+  return query(connection, name) != NULL;
+}
+
+/* Numbers that are none, and frames of a film with too many keys, are -1. */
 static film_request read_film(struct MHD_Connection *connection, const char *format) {
   film_request film = {.format = format};
   for (char name[8]; film.key_count < MOST_FILM_KEYS; film.key_count++) {
@@ -277,7 +284,9 @@ static film_request read_film(struct MHD_Connection *connection, const char *for
     if ((film.keys[film.key_count] = query(connection, name)) == NULL) break;
   }
   film.turntable = (int)query_number(connection, "turntable", 0, MOST_FILM_FRAMES, 0);
-  film.frames = (int)query_number(connection, "frames", 0, MOST_FILM_FRAMES, 0);
+  film.frames = has_too_many_keys(connection)
+                    ? -1
+                    : (int)query_number(connection, "frames", 0, MOST_FILM_FRAMES, 0);
   film.frames_per_second = (double)query_number(connection, "fps", 1, 240, 30);
   return film;
 }
@@ -291,7 +300,9 @@ static void post_scene(server *s, struct MHD_Connection *connection, const reque
   int frame = (int)query_number(connection, "frame", 0, MOST_FILM_FRAMES, 0);
   if (frame >= 0 && film.turntable >= 0 && film.frames >= 0)
     answer_scene(s, &wanted, turns ? &film : NULL, frame, answer);
-  else answer_problem(answer, 400, "a scene of a film needs ?frame=N&frames=N&turntable=N&key0=...\n");
+  else
+    answer_problem(answer, 400,
+                   "a scene of a film needs ?frame=N&frames=N&turntable=N&key0=... (32 keys at most)\n");
 }
 
 static void post_film(server *s, struct MHD_Connection *connection, const request *r, server_answer *answer) {
@@ -303,7 +314,8 @@ static void post_film(server *s, struct MHD_Connection *connection, const reques
   else
     answer_problem(
         answer, 400,
-        "a film needs ?page=NAME&number=N&format=mp4|webm|gif|zip (&turntable=N&frames=N&fps=N&key0=...)\n");
+        "a film needs ?page=NAME&number=N&format=mp4|webm|gif|zip (&turntable=N&frames=N&fps=N&key0=..., "
+        "32 keys at most)\n");
 }
 
 static void post_cancel(server *s, struct MHD_Connection *connection, const request *r,

@@ -98,6 +98,71 @@ def refusals(viewer, scene):
     check(frame(viewer, vast)[0] == 400, "a picture of 256 million pixels")
 
 
+def film_scenes(viewer, scene):
+    """The scene of a film's frame: keys count as they say, and hostile numbers are refused."""
+    text = json.dumps(small(scene))
+    width = scene["lights"][0]["angular_diameter_deg"]
+    key = "lights.0.angular_diameter_deg=0:10,20:30"
+
+    def at(query):
+        status, _, body = request(viewer, "POST", f"scene?{query}", text)
+        return status, json.loads(body)["lights"][0]["angular_diameter_deg"] if status == 200 else body
+
+    check(at("frames=21&key0=" + key) == (200, width), "no frame: the scene as it is")
+    for frame, value in ((0, 10), (5, 15), (20, 30)):
+        check(at(f"frame={frame}&frames=21&key0={key}") == (200, value), f"frame {frame}: {value}")
+    check(at("frame=100000&frames=21&key0=" + key) == (200, 30), "after the last key its value stays")
+    status, turned = request(viewer, "POST", "scene?frame=30&turntable=60", text)[::2]
+    eye, before = (json.loads(t)["camera"] for t in (turned, text))
+    middle = [sum(c["position"][axis] for c in (eye, before)) / 2 for axis in range(3)]
+    up = before["up"]
+    along = sum((m - t) * u for m, t, u in zip(middle, before["target"], up))
+    away = [m - t - along * u for m, t, u in zip(middle, before["target"], up)]
+    check(status == 200 and max(map(abs, away)) < 1e-6, "half a turn: the eye is opposite, about the axis that points up")
+    own = scene["volumes"][0]["transfer_function"]["color"]
+    paths = [f"volumes.0.transfer_function.color.{n}.{c}" for n in range(len(own)) for c in (1, 2, 3)]
+    paths += [f"{path}.{c}" for path in ("ambient", "image.background", "lights.0.color", "lights.1.color") for c in range(3)]
+    keys = [f"&key{n}={path}=0:0.5" for n, path in enumerate(paths[:33])]
+    check(at("frame=0&frames=9" + "".join(keys[:32])) == (200, width), "32 keys")
+    for query in ("frame=-1", "frame=1e9", "frame=NaN", "frame=", "frame=100001", "frame=2147483648", "frame=18446744073709551616",
+                  "frame=0x10", "frame=1.5", "frame=%00", "frame=1&frames=-1", "frame=1&frames=100001", "frame=1&turntable=nan",
+                  "frame=1&turntable=4294967297", "frame=1&frames=1e3", "frame=-0", "frame=%201", "frame=" + 400 * "9",
+                  "frame=0&frames=2&key0=", "frame=0&frames=2&key0=camera", "frame=0&frames=2&key0=nothing.5=0:1",
+                  "frame=0&frames=2&key0=camera.azimuth=0:nan", "frame=0&frames=2&key0=camera.azimuth=-1:0",
+                  "frame=0&frames=2&key0=camera.azimuth=99999999999999999999:0", "frame=0&frames=2&key0=lights.99.intensity=0:1",
+                  "frame=0&frames=2&key0=lights.-1.intensity=0:1", "frame=0&frames=2&key0=camera.zoom=0:1e999",
+                  "frame=0&frames=2&key0=image.width=0:1e9", "frame=0&frames=2&key0=" + 3000 * "a.", "frame=0&frames=9" + "".join(keys)):
+        status, answer = at(query)
+        check(status == 400 and len(answer) > 5, f"scene?{query[:60]}: refused, not {status} {answer}")
+    check(at("frame=20&frames=21&key0=" + key) == (200, 30), "it still answers")
+
+
+def begins_as_told():
+    """The options of render say what the page begins with: the scene is that of render, but for its absolute paths."""
+    subprocess.run([PROGRAM, "make", "cloud", "--size", "24", "--quiet"], check=True)
+    with open("labels_24x24x24_uint8.raw", "wb") as file:
+        file.write(bytes(1 + (n % 24) // 8 for n in range(24**3)))
+    labels = os.path.abspath("labels_24x24x24_uint8.raw")
+    for options in (["torus.nrrd", "--look", "xray", "--view", "left", "--background", "white"],
+                    ["torus.nrrd", "--sky", "0.5:0.2", "--light", "30,40", "--light-size", "12", "--exposure", "1", "--floor"],
+                    ["torus.nrrd", "cloud.nrrd", "--colormap", "torus=viridis", "--clip", "x=0:0.5", "--cut-sphere", "0.5,0.5,1:0.3"],
+                    ["torus.nrrd", "--iso", "0.5:gold", "--shadows", "hard", "--sheet-spacing", "2", "--ortho", "--zoom", "2"],
+                    ["cloud.nrrd", "--mask", "labels_24x24x24_uint8.raw", "--show", "1=red,2:0.5"],
+                    ["cloud.nrrd", "--labels", "labels_24x24x24_uint8.raw", "--show", "3"]):
+        printed = subprocess.run([PROGRAM, "render", *options, "--print-scene", "--quiet"], capture_output=True, text=True, check=True)
+        wanted = printed.stdout
+        for name in ("torus.nrrd", "cloud.nrrd", "labels_24x24x24_uint8.raw"):
+            wanted = wanted.replace(f'"{name}"', f'"{os.path.abspath(name)}"')
+        with Viewer(PROGRAM, *options) as viewer:
+            found = json.loads(request(viewer, "GET", "start.json")[2])["scene"]
+            check(found == json.loads(wanted), f"{options}: another scene than render's")
+            check(frame(viewer, small(found, 48))[0] == 200, f"{options}: a frame")
+    check(labels in wanted, "the label map's path is absolute")
+    for wrong in (["--size", "9x9"], ["--layers"], ["--threads", "-1"], ["--look", "none"]):
+        run = subprocess.run([PROGRAM, "view", "torus.nrrd", "--no-browser", *wrong], capture_output=True, text=True)
+        check(run.returncode == 2 and run.stdout == "", f"view {wrong} is refused")
+
+
 def no_other_file(viewer, scene):
     """A page cannot open what was not open at the start."""
     for change in (lambda s: s["volumes"][0].update(file="/etc/passwd"),
@@ -219,11 +284,13 @@ with tempfile.TemporaryDirectory() as folder:
         exact_pictures(viewer, small(scene))
         complete_scenes(viewer, scene)
         refusals(viewer, scene)
+        film_scenes(viewer, scene)
         no_other_file(viewer, scene)
         headers_protect(viewer)
         newer_frames_cancel(viewer, scene)
         many_pages(viewer, scene)
         bad_clients(viewer, scene)
         ends_cleanly(viewer, scene)
+    begins_as_told()
     busy_port()
 print(f"{checks.count} checks passed")
