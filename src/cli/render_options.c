@@ -209,12 +209,13 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                            .argument = "X,Y,Z:RADIUS",
                            .help = "cut a sphere out (0.5,0.5,1:0.3); again for more",
                            .repeatable = true},
-    [RENDER_CUT_SHADING] = {.name = "cut-shading",
-                            .kind = OPTION_CHOICE,
-                            .help = "how surfaces at the cuts' faces are lit: by the face,\nby the data's "
-                                    "gradient, or as a medium",
-                            .setting_kind = HL_SETTINGS_VOLUME,
-                            .setting = "cut_shading"},
+    [RENDER_CUT_SHADING] =
+        {.name = "cut-shading",
+         .kind = OPTION_CHOICE,
+         .help = "how surfaces at the faces of cuts and --clip are lit:\nby the face, by the data's "
+                 "gradient, or as a medium",
+         .setting_kind = HL_SETTINGS_VOLUME,
+         .setting = "cut_shading"},
     [RENDER_CUT_CASTS_SHADOW] = {.name = "cut-casts-shadow",
                                  .kind = OPTION_SWITCH,
                                  .help = "what is cut away goes on casting its shadow"},

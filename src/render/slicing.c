@@ -216,11 +216,11 @@ int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, fram
 hl_status hl_frame_check_sweeps(const frame *frame, const frame_sweep *sweeps, int count, hl_error *error) {
   for (int s = 0; s < count; s++) {
     if (sweeps[s].sheets.count > GREATEST_SHEETS)
-      return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                     "/render/sheet_spacing: makes more than %d sheets of the volumes, whose smallest voxel "
-                     "edge is small beside "
-                     "their size: raise it",
-                     GREATEST_SHEETS);
+      return hl_fail(
+          error, HL_ERROR_UNSUPPORTED,
+          "/render/sheet_spacing: makes more than %d sheets of the volumes, whose smallest voxel "
+          "edge is small beside their size: raise it, or correct the spacing of voxels (--spacing)",
+          GREATEST_SHEETS);
     if (flattest_eye_ray(&frame->eye, sweeps[s].sheets.normal) < FLATTEST_EYE_RAY)
       return hl_fail(
           error, HL_ERROR_UNSUPPORTED,

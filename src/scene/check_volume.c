@@ -162,7 +162,7 @@ static hl_status check_placement(const hl_checker *check, const hl_scene_volume 
                      check->place, edge);
     return hl_fail(check->error, HL_ERROR_INPUT,
                    "%s/file: its voxels are %.9g long, and can be from 1e-15 to 1e15: correct the "
-                   "file's spacing, or give a transform.scale",
+                   "file's spacing (--spacing), or give a transform.scale",
                    check->place, edge);
   }
   if (!(vec3_length(placement.offset) <= 1e3 * HL_LIMIT_LENGTH))
@@ -173,7 +173,7 @@ static hl_status check_placement(const hl_checker *check, const hl_scene_volume 
     return hl_fail(check->error, HL_ERROR_INPUT,
                    "%s/file: reaches %.3g from the origin, and can reach as far as 1e14, so that a camera "
                    "may stand off: correct its "
-                   "spacing and origin, or give a smaller transform.scale",
+                   "spacing (--spacing) and origin, or give a smaller transform.scale",
                    check->place, reach);
   if (!affine3_invert(placement, &inverse))
     return hl_check_refuse(check, "file",

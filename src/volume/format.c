@@ -87,8 +87,9 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
 static hl_status choose_step(const char *path, const char *kind, int wanted, size_t count, int *chosen,
                              hl_error *error) {
   if (wanted >= 0 && (size_t)wanted >= count && count <= 1)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: there is no %s %d: the file has one, 0: leave \"%s\" out",
-                   path, kind, wanted, kind);
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: there is no %s %d: the file has one, 0: leave \"%s\" (--%s) out", path, kind, wanted,
+                   kind, kind);
   if (wanted >= 0 && (size_t)wanted >= count)
     return hl_fail(error, HL_ERROR_INPUT, "%s: there is no %s %d: choose 0 to %zu", path, kind, wanted,
                    count - 1);
@@ -206,8 +207,9 @@ static hl_status component_of_steps(hl_load_request *request, const char *path, 
                              (request->channel >= 0 && selection->channels > 1));
   if (status != HL_OK || !named) return status;
   if (request->component != HL_COMPONENT_DEFAULT)
-    return hl_fail(error, HL_ERROR_INPUT,
-                   "%s: its components are its time steps and channels: leave \"component\" out", path);
+    return hl_fail(
+        error, HL_ERROR_INPUT,
+        "%s: its components are its time steps and channels: leave \"component\" (--component) out", path);
   int time = request->time >= 0 ? request->time : 0, channel = request->channel >= 0 ? request->channel : 0;
   int first; /* component of the channel's first time step */
   if (!__builtin_mul_overflow(selection->times, channel, &first) &&
@@ -228,8 +230,8 @@ hl_status hl_component_choose(hl_load_request *request, const char *path, bool i
     return HL_OK;
   }
   if (components == 1)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: its voxels have one component, 0: leave \"component\" out",
-                   path);
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: its voxels have one component, 0: leave \"component\" (--component) out", path);
   if (wanted == HL_COMPONENT_DEFAULT) wanted = default_component(request, path, is_series, payload);
   if (hl_component_is_colors(wanted) &&
       (is_series || payload->colors == HL_COLORS_UNREAD || !hl_can_be_colors(payload->grid.type, components)))
@@ -252,8 +254,8 @@ hl_status hl_component_only(hl_load_request *request, const char *path, bool is_
                             hl_error *error) {
   hl_status status = hl_arrays_add(request, "", payload->components, payload->grid.type, false, error);
   if (status == HL_OK && request->array != NULL && request->array[0] != 0)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: the file has one array, without a name: leave \"array\" out",
-                   path);
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: the file has one array, without a name: leave \"array\" (--array) out", path);
   request->chosen = 0;
   return status == HL_OK ? hl_component_choose(request, path, is_series, payload, error) : status;
 }

@@ -264,8 +264,20 @@ static void turn_into(hl_context *context, const char *path, hl_space wanted, hl
   volume->space = wanted;
 }
 
+/* Refuses the name of a series where the file has none. */
+static hl_status check_series(const hl_load_request *request, const char *path, hl_error *error) {
+  if (request->series == NULL || request->series_count > 0) return HL_OK;
+  return hl_fail(error, HL_ERROR_INPUT, "%s: only DICOM files have series: leave \"series\" (--series) out",
+                 path);
+}
+
 /* Gives the volume the list of arrays, and tells what was chosen by default. */
-static hl_status finish(hl_load_request *request, hl_status status, hl_volume **volume) {
+static hl_status finish(hl_load_request *request, const char *path, hl_status status, hl_volume **volume,
+                        hl_error *error) {
+  if (status == HL_OK) {
+    status = check_series(request, path, error);
+    if (status != HL_OK) hl_volume_release(*volume), *volume = NULL;
+  }
   if (status != HL_OK) {
     hl_arrays_release(request->context, request->arrays, request->array_count);
     hl_release(request->context, request->series_list);
@@ -313,7 +325,7 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
   memcpy(request.spacing, options->spacing, sizeof request.spacing);
   hl_stream *stream = NULL;
   if (options->bytes == NULL && is_folder(path)) {
-    status = finish(&request, load_folder(path, &request, volume, error), volume);
+    status = finish(&request, path, load_folder(path, &request, volume, error), volume, error);
     if (status == HL_OK) turn_into(context, path, options->space, *volume);
     return status;
   }
@@ -322,7 +334,7 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
                : hl_stream_open(context, path, false, &stream, error);
   if (status == HL_OK) status = load(&stream, &request, volume, error);
   hl_stream_close(stream);
-  status = finish(&request, status, volume);
+  status = finish(&request, path, status, volume, error);
   if (status == HL_OK) turn_into(context, path, options->space, *volume);
   return status;
 }

@@ -212,7 +212,7 @@ static void test_times_and_channels(void **state) {
   options.time = 1;
   hl_volume *volume = NULL;
   assert_int_equal(hl_volume_load_with(context, "memory", &options, &volume, &error), HL_ERROR_INPUT);
-  assert_non_null(strstr(error.message, "leave \"component\" out"));
+  assert_non_null(strstr(error.message, "leave \"component\" (--component) out"));
   assert_int_equal(hl_context_memory_held(context), 0);
   hl_context_destroy(context);
 }
