@@ -1,8 +1,8 @@
 /* volume/payload.c - reads the voxels that a header promises.
  *
  * In: a stream at the first voxel, and the header. Out: the volume. The file's bytes are read into the
- * volume's own memory and converted there, piece by piece; only 8-byte voxels, which become shorter, pass
- * through a small buffer. */
+ * volume's own memory and converted there, piece by piece; 8-byte voxels, which become shorter, pass through
+ * a small buffer, those of volumes larger than memory through a piece. */
 #include "volume/payload.h"
 
 #include <math.h>
@@ -10,10 +10,9 @@
 
 #include "core/context.h"
 #include "core/memory.h"
-#include "volume/colors.h"
 #include "volume/convert.h"
+#include "volume/destination.h"
 #include "volume/numbers.h"
-#include "volume/pages.h"
 #include "volume/text.h"
 
 enum { PIECE_BYTES = 1 << 20, STAGE_VOXELS = 8192, SKIPPED_BYTES = 1 << 16 };
@@ -97,7 +96,7 @@ static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64
   return HL_OK;
 }
 
-static hl_status read_binary(hl_stream *stream, const hl_payload *payload, unsigned char *voxels,
+static hl_status read_binary(hl_stream *stream, const hl_payload *payload, hl_destination *destination,
                              hl_error *error) {
   hl_voxel_type type = payload->grid.type;
   size_t file_bytes = hl_voxel_type_bytes(type), stored_bytes = hl_storage_bytes(hl_voxel_type_storage(type));
@@ -106,8 +105,11 @@ static hl_status read_binary(hl_stream *stream, const hl_payload *payload, unsig
   unsigned char stage[STAGE_VOXELS * 8];
   for (size_t done = 0; done < count;) {
     size_t wanted = count - done < piece ? count - done : piece;
-    unsigned char *place = voxels + done * stored_bytes;
-    hl_status status = read_piece(stream, payload, done, wanted, in_place ? place : stage, place, error);
+    void *place;
+    hl_status status = hl_destination_take(destination, done, wanted, &place, error);
+    if (status != HL_OK) return status;
+    status = read_piece(stream, payload, done, wanted, in_place ? place : stage, place, error);
+    hl_destination_put(destination, done, wanted, place);
     done += wanted;
     if (status == HL_OK) status = report(stream, done, count, error);
     if (status != HL_OK) return status;
@@ -308,27 +310,6 @@ static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_erro
   return HL_OK;
 }
 
-/* Reads the voxels into pages; *pages is null on failure. */
-static hl_status read_pages(hl_stream *stream, const hl_payload *payload, hl_pages **pages, hl_error *error) {
-  hl_context *context = stream->context;
-  unsigned char raw[STAGE_VOXELS * 8], stored[STAGE_VOXELS * sizeof(float)];
-  size_t count = voxel_count(payload);
-  hl_status status = hl_pages_create(context, context->options.scratch_folder, &payload->grid, PAGE_SHIFT,
-                                     pages, error);
-  for (size_t done = 0; done < count && status == HL_OK;) {
-    size_t wanted = count - done < STAGE_VOXELS ? count - done : STAGE_VOXELS;
-    status = read_piece(stream, payload, done, wanted, raw, stored, error);
-    if (status == HL_OK) hl_pages_store(*pages, done, wanted, stored);
-    done += wanted;
-    if (status == HL_OK) status = report(stream, done, count, error);
-  }
-  if (status == HL_OK) status = check_end(stream, payload, error);
-  if (status == HL_OK) return HL_OK;
-  hl_pages_release(*pages);
-  *pages = NULL;
-  return status;
-}
-
 hl_volume_description hl_payload_grid(const hl_payload *payload, const double spacing[3]) {
   hl_volume_description grid = payload->grid;
   if (payload->components > 1 && payload->component == HL_COMPONENT_MAGNITUDE) {
@@ -348,27 +329,26 @@ hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const do
   hl_status status = check_promise(stream, payload, error);
   if (status != HL_OK) return status;
   hl_volume_description grid = hl_payload_grid(payload, spacing);
-  if (payload->components == 1 && !payload->text && hl_pages_wanted(stream->context, &grid)) {
-    hl_pages *pages;
-    status = read_pages(stream, payload, &pages, error);
-    return status == HL_OK ? hl_volume_adopt_pages(stream->context, &grid, stream->path, pages, volume, error)
-                           : status;
-  }
   bool colors = payload->components > 1 && hl_component_is_colors(payload->component);
-  size_t stored_bytes = colors ? HL_COLOR_BYTES : hl_storage_bytes(hl_voxel_type_storage(grid.type));
-  void *voxels = hl_allocate(stream->context, voxel_count(payload), stored_bytes);
-  if (voxels == NULL) return hl_fail_memory(error, voxel_count(payload) * stored_bytes, stream->path);
-  status = report(stream, 0, voxel_count(payload), error);
+  bool in_order = payload->components == 1 && !payload->text;
+  hl_destination to;
+  status = hl_destination_open(stream->context, &grid,
+                               colors     ? HL_DESTINATION_COLORS
+                               : in_order ? HL_DESTINATION_PIECES
+                                          : HL_DESTINATION_VOXELS,
+                               stream->path, &to, error);
+  if (status == HL_OK) status = report(stream, 0, voxel_count(payload), error);
   if (status == HL_OK)
-    status = payload->components > 1 ? read_components(stream, payload, voxels, error)
-             : payload->text         ? read_text(stream, payload, voxels, error)
-                                     : read_binary(stream, payload, voxels, error);
+    status = payload->components > 1 ? read_components(stream, payload, to.voxels, error)
+             : payload->text         ? read_text(stream, payload, to.voxels, error)
+                                     : read_binary(stream, payload, &to, error);
   if (status == HL_OK) status = check_end(stream, payload, error);
-  if (status != HL_OK) {
-    hl_release(stream->context, voxels);
-    return status;
+  if (status == HL_OK && colors) {
+    const hl_color_source source = {&grid, stream->path, payload->components, payload->component, false};
+    status = hl_destination_adopt_colors(&to, &source, volume, error);
+  } else if (status == HL_OK) {
+    status = hl_destination_adopt(&to, &grid, volume, error);
   }
-  const hl_color_source source = {&grid, stream->path, payload->components, payload->component, false};
-  return colors ? hl_volume_adopt_colors(stream->context, &source, voxels, volume, error)
-                : hl_volume_adopt(stream->context, &grid, stream->path, voxels, volume, error);
+  hl_destination_close(&to);
+  return status;
 }

@@ -12,8 +12,8 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/pool.h"
-#include "volume/colors.h"
 #include "volume/convert.h"
+#include "volume/destination.h"
 #include "volume/format.h"
 #include "volume/parallel.h"
 #include "volume/slice_picture.h"
@@ -21,8 +21,8 @@
 #include "volume/tiff.h"
 
 enum {
-  PARALLEL_VOXELS = 1 << 20, /* smaller volumes are read sooner than threads start */
-  FILE_BYTES_MOST = 1 << 30  /* of one picture */
+  PARALLEL_BYTES = 1 << 20, /* smaller volumes are read sooner than threads start */
+  FILE_BYTES_MOST = 1 << 30 /* of one picture */
 };
 
 /* A picture's name, cut around its last number. */
@@ -39,8 +39,7 @@ typedef struct slices_reading {
   size_t first, count;  /* the chosen series among the names */
   hl_slice_shape shape;
   int component;
-  unsigned char *voxels; /* owned until the volume takes it; [count] slices */
-  size_t slice_bytes;
+  hl_destination to;
 } slices_reading;
 
 /* ---- names ---- */
@@ -144,10 +143,15 @@ static hl_status read_slice(void *data, size_t slice, int worker, hl_error *erro
   slices_reading *r = data;
   hl_slice_file file;
   char path[PATH_BYTES];
+  size_t count = r->shape.width * r->shape.height;
+  void *voxels;
   (void)worker;
   hl_status status = read_file(r, slice, slice > 0, path, sizeof path, &file, error);
-  if (status == HL_OK)
-    status = hl_slice_decode(&file, &r->shape, r->component, r->voxels + slice * r->slice_bytes, error);
+  if (status == HL_OK) status = hl_destination_take(&r->to, slice * count, count, &voxels, error);
+  if (status == HL_OK) {
+    status = hl_slice_decode(&file, &r->shape, r->component, voxels, error);
+    hl_destination_put(&r->to, slice * count, count, voxels);
+  }
   hl_release(file.context, (void *)file.bytes);
   return status;
 }
@@ -196,14 +200,10 @@ static hl_status find_grey(slices_reading *r, bool *is_grey, hl_error *error) {
   return status;
 }
 
-/* voxel_bytes: of what is read of each voxel. */
-static hl_status read_voxels(slices_reading *r, size_t voxel_bytes, hl_error *error) {
+static hl_status read_voxels(slices_reading *r, hl_error *error) {
   hl_context *context = r->request->context;
   hl_pool *pool = NULL;
-  r->slice_bytes = r->shape.width * r->shape.height * voxel_bytes;
-  r->voxels = hl_allocate(context, r->slice_bytes, r->count);
-  if (r->voxels == NULL) return hl_fail_memory(error, r->slice_bytes * r->count, r->bundle->path);
-  bool parallel = r->slice_bytes * r->count >= PARALLEL_VOXELS;
+  bool parallel = r->shape.width * r->shape.height * r->to.voxel_bytes * r->count >= PARALLEL_BYTES;
   hl_status status = hl_pool_create(context, parallel ? 0 : 1, &pool, error);
   if (status == HL_OK)
     status = hl_parallel_read(context, pool, r->bundle->path, r->count, read_slice, r, error);
@@ -231,14 +231,13 @@ static hl_status load_slices(slices_reading *r, hl_volume **volume, hl_error *er
   r->component = payload.component;
   hl_volume_description grid = hl_payload_grid(&payload, r->request->spacing);
   bool colors = hl_component_is_colors(r->component);
-  status = read_voxels(r, colors ? HL_COLOR_BYTES : hl_storage_bytes(hl_voxel_type_storage(grid.type)),
-                       error);
+  status = hl_destination_open(r->request->context, &grid,
+                               colors ? HL_DESTINATION_COLORS : HL_DESTINATION_PIECES, path, &r->to, error);
+  if (status == HL_OK) status = read_voxels(r, error);
   if (status != HL_OK) return status;
-  void *voxels = r->voxels;
-  r->voxels = NULL;
   const hl_color_source source = {&grid, path, r->shape.samples, r->component, r->shape.premultiplied};
-  return colors ? hl_volume_adopt_colors(r->request->context, &source, voxels, volume, error)
-                : hl_volume_adopt(r->request->context, &grid, path, voxels, volume, error);
+  return colors ? hl_destination_adopt_colors(&r->to, &source, volume, error)
+                : hl_destination_adopt(&r->to, &grid, volume, error);
 }
 
 /* Reads a TIFF file of an archive as a volume: it is unpacked into memory. */
@@ -297,7 +296,7 @@ static hl_status load_bundle(hl_bundle *bundle, hl_load_request *request, bool *
   if (status == HL_OK && *claimed)
     status = stack == HL_SLICE_ALONE ? load_slices(&r, volume, error) : load_stack(&r, stack, volume, error);
   hl_release(request->context, r.names);
-  hl_release(request->context, r.voxels);
+  hl_destination_close(&r.to);
   return status;
 }
 

@@ -11,8 +11,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/pool.h"
-#include "volume/colors.h"
-#include "volume/convert.h"
+#include "volume/destination.h"
 #include "volume/parallel.h"
 #include "volume/tiff_file.h"
 #include "volume/tiff_plan.h"
@@ -41,8 +40,7 @@ typedef struct stack_reading {
   tiff_shape shape;       /* of each slice, at the level */
   uint32_t width, height; /* at level 0 */
   int component;
-  unsigned char *voxels; /* owned until the volume takes it */
-  size_t slice_bytes;
+  hl_destination to;
   /* of the threads */
   hl_pool *pool;
   tiff_file *open;  /* owned; [threads]: the file that each thread has open */
@@ -201,12 +199,12 @@ static hl_status check_slices(const stack_reading *r, hl_error *error) {
 
 /* ---- slices ---- */
 
-static hl_status read_slice(void *data, size_t z, int worker, hl_error *error) {
-  stack_reading *r = data;
+static size_t slice_voxels(const stack_reading *r) { return (size_t)r->shape.width * r->shape.height; }
+
+static hl_status decode_slice(stack_reading *r, size_t z, int worker, void *voxels, hl_error *error) {
   const tiff_slice *slice = &r->plan.slices[z];
-  unsigned char *voxels = r->voxels + z * r->slice_bytes;
   if (!slice->is_there) {
-    memset(voxels, 0, r->slice_bytes);
+    memset(voxels, 0, slice_voxels(r) * r->to.voxel_bytes);
     return HL_OK;
   }
   tiff_file *file = &r->open[worker];
@@ -230,8 +228,20 @@ static hl_status read_slice(void *data, size_t z, int worker, hl_error *error) {
   return status == HL_OK ? tiff_file_read(file, &shape, r->component, voxels, error) : status;
 }
 
+static hl_status read_slice(void *data, size_t z, int worker, hl_error *error) {
+  stack_reading *r = data;
+  size_t count = slice_voxels(r);
+  void *voxels;
+  hl_status status = hl_destination_take(&r->to, z * count, count, &voxels, error);
+  if (status != HL_OK) return status;
+  status = decode_slice(r, z, worker, voxels, error);
+  hl_destination_put(&r->to, z * count, count, voxels);
+  return status;
+}
+
 static hl_status make_threads(stack_reading *r, int *threads, hl_error *error) {
-  bool parallel = r->plan.slice_count > 1 && r->slice_bytes * r->plan.slice_count >= PARALLEL_BYTES;
+  bool parallel = r->plan.slice_count > 1 &&
+                  slice_voxels(r) * r->to.voxel_bytes * r->plan.slice_count >= PARALLEL_BYTES;
   hl_status status = hl_pool_create(r->context, parallel ? 0 : 1, &r->pool, error);
   if (status != HL_OK) return status;
   size_t count = (size_t)(*threads = hl_pool_threads(r->pool));
@@ -294,17 +304,13 @@ static hl_status make_volume(stack_reading *r, hl_volume **volume, hl_error *err
   r->component = payload.component;
   hl_volume_description grid = hl_payload_grid(&payload, r->request->spacing);
   bool colors = hl_component_is_colors(r->component);
-  size_t stored = colors ? HL_COLOR_BYTES : hl_storage_bytes(hl_voxel_type_storage(grid.type));
-  r->slice_bytes = (size_t)r->shape.width * r->shape.height * stored;
-  r->voxels = hl_allocate(r->context, r->slice_bytes, r->plan.slice_count);
-  if (r->voxels == NULL) return hl_fail_memory(error, r->slice_bytes * r->plan.slice_count, path);
-  status = read_slices(r, error);
+  status = hl_destination_open(r->context, &grid, colors ? HL_DESTINATION_COLORS : HL_DESTINATION_PIECES,
+                               path, &r->to, error);
+  if (status == HL_OK) status = read_slices(r, error);
   if (status != HL_OK) return status;
-  void *voxels = r->voxels;
-  r->voxels = NULL;
   const hl_color_source source = {&grid, path, r->shape.components, r->component, r->shape.premultiplied};
-  return colors ? hl_volume_adopt_colors(r->context, &source, voxels, volume, error)
-                : hl_volume_adopt(r->context, &grid, path, voxels, volume, error);
+  return colors ? hl_destination_adopt_colors(&r->to, &source, volume, error)
+                : hl_destination_adopt(&r->to, &grid, volume, error);
 }
 
 static void release_file(hl_context *context, stack_file *file) {
@@ -316,7 +322,7 @@ static void release_file(hl_context *context, stack_file *file) {
 static void release(stack_reading *r) {
   for (size_t n = 0; r->files != NULL && n < r->plan.file_count; n++) release_file(r->context, &r->files[n]);
   hl_release(r->context, r->files);
-  hl_release(r->context, r->voxels);
+  hl_destination_close(&r->to);
   tiff_plan_release(&r->plan);
 }
 

@@ -132,10 +132,11 @@ static hl_status load_image(const hl_bundle *bundle, const hl_zarr_image *image,
   else if (status == HL_OK) status = hl_component_choose(request, bundle->path, false, &payload, error);
   if (status != HL_OK) return status;
   hl_volume_description grid = hl_payload_grid(&payload, request->spacing);
-  void *voxels;
-  status = hl_zarr_voxels_read(bundle, array, &choice, &voxels, error);
-  return status == HL_OK ? hl_volume_adopt(request->context, &grid, bundle->path, voxels, volume, error)
-                         : status;
+  hl_destination to = {.context = NULL};
+  status = hl_zarr_voxels_read(bundle, array, &choice, &grid, &to, error);
+  if (status == HL_OK) status = hl_destination_adopt(&to, &grid, volume, error);
+  hl_destination_close(&to);
+  return status;
 }
 
 /* ---- arrays without OME-Zarr's metadata ---- */

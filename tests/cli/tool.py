@@ -10,6 +10,8 @@ import struct
 import sys
 import zlib
 
+import stacks
+
 
 def ball(size, path):
     """A size^3 uint8 volume: 255 in a centred ball of 0.35 size radius, an edge of two voxels, air outside;
@@ -213,7 +215,7 @@ def json_get(path, expression):
     print(eval(expression, {"d": json.load(open(path)), "len": len, "sum": sum, "sorted": sorted, "abs": abs, "max": max, "min": min, "round": round}))
 
 
-COMMANDS = {"ball": ball, "npy-shape": npy_shape, "brightness": brightness, "coverage": coverage, "ratio": ratio,
+COMMANDS = {"ball": ball, "stack": stacks.write, "npy-shape": npy_shape, "brightness": brightness, "coverage": coverage, "ratio": ratio,
             "sum_layers": sum_layers, "exr-holds": exr_holds,
             "png-header": png_header, "png-scene": png_scene, "png-pixel": png_pixel,
             "ppm-of-png": ppm_of_png, "json": json_get}

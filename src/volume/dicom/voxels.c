@@ -13,6 +13,7 @@
 #include "core/memory.h"
 #include "core/pool.h"
 #include "volume/convert.h"
+#include "volume/destination.h"
 #include "volume/dicom/frame.h"
 #include "volume/parallel.h"
 
@@ -26,7 +27,7 @@ typedef struct reading {
   double slope, intercept,
       padding[2]; /* the same for all slices; slope and intercept only where as_floats is false */
   size_t slice_voxels, voxel_bytes;
-  unsigned char *voxels; /* [slices][slice_voxels] of voxel_bytes */
+  hl_destination to; /* [slices][slice_voxels] of voxel_bytes */
   hl_pool *pool;
   hl_dicom_workspace *spaces; /* owned; one for each worker */
   unsigned char **others;     /* owned; one slice for each worker, to fill gaps with; made when needed */
@@ -163,9 +164,13 @@ static hl_status fill_gap(reading *r, const hl_dicom_slice *slice, int worker, u
 static hl_status read_one(void *data, size_t index, int worker, hl_error *error) {
   reading *r = data;
   const hl_dicom_slice *slice = &r->stack->slices[index];
-  unsigned char *voxels = r->voxels + index * r->slice_voxels * r->voxel_bytes;
-  hl_status status = read_slice(r, slice->place, worker, voxels, error);
-  return status == HL_OK && slice->weight > 0 ? fill_gap(r, slice, worker, voxels, error) : status;
+  void *voxels;
+  hl_status status = hl_destination_take(&r->to, index * r->slice_voxels, r->slice_voxels, &voxels, error);
+  if (status != HL_OK) return status;
+  status = read_slice(r, slice->place, worker, voxels, error);
+  if (status == HL_OK && slice->weight > 0) status = fill_gap(r, slice, worker, voxels, error);
+  hl_destination_put(&r->to, index * r->slice_voxels, r->slice_voxels, voxels);
+  return status;
 }
 
 /* Turns integers into floats in the same block, from the last to the first; padding becomes NAN. */
@@ -184,9 +189,14 @@ static void widen(const reading *r, size_t count, void *voxels) {
 
 static hl_status widen_padded(reading *r, size_t count, hl_error *error) {
   if (!r->padded) return HL_OK;
-  void *larger = hl_reallocate(r->set->context, r->voxels, count, sizeof(float));
+  if (r->to.pages != NULL)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: voxels of the padding value in a volume that is larger than memory: raise the memory "
+                   "limit",
+                   r->set->bundle->path);
+  void *larger = hl_reallocate(r->set->context, r->to.voxels, count, sizeof(float));
   if (larger == NULL) return hl_fail_memory(error, count * sizeof(float), r->set->bundle->path);
-  r->voxels = larger;
+  r->to.voxels = larger;
   widen(r, count, larger);
   r->as_floats = true;
   return HL_OK;
@@ -217,11 +227,19 @@ static hl_status find_padding(reading *r, hl_error *error) {
   return HL_OK;
 }
 
-static hl_status read_all(reading *r, size_t voxels, hl_error *error) {
+/* The type of the values that are kept. */
+static hl_voxel_type kept_type(const reading *r) {
+  return r->as_floats && hl_voxel_type_storage(r->type) != HL_STORAGE_F32 ? HL_VOXEL_F32 : r->type;
+}
+
+static hl_status read_all(reading *r, hl_error *error) {
   hl_status status = find_padding(r, error);
+  hl_volume_description grid = r->stack->grid;
+  grid.type = kept_type(r);
+  if (status == HL_OK)
+    status = hl_destination_open(r->set->context, &grid, HL_DESTINATION_PIECES, r->set->bundle->path, &r->to,
+                                 error);
   if (status != HL_OK) return status;
-  r->voxels = hl_allocate(r->set->context, voxels, r->voxel_bytes);
-  if (r->voxels == NULL) return hl_fail_memory(error, voxels * r->voxel_bytes, r->set->bundle->path);
   return hl_parallel_read(r->set->context, r->pool, r->set->bundle->path, r->stack->grid.dimensions[2],
                           read_one, r, error);
 }
@@ -237,7 +255,7 @@ static void take_window(const reading *r, double window[2]) {
 
 static hl_status make_volume(reading *r, hl_load_request *request, hl_volume **volume, hl_error *error) {
   hl_volume_description grid = r->stack->grid;
-  grid.type = r->as_floats && hl_voxel_type_storage(r->type) != HL_STORAGE_F32 ? HL_VOXEL_F32 : r->type;
+  grid.type = kept_type(r);
   if (!r->as_floats) {
     grid.value_scale = r->slope;
     grid.value_offset = r->intercept;
@@ -246,12 +264,10 @@ static hl_status make_volume(reading *r, hl_load_request *request, hl_volume **v
     double length = vec3_length(vec3_of(grid.axis[axis]));
     for (int row = 0; row < 3; row++) grid.axis[axis][row] *= request->spacing[axis] / length;
   }
-  void *voxels = r->voxels;
   take_window(r, request->window);
   request->unit = "millimetre";
   request->is_anatomical = grid.space != HL_SPACE_UNKNOWN;
-  r->voxels = NULL;
-  return hl_volume_adopt(r->set->context, &grid, r->set->bundle->path, voxels, volume, error);
+  return hl_destination_adopt(&r->to, &grid, volume, error);
 }
 
 static hl_status read_volume(reading *r, hl_load_request *request, hl_volume **volume, hl_error *error) {
@@ -259,7 +275,7 @@ static hl_status read_volume(reading *r, hl_load_request *request, hl_volume **v
   size_t count = n[0] * n[1] * n[2];
   r->slice_voxels = n[0] * n[1];
   hl_status status = make_threads(r, count, error);
-  if (status == HL_OK) status = read_all(r, count, error);
+  if (status == HL_OK) status = read_all(r, error);
   for (int w = 0; r->pool != NULL && w < hl_pool_threads(r->pool); w++) {
     if (r->spaces != NULL) hl_dicom_workspace_release(&r->spaces[w]);
     if (r->others != NULL) hl_release(r->set->context, r->others[w]);
@@ -269,7 +285,7 @@ static hl_status read_volume(reading *r, hl_load_request *request, hl_volume **v
   hl_pool_destroy(r->pool);
   if (status == HL_OK) status = widen_padded(r, count, error);
   if (status == HL_OK) status = make_volume(r, request, volume, error);
-  hl_release(r->set->context, r->voxels);
+  hl_destination_close(&r->to);
   return status;
 }
 

@@ -28,13 +28,14 @@ typedef struct worker {
   char key[KEY_BYTES];  /* of the open file; "": none */
   hl_source *source;    /* owned; null: the file does not exist */
   unsigned char *index; /* owned; the shard's index: [16 * chunks_in_shard], followed by a check sum */
+  void *row;            /* owned; of a chunk, in stored form, on its way to pages; null: they are in memory */
 } worker;
 
 typedef struct reading {
   const hl_bundle *bundle;
   const hl_zarr_array *array;
   const hl_zarr_choice *choice;
-  unsigned char *voxels;       /* owned until the volume takes it */
+  hl_destination *to;          /* borrowed */
   size_t stored_bytes;         /* of a voxel */
   uint64_t size[3];            /* of the volume */
   uint64_t files[3], inner[3]; /* along i, j, k: number of files, and of chunks in each file */
@@ -145,7 +146,7 @@ static void store_row(const reading *r, const unsigned char *from, size_t step, 
 }
 
 /* chunk: the part's voxels; null: the part gets the fill value. */
-static void put(const reading *r, const part *p, const unsigned char *chunk) {
+static void put(const reading *r, const worker *w, const part *p, const unsigned char *chunk) {
   size_t step[3];
   for (int a = 0; a < 3; a++) step[a] = r->choice->axis[a] < 0 ? 0 : r->stride[r->choice->axis[a]];
   for (int axis = 0; axis < r->array->rank && chunk != NULL; axis++)
@@ -153,9 +154,10 @@ static void put(const reading *r, const part *p, const unsigned char *chunk) {
   for (uint64_t k = 0; k < p->count[2]; k++)
     for (uint64_t j = 0; j < p->count[1]; j++) {
       uint64_t first = ((p->begin[2] + k) * r->size[1] + p->begin[1] + j) * r->size[0] + p->begin[0];
-      unsigned char *row = r->voxels + first * r->stored_bytes;
+      void *row = w->row != NULL ? w->row : r->to->voxels + first * r->stored_bytes;
       if (chunk == NULL) fill_row(r, row, p->count[0]);
       else store_row(r, chunk + k * step[2] + j * step[1], step[0], p->count[0], row);
+      if (w->row != NULL) hl_pages_store(r->to->pages, first, p->count[0], row);
     }
 }
 
@@ -227,7 +229,7 @@ static hl_status read_part(void *data, size_t number, int index, hl_error *error
     status = hl_zarr_chunk_read(&w->unpacker, w->source, offset, length, &chunk, error);
     atomic_fetch_add_explicit(&r->found, 1, memory_order_relaxed);
   }
-  if (status == HL_OK) put(r, &p, chunk);
+  if (status == HL_OK) put(r, w, &p, chunk);
   return status;
 }
 
@@ -245,27 +247,35 @@ static void prepare(reading *r) {
   hl_voxels_store(array->type, false, array->fill, 1, r->fill);
 }
 
+/* The voxels of a chunk's longest row. */
+static size_t longest_row(const reading *r) {
+  int axis = r->choice->axis[0];
+  uint64_t chunk = axis < 0 ? 1 : r->array->chunk[axis];
+  return (size_t)(chunk < r->size[0] ? chunk : r->size[0]);
+}
+
 static hl_status read_parts(reading *r, hl_pool *pool, hl_error *error) {
   hl_context *context = r->bundle->context;
-  size_t threads = (size_t)hl_pool_threads(pool);
+  size_t threads = (size_t)hl_pool_threads(pool), row_bytes = longest_row(r) * r->stored_bytes;
+  hl_status status = HL_OK;
   r->workers = hl_allocate_zeroed(context, threads, sizeof *r->workers);
   if (r->workers == NULL) return hl_fail_memory(error, threads * sizeof *r->workers, "threads");
-  for (size_t n = 0; n < threads; n++)
-    r->workers[n].unpacker = (hl_zarr_unpacker){context, r->bundle->path, r->array, NULL, 0, NULL, NULL};
-  hl_status status = hl_parallel_read(context, pool, r->bundle->path, (size_t)r->parts, read_part, r, error);
+  for (size_t n = 0; n < threads; n++) {
+    worker *w = &r->workers[n];
+    w->unpacker = (hl_zarr_unpacker){context, r->bundle->path, r->array, NULL, 0, NULL, NULL};
+    if (r->to->pages != NULL && (w->row = hl_allocate(context, row_bytes, 1)) == NULL)
+      status = hl_fail_memory(error, row_bytes, r->bundle->path);
+  }
+  if (status == HL_OK)
+    status = hl_parallel_read(context, pool, r->bundle->path, (size_t)r->parts, read_part, r, error);
   for (size_t n = 0; n < threads; n++) {
     hl_zarr_unpacker_release(&r->workers[n].unpacker);
     hl_source_close(r->workers[n].source);
     hl_release(context, r->workers[n].index);
+    hl_release(context, r->workers[n].row);
   }
   hl_release(context, r->workers);
   return status;
-}
-
-static hl_status allocate(reading *r, hl_error *error) {
-  size_t count = (size_t)(r->size[0] * r->size[1] * r->size[2]);
-  r->voxels = hl_allocate(r->bundle->context, count, r->stored_bytes);
-  return r->voxels != NULL ? HL_OK : hl_fail_memory(error, count * r->stored_bytes, r->bundle->path);
 }
 
 static hl_status read_all(reading *r, hl_error *error) {
@@ -282,14 +292,13 @@ static hl_status read_all(reading *r, hl_error *error) {
 }
 
 hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *array,
-                              const hl_zarr_choice *choice, void **voxels, hl_error *error) {
-  reading r = {.bundle = bundle, .array = array, .choice = choice};
+                              const hl_zarr_choice *choice, const hl_volume_description *grid,
+                              hl_destination *to, hl_error *error) {
+  reading r = {.bundle = bundle, .array = array, .choice = choice, .to = to};
   atomic_init(&r.found, 0);
   prepare(&r);
   hl_status status = count_parts(&r, error);
-  if (status == HL_OK) status = allocate(&r, error);
-  if (status == HL_OK) status = read_all(&r, error);
-  if (status != HL_OK) hl_release(bundle->context, r.voxels);
-  else *voxels = r.voxels;
-  return status;
+  if (status == HL_OK)
+    status = hl_destination_open(bundle->context, grid, HL_DESTINATION_PIECES, bundle->path, to, error);
+  return status == HL_OK ? read_all(&r, error) : status;
 }

@@ -2,6 +2,7 @@
 #ifndef HL_VOLUME_ZARR_VOXELS_H
 #define HL_VOLUME_ZARR_VOXELS_H
 
+#include "volume/destination.h"
 #include "volume/zarr/array.h"
 
 /* Which of the array's axes are the volume's, and the index along all others. */
@@ -10,8 +11,10 @@ typedef struct hl_zarr_choice {
   uint64_t index[HL_ZARR_AXES_MOST]; /* along axes that are not in `axis` */
 } hl_zarr_choice;
 
-/* Reads *voxels, [k][j][i] in stored form, owned by the caller. Fails if all chunks are missing. */
+/* Opens the destination and reads all voxels into it; fails if all chunks are missing. grid: the volume's, as
+ * the choice makes it. Close the destination in any case; it is of zeros before. */
 hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *array,
-                              const hl_zarr_choice *choice, void **voxels, hl_error *error);
+                              const hl_zarr_choice *choice, const hl_volume_description *grid,
+                              hl_destination *to, hl_error *error);
 
 #endif
