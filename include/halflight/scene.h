@@ -525,6 +525,31 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap(hl_context *contex
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_seen_range(const hl_volume *volume,
                                                                 const hl_transfer_function *function,
                                                                 double range[2], hl_error *error);
+/* The range of values that have opacity: from where opacity first rises above zero to where it last falls to
+ * zero, cut to the volume's values. range[0] < range[1]. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_visible_range(const hl_volume *volume,
+                                                                   const hl_transfer_function *function,
+                                                                   double range[2], hl_error *error);
+/* How a function spreads over a range of values. */
+typedef enum hl_range_scale {
+  HL_RANGE_LINEAR = 0,
+  HL_RANGE_LOG = 1 /* evenly over the values' logarithms: the range must be above 0 */
+} hl_range_scale;
+/* Makes *to of `from` by moving its points, so that the values old[0] to old[1] become range[0] to range[1];
+ * the lengths of gradients are multiplied by the ratio of the ranges' widths. HL_RANGE_LOG: between points,
+ * too, the function follows the logarithm, by further points, and beyond the range its ends are held. Points
+ * of *to are owned by the caller. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_spread(hl_context *context,
+                                                            const hl_transfer_function *from,
+                                                            const double old[2], const double range[2],
+                                                            hl_range_scale scale, hl_transfer_function *to,
+                                                            hl_error *error);
+/* As hl_transfer_function_colormap(), over range[0] to range[1] by a scale. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap_scaled(hl_context *context, const char *name,
+                                                                     const double range[2],
+                                                                     hl_range_scale scale,
+                                                                     hl_transfer_function *function,
+                                                                     hl_error *error);
 /* Reads Halflight's own JSON object, a scene (its first volume's function), ParaView's .json colour maps or
  * Slicer's .vp.json. From a file with colours alone, opacity becomes null: take the opacity points from
  * elsewhere. */

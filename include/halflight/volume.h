@@ -195,6 +195,12 @@ HL_API size_t hl_volume_array_count(const hl_volume *volume);
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_array(const hl_volume *volume, size_t index,
                                                     hl_volume_array *array);
 
+/* The data values below which these percentages (0 to 100) of the finite voxels lie, exact and interpolated
+ * between the two nearest voxels in order, as numpy.percentile() does; 0 where no voxel is finite.
+ * values: [count]. Reads all voxels. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_percentiles(const hl_volume *volume, const double *percents,
+                                                      size_t count, double *values, hl_error *error);
+
 /* How many time steps, channels and resolutions the volume's file has, each at least 1, and which were
  * read. */
 typedef struct hl_volume_selection {

@@ -157,18 +157,34 @@ def reference(scene: Scene, *, light_points: int = 1024, step: float = 0.25, ray
     return image
 
 
-def _clim(clim: Any) -> list[float] | None:
+def _clim(clim: Any, volume: Volume) -> list[float] | None:
     if clim is None:
         return None
-    low, high = _settings.numbers_of("clim", clim, 2)
+    ends = clim if isinstance(clim, str) or not hasattr(clim, "__len__") else \
+        [_percentile(end, volume) if isinstance(end, str) else end for end in clim]
+    low, high = _settings.numbers_of("clim", ends, 2)
     if not low < high:
         raise ValueError(f"clim: {low:g} is not below {high:g}")
     return [low, high]
 
 
-def _look(volume: Volume, cmap: Any, clim: Any, opacity: Any, unit_distance: float | None, tf: Any) -> Volume:
+def _percentile(text: str, volume: Volume) -> float:
+    """The data value that a text such as "99.5%" stands for."""
+    try:
+        percent = float(text.removesuffix("%")) if text.endswith("%") else -1.0
+    except ValueError:
+        percent = -1.0
+    if not 0 <= percent <= 100:
+        raise ValueError(f"clim: '{text}' is no number and no percentile from '0%' to '100%'")
+    return volume.percentile(percent)
+
+
+def _look(volume: Volume, cmap: Any, clim: Any, log_scale: Any, opacity: Any, unit_distance: float | None,
+          tf: Any) -> Volume:
     """The volume with the transfer function that the keywords ask for."""
-    range_wanted = _clim(clim)
+    range_wanted, log = _clim(clim, volume), bool(log_scale)
+    if log and range_wanted is None:
+        raise ValueError("log_scale: it spreads over clim: give clim=(low, high), too")
     if all(one is None for one in (cmap, clim, opacity, unit_distance, tf)):
         return volume
     function: transfer.TransferFunction = volume.look["transfer_function"]
@@ -180,15 +196,16 @@ def _look(volume: Volume, cmap: Any, clim: Any, opacity: Any, unit_distance: flo
         distance = float(info.spacing.min()) if unit_distance is None else unit_distance
         color = function.color
         if range_wanted is not None and cmap is None:
-            color = transfer.spread(function, range_wanted, info.range).color
-        function = transfer.TransferFunction(transfer.opacity_points(opacity, values), color, distance)
+            color = transfer.spread(function, range_wanted, log, volume._handle).color
+        function = transfer.TransferFunction(transfer.opacity_points(opacity, values, log), color, distance)
     elif range_wanted is not None:
-        function = transfer.spread(function, range_wanted, info.range)
+        function = transfer.spread(function, range_wanted, log, volume._handle)
     if unit_distance is not None:
         function = transfer.TransferFunction(function.opacity, function.color,
-                                             _settings.number("opacity_unit_distance", unit_distance))
+                                             _settings.number("opacity_unit_distance", unit_distance),
+                                             function.gradient_opacity)
     if cmap is not None:
-        function = transfer.recolored(function, cmap, range_wanted, volume._handle)
+        function = transfer.recolored(function, cmap, range_wanted, log, volume._handle)
     return volume.replace(transfer_function=function)
 
 
@@ -205,7 +222,8 @@ class Asked(FurtherSettings, total=False):
     affine: Any
     axes: str
     cmap: Any
-    clim: Sequence[float]
+    clim: Sequence[float | str]
+    log_scale: bool
     opacity: Any
     opacity_unit_distance: float
     shade: bool | str
@@ -238,7 +256,7 @@ _MATERIAL = ("ambient", "diffuse", "specular", "shininess", "iso", "cuts", "mask
              *(word for word in FurtherSettings.__annotations__ if word in Look.__annotations__))
 _SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads", "meshes",
              *(word for word in FurtherSettings.__annotations__ if word in Settings.__annotations__))
-_LOOK = ("cmap", "clim", "opacity", "opacity_unit_distance", "tf")
+_LOOK = ("cmap", "clim", "log_scale", "opacity", "opacity_unit_distance", "tf")
 
 
 def scene_for(volume: Source, **asked: Unpack[Asked]) -> Scene:
@@ -261,8 +279,9 @@ def _is_scene(volume: Any) -> bool:
 
 @suggests_also(FurtherSettings.__annotations__)
 def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any = None, direction: Any = None,
-           affine: Any = None, axes: str | None = None, cmap: Any = None, clim: Sequence[float] | None = None,
-           opacity: Any = None, opacity_unit_distance: float | None = None, shade: bool | str | None = None,
+           affine: Any = None, axes: str | None = None, cmap: Any = None,
+           clim: Sequence[float | str] | None = None, log_scale: bool | None = None, opacity: Any = None,
+           opacity_unit_distance: float | None = None, shade: bool | str | None = None,
            ambient: float | None = None, diffuse: float | None = None, specular: float | None = None,
            shininess: float | None = None, tf: Any = None, shadows: bool | str | None = None,
            lights: Light | Sequence[Light] | None = None, camera: Camera | str | tuple[float, float] | None = None,
@@ -287,7 +306,10 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
     cmap : str, matplotlib colormap, colour or colours, optional
         Halflight's colormaps, matplotlib's, or one colour; over `clim`, by default over the values that are seen.
     clim : (low, high), optional
-        The data values that colours and, unless `opacity` has values of its own, opacities spread over.
+        The data values that colours and, unless `opacity` has values of its own, opacities spread over; texts
+        such as "1%" and "99.5%" are percentiles of the data.
+    log_scale : bool, optional
+        Spread them evenly over the logarithms of the values: `clim` must be above 0.
     opacity : float, str or sequence, optional
         A number for all values; "linear", "sigmoid" or "geom" over `clim`; numbers spread evenly over `clim`; or
         pairs (value, opacity). Per `opacity_unit_distance`.
@@ -343,7 +365,7 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
     """
     asked: Asked = _given(  # type: ignore[assignment]
         spacing=spacing, origin=origin, direction=direction, affine=affine, axes=axes, cmap=cmap, clim=clim,
-        opacity=opacity, opacity_unit_distance=opacity_unit_distance, shade=shade, ambient=ambient, diffuse=diffuse,
+        log_scale=log_scale, opacity=opacity, opacity_unit_distance=opacity_unit_distance, shade=shade, ambient=ambient, diffuse=diffuse,
         specular=specular, shininess=shininess, tf=tf, shadows=shadows, lights=lights, camera=camera, size=size,
         background=background, threads=threads, array=array, component=component, series=series, time=time,
         channel=channel, level=level, meshes=meshes, iso=iso, cuts=cuts, mask=mask, look=look, **further)
@@ -353,7 +375,7 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
 
 
 def _scene_of(volume: Any, place: Mapping[str, Any], material: Mapping[str, Any], settings: Mapping[str, Any],
-              look: tuple[Any, Any, Any, Any, Any]) -> Scene:
+              look: tuple[Any, Any, Any, Any, Any, Any]) -> Scene:
     if isinstance(volume, Scene) or _is_scene(volume):
         for word in place:
             raise TypeError(f"{word} is for volumes: a scene says where its volumes are")

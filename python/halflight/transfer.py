@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -121,7 +122,15 @@ def named_function(tf: Any, volume: Any, old: TransferFunction) -> TransferFunct
     return function
 
 
-def recolored(function: TransferFunction, cmap: Any, clim: list[float] | None, volume: Any) -> TransferFunction:
+def _moved(function: TransferFunction, old: Sequence[float], clim: Sequence[float], log: bool) -> TransferFunction:
+    """The function with its points moved from the values `old` to those of `clim`."""
+    struct, keep = ffi.new("hl_transfer_function *"), list[Any]()
+    function._fill(struct, keep)
+    return function_from(_made(lib.hl_transfer_function_spread, struct, list(old), list(clim),
+                               lib.HL_RANGE_LOG if log else lib.HL_RANGE_LINEAR))
+
+
+def recolored(function: TransferFunction, cmap: Any, clim: list[float] | None, log: bool, volume: Any) -> TransferFunction:
     """The function with the colours of `cmap` over `clim`, by default over the values that are seen."""
     if clim is None:
         seen, struct, keep = ffi.new("double[2]"), ffi.new("hl_transfer_function *"), list[Any]()
@@ -131,6 +140,8 @@ def recolored(function: TransferFunction, cmap: Any, clim: list[float] | None, v
     points = colors.sampled("cmap", cmap, *clim)
     if points is None:
         points = function_from(_made(lib.hl_transfer_function_colormap, cmap.encode(), *clim)).color.tolist()
+    if log:
+        points = _moved(TransferFunction([], points), clim, clim, True).color.tolist()
     return TransferFunction(function.opacity, points, function.unit_distance, function.gradient_opacity)
 
 
@@ -140,39 +151,30 @@ def colormap_points(name: str) -> list[list[float]]:
     return points
 
 
-def spread(function: TransferFunction, clim: list[float], values: tuple[float, float]) -> TransferFunction:
-    """Opacity and colours moved so that what was seen between two values is seen between those of `clim`.
-
-    `values` is the volume's range, which bounds what was seen (as `halflight render --range` does).
-    """
-    low, high = values if values[0] < values[1] else (0.0, 1.0)
-    points = function.opacity
-    shown = np.flatnonzero(points[:, 1] > 0)
-    if len(shown) > 0:
-        first, last = shown[0], shown[-1] + 1
-        begin = points[first - 1, 0] if first > 0 else low
-        end = points[last, 0] if last < len(points) else high
-        bounds = (low, high)
-        low = begin if bounds[0] < begin < bounds[1] else low
-        high = end if bounds[0] < end < bounds[1] else high
-    factor = (clim[1] - clim[0]) / (high - low)
-    opacity, color = points.copy(), function.color.copy()
-    opacity[:, 0] = clim[0] + (opacity[:, 0] - low) * factor
-    color[:, 0] = clim[0] + (color[:, 0] - low) * factor
-    gradient = function.gradient_opacity.copy()
-    gradient[:, 0] *= factor
-    return TransferFunction(opacity, color, function.unit_distance, gradient)
+def spread(function: TransferFunction, clim: list[float], log: bool, volume: Any) -> TransferFunction:
+    """Opacity and colours moved so that what was seen is seen between the values of `clim`."""
+    struct, keep, old = ffi.new("hl_transfer_function *"), list[Any](), ffi.new("double[2]")
+    function._fill(struct, keep)
+    call(lib.hl_transfer_function_visible_range, volume, struct, old)
+    return _moved(function, list(old), clim, log)
 
 
 _SHAPES = ("linear", "sigmoid", "geom")
 
 
-def opacity_points(opacity: Any, clim: list[float]) -> list[tuple[float, float]]:
+def opacity_points(opacity: Any, clim: list[float], log: bool = False) -> Any:
     """What ``opacity=`` says, as points (value, opacity).
 
-    A number holds for all values within `clim`; a name or a list of numbers is spread evenly over `clim`; pairs
-    are data values and opacities.
+    A number holds for all values within `clim`; a name or a list of numbers is spread evenly over `clim`, or over
+    the logarithms of its values; pairs are data values and opacities.
     """
+    points = _even_points(opacity, clim)
+    if log and (isinstance(opacity, str) or not hasattr(opacity[0] if hasattr(opacity, "__len__") else 0, "__len__")):
+        return _moved(TransferFunction(points), clim, clim, True).opacity
+    return points
+
+
+def _even_points(opacity: Any, clim: list[float]) -> list[tuple[float, float]]:
     if isinstance(opacity, str):
         if opacity not in _SHAPES:
             raise ValueError(f"opacity: there is no '{opacity}'{nearest(opacity, _SHAPES)}")

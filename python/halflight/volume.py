@@ -295,6 +295,18 @@ class Volume:
             space=None if lib.hl_space_name(raw.space) == ffi.NULL else text_of(lib.hl_space_name(raw.space)),
             taken_for=text_of(kind[0]), **self._choices())
 
+    def percentile(self, percent: float) -> float:
+        """The data value below which so many percent of the finite voxels lie, as ``numpy.percentile`` says.
+
+        Examples
+        --------
+        >>> Volume(np.arange(101.0).reshape(1, 1, 101)).percentile(25)
+        25.0
+        """
+        percents, value = ffi.new("double[1]", [_settings.number("percent", percent)]), ffi.new("double[1]")
+        call(lib.hl_volume_percentiles, self._handle, percents, 1, value)
+        return float(value[0])
+
     def _choices(self) -> dict[str, Any]:
         """What the volume's file holds, and what was read of it."""
         selection, array, series = (_sized(name) for name in ("selection", "array", "series"))

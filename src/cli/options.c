@@ -58,7 +58,10 @@ static void describe_numbers(const cli_option *option, char *text, size_t size) 
   if (option->count == 1) used = (size_t)snprintf(text, size, "a %s %s", kind, range);
   else
     used = (size_t)snprintf(text, size, "%d %ss joined by '%c', each %s", option->count, kind,
-                            option->separator, isinf(option->low) ? "finite" : range);
+                            option->separator,
+                            option->percent      ? "finite or a percentile from 0% to 100%"
+                            : isinf(option->low) ? "finite"
+                                                 : range);
   if (option->choices != NULL && used < size) {
     char choices[200];
     list_choices(option, ", ", choices, sizeof choices);
@@ -114,9 +117,12 @@ static bool parse_numbers(const cli_option *option, const char *text, cli_value 
     char *end;
     double number = strtod(at, &end);
     if (length == 0 || end != at + length || !isfinite(number)) return false;
+    value->percent[i] = option->percent && *end == '%';
+    if (value->percent[i] && (*at == '-' || number > 100)) return false;
     if (number < option->low || number > option->high || (option->above && number == option->low))
       return false;
     value->number[i] = number;
+    end += value->percent[i];
     if (*end != (i + 1 < option->count ? option->separator : '\0')) return false;
     at = end + 1;
   }

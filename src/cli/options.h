@@ -39,6 +39,7 @@ typedef struct cli_option {
   char separator;   /* between the numbers: ',' or 'x' */
   bool whole;       /* whole numbers only */
   bool above;       /* low itself is excluded */
+  bool percent;     /* OPTION_NUMBERS: each may also be a percentile, from 0% to 100% */
   double low, high; /* the accepted range */
   const char
       *setting; /* key of a scene's setting: its range, and its choices if any, replace these; or null */
@@ -57,6 +58,7 @@ typedef struct cli_value {
   bool chosen; /* one of the choices was given: `choice` is its value */
   int choice;
   double number[3];
+  bool percent[3]; /* the number is a percentile */
   uint64_t bytes;
 } cli_value;
 

@@ -126,38 +126,6 @@ static int load_function(cli_host *host, const char *name, const hl_volume *volu
   return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }
 
-/* The range of values that have opacity: from where opacity first rises above zero to where it last falls to
- * zero, cut to the volume's values. */
-static void visible_range(const hl_volume *volume, const hl_transfer_function *function, double range[2]) {
-  hl_volume_info info = {.struct_size = sizeof info};
-  range[0] = 0;
-  range[1] = 1;
-  if (hl_volume_get_info(volume, &info) == HL_OK && info.range[0] < info.range[1])
-    memcpy(range, info.range, sizeof info.range);
-  const hl_opacity_point *points = function->opacity;
-  size_t count = function->opacity_count, first = 0, last = count;
-  while (first < count && points[first].opacity <= 0) first++;
-  while (last > first && points[last - 1].opacity <= 0) last--;
-  if (first == last) return; /* nothing is visible */
-  double low = first > 0 ? points[first - 1].value : range[0];
-  double high = last < count ? points[last].value : range[1];
-  if (low > range[0] && low < range[1]) range[0] = low;
-  if (high > range[0] && high < range[1]) range[1] = high;
-}
-
-/* Moves the points so that values visible[0] to visible[1] become range[0] to range[1]. */
-static void spread(hl_transfer_function *function, const double visible[2], const double range[2]) {
-  double factor = (range[1] - range[0]) / (visible[1] - visible[0]);
-  hl_opacity_point *opacity = (hl_opacity_point *)function->opacity;
-  hl_color_point *color = (hl_color_point *)function->color;
-  for (size_t n = 0; n < function->opacity_count; n++)
-    opacity[n].value = range[0] + (opacity[n].value - visible[0]) * factor;
-  for (size_t n = 0; n < function->color_count; n++)
-    color[n].value = range[0] + (color[n].value - visible[0]) * factor;
-  hl_opacity_point *gradient = (hl_opacity_point *)function->gradient_opacity;
-  for (size_t n = 0; n < function->gradient_opacity_count; n++) gradient[n].value *= factor;
-}
-
 /* Makes values clear below the threshold and nearly opaque, over a voxel's edge, from it on. A ramp below the
  * threshold lets surfaces be shaded without stairs. It is a twentieth of the volume's range wide, but at most
  * half the way from the least value to the threshold. */
@@ -225,6 +193,48 @@ static int replace(const hl_transfer_function *loaded, hl_transfer_function *fun
   return exit_code;
 }
 
+/* What --range and --range-scale say of a volume. */
+typedef struct value_range {
+  bool given;
+  double ends[2];
+  hl_range_scale scale;
+} value_range;
+
+static int find_range(cli_host *host, const cli_value *values, const hl_volume *volume, value_range *range) {
+  const cli_value *said = &values[RENDER_RANGE], *scale = &values[RENDER_RANGE_SCALE];
+  hl_error error = {0};
+  *range = (value_range){.given = said->given};
+  if (scale->given) range->scale = (hl_range_scale)scale->choice;
+  for (int n = 0; said->given && n < 2; n++) {
+    range->ends[n] = said->number[n];
+    hl_status status = said->percent[n]
+                           ? hl_volume_percentiles(volume, &said->number[n], 1, &range->ends[n], &error)
+                           : HL_OK;
+    if (status != HL_OK) return host_fail(host, PHASE_CHANGE, status, &error);
+  }
+  if (said->given && !(range->ends[0] < range->ends[1]))
+    return fail(EXIT_CODE_INPUT,
+                "--range: '%s': these values of the volume are %.9g and %.9g: LO must be below HI",
+                said->text, range->ends[0], range->ends[1]);
+  return EXIT_CODE_OK;
+}
+
+/* Moves the points so that the values that have opacity become those of the range. */
+static int spread(cli_host *host, const hl_volume *volume, const value_range *range,
+                  hl_transfer_function *function) {
+  hl_error error = {0};
+  hl_transfer_function moved;
+  double visible[2];
+  hl_status status = hl_transfer_function_visible_range(volume, function, visible, &error);
+  if (status == HL_OK)
+    status = hl_transfer_function_spread(host->context, function, visible, range->ends, range->scale, &moved,
+                                         &error);
+  if (status != HL_OK) return host_fail(host, PHASE_CHANGE, status, &error);
+  int exit_code = replace(&moved, function);
+  hl_transfer_function_release(host->context, &moved);
+  return exit_code;
+}
+
 /* Gives all values one colour. ramp, for maximum projections: from black at range[0] to this colour at
  * range[1]. */
 static int color_plainly(const double color[3], bool ramp, const double range[2],
@@ -235,21 +245,21 @@ static int color_plainly(const double color[3], bool ramp, const double range[2]
   return replace(&colors, function);
 }
 
-/* Colours by a colormap or a colour's name. range: the values that it spreads over; null: those that are
- * seen. */
-static int color_by_name(cli_host *host, const char *name, const hl_volume *volume, const double *range,
+/* Colours by a colormap or a colour's name. Without a range they spread over the values that are seen. */
+static int color_by_name(cli_host *host, const char *name, const hl_volume *volume, value_range range,
                          bool maximum, hl_transfer_function *function) {
   hl_transfer_function colors = {0};
   hl_error error = {0};
-  double seen[2], color[3];
+  double color[3];
   bool known = is_known(name, colormap_name);
   if (!known && !parse_color(name, 0, 1, color))
     return refuse_name("colormap", name, "colormap and no colour", "colormaps", colormap_name);
-  hl_status status = hl_transfer_function_seen_range(volume, function, seen, &error);
-  if (range == NULL) range = seen;
-  if (status == HL_OK && !known) return color_plainly(color, maximum, range, function);
+  hl_status status = range.given ? HL_OK
+                                 : hl_transfer_function_seen_range(volume, function, range.ends, &error);
+  if (status == HL_OK && !known) return color_plainly(color, maximum, range.ends, function);
   if (status == HL_OK)
-    status = hl_transfer_function_colormap(host->context, name, range[0], range[1], &colors, &error);
+    status = hl_transfer_function_colormap_scaled(host->context, name, range.ends, range.scale, &colors,
+                                                  &error);
   if (status != HL_OK) return host_fail(host, PHASE_CHANGE, status, &error);
   int exit_code = replace(&colors, function);
   hl_transfer_function_release(host->context, &colors);
@@ -301,16 +311,15 @@ int render_transfer_function(cli_host *host, const cli_value *values, const hl_s
     hl_transfer_function_release(host->context, &loaded);
   }
   if (exit_code != EXIT_CODE_OK) return exit_code;
-  double visible[2];
-  visible_range(volume->volume, function, visible);
-  if (values[RENDER_RANGE].given && !values[RENDER_THRESHOLD].given)
-    spread(function, visible, values[RENDER_RANGE].number);
-  if (values[RENDER_THRESHOLD].given)
+  value_range range;
+  exit_code = find_range(host, values, volume->volume, &range);
+  if (exit_code == EXIT_CODE_OK && range.given && !values[RENDER_THRESHOLD].given)
+    exit_code = spread(host, volume->volume, &range, function);
+  if (exit_code == EXIT_CODE_OK && values[RENDER_THRESHOLD].given)
     exit_code = make_opaque_from(host, volume->volume, values[RENDER_THRESHOLD].number[0], function);
   if (exit_code == EXIT_CODE_OK && colormap != NULL)
-    exit_code = color_by_name(host, colormap, volume->volume,
-                              values[RENDER_RANGE].given ? values[RENDER_RANGE].number : NULL,
-                              render_is_maximum(values, description), function);
+    exit_code = color_by_name(host, colormap, volume->volume, range, render_is_maximum(values, description),
+                              function);
   return exit_code;
 }
 

@@ -24,6 +24,8 @@ const cli_choice instruction_set_choices[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
                                               {"neon", HL_INSTRUCTION_SET_NEON},
                                               {NULL, 0}};
 
+static const cli_choice range_scales[] = {{"linear", HL_RANGE_LINEAR}, {"log", HL_RANGE_LOG}, {NULL, 0}};
+
 const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_OUTPUT] =
         {.name = "output",
@@ -162,11 +164,18 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_RANGE] = {.name = "range",
                       .kind = OPTION_NUMBERS,
                       .argument = "LO,HI",
-                      .help = "values that opacity and colours spread over",
+                      .help = "values that opacity and colours spread over; or\npercentiles of the data "
+                              "(1%,99.5%)",
                       .count = 2,
                       .separator = ',',
+                      .percent = true,
                       .low = -INFINITY,
                       .high = INFINITY},
+    [RENDER_RANGE_SCALE] = {.name = "range-scale",
+                            .kind = OPTION_CHOICE,
+                            .choices = range_scales,
+                            .help =
+                                "they spread over --range evenly, or evenly over\nthe values' logarithms"},
     [RENDER_RANGE_OF_ALL] = {.name = "range-of-all",
                              .kind = OPTION_SWITCH,
                              .help =
@@ -424,8 +433,11 @@ int render_check_options(const cli_value *values) {
                 "--depth is for .png pictures, not for '%s': .exr and .npy hold 32-bit floats", output->text);
   if (values[RENDER_DEPTH].given && format->given && format->choice != 0)
     return fail(EXIT_CODE_USAGE, "--depth is for .png pictures: %s holds 32-bit floats", format->text);
-  if (values[RENDER_RANGE].given && values[RENDER_RANGE].number[0] >= values[RENDER_RANGE].number[1])
-    return fail(EXIT_CODE_USAGE, "--range: '%s': LO must be below HI", values[RENDER_RANGE].text);
+  const cli_value *range = &values[RENDER_RANGE];
+  if (range->given && range->percent[0] == range->percent[1] && range->number[0] >= range->number[1])
+    return fail(EXIT_CODE_USAGE, "--range: '%s': LO must be below HI", range->text);
+  if (values[RENDER_RANGE_SCALE].given && !range->given && !values[RENDER_RANGE_OF_ALL].given)
+    return fail(EXIT_CODE_USAGE, "--range-scale says how --range spreads: give --range LO,HI, too");
   if (values[RENDER_THRESHOLD].given && values[RENDER_RANGE].given && !values[RENDER_COLORMAP].given)
     return fail(EXIT_CODE_USAGE,
                 "--threshold says what is opaque: --range beside it needs --colormap, to spread");

@@ -109,6 +109,18 @@ hl_status hl_json_read_iso(hl_json_reader *reader, const json_t *value, hl_scene
 hl_status hl_json_clear_function(hl_json_reader *reader, const hl_volume *volume,
                                  hl_transfer_function *function);
 
+/* The values that a transfer function spreads over. */
+typedef struct hl_json_range {
+  bool given; /* by at least one of its keys */
+  double ends[2];
+  hl_range_scale scale;
+} hl_json_range;
+
+/* The keys "range", of numbers and percentiles, and "scale" of a transfer function. Default: the range of the
+ * volume; volume null: 0 to 1, and percentiles are refused. */
+hl_status hl_json_read_range(hl_json_reader *reader, const json_t *value, const hl_volume *volume,
+                             hl_json_range *range);
+
 /* The volume that a transfer function is read for. */
 typedef struct hl_function_subject {
   const hl_volume *volume; /* null: a file of its own; functions that depend on the voxels are refused */

@@ -136,25 +136,36 @@ static hl_status read_points(hl_json_reader *reader, const json_t *value, bool i
   return status;
 }
 
-static hl_status read_colormap(hl_json_reader *reader, const json_t *value, const hl_volume *volume,
+/* Spreads the function that `value` starts from over the range that it gives, where it gives one and no
+ * colormap, which is spread instead. */
+static hl_status spread_start(hl_json_reader *reader, const json_t *value, const hl_volume *volume,
+                              const hl_json_range *range, hl_transfer_function *function) {
+  double old[2];
+  hl_transfer_function spread;
+  if (!range->given || has(value, "colormap")) return HL_OK;
+  if (volume == NULL || has(value, "opacity"))
+    return hl_json_fail(reader, HL_ERROR_INPUT, has(value, "range") ? "range" : "scale",
+                        "is for a colormap, a preset, a file or the automatic function: give one of them, or "
+                        "remove it");
+  hl_status status = hl_transfer_function_visible_range(volume, function, old, reader->error);
+  if (status == HL_OK)
+    status = hl_transfer_function_spread(reader->context, function, old, range->ends, range->scale, &spread,
+                                         reader->error);
+  if (status != HL_OK) return hl_json_prefix(reader, reader->place), status;
+  hl_transfer_function_release(reader->context, function);
+  *function = spread;
+  return HL_OK;
+}
+
+static hl_status read_colormap(hl_json_reader *reader, const json_t *value, const hl_json_range *range,
                                hl_transfer_function *function) {
   const char *name = NULL;
-  double range[2] = {0, 1};
   hl_status status = hl_json_text(reader, value, "colormap", &name);
-  if (status != HL_OK) return status;
-  if (name == NULL)
-    return has(value, "range") ? hl_json_fail(reader, HL_ERROR_INPUT, "range",
-                                              "is for a colormap: give one, or remove the range")
-                               : HL_OK;
+  if (status != HL_OK || name == NULL) return status;
   if (has(value, "color"))
     return hl_json_fail(reader, HL_ERROR_INPUT, "colormap", "and color exclude each other: remove one");
-  if (volume != NULL && volume->maximum > volume->minimum)
-    range[0] = volume->minimum, range[1] = volume->maximum;
-  if ((status = hl_json_numbers(reader, value, "range", 2, range)) != HL_OK) return status;
-  if (!(range[0] < range[1]))
-    return hl_json_fail(reader, HL_ERROR_INPUT, "range",
-                        "%.9g to %.9g is empty: give two values, the lower one first", range[0], range[1]);
-  status = hl_transfer_function_colormap(reader->context, name, range[0], range[1], function, reader->error);
+  status = hl_transfer_function_colormap_scaled(reader->context, name, range->ends, range->scale, function,
+                                                reader->error);
   if (status == HL_ERROR_INPUT) {
     hl_json_enter(reader, "colormap");
     hl_json_prefix(reader, reader->place);
@@ -219,13 +230,16 @@ static hl_status read_start(hl_json_reader *reader, const json_t *value, hl_func
 
 static hl_status read_members(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
                               hl_transfer_function *function) {
-  static const char *const keys[] = {
-      "unit_distance", "opacity", "gradient_opacity", "color", "colormap", "range", "preset", "file", NULL};
+  static const char *const keys[] = {"unit_distance", "opacity", "gradient_opacity", "color", "colormap",
+                                     "range",         "scale",   "preset",           "file",  NULL};
+  hl_json_range range;
   hl_status status = hl_json_object(reader, value, keys);
   if (status == HL_OK) status = read_start(reader, value, subject, function);
+  if (status == HL_OK) status = hl_json_read_range(reader, value, subject.volume, &range);
+  if (status == HL_OK) status = spread_start(reader, value, subject.volume, &range, function);
   if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_TRANSFER_FUNCTION, 0, function);
   if (status == HL_OK) status = read_points(reader, value, subject.is_solid, function);
-  return status == HL_OK ? read_colormap(reader, value, subject.volume, function) : status;
+  return status == HL_OK ? read_colormap(reader, value, &range, function) : status;
 }
 
 hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *value,

@@ -1,7 +1,8 @@
-/* volume/statistics.c - range, mean, histogram and non-finite count of a volume.
+/* volume/statistics.c - range, mean, histogram, non-finite count and percentiles of a volume.
  *
  * u8 and u16 voxels are counted per stored value; all statistics follow from the counts exactly. f32 voxels
- * take one pass for range, sum and finiteness, and one for the histogram. */
+ * take one pass for range, sum and finiteness, and one for the histogram. Percentiles are exact, too: a
+ * voxel's rank is found from counts of the upper and then of the lower half of its value's bits. */
 #include "volume/statistics.h"
 
 #include <float.h>
@@ -226,4 +227,127 @@ hl_status hl_volume_measure(hl_volume *volume, const char *subject, hl_error *er
   if (volume->pages != NULL) hl_pages_forget(volume->pages);
   if (!finished) return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", subject);
   return record(volume, total, subject, error);
+}
+
+/* ---- percentiles ---- */
+
+enum { HALVES = 65536 };
+
+/* The voxels' ranks, looked up by counts of 16 bits of their keys, which sort as the stored values do. */
+typedef struct ranking {
+  const hl_volume *volume;
+  void *buffer;                   /* of `walk` */
+  uint64_t upper[HALVES], finite; /* counts by the upper half of the key, and their sum */
+  uint64_t lower[HALVES];         /* by the lower half, of keys with the upper half `opened` */
+  uint32_t opened;                /* HALVES: none yet */
+} ranking;
+
+/* An unsigned integer that sorts like the float: the bits of a negative one inverted, of others with the
+ * highest bit set. */
+static uint32_t key_of_f32(float value) {
+  uint32_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+}
+
+static double stored_of_key(const ranking *r, uint32_t key) {
+  if (r->volume->storage != HL_STORAGE_F32) return key;
+  uint32_t bits = key & 0x80000000u ? key & 0x7fffffffu : ~key;
+  float value;
+  memcpy(&value, &bits, sizeof value);
+  return (double)value;
+}
+
+/* Counts the upper halves of the keys of floats. */
+static bool count_upper_f32(ranking *r) {
+  walk w = {.volume = r->volume, .buffer = r->buffer, .count = hl_volume_voxel_count(r->volume)};
+  while (next_piece(&w))
+    for (size_t n = 0; n < w.piece; n++) {
+      float value = ((const float *)w.voxels)[n];
+      if (fabsf(value) <= FLT_MAX) r->upper[key_of_f32(value) >> 16]++;
+    }
+  return !w.cancelled;
+}
+
+/* Counts the lower halves of the keys of floats whose upper half is `upper`. */
+static bool open_upper(ranking *r, uint32_t upper) {
+  if (r->opened == upper) return true;
+  memset(r->lower, 0, sizeof r->lower);
+  r->opened = upper;
+  walk w = {.volume = r->volume, .buffer = r->buffer, .count = hl_volume_voxel_count(r->volume)};
+  while (next_piece(&w))
+    for (size_t n = 0; n < w.piece; n++) {
+      float value = ((const float *)w.voxels)[n];
+      uint32_t key = key_of_f32(value);
+      if (key >> 16 == upper && fabsf(value) <= FLT_MAX) r->lower[key & 0xffffu]++;
+    }
+  return !w.cancelled;
+}
+
+/* The place in the counts where the rank lies; *rank becomes the rank within the place. */
+static uint32_t place_of(const uint64_t *counts, uint64_t *rank) {
+  uint32_t place = 0;
+  while (place + 1 < HALVES && *rank >= counts[place]) *rank -= counts[place++];
+  return place;
+}
+
+/* The stored value that `rank` finite voxels precede in ascending order. False: cancelled. */
+static bool stored_at(ranking *r, uint64_t rank, double *stored) {
+  uint32_t key = place_of(r->upper, &rank);
+  if (r->volume->storage == HL_STORAGE_F32) {
+    if (!open_upper(r, key)) return false;
+    key = key << 16 | place_of(r->lower, &rank);
+  }
+  *stored = stored_of_key(r, key);
+  return true;
+}
+
+/* The data value below which `percent` of the finite voxels lie, interpolated between the two nearest in
+ * order. */
+static bool percentile(ranking *r, double percent, double *value) {
+  const hl_volume *volume = r->volume;
+  *value = 0;
+  if (r->finite == 0) return true;
+  double fraction = volume->value_scale > 0 ? percent / 100 : 1 - percent / 100, first, next;
+  double place = fraction * (double)(r->finite - 1);
+  uint64_t rank = (uint64_t)place, after = rank + 1 < r->finite ? rank + 1 : rank;
+  if (!stored_at(r, rank, &first) || !stored_at(r, after, &next)) return false;
+  double stored = first + (place - (double)rank) * (next - first);
+  *value = volume->value_scale * stored + volume->value_offset;
+  return true;
+}
+
+static bool count_upper(ranking *r) {
+  bool finished = r->volume->storage == HL_STORAGE_F32 ? count_upper_f32(r)
+                                                       : count_values(r->volume, r->buffer, r->upper);
+  for (size_t n = 0; n < HALVES; n++) r->finite += r->upper[n];
+  return finished;
+}
+
+hl_status hl_volume_percentiles(const hl_volume *volume, const double *percents, size_t count, double *values,
+                                hl_error *error) {
+  if (volume == NULL || percents == NULL || values == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_percentiles: null volume, percents or values");
+  for (size_t n = 0; n < count; n++)
+    if (!(percents[n] >= 0 && percents[n] <= 100))
+      return hl_fail(error, HL_ERROR_INPUT, "percentile %.9g is out of range: give 0 to 100", percents[n]);
+  hl_context *context = volume->context;
+  bool packed = hl_volume_is_packed(volume);
+  size_t piece = packed ? 0 : (COPIED_PIECE + volume->dimension[0]) * hl_storage_bytes(volume->storage);
+  ranking *r = hl_allocate_zeroed(context, 1, sizeof *r);
+  void *buffer = packed ? NULL : hl_allocate(context, piece, 1);
+  hl_status status = r == NULL || (buffer == NULL && !packed)
+                         ? hl_fail_memory(error, sizeof *r + piece, "percentiles of a volume")
+                         : HL_OK;
+  if (status == HL_OK) {
+    r->volume = volume;
+    r->buffer = buffer;
+    r->opened = HALVES;
+    bool finished = count_upper(r);
+    for (size_t n = 0; finished && n < count; n++) finished = percentile(r, percents[n], &values[n]);
+    if (!finished) status = hl_fail(error, HL_ERROR_CANCELLED, "percentiles: cancelled");
+  }
+  hl_release(context, buffer);
+  hl_release(context, r);
+  return status;
 }

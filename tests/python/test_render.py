@@ -24,6 +24,9 @@ CASES = [
     ({"size": (64, 64), "cmap": "viridis", "clim": (10, 200)},
      ["--size", "64x64", "--colormap", "viridis", "--range", "10,200"]),
     ({"size": (64, 64), "clim": (10, 200)}, ["--size", "64x64", "--range", "10,200"]),
+    ({"size": (64, 64), "clim": ("20%", "99.5%")}, ["--size", "64x64", "--range", "20%,99.5%"]),
+    ({"size": (64, 64), "cmap": "viridis", "clim": (10, 200), "log_scale": True},
+     ["--size", "64x64", "--colormap", "viridis", "--range", "10,200", "--range-scale", "log"]),
     ({"size": (64, 64), "tf": "ct-bone"}, ["--size", "64x64", "--tf", "ct-bone"]),
     ({"size": (64, 64), "camera": (30, 40)}, ["--size", "64x64", "--azimuth", "30", "--elevation", "40"]),
     ({"size": (64, 64), "camera": "left"}, ["--size", "64x64", "--view", "left"]),
@@ -100,6 +103,20 @@ def test_cmap_takes_colours_in_srgb_and_numbers_in_linear_light(blob):
     assert np.allclose(pixels(blob, cmap=(0.5, 0, 0), **flat)[24, 32, :3], [0.5, 0, 0], atol=1e-3)
     grey = pixels(blob, cmap=["black", "white"], clim=(0, 255), **flat)
     assert np.allclose(grey[..., 0], grey[..., 1])
+
+
+def test_percentiles_are_those_of_numpy(blob):
+    volume = halflight.Volume(blob)
+    for percent in (0, 1, 33.3, 50, 99.5, 100):
+        assert volume.percentile(percent) == pytest.approx(np.percentile(blob, percent), abs=1e-9)
+
+
+def test_matplotlib_colormaps_by_logarithms():
+    """Of a range from 1 to 100, the middle colour is that of 10."""
+    pytest.importorskip("matplotlib")
+    slab, flat = np.full((8, 8, 8), 10, np.uint8), {"shade": False, "opacity": 1.0, "size": (16, 16)}
+    spread = pixels(slab, cmap=["black", "#bc0000", "white"], clim=(1, 100), log_scale=True, **flat)
+    assert np.allclose(spread[8, 8, :3], [0.5029, 0, 0], atol=2e-3)
 
 
 def test_matplotlib_colormaps(blob):

@@ -1,0 +1,150 @@
+/* tests/unit/scene_ranges.c - percentiles of volumes, and functions spread over ranges evenly and by
+ * logarithms. */
+#include "scene/transfer_function.h"
+#include "scene_parts.h"
+
+enum { N = 20, COUNT = N * N * N };
+
+static hl_volume *volume_of(hl_context *context, hl_voxel_type type, const void *voxels, double scale) {
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  for (int a = 0; a < 3; a++) d.dimensions[a] = N;
+  d.type = type;
+  d.voxels = voxels;
+  d.value_scale = scale;
+  d.value_offset = 7;
+  hl_volume *volume = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  return volume;
+}
+
+static double percentile_of(const hl_volume *volume, double percent) {
+  double value = NAN;
+  assert_int_equal(hl_volume_percentiles(volume, &percent, 1, &value, NULL), HL_OK);
+  return value;
+}
+
+/* The numbers 0 to COUNT - 1 in mixed order (7919 and COUNT have no common factor). */
+static unsigned mixed(unsigned n) { return n * 7919u % COUNT; }
+
+/* Of the numbers 0 to n - 1, p percent is p (n - 1) / 100, whatever their order and storage. */
+static void percentiles_of_a_ramp(void **state) {
+  (void)state;
+  static uint16_t whole[COUNT];
+  static float real[COUNT];
+  for (unsigned n = 0; n < COUNT; n++) {
+    whole[n] = (uint16_t)mixed(n);
+    real[n] = ((float)mixed(n) - 1000) * 0.25f; /* of both signs */
+  }
+  hl_context *context = make_context();
+  hl_volume *volumes[3] = {volume_of(context, HL_VOXEL_U16, whole, 2),
+                           volume_of(context, HL_VOXEL_F32, real, 2),
+                           volume_of(context, HL_VOXEL_F32, real, -2)};
+  for (double percent = 0; percent <= 100; percent += 0.8) {
+    double rank = percent / 100 * (COUNT - 1), other = COUNT - 1 - rank;
+    assert_near(percentile_of(volumes[0], percent), 2 * rank + 7, 1e-8);
+    assert_near(percentile_of(volumes[1], percent), 2 * 0.25 * (rank - 1000) + 7, 1e-8);
+    assert_near(percentile_of(volumes[2], percent), -2 * 0.25 * (other - 1000) + 7, 1e-8);
+  }
+  for (int v = 0; v < 3; v++) hl_volume_release(volumes[v]);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* Voxels that are no numbers do not count; of a volume with none that is one, a percentile is 0. */
+static void only_finite_voxels_count(void **state) {
+  (void)state;
+  static float values[COUNT];
+  for (unsigned n = 0; n < COUNT; n++)
+    values[n] = n % 2 != 0 ? (n % 4 == 1 ? NAN : INFINITY) : (float)(n / 2);
+  hl_context *context = make_context();
+  hl_volume *volume = volume_of(context, HL_VOXEL_F32, values, 1);
+  assert_near(percentile_of(volume, 50), 0.5 * (COUNT / 2.0 - 1) + 7, 1e-9);
+  hl_volume_release(volume);
+  for (unsigned n = 0; n < COUNT; n++) values[n] = NAN;
+  volume = volume_of(context, HL_VOXEL_F32, values, 1);
+  assert_near(percentile_of(volume, 50), 0, 0);
+  double beyond = 101, value;
+  hl_error error = {0};
+  assert_int_equal(hl_volume_percentiles(volume, &beyond, 1, &value, &error), HL_ERROR_INPUT);
+  assert_string_equal(error.message, "percentile 101 is out of range: give 0 to 100");
+  hl_volume_release(volume);
+  hl_context_destroy(context);
+}
+
+/* A colormap over 1 to 10^6 by logarithms: value v has the colour at log10(v) / 6, as near as an even one
+ * has. */
+static void colormap_by_logarithms(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_transfer_function f = {0};
+  const double range[2] = {1, 1e6};
+  assert_int_equal(hl_transfer_function_colormap_scaled(context, "viridis", range, HL_RANGE_LOG, &f, NULL),
+                   HL_OK);
+  for (double exponent = 0; exponent <= 6; exponent += 0.01) {
+    double exact[3], line[3];
+    hl_colormap_evaluate("viridis", exponent / 6, exact);
+    hl_transfer_function_color(&f, pow(10, exponent), line);
+    for (int c = 0; c < 3; c++) assert_near(exact[c], line[c], 0.004);
+  }
+  assert_true(f.color[0].value == 1 && f.color[f.color_count - 1].value == 1e6);
+  const double refused[2] = {0, 10};
+  hl_error error = {0};
+  assert_int_equal(hl_transfer_function_colormap_scaled(context, "hot", refused, HL_RANGE_LOG, &f, &error),
+                   HL_ERROR_INPUT);
+  assert_string_equal(error.message,
+                      "a logarithmic range must be above 0, and 0 to 10 is not: give another "
+                      "range, or the linear scale");
+  hl_transfer_function_release(context, &f);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* A ramp over 10 to 20 with a step at 15: by logarithms over 1 to 100 the step is at 10 = sqrt(1 * 100), the
+ * value v has what was at 10 + 10 log(v) / log(100), and beyond the range the ends are held. */
+static void points_by_logarithms(void **state) {
+  (void)state;
+  hl_opacity_point opacity[] = {{0, 0}, {10, 0.1}, {15, 0.3}, {15, 0.6}, {30, 0.9}}, gradient[] = {{5, 1}};
+  hl_color_point color[] = {{12, {0, 0, 0}}, {17, {1, 0.5, 0}}};
+  const hl_transfer_function from = {.unit_distance = 3,
+                                     .opacity = opacity,
+                                     .opacity_count = 5,
+                                     .color = color,
+                                     .color_count = 2,
+                                     .gradient_opacity = gradient,
+                                     .gradient_opacity_count = 1};
+  const double old[2] = {10, 20}, range[2] = {1, 100};
+  hl_transfer_function to;
+  hl_context *context = make_context();
+  assert_int_equal(hl_transfer_function_spread(context, &from, old, range, HL_RANGE_LOG, &to, NULL), HL_OK);
+  assert_true(to.unit_distance == 3 && to.gradient_opacity[0].value == 5 * 9.9);
+  for (double t = 0; t <= 1; t += 1.0 / 256) {
+    double value = pow(100, t), was = 10 + 10 * t, colors[2][3];
+    if (t != 0.5)
+      assert_near(hl_transfer_function_opacity(&to, value), hl_transfer_function_opacity(&from, was), 1e-3);
+    hl_transfer_function_color(&to, value, colors[0]);
+    hl_transfer_function_color(&from, was, colors[1]);
+    for (int c = 0; c < 3; c++) assert_near(colors[0][c], colors[1][c], 1e-3);
+  }
+  assert_near(hl_transfer_function_opacity(&to, 10 - 1e-9), 0.3, 1e-6);
+  assert_near(hl_transfer_function_opacity(&to, 10 + 1e-9), 0.6, 1e-6);
+  assert_near(hl_transfer_function_opacity(&to, 1e9), 0.7, 1e-12);
+  assert_near(hl_transfer_function_opacity(&to, 0), 0.1, 1e-12);
+  hl_transfer_function_release(context, &to);
+  assert_int_equal(hl_transfer_function_spread(context, &from, old, range, HL_RANGE_LINEAR, &to, NULL),
+                   HL_OK);
+  assert_true(to.opacity_count == 5 && to.opacity[0].value == 1 - 99 && to.opacity[2].value == 50.5);
+  hl_transfer_function_release(context, &to);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(percentiles_of_a_ramp),
+      cmocka_unit_test(only_finite_voxels_count),
+      cmocka_unit_test(colormap_by_logarithms),
+      cmocka_unit_test(points_by_logarithms),
+  };
+  return cmocka_run_group_tests_name("scene_ranges", tests, NULL, NULL);
+}
