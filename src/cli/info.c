@@ -100,11 +100,19 @@ static void print_series(const hl_volume *volume) {
   }
 }
 
+/* Whether a file's only array says no more than its type and its time steps, which have lines of their own.
+ */
+static bool is_plain(const hl_volume *volume, const hl_volume_array *array) {
+  hl_volume_selection s = {.struct_size = sizeof s};
+  bool steps = hl_volume_get_selection(volume, &s) == HL_OK && array->components == s.times;
+  return array->name[0] == '\0' && (array->components == 1 || steps);
+}
+
 static void print_arrays(const hl_volume *volume) {
   hl_volume_array array = {.struct_size = sizeof array};
   size_t count = hl_volume_array_count(volume);
   for (size_t n = 0; hl_volume_get_array(volume, n, &array) == HL_OK; n++) {
-    if (count == 1 && array.components == 1 && array.name[0] == '\0') return;
+    if (count == 1 && is_plain(volume, &array)) return;
     printf("  %s  %s%s%s", n == 0 ? "arrays    " : "          ", array.name,
            array.name[0] != '\0' ? ", " : "", hl_voxel_type_name(array.type));
     if (array.components > 1) printf(", %zu components", array.components);
@@ -186,6 +194,8 @@ static int print_text(const char *path, const hl_volume *volume, const hl_volume
   print_selection(volume);
   print_series(volume);
   printf("  spacing     %.9g, %.9g, %.9g\n", info->spacing[0], info->spacing[1], info->spacing[2]);
+  const char *unit = hl_volume_unit(volume);
+  if (unit != NULL) printf("  unit        %s\n", unit);
   printf("  origin      %.9g, %.9g, %.9g\n", info->origin[0], info->origin[1], info->origin[2]);
   for (int axis = 0; axis < 3; axis++)
     printf("  %s      %c: %.9g, %.9g, %.9g\n", axis == 0 ? "axes  " : "      ", "ijk"[axis], d[0][axis],

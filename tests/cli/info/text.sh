@@ -7,3 +7,10 @@ grep -q '^  world box   x -0.5 to 15.5, y -0.5 to 15.5, z -0.5 to 15.5$' text
 grep -q '^  taken for   scanned matter' text
 grep -q '^  range       0 to 255, mean ' text
 test "$(grep -c '%$' text)" -eq 16
+# The unit of lengths, where the file tells one.
+if grep '^  unit' text; then exit 9; fi
+halflight convert --quiet ball_16x16x16_uint8.raw ball.mrc
+halflight info ball.mrc | grep -q '^  unit        angstrom$'
+# A series of plain volumes has time steps, not components.
+printf 'NDims = 4\nDimSize = 2 1 1 3\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n123456' >s.mha
+if halflight info s.mha --time 2 | grep arrays; then exit 9; fi
