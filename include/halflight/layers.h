@@ -1,5 +1,5 @@
 /* halflight/layers.h - layers beside a picture: the share of each light and of the sky, shadows, depth,
- * normals.
+ * normals, objects.
  *
  * The sum of all lights' pictures, the sky, the ambient picture and the emission is the picture's RGB, up to
  * rounding: lights can be brightened, dimmed and coloured afterwards without rendering again. The other
@@ -34,12 +34,15 @@ typedef struct hl_layers {
                     a medium has none and counts as 0; 0 where alpha is 0 */
   const hl_light_layers *lights; /* [light_count], in the order of the scene's lights; or null */
   size_t light_count;            /* the scene's; or 0 */
-  float *emission; /* [height][width][3]; what volumes add to the linear premultiplied RGB without any light:
-                      by their material's emission, or because they are shaded flat */
+  float *emission; /* [height][width][3]; what volumes and meshes add to the linear premultiplied RGB without
+                      any light: by their material's emission, or because they are shaded flat */
   float *sky; /* [height][width][3]; what the sky adds to the linear premultiplied RGB; 0 without a sky */
   float *sky_shadow; /* [height][width][3]; what the sky would add in R, G and B if all matter were white,
                         divided by what it would add then if nothing hid it: ambient occlusion, 1 where
                         nothing is hidden; 0 where nothing would be added */
+  float *object; /* [height][width]; what the ray meets at depth_first: volume v of the scene is v + 1, mesh m
+                    volume_count + m + 1, an isosurface its volume; 0 where it meets nothing. Of a pixel whose
+                    rays meet several, the one that most of them meet */
 } hl_layers;
 
 /* Depths are world lengths along the pixel's ray: from the eye, or, orthographic, from the plane through the

@@ -40,7 +40,7 @@ class Image:
     ----------
     layers : mapping of str to ndarray of float32
         What the picture is made of, where ``layers=True`` was asked for: "light0", "light0_shadow", "ambient",
-        "normal" [height][width][3], "depth_first", "depth_mean" [height][width]; see docs/layers.md.
+        "normal" [height][width][3], "depth_first", "depth_mean", "object" [height][width]; see docs/layers.md.
     statistics : mapping
         Seconds, sheets, voxels, threads and the instruction set, named as in `hl_render_statistics`.
     scene : Scene

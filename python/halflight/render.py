@@ -49,6 +49,7 @@ def _add_layers(image: Image) -> tuple[Any, dict[str, Pixels], list[Any]]:
     layers.depth_first = add("depth_first", "Z")
     layers.depth_mean = add("depth_mean", "Z")
     layers.normal = add("normal", "XYZ")
+    layers.object = add("object", "Z")
     return layers, arrays_by_name, [lights]
 
 

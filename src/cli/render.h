@@ -215,9 +215,9 @@ typedef struct render_layers {
   hl_light_layers *lights; /* owned */
 } render_layers;
 
-/* Adds the layers "ambient", "light0", "light0_shadow", ..., "depth_first", "depth_mean" and "normal" to the
- * picture, "emission" where a volume shines by itself, "sky" and "sky_shadow" where the scene has a sky. Call
- * render_layers_release() even after a failure.
+/* Adds the layers "ambient", "light0", "light0_shadow", ..., "depth_first", "depth_mean", "normal" and
+ * "object" to the picture, "emission" where a volume shines by itself, "sky" and "sky_shadow" where the scene
+ * has a sky. Call render_layers_release() even after a failure.
  */
 hl_status render_layers_create(hl_image *image, const hl_scene_description *description,
                                render_layers *layers, hl_error *error);

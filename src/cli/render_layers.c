@@ -18,13 +18,13 @@ static bool shines(const hl_scene_volume *volume) {
   return volume->shading == HL_SHADING_FLAT || volume->material.emission > 0;
 }
 
-/* Adds the layer "emission" if a volume shines by itself. */
+/* Adds the layer "emission" if a volume or a mesh shines by itself. */
 static hl_status add_emission(hl_image *image, const hl_scene_description *description, hl_layers *layers,
                               hl_error *error) {
-  for (size_t i = 0; i < description->volume_count; i++)
-    if (shines(&description->volumes[i]))
-      return hl_image_add_layer(image, "emission", "RGB", &layers->emission, error);
-  return HL_OK;
+  bool any = false;
+  for (size_t i = 0; i < description->volume_count; i++) any |= shines(&description->volumes[i]);
+  for (size_t i = 0; i < description->mesh_count; i++) any |= description->meshes[i].material.emission > 0;
+  return any ? hl_image_add_layer(image, "emission", "RGB", &layers->emission, error) : HL_OK;
 }
 
 /* Adds the layers "sky" and "sky_shadow" if there is a sky. */
@@ -56,6 +56,7 @@ hl_status render_layers_create(hl_image *image, const hl_scene_description *desc
     status = hl_image_add_layer(image, "depth_first", "Z", &layers->all.depth_first, error);
   if (status == HL_OK) status = hl_image_add_layer(image, "depth_mean", "Z", &layers->all.depth_mean, error);
   if (status == HL_OK) status = hl_image_add_layer(image, "normal", "XYZ", &layers->all.normal, error);
+  if (status == HL_OK) status = hl_image_add_layer(image, "object", "Z", &layers->all.object, error);
   return status;
 }
 
@@ -75,8 +76,8 @@ static int protect_from_layer(const cli_host *host, const char *output, const ch
 }
 
 int render_layers_protect(const cli_host *host, const char *output, size_t light_count, const char *input) {
-  static const char *const names[] = {"ambient",     "emission",   "sky",   "sky_shadow",
-                                      "depth_first", "depth_mean", "normal"};
+  static const char *const names[] = {"ambient",     "emission",   "sky",    "sky_shadow",
+                                      "depth_first", "depth_mean", "normal", "object"};
   int exit_code = EXIT_CODE_OK;
   if (!has_extension(output, ".npy")) return EXIT_CODE_OK; /* .exr holds them itself */
   for (size_t i = 0; i < sizeof names / sizeof *names && exit_code == EXIT_CODE_OK; i++)

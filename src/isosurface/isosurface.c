@@ -101,6 +101,6 @@ hl_scene_mesh hl_scene_mesh_of_iso(const hl_scene_volume *volume, size_t i, hl_m
   if (volume->shading == HL_SHADING_FLAT) made.material = (hl_material){.emission = 1};
   made.visible = volume->visible;
   made.casts_shadow = volume->casts_shadow;
-  made.receives_shadow = volume->receives_shadow;
+  made.receives_shadow = volume->receives_shadow && volume->shading != HL_SHADING_FLAT;
   return made;
 }

@@ -40,6 +40,7 @@ void hl_reference_parts_write(const reference_parts *parts, double depth_first, 
   double alpha = parts->weight;
   const double normal[3] = {parts->normal.x, parts->normal.y, parts->normal.z};
   if (layers->depth_first != NULL) layers->depth_first[pixel] = (float)depth_first;
+  if (layers->object != NULL) layers->object[pixel] = (float)parts->object;
   if (layers->depth_mean != NULL)
     layers->depth_mean[pixel] = alpha > 0 ? (float)(parts->depth / alpha) : INFINITY;
   for (size_t c = 0; c < 3; c++) {

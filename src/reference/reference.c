@@ -132,8 +132,10 @@ static void trace_part(const reference *all, const reference_ray *way, reference
       if (extinction > 0) length = fmin(length, all->most_opacity / (extinction * (1 - before)));
       hl_reference_march_place(&walk, at + length / 2);
       extinction = composite(all, &walk, length, way->origin, way->direction, worker);
-      if (before < FIRST_OPACITY && ray->weight >= FIRST_OPACITY)
+      if (before < FIRST_OPACITY && ray->weight >= FIRST_OPACITY) {
         *first = first_within(before, extinction, at);
+        ray->object = worker->sample.object;
+      }
       at += length;
     }
   }
@@ -157,7 +159,10 @@ static double trace(const reference *all, vec3 origin, vec3 direction, reference
     double before = ray->weight;
     hl_reference_surface_shade(all, &hit, &way, worker);
     hl_reference_parts_add(ray, &worker->sample, (1 - before) * hit.opacity, all->scene->light_count);
-    if (before < FIRST_OPACITY && ray->weight >= FIRST_OPACITY) first = hit.distance;
+    if (before < FIRST_OPACITY && ray->weight >= FIRST_OPACITY) {
+      first = hit.distance;
+      ray->object = worker->sample.object;
+    }
     way.nearest = hit.distance;
   }
   return first;
@@ -193,10 +198,25 @@ static void follow_paths(const picture *all, size_t x, size_t y, reference_worke
   }
 }
 
+/* The least of the numbers that occur most often; 0 of none. */
+static int most_frequent(const int *numbers, size_t count) {
+  size_t most = 0;
+  int found = 0;
+  for (size_t i = 0; i < count; i++) {
+    size_t same = 0;
+    for (size_t k = 0; k < count; k++) same += numbers[k] == numbers[i];
+    if (same < most || (same == most && numbers[i] > found)) continue;
+    most = same;
+    found = numbers[i];
+  }
+  return found;
+}
+
 /* Averages a pixel's rays, and their first depths over the rays that meet something. */
 static void trace_pixel(const picture *all, size_t x, size_t y, int worker) {
   reference_worker *own = &all->workers[worker];
   size_t lights = all->all->scene->light_count, rays = (size_t)all->all->rays, hits = 0;
+  int objects[HL_REFERENCE_RAYS * HL_REFERENCE_RAYS];
   double first = 0;
   hl_reference_parts_clear(&own->pixel, lights);
   for (size_t r = 0; r < rays * rays; r++) {
@@ -206,8 +226,9 @@ static void trace_pixel(const picture *all, size_t x, size_t y, int worker) {
     hl_reference_parts_add(&own->pixel, &own->ray, 1 / (double)(rays * rays), lights);
     if (!(depth < INFINITY)) continue;
     first += depth;
-    hits++;
+    objects[hits++] = own->ray.object;
   }
+  own->pixel.object = most_frequent(objects, hits);
   if (all->all->paths > 0) follow_paths(all, x, y, own);
   write_pixel(&own->pixel, lights, all->pixels + y * all->row_stride + 4 * x);
   double depth_first = hits > 0 ? first / (double)hits : INFINITY;

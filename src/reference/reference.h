@@ -171,7 +171,9 @@ typedef struct light_part {
 
 /* The contributions to a sample or to a ray: sums weighted by extinction (sample) or by opacity (ray). */
 typedef struct reference_parts {
-  double weight; /* sum of the weights; of a ray: alpha */
+  double weight;   /* sum of the weights; of a ray: alpha */
+  int object;      /* of a sample: the one of the greatest weight; of a ray: where alpha first reaches 0.01 */
+  double greatest; /* of a sample: that weight */
   double ambient[3], emission[3], sky[3];
   double sky_reaching[3],
       sky_open[3]; /* of white matter: the sky's light, and all of it that nothing hides */
@@ -317,7 +319,7 @@ typedef struct reference_hit {
 /* A point of a surface that is shaded. */
 typedef struct reference_surface_point {
   vec3 point, normal, to_eye; /* world; unit vectors; the normal is on the eye's side */
-  double color[3];
+  double color[3], behind[3]; /* behind: what it lets through of light from behind */
   hl_material material;
   bool receives_shadow;
 } reference_surface_point;
@@ -349,5 +351,11 @@ void hl_reference_parts_add(reference_parts *parts, const reference_parts *other
                             size_t light_count);
 void hl_reference_parts_write(const reference_parts *parts, double depth_first, const hl_layers *layers,
                               size_t pixel);
+
+/* The fraction of a light that reaches a point, whatever image it projects; of a light with an emission image
+ * the fraction in each channel. reach: what hl_reference_light_reach() gives there. */
+void hl_reference_light_shadow(const reference *all, const reference_light *light, vec3 point,
+                               bool attenuated, const double reach[3], reference_worker *worker,
+                               double shadow[3]);
 
 #endif

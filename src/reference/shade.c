@@ -39,21 +39,18 @@ static vec3 find_normal(const reference_volume *volume, vec3 index_point, double
   return vec3_scale(slope, 1 / size);
 }
 
-/* The fraction of the light that the volumes let through, whatever texture it projects; for a light with an
- * emission image, the fraction in each channel. */
-static void find_shadow(const reference *all, const reference_volume *volume, size_t light, vec3 point,
-                        reference_worker *worker, double shadow[3]) {
-  reference_light plain = all->lights[light];
-  bool attenuated = volume->described->receives_shadow;
+void hl_reference_light_shadow(const reference *all, const reference_light *light, vec3 point,
+                               bool attenuated, const double reach[3], reference_worker *worker,
+                               double shadow[3]) {
+  reference_light plain = *light;
   if (plain.emission != NULL) {
     double full[3];
-    const double *reach = light_reach(all, volume, light, point, worker);
     hl_reference_light_reach(all, &plain, point, false, worker, full);
     for (int c = 0; c < 3; c++) shadow[c] = full[c] > 0 ? reach[c] / full[c] : 1;
     return;
   }
   if (plain.texture == NULL) {
-    memcpy(shadow, light_reach(all, volume, light, point, worker), 3 * sizeof *shadow);
+    memcpy(shadow, reach, 3 * sizeof *shadow);
     return;
   }
   plain.texture = NULL;
@@ -79,7 +76,9 @@ static void shade_light(const reference *all, const reference_sample *at, const 
   const arrival *arrived = &worker->arrivals[light];
   double cosine = vec3_dot(here->normal, arrived->towards), gloss = 0;
   *part = (light_part){{0, 0, 0}, {0, 0, 0}};
-  if (all->all_shadows) find_shadow(all, at->volume, light, at->point, worker, part->shadow);
+  if (all->all_shadows)
+    hl_reference_light_shadow(all, &all->lights[light], at->point, at->volume->described->receives_shadow,
+                              light_reach(all, at->volume, light, at->point, worker), worker, part->shadow);
   if (cosine > 0) {
     /* R = 2 (N.L) N - L */
     vec3 reflected = vec3_subtract(vec3_scale(here->normal, 2 * cosine), arrived->towards);
@@ -134,6 +133,10 @@ void hl_reference_shade(const reference *all, const reference_sample *at, refere
   here.normal = find_normal(at->volume, at->index_point, at->value, &here.amount);
   if (described->shading == HL_SHADING_PHONG)
     hl_reference_cut_face(at->volume, at->index_point, &here.normal, &here.amount);
+  if (sample->object == 0 || weight > sample->greatest) {
+    sample->object = (int)(at->volume - all->volumes) + 1;
+    sample->greatest = weight;
+  }
   sample->weight += weight;
   sample->normal = vec3_add(sample->normal, vec3_scale(here.normal, weight * here.amount));
   const hl_material *material = &described->material;

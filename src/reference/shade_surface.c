@@ -48,22 +48,28 @@ static vec3 flat_normal(const reference_hit *hit, vec3 point) {
 
 /* Eqs. (3) and (4) for one light. */
 static void add_light(const reference *all, size_t light, const reference_surface_point *at,
-                      reference_worker *worker, double picture[3]) {
+                      reference_worker *worker, light_part *part) {
   const hl_material *material = &at->material;
   double reach[3];
   arrival arrived;
   hl_reference_light_arrive(&all->lights[light], at->point, &arrived);
   double cosine = vec3_dot(at->normal, arrived.towards);
-  if (cosine <= 0) return;
+  if (cosine <= 0 && !all->all_shadows) return;
   hl_reference_light_reach(all, &all->lights[light], at->point, at->receives_shadow, worker, reach);
+  if (all->all_shadows)
+    hl_reference_light_shadow(all, &all->lights[light], at->point, at->receives_shadow, reach, worker,
+                              part->shadow);
+  if (cosine <= 0 && all->lights[light].points != NULL && at->receives_shadow)
+    for (int c = 0; c < 3; c++) part->shadow[c] *= at->behind[c];
+  if (cosine <= 0) return;
   vec3 reflected = vec3_subtract(vec3_scale(at->normal, 2 * cosine), arrived.towards);
   double gloss = material->specular * pow(fmax(vec3_dot(at->to_eye, reflected), 0), material->shininess);
   for (int c = 0; c < 3; c++)
-    picture[c] = (at->color[c] * material->diffuse * cosine + gloss) * arrived.incoming[c] * reach[c];
+    part->picture[c] = (at->color[c] * material->diffuse * cosine + gloss) * arrived.incoming[c] * reach[c];
 }
 
 static void add_sky(const reference *all, const reference_surface_point *at, reference_worker *worker,
-                    double picture[3]) {
+                    reference_parts *sample) {
   reference_sky_light light;
   hl_reference_sky_arrive(all,
                           &(reference_sky_receiver){.point = at->point,
@@ -73,7 +79,11 @@ static void add_sky(const reference *all, const reference_surface_point *at, ref
                                                     .receives_shadow = at->receives_shadow,
                                                     .diffuse = at->material.diffuse},
                           worker, &light);
-  for (int c = 0; c < 3; c++) picture[c] = at->color[c] * light.reaching[c];
+  for (int c = 0; c < 3; c++) {
+    sample->sky[c] = at->color[c] * light.reaching[c];
+    sample->sky_reaching[c] = light.reaching[c];
+    sample->sky_open[c] = light.open[c];
+  }
 }
 
 /* The normal and the colour where the ray meets a triangle. Returns whether it meets the side behind. */
@@ -85,6 +95,7 @@ static bool find_mesh_point(const reference *all, const reference_hit *hit, refe
   if (behind) at->normal = vec3_scale(at->normal, -1);
   color_of(hit, at->color);
   at->material = mesh->material;
+  for (int c = 0; c < 3; c++) at->behind[c] = 1 - hit->opacity * mesh->attenuation_color[c];
   at->receives_shadow = mesh->receives_shadow;
   return behind;
 }
@@ -93,9 +104,14 @@ static void find_iso_point(const reference_hit *hit, reference_surface_point *at
   const hl_scene_volume *volume = hit->volume->described;
   at->normal = hl_reference_iso_normal(hit, at->point);
   if (vec3_dot(at->normal, at->to_eye) < 0) at->normal = vec3_scale(at->normal, -1);
-  for (int c = 0; c < 3; c++) at->color[c] = hit->iso->color[c];
+  for (int c = 0; c < 3; c++) at->color[c] = hit->iso->color[c], at->behind[c] = 1 - hit->opacity;
   at->material = volume->shading == HL_SHADING_FLAT ? (hl_material){.emission = 1} : volume->material;
-  at->receives_shadow = volume->receives_shadow;
+  at->receives_shadow = volume->receives_shadow && volume->shading != HL_SHADING_FLAT;
+}
+
+static int object_of(const reference *all, const reference_hit *hit) {
+  if (hit->iso != NULL) return (int)(hit->volume - all->volumes) + 1;
+  return (int)(all->scene->volume_count + (size_t)(hit->triangle->mesh - all->scene->meshes)) + 1;
 }
 
 void hl_reference_surface_shade(const reference *all, const reference_hit *hit, const reference_ray *ray,
@@ -106,16 +122,19 @@ void hl_reference_surface_shade(const reference *all, const reference_hit *hit, 
   bool dark = false;
   if (hit->iso != NULL) find_iso_point(hit, &at);
   else dark = find_mesh_point(all, hit, &at) && !hit->triangle->mesh->two_sided;
+  if (dark) {
+    at.normal = (vec3){0, 0, 0};
+    at.material = (hl_material){0};
+  }
   hl_reference_parts_clear(sample, all->scene->light_count);
   sample->weight = 1;
+  sample->object = object_of(all, hit);
   sample->normal = at.normal;
   sample->depth = hit->distance;
-  if (dark) return;
   for (int c = 0; c < 3; c++) {
     sample->ambient[c] = at.color[c] * at.material.ambient * all->scene->ambient[c];
     sample->emission[c] = at.color[c] * at.material.emission;
   }
-  add_sky(all, &at, worker, sample->sky);
-  for (size_t l = 0; l < all->scene->light_count; l++)
-    add_light(all, l, &at, worker, sample->lights[l].picture);
+  add_sky(all, &at, worker, sample);
+  for (size_t l = 0; l < all->scene->light_count; l++) add_light(all, l, &at, worker, &sample->lights[l]);
 }

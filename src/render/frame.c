@@ -313,10 +313,11 @@ static hl_status copy_arrays(hl_context *context, const hl_scene_description *sc
   framed->volumes = hl_allocate(context, scene->volume_count, sizeof *framed->volumes);
   framed->lights = hl_allocate(context, scene->light_count, sizeof *framed->lights);
   framed->meshes = hl_allocate(context, meshes, sizeof *framed->meshes);
+  framed->mesh_objects = hl_allocate(context, meshes, sizeof *framed->mesh_objects);
   framed->vertices = hl_allocate(context, vertices, sizeof *framed->vertices);
   framed->gradients = hl_allocate(context, gradients, sizeof *framed->gradients);
   if (framed->volumes == NULL || framed->lights == NULL || framed->meshes == NULL ||
-      framed->vertices == NULL || framed->gradients == NULL)
+      framed->mesh_objects == NULL || framed->vertices == NULL || framed->gradients == NULL)
     return hl_fail_memory(error, scene->volume_count * sizeof *framed->volumes, "the scene in frame space");
   if (scene->volume_count > 0)
     memcpy(framed->volumes, scene->volumes, scene->volume_count * sizeof *framed->volumes);
@@ -347,6 +348,7 @@ hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description
   for (size_t i = 0; i < scene->mesh_count; i++) {
     move_point(&space, framed->meshes[i].translate);
     framed->meshes[i].scale /= space.unit;
+    framed->mesh_objects[i] = (int)(scene->volume_count + i + 1);
   }
   for (size_t i = 0; i < scene->light_count; vertices += scene->lights[i++].vertex_count)
     move_light(&space, &framed->lights[i], vertices);
@@ -357,6 +359,7 @@ void hl_framed_scene_release(hl_context *context, framed_scene *framed) {
   hl_release(context, framed->volumes);
   hl_release(context, framed->lights);
   hl_release(context, framed->meshes);
+  hl_release(context, framed->mesh_objects);
   hl_release(context, framed->vertices);
   hl_release(context, framed->gradients);
 }

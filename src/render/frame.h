@@ -40,6 +40,7 @@ typedef struct frame {
   light_source *lights;  /* [light_count]; owned by the caller; sectors of a light follow each other */
   int light_count;
   const surfaces *surfaces; /* of the scene's meshes; null: none */
+  const int *mesh_objects;  /* [meshes]; their numbers in the layer of objects */
 } frame;
 
 /* The eye's view in width x height pixels. */
@@ -87,6 +88,7 @@ typedef struct framed_scene {
   hl_scene_volume *volumes;    /* owned; [volume_count] */
   hl_light *lights;            /* owned; [light_count] */
   hl_scene_mesh *meshes;       /* owned; [mesh_count], with room for the volumes' isosurfaces */
+  int *mesh_objects;           /* owned; likewise; their numbers in the layer of objects */
   double (*vertices)[3];       /* owned; of all polygons */
   hl_opacity_point *gradients; /* owned; of all volumes' gradient opacity */
   double unit;                 /* world length of 1 in frame space: the smallest voxel edge is from 1 to 2 */

@@ -6,8 +6,8 @@
 #include "core/memory.h"
 
 bool hl_layers_measure(const hl_layers *wanted) {
-  return wanted != NULL &&
-         (wanted->depth_first != NULL || wanted->depth_mean != NULL || wanted->normal != NULL);
+  return wanted != NULL && (wanted->depth_first != NULL || wanted->depth_mean != NULL ||
+                            wanted->normal != NULL || wanted->object != NULL);
 }
 
 /* ---- pixels ---- */
@@ -128,6 +128,25 @@ static void write_sky_shadow(const layer_grid *grid, int row, const layer_pixels
     }
 }
 
+/* The object that most pixels of the frame show, of those that make up one pixel of the picture and show any;
+ * the least number of several. */
+static float object_of(const layer_grid *grid, const float *pixels, int column, int row) {
+  int side = grid->oversampling, most = 0;
+  float object = 0;
+  for (int i = 0; i < side * side; i++) {
+    float one = *value_at(grid, pixels, MEASURES, column * side + i % side, row * side + i / side,
+                          MEASURE_OBJECT);
+    int count = 0;
+    for (int k = 0; k < side * side; k++)
+      count += *value_at(grid, pixels, MEASURES, column * side + k % side, row * side + k / side,
+                         MEASURE_OBJECT) == one;
+    if (one == 0 || count < most || (count == most && one > object)) continue;
+    most = count;
+    object = one;
+  }
+  return object;
+}
+
 static void write_measures(const layer_grid *grid, int row, const float *pixels, const hl_layers *to) {
   for (int column = 0; column < grid->width; column++) {
     size_t at = (size_t)row * (size_t)grid->width + (size_t)column;
@@ -137,6 +156,7 @@ static void write_measures(const layer_grid *grid, int row, const float *pixels,
     float depth = sum_of(grid, pixels, MEASURES, column, row, MEASURE_DEPTH, NULL);
     if (to->depth_first != NULL) to->depth_first[at] = hits > 0 ? first / (float)hits * grid->unit : INFINITY;
     if (to->depth_mean != NULL) to->depth_mean[at] = alpha > 0 ? depth / alpha * grid->unit : INFINITY;
+    if (to->object != NULL) to->object[at] = object_of(grid, pixels, column, row);
     for (int c = 0; c < 3 && to->normal != NULL; c++) {
       float normal = sum_of(grid, pixels, MEASURES, column, row, MEASURE_NORMAL + c, NULL);
       to->normal[3 * at + (size_t)c] = alpha > 0 ? normal / alpha : 0;

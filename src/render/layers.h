@@ -1,10 +1,11 @@
 /* render/layers.h - layers: the sweep shades each tile once more for each layer.
  *
  * A light's picture is shaded with this light alone, without ambient light and emission. Its shadow is the
- * picture of white volumes without surfaces, lit by this light in white. The sky's shadow
- * is the quotient of two pictures of white volumes: lit by the sky, and by a sky that nothing hides. All are
- * made by the same function from the same densities, tile by tile after the picture's own. Depth and normals
- * are measured in a sweep that goes front to back for the eye. Without layers nothing of this runs. */
+ * picture of white matter that sends light on from any angle, lit by this light in white. The sky's shadow
+ * is the quotient of two pictures of white matter: lit by the sky, and by a sky that nothing hides. All are
+ * made by the same function from the same densities, tile by tile after the picture's own. Depth, objects and
+ * normals are measured in a sweep that goes front to back for the eye. Without layers nothing of this runs.
+ */
 #ifndef HL_RENDER_LAYERS_H
 #define HL_RENDER_LAYERS_H
 
@@ -38,7 +39,7 @@ hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_la
                                  const frame *frame, size_t tiles, layer_pixels *pixels, hl_error *error);
 void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels);
 
-/* True where depth or normals are wanted: some sweep must then go front to back. */
+/* True where depth, normals or objects are wanted: some sweep must then go front to back. */
 bool hl_layers_measure(const hl_layers *wanted);
 
 /* How pixels of the frame become pixels of the picture: oversampling x oversampling are averaged. */

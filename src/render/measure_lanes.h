@@ -1,12 +1,9 @@
-/* render/measure_lanes.h - the layers depth and normal, a 4x4 block at a time. */
+/* render/measure_lanes.h - the layers depth, normal and object, a 4x4 block at a time. */
 #ifndef HL_RENDER_MEASURE_LANES_H
 #define HL_RENDER_MEASURE_LANES_H
 
 #include "render/shade_lanes.h"
 #include "render/slab_lanes.h"
-
-/* The alpha at which depth_first is measured (halflight/layers.h). */
-static const float FIRST_OPACITY = 0.01f;
 
 /* Mean of the volumes' normals, weighted by extinction and by how much of a surface they are. */
 LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density *densities, int count) {
@@ -26,18 +23,33 @@ LANES_INLINE lanes depth_of(const shade_job *job, const block_slab *slab, lanes3
   return -dot3(way, slab->geometry.towards_eye);
 }
 
-/* Stores the depth at which alpha reaches FIRST_OPACITY, in the lanes where alpha reaches it in this slab.
- * Derived: with A the alpha before the slab and e the slab's optical depth, the fraction u of e has been
- * passed where (1 - A) exp(-u e) = 1 - FIRST_OPACITY. */
+/* The object that takes most of the slab's light. */
+LANES_INLINE lanes object_of_block(const block_density *densities, int count) {
+  lanes most = lanes_set(0), object = lanes_set(0);
+  for (int i = 0; i < count; i++) {
+    const block_density *d = &densities[i];
+    if (!d->there || !d->patch->volume->visible) continue;
+    object = lanes_select(d->extinction > most, lanes_set((float)d->patch->volume->object), object);
+    most = lanes_max(most, d->extinction);
+  }
+  return object;
+}
+
+/* Stores the depth at which alpha reaches FIRST_OPACITY, and the object, in the lanes where alpha reaches it
+ * in this slab. Derived: with A the alpha before the slab and e the slab's optical depth, the fraction u of e
+ * has been passed where (1 - A) exp(-u e) = 1 - FIRST_OPACITY. */
 LANES_INLINE void mark_first(const shade_job *job, const block_slab *slab, block_density *densities,
-                             int count, lanes before, lanes after, float *first) {
+                             int count, lanes before, lanes after, float *pixels) {
   lanes_int crossed = (before < FIRST_OPACITY) & (after >= FIRST_OPACITY);
   if (lanes_bits(crossed) == 0) return;
   lanes missing = lanes_log2((1.0f - before) * (1.0f / (1.0f - FIRST_OPACITY))) * 0.69314718056f;
   lanes u = lanes_clamp(missing / lanes_max(slab->depth, lanes_set(1e-30f)), 0, 1);
   lanes place = place_of_part(densities, count, slab, u);
   lanes3 position = add_scaled3(slab->geometry.start, slab->geometry.step_sheet, place);
+  float *first = pixels + MEASURE_DEPTH_FIRST * BLOCK_PIXELS,
+        *object = pixels + MEASURE_OBJECT * BLOCK_PIXELS;
   lanes_store(first, lanes_select(crossed, depth_of(job, slab, position), lanes_load(first)));
+  lanes_store(object, lanes_select(crossed, object_of_block(densities, count), lanes_load(object)));
 }
 
 static void measure_block(const shade_job *job, const tile_slab *tile, int block, float *pixels) {
@@ -57,7 +69,7 @@ static void measure_block(const shade_job *job, const tile_slab *tile, int block
     lanes_store(sum, lanes_load(sum) + lanes_keep(slab.seen, sums[i] * weight));
   }
   lanes_store(alpha, after);
-  mark_first(job, &slab, densities, patch_count, before, after, pixels + MEASURE_DEPTH_FIRST * BLOCK_PIXELS);
+  mark_first(job, &slab, densities, patch_count, before, after, pixels);
 }
 
 static uint32_t measure_tile(const shade_job *job, const tile_slab *tile, float *pixels, uint64_t *samples) {

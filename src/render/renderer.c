@@ -224,6 +224,7 @@ static hl_status add_surfaces(hl_renderer *renderer, const hl_scene_description 
   for (size_t i = 0; i < scene->mesh_count; i++, frame->point_count += 8)
     hl_surface_corners(&scene->meshes[i], frame->voxel, frame->points + frame->point_count);
   frame->surfaces = &renderer->surfaces;
+  frame->mesh_objects = work->framed.mesh_objects;
   return HL_OK;
 }
 
@@ -432,8 +433,9 @@ static void add_isosurfaces(const hl_renderer *renderer, framed_scene *framed) {
   for (size_t v = 0; v < scene->volume_count; v++)
     for (size_t i = 0; i < renderer->prepared[v].iso_count; i++) {
       hl_mesh *mesh = renderer->prepared[v].iso[i].mesh;
-      if (mesh != NULL)
-        framed->meshes[scene->mesh_count++] = hl_scene_mesh_of_iso(&scene->volumes[v], i, mesh);
+      if (mesh == NULL) continue;
+      framed->meshes[scene->mesh_count] = hl_scene_mesh_of_iso(&scene->volumes[v], i, mesh);
+      framed->mesh_objects[scene->mesh_count++] = (int)v + 1;
     }
 }
 

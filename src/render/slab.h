@@ -50,6 +50,7 @@ typedef struct shade_volume {
   int cut_count, light_cut_count;        /* for the eye, and for lights: these, or none */
   int cut_shading;                       /* hl_cut_shading */
   voxel_colors tints;                    /* of the mask: colours go towards these, by their weights */
+  int object;                            /* its number in the layer of objects */
 } shade_volume;
 
 /* One volume's densities in a tile, on cache lines of its own: each thread writes its patches beside
@@ -125,10 +126,20 @@ typedef struct tile_slab {
 typedef uint32_t shade_tile_function(const shade_job *job, const tile_slab *tile, float *pixels,
                                      uint64_t *samples);
 
-/* Measures of the layers depth and normal, for sheets that go front to back: alpha; the depth where alpha
- * first reaches 0.01, infinite before; and sums of depth and normal, weighted by what each sample adds to
- * alpha. pixels: [16 blocks][MEASURES][16]. */
-enum { MEASURE_ALPHA, MEASURE_DEPTH_FIRST, MEASURE_DEPTH, MEASURE_NORMAL, MEASURES = MEASURE_NORMAL + 3 };
+/* Measures of the layers depth, normal and object, for sheets that go front to back: alpha; the depth where
+ * alpha first reaches 0.01, infinite before, and the object that is met there, 0 before; and sums of depth
+ * and normal, weighted by what each sample adds to alpha. pixels: [16 blocks][MEASURES][16]. */
+enum {
+  MEASURE_ALPHA,
+  MEASURE_DEPTH_FIRST,
+  MEASURE_OBJECT,
+  MEASURE_DEPTH,
+  MEASURE_NORMAL,
+  MEASURES = MEASURE_NORMAL + 3
+};
+
+/* The alpha at which depth_first and object are measured (halflight/layers.h). */
+#define FIRST_OPACITY 0.01f
 
 /* A maximum projection keeps for each pixel and visible volume, as coordinates in the volume's table: the
  * greatest value so far that is shown, -1 where none is; the value on the sheet before the last slab; and

@@ -37,6 +37,19 @@ LANES_INLINE color_lanes light_before_slab(const shade_job *job, const shade_lig
   return passing;
 }
 
+/* The light on the side that the eye sees. Only what is sent on from any angle can come from behind, through
+ * the surface itself. */
+LANES_INLINE color_lanes light_of_sample(const shade_job *job, const shade_light *light,
+                                         const surface_samples *samples, lanes3 position, lanes3 normal,
+                                         lanes facing) {
+  if (samples->even == 0) return light_before_slab(job, light, position, normal);
+  lanes side = lanes_select(facing > 0.0f, lanes_set(1.0f), lanes_set(-1.0f));
+  color_lanes passing = light_before_slab(job, light, position, scale3(normal, side));
+  for (int c = 0; c < light->channels; c++)
+    passing.c[c] = lanes_select(facing > 0.0f, passing.c[c], passing.c[c] * samples->behind[c]);
+  return passing;
+}
+
 /* Eqs. (3) and (4) for a surface: what one light adds. */
 LANES_INLINE void add_light(const shade_job *job, const shade_light *light, const surface_samples *samples,
                             color_lanes *lit) {
@@ -44,17 +57,18 @@ LANES_INLINE void add_light(const shade_job *job, const shade_light *light, cons
   arriving_light arriving;
   (void)find_direction(job, light, position, &arriving);
   lanes facing = dot3(normal, arriving.towards);
-  if (lanes_bits(facing > 0.0f) == 0) return;
+  if (samples->even == 0 && lanes_bits(facing > 0.0f) == 0) return;
   find_full_light(light, position, &arriving);
   if (is_dark(&arriving.full)) return;
   lanes3 mirrored = add_scaled3(scale3(arriving.towards, lanes_set(-1.0f)), normal, facing * 2.0f);
   lanes glint = power(dot3(load3(samples->towards_eye), mirrored), lanes_set(samples->shininess)) *
                 samples->specular;
-  lanes diffuse = lanes_max(facing, lanes_set(0)) * samples->diffuse, transmittance = lanes_set(1.0f);
+  lanes diffuse = lanes_max(facing, lanes_set(0)) * samples->diffuse + samples->even,
+        transmittance = lanes_set(1.0f);
   glint = lanes_keep(facing > 0.0f, glint);
   bool shadowed = light->shadowed && samples->receives_shadow;
   color_lanes passing;
-  if (shadowed) passing = light_before_slab(job, light, position, normal);
+  if (shadowed) passing = light_of_sample(job, light, samples, position, normal, facing);
   for (int c = 0; c < 3; c++) {
     if (shadowed && c < light->channels)
       transmittance = lanes_min(lanes_max(passing.c[c], lanes_set(0)), lanes_set(1.0f));

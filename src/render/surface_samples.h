@@ -15,6 +15,8 @@ typedef struct surface_samples {
   float color[3][SURFACE_SAMPLES];                 /* linear RGB */
   float lit[3][SURFACE_SAMPLES];                   /* the result: the light that leaves towards the eye */
   float ambient, diffuse, specular, shininess, emission; /* ka kd ks n ke */
+  float even;      /* the fraction of light that is sent on from any angle, as by a medium */
+  float behind[3]; /* of this, the fraction where the light comes from behind the surface */
   int receives_shadow;
 } surface_samples;
 

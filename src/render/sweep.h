@@ -38,6 +38,10 @@ typedef struct sweep_counts {
   double seconds_composite;             /* the compositing in it */
 } sweep_counts;
 
+/* The matter that a pass shades: the scene's own; white, and sending on the light that arrives from any
+ * angle; white; white, and receiving no shadow. */
+typedef enum layer_matter { MATTER_OWN, MATTER_EVEN, MATTER_WHITE, MATTER_OPEN } layer_matter;
+
 /* One more shading of the sweep's tiles. */
 typedef struct layer_pass {
   shade_tile_function *shade;
@@ -46,7 +50,7 @@ typedef struct layer_pass {
   float ambient[3], emission;
   const scatter_field *scattered; /* null: none */
   const sky_light *sky;           /* null: none */
-  const shade_volume *volumes;    /* in place of the sweep's; null: these */
+  layer_matter matter;
   float *pixels;
   size_t tile_floats;
 } layer_pass;

@@ -260,6 +260,7 @@ static void set_up_shading(sweep *sweep) {
                             .kernel = sweep->content.kernel,
                             .phong = volume->shading == HL_SHADING_PHONG,
                             .lit = volume->shading != HL_SHADING_FLAT,
+                            .object = g + 1,
                             .visible = volume->visible,
                             .receives_shadow = volume->receives_shadow,
                             .ambient = (float)volume->material.ambient,

@@ -81,9 +81,9 @@ static void add_sky_passes(sweep *sweep) {
   layer_pass *sky = add_pass(sweep, pixels->sky, NULL, 0);
   if (sky != NULL) sky->sky = sweep->shade.sky;
   layer_pass *reaching = add_pass(sweep, pixels->sky_reaching, NULL, 0);
-  if (reaching != NULL) reaching->sky = &layers->white_sky, reaching->volumes = layers->white_volumes;
+  if (reaching != NULL) reaching->sky = &layers->white_sky, reaching->matter = MATTER_WHITE;
   layer_pass *open = add_pass(sweep, pixels->sky_open, NULL, 0);
-  if (open != NULL) open->sky = &layers->white_sky, open->volumes = layers->open_volumes;
+  if (open != NULL) open->sky = &layers->white_sky, open->matter = MATTER_OPEN;
 }
 
 hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
@@ -98,7 +98,7 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
     (void)add_pass(sweep, to->picture, &sweep->shade_lights[i], 1);
     set_up_white_light(&sweep->shade_lights[i], white);
     layer_pass *shadow = add_pass(sweep, to->shadow, white, 1);
-    if (shadow != NULL) shadow->volumes = sweep->layers.white_media;
+    if (shadow != NULL) shadow->matter = MATTER_EVEN;
   }
   layer_pass *ambient = sweep->first ? add_pass(sweep, pixels->ambient, NULL, 0) : NULL;
   for (int c = 0; c < 3 && ambient != NULL; c++) ambient->ambient[c] = sweep->shade.ambient[c];
@@ -122,7 +122,10 @@ void hl_sweep_layers_end(sweep *sweep) {
 }
 
 /* The tile's patches, of the pass's own volumes. */
-static const shade_patch *patches_of(const sweep *sweep, const tile_slab *slab, const shade_volume *volumes) {
+static const shade_patch *patches_of(const sweep *sweep, const tile_slab *slab, layer_matter matter) {
+  const shade_volume *volumes = matter == MATTER_EVEN    ? sweep->layers.white_media
+                                : matter == MATTER_WHITE ? sweep->layers.white_volumes
+                                                         : sweep->layers.open_volumes;
   shade_patch *patches = sweep->layers.patches + (size_t)slab->worker * (size_t)sweep->content.volume_count;
   for (int i = 0; i < slab->patch_count; i++) {
     patches[i] = slab->patches[i];
@@ -149,8 +152,70 @@ void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab) {
     const layer_pass *pass = &sweep->layers.passes[i];
     const shade_job job = job_of_pass(pass, slab->job);
     tile_slab own = *slab;
-    if (pass->volumes != NULL) own.patches = patches_of(sweep, slab, pass->volumes);
+    if (pass->matter != MATTER_OWN) own.patches = patches_of(sweep, slab, pass->matter);
     uint64_t samples = 0; /* statistics count the picture's own samples alone */
     (void)pass->shade(&job, &own, pass->pixels + slab->tile * pass->tile_floats, &samples);
+  }
+}
+
+/* ---- surfaces ---- */
+
+/* Makes samples those of the pass's matter. */
+static void change_matter(layer_matter matter, surface_samples *samples) {
+  if (matter == MATTER_OWN) return;
+  for (int c = 0; c < 3; c++)
+    for (int i = 0; i < SURFACE_SAMPLES; i++) samples->color[c][i] = 1;
+  samples->ambient = samples->emission = 0;
+  if (matter == MATTER_OPEN) samples->receives_shadow = 0;
+  if (matter != MATTER_EVEN) return;
+  samples->diffuse = samples->specular = 0;
+  samples->even = 1;
+}
+
+static float dot_of_sample(const float a[3][SURFACE_SAMPLES], int i, const float b[3]) {
+  return a[0][i] * b[0] + a[1][i] * b[1] + a[2][i] * b[2];
+}
+
+/* Distance along the eye's ray. */
+static float depth_of_sample(const shade_job *job, const surface_samples *samples, int i) {
+  const float towards_eye[3] = {samples->towards_eye[0][i], samples->towards_eye[1][i],
+                                samples->towards_eye[2][i]};
+  const float eye = job->eye[0] * towards_eye[0] + job->eye[1] * towards_eye[1] +
+                    job->eye[2] * towards_eye[2];
+  return eye - dot_of_sample(samples->position, i, towards_eye);
+}
+
+/* The measures of a batch in sheets that go front to back. pixels: the tile's. */
+static void measure_batch(const shade_job *job, const surface_batch *batch, int object, float *pixels) {
+  for (int i = 0; i < batch->count; i++) {
+    const fragment *f = batch->fragments[i];
+    float *at = pixels + (size_t)(f->pixel / BLOCK_PIXELS) * MEASURES * BLOCK_PIXELS +
+                f->pixel % BLOCK_PIXELS;
+    float before = at[MEASURE_ALPHA * BLOCK_PIXELS], weight = f->opacity * (1 - before),
+          depth = depth_of_sample(job, &batch->samples, i);
+    at[MEASURE_ALPHA * BLOCK_PIXELS] = before + weight;
+    at[MEASURE_DEPTH * BLOCK_PIXELS] += depth * weight;
+    for (int c = 0; c < 3; c++)
+      at[(MEASURE_NORMAL + c) * BLOCK_PIXELS] += batch->samples.normal[c][i] * weight;
+    if (before >= FIRST_OPACITY || before + weight < FIRST_OPACITY) continue;
+    at[MEASURE_DEPTH_FIRST * BLOCK_PIXELS] = depth;
+    at[MEASURE_OBJECT * BLOCK_PIXELS] = (float)object;
+  }
+}
+
+void hl_sweep_layers_batch(const sweep *sweep, const tile_slab *slab, const surface_batch *batch) {
+  for (int i = 0; i < sweep->layers.pass_count; i++) {
+    const layer_pass *pass = &sweep->layers.passes[i];
+    const shade_job job = job_of_pass(pass, slab->job);
+    float *pixels = pass->pixels + slab->tile * pass->tile_floats;
+    if (pass->shade != sweep->content.hot->render.shade) {
+      measure_batch(&job, batch, sweep->frame->mesh_objects[batch->mesh - sweep->frame->surfaces->meshes],
+                    pixels);
+      continue;
+    }
+    surface_batch own = *batch;
+    change_matter(pass->matter, &own.samples);
+    sweep->content.hot->render.surface(&job, &own.samples);
+    hl_surface_batch_composite(&own, job.back_to_front, pixels);
   }
 }

@@ -1,11 +1,9 @@
 /* render/sweep_surfaces.c - see sweep_surfaces.h. */
 #include "render/sweep_surfaces.h"
 
-#include <string.h>
-
 #include "core/memory.h"
-#include "render/surface_point.h"
-#include "render/surface_samples.h"
+#include "render/surface_batch.h"
+#include "render/sweep_layers.h"
 
 /* ---- begin and end ---- */
 
@@ -83,56 +81,17 @@ fragment_range hl_sweep_surfaces_reach_light(const sweep *sweep, int light, size
   return reach(&sweep->surfaces.lights[light], tile, slab);
 }
 
-/* ---- the picture: samples of surfaces ---- */
-
-static void set_sample(surface_samples *samples, int i, const surface_point *point) {
-  const vec3 *vectors[] = {&point->position, &point->normal, &point->towards_eye};
-  float(*rows[])[SURFACE_SAMPLES] = {samples->position, samples->normal, samples->towards_eye};
-  for (int n = 0; n < 3; n++) {
-    rows[n][0][i] = (float)vectors[n]->x;
-    rows[n][1][i] = (float)vectors[n]->y;
-    rows[n][2][i] = (float)vectors[n]->z;
-  }
-  for (int c = 0; c < 3; c++) samples->color[c][i] = (float)point->color[c];
-}
-
-static void set_material(surface_samples *samples, const hl_scene_mesh *mesh) {
-  samples->ambient = (float)mesh->material.ambient;
-  samples->diffuse = (float)mesh->material.diffuse;
-  samples->specular = (float)mesh->material.specular;
-  samples->shininess = (float)mesh->material.shininess;
-  samples->emission = (float)mesh->material.emission;
-  samples->receives_shadow = mesh->receives_shadow;
-}
-
-/* Step 16 for one fragment. pixels: the tile's. */
-static void composite_fragment(int back_to_front, const fragment *f, const float lit[3], float *pixels) {
-  float *at = pixels + (size_t)(f->pixel / BLOCK_PIXELS) * 4 * BLOCK_PIXELS + f->pixel % BLOCK_PIXELS;
-  float *alpha = at + 3 * BLOCK_PIXELS;
-  float weight = back_to_front ? f->opacity : f->opacity * (1 - *alpha),
-        keep = back_to_front ? 1 - f->opacity : 1;
-  for (int c = 0; c < 3; c++) at[c * BLOCK_PIXELS] = lit[c] * weight + at[c * BLOCK_PIXELS] * keep;
-  *alpha = *alpha * keep + weight;
-}
-
-/* Steps 14 to 16 for fragments of one mesh. */
-static void shade_batch(const sweep *sweep, const tile_slab *slab, const fragment *const *list, int count,
-                        const surface_mesh *mesh) {
-  surface_samples samples;
-  set_material(&samples, mesh->scene);
-  for (int i = 0; i < SURFACE_SAMPLES; i++) {
-    surface_point point = hl_surface_point_of(sweep, slab, list[i < count ? i : 0]);
-    set_sample(&samples, i, &point);
-  }
-  sweep->content.hot->render.surface(slab->job, &samples);
-  float *pixels = sweep->pixels + slab->tile * 4 * TILE_PIXELS;
-  for (int i = 0; i < count; i++) {
-    const float lit[3] = {samples.lit[0][i], samples.lit[1][i], samples.lit[2][i]};
-    composite_fragment(slab->job->back_to_front, list[i], lit, pixels);
-  }
-}
-
 /* ---- the picture: slabs cut at fragments ---- */
+
+/* Steps 14 to 16 for a batch, and its layers. */
+static void shade_batch(const sweep *sweep, const tile_slab *slab, surface_batch *batch) {
+  if (batch->count == 0) return;
+  hl_surface_batch_place(sweep, slab, batch);
+  sweep->content.hot->render.surface(slab->job, &batch->samples);
+  hl_surface_batch_composite(batch, slab->job->back_to_front, sweep->pixels + slab->tile * 4 * TILE_PIXELS);
+  hl_sweep_layers_batch(sweep, slab, batch);
+  batch->count = 0;
+}
 
 /* The fragments of a slab's round: each pixel's fragment number `round`, from below. */
 static size_t fragments_of_round(fragment_range range, int round, fragment *list) {
@@ -148,21 +107,18 @@ static size_t fragments_of_round(fragment_range range, int round, fragment *list
 /* Steps 12 to 16 for fragments, which are composited in their order. */
 static void shade_fragments(const sweep *sweep, const tile_slab *slab, uint32_t blocks,
                             fragment_range range) {
-  const fragment *batch[SURFACE_SAMPLES];
-  const surface_mesh *mesh = NULL;
-  int filled = 0;
+  surface_batch batch;
+  batch.count = 0;
   for (size_t i = 0; i < range.count; i++) {
     const fragment *f = &range.first[i];
     if ((blocks >> f->pixel / BLOCK_PIXELS & 1) == 0) continue;
     const surface_mesh *own = &sweep->frame->surfaces->meshes[f->mesh];
-    if (filled > 0 && (own != mesh || filled == SURFACE_SAMPLES)) {
-      shade_batch(sweep, slab, batch, filled, mesh);
-      filled = 0;
-    }
-    mesh = own;
-    batch[filled++] = f;
+    if (batch.count > 0 && (own != batch.mesh || batch.count == SURFACE_SAMPLES))
+      shade_batch(sweep, slab, &batch);
+    batch.mesh = own;
+    batch.fragments[batch.count++] = f;
   }
-  if (filled > 0) shade_batch(sweep, slab, batch, filled, mesh);
+  shade_batch(sweep, slab, &batch);
 }
 
 /* Shades the piece of each pixel's slab between two heights. */

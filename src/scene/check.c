@@ -136,15 +136,6 @@ hl_status hl_description_check(const hl_scene_description *d, hl_error *error) {
 hl_status hl_layers_check(const hl_layers *layers, const hl_scene_description *scene, hl_error *error) {
   size_t light_count = scene->light_count;
   if (layers == NULL) return HL_OK;
-  for (size_t v = 0; v < scene->volume_count; v++)
-    if (scene->volumes[v].iso_count > 0)
-      return hl_fail(
-          error, HL_ERROR_UNSUPPORTED,
-          "/volumes/%zu/iso: a scene with isosurfaces has no layers yet: remove them, or ask for no layers",
-          v);
-  if (scene->mesh_count > 0)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "/meshes: a scene with meshes has no layers yet: remove the meshes, or ask for no layers");
   if (scene->render.compositing == HL_COMPOSITING_MAXIMUM)
     return hl_fail(
         error, HL_ERROR_UNSUPPORTED,

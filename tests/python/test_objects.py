@@ -185,6 +185,7 @@ def test_layers_sum_to_the_picture(small):
     total = layers["ambient"] + sum(layers[f"light{n}"] for n in range(len(small.lights)))
     assert np.allclose(total, np.asarray(image)[..., :3], atol=1e-5)
     assert layers["depth_first"].shape == (48, 64) and layers["normal"].shape == (48, 64, 3)
+    assert set(np.unique(layers["object"])) == {0, 1}
     with pytest.raises(TypeError):
         layers["ambient2"] = 1
     assert image.encode("png")[:4] == b"\x89PNG"
