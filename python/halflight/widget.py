@@ -74,8 +74,9 @@ def _described(volume: Volume) -> dict[str, Any]:
     struct.struct_size = ffi.sizeof("hl_volume_info")
     if lib.hl_volume_get_info(volume._handle, struct) != lib.HL_OK:
         raise RuntimeError("the volume is not known")
+    unit = lib.hl_volume_unit(volume._handle)
     return {"type": info.type, "dimensions": list(struct.dimensions), "origin": info.origin.tolist(),
-            "axes": (info.direction * info.spacing).T.tolist(), "range": list(info.range), "space": info.space,
+            "axes": (info.direction * info.spacing).T.tolist(), "range": list(info.range), "space": info.space, "unit": ffi.string(unit).decode() if unit else None,
             "histogram": [int(count) for count in info.histogram]}
 
 

@@ -14,9 +14,9 @@
 
 enum { MOST_ENTRIES = 2000 };
 
-static const char *const extensions[] = {".json", ".nrrd", ".nhdr", ".nii", ".nii.gz", ".mha",  ".mhd",
-                                         ".vti",  ".vtk",  ".npy",  ".mrc", ".map",    ".ccp4", ".rec",
-                                         ".tif",  ".tiff", ".dcm",  ".raw", ".raw.gz", ".zip",  NULL};
+static const char *const extensions[] = {
+    ".json", ".nrrd", ".nhdr", ".nii", ".nii.gz", ".mha", ".mhd",  ".vti", ".vtk",    ".npy", ".mrc",
+    ".map",  ".ccp4", ".rec",  ".tif", ".tiff",   ".dcm", ".nvdb", ".raw", ".raw.gz", ".zip", NULL};
 
 bool folder_can_open(const char *name) {
   size_t length = strlen(name);
@@ -25,6 +25,11 @@ bool folder_can_open(const char *name) {
     if (length > end && strcasecmp(name + length - end, extensions[e]) == 0) return true;
   }
   return false;
+}
+
+bool folder_is(const char *path) {
+  struct stat about;
+  return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
 }
 
 bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]) {

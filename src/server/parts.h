@@ -144,6 +144,7 @@ void opened_end(server *s);
 
 /* folder.c */
 bool folder_can_open(const char *name); /* by its extension */
+bool folder_is(const char *path);       /* a folder, which may hold a volume as slices, DICOM or Zarr */
 /* The absolute path of what lies below the server's folder; false: it does not, by any link. */
 bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]);
 /* JSON of what can be opened in a folder below the server's (free()); null: it is none. */

@@ -329,8 +329,8 @@ static void post_cancel(server *s, struct MHD_Connection *connection, const requ
 static void post_open(server *s, struct MHD_Connection *connection, server_answer *answer) {
   const char *file = query(connection, "file");
   char path[PATH_BYTES];
-  if (file != NULL && s->options.folder != NULL && folder_can_open(file) && folder_resolve(s, file, path))
-    answer_open(s, path, path, answer);
+  bool below = file != NULL && file[0] != '\0' && s->options.folder != NULL && folder_resolve(s, file, path);
+  if (below && (folder_can_open(file) || folder_is(path))) answer_open(s, path, path, answer);
   else answer_problem(answer, 403, "no such file of volumes or scenes lies below the viewer's folder\n");
 }
 

@@ -48,6 +48,10 @@ static void put_volume(FILE *out, const hl_scene_volume *volume) {
   fputs(",\"space\":", out);
   if (space != NULL) put_json_text(out, space);
   else fputs("null", out);
+  const char *unit = hl_volume_unit(volume->volume);
+  fputs(",\"unit\":", out);
+  if (unit != NULL) put_json_text(out, unit);
+  else fputs("null", out);
   fputs(",\"histogram\":[", out);
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++)
     fprintf(out, "%s%llu", bin > 0 ? "," : "", (unsigned long long)info.histogram[bin]);

@@ -54,6 +54,23 @@ def folder_is_the_border(viewer):
     check(os.path.isabs(start["scene"]["meshes"][0]["file"]), "its meshes are named wherever the page's scene is saved")
 
 
+def folders_are_volumes(viewer):
+    """A folder of slices is opened as one volume; what its links lead to is not."""
+    for folder in ("slices", "linked", "none"):
+        os.mkdir(folder)
+    for n in range(4):
+        plane = Image.new("L", (6, 5), 40 * n)
+        plane.save(f"slices/s_{n}.png")
+        plane.save(f"../outside/s_{n}.png")
+        os.symlink(f"../../outside/s_{n}.png", f"linked/s_{n}.png")
+    status, body = request(viewer, "POST", "open", file="slices")
+    start = json.loads(body)
+    check(status == 200 and start["title"] == "slices" and start["volumes"][0]["dimensions"] == [6, 5, 4], "a folder of slices is a volume")
+    check(start["scene"]["volumes"][0]["file"] == os.path.realpath("slices"), "and has its whole path")
+    for folder in ("none", "linked"):
+        check(request(viewer, "POST", "open", file=folder)[0] in (400, 403), f"the folder {folder} is no volume")
+
+
 def uploads_are_checked(viewer):
     with open("first.nrrd", "rb") as file:
         volume = file.read()
@@ -286,6 +303,7 @@ with tempfile.TemporaryDirectory() as folder:
         folder_is_the_border(viewer)
         films(viewer, start["scene"])
         fair_shares(viewer, start["scene"])
+        folders_are_volumes(viewer)
         uploads_are_checked(viewer)
     if chromium is not None:
         with Viewer(PROGRAM, "first.nrrd") as viewer, Browser(chromium, (720, 420)) as browser:

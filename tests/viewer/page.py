@@ -4,6 +4,7 @@
 usage: page.py PROGRAM
 """
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -99,6 +100,21 @@ def other_panels(browser):
     changes(browser, "tone", lambda: browser.run("document.querySelector('[aria-label=Tone] input[value=filmic]').click()"), "image")
 
 
+def narrow_pages(browser):
+    """In a picture taller than wide as much is seen across as in a square one; the wide one comes back."""
+    across = """import('./camera.js').then((m) => { const { camera, image } = halflight.store.scene;
+      return m.worldHeight(camera) * Math.min(1, image.width / image.height); })"""
+    before, camera = browser.run(across), scene_of(browser)["camera"]
+    browser.resize(820, 1180)
+    browser.wait("halflight.store.scene.image.height > halflight.store.scene.image.width")
+    check(abs(browser.run(across) / before - 1) < 1e-9, "a narrow page shows as much across")
+    rest(browser)
+    browser.resize(1280, 720)
+    browser.wait("halflight.store.scene.image.height < halflight.store.scene.image.width")
+    back = scene_of(browser)["camera"]
+    check(max(abs(a - b) for a, b in zip(camera["position"], back["position"])) < 1e-9 * before, "a wide page shows what it showed")
+
+
 def keyboard_and_names(browser):
     """Every control has a name, and ids are not used twice."""
     nameless = browser.run("""[...document.querySelectorAll('button, input, select, canvas.function, [role=slider]')].filter((e) => {
@@ -135,6 +151,7 @@ with tempfile.TemporaryDirectory() as folder:
         rest(browser)
         equals_render(browser, "first")
         keyboard_and_names(browser)
+        narrow_pages(browser)
         browser.resize(720, 420)
         browser.wait("halflight.store.scene.image.width === 380")
         hands_on_the_camera(browser)
@@ -144,5 +161,12 @@ with tempfile.TemporaryDirectory() as folder:
         other_panels(browser)
         equals_render(browser, "last")
         counts = browser.run("halflight.frames.statistics")
+        bar = "document.querySelector('.scale text').textContent"
+        check(re.fullmatch(r"[\d.]+", browser.run(bar)), f"a scale without a unit: {browser.run(bar)}")
+        subprocess.run([PROGRAM, "convert", "rings.nrrd", "rings.mrc", "--quiet"], check=True)
+        with Viewer(PROGRAM, "rings.mrc") as map_viewer:
+            browser.open(map_viewer.url)
+            rest(browser)
+            check(re.fullmatch(r"[\d.]+ Å", browser.run(bar)), f"a scale in Angstroms: {browser.run(bar)}")
         check(browser.problems == [], f"the console has errors: {browser.problems}")
         print(f"{checks.count} checks passed; frames: {counts}")

@@ -61,6 +61,16 @@ export function lookAlong(camera, axis, sign) {
   return { ...camera, position: add(camera.target, scale(towards, distance(camera))), up };
 }
 
+// The camera for a picture of another shape, { width, height }: what fits into the largest square in the middle of one
+// fits into that of the other.
+export function reshaped(camera, from, to) {
+  const share = ({ width, height }) => Math.min(1, width / height);
+  const factor = share(from) / share(to);
+  if (factor === 1) return camera;
+  if (camera.type === "orthographic") return { ...camera, height: camera.height * factor };
+  return { ...camera, position: add(camera.target, scale(subtract(camera.position, camera.target), factor)) };
+}
+
 // The other projection, with the same height at the target.
 export function withType(camera, type) {
   const { position, target, up } = camera, height = worldHeight(camera);

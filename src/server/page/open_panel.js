@@ -18,11 +18,12 @@ export function openPanel({ channel, report, reopen, root }) {
       const folder = await channel.folder(at), up = at.includes("/") ? at.slice(0, at.lastIndexOf("/")) : "";
       const inside = (name) => (at ? `${at}/${name}` : name);
       where.textContent = at ? `in ${at}` : "in the folder that the viewer was started in; or drop a file anywhere";
+      const opener = (path, name, text, more) => button(text, () => load(() => channel.open(path), name), { class: "file", ...more });
       list.replaceChildren(
-        ...(at ? [make("li", {}, button("‹ back", () => show(up)))] : []),
-        ...folder.entries.map((entry) => make("li", {}, entry.folder
+        ...(at ? [make("li", {}, button("‹ back", () => show(up)), opener(at, at, "open as one volume", { title: "DICOM, slices or Zarr" }))] : []),
+        ...folder.entries.map((entry) => make("li", {}, entry.folder && !entry.name.endsWith(".zarr")
           ? button(`${entry.name} ›`, () => show(inside(entry.name)), { class: "file" })
-          : button(entry.name, () => load(() => channel.open(inside(entry.name)), entry.name), { class: "file", title: size(entry.bytes) }))));
+          : opener(inside(entry.name), entry.name, entry.name, entry.folder ? {} : { title: size(entry.bytes) }))));
       if (folder.entries.length === 0) list.append(make("li", {}, "nothing here that can be opened"));
     } catch (error) {
       report(error.message);

@@ -23,6 +23,15 @@ export function roundLength(most) {
   return [5, 2, 1].map((n) => n * power).find((x) => x <= most * 1.0000001);
 }
 
+const UNITS = { metre: "m", millimetre: "mm", micrometre: "µm", angstrom: "Å" };
+
+// What lengths of the world are measured in: " mm" where all volumes say so and keep their size, else nothing.
+function unitOf(scene, volumes) {
+  const [unit] = volumes.map((volume) => UNITS[volume?.unit]);
+  const same = unit && volumes.every((volume) => UNITS[volume?.unit] === unit);
+  return same && scene.volumes.every(({ transform }) => (transform?.scale ?? 1) === 1) ? ` ${unit}` : "";
+}
+
 export class Overlay {
   #svg;
   #store;
@@ -105,7 +114,7 @@ export class Overlay {
     const path = `M${right - pixels} ${y - 5}v5h${pixels}v-5`;
     this.#bar.replaceChildren(
       make("svg:path", { d: path, class: "halo" }), make("svg:path", { d: path }),
-      make("svg:text", { x: right - pixels / 2, y: y - 8 }, shortNumber(size)));
+      make("svg:text", { x: right - pixels / 2, y: y - 8 }, shortNumber(size) + unitOf(this.#store.scene, this.#start.volumes)));
   }
 
   #drawBox() {

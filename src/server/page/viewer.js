@@ -1,5 +1,6 @@
 // The viewer: the picture, what lies over it, and the panels beside it, in any element of a page or a notebook.
 
+import { reshaped } from "./camera.js";
 import { copier, exportPanel } from "./export.js";
 import { filmPanel } from "./film_panel.js";
 import { Frames } from "./frames.js";
@@ -91,7 +92,9 @@ function followSize(store, area, signal) {
     const [width, height] = [area.clientWidth, area.clientHeight].map((side) => Math.min(Math.max(Math.round(side * density), 16), MOST_SIDE));
     const { image } = store.scene;
     if (image.width !== width || image.height !== height)
-      store.change("size", (scene) => ({ ...scene, image: { ...scene.image, width, height } }));
+      store.change("size", (scene) => ({
+        ...scene, camera: reshaped(scene.camera, image, { width, height }), image: { ...scene.image, width, height },
+      }));
   };
   const observer = new ResizeObserver(measure);
   observer.observe(area);
@@ -144,7 +147,7 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
   find("title").textContent = start.title;
   followSize(store, find("view"), ended.signal);
   viewer.overlay = new Overlay(find("overlay"), viewer);
-  viewer.firstView = () => store.setCamera(start.scene.camera);
+  viewer.firstView = () => store.setCamera(reshaped(start.scene.camera, start.scene.image, store.scene.image));
   viewer.frameEverything = () => frameEverything(viewer);
   viewer.chooseVolume = (index) => {
     viewer.current.volume = index;
