@@ -167,6 +167,27 @@ def test_boxes_and_means():
                                                               axes * 2, None), False)
 
 
+def test_means_of_a_ramp():
+    """The mean of a linear function over a box is its value at the box's middle: exactly, wherever the box lies in the world."""
+    origin, axes = np.array([-3, 8.5, 40]), np.array([[0.5, 0.25, 0], [-0.25, 1, 0.125], [0, 0.5, -2]])
+
+    def ramp(origin, axes, shape):
+        index = np.stack(np.indices(shape)[::-1], -1).astype(float)
+        return (index @ axes.T + origin) @ [2, -3, 5] + 100
+
+    shape = (12, 8, 16)
+    write_nrrd(root / "source.nrrd", ramp(origin, axes, shape), origin, axes, "LPS")
+    for n in (1, 2, 4):
+        told = convert(root / "source.nrrd", root / "t.nrrd", "--shrink", str(n))
+        check(f"a ramp shrunk by {n}", told.returncode == 0, told.stderr)
+        for seen in [seen_by_us] + ([seen_by_teem] if UNU else []):
+            values, new_origin, new_axes, space = seen(root / "t.nrrd")
+            check(f"a ramp shrunk by {n}, {seen.__name__}: its values where they lie",
+                  values.shape == tuple(s // n for s in shape) and space == "LPS" and np.array_equal(new_axes, axes * n) and
+                  np.array_equal(values, ramp(new_origin, new_axes, values.shape)), np.abs(values - ramp(new_origin, new_axes, values.shape)).max())
+            check(f"a ramp shrunk by {n}, {seen.__name__}: its mean", values.mean() == ramp(origin, axes, shape).mean())
+
+
 def test_types():
     values = np.array([-3e9, -129, -128.5, -0.5, 0, 0.49, 0.5, 254.6, 255.4, 65535, 65519, 65521, 6.1e-5, 3e-8, 1e-9, 2.5,
                        np.nan, np.inf], "float32").reshape(1, 2, 9)
@@ -198,6 +219,7 @@ def test_types():
 test_formats()
 test_mrc()
 test_boxes_and_means()
+test_means_of_a_ramp()
 test_types()
 shutil.rmtree(root)
 print(f"{len(problems)} problems")

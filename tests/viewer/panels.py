@@ -119,6 +119,29 @@ def labels(browser):
     probed(browser, 2)
 
 
+def mask(browser):
+    """The labels of the second volume's mask, while the first is chosen, which has none."""
+    def set_on(name, value, event):
+        control = f"document.querySelector('[aria-label=\"{name}\"]')"
+        browser.run(f"{control}.value = '{value}'; {control}.dispatchEvent(new Event('{event}')); 0")
+
+    masked = lambda: scene_of(browser)["volumes"][1]["mask"]  # noqa: E731
+    first = scene_of(browser)["volumes"]
+    changes(browser, "an eye", lambda: press_named(browser, "Show label 2"), "volumes")
+    undone(browser, "volumes", first, "an eye")
+    changes(browser, "colour of a mask's label", lambda: set_on("Colour of label 1", "#2040ff", "input"), "volumes")
+    check(masked()["labels"][0]["tint"] == 1, "the label's matter takes its colour")
+    changes(browser, "opacity of a mask's label", lambda: set_on("Opacity of label 1", 0.3, "change"), "volumes")
+    changes(browser, "the rest", lambda: set_control(browser, "Rest", 0.5, section="Labels"), "volumes")
+    check(masked()["rest"] == 0.5, "the rest has half its opacity")
+    equals_render(browser, "mask")
+    chosen = "document.querySelector('.chooser select')"
+    volumes = scene_of(browser)["volumes"]
+    browser.run(f"{chosen}.value = '1'; {chosen}.dispatchEvent(new Event('change')); 0")
+    changes(browser, "the opacity of the chosen volume", lambda: set_control(browser, "Opacity", 1), "volumes")
+    check(scene_of(browser)["volumes"][0] == volumes[0] and scene_of(browser)["volumes"][1] != volumes[1], "panels are about the chosen volume")
+
+
 def as_labels(browser):
     """A volume of numbers of things is shown as labels, and no longer when that is undone."""
     before = scene_of(browser)["volumes"]
@@ -174,6 +197,8 @@ def write_inputs():
     for name, scene in (("soft", {"volumes": [soft]}),
                         ("image", {"volumes": [soft], "sky": {"type": "image", "file": "sky.png", "strength": 0.5}}),
                         ("labels", {"volumes": [{"file": "labels.nrrd", "labels": True}]}),
+                        ("mask", {"volumes": [{**soft, "name": "faint", "transform": {"translate": [20, 0, 0]}},
+                                              {**soft, "mask": {"file": "labels.nrrd", "labels": [{"value": 1}, {"value": 2}], "rest": 0.1}}]}),
                         ("numbers", {"volumes": [{"file": "labels.nrrd"}]}),
                         ("meshes", {"meshes": [{"spheres": [[0, 0, 0, 1]]}, {"floor": True}]})):
         with open(f"{name}.json", "w") as file:
@@ -190,7 +215,8 @@ with tempfile.TemporaryDirectory() as folder:
         print("built without the viewer")
         sys.exit(77)
     write_inputs()
-    for scene, parts in (("soft", (sky, surfaces, scattering)), ("image", (sky_image,)), ("labels", (labels,)), ("numbers", (as_labels,)),
+    for scene, parts in (("soft", (sky, surfaces, scattering)), ("image", (sky_image,)), ("labels", (labels,)), ("mask", (mask,)),
+                         ("numbers", (as_labels,)),
                          ("meshes", (meshes_alone,))):
         with Viewer(PROGRAM, f"{scene}.json") as viewer, Browser(chromium, SIZE) as browser:
             browser.open(viewer.url)

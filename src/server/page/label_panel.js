@@ -1,7 +1,8 @@
-// The panel of a label map's labels: an eye, a colour, a name and an opacity each.
+// The panel of a label map's labels, or of those of a volume's mask: an eye, a colour, a name and an opacity each. The
+// volume is the chosen one, or else the first that has labels.
 
 import { hexOf, linearOf } from "./color.js";
-import { button, isActive, make, row, section } from "./controls.js";
+import { button, isActive, make, row, section, slider } from "./controls.js";
 
 const MANY = 12; // labels, above which they can be searched
 
@@ -34,13 +35,27 @@ function labelRow({ get, change, alone }) {
 
 export function labelPanel({ store, current, report }) {
   const { element, body } = section("Labels");
-  const labels = () => store.scene.volumes[current.volume]?.labels;
+  const volumes = () => store.scene.volumes;
+  const labelsOf = (volume) => volume?.labels ?? volume?.mask?.labels;
+  const index = () => (labelsOf(volumes()[current.volume]) ? current.volume : volumes().findIndex(labelsOf));
+  const labels = () => labelsOf(volumes()[index()]);
+  const mask = () => (volumes()[index()]?.labels ? undefined : volumes()[index()]?.mask);
+  const rest = slider({
+    label: "Rest", low: 0, high: 1, title: "The opacity of what lies outside the labels",
+    get: () => mask()?.rest ?? 0, set: (value) => setMask("rest", { rest: value }),
+  });
   let rows = [];
-  const setAll = (name, change) => store.changeVolume(current.volume, `labels ${name}`, (v) => ({ ...v, labels: v.labels.map(change) }));
+  const setMask = (name, part) => store.changeVolume(index(), `mask ${name}`, (v) => ({ ...v, mask: { ...v.mask, ...part } }));
+  function setAll(name, change) {
+    if (mask()) setMask(`labels ${name}`, { labels: mask().labels.map(change) });
+    else store.changeVolume(index(), `labels ${name}`, (v) => ({ ...v, labels: v.labels.map(change) }));
+  }
 
-  function change(index, name, part) {
-    const changed = labels().map((label, n) => (n === index ? { ...label, ...part } : label));
-    if (changed.some((label) => label.visible !== false)) setAll(`${index} ${name}`, (_, n) => changed[n]);
+  // A mask's label has the volume's own colour until it is given one.
+  function change(number, name, part) {
+    const tinted = mask() && part.color ? { ...part, tint: 1 } : part;
+    const changed = labels().map((label, n) => (n === number ? { ...label, ...tinted } : label));
+    if (changed.some((label) => label.visible !== false)) setAll(`${number} ${name}`, (_, n) => changed[n]);
     else report("One label has to show. Its name shows a label alone.");
   }
 
@@ -58,12 +73,13 @@ export function labelPanel({ store, current, report }) {
     });
     const all = button("show all", () => setAll("all", (label) => ({ ...label, visible: true })));
     body.replaceChildren(row("", make("span", { class: "pair" }, ...(rows.length > MANY ? [search] : []), all)),
-      make("ul", { class: "files labels" }, ...rows.map((one) => one.element)));
+      make("ul", { class: "files labels" }, ...rows.map((one) => one.element)), ...(mask() ? [rest.element] : []));
     rows.forEach((one) => one.update());
+    rest.update();
   }
   const update = () => {
     if (rows.length !== (labels()?.length ?? 0)) build();
-    else rows.forEach((one) => one.update());
+    else [...rows, rest].forEach((one) => one.update());
   };
   build();
   return { element, update, rebuild: build };

@@ -25,11 +25,10 @@ export function roundLength(most) {
 
 const UNITS = { metre: "m", millimetre: "mm", micrometre: "µm", angstrom: "Å" };
 
-// What lengths of the world are measured in: " mm" where all volumes say so and keep their size, else nothing.
+// What lengths of the world are measured in: " mm" where volumes tell it, none another, and all keep their size; else nothing.
 function unitOf(scene, volumes) {
-  const [unit] = volumes.map((volume) => UNITS[volume?.unit]);
-  const same = unit && volumes.every((volume) => UNITS[volume?.unit] === unit);
-  return same && scene.volumes.every(({ transform }) => (transform?.scale ?? 1) === 1) ? ` ${unit}` : "";
+  const told = new Set(volumes.map((volume) => UNITS[volume?.unit]).filter(Boolean));
+  return told.size === 1 && scene.volumes.every(({ transform }) => (transform?.scale ?? 1) === 1) ? ` ${[...told][0]}` : "";
 }
 
 export class Overlay {

@@ -17,10 +17,10 @@ import { Store } from "./store.js";
 import { surfacePanel } from "./surface_panel.js";
 import { installTheme } from "./theme.js";
 import { viewPanel } from "./view_panel.js";
-import { volumePanel } from "./volume_panel.js";
+import { volumeChooser, volumePanel } from "./volume_panel.js";
 
 // One file each; in the order of the side bar.
-const PANELS = [functionPanel, labelPanel, surfacePanel, lightPanel, shadowPanel, skyPanel, volumePanel, viewPanel, exportPanel, filmPanel, openPanel];
+const PANELS = [volumeChooser, functionPanel, labelPanel, surfacePanel, lightPanel, shadowPanel, skyPanel, volumePanel, viewPanel, exportPanel, filmPanel, openPanel];
 
 const MARKUP = `
   <div class="viewer">

@@ -1,4 +1,4 @@
-// The panel of a volume: which one, its clip box, how it is shaded.
+// The panel of a volume: its clip box, how it is shaded; and the list that chooses among several volumes.
 
 import { worldBox } from "./boxes.js";
 import { hexOf, linearOf } from "./color.js";
@@ -29,7 +29,16 @@ function clipRow(axis, box, get, set) {
   return { element: row(make("span", { class: `name axis-name axis-${axis}` }, `Clip ${name}`), track, text), update };
 }
 
-export function volumePanel({ store, start, current, overlay, chooseVolume, channel, report }) {
+// Above all panels, where there are several volumes: which of them the panels are about.
+export function volumeChooser({ store, current, chooseVolume }) {
+  const { element, update } = select({
+    label: "Volume", choices: store.scene.volumes.map((v, n) => [String(n), v.name ?? (v.file ?? "shapes").split("/").pop()]),
+    get: () => String(current.volume), set: (n) => chooseVolume(+n),
+  });
+  return { element: make("div", { class: "chooser", hidden: store.scene.volumes.length < 2 }, element), update, rebuild: update };
+}
+
+export function volumePanel({ store, start, current, overlay, channel, report }) {
   const { element, body } = section("Volume", false);
   const volume = () => store.scene.volumes[current.volume];
   const change = (name, set) => store.changeVolume(current.volume, name, set);
@@ -93,13 +102,8 @@ export function volumePanel({ store, start, current, overlay, chooseVolume, chan
     const casts = toggle({ label: "Casts shadows", get: () => volume().casts_shadow !== false, set: (on) => change("casts", (v) => ({ ...v, casts_shadow: on })) });
     const material = materialSliders();
     const facts = make("p", { class: "facts" }, `${about.dimensions.join(" × ")} voxels, ${about.type}, values ${about.range.map(shortNumber).join(" to ")}`);
-    const chooser = select({
-      label: "Volume", choices: store.scene.volumes.map((v, n) => [String(n), v.name ?? (v.file ?? "shapes").split("/").pop()]),
-      get: () => String(current.volume), set: (n) => chooseVolume(+n),
-    });
-    parts = [...rows, labelled, shading, ...scattering, visible, casts, ...material, chooser];
-    const several = store.scene.volumes.length > 1 ? [chooser.element] : [];
-    body.replaceChildren(...several, facts, ...rows.map((r) => r.element), reset, labelled.element, shading.element,
+    parts = [...rows, labelled, shading, ...scattering, visible, casts, ...material];
+    body.replaceChildren(facts, ...rows.map((r) => r.element), reset, labelled.element, shading.element,
       ...[...material, ...scattering, visible, casts].map((part) => part.element));
     update();
   }
