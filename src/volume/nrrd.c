@@ -37,6 +37,7 @@ typedef struct nrrd_header {
   nrrd_encoding encoding;
   bool has_encoding, has_endian, big_endian, has_sizes, has_directions, has_space_origin;
   double space_origin[3];
+  const char *unit; /* of the space's axes, static; null: none, one that is not known, or several */
   hl_space space;
   char data_file[NRRD_NAME_BYTES]; /* "" if attached */
   size_t line_skip, byte_skip;
@@ -227,6 +228,29 @@ static hl_status read_space(nrrd_header *header, const char *value, hl_error *er
   return HL_OK;
 }
 
+/* "mm" "mm" "mm": counts where all axes have the same unit of length, which is known. */
+static hl_status read_space_units(nrrd_header *header, const char *value, hl_error *error) {
+  (void)error;
+  static const struct {
+    const char *words, *unit;
+  } units[] = {{"\"m\"|\"meter\"|\"metre\"", "metre"},
+               {"\"mm\"|\"millimeter\"|\"millimetre\"", "millimetre"},
+               {"\"um\"|\"micron\"|\"microns\"|\"micrometer\"|\"micrometre\"", "micrometre"},
+               {"\"A\"|\"angstrom\"|\"angstroms\"", "angstrom"}};
+  char word[NRRD_KIND_BYTES];
+  const char *told = NULL;
+  for (int axis = 0; axis < 3; axis++) {
+    const char *unit = NULL;
+    if (!hl_text_word(&value, word, sizeof word)) return HL_OK;
+    for (size_t n = 0; n < sizeof units / sizeof *units; n++)
+      if (hl_text_is_one_of(word, units[n].words)) unit = units[n].unit;
+    if (unit == NULL || (told != NULL && unit != told)) return HL_OK;
+    told = unit;
+  }
+  header->unit = told;
+  return HL_OK;
+}
+
 static hl_status read_data_file(nrrd_header *header, const char *value, hl_error *error) {
   if (hl_text_starts(value, "LIST") || strchr(value, '%') != NULL)
     return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, header->stream, header->line, "%s",
@@ -272,7 +296,8 @@ static field_function *find_field(const char *name) {
                 {"line skip|lineskip", read_line_skip},
                 {"byte skip|byteskip", read_byte_skip},
                 {"space", read_space},
-                {"space dimension|space units|measurement frame|content|number|block size|blocksize|min|max|"
+                {"space units", read_space_units},
+                {"space dimension|measurement frame|content|number|block size|blocksize|min|max|"
                  "old min|oldmin|old max|oldmax|thicknesses|labels|units|sample units|sampleunits",
                  pass_over}};
   for (size_t n = 0; n < sizeof fields / sizeof *fields; n++)
@@ -533,6 +558,7 @@ static hl_status load_with(nrrd_header *read, hl_stream **stream, hl_load_reques
   status = place_grid(&header, &payload, &is_series, error);
   if (status == HL_OK) status = hl_component_only(request, (*stream)->path, is_series, &payload, error);
   if (status != HL_OK) return status;
+  request->unit = header.unit;
   payload.big_endian = header.big_endian;
   payload.text = header.encoding == NRRD_TEXT;
   if (!header.has_endian && !payload.text && hl_voxel_type_bytes(header.type) > 1)

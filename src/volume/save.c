@@ -26,6 +26,7 @@ typedef struct saving {
   const hl_writer *writer;
   size_t begin[3], end[3], shrink; /* the box, voxels; each written voxel is the mean of shrink^3 */
   hl_volume_description grid;      /* as written */
+  const char *unit;                /* of its lengths, static; null: unknown */
   hl_output output;
   bool packs;            /* bytes go through the stream now */
   double *sums;          /* owned; [grid.dimensions[0]]: of data values */
@@ -119,6 +120,11 @@ static void place_box(saving *s) {
     step = vec3_scale(step, (double)s->shrink);
     memcpy(s->grid.axis[axis], (const double[3]){step.x, step.y, step.z}, sizeof s->grid.axis[axis]);
   }
+  double factor;
+  s->unit = hl_written_unit(s->writer, volume->unit, &factor);
+  for (int axis = 0; axis < 3; axis++)
+    for (int row = 0; row < 3; row++) s->grid.axis[axis][row] *= factor;
+  origin = vec3_scale(origin, factor);
   memcpy(s->grid.origin, (const double[3]){origin.x, origin.y, origin.z}, sizeof s->grid.origin);
   s->grid.space = volume->space;
 }
@@ -259,7 +265,7 @@ static hl_status state_size(saving *s, size_t at, hl_error *error) {
 }
 
 static hl_status write_file(saving *s, const char *path, hl_error *error) {
-  hl_written_header header = {.end = NULL};
+  hl_written_header header = {.unit = s->unit};
   hl_status status = s->writer->make_header(path, &s->grid, &header, error);
   if (status == HL_OK) status = hl_output_begin(s->context, path, &s->output, error);
   if (status != HL_OK) return status;

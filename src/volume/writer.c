@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "volume/convert.h"
+#include "volume/text.h"
 
 #define TYPE(name) (1u << HL_VOXEL_##name)
 enum {
@@ -77,6 +78,13 @@ static void find_steps(const hl_volume_description *grid, double length[3], doub
 
 /* ---- NRRD ---- */
 
+/* As NRRD's documents write units. */
+static const char *short_name(const char *unit) {
+  if (strcmp(unit, "metre") == 0) return "m";
+  if (strcmp(unit, "millimetre") == 0) return "mm";
+  return strcmp(unit, "micrometre") == 0 ? "um" : "A";
+}
+
 static const char *nrrd_type(hl_voxel_type type) {
   return type == HL_VOXEL_F32 ? "float" : type == HL_VOXEL_F64 ? "double" : hl_voxel_type_name(type);
 }
@@ -95,6 +103,10 @@ static hl_status make_nrrd(const char *path, const hl_volume_description *grid, 
   for (int axis = 0; axis < 3; axis++)
     add(header, " (%.17g,%.17g,%.17g)", grid->axis[axis][0], grid->axis[axis][1], grid->axis[axis][2]);
   add(header, "\nspace origin: (%.17g,%.17g,%.17g)\n", grid->origin[0], grid->origin[1], grid->origin[2]);
+  if (header->unit != NULL) {
+    const char *unit = short_name(header->unit);
+    add(header, "space units: \"%s\" \"%s\" \"%s\"\n", unit, unit, unit);
+  }
   if (hl_voxel_type_bytes(grid->type) > 1) add(header, "endian: %s\n", is_little() ? "little" : "big");
   add(header, "encoding: gzip\n\n");
   return HL_OK;
@@ -147,7 +159,9 @@ static hl_status make_nifti(const char *path, const hl_volume_description *given
     SROW = 280,
     MAGIC = 344,
     HEADER_BYTES = 348,
+    METRES = 1,
     MILLIMETRES = 2,
+    MICROMETRES = 3,
     SCANNER = 1
   };
   static const int codes[] = {
@@ -169,7 +183,9 @@ static hl_status make_nifti(const char *path, const hl_volume_description *given
   put_real(header, PIXDIM, 1);
   put_real(header, VOX_OFFSET, HEADER_BYTES + 4);
   put_real(header, SCL_SLOPE, 1);
-  header->bytes[XYZT_UNITS] = grid.space != HL_SPACE_UNKNOWN ? MILLIMETRES : 0;
+  if (header->unit == NULL) header->bytes[XYZT_UNITS] = grid.space != HL_SPACE_UNKNOWN ? MILLIMETRES : 0;
+  else if (strcmp(header->unit, "metre") == 0) header->bytes[XYZT_UNITS] = METRES;
+  else header->bytes[XYZT_UNITS] = strcmp(header->unit, "millimetre") == 0 ? MILLIMETRES : MICROMETRES;
   put_word(header, SFORM_CODE, SCANNER);
   for (int axis = 0; axis < 3; axis++) {
     put_word(header, DIM + 2 + 2 * (size_t)axis, (int)grid.dimensions[axis]);
@@ -288,15 +304,15 @@ static hl_status make_raw(const char *path, const hl_volume_description *grid, h
 }
 
 static const hl_writer writers[] = {
-    {".nrrd", HL_PACKING_GZIP_VOXELS, PLAIN_TYPES, make_nrrd, NULL},
-    {".nii", HL_PACKING_NONE, PLAIN_TYPES, make_nifti, NULL},
-    {".nii.gz", HL_PACKING_GZIP_ALL, PLAIN_TYPES, make_nifti, NULL},
-    {".mha", HL_PACKING_ZLIB_VOXELS, PLAIN_TYPES, make_metaimage, NULL},
-    {".vti", HL_PACKING_NONE, PLAIN_TYPES, make_vti, "space"},
-    {".mrc", HL_PACKING_NONE, MRC_TYPES, make_mrc, "space"},
-    {".mrc.gz", HL_PACKING_GZIP_ALL, MRC_TYPES, make_mrc, "space"},
-    {".raw", HL_PACKING_NONE, ALL_TYPES, make_raw, "place"},
-    {".raw.gz", HL_PACKING_GZIP_ALL, ALL_TYPES, make_raw, "place"},
+    {".nrrd", HL_PACKING_GZIP_VOXELS, PLAIN_TYPES, make_nrrd, NULL, "metre|millimetre|micrometre|angstrom"},
+    {".nii", HL_PACKING_NONE, PLAIN_TYPES, make_nifti, NULL, "micrometre|millimetre|metre"},
+    {".nii.gz", HL_PACKING_GZIP_ALL, PLAIN_TYPES, make_nifti, NULL, "micrometre|millimetre|metre"},
+    {".mha", HL_PACKING_ZLIB_VOXELS, PLAIN_TYPES, make_metaimage, NULL, NULL},
+    {".vti", HL_PACKING_NONE, PLAIN_TYPES, make_vti, "space", NULL},
+    {".mrc", HL_PACKING_NONE, MRC_TYPES, make_mrc, "space", "angstrom"},
+    {".mrc.gz", HL_PACKING_GZIP_ALL, MRC_TYPES, make_mrc, "space", "angstrom"},
+    {".raw", HL_PACKING_NONE, ALL_TYPES, make_raw, "place", NULL},
+    {".raw.gz", HL_PACKING_GZIP_ALL, ALL_TYPES, make_raw, "place", NULL},
 };
 
 const hl_writer *hl_writer_for(const char *path) {
@@ -306,4 +322,22 @@ const hl_writer *hl_writer_for(const char *path) {
     if (length > tail && strcasecmp(path + length - tail, writers[n].ending) == 0) return &writers[n];
   }
   return NULL;
+}
+
+/* The power of ten of a unit, in metres. */
+static int power_of(const char *unit) {
+  if (hl_text_starts(unit, "metre")) return 0;
+  if (hl_text_starts(unit, "millimetre")) return -3;
+  return hl_text_starts(unit, "micrometre") ? -6 : -10;
+}
+
+const char *hl_written_unit(const hl_writer *writer, const char *unit, double *factor) {
+  static const double tens[] = {1, 10, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10};
+  *factor = 1;
+  if (unit == NULL || writer->units == NULL) return NULL;
+  if (hl_text_is_one_of(unit, writer->units)) return unit;
+  const char *first = hl_text_starts(writer->units, "angstrom") ? "angstrom" : "micrometre";
+  int powers = power_of(unit) - power_of(first);
+  *factor = powers >= 0 ? tens[powers] : 1 / tens[-powers];
+  return first;
 }

@@ -188,6 +188,32 @@ def test_means_of_a_ramp():
             check(f"a ramp shrunk by {n}, {seen.__name__}: its mean", values.mean() == ramp(origin, axes, shape).mean())
 
 
+def test_units():
+    """Lengths keep their unit where a format can tell it, and are turned into the one unit of a format that has no other."""
+    kinds = {"um": ("micrometre", "micron", 1e4, 1), "mm": ("millimetre", "mm", 1e7, 1), "m": ("metre", "meter", 1e10, 1),
+             "A": ("angstrom", "micron", 1, 1e-4)}
+    origin, axes = np.array([1, 2.5, -3]), np.diag([0.25, 0.5, 2])
+    told = lambda path: json.loads(subprocess.run([PROGRAM, "info", "--json", path], capture_output=True, check=True,  # noqa: E731
+                                                  timeout=60).stdout).get("unit")
+    for word, (unit, nifti_unit, to_angstrom, to_nifti) in kinds.items():
+        write_nrrd(root / "source.nrrd", voxels_of("int16"), origin, axes, "RAS")
+        text = (root / "source.nrrd").read_bytes()
+        (root / "source.nrrd").write_bytes(text.replace(b"endian:", b'space units: "%s" "%s" "%s"\nendian:' % ((word.encode(),) * 3), 1))
+        check(f"{word} is read", told(root / "source.nrrd") == unit, told(root / "source.nrrd"))
+        for ending, factor in ((".nrrd", 1), (".nii", to_nifti), (".mrc", to_angstrom)):
+            target = root / f"t{ending}"
+            convert(root / "source.nrrd", target)
+            _, new_origin, new_axes, _ = seen_by_us(target)
+            check(f"{word} as {ending}", np.allclose(new_axes, axes * factor, rtol=1e-6) and np.allclose(new_origin, origin * factor, rtol=1e-6),
+                  (new_axes, new_origin))
+        check(f"{word} is written: NRRD", told(root / "t.nrrd") == unit and b'space units: "%s" ' % word.encode() in (root / "t.nrrd").read_bytes())
+        check(f"{word} is written: NIfTI", nibabel.load(root / "t.nii").header.get_xyzt_units()[0] == nifti_unit)
+        check(f"{word} is written: MRC", told(root / "t.mrc") == "angstrom")
+    for wrong in (b'"mm" "mm" "um"', b'"mm" "mm"', b"mm mm mm", b'"parsec" "parsec" "parsec"', b'"' + 300 * b"m"):
+        (root / "source.nrrd").write_bytes(text.replace(b"endian:", b"space units: " + wrong + b"\nendian:", 1))
+        check(f"no unit: {wrong[:20]}", told(root / "source.nrrd") is None)
+
+
 def test_types():
     values = np.array([-3e9, -129, -128.5, -0.5, 0, 0.49, 0.5, 254.6, 255.4, 65535, 65519, 65521, 6.1e-5, 3e-8, 1e-9, 2.5,
                        np.nan, np.inf], "float32").reshape(1, 2, 9)
@@ -220,6 +246,7 @@ test_formats()
 test_mrc()
 test_boxes_and_means()
 test_means_of_a_ramp()
+test_units()
 test_types()
 shutil.rmtree(root)
 print(f"{len(problems)} problems")
