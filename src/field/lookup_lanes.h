@@ -24,30 +24,34 @@ LANES_INLINE void place_between_cells(const sky_light *sky, int axis, lanes posi
 /* A cell counts at least this much beside others. */
 static const float LEAST_COUNTED = 1.0f / 1024;
 
-/* Trilinear weights of eight cells, times their transmittance: dark cells within matter do not darken what
- * lies outside of it. They sum to 1. */
+/* Trilinear weights of eight cells, times their transmittances, or, on a volume's surface (1), the cubes of
+ * these: dark cells within matter do not darken what lies outside of it. They sum to 1. */
 LANES_INLINE void weigh_cells(const float *const cells[8], int passing, const float fraction[3],
-                              float weight[8]) {
+                              float surface, float weight[8]) {
   float sum = 0;
   for (int corner = 0; corner < 8; corner++) {
     float x = corner & 1 ? fraction[0] : 1 - fraction[0], y = corner & 2 ? fraction[1] : 1 - fraction[1],
-          z = corner & 4 ? fraction[2] : 1 - fraction[2], counted = cells[corner][passing];
+          z = corner & 4 ? fraction[2] : 1 - fraction[2], passes = cells[corner][passing],
+          counted = passes * (1 - surface + surface * passes * passes);
     weight[corner] = x * y * z * (counted > LEAST_COUNTED ? counted : LEAST_COUNTED);
     sum += weight[corner];
   }
   for (int corner = 0; corner < 8; corner++) weight[corner] = weight[corner] / sum;
 }
 
-/* The light between the eight cells around each of the active lanes' positions. */
-LANES_INLINE void look_up_sky(const sky_light *sky, lanes3 position, uint32_t active, sky_harmonics *found) {
+/* The light between the eight cells around each of the active lanes' positions. surface: 1 on surfaces of a
+ * volume's matter, 0 in media and on meshes. */
+LANES_INLINE void look_up_sky(const sky_light *sky, lanes3 position, lanes surface, uint32_t active,
+                              sky_harmonics *found) {
   const int harmonics = sky->channels * FIELD_HARMONICS;
   const size_t cell = (size_t)harmonics + 1, row = cell * (size_t)sky->count[0],
                slice = row * (size_t)sky->count[1];
   int32_t first[3][LANES];
-  float fraction[3][LANES], rows[3][LANES][LANES];
+  float fraction[3][LANES], surfaces[LANES], rows[3][LANES][LANES];
   place_between_cells(sky, 0, position.x, first[0], fraction[0]);
   place_between_cells(sky, 1, position.y, first[1], fraction[1]);
   place_between_cells(sky, 2, position.z, first[2], fraction[2]);
+  lanes_store(surfaces, surface);
   memset(rows, 0, (size_t)sky->channels * sizeof rows[0]);
   for (uint32_t left = active; left != 0; left &= left - 1) {
     int lane = __builtin_ctz(left);
@@ -57,7 +61,7 @@ LANES_INLINE void look_up_sky(const sky_light *sky, lanes3 position, uint32_t ac
     float weight[8];
     for (int corner = 0; corner < 8; corner++)
       cells[corner] = at + (corner & 1 ? cell : 0) + (corner & 2 ? row : 0) + (corner & 4 ? slice : 0);
-    weigh_cells(cells, harmonics, within, weight);
+    weigh_cells(cells, harmonics, within, surfaces[lane], weight);
     for (int c = 0; c < sky->channels; c++) {
       lanes sum = lanes_set(0);
       for (int corner = 0; corner < 8; corner++)

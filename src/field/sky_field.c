@@ -13,7 +13,7 @@
 #include "scene/sky.h"
 
 /* Cells by which look-ups are lifted off a surface. */
-static const double LIFT_CELLS = 0.75;
+static const double LIFT_CELLS = 0.5;
 
 enum { SIDE = 4, ENDS = 6, SIDE_SAMPLES = 64 };
 

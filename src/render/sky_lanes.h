@@ -93,7 +93,8 @@ LANES_INLINE color_lanes sky_of_volume(const shade_job *job, const block_slab *s
   sky_harmonics light;
   own_depths depths;
   if (volume->receives_shadow) {
-    look_up_sky(sky, add_scaled3(slab->geometry.position, d->normal, lift), lanes_bits(slab->seen), &light);
+    look_up_sky(sky, add_scaled3(slab->geometry.position, d->normal, lift), d->surface,
+                lanes_bits(slab->seen), &light);
     depths = depths_outwards(job, d, lift);
   } else {
     open_sky(sky, &light);

@@ -86,8 +86,8 @@ LANES_INLINE void add_sky(const sky_light *sky, const surface_samples *samples, 
   lanes_int lit_side = dot3(normal, normal) > 0.0f;
   sky_harmonics light;
   if (samples->receives_shadow)
-    look_up_sky(sky, add_scaled3(load3(samples->position), normal, lanes_set(MESH_LIFT * sky->cell)), 0xffff,
-                &light);
+    look_up_sky(sky, add_scaled3(load3(samples->position), normal, lanes_set(MESH_LIFT * sky->cell)),
+                lanes_set(0), 0xffff, &light);
   else open_sky(sky, &light);
   for (int c = 0; c < 3; c++) {
     const lanes *of = light.of + (sky->channels == 1 ? 0 : c * FIELD_HARMONICS);
