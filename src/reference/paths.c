@@ -3,7 +3,8 @@
  * A path flies as far as its random optical depth, is turned there by the medium's phase function, flies on,
  * and takes from its second collision on what the lights and the sky send there unscattered: an estimate
  * without bias of light that was scattered twice or more often. The first scattering is integrated (shade.c).
- * Random numbers depend on the pixel and the path alone. Paths take the volumes' extinction as grey.
+ * Meshes and isosurfaces on a path take their part of it and send nothing on. Random numbers depend on the
+ * pixel and the path alone. Paths take the volumes' extinction as grey.
  */
 #include "reference/reference.h"
 
@@ -22,7 +23,7 @@ static double uniform(uint64_t *state) {
 typedef struct collision {
   const reference_volume *volume;
   vec3 point, index_point;
-  double value;
+  double value, distance; /* along the ray */
 } collision;
 
 static double extinction_of(const crossing *part) {
@@ -58,11 +59,25 @@ static bool fly(const reference *all, reference_role role, const reference_ray *
       continue;
     }
     choose_volume(&walk, total, random, met);
-    met->point = vec3_add(ray->origin, vec3_scale(ray->direction, walk.at - walk.length / 2 + left / total));
+    met->distance = walk.at - walk.length / 2 + left / total;
+    met->point = vec3_add(ray->origin, vec3_scale(ray->direction, met->distance));
     met->value = hl_reference_value(met->volume, met->index_point);
     return true;
   }
   return false;
+}
+
+/* Multiplies by what surfaces let through on the way to a collision: they send nothing on. */
+static void take_surfaces(const reference *all, reference_role role, reference_ray way, double distance,
+                          double weight[3]) {
+  double passing[3] = {1, 1, 1}, after = way.nearest;
+  reference_hit hit;
+  way.farthest = distance;
+  if (role == REFERENCE_CASTS_SHADOW) hl_reference_surfaces_passing(all, &way, passing);
+  else
+    for (; hl_reference_surface_next(all, role, &way, after, &hit); after = hit.distance)
+      for (int c = 0; c < 3; c++) passing[c] *= 1 - hit.opacity;
+  for (int c = 0; c < 3; c++) weight[c] *= passing[c];
 }
 
 /* A direction by Henyey and Greenstein's function about the way before. */
@@ -128,7 +143,9 @@ void hl_reference_path(const reference *all, vec3 origin, vec3 direction, uint64
   for (int turns = 0; turns < MOST_TURNS && goes_on(weight, turns, &random); turns++) {
     collision met = {0};
     double color[3];
-    if (!fly(all, turns == 0 ? REFERENCE_SEEN : REFERENCE_CASTS_SHADOW, &ray, worker, &random, &met)) return;
+    const reference_role role = turns == 0 ? REFERENCE_SEEN : REFERENCE_CASTS_SHADOW;
+    if (!fly(all, role, &ray, worker, &random, &met)) return;
+    take_surfaces(all, role, ray, met.distance, weight);
     const hl_scene_volume *volume = met.volume->described;
     if (!volume->multiple_scattering || !volume->casts_shadow || volume->shading == HL_SHADING_FLAT) return;
     hl_transfer_function_color(&volume->transfer_function, met.value, color);

@@ -319,7 +319,7 @@ static hl_status scatter_light(hl_renderer *renderer, const hl_scene_description
   if (volumes == NULL) return hl_fail_memory(error, scene->volume_count * sizeof *volumes, "the volumes");
   for (size_t v = 0; v < scene->volume_count; v++)
     volumes[v] = (scatter_volume){&scene->volumes[v], &work->grids[v], &renderer->prepared[v].classifier};
-  const scatter_scene all = {context, renderer->pool, scene, volumes, sky_mark};
+  const scatter_scene all = {context, renderer->pool, scene, volumes, sky_mark, work->frame.surfaces};
   status = hl_scatter_update(&all, &renderer->scattered, error);
   hl_release(context, volumes);
   return status;

@@ -21,23 +21,11 @@ static void add_volume(hl_key *key, const prepared_volume *prepared, const grid 
   hl_key_add_whole(key, 2 * (int64_t)prepared->kernel + (prepared->scene->visible != 0));
 }
 
-/* Meshes and isosurfaces alike. */
-static void add_mesh(hl_key *key, const hl_scene_mesh *mesh) {
-  hl_key_add(key, &mesh->mesh->mark, sizeof mesh->mesh->mark);
-  hl_key_add_numbers(key, &mesh->opacity, 1);
-  hl_key_add_whole(key, 2 * (mesh->visible != 0) + (mesh->casts_shadow != 0));
-  hl_key_add_numbers(key, &mesh->scale, 1);
-  hl_key_add_numbers(key, mesh->translate, 3);
-  hl_key_add_numbers(key, mesh->rotate_axis, 3);
-  hl_key_add_numbers(key, &mesh->rotate_angle_deg, 1);
-}
-
 static void write_key(const void *data, hl_key *key) {
   const frame_sky *of = data;
-  const surfaces *all = of->frame->surfaces;
   hl_sky_key_add(key, &of->scene->sky, of->mark);
   for (size_t v = 0; v < of->scene->volume_count; v++) add_volume(key, &of->volumes[v], &of->grids[v]);
-  for (size_t m = 0; all != NULL && m < all->mesh_count; m++) add_mesh(key, all->meshes[m].scene);
+  hl_surfaces_key_add(key, of->frame->surfaces);
 }
 
 /* ---- the content ---- */

@@ -86,6 +86,13 @@ static float within_cone(const light_cone *cone, vec3 towards) {
   return (float)(x * x * (3 - 2 * x));
 }
 
+/* What a mesh takes of the light on its way. */
+static void meet_mesh(void *data, double distance, double opacity, const hl_scene_mesh *mesh) {
+  float *passing = data;
+  (void)distance;
+  for (int c = 0; c < 3; c++) passing[c] *= (float)(1 - opacity * mesh->attenuation_color[c]);
+}
+
 /* Adds one point of the light, with its share of the light. */
 static void add_point(const direct_job *job, const int32_t at[3], size_t node, const double square[2]) {
   const light_source *source = job->source;
@@ -105,6 +112,9 @@ static void add_point(const direct_job *job, const int32_t at[3], size_t node, c
     if (source->light->falloff == HL_FALLOFF_INVERSE_SQUARE) strength /= (float)(centre * centre);
   }
   find_passing(job, at, node, towards, source->parallel ? INFINITY : distance, passing);
+  vec3 from = vec3_add(here, vec3_scale(SCATTER_BESIDE, job->nodes->spacing));
+  hl_surface_tree_cast(job->arrays->tree, &(surface_ray){from, way, 0, source->parallel ? INFINITY : 1},
+                       meet_mesh, passing);
   for (int c = 0; c < 3; c++)
     job->arrays->direct[(size_t)c * job->node_count + node] +=
         strength * passing[c] * (float)(source->light->color[c] * source->light->intensity);

@@ -9,11 +9,6 @@
 #include "scatter/parts.h"
 #include "scene/sky.h"
 
-enum {
-  LONGEST = 48 /* nodes along the longest side of the matter */,
-  MARGIN = 1 /* empty nodes around it */
-};
-
 static bool scatters(const hl_scene_volume *volume) {
   return volume->multiple_scattering && volume->casts_shadow && volume->shading != HL_SHADING_FLAT;
 }
@@ -64,20 +59,37 @@ static bool place_nodes(const scatter_scene *scene, scatter_nodes *nodes) {
       add_box(scene->volumes[v].grid, low, high);
   for (int a = 0; a < 3; a++) longest = fmax(longest, high[a] - low[a]);
   if (!(longest > 0)) return false;
-  double spacing = longest / LONGEST;
+  double spacing = longest / SCATTER_LONGEST;
   nodes->spacing = (float)spacing;
   for (int a = 0; a < 3; a++) {
     double boxes = fmax(ceil((high[a] - low[a]) / spacing - 1e-6), 1);
-    nodes->count[a] = (int32_t)boxes + 2 * MARGIN;
-    nodes->origin[a] = (float)((low[a] + high[a]) / 2 - spacing * ((boxes - 1) / 2 + MARGIN));
+    nodes->count[a] = (int32_t)boxes + 2 * SCATTER_MARGIN;
+    nodes->origin[a] = (float)((low[a] + high[a]) / 2 - spacing * ((boxes - 1) / 2 + SCATTER_MARGIN));
   }
   return true;
 }
 
 /* ---- memory ---- */
 
-static void lay_out(size_t nodes, bool with_flux, bool with_sky, scatter_arrays *arrays, scatter_work *work,
+/* What the arrays depend on. */
+typedef struct scatter_parts {
+  size_t nodes;
+  bool with_flux, with_sky, with_walls;
+} scatter_parts;
+
+static void lay_out_walls(size_t nodes, scatter_walls *walls, hl_layout *layout) {
+  for (int line = 0; line < SCATTER_LINES; line++) {
+    walls->outside[line] = hl_layout_take(layout, nodes, sizeof(float));
+    walls->after[line] = hl_layout_take(layout, nodes, sizeof(float));
+    walls->at_node[line] = hl_layout_take(layout, nodes, sizeof(float));
+    walls->between[line] = hl_layout_take(layout, nodes, sizeof(float));
+  }
+}
+
+static void lay_out(const scatter_parts *parts, scatter_arrays *arrays, scatter_work *work,
                     hl_layout *layout) {
+  const size_t nodes = parts->nodes;
+  const bool with_flux = parts->with_flux, with_sky = parts->with_sky;
   arrays->extinction = hl_layout_take(layout, 3 * nodes, sizeof(float));
   arrays->scattering = hl_layout_take(layout, 3 * nodes, sizeof(float));
   bool with_own = with_flux && with_sky;
@@ -93,16 +105,19 @@ static void lay_out(size_t nodes, bool with_flux, bool with_sky, scatter_arrays 
   }
   for (size_t v = 0; v < sizeof work->vectors / sizeof *work->vectors; v++)
     work->vectors[v] = hl_layout_take(layout, nodes, sizeof(float));
+  work->walls = (scatter_walls){{NULL}, {NULL}, {NULL}, {NULL}};
+  if (parts->with_walls) lay_out_walls(nodes, &work->walls, layout);
 }
 
 uint64_t hl_scatter_bytes(const hl_scene_description *scene) {
   if (!hl_scatter_wanted(scene)) return 0;
-  const size_t side = LONGEST + 2 * MARGIN, nodes = side * side * side;
+  const size_t side = SCATTER_MOST_NODES, nodes = side * side * side;
   scatter_arrays arrays;
   scatter_work work;
   hl_layout counted = {0};
-  lay_out(nodes, is_uneven(scene), has_sky(scene), &arrays, &work, &counted);
-  return counted.bytes + (is_uneven(scene) ? 12 : 3) * nodes * sizeof(float) +
+  const scatter_parts parts = {nodes, is_uneven(scene), has_sky(scene), hl_surface_tree_bytes(scene) > 0};
+  lay_out(&parts, &arrays, &work, &counted);
+  return counted.bytes + hl_surface_tree_bytes(scene) + (is_uneven(scene) ? 12 : 3) * nodes * sizeof(float) +
          scene->volume_count * sizeof(scatter_volume);
 }
 
@@ -135,6 +150,7 @@ static void write_key(const void *data, hl_key *key) {
   const scatter_scene *scene = data;
   hl_key_add_whole(key, scene->scene->render.shadows);
   hl_sky_key_add(key, &scene->scene->sky, scene->sky_mark);
+  hl_surfaces_key_add(key, scene->surfaces);
   for (size_t v = 0; v < scene->scene->volume_count; v++) add_volume(key, &scene->volumes[v]);
   for (size_t l = 0; l < scene->scene->light_count; l++) add_light(key, &scene->scene->lights[l]);
 }
@@ -199,23 +215,27 @@ static void solve_channels(const scatter_scene *scene, const scatter_arrays *arr
   }
 }
 
-static hl_status find_field(const scatter_scene *scene, scatter_field *field, hl_error *error) {
+static hl_status find_field(const scatter_scene *scene, const surface_tree *tree, scatter_field *field,
+                            hl_error *error) {
   size_t count = hl_scatter_node_count(&field->nodes);
   scatter_arrays arrays;
   scatter_work work;
   hl_layout counted = {0};
   bool with_flux = is_uneven(scene->scene);
-  lay_out(count, with_flux, has_sky(scene->scene), &arrays, &work, &counted);
+  const scatter_parts parts = {count, with_flux, has_sky(scene->scene), tree->box_count > 0};
+  lay_out(&parts, &arrays, &work, &counted);
   hl_layout handed = {.base = hl_allocate(scene->context, counted.bytes, 1)};
   field->light = hl_allocate(scene->context, (with_flux ? 12 : 3) * count, sizeof *field->light);
   if (handed.base == NULL || field->light == NULL) {
     hl_release(scene->context, handed.base);
     return hl_fail_memory(error, counted.bytes, "multiple scattering");
   }
-  lay_out(count, with_flux, has_sky(scene->scene), &arrays, &work, &handed);
+  lay_out(&parts, &arrays, &work, &handed);
+  arrays.tree = tree;
   field->flux = with_flux ? field->light + 3 * count : NULL;
   hl_scatter_fill_matter(scene, &field->nodes, &arrays);
   hl_scatter_fill_direct(scene, &field->nodes, &arrays);
+  if (parts.with_walls) hl_scatter_fill_walls(scene, &field->nodes, tree, &work.walls);
   bool grey = arrays.channels == 1;
   for (size_t c = 1; c < 3; c++)
     grey = grey && memcmp(arrays.direct, arrays.direct + c * count, count * sizeof(float)) == 0;
@@ -237,7 +257,12 @@ hl_status hl_scatter_update(const scatter_scene *scene, scatter_field *field, hl
   hl_key key = field->key;
   hl_release(scene->context, field->light);
   *field = (scatter_field){.key = key};
-  if (place_nodes(scene, &field->nodes)) status = find_field(scene, field, error);
+  if (place_nodes(scene, &field->nodes)) {
+    surface_tree tree;
+    status = hl_surface_tree_create(scene->context, scene->surfaces, &tree, error);
+    if (status == HL_OK) status = find_field(scene, &tree, field, error);
+    hl_surface_tree_release(scene->context, &tree);
+  }
   if (status != HL_OK) hl_scatter_release(scene->context, field);
   return status;
 }

@@ -4,10 +4,21 @@
 
 #include "core/vector.h"
 #include "scatter/scatter.h"
+#include "surface/surface_tree.h"
 
 /* Lines of the grid through a node: 3 along the axes, 6 along diagonals of faces, 4 along diagonals of cells.
  */
 enum { SCATTER_LINES = 13 };
+
+enum {
+  SCATTER_LONGEST = 48, /* nodes along the longest side of the matter */
+  SCATTER_MARGIN = 1,   /* empty nodes around it */
+  SCATTER_MOST_NODES = SCATTER_LONGEST + 2 * SCATTER_MARGIN
+};
+
+/* Rays that look for meshes pass this far beside nodes, in units of their spacing: so none runs along the
+ * common edge of triangles that stand on the grid. */
+#define SCATTER_BESIDE ((vec3){0.0117, 0.0071, 0.0139})
 
 /* Matter and light at the nodes, each array [channels][nodes]. */
 typedef struct scatter_arrays {
@@ -16,6 +27,7 @@ typedef struct scatter_arrays {
   float *own;    /* likewise; the extinction of the medium as it is; where all scatter evenly, `extinction` */
   float *direct; /* [3][nodes]: the mean over all directions of light that was not scattered */
   int channels;  /* of extinction and scattering: 1 where all colours have the same, else 3 */
+  const surface_tree *tree; /* borrowed; of meshes; without boxes where there are none */
 } scatter_arrays;
 
 /* Light that enters the grid at the ends of its lines, one channel: radiance that travels along a line's way,
@@ -23,6 +35,9 @@ typedef struct scatter_arrays {
 typedef struct scatter_inflow {
   float along[SCATTER_LINES], against[SCATTER_LINES];
 } scatter_inflow;
+
+/* From a node to the next one of a line. */
+const int *hl_scatter_step(int line);
 
 /* The way of a line, unit length, or the way back; its weight in the mean over all directions, both ways. */
 vec3 hl_scatter_way(int line, bool onwards);
@@ -41,14 +56,23 @@ void hl_scatter_sky_inflow(const hl_sky *sky, scatter_inflow inflow[3]);
  * less of the sky it gets more of scattered light. Under an even sky a medium of albedo 1 is lit by 1
  * everywhere, exactly. */
 
+/* What meshes let through along the lines, as fractions, each array [nodes]; and what walls.c makes of this
+ * and of a channel's extinction. */
+typedef struct scatter_walls {
+  float *outside[SCATTER_LINES]; /* between the sky and the first nodes of lines; 0 at others */
+  float *after[SCATTER_LINES];   /* between a node and the next one; of last nodes: the sky */
+  float *at_node[SCATTER_LINES], *between[SCATTER_LINES]; /* depths */
+} scatter_walls;
+
 /* Working memory of transport.c, one channel at a time. */
 typedef struct scatter_work {
   float *pass[SCATTER_LINES];                         /* [nodes] */
   float *along[SCATTER_LINES];                        /* [nodes] */
   float *vectors[5];                                  /* [nodes] */
   float *flux[SCATTER_LINES], *before[SCATTER_LINES]; /* [nodes]; null where no flux is wanted */
-  float *sky;      /* [nodes]; the sky's light that was not scattered; null without a sky */
-  float *sky_flux; /* [3][nodes]; null where no flux is wanted */
+  float *sky;          /* [nodes]; the sky's light that was not scattered; null without a sky */
+  float *sky_flux;     /* [3][nodes]; null where no flux is wanted */
+  scatter_walls walls; /* arrays are null without meshes */
 } scatter_work;
 
 /* Fills extinction and scattering, and finds the number of channels. */
@@ -56,6 +80,15 @@ void hl_scatter_fill_matter(const scatter_scene *scene, const scatter_nodes *nod
 
 /* Fills direct. */
 void hl_scatter_fill_direct(const scatter_scene *scene, const scatter_nodes *nodes, scatter_arrays *arrays);
+
+/* Fills what meshes let through. */
+void hl_scatter_fill_walls(const scatter_scene *scene, const scatter_nodes *nodes, const surface_tree *tree,
+                           const scatter_walls *walls);
+
+/* Sets the depth between a node and the next one of a line, which are `length` apart, and adds to the depths
+ * at both what meshes between them take. */
+void hl_scatter_add_wall(const scatter_walls *walls, int line, size_t node, size_t next,
+                         const float *extinction, float length);
 
 /* Prepares the lines for one channel of extinction. */
 void hl_scatter_begin_lines(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,

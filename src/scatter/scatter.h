@@ -5,6 +5,7 @@
  *     matter.c      extinction and scattering at the grid's nodes, from the volumes
  *     direct.c      the lights' unscattered light at the nodes
  *     sky.c         the sky's light that enters the grid
+ *     walls.c       what meshes take of it
  *     transport.c   how scattered light spreads
  *     field.c       the whole, and the key by which a result is kept
  *
@@ -20,6 +21,7 @@
 #include "core/pool.h"
 #include "grid/classifier.h"
 #include "light/light_source.h"
+#include "surface/surfaces.h"
 
 /* A volume of the scene, made ready. */
 typedef struct scatter_volume {
@@ -35,6 +37,7 @@ typedef struct scatter_scene {
   const hl_scene_description *scene; /* in frame space */
   const scatter_volume *volumes;     /* [scene->volume_count] */
   uint64_t sky_mark;                 /* of the pixels of the sky's image */
+  const surfaces *surfaces;          /* of the scene's meshes, which take light away; null: none */
 } scatter_scene;
 
 /* Where the nodes are, in frame space: node (x, y, z) at origin + spacing * (x, y, z). */

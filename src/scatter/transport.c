@@ -55,6 +55,7 @@ vec3 hl_scatter_way(int line, bool onwards) {
 }
 
 float hl_scatter_line_weight(int line) { return weight_of(line); }
+const int *hl_scatter_step(int line) { return ways[line]; }
 
 typedef struct lines_job {
   const scatter_nodes *nodes;
@@ -64,6 +65,11 @@ typedef struct lines_job {
   scatter_work *work;
   float *mean; /* [nodes] */
 } lines_job;
+
+/* Null: no meshes. */
+static const scatter_walls *walls_of(const lines_job *job) {
+  return job->work->walls.after[0] != NULL ? &job->work->walls : NULL;
+}
 
 /* A row of nodes along x on the lines of one direction. */
 typedef struct line_row {
@@ -95,14 +101,19 @@ static void begin_line(void *data, size_t line, int worker) {
   float length = length_of((int)line) * job->nodes->spacing, *pass = job->work->pass[line],
         *before = job->work->along[line]; /* f_{i-1} g_{i-1} */
   const float *e = job->extinction;
+  const scatter_walls *walls = walls_of(job);
   for (size_t n = 0; n < rows * (size_t)count[0]; n++) before[n] = 1;
+  for (size_t n = 0; n < rows * (size_t)count[0] && walls != NULL; n++)
+    walls->at_node[line][n] = length * e[n];
   for (size_t r = 0; r < rows; r++) {
     line_row row = row_of(job->nodes, (int)line, r);
     for (int32_t x = 0; x < count[0]; x++) {
       size_t at = row.at + (size_t)x;
-      float f = length * e[at] + before[at];
       bool next = x >= row.low && x < row.high;
-      pass[at] = 1 / (1 + (next ? f * 0.5f * length * (e[at] + e[at + row.step]) : f));
+      if (next && walls != NULL) hl_scatter_add_wall(walls, (int)line, at, at + row.step, e, length);
+      float f = (walls != NULL ? walls->at_node[line][at] : length * e[at]) + before[at];
+      if (next && walls != NULL) pass[at] = 1 / (1 + f * walls->between[line][at]);
+      else pass[at] = 1 / (1 + (next ? f * 0.5f * length * (e[at] + e[at + row.step]) : f));
       if (next) before[at + row.step] = f * pass[at];
     }
   }
@@ -116,11 +127,27 @@ static float entering_last(const lines_job *job, int line) {
   return job->inflow != NULL ? job->inflow->against[line] : 0;
 }
 
-/* y along a row. y begins with the light that enters, at every node: those that have one before them take it
- * back. */
+/* y before anything came along: what each node sends out, and the light that enters, at every node: those
+ * that have one before them take it back. With meshes it is at first nodes alone. */
+static void begin_sums(const lines_job *job, int line, float *sums) {
+  const scatter_walls *walls = walls_of(job);
+  float length = length_of(line) * job->nodes->spacing, entered = entering(job, line);
+  size_t nodes = hl_scatter_node_count(job->nodes);
+  if (walls != NULL)
+    for (size_t n = 0; n < nodes; n++) sums[n] = length * job->sent[n] + entered * walls->outside[line][n];
+  else
+    for (size_t n = 0; n < nodes; n++) sums[n] = length * job->sent[n] + entered;
+}
+
+/* What a node with one before it takes back. */
+static float taken_back(const lines_job *job, int line) {
+  return walls_of(job) != NULL ? 0 : entering(job, line);
+}
+
+/* y along a row. */
 static void go_forward(const lines_job *job, int line, const line_row *row) {
   const float *pass = job->work->pass[line] + row->at;
-  float *from = job->work->along[line] + row->at, *to = from + row->step, entered = entering(job, line);
+  float *from = job->work->along[line] + row->at, *to = from + row->step, entered = taken_back(job, line);
   for (int32_t x = row->low; x < row->high; x++) to[x] += from[x] * pass[x] - entered;
 }
 
@@ -132,9 +159,16 @@ static void go_back(const lines_job *job, int line, const line_row *row) {
   const float *next = here + row->step;
   int32_t count = job->nodes->count[0];
   float last = entering_last(job, line);
-  for (int32_t x = row->high > row->low ? row->high : 0; x < count; x++) here[x] = (here[x] + last) * pass[x];
-  for (int32_t x = 0; x < row->low && row->high > row->low; x++) here[x] = (here[x] + last) * pass[x];
-  if (row->step == 1)
+  const scatter_walls *walls = walls_of(job);
+  const float *after = walls != NULL ? walls->after[line] + row->at : NULL;
+  const float *between = walls != NULL ? walls->between[line] + row->at : NULL;
+  for (int32_t x = row->high > row->low ? row->high : 0; x < count; x++)
+    here[x] = (here[x] + (after != NULL ? last * after[x] : last)) * pass[x];
+  for (int32_t x = 0; x < row->low && row->high > row->low; x++)
+    here[x] = (here[x] + (after != NULL ? last * after[x] : last)) * pass[x];
+  if (between != NULL)
+    for (int32_t x = row->high - 1; x >= row->low; x--) here[x] = (next[x] + here[x] * between[x]) * pass[x];
+  else if (row->step == 1)
     for (int32_t x = row->high - 1; x >= row->low; x--)
       here[x] = (next[x] + here[x] * (half * (e[x] + ahead[x]))) * pass[x];
   else
@@ -147,9 +181,7 @@ static void solve_line(void *data, size_t line, int worker) {
   const lines_job *job = data;
   const int32_t *count = job->nodes->count;
   size_t rows = (size_t)count[1] * (size_t)count[2];
-  float length = length_of((int)line) * job->nodes->spacing, *along = job->work->along[line];
-  float entered = entering(job, (int)line);
-  for (size_t n = 0; n < rows * (size_t)count[0]; n++) along[n] = length * job->sent[n] + entered;
+  begin_sums(job, (int)line, job->work->along[line]);
   for (size_t r = 0; r < rows; r++) {
     line_row row = row_of(job->nodes, (int)line, r);
     go_forward(job, (int)line, &row);
@@ -169,14 +201,16 @@ static void flux_line(void *data, size_t line, int worker) {
   float length = length_of((int)line) * job->nodes->spacing, *along = job->work->along[line],
         *sent = job->work->flux[line], *before = job->work->before[line];
   const float *pass = job->work->pass[line], *e = job->extinction;
-  float entered = entering(job, (int)line);
-  for (size_t n = 0; n < nodes; n++) sent[n] = length * job->sent[n] + entered, before[n] = 1;
+  const scatter_walls *walls = walls_of(job);
+  float entered = taken_back(job, (int)line);
+  begin_sums(job, (int)line, sent);
+  for (size_t n = 0; n < nodes; n++) before[n] = 1;
   /* along holds u; sent becomes y, before f */
   for (size_t r = 0; r < rows; r++) {
     line_row row = row_of(job->nodes, (int)line, r);
     for (int32_t x = 0; x < count[0]; x++) {
       size_t at = row.at + (size_t)x;
-      before[at] += length * e[at];
+      before[at] += walls != NULL ? walls->at_node[line][at] : length * e[at];
       if (x < row.low || x >= row.high) continue;
       sent[at + row.step] += sent[at] * pass[at] - entered;
       before[at + row.step] = before[at] * pass[at];
@@ -185,7 +219,8 @@ static void flux_line(void *data, size_t line, int worker) {
   /* the link after a node: y - f u; before a node it is t (u - S) more (the first equation) */
   for (size_t n = 0; n < nodes; n++) {
     float after = sent[n] - before[n] * along[n];
-    sent[n] = after + 0.5f * length * (e[n] * along[n] - job->sent[n]);
+    if (walls != NULL) sent[n] = after + 0.5f * (walls->at_node[line][n] * along[n] - length * job->sent[n]);
+    else sent[n] = after + 0.5f * length * (e[n] * along[n] - job->sent[n]);
   }
 }
 

@@ -219,3 +219,17 @@ void hl_surface_corners(const hl_scene_mesh *mesh, double least, vec3 corners[8]
         placement,
         (vec3){corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]});
 }
+
+void hl_surfaces_key_add(hl_key *key, const surfaces *all) {
+  for (size_t m = 0; all != NULL && m < all->mesh_count; m++) {
+    const hl_scene_mesh *mesh = all->meshes[m].scene;
+    hl_key_add(key, &mesh->mesh->mark, sizeof mesh->mesh->mark);
+    hl_key_add_numbers(key, &mesh->opacity, 1);
+    hl_key_add_numbers(key, mesh->attenuation_color, 3);
+    hl_key_add_whole(key, 2 * (mesh->visible != 0) + (mesh->casts_shadow != 0));
+    hl_key_add_numbers(key, &mesh->scale, 1);
+    hl_key_add_numbers(key, mesh->translate, 3);
+    hl_key_add_numbers(key, mesh->rotate_axis, 3);
+    hl_key_add_numbers(key, &mesh->rotate_angle_deg, 1);
+  }
+}

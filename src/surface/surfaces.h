@@ -8,6 +8,7 @@
 #include <halflight/scene.h>
 
 #include "core/error.h"
+#include "core/key.h"
 #include "core/pool.h"
 #include "core/vector.h"
 
@@ -34,6 +35,9 @@ typedef struct surfaces {
   size_t mesh_count, vertex_count;
   uint32_t triangle_count, sphere_count;
 } surfaces;
+
+/* Adds what the light that surfaces take depends on. all: null for none. */
+void hl_surfaces_key_add(hl_key *key, const surfaces *all);
 
 /* The number of primitives. */
 static inline uint32_t hl_surfaces_count(const surfaces *all) {

@@ -1,0 +1,203 @@
+/* analytic/sheets_scattered_meshes.c - meshes take scattered light and the sky's: closed forms, the
+ * reference, the same bytes. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "reference_stage.h"
+
+enum { SIDE = 16, PIXELS = SIDE * SIDE };
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
+}
+
+/* A block of haze 24 x 24 x 24 that keeps most light, seen from above; its picture is 20 wide. */
+static hl_scene_volume *open_stage(stage *set, double opacity) {
+  stage_open(set);
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = 20;
+  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){24, 24, 24}, (double[3]){1, 1, 1},
+                                           (vec3){-12, -12, -12}, NULL);
+  stage_set_opacity(set, volume, opacity, 1);
+  volume->shading = HL_SHADING_NONE;
+  for (int c = 0; c < 3; c++) volume->albedo[c] = 0.95;
+  volume->multiple_scattering = 1;
+  stage_look(set, (vec3){0, 0, 60}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  return volume;
+}
+
+/* Walls are meshes that the eye does not see. */
+typedef struct walls {
+  hl_scene_mesh meshes[2];
+} walls;
+
+static void add_wall(stage *set, walls *walls, hl_mesh *mesh, double opacity) {
+  hl_scene_mesh *made = &walls->meshes[set->scene.mesh_count];
+  hl_scene_mesh_defaults(made);
+  made->mesh = mesh;
+  made->opacity = opacity;
+  made->visible = 0;
+  set->scene.meshes = walls->meshes;
+  set->scene.mesh_count++;
+}
+
+static void close_stage(stage *set) {
+  for (size_t m = 0; m < set->scene.mesh_count; m++) hl_mesh_release(set->scene.meshes[m].mesh);
+  stage_close(set);
+}
+
+/* The mean of a rectangle of pixels, x and y from `low` up to `high`. */
+static double mean_of(const float *pixels, const int low[2], const int high[2]) {
+  double sum = 0;
+  for (int y = low[1]; y < high[1]; y++)
+    for (int x = low[0]; x < high[0]; x++) sum += (double)pixels[4 * (y * SIDE + x)];
+  return sum / ((high[0] - low[0]) * (high[1] - low[1]));
+}
+
+static const int LEFT[2][2] = {{0, 0}, {SIDE / 2 - 1, SIDE}}, RIGHT[2][2] = {{SIDE / 2 + 1, 0}, {SIDE, SIDE}},
+                 ALL[2][2] = {{0, 0}, {SIDE, SIDE}};
+
+/* An opaque wall through the middle of the haze parts it: light from the left leaves the right half dark, and
+ * a wall that takes nothing changes nothing. */
+static void test_haze_behind_a_wall(void **state) {
+  (void)state;
+  static float pixels[3][4 * PIXELS];
+  const double opacity[3] = {1, 0.5, 0};
+  double right[3], left[3];
+  for (int k = 0; k < 3; k++) {
+    stage set;
+    walls walls;
+    (void)open_stage(&set, 0.06);
+    (void)stage_add_directional(&set, (vec3){1, 0, 0});
+    add_wall(&set, &walls, stage_make_quad(&set, (vec3){0, 0, 0}, (vec3){0, 20, 0}, (vec3){0, 0, 20}),
+             opacity[k]);
+    stage_render_sheets(&set, pixels[k]);
+    right[k] = mean_of(pixels[k], RIGHT[0], RIGHT[1]);
+    left[k] = mean_of(pixels[k], LEFT[0], LEFT[1]);
+    close_stage(&set);
+  }
+  assert_true(right[2] > 0.1);
+  assert_near(right[0], 0, 0.002 * right[2]);
+  assert_true(right[1] > 0.3 * right[2] && right[1] < 0.6 * right[2]);
+  assert_true(left[0] > 0.5 * left[2] && left[0] < left[1] && left[1] < left[2]);
+}
+
+/* A wall beside the haze, between it and the light, leaves it dark; a pane leaves what it lets through, since
+ * all light passes it once. */
+static void test_wall_before_haze(void **state) {
+  (void)state;
+  static float pixels[4 * PIXELS];
+  const double opacity[3] = {0, 0.4, 1};
+  double all[3];
+  for (int k = 0; k < 3; k++) {
+    stage set;
+    walls walls;
+    (void)open_stage(&set, 0.06);
+    (void)stage_add_directional(&set, (vec3){1, 0, 0});
+    add_wall(&set, &walls, stage_make_quad(&set, (vec3){-30, 0, 0}, (vec3){0, 40, 0}, (vec3){0, 0, 40}),
+             opacity[k]);
+    stage_render_sheets(&set, pixels);
+    all[k] = mean_of(pixels, ALL[0], ALL[1]);
+    close_stage(&set);
+  }
+  assert_true(all[0] > 0.1);
+  assert_near(all[1] / all[0], 0.6, 0.003);
+  assert_near(all[2], 0, 1e-4);
+}
+
+/* Thin haze that keeps all light is lit by the grid alone: above a wide wall by half of the sky, above a pane
+ * of 0.4 by 0.8 of it. */
+static void test_sky_behind_walls(void **state) {
+  (void)state;
+  static float pixels[4 * PIXELS];
+  const double opacity[3] = {0, 1, 0.4}, expected[3] = {1, 0.5, 0.8};
+  double open = 0;
+  for (int k = 0; k < 3; k++) {
+    stage set;
+    walls walls;
+    (void)open_stage(&set, 1e-3);
+    for (int c = 0; c < 3; c++) set.volumes[0].albedo[c] = 1;
+    set.scene.sky.type = HL_SKY_UNIFORM;
+    add_wall(&set, &walls, stage_make_quad(&set, (vec3){0, 0, -13}, (vec3){400, 0, 0}, (vec3){0, 400, 0}),
+             opacity[k]);
+    stage_render_sheets(&set, pixels);
+    double found = mean_of(pixels, ALL[0], ALL[1]);
+    if (k == 0) open = found;
+    assert_near(found / open, expected[k], 0.02);
+    close_stage(&set);
+  }
+}
+
+/* A wall that stands in a part of the haze, and a pane across all of it. */
+static void add_reference_scene(stage *set, walls *walls) {
+  (void)open_stage(set, 0.06);
+  (void)stage_add_directional(set, (vec3){1, 0.2, -0.3});
+  add_wall(set, walls, stage_make_quad(set, (vec3){2, 3, 0}, (vec3){0, 8, 0}, (vec3){0, 0, 20}), 1);
+  add_wall(set, walls, stage_make_quad(set, (vec3){0, 0, -5}, (vec3){20, 0, 0}, (vec3){0, 20, 0}), 0.5);
+}
+
+/* Halves of the picture differ from the reference's by less than 6 percent and four of its standard errors.
+ */
+static void test_against_the_reference(void **state) {
+  (void)state;
+  static float pixels[4 * PIXELS], exact[4 * PIXELS], errors[3 * PIXELS];
+  hl_reference_options options;
+  hl_reference_options_defaults(&options);
+  options.paths = 48;
+  options.step = 1;
+  options.error = errors;
+  stage set;
+  walls walls;
+  add_reference_scene(&set, &walls);
+  stage_render_sheets(&set, pixels);
+  stage_render(&set, &options, exact);
+  double square = 0;
+  for (int i = 0; i < PIXELS; i++) square += (double)errors[3 * i] * (double)errors[3 * i];
+  for (int half = 0; half < 2; half++) {
+    const int(*part)[2] = half == 0 ? LEFT : RIGHT;
+    double truth = mean_of(exact, part[0], part[1]), found = mean_of(pixels, part[0], part[1]);
+    assert_true(truth > 0.05);
+    assert_near(found, truth, 0.06 * truth + 4 * sqrt(square) / (PIXELS / 2.0));
+  }
+  close_stage(&set);
+}
+
+/* The same bytes with any number of threads, and in a renderer that made another wall's picture before. */
+static void test_same_bytes(void **state) {
+  (void)state;
+  static float first[4 * PIXELS], other[4 * PIXELS];
+  stage set;
+  walls walls;
+  hl_renderer *renderer = NULL;
+  add_reference_scene(&set, &walls);
+  set.scene.sky.type = HL_SKY_GRADIENT;
+  set.volumes[0].anisotropy = 0.5;
+  set.scene.render.threads = 1;
+  stage_render_sheets(&set, first);
+  set.scene.render.threads = 3;
+  stage_render_sheets(&set, other);
+  assert_memory_equal(first, other, sizeof first);
+  assert_int_equal(hl_renderer_create(set.context, &renderer, NULL), HL_OK);
+  walls.meshes[0].opacity = 0.25;
+  stage_render_with(&set, renderer, other);
+  assert_memory_not_equal(first, other, sizeof first);
+  walls.meshes[0].opacity = 1;
+  stage_render_with(&set, renderer, other);
+  assert_memory_equal(first, other, sizeof first);
+  hl_renderer_destroy(renderer);
+  close_stage(&set);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_haze_behind_a_wall), cmocka_unit_test(test_wall_before_haze),
+      cmocka_unit_test(test_sky_behind_walls),   cmocka_unit_test(test_against_the_reference),
+      cmocka_unit_test(test_same_bytes),
+  };
+  return cmocka_run_group_tests_name("sheets_scattered_meshes", tests, NULL, NULL);
+}
