@@ -183,7 +183,8 @@ typedef struct hl_cut {
   hl_cut_keep keep;           /* which side is left: default the outside */
 } hl_cut;
 
-/* How surfaces are shaded within a voxel of a cut's face; at twice the depth they are as anywhere. */
+/* How surfaces are shaded within a voxel of the face of a cut or of the clip box; at twice the depth they are
+ * as anywhere. */
 typedef enum hl_cut_shading {
   HL_CUT_SHADING_FACE = 0,     /* by the face's own normal */
   HL_CUT_SHADING_GRADIENT = 1, /* by the data's gradient, as if nothing were cut */

@@ -36,8 +36,8 @@ class VolumeSettings(TypedDict, total=False):
     receives_shadow : bool
         The volume is darkened by shadows. Default: True.
     cut_shading : str
-        The normal of surfaces at the faces of `cuts`: the face's, the data's, or none, as in a medium. At
-        those of `clip` `none` is as `gradient`. "face", "gradient", "none". Default: "face".
+        The normal of surfaces at the faces of `cuts` and `clip`: the face's, the data's, or none, as in a
+        medium. "face", "gradient", "none". Default: "face".
     cut_casts_shadow : bool
         What `cuts` remove goes on taking light from what lies behind it. Default: False.
     """

@@ -114,16 +114,18 @@ static int open_standard_input(cli_input *input, uint64_t limit) {
   return open_pipe(input, STDIN_FILENO, limit);
 }
 
-/* Opens an input that is an ordinary file: finds out its kind, and reads pictures. Where it is missing
- * (descriptor < 0), a later reader reports the error. */
+/* Opens an input that is an ordinary file: finds out its kind, and reads pictures, and scenes whose name, as
+ * /dev/stdin, is not in the folder that their files' names start in. Where it is missing (descriptor < 0), a
+ * later reader reports the error. */
 static int open_file(cli_input *input, int descriptor, uint64_t limit) {
   unsigned char first[1024];
   ssize_t got = descriptor >= 0 ? pread(descriptor, first, sizeof first, 0) : 0;
   input_kind told = kind_by_content(first, got > 0 ? (size_t)got : 0);
   if (!kind_by_name(input->path, &input->kind)) input->kind = told;
   else if (input->kind == INPUT_PICTURE && told != INPUT_PICTURE && got > 0) input->kind = told;
-  return input->kind == INPUT_PICTURE && descriptor >= 0 ? read_whole(input, descriptor, limit)
-                                                         : EXIT_CODE_OK;
+  bool redirected = input->kind == INPUT_SCENE && strncmp(input->path, "/dev/", 5) == 0;
+  bool whole = descriptor >= 0 && (input->kind == INPUT_PICTURE || redirected);
+  return whole ? read_whole(input, descriptor, limit) : EXIT_CODE_OK;
 }
 
 int input_open(const char *path, uint64_t limit, cli_input *input) {

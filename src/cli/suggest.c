@@ -32,7 +32,7 @@ static const struct {
     {"format", "type filetype file-format output-format ext extension render-format"},
     {"size",
      "width height w h resolution res geometry resize scale dimensions image-size view-size window-size "
-     "pixels "
+     "pixels dpi "
      "film-size imagesize"},
     {"depth", "bits bit-depth color-depth"},
     {"background",

@@ -1,14 +1,9 @@
-/* reference/clip_faces.c - the faces at which clipping cuts a volume's matter, and what they do to its
- * normals.
- *
- * Derived: cut matter is f B, with the slope B grad f + f grad B, where f is the value above the empty one.
- * B is the box smoothed by a triangle REACH voxels to either side: at the depth h below a face its slope is
- * (1 - h / REACH) / REACH. B itself, 1/2 to 1 in the box, is taken for 1. */
+/* reference/clip_faces.c - the faces at which clipping cuts a volume's matter. */
 #include <math.h>
 
 #include "reference/reference.h"
 
-static const double REACH = 2, TOUCHING = 1e-3; /* voxels */
+static const double TOUCHING = 1e-3; /* voxels */
 
 /* The bounds of another volume's box in this one's index space. */
 static void bounds_of(const hl_scene_volume *other, affine3 world_to_index, double low[3], double high[3]) {
@@ -40,7 +35,7 @@ static void join(const hl_scene_volume *other, reference_volume *volume) {
 
 void hl_reference_find_clip_faces(const hl_scene_description *scene, reference_volume *volume) {
   for (int a = 0; a < 3; a++) {
-    bool faces = volume->described->cut_shading == HL_CUT_SHADING_FACE;
+    bool faces = volume->described->cut_shading != HL_CUT_SHADING_GRADIENT;
     bool low = faces && volume->low[a] > -0.5,
          high = faces && volume->high[a] < (double)volume->grid->dimension[a] - 0.5;
     volume->clip_low[a] = low ? volume->low[a] : -INFINITY;
@@ -51,12 +46,15 @@ void hl_reference_find_clip_faces(const hl_scene_description *scene, reference_v
       join(&scene->volumes[i], volume);
 }
 
-vec3 hl_reference_clip_slope(const reference_volume *volume, vec3 point) {
+double hl_reference_nearest_clip(const reference_volume *volume, vec3 point, vec3 *outward) {
   const double p[3] = {point.x, point.y, point.z};
-  double slope[3];
-  for (int a = 0; a < 3; a++)
-    slope[a] = (fmax(1 - (volume->clip_high[a] - p[a]) / REACH, 0) -
-                fmax(1 - (p[a] - volume->clip_low[a]) / REACH, 0)) /
-               REACH;
-  return mat3_apply(volume->gradient_to_world, (vec3){slope[0], slope[1], slope[2]});
+  double least = INFINITY;
+  for (int a = 0; a < 3; a++) {
+    vec3 rise = mat3_apply(volume->gradient_to_world, (vec3){a == 0, a == 1, a == 2});
+    double edge = 1 / vec3_length(rise), low = fmax(p[a] - volume->clip_low[a], 0) * edge,
+           high = fmax(volume->clip_high[a] - p[a], 0) * edge;
+    if (low < least) least = low, *outward = vec3_scale(rise, -edge);
+    if (high < least) least = high, *outward = vec3_scale(rise, edge);
+  }
+  return least;
 }

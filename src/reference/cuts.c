@@ -81,8 +81,8 @@ void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 *nor
   const hl_scene_volume *described = volume->described;
   vec3 p = affine3_apply(volume->grid->index_to_world, point), face = {0, 0, 0};
   mat3 index_to_file = volume->grid->index_to_world.linear;
-  double least = INFINITY;
-  if (described->cut_count == 0 || described->cut_shading == HL_CUT_SHADING_GRADIENT) return;
+  double least = hl_reference_nearest_clip(volume, point, &face);
+  if (described->cut_shading == HL_CUT_SHADING_GRADIENT) return;
   for (size_t i = 0; i < described->cut_count; i++) {
     height here = height_over(&described->cuts[i], p);
     vec3 rise = mat3_apply(volume->gradient_to_world, mat3_apply(mat3_transpose(index_to_file), here.rise));
@@ -91,6 +91,7 @@ void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 *nor
     if (depth < least) least = depth, face = vec3_scale(vec3_normalise(rise), -inwards);
   }
   double skin = fmin(fmax(2 - least / volume->smallest_edge, 0), 1);
+  if (skin == 0) return;
   if (described->cut_shading == HL_CUT_SHADING_FACE) {
     vec3 sum = vec3_add(vec3_scale(face, skin), vec3_scale(*normal, *surface * (1 - skin)));
     *normal = vec3_length(sum) > 0 ? vec3_normalise(sum) : sum;

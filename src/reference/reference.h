@@ -7,7 +7,7 @@
  *     march.c           a ray through the volumes' boxes, step by step, jumping over empty bricks
  *     field.c           reconstruction of one volume at a point: value, gradient, extinction, empty bricks
  *     cuts.c            what cuts leave of a volume
- *     clip_faces.c      what clipping does to normals
+ *     clip_faces.c      where clipping cuts matter
  *     tint.c            the colours of a volume's own voxels, and of its mask
  *     mask.c            what a mask makes of extinction and colour
  *     coefficients.c    what the interpolating kernel sums in place of voxels
@@ -219,7 +219,7 @@ bool hl_reference_left(const reference_volume *volume, vec3 point);
 /* The least distance above `after` at which a ray of index space crosses the face of a cut; infinite: none.
  */
 double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 direction, double after);
-/* Shades a sample near a cut's face. normal, surface: those of the data. */
+/* Shades a sample near the face of a cut or of the clip box. normal, surface: those of the data. */
 void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 *normal, double *surface);
 
 double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]);
@@ -234,8 +234,9 @@ double hl_reference_mask_color(const reference_volume *volume, vec3 point, doubl
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);
 /* Finds the faces at which clipping cuts the volume and no other one goes on; its box is known. */
 void hl_reference_find_clip_faces(const hl_scene_description *scene, reference_volume *volume);
-/* What a value one above the empty one adds there to the steepness away from the matter; world. */
-vec3 hl_reference_clip_slope(const reference_volume *volume, vec3 point);
+/* How deep a point of index space lies behind the nearest of them, in world units, and the face's outward
+ * normal; infinite: there is none. */
+double hl_reference_nearest_clip(const reference_volume *volume, vec3 point, vec3 *outward);
 /* sigma, 1 / world length; algorithm.md's sigma(f) = -ln(1 - alpha(f)) / u, times gradient opacity. value:
  * that at the point. */
 double hl_reference_extinction(const reference_volume *volume, double value, vec3 point);

@@ -180,7 +180,7 @@ LANES_INLINE plane_matter plane_of(const block_density *d, lanes3 towards, lanes
                             lanes_set(classifier->last_visible));
   lanes deep = lanes_abs(seen - edge) / lanes_max(a_voxel, lanes_set(1e-6f));
   plane.likely = lanes_keep(facing, lanes_clamp(lanes_line(deep, -1.0f / SKIN_VOXELS, 2.0f), 0, 1));
-  if (volume->cut_count > 0) plane.likely = plane.likely * (1.0f - d->skin);
+  if (volume->cut_count > 0 || volume->clip_faces) plane.likely = plane.likely * (1.0f - d->skin);
   plane.likely = plane.likely * lanes_clamp((dot3(d->normal, towards) - 0.1f) * (1.0f / (0.2f - 0.1f)), 0, 1);
   plane.below = origin_at(classifier, lanes_fma(-plane.fall, way, seen));
   return plane;

@@ -39,6 +39,7 @@ typedef struct shade_volume {
   float to_index[3][4], low[3], high[3]; /* frame space to index space, and the box there */
   int clip_faces;                        /* clipping cuts through visible matter: */
   float clip_low[3], clip_high[3];       /* at these faces of the box; far outside where at none */
+  float clip_edge[3];                    /* between the planes of voxels along i, j, k; frame units */
   const float (*shown)[4];               /* in a maximum projection: rows of SHOWN_...; else null */
   int rank;                              /* among the visible volumes */
   float anisotropy;                      /* g of the phase function */

@@ -218,26 +218,6 @@ LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, bloc
   }
 }
 
-/* Voxels below a face cut by clipping in which the face turns normals. */
-static const float CLIP_REACH = 2;
-
-/* What matter of density 1 adds to the steepness away from it where clipping cuts it: without the faces, the
- * normals of a cut through even matter are those of its noise. Derived: cut matter is f B, with the slope B
- * grad f + f grad B. B is the box smoothed by a triangle CLIP_REACH voxels to either side, with the slope (1
- * - h / CLIP_REACH) / CLIP_REACH at the depth h below a face; B itself, 1/2 to 1 in the box, is taken for 1.
- */
-LANES_INLINE lanes3 slope_of_clip(const shade_volume *volume, lanes3 position) {
-  lanes3 slope = {lanes_set(0), lanes_set(0), lanes_set(0)};
-  for (int axis = 0; axis < 3; axis++) {
-    const float *row = volume->to_index[axis];
-    lanes at = row_of_point(row, position);
-    lanes low = lanes_max(lanes_line(at - volume->clip_low[axis], -1 / CLIP_REACH, 1.0f), lanes_set(0)),
-          high = lanes_max(lanes_line(volume->clip_high[axis] - at, -1 / CLIP_REACH, 1.0f), lanes_set(0));
-    slope = add_scaled3(slope, set3(row), (high - low) * (1 / CLIP_REACH));
-  }
-  return slope;
-}
-
 /* Finds a volume's normal. The slope is measured in steps of the transfer function's table: the squares of
  * data values of 1e-27 or 1e30 are beyond floats. Where components are below 1e-19 even so, the normal is
  * shorter than 1. */
@@ -247,9 +227,6 @@ LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
   lanes density = d->way.first + d->way.last;
   lanes3 slope = scale3(slope_of_block(d), lanes_set(scale));
   lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f));
-  if (volume->clip_faces && volume->phong)
-    slope = add_scaled3(slope, slope_of_clip(volume, seen_position(slab, d)),
-                        outward * lanes_abs(density) * (scale * 0.5f));
   lanes steepness = lanes_sqrt(dot3(slope, slope));
   d->surface = volume->phong
                    ? lanes_min(steepness * (1.0f / volume->classifier->normal_edge), lanes_set(1.0f))
@@ -257,28 +234,52 @@ LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
   d->normal = scale3(slope, outward / lanes_max(steepness, lanes_set(1e-18f)));
 }
 
-/* Within two voxels behind the nearest face of a cut, the normal turns to the face's own, or the surface to a
- * medium. */
-LANES_INLINE void find_cut_face(const block_slab *slab, block_density *d) {
-  const shade_volume *volume = d->patch->volume;
-  lanes3 point = seen_position(slab, d);
-  lanes3 face = {lanes_set(0), lanes_set(0), lanes_set(0)};
-  lanes least = lanes_set(1e30f);
+/* The nearest face that cuts a volume. */
+typedef struct cut_face {
+  lanes depth;    /* of the point behind it; frame units */
+  lanes3 outward; /* its normal */
+} cut_face;
+
+LANES_INLINE void take_nearer(cut_face *nearest, lanes depth, lanes3 outward) {
+  lanes_int nearer = depth < nearest->depth;
+  nearest->depth = lanes_select(nearer, depth, nearest->depth);
+  nearest->outward.x = lanes_select(nearer, outward.x, nearest->outward.x);
+  nearest->outward.y = lanes_select(nearer, outward.y, nearest->outward.y);
+  nearest->outward.z = lanes_select(nearer, outward.z, nearest->outward.z);
+}
+
+LANES_INLINE void find_nearest_clip(const shade_volume *volume, lanes3 point, cut_face *nearest) {
+  for (int axis = 0; axis < 3; axis++) {
+    const float *row = volume->to_index[axis], edge = volume->clip_edge[axis];
+    lanes at = row_of_point(row, point);
+    take_nearer(nearest, lanes_max(at - volume->clip_low[axis], lanes_set(0)) * edge,
+                scale3(set3(row), lanes_set(-edge)));
+    take_nearer(nearest, lanes_max(volume->clip_high[axis] - at, lanes_set(0)) * edge,
+                scale3(set3(row), lanes_set(edge)));
+  }
+}
+
+LANES_INLINE void find_nearest_cut(const shade_volume *volume, lanes3 point, cut_face *nearest) {
   for (int i = 0; i < volume->cut_count; i++) {
     cut_height over = height_over_cut(&volume->cuts[i], point);
     lanes outward = lanes_set(volume->cuts[i].keep_inside ? 1.0f : -1.0f) /
                     lanes_sqrt(dot3(over.gradient, over.gradient));
-    lanes depth = lanes_max(-over.height * outward, lanes_set(0));
-    lanes_int nearer = depth < least;
-    least = lanes_select(nearer, depth, least);
-    face.x = lanes_select(nearer, over.gradient.x * outward, face.x);
-    face.y = lanes_select(nearer, over.gradient.y * outward, face.y);
-    face.z = lanes_select(nearer, over.gradient.z * outward, face.z);
+    take_nearer(nearest, lanes_max(-over.height * outward, lanes_set(0)), scale3(over.gradient, outward));
   }
-  d->skin = lanes_clamp(2.0f - least * (1.0f / volume->voxel), 0, 1);
+}
+
+/* Within two voxels behind the nearest face of a cut or of the clip box, the normal turns to the face's own,
+ * or the surface to a medium: the data's gradient, of even matter, is its noise there. */
+LANES_INLINE void find_cut_face(const block_slab *slab, block_density *d) {
+  const shade_volume *volume = d->patch->volume;
+  lanes3 point = seen_position(slab, d);
+  cut_face nearest = {lanes_set(1e30f), {lanes_set(0), lanes_set(0), lanes_set(0)}};
+  if (volume->clip_faces) find_nearest_clip(volume, point, &nearest);
+  find_nearest_cut(volume, point, &nearest);
+  d->skin = lanes_clamp(2.0f - nearest.depth * (1.0f / volume->voxel), 0, 1);
   lanes rest = 1.0f - d->skin;
   if (volume->cut_shading == HL_CUT_SHADING_FACE) {
-    lanes3 sum = add_scaled3(scale3(face, d->skin), d->normal, d->surface * rest);
+    lanes3 sum = add_scaled3(scale3(nearest.outward, d->skin), d->normal, d->surface * rest);
     d->normal = scale3(sum, 1.0f / lanes_max(lanes_sqrt(dot3(sum, sum)), lanes_set(1e-6f)));
     d->surface = lanes_fma(d->surface, rest, d->skin);
   } else {
@@ -292,7 +293,8 @@ LANES_INLINE void find_normals(const block_slab *slab, block_density *densities,
     find_normal(slab, &densities[i]);
     densities[i].skin = lanes_set(0);
     const shade_volume *volume = densities[i].patch->volume;
-    if (volume->cut_count > 0 && volume->phong && volume->cut_shading != HL_CUT_SHADING_GRADIENT)
+    bool cut = volume->cut_count > 0 || volume->clip_faces;
+    if (cut && volume->phong && volume->cut_shading != HL_CUT_SHADING_GRADIENT)
       find_cut_face(slab, &densities[i]);
   }
 }

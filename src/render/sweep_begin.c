@@ -245,6 +245,7 @@ static void find_clip_faces(const grid *grid, shade_volume *shade) {
                 grid->face_high[axis] < FACE_FAR_OUT;
     shade->clip_low[axis] = low ? (float)grid->box_low[axis] : -FACE_FAR_OUT;
     shade->clip_high[axis] = high ? (float)grid->box_high[axis] : FACE_FAR_OUT;
+    shade->clip_edge[axis] = (float)(1 / vec3_length(grid->frame_to_index.linear.row[axis]));
     shade->clip_faces = shade->clip_faces || low || high;
   }
 }
@@ -297,7 +298,7 @@ static void set_up_shading(sweep *sweep) {
       shade->low[axis] = (float)grid->box_low[axis];
       shade->high[axis] = (float)grid->box_high[axis];
     }
-    if (volume->cut_shading == HL_CUT_SHADING_FACE) find_clip_faces(grid, shade);
+    if (volume->cut_shading != HL_CUT_SHADING_GRADIENT) find_clip_faces(grid, shade);
   }
   set_up_cuts(sweep);
 }

@@ -234,7 +234,7 @@ static const hl_setting volume_rows[] = {
      .sentence = "The greatest corner of the box that is kept."},
     {.key = "cut_shading", FIELD(hl_scene_volume, cut_shading), A_CHOICE(cut_shadings), .optional = 1,
      .option = "cut-shading",
-     .sentence = "The normal of surfaces at the faces of `cuts`: the face's, the data's, or none, as in a medium. At those of `clip` `none` is as `gradient`."},
+     .sentence = "The normal of surfaces at the faces of `cuts` and `clip`: the face's, the data's, or none, as in a medium."},
     {.key = "cut_casts_shadow", FIELD(hl_scene_volume, cut_casts_shadow), A_FLAG, .optional = 1,
      .option = "cut-casts-shadow",
      .sentence = "What `cuts` remove goes on taking light from what lies behind it."}};

@@ -225,7 +225,7 @@ static void test_too_many_sheets(void **state) {
   assert_string_equal(
       error.message,
       "/render/sheet_spacing: makes more than 1048576 sheets of the volumes, whose smallest voxel "
-      "edge is small beside their size: raise it");
+      "edge is small beside their size: raise it, or correct the spacing of voxels (--spacing)");
   hl_renderer_destroy(renderer);
   hl_scene_release(scene);
   stage_close(&set);

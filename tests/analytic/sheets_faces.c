@@ -137,8 +137,8 @@ static void test_normal_of_a_cut(void **state) {
     print_message("# %s: mean error %.4f, greatest %.4f\n", reference ? "reference" : "sheets", sum / count,
                   greatest);
     assert_true(count > 100);
-    assert_true(sum / count < 0.015);
-    assert_true(greatest < 0.06);
+    assert_true(sum / count < 0.002);
+    assert_true(greatest < 0.005);
   }
   stage_close(&set);
 }

@@ -823,6 +823,7 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    round % 4 == 3,
                                    {1, -1e9f, 2},
                                    {6, 7, 1e9f},
+                                   {1.1f, 1.2f, 0.9f},
                                    NULL,
                                    v,
                                    round % 3 == 1 ? -0.7f : round % 3 * 0.4f,

@@ -7,6 +7,9 @@ halflight render ball.nrrd --size 20x16 --quiet -o volume.npy
 cat scene.json | halflight render - --quiet -o a.npy
 cat scene.json | halflight render /dev/stdin --quiet -o b.npy
 halflight render - --quiet -o c.npy <scene.json
+# Names of files in a scene start in the current folder, not in /dev.
+halflight render /dev/stdin --quiet -o i.npy <scene.json
+cmp scene.npy i.npy
 mkfifo pipe
 cat scene.json >pipe & halflight render pipe --quiet -o d.npy
 for picture in a b c d; do cmp scene.npy $picture.npy; done
