@@ -385,6 +385,16 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .whole = true,
                       .low = 1,
                       .high = 1 << 24},
+    [RENDER_RAYS] = {.name = "rays",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "N",
+                     .help =
+                         "its N x N rays through each pixel, at most 8 x 8 (default:\nas many as the sheets "
+                         "average)",
+                     .count = 1,
+                     .whole = true,
+                     .low = 1,
+                     .high = 8},
 
     [RENDER_DATA] = HOST_OPTION_DATA("Running"),
     [RENDER_PART] = FRAMES_OPTION_PART(
@@ -456,7 +466,7 @@ int render_check_options(const cli_value *values) {
   if (exit_code != EXIT_CODE_OK) return exit_code;
   if (values[RENDER_ORTHO].given && values[RENDER_FOVY].given)
     return fail(EXIT_CODE_USAGE, "--ortho and --fovy exclude each other: give one of them");
-  for (int which = RENDER_LIGHT_POINTS; which <= RENDER_PATHS; which++)
+  for (int which = RENDER_LIGHT_POINTS; which <= RENDER_RAYS; which++)
     if (values[which].given && !values[RENDER_REFERENCE].given)
       return fail(EXIT_CODE_USAGE, "--%s is for --reference: give both or none", render_options[which].name);
   if (values[RENDER_LIGHT].given && fabs(values[RENDER_LIGHT].number[1]) > 90)

@@ -47,6 +47,7 @@ static bool has_render_option(size_t row) {
     case RENDER_LIGHT_POINTS:
     case RENDER_STEP:
     case RENDER_PATHS:
+    case RENDER_RAYS:
     case RENDER_PART:
     case RENDER_RANKS:
     case RENDER_PRINT_SCENE:

@@ -84,7 +84,7 @@ def reference(name, scene, shadows):
     label = f"reference-{name}-{shadows}-{key[:12]}"
     if not (WORK / f"{label}.npy").exists():
         print(f"  reference, {shadows} shadows, {points} points on each light ...", flush=True)
-        run(scene, label, "--reference", "--layers", "--light-points", str(points), "--step", str(step),
+        run(scene, label, "--reference", "--layers", "--light-points", str(points), "--step", str(step), "--rays", "1",
             "--size", f"{size // STRIDE}x{size // STRIDE}")
     return Pictures(label)
 

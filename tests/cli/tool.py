@@ -71,6 +71,18 @@ def ratio(path, other):
     print(*(f"{sum(b[c::4]) / sum(a[c::4]):.4f}" for c in range(4)))
 
 
+def shared_pixels(path, other):
+    """Which part of the second picture's pixels the first, an odd number of times as wide, has at their centres."""
+    height, width, channels, a = read_npy(path)
+    rows, columns, _, b = read_npy(other)
+    times = width // columns
+    def pixel(numbers, n):
+        return numbers[channels * n:channels * (n + 1)]
+    same = sum(pixel(a, (times * y + times // 2) * width + times * x + times // 2) == pixel(b, y * columns + x)
+               for y in range(rows) for x in range(columns))
+    print(f"{same / (rows * columns):.2f}")
+
+
 def sum_layers(picture, *layers):
     """The layers of three channels sum to the picture's RGB."""
     height, width, channels, numbers = read_npy(picture)
@@ -216,6 +228,7 @@ def json_get(path, expression):
 
 
 COMMANDS = {"ball": ball, "stack": stacks.write, "npy-shape": npy_shape, "brightness": brightness, "coverage": coverage, "ratio": ratio,
+            "shared-pixels": shared_pixels,
             "sum_layers": sum_layers, "exr-holds": exr_holds,
             "png-header": png_header, "png-scene": png_scene, "png-pixel": png_pixel,
             "ppm-of-png": ppm_of_png, "json": json_get}
