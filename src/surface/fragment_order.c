@@ -5,43 +5,74 @@
 
 /* ---- sorting ---- */
 
-int hl_by_pixel_rising(const fragment *a, const fragment *b) {
-  if (a->pixel != b->pixel) return (int)a->pixel - (int)b->pixel;
-  if (a->height != b->height) return a->height < b->height ? -1 : 1;
-  return a->primitive < b->primitive ? -1 : a->primitive > b->primitive;
+/* Whether a comes before b in their pixel; heights rise. */
+static bool is_below(const fragment *a, const fragment *b) {
+  return a->height != b->height ? a->height < b->height : a->primitive <= b->primitive;
 }
 
-int hl_by_pixel_falling(const fragment *a, const fragment *b) {
-  if (a->pixel != b->pixel) return (int)a->pixel - (int)b->pixel;
-  if (a->height != b->height) return a->height > b->height ? -1 : 1;
-  return a->primitive < b->primitive ? -1 : a->primitive > b->primitive;
+static bool is_above(const fragment *a, const fragment *b) {
+  return a->height != b->height ? a->height > b->height : a->primitive <= b->primitive;
 }
 
-int hl_by_slab(const fragment *a, const fragment *b) {
-  return a->slab != b->slab ? (a->slab < b->slab ? -1 : 1) : hl_by_pixel_rising(a, b);
-}
+typedef bool comes_before(const fragment *a, const fragment *b);
 
 /* Merges the sorted runs [0, middle) and [middle, count) of `from` into `to`. */
-static void merge(const fragment *from, size_t middle, size_t count, fragment *to, fragment_order *order) {
+static void merge(const fragment *from, size_t middle, size_t count, fragment *to, comes_before *before) {
   size_t a = 0, b = middle;
   for (size_t i = 0; i < count; i++) {
-    bool first = b == count || (a < middle && order(&from[a], &from[b]) <= 0);
+    bool first = b == count || (a < middle && before(&from[a], &from[b]));
     to[i] = first ? from[a++] : from[b++];
   }
 }
 
-void hl_sort_fragments(fragment *list, fragment *spare, size_t count, fragment_order *order) {
+/* Sorts by merging. */
+static void sort_pixel(fragment *list, fragment *spare, size_t count, comes_before *before) {
   fragment *from = list, *to = spare;
   for (size_t run = 1; run < count; run *= 2) {
     for (size_t at = 0; at < count; at += 2 * run) {
       size_t left = count - at, both = left < 2 * run ? left : 2 * run;
-      merge(from + at, run < both ? run : both, both, to + at, order);
+      merge(from + at, run < both ? run : both, both, to + at, before);
     }
     fragment *swapped = from;
     from = to;
     to = swapped;
   }
   if (from != list) memcpy(list, from, count * sizeof *list);
+}
+
+void hl_sort_by_pixel(fragment *list, fragment *spare, size_t count, bool falling) {
+  uint32_t places[TILE_PIXELS + 1] = {0};
+  for (size_t i = 0; i < count; i++) places[list[i].pixel + 1]++;
+  for (int p = 0; p < TILE_PIXELS; p++) places[p + 1] += places[p];
+  for (size_t i = 0; i < count; i++) spare[places[list[i].pixel]++] = list[i];
+  memcpy(list, spare, count * sizeof *list);
+  for (size_t i = 0, end; i < count; i = end) { /* a place is now its pixel's end */
+    end = places[list[i].pixel];
+    sort_pixel(list + i, spare, end - i, falling ? is_above : is_below);
+  }
+}
+
+/* Turns round the fragments of each pixel of a slab whose heights fall. */
+static void let_rise(fragment *list, size_t count) {
+  for (size_t i = 0, end; i < count; i = end) {
+    for (end = i + 1; end < count && list[end].pixel == list[i].pixel && list[end].slab == list[i].slab;)
+      end++;
+    if (list[i].height <= list[end - 1].height) continue;
+    for (size_t a = i, b = end - 1; a < b; a++, b--) {
+      fragment swapped = list[a];
+      list[a] = list[b];
+      list[b] = swapped;
+    }
+  }
+}
+
+void hl_sort_by_slab(fragment *list, fragment *spare, size_t count, uint32_t *places, int slabs) {
+  memset(places, 0, ((size_t)slabs + 2) * sizeof *places);
+  for (size_t i = 0; i < count; i++) places[list[i].slab + 1]++;
+  for (int s = 0; s <= slabs; s++) places[s + 1] += places[s];
+  for (size_t i = 0; i < count; i++) spare[places[list[i].slab]++] = list[i];
+  memcpy(list, spare, count * sizeof *list);
+  let_rise(list, count);
 }
 
 /* ---- opacities ---- */

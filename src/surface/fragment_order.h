@@ -10,13 +10,12 @@
 #include "surface/fragment.h"
 #include "view/view.h"
 
-/* Which of two fragments comes first: below 0 for a. */
-typedef int fragment_order(const fragment *a, const fragment *b);
+/* Sorts by pixels, and within a pixel by rising or falling heights. spare: as large as the list. */
+void hl_sort_by_pixel(fragment *list, fragment *spare, size_t count, bool falling);
 
-fragment_order hl_by_pixel_rising, hl_by_pixel_falling, hl_by_slab;
-
-/* Sorts by merging, which takes no other memory than `spare`, as large as the list. */
-void hl_sort_fragments(fragment *list, fragment *spare, size_t count, fragment_order *order);
+/* Sorts by slabs fragments that are sorted by pixels; within a slab by pixels, then by rising heights.
+ * places: [slabs + 2], for use here; slabs: the greatest number that a slab may have. */
+void hl_sort_by_slab(fragment *list, fragment *spare, size_t count, uint32_t *places, int slabs);
 
 /* Finds the opacities of fragments, which are sorted by pixels, and keeps those that take anything; returns
  * how many. least: [mesh_count]; the least fraction of their opacity that meshes take of any colour of light.

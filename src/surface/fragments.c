@@ -37,7 +37,8 @@ enum { MOST_SLABS = 16 }; /* that a fragment fills */
 typedef struct fragment_worker {
   _Alignas(64) fragment *scratch; /* owned; [2][room]; a tile's fragments, and room to sort them */
   size_t count, room;
-  fragment *out; /* owned; [out_count]; of the tiles that the thread has made */
+  uint32_t *places; /* owned; [sheets + 2]; for sorting */
+  fragment *out;    /* owned; [out_count]; of the tiles that the thread has made */
   size_t out_count, out_room;
   bool failed;
 } fragment_worker;
@@ -280,10 +281,10 @@ static void make_tile(void *data, size_t tile, int worker_index) {
   worker->count = 0;
   add_primitives(work, worker, tile);
   if (worker->failed || worker->count == 0) return;
-  hl_sort_fragments(worker->scratch, worker->scratch + worker->room, worker->count,
-                    source->falling ? hl_by_pixel_falling : hl_by_pixel_rising);
+  hl_sort_by_pixel(worker->scratch, worker->scratch + worker->room, worker->count, source->falling);
   size_t kept = hl_resolve_fragments(worker->scratch, worker->count, work->least, source->rise > 0);
-  hl_sort_fragments(worker->scratch, worker->scratch + worker->room, kept, hl_by_slab);
+  hl_sort_by_slab(worker->scratch, worker->scratch + worker->room, kept, worker->places,
+                  source->sheets->count);
   if (!make_room(source->context, &worker->out, &worker->out_room, worker->out_count + kept, 1)) {
     worker->failed = true;
     return;
@@ -320,6 +321,11 @@ static hl_status rasterise(fragment_work *work, fragments *made, hl_error *error
   hl_context *context = work->source->context;
   size_t threads = (size_t)hl_pool_threads(work->source->pool);
   bool room = true;
+  for (size_t w = 0; w < threads; w++) {
+    fragment_worker *worker = &work->workers[w];
+    worker->places = hl_allocate(context, (size_t)work->source->sheets->count + 2, sizeof *worker->places);
+    worker->failed = worker->places == NULL;
+  }
   hl_pool_run(work->source->pool, made->tiles, make_tile, work);
   for (size_t w = 0; w < threads; w++) room = room && !work->workers[w].failed;
   hl_status status = HL_OK;
@@ -330,6 +336,7 @@ static hl_status rasterise(fragment_work *work, fragments *made, hl_error *error
                   : hl_fail_memory(error, sizeof(fragment), "the surfaces' fragments");
   for (size_t w = 0; w < threads; w++) {
     hl_release(context, work->workers[w].scratch);
+    hl_release(context, work->workers[w].places);
     hl_release(context, work->workers[w].out);
   }
   return status;
