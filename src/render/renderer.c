@@ -219,7 +219,12 @@ static void open_faces(const hl_scene_description *scene, grid *grids) {
 static hl_status add_surfaces(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work,
                               hl_error *error) {
   frame *frame = &work->frame;
-  hl_status status = hl_surfaces_update(renderer->context, renderer->pool, scene, &renderer->surfaces, error);
+  if (!hl_surfaces_current(&renderer->surfaces, scene))
+    hl_surfaces_release(renderer->context, &renderer->surfaces);
+  uint64_t bytes = renderer->surfaces.mesh_count > 0 ? 0 : hl_surfaces_bytes(scene);
+  hl_status status = check_room(renderer, bytes, error);
+  if (status == HL_OK)
+    status = hl_surfaces_update(renderer->context, renderer->pool, scene, &renderer->surfaces, error);
   if (status != HL_OK || scene->mesh_count == 0) return status;
   for (size_t i = 0; i < scene->mesh_count; i++, frame->point_count += 8)
     hl_surface_corners(&scene->meshes[i], frame->voxel, frame->points + frame->point_count);

@@ -137,6 +137,21 @@ static void find_tiles(sweep *sweep) {
   sweep->tiles = (size_t)sweep->tiles_x * (size_t)sweep->tiles_y;
 }
 
+/* The surfaces' fragments: those of all views are kept, and made one view after the other. */
+static uint64_t fragments_bytes(const sweep *sweep, int threads) {
+  const surfaces *all = sweep->frame->surfaces;
+  uint64_t making, most;
+  if (all == NULL) return 0;
+  uint64_t kept = hl_fragments_bytes(all, &sweep->frame->eye, threads, &most);
+  for (int i = 0; i < sweep->geometry->light_count; i++) {
+    const light_shadow *shadow = &sweep->lights[i].shadow;
+    if (shadow->method == NULL) continue;
+    kept += hl_fragments_bytes(all, &shadow->plan.view, threads, &making);
+    if (making > most) most = making;
+  }
+  return kept + most;
+}
+
 hl_status hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads, sweep_bytes *bytes, hl_error *error) {
   struct sweep planned = *sweep;
   hl_layout counted = {0};
@@ -148,6 +163,7 @@ hl_status hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads, sweep_by
   choose_stretch(&planned);
   *bytes = (sweep_bytes){
       .passing = hl_view_sheets_bytes(&planned.content, &sweep->frame->eye, PIXEL_TO_SPARE)};
+  if (status == HL_OK) bytes->passing += fragments_bytes(&planned, threads);
   if (sweep->geometry->back_to_front)
     bytes->passing += planned.tiles * TILE_BLOCKS * sizeof *sweep->shown_from;
   for (int i = 0; i < sweep->geometry->light_count; i++) {

@@ -297,6 +297,16 @@ static void make_tile(void *data, size_t tile, int worker_index) {
 
 /* ---- a view ---- */
 
+uint64_t hl_fragments_bytes(const surfaces *all, const view *view, int threads, uint64_t *making) {
+  uint64_t primitives = hl_surfaces_count(all),
+           pixels = (uint64_t)hl_tiles(view->width) * (uint64_t)hl_tiles(view->height) * TILE_PIXELS;
+  uint64_t list = (primitives + 2 * pixels) * sizeof(fragment);
+  /* a thread's list grows by copies, each twice as long as the one before */
+  *making = 2 * list + all->vertex_count * 2 * sizeof(int32_t) + hl_primitive_bins_bytes(all, view) +
+            (uint64_t)threads * 2 * 2 * TILE_PIXELS * MOST_SLABS * sizeof(fragment);
+  return list;
+}
+
 /* Brings the tiles' fragments together, in the order of the tiles. */
 static hl_status gather(const fragment_work *work, fragments *made, hl_error *error) {
   hl_context *context = work->source->context;

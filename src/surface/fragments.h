@@ -38,6 +38,10 @@ typedef struct fragments_source {
   int tile_words;
 } fragments_source;
 
+/* About the bytes of a view's fragments, with one for each primitive and two for each pixel; *making: those
+ * that making them takes besides, for a while. */
+uint64_t hl_fragments_bytes(const surfaces *all, const view *view, int threads, uint64_t *making);
+
 hl_status hl_fragments_create(const fragments_source *source, fragments *made, hl_error *error);
 void hl_fragments_release(hl_context *context, fragments *made);
 

@@ -119,6 +119,13 @@ static bool find_places(bin_work *work, size_t tasks) {
   return sum <= UINT32_MAX;
 }
 
+uint64_t hl_primitive_bins_bytes(const surfaces *all, const view *view) {
+  uint64_t count = hl_surfaces_count(all),
+           tiles = (uint64_t)hl_tiles(view->width) * (uint64_t)hl_tiles(view->height);
+  uint64_t tasks = count / LEAST_A_TASK + 1 < MOST_TASKS ? count / LEAST_A_TASK + 1 : MOST_TASKS;
+  return count * (sizeof(tile_span) + sizeof(uint32_t)) + (tasks + 1) * tiles * sizeof(uint32_t);
+}
+
 hl_status hl_primitive_bins_create(hl_context *context, hl_pool *pool, const seen_vertices *seen,
                                    const binned *wanted, primitive_bins *bins, hl_error *error) {
   bin_work work = {.seen = seen, .wanted = wanted, .bins = bins};

@@ -153,8 +153,7 @@ static hl_status create(hl_context *context, hl_pool *pool, const hl_scene_descr
   return status;
 }
 
-/* Whether the same meshes stand in the same places. */
-static bool is_current(const surfaces *kept, const hl_scene_description *scene) {
+bool hl_surfaces_current(const surfaces *kept, const hl_scene_description *scene) {
   if (kept->mesh_count != scene->mesh_count) return false;
   for (size_t m = 0; m < kept->mesh_count; m++) {
     affine3 placement = hl_scene_mesh_to_world(&scene->meshes[m]);
@@ -167,7 +166,7 @@ static bool is_current(const surfaces *kept, const hl_scene_description *scene) 
 
 hl_status hl_surfaces_update(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
                              surfaces *kept, hl_error *error) {
-  if (!is_current(kept, scene)) {
+  if (!hl_surfaces_current(kept, scene)) {
     hl_surfaces_release(context, kept);
     return scene->mesh_count > 0 ? create(context, pool, scene, kept, error) : HL_OK;
   }

@@ -50,8 +50,12 @@ hl_status hl_surfaces_update(hl_context *context, hl_pool *pool, const hl_scene_
                              surfaces *kept, hl_error *error);
 void hl_surfaces_release(hl_context *context, surfaces *kept);
 
-/* The bytes that hl_surfaces_update() allocates. */
+/* The bytes that hl_surfaces_update() allocates where nothing is kept. */
 uint64_t hl_surfaces_bytes(const hl_scene_description *scene);
+
+/* Whether the same meshes stand in the same places as in the earlier frame: the update then allocates
+ * nothing. */
+bool hl_surfaces_current(const surfaces *kept, const hl_scene_description *scene);
 
 /* The index of the mesh that a primitive belongs to. Slow: fragments know theirs. */
 size_t hl_surface_mesh_of(const surfaces *all, uint32_t primitive);

@@ -492,6 +492,55 @@ static void test_colored_pane(void **state) {
   }
 }
 
+/* A cube of triangles about the middle, with this half edge. */
+static hl_scene_mesh *add_cube(mesh_stage *all, double half) {
+  static const uint32_t faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                        {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  float corners[8][3];
+  for (int i = 0; i < 8; i++)
+    vec3_store(corners[i], (vec3){i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half});
+  return add_mesh(all, (const float(*)[3])corners, 8, faces, 12);
+}
+
+/* A cube of triangles and an opaque box of a volume: the same silhouettes, and the same shadow on a floor, in
+ * every method. */
+static void test_cube_and_box(void **state) {
+  (void)state;
+  static float cube[PIXELS * 4], box[PIXELS * 4];
+  for (int k = 0; k < 4; k++)
+    for (int invisible = 0; invisible < 2; invisible++) {
+      for (int of_volume = 0; of_volume < 2; of_volume++) {
+        mesh_stage all;
+        open_meshes(&all);
+        add_quad(&all, (vec3){0, 0, -8}, (vec3){22, 0, 0}, (vec3){0, 22, 0});
+        if (of_volume) {
+          hl_scene_volume *made = stage_add_box(&all.set, (vec3){-5, -5, -5}, (vec3){5, 5, 5});
+          stage_set_opacity(&all.set, made, 0.999999, 0.1);
+          stage_set_color(&all.set, made, 0, 0, 0);
+          made->visible = !invisible;
+        } else {
+          hl_scene_mesh *made = add_cube(&all, 5);
+          made->material.diffuse = 0;
+          made->visible = !invisible;
+        }
+        choose_shadows(&all.set, stage_add_directional(&all.set, (vec3){0.5, -0.3, -1}), k, 6);
+        stage_look(&all.set, (vec3){30, 20, 80}, (vec3){0, 0, -3}, (vec3){0, 1, 0});
+        stage_render_sheets(&all.set, of_volume ? box : cube);
+        close_meshes(&all);
+      }
+      double sum = 0, signed_sum = 0, dark = 0;
+      for (int i = 0; i < PIXELS; i++) {
+        double difference = (double)cube[4 * i] - (double)box[4 * i];
+        sum += fabs(difference);
+        signed_sum += difference;
+        dark += (double)cube[4 * i] < 0.3 && cube[4 * i + 3] > 0.99f;
+      }
+      assert_true(dark > 200);
+      assert_near(sum / PIXELS, 0, 0.008); /* edges of volumes are not antialiased */
+      assert_near(signed_sum / PIXELS, 0, 0.0006);
+    }
+}
+
 /* A scene of meshes alone is the scene that it is beside a clear volume. */
 static void test_no_volume(void **state) {
   (void)state;
@@ -515,6 +564,7 @@ int main(void) {
                                      cmocka_unit_test(test_no_seams),
                                      cmocka_unit_test(test_pane_in_haze),
                                      cmocka_unit_test(test_no_acne),
+                                     cmocka_unit_test(test_cube_and_box),
                                      cmocka_unit_test(test_translucent_pane),
                                      cmocka_unit_test(test_penumbra),
                                      cmocka_unit_test(test_volume_and_mesh),
