@@ -168,7 +168,7 @@ typedef struct hl_isosurface {
 } hl_isosurface;
 
 /* A part of space that is cut out of a volume: its inside, or with keep all but its inside. Lengths are in
- * the units of the volume's own file, before the transform. */
+ * the units of the volume's own file, before the transform; those of a scene's cuts in its world. */
 typedef enum hl_cut_type {
   HL_CUT_PLANE = 0, /* the half space on the side that the normal points to */
   HL_CUT_BOX = 1,
@@ -181,6 +181,7 @@ typedef struct hl_cut {
   double min[3], max[3];      /* box */
   double center[3], radius;   /* sphere */
   hl_cut_keep keep;           /* which side is left: default the outside */
+  int world; /* non-zero: lengths are in the scene's world, after the volume's transform; default 0 */
 } hl_cut;
 
 /* How surfaces are shaded within a voxel of the face of a cut or of the clip box; at twice the depth they are
@@ -337,6 +338,9 @@ typedef struct hl_scene_description {
   double exposure;         /* stops: a PNG shows the volumes' light times 2^exposure; 0 by default */
   const hl_scene_mesh *meshes;
   size_t mesh_count;
+  const hl_cut *cuts; /* [cut_count]; cut out of all volumes, with each one's own cut_shading and
+                         cut_casts_shadow; in the world, whatever `world` says. Meshes are not cut */
+  size_t cut_count;
   hl_tone tone; /* how a PNG shows light that is brighter than white; default HL_TONE_CLIP */
   hl_sky sky;
 } hl_scene_description;

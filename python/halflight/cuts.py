@@ -1,4 +1,4 @@
-"""What is cut out of a volume: the keyword `cuts` of volumes."""
+"""What is cut out of a volume or a scene: the keyword `cuts` of both."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -24,8 +24,8 @@ def _fill_one(cut: Any, given: Any, place: str) -> None:
         raise TypeError(f"{place}: {given!r} is no mapping with a type: one of {', '.join(_TYPES)}")
     words = _TYPES[given["type"]]
     for word in given:
-        if word not in ("type", "keep", *words):
-            raise TypeError(f"{place}: a {given['type']} has no '{word}': use {words[0]}, {words[1]} and keep")
+        if word not in ("type", "keep", "world", *words):
+            raise TypeError(f"{place}: a {given['type']} has no '{word}': use {words[0]}, {words[1]}, keep and world")
     lib.hl_cut_defaults(ffi.addressof(cut))
     cut.type = list(_TYPES).index(given["type"])
     for word in words:
@@ -37,10 +37,13 @@ def _fill_one(cut: Any, given: Any, place: str) -> None:
     if keep not in _SIDES:
         raise ValueError(f"{place}: keep: {keep!r} is not outside or inside")
     cut.keep = _SIDES.index(keep)
+    if type(world := given.get("world", False)).__name__ not in ("bool", "bool_"):
+        raise TypeError(f"{place}: world: {world!r} is neither True nor False")
+    cut.world = int(bool(world))
 
 
 def fill(struct: Any, cuts: Any, keep: list[Any], place: str) -> None:
-    """Set the cuts of an hl_scene_volume, which are valid as long as `keep`. One alone may stand without a list."""
+    """Set the cuts of an hl_scene_volume or hl_scene_description, which are valid as long as `keep`. One alone may stand without a list."""
     given = [cuts] if isinstance(cuts, Mapping) else list(cuts)
     array = ffi.new("hl_cut[]", len(given))
     for n, one in enumerate(given):
@@ -50,10 +53,10 @@ def fill(struct: Any, cuts: Any, keep: list[Any], place: str) -> None:
 
 
 def cuts_from(struct: Any) -> list[dict[str, Any]]:
-    """The cuts of an hl_scene_volume."""
+    """The cuts of an hl_scene_volume or hl_scene_description."""
     made = []
     for cut in struct.cuts[0:struct.cut_count]:
         name = list(_TYPES)[cut.type]
         parts = {word: cut.radius if word == "radius" else tuple(getattr(cut, word)) for word in _TYPES[name]}
-        made.append({"type": name, **parts, "keep": _SIDES[cut.keep]})
+        made.append({"type": name, **parts, "keep": _SIDES[cut.keep], **({"world": True} if cut.world else {})})
     return made

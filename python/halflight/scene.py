@@ -7,7 +7,7 @@ from typing import Any, Unpack
 
 import numpy
 
-from . import _settings, colors
+from . import _settings, colors, cuts
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords, choice
 from .camera import Camera, camera_from
@@ -40,6 +40,8 @@ class Settings(PictureSettings, RenderSettings, total=False):
         One sentence on the scene, for its file.
     meshes : a Mesh or a list of them
         Triangles among the volumes.
+    cuts : a mapping or a list of them
+        What is cut out of all volumes, in the world: as `cuts` of a `Volume`.
     sky : float, colour or mapping
         Light from all directions, which folds and hollows get less of: an even colour, or the keywords of
         `halflight.keywords.SkySettings`, as ``{"type": "gradient", "zenith": (0.5, 0.7, 1)}``. An image is an array
@@ -53,6 +55,7 @@ class Settings(PictureSettings, RenderSettings, total=False):
     background: float | Sequence[float] | str
     description: str
     meshes: Mesh | Sequence[Mesh]
+    cuts: Any
     sky: float | Sequence[float] | str | Mapping[str, Any]
 
 
@@ -170,6 +173,11 @@ class Scene:
     def meshes(self) -> tuple[Mesh, ...]:
         """The meshes."""
         return tuple(mesh_from(self._struct.meshes[n]) for n in range(self._struct.mesh_count))
+
+    @property
+    def cuts(self) -> list[dict[str, Any]]:
+        """What is cut out of all volumes."""
+        return cuts.cuts_from(self._struct)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -307,7 +315,9 @@ def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], ch
         if min(width, height) < 1:
             raise ValueError(f"size: {width:g} x {height:g} pixels: give whole numbers from 1 on, (width, height)")
         _settings.fill("size: ", struct, lib.HL_SETTINGS_IMAGE, {"width": width, "height": height})
-    reframe = chosen and (size is not None or len(volumes) > 1 or any(one._changes.keys() - {"name"} for one in volumes))
+    if (cut := settings.get("cuts")) is not None:
+        cuts.fill(struct, cut, keep, "")
+    reframe = chosen and (size is not None or len(volumes) > 1 or cut is not None or any(one._changes.keys() - {"name"} for one in volumes))
     _set_camera(struct, settings.get("camera"), reframe)
     _set_lights(struct, settings, keep)
     if (meshes := settings.get("meshes")) is not None:

@@ -197,6 +197,9 @@ size_t render_cut_count(const cli_value *values);
 /* Adds the options' cuts to a volume's own. cuts: room for all of them, which the volume borrows. */
 int render_cuts(const cli_value *values, hl_scene_volume *volume, hl_cut *cuts);
 
+/* Adds them to a scene's own, for all its volumes; fractions are of the box around these. cuts: as above. */
+int render_scene_cuts(const cli_value *values, hl_scene_description *scene, hl_cut *cuts);
+
 /* Refuses values of --clip that cannot be read. */
 int render_check_clip(const cli_value *clip);
 

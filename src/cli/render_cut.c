@@ -1,5 +1,5 @@
 /* cli/render_cut.c - `--cut-plane POINT:NORMAL`, `--cut-box RANGES` and `--cut-sphere CENTRE:RADIUS`: parts
- * that are cut out of each volume, in its file's world. */
+ * that are cut out of a volume, in its file's world, or of all volumes of a scene, in the scene's. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +11,8 @@
 static const int option_of[] = {
     [HL_CUT_PLANE] = RENDER_CUT_PLANE, [HL_CUT_BOX] = RENDER_CUT_BOX, [HL_CUT_SPHERE] = RENDER_CUT_SPHERE};
 enum { CUT_TYPES = 3 };
+
+static const double degree = 3.14159265358979323846 / 180;
 
 /* A cut as typed: a plane's point or a sphere's centre, and what follows the colon; or a box's ranges. */
 typedef struct typed_cut {
@@ -101,6 +103,52 @@ static void place_cut(const typed_cut *typed, const double low[3], const double 
   cut->radius = typed->radius.fraction ? typed->radius.number * longest : typed->radius.number;
 }
 
+/* Adds the options' cuts, placed in the box. */
+static void add_cuts(const cli_value *values, const double low[3], const double high[3], hl_cut *cuts,
+                     size_t *count) {
+  for (int type = 0; type < CUT_TYPES; type++)
+    for (int n = 0; n < values[option_of[type]].count; n++) {
+      hl_cut *cut = &cuts[*count];
+      typed_cut typed;
+      hl_cut_defaults(cut);
+      cut->type = (hl_cut_type)type;
+      if (!read_cut(cut->type, values[option_of[type]].texts[n], &typed)) continue; /* refused before */
+      place_cut(&typed, low, high, cut);
+      ++*count;
+    }
+}
+
+/* p in the world of a volume's file -> the scene's world: scale, rotation (Rodrigues), translation. */
+static void to_scene(const hl_scene_volume *volume, double p[3]) {
+  double k[3], length = 0, dot = 0, cosine = cos(volume->rotate_angle_deg * degree),
+               sine = sin(volume->rotate_angle_deg * degree);
+  for (int a = 0; a < 3; a++) length = hypot(length, volume->rotate_axis[a]);
+  for (int a = 0; a < 3; a++) {
+    k[a] = volume->rotate_axis[a] / length;
+    p[a] *= volume->scale * volume->axis_scale[a];
+    dot += k[a] * p[a];
+  }
+  const double cross[3] = {k[1] * p[2] - k[2] * p[1], k[2] * p[0] - k[0] * p[2], k[0] * p[1] - k[1] * p[0]};
+  for (int a = 0; a < 3; a++)
+    p[a] = p[a] * cosine + cross[a] * sine + k[a] * dot * (1 - cosine) + volume->translate[a];
+}
+
+/* Extends a box to the box around a volume in the scene's world. */
+static int extend_box(const hl_scene_volume *volume, double low[3], double high[3]) {
+  double ends[2][3];
+  hl_volume_info info = {.struct_size = sizeof info};
+  if (hl_volume_get_info(volume->volume, &info) != HL_OK)
+    return fail(EXIT_CODE_FAILURE, "--cut-plane: the volume's place is not known");
+  input_world_box(&info, ends[0], ends[1]);
+  for (int corner = 0; corner < 8; corner++) {
+    double p[3];
+    for (int a = 0; a < 3; a++) p[a] = ends[corner >> a & 1][a];
+    to_scene(volume, p);
+    for (int a = 0; a < 3; a++) low[a] = fmin(low[a], p[a]), high[a] = fmax(high[a], p[a]);
+  }
+  return EXIT_CODE_OK;
+}
+
 int render_cuts(const cli_value *values, hl_scene_volume *volume, hl_cut *cuts) {
   double low[3], high[3];
   hl_volume_info info = {.struct_size = sizeof info};
@@ -109,17 +157,22 @@ int render_cuts(const cli_value *values, hl_scene_volume *volume, hl_cut *cuts) 
     return fail(EXIT_CODE_FAILURE, "--cut-plane: the volume's place is not known");
   input_world_box(&info, low, high);
   if (count > 0) memcpy(cuts, volume->cuts, count * sizeof *cuts);
-  for (int type = 0; type < CUT_TYPES; type++)
-    for (int n = 0; n < values[option_of[type]].count; n++) {
-      hl_cut *cut = &cuts[count];
-      typed_cut typed;
-      hl_cut_defaults(cut);
-      cut->type = (hl_cut_type)type;
-      if (!read_cut(cut->type, values[option_of[type]].texts[n], &typed)) continue; /* refused before */
-      place_cut(&typed, low, high, cut);
-      count++;
-    }
+  add_cuts(values, low, high, cuts, &count);
   volume->cuts = cuts;
   volume->cut_count = count;
+  return EXIT_CODE_OK;
+}
+
+int render_scene_cuts(const cli_value *values, hl_scene_description *scene, hl_cut *cuts) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  size_t count = scene->cut_count;
+  int exit_code = EXIT_CODE_OK;
+  for (size_t v = 0; v < scene->volume_count && exit_code == EXIT_CODE_OK; v++)
+    exit_code = extend_box(&scene->volumes[v], low, high);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  if (count > 0) memcpy(cuts, scene->cuts, count * sizeof *cuts);
+  add_cuts(values, low, high, cuts, &count);
+  scene->cuts = cuts;
+  scene->cut_count = count;
   return EXIT_CODE_OK;
 }

@@ -24,8 +24,8 @@ typedef struct scene_change {
       *functions;          /* owned with their points; [description.volume_count]; null: none changed */
   float *sky;              /* owned; the pixels of the image of --sky; null: none */
   hl_isosurface *surfaces; /* owned; [description.volume_count][values of --iso]; null: none */
-  hl_cut *cuts;            /* owned; of all volumes, with those of the options; null: none added */
-  hl_cut *next_cut;        /* where the next volume's begin */
+  hl_cut *cuts; /* owned; of the one volume, or of the scene with several, with those of the options; null:
+                   none added */
 } scene_change;
 
 static void subtract(const double a[3], const double b[3], double difference[3]) {
@@ -184,10 +184,8 @@ static int change_volume(scene_change *change, size_t index) {
     volume->cut_shading = (hl_cut_shading)values[RENDER_CUT_SHADING].choice;
   if (values[RENDER_CUT_CASTS_SHADOW].given) volume->cut_casts_shadow = 1;
   int exit_code = values[RENDER_CLIP].given ? render_clip(&values[RENDER_CLIP], volume) : EXIT_CODE_OK;
-  if (exit_code == EXIT_CODE_OK && change->cuts != NULL) {
-    exit_code = render_cuts(values, volume, change->next_cut);
-    change->next_cut += volume->cut_count;
-  }
+  if (exit_code == EXIT_CODE_OK && change->cuts != NULL && change->description.volume_count == 1)
+    exit_code = render_cuts(values, volume, change->cuts);
   bool looks = render_look_recolors(values, change->bare), iso = values[RENDER_ISO].given;
   if (exit_code != EXIT_CODE_OK || (!looks && !iso && !render_recolors(values))) return exit_code;
   hl_transfer_function look = {0};
@@ -229,12 +227,13 @@ static int add_floor(scene_change *change) {
   return EXIT_CODE_OK;
 }
 
-/* Makes room for the cuts of all volumes, their own and the options'. False: out of memory. */
+/* Makes room for the cuts of the one volume, or of a scene with several, and the options'. False: out of
+ * memory. */
 static bool make_room_for_cuts(scene_change *change) {
-  size_t added = render_cut_count(change->values), count = 0;
-  for (size_t v = 0; v < change->description.volume_count; v++)
-    count += change->description.volumes[v].cut_count + added;
-  if (added > 0) change->cuts = change->next_cut = calloc(count, sizeof *change->cuts);
+  const hl_scene_description *description = &change->description;
+  size_t added = render_cut_count(change->values);
+  size_t own = description->volume_count == 1 ? description->volumes[0].cut_count : description->cut_count;
+  if (added > 0) change->cuts = calloc(own + added, sizeof *change->cuts);
   return added == 0 || change->cuts != NULL;
 }
 
@@ -261,6 +260,8 @@ static int change_volumes(scene_change *change) {
   memcpy(change->volumes, description->volumes, description->volume_count * sizeof *change->volumes);
   description->volumes = change->volumes;
   int exit_code = render_check_names(values, description);
+  if (exit_code == EXIT_CODE_OK && change->cuts != NULL && description->volume_count > 1)
+    exit_code = render_scene_cuts(values, description, change->cuts);
   for (size_t i = 0; i < description->volume_count && exit_code == EXIT_CODE_OK; i++)
     exit_code = change_volume(change, i);
   return exit_code;

@@ -107,6 +107,20 @@ static hl_status add_volume(hl_outline *outline, const hl_scene_volume *volume, 
   return add_shown(outline, &solid, error);
 }
 
+/* Adds what a volume shows of what its scene's cuts leave. */
+static hl_status add_cut_volume(hl_outline *outline, const hl_scene_description *scene,
+                                const hl_scene_volume *volume, hl_error *error) {
+  if (scene->cut_count == 0) return add_volume(outline, volume, error);
+  size_t count = volume->cut_count + scene->cut_count;
+  hl_scene_volume both = *volume;
+  hl_cut *cuts = hl_allocate(outline->context, count, sizeof *cuts);
+  if (cuts == NULL) return hl_fail_memory(error, count * sizeof *cuts, "cuts");
+  hl_add_scene_cuts(scene, &both, cuts);
+  hl_status status = add_volume(outline, &both, error);
+  hl_release(outline->context, cuts);
+  return status;
+}
+
 static hl_status add_box(hl_outline *outline, const hl_scene_volume *volume, hl_error *error) {
   affine3 placement = hl_scene_volume_index_to_world(volume);
   double box[2][3];
@@ -184,7 +198,7 @@ hl_status hl_outline_find(const hl_scene_description *description, hl_outline *o
   *outline = (hl_outline){.context = description->volume_count > 0 ? description->volumes[0].volume->context
                                                                    : description->meshes[0].mesh->context};
   for (size_t n = 0; status == HL_OK && n < description->volume_count; n++)
-    status = add_volume(outline, &description->volumes[n], error);
+    status = add_cut_volume(outline, description, &description->volumes[n], error);
   for (size_t n = 0; status == HL_OK && n < description->mesh_count; n++)
     if (description->meshes[n].visible && description->meshes[n].mesh != NULL)
       status = add_mesh(outline, &description->meshes[n], error);

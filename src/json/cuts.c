@@ -1,4 +1,4 @@
-/* json/cuts.c - the cuts of a volume from JSON. */
+/* json/cuts.c - the cuts of a volume or a scene from JSON. */
 #include "core/memory.h"
 #include "json/parts.h"
 #include "json/settings.h"
@@ -23,15 +23,16 @@ static hl_status read_cut(hl_json_reader *reader, const json_t *value, hl_cut *c
   return status == HL_OK ? hl_json_settings(reader, value, HL_SETTINGS_CUT, (int)cut->type, cut) : status;
 }
 
-hl_status hl_json_read_cuts(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
+hl_status hl_json_read_cuts(hl_json_reader *reader, const json_t *value, const hl_cut **made,
+                            size_t *made_count) {
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "cuts"), count = json_array_size(value);
   hl_status status = hl_json_array(reader, value, 0, HL_LIMIT_CUTS);
   if (status != HL_OK) return status;
   hl_cut *cuts = hl_allocate_zeroed(reader->context, count, sizeof *cuts);
   if (cuts == NULL) return hl_fail_memory(reader->error, count * sizeof *cuts, "cuts");
-  volume->cuts = cuts;
-  volume->cut_count = count;
+  *made = cuts;
+  *made_count = count;
   for (size_t i = 0; i < count; i++) {
     size_t inner = hl_json_enter_index(reader, i);
     if ((status = read_cut(reader, json_array_get(value, i), &cuts[i])) != HL_OK) return status;

@@ -99,8 +99,9 @@ hl_status hl_json_read_mesh_arrays(hl_json_reader *reader, const json_t *value, 
 extern const char *const hl_json_mesh_keys[];
 void hl_json_release_meshes(hl_context *context, hl_mesh_shelf *shelf);
 
-/* The array "cuts" (null: none) of a volume; the cuts are owned by *volume. */
-hl_status hl_json_read_cuts(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume);
+/* The array "cuts" (null: none) of a volume or a scene; *cuts is owned by the caller (hl_release), after a
+ * failure too. */
+hl_status hl_json_read_cuts(hl_json_reader *reader, const json_t *value, const hl_cut **cuts, size_t *count);
 
 /* The array "iso" (null: none) of a volume; the surfaces are owned by *volume. */
 hl_status hl_json_read_iso(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume);

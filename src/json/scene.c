@@ -38,6 +38,7 @@ static void release(hl_context *context, gathered *g) {
     hl_release(context, g->shelf.loaded[v].source);
   }
   hl_release(context, g->shelf.loaded);
+  hl_release(context, (void *)g->description.cuts);
   hl_json_release_meshes(context, &g->meshes);
   hl_json_release_sky(context, &g->description.sky);
   json_decref(g->shelf.stood_in);
@@ -190,6 +191,13 @@ static hl_status check_volumes(hl_json_reader *reader, const hl_scene_descriptio
   return HL_OK;
 }
 
+static hl_status check_cuts(hl_json_reader *reader, const hl_scene_description *d) {
+  const hl_checker root = {reader->error, ""};
+  hl_status status = hl_cuts_check(&root, d->cuts, d->cut_count);
+  if (status == HL_ERROR_INPUT) hl_json_prefix(reader, NULL);
+  return status;
+}
+
 static hl_status read_version(hl_json_reader *reader, const json_t *root) {
   int version = 0;
   if (json_object_get(root, "halflight") == NULL)
@@ -202,8 +210,9 @@ static hl_status read_version(hl_json_reader *reader, const json_t *root) {
 }
 
 static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered *g) {
-  static const char *const others[] = {"halflight", "description", "image",  "camera", "lights",  "sky",
-                                       "groups",    "volumes",     "meshes", "render", "$schema", NULL};
+  static const char *const others[] = {"halflight", "description", "image",   "camera", "lights",
+                                       "sky",       "groups",      "volumes", "meshes", "render",
+                                       "cuts",      "$schema",     NULL};
   hl_scene_description *d = &g->description;
   const char *schema = NULL;
   hl_status status = hl_json_settings_object(reader, root, HL_SETTINGS_SCENE, -1, others);
@@ -218,6 +227,9 @@ static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered
   if (status == HL_OK) status = hl_json_check_groups(reader, json_object_get(root, "groups"));
   if (status == HL_OK) status = read_volumes(reader, root, g);
   if (status == HL_OK) status = check_volumes(reader, d);
+  if (status == HL_OK)
+    status = hl_json_read_cuts(reader, json_object_get(root, "cuts"), &d->cuts, &d->cut_count);
+  if (status == HL_OK) status = check_cuts(reader, d);
   if (status == HL_OK) status = hl_json_read_meshes(reader, json_object_get(root, "meshes"), &g->meshes);
   d->meshes = g->meshes.meshes;
   d->mesh_count = g->meshes.count;

@@ -413,7 +413,8 @@ hl_status hl_json_read_volume(hl_json_reader *reader, const json_t *value, hl_vo
                                      HL_SETTINGS_MATERIAL, &volume->material);
   if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_VOLUME, 0, volume);
   if (status == HL_OK) status = read_clip(reader, json_object_get(value, "clip"), volume);
-  if (status == HL_OK) status = hl_json_read_cuts(reader, json_object_get(value, "cuts"), volume);
+  if (status == HL_OK)
+    status = hl_json_read_cuts(reader, json_object_get(value, "cuts"), &volume->cuts, &volume->cut_count);
   if (status == HL_OK) status = read_scattering(reader, json_object_get(value, "scattering"), volume);
   if (status == HL_OK) status = read_source(reader, value, shelf, volume);
   if (status == HL_OK) status = hl_json_read_labels(reader, value, volume);

@@ -306,14 +306,18 @@ static void write_iso(writer *w, const hl_scene_volume *volume) {
   close_bracket(w, "]");
 }
 
-static void write_cuts(writer *w, const hl_scene_volume *volume) {
-  if (volume->cut_count > 0) open_bracket(w, "cuts", "[");
-  for (size_t i = 0; i < volume->cut_count; i++) {
+static void write_cuts(writer *w, const hl_cut *cuts, size_t count) {
+  if (count > 0) open_bracket(w, "cuts", "[");
+  for (size_t i = 0; i < count; i++) {
     open_bracket(w, NULL, "{");
-    write_settings(w, HL_SETTINGS_CUT, (int)volume->cuts[i].type, &volume->cuts[i]);
+    write_settings(w, HL_SETTINGS_CUT, (int)cuts[i].type, &cuts[i]);
     close_bracket(w, "}");
   }
-  if (volume->cut_count > 0) close_bracket(w, "]");
+  if (count > 0) close_bracket(w, "]");
+}
+
+static void write_volume_cuts(writer *w, const hl_scene_volume *volume) {
+  write_cuts(w, volume->cuts, volume->cut_count);
   if (volume->cut_shading != HL_CUT_SHADING_FACE) write_key(w, HL_SETTINGS_VOLUME, "cut_shading", volume);
   if (volume->cut_casts_shadow) write_key(w, HL_SETTINGS_VOLUME, "cut_casts_shadow", volume);
 }
@@ -379,7 +383,7 @@ static void write_volume(writer *w, const hl_scene_volume *volume) {
     write_key(w, HL_SETTINGS_VOLUME, "clip/max", volume);
     close_bracket(w, "}");
   }
-  write_cuts(w, volume);
+  write_volume_cuts(w, volume);
   close_bracket(w, "}");
 }
 
@@ -478,6 +482,7 @@ static void write_scene(writer *w, const hl_scene_description *d) {
     close_bracket(w, "]");
   }
   write_meshes(w, d);
+  write_cuts(w, d->cuts, d->cut_count);
   open_bracket(w, "render", "{");
   write_settings(w, HL_SETTINGS_RENDER, 0, &d->render);
   close_bracket(w, "}");

@@ -1,12 +1,18 @@
-/* reference/cuts.c - what cuts leave of a volume, asked in the world of the volume's file.
+/* reference/cuts.c - what cuts leave of a volume, asked in the world that the cut is given in: that of the
+ * volume's file, or the scene's.
  *
- * Each cut has a height over its face, in the file's units: above 0 outside of its shape. */
+ * Each cut has a height over its face, in that world's units: above 0 outside of its shape. */
 #include "reference/reference.h"
 
 typedef struct height {
   double over; /* the face */
   vec3 rise;   /* its gradient, a unit vector of the file's world */
 } height;
+
+/* Index space to the world that a cut is given in. */
+static affine3 world_of(const reference_volume *volume, const hl_cut *cut) {
+  return cut->world ? volume->index_to_world : volume->grid->index_to_world;
+}
 
 static double part_of(vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
@@ -32,8 +38,8 @@ static height height_over(const hl_cut *cut, vec3 p) {
 
 bool hl_reference_left(const reference_volume *volume, vec3 point) {
   const hl_scene_volume *described = volume->described;
-  vec3 p = affine3_apply(volume->grid->index_to_world, point);
   for (size_t i = 0; i < described->cut_count; i++) {
+    vec3 p = affine3_apply(world_of(volume, &described->cuts[i]), point);
     bool inside = height_over(&described->cuts[i], p).over < 0;
     if (inside != (described->cuts[i].keep == HL_CUT_KEEP_INSIDE)) return false;
   }
@@ -68,24 +74,25 @@ static double next_of_cut(const hl_cut *cut, vec3 o, vec3 d, double after) {
 
 double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 direction, double after) {
   const hl_scene_volume *described = volume->described;
-  affine3 to_file = volume->grid->index_to_world;
-  vec3 o = affine3_apply(to_file, origin), d = mat3_apply(to_file.linear, direction);
   double next = INFINITY;
-  for (size_t i = 0; i < described->cut_count; i++)
+  for (size_t i = 0; i < described->cut_count; i++) {
+    affine3 world = world_of(volume, &described->cuts[i]);
+    vec3 o = affine3_apply(world, origin), d = mat3_apply(world.linear, direction);
     next = fmin(next, next_of_cut(&described->cuts[i], o, d, after));
+  }
   return next;
 }
 
 /* Distances and directions in the world: heights h rise there by |(M^-1)^T grad h|, M the placement. */
 void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 *normal, double *surface) {
   const hl_scene_volume *described = volume->described;
-  vec3 p = affine3_apply(volume->grid->index_to_world, point), face = {0, 0, 0};
-  mat3 index_to_file = volume->grid->index_to_world.linear;
+  vec3 face = {0, 0, 0};
   double least = hl_reference_nearest_clip(volume, point, &face);
   if (described->cut_shading == HL_CUT_SHADING_GRADIENT) return;
   for (size_t i = 0; i < described->cut_count; i++) {
-    height here = height_over(&described->cuts[i], p);
-    vec3 rise = mat3_apply(volume->gradient_to_world, mat3_apply(mat3_transpose(index_to_file), here.rise));
+    affine3 world = world_of(volume, &described->cuts[i]);
+    height here = height_over(&described->cuts[i], affine3_apply(world, point));
+    vec3 rise = mat3_apply(volume->gradient_to_world, mat3_apply(mat3_transpose(world.linear), here.rise));
     double inwards = described->cuts[i].keep == HL_CUT_KEEP_INSIDE ? -1 : 1;
     double depth = fmax(inwards * here.over / vec3_length(rise), 0);
     if (depth < least) least = depth, face = vec3_scale(vec3_normalise(rise), -inwards);

@@ -41,7 +41,7 @@ typedef struct reference_volume {
   const hl_scene_volume *described;
   const hl_volume *grid;
   hl_kernel kernel;
-  affine3 world_to_index;
+  affine3 index_to_world, world_to_index;
   mat3 gradient_to_world;           /* inverse transpose of index-to-world */
   double low[3], high[3];           /* the box, in index space */
   double clip_low[3], clip_high[3]; /* its faces at which clipping cuts; else infinite */

@@ -302,13 +302,29 @@ static void move_gradients(const hl_frame_space *space, hl_transfer_function *fu
   function->gradient_opacity = points;
 }
 
+/* Moves the cuts that are in the world. cuts: room for the volume's. */
+static void move_cuts(const hl_frame_space *space, hl_scene_volume *volume, hl_cut *cuts) {
+  if (volume->cut_count == 0) return;
+  memcpy(cuts, volume->cuts, volume->cut_count * sizeof *cuts);
+  for (size_t i = 0; i < volume->cut_count; i++) {
+    if (!cuts[i].world) continue;
+    move_point(space, cuts[i].point);
+    move_point(space, cuts[i].min);
+    move_point(space, cuts[i].max);
+    move_point(space, cuts[i].center);
+    cuts[i].radius /= space->unit;
+  }
+  volume->cuts = cuts;
+}
+
 static hl_status copy_arrays(hl_context *context, const hl_scene_description *scene, framed_scene *framed,
                              hl_error *error) {
-  size_t vertices = 0, meshes = scene->mesh_count, gradients = 0;
+  size_t vertices = 0, meshes = scene->mesh_count, gradients = 0, cuts = 0;
   for (size_t i = 0; i < scene->light_count; i++) vertices += scene->lights[i].vertex_count;
   for (size_t i = 0; i < scene->volume_count; i++) {
     meshes += scene->volumes[i].iso_count;
     gradients += scene->volumes[i].transfer_function.gradient_opacity_count;
+    cuts += scene->volumes[i].cut_count;
   }
   framed->volumes = hl_allocate(context, scene->volume_count, sizeof *framed->volumes);
   framed->lights = hl_allocate(context, scene->light_count, sizeof *framed->lights);
@@ -316,7 +332,8 @@ static hl_status copy_arrays(hl_context *context, const hl_scene_description *sc
   framed->mesh_objects = hl_allocate(context, meshes, sizeof *framed->mesh_objects);
   framed->vertices = hl_allocate(context, vertices, sizeof *framed->vertices);
   framed->gradients = hl_allocate(context, gradients, sizeof *framed->gradients);
-  if (framed->volumes == NULL || framed->lights == NULL || framed->meshes == NULL ||
+  framed->cuts = hl_allocate(context, cuts, sizeof *framed->cuts);
+  if (framed->cuts == NULL || framed->volumes == NULL || framed->lights == NULL || framed->meshes == NULL ||
       framed->mesh_objects == NULL || framed->vertices == NULL || framed->gradients == NULL)
     return hl_fail_memory(error, scene->volume_count * sizeof *framed->volumes, "the scene in frame space");
   if (scene->volume_count > 0)
@@ -339,11 +356,14 @@ hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description
   if (status != HL_OK) return status;
   double(*vertices)[3] = framed->vertices;
   hl_opacity_point *gradients = framed->gradients;
+  hl_cut *cuts = framed->cuts;
   move_camera(&space, &framed->scene.camera);
   for (size_t i = 0; i < scene->volume_count; i++) {
     move_volume(&space, &framed->volumes[i]);
     move_gradients(&space, &framed->volumes[i].transfer_function, gradients);
     gradients += scene->volumes[i].transfer_function.gradient_opacity_count;
+    move_cuts(&space, &framed->volumes[i], cuts);
+    cuts += scene->volumes[i].cut_count;
   }
   for (size_t i = 0; i < scene->mesh_count; i++) {
     move_point(&space, framed->meshes[i].translate);
@@ -362,4 +382,5 @@ void hl_framed_scene_release(hl_context *context, framed_scene *framed) {
   hl_release(context, framed->mesh_objects);
   hl_release(context, framed->vertices);
   hl_release(context, framed->gradients);
+  hl_release(context, framed->cuts);
 }

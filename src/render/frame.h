@@ -91,6 +91,7 @@ typedef struct framed_scene {
   int *mesh_objects;           /* owned; likewise; their numbers in the layer of objects */
   double (*vertices)[3];       /* owned; of all polygons */
   hl_opacity_point *gradients; /* owned; of all volumes' gradient opacity */
+  hl_cut *cuts;                /* owned; those of the volumes */
   double unit;                 /* world length of 1 in frame space: the smallest voxel edge is from 1 to 2 */
 } framed_scene;
 

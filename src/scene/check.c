@@ -113,6 +113,7 @@ hl_status hl_description_check(const hl_scene_description *d, hl_error *error) {
   if (status == HL_OK)
     status = hl_check_count(&root, "volumes", d->volumes, d->volume_count, HL_LIMIT_VOLUMES);
   if (status == HL_OK) status = hl_check_count(&root, "meshes", d->meshes, d->mesh_count, HL_LIMIT_MESHES);
+  if (status == HL_OK) status = hl_cuts_check(&root, d->cuts, d->cut_count);
   if (status != HL_OK) return status;
   if (d->volume_count + d->mesh_count == 0)
     return hl_check_refuse(&root, "volumes", "is empty: name at least one volume or mesh");

@@ -17,6 +17,9 @@ hl_status hl_light_check(const hl_light *light, size_t index, hl_error *error);
 /* Checks one volume of a description, before a camera frames it. */
 hl_status hl_scene_volume_check(const hl_scene_volume *volume, size_t index, hl_error *error);
 
+/* Checks the cuts of a volume or a scene. */
+hl_status hl_cuts_check(const hl_checker *check, const hl_cut *cuts, size_t count);
+
 /* Checks one mesh of a description. */
 hl_status hl_scene_mesh_check(const hl_scene_mesh *mesh, size_t index, hl_error *error);
 

@@ -124,16 +124,20 @@ static hl_status check_cut(const hl_cut *cut, const char *place, hl_error *error
   return status;
 }
 
-static hl_status check_cuts(const hl_checker *check, const hl_scene_volume *volume) {
-  hl_status status = hl_check_count(check, "cuts", volume->cuts, volume->cut_count, HL_LIMIT_CUTS);
-  if (status == HL_OK) status = hl_check_key(check, HL_SETTINGS_VOLUME, "cut_shading", volume);
-  if (status == HL_OK) status = hl_check_key(check, HL_SETTINGS_VOLUME, "cut_casts_shadow", volume);
-  for (size_t i = 0; i < volume->cut_count && status == HL_OK; i++) {
+hl_status hl_cuts_check(const hl_checker *check, const hl_cut *cuts, size_t count) {
+  hl_status status = hl_check_count(check, "cuts", cuts, count, HL_LIMIT_CUTS);
+  for (size_t i = 0; i < count && status == HL_OK; i++) {
     char place[120];
     snprintf(place, sizeof place, "%s/cuts/%zu", check->place, i);
-    status = check_cut(&volume->cuts[i], place, check->error);
+    status = check_cut(&cuts[i], place, check->error);
   }
   return status;
+}
+
+static hl_status check_cuts(const hl_checker *check, const hl_scene_volume *volume) {
+  hl_status status = hl_check_key(check, HL_SETTINGS_VOLUME, "cut_shading", volume);
+  if (status == HL_OK) status = hl_check_key(check, HL_SETTINGS_VOLUME, "cut_casts_shadow", volume);
+  return status == HL_OK ? hl_cuts_check(check, volume->cuts, volume->cut_count) : status;
 }
 
 static double farthest_corner(const hl_scene_volume *volume, affine3 placement) {

@@ -1,6 +1,8 @@
 /* scene/cut.c - see cut.h. */
 #include "scene/cut.h"
 
+#include "core/memory.h"
+#include "scene/placement.h"
 #include "volume/volume.h"
 
 static affine3 plane_space(const hl_cut *cut) {
@@ -24,7 +26,8 @@ cut_shape hl_cut_shape(const hl_scene_volume *volume, size_t cut) {
                                            : box_space(vec3_of(of->center), radii);
   return (cut_shape){.type = of->type,
                      .keep_inside = of->keep == HL_CUT_KEEP_INSIDE,
-                     .to_shape = affine3_multiply(space, volume->volume->index_to_world)};
+                     .to_shape = affine3_multiply(space, of->world ? hl_scene_volume_index_to_world(volume)
+                                                                   : volume->volume->index_to_world)};
 }
 
 static bool same_vector(vec3 a, vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
@@ -110,4 +113,38 @@ bool hl_scene_volume_removes_box(const hl_scene_volume *volume, const double low
     if (hl_cuts_remove_box(&shape, 1, low, high)) return true;
   }
   return false;
+}
+
+void hl_add_scene_cuts(const hl_scene_description *scene, hl_scene_volume *volume, hl_cut *cuts) {
+  for (size_t i = 0; i < volume->cut_count; i++) cuts[i] = volume->cuts[i];
+  for (size_t i = 0; i < scene->cut_count; i++) {
+    cuts[volume->cut_count + i] = scene->cuts[i];
+    cuts[volume->cut_count + i].world = 1;
+  }
+  volume->cuts = cuts;
+  volume->cut_count += scene->cut_count;
+}
+
+hl_status hl_cuts_place(hl_context *context, hl_scene_description *placed, placed_cuts *made,
+                        hl_error *error) {
+  size_t count = 0;
+  if (placed->cut_count == 0 || placed->volume_count == 0) return HL_OK;
+  for (size_t v = 0; v < placed->volume_count; v++) count += placed->volumes[v].cut_count + placed->cut_count;
+  made->volumes = hl_allocate(context, placed->volume_count, sizeof *made->volumes);
+  made->cuts = hl_allocate(context, count, sizeof *made->cuts);
+  if (made->volumes == NULL || made->cuts == NULL)
+    return hl_fail_memory(error, count * sizeof(hl_cut), "cuts");
+  hl_cut *next = made->cuts;
+  for (size_t v = 0; v < placed->volume_count; v++) {
+    made->volumes[v] = placed->volumes[v];
+    hl_add_scene_cuts(placed, &made->volumes[v], next);
+    next += made->volumes[v].cut_count;
+  }
+  placed->volumes = made->volumes;
+  return HL_OK;
+}
+
+void hl_placed_cuts_release(hl_context *context, placed_cuts *made) {
+  hl_release(context, made->volumes);
+  hl_release(context, made->cuts);
 }

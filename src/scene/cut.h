@@ -4,6 +4,7 @@
 
 #include <halflight/scene.h>
 
+#include "core/error.h"
 #include "core/vector.h"
 
 /* A shape is a simple one in a space of its own: a plane's inside has x above 0, a box's has x, y and z from
@@ -16,6 +17,23 @@ typedef struct cut_shape {
 
 /* The shape of volume->cuts[cut]. */
 cut_shape hl_cut_shape(const hl_scene_volume *volume, size_t cut);
+
+/* Gives a copy of a scene's volume the scene's cuts beside its own. cuts: [the volume's and the scene's
+ * cut_count], which the volume then borrows. */
+void hl_add_scene_cuts(const hl_scene_description *scene, hl_scene_volume *volume, hl_cut *cuts);
+
+/* The volumes of a scene that has cuts of its own, with these beside each volume's; all null where it has
+ * none. */
+typedef struct placed_cuts {
+  hl_scene_volume *volumes; /* owned; what they hold is the scene's */
+  hl_cut *cuts;             /* owned; of all volumes */
+} placed_cuts;
+
+/* Replaces the volumes of a placed description by those of `made`, where the scene has cuts. After a failure,
+ * too, call hl_placed_cuts_release(). */
+hl_status hl_cuts_place(hl_context *context, hl_scene_description *placed, placed_cuts *made,
+                        hl_error *error);
+void hl_placed_cuts_release(hl_context *context, placed_cuts *made);
 
 /* Whether two shapes are the same. */
 bool hl_cut_same(const cut_shape *a, const cut_shape *b);

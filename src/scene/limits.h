@@ -7,7 +7,7 @@
 #define HL_LIMIT_VOLUMES        256
 #define HL_LIMIT_MESHES         256
 #define HL_LIMIT_ISO            64    /* isosurfaces of one volume */
-#define HL_LIMIT_CUTS           64    /* of one volume */
+#define HL_LIMIT_CUTS           64    /* of one volume, and of a scene */
 #define HL_LIMIT_VERTICES       1024  /* of one polygon */
 #define HL_LIMIT_TEXTURE_SIDE   32768 /* pixels of a light's texture */
 #define HL_LIMIT_TEXTURE_PIXELS (1 << 26)

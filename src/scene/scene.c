@@ -96,7 +96,9 @@ static void destroy(hl_scene *scene) {
   hl_release(context, (void *)d->volumes);
   for (size_t m = 0; m < d->mesh_count; m++) release_mesh(context, (hl_scene_mesh *)&d->meshes[m]);
   hl_release(context, (void *)d->meshes);
+  hl_release(context, (void *)d->cuts);
   hl_drawn_labels_release(context, &scene->placed, &scene->drawn);
+  hl_placed_cuts_release(context, &scene->cut);
   hl_placed_lights_release(context, &scene->placed);
   for (size_t l = 0; l < d->light_count; l++) {
     hl_release(context, (void *)d->lights[l].vertices);
@@ -214,6 +216,14 @@ static hl_status copy_meshes(hl_scene *scene, const hl_scene_description *from, 
   return status;
 }
 
+static hl_status copy_cuts(hl_scene *scene, const hl_scene_description *from, hl_error *error) {
+  void *copy = NULL;
+  hl_status status = copy_array(scene->context, from->cuts, from->cut_count, sizeof *from->cuts,
+                                "a scene's cuts", &copy, error);
+  scene->description.cuts = copy;
+  return status;
+}
+
 static void forget_images(hl_light *light) {
   light->texture.file = light->emission.file = NULL;
   light->texture.pixels = light->emission.pixels = NULL;
@@ -319,6 +329,7 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   made->description.volumes = NULL;
   made->description.meshes = NULL;
   made->description.mesh_count = 0;
+  made->description.cuts = NULL;
   made->description.description = NULL;
   made->description.sky.file = NULL;
   made->description.sky.pixels = NULL;
@@ -328,11 +339,13 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   if (status == HL_OK) status = copy_lights(made, description, error);
   if (status == HL_OK) status = copy_volumes(made, description, error);
   if (status == HL_OK) status = copy_meshes(made, description, error);
+  if (status == HL_OK) status = copy_cuts(made, description, error);
   if (status == HL_OK) status = copy_sky(made, &description->sky, error);
   const hl_sky *sky = &made->description.sky;
   if (status == HL_OK && sky->pixels != NULL)
     made->sky_mark = hl_key_mark(sky->pixels, 3 * (size_t)sky->width * (size_t)sky->height * sizeof(float));
   if (status == HL_OK) status = hl_lights_place(context, &made->description, &made->placed, error);
+  if (status == HL_OK) status = hl_cuts_place(context, &made->placed, &made->cut, error);
   if (status == HL_OK) status = hl_labels_draw(context, &made->placed, &made->drawn, error);
   if (status != HL_OK) {
     destroy(made);

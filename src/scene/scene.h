@@ -7,6 +7,7 @@
 #include <halflight/scene.h>
 
 #include "scene/camera.h"
+#include "scene/cut.h"
 #include "scene/draw_labels.h"
 #include "scene/placement.h"
 #include "scene/transfer_function.h"
@@ -16,9 +17,10 @@ struct hl_scene {
   hl_context *context;
   atomic_int references;
   hl_scene_description description; /* its arrays and texts are owned by the scene */
-  hl_scene_description placed; /* the same for rendering: all lights in the world, and volumes of occupancy in
-                                  place of label maps, lattices (label/mask.h) in place of masks; owns its
-                                  array of lights */
+  hl_scene_description placed; /* the same for rendering: all lights in the world, the scene's cuts in its
+                                  volumes, and volumes of occupancy in place of label maps, lattices
+                                  (label/mask.h) in place of masks; owns its array of lights */
+  placed_cuts cut;             /* the placed description's volumes, where the scene has cuts */
   drawn_labels drawn;          /* the volumes of occupancy and the lattices */
   uint64_t sky_mark;           /* of the pixels of the sky's image; for keys of kept results */
 };

@@ -300,7 +300,9 @@ static const hl_setting cut_rows[] = {
      .high = HL_LIMIT_LENGTH, .open_low = 1, .standard = {1}, .only_for = ONE(HL_CUT_SPHERE),
      .option = "cut-sphere", .sentence = "The sphere's radius.", .mend = "give a radius above 0"},
     {.key = "keep", FIELD(hl_cut, keep), A_CHOICE(cut_keeps), .optional = 1,
-     .sentence = "What is left: all outside the shape, or only its inside."}};
+     .sentence = "What is left: all outside the shape, or only its inside."},
+    {.key = "world", FIELD(hl_cut, world), A_FLAG, .optional = 1,
+     .sentence = "Lengths are in the scene's world, after the volume's transform; those of a scene's cuts always are."}};
 
 static const hl_setting render_rows[] = {
     {.key = "shadows", FIELD(hl_render_settings, shadows), A_CHOICE(shadows), .standard = {HL_SHADOWS_SOFT},

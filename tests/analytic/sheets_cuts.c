@@ -172,6 +172,98 @@ static void test_as_a_clip_box(void **state) {
   }
 }
 
+/* ---- cuts of a scene ---- */
+
+static void turn(hl_scene_volume *volume) {
+  static const double axis[3] = {1, -2, 0.7}, aside[3] = {3, -2, 1.5};
+  volume->scale = 0.8;
+  memcpy(volume->rotate_axis, axis, sizeof axis);
+  volume->rotate_angle_deg = 35;
+  memcpy(volume->translate, aside, sizeof aside);
+}
+
+/* The place of a point of the world in the file of a turned volume. */
+static vec3 unturned(const hl_scene_volume *volume, vec3 p) {
+  vec3 axis = vec3_normalise(vec3_of(volume->rotate_axis));
+  mat3 back = mat3_rotation(axis, -volume->rotate_angle_deg * HL_PI / 180);
+  return vec3_scale(mat3_apply(back, vec3_subtract(p, vec3_of(volume->translate))), 1 / volume->scale);
+}
+
+static const hl_cut IN_WORLD[] = {
+    {.type = HL_CUT_PLANE, .point = {1, 2, -1.3}, .normal = {3, -1, 4}},
+    {.type = HL_CUT_SPHERE, .center = {-3, 4, -5}, .radius = 4},
+    {.type = HL_CUT_BOX, .min = {-9, -7, -11}, .max = {7, 11, 9}, .keep = HL_CUT_KEEP_INSIDE}};
+
+/* A turned cube of even matter is cut by shapes that stand straight in the world, a box among them: lengths
+ * as counted by points. */
+static void test_scene_cuts_in_the_world(void **state) {
+  (void)state;
+  enum { STEPS = 20000 };
+  static float pixels[FLOATS];
+  stage set;
+  open_stage(&set, NULL);
+  hl_scene_volume *cube = add_cube(&set, OPACITY);
+  turn(cube);
+  set.scene.cuts = IN_WORLD;
+  set.scene.cut_count = 3;
+  for (int by_reference = 0; by_reference < 2; by_reference++) {
+    stage_render_by(&set, by_reference, pixels);
+    for (int i = 0; i < SIDE * SIDE; i += 13) {
+      vec3 origin, way;
+      int inside = 0;
+      stage_eye_ray(&set, i % SIDE, i / SIDE, &origin, &way);
+      for (int n = 0; n < STEPS; n++) {
+        vec3 p = vec3_add(origin, vec3_scale(way, 20 + 120 * (n + 0.5) / STEPS)), q = unturned(cube, p);
+        bool here = fabs(q.x) < HALF && fabs(q.y) < HALF && fabs(q.z) < HALF;
+        for (int c = 0; c < 3 && here; c++) here = is_left(&IN_WORLD[c], p);
+        inside += here;
+      }
+      double alpha = 1 - pow(1 - OPACITY, inside * 120.0 / STEPS);
+      if (!(fabs((double)pixels[4 * i + 3] - alpha) <= (by_reference ? 1e-3 : 2e-3)))
+        fail_msg("pixel %d: alpha is %.6f, not %.6f", i, (double)pixels[4 * i + 3], alpha);
+    }
+  }
+  stage_close(&set);
+}
+
+/* Two volumes, one of them turned, cut by the scene and each by its own cuts: the same picture and shadows,
+ * but for rounding. */
+static void test_scene_cuts_as_cuts_of_each_volume(void **state) {
+  (void)state;
+  static float by_scene[FLOATS], by_volumes[FLOATS];
+  for (int by_reference = 0; by_reference < 2; by_reference++) {
+    stage set;
+    open_stage(&set, NULL);
+    add_cube(&set, 0.5)->shading = HL_SHADING_PHONG;
+    turn(add_cube(&set, 0.3));
+    set.volumes[1].translate[0] = 14;
+    stage_add_directional(&set, vec3_normalise((vec3){-0.9, -0.5, -0.8}));
+    set.scene.render.shadows = HL_SHADOWS_HARD;
+    set.scene.cuts = IN_WORLD;
+    set.scene.cut_count = 2;
+    stage_render_by(&set, by_reference, by_scene);
+    set.scene.cut_count = 0;
+    hl_cut turned[2] = {IN_WORLD[0], IN_WORLD[1]};
+    const hl_scene_volume *other = &set.volumes[1];
+    vec3 point = unturned(other, vec3_of(turned[0].point)),
+         centre = unturned(other, vec3_of(turned[1].center));
+    vec3 normal = vec3_subtract(
+        unturned(other, vec3_add(vec3_of(turned[0].point), vec3_of(turned[0].normal))), point);
+    memcpy(turned[0].point, &point, sizeof point);
+    memcpy(turned[0].normal, &normal, sizeof normal);
+    memcpy(turned[1].center, &centre, sizeof centre);
+    turned[1].radius /= other->scale;
+    cut(&set.volumes[0], IN_WORLD, 2);
+    cut(&set.volumes[1], turned, 2);
+    stage_render_by(&set, by_reference, by_volumes);
+    assert_true(difference(by_scene, by_volumes) < 1e-5);
+    cut(&set.volumes[1], NULL, 0);
+    stage_render_by(&set, by_reference, by_volumes);
+    assert_true(difference(by_scene, by_volumes) > 0.01); /* both are cut by the scene */
+    stage_close(&set);
+  }
+}
+
 /* ---- light ---- */
 
 /* Dense even matter has no gradient: only cut faces give it a normal. A face's brightness is its cosine to
@@ -308,6 +400,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_lengths),
       cmocka_unit_test(test_as_a_clip_box),
+      cmocka_unit_test(test_scene_cuts_in_the_world),
+      cmocka_unit_test(test_scene_cuts_as_cuts_of_each_volume),
       cmocka_unit_test(test_faces_by_their_own_normal),
       cmocka_unit_test(test_shadow_of_what_is_cut_away),
       cmocka_unit_test(test_isosurface),

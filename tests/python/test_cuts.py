@@ -13,10 +13,26 @@ def test_scenes_keep_cuts(tmp_path):
     np.save(tmp_path / "block.npy", BLOCK)
     cuts = [PLANE, {"type": "box", "min": (0, 0, 0), "max": (3, 4, 5), "keep": "inside"},
             {"type": "sphere", "center": (1, 2, 3), "radius": 2}]
-    made = Scene(Volume(str(tmp_path / "block.npy"), cuts=cuts, cut_shading="none"), size=(16, 16))
-    look = Scene.from_json(made.to_json()).volumes[0].look
+    made = Scene(Volume(str(tmp_path / "block.npy"), cuts=cuts, cut_shading="none"), size=(16, 16), cuts=cuts[1])
+    read = Scene.from_json(made.to_json())
+    look = read.volumes[0].look
+    assert read.cuts == [cuts[1]]
     assert look["cuts"] == [{**cuts[0], "keep": "outside"}, cuts[1], {**cuts[2], "keep": "outside"}]
     assert look["cut_shading"] == "none"
+
+
+def test_cuts_of_a_scene():
+    """Of two blocks side by side the scene's plane takes what is right of it, as each block's own in the world does."""
+    blocks = [Volume(BLOCK), Volume(BLOCK, translate=(9, 0, 0))]
+    plane = {**PLANE, "point": (11, 0, 0)}
+    kinds = {"size": (48, 32), "camera": "front", "background": "transparent"}
+    scene = Scene(blocks, cuts=plane, **kinds)
+    assert scene.cuts == [{**plane, "keep": "outside"}]
+    renderer = halflight.Renderer()
+    by_scene, whole = (np.asarray(renderer.render(one)) for one in (scene, scene.replace(cuts=[])))
+    own = scene.replace([one.replace(cuts={**plane, "world": True}) for one in blocks], cuts=[])
+    assert np.array_equal(by_scene, np.asarray(renderer.render(own)))
+    assert (by_scene[..., 3] > 0).sum() < 0.9 * (whole[..., 3] > 0).sum()  # the whole leaves the picture
 
 
 def test_a_plane_takes_half():
