@@ -184,8 +184,8 @@ typedef struct hl_cut {
   int world; /* non-zero: lengths are in the scene's world, after the volume's transform; default 0 */
 } hl_cut;
 
-/* How surfaces are shaded within a voxel of the face of a cut or of the clip box; at twice the depth they are
- * as anywhere. */
+/* How surfaces are shaded within a voxel of the face of a cut or of the clip box (at twice the depth they are
+ * as anywhere), and at faces that a mask leaves. */
 typedef enum hl_cut_shading {
   HL_CUT_SHADING_FACE = 0,     /* by the face's own normal */
   HL_CUT_SHADING_GRADIENT = 1, /* by the data's gradient, as if nothing were cut */
@@ -203,7 +203,8 @@ typedef struct hl_label {
 } hl_label;
 
 /* A label map that masks, colours or reveals a volume: smooth at the labels' borders. Within a label the
- * volume's extinction is multiplied by the label's opacity, or by 0 where it is not visible. */
+ * volume's extinction is multiplied by the label's opacity, or by 0 where it is not visible. What is hidden
+ * leaves faces, which cut_shading HL_CUT_SHADING_FACE lights by the normals of the labels' borders. */
 typedef struct hl_mask {
   hl_volume *volume; /* the label map, in the world of the volume's file; any grid; retained by the scene;
                         null: there is no mask */

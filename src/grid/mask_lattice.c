@@ -1,6 +1,8 @@
 /* grid/mask_lattice.c - see mask_lattice.h. */
 #include "grid/mask_lattice.h"
 
+#include <math.h>
+
 #include "scene/placement.h"
 
 void hl_mask_lattice_set_up(mask_lattice *lattice, const hl_scene_volume *volume) {
@@ -10,6 +12,7 @@ void hl_mask_lattice_set_up(mask_lattice *lattice, const hl_scene_volume *volume
   if (mask == NULL || !affine3_invert(hl_scene_mask_index_to_world(volume), &to_index)) return;
   lattice->factors = mask->voxels;
   lattice->colors = mask->colors;
+  lattice->slopes = mask->slopes;
   lattice->rest = (float)volume->mask.rest;
   const double offset[3] = {to_index.offset.x, to_index.offset.y, to_index.offset.z};
   int32_t step = 1;
@@ -20,6 +23,35 @@ void hl_mask_lattice_set_up(mask_lattice *lattice, const hl_scene_volume *volume
     vec3_store(lattice->to_index[axis], to_index.linear.row[axis]);
     lattice->to_index[axis][3] = (float)offset[axis];
   }
+}
+
+/* The lattice's points along an axis that the factor depends on between two positions; false where some of
+ * these are outside and the rest shows there. */
+static bool points_between(const mask_lattice *lattice, int axis, double low, double high, int32_t ends[2]) {
+  const double last = lattice->last[axis];
+  if (lattice->rest > 0 && (low < -0.5 || high > last + 0.5)) return false;
+  ends[0] = (int32_t)fmin(fmax(floor(low), 0), last);
+  ends[1] = (int32_t)fmin(fmax(floor(high) + 1, 0), last);
+  return true;
+}
+
+bool hl_mask_hides_box(const mask_lattice *lattice, vec3 middle, const vec3 half[3]) {
+  int32_t ends[3][2];
+  for (int a = 0; a < 3; a++) {
+    const float *row = lattice->to_index[a];
+    const vec3 along = {(double)row[0], (double)row[1], (double)row[2]};
+    double at = vec3_dot(along, middle) + (double)row[3], reach = 0;
+    for (int h = 0; h < 3; h++) reach += fabs(vec3_dot(along, half[h]));
+    if (!points_between(lattice, a, at - reach, at + reach, ends[a])) return false;
+  }
+  for (int32_t k = ends[2][0]; k <= ends[2][1]; k++)
+    for (int32_t j = ends[1][0]; j <= ends[1][1]; j++) {
+      const uint16_t *row = lattice->factors + (size_t)k * (size_t)lattice->step[2] +
+                            (size_t)j * (size_t)lattice->step[1];
+      for (int32_t i = ends[0][0]; i <= ends[0][1]; i++)
+        if (row[i] != 0) return false;
+    }
+  return true;
 }
 
 void hl_mask_tint(const mask_lattice *lattice, const float point[3], float color[3]) {

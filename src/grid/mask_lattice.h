@@ -9,6 +9,7 @@ typedef struct mask_lattice {
   const uint16_t *factors; /* [k][j][i]; borrowed from the scene; 65535 is 1; null: there is no mask. One more
                               may be read */
   const unsigned char *colors; /* [k][j][i][4] (label/mask.h); null: the mask has no colours */
+  const signed char *slopes;   /* [k][j][i][4] (label/mask.h) */
   int32_t last[3];             /* the greatest index along i, j, k */
   int32_t step[3];             /* from point to point along i, j, k; in points */
   float to_index[3][4];        /* frame space to index space */
@@ -61,6 +62,10 @@ static inline float hl_mask_factor(const mask_lattice *lattice, const float poin
   }
   return sum * (1.0f / 65535);
 }
+
+/* Whether the factor is 0 everywhere in a box of frame space: middle + t0 half[0] + t1 half[1] + t2 half[2],
+ * each t from -1 to 1. */
+bool hl_mask_hides_box(const mask_lattice *lattice, vec3 middle, const vec3 half[3]);
 
 /* Moves a colour towards the mask's at a position in frame space. */
 void hl_mask_tint(const mask_lattice *lattice, const float point[3], float color[3]);

@@ -42,8 +42,8 @@ static bool overlaps_box(const grid *grid, const int32_t b[3]) {
   return true;
 }
 
-/* How far around a brick its voxels are needed for what cuts leave beside it: the kernel's radius, and a
- * cell.
+/* How far around a brick its voxels are needed for what cuts or a mask leave beside it: the kernel's radius,
+ * and a cell.
  */
 enum { BESIDE_CUT = 3 };
 
@@ -58,6 +58,20 @@ static bool is_cut_away(const grid *grid, const int32_t b[3]) {
   return hl_cuts_remove_box(grid->cuts, grid->cut_count, low, high);
 }
 
+/* Whether a mask hides brick b and its surroundings. */
+static bool is_hidden(const brick_job *job, const int32_t b[3]) {
+  const mask_lattice *mask = &job->classifier->mask;
+  const affine3 *place = &job->grid->index_to_frame;
+  vec3 half[3];
+  double middle[3];
+  if (mask->factors == NULL) return false;
+  for (int axis = 0; axis < 3; axis++) {
+    middle[axis] = ((double)b[axis] + 0.5) * HL_BRICK_CELLS - 1;
+    half[axis] = vec3_scale(mat3_column(place->linear, axis), 0.5 * HL_BRICK_CELLS + BESIDE_CUT);
+  }
+  return hl_mask_hides_box(mask, affine3_apply(*place, vec3_of(middle)), half);
+}
+
 static void mark_bricks(void *data, size_t index, int worker) {
   (void)worker;
   brick_job *job = data;
@@ -69,7 +83,8 @@ static void mark_bricks(void *data, size_t index, int worker) {
       float bounds[2];
       hl_bounds_of_brick(grid, at, bounds);
       grid->relevant[at] = overlaps_box(grid, b) && !is_cut_away(grid, b) &&
-                           hl_classifier_range_visible(job->classifier, grid, bounds[0], bounds[1]);
+                           hl_classifier_range_visible(job->classifier, grid, bounds[0], bounds[1]) &&
+                           !is_hidden(job, b);
     }
 }
 

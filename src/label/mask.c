@@ -25,6 +25,7 @@ typedef struct mask_job {
   hl_volume *const *occupancies; /* [label_count]; null: no voxel has the label */
   uint16_t *factors;             /* [k][j][i] */
   unsigned char *colors;         /* [k][j][i][HL_COLOR_BYTES]; null: no label tints */
+  signed char *slopes;           /* [k][j][i][4] (mask.h) */
   float *sums;                   /* [threads][slice floats] */
   size_t slice_floats;
 } mask_job;
@@ -134,6 +135,27 @@ static void fill_slice(void *data, size_t k, int worker) {
   for (size_t at = 0; at < count; at++) store_voxel(job, sums, at, k * count + at);
 }
 
+/* The central difference of the factors at `at` along an axis; beyond the ends the border goes on. */
+static signed char slope_at(const uint16_t *factors, size_t at, size_t place, size_t count, size_t step) {
+  int before = factors[place > 0 ? at - step : at], after = factors[place + 1 < count ? at + step : at];
+  return (signed char)lround((after - before) * (HL_MASK_SLOPE_STEPS / 2 / HL_MASK_STEPS));
+}
+
+static void fill_slopes(void *data, size_t k, int worker) {
+  const mask_job *job = data;
+  const size_t *n = job->mask->volume->dimension, row = n[0], slice = n[0] * n[1];
+  (void)worker;
+  for (size_t j = 0; j < n[1]; j++)
+    for (size_t i = 0; i < n[0]; i++) {
+      size_t at = k * slice + j * row + i;
+      signed char *slope = job->slopes + 4 * at;
+      slope[0] = slope_at(job->factors, at, i, n[0], 1);
+      slope[1] = slope_at(job->factors, at, j, n[1], row);
+      slope[2] = slope_at(job->factors, at, k, n[2], slice);
+      slope[3] = 0;
+    }
+}
+
 static hl_status adopt(hl_context *context, mask_job *job, hl_volume **made, hl_error *error) {
   const hl_volume *map = job->mask->volume;
   hl_volume_description grid;
@@ -152,7 +174,9 @@ static hl_status adopt(hl_context *context, mask_job *job, hl_volume **made, hl_
   job->factors = NULL;
   if (status != HL_OK) return status;
   (*made)->colors = job->colors;
+  (*made)->slopes = job->slopes;
   job->colors = NULL;
+  job->slopes = NULL;
   return HL_OK;
 }
 
@@ -172,12 +196,14 @@ static hl_status fill(hl_context *context, int threads, mask_job *job, hl_volume
   job->slice_floats = SUMS * map->dimension[0] * map->dimension[1];
   job->sums = hl_allocate(context, (size_t)hl_pool_threads(pool) * job->slice_floats, sizeof *job->sums);
   job->factors = hl_allocate_zeroed(context, count + 1, sizeof *job->factors);
+  job->slopes = hl_allocate(context, count, 4);
   bool colored = any_tint(job->mask);
   if (colored) job->colors = hl_allocate(context, count, HL_COLOR_BYTES);
-  if (job->sums == NULL || job->factors == NULL || (colored && job->colors == NULL))
+  if (job->sums == NULL || job->factors == NULL || job->slopes == NULL || (colored && job->colors == NULL))
     status = hl_fail_memory(error, count * HL_COLOR_BYTES, "a mask");
   if (status == HL_OK) {
     hl_pool_run(pool, map->dimension[2], fill_slice, job);
+    hl_pool_run(pool, map->dimension[2], fill_slopes, job);
     status = hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while making a mask")
                                      : adopt(context, job, made, error);
   }
@@ -185,6 +211,7 @@ static hl_status fill(hl_context *context, int threads, mask_job *job, hl_volume
   hl_release(context, job->sums);
   hl_release(context, job->factors);
   hl_release(context, job->colors);
+  hl_release(context, job->slopes);
   return status;
 }
 

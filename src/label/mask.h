@@ -8,15 +8,17 @@
 
 /* What factors of extinction are stored as: 0 to 1 in 16 bits. */
 #define HL_MASK_STEPS 65535.0
+/* Slopes of the factor along the lattice's axes are stored as this times the rise from voxel to voxel. */
+#define HL_MASK_SLOPE_STEPS 254.0
 /* Masks have at most so many voxels: 32 bits number the bytes of their colours. */
 #define HL_MASK_VOXELS ((size_t)1 << 29)
 
 /* Makes a volume of the map's grid, to be read linearly between voxels. Its values are the factors; its
  * colours, [k][j][i][4], are those of the labels that tint: the square roots of linear red, green and blue,
  * and how much of the colour the matter takes, each from 0 to 255; null where no label tints. Its voxels may
- * be read two bytes beyond the last one. A label's share
- * rises from 0 to 1 over about two voxels, and is 1/2 where the label meets another or the rest. threads: 0:
- * one per processor. */
+ * be read two bytes beyond the last one. Its slopes, [k][j][i][4], are the factor's central differences along
+ * i, j and k, HL_MASK_SLOPE_STEPS times as large, and 0. A label's share rises from 0 to 1 over about two
+ * voxels, and is 1/2 where the label meets another or the rest. threads: 0: one per processor. */
 hl_status hl_label_mask(hl_context *context, int threads, const hl_mask *mask, hl_volume **made,
                         hl_error *error);
 

@@ -8,17 +8,16 @@ typedef struct mask_voxels {
   double share[8];
 } mask_voxels;
 
-static bool find_voxels(const reference_volume *volume, vec3 point, mask_voxels *found) {
-  const hl_volume *mask = volume->described->mask.volume;
-  vec3 in_mask = affine3_apply(volume->index_to_mask, point);
-  const double p[3] = {in_mask.x, in_mask.y, in_mask.z};
+/* p: in the lattice's index space. False outside the lattice; the voxels are then those of its border. */
+static bool find_voxels_at(const hl_volume *mask, const double p[3], mask_voxels *found) {
+  bool inside = true;
   for (int corner = 0; corner < 8; corner++) {
     found->voxel[corner] = 0;
     found->share[corner] = 1;
   }
   for (int axis = 2; axis >= 0; axis--) {
     double last = (double)mask->dimension[axis] - 1;
-    if (p[axis] < -0.5 || p[axis] > last + 0.5) return false;
+    if (p[axis] < -0.5 || p[axis] > last + 0.5) inside = false;
     double at = fmin(fmax(p[axis], 0), last), first = floor(at);
     for (int corner = 0; corner < 8; corner++) {
       bool next = (corner >> axis & 1) != 0;
@@ -27,7 +26,19 @@ static bool find_voxels(const reference_volume *volume, vec3 point, mask_voxels 
       found->share[corner] *= next ? at - first : 1 - (at - first);
     }
   }
-  return true;
+  return inside;
+}
+
+static bool find_voxels(const reference_volume *volume, vec3 point, mask_voxels *found) {
+  vec3 p = affine3_apply(volume->index_to_mask, point);
+  return find_voxels_at(volume->described->mask.volume, (const double[3]){p.x, p.y, p.z}, found);
+}
+
+static double factor_of(const hl_volume *mask, const mask_voxels *found) {
+  double sum = 0;
+  for (int corner = 0; corner < 8; corner++)
+    sum += found->share[corner] * ((const uint16_t *)mask->voxels)[found->voxel[corner]];
+  return sum * mask->value_scale;
 }
 
 double hl_reference_mask_factor(const reference_volume *volume, vec3 point) {
@@ -35,10 +46,30 @@ double hl_reference_mask_factor(const reference_volume *volume, vec3 point) {
   mask_voxels found;
   if (mask->volume == NULL) return 1;
   if (!find_voxels(volume, point, &found)) return mask->rest;
-  double sum = 0;
-  for (int corner = 0; corner < 8; corner++)
-    sum += found.share[corner] * ((const uint16_t *)mask->volume->voxels)[found.voxel[corner]];
-  return sum * mask->volume->value_scale;
+  return factor_of(mask->volume, &found);
+}
+
+/* Differences over two voxels of the lattice: between its points those are linear, as the factor is. */
+vec3 hl_reference_mask_slope(const reference_volume *volume, vec3 point) {
+  const hl_mask *mask = &volume->described->mask;
+  double slope[3];
+  mask_voxels found;
+  if (mask->volume == NULL || volume->described->cut_shading != HL_CUT_SHADING_FACE ||
+      !find_voxels(volume, point, &found))
+    return (vec3){0, 0, 0};
+  vec3 in_mask = affine3_apply(volume->index_to_mask, point);
+  for (int axis = 0; axis < 3; axis++) {
+    double around[2];
+    for (int side = 0; side < 2; side++) {
+      double p[3] = {in_mask.x, in_mask.y, in_mask.z};
+      p[axis] += side ? 1 : -1;
+      (void)find_voxels_at(mask->volume, p, &found);
+      around[side] = factor_of(mask->volume, &found);
+    }
+    slope[axis] = (around[1] - around[0]) / 2;
+  }
+  return mat3_apply(volume->gradient_to_world,
+                    mat3_apply(mat3_transpose(volume->index_to_mask.linear), vec3_of(slope)));
 }
 
 double hl_reference_mask_color(const reference_volume *volume, vec3 point, double color[3]) {

@@ -228,6 +228,8 @@ double hl_reference_value(const reference_volume *volume, vec3 point);
 void hl_reference_tint(const reference_volume *volume, vec3 point, double color[3]);
 /* What the volume's mask multiplies extinction by at a point of the volume's index space; 1 without one. */
 double hl_reference_mask_factor(const reference_volume *volume, vec3 point);
+/* The slope of that factor at a point of index space, per world unit; 0 where the mask leaves no faces. */
+vec3 hl_reference_mask_slope(const reference_volume *volume, vec3 point);
 /* The colour that the mask gives, and how much of it matter takes, 0 to 1, which is returned. */
 double hl_reference_mask_color(const reference_volume *volume, vec3 point, double color[3]);
 /* Data value per world unit. */

@@ -31,6 +31,8 @@ static vec3 find_normal(const reference_volume *volume, vec3 index_point, double
   if (volume->described->shading != HL_SHADING_PHONG) return (vec3){0, 0, 0};
   double outward = value > volume->empty_value ? -1 : 1;
   vec3 slope = vec3_scale(hl_reference_gradient(volume, index_point), outward);
+  vec3 mask = vec3_scale(hl_reference_mask_slope(volume, index_point), -fabs(value - volume->empty_value));
+  slope = vec3_add(slope, mask);
   double size = vec3_length(slope);
   if (!(size > 0)) return (vec3){0, 0, 0};
   *surface = fmin(size / volume->surface_gradient, 1);

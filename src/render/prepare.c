@@ -147,14 +147,24 @@ typedef struct preparation {
   hl_pool *pool;
   const grid_functions *functions;
   hl_kernel kernel;
+  bool projected; /* in a maximum projection */
 } preparation;
 
-/* The mask is retained, so that another one has another address, which keys of kept light are made of. */
-static void hold_mask(prepared_volume *prepared, const hl_scene_volume *scene) {
+static void set_up_mask(const preparation *with, prepared_volume *prepared, const hl_scene_volume *scene) {
+  if (with->projected) prepared->classifier.mask = (mask_lattice){0};
+  else hl_mask_lattice_set_up(&prepared->classifier.mask, scene);
+}
+
+/* Masks are not in maximum projections. The mask is retained, so that another one has another address, which
+ * keys of kept light are made of. Returns whether it is the mask of the frame before. */
+static bool hold_mask(const preparation *with, prepared_volume *prepared, const hl_scene_volume *scene) {
+  const mask_lattice before = prepared->classifier.mask;
   hl_volume_retain(scene->mask.volume);
   hl_volume_release(prepared->mask);
   prepared->mask = scene->mask.volume;
-  hl_mask_lattice_set_up(&prepared->classifier.mask, scene);
+  set_up_mask(with, prepared, scene);
+  const mask_lattice *now = &prepared->classifier.mask;
+  return now->factors == before.factors && now->rest == before.rest;
 }
 
 static hl_status prepare_volume(const preparation *with, const hl_scene_volume *scene,
@@ -184,13 +194,12 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
   prepared->grid.index_to_frame = index_to_frame;
   if (!affine3_invert(index_to_frame, &prepared->grid.frame_to_index))
     return hl_fail(error, HL_ERROR_INPUT, "a volume's axes are singular: the three must span space");
-  hold_mask(prepared, scene);
-  if (same) return HL_OK;
+  if (hold_mask(with, prepared, scene) && same) return HL_OK;
   release_function(context, prepared);
   if (!same_cut) release_iso(context, prepared);
   if (!same_cut && (status = keep_cuts(context, prepared, scene, error)) != HL_OK) return status;
   status = hl_classifier_create(context, scene, &prepared->grid, &prepared->classifier, error);
-  hl_mask_lattice_set_up(&prepared->classifier.mask, scene);
+  set_up_mask(with, prepared, scene);
   if (status == HL_OK) status = keep_key(context, prepared, scene, error);
   if (status != HL_OK) return status;
   hl_grid_mark_relevant(&prepared->grid, with->functions, &prepared->classifier, pool);
@@ -199,7 +208,8 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
 
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
                              const hl_scene_description *scene, prepared_volume *prepared, hl_error *error) {
-  const preparation with = {context, pool, &hot->grid, scene->render.kernel};
+  const preparation with = {context, pool, &hot->grid, scene->render.kernel,
+                            scene->render.compositing == HL_COMPOSITING_MAXIMUM};
   for (size_t i = 0; i < scene->volume_count; i++) {
     hl_status status = prepare_volume(&with, &scene->volumes[i], &prepared[i], error);
     if (status != HL_OK) {

@@ -50,6 +50,7 @@ typedef struct shade_volume {
   const shade_cut *cuts;                 /* [cut_count] */
   int cut_count, light_cut_count;        /* for the eye, and for lights: these, or none */
   int cut_shading;                       /* hl_cut_shading */
+  int mask_faces;                        /* normals turn to the faces that the mask leaves */
   voxel_colors tints;                    /* of the mask: colours go towards these, by their weights */
   int object;                            /* its number in the layer of objects */
 } shade_volume;

@@ -218,15 +218,19 @@ LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, bloc
   }
 }
 
-/* Finds a volume's normal. The slope is measured in steps of the transfer function's table: the squares of
- * data values of 1e-27 or 1e30 are beyond floats. Where components are below 1e-19 even so, the normal is
- * shorter than 1. */
+/* Finds a volume's normal. What a mask hides leaves a face: the visible matter is f m, m the mask's factor,
+ * with the slope m grad f + f grad m, in which m itself is taken for 1 (derived). The slope is measured in
+ * steps of the transfer function's table: the squares of data values of 1e-27 or 1e30 are beyond floats.
+ * Where components are below 1e-19 even so, the normal is shorter than 1. */
 LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
   const shade_volume *volume = d->patch->volume;
   const float scale = fabsf(volume->classifier->scale);
   lanes density = d->way.first + d->way.last;
   lanes3 slope = scale3(slope_of_block(d), lanes_set(scale));
   lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f));
+  if (volume->mask_faces)
+    slope = add_scaled3(slope, mask_slope(&volume->classifier->mask, seen_position(slab, d)),
+                        -outward * lanes_abs(density) * (scale * 0.5f));
   lanes steepness = lanes_sqrt(dot3(slope, slope));
   d->surface = volume->phong
                    ? lanes_min(steepness * (1.0f / volume->classifier->normal_edge), lanes_set(1.0f))

@@ -315,6 +315,8 @@ static void set_up_shading(sweep *sweep) {
       shade->high[axis] = (float)grid->box_high[axis];
     }
     if (volume->cut_shading != HL_CUT_SHADING_GRADIENT) find_clip_faces(grid, shade);
+    shade->mask_faces = shade->phong && shade->classifier->mask.slopes != NULL &&
+                        volume->cut_shading == HL_CUT_SHADING_FACE;
   }
   set_up_cuts(sweep);
 }

@@ -316,6 +316,7 @@ void hl_volume_release(hl_volume *volume) {
   hl_release(volume->context, volume->owned_voxels);
   hl_pages_release(volume->pages);
   hl_release(volume->context, volume->colors);
+  hl_release(volume->context, volume->slopes);
   if (volume->release != NULL) volume->release(volume->release_data, volume->voxels);
   hl_release(volume->context, volume);
 }

@@ -182,6 +182,60 @@ static void test_shadows_against_the_reference(void **state) {
   }
 }
 
+/* ---- a label as a knife ---- */
+
+static const hl_label KNIFE[] = {{.value = 2, .opacity = 1}};
+
+/* Even, dense matter, of which the mask takes the half with x > 0, seen from there. Shadows are off. */
+static hl_scene_volume *open_cut(stage *set) {
+  hl_scene_volume *cube = open_masked(set, KNIFE, 1, 1);
+  stage_set_opacity(set, cube, 0.9, 1);
+  stage_set_color(set, cube, 1, 1, 1);
+  cube->shading = HL_SHADING_PHONG;
+  cube->material = (hl_material){.diffuse = 1};
+  set->scene.render.shadows = HL_SHADOWS_OFF;
+  stage_look(set, (vec3){100, 0, 0}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  return cube;
+}
+
+/* The matter itself has no gradient: where the label takes it, it is lit as a surface with the normal of the
+ * label's border, by its cosine to the light. By the data's gradient, it is a medium, the same from any side.
+ */
+static void test_faces_of_a_knife(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  static const vec3 lights[] = {{-1, 0, 0}, {-1, 0, 0.7}, {-0.5, 0, -0.9}};
+  for (int by_reference = 0; by_reference < 2; by_reference++)
+    for (int l = 0; l < 3; l++)
+      for (int by_face = 0; by_face < 2; by_face++) {
+        stage set;
+        hl_scene_volume *cube = open_cut(&set);
+        cube->cut_shading = by_face ? HL_CUT_SHADING_FACE : HL_CUT_SHADING_GRADIENT;
+        const vec3 light = vec3_normalise(lights[l]);
+        stage_add_directional(&set, light);
+        stage_render_by(&set, by_reference, pixels);
+        const float *middle = &pixels[4 * (SIDE / 2 * SIDE + SIDE / 2)];
+        assert_near((double)middle[0] / (double)middle[3], by_face ? -light.x : 1, 0.01);
+        close_masked(&set, cube);
+      }
+}
+
+/* Bricks that the mask hides, and that are no neighbours of visible matter, are left out: two fifths of the
+ * half with x > 0, where the label is hidden. Where the rest shows, all are kept. */
+static void test_hidden_voxels_are_not_kept(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  const hl_label one = {.value = 1, .opacity = 1, .visible = 1};
+  for (int shown = 0; shown < 2; shown++) {
+    stage set;
+    hl_scene_volume *cube = open_masked(&set, &one, 1, shown ? 0.1 : 0);
+    uint64_t kept = stage_render_counted(&set, pixels).voxels_kept;
+    close_masked(&set, cube);
+    if (shown) assert_true(kept == N * N * N);
+    else assert_true(kept >= N * N * N * 3 / 5 && kept < N * N * N * 7 / 8);
+  }
+}
+
 static void test_wrong_masks_are_refused(void **state) {
   (void)state;
   stage set;
@@ -207,6 +261,8 @@ int main(void) {
       cmocka_unit_test(test_hidden),
       cmocka_unit_test(test_moves_with_the_volume),
       cmocka_unit_test(test_shadows_against_the_reference),
+      cmocka_unit_test(test_faces_of_a_knife),
+      cmocka_unit_test(test_hidden_voxels_are_not_kept),
       cmocka_unit_test(test_wrong_masks_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

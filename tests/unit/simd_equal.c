@@ -835,6 +835,7 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    round % 3 == 1 ? 3 : 0,
                                    round % 6 == 1 ? 3 : 0,
                                    round % 2,
+                                   0,
                                    round % 5 == 2 ? colors_bench : (voxel_colors){.voxels = NULL},
                                    v + 1};
     s->patches[v] = (shade_patch){&s->volumes[v],
