@@ -105,6 +105,11 @@ HL_API void hl_context_options_defaults(hl_context_options *options);
 HL_API HL_WARN_UNUSED hl_status hl_context_create(const hl_context_options *options, hl_context **context,
                                                   hl_error *error);
 
+/* Changes `memory_limit` and `scratch_folder` from now on; volumes stay where they are. scratch_folder:
+ * copied; may be null: none. Call it while no other call with the context runs. */
+HL_API HL_WARN_UNUSED hl_status hl_context_limit_memory(hl_context *context, uint64_t memory_limit,
+                                                        const char *scratch_folder, hl_error *error);
+
 /* Null is allowed. Everything made with the context must be released before. */
 HL_API void hl_context_destroy(hl_context *context);
 

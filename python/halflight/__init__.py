@@ -18,6 +18,7 @@ from .colors import colormaps
 from .errors import HalflightWarning, InputError, UnsupportedError
 from .image import Image
 from .lights import Directional, Disk, EmissionImage, Light, Point, Polygon, Rect, Spot, Texture
+from .memory import limit_memory
 from .mesh import Mesh
 from .render import Renderer, reference, render
 from .scene import Scene
@@ -30,5 +31,5 @@ __version__ = _text_of(_lib.hl_version())
 __all__ = [
     "Camera", "Directional", "Disk", "EmissionImage", "HalflightWarning", "Image", "Info", "InputError", "Light", "Mesh",
     "Point", "Polygon", "Rect", "Renderer", "Scene", "Spot", "Texture", "TransferFunction", "UnsupportedError", "Volume",
-    "colormaps", "info", "presets", "reference", "render", "show",
+    "colormaps", "info", "limit_memory", "presets", "reference", "render", "show",
 ]

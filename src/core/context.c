@@ -72,6 +72,7 @@ hl_status hl_context_create(const hl_context_options *options, hl_context **cont
   hl_context *made = chosen.allocate(chosen.user_data, sizeof *made + data_bytes + scratch_bytes, 64);
   if (made == NULL) return hl_fail_memory(error, sizeof *made, "a context");
   made->options = chosen;
+  made->scratch_folder = NULL;
   char *texts = (char *)(made + 1);
   if (data_bytes > 0) made->options.data_folder = memcpy(texts, chosen.data_folder, data_bytes);
   if (scratch_bytes > 0)
@@ -83,8 +84,24 @@ hl_status hl_context_create(const hl_context_options *options, hl_context **cont
   return HL_OK;
 }
 
+hl_status hl_context_limit_memory(hl_context *context, uint64_t memory_limit, const char *scratch_folder,
+                                  hl_error *error) {
+  if (context == NULL) return hl_fail(error, HL_ERROR_ARGUMENT, "hl_context_limit_memory: context is null");
+  hl_context_options *options = &context->options;
+  size_t bytes = bytes_of(scratch_folder);
+  char *copy = bytes > 0 ? options->allocate(options->user_data, bytes, 64) : NULL;
+  if (copy == NULL && bytes > 0) return hl_fail_memory(error, bytes, "the name of a folder");
+  if (copy != NULL) memcpy(copy, scratch_folder, bytes);
+  if (context->scratch_folder != NULL) options->release(options->user_data, context->scratch_folder);
+  options->scratch_folder = context->scratch_folder = copy;
+  options->memory_limit = memory_limit;
+  return HL_OK;
+}
+
 void hl_context_destroy(hl_context *context) {
   if (context == NULL) return;
+  if (context->scratch_folder != NULL)
+    context->options.release(context->options.user_data, context->scratch_folder);
   context->options.release(context->options.user_data, context);
 }
 

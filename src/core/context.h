@@ -10,6 +10,7 @@
 struct hl_context {
   hl_context_options options;       /* callbacks filled in; instruction_set resolved */
   atomic_uint_least64_t held, peak; /* bytes of blocks */
+  char *scratch_folder;             /* owned; of hl_context_limit_memory(); may be null */
   atomic_uint_least64_t paged;      /* bytes of the pages of scratch files (volume/pages.h) held in memory */
 };
 

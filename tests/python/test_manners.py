@@ -157,3 +157,39 @@ def test_warnings_point_at_the_caller(tmp_path):
     with pytest.warns(halflight.HalflightWarning) as found:
         halflight.Volume(tmp_path / "vectors.npy")
     assert found[0].filename == __file__
+
+
+@pytest.fixture
+def large(tmp_path):
+    """A file of 5.4 MB of voxels, and an empty scratch folder."""
+    k, j, i = np.indices((160, 180, 190), np.uint16)
+    path = tmp_path / "large_190x180x160_uint8.raw"
+    ((3 * i + 5 * j + 7 * k) % 256).astype(np.uint8).tofile(path)
+    (tmp_path / "scratch").mkdir()
+    yield path, tmp_path / "scratch"
+    halflight.limit_memory(None)
+
+
+def test_volumes_larger_than_memory_give_the_same_pictures(large):
+    path, scratch = large
+    whole = np.asarray(halflight.render(path, size=(40, 30)))
+    halflight.limit_memory(5_300_000, scratch_folder=scratch)
+    volume = halflight.Volume(path)  # less is allowed than its voxels alone
+    halflight.limit_memory(200_000_000, scratch_folder=scratch)
+    assert np.array_equal(np.asarray(halflight.render(volume, size=(40, 30))), whole)
+    assert list(scratch.iterdir()) == []
+
+
+def test_arrays_larger_than_memory_are_refused(large):
+    halflight.limit_memory(5_000_000)
+    with pytest.raises(MemoryError):
+        halflight.Volume(np.zeros((100, 110, 120), np.int32))
+
+
+def test_impossible_limits_are_refused(large):
+    path, scratch = large
+    for limit in (0, -1, 1.5, True, 1 << 64, "4G"):
+        with pytest.raises(ValueError, match="is no number of bytes above 0"):
+            halflight.limit_memory(limit)
+    with pytest.raises(FileNotFoundError, match="there is no folder"):
+        halflight.limit_memory(1 << 30, scratch_folder=scratch / "nowhere")

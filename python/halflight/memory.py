@@ -1,0 +1,40 @@
+"""How much memory volumes and frames may take, and where those go that are larger."""
+from __future__ import annotations
+
+import os
+
+from ._library import call, context, ffi, lib
+
+
+def limit_memory(limit: int | None, *, scratch_folder: str | os.PathLike[str] | None = None) -> None:
+    """Limit what volumes, scenes and renderers hold, and render larger volumes from a scratch file.
+
+    A volume file whose voxels do not fit is read into a file without a name, and frames are the same, bit for bit.
+    Arrays are never copied into one: they are in memory already. Call it while no other thread loads or renders.
+
+    Parameters
+    ----------
+    limit : int or None
+        Bytes held at once; None: no limit, as at first.
+    scratch_folder : path, optional
+        Where scratch files lie, on a fast disk: 1.15 times the voxels' bytes. By default TMPDIR of the environment,
+        else /var/tmp.
+
+    Raises
+    ------
+    ValueError
+        `limit` is no number of bytes above 0.
+    FileNotFoundError
+        There is no such folder.
+
+    Examples
+    --------
+    >>> limit_memory(4 << 30)
+    >>> limit_memory(None)
+    """
+    if limit is not None and (isinstance(limit, bool) or not isinstance(limit, int) or not 0 < limit < 1 << 64):
+        raise ValueError(f"limit: {limit!r} is no number of bytes above 0")
+    folder = os.fspath(scratch_folder if scratch_folder is not None else os.environ.get("TMPDIR") or "/var/tmp")
+    if scratch_folder is not None and not os.path.isdir(folder):
+        raise FileNotFoundError(f"scratch_folder: there is no folder {folder!r}")
+    call(lib.hl_context_limit_memory, context, limit or 0, ffi.new("char[]", os.fsencode(folder)))
