@@ -52,6 +52,16 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_render(hl_renderer *renderer, const 
                                                    float *pixels, size_t row_stride,
                                                    hl_render_statistics *statistics, hl_error *error);
 
+/* Rows of a strip of a picture. */
+#define HL_STRIP_ROWS 16
+
+/* From now on the renderer's pictures have every parts-th strip, from number `part` on (0 to parts - 1); the
+ * other rows are zeros. Strips have the bytes that they have in a whole picture, so that several processes
+ * can make one: their pictures' sum. Each works through all light, and shades its own strips. Layers are then
+ * refused. parts 1 (default): whole pictures. */
+HL_API HL_WARN_UNUSED hl_status hl_renderer_share(hl_renderer *renderer, int part, int parts,
+                                                  hl_error *error);
+
 /* Renders the picture and the requested layers. Takes longer: each light is shaded once more for its picture
  * and once more for its shadow. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene,

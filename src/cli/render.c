@@ -11,6 +11,7 @@
 #include "commands.h"
 #include "input.h"
 #include "output.h"
+#include "ranks.h"
 
 /* One run, from INPUT to OUT. */
 typedef struct render_job {
@@ -25,6 +26,7 @@ typedef struct render_job {
   hl_scene *scene;      /* owned */
   hl_image *image;      /* owned */
   render_layers layers; /* owned */
+  ranks ranks;          /* owned; of --strips-over-ranks */
   double started;       /* seconds of clock_seconds() */
   render_result result;
 } render_job;
@@ -74,8 +76,9 @@ static int job_open(render_job *job) {
   const cli_value *values = job->values;
   int exit_code = render_check_options(values);
   if (exit_code == EXIT_CODE_OK) exit_code = choose_output(job);
+  if (exit_code == EXIT_CODE_OK && values[RENDER_STRIPS].given) exit_code = ranks_begin(&job->ranks);
   if (exit_code != EXIT_CODE_OK) return exit_code;
-  cli_host_options options = {.quiet = values[RENDER_QUIET].given,
+  cli_host_options options = {.quiet = values[RENDER_QUIET].given || job->ranks.rank > 0,
                               .progress = true,
                               .subject = base_name(job->input),
                               .memory_limit = values[RENDER_MAX_MEMORY].bytes,
@@ -141,6 +144,8 @@ static hl_status render_reference(render_job *job, const hl_scene_description *d
 static hl_status render_sheets(render_job *job, const hl_scene_description *description, hl_error *error) {
   hl_renderer *renderer = NULL;
   hl_status status = hl_renderer_create(job->host.context, &renderer, error);
+  if (status == HL_OK && job->ranks.size > 1)
+    status = hl_renderer_share(renderer, job->ranks.rank, job->ranks.size, error);
   if (status == HL_OK)
     status = hl_renderer_render_layers(renderer, job->scene, hl_image_pixels(job->image),
                                        4 * (size_t)description->width, wanted_layers(job),
@@ -164,7 +169,9 @@ static int job_render(render_job *job) {
   job->result.seconds.prepare = job->result.statistics.seconds_prepare;
   job->result.seconds.render = job->result.statistics.seconds_render;
   render_name_scene(job->input, job->bare, &error);
-  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_RUN, status, &error);
+  if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
+  return ranks_sum(&job->ranks, hl_image_pixels(job->image),
+                   4 * (size_t)description->width * (size_t)description->height);
 }
 
 static hl_status write_to_stdout(render_job *job, const hl_image_write_options *options, int *exit_code,
@@ -233,7 +240,8 @@ static int job_report(render_job *job) {
   return EXIT_CODE_OK;
 }
 
-static void job_close(render_job *job) {
+static void job_close(render_job *job, int exit_code) {
+  ranks_end(&job->ranks, exit_code);
   render_layers_release(&job->layers);
   hl_image_destroy(job->image);
   hl_scene_release(job->scene);
@@ -242,7 +250,12 @@ static void job_close(render_job *job) {
 }
 
 static int run_render(const cli_value *values, char **operands) {
-  if (render_is_series(values, operands)) return render_series(values, operands);
+  if (render_is_series(values, operands)) {
+    if (!values[RENDER_STRIPS].given) return render_series(values, operands);
+    return fail(
+        EXIT_CODE_USAGE,
+        "--strips-over-ranks makes one picture: of several share the pictures by --frames-over-ranks");
+  }
   render_job job = {.values = values, .inputs = operands, .input = operands[0], .started = clock_seconds()};
   while (operands[job.input_count] != NULL) job.input_count++;
   job.result.input = job.input;
@@ -252,9 +265,10 @@ static int run_render(const cli_value *values, char **operands) {
   bool picture = !values[RENDER_PRINT_SCENE].given;
   if (exit_code == EXIT_CODE_OK && !picture) exit_code = job_print_scene(&job);
   if (exit_code == EXIT_CODE_OK && picture) exit_code = job_render(&job);
+  picture = picture && job.ranks.rank == 0;
   if (exit_code == EXIT_CODE_OK && picture) exit_code = job_write(&job);
   if (exit_code == EXIT_CODE_OK && picture) exit_code = job_report(&job);
-  job_close(&job);
+  job_close(&job, exit_code);
   return exit_code;
 }
 

@@ -402,6 +402,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
         "of a series of files: every N-th one, from the K-th on,\nso that N runs "
         "share the work"),
     [RENDER_RANKS] = FRAMES_OPTION_RANKS,
+    [RENDER_STRIPS] = {.name = "strips-over-ranks",
+                       .kind = OPTION_SWITCH,
+                       .help = "under Open MPI's mpirun: its processes make one picture\ntogether, each its "
+                               "own strips of 16 rows"},
     [RENDER_THREADS] = HOST_OPTION_THREADS(NULL),
     [RENDER_INSTRUCTION_SET] =
         {.name = "instruction-set",
@@ -457,6 +461,11 @@ int render_check_options(const cli_value *values) {
     if (values[pictures[n]].given)
       return fail(EXIT_CODE_USAGE, "--print-scene makes no picture: remove --%s",
                   render_options[pictures[n]].name);
+  static const int alone[] = {RENDER_LAYERS, RENDER_REFERENCE, RENDER_PRINT_SCENE};
+  for (size_t n = 0; values[RENDER_STRIPS].given && n < sizeof alone / sizeof *alone; n++)
+    if (values[alone[n]].given)
+      return fail(EXIT_CODE_USAGE, "--strips-over-ranks shares a picture by sheets: remove --%s",
+                  render_options[alone[n]].name);
   int exit_code = render_check_clip(&values[RENDER_CLIP]);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_cuts(values);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_iso(&values[RENDER_ISO]);

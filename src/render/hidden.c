@@ -92,11 +92,13 @@ hl_status hl_sweep_find_hidden(sweep *sweep, hl_render_statistics *statistics, h
   front.layer_pixels = NULL;
   front.first = front.measures = false;
   front.preparatory = true;
+  front.part = 0, front.parts = 1; /* what is tried must not depend on the part, which would change bytes */
   front.act = cover_tile;
   front.action = &search;
   hl_status status = hl_sweep_begin(&front, NULL, NULL, error);
   if (status == HL_OK) status = go_through(&front, &search, true, error);
   if (status == HL_OK && is_worth_while(&front)) {
+    front.part = sweep->part, front.parts = sweep->parts;
     hl_sweep_open(&front);
     status = go_through(&front, &search, false, error);
   }

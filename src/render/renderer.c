@@ -19,6 +19,7 @@
 struct hl_renderer {
   hl_context *context;
   hl_pool *pool;
+  int part, parts;           /* of each picture's strips */
   int threads;               /* as the scene says: 0 means one per processor */
   prepared_volume *prepared; /* owned; [prepared_count] */
   size_t prepared_count;
@@ -40,6 +41,17 @@ hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_err
   *renderer = hl_allocate_zeroed(context, 1, sizeof **renderer);
   if (*renderer == NULL) return hl_fail_memory(error, sizeof **renderer, "a renderer");
   (*renderer)->context = (*renderer)->reserve.context = context;
+  (*renderer)->parts = 1;
+  return HL_OK;
+}
+
+hl_status hl_renderer_share(hl_renderer *renderer, int part, int parts, hl_error *error) {
+  if (renderer == NULL) return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_share: renderer is null");
+  if (parts < 1 || part < 0 || part >= parts)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_renderer_share: part %d of %d: give 0 to parts - 1 of at least 1", part, parts);
+  renderer->part = part;
+  renderer->parts = parts;
   return HL_OK;
 }
 
@@ -305,6 +317,8 @@ static sweep sweep_of(hl_renderer *renderer, const hl_scene_description *scene, 
                  .scattered = renderer->scattered.light != NULL ? &renderer->scattered : NULL,
                  .sky = renderer->sky.light.field != NULL ? &renderer->sky.light : NULL,
                  .maximum = &work->maximum,
+                 .part = renderer->part,
+                 .parts = renderer->parts,
                  .measures = index == work->measuring_sweep,
                  .channels = attenuation_channels(scene),
                  .pixels = work->pixels + (size_t)index * work->tiles * TILE_PIXELS * 4};
@@ -517,6 +531,10 @@ static hl_status check_request(const hl_renderer *renderer, const hl_scene *scen
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_renderer_render: statistics->struct_size is %zu, expected %zu",
                    statistics->struct_size, sizeof *statistics);
+  if (layers != NULL && renderer->parts > 1)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "hl_renderer_render_layers: part %d of %d of a picture has no layers", renderer->part,
+                   renderer->parts);
   return hl_layers_check(layers, description, error);
 }
 

@@ -94,6 +94,7 @@ struct sweep {
   void *action;     /* of act; the caller's */
   bool first;       /* the sweep that carries ambient light and opacity */
   bool measures;    /* the sweep that carries depth and normals */
+  int part, parts;  /* of the picture's strips, which this sweep shades; see hl_renderer_share() */
   bool preparatory; /* this sweep prepares another one: it reports no progress, and its sheets are not counted
                      */
   const layer_pixels *layer_pixels; /* pixels of the layers; null: none */
@@ -146,7 +147,7 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *me
 /* Seconds of a clock that never runs backwards. */
 double hl_clock_seconds(void);
 
-/* Opens all blocks of the picture. */
+/* Opens all blocks of the sweep's part of the picture. */
 void hl_sweep_open(sweep *sweep);
 /* Adds the sweep's counts and seconds to the statistics. */
 void hl_sweep_count(const sweep *sweep, hl_render_statistics *statistics);

@@ -3,6 +3,8 @@
 #include <string.h>
 #include <time.h>
 
+#include <halflight/render.h>
+
 #include "core/memory.h"
 #include "grid/relevant.h"
 #include "image/srgb.h"
@@ -12,7 +14,14 @@
 
 enum { SRGB_CODES = 256 };
 
-/* Blocks outside the picture are closed from the start. */
+/* A strip of the picture is `oversampling` rows of the frame's tiles. */
+static bool is_of_part(const sweep *sweep, size_t tile) {
+  return hl_tile_y(sweep, tile) / sweep->frame->oversampling % sweep->parts == sweep->part;
+}
+
+_Static_assert(TILE == HL_STRIP_ROWS, "tiles fill strips");
+
+/* Blocks outside the picture, and those of other parts, are closed from the start. */
 void hl_sweep_open(sweep *sweep) {
   for (size_t tile = 0; tile < sweep->tiles; tile++) {
     uint32_t open = 0;
@@ -21,6 +30,7 @@ void hl_sweep_open(sweep *sweep) {
       int x = x0 + block % 4 * BLOCK, y = y0 + block / 4 * BLOCK;
       if (x < sweep->frame->width && y < sweep->frame->height) open |= 1u << block;
     }
+    if (!is_of_part(sweep, tile)) open = 0;
     sweep->open[tile] = (uint16_t)open;
   }
 }

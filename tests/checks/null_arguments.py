@@ -63,7 +63,7 @@ VALUES = {
     "const hl_mesh_description *": "&mesh_description",
     "hl_label **": "&any", "hl_label *": "NULL",
     "hl_view *": "&view", "const hl_view *": "&view",
-    "size_t length": "2", "size_t row_stride": "16", "int": "4", "size_t": "0", "double": "0.5",
+    "int part": "2", "size_t length": "2", "size_t row_stride": "16", "int": "4", "size_t": "0", "double": "0.5",
 }
 
 FILE = """#include <halflight/halflight.h>
