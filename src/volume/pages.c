@@ -213,6 +213,12 @@ static void make_room(hl_pages *pages) {
     move_hand(pages, count);
 }
 
+/* Asks the system to read a page as a whole, at once: by itself it reads what is touched, bit by bit. */
+static void fetch(const hl_pages *pages, size_t number) {
+  uintptr_t first = (uintptr_t)pages->first + number * pages->page_bytes, begin = first / UNIT * UNIT;
+  madvise((void *)begin, first + pages->page_bytes - begin, MADV_WILLNEED);
+}
+
 void hl_pages_hold(const hl_pages *held, size_t number) {
   hl_pages *pages = (hl_pages *)held; /* volumes are constant for their readers; these counts are not */
   unsigned char before = __atomic_exchange_n(&pages->state[number], (unsigned char)PAGE_NEEDED,
@@ -220,6 +226,7 @@ void hl_pages_hold(const hl_pages *held, size_t number) {
   if (before != PAGE_FORGOTTEN) return;
   count_held(pages, true);
   make_room(pages);
+  if (pages->filled) fetch(pages, number);
 }
 
 void hl_pages_forget(const hl_pages *pages) {

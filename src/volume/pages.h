@@ -35,6 +35,7 @@ typedef struct hl_pages {
   unsigned char *state; /* owned; [pages]; PAGE_...; atomic */
   uint64_t held_bytes;  /* of the pages that are not forgotten; atomic */
   size_t hand;          /* the clock's: the page it looks at next, modulo the number of pages; atomic */
+  bool filled;          /* voxels are stored no more: a page that is needed is read as a whole */
   int shift;
   size_t row_bytes, slice_bytes, page_bytes; /* in a page, from row to row, and from slice to slice; and from
                                                 page to page */
