@@ -217,7 +217,8 @@ static hl_status fill(hl_context *context, int threads, mask_job *job, hl_volume
 
 hl_status hl_label_mask(hl_context *context, int threads, const hl_mask *mask, hl_volume **made,
                         hl_error *error) {
-  *made = NULL;
+  *made = hl_mask_from_shelf(mask);
+  if (*made != NULL) return HL_OK;
   double *values = hl_allocate(context, mask->label_count + 1, sizeof *values);
   hl_volume **occupancies = hl_allocate_zeroed(context, mask->label_count + 1, sizeof(hl_volume *));
   hl_status status = HL_OK;
@@ -229,6 +230,7 @@ hl_status hl_label_mask(hl_context *context, int threads, const hl_mask *mask, h
                                   error);
   mask_job job = {.mask = mask, .occupancies = occupancies};
   if (status == HL_OK) status = fill(context, threads, &job, made, error);
+  if (status == HL_OK && context == mask->volume->context) hl_mask_to_shelf(mask, *made);
   for (size_t n = 0; occupancies != NULL && n < mask->label_count; n++) hl_volume_release(occupancies[n]);
   hl_release(context, occupancies);
   hl_release(context, values);

@@ -13,7 +13,11 @@ typedef struct place {
 
 typedef struct shelf {
   place places[PLACES];
-  int next; /* the place that is filled next; what it held goes */
+  int next;         /* the place that is filled next; what it held goes */
+  hl_label *labels; /* owned; [label_count]; what the lattice was made of, without names */
+  size_t label_count;
+  double rest;
+  hl_volume *lattice; /* null: none was made */
 } shelf;
 
 static void lock(hl_volume *map) {
@@ -24,6 +28,8 @@ static void unlock(hl_volume *map) { atomic_flag_clear_explicit(&map->shelf_lock
 static void release_shelf(hl_context *context, void *kept) {
   shelf *shelf = kept;
   for (int n = 0; n < PLACES; n++) hl_volume_release(shelf->places[n].made);
+  hl_volume_release(shelf->lattice);
+  hl_release(context, shelf->labels);
   hl_release(context, shelf);
 }
 
@@ -42,16 +48,21 @@ static bool find(hl_volume *map, double label, hl_volume **made) {
   return found;
 }
 
+/* The map's shelf, which is locked; null without memory. */
+static shelf *shelf_of(hl_volume *map) {
+  if (map->shelf == NULL) {
+    map->shelf = hl_allocate_zeroed(map->context, 1, sizeof(shelf));
+    map->release_shelf = release_shelf;
+  }
+  return map->shelf;
+}
+
 /* Keeps what was made. Without memory it is not kept. */
 static void keep(hl_volume *map, double label, hl_volume *made) {
   hl_volume *old = made;
   hl_volume_retain(made);
   lock(map);
-  if (map->shelf == NULL) {
-    map->shelf = hl_allocate_zeroed(map->context, 1, sizeof(shelf));
-    map->release_shelf = release_shelf;
-  }
-  shelf *shelf = map->shelf;
+  shelf *shelf = shelf_of(map);
   if (shelf != NULL) {
     old = shelf->places[shelf->next].made;
     shelf->places[shelf->next] = (place){true, label, made};
@@ -111,4 +122,51 @@ hl_status hl_label_occupancies(hl_context *context, int threads, hl_volume *map,
   }
   release_missing(context, &missing);
   return status;
+}
+
+/* ---- masks ---- */
+
+static bool same_label(const hl_label *a, const hl_label *b) {
+  for (int c = 0; c < 3; c++)
+    if (a->color[c] != b->color[c]) return false;
+  return a->value == b->value && a->opacity == b->opacity && a->visible == b->visible && a->tint == b->tint;
+}
+
+hl_volume *hl_mask_from_shelf(const hl_mask *mask) {
+  lock(mask->volume);
+  const shelf *shelf = mask->volume->shelf;
+  bool same = shelf != NULL && shelf->lattice != NULL && shelf->rest == mask->rest &&
+              shelf->label_count == mask->label_count;
+  for (size_t n = 0; same && n < mask->label_count; n++)
+    same = same_label(&shelf->labels[n], &mask->labels[n]);
+  hl_volume *found = same ? shelf->lattice : NULL;
+  hl_volume_retain(found);
+  unlock(mask->volume);
+  return found;
+}
+
+void hl_mask_to_shelf(const hl_mask *mask, hl_volume *made) {
+  hl_context *context = mask->volume->context;
+  hl_label *labels = hl_allocate(context, mask->label_count, sizeof *labels);
+  if (labels == NULL) return;
+  for (size_t n = 0; n < mask->label_count; n++) {
+    labels[n] = mask->labels[n];
+    labels[n].name = NULL;
+  }
+  hl_volume *old = NULL;
+  hl_label *old_labels = labels;
+  lock(mask->volume);
+  shelf *shelf = shelf_of(mask->volume);
+  if (shelf != NULL) {
+    old = shelf->lattice;
+    old_labels = shelf->labels;
+    hl_volume_retain(made);
+    shelf->lattice = made;
+    shelf->labels = labels;
+    shelf->label_count = mask->label_count;
+    shelf->rest = mask->rest;
+  }
+  unlock(mask->volume);
+  hl_volume_release(old);
+  hl_release(context, old_labels);
 }

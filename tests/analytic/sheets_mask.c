@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "reference_stage.h"
+#include "scene/scene.h"
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE, N = 32, HALF = 16 };
 
@@ -236,6 +237,24 @@ static void test_hidden_voxels_are_not_kept(void **state) {
   }
 }
 
+/* A scene made of the same map, labels and rest takes the lattice that was made before; a changed label has
+ * another. */
+static void test_lattice_is_kept(void **state) {
+  (void)state;
+  hl_label labels[2] = {LABELS[0], LABELS[1]};
+  stage set;
+  hl_scene *scenes[3] = {NULL};
+  hl_scene_volume *cube = open_masked(&set, labels, 2, 0.1);
+  for (int n = 0; n < 3; n++) {
+    labels[1].opacity = n < 2 ? 1 : 0.7;
+    assert_int_equal(hl_scene_create(set.context, &set.scene, &scenes[n], NULL), HL_OK);
+  }
+  assert_ptr_equal(scenes[1]->placed.volumes[0].mask.volume, scenes[0]->placed.volumes[0].mask.volume);
+  assert_ptr_not_equal(scenes[2]->placed.volumes[0].mask.volume, scenes[0]->placed.volumes[0].mask.volume);
+  for (int n = 0; n < 3; n++) hl_scene_release(scenes[n]);
+  close_masked(&set, cube);
+}
+
 static void test_wrong_masks_are_refused(void **state) {
   (void)state;
   stage set;
@@ -263,6 +282,7 @@ int main(void) {
       cmocka_unit_test(test_shadows_against_the_reference),
       cmocka_unit_test(test_faces_of_a_knife),
       cmocka_unit_test(test_hidden_voxels_are_not_kept),
+      cmocka_unit_test(test_lattice_is_kept),
       cmocka_unit_test(test_wrong_masks_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

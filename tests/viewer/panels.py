@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The page's panels of sky, isosurfaces, scattering and labels in a headless Chromium: each control changes the picture at once, is
+"""The page's panels of sky, isosurfaces, scattering, cuts and labels in a headless Chromium: each control changes the picture at once, is
 undone, and leads to what `halflight render` makes of the exported scene.
 
 usage: panels.py PROGRAM
@@ -155,6 +155,42 @@ def as_labels(browser):
           "the transfer function is back")
 
 
+def cuts(browser):
+    """Cuts of every shape, their numbers, their switch, and what is refused."""
+    def cuts_now():
+        return scene_of(browser)["volumes"][0].get("cuts", [])
+
+    def number(name, value):
+        field = f"document.querySelector('[aria-label=\"{name} of the cut\"]')"
+        return lambda: browser.run(f"{field}.value = '{value}'; {field}.dispatchEvent(new Event('change')); 0")
+
+    open_section(browser, "Cuts")
+    changes(browser, "a cut", lambda: press_named(browser, "Add: cut"), "volumes")
+    check(cuts_now()[0]["type"] == "plane" and cuts_now()[0]["normal"] == [1, 0, 0], "the first cut is a plane")
+    changes(browser, "its point", number("Point x", 5), "volumes")
+    changes(browser, "its direction", number("Direction z", 0.5), "volumes")
+    check(cuts_now()[0]["point"][0] == 5 and cuts_now()[0]["normal"] == [1, 0, 0.5], "the fields are the plane's numbers")
+    before = cuts_now()
+    changes(browser, "off", lambda: set_control(browser, "Cuts", "", section="Cuts"), "volumes")
+    check("cuts" not in scene_of(browser)["volumes"][0], "a cut that is off is not in the scene")
+    changes(browser, "on", lambda: set_control(browser, "Cuts", "", section="Cuts"), "volumes")
+    check(cuts_now() == before, "it comes back as it was")
+    changes(browser, "faces", lambda: set_control(browser, "Faces", "none", "change", section="Cuts"), "volumes")
+    changes(browser, "keep", lambda: set_control(browser, "Inside", "", section="Cuts"), "volumes")
+    changes(browser, "a second cut", lambda: press_named(browser, "Add: cut"), "volumes")
+    changes(browser, "a sphere", lambda: set_control(browser, "Sphere", "", section="Cuts"), "volumes")
+    changes(browser, "radius", number("Radius", 4), "volumes")
+    number("Radius", -1)()
+    check(cuts_now()[1]["radius"] == 4 and len(cuts_now()) == 2, "a radius below 0 is refused")
+    changes(browser, "a box", lambda: set_control(browser, "Box", "", section="Cuts"), "volumes")
+    equals_render(browser, "cuts")
+    last = cuts_now()
+    changes(browser, "remove", lambda: press_named(browser, "Remove this cut"), "volumes")
+    check(cuts_now() == last[:1], "the chosen cut is removed")
+    browser.run("halflight.store.undo(); 0")
+    check(cuts_now() == last, "and comes back when that is undone")
+
+
 def probed(browser, *values):
     """Where nothing is seen through, the probe finds each of these."""
     browser.run("halflight.probe.on = true; 0")
@@ -195,6 +231,7 @@ def write_inputs():
     quick = {"sheet_spacing": 1}
     soft = {"file": "soft.nrrd", "transfer_function": {"opacity": [[60, 0], [150, 0.6]], "color": [0.7, 0.7, 0.7]}}
     for name, scene in (("soft", {"volumes": [soft]}),
+                        ("cut", {"volumes": [soft]}),
                         ("image", {"volumes": [soft], "sky": {"type": "image", "file": "sky.png", "strength": 0.5}}),
                         ("labels", {"volumes": [{"file": "labels.nrrd", "labels": True}]}),
                         ("mask", {"volumes": [{**soft, "name": "faint", "transform": {"translate": [20, 0, 0]}},
@@ -215,7 +252,7 @@ with tempfile.TemporaryDirectory() as folder:
         print("built without the viewer")
         sys.exit(77)
     write_inputs()
-    for scene, parts in (("soft", (sky, surfaces, scattering)), ("image", (sky_image,)), ("labels", (labels,)), ("mask", (mask,)),
+    for scene, parts in (("soft", (sky, surfaces, scattering)), ("cut", (cuts,)), ("image", (sky_image,)), ("labels", (labels,)), ("mask", (mask,)),
                          ("numbers", (as_labels,)),
                          ("meshes", (meshes_alone,))):
         with Viewer(PROGRAM, f"{scene}.json") as viewer, Browser(chromium, SIZE) as browser:

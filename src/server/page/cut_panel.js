@@ -1,0 +1,120 @@
+// The panel of a volume's cuts: planes, boxes and spheres that are cut out of it, each with its numbers and a switch. A cut
+// that is switched off is not in the scene; the panel remembers it.
+
+import { middle, worldBox } from "./boxes.js";
+import { isActive, make, row, section, segments, select, shortNumber, tabs, toggle } from "./controls.js";
+
+const PARTS = { plane: [["point", "Point"], ["normal", "Direction"]], box: [["min", "Least"], ["max", "Greatest"]], sphere: [["center", "Centre"], ["radius", "Radius"]] };
+
+// A new cut takes a part of the box that is seen from the front, above.
+function newCut(type, box) {
+  const at = middle(box), sides = box.max.map((end, k) => end - box.min[k]);
+  if (type === "plane") return { type, point: at, normal: [1, 0, 0] };
+  if (type === "box") return { type, min: [at[0], box.min[1] - sides[1] / 10, at[2]], max: [0, 1, 2].map((k) => (k === 1 ? at[1] : box.max[k] + sides[k] / 10)) };
+  return { type, center: [at[0], box.min[1], box.max[2]], radius: Math.max(...sides) / 3 };
+}
+
+// A row of one or three numbers.
+function numbers({ label, count, get, set }) {
+  const fields = Array.from({ length: count }, (_, k) => {
+    const name = count > 1 ? `${label} ${"xyz"[k]}` : label;
+    const field = make("input", {
+      type: "number", step: "any", "aria-label": `${name} of the cut`,
+      onchange: () => {
+        const values = [get()].flat().map((value, n) => (n === k ? +field.value : value));
+        if (field.value !== "" && Number.isFinite(+field.value)) set(count > 1 ? values : values[0]);
+        update();
+      },
+    });
+    return field;
+  });
+  function update() {
+    [get()].flat().forEach((value, k) => { if (!isActive(fields[k])) fields[k].value = shortNumber(value); });
+  }
+  return { element: row(make("span", { class: "name" }, label), make("span", { class: "numbers" }, ...fields)), update };
+}
+
+export function cutPanel({ store, start, current, report }) {
+  const { element, body } = section("Cuts", false);
+  const volume = () => store.scene.volumes[current.volume];
+  const box = () => worldBox(start.volumes[current.volume]);
+  let list = [], chosen = 0, parts = []; // list: { cut, on }, of the volume `of`
+  let of = -1;
+
+  const shown = (entries) => entries.filter((entry) => entry.on).map((entry) => entry.cut);
+  // The list follows what the scene says: another volume, undone changes.
+  function follow() {
+    const cuts = volume().cuts ?? [];
+    if (of === current.volume && JSON.stringify(shown(list)) === JSON.stringify(cuts)) return false;
+    of = current.volume;
+    list = cuts.map((cut) => ({ cut, on: true }));
+    chosen = Math.min(chosen, Math.max(list.length - 1, 0));
+    return true;
+  }
+  function take(name, changed) {
+    list = changed;
+    const cuts = shown(list);
+    store.changeVolume(current.volume, `cuts ${name}`, ({ cuts: _, ...v }) => (cuts.length > 0 ? { ...v, cuts } : v));
+  }
+  const entry = () => list[chosen];
+  const changeCut = (name, part) => take(`${chosen} ${name}`, list.map((one, n) => (n === chosen ? { ...one, cut: { ...one.cut, ...part } } : one)));
+
+  function setNumbers(key, value) {
+    const cut = { ...entry().cut, [key]: value };
+    if (cut.type === "plane" && Math.hypot(...cut.normal) === 0) report("A plane needs a direction.");
+    else if (cut.type === "box" && cut.min.some((low, k) => low >= cut.max[k])) report("A box's greatest corner has to be beyond its least.");
+    else if (cut.type === "sphere" && !(cut.radius > 0)) report("A sphere's radius has to be above 0.");
+    else changeCut(key, { [key]: value });
+  }
+
+  const numbered = tabs({
+    label: "Cuts", noun: "cut", count: () => list.length, chosen: () => chosen,
+    choose: (n) => { chosen = n; build(); },
+    add: () => { chosen = list.length; take("add", [...list, { cut: newCut("plane", box()), on: true }]); build(); },
+    remove: () => {
+      const left = list.filter((_, n) => n !== chosen);
+      chosen = Math.max(Math.min(chosen, left.length - 1), 0);
+      take("remove", left);
+      build();
+    },
+  });
+
+  function cutParts() {
+    const { cut } = entry();
+    const shape = segments({
+      label: "Shape", choices: [["plane", "Plane"], ["box", "Box"], ["sphere", "Sphere"]], get: () => entry()?.cut.type,
+      set: (type) => { take(`${chosen} type`, list.map((one, n) => (n === chosen ? { ...one, cut: newCut(type, box()) } : one))); build(); },
+    });
+    const places = PARTS[cut.type].map(([key, label]) => numbers({
+      label, count: key === "radius" ? 1 : 3, get: () => entry()?.cut[key] ?? cut[key], set: (value) => setNumbers(key, value),
+    }));
+    return [
+      toggle({ label: "Cuts", get: () => entry()?.on === true, set: (on) => take(`${chosen} on`, list.map((one, n) => (n === chosen ? { ...one, on } : one))) }),
+      shape, ...places,
+      segments({ label: "Keep", choices: [["outside", "Outside"], ["inside", "Inside"]], get: () => entry()?.cut.keep ?? "outside", set: (keep) => changeCut("keep", { keep }) }),
+    ];
+  }
+
+  function build() {
+    element.hidden = volume() === undefined;
+    if (element.hidden) return;
+    follow();
+    const faces = select({
+      label: "Faces", choices: [["face", "by their own normals"], ["gradient", "by the data"], ["none", "as a medium"]],
+      get: () => volume().cut_shading ?? "face", set: (value) => store.changeVolume(current.volume, "cut_shading", (v) => ({ ...v, cut_shading: value })),
+    });
+    const shadow = toggle({
+      label: "Cut matter casts shadows", get: () => volume().cut_casts_shadow === true,
+      set: (on) => store.changeVolume(current.volume, "cut_casts_shadow", (v) => ({ ...v, cut_casts_shadow: on })),
+    });
+    parts = [numbered, ...(list.length > 0 ? [...cutParts(), faces, shadow] : [])];
+    body.replaceChildren(...parts.map((part) => part.element));
+    parts.forEach((part) => part.update());
+  }
+  const update = () => {
+    if (volume() !== undefined && follow()) build();
+    else parts.forEach((part) => part.update());
+  };
+  build();
+  return { element, update, rebuild: build };
+}
