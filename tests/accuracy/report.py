@@ -129,6 +129,7 @@ the least of {measure.COST_ROUNDS} rounds in turn.
 {cost_table(results)}
 """
     notes = (scenes.HERE / "notes.md").read_text()
+    meshes = (scenes.HERE / "meshes.md").read_text()
     PATH.write_text(f"""# How exact the pictures are
 
 Written by `scripts/accuracy`; not by hand. {len(results)} scenes of `tests/accuracy`, 160 x 160 pixels, sheets 0.5 voxels apart
@@ -162,5 +163,7 @@ The picture with hard shadows against the reference's with hard shadows, RMSE; s
 {spacing_table(results)}
 
 ![Errors by sub-lights and by sheet spacing](accuracy/plots.png)
-{costs}{outside_section(truth)}{strips(results)}""")
+{costs}{outside_section(truth)}
+{meshes.strip()}
+{strips(results)}""")
     print(f"wrote {PATH}")
