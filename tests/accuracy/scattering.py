@@ -5,6 +5,8 @@ usage: scripts/scattering [--objects LIST] [--lights LIST] [--samples N]
 A case is an object, a light, an albedo and an anisotropy. Both programs get the same voxels; Halflight's transfer function makes
 extinction linear in them. Light of intensity I is an irradiance of 4 pi I to Mitsuba. Errors are means over the pixels
 brighter than a twentieth of the brightest, after a mean over 3 x 3 pixels that takes most of Mitsuba's noise away.
+Beside sun, point and area a light may be sky, of radiance 1 from everywhere, or image, an environment with a small sun;
+once:LIGHT compares light that was scattered once, in both.
 """
 import argparse
 import gzip
@@ -22,6 +24,7 @@ mi.set_variant("llvm_ad_mono")
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATA = pathlib.Path(os.environ.get("HALFLIGHT_DATA", ROOT.parent / "shared/data"))
 FOLDER = ROOT / "build/scattering"
+PROGRAM = os.environ.get("HALFLIGHT", ROOT / "build/halflight")
 SIDE = 48  # pixels
 FILES = {"smoke": ("smoke_plume_pbrt/smoke_plume_100x100x40_float.nrrd", 0.25),
          "cloud": ("wdas_cloud/wdas_cloud_sixteenth_density.nrrd", 1.0)}
@@ -48,7 +51,27 @@ def voxels(name):
     return np.clip(0.5 - distance, 0, 1) * (0.8 + 0.2 * np.sin(0.5 * x + 1.3 * np.sin(0.4 * y) + z * 0.3)), 3.0
 
 
+def radiance(x, y, z):
+    """The image's, by direction: from the ground to the zenith, and a sun some ten degrees wide."""
+    return 0.4 + 0.3 * z + 25 * np.exp(-(1 - (-0.6 * x - 0.5 * y + 0.62 * z) / math.hypot(0.6, 0.5, 0.62)) / 0.01)
+
+
+def environment(ours):
+    """[64][128] in the layout of Halflight, whose zenith is z, or of Mitsuba, whose image's is y."""
+    row, column = np.mgrid[0:64, 0:128]
+    down, turn = math.pi * (row + 0.5) / 64, 2 * math.pi * (column + 0.5) / 128
+    side, height = np.sin(down), np.cos(down)
+    if ours:
+        return radiance(-side * np.sin(turn), -side * np.cos(turn), height).astype(np.float32)
+    return radiance(side * np.sin(turn), height, -side * np.cos(turn)).astype(np.float32)
+
+
 def light_of(kind, size):
+    if kind == "sky":
+        return {"type": "uniform"}
+    if kind == "image":
+        np.save(FOLDER / "environment.npy", np.repeat(environment(True)[..., None], 3, 2))
+        return {"type": "image", "file": str(FOLDER / "environment.npy")}
     towards = np.array([-0.6, -0.5, 0.62])
     towards /= np.linalg.norm(towards)
     if kind == "sun":
@@ -64,6 +87,7 @@ def light_of(kind, size):
 
 def ours(case, values, extinction, multiple):
     name, kind, albedo, g = case
+    kind = kind.split(":")[-1]
     size, corner = max(values.shape), [-(n - 1) / 2 for n in values.shape[::-1]]
     opacity = [[float(v), 1 - math.exp(-extinction * v)] for v in np.linspace(0, 1, 129)]
     scene = {"halflight": 1, "image": {"width": SIDE, "height": SIDE}, "ambient": [0, 0, 0],
@@ -72,12 +96,19 @@ def ours(case, values, extinction, multiple):
              "volumes": [{"file": str(FOLDER / f"{name}.npy"), "shading": "none", "transform": {"translate": corner},
                           "transfer_function": {"opacity": opacity, "unit_distance": 1, "color": [1, 1, 1]},
                           "scattering": {"anisotropy": g, "albedo": [albedo] * 3, "multiple": multiple}}]}
+    if kind in ("sky", "image"):
+        scene["sky"] = scene["lights"].pop()
     (FOLDER / "scene.json").write_text(json.dumps(scene))
-    subprocess.run([ROOT / "build/halflight", "render", FOLDER / "scene.json", "--quiet", "-o", FOLDER / "ours.npy"], check=True)
+    subprocess.run([PROGRAM, "render", FOLDER / "scene.json", "--quiet", "-o", FOLDER / "ours.npy"], check=True)
     return np.load(FOLDER / "ours.npy")[..., 0], scene
 
 
 def emitter_of(light):
+    if light["type"] == "uniform":
+        return {"type": "constant", "radiance": 1.0}
+    if light["type"] == "image":
+        pixels = np.repeat(environment(False)[..., None], 3, 2)
+        return {"type": "envmap", "bitmap": mi.Bitmap(pixels)}
     power = 4 * math.pi * light["intensity"]
     if light["type"] == "directional":
         return {"type": "directional", "direction": light["direction"], "irradiance": power}
@@ -94,7 +125,7 @@ def emitter_of(light):
 
 
 def theirs(case, scene, values, extinction, samples):
-    stored = FOLDER / ("mitsuba-" + "-".join(map(str, (*case, samples))) + ".npy")
+    stored = FOLDER / ("mitsuba-" + "-".join(map(str, (*case, samples))).replace(":", "-") + ".npy")
     if stored.exists():
         return np.load(stored)
     move, camera, size = mi.ScalarTransform4f(), scene["camera"], list(values.shape[::-1])
@@ -105,7 +136,9 @@ def theirs(case, scene, values, extinction, samples):
               "phase": {"type": "hg", "g": g} if g else {"type": "isotropic"}}
     film = {"type": "hdrfilm", "width": SIDE, "height": SIDE, "rfilter": {"type": "box"}, "pixel_format": "luminance"}
     world = mi.load_dict({
-        "type": "scene", "integrator": {"type": "volpath", "max_depth": -1, "rr_depth": 64}, "light": emitter_of(scene["lights"][0]),
+        "type": "scene", "integrator": {"type": "volpath", "max_depth": 2 if case[1].startswith("once:") else -1, "rr_depth": 64,
+                                          "hide_emitters": True},
+        "light": emitter_of(scene["sky"] if "sky" in scene else scene["lights"][0]),
         "sensor": {"type": "perspective", "fov": 30, "fov_axis": "y", "film": film,
                    "to_world": mi.ScalarTransform4f().look_at(camera["position"], camera["target"], [0, 0, 1])},
         "box": {"type": "cube", "to_world": mi.ScalarTransform4f().scale([n / 2 for n in size]), "bsdf": {"type": "null"},
@@ -128,6 +161,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--objects", default="ball,block,smoke,cloud")
     parser.add_argument("--lights", default="sun,point,area")
+    parser.add_argument("--albedos", default="0.5,0.9,0.99")
     parser.add_argument("--samples", type=int, default=256)
     asked = parser.parse_args()
     FOLDER.mkdir(parents=True, exist_ok=True)
@@ -136,9 +170,9 @@ def main():
     for name in asked.objects.split(","):
         values, extinction = voxels(name)
         np.save(FOLDER / f"{name}.npy", values.astype(np.float32))
-        for case in itertools.product([name], asked.lights.split(","), (0.5, 0.9, 0.99), (0.0, 0.8)):
+        for case in itertools.product([name], asked.lights.split(","), map(float, asked.albedos.split(",")), (0.0, 0.8)):
             once, _ = ours(case, values, extinction, False)
-            picture, scene = ours(case, values, extinction, True)
+            picture, scene = ours(case, values, extinction, not case[1].startswith("once:"))
             truth = theirs(case, scene, values, extinction, asked.samples)
             (error, ratio), (error_once, ratio_once) = error_of(picture, truth), error_of(once, truth)
             print(f"| {' | '.join(map(str, case))} | {error:.1f} % | {ratio:.2f} | {error_once:.1f} % | {ratio_once:.2f} |", flush=True)

@@ -110,6 +110,29 @@ static void test_wall_before_haze(void **state) {
   assert_near(all[2], 0, 1e-4);
 }
 
+/* A third of a wide light is hidden: haze gets two thirds, scattered once and again. A light that is taken
+ * for a point gives all of it. */
+static void test_part_of_a_wide_light(void **state) {
+  (void)state;
+  static float pixels[4 * PIXELS];
+  double all[2];
+  for (int k = 0; k < 2; k++) {
+    stage set;
+    walls walls;
+    (void)open_stage(&set, 0.06);
+    hl_light *light = stage_add_point(&set, (vec3){0, 0, 80});
+    light->type = HL_LIGHT_RECT;
+    light->edge1[0] = light->edge2[1] = 12;
+    set.scene.render.shadows = HL_SHADOWS_SOFT;
+    add_wall(&set, &walls, stage_make_quad(&set, (vec3){-6.75, 0, 70}, (vec3){5, 0, 0}, (vec3){0, 12, 0}), k);
+    stage_render_sheets(&set, pixels);
+    all[k] = mean_of(pixels, ALL[0], ALL[1]);
+    close_stage(&set);
+  }
+  assert_true(all[0] > 0.1);
+  assert_near(all[1] / all[0], 2.0 / 3, 1.0 / 27); /* a third of what one of nine points sends */
+}
+
 /* Thin haze that keeps all light is lit by the grid alone: above a wide wall by half of the sky, above a pane
  * of 0.4 by 0.8 of it. */
 static void test_sky_behind_walls(void **state) {
@@ -195,9 +218,9 @@ static void test_same_bytes(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_haze_behind_a_wall), cmocka_unit_test(test_wall_before_haze),
-      cmocka_unit_test(test_sky_behind_walls),   cmocka_unit_test(test_against_the_reference),
-      cmocka_unit_test(test_same_bytes),
+      cmocka_unit_test(test_haze_behind_a_wall),    cmocka_unit_test(test_wall_before_haze),
+      cmocka_unit_test(test_part_of_a_wide_light),  cmocka_unit_test(test_sky_behind_walls),
+      cmocka_unit_test(test_against_the_reference), cmocka_unit_test(test_same_bytes),
   };
   return cmocka_run_group_tests_name("sheets_scattered_meshes", tests, NULL, NULL);
 }
