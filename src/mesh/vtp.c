@@ -38,7 +38,7 @@ typedef struct vtp_file {
   polydata data;
   section section;
   char active_scalars[HL_VTK_NAME_BYTES], active_normals[HL_VTK_NAME_BYTES]; /* of the section */
-  bool has_piece;
+  bool has_piece, passes_over; /* passes over the arrays of an empty piece beside another one */
   size_t array_count;
   vtp_array arrays[MOST_ARRAYS];
 } vtp_file;
@@ -51,11 +51,16 @@ static hl_status read_count(vtp_file *file, const hl_xml_tag *tag, const char *n
 }
 
 static hl_status read_piece_tag(vtp_file *file, const hl_xml_tag *tag, hl_error *error) {
-  if (file->has_piece)
+  size_t points = 0;
+  hl_status status = read_count(file, tag, "NumberOfPoints", &points, error);
+  file->passes_over = file->has_piece && points == 0;
+  if (status != HL_OK || file->passes_over) return status;
+  if (file->has_piece && file->data.point_count > 0)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: meshes in several pieces are not read: save it as one",
                    file->xml.stream->path);
   file->has_piece = true;
-  hl_status status = read_count(file, tag, "NumberOfPoints", &file->data.point_count, error);
+  file->array_count = 0; /* those of empty pieces before this one */
+  file->data.point_count = points;
   for (int kind = 0; status == HL_OK && kind < CELL_KINDS; kind++)
     status = read_count(file, tag, count_names[kind], &file->data.cells[kind].count, error);
   return status;
@@ -67,7 +72,7 @@ static void copy_name(char to[HL_VTK_NAME_BYTES], const char *name) {
 }
 
 static hl_status read_array_tag(vtp_file *file, const hl_xml_tag *tag, hl_error *error) {
-  if (file->section == SECTION_NONE || file->array_count == MOST_ARRAYS) return HL_OK;
+  if (file->section == SECTION_NONE || file->passes_over || file->array_count == MOST_ARRAYS) return HL_OK;
   vtp_array *array = &file->arrays[file->array_count];
   *array = (vtp_array){.section = file->section, .components = 1};
   hl_status status = hl_vtk_xml_array_tag(&file->xml, tag, &array->array, error);

@@ -197,6 +197,36 @@ static void test_damaged_gltf(void **state) {
   hl_context_destroy(context);
 }
 
+#define EMPTY_PIECE                                                                      \
+  "<Piece NumberOfPoints=\"0\" NumberOfPolys=\"0\"><Points><DataArray type=\"Float32\" " \
+  "NumberOfComponents=\"3\" format=\"ascii\"></DataArray></Points></Piece>"
+#define FULL_PIECE                                                                                     \
+  "<Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\"><Points><DataArray type=\"Float32\" "               \
+  "NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 2 0</DataArray></Points><Polys><DataArray " \
+  "type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2</DataArray><DataArray type=\"Int32\" "  \
+  "Name=\"offsets\" format=\"ascii\">3</DataArray></Polys></Piece>"
+#define VTP(pieces) "<VTKFile type=\"PolyData\"><PolyData>" pieces "</PolyData></VTKFile>"
+
+/* Programs that write in parallel leave empty pieces, before and after the full one. */
+static void test_empty_pieces(void **state) {
+  (void)state;
+  static const char *const texts[] = {VTP(FULL_PIECE), VTP(EMPTY_PIECE FULL_PIECE),
+                                      VTP(FULL_PIECE EMPTY_PIECE),
+                                      VTP(EMPTY_PIECE EMPTY_PIECE FULL_PIECE EMPTY_PIECE)};
+  static const char two[] = VTP(FULL_PIECE EMPTY_PIECE FULL_PIECE);
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  for (size_t t = 0; t < sizeof texts / sizeof *texts; t++) {
+    hl_mesh *mesh = load(context, "a.vtp", texts[t], strlen(texts[t]), NULL);
+    assert_int_equal(hl_mesh_describe(mesh)->triangle_count, 1);
+    assert_true(hl_mesh_describe(mesh)->positions[2][1] == 2);
+    hl_mesh_release(mesh);
+  }
+  assert_null(load(context, "a.vtp", two, strlen(two), "meshes in several pieces are not read"));
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 static void test_refused(void **state) {
   (void)state;
   static const struct {
@@ -282,6 +312,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_ply),
                                      cmocka_unit_test(test_ply_faces),
                                      cmocka_unit_test(test_cube_is_closed),
+                                     cmocka_unit_test(test_empty_pieces),
                                      cmocka_unit_test(test_refused),
                                      cmocka_unit_test(test_from_memory),
                                      cmocka_unit_test(test_round),
