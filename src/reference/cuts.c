@@ -84,7 +84,8 @@ double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 
 }
 
 /* Distances and directions in the world: heights h rise there by |(M^-1)^T grad h|, M the placement. */
-void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 *normal, double *surface) {
+void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
+                           double *surface) {
   const hl_scene_volume *described = volume->described;
   vec3 face = {0, 0, 0};
   double least = hl_reference_nearest_clip(volume, point, &face);
@@ -98,6 +99,7 @@ void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 *nor
     if (depth < least) least = depth, face = vec3_scale(vec3_normalise(rise), -inwards);
   }
   double skin = fmin(fmax(2 - least / volume->smallest_edge, 0), 1);
+  if (described->cut_shading == HL_CUT_SHADING_FACE) skin *= fmin(fmax(10 * vec3_dot(face, to_eye), 0), 1);
   if (skin == 0) return;
   if (described->cut_shading == HL_CUT_SHADING_FACE) {
     vec3 sum = vec3_add(vec3_scale(face, skin), vec3_scale(*normal, *surface * (1 - skin)));

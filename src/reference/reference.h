@@ -220,7 +220,8 @@ bool hl_reference_left(const reference_volume *volume, vec3 point);
  */
 double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 direction, double after);
 /* Shades a sample near the face of a cut or of the clip box. normal, surface: those of the data. */
-void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 *normal, double *surface);
+void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
+                           double *surface);
 
 double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]);
 double hl_reference_value(const reference_volume *volume, vec3 point);

@@ -132,7 +132,7 @@ void hl_reference_shade(const reference *all, const reference_sample *at, refere
   hl_reference_tint(at->volume, at->index_point, here.own);
   here.normal = find_normal(at->volume, at->index_point, at->value, &here.amount);
   if (described->shading == HL_SHADING_PHONG)
-    hl_reference_cut_face(at->volume, at->index_point, &here.normal, &here.amount);
+    hl_reference_cut_face(at->volume, at->index_point, at->to_eye, &here.normal, &here.amount);
   if (sample->object == 0 || weight > sample->greatest) {
     sample->object = (int)(at->volume - all->volumes) + 1;
     sample->greatest = weight;

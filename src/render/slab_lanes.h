@@ -273,7 +273,9 @@ LANES_INLINE void find_nearest_cut(const shade_volume *volume, lanes3 point, cut
 }
 
 /* Within two voxels behind the nearest face of a cut or of the clip box, the normal turns to the face's own,
- * or the surface to a medium: the data's gradient, of even matter, is its noise there. */
+ * or the surface to a medium: the data's gradient, of even matter, is its noise there. No normal turns to a
+ * face that the eye does not see: that would darken outlines. To one seen at a cosine below 0.1 they turn
+ * less. */
 LANES_INLINE void find_cut_face(const block_slab *slab, block_density *d) {
   const shade_volume *volume = d->patch->volume;
   lanes3 point = seen_position(slab, d);
@@ -281,6 +283,8 @@ LANES_INLINE void find_cut_face(const block_slab *slab, block_density *d) {
   if (volume->clip_faces) find_nearest_clip(volume, point, &nearest);
   find_nearest_cut(volume, point, &nearest);
   d->skin = lanes_clamp(2.0f - nearest.depth * (1.0f / volume->voxel), 0, 1);
+  if (volume->cut_shading == HL_CUT_SHADING_FACE)
+    d->skin = d->skin * lanes_clamp(dot3(nearest.outward, slab->geometry.towards_eye) * 10.0f, 0, 1);
   lanes rest = 1.0f - d->skin;
   if (volume->cut_shading == HL_CUT_SHADING_FACE) {
     lanes3 sum = add_scaled3(scale3(nearest.outward, d->skin), d->normal, d->surface * rest);

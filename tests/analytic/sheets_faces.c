@@ -143,6 +143,28 @@ static void test_normal_of_a_cut(void **state) {
   stage_close(&set);
 }
 
+/* Seen from behind, where the cut is an outline, it does not show: the picture is the data's own. */
+static void test_cut_behind(void **state) {
+  (void)state;
+  static float pixels[2][SIDE * SIDE * 4];
+  for (int reference = 0; reference < 2; reference++) {
+    for (int own = 0; own < 2; own++) {
+      stage set;
+      open_cut_ball(&set, (vec3){0.5, 0.3, 0.8});
+      stage_look(&set, (vec3){20, -30, -60}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+      add_part(&set, -HALF, 0.3);
+      if (own) set.volumes[0].cut_shading = HL_CUT_SHADING_GRADIENT;
+      stage_render_by(&set, reference, pixels[own]);
+      stage_close(&set);
+    }
+    double greatest = 0;
+    for (int f = 0; f < SIDE * SIDE * 4; f++)
+      greatest = fmax(greatest, fabs((double)pixels[0][f] - (double)pixels[1][f]));
+    print_message("# %s: seen from behind %.6f\n", reference ? "reference" : "sheets", greatest);
+    assert_true(greatest < 1e-4);
+  }
+}
+
 /* Where another part goes on, the cut does not show. */
 static void test_joined_parts(void **state) {
   (void)state;
@@ -166,6 +188,6 @@ static void test_joined_parts(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_even_under_grazing_light),
                                      cmocka_unit_test(test_normal_of_a_cut),
-                                     cmocka_unit_test(test_joined_parts)};
+                                     cmocka_unit_test(test_cut_behind), cmocka_unit_test(test_joined_parts)};
   return cmocka_run_group_tests_name("sheets_faces", tests, NULL, NULL);
 }
