@@ -135,6 +135,59 @@ typedef struct hl_color_point {
   double color[3];
 } hl_color_point;
 
+/* What a transfer function takes as its second number. */
+typedef enum hl_second_axis {
+  HL_SECOND_NONE = 0,
+  HL_SECOND_GRADIENT = 1, /* the length of the data's gradient: the kernel's, in data units per world unit */
+  HL_SECOND_VOLUME = 2    /* the value of another volume of the scene at the same place, whether or not the
+                             scene shows it; beyond its faces its border's values go on */
+} hl_second_axis;
+
+/* Below, a point of a transfer function's plane is [value, second number]. Where a shape has the weight w,
+ * its matter has w times the extinction of its opacity. Where shapes overlap, extinctions add up and colours
+ * are averaged by them. */
+
+/* A box: its weight is 1 inside; within `edge` of its border it rises from 0. */
+typedef struct hl_function_box {
+  double low[2], high[2]; /* its corners belong to it */
+  double color[3];        /* linear RGB */
+  double opacity;         /* per unit_distance */
+  double edge[2];         /* 0: hard; at most half of the box is edge */
+} hl_function_box;
+
+/* A polygon, as of Kniss et al.: its weight falls, along straight lines, from the apex to 0 at the border. */
+typedef struct hl_function_polygon {
+  const double (*vertices)[2]; /* [vertex_count]; the apex sees all of its border */
+  size_t vertex_count;
+  double apex[2];
+  double color[3]; /* linear RGB */
+  double opacity;  /* per unit_distance */
+  double falloff;  /* the fraction of the way to the border over which the weight falls: 1 from the apex on,
+                      0: hard */
+} hl_function_polygon;
+
+/* An image: bilinear between the middles of its pixels. Outside of it there is nothing. */
+typedef struct hl_function_image {
+  const char *file;    /* where the pixels came from, for hl_scene_to_json; may be null */
+  const float *pixels; /* [height][width][4]: linear RGB times opacity, and opacity per unit_distance; the top
+                          row has the greatest second numbers; null: there is no image */
+  int width, height;
+  double low[2], high[2]; /* of its outermost pixels' outer borders */
+} hl_function_image;
+
+/* A transfer function of two numbers. */
+typedef struct hl_function_plane {
+  hl_second_axis second; /* HL_SECOND_NONE: there is no such function */
+  const char *volume;    /* HL_SECOND_VOLUME: the name of the other volume */
+  const hl_function_box *boxes;
+  size_t box_count;
+  const hl_function_polygon *polygons;
+  size_t polygon_count;
+  hl_function_image image;
+  double second_scale; /* the second number is multiplied by this first; 0 counts as 1 */
+  uint64_t mark;       /* of all of it; a scene sets it */
+} hl_function_plane;
+
 /* Piecewise linear in data values, constant beyond the end points. */
 typedef struct hl_transfer_function {
   double unit_distance;            /* world units; opacities are per this length */
@@ -146,6 +199,9 @@ typedef struct hl_transfer_function {
    * world unit); sorted by value. None: 1 everywhere. */
   const hl_opacity_point *gradient_opacity;
   size_t gradient_opacity_count;
+  /* If there is one, a scene makes opacity and color of it: for each value the greatest opacity that the
+   * value has with any second number, and the mean colour. */
+  hl_function_plane plane;
 } hl_transfer_function;
 
 typedef enum hl_shading {

@@ -77,10 +77,9 @@ LANES_INLINE float value_at(const field_matter *matter, hl_storage storage, cons
   return matter->smooth ? smooth_value(matter->grid, at) : linear_value(matter->grid, storage, at);
 }
 
-/* What gradient opacity multiplies extinction by at a position of index space; differences are of values a
- * voxel apart. */
-LANES_INLINE float factor_at_position(const field_matter *matter, hl_storage storage, const float at[3]) {
-  const classifier *classifier = matter->classifier;
+/* The gradient's length at a position of index space, stored units per frame unit; differences are of values
+ * a voxel apart. */
+LANES_INLINE float gradient_at_position(const field_matter *matter, hl_storage storage, const float at[3]) {
   float gradient[3] = {0, 0, 0};
   for (int a = 0; a < 3; a++) {
     float before[3] = {at[0], at[1], at[2]}, after[3] = {at[0], at[1], at[2]};
@@ -89,8 +88,11 @@ LANES_INLINE float factor_at_position(const field_matter *matter, hl_storage sto
     float slope = value_at(matter, storage, after) - value_at(matter, storage, before);
     for (int b = 0; b < 3; b++) gradient[b] += matter->to_index[a][b] * slope;
   }
-  float length = __builtin_sqrtf(gradient[0] * gradient[0] + gradient[1] * gradient[1] +
-                                 gradient[2] * gradient[2]);
+  return __builtin_sqrtf(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
+}
+
+/* What gradient opacity multiplies extinction by. */
+LANES_INLINE float factor_of_length(const classifier *classifier, float length) {
   float entry = length * classifier->steepness_scale;
   entry = entry < STEEPNESS_ENTRIES ? entry : STEEPNESS_ENTRIES;
   const float *factors = classifier->steepness + (int32_t)entry;
@@ -124,11 +126,19 @@ LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage
     if (!(at[a] >= matter->low[a] && at[a] <= matter->high[a])) return 0;
   if (!cell_shows(matter->grid, at) || !cuts_leave_position(matter->grid, at)) return 0;
   float value = value_at(matter, storage, at);
-  float extinction = matter->cast * field_extinction(matter->classifier, value - matter->grid->empty);
-  if (!(extinction > 0)) return extinction;
-  if (matter->classifier->steepness != NULL) extinction *= factor_at_position(matter, storage, at);
-  if (matter->classifier->mask.factors != NULL)
-    extinction *= hl_mask_factor(&matter->classifier->mask, point);
+  const classifier *classifier = matter->classifier;
+  float density = value - matter->grid->empty, extinction = field_extinction(classifier, density), length = 0;
+  if (!(extinction > 0)) return 0;
+  if (hl_classifier_needs_gradient(classifier)) length = gradient_at_position(matter, storage, at);
+  if (classifier->plane.sums != NULL) {
+    float second = classifier->plane.second != NULL ? hl_plane_second_at(&classifier->plane, point) : length;
+    extinction = hl_plane_table_at(&classifier->plane, density * classifier->scale + classifier->offset,
+                                   second)
+                     .extinction;
+  }
+  extinction = matter->cast * extinction;
+  if (classifier->steepness != NULL) extinction *= factor_of_length(classifier, length);
+  if (classifier->mask.factors != NULL) extinction *= hl_mask_factor(&classifier->mask, point);
   return extinction;
 }
 

@@ -1,9 +1,11 @@
-/* fill/steepness_lanes.h - what the length of a volume's gradient, and its mask, make of its extinction. */
+/* fill/steepness_lanes.h - what the length of a volume's gradient, its mask and the second number of its
+ * transfer function make of its extinction. */
 #ifndef HL_FILL_STEEPNESS_LANES_H
 #define HL_FILL_STEEPNESS_LANES_H
 
 #include "fill/gradient_lanes.h"
 #include "fill/mask_lanes.h"
+#include "fill/plane_lanes.h"
 
 /* The gradient at a point of frame space: df/dframe = (dindex/dframe)^T df/dindex; stored units per frame
  * unit. m: frame space to index space. */
@@ -24,13 +26,42 @@ LANES_INLINE lanes factor_of_slope(const classifier *classifier, lanes3 slope) {
   return lanes_fma(b - a, x - lanes_from_int(entry), a);
 }
 
-/* What extinction is multiplied by at a point of frame space. slope: the gradient there; not read without
- * gradient opacity. */
-LANES_INLINE lanes factor_of_matter(const classifier *classifier, lanes3 slope, lanes3 point) {
-  lanes factor = lanes_set(1.0f);
-  if (classifier->steepness != NULL) factor = factor_of_slope(classifier, slope);
-  if (classifier->mask.factors != NULL) factor = factor * mask_factor(&classifier->mask, point);
-  return factor;
+/* A volume's matter on sixteen ways through a slab. */
+typedef struct matter_way {
+  const grid *grid;
+  const kernel *kernel;
+  const classifier *classifier;
+  const float (*to_index)[4]; /* frame space to index space */
+  lanes3 point;               /* where it is seen by the value alone; frame space */
+  lanes from, to;             /* coordinates in the tables where the way begins and ends */
+  lanes extinction;           /* the mean by the value alone */
+  uint32_t active, starts;    /* lanes with extinction, at least one; the first lane of each block */
+} matter_way;
+
+/* What its extinction is multiplied by. */
+typedef struct matter_factor {
+  lanes factor;
+  lanes3
+      slope; /* the gradient there, stored units per frame unit; 0 where the factor does not depend on it */
+  lanes row; /* of the second number, in the table of a function of two numbers */
+} matter_factor;
+
+/* Not inlined: it is large, and frames without it shall not carry it. */
+static __attribute__((noinline)) matter_factor factor_of_matter(const matter_way *way) {
+  const classifier *classifier = way->classifier;
+  const plane_table *plane = &classifier->plane;
+  matter_factor found = {lanes_set(1.0f), {lanes_set(0), lanes_set(0), lanes_set(0)}, lanes_set(0)};
+  if (hl_classifier_needs_gradient(classifier))
+    found.slope = gradient_in_frame(way->grid, way->kernel, way->to_index, way->point, way->active,
+                                    way->starts);
+  if (classifier->steepness != NULL) found.factor = factor_of_slope(classifier, found.slope);
+  if (classifier->mask.factors != NULL)
+    found.factor = found.factor * mask_factor(&classifier->mask, way->point);
+  if (plane->sums == NULL) return found;
+  found.row = row_of_matter(plane, way->kernel, found.slope, way->point, way->active, way->starts);
+  lanes extinction = extinction_in_row(plane, found.row, way->from, way->to);
+  found.factor = found.factor * (extinction / lanes_max(way->extinction, lanes_set(1e-30f)));
+  return found;
 }
 
 #endif

@@ -39,8 +39,9 @@ static void fill_tables(const hl_scene_volume *volume, double empty, double low,
   double nothing = hl_transparent_below(volume, empty);
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
     double value = low + (high - low) * entry / CLASSIFIER_ENTRIES, color[3];
-    double extinction = value < nothing ? 0 : extinction_of(function, value);
-    classifier->sums[entry][0] = (float)extinction;
+    if (value < nothing) classifier->sums[entry][0] = 0;
+    else if (classifier->plane.sums == NULL)
+      classifier->sums[entry][0] = (float)extinction_of(function, value);
     hl_transfer_function_color(function, value, color);
     for (int c = 0; c < 3; c++) classifier->color[entry][c] = (float)color[c];
   }
@@ -84,10 +85,11 @@ static void lay_out(const hl_transfer_function *function, classifier *classifier
   classifier->next_visible = hl_layout_take(layout, COUNT, sizeof *classifier->next_visible);
   if (function->gradient_opacity_count > 0)
     classifier->steepness = hl_layout_take(layout, STEEPNESS_ENTRIES + 2, sizeof *classifier->steepness);
+  hl_plane_table_lay_out(function, &classifier->plane, layout);
 }
 
 static hl_layout count_tables(const hl_transfer_function *function) {
-  classifier classifier;
+  classifier classifier = {0};
   hl_layout counted = {0};
   lay_out(function, &classifier, &counted);
   return counted;
@@ -108,8 +110,9 @@ static void fill_steepness(const hl_transfer_function *function, double value_sc
   classifier->steepness_scale = (float)fmin(fabs(value_scale) / last * STEEPNESS_ENTRIES, 1e30);
 }
 
-hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,
-                               classifier *classifier, hl_error *error) {
+hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume,
+                               const hl_scene_volume *second, const grid *grid, classifier *classifier,
+                               hl_error *error) {
   const hl_transfer_function *function = &volume->transfer_function;
   *classifier = (struct classifier){0};
   hl_layout counted = count_tables(function), handed = {.base = hl_allocate(context, counted.bytes, 1)};
@@ -123,6 +126,9 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
   classifier->scale = (float)(grid->value_scale * CLASSIFIER_ENTRIES / (high - low));
   classifier->offset = (float)((empty - low) * CLASSIFIER_ENTRIES / (high - low));
   classifier->normal_edge = normal_edge(volume, CLASSIFIER_ENTRIES / (high - low));
+  if (classifier->plane.sums != NULL)
+    hl_plane_table_fill(volume, second, grid, (const double[2]){low, high}, CLASSIFIER_ENTRIES,
+                        &classifier->plane, classifier->sums);
   fill_tables(volume, empty, low, high, classifier);
   fill_steepness(function, grid->value_scale, classifier);
   return HL_OK;

@@ -10,6 +10,7 @@
 
 #include "grid/grid.h"
 #include "grid/mask_lattice.h"
+#include "grid/plane_table.h"
 
 enum { CLASSIFIER_ENTRIES = 4096, STEEPNESS_ENTRIES = 4096 };
 
@@ -27,16 +28,26 @@ typedef struct classifier {
   float *steepness;
   float steepness_scale;
   mask_lattice mask; /* of the frame's scene */
+  plane_table plane; /* of a function of two numbers: the other tables then hold bounds over all second
+                        numbers */
   float normal_edge; /* the least gradient (table entries per frame unit) that counts as a surface */
 } classifier;
 
 /* Whether extinction depends on more than the value: it is multiplied by a factor. */
 static inline bool hl_classifier_is_weighed(const classifier *classifier) {
-  return classifier->steepness != NULL || classifier->mask.factors != NULL;
+  return classifier->steepness != NULL || classifier->mask.factors != NULL || classifier->plane.sums != NULL;
 }
 
-hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume, const grid *grid,
-                               classifier *classifier, hl_error *error);
+/* Whether the factor depends on the gradient. */
+static inline bool hl_classifier_needs_gradient(const classifier *classifier) {
+  return classifier->steepness != NULL ||
+         (classifier->plane.sums != NULL && classifier->plane.axis == HL_SECOND_GRADIENT);
+}
+
+/* second: the other volume of a function of two numbers; else null. */
+hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume,
+                               const hl_scene_volume *second, const grid *grid, classifier *classifier,
+                               hl_error *error);
 /* The bytes that hl_classifier_create() allocates. */
 uint64_t hl_classifier_bytes(const hl_transfer_function *function);
 void hl_classifier_release(hl_context *context, classifier *classifier);

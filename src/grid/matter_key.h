@@ -5,9 +5,10 @@
 #define HL_GRID_MATTER_KEY_H
 
 #include "core/key.h"
-#include "grid/grid.h"
+#include "grid/classifier.h"
 
 /* Voxels are told apart by their volume's address: whoever keeps the result keeps the volume, too. */
-void hl_matter_key_add(hl_key *key, const hl_scene_volume *volume, const grid *grid);
+void hl_matter_key_add(hl_key *key, const hl_scene_volume *volume, const grid *grid,
+                       const classifier *classifier);
 
 #endif

@@ -133,6 +133,10 @@ typedef struct hl_function_subject {
 hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *value,
                                          hl_function_subject subject, hl_transfer_function *function);
 
+/* The keys "second", "boxes", "polygons" and "image" of a transfer function that has the first of them. What
+ * it makes is owned by *plane (hl_plane_release), after a failure, too. */
+hl_status hl_json_read_plane(hl_json_reader *reader, const json_t *value, hl_function_plane *plane);
+
 /* ParaView's colour map: an array of one object. Slicer's preset: an object with "volumeProperties". The
  * points are owned by *function. */
 hl_status hl_json_read_paraview(hl_json_reader *reader, const json_t *root, hl_transfer_function *function);

@@ -228,15 +228,30 @@ static hl_status read_start(hl_json_reader *reader, const json_t *value, hl_func
   return status;
 }
 
+/* Shapes in the plane of two numbers need a second one. */
+static hl_status refuse_shapes(hl_json_reader *reader, const json_t *value) {
+  for (const char *const *key = (const char *const[]){"boxes", "polygons", "image", NULL}; *key != NULL;
+       key++)
+    if (has(value, *key))
+      return hl_json_fail(reader, HL_ERROR_INPUT, *key,
+                          "needs a second number: give \"second\": \"gradient\" or {\"volume\": NAME}");
+  return HL_OK;
+}
+
 static hl_status read_members(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
                               hl_transfer_function *function) {
-  static const char *const keys[] = {"unit_distance", "opacity", "gradient_opacity", "color", "colormap",
-                                     "range",         "scale",   "preset",           "file",  NULL};
+  static const char *const keys[] = {
+      "unit_distance", "opacity", "gradient_opacity", "color", "colormap", "range", "scale",
+      "preset",        "file",    "second",           "boxes", "polygons", "image", NULL};
   hl_json_range range;
   hl_status status = hl_json_object(reader, value, keys);
-  if (status == HL_OK) status = read_start(reader, value, subject, function);
+  bool of_two = has(value, "second");
+  if (status == HL_OK && !of_two) status = refuse_shapes(reader, value);
+  if (status == HL_OK)
+    status = of_two ? hl_json_read_plane(reader, value, &function->plane)
+                    : read_start(reader, value, subject, function);
   if (status == HL_OK) status = hl_json_read_range(reader, value, subject.volume, &range);
-  if (status == HL_OK) status = spread_start(reader, value, subject.volume, &range, function);
+  if (status == HL_OK && !of_two) status = spread_start(reader, value, subject.volume, &range, function);
   if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_TRANSFER_FUNCTION, 0, function);
   if (status == HL_OK) status = read_points(reader, value, subject.is_solid, function);
   return status == HL_OK ? read_colormap(reader, value, &range, function) : status;

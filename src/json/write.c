@@ -195,7 +195,69 @@ static void write_opacity(writer *w, const char *key, const hl_opacity_point *po
   close_bracket(w, "]");
 }
 
+static const char *const range_keys[2] = {"value", "second"};
+
+static void write_ranges(writer *w, const double low[2], const double high[2]) {
+  for (int a = 0; a < 2; a++) write_row(w, range_keys[a], (double[2]){low[a], high[a]}, 2);
+}
+
+static void write_box(writer *w, const hl_function_box *box) {
+  open_bracket(w, NULL, "{");
+  write_ranges(w, box->low, box->high);
+  write_row(w, "color", box->color, 3);
+  write_number(w, "opacity", box->opacity);
+  if (box->edge[0] > 0 || box->edge[1] > 0) write_row(w, "edge", box->edge, 2);
+  close_bracket(w, "}");
+}
+
+static void write_polygon(writer *w, const hl_function_polygon *polygon) {
+  open_bracket(w, NULL, "{");
+  open_bracket(w, "vertices", "[");
+  for (size_t v = 0; v < polygon->vertex_count; v++) write_row(w, NULL, polygon->vertices[v], 2);
+  close_bracket(w, "]");
+  write_row(w, "apex", polygon->apex, 2);
+  write_row(w, "color", polygon->color, 3);
+  write_number(w, "opacity", polygon->opacity);
+  write_number(w, "falloff", polygon->falloff);
+  close_bracket(w, "}");
+}
+
+static void write_plane(writer *w, const hl_function_plane *plane) {
+  if (plane->second == HL_SECOND_GRADIENT) write_name(w, "second", "gradient");
+  if (plane->second == HL_SECOND_VOLUME) {
+    open_bracket(w, "second", "{");
+    write_name(w, "volume", plane->volume);
+    close_bracket(w, "}");
+  }
+  open_bracket(w, "boxes", "[");
+  for (size_t b = 0; b < plane->box_count; b++) write_box(w, &plane->boxes[b]);
+  close_bracket(w, "]");
+  if (plane->polygon_count > 0) {
+    open_bracket(w, "polygons", "[");
+    for (size_t p = 0; p < plane->polygon_count; p++) write_polygon(w, &plane->polygons[p]);
+    close_bracket(w, "]");
+  }
+  if (plane->image.pixels == NULL) return;
+  open_bracket(w, "image", "{");
+  write_name(w, "file", plane->image.file);
+  write_ranges(w, plane->image.low, plane->image.high);
+  close_bracket(w, "}");
+}
+
+static void write_function_of_two(writer *w, const hl_transfer_function *function) {
+  open_bracket(w, "transfer_function", "{");
+  write_settings(w, HL_SETTINGS_TRANSFER_FUNCTION, 0, function);
+  write_plane(w, &function->plane);
+  if (function->gradient_opacity_count > 0)
+    write_opacity(w, "gradient_opacity", function->gradient_opacity, function->gradient_opacity_count);
+  close_bracket(w, "}");
+}
+
 static void write_transfer_function(writer *w, const hl_transfer_function *function) {
+  if (function->plane.second != HL_SECOND_NONE) {
+    write_function_of_two(w, function);
+    return;
+  }
   open_bracket(w, "transfer_function", "{");
   write_settings(w, HL_SETTINGS_TRANSFER_FUNCTION, 0, function);
   write_opacity(w, "opacity", function->opacity, function->opacity_count);
@@ -575,7 +637,11 @@ static hl_status check_writable(const hl_scene_description *d, hl_error *error) 
     if (status != HL_OK) return status;
   }
   for (size_t v = 0; v < d->volume_count; v++) {
-    hl_status status = check_volume(&d->volumes[v], v, error);
+    const hl_function_image *image = &d->volumes[v].transfer_function.plane.image;
+    char place[64];
+    snprintf(place, sizeof place, "/volumes/%zu/transfer_function/image", v);
+    hl_status status = check_image(image->pixels, image->file, place, error);
+    if (status == HL_OK) status = check_volume(&d->volumes[v], v, error);
     if (status != HL_OK) return status;
   }
   for (size_t m = 0; m < d->mesh_count; m++) {

@@ -175,8 +175,9 @@ double hl_reference_extinction(const reference_volume *volume, double value, vec
   if (value < volume->transparent_below) return 0;
   double opacity = hl_transfer_function_opacity(function, value);
   if (!(opacity > 0)) return 0;
-  double extinction = -log1p(-fmin(opacity, 0.9999)) / function->unit_distance *
-                      hl_reference_mask_factor(volume, point);
+  double extinction = hl_has_plane(function) ? hl_reference_plane_sum(volume, value, point).extinction
+                                             : -log1p(-fmin(opacity, 0.9999)) / function->unit_distance;
+  extinction *= hl_reference_mask_factor(volume, point);
   if (function->gradient_opacity_count == 0) return extinction;
   return extinction *
          hl_transfer_function_gradient_opacity(function, vec3_length(hl_reference_gradient(volume, point)));

@@ -148,7 +148,7 @@ void hl_reference_path(const reference *all, vec3 origin, vec3 direction, uint64
     take_surfaces(all, role, ray, met.distance, weight);
     const hl_scene_volume *volume = met.volume->described;
     if (!volume->multiple_scattering || !volume->casts_shadow || volume->shading == HL_SHADING_FLAT) return;
-    hl_transfer_function_color(&volume->transfer_function, met.value, color);
+    hl_reference_color(met.volume, met.value, met.index_point, color);
     hl_reference_tint(met.volume, met.index_point, color);
     for (int c = 0; c < 3; c++) weight[c] *= color[c] * volume->albedo[c];
     if (turns > 0) add_lights(all, &met, ray.direction, weight, worker, &random, sum);

@@ -279,6 +279,7 @@ static hl_status prepare(reference *all, const hl_reference_options *options, hl
     if (status != HL_OK) return status;
     edge = fmin(edge, all->volumes[v].smallest_edge);
   }
+  for (size_t v = 0; v < scene->volume_count; v++) hl_reference_find_second(all, v);
   if (scene->volume_count == 0) edge = hl_scene_smallest_edge(scene);
   all->step = options->step * edge;
   all->rays = options->rays > 0 ? options->rays : hl_reference_rays(all, edge);

@@ -32,6 +32,7 @@
 #include "core/error.h"
 #include "core/pool.h"
 #include "core/vector.h"
+#include "scene/function_plane.h"
 #include "scene/light_shape.h"
 #include "scene/scene.h"
 #include "scene/sky.h"
@@ -51,9 +52,11 @@ typedef struct reference_volume {
   double surface_gradient;          /* least gradient of a surface, data value per world unit */
   double smallest_edge;             /* shortest edge of a voxel, world units */
   size_t bricks[3];                 /* i, j, k */
-  double *coefficients;     /* owned; [k][j][i], stored values: what the interpolating kernel sums in place of
-                             * voxels; else null */
-  double least, greatest;   /* with coefficients: values beyond these count as these */
+  double *coefficients;   /* owned; [k][j][i], stored values: what the interpolating kernel sums in place of
+                           * voxels; else null */
+  double least, greatest; /* with coefficients: values beyond these count as these */
+  const struct reference_volume *second; /* the other volume of a function of two numbers; else null */
+  affine3 index_to_second;               /* from the volume's index space to that one's */
   affine3 index_to_mask;    /* from the volume's index space to that of its mask, where it has one */
   unsigned char *clearance; /* owned; [k][j][i] of bricks: 0 where the brick may be visible, else the distance
                              * in bricks (chessboard metric) to the nearest such brick, at most 255 */
@@ -243,6 +246,12 @@ double hl_reference_nearest_clip(const reference_volume *volume, vec3 point, vec
 /* sigma, 1 / world length; algorithm.md's sigma(f) = -ln(1 - alpha(f)) / u, times gradient opacity. value:
  * that at the point. */
 double hl_reference_extinction(const reference_volume *volume, double value, vec3 point);
+/* A function of two numbers at a point. */
+plane_sum hl_reference_plane_sum(const reference_volume *volume, double value, vec3 point);
+/* The colour of the transfer function, linear RGB. */
+void hl_reference_color(const reference_volume *volume, double value, vec3 point, double color[3]);
+/* Finds the other volumes of functions of two numbers, when all volumes are there. */
+void hl_reference_find_second(const reference *all, size_t index);
 
 /* Sets the volumes of a march. */
 typedef enum reference_role { REFERENCE_SEEN, REFERENCE_CASTS_SHADOW } reference_role;

@@ -128,7 +128,7 @@ void hl_reference_shade(const reference *all, const reference_sample *at, refere
   const hl_scene_volume *described = at->volume->described;
   double weight = at->weight;
   surface here;
-  hl_transfer_function_color(&described->transfer_function, at->value, here.own);
+  hl_reference_color(at->volume, at->value, at->index_point, here.own);
   hl_reference_tint(at->volume, at->index_point, here.own);
   here.normal = find_normal(at->volume, at->index_point, at->value, &here.amount);
   if (described->shading == HL_SHADING_PHONG)

@@ -288,7 +288,11 @@ static void move_light(const hl_frame_space *space, hl_light *light, double (*ve
 static void move_volume(const hl_frame_space *space, hl_scene_volume *volume) {
   move_point(space, volume->translate);
   volume->scale /= space->unit;
-  volume->transfer_function.unit_distance /= space->unit;
+  hl_transfer_function *function = &volume->transfer_function;
+  function->unit_distance /= space->unit;
+  if (function->plane.second == HL_SECOND_GRADIENT)
+    function->plane.second_scale = (function->plane.second_scale == 0 ? 1 : function->plane.second_scale) /
+                                   space->unit;
 }
 
 /* Gradients are per unit of length. points: room for the volume's gradient opacity. */

@@ -16,6 +16,8 @@ static bool same_points(const void *a, const void *b, size_t bytes) {
 static bool same_function(const hl_transfer_function *a, const hl_transfer_function *b) {
   return a->unit_distance == b->unit_distance && a->opacity_count == b->opacity_count &&
          a->color_count == b->color_count && a->gradient_opacity_count == b->gradient_opacity_count &&
+         a->plane.second == b->plane.second && a->plane.mark == b->plane.mark &&
+         a->plane.second_scale == b->plane.second_scale &&
          same_points(a->opacity, b->opacity, a->opacity_count * sizeof *a->opacity) &&
          same_points(a->color, b->color, a->color_count * sizeof *a->color) &&
          same_points(a->gradient_opacity, b->gradient_opacity,
@@ -125,6 +127,7 @@ void hl_prepared_release(hl_context *context, prepared_volume *prepared) {
   hl_release(context, prepared->cuts);
   hl_volume_release(prepared->volume);
   hl_volume_release(prepared->mask);
+  hl_volume_release(prepared->second);
   memset(prepared, 0, sizeof *prepared);
 }
 
@@ -167,8 +170,28 @@ static bool hold_mask(const preparation *with, prepared_volume *prepared, const 
   return now->factors == before.factors && now->rest == before.rest;
 }
 
+/* The other volume of a function of two numbers; null: there is none. */
+static const hl_scene_volume *second_of(const hl_scene_description *all, const hl_scene_volume *scene) {
+  const hl_function_plane *plane = &scene->transfer_function.plane;
+  return plane->second == HL_SECOND_VOLUME ? hl_scene_volume_named(all, plane->volume) : NULL;
+}
+
+static bool same_second(const prepared_volume *prepared, const hl_scene_volume *second) {
+  if (second == NULL) return prepared->second == NULL;
+  return prepared->second == second->volume && prepared->second_empty == hl_scene_volume_empty_value(second);
+}
+
+/* Retained for the same reason. */
+static void hold_second(prepared_volume *prepared, const hl_scene_volume *second) {
+  hl_volume *volume = second != NULL ? second->volume : NULL;
+  hl_volume_retain(volume);
+  hl_volume_release(prepared->second);
+  prepared->second = volume;
+  if (second != NULL) prepared->second_empty = hl_scene_volume_empty_value(second);
+}
+
 static hl_status prepare_volume(const preparation *with, const hl_scene_volume *scene,
-                                prepared_volume *prepared, hl_error *error) {
+                                const hl_scene_volume *second, prepared_volume *prepared, hl_error *error) {
   hl_context *context = with->context;
   hl_pool *pool = with->pool;
   const hl_kernel kernel = with->kernel;
@@ -177,7 +200,8 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
   double empty = hl_scene_volume_empty_value(scene);
   bool same_voxels = has_same_voxels(prepared, scene, kernel);
   bool same_cut = same_voxels && same_cuts(prepared, scene);
-  bool same = same_cut && same_function(&prepared->function, &scene->transfer_function);
+  bool same = same_cut && same_function(&prepared->function, &scene->transfer_function) &&
+              same_second(prepared, second);
   if (!same_voxels) {
     hl_prepared_release(context, prepared);
     const grid_source source = {scene, hl_kernel_get(kernel), index_to_frame, empty};
@@ -194,11 +218,12 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
   prepared->grid.index_to_frame = index_to_frame;
   if (!affine3_invert(index_to_frame, &prepared->grid.frame_to_index))
     return hl_fail(error, HL_ERROR_INPUT, "a volume's axes are singular: the three must span space");
+  hold_second(prepared, second);
   if (hold_mask(with, prepared, scene) && same) return HL_OK;
   release_function(context, prepared);
   if (!same_cut) release_iso(context, prepared);
   if (!same_cut && (status = keep_cuts(context, prepared, scene, error)) != HL_OK) return status;
-  status = hl_classifier_create(context, scene, &prepared->grid, &prepared->classifier, error);
+  status = hl_classifier_create(context, scene, second, &prepared->grid, &prepared->classifier, error);
   set_up_mask(with, prepared, scene);
   if (status == HL_OK) status = keep_key(context, prepared, scene, error);
   if (status != HL_OK) return status;
@@ -211,11 +236,18 @@ hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_funct
   const preparation with = {context, pool, &hot->grid, scene->render.kernel,
                             scene->render.compositing == HL_COMPOSITING_MAXIMUM};
   for (size_t i = 0; i < scene->volume_count; i++) {
-    hl_status status = prepare_volume(&with, &scene->volumes[i], &prepared[i], error);
+    const hl_scene_volume *second = second_of(scene, &scene->volumes[i]);
+    hl_status status = prepare_volume(&with, &scene->volumes[i], second, &prepared[i], error);
     if (status != HL_OK) {
       hl_prepared_release(context, &prepared[i]);
       return status;
     }
+  }
+  for (size_t i = 0; i < scene->volume_count; i++) {
+    const hl_scene_volume *second = second_of(scene, &scene->volumes[i]);
+    if (second != NULL)
+      hl_plane_table_set_second(&prepared[i].classifier.plane, second->volume,
+                                &prepared[second - scene->volumes].grid);
   }
   return HL_OK;
 }

@@ -20,6 +20,8 @@ typedef struct prepared_volume {
   const hl_scene_volume *scene; /* the frame's scene */
   hl_volume *volume;            /* retained */
   hl_volume *mask;              /* retained: the mask's lattice; null: none */
+  hl_volume *second;            /* retained: the other volume of a function of two numbers; null: none */
+  double second_empty;          /* its empty value */
   grid grid;
   classifier classifier;
   double empty;                  /* data value */

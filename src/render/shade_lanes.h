@@ -190,7 +190,10 @@ LANES_INLINE lanes composite(int back_to_front, lanes opacity, color_lanes lit, 
 LANES_INLINE color_lanes color_of_matter(const block_density *d, lanes3 position) {
   const shade_volume *volume = d->patch->volume;
   color_lanes color, own;
-  table_values(volume->classifier->color, split_coordinate(coordinate_seen(d)), color.c);
+  const classifier *classifier = volume->classifier;
+  if (classifier->plane.color == NULL)
+    table_values(classifier->color, split_coordinate(coordinate_seen(d)), color.c);
+  else color_in_row(&classifier->plane, d->row, coordinate_seen(d), d->before, d->after, color.c);
   if (volume->colors.voxels != NULL) {
     (void)voxel_color_at(&volume->colors, volume->to_index, position, own.c);
     for (int c = 0; c < 3; c++) color.c[c] = color.c[c] * own.c[c];

@@ -17,7 +17,8 @@ static const double MOST_CELLS = 1200000;
 /* ---- the key ---- */
 
 static void add_volume(hl_key *key, const prepared_volume *prepared, const grid *grid) {
-  hl_matter_key_add(key, prepared->scene, grid); /* the prepared volume keeps the voxels */
+  /* the prepared volume keeps the voxels */
+  hl_matter_key_add(key, prepared->scene, grid, &prepared->classifier);
   hl_key_add_whole(key, 2 * (int64_t)prepared->kernel + (prepared->scene->visible != 0));
 }
 

@@ -59,10 +59,11 @@ typedef struct block_density {
   way_sums sums;       /* between the two */
   lanes extinction;    /* averaged over the slab, 0 outside the box */
   lanes centre;        /* in joined lanes: the extinction's centre of gravity in the slab, 0 to 1 */
-  lanes factor;     /* with gradient opacity or a mask: what extinction is multiplied by; sums and extinction
-                       have it */
-  lanes seen;       /* where its matter is seen: fraction of the way through the slab's covered part */
-  lanes evenly;     /* where it would be seen if its extinction were even */
+  lanes factor; /* with gradient opacity, a mask or a function of two numbers: what extinction is multiplied
+                   by; sums and extinction have it */
+  lanes row;    /* of the second number, with a function of two numbers (plane_lanes.h) */
+  lanes seen;   /* where its matter is seen: fraction of the way through the slab's covered part */
+  lanes evenly; /* where it would be seen if its extinction were even */
   lanes_int sloped; /* where the gradient is known */
   lanes3 slope;     /* where the matter is seen; elsewhere 0 */
   lanes3 normal;    /* unit, away from the matter */
@@ -208,7 +209,7 @@ LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, bloc
     if (!d->there) continue;
     const shade_volume *volume = d->patch->volume;
     d->sloped = slab->seen & (d->sums.extinction > 0.0f);
-    if (volume->classifier->steepness != NULL) continue; /* weigh_slab() found the slope */
+    if (hl_classifier_needs_gradient(volume->classifier)) continue; /* weigh_slab() found the slope */
     d->slope = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
     if (!volume->phong) d->sloped &= d->sums.extinction * slab->part.length * g->path > THIN_DEPTH;
     uint32_t active = volume->visible && (volume->phong || (volume->lit && shadowed)) ? lanes_bits(d->sloped)
@@ -423,8 +424,8 @@ LANES_INLINE int is_weighed(const tile_slab *tile) {
   return 0;
 }
 
-/* Gradient opacity and masks, after place_slab(): multiplies the volumes' extinction by the factor where
- * their matter would be seen without it, and places the slab again. */
+/* Gradient opacity, masks and functions of two numbers, after place_slab(): multiplies the volumes'
+ * extinction by the factor where their matter would be seen without it, and places the slab again. */
 LANES_INLINE void weigh_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
   const block_geometry *g = &slab->geometry;
   for (int i = 0; i < count; i++) {
@@ -434,10 +435,21 @@ LANES_INLINE void weigh_slab(const shade_job *job, block_density *densities, int
     lanes place = lanes_fma(slab->part.length, d->seen, slab->part.begin);
     lanes3 point = add_scaled3(g->start, g->step_sheet, place);
     uint32_t active = lanes_bits(slab->seen & (d->sums.extinction > 0.0f));
-    d->slope = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
-    if (active != 0 && volume->classifier->steepness != NULL)
-      d->slope = gradient(volume, point, active, slab->starts);
-    d->factor = factor_of_matter(volume->classifier, d->slope, point);
+    matter_factor found = {lanes_set(0), {lanes_set(0), lanes_set(0), lanes_set(0)}, lanes_set(0)};
+    if (active != 0)
+      found = factor_of_matter(&(matter_way){.grid = volume->grid,
+                                             .kernel = volume->kernel,
+                                             .classifier = volume->classifier,
+                                             .to_index = volume->to_index,
+                                             .point = point,
+                                             .from = d->before,
+                                             .to = d->after,
+                                             .extinction = d->sums.extinction,
+                                             .active = active,
+                                             .starts = slab->starts});
+    d->slope = found.slope;
+    d->row = found.row;
+    d->factor = found.factor;
     d->extinction = d->extinction * d->factor;
     d->sums.extinction = d->sums.extinction * d->factor;
     d->sums.integral = d->sums.integral * d->factor;

@@ -14,6 +14,7 @@ static void set_up_white_volumes(sweep *sweep) {
   for (int g = 0; g < sweep->content.volume_count; g++) {
     layers->white[g] = sweep->content.volumes[g].classifier;
     layers->white[g].color = layers->ones;
+    layers->white[g].plane.color = NULL;
     shade_volume white = sweep->shade_volumes[g];
     white.classifier = &layers->white[g];
     white.colors.voxels = NULL;

@@ -126,7 +126,7 @@ uint64_t hl_scatter_bytes(const hl_scene_description *scene) {
 static void add_volume(hl_key *key, const scatter_volume *volume) {
   const hl_scene_volume *scene = volume->scene;
   const hl_transfer_function *function = &scene->transfer_function;
-  hl_matter_key_add(key, scene, volume->grid);
+  hl_matter_key_add(key, scene, volume->grid, volume->classifier);
   hl_key_add_whole(key, scatters(scene));
   hl_key_add_numbers(key, &scene->anisotropy, 1);
   hl_key_add_numbers(key, scene->albedo, 3);

@@ -42,10 +42,9 @@ static float value_between(const grid *grid, const double p[3]) {
   return value;
 }
 
-/* What gradient opacity multiplies extinction by at a point of index space; differences are of values a voxel
- * apart. */
-static float gradient_factor(const scatter_volume *volume, const double p[3]) {
-  const classifier *classifier = volume->classifier;
+/* The gradient's length at a point of index space, stored units per frame unit; differences are of values a
+ * voxel apart. */
+static double gradient_at(const scatter_volume *volume, const double p[3]) {
   vec3 gradient = {0, 0, 0};
   for (int a = 0; a < 3; a++) {
     double before[3] = {p[0], p[1], p[2]}, after[3] = {p[0], p[1], p[2]};
@@ -54,7 +53,12 @@ static float gradient_factor(const scatter_volume *volume, const double p[3]) {
     double slope = (double)value_between(volume->grid, after) - (double)value_between(volume->grid, before);
     gradient = vec3_add(gradient, vec3_scale(volume->grid->frame_to_index.linear.row[a], slope));
   }
-  double x = fmin(vec3_length(gradient) * (double)classifier->steepness_scale, STEEPNESS_ENTRIES);
+  return vec3_length(gradient);
+}
+
+/* What gradient opacity multiplies extinction by. */
+static float gradient_factor(const classifier *classifier, double length) {
+  double x = fmin(length * (double)classifier->steepness_scale, STEEPNESS_ENTRIES);
   size_t low = (size_t)x;
   return classifier->steepness[low] +
          (float)(x - (double)low) * (classifier->steepness[low + 1] - classifier->steepness[low]);
@@ -76,9 +80,17 @@ static float extinction_at(const scatter_volume *volume, vec3 point, float color
     color[c] = classifier->color[low][c] + f * (classifier->color[low + 1][c] - classifier->color[low][c]);
   float found = classifier->sums[low][0] + f * (classifier->sums[low + 1][0] - classifier->sums[low][0]);
   if (!(found > 0)) return found;
-  if (classifier->steepness != NULL) found *= gradient_factor(volume, p);
-  if (classifier->mask.factors == NULL) return found;
   const float at[3] = {(float)point.x, (float)point.y, (float)point.z};
+  double length = hl_classifier_needs_gradient(classifier) ? gradient_at(volume, p) : 0;
+  if (classifier->plane.sums != NULL) {
+    float second = classifier->plane.second != NULL ? hl_plane_second_at(&classifier->plane, at)
+                                                    : (float)length;
+    plane_point of_two = hl_plane_table_at(&classifier->plane, entry, second);
+    memcpy(color, of_two.color, sizeof of_two.color);
+    found = of_two.extinction;
+  }
+  if (classifier->steepness != NULL) found *= gradient_factor(classifier, length);
+  if (classifier->mask.factors == NULL) return found;
   hl_mask_tint(&classifier->mask, at, color);
   return found * hl_mask_factor(&classifier->mask, at);
 }

@@ -103,6 +103,30 @@ static hl_status check_scales(const hl_scene_description *d, hl_error *error) {
   return status;
 }
 
+/* Checks what a transfer function of two numbers needs of the scene. */
+static hl_status check_second(const hl_scene_description *d, size_t v, hl_error *error) {
+  const hl_function_plane *plane = &d->volumes[v].transfer_function.plane;
+  if (plane->second == HL_SECOND_NONE || d->volumes[v].label_count > 0) return HL_OK;
+  if (d->render.compositing == HL_COMPOSITING_MAXIMUM)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "/volumes/%zu/transfer_function/second: maximum projections go by one number: remove it, "
+                   "or render with light",
+                   v);
+  if (plane->second != HL_SECOND_VOLUME) return HL_OK;
+  const hl_scene_volume *other = hl_scene_volume_named(d, plane->volume);
+  if (other == NULL)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "/volumes/%zu/transfer_function/second/volume: no volume is called \"%.80s\": give a "
+                   "volume of the scene this name",
+                   v, plane->volume);
+  if (other->label_count > 0)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "/volumes/%zu/transfer_function/second/volume: \"%.80s\" is drawn by its labels, and has "
+                   "no values: name a volume without labels, or use it as a mask",
+                   v, plane->volume);
+  return HL_OK;
+}
+
 hl_status hl_description_check(const hl_scene_description *d, hl_error *error) {
   hl_checker root = {error, ""};
   hl_status status = hl_settings_check(HL_SETTINGS_IMAGE, d, 0, "/image", error);
@@ -131,6 +155,7 @@ hl_status hl_description_check(const hl_scene_description *d, hl_error *error) {
     if (d->volumes[v].iso_count > 0 && d->render.compositing == HL_COMPOSITING_MAXIMUM)
       status = hl_fail(error, HL_ERROR_UNSUPPORTED,
                        "/volumes/%zu/iso: is not in maximum projections: remove it, or render with light", v);
+  for (size_t v = 0; v < d->volume_count && status == HL_OK; v++) status = check_second(d, v, error);
   return status == HL_OK ? hl_settings_check(HL_SETTINGS_RENDER, &d->render, 0, "/render", error) : status;
 }
 

@@ -5,6 +5,7 @@
 #include "core/vector.h"
 #include "label/mask.h"
 #include "scene/check.h"
+#include "scene/function_plane.h"
 #include "scene/label_table.h"
 #include "scene/placement.h"
 
@@ -72,7 +73,8 @@ hl_status hl_transfer_function_check(const hl_transfer_function *function, const
   if (status == HL_OK)
     status = check_opacity_points(&check, "gradient_opacity", function->gradient_opacity,
                                   function->gradient_opacity_count);
-  return status == HL_OK ? check_color_points(&check, function) : status;
+  if (status == HL_OK) status = check_color_points(&check, function);
+  return status == HL_OK ? hl_plane_check(&function->plane, place, error) : status;
 }
 
 /* Checks the three scale factors, each the product of the common one and the axis's own; errors name the

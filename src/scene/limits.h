@@ -12,6 +12,8 @@
 #define HL_LIMIT_TEXTURE_SIDE   32768 /* pixels of a light's texture */
 #define HL_LIMIT_TEXTURE_PIXELS (1 << 26)
 #define HL_LIMIT_POINTS         65536 /* of one transfer function */
+#define HL_LIMIT_SHAPES         256   /* boxes, or polygons, of a transfer function of two numbers */
+#define HL_LIMIT_PLANE_SIDE     4096  /* pixels of its image */
 #define HL_LIMIT_LENGTH         1e15  /* any coordinate or length: squares and cubes stay finite */
 #define HL_LIMIT_CORNER \
   1e14 /* of a volume from the origin: a camera that frames it stands within HL_LIMIT_LENGTH */

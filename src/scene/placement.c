@@ -237,3 +237,10 @@ void hl_placed_lights_release(hl_context *context, hl_scene_description *placed)
   for (size_t l = 0; l < placed->light_count; l++) hl_release(context, (void *)placed->lights[l].vertices);
   hl_release(context, (void *)placed->lights);
 }
+
+const hl_scene_volume *hl_scene_volume_named(const hl_scene_description *scene, const char *name) {
+  for (size_t v = 0; v < scene->volume_count; v++)
+    if (scene->volumes[v].name != NULL && strcmp(scene->volumes[v].name, name) == 0)
+      return &scene->volumes[v];
+  return NULL;
+}

@@ -52,4 +52,7 @@ hl_status hl_lights_place(hl_context *context, const hl_scene_description *from,
                           hl_error *error);
 void hl_placed_lights_release(hl_context *context, hl_scene_description *placed);
 
+/* The first volume with this name; null: none. */
+const hl_scene_volume *hl_scene_volume_named(const hl_scene_description *scene, const char *name);
+
 #endif

@@ -9,6 +9,7 @@
 #include "core/key.h"
 #include "core/memory.h"
 #include "scene/check.h"
+#include "scene/function_plane.h"
 #include "scene/placement.h"
 #include "scene/settings.h"
 
@@ -139,14 +140,29 @@ hl_status hl_transfer_function_copy(hl_context *context, const hl_transfer_funct
   if (status == HL_OK)
     status = copy_array(context, from->gradient_opacity, from->gradient_opacity_count,
                         sizeof *from->gradient_opacity, "gradient opacity", &gradient, error);
-  if (status != HL_OK) {
-    hl_release(context, opacity);
-    hl_release(context, color);
-    return status;
-  }
-  *to = (hl_transfer_function){from->unit_distance, opacity,  from->opacity_count,         color,
-                               from->color_count,   gradient, from->gradient_opacity_count};
-  return HL_OK;
+  *to = (hl_transfer_function){
+      .unit_distance = from->unit_distance,
+      .opacity = opacity,
+      .opacity_count = from->opacity_count,
+      .color = color,
+      .color_count = from->color_count,
+      .gradient_opacity = gradient,
+      .gradient_opacity_count = from->gradient_opacity_count,
+  };
+  if (status == HL_OK) status = hl_plane_copy(context, &from->plane, &to->plane, error);
+  if (status != HL_OK) hl_transfer_function_release(context, to);
+  return status;
+}
+
+/* Copies a volume's function; one of two numbers gets its outline over the value. */
+static hl_status copy_function(hl_context *context, const hl_transfer_function *from, const hl_volume *volume,
+                               hl_transfer_function *to, hl_error *error) {
+  hl_status status = hl_transfer_function_copy(context, from, to, error);
+  if (status != HL_OK || !hl_has_plane(from)) return status;
+  hl_plane_set_mark(&to->plane);
+  hl_release(context, (void *)to->opacity);
+  hl_release(context, (void *)to->color);
+  return hl_plane_outline(context, volume->minimum, volume->maximum, to, error);
 }
 
 /* Copies a volume. Pointers in *to are null until they are owned, so that release_volume() can follow a
@@ -181,7 +197,7 @@ static hl_status copy_volume(hl_context *context, const hl_scene_volume *from, h
   to->cuts = cuts;
   if (status != HL_OK) return status;
   if (to->label_count > 0) return hl_labels_function(context, to, &to->transfer_function, error);
-  return hl_transfer_function_copy(context, &from->transfer_function, &to->transfer_function, error);
+  return copy_function(context, &from->transfer_function, from->volume, &to->transfer_function, error);
 }
 
 static hl_status copy_volumes(hl_scene *scene, const hl_scene_description *from, hl_error *error) {

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 #include "core/memory.h"
+#include "scene/function_plane.h"
 #include "text/edit_distance.h"
 
 /* The number of points whose value is <= value; points are spaced by stride bytes and begin with their
@@ -98,6 +99,7 @@ void hl_transfer_function_release(hl_context *context, hl_transfer_function *fun
   hl_release(context, (void *)function->opacity);
   hl_release(context, (void *)function->color);
   hl_release(context, (void *)function->gradient_opacity);
+  hl_plane_release(context, &function->plane);
   *function = (hl_transfer_function){0};
 }
 

@@ -65,8 +65,8 @@ LANES_INLINE lanes3 position_in_slab(const attenuate_job *job, lanes u, lanes v,
   return add_scaled3(end, step, fraction - 1.0f);
 }
 
-/* What gradient opacity and a mask multiply a volume's extinction by, in a block: at the centre of gravity of
- * the slab's matter. corner: the block's first pixel. */
+/* What gradient opacity, a mask and a function of two numbers multiply a volume's extinction by, in a block:
+ * at the centre of gravity of the slab's matter. corner: the block's first pixel. */
 LANES_INLINE lanes factor_in_block(const attenuate_job *job, const attenuate_volume *volume,
                                    const int corner[2], const way_sums *sums, lanes a, lanes b,
                                    covered_span span) {
@@ -75,10 +75,17 @@ LANES_INLINE lanes factor_in_block(const attenuate_job *job, const attenuate_vol
   uint32_t active = lanes_bits(sums->extinction * span.length > 0.0f);
   if (active == 0) return lanes_set(0);
   lanes3 point = position_in_slab(job, block_u(corner[0]), block_v(corner[1]), centre);
-  lanes3 slope = {lanes_set(0), lanes_set(0), lanes_set(0)};
-  if (volume->classifier->steepness != NULL)
-    slope = gradient_in_frame(volume->grid, volume->kernel, volume->to_index, point, active, 1);
-  return factor_of_matter(volume->classifier, slope, point);
+  return factor_of_matter(&(matter_way){.grid = volume->grid,
+                                        .kernel = volume->kernel,
+                                        .classifier = volume->classifier,
+                                        .to_index = volume->to_index,
+                                        .point = point,
+                                        .from = a,
+                                        .to = b,
+                                        .extinction = sums->extinction,
+                                        .active = active,
+                                        .starts = 1})
+      .factor;
 }
 
 typedef struct attenuated_block {

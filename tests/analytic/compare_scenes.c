@@ -141,6 +141,47 @@ static void make_gradient_backlit(stage *set) {
   make_gradient(set);
   memcpy(set->lights[0].direction, (double[3]){-0.5, 1, -0.4}, sizeof set->lights[0].direction);
 }
+/* Boxes for the balls' skins and their middles, by the gradient; a cone over both. */
+static const hl_function_box SKINS[] = {
+    {.low = {0.05, 0.04}, .high = {1, 0.2}, .color = {0.9, 0.5, 0.2}, .opacity = 0.5, .edge = {0.1, 0.04}},
+    {.low = {0.5, 0}, .high = {1, 0.07}, .color = {0.2, 0.4, 0.9}, .opacity = 0.2, .edge = {0.2, 0.03}}};
+static const double CONE_BORDER[3][2] = {{0.1, 0}, {0.9, 0.02}, {0.5, 0.2}};
+static const hl_function_polygon CONE = {.vertices = CONE_BORDER,
+                                         .vertex_count = 3,
+                                         .apex = {0.5, 0.07},
+                                         .color = {0.3, 0.9, 0.3},
+                                         .opacity = 0.4,
+                                         .falloff = 1};
+static void make_plane(stage *set) {
+  make_balls(set);
+  hl_function_plane *plane = &set->volumes[0].transfer_function.plane;
+  plane->second = HL_SECOND_GRADIENT;
+  plane->boxes = SKINS, plane->box_count = 2;
+  set->lights[0].angular_diameter_deg = 4;
+}
+static void make_plane_medium(stage *set) {
+  make_plane(set);
+  set->volumes[0].shading = HL_SHADING_NONE;
+  set->volumes[0].transfer_function.unit_distance = 3;
+  set->volumes[0].transfer_function.plane.polygons = &CONE;
+  set->volumes[0].transfer_function.plane.polygon_count = 1;
+}
+/* The balls, where smoke of another grid is dense; solid where it is thin. */
+static void make_plane_volume(stage *set) {
+  static const hl_function_box boxes[] = {
+      {.low = {0.1, 0.2}, .high = {1, 1}, .color = {0.9, 0.5, 0.2}, .opacity = 0.6, .edge = {0.2, 0.15}},
+      {.low = {0.2, 0}, .high = {1, 0.4}, .color = {0.2, 0.4, 0.9}, .opacity = 0.2, .edge = {0.2, 0.2}}};
+  make_balls(set);
+  hl_scene_volume *other = add_cube(set, full, 20);
+  other->name = "other";
+  other->scale = 1.4;
+  other->visible = other->casts_shadow = 0;
+  hl_function_plane *plane = &set->volumes[0].transfer_function.plane;
+  plane->second = HL_SECOND_VOLUME;
+  plane->volume = "other";
+  plane->boxes = boxes, plane->box_count = 2;
+  set->lights[0].angular_diameter_deg = 4;
+}
 static void make_balls_splat(stage *set) {
   make_balls_medium(set);
   set->scene.render.reconstruction = HL_RECONSTRUCTION_SPLAT;
@@ -486,6 +527,9 @@ static const scenario SCENARIOS[] = {
     {"gradient", make_gradient, 0.002, {0.0015, 0.002, 0.0015}},
     {"gradient-medium", make_gradient_medium, 0.002, {0.0015, 0.002, 0.0015}},
     {"gradient-backlit", make_gradient_backlit, 0.002, {0}},
+    {"plane", make_plane, 0.0035, {0.0035, 0.0035, 0.0035}},
+    {"plane-medium", make_plane_medium, 0.0035, {0.0035, 0.0035, 0.0035}},
+    {"plane-volume", make_plane_volume, 0.0012, {0.001, 0.0013, 0.001}},
     {"cut-planes", make_planes, 0.0004, {0}},
     {"cut-octant", make_octant, 0.0005, {0}},
     {"cut-bite", make_bite, 0.0008, {0}},

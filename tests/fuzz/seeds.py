@@ -101,6 +101,9 @@ def functions():
             "ColorSpace": space, "Name": "x", "NanColor": [1, 0, 0],
             "RGBPoints": [0, 0.23, 0.29, 0.75, 10, 0.7, 0.01, 0.14, 20, 1, 1, 0],
             "Points": [0, 0, 0.3, 0.6, 10, 1, 0.5, 0, 20, 0.5, 0.5, 0]}]))
+    write("transfer", "plane.json", text({"second": {"volume": "b"}, "boxes": [{"value": [0, 1], "second": [2, 3],
+          "color": [1, 0, 0], "opacity": 0.5, "edge": [1, 0]}], "polygons": [{"vertices": [[0, 0], [1, 0], [0, 1]],
+          "apex": [0.2, 0.2], "falloff": 0.5}], "image": {"file": "a.png", "value": [0, 1], "second": [0, 1]}}))
     write("transfer", "slicer.json", text({"@schema": "x", "volumeProperties": [{"components": [{
         "scalarOpacityUnitDistance": 0.5,
         "scalarOpacity": {"type": "piecewiseLinearFunction", "points": [

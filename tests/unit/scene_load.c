@@ -135,6 +135,34 @@ static void slicer_presets(void **state) {
   hl_context_destroy(context);
 }
 
+/* Of a polygon without an apex, the vertices' mean is the apex. */
+static void functions_of_two_numbers(void **state) {
+  (void)state;
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  hl_transfer_function f = {0};
+  assert_int_equal(
+      load(context,
+           "{\"unit_distance\": 2, \"second\": {\"volume\": \"t2\"}, \"boxes\": [{\"value\": [1, 5], "
+           "\"second\": [-3, 4], \"color\": [0.1, 0.2, 0.3], \"opacity\": 0.7, \"edge\": [1, 0.5]}], "
+           "\"polygons\": [{\"vertices\": [[0, 0], [3, 0], [3, 6]], \"falloff\": 0.25}]}",
+           &f, NULL),
+      HL_OK);
+  assert_int_equal(f.plane.second, HL_SECOND_VOLUME);
+  assert_string_equal(f.plane.volume, "t2");
+  assert_int_equal(f.plane.box_count, 1);
+  const hl_function_box box = {{1, -3}, {5, 4}, {0.1, 0.2, 0.3}, 0.7, {1, 0.5}};
+  assert_memory_equal(f.plane.boxes, &box, sizeof box);
+  assert_int_equal(f.plane.polygon_count, 1);
+  const hl_function_polygon *polygon = &f.plane.polygons[0];
+  assert_int_equal(polygon->vertex_count, 3);
+  assert_true(polygon->apex[0] == 2 && polygon->apex[1] == 2 && polygon->falloff == 0.25);
+  assert_true(polygon->color[1] == 1 && polygon->opacity == 0.5);
+  hl_transfer_function_release(context, &f);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 static void refusals_name_the_place(void **state) {
   (void)state;
   const struct {
@@ -166,6 +194,20 @@ static void refusals_name_the_place(void **state) {
       {"{}", "/opacity: is missing: give [[value, opacity], ...]", HL_ERROR_INPUT},
       {"{\"opacity\": [[0, 2]]}", "/opacity/0/1: 2 is out of range: give an opacity from 0 to 1",
        HL_ERROR_INPUT},
+      {"{\"boxes\": []}",
+       "/boxes: needs a second number: give \"second\": \"gradient\" or {\"volume\": NAME}", HL_ERROR_INPUT},
+      {"{\"second\": \"slope\"}", "/second: is an unknown name: give \"gradient\" or {\"volume\": NAME}",
+       HL_ERROR_INPUT},
+      {"{\"second\": \"gradient\"}", "/second: has no use: give boxes, polygons or an image", HL_ERROR_INPUT},
+      {"{\"second\": \"gradient\", \"color\": [1, 1, 1]}",
+       "/color: and second exclude each other: boxes, polygons and images have opacities and colours of "
+       "their "
+       "own",
+       HL_ERROR_INPUT},
+      {"{\"second\": \"gradient\", \"boxes\": [{\"value\": [0, 1]}]}",
+       "/boxes/0/second: is missing: give two numbers, [from, to]", HL_ERROR_INPUT},
+      {"{\"second\": \"gradient\", \"polygons\": [{\"vertices\": [[0, 1], [1]]}]}",
+       "/polygons/0/vertices: has 2 elements: give 3 to 1024", HL_ERROR_INPUT},
       {"3", "1:1: '[' or '{' expected near '3'", HL_ERROR_INPUT}};
   hl_context *context = make_context();
   for (size_t n = 0; n < sizeof faults / sizeof *faults; n++) {
@@ -184,9 +226,9 @@ static void refusals_name_the_place(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(halflights_own),          cmocka_unit_test(paraview_color_spaces),
-      cmocka_unit_test(paraview_opacities_ease), cmocka_unit_test(slicer_presets),
-      cmocka_unit_test(refusals_name_the_place),
+      cmocka_unit_test(halflights_own),           cmocka_unit_test(paraview_color_spaces),
+      cmocka_unit_test(paraview_opacities_ease),  cmocka_unit_test(slicer_presets),
+      cmocka_unit_test(functions_of_two_numbers), cmocka_unit_test(refusals_name_the_place),
   };
   return cmocka_run_group_tests(tests, make_file, remove_file);
 }

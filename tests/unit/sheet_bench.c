@@ -71,7 +71,7 @@ void bench_open(bench *bench, const size_t dimensions[3], hl_storage storage, co
   require(hl_grid_create(bench->context, bench->pool, &hl_hot_functions(hl_cpu_best_instruction_set())->grid,
                          &source, &bench->grid, &error),
           &error);
-  require(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, &error),
+  require(hl_classifier_create(bench->context, &bench->scene, NULL, &bench->grid, &bench->classifier, &error),
           &error);
   hl_grid_mark_relevant(&bench->grid, &hl_hot_functions(hl_cpu_best_instruction_set())->grid,
                         &bench->classifier, bench->pool);
@@ -82,7 +82,7 @@ void bench_show(bench *bench, const hl_opacity_point *opacity, size_t count) {
   hl_classifier_release(bench->context, &bench->classifier);
   bench->scene.transfer_function.opacity = opacity;
   bench->scene.transfer_function.opacity_count = count;
-  require(hl_classifier_create(bench->context, &bench->scene, &bench->grid, &bench->classifier, &error),
+  require(hl_classifier_create(bench->context, &bench->scene, NULL, &bench->grid, &bench->classifier, &error),
           &error);
   hl_grid_mark_relevant(&bench->grid, &hl_hot_scalar.grid, &bench->classifier, bench->pool);
 }

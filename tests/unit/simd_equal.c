@@ -373,8 +373,11 @@ static void test_brick_ranges(void **unused) {
 static bench classifier_bench;
 /* The same with gradient opacity. */
 static classifier steep_classifier;
+/* The same with functions of two numbers: of the gradient, and of another volume. */
+static classifier plane_classifiers[2];
 static const classifier *classifier_of(int number) {
-  return number % 3 == 2 ? &steep_classifier : &classifier_bench.classifier;
+  if (number % 5 > 2) return &plane_classifiers[number % 5 - 3];
+  return number % 5 == 2 ? &steep_classifier : &classifier_bench.classifier;
 }
 
 /* Grids whose gradients are taken: of each type of voxel, and a thin one. */
@@ -405,6 +408,31 @@ static void open_gradient_grids(void) {
                mat3_from_columns((vec3){1, 0, 0}, (vec3){0, 1, 0}, (vec3){0, 0, 1}));
 }
 
+static void open_planes(void) {
+  enum { COUNT = (PLANE_ROWS + 1) * PLANE_STRIDE };
+  static float sums[COUNT][4], color[COUNT][4];
+  uint32_t seed = 9;
+  for (size_t i = 0; i < COUNT; i++) {
+    float before = i > 0 ? 1 : 0;
+    sums[i][0] = random_between(&seed, 0, 2);
+    sums[i][1] = before * sums[i > 0 ? i - 1 : 0][1] + sums[i][0];
+    for (int c = 0; c < 4; c++)
+      color[i][c] = before * color[i > 0 ? i - 1 : 0][c] + random_between(&seed, 0, c == 3 ? 1.0f : 0.7f);
+  }
+  for (int k = 0; k < 2; k++) {
+    plane_table *plane = &plane_classifiers[k].plane;
+    plane_classifiers[k] = classifier_bench.classifier;
+    *plane = (plane_table){.sums = sums,
+                           .color = color,
+                           .column_scale = (float)PLANE_COLUMNS / CLASSIFIER_ENTRIES,
+                           .column_offset = 1,
+                           .row_scale = 60,
+                           .row_offset = 2,
+                           .axis = k == 0 ? HL_SECOND_GRADIENT : HL_SECOND_VOLUME};
+    if (k == 1) hl_plane_table_set_second(plane, NULL, &gradient_bench[1].grid);
+  }
+}
+
 static int open_classifier(void **unused) {
   (void)unused;
   open_gradient_grids();
@@ -419,6 +447,7 @@ static int open_classifier(void **unused) {
   steep_classifier = classifier_bench.classifier;
   steep_classifier.steepness = steepness;
   steep_classifier.steepness_scale = 900;
+  open_planes();
   return 0;
 }
 

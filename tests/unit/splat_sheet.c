@@ -289,8 +289,8 @@ static void test_cells_are_what_their_voxels_say(void **state) {
     const grid_source source = {&bench.scene, hl_kernel_get(HL_KERNEL_LINEAR), affine3_identity(), 7};
     assert_int_equal(
         hl_grid_create(bench.context, bench.pool, &hl_hot_scalar.grid, &source, &bench.grid, NULL), HL_OK);
-    assert_int_equal(hl_classifier_create(bench.context, &bench.scene, &bench.grid, &bench.classifier, NULL),
-                     HL_OK);
+    assert_int_equal(
+        hl_classifier_create(bench.context, &bench.scene, NULL, &bench.grid, &bench.classifier, NULL), HL_OK);
     hl_grid_mark_relevant(&bench.grid, &hl_hot_scalar.grid, &bench.classifier, bench.pool);
     assert_true(check_cells(&bench) > 0);
     bench_close(&bench);

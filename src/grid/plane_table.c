@@ -1,0 +1,218 @@
+/* grid/plane_table.c - see plane_table.h.
+ *
+ * A point of the table is the function's mean over the part of the plane that is nearer to it than to others,
+ * as far as the data reach: a box that ends where the data end is whole there. */
+#include "grid/plane_table.h"
+
+#include <math.h>
+
+#include "scene/placement.h"
+
+void hl_plane_table_lay_out(const hl_transfer_function *function, plane_table *table, hl_layout *layout) {
+  if (!hl_has_plane(function)) return;
+  size_t count = (size_t)(PLANE_ROWS + 1) * PLANE_STRIDE;
+  table->sums = hl_layout_take(layout, count, sizeof *table->sums);
+  table->color = hl_layout_take(layout, count, sizeof *table->color);
+}
+
+/* ---- the part of the plane that the table covers ---- */
+
+/* No gradient is longer: along each axis it is at most the range of the values per voxel edge. */
+static double longest_gradient(const hl_scene_volume *volume, double range) {
+  mat3 placed = hl_scene_volume_index_to_world(volume).linear;
+  double sum = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    double edge = vec3_length(mat3_column(placed, axis));
+    sum += 1 / (edge * edge);
+  }
+  return range * sqrt(sum);
+}
+
+/* What the data reach on both axes, second numbers as the function has them. */
+static plane_box reach_of_data(const hl_scene_volume *volume, const hl_scene_volume *second,
+                               const double values[2]) {
+  double scale = volume->transfer_function.plane.second_scale, low = 0,
+         high = longest_gradient(volume, values[1] - values[0]);
+  if (scale == 0) scale = 1;
+  if (second != NULL) {
+    double empty = hl_scene_volume_empty_value(second);
+    low = fmin(second->volume->minimum, empty);
+    high = fmax(second->volume->maximum, empty);
+  }
+  low *= scale, high *= scale;
+  return (plane_box){{values[0], fmin(low, high)}, {values[1], fmax(low, high)}};
+}
+
+/* An axis of the table: point n of it stands for start + n * step. */
+typedef struct table_axis {
+  double start, step;
+  double low, high; /* what the data reach */
+} table_axis;
+
+/* The shapes and two steps more, as far as the data reach. */
+static table_axis axis_of(const plane_box *bounds, const plane_box *reach, int axis, int count) {
+  double low = fmax(bounds->low[axis], reach->low[axis]), high = fmin(bounds->high[axis], reach->high[axis]);
+  if (!(high > low))
+    low = reach->low[axis], high = fmax(reach->high[axis], low + fmax(1e-12 * fabs(low), 1e-30));
+  double step = (high - low) / (count - 5);
+  return (table_axis){low - 2 * step, step, reach->low[axis], reach->high[axis]};
+}
+
+/* The part of an axis that a point of the table stands for. */
+static void part_of_axis(const table_axis *axis, int n, double *low, double *high) {
+  double middle = axis->start + n * axis->step;
+  *low = fmin(fmax(middle - axis->step / 2, axis->low), axis->high);
+  *high = fmin(fmax(middle + axis->step / 2, axis->low), axis->high);
+}
+
+/* ---- filling ---- */
+
+static size_t place_of(int row, int column) { return (size_t)row * PLANE_STRIDE + (size_t)column; }
+
+/* Fills one row. Extinction is linear between columns, so its integral over one is the mean of its two
+ * ends. */
+static void fill_row(const hl_transfer_function *function, const table_axis axes[2], int row,
+                     plane_table *table) {
+  double integral = 0, before = 0, sums[4] = {0, 0, 0, 0}, opacity_before[4] = {0, 0, 0, 0};
+  plane_box part;
+  part_of_axis(&axes[1], row, &part.low[1], &part.high[1]);
+  for (int column = 0; column < PLANE_COLUMNS; column++) {
+    part_of_axis(&axes[0], column, &part.low[0], &part.high[0]);
+    plane_sum mean = hl_plane_mean(function, &part);
+    double opacity = -expm1(-mean.extinction * function->unit_distance), shown[4] = {0, 0, 0, opacity};
+    for (int c = 0; c < 3 && mean.extinction > 0; c++) shown[c] = opacity * mean.color[c] / mean.extinction;
+    float *sum = table->sums[place_of(row, column)], *color = table->color[place_of(row, column)];
+    integral += column == 0 ? 0 : (before + mean.extinction) / 2;
+    sum[0] = (float)mean.extinction;
+    sum[1] = (float)integral;
+    for (int c = 0; c < 4; c++) {
+      sums[c] += column == 0 ? 0 : (opacity_before[c] + shown[c]) / 2;
+      color[c] = (float)sums[c];
+      opacity_before[c] = shown[c];
+    }
+    before = mean.extinction;
+  }
+}
+
+static void repeat_last(float (*table)[4]) {
+  for (int row = 0; row < PLANE_ROWS; row++)
+    for (int c = 0; c < 4; c++)
+      table[place_of(row, PLANE_COLUMNS)][c] = table[place_of(row, PLANE_COLUMNS - 1)][c];
+  for (int column = 0; column <= PLANE_COLUMNS; column++)
+    for (int c = 0; c < 4; c++)
+      table[place_of(PLANE_ROWS, column)][c] = table[place_of(PLANE_ROWS - 1, column)][c];
+}
+
+static int clamp_column(double column) { return (int)fmin(fmax(column, 0), PLANE_COLUMNS - 1); }
+
+static void find_greatest(const plane_table *table, int entries, float (*greatest)[4]) {
+  float of_column[PLANE_COLUMNS] = {0};
+  for (int row = 0; row < PLANE_ROWS; row++)
+    for (int column = 0; column < PLANE_COLUMNS; column++)
+      of_column[column] = fmaxf(of_column[column], table->sums[place_of(row, column)][0]);
+  for (int entry = 0; entry <= entries; entry++) {
+    double scale = (double)table->column_scale, offset = (double)table->column_offset;
+    int first = clamp_column(floor((entry - 1) * scale + offset)),
+        last = clamp_column(ceil((entry + 1) * scale + offset));
+    greatest[entry][0] = 0;
+    for (int column = first; column <= last; column++)
+      greatest[entry][0] = fmaxf(greatest[entry][0], of_column[column]);
+  }
+}
+
+void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *second, const grid *grid,
+                         const double values[2], int entries, plane_table *table, float (*greatest)[4]) {
+  const hl_transfer_function *function = &volume->transfer_function;
+  plane_box bounds = {{0, 0}, {0, 0}}, reach = reach_of_data(volume, second, values);
+  (void)hl_plane_bounds(&function->plane, &bounds);
+  const table_axis axes[2] = {axis_of(&bounds, &reach, 0, PLANE_COLUMNS),
+                              axis_of(&bounds, &reach, 1, PLANE_ROWS)};
+  double scale = function->plane.second_scale == 0 ? 1 : function->plane.second_scale, zero = 0;
+  double units = fabs(grid->value_scale);
+  if (second != NULL) {
+    units = second->volume->value_scale;
+    zero = hl_scene_volume_empty_value(second);
+  }
+  table->axis = function->plane.second;
+  table->column_scale = (float)((values[1] - values[0]) / entries / axes[0].step);
+  table->column_offset = (float)((values[0] - axes[0].start) / axes[0].step);
+  table->row_scale = (float)fmin(fmax(units * scale / axes[1].step, -1e30), 1e30);
+  table->row_offset = (float)((zero * scale - axes[1].start) / axes[1].step);
+  for (int row = 0; row < PLANE_ROWS; row++) fill_row(function, axes, row, table);
+  repeat_last(table->sums);
+  repeat_last(table->color);
+  find_greatest(table, entries, greatest);
+}
+
+void hl_plane_table_set_second(plane_table *table, const hl_volume *volume, const grid *second) {
+  const affine3 *to_index = &second->frame_to_index;
+  const double offset[3] = {to_index->offset.x, to_index->offset.y, to_index->offset.z};
+  table->second_volume = volume;
+  table->second = second;
+  for (int axis = 0; axis < 3; axis++) {
+    vec3_store(table->to_second[axis], to_index->linear.row[axis]);
+    table->to_second[axis][3] = (float)offset[axis];
+  }
+}
+
+/* ---- looking up one point ---- */
+
+/* A place in a table: the point before it, and the way from there. */
+typedef struct table_place {
+  int at;
+  float part;
+} table_place;
+
+static table_place place_between(float x, int count) {
+  float most = (float)(count - 1);
+  if (!(x > 0)) x = 0;
+  if (x > most) x = most;
+  return (table_place){(int)x, x - (float)(int)x};
+}
+
+/* The mean of a colour's integrals' differences over the column around a place, of two rows. */
+static float color_between(const plane_table *table, table_place column, table_place row, int c) {
+  float of_row[2];
+  for (int r = 0; r < 2; r++) {
+    size_t place = place_of(row.at + r, column.at);
+    of_row[r] = table->color[place + 1][c] - table->color[place][c];
+  }
+  return of_row[0] + (of_row[1] - of_row[0]) * row.part;
+}
+
+plane_point hl_plane_table_at(const plane_table *table, float coordinate, float second) {
+  table_place column = place_between(coordinate * table->column_scale + table->column_offset, PLANE_COLUMNS),
+              row = place_between(second * table->row_scale + table->row_offset, PLANE_ROWS);
+  float of_row[2];
+  for (int r = 0; r < 2; r++) {
+    size_t place = place_of(row.at + r, column.at);
+    float a = table->sums[place][0], b = table->sums[place + 1][0];
+    of_row[r] = a + (b - a) * column.part;
+  }
+  plane_point point = {of_row[0] + (of_row[1] - of_row[0]) * row.part, {0, 0, 0}};
+  float opacity = color_between(table, column, row, 3);
+  for (int c = 0; c < 3 && opacity > 0; c++) point.color[c] = color_between(table, column, row, c) / opacity;
+  return point;
+}
+
+float hl_plane_second_at(const plane_table *table, const float point[3]) {
+  const grid *grid = table->second;
+  int64_t first[3];
+  float part[3], sum = 0;
+  for (int a = 0; a < 3; a++) {
+    const float *row = table->to_second[a];
+    float at = row[0] * point[0] + row[1] * point[1] + row[2] * point[2] + row[3];
+    float last = (float)(grid->dimension[a] - 1);
+    at = at > 0 ? at < last ? at : last : 0;
+    first[a] = (int64_t)at;
+    part[a] = at - (float)first[a];
+  }
+  for (int corner = 0; corner < 8; corner++) {
+    float weight = 1;
+    for (int a = 0; a < 3; a++) weight *= corner >> a & 1 ? part[a] : 1 - part[a];
+    if (weight > 0)
+      sum += weight * hl_stored_value(grid, first[0] + (corner & 1), first[1] + (corner >> 1 & 1),
+                                      first[2] + (corner >> 2 & 1));
+  }
+  return sum - grid->empty;
+}

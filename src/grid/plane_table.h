@@ -1,0 +1,55 @@
+/* grid/plane_table.h - a transfer function of two numbers as tables over its plane.
+ *
+ * A column stands for a value, a row for a second number: the gradient's length or another volume's value.
+ * Between the table's points the function is bilinear. A ray's way through a slab runs along a row, from one
+ * value to another, so rows keep integrals over columns: no box is lost between two sheets. */
+#ifndef HL_GRID_PLANE_TABLE_H
+#define HL_GRID_PLANE_TABLE_H
+
+#include "core/memory.h"
+#include "grid/grid.h"
+#include "scene/function_plane.h"
+
+enum { PLANE_COLUMNS = 512, PLANE_ROWS = 256, PLANE_STRIDE = PLANE_COLUMNS + 1 };
+
+typedef struct plane_table {
+  /* [PLANE_ROWS + 1][PLANE_STRIDE], the last row and column once more; borrowed from the classifier's block;
+   * null: the function is one of the value alone */
+  float (*sums)[4];  /* extinction per world unit; its integral over columns, from column 0; 0; 0 */
+  float (*color)[4]; /* the integrals of linear RGB times opacity, and of opacity */
+  float column_scale, column_offset; /* column = coordinate in the classifier's tables * scale + offset */
+  float row_scale, row_offset; /* row = second number * scale + offset; of a gradient in stored units per
+                                  frame unit, of another volume in stored units above its empty value */
+  hl_second_axis axis;
+  /* Of the other volume; borrowed from the frame; null where the second number is the gradient. */
+  const hl_volume *second_volume;
+  const grid *second;
+  float to_second[3][4]; /* frame space to its index space */
+} plane_table;
+
+/* Takes the tables' memory from a layout, where the function needs any. */
+void hl_plane_table_lay_out(const hl_transfer_function *function, plane_table *table, hl_layout *layout);
+
+/* Fills the tables. volume: the function's, in frame space. second: the other volume; null where the second
+ * number is the gradient. values: the least and greatest value that the classifier's tables cover, from their
+ * entry 0 to their last, of which there are `entries`. greatest: [entries + 1]; receives a bound of the
+ * extinction that values around each entry have with any second number: 0 where nothing shows. */
+void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *second, const grid *grid,
+                         const double values[2], int entries, plane_table *table, float (*greatest)[4]);
+
+/* Sets the other volume for a frame. */
+void hl_plane_table_set_second(plane_table *table, const hl_volume *volume, const grid *second);
+
+/* The function at one point. */
+typedef struct plane_point {
+  float extinction, color[3];
+} plane_point;
+
+/* coordinate: in the classifier's tables. second: as row_scale says. */
+plane_point hl_plane_table_at(const plane_table *table, float coordinate, float second);
+
+/* The other volume's value at a position in frame space, linear between its voxels: stored units above its
+ * empty value. */
+float hl_plane_second_at(const plane_table *table, const float point[3]);
+
+#endif

@@ -1,0 +1,34 @@
+/* reference/plane.c - a volume's transfer function of two numbers at one point, from its description. */
+#include <string.h>
+
+#include "reference/reference.h"
+
+void hl_reference_find_second(const reference *all, size_t index) {
+  reference_volume *volume = &all->volumes[index];
+  const hl_function_plane *plane = &volume->described->transfer_function.plane;
+  if (plane->second != HL_SECOND_VOLUME) return;
+  const hl_scene_volume *second = hl_scene_volume_named(all->scene, plane->volume);
+  volume->second = &all->volumes[second - all->scene->volumes];
+  volume->index_to_second = affine3_multiply(volume->second->world_to_index,
+                                             hl_scene_volume_index_to_world(volume->described));
+}
+
+plane_sum hl_reference_plane_sum(const reference_volume *volume, double value, vec3 point) {
+  const hl_transfer_function *function = &volume->described->transfer_function;
+  double second = volume->second != NULL
+                      ? hl_reference_value(volume->second, affine3_apply(volume->index_to_second, point))
+                      : vec3_length(hl_reference_gradient(volume, point));
+  if (function->plane.second_scale != 0) second *= function->plane.second_scale;
+  const plane_box at = {{value, second}, {value, second}};
+  return hl_plane_mean(function, &at);
+}
+
+void hl_reference_color(const reference_volume *volume, double value, vec3 point, double color[3]) {
+  const hl_transfer_function *function = &volume->described->transfer_function;
+  if (!hl_has_plane(function)) {
+    hl_transfer_function_color(function, value, color);
+    return;
+  }
+  plane_sum sum = hl_reference_plane_sum(volume, value, point);
+  for (int c = 0; c < 3; c++) color[c] = sum.extinction > 0 ? sum.color[c] / sum.extinction : 0;
+}
