@@ -11,6 +11,7 @@ from . import colors
 from ._library import call, context, ffi, lib, names
 from ._settings import number, numbers_of
 from ._words import nearest, suggests
+from .plane import Plane, plane_from
 
 __all__ = ["TransferFunction", "presets"]
 
@@ -31,8 +32,8 @@ class TransferFunction:
 
     Parameters
     ----------
-    opacity : sequence of (value, opacity)
-        Sorted by value; opacity 0 to 1 per `unit_distance`: a homogeneous medium of opacity ``o`` lets
+    opacity : sequence of (value, opacity), optional
+        Not with `second`. Sorted by value; opacity 0 to 1 per `unit_distance`: a homogeneous medium of opacity ``o`` lets
         ``(1 - o) ** (d / unit_distance)`` of the light through a length ``d``.
     color : sequence of (value, r, g, b), or (r, g, b)
         Sorted by value; linear RGB.
@@ -41,19 +42,39 @@ class TransferFunction:
     gradient_opacity : sequence of (gradient, factor)
         What extinction is multiplied by where the data's gradient has this length, in data units per world unit;
         sorted. Empty: 1 everywhere.
+    second : "gradient" or {"volume": name}, optional
+        The second number that `boxes`, `polygons` and `image` take beside the value: the length of the data's
+        gradient, in data units per world unit, or the value of another volume of the scene. They then say all that is
+        seen; colours are linear RGB or a name, opacities per `unit_distance`.
+    boxes : sequence of dict
+        ``value`` and ``second``, each (from, to); ``color`` (white), ``opacity`` (0.5), and ``edge`` (0, 0): how far
+        within the border extinction rises from 0.
+    polygons : sequence of dict
+        ``vertices``, a sequence of (value, second), ``color``, ``opacity``, ``apex`` (the vertices' mean), from which
+        extinction falls to the border, and ``falloff`` (1), the fraction of the way over which it does.
+    image : dict
+        ``pixels``, (height, width, 4): linear RGB times opacity, and opacity, the greatest second number in the first
+        row; ``value`` and ``second``, the ranges that it covers.
 
     Examples
     --------
     >>> TransferFunction([(0, 0), (100, 0.5)], color=(1, 0.5, 0.2)).color.shape
     (1, 4)
+    >>> skin = {"value": (40, 255), "second": (20, 80), "color": "gold", "opacity": 0.8}
+    >>> TransferFunction(second="gradient", boxes=[skin]).plane.boxes[0]["edge"]
+    (0.0, 0.0)
     """
 
-    __slots__ = ("color", "gradient_opacity", "opacity", "unit_distance")
+    __slots__ = ("color", "gradient_opacity", "opacity", "plane", "unit_distance")
 
     @suggests
-    def __init__(self, opacity: Any, color: Any = (1.0, 1.0, 1.0),
-                 unit_distance: float = 1.0, gradient_opacity: Any = ()) -> None:
+    def __init__(self, opacity: Any = (), color: Any = (1.0, 1.0, 1.0), unit_distance: float = 1.0,
+                 gradient_opacity: Any = (), *, second: Any = None, boxes: Any = (), polygons: Any = (),
+                 image: Any = None) -> None:
         place = "TransferFunction: "
+        self.plane = Plane(place, second, boxes, polygons, image)
+        if second is not None and len(opacity) > 0:
+            raise TypeError(f"{place}opacity and second exclude each other: boxes, polygons and images have their own")
         self.unit_distance = number(f"{place}unit_distance", unit_distance)
         points = [numbers_of(f"{place}opacity[{n}]", point, 2) for n, point in enumerate(opacity)]
         self.opacity = np.array(points, dtype=np.float64).reshape(-1, 2)
@@ -68,12 +89,13 @@ class TransferFunction:
     def __repr__(self) -> str:
         return (f"TransferFunction({self.opacity.tolist()}, color={self.color.tolist()}, "
                 f"unit_distance={self.unit_distance}"
-                + (f", gradient_opacity={self.gradient_opacity.tolist()})" if len(self.gradient_opacity) else ")"))
+                + (f", gradient_opacity={self.gradient_opacity.tolist()}" if len(self.gradient_opacity) else "")
+                + "".join(f", {word}={value!r}" for word, value in self.plane.arguments().items()) + ")")
 
     def __eq__(self, other: object) -> bool:
         return (isinstance(other, TransferFunction) and self.unit_distance == other.unit_distance
                 and np.array_equal(self.opacity, other.opacity) and np.array_equal(self.color, other.color)
-                and np.array_equal(self.gradient_opacity, other.gradient_opacity))
+                and np.array_equal(self.gradient_opacity, other.gradient_opacity) and self.plane.equals(other.plane))
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -86,6 +108,7 @@ class TransferFunction:
         struct.opacity, struct.opacity_count = opacity, len(self.opacity)
         struct.color, struct.color_count = color, len(self.color)
         struct.gradient_opacity, struct.gradient_opacity_count = gradient, len(self.gradient_opacity)
+        self.plane.fill(struct.plane, keep)
 
 
 def function_from(struct: Any) -> TransferFunction:
@@ -94,6 +117,9 @@ def function_from(struct: Any) -> TransferFunction:
     color = [(struct.color[n].value, *struct.color[n].color) for n in range(struct.color_count)]
     gradient = [(struct.gradient_opacity[n].value, struct.gradient_opacity[n].opacity)
                 for n in range(struct.gradient_opacity_count)]
+    plane = plane_from(struct.plane)
+    if plane.second is not None:  # opacity and colour are made of it
+        return TransferFunction((), unit_distance=struct.unit_distance, gradient_opacity=gradient, **plane.arguments())
     return TransferFunction(opacity, color or (1.0, 1.0, 1.0), struct.unit_distance, gradient)
 
 
@@ -116,7 +142,7 @@ def named_function(tf: Any, volume: Any, old: TransferFunction) -> TransferFunct
         raise ValueError(f"tf: there is no preset or file '{path}'{nearest(path, presets())}")
     loaded = _made(lib.hl_transfer_function_load, os.fsencode(path), path=path)
     function = function_from(loaded)
-    if loaded.opacity == ffi.NULL:
+    if loaded.opacity == ffi.NULL and function.plane.second is None:
         function.opacity, function.unit_distance = old.opacity, old.unit_distance
         function.gradient_opacity = old.gradient_opacity
     return function

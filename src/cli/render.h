@@ -149,6 +149,10 @@ int render_transfer_function(cli_host *host, const cli_value *values, const hl_s
                              size_t index, const char *color, hl_transfer_function *function);
 void render_release_function(hl_transfer_function *function);
 
+/* Copies a function of two numbers; false without memory. The copy is released afterwards, too. */
+bool render_copy_plane(const hl_function_plane *from, hl_function_plane *to);
+void render_release_plane(hl_function_plane *plane);
+
 /* The name of a volume in --tf NAME=... and --colormap NAME=...: its name in the scene, else its file's
  * without folder and extensions, else "volume1" and so on. */
 void render_volume_name(const hl_scene_volume *volume, size_t index, char *name, size_t size);

@@ -165,7 +165,8 @@ static int copy_function(const hl_transfer_function *from, hl_transfer_function 
   to->color = copy_points(from->color, from->color_count * sizeof *from->color);
   to->gradient_opacity = copy_points(from->gradient_opacity,
                                      from->gradient_opacity_count * sizeof *from->gradient_opacity);
-  return to->opacity != NULL && to->color != NULL && to->gradient_opacity != NULL
+  bool plane = render_copy_plane(&from->plane, &to->plane);
+  return to->opacity != NULL && to->color != NULL && to->gradient_opacity != NULL && plane
              ? EXIT_CODE_OK
              : fail(EXIT_CODE_FAILURE, "out of memory for a transfer function");
 }
@@ -174,13 +175,14 @@ void render_release_function(hl_transfer_function *function) {
   free((void *)function->opacity);
   free((void *)function->color);
   free((void *)function->gradient_opacity);
+  render_release_plane(&function->plane);
 }
 
 /* Gives a function the points of `loaded`. Its own opacity is kept if `loaded` has none. */
 static int replace(const hl_transfer_function *loaded, hl_transfer_function *function) {
   hl_transfer_function old = *function, copy;
   hl_transfer_function both = *loaded;
-  if (loaded->opacity == NULL) {
+  if (loaded->opacity == NULL && loaded->plane.second == HL_SECOND_NONE) {
     both.unit_distance = old.unit_distance;
     both.opacity = old.opacity;
     both.opacity_count = old.opacity_count;
@@ -311,6 +313,12 @@ int render_transfer_function(cli_host *host, const cli_value *values, const hl_s
     hl_transfer_function_release(host->context, &loaded);
   }
   if (exit_code != EXIT_CODE_OK) return exit_code;
+  if (function->plane.second != HL_SECOND_NONE)
+    return values[RENDER_RANGE].given || values[RENDER_THRESHOLD].given || colormap != NULL
+               ? fail(EXIT_CODE_USAGE,
+                      "--range, --threshold and --colormap change functions of the value alone: "
+                      "change the boxes, polygons or image of this one")
+               : EXIT_CODE_OK;
   value_range range;
   exit_code = find_range(host, values, volume->volume, &range);
   if (exit_code == EXIT_CODE_OK && range.given && !values[RENDER_THRESHOLD].given)

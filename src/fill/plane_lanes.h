@@ -94,11 +94,11 @@ LANES_INLINE void sums_at_column(const plane_table *table, plane_row row, lanes 
   lanes_int whole = lanes_truncate(column);
   lanes part = column - lanes_from_int(whole), of_row[2][2];
   for (int r = 0; r < 2; r++) {
-    lanes a[3], b[3];
-    lanes_gather_row_pairs(&table->sums[0][0], row.start + whole + r * PLANE_STRIDE, a, b);
-    lanes rise = b[0] - a[0];
-    of_row[r][0] = lanes_fma(rise, part, a[0]);
-    of_row[r][1] = lanes_fma(lanes_fma(rise * 0.5f, part, a[0]), part, a[1]);
+    lanes ends[4]; /* extinction and integral at the column, and at the next one */
+    lanes_gather_quads(&table->sums[0][0], (row.start + whole + r * PLANE_STRIDE) * 2, ends);
+    lanes rise = ends[2] - ends[0];
+    of_row[r][0] = lanes_fma(rise, part, ends[0]);
+    of_row[r][1] = lanes_fma(lanes_fma(rise * 0.5f, part, ends[0]), part, ends[1]);
   }
   for (int i = 0; i < 2; i++) sums[i] = lanes_fma(of_row[1][i] - of_row[0][i], row.part, of_row[0][i]);
 }

@@ -5,6 +5,7 @@
 #include "grid/plane_table.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "scene/placement.h"
 
@@ -94,13 +95,13 @@ static void fill_row(const hl_transfer_function *function, const table_axis axes
   }
 }
 
-static void repeat_last(float (*table)[4]) {
+/* The last column and row once more: look-ups read a point and the next. width: floats of a point. */
+static void repeat_last(float *table, size_t width) {
   for (int row = 0; row < PLANE_ROWS; row++)
-    for (int c = 0; c < 4; c++)
-      table[place_of(row, PLANE_COLUMNS)][c] = table[place_of(row, PLANE_COLUMNS - 1)][c];
-  for (int column = 0; column <= PLANE_COLUMNS; column++)
-    for (int c = 0; c < 4; c++)
-      table[place_of(PLANE_ROWS, column)][c] = table[place_of(PLANE_ROWS - 1, column)][c];
+    memcpy(table + width * place_of(row, PLANE_COLUMNS), table + width * place_of(row, PLANE_COLUMNS - 1),
+           width * sizeof *table);
+  memcpy(table + width * place_of(PLANE_ROWS, 0), table + width * place_of(PLANE_ROWS - 1, 0),
+         width * PLANE_STRIDE * sizeof *table);
 }
 
 static int clamp_column(double column) { return (int)fmin(fmax(column, 0), PLANE_COLUMNS - 1); }
@@ -139,8 +140,8 @@ void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *s
   table->row_scale = (float)fmin(fmax(units * scale / axes[1].step, -1e30), 1e30);
   table->row_offset = (float)((zero * scale - axes[1].start) / axes[1].step);
   for (int row = 0; row < PLANE_ROWS; row++) fill_row(function, axes, row, table);
-  repeat_last(table->sums);
-  repeat_last(table->color);
+  repeat_last(&table->sums[0][0], 2);
+  repeat_last(&table->color[0][0], 4);
   find_greatest(table, entries, greatest);
 }
 

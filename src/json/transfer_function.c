@@ -11,6 +11,7 @@
 #include "json/parts.h"
 #include "json/settings.h"
 #include "scene/check.h"
+#include "scene/function_plane.h"
 #include "scene/scene.h"
 
 static bool has(const json_t *object, const char *key) { return json_object_get(object, key) != NULL; }
@@ -212,7 +213,7 @@ static hl_status read_start(hl_json_reader *reader, const json_t *value, hl_func
     if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
     status = hl_transfer_function_load(reader->context, path, function, reader->error);
     hl_release(reader->context, path);
-    if (status == HL_OK && function->opacity == NULL && !has(value, "opacity"))
+    if (status == HL_OK && function->opacity == NULL && !hl_has_plane(function) && !has(value, "opacity"))
       status = take_automatic_opacity(reader, volume, function);
   } else if (!has(value, "opacity")) {
     key = NULL;

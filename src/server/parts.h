@@ -174,4 +174,9 @@ const char *path_after_token(const char *path, const char *token);
 /* requests.c: libmicrohttpd's callbacks are set up for a server that listens on a socket. */
 struct MHD_Daemon *listen_to_requests(server *s, int listening_socket);
 
+/* Writes how many voxels have a value and a gradient: {"gradient": the greatest that is drawn, "columns" of
+ * values over the volume's range, "rows" of gradients from 0, "counts": [row][column]}; null without memory.
+ */
+void put_plane_histogram(FILE *out, const hl_volume *volume, const hl_volume_info *info);
+
 #endif

@@ -55,7 +55,9 @@ static void put_volume(FILE *out, const hl_scene_volume *volume) {
   fputs(",\"histogram\":[", out);
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++)
     fprintf(out, "%s%llu", bin > 0 ? "," : "", (unsigned long long)info.histogram[bin]);
-  fputs("]}", out);
+  fputs("],\"plane\":", out);
+  put_plane_histogram(out, volume->volume, &info);
+  fputs("}", out);
 }
 
 /* Writes each colormap as rows of value, r, g, b over values from 0 to 1. */

@@ -410,7 +410,7 @@ static void open_gradient_grids(void) {
 
 static void open_planes(void) {
   enum { COUNT = (PLANE_ROWS + 1) * PLANE_STRIDE };
-  static float sums[COUNT][4], color[COUNT][4];
+  static float sums[COUNT][2], color[COUNT][4];
   uint32_t seed = 9;
   for (size_t i = 0; i < COUNT; i++) {
     float before = i > 0 ? 1 : 0;

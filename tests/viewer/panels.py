@@ -88,6 +88,45 @@ def surfaces(browser):
     check(scene_of(browser)["volumes"] == before, "what was there is there again")
 
 
+def boxes(browser):
+    """A function of value and gradient: boxes are made, dragged, coloured, removed and undone."""
+    open_section(browser, "Transfer function")
+    before = scene_of(browser)["volumes"]
+    changes(browser, "by gradient", lambda: press_named(browser, "by gradient"), "volumes")
+    function = scene_of(browser)["volumes"][0]["transfer_function"]
+    check(function["second"] == "gradient" and len(function["boxes"]) == 1 and "opacity" not in function, "one box by the gradient")
+    browser.run("document.querySelector('canvas.plane').scrollIntoView()")
+    def place(x, y):
+        return browser.run(f"(({{ x, y, width, height }}) => [x + 9 + {x} * (width - 18), y + 9 + {1 - y} * (height - 18)])"
+                           "(document.querySelector('canvas.plane').getBoundingClientRect())")
+    box = function["boxes"][0]
+    low, high = box["value"][0] / 200, box["value"][1] / 200
+    middle = place((low + high) / 2, 0.5)
+    changes(browser, "drag", lambda: browser.drag(middle, place((low + high) / 2, 0.8)), "volumes")
+    moved = scene_of(browser)["volumes"][0]["transfer_function"]["boxes"][0]
+    check(abs(moved["second"][0] - 0.3 * box["second"][1]) < 0.02 * box["second"][1] and abs(moved["value"][0] - box["value"][0]) < 2,
+          f"the box follows the hand: {moved}")
+    changes(browser, "an edge", lambda: browser.drag(place((low + high) / 2, 0.3), place((low + high) / 2, 0.1)), "volumes")
+    resized = scene_of(browser)["volumes"][0]["transfer_function"]["boxes"][0]
+    check(resized["second"][1] == moved["second"][1] and resized["second"][0] < moved["second"][0], f"an edge follows the hand: {resized}")
+    changes(browser, "colour", lambda: set_control(browser, "Colour of the box", "#20c040"), "volumes")
+    changes(browser, "opacity", lambda: set_control(browser, "Opacity of the box", 0.9), "volumes")
+    changes(browser, "edge", lambda: set_control(browser, "Soft edge", 0.4), "volumes")
+    equals_render(browser, "boxes")
+    copied_command(browser)
+    check(browser.run("![...document.querySelectorAll('summary')].some((s) => s.textContent === 'Isosurfaces' && s.checkVisibility())"),
+          "surfaces are for functions of the value")
+    browser.run("document.querySelector('canvas.plane').focus()")
+    browser.key("Insert")
+    check(len(scene_of(browser)["volumes"][0]["transfer_function"]["boxes"]) == 2, "a second box")
+    browser.key("Delete")
+    check(len(scene_of(browser)["volumes"][0]["transfer_function"]["boxes"]) == 1, "and it is gone")
+    while scene_of(browser)["volumes"] != before:
+        browser.run("halflight.store.undo(); 0")
+    check(browser.run("document.querySelector('canvas.plane') === null"), "the line is back")
+    rest(browser)
+
+
 def scattering(browser):
     open_section(browser, "Volume")
     changes(browser, "a medium", lambda: set_control(browser, "Medium", "", section="Volume"), "volumes")
@@ -252,7 +291,7 @@ with tempfile.TemporaryDirectory() as folder:
         print("built without the viewer")
         sys.exit(77)
     write_inputs()
-    for scene, parts in (("soft", (sky, surfaces, scattering)), ("cut", (cuts,)), ("image", (sky_image,)), ("labels", (labels,)), ("mask", (mask,)),
+    for scene, parts in (("soft", (sky, surfaces, boxes, scattering)), ("cut", (cuts,)), ("image", (sky_image,)), ("labels", (labels,)), ("mask", (mask,)),
                          ("numbers", (as_labels,)),
                          ("meshes", (meshes_alone,))):
         with Viewer(PROGRAM, f"{scene}.json") as viewer, Browser(chromium, SIZE) as browser:

@@ -3,6 +3,7 @@
 import { hexOf, linearOf } from "./color.js";
 import { button, color, isActive, make, row, section, select, slider } from "./controls.js";
 import { FunctionCanvas } from "./function_canvas.js";
+import { byGradient, isPlane, planePanel } from "./plane_panel.js";
 import { movePoint, moveStop, rangeOf, recolorStop, stretched, withColormap } from "./transfer_function.js";
 
 // The numbers of the point or colour that is chosen in the drawing.
@@ -68,7 +69,7 @@ export function functionPanel({ store, start, current, channel, report }) {
   const get = () => volume().transfer_function;
   const set = (tf, name = "") =>
     store.changeVolume(current.volume, `function ${name}`, (changed) => ({ ...changed, transfer_function: tf }));
-  let parts = [];
+  let parts = [], ofTwo = false;
 
   // A preset's points are the program's own: the scene with the preset is sent, and comes back with them.
   async function applyPreset(name) {
@@ -89,7 +90,19 @@ export function functionPanel({ store, start, current, channel, report }) {
     element.hidden = !volume()?.transfer_function; // labels have colours and opacities of their own
     parts = [];
     if (element.hidden) return;
+    ofTwo = isPlane(volume());
     const about = start.volumes[current.volume], range = about.range;
+    const presets = select({
+      label: "Preset", choices: [["", "choose …"], ["automatic", "automatic"], ...start.presets.map((name) => [name, name])],
+      get: () => "", set: (name) => name && applyPreset(name),
+    });
+    if (ofTwo) {
+      const plane = planePanel({ store, start, current, get, set });
+      body.replaceChildren(...plane.elements, presets.element);
+      parts = plane.parts;
+      parts.forEach((part) => part.update());
+      return;
+    }
     const canvas = new FunctionCanvas({ get, set, histogram: about.histogram, range });
     const chosen = chosenPoint(canvas, get, set, range), ends = rangeRow(get, set);
     canvas.onSelect = () => chosen.update();
@@ -102,19 +115,17 @@ export function functionPanel({ store, start, current, channel, report }) {
       label: "Colours", choices: [["", "own"], ...Object.keys(start.colormaps).map((name) => [name, name])],
       get: () => "", set: (name) => name && set(withColormap(get(), start.colormaps[name], rangeOf(get())), `map ${name}`),
     });
-    const presets = select({
-      label: "Preset", choices: [["", "choose …"], ["automatic", "automatic"], ...start.presets.map((name) => [name, name])],
-      get: () => "", set: (name) => name && applyPreset(name),
-    });
     const zoomed = row(make("span", { class: "name" }, "Show"), make("span", { class: "buttons" },
       button("all values", () => { canvas.shown = range; }),
-      button("range", () => { canvas.shown = rangeOf(get()); })));
+      button("range", () => { canvas.shown = rangeOf(get()); }),
+      button("by gradient", () => set(byGradient(get(), volume(), about), "by gradient"),
+        { title: "Boxes in the plane of value and gradient in place of the line" })));
     body.replaceChildren(canvas.element, chosen.element, density.element, maps.element, presets.element, ends.element, zoomed);
     parts = [{ update: () => canvas.draw() }, chosen, density, ends];
     parts.forEach((part) => part.update());
   }
   const update = () => {
-    if (element.hidden !== !volume()?.transfer_function) build();
+    if (element.hidden !== !volume()?.transfer_function || (!element.hidden && ofTwo !== isPlane(volume()))) build();
     else parts.forEach((part) => part.update());
   };
   build();

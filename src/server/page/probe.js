@@ -29,7 +29,7 @@ function recolored({ sky: _, ...scene }, { colorAt, tfColor, change }) {
   const paint = (things, v) => things.map((thing) => ({ ...thing, color: colorAt(thing.value, v) }));
   const volumes = scene.volumes.map((volume, v) => ({
     ...volume, ...change(volume),
-    ...(volume.transfer_function ? { transfer_function: { ...volume.transfer_function, color: tfColor(v) } } : {}),
+    ...(volume.transfer_function?.color ? { transfer_function: { ...volume.transfer_function, color: tfColor(v) } } : {}),
     ...(volume.labels ? { labels: paint(volume.labels, v) } : {}), ...(volume.iso ? { iso: paint(volume.iso, v) } : {}),
   }));
   return { ...scene, volumes, ...(scene.meshes ? { meshes: scene.meshes.map((mesh) => ({ ...mesh, visible: false })) } : {}) };
@@ -106,9 +106,11 @@ export class Probe {
     const at = 4 * (Math.min(Math.floor(y * height), height - 1) * width + Math.min(Math.floor(x * width), width - 1));
     const opacity = value.rgba[at + 3];
     if (!(opacity > 0.002)) return { opacity, value: null, light: null };
-    const [low, high] = this.#viewer.start.volumes[this.#viewer.current.volume].range;
+    const { store, start, current } = this.#viewer, [low, high] = start.volumes[current.volume].range;
+    // the boxes of a function of two numbers have one colour for all their values, which tells none
+    const known = store.scene.volumes[current.volume].transfer_function?.second === undefined;
     return {
-      opacity, value: low + (value.rgba[at] / opacity) * (high - low),
+      opacity, value: known ? low + (value.rgba[at] / opacity) * (high - low) : NaN,
       light: unlit.rgba[at] > 1e-4 ? Math.min(lit.rgba[at] / unlit.rgba[at], 1) : null,
     };
   }
@@ -126,7 +128,7 @@ export class Probe {
     if (found === null) this.#box.textContent = "…";
     else if (found.value === null) this.#box.textContent = "nothing is seen here";
     else
-      this.#box.textContent = `value ${shortNumber(found.value)} · opacity ${found.opacity.toFixed(2)}` +
+      this.#box.textContent = `${Number.isNaN(found.value) ? "" : `value ${shortNumber(found.value)} · `}opacity ${found.opacity.toFixed(2)}` +
         (found.light === null ? " · no light" : ` · light ${found.light.toFixed(2)}`);
     this.#box.style.left = `${100 * this.#cursor[0]}%`;
     this.#box.style.top = `${100 * this.#cursor[1]}%`;

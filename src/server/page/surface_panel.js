@@ -82,6 +82,7 @@ export function surfacePanel({ store, start, current, report, channel }) {
   const surfaces = () => volume().iso ?? [], surface = () => surfaces()[chosen];
   const shown = new Map(); // by volume: the transfer function that "Surfaces alone" has hidden
   let chosen = 0, parts = [];
+  const isOfValue = () => volume()?.transfer_function?.opacity !== undefined; // not of two numbers
 
   const changeSurface = (name, part) => store.changeVolume(current.volume, `iso ${chosen} ${name}`, (v) => ({
     ...v, iso: v.iso.map((one, n) => (n === chosen ? { ...one, ...part } : one)),
@@ -128,7 +129,7 @@ export function surfacePanel({ store, start, current, report, channel }) {
   const list = tabs({ label: "Isosurfaces", noun: "isosurface", count: () => surfaces().length, chosen: () => chosen, choose, add, remove });
   function build() {
     chosen = 0;
-    if (!volume()?.transfer_function || !about()) {
+    if (!isOfValue() || !about()) {
       parts = [];
       element.hidden = true;
       return;
@@ -148,7 +149,7 @@ export function surfacePanel({ store, start, current, report, channel }) {
     update();
   }
   function update() {
-    if (element.hidden !== !volume()?.transfer_function) build();
+    if (element.hidden !== !isOfValue()) build();
     if (element.hidden) return;
     chosen = Math.min(chosen, Math.max(surfaces().length - 1, 0));
     list.update();

@@ -1,0 +1,54 @@
+// What the panel of a transfer function shows where that takes two numbers: the drawing of its boxes, and the chosen
+// box's colour, opacity and edge.
+
+import { hexOf, linearOf } from "./color.js";
+import { color, make, slider } from "./controls.js";
+import { PlaneCanvas } from "./plane_canvas.js";
+import { rangeOf } from "./transfer_function.js";
+
+const GRADIENT = "gradient";
+
+// The greatest gradient of the drawing, per unit of the world: scenes may scale volumes.
+function gradientsOf(volume, about) {
+  const scale = volume.transform?.scale ?? 1, mean = Array.isArray(scale) ? Math.cbrt(scale[0] * scale[1] * scale[2]) : scale;
+  return [0, (about.plane?.gradient ?? (about.range[1] - about.range[0]) / 4) / mean];
+}
+
+// A function of value and gradient that shows about what one of the value alone does.
+export function byGradient(tf, volume, about) {
+  const [low, high] = rangeOf(tf), greatest = tf.opacity.reduce((a, b) => (b[1] > a[1] ? b : a), [0, 0.5]);
+  const middle = tf.color[Math.floor(tf.color.length / 2)] ?? [0, 0.8, 0.8, 0.8];
+  return {
+    unit_distance: tf.unit_distance, second: GRADIENT,
+    boxes: [{
+      value: [low, Math.max(high, about.range[1])], second: gradientsOf(volume, about), color: middle.slice(1),
+      opacity: Math.max(greatest[1], 0.1), edge: [(Math.max(high, about.range[1]) - low) / 4, 0],
+    }],
+  };
+}
+
+// Whether a volume's function takes two numbers.
+export const isPlane = (volume) => volume?.transfer_function?.second !== undefined;
+
+// { element, parts }: the rows, and what follows the scene.
+export function planePanel({ store, start, current, get, set }) {
+  const volume = store.scene.volumes[current.volume], about = start.volumes[current.volume], second = get().second;
+  const other = store.scene.volumes.findIndex((v) => v.name !== undefined && v.name === second.volume);
+  const seconds = second === GRADIENT ? gradientsOf(volume, about) : (start.volumes[other]?.range ?? [0, 1]);
+  const canvas = new PlaneCanvas({
+    get, set, range: [about.range, seconds], histogram: second === GRADIENT ? (about.plane ?? null) : null,
+  });
+  const chosen = () => canvas.boxes[canvas.selected] ?? { color: [1, 1, 1], opacity: 0, value: [0, 1], second: [0, 1] };
+  const soft = () => (chosen().edge?.[0] ?? 0) / (chosen().value[1] - chosen().value[0]);
+  const parts = [
+    color({ label: "Colour of the box", get: () => hexOf(chosen().color), set: (hex) => canvas.change(canvas.selected, { color: linearOf(hex) }, "color") }),
+    slider({ label: "Opacity of the box", low: 0, high: 1, get: () => chosen().opacity, set: (opacity) => canvas.change(canvas.selected, { opacity }, "opacity") }),
+    slider({
+      label: "Soft edge", low: 0, high: 0.5, title: "The part of the box within which it fades towards its border", get: soft,
+      set: (part) => canvas.change(canvas.selected, { edge: ["value", "second"].map((key) => part * (chosen()[key][1] - chosen()[key][0])) }, "edge"),
+    }),
+  ];
+  canvas.onSelect = () => parts.forEach((part) => part.update());
+  const axes = make("p", { class: "facts" }, second === GRADIENT ? "Right: value; up: the gradient's length" : `Right: value; up: that of "${second.volume}"`);
+  return { elements: [canvas.element, axes, ...parts.map((part) => part.element)], parts: [{ update: () => canvas.draw() }, ...parts] };
+}
