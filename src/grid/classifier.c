@@ -127,8 +127,8 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
   classifier->offset = (float)((empty - low) * CLASSIFIER_ENTRIES / (high - low));
   classifier->normal_edge = normal_edge(volume, CLASSIFIER_ENTRIES / (high - low));
   if (classifier->plane.sums != NULL)
-    hl_plane_table_fill(volume, second, grid, (const double[2]){low, high}, CLASSIFIER_ENTRIES,
-                        &classifier->plane, classifier->sums);
+    hl_plane_table_fill(volume, second, grid, &(plane_values){low, high, hl_transparent_below(volume, empty)},
+                        CLASSIFIER_ENTRIES, &classifier->plane, classifier->sums);
   fill_tables(volume, empty, low, high, classifier);
   fill_steepness(function, grid->value_scale, classifier);
   return HL_OK;

@@ -31,9 +31,9 @@ static double longest_gradient(const hl_scene_volume *volume, double range) {
 
 /* What the data reach on both axes, second numbers as the function has them. */
 static plane_box reach_of_data(const hl_scene_volume *volume, const hl_scene_volume *second,
-                               const double values[2]) {
+                               const plane_values *values) {
   double scale = volume->transfer_function.plane.second_scale, low = 0,
-         high = longest_gradient(volume, values[1] - values[0]);
+         high = longest_gradient(volume, values->high - values->low);
   if (scale == 0) scale = 1;
   if (second != NULL) {
     double empty = hl_scene_volume_empty_value(second);
@@ -41,13 +41,14 @@ static plane_box reach_of_data(const hl_scene_volume *volume, const hl_scene_vol
     high = fmax(second->volume->maximum, empty);
   }
   low *= scale, high *= scale;
-  return (plane_box){{values[0], fmin(low, high)}, {values[1], fmax(low, high)}};
+  return (plane_box){{values->low, fmin(low, high)}, {values->high, fmax(low, high)}};
 }
 
 /* An axis of the table: point n of it stands for start + n * step. */
 typedef struct table_axis {
   double start, step;
   double low, high; /* what the data reach */
+  double nothing;   /* below this there is no matter */
 } table_axis;
 
 /* The shapes and two steps more, as far as the data reach. */
@@ -56,7 +57,7 @@ static table_axis axis_of(const plane_box *bounds, const plane_box *reach, int a
   if (!(high > low))
     low = reach->low[axis], high = fmax(reach->high[axis], low + fmax(1e-12 * fabs(low), 1e-30));
   double step = (high - low) / (count - 5);
-  return (table_axis){low - 2 * step, step, reach->low[axis], reach->high[axis]};
+  return (table_axis){low - 2 * step, step, reach->low[axis], reach->high[axis], -INFINITY};
 }
 
 /* The part of an axis that a point of the table stands for. */
@@ -79,7 +80,8 @@ static void fill_row(const hl_transfer_function *function, const table_axis axes
   part_of_axis(&axes[1], row, &part.low[1], &part.high[1]);
   for (int column = 0; column < PLANE_COLUMNS; column++) {
     part_of_axis(&axes[0], column, &part.low[0], &part.high[0]);
-    plane_sum mean = hl_plane_mean(function, &part);
+    bool some = axes[0].start + column * axes[0].step >= axes[0].nothing;
+    plane_sum mean = some ? hl_plane_mean(function, &part) : (plane_sum){0, {0, 0, 0}};
     double opacity = -expm1(-mean.extinction * function->unit_distance), shown[4] = {0, 0, 0, opacity};
     for (int c = 0; c < 3 && mean.extinction > 0; c++) shown[c] = opacity * mean.color[c] / mean.extinction;
     float *sum = table->sums[place_of(row, column)], *color = table->color[place_of(row, column)];
@@ -122,12 +124,12 @@ static void find_greatest(const plane_table *table, int entries, float (*greates
 }
 
 void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *second, const grid *grid,
-                         const double values[2], int entries, plane_table *table, float (*greatest)[4]) {
+                         const plane_values *values, int entries, plane_table *table, float (*greatest)[4]) {
   const hl_transfer_function *function = &volume->transfer_function;
   plane_box bounds = {{0, 0}, {0, 0}}, reach = reach_of_data(volume, second, values);
   (void)hl_plane_bounds(&function->plane, &bounds);
-  const table_axis axes[2] = {axis_of(&bounds, &reach, 0, PLANE_COLUMNS),
-                              axis_of(&bounds, &reach, 1, PLANE_ROWS)};
+  table_axis axes[2] = {axis_of(&bounds, &reach, 0, PLANE_COLUMNS), axis_of(&bounds, &reach, 1, PLANE_ROWS)};
+  axes[0].nothing = values->nothing;
   double scale = function->plane.second_scale == 0 ? 1 : function->plane.second_scale, zero = 0;
   double units = fabs(grid->value_scale);
   if (second != NULL) {
@@ -135,8 +137,8 @@ void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *s
     zero = hl_scene_volume_empty_value(second);
   }
   table->axis = function->plane.second;
-  table->column_scale = (float)((values[1] - values[0]) / entries / axes[0].step);
-  table->column_offset = (float)((values[0] - axes[0].start) / axes[0].step);
+  table->column_scale = (float)((values->high - values->low) / entries / axes[0].step);
+  table->column_offset = (float)((values->low - axes[0].start) / axes[0].step);
   table->row_scale = (float)fmin(fmax(units * scale / axes[1].step, -1e30), 1e30);
   table->row_offset = (float)((zero * scale - axes[1].start) / axes[1].step);
   for (int row = 0; row < PLANE_ROWS; row++) fill_row(function, axes, row, table);

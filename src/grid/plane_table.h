@@ -30,12 +30,18 @@ typedef struct plane_table {
 /* Takes the tables' memory from a layout, where the function needs any. */
 void hl_plane_table_lay_out(const hl_transfer_function *function, plane_table *table, hl_layout *layout);
 
+/* The values that a classifier's tables cover, from their entry 0 to their last; values below `nothing` are
+ * empty space (hl_transparent_below). */
+typedef struct plane_values {
+  double low, high, nothing;
+} plane_values;
+
 /* Fills the tables. volume: the function's, in frame space. second: the other volume; null where the second
- * number is the gradient. values: the least and greatest value that the classifier's tables cover, from their
- * entry 0 to their last, of which there are `entries`. greatest: [entries + 1]; receives a bound of the
- * extinction that values around each entry have with any second number: 0 where nothing shows. */
+ * number is the gradient. entries: of the classifier's tables, less one. greatest: [entries + 1]; receives a
+ * bound of the extinction that values around each entry have with any second number: 0 where nothing shows.
+ */
 void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *second, const grid *grid,
-                         const double values[2], int entries, plane_table *table, float (*greatest)[4]);
+                         const plane_values *values, int entries, plane_table *table, float (*greatest)[4]);
 
 /* Sets the other volume for a frame. */
 void hl_plane_table_set_second(plane_table *table, const hl_volume *volume, const grid *second);

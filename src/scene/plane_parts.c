@@ -116,7 +116,11 @@ hl_status hl_plane_check(const hl_function_plane *plane, const char *place, hl_e
     hl_checker at = inside(place, "boxes", b, error);
     status = check_box(&at, &plane->boxes[b]);
   }
+  size_t vertices = 0;
   for (size_t p = 0; p < plane->polygon_count && status == HL_OK; p++) {
+    vertices += plane->polygons[p].vertex_count;
+    if (vertices > HL_LIMIT_VERTICES)
+      return hl_check_refuse(&check, "polygons", "have more than 1024 vertices together: leave some out");
     hl_checker at = inside(place, "polygons", p, error);
     status = check_polygon(&at, &plane->polygons[p]);
   }

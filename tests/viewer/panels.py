@@ -109,8 +109,8 @@ def boxes(browser):
     changes(browser, "an edge", lambda: browser.drag(place((low + high) / 2, 0.3), place((low + high) / 2, 0.1)), "volumes")
     resized = scene_of(browser)["volumes"][0]["transfer_function"]["boxes"][0]
     check(resized["second"][1] == moved["second"][1] and resized["second"][0] < moved["second"][0], f"an edge follows the hand: {resized}")
-    changes(browser, "colour", lambda: set_control(browser, "Colour of the box", "#20c040"), "volumes")
-    changes(browser, "opacity", lambda: set_control(browser, "Opacity of the box", 0.9), "volumes")
+    changes(browser, "colour", lambda: set_control(browser, "Box colour", "#20c040"), "volumes")
+    changes(browser, "opacity", lambda: set_control(browser, "Box opacity", 0.9), "volumes")
     changes(browser, "edge", lambda: set_control(browser, "Soft edge", 0.4), "volumes")
     equals_render(browser, "boxes")
     copied_command(browser)

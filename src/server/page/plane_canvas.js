@@ -195,7 +195,7 @@ export class PlaneCanvas {
     context.beginPath();
     context.rect(left, top, right - left, bottom - top);
     context.fillStyle = hexOf(box.color);
-    context.globalAlpha = 0.2 + 0.5 * box.opacity;
+    context.globalAlpha = 0.12 + 0.35 * box.opacity;
     context.fill();
     context.globalAlpha = 1;
     context.lineWidth = chosen ? 2.5 : 1.5;

@@ -41,8 +41,8 @@ export function planePanel({ store, start, current, get, set }) {
   const chosen = () => canvas.boxes[canvas.selected] ?? { color: [1, 1, 1], opacity: 0, value: [0, 1], second: [0, 1] };
   const soft = () => (chosen().edge?.[0] ?? 0) / (chosen().value[1] - chosen().value[0]);
   const parts = [
-    color({ label: "Colour of the box", get: () => hexOf(chosen().color), set: (hex) => canvas.change(canvas.selected, { color: linearOf(hex) }, "color") }),
-    slider({ label: "Opacity of the box", low: 0, high: 1, get: () => chosen().opacity, set: (opacity) => canvas.change(canvas.selected, { opacity }, "opacity") }),
+    color({ label: "Box colour", get: () => hexOf(chosen().color), set: (hex) => canvas.change(canvas.selected, { color: linearOf(hex) }, "color") }),
+    slider({ label: "Box opacity", low: 0, high: 1, get: () => chosen().opacity, set: (opacity) => canvas.change(canvas.selected, { opacity }, "opacity") }),
     slider({
       label: "Soft edge", low: 0, high: 0.5, title: "The part of the box within which it fades towards its border", get: soft,
       set: (part) => canvas.change(canvas.selected, { edge: ["value", "second"].map((key) => part * (chosen()[key][1] - chosen()[key][0])) }, "edge"),
