@@ -175,7 +175,7 @@ hl_status hl_volume_adopt_pages(hl_context *context, const hl_volume_description
     return status != HL_OK ? status : hl_fail_memory(error, sizeof *made, subject);
   }
   made->pages = pages;
-  pages->filled = true;
+  hl_pages_finish(pages);
   return finish_volume(made, subject, volume, error);
 }
 

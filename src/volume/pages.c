@@ -213,6 +213,11 @@ static void make_room(hl_pages *pages) {
     move_hand(pages, count);
 }
 
+void hl_pages_finish(hl_pages *pages) {
+  pages->filled = true;
+  madvise(pages->mapping, pages->mapping_bytes, MADV_RANDOM); /* fetch() says what is read */
+}
+
 /* Asks the system to read a page as a whole, at once: by itself it reads what is touched, bit by bit. */
 static void fetch(const hl_pages *pages, size_t number) {
   uintptr_t first = (uintptr_t)pages->first + number * pages->page_bytes, begin = first / UNIT * UNIT;

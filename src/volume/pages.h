@@ -35,7 +35,7 @@ typedef struct hl_pages {
   unsigned char *state; /* owned; [pages]; PAGE_...; atomic */
   uint64_t held_bytes;  /* of the pages that are not forgotten; atomic */
   size_t hand;          /* the clock's: the page it looks at next, modulo the number of pages; atomic */
-  bool filled;          /* voxels are stored no more: a page that is needed is read as a whole */
+  bool filled;          /* hl_pages_finish() was called */
   int shift;
   size_t row_bytes, slice_bytes, page_bytes; /* in a page, from row to row, and from slice to slice; and from
                                                 page to page */
@@ -53,6 +53,10 @@ bool hl_pages_wanted(const hl_context *context, const hl_volume_description *gri
 
 /* Copies `count` stored values, those from number `first` on ([k][j][i]), into all pages that hold them. */
 void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *values);
+
+/* After the last voxel was stored. From now on a page that is needed is read as a whole, and nothing beside
+ * it: by itself the system would read on, and map more than is counted. */
+void hl_pages_finish(hl_pages *pages);
 
 /* Copies the voxels of a row. row: [dimension[0]] stored values. */
 void hl_pages_load_row(const hl_pages *pages, size_t j, size_t k, void *row);
