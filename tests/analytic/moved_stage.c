@@ -116,6 +116,9 @@ static void move_axes(hl_context *context, const motion *by, hl_scene_volume *vo
 /* Gradients are data units per world unit. points: room for the volume's gradient opacity, kept until the
  * scene is created, which copies it. */
 static void move_gradients(const motion *by, hl_transfer_function *function, hl_opacity_point points[4]) {
+  hl_function_plane *plane = &function->plane;
+  if (plane->second == HL_SECOND_GRADIENT)
+    plane->second_scale = by->scale * (plane->second_scale == 0 ? 1 : plane->second_scale);
   assert_true(function->gradient_opacity_count <= 4);
   if (function->gradient_opacity_count == 0) return;
   for (size_t p = 0; p < function->gradient_opacity_count; p++) {

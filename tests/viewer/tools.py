@@ -140,7 +140,7 @@ def random_hands(browser, viewer, count=500):
             at = [box[0] + chance.random() * box[2], box[1] + chance.random() * box[3]]
             browser.drag(at, [at[0] + chance.randint(-60, 60), at[1] + chance.randint(-40, 40)], 3)
         else:
-            browser.run(f"""(() => {{ const all = {controls}.filter((e) => !/picture|scene|command|Python|film|pen|play/.test(e.textContent) && !e.closest('[hidden]'));
+            browser.run(f"""(() => {{ const all = {controls}.filter((e) => !/picture|scene|command|Python|film|pen|play|nrrd|json/.test(e.textContent) && !e.closest('[hidden]'));
               const e = all[{chance.randrange(10**6)} % all.length];
               if (e.tagName === 'BUTTON' || e.type === 'checkbox' || e.type === 'radio') e.click();
               else if (e.tagName === 'SELECT') {{ e.selectedIndex = {chance.randrange(10**6)} % e.length; e.dispatchEvent(new Event('change')); }}
