@@ -42,23 +42,10 @@ static void ask_for_all(const stage *set, layer_set *layers) {
 }
 
 static void render_with(stage *set, bool reference, hl_layers *wanted, float *pixels) {
-  hl_error error = {0};
-  hl_scene *scene = NULL;
-  hl_renderer *renderer = NULL;
   hl_reference_options options;
   hl_reference_options_defaults(&options);
   options.light_points = 6;
-  hl_status status = hl_scene_create(set->context, &set->scene, &scene, &error);
-  if (status == HL_OK && !reference) status = hl_renderer_create(set->context, &renderer, &error);
-  if (status == HL_OK && !reference)
-    status = hl_renderer_render_layers(renderer, scene, pixels, 4 * (size_t)set->scene.width, wanted, NULL,
-                                       &error);
-  if (status == HL_OK && reference)
-    status = hl_reference_render_layers(set->context, scene, &options, pixels, 4 * (size_t)set->scene.width,
-                                        wanted, &error);
-  if (status != HL_OK) fail_msg("%s", error.message);
-  hl_renderer_destroy(renderer);
-  hl_scene_release(scene);
+  stage_render_layers(set, reference ? &options : NULL, pixels, wanted);
 }
 
 static void render_all(stage *set, bool reference, layer_set *layers) {

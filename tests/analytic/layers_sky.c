@@ -25,10 +25,6 @@ static void assert_near(double value, double expected, double tolerance) {
 
 /* directions: of the reference's sky; 0: the sheets. */
 static void render_layers(stage *set, int directions, sky_layers *made) {
-  const bool reference = directions > 0;
-  hl_error error = {0};
-  hl_scene *scene = NULL;
-  hl_renderer *renderer = NULL;
   hl_reference_options options;
   const hl_light_layers lights[1] = {{.picture = made->light}};
   memset(made, 0xff, sizeof *made); /* NaN: every value must be written */
@@ -42,16 +38,7 @@ static void render_layers(stage *set, int directions, sky_layers *made) {
   if (set->scene.light_count == 0) memset(made->light, 0, sizeof made->light);
   hl_reference_options_defaults(&options);
   options.light_points = directions;
-  hl_status status = hl_scene_create(set->context, &set->scene, &scene, &error);
-  if (status == HL_OK && reference)
-    status = hl_reference_render_layers(set->context, scene, &options, made->pixels, 4 * SIDE, &wanted,
-                                        &error);
-  if (status == HL_OK && !reference) status = hl_renderer_create(set->context, &renderer, &error);
-  if (status == HL_OK && !reference)
-    status = hl_renderer_render_layers(renderer, scene, made->pixels, 4 * SIDE, &wanted, NULL, &error);
-  if (status != HL_OK) fail_msg("%s", error.message);
-  hl_renderer_destroy(renderer);
-  hl_scene_release(scene);
+  stage_render_layers(set, directions > 0 ? &options : NULL, made->pixels, &wanted);
 }
 
 static void open_sky(stage *set) {

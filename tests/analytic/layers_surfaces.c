@@ -9,9 +9,9 @@
 
 #include <cmocka.h>
 
-#include "reference_stage.h"
+#include "mesh_stage.h"
 
-enum { SIDE = 32, PIXELS = SIDE * SIDE, MESHES = 4, LIGHTS = 3 };
+enum { SIDE = 32, PIXELS = SIDE * SIDE, LIGHTS = 3 };
 
 /* Buffers of every layer. */
 typedef struct layer_set {
@@ -20,45 +20,18 @@ typedef struct layer_set {
   float pictures[LIGHTS][PIXELS * 3], shadows[LIGHTS][PIXELS * 3];
 } layer_set;
 
-/* A stage with meshes, whose volume 0 is clear and tells the size of voxels. */
-typedef struct mesh_stage {
-  stage set;
-  hl_scene_mesh meshes[MESHES];
-} mesh_stage;
-
 static void assert_near(double value, double expected, double tolerance) {
   if (!(fabs(value - expected) <= tolerance))
     fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
 }
 
 static void open_meshes(mesh_stage *all) {
-  stage_open(&all->set);
-  all->set.scene.width = all->set.scene.height = SIDE;
-  all->set.scene.camera.height = 16;
+  mesh_stage_open(all, SIDE, 16);
   stage_look(&all->set, (vec3){0, 0, 60}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
-  hl_scene_volume *clear = stage_add_box(&all->set, (vec3){-0.5, -0.5, -0.5}, (vec3){0.5, 0.5, 0.5});
-  stage_set_opacity(&all->set, clear, 0, 1);
-  all->set.scene.meshes = all->meshes;
-  all->set.scene.mesh_count = 0;
-}
-
-static void close_meshes(mesh_stage *all) {
-  for (size_t m = 0; m < all->set.scene.mesh_count; m++) hl_mesh_release(all->meshes[m].mesh);
-  stage_close(&all->set);
-}
-
-/* Adds a mesh, which the stage then owns. */
-static hl_scene_mesh *add_made(mesh_stage *all, hl_mesh *made) {
-  hl_scene_mesh *mesh = &all->meshes[all->set.scene.mesh_count++];
-  hl_scene_mesh_defaults(mesh);
-  mesh->mesh = made;
-  mesh->material = (hl_material){.diffuse = 1};
-  for (int c = 0; c < 3; c++) mesh->color[c] = 1;
-  return mesh;
 }
 
 static hl_scene_mesh *add_quad(mesh_stage *all, vec3 centre, vec3 u, vec3 v) {
-  return add_made(all, stage_make_quad(&all->set, centre, u, v));
+  return mesh_stage_add(all, stage_make_quad(&all->set, centre, u, v));
 }
 
 static hl_scene_mesh *add_sphere(mesh_stage *all, vec3 centre, double radius) {
@@ -68,13 +41,10 @@ static hl_scene_mesh *add_sphere(mesh_stage *all, vec3 centre, double radius) {
   hl_mesh_description_defaults(&d);
   d.spheres = sphere, d.sphere_count = 1;
   assert_int_equal(hl_mesh_create(all->set.context, &d, &made, NULL), HL_OK);
-  return add_made(all, made);
+  return mesh_stage_add(all, made);
 }
 
 static void render(stage *set, bool reference, layer_set *made) {
-  hl_error error = {0};
-  hl_scene *scene = NULL;
-  hl_renderer *renderer = NULL;
   hl_reference_options options;
   hl_light_layers lights[LIGHTS];
   memset(made, 0xff, sizeof *made); /* NaN: every value must be written */
@@ -93,16 +63,7 @@ static void render(stage *set, bool reference, layer_set *made) {
   hl_reference_options_defaults(&options);
   options.light_points = 12;
   options.step = 0.5;
-  hl_status status = hl_scene_create(set->context, &set->scene, &scene, &error);
-  if (status == HL_OK && reference)
-    status = hl_reference_render_layers(set->context, scene, &options, made->pixels, 4 * SIDE, &wanted,
-                                        &error);
-  if (status == HL_OK && !reference) status = hl_renderer_create(set->context, &renderer, &error);
-  if (status == HL_OK && !reference)
-    status = hl_renderer_render_layers(renderer, scene, made->pixels, 4 * SIDE, &wanted, NULL, &error);
-  if (status != HL_OK) fail_msg("%s", error.message);
-  hl_renderer_destroy(renderer);
-  hl_scene_release(scene);
+  stage_render_layers(set, reference ? &options : NULL, made->pixels, &wanted);
 }
 
 /* ---- depth, normal and object ---- */
@@ -137,7 +98,7 @@ static void test_plane(void **state) {
       assert_near(made.normal[3 * i + 1], normal.y, 1e-5);
       assert_near(made.normal[3 * i + 2], normal.z, 1e-5);
     }
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -189,7 +150,7 @@ static void test_two_spheres(void **state) {
       assert_near(made.normal[3 * i + 2], normal.z, 0.01);
     }
     assert_true(seen[0] > 200 && seen[1] > 80 && seen[2] > 80);
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -222,7 +183,7 @@ static void test_pane_in_haze(void **state) {
       assert_near(made.object[i], 2, 0); /* the haze */
       assert_near(made.normal[3 * i + 2], half * opacity / alpha, 1e-3);
     }
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -254,7 +215,7 @@ static void test_shadow_of_pane(void **state) {
         assert_near(made.shadows[1][3 * i + c], 1, 1e-6);
         assert_near(made.pictures[0][3 * i + c], 2 * (c == 0 ? 0.5 : 1) / sqrt(1.25) * shadow, 5e-3);
       }
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -289,7 +250,7 @@ static void test_own_shadow(void **state) {
     for (int i = 0; i < PIXELS; i++)
       if (fabs(i % SIDE - 15.5) < 10 && fabs(i / SIDE - 15.5) < 10)
         assert_near(made.shadows[0][3 * i], 0.7, 0.005);
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -368,7 +329,7 @@ static void test_sum_is_the_picture(void **state) {
   assert_true(seen > 400 && same >= seen * 0.97);
   assert_near(shadows / (LIGHTS * seen), 0, 0.04);
   assert_near(sky / seen, 0, 0.06);
-  close_meshes(&all);
+  mesh_stage_close(&all);
 }
 
 /* The layers do not change the picture, and do not depend on threads; an isosurface is its volume. */
@@ -398,7 +359,7 @@ static void test_same_bytes(void **state) {
   }
   assert_true(objects[1] == 0 && objects[2] > 10 && objects[3] == 0 && objects[4] > 100 && objects[5] > 20 &&
               objects[6] > 10);
-  close_meshes(&all);
+  mesh_stage_close(&all);
 }
 
 int main(void) {

@@ -240,6 +240,23 @@ hl_render_statistics stage_render_counted(stage *set, float *pixels) {
 
 void stage_render_sheets(stage *set, float *pixels) { (void)stage_render_counted(set, pixels); }
 
+void stage_render_layers(stage *set, const hl_reference_options *options, float *pixels,
+                         const hl_layers *wanted) {
+  hl_error error = {0};
+  hl_scene *scene = NULL;
+  hl_renderer *renderer = NULL;
+  size_t row = 4 * (size_t)set->scene.width;
+  require(hl_scene_create(set->context, &set->scene, &scene, &error), &error);
+  if (options != NULL) {
+    require(hl_reference_render_layers(set->context, scene, options, pixels, row, wanted, &error), &error);
+  } else {
+    require(hl_renderer_create(set->context, &renderer, &error), &error);
+    require(hl_renderer_render_layers(renderer, scene, pixels, row, wanted, NULL, &error), &error);
+  }
+  hl_renderer_destroy(renderer);
+  hl_scene_release(scene);
+}
+
 void stage_refused(stage *set, const char *message) {
   hl_scene *scene = NULL;
   hl_error error = {0};

@@ -58,6 +58,10 @@ void stage_render_sheets(stage *set, float *pixels);
 hl_render_statistics stage_render_counted(stage *set, float *pixels);
 void stage_render_with(stage *set, hl_renderer *renderer, float *pixels);
 
+/* With layers: by the reference with these options, or by the sheets where they are null. pixels as above. */
+void stage_render_layers(stage *set, const hl_reference_options *options, float *pixels,
+                         const hl_layers *wanted);
+
 /* The test fails unless the scene is refused with just this message. */
 void stage_refused(stage *set, const char *message);
 

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "reference_stage.h"
+#include "mesh_stage.h"
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE };
 
@@ -16,37 +16,7 @@ static void assert_near(double value, double expected, double tolerance) {
     fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
 }
 
-/* A stage with meshes, and a clear volume far aside, which tells the size of voxels. */
-typedef struct mesh_stage {
-  stage set;
-  hl_scene_mesh meshes[4];
-} mesh_stage;
-
-static void open_meshes(mesh_stage *all) {
-  stage_open(&all->set);
-  all->set.scene.width = all->set.scene.height = SIDE;
-  all->set.scene.camera.height = 32;
-  stage_look(&all->set, (vec3){0, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
-  hl_scene_volume *clear = stage_add_box(&all->set, (vec3){-0.5, -0.5, -0.5}, (vec3){0.5, 0.5, 0.5});
-  stage_set_opacity(&all->set, clear, 0, 1);
-  all->set.scene.meshes = all->meshes;
-  all->set.scene.mesh_count = 0;
-}
-
-static void close_meshes(mesh_stage *all) {
-  for (size_t m = 0; m < all->set.scene.mesh_count; m++) hl_mesh_release(all->meshes[m].mesh);
-  stage_close(&all->set);
-}
-
-/* Adds a mesh, which the stage then owns. */
-static hl_scene_mesh *add_made(mesh_stage *all, hl_mesh *made) {
-  hl_scene_mesh *mesh = &all->meshes[all->set.scene.mesh_count++];
-  hl_scene_mesh_defaults(mesh);
-  mesh->mesh = made;
-  mesh->material = (hl_material){.diffuse = 1};
-  for (int c = 0; c < 3; c++) mesh->color[c] = 1;
-  return mesh;
-}
+static void open_meshes(mesh_stage *all) { mesh_stage_open(all, SIDE, 32); }
 
 static hl_scene_mesh *add_mesh(mesh_stage *all, const float (*positions)[3], size_t vertices,
                                const uint32_t (*triangles)[3], size_t count) {
@@ -56,12 +26,12 @@ static hl_scene_mesh *add_mesh(mesh_stage *all, const float (*positions)[3], siz
   hl_mesh_description_defaults(&d);
   d.positions = positions, d.vertex_count = vertices, d.triangles = triangles, d.triangle_count = count;
   if (hl_mesh_create(all->set.context, &d, &made, &error) != HL_OK) fail_msg("%s", error.message);
-  return add_made(all, made);
+  return mesh_stage_add(all, made);
 }
 
 /* A rectangle about a centre with two half edges. */
 static hl_scene_mesh *add_quad(mesh_stage *all, vec3 centre, vec3 u, vec3 v) {
-  return add_made(all, stage_make_quad(&all->set, centre, u, v));
+  return mesh_stage_add(all, stage_make_quad(&all->set, centre, u, v));
 }
 
 /* ---- coverage ---- */
@@ -87,7 +57,7 @@ static void test_coverage(void **state) {
       assert_near(alpha, opacity * across * down, across * down == 1 ? 1e-6 : opacity * 0.13);
     }
     assert_near(sum, opacity * 4 * x * y / 0.25, opacity * 12);
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -117,7 +87,7 @@ static void test_no_seams(void **state) {
     stage_render_sheets(&all.set, pixels);
     for (int y = 12; y < SIDE - 12; y++)
       for (int x = 12; x < SIDE - 12; x++) assert_near((double)pixels[4 * (y * SIDE + x) + 3], opacity, 1e-5);
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -149,7 +119,7 @@ static void test_pane_in_haze(void **state) {
         assert_near((double)pixel[2], seen * 0.25, 2e-4);
         assert_near((double)pixel[3], alpha, 2e-4);
       }
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -190,7 +160,7 @@ static void test_no_acne(void **state) {
         seen++;
       }
       assert_true(seen > 300);
-      close_meshes(&all);
+      mesh_stage_close(&all);
     }
 }
 
@@ -213,7 +183,7 @@ static void test_translucent_pane(void **state) {
     pane->casts_shadow = 0;
     stage_render_sheets(&all.set, pixels);
     assert_near((double)pixels[4 * (SIDE / 2 * SIDE + SIDE / 2)], 1, 1e-4);
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -252,7 +222,7 @@ static void test_penumbra(void **state) {
       count++;
     }
     assert_near(sum / count, 0, cases[k].mean);
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -278,7 +248,7 @@ static void test_volume_and_mesh(void **state) {
     add_quad(&all, (vec3){0, 0, 10}, (vec3){15, 0, 0}, (vec3){0, 15, 0})->visible = 0;
     stage_render_sheets(&all.set, pixels);
     for (int c = 0; c < 3; c++) assert_near((double)pixels[4 * (SIDE / 2 * SIDE + SIDE / 2) + c], 0, 0.01);
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -309,7 +279,7 @@ static void test_threads_and_instruction_sets(void **state) {
       all.set.scene.render.threads = (const int[]){1, 2, 7, 1}[run];
       stage_render_sheets(&all.set, run == 0 ? first : other);
       if (run > 0) assert_memory_equal(first, other, sizeof first);
-      close_meshes(&all);
+      mesh_stage_close(&all);
     }
 }
 
@@ -349,7 +319,7 @@ static void test_kept_between_frames(void **state) {
     memcpy(before, kept, sizeof kept);
   }
   hl_renderer_destroy(renderer);
-  close_meshes(&all);
+  mesh_stage_close(&all);
 }
 
 /* Hard shadows against the reference, which has sixteen rays a pixel. */
@@ -375,7 +345,7 @@ static void test_against_the_reference(void **state) {
   }
   assert_near(sqrt(sum / PIXELS), 0, 0.016);
   assert_near(signed_sum / PIXELS, 0, 0.0015);
-  close_meshes(&all);
+  mesh_stage_close(&all);
 }
 
 /* ---- spheres and tubes ---- */
@@ -389,7 +359,7 @@ static hl_scene_mesh *add_round(mesh_stage *all, const float (*spheres)[4], size
   d.spheres = spheres, d.sphere_count = count;
   d.line_points = points, d.line_point_count = length, d.line_lengths = &length, d.line_count = length > 0;
   if (hl_mesh_create(all->set.context, &d, &made, &error) != HL_OK) fail_msg("%s", error.message);
-  return add_made(all, made);
+  return mesh_stage_add(all, made);
 }
 
 /* Spheres at odd fractions of pixels cover the disks that they are, whether the sheets are level or slanted,
@@ -414,7 +384,7 @@ static void test_sphere_coverage(void **state) {
       if (fabs(inside) > 0.36) assert_near(alpha, inside > 0 ? taken : 0, 1e-5);
     }
     assert_near(sum * 0.25, taken * HL_PI * (double)sphere[0][3] * (double)sphere[0][3], taken * 0.5);
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -442,7 +412,7 @@ static void test_terminator(void **state) {
       dark += cosine <= 0;
     }
     assert_true(lit > 300 && dark > 300);
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -464,7 +434,7 @@ static void test_tube(void **state) {
     }
     double length = 10 + sqrt(36 + 100); /* both ends are half of a polygon in a disk of radius 2 */
     assert_near(sum / taken, length * 4 + HL_PI * 4, 2);
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -488,7 +458,7 @@ static void test_colored_pane(void **state) {
     assert_near((double)pixel[0], 1, 0.01);
     assert_near((double)pixel[1], 0.9 * 0.5, 0.01);
     assert_near((double)pixel[2], 0, 0.01);
-    close_meshes(&all);
+    mesh_stage_close(&all);
   }
 }
 
@@ -526,7 +496,7 @@ static void test_cube_and_box(void **state) {
         choose_shadows(&all.set, stage_add_directional(&all.set, (vec3){0.5, -0.3, -1}), k, 6);
         stage_look(&all.set, (vec3){30, 20, 80}, (vec3){0, 0, -3}, (vec3){0, 1, 0});
         stage_render_sheets(&all.set, of_volume ? box : cube);
-        close_meshes(&all);
+        mesh_stage_close(&all);
       }
       double sum = 0, signed_sum = 0, dark = 0;
       for (int i = 0; i < PIXELS; i++) {
@@ -556,7 +526,7 @@ static void test_no_volume(void **state) {
   assert_near((double)middle[3], 1, 1e-6);
   assert_near((double)alone[3], 0, 0);
   all.set.scene.volume_count = 1; /* for its release */
-  close_meshes(&all);
+  mesh_stage_close(&all);
 }
 
 int main(void) {
