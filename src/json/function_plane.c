@@ -1,9 +1,6 @@
 /* json/function_plane.c - a transfer function of two numbers from JSON: its boxes, polygons and image. */
 #include <string.h>
 
-#include <halflight/image.h>
-
-#include "core/file.h"
 #include "core/memory.h"
 #include "json/parts.h"
 #include "scene/function_plane.h"
@@ -95,62 +92,15 @@ static hl_status read_polygon(hl_json_reader *reader, const json_t *value, void 
   return status == HL_OK ? hl_json_number(reader, value, "falloff", &made->falloff) : status;
 }
 
-/* ---- the image ---- */
-
-/* The image that the open scene has of this file; pixels null: none. */
-static hl_function_image find_known(const hl_scene_description *like, const char *path) {
-  for (size_t v = 0; v < like->volume_count; v++) {
-    const hl_function_image *image = &like->volumes[v].transfer_function.plane.image;
-    if (image->pixels != NULL && image->file != NULL && strcmp(image->file, path) == 0) return *image;
-  }
-  return (hl_function_image){.pixels = NULL};
-}
-
-static hl_status keep_pixels(hl_json_reader *reader, const float *from, int width, int height,
-                             hl_function_image *image) {
-  size_t bytes = 4 * sizeof(float) * (size_t)width * (size_t)height;
-  float *pixels = hl_allocate(reader->context, bytes, 1);
-  if (pixels == NULL) return hl_fail_memory(reader->error, bytes, "a transfer function's image");
-  memcpy(pixels, from, bytes);
-  image->pixels = pixels;
-  image->width = width;
-  image->height = height;
-  return HL_OK;
-}
-
-static hl_status load_pixels(hl_json_reader *reader, const char *name, hl_function_image *image) {
-  hl_image *loaded = NULL;
-  char *path = hl_path_join(reader->context, reader->folder, name);
-  if (path == NULL) return hl_fail_memory(reader->error, strlen(name) + 1, "a path");
-  image->file = path;
-  if (reader->like != NULL) {
-    hl_function_image known = find_known(reader->like, path);
-    if (known.pixels == NULL)
-      return hl_json_fail(reader, HL_ERROR_INPUT, "file",
-                          "\"%.200s\" is no image of the open scene: open it anew", name);
-    return keep_pixels(reader, known.pixels, known.width, known.height, image);
-  }
-  hl_status status = hl_image_read(reader->context, path, &loaded, reader->error);
-  if (status == HL_OK)
-    status = keep_pixels(reader, hl_image_pixels_const(loaded), hl_image_width(loaded),
-                         hl_image_height(loaded), image);
-  hl_image_destroy(loaded);
-  if (status == HL_OK) return HL_OK;
-  hl_json_enter(reader, "file");
-  return hl_json_prefix(reader, reader->place), status;
-}
-
 static hl_status read_image(hl_json_reader *reader, const json_t *value, hl_function_image *image) {
   static const char *const keys[] = {"file", "value", "second", NULL};
-  const char *name = NULL;
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "image");
   hl_status status = hl_json_object(reader, value, keys);
   if (status == HL_OK) status = read_ranges(reader, value, image->low, image->high);
-  if (status == HL_OK) status = hl_json_text(reader, value, "file", &name);
-  if (status == HL_OK && (name == NULL || name[0] == 0))
-    status = hl_json_fail(reader, HL_ERROR_INPUT, "file", "is missing: name the image's file");
-  if (status == HL_OK) status = load_pixels(reader, name, image);
+  if (status == HL_OK)
+    status = hl_json_load_image(
+        reader, value, &(hl_json_image){&image->file, &image->pixels, &image->width, &image->height, 4});
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
 }

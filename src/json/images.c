@@ -1,4 +1,4 @@
-/* json/images.c - the images that a scene's lights and sky name. */
+/* json/images.c - the images that a scene's lights, sky and transfer functions name. */
 #include <string.h>
 
 #include <halflight/image.h>
@@ -9,7 +9,7 @@
 
 /* The image of `like` that was read from this file; pixels null: none. */
 typedef struct known_image {
-  const float *pixels; /* [height][width][3] */
+  const float *pixels; /* [height][width][channels] */
   int width, height;
 } known_image;
 
@@ -17,7 +17,18 @@ static bool is_from(const char *file, const float *pixels, const char *path) {
   return file != NULL && pixels != NULL && strcmp(file, path) == 0;
 }
 
-static known_image find_known(const hl_scene_description *like, const char *path) {
+static known_image find_function_image(const hl_scene_description *like, const char *path) {
+  for (size_t v = 0; v < like->volume_count; v++) {
+    const hl_function_image *image = &like->volumes[v].transfer_function.plane.image;
+    if (is_from(image->file, image->pixels, path))
+      return (known_image){image->pixels, image->width, image->height};
+  }
+  return (known_image){NULL, 0, 0};
+}
+
+/* Images of transfer functions alone keep their alpha. */
+static known_image find_known(const hl_scene_description *like, const char *path, int channels) {
+  if (channels == 4) return find_function_image(like, path);
   const hl_sky *sky = &like->sky;
   if (is_from(sky->file, sky->pixels, path)) return (known_image){sky->pixels, sky->width, sky->height};
   for (size_t l = 0; l < like->light_count; l++) {
@@ -32,7 +43,8 @@ static known_image find_known(const hl_scene_description *like, const char *path
 }
 
 static float *room_for(hl_json_reader *reader, int width, int height, const hl_json_image *to) {
-  float *pixels = hl_allocate(reader->context, (size_t)width * (size_t)height, 3 * sizeof *pixels);
+  float *pixels = hl_allocate(reader->context, (size_t)width * (size_t)height,
+                              (size_t)to->channels * sizeof *pixels);
   *to->pixels = pixels;
   *to->width = width;
   *to->height = height;
@@ -40,29 +52,32 @@ static float *room_for(hl_json_reader *reader, int width, int height, const hl_j
 }
 
 static hl_status fail_room(hl_json_reader *reader, const hl_json_image *to) {
-  return hl_fail_memory(reader->error, (uint64_t)*to->width * (uint64_t)*to->height * 3 * sizeof(float),
-                        "a light's image");
+  uint64_t pixels = (uint64_t)*to->width * (uint64_t)*to->height;
+  return hl_fail_memory(reader->error, pixels * (uint64_t)to->channels * sizeof(float), "an image");
 }
 
 static hl_status copy_known(hl_json_reader *reader, const char *file, const hl_json_image *to) {
-  known_image known = find_known(reader->like, *to->file);
+  known_image known = find_known(reader->like, *to->file, to->channels);
   if (known.pixels == NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "file",
                         "\"%.200s\" is no image of the open scene: open it anew", file);
   float *pixels = room_for(reader, known.width, known.height, to);
   if (pixels == NULL) return fail_room(reader, to);
-  memcpy(pixels, known.pixels, 3 * (size_t)known.width * (size_t)known.height * sizeof *pixels);
+  size_t floats = (size_t)known.width * (size_t)known.height * (size_t)to->channels;
+  memcpy(pixels, known.pixels, floats * sizeof *pixels);
   return HL_OK;
 }
 
-/* Copies an image's colours without alpha: premultiplied, they are the image over black. */
+/* Copies an image's colours, without alpha where that is not wanted: premultiplied, they are the image over
+ * black. */
 static hl_status take_pixels(hl_json_reader *reader, const hl_image *image, const hl_json_image *to) {
   size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
+  size_t channels = (size_t)to->channels;
   const float *from = hl_image_pixels_const(image);
   float *pixels = room_for(reader, hl_image_width(image), hl_image_height(image), to);
   if (pixels == NULL) return fail_room(reader, to);
   for (size_t i = 0; i < count; i++)
-    for (size_t c = 0; c < 3; c++) pixels[3 * i + c] = from[4 * i + c];
+    for (size_t c = 0; c < channels; c++) pixels[channels * i + c] = from[4 * i + c];
   return HL_OK;
 }
 

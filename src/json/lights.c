@@ -31,7 +31,7 @@ static hl_status read_screen(hl_json_reader *reader, const json_t *value, hl_lig
 
 hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_light_texture *texture) {
   static const char *const keys[] = {"file", "screen", NULL};
-  const hl_json_image image = {&texture->file, &texture->pixels, &texture->width, &texture->height};
+  const hl_json_image image = {&texture->file, &texture->pixels, &texture->width, &texture->height, 3};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "texture");
   hl_status status = hl_json_object(reader, value, keys);
@@ -44,7 +44,7 @@ hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_l
 hl_status hl_json_read_emission(hl_json_reader *reader, const json_t *value, hl_light_type type,
                                 hl_light_emission *emission) {
   static const char *const keys[] = {"file", "up", NULL}, *const rect_keys[] = {"file", NULL};
-  const hl_json_image image = {&emission->file, &emission->pixels, &emission->width, &emission->height};
+  const hl_json_image image = {&emission->file, &emission->pixels, &emission->width, &emission->height, 3};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "emission");
   hl_status status = hl_json_object(reader, value, type == HL_LIGHT_RECT ? rect_keys : keys);

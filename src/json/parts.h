@@ -10,8 +10,9 @@
 /* The fields that an image is loaded into. */
 typedef struct hl_json_image {
   const char **file;
-  const float **pixels; /* [height][width][3] */
+  const float **pixels; /* [height][width][channels] */
   int *width, *height;
+  int channels; /* 3: colours over black; 4: premultiplied colours and alpha */
 } hl_json_image;
 
 /* Loads the image that an object's "file" names, or takes it from the reader's `like`. Its file's name and

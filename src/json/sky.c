@@ -15,7 +15,7 @@ hl_status hl_json_read_sky(hl_json_reader *reader, const json_t *value, hl_sky *
   if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_SKY, (int)sky->type, sky);
   if (status == HL_OK && image)
     status = hl_json_load_image(reader, value,
-                                &(hl_json_image){&sky->file, &sky->pixels, &sky->width, &sky->height});
+                                &(hl_json_image){&sky->file, &sky->pixels, &sky->width, &sky->height, 3});
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
 }
