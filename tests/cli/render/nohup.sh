@@ -1,6 +1,6 @@
 # What nohup starts goes on when its terminal is gone.
 tool ball 16 ball_16x16x16_uint8.raw
-(trap '' HUP && exec "$HALFLIGHT" render ball_16x16x16_uint8.raw --size 256x256 --sheet-spacing 0.01 --quiet -o out.npy) &
+(trap '' HUP && exec "$HALFLIGHT" render ball_16x16x16_uint8.raw --size 700x700 --sheet-spacing 0.01 --quiet -o out.npy) &
 await_handler $!
 kill -HUP $!
 wait $!
