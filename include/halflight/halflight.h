@@ -52,6 +52,7 @@
 #include "scene.h"
 #include "settings.h"
 #include "shape.h"
+#include "transfer_function.h"
 #include "volume.h"
 
 #endif

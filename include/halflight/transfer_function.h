@@ -1,0 +1,148 @@
+/* halflight/transfer_function.h - transfer functions: what the values of a volume look like.
+ *
+ * Opacities are per unit of length, colours linear RGB.
+ */
+#ifndef HALFLIGHT_TRANSFER_FUNCTION_H
+#define HALFLIGHT_TRANSFER_FUNCTION_H
+
+#include "volume.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct hl_opacity_point {
+  double value, opacity;
+} hl_opacity_point;
+typedef struct hl_color_point {
+  double value;
+  double color[3];
+} hl_color_point;
+
+/* What a transfer function takes as its second number. */
+typedef enum hl_second_axis {
+  HL_SECOND_NONE = 0,
+  HL_SECOND_GRADIENT = 1, /* the length of the data's gradient: the kernel's, in data units per world unit */
+  HL_SECOND_VOLUME = 2    /* the value of another volume of the scene at the same place, whether or not the
+                             scene shows it; beyond its faces its border's values go on */
+} hl_second_axis;
+
+/* Below, a point of a transfer function's plane is [value, second number]. Where a shape has the weight w,
+ * its matter has w times the extinction of its opacity. Where shapes overlap, extinctions add up and colours
+ * are averaged by them. */
+
+/* A box: its weight is 1 inside; within `edge` of its border it rises from 0. */
+typedef struct hl_function_box {
+  double low[2], high[2]; /* its corners belong to it */
+  double color[3];        /* linear RGB */
+  double opacity;         /* per unit_distance */
+  double edge[2];         /* 0: hard; at most half of the box is edge */
+} hl_function_box;
+
+/* A polygon, as of Kniss et al.: its weight falls, along straight lines, from the apex to 0 at the border. */
+typedef struct hl_function_polygon {
+  const double (*vertices)[2]; /* [vertex_count]; the apex sees all of its border */
+  size_t vertex_count;
+  double apex[2];
+  double color[3]; /* linear RGB */
+  double opacity;  /* per unit_distance */
+  double falloff;  /* the fraction of the way to the border over which the weight falls: 1 from the apex on,
+                      0: hard */
+} hl_function_polygon;
+
+/* An image: bilinear between the middles of its pixels. Outside of it there is nothing. */
+typedef struct hl_function_image {
+  const char *file;    /* where the pixels came from, for hl_scene_to_json; may be null */
+  const float *pixels; /* [height][width][4]: linear RGB times opacity, and opacity per unit_distance; the top
+                          row has the greatest second numbers; null: there is no image */
+  int width, height;
+  double low[2], high[2]; /* of its outermost pixels' outer borders */
+} hl_function_image;
+
+/* A transfer function of two numbers. */
+typedef struct hl_function_plane {
+  hl_second_axis second; /* HL_SECOND_NONE: there is no such function */
+  const char *volume;    /* HL_SECOND_VOLUME: the name of the other volume */
+  const hl_function_box *boxes;
+  size_t box_count;
+  const hl_function_polygon *polygons;
+  size_t polygon_count;
+  hl_function_image image;
+  double second_scale; /* the second number is multiplied by this first; 0 counts as 1 */
+  uint64_t mark;       /* of all of it; a scene sets it */
+} hl_function_plane;
+
+/* Piecewise linear in data values, constant beyond the end points. */
+typedef struct hl_transfer_function {
+  double unit_distance;            /* world units; opacities are per this length */
+  const hl_opacity_point *opacity; /* sorted by value */
+  size_t opacity_count;
+  const hl_color_point *color; /* sorted by value; linear RGB */
+  size_t color_count;
+  /* What extinction is multiplied by, 0 to 1, where the data's gradient has a length (`value`: data units per
+   * world unit); sorted by value. None: 1 everywhere. */
+  const hl_opacity_point *gradient_opacity;
+  size_t gradient_opacity_count;
+  /* If there is one, a scene makes opacity and color of it: for each value the greatest opacity that the
+   * value has with any second number, and the mean colour. */
+  hl_function_plane plane;
+} hl_transfer_function;
+
+/* ---- transfer functions: free the points of those made here with hl_transfer_function_release() ---- */
+
+/* Chosen by the volume's values: separates objects from their background in CT, MR and simulations alike. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *volume,
+                                                               hl_transfer_function *function,
+                                                               hl_error *error);
+/* name: one of hl_preset_name(0..). Presets adapt to the volume's values. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_preset(hl_context *context, const char *name,
+                                                            const hl_volume *volume,
+                                                            hl_transfer_function *function, hl_error *error);
+/* Replaces the colours by a named colormap over [low, high]. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap(hl_context *context, const char *name,
+                                                              double low, double high,
+                                                              hl_transfer_function *function,
+                                                              hl_error *error);
+/* The range that holds nearly all values that are visible with this function, from any side: a good range for
+ * a colormap. Where nothing is visible, the volume's range. range[0] < range[1]. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_seen_range(const hl_volume *volume,
+                                                                const hl_transfer_function *function,
+                                                                double range[2], hl_error *error);
+/* The range of values that have opacity: from where opacity first rises above zero to where it last falls to
+ * zero, cut to the volume's values. range[0] < range[1]. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_visible_range(const hl_volume *volume,
+                                                                   const hl_transfer_function *function,
+                                                                   double range[2], hl_error *error);
+/* How a function spreads over a range of values. */
+typedef enum hl_range_scale {
+  HL_RANGE_LINEAR = 0,
+  HL_RANGE_LOG = 1 /* evenly over the values' logarithms: the range must be above 0 */
+} hl_range_scale;
+/* Makes *to of `from` by moving its points, so that the values old[0] to old[1] become range[0] to range[1];
+ * the lengths of gradients are multiplied by the ratio of the ranges' widths. HL_RANGE_LOG: between points,
+ * too, the function follows the logarithm, by further points, and beyond the range its ends are held. Points
+ * of *to are owned by the caller. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_spread(hl_context *context,
+                                                            const hl_transfer_function *from,
+                                                            const double old[2], const double range[2],
+                                                            hl_range_scale scale, hl_transfer_function *to,
+                                                            hl_error *error);
+/* As hl_transfer_function_colormap(), over range[0] to range[1] by a scale. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap_scaled(hl_context *context, const char *name,
+                                                                     const double range[2],
+                                                                     hl_range_scale scale,
+                                                                     hl_transfer_function *function,
+                                                                     hl_error *error);
+/* Reads Halflight's own JSON object, a scene (its first volume's function), ParaView's .json colour maps or
+ * Slicer's .vp.json. From a file with colours alone, opacity becomes null: take the opacity points from
+ * elsewhere. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load(hl_context *context, const char *path,
+                                                          hl_transfer_function *function, hl_error *error);
+HL_API void hl_transfer_function_release(hl_context *context, hl_transfer_function *function);
+HL_API const char *hl_preset_name(size_t index);   /* null past the last */
+HL_API const char *hl_colormap_name(size_t index); /* null past the last */
+
+#ifdef __cplusplus
+}
+#endif
+#endif
