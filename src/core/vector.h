@@ -93,6 +93,14 @@ static inline double mat3_shortest_column(mat3 m) {
 static inline affine3 affine3_identity(void) {
   return (affine3){{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
 }
+/* The rows of a map, [linear | offset], in float. */
+static inline void affine3_store(float rows[3][4], const affine3 *map) {
+  const double offset[3] = {map->offset.x, map->offset.y, map->offset.z};
+  for (int r = 0; r < 3; r++) {
+    vec3_store(rows[r], map->linear.row[r]);
+    rows[r][3] = (float)offset[r];
+  }
+}
 static inline vec3 affine3_apply(affine3 a, vec3 p) { return vec3_add(mat3_apply(a.linear, p), a.offset); }
 /* (a after b)(p) = a(b(p)) */
 static inline affine3 affine3_multiply(affine3 a, affine3 b) {

@@ -14,14 +14,12 @@ void hl_mask_lattice_set_up(mask_lattice *lattice, const hl_scene_volume *volume
   lattice->colors = mask->colors;
   lattice->slopes = mask->slopes;
   lattice->rest = (float)volume->mask.rest;
-  const double offset[3] = {to_index.offset.x, to_index.offset.y, to_index.offset.z};
   int32_t step = 1;
+  affine3_store(lattice->to_index, &to_index);
   for (int axis = 0; axis < 3; axis++) {
     lattice->last[axis] = (int32_t)mask->dimension[axis] - 1;
     lattice->step[axis] = step;
     if (axis < 2) step *= (int32_t)mask->dimension[axis];
-    vec3_store(lattice->to_index[axis], to_index.linear.row[axis]);
-    lattice->to_index[axis][3] = (float)offset[axis];
   }
 }
 

@@ -32,9 +32,8 @@ static double longest_gradient(const hl_scene_volume *volume, double range) {
 /* What the data reach on both axes, second numbers as the function has them. */
 static plane_box reach_of_data(const hl_scene_volume *volume, const hl_scene_volume *second,
                                const plane_values *values) {
-  double scale = volume->transfer_function.plane.second_scale, low = 0,
+  double scale = hl_plane_second_scale(&volume->transfer_function.plane), low = 0,
          high = longest_gradient(volume, values->high - values->low);
-  if (scale == 0) scale = 1;
   if (second != NULL) {
     double empty = hl_scene_volume_empty_value(second);
     low = fmin(second->volume->minimum, empty);
@@ -130,7 +129,7 @@ void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *s
   (void)hl_plane_bounds(&function->plane, &bounds);
   table_axis axes[2] = {axis_of(&bounds, &reach, 0, PLANE_COLUMNS), axis_of(&bounds, &reach, 1, PLANE_ROWS)};
   axes[0].nothing = values->nothing;
-  double scale = function->plane.second_scale == 0 ? 1 : function->plane.second_scale, zero = 0;
+  double scale = hl_plane_second_scale(&function->plane), zero = 0;
   double units = fabs(grid->value_scale);
   if (second != NULL) {
     units = second->volume->value_scale;
@@ -148,14 +147,9 @@ void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *s
 }
 
 void hl_plane_table_set_second(plane_table *table, const hl_volume *volume, const grid *second) {
-  const affine3 *to_index = &second->frame_to_index;
-  const double offset[3] = {to_index->offset.x, to_index->offset.y, to_index->offset.z};
   table->second_volume = volume;
   table->second = second;
-  for (int axis = 0; axis < 3; axis++) {
-    vec3_store(table->to_second[axis], to_index->linear.row[axis]);
-    table->to_second[axis][3] = (float)offset[axis];
-  }
+  affine3_store(table->to_second, &second->frame_to_index);
 }
 
 /* ---- looking up one point ---- */

@@ -37,11 +37,10 @@ static hl_status read_pair(hl_json_reader *reader, const json_t *value, const ch
 }
 
 static hl_status read_ranges(hl_json_reader *reader, const json_t *value, double low[2], double high[2]) {
-  static const char *const keys[] = {"value", "second"};
   hl_status status = HL_OK;
   for (int a = 0; a < 2 && status == HL_OK; a++) {
     double range[2];
-    status = read_pair(reader, value, keys[a], range);
+    status = read_pair(reader, value, hl_plane_range_keys[a], range);
     if (status == HL_OK) low[a] = range[0], high[a] = range[1];
   }
   return status;

@@ -14,6 +14,7 @@
 #include "json/shapes.h"
 #include "json/writable.h"
 #include "mesh/mesh.h"
+#include "scene/function_plane.h"
 #include "scene/scene.h"
 #include "scene/settings.h"
 #include "text/json_value.h"
@@ -196,10 +197,8 @@ static void write_opacity(writer *w, const char *key, const hl_opacity_point *po
   close_bracket(w, "]");
 }
 
-static const char *const range_keys[2] = {"value", "second"};
-
 static void write_ranges(writer *w, const double low[2], const double high[2]) {
-  for (int a = 0; a < 2; a++) write_row(w, range_keys[a], (double[2]){low[a], high[a]}, 2);
+  for (int a = 0; a < 2; a++) write_row(w, hl_plane_range_keys[a], (double[2]){low[a], high[a]}, 2);
 }
 
 static void write_box(writer *w, const hl_function_box *box) {

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "reference/reference.h"
+#include "scene/function_plane.h"
 
 void hl_reference_find_second(const reference *all, size_t index) {
   reference_volume *volume = &all->volumes[index];
@@ -18,7 +19,7 @@ plane_sum hl_reference_plane_sum(const reference_volume *volume, double value, v
   double second = volume->second != NULL
                       ? hl_reference_value(volume->second, affine3_apply(volume->index_to_second, point))
                       : vec3_length(hl_reference_gradient(volume, point));
-  if (function->plane.second_scale != 0) second *= function->plane.second_scale;
+  second *= hl_plane_second_scale(&function->plane);
   const plane_box at = {{value, second}, {value, second}};
   return hl_plane_mean(function, &at);
 }

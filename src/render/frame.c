@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "grid/relevant.h"
+#include "scene/function_plane.h"
 
 static vec3 camera_up(const hl_camera *camera, vec3 forward) {
   vec3 up = vec3_normalise(vec3_of(camera->up));
@@ -291,8 +292,7 @@ static void move_volume(const hl_frame_space *space, hl_scene_volume *volume) {
   hl_transfer_function *function = &volume->transfer_function;
   function->unit_distance /= space->unit;
   if (function->plane.second == HL_SECOND_GRADIENT)
-    function->plane.second_scale = (function->plane.second_scale == 0 ? 1 : function->plane.second_scale) /
-                                   space->unit;
+    function->plane.second_scale = hl_plane_second_scale(&function->plane) / space->unit;
 }
 
 /* Gradients are per unit of length. points: room for the volume's gradient opacity. */

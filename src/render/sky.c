@@ -38,10 +38,8 @@ static field_matter matter_of(const prepared_volume *prepared, const grid *grid)
                          .cast = volume->casts_shadow ? 1 : 0,
                          .visible = volume->visible,
                          .smooth = prepared->kernel == HL_KERNEL_INTERPOLATING};
-  const double *offset = &grid->frame_to_index.offset.x;
+  affine3_store(matter.to_index, &grid->frame_to_index);
   for (int a = 0; a < 3; a++) {
-    vec3_store(matter.to_index[a], grid->frame_to_index.linear.row[a]);
-    matter.to_index[a][3] = (float)offset[a];
     matter.low[a] = (float)grid->box_low[a];
     matter.high[a] = (float)grid->box_high[a];
   }

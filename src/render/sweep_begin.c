@@ -242,12 +242,8 @@ static void set_up_colors(sweep *sweep) {
 
 static void set_up_cut(const grid *grid, const cut_shape *shape, shade_cut *cut) {
   affine3 from_frame = affine3_multiply(shape->to_shape, grid->frame_to_index);
-  const double *offset = &from_frame.offset.x;
   *cut = (shade_cut){.type = (int)shape->type, .keep_inside = shape->keep_inside};
-  for (int r = 0; r < 3; r++) {
-    vec3_store(cut->rows[r], from_frame.linear.row[r]);
-    cut->rows[r][3] = (float)offset[r];
-  }
+  affine3_store(cut->rows, &from_frame);
 }
 
 static void set_up_cuts(sweep *sweep) {
@@ -316,11 +312,8 @@ static void set_up_shading(sweep *sweep) {
     for (int axis = 0; axis < 3; axis++)
       finest = fmax(finest, vec3_length(grid->frame_to_index.linear.row[axis]));
     shade->voxel = (float)(1 / finest);
-    const double offset[3] = {grid->frame_to_index.offset.x, grid->frame_to_index.offset.y,
-                              grid->frame_to_index.offset.z};
+    affine3_store(shade->to_index, &grid->frame_to_index);
     for (int axis = 0; axis < 3; axis++) {
-      vec3_store(shade->to_index[axis], grid->frame_to_index.linear.row[axis]);
-      shade->to_index[axis][3] = (float)offset[axis];
       shade->low[axis] = (float)grid->box_low[axis];
       shade->high[axis] = (float)grid->box_high[axis];
     }

@@ -51,13 +51,9 @@ static void set_up_cut(const view_sheets *sheets, const grid *grid, const cut_sh
               plane ? plane_high : box_high, &sheets->cut_rays[at]);
   sheets->cut_rays[at].sphere = shape->type == HL_CUT_SPHERE;
   run_cut *cut = &sheets->cuts[at];
-  const double *offset = &shape->to_shape.offset.x;
   cut->shape = shape;
-  for (int r = 0; r < 3; r++) {
-    vec3_store(cut->rows[r], shape->to_shape.linear.row[r]);
-    cut->rows[r][3] = (float)offset[r];
-    cut->size[r] = (float)vec3_length(from_frame.linear.row[r]);
-  }
+  affine3_store(cut->rows, &shape->to_shape);
+  for (int r = 0; r < 3; r++) cut->size[r] = (float)vec3_length(from_frame.linear.row[r]);
 }
 
 static void set_up_cuts(view_sheets *sheets) {

@@ -11,6 +11,14 @@ static inline bool hl_has_plane(const hl_transfer_function *function) {
   return function->plane.second != HL_SECOND_NONE;
 }
 
+/* What the second number is multiplied by before the function takes it. */
+static inline double hl_plane_second_scale(const hl_function_plane *plane) {
+  return plane->second_scale == 0 ? 1 : plane->second_scale;
+}
+
+/* The keys of the two axes' ranges: "value" and "second". */
+extern const char *const hl_plane_range_keys[2];
+
 /* A part of the plane: [value, second number]. */
 typedef struct plane_box {
   double low[2], high[2];

@@ -23,17 +23,16 @@ static hl_status check_pair(const hl_checker *check, const char *key, const doub
   return status;
 }
 
-/* The keys of the two axes' ranges. */
-static const char *const range_keys[2] = {"value", "second"};
+const char *const hl_plane_range_keys[2] = {"value", "second"};
 
 static hl_status check_ranges(const hl_checker *check, const double low[2], const double high[2]) {
   hl_status status = HL_OK;
   for (int a = 0; a < 2 && status == HL_OK; a++) {
-    status = check_pair(check, range_keys[a], (const double[2]){low[a], high[a]});
+    status = check_pair(check, hl_plane_range_keys[a], (const double[2]){low[a], high[a]});
     if (status == HL_OK && !(low[a] < high[a]))
       status = hl_fail(check->error, HL_ERROR_INPUT,
                        "%s/%s: %.9g to %.9g is empty: give two numbers, the lower one first", check->place,
-                       range_keys[a], low[a], high[a]);
+                       hl_plane_range_keys[a], low[a], high[a]);
   }
   return status;
 }

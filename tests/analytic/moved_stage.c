@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "scene/function_plane.h"
 #include "scene/scene.h"
 #include "volume/volume.h"
 
@@ -116,9 +117,8 @@ static void move_axes(hl_context *context, const motion *by, hl_scene_volume *vo
 /* Gradients are data units per world unit. points: room for the volume's gradient opacity, kept until the
  * scene is created, which copies it. */
 static void move_gradients(const motion *by, hl_transfer_function *function, hl_opacity_point points[4]) {
-  hl_function_plane *plane = &function->plane;
-  if (plane->second == HL_SECOND_GRADIENT)
-    plane->second_scale = by->scale * (plane->second_scale == 0 ? 1 : plane->second_scale);
+  if (function->plane.second == HL_SECOND_GRADIENT)
+    function->plane.second_scale = by->scale * hl_plane_second_scale(&function->plane);
   assert_true(function->gradient_opacity_count <= 4);
   if (function->gradient_opacity_count == 0) return;
   for (size_t p = 0; p < function->gradient_opacity_count; p++) {
