@@ -336,6 +336,10 @@ HL_API void hl_scene_mesh_defaults(hl_scene_mesh *mesh);
 HL_API void hl_isosurface_defaults(hl_isosurface *surface);
 HL_API void hl_cut_defaults(hl_cut *cut);
 
+/* Takes a point from the world of the volume's file to the scene's world, by the volume's scale, rotation and
+ * translation. Where one of them is null, nothing is done. */
+HL_API void hl_scene_volume_place_point(const hl_scene_volume *volume, double point[3]);
+
 /* Checks and copies the description, and retains the volumes. Errors name the field as a JSON pointer
  * ("/lights/0/radius"). */
 HL_API HL_WARN_UNUSED hl_status hl_scene_create(hl_context *context, const hl_scene_description *description,

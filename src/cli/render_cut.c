@@ -12,8 +12,6 @@ static const int option_of[] = {
     [HL_CUT_PLANE] = RENDER_CUT_PLANE, [HL_CUT_BOX] = RENDER_CUT_BOX, [HL_CUT_SPHERE] = RENDER_CUT_SPHERE};
 enum { CUT_TYPES = 3 };
 
-static const double degree = 3.14159265358979323846 / 180;
-
 /* A cut as typed: a plane's point or a sphere's centre, and what follows the colon; or a box's ranges. */
 typedef struct typed_cut {
   render_coordinate point[3], radius;
@@ -118,21 +116,6 @@ static void add_cuts(const cli_value *values, const double low[3], const double 
     }
 }
 
-/* p in the world of a volume's file -> the scene's world: scale, rotation (Rodrigues), translation. */
-static void to_scene(const hl_scene_volume *volume, double p[3]) {
-  double k[3], length = 0, dot = 0, cosine = cos(volume->rotate_angle_deg * degree),
-               sine = sin(volume->rotate_angle_deg * degree);
-  for (int a = 0; a < 3; a++) length = hypot(length, volume->rotate_axis[a]);
-  for (int a = 0; a < 3; a++) {
-    k[a] = volume->rotate_axis[a] / length;
-    p[a] *= volume->scale * volume->axis_scale[a];
-    dot += k[a] * p[a];
-  }
-  const double cross[3] = {k[1] * p[2] - k[2] * p[1], k[2] * p[0] - k[0] * p[2], k[0] * p[1] - k[1] * p[0]};
-  for (int a = 0; a < 3; a++)
-    p[a] = p[a] * cosine + cross[a] * sine + k[a] * dot * (1 - cosine) + volume->translate[a];
-}
-
 /* Extends a box to the box around a volume in the scene's world. */
 static int extend_box(const hl_scene_volume *volume, double low[3], double high[3]) {
   double ends[2][3];
@@ -143,7 +126,7 @@ static int extend_box(const hl_scene_volume *volume, double low[3], double high[
   for (int corner = 0; corner < 8; corner++) {
     double p[3];
     for (int a = 0; a < 3; a++) p[a] = ends[corner >> a & 1][a];
-    to_scene(volume, p);
+    hl_scene_volume_place_point(volume, p);
     for (int a = 0; a < 3; a++) low[a] = fmin(low[a], p[a]), high[a] = fmax(high[a], p[a]);
   }
   return EXIT_CODE_OK;

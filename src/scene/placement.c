@@ -37,6 +37,12 @@ affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume) {
   return affine3_multiply(world_of_file(volume), volume->volume->index_to_world);
 }
 
+void hl_scene_volume_place_point(const hl_scene_volume *volume, double point[3]) {
+  if (volume == NULL || point == NULL) return;
+  vec3 placed = affine3_apply(world_of_file(volume), vec3_of(point));
+  memcpy(point, (const double[3]){placed.x, placed.y, placed.z}, sizeof(double[3]));
+}
+
 affine3 hl_scene_mask_index_to_world(const hl_scene_volume *volume) {
   return affine3_multiply(world_of_file(volume), volume->mask.volume->index_to_world);
 }
