@@ -3,8 +3,8 @@
 import { hexOf, linearOf } from "./color.js";
 import { button, color, isActive, make, row, section, select, slider } from "./controls.js";
 import { FunctionCanvas } from "./function_canvas.js";
-import { byGradient, isPlane, planePanel } from "./plane_panel.js";
-import { movePoint, moveStop, rangeOf, recolorStop, stretched, withColormap } from "./transfer_function.js";
+import { byGradient, planePanel } from "./plane_panel.js";
+import { isPlane, movePoint, moveStop, rangeOf, recolorStop, stretched, withColormap } from "./transfer_function.js";
 
 // The numbers of the point or colour that is chosen in the drawing.
 function chosenPoint(canvas, get, set, range) {

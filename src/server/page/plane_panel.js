@@ -27,9 +27,6 @@ export function byGradient(tf, volume, about) {
   };
 }
 
-// Whether a volume's function takes two numbers.
-export const isPlane = (volume) => volume?.transfer_function?.second !== undefined;
-
 // { element, parts }: the rows, and what follows the scene.
 export function planePanel({ store, start, current, get, set }) {
   const volume = store.scene.volumes[current.volume], about = start.volumes[current.volume], second = get().second;

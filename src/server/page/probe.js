@@ -4,6 +4,7 @@
 // the lights that arrives there.
 
 import { make, shortNumber } from "./controls.js";
+import { isPlane } from "./transfer_function.js";
 
 const PIXELS = 90000; // of a small picture
 
@@ -108,7 +109,7 @@ export class Probe {
     if (!(opacity > 0.002)) return { opacity, value: null, light: null };
     const { store, start, current } = this.#viewer, [low, high] = start.volumes[current.volume].range;
     // the boxes of a function of two numbers have one colour for all their values, which tells none
-    const known = store.scene.volumes[current.volume].transfer_function?.second === undefined;
+    const known = !isPlane(store.scene.volumes[current.volume]);
     return {
       opacity, value: known ? low + (value.rgba[at] / opacity) * (high - low) : NaN,
       light: unlit.rgba[at] > 1e-4 ? Math.min(lit.rgba[at] / unlit.rgba[at], 1) : null,

@@ -8,6 +8,9 @@ const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 const isReadable = (rows) => rows.every((row, n) => n < 2 || row[0] !== rows[n - 2][0]);
 const nearest = (rows, value) => rows.reduce((best, row, n) => (Math.abs(row[0] - value) < Math.abs(rows[best][0] - value) ? n : best), 0);
 
+// Whether a volume's function takes two numbers, and has boxes in place of points.
+export const isPlane = (volume) => volume?.transfer_function?.second !== undefined;
+
 // Opacity points that may stand at one value, as at a step, keep their order.
 export function movePoint(tf, index, value, opacity, range) {
   const low = index > 0 ? tf.opacity[index - 1][0] : range[0];
