@@ -4,22 +4,25 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/context.h"
 #include "core/memory.h"
+#include "label/filter.h"
 
-/* MARGIN: voxels around the labels, as far as their occupancy differs from 0. REACH: of the filters. */
-enum { MARGIN = 8, REACH = 7, TAPS = REACH + 1 };
+/* Voxels around the labels, as far as their occupancy differs from 0. */
+enum { MARGIN = 8 };
 
-/* Smooths along an axis; half of a symmetric filter. Derived: a Gaussian of standard deviation 2 voxels, cut
+/* Smooths along an axis. Derived: a Gaussian of standard deviation 2 voxels, cut
  * at 6, less half of its variance times its second difference. The variances cancel: flat and gently curved
  * surfaces stay where they are (to the fourth power of the scale), and stairs are damped. */
-static const float SMOOTHING[TAPS] = {0.292382144f,  0.238724523f,  0.123441568f,  0.028311217f,
-                                      -0.011604395f, -0.014332039f, -0.006349609f, -0.004382337f};
+static const label_filter SMOOTHING = {7,
+                                       {0.292382144f, 0.238724523f, 0.123441568f, 0.028311217f, -0.011604395f,
+                                        -0.014332039f, -0.006349609f, -0.004382337f}};
 /* Likewise with a standard deviation of 1 voxel, cut at 3: what mending leaves rough. */
-static const float FINISHING[TAPS] = {
-    0.555422454f, 0.257481129f, -0.014940464f, -0.018044430f, -0.002207463f, 0, 0, 0};
+static const label_filter FINISHING = {
+    4, {0.555422454f, 0.257481129f, -0.014940464f, -0.018044430f, -0.002207463f}};
 /* From values at the voxels' centres to the B-spline's coefficients. Derived: the spline's values 1/6, 2/3,
  * 1/6 are 1 + d/6, d the second difference; its inverse is 1 - d/6 + d d/36 - ... */
-static const float TO_COEFFICIENTS[TAPS] = {1.5f, -10.0f / 36, 1.0f / 36, 0, 0, 0, 0, 0};
+static const label_filter TO_COEFFICIENTS = {2, {1.5f, -10.0f / 36, 1.0f / 36}};
 
 /* Smoothing and mending take turns. Mending moves voxels' centres that are on the wrong side of the surface:
  * by PUSH times as much as they are further than TOLERATED beyond 1/2. So thin things stay, and what
@@ -39,13 +42,11 @@ typedef struct occupancy_job {
   double stored; /* the label, as a stored value */
   hl_label_part part;
   unsigned char *inside;        /* [size z][y][x]: 1 where the voxel has the label; finally the result */
-  float *field;                 /* [size z][y][x] */
+  size_t *inside_counts;        /* [slices]: voxels that have the label */
+  label_field smooth;           /* of the part's size */
   float level;                  /* of the field: where the surface is */
   double (*measures)[MEASURES]; /* [slices] */
   double slope;                 /* mean length of the gradient at the surface, per voxel */
-  const float *taps;
-  float *lines; /* [threads][longest line + 2 REACH], or [threads][size z + 2 REACH][size x] */
-  size_t line_floats;
 } occupancy_job;
 
 /* ---- the parts of the grid ---- */
@@ -142,91 +143,22 @@ hl_status hl_label_parts(hl_context *context, hl_pool *pool, const hl_volume *ma
   return status;
 }
 
-/* ---- filters ---- */
-
-/* A line of count values with REACH more on either side, filtered. */
-static void filter_line(const float *taps, const float *line, size_t count, float *out) {
-  const float *at = line + REACH;
-  for (size_t i = 0; i < count; i++) {
-    float sum = taps[0] * at[i];
-    for (int t = 1; t < TAPS; t++) sum += taps[t] * (at[(ptrdiff_t)i - t] + at[i + (size_t)t]);
-    out[i] = sum;
-  }
-}
-
-/* Filters a slice along x and y, in place. Beyond the part's ends the border's values continue. */
-static void filter_slice(void *data, size_t z, int worker) {
-  const occupancy_job *job = data;
-  const size_t nx = job->part.size[0], ny = job->part.size[1];
-  float *slice = job->field + z * nx * ny, *line = job->lines + (size_t)worker * job->line_floats;
-  for (size_t y = 0; y < ny; y++) {
-    float *row = slice + y * nx;
-    memcpy(line + REACH, row, nx * sizeof *row);
-    for (size_t i = 0; i < REACH; i++) line[i] = row[0], line[REACH + nx + i] = row[nx - 1];
-    filter_line(job->taps, line, nx, row);
-  }
-  float *kept = line; /* rows y - REACH .. y + REACH as they were, [2 REACH + 1][nx] */
-  for (size_t r = 0; r <= 2 * REACH; r++) {
-    size_t y = r < REACH ? 0 : r - REACH < ny ? r - REACH : ny - 1;
-    memcpy(kept + r * nx, slice + y * nx, nx * sizeof *slice);
-  }
-  for (size_t y = 0; y < ny; y++) {
-    float *row = slice + y * nx;
-    const float *rows[2 * REACH + 1];
-    for (size_t r = 0; r <= 2 * REACH; r++) rows[r] = kept + (y + r) % (2 * REACH + 1) * nx;
-    for (size_t i = 0; i < nx; i++) {
-      float sum = job->taps[0] * rows[REACH][i];
-      for (int t = 1; t < TAPS; t++) sum += job->taps[t] * (rows[REACH - t][i] + rows[REACH + t][i]);
-      row[i] = sum;
-    }
-    size_t next = y + REACH + 1 < ny ? y + REACH + 1 : ny - 1;
-    /* the rows after y are still as they were; the last one's copy continues beyond the end */
-    const float *from = y + REACH + 1 < ny ? slice + next * nx : rows[2 * REACH];
-    memmove(kept + y % (2 * REACH + 1) * nx, from, nx * sizeof *slice);
-  }
-}
-
-/* Filters the columns along z of one y, in place. */
-static void filter_columns(void *data, size_t y, int worker) {
-  const occupancy_job *job = data;
-  const size_t nx = job->part.size[0], nz = job->part.size[2], slice = nx * job->part.size[1];
-  float *column = job->field + y * nx, *lines = job->lines + (size_t)worker * job->line_floats;
-  for (size_t z = 0; z < nz + 2 * REACH; z++) {
-    size_t from = z < REACH ? 0 : z - REACH < nz ? z - REACH : nz - 1;
-    memcpy(lines + z * nx, column + from * slice, nx * sizeof *lines);
-  }
-  for (size_t z = 0; z < nz; z++) {
-    const float *at = lines + (z + REACH) * nx;
-    float *out = column + z * slice;
-    for (size_t i = 0; i < nx; i++) {
-      float sum = job->taps[0] * at[i];
-      for (int t = 1; t < TAPS; t++)
-        sum += job->taps[t] * (at[(ptrdiff_t)i - t * (ptrdiff_t)nx] + at[i + (size_t)t * nx]);
-      out[i] = sum;
-    }
-  }
-}
-
-static void filter(hl_pool *pool, occupancy_job *job, const float *taps) {
-  job->taps = taps;
-  hl_pool_run(pool, job->part.size[2], filter_slice, job);
-  hl_pool_run(pool, job->part.size[1], filter_columns, job);
-}
-
 /* ---- steps ---- */
 
 static void mark_slice(void *data, size_t z, int worker) {
   (void)worker;
   const occupancy_job *job = data;
   const size_t *first = job->part.first, nx = job->part.size[0];
-  size_t at = z * nx * job->part.size[1];
+  size_t at = z * nx * job->part.size[1], count = 0;
   for (size_t y = 0; y < job->part.size[1]; y++, at += nx) {
     const void *row = hl_volume_row(job->map, first[1] + y, first[2] + z);
     for (size_t i = 0; i < nx; i++) {
       job->inside[at + i] = hl_stored_number(job->map->storage, row, first[0] + i) == job->stored;
-      job->field[at + i] = job->inside[at + i];
+      job->smooth.values[at + i] = job->inside[at + i];
+      count += job->inside[at + i];
     }
   }
+  job->inside_counts[z] = count;
 }
 
 static void mend_slice(void *data, size_t z, int worker) {
@@ -234,42 +166,55 @@ static void mend_slice(void *data, size_t z, int worker) {
   const occupancy_job *job = data;
   size_t count = job->part.size[0] * job->part.size[1], at = z * count;
   for (size_t i = at; i < at + count; i++) {
-    float beyond = job->inside[i] ? 0.5f - job->field[i] : job->field[i] - 0.5f;
+    float beyond = job->inside[i] ? 0.5f - job->smooth.values[i] : job->smooth.values[i] - 0.5f;
     if (!(beyond > TOLERATED)) continue;
     float moved = PUSH * (beyond - TOLERATED);
-    job->field[i] += job->inside[i] ? moved : -moved;
+    job->smooth.values[i] += job->inside[i] ? moved : -moved;
   }
 }
 
 /* ---- volumes are kept ---- */
 
-/* Adds up a slice's volume, in voxels, and how fast it falls as the level rises. Derived: near a plane with
- * the gradient g the part of a voxel above the level t is (f - t) / g + 1/2, clamped to [0, 1]. */
-static void measure_slice(void *data, size_t z, int worker) {
-  (void)worker;
-  const occupancy_job *job = data;
+/* Marks the voxels of a row that the surface may cross. room: for a row and two values. Returns how many of
+ * the others are above the level. */
+static int32_t find_crossed(const occupancy_job *job, size_t y, size_t z, float *room, float *squares,
+                            float *crossed) {
   const size_t nx = job->part.size[0], ny = job->part.size[1], nz = job->part.size[2], slice = nx * ny;
-  double *measures = job->measures[z];
-  memset(measures, 0, sizeof job->measures[z]);
-  for (size_t y = 0; y < ny; y++)
-    for (size_t x = 0; x < nx; x++) {
-      const float *at = job->field + z * slice + y * nx + x;
-      float above = *at - job->level;
-      if (fabsf(above) > 1) {
-        measures[VOLUME] += above > 0;
-        continue;
-      }
-      float dx = (x + 1 < nx ? at[1] : *at) - (x > 0 ? at[-1] : *at),
-            dy = (y + 1 < ny ? at[nx] : *at) - (y > 0 ? *(at - nx) : *at),
-            dz = (z + 1 < nz ? at[slice] : *at) - (z > 0 ? *(at - slice) : *at);
-      float gradient = fmaxf(0.5f * sqrtf(dx * dx + dy * dy + dz * dz), 0.05f),
-            part = above / gradient + 0.5f;
-      measures[VOLUME] += (double)fminf(fmaxf(part, 0), 1);
-      if (!(part > 0 && part < 1)) continue;
-      measures[FALL] += 1 / (double)gradient;
-      measures[SLOPES] += (double)gradient;
-      measures[SURFACE_VOXELS]++;
-    }
+  const float *row = job->smooth.values + z * slice + y * nx;
+  memcpy(room + 1, row, nx * sizeof *row);
+  room[0] = row[0], room[nx + 1] = row[nx - 1];
+  const row_neighbours rows = {{room, room + 1, room + 2},
+                               {y > 0 ? row - nx : row, y + 1 < ny ? row + nx : row},
+                               {z > 0 ? row - slice : row, z + 1 < nz ? row + slice : row}};
+  return job->smooth.functions->find_crossed(&rows, nx, job->level, squares, crossed);
+}
+
+/* Adds up a row's volume, in voxels, and how fast it falls as the level rises. Derived: near a plane with
+ * the gradient g the part of a voxel above the level t is (f - t) / g + 1/2, clamped to [0, 1]. lines: room.
+ */
+static void measure_row(const occupancy_job *job, size_t y, size_t z, float *lines, double *measures) {
+  const size_t nx = job->part.size[0];
+  const float *row = job->smooth.values + (z * job->part.size[1] + y) * nx;
+  float *squares = lines + nx + 2, *crossed = squares + nx;
+  measures[VOLUME] += find_crossed(job, y, z, lines, squares, crossed);
+  for (size_t x = 0; x < nx; x++) {
+    if (crossed[x] == 0) continue;
+    float gradient = 0.5f * sqrtf(squares[x]);
+    if (gradient < HL_LEAST_LABEL_GRADIENT) gradient = HL_LEAST_LABEL_GRADIENT;
+    float part = (row[x] - job->level) / gradient + 0.5f;
+    measures[VOLUME] += part <= 0 ? 0 : part >= 1 ? 1 : (double)part;
+    if (!(part > 0 && part < 1)) continue;
+    measures[FALL] += 1 / (double)gradient;
+    measures[SLOPES] += (double)gradient;
+    measures[SURFACE_VOXELS]++;
+  }
+}
+
+static void measure_slice(void *data, size_t z, int worker) {
+  const occupancy_job *job = data;
+  float *lines = job->smooth.lines + (size_t)worker * job->smooth.line_floats;
+  memset(job->measures[z], 0, sizeof job->measures[z]);
+  for (size_t y = 0; y < job->part.size[1]; y++) measure_row(job, y, z, lines, job->measures[z]);
 }
 
 /* The level at which the field encloses as much as the labels' voxels are, by Newton's method; near 1/2. */
@@ -277,8 +222,7 @@ static void find_level(hl_pool *pool, occupancy_job *job) {
   enum { STEPS_OF_NEWTON = 3 };
   static const double FARTHEST = 0.25;
   double wanted = 0;
-  size_t count = job->part.size[0] * job->part.size[1] * job->part.size[2];
-  for (size_t i = 0; i < count; i++) wanted += job->inside[i];
+  for (size_t z = 0; z < job->part.size[2]; z++) wanted += (double)job->inside_counts[z];
   job->level = 0.5f;
   job->slope = 0.25;
   for (int step = 0; step < STEPS_OF_NEWTON; step++) {
@@ -298,7 +242,7 @@ static void store_slice(void *data, size_t z, int worker) {
   const occupancy_job *job = data;
   size_t count = job->part.size[0] * job->part.size[1], at = z * count;
   for (size_t i = at; i < at + count; i++) {
-    float stored = ZERO + STEPS * (job->field[i] + 0.5f - job->level) + 0.5f;
+    float stored = ZERO + STEPS * (job->smooth.values[i] + 0.5f - job->level) + 0.5f;
     job->inside[i] = (unsigned char)(stored < 0 ? 0 : stored > 255 ? 255 : stored);
   }
 }
@@ -306,12 +250,12 @@ static void store_slice(void *data, size_t z, int worker) {
 static void smooth(hl_pool *pool, occupancy_job *job) {
   hl_pool_run(pool, job->part.size[2], mark_slice, job);
   for (int turn = 0; turn < ROUNDS; turn++) {
-    filter(pool, job, SMOOTHING);
+    hl_label_filter(pool, &job->smooth, &SMOOTHING);
     hl_pool_run(pool, job->part.size[2], mend_slice, job);
   }
-  filter(pool, job, FINISHING);
+  hl_label_filter(pool, &job->smooth, &FINISHING);
   find_level(pool, job);
-  filter(pool, job, TO_COEFFICIENTS);
+  hl_label_filter(pool, &job->smooth, &TO_COEFFICIENTS);
   hl_pool_run(pool, job->part.size[2], store_slice, job);
 }
 
@@ -343,12 +287,18 @@ static hl_status adopt(hl_context *context, const occupancy_job *job, unsigned c
 static hl_status fill(hl_context *context, hl_pool *pool, occupancy_job *job, hl_volume **made,
                       hl_error *error) {
   size_t count = job->part.size[0] * job->part.size[1] * job->part.size[2];
-  job->line_floats = (2 * REACH + 1 + job->part.size[2]) * (job->part.size[0] + 2 * REACH);
-  job->lines = hl_allocate(context, (size_t)hl_pool_threads(pool) * job->line_floats, sizeof *job->lines);
+  label_field *field = &job->smooth;
+  memcpy(field->size, job->part.size, sizeof field->size);
+  field->functions = hl_label_row_functions(context->options.instruction_set);
+  field->line_floats = hl_label_line_floats(field->size);
+  field->lines = hl_allocate(context, (size_t)hl_pool_threads(pool) * field->line_floats,
+                             sizeof *field->lines);
+  field->values = hl_allocate(context, count, sizeof *field->values);
   job->inside = hl_allocate(context, count, 1);
-  job->field = hl_allocate(context, count, sizeof *job->field);
+  job->inside_counts = hl_allocate(context, job->part.size[2], sizeof *job->inside_counts);
   job->measures = hl_allocate(context, job->part.size[2], sizeof *job->measures);
-  if (job->lines == NULL || job->inside == NULL || job->field == NULL || job->measures == NULL) {
+  if (field->lines == NULL || field->values == NULL || job->inside == NULL || job->inside_counts == NULL ||
+      job->measures == NULL) {
     hl_release(context, job->inside);
     return hl_fail_memory(error, 5 * count, "smooth labels");
   }
@@ -366,8 +316,9 @@ hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume
   if (part->size[0] == 0) return HL_OK;
   occupancy_job job = {.map = map, .stored = stored_of(map, label), .part = *part};
   hl_status status = fill(context, pool, &job, made, error);
-  hl_release(context, job.field);
-  hl_release(context, job.lines);
+  hl_release(context, job.smooth.values);
+  hl_release(context, job.smooth.lines);
+  hl_release(context, job.inside_counts);
   hl_release(context, job.measures);
   return status;
 }

@@ -17,6 +17,7 @@
 #include <cmocka.h>
 
 #include "core/context.h"
+#include "label/row_functions.h"
 #include "shadow_cascade/cascade_field.h"
 #include "shadow_sublights/sublight_field.h"
 #include "sheet_bench.h"
@@ -209,6 +210,47 @@ static void test_brick_bits(void **unused) {
     state.level = state.sign * (round % 3 == 0 ? 128.0f : round % 3 == 1 ? 32768.0f : 0.5f);
     trial trial = {call_brick_bits, &state, &state.out, sizeof state.out};
     try_it(names[round % 3], &trial, round / 3);
+  }
+}
+
+/* ---- rows of labels' occupancies ---- */
+
+typedef struct label_rows_state {
+  float rows[HL_FILTER_ROWS][130], taps[HL_FILTER_REACH + 1], level;
+  int reach;
+  size_t count;
+  struct {
+    float weighed[130], squares[130], crossed[130];
+    int32_t whole;
+  } out;
+} label_rows_state;
+
+static void call_label_rows(const label_row_functions *functions, label_rows_state *s) {
+  const float *rows[HL_FILTER_ROWS];
+  for (int r = 0; r < HL_FILTER_ROWS; r++) rows[r] = s->rows[r];
+  const row_neighbours near = {{rows[0], rows[0] + 1, rows[0] + 2}, {rows[1], rows[2]}, {rows[3], rows[4]}};
+  functions->weigh(s->taps, s->reach, rows, s->count, s->out.weighed);
+  s->out.whole = functions->find_crossed(&near, s->count, s->level, s->out.squares, s->out.crossed);
+}
+
+/* The table is no part of the renderer's. */
+static void test_label_rows(void **unused) {
+  (void)unused;
+  static label_rows_state state, expected;
+  uint32_t seed = 8;
+  for (int round = 0; round < 3 * ROUNDS; round++) {
+    fill_salted(&state.rows[0][0], sizeof state.rows / sizeof(float), &seed, -1, 2);
+    fill_salted(state.taps, HL_FILTER_REACH + 1, &seed, -1, 1);
+    state.reach = (const int[]){2, 4, HL_FILTER_REACH}[round % 3];
+    state.count = 1 + (size_t)(127 * bench_random(&seed));
+    state.level = 0.5f;
+    expected = state;
+    call_label_rows(hl_label_row_functions(HL_INSTRUCTION_SET_SCALAR), &expected);
+    for (int set = HL_INSTRUCTION_SET_AVX2; set <= HL_INSTRUCTION_SET_AVX512_VBMI; set++) {
+      if (!hl_cpu_has_instruction_set((hl_instruction_set)set)) continue;
+      call_label_rows(hl_label_row_functions((hl_instruction_set)set), &state);
+      assert_memory_equal(&state.out, &expected.out, sizeof state.out);
+    }
   }
 }
 
@@ -1009,12 +1051,19 @@ int main(int argc, char **argv) {
     return 0;
   }
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bound_rows), cmocka_unit_test(test_bound_cells),
-      cmocka_unit_test(test_brick_bits), cmocka_unit_test(test_fill),
-      cmocka_unit_test(test_coverage),   cmocka_unit_test(test_brick_ranges),
-      cmocka_unit_test(test_light),      cmocka_unit_test(test_fields),
-      cmocka_unit_test(test_shade),      cmocka_unit_test(test_measure),
-      cmocka_unit_test(test_maximum),    cmocka_unit_test(test_shade_beside_nothing),
+      cmocka_unit_test(test_bound_rows),
+      cmocka_unit_test(test_bound_cells),
+      cmocka_unit_test(test_brick_bits),
+      cmocka_unit_test(test_label_rows),
+      cmocka_unit_test(test_fill),
+      cmocka_unit_test(test_coverage),
+      cmocka_unit_test(test_brick_ranges),
+      cmocka_unit_test(test_light),
+      cmocka_unit_test(test_fields),
+      cmocka_unit_test(test_shade),
+      cmocka_unit_test(test_measure),
+      cmocka_unit_test(test_maximum),
+      cmocka_unit_test(test_shade_beside_nothing),
   };
   return cmocka_run_group_tests_name("simd_equal", tests, open_classifier, close_classifier);
 }
