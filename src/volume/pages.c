@@ -14,6 +14,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "volume/convert.h"
+#include "volume/counts.h"
 
 /* ---- the scratch file ---- */
 
@@ -98,8 +99,11 @@ static hl_status map_scratch(hl_context *context, const char *folder, hl_pages *
     mapping = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     if (mapping == MAP_FAILED) number = errno;
   }
-  close(file);
-  if (number != 0) return fail_scratch(folder, bytes, number, error);
+  if (number != 0) {
+    close(file);
+    return fail_scratch(folder, bytes, number, error);
+  }
+  pages->file = file;
   pages->mapping = mapping;
   pages->first = pages->mapping + round_up(SLICES_AROUND * pages->slice_bytes, UNIT);
   return HL_OK;
@@ -113,11 +117,19 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
   hl_status status = HL_OK;
   bool possible = plan(grid, shift, made);
   made->context = context;
+  made->file = -1;
+  pthread_mutex_init(&made->lock, NULL); /* cannot fail: it has no attributes */
   if (!possible) status = hl_fail(error, HL_ERROR_INPUT, "%s: a volume too large for a file", folder);
   if (status == HL_OK) status = map_scratch(context, folder, made, error);
   size_t count = page_count(made);
   if (status == HL_OK && (made->state = hl_allocate_zeroed(context, count, 1)) == NULL)
     status = hl_fail_memory(error, count, "a volume's pages");
+  size_t values = hl_values_of(made->storage);
+  if (status == HL_OK && values > 0) {
+    made->counts = hl_allocate_zeroed(context, values, sizeof *made->counts);
+    if (made->counts == NULL)
+      status = hl_fail_memory(error, values * sizeof *made->counts, "a volume's pages");
+  }
   if (status == HL_OK) *pages = made;
   else hl_pages_release(made);
   return status;
@@ -126,7 +138,10 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
 void hl_pages_release(hl_pages *pages) {
   if (pages == NULL) return;
   if (pages->mapping != NULL) munmap(pages->mapping, pages->mapping_bytes);
+  if (pages->file >= 0) close(pages->file);
   atomic_fetch_sub(&pages->context->paged, pages->held_bytes);
+  pthread_mutex_destroy(&pages->lock);
+  hl_release(pages->context, pages->counts);
   hl_release(pages->context, pages->state);
   hl_release(pages->context, pages);
 }
@@ -215,6 +230,8 @@ static void make_room(hl_pages *pages) {
 
 void hl_pages_finish(hl_pages *pages) {
   pages->filled = true;
+  close(pages->file);
+  pages->file = -1;
   madvise(pages->mapping, pages->mapping_bytes, MADV_RANDOM); /* fetch() says what is read */
 }
 
@@ -279,15 +296,89 @@ static void store_in_row(hl_pages *pages, const size_t at[3], size_t count, cons
       store_in_pages(pages, (const size_t[2]){y, z}, at, count, values);
 }
 
+/* ---- whole rows, written to the file: a write of the mapping would have the system read or clear each unit
+ * first, and tell the processor of it. ---- */
+
+enum { PAGE_SIDE = (1 << PAGE_SHIFT) + PAGE_OVERLAP, PAGE_SLICE_BYTES = PAGE_SIDE * PAGE_SIDE * 4 };
+
+/* Rows j0 to j1 - 1 of slice k. */
+typedef struct row_run {
+  size_t j0, j1, k;
+  const unsigned char *values; /* [j1 - j0][dimension[0]]; stored values */
+} row_run;
+
+static bool write_all(int file, const unsigned char *bytes, size_t count, off_t at) {
+  while (count > 0) {
+    ssize_t written = pwrite(file, bytes, count, at);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes += written, at += written, count -= (size_t)written;
+  }
+  return true;
+}
+
+/* Writes the part of a run that lies in a page: there it is in one piece. False: the system refused it. */
+static bool write_in_page(const hl_pages *pages, const size_t page[3], const row_run *run) {
+  unsigned char part[PAGE_SLICE_BYTES], *to = part;
+  size_t bytes = hl_storage_bytes(pages->storage), side = pages->row_bytes / bytes;
+  size_t y = page[1] << pages->shift, end = y + pages->slice_bytes / pages->row_bytes,
+         x = page[0] << pages->shift;
+  size_t j0 = run->j0 > y ? run->j0 : y, j1 = run->j1 < end ? run->j1 : end;
+  size_t width = pages->dimension[0] - x < side ? pages->dimension[0] - x : side;
+  for (size_t j = j0; j < j1; j++, to += pages->row_bytes) {
+    memcpy(to, run->values + ((j - run->j0) * pages->dimension[0] + x) * bytes, width * bytes);
+    memset(to + width * bytes, 0, (side - width) * bytes);
+  }
+  size_t number = (page[2] * pages->count[1] + page[1]) * pages->count[0] + page[0];
+  size_t place = (size_t)(pages->first - pages->mapping) + number * pages->page_bytes +
+                 (run->k - (page[2] << pages->shift)) * pages->slice_bytes + (j0 - y) * pages->row_bytes;
+  return write_all(pages->file, part, (size_t)(to - part), (off_t)place);
+}
+
+static bool write_run(const hl_pages *pages, const row_run *run) {
+  size_t last_y, last_z, ignored, first_y = first_page(pages, 1, run->j0, &ignored),
+                                  first_z = first_page(pages, 2, run->k, &last_z);
+  first_page(pages, 1, run->j1 - 1, &last_y);
+  for (size_t z = first_z; z <= last_z; z++)
+    for (size_t y = first_y; y <= last_y; y++)
+      for (size_t x = 0; x < pages->count[0]; x++)
+        if (!write_in_page(pages, (const size_t[3]){x, y, z}, run)) return false;
+  return true;
+}
+
+/* The rows of one slice that lie as a whole within `count` voxels from number `first` on, which begins a row;
+ * 0: none. */
+static size_t whole_rows(const hl_pages *pages, size_t first, size_t count) {
+  size_t rows = count / pages->dimension[0],
+         left = pages->dimension[1] - first / pages->dimension[0] % pages->dimension[1];
+  return rows < left ? rows : left;
+}
+
 void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *values) {
   const size_t *n = pages->dimension, bytes = hl_storage_bytes(pages->storage);
-  for (size_t done = 0; done < count;) {
-    size_t row = (first + done) / n[0], i = (first + done) % n[0];
-    size_t taken = n[0] - i < count - done ? n[0] - i : count - done;
-    store_in_row(pages, (const size_t[3]){i, row % n[1], row / n[1]}, taken,
-                 (const unsigned char *)values + done * bytes);
-    done += taken;
+  pthread_mutex_lock(&pages->lock);
+  if (pages->counts != NULL) hl_values_count(pages->storage, values, count, pages->counts);
+  pages->counted += count;
+  pthread_mutex_unlock(&pages->lock);
+  bool writes = pages->slice_bytes <= PAGE_SLICE_BYTES;
+  for (size_t done = 0, taken; done < count; done += taken) {
+    const unsigned char *from = (const unsigned char *)values + done * bytes;
+    size_t row = (first + done) / n[0], i = (first + done) % n[0], j = row % n[1];
+    size_t rows = writes && i == 0 ? whole_rows(pages, first + done, count - done) : 0;
+    taken = rows * n[0];
+    if (rows > 0 && write_run(pages, &(row_run){j, j + rows, row / n[1], from})) continue;
+    taken = n[0] - i < count - done ? n[0] - i : count - done;
+    store_in_row(pages, (const size_t[3]){i, j, row / n[1]}, taken, from);
   }
+}
+
+bool hl_pages_take_counts(hl_pages *pages, uint64_t *counts) {
+  const size_t *n = pages->dimension;
+  bool whole = pages->counts != NULL && pages->counted == n[0] * n[1] * n[2];
+  if (whole) memcpy(counts, pages->counts, hl_values_of(pages->storage) * sizeof *counts);
+  hl_release(pages->context, pages->counts);
+  pages->counts = NULL;
+  return whole;
 }
 
 void hl_pages_load_row(const hl_pages *pages, size_t j, size_t k, void *row) {

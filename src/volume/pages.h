@@ -13,6 +13,8 @@
 #ifndef HL_VOLUME_PAGES_H
 #define HL_VOLUME_PAGES_H
 
+#include <pthread.h>
+
 #include "volume/volume.h"
 
 /* Whether a page is held, and was needed since the clock's hand passed it. */
@@ -27,6 +29,7 @@ enum {
 typedef struct hl_pages {
   unsigned char *mapping; /* owned; [mapping_bytes]: the pages, with room for vector loads around them */
   size_t mapping_bytes;
+  int file;             /* owned; of the mapping, until hl_pages_finish(); -1: closed */
   unsigned char *first; /* in the mapping; the first page */
   hl_context *context;  /* counts the bytes of the pages held, and limits them */
   hl_storage storage;
@@ -36,6 +39,10 @@ typedef struct hl_pages {
   uint64_t held_bytes;  /* of the pages that are not forgotten; atomic */
   size_t hand;          /* the clock's: the page it looks at next, modulo the number of pages; atomic */
   bool filled;          /* hl_pages_finish() was called */
+  pthread_mutex_t lock; /* held while values are counted */
+  uint64_t
+      *counts;    /* owned; [hl_values_of(storage)]: of the values that were stored; null: taken, or floats */
+  size_t counted; /* stored values */
   int shift;
   size_t row_bytes, slice_bytes, page_bytes; /* in a page, from row to row, and from slice to slice; and from
                                                 page to page */
@@ -53,6 +60,10 @@ bool hl_pages_wanted(const hl_context *context, const hl_volume_description *gri
 
 /* Copies `count` stored values, those from number `first` on ([k][j][i]), into all pages that hold them. */
 void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *values);
+
+/* How often each stored value occurs. counts: [hl_values_of(storage)]. False: floats, counts that were taken
+ * before, or voxels that were not stored once each. */
+bool hl_pages_take_counts(hl_pages *pages, uint64_t *counts);
 
 /* After the last voxel was stored. From now on a page that is needed is read as a whole, and nothing beside
  * it: by itself the system would read on, and map more than is counted. */

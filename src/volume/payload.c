@@ -6,13 +6,16 @@
 #include "volume/payload.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <string.h>
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "core/pool.h"
 #include "volume/convert.h"
 #include "volume/destination.h"
 #include "volume/numbers.h"
+#include "volume/parallel.h"
 #include "volume/text.h"
 
 enum { PIECE_BYTES = 1 << 20, STAGE_VOXELS = 8192, SKIPPED_BYTES = 1 << 16 };
@@ -96,12 +99,65 @@ static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64
   return HL_OK;
 }
 
+/* Voxels on their way into pages: one thread at a time reads them, in order; all copy them into their pages.
+ */
+typedef struct page_reading {
+  hl_stream *stream;
+  const hl_payload *payload;
+  hl_destination *destination;
+  size_t piece, done; /* voxels; done: of all threads */
+  bool in_place;      /* voxels of the file are as long as stored ones */
+  bool failed;        /* nothing more is read */
+  pthread_mutex_t lock;
+} page_reading;
+
+/* Reads the next piece, whichever `index` it has: threads do not take the lock in the order of their pieces.
+ */
+static hl_status read_into_pages(void *data, size_t index, int worker, hl_error *error) {
+  page_reading *r = data;
+  (void)index, (void)worker;
+  unsigned char stage[STAGE_VOXELS * 8];
+  void *place = NULL;
+  hl_status status = HL_OK;
+  pthread_mutex_lock(&r->lock);
+  size_t first = r->done, left = voxel_count(r->payload) - first, count = left < r->piece ? left : r->piece;
+  if (!r->failed) {
+    status = hl_destination_take(r->destination, first, count, &place, error);
+    void *raw = r->in_place ? place : stage;
+    if (status == HL_OK) status = read_piece(r->stream, r->payload, first, count, raw, place, error);
+    r->done += count;
+    r->failed = status != HL_OK;
+  }
+  pthread_mutex_unlock(&r->lock);
+  hl_destination_put(r->destination, first, count, place);
+  return status;
+}
+
+/* piece: the most voxels that are read at once; the pieces are whole rows where that is enough for one. */
+static hl_status read_binary_into_pages(hl_stream *stream, const hl_payload *payload,
+                                        hl_destination *destination, size_t piece, hl_error *error) {
+  page_reading r = {.stream = stream, .payload = payload, .destination = destination};
+  r.in_place = hl_voxel_type_bytes(payload->grid.type) == destination->voxel_bytes;
+  size_t row = payload->grid.dimensions[0];
+  r.piece = piece = piece < row ? piece : piece - piece % row;
+  hl_pool *pool = NULL;
+  hl_status status = hl_pool_create(stream->context, 0, &pool, error);
+  if (status != HL_OK) return status;
+  pthread_mutex_init(&r.lock, NULL);
+  size_t pieces = (voxel_count(payload) + piece - 1) / piece;
+  status = hl_parallel_read(stream->context, pool, stream->path, pieces, read_into_pages, &r, error);
+  pthread_mutex_destroy(&r.lock);
+  hl_pool_destroy(pool);
+  return status;
+}
+
 static hl_status read_binary(hl_stream *stream, const hl_payload *payload, hl_destination *destination,
                              hl_error *error) {
   hl_voxel_type type = payload->grid.type;
   size_t file_bytes = hl_voxel_type_bytes(type), stored_bytes = hl_storage_bytes(hl_voxel_type_storage(type));
   bool in_place = file_bytes == stored_bytes;
   size_t count = voxel_count(payload), piece = in_place ? PIECE_BYTES / file_bytes : STAGE_VOXELS;
+  if (destination->pages != NULL) return read_binary_into_pages(stream, payload, destination, piece, error);
   unsigned char stage[STAGE_VOXELS * 8];
   for (size_t done = 0; done < count;) {
     size_t wanted = count - done < piece ? count - done : piece;

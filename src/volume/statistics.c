@@ -11,6 +11,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "volume/counts.h"
 #include "volume/pages.h"
 
 enum { LANES = 8 };
@@ -78,27 +79,10 @@ static bool next_piece(walk *w) {
   return true;
 }
 
-static void count_u8(const uint8_t *voxels, size_t count, uint64_t *counts) {
-  uint64_t lanes[4][256] = {{0}}; /* four tables, so that runs of equal values do not wait for each other */
-  size_t n = 0;
-  for (; n + 4 <= count; n += 4)
-    for (int lane = 0; lane < 4; lane++) lanes[lane][voxels[n + (size_t)lane]]++;
-  for (; n < count; n++) lanes[0][voxels[n]]++;
-  for (int value = 0; value < 256; value++)
-    counts[value] += lanes[0][value] + lanes[1][value] + lanes[2][value] + lanes[3][value];
-}
-
-static void count_u16(const uint16_t *voxels, size_t count, uint64_t *counts) {
-  for (size_t n = 0; n < count; n++) counts[voxels[n]]++;
-}
-
 /* Counts how often each stored value occurs; counts must be zeros before. False: cancelled. */
 static bool count_values(const hl_volume *volume, void *buffer, uint64_t *counts) {
   walk w = {.volume = volume, .buffer = buffer, .count = hl_volume_voxel_count(volume)};
-  while (next_piece(&w)) {
-    if (volume->storage == HL_STORAGE_U8) count_u8(w.voxels, w.piece, counts);
-    else count_u16(w.voxels, w.piece, counts);
-  }
+  while (next_piece(&w)) hl_values_count(volume->storage, w.voxels, w.piece, counts);
   return !w.cancelled;
 }
 
@@ -199,8 +183,9 @@ static bool measure_f32(hl_volume *volume, void *buffer, tally *total) {
 }
 
 static bool measure_integers(hl_volume *volume, void *buffer, uint64_t *counts, tally *total) {
-  int values = volume->storage == HL_STORAGE_U8 ? 256 : 65536;
-  if (!count_values(volume, buffer, counts)) return false;
+  int values = (int)hl_values_of(volume->storage);
+  bool counted = volume->pages != NULL && hl_pages_take_counts(volume->pages, counts);
+  if (!counted && !count_values(volume, buffer, counts)) return false;
   *total = tally_counts(counts, values);
   bin_counts(counts, values, make_binning(*total, volume->value_scale), volume->histogram);
   return true;
@@ -209,7 +194,7 @@ static bool measure_integers(hl_volume *volume, void *buffer, uint64_t *counts, 
 hl_status hl_volume_measure(hl_volume *volume, const char *subject, hl_error *error) {
   hl_context *context = volume->context;
   bool packed = hl_volume_is_packed(volume), integers = volume->storage != HL_STORAGE_F32;
-  size_t values = volume->storage == HL_STORAGE_U8 ? 256 : integers ? 65536 : 1;
+  size_t values = integers ? hl_values_of(volume->storage) : 1;
   size_t piece = packed ? 0 : (COPIED_PIECE + volume->dimension[0]) * hl_storage_bytes(volume->storage);
   uint64_t *counts = hl_allocate_zeroed(context, values, sizeof *counts);
   void *buffer = packed ? NULL : hl_allocate(context, piece, 1);

@@ -325,7 +325,7 @@ static void test_few_pages(void **state) {
 /* What a pass over 8 million voxels leaves in memory. */
 static void test_resident_bytes(void **state) {
   (void)state;
-  enum { WIDE = 200, WINDOW = 1 << 16 };
+  enum { WIDE = 200, WINDOW = 1 << 16, ROWS_AND_HALF = 5 * WIDE / 2 };
   hl_context *context = NULL;
   hl_volume_description grid;
   hl_pages *pages;
@@ -338,8 +338,13 @@ static void test_resident_bytes(void **state) {
   assert_int_equal(hl_pages_create(context, "/tmp", &grid, PAGE_SHIFT, &pages, NULL), HL_OK);
   for (size_t k = 0; k < WIDE; k++) {
     memset(slice, (int)k, sizeof slice);
-    hl_pages_store(pages, k * sizeof slice, sizeof slice, slice);
+    for (size_t done = 0; done < sizeof slice; done += ROWS_AND_HALF) /* whole rows, and parts of rows */
+      hl_pages_store(pages, k * sizeof slice + done, ROWS_AND_HALF, slice);
   }
+  static uint64_t counts[256];
+  assert_true(hl_pages_take_counts(pages, counts));
+  for (size_t k = 0; k < 256; k++) assert_int_equal(counts[k], k < WIDE ? WIDE * WIDE : 0);
+  assert_false(hl_pages_take_counts(pages, counts));
   size_t most = LEAST_PAGES * (pages->page_bytes + 2 * WINDOW);
   assert_in_range(resident_bytes(pages->mapping), 1, most);
   for (size_t k = 0; k < WIDE; k++)
