@@ -263,7 +263,7 @@ static hl_status analyse_sample(const hl_volume *volume, const hl_sample *sample
   return status;
 }
 
-hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error) {
+static hl_status analyse(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error) {
   *analysis = (hl_data_analysis){.kind = HL_DATA_CONSTANT, .background = volume->minimum, .direction = 1};
   if (!(volume->maximum > volume->minimum)) return HL_OK;
   hl_sample sample;
@@ -287,6 +287,27 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
   hl_sample_release(&sample);
   if (status == HL_OK && analysis->kind == HL_DATA_SURFACES) hl_data_find_materials(volume, analysis);
   return status == HL_OK ? hl_data_find_labels(volume, analysis, error) : status;
+}
+
+/* Keeps a copy with the volume. Volumes are constant for their readers; what is found out about them is not.
+ */
+static hl_status keep(const hl_volume *volume, const hl_data_analysis *analysis, hl_error *error) {
+  hl_data_analysis *kept = hl_allocate(volume->context, 1, sizeof *kept), *before = NULL;
+  if (kept == NULL) return hl_fail_memory(error, sizeof *kept, "the analysis of a volume");
+  *kept = *analysis;
+  if (!atomic_compare_exchange_strong(&((hl_volume *)volume)->analysis, &before, kept))
+    hl_release(volume->context, kept); /* another thread was quicker */
+  return HL_OK;
+}
+
+hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error) {
+  const hl_data_analysis *kept = atomic_load(&((hl_volume *)volume)->analysis);
+  if (kept != NULL) {
+    *analysis = *kept;
+    return HL_OK;
+  }
+  hl_status status = analyse(volume, analysis, error);
+  return status == HL_OK ? keep(volume, analysis, error) : status;
 }
 
 /* ---- label maps: few whole numbers, each in blocks.

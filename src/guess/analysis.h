@@ -46,6 +46,7 @@ typedef struct hl_data_analysis {
   int material_count;                    /* of scanned objects; 0: not asked */
 } hl_data_analysis;
 
+/* Looks at the voxels once: the volume keeps what was found. Fails for lack of memory, and when cancelled. */
 hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error);
 
 /* Finds the materials of scanned objects: sets valleys and material_count. */

@@ -31,17 +31,13 @@ void hl_scene_key_light(hl_light *light) {
   light->intensity = 1.7;
 }
 
-/* analysis: of the first volume, or null. */
-static hl_status frame(const hl_scene_description *description, const hl_data_analysis *analysis,
-                       hl_camera *camera, hl_error *error) {
-  hl_view view;
-  hl_status status = hl_view_automatic(description, analysis, &view, error);
-  if (status != HL_OK) return status;
-  return hl_camera_frame_view(description, &view, 1, camera, error);
-}
-
 hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *camera, hl_error *error) {
-  return frame(description, NULL, camera, error);
+  hl_view view;
+  hl_outline outline = {0};
+  hl_status status = hl_view_automatic(description, &outline, &view, error);
+  if (status == HL_OK) status = hl_camera_frame_outline(description, &outline, &view, 1, camera, error);
+  hl_outline_release(&outline);
+  return status;
 }
 
 /* The key light, and where the look asks for one a fill light from the eye without shadows. *count: 1 or 2.
@@ -108,7 +104,7 @@ static hl_status make_scene(hl_context *context, hl_volume *volume, const char *
   description.volumes = &scene_volume;
   description.volume_count = 1;
   status = hl_scene_volume_check(&scene_volume, 0, error);
-  if (status == HL_OK) status = frame(&description, &analysis, &description.camera, error);
+  if (status == HL_OK) status = hl_scene_frame(&description, &description.camera, error);
   if (status == HL_OK) {
     choose_lights(look, lights, &description.light_count);
     description.lights = lights;

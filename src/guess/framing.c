@@ -180,6 +180,7 @@ static double make_room(const frame_job *job, const frame_job *few, const hl_vie
 
 /* ---- cameras ---- */
 
+/* outline: empty (zeros): it is found. */
 static hl_status begin(const hl_scene_description *description, double zoom, const hl_camera *camera,
                        hl_outline *outline, frame_job *job, hl_error *error) {
   bool perspective = camera->type == HL_CAMERA_PERSPECTIVE, possible = zoom >= 1e-6 && zoom <= 1e6;
@@ -198,7 +199,7 @@ static hl_status begin(const hl_scene_description *description, double zoom, con
   job->aspect = (double)description->width / description->height;
   job->tangent_y = perspective ? tan(camera->fovy_deg * HL_PI / 360) : 0;
   job->tangent_x = job->tangent_y * job->aspect;
-  return hl_outline_find(description, outline, error);
+  return outline->context != NULL ? HL_OK : hl_outline_find(description, outline, error);
 }
 
 /* The eye's distance from the target. In parallel projection, where the distance does not change the picture,
@@ -209,15 +210,12 @@ static double distance_to(const frame_job *job, const frame_place *place, double
   return job->tangent_y > 0 ? fmax(depth - place->forward, 1e-6 * extent) / zoom : extent / 2 + 2 * wide;
 }
 
-hl_status hl_camera_frame_view(const hl_scene_description *description, const hl_view *view, double zoom,
-                               hl_camera *camera, hl_error *error) {
-  if (description == NULL || view == NULL || camera == NULL || !hl_view_is_possible(view))
-    return hl_fail(error, HL_ERROR_ARGUMENT,
-                   "hl_camera_frame_view: null description or camera, or an impossible view");
-  hl_outline outline = {0}, thinned = {0};
+hl_status hl_camera_frame_outline(const hl_scene_description *description, hl_outline *outline,
+                                  const hl_view *view, double zoom, hl_camera *camera, hl_error *error) {
+  hl_outline thinned = {0};
   frame_job job;
-  hl_status status = begin(description, zoom, camera, &outline, &job, error);
-  if (status == HL_OK) status = hl_outline_thin(&outline, &thinned, error);
+  hl_status status = begin(description, zoom, camera, outline, &job, error);
+  if (status == HL_OK) status = hl_outline_thin(outline, &thinned, error);
   if (status == HL_OK) {
     look(&job, view);
     frame_place place = fit(&job, FILLED);
@@ -226,15 +224,26 @@ hl_status hl_camera_frame_view(const hl_scene_description *description, const hl
     double depth = make_room(&job, &few, view, &place);
     vec3 target = point_at(&job, &place, depth);
     if (camera->type == HL_CAMERA_ORTHOGRAPHIC) camera->height = 2 * place.half_height / zoom;
-    hl_camera_place(view, target, distance_to(&job, &place, depth, 2 * radius_about(&outline, target), zoom),
+    hl_camera_place(view, target, distance_to(&job, &place, depth, 2 * radius_about(outline, target), zoom),
                     camera);
   }
-  hl_outline_release(&outline);
   hl_outline_release(&thinned);
   return status;
 }
 
-hl_status hl_view_widen(const hl_scene_description *description, hl_view *view, hl_error *error) {
+hl_status hl_camera_frame_view(const hl_scene_description *description, const hl_view *view, double zoom,
+                               hl_camera *camera, hl_error *error) {
+  if (description == NULL || view == NULL || camera == NULL || !hl_view_is_possible(view))
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_camera_frame_view: null description or camera, or an impossible view");
+  hl_outline outline = {0};
+  hl_status status = hl_camera_frame_outline(description, &outline, view, zoom, camera, error);
+  hl_outline_release(&outline);
+  return status;
+}
+
+hl_status hl_view_widen(const hl_scene_description *description, hl_outline *outline, hl_view *view,
+                        hl_error *error) {
   static const double turns[] = {
       0, -2, 4, 2,
       1, -3, 5, 3}; /* the three-quarter views to try: turned by these multiples of HL_VIEW_AZIMUTH */
@@ -242,9 +251,8 @@ hl_status hl_view_widen(const hl_scene_description *description, hl_view *view, 
   hl_scene_description square = *description;
   square.width = square.height = 1;
   const hl_view given = *view;
-  hl_outline outline = {0};
   frame_job job;
-  hl_status status = begin(&square, 1, &usual, &outline, &job, error);
+  hl_status status = begin(&square, 1, &usual, outline, &job, error);
   double most = 0;
   for (size_t n = 0; status == HL_OK && n < sizeof turns / sizeof *turns; n++) {
     hl_view at = given;
@@ -257,7 +265,6 @@ hl_status hl_view_widen(const hl_scene_description *description, hl_view *view, 
     most = wide;
     view->azimuth_deg = at.azimuth_deg;
   }
-  hl_outline_release(&outline);
   return status;
 }
 

@@ -270,22 +270,21 @@ static bool first_decides(const hl_scene_description *description) {
   return true;
 }
 
-hl_status hl_view_automatic(const hl_scene_description *description, const hl_data_analysis *analysis,
-                            hl_view *view, hl_error *error) {
+hl_status hl_view_automatic(const hl_scene_description *description, hl_outline *outline, hl_view *view,
+                            hl_error *error) {
   const hl_scene_volume *first = &description->volumes[0];
   hl_view_about(description, (vec3){0, 0, 1}, view);
   /* Programs write left-posterior-superior for any data, so it says little unless the file is DICOM. */
   if (description->volume_count == 0 || hl_scene_is_anatomical(description) || !first_decides(description))
     return HL_OK;
-  hl_data_analysis made;
-  hl_status status = analysis == NULL ? hl_data_analyse(first->volume, &made, error) : HL_OK;
+  hl_data_analysis analysis;
+  hl_status status = hl_data_analyse(first->volume, &analysis, error);
   hl_upright upright;
-  if (analysis == NULL) analysis = &made;
-  if (status == HL_OK) status = hl_scene_upright(first, analysis, &upright, error);
+  if (status == HL_OK) status = hl_scene_upright(first, &analysis, &upright, error);
   if (status != HL_OK) return status;
   hl_view_about(description, upright.up, view);
   view->azimuth_deg = upright.azimuth_deg;
-  return analysis->kind == HL_DATA_SURFACES ? HL_OK : hl_view_widen(description, view, error);
+  return analysis.kind == HL_DATA_SURFACES ? HL_OK : hl_view_widen(description, outline, view, error);
 }
 
 /* The azimuth of a view from the left: of the body's left where the file tells the anatomy, else the viewer's
@@ -320,7 +319,9 @@ hl_status hl_view_choose(const hl_scene_description *description, hl_side side, 
   if (!(length > 0 && isfinite(length)))
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_view_choose: up has no direction: give a vector that is not 0");
-  hl_status status = hl_view_automatic(description, NULL, view, error);
+  hl_outline outline = {0};
+  hl_status status = hl_view_automatic(description, &outline, view, error);
+  hl_outline_release(&outline);
   if (status != HL_OK) return status;
   bool differs = up != NULL && vec3_dot(vec3_of(up), vec3_of(view->up)) < length * (1 - 1e-12);
   if (differs) hl_view_about(description, vec3_of(up), view);

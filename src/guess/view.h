@@ -4,16 +4,23 @@
 
 #include "core/vector.h"
 #include "guess/analysis.h"
+#include "guess/outline.h"
 #include "scene/scene.h"
 
 /* Turns the view to the one of the three-quarter views (azimuths 30 and 60 from each of the four axes) that
- * is widest, so that a turn needs little more room. Fails for lack of memory alone. */
-hl_status hl_view_widen(const hl_scene_description *description, hl_view *view, hl_error *error);
+ * is widest, so that a turn needs little more room. outline: of the scene; empty (zeros): it is found; the
+ * caller releases it in any case. Fails for lack of memory alone. */
+hl_status hl_view_widen(const hl_scene_description *description, hl_outline *outline, hl_view *view,
+                        hl_error *error);
 
-/* The view that a scene without a camera gets. analysis: of its first volume, or null: it is made where it is
- * needed. */
-hl_status hl_view_automatic(const hl_scene_description *description, const hl_data_analysis *analysis,
-                            hl_view *view, hl_error *error);
+/* hl_camera_frame_view() of a scene whose outline may be known: as for hl_view_widen(). */
+hl_status hl_camera_frame_outline(const hl_scene_description *description, hl_outline *outline,
+                                  const hl_view *view, double zoom, hl_camera *camera, hl_error *error);
+
+/* The view that a scene without a camera gets. outline: as for hl_view_widen(); it stays empty where it is
+ * not needed. */
+hl_status hl_view_automatic(const hl_scene_description *description, hl_outline *outline, hl_view *view,
+                            hl_error *error);
 
 /* ---- which way up a volume is, where its file cannot say. */
 

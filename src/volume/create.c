@@ -314,6 +314,7 @@ void hl_volume_release(hl_volume *volume) {
   hl_release(volume->context, volume->segments);
   if (volume->shelf != NULL) volume->release_shelf(volume->context, volume->shelf);
   hl_release(volume->context, volume->series);
+  hl_release(volume->context, atomic_load(&volume->analysis));
   hl_release(volume->context, volume->owned_voxels);
   hl_pages_release(volume->pages);
   hl_release(volume->context, volume->colors);

@@ -86,6 +86,8 @@ struct hl_volume {
   bool has_surroundings; /* the data value of what is around the content is known */
   double surroundings;
   double surface_slope; /* of an occupancy: how much it rises per voxel where it passes 1/2 */
+  _Atomic(struct hl_data_analysis *)
+      analysis; /* owned block: what guess/analysis.h found; null: not asked yet */
   /* What other rooms keep with the volume: owned, released with it. */
   atomic_flag shelf_lock; /* held while shelf is looked at */
   void *shelf;
