@@ -48,6 +48,7 @@
 #include "image.h"
 #include "layers.h"
 #include "mesh.h"
+#include "ranks.h"
 #include "render.h"
 #include "scene.h"
 #include "settings.h"

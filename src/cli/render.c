@@ -26,7 +26,7 @@ typedef struct render_job {
   hl_scene *scene;      /* owned */
   hl_image *image;      /* owned */
   render_layers layers; /* owned */
-  ranks ranks;          /* owned; of --strips-over-ranks */
+  hl_ranks *ranks;      /* owned; of --strips-over-ranks and --volume-over-ranks; null: alone */
   double started;       /* seconds of clock_seconds() */
   render_result result;
 } render_job;
@@ -76,15 +76,19 @@ static int job_open(render_job *job) {
   const cli_value *values = job->values;
   int exit_code = render_check_options(values);
   if (exit_code == EXIT_CODE_OK) exit_code = choose_output(job);
-  if (exit_code == EXIT_CODE_OK && values[RENDER_STRIPS].given) exit_code = ranks_begin(&job->ranks);
   if (exit_code != EXIT_CODE_OK) return exit_code;
-  cli_host_options options = {.quiet = values[RENDER_QUIET].given || job->ranks.rank > 0,
+  cli_host_options options = {.quiet = values[RENDER_QUIET].given,
                               .progress = true,
                               .subject = base_name(job->input),
                               .memory_limit = values[RENDER_MAX_MEMORY].bytes,
                               .data_folder = values[RENDER_DATA].text,
                               .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice};
-  return host_open(&options, &job->host);
+  exit_code = host_open(&options, &job->host);
+  int over_ranks = values[RENDER_VOLUME].given ? RENDER_VOLUME : RENDER_STRIPS;
+  if (exit_code == EXIT_CODE_OK && values[over_ranks].given)
+    exit_code = ranks_begin(&job->host, render_options[over_ranks].name, &job->ranks);
+  if (exit_code == EXIT_CODE_OK && values[RENDER_VOLUME].given) hl_ranks_hold_volumes(job->ranks);
+  return exit_code;
 }
 
 /* Refuses to write over a file that the scene needs. */
@@ -144,8 +148,8 @@ static hl_status render_reference(render_job *job, const hl_scene_description *d
 static hl_status render_sheets(render_job *job, const hl_scene_description *description, hl_error *error) {
   hl_renderer *renderer = NULL;
   hl_status status = hl_renderer_create(job->host.context, &renderer, error);
-  if (status == HL_OK && job->ranks.size > 1)
-    status = hl_renderer_share(renderer, job->ranks.rank, job->ranks.size, error);
+  if (status == HL_OK)
+    status = hl_renderer_share(renderer, hl_ranks_rank(job->ranks), hl_ranks_size(job->ranks), error);
   if (status == HL_OK)
     status = hl_renderer_render_layers(renderer, job->scene, hl_image_pixels(job->image),
                                        4 * (size_t)description->width, wanted_layers(job),
@@ -166,12 +170,14 @@ static int job_render(render_job *job) {
     status = job->result.reference ? render_reference(job, description, &error)
                                    : render_sheets(job, description, &error);
   job->result.description = description;
+  job->result.ranks = job->ranks;
   job->result.seconds.prepare = job->result.statistics.seconds_prepare;
   job->result.seconds.render = job->result.statistics.seconds_render;
   render_name_scene(job->input, job->bare, &error);
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
-  return ranks_sum(&job->ranks, hl_image_pixels(job->image),
-                   4 * (size_t)description->width * (size_t)description->height);
+  hl_ranks_sum(job->ranks, hl_image_pixels(job->image),
+               4 * (size_t)description->width * (size_t)description->height);
+  return EXIT_CODE_OK;
 }
 
 static hl_status write_to_stdout(render_job *job, const hl_image_write_options *options, int *exit_code,
@@ -241,20 +247,21 @@ static int job_report(render_job *job) {
 }
 
 static void job_close(render_job *job, int exit_code) {
-  ranks_end(&job->ranks, exit_code);
+  ranks_check(job->ranks, exit_code);
   render_layers_release(&job->layers);
   hl_image_destroy(job->image);
   hl_scene_release(job->scene);
+  hl_ranks_leave(job->ranks);
   host_close(&job->host);
   free(job->output);
 }
 
 static int run_render(const cli_value *values, char **operands) {
   if (render_is_series(values, operands)) {
-    if (!values[RENDER_STRIPS].given) return render_series(values, operands);
-    return fail(
-        EXIT_CODE_USAGE,
-        "--strips-over-ranks makes one picture: of several share the pictures by --frames-over-ranks");
+    if (!values[RENDER_STRIPS].given && !values[RENDER_VOLUME].given) return render_series(values, operands);
+    return fail(EXIT_CODE_USAGE,
+                "--%s makes one picture: of several share the pictures by --frames-over-ranks",
+                render_options[values[RENDER_STRIPS].given ? RENDER_STRIPS : RENDER_VOLUME].name);
   }
   render_job job = {.values = values, .inputs = operands, .input = operands[0], .started = clock_seconds()};
   while (operands[job.input_count] != NULL) job.input_count++;
@@ -265,7 +272,7 @@ static int run_render(const cli_value *values, char **operands) {
   bool picture = !values[RENDER_PRINT_SCENE].given;
   if (exit_code == EXIT_CODE_OK && !picture) exit_code = job_print_scene(&job);
   if (exit_code == EXIT_CODE_OK && picture) exit_code = job_render(&job);
-  picture = picture && job.ranks.rank == 0;
+  picture = picture && hl_ranks_rank(job.ranks) == 0;
   if (exit_code == EXIT_CODE_OK && picture) exit_code = job_write(&job);
   if (exit_code == EXIT_CODE_OK && picture) exit_code = job_report(&job);
   job_close(&job, exit_code);

@@ -71,6 +71,7 @@ enum render_option {
   RENDER_PART,
   RENDER_RANKS,
   RENDER_STRIPS,
+  RENDER_VOLUME,
   RENDER_THREADS,
   RENDER_INSTRUCTION_SET,
   RENDER_MAX_MEMORY,
@@ -251,6 +252,7 @@ typedef struct render_result {
   const hl_scene_description *description;
   hl_render_statistics statistics;
   render_seconds seconds;
+  const hl_ranks *ranks; /* borrowed; the picture's; null: one process */
 } render_result;
 
 /* Prints the statistics as JSON on stdout, or in one line on stderr. */

@@ -406,6 +406,11 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                        .kind = OPTION_SWITCH,
                        .help = "under Open MPI's mpirun: its processes make one picture\ntogether, each its "
                                "own strips of 16 rows"},
+    [RENDER_VOLUME] = {.name = "volume-over-ranks",
+                       .kind = OPTION_SWITCH,
+                       .help =
+                           "and each reads and holds its own slices of the\nvolumes, and asks the others for "
+                           "theirs; up to\n--max-memory of them is kept"},
     [RENDER_THREADS] = HOST_OPTION_THREADS(NULL),
     [RENDER_INSTRUCTION_SET] =
         {.name = "instruction-set",
@@ -462,10 +467,11 @@ int render_check_options(const cli_value *values) {
       return fail(EXIT_CODE_USAGE, "--print-scene makes no picture: remove --%s",
                   render_options[pictures[n]].name);
   static const int alone[] = {RENDER_LAYERS, RENDER_REFERENCE, RENDER_PRINT_SCENE};
-  for (size_t n = 0; values[RENDER_STRIPS].given && n < sizeof alone / sizeof *alone; n++)
+  int over_ranks = values[RENDER_VOLUME].given ? RENDER_VOLUME : RENDER_STRIPS;
+  for (size_t n = 0; values[over_ranks].given && n < sizeof alone / sizeof *alone; n++)
     if (values[alone[n]].given)
-      return fail(EXIT_CODE_USAGE, "--strips-over-ranks shares a picture by sheets: remove --%s",
-                  render_options[alone[n]].name);
+      return fail(EXIT_CODE_USAGE, "--%s shares a picture by sheets: remove --%s",
+                  render_options[over_ranks].name, render_options[alone[n]].name);
   int exit_code = render_check_clip(&values[RENDER_CLIP]);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_cuts(values);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_iso(&values[RENDER_ISO]);

@@ -78,6 +78,20 @@ static bool is_maximum(const hl_scene_description *description) {
   return description->render.compositing == HL_COMPOSITING_MAXIMUM;
 }
 
+/* What this process got of the volumes that lie over the ranks. */
+static void print_traffic(json_writer *json, const hl_ranks *ranks) {
+  uint64_t bytes, requests;
+  double seconds;
+  if (ranks == NULL) return;
+  hl_ranks_traffic(ranks, &bytes, &requests, &seconds);
+  json_open_object(json, "over_ranks");
+  json_whole_number(json, "ranks", (uint64_t)hl_ranks_size(ranks));
+  json_whole_number(json, "requests", requests);
+  json_whole_number(json, "bytes", bytes);
+  json_number(json, "seconds", seconds);
+  json_close(json);
+}
+
 int render_print_json(const render_result *result) {
   const hl_scene_description *description = result->description;
   const hl_render_statistics *statistics = &result->statistics;
@@ -96,6 +110,7 @@ int render_print_json(const render_result *result) {
   print_seconds(&json, result);
   print_work(&json, statistics);
   json_whole_number(&json, "peak_memory_bytes", peak_memory_bytes());
+  print_traffic(&json, result->ranks);
   json_whole_number(&json, "threads", (uint64_t)statistics->threads);
   json_text(&json, "instruction_set", hl_instruction_set_name(statistics->instruction_set));
   json_close(&json);

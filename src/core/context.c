@@ -80,6 +80,7 @@ hl_status hl_context_create(const hl_context_options *options, hl_context **cont
   atomic_init(&made->held, 0);
   atomic_init(&made->peak, 0);
   atomic_init(&made->paged, 0);
+  made->ranks = NULL;
   *context = made;
   return HL_OK;
 }

@@ -12,6 +12,7 @@ struct hl_context {
   atomic_uint_least64_t held, peak; /* bytes of blocks */
   char *scratch_folder;             /* owned; of hl_context_limit_memory(); may be null */
   atomic_uint_least64_t paged;      /* bytes of the pages of scratch files (volume/pages.h) held in memory */
+  struct hl_ranks *ranks;           /* borrowed: that hold what is loaded (halflight/ranks.h); may be null */
 };
 
 void hl_log(const hl_context *context, hl_log_level level, const char *format, ...)

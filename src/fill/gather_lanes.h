@@ -144,7 +144,7 @@ LANES_INLINE lanes sum_in_memory(const grid *grid, const lanes_int cell[3], cons
 /* The page of the first active lane's taps, as a grid; returns the active lanes with taps in this page. cell:
  * tap 0 is at cell - 1. */
 LANES_INLINE uint32_t lanes_in_page(const grid *grid, const lanes_int cell[3], uint32_t active,
-                                    struct grid *view) {
+                                    struct grid *view, hl_page_reading *reading) {
   int first = __builtin_ctz(active);
   lanes_int same = lanes_from_bits(active);
   size_t page[3];
@@ -153,7 +153,7 @@ LANES_INLINE uint32_t lanes_in_page(const grid *grid, const lanes_int cell[3], u
     page[a] = (size_t)of_lane[first];
     same &= of_lane == of_lane[first];
   }
-  hl_grid_of_page(grid, page, view);
+  hl_grid_of_page(grid, page, view, reading);
   return lanes_bits(same);
 }
 
@@ -163,8 +163,10 @@ static __attribute__((noinline)) lanes sum_in_pages(const grid *grid, const lane
   lanes sum = lanes_set(0);
   for (uint32_t left = active; left != 0;) {
     struct grid view;
-    uint32_t in_page = lanes_in_page(grid, cell, left, &view);
+    hl_page_reading reading;
+    uint32_t in_page = lanes_in_page(grid, cell, left, &view, &reading);
     lanes some = sum_in_memory(&view, cell, NULL, in_page, weight);
+    if (!hl_page_stayed(grid->pages, &reading)) continue;
     sum = lanes_select(lanes_from_bits(in_page), some, sum);
     left &= ~in_page;
   }

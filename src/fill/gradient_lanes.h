@@ -101,8 +101,11 @@ static __attribute__((noinline)) lanes3 slopes_in_pages(const grid *grid, const 
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
   for (uint32_t left = active; left != 0;) {
     struct grid view;
-    uint32_t in_page = lanes_in_page(grid, cell, left, &view);
-    join_slopes(in_page, slopes_in_memory(&view, cell, in_page, starts, w), &sum);
+    hl_page_reading reading;
+    uint32_t in_page = lanes_in_page(grid, cell, left, &view, &reading);
+    lanes3 some = slopes_in_memory(&view, cell, in_page, starts, w);
+    if (!hl_page_stayed(grid->pages, &reading)) continue;
+    join_slopes(in_page, some, &sum);
     left &= ~in_page;
   }
   return sum;

@@ -28,6 +28,7 @@ typedef struct brick_job {
   float *columns;        /* [threads][2][dimension 0] */
   unsigned char *copies; /* [threads][WINDOW * WINDOW][copy_bytes]; rows of grids with pages */
   size_t copy_bytes;
+  size_t first; /* the first layer of bricks to bound: over ranks, others bound those before */
 } brick_job;
 
 /* The least and greatest values arrive as floats, which represent the values of every voxel type exactly. */
@@ -96,7 +97,7 @@ static void bound_layer_of_bricks(void *data, size_t index, int worker) {
   size_t width = (size_t)job->grid->dimension[0];
   float *least = job->columns + (size_t)worker * 2 * width;
   for (int32_t by = 0; by < job->grid->brick_count[1]; by++)
-    bound_brick_row(job, by, (int32_t)index, least, least + width,
+    bound_brick_row(job, by, (int32_t)(job->first + index), least, least + width,
                     job->copies + (size_t)worker * WINDOW * WINDOW * job->copy_bytes);
 }
 
@@ -115,6 +116,21 @@ static void lay_out_columns(brick_job *job, int threads, hl_layout *layout) {
   job->copies = hl_layout_take(layout, (size_t)threads * WINDOW * WINDOW, job->copy_bytes);
 }
 
+/* Over ranks each bounds its share of the layers. */
+static void bound_layers_of_bricks(hl_pool *pool, brick_job *job) {
+  const grid *grid = job->grid;
+  size_t layers = (size_t)grid->brick_count[2];
+  size_t layer_bytes = hl_grid_bricks(grid) / layers * 2 * hl_storage_bytes(grid->storage);
+  if (grid->pages == NULL || grid->pages->blocks == NULL) {
+    hl_pool_run(pool, layers, bound_layer_of_bricks, job);
+    return;
+  }
+  hl_ranks *ranks = hl_blocks_ranks(grid->pages->blocks);
+  job->first = hl_ranks_part(ranks, layers, ranks->rank);
+  hl_pool_run(pool, hl_ranks_part(ranks, layers, ranks->rank + 1) - job->first, bound_layer_of_bricks, job);
+  hl_ranks_complete(ranks, grid->brick_bounds, layers, layer_bytes);
+}
+
 hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, grid *grid,
                           hl_error *error) {
   brick_job job = {.grid = grid, .bound_rows = functions->rows[grid->storage]};
@@ -124,7 +140,7 @@ hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functio
   if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "the bricks of a volume");
   lay_out_columns(&job, hl_pool_threads(pool), &handed);
   memset(grid->relevant, 0, hl_grid_bricks(grid) + READ_BEYOND);
-  hl_pool_run(pool, (size_t)grid->brick_count[2], bound_layer_of_bricks, &job);
+  bound_layers_of_bricks(pool, &job);
   if (grid->pages != NULL) hl_pages_forget(grid->pages);
   hl_release(context, job.columns);
   return HL_OK;

@@ -145,15 +145,17 @@ static inline const unsigned char *hl_grid_row(const grid *grid, int64_t y, int6
 }
 
 /* A grid whose voxels are those of one page of another: the same places, but only the page's voxels may be
- * read. */
-static inline void hl_grid_of_page(const grid *grid, const size_t page[3], struct grid *view) {
+ * read, and count if the page stays (hl_page_stayed()). */
+static inline void hl_grid_of_page(const grid *grid, const size_t page[3], struct grid *view,
+                                   hl_page_reading *reading) {
   const hl_pages *pages = grid->pages;
   size_t before = ((page[2] * pages->slice_bytes + page[1] * pages->row_bytes) +
                    page[0] * hl_storage_bytes(pages->storage))
                   << pages->shift;
   *view = *grid;
   view->pages = NULL;
-  view->voxels = (const void *)((uintptr_t)hl_page_at(pages, page) - before);
+  *reading = hl_page_begin(pages, page);
+  view->voxels = (const void *)((uintptr_t)reading->first - before);
   view->row_bytes = pages->row_bytes;
   view->slice_bytes = pages->slice_bytes;
 }
@@ -164,8 +166,7 @@ static inline float hl_stored_value(const grid *grid, int64_t x, int64_t y, int6
   for (int a = 0; a < 3; a++)
     at[a] = at[a] < 0 ? 0 : at[a] >= grid->dimension[a] ? grid->dimension[a] - 1 : at[a];
   if (grid->pages != NULL)
-    return (float)hl_stored_number(
-        grid->storage, hl_page_voxel(grid->pages, (size_t)at[0], (size_t)at[1], (size_t)at[2]), 0);
+    return (float)hl_page_number(grid->pages, (size_t)at[0], (size_t)at[1], (size_t)at[2]);
   const void *row = hl_grid_row(grid, at[1], at[2]);
   if (grid->storage == HL_STORAGE_U8) return ((const uint8_t *)row)[at[0]];
   if (grid->storage == HL_STORAGE_U16) return ((const uint16_t *)row)[at[0]];

@@ -148,3 +148,21 @@ void hl_voxels_store(hl_voxel_type type, bool swap, const void *source, size_t c
     case HL_VOXEL_F16: store_f16(swap, source, count, destination); break;
   }
 }
+
+void hl_voxels_gather(const unsigned char *source, ptrdiff_t stride_bytes, size_t voxel_bytes, size_t count,
+                      unsigned char *row) {
+  switch (voxel_bytes) {
+    case 1:
+      for (size_t i = 0; i < count; i++) row[i] = source[(ptrdiff_t)i * stride_bytes];
+      break;
+    case 2:
+      for (size_t i = 0; i < count; i++) memcpy(row + 2 * i, source + (ptrdiff_t)i * stride_bytes, 2);
+      break;
+    case 4:
+      for (size_t i = 0; i < count; i++) memcpy(row + 4 * i, source + (ptrdiff_t)i * stride_bytes, 4);
+      break;
+    default:
+      for (size_t i = 0; i < count; i++) memcpy(row + 8 * i, source + (ptrdiff_t)i * stride_bytes, 8);
+      break;
+  }
+}

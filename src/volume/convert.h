@@ -20,4 +20,8 @@ double hl_voxel_type_bias(hl_voxel_type type);
  * may be destination itself where both types have the same size. */
 void hl_voxels_store(hl_voxel_type type, bool swap, const void *source, size_t count, void *destination);
 
+/* Gathers one row of count voxels of the given size, stride_bytes apart. */
+void hl_voxels_gather(const unsigned char *source, ptrdiff_t stride_bytes, size_t voxel_bytes, size_t count,
+                      unsigned char *row);
+
 #endif

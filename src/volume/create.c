@@ -176,32 +176,15 @@ hl_status hl_volume_adopt_pages(hl_context *context, const hl_volume_description
   }
   made->pages = pages;
   hl_pages_finish(pages);
-  return finish_volume(made, subject, volume, error);
+  status = finish_volume(made, subject, volume, error);
+  if (status == HL_OK) pages->in_use = true;
+  return status;
 }
 
 const void *hl_volume_row_in(const hl_volume *volume, size_t j, size_t k, void *buffer) {
   if (volume->pages == NULL) return hl_volume_row(volume, j, k);
   hl_pages_load_row(volume->pages, j, k, buffer);
   return buffer;
-}
-
-/* Gathers one row of count voxels of the given size, stride_bytes apart. */
-static void gather_row(const unsigned char *source, ptrdiff_t stride_bytes, size_t voxel_bytes, size_t count,
-                       unsigned char *row) {
-  switch (voxel_bytes) {
-    case 1:
-      for (size_t i = 0; i < count; i++) row[i] = source[(ptrdiff_t)i * stride_bytes];
-      break;
-    case 2:
-      for (size_t i = 0; i < count; i++) memcpy(row + 2 * i, source + (ptrdiff_t)i * stride_bytes, 2);
-      break;
-    case 4:
-      for (size_t i = 0; i < count; i++) memcpy(row + 4 * i, source + (ptrdiff_t)i * stride_bytes, 4);
-      break;
-    default:
-      for (size_t i = 0; i < count; i++) memcpy(row + 8 * i, source + (ptrdiff_t)i * stride_bytes, 8);
-      break;
-  }
 }
 
 /* Copies strided voxels into stored form; row is scratch for one row in the caller's type. */
@@ -215,7 +198,7 @@ static void copy_voxels(const hl_volume_description *description, const ptrdiff_
       const unsigned char *source = (const unsigned char *)description->voxels + (ptrdiff_t)j * stride[1] +
                                     (ptrdiff_t)k * stride[2];
       if (stride[0] != (ptrdiff_t)voxel_bytes) {
-        gather_row(source, stride[0], voxel_bytes, dimension[0], row);
+        hl_voxels_gather(source, stride[0], voxel_bytes, dimension[0], row);
         source = row;
       }
       hl_voxels_store(description->type, false, source, dimension[0], destination);
@@ -395,8 +378,7 @@ hl_status hl_volume_get_selection(const hl_volume *volume, hl_volume_selection *
 double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k) {
   if (volume == NULL || i >= volume->dimension[0] || j >= volume->dimension[1] || k >= volume->dimension[2])
     return NAN;
-  double stored = volume->pages != NULL
-                      ? hl_stored_number(volume->storage, hl_page_voxel(volume->pages, i, j, k), 0)
-                      : hl_stored_number(volume->storage, hl_volume_row(volume, j, k), i);
+  double stored = volume->pages != NULL ? hl_page_number(volume->pages, i, j, k)
+                                        : hl_stored_number(volume->storage, hl_volume_row(volume, j, k), i);
   return isfinite(stored) ? volume->value_scale * stored + volume->value_offset : NAN;
 }

@@ -1,9 +1,14 @@
 /* volume/destination.c - see destination.h. */
 #include "volume/destination.h"
 
+#include <string.h>
+
 #include "core/context.h"
 #include "core/memory.h"
 #include "volume/convert.h"
+
+/* Bytes of a volume that is spread over ranks: smaller ones, as label maps often are, lie in every rank. */
+enum { LEAST_OVER_RANKS = 1 << 20 };
 
 hl_status hl_destination_open(hl_context *context, const hl_volume_description *grid,
                               hl_destination_kind kind, const char *path, hl_destination *destination,
@@ -12,6 +17,8 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
   size_t bytes = kind == HL_DESTINATION_COLORS ? HL_COLOR_BYTES
                                                : hl_storage_bytes(hl_voxel_type_storage(grid->type));
   *destination = (hl_destination){.context = context, .path = path, .voxel_bytes = bytes};
+  if (kind == HL_DESTINATION_PIECES && context->ranks != NULL && count >= LEAST_OVER_RANKS / bytes)
+    return hl_own_voxels_allocate(context->ranks, grid, &destination->own, error);
   if (kind == HL_DESTINATION_PIECES && hl_pages_wanted(context, grid))
     return hl_pages_create(context, context->options.scratch_folder, grid, PAGE_SHIFT, &destination->pages,
                            error);
@@ -22,14 +29,38 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
 hl_status hl_destination_take(hl_destination *destination, size_t first, size_t count, void **place,
                               hl_error *error) {
   size_t bytes = destination->voxel_bytes;
-  *place = destination->pages == NULL ? destination->voxels + first * bytes
-                                      : hl_allocate(destination->context, count, bytes);
+  *place = hl_destination_is_apart(destination) ? hl_allocate(destination->context, count, bytes)
+                                                : destination->voxels + first * bytes;
   return *place != NULL ? HL_OK : hl_fail_memory(error, count * bytes, destination->path);
 }
 
+/* The numbers of the voxels that are this rank's: those of adjoining slices. */
+static void own_range(const hl_own_voxels *own, size_t *begin, size_t *end) {
+  size_t slice = own->box.count[0] * own->box.count[1];
+  *begin = own->box.begin[2] * slice;
+  *end = *begin + own->box.count[2] * slice;
+}
+
+bool hl_destination_wants(const hl_destination *destination, size_t first, size_t count) {
+  size_t begin, end;
+  if (destination->own == NULL) return true;
+  own_range(destination->own, &begin, &end);
+  return first < end && first + count > begin;
+}
+
+void hl_destination_store(hl_destination *destination, size_t first, size_t count, const void *values) {
+  size_t begin, end, bytes = destination->voxel_bytes;
+  if (destination->pages != NULL) hl_pages_store(destination->pages, first, count, values);
+  if (destination->own == NULL || !hl_destination_wants(destination, first, count)) return;
+  own_range(destination->own, &begin, &end);
+  size_t from = first > begin ? first : begin, to = first + count < end ? first + count : end;
+  memcpy(destination->own->slices + (from - begin) * bytes,
+         (const unsigned char *)values + (from - first) * bytes, (to - from) * bytes);
+}
+
 void hl_destination_put(hl_destination *destination, size_t first, size_t count, void *place) {
-  if (destination->pages == NULL || place == NULL) return;
-  hl_pages_store(destination->pages, first, count, place);
+  if (!hl_destination_is_apart(destination) || place == NULL) return;
+  hl_destination_store(destination, first, count, place);
   hl_release(destination->context, place);
 }
 
@@ -38,6 +69,9 @@ hl_status hl_destination_adopt(hl_destination *destination, const hl_volume_desc
   const hl_destination given = *destination;
   destination->voxels = NULL;
   destination->pages = NULL;
+  destination->own = NULL;
+  if (given.own != NULL)
+    return hl_volume_over_ranks(given.context->ranks, grid, given.own, PAGE_SHIFT, given.path, volume, error);
   return given.pages != NULL
              ? hl_volume_adopt_pages(given.context, grid, given.path, given.pages, volume, error)
              : hl_volume_adopt(given.context, grid, given.path, given.voxels, volume, error);
@@ -53,5 +87,6 @@ hl_status hl_destination_adopt_colors(hl_destination *destination, const hl_colo
 void hl_destination_close(hl_destination *destination) {
   hl_release(destination->context, destination->voxels);
   hl_pages_release(destination->pages);
+  hl_own_voxels_release(destination->own);
   *destination = (hl_destination){.context = NULL};
 }

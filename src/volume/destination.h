@@ -1,5 +1,5 @@
-/* volume/destination.h - where a reader puts voxels: memory, or the pages of a scratch file where memory has
- * no room.
+/* volume/destination.h - where a reader puts voxels: memory, the pages of a scratch file where memory has no
+ * room, or, over ranks, this rank's share of the slices.
  *
  * In: stored values, in pieces of any size and order, from several threads at once. Out: the volume. */
 #ifndef HL_VOLUME_DESTINATION_H
@@ -14,10 +14,11 @@ typedef struct hl_destination {
   size_t voxel_bytes;    /* of a stored value, or of a voxel's colours */
   unsigned char *voxels; /* owned; [k][j][i]; null with pages */
   hl_pages *pages;       /* owned; null: in memory */
+  hl_own_voxels *own;    /* owned; over ranks: this rank's slices, `voxels` is null; else null */
 } hl_destination;
 
 typedef enum hl_destination_kind {
-  HL_DESTINATION_PIECES, /* in pages where memory has no room */
+  HL_DESTINATION_PIECES, /* in pages where memory has no room, or over ranks */
   HL_DESTINATION_VOXELS, /* in memory in any case: the reader comes back to voxels */
   HL_DESTINATION_COLORS  /* in memory in any case: colours (colors.h) */
 } hl_destination_kind;
@@ -32,6 +33,15 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
 hl_status hl_destination_take(hl_destination *destination, size_t first, size_t count, void **place,
                               hl_error *error);
 void hl_destination_put(hl_destination *destination, size_t first, size_t count, void *place);
+
+/* Whether any of these voxels is kept: the others of a volume over ranks need not be read. */
+bool hl_destination_wants(const hl_destination *destination, size_t first, size_t count);
+
+/* Whether there is no array of all voxels: hl_destination_store() copies voxels to where they belong. */
+static inline bool hl_destination_is_apart(const hl_destination *destination) {
+  return destination->voxels == NULL;
+}
+void hl_destination_store(hl_destination *destination, size_t first, size_t count, const void *values);
 
 /* Makes the volume, which takes over what the destination owns, also on failure. grid: as it was opened. */
 hl_status hl_destination_adopt(hl_destination *destination, const hl_volume_description *grid,

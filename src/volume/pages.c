@@ -19,7 +19,8 @@
 /* ---- the scratch file ---- */
 
 /* Windows of voxels are loaded as a whole: up to so many slices lie before the first page and after the
- * last. Pages begin at a line of the cache, those of WHOLE_UNITS or more at the system's units of memory. */
+ * last. Pages begin at a line of the cache, those of WHOLE_UNITS or more, and those over ranks, at the
+ * system's units of memory. */
 enum { SLICES_AROUND = 16, LINE = 64, UNIT = 4096, WHOLE_UNITS = 16 * UNIT };
 
 static size_t round_up(size_t bytes, size_t unit) { return (bytes + unit - 1) / unit * unit; }
@@ -32,7 +33,7 @@ static bool multiply_all(const size_t *factors, int count, size_t *product) {
 }
 
 /* Sets all sizes; false where they overflow. */
-static bool plan(const hl_volume_description *grid, int shift, hl_pages *pages) {
+static bool plan(const hl_volume_description *grid, int shift, bool over_ranks, hl_pages *pages) {
   size_t side = (size_t)1 << shift, voxels[3];
   *pages = (hl_pages){.storage = hl_voxel_type_storage(grid->type), .shift = shift};
   for (int axis = 0; axis < 3; axis++) {
@@ -43,7 +44,7 @@ static bool plan(const hl_volume_description *grid, int shift, hl_pages *pages) 
   pages->row_bytes = voxels[0] * hl_storage_bytes(pages->storage);
   pages->slice_bytes = voxels[1] * pages->row_bytes;
   size_t page_bytes = voxels[2] * pages->slice_bytes;
-  pages->page_bytes = round_up(page_bytes, page_bytes < WHOLE_UNITS ? LINE : UNIT);
+  pages->page_bytes = round_up(page_bytes, !over_ranks && page_bytes < WHOLE_UNITS ? LINE : UNIT);
   const size_t factors[] = {pages->count[0], pages->count[1], pages->count[2], pages->page_bytes};
   size_t bytes, around = 2 * round_up(SLICES_AROUND * pages->slice_bytes, UNIT);
   return multiply_all(factors, 4, &bytes) && !__builtin_add_overflow(bytes, around, &pages->mapping_bytes) &&
@@ -115,7 +116,7 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
   hl_pages *made = hl_allocate_zeroed(context, 1, sizeof *made);
   if (made == NULL) return hl_fail_memory(error, sizeof *made, "a volume's pages");
   hl_status status = HL_OK;
-  bool possible = plan(grid, shift, made);
+  bool possible = plan(grid, shift, false, made);
   made->context = context;
   made->file = -1;
   pthread_mutex_init(&made->lock, NULL); /* cannot fail: it has no attributes */
@@ -135,14 +136,72 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
   return status;
 }
 
+/* Takes addresses alone: memory is taken page by page. */
+static hl_status map_nothing(hl_pages *pages, hl_error *error) {
+  void *mapping = mmap(NULL, pages->mapping_bytes, PROT_READ | PROT_WRITE,
+                       MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (mapping == MAP_FAILED)
+    return hl_fail(error, HL_ERROR_MEMORY, "out of memory: no addresses for %.1f MiB of voxels: %s",
+                   (double)pages->mapping_bytes / (1 << 20), strerror(errno));
+  madvise(mapping, pages->mapping_bytes, MADV_NOHUGEPAGE); /* which several pages would share */
+  pages->mapping = mapping;
+  pages->first = pages->mapping + round_up(SLICES_AROUND * pages->slice_bytes, UNIT);
+  return HL_OK;
+}
+
+static hl_status allocate_states(hl_pages *pages, hl_error *error) {
+  size_t count = page_count(pages);
+  pages->state = hl_allocate_zeroed(pages->context, count, sizeof *pages->state);
+  pages->version = hl_allocate_zeroed(pages->context, count, sizeof *pages->version);
+  return pages->state != NULL && pages->version != NULL
+             ? HL_OK
+             : hl_fail_memory(error, count * (1 + sizeof *pages->version), "a volume's pages");
+}
+
+static hl_status fill_over_ranks(hl_ranks *ranks, const hl_volume_description *grid, int shift,
+                                 hl_pages *pages, hl_error *error) {
+  hl_own_voxels *own = pages->own;
+  bool possible = plan(grid, shift, true, pages);
+  pages->context = ranks->context;
+  pages->own = own;
+  pages->file = -1;
+  pthread_mutex_init(&pages->lock, NULL);
+  if (!possible) return hl_fail(error, HL_ERROR_INPUT, "a volume too large for the addresses of a process");
+  hl_status status = map_nothing(pages, error);
+  if (status == HL_OK) status = allocate_states(pages, error);
+  hl_blocks_shape shape = {.element_bytes = hl_storage_bytes(pages->storage)};
+  memcpy(shape.dimension, grid->dimensions, sizeof shape.dimension);
+  shape.most = pages->page_bytes / shape.element_bytes;
+  const hl_block_source source = {own->box, hl_own_voxels_copy, own};
+  return status == HL_OK ? hl_blocks_share(ranks, &shape, &source, &pages->blocks, error) : status;
+}
+
+hl_status hl_pages_create_over_ranks(hl_ranks *ranks, hl_own_voxels *own, const hl_volume_description *grid,
+                                     int shift, hl_pages **pages, hl_error *error) {
+  *pages = NULL;
+  hl_pages *made = hl_allocate_zeroed(ranks->context, 1, sizeof *made);
+  if (made == NULL) {
+    hl_own_voxels_release(own);
+    return hl_fail_memory(error, sizeof *made, "a volume's pages");
+  }
+  made->own = own;
+  hl_status status = fill_over_ranks(ranks, grid, shift, made, error);
+  if (status == HL_OK) *pages = made;
+  else hl_pages_release(made);
+  return status;
+}
+
 void hl_pages_release(hl_pages *pages) {
   if (pages == NULL) return;
+  hl_blocks_release(pages->blocks, pages->in_use);
+  hl_own_voxels_release(pages->own);
   if (pages->mapping != NULL) munmap(pages->mapping, pages->mapping_bytes);
   if (pages->file >= 0) close(pages->file);
   atomic_fetch_sub(&pages->context->paged, pages->held_bytes);
   pthread_mutex_destroy(&pages->lock);
   hl_release(pages->context, pages->counts);
   hl_release(pages->context, pages->state);
+  hl_release(pages->context, pages->version);
   hl_release(pages->context, pages);
 }
 
@@ -174,6 +233,10 @@ enum { FAULT_WINDOW = 1 << 16 };
 /* Lets the system take back the memory of a page, and of all units that its faults may have mapped. */
 static void drop(const hl_pages *pages, size_t number) {
   uintptr_t first = (uintptr_t)pages->first + number * pages->page_bytes;
+  if (pages->blocks != NULL) {
+    madvise((void *)first, pages->page_bytes, MADV_DONTNEED);
+    return;
+  }
   uintptr_t begin = first / FAULT_WINDOW * FAULT_WINDOW;
   uintptr_t end = round_up(first + pages->page_bytes, FAULT_WINDOW);
   uintptr_t least = (uintptr_t)pages->mapping, most = least + pages->mapping_bytes / UNIT * UNIT;
@@ -193,6 +256,10 @@ static void forget_if(hl_pages *pages, size_t number, unsigned char state) {
   if (!__atomic_compare_exchange_n(&pages->state[number], &state, (unsigned char)PAGE_FORGOTTEN, false,
                                    __ATOMIC_RELAXED, __ATOMIC_RELAXED))
     return;
+  if (pages->version != NULL) {
+    __atomic_fetch_add(&pages->version[number], 1, __ATOMIC_RELAXED);
+    __atomic_thread_fence(__ATOMIC_RELEASE);
+  }
   drop(pages, number);
   count_held(pages, false);
 }
@@ -230,6 +297,7 @@ static void make_room(hl_pages *pages) {
 
 void hl_pages_finish(hl_pages *pages) {
   pages->filled = true;
+  if (pages->blocks != NULL) return;
   close(pages->file);
   pages->file = -1;
   madvise(pages->mapping, pages->mapping_bytes, MADV_RANDOM); /* fetch() says what is read */
@@ -241,8 +309,44 @@ static void fetch(const hl_pages *pages, size_t number) {
   madvise((void *)begin, first + pages->page_bytes - begin, MADV_WILLNEED);
 }
 
+/* Copies a page's voxels from the ranks that have them. */
+static void fetch_from_ranks(const hl_pages *pages, size_t number) {
+  const size_t *count = pages->count;
+  const size_t page[3] = {number % count[0], number / count[0] % count[1], number / count[0] / count[1]};
+  const size_t side = ((size_t)1 << pages->shift) + PAGE_OVERLAP;
+  hl_box box;
+  for (int axis = 0; axis < 3; axis++) {
+    box.begin[axis] = page[axis] << pages->shift;
+    size_t left = pages->dimension[axis] - box.begin[axis];
+    box.count[axis] = left < side ? left : side;
+  }
+  hl_blocks_fetch(pages->blocks, &box, pages->first + number * pages->page_bytes, pages->row_bytes,
+                  pages->slice_bytes);
+}
+
+/* A page's state becomes PAGE_NEEDED when its voxels are there: other threads read them at once. */
+static void hold_over_ranks(hl_pages *pages, size_t number) {
+  unsigned char state = PAGE_HELD;
+  if (__atomic_compare_exchange_n(&pages->state[number], &state, (unsigned char)PAGE_NEEDED, false,
+                                  __ATOMIC_ACQUIRE, __ATOMIC_ACQUIRE) ||
+      state == PAGE_NEEDED)
+    return;
+  pthread_mutex_lock(&pages->lock);
+  if (__atomic_load_n(&pages->state[number], __ATOMIC_RELAXED) == PAGE_FORGOTTEN) {
+    count_held(pages, true);
+    make_room(pages);
+    fetch_from_ranks(pages, number);
+  }
+  __atomic_store_n(&pages->state[number], (unsigned char)PAGE_NEEDED, __ATOMIC_RELEASE);
+  pthread_mutex_unlock(&pages->lock);
+}
+
 void hl_pages_hold(const hl_pages *held, size_t number) {
   hl_pages *pages = (hl_pages *)held; /* volumes are constant for their readers; these counts are not */
+  if (pages->blocks != NULL) {
+    hold_over_ranks(pages, number);
+    return;
+  }
   unsigned char before = __atomic_exchange_n(&pages->state[number], (unsigned char)PAGE_NEEDED,
                                              __ATOMIC_RELAXED);
   if (before != PAGE_FORGOTTEN) return;
@@ -253,10 +357,13 @@ void hl_pages_hold(const hl_pages *held, size_t number) {
 
 void hl_pages_forget(const hl_pages *pages) {
   size_t count = page_count(pages);
+  pthread_mutex_t *lock = (pthread_mutex_t *)&pages->lock;
+  pthread_mutex_lock(lock);
   for (size_t n = 0; n < count; n++) {
     unsigned char state = __atomic_load_n(&pages->state[n], __ATOMIC_RELAXED);
     if (state != PAGE_FORGOTTEN) forget_if((hl_pages *)pages, n, state);
   }
+  pthread_mutex_unlock(lock);
 }
 
 /* ---- copies ---- */
@@ -281,7 +388,7 @@ static void store_in_pages(hl_pages *pages, const size_t page_y_z[2], const size
     size_t begin = x << pages->shift, stop = begin + ((size_t)1 << pages->shift) + PAGE_OVERLAP;
     size_t from = at[0] > begin ? at[0] : begin, to = end < stop ? end : stop;
     const size_t page[3] = {x, page_y_z[0], page_y_z[1]};
-    unsigned char *place = (unsigned char *)hl_page_at(pages, page) +
+    unsigned char *place = (unsigned char *)hl_page_begin(pages, page).first +
                            (at[2] - (page[2] << pages->shift)) * pages->slice_bytes +
                            (at[1] - (page[1] << pages->shift)) * pages->row_bytes + (from - begin) * bytes;
     memcpy(place, values + (from - at[0]) * bytes, (to - from) * bytes);
@@ -381,11 +488,26 @@ bool hl_pages_take_counts(hl_pages *pages, uint64_t *counts) {
   return whole;
 }
 
+/* Copies a row of this rank's own block, if it is one. */
+static bool own_row(const hl_pages *pages, size_t j, size_t k, void *row) {
+  if (pages->own == NULL) return false;
+  const hl_box wanted = {{0, j, k}, {pages->dimension[0], 1, 1}};
+  hl_box held;
+  if (!hl_boxes_meet(&wanted, &pages->own->box, &held) || held.count[0] < wanted.count[0]) return false;
+  hl_own_voxels_copy(pages->own, &wanted, row);
+  return true;
+}
+
 void hl_pages_load_row(const hl_pages *pages, size_t j, size_t k, void *row) {
   size_t bytes = hl_storage_bytes(pages->storage), width = pages->dimension[0];
+  if (own_row(pages, j, k, row)) return;
   for (size_t page = 0; page < pages->count[0]; page++) {
     size_t begin = page << pages->shift,
            end = page + 1 < pages->count[0] ? begin + ((size_t)1 << pages->shift) : width;
-    memcpy((unsigned char *)row + begin * bytes, hl_page_voxel(pages, begin, j, k), (end - begin) * bytes);
+    hl_page_reading reading;
+    do
+      memcpy((unsigned char *)row + begin * bytes, hl_page_voxel(pages, begin, j, k, &reading),
+             (end - begin) * bytes);
+    while (!hl_page_stayed(pages, &reading));
   }
 }

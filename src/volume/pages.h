@@ -1,6 +1,8 @@
-/* volume/pages.h - voxels in a scratch file, for volumes that are larger than memory.
+/* volume/pages.h - voxels in a scratch file, or in the memory of other ranks, for volumes that are larger
+ * than memory.
  *
- * The file holds pages: cubes of voxels. Page p of an axis holds the voxels from p * side to p * side + side
+ * A scratch file holds pages: cubes of voxels. Page p of an axis holds the voxels from p * side to p * side +
+ * side
  * + PAGE_OVERLAP - 1, fewer at the grid's end. So every 4x4x4 neighbouring voxels lie in one page as a whole:
  * in the page of the first of them. The file is mapped: the system reads a page when one of its voxels is
  * needed. A sheet crosses few pages, and neighbouring sheets cross the same ones. The file has no name: it is
@@ -9,12 +11,17 @@
  * Pages and the context's blocks together take no more than the context's memory limit, but always as much as
  * LEAST_PAGES: the need of one more page lets go of some that were not needed for long (the clock algorithm:
  * F. J. Corbato, A Paging Experiment with the Multics System, 1968). Another thread may read such a page at
- * that moment: then the system reads it anew. */
+ * that moment: then the system reads it anew.
+ *
+ * Pages over ranks are no file's: what is needed of one is copied from the ranks whose blocks hold it
+ * (ranks/blocks.h), and forgotten as a whole. A thread that reads one may find that it was forgotten
+ * meanwhile, by its version, and reads once more: see hl_page_begin(). */
 #ifndef HL_VOLUME_PAGES_H
 #define HL_VOLUME_PAGES_H
 
 #include <pthread.h>
 
+#include "volume/own_voxels.h"
 #include "volume/volume.h"
 
 /* Whether a page is held, and was needed since the clock's hand passed it. */
@@ -39,7 +46,11 @@ typedef struct hl_pages {
   uint64_t held_bytes;  /* of the pages that are not forgotten; atomic */
   size_t hand;          /* the clock's: the page it looks at next, modulo the number of pages; atomic */
   bool filled;          /* hl_pages_finish() was called */
-  pthread_mutex_t lock; /* held while values are counted */
+  bool in_use;          /* of a volume that was made: over ranks, others may ask for voxels */
+  hl_blocks *blocks;    /* owned; null: a scratch file */
+  hl_own_voxels *own;   /* owned; of blocks */
+  uint32_t *version;    /* owned; [pages] over ranks, else null; rises when a page is forgotten; atomic */
+  pthread_mutex_t lock; /* held while values are counted; over ranks, while pages come and go */
   uint64_t
       *counts;    /* owned; [hl_values_of(storage)]: of the values that were stored; null: taken, or floats */
   size_t counted; /* stored values */
@@ -53,6 +64,11 @@ typedef struct hl_pages {
 hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volume_description *grid,
                           int shift, hl_pages **pages, hl_error *error);
 void hl_pages_release(hl_pages *pages); /* null is allowed */
+
+/* Makes the pages of a volume over ranks, which are filled when they are needed. own: taken over, also on
+ * failure. Collective; so is the release. */
+hl_status hl_pages_create_over_ranks(hl_ranks *ranks, hl_own_voxels *own, const hl_volume_description *grid,
+                                     int shift, hl_pages **pages, hl_error *error);
 
 /* Whether the voxels of a volume and a renderer's tables of them are more than the memory limit allows, and
  * there is a scratch folder. */
@@ -68,6 +84,11 @@ bool hl_pages_take_counts(hl_pages *pages, uint64_t *counts);
 /* After the last voxel was stored. From now on a page that is needed is read as a whole, and nothing beside
  * it: by itself the system would read on, and map more than is counted. */
 void hl_pages_finish(hl_pages *pages);
+
+/* Makes a volume over ranks. own: taken over, also on failure. shift: of its pages. name: starts the error
+ * lines. */
+hl_status hl_volume_over_ranks(hl_ranks *ranks, const hl_volume_description *whole, hl_own_voxels *own,
+                               int shift, const char *name, hl_volume **volume, hl_error *error);
 
 /* Copies the voxels of a row. row: [dimension[0]] stored values. */
 void hl_pages_load_row(const hl_pages *pages, size_t j, size_t k, void *row);
@@ -85,19 +106,47 @@ static inline size_t hl_page_of(const hl_pages *pages, int axis, size_t voxel) {
   return page < pages->count[axis] ? page : pages->count[axis] - 1;
 }
 
-/* The first voxel of a page, as stored; the page is needed. */
-static inline const unsigned char *hl_page_at(const hl_pages *pages, const size_t page[3]) {
+/* Where a page is, while it is read. */
+typedef struct hl_page_reading {
+  const unsigned char *first; /* its first voxel, as stored */
+  size_t number;
+  uint32_t version; /* over ranks */
+} hl_page_reading;
+
+/* Begins to read a page, which is needed. What was read counts if hl_page_stayed() says so afterwards; else
+ * begin again (H.-J. Boehm, Can Seqlocks Get Along with Programming Language Memory Models?, 2012). */
+static inline hl_page_reading hl_page_begin(const hl_pages *pages, const size_t page[3]) {
   size_t number = (page[2] * pages->count[1] + page[1]) * pages->count[0] + page[0];
-  if (__atomic_load_n(&pages->state[number], __ATOMIC_RELAXED) != PAGE_NEEDED) hl_pages_hold(pages, number);
-  return pages->first + number * pages->page_bytes;
+  uint32_t version = pages->version != NULL ? __atomic_load_n(&pages->version[number], __ATOMIC_ACQUIRE) : 0;
+  if (__atomic_load_n(&pages->state[number], __ATOMIC_ACQUIRE) != PAGE_NEEDED) hl_pages_hold(pages, number);
+  return (hl_page_reading){pages->first + number * pages->page_bytes, number, version};
 }
 
-/* A voxel, as stored, and the voxels up to the page's end after it. */
-static inline const unsigned char *hl_page_voxel(const hl_pages *pages, size_t i, size_t j, size_t k) {
+/* Whether a page has its voxels still: always, where they are a file's. */
+static inline bool hl_page_stayed(const hl_pages *pages, const hl_page_reading *reading) {
+  if (pages->version == NULL) return true;
+  __atomic_thread_fence(__ATOMIC_ACQUIRE);
+  return __atomic_load_n(&pages->version[reading->number], __ATOMIC_RELAXED) == reading->version;
+}
+
+/* Begins to read the page of a voxel. Returns the voxel, as stored, and the voxels up to the page's end after
+ * it. */
+static inline const unsigned char *hl_page_voxel(const hl_pages *pages, size_t i, size_t j, size_t k,
+                                                 hl_page_reading *reading) {
   const size_t page[3] = {hl_page_of(pages, 0, i), hl_page_of(pages, 1, j), hl_page_of(pages, 2, k)};
-  return hl_page_at(pages, page) + (k - (page[2] << pages->shift)) * pages->slice_bytes +
+  *reading = hl_page_begin(pages, page);
+  return reading->first + (k - (page[2] << pages->shift)) * pages->slice_bytes +
          (j - (page[1] << pages->shift)) * pages->row_bytes +
          (i - (page[0] << pages->shift)) * hl_storage_bytes(pages->storage);
+}
+
+/* The stored value of a voxel. */
+static inline double hl_page_number(const hl_pages *pages, size_t i, size_t j, size_t k) {
+  hl_page_reading reading;
+  double number;
+  do number = hl_stored_number(pages->storage, hl_page_voxel(pages, i, j, k, &reading), 0);
+  while (!hl_page_stayed(pages, &reading));
+  return number;
 }
 
 #endif

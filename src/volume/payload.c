@@ -161,11 +161,16 @@ static hl_status read_binary(hl_stream *stream, const hl_payload *payload, hl_de
   unsigned char stage[STAGE_VOXELS * 8];
   for (size_t done = 0; done < count;) {
     size_t wanted = count - done < piece ? count - done : piece;
-    void *place;
-    hl_status status = hl_destination_take(destination, done, wanted, &place, error);
-    if (status != HL_OK) return status;
-    status = read_piece(stream, payload, done, wanted, in_place ? place : stage, place, error);
-    hl_destination_put(destination, done, wanted, place);
+    void *place = NULL;
+    hl_status status;
+    if (!hl_destination_wants(destination, done, wanted)) {
+      status = hl_stream_skip(stream, wanted * file_bytes, error);
+    } else {
+      status = hl_destination_take(destination, done, wanted, &place, error);
+      if (status != HL_OK) return status;
+      status = read_piece(stream, payload, done, wanted, in_place ? place : stage, place, error);
+      hl_destination_put(destination, done, wanted, place);
+    }
     done += wanted;
     if (status == HL_OK) status = report(stream, done, count, error);
     if (status != HL_OK) return status;

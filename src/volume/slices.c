@@ -146,6 +146,7 @@ static hl_status read_slice(void *data, size_t slice, int worker, hl_error *erro
   size_t count = r->shape.width * r->shape.height;
   void *voxels;
   (void)worker;
+  if (!hl_destination_wants(&r->to, slice * count, count)) return HL_OK;
   hl_status status = read_file(r, slice, slice > 0, path, sizeof path, &file, error);
   if (status == HL_OK) status = hl_destination_take(&r->to, slice * count, count, &voxels, error);
   if (status == HL_OK) {

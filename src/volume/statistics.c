@@ -42,6 +42,19 @@ static int bin_of(binning bins, double stored) {
   return bin < HL_HISTOGRAM_BINS - 1 ? bin : HL_HISTOGRAM_BINS - 1;
 }
 
+/* Over ranks each counts the voxels of its own block, and then all counts are added up. */
+static const hl_own_voxels *own_voxels(const hl_volume *volume) {
+  return volume->pages != NULL ? volume->pages->own : NULL;
+}
+
+static void sum_counts(const hl_volume *volume, uint64_t *counts, size_t count) {
+  if (own_voxels(volume) != NULL) hl_ranks_sum_counts(hl_blocks_ranks(volume->pages->blocks), counts, count);
+}
+
+static size_t counted_voxels(const hl_volume *volume) {
+  return own_voxels(volume) != NULL ? hl_own_voxels_count(own_voxels(volume)) : hl_volume_voxel_count(volume);
+}
+
 /* An iteration over the voxels, piece by piece; begins with piece 0. */
 typedef struct walk {
   const hl_volume *volume;
@@ -56,6 +69,10 @@ typedef struct walk {
  * packed, else copied into buffer, which has room for them and a row after them. */
 static const void *piece_of(const hl_volume *volume, size_t first, size_t count, unsigned char *buffer) {
   size_t bytes = hl_storage_bytes(volume->storage), width = volume->dimension[0];
+  if (own_voxels(volume) != NULL) {
+    hl_own_voxels_run(own_voxels(volume), first, count, buffer);
+    return buffer;
+  }
   if (hl_volume_is_packed(volume)) return (const unsigned char *)volume->voxels + first * bytes;
   for (size_t done = 0; done < count;) {
     size_t row = (first + done) / width, i = (first + done) % width;
@@ -81,8 +98,9 @@ static bool next_piece(walk *w) {
 
 /* Counts how often each stored value occurs; counts must be zeros before. False: cancelled. */
 static bool count_values(const hl_volume *volume, void *buffer, uint64_t *counts) {
-  walk w = {.volume = volume, .buffer = buffer, .count = hl_volume_voxel_count(volume)};
+  walk w = {.volume = volume, .buffer = buffer, .count = counted_voxels(volume)};
   while (next_piece(&w)) hl_values_count(volume->storage, w.voxels, w.piece, counts);
+  if (!w.cancelled) sum_counts(volume, counts, hl_values_of(volume->storage));
   return !w.cancelled;
 }
 
@@ -123,6 +141,22 @@ static void tally_group(const float group[LANES], lanes_f32 *lanes) {
   }
 }
 
+/* Makes one tally of those of all ranks. */
+static void join_tallies(const hl_volume *volume, tally *total) {
+  if (own_voxels(volume) == NULL) return;
+  hl_ranks *ranks = hl_blocks_ranks(volume->pages->blocks);
+  tally own = *total, other;
+  *total = (tally){INFINITY, -INFINITY, 0, 0};
+  for (int rank = 0; rank < ranks->size; rank++) {
+    other = own;
+    hl_ranks_tell(ranks, &other, sizeof other, rank);
+    total->low = fmin(total->low, other.low);
+    total->high = fmax(total->high, other.high);
+    total->sum += other.sum;
+    total->finite += other.finite;
+  }
+}
+
 static bool tally_f32(const hl_volume *volume, void *buffer, tally *total) {
   lanes_f32 lanes = {.sum = {0}};
   float rest[LANES];
@@ -131,7 +165,7 @@ static bool tally_f32(const hl_volume *volume, void *buffer, tally *total) {
     lanes.high[lane] = -INFINITY;
     rest[lane] = NAN;
   }
-  walk w = {.volume = volume, .buffer = buffer, .count = hl_volume_voxel_count(volume)};
+  walk w = {.volume = volume, .buffer = buffer, .count = counted_voxels(volume)};
   while (next_piece(&w)) {
     const float *voxels = w.voxels;
     size_t whole = w.piece - w.piece % LANES;
@@ -146,6 +180,7 @@ static bool tally_f32(const hl_volume *volume, void *buffer, tally *total) {
     total->sum += lanes.sum[lane];
     total->finite += lanes.finite[lane];
   }
+  if (!w.cancelled) join_tallies(volume, total);
   return !w.cancelled;
 }
 
@@ -177,8 +212,9 @@ static bool measure_f32(hl_volume *volume, void *buffer, tally *total) {
   if (!tally_f32(volume, buffer, total)) return false;
   if (total->finite == 0) return true;
   binning bins = make_binning(*total, volume->value_scale);
-  walk w = {.volume = volume, .buffer = buffer, .count = hl_volume_voxel_count(volume)};
+  walk w = {.volume = volume, .buffer = buffer, .count = counted_voxels(volume)};
   while (next_piece(&w)) bin_f32(w.voxels, w.piece, bins, volume->histogram);
+  if (!w.cancelled) sum_counts(volume, volume->histogram, HL_HISTOGRAM_BINS);
   return !w.cancelled;
 }
 
@@ -245,12 +281,13 @@ static double stored_of_key(const ranking *r, uint32_t key) {
 
 /* Counts the upper halves of the keys of floats. */
 static bool count_upper_f32(ranking *r) {
-  walk w = {.volume = r->volume, .buffer = r->buffer, .count = hl_volume_voxel_count(r->volume)};
+  walk w = {.volume = r->volume, .buffer = r->buffer, .count = counted_voxels(r->volume)};
   while (next_piece(&w))
     for (size_t n = 0; n < w.piece; n++) {
       float value = ((const float *)w.voxels)[n];
       if (fabsf(value) <= FLT_MAX) r->upper[key_of_f32(value) >> 16]++;
     }
+  if (!w.cancelled) sum_counts(r->volume, r->upper, HALVES);
   return !w.cancelled;
 }
 
@@ -259,13 +296,14 @@ static bool open_upper(ranking *r, uint32_t upper) {
   if (r->opened == upper) return true;
   memset(r->lower, 0, sizeof r->lower);
   r->opened = upper;
-  walk w = {.volume = r->volume, .buffer = r->buffer, .count = hl_volume_voxel_count(r->volume)};
+  walk w = {.volume = r->volume, .buffer = r->buffer, .count = counted_voxels(r->volume)};
   while (next_piece(&w))
     for (size_t n = 0; n < w.piece; n++) {
       float value = ((const float *)w.voxels)[n];
       uint32_t key = key_of_f32(value);
       if (key >> 16 == upper && fabsf(value) <= FLT_MAX) r->lower[key & 0xffffu]++;
     }
+  if (!w.cancelled) sum_counts(r->volume, r->lower, HALVES);
   return !w.cancelled;
 }
 

@@ -232,6 +232,7 @@ static hl_status read_slice(void *data, size_t z, int worker, hl_error *error) {
   stack_reading *r = data;
   size_t count = slice_voxels(r);
   void *voxels;
+  if (!hl_destination_wants(&r->to, z * count, count)) return HL_OK;
   hl_status status = hl_destination_take(&r->to, z * count, count, &voxels, error);
   if (status != HL_OK) return status;
   status = decode_slice(r, z, worker, voxels, error);

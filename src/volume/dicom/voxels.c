@@ -165,6 +165,7 @@ static hl_status read_one(void *data, size_t index, int worker, hl_error *error)
   reading *r = data;
   const hl_dicom_slice *slice = &r->stack->slices[index];
   void *voxels;
+  if (!hl_destination_wants(&r->to, index * r->slice_voxels, r->slice_voxels)) return HL_OK;
   hl_status status = hl_destination_take(&r->to, index * r->slice_voxels, r->slice_voxels, &voxels, error);
   if (status != HL_OK) return status;
   status = read_slice(r, slice->place, worker, voxels, error);
@@ -189,7 +190,7 @@ static void widen(const reading *r, size_t count, void *voxels) {
 
 static hl_status widen_padded(reading *r, size_t count, hl_error *error) {
   if (!r->padded) return HL_OK;
-  if (r->to.pages != NULL)
+  if (hl_destination_is_apart(&r->to))
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "%s: voxels of the padding value in a volume that is larger than memory: raise the memory "
                    "limit",

@@ -28,7 +28,8 @@ typedef struct worker {
   char key[KEY_BYTES];  /* of the open file; "": none */
   hl_source *source;    /* owned; null: the file does not exist */
   unsigned char *index; /* owned; the shard's index: [16 * chunks_in_shard], followed by a check sum */
-  void *row;            /* owned; of a chunk, in stored form, on its way to pages; null: they are in memory */
+  void *row; /* owned; of a chunk, in stored form, on its way to pages or to a rank's slices; null: all voxels
+                are in memory */
 } worker;
 
 typedef struct reading {
@@ -157,7 +158,7 @@ static void put(const reading *r, const worker *w, const part *p, const unsigned
       void *row = w->row != NULL ? w->row : r->to->voxels + first * r->stored_bytes;
       if (chunk == NULL) fill_row(r, row, p->count[0]);
       else store_row(r, chunk + k * step[2] + j * step[1], step[0], p->count[0], row);
-      if (w->row != NULL) hl_pages_store(r->to->pages, first, p->count[0], row);
+      if (w->row != NULL) hl_destination_store(r->to, first, p->count[0], row);
     }
 }
 
@@ -223,6 +224,11 @@ static hl_status read_part(void *data, size_t number, int index, hl_error *error
   uint64_t offset, length = 0;
   const unsigned char *chunk = NULL;
   if (!place_part(r, number, &p)) return HL_OK;
+  uint64_t slice = r->size[0] * r->size[1];
+  if (!hl_destination_wants(r->to, p.begin[2] * slice, p.count[2] * slice)) {
+    atomic_fetch_add_explicit(&r->found, 1, memory_order_relaxed); /* it is another rank's to know */
+    return HL_OK;
+  }
   hl_status status = open_file(r, w, &p, error);
   if (status == HL_OK) status = find_chunk(r, w, &p, &offset, &length, error);
   if (status == HL_OK && w->source != NULL && length > 0) {
@@ -263,7 +269,7 @@ static hl_status read_parts(reading *r, hl_pool *pool, hl_error *error) {
   for (size_t n = 0; n < threads; n++) {
     worker *w = &r->workers[n];
     w->unpacker = (hl_zarr_unpacker){context, r->bundle->path, r->array, NULL, 0, NULL, NULL};
-    if (r->to->pages != NULL && (w->row = hl_allocate(context, row_bytes, 1)) == NULL)
+    if (hl_destination_is_apart(r->to) && (w->row = hl_allocate(context, row_bytes, 1)) == NULL)
       status = hl_fail_memory(error, row_bytes, r->bundle->path);
   }
   if (status == HL_OK)

@@ -18,7 +18,7 @@ if [ "$OMPI_COMM_WORLD_RANK" = 1 ]; then (sleep 0.7; kill -KILL $$) & fi
 exec "$HALFLIGHT" render rings.nrrd --size 900x1600 --sheet-spacing 0.04 --quiet --strips-over-ranks -o shared.npy
 END
 ! run 4 sh failing.sh
-grep -o -m 1 "on rank 2" mpirun.txt
+grep -o -m 1 "rank 2 of 4 has failed and ends them all" mpirun.txt
 ! run 4 sh killed.sh
 grep -o -m 1 "process rank 1" mpirun.txt
 test ! -e shared.npy && echo "no picture"

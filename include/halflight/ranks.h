@@ -1,0 +1,79 @@
+/* halflight/ranks.h - processes of an MPI job that hold a volume together.
+ *
+ * A volume over ranks lies in the memory of all processes (ranks): each holds a block of it, and asks the
+ * others for what it samples of theirs. Such a volume renders like any other, with the same bytes, on every
+ * rank; what a rank keeps of the others' blocks counts towards its context's memory limit.
+ *
+ * Open MPI's library (version 4 or 5) is loaded when hl_ranks_join() is called; neither its headers nor its
+ * library are needed before. The functions are collective where they say so: every rank calls them, in the
+ * same order. A rank whose collective call, or whose call with a volume over ranks, fails should end the job
+ * (hl_ranks_abort() or MPI_Abort()): the others may wait for it. MPI ends the job where a process dies. */
+#ifndef HALFLIGHT_RANKS_H
+#define HALFLIGHT_RANKS_H
+
+#include "volume.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct hl_ranks hl_ranks;
+
+/* Joins the processes of a communicator. Collective.
+ * communicator: of Open MPI, an MPI_Comm (a pointer there); a duplicate of it is used. MPI must have been
+ * started with MPI_THREAD_MULTIPLE: a thread of the library answers the other ranks while the caller does
+ * what it likes. Null: the whole job; MPI is started here, if it is not yet, and ended by hl_ranks_leave().
+ * *ranks: owned by the caller; release it with hl_ranks_leave() before the context. */
+HL_API HL_WARN_UNUSED hl_status hl_ranks_join(hl_context *context, void *communicator, hl_ranks **ranks,
+                                              hl_error *error);
+
+/* Collective, after all volumes over these ranks were released. Null is allowed. */
+HL_API void hl_ranks_leave(hl_ranks *ranks);
+
+/* Ends the whole job at once, with this exit code. Null is allowed: does nothing. */
+HL_API void hl_ranks_abort(hl_ranks *ranks, int exit_code);
+
+HL_API int hl_ranks_rank(const hl_ranks *ranks); /* from 0 on; 0 for null */
+HL_API int hl_ranks_size(const hl_ranks *ranks); /* 1 for null */
+
+/* Adds up the values of all ranks: rank 0 gets the sums, the others keep theirs. Collective. With
+ * hl_renderer_share(renderer, rank, size) before, the pixels of all ranks' pictures add up to the whole
+ * picture. */
+HL_API void hl_ranks_sum(hl_ranks *ranks, float *values, size_t count);
+
+/* Bytes of voxels that this rank has got from others so far, the requests that took, and the seconds that its
+ * threads have waited for them. Each may be null. */
+HL_API void hl_ranks_traffic(const hl_ranks *ranks, uint64_t *bytes, uint64_t *requests, double *seconds);
+
+/* From now on volumes of 1 MiB or more that are loaded through the context of `ranks` lie over the ranks:
+ * each rank reads its own slices alone where the file allows it (of compressed files it keeps its own slices
+ * alone). Loading them is collective, and so is their last hl_volume_release(). The files are those that can
+ * be larger than memory (hl_context_options.scratch_folder). Null is allowed: does nothing. */
+HL_API void hl_ranks_hold_volumes(hl_ranks *ranks);
+
+/* The block of a volume that a rank holds. */
+typedef struct hl_block {
+  size_t struct_size; /* set by the caller to sizeof(hl_block) */
+  size_t offset[3];   /* of the block's first voxel in the whole volume, along i, j, k */
+  size_t size[3];     /* voxels, without ghosts; one may be 0: the rank holds none */
+  size_t ghost[3];    /* layers of voxels around the block in memory, on either side, which are passed over */
+  const void *voxels; /* borrowed, not copied: the first in memory, a ghost where there are any. They must
+                         stay as they are until the volume's last reference is released */
+  ptrdiff_t stride_bytes[3]; /* from one voxel to the next along i, j, k; all 0: packed, with ghosts */
+} hl_block;
+
+/* Makes a volume of the blocks of all ranks, which must fill it without overlap. Collective; so is the
+ * volume's last hl_volume_release(), and so are functions that read all voxels: hl_volume_percentiles(), and
+ * the first frame of each renderer.
+ * whole: size, type, placement and scale of the whole volume, the same on all ranks; its voxels, strides and
+ * `borrow` are not read. Its voxels must be finite. The volume's mean is summed up block by block, so that
+ * its last digits depend on the blocks; no other number and no picture does. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_create_over_ranks(hl_ranks *ranks,
+                                                            const hl_volume_description *whole,
+                                                            const hl_block *block, hl_volume **volume,
+                                                            hl_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

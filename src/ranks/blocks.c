@@ -1,0 +1,298 @@
+/* ranks/blocks.c - see blocks.h. */
+#define _GNU_SOURCE
+#include "ranks/blocks.h"
+
+#include <signal.h>
+#include <string.h>
+#include <time.h>
+
+#include "core/memory.h"
+
+enum { TAG_REQUEST = 1, TAG_REPLY = 2, REPLIES = 4 };
+
+/* What a rank asks another one for. */
+typedef struct block_request {
+  uint64_t id, from; /* of the blocks; the rank that asks */
+  hl_box box;        /* within the block of the rank that is asked */
+} block_request;
+
+/* An answer on its way. */
+typedef struct block_reply {
+  unsigned char *bytes; /* in the blocks' memory */
+  void *request;
+  bool sent; /* and not yet known to have arrived */
+} block_reply;
+
+struct hl_blocks {
+  hl_ranks *ranks;
+  hl_blocks *next; /* of the server's list */
+  uint64_t id;     /* the same on all ranks */
+  hl_blocks_shape shape;
+  hl_block_source source;
+  void *memory;               /* owned: all arrays */
+  hl_box *boxes;              /* [ranks] */
+  hl_box *parts;              /* [ranks]; of a fetch */
+  void **pending;             /* [ranks]; requests of MPI; of a fetch */
+  bool *waited;               /* [ranks]; whether `pending` is not done */
+  unsigned char *received;    /* [shape.most][element_bytes] */
+  block_reply reply[REPLIES]; /* by turns; used with ranks->calling held */
+  int turn;
+};
+
+struct hl_block_server {
+  pthread_t thread;
+  atomic_bool stopped;
+  hl_blocks *first; /* with ranks->calling held */
+  uint64_t made;    /* blocks so far */
+  bool running;
+};
+
+bool hl_boxes_meet(const hl_box *a, const hl_box *b, hl_box *both) {
+  bool any = true;
+  for (int axis = 0; axis < 3; axis++) {
+    uint64_t begin = a->begin[axis] > b->begin[axis] ? a->begin[axis] : b->begin[axis];
+    uint64_t end_a = a->begin[axis] + a->count[axis], end_b = b->begin[axis] + b->count[axis];
+    uint64_t end = end_a < end_b ? end_a : end_b;
+    any = any && begin < end;
+    both->begin[axis] = begin;
+    both->count[axis] = begin < end ? end - begin : 0;
+  }
+  return any;
+}
+
+static size_t elements_of(const hl_box *box) { return box->count[0] * box->count[1] * box->count[2]; }
+
+hl_ranks *hl_blocks_ranks(const hl_blocks *blocks) { return blocks->ranks; }
+
+const hl_block_source *hl_blocks_source(const hl_blocks *blocks) { return &blocks->source; }
+
+/* ---- answering ---- */
+
+static hl_blocks *blocks_with(const struct hl_block_server *server, uint64_t id) {
+  hl_blocks *blocks = server->first;
+  while (blocks != NULL && blocks->id != id) blocks = blocks->next;
+  return blocks;
+}
+
+/* Sends what was asked for. `calling` is held. */
+static void answer(hl_ranks *ranks, const block_request *asked) {
+  hl_blocks *blocks = blocks_with(ranks->server, asked->id);
+  if (blocks == NULL) return; /* this rank has failed, and the job will end */
+  block_reply *reply = &blocks->reply[blocks->turn++ % REPLIES];
+  for (int done = !reply->sent; !done;) ranks->mpi.test(&reply->request, &done, NULL);
+  blocks->source.copy(blocks->source.data, &asked->box, reply->bytes);
+  size_t bytes = elements_of(&asked->box) * blocks->shape.element_bytes;
+  ranks->mpi.send(reply->bytes, (int)bytes, ranks->mpi.byte, (int)asked->from, TAG_REPLY, ranks->communicator,
+                  &reply->request);
+  reply->sent = true;
+}
+
+/* Answers a request, if there is one. */
+static bool serve(hl_ranks *ranks) {
+  int any = 0;
+  block_request asked;
+  pthread_mutex_lock(&ranks->calling);
+  ranks->mpi.probe(OPEN_MPI_ANY, TAG_REQUEST, ranks->communicator, &any, NULL);
+  if (any) {
+    ranks->mpi.receive_now(&asked, (int)sizeof asked, ranks->mpi.byte, OPEN_MPI_ANY, TAG_REQUEST,
+                           ranks->communicator, NULL);
+    answer(ranks, &asked);
+  }
+  pthread_mutex_unlock(&ranks->calling);
+  return any;
+}
+
+static void *run_server(void *data) {
+  hl_ranks *ranks = data;
+  for (int asked = 0; !atomic_load(&ranks->server->stopped);) {
+    asked = serve(ranks) ? 0 : asked + (asked < INT32_MAX);
+    if (asked > 0) hl_ranks_pause(asked);
+  }
+  return NULL;
+}
+
+/* ---- sharing ---- */
+
+static hl_status start_server(hl_ranks *ranks, hl_error *error) {
+  if (ranks->server == NULL) ranks->server = hl_allocate_zeroed(ranks->context, 1, sizeof *ranks->server);
+  struct hl_block_server *server = ranks->server;
+  if (server == NULL) return hl_fail_memory(error, sizeof *server, "the ranks' blocks");
+  if (server->running) return HL_OK;
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before); /* signals are for the program's own threads */
+  int failed = pthread_create(&server->thread, NULL, run_server, ranks);
+  pthread_sigmask(SIG_SETMASK, &before, NULL);
+  if (failed) return hl_fail(error, HL_ERROR_MEMORY, "the system starts no thread to answer other ranks");
+  server->running = true;
+  return HL_OK;
+}
+
+static void stop_server(hl_ranks *ranks) {
+  struct hl_block_server *server = ranks->server;
+  atomic_store(&server->stopped, true);
+  pthread_join(server->thread, NULL);
+  atomic_store(&server->stopped, false);
+  server->running = false;
+}
+
+static void lay_out(hl_blocks *blocks, hl_layout *layout) {
+  size_t ranks = (size_t)blocks->ranks->size;
+  blocks->boxes = hl_layout_take(layout, ranks, sizeof *blocks->boxes);
+  blocks->parts = hl_layout_take(layout, ranks, sizeof *blocks->parts);
+  blocks->pending = hl_layout_take(layout, ranks, sizeof *blocks->pending);
+  blocks->waited = hl_layout_take(layout, ranks, sizeof *blocks->waited);
+  blocks->received = hl_layout_take(layout, blocks->shape.most, blocks->shape.element_bytes);
+  for (int n = 0; n < REPLIES; n++)
+    blocks->reply[n].bytes = hl_layout_take(layout, blocks->shape.most, blocks->shape.element_bytes);
+}
+
+static hl_status fail_box(const hl_blocks *blocks, int rank, const char *what, hl_error *error) {
+  const hl_box *box = &blocks->boxes[rank];
+  return hl_fail(error, HL_ERROR_ARGUMENT,
+                 "rank %d holds %llu x %llu x %llu voxels from %llu, %llu, %llu on: %s", rank,
+                 (unsigned long long)box->count[0], (unsigned long long)box->count[1],
+                 (unsigned long long)box->count[2], (unsigned long long)box->begin[0],
+                 (unsigned long long)box->begin[1], (unsigned long long)box->begin[2], what);
+}
+
+/* Boxes within the array, without overlap, that hold as many elements as it has: they fill it. */
+static hl_status check_boxes(const hl_blocks *blocks, hl_error *error) {
+  const size_t *n = blocks->shape.dimension;
+  size_t elements = 0;
+  hl_box both;
+  for (int rank = 0; rank < blocks->ranks->size; rank++) {
+    const hl_box *box = &blocks->boxes[rank];
+    for (int axis = 0; axis < 3; axis++)
+      if (box->count[axis] > n[axis] || box->begin[axis] > n[axis] - box->count[axis])
+        return fail_box(blocks, rank, "they reach beyond the volume", error);
+    for (int other = 0; other < rank; other++)
+      if (hl_boxes_meet(box, &blocks->boxes[other], &both))
+        return fail_box(blocks, rank, "another rank holds some of them, too", error);
+    elements += elements_of(box);
+  }
+  if (elements == n[0] * n[1] * n[2]) return HL_OK;
+  return hl_fail(error, HL_ERROR_ARGUMENT, "the ranks hold %zu of the volume's %zu voxels", elements,
+                 n[0] * n[1] * n[2]);
+}
+
+static void set_first(hl_ranks *ranks, hl_blocks *blocks, bool listed) {
+  pthread_mutex_lock(&ranks->calling);
+  hl_blocks **place = &ranks->server->first;
+  if (listed) {
+    blocks->id = ranks->server->made++;
+    blocks->next = *place;
+    *place = blocks;
+  } else {
+    while (*place != NULL && *place != blocks) place = &(*place)->next;
+    if (*place == blocks) *place = blocks->next;
+  }
+  pthread_mutex_unlock(&ranks->calling);
+}
+
+static hl_status make_blocks(hl_ranks *ranks, const hl_blocks_shape *shape, const hl_block_source *source,
+                             hl_blocks **blocks, hl_error *error) {
+  hl_blocks *made = *blocks = hl_allocate_zeroed(ranks->context, 1, sizeof *made);
+  if (made == NULL) return hl_fail_memory(error, sizeof *made, "the ranks' blocks");
+  made->ranks = ranks;
+  made->shape = *shape;
+  made->source = *source;
+  hl_layout counted = {0};
+  lay_out(made, &counted);
+  hl_layout handed = {.base = made->memory = hl_allocate(ranks->context, counted.bytes, 1)};
+  if (made->memory == NULL) return hl_fail_memory(error, counted.bytes, "the ranks' blocks");
+  lay_out(made, &handed);
+  return start_server(ranks, error);
+}
+
+hl_status hl_blocks_share(hl_ranks *ranks, const hl_blocks_shape *shape, const hl_block_source *source,
+                          hl_blocks **blocks, hl_error *error) {
+  hl_status status = make_blocks(ranks, shape, source, blocks, error);
+  if (status == HL_OK) {
+    set_first(ranks, *blocks, true); /* before anyone knows that all is ready */
+    hl_ranks_gather(ranks, &source->box, sizeof source->box, (*blocks)->boxes);
+    status = check_boxes(*blocks, error);
+  }
+  if (status == HL_OK) return HL_OK;
+  hl_blocks_release(*blocks, false);
+  *blocks = NULL;
+  return status;
+}
+
+void hl_blocks_release(hl_blocks *blocks, bool together) {
+  if (blocks == NULL) return;
+  hl_ranks *ranks = blocks->ranks;
+  if (together) hl_ranks_barrier(ranks);
+  if (ranks->server != NULL) set_first(ranks, blocks, false);
+  for (int n = 0; n < REPLIES; n++)
+    if (blocks->reply[n].sent) hl_ranks_wait(ranks, blocks->reply[n].request);
+  if (ranks->server != NULL && ranks->server->first == NULL) {
+    if (ranks->server->running) stop_server(ranks);
+    hl_release(ranks->context, ranks->server);
+    ranks->server = NULL;
+  }
+  hl_release(ranks->context, blocks->memory);
+  hl_release(ranks->context, blocks);
+}
+
+/* ---- fetching ---- */
+
+/* Asks a rank for a part of its block. */
+static void ask(hl_blocks *blocks, int rank, unsigned char *to) {
+  hl_ranks *ranks = blocks->ranks;
+  const block_request wanted = {blocks->id, (uint64_t)ranks->rank, blocks->parts[rank]};
+  void *sent, *byte = ranks->mpi.byte;
+  size_t bytes = elements_of(&wanted.box) * blocks->shape.element_bytes;
+  pthread_mutex_lock(&ranks->calling);
+  ranks->mpi.receive(to, (int)bytes, byte, rank, TAG_REPLY, ranks->communicator, &blocks->pending[rank]);
+  ranks->mpi.send(&wanted, (int)sizeof wanted, byte, rank, TAG_REQUEST, ranks->communicator, &sent);
+  pthread_mutex_unlock(&ranks->calling);
+  hl_ranks_wait(ranks, sent);
+  blocks->waited[rank] = true;
+  atomic_fetch_add(&ranks->bytes, bytes);
+  atomic_fetch_add(&ranks->requests, 1);
+}
+
+/* Copies a part of what was asked for to its place. */
+static void place(const hl_blocks *blocks, const hl_box *box, const hl_box *part, const unsigned char *from,
+                  unsigned char *to, const size_t step[2]) {
+  size_t bytes = blocks->shape.element_bytes, row = part->count[0] * bytes;
+  to += (part->begin[2] - box->begin[2]) * step[1] + (part->begin[1] - box->begin[1]) * step[0] +
+        (part->begin[0] - box->begin[0]) * bytes;
+  for (uint64_t k = 0; k < part->count[2]; k++)
+    for (uint64_t j = 0; j < part->count[1]; j++, from += row)
+      memcpy(to + k * step[1] + j * step[0], from, row);
+}
+
+static uint64_t nanoseconds_now(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
+}
+
+void hl_blocks_fetch(hl_blocks *blocks, const hl_box *box, unsigned char *to, size_t row_bytes,
+                     size_t slice_bytes) {
+  hl_ranks *ranks = blocks->ranks;
+  const size_t step[2] = {row_bytes, slice_bytes};
+  pthread_mutex_lock(&ranks->fetching);
+  uint64_t before = nanoseconds_now();
+  unsigned char *next = blocks->received;
+  for (int rank = 0; rank < ranks->size; rank++) {
+    hl_box *part = &blocks->parts[rank];
+    blocks->waited[rank] = false;
+    if (!hl_boxes_meet(box, &blocks->boxes[rank], part)) continue;
+    if (rank != ranks->rank) ask(blocks, rank, next);
+    else blocks->source.copy(blocks->source.data, part, next);
+    next += elements_of(part) * blocks->shape.element_bytes;
+  }
+  next = blocks->received;
+  for (int rank = 0; rank < ranks->size; rank++) {
+    const hl_box *part = &blocks->parts[rank];
+    if (elements_of(part) == 0) continue;
+    if (blocks->waited[rank]) hl_ranks_wait(ranks, blocks->pending[rank]);
+    place(blocks, box, part, next, to, step);
+    next += elements_of(part) * blocks->shape.element_bytes;
+  }
+  atomic_fetch_add(&ranks->nanoseconds, nanoseconds_now() - before);
+  pthread_mutex_unlock(&ranks->fetching);
+}

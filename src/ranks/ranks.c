@@ -1,0 +1,176 @@
+/* ranks/ranks.c - see ranks.h, and halflight/ranks.h. */
+#define _GNU_SOURCE
+#include "ranks/ranks.h"
+
+#include <sched.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+
+/* Values and bytes of a call: their count is an int. */
+enum { MOST_VALUES = 1 << 28 };
+
+/* ---- waiting ---- */
+
+void hl_ranks_pause(int asked) {
+  enum { YIELDS = 100, NANOSECONDS = 20000 };
+  if (asked < YIELDS) sched_yield();
+  else nanosleep(&(struct timespec){.tv_nsec = NANOSECONDS}, NULL);
+}
+
+void hl_ranks_wait(hl_ranks *ranks, void *request) {
+  int done = 0;
+  for (int asked = 0; !done; asked += asked < MOST_VALUES) {
+    pthread_mutex_lock(&ranks->calling);
+    ranks->mpi.test(&request, &done, NULL);
+    pthread_mutex_unlock(&ranks->calling);
+    if (!done) hl_ranks_pause(asked);
+  }
+}
+
+/* ---- collectives ---- */
+
+void hl_ranks_barrier(hl_ranks *ranks) {
+  void *request;
+  pthread_mutex_lock(&ranks->calling);
+  ranks->mpi.barrier(ranks->communicator, &request);
+  pthread_mutex_unlock(&ranks->calling);
+  hl_ranks_wait(ranks, request);
+}
+
+void hl_ranks_gather(hl_ranks *ranks, const void *from, size_t bytes, void *to) {
+  void *request, *byte = ranks->mpi.byte;
+  pthread_mutex_lock(&ranks->calling);
+  ranks->mpi.gather_all(from, (int)bytes, byte, to, (int)bytes, byte, ranks->communicator, &request);
+  pthread_mutex_unlock(&ranks->calling);
+  hl_ranks_wait(ranks, request);
+}
+
+void hl_ranks_sum_counts(hl_ranks *ranks, uint64_t *counts, size_t count) {
+  void *request;
+  pthread_mutex_lock(&ranks->calling);
+  ranks->mpi.sum_all(OPEN_MPI_IN_PLACE, counts, (int)count, ranks->mpi.whole, ranks->mpi.sum,
+                     ranks->communicator, &request);
+  pthread_mutex_unlock(&ranks->calling);
+  hl_ranks_wait(ranks, request);
+}
+
+void hl_ranks_tell(hl_ranks *ranks, void *bytes, size_t count, int root) {
+  for (size_t done = 0; done < count; done += MOST_VALUES) {
+    size_t some = count - done < MOST_VALUES ? count - done : MOST_VALUES;
+    void *request;
+    pthread_mutex_lock(&ranks->calling);
+    ranks->mpi.broadcast((unsigned char *)bytes + done, (int)some, ranks->mpi.byte, root, ranks->communicator,
+                         &request);
+    pthread_mutex_unlock(&ranks->calling);
+    hl_ranks_wait(ranks, request);
+  }
+}
+
+void hl_ranks_complete(hl_ranks *ranks, void *elements, size_t count, size_t element_bytes) {
+  for (int root = 0; root < ranks->size; root++) {
+    size_t first = hl_ranks_part(ranks, count, root), end = hl_ranks_part(ranks, count, root + 1);
+    hl_ranks_tell(ranks, (unsigned char *)elements + first * element_bytes, (end - first) * element_bytes,
+                  root);
+  }
+}
+
+void hl_ranks_sum(hl_ranks *ranks, float *values, size_t count) {
+  for (size_t done = 0; ranks != NULL && values != NULL && done < count; done += MOST_VALUES) {
+    size_t some = count - done < MOST_VALUES ? count - done : MOST_VALUES;
+    bool root = ranks->rank == 0;
+    void *request;
+    pthread_mutex_lock(&ranks->calling);
+    ranks->mpi.sum_to(root ? OPEN_MPI_IN_PLACE : values + done, root ? values + done : NULL, (int)some,
+                      ranks->mpi.real, ranks->mpi.sum, 0, ranks->communicator, &request);
+    pthread_mutex_unlock(&ranks->calling);
+    hl_ranks_wait(ranks, request);
+  }
+}
+
+/* ---- joining and leaving ---- */
+
+static hl_status start(hl_ranks *ranks, bool alone, hl_error *error) {
+  open_mpi *mpi = &ranks->mpi;
+  int running = 0, given = 0, needed = alone ? OPEN_MPI_SERIALIZED : OPEN_MPI_MULTIPLE;
+  if (mpi->initialized(&running) != OPEN_MPI_SUCCESS)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "Open MPI does not tell whether it was started");
+  if (!running && !alone)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "hl_ranks_join: MPI is not started: call MPI_Init_thread()");
+  if (running) needed = OPEN_MPI_MULTIPLE; /* whoever started it may call it while a thread answers */
+  int result = running ? mpi->query_thread(&given) : mpi->init(NULL, NULL, needed, &given);
+  if (result != OPEN_MPI_SUCCESS) return hl_fail(error, HL_ERROR_UNSUPPORTED, "Open MPI does not start");
+  ranks->started = !running;
+  if (given < needed)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "hl_ranks_join: MPI was started without %s",
+                   needed == OPEN_MPI_MULTIPLE ? "MPI_THREAD_MULTIPLE" : "MPI_THREAD_SERIALIZED");
+  return HL_OK;
+}
+
+static hl_status join(hl_ranks *ranks, void *communicator, hl_error *error) {
+  open_mpi *mpi = &ranks->mpi;
+  hl_status status = hl_open_mpi_load(mpi, error);
+  if (status == HL_OK) status = start(ranks, communicator == NULL, error);
+  if (status != HL_OK) return status;
+  void *parent = communicator != NULL ? communicator : mpi->world;
+  if (mpi->duplicate(parent, &ranks->communicator) != OPEN_MPI_SUCCESS ||
+      mpi->rank(ranks->communicator, &ranks->rank) != OPEN_MPI_SUCCESS ||
+      mpi->size(ranks->communicator, &ranks->size) != OPEN_MPI_SUCCESS)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "Open MPI does not tell this process's rank");
+  return HL_OK;
+}
+
+static void release(hl_ranks *ranks) {
+  pthread_mutex_destroy(&ranks->calling);
+  pthread_mutex_destroy(&ranks->fetching);
+  hl_release(ranks->context, ranks);
+}
+
+hl_status hl_ranks_join(hl_context *context, void *communicator, hl_ranks **ranks, hl_error *error) {
+  if (ranks != NULL) *ranks = NULL;
+  if (context == NULL || ranks == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_ranks_join: context and ranks must not be null");
+  hl_ranks *made = hl_allocate_zeroed(context, 1, sizeof *made);
+  if (made == NULL) return hl_fail_memory(error, sizeof *made, "the ranks of a job");
+  made->context = context;
+  pthread_mutex_init(&made->calling, NULL);
+  pthread_mutex_init(&made->fetching, NULL);
+  hl_status status = join(made, communicator, error);
+  if (status == HL_OK) {
+    *ranks = made;
+    return HL_OK;
+  }
+  if (made->started) made->mpi.finalize();
+  release(made);
+  return status;
+}
+
+void hl_ranks_leave(hl_ranks *ranks) {
+  if (ranks == NULL) return;
+  if (ranks->context->ranks == ranks) ranks->context->ranks = NULL;
+  hl_ranks_barrier(ranks);
+  ranks->mpi.free(&ranks->communicator);
+  if (ranks->started) ranks->mpi.finalize();
+  release(ranks);
+}
+
+void hl_ranks_abort(hl_ranks *ranks, int exit_code) {
+  if (ranks != NULL) ranks->mpi.abort(ranks->communicator, exit_code);
+}
+
+int hl_ranks_rank(const hl_ranks *ranks) { return ranks != NULL ? ranks->rank : 0; }
+
+int hl_ranks_size(const hl_ranks *ranks) { return ranks != NULL ? ranks->size : 1; }
+
+void hl_ranks_hold_volumes(hl_ranks *ranks) {
+  if (ranks != NULL) ranks->context->ranks = ranks;
+}
+
+void hl_ranks_traffic(const hl_ranks *ranks, uint64_t *bytes, uint64_t *requests, double *seconds) {
+  if (bytes != NULL) *bytes = ranks != NULL ? atomic_load(&ranks->bytes) : 0;
+  if (requests != NULL) *requests = ranks != NULL ? atomic_load(&ranks->requests) : 0;
+  if (seconds != NULL) *seconds = ranks != NULL ? 1e-9 * (double)atomic_load(&ranks->nanoseconds) : 0;
+}

@@ -1,0 +1,42 @@
+# A volume that lies in the memory of several processes makes the picture of one process: its bytes, though each
+# process reads its own slices alone, and keeps little of the others'. A process that dies ends all, and no picture is left.
+command -v mpirun >/dev/null || { echo "mpirun is not installed"; exit 77; }
+# Open MPI itself never frees some of its memory, which the address sanitizer would report.
+export ASAN_OPTIONS="${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0"
+run() { mpirun --allow-run-as-root --oversubscribe -n "$@" >mpirun.txt 2>&1; }
+frame="--size 60x50 --shadow-resolution 64 --shadows hard --threads 1 --quiet"
+tool ball 176 ball_176x176x176_uint8.raw
+halflight convert ball_176x176x176_uint8.raw ball.nrrd --quiet
+halflight render ball.nrrd $frame --print-scene >scene.json
+halflight render scene.json --quiet -o whole.npy
+# How many bytes each process has read, of files of any kind: 5,451,776 of the volume are too many for a fourth.
+cat >counted.sh <<'END'
+"$@"
+code=$?
+sed -n 's/rchar: //p' /proc/$$/io >read.$OMPI_COMM_WORLD_RANK
+exit $code
+END
+run 4 sh counted.sh "$HALFLIGHT" render ball_176x176x176_uint8.raw $frame --volume-over-ranks -o shared.npy
+halflight render ball_176x176x176_uint8.raw $frame -o raw.npy
+cmp raw.npy shared.npy
+awk '$1 > 2500000 { print FILENAME ": " $1 " bytes" }' read.0 read.1 read.2 read.3
+for ranks in 1 3 7; do
+  run $ranks "$HALFLIGHT" render scene.json --quiet --volume-over-ranks --max-memory 13M -o shared.npy
+  cmp whole.npy shared.npy && rm shared.npy
+done
+cat >killed.sh <<'END'
+if [ "$OMPI_COMM_WORLD_RANK" = 1 ]; then (sleep 1; kill -KILL $$) & fi
+exec "$HALFLIGHT" render ball_176x176x176_uint8.raw --size 900x1600 --sheet-spacing 0.04 --quiet --volume-over-ranks -o shared.npy
+END
+cat >failing.sh <<'END'
+if [ "$OMPI_COMM_WORLD_RANK" = 2 ]; then limit="--max-memory 100K"; fi
+exec "$HALFLIGHT" render ball_176x176x176_uint8.raw --size 60x50 --quiet --volume-over-ranks -o shared.npy $limit
+END
+! run 4 sh killed.sh
+grep -o -m 1 "process rank 1" mpirun.txt
+! run 4 sh failing.sh
+grep -o -m 1 "rank 2 of 4 has failed and ends them all" mpirun.txt
+grep -o -m 1 "out of memory" mpirun.txt
+ls *.npy
+halflight render ball.nrrd --volume-over-ranks --print-scene 2>&1 || echo $?
+env -u OMPI_COMM_WORLD_SIZE "$HALFLIGHT" render ball.nrrd --volume-over-ranks -o x.png 2>&1 || echo $?
