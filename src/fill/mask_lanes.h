@@ -5,10 +5,9 @@
 #include "grid/mask_lattice.h"
 #include "view/rays_lanes.h"
 
-/* The lattice's points around sixteen points, in points from the first along each axis, and their parts of
- * the way between them. */
+/* The lattice's cells around sixteen points, and their parts of the way through them. */
 typedef struct mask_places {
-  lanes_int near[3], far[3], outside;
+  lanes_int cell[3], outside;
   lanes part[3];
 } mask_places;
 
@@ -20,52 +19,88 @@ LANES_INLINE mask_places places_in_mask(const mask_lattice *lattice, lanes3 poin
     float last = (float)lattice->last[a];
     p.outside |= (at < -0.5f) | (at > last + 0.5f);
     at = lanes_clamp(at, 0, last);
-    lanes_int first = lanes_truncate(at), next = first + 1, end = lanes_set_int(lattice->last[a]);
-    p.part[a] = at - lanes_from_int(first);
-    p.near[a] = first * lattice->step[a];
-    p.far[a] = lanes_select_int(next > end, end, next) * lattice->step[a];
+    p.cell[a] = lanes_truncate(at);
+    p.part[a] = at - lanes_from_int(p.cell[a]);
   }
   return p;
 }
 
-/* point: frame space. Linear between the lattice's points; `rest` outside the lattice. */
-LANES_INLINE lanes mask_factor(const mask_lattice *lattice, lanes3 point) {
-  mask_places p = places_in_mask(lattice, point);
+/* The points before and behind the places along each axis, in points from the first one. */
+LANES_INLINE void points_of_places(const mask_lattice *lattice, const mask_places *p, lanes_int near[3],
+                                   lanes_int far[3]) {
+  for (int a = 0; a < 3; a++) {
+    lanes_int next = p->cell[a] + 1, end = lanes_set_int(lattice->last[a]);
+    near[a] = p->cell[a] * lattice->step[a];
+    far[a] = lanes_select_int(next > end, end, next) * lattice->step[a];
+  }
+}
+
+/* Where the places' bricks begin, in bytes from the first one. */
+LANES_INLINE lanes_int bricks_of_places(const mask_lattice *lattice, const mask_places *p) {
+  lanes_int at = lanes_set_int(0);
+  for (int a = 0; a < 3; a++) at += (p->cell[a] >> HL_MASK_BRICK_SHIFT) * lattice->brick_step[a];
+  return at * (int32_t)sizeof *lattice->bricks;
+}
+
+/* The first, or the second, word of bricks. */
+LANES_INLINE lanes_int words_of_bricks(const mask_lattice *lattice, lanes_int bricks, int word) {
+  return lanes_gather_bytes((const unsigned char *)&lattice->bricks[0][word], bricks);
+}
+
+/* Linear between the lattice's points, as whole steps. */
+LANES_INLINE lanes steps_between_points(const mask_lattice *lattice, const mask_places *p) {
+  lanes_int near[3], far[3];
   lanes plane[2];
+  points_of_places(lattice, p, near, far);
   for (int k = 0; k < 2; k++) {
     lanes line[2];
     for (int j = 0; j < 2; j++) {
       lanes_int a, b; /* where the lattice ends, b is any number, with the weight 0 */
-      lanes_gather_short_pairs(lattice->factors,
-                               p.near[0] + (j ? p.far[1] : p.near[1]) + (k ? p.far[2] : p.near[2]), &a, &b);
-      line[j] = lanes_fma(lanes_from_int(b - a), p.part[0], lanes_from_int(a));
+      lanes_gather_short_pairs(lattice->factors, near[0] + (j ? far[1] : near[1]) + (k ? far[2] : near[2]),
+                               &a, &b);
+      line[j] = lanes_fma(lanes_from_int(b - a), p->part[0], lanes_from_int(a));
     }
-    plane[k] = lanes_fma(line[1] - line[0], p.part[1], line[0]);
+    plane[k] = lanes_fma(line[1] - line[0], p->part[1], line[0]);
   }
-  lanes factor = lanes_fma(plane[1] - plane[0], p.part[2], plane[0]) * (1.0f / 65535);
-  return lanes_select(p.outside, lanes_set(lattice->rest), factor);
+  return lanes_fma(plane[1] - plane[0], p->part[2], plane[0]);
+}
+
+/* point: frame space. Linear between the lattice's points; `rest` outside the lattice. Known for the active
+ * lanes. In even bricks all points have the factor that the brick tells: what is linear between them is just
+ * this. */
+LANES_INLINE lanes mask_factor(const mask_lattice *lattice, lanes3 point, uint32_t active) {
+  mask_places p = places_in_mask(lattice, point);
+  lanes_int words = words_of_bricks(lattice, bricks_of_places(lattice, &p), 0);
+  lanes steps = lanes_from_int(words & 0xffff);
+  if ((lanes_bits((words & HL_MASK_EVEN) == 0) & active) != 0) steps = steps_between_points(lattice, &p);
+  return lanes_select(p.outside, lanes_set(lattice->rest), steps * (1.0f / 65535));
+}
+
+/* Linear between the slopes of the lattice's points, per step along each axis. */
+LANES_INLINE void slopes_between_points(const mask_lattice *lattice, const mask_places *p, lanes sum[3]) {
+  lanes_int near[3], far[3];
+  points_of_places(lattice, p, near, far);
+  for (int corner = 0; corner < 8; corner++) {
+    lanes_int at = lanes_set_int(0);
+    lanes share = lanes_set(1.0f);
+    for (int a = 0; a < 3; a++) {
+      at += corner >> a & 1 ? far[a] : near[a];
+      share = share * (corner >> a & 1 ? p->part[a] : 1.0f - p->part[a]);
+    }
+    lanes_int word = lanes_gather_bytes((const unsigned char *)lattice->slopes, at * 4);
+    for (int a = 0; a < 3; a++) sum[a] = lanes_fma(share, lanes_from_int(word << (24 - 8 * a) >> 24), sum[a]);
+  }
 }
 
 /* The factor's slope at points of frame space, per frame unit: linear between those of the lattice's points.
- */
-LANES_INLINE lanes3 mask_slope(const mask_lattice *lattice, lanes3 point) {
+ * Known for the active lanes. */
+LANES_INLINE lanes3 mask_slope(const mask_lattice *lattice, lanes3 point, uint32_t active) {
   mask_places p = places_in_mask(lattice, point);
   lanes sum[3] = {lanes_set(0), lanes_set(0), lanes_set(0)};
-  lanes_int words[8], any = lanes_set_int(0);
   lanes3 slope = {lanes_set(0), lanes_set(0), lanes_set(0)};
-  for (int corner = 0; corner < 8; corner++) {
-    lanes_int at = lanes_set_int(0);
-    for (int a = 0; a < 3; a++) at += corner >> a & 1 ? p.far[a] : p.near[a];
-    words[corner] = lanes_gather_bytes((const unsigned char *)lattice->slopes, at * 4);
-    any |= words[corner];
-  }
-  if (lanes_bits(any != 0) == 0) return slope;
-  for (int corner = 0; corner < 8; corner++) {
-    lanes share = lanes_set(1.0f);
-    for (int a = 0; a < 3; a++) share = share * (corner >> a & 1 ? p.part[a] : 1.0f - p.part[a]);
-    for (int a = 0; a < 3; a++)
-      sum[a] = lanes_fma(share, lanes_from_int(words[corner] << (24 - 8 * a) >> 24), sum[a]);
-  }
+  lanes_int words = words_of_bricks(lattice, bricks_of_places(lattice, &p), 0);
+  if ((lanes_bits((words & HL_MASK_EVEN) == 0) & active) == 0) return slope;
+  slopes_between_points(lattice, &p, sum);
   for (int a = 0; a < 3; a++)
     slope = add_scaled3(slope, set3(lattice->to_index[a]),
                         lanes_select(p.outside, lanes_set(0), sum[a] * (1.0f / 254)));

@@ -56,7 +56,7 @@ static __attribute__((noinline)) matter_factor factor_of_matter(const matter_way
                                     way->starts);
   if (classifier->steepness != NULL) found.factor = factor_of_slope(classifier, found.slope);
   if (classifier->mask.factors != NULL)
-    found.factor = found.factor * mask_factor(&classifier->mask, way->point);
+    found.factor = found.factor * mask_factor(&classifier->mask, way->point, way->active);
   if (plane->sums == NULL) return found;
   found.row = row_of_matter(plane, way->kernel, found.slope, way->point, way->active, way->starts);
   lanes extinction = extinction_in_row(plane, found.row, way->from, way->to);

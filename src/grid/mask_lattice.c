@@ -13,13 +13,17 @@ void hl_mask_lattice_set_up(mask_lattice *lattice, const hl_scene_volume *volume
   lattice->factors = mask->voxels;
   lattice->colors = mask->colors;
   lattice->slopes = mask->slopes;
+  lattice->bricks = (const uint32_t(*)[2])mask->mask_bricks;
   lattice->rest = (float)volume->mask.rest;
-  int32_t step = 1;
+  int32_t step = 1, brick_step = 1;
   affine3_store(lattice->to_index, &to_index);
   for (int axis = 0; axis < 3; axis++) {
     lattice->last[axis] = (int32_t)mask->dimension[axis] - 1;
     lattice->step[axis] = step;
-    if (axis < 2) step *= (int32_t)mask->dimension[axis];
+    lattice->brick_step[axis] = brick_step;
+    if (axis == 2) break;
+    step *= (int32_t)mask->dimension[axis];
+    brick_step *= (lattice->last[axis] >> HL_MASK_BRICK_SHIFT) + 1;
   }
 }
 

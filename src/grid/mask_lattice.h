@@ -3,6 +3,7 @@
 #ifndef HL_GRID_MASK_LATTICE_H
 #define HL_GRID_MASK_LATTICE_H
 
+#include "label/mask.h"
 #include "scene/scene.h"
 
 typedef struct mask_lattice {
@@ -10,6 +11,8 @@ typedef struct mask_lattice {
                               may be read */
   const unsigned char *colors; /* [k][j][i][4] (label/mask.h); null: the mask has no colours */
   const signed char *slopes;   /* [k][j][i][4] (label/mask.h) */
+  const uint32_t (*bricks)[2]; /* (label/mask.h) */
+  int32_t brick_step[3];       /* from brick to brick along i, j, k; in bricks */
   int32_t last[3];             /* the greatest index along i, j, k */
   int32_t step[3];             /* from point to point along i, j, k; in points */
   float to_index[3][4];        /* frame space to index space */

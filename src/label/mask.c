@@ -26,6 +26,7 @@ typedef struct mask_job {
   uint16_t *factors;             /* [k][j][i] */
   unsigned char *colors;         /* [k][j][i][HL_COLOR_BYTES]; null: no label tints */
   signed char *slopes;           /* [k][j][i][4] (mask.h) */
+  uint32_t (*bricks)[2];         /* [bk][bj][bi][2] (mask.h) */
   float *sums;                   /* [threads][slice floats] */
   size_t slice_floats;
 } mask_job;
@@ -156,6 +157,67 @@ static void fill_slopes(void *data, size_t k, int worker) {
     }
 }
 
+/* ---- bricks ---- */
+
+/* Points from first to last, both included, along each axis. */
+typedef struct point_box {
+  size_t first[3], last[3];
+} point_box;
+
+static point_box box_of_brick(const size_t dimension[3], const size_t brick[3]) {
+  point_box box;
+  for (int a = 0; a < 3; a++) {
+    box.first[a] = HL_MASK_BRICK * brick[a];
+    box.last[a] = box.first[a] + HL_MASK_BRICK < dimension[a] ? box.first[a] + HL_MASK_BRICK
+                                                              : dimension[a] - 1;
+  }
+  return box;
+}
+
+/* Whether all points of a box have the value of its first one. values: [k][j][i][bytes]. */
+static bool is_even(const size_t dimension[3], const void *values, size_t bytes, const point_box *box) {
+  const unsigned char *from = values, *one = NULL;
+  for (size_t k = box->first[2]; k <= box->last[2]; k++)
+    for (size_t j = box->first[1]; j <= box->last[1]; j++)
+      for (size_t i = box->first[0]; i <= box->last[0]; i++) {
+        const unsigned char *at = from + ((k * dimension[1] + j) * dimension[0] + i) * bytes;
+        if (one == NULL) one = at;
+        else if (memcmp(one, at, bytes) != 0) return false;
+      }
+  return true;
+}
+
+/* A word from memory: the first byte is its lowest. */
+static uint32_t word_of(const unsigned char *bytes) {
+  return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+}
+
+static void bound_brick(const mask_job *job, const size_t brick[3], uint32_t words[2]) {
+  const size_t *n = job->mask->volume->dimension;
+  const point_box box = box_of_brick(n, brick);
+  const size_t first = (box.first[2] * n[1] + box.first[1]) * n[0] + box.first[0];
+  words[0] = job->factors[first];
+  words[1] = job->colors != NULL ? word_of(job->colors + HL_COLOR_BYTES * first) : 0;
+  if (word_of((const unsigned char *)job->slopes + 4 * first) == 0 &&
+      is_even(n, job->factors, sizeof *job->factors, &box) && is_even(n, job->slopes, 4, &box))
+    words[0] |= HL_MASK_EVEN;
+  if (job->colors == NULL || is_even(n, job->colors, HL_COLOR_BYTES, &box)) words[0] |= HL_MASK_EVEN_COLOR;
+}
+
+static void bricks_along(const size_t dimension[3], size_t count[3]) {
+  for (int a = 0; a < 3; a++) count[a] = (dimension[a] + HL_MASK_BRICK - 1) / HL_MASK_BRICK;
+}
+
+static void fill_bricks(void *data, size_t k, int worker) {
+  const mask_job *job = data;
+  size_t count[3];
+  (void)worker;
+  bricks_along(job->mask->volume->dimension, count);
+  for (size_t j = 0; j < count[1]; j++)
+    for (size_t i = 0; i < count[0]; i++)
+      bound_brick(job, (size_t[3]){i, j, k}, job->bricks[(k * count[1] + j) * count[0] + i]);
+}
+
 static hl_status adopt(hl_context *context, mask_job *job, hl_volume **made, hl_error *error) {
   const hl_volume *map = job->mask->volume;
   hl_volume_description grid;
@@ -175,8 +237,10 @@ static hl_status adopt(hl_context *context, mask_job *job, hl_volume **made, hl_
   if (status != HL_OK) return status;
   (*made)->colors = job->colors;
   (*made)->slopes = job->slopes;
+  (*made)->mask_bricks = job->bricks;
   job->colors = NULL;
   job->slopes = NULL;
+  job->bricks = NULL;
   return HL_OK;
 }
 
@@ -197,13 +261,18 @@ static hl_status fill(hl_context *context, int threads, mask_job *job, hl_volume
   job->sums = hl_allocate(context, (size_t)hl_pool_threads(pool) * job->slice_floats, sizeof *job->sums);
   job->factors = hl_allocate_zeroed(context, count + 1, sizeof *job->factors);
   job->slopes = hl_allocate(context, count, 4);
+  size_t bricks[3];
+  bricks_along(map->dimension, bricks);
+  job->bricks = hl_allocate(context, bricks[0] * bricks[1] * bricks[2], sizeof *job->bricks);
   bool colored = any_tint(job->mask);
   if (colored) job->colors = hl_allocate(context, count, HL_COLOR_BYTES);
-  if (job->sums == NULL || job->factors == NULL || job->slopes == NULL || (colored && job->colors == NULL))
+  if (job->sums == NULL || job->factors == NULL || job->slopes == NULL || job->bricks == NULL ||
+      (colored && job->colors == NULL))
     status = hl_fail_memory(error, count * HL_COLOR_BYTES, "a mask");
   if (status == HL_OK) {
     hl_pool_run(pool, map->dimension[2], fill_slice, job);
     hl_pool_run(pool, map->dimension[2], fill_slopes, job);
+    hl_pool_run(pool, bricks[2], fill_bricks, job);
     status = hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while making a mask")
                                      : adopt(context, job, made, error);
   }
@@ -212,6 +281,7 @@ static hl_status fill(hl_context *context, int threads, mask_job *job, hl_volume
   hl_release(context, job->factors);
   hl_release(context, job->colors);
   hl_release(context, job->slopes);
+  hl_release(context, job->bricks);
   return status;
 }
 

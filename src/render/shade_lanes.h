@@ -186,8 +186,8 @@ LANES_INLINE lanes composite(int back_to_front, lanes opacity, color_lanes lit, 
   return alpha;
 }
 
-/* The colour of a volume's matter where it is seen. */
-LANES_INLINE color_lanes color_of_matter(const block_density *d, lanes3 position) {
+/* The colour of a volume's matter where it is seen; known for the active lanes. */
+LANES_INLINE color_lanes color_of_matter(const block_density *d, lanes3 position, uint32_t active) {
   const shade_volume *volume = d->patch->volume;
   color_lanes color, own;
   const classifier *classifier = volume->classifier;
@@ -198,11 +198,8 @@ LANES_INLINE color_lanes color_of_matter(const block_density *d, lanes3 position
     (void)voxel_color_at(&volume->colors, volume->to_index, position, own.c);
     for (int c = 0; c < 3; c++) color.c[c] = color.c[c] * own.c[c];
   }
-  if (volume->tints.voxels != NULL) {
-    lanes tint = voxel_color_at(&volume->tints, volume->classifier->mask.to_index, position, own.c);
-    for (int c = 0; c < 3; c++)
-      color.c[c] = lanes_fma(own.c[c] - color.c[c], tint * (1.0f / 255), color.c[c]);
-  }
+  if (volume->tints.voxels != NULL)
+    tint_matter(&volume->tints, &volume->classifier->mask, position, active, color.c);
   return color;
 }
 
@@ -215,7 +212,7 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_slab *
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (!d->there || !d->patch->volume->visible) continue;
-    color_lanes color = color_of_matter(d, slab->geometry.position);
+    color_lanes color = color_of_matter(d, slab->geometry.position, lanes_bits(slab->seen));
     color_lanes lit = illuminate(job, d, &slab->geometry, lights, color);
     if (job->sky != NULL && d->patch->volume->lit) {
       color_lanes sky = sky_of_volume(job, slab, d, &color);
@@ -226,6 +223,19 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_slab *
     for (int c = 0; c < 3; c++) sum.c[c] = lanes_fma(lit.c[c], weight, sum.c[c]);
   }
   return sum;
+}
+
+/* Weighs slabs, those numbered in `seen`, and drops those of which nothing is left. Returns how many stay. */
+LANES_INLINE int weigh_slabs(const shade_job *job, packed_tile *tile, block_density *const *of,
+                             int patch_count, int *seen, int count, color_lanes *lit) {
+  int left = 0;
+  for (int k = 0; k < count; k++) {
+    int s = seen[k];
+    weigh_slab(job, of[s], patch_count, &tile->slabs[s]);
+    if (lanes_bits(tile->slabs[s].seen) != 0) seen[left++] = s;
+    else lit[s] = (color_lanes){{lanes_set(0), lanes_set(0), lanes_set(0)}};
+  }
+  return left;
 }
 
 /* Lights a tile's slabs, each step for all slabs before the next step: a slab's sums are long chains of
@@ -244,10 +254,8 @@ LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_den
     if (bits != 0) seen[count++] = s;
     else lit[s] = (color_lanes){{lanes_set(0), lanes_set(0), lanes_set(0)}};
   }
-  for (int k = 0; k < count; k++) {
-    place_slab(job, of[seen[k]], patch_count, &tile->slabs[seen[k]]);
-    if (weighed) weigh_slab(job, of[seen[k]], patch_count, &tile->slabs[seen[k]]);
-  }
+  for (int k = 0; k < count; k++) place_slab(job, of[seen[k]], patch_count, &tile->slabs[seen[k]]);
+  if (weighed) count = weigh_slabs(job, tile, of, patch_count, seen, count, lit);
   for (int k = 0; k < count; k++) {
     block_slab *slab = &tile->slabs[seen[k]];
     find_slopes(job, slab, of[seen[k]], patch_count);

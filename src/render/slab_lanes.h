@@ -230,7 +230,8 @@ LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
   lanes3 slope = scale3(slope_of_block(d), lanes_set(scale));
   lanes outward = lanes_select(density < 0.0f, lanes_set(1.0f), lanes_set(-1.0f));
   if (volume->mask_faces)
-    slope = add_scaled3(slope, mask_slope(&volume->classifier->mask, seen_position(slab, d)),
+    slope = add_scaled3(slope,
+                        mask_slope(&volume->classifier->mask, seen_position(slab, d), lanes_bits(slab->seen)),
                         -outward * lanes_abs(density) * (scale * 0.5f));
   lanes steepness = lanes_sqrt(dot3(slope, slope));
   d->surface = volume->phong
@@ -428,6 +429,7 @@ LANES_INLINE int is_weighed(const tile_slab *tile) {
  * extinction by the factor where their matter would be seen without it, and places the slab again. */
 LANES_INLINE void weigh_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
   const block_geometry *g = &slab->geometry;
+  int changed = 0;
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
     if (!d->there || !hl_classifier_is_weighed(d->patch->volume->classifier)) continue;
@@ -450,11 +452,14 @@ LANES_INLINE void weigh_slab(const shade_job *job, block_density *densities, int
     d->slope = found.slope;
     d->row = found.row;
     d->factor = found.factor;
+    if ((lanes_bits(found.factor != 1.0f) & active) == 0) continue;
+    changed = 1;
     d->extinction = d->extinction * d->factor;
     d->sums.extinction = d->sums.extinction * d->factor;
     d->sums.integral = d->sums.integral * d->factor;
     d->sums.moment = d->sums.moment * d->factor;
   }
+  if (!changed) return;
   total_slab(densities, count, slab);
   place_slab(job, densities, count, slab);
 }

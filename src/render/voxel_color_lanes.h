@@ -1,7 +1,8 @@
-/* render/voxel_color_lanes.h - the colours of a volume's own voxels at sixteen samples. */
+/* render/voxel_color_lanes.h - the colours of a volume's own voxels, and of its mask, at sixteen samples. */
 #ifndef HL_RENDER_VOXEL_COLOR_LANES_H
 #define HL_RENDER_VOXEL_COLOR_LANES_H
 
+#include "fill/mask_lanes.h"
 #include "render/slab.h"
 #include "view/rays_lanes.h"
 
@@ -50,6 +51,26 @@ LANES_INLINE lanes voxel_color_at(const voxel_colors *colors, const float to_ind
   lanes weight = lanes_max(sums.weight, lanes_set(1e-6f));
   for (int c = 0; c < 3; c++) color[c] = sums.color[c] / weight;
   return sums.weight;
+}
+
+/* Moves colours towards a mask's, by its weights; position: frame space. Where a brick of the mask has one
+ * colour, this is the colour of all positions in it. Known for the active lanes. */
+LANES_INLINE void tint_matter(const voxel_colors *tints, const mask_lattice *mask, lanes3 position,
+                              uint32_t active, lanes color[3]) {
+  mask_places p = places_in_mask(mask, position);
+  lanes_int bricks = bricks_of_places(mask, &p),
+            even = (words_of_bricks(mask, bricks, 0) & HL_MASK_EVEN_COLOR) != 0,
+            code = words_of_bricks(mask, bricks, 1);
+  lanes own[3], tint = lanes_from_int((code >> 24) & 255);
+  uint32_t uneven = lanes_bits(even == 0) & active;
+  if (uneven == 0 && (lanes_bits(tint > 0.0f) & active) == 0) return;
+  for (int c = 0; c < 3; c++) own[c] = lanes_gather(tints->decode, (code >> (8 * c)) & 255);
+  if (uneven != 0) {
+    lanes between[3], weight = voxel_color_at(tints, mask->to_index, position, between);
+    tint = lanes_select(even, tint, weight);
+    for (int c = 0; c < 3; c++) own[c] = lanes_select(even, own[c], between[c]);
+  }
+  for (int c = 0; c < 3; c++) color[c] = lanes_fma(own[c] - color[c], tint * (1.0f / 255), color[c]);
 }
 
 #endif

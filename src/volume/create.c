@@ -302,6 +302,7 @@ void hl_volume_release(hl_volume *volume) {
   hl_pages_release(volume->pages);
   hl_release(volume->context, volume->colors);
   hl_release(volume->context, volume->slopes);
+  hl_release(volume->context, volume->mask_bricks);
   if (volume->release != NULL) volume->release(volume->release_data, volume->voxels);
   hl_release(volume->context, volume);
 }

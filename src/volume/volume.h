@@ -56,8 +56,9 @@ struct hl_volume {
   const void *voxels; /* [k][j][i]; stored values; owned unless borrowed; null with pages. Rows are packed;
                          rows and slices of borrowed voxels may lie further apart than they are long */
   size_t row_bytes, slice_bytes; /* from row to row, and from slice to slice */
-  unsigned char *colors; /* owned; [k][j][i][4] (colors.h); null: the transfer function tells colours */
-  signed char *slopes;   /* owned; [k][j][i][4]: of a mask's lattice (label/mask.h); null: it is none */
+  unsigned char *colors;      /* owned; [k][j][i][4] (colors.h); null: the transfer function tells colours */
+  signed char *slopes;        /* owned; [k][j][i][4]: of a mask's lattice (label/mask.h); null: it is none */
+  uint32_t (*mask_bricks)[2]; /* owned: of a mask's lattice (label/mask.h); null: it is none */
   struct hl_pages
       *pages;         /* owned (pages.h): the voxels are in a scratch file, or over ranks; null: in memory */
   void *owned_voxels; /* the block to hl_release; null if borrowed */

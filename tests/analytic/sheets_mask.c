@@ -8,8 +8,10 @@
 
 #include <cmocka.h>
 
+#include "label/mask.h"
 #include "reference_stage.h"
 #include "scene/scene.h"
+#include "volume/volume.h"
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE, N = 32, HALF = 16 };
 
@@ -111,6 +113,101 @@ static void test_border_is_smooth_and_in_place(void **state) {
       before = factor;
     }
     assert_near(sum, 0.75, 2e-3);
+    close_masked(&set, cube);
+  }
+}
+
+/* Whether all points of a lattice's brick have the bytes of its first one. */
+static bool brick_is_even(const void *values, size_t bytes, const size_t brick[3]) {
+  const unsigned char *from = values, *one = NULL;
+  for (int n = 0; n < 5 * 5 * 5; n++) {
+    size_t i = 4 * brick[0] + (size_t)(n % 5), j = 4 * brick[1] + (size_t)(n / 5 % 5),
+           k = 4 * brick[2] + (size_t)(n / 25);
+    if (i >= N || j >= N || k >= N) continue;
+    const unsigned char *at = from + ((k * N + j) * N + i) * bytes;
+    if (one == NULL) one = at;
+    if (memcmp(one, at, bytes) != 0) return false;
+  }
+  return true;
+}
+
+/* 32^3 voxels: half of them label 1, a corner label 2, and the others 0. */
+static hl_volume *make_large_map(stage *set) {
+  static unsigned char voxels[N * N * N];
+  hl_volume_description d;
+  hl_volume *map = NULL;
+  for (int n = 0; n < N * N * N; n++)
+    voxels[n] = n % N < 16 ? 1 : n % N > 26 && n / N % N > 26 && n / (N * N) > 26 ? 2 : 0;
+  hl_volume_description_defaults(&d);
+  for (int a = 0; a < 3; a++) {
+    d.dimensions[a] = N;
+    d.origin[a] = -N / 2;
+  }
+  d.type = HL_VOXEL_U8;
+  d.voxels = voxels;
+  assert_int_equal(hl_volume_create(set->context, &d, &map, NULL), HL_OK);
+  return map;
+}
+
+/* A lattice's bricks tell where it is even, and what it is there; some are even and some are not. */
+static void test_bricks_are_told(void **state) {
+  (void)state;
+  stage set;
+  hl_volume *map, *made = NULL;
+  stage_open(&set);
+  map = make_large_map(&set);
+  const hl_mask mask = {.volume = map, .labels = LABELS, .label_count = 2, .rest = 0.1};
+  int even[2] = {0, 0}, count = 0;
+  assert_int_equal(hl_label_mask(set.context, 1, &mask, &made, NULL), HL_OK);
+  for (size_t k = 0; k < N / 4; k++)
+    for (size_t j = 0; j < N / 4; j++)
+      for (size_t i = 0; i < N / 4; i++, count++) {
+        const size_t brick[3] = {i, j, k}, first = 4 * ((k * N + j) * N + i);
+        const uint32_t *words = made->mask_bricks[count];
+        uint32_t color;
+        memcpy(&color, made->colors + 4 * first, 4);
+        bool flat = brick_is_even(made->voxels, 2, brick), level = brick_is_even(made->slopes, 4, brick),
+             colored = brick_is_even(made->colors, 4, brick),
+             no_slope = made->slopes[4 * first] == 0 && made->slopes[4 * first + 1] == 0 &&
+                        made->slopes[4 * first + 2] == 0;
+        assert_int_equal((words[0] & HL_MASK_EVEN) != 0, flat && level && no_slope);
+        assert_int_equal((words[0] & HL_MASK_EVEN_COLOR) != 0, colored);
+        assert_int_equal(words[0] & 0xffff, ((const uint16_t *)made->voxels)[first]);
+        if (colored) assert_int_equal(words[1], color);
+        even[0] += flat && level && no_slope, even[1] += colored;
+      }
+  for (int n = 0; n < 2; n++) assert_true(even[n] > 0 && even[n] < count);
+  hl_volume_release(made);
+  hl_volume_release(map);
+  stage_close(&set);
+}
+
+/* Bricks that are told to be even are not looked into: the same picture, but for the rounding of tints. */
+static void test_bricks_change_nothing(void **state) {
+  (void)state;
+  static float pixels[2][PIXELS * 4];
+  for (int tint = 0; tint < 2; tint++) {
+    hl_label labels[2] = {LABELS[0], LABELS[1]};
+    labels[0].tint = tint;
+    stage set;
+    hl_scene_volume *cube = open_masked(&set, labels, 2, 0.1);
+    hl_volume *made = NULL;
+    size_t even = 0;
+    hl_volume_release(cube->mask.volume);
+    cube->mask.volume = make_large_map(&set);
+    cube->shading = HL_SHADING_PHONG;
+    stage_render_by(&set, false, pixels[0]);
+    /* the lattice stays on the map's shelf */
+    assert_int_equal(hl_label_mask(set.context, 1, &cube->mask, &made, NULL), HL_OK);
+    for (int n = 0; n < N * N * N / 64; n++) {
+      even += (made->mask_bricks[n][0] & HL_MASK_EVEN) != 0;
+      made->mask_bricks[n][0] = 0;
+    }
+    assert_true(even > 64);
+    hl_volume_release(made);
+    stage_render_by(&set, false, pixels[1]);
+    for (int i = 0; i < PIXELS * 4; i++)
+      assert_near((double)pixels[1][i], (double)pixels[0][i], tint ? 1e-6 : 0);
     close_masked(&set, cube);
   }
 }
@@ -283,6 +380,8 @@ int main(void) {
       cmocka_unit_test(test_faces_of_a_knife),
       cmocka_unit_test(test_hidden_voxels_are_not_kept),
       cmocka_unit_test(test_lattice_is_kept),
+      cmocka_unit_test(test_bricks_are_told),
+      cmocka_unit_test(test_bricks_change_nothing),
       cmocka_unit_test(test_wrong_masks_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

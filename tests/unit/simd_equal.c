@@ -417,9 +417,12 @@ static bench classifier_bench;
 static classifier steep_classifier;
 /* The same with functions of two numbers: of the gradient, and of another volume. */
 static classifier plane_classifiers[2];
+/* The same with a mask. */
+static classifier masked_classifier;
 static const classifier *classifier_of(int number) {
-  if (number % 5 > 2) return &plane_classifiers[number % 5 - 3];
-  return number % 5 == 2 ? &steep_classifier : &classifier_bench.classifier;
+  if (number % 6 == 5) return &masked_classifier;
+  if (number % 6 > 2) return &plane_classifiers[number % 6 - 3];
+  return number % 6 == 2 ? &steep_classifier : &classifier_bench.classifier;
 }
 
 /* Grids whose gradients are taken: of each type of voxel, and a thin one. */
@@ -475,6 +478,33 @@ static void open_planes(void) {
   }
 }
 
+/* A mask of 8 x 9 x 10 points; a third of its bricks is even, a third of one colour. */
+static void open_mask(void) {
+  static uint16_t factors[8 * 9 * 10 + 1];
+  static signed char slopes[8 * 9 * 10 * 4];
+  static uint32_t bricks[2 * 3 * 3][2];
+  static const float to_index[3][4] = {{0.9f, 0.1f, 0, 4}, {-0.1f, 0.8f, 0.2f, 5}, {0, -0.2f, 1.1f, 6}};
+  uint32_t seed = 15;
+  for (int i = 0; i < 8 * 9 * 10; i++) factors[i] = (uint16_t)(65535 * bench_random(&seed));
+  for (int i = 0; i < 8 * 9 * 10 * 4; i++) slopes[i] = (signed char)(254 * bench_random(&seed) - 127);
+  for (int b = 0; b < 2 * 3 * 3; b++) {
+    bricks[b][0] = (uint32_t)(b % 2 ? 65535 : 65535 * bench_random(&seed));
+    if (bench_random(&seed) < 0.33) bricks[b][0] |= HL_MASK_EVEN;
+    if (bench_random(&seed) < 0.33) bricks[b][0] |= HL_MASK_EVEN_COLOR;
+    bricks[b][1] = (uint32_t)(b % 3 ? 4294967295.0 * bench_random(&seed) : 0);
+  }
+  masked_classifier = classifier_bench.classifier;
+  masked_classifier.mask = (mask_lattice){.factors = factors,
+                                          .colors = color_voxels,
+                                          .slopes = slopes,
+                                          .bricks = (const uint32_t(*)[2])bricks,
+                                          .brick_step = {1, 2, 6},
+                                          .last = {7, 8, 9},
+                                          .step = {1, 8, 72},
+                                          .rest = 0.5f};
+  memcpy(masked_classifier.mask.to_index, to_index, sizeof to_index);
+}
+
 static int open_classifier(void **unused) {
   (void)unused;
   open_gradient_grids();
@@ -490,6 +520,7 @@ static int open_classifier(void **unused) {
   steep_classifier.steepness = steepness;
   steep_classifier.steepness_scale = 900;
   open_planes();
+  open_mask();
   return 0;
 }
 
@@ -872,9 +903,11 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
   if (round == 0) s->job.light_count = 2;
   set_up_lights(s, seed, round);
   for (int v = 0; v < 2; v++) {
+    const classifier *classifier = classifier_of(round / 2 + v);
+    int masked = classifier->mask.factors != NULL;
     fill_salted(s->density[2 * v], 2 * TILE_PIXELS, seed, -0.1, 1.1);
     if (round % 8 == 3) s->density[2 * v][20] = NAN;
-    s->volumes[v] = (shade_volume){classifier_of(round / 2 + v),
+    s->volumes[v] = (shade_volume){classifier,
                                    &gradient_bench[(round + v) % GRADIENT_GRIDS].grid,
                                    hl_kernel_get((hl_kernel)(round % 3)),
                                    (round + v) % 2,
@@ -906,8 +939,8 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    round % 3 == 1 ? 3 : 0,
                                    round % 6 == 1 ? 3 : 0,
                                    round % 2,
-                                   0,
-                                   round % 5 == 2 ? colors_bench : (voxel_colors){.voxels = NULL},
+                                   masked,
+                                   masked && round % 5 > 1 ? colors_bench : (voxel_colors){.voxels = NULL},
                                    v + 1};
     s->patches[v] = (shade_patch){&s->volumes[v],
                                   s->density[2 * v],
