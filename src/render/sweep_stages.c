@@ -38,6 +38,7 @@ static int fill_image_tile(sweep *sweep, slab_place place, uint32_t need, int wo
   sweep_counts *counts = &sweep->counts[worker];
   int count = 0;
   for (size_t p = sheets->occupancy.first_patch[tile]; p < sheets->occupancy.first_patch[tile + 1]; p++) {
+    if (!hl_patch_is_touched(sheets, p, place.sheet)) continue;
     uint32_t g = sheets->occupancy.patch_grid[p];
     place.patch = p;
     uint32_t near = hl_patch_relevant(sheets, place, need);
@@ -104,6 +105,7 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
   uint64_t *pixels = &sweep->counts[worker].pixels_light;
   int count = 0;
   for (size_t p = sheets->occupancy.first_patch[tile]; p < sheets->occupancy.first_patch[tile + 1]; p++) {
+    if (!hl_patch_is_touched(sheets, p, place.sheet)) continue;
     uint32_t g = sheets->occupancy.patch_grid[p];
     const hl_scene_volume *scene = sweep->content.volumes[g].scene;
     if (!scene->casts_shadow) continue;

@@ -169,6 +169,7 @@ static void lay_out(view_sheets *sheets, hl_layout *layout) {
   sheets->sources = hl_layout_take(layout, (size_t)sheets->reached * grids, sizeof *sheets->sources);
   sheets->runs = hl_layout_take(layout, (size_t)sheets->run_count * grids, sizeof *sheets->runs);
   sheets->patch_runs = hl_layout_take(layout, patches, sizeof *sheets->patch_runs);
+  sheets->next_slab = hl_layout_take(layout, patches, sizeof *sheets->next_slab);
   sheets->density = hl_layout_take(layout, patches * ring, TILE_PIXELS * sizeof *sheets->density);
   if (!any_cut(sheets->content)) return;
   sheets->entry_of = hl_layout_take(layout, patches, sizeof *sheets->entry_of);
@@ -199,6 +200,7 @@ static hl_status keep_patches(view_sheets *sheets, hl_error *error) {
   size_t patches = sheets->occupancy.patch_count, kept = patches * (size_t)sheets->ring;
   for (size_t i = 0; i < kept; i++) sheets->kept[i] = (kept_patch){.sheet = -1};
   for (size_t i = 0; i < patches; i++) sheets->patch_runs[i] = (patch_run){.first = -1};
+  for (size_t i = 0; i < patches; i++) sheets->next_slab[i] = 1;
   for (size_t i = 0; i < patches && sheets->entry_of != NULL; i++) sheets->entry_of[i] = NO_ENTRY;
   for (int g = 0; g < sheets->content->volume_count && sheets->box_rays != NULL; g++) {
     const grid *grid = &sheets->content->grids[g];
@@ -218,11 +220,18 @@ static slab_run *run_of_grid(const view_sheets *sheets, int first, int grid) {
   return &sheets->runs[run * sheets->content->volume_count + grid];
 }
 
+/* Whether slabs that a grid touches have some of the sheets from first to last. */
+static bool reaches_sheets(const view_sheets *sheets, int grid, int first, int last) {
+  const sheet_range *range = &sheets->occupancy.sheets_of[grid];
+  return last >= range->first - 1 && first <= range->last + 1;
+}
+
 /* A slab is cut where a box's face crosses it, or crosses the way of light to a sample in it: that way begins
  * up to `beside` away. */
 static void reach_run(view_sheets *sheets, int first) {
   const sheet_content *content = sheets->content;
   for (int g = 0; g < content->volume_count; g++) {
+    if (!reaches_sheets(sheets, g, first, first + RUN_SLABS)) continue;
     const grid *grid = &content->grids[g];
     slab_run *run = run_of_grid(sheets, first, g);
     run->grid = grid;
@@ -243,6 +252,7 @@ static void reach_run(view_sheets *sheets, int first) {
 static void reach_sheet(view_sheets *sheets, int sheet) {
   const sheet_content *content = sheets->content;
   for (int g = 0; g < content->volume_count; g++) {
+    if (!reaches_sheets(sheets, g, sheet, sheet)) continue;
     fill_source *source = &sheets->sources[sheet % sheets->reached * content->volume_count + g];
     *source = (fill_source){.grid = &content->grids[g],
                             .kernel = content->kernel,
@@ -396,6 +406,11 @@ static uint64_t fill_bundle(const view_sheets *sheets, slab_place place, uint32_
     run->shows[slab + i] |= (uint16_t)(b.relevant[i] & (visible_on(&b, i) | visible_on(&b, i + 1)));
   run->filled = (uint16_t)(run->filled | more);
   return b.pixels;
+}
+
+bool hl_patch_reaches(view_sheets *sheets, size_t patch, int slab) {
+  sheets->next_slab[patch] = hl_occupancy_next_slab(&sheets->occupancy, patch, slab);
+  return sheets->next_slab[patch] == slab;
 }
 
 uint32_t hl_patch_relevant(const view_sheets *sheets, slab_place place, uint32_t need) {

@@ -59,6 +59,7 @@ typedef struct view_sheets {
   slab_run *runs;       /* [runs that a stretch may touch][grids]; of run k at k % run_count */
   int run_count;
   patch_run *patch_runs; /* [patches] */
+  int32_t *next_slab;    /* [patches]; no slab from the last one asked for up to this one touches the patch */
   /* the next two: only where a box cuts anything visible; else null */
   uint32_t *entry_of; /* [patches]; its row of entries; NO_ENTRY where none was asked for */
   box_rays *box_rays; /* [grids] */
@@ -89,7 +90,15 @@ typedef struct slab_place {
   int sheet;
 } slab_place;
 
-/* The needed blocks in which the slab may show something. May be more than hl_patch_slab() then finds. */
+bool hl_patch_reaches(view_sheets *sheets, size_t patch, int slab);
+/* Whether a slab touches a patch; slabs rise. Where many volumes share a tile, most are before or behind a
+ * slab. */
+static inline bool hl_patch_is_touched(view_sheets *sheets, size_t patch, int slab) {
+  return sheets->next_slab[patch] <= slab && hl_patch_reaches(sheets, patch, slab);
+}
+
+/* For a patch that the slab touches: the needed blocks in which the slab may show something. May be more than
+ * hl_patch_slab() then finds. */
 uint32_t hl_patch_relevant(const view_sheets *sheets, slab_place place, uint32_t need);
 
 /* A patch's densities on a slab's two sheets. */

@@ -172,6 +172,36 @@ static void transpose_tiles(void *data, size_t index, int worker) {
     }
 }
 
+/* Finds the sheets that a grid touches. */
+static void find_range(const occupancy *o, int grid) {
+  const tile_rectangle *r = &o->rectangle[grid];
+  sheet_range *range = &o->sheets_of[grid];
+  *range = (sheet_range){INT32_MAX, -1};
+  for (size_t n = 0; n < (size_t)r->width * (size_t)r->height; n++) {
+    const uint64_t *bits = o->by_patch + o->patch_of[r->first + n] * (size_t)o->words;
+    for (int word = 0; word < o->words; word++) {
+      if (bits[word] == 0) continue;
+      int first = word * 64 + __builtin_ctzll(bits[word]),
+          last = word * 64 + 63 - __builtin_clzll(bits[word]);
+      range->first = first < range->first ? first : range->first;
+      range->last = last > range->last ? last : range->last;
+    }
+  }
+}
+
+int32_t hl_occupancy_next_slab(const occupancy *o, size_t patch, int slab) {
+  const uint64_t *bits = o->by_patch + patch * (size_t)o->words;
+  const int before = slab - 1;
+  uint64_t left = bits[before / 64] & ~(uint64_t)0 << (before % 64);
+  for (int word = before / 64;; left = bits[word]) {
+    if (left != 0) {
+      int sheet = word * 64 + __builtin_ctzll(left);
+      return sheet == before ? slab : sheet;
+    }
+    if (++word == o->words) return INT32_MAX;
+  }
+}
+
 static void set_size(const occupancy_source *source, occupancy *o) {
   o->spare = source->spare;
   o->tiles_x = hl_tiles(source->view->width);
@@ -206,6 +236,7 @@ static void lay_out(occupancy *o, int grid_count, hl_layout *layout) {
   o->patch_of = hl_layout_take(layout, o->patch_count, sizeof *o->patch_of);
   o->patch_grid = hl_layout_take(layout, o->patch_count, sizeof *o->patch_grid);
   o->first_patch = hl_layout_take(layout, tiles + 1, sizeof *o->first_patch);
+  o->sheets_of = hl_layout_take(layout, (size_t)grid_count, sizeof *o->sheets_of);
   o->by_patch = hl_layout_take(layout, o->patch_count, words * sizeof *o->by_patch);
   o->by_sheet = hl_layout_take(layout, words * 64, (size_t)o->tile_words * sizeof *o->by_sheet);
 }
@@ -243,6 +274,7 @@ hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, brick_ranges_fu
     footprint_map map = map_of_grid(source, g);
     set_view(&map, grid, source->sheets, occupancy, job.rectangle, &job.view);
     hl_pool_run(pool, (grid->relevant_count + BRICKS_A_TASK - 1) / BRICKS_A_TASK, mark_bricks, &job);
+    find_range(occupancy, g);
   }
   hl_pool_run(pool, (size_t)occupancy->tile_words, transpose_tiles, occupancy);
   return HL_OK;

@@ -15,6 +15,10 @@ typedef struct tile_rectangle {
   size_t first;            /* index of its first tile in patch_of; tiles follow row after row */
 } tile_rectangle;
 
+typedef struct sheet_range {
+  int32_t first, last; /* first > last: none */
+} sheet_range;
+
 /* A patch is one grid in one tile. A tile's patches follow each other, in the order of the grids. */
 typedef struct occupancy {
   int tiles_x, tiles_y, sheets;
@@ -23,11 +27,12 @@ typedef struct occupancy {
   double spare;              /* pixels: margin around each brick's projection that counts as touched */
   tile_rectangle *rectangle; /* [grids]; owns the block of this and the arrays below */
   size_t patch_count;
-  uint32_t *patch_of;    /* [patches]; the patch of each tile of each grid's rectangle */
-  uint32_t *first_patch; /* [tiles + 1]; where a tile's patches begin */
-  uint32_t *patch_grid;  /* [patches]; the patch's grid */
-  uint64_t *by_patch;    /* [patches][words]; bit = sheet */
-  uint64_t *by_sheet;    /* [words * 64][tile_words]; bit = tile, all grids together */
+  uint32_t *patch_of;     /* [patches]; the patch of each tile of each grid's rectangle */
+  uint32_t *first_patch;  /* [tiles + 1]; where a tile's patches begin */
+  uint32_t *patch_grid;   /* [patches]; the patch's grid */
+  uint64_t *by_patch;     /* [patches][words]; bit = sheet */
+  sheet_range *sheets_of; /* [grids]; the sheets that a grid touches anywhere */
+  uint64_t *by_sheet;     /* [words * 64][tile_words]; bit = tile, all grids together */
 } occupancy;
 
 /* ---- tiles and sheets of sixteen bricks: compiled for each instruction set ---- */
@@ -82,6 +87,10 @@ void hl_occupancy_release(hl_context *context, occupancy *occupancy);
 
 /* The bytes that hl_occupancy_build() would allocate; sets the number of patches. */
 uint64_t hl_occupancy_bytes(const occupancy_source *source, size_t *patch_count);
+
+/* The first slab from this one on in which a patch is touched, by its sheet or the one before; INT32_MAX:
+ * none. */
+int32_t hl_occupancy_next_slab(const occupancy *occupancy, size_t patch, int slab);
 
 static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int sheet) {
   const uint64_t *bits = occupancy->by_patch + patch * (size_t)occupancy->words;

@@ -55,6 +55,45 @@ static void check(const bench *bench, const occupancy *o, long counts[2]) {
     }
 }
 
+/* The next slab that touches a patch is the first of those whose sheets do. */
+static void check_slabs(const occupancy *o) {
+  for (size_t patch = 0; patch < o->patch_count; patch++)
+    for (int slab = 1; slab < o->sheets; slab++) {
+      int next = slab;
+      while (next < o->sheets && !hl_occupancy_has(o, patch, next - 1) && !hl_occupancy_has(o, patch, next))
+        next++;
+      assert_int_equal(hl_occupancy_next_slab(o, patch, slab), next < o->sheets ? next : INT32_MAX);
+    }
+}
+
+static void test_next_slabs(void **state) {
+  (void)state;
+  enum { WORDS = 4, LEFT_OUT = 40 };
+  static uint64_t bits[LEFT_OUT][WORDS];
+  uint32_t seed = 6;
+  for (int patch = 0; patch < LEFT_OUT; patch++)
+    for (int n = 0; n < patch; n++) {
+      int sheet = (int)(bench_random(&seed) * (WORDS * 64 - LEFT_OUT));
+      bits[patch][sheet / 64] |= (uint64_t)1 << sheet % 64;
+    }
+  bits[0][0] = bits[1][1] = (uint64_t)1 << 63;
+  check_slabs(&(occupancy){
+      .sheets = WORDS * 64 - LEFT_OUT, .words = WORDS, .patch_count = LEFT_OUT, .by_patch = bits[0]});
+}
+
+/* A grid's range ends where its patches' sheets do. */
+static void check_range(const occupancy *o) {
+  sheet_range all = {INT32_MAX, -1};
+  for (size_t patch = 0; patch < o->patch_count; patch++)
+    for (int sheet = 0; sheet < o->sheets; sheet++) {
+      if (!hl_occupancy_has(o, patch, sheet)) continue;
+      if (sheet < all.first) all.first = sheet;
+      if (sheet > all.last) all.last = sheet;
+    }
+  assert_int_equal(o->sheets_of[0].first, all.first);
+  assert_int_equal(o->sheets_of[0].last, all.last);
+}
+
 /* A few bright voxels: few bricks matter. */
 static void open_grid(bench *bench, uint8_t *voxels) {
   memset(voxels, 0, SIDE * SIDE * SIDE);
@@ -84,6 +123,7 @@ static void test_bricks_mark_what_they_touch(void **state) {
         hl_occupancy_build(bench.context, bench.pool, hl_hot_scalar.view.brick_ranges, &source, &o, NULL),
         HL_OK);
     check(&bench, &o, counts);
+    check_range(&o);
     hl_occupancy_release(bench.context, &o);
   }
   assert_true(counts[0] > 1000 && counts[1] > 1000);
@@ -91,6 +131,7 @@ static void test_bricks_mark_what_they_touch(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_bricks_mark_what_they_touch)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_bricks_mark_what_they_touch),
+                                     cmocka_unit_test(test_next_slabs)};
   return cmocka_run_group_tests_name("occupancy", tests, NULL, NULL);
 }
