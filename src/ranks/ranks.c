@@ -16,9 +16,9 @@ enum { MOST_VALUES = 1 << 28 };
 /* ---- waiting ---- */
 
 void hl_ranks_pause(int asked) {
-  enum { YIELDS = 100, NANOSECONDS = 20000 };
+  enum { YIELDS = 100, SHORT_PAUSES = 1000, SHORT = 20000, LONG = 100000 }; /* nanoseconds */
   if (asked < YIELDS) sched_yield();
-  else nanosleep(&(struct timespec){.tv_nsec = NANOSECONDS}, NULL);
+  else nanosleep(&(struct timespec){.tv_nsec = asked < SHORT_PAUSES ? SHORT : LONG}, NULL);
 }
 
 void hl_ranks_wait(hl_ranks *ranks, void *request) {

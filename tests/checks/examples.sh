@@ -22,7 +22,7 @@ cp "$examples"/*.c "$folder/work"
 cd "$folder/work"
 sed -n '/^ \*     #include/,/^ \*     }$/s/^ \*     \{0,1\}//p' "$header" >picture.c
 grep -q 'int main' picture.c
-[ "$(ls)" = "$(printf 'animation.c\nfrom_memory.c\nlayers.c\npicture.c\npixels.c')" ] || { echo "other examples:" && ls && exit 1; }
+[ "$(ls)" = "$(printf 'animation.c\nfrom_memory.c\nlayers.c\nover_ranks.c\npicture.c\npixels.c')" ] || { echo "other examples:" && ls && exit 1; }
 
 strict='-pedantic-errors -Wall -Wextra -Werror'
 sanitizer=-fsanitize=address
@@ -30,7 +30,7 @@ echo 'int main(void) { return 0; }' >nothing.c
 "$@" $sanitizer nothing.c -o nothing 2>/dev/null && ./nothing 2>/dev/null || sanitizer=
 [ -n "$sanitizer" ] || echo "without the address sanitizer: leaks would go unnoticed"
 # shellcheck disable=SC2046,SC2086 # one word per flag
-for name in animation from_memory layers picture pixels; do
+for name in animation from_memory layers over_ranks picture pixels; do
   "$@" -std=c99 $strict -g $sanitizer $name.c -o $name $(pkg-config --cflags --libs halflight) -lm
   [ "$cxx" = none ] || $cxx -std=c++11 $strict -x c++ $name.c -o $name-cxx $(pkg-config --cflags --libs halflight) -lm
 done
@@ -70,6 +70,15 @@ cmp expected.ppm pixels.ppm
 "$make_volume" png-header memory.png | grep -q '^480 360 8 2$'
 "$program" diff memory.png memory.png >differences
 ! "$program" diff lit.png lit-evening.png --max-rmse 0.01 >differences 2>&1
+# Blocks of the same field in several processes, whatever their number.
+if command -v mpirun >/dev/null; then
+  for ranks in 4 7; do # Open MPI itself leaks
+    ASAN_OPTIONS="${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0" mpirun --allow-run-as-root --oversubscribe -n $ranks \
+      ./over_ranks over_ranks.png >message 2>&1 || { echo "over_ranks fails: $(cat message)"; exit 1; }
+    cmp memory.png over_ranks.png
+    rm over_ranks.png
+  done
+fi
 if [ "$cxx" != none ]; then
   run from_memory-cxx cxx.png
   cmp memory.png cxx.png
