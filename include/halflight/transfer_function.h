@@ -133,9 +133,16 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap_scaled(hl_context 
                                                                      hl_range_scale scale,
                                                                      hl_transfer_function *function,
                                                                      hl_error *error);
-/* Reads Halflight's own JSON object, a scene (its first volume's function), ParaView's .json colour maps or
- * Slicer's .vp.json. From a file with colours alone, opacity becomes null: take the opacity points from
- * elsewhere. */
+/* Reads Halflight's own JSON object, a scene (its first volume's function), ParaView's .json colour maps, or
+ * Slicer's .vp.json, .vp, and presets.xml (path: FILE.xml:PRESET). From a file with colours alone, opacity
+ * becomes null: take the opacity points from elsewhere. Slicer's lengths of gradients are per mean voxel edge
+ * and end at a quarter of the range of values, as VTK's: they are fitted to the volume; null: they are taken
+ * as if its voxels had edges of 1. */
+HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load_for(hl_context *context, const char *path,
+                                                              const hl_volume *volume,
+                                                              hl_transfer_function *function,
+                                                              hl_error *error);
+/* The same, volume null. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load(hl_context *context, const char *path,
                                                           hl_transfer_function *function, hl_error *error);
 HL_API void hl_transfer_function_release(hl_context *context, hl_transfer_function *function);

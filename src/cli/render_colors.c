@@ -121,7 +121,7 @@ static int load_function(cli_host *host, const char *name, const hl_volume *volu
   if (is_known(name, preset_name))
     status = hl_transfer_function_preset(host->context, name, volume, function, &error);
   else if (strpbrk(name, "./") != NULL || access(name, F_OK) == 0)
-    status = hl_transfer_function_load(host->context, name, function, &error);
+    status = hl_transfer_function_load_for(host->context, name, volume, function, &error);
   else return refuse_name("tf", name, "preset or file", "presets", preset_name);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }

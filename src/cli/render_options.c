@@ -149,10 +149,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
         {.name = "tf",
          .kind = OPTION_TEXT,
          .argument = "[NAME=]FILE|PRESET",
-         .help = "transfer function: a JSON file (Halflight's, a\nscene's first, ParaView's, Slicer's "
-                 ".vp.json) or "
-                 "a\npreset, see 'halflight help presets'; of volume NAME\nalone (again for others; default: "
-                 "chosen from the\ndata)",
+         .help = "transfer function: a JSON file (Halflight's, a\nscene's first, ParaView's), Slicer's "
+                 "(.vp.json,\n.vp, presets.xml:NAME) or "
+                 "a preset, see\n'halflight help presets'; of volume NAME alone (again\nfor others; default: "
+                 "chosen from the data)",
          .repeatable = true},
     [RENDER_COLORMAP] =
         {.name = "colormap",

@@ -138,9 +138,7 @@ hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *v
  * it makes is owned by *plane (hl_plane_release), after a failure, too. */
 hl_status hl_json_read_plane(hl_json_reader *reader, const json_t *value, hl_function_plane *plane);
 
-/* ParaView's colour map: an array of one object. Slicer's preset: an object with "volumeProperties". The
- * points are owned by *function. */
+/* ParaView's colour map: an array of one object. The points are owned by *function. */
 hl_status hl_json_read_paraview(hl_json_reader *reader, const json_t *root, hl_transfer_function *function);
-hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, hl_transfer_function *function);
 
 #endif

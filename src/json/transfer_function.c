@@ -10,6 +10,7 @@
 #include "core/memory.h"
 #include "json/parts.h"
 #include "json/settings.h"
+#include "json/slicer.h"
 #include "scene/check.h"
 #include "scene/function_plane.h"
 #include "scene/scene.h"
@@ -211,7 +212,7 @@ static hl_status read_start(hl_json_reader *reader, const json_t *value, hl_func
                           "no file is opened for a changed scene: give its points");
     char *path = hl_path_join(reader->context, reader->folder, file);
     if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
-    status = hl_transfer_function_load(reader->context, path, function, reader->error);
+    status = hl_transfer_function_load_for(reader->context, path, volume, function, reader->error);
     hl_release(reader->context, path);
     if (status == HL_OK && function->opacity == NULL && !hl_has_plane(function) && !has(value, "opacity"))
       status = take_automatic_opacity(reader, volume, function);
@@ -298,7 +299,9 @@ static hl_status read_any(hl_json_reader *reader, const json_t *root, hl_transfe
   return hl_json_read_transfer_function(reader, root, (hl_function_subject){.volume = NULL}, function);
 }
 
-static hl_status load(hl_json_reader *reader, const char *path, hl_transfer_function *function) {
+/* Reads a JSON text. *by_voxel: its lengths of gradients are per voxel edge. */
+static hl_status load_json(hl_json_reader *reader, const char *path, bool *by_voxel,
+                           hl_transfer_function *function) {
   unsigned char *bytes = NULL;
   size_t length = 0;
   json_t *root = NULL;
@@ -306,23 +309,38 @@ static hl_status load(hl_json_reader *reader, const char *path, hl_transfer_func
   if (status != HL_OK) return status;
   status = hl_json_parse((const char *)bytes, length, path, &root, reader->error);
   if (status == HL_OK) status = read_any(reader, root, function);
-  if (status == HL_OK) {
-    status = hl_transfer_function_check(function, "", reader->error);
-    if (status != HL_OK) hl_json_prefix(reader, NULL);
-  }
+  *by_voxel = json_object_get(root, "volumeProperties") != NULL;
   json_decref(root);
   hl_release(reader->context, bytes);
   return status;
 }
 
-hl_status hl_transfer_function_load(hl_context *context, const char *path, hl_transfer_function *function,
-                                    hl_error *error) {
+static hl_status load(hl_json_reader *reader, const char *path, const hl_volume *volume,
+                      hl_transfer_function *function) {
+  bool by_voxel = true;
+  hl_status status = hl_slicer_is_text(path)
+                         ? hl_slicer_read_text(reader->context, path, function, reader->error)
+                         : load_json(reader, path, &by_voxel, function);
+  if (status != HL_OK) return status;
+  if (by_voxel && volume != NULL) hl_slicer_fit_gradient(volume, function);
+  status = hl_transfer_function_check(function, "", reader->error);
+  if (status != HL_OK) hl_json_prefix(reader, NULL);
+  return status;
+}
+
+hl_status hl_transfer_function_load_for(hl_context *context, const char *path, const hl_volume *volume,
+                                        hl_transfer_function *function, hl_error *error) {
   if (context == NULL || path == NULL || function == NULL)
-    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_load: null context, path or function");
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_load_for: null context, path or function");
   hl_json_reader reader = {.context = context, .name = path, .error = error};
   hl_transfer_function made = {.unit_distance = 1};
-  hl_status status = load(&reader, path, &made);
+  hl_status status = load(&reader, path, volume, &made);
   if (status != HL_OK) hl_transfer_function_release(context, &made);
   else *function = made;
   return status;
+}
+
+hl_status hl_transfer_function_load(hl_context *context, const char *path, hl_transfer_function *function,
+                                    hl_error *error) {
+  return hl_transfer_function_load_for(context, path, NULL, function, error);
 }

@@ -41,6 +41,7 @@ hl_view_choose up
 hl_scene_make_floor up
 hl_volume_from_shapes name
 hl_volume_load_with options
+hl_transfer_function_load_for volume
 hl_ranks_join communicator
 hl_volume_from_shapes options
 """

@@ -1,4 +1,6 @@
 /* tests/fuzz/transfer.c - fuzz target: transfer-function files: Halflight's own, ParaView's and Slicer's. */
+#include <string.h>
+
 #include "target.h"
 
 const uint64_t fuzz_memory_limit = 16 << 20;
@@ -16,7 +18,12 @@ static void check_function(const hl_transfer_function *function) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-  const char *path = fuzz_write_file(0, "f.json", data, size);
+  size_t first = 0; /* XML and Slicer's lines of numbers have their own names */
+  while (first < size && strchr(" \n\r\t", data[first]) != NULL) first++;
+  const char *name = first == size || strchr("{[", data[first]) != NULL ? "f.json"
+                     : data[first] == '<'                               ? "f.xml"
+                                                                        : "f.vp";
+  const char *path = fuzz_write_file(0, name, data, size);
   hl_transfer_function function = {0};
   hl_error error = {0};
   hl_status status = hl_transfer_function_load(fuzz_context(), path, &function, &error);

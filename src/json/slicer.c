@@ -1,0 +1,119 @@
+/* json/slicer.c - volume properties as 3D Slicer saves them in JSON (.vp.json): opacity by value and by
+ * gradient, and colour. The light on the volume is the scene's: shade and lighting are left aside. */
+#include "json/slicer.h"
+#include "core/memory.h"
+#include "core/vector.h"
+#include "json/foreign_nodes.h"
+#include "scene/transfer_function.h"
+#include "volume/text.h"
+#include "volume/volume.h"
+
+/* Slicer: [{"x": value, "y": opacity or "color": [r, g, b], "midpoint": .5, "sharpness": 0}, ...] */
+static hl_status read_points(hl_json_reader *reader, const json_t *component, const char *key, bool colors,
+                             hl_foreign_node **nodes, size_t *count) {
+  const json_t *function = json_object_get(component, key), *points = json_object_get(function, "points");
+  size_t mark = hl_json_enter(reader, key);
+  if (points == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, "points", "is missing: give the function's points");
+  hl_json_enter(reader, "points");
+  hl_status status = hl_json_array(reader, points, 1, HL_FOREIGN_NODES);
+  if (status != HL_OK) return status;
+  *count = json_array_size(points);
+  *nodes = hl_allocate_zeroed(reader->context, *count, sizeof **nodes);
+  if (*nodes == NULL) return hl_fail_memory(reader->error, *count * sizeof **nodes, "a transfer function");
+  for (size_t n = 0; status == HL_OK && n < *count; n++) {
+    const json_t *point = json_array_get(points, n);
+    hl_foreign_node *made = &(*nodes)[n];
+    size_t inner = hl_json_enter_index(reader, n);
+    made->midpoint = 0.5;
+    if (json_object_get(point, "x") == NULL || json_object_get(point, colors ? "color" : "y") == NULL)
+      return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "has no x or no %s: give both",
+                          colors ? "color" : "y");
+    status = hl_json_number(reader, point, "x", &made->value);
+    if (status == HL_OK && colors) status = hl_json_numbers(reader, point, "color", 3, made->y);
+    if (status == HL_OK && !colors) status = hl_json_number(reader, point, "y", &made->y[0]);
+    if (status == HL_OK) status = hl_json_number(reader, point, "midpoint", &made->midpoint);
+    if (status == HL_OK) status = hl_json_number(reader, point, "sharpness", &made->sharpness);
+    if (status == HL_OK) hl_json_leave(reader, inner);
+  }
+  if (status == HL_OK) status = hl_foreign_check(reader, *nodes, *count);
+  if (status == HL_OK) hl_json_leave(reader, mark);
+  return status;
+}
+
+/* Reads a component's function of opacity. */
+static hl_status read_opacity(hl_json_reader *reader, const json_t *component, const char *key,
+                              const hl_opacity_point **opacity, size_t *opacity_count) {
+  hl_foreign_node *nodes = NULL;
+  size_t count = 0;
+  hl_status status = read_points(reader, component, key, false, &nodes, &count);
+  if (status == HL_OK)
+    status = hl_foreign_opacity(reader->context, nodes, count, opacity, opacity_count, reader->error);
+  hl_release(reader->context, nodes);
+  return status;
+}
+
+void hl_slicer_drop_even_gradient(hl_context *context, hl_transfer_function *function) {
+  for (size_t p = 0; p < function->gradient_opacity_count; p++)
+    if (function->gradient_opacity[p].opacity != 1) return;
+  hl_release(context, (void *)function->gradient_opacity);
+  function->gradient_opacity = NULL;
+  function->gradient_opacity_count = 0;
+}
+
+void hl_slicer_fit_gradient(const hl_volume *volume, hl_transfer_function *function) {
+  hl_opacity_point *points = (hl_opacity_point *)function->gradient_opacity;
+  double edges = 0, most = (volume->maximum - volume->minimum) / 4;
+  size_t count = function->gradient_opacity_count, kept = 0;
+  if (count == 0) return;
+  double held = hl_transfer_function_gradient_opacity(function, most);
+  for (int axis = 0; axis < 3; axis++) edges += vec3_length(mat3_column(volume->index_to_world.linear, axis));
+  while (kept < count && points[kept].value < most) kept++;
+  if (kept < count) points[kept++] = (hl_opacity_point){most, held};
+  for (size_t p = 0; p < kept; p++) points[p].value /= edges / 3;
+  function->gradient_opacity_count = kept;
+}
+
+/* Opacity by gradient, where the preset has some and it changes anything. */
+static hl_status read_gradient(hl_json_reader *reader, const json_t *component,
+                               hl_transfer_function *function) {
+  if (json_is_true(json_object_get(component, "disableGradientOpacity")) ||
+      json_object_get(component, "gradientOpacity") == NULL)
+    return HL_OK;
+  hl_status status = read_opacity(reader, component, "gradientOpacity", &function->gradient_opacity,
+                                  &function->gradient_opacity_count);
+  if (status == HL_OK) hl_slicer_drop_even_gradient(reader->context, function);
+  return status;
+}
+
+static hl_status refuse_nearest(hl_json_reader *reader, const json_t *properties) {
+  const char *text = json_string_value(json_object_get(properties, "interpolationType"));
+  if (text == NULL || !hl_text_starts(text, "nearest")) return HL_OK;
+  return hl_json_fail(reader, HL_ERROR_UNSUPPORTED, NULL,
+                      "interpolationType %s is not supported: set it to linear", text);
+}
+
+hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
+  hl_json_enter(reader, "volumeProperties");
+  const json_t *properties = json_object_get(root, "volumeProperties");
+  hl_status status = hl_json_array(reader, properties, 1, 1);
+  if (status != HL_OK) return status;
+  hl_json_enter(reader, "0/components");
+  const json_t *components = json_object_get(json_array_get(properties, 0), "components");
+  status = hl_json_array(reader, components != NULL ? components : json_null(), 1, 16);
+  if (status != HL_OK) return status;
+  hl_json_enter_index(reader, 0);
+  const json_t *component = json_array_get(components, 0);
+  hl_foreign_node *nodes = NULL;
+  size_t count = 0;
+  status = refuse_nearest(reader, json_array_get(properties, 0));
+  if (status == HL_OK)
+    status = hl_json_number(reader, component, "scalarOpacityUnitDistance", &function->unit_distance);
+  if (status == HL_OK)
+    status = read_opacity(reader, component, "scalarOpacity", &function->opacity, &function->opacity_count);
+  if (status == HL_OK) status = read_points(reader, component, "rgbTransferFunction", true, &nodes, &count);
+  if (status == HL_OK)
+    status = hl_foreign_color(reader->context, nodes, count, HL_SPACE_RGB, function, reader->error);
+  hl_release(reader->context, nodes);
+  return status == HL_OK ? read_gradient(reader, component, function) : status;
+}
