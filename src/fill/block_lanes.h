@@ -5,6 +5,7 @@
 
 #include "fill/fill.h"
 #include "grid/kernel_lanes.h"
+#include "simd/gathers.h"
 #include "simd/narrow.h"
 #include "view/rays_lanes.h"
 

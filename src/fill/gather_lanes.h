@@ -9,6 +9,7 @@
 #include "fill/block_lanes.h"
 #include "fill/row_lanes.h"
 #include "fill/windows_lanes.h"
+#include "simd/gathers.h"
 
 /* The addresses of every lane's 64 taps; all lie in the grid. */
 typedef struct tap_window {

@@ -3,6 +3,7 @@
 #define HL_FILL_MASK_LANES_H
 
 #include "grid/mask_lattice.h"
+#include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
 /* The lattice's cells around sixteen points, and their parts of the way through them. */

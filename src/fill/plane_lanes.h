@@ -5,6 +5,7 @@
 #include "fill/gather_lanes.h"
 #include "fill/gradient_lanes.h"
 #include "grid/classifier_lanes.h"
+#include "simd/gathers.h"
 
 /* ---- another volume's value ---- */
 

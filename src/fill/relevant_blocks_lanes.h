@@ -5,6 +5,7 @@
 #define HL_FILL_RELEVANT_BLOCKS_LANES_H
 
 #include "fill/fill.h"
+#include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
 typedef struct lanes_box {

@@ -3,7 +3,7 @@
 #define HL_FILL_ROW_LANES_H
 
 #include "grid/grid.h"
-#include "simd/lanes.h"
+#include "simd/gathers.h"
 
 /* ---- weights as integers ---- */
 

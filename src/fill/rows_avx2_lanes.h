@@ -7,6 +7,7 @@
 #define HL_FILL_ROWS_AVX2_LANES_H
 
 #include "fill/row_lanes.h"
+#include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
 /* The taps of lanes k and k + 4 of a half. */

@@ -6,6 +6,7 @@
 #define HL_FILL_SPLAT_LANES_H
 
 #include "fill/gather_lanes.h"
+#include "simd/gathers.h"
 
 /* A tile's points in index space, and the bounds of each block's points (lane = block). Weights along x of u8
  * and u16 voxels are rounded as gathering rounds them (row_lanes.h). */

@@ -6,6 +6,7 @@
 #include "fill/gradient_lanes.h"
 #include "fill/mask_lanes.h"
 #include "fill/plane_lanes.h"
+#include "simd/gathers.h"
 
 /* The gradient at a point of frame space: df/dframe = (dindex/dframe)^T df/dindex; stored units per frame
  * unit. m: frame space to index space. */

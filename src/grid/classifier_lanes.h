@@ -3,7 +3,7 @@
 #define HL_GRID_CLASSIFIER_LANES_H
 
 #include "grid/classifier.h"
-#include "simd/lanes.h"
+#include "simd/gathers.h"
 
 /* A coordinate in the classifier's tables: x = entry + fraction. */
 typedef struct table_coordinate {

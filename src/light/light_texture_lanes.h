@@ -3,6 +3,7 @@
 #define HL_LIGHT_LIGHT_TEXTURE_LANES_H
 
 #include "light/light_texture.h"
+#include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
 /* Coverage by the screen along one axis: rises from 0 to 1 across each edge, over a width of 1 / sharpness.

@@ -4,6 +4,7 @@
 #define HL_RENDER_MAXIMUM_LANES_H
 
 #include "render/slab_lanes.h"
+#include "simd/gathers.h"
 
 /* The greatest value from low to high, as coordinates, that the transfer function shows; below 0: there is
  * none. */

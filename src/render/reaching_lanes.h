@@ -4,6 +4,7 @@
 #define HL_RENDER_REACHING_LANES_H
 
 #include "render/light_depth_lanes.h"
+#include "simd/gathers.h"
 
 LANES_INLINE shadow_taps taps_of_position(const shade_light *light, const shadow_map *map, lanes3 position) {
   lanes place[3];

@@ -4,6 +4,7 @@
 
 #include "fill/mask_lanes.h"
 #include "render/slab.h"
+#include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
 /* Sums over the corners of sixteen cells. */

@@ -3,7 +3,7 @@
 #define HL_SCATTER_SCATTER_LANES_H
 
 #include "scatter/scatter.h"
-#include "simd/lanes.h"
+#include "simd/gathers.h"
 
 /* The index of the node before a place along an axis, and the fraction of the spacing from there. */
 LANES_INLINE lanes_int node_before(const scatter_nodes *nodes, int axis, lanes at, lanes *fraction) {

@@ -4,7 +4,7 @@
 #define HL_SHADOW_SHADOW_LOOKUP_LANES_H
 
 #include "shadow/shadow_buffer.h"
-#include "simd/lanes.h"
+#include "simd/gathers.h"
 
 /* The samples' positions in a shadow buffer: the first of the two by two pixels around each, and the
  * fractions of a pixel from there. */

@@ -11,6 +11,7 @@
 
 #include "shadow/attenuate_lanes.h"
 #include "shadow_sublights/sublight_field.h"
+#include "simd/gathers.h"
 
 enum { EVERY_ROW = (1 << TILE) - 1 };
 

@@ -3,7 +3,7 @@
 #ifndef HL_SIMD_NARROW_H
 #define HL_SIMD_NARROW_H
 
-#include "simd/lanes.h"
+#include "simd/gathers.h"
 
 #if defined(__AVX2__) && !defined(__AVX512F__)
 /* Narrows lanes to 16 bits each, clamped. */

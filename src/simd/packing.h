@@ -2,7 +2,7 @@
 #ifndef HL_SIMD_PACKING_H
 #define HL_SIMD_PACKING_H
 
-#include "simd/lanes.h"
+#include "simd/gathers.h"
 
 #if !defined(__AVX512F__)
 static const uint64_t NIBBLE_ONES = 0x1111111111111111u, NIBBLE_NUMBERS = 0xfedcba9876543210u;

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "shadow/shadow_lookup_lanes.h"
+#include "simd/gathers.h"
 
 enum { SIDE = 32, MARGIN = 4, STRIDE = SIDE + 2 * MARGIN };
 
