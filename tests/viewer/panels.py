@@ -88,6 +88,43 @@ def surfaces(browser):
     check(scene_of(browser)["volumes"] == before, "what was there is there again")
 
 
+def polygons(browser, place):
+    """A polygon is made, its vertices are dragged, added and removed, by hand and by keys."""
+    def polygon():
+        return scene_of(browser)["volumes"][0]["transfer_function"]["polygons"][0]
+
+    def keys(*names):
+        browser.run("document.querySelector('canvas.plane').focus()")
+        for name, alt in names:
+            browser.run("document.querySelector('canvas.plane').dispatchEvent(new KeyboardEvent('keydown', "
+                        f"{{ key: '{name}', altKey: {str(alt).lower()}, bubbles: true }})); 0")
+
+    changes(browser, "a polygon", lambda: press_named(browser, "Add a polygon"), "volumes")
+    made = polygon()
+    check(len(made["vertices"]) == 4 and made["falloff"] == 1, f"a rhomb: {made}")
+    browser.run("document.querySelector('canvas.plane').scrollIntoView()")
+    changes(browser, "a vertex", lambda: browser.drag(place(4 / 6, 0.5), place(0.9, 0.7)), "volumes")
+    dragged = polygon()
+    check([dragged["vertices"][n] == made["vertices"][n] for n in range(4)] == [True, True, False, True], "one vertex follows the hand")
+    check(dragged["vertices"][2][0] > made["vertices"][2][0] and dragged["apex"] == made["apex"], f"to where it goes: {dragged}")
+    changes(browser, "the apex", lambda: browser.drag(place(0.5, 0.5), place(0.6, 0.5)), "volumes")
+    check(polygon()["apex"][0] > made["apex"][0] and polygon()["vertices"] == dragged["vertices"], "the apex follows the hand")
+    browser.drag(place(0.6, 0.5), place(0.02, 0.98))
+    check(polygon()["apex"][0] > dragged["vertices"][0][0], "the apex stays where it sees the border")
+    changes(browser, "falloff", lambda: set_control(browser, "Soft edge", 0.25), "volumes")
+    check(polygon()["falloff"] == 0.5, "the falloff is the soft edge")
+    keys(("Insert", True))
+    check(len(polygon()["vertices"]) == 5, "a fifth vertex")
+    placed = polygon()["vertices"]
+    keys(("End", False), ("ArrowUp", True))
+    check(sum(a != b for a, b in zip(placed, polygon()["vertices"])) == 1, "one vertex follows the keys")
+    keys(("Delete", True))
+    check(len(polygon()["vertices"]) == 4, "a vertex is gone")
+    equals_render(browser, "polygons")
+    keys(("Delete", False))
+    check("polygons" not in scene_of(browser)["volumes"][0]["transfer_function"], "the polygon is gone")
+
+
 def boxes(browser):
     """A function of value and gradient: boxes are made, dragged, coloured, removed and undone."""
     open_section(browser, "Transfer function")
@@ -109,8 +146,8 @@ def boxes(browser):
     changes(browser, "an edge", lambda: browser.drag(place((low + high) / 2, 0.3), place((low + high) / 2, 0.1)), "volumes")
     resized = scene_of(browser)["volumes"][0]["transfer_function"]["boxes"][0]
     check(resized["second"][1] == moved["second"][1] and resized["second"][0] < moved["second"][0], f"an edge follows the hand: {resized}")
-    changes(browser, "colour", lambda: set_control(browser, "Box colour", "#20c040"), "volumes")
-    changes(browser, "opacity", lambda: set_control(browser, "Box opacity", 0.9), "volumes")
+    changes(browser, "colour", lambda: set_control(browser, "Fill colour", "#20c040"), "volumes")
+    changes(browser, "opacity", lambda: set_control(browser, "Fill opacity", 0.9), "volumes")
     changes(browser, "edge", lambda: set_control(browser, "Soft edge", 0.4), "volumes")
     equals_render(browser, "boxes")
     copied_command(browser)
@@ -121,6 +158,7 @@ def boxes(browser):
     check(len(scene_of(browser)["volumes"][0]["transfer_function"]["boxes"]) == 2, "a second box")
     browser.key("Delete")
     check(len(scene_of(browser)["volumes"][0]["transfer_function"]["boxes"]) == 1, "and it is gone")
+    polygons(browser, place)
     while scene_of(browser)["volumes"] != before:
         browser.run("halflight.store.undo(); 0")
     check(browser.run("document.querySelector('canvas.plane') === null"), "the line is back")

@@ -1,9 +1,11 @@
-// The drawing of a transfer function of two numbers: its boxes over a histogram of value and gradient, and the pointer
-// on it. Boxes are dragged, their edges too; a click beside them adds one, a double click or Delete removes it.
+// The drawing of a transfer function of two numbers: its boxes and polygons over a histogram of value and gradient, and the
+// pointer on it. Shapes are dragged, and their edges, vertices and apexes; a click beside them adds a box, a double click on a
+// polygon's side adds a vertex; elsewhere it removes the vertex or the shape, as Delete does.
 
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
 import { blankContext } from "./histogram.js";
+import { apexOf, isPolygon, moved, partAt, withVertex, withoutVertex } from "./plane_shapes.js";
 
 const HEIGHT = 190, MARGIN = 9; // pixels
 const GRIP = 7; // pixels within which an edge is grabbed
@@ -16,7 +18,8 @@ export class PlaneCanvas {
   #set;
   #range; // [from, to] of both axes
   #histogram;
-  selected = 0;
+  selected = 0; // of the shapes: boxes, then polygons
+  vertex = 0; // of a polygon
   onSelect = () => {};
 
   // get() gives the transfer function; set(tf, name) takes a changed one. range: [[from, to], [from, to]] of value and
@@ -28,10 +31,11 @@ export class PlaneCanvas {
     this.#histogram = histogram;
     this.#canvas = make("canvas", {
       class: "function plane", tabindex: 0, role: "application",
-      "aria-label": "Boxes of values and second numbers. Arrow keys move the chosen box, with Alt its upper ends; Page Up " +
-        "and Page Down choose another, Insert adds one, Delete removes it.",
+      "aria-label": "Boxes and polygons of values and second numbers. Arrow keys move the chosen one, with Alt a box's upper " +
+        "ends or a polygon's chosen vertex; Page Up and Page Down choose another shape, Home and End another vertex; Insert adds a " +
+        "box, Delete removes the shape, and with Alt they add and remove a vertex.",
       onpointerdown: (event) => this.#down(event), onkeydown: (event) => this.#key(event),
-      ondblclick: (event) => this.#remove(this.#find(event)?.index), onpointermove: (event) => this.#hover(event),
+      ondblclick: (event) => this.#twice(event), onpointermove: (event) => this.#hover(event),
       oncontextmenu: (event) => event.preventDefault(),
     });
     this.element = make("div", { class: "function-area" }, this.#canvas);
@@ -39,6 +43,7 @@ export class PlaneCanvas {
   }
 
   get boxes() { return this.#get().boxes ?? []; }
+  get shapes() { return [...this.boxes, ...(this.#get().polygons ?? [])]; }
 
   // ---- places ----
 
@@ -56,78 +61,112 @@ export class PlaneCanvas {
     return [event.clientX - box.left, event.clientY - box.top];
   }
 
-  // What is under the pointer: { index, ends }, for each axis which end of the box is grabbed (0, 1; null: neither); or null.
+  #inPixels(shape) {
+    const places = (list) => list.map((numbers) => numbers.map((number, axis) => this.#pixel(axis, number)));
+    if (isPolygon(shape)) return { vertices: places(shape.vertices), apex: places([apexOf(shape)])[0] };
+    return Object.fromEntries(AXES.map((key, axis) => [key, shape[key].map((number) => this.#pixel(axis, number))]));
+  }
+
+  // What is under the pointer: the shape's index and its part (partAt); or null.
   #find(event) {
-    const at = this.#place(event);
-    for (let index = this.boxes.length - 1; index >= 0; index--) {
-      const box = this.boxes[index], pixels = AXES.map((key, axis) => box[key].map((number) => this.#pixel(axis, number)));
-      if (!pixels.every((pair, axis) => at[axis] > Math.min(...pair) - GRIP && at[axis] < Math.max(...pair) + GRIP)) continue;
-      const ends = pixels.map((pair, axis) => {
-        const far = pair.map((pixel) => Math.abs(pixel - at[axis]));
-        return Math.min(...far) > GRIP ? null : far[0] <= far[1] ? 0 : 1;
-      });
-      return { index, ends };
+    const at = this.#place(event), shapes = this.shapes;
+    for (let index = shapes.length - 1; index >= 0; index--) {
+      const part = partAt(this.#inPixels(shapes[index]), at, GRIP);
+      if (part !== null) return { index, part };
     }
     return null;
   }
 
   // ---- hands ----
 
-  change(index, part, name) {
-    const boxes = this.boxes.map((box, n) => (n === index ? { ...box, ...part } : box));
-    this.#set({ ...this.#get(), boxes }, name);
+  #take(shapes, name) {
+    const [polygons, boxes] = [true, false].map((wanted) => shapes.filter((shape) => isPolygon(shape) === wanted));
+    const { polygons: _, ...tf } = this.#get();
+    this.#set({ ...tf, boxes, ...(polygons.length > 0 ? { polygons } : {}) }, name);
   }
 
-  #select(index) {
+  change(index, part, name) {
+    this.#take(this.shapes.map((shape, n) => (n === index ? { ...shape, ...part } : shape)), name);
+  }
+
+  #select(index, vertex = 0) {
     this.selected = index;
+    this.vertex = vertex;
     this.onSelect(index);
     this.draw();
   }
 
+  #look() {
+    const { color, opacity } = this.shapes[this.selected] ?? { color: [0.9, 0.6, 0.3], opacity: 0.5 };
+    return { color, opacity };
+  }
+
   #add(at) {
-    const like = this.boxes[this.selected] ?? { color: [0.9, 0.6, 0.3], opacity: 0.5 }, { edge: _, ...look } = like;
     const around = AXES.map((_, axis) => {
       const [from, to] = this.#range[axis], half = (to - from) / 12;
       return [Math.max(at[axis] - half, from), Math.min(at[axis] + half, to)];
     });
-    this.#set({ ...this.#get(), boxes: [...this.boxes, { ...look, value: around[0], second: around[1] }] }, `add ${Math.random()}`);
-    this.#select(this.boxes.length - 1);
+    const box = { ...this.#look(), value: around[0], second: around[1] }, place = this.boxes.length;
+    this.#take([...this.boxes, box, ...this.shapes.slice(place)], `add ${Math.random()}`);
+    this.#select(place);
+  }
+
+  // A new polygon in the middle: a rhomb.
+  addPolygon() {
+    const middle = this.#range.map(([from, to]) => (from + to) / 2), half = this.#range.map(([from, to]) => (to - from) / 6);
+    const vertices = [[-1, 0], [0, -1], [1, 0], [0, 1]].map((to) => to.map((sign, axis) => middle[axis] + sign * half[axis]));
+    this.#take([...this.shapes, { vertices, apex: middle, ...this.#look(), falloff: 1 }], `add ${Math.random()}`);
+    this.#select(this.shapes.length - 1);
   }
 
   #remove(index) {
-    if (index === undefined || this.boxes.length < 2) return;
-    this.#set({ ...this.#get(), boxes: this.boxes.filter((_, n) => n !== index) }, `remove ${Math.random()}`);
+    if (index === undefined || this.shapes.length < 2) return;
+    this.#take(this.shapes.filter((_, n) => n !== index), `remove ${Math.random()}`);
     this.#select(Math.max(0, index - 1));
   }
 
-  // A box moved by `by`, or its ends: they keep apart.
-  #moved(box, ends, by) {
-    const whole = ends.every((end) => end === null);
-    return Object.fromEntries(AXES.map((key, axis) => {
-      const least = (this.#range[axis][1] - this.#range[axis][0]) / 200, [low, high] = box[key];
-      if (whole) return [key, [low + by[axis], high + by[axis]]];
-      if (ends[axis] === 0) return [key, [Math.min(low + by[axis], high - least), high]];
-      return [key, ends[axis] === 1 ? [low, Math.max(high + by[axis], low + least)] : [low, high]];
-    }));
+  #addVertex(index, side, at) {
+    this.change(index, { vertices: withVertex(this.shapes[index], side, at) }, `vertex ${Math.random()}`);
+    this.#select(index, side + 1);
+  }
+
+  #removeVertex(index, vertex) {
+    const vertices = withoutVertex(this.shapes[index], vertex);
+    if (vertices === null) return;
+    this.change(index, { vertices }, `vertex ${Math.random()}`);
+    this.#select(index, Math.max(0, vertex - 1));
+  }
+
+  #twice(event) {
+    const found = this.#find(event);
+    if (found === null) return;
+    if (found.part.side !== undefined) this.#addVertex(found.index, found.part.side, this.#place(event).map((pixel, axis) => this.#number(axis, pixel)));
+    else if (found.part.vertex !== undefined) this.#removeVertex(found.index, found.part.vertex);
+    else this.#remove(found.index);
+  }
+
+  #moved(shape, part, by) {
+    return moved(shape, part, by, this.#range.map(([from, to]) => (to - from) / 200));
   }
 
   #down(event) {
     const found = this.#find(event), start = this.#place(event).map((pixel, axis) => this.#number(axis, pixel));
     this.#canvas.focus({ preventScroll: true });
     if (event.button !== 0) {
-      this.#remove(found?.index);
+      if (found?.part.vertex !== undefined) this.#removeVertex(found.index, found.part.vertex);
+      else this.#remove(found?.index);
       return;
     }
     if (found === null) {
       this.#add(start);
       return;
     }
-    this.#select(found.index);
+    this.#select(found.index, found.part.vertex);
     this.#canvas.setPointerCapture(event.pointerId);
-    const name = `drag ${Math.random()}`, box = this.boxes[found.index];
+    const name = `drag ${Math.random()}`, shape = this.shapes[found.index];
     const move = (moved) => {
       const by = this.#place(moved).map((pixel, axis) => this.#number(axis, pixel) - start[axis]);
-      this.change(found.index, this.#moved(box, found.ends, by), name);
+      this.change(found.index, this.#moved(shape, found.part, by), name);
     };
     const end = () => this.#canvas.removeEventListener("pointermove", move);
     this.#canvas.addEventListener("pointermove", move);
@@ -136,20 +175,25 @@ export class PlaneCanvas {
 
   #hover(event) {
     const found = this.#find(event), numbers = this.#place(event).map((pixel, axis) => shortNumber(this.#number(axis, pixel)));
-    const [x, y] = found?.ends ?? [null, null];
-    const shapes = [[x !== null && y !== null, x === y ? "nesw-resize" : "nwse-resize"], [x !== null, "ew-resize"], [y !== null, "ns-resize"]];
+    const [x, y] = found?.part.ends ?? [null, null], point = found?.part.vertex !== undefined || found?.part.apex;
+    const shapes = [[point, "move"], [x !== null && y !== null, x === y ? "nesw-resize" : "nwse-resize"], [x !== null, "ew-resize"], [y !== null, "ns-resize"]];
     this.#canvas.style.cursor = found === null ? "copy" : (shapes.find(([fits]) => fits)?.[1] ?? "grab");
     this.#canvas.title = `value ${numbers[0]}, ${this.#get().second === "gradient" ? "gradient" : "other volume"} ${numbers[1]}`;
   }
 
   #key(event) {
     const step = event.shiftKey ? 20 : 200, moves = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-    const count = this.boxes.length, box = this.boxes[this.selected];
-    if (moves[event.key] && box) {
+    const count = this.shapes.length, shape = this.shapes[this.selected], polygon = shape !== undefined && isPolygon(shape);
+    if (moves[event.key] && shape) {
       const by = moves[event.key].map((sign, axis) => (sign * (this.#range[axis][1] - this.#range[axis][0])) / step);
-      this.change(this.selected, this.#moved(box, event.altKey ? [1, 1] : [null, null], by), "keys");
+      const part = polygon ? (event.altKey ? { vertex: this.vertex } : {}) : { ends: event.altKey ? [1, 1] : [null, null] };
+      this.change(this.selected, this.#moved(shape, part, by), "keys");
     } else if (event.key === "PageUp" || event.key === "PageDown")
       this.#select((this.selected + (event.key === "PageDown" ? 1 : count - 1)) % Math.max(count, 1));
+    else if (polygon && (event.key === "Home" || event.key === "End"))
+      this.#select(this.selected, (this.vertex + (event.key === "End" ? 1 : shape.vertices.length - 1)) % shape.vertices.length);
+    else if (polygon && event.altKey && event.key === "Insert") this.#addVertex(this.selected, this.vertex);
+    else if (polygon && event.altKey && event.key === "Delete") this.#removeVertex(this.selected, this.vertex);
     else if (event.key === "Delete" || event.key === "Backspace") this.#remove(this.selected);
     else if (event.key === "Insert") this.#add(this.#range.map(([from, to]) => (from + to) / 2));
     else return;
@@ -162,10 +206,10 @@ export class PlaneCanvas {
   draw() {
     const context = blankContext(this.#canvas, this.element.clientWidth, HEIGHT), style = getComputedStyle(this.#canvas);
     if (context === null) return;
-    this.selected = Math.min(this.selected, Math.max(this.boxes.length - 1, 0));
+    const shapes = this.shapes;
+    this.selected = Math.min(this.selected, Math.max(shapes.length - 1, 0));
     this.#drawHistogram(context, style);
-    for (const polygon of this.#get().polygons ?? []) this.#drawPolygon(context, polygon);
-    this.boxes.forEach((box, index) => this.#drawBox(context, style, box, index === this.selected));
+    shapes.forEach((shape, index) => this.#drawShape(context, style, shape, index === this.selected));
   }
 
   #drawHistogram(context, style) {
@@ -181,25 +225,30 @@ export class PlaneCanvas {
     context.globalAlpha = 1;
   }
 
-  #drawPolygon(context, { vertices, color }) {
+  #drawShape(context, style, shape, chosen) {
+    const { value, second, vertices, apex } = this.#inPixels(shape);
     context.beginPath();
-    for (const [value, second] of vertices) context.lineTo(this.#pixel(0, value), this.#pixel(1, second));
+    if (vertices) for (const [x, y] of vertices) context.lineTo(x, y);
+    else context.rect(value[0], second[1], value[1] - value[0], second[0] - second[1]);
     context.closePath();
-    context.strokeStyle = hexOf(color);
-    context.lineWidth = 1.5;
-    context.stroke();
-  }
-
-  #drawBox(context, style, box, chosen) {
-    const [left, right] = box.value.map((value) => this.#pixel(0, value)), [bottom, top] = box.second.map((second) => this.#pixel(1, second));
-    context.beginPath();
-    context.rect(left, top, right - left, bottom - top);
-    context.fillStyle = hexOf(box.color);
-    context.globalAlpha = 0.12 + 0.35 * box.opacity;
+    context.fillStyle = hexOf(shape.color);
+    context.globalAlpha = 0.12 + 0.35 * shape.opacity;
     context.fill();
     context.globalAlpha = 1;
     context.lineWidth = chosen ? 2.5 : 1.5;
-    context.strokeStyle = chosen ? style.getPropertyValue("--accent") : hexOf(box.color);
+    context.strokeStyle = chosen ? style.getPropertyValue("--accent") : hexOf(shape.color);
+    context.stroke();
+    if (vertices && chosen) this.#drawHandles(context, vertices, apex);
+  }
+
+  // A disk at each vertex, larger at the chosen one, and a ring at the apex.
+  #drawHandles(context, vertices, apex) {
+    const disk = ([x, y], radius) => { context.beginPath(); context.arc(x, y, radius, 0, 2 * Math.PI); };
+    context.fillStyle = context.strokeStyle;
+    this.vertex = Math.min(this.vertex, vertices.length - 1);
+    vertices.forEach((place, n) => { disk(place, n === this.vertex ? 5 : 3); context.fill(); });
+    disk(apex, 4);
+    context.lineWidth = 1.5;
     context.stroke();
   }
 }

@@ -1,9 +1,10 @@
-// What the panel of a transfer function shows where that takes two numbers: the drawing of its boxes, and the chosen
-// box's colour, opacity and edge.
+// What the panel of a transfer function shows where that takes two numbers: the drawing of its boxes and polygons,
+// and the chosen one's colour, opacity and edge.
 
 import { hexOf, linearOf } from "./color.js";
-import { color, make, slider } from "./controls.js";
+import { button, color, make, slider } from "./controls.js";
 import { PlaneCanvas } from "./plane_canvas.js";
+import { isPolygon } from "./plane_shapes.js";
 import { rangeOf } from "./transfer_function.js";
 
 const GRADIENT = "gradient";
@@ -35,17 +36,20 @@ export function planePanel({ store, start, current, get, set }) {
   const canvas = new PlaneCanvas({
     get, set, range: [about.range, seconds], histogram: second === GRADIENT ? (about.plane ?? null) : null,
   });
-  const chosen = () => canvas.boxes[canvas.selected] ?? { color: [1, 1, 1], opacity: 0, value: [0, 1], second: [0, 1] };
-  const soft = () => (chosen().edge?.[0] ?? 0) / (chosen().value[1] - chosen().value[0]);
+  const chosen = () => canvas.shapes[canvas.selected] ?? { color: [1, 1, 1], opacity: 0, value: [0, 1], second: [0, 1] };
+  // Of a polygon the falloff, of a box the part of it that is edge.
+  const soft = () => (isPolygon(chosen()) ? (chosen().falloff ?? 1) / 2 : (chosen().edge?.[0] ?? 0) / (chosen().value[1] - chosen().value[0]));
+  const softened = (part) => (isPolygon(chosen()) ? { falloff: 2 * part } : { edge: ["value", "second"].map((key) => part * (chosen()[key][1] - chosen()[key][0])) });
   const parts = [
-    color({ label: "Box colour", get: () => hexOf(chosen().color), set: (hex) => canvas.change(canvas.selected, { color: linearOf(hex) }, "color") }),
-    slider({ label: "Box opacity", low: 0, high: 1, get: () => chosen().opacity, set: (opacity) => canvas.change(canvas.selected, { opacity }, "opacity") }),
+    color({ label: "Fill colour", get: () => hexOf(chosen().color), set: (hex) => canvas.change(canvas.selected, { color: linearOf(hex) }, "color") }),
+    slider({ label: "Fill opacity", low: 0, high: 1, get: () => chosen().opacity, set: (opacity) => canvas.change(canvas.selected, { opacity }, "opacity") }),
     slider({
-      label: "Soft edge", low: 0, high: 0.5, title: "The part of the box within which it fades towards its border", get: soft,
-      set: (part) => canvas.change(canvas.selected, { edge: ["value", "second"].map((key) => part * (chosen()[key][1] - chosen()[key][0])) }, "edge"),
+      label: "Soft edge", low: 0, high: 0.5, title: "The part of the shape's width within which it fades towards its border", get: soft,
+      set: (part) => canvas.change(canvas.selected, softened(part), "edge"),
     }),
   ];
   canvas.onSelect = () => parts.forEach((part) => part.update());
   const axes = make("p", { class: "facts" }, second === GRADIENT ? "Right: value; up: the gradient's length" : `Right: value; up: that of "${second.volume}"`);
-  return { elements: [canvas.element, axes, ...parts.map((part) => part.element)], parts: [{ update: () => canvas.draw() }, ...parts] };
+  const adding = make("p", { class: "facts" }, button("Add a polygon", () => canvas.addPolygon()));
+  return { elements: [canvas.element, axes, adding, ...parts.map((part) => part.element)], parts: [{ update: () => canvas.draw() }, ...parts] };
 }

@@ -1,0 +1,79 @@
+// Boxes and polygons of a transfer function of two numbers: what of them is at a place, and how a hand changes them. Places
+// and shapes are here in the canvas's pixels or in the function's numbers alike: [x, y].
+
+const AXES = ["value", "second"];
+export const isPolygon = (shape) => shape.vertices !== undefined;
+export const apexOf = ({ vertices, apex }) => apex ?? [0, 1].map((axis) => vertices.reduce((sum, vertex) => sum + vertex[axis], 0) / vertices.length);
+
+const cross = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
+
+// Whether straight lines lead from the apex to all of the border, within the polygon.
+export function apexSees(polygon) {
+  const apex = apexOf(polygon), turns = polygon.vertices.map((vertex, n, all) => cross(apex, vertex, all[(n + 1) % all.length]));
+  return turns.every((turn) => turn > 0) || turns.every((turn) => turn < 0);
+}
+
+function isInside(vertices, at) {
+  let inside = false;
+  vertices.forEach((a, n) => {
+    const b = vertices[(n + 1) % vertices.length];
+    if (a[1] > at[1] !== b[1] > at[1] && at[0] < a[0] + ((b[0] - a[0]) * (at[1] - a[1])) / (b[1] - a[1])) inside = !inside;
+  });
+  return inside;
+}
+
+// The side of a polygon, by its first vertex, that is within reach; -1: none.
+function sideAt(vertices, at, reach) {
+  return vertices.findIndex((a, n) => {
+    const b = vertices[(n + 1) % vertices.length], length = distance(a, b) || 1;
+    const along = ((at[0] - a[0]) * (b[0] - a[0]) + (at[1] - a[1]) * (b[1] - a[1])) / length;
+    return along >= 0 && along <= length && Math.abs(cross(a, b, at)) / length <= reach;
+  });
+}
+
+// What of a shape is at a place: { ends } of a box: for each axis which end is grabbed (0, 1; null: neither); of a polygon
+// { vertex }, { apex }, { side } or {} for its inside; null: nothing.
+export function partAt(shape, at, reach) {
+  if (!isPolygon(shape)) {
+    const pairs = AXES.map((key) => shape[key]);
+    if (!pairs.every((pair, axis) => at[axis] > Math.min(...pair) - reach && at[axis] < Math.max(...pair) + reach)) return null;
+    return { ends: pairs.map((pair, axis) => {
+      const far = pair.map((pixel) => Math.abs(pixel - at[axis]));
+      return Math.min(...far) > reach ? null : far[0] <= far[1] ? 0 : 1;
+    }) };
+  }
+  const vertex = shape.vertices.findIndex((one) => distance(one, at) <= reach), side = sideAt(shape.vertices, at, reach / 2);
+  if (vertex >= 0) return { vertex };
+  if (distance(apexOf(shape), at) <= reach) return { apex: true };
+  if (side >= 0) return { side };
+  return isInside(shape.vertices, at) ? {} : null;
+}
+
+// A shape's keys after its part was moved by `by`. The ends of a box keep `least` apart, a polygon's apex keeps seeing its border.
+export function moved(shape, part, by, least) {
+  const shifted = (place) => place.map((number, axis) => number + by[axis]);
+  if (isPolygon(shape)) {
+    if (part.vertex === undefined && !part.apex) return { vertices: shape.vertices.map(shifted), apex: shifted(apexOf(shape)) };
+    const changed = part.apex ? { apex: shifted(apexOf(shape)) } : { vertices: shape.vertices.map((one, n) => (n === part.vertex ? shifted(one) : one)) };
+    return apexSees({ ...shape, ...changed }) ? changed : {};
+  }
+  const whole = part.ends.every((end) => end === null);
+  return Object.fromEntries(AXES.map((key, axis) => {
+    const [low, high] = shape[key];
+    if (whole) return [key, [low + by[axis], high + by[axis]]];
+    if (part.ends[axis] === 0) return [key, [Math.min(low + by[axis], high - least[axis]), high]];
+    return [key, part.ends[axis] === 1 ? [low, Math.max(high + by[axis], low + least[axis])] : [low, high]];
+  }));
+}
+
+// A polygon's vertices with one more after vertex n, at a place or in the middle of the side; without vertex n, where it has
+// more than three and the apex goes on seeing the border. Null: neither.
+export function withVertex({ vertices }, n, at) {
+  const next = vertices[(n + 1) % vertices.length];
+  return [...vertices.slice(0, n + 1), at ?? vertices[n].map((number, axis) => (number + next[axis]) / 2), ...vertices.slice(n + 1)];
+}
+export function withoutVertex(polygon, n) {
+  const vertices = polygon.vertices.filter((_, index) => index !== n);
+  return vertices.length >= 3 && apexSees({ ...polygon, vertices }) ? vertices : null;
+}
