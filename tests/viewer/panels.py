@@ -268,6 +268,32 @@ def cuts(browser):
     check(cuts_now() == last, "and comes back when that is undone")
 
 
+def scene_cuts(browser):
+    """Cuts of a scene of two volumes: made, moved, switched off, removed; the panel is there for several volumes alone."""
+    title = "Cuts of all volumes"
+
+    def now():
+        return scene_of(browser).get("cuts")
+
+    open_section(browser, title)
+    changes(browser, "a cut of all", lambda: press_named(browser, "Add: cut of all volumes"), "cuts")
+    check(now()[0]["type"] == "plane" and now()[0]["point"] == [13.5, 7.5, 7.5], f"a plane through the middle of both volumes: {now()}")
+    field = "document.querySelector('[aria-label=\"Point x of the cut of all volumes\"]')"
+    changes(browser, "its point", lambda: browser.run(f"{field}.value = 5; {field}.dispatchEvent(new Event('change')); 0"), "cuts")
+    check(now()[0]["point"][0] == 5 and all("cuts" not in volume for volume in scene_of(browser)["volumes"]), "the scene is cut, no volume")
+    changes(browser, "a sphere", lambda: set_control(browser, "Sphere", "", section=title), "cuts")
+    equals_render(browser, "scene cuts")
+    before = now()
+    changes(browser, "off", lambda: set_control(browser, "Cuts", "", section=title), "cuts")
+    check(now() is None, "a cut that is off is not in the scene")
+    changes(browser, "on", lambda: set_control(browser, "Cuts", "", section=title), "cuts")
+    check(now() == before, "it comes back as it was")
+    changes(browser, "remove", lambda: press_named(browser, "Remove this cut of all volumes"), "cuts")
+    check(now() is None, "it is removed")
+    browser.run("halflight.store.undo(); 0")
+    check(now() == before, "and comes back when that is undone")
+
+
 def probed(browser, *values):
     """Where nothing is seen through, the probe finds each of these."""
     browser.run("halflight.probe.on = true; 0")
@@ -309,6 +335,7 @@ def write_inputs():
     soft = {"file": "soft.nrrd", "transfer_function": {"opacity": [[60, 0], [150, 0.6]], "color": [0.7, 0.7, 0.7]}}
     for name, scene in (("soft", {"volumes": [soft]}),
                         ("cut", {"volumes": [soft]}),
+                        ("pair", {"volumes": [{**soft, "name": "a"}, {**soft, "name": "b", "transform": {"translate": [12, 0, 0]}}]}),
                         ("image", {"volumes": [soft], "sky": {"type": "image", "file": "sky.png", "strength": 0.5}}),
                         ("labels", {"volumes": [{"file": "labels.nrrd", "labels": True}]}),
                         ("mask", {"volumes": [{**soft, "name": "faint", "transform": {"translate": [20, 0, 0]}},
@@ -329,7 +356,7 @@ with tempfile.TemporaryDirectory() as folder:
         print("built without the viewer")
         sys.exit(77)
     write_inputs()
-    for scene, parts in (("soft", (sky, surfaces, boxes, scattering)), ("cut", (cuts,)), ("image", (sky_image,)), ("labels", (labels,)), ("mask", (mask,)),
+    for scene, parts in (("soft", (sky, surfaces, boxes, scattering)), ("cut", (cuts,)), ("pair", (scene_cuts,)), ("image", (sky_image,)), ("labels", (labels,)), ("mask", (mask,)),
                          ("numbers", (as_labels,)),
                          ("meshes", (meshes_alone,))):
         with Viewer(PROGRAM, f"{scene}.json") as viewer, Browser(chromium, SIZE) as browser:

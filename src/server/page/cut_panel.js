@@ -1,7 +1,7 @@
-// The panel of a volume's cuts: planes, boxes and spheres that are cut out of it, each with its numbers and a switch. A cut
-// that is switched off is not in the scene; the panel remembers it.
+// The panels of a volume's cuts and of the scene's, which cut all volumes: planes, boxes and spheres, each with its numbers and
+// a switch. A cut that is switched off is not in the scene; the panel remembers it.
 
-import { middle, worldBox } from "./boxes.js";
+import { corners, middle, placed, worldBox } from "./boxes.js";
 import { isActive, make, row, section, segments, select, shortNumber, tabs, toggle } from "./controls.js";
 
 const PARTS = { plane: [["point", "Point"], ["normal", "Direction"]], box: [["min", "Least"], ["max", "Greatest"]], sphere: [["center", "Centre"], ["radius", "Radius"]] };
@@ -15,11 +15,11 @@ function newCut(type, box) {
 }
 
 // A row of one or three numbers.
-function numbers({ label, count, get, set }) {
+function numbers({ label, noun, count, get, set }) {
   const fields = Array.from({ length: count }, (_, k) => {
     const name = count > 1 ? `${label} ${"xyz"[k]}` : label;
     const field = make("input", {
-      type: "number", step: "any", "aria-label": `${name} of the cut`,
+      type: "number", step: "any", "aria-label": `${name} of the ${noun}`,
       onchange: () => {
         const values = [get()].flat().map((value, n) => (n === k ? +field.value : value));
         if (field.value !== "" && Number.isFinite(+field.value)) set(count > 1 ? values : values[0]);
@@ -34,19 +34,19 @@ function numbers({ label, count, get, set }) {
   return { element: row(make("span", { class: "name" }, label), make("span", { class: "numbers" }, ...fields)), update };
 }
 
-export function cutPanel({ store, start, current, report }) {
-  const { element, body } = section("Cuts", false);
-  const volume = () => store.scene.volumes[current.volume];
-  const box = () => worldBox(start.volumes[current.volume]);
-  let list = [], chosen = 0, parts = []; // list: { cut, on }, of the volume `of`
+// A panel of the cuts of one owner: owner() tells which it is (-1: none, the panel is hidden), cuts() are its cuts, take(name,
+// cuts) changes them, box() is where they cut, others() are rows that follow.
+function panelOf({ title, noun, report, owner, cuts: cutsNow, take: takeCuts, box, others }) {
+  const { element, body } = section(title, false);
+  let list = [], chosen = 0, parts = []; // list: { cut, on }, of the owner `of`
   let of = -1;
 
   const shown = (entries) => entries.filter((entry) => entry.on).map((entry) => entry.cut);
   // The list follows what the scene says: another volume, undone changes.
   function follow() {
-    const cuts = volume().cuts ?? [];
-    if (of === current.volume && JSON.stringify(shown(list)) === JSON.stringify(cuts)) return false;
-    of = current.volume;
+    const cuts = cutsNow();
+    if (of === owner() && JSON.stringify(shown(list)) === JSON.stringify(cuts)) return false;
+    of = owner();
     list = cuts.map((cut) => ({ cut, on: true }));
     chosen = Math.min(chosen, Math.max(list.length - 1, 0));
     return true;
@@ -54,7 +54,7 @@ export function cutPanel({ store, start, current, report }) {
   function take(name, changed) {
     list = changed;
     const cuts = shown(list);
-    store.changeVolume(current.volume, `cuts ${name}`, ({ cuts: _, ...v }) => (cuts.length > 0 ? { ...v, cuts } : v));
+    takeCuts(`cuts ${name}`, ({ cuts: _, ...rest }) => (cuts.length > 0 ? { ...rest, cuts } : rest));
   }
   const entry = () => list[chosen];
   const changeCut = (name, part) => take(`${chosen} ${name}`, list.map((one, n) => (n === chosen ? { ...one, cut: { ...one.cut, ...part } } : one)));
@@ -68,7 +68,7 @@ export function cutPanel({ store, start, current, report }) {
   }
 
   const numbered = tabs({
-    label: "Cuts", noun: "cut", count: () => list.length, chosen: () => chosen,
+    label: title, noun, count: () => list.length, chosen: () => chosen,
     choose: (n) => { chosen = n; build(); },
     add: () => { chosen = list.length; take("add", [...list, { cut: newCut("plane", box()), on: true }]); build(); },
     remove: () => {
@@ -86,7 +86,7 @@ export function cutPanel({ store, start, current, report }) {
       set: (type) => { take(`${chosen} type`, list.map((one, n) => (n === chosen ? { ...one, cut: newCut(type, box()) } : one))); build(); },
     });
     const places = PARTS[cut.type].map(([key, label]) => numbers({
-      label, count: key === "radius" ? 1 : 3, get: () => entry()?.cut[key] ?? cut[key], set: (value) => setNumbers(key, value),
+      label, noun, count: key === "radius" ? 1 : 3, get: () => entry()?.cut[key] ?? cut[key], set: (value) => setNumbers(key, value),
     }));
     return [
       toggle({ label: "Cuts", get: () => entry()?.on === true, set: (on) => take(`${chosen} on`, list.map((one, n) => (n === chosen ? { ...one, on } : one))) }),
@@ -96,25 +96,48 @@ export function cutPanel({ store, start, current, report }) {
   }
 
   function build() {
-    element.hidden = volume() === undefined;
+    element.hidden = owner() < 0;
     if (element.hidden) return;
     follow();
-    const faces = select({
-      label: "Faces", choices: [["face", "by their own normals"], ["gradient", "by the data"], ["none", "as a medium"]],
-      get: () => volume().cut_shading ?? "face", set: (value) => store.changeVolume(current.volume, "cut_shading", (v) => ({ ...v, cut_shading: value })),
-    });
-    const shadow = toggle({
-      label: "Cut matter casts shadows", get: () => volume().cut_casts_shadow === true,
-      set: (on) => store.changeVolume(current.volume, "cut_casts_shadow", (v) => ({ ...v, cut_casts_shadow: on })),
-    });
-    parts = [numbered, ...(list.length > 0 ? [...cutParts(), faces, shadow] : [])];
+    parts = [numbered, ...(list.length > 0 ? [...cutParts(), ...others()] : [])];
     body.replaceChildren(...parts.map((part) => part.element));
     parts.forEach((part) => part.update());
   }
   const update = () => {
-    if (volume() !== undefined && follow()) build();
+    if (element.hidden !== owner() < 0 || (owner() >= 0 && follow())) build();
     else parts.forEach((part) => part.update());
   };
   build();
   return { element, update, rebuild: build };
+}
+
+export function cutPanel({ store, start, current, report }) {
+  const volume = () => store.scene.volumes[current.volume];
+  const others = () => [
+    select({
+      label: "Faces", choices: [["face", "by their own normals"], ["gradient", "by the data"], ["none", "as a medium"]],
+      get: () => volume().cut_shading ?? "face", set: (value) => store.changeVolume(current.volume, "cut_shading", (v) => ({ ...v, cut_shading: value })),
+    }),
+    toggle({
+      label: "Cut matter casts shadows", get: () => volume().cut_casts_shadow === true,
+      set: (on) => store.changeVolume(current.volume, "cut_casts_shadow", (v) => ({ ...v, cut_casts_shadow: on })),
+    }),
+  ];
+  return panelOf({
+    title: "Cuts", noun: "cut", report, others, owner: () => (volume() === undefined ? -1 : current.volume), cuts: () => volume().cuts ?? [],
+    take: (name, change) => store.changeVolume(current.volume, name, change), box: () => worldBox(start.volumes[current.volume]),
+  });
+}
+
+// The scene's own cuts, where it has several volumes or such cuts already.
+export function sceneCutPanel({ store, start, report }) {
+  function box() {
+    const places = start.volumes.flatMap((about, n) => corners(worldBox(about)).map((corner) => placed(corner, store.scene.volumes[n]?.transform)));
+    return { min: [0, 1, 2].map((k) => Math.min(...places.map((at) => at[k]))), max: [0, 1, 2].map((k) => Math.max(...places.map((at) => at[k]))) };
+  }
+  const volumes = () => store.scene.volumes.length;
+  return panelOf({
+    title: "Cuts of all volumes", noun: "cut of all volumes", report, others: () => [], box, cuts: () => store.scene.cuts ?? [],
+    owner: () => (volumes() > 1 || (volumes() > 0 && store.scene.cuts?.length > 0) ? 0 : -1), take: (name, change) => store.change(`scene ${name}`, change),
+  });
 }

@@ -1,7 +1,7 @@
 // The viewer: the picture, what lies over it, and the panels beside it, in any element of a page or a notebook.
 
 import { reshaped } from "./camera.js";
-import { cutPanel } from "./cut_panel.js";
+import { cutPanel, sceneCutPanel } from "./cut_panel.js";
 import { copier, exportPanel } from "./export.js";
 import { filmPanel } from "./film_panel.js";
 import { Frames } from "./frames.js";
@@ -21,7 +21,7 @@ import { viewPanel } from "./view_panel.js";
 import { volumeChooser, volumePanel } from "./volume_panel.js";
 
 // One file each; in the order of the side bar.
-const PANELS = [volumeChooser, functionPanel, labelPanel, surfacePanel, lightPanel, shadowPanel, skyPanel, volumePanel, cutPanel, viewPanel, exportPanel, filmPanel, openPanel];
+const PANELS = [volumeChooser, functionPanel, labelPanel, surfacePanel, lightPanel, shadowPanel, skyPanel, volumePanel, cutPanel, sceneCutPanel, viewPanel, exportPanel, filmPanel, openPanel];
 
 const MARKUP = `
   <div class="viewer">
