@@ -71,6 +71,9 @@ typedef struct grid {
   uint32_t *relevant_list; /* [relevant_count]; relevant bricks with a visible cell, in rising order */
   uint32_t relevant_count;
   int32_t relevant_low[3], relevant_high[3]; /* the least and greatest coordinates of relevant bricks */
+  int32_t content_low[3],
+      content_high[3]; /* the same of these and of those that only a mask hides: what a
+                          frame's geometry follows from, so that no mask moves its sheets */
   bool cut; /* some relevant brick reaches the box's faces: rays need to know where they cross them */
   const cut_shape *cuts; /* borrowed; [cut_count]; what they remove of the box is not there */
   size_t cut_count;

@@ -18,15 +18,28 @@ void hl_brick_bounds(const grid *grid, const int32_t b[3], double margin, double
   }
 }
 
+/* The box around the bricks from first to last. */
+static void box_of_bricks(const grid *grid, const int32_t first[3], const int32_t last[3], double margin,
+                          double low[3], double high[3]) {
+  double centre[3], half[3];
+  hl_brick_bounds(grid, first, margin, centre, half);
+  for (int axis = 0; axis < 3; axis++) low[axis] = centre[axis] - half[axis];
+  hl_brick_bounds(grid, last, margin, centre, half);
+  for (int axis = 0; axis < 3; axis++) high[axis] = centre[axis] + half[axis];
+}
+
 bool hl_relevant_bounds(const grid *grid, double margin, double low[3], double high[3]) {
   if (grid->relevant_count == 0) return false;
-  double centre[3], half[3];
-  hl_brick_bounds(grid, grid->relevant_low, margin, centre, half);
-  for (int axis = 0; axis < 3; axis++) low[axis] = centre[axis] - half[axis];
-  hl_brick_bounds(grid, grid->relevant_high, margin, centre, half);
-  for (int axis = 0; axis < 3; axis++) high[axis] = centre[axis] + half[axis];
+  box_of_bricks(grid, grid->relevant_low, grid->relevant_high, margin, low, high);
   return true;
 }
+
+void hl_content_bounds(const grid *grid, double margin, double low[3], double high[3]) {
+  box_of_bricks(grid, grid->content_low, grid->content_high, margin, low, high);
+}
+
+/* The mark of bricks that would be relevant, had a mask not hidden them. */
+enum { HIDDEN = 2 };
 
 typedef struct brick_job {
   grid *grid;
@@ -82,10 +95,31 @@ static void mark_bricks(void *data, size_t index, int worker) {
     for (b[0] = 0; b[0] < grid->brick_count[0]; b[0]++, at++) {
       float bounds[2];
       hl_bounds_of_brick(grid, at, bounds);
-      grid->relevant[at] = overlaps_box(grid, b) && !is_cut_away(grid, b) &&
-                           hl_classifier_range_visible(job->classifier, grid, bounds[0], bounds[1]) &&
-                           !is_hidden(job, b);
+      bool shows = overlaps_box(grid, b) && !is_cut_away(grid, b) &&
+                   hl_classifier_range_visible(job->classifier, grid, bounds[0], bounds[1]);
+      grid->relevant[at] = !shows ? 0 : is_hidden(job, b) ? HIDDEN : 1;
     }
+}
+
+/* Widens the range from low to high to a brick. */
+static void widen_to_brick(const int32_t b[3], bool first, int32_t low[3], int32_t high[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    if (first || b[axis] < low[axis]) low[axis] = b[axis];
+    if (first || b[axis] > high[axis]) high[axis] = b[axis];
+  }
+}
+
+/* Finds the content's bounds; hidden bricks are then not relevant. */
+static void find_content(grid *grid) {
+  bool first = true;
+  for (size_t at = 0; at < hl_grid_bricks(grid); at++) {
+    if (grid->relevant[at] == 0) continue;
+    int32_t b[3];
+    hl_brick_coordinates(grid, (uint32_t)at, b);
+    widen_to_brick(b, first, grid->content_low, grid->content_high);
+    first = false;
+    if (grid->relevant[at] == HIDDEN) grid->relevant[at] = 0;
+  }
 }
 
 /* The number of voxels that brick b owns along one axis; every voxel has one owner. */
@@ -335,10 +369,7 @@ static void list_relevant(grid *grid) {
     if (!grid->relevant[at]) continue;
     int32_t b[3];
     hl_brick_coordinates(grid, (uint32_t)at, b);
-    for (int axis = 0; axis < 3; axis++) {
-      if (first || b[axis] < grid->relevant_low[axis]) grid->relevant_low[axis] = b[axis];
-      if (first || b[axis] > grid->relevant_high[axis]) grid->relevant_high[axis] = b[axis];
-    }
+    widen_to_brick(b, first, grid->relevant_low, grid->relevant_high);
     first = false;
     if (has_visible_cell(grid, at)) grid->relevant_list[grid->relevant_count++] = (uint32_t)at;
     grid->kept_voxels += (uint64_t)voxels_along(b[0], grid->dimension[0]) *
@@ -352,6 +383,7 @@ void hl_grid_mark_relevant(grid *grid, const grid_functions *functions, const cl
                            hl_pool *pool) {
   brick_job job = {grid, classifier};
   hl_pool_run(pool, (size_t)grid->brick_count[2], mark_bricks, &job);
+  find_content(grid);
   mark_cells(grid, classifier, pool);
   list_relevant(grid);
   find_cell_bits(grid, classifier, functions->brick_bits, pool);

@@ -22,6 +22,10 @@ void hl_brick_bounds(const grid *grid, const int32_t b[3], double margin, double
 /* Finds the box around all relevant bricks; false if there are none. */
 bool hl_relevant_bounds(const grid *grid, double margin, double low[3], double high[3]);
 
+/* Finds the box around the content: relevant bricks and those that only a mask hides; there is at least one.
+ */
+void hl_content_bounds(const grid *grid, double margin, double low[3], double high[3]);
+
 /* Faces that cut nothing visible are so far outside the box, voxels. */
 #define FACE_FAR_OUT 1e9f
 

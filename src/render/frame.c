@@ -37,7 +37,7 @@ hl_status hl_frame_eye(const hl_camera *camera, int width, int height, view *eye
 
 void hl_frame_content(const grid *grid, vec3 corners[8]) {
   double low[3], high[3];
-  (void)hl_relevant_bounds(grid, 0.5, low, high);
+  hl_content_bounds(grid, 0.5, low, high);
   for (int corner = 0; corner < 8; corner++)
     corners[corner] = affine3_apply(
         grid->index_to_frame,

@@ -141,7 +141,7 @@ static hl_volume *make_large_map(stage *set) {
   hl_volume_description_defaults(&d);
   for (int a = 0; a < 3; a++) {
     d.dimensions[a] = N;
-    d.origin[a] = -N / 2;
+    d.origin[a] = 0.5 - N / 2;
   }
   d.type = HL_VOXEL_U8;
   d.voxels = voxels;
@@ -334,6 +334,49 @@ static void test_hidden_voxels_are_not_kept(void **state) {
   }
 }
 
+/* Waves of 32^3 voxels, whose surfaces show where sheets lie; of them a mask shows all, or the half with x <
+ * 0. */
+static void render_waves(bool masked, float *pixels) {
+  static float voxels[N * N * N];
+  static const hl_opacity_point steep[] = {{0.45, 0}, {0.55, 0.9}};
+  static const hl_label one = {.value = 1, .opacity = 1, .visible = 1};
+  stage set;
+  stage_open(&set);
+  for (int n = 0; n < N * N * N; n++)
+    voxels[n] = (float)(0.5 + 0.5 * sin(0.5 * (n % N)) * cos(0.4 * (n / N % N)) * sin(0.3 * (n / (N * N))));
+  set.scene.width = set.scene.height = SIDE;
+  set.scene.camera.height = N;
+  set.scene.render.shadows = HL_SHADOWS_OFF;
+  stage_look(&set, (vec3){40, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  hl_scene_volume *cube = stage_add_grid(&set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1},
+                                         (vec3){-N / 2, -N / 2, -N / 2}, voxels);
+  hl_volume *map = make_large_map(&set);
+  cube->transfer_function.opacity = steep;
+  cube->transfer_function.opacity_count = 2;
+  cube->shading = HL_SHADING_PHONG;
+  stage_add_directional(&set, vec3_normalise((vec3){0.3, -0.5, -1}));
+  if (masked) cube->mask = (hl_mask){.volume = map, .labels = &one, .label_count = 1};
+  stage_render_by(&set, false, pixels);
+  hl_volume_release(map);
+  stage_close(&set);
+}
+
+/* Hidden bricks are left out, and the sheets stay: rays that cross matter with the factor 1 alone give the
+ * same bytes. */
+static void test_no_mask_moves_the_sheets(void **state) {
+  (void)state;
+  static float pixels[2][PIXELS * 4];
+  int seen = 0;
+  for (int masked = 0; masked < 2; masked++) render_waves(masked, pixels[masked]);
+  for (int row = 0; row < SIDE; row++)
+    for (int column = 0; column < 5; column++) {
+      const float *all = &pixels[0][4 * (row * SIDE + column)], *half = &pixels[1][4 * (row * SIDE + column)];
+      assert_memory_equal(all, half, 4 * sizeof *all);
+      seen += all[3] > 0.1f;
+    }
+  assert_true(seen > 2 * SIDE);
+}
+
 /* A scene made of the same map, labels and rest takes the lattice that was made before; a changed label has
  * another. */
 static void test_lattice_is_kept(void **state) {
@@ -379,6 +422,7 @@ int main(void) {
       cmocka_unit_test(test_shadows_against_the_reference),
       cmocka_unit_test(test_faces_of_a_knife),
       cmocka_unit_test(test_hidden_voxels_are_not_kept),
+      cmocka_unit_test(test_no_mask_moves_the_sheets),
       cmocka_unit_test(test_lattice_is_kept),
       cmocka_unit_test(test_bricks_are_told),
       cmocka_unit_test(test_bricks_change_nothing),
