@@ -154,11 +154,22 @@ void render_release_function(hl_transfer_function *function);
 bool render_copy_plane(const hl_function_plane *from, hl_function_plane *to);
 void render_release_plane(hl_function_plane *plane);
 
+/* Moves the scene's camera along its direction and zooms so that all that there is now fits into the picture.
+ */
+hl_status render_frame_anew(hl_scene_description *description, hl_error *error);
+
 /* The name of a volume in --tf NAME=... and --colormap NAME=...: its name in the scene, else its file's
  * without folder and extensions, else "volume1" and so on. */
 void render_volume_name(const hl_scene_volume *volume, size_t index, char *name, size_t size);
 
-/* Refuses --tf and --colormap NAME=... for names that no volume has. */
+/* The text after "NAME=" of such an option; null: it is for every volume. A text that names an existing file
+ * is that file, even with a '=' in it. */
+const char *render_after_name(const char *text);
+
+/* Whether such an option is for the volume with this name. */
+bool render_is_for(const char *text, const char *name);
+
+/* Refuses --tf, --colormap and --iso NAME=... for names that no volume has. */
 int render_check_names(const cli_value *values, const hl_scene_description *description);
 
 /* The colour of a mesh or an isosurface that has none of its own, linear RGB: ivory, blue, ochre, green,

@@ -48,20 +48,24 @@ void render_volume_name(const hl_scene_volume *volume, size_t index, char *name,
   }
 }
 
-static bool is_volume(const hl_scene_description *description, const char *name, size_t length) {
+const char *render_after_name(const char *text) {
+  const char *equals = strchr(text, '=');
+  return equals == NULL || access(text, F_OK) == 0 ? NULL : equals + 1;
+}
+
+bool render_is_for(const char *text, const char *name) {
+  const char *rest = render_after_name(text);
+  size_t length = strlen(name);
+  return rest == NULL || (length == (size_t)(rest - text) - 1 && memcmp(name, text, length) == 0);
+}
+
+static bool is_for_any(const char *text, const hl_scene_description *description) {
   for (size_t v = 0; v < description->volume_count; v++) {
     char own[256];
     render_volume_name(&description->volumes[v], v, own, sizeof own);
-    if (strlen(own) == length && memcmp(own, name, length) == 0) return true;
+    if (render_is_for(text, own)) return true;
   }
   return false;
-}
-
-/* The text after "NAME="; null: the option is for every volume. A text that names an existing file is that
- * file, even with a '=' in it. */
-static const char *after_name(const char *text) {
-  const char *equals = strchr(text, '=');
-  return equals == NULL || access(text, F_OK) == 0 ? NULL : equals + 1;
 }
 
 static void list_names(const hl_scene_description *description, char *names, size_t size) {
@@ -80,12 +84,12 @@ static int check_names(const char *option, const cli_value *given, bool many,
   char names[600];
   list_names(description, names, sizeof names);
   for (int n = 0; n < given->count; n++) {
-    const char *text = given->texts[n], *rest = after_name(text);
-    if (rest == NULL && given->count > 1 && !many)
+    const char *text = given->texts[n];
+    if (render_after_name(text) == NULL && given->count > 1 && !many)
       return fail(EXIT_CODE_USAGE,
                   "--%s: '%s' beside another --%s: say whose each is, NAME=... (volumes: %s)", option, text,
                   option, names);
-    if (rest != NULL && !is_volume(description, text, (size_t)(rest - text) - 1))
+    if (render_after_name(text) != NULL && !is_for_any(text, description))
       return fail(EXIT_CODE_USAGE, "--%s: '%s': no volume has the name before '=': there is %s", option, text,
                   names);
   }
@@ -105,9 +109,8 @@ static const char *said_of(const cli_value *given, const hl_scene_volume *volume
   const char *chosen = NULL;
   render_volume_name(volume, index, own, sizeof own);
   for (int n = 0; n < given->count; n++) {
-    const char *text = given->texts[n], *rest = after_name(text);
-    if (rest == NULL) chosen = text;
-    else if (strlen(own) == (size_t)(rest - text) - 1 && memcmp(own, text, strlen(own)) == 0) chosen = rest;
+    const char *text = given->texts[n], *rest = render_after_name(text);
+    if (render_is_for(text, own)) chosen = rest != NULL ? rest : text;
   }
   return chosen;
 }

@@ -27,10 +27,10 @@ static bool read_iso(const char *text, hl_isosurface *surface) {
   return rest != opacity && *rest == '\0' && surface->opacity >= 0 && surface->opacity <= 1;
 }
 
-/* The text after "NAME=". */
+/* The text after "NAME=", or all where there is no name. */
 static const char *text_of_surface(const char *text) {
-  const char *equals = strrchr(text, '=');
-  return equals != NULL ? equals + 1 : text;
+  const char *rest = render_after_name(text);
+  return rest != NULL ? rest : text;
 }
 
 int render_check_iso(const cli_value *iso) {
@@ -44,13 +44,6 @@ int render_check_iso(const cli_value *iso) {
           "R,G,B or a CSS name, and an opacity from 0 to 1 (120:gold:0.3)",
           iso->texts[n]);
   return EXIT_CODE_OK;
-}
-
-/* Whether a surface is for the volume with this name. */
-static bool is_for(const char *text, const char *name) {
-  const char *equals = strrchr(text, '=');
-  return equals == NULL ||
-         (strlen(name) == (size_t)(equals - text) && strncmp(text, name, strlen(name)) == 0);
 }
 
 static int warn_of_range(const cli_host *host, const hl_scene_volume *volume, double value) {
@@ -75,7 +68,7 @@ int render_iso(const cli_host *host, const cli_value *values, size_t index, hl_s
   const cli_value *iso = &values[RENDER_ISO];
   render_volume_name(volume, index, name, sizeof name);
   for (int n = 0; n < iso->count; n++) {
-    if (!is_for(iso->texts[n], name)) continue;
+    if (!render_is_for(iso->texts[n], name)) continue;
     hl_isosurface *surface = &surfaces[count];
     hl_isosurface_defaults(surface);
     memcpy(surface->color, render_surface_color(count), sizeof surface->color);

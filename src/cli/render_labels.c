@@ -151,8 +151,8 @@ static void release_layers(hl_context *context, label_layers *layers) {
 }
 
 /* Makes a scene of the scene's volumes, the first `kept` of them, and the layers. */
-static hl_status extend(hl_context *context, const label_layers *layers, size_t kept, bool bare,
-                        hl_scene **scene, hl_error *error) {
+static hl_status add_layers(hl_context *context, const label_layers *layers, size_t kept, bool bare,
+                            hl_scene **scene, hl_error *error) {
   hl_scene_description description = *hl_scene_describe(*scene);
   hl_scene_volume *volumes = calloc(kept + layers->count, sizeof *volumes);
   hl_scene *made = NULL;
@@ -166,11 +166,9 @@ static hl_status extend(hl_context *context, const label_layers *layers, size_t 
     if (layers->volumes[n].label_count > 0) volumes[description.volume_count++] = layers->volumes[n];
   description.volumes = volumes;
   hl_status status = hl_scene_create(context, &description, &made, error);
-  hl_view view;
   if (status == HL_OK && bare) {
     description = *hl_scene_describe(made); /* labels have become transfer functions */
-    status = hl_view_of_camera(&description, &view);
-    if (status == HL_OK) status = hl_camera_frame_view(&description, &view, 1, &description.camera, error);
+    status = render_frame_anew(&description, error);
     hl_scene *framed = NULL;
     if (status == HL_OK) status = hl_scene_create(context, &description, &framed, error);
     hl_scene_release(made);
@@ -299,7 +297,7 @@ static int add_map(cli_host *host, const cli_value *values, bool bare, show_list
   int exit_code = load_layers(host, path, table->given ? table->text : NULL, space_of(description, kept),
                               show, layers);
   if (exit_code != EXIT_CODE_OK) return exit_code;
-  hl_status status = extend(host->context, layers, kept, bare, scene, &error);
+  hl_status status = add_layers(host->context, layers, kept, bare, scene, &error);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }
 

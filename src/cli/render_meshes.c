@@ -22,8 +22,8 @@ void render_part_meshes(char **operands, char **meshes, char **others) {
 }
 
 /* Makes a scene of the scene and more meshes. replaced: the scene's own meshes are left out. */
-static hl_status extend(hl_context *context, const hl_scene_mesh *added, size_t count, bool bare,
-                        bool replaced, hl_scene **scene, hl_error *error) {
+static hl_status add_meshes(hl_context *context, const hl_scene_mesh *added, size_t count, bool bare,
+                            bool replaced, hl_scene **scene, hl_error *error) {
   hl_scene_description description = *hl_scene_describe(*scene);
   size_t before = replaced ? 0 : description.mesh_count;
   hl_scene_mesh *meshes = malloc((before + count) * sizeof *meshes);
@@ -36,10 +36,7 @@ static hl_status extend(hl_context *context, const hl_scene_mesh *added, size_t 
   memcpy(meshes + before, added, count * sizeof *meshes);
   description.meshes = meshes;
   description.mesh_count = before + count;
-  hl_view view;
-  hl_status status = bare ? hl_view_of_camera(&description, &view) : HL_OK;
-  if (status == HL_OK && bare)
-    status = hl_camera_frame_view(&description, &view, 1, &description.camera, error);
+  hl_status status = bare ? render_frame_anew(&description, error) : HL_OK;
   if (status == HL_OK) status = hl_scene_create(context, &description, &made, error);
   free(meshes);
   if (status != HL_OK) return status;
@@ -80,7 +77,7 @@ int render_add_meshes(cli_host *host, char *const *paths, bool bare, hl_scene **
   hl_status status = load_meshes(host->context, paths, added, &count, &error);
   bool alone = *scene == NULL;
   if (status == HL_OK && alone) status = begin_scene(host->context, scene, &error);
-  if (status == HL_OK) status = extend(host->context, added, count, bare, alone, scene, &error);
+  if (status == HL_OK) status = add_meshes(host->context, added, count, bare, alone, scene, &error);
   for (size_t m = 0; m < count; m++) hl_mesh_release(added[m].mesh);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }

@@ -88,6 +88,12 @@ static bool turn_view(const cli_value *values, hl_view *view) {
          view->roll_deg != before.roll_deg;
 }
 
+hl_status render_frame_anew(hl_scene_description *description, hl_error *error) {
+  hl_view view;
+  hl_status status = hl_view_of_camera(description, &view);
+  return status == HL_OK ? hl_camera_frame_view(description, &view, 1, &description->camera, error) : status;
+}
+
 /* Frames the camera before it is turned: then all frames of a turn have the same target and distance. */
 static int change_camera(scene_change *change) {
   const cli_value *values = change->values;

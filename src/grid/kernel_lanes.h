@@ -38,7 +38,7 @@ LANES_INLINE void tap_weights(const kernel *kernel, int degree, lanes t, lanes w
   weight[2] = 1.0f - (weight[0] + weight[1] + weight[3]);
 }
 
-/* The derivative of a piece by a. */
+/* The derivative at `a` of one of a kernel's polynomial pieces. */
 LANES_INLINE lanes kernel_piece_slope(const float *piece, int degree, lanes a) {
   lanes sum = lanes_set(piece[degree] * (float)degree);
   for (int power = degree - 1; power >= 1; power--)

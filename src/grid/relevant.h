@@ -29,8 +29,8 @@ void hl_content_bounds(const grid *grid, double margin, double low[3], double hi
 /* Faces that cut nothing visible are so far outside the box, voxels. */
 #define FACE_FAR_OUT 1e9f
 
-/* Moves those faces of a grid outside that touch the other grid's box: matter goes on there, most often that
- * of the same volume, cut into parts. */
+/* Moves the faces of a grid that touch the other grid's box far outside, so that they cut nothing off: matter
+ * goes on beyond them. Most often both grids are parts of one volume. */
 void hl_open_faces(grid *grid, const struct grid *other);
 
 /* A pixel samples a sheet at one point: a block of pixels is empty if no pixel's point lies in a cell that

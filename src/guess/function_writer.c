@@ -120,7 +120,7 @@ static void label_color(size_t label, double linear[3]) {
   double lighter = fmin((double)(label / COLORS) * 0.3, 0.6);
   for (int c = 0; c < 3; c++) {
     double srgb = (double)(kelly[label % COLORS] >> (16 - 8 * c) & 255) / 255;
-    linear[c] = hl_srgb_to_linear(srgb + lighter * (1 - srgb));
+    linear[c] = hl_srgb_decode(srgb + lighter * (1 - srgb));
   }
 }
 

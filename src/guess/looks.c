@@ -74,7 +74,7 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
   switch (analysis->kind) {
     case HL_DATA_SURFACES:
       if (is_body(volume, file, analysis))
-        is = analysis->zeroed > 0.4 ? BRAIN : BODY; /* zeroed: a program has cut the brain out */
+        is = analysis->zeroed > 0.4 ? BRAIN : BODY; /* zeros all around: the skull was removed */
       break;
     case HL_DATA_FIELD: is = FIELD; break;
     case HL_DATA_SIGNED: is = SIGNED; break;
@@ -206,7 +206,7 @@ static void write_rows(hl_function_writer *w, const hl_volume *volume, const hou
   if (hounsfield) w->direction = 1;
   for (size_t r = 0; r < count; r++) {
     double distance = distance_of(w, hounsfield, rows[r].hounsfield), color[3];
-    for (int c = 0; c < 3; c++) color[c] = hl_srgb_to_linear(rows[r].srgb[c]);
+    for (int c = 0; c < 3; c++) color[c] = hl_srgb_decode(rows[r].srgb[c]);
     hl_add_opacity(w, distance, rows[r].opacity);
     hl_add_color(w, distance, color);
   }

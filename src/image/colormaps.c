@@ -13,6 +13,8 @@
 
 #include <halflight/scene.h>
 
+#include "image/srgb.h"
+
 #define EQUAL_STEPS 33
 
 /* sRGB, 0xRRGGBB. */
@@ -82,10 +84,6 @@ const char *hl_colormap_name(size_t index) {
   return NULL;
 }
 
-double hl_srgb_to_linear(double srgb) { /* IEC 61966-2-1 */
-  return srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
-}
-
 static void turbo(double t, double srgb[3]) {
   static const double polynomial[3][6] = {
       {0.13572138, 4.61539260, -42.66032258, 132.13108234, -152.94239396, 59.28637943},
@@ -126,6 +124,6 @@ bool hl_colormap_evaluate(const char *name, double t, double linear[3]) {
   if (index < TABLE_COUNT) between_steps(index, t, srgb);
   else if (index == TABLE_COUNT) turbo(t, srgb);
   else between_corners(index - TABLE_COUNT - 1, t, srgb);
-  for (int channel = 0; channel < 3; channel++) linear[channel] = hl_srgb_to_linear(srgb[channel]);
+  for (int channel = 0; channel < 3; channel++) linear[channel] = hl_srgb_decode(srgb[channel]);
   return true;
 }

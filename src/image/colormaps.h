@@ -6,8 +6,6 @@
 
 enum { HL_COLORMAPS_MOST = 32 }; /* more than there are */
 
-double hl_srgb_to_linear(double srgb);
-
 /* Linear RGB at t in [0,1] (clamped); false if there is no such map. */
 bool hl_colormap_evaluate(const char *name, double t, double linear[3]);
 

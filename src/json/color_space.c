@@ -18,7 +18,7 @@ static const double white[3] = {0.9505, 1, 1.089}; /* D65 */
 
 /* CIE 1976; matrices of IEC 61966-2-1. */
 static void srgb_to_lab(const double srgb[3], double lab[3]) {
-  double r = hl_srgb_to_linear(srgb[0]), g = hl_srgb_to_linear(srgb[1]), b = hl_srgb_to_linear(srgb[2]);
+  double r = hl_srgb_decode(srgb[0]), g = hl_srgb_decode(srgb[1]), b = hl_srgb_decode(srgb[2]);
   double x = lab_function((0.4124 * r + 0.3576 * g + 0.1805 * b) / white[0]);
   double y = lab_function((0.2126 * r + 0.7152 * g + 0.0722 * b) / white[1]);
   double z = lab_function((0.0193 * r + 0.1192 * g + 0.9505 * b) / white[2]);

@@ -59,7 +59,7 @@ hl_status hl_foreign_color(hl_context *context, const hl_foreign_node *nodes, si
                    srgb);
       hl_color_point *point = &points[made++];
       point->value = nodes[n].value + t * (end - nodes[n].value);
-      for (int c = 0; c < 3; c++) point->color[c] = hl_srgb_to_linear(fmin(fmax(srgb[c], 0), 1));
+      for (int c = 0; c < 3; c++) point->color[c] = hl_srgb_decode(fmin(fmax(srgb[c], 0), 1));
     }
   }
   function->color = points;

@@ -69,8 +69,8 @@ static bool is_worth_while(const sweep *front) {
   return (double)covered > COVERED_PER_SEEN * (double)seen;
 }
 
-/* Runs the search in the tried tiles only (trying), where opaque blocks stay open so that what they cover is
- * counted; else in all other tiles. */
+/* Runs the search for hidden slabs. trying: in the tried tiles alone, where opaque blocks stay open, so that
+ * the pixels they cover are counted; else in all other tiles. */
 static hl_status go_through(sweep *front, hidden_search *search, bool trying, hl_error *error) {
   search->trying = trying;
   for (size_t tile = 0; tile < front->tiles; tile++)

@@ -22,7 +22,7 @@ static size_t cuts_of(const view_sheets *sheets, int grid) {
   return sheets->of_light && of->cut_casts_shadow ? 0 : of->cut_count;
 }
 
-/* The number of cuts before a grid's; grid: volume_count for all. */
+/* The number of cuts of all grids before this one; for grid = volume_count, of all grids. */
 static size_t cuts_before(const view_sheets *sheets, int grid) {
   size_t count = 0;
   for (int g = 0; g < grid; g++) count += cuts_of(sheets, g);

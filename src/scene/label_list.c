@@ -83,7 +83,7 @@ static void describe(const hl_volume *map, const hl_label_list *table, double va
   const hl_segment *segment = segment_of(map, value);
   if (segment != NULL) {
     label->name = segment->name;
-    for (int c = 0; c < 3 && segment->has_color; c++) label->color[c] = hl_srgb_to_linear(segment->srgb[c]);
+    for (int c = 0; c < 3 && segment->has_color; c++) label->color[c] = hl_srgb_decode(segment->srgb[c]);
   }
   const hl_label *row = row_of(table, value);
   if (row != NULL) *label = *row;

@@ -48,7 +48,7 @@ static bool read_color(const word *words, double color[3]) {
     fractions &= words[c].number <= 1;
     point |= words[c].has_point;
   }
-  for (int c = 0; c < 3; c++) color[c] = hl_srgb_to_linear(words[c].number / (fractions && point ? 1 : 255));
+  for (int c = 0; c < 3; c++) color[c] = hl_srgb_decode(words[c].number / (fractions && point ? 1 : 255));
   return true;
 }
 
@@ -164,6 +164,6 @@ void hl_label_distinct_color(double value, double linear[3]) {
   for (int c = 0; c < 3; c++) {
     double away = fabs(fmod(hue + 6 - 2 * c, 6) - 3); /* 3: this channel's own hue is opposite */
     double pure = fmin(fmax(away - 1, 0), 1);
-    linear[c] = hl_srgb_to_linear(0.92 * (1 - strength * (1 - pure)));
+    linear[c] = hl_srgb_decode(0.92 * (1 - strength * (1 - pure)));
   }
 }

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "image/colormaps.h"
+#include "image/srgb.h"
 
 /* opacity (per unit_distance) and linear colour of a data value: piecewise linear, ends held. */
 double hl_transfer_function_opacity(const hl_transfer_function *function, double value);

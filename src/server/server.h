@@ -34,7 +34,7 @@ typedef struct server_options {
   int port;                   /* 0: a free one */
   bool (*stopped)(void);      /* asked some times a second; true ends server_run() */
   void *user_data;
-  void (*ready)(void *user_data, const char *url); /* called once, when requests are answered */
+  void (*ready)(void *user_data, const char *url); /* called once, as soon as the server answers requests */
 } server_options;
 
 /* Serves until options->stopped() returns true. False, with an error line in `problem`, if it could not

@@ -14,7 +14,7 @@ typedef struct attenuate_volume {
   const float *density;       /* [256], block-major; on this sheet */
   const float *before;        /* [256], block-major; on the sheet before */
   const float *enter, *leave; /* [256], block-major; null: the box does not cut anything visible */
-  uint32_t blocks;            /* blocks with density on either */
+  uint32_t blocks;            /* blocks with density on either sheet */
   float weight[HL_CHANNELS];  /* relative extinction of R, G, B */
   int uncut;                  /* the box does not cut the slab here */
   const grid *grid;           /* of gradient opacity: the gradient's */

@@ -56,8 +56,8 @@ LANES_INLINE void cut_way(covered_span span, table_coordinate *a, table_coordina
   *b = split_coordinate(lanes_fma(way, lanes_min(span.begin + span.length, lanes_set(1.0f)), from));
 }
 
-/* Where a fraction of the way through the slab is reached on the rays of a block; frame space. Derived: on
- * the ray E + s W with s = step / H, H = h.W, moving one sheet gives W ds / H. */
+/* The points at a fraction of the way through the slab, on the rays of a block; frame space. Derived: on the
+ * ray E + s W with s = step / H, H = h.W, moving by one sheet adds W ds / H. */
 LANES_INLINE lanes3 position_in_slab(const attenuate_job *job, lanes u, lanes v, lanes fraction) {
   const sheet_rays *rays = &job->rays;
   lanes3 step = set3(job->through), end = rays_positions(rays, u, v);

@@ -124,7 +124,7 @@ static bool cover_few_samples(const int64_t x[3], const int64_t y[3], int64_t ar
 
 /* ---- triangles and polygons ---- */
 
-/* Pixels up to which a triangle's span is small. */
+/* A triangle is small if its span is at most so many pixels. */
 enum { FEW_PIXELS = 4 };
 
 /* A triangle's corners, 1/256 pixels from the tile's corner. */

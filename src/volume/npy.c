@@ -193,7 +193,8 @@ static hl_status make_payload(const npy_header *header, bool *is_series, hl_payl
   payload->big_endian = header->big_endian;
   payload->components = extra * header->numbers;
   if (last_is_component && header->type == HL_VOXEL_U8) payload->colors = HL_COLORS_MEANT;
-  if (header->fortran) payload->colors = HL_COLORS_UNREAD; /* they would have to be rearranged, too */
+  if (header->fortran)
+    payload->colors = HL_COLORS_UNREAD; /* in Fortran order a voxel's components lie apart */
   hl_status status = hl_volume_check_grid(&payload->grid, header->path, error);
   if (status != HL_OK) return status;
   size_t voxels = payload->grid.dimensions[0] * payload->grid.dimensions[1] * payload->grid.dimensions[2];

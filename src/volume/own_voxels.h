@@ -14,10 +14,11 @@ typedef struct hl_own_voxels {
   hl_voxel_type type;  /* of the voxels in memory; of stored values U8, U16 or F32 */
   size_t stored_bytes; /* of a stored value */
   const unsigned char *first;
-  ptrdiff_t stride[3];   /* bytes */
-  unsigned char *slices; /* owned; [count[2]][count[1]][count[0]]: `first`; null: borrowed */
-  void *row;             /* owned; a row of the voxels' type, where they do not adjoin; else null. Used with
-                            row_lock held */
+  ptrdiff_t stride[3]; /* bytes */
+  unsigned char
+      *slices; /* owned; [count[2]][count[1]][count[0]]; `first` points to it; null: `first` is borrowed */
+  void *row;   /* owned; a row of the voxels' type, where they do not adjoin; else null. Used with
+                  row_lock held */
   pthread_mutex_t row_lock;
 } hl_own_voxels;
 

@@ -30,7 +30,7 @@ typedef struct tiff_file {
   int descriptor; /* -1: none */
   TIFF *tiff;
   char message[300]; /* libtiff's first error since it was cleared */
-  int warnings;      /* logged so far; set it to TIFF_NO_WARNINGS before opening to log none, as in threads */
+  int warnings;      /* the number logged so far; TIFF_NO_WARNINGS, set before opening: none is logged */
 } tiff_file;
 
 /* bytes: the content, or null. quiet: the context's `reads` callback is not called (from other threads).

@@ -1,17 +1,15 @@
 /* analytic/example_lights.c - the example scenes of projected images and beams, against closed forms. Each is
  * read from examples/ with the volumes that the measurement is about, without ambient light, seen as the
  * measurement wants. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
 #include <jansson.h>
 
 #include <halflight/halflight.h>
 
+#include "../asserts.h"
 #include "core/vector.h"
 
 enum { MOST_SIDE = 512 };
@@ -25,11 +23,6 @@ typedef struct example {
 } example;
 
 static example shared;
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 /* The scene with only the named volumes (null-terminated). */
 static example *open_example(const char *name, const char *const *keep) {

@@ -3,13 +3,10 @@
  *
  * The B-spline of voxels x^2 is x^2 + 1/3 (its variance along an axis), so that voxels |p - c|^2 have the
  * field |p - c|^2 + 1: a surface of one value is a sphere, exactly. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "grid/make_grid.h"
 #include "isosurface/cubes.h"
 #include "isosurface/isosurface.h"
@@ -18,11 +15,6 @@
 #include "scene/placement.h"
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE, VOXELS = 44 };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 /* Voxels that hold minus the squared distance from `centre`, in voxels from the grid's middle: a ball's
  * inside has the greater values. Voxels are one unit wide, the grid's middle is the origin. */

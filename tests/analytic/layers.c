@@ -1,13 +1,10 @@
 /* analytic/layers.c - lights, shadows, depth and normals kept apart: closed forms, and their sum.
  *
  * Each closed form is asked of the sheets and of the reference. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "core/context.h"
 #include "reference_stage.h"
 
@@ -21,11 +18,6 @@ typedef struct layer_set {
   hl_light_layers lights[STAGE_LIGHTS];
   hl_layers all;
 } layer_set;
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 static void ask_for_all(const stage *set, layer_set *layers) {
   memset(layers, 0xff, sizeof *layers); /* NaN: every value must be written */

@@ -1,13 +1,10 @@
 /* analytic/layers_sky.c - the sky's layers: closed forms of its shadow, and the sum of the layers.
  *
  * Each is asked of the sheets and of the reference. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
 
 enum { SIDE = 10, PIXELS = SIDE * SIDE, MIDDLE = SIDE / 2 * SIDE + SIDE / 2 };
@@ -17,11 +14,6 @@ typedef struct sky_layers {
   float pixels[PIXELS * 4], ambient[PIXELS * 3], emission[PIXELS * 3], sky[PIXELS * 3], shadow[PIXELS * 3],
       light[PIXELS * 3];
 } sky_layers;
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 /* directions: of the reference's sky; 0: the sheets. */
 static void render_layers(stage *set, int directions, sky_layers *made) {

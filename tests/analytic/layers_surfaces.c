@@ -2,13 +2,10 @@
  * sum.
  *
  * Each closed form is asked of the sheets and of the reference. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "mesh_stage.h"
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE, LIGHTS = 3 };
@@ -19,11 +16,6 @@ typedef struct layer_set {
       sky_shadow[PIXELS * 3], first[PIXELS], mean[PIXELS], normal[PIXELS * 3], object[PIXELS];
   float pictures[LIGHTS][PIXELS * 3], shadows[LIGHTS][PIXELS * 3];
 } layer_set;
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 static void open_meshes(mesh_stage *all) {
   mesh_stage_open(all, SIDE, 16);

@@ -1,18 +1,10 @@
 /* analytic/reference_field.c - the reference's reconstruction: kernels, gradients, empty bricks. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "core/memory.h"
 #include "reference/reference.h"
 #include "reference_stage.h"
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 static const size_t SIZE[3] = {23, 18, 14};
 static const double SPACING[3] = {1, 1.25, 2};

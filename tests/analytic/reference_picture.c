@@ -1,19 +1,11 @@
 /* analytic/reference_picture.c - the reference's pictures of curved things: shading, invariance, refusals. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
 
 enum { EDGE = 20, SIDE = 24, PIXEL_FLOATS = SIDE * SIDE * 4 };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 static double worst_difference(const float *a, const float *b) {
   double worst = 0;

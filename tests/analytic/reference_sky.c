@@ -2,19 +2,11 @@
  *
  * What is lit is a small square that faces the eye at (0, 0, 100) or is turned away from it, or a cloud of
  * the faintest haze that casts no shadow. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 typedef struct sky_stage {
   stage set;

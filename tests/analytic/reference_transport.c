@@ -1,18 +1,10 @@
 /* analytic/reference_transport.c - the reference against closed forms of absorption, emission and shadow. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
 
 enum { MOST_PIXELS = 64 * 64 };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 static double transmittance(double opacity, double unit, double distance) {
   return pow(1 - opacity, distance / unit);

@@ -1,20 +1,12 @@
 /* analytic/sheets_colour.c - what colours come out as: flat shading, emission, scattering, three scales.
  * Closed forms, each asked of the sheets and of the reference. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
 
 enum { SIDE = 24, PIXELS = SIDE * SIDE };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 /* A homogeneous slab across the picture, 4 thick; two lights that shine from its two sides, in sweeps of
  * their own. */

@@ -1,20 +1,12 @@
 /* analytic/sheets_emission.c - lights with an image of their own: its shape and colours in penumbrae, against
  * plane geometry and the reference. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
 
 enum { WIDE = 160, ROWS = 6, SIDE = 48, SMALL = 16, IMAGE = 32 };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 /* An opaque floor with its surface at z = 0, which casts nothing, seen from straight above. */
 static void stage_floor(stage *set, int width, int height, double across) {

@@ -1,20 +1,12 @@
 /* analytic/sheets_labels.c - pictures of label maps: what a skin and solid matter take of light, which labels
  * show, and the same from the reference. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE, N = 40 };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 /* Two balls side by side, labels 1 (left) and 2 (right), radius 7, seen along -z. */
 static hl_scene_volume *open_balls(stage *set, const hl_label *labels, size_t count) {

@@ -1,24 +1,16 @@
 /* analytic/sheets_mask.c - a label map over a volume: what each label and the rest leave of the volume's
  * extinction and colour is known in closed form far from borders and, summed up, across them. Asked of the
  * sheets and of the reference. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "label/mask.h"
 #include "reference_stage.h"
 #include "scene/scene.h"
 #include "volume/volume.h"
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE, N = 32, HALF = 16 };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 /* A label map of 16^3 voxels, each two units long, around the origin: labels 1 where x < 0 and 2 where x > 0,
  * for |y| < 8; 0 elsewhere. */
@@ -88,9 +80,10 @@ static void test_factors_and_colors(void **state) {
     assert_near((double)left[3], alpha_of(0.5), 1e-4);
     assert_near((double)right[3], alpha_of(1), 1e-4);
     assert_near((double)rest[3], k % 2 ? alpha_of(0.1) : 0, 1e-4);
+    static const double colors[3] = {0.2, 0.4, 0.8};
     for (int c = 0; c < 3; c++) { /* codes of colours have 8 bits */
       assert_near((double)left[c] / (double)left[3], LABELS[0].color[c], 4e-3);
-      assert_near((double)right[c] / (double)right[3], (double[3]){0.2, 0.4, 0.8}[c], 1e-4);
+      assert_near((double)right[c] / (double)right[3], colors[c], 1e-4);
     }
     close_masked(&set, cube);
   }

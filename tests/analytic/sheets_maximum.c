@@ -1,20 +1,12 @@
 /* analytic/sheets_maximum.c - maximum projection: fields whose greatest value along a ray is known, and noise
  * against the reference. Each closed form is asked of both. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
 
 enum { SIDE = 24, PIXELS = SIDE * SIDE, N = 24 };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 /* Grey is the value itself, from 0 to 1; values above 0 are shown. */
 static const hl_opacity_point ABOVE_ZERO[] = {{0, 0}, {1, 1}};

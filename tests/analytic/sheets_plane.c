@@ -1,21 +1,13 @@
 /* analytic/sheets_plane.c - transfer functions of two numbers: of a ramp the gradient, and of a second volume
  * the value, is known everywhere, so that what the eye sees and what light passes are. Asked of the sheets
  * and of the reference. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
 
 enum { SIDE = 24, PIXELS = SIDE * SIDE, N = 24 };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 typedef double field_function(double x, double y, double z);
 

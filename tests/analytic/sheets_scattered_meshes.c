@@ -1,20 +1,12 @@
 /* analytic/sheets_scattered_meshes.c - meshes take scattered light and the sky's: closed forms, the
  * reference, the same bytes. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
 
 enum { SIDE = 16, PIXELS = SIDE * SIDE };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 /* A block of haze 24 x 24 x 24 that keeps most light, seen from above; its picture is 20 wide. */
 static hl_scene_volume *open_stage(stage *set, double opacity) {

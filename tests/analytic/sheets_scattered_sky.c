@@ -1,21 +1,13 @@
 /* analytic/sheets_scattered_sky.c - the sky's light, scattered again and again: the white furnace, a half
  * space, paths of the reference. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
 #include "scatter/parts.h"
 
 enum { SIDE = 16, PIXELS = SIDE * SIDE, MIDDLE = SIDE / 2 * SIDE + SIDE / 2 };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 /* A block of white matter 48 x 48 x 24 under an even sky of radiance 1. */
 static hl_scene_volume *open_stage(stage *set, double opacity, double albedo) {

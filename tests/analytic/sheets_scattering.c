@@ -1,21 +1,13 @@
 /* analytic/sheets_scattering.c - light that media scatter again and again: closed forms and invariances. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "core/memory.h"
 #include "reference_stage.h"
 #include "scatter/parts.h"
 
 enum { SIDE = 16, PIXELS = SIDE * SIDE, DEEP = 24 };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.6g is not within %g of %.6g", value, tolerance, expected);
-}
 
 /* ---- the transport on the grid ---- */
 

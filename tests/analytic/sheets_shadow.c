@@ -1,19 +1,11 @@
 /* analytic/sheets_shadow.c - where shadows fall and how wide their edges are, against plane geometry. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
 
 enum { WIDE = 160, WIDEST = 320, ROWS = 6, MOST = 96 * 96 };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 /* An opaque floor with its surface at z = 0, which casts nothing, and a hidden opaque plate half a unit
  * thick; the eye looks straight down. */

@@ -1,20 +1,12 @@
 /* analytic/sheets_sky.c - the sky's light in pictures of sheets: closed forms, the reference, the same bytes.
  */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
 
 enum { SIDE = 16, PIXELS = SIDE * SIDE };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 static void open_sky(stage *set) {
   stage_open(set);

@@ -1,20 +1,12 @@
 /* analytic/sheets_surfaces.c - meshes among volumes: coverage, opacity, light and shadows with known answers.
  */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "mesh_stage.h"
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 static void open_meshes(mesh_stage *all) { mesh_stage_open(all, SIDE, 32); }
 

@@ -1,19 +1,11 @@
 /* analytic/sheets_texture.c - where projected images and cones of light fall, how bright and how far, against
  * closed forms. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
 
 enum { SIDE = 96, FINE = 1024 };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 /* count x count pixels of squares pixels a side, black and white; white in the top left corner. */
 static float *checker(int count, int squares) {

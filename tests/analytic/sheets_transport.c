@@ -2,23 +2,15 @@
  *
  * The same questions as reference_transport.c asks of the reference, here of the renderer: pictures of
  * homogeneous boxes, whose every ray has a known value. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "reference_stage.h"
 
 enum { SIDE = 48, PIXELS = SIDE * SIDE };
 
 /* Of full scale: what a renderer in float with tables of 4096 entries must reach on homogeneous boxes. */
 static const double TIGHT = 1e-3;
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 static double transmittance(double opacity, double unit, double distance) {
   return pow(1 - opacity, distance / unit);

@@ -163,7 +163,9 @@ static void test_the_reference(void **state) {
   faulty_close(&f);
 }
 
-int main(void) {
+/* Argument: the name of one test; none: all. */
+int main(int count, char **arguments) {
+  if (count > 1) cmocka_set_test_filter(arguments[1]);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_the_renderer_goes_on),
       cmocka_unit_test(test_rendering),

@@ -54,7 +54,7 @@ static void segmentations_name_their_labels(void **state) {
     assert_int_equal(count, layer == 0 ? 2 : 1);
     assert_string_equal(labels[0].name, layer == 0 ? "left lung" : "all");
     if (layer == 0) {
-      assert_true(labels[0].color[1] == hl_srgb_to_linear(0.5) && labels[0].color[2] == 0);
+      assert_true(labels[0].color[1] == hl_srgb_decode(0.5) && labels[0].color[2] == 0);
       assert_true(labels[1].value == 4 && labels[1].visible && labels[1].opacity == 1);
       assert_string_equal(labels[1].name, "heart");
     }
@@ -81,7 +81,7 @@ static void tables_of_other_programs(void **state) {
     assert_string_equal(list.labels[0].name, "Left-Lung");
     assert_string_equal(list.labels[1].name, "Heart");
     assert_true(list.labels[1].value == 4 && list.labels[1].color[0] == 1);
-    assert_true(fabs(list.labels[1].color[2] - hl_srgb_to_linear(128 / 255.0)) < 1e-4);
+    assert_true(fabs(list.labels[1].color[2] - hl_srgb_decode(128 / 255.0)) < 1e-4);
     hl_label_list_release(context, &list);
   }
   assert_int_equal(hl_context_memory_held(context), 0);

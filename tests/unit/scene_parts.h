@@ -2,18 +2,12 @@
 #ifndef SCENE_PARTS_H
 #define SCENE_PARTS_H
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "guess/for_volume.h"
 #include "scene/scene.h"
-
-#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
 static inline hl_context *make_context(void) {
   hl_context *context = NULL;

@@ -1,19 +1,11 @@
 /* unit/splat_sheet.c - reconstruction on sheets: constants, ramps, two ways that agree, kernels, views. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "sheet_bench.h"
 
 enum { SIDE = 48, SIDE_TILES = SIDE / TILE, ORIENTATIONS = 50 };
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.9g is not within %g of %.9g", value, tolerance, expected);
-}
 
 /* A view and a slicing normal at most about 50 degrees from it; every third one in perspective. */
 static void look_at_random(bench *bench, uint32_t *seed, int round, double pixel, hl_kernel which) {

@@ -1,16 +1,10 @@
 /* tests/unit/volume_create.c - volumes from memory: storage, strides, statistics, checks, life. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "../asserts.h"
 #include "volume/convert.h"
 #include "volume/volume.h"
-
-#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
 static hl_context *make_context(void) {
   hl_context *context = NULL;
