@@ -89,6 +89,11 @@ LANES_INLINE lanes column_of(const plane_table *table, lanes coordinate) {
   return lanes_line(coordinate, table->column_scale, table->column_offset);
 }
 
+/* Lanes on whose ways between two coordinates the function depends on the second number. */
+LANES_INLINE lanes_int depends_on_row(const plane_table *table, lanes from, lanes to) {
+  return lanes_max(column_of(table, from), column_of(table, to)) >= table->even_before;
+}
+
 /* Extinction, and its integral over columns, at a column. Extinction is linear between columns, so that after
  * the part f of one the integral has grown by f e0 + f^2 (e1 - e0) / 2 (derived). */
 LANES_INLINE void sums_at_column(const plane_table *table, plane_row row, lanes column, lanes sums[2]) {

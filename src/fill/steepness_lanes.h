@@ -37,6 +37,7 @@ typedef struct matter_way {
   lanes from, to;             /* coordinates in the tables where the way begins and ends */
   lanes extinction;           /* the mean by the value alone */
   uint32_t active, starts;    /* lanes with extinction, at least one; the first lane of each block */
+  int wants_slope;            /* the caller reads the slope, whether the factor depends on it or not */
 } matter_way;
 
 /* What its extinction is multiplied by. */
@@ -52,14 +53,19 @@ static __attribute__((noinline)) matter_factor factor_of_matter(const matter_way
   const classifier *classifier = way->classifier;
   const plane_table *plane = &classifier->plane;
   matter_factor found = {lanes_set(1.0f), {lanes_set(0), lanes_set(0), lanes_set(0)}, lanes_set(0)};
-  if (hl_classifier_needs_gradient(classifier))
+  /* where it does not depend on the second number, any row will do */
+  int varies = plane->sums != NULL &&
+               (lanes_bits(depends_on_row(plane, way->from, way->to)) & way->active) != 0;
+  int needs_slope = classifier->steepness != NULL || (varies && plane->axis == HL_SECOND_GRADIENT);
+  if (needs_slope || (way->wants_slope && hl_classifier_needs_gradient(classifier)))
     found.slope = gradient_in_frame(way->grid, way->kernel, way->to_index, way->point, way->active,
                                     way->starts);
   if (classifier->steepness != NULL) found.factor = factor_of_slope(classifier, found.slope);
   if (classifier->mask.factors != NULL)
     found.factor = found.factor * mask_factor(&classifier->mask, way->point, way->active);
   if (plane->sums == NULL) return found;
-  found.row = row_of_matter(plane, way->kernel, found.slope, way->point, way->active, way->starts);
+  if (varies)
+    found.row = row_of_matter(plane, way->kernel, found.slope, way->point, way->active, way->starts);
   lanes extinction = extinction_in_row(plane, found.row, way->from, way->to);
   found.factor = found.factor * (extinction / lanes_max(way->extinction, lanes_set(1e-30f)));
   return found;

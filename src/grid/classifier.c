@@ -97,7 +97,8 @@ static hl_layout count_tables(const hl_transfer_function *function) {
 
 uint64_t hl_classifier_bytes(const hl_transfer_function *function) { return count_tables(function).bytes; }
 
-/* Fills the factors of gradient opacity: the table reaches from a gradient of 0 to that of the last point. */
+/* Fills the factors of gradient opacity: the table reaches from a gradient of 0 to that of the last point.
+ * Where all are 1, there is none. */
 static void fill_steepness(const hl_transfer_function *function, double value_scale, classifier *classifier) {
   size_t count = function->gradient_opacity_count;
   if (count == 0) return;
@@ -108,6 +109,9 @@ static void fill_steepness(const hl_transfer_function *function, double value_sc
         function, last * entry / STEEPNESS_ENTRIES);
   classifier->steepness[STEEPNESS_ENTRIES + 1] = classifier->steepness[STEEPNESS_ENTRIES];
   classifier->steepness_scale = (float)fmin(fabs(value_scale) / last * STEEPNESS_ENTRIES, 1e30);
+  int entry = 0;
+  while (entry <= STEEPNESS_ENTRIES && classifier->steepness[entry] == 1.0f) entry++;
+  if (entry > STEEPNESS_ENTRIES) classifier->steepness = NULL;
 }
 
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume,

@@ -122,6 +122,22 @@ static void find_greatest(const plane_table *table, int entries, float (*greates
   }
 }
 
+/* Tables are read up to this many columns beyond a place. */
+enum { BEYOND = 3 };
+
+/* The first columns do not depend on the second number where all rows hold the same numbers. */
+static float even_columns(const plane_table *table) {
+  int even = PLANE_STRIDE;
+  for (int row = 1; row < PLANE_ROWS; row++)
+    for (int column = 0; column < even; column++) {
+      size_t here = place_of(row, column), first = place_of(0, column);
+      if (memcmp(table->sums[here], table->sums[first], sizeof *table->sums) != 0 ||
+          memcmp(table->color[here], table->color[first], sizeof *table->color) != 0)
+        even = column;
+    }
+  return even == PLANE_STRIDE ? INFINITY : (float)(even - BEYOND);
+}
+
 void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *second, const grid *grid,
                          const plane_values *values, int entries, plane_table *table, float (*greatest)[4]) {
   const hl_transfer_function *function = &volume->transfer_function;
@@ -144,6 +160,7 @@ void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *s
   repeat_last(&table->sums[0][0], 2);
   repeat_last(&table->color[0][0], 4);
   find_greatest(table, entries, greatest);
+  table->even_before = even_columns(table);
 }
 
 void hl_plane_table_set_second(plane_table *table, const hl_volume *volume, const grid *second) {

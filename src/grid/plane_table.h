@@ -20,6 +20,7 @@ typedef struct plane_table {
   float column_scale, column_offset; /* column = coordinate in the classifier's tables * scale + offset */
   float row_scale, row_offset; /* row = second number * scale + offset; of a gradient in stored units per
                                   frame unit, of another volume in stored units above its empty value */
+  float even_before;           /* what lies before this column, and is read there, is the same in all rows */
   hl_second_axis axis;
   /* Of the other volume; borrowed from the frame; null where the second number is the gradient. */
   const hl_volume *second_volume;

@@ -448,7 +448,8 @@ LANES_INLINE void weigh_slab(const shade_job *job, block_density *densities, int
                                              .to = d->after,
                                              .extinction = d->sums.extinction,
                                              .active = active,
-                                             .starts = slab->starts});
+                                             .starts = slab->starts,
+                                             .wants_slope = 1});
     d->slope = found.slope;
     d->row = found.row;
     d->factor = found.factor;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../asserts.h"
+#include "grid/classifier.h"
 #include "reference_stage.h"
 
 enum { SIDE = 24, PIXELS = SIDE * SIDE, N = 24 };
@@ -362,6 +363,59 @@ static void test_refused(void **state) {
   stage_close(&set);
 }
 
+/* ---- what does not depend on the second number ---- */
+
+static classifier classifier_of(stage *set, const hl_scene_volume *volume) {
+  const grid grid = {.value_scale = 1, .empty = -36};
+  classifier made;
+  assert_int_equal(hl_classifier_create(set->context, volume, NULL, &grid, &made, NULL), HL_OK);
+  return made;
+}
+
+/* A box over all gradients below the value 0, and one over some above 20: up to 20 no gradient is asked for.
+ * Where the first box has some gradients only, it is from its lower edge on; where there is no other box,
+ * nowhere. */
+static void test_even_columns_are_known(void **state) {
+  (void)state;
+  const hl_function_box boxes[] = {{.low = {-30, -1}, .high = {0, 1e4}, .color = {1, 1, 1}, .opacity = 0.5},
+                                   {.low = {20, 2}, .high = {30, 4}, .color = {1, 1, 1}, .opacity = 0.5},
+                                   {.low = {-30, 2}, .high = {0, 4}, .color = {1, 1, 1}, .opacity = 0.5}};
+  static const double ends[] = {INFINITY, 20, -30};
+  for (int k = 0; k < 3; k++) {
+    stage set;
+    open_from_z(&set);
+    hl_scene_volume *cube = add_cube(&set, ramp);
+    set_boxes(cube, HL_SECOND_GRADIENT, k < 2 ? boxes : boxes + 1, k == 0 ? 1 : 2);
+    classifier made = classifier_of(&set, cube);
+    if (k == 0) assert_true(isinf(made.plane.even_before));
+    else {
+      double coordinate = (ends[k] + 36) * (double)made.scale, step = 1 / (double)made.plane.column_scale;
+      double column = coordinate * (double)made.plane.column_scale + (double)made.plane.column_offset;
+      assert_true(step > 0 && (double)made.plane.even_before <= column &&
+                  (double)made.plane.even_before > column - 6);
+    }
+    hl_classifier_release(set.context, &made);
+    stage_close(&set);
+  }
+}
+
+/* Gradient opacity that is 1 for all gradients is none. */
+static void test_opaque_gradients_are_left_out(void **state) {
+  (void)state;
+  const hl_opacity_point points[2][2] = {{{0, 1}, {5, 1}}, {{0, 0.99}, {5, 1}}};
+  for (int k = 0; k < 2; k++) {
+    stage set;
+    open_from_z(&set);
+    hl_scene_volume *cube = add_cube(&set, ramp);
+    cube->transfer_function.gradient_opacity = points[k];
+    cube->transfer_function.gradient_opacity_count = 2;
+    classifier made = classifier_of(&set, cube);
+    assert_int_equal(made.steepness != NULL, k);
+    hl_classifier_release(set.context, &made);
+    stage_close(&set);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_ramp_shows_the_box_with_its_gradient),
@@ -372,6 +426,8 @@ int main(void) {
       cmocka_unit_test(test_second_volume_changes),
       cmocka_unit_test(test_light),
       cmocka_unit_test(test_threads),
+      cmocka_unit_test(test_even_columns_are_known),
+      cmocka_unit_test(test_opaque_gradients_are_left_out),
       cmocka_unit_test(test_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -473,6 +473,7 @@ static void open_planes(void) {
                            .column_offset = 1,
                            .row_scale = 60,
                            .row_offset = 2,
+                           .even_before = PLANE_COLUMNS / 3,
                            .axis = k == 0 ? HL_SECOND_GRADIENT : HL_SECOND_VOLUME};
     if (k == 1) hl_plane_table_set_second(plane, NULL, &gradient_bench[1].grid);
   }
