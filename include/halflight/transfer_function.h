@@ -37,6 +37,8 @@ typedef struct hl_function_box {
   double color[3];        /* linear RGB */
   double opacity;         /* per unit_distance */
   double edge[2];         /* 0: hard; at most half of the box is edge */
+  double sigma; /* above 0: the weight is, in place of the edge's, a Gaussian around the box's middle with
+                   this standard deviation, of the box's sides, and 0 outside the box */
 } hl_function_box;
 
 /* A polygon, as of Kniss et al.: its weight falls, along straight lines, from the apex to 0 at the border. */
@@ -133,11 +135,11 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap_scaled(hl_context 
                                                                      hl_range_scale scale,
                                                                      hl_transfer_function *function,
                                                                      hl_error *error);
-/* Reads Halflight's own JSON object, a scene (its first volume's function), ParaView's .json colour maps, or
- * Slicer's .vp.json, .vp, and presets.xml (path: FILE.xml:PRESET). From a file with colours alone, opacity
- * becomes null: take the opacity points from elsewhere. Slicer's lengths of gradients are per mean voxel edge
- * and end at a quarter of the range of values, as VTK's: they are fitted to the volume; null: they are taken
- * as if its voxels had edges of 1. */
+/* Reads Halflight's own JSON object, a scene (its first volume's function), ParaView's .json colour maps, the
+ * boxes of its states (.pvsm), or Slicer's .vp.json, .vp, and presets.xml (path: FILE.xml:PRESET). From a
+ * file with colours alone, opacity becomes null: take the opacity points from elsewhere. Slicer's lengths of
+ * gradients are per mean voxel edge and end at a quarter of the range of values, as VTK's: they are fitted to
+ * the volume; null: they are taken as if its voxels had edges of 1. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load_for(hl_context *context, const char *path,
                                                               const hl_volume *volume,
                                                               hl_transfer_function *function,

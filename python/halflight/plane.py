@@ -12,7 +12,7 @@ from ._settings import number, numbers_of
 
 __all__ = ["Plane"]
 
-_BOX = {"value": None, "second": None, "color": (1.0, 1.0, 1.0), "opacity": 0.5, "edge": (0.0, 0.0)}
+_BOX = {"value": None, "second": None, "color": (1.0, 1.0, 1.0), "opacity": 0.5, "edge": (0.0, 0.0), "sigma": 0.0}
 _POLYGON = {"vertices": None, "apex": None, "color": (1.0, 1.0, 1.0), "opacity": 0.5, "falloff": 1.0}
 _IMAGE = {"pixels": None, "value": None, "second": None}
 
@@ -40,6 +40,7 @@ def _box(place: str, given: Any) -> dict[str, Any]:
     parts = _parts(place, given, _BOX)
     for word in ("value", "second", "edge"):
         parts[word] = tuple(numbers_of(f"{place}: {word}", parts[word], 2))
+    parts["sigma"] = number(f"{place}: sigma", parts["sigma"])
     _look(place, parts)
     return parts
 
@@ -108,7 +109,7 @@ class Plane:
         keep.append(boxes := ffi.new("hl_function_box[]", len(self.boxes)))
         for made, one in zip(boxes, self.boxes, strict=True):
             made.low, made.high = zip(one["value"], one["second"], strict=True)
-            made.color, made.opacity, made.edge = one["color"], one["opacity"], one["edge"]
+            made.color, made.opacity, made.edge, made.sigma = one["color"], one["opacity"], one["edge"], one["sigma"]
         keep.append(polygons := ffi.new("hl_function_polygon[]", len(self.polygons)))
         for made, one in zip(polygons, self.polygons, strict=True):
             keep.append(vertices := ffi.new("double[][2]", one["vertices"]))
@@ -132,7 +133,7 @@ def plane_from(struct: Any) -> Plane:
     elif struct.second == lib.HL_SECOND_VOLUME:
         second = {"volume": text_of(struct.volume)}
     boxes = [{"value": (one.low[0], one.high[0]), "second": (one.low[1], one.high[1]), "color": tuple(one.color),
-              "opacity": one.opacity, "edge": tuple(one.edge)}
+              "opacity": one.opacity, "edge": tuple(one.edge), "sigma": one.sigma}
              for one in (struct.boxes[n] for n in range(struct.box_count))]
     polygons = [{"vertices": [tuple(one.vertices[v]) for v in range(one.vertex_count)], "apex": tuple(one.apex),
                  "color": tuple(one.color), "opacity": one.opacity, "falloff": one.falloff}

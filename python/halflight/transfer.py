@@ -47,8 +47,8 @@ class TransferFunction:
         gradient, in data units per world unit, or the value of another volume of the scene. They then say all that is
         seen; colours are linear RGB or a name, opacities per `unit_distance`.
     boxes : sequence of dict
-        ``value`` and ``second``, each (from, to); ``color`` (white), ``opacity`` (0.5), and ``edge`` (0, 0): how far
-        within the border extinction rises from 0.
+        ``value`` and ``second``, each (from, to); ``color`` (white), ``opacity`` (0.5), ``edge`` (0, 0): how far within
+        the border extinction rises from 0, and ``sigma`` (0): above 0 a Gaussian of this deviation, of the box's sides.
     polygons : sequence of dict
         ``vertices``, a sequence of (value, second), ``color``, ``opacity``, ``apex`` (the vertices' mean), from which
         extinction falls to the border, and ``falloff`` (1), the fraction of the way over which it does.

@@ -149,10 +149,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
         {.name = "tf",
          .kind = OPTION_TEXT,
          .argument = "[NAME=]FILE|PRESET",
-         .help = "transfer function: a JSON file (Halflight's, a\nscene's first, ParaView's), Slicer's "
-                 "(.vp.json,\n.vp, presets.xml:NAME) or "
-                 "a preset, see\n'halflight help presets'; of volume NAME alone (again\nfor others; default: "
-                 "chosen from the data)",
+         .help = "transfer function: a JSON file (Halflight's, a\nscene's first, ParaView's; or its .pvsm), "
+                 "Slicer's\n(.vp.json, .vp, presets.xml:NAME) or a preset, see\n'halflight help presets'; of "
+                 "volume "
+                 "NAME alone (again\nfor others; default: chosen from the data)",
          .repeatable = true},
     [RENDER_COLORMAP] =
         {.name = "colormap",

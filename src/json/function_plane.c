@@ -54,12 +54,13 @@ static hl_status read_look(hl_json_reader *reader, const json_t *value, double c
 }
 
 static hl_status read_box(hl_json_reader *reader, const json_t *value, void *box) {
-  static const char *const keys[] = {"value", "second", "color", "opacity", "edge", NULL};
+  static const char *const keys[] = {"value", "second", "color", "opacity", "edge", "sigma", NULL};
   hl_function_box *made = box;
   hl_status status = hl_json_object(reader, value, keys);
   if (status == HL_OK) status = read_ranges(reader, value, made->low, made->high);
   if (status == HL_OK) status = read_look(reader, value, made->color, &made->opacity);
-  return status == HL_OK ? hl_json_numbers(reader, value, "edge", 2, made->edge) : status;
+  if (status == HL_OK) status = hl_json_numbers(reader, value, "edge", 2, made->edge);
+  return status == HL_OK ? hl_json_number(reader, value, "sigma", &made->sigma) : status;
 }
 
 static hl_status read_vertices(hl_json_reader *reader, const json_t *value, hl_function_polygon *polygon) {

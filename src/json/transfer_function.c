@@ -8,12 +8,14 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "json/paraview_state.h"
 #include "json/parts.h"
 #include "json/settings.h"
 #include "json/slicer.h"
 #include "scene/check.h"
 #include "scene/function_plane.h"
 #include "scene/scene.h"
+#include "volume/text.h"
 
 static bool has(const json_t *object, const char *key) { return json_object_get(object, key) != NULL; }
 
@@ -317,10 +319,12 @@ static hl_status load_json(hl_json_reader *reader, const char *path, bool *by_vo
 
 static hl_status load(hl_json_reader *reader, const char *path, const hl_volume *volume,
                       hl_transfer_function *function) {
-  bool by_voxel = true;
-  hl_status status = hl_slicer_is_text(path)
-                         ? hl_slicer_read_text(reader->context, path, function, reader->error)
-                         : load_json(reader, path, &by_voxel, function);
+  bool by_voxel = hl_slicer_is_text(path);
+  hl_status status = HL_OK;
+  if (by_voxel) status = hl_slicer_read_text(reader->context, path, function, reader->error);
+  else if (hl_text_ends(path, ".pvsm"))
+    status = hl_paraview_read_state(reader->context, path, volume, function, reader->error);
+  else status = load_json(reader, path, &by_voxel, function);
   if (status != HL_OK) return status;
   if (by_voxel && volume != NULL) hl_slicer_fit_gradient(volume, function);
   status = hl_transfer_function_check(function, "", reader->error);

@@ -207,6 +207,7 @@ static void write_box(writer *w, const hl_function_box *box) {
   write_row(w, "color", box->color, 3);
   write_number(w, "opacity", box->opacity);
   if (box->edge[0] > 0 || box->edge[1] > 0) write_row(w, "edge", box->edge, 2);
+  if (box->sigma > 0) write_number(w, "sigma", box->sigma);
   close_bracket(w, "}");
 }
 

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/vector.h"
 
 /* ---- weights ---- */
 
@@ -21,8 +22,23 @@ static double weight_up_to(double low, double high, double edge, double x) {
   return x - low - edge / 2;
 }
 
+/* The integral of a Gaussian's weight along an axis, from its middle to x. */
+static double gaussian_up_to(double middle, double deviation, double x) {
+  return deviation * sqrt(HL_PI / 2) * erf((x - middle) / (deviation * sqrt(2)));
+}
+
+/* The mean of a box's Gaussian along an axis, over from..to. */
+static double gaussian_along(const hl_function_box *box, int axis, double from, double to) {
+  double low = box->low[axis], high = box->high[axis], middle = (low + high) / 2,
+         deviation = box->sigma * (high - low), begin = fmax(from, low), end = fmin(to, high);
+  if (begin > end || !(deviation > 0)) return 0;
+  if (!(to > from)) return exp(-(from - middle) * (from - middle) / (2 * deviation * deviation));
+  return (gaussian_up_to(middle, deviation, end) - gaussian_up_to(middle, deviation, begin)) / (to - from);
+}
+
 /* The mean weight of a box along an axis, over from..to. */
 static double weight_along(const hl_function_box *box, int axis, double from, double to) {
+  if (box->sigma > 0) return gaussian_along(box, axis, from, to);
   double low = box->low[axis], high = box->high[axis], edge = fmin(box->edge[axis], (high - low) / 2);
   if (to > from && high > low)
     return (weight_up_to(low, high, edge, to) - weight_up_to(low, high, edge, from)) / (to - from);

@@ -53,7 +53,9 @@ static hl_status check_box(const hl_checker *check, const hl_function_box *box) 
   for (int a = 0; a < 2 && status == HL_OK; a++)
     status = hl_check_range(check, a == 0 ? "edge/0" : "edge/1", box->edge[a], 0, 1e30,
                             "give the edge's width, from 0 to 1e30");
-  return status;
+  return status == HL_OK ? hl_check_range(check, "sigma", box->sigma, 0, 1e6,
+                                          "give the Gaussian's width, of the box's sides, from 0 to 1e6")
+                         : status;
 }
 
 static hl_status check_polygon(const hl_checker *check, const hl_function_polygon *polygon) {

@@ -151,7 +151,7 @@ static void functions_of_two_numbers(void **state) {
   assert_int_equal(f.plane.second, HL_SECOND_VOLUME);
   assert_string_equal(f.plane.volume, "t2");
   assert_int_equal(f.plane.box_count, 1);
-  const hl_function_box box = {{1, -3}, {5, 4}, {0.1, 0.2, 0.3}, 0.7, {1, 0.5}};
+  const hl_function_box box = {{1, -3}, {5, 4}, {0.1, 0.2, 0.3}, 0.7, {1, 0.5}, 0};
   assert_memory_equal(f.plane.boxes, &box, sizeof box);
   assert_int_equal(f.plane.polygon_count, 1);
   const hl_function_polygon *polygon = &f.plane.polygons[0];
