@@ -199,7 +199,7 @@ LANES_INLINE lanes depth_along(const float (*samples)[FIELD_LANES], int n, int a
   return lanes_max(-lanes_log2(sum * (1.0f / (float)(n * n))), lanes_set(0));
 }
 
-/* What passes surfaces that cover a cell: at least this fraction. */
+/* Surfaces that cover a cell let at least this fraction of the light through. */
 static const float LEAST_PASSING = 1.0f / 16384;
 
 static void field_cover(const float *cover, size_t count, float *depth) {

@@ -141,7 +141,7 @@ static light_planes planes_of(const field_lattice *lattice) {
 
 /* The field's light: which cells, and which of their harmonics. */
 typedef struct sky_target {
-  float *field;   /* of the first cell's first harmonic */
+  float *field;   /* begins with the first cell's first harmonic */
   size_t step[3]; /* floats from cell to cell */
 } sky_target;
 

@@ -36,7 +36,7 @@ LANES_INLINE void points_of_places(const mask_lattice *lattice, const mask_place
   }
 }
 
-/* Where the places' bricks begin, in bytes from the first one. */
+/* The offsets of the bricks that hold the points, in bytes from the first brick. */
 LANES_INLINE lanes_int bricks_of_places(const mask_lattice *lattice, const mask_places *p) {
   lanes_int at = lanes_set_int(0);
   for (int a = 0; a < 3; a++) at += (p->cell[a] >> HL_MASK_BRICK_SHIFT) * lattice->brick_step[a];

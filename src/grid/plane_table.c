@@ -171,7 +171,7 @@ void hl_plane_table_set_second(plane_table *table, const hl_volume *volume, cons
 
 /* ---- looking up one point ---- */
 
-/* A place in a table: the point before it, and the way from there. */
+/* A position in a table: the point before it, and the way from there. */
 typedef struct table_place {
   int at;
   float part;
@@ -184,7 +184,7 @@ static table_place place_between(float x, int count) {
   return (table_place){(int)x, x - (float)(int)x};
 }
 
-/* The mean of a colour's integrals' differences over the column around a place, of two rows. */
+/* The mean of a colour's integrals' differences over the column around a position, of two rows. */
 static float color_between(const plane_table *table, table_place column, table_place row, int c) {
   float of_row[2];
   for (int r = 0; r < 2; r++) {

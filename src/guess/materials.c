@@ -67,7 +67,7 @@ void hl_data_find_materials(const hl_volume *volume, hl_data_analysis *a) {
     end = end_of_peak(counts, count, from);
     for (int n = from; n < end; n++) pending += counts[n];
     if (end == count || a->material_count == HL_MOST_MATERIALS) break;
-    if (pending < LEAST_SHARE * all) continue; /* joined with the next one */
+    if (pending < LEAST_SHARE * all) continue; /* too few voxels: they join the next material */
     double rest = 0;
     for (int n = end; n < count; n++) rest += counts[n];
     if (rest < LEAST_SHARE * all) break;

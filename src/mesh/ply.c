@@ -201,7 +201,7 @@ static bool read_number(ply_reader *reader, ply_type type, double *value) {
 
 /* ---- elements ---- */
 
-/* The fraction of full scale that a colour is. */
+/* A colour's channel as a fraction of the greatest number that its type holds. */
 static double fraction_of(ply_type type, double value) {
   double most = type == PLY_U8 ? 255 : type == PLY_U16 ? 65535 : 1;
   return fmin(fmax(value / most, 0), 1);

@@ -96,8 +96,7 @@ static void set_color(tube *tube, size_t point) {
   for (int c = 0; c < 4; c++) tube->color[c] = colors != NULL ? colors[point][c] : 1;
 }
 
-/* Adds the tube of the line that begins at a point; it has at least two, which differ from their neighbours.
- */
+/* Adds the tube of the line of `count` points from `first` on: at least two, no two neighbours the same. */
 static void add_tube(tube *tube, size_t first, size_t count) {
   const float(*points)[4] = (const float(*)[4])tube->parts->line_points + first;
   piece now = {0};

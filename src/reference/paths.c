@@ -19,7 +19,7 @@ static double uniform(uint64_t *state) {
   return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
-/* Where a path is turned. */
+/* A point at which the light of a path is scattered. */
 typedef struct collision {
   const reference_volume *volume;
   vec3 point, index_point;
@@ -31,7 +31,7 @@ static double extinction_of(const crossing *part) {
   return hl_reference_extinction(part->volume, hl_reference_value(part->volume, part->here), part->here);
 }
 
-/* Chooses one of the volumes at the march's place, by their extinctions. */
+/* Chooses one of the volumes at the march's position, by their extinctions. */
 static void choose_volume(const march *walk, double total, uint64_t *random, collision *met) {
   double pick = uniform(random) * total;
   for (size_t v = 0; v < walk->count; v++) {

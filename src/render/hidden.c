@@ -36,7 +36,7 @@ static uint32_t uncovered_blocks(const int32_t shown_from[TILE_BLOCKS]) {
 /* The tile action: composites opacity alone. */
 static uint32_t cover_tile(const sweep *sweep, const tile_slab *slab) {
   const hidden_search *search = sweep->action;
-  sweep_counts *counts = &sweep->counts[slab->worker];
+  sweep_counts *counts = &sweep->arrays.counts[slab->worker];
   int32_t *shown_from = search->shown_from + slab->tile * TILE_BLOCKS;
   uint32_t seen = slab->blocks & uncovered_blocks(shown_from);
   counts->pixels_covered += hl_pixels_of_blocks(slab->blocks & ~seen);
@@ -63,8 +63,8 @@ static const double COVERED_PER_SEEN = 0.75;
 static bool is_worth_while(const sweep *front) {
   uint64_t seen = 0, covered = 0;
   for (int i = 0; i < hl_pool_threads(front->content.pool); i++) {
-    seen += front->counts[i].pixels_seen;
-    covered += front->counts[i].pixels_covered;
+    seen += front->arrays.counts[i].pixels_seen;
+    covered += front->arrays.counts[i].pixels_covered;
   }
   return (double)covered > COVERED_PER_SEEN * (double)seen;
 }
@@ -74,7 +74,7 @@ static bool is_worth_while(const sweep *front) {
 static hl_status go_through(sweep *front, hidden_search *search, bool trying, hl_error *error) {
   search->trying = trying;
   for (size_t tile = 0; tile < front->tiles; tile++)
-    if (is_tried(front, tile) != trying) front->open[tile] = 0;
+    if (is_tried(front, tile) != trying) front->arrays.open[tile] = 0;
   return hl_sweep_run(front, error);
 }
 

@@ -108,7 +108,8 @@ LANES_INLINE void correct_parts(light_depths *depths, int channels, color_lanes 
   }
 }
 
-/* The light that reaches the slab's first sheet below a place, in the active lanes. lookup: of that sheet. */
+/* The light that reaches the slab's first sheet below a position, in the active lanes. lookup: of that sheet.
+ */
 LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_lookup *lookup,
                                   const shadow_taps *taps, lanes3 position, light_depths *depths,
                                   uint32_t active) {

@@ -40,19 +40,19 @@ typedef struct shade_volume {
   int clip_faces;                        /* clipping cuts through visible matter: */
   float clip_low[3], clip_high[3];       /* at these faces of the box; far outside where at none */
   float clip_edge[3];                    /* between the planes of voxels along i, j, k; frame units */
-  const float (*shown)[4];               /* in a maximum projection: rows of SHOWN_...; else null */
-  int rank;                              /* among the visible volumes */
-  float anisotropy;                      /* g of the phase function */
-  voxel_colors colors;                   /* multiply the transfer function's */
-  float albedo[3];                       /* of the medium, times its colour */
-  int absorbs;                           /* not all of the albedo is 1 */
-  int multiple;                          /* light that was scattered lights it again */
-  const shade_cut *cuts;                 /* [cut_count] */
-  int cut_count, light_cut_count;        /* for the eye, and for lights: these, or none */
-  int cut_shading;                       /* hl_cut_shading */
-  int mask_faces;                        /* normals turn to the faces that the mask leaves */
-  voxel_colors tints;                    /* of the mask: colours go towards these, by their weights */
-  int object;                            /* its number in the layer of objects */
+  const float (*shown)[4]; /* in a maximum projection: the table's rows of SHOWN_... floats; else null */
+  int rank;                /* among the visible volumes */
+  float anisotropy;        /* g of the phase function */
+  voxel_colors colors;     /* multiply the transfer function's */
+  float albedo[3];         /* of the medium, times its colour */
+  int absorbs;             /* not all of the albedo is 1 */
+  int multiple;            /* light that was scattered lights it again */
+  const shade_cut *cuts;   /* [cut_count] */
+  int cut_count, light_cut_count; /* for the eye, and for lights: these, or none */
+  int cut_shading;                /* hl_cut_shading */
+  int mask_faces;                 /* normals turn to the faces that the mask leaves */
+  voxel_colors tints;             /* of the mask: colours go towards these, by their weights */
+  int object;                     /* its number in the layer of objects */
 } shade_volume;
 
 /* One volume's densities in a tile, on cache lines of its own: each thread writes its patches beside

@@ -83,6 +83,29 @@ typedef struct sweep sweep;
  * sheets may still change the picture. */
 typedef uint32_t tile_action(const sweep *sweep, const tile_slab *slab);
 
+/* The arrays that the sheet loop works in. */
+typedef struct loop_arrays {
+  void *memory;                      /* owned; holds the arrays that follow */
+  uint16_t *open;                    /* [tiles]; blocks not yet opaque */
+  uint32_t *tasks;                   /* [tiles of the image and of all lights]; the stretches' tiles */
+  shade_job *slab_shades;            /* [stretch]; of the picture's slabs */
+  attenuate_job *slab_attenuates;    /* [lights][stretch]; of the lights' slabs */
+  shade_volume *shade_volumes;       /* [volumes] */
+  shade_cut *shade_cuts;             /* of all volumes, one after the other */
+  shade_patch *shade_patches;        /* [threads][volumes] */
+  unsigned char *scratch;            /* [threads][volumes][SHADE_SCRATCH_BYTES] */
+  attenuate_volume *scratch_volumes; /* [threads][volumes] */
+  sweep_counts *counts;              /* [threads] */
+  float *srgb_decode;                /* [256]: the linear values of sRGB's codes, for voxels with colours */
+  float *tint_decode;                /* [256]: the linear values of a mask's codes, their squares */
+} loop_arrays;
+
+/* What a sweep took. */
+typedef struct sweep_times {
+  double seconds_sort, seconds_tiles, seconds_soften;
+  uint64_t waits; /* how often all threads have waited for each other */
+} sweep_times;
+
 struct sweep {
   /* the frame; set by the caller */
   sheet_content content; /* sheets: of geometry */
@@ -109,29 +132,16 @@ struct sweep {
   int tiles_x, tiles_y;
   sweep_light lights[FRAME_LIGHTS];
   shade_light shade_lights[FRAME_LIGHTS];
-  attenuate_job attenuate[FRAME_LIGHTS]; /* with what all slabs have in common */
+  attenuate_job attenuate[FRAME_LIGHTS]; /* what is the same for all slabs is filled in */
   shade_job shade;                       /* likewise */
   sweep_layers layers;
   surface_state surfaces;
   /* the loop */
   int ring; /* sheets whose light is kept; 1: picture and lights take turns, slab by slab */
   slab_stretch picture_stretch, light_stretch;
-  int task_start[FRAME_LIGHTS + 2];  /* the picture's first task, each light's, and one past the last task */
-  void *memory;                      /* owned; all arrays that follow */
-  uint16_t *open;                    /* [tiles]; blocks not yet opaque */
-  uint32_t *tasks;                   /* [tiles of the image and of all lights]; the stretches' tiles */
-  shade_job *slab_shades;            /* [stretch]; of the picture's slabs */
-  attenuate_job *slab_attenuates;    /* [lights][stretch]; of the lights' slabs */
-  shade_volume *shade_volumes;       /* [volumes] */
-  shade_cut *shade_cuts;             /* of all volumes, one after the other */
-  shade_patch *shade_patches;        /* [threads][volumes] */
-  unsigned char *scratch;            /* [threads][volumes][SHADE_SCRATCH_BYTES] */
-  attenuate_volume *scratch_volumes; /* [threads][volumes] */
-  sweep_counts *counts;              /* [threads] */
-  float *srgb_decode;                /* [256]: the linear values of sRGB's codes, for voxels with colours */
-  float *tint_decode;                /* [256]: the linear values of a mask's codes, their squares */
-  double seconds_sort, seconds_tiles, seconds_soften;
-  uint64_t waits; /* how often all threads have waited for each other */
+  int task_start[FRAME_LIGHTS + 2]; /* the picture's first task, each light's, and one past the last task */
+  loop_arrays arrays;
+  sweep_times times;
 };
 
 /* hidden.c. Called before the steps of a sweep that goes from back to front. Allocates and fills shown_from,

@@ -31,7 +31,7 @@ void hl_sweep_open(sweep *sweep) {
       if (x < sweep->frame->width && y < sweep->frame->height) open |= 1u << block;
     }
     if (!is_of_part(sweep, tile)) open = 0;
-    sweep->open[tile] = (uint16_t)open;
+    sweep->arrays.open[tile] = (uint16_t)open;
   }
 }
 
@@ -124,21 +124,22 @@ static void add_light_bytes(sweep *sweep, int index, sweep_bytes *bytes, size_t 
 /* tasks: tiles of the picture and of all lights. */
 static void lay_out(sweep *sweep, size_t tasks, int threads, hl_layout *layout) {
   size_t volumes = (size_t)sweep->content.volume_count, places = (size_t)threads * volumes;
-  sweep->open = hl_layout_take(layout, sweep->tiles, sizeof *sweep->open);
-  sweep->tasks = hl_layout_take(layout, tasks, sizeof *sweep->tasks);
+  sweep->arrays.open = hl_layout_take(layout, sweep->tiles, sizeof *sweep->arrays.open);
+  sweep->arrays.tasks = hl_layout_take(layout, tasks, sizeof *sweep->arrays.tasks);
   size_t stretch = (size_t)sweep->content.stretch, lights = (size_t)sweep->geometry->light_count;
-  sweep->slab_shades = hl_layout_take(layout, stretch, sizeof *sweep->slab_shades);
-  sweep->slab_attenuates = hl_layout_take(layout, lights * stretch, sizeof *sweep->slab_attenuates);
-  sweep->shade_volumes = hl_layout_take(layout, volumes, sizeof *sweep->shade_volumes);
+  sweep->arrays.slab_shades = hl_layout_take(layout, stretch, sizeof *sweep->arrays.slab_shades);
+  sweep->arrays.slab_attenuates = hl_layout_take(layout, lights * stretch,
+                                                 sizeof *sweep->arrays.slab_attenuates);
+  sweep->arrays.shade_volumes = hl_layout_take(layout, volumes, sizeof *sweep->arrays.shade_volumes);
   size_t cuts = 0;
   for (size_t g = 0; g < volumes; g++) cuts += sweep->content.grids[g].cut_count;
-  sweep->shade_cuts = hl_layout_take(layout, cuts, sizeof *sweep->shade_cuts);
-  sweep->shade_patches = hl_layout_take(layout, places, sizeof *sweep->shade_patches);
-  sweep->scratch = hl_layout_take(layout, places, SHADE_SCRATCH_BYTES);
-  sweep->scratch_volumes = hl_layout_take(layout, places, sizeof *sweep->scratch_volumes);
-  sweep->srgb_decode = hl_layout_take(layout, SRGB_CODES, sizeof *sweep->srgb_decode);
-  sweep->tint_decode = hl_layout_take(layout, SRGB_CODES, sizeof *sweep->tint_decode);
-  sweep->counts = hl_layout_take(layout, (size_t)threads, sizeof *sweep->counts);
+  sweep->arrays.shade_cuts = hl_layout_take(layout, cuts, sizeof *sweep->arrays.shade_cuts);
+  sweep->arrays.shade_patches = hl_layout_take(layout, places, sizeof *sweep->arrays.shade_patches);
+  sweep->arrays.scratch = hl_layout_take(layout, places, SHADE_SCRATCH_BYTES);
+  sweep->arrays.scratch_volumes = hl_layout_take(layout, places, sizeof *sweep->arrays.scratch_volumes);
+  sweep->arrays.srgb_decode = hl_layout_take(layout, SRGB_CODES, sizeof *sweep->arrays.srgb_decode);
+  sweep->arrays.tint_decode = hl_layout_take(layout, SRGB_CODES, sizeof *sweep->arrays.tint_decode);
+  sweep->arrays.counts = hl_layout_take(layout, (size_t)threads, sizeof *sweep->arrays.counts);
 }
 
 static void find_tiles(sweep *sweep) {
@@ -208,11 +209,11 @@ static hl_status allocate(sweep *sweep, hl_error *error) {
              (size_t)sweep->lights[i].sheets.occupancy.tiles_y;
   hl_layout counted = {0};
   lay_out(sweep, tasks, threads, &counted);
-  sweep->memory = hl_allocate(sweep->content.context, counted.bytes, 1);
-  if (sweep->memory == NULL) return hl_fail_memory(error, counted.bytes, "the sheet loop");
-  hl_layout handed = {.base = sweep->memory};
+  sweep->arrays.memory = hl_allocate(sweep->content.context, counted.bytes, 1);
+  if (sweep->arrays.memory == NULL) return hl_fail_memory(error, counted.bytes, "the sheet loop");
+  hl_layout handed = {.base = sweep->arrays.memory};
   lay_out(sweep, tasks, threads, &handed);
-  memset(sweep->counts, 0, (size_t)threads * sizeof *sweep->counts);
+  memset(sweep->arrays.counts, 0, (size_t)threads * sizeof *sweep->arrays.counts);
   return HL_OK;
 }
 
@@ -235,9 +236,9 @@ static void set_up_colors(sweep *sweep) {
   for (int g = 0; g < sweep->content.volume_count; g++)
     any = any || sweep->content.volumes[g].scene->volume->colors != NULL;
   for (int code = 0; any && code < SRGB_CODES; code++)
-    sweep->srgb_decode[code] = (float)hl_srgb_decode(code / 255.0);
+    sweep->arrays.srgb_decode[code] = (float)hl_srgb_decode(code / 255.0);
   for (int code = 0; code < SRGB_CODES; code++)
-    sweep->tint_decode[code] = (float)(code * code) * (1.0f / (255 * 255));
+    sweep->arrays.tint_decode[code] = (float)(code * code) * (1.0f / (255 * 255));
 }
 
 static void set_up_cut(const grid *grid, const cut_shape *shape, shade_cut *cut) {
@@ -247,10 +248,10 @@ static void set_up_cut(const grid *grid, const cut_shape *shape, shade_cut *cut)
 }
 
 static void set_up_cuts(sweep *sweep) {
-  shade_cut *cut = sweep->shade_cuts;
+  shade_cut *cut = sweep->arrays.shade_cuts;
   for (int g = 0; g < sweep->content.volume_count; g++) {
     const grid *grid = &sweep->content.grids[g];
-    shade_volume *shade = &sweep->shade_volumes[g];
+    shade_volume *shade = &sweep->arrays.shade_volumes[g];
     shade->cuts = cut;
     shade->cut_count = (int)grid->cut_count;
     shade->light_cut_count = grid->cut_casts_shadow ? 0 : shade->cut_count;
@@ -277,7 +278,7 @@ static void set_up_shading(sweep *sweep) {
   set_up_colors(sweep);
   for (int g = 0; g < sweep->content.volume_count; g++) {
     const hl_scene_volume *volume = sweep->content.volumes[g].scene;
-    shade_volume *shade = &sweep->shade_volumes[g];
+    shade_volume *shade = &sweep->arrays.shade_volumes[g];
     *shade = (shade_volume){.classifier = &sweep->content.volumes[g].classifier,
                             .grid = &sweep->content.grids[g],
                             .kernel = sweep->content.kernel,
@@ -291,8 +292,8 @@ static void set_up_shading(sweep *sweep) {
                             .specular = (float)volume->material.specular,
                             .shininess = (float)volume->material.shininess,
                             .anisotropy = (float)volume->anisotropy,
-                            .colors = colors_of(volume->volume, sweep->srgb_decode),
-                            .tints = colors_of(volume->mask.volume, sweep->tint_decode),
+                            .colors = colors_of(volume->volume, sweep->arrays.srgb_decode),
+                            .tints = colors_of(volume->mask.volume, sweep->arrays.tint_decode),
                             .multiple = volume->multiple_scattering};
     for (int c = 0; c < 3; c++) {
       shade->albedo[c] = (float)volume->albedo[c];
@@ -442,7 +443,7 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *me
   sweep->image.beside = longest_way(sweep);
   status = hl_sweep_layers_begin(sweep, error);
   if (status == HL_OK) status = hl_sweep_surfaces_begin(sweep, error);
-  sweep->seconds_sort = hl_clock_seconds() - start;
+  sweep->times.seconds_sort = hl_clock_seconds() - start;
   return status;
 }
 
@@ -452,7 +453,7 @@ void hl_sweep_end(sweep *sweep) {
   hl_sweep_surfaces_end(sweep);
   for (int i = 0; i < FRAME_LIGHTS; i++) end_light(sweep, &sweep->lights[i]);
   hl_view_sheets_end(&sweep->image);
-  hl_release(context, sweep->memory);
+  hl_release(context, sweep->arrays.memory);
 }
 
 /* ---- what is counted ---- */
@@ -466,27 +467,27 @@ double hl_clock_seconds(void) {
 void hl_sweep_count(const sweep *sweep, hl_render_statistics *statistics) {
   double fill = 0, shade = 0, light = 0, composite = 0;
   for (int i = 0; i < hl_pool_threads(sweep->content.pool); i++) {
-    statistics->samples_shaded += sweep->counts[i].samples;
-    statistics->tiles_filled_image += sweep->counts[i].filled_image;
-    statistics->tiles_filled_light += sweep->counts[i].filled_light;
-    statistics->tiles_skipped_image += sweep->counts[i].skipped_image;
-    statistics->tiles_skipped_light += sweep->counts[i].skipped_light;
-    statistics->pixels_filled_image += sweep->counts[i].pixels_image;
-    statistics->pixels_filled_light += sweep->counts[i].pixels_light;
-    statistics->pixels_skipped_image += sweep->counts[i].pixels_skipped_image;
-    statistics->pixels_skipped_light += sweep->counts[i].pixels_skipped_light;
-    fill += sweep->counts[i].seconds_fill;
-    shade += sweep->counts[i].seconds_shade;
-    light += sweep->counts[i].seconds_light;
-    composite += sweep->counts[i].seconds_composite;
+    statistics->samples_shaded += sweep->arrays.counts[i].samples;
+    statistics->tiles_filled_image += sweep->arrays.counts[i].filled_image;
+    statistics->tiles_filled_light += sweep->arrays.counts[i].filled_light;
+    statistics->tiles_skipped_image += sweep->arrays.counts[i].skipped_image;
+    statistics->tiles_skipped_light += sweep->arrays.counts[i].skipped_light;
+    statistics->pixels_filled_image += sweep->arrays.counts[i].pixels_image;
+    statistics->pixels_filled_light += sweep->arrays.counts[i].pixels_light;
+    statistics->pixels_skipped_image += sweep->arrays.counts[i].pixels_skipped_image;
+    statistics->pixels_skipped_light += sweep->arrays.counts[i].pixels_skipped_light;
+    fill += sweep->arrays.counts[i].seconds_fill;
+    shade += sweep->arrays.counts[i].seconds_shade;
+    light += sweep->arrays.counts[i].seconds_light;
+    composite += sweep->arrays.counts[i].seconds_composite;
   }
   if (!sweep->preparatory) statistics->sheets += sweep->geometry->sheets.count;
-  statistics->seconds_sort += sweep->seconds_sort;
-  double all = fill + shade + light, share = all > 0 ? sweep->seconds_tiles / all : 0;
+  statistics->seconds_sort += sweep->times.seconds_sort;
+  double all = fill + shade + light, share = all > 0 ? sweep->times.seconds_tiles / all : 0;
   statistics->seconds_fill_image += fill * share;
   statistics->seconds_shade += shade * share;
   statistics->seconds_fill_light += light * share;
   statistics->seconds_composite_light += composite * share;
-  statistics->waits += sweep->waits;
-  statistics->seconds_soften += sweep->seconds_soften;
+  statistics->waits += sweep->times.waits;
+  statistics->seconds_soften += sweep->times.seconds_soften;
 }

@@ -15,7 +15,7 @@ static void set_up_white_volumes(sweep *sweep) {
     layers->white[g] = sweep->content.volumes[g].classifier;
     layers->white[g].color = layers->ones;
     layers->white[g].plane.color = NULL;
-    shade_volume white = sweep->shade_volumes[g];
+    shade_volume white = sweep->arrays.shade_volumes[g];
     white.classifier = &layers->white[g];
     white.colors.voxels = NULL;
     white.ambient = white.emission = 0;
@@ -130,7 +130,7 @@ static const shade_patch *patches_of(const sweep *sweep, const tile_slab *slab, 
   shade_patch *patches = sweep->layers.patches + (size_t)slab->worker * (size_t)sweep->content.volume_count;
   for (int i = 0; i < slab->patch_count; i++) {
     patches[i] = slab->patches[i];
-    patches[i].volume = &volumes[slab->patches[i].volume - sweep->shade_volumes];
+    patches[i].volume = &volumes[slab->patches[i].volume - sweep->arrays.shade_volumes];
   }
   return patches;
 }

@@ -66,13 +66,13 @@ static void shade_stretch(sweep *sweep, size_t tile, int worker) {
   const slab_stretch stretch = sweep->picture_stretch;
   for (int sheet = stretch.first; sheet < stretch.end; sheet++)
     if (is_touched(&sweep->image.occupancy, tile, sheet))
-      hl_sweep_shade(sweep, &sweep->slab_shades[sheet - stretch.first], tile, worker);
+      hl_sweep_shade(sweep, &sweep->arrays.slab_shades[sheet - stretch.first], tile, worker);
 }
 
 static void attenuate_stretch(sweep *sweep, int index, size_t tile, int worker) {
   const slab_stretch stretch = sweep->light_stretch;
   const sweep_light *light = &sweep->lights[index];
-  const attenuate_job *jobs = sweep->slab_attenuates + (size_t)index * (size_t)sweep->content.stretch;
+  const attenuate_job *jobs = sweep->arrays.slab_attenuates + (size_t)index * (size_t)sweep->content.stretch;
   for (int sheet = stretch.first; sheet < stretch.end; sheet++) {
     hl_shadow_buffer_carry(light->shadow.buffer, tile, sheet);
     if (is_reached(sweep, &light->shadow, sheet) && is_touched(&light->sheets.occupancy, tile, sheet))
@@ -86,8 +86,8 @@ static void stretch_task(void *data, size_t index, int worker) {
   int first = (int)index * each, end = first + each < last ? first + each : last;
   for (int task = first, light = -1; task < end; task++) {
     while (task >= sweep->task_start[light + 2]) light++;
-    if (light < 0) shade_stretch(sweep, sweep->tasks[task], worker);
-    else attenuate_stretch(sweep, light, sweep->tasks[task], worker);
+    if (light < 0) shade_stretch(sweep, sweep->arrays.tasks[task], worker);
+    else attenuate_stretch(sweep, light, sweep->arrays.tasks[task], worker);
   }
 }
 
@@ -97,7 +97,7 @@ static void reach_picture(sweep *sweep) {
   const sheet_stack *sheets = &sweep->geometry->sheets;
   const slab_stretch stretch = sweep->picture_stretch;
   for (int sheet = stretch.first; sheet < stretch.end; sheet++) {
-    shade_job *job = &sweep->slab_shades[sheet - stretch.first];
+    shade_job *job = &sweep->arrays.slab_shades[sheet - stretch.first];
     *job = sweep->shade;
     hl_view_sheets_reach(&sweep->image, sheet);
     hl_view_sheet_rays(&sweep->frame->eye, sheets->normal,
@@ -124,7 +124,7 @@ static void reach_light_slab(sweep *sweep, int index, int sheet, attenuate_job *
 
 static void reach_light(sweep *sweep, int index) {
   const slab_stretch stretch = sweep->light_stretch;
-  attenuate_job *jobs = sweep->slab_attenuates + (size_t)index * (size_t)sweep->content.stretch;
+  attenuate_job *jobs = sweep->arrays.slab_attenuates + (size_t)index * (size_t)sweep->content.stretch;
   for (int sheet = stretch.first; sheet < stretch.end; sheet++)
     reach_light_slab(sweep, index, sheet, &jobs[sheet - stretch.first]);
 }
@@ -148,19 +148,19 @@ static void run_stretches(sweep *sweep, slab_stretch picture, slab_stretch light
   sweep->picture_stretch = picture;
   sweep->light_stretch = light;
   reach_picture(sweep);
-  int count = list_tiles(&sweep->image.occupancy, NULL, picture, sweep->tasks);
+  int count = list_tiles(&sweep->image.occupancy, NULL, picture, sweep->arrays.tasks);
   sweep->task_start[1] = count;
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     const sweep_light *of = &sweep->lights[i];
     if (of->shadow.method != NULL) {
       reach_light(sweep, i);
-      count += list_tiles(&of->sheets.occupancy, of->shadow.buffer, light, sweep->tasks + count);
+      count += list_tiles(&of->sheets.occupancy, of->shadow.buffer, light, sweep->arrays.tasks + count);
     }
     sweep->task_start[i + 2] = count;
   }
   size_t each = (size_t)tiles_a_task(sweep);
   if (count > 0) hl_pool_run(sweep->content.pool, ((size_t)count + each - 1) / each, stretch_task, sweep);
-  sweep->seconds_tiles += hl_clock_seconds() - start;
+  sweep->times.seconds_tiles += hl_clock_seconds() - start;
 }
 
 /* Whether some light's buffer changes as a whole at a sheet. */
@@ -195,7 +195,7 @@ static void advance_lights(sweep *sweep, slab_stretch stretch) {
     hl_shadow_buffer_reach(shadow->buffer, sheet);
     shadow->method->advance(shadow, &light->sheets.occupancy, sheet);
   }
-  sweep->seconds_soften += hl_clock_seconds() - start;
+  sweep->times.seconds_soften += hl_clock_seconds() - start;
 }
 
 /* The paper's loop over the sheets (section 3.1, eighteen steps).
@@ -238,6 +238,6 @@ hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
     if (hl_pool_cancelled(sweep->content.pool))
       return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
   }
-  sweep->waits += hl_pool_waits(sweep->content.pool) - waits;
+  sweep->times.waits += hl_pool_waits(sweep->content.pool) - waits;
   return HL_OK;
 }

@@ -35,7 +35,7 @@ static int fill_image_tile(sweep *sweep, slab_place place, uint32_t need, int wo
                            uint32_t *blocks) {
   size_t tile = place.tile;
   view_sheets *sheets = &sweep->image;
-  sweep_counts *counts = &sweep->counts[worker];
+  sweep_counts *counts = &sweep->arrays.counts[worker];
   int count = 0;
   for (size_t p = sheets->occupancy.first_patch[tile]; p < sheets->occupancy.first_patch[tile + 1]; p++) {
     if (!hl_patch_is_touched(sheets, p, place.sheet)) continue;
@@ -47,30 +47,36 @@ static int fill_image_tile(sweep *sweep, slab_place place, uint32_t need, int wo
     patch_slab slab = hl_patch_slab(sheets, place, need, &counts->pixels_image);
     if (slab.blocks == 0) continue;
     *blocks |= slab.blocks;
-    patches[count++] = (shade_patch){
-        &sweep->shade_volumes[g], slab.before, slab.current, slab.blocks, slab.enter, slab.leave, slab.uncut};
+    patches[count++] = (shade_patch){&sweep->arrays.shade_volumes[g],
+                                     slab.before,
+                                     slab.current,
+                                     slab.blocks,
+                                     slab.enter,
+                                     slab.leave,
+                                     slab.uncut};
   }
   return count;
 }
 
 uint32_t hl_light_tile(const sweep *sweep, const tile_slab *slab) {
-  uint32_t open = sweep->content.hot->render.shade(
-      slab->job, slab, sweep->pixels + slab->tile * 4 * TILE_PIXELS, &sweep->counts[slab->worker].samples);
+  uint32_t open = sweep->content.hot->render.shade(slab->job, slab,
+                                                   sweep->pixels + slab->tile * 4 * TILE_PIXELS,
+                                                   &sweep->arrays.counts[slab->worker].samples);
   hl_sweep_layers_tile(sweep, slab);
   return open;
 }
 
 void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker) {
   int sheet = job->sheet;
-  sweep_counts *counts = &sweep->counts[worker];
-  uint32_t blocks = 0, need = sweep->open[tile] & shown_blocks(sweep, tile, last_of_run(sheet));
+  sweep_counts *counts = &sweep->arrays.counts[worker];
+  uint32_t blocks = 0, need = sweep->arrays.open[tile] & shown_blocks(sweep, tile, last_of_run(sheet));
   counts->pixels_skipped_image += hl_pixels_of_blocks(ALL_BLOCKS & ~need);
   fragment_range surfaces = hl_sweep_surfaces_reach(sweep, tile, sheet);
   if (need == 0) {
     counts->skipped_image++;
     return;
   }
-  shade_patch *patches = sweep->shade_patches + (size_t)worker * (size_t)sweep->content.volume_count;
+  shade_patch *patches = sweep->arrays.shade_patches + (size_t)worker * (size_t)sweep->content.volume_count;
   bool timed = is_timed(tile, sheet);
   double start = read_clock(timed);
   int count = fill_image_tile(sweep, (slab_place){.tile = tile, .sheet = sheet}, need, worker, patches,
@@ -81,7 +87,8 @@ void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker)
   uint32_t shown = shown_blocks(sweep, tile, sheet);
   blocks &= shown;
   if (blocks == 0 && surfaces.count == 0) return;
-  void *scratch = sweep->scratch + (size_t)worker * (size_t)sweep->content.volume_count * SHADE_SCRATCH_BYTES;
+  void *scratch = sweep->arrays.scratch +
+                  (size_t)worker * (size_t)sweep->content.volume_count * SHADE_SCRATCH_BYTES;
   const tile_slab slab = {
       job, tile, hl_tile_x(sweep, tile), hl_tile_y(sweep, tile), patches, count, blocks, worker, scratch};
   uint32_t open;
@@ -91,7 +98,7 @@ void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker)
   } else {
     open = sweep->act(sweep, &slab);
   }
-  sweep->open[tile] = (uint16_t)((sweep->open[tile] & ~blocks) | open);
+  sweep->arrays.open[tile] = (uint16_t)((sweep->arrays.open[tile] & ~blocks) | open);
   counts->seconds_shade += read_clock(timed) - filled;
 }
 
@@ -102,7 +109,7 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
                            attenuate_volume *volumes) {
   size_t tile = place.tile;
   view_sheets *sheets = &light->sheets;
-  uint64_t *pixels = &sweep->counts[worker].pixels_light;
+  uint64_t *pixels = &sweep->arrays.counts[worker].pixels_light;
   int count = 0;
   for (size_t p = sheets->occupancy.first_patch[tile]; p < sheets->occupancy.first_patch[tile + 1]; p++) {
     if (!hl_patch_is_touched(sheets, p, place.sheet)) continue;
@@ -122,7 +129,7 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
                                         .uncut = slab.uncut,
                                         .grid = &sweep->content.grids[g],
                                         .kernel = sweep->content.kernel,
-                                        .to_index = sweep->shade_volumes[g].to_index};
+                                        .to_index = sweep->arrays.shade_volumes[g].to_index};
     for (int c = 0; c < HL_CHANNELS; c++) volumes[count].weight[c] = (float)scene->attenuation_color[c];
     count++;
   }
@@ -151,7 +158,7 @@ static void composite_light_tile(sweep *sweep, light_shadow *shadow, attenuate_j
 }
 
 void hl_sweep_attenuate(sweep *sweep, int light_index, const attenuate_job *job, size_t tile, int worker) {
-  sweep_counts *counts = &sweep->counts[worker];
+  sweep_counts *counts = &sweep->arrays.counts[worker];
   sweep_light *light = &sweep->lights[light_index];
   light_shadow *shadow = &light->shadow;
   if (shadow->method->find_lit != NULL) shadow->method->find_lit(shadow, tile);
@@ -162,7 +169,8 @@ void hl_sweep_attenuate(sweep *sweep, int light_index, const attenuate_job *job,
     counts->skipped_light++;
     return;
   }
-  attenuate_volume *volumes = sweep->scratch_volumes + (size_t)worker * (size_t)sweep->content.volume_count;
+  attenuate_volume *volumes = sweep->arrays.scratch_volumes +
+                              (size_t)worker * (size_t)sweep->content.volume_count;
   bool timed = is_timed(tile, job->sheet);
   double start = read_clock(timed);
   int count = fill_light_tile(sweep, light, (slab_place){.tile = tile, .sheet = job->sheet}, worker, need,

@@ -34,7 +34,8 @@ typedef struct direct_job {
   int side; /* points along each side of the light's square */
 } direct_job;
 
-/* Sums the extinction at a place of the grid, in units of its spacing, into sums[channels]; false outside. */
+/* Sums the extinction at a position in the grid, in units of its spacing, into sums[channels]; false outside.
+ */
 static bool add_extinction(const direct_job *job, const float at[3], float weight, float *sums) {
   const int32_t *count = job->nodes->count;
   size_t low[3];

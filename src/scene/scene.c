@@ -306,7 +306,7 @@ static hl_status copy_lights(hl_scene *scene, const hl_scene_description *from, 
   return status;
 }
 
-/* Copies a sky's image; skies of other types have none. */
+/* Copies a sky's image, if it has one. */
 static hl_status copy_sky(hl_scene *scene, const hl_sky *from, hl_error *error) {
   hl_sky *to = &scene->description.sky;
   to->file = NULL;

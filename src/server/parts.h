@@ -56,7 +56,7 @@ typedef struct server_opened {
   long long number;            /* by which pages name it; 0: the program's input */
   hl_scene *scene;             /* owned; null: free */
   char *start;                 /* owned; the text of its start.json */
-  int users;                   /* requests that hold it; under server.pages_lock */
+  int users;                   /* number of requests that use it; under server.pages_lock */
   unsigned long long last_use; /* under server.pages_lock */
 } server_opened;
 

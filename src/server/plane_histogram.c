@@ -59,7 +59,7 @@ static int bin_of(double x, double most, int bins) {
   return bin < 0 ? 0 : bin < bins ? bin : bins - 1;
 }
 
-/* The gradient below which nearly all are. */
+/* The gradient that nearly all samples lie below. */
 static double greatest_drawn(const sampling *of) {
   size_t counts[FINE] = {0}, within = 0;
   double most = 0;

@@ -14,7 +14,7 @@ typedef struct shadow_taps {
   lanes fx, fy;
 } shadow_taps;
 
-/* At continuous pixel coordinates. */
+/* The taps for positions in the buffer, in continuous pixel coordinates. */
 LANES_INLINE shadow_taps taps_at_position(const shadow_map *map, int nearest, lanes u, lanes v) {
   shadow_taps taps;
   taps.inside = (u > 0.0f) & (v > 0.0f) & (u < (float)map->width) & (v < (float)map->height);

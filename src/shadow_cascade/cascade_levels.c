@@ -258,7 +258,7 @@ hl_status hl_cascade_begin(light_shadow *shadow, hl_error *error) {
   return HL_OK;
 }
 
-/* One plane of a level; those of the moments have no flags of their own. */
+/* Clears one plane of a level, and its flags if it has any: the moments' planes have none. */
 static void clear_plane(void *data, size_t index, int worker) {
   (void)worker;
   const cascade_level *level = data;

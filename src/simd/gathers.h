@@ -1,4 +1,4 @@
-/* simd/gathers.h - sixteen lanes of numbers from sixteen places of a table.
+/* simd/gathers.h - sixteen lanes of numbers from sixteen positions in a table.
  *
  * Words, floats, rows, pairs and squares of them, by as few loads as an instruction set allows; the values
  * are the same on all of them. */

@@ -104,7 +104,8 @@ static void place_task(void *data, size_t index, int worker) {
   }
 }
 
-/* Turns counts into places. False where there are more than 2^32 entries. */
+/* Turns the numbers of entries into the index of each bin's first entry. False where there are more than 2^32
+ * entries. */
 static bool find_places(bin_work *work, size_t tasks) {
   uint64_t sum = 0;
   for (size_t tile = 0; tile < work->tiles; tile++) {

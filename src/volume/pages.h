@@ -43,7 +43,7 @@ typedef struct hl_pages {
   size_t dimension[3];  /* voxels of the volume */
   size_t count[3];      /* pages; page (x, y, z) is number (z * count[1] + y) * count[0] + x */
   unsigned char *state; /* owned; [pages]; PAGE_...; atomic */
-  uint64_t held_bytes;  /* of the pages that are not forgotten; atomic */
+  uint64_t held_bytes;  /* of the pages in memory; atomic */
   size_t hand;          /* the clock's: the page it looks at next, modulo the number of pages; atomic */
   bool filled;          /* hl_pages_finish() was called */
   bool in_use;          /* of a volume that was made: over ranks, others may ask for voxels */

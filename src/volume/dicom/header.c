@@ -35,7 +35,7 @@ bool hl_dicom_may_begin(const unsigned char *bytes, size_t length) {
 
 static void use_syntax(hl_dicom_header *header, hl_dicom_reader *reader) {
   static const struct {
-    const char *uid; /* after 1.2.840.10008.1.2 */
+    const char *uid; /* the end of the UID, which begins with 1.2.840.10008.1.2 */
     hl_dicom_codec codec;
   } syntaxes[] = {
       {"", HL_DICOM_NATIVE},          {".1", HL_DICOM_NATIVE},        {".1.98", HL_DICOM_NATIVE},

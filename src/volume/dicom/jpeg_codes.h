@@ -48,7 +48,7 @@ typedef hl_status hl_jpeg_take_function(void *decoder, int marker, const unsigne
 hl_status hl_jpeg_read_headers(hl_jpeg_reader *r, const hl_dicom_packed *packed, const char *name,
                                hl_jpeg_take_function *take, void *decoder, hl_error *error);
 
-/* Fills the bits up to 48 at least; zeros after a marker or the end. */
+/* Reads bytes until at least 48 bits are held; after a marker or the end they are zeros. */
 void hl_jpeg_fill(hl_jpeg_reader *r);
 
 /* A code's value; -1: there is no such code. 32 bits must be there. */
