@@ -132,8 +132,15 @@ uint64_t hl_grid_bytes(const hl_volume *volume, const kernel *kernel, const grid
   return counted.bytes + hl_bounds_bytes(&grid, threads);
 }
 
-/* What needs a copy of all voxels in memory. */
+/* What has too many bricks, or needs a copy of all voxels in memory. */
 static hl_status check_pages(const hl_volume *volume, const kernel *kernel, hl_error *error) {
+  double bricks = 1;
+  for (int axis = 0; axis < 3; axis++) bricks *= (double)(volume->dimension[axis] / HL_BRICK_CELLS + 1);
+  if (bricks > (double)UINT32_MAX)
+    return hl_fail(
+        error, HL_ERROR_UNSUPPORTED,
+        "a volume of %zu x %zu x %zu voxels has %.3g bricks of 4 x 4 x 4 cells, and %u can be numbered",
+        volume->dimension[0], volume->dimension[1], volume->dimension[2], bricks, UINT32_MAX);
   if (volume->pages == NULL) return HL_OK;
   if (kernel->interpolates)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,

@@ -9,12 +9,14 @@
 
 #include "core/memory.h"
 
-enum { TAG_REQUEST = 1, TAG_REPLY = 2, REPLIES = 4 };
+/* Tags of messages, those of replies from TAG_REPLY on; threads of a rank that fetch at once; answers of a
+ * rank on their way. */
+enum { TAG_REQUEST = 1, TAG_REPLY = 2, FETCHES = 8, REPLIES = 8 };
 
 /* What a rank asks another one for. */
 typedef struct block_request {
-  uint64_t id, from; /* of the blocks; the rank that asks */
-  hl_box box;        /* within the block of the rank that is asked */
+  uint64_t id, from, tag; /* of the blocks; the rank that asks; of the reply */
+  hl_box box;             /* within the block of the rank that is asked */
 } block_request;
 
 /* An answer on its way. */
@@ -24,18 +26,27 @@ typedef struct block_reply {
   bool sent; /* and not yet known to have arrived */
 } block_reply;
 
+/* A thread's fetch. */
+typedef struct block_fetch {
+  hl_box *parts;           /* [ranks]; of what is wanted */
+  void **pending;          /* [ranks]; requests of MPI */
+  bool *waited;            /* [ranks]; whether `pending` is not done */
+  unsigned char *received; /* [shape.most][element_bytes] */
+  int number;
+  bool busy; /* with `lock` held */
+} block_fetch;
+
 struct hl_blocks {
   hl_ranks *ranks;
   hl_blocks *next; /* of the server's list */
   uint64_t id;     /* the same on all ranks */
   hl_blocks_shape shape;
   hl_block_source source;
-  void *memory;               /* owned: all arrays */
-  hl_box *boxes;              /* [ranks] */
-  hl_box *parts;              /* [ranks]; of a fetch */
-  void **pending;             /* [ranks]; requests of MPI; of a fetch */
-  bool *waited;               /* [ranks]; whether `pending` is not done */
-  unsigned char *received;    /* [shape.most][element_bytes] */
+  void *memory;  /* owned: all arrays */
+  hl_box *boxes; /* [ranks] */
+  block_fetch fetch[FETCHES];
+  pthread_mutex_t lock;
+  pthread_cond_t freed;       /* a fetch has ended */
   block_reply reply[REPLIES]; /* by turns; used with ranks->calling held */
   int turn;
 };
@@ -83,8 +94,8 @@ static void answer(hl_ranks *ranks, const block_request *asked) {
   for (int done = !reply->sent; !done;) ranks->mpi.test(&reply->request, &done, NULL);
   blocks->source.copy(blocks->source.data, &asked->box, reply->bytes);
   size_t bytes = elements_of(&asked->box) * blocks->shape.element_bytes;
-  ranks->mpi.send(reply->bytes, (int)bytes, ranks->mpi.byte, (int)asked->from, TAG_REPLY, ranks->communicator,
-                  &reply->request);
+  ranks->mpi.send(reply->bytes, (int)bytes, ranks->mpi.byte, (int)asked->from, (int)asked->tag,
+                  ranks->communicator, &reply->request);
   reply->sent = true;
 }
 
@@ -141,10 +152,14 @@ static void stop_server(hl_ranks *ranks) {
 static void lay_out(hl_blocks *blocks, hl_layout *layout) {
   size_t ranks = (size_t)blocks->ranks->size;
   blocks->boxes = hl_layout_take(layout, ranks, sizeof *blocks->boxes);
-  blocks->parts = hl_layout_take(layout, ranks, sizeof *blocks->parts);
-  blocks->pending = hl_layout_take(layout, ranks, sizeof *blocks->pending);
-  blocks->waited = hl_layout_take(layout, ranks, sizeof *blocks->waited);
-  blocks->received = hl_layout_take(layout, blocks->shape.most, blocks->shape.element_bytes);
+  for (int n = 0; n < FETCHES; n++) {
+    block_fetch *fetch = &blocks->fetch[n];
+    fetch->number = n;
+    fetch->parts = hl_layout_take(layout, ranks, sizeof *fetch->parts);
+    fetch->pending = hl_layout_take(layout, ranks, sizeof *fetch->pending);
+    fetch->waited = hl_layout_take(layout, ranks, sizeof *fetch->waited);
+    fetch->received = hl_layout_take(layout, blocks->shape.most, blocks->shape.element_bytes);
+  }
   for (int n = 0; n < REPLIES; n++)
     blocks->reply[n].bytes = hl_layout_take(layout, blocks->shape.most, blocks->shape.element_bytes);
 }
@@ -197,6 +212,8 @@ static hl_status make_blocks(hl_ranks *ranks, const hl_blocks_shape *shape, cons
   hl_blocks *made = *blocks = hl_allocate_zeroed(ranks->context, 1, sizeof *made);
   if (made == NULL) return hl_fail_memory(error, sizeof *made, "the ranks' blocks");
   made->ranks = ranks;
+  pthread_mutex_init(&made->lock, NULL);
+  pthread_cond_init(&made->freed, NULL);
   made->shape = *shape;
   made->source = *source;
   hl_layout counted = {0};
@@ -233,24 +250,49 @@ void hl_blocks_release(hl_blocks *blocks, bool together) {
     hl_release(ranks->context, ranks->server);
     ranks->server = NULL;
   }
+  pthread_mutex_destroy(&blocks->lock);
+  pthread_cond_destroy(&blocks->freed);
   hl_release(ranks->context, blocks->memory);
   hl_release(ranks->context, blocks);
 }
 
 /* ---- fetching ---- */
 
-/* Asks a rank for a part of its block. */
-static void ask(hl_blocks *blocks, int rank, unsigned char *to) {
+/* A fetch of this thread's own. */
+static block_fetch *begin_fetch(hl_blocks *blocks) {
+  block_fetch *fetch = NULL;
+  pthread_mutex_lock(&blocks->lock);
+  while (fetch == NULL) {
+    for (int n = 0; n < FETCHES && fetch == NULL; n++)
+      if (!blocks->fetch[n].busy) fetch = &blocks->fetch[n];
+    if (fetch == NULL) pthread_cond_wait(&blocks->freed, &blocks->lock);
+  }
+  fetch->busy = true;
+  pthread_mutex_unlock(&blocks->lock);
+  return fetch;
+}
+
+static void end_fetch(hl_blocks *blocks, block_fetch *fetch) {
+  pthread_mutex_lock(&blocks->lock);
+  fetch->busy = false;
+  pthread_cond_signal(&blocks->freed);
+  pthread_mutex_unlock(&blocks->lock);
+}
+
+/* Asks a rank for a part of its block. The tags of a few arrays' fetches differ. */
+static void ask(hl_blocks *blocks, block_fetch *fetch, int rank, unsigned char *to) {
+  enum { MOST_ARRAYS = 1 << 20 };
   hl_ranks *ranks = blocks->ranks;
-  const block_request wanted = {blocks->id, (uint64_t)ranks->rank, blocks->parts[rank]};
+  int tag = TAG_REPLY + (int)(blocks->id % MOST_ARRAYS) * FETCHES + fetch->number;
+  const block_request wanted = {blocks->id, (uint64_t)ranks->rank, (uint64_t)tag, fetch->parts[rank]};
   void *sent, *byte = ranks->mpi.byte;
   size_t bytes = elements_of(&wanted.box) * blocks->shape.element_bytes;
   pthread_mutex_lock(&ranks->calling);
-  ranks->mpi.receive(to, (int)bytes, byte, rank, TAG_REPLY, ranks->communicator, &blocks->pending[rank]);
+  ranks->mpi.receive(to, (int)bytes, byte, rank, tag, ranks->communicator, &fetch->pending[rank]);
   ranks->mpi.send(&wanted, (int)sizeof wanted, byte, rank, TAG_REQUEST, ranks->communicator, &sent);
   pthread_mutex_unlock(&ranks->calling);
   hl_ranks_wait(ranks, sent);
-  blocks->waited[rank] = true;
+  fetch->waited[rank] = true;
   atomic_fetch_add(&ranks->bytes, bytes);
   atomic_fetch_add(&ranks->requests, 1);
 }
@@ -272,29 +314,38 @@ static uint64_t nanoseconds_now(void) {
   return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
 }
 
+/* Where a packed part can arrive at once: in its place, where whole slices of the array that it goes to are
+ * packed, too; else null. */
+static unsigned char *place_of(const hl_blocks *blocks, const hl_box *box, const hl_box *part,
+                               unsigned char *to, const size_t step[2]) {
+  bool whole = part->count[0] * blocks->shape.element_bytes == step[0] && part->count[1] * step[0] == step[1];
+  return whole ? to + (part->begin[2] - box->begin[2]) * step[1] : NULL;
+}
+
 void hl_blocks_fetch(hl_blocks *blocks, const hl_box *box, unsigned char *to, size_t row_bytes,
                      size_t slice_bytes) {
   hl_ranks *ranks = blocks->ranks;
   const size_t step[2] = {row_bytes, slice_bytes};
-  pthread_mutex_lock(&ranks->fetching);
   uint64_t before = nanoseconds_now();
-  unsigned char *next = blocks->received;
+  block_fetch *fetch = begin_fetch(blocks);
+  unsigned char *next = fetch->received;
   for (int rank = 0; rank < ranks->size; rank++) {
-    hl_box *part = &blocks->parts[rank];
-    blocks->waited[rank] = false;
+    hl_box *part = &fetch->parts[rank];
+    fetch->waited[rank] = false;
     if (!hl_boxes_meet(box, &blocks->boxes[rank], part)) continue;
-    if (rank != ranks->rank) ask(blocks, rank, next);
-    else blocks->source.copy(blocks->source.data, part, next);
+    unsigned char *at_once = place_of(blocks, box, part, to, step);
+    if (rank != ranks->rank) ask(blocks, fetch, rank, at_once != NULL ? at_once : next);
+    else blocks->source.copy(blocks->source.data, part, at_once != NULL ? at_once : next);
     next += elements_of(part) * blocks->shape.element_bytes;
   }
-  next = blocks->received;
+  next = fetch->received;
   for (int rank = 0; rank < ranks->size; rank++) {
-    const hl_box *part = &blocks->parts[rank];
+    const hl_box *part = &fetch->parts[rank];
     if (elements_of(part) == 0) continue;
-    if (blocks->waited[rank]) hl_ranks_wait(ranks, blocks->pending[rank]);
-    place(blocks, box, part, next, to, step);
+    if (fetch->waited[rank]) hl_ranks_wait(ranks, fetch->pending[rank]);
+    if (place_of(blocks, box, part, to, step) == NULL) place(blocks, box, part, next, to, step);
     next += elements_of(part) * blocks->shape.element_bytes;
   }
   atomic_fetch_add(&ranks->nanoseconds, nanoseconds_now() - before);
-  pthread_mutex_unlock(&ranks->fetching);
+  end_fetch(blocks, fetch);
 }

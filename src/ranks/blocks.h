@@ -39,7 +39,8 @@ hl_status hl_blocks_share(hl_ranks *ranks, const hl_blocks_shape *shape, const h
  * Null is allowed. */
 void hl_blocks_release(hl_blocks *blocks, bool together);
 
-/* Gets elements of a box into an array with these distances of rows and slices. Elements of a row adjoin. */
+/* Gets elements of a box into an array with these distances of rows and slices. Elements of a row adjoin.
+ * Several threads may fetch at once. */
 void hl_blocks_fetch(hl_blocks *blocks, const hl_box *box, unsigned char *to, size_t row_bytes,
                      size_t slice_bytes);
 

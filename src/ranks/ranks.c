@@ -125,7 +125,6 @@ static hl_status join(hl_ranks *ranks, void *communicator, hl_error *error) {
 
 static void release(hl_ranks *ranks) {
   pthread_mutex_destroy(&ranks->calling);
-  pthread_mutex_destroy(&ranks->fetching);
   hl_release(ranks->context, ranks);
 }
 
@@ -137,7 +136,6 @@ hl_status hl_ranks_join(hl_context *context, void *communicator, hl_ranks **rank
   if (made == NULL) return hl_fail_memory(error, sizeof *made, "the ranks of a job");
   made->context = context;
   pthread_mutex_init(&made->calling, NULL);
-  pthread_mutex_init(&made->fetching, NULL);
   hl_status status = join(made, communicator, error);
   if (status == HL_OK) {
     *ranks = made;

@@ -22,7 +22,6 @@ struct hl_ranks {
   int rank, size;
   bool started;                          /* MPI was started here, and is ended here */
   pthread_mutex_t calling;               /* held during each call of MPI */
-  pthread_mutex_t fetching;              /* held while a thread waits for voxels of others: one at a time */
   struct hl_block_server *server;        /* owned (blocks.h); null: no blocks are shared */
   atomic_uint_least64_t bytes, requests; /* that were got from others */
   atomic_uint_least64_t nanoseconds;     /* that threads waited for them */

@@ -120,6 +120,7 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
   made->context = context;
   made->file = -1;
   pthread_mutex_init(&made->lock, NULL); /* cannot fail: it has no attributes */
+  pthread_cond_init(&made->came, NULL);
   if (!possible) status = hl_fail(error, HL_ERROR_INPUT, "%s: a volume too large for a file", folder);
   if (status == HL_OK) status = map_scratch(context, folder, made, error);
   size_t count = page_count(made);
@@ -166,6 +167,7 @@ static hl_status fill_over_ranks(hl_ranks *ranks, const hl_volume_description *g
   pages->own = own;
   pages->file = -1;
   pthread_mutex_init(&pages->lock, NULL);
+  pthread_cond_init(&pages->came, NULL);
   if (!possible) return hl_fail(error, HL_ERROR_INPUT, "a volume too large for the addresses of a process");
   hl_status status = map_nothing(pages, error);
   if (status == HL_OK) status = allocate_states(pages, error);
@@ -199,6 +201,7 @@ void hl_pages_release(hl_pages *pages) {
   if (pages->file >= 0) close(pages->file);
   atomic_fetch_sub(&pages->context->paged, pages->held_bytes);
   pthread_mutex_destroy(&pages->lock);
+  pthread_cond_destroy(&pages->came);
   hl_release(pages->context, pages->counts);
   hl_release(pages->context, pages->state);
   hl_release(pages->context, pages->version);
@@ -332,10 +335,16 @@ static void hold_over_ranks(hl_pages *pages, size_t number) {
       state == PAGE_NEEDED)
     return;
   pthread_mutex_lock(&pages->lock);
-  if (__atomic_load_n(&pages->state[number], __ATOMIC_RELAXED) == PAGE_FORGOTTEN) {
+  while ((state = __atomic_load_n(&pages->state[number], __ATOMIC_RELAXED)) == PAGE_COMING)
+    pthread_cond_wait(&pages->came, &pages->lock);
+  if (state == PAGE_FORGOTTEN) {
+    __atomic_store_n(&pages->state[number], (unsigned char)PAGE_COMING, __ATOMIC_RELAXED);
     count_held(pages, true);
     make_room(pages);
+    pthread_mutex_unlock(&pages->lock); /* other threads may get other pages meanwhile */
     fetch_from_ranks(pages, number);
+    pthread_mutex_lock(&pages->lock);
+    pthread_cond_broadcast(&pages->came);
   }
   __atomic_store_n(&pages->state[number], (unsigned char)PAGE_NEEDED, __ATOMIC_RELEASE);
   pthread_mutex_unlock(&pages->lock);
@@ -361,7 +370,7 @@ void hl_pages_forget(const hl_pages *pages) {
   pthread_mutex_lock(lock);
   for (size_t n = 0; n < count; n++) {
     unsigned char state = __atomic_load_n(&pages->state[n], __ATOMIC_RELAXED);
-    if (state != PAGE_FORGOTTEN) forget_if((hl_pages *)pages, n, state);
+    if (state == PAGE_HELD || state == PAGE_NEEDED) forget_if((hl_pages *)pages, n, state);
   }
   pthread_mutex_unlock(lock);
 }

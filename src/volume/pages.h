@@ -25,7 +25,7 @@
 #include "volume/volume.h"
 
 /* Whether a page is held, and was needed since the clock's hand passed it. */
-enum { PAGE_FORGOTTEN = 0, PAGE_HELD = 1, PAGE_NEEDED = 2 };
+enum { PAGE_FORGOTTEN = 0, PAGE_HELD = 1, PAGE_NEEDED = 2, PAGE_COMING = 3 /* over ranks */ };
 
 enum {
   PAGE_SHIFT = 6,   /* a page's side is 2^6 = 64 voxels; tests use smaller pages */
@@ -50,6 +50,7 @@ typedef struct hl_pages {
   hl_blocks *blocks;    /* owned; null: a scratch file */
   hl_own_voxels *own;   /* owned; of blocks */
   uint32_t *version;    /* owned; [pages] over ranks, else null; rises when a page is forgotten; atomic */
+  pthread_cond_t came;  /* over ranks: a page that was coming is there */
   pthread_mutex_t lock; /* held while values are counted; over ranks, while pages come and go */
   uint64_t
       *counts;    /* owned; [hl_values_of(storage)]: of the values that were stored; null: taken, or floats */

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include <cmocka.h>
 
@@ -355,6 +356,44 @@ static void test_refused(void **state) {
                    "rank 1 holds 4 x 4 x 4 voxels from 0, 0, 0 on: another rank holds some of them, too");
 }
 
+/* ---- times: no test ---- */
+
+static int compare_doubles(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return x < y ? -1 : x > y;
+}
+
+/* Prints how long rank 0 takes for a page, from another rank where there are two or more: 67^3 voxels. */
+static void print_times(void) {
+  enum { N = 258, PAGES = 4 * 4 * 4, ROUNDS = 20, MEASURED = PAGES * ROUNDS };
+  static double seconds[MEASURED];
+  bool holds = hl_ranks_rank(ranks) == hl_ranks_size(ranks) - 1;
+  unsigned char *voxels = calloc(holds ? (size_t)N * N * N : 1, 1);
+  hl_volume_description whole;
+  hl_volume *volume = NULL;
+  hl_volume_description_defaults(&whole);
+  hl_block block = {.struct_size = sizeof block, .voxels = voxels};
+  for (int a = 0; a < 3; a++) {
+    whole.dimensions[a] = N;
+    block.size[a] = holds ? N : 0;
+  }
+  assert_int_equal(hl_volume_create_over_ranks(ranks, &whole, &block, &volume, NULL), HL_OK);
+  for (size_t n = 0; n < MEASURED && hl_ranks_rank(ranks) == 0; n++) {
+    if (n % PAGES == 0) hl_pages_forget(volume->pages);
+    struct timespec begin, end;
+    clock_gettime(CLOCK_MONOTONIC, &begin);
+    assert_true(hl_volume_value(volume, n % 4 * 64, n / 4 % 4 * 64, n / 16 % 4 * 64) == 0);
+    clock_gettime(CLOCK_MONOTONIC, &end);
+    seconds[n] = (double)(end.tv_sec - begin.tv_sec) + 1e-9 * (double)(end.tv_nsec - begin.tv_nsec);
+  }
+  qsort(seconds, MEASURED, sizeof *seconds, compare_doubles);
+  if (hl_ranks_rank(ranks) == 0)
+    printf("a page of %zu bytes: least %.0f us, median %.0f us\n", volume->pages->page_bytes,
+           1e6 * seconds[0], 1e6 * seconds[MEASURED / 2]);
+  hl_volume_release(volume);
+  free(voxels);
+}
+
 /* Joins all processes, or the communicator of a program that has started MPI itself. */
 static hl_status join(bool by_communicator, open_mpi *mpi, hl_error *error) {
   int given = 0;
@@ -365,7 +404,7 @@ static hl_status join(bool by_communicator, open_mpi *mpi, hl_error *error) {
   return status == HL_OK ? hl_ranks_join(context, mpi->world, &ranks, error) : status;
 }
 
-/* usage: sheets_ranks [TESTS [communicator]]: tests whose names match. */
+/* usage: sheets_ranks [TESTS [communicator]]: tests whose names match; --time: prints times. */
 int main(int count, char **arguments) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_voxels),    cmocka_unit_test(test_shapes),
                                      cmocka_unit_test(test_ways),      cmocka_unit_test(test_corner),
@@ -376,6 +415,12 @@ int main(int count, char **arguments) {
   if (hl_context_create(NULL, &context, &error) != HL_OK || join(by_communicator, &mpi, &error) != HL_OK) {
     fprintf(stderr, "%s\n", error.message);
     return 1;
+  }
+  if (count > 1 && strcmp(arguments[1], "--time") == 0) {
+    print_times();
+    hl_ranks_leave(ranks);
+    hl_context_destroy(context);
+    return 0;
   }
   if (count > 1) cmocka_set_test_filter(arguments[1]);
   int failed = cmocka_run_group_tests(tests, NULL, NULL);
