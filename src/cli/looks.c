@@ -54,7 +54,7 @@ static const cli_option looks_options[LOOKS_OPTION_COUNT] = {
 
 /* ---- the sheet ---- */
 
-enum { COLUMNS = 4, CAPTION = 20, LETTER_TOP = 3, LETTER_LEFT = 4 };
+enum { COLUMNS = 4, CAPTION = 20, LETTER_TOP = 1, LETTER_LEFT = 4 };
 
 typedef struct looks_job {
   cli_host host;
