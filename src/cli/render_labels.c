@@ -165,6 +165,9 @@ static hl_status add_layers(hl_context *context, const label_layers *layers, siz
   for (size_t n = 0; n < layers->count; n++)
     if (layers->volumes[n].label_count > 0) volumes[description.volume_count++] = layers->volumes[n];
   description.volumes = volumes;
+  /* smooth labels are splines' coefficients; numbers of labels, which the scene was made for, take no spline
+   */
+  if (bare && description.render.kernel == HL_KERNEL_LINEAR) description.render.kernel = HL_KERNEL_BSPLINE;
   hl_status status = hl_scene_create(context, &description, &made, error);
   if (status == HL_OK && bare) {
     description = *hl_scene_describe(made); /* labels have become transfer functions */

@@ -341,11 +341,12 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .count = 1,
          .setting_kind = HL_SETTINGS_RENDER,
          .setting = "sheet_spacing"},
-    [RENDER_KERNEL] = {.name = "kernel",
-                       .kind = OPTION_CHOICE,
-                       .help = "of each voxel (default bspline; of bare volumes of\nlabels linear)",
-                       .setting_kind = HL_SETTINGS_RENDER,
-                       .setting = "kernel"},
+    [RENDER_KERNEL] =
+        {.name = "kernel",
+         .kind = OPTION_CHOICE,
+         .help = "of each voxel (default bspline; of bare label maps\ndrawn by their numbers linear)",
+         .setting_kind = HL_SETTINGS_RENDER,
+         .setting = "kernel"},
     [RENDER_RECONSTRUCTION] =
         {.name = "reconstruction",
          .kind = OPTION_CHOICE,
