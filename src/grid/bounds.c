@@ -344,7 +344,7 @@ void hl_cells_lay_out(grid *grid, hl_layout *layout) {
   grid->cell_bounds = hl_layout_take(layout, (size_t)grid->brick_count[2], sizeof *grid->cell_bounds);
 }
 
-/* Scratch of all threads; counting sets the plane alone. */
+/* Lays out the scratch of all threads. While the bytes are only counted, job->plane alone is set. */
 static void lay_out_slices(cell_job *job, int threads, hl_layout *layout) {
   const grid *grid = job->grid;
   size_t width = (size_t)grid->lookup[0].count[0], plane = width * (size_t)grid->lookup[0].count[1];

@@ -18,7 +18,8 @@ hl_status hl_slicer_read_text(hl_context *context, const char *path, hl_transfer
 void hl_slicer_drop_even_gradient(hl_context *context, hl_transfer_function *function);
 
 /* Slicer's lengths of gradients are per mean voxel edge, and what holds at a quarter of the range of values
- * holds beyond it, as in VTK (vtkFixedPointVolumeRayCastMapper); makes them those per world unit. */
+ * holds beyond it, as in VTK (vtkFixedPointVolumeRayCastMapper). Converts the lengths to those per world
+ * unit. */
 void hl_slicer_fit_gradient(const hl_volume *volume, hl_transfer_function *function);
 
 #endif

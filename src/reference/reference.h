@@ -56,7 +56,7 @@ typedef struct reference_volume {
                            * voxels; else null */
   double least, greatest; /* with coefficients: values beyond these count as these */
   const struct reference_volume *second; /* the other volume of a function of two numbers; else null */
-  affine3 index_to_second;               /* from the volume's index space to that one's */
+  affine3 index_to_second;               /* from the volume's index space to the second one's */
   affine3 index_to_mask;    /* from the volume's index space to that of its mask, where it has one */
   unsigned char *clearance; /* owned; [k][j][i] of bricks: 0 where the brick may be visible, else the distance
                              * in bricks (chessboard metric) to the nearest such brick, at most 255 */

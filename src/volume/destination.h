@@ -47,7 +47,7 @@ void hl_destination_store(hl_destination *destination, size_t first, size_t coun
 hl_status hl_destination_adopt(hl_destination *destination, const hl_volume_description *grid,
                                hl_volume **volume, hl_error *error);
 
-/* The same for colours. */
+/* As hl_destination_adopt(), for voxels that are colours. */
 hl_status hl_destination_adopt_colors(hl_destination *destination, const hl_color_source *source,
                                       hl_volume **volume, hl_error *error);
 

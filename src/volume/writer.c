@@ -237,7 +237,8 @@ static hl_status make_vti(const char *path, const hl_volume_description *grid, h
 
 /* ---- MRC2014 (Cheng et al., J. Struct. Biol. 192, 2015, table 1) ---- */
 
-/* A cell lies with a along X and b in the plane of X and Y: whether the grid's axes do. */
+/* Whether the grid's axes lie as a crystal's cell does: the first along X, the second in the plane of X and
+ * Y. */
 static bool is_cell(const hl_volume_description *grid) {
   const double(*axis)[3] = grid->axis;
   double flat = 1e-6 * vec3_length(vec3_of(axis[0]));
