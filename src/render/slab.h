@@ -40,7 +40,7 @@ typedef struct shade_volume {
   int clip_faces;                        /* clipping cuts through visible matter: */
   float clip_low[3], clip_high[3];       /* at these faces of the box; far outside where at none */
   float clip_edge[3];                    /* between the planes of voxels along i, j, k; frame units */
-  const float (*shown)[4]; /* in a maximum projection: the table's rows of SHOWN_... floats; else null */
+  const float (*shown)[4]; /* in a maximum projection: SHOWN_FROM and so on, per table entry; else null */
   int rank;                /* among the visible volumes */
   float anisotropy;        /* g of the phase function */
   voxel_colors colors;     /* multiply the transfer function's */

@@ -30,8 +30,8 @@ void hl_view_about(const hl_scene_description *description, vec3 up, hl_view *vi
 
 /* The anatomy of the first volume that has one and is not turned in the scene. */
 hl_space hl_scene_space(const hl_scene_description *description);
-/* Whether hl_scene_space() is an anatomical space, as files of DICOM and NIfTI have: bodies stand upright
- * along z. */
+/* Whether hl_scene_space() is known to tell the anatomy, as in files of DICOM and NIfTI: bodies then stand
+ * upright along z. */
 bool hl_scene_is_anatomical(const hl_scene_description *description);
 
 #endif

@@ -43,7 +43,7 @@ static bool any_near(const cascade_level *level, const cascade_field *field, int
 
 typedef struct start_task {
   const soft_cascade *cascade;
-  const cascade_level *level, *farther; /* farther: the next level away from the light; null: it is empty */
+  const cascade_level *level, *farther; /* farther: the next farther level with a filled sum; null: none */
   const cascade_functions *functions;
 } start_task;
 
