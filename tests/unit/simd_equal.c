@@ -18,6 +18,7 @@
 
 #include "core/context.h"
 #include "label/row_functions.h"
+#include "render/surface_samples.h"
 #include "shadow_cascade/cascade_field.h"
 #include "shadow_sublights/sublight_field.h"
 #include "sheet_bench.h"
@@ -1051,6 +1052,68 @@ static void test_maximum(void **unused) {
   }
 }
 
+/* ---- surfaces ---- */
+
+enum { SKY_CELLS = 4 * 3 * 5 };
+
+typedef struct surface_state {
+  shade_state shade; /* its job, with lights */
+  sky_light sky;
+  float sky_field[SKY_CELLS * (3 * FIELD_HARMONICS + 1) + 16]; /* cells are read sixteen numbers at a time */
+  surface_samples out;
+} surface_state;
+
+static void call_surface(const hot_functions *hot, void *state) {
+  surface_state *s = state;
+  hot->render.surface(&s->shade.job, &s->out);
+}
+
+static void set_unit_vectors(float to[3][SURFACE_SAMPLES], uint32_t *seed) {
+  for (int i = 0; i < SURFACE_SAMPLES; i++) {
+    vec3 unit = bench_random_direction(seed);
+    to[0][i] = (float)unit.x, to[1][i] = (float)unit.y, to[2][i] = (float)unit.z;
+  }
+}
+
+static void set_up_surface(surface_state *s, uint32_t *seed, int round) {
+  surface_samples *out = &s->out;
+  set_up_shade(&s->shade, seed, round);
+  fill_salted(s->sky_field, sizeof s->sky_field / sizeof(float), seed, 0, 1);
+  s->sky = (sky_light){.field = s->sky_field,
+                       .count = {4, 3, 5},
+                       .low = {-3, -2, -1},
+                       .inverse_cell = 0.5f,
+                       .cell = 2,
+                       .lift = 1,
+                       .channels = round % 3 ? 3 : 1,
+                       .color = {0.9f, 1, 0.4f}};
+  fill_salted(&s->sky.open[0][0], 3 * FIELD_HARMONICS, seed, 0, 1);
+  s->shade.job.sky = round % 3 == 1 ? NULL : &s->sky;
+  fill_salted(&out->position[0][0], 3 * SURFACE_SAMPLES, seed, -2, 4);
+  set_unit_vectors(out->normal, seed);
+  set_unit_vectors(out->towards_eye, seed);
+  for (int axis = 0; axis < 3; axis++) out->normal[axis][round % SURFACE_SAMPLES] = 0; /* black */
+  fill_salted(&out->color[0][0], 3 * SURFACE_SAMPLES, seed, 0, 1);
+  out->ambient = 0.2f, out->diffuse = 0.8f, out->specular = 0.3f, out->shininess = 25, out->emission = 0.1f;
+  out->even = round % 2 ? 0.4f : 0;
+  for (int c = 0; c < 3; c++) out->behind[c] = random_between(seed, 0, 1);
+  out->receives_shadow = round % 5 != 4;
+}
+
+static void test_surface(void **unused) {
+  (void)unused;
+  static surface_state state;
+  uint32_t seed = 59;
+  int lit = 0;
+  for (int round = 0; round < 4 * ROUNDS; round++) {
+    set_up_surface(&state, &seed, round);
+    trial trial = {call_surface, &state, &state.out, sizeof state.out};
+    try_it("shade_surface", &trial, round);
+    for (int i = 0; i < SURFACE_SAMPLES; i++) lit += state.out.lit[1][i] > 0.1f;
+  }
+  assert_true(lit > SURFACE_SAMPLES * ROUNDS);
+}
+
 /* One volume has code of its own: a second one that has nothing in the tile changes nothing, rounding
  * apart. */
 static void test_shade_beside_nothing(void **unused) {
@@ -1085,19 +1148,13 @@ int main(int argc, char **argv) {
     return 0;
   }
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bound_rows),
-      cmocka_unit_test(test_bound_cells),
-      cmocka_unit_test(test_brick_bits),
-      cmocka_unit_test(test_label_rows),
-      cmocka_unit_test(test_fill),
-      cmocka_unit_test(test_coverage),
-      cmocka_unit_test(test_brick_ranges),
-      cmocka_unit_test(test_light),
-      cmocka_unit_test(test_fields),
-      cmocka_unit_test(test_shade),
-      cmocka_unit_test(test_measure),
-      cmocka_unit_test(test_maximum),
-      cmocka_unit_test(test_shade_beside_nothing),
+      cmocka_unit_test(test_bound_rows),   cmocka_unit_test(test_bound_cells),
+      cmocka_unit_test(test_brick_bits),   cmocka_unit_test(test_label_rows),
+      cmocka_unit_test(test_fill),         cmocka_unit_test(test_coverage),
+      cmocka_unit_test(test_brick_ranges), cmocka_unit_test(test_light),
+      cmocka_unit_test(test_fields),       cmocka_unit_test(test_shade),
+      cmocka_unit_test(test_measure),      cmocka_unit_test(test_maximum),
+      cmocka_unit_test(test_surface),      cmocka_unit_test(test_shade_beside_nothing),
   };
   return cmocka_run_group_tests_name("simd_equal", tests, open_classifier, close_classifier);
 }
