@@ -34,12 +34,12 @@ hl_status hl_own_voxels_allocate(hl_ranks *ranks, const hl_volume_description *w
   made->box.count[1] = n[1];
   made->box.count[2] = hl_ranks_part(ranks, n[2], ranks->rank + 1) - made->box.begin[2];
   pack_strides(made, made->stored_bytes, n);
-  size_t count = hl_own_voxels_count(made);
-  made->first = made->slices = hl_allocate(ranks->context, count, made->stored_bytes);
+  size_t count = hl_own_voxels_count(made), bytes = made->stored_bytes;
+  made->first = made->slices = hl_allocate(ranks->context, count, bytes);
   if (made->slices != NULL) return HL_OK;
   hl_own_voxels_release(made);
   *own = NULL;
-  return hl_fail_memory(error, count * made->stored_bytes, "a rank's share of a volume");
+  return hl_fail_memory(error, count * bytes, "a rank's share of a volume");
 }
 
 hl_status hl_own_voxels_borrow(hl_ranks *ranks, const hl_volume_description *whole, const hl_block *block,
