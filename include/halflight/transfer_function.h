@@ -139,7 +139,8 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_colormap_scaled(hl_context 
  * boxes of its states (.pvsm), or Slicer's .vp.json, .vp, and presets.xml (path: FILE.xml:PRESET). From a
  * file with colours alone, opacity becomes null: take the opacity points from elsewhere. Slicer's lengths of
  * gradients are per mean voxel edge and end at a quarter of the range of values, as VTK's: they are fitted to
- * the volume; null: they are taken as if its voxels had edges of 1. */
+ * the volume; null: they are taken as if its voxels had edges of 1. Of a .vp.json of several components, the
+ * functions of the volume's component are read; null, or another component, is an error. */
 HL_API HL_WARN_UNUSED hl_status hl_transfer_function_load_for(hl_context *context, const char *path,
                                                               const hl_volume *volume,
                                                               hl_transfer_function *function,

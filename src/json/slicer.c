@@ -1,12 +1,18 @@
 /* json/slicer.c - volume properties as 3D Slicer saves them in JSON (.vp.json): opacity by value and by
- * gradient, and colour. The light on the volume is the scene's: shade and lighting are left aside. */
+ * gradient, and colour, of each component of the voxels. The light on the volume is the scene's: shade and
+ * lighting are left aside. */
 #include "json/slicer.h"
+
+#include <stdio.h>
+
 #include "core/memory.h"
 #include "core/vector.h"
 #include "json/foreign_nodes.h"
 #include "scene/transfer_function.h"
 #include "volume/text.h"
 #include "volume/volume.h"
+
+enum { MOST_COMPONENTS = 4 }; /* VTK_MAX_VRCOMP */
 
 /* Slicer: [{"x": value, "y": opacity or "color": [r, g, b], "midpoint": .5, "sharpness": 0}, ...] */
 static hl_status read_points(hl_json_reader *reader, const json_t *component, const char *key, bool colors,
@@ -93,22 +99,67 @@ static hl_status refuse_nearest(hl_json_reader *reader, const json_t *properties
                       "interpolationType %s is not supported: set it to linear", text);
 }
 
-hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
-  hl_json_enter(reader, "volumeProperties");
-  const json_t *properties = json_object_get(root, "volumeProperties");
-  hl_status status = hl_json_array(reader, properties, 1, 1);
-  if (status != HL_OK) return status;
-  hl_json_enter(reader, "0/components");
-  const json_t *components = json_object_get(json_array_get(properties, 0), "components");
-  status = hl_json_array(reader, components != NULL ? components : json_null(), 1, 16);
-  if (status != HL_OK) return status;
-  hl_json_enter_index(reader, 0);
-  const json_t *component = json_array_get(components, 0);
+/* How many components the volume's file has beside each other, and which of them was read; below 0: several.
+ * The volumes of a series are not beside each other, its channels are. */
+static size_t components_of(const hl_volume *volume, int *read) {
+  const hl_selection *of = &volume->selection;
+  bool series = of->times > 1 || of->channels > 1;
+  *read = series ? of->channel : volume->component;
+  return series                    ? of->channels
+         : volume->array_count > 0 ? volume->arrays[volume->chosen_array].components
+                                   : 1;
+}
+
+/* Finds the functions that are the volume's: those of the component that was read of its file. As in Slicer,
+ * voxels of one component take the first. volume: null for none. */
+static hl_status choose_component(hl_json_reader *reader, size_t count, const hl_volume *volume,
+                                  size_t *chosen) {
+  int read = 0;
+  *chosen = 0;
+  if (count == 1) return HL_OK;
+  if (volume == NULL)
+    return hl_json_fail(reader, HL_ERROR_INPUT, NULL,
+                        "are %zu: load the file for a volume, whose component tells which of them is meant",
+                        count);
+  if (components_of(volume, &read) == 1) return HL_OK;
+  if (read < 0 || (size_t)read >= count) {
+    char number[16];
+    snprintf(number, sizeof number, "%d", read);
+    return hl_json_fail(reader, HL_ERROR_INPUT, NULL,
+                        "are %zu, and none of them is for component %s of the volume: give a \"component\" "
+                        "from 0 to %zu, and a volume for each that is to be shown",
+                        count, read < 0 ? hl_component_name(read) : number, count - 1);
+  }
+  *chosen = (size_t)read;
+  return HL_OK;
+}
+
+/* Several components count each for itself and in full. */
+static hl_status refuse_mixing(hl_json_reader *reader, const json_t *properties, const json_t *components) {
+  if (json_array_size(components) < 2) return HL_OK;
+  if (json_is_false(json_object_get(properties, "independentComponents")))
+    return hl_json_fail(
+        reader, HL_ERROR_UNSUPPORTED, NULL,
+        "depend on each other (independentComponents is false), which is not supported: set it "
+        "to true, or show colours by \"component\": \"color\"");
+  for (size_t n = 0; n < json_array_size(components); n++) {
+    size_t mark = hl_json_enter_index(reader, n);
+    double weight = 1;
+    hl_status status = hl_json_number(reader, json_array_get(components, n), "componentWeight", &weight);
+    if (status == HL_OK && weight != 1)
+      status = hl_json_fail(reader, HL_ERROR_UNSUPPORTED, "componentWeight",
+                            "%.9g is not supported: set it to 1, and lower the opacities", weight);
+    if (status != HL_OK) return status;
+    hl_json_leave(reader, mark);
+  }
+  return HL_OK;
+}
+
+static hl_status read_component(hl_json_reader *reader, const json_t *component,
+                                hl_transfer_function *function) {
   hl_foreign_node *nodes = NULL;
   size_t count = 0;
-  status = refuse_nearest(reader, json_array_get(properties, 0));
-  if (status == HL_OK)
-    status = hl_json_number(reader, component, "scalarOpacityUnitDistance", &function->unit_distance);
+  hl_status status = hl_json_number(reader, component, "scalarOpacityUnitDistance", &function->unit_distance);
   if (status == HL_OK)
     status = read_opacity(reader, component, "scalarOpacity", &function->opacity, &function->opacity_count);
   if (status == HL_OK) status = read_points(reader, component, "rgbTransferFunction", true, &nodes, &count);
@@ -116,4 +167,23 @@ hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, hl_tra
     status = hl_foreign_color(reader->context, nodes, count, HL_SPACE_RGB, function, reader->error);
   hl_release(reader->context, nodes);
   return status == HL_OK ? read_gradient(reader, component, function) : status;
+}
+
+hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, const hl_volume *volume,
+                              hl_transfer_function *function) {
+  size_t chosen = 0;
+  hl_json_enter(reader, "volumeProperties");
+  const json_t *properties = json_object_get(root, "volumeProperties");
+  hl_status status = hl_json_array(reader, properties, 1, 1);
+  if (status != HL_OK) return status;
+  hl_json_enter(reader, "0/components");
+  properties = json_array_get(properties, 0);
+  const json_t *components = json_object_get(properties, "components");
+  status = hl_json_array(reader, components != NULL ? components : json_null(), 1, MOST_COMPONENTS);
+  if (status == HL_OK) status = refuse_nearest(reader, properties);
+  if (status == HL_OK) status = refuse_mixing(reader, properties, components);
+  if (status == HL_OK) status = choose_component(reader, json_array_size(components), volume, &chosen);
+  if (status != HL_OK) return status;
+  hl_json_enter_index(reader, chosen);
+  return read_component(reader, json_array_get(components, chosen), function);
 }

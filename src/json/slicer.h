@@ -4,8 +4,10 @@
 
 #include "json/parts.h"
 
-/* An object with "volumeProperties". */
-hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, hl_transfer_function *function);
+/* An object with "volumeProperties". volume: what the function is for; of several components' functions, its
+ * component's are read. Null: none is known. */
+hl_status hl_json_read_slicer(hl_json_reader *reader, const json_t *root, const hl_volume *volume,
+                              hl_transfer_function *function);
 
 /* Whether a path names a text of Slicer's: NAME.vp, NAME.xml (of one preset) or NAME.xml:PRESET. */
 bool hl_slicer_is_text(const char *path);

@@ -294,15 +294,17 @@ static hl_status read_of_scene(hl_json_reader *reader, const json_t *root, hl_tr
   return hl_json_read_transfer_function(reader, value, (hl_function_subject){.volume = NULL}, function);
 }
 
-static hl_status read_any(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
+static hl_status read_any(hl_json_reader *reader, const json_t *root, const hl_volume *volume,
+                          hl_transfer_function *function) {
   if (json_is_array(root)) return hl_json_read_paraview(reader, root, function);
   if (json_object_get(root, "volumes") != NULL) return read_of_scene(reader, root, function);
-  if (json_object_get(root, "volumeProperties") != NULL) return hl_json_read_slicer(reader, root, function);
+  if (json_object_get(root, "volumeProperties") != NULL)
+    return hl_json_read_slicer(reader, root, volume, function);
   return hl_json_read_transfer_function(reader, root, (hl_function_subject){.volume = NULL}, function);
 }
 
 /* Reads a JSON text. *by_voxel: its lengths of gradients are per voxel edge. */
-static hl_status load_json(hl_json_reader *reader, const char *path, bool *by_voxel,
+static hl_status load_json(hl_json_reader *reader, const char *path, const hl_volume *volume, bool *by_voxel,
                            hl_transfer_function *function) {
   unsigned char *bytes = NULL;
   size_t length = 0;
@@ -310,7 +312,7 @@ static hl_status load_json(hl_json_reader *reader, const char *path, bool *by_vo
   hl_status status = hl_file_read(reader->context, path, HL_JSON_LIMIT, &bytes, &length, reader->error);
   if (status != HL_OK) return status;
   status = hl_json_parse((const char *)bytes, length, path, &root, reader->error);
-  if (status == HL_OK) status = read_any(reader, root, function);
+  if (status == HL_OK) status = read_any(reader, root, volume, function);
   *by_voxel = json_object_get(root, "volumeProperties") != NULL;
   json_decref(root);
   hl_release(reader->context, bytes);
@@ -324,7 +326,7 @@ static hl_status load(hl_json_reader *reader, const char *path, const hl_volume 
   if (by_voxel) status = hl_slicer_read_text(reader->context, path, function, reader->error);
   else if (hl_text_ends(path, ".pvsm"))
     status = hl_paraview_read_state(reader->context, path, volume, function, reader->error);
-  else status = load_json(reader, path, &by_voxel, function);
+  else status = load_json(reader, path, volume, &by_voxel, function);
   if (status != HL_OK) return status;
   if (by_voxel && volume != NULL) hl_slicer_fit_gradient(volume, function);
   status = hl_transfer_function_check(function, "", reader->error);

@@ -1,5 +1,5 @@
-/* tests/unit/slicer_files.c - 3D Slicer's presets.xml and .vp files: which preset is read, what of it, and
- * errors.
+/* tests/unit/slicer_files.c - 3D Slicer's presets.xml, .vp and .vp.json files: which preset and component is
+ * read, what of it, and errors.
  */
 #define _GNU_SOURCE
 #include <stdio.h>
@@ -8,17 +8,18 @@
 #include "scene/transfer_function.h"
 #include "scene_parts.h"
 
-static char xml[] = "/tmp/halflight-slicer-XXXXXX.xml", vp[] = "/tmp/halflight-slicer-XXXXXX.vp";
+static char xml[] = "/tmp/halflight-slicer-XXXXXX.xml", vp[] = "/tmp/halflight-slicer-XXXXXX.vp",
+            json[] = "/tmp/halflight-slicer-XXXXXX.vp.json", nrrd[] = "/tmp/halflight-slicer-XXXXXX.nrrd";
 
 static int make_files(void **state) {
   (void)state;
-  int a = mkstemps(xml, 4), b = mkstemps(vp, 3);
-  return a < 0 || b < 0 ? -1 : close(a) + close(b);
+  int a = mkstemps(xml, 4), b = mkstemps(vp, 3), c = mkstemps(json, 8), d = mkstemps(nrrd, 5);
+  return a < 0 || b < 0 || c < 0 || d < 0 ? -1 : close(a) + close(b) + close(c) + close(d);
 }
 
 static int remove_files(void **state) {
   (void)state;
-  return unlink(xml) + unlink(vp);
+  return unlink(xml) + unlink(vp) + unlink(json) + unlink(nrrd);
 }
 
 static void write_text(const char *path, const char *text) {
@@ -110,6 +111,96 @@ static void gradients_are_fitted_to_the_volume(void **state) {
   hl_context_destroy(context);
 }
 
+#define COMPONENT(opacity)                                                         \
+  "\"scalarOpacity\": {\"points\": [{\"x\": 0, \"y\": " opacity                    \
+  "}]}, \"rgbTransferFunction\": {\"points\": [{\"x\": 0, \"color\": [1, " opacity \
+  ", 0]}]}, "                                                                      \
+  "\"gradientOpacity\": {\"points\": [{\"x\": 0, \"y\": " opacity "}]}"
+#define COMPONENTS(members, first) \
+  "{\"volumeProperties\": [{" members "\"components\": [{" first "}, {" COMPONENT("0.75") "}]}]}"
+
+static hl_volume *load_component(hl_context *context, int component) {
+  hl_volume_load_options options;
+  hl_volume_load_options_defaults(&options);
+  options.component = component;
+  hl_volume *volume = NULL;
+  assert_int_equal(hl_volume_load_with(context, nrrd, &options, &volume, NULL), HL_OK);
+  return volume;
+}
+
+/* The functions of component 1 are 3/4, those of 0 a quarter. Voxels of one component take the first. */
+static void each_component_has_its_functions(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  static const struct {
+    const char *sizes;
+    int component;
+    double opacity;
+  } cases[] = {{"dimension: 4\nsizes: 2 1 1 1\nkinds: vector domain domain domain", 0, 0.25},
+               {"dimension: 4\nsizes: 2 1 1 1\nkinds: vector domain domain domain", 1, 0.75},
+               {"dimension: 4\nsizes: 1 1 1 2\nkinds: domain domain domain list", 1, 0.25},
+               {"dimension: 3\nsizes: 1 1 2", HL_COMPONENT_DEFAULT, 0.25}};
+  write_text(json, COMPONENTS("\"independentComponents\": true, ", COMPONENT("0.25")));
+  for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+    char text[200];
+    double color[3];
+    hl_transfer_function f = {0};
+    snprintf(text, sizeof text, "NRRD0004\ntype: uint8\n%s\nencoding: ascii\n\n7 9\n", cases[n].sizes);
+    write_text(nrrd, text);
+    hl_volume *volume = load_component(context, cases[n].component);
+    assert_int_equal(hl_transfer_function_load_for(context, json, volume, &f, NULL), HL_OK);
+    hl_transfer_function_color(&f, 5, color);
+    assert_near(hl_transfer_function_opacity(&f, 5), cases[n].opacity, 1e-12);
+    assert_near(hl_transfer_function_gradient_opacity(&f, 5), cases[n].opacity, 1e-12);
+    assert_near(color[1], hl_srgb_decode(cases[n].opacity), 1e-12);
+    hl_transfer_function_release(context, &f);
+    hl_volume_release(volume);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+static void components_that_cannot_be_shown_are_refused(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    int component; /* HL_COMPONENT_DEFAULT: no volume */
+    const char *message;
+  } faults[] = {
+      {COMPONENTS("", COMPONENT("0.25")), HL_COMPONENT_DEFAULT,
+       "/volumeProperties/0/components: are 2: load the file for a volume, whose component tells which of "
+       "them is meant"},
+      {COMPONENTS("", COMPONENT("0.25")), HL_COMPONENT_MAGNITUDE,
+       "/volumeProperties/0/components: are 2, and none of them is for component magnitude of the volume: "
+       "give a \"component\" from 0 to 1, and a volume for each that is to be shown"},
+      {COMPONENTS("", COMPONENT("0.25")), 2,
+       "/volumeProperties/0/components: are 2, and none of them is for component 2 of the volume: "
+       "give a \"component\" from 0 to 1, and a volume for each that is to be shown"},
+      {COMPONENTS("\"independentComponents\": false, ", COMPONENT("0.25")), 0,
+       "/volumeProperties/0/components: depend on each other (independentComponents is false), which is not "
+       "supported: set it to true, or show colours by \"component\": \"color\""},
+      {COMPONENTS("", "\"componentWeight\": 0.5, " COMPONENT("0.25")), 1,
+       "/volumeProperties/0/components/0/componentWeight: 0.5 is not supported: set it to 1, and lower the "
+       "opacities"}};
+  hl_context *context = make_context();
+  write_text(nrrd,
+             "NRRD0004\ntype: int16\ndimension: 4\nsizes: 3 1 1 1\nkinds: vector domain domain domain\n"
+             "encoding: ascii\n\n7 9 8\n");
+  for (size_t n = 0; n < sizeof faults / sizeof *faults; n++) {
+    hl_transfer_function f = {0};
+    hl_error error = {0};
+    hl_volume *volume = faults[n].component == HL_COMPONENT_DEFAULT
+                            ? NULL
+                            : load_component(context, faults[n].component);
+    write_text(json, faults[n].text);
+    assert_true(hl_transfer_function_load_for(context, json, volume, &f, &error) != HL_OK);
+    assert_non_null(strstr(error.message, faults[n].message));
+    hl_volume_release(volume);
+    assert_int_equal(hl_context_memory_held(context), 0);
+  }
+  hl_context_destroy(context);
+}
+
 static void refusals_name_the_place(void **state) {
   (void)state;
   static const struct {
@@ -145,6 +236,8 @@ int main(void) {
       cmocka_unit_test(a_preset_is_chosen_by_name),
       cmocka_unit_test(lines_are_read),
       cmocka_unit_test(gradients_are_fitted_to_the_volume),
+      cmocka_unit_test(each_component_has_its_functions),
+      cmocka_unit_test(components_that_cannot_be_shown_are_refused),
       cmocka_unit_test(refusals_name_the_place),
   };
   return cmocka_run_group_tests(tests, make_files, remove_files);
