@@ -320,7 +320,7 @@ typedef struct hl_scene_description {
   const hl_scene_mesh *meshes;
   size_t mesh_count;
   const hl_cut *cuts; /* [cut_count]; cut out of all volumes, with each one's own cut_shading and
-                         cut_casts_shadow; in the world, whatever `world` says. Meshes are not cut */
+                         cut_casts_shadow; in the world, whatever `world` says; and out of all meshes */
   size_t cut_count;
   hl_tone tone; /* how a PNG shows light that is brighter than white; default HL_TONE_CLIP */
   hl_sky sky;

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "core/error.h"
+#include "core/vector.h"
 
 typedef struct hl_key {
   unsigned char *bytes; /* owned; null: bytes that are added are counted only */
@@ -19,6 +20,11 @@ static inline void hl_key_add_numbers(hl_key *key, const double *numbers, size_t
 }
 
 static inline void hl_key_add_whole(hl_key *key, int64_t number) { hl_key_add(key, &number, sizeof number); }
+
+static inline void hl_key_add_affine(hl_key *key, const affine3 *map) {
+  for (int row = 0; row < 3; row++) hl_key_add_numbers(key, &map->linear.row[row].x, 3);
+  hl_key_add_numbers(key, &map->offset.x, 3);
+}
 
 /* A number for bytes, to stand for them in keys: by chance alike for other bytes once in 2^64. */
 uint64_t hl_key_mark(const void *bytes, size_t count);

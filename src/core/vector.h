@@ -90,6 +90,12 @@ static inline double mat3_shortest_column(mat3 m) {
               fmin(vec3_length(mat3_column(m, 1)), vec3_length(mat3_column(m, 2))));
 }
 
+/* Grows a box so that it holds a point. */
+static inline void vec3_bound(vec3 p, double low[3], double high[3]) {
+  const double at[3] = {p.x, p.y, p.z};
+  for (int a = 0; a < 3; a++) low[a] = fmin(low[a], at[a]), high[a] = fmax(high[a], at[a]);
+}
+
 static inline affine3 affine3_identity(void) {
   return (affine3){{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
 }

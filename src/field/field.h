@@ -13,6 +13,7 @@
 #include "core/memory.h"
 #include "core/vector.h"
 #include "grid/classifier.h"
+#include "scene/cut.h"
 
 enum {
   FIELD_LANES = 16,
@@ -68,6 +69,8 @@ typedef struct field_surface {
   uint32_t triangle_count, sphere_count;
   double opacity;
   bool visible, casts_shadow;
+  const cut_shape *cuts; /* [cut_count]; of frame space: cut out of the mesh */
+  size_t cut_count;
 } field_surface;
 
 /* What light loses in a cell, by the axis along which it crosses it. */

@@ -50,6 +50,16 @@ static double opacity_of(const field_surface *surface, uint32_t triangle) {
   return opacity * sum;
 }
 
+/* Whether the mesh's cuts leave a point at a ray and a height. */
+static bool is_left(const field_surface *surface, const field_lattice *lattice, const field_slices *s,
+                    const double at[3]) {
+  double point[3] = {lattice->low.x, lattice->low.y, lattice->low.z};
+  point[s->across] += (at[0] + 0.5) / RAYS * lattice->cell;
+  point[s->down] += (at[1] + 0.5) / RAYS * lattice->cell;
+  point[s->axis] += at[2] * lattice->cell;
+  return hl_cuts_leave(surface->cuts, surface->cut_count, vec3_of(point));
+}
+
 static void cover_cell(opacity_field *field, const field_slices *s, const int32_t cell[3], float opacity,
                        bool visible, float *cover) {
   if (cell[0] < 0 || cell[0] >= s->columns || cell[1] < 0 || cell[1] >= s->rows || cell[2] < 0 ||
@@ -84,6 +94,7 @@ static void cover_triangle(const field_surface *surface, uint32_t triangle, opac
       double weight[3], height = 0;
       if (!meets(&t, column, row, weight)) continue;
       for (int corner = 0; corner < 3; corner++) height += weight[corner] * t.height[corner];
+      if (!is_left(surface, &field->lattice, s, (double[3]){column, row, height})) continue;
       const int32_t cell[3] = {column / RAYS, row / RAYS, height < 0 ? -1 : (int32_t)fmin(height, s->slices)};
       cover_cell(field, s, cell, opacity, surface->visible, cover);
     }
@@ -109,6 +120,7 @@ static void cover_sphere(const field_surface *surface, uint32_t sphere, opacity_
       if (!(left > 0)) continue;
       for (int side = -1; side <= 1; side += 2) {
         double height = middle[s->axis] + side * sqrt(left);
+        if (!is_left(surface, &field->lattice, s, (double[3]){column, row, height})) continue;
         const int32_t at[3] = {column / RAYS, row / RAYS, height < 0 ? -1 : (int32_t)fmin(height, s->slices)};
         cover_cell(field, s, at, (float)opacity, surface->visible, cover);
       }

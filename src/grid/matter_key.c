@@ -7,31 +7,22 @@ static void add_points(hl_key *key, const hl_opacity_point *points, size_t count
     hl_key_add_numbers(key, (double[2]){points[p].value, points[p].opacity}, 2);
 }
 
-static void add_affine(hl_key *key, const affine3 *map) {
-  for (int row = 0; row < 3; row++) hl_key_add_numbers(key, &map->linear.row[row].x, 3);
-  hl_key_add_numbers(key, &map->offset.x, 3);
-}
-
 /* A function of two numbers, and the volume that the second one comes from. */
 static void add_plane(hl_key *key, const hl_function_plane *plane, const plane_table *table) {
   hl_key_add_whole(key, (int64_t)plane->mark);
   hl_key_add_whole(key, (int64_t)(uintptr_t)table->second_volume);
-  if (table->second != NULL) add_affine(key, &table->second->index_to_frame);
+  if (table->second != NULL) hl_key_add_affine(key, &table->second->index_to_frame);
 }
 
 void hl_matter_key_add(hl_key *key, const hl_scene_volume *volume, const grid *grid,
                        const classifier *classifier) {
   const hl_transfer_function *function = &volume->transfer_function;
   hl_key_add_whole(key, (int64_t)(uintptr_t)volume->volume);
-  add_affine(key, &grid->index_to_frame);
+  hl_key_add_affine(key, &grid->index_to_frame);
   hl_key_add_numbers(key, grid->box_low, 3); /* the box that clipping leaves */
   hl_key_add_numbers(key, grid->box_high, 3);
   hl_key_add_whole(key, 2 * (int64_t)grid->cut_count + grid->cut_casts_shadow);
-  for (size_t i = 0; i < grid->cut_count; i++) {
-    const cut_shape *cut = &grid->cuts[i];
-    hl_key_add_whole(key, 2 * (int64_t)cut->type + cut->keep_inside);
-    add_affine(key, &cut->to_shape);
-  }
+  hl_cuts_key_add(key, grid->cuts, grid->cut_count);
   hl_key_add_numbers(key, &function->unit_distance, 1);
   add_points(key, function->opacity, function->opacity_count);
   add_points(key, function->gradient_opacity, function->gradient_opacity_count);

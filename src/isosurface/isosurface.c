@@ -82,6 +82,7 @@ hl_status hl_isosurface_create(hl_pool *pool, const hl_scene_volume *volume, con
   if (status == HL_OK && made.triangle_count > 0) {
     place(pool, volume, &made);
     status = mesh_of(context, &made, mesh, error);
+    if (status == HL_OK) (*mesh)->is_cut = true;
   }
   hl_iso_triangles_release(context, &made);
   return status;

@@ -1,5 +1,5 @@
-/* reference/cuts.c - what cuts leave of a volume, asked in the world that the cut is given in: that of the
- * volume's file, or the scene's.
+/* reference/cuts.c - what cuts leave of a volume or a mesh, asked in the world that the cut is given in: that
+ * of the volume's file, or the scene's.
  *
  * Each cut has a height over its face, in that world's units: above 0 outside of its shape. */
 #include "reference/reference.h"
@@ -42,6 +42,14 @@ bool hl_reference_left(const reference_volume *volume, vec3 point) {
     vec3 p = affine3_apply(world_of(volume, &described->cuts[i]), point);
     bool inside = height_over(&described->cuts[i], p).over < 0;
     if (inside != (described->cuts[i].keep == HL_CUT_KEEP_INSIDE)) return false;
+  }
+  return true;
+}
+
+bool hl_reference_mesh_left(const hl_scene_description *scene, vec3 point) {
+  for (size_t i = 0; i < scene->cut_count; i++) {
+    bool inside = height_over(&scene->cuts[i], point).over < 0;
+    if (inside != (scene->cuts[i].keep == HL_CUT_KEEP_INSIDE)) return false;
   }
   return true;
 }

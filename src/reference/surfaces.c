@@ -180,9 +180,21 @@ static double meet_sphere(const reference_triangle *sphere, const reference_ray 
   return first > after ? first : -along + sqrt(square);
 }
 
-static double meet(const reference_triangle *triangle, const reference_ray *ray, double after,
-                   double weight[3]) {
-  return triangle->radius > 0 ? meet_sphere(triangle, ray, after) : meet_triangle(triangle, ray, weight);
+static vec3 along(const reference_ray *ray, double distance) {
+  return vec3_add(ray->origin, vec3_scale(ray->direction, distance));
+}
+
+/* The first point beyond a distance that the scene's cuts leave. */
+static double meet(const hl_scene_description *scene, const reference_triangle *triangle,
+                   const reference_ray *ray, double after, double weight[3]) {
+  if (triangle->radius == 0) {
+    double at = meet_triangle(triangle, ray, weight);
+    return hl_reference_mesh_left(scene, along(ray, at)) ? at : INFINITY;
+  }
+  double at = meet_sphere(triangle, ray, after);
+  if (hl_reference_mesh_left(scene, along(ray, at))) return at;
+  double second = meet_sphere(triangle, ray, at);
+  return second > at && hl_reference_mesh_left(scene, along(ray, second)) ? second : INFINITY;
 }
 
 static bool meets_box(const reference_node *node, const reference_ray *ray, double nearest, double farthest) {
@@ -220,7 +232,7 @@ bool hl_reference_surface_next(const reference *all, reference_role role, const 
       continue;
     }
     for (size_t t = node->first; t < node->first + node->count; t++) {
-      double weight[3] = {0, 0, 0}, distance = meet(&surfaces->triangles[t], ray, after, weight);
+      double weight[3] = {0, 0, 0}, distance = meet(all->scene, &surfaces->triangles[t], ray, after, weight);
       if (!(distance > after && distance < hit->distance) || !takes_part(&surfaces->triangles[t], role))
         continue;
       *hit = (reference_hit){.triangle = &surfaces->triangles[t],

@@ -306,24 +306,26 @@ static void move_gradients(const hl_frame_space *space, hl_transfer_function *fu
   function->gradient_opacity = points;
 }
 
+static void move_cut(const hl_frame_space *space, hl_cut *cut) {
+  move_point(space, cut->point);
+  move_point(space, cut->min);
+  move_point(space, cut->max);
+  move_point(space, cut->center);
+  cut->radius /= space->unit;
+}
+
 /* Moves the cuts that are in the world. cuts: room for the volume's. */
 static void move_cuts(const hl_frame_space *space, hl_scene_volume *volume, hl_cut *cuts) {
   if (volume->cut_count == 0) return;
   memcpy(cuts, volume->cuts, volume->cut_count * sizeof *cuts);
-  for (size_t i = 0; i < volume->cut_count; i++) {
-    if (!cuts[i].world) continue;
-    move_point(space, cuts[i].point);
-    move_point(space, cuts[i].min);
-    move_point(space, cuts[i].max);
-    move_point(space, cuts[i].center);
-    cuts[i].radius /= space->unit;
-  }
+  for (size_t i = 0; i < volume->cut_count; i++)
+    if (cuts[i].world) move_cut(space, &cuts[i]);
   volume->cuts = cuts;
 }
 
 static hl_status copy_arrays(hl_context *context, const hl_scene_description *scene, framed_scene *framed,
                              hl_error *error) {
-  size_t vertices = 0, meshes = scene->mesh_count, gradients = 0, cuts = 0;
+  size_t vertices = 0, meshes = scene->mesh_count, gradients = 0, cuts = scene->cut_count;
   for (size_t i = 0; i < scene->light_count; i++) vertices += scene->lights[i].vertex_count;
   for (size_t i = 0; i < scene->volume_count; i++) {
     meshes += scene->volumes[i].iso_count;
@@ -349,6 +351,7 @@ static hl_status copy_arrays(hl_context *context, const hl_scene_description *sc
   framed->scene.volumes = framed->volumes;
   framed->scene.meshes = framed->meshes;
   framed->scene.lights = framed->lights;
+  framed->scene.cuts = framed->cuts;
   return HL_OK;
 }
 
@@ -361,6 +364,10 @@ hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description
   double(*vertices)[3] = framed->vertices;
   hl_opacity_point *gradients = framed->gradients;
   hl_cut *cuts = framed->cuts;
+  for (size_t i = 0; i < scene->cut_count; i++) {
+    *cuts = scene->cuts[i];
+    move_cut(&space, cuts++);
+  }
   move_camera(&space, &framed->scene.camera);
   for (size_t i = 0; i < scene->volume_count; i++) {
     move_volume(&space, &framed->volumes[i]);

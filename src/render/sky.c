@@ -59,7 +59,9 @@ static field_surface surface_of(const surfaces *all, const surface_mesh *mesh) {
       .sphere_count = mesh->sphere_count,
       .opacity = mesh->scene->opacity,
       .visible = mesh->scene->visible,
-      .casts_shadow = mesh->scene->casts_shadow};
+      .casts_shadow = mesh->scene->casts_shadow,
+      .cuts = all->cuts,
+      .cut_count = mesh->is_cut ? all->cut_count : 0};
 }
 
 /* One channel will do where the sky has one colour and everything takes light of all colours alike. */

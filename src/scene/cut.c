@@ -17,17 +17,21 @@ static affine3 box_space(vec3 middle, vec3 half) {
                    .offset = {-middle.x * s.x, -middle.y * s.y, -middle.z * s.z}};
 }
 
-cut_shape hl_cut_shape(const hl_scene_volume *volume, size_t cut) {
-  const hl_cut *of = &volume->cuts[cut];
+cut_shape hl_cut_shape_in_world(const hl_cut *of) {
   vec3 low = vec3_of(of->min), high = vec3_of(of->max), radii = {of->radius, of->radius, of->radius};
   affine3 space = of->type == HL_CUT_PLANE ? plane_space(of)
                   : of->type == HL_CUT_BOX ? box_space(vec3_scale(vec3_add(low, high), 0.5),
                                                        vec3_scale(vec3_subtract(high, low), 0.5))
                                            : box_space(vec3_of(of->center), radii);
-  return (cut_shape){.type = of->type,
-                     .keep_inside = of->keep == HL_CUT_KEEP_INSIDE,
-                     .to_shape = affine3_multiply(space, of->world ? hl_scene_volume_index_to_world(volume)
-                                                                   : volume->volume->index_to_world)};
+  return (cut_shape){.type = of->type, .keep_inside = of->keep == HL_CUT_KEEP_INSIDE, .to_shape = space};
+}
+
+cut_shape hl_cut_shape(const hl_scene_volume *volume, size_t cut) {
+  const hl_cut *of = &volume->cuts[cut];
+  cut_shape shape = hl_cut_shape_in_world(of);
+  shape.to_shape = affine3_multiply(
+      shape.to_shape, of->world ? hl_scene_volume_index_to_world(volume) : volume->volume->index_to_world);
+  return shape;
 }
 
 static bool same_vector(vec3 a, vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
@@ -37,6 +41,13 @@ bool hl_cut_same(const cut_shape *a, const cut_shape *b) {
     if (!same_vector(a->to_shape.linear.row[r], b->to_shape.linear.row[r])) return false;
   return a->type == b->type && a->keep_inside == b->keep_inside &&
          same_vector(a->to_shape.offset, b->to_shape.offset);
+}
+
+void hl_cuts_key_add(hl_key *key, const cut_shape *cuts, size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    hl_key_add_whole(key, 2 * (int64_t)cuts[i].type + cuts[i].keep_inside);
+    hl_key_add_affine(key, &cuts[i].to_shape);
+  }
 }
 
 static bool is_inside(const cut_shape *cut, vec3 point) {
@@ -105,6 +116,14 @@ bool hl_cuts_remove_box(const cut_shape *cuts, size_t count, const double low[3]
     if (cuts[i].keep_inside ? is_all_outside(&cuts[i], &e) : is_all_inside(&cuts[i], &e)) return true;
   }
   return false;
+}
+
+bool hl_cuts_leave_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]) {
+  for (size_t i = 0; i < count; i++) {
+    extent e = extent_in_shape(&cuts[i], low, high);
+    if (cuts[i].keep_inside ? !is_all_inside(&cuts[i], &e) : !is_all_outside(&cuts[i], &e)) return false;
+  }
+  return true;
 }
 
 bool hl_scene_volume_removes_box(const hl_scene_volume *volume, const double low[3], const double high[3]) {

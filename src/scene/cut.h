@@ -1,10 +1,11 @@
-/* scene/cut.h - the shapes that cut a volume, in its index space. */
+/* scene/cut.h - the shapes that cut a volume, in its index space, and meshes, in their world. */
 #ifndef HL_SCENE_CUT_H
 #define HL_SCENE_CUT_H
 
 #include <halflight/scene.h>
 
 #include "core/error.h"
+#include "core/key.h"
 #include "core/vector.h"
 
 /* A shape is a simple one in a space of its own: a plane's inside has x above 0, a box's has x, y and z from
@@ -14,6 +15,9 @@ typedef struct cut_shape {
   bool keep_inside;
   affine3 to_shape; /* index space to the shape's own */
 } cut_shape;
+
+/* The shape of a cut in the world of its numbers. */
+cut_shape hl_cut_shape_in_world(const hl_cut *cut);
 
 /* The shape of volume->cuts[cut]. */
 cut_shape hl_cut_shape(const hl_scene_volume *volume, size_t cut);
@@ -35,19 +39,25 @@ hl_status hl_cuts_place(hl_context *context, hl_scene_description *placed, place
                         hl_error *error);
 void hl_placed_cuts_release(hl_context *context, placed_cuts *made);
 
+/* Adds the shapes. */
+void hl_cuts_key_add(hl_key *key, const cut_shape *cuts, size_t count);
+
 /* Whether two shapes are the same. */
 bool hl_cut_same(const cut_shape *a, const cut_shape *b);
 
-/* Whether a point of index space is left by all cuts. */
+/* Whether a point of the shapes' space is left by all cuts. */
 bool hl_cuts_leave(const cut_shape *cuts, size_t count, vec3 point);
 
 /* Whether a point of index space is left by the cuts of a volume. */
 bool hl_scene_volume_left(const hl_scene_volume *volume, vec3 point);
 
-/* Whether a box of index space is surely cut away: some cut removes all of it. */
+/* Whether a box along the axes of the shapes' space is surely cut away: some cut removes all of it. */
 bool hl_cuts_remove_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
 
-/* The same for the cuts of a volume. */
+/* Whether it is surely left: no cut removes any of it. */
+bool hl_cuts_leave_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
+
+/* Whether the cuts of a volume surely remove a box of index space. */
 bool hl_scene_volume_removes_box(const hl_scene_volume *volume, const double low[3], const double high[3]);
 
 #endif

@@ -9,6 +9,7 @@
 #include "surface/fragment_order.h"
 #include "surface/primitive_bins.h"
 #include "surface/sphere_coverage.h"
+#include "surface/surface_cuts.h"
 #include "surface/surface_plane.h"
 
 _Static_assert(HL_LIMIT_MESHES + HL_LIMIT_VOLUMES * HL_LIMIT_ISO <= 65536, "a fragment's mesh has 16 bits");
@@ -165,15 +166,17 @@ static void add_pixel(const fragment_work *work, fragment_worker *worker, const 
     mark(work, at->x / TILE, at->y / TILE, column, row, worker->scratch[i].slab);
 }
 
-/* The part of a primitive in a tile: what its samples cover. */
+/* The part of a primitive in a tile: what its samples cover, and what cuts leave of that. */
 typedef struct tile_part {
   int tile_x, tile_y;
+  bool is_cut; /* cuts remove some of the primitive */
   pixel_span span;
   uint16_t covered[TILE_PIXELS];
 } tile_part;
 
 /* The next pixel of the view, after pixel number *at of the tile, of which samples are covered. */
-static bool next_pixel(const view *view, const tile_part *part, int *at, fragment *f, covered_pixel *pixel) {
+static bool next_pixel(const view *view, const tile_part *part, const seen_part *seen, int *at, fragment *f,
+                       covered_pixel *pixel) {
   const pixel_span *span = &part->span;
   int width = span->x1 - span->x0 + 1, count = width * (span->y1 - span->y0 + 1);
   for (; *at < count; ++*at) {
@@ -181,6 +184,8 @@ static bool next_pixel(const view *view, const tile_part *part, int *at, fragmen
     int x = part->tile_x * TILE + column, y = part->tile_y * TILE + row;
     f->samples = part->covered[row * TILE + column];
     if (f->samples == 0 || x >= view->width || y >= view->height) continue;
+    f->samples = hl_left_samples(seen, x, y, f->samples);
+    if (f->samples == 0) continue;
     *pixel = pixel_of(x, y, f->samples);
     ++*at;
     return true;
@@ -198,9 +203,11 @@ static void add_triangle(const fragment_work *work, fragment_worker *worker, til
   hl_see_triangle(work->seen, f.primitive, &polygon);
   if (!hl_cover_tile(&polygon, part->tile_x, part->tile_y, &part->span, part->covered)) return;
   hl_plane_of_triangle(source->view, source->sheets, source->surfaces, f.primitive, &plane);
-  plane.leaving = mesh->scene->mesh->closed && hl_plane_linear(plane.way, part->tile_x * TILE + TILE / 2,
-                                                               part->tile_y * TILE + TILE / 2) > 0;
-  while (next_pixel(source->view, part, &at, &f, &pixel)) add_pixel(work, worker, &plane, f, &pixel);
+  plane.leaving = mesh->scene->mesh->closed && !mesh->is_cut &&
+                  hl_plane_linear(plane.way, part->tile_x * TILE + TILE / 2, part->tile_y * TILE + TILE / 2) >
+                      0;
+  const seen_part seen = {part->is_cut ? source->surfaces : NULL, source->view, &plane, NULL, false};
+  while (next_pixel(source->view, part, &seen, &at, &f, &pixel)) add_pixel(work, worker, &plane, f, &pixel);
 }
 
 /* The side of a sphere that rays enter or leave by. */
@@ -210,12 +217,13 @@ static void add_side(const fragment_work *work, fragment_worker *worker, const t
   const float *sphere = source->surfaces->spheres[f.primitive - source->surfaces->triangle_count];
   covered_pixel pixel;
   int at = 0;
-  while (next_pixel(source->view, part, &at, &f, &pixel)) {
+  const seen_part seen = {part->is_cut ? source->surfaces : NULL, source->view, NULL, sphere, leaving};
+  while (next_pixel(source->view, part, &seen, &at, &f, &pixel)) {
     surface_plane plane;
     vec3 point;
     if (!hl_meet_sphere(source->view, sphere, pixel.u, pixel.v, leaving, &point)) continue;
     hl_plane_of_sphere(source->view, source->sheets, sphere, point, &plane);
-    plane.leaving = leaving;
+    plane.leaving = leaving && !part->is_cut;
     add_pixel(work, worker, &plane, f, &pixel);
   }
 }
@@ -236,7 +244,7 @@ static void add_sphere(const fragment_work *work, fragment_worker *worker, tile_
       !hl_cover_sphere(source->view, sphere, &bounds, part->tile_x, part->tile_y, &part->span, part->covered))
     return;
   add_side(work, worker, part, f, false);
-  if (has_far_side(work, sphere, f.opacity)) add_side(work, worker, part, f, true);
+  if (part->is_cut || has_far_side(work, sphere, f.opacity)) add_side(work, worker, part, f, true);
 }
 
 /* Adds a primitive's fragments in a tile. */
@@ -249,6 +257,9 @@ static void add_primitive(const fragment_work *work, fragment_worker *worker, ti
     worker->failed = true;
     return;
   }
+  cut_answer cut = hl_surface_cut(source->surfaces, mesh, primitive);
+  if (cut == CUT_LEAVES_NOTHING) return;
+  part->is_cut = cut == CUT_LEAVES_SOME;
   bool counts = source->of_light ? mesh->scene->casts_shadow : mesh->scene->visible;
   fragment f = {.primitive = primitive,
                 .opacity = counts ? opacity_of(source->surfaces, mesh, primitive) : 0,
@@ -355,8 +366,8 @@ static hl_status rasterise(fragment_work *work, fragments *made, hl_error *error
 /* Whether the eye sees none of a mesh's backs: it is closed, opaque, and the eye is outside. */
 static bool has_hidden_backs(const fragments_source *source, const surface_mesh *mesh) {
   const hl_scene_mesh *scene = mesh->scene;
-  if (source->of_light || !scene->mesh->closed || scene->opacity < 1 || mesh->colors != NULL ||
-      mesh->face_colors != NULL)
+  if (source->of_light || !scene->mesh->closed || mesh->is_cut || scene->opacity < 1 ||
+      mesh->colors != NULL || mesh->face_colors != NULL)
     return false;
   vec3 corner[8], eye = source->view->origin;
   if (!source->view->perspective) return true;

@@ -192,7 +192,9 @@ static void meet_leaf(const surface_tree *tree, const surface_box *leaf, const s
     if (count == 0) continue;
     const surface_mesh *mesh = &all->meshes[hl_surface_mesh_of(all, primitive)];
     double opacity = fmin(fmax(opacity_of(all, mesh, primitive), 0), 1);
-    for (int k = 0; k < count; k++) met(data, distance[k], opacity, mesh->scene);
+    for (int k = 0; k < count; k++)
+      if (hl_surface_left(all, mesh, vec3_add(ray->origin, vec3_scale(ray->way, distance[k]))))
+        met(data, distance[k], opacity, mesh->scene);
   }
 }
 

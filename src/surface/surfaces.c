@@ -164,14 +164,35 @@ bool hl_surfaces_current(const surfaces *kept, const hl_scene_description *scene
   return true;
 }
 
+/* Finds the scene's cuts, and which meshes they may remove parts of. */
+static hl_status update_cuts(hl_context *context, const hl_scene_description *scene, surfaces *kept,
+                             hl_error *error) {
+  hl_release(context, kept->cuts);
+  kept->cut_count = 0;
+  kept->cuts = hl_allocate(context, scene->cut_count, sizeof *kept->cuts);
+  if (kept->cuts == NULL) return hl_fail_memory(error, scene->cut_count * sizeof *kept->cuts, "cuts");
+  for (size_t i = 0; i < scene->cut_count; i++)
+    kept->cuts[kept->cut_count++] = hl_cut_shape_in_world(&scene->cuts[i]);
+  for (size_t m = 0; m < kept->mesh_count; m++) {
+    vec3 corner[8];
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    hl_surface_corners(&scene->meshes[m], 0, corner);
+    for (int i = 0; i < 8; i++) vec3_bound(corner[i], low, high);
+    kept->meshes[m].is_cut = !scene->meshes[m].mesh->is_cut && kept->cut_count > 0 &&
+                             !hl_cuts_leave_box(kept->cuts, kept->cut_count, low, high);
+  }
+  return HL_OK;
+}
+
 hl_status hl_surfaces_update(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
                              surfaces *kept, hl_error *error) {
+  hl_status status = HL_OK;
   if (!hl_surfaces_current(kept, scene)) {
     hl_surfaces_release(context, kept);
-    return scene->mesh_count > 0 ? create(context, pool, scene, kept, error) : HL_OK;
+    if (scene->mesh_count > 0) status = create(context, pool, scene, kept, error);
   }
   for (size_t m = 0; m < kept->mesh_count; m++) kept->meshes[m].scene = &scene->meshes[m];
-  return HL_OK;
+  return status == HL_OK && kept->mesh_count > 0 ? update_cuts(context, scene, kept, error) : status;
 }
 
 void hl_surfaces_release(hl_context *context, surfaces *kept) {
@@ -181,6 +202,7 @@ void hl_surfaces_release(hl_context *context, surfaces *kept) {
   hl_release(context, kept->normals);
   hl_release(context, kept->triangles);
   hl_release(context, kept->spheres);
+  hl_release(context, kept->cuts);
   *kept = (surfaces){0};
 }
 
@@ -230,5 +252,6 @@ void hl_surfaces_key_add(hl_key *key, const surfaces *all) {
     hl_key_add_numbers(key, mesh->translate, 3);
     hl_key_add_numbers(key, mesh->rotate_axis, 3);
     hl_key_add_numbers(key, &mesh->rotate_angle_deg, 1);
+    if (all->meshes[m].is_cut) hl_cuts_key_add(key, all->cuts, all->cut_count);
   }
 }

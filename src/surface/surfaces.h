@@ -11,6 +11,7 @@
 #include "core/key.h"
 #include "core/pool.h"
 #include "core/vector.h"
+#include "scene/cut.h"
 
 typedef struct surface_mesh {
   const hl_scene_mesh *scene;      /* in frame space; borrowed, of the frame */
@@ -22,6 +23,7 @@ typedef struct surface_mesh {
   size_t first_vertex;             /* in positions and normals */
   uint32_t first_triangle, triangle_count;
   uint32_t first_sphere, sphere_count; /* in spheres */
+  bool is_cut;                         /* the cuts may remove some of it */
 } surface_mesh;
 
 /* A primitive is a triangle or a sphere: numbers below triangle_count are triangles, those after it spheres.
@@ -32,6 +34,8 @@ typedef struct surfaces {
   float (*normals)[3];      /* owned; [vertex_count]; unit, or 0 where a vertex has none; frame space */
   uint32_t (*triangles)[3]; /* owned; [triangle_count]; indices of positions */
   float (*spheres)[4];      /* owned; [sphere_count]; centre and radius; frame space */
+  cut_shape *cuts;          /* owned; [cut_count]; the scene's, of frame space */
+  size_t cut_count;
   size_t mesh_count, vertex_count;
   uint32_t triangle_count, sphere_count;
 } surfaces;
@@ -54,7 +58,7 @@ void hl_surfaces_release(hl_context *context, surfaces *kept);
 uint64_t hl_surfaces_bytes(const hl_scene_description *scene);
 
 /* Whether the same meshes stand in the same places as in the earlier frame: the update then allocates
- * nothing. */
+ * nothing but a few cuts. */
 bool hl_surfaces_current(const surfaces *kept, const hl_scene_description *scene);
 
 /* The index of the mesh that a primitive belongs to. Slow: fragments know theirs. */
@@ -62,6 +66,11 @@ size_t hl_surface_mesh_of(const surfaces *all, uint32_t primitive);
 
 /* The first primitive after those of the mesh that are of this one's kind. */
 uint32_t hl_surface_mesh_end(const surfaces *all, size_t mesh, uint32_t primitive);
+
+/* Whether the cuts leave a point of a mesh; frame space. */
+static inline bool hl_surface_left(const surfaces *all, const surface_mesh *mesh, vec3 point) {
+  return !mesh->is_cut || hl_cuts_leave(all->cuts, all->cut_count, point);
+}
 
 /* The corners of a box around a mesh; frame space. A flat mesh gets a box of thickness `least`. */
 void hl_surface_corners(const hl_scene_mesh *mesh, double least, vec3 corners[8]);

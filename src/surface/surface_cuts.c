@@ -1,0 +1,46 @@
+/* surface/surface_cuts.c - see surface_cuts.h. */
+#include "surface/surface_cuts.h"
+
+#include "surface/sphere_coverage.h"
+
+cut_answer hl_surface_cut(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  if (!mesh->is_cut) return CUT_LEAVES_ALL;
+  if (primitive < all->triangle_count) {
+    for (int i = 0; i < 3; i++)
+      vec3_bound(hl_surface_vector(all->positions[all->triangles[primitive][i]]), low, high);
+  } else {
+    const float *sphere = all->spheres[primitive - all->triangle_count];
+    vec3 reach = {sphere[3], sphere[3], sphere[3]};
+    vec3_bound(vec3_subtract(hl_surface_vector(sphere), reach), low, high);
+    vec3_bound(vec3_add(hl_surface_vector(sphere), reach), low, high);
+  }
+  if (hl_cuts_remove_box(all->cuts, all->cut_count, low, high)) return CUT_LEAVES_NOTHING;
+  return hl_cuts_leave_box(all->cuts, all->cut_count, low, high) ? CUT_LEAVES_ALL : CUT_LEAVES_SOME;
+}
+
+/* The point of the part at continuous pixel (u, v). */
+static vec3 point_of(const seen_part *part, double u, double v) {
+  const view *view = part->view;
+  vec3 point = {NAN, NAN, NAN};
+  if (part->sphere != NULL) {
+    (void)hl_meet_sphere(view, part->sphere, u, v, part->leaving, &point);
+    return point;
+  }
+  vec3 pixel = vec3_add(view->corner, vec3_add(vec3_scale(view->du, u), vec3_scale(view->dv, v)));
+  double along = hl_plane_linear(part->plane->rise, u, v) / hl_plane_linear(part->plane->way, u, v);
+  return view->perspective ? vec3_add(view->origin, vec3_scale(pixel, along))
+                           : vec3_add(pixel, vec3_scale(view->direction, along));
+}
+
+uint16_t hl_left_samples(const seen_part *part, int x, int y, uint16_t samples) {
+  uint16_t left = 0;
+  if (part->all == NULL) return samples;
+  for (int s = 0; s < FRAGMENT_SAMPLES; s++) {
+    if ((samples >> s & 1) == 0) continue;
+    vec3 point = point_of(part, x + (s + 0.5) / FRAGMENT_SAMPLES,
+                          y + (hl_sample_row[s] + 0.5) / FRAGMENT_SAMPLES);
+    if (hl_cuts_leave(part->all->cuts, part->all->cut_count, point)) left |= (uint16_t)(1u << s);
+  }
+  return left;
+}
