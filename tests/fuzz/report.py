@@ -29,7 +29,7 @@ TARGETS = {
         f"volume/dicom/{name}.c" for name in ("directory", "elements", "frame", "header", "jpeg", "jpeg_2000", "jpeg_codes", "jpeg_extended", "jpeg_ls",
                                               "jpeg_lossless", "rle", "set", "stack", "voxels")]),
     "raw": ("bare voxels, descriptors", ["volume/raw.c"]),
-    "transfer": ("transfer functions", ["json/foreign_nodes.c", "json/paraview.c", "json/slicer.c", "json/slicer_text.c", "json/transfer_function.c"]),
+    "transfer": ("transfer functions", ["json/foreign_nodes.c", "json/paraview.c", "json/paraview_state.c", "json/slicer.c", "json/slicer_text.c", "json/transfer_function.c"]),
     "shapes": ("shapes", ["json/shapes.c", "json/shapes_volume.c", "shape/"]),
     "picture": ("PNG, OpenEXR, NPY", ["image/png_read.c", "image/exr_read.c", "image/npy.c"]),
     "scene": ("scene files", ["json/", "scene/"]),

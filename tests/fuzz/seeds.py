@@ -112,6 +112,28 @@ def functions():
         "gradientOpacity": {"points": [{"x": 0, "y": 0}, {"x": 9, "y": 1}]}}]}]}))
 
 
+def foreign_functions():
+    """What other programs write: Slicer's properties in three formats, and a state of ParaView."""
+    prop = ('<VolumeProperty name="{}" interpolation="1" gradientOpacity="6 0 0 20 1 30 0.5" scalarOpacity="6 -100 0 50 0.25 50 0.75" '
+            'colorTransfer="8 -100 1 0 0 100 0 0 1"/>')
+    write("transfer", "slicer-preset.xml", prop.format("A"))
+    write("transfer", "slicer-presets.xml", f'<MRML>{prop.format("A")}{prop.format("B")}</MRML>')
+    write("transfer", "slicer.vp", "1\n1\n0.9\n0.1\n0.2\n10\n6 -100 0 50 0.25 40 0.75\n4 0 0 10 1\n8 -100 1 0 0 100 0 0 1\n")
+    component = {"componentWeight": 1, "scalarOpacityUnitDistance": 2, "disableGradientOpacity": False,
+                 "scalarOpacity": {"points": [{"x": 0, "y": 0.5, "midpoint": 0.4, "sharpness": 0.9}, {"x": 9, "y": 1}]},
+                 "rgbTransferFunction": {"points": [{"x": 0, "color": [1, 0.5, 0]}, {"x": 9, "color": [0, 0, 1]}]},
+                 "gradientOpacity": {"points": [{"x": 0, "y": 0}, {"x": 9, "y": 1}]}}
+    write("transfer", "slicer-components.json", text({"volumeProperties": [
+        {"independentComponents": True, "interpolationType": "linear", "components": [component, component]}]}))
+
+    def listed(name, numbers):
+        elements = "".join(f'<Element index="{n}" value="{number}"/>' for n, number in enumerate(numbers))
+        return f'<Property name="{name}" number_of_elements="{len(numbers)}">{elements}</Property>'
+    boxes = listed("Boxes", [20, 2, 40, 4, 1, 0.5, 0, 0.6, 1, 1, 9, 3, 0, 0, 1, 1]) + listed("Range", [0, 100, 0, 10])
+    shown = listed("ScalarOpacityUnitDistance", [2]) + listed("UseTransfer2D", [1]) + listed("UseGradientForTransfer2D", [1])
+    write("transfer", "paraview-state.pvsm", f'<ParaView><Proxy type="TransferFunction2D">{boxes}</Proxy><Proxy type="Grid">{shown}</Proxy></ParaView>')
+
+
 def chunk(kind, data):
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
@@ -200,4 +222,5 @@ def pictures():
 scenes()
 shapes()
 functions()
+foreign_functions()
 pictures()
