@@ -232,6 +232,21 @@ def as_labels(browser):
           "the transfer function is back")
 
 
+def follows(browser, what, name, drag, key, ways):
+    """The handle of this name is dragged, and goes with the pointer, or, along one way, to the place of the way that is nearest to it."""
+    handle = f"[aria-label='{name}, in the picture']"
+    x, y = center(browser, handle)
+    changes(browser, what, lambda: browser.drag([x, y], [x + drag[0], y + drag[1]]), key)
+    moved = [end - start for end, start in zip(center(browser, handle), (x, y))]
+    far = moved[0]**2 + moved[1]**2
+    check(far > 9, f"{what}: the handle stays where it is, {moved}")
+    if ways == 2:
+        check(max(abs(a - b) for a, b in zip(moved, drag)) < 3, f"{what}: moved by {moved}, not {drag}")
+    else:
+        beside = abs(moved[0] * (drag[0] - moved[0]) + moved[1] * (drag[1] - moved[1])) / far**0.5
+        check(beside < 3, f"{what}: moved by {moved} of {drag}")
+
+
 def cuts(browser):
     """Cuts of every shape, their numbers, their switch, and what is refused."""
     def cuts_now():
@@ -252,14 +267,30 @@ def cuts(browser):
     check("cuts" not in scene_of(browser)["volumes"][0], "a cut that is off is not in the scene")
     changes(browser, "on", lambda: set_control(browser, "Cuts", "", section="Cuts"), "volumes")
     check(cuts_now() == before, "it comes back as it was")
+    follows(browser, "a plane's handle", "Plane of the cut", (-25, 6), "volumes", 1)
+    step = [now - then for now, then in zip(cuts_now()[0]["point"], before[0]["point"])]
+    check(step[0] != 0 and step[1] == 0 and abs(step[2] - step[0] / 2) < 1e-9, f"the plane moves along its direction: {step}")
+    browser.run("document.querySelector('.cut-handle').focus()")
+    changes(browser, "arrow keys on a plane's handle", lambda: browser.key("ArrowLeft"), "volumes")
+    browser.run(f"""for (let step = 0; step < 9 && halflight.store.scene.volumes[0].cuts[0].point[0] !== {before[0]["point"][0]}; step++)
+      halflight.store.undo(); 0""")  # a drag is a step, or a few where the machine is slow
+    check(cuts_now() == before, "both are undone")
     changes(browser, "faces", lambda: set_control(browser, "Faces", "none", "change", section="Cuts"), "volumes")
     changes(browser, "keep", lambda: set_control(browser, "Inside", "", section="Cuts"), "volumes")
     changes(browser, "a second cut", lambda: press_named(browser, "Add: cut"), "volumes")
     changes(browser, "a sphere", lambda: set_control(browser, "Sphere", "", section="Cuts"), "volumes")
     changes(browser, "radius", number("Radius", 4), "volumes")
+    for axis in "yz":
+        number(f"Centre {axis}", 7.5)()  # in the picture
+    follows(browser, "a sphere's middle", "Middle of the cut", (-12, 9), "volumes", 2)
+    follows(browser, "a sphere's rim", "Radius of the cut", (9, 9), "volumes", 1)
+    number("Radius", 4)()
     number("Radius", -1)()
     check(cuts_now()[1]["radius"] == 4 and len(cuts_now()) == 2, "a radius below 0 is refused")
     changes(browser, "a box", lambda: set_control(browser, "Box", "", section="Cuts"), "volumes")
+    box = cuts_now()[1]
+    follows(browser, "a box's face", "Box of the cut z, least", (3, 12), "volumes", 1)
+    check(cuts_now()[1] == {**box, "min": [*box["min"][:2], cuts_now()[1]["min"][2]]}, "one face moves alone")
     equals_render(browser, "cuts")
     last = cuts_now()
     changes(browser, "remove", lambda: press_named(browser, "Remove this cut"), "volumes")
@@ -281,6 +312,9 @@ def scene_cuts(browser):
     field = "document.querySelector('[aria-label=\"Point x of the cut of all volumes\"]')"
     changes(browser, "its point", lambda: browser.run(f"{field}.value = 5; {field}.dispatchEvent(new Event('change')); 0"), "cuts")
     check(now()[0]["point"][0] == 5 and all("cuts" not in volume for volume in scene_of(browser)["volumes"]), "the scene is cut, no volume")
+    follows(browser, "a plane's handle", "Plane of the cut of all volumes", (20, 0), "cuts", 1)
+    changes(browser, "a box", lambda: set_control(browser, "Box", "", section=title), "cuts")
+    follows(browser, "a box's face", "Box of the cut of all volumes x, least", (25, 0), "cuts", 1)
     changes(browser, "a sphere", lambda: set_control(browser, "Sphere", "", section=title), "cuts")
     equals_render(browser, "scene cuts")
     before = now()

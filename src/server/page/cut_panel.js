@@ -35,8 +35,9 @@ function numbers({ label, noun, count, get, set }) {
 }
 
 // A panel of the cuts of one owner: owner() tells which it is (-1: none, the panel is hidden), cuts() are its cuts, take(name,
-// cuts) changes them, box() is where they cut, others() are rows that follow.
-function panelOf({ title, noun, report, owner, cuts: cutsNow, take: takeCuts, box, others }) {
+// cuts) changes them, box() is where they cut, transform() where that lies in the scene, others() are rows that follow. While it
+// is open, the chosen cut has handles in the picture.
+function panelOf({ title, noun, overlay, report, owner, cuts: cutsNow, take: takeCuts, box, transform, others }) {
   const { element, body } = section(title, false);
   let list = [], chosen = 0, parts = []; // list: { cut, on }, of the owner `of`
   let of = -1;
@@ -69,7 +70,7 @@ function panelOf({ title, noun, report, owner, cuts: cutsNow, take: takeCuts, bo
 
   const numbered = tabs({
     label: title, noun, count: () => list.length, chosen: () => chosen,
-    choose: (n) => { chosen = n; build(); },
+    choose: (n) => { chosen = n; build(); overlay.draw(); },
     add: () => { chosen = list.length; take("add", [...list, { cut: newCut("plane", box()), on: true }]); build(); },
     remove: () => {
       const left = list.filter((_, n) => n !== chosen);
@@ -107,11 +108,20 @@ function panelOf({ title, noun, report, owner, cuts: cutsNow, take: takeCuts, bo
     if (element.hidden !== owner() < 0 || (owner() >= 0 && follow())) build();
     else parts.forEach((part) => part.update());
   };
+  const chosenCut = () => {
+    if (owner() >= 0 && follow()) build();
+    return element.open && owner() >= 0 && entry()?.on ? entry().cut : null;
+  };
+  overlay.addCut({
+    noun, box, transform, cut: chosenCut,
+    take: (cut) => take(`${chosen} place`, list.map((one, n) => (n === chosen ? { ...one, cut } : one))),
+  });
+  element.addEventListener("toggle", () => overlay.draw());
   build();
   return { element, update, rebuild: build };
 }
 
-export function cutPanel({ store, start, current, report }) {
+export function cutPanel({ store, start, current, report, overlay }) {
   const volume = () => store.scene.volumes[current.volume];
   const others = () => [
     select({
@@ -124,20 +134,20 @@ export function cutPanel({ store, start, current, report }) {
     }),
   ];
   return panelOf({
-    title: "Cuts", noun: "cut", report, others, owner: () => (volume() === undefined ? -1 : current.volume), cuts: () => volume().cuts ?? [],
+    title: "Cuts", noun: "cut", overlay, report, others, transform: () => volume().transform, owner: () => (volume() === undefined ? -1 : current.volume), cuts: () => volume().cuts ?? [],
     take: (name, change) => store.changeVolume(current.volume, name, change), box: () => worldBox(start.volumes[current.volume]),
   });
 }
 
 // The scene's own cuts, where it has several volumes or such cuts already.
-export function sceneCutPanel({ store, start, report }) {
+export function sceneCutPanel({ store, start, report, overlay }) {
   function box() {
     const places = start.volumes.flatMap((about, n) => corners(worldBox(about)).map((corner) => placed(corner, store.scene.volumes[n]?.transform)));
     return { min: [0, 1, 2].map((k) => Math.min(...places.map((at) => at[k]))), max: [0, 1, 2].map((k) => Math.max(...places.map((at) => at[k]))) };
   }
   const volumes = () => store.scene.volumes.length;
   return panelOf({
-    title: "Cuts of all volumes", noun: "cut of all volumes", report, others: () => [], box, cuts: () => store.scene.cuts ?? [],
+    title: "Cuts of all volumes", noun: "cut of all volumes", overlay, report, transform: () => ({}), others: () => [], box, cuts: () => store.scene.cuts ?? [],
     owner: () => (volumes() > 1 || (volumes() > 0 && store.scene.cuts?.length > 0) ? 0 : -1), take: (name, change) => store.change(`scene ${name}`, change),
   });
 }

@@ -1,8 +1,9 @@
-// What is drawn over the picture: orientation marker, scale bar, clip box, and the lights' handles.
+// What is drawn over the picture: orientation marker, scale bar, clip box, cuts, and the lights' handles.
 
 import { axes, projector, worldHeight } from "./camera.js";
 import { corners, edges, placed, worldBox } from "./boxes.js";
 import { ClipHandles } from "./clip_handles.js";
+import { CutHandles } from "./cut_handles.js";
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
 import { directionOf, sizeOf, steppedDirection, withDirection, withSize } from "./light.js";
@@ -41,6 +42,7 @@ export class Overlay {
   #bar = make("svg:g", { class: "scale", "aria-hidden": "true" });
   #box = make("svg:path", { class: "clip-box", "aria-hidden": "true" });
   #clip;
+  #cuts = [];
   #sky;
   #width = 1;
   #height = 1;
@@ -79,6 +81,13 @@ export class Overlay {
     this.draw();
   }
 
+  // The handles of a cut, as long as its source shows one (cut_handles.js).
+  addCut(source) {
+    const handles = new CutHandles(source);
+    this.#cuts.push(handles);
+    this.#svg.append(handles.path, handles.element);
+  }
+
   draw() {
     this.#width = this.#svg.clientWidth;
     this.#height = this.#svg.clientHeight;
@@ -86,7 +95,9 @@ export class Overlay {
     this.#drawMarker();
     this.#drawBar();
     this.#drawBox();
-    this.#clip.draw(this.#showBox && this.#start.volumes.length > 0, this.#width, this.#height);
+    const project = projector(this.#store.scene.camera, this.#width, this.#height);
+    this.#clip.drawClip(this.#showBox && this.#start.volumes.length > 0, project, this.#width, this.#height);
+    this.#cuts.forEach((cut) => cut.drawCut(project, this.#width, this.#height));
     this.#sky.draw(this.#showSky, this.#sphere());
     this.#drawLights();
   }

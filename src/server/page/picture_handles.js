@@ -1,0 +1,89 @@
+// Handles over the picture: small squares that are dragged, or moved by arrow keys, along one or two directions of the scene.
+//
+// A handle is { label, kind, at, ways, move }: kind is a name for the style sheet, `at` its place in the scene, and each of
+// `ways` { to, size, low, high, now }: moved by `size` numbers it comes to be at `to`; now is its number, low and high where
+// such numbers lie. move(steps) moves it by so many numbers along each way from where it was when it was made.
+
+import { make } from "./controls.js";
+
+const KEY_STEP = 0.02; // of the way from low to high
+const MARGIN = 14; // pixels between a handle and the picture's edge
+const KEYS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowDown: [1, -1], ArrowUp: [1, 1] }; // the way, and its sign
+
+// A place, moved towards another until it lies in the picture: what is beyond the edge keeps its handle.
+function within([x, y], [towardsX, towardsY], width, height) {
+  const part = (from, to, most) => {
+    const inside = Math.min(Math.max(from, MARGIN), most - MARGIN);
+    return inside === from || to === from ? 0 : (inside - from) / (to - from);
+  };
+  const t = Math.min(Math.max(part(x, towardsX, width), part(y, towardsY, height), 0), 1);
+  return [x + t * (towardsX - x), y + t * (towardsY - y)];
+}
+
+// How far along each way, in parts of its length in pixels, lies a movement of the pointer; null where no way is seen.
+function partsOf(ways, [x, y]) {
+  const [a, b] = ways, square = a[0] ** 2 + a[1] ** 2;
+  if (ways.length === 1) return square > 1e-3 ? [(x * a[0] + y * a[1]) / square] : null;
+  const area = a[0] * b[1] - a[1] * b[0];
+  return Math.abs(area) > 1e-3 ? [(x * b[1] - y * b[0]) / area, (a[0] * y - a[1] * x) / area] : null;
+}
+
+export class PictureHandles {
+  #className;
+  #handles = [];
+  #project;
+  element = make("svg:g");
+
+  constructor(className) {
+    this.#className = className;
+  }
+
+  // handles: none hides them. middle: the place in the scene that handles beyond the edge are brought towards.
+  draw(handles, project, middle, width, height) {
+    this.#handles = handles;
+    this.#project = project;
+    while (this.element.childElementCount > handles.length) this.element.lastElementChild.remove();
+    while (this.element.childElementCount < handles.length) this.element.append(this.#make(this.element.childElementCount));
+    const towards = project(middle);
+    handles.forEach((handle, n) => {
+      const square = this.element.children[n], place = project(handle.at), at = place && towards ? within(place, towards, width, height) : null;
+      square.toggleAttribute("hidden", at === null);
+      if (at !== null) square.setAttribute("transform", `translate(${at[0]} ${at[1]})`);
+      const { low, high, now } = handle.ways[0];
+      const said = { class: `${this.#className} ${handle.kind}`, "aria-label": handle.label, "aria-valuemin": low, "aria-valuemax": high, "aria-valuenow": now };
+      for (const [key, value] of Object.entries(said)) square.setAttribute(key, value);
+    });
+  }
+
+  #make(n) {
+    return make("svg:rect", {
+      x: -6, y: -6, width: 12, height: 12, rx: 3, tabindex: 0, role: "slider",
+      onpointerdown: (event) => this.#grab(event, this.#handles[n]), onkeydown: (event) => this.#key(event, this.#handles[n]),
+    });
+  }
+
+  #grab(event, handle) {
+    event.stopPropagation();
+    event.preventDefault();
+    const target = event.currentTarget, from = this.#project(handle.at), ends = handle.ways.map(({ to }) => this.#project(to));
+    target.focus({ preventScroll: true });
+    target.setPointerCapture(event.pointerId);
+    if (from === null || ends.includes(null)) return;
+    const ways = ends.map((end) => [end[0] - from[0], end[1] - from[1]]);
+    const move = (moved) => {
+      const parts = partsOf(ways, [moved.clientX - event.clientX, moved.clientY - event.clientY]);
+      if (parts !== null) handle.move(parts.map((part, n) => part * handle.ways[n].size));
+    };
+    target.addEventListener("pointermove", move);
+    for (const over of ["pointerup", "pointercancel"])
+      target.addEventListener(over, () => target.removeEventListener("pointermove", move), { once: true });
+  }
+
+  #key(event, handle) {
+    if (!(event.key in KEYS)) return;
+    const [wanted, sign] = KEYS[event.key], way = Math.min(wanted, handle.ways.length - 1), { low, high } = handle.ways[way];
+    handle.move(handle.ways.map((_, n) => (n === way ? sign * KEY_STEP * (high - low) : 0)));
+    event.preventDefault();
+    event.stopPropagation();
+  }
+}
