@@ -6,14 +6,12 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "volume/brick_bounds.h"
 
 /* ---- bricks ---- */
 
-enum {
-  BEFORE = 3,
-  AFTER = 5, /* along an axis, brick b depends on voxels 4b-3 .. 4b+5 */
-  WINDOW = BEFORE + AFTER + 1
-};
+enum { BEFORE = BRICK_BEFORE, AFTER = BRICK_AFTER, WINDOW = BEFORE + AFTER + 1 };
+_Static_assert((int)HL_BRICK_CELLS == (int)BRICK_SIDE, "volumes and grids have the same bricks");
 
 /* Bytes after the last of an array whose bytes are read four at a time. */
 enum { READ_BEYOND = 4 };
@@ -101,9 +99,17 @@ static void bound_layer_of_bricks(void *data, size_t index, int worker) {
                     job->copies + (size_t)worker * WINDOW * WINDOW * job->copy_bytes);
 }
 
+/* The bounds that were found while the volume's voxels were stored; null: none. */
+static void *stored_bounds(const grid *grid) {
+  const hl_brick_bounds *bricks = grid->pages != NULL ? grid->pages->bricks : NULL;
+  return bricks != NULL && hl_brick_bounds_whole(bricks) ? bricks->bounds : NULL;
+}
+
 void hl_bricks_lay_out(grid *grid, hl_layout *layout) {
   size_t bricks = hl_grid_bricks(grid);
-  grid->brick_bounds = hl_layout_take(layout, bricks, 2 * hl_storage_bytes(grid->storage));
+  grid->brick_bounds = stored_bounds(grid);
+  if (grid->brick_bounds == NULL)
+    grid->brick_bounds = hl_layout_take(layout, bricks, 2 * hl_storage_bytes(grid->storage));
   grid->relevant = hl_layout_take(layout, bricks + READ_BEYOND, 1);
   grid->relevant_list = hl_layout_take(layout, bricks, sizeof *grid->relevant_list);
 }
@@ -133,13 +139,14 @@ static void bound_layers_of_bricks(hl_pool *pool, brick_job *job) {
 
 hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, grid *grid,
                           hl_error *error) {
+  memset(grid->relevant, 0, hl_grid_bricks(grid) + READ_BEYOND);
+  if (stored_bounds(grid) != NULL) return HL_OK;
   brick_job job = {.grid = grid, .bound_rows = functions->rows[grid->storage]};
   hl_layout counted = {0};
   lay_out_columns(&job, hl_pool_threads(pool), &counted);
   hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};
   if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "the bricks of a volume");
   lay_out_columns(&job, hl_pool_threads(pool), &handed);
-  memset(grid->relevant, 0, hl_grid_bricks(grid) + READ_BEYOND);
   bound_layers_of_bricks(pool, &job);
   if (grid->pages != NULL) hl_pages_forget(grid->pages);
   hl_release(context, job.columns);

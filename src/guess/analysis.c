@@ -314,7 +314,6 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
  *
  * Noise and the edges of smooth shapes may be whole numbers too, but there few neighbours are equal. */
 
-#define PLACES 5e5 /* the most voxels to look at */
 #define IN_BLOCKS                                                                                          \
   0.5                /* a label lies in blocks if more than this fraction of its voxels' neighbours has it \
                       */
@@ -327,7 +326,7 @@ typedef struct tally {
 /* Fills in tallies, one for each whole number from least on; false at a value that is no whole number. */
 static bool count_neighbours(const hl_volume *volume, double least, tally *tallies) {
   const size_t *n = volume->dimension;
-  size_t step = hl_lattice_step(n, PLACES);
+  size_t step = hl_lattice_step(n, HL_LATTICE_PLACES);
   for (size_t k = step / 2; k < n[2]; k += step)
     for (size_t j = step / 2; j < n[1]; j += step)
       for (size_t i = step / 2; i < n[0]; i += step) {

@@ -222,8 +222,7 @@ double hl_outline_reach(const hl_outline *outline, vec3 along, vec3 forward, dou
  * counts with its opacity times the light that its most transparent neighbour lets through, in and out again.
  */
 
-#define PLACES 5e5  /* the most voxels to look at */
-#define TAIL   0.01 /* fraction of the counts beyond each end of the range */
+#define TAIL 0.01 /* fraction of the counts beyond each end of the range */
 
 enum { BINS = 4096 };
 
@@ -246,7 +245,7 @@ static double least_opacity_around(const hl_volume *volume, const hl_transfer_fu
 static double count_seen(const hl_volume *volume, const hl_transfer_function *function, double low,
                          double high, double *counts) {
   const size_t *n = volume->dimension;
-  size_t step = hl_lattice_step(n, PLACES), at[3];
+  size_t step = hl_lattice_step(n, HL_LATTICE_PLACES), at[3];
   double sum = 0;
   for (at[2] = 0; at[2] < n[2]; at[2] += step)
     for (at[1] = 0; at[1] < n[1]; at[1] += step)

@@ -7,8 +7,6 @@
 
 #include "core/memory.h"
 
-#define SAMPLE_COUNT 5e5 /* voxels looked at, about */
-
 /* An unsigned integer that sorts like the float: the bits of a negative one inverted, of others with the
  * highest bit set. */
 static uint32_t key_of(float value) {
@@ -52,25 +50,9 @@ static size_t collect(const hl_sample *sample, const hl_volume *volume, const si
 
 static size_t steps_in(size_t extent, size_t step) { return extent / step + 1; }
 
-size_t hl_lattice_step(const size_t dimension[3], double most) {
-  double step = 1, places;
-  do {
-    places = 1;
-    for (int a = 0; a < 3; a++) places *= ceil((double)dimension[a] / floor(step));
-    if (places > most) step = fmax(step + 1, step * 1.1);
-  } while (places > most);
-  return (size_t)step;
-}
-
 static hl_status make_border(const hl_volume *volume, hl_sample *sample, hl_error *error) {
   const size_t *n = volume->dimension;
-  size_t step = 1, capacity = 0;
-  for (int a = 0; a < 3; a++) {
-    size_t face[3] = {n[0], n[1], n[2]};
-    face[a] = 1;
-    size_t enough = hl_lattice_step(face, SAMPLE_COUNT / 12);
-    if (enough > step) step = enough;
-  }
+  size_t step = hl_border_step(n), capacity = 0;
   for (int a = 0; a < 3; a++) capacity += 2 * steps_in(n[(a + 1) % 3], step) * steps_in(n[(a + 2) % 3], step);
   sample->border = hl_allocate(volume->context, capacity, sizeof(float));
   if (sample->border == NULL)
@@ -91,7 +73,7 @@ hl_status hl_sample_make(const hl_volume *volume, hl_sample *sample, hl_error *e
   const size_t *n = volume->dimension, low[3] = {0, 0, 0};
   double range = volume->maximum - volume->minimum;
   *sample = (hl_sample){.context = volume->context, .low = volume->minimum, .range = range > 0 ? range : 1};
-  sample->step = hl_lattice_step(n, SAMPLE_COUNT);
+  sample->step = hl_lattice_step(n, HL_LATTICE_PLACES);
   size_t capacity = steps_in(n[0], sample->step) * steps_in(n[1], sample->step) *
                     steps_in(n[2], sample->step);
   sample->values = hl_allocate(volume->context, capacity, sizeof(float));

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 #include "core/error.h"
-#include "volume/volume.h"
+#include "volume/glimpse.h"
 
 typedef struct hl_sample {
   hl_context *context;
@@ -19,9 +19,6 @@ typedef struct hl_sample {
   size_t border_count;
   size_t step; /* voxels from one sample to the next along each axis */
 } hl_sample;
-
-/* The step along each axis with which a lattice takes at most `most` voxels of a grid; at least 1. */
-size_t hl_lattice_step(const size_t dimension[3], double most);
 
 /* Fails for lack of memory alone. Either array may be empty, where voxels are NaN. */
 hl_status hl_sample_make(const hl_volume *volume, hl_sample *sample, hl_error *error);

@@ -11,12 +11,10 @@
 #include "scene/cut.h"
 #include "volume/pages.h"
 
-#define FAINT           0.02 /* fraction of the greatest opacity below which voxels at the rim do not count */
-#define LOST            0.04 /* least optical depth of a column that is seen */
-#define OPAQUE          0.9999 /* the greatest opacity; an opacity of 1 has no finite depth */
-#define CELLS           1e6    /* the most cells of a lattice */
-#define VOXELS_EXAMINED 6e6    /* of one volume; in larger ones rows are skipped */
-#define SPECKS_AT_MOST  0.03   /* fraction of the seen cells; more specks than that are matter */
+#define FAINT          0.02 /* fraction of the greatest opacity below which voxels at the rim do not count */
+#define LOST           0.04 /* least optical depth of a column that is seen */
+#define OPAQUE         0.9999 /* the greatest opacity; an opacity of 1 has no finite depth */
+#define SPECKS_AT_MOST 0.03   /* fraction of the seen cells; more specks than that are matter */
 
 #define TISSUE          (-300)      /* Hounsfield units: tissue is denser, foam and clothes are not */
 #define BODY_AT_LEAST   0.8         /* fraction of the dense cells */
@@ -283,9 +281,8 @@ static bool find_range(const hl_scene_volume *volume, hl_seen *seen) {
 static hl_status make_cells(hl_seen *seen, hl_error *error) {
   const hl_volume *volume = seen->volume;
   size_t cells = 1;
-  seen->step = hl_lattice_step(volume->dimension, CELLS);
-  seen->stride = (size_t)fmin(ceil(sqrt((double)hl_volume_voxel_count(volume) / VOXELS_EXAMINED)),
-                              (double)seen->step);
+  seen->step = hl_lattice_step(volume->dimension, HL_CELL_PLACES);
+  seen->stride = hl_row_step(volume->dimension);
   for (int a = 0; a < 3; a++) {
     seen->size[a] = (int)((volume->dimension[a] + seen->step - 1) / seen->step);
     cells *= (size_t)seen->size[a];

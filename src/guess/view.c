@@ -13,7 +13,6 @@
 #include "guess/seen_cells.h"
 #include "scene/scene.h"
 
-#define LATTICE       5e5 /* the most voxels to look at */
 #define BEND          3   /* distance, in places of the lattice, over which relief is measured */
 #define BODY_AT_LEAST 0.4 /* fraction of all solid places from which on the largest body decides alone */
 #define CLEARLY       1.1 /* a side turned to the eye must have this many times the other one's relief */
@@ -110,10 +109,10 @@ static bool measure(shape *s) {
 static hl_status make_shape(const hl_volume *volume, const hl_data_analysis *analysis, shape *s, bool *any,
                             hl_error *error) {
   hl_context *context = volume->context;
-  size_t step = hl_lattice_step(volume->dimension, LATTICE);
+  size_t step = hl_lattice_step(volume->dimension, HL_LATTICE_PLACES);
   memset(s, 0, sizeof *s);
   if (!allocate(context, volume, step, s))
-    return hl_fail_memory(error, (size_t)LATTICE, "a volume's outline");
+    return hl_fail_memory(error, (size_t)HL_LATTICE_PLACES, "a volume's outline");
   fill(volume, analysis, step, s);
   hl_status status = forget_others(context, s, error);
   *any = status == HL_OK && measure(s);

@@ -10,6 +10,7 @@
 
 #include "core/memory.h"
 #include "volume/convert.h"
+#include "volume/glimpse.h"
 #include "volume/pages.h"
 #include "volume/statistics.h"
 
@@ -379,7 +380,11 @@ hl_status hl_volume_get_selection(const hl_volume *volume, hl_volume_selection *
 double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k) {
   if (volume == NULL || i >= volume->dimension[0] || j >= volume->dimension[1] || k >= volume->dimension[2])
     return NAN;
-  double stored = volume->pages != NULL ? hl_page_number(volume->pages, i, j, k)
-                                        : hl_stored_number(volume->storage, hl_volume_row(volume, j, k), i);
+  const hl_pages *pages = volume->pages;
+  const void *kept = pages != NULL && pages->glimpse != NULL ? hl_glimpse_voxel(pages->glimpse, i, j, k)
+                                                             : NULL;
+  double stored = kept != NULL    ? hl_stored_number(volume->storage, kept, 0)
+                  : pages != NULL ? hl_page_number(pages, i, j, k)
+                                  : hl_stored_number(volume->storage, hl_volume_row(volume, j, k), i);
   return isfinite(stored) ? volume->value_scale * stored + volume->value_offset : NAN;
 }

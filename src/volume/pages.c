@@ -13,8 +13,10 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "volume/brick_bounds.h"
 #include "volume/convert.h"
 #include "volume/counts.h"
+#include "volume/glimpse.h"
 
 /* ---- the scratch file ---- */
 
@@ -110,6 +112,19 @@ static hl_status map_scratch(hl_context *context, const char *folder, hl_pages *
   return HL_OK;
 }
 
+/* What is found while voxels are stored. The glimpse takes an eighth of the free memory at most. */
+static hl_status allocate_findings(hl_context *context, hl_pages *pages, hl_error *error) {
+  size_t values = hl_values_of(pages->storage);
+  uint64_t taken = atomic_load(&context->held) + atomic_load(&context->paged),
+           limit = context->options.memory_limit, most = limit > taken ? (limit - taken) / 8 : 0;
+  if (values > 0) pages->counts = hl_allocate_zeroed(context, values, sizeof *pages->counts);
+  if ((values > 0 && pages->counts == NULL) ||
+      !hl_brick_bounds_create(context, pages->dimension, pages->storage, &pages->bricks) ||
+      !hl_glimpse_create(context, pages->dimension, pages->storage, most, &pages->glimpse))
+    return hl_fail_memory(error, values * sizeof *pages->counts, "a volume's pages");
+  return HL_OK;
+}
+
 hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volume_description *grid,
                           int shift, hl_pages **pages, hl_error *error) {
   *pages = NULL;
@@ -126,12 +141,7 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
   size_t count = page_count(made);
   if (status == HL_OK && (made->state = hl_allocate_zeroed(context, count, 1)) == NULL)
     status = hl_fail_memory(error, count, "a volume's pages");
-  size_t values = hl_values_of(made->storage);
-  if (status == HL_OK && values > 0) {
-    made->counts = hl_allocate_zeroed(context, values, sizeof *made->counts);
-    if (made->counts == NULL)
-      status = hl_fail_memory(error, values * sizeof *made->counts, "a volume's pages");
-  }
+  if (status == HL_OK) status = allocate_findings(context, made, error);
   if (status == HL_OK) *pages = made;
   else hl_pages_release(made);
   return status;
@@ -202,6 +212,8 @@ void hl_pages_release(hl_pages *pages) {
   atomic_fetch_sub(&pages->context->paged, pages->held_bytes);
   pthread_mutex_destroy(&pages->lock);
   pthread_cond_destroy(&pages->came);
+  hl_brick_bounds_release(pages->bricks);
+  hl_glimpse_release(pages->glimpse);
   hl_release(pages->context, pages->counts);
   hl_release(pages->context, pages->state);
   hl_release(pages->context, pages->version);
@@ -375,118 +387,7 @@ void hl_pages_forget(const hl_pages *pages) {
   pthread_mutex_unlock(lock);
 }
 
-/* ---- copies ---- */
-
-/* The pages along an axis that hold a voxel: one, or two where it lies in the overlap. */
-static size_t first_page(const hl_pages *pages, int axis, size_t voxel, size_t *last) {
-  *last = hl_page_of(pages, axis, voxel);
-  size_t within = voxel - (*last << pages->shift), first = *last;
-  /* small pages may overlap with several */
-  while (first > 0 &&
-         within + ((*last - first + 1) << pages->shift) < ((size_t)1 << pages->shift) + PAGE_OVERLAP)
-    first--;
-  return first;
-}
-
-/* Copies the voxels of a row from i on into one row of pages. */
-static void store_in_pages(hl_pages *pages, const size_t page_y_z[2], const size_t at[3], size_t count,
-                           const unsigned char *values) {
-  size_t bytes = hl_storage_bytes(pages->storage), end = at[0] + count, last, ignored;
-  first_page(pages, 0, end - 1, &last);
-  for (size_t x = first_page(pages, 0, at[0], &ignored); x <= last; x++) {
-    size_t begin = x << pages->shift, stop = begin + ((size_t)1 << pages->shift) + PAGE_OVERLAP;
-    size_t from = at[0] > begin ? at[0] : begin, to = end < stop ? end : stop;
-    const size_t page[3] = {x, page_y_z[0], page_y_z[1]};
-    unsigned char *place = (unsigned char *)hl_page_begin(pages, page).first +
-                           (at[2] - (page[2] << pages->shift)) * pages->slice_bytes +
-                           (at[1] - (page[1] << pages->shift)) * pages->row_bytes + (from - begin) * bytes;
-    memcpy(place, values + (from - at[0]) * bytes, (to - from) * bytes);
-  }
-}
-
-static void store_in_row(hl_pages *pages, const size_t at[3], size_t count, const unsigned char *values) {
-  size_t last_y, last_z, first_y = first_page(pages, 1, at[1], &last_y),
-                         first_z = first_page(pages, 2, at[2], &last_z);
-  for (size_t z = first_z; z <= last_z; z++)
-    for (size_t y = first_y; y <= last_y; y++)
-      store_in_pages(pages, (const size_t[2]){y, z}, at, count, values);
-}
-
-/* ---- whole rows, written to the file: a write of the mapping would have the system read or clear each unit
- * first, and tell the processor of it. ---- */
-
-enum { PAGE_SIDE = (1 << PAGE_SHIFT) + PAGE_OVERLAP, PAGE_SLICE_BYTES = PAGE_SIDE * PAGE_SIDE * 4 };
-
-/* Rows j0 to j1 - 1 of slice k. */
-typedef struct row_run {
-  size_t j0, j1, k;
-  const unsigned char *values; /* [j1 - j0][dimension[0]]; stored values */
-} row_run;
-
-static bool write_all(int file, const unsigned char *bytes, size_t count, off_t at) {
-  while (count > 0) {
-    ssize_t written = pwrite(file, bytes, count, at);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    bytes += written, at += written, count -= (size_t)written;
-  }
-  return true;
-}
-
-/* Writes the part of a run that lies in a page: there it is in one piece. False: the system refused it. */
-static bool write_in_page(const hl_pages *pages, const size_t page[3], const row_run *run) {
-  unsigned char part[PAGE_SLICE_BYTES], *to = part;
-  size_t bytes = hl_storage_bytes(pages->storage), side = pages->row_bytes / bytes;
-  size_t y = page[1] << pages->shift, end = y + pages->slice_bytes / pages->row_bytes,
-         x = page[0] << pages->shift;
-  size_t j0 = run->j0 > y ? run->j0 : y, j1 = run->j1 < end ? run->j1 : end;
-  size_t width = pages->dimension[0] - x < side ? pages->dimension[0] - x : side;
-  for (size_t j = j0; j < j1; j++, to += pages->row_bytes) {
-    memcpy(to, run->values + ((j - run->j0) * pages->dimension[0] + x) * bytes, width * bytes);
-    memset(to + width * bytes, 0, (side - width) * bytes);
-  }
-  size_t number = (page[2] * pages->count[1] + page[1]) * pages->count[0] + page[0];
-  size_t place = (size_t)(pages->first - pages->mapping) + number * pages->page_bytes +
-                 (run->k - (page[2] << pages->shift)) * pages->slice_bytes + (j0 - y) * pages->row_bytes;
-  return write_all(pages->file, part, (size_t)(to - part), (off_t)place);
-}
-
-static bool write_run(const hl_pages *pages, const row_run *run) {
-  size_t last_y, last_z, ignored, first_y = first_page(pages, 1, run->j0, &ignored),
-                                  first_z = first_page(pages, 2, run->k, &last_z);
-  first_page(pages, 1, run->j1 - 1, &last_y);
-  for (size_t z = first_z; z <= last_z; z++)
-    for (size_t y = first_y; y <= last_y; y++)
-      for (size_t x = 0; x < pages->count[0]; x++)
-        if (!write_in_page(pages, (const size_t[3]){x, y, z}, run)) return false;
-  return true;
-}
-
-/* The rows of one slice that lie as a whole within `count` voxels from number `first` on, which begins a row;
- * 0: none. */
-static size_t whole_rows(const hl_pages *pages, size_t first, size_t count) {
-  size_t rows = count / pages->dimension[0],
-         left = pages->dimension[1] - first / pages->dimension[0] % pages->dimension[1];
-  return rows < left ? rows : left;
-}
-
-void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *values) {
-  const size_t *n = pages->dimension, bytes = hl_storage_bytes(pages->storage);
-  pthread_mutex_lock(&pages->lock);
-  if (pages->counts != NULL) hl_values_count(pages->storage, values, count, pages->counts);
-  pages->counted += count;
-  pthread_mutex_unlock(&pages->lock);
-  bool writes = pages->slice_bytes <= PAGE_SLICE_BYTES;
-  for (size_t done = 0, taken; done < count; done += taken) {
-    const unsigned char *from = (const unsigned char *)values + done * bytes;
-    size_t row = (first + done) / n[0], i = (first + done) % n[0], j = row % n[1];
-    size_t rows = writes && i == 0 ? whole_rows(pages, first + done, count - done) : 0;
-    taken = rows * n[0];
-    if (rows > 0 && write_run(pages, &(row_run){j, j + rows, row / n[1], from})) continue;
-    taken = n[0] - i < count - done ? n[0] - i : count - done;
-    store_in_row(pages, (const size_t[3]){i, j, row / n[1]}, taken, from);
-  }
-}
+/* ---- what was stored ---- */
 
 bool hl_pages_take_counts(hl_pages *pages, uint64_t *counts) {
   const size_t *n = pages->dimension;
@@ -509,7 +410,9 @@ static bool own_row(const hl_pages *pages, size_t j, size_t k, void *row) {
 
 void hl_pages_load_row(const hl_pages *pages, size_t j, size_t k, void *row) {
   size_t bytes = hl_storage_bytes(pages->storage), width = pages->dimension[0];
-  if (own_row(pages, j, k, row)) return;
+  const void *kept = pages->glimpse != NULL ? hl_glimpse_row(pages->glimpse, j, k) : NULL;
+  if (kept != NULL) memcpy(row, kept, width * bytes);
+  if (kept != NULL || own_row(pages, j, k, row)) return;
   for (size_t page = 0; page < pages->count[0]; page++) {
     size_t begin = page << pages->shift,
            end = page + 1 < pages->count[0] ? begin + ((size_t)1 << pages->shift) : width;

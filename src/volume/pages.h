@@ -55,6 +55,8 @@ typedef struct hl_pages {
   uint64_t
       *counts;    /* owned; [hl_values_of(storage)]: of the values that were stored; null: taken, or floats */
   size_t counted; /* stored values */
+  struct hl_brick_bounds *bricks; /* owned; of what was stored (volume/brick_bounds.h); null over ranks */
+  struct hl_glimpse *glimpse;     /* owned; of it, too (volume/glimpse.h); null: none */
   int shift;
   size_t row_bytes, slice_bytes, page_bytes; /* in a page, from row to row, and from slice to slice; and from
                                                 page to page */
@@ -75,7 +77,8 @@ hl_status hl_pages_create_over_ranks(hl_ranks *ranks, hl_own_voxels *own, const 
  * there is a scratch folder. */
 bool hl_pages_wanted(const hl_context *context, const hl_volume_description *grid);
 
-/* Copies `count` stored values, those from number `first` on ([k][j][i]), into all pages that hold them. */
+/* Copies `count` stored values, those from number `first` on ([k][j][i]), into all pages that hold them. Each
+ * voxel is stored once at most. Whole slices, several at once, are stored fastest. */
 void hl_pages_store(hl_pages *pages, size_t first, size_t count, const void *values);
 
 /* How often each stored value occurs. counts: [hl_values_of(storage)]. False: floats, counts that were taken
