@@ -10,6 +10,7 @@
 #include "grid/grid.h"
 #include "render/slab.h"
 #include "shadow/shadow_method.h"
+#include "surface/small_triangles.h"
 #include "view/occupancy.h"
 
 typedef struct hot_functions {
@@ -17,6 +18,7 @@ typedef struct hot_functions {
   view_functions view;
   field_functions field;
   fill_functions fill;
+  surface_functions surface;
   shadow_functions shadow;
   render_functions render;
 } hot_functions;

@@ -18,6 +18,7 @@ static hl_status make_fragments(sweep *sweep, const view *view, const light_shad
                                 const occupancy *occupancy, fragments *made, hl_error *error) {
   const fragments_source source = {.context = sweep->content.context,
                                    .pool = sweep->content.pool,
+                                   .functions = &sweep->content.hot->surface,
                                    .surfaces = sweep->frame->surfaces,
                                    .view = view,
                                    .sheets = &sweep->geometry->sheets,

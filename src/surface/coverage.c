@@ -4,9 +4,9 @@
 
 #include <string.h>
 
-enum { SAMPLES = 16 };
+#include "surface/sample_rows.h"
 
-const unsigned char hl_sample_row[SAMPLES] = {3, 10, 1, 8, 15, 6, 13, 4, 11, 2, 9, 0, 7, 14, 5, 12};
+enum { SAMPLES = 16 };
 
 /* One edge: value + x * across + y * down is at least 0 inside; pixels from the tile's corner. */
 typedef struct edge {
@@ -27,7 +27,7 @@ static void set_edge(edge *e, int64_t ax, int64_t ay, int64_t bx, int64_t by) {
   e->least = INT64_MAX;
   e->greatest = INT64_MIN;
   for (int s = 0; s < SAMPLES; s++) {
-    int64_t x = (2 * s + 1) * SUBPIXELS / 32, y = (2 * hl_sample_row[s] + 1) * SUBPIXELS / 32;
+    int64_t x = (2 * s + 1) * SUBPIXELS / 32, y = (2 * SAMPLE_ROWS[s] + 1) * SUBPIXELS / 32;
     e->offset[s] = x * dy - y * dx;
     if (e->offset[s] < e->least) e->least = e->offset[s];
     if (e->offset[s] > e->greatest) e->greatest = e->offset[s];
@@ -57,75 +57,7 @@ static int clamp_pixel(int64_t subpixels) {
   return pixel > TILE - 1 ? TILE - 1 : (int)pixel;
 }
 
-/* ---- triangles of a few samples ---- */
-
-/* One edge: (x - ax) * dy - (y - ay) * dx - slack is at least 0 inside. */
-typedef struct short_edge {
-  int64_t ax, ay, dx, dy, slack;
-} short_edge;
-
-static short_edge short_edge_of(int64_t ax, int64_t ay, int64_t bx, int64_t by) {
-  int64_t dx = bx - ax, dy = by - ay;
-  bool owns = dy > 0 || (dy == 0 && dx < 0);
-  return (short_edge){ax, ay, dx, dy, owns ? 0 : 1};
-}
-
-/* The box around a triangle. */
-typedef struct corner_box {
-  int64_t x0, y0, x1, y1;
-} corner_box;
-
-static corner_box box_of(const int64_t x[3], const int64_t y[3]) {
-  corner_box box = {x[0], y[0], x[0], y[0]};
-  for (int i = 1; i < 3; i++) {
-    box.x0 = x[i] < box.x0 ? x[i] : box.x0, box.x1 = x[i] > box.x1 ? x[i] : box.x1;
-    box.y0 = y[i] < box.y0 ? y[i] : box.y0, box.y1 = y[i] > box.y1 ? y[i] : box.y1;
-  }
-  return box;
-}
-
-/* The covered samples of a pixel, of those within the box around the triangle. */
-static uint32_t cover_pixel_by_samples(const short_edge edges[3], const corner_box *box, int column,
-                                       int row) {
-  enum { STEP = SUBPIXELS / SAMPLES };
-  int64_t left = (int64_t)column * SUBPIXELS + STEP / 2, top = (int64_t)row * SUBPIXELS + STEP / 2;
-  int64_t first = box->x0 <= left ? 0 : (box->x0 - left + STEP - 1) / STEP,
-          last = box->x1 < left ? -1 : (box->x1 - left) / STEP;
-  uint32_t bits = 0;
-  if (last > SAMPLES - 1) last = SAMPLES - 1;
-  for (int64_t s = first; s <= last; s++) {
-    int64_t x = left + s * STEP, y = top + hl_sample_row[s] * STEP, outside = 0;
-    if (y < box->y0 || y > box->y1) continue;
-    for (int i = 0; i < 3; i++)
-      outside |= (x - edges[i].ax) * edges[i].dy - (y - edges[i].ay) * edges[i].dx - edges[i].slack;
-    bits |= (uint32_t)(outside >= 0) << s;
-  }
-  return bits;
-}
-
-/* The same as cover_triangle(), where the box around the triangle holds few samples. */
-static bool cover_few_samples(const int64_t x[3], const int64_t y[3], int64_t area, const pixel_span *span,
-                              uint16_t covered[TILE_PIXELS]) {
-  const corner_box box = box_of(x, y);
-  short_edge edges[3];
-  uint32_t any = 0;
-  for (int i = 0; i < 3; i++) {
-    int from = area < 0 ? i : (i + 1) % 3, to = area < 0 ? (i + 1) % 3 : i;
-    edges[i] = short_edge_of(x[from], y[from], x[to], y[to]);
-  }
-  for (int row = span->y0; row <= span->y1; row++)
-    for (int column = span->x0; column <= span->x1; column++) {
-      uint32_t bits = cover_pixel_by_samples(edges, &box, column, row);
-      covered[row * TILE + column] |= (uint16_t)bits;
-      any |= bits;
-    }
-  return any != 0;
-}
-
 /* ---- triangles and polygons ---- */
-
-/* A triangle is small if its span is at most so many pixels. */
-enum { FEW_PIXELS = 4 };
 
 /* A triangle's corners, 1/256 pixels from the tile's corner. */
 static bool cover_triangle(const int64_t x[3], const int64_t y[3], const pixel_span *span,
@@ -134,8 +66,6 @@ static bool cover_triangle(const int64_t x[3], const int64_t y[3], const pixel_s
   edge edges[3];
   uint32_t any = 0;
   if (area == 0) return false;
-  if ((span->x1 - span->x0 + 1) * (span->y1 - span->y0 + 1) <= FEW_PIXELS)
-    return cover_few_samples(x, y, area, span, covered);
   for (int i = 0; i < 3; i++) {
     int from = area < 0 ? i : (i + 1) % 3, to = area < 0 ? (i + 1) % 3 : i;
     set_edge(&edges[i], x[from], y[from], x[to], y[to]);

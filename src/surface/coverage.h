@@ -7,10 +7,6 @@
 
 #include "surface/seen.h"
 
-/* The samples' positions in a pixel: sample i lies at ((i + 1/2) / 16, (hl_sample_row[i] + 1/2) / 16). No two
- * share a row or a column. */
-extern const unsigned char hl_sample_row[16];
-
 /* A rectangle of a tile's pixels; the last column and row are included. */
 typedef struct pixel_span {
   int x0, y0, x1, y1;

@@ -5,51 +5,89 @@
 
 /* ---- sorting ---- */
 
-/* Whether a comes before b in their pixel; heights rise. */
-static bool is_below(const fragment *a, const fragment *b) {
-  return a->height != b->height ? a->height < b->height : a->primitive <= b->primitive;
+/* A float's bits, so that they grow as the float does; turned round where heights fall. */
+static uint32_t ordered_bits(float height, bool falling) {
+  uint32_t bits;
+  height += 0.0f; /* no minus zero */
+  memcpy(&bits, &height, sizeof bits);
+  bits ^= bits >> 31 ? 0xffffffffu : 0x80000000u;
+  return falling ? ~bits : bits;
 }
-
-static bool is_above(const fragment *a, const fragment *b) {
-  return a->height != b->height ? a->height > b->height : a->primitive <= b->primitive;
-}
-
-typedef bool comes_before(const fragment *a, const fragment *b);
 
 /* Merges the sorted runs [0, middle) and [middle, count) of `from` into `to`. */
-static void merge(const fragment *from, size_t middle, size_t count, fragment *to, comes_before *before) {
+static void merge(const order_key *from, size_t middle, size_t count, order_key *to) {
   size_t a = 0, b = middle;
   for (size_t i = 0; i < count; i++) {
-    bool first = b == count || (a < middle && before(&from[a], &from[b]));
+    bool first = b == count || (a < middle && from[a].key <= from[b].key);
     to[i] = first ? from[a++] : from[b++];
   }
 }
 
-/* Sorts by merging. */
-static void sort_pixel(fragment *list, fragment *spare, size_t count, comes_before *before) {
-  fragment *from = list, *to = spare;
-  for (size_t run = 1; run < count; run *= 2) {
+/* Runs of so many keys are sorted by insertion. */
+enum { SHORT_RUN = 16 };
+
+static void sort_short_run(order_key *list, size_t count) {
+  for (size_t i = 1; i < count; i++) {
+    order_key own = list[i];
+    size_t at = i;
+    for (; at > 0 && own.key < list[at - 1].key; at--) list[at] = list[at - 1];
+    list[at] = own;
+  }
+}
+
+/* Sorts runs, then merges them; equal keys keep their order. spare: [count]. */
+static void sort_keys(order_key *list, order_key *spare, size_t count) {
+  for (size_t at = 0; at < count; at += SHORT_RUN)
+    sort_short_run(list + at, count - at < SHORT_RUN ? count - at : SHORT_RUN);
+  order_key *from = list, *to = spare;
+  for (size_t run = SHORT_RUN; run < count; run *= 2) {
     for (size_t at = 0; at < count; at += 2 * run) {
       size_t left = count - at, both = left < 2 * run ? left : 2 * run;
-      merge(from + at, run < both ? run : both, both, to + at, before);
+      merge(from + at, run < both ? run : both, both, to + at);
     }
-    fragment *swapped = from;
+    order_key *swapped = from;
     from = to;
     to = swapped;
   }
   if (from != list) memcpy(list, from, count * sizeof *list);
 }
 
-void hl_sort_by_pixel(fragment *list, fragment *spare, size_t count, bool falling) {
+static bool is_opaque(const fragment *f, const float *least) { return f->opacity * least[f->mesh] >= 1; }
+
+/* Copies a pixel's fragments in the order of their keys, without those of which opaque ones before them cover
+ * all samples. Returns how many are left. */
+static size_t copy_uncovered(const fragment *list, const order_key *keys, size_t count, const float *least,
+                             fragment *to) {
+  size_t kept = 0;
+  uint32_t covered = 0;
+  for (size_t i = 0; i < count && covered != 0xffff; i++) {
+    const fragment *f = &list[keys[i].index];
+    if ((f->samples & ~covered) == 0) continue;
+    if (is_opaque(f, least)) covered |= f->samples;
+    to[kept++] = *f;
+  }
+  return kept;
+}
+
+size_t hl_sort_by_pixel(const fragment *list, size_t count, const fragment_order *order, order_key *keys,
+                        fragment *sorted) {
   uint32_t places[TILE_PIXELS + 1] = {0};
+  size_t kept = 0;
   for (size_t i = 0; i < count; i++) places[list[i].pixel + 1]++;
   for (int p = 0; p < TILE_PIXELS; p++) places[p + 1] += places[p];
-  for (size_t i = 0; i < count; i++) spare[places[list[i].pixel]++] = list[i];
-  memcpy(list, spare, count * sizeof *list);
-  for (size_t i = 0, end; i < count; i = end) { /* a place is now its pixel's end */
-    end = places[list[i].pixel];
-    sort_pixel(list + i, spare, end - i, falling ? is_above : is_below);
+  for (size_t i = 0; i < count; i++)
+    keys[places[list[i].pixel]++] = (order_key){
+        (uint64_t)ordered_bits(list[i].height, order->falling) << 32 | list[i].primitive, (uint32_t)i};
+  for (size_t p = 0, first = 0; p < TILE_PIXELS; first = places[p++]) { /* a place is now its pixel's end */
+    size_t own = places[p] - first;
+    sort_keys(keys + first, keys + count, own);
+    if (!order->slabs) {
+      kept += copy_uncovered(list, keys + first, own, order->least, sorted + kept);
+      continue;
+    }
+    for (size_t i = 0; i < own; i++) sorted[kept++] = list[keys[first + i].index];
   }
+  return kept;
 }
 
 /* Turns round the fragments of each pixel of a slab whose heights fall. */
@@ -66,23 +104,44 @@ static void let_rise(fragment *list, size_t count) {
   }
 }
 
-void hl_sort_by_slab(fragment *list, fragment *spare, size_t count, uint32_t *places, int slabs) {
+void hl_sort_by_slab(const fragment *list, size_t count, uint32_t *places, int slabs, fragment *sorted) {
   memset(places, 0, ((size_t)slabs + 2) * sizeof *places);
   for (size_t i = 0; i < count; i++) places[list[i].slab + 1]++;
   for (int s = 0; s <= slabs; s++) places[s + 1] += places[s];
-  for (size_t i = 0; i < count; i++) spare[places[list[i].slab]++] = list[i];
-  memcpy(list, spare, count * sizeof *list);
-  let_rise(list, count);
+  for (size_t i = 0; i < count; i++) sorted[places[list[i].slab]++] = list[i];
+  let_rise(sorted, count);
 }
 
 /* ---- opacities ---- */
 
+static int count_samples(uint32_t samples) {
+  int count = 0;
+  for (; samples != 0; samples &= samples - 1) count++;
+  return count;
+}
+
+/* The opacities of the opaque fragments that a pixel's begin with: fractions of the samples that those before
+ * them leave. Returns how many they are; *open: the samples that they leave. */
+static size_t resolve_opaque(fragment *list, size_t count, const float *least, uint32_t *open) {
+  size_t i = 0;
+  *open = 0xffff;
+  for (; i < count && is_opaque(&list[i], least); i++) {
+    int before = count_samples(*open), taken = count_samples(*open & list[i].samples);
+    list[i].opacity = before > 0 ? (float)taken / (float)before : 0;
+    *open &= ~(uint32_t)list[i].samples;
+  }
+  return i;
+}
+
 /* Finds the opacities of one pixel's fragments, which are in the order that the light or the eye meets them.
  * Those that take nothing get opacity 0. */
 static void resolve_pixel(fragment *list, size_t count, const float *least) {
-  float left[FRAGMENT_SAMPLES], sum = FRAGMENT_SAMPLES;
-  for (int s = 0; s < FRAGMENT_SAMPLES; s++) left[s] = 1;
-  for (size_t i = 0; i < count; i++) {
+  uint32_t open;
+  size_t first = resolve_opaque(list, count, least, &open);
+  if (first == count) return;
+  float left[FRAGMENT_SAMPLES], sum = (float)count_samples(open);
+  for (int s = 0; s < FRAGMENT_SAMPLES; s++) left[s] = (float)(open >> s & 1);
+  for (size_t i = first; i < count; i++) {
     float own = list[i].opacity, taken = 0, after = 0;
     for (int s = 0; s < FRAGMENT_SAMPLES; s++) {
       float part = list[i].samples >> s & 1 ? left[s] * own : 0;
@@ -104,7 +163,7 @@ static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
   uint32_t covered = 0;
   for (size_t i = 0; i < count; i++) {
     bool begins = i == 0 || list[i].slab != list[i - 1].slab;
-    covered = (begins ? 0 : covered) | (list[i].opacity * least[list[i].mesh] >= 1 ? list[i].samples : 0u);
+    covered = (begins ? 0 : covered) | (is_opaque(&list[i], least) ? list[i].samples : 0u);
     list[i].primitive = covered ==
                         0xffff; /* of a light's fragments the primitive is not asked for any more */
   }
@@ -116,12 +175,6 @@ static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
     else list[kept++] = list[i];
   }
   return kept;
-}
-
-static int count_samples(uint32_t samples) {
-  int count = 0;
-  for (; samples != 0; samples &= samples - 1) count++;
-  return count;
 }
 
 /* Makes one fragment of neighbouring triangles of a coloured pane, which cover different samples of a pixel:
@@ -143,12 +196,13 @@ static size_t join_panes(fragment *list, size_t count, const float *least) {
   return kept;
 }
 
-size_t hl_resolve_fragments(fragment *list, size_t count, const float *least, bool slabs) {
+size_t hl_resolve_fragments(fragment *list, size_t count, const fragment_order *order) {
+  const float *least = order->least;
   size_t kept = 0;
   for (size_t i = 0, end; i < count; i = end) {
     for (end = i + 1; end < count && list[end].pixel == list[i].pixel;) end++;
     size_t left = join_panes(list + i, end - i, least);
-    if (slabs) left = resolve_slabs(list + i, left, least);
+    if (order->slabs) left = resolve_slabs(list + i, left, least);
     else resolve_pixel(list + i, left, least);
     for (size_t k = i; k < i + left; k++)
       if (list[k].opacity > 0) list[kept++] = list[k];

@@ -10,16 +10,32 @@
 #include "surface/fragment.h"
 #include "view/view.h"
 
-/* Sorts by pixels, and within a pixel by rising or falling heights. spare: as large as the list. */
-void hl_sort_by_pixel(fragment *list, fragment *spare, size_t count, bool falling);
+/* How the fragments of a view are ordered and composited. */
+typedef struct fragment_order {
+  const float *least; /* [mesh_count]; borrowed; the least fraction of their opacity that meshes take of any
+                         colour of light */
+  bool falling;       /* the view meets great heights first */
+  bool slabs;         /* of a light's view whose buffer is also used for rays of other directions */
+} fragment_order;
+
+/* A fragment's place in the order of its pixel: keys are sorted in place of fragments. */
+typedef struct order_key {
+  uint64_t key;   /* the height, then the primitive: less comes first */
+  uint32_t index; /* in the list */
+} order_key;
+
+/* Sorts by pixels, and within a pixel in the order that the view meets the fragments. Leaves out those whose
+ * samples opaque fragments before them cover, except where order->slabs; returns how many are left. keys: [2
+ * count], for use here; sorted: [count]. */
+size_t hl_sort_by_pixel(const fragment *list, size_t count, const fragment_order *order, order_key *keys,
+                        fragment *sorted);
 
 /* Sorts by slabs fragments that are sorted by pixels; within a slab by pixels, then by rising heights.
- * places: [slabs + 2], for use here; slabs: the greatest number that a slab may have. */
-void hl_sort_by_slab(fragment *list, fragment *spare, size_t count, uint32_t *places, int slabs);
+ * places: [slabs + 2], for use here; slabs: the greatest number that a slab may have; sorted: [count]. */
+void hl_sort_by_slab(const fragment *list, size_t count, uint32_t *places, int slabs, fragment *sorted);
 
 /* Finds the opacities of fragments, which are sorted by pixels, and keeps those that take anything; returns
- * how many. least: [mesh_count]; the least fraction of their opacity that meshes take of any colour of light.
- * slabs: of a light's view whose buffer is also used for rays of other directions. */
-size_t hl_resolve_fragments(fragment *list, size_t count, const float *least, bool slabs);
+ * how many. */
+size_t hl_resolve_fragments(fragment *list, size_t count, const fragment_order *order);
 
 #endif

@@ -21,38 +21,58 @@ typedef struct bin_work {
   int tiles_x, tiles_y;
 } bin_work;
 
-static uint16_t clamp_tile(double pixels, int tiles) {
-  double tile = floor(pixels / TILE);
+static uint16_t clamp_tile(int32_t tile, int tiles) {
   return (uint16_t)(tile < 0 ? 0 : tile >= tiles ? tiles - 1 : tile);
 }
 
-static void set_span(const bin_work *work, const seen_bounds *bounds, tile_span *span) {
-  *span = (tile_span){clamp_tile(bounds->u0, work->tiles_x), clamp_tile(bounds->v0, work->tiles_y),
-                      clamp_tile(bounds->u1, work->tiles_x), clamp_tile(bounds->v1, work->tiles_y)};
+/* Twice a triangle's area: below 0 where it faces the view. */
+static int64_t area_of(const int32_t x[3], const int32_t y[3]) {
+  return (int64_t)(x[1] - x[0]) * (y[2] - y[0]) - (int64_t)(x[2] - x[0]) * (y[1] - y[0]);
 }
 
-/* Whether a triangle turns its back to the view: twice its area in pixels has the other sign. */
-static bool faces_away(const seen_polygon *polygon) {
-  int64_t x1 = polygon->x[1] - polygon->x[0], y1 = polygon->y[1] - polygon->y[0],
-          x2 = polygon->x[2] - polygon->x[0], y2 = polygon->y[2] - polygon->y[0];
-  return x1 * y2 - x2 * y1 > 0;
+static void set_triangle_span(const bin_work *work, const int32_t *x, const int32_t *y, int corners,
+                              tile_span *span) {
+  const view *view = work->seen->view;
+  int32_t x0 = x[0], y0 = y[0], x1 = x[0], y1 = y[0];
+  for (int i = 1; i < corners; i++) {
+    x0 = x[i] < x0 ? x[i] : x0;
+    x1 = x[i] > x1 ? x[i] : x1;
+    y0 = y[i] < y0 ? y[i] : y0;
+    y1 = y[i] > y1 ? y[i] : y1;
+  }
+  if (x1 < 0 || y1 < 0 || x0 >= view->width * SUBPIXELS || y0 >= view->height * SUBPIXELS) return;
+  enum { TILE_SHIFT = 12 };
+  _Static_assert(1 << TILE_SHIFT == TILE * SUBPIXELS, "a shift divides by the size of a tile");
+  *span = (tile_span){
+      clamp_tile(x0 >> TILE_SHIFT, work->tiles_x), clamp_tile(y0 >> TILE_SHIFT, work->tiles_y),
+      clamp_tile(x1 >> TILE_SHIFT, work->tiles_x), clamp_tile(y1 >> TILE_SHIFT, work->tiles_y)};
 }
 
 static void find_triangle_span(const bin_work *work, uint32_t triangle, binned wanted, tile_span *span) {
+  const uint32_t *vertex = work->seen->all->triangles[triangle];
+  int32_t x[3], y[3];
   seen_polygon polygon;
-  hl_see_triangle(work->seen, triangle, &polygon);
-  if (polygon.count == 0 || (wanted == BINNED_FRONTS && faces_away(&polygon))) return;
-  int32_t x0 = INT32_MAX, y0 = INT32_MAX, x1 = INT32_MIN, y1 = INT32_MIN;
-  for (int i = 0; i < polygon.count; i++) {
-    x0 = polygon.x[i] < x0 ? polygon.x[i] : x0;
-    x1 = polygon.x[i] > x1 ? polygon.x[i] : x1;
-    y0 = polygon.y[i] < y0 ? polygon.y[i] : y0;
-    y1 = polygon.y[i] > y1 ? polygon.y[i] : y1;
+  bool cut = false;
+  for (int i = 0; i < 3; i++) {
+    x[i] = work->seen->at[vertex[i]][0], y[i] = work->seen->at[vertex[i]][1];
+    cut = cut || x[i] == VERTEX_IS_CUT;
   }
-  const view *view = work->seen->view;
-  if (x1 < 0 || y1 < 0 || x0 >= view->width * SUBPIXELS || y0 >= view->height * SUBPIXELS) return;
-  const double pixel = 1.0 / SUBPIXELS;
-  set_span(work, &(seen_bounds){x0 * pixel, y0 * pixel, x1 * pixel, y1 * pixel}, span);
+  if (cut) {
+    hl_see_triangle(work->seen, triangle, &polygon);
+    if (polygon.count > 0 && (wanted != BINNED_FRONTS || area_of(polygon.x, polygon.y) <= 0))
+      set_triangle_span(work, polygon.x, polygon.y, polygon.count, span);
+  } else if (wanted != BINNED_FRONTS || area_of(x, y) <= 0) {
+    set_triangle_span(work, x, y, 3, span);
+  }
+}
+
+static void set_sphere_span(const bin_work *work, const seen_bounds *bounds, tile_span *span) {
+  const double limit = 1 << 20; /* tiles: whole numbers hold them */
+  int32_t at[4];
+  const double ends[4] = {bounds->u0, bounds->v0, bounds->u1, bounds->v1};
+  for (int i = 0; i < 4; i++) at[i] = (int32_t)floor(fmin(fmax(ends[i] / TILE, -limit), limit));
+  *span = (tile_span){clamp_tile(at[0], work->tiles_x), clamp_tile(at[1], work->tiles_y),
+                      clamp_tile(at[2], work->tiles_x), clamp_tile(at[3], work->tiles_y)};
 }
 
 static void find_span(const bin_work *work, uint32_t primitive, binned wanted, tile_span *span) {
@@ -62,7 +82,7 @@ static void find_span(const bin_work *work, uint32_t primitive, binned wanted, t
   if (wanted == BINNED_NOTHING) return;
   if (primitive < all->triangle_count) find_triangle_span(work, primitive, wanted, span);
   else if (hl_see_sphere(work->seen->view, all->spheres[primitive - all->triangle_count], &bounds))
-    set_span(work, &bounds, span);
+    set_sphere_span(work, &bounds, span);
 }
 
 static void task_range(const bin_work *work, size_t index, uint32_t *first, uint32_t *end) {

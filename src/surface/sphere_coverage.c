@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "surface/sample_rows.h"
+
 enum { SAMPLES = 16 };
 
 /* The ray A + s B of a pixel, from the sphere's centre; both are linear in the pixel. */
@@ -58,7 +60,7 @@ static quadratic quadratic_of(const centred_rays *rays, double u, double v) {
 static uint32_t cover_pixel(const quadratic *q, double u, double v) {
   uint32_t bits = 0;
   for (int s = 0; s < SAMPLES; s++) {
-    double x = u + (s + 0.5) / SAMPLES, y = v + (hl_sample_row[s] + 0.5) / SAMPLES;
+    double x = u + (s + 0.5) / SAMPLES, y = v + (SAMPLE_ROWS[s] + 0.5) / SAMPLES;
     double value = q->c[0] + x * (q->c[1] + x * q->c[3] + y * q->c[4]) + y * (q->c[2] + y * q->c[5]);
     bits |= (uint32_t)(value >= 0) << s;
   }

@@ -1,6 +1,7 @@
 /* surface/surface_cuts.c - see surface_cuts.h. */
 #include "surface/surface_cuts.h"
 
+#include "surface/sample_rows.h"
 #include "surface/sphere_coverage.h"
 
 cut_answer hl_surface_cut(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
@@ -39,7 +40,7 @@ uint16_t hl_left_samples(const seen_part *part, int x, int y, uint16_t samples) 
   for (int s = 0; s < FRAGMENT_SAMPLES; s++) {
     if ((samples >> s & 1) == 0) continue;
     vec3 point = point_of(part, x + (s + 0.5) / FRAGMENT_SAMPLES,
-                          y + (hl_sample_row[s] + 0.5) / FRAGMENT_SAMPLES);
+                          y + (SAMPLE_ROWS[s] + 0.5) / FRAGMENT_SAMPLES);
     if (hl_cuts_leave(part->all->cuts, part->all->cut_count, point)) left |= (uint16_t)(1u << s);
   }
   return left;

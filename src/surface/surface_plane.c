@@ -1,6 +1,8 @@
 /* surface/surface_plane.c - see surface_plane.h. */
 #include "surface/surface_plane.h"
 
+#include "surface/small_triangles.h"
+
 static void set_linear(double f[3], vec3 normal, vec3 at, vec3 by_u, vec3 by_v) {
   f[0] = vec3_dot(normal, at), f[1] = vec3_dot(normal, by_u), f[2] = vec3_dot(normal, by_v);
 }
@@ -49,13 +51,9 @@ double hl_plane_height(const surface_plane *plane, double u, double v) {
                                                    hl_plane_linear(plane->climb, u, v);
 }
 
-/* How steep a surface may be, in frame units for each pixel: one that light almost grazes would be delayed
- * without end, and it is hardly lit. */
-static const double STEEPEST = 12;
-
 double hl_plane_slope(const surface_plane *plane, double u, double v) {
   double height = hl_plane_height(plane, u, v);
   double slope = fabs(hl_plane_height(plane, u + 1, v) - height) +
                  fabs(hl_plane_height(plane, u, v + 1) - height);
-  return slope < STEEPEST ? slope : STEEPEST; /* not a number: the steepest */
+  return slope < STEEPEST_SLOPE ? slope : STEEPEST_SLOPE; /* not a number: the steepest */
 }

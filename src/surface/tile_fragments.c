@@ -1,0 +1,461 @@
+/* surface/tile_fragments.c - see tile_fragments.h. */
+#include "surface/tile_fragments.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+#include "mesh/mesh.h"
+#include "surface/sample_rows.h"
+#include "surface/sphere_coverage.h"
+#include "surface/surface_cuts.h"
+#include "surface/surface_plane.h"
+
+/* The numbers of bits of four words of 16 bits. */
+static uint64_t count_bits(uint64_t words) {
+  const uint64_t pairs = 0x5555555555555555u, fours = 0x3333333333333333u, eights = 0x0f0f0f0f0f0f0f0fu;
+  words -= words >> 1 & pairs;
+  words = (words & fours) + (words >> 2 & fours);
+  words = (words + (words >> 4)) & eights;
+  return (words + (words >> 8)) & 0x00ff00ff00ff00ffu;
+}
+
+/* The sum of the columns, or rows, of samples: bit b of them is set for the samples in word b of `set`. */
+static int sum_places(uint16_t samples, uint64_t set) {
+  uint64_t count = count_bits(samples * 0x0001000100010001u & set);
+  return (int)((count & 255) + 2 * (count >> 16 & 255) + 4 * (count >> 32 & 255) + 8 * (count >> 48));
+}
+
+void hl_fragment_middle(uint16_t samples, double *u, double *v) {
+  int count = (int)count_bits(samples), x = sum_places(samples, 0xff00f0f0ccccaaaau),
+      y = sum_places(samples, SAMPLE_ROW_BITS);
+  *u = ((double)x / count + 0.5) / FRAGMENT_SAMPLES;
+  *v = ((double)y / count + 0.5) / FRAGMENT_SAMPLES;
+}
+
+/* Room for so many more fragments of a tile. */
+static bool make_room(hl_context *context, fragment_worker *worker, size_t more) {
+  size_t wanted = worker->count + more;
+  if (wanted <= worker->room) return true;
+  size_t larger = wanted > 2 * worker->room ? wanted : 2 * worker->room;
+  fragment *scratch = hl_reallocate(context, worker->scratch, larger * 2, sizeof *scratch);
+  if (scratch != NULL) worker->scratch = scratch;
+  order_key *keys = scratch != NULL ? hl_reallocate(context, worker->keys, larger * 2, sizeof *keys) : NULL;
+  worker->failed = keys == NULL;
+  if (worker->failed) return false;
+  worker->keys = keys;
+  worker->room = larger;
+  return true;
+}
+
+static bool make_room_for_tile(hl_context *context, fragment_worker *worker, size_t more) {
+  size_t wanted = worker->out_count + more;
+  if (wanted <= worker->out_room) return true;
+  size_t larger = wanted > 2 * worker->out_room ? wanted : 2 * worker->out_room;
+  fragment *out = hl_reallocate(context, worker->out, larger, sizeof *out);
+  worker->failed = out == NULL;
+  if (worker->failed) return false;
+  worker->out = out;
+  worker->out_room = larger;
+  return true;
+}
+
+/* The pixel's number, block after block. */
+static uint8_t number_of_pixel(int column, int row) {
+  return (uint8_t)((row / BLOCK * 4 + column / BLOCK) * BLOCK_PIXELS + row % BLOCK * BLOCK + column % BLOCK);
+}
+
+static int32_t slab_of(const fragments_source *source, double height) {
+  double sheet = ceil(height / source->sheets->spacing);
+  return (int32_t)fmin(fmax(sheet, 1), source->sheets->count - 1);
+}
+
+/* Marks a slab about a pixel, block after block. */
+static void mark(const fragment_work *work, fragment_worker *worker, int pixel, int32_t slab) {
+  worker->near[slab] |= work->near[pixel];
+  worker->nearest = slab < worker->nearest ? slab : worker->nearest;
+  worker->farthest = slab > worker->farthest ? slab : worker->farthest;
+}
+
+static void mark_tile(const fragment_work *work, int x, int y, int32_t slab) {
+  const fragments_source *source = work->source;
+  if (x < 0 || y < 0 || x >= work->tiles_x || y >= work->tiles_y) return;
+  size_t tile = (size_t)y * (size_t)work->tiles_x + (size_t)x;
+  uint64_t *word = source->marks + (size_t)slab * (size_t)source->tile_words + tile / 64;
+  uint64_t bit = (uint64_t)1 << tile % 64;
+  if ((__atomic_load_n(word, __ATOMIC_RELAXED) & bit) == 0) __atomic_fetch_or(word, bit, __ATOMIC_RELAXED);
+}
+
+/* Writes the marks about a tile's pixels, and clears the worker's. */
+static void write_marks(const fragment_work *work, fragment_worker *worker, int tile_x, int tile_y) {
+  for (int32_t slab = worker->nearest; slab <= worker->farthest; slab++) {
+    uint32_t near = work->source->marks != NULL ? worker->near[slab] : 0;
+    for (; near != 0; near &= near - 1) {
+      int beside = __builtin_ctz(near);
+      mark_tile(work, tile_x + beside % 3 - 1, tile_y + beside / 3 - 1, slab);
+    }
+    worker->near[slab] = 0;
+  }
+  worker->nearest = INT32_MAX;
+  worker->farthest = -1;
+}
+
+static double clamped(float opacity) { return fmin(fmax((double)opacity, 0), 1); }
+
+/* The fraction of light that a mesh's surface stops, at the middle of a triangle. */
+static float opacity_of(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
+  double opacity = mesh->scene->opacity, sum = 0;
+  if (primitive >= all->triangle_count) {
+    if (mesh->sphere_colors == NULL) return (float)opacity;
+    return (float)(opacity *
+                   clamped(mesh->sphere_colors[primitive - all->triangle_count - mesh->first_sphere][3]));
+  }
+  if (mesh->face_colors != NULL)
+    return (float)(opacity * clamped(mesh->face_colors[primitive - mesh->first_triangle][3]));
+  if (mesh->colors == NULL) return (float)opacity;
+  for (int i = 0; i < 3; i++)
+    sum += clamped(mesh->colors[all->triangles[primitive][i] - mesh->first_vertex][3]);
+  return (float)(opacity * sum / 3);
+}
+
+/* Adds the samples of an opaque fragment to those that its pixel got last, where both are of one mesh and
+ * fill the same slabs: there they take what one surface takes. Returns whether it did. */
+static bool join_latest(fragment_worker *worker, const fragment *f, int32_t first, int32_t last) {
+  latest_fragments *latest = &worker->latest[f->pixel];
+  fragment *own = worker->scratch + latest->end - 1;
+  if (latest->end > 0 && own->mesh == f->mesh && own->slab == first && latest->last == last) {
+    for (int32_t i = 0; i <= last - first; i++) own[i].samples |= f->samples;
+    return true;
+  }
+  *latest = (latest_fragments){(uint32_t)worker->count + 1, last};
+  return false;
+}
+
+/* Adds a fragment to the slabs first to last of a light's view, from its delayed height on. Derived: n slabs
+ * that take 1 - (1 - a)^(1/n) each take a together. */
+static void add_to_slabs(const fragment_work *work, fragment_worker *worker, fragment f, double start,
+                         int32_t first, int32_t last) {
+  if (work->least[f.mesh] < 1) last = first; /* opacities by colour cannot be shared out among slabs */
+  if (last - first >= MOST_SLABS) last = first + MOST_SLABS - 1;
+  if (f.opacity >= 1 && work->least[f.mesh] >= 1 && join_latest(worker, &f, first, last)) return;
+  if (last > first && f.opacity < 1) f.opacity = 1 - powf(1 - f.opacity, 1.0f / (float)(last - first + 1));
+  for (int32_t slab = first; slab <= last; slab++) {
+    f.slab = slab;
+    f.height = (float)(start + (slab - first) * work->source->sheets->spacing);
+    worker->scratch[worker->count++] = f;
+    mark(work, worker, f.pixel, slab);
+  }
+}
+
+/* Adds a fragment of a light's view: to the slab at its delayed height, and to those above it that the plane
+ * crosses within the pixel. Where light leaves a closed mesh it lights nothing: there is no delay. */
+static void add_of_light(const fragment_work *work, fragment_worker *worker, const surface_plane *plane,
+                         fragment f, double slope) {
+  const fragments_source *source = work->source;
+  double delay = plane->leaving ? 0 : source->delay * slope + LEAST_DELAY * source->sheets->spacing;
+  double start = f.height + delay, end = fmin(f.height + source->rise * slope, plane->highest) + delay;
+  add_to_slabs(work, worker, f, start, slab_of(source, start), slab_of(source, end));
+}
+
+/* A pixel of a view, and the middle of the samples that a surface covers of it. */
+typedef struct covered_pixel {
+  int x, y;
+  double u, v;
+} covered_pixel;
+
+static covered_pixel pixel_of(int x, int y, uint16_t samples) {
+  covered_pixel pixel = {x, y, 0, 0};
+  hl_fragment_middle(samples, &pixel.u, &pixel.v);
+  pixel.u += x;
+  pixel.v += y;
+  return pixel;
+}
+
+static void add_pixel(const fragment_work *work, fragment_worker *worker, const surface_plane *plane,
+                      fragment f, const covered_pixel *at) {
+  const fragments_source *source = work->source;
+  double height = hl_plane_height(plane, at->u, at->v);
+  height = fmin(fmax(height, plane->lowest), plane->highest); /* not a number: the lowest */
+  f.slab = slab_of(source, height);
+  f.height = (float)height;
+  f.pixel = number_of_pixel(at->x % TILE, at->y % TILE);
+  mark(work, worker, f.pixel, f.slab);
+  if (f.opacity <= 0) return;
+  if (source->of_light) add_of_light(work, worker, plane, f, hl_plane_slope(plane, at->u, at->v));
+  else worker->scratch[worker->count++] = f;
+}
+
+/* The part of a primitive in a tile: what its samples cover, and what cuts leave of that. */
+typedef struct tile_part {
+  int tile_x, tile_y;
+  bool is_cut; /* cuts remove some of the primitive */
+  pixel_span span;
+  uint16_t covered[TILE_PIXELS];
+} tile_part;
+
+/* The next pixel of the view, after pixel number *at of the tile, of which samples are covered. */
+static bool next_pixel(const view *view, const tile_part *part, const seen_part *seen, int *at, fragment *f,
+                       covered_pixel *pixel) {
+  const pixel_span *span = &part->span;
+  int width = span->x1 - span->x0 + 1, count = width * (span->y1 - span->y0 + 1);
+  for (; *at < count; ++*at) {
+    int column = span->x0 + *at % width, row = span->y0 + *at / width;
+    int x = part->tile_x * TILE + column, y = part->tile_y * TILE + row;
+    f->samples = part->covered[row * TILE + column];
+    if (f->samples == 0 || x >= view->width || y >= view->height) continue;
+    f->samples = hl_left_samples(seen, x, y, f->samples);
+    if (f->samples == 0) continue;
+    *pixel = pixel_of(x, y, f->samples);
+    ++*at;
+    return true;
+  }
+  return false;
+}
+
+static void add_triangle(const fragment_work *work, fragment_worker *worker, tile_part *part, fragment f) {
+  const fragments_source *source = work->source;
+  const surface_mesh *mesh = &source->surfaces->meshes[f.mesh];
+  seen_polygon polygon;
+  surface_plane plane;
+  covered_pixel pixel;
+  int at = 0;
+  hl_see_triangle(work->seen, f.primitive, &polygon);
+  if (!hl_cover_tile(&polygon, part->tile_x, part->tile_y, &part->span, part->covered)) return;
+  hl_plane_of_triangle(source->view, source->sheets, source->surfaces, f.primitive, &plane);
+  plane.leaving = mesh->scene->mesh->closed && !mesh->is_cut &&
+                  hl_plane_linear(plane.way, part->tile_x * TILE + TILE / 2, part->tile_y * TILE + TILE / 2) >
+                      0;
+  const seen_part seen = {part->is_cut ? source->surfaces : NULL, source->view, &plane, NULL, false};
+  while (next_pixel(source->view, part, &seen, &at, &f, &pixel)) add_pixel(work, worker, &plane, f, &pixel);
+}
+
+/* The side of a sphere that rays enter or leave by. */
+static void add_side(const fragment_work *work, fragment_worker *worker, const tile_part *part, fragment f,
+                     bool leaving) {
+  const fragments_source *source = work->source;
+  const float *sphere = source->surfaces->spheres[f.primitive - source->surfaces->triangle_count];
+  covered_pixel pixel;
+  int at = 0;
+  const seen_part seen = {part->is_cut ? source->surfaces : NULL, source->view, NULL, sphere, leaving};
+  while (next_pixel(source->view, part, &seen, &at, &f, &pixel)) {
+    surface_plane plane;
+    vec3 point;
+    if (!hl_meet_sphere(source->view, sphere, pixel.u, pixel.v, leaving, &point)) continue;
+    hl_plane_of_sphere(source->view, source->sheets, sphere, point, &plane);
+    plane.leaving = leaving && !part->is_cut;
+    add_pixel(work, worker, &plane, f, &pixel);
+  }
+}
+
+/* A view sees the far side of an opaque sphere only from within. */
+static bool has_far_side(const fragment_work *work, const float sphere[4], float opacity) {
+  const view *view = work->source->view;
+  if (work->source->rise > 0 || opacity < 1) return true;
+  vec3 away = vec3_subtract(view->origin, hl_surface_vector(sphere));
+  return view->perspective && vec3_length(away) <= 1.01 * (double)sphere[3];
+}
+
+static void add_sphere(const fragment_work *work, fragment_worker *worker, tile_part *part, fragment f) {
+  const fragments_source *source = work->source;
+  const float *sphere = source->surfaces->spheres[f.primitive - source->surfaces->triangle_count];
+  seen_bounds bounds;
+  if (!hl_see_sphere(source->view, sphere, &bounds) ||
+      !hl_cover_sphere(source->view, sphere, &bounds, part->tile_x, part->tile_y, &part->span, part->covered))
+    return;
+  add_side(work, worker, part, f, false);
+  if (part->is_cut || has_far_side(work, sphere, f.opacity)) add_side(work, worker, part, f, true);
+}
+
+static fragment fragment_of(const fragment_work *work, size_t mesh_index, uint32_t primitive) {
+  const fragments_source *source = work->source;
+  const surface_mesh *mesh = &source->surfaces->meshes[mesh_index];
+  bool counts = source->of_light ? mesh->scene->casts_shadow : mesh->scene->visible;
+  return (fragment){.primitive = primitive,
+                    .opacity = counts ? opacity_of(source->surfaces, mesh, primitive) : 0,
+                    .mesh = (uint16_t)mesh_index};
+}
+
+/* Adds a primitive's fragments in a tile. */
+static void add_primitive(const fragment_work *work, fragment_worker *worker, tile_part *part,
+                          size_t mesh_index, uint32_t primitive) {
+  if (!make_room(work->source->context, worker, 2 * TILE_PIXELS * MOST_SLABS)) return;
+  const surfaces *all = work->source->surfaces;
+  cut_answer cut = hl_surface_cut(all, &all->meshes[mesh_index], primitive);
+  if (cut == CUT_LEAVES_NOTHING) return;
+  part->is_cut = cut == CUT_LEAVES_SOME;
+  fragment f = fragment_of(work, mesh_index, primitive);
+  if (primitive < work->source->surfaces->triangle_count) add_triangle(work, worker, part, f);
+  else add_sphere(work, worker, part, f);
+}
+
+/* ---- small triangles ---- */
+
+/* Up to sixteen triangles of one mesh. */
+typedef struct small_batch {
+  small_triangles triangles;
+  small_cover cover;
+  small_view view;
+  uint32_t primitives[SMALL_TRIANGLES];
+  float opacity[SMALL_TRIANGLES];
+  int count;
+  size_t mesh;
+} small_batch;
+
+/* Adds a triangle to a batch; false where the view or the scene's cuts cut it. */
+static bool collect(const fragment_work *work, const tile_part *part, small_batch *batch,
+                    uint32_t primitive) {
+  const surfaces *all = work->source->surfaces;
+  const uint32_t *vertex = all->triangles[primitive];
+  int32_t left = part->tile_x * TILE * SUBPIXELS, top = part->tile_y * TILE * SUBPIXELS;
+  int lane = batch->count;
+  if (hl_surface_cut(all, &all->meshes[batch->mesh], primitive) != CUT_LEAVES_ALL) return false;
+  for (int i = 0; i < 3; i++) {
+    const int32_t *at = work->seen->at[vertex[i]];
+    const float *position = all->positions[vertex[i]];
+    if (at[0] == VERTEX_IS_CUT) return false;
+    batch->triangles.x[i][lane] = at[0] - left;
+    batch->triangles.y[i][lane] = at[1] - top;
+    for (int axis = 0; axis < 3; axis++) batch->triangles.position[i][axis][lane] = position[axis];
+  }
+  batch->primitives[batch->count++] = primitive;
+  return true;
+}
+
+/* Adds what triangle number `lane` of a batch covers of its pixel number k. */
+static void add_small_pixel(const fragment_work *work, fragment_worker *worker, const small_batch *batch,
+                            int lane, int k) {
+  const small_cover *cover = &batch->cover;
+  const fragment f = {.height = cover->height[k][lane],
+                      .opacity = batch->opacity[lane],
+                      .primitive = batch->primitives[lane],
+                      .slab = cover->slab[k][lane],
+                      .samples = cover->samples[k][lane],
+                      .mesh = (uint16_t)batch->mesh,
+                      .pixel = (uint8_t)cover->pixel[k][lane]};
+  mark(work, worker, f.pixel, f.slab);
+  if (f.opacity <= 0) return;
+  if (work->source->of_light)
+    add_to_slabs(work, worker, f, (double)cover->start[k][lane], cover->first_slab[k][lane],
+                 cover->last_slab[k][lane]);
+  else worker->scratch[worker->count++] = f;
+}
+
+/* The opacities of a batch's triangles. */
+static void find_opacities(const fragment_work *work, small_batch *batch) {
+  for (int lane = 0; lane < batch->count; lane++)
+    batch->opacity[lane] = fragment_of(work, batch->mesh, batch->primitives[lane]).opacity;
+}
+
+/* Adds a batch's triangles: the small ones together, the others one by one. */
+static void add_batch(const fragment_work *work, fragment_worker *worker, tile_part *part,
+                      small_batch *batch) {
+  if (batch->count == 0 ||
+      !make_room(work->source->context, worker, SMALL_TRIANGLES * SMALL_PIXELS * MOST_SLABS))
+    return;
+  uint32_t all = (1u << batch->count) - 1,
+           small = work->source->functions->cover_small(&batch->view, &batch->triangles, &batch->cover);
+  find_opacities(work, batch);
+  for (int k = 0; small != 0 && k < SMALL_PIXELS; k++)
+    for (uint32_t left = batch->cover.covered[k] & all; left != 0; left &= left - 1)
+      add_small_pixel(work, worker, batch, __builtin_ctz(left), k);
+  for (uint32_t left = all & ~small; left != 0 && !worker->failed; left &= left - 1)
+    add_primitive(work, worker, part, batch->mesh, batch->primitives[__builtin_ctz(left)]);
+  batch->count = 0;
+}
+
+/* ---- all primitives of a tile ---- */
+
+static int least(int a, int b) { return a < b ? a : b; }
+
+static void add_primitives(const fragment_work *work, fragment_worker *worker, tile_part *part, size_t tile) {
+  const surfaces *all = work->source->surfaces;
+  uint32_t end = 0; /* of the mesh's triangles, or spheres */
+  small_batch batch;
+  memset(&batch.triangles, 0, sizeof batch.triangles); /* lanes that stay empty */
+  batch.view = work->small;
+  batch.view.columns = least(work->source->view->width - part->tile_x * TILE, TILE);
+  batch.view.rows = least(work->source->view->height - part->tile_y * TILE, TILE);
+  batch.count = 0;
+  batch.mesh = 0;
+  for (uint32_t i = work->bins->first[tile]; i < work->bins->first[tile + 1] && !worker->failed; i++) {
+    uint32_t primitive = work->bins->primitives[i];
+    if (primitive >= end) {
+      add_batch(work, worker, part, &batch);
+      batch.mesh = hl_surface_mesh_of(all, primitive);
+      batch.view.closed = all->meshes[batch.mesh].scene->mesh->closed && !all->meshes[batch.mesh].is_cut;
+      end = hl_surface_mesh_end(all, batch.mesh, primitive);
+    }
+    if (primitive >= all->triangle_count || !collect(work, part, &batch, primitive))
+      add_primitive(work, worker, part, batch.mesh, primitive);
+    if (batch.count == SMALL_TRIANGLES) add_batch(work, worker, part, &batch);
+  }
+  if (!worker->failed) add_batch(work, worker, part, &batch);
+}
+
+void hl_make_tile_fragments(void *data, size_t tile, int worker_index) {
+  const fragment_work *work = data;
+  const fragments_source *source = work->source;
+  fragment_worker *worker = &work->workers[worker_index];
+  const fragment_order order = {work->least, source->falling, source->rise > 0};
+  tile_part part = {.tile_x = (int)(tile % (size_t)work->tiles_x),
+                    .tile_y = (int)(tile / (size_t)work->tiles_x)};
+  work->tiles[tile] = (tile_record){.worker = worker_index};
+  worker->count = 0;
+  memset(worker->latest, 0, sizeof worker->latest);
+  if (worker->failed) return;
+  add_primitives(work, worker, &part, tile);
+  write_marks(work, worker, part.tile_x, part.tile_y);
+  if (worker->failed || worker->count == 0) return;
+  fragment *sorted = worker->scratch + worker->room;
+  size_t kept = hl_sort_by_pixel(worker->scratch, worker->count, &order, worker->keys, sorted);
+  kept = hl_resolve_fragments(sorted, kept, &order);
+  if (!make_room_for_tile(source->context, worker, kept)) return;
+  hl_sort_by_slab(sorted, kept, worker->places, source->sheets->count, worker->out + worker->out_count);
+  work->tiles[tile].at = worker->out_count;
+  work->tiles[tile].count = (uint32_t)kept;
+  worker->out_count += kept;
+}
+
+/* ---- begin and end ---- */
+
+static void set_small_view(const fragments_source *source, small_view *small) {
+  const view *view = source->view;
+  const sheet_stack *sheets = source->sheets;
+  *small = (small_view){.first = (float)sheets->first,
+                        .spacing = (float)sheets->spacing,
+                        .last_slab = (float)(sheets->count - 1),
+                        .of_light = source->of_light,
+                        .perspective = view->perspective,
+                        .delay = (float)source->delay,
+                        .rise = (float)source->rise};
+  vec3_store(small->normal, sheets->normal);
+  vec3_store(small->from, view->perspective ? view->origin : view->direction);
+  vec3_store(small->du, view->du);
+  vec3_store(small->dv, view->dv);
+  vec3_store(small->depth, view->inverse.row[0]);
+}
+
+/* The tiles that look-ups about a pixel may read: its own, and those beside it by less than three pixels. */
+static uint16_t tiles_near(int column, int row) {
+  uint32_t across = 2u | (column < 3) | (uint32_t)(column >= TILE - 3) << 2;
+  return (uint16_t)((row < 3 ? across : 0) | across << 3 | (row >= TILE - 3 ? across << 6 : 0));
+}
+
+void hl_fragment_work_begin(fragment_work *work) {
+  set_small_view(work->source, &work->small);
+  for (int row = 0; row < TILE; row++)
+    for (int column = 0; column < TILE; column++)
+      work->near[number_of_pixel(column, row)] = tiles_near(column, row);
+}
+
+bool hl_fragment_worker_begin(hl_context *context, fragment_worker *worker, int sheets) {
+  worker->places = hl_allocate(context, (size_t)sheets + 2, sizeof *worker->places);
+  worker->near = hl_allocate_zeroed(context, (size_t)sheets + 1, sizeof *worker->near);
+  worker->nearest = INT32_MAX;
+  worker->farthest = -1;
+  return worker->places != NULL && worker->near != NULL;
+}
+
+void hl_fragment_worker_end(hl_context *context, fragment_worker *worker) {
+  void *owned[] = {worker->scratch, worker->keys, worker->places, worker->near, worker->out};
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) hl_release(context, owned[i]);
+}

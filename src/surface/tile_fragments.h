@@ -1,0 +1,87 @@
+/* surface/tile_fragments.h - rasterises the triangles and spheres of a tile into fragments.
+ *
+ * In: primitives sorted by tiles (primitive_bins.h), and where the view sees their corners (seen.h). Out: the
+ * tile's fragments in a thread's memory, which fragments.c brings together. */
+#ifndef HL_SURFACE_TILE_FRAGMENTS_H
+#define HL_SURFACE_TILE_FRAGMENTS_H
+
+#include "surface/fragment_order.h"
+#include "surface/primitive_bins.h"
+#include "surface/small_triangles.h"
+
+enum { MOST_SLABS = 16 }; /* that a fragment fills */
+
+/* The input of hl_fragments_create(); borrowed. */
+typedef struct fragments_source {
+  hl_context *context;
+  hl_pool *pool;
+  const surface_functions *functions;
+  const surfaces *surfaces;
+  const view *view;
+  const sheet_stack *sheets;
+  bool falling;  /* the view meets great heights first */
+  bool of_light; /* a light's view: of the meshes that cast shadows; else of those that are visible */
+  double delay;  /* pixels of the view: a fragment counts from the height that its surface's plane has so far
+                    away, so that a surface does not darken itself where buffers are interpolated */
+  double rise;   /* pixels of the view: a fragment of a light's view fills all slabs that its surface's plane
+                    crosses within so many, so that rays of other directions than the view's find no gap
+                    between pixels of a slanted surface; 0: one slab */
+  uint64_t *marks; /* [sheets][tile_words], bit = tile; may be null. Bits are set for each sheet that ends a
+                      slab with a visible or shadow-casting surface in the tile, and in tiles beside it */
+  int tile_words;
+} fragments_source;
+
+/* The last opaque fragments that a tile's pixel got in a light's view: one in each of some slabs. */
+typedef struct latest_fragments {
+  uint32_t end; /* of the first, in the worker's scratch; 0: none */
+  int32_t last; /* slab */
+} latest_fragments;
+
+/* One thread's memory; all arrays are owned. */
+typedef struct fragment_worker {
+  _Alignas(64) fragment *scratch; /* [2][room]; a tile's fragments, then the same sorted */
+  order_key *keys;                /* [2][room]; for sorting */
+  size_t count, room;
+  latest_fragments latest[TILE_PIXELS];
+  uint32_t *places; /* [sheets + 2]; for sorting */
+  uint16_t *near;   /* [sheets]; of each slab the tiles to be marked: bit 3 (1 + down) + 1 + across */
+  int32_t nearest, farthest; /* slabs of which near is not 0 */
+  fragment *out;             /* [out_count]; of the tiles that the thread has made */
+  size_t out_count, out_room;
+  bool failed;
+} fragment_worker;
+
+typedef struct tile_record {
+  int worker;
+  uint32_t count;
+  size_t at; /* in the worker's out */
+} tile_record;
+
+/* What the tiles of a view share. */
+typedef struct fragment_work {
+  const fragments_source *source;
+  const seen_vertices *seen;
+  const primitive_bins *bins;
+  small_view small;         /* but for the mesh */
+  fragment_worker *workers; /* [threads] */
+  float *least;             /* [mesh_count]; as in fragment_order */
+  tile_record *tiles;       /* [tiles] */
+  int tiles_x, tiles_y;
+  uint16_t
+      near[TILE_PIXELS]; /* of each pixel, block after block: the tiles that look-ups about it may read */
+} fragment_work;
+
+/* Fills what depends on the view alone: `small` and `near`. */
+void hl_fragment_work_begin(fragment_work *work);
+
+/* A worker's arrays that do not grow; false: there is no memory for them. */
+bool hl_fragment_worker_begin(hl_context *context, fragment_worker *worker, int sheets);
+void hl_fragment_worker_end(hl_context *context, fragment_worker *worker);
+
+/* Makes one tile's fragments: a task of the pool. data: fragment_work. */
+void hl_make_tile_fragments(void *data, size_t tile, int worker_index);
+
+/* The mean position of the covered samples in their pixel, 0 to 1. */
+void hl_fragment_middle(uint16_t samples, double *u, double *v);
+
+#endif
