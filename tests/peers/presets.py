@@ -2,7 +2,7 @@
 
 usage: presets.py HALFLIGHT PRESETS.xml DATA OUT [--only NAME]
 
-Each preset is rendered of a CT and of an MR, by the same camera and without light, by Halflight (shading flat, kernel linear)
+Each preset is rendered of a CT and of an MR, or, where it is for values from 0 to 1, of the MR's as fractions of their greatest (FA), by the same camera and without light, by Halflight (shading flat, kernel linear)
 and by VTK's vtkFixedPointVolumeRayCastMapper (shading off). OUT gets a picture of each pair, sheets of all of them and table.md:
 how far the two are apart, in linear light, where the picture shows anything. VTK mixes colours as they are displayed; for the
 figures it is given colours in linear light, and held against itself with steps of half a voxel's edge.
@@ -19,7 +19,7 @@ from PIL import Image, ImageDraw
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 SIZE = 256
-VOLUMES = {"CT": "cranium_mha/cranium.mha", "MR": "stroke_t1_nii/T1.nii.gz"}
+VOLUMES = {"CT": "cranium_mha/cranium.mha", "MR": "stroke_t1_nii/T1.nii.gz", "FA": "stroke_t1_nii/T1.nii.gz"}
 CLOSE = 0.02  # of mean difference, of white: what sampling and 8 bits explain
 
 
@@ -48,6 +48,8 @@ class Preset:
         self.opacity = numbers(element.get("scalarOpacity"), 2)
         self.gradient = numbers(element.get("gradientOpacity"), 2)
         self.color = numbers(element.get("colorTransfer"), 4)
+        # Of others' values it shows shells that are far thinner than any step: VTK's pictures then change as much with each step.
+        self.of_fractions = element.get("effectiveRange") == "0 1"
 
     def property(self, in_linear_light):
         opacity, gradient, color = vtk.vtkPiecewiseFunction(), vtk.vtkPiecewiseFunction(), vtk.vtkColorTransferFunction()
@@ -79,8 +81,11 @@ class Volume:
         self.file = out / f"{kind}_{'x'.join(map(str, info['dimensions']))}_{info['type']}.raw"
         subprocess.run([halflight, "convert", source, self.file, "--quiet"], check=True)
         self.voxels = numpy.fromfile(self.file, info["type"]).reshape(info["dimensions"][::-1])
+        if kind == "FA":
+            self.voxels = (self.voxels / self.voxels.max()).astype(numpy.float32)
+            self.voxels.tofile(self.file)
         self.header = out / f"{kind}.nhdr"
-        kinds = {"int16": "short", "uint8": "uchar"}
+        kinds = {"int16": "short", "uint8": "uchar", "float32": "float"}
         self.header.write_text("NRRD0004\ndimension: 3\n" f"type: {kinds[str(self.voxels.dtype)]}\nendian: little\nencoding: raw\n"
                                f"sizes: {' '.join(map(str, self.voxels.shape[::-1]))}\n"
                                f"spacings: {' '.join(map(str, self.spacing))}\ndata file: {self.file.name}\n")
@@ -88,7 +93,7 @@ class Volume:
         info = json.loads(subprocess.run([halflight, "info", "--json", self.header], check=True, capture_output=True).stdout)
         self.origin = numpy.array(info["origin"])
         self.target = self.origin + lengths / 2
-        direction = {"CT": numpy.array([-0.45, -1, 0.3]), "MR": numpy.array([-0.45, -1, 0.3])}[kind]
+        direction = numpy.array([-0.45, -1, 0.3])
         self.position = self.target + direction / numpy.linalg.norm(direction) * 600
         self.height = float(numpy.linalg.norm(lengths)) * 0.85
         self.image = vtk.vtkImageData()
@@ -173,7 +178,7 @@ def main():
         volume = Volume(kind, args.halflight, args.data, args.out)
         tiles = []
         for preset in presets:
-            if args.only not in (None, preset.name):
+            if args.only not in (None, preset.name) or preset.of_fractions != (kind == "FA"):
                 continue
             ours = volume.by_halflight(args.halflight, args.presets.resolve(), preset, args.out)
             theirs, slicer = volume.by_vtk(preset, True), volume.by_vtk(preset, False)
@@ -195,7 +200,7 @@ def main():
             sheet.paste(pair, (n % 2 * pair.width, n // 2 * pair.height))
         sheet.save(args.out / f"{kind}.png")
     (args.out / "table.md").write_text("\n".join(table) + "\n")
-    print(f"{len(table) - 2} pairs, {apart} further apart than VTK from itself by {CLOSE}: {args.out}/table.md, CT.png, MR.png")
+    print(f"{len(table) - 2} pairs, {apart} further apart than VTK from itself by {CLOSE}: {args.out}/table.md, CT.png, MR.png, FA.png")
 
 
 main()
