@@ -37,12 +37,12 @@ static bool has_sky(const hl_scene_description *scene) { return scene->sky.type 
 
 /* ---- where the nodes are ---- */
 
-/* Widens bounds by the box of a volume's relevant bricks. */
+/* Widens bounds by the box of a volume's content, so that no mask moves the nodes. */
 static void add_box(const grid *grid, double low[3], double high[3]) {
   for (int corner = 0; corner < 8; corner++) {
     double p[3];
     for (int a = 0; a < 3; a++) {
-      int32_t brick = corner >> a & 1 ? grid->relevant_high[a] + 1 : grid->relevant_low[a];
+      int32_t brick = corner >> a & 1 ? grid->content_high[a] + 1 : grid->content_low[a];
       p[a] = fmin(fmax(brick * HL_BRICK_CELLS - 1, grid->box_low[a]), grid->box_high[a]);
     }
     vec3 frame = affine3_apply(grid->index_to_frame, vec3_of(p));

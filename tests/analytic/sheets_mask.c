@@ -370,6 +370,42 @@ static void test_no_mask_moves_the_sheets(void **state) {
   assert_true(seen > 2 * SIDE);
 }
 
+/* Haze for x < -4 that scatters light again and again, and beside it what is all but clear; of both a mask
+ * shows all, or the half with x < 0. */
+static void render_haze(bool masked, float *pixels) {
+  static float voxels[N * N * N];
+  static const hl_opacity_point faint[] = {{0.3, 1e-7}, {0.4, 1e-7}, {0.5, 0.2}};
+  static const hl_label one = {.value = 1, .opacity = 1, .visible = 1};
+  stage set;
+  stage_open(&set);
+  for (int n = 0; n < N * N * N; n++) voxels[n] = n % N < N / 2 - 4 ? 0.5f : 0.3f;
+  set.scene.width = set.scene.height = SIDE;
+  set.scene.camera.height = N;
+  set.scene.render.shadows = HL_SHADOWS_HARD;
+  stage_look(&set, (vec3){0, 0, 100}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  hl_scene_volume *cube = stage_add_grid(&set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1},
+                                         (vec3){-N / 2, -N / 2, -N / 2}, voxels);
+  hl_volume *map = make_large_map(&set);
+  cube->transfer_function.opacity = faint;
+  cube->transfer_function.opacity_count = 3;
+  cube->shading = HL_SHADING_NONE;
+  cube->multiple_scattering = 1;
+  stage_add_directional(&set, vec3_normalise((vec3){0.3, -0.5, -1}));
+  if (masked) cube->mask = (hl_mask){.volume = map, .labels = &one, .label_count = 1};
+  stage_render_by(&set, false, pixels);
+  hl_volume_release(map);
+  stage_close(&set);
+}
+
+/* Bricks that a mask hides take nothing away from the grid of scattered light. */
+static void test_no_mask_moves_the_nodes(void **state) {
+  (void)state;
+  static float pixels[2][PIXELS * 4];
+  for (int masked = 0; masked < 2; masked++) render_haze(masked, pixels[masked]);
+  for (int i = 0; i < 4 * PIXELS; i++) assert_near((double)pixels[0][i], (double)pixels[1][i], 2e-5);
+  assert_true(pixels[1][4 * (SIDE / 2 * SIDE + 4)] > 0.3f);
+}
+
 /* A scene made of the same map, labels and rest takes the lattice that was made before; a changed label has
  * another. */
 static void test_lattice_is_kept(void **state) {
@@ -416,6 +452,7 @@ int main(void) {
       cmocka_unit_test(test_faces_of_a_knife),
       cmocka_unit_test(test_hidden_voxels_are_not_kept),
       cmocka_unit_test(test_no_mask_moves_the_sheets),
+      cmocka_unit_test(test_no_mask_moves_the_nodes),
       cmocka_unit_test(test_lattice_is_kept),
       cmocka_unit_test(test_bricks_are_told),
       cmocka_unit_test(test_bricks_change_nothing),
