@@ -250,12 +250,13 @@ class Asked(FurtherSettings, total=False):
     cuts: Any
     mask: Any
     look: str
+    sky: Any
 
 
 _PLACE = ("spacing", "origin", "direction", "affine", "axes", "array", "component", "series", "time", "channel", "level")
 _MATERIAL = ("ambient", "diffuse", "specular", "shininess", "iso", "cuts", "mask", "look",
              *(word for word in FurtherSettings.__annotations__ if word in Look.__annotations__))
-_SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads", "meshes",
+_SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads", "meshes", "sky",
              *(word for word in FurtherSettings.__annotations__ if word in Settings.__annotations__))
 _LOOK = ("cmap", "clim", "log_scale", "opacity", "opacity_unit_distance", "tf")
 
@@ -291,7 +292,7 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
            component: int | str | None = None, series: str | None = None, time: int | None = None,
            channel: int | None = None, level: int | None = None, meshes: Mesh | Sequence[Mesh] | None = None,
            iso: Any = None, cuts: Any = None, mask: Any = None, look: str | None = None,
-           **further: Unpack[FurtherSettings]) -> Image:
+           sky: Any = None, **further: Unpack[FurtherSettings]) -> Image:
     """A picture of a volume, in one call.
 
     An array's axes, and `spacing`, are in the order ``axes="zyx"``: ``array[z][y][x]``, spacing ``(dz, dy, dx)``.
@@ -349,6 +350,8 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
         Where the volume shows, and in which colours: see `halflight.volume.Look`.
     look : str, optional
         "surface", "translucent", "xray", "smoke" or "vessels" in place of the automatic look.
+    sky : float, colour or mapping, optional
+        Light from all directions in place of the automatic one, 0 for none: see `Settings`.
     **further : FurtherSettings
         What `Volume` and `Scene` take besides: `exposure`, `soft_method`, `anisotropy`, ...
 
@@ -369,7 +372,7 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
         log_scale=log_scale, opacity=opacity, opacity_unit_distance=opacity_unit_distance, shade=shade, ambient=ambient, diffuse=diffuse,
         specular=specular, shininess=shininess, tf=tf, shadows=shadows, lights=lights, camera=camera, size=size,
         background=background, threads=threads, array=array, component=component, series=series, time=time,
-        channel=channel, level=level, meshes=meshes, iso=iso, cuts=cuts, mask=mask, look=look, **further)
+        channel=channel, level=level, meshes=meshes, iso=iso, cuts=cuts, mask=mask, look=look, sky=sky, **further)
     with told(progress):
         scene = scene_for(volume, **asked)
     return Renderer().render(scene, layers=layers, progress=progress)

@@ -249,6 +249,14 @@ def _set_meshes(struct: Any, meshes: Mesh | Sequence[Mesh], keep: list[Any]) -> 
     struct.meshes, struct.mesh_count = array, len(given)
 
 
+def _forget_sky(struct: Any) -> None:
+    """The sky that was chosen for a volume leaves nothing but its zenith."""
+    plain = ffi.new("hl_scene_description *")
+    lib.hl_scene_description_defaults(plain)
+    plain.sky.up = list(struct.up)
+    ffi.memmove(ffi.addressof(struct), ffi.addressof(plain, "sky"), ffi.sizeof("hl_sky"))
+
+
 def _set_sky(struct: Any, sky: Any, keep: list[Any]) -> None:
     look = dict(sky) if isinstance(sky, Mapping) else {"type": "uniform", "color": colors.linear_color("sky", sky)}
     check_keywords("sky", look, [*SkySettings.__annotations__, "pixels"])
@@ -260,6 +268,8 @@ def _set_sky(struct: Any, sky: Any, keep: list[Any]) -> None:
         struct.pixels, struct.height, struct.width = buffer, image.shape[0], image.shape[1]
         struct.file = ffi.NULL
     _settings.fill("sky: ", struct, lib.HL_SETTINGS_SKY, look)
+    if not isinstance(sky, Mapping) and not any(struct.color):  # as the program's --sky 0: none
+        struct.type = lib.HL_SKY_NONE
 
 
 def _set_background(struct: Any, background: Any) -> None:
@@ -324,7 +334,11 @@ def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], ch
         _set_meshes(struct, meshes, keep)
     if (ambient := settings.get("ambient")) is not None:
         struct.ambient = colors.linear_color("ambient", ambient)
+        if chosen:  # as the program's --ambient: in place of the sky that was chosen for a volume
+            struct.sky.type = lib.HL_SKY_NONE
     if (sky := settings.get("sky")) is not None:
+        if chosen:
+            _forget_sky(struct.sky)
         _set_sky(struct.sky, sky, keep)
     if (background := settings.get("background")) is not None:
         _set_background(struct, background)

@@ -111,6 +111,7 @@ static int change_camera(scene_change *change) {
   hl_view view;
   int exit_code = choose_view(change, &view);
   if (exit_code != EXIT_CODE_OK) return exit_code;
+  if (change->bare) memcpy(description->sky.up, view.up, sizeof view.up);
   double zoom = values[RENDER_ZOOM].given ? values[RENDER_ZOOM].number[0] : 1;
   hl_error error = {0};
   hl_status status = framed ? hl_camera_frame_view(description, &view, zoom, &description->camera, &error)
@@ -287,10 +288,17 @@ static void change_render_settings(const cli_value *values, hl_render_settings *
   }
 }
 
+/* --ambient, in place of the sky that was chosen for a bare volume. */
+static void change_ambient(scene_change *change) {
+  const cli_value *values = change->values;
+  hl_scene_description *description = &change->description;
+  if (!values[RENDER_AMBIENT].given) return;
+  memcpy(description->ambient, values[RENDER_AMBIENT].number, sizeof description->ambient);
+  if (change->bare && !values[RENDER_SKY].given) description->sky.type = HL_SKY_NONE;
+}
+
 static void change_settings(const cli_value *values, hl_scene_description *description) {
   change_render_settings(values, &description->render);
-  if (values[RENDER_AMBIENT].given)
-    memcpy(description->ambient, values[RENDER_AMBIENT].number, sizeof description->ambient);
   if (values[RENDER_EXPOSURE].given) description->exposure = values[RENDER_EXPOSURE].number[0];
   if (values[RENDER_TONE].given) description->tone = (hl_tone)values[RENDER_TONE].choice;
   const cli_value *background = &values[RENDER_BACKGROUND];
@@ -341,6 +349,7 @@ int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_s
     exit_code = render_sky(host, &values[RENDER_SKY], &change.description, &change.sky);
   if (exit_code == EXIT_CODE_OK) {
     render_change_look(values, bare, &change.description);
+    change_ambient(&change);
     change_settings(values, &change.description);
     warn_of_idle_options(&change);
     hl_scene *changed = NULL;

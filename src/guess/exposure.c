@@ -21,7 +21,8 @@
 #define BRIGHTEST 0.99  /* fraction of the pixels that are darker */
 #define OPAQUE    0.98
 #define FAINT     0.02 /* least opacity of a step at which a ray meets a surface */
-#define THINNEST  0.15 /* fraction of the surfaces that are thinner than hl_exposure.thickness */
+
+#define THINNEST 0.15 /* fraction of the surfaces that are thinner than hl_exposure.thickness */
 
 enum { SIDE = 64, TABLE = 1024, MOST_LIGHTS = 4 };
 
@@ -33,6 +34,7 @@ typedef struct exposure {
       forward; /* the camera's; lengths: half the picture's width and height at distance 1, and 1 */
   vec3 towards[MOST_LIGHTS]; /* unit vectors */
   double intensity[MOST_LIGHTS];
+  double left;  /* fraction of the sky, and of lights with shadows, that reaches bright surfaces */
   double step;  /* world units */
   double empty; /* a value of the invisible surroundings */
   double flat;  /* gradients up to this, in values per world unit, belong to no surface */
@@ -69,14 +71,32 @@ static int entry_of(const exposure *e, double value) {
   return t > 0 ? t < TABLE ? (int)t : TABLE - 1 : 0;
 }
 
+/* The light of a sky in a gradient that nothing hides, at a surface or in a medium (normal: null). Derived:
+ * at the sine s of the elevation the radiance is h + a |s| + b s, with a = (zenith + ground) / 2 - h and b =
+ * (zenith - ground) / 2. Its mean is h + a / 2; weighted by a normal's cosine, s has the mean 2/3 c, c being
+ * the normal's own sine, and |s| 1/2 + 5/32 P2(c), to 1 %. */
+static void sky_light(const hl_sky *sky, const vec3 *normal, double light[3]) {
+  double c = normal != NULL ? vec3_dot(*normal, vec3_normalise(vec3_of(sky->up))) : 0;
+  double even = normal != NULL ? 0.5 + 5.0 / 64 * (3 * c * c - 1) : 0.5;
+  for (int n = 0; n < 3; n++) {
+    double a = 0.5 * (sky->zenith[n] + sky->ground[n]) - sky->horizon[n],
+           b = 0.5 * (sky->zenith[n] - sky->ground[n]);
+    light[n] = sky->type == HL_SKY_GRADIENT ? sky->strength * (sky->horizon[n] + a * even + b * 2 / 3 * c)
+                                            : 0;
+  }
+}
+
 /* The light that a sample sends to the eye, eqs. (3) and (4). own: the voxel's colour. */
 static void shade(const exposure *e, int entry, double value, vec3 gradient, vec3 to_eye, const double own[3],
                   double sent[3]) {
   const hl_material *material = &e->volume->material;
   bool surface = e->volume->shading == HL_SHADING_PHONG && vec3_length(gradient) > e->flat;
   vec3 normal = vec3_scale(vec3_normalise(gradient), value > e->empty ? -1 : 1);
-  double gloss = 0, matt[3];
-  for (int c = 0; c < 3; c++) matt[c] = material->emission + material->ambient * e->scene->ambient[c];
+  double gloss = 0, matt[3], sky[3];
+  sky_light(&e->scene->sky, surface ? &normal : NULL, sky);
+  for (int c = 0; c < 3; c++)
+    matt[c] = material->emission + material->ambient * e->scene->ambient[c] +
+              e->left * sky[c] * (surface ? material->diffuse : 1);
   for (size_t l = 0; l < e->scene->light_count; l++) {
     const hl_light *light = &e->scene->lights[l];
     double cosine = vec3_dot(normal, e->towards[l]);
@@ -175,6 +195,7 @@ static bool begin(const hl_scene_description *scene, double empty, double left, 
     e->towards[l] = vec3_scale(vec3_normalise(hl_light_way(camera, &scene->lights[l])), -1);
     e->intensity[l] = scene->lights[l].intensity * (scene->lights[l].shadows == HL_SHADOWS_OFF ? 1 : left);
   }
+  e->left = left;
   e->step = mat3_shortest_column(index_to_world.linear);
   e->flat = 1e-3 * range / e->step;
   for (int n = 0; n < TABLE; n++) {

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "core/context.h"
 #include "core/error.h"
 #include "guess/analysis.h"
 #include "guess/exposure.h"
@@ -16,6 +17,13 @@
 #define LIGHT_ELEVATION 45
 #define FILL_AZIMUTH    0 /* fill light from the eye: it suits a key light from any direction */
 #define FILL_ELEVATION  0
+/* Least memory limit, beside what a volume in memory takes, for a sky, whose field and what making it takes
+ * are less than half of that. */
+#define ROOM_FOR_SKY (512u << 20)
+/* Constant light, as a fraction of the sky's strength: beside a sky, so that no hollow is black, and in place
+ * of one. */
+#define BESIDE_SKY 0.04
+#define INSTEAD    0.35
 /* Sheets across the grid's diagonal. Shaded surfaces need more of them: one normal lights a whole slab. */
 #define SHEETS_OF_MEDIA    540
 #define SHEETS_OF_SURFACES 720
@@ -53,6 +61,41 @@ static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count
   lights[1].shadows = HL_SHADOWS_OFF;
 }
 
+/* True if the memory limit leaves room for a sky. It does not depend on what is held now: all processes that
+ * share a volume choose alike. */
+static bool has_room_for_sky(const hl_volume *volume) {
+  uint64_t limit = volume->context->options.memory_limit, taken = 0;
+  if (volume->pages == NULL)
+    taken = 2 * (uint64_t)hl_volume_voxel_count(volume) * hl_storage_bytes(volume->storage);
+  return limit == 0 || limit >= ROOM_FOR_SKY + taken;
+}
+
+/* A sky brighter above than below, so that folds and hollows are darker, and a little constant light, so that
+ * none is black. */
+static void choose_sky(const hl_look *look, hl_scene_description *description) {
+  static const double zenith[3] = {1.00, 1.04, 1.09}, horizon[3] = {0.76, 0.76, 0.77},
+                      ground[3] = {0.16, 0.14, 0.12};
+  hl_sky *sky = &description->sky;
+  for (int channel = 0; channel < 3; channel++) description->ambient[channel] = BESIDE_SKY * look->sky;
+  if (!(look->sky > 0)) return;
+  sky->type = HL_SKY_GRADIENT;
+  sky->strength = look->sky;
+  memcpy(sky->zenith, zenith, sizeof zenith);
+  memcpy(sky->horizon, horizon, sizeof horizon);
+  memcpy(sky->ground, ground, sizeof ground);
+  memcpy(sky->up, description->camera.up, sizeof sky->up);
+}
+
+/* Constant light in place of the sky. */
+static void level_sky(hl_scene_description *description) {
+  if (description->sky.type == HL_SKY_NONE) return;
+  for (int channel = 0; channel < 3; channel++)
+    description->ambient[channel] = INSTEAD * description->sky.strength;
+  hl_scene_description plain;
+  hl_scene_description_defaults(&plain);
+  description->sky = plain.sky;
+}
+
 /* The sheet spacing, in smallest voxel edges, that puts about the same number of sheets across any grid, from
  * 0.25 to 1. With sheets a voxel apart, coarse grids would show rings on smooth surfaces, and more sheets
  * cost little there. */
@@ -77,6 +120,7 @@ static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, h
   if (look->left > 0) status = hl_scene_exposure(description, empty, look->left, &exposure, error);
   for (size_t l = 0; l < description->light_count; l++) lights[l].intensity *= exposure.factor;
   for (int channel = 0; channel < 3; channel++) description->ambient[channel] *= exposure.factor;
+  description->sky.strength *= exposure.factor;
   double spacing = enough_sheets(description->volumes[0].volume, look->shading);
   spacing = fmin(spacing, fmax(SPACING_PER_THICKNESS * exposure.thickness, 0.25));
   description->render.sheet_spacing = round(1000 * fmin(spacing, 1)) / 1000;
@@ -110,9 +154,10 @@ static hl_status make_scene(hl_context *context, hl_volume *volume, const char *
     description.lights = lights;
     if (!look->on_black)
       memcpy(description.background, (double[3]){0.022, 0.025, 0.030}, sizeof description.background);
-    for (int channel = 0; channel < 3; channel++) description.ambient[channel] = look->ambient;
+    choose_sky(look, &description);
     description.render.kernel = look->kernel;
     status = expose(look, &analysis, lights, &description, error);
+    if (!has_room_for_sky(volume)) level_sky(&description);
   }
   if (status == HL_OK) status = hl_scene_create(context, &description, scene, error);
   hl_transfer_function_release(context, &scene_volume.transfer_function);

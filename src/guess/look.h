@@ -9,9 +9,9 @@ typedef struct hl_look {
   void (*write)(hl_function_writer *w); /* the transfer function */
   hl_shading shading;
   hl_kernel kernel;
-  double key, fill, ambient; /* intensities: the light with shadows, the one without, the ambient light */
-  double left;               /* fraction of the key light for hl_scene_exposure(); 0: no exposure */
-  bool on_black;             /* the background of a bare volume */
+  double key, fill, sky; /* intensities: the light with shadows, the one without, the sky */
+  double left;           /* fraction of key light and sky for hl_scene_exposure(); 0: no exposure */
+  bool on_black;         /* the background of a bare volume */
 } hl_look;
 
 #endif

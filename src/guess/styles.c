@@ -93,11 +93,11 @@ static void write_vessels(hl_function_writer *w) {
 
 /* Rows: as in looks.c; then whether a bare volume stands before black. */
 static const hl_look styles[] = {
-    {"surface", write_surface, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.70, 0.40, 0.18, 0.72, false},
-    {"translucent", write_translucent, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.70, 0.45, 0.30, 0.72, false},
-    {"xray", write_xray, HL_SHADING_FLAT, HL_KERNEL_BSPLINE, 1.20, 0, 0.20, 0, true},
-    {"smoke", write_smoke, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.20, 0, 0.25, 0, false},
-    {"vessels", write_vessels, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.80, 0.45, 0.25, 0.75, true},
+    {"surface", write_surface, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.35, 0.06, 0.95, 0.72, false},
+    {"translucent", write_translucent, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.40, 0.25, 0.95, 0.72, false},
+    {"xray", write_xray, HL_SHADING_FLAT, HL_KERNEL_BSPLINE, 1.20, 0, 0, 0, true},
+    {"smoke", write_smoke, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.15, 0, 0.45, 0, false},
+    {"vessels", write_vessels, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.15, 0.90, 0.75, true},
 };
 
 enum { STYLES = sizeof styles / sizeof *styles };

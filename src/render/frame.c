@@ -224,8 +224,7 @@ static double widest_ray(const frame *frame) {
   return acos(fmax(least, -1));
 }
 
-/* Whether any volume's picture depends on arriving light: flat colours and maximum projections do not. */
-static bool is_lit(const hl_scene_description *scene) {
+bool hl_is_lit(const hl_scene_description *scene) {
   for (size_t i = 0; i < scene->volume_count && !hl_is_maximum(scene); i++)
     if (scene->volumes[i].visible && scene->volumes[i].shading != HL_SHADING_FLAT) return true;
   for (size_t i = 0; i < scene->mesh_count; i++)
@@ -240,7 +239,7 @@ void hl_frame_set_up_lights(frame *frame, const hl_scene_description *scene) {
     const hl_light *light = &scene->lights[i];
     light_source source = hl_light_source(light, &scene->render, frame->middle);
     source.light_index = (int)i;
-    if (!is_lit(scene)) source.shadows = HL_SHADOWS_OFF;
+    if (!hl_is_lit(scene)) source.shadows = HL_SHADOWS_OFF;
     bool narrow = (light->type == HL_LIGHT_SPOT && light->opening_angle_deg <= 120) ||
                   light->texture.pixels != NULL;
     bool whole = source.shadows == HL_SHADOWS_OFF || narrow ||

@@ -54,6 +54,10 @@ hl_status hl_frame_set_up_eye(frame *frame, const hl_scene_description *scene, h
  * room for LIGHT_SECTORS each. */
 void hl_frame_set_up_lights(frame *frame, const hl_scene_description *scene);
 
+/* Whether any picture of a volume or a mesh depends on arriving light: flat colours and maximum projections
+ * do not. */
+bool hl_is_lit(const hl_scene_description *scene);
+
 static inline bool hl_is_maximum(const hl_scene_description *scene) {
   return scene->render.compositing == HL_COMPOSITING_MAXIMUM;
 }

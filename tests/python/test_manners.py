@@ -175,7 +175,7 @@ def test_volumes_larger_than_memory_give_the_same_pictures(large):
     whole = np.asarray(halflight.render(path, size=(40, 30)))
     halflight.limit_memory(5_300_000, scratch_folder=scratch)
     volume = halflight.Volume(path)  # less is allowed than its voxels alone
-    halflight.limit_memory(200_000_000, scratch_folder=scratch)
+    halflight.limit_memory(600_000_000, scratch_folder=scratch)
     assert np.array_equal(np.asarray(halflight.render(volume, size=(40, 30))), whole)
     assert list(scratch.iterdir()) == []
 

@@ -182,7 +182,7 @@ def test_pixels_outlive_their_image(small):
 def test_layers_sum_to_the_picture(small):
     image = Renderer().render(small, layers=True)
     layers = image.layers
-    total = layers["ambient"] + sum(layers[f"light{n}"] for n in range(len(small.lights)))
+    total = layers["ambient"] + sum(layers[f"light{n}"] for n in range(len(small.lights))) + layers["sky"]
     assert np.allclose(total, np.asarray(image)[..., :3], atol=1e-5)
     assert layers["depth_first"].shape == (48, 64) and layers["normal"].shape == (48, 64, 3)
     assert set(np.unique(layers["object"])) == {0, 1}

@@ -77,7 +77,7 @@ def test_no_keyword_is_ignored(blob):
                   {"opacity_unit_distance": 9}, {"shade": False}, {"shade": "none"}, {"ambient": 3}, {"diffuse": 0.2},
                   {"specular": 2}, {"shininess": 2}, {"tf": "smoke"}, {"shadows": False}, {"shadows": "hard"},
                   {"direction": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]},
-                  {"lights": Directional(direction=(0, 1, 0))}, {"lights": []},
+                  {"lights": Directional(direction=(0, 1, 0))}, {"lights": []}, {"sky": 0}, {"sky": 0.4},
                   {"camera": "top"}, {"camera": (10, 80)}, {"camera": Camera(position=(14, -99, 9), target=(14, 0, 9))},
                   {"tf": TransferFunction([(30, 0), (40, 0.9)], color=(1, 0, 0))}):
         assert not np.array_equal(pixels(blob, **words), plain), words

@@ -265,6 +265,71 @@ static void lights_are_fitted(void **state) {
   hl_context_destroy(p.context);
 }
 
+/* The same under skies alone. Where the zenith is behind the eye, a sky that shines from there lights the
+ * ball's middle by 2/3 of its radiance, the mean of the sine weighted by the cosine; an even one lights all
+ * of it by 1. */
+static void skies_are_fitted(void **state) {
+  (void)state;
+  static const struct {
+    double zenith, horizon, ground, color, left, factor;
+  } cases[] = {{2, 0, 0, 0.5, 1, 1.307}, {1, 1, 1, 0.9, 1, 0.968}, {2, 2, 2, 0.9, 0.5, 0.968}};
+  hl_context *context = make_context();
+  fill(ball_of_bytes);
+  parts p;
+  hl_volume *volume = ball_scene(context, 60, 0.9, &p);
+  hl_sky *sky = &p.description.sky;
+  sky->type = HL_SKY_GRADIENT;
+  p.description.light_count = 0;
+  for (int c = 0; c < 3; c++) {
+    sky->up[c] = p.description.camera.position[c] - p.description.camera.target[c];
+    p.description.ambient[c] = 0;
+  }
+  for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+    hl_exposure exposure = {0, 0};
+    for (int c = 0; c < 3; c++) {
+      p.color[0].color[c] = cases[n].color;
+      sky->zenith[c] = cases[n].zenith, sky->horizon[c] = cases[n].horizon, sky->ground[c] = cases[n].ground;
+    }
+    assert_int_equal(hl_scene_exposure(&p.description, 0, cases[n].left, &exposure, NULL), HL_OK);
+    if (fabs(exposure.factor / cases[n].factor - 1) > 0.04)
+      fail_msg("case %zu: %g in place of %g", n, exposure.factor, cases[n].factor);
+  }
+  hl_volume_release(volume);
+  hl_volume_release(p.volume);
+  hl_context_destroy(context);
+  hl_context_destroy(p.context);
+}
+
+/* A bare volume stands under a sky whose zenith is the camera's up; under a tight memory limit the same
+ * lights shine beside constant light instead. */
+static void volumes_stand_under_a_sky(void **state) {
+  (void)state;
+  hl_context_options options;
+  hl_context *context = make_context(), *tight = NULL;
+  hl_context_options_defaults(&options);
+  options.memory_limit = 300u << 20;
+  assert_int_equal(hl_context_create(&options, &tight, NULL), HL_OK);
+  fill(body);
+  hl_volume *volume = make_volume(context, N, values), *other = make_volume(tight, N, values);
+  hl_scene *scene = NULL, *without = NULL;
+  assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
+  assert_int_equal(hl_scene_for_volume(tight, other, NULL, &without, NULL), HL_OK);
+  const hl_scene_description *a = hl_scene_describe(scene), *b = hl_scene_describe(without);
+  assert_int_equal(a->sky.type, HL_SKY_GRADIENT);
+  assert_memory_equal(a->sky.up, a->camera.up, sizeof a->sky.up);
+  assert_true(a->sky.strength > 0.5 && a->sky.zenith[1] > 4 * a->sky.ground[1]);
+  assert_int_equal(b->sky.type, HL_SKY_NONE);
+  assert_true(b->ambient[0] > 4 * a->ambient[0] && a->ambient[0] > 0);
+  assert_int_equal(a->light_count, b->light_count);
+  for (size_t l = 0; l < a->light_count; l++) assert_true(a->lights[l].intensity == b->lights[l].intensity);
+  hl_scene_release(scene);
+  hl_scene_release(without);
+  hl_volume_release(volume);
+  hl_volume_release(other);
+  hl_context_destroy(context);
+  hl_context_destroy(tight);
+}
+
 /* Three materials in air: each has a colour of its own, and so have the materials of a scan with noise. */
 static double three(int i, int j, int k) {
   if (distance(i, j, k, 24, 24, 24) > 20) return 10 + 4 * noise(i, j, k);
@@ -337,6 +402,8 @@ int main(void) {
       cmocka_unit_test(labels_have_colors_of_their_own),
       cmocka_unit_test(flows_show_their_extremes),
       cmocka_unit_test(lights_are_fitted),
+      cmocka_unit_test(skies_are_fitted),
+      cmocka_unit_test(volumes_stand_under_a_sky),
       cmocka_unit_test(surfaces_are_measured),
       cmocka_unit_test(materials_have_colors_of_their_own),
       cmocka_unit_test(looks_by_name),

@@ -5,8 +5,8 @@ halflight convert ball_176x176x176_uint8.raw ball.nrrd --quiet
 mkdir scratch
 export TMPDIR=$PWD/scratch
 for volume in ball_176x176x176_uint8.raw ball.nrrd; do
-  halflight render $volume --size 60x50 --shadow-resolution 64 --shadows hard --quiet -o large.npy
-  halflight render $volume --size 60x50 --shadow-resolution 64 --shadows hard --quiet -o small.npy --max-memory 12M
+  halflight render $volume --size 60x50 --ambient 0.2 --shadow-resolution 64 --shadows hard --quiet -o large.npy
+  halflight render $volume --size 60x50 --ambient 0.2 --shadow-resolution 64 --shadows hard --quiet -o small.npy --max-memory 12M
   cmp large.npy small.npy
 done
 ls scratch

@@ -5,7 +5,7 @@ halflight render ball_12x12x12_uint8.raw --size 32x32 --quiet --layers -o a.npy
 halflight render ball_12x12x12_uint8.raw --size 32x32 --quiet --layers -o a.exr
 cmp plain.npy a.npy
 halflight diff a.npy a.exr --max-error 0 >text
-for layer in ambient light0 light0_shadow light1 normal depth_first depth_mean object; do
+for layer in ambient light0 light0_shadow light1 sky sky_shadow normal depth_first depth_mean object; do
   test -s "a-$layer.npy"
   grep -q "$layer\\.[RGBXYZ]" a.exr
 done
@@ -23,6 +23,6 @@ halflight render b.json --quiet --layers -o b.npy
 halflight render b.json --quiet --layers -o b.exr
 tool exr-holds b.exr b.npy ambient=RGB emission=RGB light0=RGB light0_shadow=RGB light1=RGB light1_shadow=RGB \
   normal=XYZ depth_first=Z depth_mean=Z object=Z
-tool sum_layers a.npy a-ambient.npy a-light0.npy a-light1.npy
+tool sum_layers a.npy a-ambient.npy a-light0.npy a-light1.npy a-sky.npy
 halflight render ball_12x12x12_uint8.raw --size 8x8 --quiet --layers --reference --light-points 4 -o r.npy
-tool sum_layers r.npy r-ambient.npy r-light0.npy r-light1.npy
+tool sum_layers r.npy r-ambient.npy r-light0.npy r-light1.npy r-sky.npy

@@ -2,10 +2,10 @@
 # says so.
 tool ball 16 ball_16x16x16_uint8.raw
 for parts in 1 2 4 6; do
-  halflight render ball_16x16x16_uint8.raw --size 48x48 --quiet --light-size 60 --soft-method sublights \
+  halflight render ball_16x16x16_uint8.raw --size 48x48 --quiet --light-size 66 --soft-method sublights \
     --light-samples $parts -o $parts.npy
 done
-halflight render ball_16x16x16_uint8.raw --size 48x48 --quiet --light-size 60 --soft-method sublights -o plain.npy
+halflight render ball_16x16x16_uint8.raw --size 48x48 --quiet --light-size 66 --soft-method sublights -o plain.npy
 cmp 4.npy plain.npy
 halflight diff 6.npy 4.npy --max-rmse 0.0005 >text
 halflight diff 6.npy 1.npy --max-rmse 0.0008 >text 2>&1 && exit 1

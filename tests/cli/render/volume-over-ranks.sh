@@ -4,7 +4,7 @@ command -v mpirun >/dev/null || { echo "mpirun is not installed"; exit 77; }
 # Open MPI itself never frees some of its memory, which the address sanitizer would report.
 export ASAN_OPTIONS="${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0"
 run() { mpirun --allow-run-as-root --oversubscribe -n "$@" >mpirun.txt 2>&1; }
-frame="--size 60x50 --shadow-resolution 64 --shadows hard --threads 1 --quiet"
+frame="--size 60x50 --ambient 0.2 --shadow-resolution 64 --shadows hard --threads 1 --quiet"
 tool ball 176 ball_176x176x176_uint8.raw
 halflight convert ball_176x176x176_uint8.raw ball.nrrd --quiet
 halflight render ball.nrrd $frame --print-scene >scene.json
