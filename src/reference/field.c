@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "reference/reference.h"
+#include "scene/draw_labels.h"
 
 /* The positions and weights of the four taps along each axis. */
 typedef struct taps {
@@ -324,8 +325,10 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
                                      reference_volume *made, hl_error *error) {
   affine3 to_world = hl_scene_volume_index_to_world(described);
   const hl_volume *grid = described->volume;
-  *made = (reference_volume){
-      .described = described, .grid = grid, .kernel = all->scene->render.kernel, .index_to_world = to_world};
+  *made = (reference_volume){.described = described,
+                             .grid = grid,
+                             .kernel = hl_kernel_of_volume(described, all->scene->render.kernel),
+                             .index_to_world = to_world};
   if (grid->pages != NULL)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "the reference needs a volume's voxels in memory: raise the memory limit");

@@ -8,6 +8,7 @@
 #include "grid/make_grid.h"
 #include "grid/relevant.h"
 #include "isosurface/isosurface.h"
+#include "scene/draw_labels.h"
 
 static bool same_points(const void *a, const void *b, size_t bytes) {
   return bytes == 0 || memcmp(a, b, bytes) == 0;
@@ -79,7 +80,7 @@ static hl_layout count_points(const hl_transfer_function *function) {
 
 uint64_t hl_prepared_bytes(const hl_scene_volume *scene, hl_kernel kernel, const grid_functions *functions,
                            int threads) {
-  return hl_grid_bytes(scene->volume, hl_kernel_get(kernel), functions, threads) +
+  return hl_grid_bytes(scene->volume, hl_kernel_get(hl_kernel_of_volume(scene, kernel)), functions, threads) +
          hl_classifier_bytes(&scene->transfer_function) + count_points(&scene->transfer_function).bytes;
 }
 
@@ -133,7 +134,7 @@ void hl_prepared_release(hl_context *context, prepared_volume *prepared) {
 
 /* The grid that is kept serves the scene's volume. */
 static bool has_same_voxels(const prepared_volume *prepared, const hl_scene_volume *scene, hl_kernel kernel) {
-  return prepared->volume == scene->volume && prepared->kernel == kernel &&
+  return prepared->volume == scene->volume && prepared->kernel == hl_kernel_of_volume(scene, kernel) &&
          prepared->empty == hl_scene_volume_empty_value(scene) && same_clip(prepared, scene);
 }
 
@@ -144,7 +145,7 @@ void hl_prepared_release_stale(hl_context *context, const hl_scene_description *
       hl_prepared_release(context, &prepared[i]);
 }
 
-/* The context, the threads and the kernel that volumes are prepared with. */
+/* The context, the threads and the scene's kernel that volumes are prepared with. */
 typedef struct preparation {
   hl_context *context;
   hl_pool *pool;
@@ -194,7 +195,7 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
                                 const hl_scene_volume *second, prepared_volume *prepared, hl_error *error) {
   hl_context *context = with->context;
   hl_pool *pool = with->pool;
-  const hl_kernel kernel = with->kernel;
+  const hl_kernel kernel = hl_kernel_of_volume(scene, with->kernel);
   const affine3 index_to_frame = hl_scene_volume_index_to_world(scene);
   hl_status status = HL_OK;
   double empty = hl_scene_volume_empty_value(scene);

@@ -93,6 +93,25 @@ static void test_labels_against_the_reference(void **state) {
   assert_near(sqrt(sum), 0, 0.012);
 }
 
+/* Where a scene's kernel is the interpolating one, labels keep the B-spline, which their fields are made for,
+ * in the sheets and in the reference. */
+static void test_labels_keep_their_kernel(void **state) {
+  (void)state;
+  static float pixels[2][PIXELS * 4];
+  const hl_label labels[] = {{1, NULL, {0.9, 0.2, 0.1}, 0.6, 1, 0}, {2, NULL, {0.1, 0.3, 0.9}, 1, 1, 0}};
+  for (int reference = 0; reference < 2; reference++) {
+    for (int k = 0; k < 2; k++) {
+      stage set;
+      open_balls(&set, labels, 2)->shading = HL_SHADING_PHONG;
+      stage_add_directional(&set, (vec3){0.3, -0.5, -1});
+      set.scene.render.kernel = k == 0 ? HL_KERNEL_BSPLINE : HL_KERNEL_INTERPOLATING;
+      stage_render_by(&set, reference, pixels[k]);
+      stage_close(&set);
+    }
+    assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
+  }
+}
+
 static void test_wrong_labels_are_refused(void **state) {
   (void)state;
   const hl_label half = {1.5, NULL, {1, 1, 1}, 1, 1, 0}, bright = {1, NULL, {2, 1, 1}, 1, 1, 0};
@@ -112,9 +131,8 @@ static void test_wrong_labels_are_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_skin_takes_its_opacity),
-      cmocka_unit_test(test_hidden_labels_are_not_there),
-      cmocka_unit_test(test_labels_against_the_reference),
+      cmocka_unit_test(test_skin_takes_its_opacity),       cmocka_unit_test(test_hidden_labels_are_not_there),
+      cmocka_unit_test(test_labels_against_the_reference), cmocka_unit_test(test_labels_keep_their_kernel),
       cmocka_unit_test(test_wrong_labels_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
