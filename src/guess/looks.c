@@ -27,7 +27,7 @@ static const hl_look looks[] = {
                false},
     [MATTER] = {"scanned matter", hl_write_matter, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.30, 0.05, 0.90,
                 0.76, false},
-    [LABELS] = {"labels", hl_write_labels, HL_SHADING_PHONG, HL_KERNEL_LINEAR, 0.75, 0.10, 0.45, 0, false},
+    [LABELS] = {"labels", hl_write_labels, HL_SHADING_PHONG, HL_KERNEL_LINEAR, 0.90, 0.12, 0.70, 0, false},
     [FIELD] = {"field", hl_write_field, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.40, 0.20, 0.90, 0.65, false},
     [FLOW] = {"flow", hl_write_flow, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.20, 0.20, 0.80, 0.9, false},
     [SIGNED] = {"signed field", hl_write_signed, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.05, 0.15, 0.70, 0.8,

@@ -96,6 +96,9 @@ LANES_INLINE color_lanes sky_of_volume(const shade_job *job, const block_slab *s
     look_up_sky(sky, add_scaled3(slab->geometry.position, d->normal, lift), d->surface,
                 lanes_bits(slab->seen), &light);
     depths = depths_outwards(job, d, lift);
+    /* what the gradient tells of matter outside of a cut's face is not there */
+    depths.enter = depths.enter * (1.0f - d->skin);
+    depths.more = depths.more * (1.0f - d->skin);
   } else {
     open_sky(sky, &light);
   }

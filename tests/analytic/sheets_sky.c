@@ -167,6 +167,36 @@ static void test_meshes(void **state) {
   }
 }
 
+/* The face that a cut leaves of even matter sees half of the sky, as any plane: it gets the sky's radiance. A
+ * clip box and a plane leave the same face. */
+static void test_cut_faces(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4], voxels[GRID * GRID * GRID];
+  static const hl_cut plane = {.type = HL_CUT_PLANE, .point = {0, 0, 1}, .normal = {0, 0, 1}};
+  for (int i = 0; i < GRID * GRID * GRID; i++) voxels[i] = (float)(0.9 + 0.004 * (i % GRID));
+  for (int clipped = 0; clipped < 2; clipped++) {
+    stage set;
+    open_sky(&set);
+    hl_scene_volume *volume = stage_add_grid(&set, (size_t[3]){GRID, GRID, GRID}, (double[3]){1, 1, 1},
+                                             (vec3){-12, -12, -12}, voxels);
+    volume->transfer_function.opacity = OPACITY;
+    volume->transfer_function.opacity_count = 2;
+    volume->shading = HL_SHADING_PHONG;
+    volume->material = (hl_material){.diffuse = 1};
+    if (clipped) {
+      volume->clipped = true;
+      for (int a = 0; a < 3; a++) volume->clip_min[a] = -12.5, volume->clip_max[a] = a == 2 ? 1 : 11.5;
+    } else {
+      volume->cuts = &plane;
+      volume->cut_count = 1;
+    }
+    stage_look(&set, (vec3){10, -30, 60}, (vec3){0, 0, 1}, (vec3){0, 0, 1});
+    stage_render_sheets(&set, pixels);
+    assert_near(middle(pixels, 0), 1, 0.05);
+    stage_close(&set);
+  }
+}
+
 static void render_on(int threads, hl_instruction_set instructions, float *pixels) {
   hl_context_options options;
   hl_context_options_defaults(&options);
@@ -221,7 +251,7 @@ int main(void) {
       cmocka_unit_test(test_thin_haze),  cmocka_unit_test(test_slab),
       cmocka_unit_test(test_hemisphere), cmocka_unit_test(test_against_the_reference),
       cmocka_unit_test(test_meshes),     cmocka_unit_test(test_same_bytes),
-      cmocka_unit_test(test_kept_light),
+      cmocka_unit_test(test_kept_light), cmocka_unit_test(test_cut_faces),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
