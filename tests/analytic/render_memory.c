@@ -121,16 +121,27 @@ static hl_status render(const variant *v, uint64_t limit, uint64_t *estimate, ui
   return status;
 }
 
+static bool is_tight(const variant *v, uint64_t estimate, uint64_t peak) {
+  /* how many fragments meshes have is not known before they are made */
+  return (double)estimate <= (v->mesh ? 1.5 : 1.25) * (double)peak;
+}
+
+/* On a busy machine a thread may wait through a whole frame, and holds no fragments then: the estimate is
+ * held against the most of some frames. */
 static void estimates_hold(void **state) {
   (void)state;
   for (size_t n = 0; n < sizeof variants / sizeof *variants; n++) {
-    uint64_t estimate, peak;
-    assert_int_equal(render(&variants[n], 0, &estimate, &peak, NULL), HL_OK);
-    print_message("# %s: estimate %.2f MiB, peak %.2f MiB\n", variants[n].name, (double)estimate / (1 << 20),
+    const variant *v = &variants[n];
+    uint64_t estimate = 0, peak = 0;
+    for (int frame = 0; frame < 8 && (frame == 0 || !is_tight(v, estimate, peak)); frame++) {
+      uint64_t held;
+      assert_int_equal(render(v, 0, &estimate, &held, NULL), HL_OK);
+      assert_true(estimate >= held);
+      peak = held > peak ? held : peak;
+    }
+    print_message("# %s: estimate %.2f MiB, peak %.2f MiB\n", v->name, (double)estimate / (1 << 20),
                   (double)peak / (1 << 20));
-    assert_true(estimate >= peak);
-    /* how many fragments meshes have is not known before they are made */
-    assert_true((double)estimate <= (variants[n].mesh ? 1.5 : 1.25) * (double)peak);
+    assert_true(is_tight(v, estimate, peak));
   }
 }
 
