@@ -1,8 +1,9 @@
 /* reference/lights.c - points on the lights, and how much of their light reaches a sample.
  *
- * A light is shaded as if all its light came from its centre. Its extent matters only to shadows and to light
- * textures: transmittance and texture are means over a fixed set of points on the light, the same for every
- * sample, so that the picture has no noise. A sphere is the disk of its radius that faces the sample. */
+ * Surfaces are shaded as if all of a light came from its centre. Its extent matters to shadows, to light
+ * textures and to media that scatter unevenly: transmittance, texture and phase function are means over a
+ * fixed set of points on the light, the same for every sample, so that the picture has no noise. A sphere is
+ * the disk of its radius that faces the sample. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -215,12 +216,25 @@ static hl_status find_mean(hl_context *context, reference_light *light, hl_error
   return HL_OK;
 }
 
+/* The points over which the phase function is averaged; a sphere's are computed for every sample. */
+static hl_status fill_extent(hl_context *context, reference_light *light, hl_error *error) {
+  if (light->directional || !has_extent(light->described)) return HL_OK;
+  reference_light dense = *light;
+  dense.point_count = EXTENT_POINTS;
+  dense.points = light->extent = hl_allocate(context, EXTENT_POINTS, sizeof *light->extent);
+  if (dense.points == NULL)
+    return hl_fail_memory(error, EXTENT_POINTS * sizeof *dense.points, "points on a light");
+  fill_points(&dense);
+  return HL_OK;
+}
+
 hl_status hl_reference_light_create(const reference *all, const hl_light *light, int point_count,
                                     reference_light *made, hl_error *error) {
   *made = (reference_light){.described = light, .directional = light->type == HL_LIGHT_DIRECTIONAL};
   for (int c = 0; c < 3; c++) made->color[c] = light->color[c] * light->intensity;
   made->least_distance = HL_LEAST_LIGHT_DISTANCE * hl_scene_frame_space(all->scene).unit;
   if (light->texture.pixels != NULL) made->texture = &light->texture;
+  made->cap = made->directional ? cos(light->angular_diameter_deg * HL_PI / 360) : 1;
   if (made->directional) made->towards = vec3_scale(vec3_normalise(vec3_of(light->direction)), -1);
   else made->centre = hl_light_centre(light);
   if (light->emission.pixels != NULL) {
@@ -228,6 +242,8 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
     hl_status status = find_mean(all->context, made, error);
     if (status != HL_OK) return status;
   }
+  hl_status extended = fill_extent(all->context, made, error);
+  if (extended != HL_OK) return extended;
   hl_shadows shadows = light->shadows == HL_SHADOWS_DEFAULT ? all->scene->render.shadows : light->shadows;
   if (shadows == HL_SHADOWS_OFF) return HL_OK;
   made->point_count = shadows == HL_SHADOWS_SOFT && has_extent(light) ? (size_t)point_count : 1;
@@ -237,6 +253,42 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
   made->sphere = (light->type == HL_LIGHT_POINT || light->type == HL_LIGHT_SPOT) && made->point_count > 1;
   fill_points(made);
   return HL_OK;
+}
+
+/* ---- the phase function ---- */
+
+/* The mean of p over the cap of the least cosine c whose middle is at the angle of the given cosine to where
+ * light goes straight on: the sum over n of (2 n + 1) g^n k_n P_n(cosine), k_n the mean of P_n over the cap,
+ * (P_(n-1)(c) - P_(n+1)(c)) / ((2 n + 1) (1 - c)) (derived: by the addition theorem only the cap's own
+ * harmonics stay). */
+static double phase_of_cap(double g, double c, double cosine) {
+  double before = 1, here = cosine, cap_before = 1, cap_here = c, power = 1, sum = 1;
+  for (int n = 1; fabs(power) > 1e-9; n++) {
+    double next = ((2 * n + 1) * cosine * here - n * before) / (n + 1),
+           cap_next = ((2 * n + 1) * c * cap_here - n * cap_before) / (n + 1);
+    power *= g;
+    sum += power * (cap_before - cap_next) / (1 - c) * here;
+    before = here, here = next;
+    cap_before = cap_here, cap_here = cap_next;
+  }
+  return sum;
+}
+
+double hl_reference_light_phase(const reference_light *light, double g, vec3 to_eye, vec3 point) {
+  if (g == 0) return 1;
+  if (light->directional)
+    return light->cap < 1 ? phase_of_cap(g, light->cap, -vec3_dot(to_eye, light->towards))
+                          : hl_reference_phase(g, to_eye, light->towards);
+  vec3 facing = vec3_normalise(vec3_subtract(light->centre, point));
+  if (!(vec3_length(facing) > 0)) facing = (vec3){0, 0, 1};
+  bool sphere = light->described->type == HL_LIGHT_POINT || light->described->type == HL_LIGHT_SPOT;
+  double sum = 0;
+  for (size_t i = 0; i < EXTENT_POINTS && light->extent != NULL; i++) {
+    vec3 from = light->extent[i];
+    if (sphere) from = point_of_disk(light->centre, facing, light->described->radius, i, EXTENT_POINTS);
+    sum += hl_reference_phase(g, to_eye, vec3_normalise(vec3_subtract(from, point))) / EXTENT_POINTS;
+  }
+  return light->extent != NULL ? sum : hl_reference_phase(g, to_eye, facing);
 }
 
 /* A spot light's brightness rises from 0 to 1 by a smooth step of the cosine of the angle to its axis, from

@@ -301,8 +301,10 @@ static hl_status prepare(reference *all, const hl_reference_options *options, hl
 static void release(reference *all) {
   for (size_t v = 0; all->volumes != NULL && v < all->scene->volume_count; v++)
     hl_reference_volume_release(all->context, &all->volumes[v]);
-  for (size_t l = 0; all->lights != NULL && l < all->scene->light_count; l++)
+  for (size_t l = 0; all->lights != NULL && l < all->scene->light_count; l++) {
     hl_release(all->context, all->lights[l].points);
+    hl_release(all->context, all->lights[l].extent);
+  }
   hl_release(all->context, all->volumes);
   hl_release(all->context, all->lights);
   hl_release(all->context, all->sky.cells);

@@ -76,7 +76,12 @@ typedef struct reference_light {
   double mean[3];                    /* mean of the emission image over the light's surface */
   vec3 *points;                      /* owned; null where the light casts no shadows; not set for spheres */
   size_t point_count;
+  vec3 *extent; /* owned; [EXTENT_POINTS], positions in the world; null: parallel, or a point */
+  double cap;   /* of a parallel light: cosine of half its angular diameter */
 } reference_light;
+
+/* Points of a light over which the phase function is averaged. */
+enum { EXTENT_POINTS = 256 };
 
 /* A triangle or a sphere of a mesh, in the world. */
 typedef struct reference_triangle {
@@ -276,6 +281,9 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
  * transmittance. attenuated false: the transmittance counts as 1. */
 void hl_reference_light_reach(const reference *all, const reference_light *light, vec3 point, bool attenuated,
                               reference_worker *worker, double reach[3]);
+
+/* The mean over the light of the phase function times 4 pi, for its light from `point` to the eye. */
+double hl_reference_light_phase(const reference_light *light, double g, vec3 to_eye, vec3 point);
 
 /* exp(-optical depth) along a ray, times what surfaces let through, in each channel. scratch:
  * [volume_count]. */

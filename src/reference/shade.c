@@ -4,8 +4,9 @@
  *     medium    C = c (ka Ia + p I)
  *     flat      C = c, whatever the light
  *
- * p is Henyey and Greenstein's phase function times 4 pi. Emission adds c ke to a surface and to a medium.
- * A sample of a volume shaded "phong" goes from medium to surface as its gradient grows from nothing.
+ * p is Henyey and Greenstein's phase function times 4 pi, its mean over the light. Emission adds c ke to a
+ * surface and to a medium. A sample of a volume shaded "phong" goes from medium to surface as its gradient
+ * grows from nothing.
  */
 #include <string.h>
 
@@ -85,8 +86,9 @@ static void shade_light(const reference *all, const reference_sample *at, const 
     gloss = material->specular * pow(fmax(vec3_dot(at->to_eye, reflected), 0), material->shininess);
   }
   double surface = here->amount * material->diffuse * fmax(cosine, 0);
-  double medium = (1 - here->amount) *
-                  hl_reference_phase(at->volume->described->anisotropy, at->to_eye, arrived->towards);
+  double medium = (1 - here->amount) * hl_reference_light_phase(&all->lights[light],
+                                                                at->volume->described->anisotropy, at->to_eye,
+                                                                at->point);
   if (surface + medium <= 0 && gloss <= 0) return;
   const double *reach = light_reach(all, at->volume, light, at->point, worker);
   const double *albedo = at->volume->described->albedo;

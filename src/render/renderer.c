@@ -29,6 +29,7 @@ struct hl_renderer {
   surfaces surfaces;       /* owned; of the last frame's meshes, kept while they stay where they are */
   scatter_field scattered; /* owned; kept while the scene's matter and lights stay the same */
   sky_field sky;           /* owned; the light of the scene's sky */
+  phase_tables phases;     /* owned; of the scene's media and lights */
   hl_reserve reserve;      /* owned; blocks that frames and sweeps have returned */
   uint64_t estimate;       /* bytes; see render/estimate.h */
 };
@@ -81,6 +82,7 @@ void hl_renderer_destroy(hl_renderer *renderer) {
   release_buffers(renderer);
   hl_scatter_release(renderer->context, &renderer->scattered);
   hl_sky_release(renderer->context, &renderer->sky);
+  hl_phase_release(renderer->context, &renderer->phases);
   hl_surfaces_release(renderer->context, &renderer->surfaces);
   hl_reserve_release(&renderer->reserve);
   hl_pool_destroy(renderer->pool);
@@ -316,6 +318,7 @@ static sweep sweep_of(hl_renderer *renderer, const hl_scene_description *scene, 
                  .layer_pixels = &work->layers,
                  .scattered = renderer->scattered.light != NULL ? &renderer->scattered : NULL,
                  .sky = renderer->sky.light.field != NULL ? &renderer->sky.light : NULL,
+                 .phases = &renderer->phases,
                  .maximum = &work->maximum,
                  .part = renderer->part,
                  .parts = renderer->parts,
@@ -469,6 +472,13 @@ static hl_status update_sky(hl_renderer *renderer, const hl_scene_description *s
                              &(sky_room){check_sky_room, renderer}, &renderer->sky, error);
 }
 
+static hl_status update_phases(hl_renderer *renderer, const hl_scene_description *scene, hl_error *error) {
+  uint64_t bytes = hl_phase_bytes(scene), held = renderer->phases.bytes;
+  hl_status status = bytes > held ? check_room(renderer, bytes - held, error) : HL_OK;
+  if (status != HL_OK) return status;
+  return hl_phase_update(renderer->context, renderer->pool, scene, &renderer->phases, error);
+}
+
 static hl_status render_frame(hl_renderer *renderer, const frame_request *request, frame_work *work,
                               hl_render_statistics *statistics, hl_error *error) {
   double start = hl_clock_seconds();
@@ -491,6 +501,7 @@ static hl_status render_frame(hl_renderer *renderer, const frame_request *reques
   if (status == HL_OK) status = set_up_frame(renderer, scene, request, work, error);
   if (status == HL_OK) status = scatter_light(renderer, scene, work, request->sky_mark, error);
   if (status == HL_OK) status = update_sky(renderer, scene, work, hot, request->sky_mark, error);
+  if (status == HL_OK) status = update_phases(renderer, scene, error);
   if (status == HL_OK) status = check_sweeps_room(renderer, scene, work, error);
   statistics->seconds_prepare = hl_clock_seconds() - start;
   start = hl_clock_seconds();

@@ -3,12 +3,11 @@
 #define HL_RENDER_SHADE_LANES_H
 
 #include "light/light_texture_lanes.h"
+#include "render/phase_lanes.h"
 #include "render/reaching_lanes.h"
 #include "render/sky_lanes.h"
 #include "render/voxel_color_lanes.h"
 #include "scatter/scatter_lanes.h"
-
-static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
 
 /* The light that arrives from one light, with its direction (step 14 and the first half of step 15; eqs. 1
  * and 2). */
@@ -106,14 +105,6 @@ LANES_INLINE lanes power(lanes base, lanes exponent) {
   return lanes_keep(base > 1e-12f, lanes_exp2(lanes_max(lanes_log2(safe) * exponent, lanes_set(-100.0f))));
 }
 
-/* Henyey and Greenstein's phase function, "Diffuse radiation in the galaxy" (1941), times 4 pi: 1 stands for
- * scattering alike in all directions. (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), where cos is the cosine of the
- * angle between the light's direction before and after. turn: -cos. */
-LANES_INLINE lanes phase(float g, lanes turn) {
-  lanes squared = lanes_line(turn, 2 * g, 1 + g * g);
-  return lanes_set(1 - g * g) / (squared * lanes_sqrt(squared));
-}
-
 /* Adds light that was scattered more than once. The grid holds a medium that scatters evenly (scatter.h). It
  * lets T^(1 - w g) of a light through where the medium itself lets T through: the difference, the fraction g
  * of what was scattered once, goes on like the light, and the rest, 1 - g, is in the grid. Light scattered
@@ -131,7 +122,8 @@ LANES_INLINE void add_scattered(const shade_job *job, const block_density *d, co
   for (int i = 0; i < job->light_count && volume->anisotropy > 0; i++) {
     if (lights[i].dark || !job->lights[i].shadowed) continue;
     float even = 1 - volume->anisotropy;
-    lanes twice = phase(volume->anisotropy * volume->anisotropy, dot3(g->towards_eye, lights[i].towards));
+    lanes twice = phase_of_light(volume->phase_twice, volume->anisotropy * volume->anisotropy,
+                                 &job->lights[i], lights[i].towards, g);
     lanes turned = (twice - even) * (1.0f / volume->anisotropy) * (1.0f - d->surface);
     for (int c = 0; c < 3; c++) {
       lanes full = lights[i].full.c[c],
@@ -144,8 +136,8 @@ LANES_INLINE void add_scattered(const shade_job *job, const block_density *d, co
   for (int c = 0; c < 3; c++) lit->c[c] = lanes_fma(light[c], color->c[c] * volume->albedo[c], lit->c[c]);
 }
 
-/* Step 15: eqs. (3) and (4) with the light's centre; a medium scatters by its phase function. Emission is
- * added; a volume shaded flat has nothing else. */
+/* Step 15: eqs. (3) and (4) with the light's centre; a medium scatters by its phase function, its mean over
+ * the light. Emission is added; a volume shaded flat has nothing else. */
 LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d, const block_geometry *g,
                                     const arriving_light *lights, color_lanes color) {
   const shade_volume *volume = d->patch->volume;
@@ -157,7 +149,8 @@ LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d
     const color_lanes *intensity = volume->receives_shadow ? &lights[i].shadowed : &lights[i].full;
     lanes facing = dot3(d->normal, lights[i].towards), medium = 1.0f - d->surface;
     if (volume->anisotropy != 0)
-      medium = medium * phase(volume->anisotropy, dot3(g->towards_eye, lights[i].towards));
+      medium = medium *
+               phase_of_light(volume->phase_once, volume->anisotropy, &job->lights[i], lights[i].towards, g);
     lanes diffuse = lanes_fma(lanes_max(facing, lanes_set(0)) * volume->diffuse, d->surface, medium);
     lanes3 mirrored = add_scaled3(scale3(lights[i].towards, lanes_set(-1.0f)), d->normal, facing * 2.0f);
     lanes glint = power(dot3(g->towards_eye, mirrored), lanes_set(volume->shininess)) * volume->specular *

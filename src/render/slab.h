@@ -7,9 +7,11 @@
 #define HL_RENDER_SLAB_H
 
 #include "field/sky_field.h"
+#include "light/light_caps.h"
 #include "light/light_source.h"
 #include "light/light_texture.h"
 #include "render/cut.h"
+#include "render/phase_table.h"
 #include "scatter/scatter.h"
 #include "shadow/attenuate.h"
 #include "shadow/shadow_buffer.h"
@@ -43,16 +45,17 @@ typedef struct shade_volume {
   const float (*shown)[4]; /* in a maximum projection: SHOWN_FROM and so on, per table entry; else null */
   int rank;                /* among the visible volumes */
   float anisotropy;        /* g of the phase function */
-  voxel_colors colors;     /* multiply the transfer function's */
-  float albedo[3];         /* of the medium, times its colour */
-  int absorbs;             /* not all of the albedo is 1 */
-  int multiple;            /* light that was scattered lights it again */
-  const shade_cut *cuts;   /* [cut_count] */
-  int cut_count, light_cut_count; /* for the eye, and for lights: these, or none */
-  int cut_shading;                /* hl_cut_shading */
-  int mask_faces;                 /* normals turn to the faces that the mask leaves */
-  voxel_colors tints;             /* of the mask: colours go towards these, by their weights */
-  int object;                     /* its number in the layer of objects */
+  const phase_table *phase_once, *phase_twice; /* of g and of g^2; null where no light is wide */
+  voxel_colors colors;                         /* multiply the transfer function's */
+  float albedo[3];                             /* of the medium, times its colour */
+  int absorbs;                                 /* not all of the albedo is 1 */
+  int multiple;                                /* light that was scattered lights it again */
+  const shade_cut *cuts;                       /* [cut_count] */
+  int cut_count, light_cut_count;              /* for the eye, and for lights: these, or none */
+  int cut_shading;                             /* hl_cut_shading */
+  int mask_faces;                              /* normals turn to the faces that the mask leaves */
+  voxel_colors tints;                          /* of the mask: colours go towards these, by their weights */
+  int object;                                  /* its number in the layer of objects */
 } shade_volume;
 
 /* One volume's densities in a tile, on cache lines of its own: each thread writes its patches beside
@@ -82,6 +85,8 @@ typedef struct shade_light {
   light_texture texture;         /* the picture that the light projects */
   light_cone cone;               /* of a spot light */
   sector_fraction sector;        /* of a light within the content */
+  light_caps caps;               /* of a wide light that is not parallel */
+  int parallel_row;              /* of phase tables; of a wide parallel light, else -1 */
   int nearest, cubic; /* nearest: the lookup takes the nearest pixel; cubic: by cubic convolution (never of
                          sub-lights); else bilinearly */
 } shade_light;

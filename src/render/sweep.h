@@ -123,9 +123,10 @@ struct sweep {
   const layer_pixels *layer_pixels; /* pixels of the layers; null: none */
   const scatter_field *scattered;   /* null: none */
   const sky_light *sky;             /* null: none */
-  const maximum_values *maximum;    /* values of a maximum projection; values null: matter is lit */
-  float *pixels;                    /* [tiles][16][4][16] */
-  int32_t *shown_from;              /* [tiles][16]; first visible slab per block; null: nothing is hidden */
+  const phase_tables *phases;
+  const maximum_values *maximum; /* values of a maximum projection; values null: matter is lit */
+  float *pixels;                 /* [tiles][16][4][16] */
+  int32_t *shown_from;           /* [tiles][16]; first visible slab per block; null: nothing is hidden */
   /* the picture */
   view_sheets image;
   size_t tiles;

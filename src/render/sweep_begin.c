@@ -279,22 +279,25 @@ static void set_up_shading(sweep *sweep) {
   for (int g = 0; g < sweep->content.volume_count; g++) {
     const hl_scene_volume *volume = sweep->content.volumes[g].scene;
     shade_volume *shade = &sweep->arrays.shade_volumes[g];
-    *shade = (shade_volume){.classifier = &sweep->content.volumes[g].classifier,
-                            .grid = &sweep->content.grids[g],
-                            .kernel = sweep->content.kernel,
-                            .phong = volume->shading == HL_SHADING_PHONG,
-                            .lit = volume->shading != HL_SHADING_FLAT,
-                            .object = g + 1,
-                            .visible = volume->visible,
-                            .receives_shadow = volume->receives_shadow,
-                            .ambient = (float)volume->material.ambient,
-                            .diffuse = (float)volume->material.diffuse,
-                            .specular = (float)volume->material.specular,
-                            .shininess = (float)volume->material.shininess,
-                            .anisotropy = (float)volume->anisotropy,
-                            .colors = colors_of(volume->volume, sweep->arrays.srgb_decode),
-                            .tints = colors_of(volume->mask.volume, sweep->arrays.tint_decode),
-                            .multiple = volume->multiple_scattering};
+    *shade = (shade_volume){
+        .classifier = &sweep->content.volumes[g].classifier,
+        .grid = &sweep->content.grids[g],
+        .kernel = sweep->content.kernel,
+        .phong = volume->shading == HL_SHADING_PHONG,
+        .lit = volume->shading != HL_SHADING_FLAT,
+        .object = g + 1,
+        .visible = volume->visible,
+        .receives_shadow = volume->receives_shadow,
+        .ambient = (float)volume->material.ambient,
+        .diffuse = (float)volume->material.diffuse,
+        .specular = (float)volume->material.specular,
+        .shininess = (float)volume->material.shininess,
+        .anisotropy = (float)volume->anisotropy,
+        .phase_once = hl_phase_table(sweep->phases, volume->anisotropy),
+        .phase_twice = hl_phase_table(sweep->phases, volume->anisotropy * volume->anisotropy),
+        .colors = colors_of(volume->volume, sweep->arrays.srgb_decode),
+        .tints = colors_of(volume->mask.volume, sweep->arrays.tint_decode),
+        .multiple = volume->multiple_scattering};
     for (int c = 0; c < 3; c++) {
       shade->albedo[c] = (float)volume->albedo[c];
       shade->absorbs = shade->absorbs || volume->albedo[c] != 1;
@@ -335,9 +338,11 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
       .inverse_square = scene->falloff == HL_FALLOFF_INVERSE_SQUARE,
       .texture = from->texture,
       .sector = hl_sector_fraction(from->source->sectors, from->source->sector),
+      .parallel_row = from->source->parallel && hl_light_is_wide(scene) ? from->source->light_index : -1,
       .cone = hl_light_cone(from->source, sweep->frame->middle, sweep->frame->middle_pixel),
       .nearest = sweep->scene->render.shadow_lookup == HL_LOOKUP_NEAREST,
       .cubic = from->shadow.plan.cubic};
+  if (sweep->phases->count > 0) light->caps = hl_light_caps(from->source);
   vec3_store(light->towards, vec3_scale(from->source->direction, -1));
   vec3_store(light->position, from->source->position);
   for (int c = 0; c < 3; c++)

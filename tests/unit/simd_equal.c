@@ -796,6 +796,7 @@ typedef struct shade_state {
   } out;
   float scattered_light[12 * 60];
   scatter_field scattered;
+  phase_table phase;
 } shade_state;
 
 /* The state's only tile. */
@@ -842,8 +843,13 @@ static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
                            .sublights = s->sublights[i],
                            .sublight_count = round % 4,
                            .channels = s->job.channels,
+                           .parallel_row = (round + i) % 4 < 2 ? i : -1,
                            .nearest = round % 5 == 4,
                            .cubic = round / 4 % 2};
+    light->caps.count = light->parallel ? 0 : (round + i) % 5;
+    for (int part = 0; part < light->caps.count; part++)
+      light->caps.cap[part] = (light_cap){{3 + (float)part, salted(seed, -2, 2), 1},
+                                          {1, 2, 0.5f, 0.3f, -0.2f, 0.1f}};
     s->lookups[i].map = random_map(seed, 9);
     s->lookups[i].young = 0.3f;
     for (int c = 0; c < HL_CHANNELS; c++) {
@@ -903,6 +909,10 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                  .channels = round % 3 ? 3 : 1};
   s->job.scattered = round % 5 ? &s->scattered : NULL;
   if (round == 0) s->job.light_count = 2;
+  static float phase_rows[3][PHASE_COLUMNS], phase_caps[PHASE_CAPS][PHASE_COLUMNS][2];
+  fill_salted(phase_rows[0], sizeof phase_rows / sizeof(float), seed, 0.1, 2);
+  fill_salted(&phase_caps[0][0][0], sizeof phase_caps / sizeof(float), seed, 0.1, 2);
+  s->phase = (phase_table){0.7, 9, phase_caps, phase_rows};
   set_up_lights(s, seed, round);
   for (int v = 0; v < 2; v++) {
     const classifier *classifier = classifier_of(round / 2 + v);
@@ -933,6 +943,8 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    NULL,
                                    v,
                                    round % 3 == 1 ? -0.7f : round % 3 * 0.4f,
+                                   round / 3 % 4 ? &s->phase : NULL,
+                                   round / 3 % 4 ? &s->phase : NULL,
                                    (round + v) % 3 == 1 ? colors_bench : (voxel_colors){.voxels = NULL},
                                    {0.9f, 0.8f, 1},
                                    round % 4 == 1,

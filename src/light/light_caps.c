@@ -1,0 +1,86 @@
+/* light/light_caps.c - see light_caps.h. */
+#include "light/light_caps.h"
+
+#include "light/light_extent.h"
+#include "scene/light_shape.h"
+
+/* Points along each side of a part, of which its middle and spread are means. */
+enum { POINTS_OF_PART = 8 };
+
+static bool is_sphere(const hl_light *light) {
+  return light->type == HL_LIGHT_POINT || light->type == HL_LIGHT_SPOT;
+}
+
+bool hl_light_is_wide(const hl_light *light) {
+  if (light->type == HL_LIGHT_DIRECTIONAL) return light->angular_diameter_deg > 0;
+  if (light->type == HL_LIGHT_RECT)
+    return vec3_length(vec3_of(light->edge1)) + vec3_length(vec3_of(light->edge2)) > 0;
+  return light->type == HL_LIGHT_POLYGON || light->radius > 0;
+}
+
+/* A light that looks at most this wide, over its distance, and about as long, is one part. */
+static const double NARROW = 0.35;
+
+/* Cuts a rect so that its parts look about as long as wide. `length`: how long its edges look. */
+static void cut_rect(const double length[2], int parts[2]) {
+  int longer = length[1] > length[0], across = 1 - longer;
+  double ratio = length[longer] / fmax(length[across], length[longer] / MOST_CAPS);
+  if (!(ratio >= 1.5)) return;
+  parts[longer] = (int)fmin(floor(ratio + 0.5), MOST_CAPS);
+  parts[across] = 1;
+}
+
+/* Parts along a and b of the unit square (hl_light_point), for a view from the content's middle. */
+static void choose_parts(const light_source *source, int parts[2]) {
+  const hl_light *light = source->light;
+  vec3 way = vec3_subtract(source->content, source->position), to = vec3_normalise(way);
+  double length[2] = {2 * light->radius, 2 * light->radius};
+  if (light->type == HL_LIGHT_POLYGON) length[0] = length[1] = INFINITY;
+  if (light->type == HL_LIGHT_RECT) {
+    length[0] = vec3_length(vec3_cross(vec3_of(light->edge1), to));
+    length[1] = vec3_length(vec3_cross(vec3_of(light->edge2), to));
+  }
+  bool narrow = fmax(length[0], length[1]) <= NARROW * vec3_length(way);
+  parts[0] = parts[1] = is_sphere(light) || narrow ? 1 : 2;
+  if (light->type == HL_LIGHT_RECT) cut_rect(length, parts);
+}
+
+/* Offset of point k of a part from the light's centre. */
+static vec3 point_of_part(const light_source *source, const int parts[2], int part, int k) {
+  int i = part % parts[0], j = part / parts[0];
+  double a = (i + (k % POINTS_OF_PART + 0.5) / POINTS_OF_PART) / parts[0],
+         b = (j + (k / POINTS_OF_PART + 0.5) / POINTS_OF_PART) / parts[1];
+  return hl_light_point(source, a, b);
+}
+
+static light_cap cap_of_part(const light_source *source, const int parts[2], int part) {
+  const int count = POINTS_OF_PART * POINTS_OF_PART;
+  vec3 sum = {0, 0, 0};
+  double spread[6] = {0};
+  for (int k = 0; k < count; k++) sum = vec3_add(sum, point_of_part(source, parts, part, k));
+  vec3 middle = vec3_scale(sum, 1.0 / count);
+  for (int k = 0; k < count; k++) {
+    vec3 x = vec3_subtract(point_of_part(source, parts, part, k), middle);
+    const double products[6] = {x.x * x.x, x.y * x.y, x.z * x.z, x.x * x.y, x.x * x.z, x.y * x.z};
+    for (int i = 0; i < 6; i++) spread[i] += 2 * products[i] / count;
+  }
+  light_cap cap;
+  vec3_store(cap.middle, vec3_add(source->position, middle));
+  for (int i = 0; i < 6; i++) cap.spread[i] = (float)spread[i];
+  return cap;
+}
+
+light_caps hl_light_caps(const light_source *source) {
+  light_caps caps = {.count = 0};
+  if (source->parallel || !hl_light_is_wide(source->light)) return caps;
+  int parts[2];
+  choose_parts(source, parts);
+  caps.count = parts[0] * parts[1];
+  for (int i = 0; i < caps.count; i++) caps.cap[i] = cap_of_part(source, parts, i);
+  if (!is_sphere(source->light)) return caps;
+  /* a sphere is the disk that faces the point, wherever the point is */
+  double radius = source->light->radius;
+  vec3_store(caps.cap[0].middle, source->position);
+  for (int i = 0; i < 6; i++) caps.cap[0].spread[i] = i < 3 ? (float)(radius * radius / 2) : 0;
+  return caps;
+}

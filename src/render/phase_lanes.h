@@ -1,0 +1,84 @@
+/* render/phase_lanes.h - how much of a light a medium scatters towards the eye. */
+#ifndef HL_RENDER_PHASE_LANES_H
+#define HL_RENDER_PHASE_LANES_H
+
+#include "render/slab_lanes.h"
+#include "simd/gathers.h"
+
+static const float LEAST_LIGHT_DISTANCE = (float)HL_LEAST_LIGHT_DISTANCE;
+
+/* Henyey and Greenstein's phase function, "Diffuse radiation in the galaxy" (1941), times 4 pi: 1 stands for
+ * scattering alike in all directions. (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), where cos is the cosine of the
+ * angle between the light's direction before and after. turn: -cos. */
+LANES_INLINE lanes phase(float g, lanes turn) {
+  lanes squared = lanes_line(turn, 2 * g, 1 + g * g);
+  return lanes_set(1 - g * g) / (squared * lanes_sqrt(squared));
+}
+
+/* An angle for a phase table, and p there. */
+typedef struct phase_angle {
+  lanes_int column;
+  lanes fraction; /* from the column to the next one */
+  lanes phase;
+} phase_angle;
+
+/* turn: as above. */
+LANES_INLINE phase_angle phase_angle_at(float g, lanes turn) {
+  const float size = fabsf(g), per_s = (PHASE_COLUMNS - 1) / (2 * size);
+  lanes squared = lanes_max(lanes_line(turn, 2 * g, 1 + g * g), lanes_set((1 - size) * (1 - size)));
+  lanes s = lanes_sqrt(squared);
+  lanes at = lanes_clamp(lanes_line(s, per_s, (size - 1) * per_s), 0, PHASE_COLUMNS - 1 - 1e-3f);
+  phase_angle angle = {.column = lanes_truncate(at), .phase = (1 - g * g) / (squared * s)};
+  angle.fraction = at - lanes_from_int(angle.column);
+  return angle;
+}
+
+/* The row of a table, between two rows, for a cap seen along `way`, not of unit length; inverse: 1 over the
+ * square of its length. */
+LANES_INLINE lanes row_of_cap(const phase_table *table, float size, const light_cap *cap, lanes3 way,
+                              lanes inverse) {
+  const float *spread = cap->spread;
+  lanes along = lanes_fma(way.x * spread[0], way.x, way.y * way.y * spread[1] + way.z * way.z * spread[2]);
+  lanes twice = lanes_fma(way.x * spread[3], way.y, way.z * (way.x * spread[4] + way.y * spread[5]));
+  lanes wide = (spread[0] + spread[1] + spread[2]) - (along + twice * 2.0f) * inverse;
+  lanes h = lanes_sqrt(lanes_max(lanes_fma(wide, inverse, lanes_set(1.0f)), lanes_set(1.0f)));
+  float most = 1 / ((1 - size) * (1 - size)); /* the cap's s^2 over the least one, by c = 4 / (1 + h) - 1 */
+  lanes ratio = lanes_line(1.0f / (h + 1.0f), -8 * size * most, (1 + size) * (1 + size) * most);
+  lanes row = lanes_log2(lanes_max(ratio, lanes_set(1.0f))) * table->rows_per_log2;
+  return lanes_clamp(row, 0, PHASE_CAPS - 1 - 1e-3f);
+}
+
+/* The mean over one cap. */
+LANES_INLINE lanes phase_of_cap(const phase_table *table, float g, const light_cap *cap,
+                                const block_geometry *geometry) {
+  const float least = LEAST_LIGHT_DISTANCE * LEAST_LIGHT_DISTANCE;
+  lanes3 way = add_scaled3(set3(cap->middle), geometry->position, lanes_set(-1.0f));
+  lanes inverse = 1.0f / lanes_max(dot3(way, way), lanes_set(least));
+  lanes row = row_of_cap(table, fabsf(g), cap, way, inverse), square[4];
+  phase_angle angle = phase_angle_at(g, dot3(geometry->towards_eye, way) * lanes_sqrt(inverse));
+  lanes_int first = lanes_truncate(row);
+  lanes_gather_quads(&table->caps[0][0][0], (first * PHASE_COLUMNS + angle.column) * 2, square);
+  lanes between = row - lanes_from_int(first);
+  lanes near = lanes_fma(square[1] - square[0], between, square[0]),
+        far = lanes_fma(square[3] - square[2], between, square[2]);
+  return lanes_fma(far - near, angle.fraction, near) * angle.phase;
+}
+
+/* The mean over a light. towards: unit, to its middle; table: of g, null where no light is wide. */
+LANES_INLINE lanes phase_of_light(const phase_table *table, float g, const shade_light *light, lanes3 towards,
+                                  const block_geometry *geometry) {
+  lanes turn = dot3(geometry->towards_eye, towards);
+  if (table == NULL || (light->caps.count == 0 && light->parallel_row < 0)) return phase(g, turn);
+  if (light->caps.count == 0) {
+    phase_angle angle = phase_angle_at(g, turn);
+    lanes from, to;
+    lanes_gather_pairs(table->parallel[light->parallel_row], angle.column, &from, &to);
+    return lanes_fma(to - from, angle.fraction, from) * angle.phase;
+  }
+  lanes sum = lanes_set(0);
+  for (int i = 0; i < light->caps.count; i++)
+    sum = sum + phase_of_cap(table, g, &light->caps.cap[i], geometry);
+  return sum * (1.0f / (float)light->caps.count);
+}
+
+#endif

@@ -1,0 +1,202 @@
+/* render/phase_table.c - see phase_table.h. */
+#include "render/phase_table.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/vector.h"
+#include "light/light_caps.h"
+
+/* ---- the mean over a cap ---- */
+
+/* Places in the integral of mean_over_cap(). */
+enum { RING_COUNT = 32 };
+
+typedef struct ring_places {
+  double cosine[RING_COUNT], sine[RING_COUNT];
+} ring_places;
+
+static void place_rings(ring_places *rings) {
+  for (int i = 0; i < RING_COUNT; i++) {
+    double turn = (i + 0.5) * HL_PI / RING_COUNT;
+    rings->cosine[i] = cos(turn);
+    rings->sine[i] = sin(turn);
+  }
+}
+
+static double s_of(double g, double cosine) {
+  return sqrt(fmax(1 + g * g - 2 * g * cosine, (1 - g) * (1 - g)));
+}
+
+static double cosine_of(double g, double s) { return fmin(fmax((1 + g * g - s * s) / (2 * g), -1), 1); }
+
+/* The mean of p over the cap of the least cosine c (below 1) whose middle is at the angle of cosine `towards`
+ * from where light goes straight on. Derived: on the ring of directions at an angle t from there p is even;
+ * the cap holds the fraction f(t) = acos((c - cos t cos T) / (sin t sin T)) / pi of the ring, T the angle to
+ * the middle, or all or nothing of it. With x = 1 / s, p sin t dt is (1 - g^2) / g dx, so that the mean is (1
+ * - g^2) / (g (1 - c)) times the integral of f dx. Where f is no constant x = m + h cos(u) takes away the
+ * square roots at both ends. */
+static double mean_over_cap(double g, double c, double towards, const ring_places *rings) {
+  double turn = acos(towards), half = acos(c), sine = sin(turn);
+  double nearest = fabs(turn - half), farthest = fmin(turn + half, 2 * HL_PI - turn - half);
+  double low = 1 / s_of(g, cos(farthest)), high = 1 / s_of(g, cos(nearest)), sum = 0;
+  for (int i = 0; i < RING_COUNT; i++) {
+    double x = (low + high) / 2 + (high - low) / 2 * rings->cosine[i];
+    double ring = cosine_of(g, 1 / x), across = sqrt(fmax(1 - ring * ring, 0)) * sine;
+    double edge = across > 0 ? (c - ring * towards) / across : c > ring * towards ? 1 : -1;
+    sum += rings->sine[i] * acos(fmin(fmax(edge, -1), 1)) / HL_PI;
+  }
+  sum *= (high - low) / 2 * HL_PI / RING_COUNT;
+  if (turn < half) sum += 1 / (1 - g) - high;        /* rings within the cap */
+  if (turn + half > HL_PI) sum += low - 1 / (1 + g); /* those around its opposite */
+  return (1 - g * g) / (g * (1 - c)) * sum;
+}
+
+/* Fills the row of a cap, with numbers `apart` from each other. */
+static void fill_row(double g, double c, const ring_places *rings, float *row, size_t apart) {
+  for (int i = 0; i < PHASE_COLUMNS; i++) {
+    double s = 1 - g + 2 * g * i / (PHASE_COLUMNS - 1);
+    float *at = row + (size_t)i * apart;
+    *at = 1;
+    if (c < 1) *at = (float)(mean_over_cap(g, c, cosine_of(g, s), rings) * s * s * s / (1 - g * g));
+  }
+}
+
+/* ---- the tables of a scene ---- */
+
+static bool scatters_unevenly(const hl_scene_volume *volume) {
+  return volume->anisotropy != 0 && volume->shading != HL_SHADING_FLAT;
+}
+
+/* Whether some light is wide, or wide and not parallel. */
+static bool has_wide_light(const hl_scene_description *scene, bool near) {
+  bool found = false;
+  for (size_t i = 0; i < scene->light_count; i++)
+    found = found ||
+            (hl_light_is_wide(&scene->lights[i]) && !(near && scene->lights[i].type == HL_LIGHT_DIRECTIONAL));
+  return found;
+}
+
+/* A table is needed for g, and, where light is scattered again, for g^2. */
+static size_t wanted_tables(const hl_scene_description *scene) {
+  size_t count = 0;
+  if (scene->render.compositing != HL_COMPOSITING_LIGHT || !has_wide_light(scene, false)) return 0;
+  for (size_t v = 0; v < scene->volume_count; v++)
+    if (scatters_unevenly(&scene->volumes[v])) count += scene->volumes[v].multiple_scattering ? 2 : 1;
+  return count;
+}
+
+/* Numbers of one table: rows of parallel lights, then caps. */
+static size_t table_size(const hl_scene_description *scene) {
+  return PHASE_COLUMNS * (scene->light_count + (has_wide_light(scene, true) ? 2 * PHASE_CAPS : 0));
+}
+
+uint64_t hl_phase_bytes(const hl_scene_description *scene) {
+  return wanted_tables(scene) * (table_size(scene) * sizeof(float) + sizeof(phase_table));
+}
+
+void hl_phase_release(hl_context *context, phase_tables *tables) {
+  hl_release(context, tables->tables);
+  hl_release(context, tables->numbers);
+  hl_key_release(context, &tables->key);
+  *tables = (phase_tables){0};
+}
+
+const phase_table *hl_phase_table(const phase_tables *tables, double anisotropy) {
+  for (size_t i = 0; i < tables->count; i++)
+    if (tables->tables[i].g == fabs(anisotropy)) return &tables->tables[i];
+  return NULL;
+}
+
+static void write_key(const void *data, hl_key *key) {
+  const hl_scene_description *scene = data;
+  for (size_t i = 0; i < scene->light_count; i++) {
+    const hl_light *light = &scene->lights[i];
+    bool parallel = light->type == HL_LIGHT_DIRECTIONAL;
+    hl_key_add_whole(key, hl_light_is_wide(light) ? parallel ? 2 : 1 : 0);
+    if (parallel) hl_key_add_numbers(key, &light->angular_diameter_deg, 1);
+  }
+  for (size_t v = 0; v < scene->volume_count; v++) {
+    const hl_scene_volume *volume = &scene->volumes[v];
+    if (!scatters_unevenly(volume)) continue;
+    hl_key_add_numbers(key, &volume->anisotropy, 1);
+    hl_key_add_whole(key, volume->multiple_scattering);
+  }
+}
+
+typedef struct phase_job {
+  const hl_scene_description *scene;
+  const phase_tables *tables;
+  bool with_caps;
+  ring_places rings;
+} phase_job;
+
+/* A row of caps stands beside the next one in its own row, and before the last one in that. */
+static void fill_caps(const phase_job *job, const phase_table *table, size_t row) {
+  double g = table->g, part = (double)row / (PHASE_CAPS - 1), s = (1 - g) * pow((1 + g) / (1 - g), part);
+  float(*to)[2] = table->caps[row];
+  fill_row(g, row > 0 ? cosine_of(g, s) : 1, &job->rings, &to[0][0], 2);
+  for (int i = 0; i < PHASE_COLUMNS; i++) {
+    if (row > 0) to[i - PHASE_COLUMNS][1] = to[i][0];
+    if (row == PHASE_CAPS - 1) to[i][1] = to[i][0];
+  }
+}
+
+/* One row of one table. */
+static void fill_row_of_table(void *data, size_t index, int worker) {
+  (void)worker;
+  const phase_job *job = data;
+  const hl_scene_description *scene = job->scene;
+  const size_t lights = scene->light_count, rows = lights + (job->with_caps ? PHASE_CAPS : 0),
+               row = index % rows;
+  const phase_table *table = &job->tables->tables[index / rows];
+  if (row >= lights) {
+    fill_caps(job, table, row - lights);
+    return;
+  }
+  const hl_light *light = &scene->lights[row];
+  if (light->type == HL_LIGHT_DIRECTIONAL && hl_light_is_wide(light))
+    fill_row(table->g, cos(light->angular_diameter_deg * HL_PI / 360), &job->rings, table->parallel[row], 1);
+}
+
+static void add_table(const hl_scene_description *scene, double anisotropy, phase_tables *tables) {
+  if (hl_phase_table(tables, anisotropy) != NULL) return;
+  double g = fabs(anisotropy), range = 2 * log2((1 + g) / (1 - g));
+  float *numbers = tables->numbers + tables->count * table_size(scene);
+  tables->tables[tables->count++] = (phase_table){
+      .g = g,
+      .rows_per_log2 = (float)((PHASE_CAPS - 1) / range),
+      .caps = (float(*)[PHASE_COLUMNS][2])(numbers + scene->light_count * PHASE_COLUMNS),
+      .parallel = (float(*)[PHASE_COLUMNS])numbers};
+}
+
+hl_status hl_phase_update(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
+                          phase_tables *tables, hl_error *error) {
+  size_t most = wanted_tables(scene), size = most * table_size(scene);
+  if (most == 0) {
+    hl_phase_release(context, tables);
+    return HL_OK;
+  }
+  bool same;
+  hl_status status = hl_key_renew(context, write_key, scene, &tables->key, &same, error);
+  if (status != HL_OK || (same && tables->count > 0)) return status;
+  hl_release(context, tables->tables);
+  hl_release(context, tables->numbers);
+  tables->count = 0;
+  tables->bytes = hl_phase_bytes(scene);
+  tables->tables = hl_allocate(context, most, sizeof *tables->tables);
+  tables->numbers = hl_allocate(context, size, sizeof *tables->numbers);
+  if (tables->tables == NULL || tables->numbers == NULL)
+    return hl_fail_memory(error, size * sizeof *tables->numbers, "means of phase functions");
+  for (size_t v = 0; v < scene->volume_count; v++) {
+    const hl_scene_volume *volume = &scene->volumes[v];
+    if (!scatters_unevenly(volume)) continue;
+    add_table(scene, volume->anisotropy, tables);
+    if (volume->multiple_scattering) add_table(scene, volume->anisotropy * volume->anisotropy, tables);
+  }
+  phase_job job = {.scene = scene, .tables = tables, .with_caps = has_wide_light(scene, true)};
+  place_rings(&job.rings);
+  size_t rows = scene->light_count + (job.with_caps ? PHASE_CAPS : 0);
+  hl_pool_run(pool, tables->count * rows, fill_row_of_table, &job);
+  return HL_OK;
+}

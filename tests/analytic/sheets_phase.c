@@ -1,0 +1,220 @@
+/* analytic/sheets_phase.c - media before wide lights: the mean of Henyey and Greenstein's phase function over
+ * the light, in the renderer and in the reference. */
+#include <stdlib.h>
+
+#include "../asserts.h"
+#include "reference_stage.h"
+
+enum { SIDE = 4, PIXELS = SIDE * SIDE, MIDDLE = SIDE / 2 * SIDE + SIDE / 2, ANGLES = 20, STEPS = 100 };
+
+/* A small cube of thin even matter around the origin, seen along -z without ambient light; one light, which
+ * casts no shadows. */
+static hl_scene_volume *open_stage(stage *set, double anisotropy) {
+  stage_open(set);
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = 0.2;
+  set->scene.render.shadows = HL_SHADOWS_OFF;
+  for (int c = 0; c < 3; c++) set->scene.ambient[c] = 0;
+  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){4, 4, 4}, (double[3]){0.5, 0.5, 0.5},
+                                           (vec3){-1, -1, -1}, NULL);
+  stage_set_opacity(set, volume, 0.1, 1);
+  volume->shading = HL_SHADING_NONE;
+  volume->anisotropy = anisotropy;
+  stage_look(set, (vec3){0, 0, 30}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  return volume;
+}
+
+/* Towards a light that stands at an angle to where it would shine straight into the eye. */
+static vec3 at_angle(int k) {
+  double angle = (k < ANGLES / 2 ? 5.0 * k : 50 + 13 * (k - ANGLES / 2)) * HL_PI / 180;
+  return (vec3){0.6 * sin(angle), 0.8 * sin(angle), -cos(angle)};
+}
+
+/* p for light from a direction, into the eye at +z. */
+static double phase(double g, vec3 towards) {
+  vec3 unit = vec3_normalise(towards);
+  return (1 - g * g) / pow(1 + g * g + 2 * g * unit.z, 1.5);
+}
+
+/* The light that the middle of the cube sends, over that of an evenly scattering one. */
+static double measure(void (*add_light)(stage *set, int k), int k, double g, bool reference) {
+  static float pixels[PIXELS * 4];
+  double sent[2];
+  for (int scattered = 0; scattered < 2; scattered++) {
+    stage set;
+    (void)open_stage(&set, scattered ? g : 0);
+    add_light(&set, k);
+    stage_render_by(&set, reference, pixels);
+    sent[scattered] = (double)pixels[4 * MIDDLE];
+    stage_close(&set);
+  }
+  assert_true(sent[0] > 0.01);
+  return sent[1] / sent[0];
+}
+
+/* ---- parallel lights ---- */
+
+static double diameter; /* degrees, of the lights that add_sun() adds */
+
+static void add_sun(stage *set, int k) {
+  stage_add_directional(set, vec3_scale(at_angle(k), -1))->angular_diameter_deg = diameter;
+}
+
+/* By rings around the cone's axis, narrower towards it, where p may be sharp: of their solid angles. */
+static double mean_over_cone(double g, vec3 axis, double half) {
+  vec3 u = vec3_perpendicular(axis), v = vec3_cross(axis, u);
+  double sum = 0;
+  for (int i = 0; i < STEPS; i++)
+    for (int j = 0; j < STEPS; j++) {
+      double part = (i + 0.5) / STEPS, cosine = 1 - (1 - cos(half)) * part * part;
+      double turn = 2 * HL_PI * (j + 0.5) / STEPS;
+      vec3 across = vec3_add(vec3_scale(u, cos(turn)), vec3_scale(v, sin(turn)));
+      sum += 2 * part *
+             phase(g, vec3_add(vec3_scale(axis, cosine), vec3_scale(across, sqrt(1 - cosine * cosine))));
+    }
+  return sum / (STEPS * STEPS);
+}
+
+/* At twenty angles, the mean of p over the light's cone. */
+static void test_mean_over_a_cone(void **state) {
+  (void)state;
+  static const double diameters[] = {0.5, 20, 60, 120}, anisotropies[] = {0.5, 0.8, 0.95, -0.6};
+  for (int k = 0; k < 4 * 4 * ANGLES; k++) {
+    double g = anisotropies[k % 4];
+    vec3 towards = at_angle(k / 16);
+    diameter = diameters[k / 4 % 4];
+    double mean = mean_over_cone(g, towards, diameter * HL_PI / 360);
+    assert_near(measure(add_sun, k / 16, g, false) / mean, 1, 0.002);
+    if (k / 16 % 3 == 0) assert_near(measure(add_sun, k / 16, g, true) / mean, 1, 0.002);
+  }
+}
+
+/* ---- near lights ---- */
+
+typedef enum near_shape { SPHERE, DISK, SQUARE, LONG_RECT, TILTED_RECT, POLYGON, SHAPES } near_shape;
+
+static near_shape shape;
+static double size; /* of the lights that add_near() adds */
+static const double DISTANCE = 200;
+
+/* Axes of the light's plane, `size` long, across the way to the light; some shapes are tilted. */
+static void axes_at(int k, vec3 *u, vec3 *v) {
+  vec3 way = at_angle(k);
+  *u = vec3_scale(vec3_perpendicular(way), size);
+  *v = vec3_cross(way, *u);
+  if (shape == TILTED_RECT || shape == POLYGON)
+    *v = vec3_add(vec3_scale(*v, cos(0.7)), vec3_scale(way, size * sin(0.7)));
+  if (shape == LONG_RECT) *v = vec3_scale(*v, 0.3);
+}
+
+static void store(double to[3], vec3 v) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
+
+static void add_near(stage *set, int k) {
+  static double corners[4][3];
+  vec3 u, v, place = vec3_scale(at_angle(k), DISTANCE);
+  axes_at(k, &u, &v);
+  hl_light *light = stage_add_point(set, place);
+  light->radius = size / 2;
+  if (shape == SPHERE) return;
+  light->type = shape == DISK ? HL_LIGHT_DISK : shape == POLYGON ? HL_LIGHT_POLYGON : HL_LIGHT_RECT;
+  store(light->edge1, u);
+  store(light->edge2, v);
+  store(light->normal, vec3_cross(u, v));
+  for (int i = 0; i < 4; i++) {
+    double s = i == 0 || i == 3 ? -0.5 : 0.5, t = i < 2 ? -0.5 : 0.5;
+    store(corners[i], vec3_add(place, vec3_add(vec3_scale(u, s), vec3_scale(v, t))));
+  }
+  light->vertices = (const double(*)[3])corners;
+  light->vertex_count = 4;
+}
+
+/* Over points of the light, equal areas alike. */
+static double mean_over_shape(double g, int k) {
+  vec3 u, v, place = vec3_scale(at_angle(k), DISTANCE);
+  double sum = 0;
+  axes_at(k, &u, &v);
+  for (int i = 0; i < STEPS; i++)
+    for (int j = 0; j < STEPS; j++) {
+      double s = (i + 0.5) / STEPS, t = (j + 0.5) / STEPS, x = s - 0.5, y = t - 0.5;
+      if (shape == SPHERE || shape == DISK) {
+        x = 0.5 * sqrt(s) * cos(2 * HL_PI * t);
+        y = 0.5 * sqrt(s) * sin(2 * HL_PI * t);
+      }
+      sum += phase(g, vec3_add(place, vec3_add(vec3_scale(u, x), vec3_scale(v, y))));
+    }
+  return sum / (STEPS * STEPS);
+}
+
+/* A light's parts are seen as round caps: p is off by at most these fractions (g = 0.5, 0.8), lights half and
+ * a third as wide as they are far away. The reference takes points of the light itself. */
+static void test_mean_over_near_lights(void **state) {
+  (void)state;
+  static const double bars[SHAPES][2] = {{0.002, 0.004}, {0.002, 0.022}, {0.002, 0.006},
+                                         {0.002, 0.004}, {0.004, 0.01},  {0.003, 0.01}};
+  double most[SHAPES][2] = {{0}}, most_reference = 0;
+  for (int k = 0; k < SHAPES * ANGLES; k++) {
+    size = k % 4 < 2 ? 100 : 65;
+    double g = k % 2 ? 0.8 : 0.5;
+    int angle = k % ANGLES / 2 * 2;
+    shape = (near_shape)(k / ANGLES);
+    double mean = mean_over_shape(g, angle), *at = &most[shape][k % 2];
+    *at = fmax(*at, fabs(measure(add_near, angle, g, false) / mean - 1));
+    if (angle % 4 == 0)
+      most_reference = fmax(most_reference, fabs(measure(add_near, angle, g, true) / mean - 1));
+  }
+  for (int i = 0; i < 2 * SHAPES; i++) assert_true(most[i / 2][i % 2] < bars[i / 2][i % 2]);
+  assert_true(most_reference < 0.01);
+}
+
+/* A point has no extent: p of its direction, not a mean. */
+static void test_points_stay_points(void **state) {
+  (void)state;
+  static float pixels[2][PIXELS * 4];
+  for (int wide = 0; wide < 2; wide++) {
+    stage set;
+    (void)open_stage(&set, 0.8);
+    stage_add_directional(&set, (vec3){0.1, 0.2, 1});
+    if (wide) stage_add_directional(&set, (vec3){0, 0, 1})->angular_diameter_deg = 30;
+    if (wide) set.lights[1].intensity = 0;
+    stage_render_sheets(&set, pixels[wide]);
+    stage_close(&set);
+  }
+  assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
+}
+
+/* ---- scattered again ---- */
+
+enum { NARROW = 48 };
+
+/* A wide light before a thin cube is the mean of narrow lights over its cone: also what goes on after a first
+ * turn, which is scattered by p of g^2. */
+static void test_scattered_again(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  double whole = 0, parts = 0;
+  for (int i = -1; i < NARROW; i++) {
+    stage set;
+    hl_scene_volume *volume = open_stage(&set, 0.8);
+    set.scene.render.shadows = HL_SHADOWS_HARD;
+    stage_set_opacity(&set, volume, 0.5, 1);
+    volume->multiple_scattering = 1;
+    double cosine = 1 - (1 - cos(HL_PI / 6)) * (i + 0.5) / NARROW, turn = i * HL_PI * (3 - sqrt(5)),
+           sine = sqrt(1 - cosine * cosine);
+    vec3 way = i < 0 ? (vec3){0, 0, 1} : (vec3){sine * cos(turn), sine * sin(turn), cosine};
+    stage_add_directional(&set, way)->angular_diameter_deg = i < 0 ? 60 : 0;
+    stage_render_sheets(&set, pixels);
+    *(i < 0 ? &whole : &parts) += (double)pixels[4 * MIDDLE];
+    stage_close(&set);
+  }
+  assert_near(whole / (parts / NARROW), 1, 0.02);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_mean_over_a_cone),
+      cmocka_unit_test(test_mean_over_near_lights),
+      cmocka_unit_test(test_points_stay_points),
+      cmocka_unit_test(test_scattered_again),
+  };
+  return cmocka_run_group_tests_name("sheets_phase", tests, NULL, NULL);
+}
