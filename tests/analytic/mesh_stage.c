@@ -33,3 +33,12 @@ hl_scene_mesh *mesh_stage_add(mesh_stage *all, hl_mesh *made) {
   for (int c = 0; c < 3; c++) mesh->color[c] = 1;
   return mesh;
 }
+
+void mesh_stage_choose_shadows(mesh_stage *all, hl_light *light, int kind, double diameter_deg) {
+  static const hl_soft_method methods[] = {HL_SOFT_CASCADE, HL_SOFT_PAPER, HL_SOFT_SUBLIGHTS};
+  hl_render_settings *render = &all->set.scene.render;
+  render->shadows = kind == 0 ? HL_SHADOWS_HARD : HL_SHADOWS_SOFT;
+  if (kind == 0) return;
+  render->soft_method = methods[kind - 1];
+  light->angular_diameter_deg = diameter_deg;
+}

@@ -130,16 +130,6 @@ static void test_holes(void **state) {
 
 /* ---- light ---- */
 
-/* k = 0: hard; 1 to 3: the soft methods, under a light of some size. */
-static void choose_shadows(stage *set, int k, double angle) {
-  static const hl_soft_method methods[] = {HL_SOFT_CASCADE, HL_SOFT_PAPER, HL_SOFT_SUBLIGHTS};
-  hl_light *light = stage_add_directional(set, (vec3){0, 0, -1});
-  set->scene.render.shadows = k == 0 ? HL_SHADOWS_HARD : HL_SHADOWS_SOFT;
-  if (k == 0) return;
-  set->scene.render.soft_method = methods[k - 1];
-  light->angular_diameter_deg = angle;
-}
-
 /* A bowl: the half of an opaque ball that is away from the eye and the light shows its inside, lit by N.L. It
  * does not shade itself. */
 static void test_inside_of_a_bowl(void **state) {
@@ -151,7 +141,7 @@ static void test_inside_of_a_bowl(void **state) {
     mesh_stage_open(&all, SIDE, 32);
     if (k % 2 == 0) add_sphere(&all, 12);
     else add_ball(&all, 12);
-    choose_shadows(&all.set, k / 2, 3);
+    mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, (vec3){0, 0, -1}), k / 2, 3);
     cut(&all, &plane, 1);
     stage_render_sheets(&all.set, pixels);
     for (int i = 0; i < PIXELS; i++) {
@@ -177,7 +167,7 @@ static void test_shadow_of_half_a_ball(void **state) {
     hl_scene_mesh *ball = k % 2 == 0 ? add_sphere(&all, 9) : add_ball(&all, 9);
     ball->visible = 0;
     ball->translate[0] = -1;
-    choose_shadows(&all.set, k / 2, 1);
+    mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, (vec3){0, 0, -1}), k / 2, 1);
     cut(&all, &plane, 1);
     stage_render_sheets(&all.set, pixels);
     double dark = 0;

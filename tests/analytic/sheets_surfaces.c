@@ -117,16 +117,6 @@ static void test_pane_in_haze(void **state) {
 
 /* ---- light ---- */
 
-static const hl_soft_method METHODS[] = {HL_SOFT_CASCADE, HL_SOFT_PAPER, HL_SOFT_SUBLIGHTS};
-
-/* k = 0: hard; 1 to 3: the soft methods, under a light of some size. */
-static void choose_shadows(stage *set, hl_light *light, int k, double angle) {
-  set->scene.render.shadows = k == 0 ? HL_SHADOWS_HARD : HL_SHADOWS_SOFT;
-  if (k == 0) return;
-  set->scene.render.soft_method = METHODS[k - 1];
-  light->angular_diameter_deg = angle;
-}
-
 /* A board alone, tilted from facing the light to nearly along it, is evenly lit by N.L: it does not shade
  * itself. */
 static void test_no_acne(void **state) {
@@ -140,7 +130,7 @@ static void test_no_acne(void **state) {
       open_meshes(&all);
       add_quad(&all, (vec3){0, 0, 0}, vec3_scale(u, 20), vec3_scale(v, 60));
       hl_light *light = stage_add_directional(&all.set, (vec3){0, 0, -1});
-      choose_shadows(&all.set, light, k, 8);
+      mesh_stage_choose_shadows(&all, light, k, 8);
       vec3 normal = vec3_cross(u, v); /* the eye is on the lit side */
       stage_look(&all.set, vec3_scale(vec3_add(normal, (vec3){0.1, 0.2, 0.6}), 80), (vec3){0, 0, 0}, u);
       stage_render_sheets(&all.set, pixels);
@@ -167,7 +157,7 @@ static void test_translucent_pane(void **state) {
     hl_scene_mesh *pane = add_quad(&all, (vec3){0, 0, 4}, (vec3){12, 0, 0}, (vec3){0, 12, 0});
     pane->opacity = 0.3;
     pane->visible = 0;
-    choose_shadows(&all.set, stage_add_directional(&all.set, (vec3){0, 0, -1}), k, 5);
+    mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, (vec3){0, 0, -1}), k, 5);
     stage_render_sheets(&all.set, pixels);
     for (int y = SIDE / 2 - 10; y < SIDE / 2 + 10; y++)
       for (int x = SIDE / 2 - 10; x < SIDE / 2 + 10; x++)
@@ -201,8 +191,8 @@ static void test_penumbra(void **state) {
     open_meshes(&all);
     add_quad(&all, (vec3){0, 0, -6}, (vec3){15.5, 0, 0}, (vec3){0, 15.5, 0});
     add_quad(&all, (vec3){-15, 0, 6}, (vec3){15, 0, 0}, (vec3){0, 40, 0})->visible = 0; /* its edge: x = 0 */
-    choose_shadows(&all.set, stage_add_directional(&all.set, (vec3){0, 0, -1}), cases[k].kind,
-                   cases[k].angle);
+    mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, (vec3){0, 0, -1}), cases[k].kind,
+                              cases[k].angle);
     stage_render_sheets(&all.set, pixels);
     double radius = fmax(12 * tan(cases[k].angle / 2 * HL_PI / 180), 1e-9), sum = 0;
     int count = 0;
@@ -230,7 +220,7 @@ static void test_volume_and_mesh(void **state) {
     stage_set_opacity(&all.set, haze, 0.1, 1);
     haze->visible = 0;
     add_quad(&all, (vec3){0, 0, -4}, (vec3){15, 0, 0}, (vec3){0, 15, 0});
-    choose_shadows(&all.set, stage_add_directional(&all.set, (vec3){0, 0, -1}), k, 5);
+    mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, (vec3){0, 0, -1}), k, 5);
     stage_render_sheets(&all.set, pixels);
     for (int y = SIDE / 2 - 10; y < SIDE / 2 + 10; y++)
       for (int x = SIDE / 2 - 10; x < SIDE / 2 + 10; x++)
@@ -267,7 +257,7 @@ static void test_threads_and_instruction_sets(void **state) {
       mesh_stage all;
       open_meshes(&all);
       add_scenery(&all, 7);
-      choose_shadows(&all.set, &all.set.lights[0], k, 10);
+      mesh_stage_choose_shadows(&all, &all.set.lights[0], k, 10);
       all.set.scene.render.threads = (const int[]){1, 2, 7, 1}[run];
       stage_render_sheets(&all.set, run == 0 ? first : other);
       if (run > 0) assert_memory_equal(first, other, sizeof first);
@@ -299,7 +289,7 @@ static void test_kept_between_frames(void **state) {
   hl_renderer *renderer = NULL;
   open_meshes(&all);
   add_scenery(&all, 7);
-  choose_shadows(&all.set, &all.set.lights[0], 0, 0);
+  mesh_stage_choose_shadows(&all, &all.set.lights[0], 0, 0);
   all.set.scene.width = all.set.scene.height = SIDE / 4;
   assert_int_equal(hl_renderer_create(all.set.context, &renderer, NULL), HL_OK);
   for (int step = 0; step < 10; step++) {
@@ -325,7 +315,7 @@ static void test_against_the_reference(void **state) {
   mesh_stage all;
   open_meshes(&all);
   add_scenery(&all, 60); /* the edges of volumes are not antialiased */
-  choose_shadows(&all.set, &all.set.lights[0], 0, 0);
+  mesh_stage_choose_shadows(&all, &all.set.lights[0], 0, 0);
   all.set.scene.width = all.set.scene.height = SIDE / 2;
   stage_render_sheets(&all.set, sheets);
   stage_render(&all.set, &options, exact);
@@ -391,7 +381,7 @@ static void test_terminator(void **state) {
     mesh_stage all;
     open_meshes(&all);
     add_round(&all, sphere, 1, NULL, 0);
-    choose_shadows(&all.set, stage_add_directional(&all.set, vec3_scale(towards, -1)), k, 4);
+    mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, vec3_scale(towards, -1)), k, 4);
     stage_render_sheets(&all.set, pixels);
     int lit = 0, dark = 0;
     for (int i = 0; i < PIXELS; i++) {
@@ -444,7 +434,7 @@ static void test_colored_pane(void **state) {
       mesh->opacity = pane == 0 ? 0.5 : 1; /* opaque, but for red */
       memcpy(mesh->attenuation_color, (double[3]){0, 0.2 + 0.3 * pane, 1}, sizeof mesh->attenuation_color);
     }
-    choose_shadows(&all.set, stage_add_directional(&all.set, (vec3){0, 0, -1}), k, 5);
+    mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, (vec3){0, 0, -1}), k, 5);
     stage_render_sheets(&all.set, pixels);
     const float *pixel = pixels + 4 * (SIDE / 2 * SIDE + SIDE / 2);
     assert_near((double)pixel[0], 1, 0.01);
@@ -485,7 +475,7 @@ static void test_cube_and_box(void **state) {
           made->material.diffuse = 0;
           made->visible = !invisible;
         }
-        choose_shadows(&all.set, stage_add_directional(&all.set, (vec3){0.5, -0.3, -1}), k, 6);
+        mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, (vec3){0.5, -0.3, -1}), k, 6);
         stage_look(&all.set, (vec3){30, 20, 80}, (vec3){0, 0, -3}, (vec3){0, 1, 0});
         stage_render_sheets(&all.set, of_volume ? box : cube);
         mesh_stage_close(&all);
