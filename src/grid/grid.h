@@ -39,8 +39,9 @@ typedef struct grid {
   void *memory;          /* owned; all arrays but the volume's voxels and the layers of cell_bounds */
   const void *voxels;    /* [dimension[2]][dimension[1]][dimension[0]]; stored values; the volume's, or
                             finite_voxels; null with pages. Rows are packed */
-  const hl_pages *pages; /* the volume's (volume/pages.h); null: its voxels are in memory. With pages, bricks
-                            alone tell where something is visible */
+  const hl_pages *pages; /* the volume's (volume/pages.h), or value_pages; null: its voxels are in memory.
+                            With pages, bricks alone tell where something is visible */
+  hl_pages *value_pages; /* owned (value_pages.h); null: sampling needs no other values than the voxels' */
   size_t row_bytes, slice_bytes; /* of voxels: from row to row, and from slice to slice */
   /* u8 voxels once more, in columns eight voxels wide: eight rows of a column are 64 bytes in a line, so that
    * a window of 8x8 voxels comes from two columns by two loads (of 512 bits), and neighbouring windows come

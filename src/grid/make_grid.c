@@ -9,6 +9,7 @@
 #include "grid/bounds.h"
 #include "grid/prefilter.h"
 #include "grid/relevant.h"
+#include "grid/value_pages.h"
 
 /* ---- copies of voxels ---- */
 
@@ -18,10 +19,6 @@ typedef struct copy_job {
   hl_storage storage;
   float greatest; /* distance of copied values from 0 */
 } copy_job;
-
-/* Coefficients are up to 27 times as far from 0 as values are: 3 times along each axis, by the sum of the
- * filter's weights (derived). Greater values would leave the range of floats, and are taken for this one. */
-static const float GREATEST_FILTERED = FLT_MAX / 64;
 
 static float stored_of(hl_storage storage, const void *row, size_t x) {
   if (storage == HL_STORAGE_U8) return ((const uint8_t *)row)[x];
@@ -103,6 +100,11 @@ static void copy_slice(void *data, size_t index, int worker) {
 
 /* ---- the grid ---- */
 
+/* Whether sampling needs other values than the voxels': finite ones, or coefficients. */
+static bool needs_other_values(const hl_volume *volume, const kernel *kernel) {
+  return volume->nonfinite_count > 0 || kernel->interpolates;
+}
+
 static void set_size(const hl_volume *volume, const kernel *kernel, grid *grid) {
   grid->pages = volume->pages;
   grid->storage = kernel->interpolates ? HL_STORAGE_F32 : volume->storage;
@@ -115,7 +117,7 @@ static void set_size(const hl_volume *volume, const kernel *kernel, grid *grid) 
 /* The memory of a grid whose size is set. */
 static void lay_out(grid *grid, const hl_volume *volume, const kernel *kernel,
                     const grid_functions *functions, hl_layout *layout) {
-  if (volume->nonfinite_count > 0 || kernel->interpolates)
+  if (grid->pages == NULL && needs_other_values(volume, kernel))
     grid->finite_voxels = hl_layout_take(layout, hl_volume_voxel_count(volume), sizeof *grid->finite_voxels);
   if (grid->pages == NULL) lay_out_columns(grid, functions, layout);
   hl_bricks_lay_out(grid, layout);
@@ -132,28 +134,24 @@ uint64_t hl_grid_bytes(const hl_volume *volume, const kernel *kernel, const grid
   return counted.bytes + hl_bounds_bytes(&grid, threads);
 }
 
-/* What has too many bricks, or needs a copy of all voxels in memory. */
-static hl_status check_pages(const hl_volume *volume, const kernel *kernel, hl_error *error) {
+static hl_status check_bricks(const hl_volume *volume, hl_error *error) {
   double bricks = 1;
   for (int axis = 0; axis < 3; axis++) bricks *= (double)(volume->dimension[axis] / HL_BRICK_CELLS + 1);
-  if (bricks > (double)UINT32_MAX)
-    return hl_fail(
-        error, HL_ERROR_UNSUPPORTED,
-        "a volume of %zu x %zu x %zu voxels has %.3g bricks of 4 x 4 x 4 cells, and %u can be numbered",
-        volume->dimension[0], volume->dimension[1], volume->dimension[2], bricks, UINT32_MAX);
-  if (volume->pages == NULL) return HL_OK;
-  if (kernel->interpolates)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "kernel \"%s\": a volume that is larger than memory needs another kernel, or a higher "
-                   "memory limit",
-                   kernel->name);
-  if (volume->nonfinite_count > 0)
-    return hl_fail(
-        error, HL_ERROR_UNSUPPORTED,
-        "a volume that is larger than memory has %llu voxels that are not finite: replace them, or "
-        "raise the memory limit",
-        (unsigned long long)volume->nonfinite_count);
-  return HL_OK;
+  if (bricks <= (double)UINT32_MAX) return HL_OK;
+  return hl_fail(
+      error, HL_ERROR_UNSUPPORTED,
+      "a volume of %zu x %zu x %zu voxels has %.3g bricks of 4 x 4 x 4 cells, and %u can be numbered",
+      volume->dimension[0], volume->dimension[1], volume->dimension[2], bricks, UINT32_MAX);
+}
+
+/* Gives a grid with pages those of other values, if it needs them. */
+static hl_status make_value_pages(hl_pool *pool, const grid_source *source, grid *grid, hl_error *error) {
+  const hl_volume *volume = source->volume->volume;
+  if (grid->pages == NULL || !needs_other_values(volume, source->kernel)) return HL_OK;
+  hl_status status = hl_value_pages_create(pool, volume, source->kernel, grid->empty, &grid->value_pages,
+                                           error);
+  if (status == HL_OK) grid->pages = grid->value_pages;
+  return status;
 }
 
 static hl_status allocate(hl_context *context, const grid_functions *functions, const grid_source *source,
@@ -173,7 +171,7 @@ static hl_status allocate(hl_context *context, const grid_functions *functions, 
 hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_functions *functions,
                          const grid_source *source, grid *grid, hl_error *error) {
   const hl_volume *volume = source->volume->volume;
-  hl_status status = check_pages(volume, source->kernel, error);
+  hl_status status = check_bricks(volume, error);
   *grid = (struct grid){0};
   if (status != HL_OK) return status;
   set_voxels(grid, volume->voxels, volume->row_bytes, volume->slice_bytes);
@@ -185,8 +183,12 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_function
     return hl_fail(error, HL_ERROR_INPUT, "a volume's axes are singular: the three must span space");
   hl_scene_volume_box(source->volume, grid->box_low, grid->box_high);
   set_size(volume, source->kernel, grid);
-  status = allocate(context, functions, source, grid, error);
-  if (status != HL_OK) return status;
+  status = make_value_pages(pool, source, grid, error);
+  if (status == HL_OK) status = allocate(context, functions, source, grid, error);
+  if (status != HL_OK) {
+    hl_pages_release(grid->value_pages);
+    return status;
+  }
   if (grid->finite_voxels != NULL) replace_voxels(pool, volume->storage, source->kernel, grid);
   if (grid->columns != NULL) hl_pool_run(pool, (size_t)grid->dimension[2], copy_slice, grid);
   status = hl_bricks_bound(context, pool, functions, grid, error);
@@ -199,5 +201,6 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_function
 void hl_grid_release(hl_context *context, grid *grid) {
   hl_cell_bounds_release(context, grid);
   hl_release(context, grid->memory);
+  hl_pages_release(grid->value_pages);
   *grid = (struct grid){0};
 }

@@ -22,30 +22,51 @@ static float ratio_at(const ratios *r, int32_t at, int32_t count) {
   return at == count - 1 ? r->last : r->inner[at < RATIOS ? at : RATIOS - 1];
 }
 
+static void filter_forward(float *here, const float *before, size_t width, float ratio) {
+  if (before == NULL)
+    for (size_t x = 0; x < width; x++) here[x] = 6 * here[x] * ratio;
+  else
+    for (size_t x = 0; x < width; x++) here[x] = (6 * here[x] - before[x]) * ratio;
+}
+
+static void filter_back(float *here, const float *after, size_t width, float ratio) {
+  for (size_t x = 0; x < width; x++) here[x] = here[x] - ratio * after[x];
+}
+
+void hl_prefilter_forward(float *here, const float *before, size_t width, size_t at, size_t count) {
+  const ratios r = ratios_of_axis((int32_t)count);
+  filter_forward(here, before, width, ratio_at(&r, (int32_t)at, (int32_t)count));
+}
+
+void hl_prefilter_back(float *here, const float *after, size_t width, size_t at, size_t count) {
+  const ratios r = ratios_of_axis((int32_t)count);
+  filter_back(here, after, width, ratio_at(&r, (int32_t)at, (int32_t)count));
+}
+
 /* Filters `width` neighbouring lines of `count` voxels each, in place; stride: from voxel to voxel. */
 static void filter_lines(float *lines, size_t width, int32_t count, size_t stride) {
   if (count < 2) return;
   const ratios r = ratios_of_axis(count);
-  for (size_t x = 0; x < width; x++) lines[x] = 6 * lines[x] * r.inner[0];
-  for (int32_t i = 1; i < count; i++) {
-    float *here = lines + (size_t)i * stride, ratio = ratio_at(&r, i, count);
-    const float *before = here - stride;
-    for (size_t x = 0; x < width; x++) here[x] = (6 * here[x] - before[x]) * ratio;
+  for (int32_t i = 0; i < count; i++) {
+    float *here = lines + (size_t)i * stride;
+    filter_forward(here, i > 0 ? here - stride : NULL, width, ratio_at(&r, i, count));
   }
   for (int32_t i = count - 2; i >= 0; i--) {
-    float *here = lines + (size_t)i * stride, ratio = ratio_at(&r, i, count);
-    const float *after = here + stride;
-    for (size_t x = 0; x < width; x++) here[x] = here[x] - ratio * after[x];
+    float *here = lines + (size_t)i * stride;
+    filter_back(here, here + stride, width, ratio_at(&r, i, count));
   }
+}
+
+void hl_prefilter_slice(float *slice, size_t width, size_t height) {
+  for (size_t y = 0; y < height; y++) filter_lines(slice + y * width, 1, (int32_t)width, 1);
+  filter_lines(slice, width, (int32_t)height, width);
 }
 
 static void filter_slice(void *data, size_t index, int worker) {
   (void)worker;
   const grid *grid = data;
-  size_t row = (size_t)grid->dimension[0], rows = (size_t)grid->dimension[1];
-  float *slice = grid->finite_voxels + index * row * rows;
-  for (size_t y = 0; y < rows; y++) filter_lines(slice + y * row, 1, grid->dimension[0], 1);
-  filter_lines(slice, row, grid->dimension[1], row);
+  size_t width = (size_t)grid->dimension[0], height = (size_t)grid->dimension[1];
+  hl_prefilter_slice(grid->finite_voxels + index * width * height, width, height);
 }
 
 static void filter_across(void *data, size_t index, int worker) {

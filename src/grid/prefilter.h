@@ -12,4 +12,15 @@
 /* Turns finite_voxels, which hold the grid's finite values, into coefficients. */
 void hl_prefilter(hl_pool *pool, grid *grid);
 
+/* ---- its parts ---- */
+
+/* Along x and y, in place. slice: [height][width]. */
+void hl_prefilter_slice(float *slice, size_t width, size_t height);
+
+/* Along an axis of `count` voxels, 2 or more, first forward, from each voxel to the next; then back, from
+ * each but the last to the one before. here, before, after: [width] neighbouring lines' values at voxel `at`,
+ * and at the voxel before and after it, which were filtered already. before: null for the first voxel. */
+void hl_prefilter_forward(float *here, const float *before, size_t width, size_t at, size_t count);
+void hl_prefilter_back(float *here, const float *after, size_t width, size_t at, size_t count);
+
 #endif

@@ -19,6 +19,19 @@ static void pack_strides(hl_own_voxels *own, size_t bytes, const size_t n[3]) {
   own->stride[2] = own->stride[1] * (ptrdiff_t)n[1];
 }
 
+/* Allocates the slices of a block whose box and type are set. On failure releases it. */
+static hl_status allocate_slices(hl_own_voxels **own, hl_error *error) {
+  hl_own_voxels *made = *own;
+  const uint64_t *n = made->box.count;
+  size_t count = hl_own_voxels_count(made), bytes = made->stored_bytes;
+  pack_strides(made, bytes, (const size_t[3]){n[0], n[1], n[2]});
+  made->first = made->slices = hl_allocate(made->context, count, bytes);
+  if (made->slices != NULL) return HL_OK;
+  hl_own_voxels_release(made);
+  *own = NULL;
+  return hl_fail_memory(error, count * bytes, "a rank's share of a volume");
+}
+
 hl_status hl_own_voxels_allocate(hl_ranks *ranks, const hl_volume_description *whole, hl_own_voxels **own,
                                  hl_error *error) {
   static const hl_voxel_type stored[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32}; /* by hl_storage */
@@ -33,13 +46,17 @@ hl_status hl_own_voxels_allocate(hl_ranks *ranks, const hl_volume_description *w
   made->box.count[0] = n[0];
   made->box.count[1] = n[1];
   made->box.count[2] = hl_ranks_part(ranks, n[2], ranks->rank + 1) - made->box.begin[2];
-  pack_strides(made, made->stored_bytes, n);
-  size_t count = hl_own_voxels_count(made), bytes = made->stored_bytes;
-  made->first = made->slices = hl_allocate(ranks->context, count, bytes);
-  if (made->slices != NULL) return HL_OK;
-  hl_own_voxels_release(made);
-  *own = NULL;
-  return hl_fail_memory(error, count * bytes, "a rank's share of a volume");
+  return allocate_slices(own, error);
+}
+
+hl_status hl_own_voxels_like(hl_ranks *ranks, const hl_own_voxels *other, hl_own_voxels **own,
+                             hl_error *error) {
+  hl_status status = make(ranks, own, error);
+  if (status != HL_OK) return status;
+  (*own)->type = HL_VOXEL_F32;
+  (*own)->stored_bytes = sizeof(float);
+  (*own)->box = other->box;
+  return allocate_slices(own, error);
 }
 
 hl_status hl_own_voxels_borrow(hl_ranks *ranks, const hl_volume_description *whole, const hl_block *block,

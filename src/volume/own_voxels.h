@@ -30,6 +30,11 @@ hl_status hl_own_voxels_allocate(hl_ranks *ranks, const hl_volume_description *w
 hl_status hl_own_voxels_borrow(hl_ranks *ranks, const hl_volume_description *whole, const hl_block *block,
                                hl_own_voxels **own, hl_error *error);
 
+/* A block of floats with the place and size of another, to be filled in `slices`. *own: owned by the caller.
+ */
+hl_status hl_own_voxels_like(hl_ranks *ranks, const hl_own_voxels *other, hl_own_voxels **own,
+                             hl_error *error);
+
 void hl_own_voxels_release(hl_own_voxels *own); /* null is allowed */
 
 /* hl_block_copier of an hl_own_voxels. */

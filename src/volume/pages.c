@@ -3,12 +3,8 @@
 #include "volume/pages.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include "core/context.h"
@@ -17,6 +13,7 @@
 #include "volume/convert.h"
 #include "volume/counts.h"
 #include "volume/glimpse.h"
+#include "volume/scratch_file.h"
 
 /* ---- the scratch file ---- */
 
@@ -57,54 +54,16 @@ static size_t page_count(const hl_pages *pages) {
   return pages->count[0] * pages->count[1] * pages->count[2];
 }
 
-static hl_status fail_scratch(const char *folder, size_t bytes, int number, hl_error *error) {
-  return hl_fail(error, HL_ERROR_IO,
-                 "%s: no scratch file of %.1f MiB for a volume larger than memory: %s: make room, name "
-                 "another folder (TMPDIR), or raise the memory limit",
-                 folder, (double)bytes / (1 << 20), strerror(number));
-}
-
-/* Opens a file without a name. -1: failed, and errno says why. */
-static int open_nameless(hl_context *context, const char *folder) {
-  static const char ending[] = "/halflight-scratch-XXXXXX";
-  char *path = hl_allocate(context, strlen(folder) + sizeof ending, 1);
-  if (path == NULL) {
-    errno = ENOMEM;
-    return -1;
-  }
-  sprintf(path, "%s%s", folder, ending);
-  int file = mkstemp(path);
-  if (file >= 0) unlink(path);
-  int number = errno;
-  hl_release(context, path);
-  errno = number;
-  return file;
-}
-
-/* Takes the file's space on the disk before anything is written: a mapped file that finds none later would
- * end the process. Asks first, so as not to fill a disk for the moment. Returns an error number or 0. */
-static int take_space(int file, size_t bytes) {
-  struct statvfs disk;
-  if (fstatvfs(file, &disk) == 0 && bytes / disk.f_frsize >= disk.f_bavail) return ENOSPC;
-  int number;
-  do number = posix_fallocate(file, 0, (off_t)bytes);
-  while (number == EINTR);
-  return number;
-}
-
 static hl_status map_scratch(hl_context *context, const char *folder, hl_pages *pages, hl_error *error) {
   size_t bytes = pages->mapping_bytes;
-  int file = open_nameless(context, folder);
-  if (file < 0) return fail_scratch(folder, bytes, errno, error);
-  int number = take_space(file, bytes);
-  void *mapping = MAP_FAILED;
-  if (number == 0) {
-    mapping = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-    if (mapping == MAP_FAILED) number = errno;
-  }
-  if (number != 0) {
+  int file = -1;
+  hl_status status = hl_scratch_open(context, folder, bytes, &file, error);
+  if (status != HL_OK) return status;
+  void *mapping = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  if (mapping == MAP_FAILED) {
+    status = hl_scratch_fail(folder, bytes, errno, error);
     close(file);
-    return fail_scratch(folder, bytes, number, error);
+    return status;
   }
   pages->file = file;
   pages->mapping = mapping;

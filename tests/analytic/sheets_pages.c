@@ -10,6 +10,7 @@
 #include <cmocka.h>
 
 #include "core/context.h"
+#include "grid/make_grid.h"
 #include "reference_stage.h"
 #include "volume/pages.h"
 
@@ -400,6 +401,42 @@ static void test_no_room(void **state) {
   hl_context_destroy(context);
 }
 
+/* ---- other values than the voxels' ---- */
+
+/* A volume with some voxels that are not finite, also at its corners, in the place of another. */
+static void spoil(stage *set) {
+  hl_volume *old = set->volumes[0].volume, *made = NULL;
+  float *voxels = old->owned_voxels;
+  size_t count = hl_volume_voxel_count(old);
+  for (size_t v = 0; v < count; v += 7) voxels[v] = v % 2 == 0 ? NAN : v % 3 == 0 ? INFINITY : -INFINITY;
+  voxels[count - 1] = NAN;
+  hl_volume_description description = description_of(old);
+  description.voxels = voxels;
+  assert_int_equal(hl_volume_create(set->context, &description, &made, NULL), HL_OK);
+  set->volumes[0].volume = made;
+  hl_volume_release(old);
+}
+
+/* What is not finite is replaced, and the interpolating kernel's coefficients are found, as in memory. */
+static void test_other_values(void **state) {
+  (void)state;
+  static const size_t sizes[][3] = {{40, 38, 39}, {9, 9, 2}, {12, 9, 1}, {4, 30, 21}};
+  for (size_t n = 0; n < 4 * 5; n++) {
+    stage set;
+    stage_open(&set);
+    set.context->options.scratch_folder = "/tmp";
+    bool interpolates = n / 4 > 0, not_finite = n / 4 % 4 == 0;
+    add_noise(&set, sizes[n % 4], not_finite ? HL_VOXEL_F32 : types[n / 4 - 1]);
+    if (not_finite) spoil(&set);
+    if (interpolates) set.scene.render.kernel = HL_KERNEL_INTERPOLATING;
+    set.volumes[0].shading = HL_SHADING_PHONG;
+    stage_add_directional(&set, (vec3){-1, 0.5, -1});
+    if (n % 4 == 0) leave_no_room(set.context);
+    assert_same_in_pages(&set, 2 + (int)n % 3, interpolates ? "interpolating" : "not finite");
+    stage_close(&set);
+  }
+}
+
 static void assert_frame_refused(stage *set, const char *message) {
   static float pixels[16 * 16 * 4];
   hl_error error = {0};
@@ -413,26 +450,36 @@ static void assert_frame_refused(stage *set, const char *message) {
   hl_scene_release(scene);
 }
 
-/* What needs all voxels in memory is refused in one line. */
-static void test_refused(void **state) {
+static void test_no_scratch_folder(void **state) {
   (void)state;
-  for (int n = 0; n < 2; n++) {
-    stage set;
-    stage_open(&set);
-    add_noise(&set, (const size_t[3]){9, 9, 9}, HL_VOXEL_F32);
-    hl_volume *old = set.volumes[0].volume;
-    ((float *)old->owned_voxels)[5] = n == 0 ? 1 : NAN;
-    set.volumes[0].volume = in_pages(set.context, old, 2);
-    hl_volume_release(old);
-    if (n == 0) set.scene.render.kernel = HL_KERNEL_INTERPOLATING;
-    assert_frame_refused(
-        &set,
-        n == 0 ? "kernel \"interpolating\": a volume that is larger than memory needs another kernel, or a "
-                 "higher memory limit"
-               : "a volume that is larger than memory has 1 voxels that are not finite: replace them, or "
-                 "raise the memory limit");
-    stage_close(&set);
-  }
+  stage set;
+  stage_open(&set);
+  add_noise(&set, (const size_t[3]){9, 9, 9}, HL_VOXEL_F32);
+  hl_volume *old = set.volumes[0].volume;
+  set.volumes[0].volume = in_pages(set.context, old, 2);
+  hl_volume_release(old);
+  set.scene.render.kernel = HL_KERNEL_INTERPOLATING;
+  assert_frame_refused(
+      &set, "values of a volume larger than memory: they need a scratch folder, or a higher memory limit");
+  stage_close(&set);
+}
+
+/* Before anything is allocated or read: the volume has no voxels. */
+static void test_too_many_bricks(void **state) {
+  (void)state;
+  hl_context *context = NULL;
+  hl_error error = {0};
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  hl_volume volume = {.context = context, .dimension = {8192, 8192, 4096}};
+  const hl_scene_volume shown = {.volume = &volume};
+  const grid_source source = {.volume = &shown, .kernel = hl_kernel_get(HL_KERNEL_BSPLINE)};
+  grid grid;
+  assert_int_equal(hl_grid_create(context, NULL, NULL, &source, &grid, &error), HL_ERROR_UNSUPPORTED);
+  assert_string_equal(error.message,
+                      "a volume of 8192 x 8192 x 4096 voxels has 4.3e+09 bricks of 4 x 4 x 4 "
+                      "cells, and 4294967295 can be numbered");
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
 }
 
 int main(void) {
@@ -444,6 +491,8 @@ int main(void) {
                                      cmocka_unit_test(test_resident_bytes),
                                      cmocka_unit_test(test_pictures_of_few_pages),
                                      cmocka_unit_test(test_no_room),
-                                     cmocka_unit_test(test_refused)};
+                                     cmocka_unit_test(test_other_values),
+                                     cmocka_unit_test(test_no_scratch_folder),
+                                     cmocka_unit_test(test_too_many_bricks)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "core/context.h"
+#include "ranks/ranks.h"
 #include "reference_stage.h"
 #include "volume/pages.h"
 
@@ -21,10 +22,17 @@ static hl_ranks *ranks;
 
 /* ---- a volume's blocks ---- */
 
+enum { BY_SLICES = 1u << 31 }; /* a seed: each rank has its share of whole slices, in the order of ranks */
+
 /* Cuts a box into as many parts as there are ranks, again and again along another axis and at another place;
  * returns the part of a rank. Parts may be empty. */
 static hl_box part_of(const size_t n[3], int rank, int size, unsigned seed) {
   hl_box box = {{0, 0, 0}, {n[0], n[1], n[2]}};
+  if (seed == BY_SLICES) {
+    box.begin[2] = hl_ranks_part(ranks, n[2], rank);
+    box.count[2] = hl_ranks_part(ranks, n[2], rank + 1) - box.begin[2];
+    return box;
+  }
   for (int first = 0, count = size; count > 1; seed = seed * 1664525u + 1013904223u) {
     int axis = (int)(seed >> 8) % 3, before = count / 2;
     uint64_t cut = box.count[axis] * ((seed >> 16) % 7 + 1) / 8;
@@ -324,7 +332,66 @@ static void test_few_pages(void **state) {
   context->options.memory_limit = 0;
 }
 
+/* ---- other values than the voxels' ---- */
+
+/* A volume with some voxels that are not finite, in the place of another. */
+static void spoil(stage *set) {
+  hl_volume *old = set->volumes[0].volume, *made = NULL;
+  float *voxels = old->owned_voxels;
+  for (size_t v = 0; v < hl_volume_voxel_count(old); v += 7)
+    voxels[v] = v % 2 == 0 ? NAN : v % 3 == 0 ? INFINITY : -INFINITY;
+  hl_volume_description description = description_of(old);
+  description.voxels = voxels;
+  assert_int_equal(hl_volume_create(set->context, &description, &made, NULL), HL_OK);
+  set->volumes[0].volume = made;
+  hl_volume_release(old);
+}
+
+static void test_other_values(void **state) {
+  (void)state;
+  static const size_t sizes[][3] = {{23, 21, 25}, {9, 11, 3}, {12, 9, 1}};
+  for (int n = 0; n < 5; n++) {
+    stage set;
+    stage_open(&set);
+    set.scene.render.threads = 1;
+    add_noise(&set, sizes[n % 3], n % 3 == 2 ? HL_VOXEL_U16 : HL_VOXEL_F32)->shading = HL_SHADING_PHONG;
+    stage_add_directional(&set, (vec3){-1, 0.5, -1});
+    if (n % 3 != 2) spoil(&set);
+    if (n > 1) set.scene.render.kernel = HL_KERNEL_INTERPOLATING;
+    assert_same(&set, 3, n > 1 ? (unsigned)BY_SLICES : (unsigned)n, n > 1 ? "interpolating" : "not finite");
+  }
+}
+
 /* ---- what is refused, on all ranks ---- */
+
+static void test_coefficients_refused(void **state) {
+  (void)state;
+  static float pixels[16 * 16 * 4];
+  stage set;
+  if (hl_ranks_size(ranks) == 1) return; /* one rank has all slices */
+  stage_open(&set);
+  add_noise(&set, (const size_t[3]){8, 8, 8}, HL_VOXEL_U16);
+  set.scene.render.kernel = HL_KERNEL_INTERPOLATING;
+  set.scene.width = set.scene.height = 16;
+  hl_volume *old = set.volumes[0].volume;
+  hl_box all = {{0, 0, 0}, {8, 8, 8}}, none = {{0, 0, 0}, {0, 0, 0}};
+  held_block held;
+  set.volumes[0].volume = over_ranks(old, hl_ranks_rank(ranks) == 0 ? &all : &none, PACKED, 3, &held);
+  hl_volume_release(old);
+  hl_scene *scene = NULL;
+  hl_renderer *renderer = NULL;
+  hl_error error = {0};
+  assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, NULL), HL_OK);
+  assert_int_equal(hl_renderer_create(set.context, &renderer, NULL), HL_OK);
+  assert_int_equal(hl_renderer_render(renderer, scene, pixels, 16 * 4, NULL, &error), HL_ERROR_UNSUPPORTED);
+  assert_string_equal(error.message,
+                      "the interpolating kernel needs, of a volume over ranks, whole slices in "
+                      "the order of the ranks: take another kernel");
+  hl_renderer_destroy(renderer);
+  hl_scene_release(scene);
+  stage_close(&set);
+  free(held.memory);
+}
 
 static void assert_refused(const size_t offset[3], const size_t size[3], const char *part_of_message) {
   static const unsigned char voxels[4 * 4 * 4];
@@ -406,9 +473,14 @@ static hl_status join(bool by_communicator, open_mpi *mpi, hl_error *error) {
 
 /* usage: sheets_ranks [TESTS [communicator]]: tests whose names match; --time: prints times. */
 int main(int count, char **arguments) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_voxels),    cmocka_unit_test(test_shapes),
-                                     cmocka_unit_test(test_ways),      cmocka_unit_test(test_corner),
-                                     cmocka_unit_test(test_few_pages), cmocka_unit_test(test_refused)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_voxels),
+                                     cmocka_unit_test(test_shapes),
+                                     cmocka_unit_test(test_ways),
+                                     cmocka_unit_test(test_corner),
+                                     cmocka_unit_test(test_few_pages),
+                                     cmocka_unit_test(test_other_values),
+                                     cmocka_unit_test(test_coefficients_refused),
+                                     cmocka_unit_test(test_refused)};
   hl_error error = {0};
   open_mpi mpi;
   bool by_communicator = count > 2;

@@ -189,12 +189,7 @@ static void widen(const reading *r, size_t count, void *voxels) {
 }
 
 static hl_status widen_padded(reading *r, size_t count, hl_error *error) {
-  if (!r->padded) return HL_OK;
-  if (hl_destination_is_apart(&r->to))
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "%s: voxels of the padding value in a volume that is larger than memory: raise the memory "
-                   "limit",
-                   r->set->bundle->path);
+  if (!r->padded || r->as_floats) return HL_OK;
   void *larger = hl_reallocate(r->set->context, r->to.voxels, count, sizeof(float));
   if (larger == NULL) return hl_fail_memory(error, count * sizeof(float), r->set->bundle->path);
   r->to.voxels = larger;
@@ -233,16 +228,37 @@ static hl_voxel_type kept_type(const reading *r) {
   return r->as_floats && hl_voxel_type_storage(r->type) != HL_STORAGE_F32 ? HL_VOXEL_F32 : r->type;
 }
 
-static hl_status read_all(reading *r, hl_error *error) {
-  hl_status status = find_padding(r, error);
+static hl_status read_slices(reading *r, hl_error *error) {
   hl_volume_description grid = r->stack->grid;
   grid.type = kept_type(r);
-  if (status == HL_OK)
-    status = hl_destination_open(r->set->context, &grid, HL_DESTINATION_PIECES, r->set->bundle->path, &r->to,
-                                 error);
+  hl_status status = hl_destination_open(r->set->context, &grid, HL_DESTINATION_PIECES, r->set->bundle->path,
+                                         &r->to, error);
   if (status != HL_OK) return status;
   return hl_parallel_read(r->set->context, r->pool, r->set->bundle->path, r->stack->grid.dimensions[2],
                           read_one, r, error);
+}
+
+/* Whether any slice has padding; over ranks, any rank's. */
+static bool any_padded(const reading *r) {
+  uint64_t padded = r->padded;
+  if (r->to.own != NULL) hl_ranks_sum_counts(r->set->context->ranks, &padded, 1);
+  return padded > 0;
+}
+
+/* Integers of which some are padding become floats: in memory afterwards (widen_padded()), elsewhere by being
+ * read once more. */
+static hl_status read_all(reading *r, hl_error *error) {
+  hl_status status = find_padding(r, error);
+  if (status == HL_OK) status = read_slices(r, error);
+  if (status != HL_OK || r->as_floats || !hl_destination_is_apart(&r->to) || !any_padded(r)) return status;
+  hl_destination_close(&r->to);
+  for (int w = 0; w < hl_pool_threads(r->pool); w++) {
+    hl_release(r->set->context, r->others[w]); /* its voxels have another size */
+    r->others[w] = NULL;
+  }
+  r->as_floats = true;
+  r->voxel_bytes = sizeof(float);
+  return read_slices(r, error);
 }
 
 /* The window that the middle slice asks for (PS3.3, C.11.2.1.2: its centre lies half a value lower). */
