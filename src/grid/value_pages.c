@@ -41,11 +41,11 @@ static void load_slice(void *data, size_t index, int worker) {
   const value_job *job = data;
   float *slice = job->slices + index * job->slice, *to = slice;
   void *buffer = job->rows + (size_t)worker * job->row_bytes;
-  for (size_t y = 0; y < job->height; y++)
-    for (size_t x = 0; x < job->width; x++, to++) {
-      const void *row = x == 0 ? hl_volume_row_in(job->volume, y, job->first + index, buffer) : buffer;
-      *to = value_of(job, (float)hl_stored_number(job->volume->storage, row, x));
-    }
+  for (size_t y = 0; y < job->height; y++) {
+    const void *row = hl_volume_row_in(job->volume, y, job->first + index, buffer);
+    for (size_t x = 0; x < job->width; x++)
+      *to++ = value_of(job, (float)hl_stored_number(job->volume->storage, row, x));
+  }
   if (job->filters) hl_prefilter_slice(slice, job->width, job->height);
 }
 

@@ -320,6 +320,22 @@ def test_series():
     check("the third", info["range"] == [HU.min() + 40, HU.max() + 40], (told, info))
 
 
+def test_padding_larger_than_memory():
+    """Padding in the first slice alone is found when others are stored already: all are read once more."""
+    planes = np.random.default_rng(1).integers(-900, 900, (64, 420, 500)).astype(np.int16)
+    planes[0, :20] = -2000
+    write_slices(root / "large", planes, line(64, (0, 0, 1)), extra=lambda n: {"t00280120": ("SS", -2000)})
+    pictures = []
+    for limit in ([], ["--max-memory", "32M"]):
+        out = root / f"large{len(limit)}.npy"
+        told = subprocess.run([PROGRAM, "info", "--json", str(root / "large"), *limit], capture_output=True, text=True)
+        drawn = subprocess.run([PROGRAM, "render", str(root / "large"), "--size", "40x30", "--shadow-resolution", "32", "--quiet",
+                                "-o", str(out), *limit], capture_output=True, text=True)
+        pictures.append((told.stdout, out.read_bytes() if out.exists() else drawn.stderr))
+    check("padding in a volume larger than memory", len(pictures[0][0]) > 0 and pictures[0] == pictures[1],
+          [p if isinstance(p, str) else "" for pair in pictures for p in pair])
+
+
 def test_values():
     positions = line(6, (0, 0, 1))
     write_slices(root / "pet", CT, positions, extra=lambda n: {"t00281053": ("DS", 0.5 + n), "t00281052": ("DS", 0)})
@@ -330,6 +346,7 @@ def test_values():
     values[:, 0, 0] = np.nan
     write_slices(root / "padding", padded, positions, extra=lambda n: {"t00280120": ("SS", -2000)})
     expect("padding is transparent", root / "padding", values)
+    test_padding_larger_than_memory()
     bits = (CT & 0xfff).astype(np.uint16)
     signed = np.where(bits >= 2048, bits.astype(int) - 4096, bits)
     twelve = {"t00280101": ("US", 12), "t00280102": ("US", 11)}
