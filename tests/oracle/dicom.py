@@ -329,8 +329,8 @@ def test_padding_larger_than_memory():
     for limit in ([], ["--max-memory", "32M"]):
         out = root / f"large{len(limit)}.npy"
         told = subprocess.run([PROGRAM, "info", "--json", str(root / "large"), *limit], capture_output=True, text=True)
-        drawn = subprocess.run([PROGRAM, "render", str(root / "large"), "--size", "40x30", "--shadow-resolution", "32", "--quiet",
-                                "-o", str(out), *limit], capture_output=True, text=True)
+        drawn = subprocess.run([PROGRAM, "render", str(root / "large"), "--size", "40x30", "--shadow-resolution", "32", "--ambient", "0.3",
+                                "--quiet", "-o", str(out), *limit], capture_output=True, text=True)
         pictures.append((told.stdout, out.read_bytes() if out.exists() else drawn.stderr))
     check("padding in a volume larger than memory", len(pictures[0][0]) > 0 and pictures[0] == pictures[1],
           [p if isinstance(p, str) else "" for pair in pictures for p in pair])

@@ -12,6 +12,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "core/pool.h"
+#include "ranks/ranks.h"
 #include "volume/convert.h"
 #include "volume/destination.h"
 #include "volume/dicom/frame.h"
