@@ -165,7 +165,7 @@ void hl_sweep_attenuate(sweep *sweep, int light_index, const attenuate_job *job,
   uint32_t need = shadow->buffer->tile_lit[tile];
   fragment_range surfaces = hl_sweep_surfaces_reach_light(sweep, light_index, tile, job->sheet);
   counts->pixels_skipped_light += hl_pixels_of_blocks(ALL_BLOCKS & ~need);
-  if (need == 0) {
+  if (need == 0 && !(job->marks && surfaces.count > 0)) {
     counts->skipped_light++;
     return;
   }

@@ -187,6 +187,12 @@ uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint3
 
 /* ---- the lights ---- */
 
+/* What a pixel becomes behind a surface that lets a part pass. */
+static float behind_surface(const attenuate_job *job, float before, float passing) {
+  if (!job->marks || before >= DARK_AT_START) return before * passing;
+  return fminf((before < 0 ? before : -DARK_MARK) * passing, -LEAST_MARK);
+}
+
 bool hl_sweep_surfaces_attenuate(const sweep *sweep, const attenuate_job *job, fragment_range range) {
   for (size_t i = 0; i < range.count; i++) {
     const fragment *f = &range.first[i];
@@ -197,10 +203,11 @@ bool hl_sweep_surfaces_attenuate(const sweep *sweep, const attenuate_job *job, f
     for (int c = 0; c < job->channels; c++) {
       float *at = job->transmittance[c] + row * job->stride + column, before = *at;
       float passing = 1 - f->opacity * (float)color[c];
-      *at = before * passing;
+      *at = behind_surface(job, before, passing);
       if (job->older[c] != NULL) job->older[c][row * job->stride + column] *= passing;
       if (job->moment[c] != NULL)
-        job->moment[c][row * job->moment_stride + column] += (before - *at) * job->position;
+        job->moment[c][row * job->moment_stride + column] += (fmaxf(before, 0) - fmaxf(*at, 0)) *
+                                                             job->position;
     }
   }
   return range.count > 0;

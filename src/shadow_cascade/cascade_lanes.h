@@ -203,12 +203,17 @@ static void emission_tile(const emission_job *job, int tile_x, int tile_y) {
   }
 }
 
-/* The transmittance of a chunk's own slabs. 1 where the chunk began with hardly any light: such blocks are
- * not composited. */
+/* What surfaces let pass in the dark: 1 where a pixel has no mark (attenuate.h). */
+LANES_INLINE lanes passing_in_dark(lanes end) {
+  return lanes_select(end < 0.0f, end * (-1.0f / DARK_MARK), lanes_set(1.0f));
+}
+
+/* The transmittance of a chunk's own slabs. Where the chunk began with hardly any light only surfaces are
+ * known: such blocks of volumes are not composited. */
 LANES_INLINE lanes chunk_transmittance(lanes end, lanes start) {
-  lanes least = lanes_set(1.0f / 256);
-  return lanes_select(start < least, lanes_set(1.0f),
-                      lanes_min(end / lanes_max(start, least), lanes_set(1.0f)));
+  lanes least = lanes_set(DARK_AT_START);
+  return lanes_select(start < least, passing_in_dark(end),
+                      lanes_min(lanes_max(end, lanes_set(0)) / lanes_max(start, least), lanes_set(1.0f)));
 }
 
 static void refill_tile(const refill_job *job, int tile_x, int tile_y) {
@@ -217,7 +222,7 @@ static void refill_tile(const refill_job *job, int tile_x, int tile_y) {
            at_to = (size_t)row * job->stride_to + (size_t)tile_x * TILE;
     lanes before = lanes_load(job->to + at_to), left = transmittance_outside_umbra(job->absorbed + at);
     if (job->kept) left = left * chunk_transmittance(before, 1.0f - lanes_load(job->absorbed_at_start + at));
-    lanes_store(job->older + at_to, job->again ? before : left);
+    lanes_store(job->older + at_to, job->again ? lanes_max(before, lanes_set(0)) : left);
     lanes_store(job->to + at_to, left);
     lanes_store(job->absorbed_at_start + at, 1.0f - left);
   }
@@ -270,6 +275,12 @@ static uint32_t split_tile(const split_job *job, int tile_x, int tile_y) {
  * second as solid. */
 static const float THIN_MATTER = 0.25f, SOLID_MATTER = 0.75f;
 
+/* The light that surfaces take in a chunk which began in the dark. job->before is not null. */
+LANES_INLINE lanes taken_in_dark(const absorbed_job *job, size_t at, lanes start, lanes end) {
+  lanes reaching = transmittance_outside_umbra(job->before + at);
+  return lanes_keep(start < DARK_AT_START, reaching * (1.0f - passing_in_dark(end)));
+}
+
 static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
   lanes start[2] = {lanes_set(0), lanes_set(0)}, end[2] = {lanes_set(0), lanes_set(0)};
   const field_pixel *first[] = {job->start_absorbed, job->start_thin, job->end_absorbed, job->end_thin};
@@ -281,8 +292,10 @@ static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
     lanes before = 1.0f - lanes_load(job->absorbed_at_start + at);
     lanes now = lanes_load(job->now + (size_t)row * job->stride_now + (size_t)tile_x * TILE);
-    lanes taken = lanes_max(before - now, lanes_set(0));
-    if (lanes_bits(taken > 0.0f) == 0) { /* then the moment is zero */
+    lanes taken = lanes_max(before - lanes_max(now, lanes_set(0)), lanes_set(0));
+    int marked = job->before != NULL && lanes_bits(now < 0.0f) != 0;
+    lanes in_dark = marked ? taken_in_dark(job, at, before, now) : lanes_set(0);
+    if (lanes_bits(taken + in_dark > 0.0f) == 0) { /* then the moment is zero */
       lanes_store_short(job->end_absorbed + at, lanes_set(0));
       lanes_store_short(job->end_thin + at, lanes_set(0));
       continue;
@@ -292,7 +305,8 @@ static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
         lanes_load(job->moment + at) / lanes_max(taken * job->length, lanes_set(1e-6f)), 0, 1.0f);
     lanes solid = lanes_clamp((fraction - THIN_MATTER) * (1.0f / (SOLID_MATTER - THIN_MATTER)), 0, 1.0f);
     lanes thin = fraction * (1.0f - solid);
-    matter_pair to = split_matter(lanes_fma(taken, solid, thin), thin, position);
+    position = lanes_select(in_dark > 0.0f, lanes_set(0.5f), position);
+    matter_pair to = split_matter(lanes_fma(taken, solid, thin) + in_dark, thin, position);
     lanes_store(job->moment + at, lanes_set(0));
     store_fraction(job->end_absorbed + at, to.absorbed[1], &end[0]);
     store_fraction(job->end_thin + at, to.thin[1], &end[1]);

@@ -100,9 +100,10 @@ typedef struct absorb_task {
   cascade_group *start, *end;
   double length;
   absorbed_tile_function *absorbed;
+  bool any; /* cascade->absorbed is not all zeros */
 } absorb_task;
 
-static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, int channel) {
+static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, bool read, int channel) {
   const cascade_level *level = &task->cascade->level[0];
   const cascade_field *start[2] = {&task->start->absorbed[channel], &task->start->thin[channel]};
   const cascade_field *end[2] = {&task->end->absorbed[channel], &task->end->thin[channel]};
@@ -112,6 +113,7 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, i
                       task->buffer->transmittance[channel],
                       task->cascade->moment[channel],
                       (float)task->length,
+                      task->any && read ? task->cascade->absorbed[channel].pixels : NULL,
                       start[0]->pixels,
                       start[1]->pixels,
                       end[0]->pixels,
@@ -136,19 +138,21 @@ static void absorb_piece(void *data, size_t index, int worker) {
   const absorb_task *task = data;
   const cascade_level *level = &task->cascade->level[0];
   const row_piece piece = hl_cascade_row_piece(level, index);
+  const read_row row = hl_cascade_read_row(&task->cascade->reads, 1, piece.y, 0);
   for (int x = piece.first; x < piece.end; x++) {
-    for (int c = 0; c < task->cascade->channels; c++) absorb_tile(task, (size_t)x, (size_t)piece.y, c);
+    bool read = row.any && hl_cascade_is_read(&row, &row.all, x);
+    for (int c = 0; c < task->cascade->channels; c++) absorb_tile(task, (size_t)x, (size_t)piece.y, read, c);
   }
 }
 
-static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, double omega,
+static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, double omega, bool any,
                        const cascade_crew *crew) {
   cascade_level *level = &cascade->level[0];
   cascade_group *start = &level->group[level->count - 1], *end = &level->group[level->count++];
   end->filled = memchr(cascade->touched, 1, (size_t)level->tiles_x * (size_t)level->tiles_y) != NULL;
   start->filled = start->filled || end->filled;
   end->omega = omega;
-  absorb_task task = {cascade, buffer, start, end, omega - start->omega, crew->functions->absorbed};
+  absorb_task task = {cascade, buffer, start, end, omega - start->omega, crew->functions->absorbed, any};
   hl_pool_run(crew->pool, hl_cascade_row_pieces(level), absorb_piece, &task);
   level->renewed = true;
   cascade->chunks++;
@@ -395,7 +399,7 @@ static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, in
   find_reads(cascade, occupancy, sheets, sheet);
   /* made from the chunks before the one that ends */
   bool any = find_shade(cascade, end, &crew);
-  push_chunk(cascade, shadow->buffer, omega, &crew);
+  push_chunk(cascade, shadow->buffer, omega, any, &crew);
   refill_buffer(cascade, shadow->buffer, any, &crew);
   begin_chunk(cascade);
 }
@@ -415,6 +419,7 @@ static void before_slab(light_shadow *shadow, int sheet, attenuate_job *job) {
   const soft_cascade *cascade = shadow->state;
   double middle = slab_omega(cascade, shadow->setup.sheets, sheet);
   job->position = (float)(isfinite(middle) ? middle - cascade->chunk_start : 0);
+  job->marks = true;
 }
 
 /* The slab is composited into the second planes too, and counted in the moments. */

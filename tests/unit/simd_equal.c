@@ -664,6 +664,15 @@ static void call_field(const hot_functions *hot, void *state) {
   if (s->which == 11) s->out.lit = hot->shadow.cascade->emission_add(&s->field_image, 1, 1);
 }
 
+/* Marks of surfaces in the dark (shadow/attenuate.h) in every seventh pixel; where the chunk began with no
+ * light, `absorbed_at_start` is 1 at every other of them. */
+static void mark_dark(float *pixels, float *absorbed_at_start, uint32_t *seed) {
+  for (int i = 0; i < FIELD * TILE; i += 7) {
+    pixels[i] = -DARK_MARK * random_between(seed, 0, 1);
+    if (i % 2) absorbed_at_start[i] = 1;
+  }
+}
+
 static void test_fields(void **unused) {
   (void)unused;
   static const char *const names[] = {
@@ -699,6 +708,7 @@ static void test_fields(void **unused) {
                                 &s.b[MARGIN][MARGIN],
                                 &s.out.pixels[MARGIN][MARGIN],
                                 0.8f,
+                                round % 3 ? lacking : NULL,
                                 out + 16 * FIELD,
                                 out + 32 * FIELD,
                                 out + 48 * FIELD,
@@ -768,6 +778,8 @@ static void test_fields(void **unused) {
       s.offset[i] = (ptrdiff_t)random_between(&seed, -20, 20) * FIELD +
                     (ptrdiff_t)random_between(&seed, -20, 20);
     for (s.which = 0; s.which < 16; s.which++) {
+      if (s.which == 6) mark_dark(s.left.to, s.left.absorbed_at_start, &seed);
+      if (s.which == 7) mark_dark(&s.b[MARGIN][MARGIN], &s.a[MARGIN][MARGIN], &seed);
       trial trial = {call_field, &s, &s.out, sizeof s.out};
       try_it(names[s.which], &trial, round);
     }

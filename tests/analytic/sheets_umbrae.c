@@ -1,0 +1,136 @@
+/* analytic/sheets_umbrae.c - where things of triangles or spheres hide all of a soft light, a floor below
+ * them is dark: no streaks and no rings. */
+#include "../asserts.h"
+#include "mesh_stage.h"
+
+enum { SIDE = 128, PIXELS = SIDE * SIDE, RIM = 32 };
+
+static const double FLOOR = -6, WIDE = 48; /* WIDE: the height that the picture shows */
+static const vec3 EYE = {60, -90, 50};
+
+/* Directions to points of the light's rim, seen from anywhere. */
+static void find_rim(vec3 travels, double angle_deg, vec3 rim[RIM]) {
+  vec3 towards = vec3_normalise(vec3_scale(travels, -1)),
+       u = vec3_normalise(vec3_cross(towards, (vec3){0, 1, 0})), v = vec3_cross(towards, u);
+  double radius = tan(angle_deg / 2 * HL_PI / 180);
+  for (int i = 0; i < RIM; i++) {
+    double turn = 2 * HL_PI * i / RIM;
+    rim[i] = vec3_add(towards,
+                      vec3_add(vec3_scale(u, radius * cos(turn)), vec3_scale(v, radius * sin(turn))));
+  }
+}
+
+/* What hides the light: a rectangle about a centre, or a sphere. */
+typedef struct hider {
+  vec3 centre, u, v;
+  double radius; /* 0: the rectangle */
+} hider;
+
+static bool is_hit(const hider *by, vec3 from, vec3 way) {
+  vec3 to = vec3_subtract(by->centre, from);
+  if (by->radius > 0) {
+    double along = vec3_dot(to, vec3_normalise(way));
+    return vec3_dot(to, to) - along * along < by->radius * by->radius;
+  }
+  vec3 normal = vec3_cross(by->u, by->v);
+  vec3 at = vec3_subtract(vec3_scale(way, vec3_dot(to, normal) / vec3_dot(way, normal)), to);
+  return fabs(vec3_dot(at, by->u)) < vec3_dot(by->u, by->u) &&
+         fabs(vec3_dot(at, by->v)) < vec3_dot(by->v, by->v);
+}
+
+/* The point of the floor that the eye sees at pixel (column, row), counted from the middle; in floor's
+ * height. */
+static vec3 on_floor(double column, double row) {
+  vec3 way = vec3_normalise(vec3_scale(EYE, -1)), right = vec3_normalise(vec3_cross(way, (vec3){0, 0, 1})),
+       down = vec3_cross(way, right);
+  vec3 at = vec3_scale(vec3_add(vec3_scale(right, column), vec3_scale(down, row)), WIDE / SIDE);
+  return vec3_add(at, vec3_scale(way, (FLOOR - at.z) / way.z));
+}
+
+/* The light that is left in the umbra, a pixel within: the greatest, and the mean. What hides the light is
+ * convex and so hides it all where it hides its rim. */
+static void find_leaks(const float *pixels, const hider *by, const vec3 rim[RIM], double *greatest,
+                       double *mean) {
+  double sum = 0;
+  int count = 0;
+  *greatest = 0;
+  for (int i = 0; i < PIXELS; i++) {
+    bool hidden = true;
+    for (int k = 0; k < RIM; k++)
+      for (int corner = 0; corner < 4; corner++)
+        hidden = hidden && is_hit(by,
+                                  on_floor(i % SIDE - SIDE / 2 + (corner & 1 ? 1.5 : -0.5),
+                                           i / SIDE - SIDE / 2 + (corner & 2 ? 1.5 : -0.5)),
+                                  rim[k]);
+    if (!hidden) continue;
+    *greatest = fmax(*greatest, (double)pixels[4 * i]);
+    sum += (double)pixels[4 * i];
+    count++;
+  }
+  assert_true(count > 200);
+  *mean = sum / count;
+}
+
+static hl_scene_mesh *add_sphere(mesh_stage *all, vec3 centre, double radius) {
+  const float sphere[1][4] = {{(float)centre.x, (float)centre.y, (float)centre.z, (float)radius}};
+  hl_mesh_description d;
+  hl_mesh *made = NULL;
+  hl_error error = {0};
+  hl_mesh_description_defaults(&d);
+  d.spheres = sphere, d.sphere_count = 1;
+  if (hl_mesh_create(all->set.context, &d, &made, &error) != HL_OK) fail_msg("%s", error.message);
+  return mesh_stage_add(all, made);
+}
+
+/* A floor of light 1 where nothing hides it, and the sheets slanted against what hides it. */
+static void measure(const hider *by, double angle, double *greatest, double *mean) {
+  static float pixels[PIXELS * 4];
+  const vec3 travels = {0.4, 0.3, -1};
+  vec3 rim[RIM];
+  mesh_stage all;
+  mesh_stage_open(&all, SIDE, WIDE);
+  hl_scene_mesh *hides = by->radius > 0
+                             ? add_sphere(&all, by->centre, by->radius)
+                             : mesh_stage_add(&all, stage_make_quad(&all.set, by->centre, by->u, by->v));
+  hides->visible = 0;
+  mesh_stage_add(&all, stage_make_quad(&all.set, (vec3){0, 0, FLOOR}, (vec3){60, 0, 0}, (vec3){0, 60, 0}));
+  hl_light *light = stage_add_directional(&all.set, travels);
+  light->angular_diameter_deg = angle;
+  all.set.scene.render.shadows = HL_SHADOWS_SOFT;
+  stage_look(&all.set, EYE, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+  stage_render_sheets(&all.set, pixels);
+  find_rim(travels, angle, rim);
+  find_leaks(pixels, by, rim, greatest, mean);
+  mesh_stage_close(&all);
+}
+
+/* A rectangle close above the floor, level or tilted against it: the pieces of its shadow that fall into
+ * different chunks of the cascade leave no line between them. */
+static void test_rectangle(void **state) {
+  (void)state;
+  for (int k = 0; k < 6; k++) {
+    const double tilt = k % 3 * 0.2, gap = 3 + 2 * (k / 3);
+    const hider by = {.centre = {0, 0, FLOOR + gap + 12 * tilt}, .u = {12, 0, 0}, .v = {0, 12, 12 * tilt}};
+    double greatest, mean;
+    measure(&by, k % 2 ? 12 : 7, &greatest, &mean);
+    assert_near(greatest, 0, 0.025);
+  }
+}
+
+/* A ball above the floor: its upper half, of which other rings fall into other chunks, and its lower half,
+ * which stands in the dark, leave no rings of light. */
+static void test_ball(void **state) {
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    const hider by = {.centre = {-3, -2, FLOOR + 10 + k}, .radius = 9};
+    double greatest, mean;
+    measure(&by, 7, &greatest, &mean);
+    assert_near(greatest, 0, 0.025);
+    assert_near(mean, 0, 0.0002);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_rectangle), cmocka_unit_test(test_ball)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
