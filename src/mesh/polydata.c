@@ -3,7 +3,8 @@
  * Colours are those of points where there are any, else those of cells. Arrays of bytes with three or four
  * components are sRGB, as VTK's mappers take them; other scalars go through the colormap viridis, from their
  * least to their greatest value. Radii of spheres and tubes are the point array "radius", or else a fraction
- * of the size of all points. */
+ * of the size of all points. Normals of cells say that the mesh is to look as flat as its cells: triangles
+ * show their own normals. */
 #include "mesh/polydata.h"
 
 #include <math.h>
@@ -28,6 +29,7 @@ cell_values *hl_polydata_claim(polydata *data, const char *name, const cell_valu
     taken = &data->radii;
   else if (place == AT_POINTS && shape->components == 3 && hl_text_equal(name, "normals"))
     taken = &data->normals;
+  else if (shape->components == 3 && hl_text_equal(name, "normals")) data->flat = true;
   else if (active || is_color(shape)) taken = &data->colors[place];
   if (taken == NULL || (taken->values != NULL && !active)) return NULL;
   return taken;
@@ -63,8 +65,9 @@ static hl_status check_cells(const polydata *data, const cells *cells, hl_error 
   return HL_OK;
 }
 
-static size_t cell_count(const polydata *data) {
+size_t hl_polydata_tuples(const polydata *data, value_place place) {
   size_t count = 0;
+  if (place == AT_POINTS) return data->point_count;
   for (int kind = 0; kind < CELL_KINDS; kind++) count += data->cells[kind].count;
   return count;
 }
@@ -76,7 +79,7 @@ static hl_status check_values(const polydata *data, const cell_values *values, s
                  data->path, values->tuples, tuples);
 }
 
-static hl_status check(const polydata *data, hl_error *error) {
+hl_status hl_polydata_check(const polydata *data, hl_error *error) {
   hl_status status = HL_OK;
   if (data->point_count > UINT32_MAX)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: has %zu points: at most %u are read", data->path,
@@ -86,7 +89,9 @@ static hl_status check(const polydata *data, hl_error *error) {
   const cell_values *at_points[] = {&data->colors[AT_POINTS], &data->normals, &data->radii};
   for (int n = 0; status == HL_OK && n < 3; n++)
     status = check_values(data, at_points[n], data->point_count, error);
-  return status == HL_OK ? check_values(data, &data->colors[AT_CELLS], cell_count(data), error) : status;
+  return status == HL_OK
+             ? check_values(data, &data->colors[AT_CELLS], hl_polydata_tuples(data, AT_CELLS), error)
+             : status;
 }
 
 /* ---- colours ---- */
@@ -249,14 +254,16 @@ static size_t triangle_count(const cells *cells) {
 static hl_status convert_points(const conversion *c) {
   const polydata *data = c->data;
   mesh_parts *parts = c->parts;
-  bool normals = data->normals.values != NULL, colors = c->colors != NULL && c->of_points;
-  hl_status status = hl_mesh_reserve_vertices(parts, data->point_count, normals, colors, c->error);
+  bool normals = data->normals.values != NULL, flat = data->flat && !normals,
+       colors = c->colors != NULL && c->of_points;
+  hl_status status = hl_mesh_reserve_vertices(parts, data->point_count, normals || flat, colors, c->error);
   if (status != HL_OK) return status;
   for (size_t p = 0; p < data->point_count; p++)
     for (size_t i = 0; i < 3; i++) {
       parts->positions[p][i] = (float)data->points[3 * p + i];
       if (normals) parts->normals[p][i] = (float)data->normals.values[3 * p + i];
     }
+  if (flat) memset(parts->normals, 0, data->point_count * sizeof *parts->normals); /* none: the triangles' */
   if (colors) memcpy(parts->colors, c->colors, data->point_count * sizeof *parts->colors);
   parts->vertex_count = data->point_count;
   return HL_OK;
@@ -296,7 +303,7 @@ hl_status hl_polydata_to_parts(const polydata *data, mesh_parts *parts, hl_error
   c.of_points = data->colors[AT_POINTS].values != NULL;
   for (int kind = 1; kind < CELL_KINDS; kind++)
     c.first_cell[kind] = c.first_cell[kind - 1] + data->cells[kind - 1].count;
-  hl_status status = check(data, error);
+  hl_status status = hl_polydata_check(data, error);
   if (status == HL_OK)
     status = make_colors(data, &data->colors[c.of_points ? AT_POINTS : AT_CELLS], &c.colors, error);
   if (status == HL_OK) status = convert_surface(&c);

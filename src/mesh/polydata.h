@@ -32,12 +32,24 @@ typedef struct polydata {
   cells cells[CELL_KINDS];
   cell_values colors[VALUE_PLACES]; /* RGB, RGBA, or scalars */
   cell_values normals, radii;       /* at points */
+  bool flat;                        /* cells have normals: where points have none, triangles show their own */
 } polydata;
 
-/* What an array's name and shape make of it: the place in the data where it belongs; null: nowhere, or its
- * place is taken. active: the file calls the array its scalars, which displace colours found before. */
+/* What an array's name and shape make of it: the place in the data where it belongs; null: its values are of
+ * no use, or its place is taken. active: the file calls the array its scalars, which displace colours found
+ * before. */
 cell_values *hl_polydata_claim(polydata *data, const char *name, const cell_values *shape, value_place place,
                                bool active);
+
+/* The number of points, or of cells. */
+size_t hl_polydata_tuples(const polydata *data, value_place place);
+
+/* Checks that cells name points that there are, and that arrays have a value for each. */
+hl_status hl_polydata_check(const polydata *data, hl_error *error);
+
+/* Joins pieces into one empty whole, points after points and cells after cells of the same kind, and empties
+ * them. Pieces must have the same arrays of values. */
+hl_status hl_polydata_join(polydata *const *pieces, size_t count, polydata *whole, hl_error *error);
 
 /* Checks cells and arrays, and fills the empty parts: polygons and strips become triangles, vertices spheres,
  * and lines stay lines, which become tubes. */

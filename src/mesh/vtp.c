@@ -1,7 +1,7 @@
 /* mesh/vtp.c - VTK XML PolyData (.vtp): ascii, base64 and appended arrays, plain or in zlib blocks.
  *
- * A first pass over the tags lists the arrays; then each one that is needed is read, cells before the arrays
- * whose length they tell. */
+ * A first pass over the tags lists the pieces and their arrays; then, piece by piece, each array that is
+ * needed is read, cells before the arrays whose length they tell; then the pieces are joined. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -10,7 +10,8 @@
 #include "volume/numbers.h"
 #include "volume/vtk_xml.h"
 
-enum { MOST_ARRAYS = 256 };
+/* Arrays of a piece beyond these are passed over; a file of more pieces is refused. */
+enum { MOST_ARRAYS = 256, MOST_PIECES = 4096 };
 
 /* The elements that hold arrays: the four kinds of cells first. */
 typedef enum section {
@@ -32,16 +33,35 @@ typedef struct vtp_array {
   bool active;
 } vtp_array;
 
+/* A piece that has points. */
+typedef struct vtp_piece {
+  polydata data;
+  size_t first_array, array_count;
+} vtp_piece;
+
 typedef struct vtp_file {
+  hl_context *context;
   hl_vtk_xml xml;
   mesh_text text;
-  polydata data;
   section section;
   char active_scalars[HL_VTK_NAME_BYTES], active_normals[HL_VTK_NAME_BYTES]; /* of the section */
-  bool has_piece, passes_over; /* passes over the arrays of an empty piece beside another one */
-  size_t array_count;
-  vtp_array arrays[MOST_ARRAYS];
+  vtp_piece *pieces;                                                         /* owned; [piece_count] */
+  vtp_array *arrays; /* owned; [array_count]; piece after piece */
+  size_t piece_count, piece_room, array_count, array_room;
+  bool in_piece; /* the last piece is open: arrays belong to it */
 } vtp_file;
+
+/* Makes room for one more element. */
+static hl_status grow(const vtp_file *file, void **list, size_t count, size_t *room, size_t size,
+                      hl_error *error) {
+  if (count < *room) return HL_OK;
+  size_t wanted = count > 8 ? 2 * count : 16;
+  void *grown = hl_reallocate(file->context, *list, wanted, size);
+  if (grown == NULL) return hl_fail_memory(error, wanted * size, file->xml.stream->path);
+  *list = grown;
+  *room = wanted;
+  return HL_OK;
+}
 
 static hl_status read_count(vtp_file *file, const hl_xml_tag *tag, const char *name, size_t *count,
                             hl_error *error) {
@@ -50,19 +70,20 @@ static hl_status read_count(vtp_file *file, const hl_xml_tag *tag, const char *n
   return hl_vtk_xml_refuse(&file->xml, HL_ERROR_INPUT, name, value, error);
 }
 
+/* Pieces without points are passed over: programs that write in parallel leave them. */
 static hl_status read_piece_tag(vtp_file *file, const hl_xml_tag *tag, hl_error *error) {
-  size_t points = 0;
-  hl_status status = read_count(file, tag, "NumberOfPoints", &points, error);
-  file->passes_over = file->has_piece && points == 0;
-  if (status != HL_OK || file->passes_over) return status;
-  if (file->has_piece && file->data.point_count > 0)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: meshes in several pieces are not read: save it as one",
-                   file->xml.stream->path);
-  file->has_piece = true;
-  file->array_count = 0; /* those of empty pieces before this one */
-  file->data.point_count = points;
+  vtp_piece piece = {.data = {.context = file->context, .path = file->xml.stream->path},
+                     .first_array = file->array_count};
+  hl_status status = read_count(file, tag, "NumberOfPoints", &piece.data.point_count, error);
+  file->in_piece = piece.data.point_count > 0;
   for (int kind = 0; status == HL_OK && kind < CELL_KINDS; kind++)
-    status = read_count(file, tag, count_names[kind], &file->data.cells[kind].count, error);
+    status = read_count(file, tag, count_names[kind], &piece.data.cells[kind].count, error);
+  if (status != HL_OK || !file->in_piece) return status;
+  if (file->piece_count == MOST_PIECES)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: has more than %d pieces: save it as one",
+                   piece.data.path, MOST_PIECES);
+  status = grow(file, (void **)&file->pieces, file->piece_count, &file->piece_room, sizeof piece, error);
+  if (status == HL_OK) file->pieces[file->piece_count++] = piece;
   return status;
 }
 
@@ -72,16 +93,20 @@ static void copy_name(char to[HL_VTK_NAME_BYTES], const char *name) {
 }
 
 static hl_status read_array_tag(vtp_file *file, const hl_xml_tag *tag, hl_error *error) {
-  if (file->section == SECTION_NONE || file->passes_over || file->array_count == MOST_ARRAYS) return HL_OK;
-  vtp_array *array = &file->arrays[file->array_count];
-  *array = (vtp_array){.section = file->section, .components = 1};
-  hl_status status = hl_vtk_xml_array_tag(&file->xml, tag, &array->array, error);
-  if (status == HL_OK) status = read_count(file, tag, "NumberOfComponents", &array->components, error);
+  if (file->section == SECTION_NONE || !file->in_piece) return HL_OK;
+  vtp_piece *piece = &file->pieces[file->piece_count - 1];
+  vtp_array made = {.section = file->section, .components = 1};
+  if (piece->array_count == MOST_ARRAYS) return HL_OK;
+  hl_status status = hl_vtk_xml_array_tag(&file->xml, tag, &made.array, error);
+  if (status == HL_OK) status = read_count(file, tag, "NumberOfComponents", &made.components, error);
+  if (status == HL_OK)
+    status = grow(file, (void **)&file->arrays, file->array_count, &file->array_room, sizeof made, error);
   if (status != HL_OK) return status;
-  copy_name(array->name, hl_xml_attribute(tag, "Name"));
-  array->active = array->name[0] != 0 && strcmp(array->name, file->active_scalars) == 0;
-  if (array->name[0] != 0 && strcmp(array->name, file->active_normals) == 0) strcpy(array->name, "Normals");
-  file->array_count++;
+  copy_name(made.name, hl_xml_attribute(tag, "Name"));
+  made.active = made.name[0] != 0 && strcmp(made.name, file->active_scalars) == 0;
+  if (made.name[0] != 0 && strcmp(made.name, file->active_normals) == 0) strcpy(made.name, "Normals");
+  file->arrays[file->array_count++] = made;
+  piece->array_count++;
   return HL_OK;
 }
 
@@ -130,97 +155,111 @@ static hl_status read_numbers(vtp_file *file, const vtp_array *array, size_t cou
   hl_status status = hl_vtk_xml_type(&file->xml, array->array.type, &code.type, error);
   if (status != HL_OK || count == 0) return status;
   if (count > SIZE_MAX / 8)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: impossible number of values in an array", file->data.path);
-  status = hl_stream_open_memory(file->data.context, file->data.path, file->text.bytes, file->text.length,
+    return hl_fail(error, HL_ERROR_INPUT, "%s: impossible number of values in an array",
+                   file->xml.stream->path);
+  status = hl_stream_open_memory(file->context, file->xml.stream->path, file->text.bytes, file->text.length,
                                  &stream, error);
   if (status != HL_OK) return status;
   status = hl_vtk_xml_open_array(&stream, &file->xml, &array->array, count * hl_voxel_type_bytes(code.type),
                                  error);
-  hl_release(file->data.context, *numbers);
+  hl_release(file->context, *numbers);
   *numbers = NULL;
   if (status == HL_OK) status = hl_read_numbers(stream, &code, count, numbers, error);
   hl_stream_close(stream);
   return status;
 }
 
-/* The first array of a section and name; null: none. */
-static const vtp_array *find_array(const vtp_file *file, section section, const char *name) {
-  for (size_t n = 0; n < file->array_count; n++)
-    if (file->arrays[n].section == section && (name == NULL || strcmp(file->arrays[n].name, name) == 0))
-      return &file->arrays[n];
+/* The first array of a piece's section and name; null: none. */
+static const vtp_array *find_array(const vtp_file *file, const vtp_piece *piece, section section,
+                                   const char *name) {
+  const vtp_array *arrays = file->arrays + piece->first_array;
+  for (size_t n = 0; n < piece->array_count; n++)
+    if (arrays[n].section == section && (name == NULL || strcmp(arrays[n].name, name) == 0))
+      return &arrays[n];
   return NULL;
 }
 
 static hl_status fail_missing(const vtp_file *file, const char *what, hl_error *error) {
-  return hl_fail(error, HL_ERROR_INPUT, "%s: has no array of %s", file->data.path, what);
+  return hl_fail(error, HL_ERROR_INPUT, "%s: has no array of %s", file->xml.stream->path, what);
 }
 
-static hl_status read_points(vtp_file *file, hl_error *error) {
-  const vtp_array *points = find_array(file, SECTION_POINTS, NULL);
+static hl_status read_points(vtp_file *file, vtp_piece *piece, hl_error *error) {
+  const vtp_array *points = find_array(file, piece, SECTION_POINTS, NULL);
   if (points == NULL || points->components != 3) return fail_missing(file, "points", error);
-  if (file->data.point_count > SIZE_MAX / 24) return fail_missing(file, "so many points", error);
-  return read_numbers(file, points, 3 * file->data.point_count, &file->data.points, error);
+  if (piece->data.point_count > SIZE_MAX / 24) return fail_missing(file, "so many points", error);
+  return read_numbers(file, points, 3 * piece->data.point_count, &piece->data.points, error);
 }
 
-static hl_status read_cells(vtp_file *file, int kind, hl_error *error) {
-  cells *cells = &file->data.cells[kind];
-  const vtp_array *ends = find_array(file, (section)kind, "offsets"),
-                  *points = find_array(file, (section)kind, "connectivity");
+static hl_status read_cells(vtp_file *file, vtp_piece *piece, int kind, hl_error *error) {
+  cells *cells = &piece->data.cells[kind];
+  const vtp_array *ends = find_array(file, piece, (section)kind, "offsets"),
+                  *points = find_array(file, piece, (section)kind, "connectivity");
   if (cells->count == 0) return HL_OK;
   if (ends == NULL || points == NULL) return fail_missing(file, "offsets or connectivity", error);
   hl_status status = read_numbers(file, ends, cells->count, &cells->ends, error);
   if (status != HL_OK) return status;
   double last = cells->ends[cells->count - 1];
   if (!(last >= 0 && last <= 1e15))
-    return hl_fail(error, HL_ERROR_INPUT, "%s: cells end at point %.9g", file->data.path, last);
+    return hl_fail(error, HL_ERROR_INPUT, "%s: cells end at point %.9g", piece->data.path, last);
   cells->point_count = (size_t)last;
   return read_numbers(file, points, cells->point_count, &cells->points, error);
 }
 
-static size_t cell_count(const vtp_file *file) {
-  size_t count = 0;
-  for (int kind = 0; kind < CELL_KINDS; kind++) count += file->data.cells[kind].count;
-  return count;
-}
-
 /* Reads an array of values where it is of use. */
-static hl_status read_values(vtp_file *file, const vtp_array *array, hl_error *error) {
+static hl_status read_values(vtp_file *file, vtp_piece *piece, const vtp_array *array, hl_error *error) {
   value_place place = array->section == SECTION_POINT_DATA ? AT_POINTS : AT_CELLS;
-  cell_values shape = {.components = array->components,
-                       .tuples = place == AT_POINTS ? file->data.point_count : cell_count(file)};
+  cell_values shape = {.components = array->components, .tuples = hl_polydata_tuples(&piece->data, place)};
   if (!hl_vtk_xml_find_type(array->array.type, &shape.type)) return HL_OK;
-  cell_values *values = hl_polydata_claim(&file->data, array->name, &shape, place, array->active);
+  cell_values *values = hl_polydata_claim(&piece->data, array->name, &shape, place, array->active);
   if (values == NULL || shape.tuples == 0) return HL_OK;
   if (shape.components == 0 || shape.components > SIZE_MAX / 8 / shape.tuples)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: impossible number of values in an array", file->data.path);
+    return hl_fail(error, HL_ERROR_INPUT, "%s: impossible number of values in an array", piece->data.path);
   shape.values = values->values;
   hl_status status = read_numbers(file, array, shape.tuples * shape.components, &shape.values, error);
   *values = shape;
   return status;
 }
 
-static hl_status read_arrays(vtp_file *file, hl_error *error) {
-  hl_status status = read_points(file, error);
-  for (int kind = 0; status == HL_OK && kind < CELL_KINDS; kind++) status = read_cells(file, kind, error);
-  for (size_t n = 0; status == HL_OK && n < file->array_count; n++)
-    if (file->arrays[n].section == SECTION_POINT_DATA || file->arrays[n].section == SECTION_CELL_DATA)
-      status = read_values(file, &file->arrays[n], error);
+static hl_status read_piece(vtp_file *file, vtp_piece *piece, hl_error *error) {
+  hl_status status = read_points(file, piece, error);
+  for (int kind = 0; status == HL_OK && kind < CELL_KINDS; kind++)
+    status = read_cells(file, piece, kind, error);
+  for (size_t n = 0; status == HL_OK && n < piece->array_count; n++) {
+    const vtp_array *array = &file->arrays[piece->first_array + n];
+    if (array->section == SECTION_POINT_DATA || array->section == SECTION_CELL_DATA)
+      status = read_values(file, piece, array, error);
+  }
   return status;
 }
 
-hl_status hl_mesh_read_vtp(mesh_text text, mesh_parts *parts, hl_error *error) {
-  vtp_file *file = hl_allocate_zeroed(parts->context, 1, sizeof *file);
-  if (file == NULL) return hl_fail_memory(error, sizeof *file, parts->path);
-  file->text = text;
-  file->section = SECTION_NONE;
-  file->data = (polydata){.context = parts->context, .path = parts->path};
-  hl_status status = hl_stream_open_memory(parts->context, parts->path, text.bytes, text.length,
-                                           &file->xml.stream, error);
-  if (status == HL_OK) status = read_tags(file, error);
-  if (status == HL_OK) status = read_arrays(file, error);
-  if (status == HL_OK) status = hl_polydata_to_parts(&file->data, parts, error);
+static hl_status read_pieces(vtp_file *file, polydata *whole, hl_error *error) {
+  hl_status status = HL_OK;
+  for (size_t n = 0; status == HL_OK && n < file->piece_count; n++)
+    status = read_piece(file, &file->pieces[n], error);
+  polydata **list = hl_allocate(file->context, file->piece_count + 1, sizeof(polydata *));
+  if (list == NULL) return hl_fail_memory(error, file->piece_count * sizeof(polydata *), whole->path);
+  for (size_t n = 0; n < file->piece_count; n++) list[n] = &file->pieces[n].data;
+  if (status == HL_OK) status = hl_polydata_join(list, file->piece_count, whole, error);
+  hl_release(file->context, list);
+  return status;
+}
+
+static void release(vtp_file *file) {
   hl_stream_close(file->xml.stream);
-  hl_polydata_release(&file->data);
-  hl_release(parts->context, file);
+  for (size_t n = 0; n < file->piece_count; n++) hl_polydata_release(&file->pieces[n].data);
+  hl_release(file->context, file->pieces);
+  hl_release(file->context, file->arrays);
+}
+
+hl_status hl_mesh_read_vtp(mesh_text text, mesh_parts *parts, hl_error *error) {
+  vtp_file file = {.context = parts->context, .text = text, .section = SECTION_NONE};
+  polydata whole = {.context = parts->context, .path = parts->path};
+  hl_status status = hl_stream_open_memory(parts->context, parts->path, text.bytes, text.length,
+                                           &file.xml.stream, error);
+  if (status == HL_OK) status = read_tags(&file, error);
+  if (status == HL_OK) status = read_pieces(&file, &whole, error);
+  if (status == HL_OK) status = hl_polydata_to_parts(&whole, parts, error);
+  hl_polydata_release(&whole);
+  release(&file);
   return status;
 }

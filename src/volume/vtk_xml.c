@@ -23,6 +23,13 @@ hl_status hl_vtk_xml_refuse(const hl_vtk_xml *xml, hl_status code, const char *w
                         code == HL_ERROR_UNSUPPORTED ? " is not read" : " is impossible");
 }
 
+static hl_status fail_compressor(const hl_vtk_xml *xml, const char *compressor, hl_error *error) {
+  char shown[HL_PRINTABLE_BYTES];
+  return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                 "%s: data compressed by \"%s\" is not read: save it with vtkZLibDataCompressor, or without",
+                 xml->stream->path, hl_text_printable(shown, compressor));
+}
+
 hl_status hl_vtk_xml_file_tag(hl_vtk_xml *xml, const hl_xml_tag *tag, const char *wanted, hl_error *error) {
   const char *type = hl_xml_attribute(tag, "type"), *order = hl_xml_attribute(tag, "byte_order");
   const char *header_type = hl_xml_attribute(tag, "header_type"),
@@ -37,7 +44,7 @@ hl_status hl_vtk_xml_file_tag(hl_vtk_xml *xml, const hl_xml_tag *tag, const char
   xml->header_bytes = header_type != NULL && strcmp(header_type, "UInt64") == 0 ? 8 : 4;
   xml->compressed = compressor != NULL && *compressor != 0;
   if (xml->compressed && strcmp(compressor, "vtkZLibDataCompressor") != 0)
-    return hl_vtk_xml_refuse(xml, HL_ERROR_UNSUPPORTED, "data compressed by", compressor, error);
+    return fail_compressor(xml, compressor, error);
   return HL_OK;
 }
 

@@ -213,7 +213,6 @@ static void test_empty_pieces(void **state) {
   static const char *const texts[] = {VTP(FULL_PIECE), VTP(EMPTY_PIECE FULL_PIECE),
                                       VTP(FULL_PIECE EMPTY_PIECE),
                                       VTP(EMPTY_PIECE EMPTY_PIECE FULL_PIECE EMPTY_PIECE)};
-  static const char two[] = VTP(FULL_PIECE EMPTY_PIECE FULL_PIECE);
   hl_context *context = NULL;
   assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
   for (size_t t = 0; t < sizeof texts / sizeof *texts; t++) {
@@ -222,7 +221,112 @@ static void test_empty_pieces(void **state) {
     assert_true(hl_mesh_describe(mesh)->positions[2][1] == 2);
     hl_mesh_release(mesh);
   }
-  assert_null(load(context, "a.vtp", two, strlen(two), "meshes in several pieces are not read"));
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+#define ARRAY(type, name, components, values)                                       \
+  "<DataArray type=\"" type "\" Name=\"" name "\" NumberOfComponents=\"" components \
+  "\" format=\"ascii\">" values "</DataArray>"
+#define CELLS(kind, points, ends) \
+  "<" kind ">" ARRAY("Int64", "connectivity", "1", points) ARRAY("Int64", "offsets", "1", ends) "</" kind ">"
+
+/* Two pieces, the first with a strip, the second with two vertices, and a triangle each. */
+#define TWO_PIECES(first_data, second_data)                                                    \
+  VTP("<Piece NumberOfPoints=\"4\" NumberOfPolys=\"1\" NumberOfStrips=\"1\"><Points>" ARRAY(   \
+      "Float32", "p", "3", "0 0 0 1 0 0 0 1 0 1 1 0") "</Points>" CELLS("Polys", "0 1 2", "3") \
+          CELLS("Strips", "1 3 2", "3") first_data                                             \
+      "</Piece>" EMPTY_PIECE                                                                   \
+      "<Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\" NumberOfVerts=\"2\"><Points>" ARRAY(    \
+          "Float64", "p", "3", "5 0 0 6 0 0 5 1 0") "</Points>" CELLS("Verts", "2 0", "1 2")   \
+          CELLS("Polys", "2 1 0", "3") second_data "</Piece>")
+
+/* Pieces become one mesh: cells of each kind in the pieces' order, with the colours that are theirs. */
+static void test_several_pieces(void **state) {
+  (void)state;
+  static const char text[] = TWO_PIECES(
+      "<CellData Scalars=\"c\">" ARRAY("UInt8", "c", "3", "255 0 0 0 255 0") "</CellData>",
+      "<CellData Scalars=\"c\">" ARRAY("UInt8", "c", "3", "0 0 0 0 0 255 255 255 255") "</CellData>");
+  static const uint32_t triangles[3][3] = {{0, 1, 2}, {6, 5, 4}, {1, 3, 2}};
+  static const float colors[3][4] = {{1, 0, 0, 1}, {1, 1, 1, 1}, {0, 1, 0, 1}},
+                     sphere_colors[2][4] = {{0, 0, 0, 1}, {0, 0, 1, 1}};
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  hl_mesh *mesh = load(context, "a.vtp", text, strlen(text), NULL);
+  const hl_mesh_description *d = hl_mesh_describe(mesh);
+  assert_int_equal(d->vertex_count, 7);
+  assert_true(d->positions[3][1] == 1 && d->positions[4][0] == 5 && d->positions[6][1] == 1);
+  assert_int_equal(d->triangle_count, 3);
+  assert_memory_equal(d->triangles, triangles, sizeof triangles);
+  assert_memory_equal(d->face_colors, colors, sizeof colors);
+  assert_int_equal(d->sphere_count, 2);
+  assert_true(d->spheres[0][1] == 1 && d->spheres[1][0] == 5);
+  assert_memory_equal(d->sphere_colors, sphere_colors, sizeof sphere_colors);
+  hl_mesh_release(mesh);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* Scalars of pieces share one range; arrays that only one piece has are refused, and so is a cell that names
+ * a point of another piece. */
+static void test_arrays_of_pieces(void **state) {
+  (void)state;
+  static const char
+      text[] = TWO_PIECES("<PointData Scalars=\"c\">" ARRAY("Float32", "c", "1", "0 1 2 3") "</PointData>",
+                          "<PointData Scalars=\"c\">" ARRAY("Float32", "c", "1", "6 6 3") "</PointData>"),
+      absent[] = TWO_PIECES("<PointData Scalars=\"c\">" ARRAY("Float32", "c", "1", "0 1 2 3") "</PointData>",
+                            ""),
+      other[] = TWO_PIECES("<PointData>" ARRAY("UInt8", "c", "3", "0 1 2 3 4 5 6 7 8 9 0 1") "</PointData>",
+                           "<PointData>" ARRAY("UInt8", "c", "4", "0 1 2 3 4 5 6 7 8 9 0 1") "</PointData>"),
+      foreign[] = VTP(FULL_PIECE "<Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\"><Points>" ARRAY(
+          "Float32", "p", "3", "0 0 0 1 0 0 0 1 0") "</Points>" CELLS("Polys", "-1 1 2", "3") "</Piece>");
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  hl_mesh *mesh = load(context, "a.vtp", text, strlen(text), NULL);
+  const hl_mesh_description *d = hl_mesh_describe(mesh);
+  assert_memory_equal(d->colors[3], d->colors[6], sizeof *d->colors);
+  assert_memory_equal(d->colors[4], d->colors[5], sizeof *d->colors);
+  assert_true(d->colors[0][2] < d->colors[3][2] &&
+              d->colors[4][0] > 0.9f); /* viridis: violet, teal, yellow */
+  hl_mesh_release(mesh);
+  assert_null(load(context, "a.vtp", absent, strlen(absent), "its pieces differ in their arrays"));
+  assert_null(load(context, "a.vtp", other, strlen(other), "its pieces differ in their arrays"));
+  assert_null(load(context, "a.vtp", foreign, strlen(foreign), "a cell names point -1: there are 3"));
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* Normals of cells make a mesh flat: its vertices have none, and so triangles show their own. */
+static void test_normals_of_cells(void **state) {
+  (void)state;
+#define CELL_NORMALS "<CellData Normals=\"n\">" ARRAY("Float32", "n", "3", "0 0 1 0 0 1") "</CellData>"
+#define POINT_NORMALS \
+  "<PointData Normals=\"n\">" ARRAY("Float32", "n", "3", "0 0 1 0 0 1 0 0 1 0 0 1") "</PointData>"
+#define PIECE(data)                                                                                         \
+  VTP("<Piece NumberOfPoints=\"4\" NumberOfPolys=\"2\"><Points>" ARRAY(                                     \
+      "Float32", "p", "3", "0 0 0 1 0 0 0 1 0 1 1 0") "</Points>" CELLS("Polys", "0 1 2 1 3 2", "3 6") data \
+      "</Piece>")
+  static const char legacy[] =
+      "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0 1 0 0 0 1 0\n"
+      "POLYGONS 1 4\n3 0 1 2\nCELL_DATA 1\nNORMALS n float\n0 0 1\n";
+  static const struct {
+    const char *name, *text;
+    bool has_normals;
+    float z;
+  } cases[] = {{"a.vtp", PIECE(""), false, 0},
+               {"a.vtp", PIECE(CELL_NORMALS), true, 0},
+               {"a.vtp", PIECE(CELL_NORMALS POINT_NORMALS), true, 1},
+               {"a.vtk", legacy, true, 0}};
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+    hl_mesh *mesh = load(context, cases[c].name, cases[c].text, strlen(cases[c].text), NULL);
+    const hl_mesh_description *d = hl_mesh_describe(mesh);
+    assert_int_equal(d->normals != NULL, cases[c].has_normals);
+    for (size_t v = 0; d->normals != NULL && v < d->vertex_count; v++)
+      assert_true(d->normals[v][0] == 0 && d->normals[v][1] == 0 && d->normals[v][2] == cases[c].z);
+    hl_mesh_release(mesh);
+  }
   assert_int_equal(hl_context_memory_held(context), 0);
   hl_context_destroy(context);
 }
@@ -313,6 +417,9 @@ int main(void) {
                                      cmocka_unit_test(test_ply_faces),
                                      cmocka_unit_test(test_cube_is_closed),
                                      cmocka_unit_test(test_empty_pieces),
+                                     cmocka_unit_test(test_several_pieces),
+                                     cmocka_unit_test(test_arrays_of_pieces),
+                                     cmocka_unit_test(test_normals_of_cells),
                                      cmocka_unit_test(test_refused),
                                      cmocka_unit_test(test_from_memory),
                                      cmocka_unit_test(test_round),
