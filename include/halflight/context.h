@@ -62,6 +62,15 @@ typedef enum hl_instruction_set {
   HL_INSTRUCTION_SET_AVX512_VBMI = 5 /* and VBMI, VBMI2 and VNNI: Ice Lake, Zen 4 and later */
 } hl_instruction_set;
 
+/* Libraries by which processes of an MPI job meet (halflight/ranks.h). */
+typedef enum hl_mpi {
+  HL_MPI_AUTO =
+      0, /* the one that the process has loaded; else Open MPI's, or where that is missing MPICH's */
+  HL_MPI_OPEN_MPI = 1, /* version 4 or 5: libmpi.so.40 */
+  HL_MPI_MPICH =
+      2 /* version 3.1 or later, or another with its binary interface: libmpi.so.12, libmpich.so.12 */
+} hl_mpi;
+
 /* All callbacks may be null (a default is used) and receive user_data. They may be called
  * from the thread that called into the library only, except allocate and release, which may be
  * called from any of its threads. */
@@ -95,6 +104,7 @@ typedef struct hl_context_options {
    * of 1.15 times the voxels' bytes, and rendered from it. The file has no name. Parts of it are in memory
    * where the limit leaves room beside what the context holds, and always up to 16 times 64^3 voxels. */
   const char *scratch_folder;
+  hl_mpi mpi; /* what hl_ranks_join() loads: of the two, the one whose launcher started the process */
 } hl_context_options;
 
 typedef struct hl_context hl_context; /* usable from several threads at once */

@@ -8,27 +8,22 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "ranks.h"
+
 enum { MOST_PICTURE_BYTES = 1 << 30 };
 
-/* Where launchers say which of how many processes this is: Open MPI; MPICH and Intel MPI; Slurm's srun. */
-static const char *const launchers[][2] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
-                                           {"PMI_RANK", "PMI_SIZE"},
-                                           {"SLURM_PROCID", "SLURM_NTASKS"}};
-
 static int read_rank(int *part, int *parts) {
-  for (size_t i = 0; i < sizeof launchers / sizeof *launchers; i++) {
-    const char *rank = getenv(launchers[i][0]), *size = getenv(launchers[i][1]);
-    if (rank == NULL || size == NULL) continue;
-    int used = 0, used_of_size = 0;
-    bool good = sscanf(rank, "%6d%n", part, &used) == 1 && rank[used] == '\0' &&
-                sscanf(size, "%6d%n", parts, &used_of_size) == 1 && size[used_of_size] == '\0';
-    if (good && *part >= 0 && *part < *parts) return EXIT_CODE_OK;
-    return fail(EXIT_CODE_USAGE, "--frames-over-ranks: %s is '%s' and %s is '%s': no rank of so many",
-                launchers[i][0], rank, launchers[i][1], size);
-  }
-  return fail(EXIT_CODE_USAGE,
-              "--frames-over-ranks: neither mpirun nor srun has started this process: start it so, or give "
-              "--part K/N");
+  launcher by;
+  if (!launcher_of_process(&by))
+    return fail(EXIT_CODE_USAGE,
+                "--frames-over-ranks: neither mpirun nor srun has started this process: start it so, or give "
+                "--part K/N");
+  int used = 0, used_of_size = 0;
+  bool good = sscanf(by.rank, "%6d%n", part, &used) == 1 && by.rank[used] == '\0' &&
+              sscanf(by.size, "%6d%n", parts, &used_of_size) == 1 && by.size[used_of_size] == '\0';
+  if (good && *part >= 0 && *part < *parts) return EXIT_CODE_OK;
+  return fail(EXIT_CODE_USAGE, "--frames-over-ranks: %s is '%s' and %s is '%s': no rank of so many",
+              by.rank_name, by.rank, by.size_name, by.size);
 }
 
 int frames_read_part(const cli_value *value, const cli_value *ranks, int *part, int *parts) {

@@ -29,6 +29,7 @@ typedef struct cli_host_options {
   const char *subject;
   uint64_t memory_limit; /* bytes; 0: the machine's memory */
   hl_instruction_set instruction_set;
+  hl_mpi mpi;              /* launcher_mpi() (ranks.h) where processes may join */
   bool (*cancelled)(void); /* may be null; else asked, in addition to signals, on the thread that renders */
   void (*progressed)(double fraction); /* told by the thread that calls the library; or null */
   const char *data_folder;             /* null: HALFLIGHT_DATA, or ../shared/data */

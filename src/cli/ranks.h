@@ -4,8 +4,21 @@
 
 #include "host.h"
 
-/* Joins the processes that Open MPI's launcher has started. option: for error lines. Returns the exit code;
- * release with ranks_end() in any case. */
+/* Which of how many processes this is, as the launcher says that has started it. */
+typedef struct launcher {
+  const char *rank_name, *size_name; /* of variables of the environment */
+  const char *rank, *size;           /* what they say; to be checked */
+  hl_mpi mpi;                        /* the library that its processes join by */
+} launcher;
+
+/* False: no launcher has started this process. */
+bool launcher_of_process(launcher *found);
+
+/* The library for a context's options. */
+hl_mpi launcher_mpi(void);
+
+/* Joins the processes that mpirun has started. option: for error lines. Returns the exit code;
+ * to be left with hl_ranks_leave() in any case. */
 int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks);
 
 /* Where the exit code is one of failure, ends the others too: nobody waits for a rank that has failed. Before

@@ -82,7 +82,8 @@ static int job_open(render_job *job) {
                               .subject = base_name(job->input),
                               .memory_limit = values[RENDER_MAX_MEMORY].bytes,
                               .data_folder = values[RENDER_DATA].text,
-                              .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice};
+                              .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice,
+                              .mpi = launcher_mpi()};
   exit_code = host_open(&options, &job->host);
   int over_ranks = values[RENDER_VOLUME].given ? RENDER_VOLUME : RENDER_STRIPS;
   if (exit_code == EXIT_CODE_OK && values[over_ranks].given)

@@ -62,6 +62,9 @@ hl_status hl_context_create(const hl_context_options *options, hl_context **cont
     chosen.allocate = default_allocate;
     chosen.release = default_release;
   }
+  if (chosen.mpi < HL_MPI_AUTO || chosen.mpi > HL_MPI_MPICH)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_context_create: mpi is %d, which is no hl_mpi",
+                   (int)chosen.mpi);
   hl_instruction_set best = hl_cpu_best_instruction_set();
   if (chosen.instruction_set == HL_INSTRUCTION_SET_AUTO) chosen.instruction_set = best;
   if (!hl_cpu_has_instruction_set(chosen.instruction_set))

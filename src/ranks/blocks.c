@@ -22,14 +22,14 @@ typedef struct block_request {
 /* An answer on its way. */
 typedef struct block_reply {
   unsigned char *bytes; /* in the blocks' memory */
-  void *request;
+  mpi_handle request;
   bool sent; /* and not yet known to have arrived */
 } block_reply;
 
 /* A thread's fetch. */
 typedef struct block_fetch {
   hl_box *parts;           /* [ranks]; of what is wanted */
-  void **pending;          /* [ranks]; requests of MPI */
+  mpi_handle *pending;     /* [ranks]; requests of MPI */
   bool *waited;            /* [ranks]; whether `pending` is not done */
   unsigned char *received; /* [shape.most][element_bytes] */
   int number;
@@ -91,11 +91,11 @@ static void answer(hl_ranks *ranks, const block_request *asked) {
   hl_blocks *blocks = blocks_with(ranks->server, asked->id);
   if (blocks == NULL) return; /* this rank has failed, and the job will end */
   block_reply *reply = &blocks->reply[blocks->turn++ % REPLIES];
-  for (int done = !reply->sent; !done;) ranks->mpi.test(&reply->request, &done, NULL);
+  for (int done = !reply->sent; !done;) ranks->mpi.calls->test(&ranks->mpi, &reply->request, &done);
   blocks->source.copy(blocks->source.data, &asked->box, reply->bytes);
   size_t bytes = elements_of(&asked->box) * blocks->shape.element_bytes;
-  ranks->mpi.send(reply->bytes, (int)bytes, ranks->mpi.byte, (int)asked->from, (int)asked->tag,
-                  ranks->communicator, &reply->request);
+  ranks->mpi.calls->send(&ranks->mpi, reply->bytes, (int)bytes, (int)asked->from, (int)asked->tag,
+                         &reply->request);
   reply->sent = true;
 }
 
@@ -104,10 +104,9 @@ static bool serve(hl_ranks *ranks) {
   int any = 0;
   block_request asked;
   pthread_mutex_lock(&ranks->calling);
-  ranks->mpi.probe(OPEN_MPI_ANY, TAG_REQUEST, ranks->communicator, &any, NULL);
+  ranks->mpi.calls->probe(&ranks->mpi, TAG_REQUEST, &any);
   if (any) {
-    ranks->mpi.receive_now(&asked, (int)sizeof asked, ranks->mpi.byte, OPEN_MPI_ANY, TAG_REQUEST,
-                           ranks->communicator, NULL);
+    ranks->mpi.calls->receive_now(&ranks->mpi, &asked, (int)sizeof asked, TAG_REQUEST);
     answer(ranks, &asked);
   }
   pthread_mutex_unlock(&ranks->calling);
@@ -279,17 +278,17 @@ static void end_fetch(hl_blocks *blocks, block_fetch *fetch) {
   pthread_mutex_unlock(&blocks->lock);
 }
 
-/* Asks a rank for a part of its block. The tags of a few arrays' fetches differ. */
+/* Asks a rank for a part of its block. The tags of a few arrays' fetches differ; MPI has tags up to 32767. */
 static void ask(hl_blocks *blocks, block_fetch *fetch, int rank, unsigned char *to) {
-  enum { MOST_ARRAYS = 1 << 20 };
+  enum { MOST_ARRAYS = 4000 };
   hl_ranks *ranks = blocks->ranks;
   int tag = TAG_REPLY + (int)(blocks->id % MOST_ARRAYS) * FETCHES + fetch->number;
   const block_request wanted = {blocks->id, (uint64_t)ranks->rank, (uint64_t)tag, fetch->parts[rank]};
-  void *sent, *byte = ranks->mpi.byte;
+  mpi_handle sent;
   size_t bytes = elements_of(&wanted.box) * blocks->shape.element_bytes;
   pthread_mutex_lock(&ranks->calling);
-  ranks->mpi.receive(to, (int)bytes, byte, rank, tag, ranks->communicator, &fetch->pending[rank]);
-  ranks->mpi.send(&wanted, (int)sizeof wanted, byte, rank, TAG_REQUEST, ranks->communicator, &sent);
+  ranks->mpi.calls->receive(&ranks->mpi, to, (int)bytes, rank, tag, &fetch->pending[rank]);
+  ranks->mpi.calls->send(&ranks->mpi, &wanted, (int)sizeof wanted, rank, TAG_REQUEST, &sent);
   pthread_mutex_unlock(&ranks->calling);
   hl_ranks_wait(ranks, sent);
   fetch->waited[rank] = true;

@@ -21,11 +21,11 @@ void hl_ranks_pause(int asked) {
   else nanosleep(&(struct timespec){.tv_nsec = asked < SHORT_PAUSES ? SHORT : LONG}, NULL);
 }
 
-void hl_ranks_wait(hl_ranks *ranks, void *request) {
+void hl_ranks_wait(hl_ranks *ranks, mpi_handle request) {
   int done = 0;
   for (int asked = 0; !done; asked += asked < MOST_VALUES) {
     pthread_mutex_lock(&ranks->calling);
-    ranks->mpi.test(&request, &done, NULL);
+    ranks->mpi.calls->test(&ranks->mpi, &request, &done);
     pthread_mutex_unlock(&ranks->calling);
     if (!done) hl_ranks_pause(asked);
   }
@@ -34,26 +34,25 @@ void hl_ranks_wait(hl_ranks *ranks, void *request) {
 /* ---- collectives ---- */
 
 void hl_ranks_barrier(hl_ranks *ranks) {
-  void *request;
+  mpi_handle request;
   pthread_mutex_lock(&ranks->calling);
-  ranks->mpi.barrier(ranks->communicator, &request);
+  ranks->mpi.calls->barrier(&ranks->mpi, &request);
   pthread_mutex_unlock(&ranks->calling);
   hl_ranks_wait(ranks, request);
 }
 
 void hl_ranks_gather(hl_ranks *ranks, const void *from, size_t bytes, void *to) {
-  void *request, *byte = ranks->mpi.byte;
+  mpi_handle request;
   pthread_mutex_lock(&ranks->calling);
-  ranks->mpi.gather_all(from, (int)bytes, byte, to, (int)bytes, byte, ranks->communicator, &request);
+  ranks->mpi.calls->gather_all(&ranks->mpi, from, (int)bytes, to, &request);
   pthread_mutex_unlock(&ranks->calling);
   hl_ranks_wait(ranks, request);
 }
 
 void hl_ranks_sum_counts(hl_ranks *ranks, uint64_t *counts, size_t count) {
-  void *request;
+  mpi_handle request;
   pthread_mutex_lock(&ranks->calling);
-  ranks->mpi.sum_all(OPEN_MPI_IN_PLACE, counts, (int)count, ranks->mpi.whole, ranks->mpi.sum,
-                     ranks->communicator, &request);
+  ranks->mpi.calls->sum_counts(&ranks->mpi, counts, (int)count, &request);
   pthread_mutex_unlock(&ranks->calling);
   hl_ranks_wait(ranks, request);
 }
@@ -61,10 +60,9 @@ void hl_ranks_sum_counts(hl_ranks *ranks, uint64_t *counts, size_t count) {
 void hl_ranks_tell(hl_ranks *ranks, void *bytes, size_t count, int root) {
   for (size_t done = 0; done < count; done += MOST_VALUES) {
     size_t some = count - done < MOST_VALUES ? count - done : MOST_VALUES;
-    void *request;
+    mpi_handle request;
     pthread_mutex_lock(&ranks->calling);
-    ranks->mpi.broadcast((unsigned char *)bytes + done, (int)some, ranks->mpi.byte, root, ranks->communicator,
-                         &request);
+    ranks->mpi.calls->broadcast(&ranks->mpi, (unsigned char *)bytes + done, (int)some, root, &request);
     pthread_mutex_unlock(&ranks->calling);
     hl_ranks_wait(ranks, request);
   }
@@ -81,11 +79,9 @@ void hl_ranks_complete(hl_ranks *ranks, void *elements, size_t count, size_t ele
 void hl_ranks_sum(hl_ranks *ranks, float *values, size_t count) {
   for (size_t done = 0; ranks != NULL && values != NULL && done < count; done += MOST_VALUES) {
     size_t some = count - done < MOST_VALUES ? count - done : MOST_VALUES;
-    bool root = ranks->rank == 0;
-    void *request;
+    mpi_handle request;
     pthread_mutex_lock(&ranks->calling);
-    ranks->mpi.sum_to(root ? OPEN_MPI_IN_PLACE : values + done, root ? values + done : NULL, (int)some,
-                      ranks->mpi.real, ranks->mpi.sum, 0, ranks->communicator, &request);
+    ranks->mpi.calls->sum_floats(&ranks->mpi, values + done, (int)some, ranks->rank == 0, &request);
     pthread_mutex_unlock(&ranks->calling);
     hl_ranks_wait(ranks, request);
   }
@@ -94,32 +90,31 @@ void hl_ranks_sum(hl_ranks *ranks, float *values, size_t count) {
 /* ---- joining and leaving ---- */
 
 static hl_status start(hl_ranks *ranks, bool alone, hl_error *error) {
-  open_mpi *mpi = &ranks->mpi;
-  int running = 0, given = 0, needed = alone ? OPEN_MPI_SERIALIZED : OPEN_MPI_MULTIPLE;
-  if (mpi->initialized(&running) != OPEN_MPI_SUCCESS)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "Open MPI does not tell whether it was started");
+  const mpi *mpi = &ranks->mpi;
+  int running = 0, given = 0, needed = alone ? MPI_SERIALIZED : MPI_MULTIPLE;
+  if (hl_mpi_initialized(mpi, &running) != 0)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s does not tell whether it was started", mpi->name);
   if (!running && !alone)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "hl_ranks_join: MPI is not started: call MPI_Init_thread()");
-  if (running) needed = OPEN_MPI_MULTIPLE; /* whoever started it may call it while a thread answers */
-  int result = running ? mpi->query_thread(&given) : mpi->init(NULL, NULL, needed, &given);
-  if (result != OPEN_MPI_SUCCESS) return hl_fail(error, HL_ERROR_UNSUPPORTED, "Open MPI does not start");
+  if (running) needed = MPI_MULTIPLE; /* whoever started it may call it while a thread answers */
+  int result = running ? hl_mpi_query_thread(mpi, &given) : hl_mpi_init_thread(mpi, needed, &given);
+  if (result != 0) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s does not start", mpi->name);
   ranks->started = !running;
   if (given < needed)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "hl_ranks_join: MPI was started without %s",
-                   needed == OPEN_MPI_MULTIPLE ? "MPI_THREAD_MULTIPLE" : "MPI_THREAD_SERIALIZED");
+                   needed == MPI_MULTIPLE ? "MPI_THREAD_MULTIPLE" : "MPI_THREAD_SERIALIZED");
   return HL_OK;
 }
 
 static hl_status join(hl_ranks *ranks, void *communicator, hl_error *error) {
-  open_mpi *mpi = &ranks->mpi;
-  hl_status status = hl_open_mpi_load(mpi, error);
+  mpi *mpi = &ranks->mpi;
+  hl_status status = hl_mpi_load(ranks->context->options.mpi, mpi, error);
   if (status == HL_OK) status = start(ranks, communicator == NULL, error);
   if (status != HL_OK) return status;
-  void *parent = communicator != NULL ? communicator : mpi->world;
-  if (mpi->duplicate(parent, &ranks->communicator) != OPEN_MPI_SUCCESS ||
-      mpi->rank(ranks->communicator, &ranks->rank) != OPEN_MPI_SUCCESS ||
-      mpi->size(ranks->communicator, &ranks->size) != OPEN_MPI_SUCCESS)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "Open MPI does not tell this process's rank");
+  mpi_handle parent = communicator != NULL ? mpi->calls->handle(communicator) : mpi->world;
+  if (mpi->calls->duplicate(mpi, parent) != 0 || mpi->calls->rank(mpi, &ranks->rank) != 0 ||
+      mpi->calls->size(mpi, &ranks->size) != 0)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s does not tell this process's rank", mpi->name);
   return HL_OK;
 }
 
@@ -141,7 +136,7 @@ hl_status hl_ranks_join(hl_context *context, void *communicator, hl_ranks **rank
     *ranks = made;
     return HL_OK;
   }
-  if (made->started) made->mpi.finalize();
+  if (made->started) hl_mpi_finalize(&made->mpi);
   release(made);
   return status;
 }
@@ -150,13 +145,13 @@ void hl_ranks_leave(hl_ranks *ranks) {
   if (ranks == NULL) return;
   if (ranks->context->ranks == ranks) ranks->context->ranks = NULL;
   hl_ranks_barrier(ranks);
-  ranks->mpi.free(&ranks->communicator);
-  if (ranks->started) ranks->mpi.finalize();
+  ranks->mpi.calls->free(&ranks->mpi);
+  if (ranks->started) hl_mpi_finalize(&ranks->mpi);
   release(ranks);
 }
 
 void hl_ranks_abort(hl_ranks *ranks, int exit_code) {
-  if (ranks != NULL) ranks->mpi.abort(ranks->communicator, exit_code);
+  if (ranks != NULL) ranks->mpi.calls->abort(&ranks->mpi, exit_code);
 }
 
 int hl_ranks_rank(const hl_ranks *ranks) { return ranks != NULL ? ranks->rank : 0; }

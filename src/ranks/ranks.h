@@ -13,12 +13,11 @@
 
 #include <halflight/ranks.h>
 
-#include "ranks/open_mpi.h"
+#include "ranks/mpi.h"
 
 struct hl_ranks {
   hl_context *context;
-  open_mpi mpi;
-  void *communicator; /* owned: a duplicate */
+  mpi mpi;
   int rank, size;
   bool started;                          /* MPI was started here, and is ended here */
   pthread_mutex_t calling;               /* held during each call of MPI */
@@ -28,7 +27,7 @@ struct hl_ranks {
 };
 
 /* Waits until a request is done, without keeping other threads from calling MPI. */
-void hl_ranks_wait(hl_ranks *ranks, void *request);
+void hl_ranks_wait(hl_ranks *ranks, mpi_handle request);
 
 /* Lets a moment pass between two questions, longer ones after many. */
 void hl_ranks_pause(int asked);

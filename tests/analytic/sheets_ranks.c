@@ -462,13 +462,22 @@ static void print_times(void) {
 }
 
 /* Joins all processes, or the communicator of a program that has started MPI itself. */
-static hl_status join(bool by_communicator, open_mpi *mpi, hl_error *error) {
+static hl_status join(bool by_communicator, mpi *mpi, hl_error *error) {
   int given = 0;
   if (!by_communicator) return hl_ranks_join(context, NULL, &ranks, error);
-  hl_status status = hl_open_mpi_load(mpi, error);
-  if (status == HL_OK && mpi->init(NULL, NULL, OPEN_MPI_MULTIPLE, &given) != OPEN_MPI_SUCCESS)
-    return HL_ERROR_IO;
-  return status == HL_OK ? hl_ranks_join(context, mpi->world, &ranks, error) : status;
+  hl_status status = hl_mpi_load(context->options.mpi, mpi, error);
+  if (status != HL_OK || hl_mpi_init_thread(mpi, MPI_MULTIPLE, &given) != 0) return HL_ERROR_IO;
+  context->options.mpi = HL_MPI_AUTO; /* the one that the process has */
+  void *world = mpi->calls == hl_mpich.calls ? (void *)(intptr_t)mpi->world.number : mpi->world.address;
+  return hl_ranks_join(context, world, &ranks, error);
+}
+
+/* A context that joins by the launcher's library. */
+static hl_status make_context(hl_error *error) {
+  hl_context_options options;
+  hl_context_options_defaults(&options);
+  options.mpi = getenv("OMPI_COMM_WORLD_SIZE") != NULL ? HL_MPI_OPEN_MPI : HL_MPI_MPICH;
+  return hl_context_create(&options, &context, error);
 }
 
 /* usage: sheets_ranks [TESTS [communicator]]: tests whose names match; --time: prints times. */
@@ -482,9 +491,9 @@ int main(int count, char **arguments) {
                                      cmocka_unit_test(test_coefficients_refused),
                                      cmocka_unit_test(test_refused)};
   hl_error error = {0};
-  open_mpi mpi;
+  mpi mpi;
   bool by_communicator = count > 2;
-  if (hl_context_create(NULL, &context, &error) != HL_OK || join(by_communicator, &mpi, &error) != HL_OK) {
+  if (make_context(&error) != HL_OK || join(by_communicator, &mpi, &error) != HL_OK) {
     fprintf(stderr, "%s\n", error.message);
     return 1;
   }
@@ -498,7 +507,7 @@ int main(int count, char **arguments) {
   int failed = cmocka_run_group_tests(tests, NULL, NULL);
   if (failed) hl_ranks_abort(ranks, 1); /* others may wait for what this rank has skipped */
   hl_ranks_leave(ranks);
-  if (by_communicator) mpi.finalize();
+  if (by_communicator) hl_mpi_finalize(&mpi);
   if (hl_context_memory_held(context) != 0) failed = 1;
   hl_context_destroy(context);
   return failed;
