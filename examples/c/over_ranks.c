@@ -3,8 +3,9 @@
  *     cc over_ranks.c -o over_ranks $(pkg-config --cflags --libs halflight) -lm
  *     mpirun -n 8 ./over_ranks picture.png
  *
- * A simulation that has started MPI itself (with MPI_THREAD_MULTIPLE) gives hl_ranks_join() its communicator,
- * with Open MPI an MPI_Comm as it is, in place of NULL, and calls MPI_Abort() in place of hl_ranks_abort().
+ * A simulation that has started MPI itself (with MPI_THREAD_MULTIPLE) gives hl_ranks_join() its communicator
+ * in place of NULL, as (void *)(intptr_t)comm, and calls MPI_Abort() in place of hl_ranks_abort(). It sets no
+ * library: the one that it is linked to is used.
  */
 #include <halflight/halflight.h>
 #include <math.h>
@@ -118,6 +119,7 @@ static hl_status make_picture(hl_context *context, hl_ranks *ranks, const hl_sce
 
 int main(int argc, char **argv) {
   hl_error error;
+  hl_context_options options;
   hl_context *context = NULL;
   hl_ranks *ranks = NULL;
   hl_volume *volume = NULL;
@@ -130,7 +132,9 @@ int main(int argc, char **argv) {
   }
   own.values = NULL;
   snprintf(error.message, sizeof error.message, "out of memory");
-  done = hl_context_create(NULL, &context, &error) == HL_OK &&
+  hl_context_options_defaults(&options);
+  if (getenv("PMI_SIZE") != NULL) options.mpi = HL_MPI_MPICH; /* MPICH's mpirun has set it, or a relative's */
+  done = hl_context_create(&options, &context, &error) == HL_OK &&
          hl_ranks_join(context, NULL, &ranks, &error) == HL_OK;
   if (done) choose_slices(ranks, &own);
   done = done && simulate(&own) && make_volume(ranks, &own, &volume, &error) == HL_OK &&

@@ -62,13 +62,12 @@ typedef enum hl_instruction_set {
   HL_INSTRUCTION_SET_AVX512_VBMI = 5 /* and VBMI, VBMI2 and VNNI: Ice Lake, Zen 4 and later */
 } hl_instruction_set;
 
-/* Libraries by which processes of an MPI job meet (halflight/ranks.h). */
+/* Libraries by which processes of an MPI job meet (halflight/ranks.h): Open MPI's of version 4 or 5,
+ * libmpi.so.40; MPICH's since 3.1, or another with its binary interface, libmpi.so.12 or libmpich.so.12. */
 typedef enum hl_mpi {
-  HL_MPI_AUTO =
-      0, /* the one that the process has loaded; else Open MPI's, or where that is missing MPICH's */
-  HL_MPI_OPEN_MPI = 1, /* version 4 or 5: libmpi.so.40 */
-  HL_MPI_MPICH =
-      2 /* version 3.1 or later, or another with its binary interface: libmpi.so.12, libmpich.so.12 */
+  HL_MPI_AUTO = 0, /* the one that the process has loaded; else Open MPI's; where that is missing MPICH's */
+  HL_MPI_OPEN_MPI = 1,
+  HL_MPI_MPICH = 2
 } hl_mpi;
 
 /* All callbacks may be null (a default is used) and receive user_data. They may be called

@@ -4,10 +4,11 @@
  * others for what it samples of theirs. Such a volume renders like any other, with the same bytes, on every
  * rank; what a rank keeps of the others' blocks counts towards its context's memory limit.
  *
- * Open MPI's library (version 4 or 5) is loaded when hl_ranks_join() is called; neither its headers nor its
- * library are needed before. The functions are collective where they say so: every rank calls them, in the
- * same order. A rank whose collective call, or whose call with a volume over ranks, fails should end the job
- * (hl_ranks_abort() or MPI_Abort()): the others may wait for it. MPI ends the job where a process dies. */
+ * Open MPI's library (version 4 or 5) or MPICH's (3.1 or later, or one with its binary interface, as Intel
+ * MPI and MVAPICH) is loaded when hl_ranks_join() is called; neither headers nor a library are needed before.
+ * The functions are collective where they say so: every rank calls them, in the same order. A rank whose
+ * collective call, or whose call with a volume over ranks, fails should end the job (hl_ranks_abort() or
+ * MPI_Abort()): the others may wait for it. MPI ends the job where a process dies. */
 #ifndef HALFLIGHT_RANKS_H
 #define HALFLIGHT_RANKS_H
 
@@ -20,9 +21,11 @@ extern "C" {
 typedef struct hl_ranks hl_ranks;
 
 /* Joins the processes of a communicator. Collective.
- * communicator: of Open MPI, an MPI_Comm (a pointer there); a duplicate of it is used. MPI must have been
- * started with MPI_THREAD_MULTIPLE: a thread of the library answers the other ranks while the caller does
- * what it likes. Null: the whole job; MPI is started here, if it is not yet, and ended by hl_ranks_leave().
+ * communicator: an MPI_Comm of the library that the process has loaded, as (void *)(intptr_t)comm: a pointer
+ * in Open MPI, a number in MPICH; a duplicate of it is used. MPI must have been started with
+ * MPI_THREAD_MULTIPLE: a thread of the library answers the other ranks while the caller does what it likes.
+ * Null: the whole job; MPI is started here, if it is not yet, and ended by hl_ranks_leave(). Where the
+ * process has no library of MPI, `mpi` of hl_context_options says which one is loaded.
  * *ranks: owned by the caller; release it with hl_ranks_leave() before the context. */
 HL_API HL_WARN_UNUSED hl_status hl_ranks_join(hl_context *context, void *communicator, hl_ranks **ranks,
                                               hl_error *error);

@@ -37,7 +37,7 @@ int ranks_begin(cli_host *host, const char *option, hl_ranks **ranks) {
     return fail(EXIT_CODE_FAILURE, "--%s: %s", option, error.message);
   if (atoi(found.size) != hl_ranks_size(*ranks))
     return fail(EXIT_CODE_FAILURE,
-                "--%s: %s is %s, and the MPI library sees %d processes: it is not the launcher's", option,
+                "--%s: %s is %s, but MPI's processes are %d: its library is not the launcher's", option,
                 found.size_name, found.size, hl_ranks_size(*ranks));
   host->quiet = host->quiet || hl_ranks_rank(*ranks) > 0;
   host->bar = host->bar && !host->quiet;

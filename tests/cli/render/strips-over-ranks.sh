@@ -1,7 +1,7 @@
-# Processes of Open MPI's launcher make one picture together: its bytes. One that fails ends all, and no picture is left.
-mpi=${mpi-open_mpi}
+# Processes of an MPI launcher make one picture together: its bytes. One that fails ends all, and no picture is left.
+mpi=${mpi-open_mpi} killed=${killed-process rank 1} # and what the launcher says of a killed process
 run() { "$SOURCE/tests/over_ranks.sh" $mpi "$@" >mpirun.txt 2>&1; }
-run 1 true || { cat mpirun.txt; exit 77; }
+run 1 true || [ $? != 77 ] || { cat mpirun.txt; exit 77; }
 halflight make rings --size 24 --quiet
 halflight render rings.nrrd --size 60x100 --sheet-spacing 2 --quiet -o whole.npy
 for ranks in 1 4 7; do
@@ -19,7 +19,12 @@ END
 ! run 4 sh failing.sh
 grep -o -m 1 "rank 2 of 4 has failed and ends them all" mpirun.txt
 ! run 4 sh killed.sh
-grep -o -m 1 "process rank 1" mpirun.txt
+grep -o -m 1 "$killed" mpirun.txt
 test ! -e shared.npy && echo "no picture"
 halflight render rings.nrrd --strips-over-ranks --layers -o x.exr 2>&1 || echo $?
 env -u OMPI_COMM_WORLD_SIZE -u PMI_SIZE "$HALFLIGHT" render rings.nrrd --strips-over-ranks -o x.png 2>&1 || echo $?
+# A process whose library does not know the other processes that the launcher speaks of.
+variable=PMI
+[ $mpi = mpich ] || variable=OMPI_COMM_WORLD
+env ${variable}_RANK=0 ${variable}_SIZE=3 "$HALFLIGHT" render rings.nrrd --strips-over-ranks -o x.png >alone.txt 2>&1 || echo $?
+grep -o -m 1 "SIZE is 3, but MPI's processes are 1: its library is not the launcher's" alone.txt

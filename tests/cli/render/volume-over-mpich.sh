@@ -1,3 +1,3 @@
-# The same by MPICH.
-mpi=mpich
+# The same by MPICH, whose launcher names a killed process by its number and machine.
+mpi=mpich killed="EXIT CODE: 9"
 . "$SOURCE/tests/cli/render/volume-over-ranks.sh"

@@ -1,0 +1,3 @@
+# The same by MPICH.
+mpi=mpich
+. "$SOURCE/tests/cli/animate/mpirun.sh"
