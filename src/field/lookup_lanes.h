@@ -77,28 +77,20 @@ LANES_INLINE void look_up_sky(const sky_light *sky, lanes3 position, lanes surfa
   }
 }
 
-/* The sum over harmonics of light times the harmonic towards d, times a factor for each degree. */
-LANES_INLINE lanes sum_harmonics(const lanes *light, lanes3 d, float degree_0, float degree_1,
-                                 float degree_2) {
-  lanes sum = light[0] * (float)HARMONIC_0 * degree_0;
-  lanes first = light[1] * d.x + light[2] * d.y + light[3] * d.z;
-  lanes second = (light[4] * d.x * d.y + light[5] * d.y * d.z + light[6] * d.z * d.x) * (float)HARMONIC_2 +
-                 light[7] * lanes_line(d.z * d.z, 3.0f, -1.0f) * (float)HARMONIC_20 +
-                 light[8] * (d.x * d.x - d.y * d.y) * (float)HARMONIC_22;
-  sum = lanes_add_scaled(sum, first, (float)HARMONIC_1 * degree_1);
-  return lanes_max(lanes_add_scaled(sum, second, degree_2), lanes_set(0));
+/* The second degree of the sum over harmonics of light times the harmonic towards d. */
+LANES_INLINE lanes second_degree(const lanes *light, lanes3 d) {
+  return (light[4] * d.x * d.y + light[5] * d.y * d.z + light[6] * d.z * d.x) * (float)HARMONIC_2 +
+         light[7] * lanes_line(d.z * d.z, 3.0f, -1.0f) * (float)HARMONIC_20 +
+         light[8] * (d.x * d.x - d.y * d.y) * (float)HARMONIC_22;
 }
 
 /* 1 / pi times the integral of light and cosine. The cosine's factors are 1, 2/3 and 1/4 (Ramamoorthi and
  * Hanrahan 2001, divided by pi). */
 LANES_INLINE lanes light_of_surface(const lanes *light, lanes3 normal) {
-  return sum_harmonics(light, normal, 1, 2.0f / 3, 0.25f);
-}
-
-/* The mean of light and Henyey and Greenstein's phase function, whose factors are g^l (derived from its
- * series in Legendre polynomials). */
-LANES_INLINE lanes light_of_medium(const lanes *light, lanes3 onwards, float g) {
-  return sum_harmonics(light, onwards, 1, g, g * g);
+  lanes sum = light[0] * (float)HARMONIC_0;
+  lanes first = light[1] * normal.x + light[2] * normal.y + light[3] * normal.z;
+  sum = lanes_add_scaled(sum, first, (float)HARMONIC_1 * (2.0f / 3));
+  return lanes_max(lanes_add_scaled(sum, second_degree(light, normal), 0.25f), lanes_set(0));
 }
 
 #endif

@@ -33,7 +33,24 @@ LANES_INLINE phase_angle phase_angle_at(float g, lanes turn) {
   return angle;
 }
 
-/* The row of a table, between two rows, for a cap seen along `way`, not of unit length; inverse: 1 over the
+/* The row of a table, between two rows. ratio: the cap's s^2 over the least one. */
+LANES_INLINE lanes row_of_ratio(const phase_table *table, lanes ratio) {
+  lanes row = lanes_log2(lanes_max(ratio, lanes_set(1.0f))) * table->rows_per_log2;
+  return lanes_clamp(row, 0, PHASE_CAPS - 1 - 1e-3f);
+}
+
+/* The mean over a cap: row of its size, angle to its middle. */
+LANES_INLINE lanes mean_in_table(const phase_table *table, lanes row, const phase_angle *angle) {
+  lanes square[4];
+  lanes_int first = lanes_truncate(row);
+  lanes_gather_quads(&table->caps[0][0][0], (first * PHASE_COLUMNS + angle->column) * 2, square);
+  lanes between = row - lanes_from_int(first);
+  lanes near = lanes_fma(square[1] - square[0], between, square[0]),
+        far = lanes_fma(square[3] - square[2], between, square[2]);
+  return lanes_fma(far - near, angle->fraction, near) * angle->phase;
+}
+
+/* The row for a cap seen along `way`, not of unit length; inverse: 1 over the
  * square of its length. */
 LANES_INLINE lanes row_of_cap(const phase_table *table, float size, const light_cap *cap, lanes3 way,
                               lanes inverse) {
@@ -44,8 +61,7 @@ LANES_INLINE lanes row_of_cap(const phase_table *table, float size, const light_
   lanes h = lanes_sqrt(lanes_max(lanes_fma(wide, inverse, lanes_set(1.0f)), lanes_set(1.0f)));
   float most = 1 / ((1 - size) * (1 - size)); /* the cap's s^2 over the least one, by c = 4 / (1 + h) - 1 */
   lanes ratio = lanes_line(1.0f / (h + 1.0f), -8 * size * most, (1 + size) * (1 + size) * most);
-  lanes row = lanes_log2(lanes_max(ratio, lanes_set(1.0f))) * table->rows_per_log2;
-  return lanes_clamp(row, 0, PHASE_CAPS - 1 - 1e-3f);
+  return row_of_ratio(table, ratio);
 }
 
 /* The mean over one cap. */
@@ -54,14 +70,9 @@ LANES_INLINE lanes phase_of_cap(const phase_table *table, float g, const light_c
   const float least = LEAST_LIGHT_DISTANCE * LEAST_LIGHT_DISTANCE;
   lanes3 way = add_scaled3(set3(cap->middle), geometry->position, lanes_set(-1.0f));
   lanes inverse = 1.0f / lanes_max(dot3(way, way), lanes_set(least));
-  lanes row = row_of_cap(table, fabsf(g), cap, way, inverse), square[4];
+  lanes row = row_of_cap(table, fabsf(g), cap, way, inverse);
   phase_angle angle = phase_angle_at(g, dot3(geometry->towards_eye, way) * lanes_sqrt(inverse));
-  lanes_int first = lanes_truncate(row);
-  lanes_gather_quads(&table->caps[0][0][0], (first * PHASE_COLUMNS + angle.column) * 2, square);
-  lanes between = row - lanes_from_int(first);
-  lanes near = lanes_fma(square[1] - square[0], between, square[0]),
-        far = lanes_fma(square[3] - square[2], between, square[2]);
-  return lanes_fma(far - near, angle.fraction, near) * angle.phase;
+  return mean_in_table(table, row, &angle);
 }
 
 /* The mean over a light. towards: unit, to its middle; table: of g, null where no light is wide. */

@@ -77,10 +77,17 @@ static bool has_wide_light(const hl_scene_description *scene, bool near) {
   return found;
 }
 
+/* Caps of any size are needed for lights that are wide and near, and for the sky. */
+static bool needs_caps(const hl_scene_description *scene) {
+  return scene->sky.type != HL_SKY_NONE || has_wide_light(scene, true);
+}
+
 /* A table is needed for g, and, where light is scattered again, for g^2. */
 static size_t wanted_tables(const hl_scene_description *scene) {
   size_t count = 0;
-  if (scene->render.compositing != HL_COMPOSITING_LIGHT || !has_wide_light(scene, false)) return 0;
+  if (scene->render.compositing != HL_COMPOSITING_LIGHT ||
+      (scene->sky.type == HL_SKY_NONE && !has_wide_light(scene, false)))
+    return 0;
   for (size_t v = 0; v < scene->volume_count; v++)
     if (scatters_unevenly(&scene->volumes[v])) count += scene->volumes[v].multiple_scattering ? 2 : 1;
   return count;
@@ -88,7 +95,7 @@ static size_t wanted_tables(const hl_scene_description *scene) {
 
 /* Numbers of one table: rows of parallel lights, then caps. */
 static size_t table_size(const hl_scene_description *scene) {
-  return PHASE_COLUMNS * (scene->light_count + (has_wide_light(scene, true) ? 2 * PHASE_CAPS : 0));
+  return PHASE_COLUMNS * (scene->light_count + (needs_caps(scene) ? 2 * PHASE_CAPS : 0));
 }
 
 uint64_t hl_phase_bytes(const hl_scene_description *scene) {
@@ -110,6 +117,7 @@ const phase_table *hl_phase_table(const phase_tables *tables, double anisotropy)
 
 static void write_key(const void *data, hl_key *key) {
   const hl_scene_description *scene = data;
+  hl_key_add_whole(key, needs_caps(scene));
   for (size_t i = 0; i < scene->light_count; i++) {
     const hl_light *light = &scene->lights[i];
     bool parallel = light->type == HL_LIGHT_DIRECTIONAL;
@@ -194,7 +202,7 @@ hl_status hl_phase_update(hl_context *context, hl_pool *pool, const hl_scene_des
     add_table(scene, volume->anisotropy, tables);
     if (volume->multiple_scattering) add_table(scene, volume->anisotropy * volume->anisotropy, tables);
   }
-  phase_job job = {.scene = scene, .tables = tables, .with_caps = has_wide_light(scene, true)};
+  phase_job job = {.scene = scene, .tables = tables, .with_caps = needs_caps(scene)};
   place_rings(&job.rings);
   size_t rows = scene->light_count + (job.with_caps ? PHASE_CAPS : 0);
   hl_pool_run(pool, tables->count * rows, fill_row_of_table, &job);

@@ -1,4 +1,5 @@
-/* render/phase_table.h - Henyey and Greenstein's phase function, its mean over wide lights.
+/* render/phase_table.h - Henyey and Greenstein's phase function, its mean over wide lights and parts of a
+ * sky.
  *
  * A table for each anisotropy holds the mean of p over round caps of directions, over p in the direction of
  * the cap's middle: a row for each size of a cap, a column for each angle to its middle. Angles and sizes are
@@ -22,8 +23,8 @@ enum { PHASE_COLUMNS = 512, PHASE_CAPS = 64 };
 typedef struct phase_table {
   double g;                         /* 0 < g < 1 */
   float rows_per_log2;              /* of caps, by the binary logarithm of s^2 */
-  float (*caps)[PHASE_COLUMNS][2];  /* [PHASE_CAPS]; [0] of a row, [1] of the next one; only where some light
-                                       is  wide and not parallel */
+  float (*caps)[PHASE_COLUMNS][2];  /* [PHASE_CAPS]; [0] of a row, [1] of the next one; only where there
+                                       is a sky, or some light is wide and not parallel */
   float (*parallel)[PHASE_COLUMNS]; /* [lights]; rows of lights that are not wide and parallel are not set */
 } phase_table;
 

@@ -8,11 +8,16 @@
 #ifndef HL_RENDER_SKY_LANES_H
 #define HL_RENDER_SKY_LANES_H
 
-#include "field/lookup_lanes.h"
 #include "render/light_depth_lanes.h"
+#include "render/sky_phase_lanes.h"
 
 /* The two nodes of Gauss's rule for the weight mu: 1 / mu and the weight. */
 static const float COSINE_RATE[2] = {2.8165f, 1.18350f}, COSINE_WEIGHT[2] = {0.363917f, 0.636083f};
+
+/* Light reaches a cell without what the cell itself takes, of which it crosses half on its way to a medium's
+ * sample: of its directions in a slice (field/sky_lanes.h) half of sqrt(1 + u^2 + v^2) edges. The mean over
+ * all directions is 3 / (4 pi) times the integral of 1 / (1 + u^2 + v^2) over -1 < u, v < 1 (derived). */
+static const float HALF_CELL = 0.6107f;
 
 /* Optical depths along the normal, of the matter within `lift` of where the eye's ray enters the slab's
  * matter, and what they gain until it leaves it. */
@@ -89,7 +94,7 @@ LANES_INLINE color_lanes sky_of_volume(const shade_job *job, const block_slab *s
   const shade_volume *volume = d->patch->volume;
   lanes medium = 1.0f - d->surface, own = lanes_set(1.0f), haze = lanes_set(1.0f);
   lanes3 onwards = scale3(slab->geometry.towards_eye, lanes_set(-1.0f));
-  lanes lift = d->surface * sky->lift, in_cell = d->sums.extinction * (0.5f * sky->cell) * medium;
+  lanes lift = d->surface * sky->lift, in_cell = d->sums.extinction * (HALF_CELL * sky->cell) * medium;
   sky_harmonics light;
   own_depths depths;
   if (volume->receives_shadow) {
@@ -111,7 +116,7 @@ LANES_INLINE color_lanes sky_of_volume(const shade_job *job, const block_slab *s
       haze = exp_of_depth(in_cell * cast);
     }
     parts.surface[c] = light_of_surface(of, d->normal) * own * (volume->diffuse * d->surface);
-    parts.medium[c] = light_of_medium(of, onwards, volume->anisotropy) * haze;
+    parts.medium[c] = light_of_medium(volume->phase_once, volume->anisotropy, of, onwards) * haze;
     parts.mean[c] = of[0] * (float)HARMONIC_0 * haze;
   }
   color_lanes sent;

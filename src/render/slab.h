@@ -45,7 +45,8 @@ typedef struct shade_volume {
   const float (*shown)[4]; /* in a maximum projection: SHOWN_FROM and so on, per table entry; else null */
   int rank;                /* among the visible volumes */
   float anisotropy;        /* g of the phase function */
-  const phase_table *phase_once, *phase_twice; /* of g and of g^2; null where no light is wide */
+  const phase_table *phase_once, *phase_twice; /* of g and of g^2; null where g is 0, or no light is wide
+                                                  and there is no sky */
   voxel_colors colors;                         /* multiply the transfer function's */
   float albedo[3];                             /* of the medium, times its colour */
   int absorbs;                                 /* not all of the albedo is 1 */

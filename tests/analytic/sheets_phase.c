@@ -1,5 +1,5 @@
-/* analytic/sheets_phase.c - media before wide lights: the mean of Henyey and Greenstein's phase function over
- * the light, in the renderer and in the reference. */
+/* analytic/sheets_phase.c - media before wide lights and skies: the mean of Henyey and Greenstein's phase
+ * function over the light, in the renderer and in the reference. */
 #include <stdlib.h>
 
 #include "../asserts.h"
@@ -182,6 +182,26 @@ static void test_points_stay_points(void **state) {
   assert_memory_equal(pixels[0], pixels[1], sizeof pixels[0]);
 }
 
+/* ---- the sky ---- */
+
+static void add_half_sky(stage *set, int k) {
+  set->scene.sky.type = HL_SKY_UNIFORM;
+  set->scene.sky.hemisphere = 1;
+  store(set->scene.sky.up, at_angle(k));
+}
+
+/* Half of an even sky: the mean of p over it, also where a lobe points away from it, where it is a twentieth
+ * of what it is towards the middle. The sky is cut into squares, so that p is off by at most these fractions.
+ */
+static void test_mean_over_half_a_sky(void **state) {
+  (void)state;
+  static const double anisotropies[] = {0.5, 0.8, -0.6}, bars[] = {0.015, 0.045, 0.02};
+  for (int k = 0; k < 3 * ANGLES; k++) {
+    double g = anisotropies[k % 3], mean = mean_over_cone(g, at_angle(k / 3), HL_PI / 2);
+    assert_near(measure(add_half_sky, k / 3, g, false) / mean, 1, bars[k % 3]);
+  }
+}
+
 /* ---- scattered again ---- */
 
 enum { NARROW = 48 };
@@ -211,9 +231,8 @@ static void test_scattered_again(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_mean_over_a_cone),
-      cmocka_unit_test(test_mean_over_near_lights),
-      cmocka_unit_test(test_points_stay_points),
+      cmocka_unit_test(test_mean_over_a_cone),   cmocka_unit_test(test_mean_over_near_lights),
+      cmocka_unit_test(test_points_stay_points), cmocka_unit_test(test_mean_over_half_a_sky),
       cmocka_unit_test(test_scattered_again),
   };
   return cmocka_run_group_tests_name("sheets_phase", tests, NULL, NULL);

@@ -68,7 +68,7 @@ static void test_slab(void **state) {
       sum += weight * mean;
       weights += weight;
     }
-    assert_near(middle(pixels, c), sum / weights, 0.025);
+    assert_near(middle(pixels, c), sum / weights, 0.015);
   }
   stage_close(&set);
 }

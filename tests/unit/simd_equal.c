@@ -955,7 +955,7 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    NULL,
                                    v,
                                    round % 3 == 1 ? -0.7f : round % 3 * 0.4f,
-                                   round / 3 % 4 ? &s->phase : NULL,
+                                   round / 3 % 4 || round % 3 != 1 ? &s->phase : NULL, /* a sky needs it */
                                    round / 3 % 4 ? &s->phase : NULL,
                                    (round + v) % 3 == 1 ? colors_bench : (voxel_colors){.voxels = NULL},
                                    {0.9f, 0.8f, 1},
