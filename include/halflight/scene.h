@@ -254,6 +254,7 @@ typedef struct hl_scene_mesh {
   int two_sided; /* non-zero: the side that faces away from the eye is lit like the front */
   int visible, casts_shadow, receives_shadow;
   double attenuation_color[3]; /* the fractions of `opacity` that it takes of red, green and blue light */
+  int cut;                     /* non-zero: the scene's cuts cut it */
 } hl_scene_mesh;
 
 typedef enum hl_soft_method { HL_SOFT_CASCADE = 0, HL_SOFT_PAPER = 1, HL_SOFT_SUBLIGHTS = 2 } hl_soft_method;
@@ -319,8 +320,9 @@ typedef struct hl_scene_description {
   double exposure;         /* stops: a PNG shows the volumes' light times 2^exposure; 0 by default */
   const hl_scene_mesh *meshes;
   size_t mesh_count;
-  const hl_cut *cuts; /* [cut_count]; cut out of all volumes, with each one's own cut_shading and
-                         cut_casts_shadow; in the world, whatever `world` says; and out of all meshes */
+  const hl_cut
+      *cuts; /* [cut_count]; cut out of all volumes, with each one's own cut_shading and
+                cut_casts_shadow; in the world, whatever `world` says; and out of the meshes with `cut` */
   size_t cut_count;
   hl_tone tone; /* how a PNG shows light that is brighter than white; default HL_TONE_CLIP */
   hl_sky sky;
@@ -465,7 +467,7 @@ HL_API HL_WARN_UNUSED hl_status hl_camera_frame_view(const hl_scene_description 
 /* The usual size of a floor. */
 #define HL_FLOOR_SIZE 3.0
 
-/* A mesh's defaults, but those of a floor: matt and grey. */
+/* A mesh's defaults, but those of a floor: matt, grey and whole: the scene's cuts do not cut it. */
 HL_API void hl_scene_floor_defaults(hl_scene_mesh *floor);
 
 /* Makes the triangles of a floor: a square below all that is seen, which lies at a right angle to `up` and

@@ -108,6 +108,8 @@ class MeshSettings(TypedDict, total=False):
         The mesh is darkened by shadows. Default: True.
     attenuation_color : Sequence[float]
         The fractions of the opacity that the mesh takes of red, green and blue light. Default: [1, 1, 1].
+    cut : bool
+        The scene's `cuts` cut the mesh, too; a floor's default is false. Default: True.
     """
 
     scale: float
@@ -121,6 +123,7 @@ class MeshSettings(TypedDict, total=False):
     casts_shadow: bool
     receives_shadow: bool
     attenuation_color: Sequence[float]
+    cut: bool
 
 
 class SkySettings(TypedDict, total=False):

@@ -106,7 +106,8 @@ class Mesh:
 
     @classmethod
     def floor(cls, scene: Any, size: float = 3, **look: Unpack[MeshLook]) -> Mesh:
-        """A square below all that a scene shows, `size` times as wide as what stands on it; matt and grey.
+        """A square below all that a scene shows, `size` times as wide as what stands on it; matt, grey and
+        whole where the scene is cut (`cut=True`: cut, too).
 
         Parameters
         ----------
@@ -121,7 +122,7 @@ class Mesh:
         call(lib.hl_scene_make_floor, context, lib.hl_scene_describe(scene._handle), ffi.NULL, size, place)
         made = cls.__new__(cls)
         made._file, made._handle = None, ffi.gc(place[0], lib.hl_mesh_release)
-        made.look = {"color": 0.5, "specular": 0.0, **look}
+        made.look = {"color": 0.5, "specular": 0.0, "cut": False, **look}
         return made
 
     def replace(self, **look: Unpack[MeshLook]) -> Mesh:

@@ -234,9 +234,11 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                                 "(default phong;\nof smoke none)",
                         .setting_kind = HL_SETTINGS_VOLUME,
                         .setting = "shading"},
-    [RENDER_FLOOR] = {.name = "floor",
-                      .kind = OPTION_SWITCH,
-                      .help = "a floor below what is seen, three times as wide,\nwhich receives its shadow"},
+    [RENDER_FLOOR] =
+        {.name = "floor",
+         .kind = OPTION_SWITCH,
+         .help =
+             "a floor below what is seen, three times as wide,\nwhich receives its shadow and is not cut"},
 
     [RENDER_LABELS] = {.name = "labels",
                        .kind = OPTION_TEXT,

@@ -46,8 +46,8 @@ bool hl_reference_left(const reference_volume *volume, vec3 point) {
   return true;
 }
 
-bool hl_reference_mesh_left(const hl_scene_description *scene, vec3 point) {
-  for (size_t i = 0; i < scene->cut_count; i++) {
+bool hl_reference_mesh_left(const hl_scene_description *scene, const hl_scene_mesh *mesh, vec3 point) {
+  for (size_t i = 0; mesh->cut && i < scene->cut_count; i++) {
     bool inside = height_over(&scene->cuts[i], point).over < 0;
     if (inside != (scene->cuts[i].keep == HL_CUT_KEEP_INSIDE)) return false;
   }

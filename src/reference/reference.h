@@ -224,8 +224,8 @@ void hl_reference_volume_release(hl_context *context, reference_volume *volume);
 
 /* Whether the cuts of a volume leave a point of index space. */
 bool hl_reference_left(const reference_volume *volume, vec3 point);
-/* Whether the scene's own cuts leave a point of the world: they cut meshes. */
-bool hl_reference_mesh_left(const hl_scene_description *scene, vec3 point);
+/* Whether the scene's own cuts leave a point of a mesh, in the world. */
+bool hl_reference_mesh_left(const hl_scene_description *scene, const hl_scene_mesh *mesh, vec3 point);
 /* The least distance above `after` at which a ray of index space crosses the face of a cut; infinite: none.
  */
 double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 direction, double after);

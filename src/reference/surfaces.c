@@ -189,12 +189,12 @@ static double meet(const hl_scene_description *scene, const reference_triangle *
                    const reference_ray *ray, double after, double weight[3]) {
   if (triangle->radius == 0) {
     double at = meet_triangle(triangle, ray, weight);
-    return hl_reference_mesh_left(scene, along(ray, at)) ? at : INFINITY;
+    return hl_reference_mesh_left(scene, triangle->mesh, along(ray, at)) ? at : INFINITY;
   }
   double at = meet_sphere(triangle, ray, after);
-  if (hl_reference_mesh_left(scene, along(ray, at))) return at;
+  if (hl_reference_mesh_left(scene, triangle->mesh, along(ray, at))) return at;
   double second = meet_sphere(triangle, ray, at);
-  return second > at && hl_reference_mesh_left(scene, along(ray, second)) ? second : INFINITY;
+  return second > at && hl_reference_mesh_left(scene, triangle->mesh, along(ray, second)) ? second : INFINITY;
 }
 
 static bool meets_box(const reference_node *node, const reference_ray *ray, double nearest, double farthest) {

@@ -37,6 +37,7 @@ void hl_scene_floor_defaults(hl_scene_mesh *floor) {
   hl_scene_mesh_defaults(floor);
   for (int c = 0; c < 3; c++) floor->color[c] = 0.5;
   floor->material.specular = 0;
+  floor->cut = 0;
 }
 
 void hl_scene_mesh_defaults(hl_scene_mesh *mesh) {

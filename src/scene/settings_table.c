@@ -269,7 +269,9 @@ static const hl_setting mesh_rows[] = {
     {.key = "attenuation_color", FIELD(hl_scene_mesh, attenuation_color), .type = HL_SETTING_COLOR,
      .unit = "", .high = 1, .standard = {1, 1, 1},
      .sentence = "The fractions of the opacity that the mesh takes of red, green and blue light.",
-     .mend = "give fractions from 0 to 1, 1 for as much as the opacity says"}};
+     .mend = "give fractions from 0 to 1, 1 for as much as the opacity says"},
+    {.key = "cut", FIELD(hl_scene_mesh, cut), A_FLAG, .standard = {1},
+     .sentence = "The scene's `cuts` cut the mesh, too; a floor's default is false."}};
 
 static const hl_setting iso_rows[] = {
     {.key = "value", FIELD(hl_isosurface, value), .type = HL_SETTING_NUMBER, .unit = "data units",

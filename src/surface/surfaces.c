@@ -178,7 +178,7 @@ static hl_status update_cuts(hl_context *context, const hl_scene_description *sc
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     hl_surface_corners(&scene->meshes[m], 0, corner);
     for (int i = 0; i < 8; i++) vec3_bound(corner[i], low, high);
-    kept->meshes[m].is_cut = !scene->meshes[m].mesh->is_cut && kept->cut_count > 0 &&
+    kept->meshes[m].is_cut = scene->meshes[m].cut && !scene->meshes[m].mesh->is_cut && kept->cut_count > 0 &&
                              !hl_cuts_leave_box(kept->cuts, kept->cut_count, low, high);
   }
   return HL_OK;

@@ -218,6 +218,46 @@ static void test_light_of_fields(void **state) {
   }
 }
 
+/* ---- what stays whole ---- */
+
+/* Two boards over a floor, all cut in half by one plane: the first is not to be cut, and a floor is not by
+ * itself. By the sheets and by the reference: the eye sees the floor everywhere, and the boards, which it
+ * does not see, shade it, one with its whole area and one with half of it. */
+static void test_whole_meshes(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  static const hl_cut plane = {.type = HL_CUT_PLANE, .normal = {1, 0, 0}};
+  hl_reference_options options;
+  hl_reference_options_defaults(&options);
+  mesh_stage all;
+  mesh_stage_open(&all, SIDE, 32);
+  for (int i = 0; i < 2; i++) {
+    hl_scene_mesh *board = mesh_stage_add(
+        &all, stage_make_quad(&all.set, (vec3){0, i == 0 ? 8 : -8, 0}, (vec3){10, 0, 0}, (vec3){0, 4, 0}));
+    board->cut = i;
+    board->visible = 0;
+  }
+  hl_scene_mesh *floor = mesh_stage_add(
+      &all, stage_make_quad(&all.set, (vec3){0, 0, -12}, (vec3){20, 0, 0}, (vec3){0, 20, 0}));
+  hl_mesh *square = floor->mesh;
+  hl_scene_floor_defaults(floor);
+  floor->mesh = square;
+  mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, (vec3){0, 0, -1}), 0, 1);
+  cut(&all, &plane, 1);
+  for (int by_reference = 0; by_reference < 2; by_reference++) {
+    double dark[2] = {0, 0}, lit = 0.5 * floor->material.diffuse;
+    if (by_reference) stage_render(&all.set, &options, pixels);
+    else stage_render_sheets(&all.set, pixels);
+    for (int i = 0; i < PIXELS; i++) {
+      assert_near((double)pixels[4 * i + 3], 1, 1e-5);
+      dark[pixel_y(i) < 0] += (1 - (double)pixels[4 * i] / lit) * PIXEL_AREA;
+    }
+    assert_near(dark[0], 20 * 8, 3);
+    assert_near(dark[1], 10 * 8, 3);
+  }
+  mesh_stage_close(&all);
+}
+
 /* ---- the reference, and invariance ---- */
 
 static const hl_cut CORNER[] = {{.type = HL_CUT_BOX, .min = {-1, -40, 0.3}, .max = {40, 0.7, 40}},
@@ -262,8 +302,8 @@ static void test_against_the_reference(void **state) {
   mesh_stage_close(&all);
 }
 
-/* One renderer draws the scene whole, cut, cut elsewhere and whole again, by one thread or seven: each
- * picture is that of a new renderer. */
+/* One renderer draws the scene whole, cut, cut elsewhere, with one mesh that is not to be cut, and whole
+ * again, by one thread or seven: each picture is that of a new renderer. */
 static void test_kept_between_frames(void **state) {
   (void)state;
   static float fresh[PIXELS * 4], kept[PIXELS * 4], before[PIXELS * 4];
@@ -272,8 +312,9 @@ static void test_kept_between_frames(void **state) {
   open_scenery(&all, SIDE / 2);
   all.set.scene.sky.type = HL_SKY_UNIFORM;
   assert_int_equal(hl_renderer_create(all.set.context, &renderer, NULL), HL_OK);
-  for (int step = 0; step < 4; step++) {
-    cut(&all, step == 2 ? CORNER + 1 : CORNER, step % 3 == 0 ? 0 : 2);
+  for (int step = 0; step < 5; step++) {
+    cut(&all, step == 1 ? CORNER : CORNER + 1, step % 4 == 0 ? 0 : 2);
+    all.meshes[1].cut = step != 3;
     all.set.scene.render.threads = step % 2 ? 7 : 1;
     stage_render_sheets(&all.set, fresh);
     all.set.scene.render.threads = 2;
@@ -288,10 +329,10 @@ static void test_kept_between_frames(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_half_a_ball),         cmocka_unit_test(test_holes),
-      cmocka_unit_test(test_inside_of_a_bowl),    cmocka_unit_test(test_shadow_of_half_a_ball),
-      cmocka_unit_test(test_light_of_fields),     cmocka_unit_test(test_against_the_reference),
-      cmocka_unit_test(test_kept_between_frames),
+      cmocka_unit_test(test_half_a_ball),           cmocka_unit_test(test_holes),
+      cmocka_unit_test(test_inside_of_a_bowl),      cmocka_unit_test(test_shadow_of_half_a_ball),
+      cmocka_unit_test(test_light_of_fields),       cmocka_unit_test(test_whole_meshes),
+      cmocka_unit_test(test_against_the_reference), cmocka_unit_test(test_kept_between_frames),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

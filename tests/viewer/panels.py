@@ -301,20 +301,20 @@ def cuts(browser):
 
 def scene_cuts(browser):
     """Cuts of a scene of two volumes: made, moved, switched off, removed; the panel is there for several volumes alone."""
-    title = "Cuts of all volumes"
+    title = "Cuts of the scene"
 
     def now():
         return scene_of(browser).get("cuts")
 
     open_section(browser, title)
-    changes(browser, "a cut of all", lambda: press_named(browser, "Add: cut of all volumes"), "cuts")
+    changes(browser, "a cut of all", lambda: press_named(browser, "Add: cut of the scene"), "cuts")
     check(now()[0]["type"] == "plane" and now()[0]["point"] == [13.5, 7.5, 7.5], f"a plane through the middle of both volumes: {now()}")
-    field = "document.querySelector('[aria-label=\"Point x of the cut of all volumes\"]')"
+    field = "document.querySelector('[aria-label=\"Point x of the cut of the scene\"]')"
     changes(browser, "its point", lambda: browser.run(f"{field}.value = 5; {field}.dispatchEvent(new Event('change')); 0"), "cuts")
     check(now()[0]["point"][0] == 5 and all("cuts" not in volume for volume in scene_of(browser)["volumes"]), "the scene is cut, no volume")
-    follows(browser, "a plane's handle", "Plane of the cut of all volumes", (20, 0), "cuts", 1)
+    follows(browser, "a plane's handle", "Plane of the cut of the scene", (20, 0), "cuts", 1)
     changes(browser, "a box", lambda: set_control(browser, "Box", "", section=title), "cuts")
-    follows(browser, "a box's face", "Box of the cut of all volumes x, least", (25, 0), "cuts", 1)
+    follows(browser, "a box's face", "Box of the cut of the scene x, least", (25, 0), "cuts", 1)
     changes(browser, "a sphere", lambda: set_control(browser, "Sphere", "", section=title), "cuts")
     equals_render(browser, "scene cuts")
     before = now()
@@ -322,7 +322,7 @@ def scene_cuts(browser):
     check(now() is None, "a cut that is off is not in the scene")
     changes(browser, "on", lambda: set_control(browser, "Cuts", "", section=title), "cuts")
     check(now() == before, "it comes back as it was")
-    changes(browser, "remove", lambda: press_named(browser, "Remove this cut of all volumes"), "cuts")
+    changes(browser, "remove", lambda: press_named(browser, "Remove this cut of the scene"), "cuts")
     check(now() is None, "it is removed")
     browser.run("halflight.store.undo(); 0")
     check(now() == before, "and comes back when that is undone")

@@ -147,7 +147,7 @@ export function sceneCutPanel({ store, start, report, overlay }) {
   }
   const volumes = () => store.scene.volumes.length;
   return panelOf({
-    title: "Cuts of all volumes", noun: "cut of all volumes", overlay, report, transform: () => ({}), others: () => [], box, cuts: () => store.scene.cuts ?? [],
+    title: "Cuts of the scene", noun: "cut of the scene", overlay, report, transform: () => ({}), others: () => [], box, cuts: () => store.scene.cuts ?? [],
     owner: () => (volumes() > 1 || (volumes() > 0 && store.scene.cuts?.length > 0) ? 0 : -1), take: (name, change) => store.change(`scene ${name}`, change),
   });
 }
