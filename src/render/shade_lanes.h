@@ -81,6 +81,16 @@ LANES_INLINE void find_full_light(const shade_light *light, lanes3 position, arr
   for (int c = 0; c < 3; c++) arriving->full.c[c] = arriving->full.c[c] * pattern[c];
 }
 
+/* What surfaces near before a slab's samples take of a light. */
+LANES_INLINE void pass_near_surfaces(const shade_job *job, const shade_light *light, const block_slab *slab,
+                                     color_lanes *passing) {
+  lanes_int column = lanes_truncate(lanes_clamp(slab->u - job->near_u, 0, TILE - 1)),
+            row = lanes_truncate(lanes_clamp(slab->v - job->near_v, 0, TILE - 1));
+  for (int c = 0; c < light->channels; c++)
+    passing->c[c] = passing->c[c] *
+                    lanes_gather(job->near_passing[light->number * job->channels + c], row * TILE + column);
+}
+
 LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *light, const block_slab *slab,
                                      block_density *densities, int count) {
   const block_geometry *g = &slab->geometry;
@@ -92,6 +102,7 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
   arriving.shadowed = arriving.full;
   if (!light->shadowed || is_dark(&arriving.full)) return arriving;
   color_lanes passing = passing_light(job, light, slab, densities, count, arriving.towards, path);
+  if (job->near_passing != NULL) pass_near_surfaces(job, light, slab, &passing);
   lanes transmittance = lanes_set(1.0f);
   for (int c = 0; c < 3; c++) {
     if (c < light->channels) transmittance = passing.c[c];

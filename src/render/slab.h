@@ -88,6 +88,7 @@ typedef struct shade_light {
   sector_fraction sector;        /* of a light within the content */
   light_caps caps;               /* of a wide light that is not parallel */
   int parallel_row;              /* of phase tables; of a wide parallel light, else -1 */
+  int number;                    /* among the sweep's lights */
   int nearest, cubic; /* nearest: the lookup takes the nearest pixel; cubic: by cubic convolution (never of
                          sub-lights); else bilinearly */
 } shade_light;
@@ -111,6 +112,10 @@ typedef struct shade_job {
   int channels;                   /* of light attenuation: 1 or 3 */
   const scatter_field *scattered; /* light scattered more than once, in the first sweep; null: none */
   const sky_light *sky;           /* null: none, or not in this sweep */
+  const float (*near_passing)[TILE_PIXELS]; /* [lights of the sweep][channels]; of one tile, row by row: what
+                                               surfaces near before the samples let through (near_surfaces.h);
+                                               null: everything */
+  float near_u, near_v;                     /* the tile's first pixel */
 } shade_job;
 
 /* Bytes of scratch memory for a patch: room for a block, and for up to sixteen slabs into which samples are

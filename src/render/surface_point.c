@@ -1,7 +1,7 @@
 /* render/surface_point.c - see surface_point.h. */
 #include "render/surface_point.h"
 
-static vec3 position_of(const sweep *sweep, const tile_slab *slab, const fragment *f) {
+vec3 hl_surface_place(const sweep *sweep, const tile_slab *slab, const fragment *f, double height) {
   const view *eye = &sweep->frame->eye;
   const sheet_stack *sheets = &sweep->geometry->sheets;
   int block = f->pixel / BLOCK_PIXELS, lane = f->pixel % BLOCK_PIXELS;
@@ -11,7 +11,7 @@ static vec3 position_of(const sweep *sweep, const tile_slab *slab, const fragmen
   u += slab->x * TILE + block % 4 * BLOCK + lane % BLOCK;
   v += slab->y * TILE + block / 4 * BLOCK + lane / BLOCK;
   hl_view_ray(eye, u, v, &start, &way);
-  double rise = sheets->first + f->height - vec3_dot(sheets->normal, start);
+  double rise = sheets->first + height - vec3_dot(sheets->normal, start);
   return vec3_add(start, vec3_scale(way, rise / vec3_dot(sheets->normal, way)));
 }
 
@@ -87,7 +87,7 @@ surface_point hl_surface_point_of(const sweep *sweep, const tile_slab *slab, con
   const surfaces *all = sweep->frame->surfaces;
   const surface_mesh *mesh = &all->meshes[f->mesh];
   const view *eye = &sweep->frame->eye;
-  surface_point point = {.position = position_of(sweep, slab, f)};
+  surface_point point = {.position = hl_surface_place(sweep, slab, f, (double)f->height)};
   point.towards_eye = eye->perspective ? vec3_normalise(vec3_subtract(eye->origin, point.position))
                                        : vec3_scale(eye->direction, -1);
   vec3 flat = f->primitive < all->triangle_count

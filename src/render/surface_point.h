@@ -12,6 +12,9 @@ typedef struct surface_point {
   double color[3]; /* linear RGB */
 } surface_point;
 
+/* The point at a height, above the first sheet, of the eye's ray that meets a fragment; frame space. */
+vec3 hl_surface_place(const sweep *sweep, const tile_slab *slab, const fragment *f, double height);
+
 surface_point hl_surface_point_of(const sweep *sweep, const tile_slab *slab, const fragment *f);
 
 #endif

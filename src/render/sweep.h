@@ -71,10 +71,11 @@ typedef struct sweep_layers {
 /* The surfaces of the sweep's views; zeros where there are none. */
 typedef struct surface_state {
   fragments image, lights[FRAME_LIGHTS];
-  void *memory;                 /* owned; all arrays that follow */
-  shade_patch *patches;         /* [threads][volumes] */
-  float (*cuts)[TILE_PIXELS];   /* [threads][volumes][2]; where the pieces of slabs begin and end in boxes */
-  float (*bounds)[TILE_PIXELS]; /* [threads][2]; where they begin and end */
+  void *memory;                  /* owned; all arrays that follow */
+  shade_patch *patches;          /* [threads][volumes] */
+  float (*cuts)[TILE_PIXELS];    /* [threads][volumes][2]; where the pieces of slabs begin and end in boxes */
+  float (*bounds)[TILE_PIXELS];  /* [threads][2]; where they begin and end */
+  float (*passing)[TILE_PIXELS]; /* [threads][lights][channels]; of near_surfaces.h */
 } surface_state;
 
 typedef struct sweep sweep;

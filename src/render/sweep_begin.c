@@ -338,6 +338,7 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
       .inverse_square = scene->falloff == HL_FALLOFF_INVERSE_SQUARE,
       .texture = from->texture,
       .sector = hl_sector_fraction(from->source->sectors, from->source->sector),
+      .number = (int)(light - sweep->shade_lights),
       .parallel_row = from->source->parallel && hl_light_is_wide(scene) ? from->source->light_index : -1,
       .cone = hl_light_cone(from->source, sweep->frame->middle, sweep->frame->middle_pixel),
       .nearest = sweep->scene->render.shadow_lookup == HL_LOOKUP_NEAREST,

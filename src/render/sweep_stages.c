@@ -96,7 +96,7 @@ void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker)
     blocks = need & shown;
     open = hl_sweep_surfaces_tile(sweep, &slab, blocks, surfaces);
   } else {
-    open = sweep->act(sweep, &slab);
+    open = hl_sweep_surfaces_beside(sweep, &slab);
   }
   sweep->arrays.open[tile] = (uint16_t)((sweep->arrays.open[tile] & ~blocks) | open);
   counts->seconds_shade += read_clock(timed) - filled;

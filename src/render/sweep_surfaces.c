@@ -2,17 +2,11 @@
 #include "render/sweep_surfaces.h"
 
 #include "core/memory.h"
+#include "render/near_surfaces.h"
 #include "render/surface_batch.h"
 #include "render/sweep_layers.h"
 
 /* ---- begin and end ---- */
-
-/* Pixels of a shadow buffer by which surfaces are delayed: as far as its look-ups reach beyond the way that
- * they are moved away from the surface (surface_lanes.h). */
-static double reach_of_lookups(const light_shadow *shadow) {
-  if (shadow->sublight_count > 0 || shadow->plan.cubic) return 1.75;
-  return shadow->method == &hl_shadow_hard ? 0.75 : 2; /* soft methods blur by a pixel and more */
-}
 
 static hl_status make_fragments(sweep *sweep, const view *view, const light_shadow *shadow,
                                 const occupancy *occupancy, fragments *made, hl_error *error) {
@@ -24,11 +18,16 @@ static hl_status make_fragments(sweep *sweep, const view *view, const light_shad
                                    .sheets = &sweep->geometry->sheets,
                                    .falling = shadow == NULL && sweep->geometry->back_to_front,
                                    .of_light = shadow != NULL,
-                                   .delay = shadow != NULL ? reach_of_lookups(shadow) : 0,
+                                   .delay = shadow != NULL ? hl_surface_delay(shadow) : 0,
                                    .rise = shadow != NULL && shadow->method != &hl_shadow_hard ? 1.25 : 0,
                                    .marks = occupancy->by_sheet,
                                    .tile_words = occupancy->tile_words};
   return hl_fragments_create(&source, made, error);
+}
+
+/* The lights' channels. */
+static size_t passings(const sweep *sweep) {
+  return (size_t)sweep->geometry->light_count * (size_t)sweep->channels;
 }
 
 /* Each thread's memory for tiles with fragments. */
@@ -40,6 +39,7 @@ static hl_status make_room(sweep *sweep, hl_error *error) {
     state->patches = hl_layout_take(&layout, places * volumes, sizeof *state->patches);
     state->cuts = hl_layout_take(&layout, places * volumes * 2, sizeof *state->cuts);
     state->bounds = hl_layout_take(&layout, places * 2, sizeof *state->bounds);
+    state->passing = hl_layout_take(&layout, places * passings(sweep), sizeof *state->passing);
     if (pass == 1) break;
     state->memory = hl_allocate(sweep->content.context, layout.bytes, 1);
     if (state->memory == NULL) return hl_fail_memory(error, layout.bytes, "the surfaces");
@@ -122,6 +122,26 @@ static void shade_fragments(const sweep *sweep, const tile_slab *slab, uint32_t 
   shade_batch(sweep, slab, &batch);
 }
 
+/* Does the sweep's steps for a slab, or a piece of one, whose light the fragments of this and the last few
+ * slabs may hide. */
+static uint32_t act_behind(const sweep *sweep, const tile_slab *slab, slab_piece piece) {
+  float(*passing)[TILE_PIXELS] = sweep->surfaces.passing + (size_t)slab->worker * passings(sweep);
+  int first = slab->job->sheet - NEAR_SLABS;
+  fragment_range near = hl_fragments_reached(&sweep->surfaces.image, slab->tile, first);
+  if (!hl_near_surfaces_find(sweep, slab, near, piece, passing)) return sweep->act(sweep, slab);
+  shade_job job = *slab->job;
+  tile_slab behind = *slab;
+  job.near_passing = (const float(*)[TILE_PIXELS])passing;
+  job.near_u = (float)(slab->x * TILE), job.near_v = (float)(slab->y * TILE);
+  behind.job = &job;
+  return sweep->act(sweep, &behind);
+}
+
+uint32_t hl_sweep_surfaces_beside(const sweep *sweep, const tile_slab *slab) {
+  if (sweep->surfaces.image.first == NULL) return sweep->act(sweep, slab);
+  return act_behind(sweep, slab, (slab_piece){NULL, NULL});
+}
+
 /* Shades the piece of each pixel's slab between two heights. */
 static uint32_t shade_piece(const sweep *sweep, const tile_slab *slab, const float *from, const float *to) {
   const surface_state *state = &sweep->surfaces;
@@ -142,7 +162,7 @@ static uint32_t shade_piece(const sweep *sweep, const tile_slab *slab, const flo
   }
   tile_slab piece = *slab;
   piece.patches = patches;
-  return sweep->act(sweep, &piece);
+  return act_behind(sweep, &piece, (slab_piece){from, to});
 }
 
 /* The blocks, among `blocks`, of which some pixel is not opaque. */

@@ -18,6 +18,10 @@ fragment_range hl_sweep_surfaces_reach(const sweep *sweep, size_t tile, int slab
 uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint32_t blocks,
                                 fragment_range range);
 
+/* Steps 12 to 16 for a tile without fragments in the slab, but maybe in those before it. Returns the blocks
+ * that stay open. */
+uint32_t hl_sweep_surfaces_beside(const sweep *sweep, const tile_slab *slab);
+
 /* Step 17 for the surfaces of a slab in a tile of a light's buffer. Returns whether any took light. */
 bool hl_sweep_surfaces_attenuate(const sweep *sweep, const attenuate_job *job, fragment_range range);
 fragment_range hl_sweep_surfaces_reach_light(const sweep *sweep, int light, size_t tile, int slab);

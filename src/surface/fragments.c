@@ -158,3 +158,9 @@ fragment_range hl_fragments_reach(const fragments *all, size_t tile, int slab) {
   all->cursor[tile] = at;
   return range;
 }
+
+fragment_range hl_fragments_reached(const fragments *all, size_t tile, int first) {
+  uint32_t end = all->cursor[tile], at = end;
+  while (at > all->first[tile] && all->list[at - 1].slab >= first) at--;
+  return (fragment_range){all->list + at, end - at};
+}

@@ -32,4 +32,7 @@ typedef struct fragment_range {
 /* Slabs are asked for in rising order; the tile's owner asks. */
 fragment_range hl_fragments_reach(const fragments *all, size_t tile, int slab);
 
+/* Of the fragments that were reached, those in slabs from `first` on. */
+fragment_range hl_fragments_reached(const fragments *all, size_t tile, int first);
+
 #endif

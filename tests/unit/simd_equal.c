@@ -851,6 +851,7 @@ static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
                            .inverse_square = i == 1,
                            .shadowed = i < 2,
                            .path = 0.7f,
+                           .number = i,
                            .lookups = &s->lookups[i],
                            .sublights = s->sublights[i],
                            .sublight_count = round % 4,
@@ -921,6 +922,9 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                  .channels = round % 3 ? 3 : 1};
   s->job.scattered = round % 5 ? &s->scattered : NULL;
   if (round == 0) s->job.light_count = 2;
+  static float near_passing[3 * HL_CHANNELS][TILE_PIXELS];
+  fill_salted(near_passing[0], sizeof near_passing / sizeof(float), seed, 0, 1);
+  if (round % 3 == 2) s->job.near_passing = (const float(*)[TILE_PIXELS])near_passing;
   static float phase_rows[3][PHASE_COLUMNS], phase_caps[PHASE_CAPS][PHASE_COLUMNS][2];
   fill_salted(phase_rows[0], sizeof phase_rows / sizeof(float), seed, 0.1, 2);
   fill_salted(&phase_caps[0][0][0], sizeof phase_caps / sizeof(float), seed, 0.1, 2);
