@@ -1,6 +1,7 @@
 /* surface/fragment_order.c - see fragment_order.h. */
 #include "surface/fragment_order.h"
 
+#include <math.h>
 #include <string.h>
 
 /* ---- sorting ---- */
@@ -52,18 +53,28 @@ static void sort_keys(order_key *list, order_key *spare, size_t count) {
   if (from != list) memcpy(list, from, count * sizeof *list);
 }
 
-static bool is_opaque(const fragment *f, const float *least) { return f->opacity * least[f->mesh] >= 1; }
+/* Whether surfaces that lie at two heights, so far apart, may cross within their reaches. */
+static bool may_meet(const fragment_order *order, float apart, uint8_t reach, uint8_t other) {
+  return fabs((double)apart) <= hl_reach_of(reach, order->spacing) + hl_reach_of(other, order->spacing);
+}
 
 /* Copies a pixel's fragments in the order of their keys, without those of which opaque ones before them cover
- * all samples. Returns how many are left. */
-static size_t copy_uncovered(const fragment *list, const order_key *keys, size_t count, const float *least,
-                             fragment *to) {
+ * all samples, however their surfaces slope. most: the greatest reach of any. Returns how many are left. */
+static size_t copy_uncovered(const fragment *list, const order_key *keys, size_t count, uint8_t most,
+                             const fragment_order *order, fragment *to) {
   size_t kept = 0;
   uint32_t covered = 0;
-  for (size_t i = 0; i < count && covered != 0xffff; i++) {
+  float last = 0;    /* the height of the last opaque one */
+  uint8_t reach = 0; /* the greatest of the opaque ones */
+  for (size_t i = 0; i < count; i++) {
     const fragment *f = &list[keys[i].index];
-    if ((f->samples & ~covered) == 0) continue;
-    if (is_opaque(f, least)) covered |= f->samples;
+    if (covered == 0xffff && !may_meet(order, f->height - last, most, reach)) break;
+    if ((f->samples & ~covered) == 0 && !may_meet(order, f->height - last, f->reach, reach)) continue;
+    if (hl_is_opaque(f, order->least)) {
+      covered |= f->samples;
+      last = f->height;
+      reach = f->reach > reach ? f->reach : reach;
+    }
     to[kept++] = *f;
   }
   return kept;
@@ -73,7 +84,11 @@ size_t hl_sort_by_pixel(const fragment *list, size_t count, const fragment_order
                         fragment *sorted) {
   uint32_t places[TILE_PIXELS + 1] = {0};
   size_t kept = 0;
-  for (size_t i = 0; i < count; i++) places[list[i].pixel + 1]++;
+  uint8_t most = 0;
+  for (size_t i = 0; i < count; i++) {
+    places[list[i].pixel + 1]++;
+    most = list[i].reach > most ? list[i].reach : most;
+  }
   for (int p = 0; p < TILE_PIXELS; p++) places[p + 1] += places[p];
   for (size_t i = 0; i < count; i++)
     keys[places[list[i].pixel]++] = (order_key){
@@ -82,7 +97,7 @@ size_t hl_sort_by_pixel(const fragment *list, size_t count, const fragment_order
     size_t own = places[p] - first;
     sort_keys(keys + first, keys + count, own);
     if (!order->slabs) {
-      kept += copy_uncovered(list, keys + first, own, order->least, sorted + kept);
+      kept += copy_uncovered(list, keys + first, own, most, order, sorted + kept);
       continue;
     }
     for (size_t i = 0; i < own; i++) sorted[kept++] = list[keys[first + i].index];
@@ -90,12 +105,11 @@ size_t hl_sort_by_pixel(const fragment *list, size_t count, const fragment_order
   return kept;
 }
 
-/* Turns round the fragments of each pixel of a slab whose heights fall. */
-static void let_rise(fragment *list, size_t count) {
+/* Turns round the fragments of each pixel of a slab. */
+static void turn_round(fragment *list, size_t count) {
   for (size_t i = 0, end; i < count; i = end) {
     for (end = i + 1; end < count && list[end].pixel == list[i].pixel && list[end].slab == list[i].slab;)
       end++;
-    if (list[i].height <= list[end - 1].height) continue;
     for (size_t a = i, b = end - 1; a < b; a++, b--) {
       fragment swapped = list[a];
       list[a] = list[b];
@@ -104,12 +118,13 @@ static void let_rise(fragment *list, size_t count) {
   }
 }
 
-void hl_sort_by_slab(const fragment *list, size_t count, uint32_t *places, int slabs, fragment *sorted) {
+void hl_sort_by_slab(const fragment *list, size_t count, const fragment_order *order, uint32_t *places,
+                     int slabs, fragment *sorted) {
   memset(places, 0, ((size_t)slabs + 2) * sizeof *places);
   for (size_t i = 0; i < count; i++) places[list[i].slab + 1]++;
   for (int s = 0; s <= slabs; s++) places[s + 1] += places[s];
   for (size_t i = 0; i < count; i++) sorted[places[list[i].slab]++] = list[i];
-  let_rise(sorted, count);
+  if (order->falling) turn_round(sorted, count);
 }
 
 /* ---- opacities ---- */
@@ -125,7 +140,7 @@ static int count_samples(uint32_t samples) {
 static size_t resolve_opaque(fragment *list, size_t count, const float *least, uint32_t *open) {
   size_t i = 0;
   *open = 0xffff;
-  for (; i < count && is_opaque(&list[i], least); i++) {
+  for (; i < count && hl_is_opaque(&list[i], least); i++) {
     int before = count_samples(*open), taken = count_samples(*open & list[i].samples);
     list[i].opacity = before > 0 ? (float)taken / (float)before : 0;
     *open &= ~(uint32_t)list[i].samples;
@@ -163,7 +178,7 @@ static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
   uint32_t covered = 0;
   for (size_t i = 0; i < count; i++) {
     bool begins = i == 0 || list[i].slab != list[i - 1].slab;
-    covered = (begins ? 0 : covered) | (is_opaque(&list[i], least) ? list[i].samples : 0u);
+    covered = (begins ? 0 : covered) | (hl_is_opaque(&list[i], least) ? list[i].samples : 0u);
     list[i].primitive = covered ==
                         0xffff; /* of a light's fragments the primitive is not asked for any more */
   }

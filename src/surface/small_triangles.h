@@ -44,6 +44,7 @@ typedef struct small_cover {
                                      is not set */
   _Alignas(64) int32_t pixel[SMALL_PIXELS][SMALL_TRIANGLES]; /* its number in the tile, block after block */
   uint16_t samples[SMALL_PIXELS][SMALL_TRIANGLES];           /* covered, one bit each */
+  int32_t reach[SMALL_TRIANGLES];                            /* of the eye's view: of the fragments */
   float height[SMALL_PIXELS][SMALL_TRIANGLES]; /* in the middle of the samples; above the first sheet */
   float start[SMALL_PIXELS][SMALL_TRIANGLES];  /* of a light's view: the delayed height */
   int32_t slab[SMALL_PIXELS][SMALL_TRIANGLES]; /* of the height */

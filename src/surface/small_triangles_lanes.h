@@ -6,6 +6,7 @@
 #define HL_SURFACE_SMALL_TRIANGLES_LANES_H
 
 #include "simd/lanes.h"
+#include "surface/fragment.h"
 #include "surface/sample_rows.h"
 #include "surface/small_triangles.h"
 
@@ -164,6 +165,13 @@ LANES_INLINE lanes find_height(const small_shape *shape, const small_heights *he
   return lanes_min(lanes_max(height, heights->lowest), heights->highest);
 }
 
+/* As hl_told_reach(). */
+LANES_INLINE void store_reach(const small_view *view, const small_heights *heights, small_cover *cover) {
+  lanes rise = (lanes_abs(heights->by_x) + lanes_abs(heights->by_y)) * (float)SMALL_SUBPIXELS;
+  lanes parts = lanes_min(rise, heights->highest - heights->lowest) * (REACH_PARTS / view->spacing);
+  store_ints(cover->reach, lanes_floor(lanes_min(parts, lanes_set(FARTHEST - 1))) + 1);
+}
+
 LANES_INLINE lanes_int within(lanes_int at, int32_t count) { return (at >= 0) & (at < count); }
 
 /* Of a pixel of a tile of 16x16, block of 4x4 after block. */
@@ -183,6 +191,7 @@ static uint32_t cover_small(const small_view *view, const small_triangles *t, sm
   small &= heights.highest - heights.lowest <= SMALL_RISE * view->spacing;
   lanes_int any = small & ((shape.area < 0.0f) | (shape.area > 0.0f));
   lanes slope = lanes_set(0), delay = slope;
+  if (!view->of_light) store_reach(view, &heights, cover);
   if (view->of_light) {
     slope = find_slope(view, t, &leaving);
     delay = slope * view->delay + (float)LEAST_DELAY * view->spacing;

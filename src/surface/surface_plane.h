@@ -23,6 +23,11 @@ static inline double hl_plane_linear(const double f[3], double u, double v) {
 void hl_plane_of_triangle(const view *view, const sheet_stack *sheets, const surfaces *all, uint32_t triangle,
                           surface_plane *plane);
 
+/* The slab that a height above the first sheet lies in: before sheet k. */
+static inline int32_t hl_slab_of(const sheet_stack *sheets, double height) {
+  return (int32_t)fmin(fmax(ceil(height / sheets->spacing), 1), sheets->count - 1);
+}
+
 /* The plane that touches a sphere at a point. */
 void hl_plane_of_sphere(const view *view, const sheet_stack *sheets, const float sphere[4], vec3 point,
                         surface_plane *plane);

@@ -5,32 +5,10 @@
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
-#include "surface/sample_rows.h"
+#include "surface/crossings.h"
 #include "surface/sphere_coverage.h"
 #include "surface/surface_cuts.h"
 #include "surface/surface_plane.h"
-
-/* The numbers of bits of four words of 16 bits. */
-static uint64_t count_bits(uint64_t words) {
-  const uint64_t pairs = 0x5555555555555555u, fours = 0x3333333333333333u, eights = 0x0f0f0f0f0f0f0f0fu;
-  words -= words >> 1 & pairs;
-  words = (words & fours) + (words >> 2 & fours);
-  words = (words + (words >> 4)) & eights;
-  return (words + (words >> 8)) & 0x00ff00ff00ff00ffu;
-}
-
-/* The sum of the columns, or rows, of samples: bit b of them is set for the samples in word b of `set`. */
-static int sum_places(uint16_t samples, uint64_t set) {
-  uint64_t count = count_bits(samples * 0x0001000100010001u & set);
-  return (int)((count & 255) + 2 * (count >> 16 & 255) + 4 * (count >> 32 & 255) + 8 * (count >> 48));
-}
-
-void hl_fragment_middle(uint16_t samples, double *u, double *v) {
-  int count = (int)count_bits(samples), x = sum_places(samples, 0xff00f0f0ccccaaaau),
-      y = sum_places(samples, SAMPLE_ROW_BITS);
-  *u = ((double)x / count + 0.5) / FRAGMENT_SAMPLES;
-  *v = ((double)y / count + 0.5) / FRAGMENT_SAMPLES;
-}
 
 /* Room for so many more fragments of a tile. */
 static bool make_room(hl_context *context, fragment_worker *worker, size_t more) {
@@ -62,11 +40,6 @@ static bool make_room_for_tile(hl_context *context, fragment_worker *worker, siz
 /* The pixel's number, block after block. */
 static uint8_t number_of_pixel(int column, int row) {
   return (uint8_t)((row / BLOCK * 4 + column / BLOCK) * BLOCK_PIXELS + row % BLOCK * BLOCK + column % BLOCK);
-}
-
-static int32_t slab_of(const fragments_source *source, double height) {
-  double sheet = ceil(height / source->sheets->spacing);
-  return (int32_t)fmin(fmax(sheet, 1), source->sheets->count - 1);
 }
 
 /* Marks a slab about a pixel, block after block. */
@@ -153,7 +126,7 @@ static void add_of_light(const fragment_work *work, fragment_worker *worker, con
   const fragments_source *source = work->source;
   double delay = plane->leaving ? 0 : source->delay * slope + LEAST_DELAY * source->sheets->spacing;
   double start = f.height + delay, end = fmin(f.height + source->rise * slope, plane->highest) + delay;
-  add_to_slabs(work, worker, f, start, slab_of(source, start), slab_of(source, end));
+  add_to_slabs(work, worker, f, start, hl_slab_of(source->sheets, start), hl_slab_of(source->sheets, end));
 }
 
 /* A pixel of a view, and the middle of the samples that a surface covers of it. */
@@ -175,13 +148,20 @@ static void add_pixel(const fragment_work *work, fragment_worker *worker, const 
   const fragments_source *source = work->source;
   double height = hl_plane_height(plane, at->u, at->v);
   height = fmin(fmax(height, plane->lowest), plane->highest); /* not a number: the lowest */
-  f.slab = slab_of(source, height);
+  f.slab = hl_slab_of(source->sheets, height);
   f.height = (float)height;
   f.pixel = number_of_pixel(at->x % TILE, at->y % TILE);
   mark(work, worker, f.pixel, f.slab);
   if (f.opacity <= 0) return;
-  if (source->of_light) add_of_light(work, worker, plane, f, hl_plane_slope(plane, at->u, at->v));
-  else worker->scratch[worker->count++] = f;
+  double slope = hl_plane_slope(plane, at->u, at->v);
+  if (source->of_light) {
+    add_of_light(work, worker, plane, f, slope);
+    return;
+  }
+  double range = plane->highest - plane->lowest,
+         reach = slope < STEEPEST_SLOPE && slope < range ? slope : range;
+  f.reach = hl_told_reach(reach / source->sheets->spacing);
+  worker->scratch[worker->count++] = f;
 }
 
 /* The part of a primitive in a tile: what its samples cover, and what cuts leave of that. */
@@ -330,13 +310,16 @@ static void add_small_pixel(const fragment_work *work, fragment_worker *worker, 
                       .slab = cover->slab[k][lane],
                       .samples = cover->samples[k][lane],
                       .mesh = (uint16_t)batch->mesh,
-                      .pixel = (uint8_t)cover->pixel[k][lane]};
+                      .pixel = (uint8_t)cover->pixel[k][lane],
+                      .reach = (uint8_t)cover->reach[lane]};
   mark(work, worker, f.pixel, f.slab);
   if (f.opacity <= 0) return;
-  if (work->source->of_light)
+  if (work->source->of_light) {
     add_to_slabs(work, worker, f, (double)cover->start[k][lane], cover->first_slab[k][lane],
                  cover->last_slab[k][lane]);
-  else worker->scratch[worker->count++] = f;
+    return;
+  }
+  worker->scratch[worker->count++] = f;
 }
 
 /* The opacities of a batch's triangles. */
@@ -391,25 +374,44 @@ static void add_primitives(const fragment_work *work, fragment_worker *worker, t
   if (!worker->failed) add_batch(work, worker, part, &batch);
 }
 
+/* Sorts a tile's fragments, and parts those of the eye's view that cross. Returns how many are left in
+ * *sorted, which the worker owns. */
+static size_t order_fragments(const fragment_work *work, fragment_worker *worker, const fragment_order *order,
+                              const tile_part *part, fragment **sorted) {
+  const fragments_source *source = work->source;
+  fragment *list = worker->scratch, *other = list + worker->room;
+  size_t kept = hl_sort_by_pixel(list, worker->count, order, worker->keys, other);
+  const crossing_tile crossing = {source->surfaces,    source->view,       source->sheets, order,
+                                  part->tile_x * TILE, part->tile_y * TILE};
+  bool parted;
+  *sorted = source->of_light ? other : list;
+  if (source->of_light) return kept;
+  kept = hl_part_crossings(&crossing, other, kept, list, &parted);
+  for (size_t i = 0; parted && i < kept; i++) mark(work, worker, list[i].pixel, list[i].slab);
+  return kept;
+}
+
 void hl_make_tile_fragments(void *data, size_t tile, int worker_index) {
   const fragment_work *work = data;
   const fragments_source *source = work->source;
   fragment_worker *worker = &work->workers[worker_index];
-  const fragment_order order = {work->least, source->falling, source->rise > 0};
+  const fragment_order order = {work->least, source->falling, source->rise > 0, source->sheets->spacing};
   tile_part part = {.tile_x = (int)(tile % (size_t)work->tiles_x),
                     .tile_y = (int)(tile / (size_t)work->tiles_x)};
+  fragment *sorted = NULL;
+  size_t kept = 0;
   work->tiles[tile] = (tile_record){.worker = worker_index};
   worker->count = 0;
   memset(worker->latest, 0, sizeof worker->latest);
   if (worker->failed) return;
   add_primitives(work, worker, &part, tile);
+  if (!worker->failed && make_room(source->context, worker, worker->count)) /* for parts */
+    kept = order_fragments(work, worker, &order, &part, &sorted);
   write_marks(work, worker, part.tile_x, part.tile_y);
-  if (worker->failed || worker->count == 0) return;
-  fragment *sorted = worker->scratch + worker->room;
-  size_t kept = hl_sort_by_pixel(worker->scratch, worker->count, &order, worker->keys, sorted);
   kept = hl_resolve_fragments(sorted, kept, &order);
-  if (!make_room_for_tile(source->context, worker, kept)) return;
-  hl_sort_by_slab(sorted, kept, worker->places, source->sheets->count, worker->out + worker->out_count);
+  if (kept == 0 || !make_room_for_tile(source->context, worker, kept)) return;
+  hl_sort_by_slab(sorted, kept, &order, worker->places, source->sheets->count,
+                  worker->out + worker->out_count);
   work->tiles[tile].at = worker->out_count;
   work->tiles[tile].count = (uint32_t)kept;
   worker->out_count += kept;

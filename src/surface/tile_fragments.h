@@ -81,7 +81,4 @@ void hl_fragment_worker_end(hl_context *context, fragment_worker *worker);
 /* Makes one tile's fragments: a task of the pool. data: fragment_work. */
 void hl_make_tile_fragments(void *data, size_t tile, int worker_index);
 
-/* The mean position of the covered samples in their pixel, 0 to 1. */
-void hl_fragment_middle(uint16_t samples, double *u, double *v);
-
 #endif

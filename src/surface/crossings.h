@@ -1,0 +1,28 @@
+/* surface/crossings.h - fragments of a pixel whose surfaces cut into each other there.
+ *
+ * Fragments are composited by one height each. Where two surfaces cross within a pixel, each sample has an
+ * order of its own: there the fragments are parted, so that the line between the surfaces is as smooth as
+ * their edges are. */
+#ifndef HL_SURFACE_CROSSINGS_H
+#define HL_SURFACE_CROSSINGS_H
+
+#include "surface/fragment_order.h"
+#include "surface/surface_plane.h"
+
+/* A tile of the eye's view. All is borrowed. */
+typedef struct crossing_tile {
+  const surfaces *all;
+  const view *view;
+  const sheet_stack *sheets;
+  const fragment_order *order;
+  int x, y; /* its first pixel */
+} crossing_tile;
+
+/* Parts the fragments of a tile, which are sorted by pixels and in the view's order, where their surfaces
+ * cross. Where three surfaces cross in one pixel, two or more of which let light through, their order may be
+ * wrong; a pixel of more than 32 fragments is left as it is. to: room for 2 count; gets them in the same
+ * order. *parted: some changed, and may lie in other slabs. Returns how many they are. */
+size_t hl_part_crossings(const crossing_tile *tile, const fragment *list, size_t count, fragment *to,
+                         bool *parted);
+
+#endif
