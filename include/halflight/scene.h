@@ -383,6 +383,10 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume_look(hl_context *context, hl
                                                          const char *file, const char *look, hl_scene **scene,
                                                          hl_error *error);
 
+/* Puts constant light in place of the sky of a description that one of these functions made: about as bright
+ * over the whole picture, without the shadow of the sky, and without the time that the sky takes. */
+HL_API void hl_scene_level_sky(hl_scene_description *description);
+
 /* The names of looks: "auto", which the data choose, "surface", "translucent", "xray", "smoke" and "vessels".
  * Null past the last. */
 HL_API const char *hl_look_name(size_t index);

@@ -332,6 +332,8 @@ def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], ch
     _set_lights(struct, settings, keep)
     if (meshes := settings.get("meshes")) is not None:
         _set_meshes(struct, meshes, keep)
+    if chosen and settings.get("shadows") == "off" and settings.get("sky") is None:  # as the program's --shadows off
+        lib.hl_scene_level_sky(pointer)
     if (ambient := settings.get("ambient")) is not None:
         struct.ambient = colors.linear_color("ambient", ambient)
         if chosen:  # as the program's --ambient: in place of the sky that was chosen for a volume

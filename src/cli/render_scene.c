@@ -288,13 +288,17 @@ static void change_render_settings(const cli_value *values, hl_render_settings *
   }
 }
 
-/* --ambient, in place of the sky that was chosen for a bare volume. */
+/* --ambient, in place of the sky that was chosen for a bare volume; --shadows off wants no shadow of that sky
+ * either. */
 static void change_ambient(scene_change *change) {
   const cli_value *values = change->values;
   hl_scene_description *description = &change->description;
+  bool chosen = change->bare && !values[RENDER_SKY].given,
+       unshadowed = values[RENDER_SHADOWS].given && values[RENDER_SHADOWS].choice == HL_SHADOWS_OFF;
+  if (chosen && unshadowed) hl_scene_level_sky(description);
   if (!values[RENDER_AMBIENT].given) return;
   memcpy(description->ambient, values[RENDER_AMBIENT].number, sizeof description->ambient);
-  if (change->bare && !values[RENDER_SKY].given) description->sky.type = HL_SKY_NONE;
+  if (chosen) description->sky.type = HL_SKY_NONE;
 }
 
 static void change_settings(const cli_value *values, hl_scene_description *description) {

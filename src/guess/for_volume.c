@@ -86,9 +86,8 @@ static void choose_sky(const hl_look *look, hl_scene_description *description) {
   memcpy(sky->up, description->camera.up, sizeof sky->up);
 }
 
-/* Constant light in place of the sky. */
-static void level_sky(hl_scene_description *description) {
-  if (description->sky.type == HL_SKY_NONE) return;
+void hl_scene_level_sky(hl_scene_description *description) {
+  if (description == NULL || description->sky.type == HL_SKY_NONE) return;
   for (int channel = 0; channel < 3; channel++)
     description->ambient[channel] = INSTEAD * description->sky.strength;
   hl_scene_description plain;
@@ -157,7 +156,7 @@ static hl_status make_scene(hl_context *context, hl_volume *volume, const char *
     choose_sky(look, &description);
     description.render.kernel = look->kernel;
     status = expose(look, &analysis, lights, &description, error);
-    if (!has_room_for_sky(volume)) level_sky(&description);
+    if (!has_room_for_sky(volume)) hl_scene_level_sky(&description);
   }
   if (status == HL_OK) status = hl_scene_create(context, &description, scene, error);
   hl_transfer_function_release(context, &scene_volume.transfer_function);

@@ -199,6 +199,13 @@ def test_the_sky_s_layers(small):
     assert layers["sky"].max() > 0.05 and 0.1 < layers["sky_shadow"].max() <= 1
 
 
+def test_without_shadows_light_is_constant():
+    array = np.ones((8, 8, 8), np.uint8)
+    beside_sky = Scene(array).ambient[0]
+    assert 0 < beside_sky < 0.1 < Scene(array, shadows="off").ambient[0]
+    assert Scene(array, shadows="off", sky=0.5).ambient[0] == Scene(array, shadows="hard").ambient[0] == beside_sky
+
+
 def test_the_reference_agrees(small):
     scene = small.replace(shadows="hard", size=(32, 24))
     exact = halflight.reference(scene)

@@ -14,3 +14,9 @@ halflight diff image.npy again.npy --max-rmse 0 >/dev/null
 for wrong in room.jpg 1:2:3:4 1: absent.hdr; do
   if halflight render t.nrrd --sky "$wrong" -o x.png --quiet; then exit 1; fi
 done
+# without shadows a bare volume has constant light in place of its own sky, and keeps one that is asked for
+light() { halflight render t.nrrd "$@" --print-scene | "$PYTHON" -c 'import json, sys; d = json.load(sys.stdin); print(d.get("sky", {}).get("type"), d["ambient"][0] > 0.1)'; }
+light --shadows hard
+light --shadows off
+light --shadows off --sky 0.5
+light --shadows off --ambient 0.3
