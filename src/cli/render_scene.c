@@ -249,10 +249,34 @@ static bool changes_cuts(const cli_value *values) {
          values[RENDER_CUT_CASTS_SHADOW].given;
 }
 
+/* How many planes hl_scene_for_volume() has cut bare volumes by; before the options' cuts are added. */
+static size_t count_holder_planes(const scene_change *change) {
+  size_t planes = 0;
+  for (size_t v = 0; v < change->description.volume_count; v++)
+    planes += change->description.volumes[v].cut_count;
+  return planes;
+}
+
+/* Whether to give back what hl_scene_for_volume() cut off beside the object. */
+static bool shows_whole(const scene_change *change) {
+  const cli_value *values = change->values;
+  bool chosen = values[RENDER_WHOLE].given || values[RENDER_ISO].given || render_recolors(values);
+  return change->bare && chosen && count_holder_planes(change) > 0;
+}
+
+/* Says what is not seen of a bare volume. */
+static void tell_of_holders(const scene_change *change) {
+  size_t planes = count_holder_planes(change);
+  if (change->bare && !change->host->quiet && planes > 0 && !shows_whole(change))
+    say("what holds the object is cut away, by %zu plane%s: --whole shows it", planes,
+        planes == 1 ? "" : "s");
+}
+
 static int change_volumes(scene_change *change) {
   const cli_value *values = change->values;
   hl_scene_description *description = &change->description;
-  bool changed = render_look_recolors(values, change->bare) || render_recolors(values) ||
+  bool whole = shows_whole(change);
+  bool changed = whole || render_look_recolors(values, change->bare) || render_recolors(values) ||
                  values[RENDER_SHADING].given || values[RENDER_CLIP].given || values[RENDER_ISO].given ||
                  changes_cuts(values);
   if (!changed || description->volume_count == 0) return EXIT_CODE_OK;
@@ -266,6 +290,7 @@ static int change_volumes(scene_change *change) {
     return fail(EXIT_CODE_FAILURE, "out of memory for the scene's volumes");
   memcpy(change->volumes, description->volumes, description->volume_count * sizeof *change->volumes);
   description->volumes = change->volumes;
+  for (size_t v = 0; whole && v < description->volume_count; v++) change->volumes[v].cut_count = 0;
   int exit_code = render_check_names(values, description);
   if (exit_code == EXIT_CODE_OK && change->cuts != NULL && description->volume_count > 1)
     exit_code = render_scene_cuts(values, description, change->cuts);
@@ -344,6 +369,7 @@ static void change_release(scene_change *change) {
 int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_scene **scene) {
   const hl_scene_description *before = hl_scene_describe(*scene);
   scene_change change = {.host = host, .values = values, .bare = bare, .description = *before};
+  tell_of_holders(&change);
   int exit_code = change_volumes(&change); /* first: the camera frames what is seen of the volumes */
 
   if (exit_code == EXIT_CODE_OK) exit_code = change_camera(&change);

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "guess/analysis.h"
 #include "guess/exposure.h"
+#include "guess/holders.h"
 #include "guess/looks.h"
 #include "guess/styles.h"
 #include "guess/view.h"
@@ -126,6 +127,23 @@ static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, h
   return status;
 }
 
+/* Cuts off what holds the object, as the look `base`, which suits the volume, shows it: with any look the
+ * same is left. planes: stay in use. */
+static hl_status leave_holders_out(hl_context *context, const hl_look *base, const hl_data_analysis *analysis,
+                                   hl_cut planes[HL_HOLDER_PLANES], hl_scene_volume *volume,
+                                   hl_error *error) {
+  hl_scene_volume seen = *volume;
+  size_t count = 0;
+  hl_status status = hl_look_write(base, NULL, context, volume->volume, analysis, &seen.transfer_function,
+                                   error);
+  if (status != HL_OK) return status;
+  status = hl_holders_find(&seen, analysis, planes, &count, error);
+  hl_transfer_function_release(context, &seen.transfer_function);
+  volume->cuts = planes;
+  volume->cut_count = count;
+  return status;
+}
+
 /* style: null: the look that suits the volume alone. */
 static hl_status make_scene(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
                             hl_scene **scene, hl_error *error) {
@@ -142,11 +160,13 @@ static hl_status make_scene(hl_context *context, hl_volume *volume, const char *
   status = hl_look_write(base, style, context, volume, &analysis, &scene_volume.transfer_function, error);
   if (status != HL_OK) return status;
   hl_light lights[2];
+  hl_cut planes[HL_HOLDER_PLANES];
   hl_scene_description description;
   hl_scene_description_defaults(&description);
   description.volumes = &scene_volume;
   description.volume_count = 1;
-  status = hl_scene_volume_check(&scene_volume, 0, error);
+  status = leave_holders_out(context, base, &analysis, planes, &scene_volume, error);
+  if (status == HL_OK) status = hl_scene_volume_check(&scene_volume, 0, error);
   if (status == HL_OK) status = hl_scene_frame(&description, &description.camera, error);
   if (status == HL_OK) {
     choose_lights(look, lights, &description.light_count);

@@ -139,9 +139,8 @@ void hl_outline_release(hl_outline *outline) {
   hl_release(outline->context, outline->radius);
 }
 
-/* Directions spread evenly over the sphere (spherical Fibonacci points; Swinbank and Purser 2006). */
-static vec3 direction(int n) {
-  double z = 1 - (2 * n + 1.0) / DIRECTIONS, across = sqrt(1 - z * z), angle = n * HL_PI * (3 - sqrt(5));
+vec3 hl_even_direction(int n, int count) {
+  double z = 1 - (2 * n + 1.0) / count, across = sqrt(1 - z * z), angle = n * HL_PI * (3 - sqrt(5));
   return (vec3){across * cos(angle), across * sin(angle), z};
 }
 
@@ -159,7 +158,7 @@ hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_err
   hl_status status = HL_OK;
   *thinned = (hl_outline){.context = outline->context};
   for (int n = 0; status == HL_OK && n < DIRECTIONS; n++) {
-    size_t best = farthest(outline, direction(n));
+    size_t best = farthest(outline, hl_even_direction(n, DIRECTIONS));
     bool known = false;
     for (size_t m = 0; m < thinned->count && !known; m++)
       known = memcmp(&thinned->point[m], &outline->point[best], sizeof *thinned->point) == 0;

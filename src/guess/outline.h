@@ -2,6 +2,7 @@
 #ifndef HL_GUESS_OUTLINE_H
 #define HL_GUESS_OUTLINE_H
 
+#include "core/vector.h"
 #include "scene/scene.h"
 
 /* Balls around the outermost voxels, half a voxel's diagonal in radius. In every direction they reach as far
@@ -25,5 +26,9 @@ hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_err
 /* The greatest of p . along - tangent p . forward over all points of all balls; along is perpendicular to
  * forward. */
 double hl_outline_reach(const hl_outline *outline, vec3 along, vec3 forward, double tangent);
+
+/* The n-th of `count` directions that are spread evenly over the sphere (spherical Fibonacci points; Swinbank
+ * and Purser 2006). */
+vec3 hl_even_direction(int n, int count);
 
 #endif

@@ -1,0 +1,113 @@
+/* tests/unit/scene_holders.c - what holds a scanned object is cut away, and nothing else: balls beside boards
+ * of which the answer is known. */
+#include "scene/cut.h"
+#include "scene_parts.h"
+
+enum { N = 64, COUNT = N * N * N };
+
+static float values[COUNT];
+static const double straight[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                    turned[3][3] = {{0.4, 0.3, 0}, {-0.6, 0.8, 0}, {0, 0, 1.5}};
+
+static double noise(int i, int j, int k) { /* -0.5..0.5 */
+  unsigned state = (unsigned)((k * N + j) * N + i) * 2654435761u;
+  state = (state ^ (state >> 15)) * 2246822519u;
+  return (double)((state ^ (state >> 13)) & 0xffff) / 65536 - 0.5;
+}
+
+static double from_middle(int i, int j, int k) { return hypot(hypot(i - 32, j - 32), k - 32); }
+
+/* A board of lighter matter from one side of the grid to the other. */
+static bool in_board(int i, int j, int k) {
+  (void)i;
+  return j >= 26 && j < 38 && k >= 4 && k < 6;
+}
+
+/* Noisy air around a ball of a radius of 21 voxels, with a denser core. */
+static double ball(int i, int j, int k) {
+  double r = from_middle(i, j, k);
+  return 8 + 100 / (1 + exp((r - 21) / 0.6)) + 60 / (1 + exp((r - 11) / 0.6)) + 4 * noise(i, j, k);
+}
+
+static double on_board(int i, int j, int k) {
+  return in_board(i, j, k) ? 80 + 4 * noise(i, j, k) : ball(i, j, k);
+}
+
+/* A board that does not reach the border, one of matter as dense as the core's, and one that the ball's foot
+ * stands on. */
+static double inside(int i, int j, int k) {
+  return in_board(i, j, k) && i > 3 && i < 60 ? 80 + 4 * noise(i, j, k) : ball(i, j, k);
+}
+static double dense(int i, int j, int k) {
+  return in_board(i, j, k) && j < 34 ? 168 + 4 * noise(i, j, k) : ball(i, j, k);
+}
+static double footed(int i, int j, int k) {
+  bool foot = hypot(i - 32, j - 32) < 6 && k >= 5 && k < 20;
+  return foot ? 108 + 4 * noise(i, j, k) : on_board(i, j, k);
+}
+
+/* A compact piece beside the ball, cut off by the border, as dense as a board. */
+static double with_piece(int i, int j, int k) {
+  return hypot(hypot(i - 8, j - 8), k - 2) < 8 ? 80 + 4 * noise(i, j, k) : ball(i, j, k);
+}
+
+/* axes: hl_volume_description's. */
+static hl_scene *make_scene(hl_context *context, double (*each)(int i, int j, int k),
+                            const double axes[3][3]) {
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  for (int v = 0; v < COUNT; v++) values[v] = (float)each(v % N, v / N % N, v / N / N);
+  for (int a = 0; a < 3; a++) d.dimensions[a] = N, d.origin[a] = 10 * a - 7;
+  memcpy(d.axis, axes, sizeof d.axis);
+  d.type = HL_VOXEL_F32;
+  d.voxels = values;
+  hl_volume *volume = NULL;
+  hl_scene *scene = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
+  hl_volume_release(volume);
+  return scene;
+}
+
+/* The board is cut away but for what lies within two cells of the ball's hull; of the ball nothing is, nor of
+ * the voxel around it. Wherever the grid lies and however it is turned. */
+static void boards_are_cut_away(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  for (int turn = 0; turn < 2; turn++) {
+    hl_scene *scene = make_scene(context, on_board, turn ? turned : straight);
+    const hl_scene_volume *volume = &hl_scene_describe(scene)->volumes[0];
+    assert_true(volume->cut_count > 0 && volume->cut_count <= 8);
+    int board = 0, left = 0;
+    for (int v = 0; v < COUNT; v++) {
+      int i = v % N, j = v / N % N, k = v / N / N;
+      bool stays = hl_scene_volume_left(volume, (vec3){i, j, k});
+      if (from_middle(i, j, k) < 22) assert_true(stays);
+      if (!in_board(i, j, k)) continue;
+      board++;
+      left += stays;
+    }
+    assert_true(board == 12 * 2 * N && left * 100 <= board);
+    hl_scene_release(scene);
+  }
+  hl_context_destroy(context);
+}
+
+static void other_bodies_stay(void **state) {
+  (void)state;
+  double (*const each[])(int i, int j, int k) = {ball, inside, dense, footed, with_piece};
+  hl_context *context = make_context();
+  for (size_t n = 0; n < sizeof each / sizeof *each; n++) {
+    hl_scene *scene = make_scene(context, each[n], straight);
+    if (hl_scene_describe(scene)->volumes[0].cut_count != 0) fail_msg("volume %zu is cut", n);
+    hl_scene_release(scene);
+  }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(boards_are_cut_away),
+                                     cmocka_unit_test(other_bodies_stay)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
