@@ -116,12 +116,17 @@ static hl_status make_room(hl_renderer *renderer, const hl_scene_description *sc
   return HL_OK;
 }
 
-/* Refuses a frame that does not fit; first releases blocks kept for later frames if they are in the way. */
+/* Refuses a frame that does not fit; first releases blocks kept for later frames if they are in the way, and
+ * then pages of volumes. */
 static hl_status check_room(hl_renderer *renderer, uint64_t bytes, hl_error *error) {
   uint64_t limit = renderer->context->options.memory_limit;
   if (limit != 0 && hl_context_memory_held(renderer->context) + bytes > limit)
     hl_reserve_drop_idle(&renderer->reserve);
-  return hl_check_room(renderer->context, bytes, &renderer->estimate, error);
+  hl_status status = hl_check_room(renderer->context, bytes, &renderer->estimate, error);
+  for (size_t v = 0; v < renderer->prepared_count && status == HL_OK; v++)
+    if (renderer->prepared[v].grid.pages != NULL)
+      hl_pages_leave_room(renderer->prepared[v].grid.pages, bytes);
+  return status;
 }
 
 /* The data of one frame; released when it ends. */

@@ -5,10 +5,31 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "volume/brick_bounds.h"
 #include "volume/convert.h"
 
 /* Bytes of a volume that is spread over ranks: smaller ones, as label maps often are, lie in every rank. */
 enum { LEAST_OVER_RANKS = 1 << 20 };
+
+/* Warns, before a large file is read, where a picture of it would be refused afterwards: a renderer holds for
+ * each brick its bounds, a flag and a number of 32 bits (grid/bounds.h). */
+static void warn_of_pictures(hl_context *context, const hl_volume_description *grid, const char *path) {
+  double bricks = 1, limit = (double)context->options.memory_limit;
+  for (int axis = 0; axis < 3; axis++) bricks *= (double)(grid->dimensions[axis] / BRICK_SIDE + 1);
+  double bytes = bricks *
+                 (double)(2 * hl_storage_bytes(hl_voxel_type_storage(grid->type)) + 1 + sizeof(uint32_t));
+  if (bricks > (double)UINT32_MAX)
+    hl_log(context, HL_LOG_WARNING,
+           "%.300s: a picture of it will be refused: it has %.3g bricks of 4 x 4 x 4 voxels, and %u can be "
+           "numbered",
+           path, bricks, UINT32_MAX);
+  else if (bytes > limit)
+    hl_log(context, HL_LOG_WARNING,
+           "%.300s: a picture of it will need more than %.0f MiB for the bounds of its bricks, and the "
+           "memory limit "
+           "is %.0f MiB",
+           path, bytes / (1 << 20), limit / (1 << 20));
+}
 
 hl_status hl_destination_open(hl_context *context, const hl_volume_description *grid,
                               hl_destination_kind kind, const char *path, hl_destination *destination,
@@ -19,9 +40,11 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
   *destination = (hl_destination){.context = context, .path = path, .voxel_bytes = bytes};
   if (kind == HL_DESTINATION_PIECES && context->ranks != NULL && count >= LEAST_OVER_RANKS / bytes)
     return hl_own_voxels_allocate(context->ranks, grid, &destination->own, error);
-  if (kind == HL_DESTINATION_PIECES && hl_pages_wanted(context, grid))
+  if (kind == HL_DESTINATION_PIECES && hl_pages_wanted(context, grid)) {
+    warn_of_pictures(context, grid, path);
     return hl_pages_create(context, context->options.scratch_folder, grid, PAGE_SHIFT, &destination->pages,
                            error);
+  }
   destination->voxels = hl_allocate(context, count, bytes);
   return destination->voxels != NULL ? HL_OK : hl_fail_memory(error, count * bytes, path);
 }

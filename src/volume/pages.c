@@ -248,20 +248,20 @@ static void move_hand(hl_pages *pages, size_t count) {
                                 __ATOMIC_RELAXED, __ATOMIC_RELAXED);
 }
 
-/* The bytes of this volume's pages that may be held; UINT64_MAX: all. */
-static uint64_t room(const hl_pages *pages) {
+/* The bytes of this volume's pages that may be held beside `bytes` more than there are; UINT64_MAX: all. */
+static uint64_t room(const hl_pages *pages, uint64_t bytes) {
   hl_context *context = pages->context;
   uint64_t limit = context->options.memory_limit, least = LEAST_PAGES * (uint64_t)pages->page_bytes;
   if (limit == 0) return UINT64_MAX;
-  uint64_t others = atomic_load(&context->held) + atomic_load(&context->paged) -
+  uint64_t others = bytes + atomic_load(&context->held) + atomic_load(&context->paged) -
                     __atomic_load_n(&pages->held_bytes, __ATOMIC_RELAXED);
   return limit < others + least ? least : limit - others;
 }
 
-/* Where pages hold more than there is room for, forgets a sixteenth more than necessary, so that the hand
- * seldom moves. */
-static void make_room(hl_pages *pages) {
-  uint64_t most = room(pages);
+/* Where pages hold more than there is room for beside `bytes` more, forgets a sixteenth more than necessary,
+ * so that the hand seldom moves. */
+static void make_room(hl_pages *pages, uint64_t bytes) {
+  uint64_t most = room(pages, bytes);
   if (__atomic_load_n(&pages->held_bytes, __ATOMIC_RELAXED) <= most) return;
   size_t count = page_count(pages);
   most -= most / 16;
@@ -311,7 +311,7 @@ static void hold_over_ranks(hl_pages *pages, size_t number) {
   if (state == PAGE_FORGOTTEN) {
     __atomic_store_n(&pages->state[number], (unsigned char)PAGE_COMING, __ATOMIC_RELAXED);
     count_held(pages, true);
-    make_room(pages);
+    make_room(pages, 0);
     pthread_mutex_unlock(&pages->lock); /* other threads may get other pages meanwhile */
     fetch_from_ranks(pages, number);
     pthread_mutex_lock(&pages->lock);
@@ -331,8 +331,15 @@ void hl_pages_hold(const hl_pages *held, size_t number) {
                                              __ATOMIC_RELAXED);
   if (before != PAGE_FORGOTTEN) return;
   count_held(pages, true);
-  make_room(pages);
+  make_room(pages, 0);
   if (pages->filled) fetch(pages, number);
+}
+
+void hl_pages_leave_room(const hl_pages *pages, uint64_t bytes) {
+  pthread_mutex_t *lock = (pthread_mutex_t *)&pages->lock;
+  pthread_mutex_lock(lock);
+  make_room((hl_pages *)pages, bytes);
+  pthread_mutex_unlock(lock);
 }
 
 void hl_pages_forget(const hl_pages *pages) {

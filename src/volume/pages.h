@@ -101,6 +101,10 @@ void hl_pages_load_row(const hl_pages *pages, size_t j, size_t k, void *row);
  * read pages meanwhile. */
 void hl_pages_forget(const hl_pages *pages);
 
+/* Lets go of as many pages as are in the way of `bytes` that are allocated soon: else they would lie in
+ * memory until the next page is needed. Other threads may read pages meanwhile. */
+void hl_pages_leave_room(const hl_pages *pages, uint64_t bytes);
+
 /* Holds a page from now on, in the place of others where the limit is reached. */
 void hl_pages_hold(const hl_pages *pages, size_t number);
 

@@ -377,6 +377,58 @@ static void test_pictures_of_few_pages(void **state) {
   }
 }
 
+/* ---- memory that a frame allocates ---- */
+
+static void *(*plain_allocate)(void *, size_t, size_t);
+static uint64_t most_in_memory; /* blocks and pages together, when a block was allocated */
+
+static void *watch_allocation(void *user_data, size_t size, size_t alignment) {
+  hl_context *context = user_data;
+  uint64_t bytes = atomic_load(&context->held) + atomic_load(&context->paged);
+  if (bytes > most_in_memory) most_in_memory = bytes;
+  return plain_allocate(user_data, size, alignment);
+}
+
+static void render_size(stage *set, hl_renderer *renderer, int side) {
+  static float pixels[160 * 160 * 4];
+  hl_scene *scene = NULL;
+  set->scene.width = set->scene.height = side;
+  assert_int_equal(hl_scene_create(set->context, &set->scene, &scene, NULL), HL_OK);
+  assert_int_equal(hl_renderer_render(renderer, scene, pixels, (size_t)side * 4, NULL, NULL), HL_OK);
+  hl_scene_release(scene);
+}
+
+/* Pages that fill the memory are let go of before a larger frame takes its share of it. */
+static void test_pages_make_room(void **state) {
+  (void)state;
+  enum { SMALL = 16, LARGE = 160, PAGE_SIZES = 125 /* pages */, SLACK = 64 << 10 };
+  uint64_t limit = 0;
+  for (int round = 0; round < 2; round++) { /* the first finds how much the larger frame holds */
+    stage set;
+    hl_renderer *renderer = NULL;
+    stage_open(&set);
+    set.scene.render.threads = 1;
+    hl_volume *packed = add_noise(&set, (const size_t[3]){40, 40, 40}, HL_VOXEL_F32)->volume;
+    set.volumes[0].volume = in_pages(set.context, packed, 3);
+    hl_volume_release(packed);
+    stage_add_directional(&set, (vec3){-1, 0.5, -1})->angular_diameter_deg = 10;
+    plain_allocate = set.context->options.allocate;
+    set.context->options.allocate = watch_allocation;
+    set.context->options.user_data = set.context;
+    set.context->options.memory_limit = limit;
+    assert_int_equal(hl_renderer_create(set.context, &renderer, NULL), HL_OK);
+    render_size(&set, renderer, SMALL);
+    const hl_pages *pages = set.volumes[0].volume->pages;
+    assert_int_equal(atomic_load(&set.context->paged), PAGE_SIZES * pages->page_bytes);
+    most_in_memory = 0;
+    render_size(&set, renderer, LARGE);
+    if (round == 1) assert_in_range(most_in_memory, limit / 2, limit + SLACK);
+    else limit = hl_context_memory_peak(set.context) + PAGE_SIZES / 2 * pages->page_bytes;
+    hl_renderer_destroy(renderer);
+    stage_close(&set);
+  }
+}
+
 static void assert_starts(const char *text, const char *start) {
   if (strncmp(text, start, strlen(start)) != 0) fail_msg("\"%s\" does not begin with \"%s\"", text, start);
 }
@@ -490,6 +542,7 @@ int main(void) {
                                      cmocka_unit_test(test_few_pages),
                                      cmocka_unit_test(test_resident_bytes),
                                      cmocka_unit_test(test_pictures_of_few_pages),
+                                     cmocka_unit_test(test_pages_make_room),
                                      cmocka_unit_test(test_no_room),
                                      cmocka_unit_test(test_other_values),
                                      cmocka_unit_test(test_no_scratch_folder),

@@ -2,6 +2,7 @@
  * bricks, and the voxels that choices look at. */
 #define _GNU_SOURCE
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -12,6 +13,7 @@
 #include "guess/sample.h"
 #include "scene/scene.h"
 #include "volume/brick_bounds.h"
+#include "volume/destination.h"
 #include "volume/glimpse.h"
 #include "volume/pages.h"
 
@@ -208,11 +210,62 @@ static void test_choices_read_no_pages(void **state) {
   }
 }
 
+/* ---- warnings before anything is read ---- */
+
+static char warned[1000];
+
+static void keep_warning(void *user_data, hl_log_level level, const char *message) {
+  (void)user_data;
+  if (level == HL_LOG_WARNING) snprintf(warned, sizeof warned, "%s", message);
+}
+
+/* What a picture of a volume will need is told where the limit is less; its file is not even made: the folder
+ * for it is not there. */
+static void test_warning_of_pictures(void **state) {
+  (void)state;
+  static const struct {
+    size_t side;
+    hl_voxel_type type;
+    uint64_t limit;
+    const char *warning;
+  } cases[] = {{2048, HL_VOXEL_U16, 1u << 30,
+                "huge: a picture of it will need more than 1159 MiB for the bounds of its bricks, and the "
+                "memory limit is "
+                "1024 MiB"},
+               {2048, HL_VOXEL_U16, 1160u << 20, ""},
+               {2048, HL_VOXEL_U8, 1u << 30, ""}, /* 903 MiB */
+               {6600, HL_VOXEL_U8, 1u << 30,
+                "huge: a picture of it will be refused: it has 4.5e+09 bricks of 4 x 4 x 4 voxels, and "
+                "4294967295 can be "
+                "numbered"}};
+  for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+    hl_context_options options;
+    hl_context_options_defaults(&options);
+    options.log = keep_warning;
+    options.memory_limit = cases[n].limit;
+    options.scratch_folder = "/nowhere";
+    hl_context *context = NULL;
+    assert_int_equal(hl_context_create(&options, &context, NULL), HL_OK);
+    hl_volume_description grid;
+    hl_volume_description_defaults(&grid);
+    for (int a = 0; a < 3; a++) grid.dimensions[a] = cases[n].side;
+    grid.type = cases[n].type;
+    hl_destination destination;
+    warned[0] = '\0';
+    assert_int_equal(hl_destination_open(context, &grid, HL_DESTINATION_PIECES, "huge", &destination, NULL),
+                     HL_ERROR_IO);
+    assert_string_equal(warned, cases[n].warning);
+    hl_destination_close(&destination);
+    hl_context_destroy(context);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_brick_bounds),
       cmocka_unit_test(test_glimpse),
       cmocka_unit_test(test_choices_read_no_pages),
+      cmocka_unit_test(test_warning_of_pictures),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
