@@ -7,12 +7,14 @@
 #define HL_SURFACE_CROSSINGS_H
 
 #include "surface/fragment_order.h"
+#include "surface/seen.h"
 #include "surface/surface_plane.h"
 
 /* A tile of the eye's view. All is borrowed. */
 typedef struct crossing_tile {
   const surfaces *all;
   const view *view;
+  const seen_vertices *seen;
   const sheet_stack *sheets;
   const fragment_order *order;
   int x, y; /* its first pixel */

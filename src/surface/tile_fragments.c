@@ -381,7 +381,7 @@ static size_t order_fragments(const fragment_work *work, fragment_worker *worker
   const fragments_source *source = work->source;
   fragment *list = worker->scratch, *other = list + worker->room;
   size_t kept = hl_sort_by_pixel(list, worker->count, order, worker->keys, other);
-  const crossing_tile crossing = {source->surfaces,    source->view,       source->sheets, order,
+  const crossing_tile crossing = {source->surfaces,    source->view,       work->seen, source->sheets, order,
                                   part->tile_x * TILE, part->tile_y * TILE};
   bool parted;
   *sorted = source->of_light ? other : list;
