@@ -388,6 +388,13 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume_look(hl_context *context, hl
  * over the whole picture, without the shadow of the sky, and without the time that the sky takes. */
 HL_API void hl_scene_level_sky(hl_scene_description *description);
 
+/* What to multiply the strengths of all lights, `ambient` and the sky of such a scene by after a change of
+ * what is seen of its volume, as by cuts: they are made for the whole volume, and a cut face that looks at
+ * the light would be clipped. look: the one that the scene was made with. *factor is 1 for looks that keep
+ * their light, and for orthographic cameras. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_light_factor(const hl_scene_description *description,
+                                                      const char *look, double *factor, hl_error *error);
+
 /* The names of looks: "auto", which the data choose, "surface", "translucent", "xray", "smoke" and "vessels".
  * Null past the last. */
 HL_API const char *hl_look_name(size_t index);

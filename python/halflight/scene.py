@@ -238,6 +238,24 @@ def _set_lights(struct: Any, settings: Mapping[str, Any], keep: list[Any]) -> No
     struct.lights, struct.light_count = array, len(array)
 
 
+def _expose_anew(struct: Any, volume: Volume, settings: Mapping[str, Any], keep: list[Any]) -> None:
+    """Automatic light is made for the whole volume: cut open, it gets the light that suits what is left."""
+    cut = settings.get("cuts") is not None or volume._changes.keys() & {"cuts", "clip"}
+    if not cut or volume._base is not None or settings.get("lights") is not None or struct.render.compositing != lib.HL_COMPOSITING_LIGHT:
+        return
+    factor = ffi.new("double *")
+    look = str(volume._changes.get("look") or "auto")
+    call(lib.hl_scene_light_factor, ffi.addressof(struct), ffi.new("char[]", look.encode()), factor)
+    array = ffi.new("hl_light[]", struct.light_count)
+    ffi.memmove(array, struct.lights, ffi.sizeof("hl_light") * struct.light_count)
+    keep.append(array)
+    for light in array:
+        light.intensity *= factor[0]
+    struct.ambient = [channel * factor[0] for channel in struct.ambient]
+    struct.sky.strength *= factor[0]
+    struct.lights = array
+
+
 def _set_meshes(struct: Any, meshes: Mesh | Sequence[Mesh], keep: list[Any]) -> None:
     given = [meshes] if isinstance(meshes, Mesh) else list(meshes)
     array = ffi.new("hl_scene_mesh[]", len(given))
@@ -330,6 +348,8 @@ def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], ch
     reframe = chosen and (size is not None or len(volumes) > 1 or cut is not None or any(one._changes.keys() - {"name"} for one in volumes))
     _set_camera(struct, settings.get("camera"), reframe)
     _set_lights(struct, settings, keep)
+    if chosen and len(volumes) == 1:
+        _expose_anew(struct, volumes[0], settings, keep)
     if (meshes := settings.get("meshes")) is not None:
         _set_meshes(struct, meshes, keep)
     if chosen and settings.get("shadows") == "off" and settings.get("sky") is None:  # as the program's --shadows off

@@ -172,6 +172,25 @@ static void change_shadows(scene_change *change) {
     if (change->lights[i].shadows != HL_SHADOWS_OFF) change->lights[i].shadows = HL_SHADOWS_DEFAULT;
 }
 
+/* Automatic light is made for the whole volume: cut open, a bare volume gets the light that suits what is
+ * left. */
+static int expose_anew(scene_change *change) {
+  const cli_value *values = change->values;
+  hl_scene_description *description = &change->description;
+  double factor = 1;
+  hl_error error = {0};
+  if (!change->bare || description->volume_count != 1 || render_is_maximum(values, description) ||
+      (render_cut_count(values) == 0 && !values[RENDER_CLIP].given))
+    return EXIT_CODE_OK;
+  const char *look = render_look_name(values);
+  hl_status status = hl_scene_light_factor(description, look != NULL ? look : "auto", &factor, &error);
+  if (status != HL_OK) return host_fail(change->host, PHASE_CHANGE, status, &error);
+  for (size_t l = 0; l < description->light_count; l++) change->lights[l].intensity *= factor;
+  for (int c = 0; c < 3; c++) description->ambient[c] *= factor;
+  description->sky.strength *= factor;
+  return EXIT_CODE_OK;
+}
+
 static int change_lights(scene_change *change) {
   hl_scene_description *description = &change->description;
   change->lights = calloc(description->light_count + 1, sizeof *change->lights);
@@ -375,6 +394,7 @@ int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_s
   if (exit_code == EXIT_CODE_OK) exit_code = change_camera(&change);
   if (exit_code == EXIT_CODE_OK) exit_code = add_floor(&change);
   if (exit_code == EXIT_CODE_OK) exit_code = change_lights(&change);
+  if (exit_code == EXIT_CODE_OK) exit_code = expose_anew(&change);
   if (exit_code == EXIT_CODE_OK)
     exit_code = render_sky(host, &values[RENDER_SKY], &change.description, &change.sky);
   if (exit_code == EXIT_CODE_OK) {

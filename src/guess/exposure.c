@@ -11,6 +11,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "guess/cut_face.h"
 #include "guess/sample.h"
 #include "scene/cut.h"
 #include "scene/placement.h"
@@ -21,6 +22,7 @@
 #define BRIGHTEST 0.99  /* fraction of the pixels that are darker */
 #define OPAQUE    0.98
 #define FAINT     0.02 /* least opacity of a step at which a ray meets a surface */
+#define WITHIN    0.8  /* fraction of the light on a cut face that reaches the matter seen there: measured */
 #define THINNEST  0.15 /* fraction of the surfaces that are thinner than hl_exposure.thickness */
 
 enum { SIDE = 64, TABLE = 1024, MOST_LIGHTS = 4 };
@@ -32,7 +34,6 @@ typedef struct exposure {
   vec3 right, up,
       forward; /* the camera's; lengths: half the picture's width and height at distance 1, and 1 */
   vec3 towards[MOST_LIGHTS]; /* unit vectors */
-  double intensity[MOST_LIGHTS];
   double left;  /* fraction of the sky, and of lights with shadows, that reaches bright surfaces */
   double step;  /* world units */
   double empty; /* a value of the invisible surroundings */
@@ -85,25 +86,40 @@ static void sky_light(const hl_sky *sky, const vec3 *normal, double light[3]) {
   }
 }
 
+/* How a sample is lit: as a surface, whose normal is a unit vector of the world, or as a medium. */
+typedef struct sample_light {
+  bool surface;
+  vec3 normal;
+  double left[MOST_LIGHTS], sky; /* the fractions of each light and of the sky that reach it */
+} sample_light;
+
+static sample_light light_by_gradient(const exposure *e, double value, vec3 gradient) {
+  sample_light lit = {.surface = e->volume->shading == HL_SHADING_PHONG && vec3_length(gradient) > e->flat,
+                      .normal = vec3_scale(vec3_normalise(gradient), value > e->empty ? -1 : 1),
+                      .sky = e->left};
+  for (size_t l = 0; l < e->scene->light_count; l++)
+    lit.left[l] = e->scene->lights[l].shadows == HL_SHADOWS_OFF ? 1 : e->left;
+  return lit;
+}
+
 /* The light that a sample sends to the eye, eqs. (3) and (4). own: the voxel's colour. */
-static void shade(const exposure *e, int entry, double value, vec3 gradient, vec3 to_eye, const double own[3],
+static void shade(const exposure *e, int entry, const sample_light *lit, vec3 to_eye, const double own[3],
                   double sent[3]) {
   const hl_material *material = &e->volume->material;
-  bool surface = e->volume->shading == HL_SHADING_PHONG && vec3_length(gradient) > e->flat;
-  vec3 normal = vec3_scale(vec3_normalise(gradient), value > e->empty ? -1 : 1);
   double gloss = 0, matt[3], sky[3];
-  sky_light(&e->scene->sky, surface ? &normal : NULL, sky);
+  sky_light(&e->scene->sky, lit->surface ? &lit->normal : NULL, sky);
   for (int c = 0; c < 3; c++)
     matt[c] = material->emission + material->ambient * e->scene->ambient[c] +
-              e->left * sky[c] * (surface ? material->diffuse : 1);
+              lit->sky * sky[c] * (lit->surface ? material->diffuse : 1);
   for (size_t l = 0; l < e->scene->light_count; l++) {
     const hl_light *light = &e->scene->lights[l];
-    double cosine = vec3_dot(normal, e->towards[l]);
-    vec3 reflected = vec3_subtract(vec3_scale(normal, 2 * cosine), e->towards[l]);
+    double cosine = vec3_dot(lit->normal, e->towards[l]);
+    double intensity = light->intensity * lit->left[l];
+    vec3 reflected = vec3_subtract(vec3_scale(lit->normal, 2 * cosine), e->towards[l]);
     for (int c = 0; c < 3; c++)
-      matt[c] += e->intensity[l] * light->color[c] * (surface ? material->diffuse * fmax(cosine, 0) : 1);
-    if (surface && cosine > 0)
-      gloss += e->intensity[l] * material->specular *
+      matt[c] += intensity * light->color[c] * (lit->surface ? material->diffuse * fmax(cosine, 0) : 1);
+    if (lit->surface && cosine > 0)
+      gloss += intensity * material->specular *
                pow(fmax(vec3_dot(to_eye, reflected), 0), material->shininess);
   }
   for (int c = 0; c < 3; c++) sent[c] = e->color[entry][c] * own[c] * matt[c] + gloss;
@@ -140,6 +156,68 @@ static double thickness_at(const exposure *e, int entry, double value, double st
   return INFINITY;
 }
 
+/* The face of a cut that a ray has come through: its normal, in the world, and where on the ray it was. */
+typedef struct ray_face {
+  vec3 normal;
+  double at;
+} ray_face;
+
+/* before, here: points of index space a step apart, the second at t. */
+static void pass_face(const exposure *e, ray_face *face, double t, vec3 before, vec3 here) {
+  vec3 outward;
+  if (!hl_cut_face_between(e->volume, before, here, &outward)) return;
+  face->normal = vec3_normalise(mat3_apply(mat3_transpose(e->world_to_index.linear), outward));
+  face->at = t - e->step / 2;
+}
+
+/* The fraction of light from a direction that reaches a point of the world, in steps of three voxels. */
+static double passing(const exposure *e, vec3 point, vec3 towards) {
+  enum { STEPS = 3 };
+  const size_t *size = e->volume->volume->dimension;
+  vec3 at = affine3_apply(e->world_to_index, point);
+  vec3 step = mat3_apply(e->world_to_index.linear, vec3_scale(towards, STEPS * e->step));
+  for (double left = 1;; at = vec3_add(at, step)) {
+    const long x = lround(at.x), y = lround(at.y), z = lround(at.z);
+    if (left < FAINT) return 0;
+    if (x < 0 || y < 0 || z < 0 || x >= (long)size[0] || y >= (long)size[1] || z >= (long)size[2])
+      return left;
+    double value = hl_volume_value(e->volume->volume, (size_t)x, (size_t)y, (size_t)z);
+    double clear = isfinite(value) ? 1 - e->opacity[entry_of(e, value)] : 1;
+    if (clear < 1 && hl_scene_volume_left(e->volume, at)) left *= pow(clear, STEPS);
+  }
+}
+
+/* The fractions of the lights and of the sky that reach a face: the sky by eight directions, which stand for
+ * equal parts of the light on it, sin^2 of their angles from the normal being 1/4 and 3/4 (derived: the
+ * cosine's integral over a cap of the hemisphere). */
+static void light_reaching_face(const exposure *e, vec3 point, vec3 normal, sample_light *lit) {
+  enum { DIRECTIONS = 8 };
+  const hl_scene_description *scene = e->scene;
+  vec3 across = fabs(normal.x) < 0.6 ? (vec3){1, 0, 0} : (vec3){0, 1, 0};
+  vec3 u = vec3_normalise(vec3_cross(normal, across)), v = vec3_cross(normal, u);
+  point = vec3_add(point, vec3_scale(normal, 3 * e->step));
+  for (size_t l = 0; l < scene->light_count; l++)
+    if (scene->lights[l].shadows != HL_SHADOWS_OFF) lit->left[l] = WITHIN * passing(e, point, e->towards[l]);
+  lit->sky = 0;
+  for (int n = 0; n < DIRECTIONS && scene->sky.type != HL_SKY_NONE; n++) {
+    double aside = sqrt(n % 2 ? 0.75 : 0.25), turn = 2 * HL_PI * n / DIRECTIONS;
+    vec3 flat = vec3_add(vec3_scale(u, aside * cos(turn)), vec3_scale(v, aside * sin(turn)));
+    vec3 towards = vec3_add(flat, vec3_scale(normal, sqrt(1 - aside * aside)));
+    lit->sky += WITHIN * passing(e, point, towards) / DIRECTIONS;
+  }
+}
+
+/* Within a voxel and a half behind a face, half way to where the renderer turns from the face's normal to the
+ * data's, a sample is lit by the face. */
+static void light_by_face(const exposure *e, const ray_face *face, double t, vec3 point, vec3 to_eye,
+                          sample_light *lit) {
+  bool behind = (t - face->at) * vec3_dot(face->normal, to_eye) < 1.5 * e->step;
+  if (e->volume->shading != HL_SHADING_PHONG || !behind) return;
+  if (e->volume->cut_shading == HL_CUT_SHADING_FACE) lit->surface = true, lit->normal = face->normal;
+  if (e->volume->cut_shading == HL_CUT_SHADING_NONE) lit->surface = false;
+  light_reaching_face(e, point, face->normal, lit);
+}
+
 typedef struct pixel {
   double brightness; /* of the brightest channel; -1 where the pixel is mostly background */
   double thickness;  /* of the first surface that the ray meets, in steps; infinite where it meets none */
@@ -152,6 +230,7 @@ static pixel look_along(const exposure *e, vec3 origin, vec3 direction) {
   vec3 to_eye = vec3_scale(direction, -1);
   double part[2], alpha = 0, seen[3] = {0, 0, 0};
   pixel p = {-1, INFINITY};
+  ray_face face = {.normal = to_eye, .at = -INFINITY};
   if (!cross_grid(e->volume, from, along, part)) return p;
   for (double t = part[0] + 0.5 * e->step; t < part[1] && alpha < OPAQUE; t += e->step) {
     vec3 place = vec3_add(from, vec3_scale(along, t));
@@ -159,6 +238,7 @@ static pixel look_along(const exposure *e, vec3 origin, vec3 direction) {
     double near = hl_volume_value(volume, (size_t)at[0], (size_t)at[1], (size_t)at[2]), slope[3], own[3],
            sent[3];
     if (!hl_scene_volume_left(e->volume, place)) continue;
+    pass_face(e, &face, t, vec3_subtract(place, vec3_scale(along, e->step)), place);
     if (!isfinite(near) || !(e->opacity[entry_of(e, near)] > 0)) continue;
     double value = smooth_value(volume, at, slope);
     if (!isfinite(value)) continue;
@@ -168,7 +248,9 @@ static pixel look_along(const exposure *e, vec3 origin, vec3 direction) {
     if (alpha < FAINT && e->opacity[entry] > FAINT && vec3_length(gradient) > e->flat)
       p.thickness = thickness_at(e, entry, value, vec3_length(gradient) * e->step);
     hl_volume_color(volume, (size_t)at[0], (size_t)at[1], (size_t)at[2], own);
-    shade(e, entry, value, gradient, to_eye, own, sent);
+    sample_light lit = light_by_gradient(e, value, gradient);
+    light_by_face(e, &face, t, vec3_add(origin, vec3_scale(direction, t)), to_eye, &lit);
+    shade(e, entry, &lit, to_eye, own, sent);
     for (int c = 0; c < 3; c++) seen[c] += share * sent[c];
     alpha += share;
   }
@@ -192,7 +274,6 @@ static bool begin(const hl_scene_description *scene, double empty, double left, 
   e->up = vec3_scale(e->up, half);
   for (size_t l = 0; l < scene->light_count; l++) {
     e->towards[l] = vec3_scale(vec3_normalise(hl_light_way(camera, &scene->lights[l])), -1);
-    e->intensity[l] = scene->lights[l].intensity * (scene->lights[l].shadows == HL_SHADOWS_OFF ? 1 : left);
   }
   e->left = left;
   e->step = mat3_shortest_column(index_to_world.linear);

@@ -12,6 +12,7 @@
 #include "guess/styles.h"
 #include "guess/view.h"
 #include "scene/check.h"
+#include "scene/cut.h"
 #include "scene/scene.h"
 
 #define LIGHT_AZIMUTH   -40 /* key light from the upper left, degrees from the line of sight */
@@ -110,14 +111,20 @@ static double enough_sheets(const hl_volume *volume, hl_shading shading) {
   return fmax(diagonal / edge / sheets, 0.25);
 }
 
+static hl_status judge_exposure(const hl_look *look, const hl_data_analysis *analysis,
+                                const hl_scene_description *description, hl_exposure *exposure,
+                                hl_error *error) {
+  double empty = analysis->kind == HL_DATA_FLOW ? analysis->middle : analysis->background;
+  *exposure = (hl_exposure){1, INFINITY};
+  return look->left > 0 ? hl_scene_exposure(description, empty, look->left, exposure, error) : HL_OK;
+}
+
 /* Scales all lights by one factor, so that the picture is as bright as it can be without being clipped, and
  * lays sheets closer where surfaces are thin. */
 static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, hl_light lights[2],
                         hl_scene_description *description, hl_error *error) {
-  double empty = analysis->kind == HL_DATA_FLOW ? analysis->middle : analysis->background;
-  hl_exposure exposure = {1, INFINITY};
-  hl_status status = HL_OK;
-  if (look->left > 0) status = hl_scene_exposure(description, empty, look->left, &exposure, error);
+  hl_exposure exposure;
+  hl_status status = judge_exposure(look, analysis, description, &exposure, error);
   for (size_t l = 0; l < description->light_count; l++) lights[l].intensity *= exposure.factor;
   for (int channel = 0; channel < 3; channel++) description->ambient[channel] *= exposure.factor;
   description->sky.strength *= exposure.factor;
@@ -199,4 +206,28 @@ hl_status hl_scene_for_volume_look(hl_context *context, hl_volume *volume, const
   *scene = NULL;
   hl_status status = hl_style_named(look, &style, error);
   return status == HL_OK ? make_scene(context, volume, file, style, scene, error) : status;
+}
+
+hl_status hl_scene_light_factor(const hl_scene_description *description, const char *look, double *factor,
+                                hl_error *error) {
+  if (description == NULL || description->volume_count == 0 || look == NULL || factor == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_scene_light_factor: null description, look or factor, or no volume");
+  const hl_scene_volume *volume = &description->volumes[0];
+  hl_context *context = volume->volume->context;
+  hl_scene_description placed = *description;
+  placed_cuts cuts = {NULL, NULL};
+  const hl_look *style = NULL;
+  hl_data_analysis analysis;
+  hl_exposure exposure;
+  *factor = 1;
+  hl_status status = hl_style_named(look, &style, error);
+  if (status == HL_OK) status = hl_data_analyse(volume->volume, &analysis, error);
+  if (status != HL_OK) return status;
+  if (style == NULL) style = hl_look_for(volume->volume, volume->file, &analysis);
+  status = hl_cuts_place(context, &placed, &cuts, error);
+  if (status == HL_OK) status = judge_exposure(style, &analysis, &placed, &exposure, error);
+  if (status == HL_OK) *factor = exposure.factor;
+  hl_placed_cuts_release(context, &cuts);
+  return status;
 }

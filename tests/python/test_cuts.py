@@ -42,6 +42,20 @@ def test_a_plane_takes_half():
     assert not np.array_equal(whole, half)
 
 
+def test_light_of_what_is_left(tmp_path):
+    """Cuts of a volume or of its scene change all automatic light by one factor; lights that are given stay."""
+    ball = Volume(np.where(np.hypot(np.hypot(*np.mgrid[:20, :20] - 9.5), np.arange(20)[:, None, None] - 9.5) < 8, 200, 0).astype(np.uint8))
+    plane = {"type": "plane", "point": (9.5, 9.5, 9.5), "normal": (0, -1, 1)}
+    whole, own, of_scene = (Scene(*one, camera="front") if len(one) == 1 else Scene(one[0], camera="front", cuts=one[1])
+                            for one in ((ball,), (ball.replace(cuts=plane),), (ball, plane)))
+    ratio = own.lights[0].intensity / whole.lights[0].intensity
+    assert abs(ratio - 1) > 0.01
+    for scene in own, of_scene:
+        assert [light.intensity for light in scene.lights] == pytest.approx([light.intensity * ratio for light in whole.lights])
+    given = Scene(ball.replace(cuts=plane), camera="front", lights=whole.lights)
+    assert [light.intensity for light in given.lights] == [light.intensity for light in whole.lights]
+
+
 @pytest.mark.parametrize("cut", [{"type": "cone"}, {"type": "plane", "point": (0, 0, 0)}, {**PLANE, "radius": 3}, 3])
 def test_wrong_cuts(cut):
     with pytest.raises(TypeError):

@@ -300,6 +300,49 @@ static void skies_are_fitted(void **state) {
   hl_context_destroy(p.context);
 }
 
+/* A ball that is cut through its middle, the face towards the eye, in the light of a lamp at the eye or at an
+ * angle of 45 degrees: what the eye meets of the face in two steps, 0.99, sends its colour times the angle's
+ * cosine, times 0.8 for what the light loses on its way to the matter that is seen; the rest has no normal. A
+ * clip box leaves the same face as a plane does. */
+static void cut_faces_are_fitted(void **state) {
+  (void)state;
+  static const double azimuths[] = {0, 45}, factors[] = {1.087, 1.529};
+  hl_context *context = make_context();
+  fill(ball_of_bytes);
+  parts p;
+  hl_exposure exposure[3];
+  hl_volume *volume = ball_scene(context, 60, 0.9, &p);
+  const hl_camera *camera = &p.description.camera;
+  hl_cut plane = {.type = HL_CUT_PLANE, .point = {24, 24, 24}};
+  p.scene_volume.cuts = &plane;
+  p.scene_volume.cut_count = 1;
+  for (int c = 0; c < 3; c++) {
+    p.color[0].color[c] = 1;
+    p.description.ambient[c] = 0;
+    plane.normal[c] = camera->position[c] - camera->target[c];
+  }
+  for (int n = 0; n < 2; n++) {
+    hl_light_direction(camera, azimuths[n], 0, p.light.direction);
+    assert_int_equal(hl_scene_exposure(&p.description, 0, 1, &exposure[n], NULL), HL_OK);
+    if (fabs(exposure[n].factor / factors[n] - 1) > 0.04)
+      fail_msg("%g degrees: %g in place of %g", azimuths[n], exposure[n].factor, factors[n]);
+  }
+  for (int by_clip = 0; by_clip < 2; by_clip++) {
+    memcpy(plane.normal, (double[3]){0, 0, 1}, sizeof plane.normal);
+    p.scene_volume.cut_count = by_clip ? 0 : 1;
+    p.scene_volume.clipped = by_clip;
+    for (int a = 0; a < 3; a++)
+      p.scene_volume.clip_min[a] = -1, p.scene_volume.clip_max[a] = a == 2 ? 24 : 48;
+    assert_int_equal(hl_scene_exposure(&p.description, 0, 1, &exposure[by_clip], NULL), HL_OK);
+  }
+  assert_true(fabs(exposure[0].factor / exposure[1].factor - 1) < 0.02);
+  p.scene_volume.cut_count = 0;
+  hl_volume_release(volume);
+  hl_volume_release(p.volume);
+  hl_context_destroy(context);
+  hl_context_destroy(p.context);
+}
+
 /* A bare volume stands under a sky whose zenith is the camera's up; under a tight memory limit the same
  * lights shine beside constant light instead. */
 static void volumes_stand_under_a_sky(void **state) {
@@ -403,6 +446,7 @@ int main(void) {
       cmocka_unit_test(flows_show_their_extremes),
       cmocka_unit_test(lights_are_fitted),
       cmocka_unit_test(skies_are_fitted),
+      cmocka_unit_test(cut_faces_are_fitted),
       cmocka_unit_test(volumes_stand_under_a_sky),
       cmocka_unit_test(surfaces_are_measured),
       cmocka_unit_test(materials_have_colors_of_their_own),

@@ -1,0 +1,40 @@
+/* guess/cut_face.c - see cut_face.h. */
+#include "guess/cut_face.h"
+
+#include "scene/cut.h"
+#include "scene/placement.h"
+
+static double component(vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+/* Away from the inside of a shape, at a point near its face. Of a box, the axis along which the point is
+ * farthest out is the face's. */
+static vec3 out_of_shape(const cut_shape *cut, vec3 point) {
+  const mat3 *to_shape = &cut->to_shape.linear;
+  vec3 q = affine3_apply(cut->to_shape, point);
+  int axis = 0;
+  if (cut->type == HL_CUT_PLANE) return vec3_scale(to_shape->row[0], -1);
+  if (cut->type == HL_CUT_SPHERE) return mat3_apply(mat3_transpose(*to_shape), q);
+  for (int a = 1; a < 3; a++)
+    if (fabs(component(q, a)) > fabs(component(q, axis))) axis = a;
+  return vec3_scale(to_shape->row[axis], component(q, axis) < 0 ? -1 : 1);
+}
+
+bool hl_cut_face_between(const hl_scene_volume *volume, vec3 before, vec3 here, vec3 *outward) {
+  double low[3], high[3];
+  for (size_t i = 0; i < volume->cut_count; i++) {
+    cut_shape shape = hl_cut_shape(volume, i);
+    if (hl_cuts_leave(&shape, 1, before)) continue;
+    *outward = vec3_scale(out_of_shape(&shape, here), shape.keep_inside ? 1 : -1);
+    return true;
+  }
+  hl_scene_volume_box(volume, low, high);
+  for (int a = 0; a < 3; a++) {
+    double end = (double)volume->volume->dimension[a] - 0.5, at = component(before, a);
+    bool under = at < low[a] && low[a] > -0.5, over = at > high[a] && high[a] < end;
+    if (!under && !over) continue;
+    *outward = (vec3){a == 0, a == 1, a == 2};
+    if (under) *outward = vec3_scale(*outward, -1);
+    return true;
+  }
+  return false;
+}

@@ -1,0 +1,13 @@
+/* guess/cut_face.h - the faces that a volume's cuts and clip box leave, where a ray meets them. */
+#ifndef HL_GUESS_CUT_FACE_H
+#define HL_GUESS_CUT_FACE_H
+
+#include <halflight/scene.h>
+
+#include "core/vector.h"
+
+/* Whether a ray comes through such a face between two points of index space, of which the second is left of
+ * the volume. *outward: the face's normal, as a gradient of index space, away from what is left. */
+bool hl_cut_face_between(const hl_scene_volume *volume, vec3 before, vec3 here, vec3 *outward);
+
+#endif
