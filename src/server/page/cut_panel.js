@@ -96,11 +96,13 @@ function panelOf({ title, noun, overlay, report, owner, cuts: cutsNow, take: tak
     ];
   }
 
+  const allOn = () => toggle({ label: "All cuts", get: () => list.some((one) => one.on), set: (on) => take("all", list.map((one) => ({ ...one, on }))) });
+
   function build() {
     element.hidden = owner() < 0;
     if (element.hidden) return;
     follow();
-    parts = [numbered, ...(list.length > 0 ? [...cutParts(), ...others()] : [])];
+    parts = [...(list.length > 1 ? [allOn()] : []), numbered, ...(list.length > 0 ? [...cutParts(), ...others()] : [])];
     body.replaceChildren(...parts.map((part) => part.element));
     parts.forEach((part) => part.update());
   }
