@@ -172,10 +172,10 @@ static hl_status read_numbers(vtp_file *file, const vtp_array *array, size_t cou
 /* The first array of a piece's section and name; null: none. */
 static const vtp_array *find_array(const vtp_file *file, const vtp_piece *piece, section section,
                                    const char *name) {
-  const vtp_array *arrays = file->arrays + piece->first_array;
-  for (size_t n = 0; n < piece->array_count; n++)
-    if (arrays[n].section == section && (name == NULL || strcmp(arrays[n].name, name) == 0))
-      return &arrays[n];
+  for (size_t n = 0; n < piece->array_count; n++) {
+    const vtp_array *array = &file->arrays[piece->first_array + n];
+    if (array->section == section && (name == NULL || strcmp(array->name, name) == 0)) return array;
+  }
   return NULL;
 }
 

@@ -240,14 +240,14 @@ hl_status hl_stream_read_all(hl_stream *stream, void *bytes, size_t wanted, hl_e
   return status;
 }
 
-/* Passes over bytes of a plain file without reading them, as far as the file has them. Returns their number.
- */
+/* Passes over bytes of a plain file, or of memory, without reading them, as far as it has them. Returns their
+ * number. */
 static uint64_t seek_over(hl_stream *stream, uint64_t count) {
-  if (!hl_stream_is_plain_file(stream)) return 0;
+  if (stream->below != NULL || !file_of(stream)->regular) return 0;
   file_stream *file = (file_stream *)stream;
   uint64_t buffered = stream->end - stream->begin, left = file_at_most(stream);
   if (count <= buffered + HL_STREAM_BUFFER_BYTES || count - buffered > left) return 0;
-  if (lseek(file->descriptor, (off_t)(count - buffered), SEEK_CUR) < 0) return 0;
+  if (file->memory == NULL && lseek(file->descriptor, (off_t)(count - buffered), SEEK_CUR) < 0) return 0;
   file->position += count - buffered;
   stream->offset += count;
   stream->begin = stream->end = 0;

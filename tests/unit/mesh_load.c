@@ -267,6 +267,34 @@ static void test_several_pieces(void **state) {
   hl_context_destroy(context);
 }
 
+/* Pieces far into a file: a triangle each, at a place of its own. */
+static void test_many_pieces(void **state) {
+  (void)state;
+  enum { PIECES = 1000 };
+  static char text[PIECES * 600];
+  size_t length = (size_t)sprintf(text, "<VTKFile type=\"PolyData\"><PolyData>");
+  for (int n = 0; n < PIECES; n++)
+    length += (size_t)sprintf(
+        text + length,
+        "<Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\"><Points>" ARRAY(
+            "Float32", "p", "3", "0 0 %d 1 0 %d 0 1 %d") "</Points>" CELLS("Polys", "0 1 2", "3") "</Piece>",
+        n, n, n);
+  length += (size_t)sprintf(text + length, "</PolyData></VTKFile>");
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  hl_mesh *mesh = load(context, "a.vtp", text, length, NULL);
+  const hl_mesh_description *d = hl_mesh_describe(mesh);
+  assert_int_equal(d->triangle_count, PIECES);
+  for (uint32_t n = 0; n < PIECES; n++)
+    for (uint32_t i = 0; i < 3; i++) {
+      assert_int_equal(d->triangles[n][i], 3 * n + i);
+      assert_true(d->positions[3 * n + i][2] == (float)n);
+    }
+  hl_mesh_release(mesh);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 /* Scalars of pieces share one range; arrays that only one piece has are refused, and so is a cell that names
  * a point of another piece. */
 static void test_arrays_of_pieces(void **state) {
@@ -418,6 +446,7 @@ int main(void) {
                                      cmocka_unit_test(test_cube_is_closed),
                                      cmocka_unit_test(test_empty_pieces),
                                      cmocka_unit_test(test_several_pieces),
+                                     cmocka_unit_test(test_many_pieces),
                                      cmocka_unit_test(test_arrays_of_pieces),
                                      cmocka_unit_test(test_normals_of_cells),
                                      cmocka_unit_test(test_refused),
