@@ -32,6 +32,34 @@ def shrink(value, key=""):
     return value * 6 if key == "voxel_size" else value
 
 
+def more_than_one_number():
+    """Labels, masks, functions of two numbers, opacity by gradient, isosurfaces and cuts."""
+    boxes = [{"value": [5, 60], "second": [1, 20], "edge": [3, 2], "sigma": 0.2, "color": [1, 0.5, 0.2], "opacity": 0.5}]
+    polygons = [{"vertices": [[5, 1], [60, 1], [30, 20]], "apex": [30, 8], "falloff": 0.5, "opacity": 0.4}]
+    image = {"file": "t.png", "value": [0, 255], "second": [0, 20]}
+    functions = [
+        {"opacity": [[0, 0], [255, 1]], "gradient_opacity": [[0, 0], [20, 1]]},
+        {"second": "gradient", "unit_distance": 2, "boxes": boxes, "polygons": polygons},
+        {"second": "gradient", "image": image, "gradient_opacity": [[0, 0.5], [9, 1]]}]
+    cuts = [{"type": "plane", "point": [1, 1, 1], "normal": [0, 1, 1], "world": True},
+            {"type": "box", "min": [0, 0, 0], "max": [1, 2, 3], "keep": "inside"}, {"type": "sphere", "center": [1, 1, 1], "radius": 1}]
+    labels = [{"value": 9, "name": "rim", "color": [1, 0, 0], "opacity": 0.5}, {"value": 40, "visible": False}, {"value": 255}]
+    volumes = {
+        "labels": {"labels": labels}, "labels-all": {"labels": True, "label_table": "f.json"},
+        "mask": {"mask": {"file": "v.nrrd", "rest": 0.1, "labels": [dict(labels[0], tint=0.5), *labels[1:]]}},
+        "iso": {"iso": [{"value": 20, "color": [1, 0.8, 0.2], "opacity": 0.5}, {"value": 200}]},
+        "cuts": {"cuts": cuts, "cut_shading": "none", "cut_casts_shadow": True}}
+    for n, function in enumerate(functions):
+        volumes[f"two-numbers-{n}"] = {"transfer_function": function}
+        write("transfer", f"two-numbers-{n}.json", text(function))
+    for name, volume in volumes.items():
+        write("scene", f"{name}.json", text({"halflight": 1, "volumes": [{"file": "v.nrrd", **volume}]}))
+    write("scene", "second-volume.json", text({"halflight": 1, "volumes": [
+        {"file": "v.nrrd", "transfer_function": {"second": {"volume": "b"}, "boxes": boxes}}, {"name": "b", "file": "v.nrrd", "visible": False}]}))
+    write("scene", "scene-cuts.json", text({"halflight": 1, "volumes": [{"file": "v.nrrd"}], "cuts": cuts, "meshes": [
+        {"spheres": [[1, 1, 1, 1]], "cut": False}, {"floor": True}, {"floor": 2, "cut": True}]}))
+
+
 def scenes():
     for path in sorted((source / "examples").glob("*.json")):
         scene = shrink(json.loads(path.read_text()))
@@ -220,6 +248,7 @@ def pictures():
 
 
 scenes()
+more_than_one_number()
 shapes()
 functions()
 foreign_functions()
