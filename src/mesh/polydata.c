@@ -211,14 +211,16 @@ static hl_status convert_lines(const conversion *c) {
   return HL_OK;
 }
 
-/* The triangles of a cell of `count` points: a fan, or a strip whose every second triangle is turned over. */
-static hl_status add_cell(const conversion *c, const double *points, size_t count, bool strip) {
+/* The triangles of cell n: a fan, or a strip whose every second triangle is turned over. */
+static hl_status add_cell(const conversion *c, const cells *cells, size_t n, bool strip) {
   hl_status status = HL_OK;
-  for (size_t n = 2; status == HL_OK && n < count; n++) {
-    size_t a = strip ? n - 2 : 0, b = n - 1;
-    bool turned = strip && n % 2 == 1;
-    status = hl_mesh_add_triangle(c->parts, (uint32_t)points[turned ? b : a],
-                                  (uint32_t)points[turned ? a : b], (uint32_t)points[n], c->error);
+  size_t begin = begin_of(cells, n), end = (size_t)cells->ends[n];
+  for (size_t last = begin + 2; status == HL_OK && last < end; last++) {
+    size_t a = strip ? last - 2 : begin, b = last - 1;
+    bool turned = strip && (last - begin) % 2 == 1;
+    status = hl_mesh_add_triangle(c->parts, (uint32_t)cells->points[turned ? b : a],
+                                  (uint32_t)cells->points[turned ? a : b], (uint32_t)cells->points[last],
+                                  c->error);
   }
   return status;
 }
@@ -233,8 +235,8 @@ static hl_status convert_faces(const conversion *c, cell_kind kind) {
   const cells *cells = &c->data->cells[kind];
   hl_status status = HL_OK;
   for (size_t n = 0; status == HL_OK && n < cells->count; n++) {
-    size_t begin = begin_of(cells, n), before = c->parts->triangle_count;
-    status = add_cell(c, cells->points + begin, (size_t)cells->ends[n] - begin, kind == CELLS_STRIPS);
+    size_t before = c->parts->triangle_count;
+    status = add_cell(c, cells, n, kind == CELLS_STRIPS);
     if (c->parts->face_colors != NULL) color_faces(c, before, c->first_cell[kind] + n);
   }
   return status;
