@@ -43,10 +43,15 @@ static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings,
   return h;
 }
 
-/* The least cosine of the angle between the slicing axis and the rays of a near light to the content. */
-static const double FLATTEST = 0.2;
+/* The least cosine of the angle between the slicing axis and the rays of a near light to the content (78
+ * degrees), and of a soft parallel one (70 degrees: along flatter rays, floors shade themselves). */
+static const double FLATTEST = 0.2, FLATTEST_WIDE = 0.35;
 
 static bool rays_cross(const frame *frame, const light_source *source, vec3 h) {
+  if (source->parallel && source->shadows == HL_SHADOWS_SOFT) {
+    double off = acos(fmin(fmax(vec3_dot(source->direction, h), -1), 1));
+    return off + source->light->angular_diameter_deg / 2 * HL_PI / 180 < acos(FLATTEST_WIDE);
+  }
   for (int i = 0; i < frame->point_count && !source->parallel; i++) {
     vec3 way = vec3_subtract(frame->points[i], source->position);
     if (vec3_dot(way, h) <= FLATTEST * vec3_length(way)) return false;
@@ -60,7 +65,7 @@ static bool rays_cross(const frame *frame, const light_source *source, vec3 h) {
 static vec3 middle_of_rays(const frame *frame, const light_source *source) {
   enum { STEPS = 64 };
   vec3 middle = source->direction;
-  for (int step = 1; step <= STEPS; step++) {
+  for (int step = 1; step <= STEPS && !source->parallel; step++) {
     vec3 farthest = middle;
     double least = INFINITY;
     for (int i = 0; i < frame->point_count; i++) {
@@ -80,24 +85,32 @@ static vec3 lean_towards(vec3 h, vec3 axis, double fraction) {
   return vec3_normalise(vec3_add(vec3_scale(h, 1 - fraction), vec3_scale(axis, fraction)));
 }
 
-/* The slicing axis of one light. Where some rays of a near light do not cross the half-way vector's sheets,
- * the axis leans towards the middle of the light's rays, no further than needed: it then moves without a jump
- * as the light does. False where no sheets serve both the light and the eye. */
+static bool eye_crosses(const frame *frame, vec3 h, bool back_to_front) {
+  double e = vec3_dot(frame->eye_direction, h) * (back_to_front ? -1 : 1);
+  return e > 0 && flattest_eye_ray(&frame->eye, h) >= FLATTEST;
+}
+
+/* The slicing axis of one light. Where some rays of a near light, or of a wide parallel one, do not cross the
+ * half-way vector's sheets, the axis leans towards the middle of the light's rays, no further than needed: it
+ * then moves without a jump as the light does. For a parallel light it leans no further than the eye allows;
+ * false where no sheets serve both a near light and the eye. */
 static bool axis_of_light(const frame *frame, const hl_render_settings *settings, const light_source *source,
                           vec3 *h, bool *back_to_front) {
   *h = slicing_axis(frame, settings, source->direction, back_to_front);
   if (settings->slicing == HL_SLICING_IMAGE_ALIGNED || rays_cross(frame, source, *h)) return true;
   vec3 middle = middle_of_rays(frame, source);
-  if (!rays_cross(frame, source, middle)) return false;
+  if (!source->parallel && !rays_cross(frame, source, middle)) return false;
   double low = 0, high = 1;
   for (int i = 0; i < 40; i++) {
     double fraction = (low + high) / 2;
-    if (rays_cross(frame, source, lean_towards(*h, middle, fraction))) high = fraction;
+    vec3 leaning = lean_towards(*h, middle, fraction);
+    bool enough = rays_cross(frame, source, leaning);
+    if (source->parallel) enough = enough || !eye_crosses(frame, leaning, *back_to_front);
+    if (enough) high = fraction;
     else low = fraction;
   }
-  vec3 leaning = lean_towards(*h, middle, high);
-  double e = vec3_dot(frame->eye_direction, leaning) * (*back_to_front ? -1 : 1);
-  if (e <= 0 || flattest_eye_ray(&frame->eye, leaning) < FLATTEST) return false;
+  vec3 leaning = lean_towards(*h, middle, source->parallel ? low : high);
+  if (!eye_crosses(frame, leaning, *back_to_front)) return source->parallel;
   *h = leaning;
   return true;
 }

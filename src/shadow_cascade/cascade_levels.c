@@ -4,30 +4,32 @@
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* GREATEST_CHUNKS, FAR_CHUNKS: the most chunks of a sweep, of near lights and of parallel ones; with 64
- * chunks balls under parallel lights 60 to 90 degrees wide showed rings. ENOUGH_CHUNKS: to stay below this
- * number, chunks grow, at most to THICK_CHUNK. LEAST_CHUNK: the least thickness of a chunk. Thickness in
- * pixels of omega. */
-static const double GREATEST_CHUNKS = 64, FAR_CHUNKS = 88, ENOUGH_CHUNKS = 32, THICK_CHUNK = 1.3,
-                    LEAST_CHUNK = 0.15;
+/* A sweep's chunks; thickness in pixels of omega. To stay below ENOUGH_CHUNKS they grow, at most to
+ * THICK_CHUNK; to stay below NEAR_CHUNKS, or FAR_CHUNKS of a parallel light, at most to THICKEST_CHUNK: the
+ * chunks next to a receiver cast shadows without penumbrae, which shows where things touch. With 64 chunks
+ * balls under parallel lights 60 to 90 degrees wide showed rings, and with some greater numbers below 200
+ * balls under 90 to 120 degrees. */
+static const double ENOUGH_CHUNKS = 32, NEAR_CHUNKS = 64, FAR_CHUNKS = 88, GREATEST_CHUNKS = 200;
+static const double LEAST_CHUNK = 0.15, THICK_CHUNK = 1.3, THICKEST_CHUNK = 2;
 
 /* Divides omega from start to end into chunks of one length. A near light's omega grows without bound towards
  * the light, so these chunks may be more than the most allowed; then a chunk is a fixed fraction of -omega
  * (derived: at a distance z from the light a penumbra of width w in omega is w z wide in space, and -omega is
  * L / z, so all chunks have penumbrae of one width in space). Returns how many chunks there are. */
 static double divide(soft_cascade *cascade, double start, double end) {
-  double thick = fmin(fmax((end - start) / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
-  double most = cascade->parallel ? FAR_CHUNKS : GREATEST_CHUNKS;
+  double length = end - start, few = cascade->parallel ? FAR_CHUNKS : NEAR_CHUNKS;
+  double thick = fmin(fmax(length / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
+  double most = fmin(fmax(few, length / THICKEST_CHUNK), GREATEST_CHUNKS);
   cascade->chunk_start = start;
-  cascade->chunk = cascade->shortest_chunk = fmax(thick, (end - start) / most);
+  cascade->chunk = cascade->shortest_chunk = fmax(thick, length / most);
   cascade->shrink = 0;
   bool even = cascade->emission ==
               NULL; /* an image keeps equal chunks: errors 0.024, not 0.026, over an edge */
-  if (cascade->parallel || !even || cascade->chunk <= thick) return (end - start) / cascade->chunk;
-  cascade->shrink = 1 - pow(end / start, 1 / GREATEST_CHUNKS);
+  if (cascade->parallel || !even || cascade->chunk <= thick) return length / cascade->chunk;
+  cascade->shrink = 1 - pow(end / start, 1 / most);
   cascade->chunk = cascade->shrink * -start;
   cascade->shortest_chunk = cascade->shrink * -end;
-  return GREATEST_CHUNKS;
+  return most;
 }
 
 /* The least number of chunks between a receiver and a level's groups: level 0 keeps three groups, level 1
@@ -160,8 +162,9 @@ static void plan_levels(soft_cascade *cascade, const light_shadow *shadow) {
     cascade->slope_step[axis] = vec3_dot(axis == 0 ? view->du : view->dv, along[axis]);
   }
   double start = hl_cascade_omega(cascade, first), end = hl_cascade_omega(cascade, last);
-  /* near a light, omega grows without bound; penumbrae wider than twice the buffer make no difference */
-  start = fmax(start, end - 2 * TILE * fmax(tiles_x, tiles_y));
+  /* near a light, omega grows without bound, and penumbrae wider than twice the buffer make no difference; of
+   * a parallel light even the first slabs may be receivers, which would get shadows without penumbrae */
+  if (!cascade->parallel) start = fmax(start, end - 2 * TILE * fmax(tiles_x, tiles_y));
   double chunks = divide(cascade, start, end);
   /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept, here or in levels
    * 0 and 1) */
