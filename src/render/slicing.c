@@ -43,16 +43,21 @@ static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings,
   return h;
 }
 
-/* The least cosine of the angle between the slicing axis and the rays of a near light to the content (78
- * degrees), and of a soft parallel one (70 degrees: along flatter rays, floors shade themselves). */
-static const double FLATTEST = 0.2, FLATTEST_WIDE = 0.35;
+/* The least cosine of the angle between the slicing axis and a light's rays to the content (78 degrees), and
+ * of those of a soft parallel light that has a sweep of its own (70 degrees: along flatter rays, floors shade
+ * themselves). */
+static const double FLATTEST = 0.2, FLATTEST_ALONE = 0.35;
+
+/* Whether all rays of a soft parallel light cross sheets at this cosine or a greater one. */
+static bool disk_crosses(const light_source *source, vec3 h, double cosine) {
+  double off = acos(fmin(fmax(vec3_dot(source->direction, h), -1), 1));
+  return source->shadows != HL_SHADOWS_SOFT ||
+         off + source->light->angular_diameter_deg / 2 * HL_PI / 180 < acos(cosine);
+}
 
 static bool rays_cross(const frame *frame, const light_source *source, vec3 h) {
-  if (source->parallel && source->shadows == HL_SHADOWS_SOFT) {
-    double off = acos(fmin(fmax(vec3_dot(source->direction, h), -1), 1));
-    return off + source->light->angular_diameter_deg / 2 * HL_PI / 180 < acos(FLATTEST_WIDE);
-  }
-  for (int i = 0; i < frame->point_count && !source->parallel; i++) {
+  if (source->parallel) return disk_crosses(source, h, FLATTEST);
+  for (int i = 0; i < frame->point_count; i++) {
     vec3 way = vec3_subtract(frame->points[i], source->position);
     if (vec3_dot(way, h) <= FLATTEST * vec3_length(way)) return false;
   }
@@ -85,6 +90,11 @@ static vec3 lean_towards(vec3 h, vec3 axis, double fraction) {
   return vec3_normalise(vec3_add(vec3_scale(h, 1 - fraction), vec3_scale(axis, fraction)));
 }
 
+/* The same for a light that has a sweep of its own. */
+static bool rays_cross_alone(const frame *frame, const light_source *source, vec3 h) {
+  return source->parallel ? disk_crosses(source, h, FLATTEST_ALONE) : rays_cross(frame, source, h);
+}
+
 static bool eye_crosses(const frame *frame, vec3 h, bool back_to_front) {
   double e = vec3_dot(frame->eye_direction, h) * (back_to_front ? -1 : 1);
   return e > 0 && flattest_eye_ray(&frame->eye, h) >= FLATTEST;
@@ -97,14 +107,14 @@ static bool eye_crosses(const frame *frame, vec3 h, bool back_to_front) {
 static bool axis_of_light(const frame *frame, const hl_render_settings *settings, const light_source *source,
                           vec3 *h, bool *back_to_front) {
   *h = slicing_axis(frame, settings, source->direction, back_to_front);
-  if (settings->slicing == HL_SLICING_IMAGE_ALIGNED || rays_cross(frame, source, *h)) return true;
+  if (settings->slicing == HL_SLICING_IMAGE_ALIGNED || rays_cross_alone(frame, source, *h)) return true;
   vec3 middle = middle_of_rays(frame, source);
-  if (!source->parallel && !rays_cross(frame, source, middle)) return false;
+  if (!source->parallel && !rays_cross_alone(frame, source, middle)) return false;
   double low = 0, high = 1;
   for (int i = 0; i < 40; i++) {
     double fraction = (low + high) / 2;
     vec3 leaning = lean_towards(*h, middle, fraction);
-    bool enough = rays_cross(frame, source, leaning);
+    bool enough = rays_cross_alone(frame, source, leaning);
     if (source->parallel) enough = enough || !eye_crosses(frame, leaning, *back_to_front);
     if (enough) high = fraction;
     else low = fraction;
