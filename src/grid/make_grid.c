@@ -1,8 +1,6 @@
 /* grid/make_grid.c - see make_grid.h. */
 #include "grid/make_grid.h"
 
-#include <float.h>
-#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -17,7 +15,7 @@
 typedef struct copy_job {
   const grid *grid;
   hl_storage storage;
-  float greatest; /* distance of copied values from 0 */
+  float greatest; /* see hl_grid_value() */
 } copy_job;
 
 static float stored_of(hl_storage storage, const void *row, size_t x) {
@@ -36,7 +34,7 @@ static void replace_slice(void *data, size_t index, int worker) {
     const void *from = hl_grid_row(grid, (int64_t)y, (int64_t)index);
     for (size_t x = 0; x < count_x; x++) {
       float value = stored_of(job->storage, from, x);
-      to[x] = isfinite(value) ? fminf(fmaxf(value, -job->greatest), job->greatest) : grid->empty;
+      to[x] = hl_grid_value(value, job->greatest, grid->empty);
     }
   }
 }
@@ -51,7 +49,7 @@ static void set_voxels(grid *grid, const void *voxels, size_t row_bytes, size_t 
 /* Copies voxels as floats, with empty in place of every non-finite one; an interpolating kernel's become
  * coefficients. */
 static void replace_voxels(hl_pool *pool, hl_storage storage, const kernel *kernel, grid *grid) {
-  copy_job job = {grid, storage, kernel->interpolates ? GREATEST_FILTERED : FLT_MAX};
+  copy_job job = {grid, storage, hl_greatest_value(kernel)};
   hl_pool_run(pool, (size_t)grid->dimension[2], replace_slice, &job);
   if (kernel->interpolates) hl_prefilter(pool, grid);
   size_t row_bytes = (size_t)grid->dimension[0] * sizeof *grid->finite_voxels;

@@ -7,7 +7,23 @@
 #ifndef HL_GRID_PREFILTER_H
 #define HL_GRID_PREFILTER_H
 
+#include <float.h>
+#include <math.h>
+
 #include "grid/grid.h"
+#include "grid/kernel.h"
+
+/* How far from 0 values may be. Coefficients are up to 27 times as far: 3 times along each axis, by the sum
+ * of the filter's weights (derived). Greater values would leave the range of floats, and are taken for this
+ * one. */
+static inline float hl_greatest_value(const kernel *kernel) {
+  return kernel->interpolates ? FLT_MAX / 64 : FLT_MAX;
+}
+
+/* The value that sampling takes for a stored one; empty: for what is not finite. */
+static inline float hl_grid_value(float stored, float greatest, float empty) {
+  return isfinite(stored) ? fminf(fmaxf(stored, -greatest), greatest) : empty;
+}
 
 /* Turns finite_voxels, which hold the grid's finite values, into coefficients. */
 void hl_prefilter(hl_pool *pool, grid *grid);

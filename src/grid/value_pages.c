@@ -5,8 +5,6 @@
 #define _GNU_SOURCE
 #include "grid/value_pages.h"
 
-#include <float.h>
-#include <math.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -21,7 +19,7 @@ static const char subject[] = "values of a volume larger than memory";
 typedef struct value_job {
   const hl_volume *volume;
   hl_pool *pool;
-  float empty, greatest; /* greatest: distance of values from 0 */
+  float empty, greatest; /* of hl_grid_value() */
   bool filters;
   size_t width, height, slice; /* voxels of a row, rows of a slice, voxels of a slice */
   size_t first;                /* slice that slices[0] is */
@@ -32,10 +30,6 @@ typedef struct value_job {
   size_t row_bytes;
 } value_job;
 
-static float value_of(const value_job *job, float stored) {
-  return isfinite(stored) ? fminf(fmaxf(stored, -job->greatest), job->greatest) : job->empty;
-}
-
 /* Loads a slice, and filters it along x and y. */
 static void load_slice(void *data, size_t index, int worker) {
   const value_job *job = data;
@@ -44,7 +38,7 @@ static void load_slice(void *data, size_t index, int worker) {
   for (size_t y = 0; y < job->height; y++) {
     const void *row = hl_volume_row_in(job->volume, y, job->first + index, buffer);
     for (size_t x = 0; x < job->width; x++)
-      *to++ = value_of(job, (float)hl_stored_number(job->volume->storage, row, x));
+      *to++ = hl_grid_value((float)hl_stored_number(job->volume->storage, row, x), job->greatest, job->empty);
   }
   if (job->filters) hl_prefilter_slice(slice, job->width, job->height);
 }
@@ -193,7 +187,7 @@ static void replace_own(const value_job *job, const hl_own_voxels *own, hl_own_v
   size_t count = hl_own_voxels_count(own);
   float *values = (float *)(void *)made->slices;
   hl_own_voxels_run(own, 0, count, made->slices);
-  for (size_t n = 0; n < count; n++) values[n] = value_of(job, values[n]);
+  for (size_t n = 0; n < count; n++) values[n] = hl_grid_value(values[n], job->greatest, job->empty);
 }
 
 /* Coefficients of this rank's slices: along z rank by rank, and the last slice of each is told to the next.
@@ -250,7 +244,7 @@ hl_status hl_value_pages_create(hl_pool *pool, const hl_volume *volume, const ke
                                 hl_pages **pages, hl_error *error) {
   hl_context *context = volume->context;
   value_job job = {.volume = volume, .pool = pool, .empty = empty, .filters = kernel->interpolates};
-  job.greatest = job.filters ? GREATEST_FILTERED : FLT_MAX;
+  job.greatest = hl_greatest_value(kernel);
   job.width = volume->dimension[0], job.height = volume->dimension[1];
   job.slice = job.width * job.height;
   job.row_bytes = job.width * hl_storage_bytes(volume->storage);

@@ -10,10 +10,6 @@
 #include "grid/kernel.h"
 #include "volume/pages.h"
 
-/* Coefficients are up to 27 times as far from 0 as values are: 3 times along each axis, by the sum of the
- * filter's weights (derived). Greater values would leave the range of floats, and are taken for this one. */
-#define GREATEST_FILTERED (FLT_MAX / 64)
-
 /* volume: with pages. empty: takes the place of what is not finite. *pages: owned by the caller. Over ranks
  * collective, as is the release; coefficients are refused there unless each rank holds whole slices, in the
  * order of the ranks. */

@@ -53,8 +53,7 @@ static bool is_missed(const sweep *sweep, int light, const near_sample *sample, 
 static void take(const sweep *sweep, const near_sample *sample, int light, float (*passing)[TILE_PIXELS]) {
   const fragment *f = sample->fragment;
   const double *color = sweep->frame->surfaces->meshes[f->mesh].scene->attenuation_color;
-  int block = f->pixel / BLOCK_PIXELS, lane = f->pixel % BLOCK_PIXELS;
-  int at = (block / 4 * BLOCK + lane / BLOCK) * TILE + block % 4 * BLOCK + lane % BLOCK;
+  int at = hl_pixel_row(f->pixel) * TILE + hl_pixel_column(f->pixel);
   for (int c = 0; c < sweep->channels; c++)
     passing[light * sweep->channels + c][at] *= 1 - f->opacity * (float)color[c];
 }

@@ -48,18 +48,17 @@ static vec3 slicing_axis(const frame *frame, const hl_render_settings *settings,
  * themselves). */
 static const double FLATTEST = 0.2, FLATTEST_ALONE = 0.35;
 
-/* Whether all rays of a soft parallel light cross sheets at this cosine or a greater one. */
-static bool disk_crosses(const light_source *source, vec3 h, double cosine) {
-  double off = acos(fmin(fmax(vec3_dot(source->direction, h), -1), 1));
-  return source->shadows != HL_SHADOWS_SOFT ||
-         off + source->light->angular_diameter_deg / 2 * HL_PI / 180 < acos(cosine);
-}
-
-static bool rays_cross(const frame *frame, const light_source *source, vec3 h) {
-  if (source->parallel) return disk_crosses(source, h, FLATTEST);
+/* Whether all rays of a light cross the sheets at this cosine or a greater one: of a near light those from
+ * its centre, of a parallel one those of its disk where it is soft. */
+static bool rays_cross(const frame *frame, const light_source *source, vec3 h, double least) {
+  if (source->parallel) {
+    double off = acos(fmin(fmax(vec3_dot(source->direction, h), -1), 1));
+    return source->shadows != HL_SHADOWS_SOFT ||
+           off + source->light->angular_diameter_deg / 2 * HL_PI / 180 < acos(least);
+  }
   for (int i = 0; i < frame->point_count; i++) {
     vec3 way = vec3_subtract(frame->points[i], source->position);
-    if (vec3_dot(way, h) <= FLATTEST * vec3_length(way)) return false;
+    if (vec3_dot(way, h) <= least * vec3_length(way)) return false;
   }
   return true;
 }
@@ -70,7 +69,7 @@ static bool rays_cross(const frame *frame, const light_source *source, vec3 h) {
 static vec3 middle_of_rays(const frame *frame, const light_source *source) {
   enum { STEPS = 64 };
   vec3 middle = source->direction;
-  for (int step = 1; step <= STEPS && !source->parallel; step++) {
+  for (int step = 1; step <= STEPS; step++) {
     vec3 farthest = middle;
     double least = INFINITY;
     for (int i = 0; i < frame->point_count; i++) {
@@ -90,11 +89,6 @@ static vec3 lean_towards(vec3 h, vec3 axis, double fraction) {
   return vec3_normalise(vec3_add(vec3_scale(h, 1 - fraction), vec3_scale(axis, fraction)));
 }
 
-/* The same for a light that has a sweep of its own. */
-static bool rays_cross_alone(const frame *frame, const light_source *source, vec3 h) {
-  return source->parallel ? disk_crosses(source, h, FLATTEST_ALONE) : rays_cross(frame, source, h);
-}
-
 static bool eye_crosses(const frame *frame, vec3 h, bool back_to_front) {
   double e = vec3_dot(frame->eye_direction, h) * (back_to_front ? -1 : 1);
   return e > 0 && flattest_eye_ray(&frame->eye, h) >= FLATTEST;
@@ -106,21 +100,23 @@ static bool eye_crosses(const frame *frame, vec3 h, bool back_to_front) {
  * false where no sheets serve both a near light and the eye. */
 static bool axis_of_light(const frame *frame, const hl_render_settings *settings, const light_source *source,
                           vec3 *h, bool *back_to_front) {
+  const bool wide = source->parallel;
+  const double least = wide ? FLATTEST_ALONE : FLATTEST;
   *h = slicing_axis(frame, settings, source->direction, back_to_front);
-  if (settings->slicing == HL_SLICING_IMAGE_ALIGNED || rays_cross_alone(frame, source, *h)) return true;
-  vec3 middle = middle_of_rays(frame, source);
-  if (!source->parallel && !rays_cross_alone(frame, source, middle)) return false;
+  if (settings->slicing == HL_SLICING_IMAGE_ALIGNED || rays_cross(frame, source, *h, least)) return true;
+  vec3 middle = wide ? source->direction : middle_of_rays(frame, source);
+  if (!wide && !rays_cross(frame, source, middle, least)) return false;
   double low = 0, high = 1;
   for (int i = 0; i < 40; i++) {
     double fraction = (low + high) / 2;
     vec3 leaning = lean_towards(*h, middle, fraction);
-    bool enough = rays_cross_alone(frame, source, leaning);
-    if (source->parallel) enough = enough || !eye_crosses(frame, leaning, *back_to_front);
+    bool enough = rays_cross(frame, source, leaning, least) ||
+                  (wide && !eye_crosses(frame, leaning, *back_to_front));
     if (enough) high = fraction;
     else low = fraction;
   }
-  vec3 leaning = lean_towards(*h, middle, source->parallel ? low : high);
-  if (!eye_crosses(frame, leaning, *back_to_front)) return source->parallel;
+  vec3 leaning = lean_towards(*h, middle, wide ? low : high);
+  if (!eye_crosses(frame, leaning, *back_to_front)) return wide;
   *h = leaning;
   return true;
 }
@@ -136,7 +132,7 @@ static bool axis_serves(const frame *frame, const frame_sweep *sweep, vec3 h, bo
   if (e < STEEPEST) return false;
   for (int i = 0; i < sweep->light_count; i++) {
     const light_source *source = &frame->lights[sweep->light[i]];
-    if (vec3_dot(source->direction, h) < STEEPEST || !rays_cross(frame, source, h)) return false;
+    if (vec3_dot(source->direction, h) < STEEPEST || !rays_cross(frame, source, h, FLATTEST)) return false;
   }
   return true;
 }

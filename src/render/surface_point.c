@@ -4,12 +4,11 @@
 vec3 hl_surface_place(const sweep *sweep, const tile_slab *slab, const fragment *f, double height) {
   const view *eye = &sweep->frame->eye;
   const sheet_stack *sheets = &sweep->geometry->sheets;
-  int block = f->pixel / BLOCK_PIXELS, lane = f->pixel % BLOCK_PIXELS;
   double u, v;
   vec3 start, way;
   hl_fragment_middle(f->samples, &u, &v);
-  u += slab->x * TILE + block % 4 * BLOCK + lane % BLOCK;
-  v += slab->y * TILE + block / 4 * BLOCK + lane / BLOCK;
+  u += slab->x * TILE + hl_pixel_column(f->pixel);
+  v += slab->y * TILE + hl_pixel_row(f->pixel);
   hl_view_ray(eye, u, v, &start, &way);
   double rise = sheets->first + height - vec3_dot(sheets->normal, start);
   return vec3_add(start, vec3_scale(way, rise / vec3_dot(sheets->normal, way)));

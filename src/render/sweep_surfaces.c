@@ -217,9 +217,7 @@ bool hl_sweep_surfaces_attenuate(const sweep *sweep, const attenuate_job *job, f
   for (size_t i = 0; i < range.count; i++) {
     const fragment *f = &range.first[i];
     const double *color = sweep->frame->surfaces->meshes[f->mesh].scene->attenuation_color;
-    int block = f->pixel / BLOCK_PIXELS, lane = f->pixel % BLOCK_PIXELS;
-    size_t row = (size_t)(block / 4 * BLOCK + lane / BLOCK),
-           column = (size_t)(block % 4 * BLOCK + lane % BLOCK);
+    size_t row = (size_t)hl_pixel_row(f->pixel), column = (size_t)hl_pixel_column(f->pixel);
     for (int c = 0; c < job->channels; c++) {
       float *at = job->transmittance[c] + row * job->stride + column, before = *at;
       float passing = 1 - f->opacity * (float)color[c];

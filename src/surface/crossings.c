@@ -206,11 +206,10 @@ static bool any_may_cross(const pixel_fragments *pixel, const fragment *list, si
 /* Parts a pixel's fragments; *parted is set where any were. */
 static size_t part_pixel(const crossing_tile *tile, const fragment *list, size_t count, fragment *to,
                          bool *parted) {
-  int block = list->pixel / BLOCK_PIXELS, lane = list->pixel % BLOCK_PIXELS;
   pixel_fragments pixel;
   pixel.tile = tile;
-  pixel.x = tile->x + block % 4 * BLOCK + lane % BLOCK;
-  pixel.y = tile->y + block / 4 * BLOCK + lane / BLOCK;
+  pixel.x = tile->x + hl_pixel_column(list->pixel);
+  pixel.y = tile->y + hl_pixel_row(list->pixel);
   if (count > MOST_FRAGMENTS || !any_may_cross(&pixel, list, count)) {
     memcpy(to, list, count * sizeof *to);
     return count;

@@ -37,11 +37,6 @@ static bool make_room_for_tile(hl_context *context, fragment_worker *worker, siz
   return true;
 }
 
-/* The pixel's number, block after block. */
-static uint8_t number_of_pixel(int column, int row) {
-  return (uint8_t)((row / BLOCK * 4 + column / BLOCK) * BLOCK_PIXELS + row % BLOCK * BLOCK + column % BLOCK);
-}
-
 /* Marks a slab about a pixel, block after block. */
 static void mark(const fragment_work *work, fragment_worker *worker, int pixel, int32_t slab) {
   worker->near[slab] |= work->near[pixel];
@@ -150,7 +145,7 @@ static void add_pixel(const fragment_work *work, fragment_worker *worker, const 
   height = fmin(fmax(height, plane->lowest), plane->highest); /* not a number: the lowest */
   f.slab = hl_slab_of(source->sheets, height);
   f.height = (float)height;
-  f.pixel = number_of_pixel(at->x % TILE, at->y % TILE);
+  f.pixel = (uint8_t)hl_pixel_number(at->x % TILE, at->y % TILE);
   mark(work, worker, f.pixel, f.slab);
   if (f.opacity <= 0) return;
   double slope = hl_plane_slope(plane, at->u, at->v);
@@ -446,7 +441,7 @@ void hl_fragment_work_begin(fragment_work *work) {
   set_small_view(work->source, &work->small);
   for (int row = 0; row < TILE; row++)
     for (int column = 0; column < TILE; column++)
-      work->near[number_of_pixel(column, row)] = tiles_near(column, row);
+      work->near[hl_pixel_number(column, row)] = tiles_near(column, row);
 }
 
 bool hl_fragment_worker_begin(hl_context *context, fragment_worker *worker, int sheets) {

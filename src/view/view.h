@@ -19,6 +19,17 @@ enum { TILE = 16, BLOCK = 4, TILE_BLOCKS = 16, BLOCK_PIXELS = 16, TILE_PIXELS = 
 /* The alpha from which a pixel counts as opaque: matter behind adds less than half a step of 10 bits. */
 #define PIXEL_OPAQUE (1.0f - 1.0f / 2048)
 
+/* A pixel's number in its tile, block after block, from its column and row there; and back. */
+static inline int hl_pixel_number(int column, int row) {
+  return (row / BLOCK * 4 + column / BLOCK) * BLOCK_PIXELS + row % BLOCK * BLOCK + column % BLOCK;
+}
+static inline int hl_pixel_column(int number) {
+  return number / BLOCK_PIXELS % 4 * BLOCK + number % BLOCK_PIXELS % BLOCK;
+}
+static inline int hl_pixel_row(int number) {
+  return number / BLOCK_PIXELS / 4 * BLOCK + number % BLOCK_PIXELS / BLOCK;
+}
+
 /* The number of tiles that cover `pixels` pixels. */
 static inline int hl_tiles(int pixels) { return (pixels + TILE - 1) / TILE; }
 

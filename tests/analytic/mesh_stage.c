@@ -34,6 +34,13 @@ hl_scene_mesh *mesh_stage_add(mesh_stage *all, hl_mesh *made) {
   return mesh;
 }
 
+hl_scene_mesh *mesh_stage_describe(mesh_stage *all, const hl_mesh_description *description) {
+  hl_mesh *made = NULL;
+  hl_error error = {0};
+  if (hl_mesh_create(all->set.context, description, &made, &error) != HL_OK) fail_msg("%s", error.message);
+  return mesh_stage_add(all, made);
+}
+
 void mesh_stage_choose_shadows(mesh_stage *all, hl_light *light, int kind, double diameter_deg) {
   static const hl_soft_method methods[] = {HL_SOFT_CASCADE, HL_SOFT_PAPER, HL_SOFT_SUBLIGHTS};
   hl_render_settings *render = &all->set.scene.render;

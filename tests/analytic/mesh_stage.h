@@ -19,6 +19,9 @@ void mesh_stage_close(mesh_stage *all);
 /* Adds a white, diffuse mesh, which the stage then owns. */
 hl_scene_mesh *mesh_stage_add(mesh_stage *all, hl_mesh *made);
 
+/* The same of a description; the test fails where it is refused. */
+hl_scene_mesh *mesh_stage_describe(mesh_stage *all, const hl_mesh_description *description);
+
 /* kind 0: hard shadows; 1 to 3: soft ones of the directional light, which gets this angular diameter, by the
  * cascade, the paper's method and sub-lights. */
 void mesh_stage_choose_shadows(mesh_stage *all, hl_light *light, int kind, double diameter_deg);

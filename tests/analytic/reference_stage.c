@@ -1,6 +1,7 @@
 /* analytic/reference_stage.c - see reference_stage.h. */
 #include "reference_stage.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -8,6 +9,9 @@
 #include <string.h>
 
 #include <cmocka.h>
+
+#include "volume/convert.h"
+#include "volume/volume.h"
 
 static void require(hl_status status, const hl_error *error) {
   if (status != HL_OK) fail_msg("%s: %s", hl_status_name(status), error->message);
@@ -87,6 +91,35 @@ hl_scene_volume *stage_add_grid(stage *set, const size_t dimensions[3], const do
 hl_scene_volume *stage_add_box(stage *set, vec3 low, vec3 high) {
   vec3 size = vec3_subtract(high, low);
   return stage_add_grid(set, (size_t[3]){1, 1, 1}, (double[3]){size.x, size.y, size.z}, low, NULL);
+}
+
+hl_volume_description stage_describe_volume(const hl_volume *volume) {
+  hl_volume_info info = {.struct_size = sizeof info};
+  assert_int_equal(hl_volume_get_info(volume, &info), HL_OK);
+  hl_volume_description description;
+  hl_volume_description_defaults(&description);
+  description.type = volume->type;
+  description.value_scale = volume->value_scale;
+  description.value_offset = volume->value_offset + volume->value_scale * hl_voxel_type_bias(volume->type);
+  for (size_t a = 0; a < 3; a++) {
+    description.dimensions[a] = volume->dimension[a];
+    description.origin[a] = info.origin[a];
+    for (size_t b = 0; b < 3; b++) description.axis[a][b] = info.direction[b][a] * info.spacing[a];
+  }
+  return description;
+}
+
+void stage_spoil(stage *set) {
+  hl_volume *old = set->volumes[0].volume, *made = NULL;
+  float *voxels = old->owned_voxels;
+  size_t count = hl_volume_voxel_count(old);
+  for (size_t v = 0; v < count; v += 7) voxels[v] = v % 2 == 0 ? NAN : v % 3 == 0 ? INFINITY : -INFINITY;
+  voxels[count - 1] = NAN;
+  hl_volume_description description = stage_describe_volume(old);
+  description.voxels = voxels;
+  assert_int_equal(hl_volume_create(set->context, &description, &made, NULL), HL_OK);
+  set->volumes[0].volume = made;
+  hl_volume_release(old);
 }
 
 void stage_set_opacity(stage *set, hl_scene_volume *volume, double opacity, double unit_distance) {

@@ -30,6 +30,11 @@ hl_scene_volume *stage_add_grid(stage *set, const size_t dimensions[3], const do
                                 const float *voxels);
 /* A grid of one voxel that fills the box. */
 hl_scene_volume *stage_add_box(stage *set, vec3 low, vec3 high);
+/* A volume's grid, without its voxels. */
+hl_volume_description stage_describe_volume(const hl_volume *volume);
+/* Makes every seventh voxel, and the last one, of the first volume one that is not finite; it must be of
+ * floats. */
+void stage_spoil(stage *set);
 void stage_set_opacity(stage *set, hl_scene_volume *volume, double opacity, double unit_distance);
 void stage_set_color(stage *set, hl_scene_volume *volume, double r, double g, double b);
 hl_light *stage_add_directional(stage *set, vec3 direction);

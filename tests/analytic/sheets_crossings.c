@@ -67,15 +67,12 @@ static hl_scene_mesh *add_board(mesh_stage *all, int n, vec3 at, double by_x, do
     for (int k = 0; k < 6; k++) triangles[2 * i + (size_t)k / 3][k % 3] = corners[k];
   }
   hl_mesh_description d;
-  hl_mesh *made = NULL;
-  hl_error error = {0};
   hl_mesh_description_defaults(&d);
   d.positions = (const float(*)[3])positions, d.vertex_count = vertices;
   d.triangles = (const uint32_t(*)[3])triangles, d.triangle_count = count;
-  if (hl_mesh_create(all->set.context, &d, &made, &error) != HL_OK) fail_msg("%s", error.message);
+  hl_scene_mesh *mesh = mesh_stage_describe(all, &d);
   free(positions);
   free(triangles);
-  hl_scene_mesh *mesh = mesh_stage_add(all, made);
   mesh->material = (hl_material){.emission = 1};
   return mesh;
 }
@@ -199,15 +196,12 @@ static void test_one_height(void **state) {
   const line line = {22, -26, -13, -12};
   for (int k = 0; k < 2; k++) {
     hl_mesh_description d;
-    hl_mesh *made = NULL;
-    hl_error error = {0};
     mesh_stage all;
     mesh_stage_open(&all, SIDE, 32);
     hl_mesh_description_defaults(&d);
     d.positions = positions, d.vertex_count = 4;
     d.triangles = triangles, d.face_colors = colors, d.triangle_count = 2;
-    if (hl_mesh_create(all.set.context, &d, &made, &error) != HL_OK) fail_msg("%s", error.message);
-    mesh_stage_add(&all, made)->material = (hl_material){.emission = 1};
+    mesh_stage_describe(&all, &d)->material = (hl_material){.emission = 1};
     stage_add_directional(&all.set, (vec3){0, 0, k ? 1 : -1});
     stage_render_sheets(&all.set, pixels);
     int shared = 0;
@@ -249,15 +243,12 @@ static void test_fold(void **state) {
                                       ends[i % 2][1] + line.ny * aside + line.nx * along, 2 - i / 2 * 2.5});
     }
     hl_mesh_description d;
-    hl_mesh *made = NULL;
-    hl_error error = {0};
     mesh_stage all;
     mesh_stage_open(&all, SIDE, 32);
     hl_mesh_description_defaults(&d);
     d.positions = (const float(*)[3])positions, d.vertex_count = 6;
     d.triangles = triangles, d.face_colors = colors, d.triangle_count = 4;
-    if (hl_mesh_create(all.set.context, &d, &made, &error) != HL_OK) fail_msg("%s", error.message);
-    mesh_stage_add(&all, made)->material = (hl_material){.emission = 1};
+    mesh_stage_describe(&all, &d)->material = (hl_material){.emission = 1};
     stage_add_directional(&all.set, (vec3){0.2, 0.3, k % 2 ? -1 : 1});
     stage_render_sheets(&all.set, pixels);
     int shared = 0;
@@ -284,14 +275,11 @@ static void test_sphere_in_board(void **state) {
   for (int k = 0; k < 4; k++) {
     double height = 2 + k, radius = sqrt(64 - height * height), sum = 0;
     hl_mesh_description d;
-    hl_mesh *made = NULL;
-    hl_error error = {0};
     mesh_stage all;
     mesh_stage_open(&all, SIDE, 32);
     hl_mesh_description_defaults(&d);
     d.spheres = sphere, d.sphere_count = 1;
-    if (hl_mesh_create(all.set.context, &d, &made, &error) != HL_OK) fail_msg("%s", error.message);
-    mesh_stage_add(&all, made)->material = (hl_material){.emission = 1};
+    mesh_stage_describe(&all, &d)->material = (hl_material){.emission = 1};
     hl_scene_mesh *board = add_board(&all, k % 2 ? 40 : 1, (vec3){0, 0, height}, 0, 0);
     for (int c = 0; c < 3; c++) board->color[c] = 0;
     stage_add_directional(&all.set, k < 2 ? (vec3){0.2, 0.3, -1} : (vec3){0.2, 0.3, 1});

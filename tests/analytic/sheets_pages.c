@@ -18,25 +18,9 @@ enum { SIDE = 24, FLOATS = SIDE * SIDE * 4, MOST_VOXELS = 40 * 40 * 40 };
 
 /* ---- the same volume in pages ---- */
 
-static hl_volume_description description_of(const hl_volume *volume) {
-  hl_volume_info info = {.struct_size = sizeof info};
-  assert_int_equal(hl_volume_get_info(volume, &info), HL_OK);
-  hl_volume_description description;
-  hl_volume_description_defaults(&description);
-  description.type = volume->type;
-  description.value_scale = volume->value_scale;
-  description.value_offset = volume->value_offset;
-  for (size_t a = 0; a < 3; a++) {
-    description.dimensions[a] = volume->dimension[a];
-    description.origin[a] = info.origin[a];
-    for (size_t b = 0; b < 3; b++) description.axis[a][b] = info.direction[b][a] * info.spacing[a];
-  }
-  return description;
-}
-
 /* Stores the voxels in pieces that begin and end anywhere in a row. */
 static hl_volume *in_pages(hl_context *context, const hl_volume *volume, int shift) {
-  hl_volume_description description = description_of(volume);
+  hl_volume_description description = stage_describe_volume(volume);
   hl_pages *pages;
   assert_int_equal(hl_pages_create(context, "/tmp", &description, shift, &pages, NULL), HL_OK);
   size_t bytes = hl_storage_bytes(volume->storage), count = hl_volume_voxel_count(volume);
@@ -455,20 +439,6 @@ static void test_no_room(void **state) {
 
 /* ---- other values than the voxels' ---- */
 
-/* A volume with some voxels that are not finite, also at its corners, in the place of another. */
-static void spoil(stage *set) {
-  hl_volume *old = set->volumes[0].volume, *made = NULL;
-  float *voxels = old->owned_voxels;
-  size_t count = hl_volume_voxel_count(old);
-  for (size_t v = 0; v < count; v += 7) voxels[v] = v % 2 == 0 ? NAN : v % 3 == 0 ? INFINITY : -INFINITY;
-  voxels[count - 1] = NAN;
-  hl_volume_description description = description_of(old);
-  description.voxels = voxels;
-  assert_int_equal(hl_volume_create(set->context, &description, &made, NULL), HL_OK);
-  set->volumes[0].volume = made;
-  hl_volume_release(old);
-}
-
 /* What is not finite is replaced, and the interpolating kernel's coefficients are found, as in memory. */
 static void test_other_values(void **state) {
   (void)state;
@@ -479,7 +449,7 @@ static void test_other_values(void **state) {
     set.context->options.scratch_folder = "/tmp";
     bool interpolates = n / 4 > 0, not_finite = n / 4 % 4 == 0;
     add_noise(&set, sizes[n % 4], not_finite ? HL_VOXEL_F32 : types[n / 4 - 1]);
-    if (not_finite) spoil(&set);
+    if (not_finite) stage_spoil(&set);
     if (interpolates) set.scene.render.kernel = HL_KERNEL_INTERPOLATING;
     set.volumes[0].shading = HL_SHADING_PHONG;
     stage_add_directional(&set, (vec3){-1, 0.5, -1});

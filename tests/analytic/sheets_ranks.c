@@ -86,26 +86,10 @@ static held_block hold_block(const hl_volume *volume, const hl_box *box, int lay
   return held;
 }
 
-static hl_volume_description description_of(const hl_volume *volume) {
-  hl_volume_info info = {.struct_size = sizeof info};
-  assert_int_equal(hl_volume_get_info(volume, &info), HL_OK);
-  hl_volume_description description;
-  hl_volume_description_defaults(&description);
-  description.type = volume->type;
-  description.value_scale = volume->value_scale;
-  description.value_offset = volume->value_offset + volume->value_scale * hl_voxel_type_bias(volume->type);
-  for (size_t a = 0; a < 3; a++) {
-    description.dimensions[a] = volume->dimension[a];
-    description.origin[a] = info.origin[a];
-    for (size_t b = 0; b < 3; b++) description.axis[a][b] = info.direction[b][a] * info.spacing[a];
-  }
-  return description;
-}
-
 /* The same volume over ranks, with small pages. *held: to be released after the volume. */
 static hl_volume *over_ranks(const hl_volume *volume, const hl_box *box, int layout, int shift,
                              held_block *held) {
-  hl_volume_description whole = description_of(volume);
+  hl_volume_description whole = stage_describe_volume(volume);
   hl_own_voxels *own = NULL;
   hl_volume *made = NULL;
   *held = hold_block(volume, box, layout);
@@ -334,19 +318,6 @@ static void test_few_pages(void **state) {
 
 /* ---- other values than the voxels' ---- */
 
-/* A volume with some voxels that are not finite, in the place of another. */
-static void spoil(stage *set) {
-  hl_volume *old = set->volumes[0].volume, *made = NULL;
-  float *voxels = old->owned_voxels;
-  for (size_t v = 0; v < hl_volume_voxel_count(old); v += 7)
-    voxels[v] = v % 2 == 0 ? NAN : v % 3 == 0 ? INFINITY : -INFINITY;
-  hl_volume_description description = description_of(old);
-  description.voxels = voxels;
-  assert_int_equal(hl_volume_create(set->context, &description, &made, NULL), HL_OK);
-  set->volumes[0].volume = made;
-  hl_volume_release(old);
-}
-
 static void test_other_values(void **state) {
   (void)state;
   static const size_t sizes[][3] = {{23, 21, 25}, {9, 11, 3}, {12, 9, 1}};
@@ -356,7 +327,7 @@ static void test_other_values(void **state) {
     set.scene.render.threads = 1;
     add_noise(&set, sizes[n % 3], n % 3 == 2 ? HL_VOXEL_U16 : HL_VOXEL_F32)->shading = HL_SHADING_PHONG;
     stage_add_directional(&set, (vec3){-1, 0.5, -1});
-    if (n % 3 != 2) spoil(&set);
+    if (n % 3 != 2) stage_spoil(&set);
     if (n > 1) set.scene.render.kernel = HL_KERNEL_INTERPOLATING;
     assert_same(&set, 3, n > 1 ? (unsigned)BY_SLICES : (unsigned)n, n > 1 ? "interpolating" : "not finite");
   }

@@ -13,12 +13,9 @@ static void open_meshes(mesh_stage *all) { mesh_stage_open(all, SIDE, 32); }
 static hl_scene_mesh *add_mesh(mesh_stage *all, const float (*positions)[3], size_t vertices,
                                const uint32_t (*triangles)[3], size_t count) {
   hl_mesh_description d;
-  hl_mesh *made = NULL;
-  hl_error error = {0};
   hl_mesh_description_defaults(&d);
   d.positions = positions, d.vertex_count = vertices, d.triangles = triangles, d.triangle_count = count;
-  if (hl_mesh_create(all->set.context, &d, &made, &error) != HL_OK) fail_msg("%s", error.message);
-  return mesh_stage_add(all, made);
+  return mesh_stage_describe(all, &d);
 }
 
 /* A rectangle about a centre with two half edges. */
@@ -334,14 +331,11 @@ static void test_against_the_reference(void **state) {
 
 static hl_scene_mesh *add_round(mesh_stage *all, const float (*spheres)[4], size_t count,
                                 const float (*points)[4], uint32_t length) {
-  hl_mesh *made = NULL;
   hl_mesh_description d;
-  hl_error error = {0};
   hl_mesh_description_defaults(&d);
   d.spheres = spheres, d.sphere_count = count;
   d.line_points = points, d.line_point_count = length, d.line_lengths = &length, d.line_count = length > 0;
-  if (hl_mesh_create(all->set.context, &d, &made, &error) != HL_OK) fail_msg("%s", error.message);
-  return mesh_stage_add(all, made);
+  return mesh_stage_describe(all, &d);
 }
 
 /* Spheres at odd fractions of pixels cover the disks that they are, whether the sheets are level or slanted,

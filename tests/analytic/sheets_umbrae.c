@@ -74,12 +74,9 @@ static void find_leaks(const float *pixels, const hider *by, const vec3 rim[RIM]
 static hl_scene_mesh *add_sphere(mesh_stage *all, vec3 centre, double radius) {
   const float sphere[1][4] = {{(float)centre.x, (float)centre.y, (float)centre.z, (float)radius}};
   hl_mesh_description d;
-  hl_mesh *made = NULL;
-  hl_error error = {0};
   hl_mesh_description_defaults(&d);
   d.spheres = sphere, d.sphere_count = 1;
-  if (hl_mesh_create(all->set.context, &d, &made, &error) != HL_OK) fail_msg("%s", error.message);
-  return mesh_stage_add(all, made);
+  return mesh_stage_describe(all, &d);
 }
 
 /* A floor of light 1 where nothing hides it, and the sheets slanted against what hides it. pixels:
