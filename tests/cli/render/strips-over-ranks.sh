@@ -1,11 +1,12 @@
 # Processes of an MPI launcher make one picture together: its bytes. One that fails ends all, and no picture is left.
 mpi=${mpi-open_mpi} killed=${killed-process rank 1} # and what the launcher says of a killed process
 run() { "$SOURCE/tests/over_ranks.sh" $mpi "$@" >mpirun.txt 2>&1; }
+runs() { run "$@" || { cat mpirun.txt; exit 1; }; } # what must not fail says why it did
 run 1 true || [ $? != 77 ] || { cat mpirun.txt; exit 77; }
 halflight make rings --size 24 --quiet
 halflight render rings.nrrd --size 60x100 --sheet-spacing 2 --quiet -o whole.npy
 for ranks in 1 4 7; do
-  run $ranks "$HALFLIGHT" render rings.nrrd --size 60x100 --sheet-spacing 2 --quiet --strips-over-ranks -o shared.npy
+  runs $ranks "$HALFLIGHT" render rings.nrrd --size 60x100 --sheet-spacing 2 --quiet --strips-over-ranks -o shared.npy
   cmp whole.npy shared.npy && rm shared.npy
 done
 cat >failing.sh <<'END'

@@ -2,6 +2,7 @@
 # process reads its own slices alone, and keeps little of the others'. A process that dies ends all, and no picture is left.
 mpi=${mpi-open_mpi} killed=${killed-process rank 1} # and what the launcher says of a killed process
 run() { "$SOURCE/tests/over_ranks.sh" $mpi "$@" >mpirun.txt 2>&1; }
+runs() { run "$@" || { cat mpirun.txt; exit 1; }; } # what must not fail says why it did
 run 1 true || [ $? != 77 ] || { cat mpirun.txt; exit 77; }
 frame="--size 60x50 --ambient 0.2 --shadow-resolution 64 --shadows hard --threads 1 --quiet"
 tool ball 176 ball_176x176x176_uint8.raw
@@ -16,12 +17,12 @@ code=$?
 sed -n 's/rchar: //p' /proc/$$/io >read.${OMPI_COMM_WORLD_RANK-$PMI_RANK}
 exit $code
 END
-run 4 sh counted.sh "$HALFLIGHT" render ball_176x176x176_uint8.raw $frame --volume-over-ranks -o shared.npy
+runs 4 sh counted.sh "$HALFLIGHT" render ball_176x176x176_uint8.raw $frame --volume-over-ranks -o shared.npy
 halflight render ball_176x176x176_uint8.raw $frame -o raw.npy
 cmp raw.npy shared.npy
 awk '$1 > 3200000 { print FILENAME ": " $1 " bytes" }' read.0 read.1 read.2 read.3
 for ranks in 1 3 7; do
-  run $ranks "$HALFLIGHT" render scene.json --quiet --volume-over-ranks --max-memory 13M -o shared.npy
+  runs $ranks "$HALFLIGHT" render scene.json --quiet --volume-over-ranks --max-memory 13M -o shared.npy
   cmp whole.npy shared.npy && rm shared.npy
 done
 cat >killed.sh <<'END'
