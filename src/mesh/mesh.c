@@ -133,6 +133,13 @@ static bool is_closed(const hl_mesh_description *d) {
   return sum == 0 && volume > 0;
 }
 
+/* Whether all of so many colours have an opacity of 1; null: they have. */
+static bool are_opaque(const float (*colors)[4], size_t count) {
+  for (size_t n = 0; colors != NULL && n < count; n++)
+    if (!(colors[n][3] >= 1)) return false;
+  return true;
+}
+
 static uint64_t mark_of(const hl_mesh_description *d) {
   const uint64_t marks[] = {
       hl_key_mark(d->positions, d->vertex_count * sizeof *d->positions),
@@ -159,8 +166,10 @@ hl_status hl_mesh_of_parts(mesh_parts *parts, hl_mesh **mesh, hl_error *error) {
   *parts = (mesh_parts){.context = parts->context, .path = parts->path};
   status = keep_visible(made, error);
   if (status == HL_OK) {
-    made->closed = is_closed(&made->description);
-    made->mark = mark_of(&made->description);
+    const hl_mesh_description *d = &made->description;
+    made->closed = is_closed(d);
+    made->opaque = are_opaque(d->colors, d->vertex_count) && are_opaque(d->face_colors, d->triangle_count);
+    made->mark = mark_of(d);
     *mesh = made;
   } else {
     hl_mesh_release(made);

@@ -20,6 +20,7 @@ struct hl_mesh {
   double low[3], high[3];                 /* bounds of all that is seen; world units */
   bool closed;   /* each edge has a triangle on either side: the mesh has an inside, and its fronts face
                     outwards */
+  bool opaque;   /* no colour of a triangle lets anything through */
   bool is_cut;   /* a scene's cuts have been cut out of it already: an isosurface */
   uint64_t mark; /* of all that hides light: triangles, spheres and their colours; for keys of kept results */
 };

@@ -61,21 +61,35 @@ static hl_status rasterise(fragment_work *work, fragments *made, hl_error *error
   return status;
 }
 
-/* Whether the eye sees none of a mesh's backs: it is closed, opaque, and the eye is outside. */
-static bool has_hidden_backs(const fragments_source *source, const surface_mesh *mesh) {
-  const hl_scene_mesh *scene = mesh->scene;
-  if (source->of_light || !scene->mesh->closed || mesh->is_cut || scene->opacity < 1 ||
-      mesh->colors != NULL || mesh->face_colors != NULL)
-    return false;
-  vec3 corner[8], eye = source->view->origin;
-  if (!source->view->perspective) return true;
-  hl_surface_corners(scene, 0, corner);
+/* Whether a mesh has an inside, and an opacity of 1 but for that of its own colours. */
+static bool is_closed(const surface_mesh *mesh) {
+  return mesh->mesh->closed && !mesh->is_cut && mesh->scene->opacity >= 1;
+}
+
+/* Whether a view's rays come from outside of a mesh: where they begin at a point, from outside of its box. */
+static bool is_outside(const view *view, const hl_scene_mesh *mesh) {
+  vec3 corner[8];
+  if (!view->perspective) return true;
+  hl_surface_corners(mesh, 0, corner);
   for (int axis = 0; axis < 3; axis++) {
     vec3 edge = vec3_subtract(corner[1 << axis], corner[0]);
-    double at = vec3_dot(vec3_subtract(eye, corner[0]), edge), length = vec3_dot(edge, edge);
+    double at = vec3_dot(vec3_subtract(view->origin, corner[0]), edge), length = vec3_dot(edge, edge);
     if (at < -0.01 * length || at > 1.01 * length) return true;
   }
   return false;
+}
+
+/* Whether the eye sees none of a mesh's backs: it is closed, opaque, and the eye is outside. */
+static bool has_hidden_backs(const fragments_source *source, const surface_mesh *mesh) {
+  return !source->of_light && is_closed(mesh) && mesh->colors == NULL && mesh->face_colors == NULL &&
+         is_outside(source->view, mesh->scene);
+}
+
+/* Whether a light lights none of a mesh's backs: the mesh is closed and lets no light through, and the light
+ * is outside. least: as in fragment_order. */
+static bool has_dark_backs(const fragments_source *source, const surface_mesh *mesh, float least) {
+  return source->of_light && is_closed(mesh) && mesh->mesh->opaque && least >= 1 &&
+         is_outside(source->view, mesh->scene);
 }
 
 static hl_status bin_primitives(const fragments_source *source, const seen_vertices *seen,
@@ -93,10 +107,13 @@ static hl_status bin_primitives(const fragments_source *source, const seen_verti
   return status;
 }
 
-static void find_least(const fragments_source *source, float *least) {
+/* Finds what is known of each mesh. */
+static void describe_meshes(const fragments_source *source, float *least, bool *dark_backs) {
   for (size_t m = 0; m < source->surfaces->mesh_count; m++) {
-    const double *color = source->surfaces->meshes[m].scene->attenuation_color;
+    const surface_mesh *mesh = &source->surfaces->meshes[m];
+    const double *color = mesh->scene->attenuation_color;
     least[m] = source->of_light ? (float)fmin(color[0], fmin(color[1], color[2])) : 1;
+    dark_backs[m] = has_dark_backs(source, mesh, least[m]);
   }
 }
 
@@ -104,20 +121,22 @@ static hl_status make_tiles(fragment_work *work, fragments *made, hl_error *erro
   const fragments_source *source = work->source;
   hl_context *context = source->context;
   work->least = hl_allocate(context, source->surfaces->mesh_count, sizeof *work->least);
+  work->dark_backs = hl_allocate(context, source->surfaces->mesh_count, sizeof *work->dark_backs);
   made->first = hl_allocate(context, made->tiles + 1, sizeof *made->first);
   made->cursor = hl_allocate(context, made->tiles, sizeof *made->cursor);
   work->workers = hl_allocate_zeroed(context, (size_t)hl_pool_threads(source->pool), sizeof *work->workers);
   work->tiles = hl_allocate_zeroed(context, made->tiles, sizeof *work->tiles);
   hl_status status;
   if (made->first == NULL || made->cursor == NULL || work->workers == NULL || work->tiles == NULL ||
-      work->least == NULL) {
+      work->least == NULL || work->dark_backs == NULL) {
     status = hl_fail_memory(error, made->tiles * sizeof *work->tiles, "the surfaces' fragments");
   } else {
-    find_least(source, work->least);
+    describe_meshes(source, work->least, work->dark_backs);
     hl_fragment_work_begin(work);
     status = rasterise(work, made, error);
   }
   hl_release(context, work->least);
+  hl_release(context, work->dark_backs);
   hl_release(context, work->workers);
   hl_release(context, work->tiles);
   return status;

@@ -29,7 +29,7 @@ typedef struct small_view {
   float from[3], du[3], dv[3];
   float depth[3];    /* perspective: a point's distance in lengths of its ray is depth.(X - from) */
   float delay, rise; /* as in fragments_source */
-  int closed;        /* the mesh has an inside: where the rays leave it there is no delay */
+  int dark_backs;    /* as in fragment_work: where the rays leave the mesh there is no delay */
 } small_view;
 
 typedef struct small_triangles {

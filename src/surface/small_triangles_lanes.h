@@ -195,7 +195,7 @@ static uint32_t cover_small(const small_view *view, const small_triangles *t, sm
   if (view->of_light) {
     slope = find_slope(view, t, &leaving);
     delay = slope * view->delay + (float)LEAST_DELAY * view->spacing;
-    if (view->closed) delay = lanes_select(leaving, lanes_set(0), delay);
+    if (view->dark_backs) delay = lanes_select(leaving, lanes_set(0), delay);
   }
   for (int k = 0; k < SMALL_PIXELS; k++) {
     int x = k % SMALL_SIDE * SMALL_SUBPIXELS, y = k / SMALL_SIDE * SMALL_SUBPIXELS;

@@ -12,7 +12,7 @@
 typedef struct surface_plane {
   double rise[3], way[3], above[3], climb[3]; /* d - n.A, n.B, h.A, h.B */
   double lowest, highest;                     /* of the surface; above the first sheet */
-  bool leaving;                               /* the view's rays leave a closed surface here */
+  bool leaving; /* the light's rays leave a surface here whose inside they do not light */
 } surface_plane;
 
 /* A function of surface_plane at a pixel. */

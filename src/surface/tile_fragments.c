@@ -115,7 +115,7 @@ static void add_to_slabs(const fragment_work *work, fragment_worker *worker, fra
 }
 
 /* Adds a fragment of a light's view: to the slab at its delayed height, and to those above it that the plane
- * crosses within the pixel. Where light leaves a closed mesh it lights nothing: there is no delay. */
+ * crosses within the pixel. Where the backs are dark there is no delay. */
 static void add_of_light(const fragment_work *work, fragment_worker *worker, const surface_plane *plane,
                          fragment f, double slope) {
   const fragments_source *source = work->source;
@@ -188,7 +188,6 @@ static bool next_pixel(const view *view, const tile_part *part, const seen_part 
 
 static void add_triangle(const fragment_work *work, fragment_worker *worker, tile_part *part, fragment f) {
   const fragments_source *source = work->source;
-  const surface_mesh *mesh = &source->surfaces->meshes[f.mesh];
   seen_polygon polygon;
   surface_plane plane;
   covered_pixel pixel;
@@ -196,11 +195,18 @@ static void add_triangle(const fragment_work *work, fragment_worker *worker, til
   hl_see_triangle(work->seen, f.primitive, &polygon);
   if (!hl_cover_tile(&polygon, part->tile_x, part->tile_y, &part->span, part->covered)) return;
   hl_plane_of_triangle(source->view, source->sheets, source->surfaces, f.primitive, &plane);
-  plane.leaving = mesh->scene->mesh->closed && !mesh->is_cut &&
-                  hl_plane_linear(plane.way, part->tile_x * TILE + TILE / 2, part->tile_y * TILE + TILE / 2) >
-                      0;
+  plane.leaving = work->dark_backs[f.mesh] && hl_plane_linear(plane.way, part->tile_x * TILE + TILE / 2,
+                                                              part->tile_y * TILE + TILE / 2) > 0;
   const seen_part seen = {part->is_cut ? source->surfaces : NULL, source->view, &plane, NULL, false};
   while (next_pixel(source->view, part, &seen, &at, &f, &pixel)) add_pixel(work, worker, &plane, f, &pixel);
+}
+
+/* Whether a light lights nothing of a sphere from within: no light passes it, and the light is outside. */
+static bool has_dark_inside(const fragment_work *work, const float sphere[4], const fragment *f) {
+  const view *view = work->source->view;
+  if (f->opacity < 1 || work->least[f->mesh] < 1) return false;
+  vec3 away = vec3_subtract(view->origin, hl_surface_vector(sphere));
+  return !view->perspective || vec3_length(away) > (double)sphere[3];
 }
 
 /* The side of a sphere that rays enter or leave by. */
@@ -210,13 +216,14 @@ static void add_side(const fragment_work *work, fragment_worker *worker, const t
   const float *sphere = source->surfaces->spheres[f.primitive - source->surfaces->triangle_count];
   covered_pixel pixel;
   int at = 0;
+  bool dark = leaving && !part->is_cut && has_dark_inside(work, sphere, &f);
   const seen_part seen = {part->is_cut ? source->surfaces : NULL, source->view, NULL, sphere, leaving};
   while (next_pixel(source->view, part, &seen, &at, &f, &pixel)) {
     surface_plane plane;
     vec3 point;
     if (!hl_meet_sphere(source->view, sphere, pixel.u, pixel.v, leaving, &point)) continue;
     hl_plane_of_sphere(source->view, source->sheets, sphere, point, &plane);
-    plane.leaving = leaving && !part->is_cut;
+    plane.leaving = dark;
     add_pixel(work, worker, &plane, f, &pixel);
   }
 }
@@ -359,7 +366,7 @@ static void add_primitives(const fragment_work *work, fragment_worker *worker, t
     if (primitive >= end) {
       add_batch(work, worker, part, &batch);
       batch.mesh = hl_surface_mesh_of(all, primitive);
-      batch.view.closed = all->meshes[batch.mesh].scene->mesh->closed && !all->meshes[batch.mesh].is_cut;
+      batch.view.dark_backs = work->dark_backs[batch.mesh];
       end = hl_surface_mesh_end(all, batch.mesh, primitive);
     }
     if (primitive >= all->triangle_count || !collect(work, part, &batch, primitive))

@@ -65,6 +65,8 @@ typedef struct fragment_work {
   small_view small;         /* but for the mesh */
   fragment_worker *workers; /* [threads] */
   float *least;             /* [mesh_count]; as in fragment_order */
+  bool *dark_backs;         /* [mesh_count]; of a light's view: where the light leaves the mesh it lights
+                               nothing */
   tile_record *tiles;       /* [tiles] */
   int tiles_x, tiles_y;
   uint16_t

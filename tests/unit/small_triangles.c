@@ -85,7 +85,7 @@ static void set_small_view(set_up *s, bool closed) {
                           .perspective = s->view.perspective,
                           .delay = 0.75f,
                           .rise = 1.25f,
-                          .closed = closed};
+                          .dark_backs = closed};
   vec3_store(s->small.normal, s->sheets.normal);
   vec3_store(s->small.from, s->view.perspective ? s->view.origin : s->view.direction);
   vec3_store(s->small.du, s->view.du);
@@ -102,7 +102,7 @@ static void check_pixel(const set_up *s, const small_cover *cover, int k, int t,
   u += column, v += row;
   double height = fmin(fmax(hl_plane_height(&plane, u, v), plane.lowest), plane.highest),
          slope = hl_plane_slope(&plane, u, v);
-  bool leaving = s->small.closed && hl_plane_linear(plane.way, u, v) > 0;
+  bool leaving = s->small.dark_backs && hl_plane_linear(plane.way, u, v) > 0;
   double delay = leaving ? 0 : 0.75 * slope + LEAST_DELAY * s->sheets.spacing;
   double end = fmin(height + 1.25 * slope, plane.highest) + delay, spacing = s->sheets.spacing;
   /* derived: in perspective a height between corners differs from the linear one by at most an eighth of

@@ -1,0 +1,131 @@
+/* analytic/sheets_inside_meshes.c - the insides of closed meshes: evenly lit by a light within, and by the
+ * light that a translucent mesh lets in. */
+#include "../asserts.h"
+#include "mesh_stage.h"
+
+enum { SIDE = 96, PIXELS = SIDE * SIDE };
+
+/* A closed box about the origin, its fronts outwards. */
+static hl_scene_mesh *add_box(mesh_stage *all, vec3 half) {
+  static const uint32_t triangles[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                            {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  float positions[8][3];
+  for (int i = 0; i < 8; i++) {
+    positions[i][0] = (float)(i & 1 ? half.x : -half.x);
+    positions[i][1] = (float)(i & 2 ? half.y : -half.y);
+    positions[i][2] = (float)(i & 4 ? half.z : -half.z);
+  }
+  hl_mesh_description d;
+  hl_mesh_description_defaults(&d);
+  d.positions = positions, d.vertex_count = 8;
+  d.triangles = triangles, d.triangle_count = 12;
+  hl_scene_mesh *mesh = mesh_stage_describe(all, &d);
+  mesh->smooth = 0;
+  return mesh;
+}
+
+static hl_scene_mesh *add_sphere(mesh_stage *all, double radius) {
+  const float sphere[1][4] = {{0, 0, 0, (float)radius}};
+  hl_mesh_description d;
+  hl_mesh_description_defaults(&d);
+  d.spheres = sphere, d.sphere_count = 1;
+  return mesh_stage_describe(all, &d);
+}
+
+/* Where a ray from within a box meets it: the normal, inwards; *second: how much farther the next wall's
+ * plane is. */
+static vec3 leave_box(vec3 half, vec3 from, vec3 way, vec3 *at, double *second) {
+  const double h[3] = {half.x, half.y, half.z}, o[3] = {from.x, from.y, from.z}, d[3] = {way.x, way.y, way.z};
+  double nearest = INFINITY;
+  double normal[3] = {0, 0, 0};
+  *second = INFINITY;
+  for (int axis = 0; axis < 3; axis++) {
+    double s = (copysign(h[axis], d[axis]) - o[axis]) / d[axis];
+    *second = fmin(*second, fmax(s, nearest));
+    if (s >= nearest) continue;
+    nearest = s;
+    for (int i = 0; i < 3; i++) normal[i] = i == axis ? -copysign(1, d[i]) : 0;
+  }
+  *second -= nearest;
+  *at = vec3_add(from, vec3_scale(way, nearest));
+  return (vec3){normal[0], normal[1], normal[2]};
+}
+
+static void look_from_within(mesh_stage *all, vec3 eye, vec3 target) {
+  all->set.scene.camera.type = HL_CAMERA_PERSPECTIVE;
+  all->set.scene.camera.fovy_deg = 70;
+  stage_look(&all->set, eye, target, (vec3){0, 0, 1});
+}
+
+/* The walls of a room with a lamp in it have the cosine of its light, as those of a room that has one side
+ * open: they take no light from themselves. */
+static void test_lamp_in_room(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  const vec3 half = {20, 24, 16}, lamp = {4, -6, 9}, eye = {8, -18, 2};
+  for (int kind = 0; kind < 4; kind++) {
+    mesh_stage all;
+    mesh_stage_open(&all, SIDE, 1);
+    (void)add_box(&all, half);
+    hl_light *light = stage_add_point(&all.set, lamp);
+    mesh_stage_choose_shadows(&all, light, kind, 0);
+    light->radius = kind == 0 ? 0 : 1;
+    look_from_within(&all, eye, (vec3){0, 0, -3});
+    stage_render_sheets(&all.set, pixels);
+    int counted = 0;
+    for (int i = 0; i < PIXELS; i++) {
+      vec3 from, way, at;
+      double second;
+      stage_eye_ray(&all.set, i % SIDE, i / SIDE, &from, &way);
+      vec3 normal = leave_box(half, from, way, &at, &second);
+      if (second < 2) continue; /* an edge, where two walls share a pixel */
+      assert_near((double)pixels[4 * i], vec3_dot(normal, vec3_normalise(vec3_subtract(lamp, at))), 0.02);
+      counted++;
+    }
+    assert_true(counted > PIXELS / 2);
+    mesh_stage_close(&all);
+  }
+}
+
+/* The inside of a ball around a lamp faces it everywhere. */
+static void test_lamp_in_ball(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int kind = 0; kind < 4; kind++) {
+    mesh_stage all;
+    mesh_stage_open(&all, SIDE, 1);
+    (void)add_sphere(&all, 20);
+    hl_light *light = stage_add_point(&all.set, (vec3){0, 0, 0});
+    mesh_stage_choose_shadows(&all, light, kind, 0);
+    light->radius = kind == 0 ? 0 : 1;
+    look_from_within(&all, (vec3){2, -12, 1}, (vec3){0, 0, -3});
+    stage_render_sheets(&all.set, pixels);
+    for (int i = 0; i < PIXELS; i++) assert_near((double)pixels[4 * i], 1, 0.01);
+    mesh_stage_close(&all);
+  }
+}
+
+/* Half of the light enters a box of opacity 1/2, by whichever wall: its floor is seen through its ceiling
+ * with half of that, times its own opacity and the cosine. Soft light is a little off where the ceiling meets
+ * the walls. */
+static void test_glass_box(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int kind = 0; kind < 4; kind++) {
+    mesh_stage all;
+    mesh_stage_open(&all, SIDE, 20);
+    add_box(&all, (vec3){12, 12, 8})->opacity = 0.5;
+    vec3 travels = vec3_normalise((vec3){0.3, 0.4, -1});
+    mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, travels), kind, 2);
+    stage_render_sheets(&all.set, pixels);
+    for (int i = 0; i < PIXELS; i++)
+      assert_near((double)pixels[4 * i], -travels.z * (0.5 + 0.5 * 0.5 * 0.5), kind == 0 ? 1e-4 : 0.02);
+    mesh_stage_close(&all);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_lamp_in_room), cmocka_unit_test(test_lamp_in_ball),
+                                     cmocka_unit_test(test_glass_box)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
