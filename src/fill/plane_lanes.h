@@ -99,12 +99,12 @@ LANES_INLINE lanes_int depends_on_row(const plane_table *table, lanes from, lane
 LANES_INLINE void sums_at_column(const plane_table *table, plane_row row, lanes column, lanes sums[2]) {
   lanes_int whole = lanes_truncate(column);
   lanes part = column - lanes_from_int(whole), of_row[2][2];
+  lanes here[4], next[4]; /* extinction and integral, in the row and in the next one, at two columns */
+  lanes_gather_quad_pairs(&table->sums[0][0], row.start + whole, here, next);
   for (int r = 0; r < 2; r++) {
-    lanes ends[4]; /* extinction and integral at the column, and at the next one */
-    lanes_gather_quads(&table->sums[0][0], (row.start + whole + r * PLANE_STRIDE) * 2, ends);
-    lanes rise = ends[2] - ends[0];
-    of_row[r][0] = lanes_fma(rise, part, ends[0]);
-    of_row[r][1] = lanes_fma(lanes_fma(rise * 0.5f, part, ends[0]), part, ends[1]);
+    lanes rise = next[2 * r] - here[2 * r];
+    of_row[r][0] = lanes_fma(rise, part, here[2 * r]);
+    of_row[r][1] = lanes_fma(lanes_fma(rise * 0.5f, part, here[2 * r]), part, here[2 * r + 1]);
   }
   for (int i = 0; i < 2; i++) sums[i] = lanes_fma(of_row[1][i] - of_row[0][i], row.part, of_row[0][i]);
 }
@@ -154,14 +154,14 @@ static const float SOME_OPACITY = 1e-4f;
 
 /* The colour in a row where matter is seen, linear RGB: the mean over the column on either side; where the
  * function shows nothing there, the mean over the whole way. seen, from, to: coordinates in the classifier's
- * tables. */
+ * tables. Known for the active lanes. */
 static __attribute__((noinline)) void color_in_row(const plane_table *table, lanes row, lanes seen,
-                                                   lanes from, lanes to, lanes color[3]) {
+                                                   lanes from, lanes to, uint32_t active, lanes color[3]) {
   plane_row at = split_row(row);
   lanes sums[4], column = column_of(table, seen);
   colors_between(table, at, column, column, sums);
   lanes_int none = sums[3] < SOME_OPACITY;
-  if (lanes_bits(none) != 0) {
+  if ((lanes_bits(none) & active) != 0) {
     lanes all[4];
     colors_between(table, at, column_of(table, from), column_of(table, to), all);
     for (int i = 0; i < 4; i++) sums[i] = lanes_select(none, all[i], sums[i]);

@@ -105,6 +105,15 @@ static void repeat_last(float *table, size_t width) {
          width * PLANE_STRIDE * sizeof *table);
 }
 
+/* Beside each point's sums those of the next row's point. */
+static void join_rows(const plane_table *table) {
+  for (int row = 0; row <= PLANE_ROWS; row++) {
+    int next = row < PLANE_ROWS ? row + 1 : row;
+    for (int column = 0; column < PLANE_STRIDE; column++)
+      memcpy(table->sums[place_of(row, column)] + 2, table->sums[place_of(next, column)], 2 * sizeof(float));
+  }
+}
+
 static int clamp_column(double column) { return (int)fmin(fmax(column, 0), PLANE_COLUMNS - 1); }
 
 static void find_greatest(const plane_table *table, int entries, float (*greatest)[4]) {
@@ -131,7 +140,7 @@ static float even_columns(const plane_table *table) {
   for (int row = 1; row < PLANE_ROWS; row++)
     for (int column = 0; column < even; column++) {
       size_t here = place_of(row, column), first = place_of(0, column);
-      if (memcmp(table->sums[here], table->sums[first], sizeof *table->sums) != 0 ||
+      if (memcmp(table->sums[here], table->sums[first], 2 * sizeof(float)) != 0 ||
           memcmp(table->color[here], table->color[first], sizeof *table->color) != 0)
         even = column;
     }
@@ -157,7 +166,8 @@ void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *s
   table->row_scale = (float)fmin(fmax(units * scale / axes[1].step, -1e30), 1e30);
   table->row_offset = (float)((zero * scale - axes[1].start) / axes[1].step);
   for (int row = 0; row < PLANE_ROWS; row++) fill_row(function, axes, row, table);
-  repeat_last(&table->sums[0][0], 2);
+  repeat_last(&table->sums[0][0], 4);
+  join_rows(table);
   repeat_last(&table->color[0][0], 4);
   find_greatest(table, entries, greatest);
   table->even_before = even_columns(table);

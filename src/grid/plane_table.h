@@ -15,8 +15,9 @@ enum { PLANE_COLUMNS = 512, PLANE_ROWS = 256, PLANE_STRIDE = PLANE_COLUMNS + 1 }
 typedef struct plane_table {
   /* [PLANE_ROWS + 1][PLANE_STRIDE], the last row and column once more; borrowed from the classifier's block;
    * null: the function is one of the value alone */
-  float (*sums)[2];                  /* extinction per world unit; its integral over columns, from column 0 */
-  float (*color)[4];                 /* the integrals of linear RGB times opacity, and of opacity */
+  float (*sums)[4];  /* extinction per world unit; its integral over columns, from column 0; both of the next
+                        row, so that one load takes what lies around a place */
+  float (*color)[4]; /* the integrals of linear RGB times opacity, and of opacity */
   float column_scale, column_offset; /* column = coordinate in the classifier's tables * scale + offset */
   float row_scale, row_offset; /* row = second number * scale + offset; of a gradient in stored units per
                                   frame unit, of another volume in stored units above its empty value */

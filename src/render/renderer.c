@@ -252,6 +252,14 @@ static hl_status add_surfaces(hl_renderer *renderer, const hl_scene_description 
   return HL_OK;
 }
 
+/* A volume that neither shows nor casts a shadow may be the second number of another's function: frames do
+ * not fill its samples. */
+static grid grid_of_frame(const hl_scene_volume *volume, const prepared_volume *prepared) {
+  grid grid = prepared->grid;
+  if (!volume->visible && !volume->casts_shadow) grid.relevant_count = 0;
+  return grid;
+}
+
 static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene,
                               const frame_request *request, frame_work *work, hl_error *error) {
   hl_context *context = renderer->context;
@@ -263,7 +271,7 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   if (frame->points == NULL || frame->lights == NULL || work->grids == NULL || work->sweeps == NULL)
     return hl_fail_memory(error, scene->light_count * sizeof(frame_sweep), "the frame");
   for (size_t i = 0; i < scene->volume_count; i++) {
-    work->grids[i] = renderer->prepared[i].grid;
+    work->grids[i] = grid_of_frame(&scene->volumes[i], &renderer->prepared[i]);
     if (work->grids[i].relevant_count == 0) continue;
     hl_frame_content(&work->grids[i], frame->points + frame->point_count);
     frame->point_count += 8;

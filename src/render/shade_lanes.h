@@ -197,7 +197,7 @@ LANES_INLINE color_lanes color_of_matter(const block_density *d, lanes3 position
   const classifier *classifier = volume->classifier;
   if (classifier->plane.color == NULL)
     table_values(classifier->color, split_coordinate(coordinate_seen(d)), color.c);
-  else color_in_row(&classifier->plane, d->row, coordinate_seen(d), d->before, d->after, color.c);
+  else color_in_row(&classifier->plane, d->row, coordinate_seen(d), d->before, d->after, active, color.c);
   if (volume->colors.voxels != NULL) {
     (void)voxel_color_at(&volume->colors, volume->to_index, position, own.c);
     for (int c = 0; c < 3; c++) color.c[c] = color.c[c] * own.c[c];

@@ -127,37 +127,45 @@ LANES_CALL void lanes_gather_quads(const float *table, lanes_int index, lanes qu
 #endif
 }
 
-/* table[4 index + c] and table[4 (index + 1) + c] as first[c] and second[c], c = 0 to 2: one load a lane, or
- * two, instead of six. */
-LANES_CALL void lanes_gather_row_pairs(const float *table, lanes_int index, lanes first[3], lanes second[3]) {
+/* table[4 index + c] and table[4 (index + 1) + c] as first[c] and second[c], c = 0 to columns - 1: one load a
+ * lane, or two, instead of two for each column. */
+LANES_INLINE void gather_rows_of_four(const float *table, lanes_int index, int columns, lanes *first,
+                                      lanes *second) {
 #if defined(__AVX512F__)
   lanes_offsets offsets;
   lanes_store_offsets(&offsets, index * 4);
-  __m512 columns[2][4]; /* of four lanes in each half: the first rows' values, then the second rows' */
+  __m512 of_half[2][4]; /* of four lanes in each half: the first rows' values, then the second rows' */
   for (int half = 0; half < 2; half++) {
     const int32_t *at = offsets.at + 8 * half;
     __m512 pairs[4];
     for (int j = 0; j < 4; j++) pairs[j] = two_row_pairs(table, at[j], at[4 + j]);
-    columns_of_quads(pairs, columns[half]);
+    columns_of_quads(pairs, of_half[half]);
   }
-  for (int c = 0; c < 3; c++) {
-    first[c] = (lanes)_mm512_shuffle_f32x4(columns[0][c], columns[1][c], 0x88);
-    second[c] = (lanes)_mm512_shuffle_f32x4(columns[0][c], columns[1][c], 0xdd);
+  for (int c = 0; c < columns; c++) {
+    first[c] = (lanes)_mm512_shuffle_f32x4(of_half[0][c], of_half[1][c], 0x88);
+    second[c] = (lanes)_mm512_shuffle_f32x4(of_half[0][c], of_half[1][c], 0xdd);
   }
 #elif defined(__AVX2__)
   lanes quad[2][4];
   lanes_gather_quads(table, index * 4, quad[0]);
   lanes_gather_quads(table + 4, index * 4, quad[1]);
-  for (int c = 0; c < 3; c++) {
+  for (int c = 0; c < columns; c++) {
     first[c] = quad[0][c];
     second[c] = quad[1][c];
   }
 #else
-  for (int c = 0; c < 3; c++) {
+  for (int c = 0; c < columns; c++) {
     first[c] = lanes_gather(table + c, index * 4);
     second[c] = lanes_gather(table + 4 + c, index * 4);
   }
 #endif
+}
+LANES_CALL void lanes_gather_row_pairs(const float *table, lanes_int index, lanes first[3], lanes second[3]) {
+  gather_rows_of_four(table, index, 3, first, second);
+}
+LANES_CALL void lanes_gather_quad_pairs(const float *table, lanes_int index, lanes first[4],
+                                        lanes second[4]) {
+  gather_rows_of_four(table, index, 4, first, second);
 }
 
 #if defined(__AVX2__)

@@ -111,6 +111,33 @@ static void test_hidden(void **state) {
   assert_at_most(of[1].pixels_filled_image, of[0].pixels_filled_image, 1.05, "image, behind");
 }
 
+/* A volume that neither shows nor casts a shadow, though it is full of matter: the same bytes, no more work.
+ */
+static void test_not_taking_part(void **state) {
+  (void)state;
+  static float alone[FLOATS], beside[FLOATS];
+  for (int s = 0; s < 3; s++) {
+    hl_render_statistics of[2];
+    for (int other = 0; other < 2; other++) {
+      stage set;
+      open_scene(&set, SHADOWS[s]);
+      add_ball(&set, BALL, (vec3){0, 0, 0});
+      if (other) {
+        hl_scene_volume *full = add_ball(&set, BALL, (vec3){0, 0, 0});
+        stage_set_opacity(&set, full, 0.9, 1);
+        full->visible = full->casts_shadow = 0;
+      }
+      of[other] = stage_render_counted(&set, other ? beside : alone);
+      stage_close(&set);
+    }
+    assert_true(of[0].pixels_filled_image > 10000);
+    assert_true(of[1].pixels_filled_image == of[0].pixels_filled_image);
+    assert_true(of[1].pixels_filled_light == of[0].pixels_filled_light);
+    assert_int_equal(of[1].sheets, of[0].sheets);
+    assert_memory_equal(alone, beside, sizeof alone);
+  }
+}
+
 enum { LARGE = 256 }; /* tiles enough for some to be tried */
 
 /* Light from behind: sheets go back to front for the eye, and what is hidden is found before. The ball that
@@ -143,6 +170,7 @@ int main(void) {
       cmocka_unit_test(test_empty_space),
       cmocka_unit_test(test_out_of_sight),
       cmocka_unit_test(test_hidden),
+      cmocka_unit_test(test_not_taking_part),
       cmocka_unit_test(test_hidden_from_light_behind),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

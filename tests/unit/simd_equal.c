@@ -456,12 +456,14 @@ static void open_gradient_grids(void) {
 
 static void open_planes(void) {
   enum { COUNT = (PLANE_ROWS + 1) * PLANE_STRIDE };
-  static float sums[COUNT][2], color[COUNT][4];
+  static float sums[COUNT][4], color[COUNT][4];
   uint32_t seed = 9;
   for (size_t i = 0; i < COUNT; i++) {
     float before = i > 0 ? 1 : 0;
     sums[i][0] = random_between(&seed, 0, 2);
     sums[i][1] = before * sums[i > 0 ? i - 1 : 0][1] + sums[i][0];
+    sums[i][2] = random_between(&seed, 0, 2);
+    sums[i][3] = random_between(&seed, 0, 2);
     for (int c = 0; c < 4; c++)
       color[i][c] = before * color[i > 0 ? i - 1 : 0][c] + random_between(&seed, 0, c == 3 ? 1.0f : 0.7f);
   }
