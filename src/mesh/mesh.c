@@ -22,6 +22,8 @@ void hl_mesh_release(hl_mesh *mesh) {
                                 d->face_colors, d->spheres,     d->sphere_colors, d->line_points,
                                 d->line_colors, d->line_lengths};
   for (size_t n = 0; n < sizeof arrays / sizeof *arrays; n++) hl_release(mesh->context, (void *)arrays[n]);
+  hl_release(mesh->context, mesh->edges);
+  hl_release(mesh->context, mesh->edge_normals);
   hl_release(mesh->context, mesh);
 }
 
@@ -165,6 +167,7 @@ hl_status hl_mesh_of_parts(mesh_parts *parts, hl_mesh **mesh, hl_error *error) {
   atomic_init(&made->references, 1);
   *parts = (mesh_parts){.context = parts->context, .path = parts->path};
   status = keep_visible(made, error);
+  if (status == HL_OK) status = hl_mesh_find_edges(made, error);
   if (status == HL_OK) {
     const hl_mesh_description *d = &made->description;
     made->closed = is_closed(d);

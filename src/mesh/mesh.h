@@ -12,12 +12,23 @@
 
 enum { HL_LIMIT_TRIANGLES = 1 << 28, HL_LIMIT_SPHERES = 1 << 26, HL_LIMIT_LINE_POINTS = 1 << 23 };
 
+/* The cosine of the greatest angle between a triangle and a vertex's normal at which the surface counts as
+ * rounded there: 40 degrees. Beyond it there is an edge. */
+#define HL_MESH_ROUNDED 0.766
+
+/* A corner that has no normal of its own. */
+#define HL_NO_EDGE UINT32_MAX
+
 struct hl_mesh {
   hl_context *context;
   atomic_int references;
   hl_mesh_description description;        /* its arrays are owned */
   size_t given_vertices, given_triangles; /* before those of the tubes */
-  double low[3], high[3];                 /* bounds of all that is seen; world units */
+  uint32_t (*edges)[3];     /* owned; [triangle_count]; of each corner the index of its own normal among
+                               edge_normals, or HL_NO_EDGE: its vertex's; null: of all the vertices' */
+  float (*edge_normals)[3]; /* owned; [edge_normal_count]; unit */
+  size_t edge_normal_count;
+  double low[3], high[3]; /* bounds of all that is seen; world units */
   bool closed;   /* each edge has a triangle on either side: the mesh has an inside, and its fronts face
                     outwards */
   bool opaque;   /* no colour of a triangle lets anything through */
@@ -58,6 +69,9 @@ hl_status hl_mesh_add_tubes(mesh_parts *parts, hl_error *error);
 
 /* Checks the parts, makes tubes of their lines, and moves all into a mesh, which is owned by the caller. */
 hl_status hl_mesh_of_parts(mesh_parts *parts, hl_mesh **mesh, hl_error *error);
+
+/* Finds the edges of a mesh without normals, and the normals of corners there: once, when it is made. */
+hl_status hl_mesh_find_edges(hl_mesh *mesh, hl_error *error);
 
 /* The parts' arrays, borrowed. */
 hl_mesh_description hl_mesh_parts_describe(const mesh_parts *parts);

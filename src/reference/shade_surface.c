@@ -10,9 +10,13 @@ static vec3 normal_of(const reference *all, const reference_hit *hit, vec3 flat)
   const hl_scene_mesh *mesh = hit->triangle->mesh;
   const uint32_t *corner = mesh->mesh->description.triangles[hit->triangle->index];
   const vec3 *normals = all->surfaces.normals + all->surfaces.first_normal[mesh - all->scene->meshes];
+  const uint32_t *edges = mesh->mesh->edges != NULL ? mesh->mesh->edges[hit->triangle->index] : NULL;
+  mat3 turned = hl_scene_mesh_to_world(mesh).linear;
   vec3 sum = {0, 0, 0};
   for (int i = 0; i < 3; i++) {
-    vec3 own = vec3_normalise(normals[corner[i]]);
+    const float *edge = edges != NULL && edges[i] != HL_NO_EDGE ? mesh->mesh->edge_normals[edges[i]] : NULL;
+    vec3 own = edge != NULL ? mat3_apply(turned, (vec3){edge[0], edge[1], edge[2]}) : normals[corner[i]];
+    own = vec3_normalise(own);
     double along = vec3_dot(own, flat);
     if (fabs(along) < ROUNDED) own = flat;
     sum = vec3_add(sum,

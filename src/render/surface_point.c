@@ -1,6 +1,8 @@
 /* render/surface_point.c - see surface_point.h. */
 #include "render/surface_point.h"
 
+#include "mesh/mesh.h"
+
 vec3 hl_surface_place(const sweep *sweep, const tile_slab *slab, const fragment *f, double height) {
   const view *eye = &sweep->frame->eye;
   const sheet_stack *sheets = &sweep->geometry->sheets;
@@ -26,16 +28,20 @@ static void find_weights(const vec3 corner[3], vec3 cross, vec3 at, double weigh
   for (int i = 0; i < 3; i++) weight[i] = sum > 0 ? weight[i] / sum : 1.0 / 3;
 }
 
-/* The cosine of the greatest angle between a triangle and a vertex's normal at which the surface counts as
- * rounded there: 40 degrees. Beyond it there is an edge. */
-static const double ROUNDED = 0.766;
+/* The normal of a triangle's corner: its own where it is at an edge, else its vertex's. */
+static vec3 corner_normal(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, int i) {
+  uint32_t edge = mesh->edges != NULL ? mesh->edges[triangle - mesh->first_triangle][i] : HL_NO_EDGE;
+  return hl_surface_vector(edge != HL_NO_EDGE ? all->edge_normals[mesh->first_edge_normal + edge]
+                                              : all->normals[all->triangles[triangle][i]]);
+}
 
-static vec3 smooth_normal(const surfaces *all, const uint32_t *corner, const double weight[3], vec3 flat) {
+static vec3 smooth_normal(const surfaces *all, const surface_mesh *mesh, uint32_t triangle,
+                          const double weight[3], vec3 flat) {
   vec3 sum = {0, 0, 0};
   for (int i = 0; i < 3; i++) {
-    vec3 own = hl_surface_vector(all->normals[corner[i]]);
+    vec3 own = corner_normal(all, mesh, triangle, i);
     double along = vec3_dot(own, flat);
-    if (fabs(along) < ROUNDED) own = flat;
+    if (fabs(along) < HL_MESH_ROUNDED) own = flat;
     else if (along < 0) own = vec3_scale(own, -1);
     sum = vec3_add(sum, vec3_scale(own, weight[i]));
   }
@@ -66,7 +72,7 @@ static vec3 find_on_triangle(const surfaces *all, const surface_mesh *mesh, uint
   vec3 cross = vec3_cross(vec3_subtract(at[1], at[0]), vec3_subtract(at[2], at[0])),
        flat = vec3_normalise(cross);
   find_weights(at, cross, point->position, weight);
-  point->normal = mesh->scene->smooth ? smooth_normal(all, corner, weight, flat) : flat;
+  point->normal = mesh->scene->smooth ? smooth_normal(all, mesh, triangle, weight, flat) : flat;
   if (mesh->face_colors != NULL)
     set_color(mesh, mesh->face_colors[triangle - mesh->first_triangle], point->color);
   else if (mesh->colors != NULL) interpolate_color(mesh, corner, weight, point->color);

@@ -11,8 +11,8 @@ uint64_t hl_surfaces_bytes(const hl_scene_description *scene) {
   uint64_t bytes = scene->mesh_count * sizeof(surface_mesh);
   for (size_t m = 0; m < scene->mesh_count; m++) {
     const hl_mesh_description *d = &scene->meshes[m].mesh->description;
-    bytes += d->vertex_count * 2 * sizeof(float[3]) + d->triangle_count * sizeof(uint32_t[3]) +
-             d->sphere_count * sizeof(float[4]);
+    bytes += (d->vertex_count * 2 + scene->meshes[m].mesh->edge_normal_count) * sizeof(float[3]) +
+             d->triangle_count * sizeof(uint32_t[3]) + d->sphere_count * sizeof(float[4]);
   }
   return bytes;
 }
@@ -87,10 +87,18 @@ static void make_units(void *data, size_t task, int worker) {
   }
 }
 
+static void place_edge_normals(surfaces *made, const surface_mesh *mesh) {
+  for (size_t n = 0; n < mesh->mesh->edge_normal_count; n++)
+    vec3_store(
+        made->edge_normals[mesh->first_edge_normal + n],
+        vec3_normalise(mat3_apply(mesh->placement.linear, hl_surface_vector(mesh->mesh->edge_normals[n]))));
+}
+
 static void place_mesh(hl_pool *pool, surfaces *made, const surface_mesh *mesh) {
   const hl_mesh_description *d = &mesh->mesh->description;
   placing placing = {made, mesh};
   place_spheres(made, mesh);
+  place_edge_normals(made, mesh);
   hl_pool_run(pool, task_count(d->vertex_count), place_vertices, &placing);
   hl_pool_run(pool, task_count(d->triangle_count), place_triangles, &placing);
   if (d->normals == NULL) add_face_normals(made, mesh); /* one order of each vertex's sum */
@@ -98,7 +106,7 @@ static void place_mesh(hl_pool *pool, surfaces *made, const surface_mesh *mesh) 
 }
 
 static hl_status count_primitives(const hl_scene_description *scene, surfaces *made, hl_error *error) {
-  uint64_t vertices = 0, triangles = 0, spheres = 0;
+  uint64_t vertices = 0, triangles = 0, spheres = 0, edge_normals = 0;
   for (size_t m = 0; m < scene->mesh_count; m++) {
     const hl_mesh_description *d = &scene->meshes[m].mesh->description;
     made->meshes[m] = (surface_mesh){.scene = &scene->meshes[m],
@@ -106,12 +114,15 @@ static hl_status count_primitives(const hl_scene_description *scene, surfaces *m
                                      .colors = d->colors,
                                      .face_colors = d->face_colors,
                                      .sphere_colors = d->sphere_colors,
+                                     .edges = (const uint32_t(*)[3])scene->meshes[m].mesh->edges,
                                      .first_vertex = vertices,
+                                     .first_edge_normal = edge_normals,
                                      .first_triangle = (uint32_t)triangles,
                                      .triangle_count = (uint32_t)d->triangle_count,
                                      .first_sphere = (uint32_t)spheres,
                                      .sphere_count = (uint32_t)d->sphere_count};
     vertices += d->vertex_count;
+    edge_normals += scene->meshes[m].mesh->edge_normal_count;
     triangles += d->triangle_count;
     spheres += d->sphere_count;
     if (vertices > UINT32_MAX || triangles + spheres > UINT32_MAX)
@@ -120,6 +131,7 @@ static hl_status count_primitives(const hl_scene_description *scene, surfaces *m
   }
   made->mesh_count = scene->mesh_count;
   made->vertex_count = vertices;
+  made->edge_normal_count = edge_normals;
   made->triangle_count = (uint32_t)triangles;
   made->sphere_count = (uint32_t)spheres;
   return HL_OK;
@@ -129,9 +141,11 @@ static hl_status make_arrays(hl_context *context, const hl_scene_description *sc
                              hl_error *error) {
   made->positions = hl_allocate(context, made->vertex_count, sizeof *made->positions);
   made->normals = hl_allocate(context, made->vertex_count, sizeof *made->normals);
+  made->edge_normals = hl_allocate(context, made->edge_normal_count, sizeof *made->edge_normals);
   made->triangles = hl_allocate(context, made->triangle_count, sizeof *made->triangles);
   made->spheres = hl_allocate(context, made->sphere_count, sizeof *made->spheres);
-  if (made->positions != NULL && made->normals != NULL && made->triangles != NULL && made->spheres != NULL)
+  if (made->positions != NULL && made->normals != NULL && made->edge_normals != NULL &&
+      made->triangles != NULL && made->spheres != NULL)
     return HL_OK;
   return hl_fail_memory(error, hl_surfaces_bytes(scene), "the meshes");
 }
@@ -200,6 +214,7 @@ void hl_surfaces_release(hl_context *context, surfaces *kept) {
   hl_release(context, kept->meshes);
   hl_release(context, kept->positions);
   hl_release(context, kept->normals);
+  hl_release(context, kept->edge_normals);
   hl_release(context, kept->triangles);
   hl_release(context, kept->spheres);
   hl_release(context, kept->cuts);

@@ -20,7 +20,9 @@ typedef struct surface_mesh {
   const float (*colors)[4];        /* borrowed; [vertices of the mesh]; null: none */
   const float (*face_colors)[4];   /* borrowed; [triangle_count]; null: none */
   const float (*sphere_colors)[4]; /* borrowed; [sphere_count]; null: none */
+  const uint32_t (*edges)[3];      /* borrowed; [triangle_count]; as of hl_mesh */
   size_t first_vertex;             /* in positions and normals */
+  size_t first_edge_normal;
   uint32_t first_triangle, triangle_count;
   uint32_t first_sphere, sphere_count; /* in spheres */
   bool is_cut;                         /* the cuts may remove some of it */
@@ -32,11 +34,12 @@ typedef struct surfaces {
   surface_mesh *meshes;     /* owned; [mesh_count]; their primitives follow each other */
   float (*positions)[3];    /* owned; [vertex_count]; frame space */
   float (*normals)[3];      /* owned; [vertex_count]; unit, or 0 where a vertex has none; frame space */
+  float (*edge_normals)[3]; /* owned; [edge_normal_count]; unit; frame space */
   uint32_t (*triangles)[3]; /* owned; [triangle_count]; indices of positions */
   float (*spheres)[4];      /* owned; [sphere_count]; centre and radius; frame space */
   cut_shape *cuts;          /* owned; [cut_count]; the scene's, of frame space */
   size_t cut_count;
-  size_t mesh_count, vertex_count;
+  size_t mesh_count, vertex_count, edge_normal_count;
   uint32_t triangle_count, sphere_count;
 } surfaces;
 
