@@ -61,12 +61,12 @@ static void hsv_to_rgb(const double hsv[3], double rgb[3]) {
   }
 }
 
-static void mix_hsv(const double a[3], const double b[3], double t, double mixed[3]) {
+static void mix_hsv(const double a[3], const double b[3], double t, bool by_arc, double mixed[3]) {
   double from[3], to[3], between[3];
   rgb_to_hsv(a, from);
   rgb_to_hsv(b, to);
-  if (to[0] - from[0] > 0.5) from[0] += 1;
-  else if (from[0] - to[0] > 0.5) to[0] += 1;
+  if (by_arc && to[0] - from[0] > 0.5) from[0] += 1;
+  else if (by_arc && from[0] - to[0] > 0.5) to[0] += 1;
   mix(from, to, t, between);
   hsv_to_rgb(between, mixed);
 }
@@ -112,7 +112,8 @@ static void mix_diverging(const double a[3], const double b[3], double t, double
 void hl_color_mix(hl_color_space space, const double a[3], const double b[3], double t, double mixed[3]) {
   double from[3], to[3], between[3];
   switch (space) {
-    case HL_SPACE_HSV: mix_hsv(a, b, t, mixed); return;
+    case HL_SPACE_HSV:
+    case HL_SPACE_HSV_ARC: mix_hsv(a, b, t, space == HL_SPACE_HSV_ARC, mixed); return;
     case HL_SPACE_DIVERGING: mix_diverging(a, b, t, mixed); return;
     case HL_SPACE_STEP: memcpy(mixed, t > 0 ? b : a, 3 * sizeof *mixed); return;
     case HL_SPACE_LAB:

@@ -38,13 +38,11 @@ static hl_status read_flat(hl_json_reader *reader, const json_t *map, const char
 
 static const char *const space_names[] = {"RGB", "HSV", "Lab", "Diverging", "Step", NULL};
 
-hl_status hl_json_read_paraview(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
-  hl_status status = hl_json_array(reader, root, 1, 1);
-  if (status != HL_OK) return status;
-  hl_json_enter_index(reader, 0);
-  const json_t *map = json_array_get(root, 0);
+hl_status hl_json_read_paraview_map(hl_json_reader *reader, const json_t *map,
+                                    hl_transfer_function *function) {
+  hl_status status = HL_OK;
   int space = HL_SPACE_RGB;
-  double logarithmic = 0;
+  double logarithmic = 0, by_arc = 0;
   hl_foreign_node *nodes = NULL;
   size_t count = 0;
   if (!json_is_object(map) || json_object_get(map, "RGBPoints") == NULL)
@@ -52,6 +50,8 @@ hl_status hl_json_read_paraview(hl_json_reader *reader, const json_t *root, hl_t
   const char *name = json_string_value(json_object_get(map, "ColorSpace"));
   if (name != NULL && strcmp(name, "CIELAB") == 0) space = HL_SPACE_LAB;
   else status = hl_json_choice(reader, map, "ColorSpace", space_names, 0, &space);
+  if (status == HL_OK) status = hl_json_number(reader, map, "HSVWrap", &by_arc);
+  if (space == HL_SPACE_HSV && by_arc != 0) space = HL_SPACE_HSV_ARC;
   if (status == HL_OK) status = hl_json_number(reader, map, "UseLogScale", &logarithmic);
   if (status == HL_OK && logarithmic != 0)
     status = hl_json_fail(reader, HL_ERROR_UNSUPPORTED, "UseLogScale",
@@ -69,4 +69,11 @@ hl_status hl_json_read_paraview(hl_json_reader *reader, const json_t *root, hl_t
     hl_release(reader->context, nodes);
   }
   return status;
+}
+
+hl_status hl_json_read_paraview(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
+  hl_status status = hl_json_array(reader, root, 1, 1);
+  if (status != HL_OK) return status;
+  hl_json_enter_index(reader, 0);
+  return hl_json_read_paraview_map(reader, json_array_get(root, 0), function);
 }

@@ -140,5 +140,8 @@ hl_status hl_json_read_plane(hl_json_reader *reader, const json_t *value, hl_fun
 
 /* ParaView's colour map: an array of one object. The points are owned by *function. */
 hl_status hl_json_read_paraview(hl_json_reader *reader, const json_t *root, hl_transfer_function *function);
+/* The object within: ColorSpace, HSVWrap, UseLogScale, RGBPoints and, where it has opacities, Points. */
+hl_status hl_json_read_paraview_map(hl_json_reader *reader, const json_t *map,
+                                    hl_transfer_function *function);
 
 #endif

@@ -1,5 +1,5 @@
-/* tests/unit/paraview_states.c - two-dimensional functions of ParaView's states (.pvsm): the opacity that
- * their boxes have, where they lie on a volume, and errors. */
+/* tests/unit/paraview_states.c - functions of the volumes that ParaView's states (.pvsm) show: colours and
+ * opacities, the opacity that boxes have, where they lie on a volume, and errors. */
 #define _GNU_SOURCE
 #include <stdio.h>
 #include <unistd.h>
@@ -102,21 +102,112 @@ static void boxes_are_laid_over_the_volume(void **state) {
   hl_context_destroy(context);
 }
 
+/* What ParaView 5.11.0 saved of a volume of one array (the rest of its state taken away): its own colours and
+ * opacities at some values. It has 256 colours of 8 bits, so that they jump by up to 0.012. */
+static void states_of_one_number(void **state) {
+  (void)state;
+  static const struct {
+    double value, color[3], opacity;
+  } expected[] = {{0, {0.00000, 0.00000, 1.00000}, 0.00000},   {20, {0.00000, 0.00000, 1.00000}, 0.00000},
+                  {45, {0.07451, 0.56863, 0.93725}, 0.00000},  {60, {0.11373, 0.83529, 0.90196}, 0.00000},
+                  {90, {0.18039, 0.82745, 0.43922}, 0.10000},  {100, {0.20000, 0.80000, 0.30196}, 0.20000},
+                  {110, {0.18824, 0.81569, 0.48627}, 0.30000}, {130, {0.16078, 0.80392, 0.85098}, 0.40005},
+                  {160, {0.11373, 0.11373, 0.90196}, 0.84296}, {200, {0.96863, 0.03922, 0.77647}, 0.89998},
+                  {220, {1.00000, 0.00000, 0.20000}, 0.90000}, {250, {1.00000, 0.00000, 0.20000}, 0.90000}};
+  hl_context *context = make_context();
+  hl_transfer_function f = {0};
+  hl_error error = {0};
+  const char *file = HALFLIGHT_SOURCE "/tests/unit/paraview-points.pvsm";
+  if (hl_transfer_function_load_for(context, file, NULL, &f, &error) != HL_OK) fail_msg("%s", error.message);
+  assert_true(f.unit_distance == 2.5);
+  for (size_t n = 0; n < sizeof expected / sizeof *expected; n++) {
+    double linear[3];
+    hl_transfer_function_color(&f, expected[n].value, linear);
+    for (int c = 0; c < 3; c++)
+      assert_true(linear[c] >= hl_srgb_decode(fmax(expected[n].color[c] - 0.018, 0)) &&
+                  linear[c] <= hl_srgb_decode(fmin(expected[n].color[c] + 0.018, 1)));
+    assert_near(hl_transfer_function_opacity(&f, expected[n].value), expected[n].opacity, 0.01);
+  }
+  hl_transfer_function_release(context, &f);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* The same of a volume that it showed by boxes. */
+static void states_of_two_numbers(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_transfer_function f = {0};
+  const char *file = HALFLIGHT_SOURCE "/tests/unit/paraview-boxes.pvsm";
+  assert_int_equal(hl_transfer_function_load_for(context, file, NULL, &f, NULL), HL_OK);
+  assert_int_equal(f.plane.second, HL_SECOND_GRADIENT);
+  assert_true(f.unit_distance == 2.5);
+  assert_near(1 - exp(-2.5 * at(&f, 100, 11).extinction), 0.6, 0.01);
+  assert_near(1 - exp(-2.5 * at(&f, 190, 2.5).extinction), 0.3 * exp(-0.45 * 0.45 / 0.18), 0.01);
+  hl_transfer_function_release(context, &f);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+#define NAMED(id) "<Proxy value=\"" #id "\"/>"
+#define SHOWN(more)                                                                \
+  "<Proxy group=\"representations\" type=\"UniformGridRepresentation\">" PROPERTY( \
+      "Representation", ELEMENT(0, Volume)) PROPERTY("LookupTable", NAMED(7))      \
+      PROPERTY("ScalarOpacityFunction", NAMED(8) "<Domain name=\"d\">" NAMED(9) "</Domain>") more "</Proxy>"
+#define COLORS(more)                                                          \
+  "<Proxy group=\"lookup_tables\" type=\"PVLookupTable\" id=\"7\">" PROPERTY( \
+      "RGBPoints", ELEMENT(0, 0) ELEMENT(1, 1) ELEMENT(2, 0) ELEMENT(3, 0)) more "</Proxy>"
+#define OPACITIES                                                                       \
+  "<Proxy group=\"piecewise_functions\" type=\"PiecewiseFunction\" id=\"8\">" PROPERTY( \
+      "Points", ELEMENT(0, 0) ELEMENT(1, 0.25) ELEMENT(2, 0.5) ELEMENT(3, 0)) "</Proxy>"
+#define HIDDEN PROPERTY("Visibility", ELEMENT(0, 0))
+
+/* Of several volumes the one that is shown counts, wherever what it names stands. */
+static void hidden_volumes_do_not_count(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_transfer_function f = {0};
+  const char *text = STATE(SHOWN(HIDDEN) OPACITIES SHOWN("") COLORS("") VOLUME(0, 1));
+  assert_int_equal(load(context, text, NULL, &f, NULL), HL_OK);
+  assert_true(hl_transfer_function_opacity(&f, 3) == 0.25 && f.unit_distance == 1);
+  hl_transfer_function_release(context, &f);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 static void refusals_say_what(void **state) {
   (void)state;
   static const struct {
     const char *text, *message;
-  } faults[] = {{STATE(FUNCTION(RANGE) VOLUME(1, 1)), "holds no TransferFunction2D with boxes: add one"},
-                {STATE(FUNCTION(BOX(1) RANGE) VOLUME(0, 1)),
-                 "no volume uses its function of two numbers: switch on Use 2D Transfer Function"},
-                {STATE(FUNCTION(BOX(1) RANGE) VOLUME(1, 0)),
-                 "a function of a second array is not supported: choose Gradient Magnitude in ParaView"},
-                {STATE(FUNCTION(BOX(1) RANGE) FUNCTION(BOX(1) RANGE) VOLUME(1, 1)),
-                 "holds boxes of several functions: keep one of them"},
-                {STATE(FUNCTION(BOX(1) RANGE) VOLUME(1, 1) VOLUME(1, 1)),
-                 "several volumes use a function of two numbers: keep one"},
-                {STATE(FUNCTION(PROPERTY("Boxes", ELEMENT(0, 20)) RANGE) VOLUME(1, 1)),
-                 "the function's Boxes or Range are incomplete: save the state anew"}};
+  } faults[] = {
+      {STATE(FUNCTION(RANGE) VOLUME(1, 1)), "holds no TransferFunction2D with boxes: add one"},
+      {STATE(FUNCTION(BOX(1) RANGE) VOLUME(0, 1)),
+       "no volume uses its function of two numbers: switch on Use 2D Transfer Function"},
+      {STATE(FUNCTION(BOX(1) RANGE) VOLUME(1, 0)),
+       "a function of a second array is not supported: choose Gradient Magnitude in ParaView"},
+      {STATE(FUNCTION(BOX(1) RANGE) FUNCTION(BOX(1) RANGE) VOLUME(1, 1)),
+       "holds boxes of several functions: keep one of them"},
+      {STATE(FUNCTION(BOX(1) RANGE) VOLUME(1, 1) VOLUME(1, 1)),
+       "several volumes use a function of two numbers: keep one"},
+      {STATE(FUNCTION(PROPERTY("Boxes", ELEMENT(0, 20)) RANGE) VOLUME(1, 1)),
+       "the function's Boxes or Range are incomplete: save the state anew"},
+      {STATE(COLORS("") OPACITIES SHOWN(HIDDEN)),
+       "shows no volume: choose the representation Volume in ParaView"},
+      {STATE(COLORS("") OPACITIES SHOWN("") SHOWN("")), "shows several volumes: hide all but one"},
+      {STATE(FUNCTION(BOX(1) RANGE) VOLUME(1, 1) COLORS("") OPACITIES SHOWN("")),
+       "shows several volumes: hide all but one"},
+      {STATE(COLORS("") SHOWN("")),
+       "the colours or opacities of its volume are missing: save the state anew"},
+      {STATE(COLORS("") OPACITIES SHOWN(PROPERTY("UseSeparateOpacityArray", ELEMENT(0, 1)))),
+       "opacity by another array is not supported: switch off Use Separate Opacity Array"},
+      {STATE(COLORS(PROPERTY("IndexedLookup", ELEMENT(0, 1))) OPACITIES SHOWN("")),
+       "colours of categories are not supported: switch off Interpret Values As Categories"},
+      {STATE(COLORS(PROPERTY("UseAboveRangeColor", ELEMENT(0, 1))) OPACITIES SHOWN("")),
+       "colours below and above the range are not supported: switch them off"},
+      {STATE(COLORS(PROPERTY("UseLogScale", ELEMENT(0, 1))) OPACITIES SHOWN("")),
+       "/UseLogScale: logarithmic colour maps are not supported: save the map with a linear scale"},
+      {STATE(COLORS(PROPERTY("ColorSpace", ELEMENT(0, 4))) OPACITIES SHOWN("")),
+       "/ColorSpace: \"Lab/CIEDE2000\" is no known choice: use one of RGB, HSV, Lab, Diverging, Step"}};
   hl_context *context = make_context();
   for (size_t n = 0; n < sizeof faults / sizeof *faults; n++) {
     hl_transfer_function f = {0};
@@ -130,9 +221,9 @@ static void refusals_say_what(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(boxes_are_gaussians),
-      cmocka_unit_test(boxes_are_laid_over_the_volume),
-      cmocka_unit_test(refusals_say_what),
+      cmocka_unit_test(boxes_are_gaussians),         cmocka_unit_test(boxes_are_laid_over_the_volume),
+      cmocka_unit_test(states_of_one_number),        cmocka_unit_test(states_of_two_numbers),
+      cmocka_unit_test(hidden_volumes_do_not_count), cmocka_unit_test(refusals_say_what),
   };
   return cmocka_run_group_tests(tests, make_file, remove_file);
 }

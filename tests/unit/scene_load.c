@@ -90,6 +90,26 @@ static void paraview_color_spaces(void **state) {
   hl_context_destroy(context);
 }
 
+/* "Blue to Red Rainbow" of ParaView runs over green; along the shorter arc of hues it would run over magenta.
+ */
+static void paraview_rainbow(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  for (int by_arc = 0; by_arc < 2; by_arc++) {
+    char text[200];
+    snprintf(text, sizeof text,
+             "[{\"ColorSpace\": \"HSV\", \"HSVWrap\": %d, \"RGBPoints\": [0, 0, 0, 1, 10, 1, 0, 0]}]",
+             by_arc);
+    hl_transfer_function f = {0};
+    double linear[3];
+    assert_int_equal(load(context, text, &f, NULL), HL_OK);
+    hl_transfer_function_color(&f, 5, linear);
+    for (int c = 0; c < 3; c++) assert_near(linear[c], by_arc ? c != 1 : c == 1, 0.003);
+    hl_transfer_function_release(context, &f);
+  }
+  hl_context_destroy(context);
+}
+
 static void paraview_opacities_ease(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -226,9 +246,10 @@ static void refusals_name_the_place(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(halflights_own),           cmocka_unit_test(paraview_color_spaces),
-      cmocka_unit_test(paraview_opacities_ease),  cmocka_unit_test(slicer_presets),
-      cmocka_unit_test(functions_of_two_numbers), cmocka_unit_test(refusals_name_the_place),
+      cmocka_unit_test(halflights_own),          cmocka_unit_test(paraview_color_spaces),
+      cmocka_unit_test(paraview_rainbow),        cmocka_unit_test(paraview_opacities_ease),
+      cmocka_unit_test(slicer_presets),          cmocka_unit_test(functions_of_two_numbers),
+      cmocka_unit_test(refusals_name_the_place),
   };
   return cmocka_run_group_tests(tests, make_file, remove_file);
 }
