@@ -36,6 +36,9 @@ struct hl_mesh {
   uint64_t mark; /* of all that hides light: triangles, spheres and their colours; for keys of kept results */
 };
 
+/* A number for the edge between two vertices, by chance alike for others once in 2^64; a below b. */
+uint64_t hl_hash_of_edge(uint32_t a, uint32_t b);
+
 /* A mesh that is being read: growing arrays. */
 typedef struct mesh_parts {
   hl_context *context;

@@ -9,7 +9,7 @@
 #include "light/light_source.h"
 #include "render/slab.h"
 #include "scene/scene.h"
-#include "surface/surfaces.h"
+#include "surface/surface_tree.h"
 #include "view/occupancy.h"
 
 enum { FRAME_LIGHTS = MAXIMUM_SWEEP_LIGHTS, CONTENT_POINTS = 64 };
@@ -39,8 +39,9 @@ typedef struct frame {
   light_sectors sectors; /* of lights within the content */
   light_source *lights;  /* [light_count]; owned by the caller; sectors of a light follow each other */
   int light_count;
-  const surfaces *surfaces; /* of the scene's meshes; null: none */
-  const int *mesh_objects;  /* [meshes]; their numbers in the layer of objects */
+  const surfaces *surfaces;    /* of the scene's meshes; null: none */
+  const surface_tree *contact; /* of what shadow buffers leave light behind (contact.h) */
+  const int *mesh_objects;     /* [meshes]; their numbers in the layer of objects */
 } frame;
 
 /* The eye's view in width x height pixels. */

@@ -10,28 +10,32 @@ double hl_surface_delay(const light_shadow *shadow) {
   return shadow->method == &hl_shadow_hard ? 0.75 : 2; /* soft methods blur by a pixel and more */
 }
 
-/* A sample of a volume, near a surface that the same pixel of the eye sees. */
+/* A sample of a volume, near a surface that the same pixel of the eye meets. */
 typedef struct near_sample {
   const fragment *fragment;
-  vec3 point, met; /* of the sample, and of the surface */
-  double height;   /* of the sample */
+  vec3 point, met;  /* of the sample, and of the surface */
+  double low, high; /* heights of the ends of the pixel's piece; the sample is its middle */
+  bool cut;         /* the piece ends at the surface */
 } near_sample;
 
-/* The height of the middle of a pixel's piece; NAN: it has none. */
-static double middle_of_piece(const shade_job *job, slab_piece piece, int pixel) {
-  double low = (double)job->height - (double)job->spacing, high = (double)job->height;
-  if (piece.from != NULL) low = fmax(low, (double)piece.from[pixel]);
-  if (piece.to != NULL) high = fmin(high, (double)piece.to[pixel]);
-  return low < high ? (low + high) / 2 : NAN;
+/* The heights of the ends of a pixel's piece; false: it has none. */
+static bool set_piece(const shade_job *job, slab_piece piece, int pixel, near_sample *sample) {
+  sample->low = (double)job->height - (double)job->spacing;
+  sample->high = (double)job->height;
+  if (piece.from != NULL) sample->low = fmax(sample->low, (double)piece.from[pixel]);
+  if (piece.to != NULL) sample->high = fmin(sample->high, (double)piece.to[pixel]);
+  return sample->low < sample->high;
 }
+
+static double middle_of(const near_sample *sample) { return (sample->low + sample->high) / 2; }
 
 /* Pixels of a buffer that a look-up reads around a sample: behind what is opaque, those that come later than
  * the sample's own count, too. A part that passes must not be taken twice. */
 static const double READ_BESIDE = 1.25;
 
-/* Whether a light meets the plane of the surface before it comes to the sample, and its buffer will take the
- * surface into account from a later slab on. */
-static bool is_missed(const sweep *sweep, int light, const near_sample *sample, int slab) {
+/* The part of the piece to which a light comes after it has met the plane of the surface, where its buffer
+ * will take the surface into account from a later slab on; else 0. */
+static double part_missed(const sweep *sweep, int light, const near_sample *sample, int slab) {
   const surfaces *all = sweep->frame->surfaces;
   const sheet_stack *sheets = &sweep->geometry->sheets;
   const light_shadow *shadow = &sweep->lights[light].shadow;
@@ -39,23 +43,26 @@ static bool is_missed(const sweep *sweep, int light, const near_sample *sample, 
   uint32_t primitive = sample->fragment->primitive;
   surface_plane plane;
   double uv[2];
-  if (!hl_view_project(view, sample->point, uv)) return false;
+  if (!hl_view_project(view, sample->point, uv)) return 0;
   if (primitive < all->triangle_count) hl_plane_of_triangle(view, sheets, all, primitive, &plane);
   else hl_plane_of_sphere(view, sheets, all->spheres[primitive - all->triangle_count], sample->met, &plane);
-  double height = hl_plane_height(&plane, uv[0], uv[1]);
-  if (!(height < sample->height)) return false;
+  double height = hl_plane_height(&plane, uv[0], uv[1]), middle = middle_of(sample);
+  double part = (middle - height) / (sample->high - sample->low) + 0.5; /* beyond the surface */
+  if (sample->cut) part = height < middle ? 1 : 0;
+  if (!(part > 0)) return 0;
   double beside = sample->fragment->opacity < 1 ? 0 : READ_BESIDE;
   double delay = (hl_surface_delay(shadow) + beside) * hl_plane_slope(&plane, uv[0], uv[1]);
-  return height + delay > (slab - 1 - LEAST_DELAY) * sheets->spacing;
+  return height + delay > (slab - 1 - LEAST_DELAY) * sheets->spacing ? fmin(part, 1) : 0;
 }
 
-/* Takes a fragment's part of the light that comes to a sample. */
-static void take(const sweep *sweep, const near_sample *sample, int light, float (*passing)[TILE_PIXELS]) {
+/* Takes a fragment's part of the light that comes to a part of a piece. */
+static void take(const sweep *sweep, const near_sample *sample, int light, double part,
+                 float (*passing)[TILE_PIXELS]) {
   const fragment *f = sample->fragment;
   const double *color = sweep->frame->surfaces->meshes[f->mesh].scene->attenuation_color;
   int at = hl_pixel_row(f->pixel) * TILE + hl_pixel_column(f->pixel);
   for (int c = 0; c < sweep->channels; c++)
-    passing[light * sweep->channels + c][at] *= 1 - f->opacity * (float)color[c];
+    passing[light * sweep->channels + c][at] *= 1 - f->opacity * (float)(color[c] * part);
 }
 
 /* Whether some volume may show something in a pixel's slab. */
@@ -76,28 +83,37 @@ static void fill_with_ones(float (*passing)[TILE_PIXELS], int count) {
     for (int k = 0; k < TILE_PIXELS; k++) passing[i][k] = 1;
 }
 
-bool hl_near_surfaces_find(const sweep *sweep, const tile_slab *slab, fragment_range near, slab_piece piece,
-                           float (*passing)[TILE_PIXELS]) {
+/* The same as hl_near_surfaces_find() for some of the fragments. cut: slabs are cut at them. any: whether
+ * some light was taken before. */
+static bool find_near(const sweep *sweep, const tile_slab *slab, fragment_range near, bool cut,
+                      slab_piece piece, bool any, float (*passing)[TILE_PIXELS]) {
   const shade_job *job = slab->job;
   const float *pixels = sweep->pixels + slab->tile * 4 * TILE_PIXELS;
-  bool any = false;
   for (size_t i = 0; i < near.count; i++) {
     const fragment *f = &near.first[i];
     int block = f->pixel / BLOCK_PIXELS, lane = f->pixel % BLOCK_PIXELS;
     if ((slab->blocks >> block & 1) == 0) continue;
     if (!sweep->frame->surfaces->meshes[f->mesh].scene->casts_shadow) continue;
     if (!job->back_to_front && pixels[(block * 4 + 3) * BLOCK_PIXELS + lane] >= PIXEL_OPAQUE) continue;
-    near_sample sample = {.fragment = f, .height = middle_of_piece(job, piece, f->pixel)};
-    if (isnan(sample.height) || !shows_matter(slab, f->pixel)) continue;
-    sample.point = hl_surface_place(sweep, slab, f, sample.height);
+    near_sample sample = {.fragment = f, .cut = cut};
+    if (!set_piece(job, piece, f->pixel, &sample) || !shows_matter(slab, f->pixel)) continue;
+    sample.point = hl_surface_place(sweep, slab, f, middle_of(&sample));
     sample.met = hl_surface_place(sweep, slab, f, (double)f->height);
     for (int light = 0; light < sweep->geometry->light_count; light++) {
-      if (sweep->lights[light].shadow.method == NULL || !is_missed(sweep, light, &sample, job->sheet))
-        continue;
+      double part = sweep->lights[light].shadow.method == NULL
+                        ? 0
+                        : part_missed(sweep, light, &sample, job->sheet);
+      if (part == 0) continue;
       if (!any) fill_with_ones(passing, sweep->geometry->light_count * sweep->channels);
       any = true;
-      take(sweep, &sample, light, passing);
+      take(sweep, &sample, light, part, passing);
     }
   }
   return any;
+}
+
+bool hl_near_surfaces_find(const sweep *sweep, const tile_slab *slab, const near_fragments *near,
+                           slab_piece piece, float (*passing)[TILE_PIXELS]) {
+  bool any = find_near(sweep, slab, near->seen, true, piece, false, passing);
+  return find_near(sweep, slab, near->unseen, false, piece, any, passing);
 }

@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "grid/relevant.h"
 #include "isosurface/isosurface.h"
+#include "render/contact.h"
 #include "render/estimate.h"
 #include "render/frame.h"
 #include "render/maximum.h"
@@ -27,6 +28,7 @@ struct hl_renderer {
   size_t buffer_count;
   shadow_memory shadow_memory[FRAME_LIGHTS]; /* owned; of a sweep's lights */
   surfaces surfaces;       /* owned; of the last frame's meshes, kept while they stay where they are */
+  surface_tree contact;    /* owned; of these */
   scatter_field scattered; /* owned; kept while the scene's matter and lights stay the same */
   sky_field sky;           /* owned; the light of the scene's sky */
   phase_tables phases;     /* owned; of the scene's media and lights */
@@ -83,6 +85,7 @@ void hl_renderer_destroy(hl_renderer *renderer) {
   hl_scatter_release(renderer->context, &renderer->scattered);
   hl_sky_release(renderer->context, &renderer->sky);
   hl_phase_release(renderer->context, &renderer->phases);
+  hl_surface_tree_release(renderer->context, &renderer->contact);
   hl_surfaces_release(renderer->context, &renderer->surfaces);
   hl_reserve_release(&renderer->reserve);
   hl_pool_destroy(renderer->pool);
@@ -238,8 +241,10 @@ static void open_faces(const hl_scene_description *scene, grid *grids) {
 static hl_status add_surfaces(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work,
                               hl_error *error) {
   frame *frame = &work->frame;
-  if (!hl_surfaces_current(&renderer->surfaces, scene))
+  if (!hl_surfaces_current(&renderer->surfaces, scene)) {
+    hl_surface_tree_release(renderer->context, &renderer->contact);
     hl_surfaces_release(renderer->context, &renderer->surfaces);
+  }
   uint64_t bytes = renderer->surfaces.mesh_count > 0 ? 0 : hl_surfaces_bytes(scene);
   hl_status status = check_room(renderer, bytes, error);
   if (status == HL_OK)
@@ -248,6 +253,7 @@ static hl_status add_surfaces(hl_renderer *renderer, const hl_scene_description 
   for (size_t i = 0; i < scene->mesh_count; i++, frame->point_count += 8)
     hl_surface_corners(&scene->meshes[i], frame->voxel, frame->points + frame->point_count);
   frame->surfaces = &renderer->surfaces;
+  frame->contact = &renderer->contact;
   frame->mesh_objects = work->framed.mesh_objects;
   return HL_OK;
 }
@@ -258,6 +264,21 @@ static grid grid_of_frame(const hl_scene_volume *volume, const prepared_volume *
   grid grid = prepared->grid;
   if (!volume->visible && !volume->casts_shadow) grid.relevant_count = 0;
   return grid;
+}
+
+/* Brings the tree of what shadow buffers leave light behind up to date; after the frame's lights. */
+static hl_status update_contact(hl_renderer *renderer, const hl_scene_description *scene, const frame *frame,
+                                hl_error *error) {
+  surface_tree *tree = &renderer->contact;
+  double distance = hl_contact_distance(frame);
+  bool shadows = false;
+  for (int i = 0; i < frame->light_count; i++) shadows |= frame->lights[i].shadows != HL_SHADOWS_OFF;
+  if (!shadows || frame->surfaces == NULL || hl_surface_tree_current(tree, &renderer->surfaces, distance))
+    return HL_OK;
+  hl_surface_tree_release(renderer->context, tree);
+  hl_status status = check_room(renderer, hl_contact_bytes(scene), error);
+  if (status != HL_OK) return status;
+  return hl_surface_tree_create(renderer->context, &renderer->surfaces, distance, tree, error);
 }
 
 static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene,
@@ -284,6 +305,8 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   frame->spacing = fmin(scene->render.sheet_spacing, hl_is_maximum(scene) ? MAXIMUM_SPACING : GRID_MARGIN) *
                    frame->voxel; /* at most the margin by which volumes continue beyond their faces */
   hl_frame_set_up_lights(frame, scene);
+  status = update_contact(renderer, scene, frame, error);
+  if (status != HL_OK) return status;
   for (size_t i = 0; i < scene->volume_count; i++)
     if (rays_start_inside(frame, &work->grids[i])) work->grids[i].cut = true;
   work->sweep_count = hl_frame_sweeps(frame, &scene->render, work->sweeps);

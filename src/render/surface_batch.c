@@ -22,6 +22,7 @@ static void set_material(surface_samples *samples, const hl_scene_mesh *mesh) {
   samples->emission = (float)mesh->material.emission;
   samples->receives_shadow = mesh->receives_shadow;
   samples->even = 0;
+  samples->contact = NULL;
   for (int c = 0; c < 3; c++) samples->behind[c] = (float)(1 - mesh->opacity * mesh->attenuation_color[c]);
 }
 
@@ -37,10 +38,13 @@ static void composite_fragment(int back_to_front, const fragment *f, const float
 
 void hl_surface_batch_place(const sweep *sweep, const tile_slab *slab, surface_batch *batch) {
   set_material(&batch->samples, batch->mesh->scene);
-  for (int i = 0; i < SURFACE_SAMPLES; i++) {
-    surface_point point = hl_surface_point_of(sweep, slab, batch->fragments[i < batch->count ? i : 0]);
+  surface_point first = hl_surface_point_of(sweep, slab, batch->fragments[0]);
+  for (int i = 1; i < batch->count; i++) {
+    surface_point point = hl_surface_point_of(sweep, slab, batch->fragments[i]);
     set_sample(&batch->samples, i, &point);
   }
+  for (int i = 0; i < SURFACE_SAMPLES; i++)
+    if (i == 0 || i >= batch->count) set_sample(&batch->samples, i, &first);
 }
 
 void hl_surface_batch_composite(const surface_batch *batch, int back_to_front, float *pixels) {

@@ -50,6 +50,13 @@ LANES_INLINE color_lanes light_of_sample(const shade_job *job, const shade_light
   return passing;
 }
 
+/* What surfaces close before the samples let through: the buffer may hold them, or not. */
+LANES_INLINE lanes contact_of(const shade_job *job, const shade_light *light, const surface_samples *samples,
+                              int channel) {
+  if (samples->contact == NULL) return lanes_set(1.0f);
+  return lanes_load(samples->contact[light->number * job->channels + channel]);
+}
+
 /* Eqs. (3) and (4) for a surface: what one light adds. */
 LANES_INLINE void add_light(const shade_job *job, const shade_light *light, const surface_samples *samples,
                             color_lanes *lit) {
@@ -71,7 +78,7 @@ LANES_INLINE void add_light(const shade_job *job, const shade_light *light, cons
   if (shadowed) passing = light_of_sample(job, light, samples, position, normal, facing);
   for (int c = 0; c < 3; c++) {
     if (shadowed && c < light->channels)
-      transmittance = lanes_min(lanes_max(passing.c[c], lanes_set(0)), lanes_set(1.0f));
+      transmittance = lanes_min(lanes_max(passing.c[c], lanes_set(0)), contact_of(job, light, samples, c));
     lit->c[c] = lanes_fma(arriving.full.c[c] * transmittance,
                           lanes_fma(lanes_load(samples->color[c]), diffuse, glint), lit->c[c]);
   }

@@ -18,6 +18,8 @@ typedef struct surface_samples {
   float even;      /* the fraction of light that is sent on from any angle, as by a medium */
   float behind[3]; /* of this, the fraction where the light comes from behind the surface */
   int receives_shadow;
+  const float (*contact)[SURFACE_SAMPLES]; /* [lights of the sweep][channels]; what surfaces close before the
+                                              samples let through (contact.h); null: everything */
 } surface_samples;
 
 #endif

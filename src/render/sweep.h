@@ -8,6 +8,7 @@
 #include <halflight/render.h>
 
 #include "render/layers.h"
+#include "render/surface_samples.h"
 #include "render/view_sheets.h"
 #include "shadow/shadow_method.h"
 #include "surface/fragments.h"
@@ -68,14 +69,25 @@ typedef struct sweep_layers {
   float (*ones)[4];     /* owned; a colour table */
 } sweep_layers;
 
+/* Points that stand for a light where surfaces look for what is close before them (contact.h). */
+enum { LIGHT_POINTS_SIDE = 4 };
+typedef struct light_points {
+  vec3 offset[LIGHT_POINTS_SIDE * LIGHT_POINTS_SIDE]; /* [count]; from the light's centre (hl_light_point) */
+  int count;                                          /* 1 where shadows are hard */
+  double reach;                                       /* the greatest length of an offset */
+} light_points;
+
 /* The surfaces of the sweep's views; zeros where there are none. */
 typedef struct surface_state {
   fragments image, lights[FRAME_LIGHTS];
+  fragments unseen;              /* of the eye's view: meshes that are not visible and shade volumes */
   void *memory;                  /* owned; all arrays that follow */
   shade_patch *patches;          /* [threads][volumes] */
   float (*cuts)[TILE_PIXELS];    /* [threads][volumes][2]; where the pieces of slabs begin and end in boxes */
   float (*bounds)[TILE_PIXELS];  /* [threads][2]; where they begin and end */
   float (*passing)[TILE_PIXELS]; /* [threads][lights][channels]; of near_surfaces.h */
+  float (*contact)[SURFACE_SAMPLES]; /* likewise; of contact.h */
+  light_points *points;              /* [lights] */
 } surface_state;
 
 typedef struct sweep sweep;

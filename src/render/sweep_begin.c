@@ -154,6 +154,7 @@ static uint64_t fragments_bytes(const sweep *sweep, int threads) {
   uint64_t making, most;
   if (all == NULL) return 0;
   uint64_t kept = hl_fragments_bytes(all, &sweep->frame->eye, threads, &most);
+  if (hl_sweep_has_unseen(sweep)) kept *= 2;
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     const light_shadow *shadow = &sweep->lights[i].shadow;
     if (shadow->method == NULL) continue;

@@ -2,6 +2,7 @@
 #include "render/sweep_surfaces.h"
 
 #include "core/memory.h"
+#include "render/contact.h"
 #include "render/near_surfaces.h"
 #include "render/surface_batch.h"
 #include "render/sweep_layers.h"
@@ -10,6 +11,7 @@
 
 static hl_status make_fragments(sweep *sweep, const view *view, const light_shadow *shadow,
                                 const occupancy *occupancy, fragments *made, hl_error *error) {
+  const bool unseen = made == &sweep->surfaces.unseen;
   const fragments_source source = {.context = sweep->content.context,
                                    .pool = sweep->content.pool,
                                    .functions = &sweep->content.hot->surface,
@@ -18,9 +20,10 @@ static hl_status make_fragments(sweep *sweep, const view *view, const light_shad
                                    .sheets = &sweep->geometry->sheets,
                                    .falling = shadow == NULL && sweep->geometry->back_to_front,
                                    .of_light = shadow != NULL,
+                                   .unseen = unseen,
                                    .delay = shadow != NULL ? hl_surface_delay(shadow) : 0,
                                    .rise = shadow != NULL && shadow->method != &hl_shadow_hard ? 1.25 : 0,
-                                   .marks = occupancy->by_sheet,
+                                   .marks = unseen ? NULL : occupancy->by_sheet,
                                    .tile_words = occupancy->tile_words};
   return hl_fragments_create(&source, made, error);
 }
@@ -40,6 +43,8 @@ static hl_status make_room(sweep *sweep, hl_error *error) {
     state->cuts = hl_layout_take(&layout, places * volumes * 2, sizeof *state->cuts);
     state->bounds = hl_layout_take(&layout, places * 2, sizeof *state->bounds);
     state->passing = hl_layout_take(&layout, places * passings(sweep), sizeof *state->passing);
+    state->contact = hl_layout_take(&layout, places * passings(sweep), sizeof *state->contact);
+    state->points = hl_layout_take(&layout, (size_t)sweep->geometry->light_count, sizeof *state->points);
     if (pass == 1) break;
     state->memory = hl_allocate(sweep->content.context, layout.bytes, 1);
     if (state->memory == NULL) return hl_fail_memory(error, layout.bytes, "the surfaces");
@@ -48,15 +53,25 @@ static hl_status make_room(sweep *sweep, hl_error *error) {
   return HL_OK;
 }
 
+bool hl_sweep_has_unseen(const sweep *sweep) {
+  const surfaces *all = sweep->frame->surfaces;
+  for (size_t m = 0; sweep->content.volume_count > 0 && m < all->mesh_count; m++)
+    if (!all->meshes[m].scene->visible && hl_mesh_takes_light(all->meshes[m].scene)) return true;
+  return false;
+}
+
 hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error) {
   if (sweep->frame->surfaces == NULL || sweep->preparatory) return HL_OK;
   surface_state *state = &sweep->surfaces;
   hl_status status = make_room(sweep, error);
   if (status == HL_OK)
     status = make_fragments(sweep, &sweep->frame->eye, NULL, &sweep->image.occupancy, &state->image, error);
+  if (status == HL_OK && hl_sweep_has_unseen(sweep))
+    status = make_fragments(sweep, &sweep->frame->eye, NULL, &sweep->image.occupancy, &state->unseen, error);
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++) {
     sweep_light *light = &sweep->lights[i];
     if (light->shadow.method == NULL) continue;
+    hl_contact_points(light->source, &state->points[i]);
     status = make_fragments(sweep, &light->shadow.buffer->view, &light->shadow, &light->sheets.occupancy,
                             &state->lights[i], error);
   }
@@ -66,6 +81,7 @@ hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error) {
 void hl_sweep_surfaces_end(sweep *sweep) {
   hl_context *context = sweep->content.context;
   hl_fragments_release(context, &sweep->surfaces.image);
+  hl_fragments_release(context, &sweep->surfaces.unseen);
   for (int i = 0; i < FRAME_LIGHTS; i++) hl_fragments_release(context, &sweep->surfaces.lights[i]);
   hl_release(context, sweep->surfaces.memory);
 }
@@ -75,6 +91,7 @@ static fragment_range reach(const fragments *all, size_t tile, int slab) {
 }
 
 fragment_range hl_sweep_surfaces_reach(const sweep *sweep, size_t tile, int slab) {
+  (void)reach(&sweep->surfaces.unseen, tile, slab);
   return reach(&sweep->surfaces.image, tile, slab);
 }
 
@@ -87,7 +104,10 @@ fragment_range hl_sweep_surfaces_reach_light(const sweep *sweep, int light, size
 /* Steps 14 to 16 for a batch, and its layers. */
 static void shade_batch(const sweep *sweep, const tile_slab *slab, surface_batch *batch) {
   if (batch->count == 0) return;
+  float(*contact)[SURFACE_SAMPLES] = sweep->surfaces.contact + (size_t)slab->worker * passings(sweep);
   hl_surface_batch_place(sweep, slab, batch);
+  if (hl_contact_find(sweep, slab, batch, contact))
+    batch->samples.contact = (const float(*)[SURFACE_SAMPLES])contact;
   sweep->content.hot->render.surface(slab->job, &batch->samples);
   hl_surface_batch_composite(batch, slab->job->back_to_front, sweep->pixels + slab->tile * 4 * TILE_PIXELS);
   hl_sweep_layers_batch(sweep, slab, batch);
@@ -127,8 +147,10 @@ static void shade_fragments(const sweep *sweep, const tile_slab *slab, uint32_t 
 static uint32_t act_behind(const sweep *sweep, const tile_slab *slab, slab_piece piece) {
   float(*passing)[TILE_PIXELS] = sweep->surfaces.passing + (size_t)slab->worker * passings(sweep);
   int first = slab->job->sheet - NEAR_SLABS;
-  fragment_range near = hl_fragments_reached(&sweep->surfaces.image, slab->tile, first);
-  if (!hl_near_surfaces_find(sweep, slab, near, piece, passing)) return sweep->act(sweep, slab);
+  const fragments *unseen = &sweep->surfaces.unseen;
+  near_fragments near = {.seen = hl_fragments_reached(&sweep->surfaces.image, slab->tile, first)};
+  if (unseen->first != NULL) near.unseen = hl_fragments_reached(unseen, slab->tile, first);
+  if (!hl_near_surfaces_find(sweep, slab, &near, piece, passing)) return sweep->act(sweep, slab);
   shade_job job = *slab->job;
   tile_slab behind = *slab;
   job.near_passing = (const float(*)[TILE_PIXELS])passing;

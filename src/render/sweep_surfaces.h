@@ -5,6 +5,9 @@
 
 #include "render/sweep.h"
 
+/* Whether the frame has meshes that are not visible and shade its volumes. */
+bool hl_sweep_has_unseen(const sweep *sweep);
+
 /* After the sweep's views and lights have begun. Does nothing where the frame has no surfaces. */
 hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error);
 void hl_sweep_surfaces_end(sweep *sweep);

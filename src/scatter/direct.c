@@ -88,10 +88,10 @@ static float within_cone(const light_cone *cone, vec3 towards) {
 }
 
 /* What a mesh takes of the light on its way. */
-static void meet_mesh(void *data, double distance, double opacity, const hl_scene_mesh *mesh) {
+static void meet_mesh(void *data, const surface_hit *hit) {
   float *passing = data;
-  (void)distance;
-  for (int c = 0; c < 3; c++) passing[c] *= (float)(1 - opacity * mesh->attenuation_color[c]);
+  const double *color = hit->mesh->scene->attenuation_color;
+  for (int c = 0; c < 3; c++) passing[c] *= (float)(1 - hit->opacity * color[c]);
 }
 
 /* Adds one point of the light, with its share of the light. */

@@ -259,7 +259,7 @@ hl_status hl_scatter_update(const scatter_scene *scene, scatter_field *field, hl
   *field = (scatter_field){.key = key};
   if (place_nodes(scene, &field->nodes)) {
     surface_tree tree;
-    status = hl_surface_tree_create(scene->context, scene->surfaces, &tree, error);
+    status = hl_surface_tree_create(scene->context, scene->surfaces, ALL_SURFACES, &tree, error);
     if (status == HL_OK) status = find_field(scene, &tree, field, error);
     hl_surface_tree_release(scene->context, &tree);
   }

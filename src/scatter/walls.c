@@ -41,20 +41,17 @@ typedef struct wall_ray {
   int count; /* nodes */
 } wall_ray;
 
-static double passing_of(double opacity, const hl_scene_mesh *mesh) {
-  const double *color = mesh->attenuation_color;
-  return 1 - opacity * (color[0] + color[1] + color[2]) / 3;
+static double passing_of(const surface_hit *hit) {
+  const double *color = hit->mesh->scene->attenuation_color;
+  return 1 - hit->opacity * (color[0] + color[1] + color[2]) / 3;
 }
 
-static void meet_between(void *data, double distance, double opacity, const hl_scene_mesh *mesh) {
+static void meet_between(void *data, const surface_hit *hit) {
   wall_ray *ray = data;
-  ray->passing[(int)fmin(floor(distance), ray->count - 2) + 1] *= passing_of(opacity, mesh);
+  ray->passing[(int)fmin(floor(hit->distance), ray->count - 2) + 1] *= passing_of(hit);
 }
 
-static void meet_beyond(void *data, double distance, double opacity, const hl_scene_mesh *mesh) {
-  (void)distance;
-  *(double *)data *= passing_of(opacity, mesh);
-}
+static void meet_beyond(void *data, const surface_hit *hit) { *(double *)data *= passing_of(hit); }
 
 /* Whether a place of the grid is a node. */
 static bool is_node(const scatter_nodes *nodes, const int32_t at[3]) {

@@ -23,6 +23,7 @@ typedef struct fragment {
   uint32_t primitive;
   int32_t slab;     /* k: between sheets k-1 and k */
   uint16_t samples; /* covered, one bit each */
+  uint16_t seen;    /* of the eye's view, of these: those that no opaque fragment before it covers */
   uint16_t mesh;    /* that the primitive belongs to */
   uint8_t pixel;    /* in its tile, block after block: 16 * block + lane */
   uint8_t reach;    /* of the eye's view: see below */

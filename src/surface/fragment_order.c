@@ -96,7 +96,7 @@ size_t hl_sort_by_pixel(const fragment *list, size_t count, const fragment_order
   for (size_t p = 0, first = 0; p < TILE_PIXELS; first = places[p++]) { /* a place is now its pixel's end */
     size_t own = places[p] - first;
     sort_keys(keys + first, keys + count, own);
-    if (!order->slabs) {
+    if (!order->slabs && !order->apart) {
       kept += copy_uncovered(list, keys + first, own, most, order, sorted + kept);
       continue;
     }
@@ -143,6 +143,7 @@ static size_t resolve_opaque(fragment *list, size_t count, const float *least, u
   for (; i < count && hl_is_opaque(&list[i], least); i++) {
     int before = count_samples(*open), taken = count_samples(*open & list[i].samples);
     list[i].opacity = before > 0 ? (float)taken / (float)before : 0;
+    list[i].seen = (uint16_t)(*open & list[i].samples);
     *open &= ~(uint32_t)list[i].samples;
   }
   return i;
@@ -158,8 +159,10 @@ static void resolve_pixel(fragment *list, size_t count, const float *least) {
   for (int s = 0; s < FRAGMENT_SAMPLES; s++) left[s] = (float)(open >> s & 1);
   for (size_t i = first; i < count; i++) {
     float own = list[i].opacity, taken = 0, after = 0;
+    list[i].seen = 0;
     for (int s = 0; s < FRAGMENT_SAMPLES; s++) {
       float part = list[i].samples >> s & 1 ? left[s] * own : 0;
+      if (part > 0) list[i].seen |= (uint16_t)(1u << s);
       taken += part;
       left[s] -= part * least[list[i].mesh];
       after += left[s];
@@ -211,9 +214,28 @@ static size_t join_panes(fragment *list, size_t count, const float *least) {
   return kept;
 }
 
+/* Each fragment takes its part of the pixel; neighbouring triangles of a mesh, which cover different samples,
+ * are one. Returns how many fragments are left. */
+static size_t resolve_apart(fragment *list, size_t count) {
+  size_t kept = 0;
+  for (size_t i = 0; i < count; i++) {
+    fragment *latest = kept > 0 ? &list[kept - 1] : NULL, own = list[i];
+    own.opacity *= (float)count_samples(own.samples) / FRAGMENT_SAMPLES;
+    if (latest == NULL || latest->pixel != own.pixel || latest->mesh != own.mesh ||
+        (latest->samples & own.samples) != 0) {
+      list[kept++] = own;
+      continue;
+    }
+    latest->opacity += own.opacity;
+    latest->samples |= own.samples;
+  }
+  return kept;
+}
+
 size_t hl_resolve_fragments(fragment *list, size_t count, const fragment_order *order) {
   const float *least = order->least;
   size_t kept = 0;
+  if (order->apart) return resolve_apart(list, count);
   for (size_t i = 0, end; i < count; i = end) {
     for (end = i + 1; end < count && list[end].pixel == list[i].pixel;) end++;
     size_t left = join_panes(list + i, end - i, least);

@@ -16,6 +16,7 @@ typedef struct fragment_order {
                          colour of light */
   bool falling;       /* the view meets great heights first */
   bool slabs;         /* of a light's view whose buffer is also used for rays of other directions */
+  bool apart;         /* no fragment hides another */
   double spacing;     /* of the sheets; frame units */
 } fragment_order;
 
@@ -32,7 +33,7 @@ static inline bool hl_is_opaque(const fragment *f, const float *least) {
 
 /* Sorts by pixels, and within a pixel in the order that the view meets the fragments. Leaves out those whose
  * samples opaque fragments before them cover, also where their surfaces reach nearest, except where
- * order->slabs; returns how many are left. keys: [2 count], for use here; sorted: [count]. */
+ * order->slabs or order->apart; returns how many are left. keys: [2 count], for use here; sorted: [count]. */
 size_t hl_sort_by_pixel(const fragment *list, size_t count, const fragment_order *order, order_key *keys,
                         fragment *sorted);
 

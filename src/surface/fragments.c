@@ -81,8 +81,8 @@ static bool is_outside(const view *view, const hl_scene_mesh *mesh) {
 
 /* Whether the eye sees none of a mesh's backs: it is closed, opaque, and the eye is outside. */
 static bool has_hidden_backs(const fragments_source *source, const surface_mesh *mesh) {
-  return !source->of_light && is_closed(mesh) && mesh->colors == NULL && mesh->face_colors == NULL &&
-         is_outside(source->view, mesh->scene);
+  return !source->of_light && !source->unseen && is_closed(mesh) && mesh->colors == NULL &&
+         mesh->face_colors == NULL && is_outside(source->view, mesh->scene);
 }
 
 /* Whether a light lights none of a mesh's backs: the mesh is closed and lets no light through, and the light
@@ -99,7 +99,9 @@ static hl_status bin_primitives(const fragments_source *source, const seen_verti
   if (wanted == NULL) return hl_fail_memory(error, all->mesh_count * sizeof *wanted, "the meshes");
   for (size_t m = 0; m < all->mesh_count; m++) {
     const surface_mesh *mesh = &all->meshes[m];
-    bool seen_here = mesh->scene->visible || (source->of_light && mesh->scene->casts_shadow);
+    bool shades = mesh->scene->casts_shadow,
+         seen_here = source->unseen ? shades && !mesh->scene->visible
+                                    : mesh->scene->visible || (source->of_light && shades);
     wanted[m] = !seen_here ? BINNED_NOTHING : has_hidden_backs(source, mesh) ? BINNED_FRONTS : BINNED_ALL;
   }
   hl_status status = hl_primitive_bins_create(source->context, source->pool, seen, wanted, bins, error);

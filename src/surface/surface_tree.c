@@ -3,10 +3,14 @@
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
+#include "surface/surface_rims.h"
 
 /* A range is halved at the middle of its primitives' middles, and by their number where this would make the
  * tree too deep. */
 enum { LEAF_PRIMITIVES = 4, DEEP = 32, DEEPEST = DEEP + 40 };
+
+static double lesser(double a, double b) { return a < b ? a : b; }
+static double greater(double a, double b) { return a > b ? a : b; }
 
 /* ---- primitives ---- */
 
@@ -83,58 +87,186 @@ uint64_t hl_surface_tree_bytes(const hl_scene_description *scene) {
     const hl_mesh_description *d = &scene->meshes[m].mesh->description;
     if (hl_mesh_takes_light(&scene->meshes[m])) count += d->triangle_count + d->sphere_count;
   }
-  return count * sizeof(uint32_t) + most_boxes(count) * sizeof(surface_box);
+  return count * sizeof(uint32_t) + most_boxes(count) * sizeof(surface_box) +
+         scene->mesh_count * sizeof(bool);
 }
 
-static void take_primitives(surface_tree *tree, const surface_mesh *mesh) {
+/* Whether a tree for a distance holds triangles of a mesh. */
+static bool is_held(const surface_mesh *mesh, double distance) {
+  return hl_mesh_takes_light(mesh->scene) && (isinf(distance) || !mesh->scene->mesh->closed);
+}
+
+/* near: which triangles; null: all, and the spheres. */
+static void take_primitives(surface_tree *tree, const surface_mesh *mesh, const bool *near) {
   const surfaces *all = tree->all;
-  if (!hl_mesh_takes_light(mesh->scene)) return;
   for (uint32_t t = 0; t < mesh->triangle_count; t++)
-    tree->primitives[tree->count++] = mesh->first_triangle + t;
-  for (uint32_t s = 0; s < mesh->sphere_count; s++)
+    if (near == NULL || near[t]) tree->primitives[tree->count++] = mesh->first_triangle + t;
+  for (uint32_t s = 0; s < mesh->sphere_count && near == NULL; s++)
     tree->primitives[tree->count++] = all->triangle_count + mesh->first_sphere + s;
 }
 
-hl_status hl_surface_tree_create(hl_context *context, const surfaces *all, surface_tree *tree,
-                                 hl_error *error) {
-  *tree = (surface_tree){.all = all};
+/* Fills the tree's primitives, for which there is room. most: the triangles of its largest mesh. */
+static hl_status choose_primitives(hl_context *context, surface_tree *tree, uint32_t most, hl_error *error) {
+  bool *near = isinf(tree->distance) ? NULL : hl_allocate(context, most, sizeof *near);
+  hl_status status = HL_OK;
+  if (near == NULL && !isinf(tree->distance)) return hl_fail_memory(error, most, "the edges of meshes");
+  for (size_t m = 0; m < tree->all->mesh_count && status == HL_OK; m++) {
+    const surface_mesh *mesh = &tree->all->meshes[m];
+    tree->holds[m] = is_held(mesh, tree->distance);
+    if (!tree->holds[m]) continue;
+    if (near != NULL) status = hl_surface_rims(context, tree->all, mesh, tree->distance, near, error);
+    if (status == HL_OK) take_primitives(tree, mesh, near);
+  }
+  hl_release(context, near);
+  return status;
+}
+
+hl_status hl_surface_tree_create(hl_context *context, const surfaces *all, double distance,
+                                 surface_tree *tree, hl_error *error) {
+  *tree = (surface_tree){.all = all, .distance = distance};
   size_t count = 0;
+  uint32_t most = 0;
   for (size_t m = 0; all != NULL && m < all->mesh_count; m++)
-    if (hl_mesh_takes_light(all->meshes[m].scene))
+    if (is_held(&all->meshes[m], distance)) {
       count += all->meshes[m].triangle_count + all->meshes[m].sphere_count;
+      most = all->meshes[m].triangle_count > most ? all->meshes[m].triangle_count : most;
+    }
   if (count == 0) return HL_OK;
   tree->primitives = hl_allocate(context, count, sizeof *tree->primitives);
-  tree->boxes = hl_allocate(context, most_boxes(count), sizeof *tree->boxes);
-  if (tree->primitives == NULL || tree->boxes == NULL) {
-    hl_surface_tree_release(context, tree);
-    return hl_fail_memory(error, most_boxes(count) * sizeof *tree->boxes, "the boxes of meshes");
+  tree->holds = hl_allocate_zeroed(context, all->mesh_count, sizeof *tree->holds);
+  hl_status status = tree->primitives != NULL && tree->holds != NULL
+                         ? choose_primitives(context, tree, most, error)
+                         : hl_fail_memory(error, count * sizeof *tree->primitives, "the boxes of meshes");
+  if (status == HL_OK && tree->count > 0) {
+    tree->boxes = hl_allocate(context, most_boxes(tree->count), sizeof *tree->boxes);
+    if (tree->boxes != NULL) make(tree, 0, tree->count, 0);
+    else status = hl_fail_memory(error, most_boxes(tree->count) * sizeof *tree->boxes, "the boxes of meshes");
   }
-  for (size_t m = 0; m < all->mesh_count; m++) take_primitives(tree, &all->meshes[m]);
-  make(tree, 0, tree->count, 0);
-  return HL_OK;
+  if (status != HL_OK) hl_surface_tree_release(context, tree);
+  return status;
+}
+
+bool hl_surface_tree_current(const surface_tree *tree, const surfaces *all, double distance) {
+  if (tree->all != all || tree->distance < distance || tree->distance > distance) return false;
+  for (size_t m = 0; m < all->mesh_count; m++)
+    if (is_held(&all->meshes[m], distance) != (tree->holds != NULL && tree->holds[m])) return false;
+  return true;
 }
 
 void hl_surface_tree_release(hl_context *context, surface_tree *tree) {
+  hl_release(context, tree->holds);
   hl_release(context, tree->primitives);
   hl_release(context, tree->boxes);
   *tree = (surface_tree){0};
 }
 
+/* ---- hulls ---- */
+
+vec3 hl_triangle_normal(const surfaces *all, uint32_t triangle, vec3 point, double *from) {
+  const uint32_t *corner = all->triangles[triangle];
+  vec3 a = hl_surface_vector(all->positions[corner[0]]);
+  vec3 normal = vec3_normalise(vec3_cross(vec3_subtract(hl_surface_vector(all->positions[corner[1]]), a),
+                                          vec3_subtract(hl_surface_vector(all->positions[corner[2]]), a)));
+  *from = vec3_dot(normal, vec3_subtract(point, a));
+  return normal;
+}
+
+static bool overlap(const float low[3], const float high[3], const double from[3], const double to[3]) {
+  for (int a = 0; a < 3; a++)
+    if ((double)low[a] > to[a] || (double)high[a] < from[a]) return false;
+  return true;
+}
+
+/* Whether a hull has points on both sides of a primitive's plane. */
+static bool is_parted(const surfaces *all, uint32_t primitive, const hull_ball *balls, int count,
+                      double least) {
+  if (primitive >= all->triangle_count) return true;
+  double first;
+  vec3 normal = hl_triangle_normal(all, primitive, balls[0].at, &first);
+  double lowest = first - balls[0].radius, highest = first + balls[0].radius;
+  for (int i = 1; i < count; i++) {
+    double from = first + vec3_dot(normal, vec3_subtract(balls[i].at, balls[0].at));
+    lowest = lesser(lowest, from - balls[i].radius);
+    highest = greater(highest, from + balls[i].radius);
+  }
+  return lowest < -least && highest > least;
+}
+
+/* balls: null: boxes that overlap are enough. */
+static bool leaf_reaches(const surface_tree *tree, const surface_box *leaf, const double low[3],
+                         const double high[3], const hull_ball *balls, int count, double least) {
+  for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++) {
+    float from[3], to[3];
+    box_of(tree->all, tree->primitives[i], from, to);
+    if (overlap(from, to, low, high) &&
+        (balls == NULL || is_parted(tree->all, tree->primitives[i], balls, count, least)))
+      return true;
+  }
+  return false;
+}
+
+static bool reaches(const surface_tree *tree, const double low[3], const double high[3],
+                    const hull_ball *balls, int count, double least) {
+  uint32_t waiting[DEEPEST + 2], left = 0;
+  if (tree->box_count > 0) waiting[left++] = 0;
+  while (left > 0) {
+    uint32_t index = waiting[--left];
+    const surface_box *box = &tree->boxes[index];
+    if (!overlap(box->low, box->high, low, high)) continue;
+    if (box->count > 0) {
+      if (leaf_reaches(tree, box, low, high, balls, count, least)) return true;
+      continue;
+    }
+    waiting[left++] = box->first;
+    waiting[left++] = index + 1;
+  }
+  return false;
+}
+
+bool hl_surface_tree_overlaps(const surface_tree *tree, const double low[3], const double high[3]) {
+  return reaches(tree, low, high, NULL, 0, 0);
+}
+
+bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, int count, double least) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (int i = 0; i < count; i++) {
+    const double at[3] = {balls[i].at.x, balls[i].at.y, balls[i].at.z};
+    for (int a = 0; a < 3; a++) {
+      low[a] = lesser(low[a], at[a] - balls[i].radius);
+      high[a] = greater(high[a], at[a] + balls[i].radius);
+    }
+  }
+  return reaches(tree, low, high, balls, count, least);
+}
+
 /* ---- rays ---- */
 
+/* A ray as boxes are asked for it. */
+typedef struct box_ray {
+  double origin[3], way[3], inverse[3];
+  double first, last;
+} box_ray;
+
+static box_ray ray_of_boxes(const surface_ray *ray) {
+  box_ray made = {.origin = {ray->origin.x, ray->origin.y, ray->origin.z},
+                  .way = {ray->way.x, ray->way.y, ray->way.z},
+                  .first = ray->first,
+                  .last = ray->last};
+  for (int a = 0; a < 3; a++) made.inverse[a] = 1 / made.way[a];
+  return made;
+}
+
 /* The slab method. */
-static bool meets_box(const surface_box *box, const surface_ray *ray) {
-  const double o[3] = {ray->origin.x, ray->origin.y, ray->origin.z},
-               d[3] = {ray->way.x, ray->way.y, ray->way.z};
+static bool meets_box(const surface_box *box, const box_ray *ray) {
   double nearest = ray->first, farthest = ray->last;
   for (int a = 0; a < 3; a++) {
-    double low = (double)box->low[a] - o[a], high = (double)box->high[a] - o[a];
-    if (d[a] == 0) {
+    double low = (double)box->low[a] - ray->origin[a], high = (double)box->high[a] - ray->origin[a];
+    if (ray->way[a] == 0) {
       if (low > 0 || high < 0) return false;
       continue;
     }
-    double from = low / d[a], to = high / d[a];
-    nearest = fmax(nearest, fmin(from, to)), farthest = fmin(farthest, fmax(from, to));
+    double from = low * ray->inverse[a], to = high * ray->inverse[a];
+    nearest = greater(nearest, lesser(from, to)), farthest = lesser(farthest, greater(from, to));
   }
   return nearest <= farthest + 1e-9 * fabs(farthest); /* boxes of flat triangles are flat */
 }
@@ -194,17 +326,18 @@ static void meet_leaf(const surface_tree *tree, const surface_box *leaf, const s
     double opacity = fmin(fmax(opacity_of(all, mesh, primitive), 0), 1);
     for (int k = 0; k < count; k++)
       if (hl_surface_left(all, mesh, vec3_add(ray->origin, vec3_scale(ray->way, distance[k]))))
-        met(data, distance[k], opacity, mesh->scene);
+        met(data, &(surface_hit){distance[k], opacity, primitive, mesh});
   }
 }
 
 void hl_surface_tree_cast(const surface_tree *tree, const surface_ray *ray, surface_met *met, void *data) {
   uint32_t waiting[DEEPEST + 2], count = 0;
+  const box_ray boxes = ray_of_boxes(ray);
   if (tree->box_count > 0) waiting[count++] = 0;
   while (count > 0) {
     uint32_t index = waiting[--count];
     const surface_box *box = &tree->boxes[index];
-    if (!meets_box(box, ray)) continue;
+    if (!meets_box(box, &boxes)) continue;
     if (box->count > 0) {
       meet_leaf(tree, box, ray, met, data);
       continue;

@@ -1,7 +1,7 @@
 /* surface/surface_tree.h - a tree of boxes over triangles and spheres: where single rays meet them.
  *
- * For rays that belong to no view: those between a light and the nodes of a coarse grid, and the grid's
- * lines. The tree holds what casts shadows. */
+ * For rays that belong to no view: those between a light and the nodes of a coarse grid, the grid's lines,
+ * and short ones from points of surfaces towards a light. The tree holds what casts shadows. */
 #ifndef HL_SURFACE_SURFACE_TREE_H
 #define HL_SURFACE_SURFACE_TREE_H
 
@@ -16,13 +16,21 @@ typedef struct surface_box {
 typedef struct surface_tree {
   const surfaces *all;  /* borrowed */
   uint32_t *primitives; /* owned; [count]; sorted by leaves */
+  bool *holds;          /* owned; [mesh_count of all]; of which meshes */
+  double distance;      /* as it was created with */
   surface_box *boxes;   /* owned; [box_count]; the root is the first */
   uint32_t count, box_count;
 } surface_tree;
 
+/* Of which triangles a tree is made: of all meshes that take light away, with their spheres; or only of
+ * triangles within a distance of an open edge (surface_rims.h), in frame units. */
+#define ALL_SURFACES INFINITY
+
 /* all: null for none. A tree that was not created is all zero, and may be released. */
-hl_status hl_surface_tree_create(hl_context *context, const surfaces *all, surface_tree *tree,
-                                 hl_error *error);
+hl_status hl_surface_tree_create(hl_context *context, const surfaces *all, double distance,
+                                 surface_tree *tree, hl_error *error);
+/* Whether a tree, of all that stays where it is, is the one that would be created. */
+bool hl_surface_tree_current(const surface_tree *tree, const surfaces *all, double distance);
 void hl_surface_tree_release(hl_context *context, surface_tree *tree);
 
 /* The most bytes of a tree over all meshes of a scene. */
@@ -33,15 +41,38 @@ static inline bool hl_mesh_takes_light(const hl_scene_mesh *mesh) {
   return mesh->casts_shadow && mesh->opacity > 0;
 }
 
-/* Called for each place where a ray meets a surface, in any order. distance: along the ray, in lengths of its
- * way; opacity: of the primitive; mesh: its own. */
-typedef void surface_met(void *data, double distance, double opacity, const hl_scene_mesh *mesh);
+/* A place where a ray meets a surface. */
+typedef struct surface_hit {
+  double distance; /* along the ray, in lengths of its way */
+  double opacity;  /* of the primitive */
+  uint32_t primitive;
+  const surface_mesh *mesh; /* the primitive's */
+} surface_hit;
+
+/* Called for each place where a ray meets a surface, in any order. */
+typedef void surface_met(void *data, const surface_hit *hit);
 
 /* The points origin + s way with first < s < last, which may be infinite. */
 typedef struct surface_ray {
   vec3 origin, way;
   double first, last;
 } surface_ray;
+
+/* Whether some primitive's box meets a box. */
+bool hl_surface_tree_overlaps(const surface_tree *tree, const double low[3], const double high[3]);
+
+/* A ball of points of a hull. */
+typedef struct hull_ball {
+  vec3 at;
+  double radius;
+} hull_ball;
+
+/* Whether some primitive may meet the convex hull of balls. Triangles on whose one side all lies do not; what
+ * lies beyond a plane by less than `least` counts as being on it. */
+bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, int count, double least);
+
+/* A triangle's unit normal; *from: a point's distance from its plane, on the normal's side above 0. */
+vec3 hl_triangle_normal(const surfaces *all, uint32_t triangle, vec3 point, double *from);
 
 void hl_surface_tree_cast(const surface_tree *tree, const surface_ray *ray, surface_met *met, void *data);
 

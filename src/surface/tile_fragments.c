@@ -250,7 +250,7 @@ static void add_sphere(const fragment_work *work, fragment_worker *worker, tile_
 static fragment fragment_of(const fragment_work *work, size_t mesh_index, uint32_t primitive) {
   const fragments_source *source = work->source;
   const surface_mesh *mesh = &source->surfaces->meshes[mesh_index];
-  bool counts = source->of_light ? mesh->scene->casts_shadow : mesh->scene->visible;
+  bool counts = source->of_light || source->unseen ? mesh->scene->casts_shadow : mesh->scene->visible;
   return (fragment){.primitive = primitive,
                     .opacity = counts ? opacity_of(source->surfaces, mesh, primitive) : 0,
                     .mesh = (uint16_t)mesh_index};
@@ -386,8 +386,8 @@ static size_t order_fragments(const fragment_work *work, fragment_worker *worker
   const crossing_tile crossing = {source->surfaces,    source->view,       work->seen, source->sheets, order,
                                   part->tile_x * TILE, part->tile_y * TILE};
   bool parted;
-  *sorted = source->of_light ? other : list;
-  if (source->of_light) return kept;
+  *sorted = source->of_light || source->unseen ? other : list;
+  if (*sorted == other) return kept;
   kept = hl_part_crossings(&crossing, other, kept, list, &parted);
   for (size_t i = 0; parted && i < kept; i++) mark(work, worker, list[i].pixel, list[i].slab);
   return kept;
@@ -397,7 +397,8 @@ void hl_make_tile_fragments(void *data, size_t tile, int worker_index) {
   const fragment_work *work = data;
   const fragments_source *source = work->source;
   fragment_worker *worker = &work->workers[worker_index];
-  const fragment_order order = {work->least, source->falling, source->rise > 0, source->sheets->spacing};
+  const fragment_order order = {work->least, source->falling, source->rise > 0, source->unseen,
+                                source->sheets->spacing};
   tile_part part = {.tile_x = (int)(tile % (size_t)work->tiles_x),
                     .tile_y = (int)(tile / (size_t)work->tiles_x)};
   fragment *sorted = NULL;

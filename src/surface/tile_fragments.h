@@ -21,6 +21,8 @@ typedef struct fragments_source {
   const sheet_stack *sheets;
   bool falling;  /* the view meets great heights first */
   bool of_light; /* a light's view: of the meshes that cast shadows; else of those that are visible */
+  bool unseen;   /* of the eye's view: of the meshes that are not visible and cast shadows. No fragment hides
+                    another, and opacities are parts of a pixel */
   double delay;  /* pixels of the view: a fragment counts from the height that its surface's plane has so far
                     away, so that a surface does not darken itself where buffers are interpolated */
   double rise;   /* pixels of the view: a fragment of a light's view fills all slabs that its surface's plane

@@ -11,6 +11,7 @@ typedef struct pane_scene {
   double opacity, height, tilt, diameter;
   int kind; /* of shadows */
   bool point;
+  bool unseen; /* the eye does not see the pane */
 } pane_scene;
 
 static void render_pane(const pane_scene *pane, float *pixels) {
@@ -24,6 +25,7 @@ static void render_pane(const pane_scene *pane, float *pixels) {
                                        stage_make_quad(&all.set, (vec3){0, 0, pane->height}, (vec3){40, 0, 0},
                                                        (vec3){0, 40, 40 * pane->tilt}));
   mesh->opacity = pane->opacity;
+  mesh->visible = !pane->unseen;
   for (int c = 0; c < 3; c++) mesh->color[c] = 0;
   mesh->material.specular = 0;
   hl_light *light = pane->point ? stage_add_point(&all.set, (vec3){3, -4, -60})
@@ -61,7 +63,40 @@ static void test_pane_in_haze(void **state) {
   }
 }
 
+/* The light that haze between two heights sends to the eye above, of light from below along a direction whose
+ * part along z is `climb`. Derived: at z the eye sees the fraction e exp(-e (12 - z)), of the light there is
+ * exp(-e (z + 12) / climb) left. */
+static double light_of_haze(double from, double to, double climb) {
+  const double e = -log(0.9), rate = e * (1 - 1 / climb), way = exp(-12 * e * (1 + 1 / climb));
+  return e * way * (fabs(rate) < 1e-12 ? to - from : (exp(rate * to) - exp(rate * from)) / rate);
+}
+
+/* Haze behind a pane that the eye does not see: of its light is left what the pane lets through, from the
+ * pane on. At the picture's lower edge some light comes in by the haze's side. */
+static void test_unseen_pane(void **state) {
+  (void)state;
+  static float open[4 * PIXELS], pixels[4 * PIXELS];
+  const double climb = 1 / sqrt(1 + 0.1 * 0.1 + 0.2 * 0.2), all = light_of_haze(-12, 12, climb);
+  for (int k = 0; k < 16; k++) {
+    pane_scene pane = {
+        .height = -3 + 0.23 * k, .tilt = k % 3 * 0.15, .diameter = 1, .kind = k % 4, .unseen = true};
+    double worst = 0, sum = 0;
+    render_pane(&pane, open);
+    pane.opacity = k / 4 % 2 ? 0.5 : 1;
+    render_pane(&pane, pixels);
+    for (int i = 0; i < PIXELS; i++) {
+      double height = pane.height - pane.tilt * (i / SIDE + 0.5 - SIDE / 2) * 16 / SIDE;
+      double taken = pane.opacity * light_of_haze(height, 12, climb) / all;
+      double wrong = (double)pixels[4 * i] / (double)open[4 * i] - (1 - taken);
+      worst = fmax(worst, fabs(wrong));
+      sum += wrong;
+    }
+    assert_near(sum / PIXELS, 0, 0.004);
+    assert_near(worst, 0, 0.012);
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pane_in_haze)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pane_in_haze), cmocka_unit_test(test_unseen_pane)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,284 @@
+/* render/contact.c - see contact.h. */
+#include "render/contact.h"
+
+#include "light/light_extent.h"
+#include "mesh/mesh.h"
+#include "render/surface_point.h"
+#include "surface/surface_rims.h"
+
+/* A buffer is late by some of its pixels and some sheets. Up to so many times the sum of one of each from a
+ * point, the plane of a surface that hides the light from it is close; a ray looks so far. */
+static const double CLOSE = 3, FARTHEST_CLOSE = 10;
+
+/* A ray begins so many pixels away from its point: beyond what rounding may do to it. */
+static const double RAY_START = 0.0005;
+
+/* Where the eye grazes a surface, a pixel's middle is found again up to so many pixels of the picture aside.
+ */
+static const double MOST_PIXELS_ASIDE = 8;
+
+/* Rays that come from so far away from an open edge as a buffer may be late, in voxels, and twice as slanted
+ * (a buffer's pixel is at most three quarters of a voxel). */
+double hl_contact_distance(const frame *frame) { return 2 * CLOSE * (0.75 * frame->voxel + frame->spacing); }
+
+uint64_t hl_contact_bytes(const hl_scene_description *scene) {
+  uint64_t most = 0;
+  for (size_t m = 0; m < scene->mesh_count; m++) {
+    uint64_t own = hl_surface_rims_bytes(&scene->meshes[m].mesh->description);
+    most = own > most ? own : most;
+  }
+  return hl_surface_tree_bytes(scene) + most;
+}
+
+void hl_contact_points(const light_source *source, light_points *points) {
+  const int side = source->shadows == HL_SHADOWS_SOFT ? LIGHT_POINTS_SIDE : 1;
+  *points = (light_points){.count = side * side};
+  for (int k = 0; k < points->count && side > 1; k++) {
+    double square[2];
+    hl_sublight_point(source, side, k % side, k / side, square);
+    points->offset[k] = hl_light_point(source, square[0], square[1]);
+    points->reach = fmax(points->reach, vec3_length(points->offset[k]));
+  }
+}
+
+/* ---- one ray ---- */
+
+/* What hides a point of a light from a sample. */
+typedef struct contact_ray {
+  const surfaces *all;
+  const surface_mesh *mesh; /* of the sample */
+  uint32_t primitive;       /* likewise */
+  vec3 point, normal;       /* likewise; the primitive's own */
+  vec3 plane;               /* a point of the primitive's plane */
+  vec3 smooth;              /* the sample's normal */
+  double close;             /* frame units */
+  double passing[HL_CHANNELS];
+} contact_ray;
+
+/* Whether two triangles share a vertex. */
+static bool are_neighbours(const surfaces *all, uint32_t a, uint32_t b) {
+  if (a >= all->triangle_count || b >= all->triangle_count) return false;
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++)
+      if (all->triangles[a][i] == all->triangles[b][k]) return true;
+  return false;
+}
+
+/* Takes the light of a triangle that is close to the sample, and no rounded continuation of its own. */
+static void meet(void *data, const surface_hit *hit) {
+  contact_ray *ray = data;
+  double distance;
+  if (hit->primitive == ray->primitive) return;
+  vec3 normal = hl_triangle_normal(ray->all, hit->primitive, ray->point, &distance);
+  if (!(fabs(distance) <= ray->close)) return;
+  if (hit->mesh == ray->mesh && ray->mesh->scene->smooth &&
+      fabs(vec3_dot(normal, ray->normal)) > HL_MESH_ROUNDED &&
+      are_neighbours(ray->all, hit->primitive, ray->primitive))
+    return;
+  const double *color = hit->mesh->scene->attenuation_color;
+  for (int c = 0; c < HL_CHANNELS; c++) ray->passing[c] *= 1 - hit->opacity * color[c];
+}
+
+/* ---- one light ---- */
+
+/* A light as samples look for it. */
+typedef struct contact_light {
+  const light_source *source;
+  const light_shadow *shadow;
+  const light_points *points;
+} contact_light;
+
+/* The edge of a buffer's pixel at a point (derived: the buffer's column is (r1.p) / (r0.p); a way d at a
+ * right angle to the light moves it by about |r1| d / (r0.p)); frame units. */
+static double pixel_at(const contact_light *light, vec3 point) {
+  const light_shadow *shadow = light->shadow;
+  const shadow_map *map = shadow->sublight_count > 0 ? &shadow->sublights[0].map : &shadow->lookups[0].map;
+  const float *ahead = map->rows[0], *row = map->rows[1];
+  double length = sqrt((double)(row[0] * row[0] + row[1] * row[1] + row[2] * row[2])),
+         depth = ahead[0] * point.x + ahead[1] * point.y + ahead[2] * point.z + (double)ahead[3];
+  return (light->source->parallel ? 1 : fmax(depth, 0)) / length;
+}
+
+/* The way from a point to a point of the light, given by its offset. */
+static vec3 way_to(const light_source *source, vec3 from, vec3 offset) {
+  return source->parallel ? vec3_scale(vec3_add(source->direction, offset), -1)
+                          : vec3_subtract(vec3_add(source->position, offset), from);
+}
+
+/* The ends of the rays from a sample to all points of the light lie in the ball. */
+static hull_ball ends_of_rays(const contact_light *light, vec3 point, double late) {
+  vec3 way = way_to(light->source, point, (vec3){0, 0, 0});
+  double length = fmax(vec3_length(way), 1e-30), part = FARTHEST_CLOSE * late / length;
+  if (!light->source->parallel) part = fmin(part, 1);
+  return (hull_ball){vec3_add(point, vec3_scale(way, part)), 2 * part * light->points->reach};
+}
+
+/* Whether the samples that face the light, or are asked for both ways, may find anything close. */
+static bool may_find(const sweep *sweep, const contact_light *light, const contact_ray *rays, int count) {
+  hull_ball balls[2 * SURFACE_SAMPLES];
+  int balls_count = 0;
+  double least = INFINITY;
+  for (int i = 0; i < count; i++) {
+    vec3 way = way_to(light->source, rays[i].point, (vec3){0, 0, 0});
+    double facing = vec3_dot(way, rays[i].smooth), pixel = pixel_at(light, rays[i].point);
+    if (vec3_dot(way, rays[i].normal) * facing <= 0) continue; /* its triangle is not on the lit side */
+    if (facing < 0 && sweep->layers.pass_count == 0) continue; /* the picture does not ask */
+    least = fmin(least, RAY_START * pixel);
+    balls[balls_count++] = (hull_ball){rays[i].point, 0};
+    balls[balls_count++] = ends_of_rays(light, rays[i].point, pixel + sweep->geometry->sheets.spacing);
+  }
+  return balls_count > 0 && hl_surface_tree_reaches(sweep->frame->contact, balls, balls_count, least);
+}
+
+/* The parts of a light that pass what is close before a sample; false: all of it. */
+static bool look(const sweep *sweep, const contact_light *light, contact_ray *ray,
+                 double passing[HL_CHANNELS]) {
+  const light_points *points = light->points;
+  double pixel = pixel_at(light, ray->point), late = pixel + sweep->geometry->sheets.spacing;
+  bool any = false;
+  if (!may_find(sweep, light, ray, 1)) return false;
+  ray->close = CLOSE * late;
+  for (int c = 0; c < HL_CHANNELS; c++) passing[c] = 0;
+  for (int k = 0; k < points->count; k++) {
+    vec3 way = way_to(light->source, ray->point, points->offset[k]);
+    double length = vec3_length(way), last = FARTHEST_CLOSE * late / length;
+    if (!light->source->parallel) last = fmin(last, 1);
+    for (int c = 0; c < HL_CHANNELS; c++) ray->passing[c] = 1;
+    hl_surface_tree_cast(sweep->frame->contact,
+                         &(surface_ray){ray->point, way, RAY_START * pixel / length, last}, meet, ray);
+    for (int c = 0; c < HL_CHANNELS; c++) {
+      any = any || ray->passing[c] < 1;
+      passing[c] += ray->passing[c] / points->count;
+    }
+  }
+  return any;
+}
+
+/* ---- all lights of a batch ---- */
+
+static vec3 vector_of(const float v[3][SURFACE_SAMPLES], int i) { return (vec3){v[0][i], v[1][i], v[2][i]}; }
+
+/* The point of a triangle in the middle of what the eye sees of a pixel: a sample's own may lie behind the
+ * wall that hides a part of it. point: in the triangle's plane. */
+static vec3 seen_point(const sweep *sweep, const tile_slab *slab, const fragment *f, vec3 normal,
+                       vec3 point) {
+  double u, v;
+  vec3 start, way;
+  hl_fragment_middle(f->seen, &u, &v);
+  hl_view_ray(&sweep->frame->eye, u + slab->x * TILE + hl_pixel_column(f->pixel),
+              v + slab->y * TILE + hl_pixel_row(f->pixel), &start, &way);
+  double along = vec3_dot(normal, vec3_subtract(point, start)) / vec3_dot(normal, way);
+  vec3 seen = vec3_add(start, vec3_scale(way, along));
+  return vec3_length(vec3_subtract(seen, point)) < MOST_PIXELS_ASIDE * sweep->frame->pixel ? seen : point;
+}
+
+/* last: the ray of the sample before; null: none. */
+static void place_ray(const sweep *sweep, const tile_slab *slab, const surface_batch *batch, int i,
+                      const contact_ray *last, contact_ray *ray) {
+  const surfaces *all = sweep->frame->surfaces;
+  const fragment *f = batch->fragments[i];
+  *ray = (contact_ray){.all = all,
+                       .mesh = batch->mesh,
+                       .primitive = f->primitive,
+                       .point = vector_of(batch->samples.position, i),
+                       .smooth = vector_of(batch->samples.normal, i)};
+  ray->normal = ray->smooth;
+  if (f->primitive >= all->triangle_count) return;
+  double height;
+  if (last != NULL && last->primitive == f->primitive) {
+    ray->normal = last->normal;
+    height = vec3_dot(ray->normal, vec3_subtract(ray->point, last->plane));
+  } else {
+    ray->normal = hl_triangle_normal(all, f->primitive, ray->point, &height);
+  }
+  ray->plane = ray->point = vec3_subtract(ray->point, vec3_scale(ray->normal, height));
+  if (f->seen != f->samples) ray->point = seen_point(sweep, slab, f, ray->normal, ray->point);
+}
+
+/* The least box around the batch's samples. */
+static void find_bounds(const surface_batch *batch, vec3 *low, vec3 *high) {
+  float least[3], greatest[3];
+  for (int a = 0; a < 3; a++) {
+    const float *at = batch->samples.position[a];
+    least[a] = greatest[a] = at[0];
+    for (int i = 1; i < batch->count; i++) {
+      least[a] = at[i] < least[a] ? at[i] : least[a];
+      greatest[a] = at[i] > greatest[a] ? at[i] : greatest[a];
+    }
+  }
+  *low = hl_surface_vector(least), *high = hl_surface_vector(greatest);
+}
+
+/* Makes a box hold a cube as well. */
+static void hold(double low[3], double high[3], vec3 middle, double half) {
+  const double at[3] = {middle.x, middle.y, middle.z};
+  for (int a = 0; a < 3; a++) {
+    low[a] = at[a] - half < low[a] ? at[a] - half : low[a];
+    high[a] = at[a] + half > high[a] ? at[a] + half : high[a];
+  }
+}
+
+/* Makes a box hold the rays from a point. Rays begin off the point's own flat floor. */
+static void hold_rays(const sweep *sweep, const contact_light *light, vec3 point, double aside, double low[3],
+                      double high[3]) {
+  double pixel = pixel_at(light, point);
+  hull_ball ends = ends_of_rays(light, point, pixel + sweep->geometry->sheets.spacing);
+  vec3 way = vec3_subtract(ends.at, point);
+  double length = vec3_length(way), start = length > 0 ? RAY_START * pixel / length : 0;
+  hold(low, high, vec3_add(point, vec3_scale(way, start)), aside);
+  hold(low, high, ends.at, aside + ends.radius);
+}
+
+/* Whether the picture asks for light on any sample: one that faces the light; a layer asks for both sides. */
+static bool is_asked(const sweep *sweep, const contact_light *light, const surface_batch *batch) {
+  if (sweep->layers.pass_count > 0) return true;
+  for (int i = 0; i < batch->count; i++) {
+    vec3 way = way_to(light->source, vector_of(batch->samples.position, i), (vec3){0, 0, 0});
+    if (vec3_dot(way, vector_of(batch->samples.normal, i)) > 0) return true;
+  }
+  return false;
+}
+
+/* Whether something may be close before the batch: a quick answer, which is nearly always no. Of parallel
+ * rays all ways are alike: those of two corners of the samples' box bound all. */
+static bool is_close(const sweep *sweep, const contact_light *light, const surface_batch *batch) {
+  vec3 least, greatest;
+  double aside = 0, low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  find_bounds(batch, &least, &greatest);
+  for (int i = 0; i < batch->count; i++)
+    if (batch->fragments[i]->seen != batch->fragments[i]->samples)
+      aside = MOST_PIXELS_ASIDE * sweep->frame->pixel;
+  for (int corner = 0; corner < 8; corner += light->source->parallel ? 7 : 1) {
+    vec3 at = {corner & 1 ? greatest.x : least.x, corner & 2 ? greatest.y : least.y,
+               corner & 4 ? greatest.z : least.z};
+    hold_rays(sweep, light, at, aside, low, high);
+  }
+  return hl_surface_tree_overlaps(sweep->frame->contact, low, high);
+}
+
+bool hl_contact_find(const sweep *sweep, const tile_slab *slab, const surface_batch *batch,
+                     float (*passing)[SURFACE_SAMPLES]) {
+  const int light_count = sweep->geometry->light_count;
+  contact_ray rays[SURFACE_SAMPLES];
+  bool placed = false, found = false;
+  if (sweep->frame->contact->box_count == 0 || !batch->mesh->scene->receives_shadow) return false;
+  for (int l = 0; l < light_count; l++) {
+    const contact_light light = {sweep->lights[l].source, &sweep->lights[l].shadow,
+                                 &sweep->surfaces.points[l]};
+    if (light.shadow->method == NULL || !is_asked(sweep, &light, batch) || !is_close(sweep, &light, batch))
+      continue;
+    for (int i = 0; i < batch->count && !placed; i++)
+      place_ray(sweep, slab, batch, i, i > 0 ? &rays[i - 1] : NULL, &rays[i]);
+    placed = true;
+    if (!may_find(sweep, &light, rays, batch->count)) continue;
+    for (int i = 0; i < batch->count; i++) {
+      double parts[HL_CHANNELS];
+      if (!look(sweep, &light, &rays[i], parts)) continue;
+      for (int row = 0; row < light_count * sweep->channels && !found; row++)
+        for (int k = 0; k < SURFACE_SAMPLES; k++) passing[row][k] = 1;
+      found = true;
+      for (int c = 0; c < sweep->channels; c++) passing[l * sweep->channels + c][i] = (float)parts[c];
+    }
+  }
+  return found;
+}

@@ -1,0 +1,75 @@
+/* surface/surface_rims.c - see surface_rims.h. */
+#include "surface/surface_rims.h"
+
+#include "core/memory.h"
+#include "mesh/mesh.h"
+
+/* Passes over all triangles, forwards and backwards in turn: each follows a distance over an edge or more. */
+enum { PASSES = 8 };
+
+/* Adds each edge's hash to both of its vertices, with the sign of its direction (derived as in mesh.c: the
+ * sum is 0 where each edge runs as often one way as the other). */
+static void sum_edges(const surfaces *all, const surface_mesh *mesh, uint64_t *sum) {
+  for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+    const uint32_t *corner = all->triangles[mesh->first_triangle + t];
+    for (int i = 0; i < 3; i++) {
+      uint32_t a = corner[i] - (uint32_t)mesh->first_vertex,
+               b = corner[(i + 1) % 3] - (uint32_t)mesh->first_vertex;
+      uint64_t hash = a < b ? hl_hash_of_edge(a, b) : -hl_hash_of_edge(b, a);
+      sum[a] += hash;
+      sum[b] += hash;
+    }
+  }
+}
+
+/* Lowers the distances of a triangle's vertices to what its edges allow; returns whether any changed. */
+static bool follow_edges(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, float distance,
+                         float *from_edge) {
+  const uint32_t *corner = all->triangles[mesh->first_triangle + triangle];
+  bool changed = false, any = false;
+  for (int i = 0; i < 3; i++) any |= from_edge[corner[i] - mesh->first_vertex] < distance;
+  for (int i = 0; i < 3 && any; i++)
+    for (int k = 0; k < 3; k++) {
+      float own = from_edge[corner[i] - mesh->first_vertex], *to = &from_edge[corner[k] - mesh->first_vertex];
+      if (!(own < distance) || !(own < *to)) continue;
+      float length = (float)vec3_length(vec3_subtract(hl_surface_vector(all->positions[corner[i]]),
+                                                      hl_surface_vector(all->positions[corner[k]])));
+      if (!(own + length < *to)) continue;
+      *to = own + length;
+      changed = true;
+    }
+  return changed;
+}
+
+hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surface_mesh *mesh, double distance,
+                          bool *near, hl_error *error) {
+  size_t vertices = mesh->mesh->description.vertex_count;
+  uint64_t *sum = hl_allocate_zeroed(context, vertices, sizeof *sum);
+  float *from_edge = hl_allocate(context, vertices, sizeof *from_edge);
+  hl_status status = sum != NULL && from_edge != NULL
+                         ? HL_OK
+                         : hl_fail_memory(error, vertices * sizeof *sum, "the edges of meshes");
+  if (status == HL_OK) {
+    sum_edges(all, mesh, sum);
+    for (size_t v = 0; v < vertices; v++) from_edge[v] = sum[v] != 0 ? 0 : INFINITY;
+    bool changed = true;
+    for (int pass = 0; pass < PASSES && changed; pass++) {
+      changed = false;
+      for (uint32_t i = 0; i < mesh->triangle_count; i++)
+        changed |= follow_edges(all, mesh, pass % 2 ? mesh->triangle_count - 1 - i : i, (float)distance,
+                                from_edge);
+    }
+    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+      const uint32_t *corner = all->triangles[mesh->first_triangle + t];
+      near[t] = false;
+      for (int i = 0; i < 3; i++) near[t] |= from_edge[corner[i] - mesh->first_vertex] <= (float)distance;
+    }
+  }
+  hl_release(context, sum);
+  hl_release(context, from_edge);
+  return status;
+}
+
+uint64_t hl_surface_rims_bytes(const hl_mesh_description *mesh) {
+  return mesh->vertex_count * (sizeof(uint64_t) + sizeof(float)) + mesh->triangle_count * sizeof(bool);
+}

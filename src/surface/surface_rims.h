@@ -1,0 +1,18 @@
+/* surface/surface_rims.h - the triangles of a mesh near its open edges.
+ *
+ * An edge is open where no other triangle goes along it the other way. */
+#ifndef HL_SURFACE_SURFACE_RIMS_H
+#define HL_SURFACE_SURFACE_RIMS_H
+
+#include "surface/surfaces.h"
+
+/* Sets near[t], of the mesh's triangles, where triangle t has a vertex within a distance, along edges, of an
+ * open edge; frame units. The distance is followed over few edges: where triangles are very small it is less.
+ */
+hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surface_mesh *mesh, double distance,
+                          bool *near, hl_error *error);
+
+/* The most bytes that it takes for a while. */
+uint64_t hl_surface_rims_bytes(const hl_mesh_description *mesh);
+
+#endif
