@@ -152,18 +152,18 @@ LANES_INLINE void colors_between(const plane_table *table, plane_row row, lanes 
 /* Below this sum of opacities over columns the colour is that of the whole way. */
 static const float SOME_OPACITY = 1e-4f;
 
-/* The colour in a row where matter is seen, linear RGB: the mean over the column on either side; where the
- * function shows nothing there, the mean over the whole way. seen, from, to: coordinates in the classifier's
- * tables. Known for the active lanes. */
-static __attribute__((noinline)) void color_in_row(const plane_table *table, lanes row, lanes seen,
-                                                   lanes from, lanes to, uint32_t active, lanes color[3]) {
+/* The colour in a row where matter shows, linear RGB: the mean over the part of a way that shows, and a
+ * column on either side; where the function shows nothing there, the mean over the whole way. Both from one
+ * coordinate in the classifier's tables to another. Known for the active lanes. */
+static __attribute__((noinline)) void color_in_row(const plane_table *table, lanes row, const lanes shown[2],
+                                                   const lanes whole[2], uint32_t active, lanes color[3]) {
   plane_row at = split_row(row);
-  lanes sums[4], column = column_of(table, seen);
-  colors_between(table, at, column, column, sums);
+  lanes sums[4];
+  colors_between(table, at, column_of(table, shown[0]), column_of(table, shown[1]), sums);
   lanes_int none = sums[3] < SOME_OPACITY;
   if ((lanes_bits(none) & active) != 0) {
     lanes all[4];
-    colors_between(table, at, column_of(table, from), column_of(table, to), all);
+    colors_between(table, at, column_of(table, whole[0]), column_of(table, whole[1]), all);
     for (int i = 0; i < 4; i++) sums[i] = lanes_select(none, all[i], sums[i]);
   }
   lanes inverse = 1.0f / lanes_max(sums[3], lanes_set(1e-20f));

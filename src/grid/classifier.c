@@ -33,22 +33,69 @@ static void integrate(classifier *classifier) {
   }
 }
 
+/* Integrates extinction times colour, and extinction: over one step from e0, c0 to e1, c1, both linear, the
+ * first is (e0 (2 c0 + c1) + e1 (c0 + 2 c1)) / 6 (derived). */
+static void integrate_colors(classifier *classifier) {
+  double integral[4] = {0, 0, 0, 0};
+  for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
+    for (int i = 0; i < 4; i++) classifier->shown[entry][i] = (float)integral[i];
+    if (entry > CLASSIFIER_ENTRIES) break;
+    double e0 = classifier->sums[entry][0], e1 = classifier->sums[entry + 1][0];
+    for (int c = 0; c < 3; c++) {
+      double c0 = classifier->color[entry][c], c1 = classifier->color[entry + 1][c];
+      integral[c] += (e0 * (2 * c0 + c1) + e1 * (c0 + 2 * c1)) / 6;
+    }
+    integral[3] += (e0 + e1) / 2;
+  }
+}
+
+/* Fills the colours, and the changes of their slopes at each entry. */
+static void fill_colors(const hl_transfer_function *function, double low, double high,
+                        classifier *classifier) {
+  double last[3][3]; /* of entries n, n - 1 and n - 2, at n % 3 and so on */
+  classifier->bent[0] = classifier->bent[CLASSIFIER_ENTRIES] = classifier->bent[CLASSIFIER_ENTRIES + 1] = 0;
+  for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
+    const double *second = last[(entry + 1) % 3], *before = last[(entry + 2) % 3];
+    double *color = last[entry % 3], bend = 0;
+    hl_transfer_function_color(function, low + (high - low) * entry / CLASSIFIER_ENTRIES, color);
+    for (int c = 0; c < 3; c++) {
+      classifier->color[entry][c] = (float)color[c];
+      if (entry >= 2) bend = fmax(bend, fabs(color[c] - 2 * before[c] + second[c]));
+    }
+    if (entry >= 2) classifier->bent[entry - 1] = (float)bend;
+  }
+  memcpy(classifier->color[CLASSIFIER_ENTRIES + 1], classifier->color[CLASSIFIER_ENTRIES],
+         sizeof classifier->color[0]);
+}
+
+/* Sums the changes of slope at entries that are visible, or beside visible ones. Where no way can meet enough
+ * of them to count, there are none. */
+static void sum_bends(classifier *classifier) {
+  double sum = 0;
+  for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
+    bool visible = classifier->sums[entry][0] > 0 || (entry > 0 && classifier->sums[entry - 1][0] > 0) ||
+                   (entry <= CLASSIFIER_ENTRIES && classifier->sums[entry + 1][0] > 0);
+    if (visible) sum += (double)classifier->bent[entry];
+    classifier->bent[entry] = (float)sum;
+  }
+  if (sum * CLASSIFIER_ENTRIES <= CLASSIFIER_LEAST_BENDING) classifier->bent = NULL;
+}
+
 static void fill_tables(const hl_scene_volume *volume, double empty, double low, double high,
                         classifier *classifier) {
   const hl_transfer_function *function = &volume->transfer_function;
   double nothing = hl_transparent_below(volume, empty);
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
-    double value = low + (high - low) * entry / CLASSIFIER_ENTRIES, color[3];
+    double value = low + (high - low) * entry / CLASSIFIER_ENTRIES;
     if (value < nothing) classifier->sums[entry][0] = 0;
     else if (classifier->plane.sums == NULL)
       classifier->sums[entry][0] = (float)extinction_of(function, value);
-    hl_transfer_function_color(function, value, color);
-    for (int c = 0; c < 3; c++) classifier->color[entry][c] = (float)color[c];
   }
   classifier->sums[CLASSIFIER_ENTRIES + 1][0] = classifier->sums[CLASSIFIER_ENTRIES][0];
-  memcpy(classifier->color[CLASSIFIER_ENTRIES + 1], classifier->color[CLASSIFIER_ENTRIES],
-         sizeof classifier->color[0]);
+  fill_colors(function, low, high, classifier);
   integrate(classifier);
+  integrate_colors(classifier);
+  sum_bends(classifier);
   int32_t next = CLASSIFIER_ENTRIES + 2;
   for (int entry = CLASSIFIER_ENTRIES + 1; entry >= 0; entry--) {
     if (classifier->sums[entry][0] > 0) next = entry;
@@ -82,6 +129,8 @@ static void lay_out(const hl_transfer_function *function, classifier *classifier
   enum { COUNT = CLASSIFIER_ENTRIES + 2 };
   classifier->sums = hl_layout_take(layout, COUNT, sizeof *classifier->sums);
   classifier->color = hl_layout_take(layout, COUNT, sizeof *classifier->color);
+  classifier->shown = hl_layout_take(layout, COUNT, sizeof *classifier->shown);
+  classifier->bent = hl_layout_take(layout, COUNT, sizeof *classifier->bent);
   classifier->next_visible = hl_layout_take(layout, COUNT, sizeof *classifier->next_visible);
   if (function->gradient_opacity_count > 0)
     classifier->steepness = hl_layout_take(layout, STEEPNESS_ENTRIES + 2, sizeof *classifier->steepness);

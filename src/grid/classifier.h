@@ -14,12 +14,20 @@
 
 enum { CLASSIFIER_ENTRIES = 4096, STEEPNESS_ENTRIES = 4096 };
 
+/* The change of a colour's slope on a way through the table, times the way's entries, that is worth a mean of
+ * colours. The mean of a line with one bend, of slope s, over a way w is off the line's value at the mean by
+ * s w / 4 at most (derived: half the weight at either end, the bend in the middle): by 1/1024. */
+#define CLASSIFIER_LEAST_BENDING (1.0f / 256)
+
 typedef struct classifier {
   float scale, offset; /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
   /* tables of CLASSIFIER_ENTRIES + 2 entries in one block, which sums owns */
   float (*sums)[4];  /* extinction per world unit; its integral over entries, from entry 0; the integral of
                         extinction * entry; 0 */
   float (*color)[4]; /* linear RGB; 0 */
+  float (*shown)[4]; /* integrals over entries, from entry 0: of extinction * linear RGB, and of extinction */
+  float *bent; /* how much the colour's slope changes at the visible entries up to this one: the sum over
+                  them of the greatest channel's change per entry; null: nowhere by much */
   int32_t *next_visible;             /* the first entry from this one on with extinction > 0 */
   float first_visible, last_visible; /* table coordinates: outside of them nothing has extinction */
   /* Gradient opacity: the factor of extinction by the gradient's length, [STEEPNESS_ENTRIES + 2], in the same

@@ -6,6 +6,7 @@
 #include "render/phase_lanes.h"
 #include "render/reaching_lanes.h"
 #include "render/sky_lanes.h"
+#include "render/slab_color_lanes.h"
 #include "render/voxel_color_lanes.h"
 #include "scatter/scatter_lanes.h"
 
@@ -195,9 +196,13 @@ LANES_INLINE color_lanes color_of_matter(const block_density *d, lanes3 position
   const shade_volume *volume = d->patch->volume;
   color_lanes color, own;
   const classifier *classifier = volume->classifier;
-  if (classifier->plane.color == NULL)
-    table_values(classifier->color, split_coordinate(coordinate_seen(d)), color.c);
-  else color_in_row(&classifier->plane, d->row, coordinate_seen(d), d->before, d->after, active, color.c);
+  if (classifier->plane.color == NULL) {
+    color_of_way(classifier, d, active, color.c);
+  } else {
+    lanes from, to = end_of_shown(d, &from);
+    color_in_row(&classifier->plane, d->row, (lanes[2]){from, to}, (lanes[2]){d->before, d->after}, active,
+                 color.c);
+  }
   if (volume->colors.voxels != NULL) {
     (void)voxel_color_at(&volume->colors, volume->to_index, position, own.c);
     for (int c = 0; c < 3; c++) color.c[c] = color.c[c] * own.c[c];

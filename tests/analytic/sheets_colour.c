@@ -225,6 +225,58 @@ static void test_three_scales_are_another_spacing(void **state) {
   }
 }
 
+/* ---- colours that change within a slab ---- */
+
+/* An even medium whose values are the height z: green above STEP, red below, lit by constant light alone. */
+static const double STEP = 0.3, TOP = 5, BOTTOM = -5;
+
+static void open_two_colors(stage *set, double opacity, double from_behind) {
+  enum { N = 16 };
+  static float voxels[N * N * N];
+  static const hl_color_point colors[] = {{STEP, {1, 0, 0}}, {STEP, {0, 1, 0}}};
+  for (int i = 0; i < N * N * N; i++) voxels[i] = (float)(i / N / N - 7.5);
+  stage_open(set);
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.height = 12;
+  set->scene.render.sheet_spacing = 1;
+  for (int c = 0; c < 3; c++) set->scene.ambient[c] = 1;
+  hl_scene_volume *medium = stage_add_grid(set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1},
+                                           (vec3){-8, -8, -8}, voxels);
+  stage_set_opacity(set, medium, opacity, 1);
+  medium->transfer_function.color = colors;
+  medium->transfer_function.color_count = 2;
+  medium->clipped = 1; /* away from the border, where the ramp ends */
+  for (int a = 0; a < 3; a++) medium->clip_min[a] = BOTTOM, medium->clip_max[a] = TOP;
+  stage_look(set, (vec3){9, 4, 30}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  stage_add_directional(set, (vec3){0.1, 0.2, from_behind});
+  set->lights[0].intensity = 1e-6;
+}
+
+/* Green shows with 1 - T of what is above the step, red with the rest, wherever the step lies between two
+ * sheets; from front to back and from back to front. The error is that of even weights over what shows of the
+ * slab with the step. */
+static void test_step_of_colour_within_a_slab(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  static const struct { double opacity, tolerance; } media[] = {{0.02, 3e-4}, {0.3, 0.014}, {0.7, 0.045}};
+  for (int k = 0; k < 6; k++) {
+    stage set;
+    const double opacity = media[k % 3].opacity, tolerance = media[k % 3].tolerance;
+    open_two_colors(&set, opacity, k < 3 ? -1 : 1);
+    stage_render_by(&set, false, pixels);
+    for (int i = 0; i < PIXELS; i++) {
+      vec3 origin, direction;
+      stage_eye_ray(&set, i % SIDE, i / SIDE, &origin, &direction);
+      double above = stage_chord((vec3){BOTTOM, BOTTOM, STEP}, (vec3){TOP, TOP, TOP}, origin, direction);
+      double below = stage_chord((vec3){BOTTOM, BOTTOM, BOTTOM}, (vec3){TOP, TOP, STEP}, origin, direction);
+      double passing = pow(1 - opacity, above);
+      assert_near((double)pixels[4 * i], passing * (1 - pow(1 - opacity, below)), tolerance);
+      assert_near((double)pixels[4 * i + 1], 1 - passing, tolerance);
+    }
+    stage_close(&set);
+  }
+}
+
 /* ---- the phase function ---- */
 
 /* With one parallel light and parallel rays of the eye, a medium's light is that of even scattering times
@@ -267,6 +319,7 @@ int main(void) {
       cmocka_unit_test(test_emission_of_a_medium),
       cmocka_unit_test(test_emission_adds_to_light),
       cmocka_unit_test(test_phase_function_of_a_medium),
+      cmocka_unit_test(test_step_of_colour_within_a_slab),
       cmocka_unit_test(test_three_scales_are_another_spacing),
   };
   return cmocka_run_group_tests_name("sheets_colour", tests, NULL, NULL);

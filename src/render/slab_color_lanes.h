@@ -1,0 +1,66 @@
+/* render/slab_color_lanes.h - the transfer function's colour of a volume's matter in a slab, at sixteen
+ * samples (step 13).
+ *
+ * A slab that spans several colours shows their mean. Derived: at the part s of its optical depth e a slab
+ * counts with e exp(-e s) / (1 - exp(-e)), on average at u = seen_part(e), which is 1/2 in thin slabs and 1 /
+ * e in opaque ones. Even weights over the first 2 u of the depth have the same average place and leave out
+ * what is hidden. Depth grows with the integral of extinction over density, so that the mean colour there is
+ * (K(f2) - K(f1)) / (T(f2) - T(f1)): T the integral of extinction, K that of extinction times colour, f1 the
+ * density where the slab begins, f2 that at which 2 u of its depth are passed. As f2 nears f1 this is the
+ * colour of f1. */
+#ifndef HL_RENDER_SLAB_COLOR_LANES_H
+#define HL_RENDER_SLAB_COLOR_LANES_H
+
+#include "render/light_depth_lanes.h"
+
+/* The least part of T by which T(f2) and T(f1) must differ: their floats have lost more digits where they
+ * differ by less. */
+static const float LEAST_PART_OF_SHOWN = 0x1p-12f;
+
+/* K of red, green and blue, and T, at a coordinate of the tables. */
+LANES_INLINE void shown_below(const classifier *classifier, lanes x, lanes sums[4]) {
+  table_coordinate at = split_coordinate(x);
+  lanes a[4], b[4];
+  lanes_gather_quads(&classifier->shown[0][0], at.entry * 4, a);
+  lanes_gather_quads(&classifier->shown[1][0], at.entry * 4, b);
+  for (int i = 0; i < 4; i++) sums[i] = lanes_fma(b[i] - a[i], at.fraction, a[i]);
+}
+
+/* Lanes in which the colour bends between the slab's ends. */
+LANES_INLINE lanes_int is_color_bent(const classifier *classifier, const block_density *d) {
+  lanes bent = lanes_gather(classifier->bent, lanes_truncate(d->after)) -
+               lanes_gather(classifier->bent, lanes_truncate(d->before));
+  return lanes_abs(bent * (d->after - d->before)) > CLASSIFIER_LEAST_BENDING;
+}
+
+/* Where the part of a way's depth that shows ends, as a coordinate in the tables; *from: where it begins.
+ * From back to front d->evenly is 1 - u, and it is the slab's last 2 u. */
+LANES_INLINE lanes end_of_shown(const block_density *d, lanes *from) {
+  way_means m = means_of_way(d->before, d->after, &d->sums);
+  lanes_int front = d->evenly <= 0.5f;
+  lanes part = lanes_clamp(
+      lanes_fma(d->evenly, lanes_set(2.0f), lanes_select(front, lanes_set(0), lanes_set(-1.0f))), 0, 1);
+  *from = lanes_select(front, d->before, d->after);
+  return lanes_fma(d->after - d->before, way_of_depth(m.from_a, m.from_b, part), d->before);
+}
+
+/* The mean colour of a volume's matter, as it shows, linear RGB; known for the active lanes. */
+LANES_INLINE void color_of_way(const classifier *classifier, const block_density *d, uint32_t active,
+                               lanes color[3]) {
+  table_values(classifier->color, split_coordinate(coordinate_seen(d)), color);
+  if (classifier->bent == NULL) return;
+  lanes_int bent = is_color_bent(classifier, d);
+  if ((lanes_bits(bent) & active) == 0) return;
+  lanes from, at_from[4], at_to[4], to = end_of_shown(d, &from);
+  shown_below(classifier, from, at_from);
+  shown_below(classifier, to, at_to);
+  lanes shown = at_to[3] - at_from[3];
+  lanes_int usable = bent & (lanes_abs(shown) > at_to[3] * LEAST_PART_OF_SHOWN);
+  lanes inverse = 1.0f / lanes_select(usable, shown, lanes_set(1.0f));
+  for (int c = 0; c < 3; c++) {
+    lanes mean = lanes_max((at_to[c] - at_from[c]) * inverse, lanes_set(0));
+    color[c] = lanes_select(usable, mean, color[c]);
+  }
+}
+
+#endif
