@@ -159,7 +159,20 @@ def foreign_functions():
         return f'<Property name="{name}" number_of_elements="{len(numbers)}">{elements}</Property>'
     boxes = listed("Boxes", [20, 2, 40, 4, 1, 0.5, 0, 0.6, 1, 1, 9, 3, 0, 0, 1, 1]) + listed("Range", [0, 100, 0, 10])
     shown = listed("ScalarOpacityUnitDistance", [2]) + listed("UseTransfer2D", [1]) + listed("UseGradientForTransfer2D", [1])
-    write("transfer", "paraview-state.pvsm", f'<ParaView><Proxy type="TransferFunction2D">{boxes}</Proxy><Proxy type="Grid">{shown}</Proxy></ParaView>')
+
+    def proxy(group, kind, number, content):
+        return f'<Proxy group="{group}" type="{kind}" id="{number}">{content}</Proxy>'
+
+    def named(name, number):
+        return f'<Property name="{name}"><Proxy value="{number}"/><Domain name="d"><Proxy value="9"/></Domain></Property>'
+    plane = proxy("transfer_2d_functions", "TransferFunction2D", 5, boxes) + proxy("representations", "Grid", 6, shown)
+    write("transfer", "paraview-state.pvsm", f"<ParaView>{plane}</ParaView>")
+    colors = listed("RGBPoints", [0, 0, 0, 1, 10, 1, 0, 0]) + listed("ColorSpace", [1]) + listed("HSVWrap", [0]) + listed("UseLogScale", [0])
+    shown = listed("Representation", ["Volume"]) + listed("Visibility", [1]) + listed("ScalarOpacityUnitDistance", [2])
+    shown += named("LookupTable", 7) + named("ScalarOpacityFunction", 8)
+    volume = proxy("lookup_tables", "PVLookupTable", 7, colors) + proxy("representations", "Grid", 6, shown)
+    volume += proxy("piecewise_functions", "PiecewiseFunction", 8, listed("Points", [0, 0, 0.3, 0.6, 10, 1, 0.5, 0]))
+    write("transfer", "paraview-volume.pvsm", f"<ParaView>{volume}</ParaView>")
 
 
 def chunk(kind, data):
