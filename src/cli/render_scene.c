@@ -291,6 +291,14 @@ static void tell_of_holders(const scene_change *change) {
         planes == 1 ? "" : "s");
 }
 
+/* Refuses options for the look of volumes where there are none. */
+static int refuse_looks(const cli_value *values) {
+  for (int which = RENDER_LOOK; which <= RENDER_SHADING; which++)
+    if (values[which].given)
+      return fail(EXIT_CODE_USAGE, "--%s is for volumes: the picture has none", render_options[which].name);
+  return EXIT_CODE_OK;
+}
+
 static int change_volumes(scene_change *change) {
   const cli_value *values = change->values;
   hl_scene_description *description = &change->description;
@@ -298,7 +306,8 @@ static int change_volumes(scene_change *change) {
   bool changed = whole || render_look_recolors(values, change->bare) || render_recolors(values) ||
                  values[RENDER_SHADING].given || values[RENDER_CLIP].given || values[RENDER_ISO].given ||
                  changes_cuts(values);
-  if (!changed || description->volume_count == 0) return EXIT_CODE_OK;
+  if (description->volume_count == 0) return refuse_looks(values);
+  if (!changed) return EXIT_CODE_OK;
   change->volumes = calloc(description->volume_count, sizeof *change->volumes);
   change->functions = calloc(description->volume_count, sizeof *change->functions);
   if (values[RENDER_ISO].given)

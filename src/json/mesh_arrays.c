@@ -12,6 +12,7 @@ const char *const hl_json_mesh_keys[] = {"vertices", "triangles",     "normals",
 typedef struct row_kind {
   size_t least, most; /* numbers of a row */
   double rest;        /* what numbers are that a row lacks */
+  const char *wanted; /* what to give */
 } row_kind;
 
 /* Reads one row of a member `key` into `to`, which has kind->most places. */
@@ -19,8 +20,7 @@ static hl_status read_row(hl_json_reader *reader, const json_t *row, const row_k
   double numbers[4];
   size_t count = json_array_size(row);
   if (count < kind->least || count > kind->most)
-    return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "has %zu numbers: give %zu to %zu", count, kind->least,
-                        kind->most);
+    return hl_json_fail(reader, HL_ERROR_INPUT, NULL, "has %zu numbers: give %s", count, kind->wanted);
   hl_status status = hl_json_row(reader, row, NULL, count, numbers);
   for (size_t n = 0; status == HL_OK && n < kind->most; n++)
     to[n] = (float)(n < count ? numbers[n] : kind->rest);
@@ -114,11 +114,15 @@ static hl_status read_lines(hl_json_reader *reader, const json_t *object, const 
 }
 
 static hl_status read_parts(hl_json_reader *reader, const json_t *value, mesh_parts *parts) {
-  const row_kind place = {3, 3, 0}, color = {3, 4, 1};
-  row_kind round = {3, 4, 0};
+  const row_kind place = {3, 3, 0, "x, y and z"},
+                 color = {3, 4, 1, "red, green and blue, or an opacity, too"};
+  row_kind round = {4, 4, 0, "x, y, z and a radius, or one \"radius\" beside them all"};
   size_t ignored;
   hl_status status = hl_json_number(reader, value, "radius", &round.rest);
-  if (round.rest <= 0) round.least = 4;
+  if (json_object_get(value, "radius") != NULL) round.least = 3;
+  if (status == HL_OK && round.least == 3 && !(round.rest > 0))
+    status = hl_json_fail(reader, HL_ERROR_INPUT, "radius",
+                          "%.9g is not above 0: give a length in world units", round.rest);
   if (status == HL_OK)
     status = read_array(reader, value, "vertices", &place, SIZE_MAX, &parts->vertex_count, &parts->positions);
   parts->vertex_room = parts->vertex_count;

@@ -90,11 +90,19 @@ static void list_formats(char *text, size_t size) {
       used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", formats[n]->name);
 }
 
+static bool is_mesh_name(const char *path) {
+  static const char *const endings[] = {".ply", ".stl", ".obj", ".gltf", ".glb", ".vtp"};
+  for (size_t n = 0; n < sizeof endings / sizeof *endings; n++)
+    if (hl_text_ends(path, endings[n])) return true;
+  return false;
+}
+
 static hl_status fail_unknown(const hl_stream *stream, const unsigned char *bytes, size_t length,
                               hl_error *error) {
   const char *path = stream->path, *advice = known_but_unsupported(bytes, length);
   if (advice != NULL) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %s", path, advice);
   if (length == 0) return hl_fail(error, HL_ERROR_INPUT, "%s: the file is empty", path);
+  if (is_mesh_name(path)) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: a mesh, not a volume", path);
   for (int n = 0; n < FORMAT_COUNT; n++)
     for (int ending = 0; ending < HL_FORMAT_ENDINGS && formats[n]->endings[ending] != NULL; ending++)
       if (hl_text_ends(path, formats[n]->endings[ending]))

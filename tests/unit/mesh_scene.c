@@ -60,7 +60,10 @@ static void test_refused(void **state) {
   } cases[] = {
       {SCENE("{}"), "/meshes/0/file: is missing"},
       {SCENE("{\"file\": \"a.ply\", \"spheres\": []}"), "/meshes/0/file: is one of several sources"},
-      {SCENE("{\"spheres\": [[0, 0, 0]]}"), "/meshes/0/spheres/0: has 3 numbers: give 4 to 4"},
+      {SCENE("{\"spheres\": [[0, 0, 0]]}"),
+       "/meshes/0/spheres/0: has 3 numbers: give x, y, z and a radius, or one \"radius\" beside them all"},
+      {SCENE("{\"spheres\": [[0, 0, 0]], \"radius\": 0}"),
+       "/meshes/0/radius: 0 is not above 0: give a length in world units"},
       {SCENE("{\"spheres\": [[0, 0, 0, 1]], \"sphere_colors\": []}"), "/meshes/0/sphere_colors: has 0 rows"},
       {SCENE("{\"spheres\": [[0, 0, 0, -1]]}"), "no sphere and no line"},
       {SCENE("{\"vertices\": [[0, 0, 0]], \"triangles\": [[0, 1, 2]]}"),
