@@ -167,7 +167,67 @@ hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_err
   return status;
 }
 
-/* Adds the outermost vertices and spheres of a mesh: those that lie farthest in many directions. */
+/* The points of a mesh that lie farthest either way along the axes and the diagonals between them. */
+enum { AXES = 13 };
+typedef struct farthest_points {
+  vec3 along[AXES], point[2][AXES];
+  double radius[2][AXES], most[2][AXES];
+} farthest_points;
+
+static void begin_farthest(farthest_points *far) {
+  for (int n = 0; n < AXES; n++) {
+    far->along[n] = vec3_normalise((vec3){n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1});
+    far->most[0][n] = far->most[1][n] = -INFINITY;
+  }
+}
+
+static void look_at_point(farthest_points *far, vec3 point, double radius) {
+  for (int n = 0; n < AXES; n++) {
+    double along = vec3_dot(point, far->along[n]);
+    for (int way = 0; way < 2; way++) {
+      double here = (way ? along : -along) + radius;
+      if (here <= far->most[way][n]) continue;
+      far->most[way][n] = here;
+      far->point[way][n] = point;
+      far->radius[way][n] = radius;
+    }
+  }
+}
+
+/* used: [vertex_count]; all false at first. */
+static void look_at_mesh(farthest_points *far, const hl_scene_mesh *mesh, bool *used) {
+  const hl_mesh_description *d = hl_mesh_describe(mesh->mesh);
+  affine3 placement = hl_scene_mesh_to_world(mesh);
+  for (size_t t = 0; t < d->triangle_count; t++)
+    for (int i = 0; i < 3; i++) used[d->triangles[t][i]] = true;
+  for (size_t v = 0; v < d->vertex_count; v++) {
+    const float *p = d->positions[v];
+    if (used[v]) look_at_point(far, affine3_apply(placement, (vec3){p[0], p[1], p[2]}), 0);
+  }
+  for (size_t n = 0; n < d->sphere_count; n++) {
+    const float *s = d->spheres[n];
+    look_at_point(far, affine3_apply(placement, (vec3){s[0], s[1], s[2]}), s[3] * mesh->scale);
+  }
+}
+
+/* Adds the farthest of all corners and spheres of a mesh: a floor touches them, and none is too rare to be
+ * seen. */
+static hl_status add_farthest(hl_outline *outline, const hl_scene_mesh *mesh, hl_error *error) {
+  size_t vertices = hl_mesh_describe(mesh->mesh)->vertex_count;
+  bool *used = hl_allocate_zeroed(outline->context, vertices, sizeof *used);
+  farthest_points far;
+  hl_status status = HL_OK;
+  if (used == NULL) return hl_fail_memory(error, vertices * sizeof *used, "a mesh's outline");
+  begin_farthest(&far);
+  look_at_mesh(&far, mesh, used);
+  hl_release(outline->context, used);
+  for (int n = 0; n < 2 * AXES && status == HL_OK; n++)
+    status = add(outline, far.point[n % 2][n / 2], far.radius[n % 2][n / 2], error);
+  return status;
+}
+
+/* Adds the outermost vertices and spheres of a mesh: those that lie farthest in many directions, of large
+ * meshes among some of them. */
 static hl_status add_mesh(hl_outline *outline, const hl_scene_mesh *mesh, hl_error *error) {
   enum { MOST_CORNERS = 60000 };
   const hl_mesh_description *d = hl_mesh_describe(mesh->mesh);
@@ -187,6 +247,7 @@ static hl_status add_mesh(hl_outline *outline, const hl_scene_mesh *mesh, hl_err
   if (status == HL_OK) status = hl_outline_thin(&all, &few, error);
   for (size_t n = 0; n < few.count && status == HL_OK; n++)
     status = add(outline, few.point[n], few.radius[n], error);
+  if (status == HL_OK) status = add_farthest(outline, mesh, error);
   hl_outline_release(&all);
   hl_outline_release(&few);
   return status;

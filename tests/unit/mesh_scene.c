@@ -104,8 +104,61 @@ static void test_floor(void **state) {
   hl_context_destroy(context);
 }
 
+/* The height of the floor below a mesh. */
+static double floor_below(hl_context *context, const hl_mesh_description *d) {
+  static const double up[3] = {0, 0, 1};
+  hl_mesh *mesh = NULL, *made = NULL;
+  double low[3], high[3];
+  hl_scene_mesh shown;
+  hl_scene_description scene;
+  assert_int_equal(hl_mesh_create(context, d, &mesh, NULL), HL_OK);
+  hl_scene_mesh_defaults(&shown);
+  hl_scene_description_defaults(&scene);
+  shown.mesh = mesh;
+  scene.meshes = &shown, scene.mesh_count = 1;
+  assert_int_equal(hl_scene_make_floor(context, &scene, up, 3, &made, NULL), HL_OK);
+  assert_int_equal(hl_mesh_get_box(made, low, high), HL_OK);
+  hl_mesh_release(mesh);
+  hl_mesh_release(made);
+  return high[2];
+}
+
+/* A floor touches the lowest corner of a mesh, be it the blunt pole of a ball or one of very many corners. */
+static void test_floor_touches(void **state) {
+  (void)state;
+  enum { RING = 24, MANY = 40000 };
+  static float positions[MANY + 2][3];
+  static uint32_t triangles[MANY][3];
+  hl_context *context = NULL;
+  hl_mesh_description d;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  hl_mesh_description_defaults(&d);
+  d.positions = (const float(*)[3])positions;
+  d.triangles = (const uint32_t(*)[3])triangles;
+  for (uint32_t n = 0; n < RING; n++) {
+    positions[n][0] = (float)(1.04 * cos(2 * HL_PI * n / RING));
+    positions[n][1] = (float)(1.04 * sin(2 * HL_PI * n / RING));
+    positions[n][2] = -7.93f;
+    for (uint32_t end = 0; end < 2; end++)
+      memcpy(triangles[2 * n + end], ((uint32_t[3]){n, (n + 1) % RING, RING + end}), 12);
+  }
+  positions[RING][2] = -8, positions[RING + 1][2] = 8;
+  d.vertex_count = RING + 2, d.triangle_count = 2 * RING;
+  assert_true(fabs(floor_below(context, &d) + 8) < 1e-5);
+  for (uint32_t n = 0; n < MANY; n++) {
+    positions[n][0] = (float)(n % 200), positions[n][1] = (float)(n / 200), positions[n][2] = 0;
+    memcpy(triangles[n], ((uint32_t[3]){n, (n + 1) % MANY, (n + 200) % MANY}), 12);
+  }
+  positions[MANY][2] = -9;
+  triangles[MANY / 2 + 1][1] = MANY;
+  d.vertex_count = MANY + 1, d.triangle_count = MANY;
+  assert_true(fabs(floor_below(context, &d) + 9) < 1e-5);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_written_and_read), cmocka_unit_test(test_refused),
-                                     cmocka_unit_test(test_floor)};
+                                     cmocka_unit_test(test_floor), cmocka_unit_test(test_floor_touches)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
