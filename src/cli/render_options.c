@@ -344,7 +344,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .argument = "VOXELS",
          .group = "Sheets",
          .help =
-             "distance of sheets in smallest voxel edges\n(default 0.5; of bare volumes 0.25 to 1, chosen)",
+             "distance of sheets in smallest voxel edges\n(default 0.5; of bare volumes 0.125 to 1, chosen)",
          .count = 1,
          .setting_kind = HL_SETTINGS_RENDER,
          .setting = "sheet_spacing"},

@@ -32,6 +32,11 @@
 /* Sheets per thickness of a surface (hl_exposure): rings grow with the square of the spacing over the
  * thickness. */
 #define SPACING_PER_THICKNESS 0.28
+/* The same for small grids, across which sheets half as far apart are no more than those of others. */
+#define SMALL_GRIDS_SPACING_PER_THICKNESS 0.1
+/* Least spacing of all grids, and of surfaces in small ones; smallest voxel edges. */
+#define LEAST_SPACING       0.25
+#define SMALL_GRIDS_SPACING 0.125
 
 void hl_scene_key_light(hl_light *light) {
   hl_light_defaults(light);
@@ -97,10 +102,8 @@ void hl_scene_level_sky(hl_scene_description *description) {
   description->sky = plain.sky;
 }
 
-/* The sheet spacing, in smallest voxel edges, that puts about the same number of sheets across any grid, from
- * 0.25 to 1. With sheets a voxel apart, coarse grids would show rings on smooth surfaces, and more sheets
- * cost little there. */
-static double enough_sheets(const hl_volume *volume, hl_shading shading) {
+/* The sheet spacing, in smallest voxel edges, that puts about the same number of sheets across any grid. */
+static double even_spacing(const hl_volume *volume, hl_shading shading) {
   double sheets = shading == HL_SHADING_PHONG ? SHEETS_OF_SURFACES : SHEETS_OF_MEDIA;
   double edge = INFINITY, diagonal = 0;
   for (int a = 0; a < 3; a++) {
@@ -108,7 +111,18 @@ static double enough_sheets(const hl_volume *volume, hl_shading shading) {
     edge = fmin(edge, length);
     diagonal = hypot(diagonal, length * (double)volume->dimension[a]);
   }
-  return fmax(diagonal / edge / sheets, 0.25);
+  return diagonal / edge / sheets;
+}
+
+/* From LEAST_SPACING to 1, or SMALL_GRIDS_SPACING where surfaces are thin. With sheets a voxel apart, coarse
+ * grids would show rings on smooth surfaces, and more sheets cost little there. thickness: of surfaces, in
+ * smallest voxel edges; infinite: there are none. */
+static double choose_spacing(const hl_volume *volume, hl_shading shading, double thickness) {
+  double even = even_spacing(volume, shading);
+  double spacing = fmin(fmax(even, LEAST_SPACING), fmax(SPACING_PER_THICKNESS * thickness, LEAST_SPACING));
+  double in_small = fmax(even, SMALL_GRIDS_SPACING_PER_THICKNESS * thickness);
+  spacing = fmin(spacing, fmax(in_small, SMALL_GRIDS_SPACING));
+  return round(1000 * fmin(spacing, 1)) / 1000;
 }
 
 static hl_status judge_exposure(const hl_look *look, const hl_data_analysis *analysis,
@@ -128,9 +142,8 @@ static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, h
   for (size_t l = 0; l < description->light_count; l++) lights[l].intensity *= exposure.factor;
   for (int channel = 0; channel < 3; channel++) description->ambient[channel] *= exposure.factor;
   description->sky.strength *= exposure.factor;
-  double spacing = enough_sheets(description->volumes[0].volume, look->shading);
-  spacing = fmin(spacing, fmax(SPACING_PER_THICKNESS * exposure.thickness, 0.25));
-  description->render.sheet_spacing = round(1000 * fmin(spacing, 1)) / 1000;
+  description->render.sheet_spacing = choose_spacing(description->volumes[0].volume, look->shading,
+                                                     exposure.thickness);
   return status;
 }
 

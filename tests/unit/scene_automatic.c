@@ -375,6 +375,33 @@ static void things_stand_upright(void **state) {
   hl_context_destroy(context);
 }
 
+static double spacing_of_ball(double softness) {
+  static float values[N * N * N];
+  for (int k = 0, v = 0; k < N; k++)
+    for (int j = 0; j < N; j++)
+      for (int i = 0; i < N; i++, v++) {
+        double r = hypot(hypot(i - 20, j - 19), k - 21);
+        values[v] = (float)(1 / (1 + exp((r - 11) / softness)));
+      }
+  hl_context *context = make_context();
+  hl_volume *volume = scaled_volume(context, values, 1, 0);
+  hl_scene *scene = NULL;
+  assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
+  double spacing = hl_scene_describe(scene)->render.sheet_spacing;
+  hl_scene_release(scene);
+  hl_volume_release(volume);
+  hl_context_destroy(context);
+  return spacing;
+}
+
+/* In a small grid sheets lie closer than a quarter of a voxel where surfaces are thin, and nowhere else. */
+static void thin_surfaces_of_small_grids_get_more_sheets(void **state) {
+  (void)state;
+  double thin = spacing_of_ball(0.4), thick = spacing_of_ball(3);
+  assert_true(thin >= 0.125 && thin < 0.2);
+  assert_true(thick == 0.25);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(separates_air_from_things),
@@ -387,6 +414,7 @@ int main(void) {
       cmocka_unit_test(colormaps_have_their_published_colors),
       cmocka_unit_test(names_and_statistics),
       cmocka_unit_test(things_stand_upright),
+      cmocka_unit_test(thin_surfaces_of_small_grids_get_more_sheets),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
