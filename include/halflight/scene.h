@@ -96,6 +96,8 @@ typedef struct hl_light {
   hl_light_texture texture;   /* copied with its pixels by hl_scene_create() */
   hl_light_emission emission; /* the image on the light's own surface; copied with its pixels; a light has
                                  this or a texture, not both */
+  double of_sky; /* set by the renderer for the suns of a sky, which make no highlights: the part of the light
+                    that a medium takes; 0 in all lights of a description */
 } hl_light;
 
 typedef enum hl_sky_type {
@@ -126,6 +128,8 @@ typedef struct hl_sky {
   double up[3];        /* direction of the zenith, of any length; world */
   int hemisphere;      /* non-zero: nothing shines below the horizon */
   double strength;     /* a factor on all colours */
+  int suns;            /* image: non-zero (the default): up to four compact bright spots of it shine as
+                          parallel lights, where the scene has shadows; the image's light stays the same */
 } hl_sky;
 
 typedef enum hl_shading {

@@ -151,6 +151,8 @@ class SkySettings(TypedDict, total=False):
         Nothing shines below the horizon. Default: False.
     strength : float
         A factor on the sky's colours. 0 to 1e6. Default: 1.
+    suns : bool
+        Up to four compact bright spots of the image cast shadows as parallel lights do. Default: True.
     """
 
     type: str
@@ -162,6 +164,7 @@ class SkySettings(TypedDict, total=False):
     up: Sequence[float]
     hemisphere: bool
     strength: float
+    suns: bool
 
 
 class PictureSettings(TypedDict, total=False):

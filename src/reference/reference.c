@@ -416,8 +416,10 @@ hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
   hl_pool *pool = NULL;
   status = hl_pool_create(context, chosen.threads, &pool, error);
   if (status != HL_OK) return status;
-  reference all = {
-      .context = context, .pool = pool, .scene = &scene->placed, .all_shadows = shadows_wanted(layers)};
+  hl_scene_description whole = scene->placed; /* its sky is the image as it is, without lights for suns */
+  whole.sky = scene->description.sky;
+  whole.light_count = scene->description.light_count;
+  reference all = {.context = context, .pool = pool, .scene = &whole, .all_shadows = shadows_wanted(layers)};
   status = prepare(&all, &chosen, pool, error);
   if (status == HL_OK) status = render(&all, pool, pixels, row_stride, layers, error);
   release(&all);

@@ -109,7 +109,8 @@ typedef struct reference_surfaces {
 
 /* A part of the sky. */
 typedef struct reference_sky_cell {
-  vec3 direction, mean; /* world: the unit vector to its middle, and the mean of all unit vectors to it */
+  vec3 direction, mean; /* world: the unit vector to its middle, and the mean of all unit vectors to it; of an
+                           image's cell, to and of its light */
   double radiance[3];   /* its mean */
 } reference_sky_cell;
 

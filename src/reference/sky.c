@@ -2,13 +2,14 @@
  *
  * The sky's sphere, or its upper hemisphere, is cut into rings about `up` and these into cells of nearly
  * equal sides, all of the same solid angle. A cell has the mean radiance of its directions and casts its
- * shadow from its middle; its cosine is that of the mean of its directions, which is the exact mean wherever
- * no part of the cell is hidden. */
+ * shadow from its middle, of an image the middle of its light; its cosine is that of the mean of its
+ * directions, which is the exact mean wherever no part of the cell is hidden. */
 #include "core/memory.h"
 #include "reference/reference.h"
 
-/* An image is sampled at each of its pixels, but at most this often along each side of a cell. */
-enum { MOST_SAMPLES = 256 };
+/* An image is sampled so often along each side of its pixels, but at most so often along each side of a cell.
+ */
+enum { PIXEL_SAMPLES = 3, MOST_SAMPLES = 256 };
 
 /* A ring of cells: heights are cosines of angles to `up`. */
 typedef struct sky_ring {
@@ -24,14 +25,16 @@ static vec3 direction_of(const sky_axes *axes, double height, double turn) {
   return vec3_add(level, vec3_scale(axes->up, height));
 }
 
-/* The mean of the radiance over a cell that begins at `turn`, and of the directions. */
+/* The mean of the radiance over a cell that begins at `turn`, and of the directions, each with its brightness
+ * where the sky is an image: a sun in the cell shines from where it is. */
 static void find_means(const hl_sky *sky, const sky_axes *axes, const sky_ring *ring, double turn,
                        reference_sky_cell *cell) {
-  double wide = sky->type == HL_SKY_IMAGE ? ceil((double)sky->width / (double)ring->cells) : 4;
-  double high = sky->type == HL_SKY_IMAGE ? ceil((ring->high - ring->low) * sky->height) : 4;
+  double wide = sky->type == HL_SKY_IMAGE ? ceil(PIXEL_SAMPLES * (double)sky->width / (double)ring->cells)
+                                          : 4;
+  double high = sky->type == HL_SKY_IMAGE ? ceil(PIXEL_SAMPLES * (ring->high - ring->low) * sky->height) : 4;
   size_t columns = (size_t)fmin(wide, MOST_SAMPLES), rows = (size_t)fmin(high, MOST_SAMPLES);
-  vec3 sum = {0, 0, 0};
-  double samples = (double)columns * (double)rows;
+  vec3 sum = {0, 0, 0}, bright = {0, 0, 0};
+  double samples = (double)columns * (double)rows, brightness = 0;
   for (size_t i = 0; i < rows; i++)
     for (size_t j = 0; j < columns; j++) {
       double height = ring->low + (ring->high - ring->low) * ((double)i + 0.5) / (double)rows, radiance[3];
@@ -39,9 +42,13 @@ static void find_means(const hl_sky *sky, const sky_axes *axes, const sky_ring *
       vec3 direction = direction_of(axes, height, at);
       hl_sky_radiance(sky, axes, direction, radiance);
       sum = vec3_add(sum, direction);
+      double here = radiance[0] + radiance[1] + radiance[2];
+      bright = vec3_add(bright, vec3_scale(direction, here));
+      brightness += here;
       for (int c = 0; c < 3; c++) cell->radiance[c] += radiance[c] / samples;
     }
-  cell->mean = vec3_scale(sum, 1 / samples);
+  bool weighed = sky->type == HL_SKY_IMAGE && brightness > 0;
+  cell->mean = weighed ? vec3_scale(bright, 1 / brightness) : vec3_scale(sum, 1 / samples);
 }
 
 /* The number of cells in ring i of `rings`, each `angle` high: as many as make them as wide as high. */

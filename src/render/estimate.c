@@ -25,9 +25,10 @@ uint64_t hl_pixels_bytes(const frame *frame, int sweep_count, const hl_layers *l
   if (layers != NULL && layers->sky != NULL) floats += 4;
   if (layers != NULL && layers->sky_shadow != NULL) floats += 8;
   if (hl_layers_measure(layers)) floats += MEASURES;
-  for (int i = 0; i < frame->light_count && layers != NULL && layers->light_count > 0; i++) {
-    const hl_light_layers *light = &layers->lights[frame->lights[i].light_index];
-    floats += (light->picture != NULL ? 4u : 0u) + (light->shadow != NULL ? 4u : 0u);
+  for (int i = 0; i < frame->light_count && layers != NULL; i++) {
+    const hl_light_layers light = hl_layers_of_light(layers, &frame->lights[i]);
+    floats += light.picture != NULL ? 4 : 0;
+    if (light.shadow != NULL) floats += frame->lights[i].light->of_sky > 0 ? 8 : 4;
   }
   return tiles * TILE_PIXELS * floats * sizeof(float);
 }

@@ -10,6 +10,11 @@ bool hl_layers_measure(const hl_layers *wanted) {
                             wanted->normal != NULL || wanted->object != NULL);
 }
 
+hl_light_layers hl_layers_of_light(const hl_layers *wanted, const light_source *light) {
+  if (light->light->of_sky > 0) return (hl_light_layers){wanted->sky, wanted->sky_shadow};
+  return wanted->light_count > 0 ? wanted->lights[light->light_index] : (hl_light_layers){NULL, NULL};
+}
+
 /* ---- pixels ---- */
 
 typedef struct pixel_room {
@@ -49,11 +54,16 @@ hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_la
   if (wanted->sky_shadow != NULL) pixels->sky_reaching = allocate_pixels(&room, COLORS, &status, error);
   if (wanted->sky_shadow != NULL) pixels->sky_open = allocate_pixels(&room, COLORS, &status, error);
   if (hl_layers_measure(wanted)) pixels->measures = allocate_pixels(&room, MEASURES, &status, error);
-  for (size_t i = 0; i < pixels->light_count && wanted->light_count > 0; i++) {
-    const hl_light_layers *asked = &wanted->lights[frame->lights[i].light_index];
-    pixels->lights[i].light_index = (size_t)frame->lights[i].light_index;
-    if (asked->picture != NULL) pixels->lights[i].picture = allocate_pixels(&room, COLORS, &status, error);
-    if (asked->shadow != NULL) pixels->lights[i].shadow = allocate_pixels(&room, COLORS, &status, error);
+  for (size_t i = 0; i < pixels->light_count; i++) {
+    light_pixels *light = &pixels->lights[i];
+    light->light_index = (size_t)frame->lights[i].light_index;
+    light->of_sky = frame->lights[i].light->of_sky > 0;
+    const hl_light_layers asked = hl_layers_of_light(wanted, &frame->lights[i]);
+    if (asked.picture != NULL) light->picture = allocate_pixels(&room, COLORS, &status, error);
+    if (asked.shadow == NULL) continue;
+    if (!light->of_sky) light->shadow = allocate_pixels(&room, COLORS, &status, error);
+    if (light->of_sky) light->reaching = allocate_pixels(&room, COLORS, &status, error);
+    if (light->of_sky) light->open = allocate_pixels(&room, COLORS, &status, error);
   }
   if (pixels->measures != NULL) clear_first_depth(pixels->measures, tiles);
   return status;
@@ -63,6 +73,8 @@ void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels) {
   for (size_t i = 0; pixels->lights != NULL && i < pixels->light_count; i++) {
     hl_release(context, pixels->lights[i].picture);
     hl_release(context, pixels->lights[i].shadow);
+    hl_release(context, pixels->lights[i].reaching);
+    hl_release(context, pixels->lights[i].open);
   }
   hl_release(context, pixels->lights);
   hl_release(context, pixels->ambient);
@@ -124,6 +136,11 @@ static void write_sky_shadow(const layer_grid *grid, int row, const layer_pixels
     for (int c = 0; c < 3; c++, to++) {
       float open = sum_of(grid, pixels->sky_open, COLORS, column, row, c, NULL),
             reaching = sum_of(grid, pixels->sky_reaching, COLORS, column, row, c, NULL);
+      for (size_t i = 0; i < pixels->light_count; i++) {
+        if (!pixels->lights[i].of_sky) continue;
+        open += sum_of(grid, pixels->lights[i].open, COLORS, column, row, c, NULL);
+        reaching += sum_of(grid, pixels->lights[i].reaching, COLORS, column, row, c, NULL);
+      }
       *to = open > 0 ? reaching < open ? reaching / open : 1 : 0;
     }
 }
@@ -180,8 +197,10 @@ static void write_row(void *data, size_t index, int worker) {
   if (to->sky != NULL) write_colors(job->grid, row, pixels->sky, false, false, to->sky);
   if (to->sky_shadow != NULL) write_sky_shadow(job->grid, row, pixels, to->sky_shadow);
   if (hl_layers_measure(to)) write_measures(job->grid, row, pixels->measures, to);
-  for (size_t i = 0; i < pixels->light_count && to->light_count > 0; i++) {
+  for (size_t i = 0; i < pixels->light_count; i++) {
     const light_pixels *from = &pixels->lights[i];
+    if (from->of_sky && to->sky != NULL) write_colors(job->grid, row, from->picture, false, true, to->sky);
+    if (from->of_sky || to->light_count == 0) continue;
     const hl_light_layers *asked = &to->lights[from->light_index];
     bool add = i > 0 && from[-1].light_index == from->light_index; /* sectors of a light follow each other */
     if (asked->picture != NULL) write_colors(job->grid, row, from->picture, false, add, asked->picture);

@@ -20,6 +20,8 @@
 typedef struct light_pixels {
   float *picture, *shadow; /* R G B A */
   size_t light_index;      /* the light's index in the scene; a light in sectors has several entries */
+  bool of_sky;             /* a sun: its picture is part of the sky's, and it has no shadow but: */
+  float *reaching, *open;  /* R G B A; as the sky's */
 } light_pixels;
 
 enum { COLORS = 4 }; /* R G B A */
@@ -41,6 +43,9 @@ void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels);
 
 /* True where depth, normals or objects are wanted: some sweep must then go front to back. */
 bool hl_layers_measure(const hl_layers *wanted);
+
+/* The wanted layers that a light of the frame is part of. */
+hl_light_layers hl_layers_of_light(const hl_layers *wanted, const light_source *light);
 
 /* How pixels of the frame become pixels of the picture: oversampling x oversampling are averaged. */
 typedef struct layer_grid {

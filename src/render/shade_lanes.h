@@ -137,6 +137,7 @@ LANES_INLINE void add_scattered(const shade_job *job, const block_density *d, co
     lanes twice = phase_of_light(volume->phase_twice, volume->anisotropy * volume->anisotropy,
                                  &job->lights[i], lights[i].towards, g);
     lanes turned = (twice - even) * (1.0f / volume->anisotropy) * (1.0f - d->surface);
+    if (job->lights[i].of_sky > 0) turned = turned * job->lights[i].of_sky;
     for (int c = 0; c < 3; c++) {
       lanes full = lights[i].full.c[c],
             passing = lights[i].shadowed.c[c] / lanes_max(full, lanes_set(1e-30f));
@@ -163,11 +164,13 @@ LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d
     if (volume->anisotropy != 0)
       medium = medium *
                phase_of_light(volume->phase_once, volume->anisotropy, &job->lights[i], lights[i].towards, g);
+    const bool of_sky = job->lights[i].of_sky > 0;
+    if (of_sky) medium = medium * job->lights[i].of_sky;
     lanes diffuse = lanes_fma(lanes_max(facing, lanes_set(0)) * volume->diffuse, d->surface, medium);
     lanes3 mirrored = add_scaled3(scale3(lights[i].towards, lanes_set(-1.0f)), d->normal, facing * 2.0f);
     lanes glint = power(dot3(g->towards_eye, mirrored), lanes_set(volume->shininess)) * volume->specular *
                   d->surface;
-    glint = lanes_keep(facing > 0.0f, glint);
+    glint = of_sky ? lanes_set(0) : lanes_keep(facing > 0.0f, glint);
     for (int c = 0; c < 3; c++) {
       lanes matt = volume->absorbs ? lanes_fma(medium, lanes_set(volume->albedo[c] - 1), diffuse) : diffuse;
       lit.c[c] = lanes_fma(intensity->c[c], lanes_fma(color.c[c], matt, glint), lit.c[c]);

@@ -74,6 +74,7 @@ typedef struct shade_light {
   float towards[3];  /* parallel: unit direction to the light; frame space */
   float position[3]; /* else: the light's centre; frame space */
   float color[3];    /* color * intensity */
+  float of_sky;      /* of a sun of the sky, which makes no highlights: what a medium takes of it; else 0 */
   int inverse_square;
   int shadowed;
   float path; /* of the light through the slab: parallel: sheet spacing / |l.h|; else the sheet spacing, which

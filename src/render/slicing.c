@@ -232,6 +232,12 @@ int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, fram
   return count;
 }
 
+static bool has_sun(const frame *frame, const frame_sweep *sweep) {
+  bool any = false;
+  for (int i = 0; i < sweep->light_count; i++) any |= frame->lights[sweep->light[i]].light->of_sky > 0;
+  return any;
+}
+
 hl_status hl_frame_check_sweeps(const frame *frame, const frame_sweep *sweeps, int count, hl_error *error) {
   for (int s = 0; s < count; s++) {
     if (sweeps[s].sheets.count > GREATEST_SHEETS)
@@ -245,7 +251,9 @@ hl_status hl_frame_check_sweeps(const frame *frame, const frame_sweep *sweeps, i
           error, HL_ERROR_UNSUPPORTED,
           "/camera/fovy_deg: no sheets are crossed by every ray of so wide a view%s: use a smaller angle%s",
           sweeps[s].light_count > 0 ? " and by the light" : "",
-          sweeps[s].light_count > 0 ? ", or lights from ahead or behind" : "");
+          sweeps[s].light_count == 0   ? ""
+          : has_sun(frame, &sweeps[s]) ? ", or the sky without \"suns\""
+                                       : ", or lights from ahead or behind");
     for (int i = 0; i < sweeps[s].light_count; i++) {
       int light = sweeps[s].light[i];
       if (frame->lights[light].shadows == HL_SHADOWS_OFF) continue;

@@ -72,7 +72,7 @@ LANES_INLINE void add_light(const shade_job *job, const shade_light *light, cons
                 samples->specular;
   lanes diffuse = lanes_max(facing, lanes_set(0)) * samples->diffuse + samples->even,
         transmittance = lanes_set(1.0f);
-  glint = lanes_keep(facing > 0.0f, glint);
+  glint = light->of_sky > 0 ? lanes_set(0) : lanes_keep(facing > 0.0f, glint);
   bool shadowed = light->shadowed && samples->receives_shadow;
   color_lanes passing;
   if (shadowed) passing = light_of_sample(job, light, samples, position, normal, facing);

@@ -344,6 +344,7 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
       .cone = hl_light_cone(from->source, sweep->frame->middle, sweep->frame->middle_pixel),
       .nearest = sweep->scene->render.shadow_lookup == HL_LOOKUP_NEAREST,
       .cubic = from->shadow.plan.cubic};
+  light->of_sky = (float)scene->of_sky;
   if (sweep->phases->count > 0) light->caps = hl_light_caps(from->source);
   vec3_store(light->towards, vec3_scale(from->source->direction, -1));
   vec3_store(light->position, from->source->position);

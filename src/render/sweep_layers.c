@@ -44,7 +44,7 @@ static hl_status allocate_passes(sweep *sweep, hl_error *error) {
   hl_context *context = sweep->content.context;
   sweep_layers *layers = &sweep->layers;
   size_t lights = (size_t)sweep->geometry->light_count, volumes = (size_t)sweep->content.volume_count;
-  layers->passes = hl_allocate_zeroed(context, 2 * lights + MOST_OTHER_PASSES, sizeof *layers->passes);
+  layers->passes = hl_allocate_zeroed(context, 3 * lights + MOST_OTHER_PASSES, sizeof *layers->passes);
   layers->white_lights = hl_allocate_zeroed(context, lights, sizeof *layers->white_lights);
   layers->white_media = hl_allocate_zeroed(context, volumes, sizeof *layers->white_media);
   layers->white_volumes = hl_allocate_zeroed(context, volumes, sizeof *layers->white_volumes);
@@ -73,6 +73,21 @@ static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *ligh
   return pass;
 }
 
+/* The passes of a light: its picture and its shadow; of a sun of the sky, its parts of the sky's pictures. */
+static void add_light_passes(sweep *sweep, int index) {
+  const light_pixels *to = &sweep->layer_pixels->lights[sweep->geometry->light[index]];
+  const shade_light *light = &sweep->shade_lights[index];
+  shade_light *white = &sweep->layers.white_lights[index];
+  (void)add_pass(sweep, to->picture, light, 1);
+  set_up_white_light(light, white);
+  layer_pass *shadow = add_pass(sweep, to->shadow, white, 1);
+  if (shadow != NULL) shadow->matter = MATTER_EVEN;
+  layer_pass *reaching = add_pass(sweep, to->reaching, light, 1);
+  if (reaching != NULL) reaching->matter = MATTER_WHITE;
+  layer_pass *open = add_pass(sweep, to->open, light, 1);
+  if (open != NULL) open->matter = MATTER_OPEN;
+}
+
 static void add_sky_passes(sweep *sweep) {
   const layer_pixels *pixels = sweep->layer_pixels;
   sweep_layers *layers = &sweep->layers;
@@ -93,14 +108,7 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
   hl_status status = allocate_passes(sweep, error);
   if (status != HL_OK) return status;
   set_up_white_volumes(sweep);
-  for (int i = 0; i < sweep->geometry->light_count; i++) {
-    const light_pixels *to = &pixels->lights[sweep->geometry->light[i]];
-    shade_light *white = &sweep->layers.white_lights[i];
-    (void)add_pass(sweep, to->picture, &sweep->shade_lights[i], 1);
-    set_up_white_light(&sweep->shade_lights[i], white);
-    layer_pass *shadow = add_pass(sweep, to->shadow, white, 1);
-    if (shadow != NULL) shadow->matter = MATTER_EVEN;
-  }
+  for (int i = 0; i < sweep->geometry->light_count; i++) add_light_passes(sweep, i);
   layer_pass *ambient = sweep->first ? add_pass(sweep, pixels->ambient, NULL, 0) : NULL;
   for (int c = 0; c < 3 && ambient != NULL; c++) ambient->ambient[c] = sweep->shade.ambient[c];
   if (ambient != NULL) ambient->scattered = sweep->shade.scattered;

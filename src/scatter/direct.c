@@ -105,6 +105,7 @@ static void add_point(const direct_job *job, const int32_t at[3], size_t node, c
                               : vec3_subtract(vec3_add(source->position, offset), here);
   double distance = vec3_length(way), centre = 1;
   float passing[3], strength = 1 / (float)(job->side * job->side);
+  if (source->light->of_sky > 0) strength *= (float)source->light->of_sky;
   if (!(distance > 0)) return;
   vec3 towards = vec3_scale(way, 1 / distance);
   if (!source->parallel) {

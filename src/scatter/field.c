@@ -136,8 +136,12 @@ static void add_volume(hl_key *key, const scatter_volume *volume) {
 
 static void add_light(hl_key *key, const hl_light *light) {
   const int64_t kinds[] = {light->type, light->falloff, light->shadows, (int64_t)light->vertex_count};
-  const double numbers[] = {light->angular_diameter_deg, light->opening_angle_deg, light->falloff_angle_deg,
-                            light->radius, light->intensity};
+  const double numbers[] = {light->angular_diameter_deg,
+                            light->opening_angle_deg,
+                            light->falloff_angle_deg,
+                            light->radius,
+                            light->intensity,
+                            light->of_sky};
   const double *const vectors[] = {light->position, light->direction, light->edge1,
                                    light->edge2,    light->normal,    light->color};
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) hl_key_add_whole(key, kinds[k]);

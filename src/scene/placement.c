@@ -217,13 +217,13 @@ static void place_light(const camera_axes *axes, hl_light *light, double (*verti
   light->frame = HL_LIGHT_FRAME_WORLD;
 }
 
-hl_status hl_lights_place(hl_context *context, const hl_scene_description *from, hl_scene_description *to,
-                          hl_error *error) {
+hl_status hl_lights_place(hl_context *context, const hl_scene_description *from, const sky_suns *suns,
+                          hl_scene_description *to, hl_error *error) {
+  size_t count = from->light_count + (size_t)suns->count;
   *to = *from;
   to->light_count = 0;
-  to->lights = hl_allocate_zeroed(context, from->light_count, sizeof *to->lights);
-  if (to->lights == NULL)
-    return hl_fail_memory(error, from->light_count * sizeof *to->lights, "a scene's lights");
+  to->lights = hl_allocate_zeroed(context, count, sizeof *to->lights);
+  if (to->lights == NULL) return hl_fail_memory(error, count * sizeof *to->lights, "a scene's lights");
   camera_axes axes = axes_of(&from->camera);
   for (; to->light_count < from->light_count; to->light_count++) {
     const hl_light *given = &from->lights[to->light_count];
@@ -236,6 +236,9 @@ hl_status hl_lights_place(hl_context *context, const hl_scene_description *from,
     light->vertices = (const double(*)[3])vertices;
     if (light->frame == HL_LIGHT_FRAME_CAMERA) place_light(&axes, light, vertices);
   }
+  for (int i = 0; i < suns->count; i++)
+    *(hl_light *)&to->lights[to->light_count++] = hl_sun_light(&from->sky, &suns->suns[i]);
+  if (suns->count > 0) to->sky.pixels = suns->rest;
   return HL_OK;
 }
 

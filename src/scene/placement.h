@@ -4,6 +4,7 @@
 
 #include <halflight/scene.h>
 
+#include "scene/suns.h"
 #include "volume/volume.h"
 
 /* The volume's scale along x, y or z (axis 0 to 2) of the world of its file. */
@@ -46,10 +47,11 @@ double hl_scene_volume_empty_value(const hl_scene_volume *volume);
 /* The direction in which a directional or spot light travels, in the world. */
 vec3 hl_light_way(const hl_camera *camera, const hl_light *light);
 
-/* Copies a description with all lights converted to the world. Images are shared with `from`; the array of
- * lights and the vertices of polygons are owned by *to (hl_placed_lights_release). */
-hl_status hl_lights_place(hl_context *context, const hl_scene_description *from, hl_scene_description *to,
-                          hl_error *error);
+/* Copies a description with all lights converted to the world, the suns of its sky after them. Images are
+ * shared with `from` and `suns`; the array of lights and the vertices of polygons are owned by *to
+ * (hl_placed_lights_release). */
+hl_status hl_lights_place(hl_context *context, const hl_scene_description *from, const sky_suns *suns,
+                          hl_scene_description *to, hl_error *error);
 void hl_placed_lights_release(hl_context *context, hl_scene_description *placed);
 
 /* The first volume with this name; null: none. */

@@ -102,6 +102,7 @@ static void destroy(hl_scene *scene) {
   hl_drawn_labels_release(context, &scene->placed, &scene->drawn);
   hl_placed_cuts_release(context, &scene->cut);
   hl_placed_lights_release(context, &scene->placed);
+  hl_suns_release(context, &scene->suns);
   for (size_t l = 0; l < d->light_count; l++) {
     hl_release(context, (void *)d->lights[l].vertices);
     hl_light_images_release(context, (hl_light *)&d->lights[l]);
@@ -294,6 +295,7 @@ static hl_status copy_lights(hl_scene *scene, const hl_scene_description *from, 
     lights[l].vertices = NULL;
     if (lights[l].type != HL_LIGHT_POLYGON) lights[l].vertex_count = 0;
     forget_images(&lights[l]);
+    lights[l].of_sky = 0;
   }
   scene->description.lights = lights;
   scene->description.light_count = from->light_count;
@@ -315,6 +317,12 @@ static hl_status copy_sky(hl_scene *scene, const hl_sky *from, hl_error *error) 
   if (from->type != HL_SKY_IMAGE) return HL_OK;
   return copy_picture(scene->context, (light_picture){from->pixels, from->width, from->height, from->file},
                       &to->pixels, &to->file, error);
+}
+
+/* Whether suns of the sky's image are lights: they cast shadows as the scene's lights do. */
+static bool has_suns(const hl_scene_description *d) {
+  return d->sky.suns && d->sky.strength > 0 && d->render.shadows != HL_SHADOWS_OFF &&
+         d->render.slicing == HL_SLICING_HALF_VECTOR && d->render.compositing == HL_COMPOSITING_LIGHT;
 }
 
 /* The camera's up, or another where it lies along the line of sight. */
@@ -361,7 +369,10 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
   const hl_sky *sky = &made->description.sky;
   if (status == HL_OK && sky->pixels != NULL)
     made->sky_mark = hl_key_mark(sky->pixels, 3 * (size_t)sky->width * (size_t)sky->height * sizeof(float));
-  if (status == HL_OK) status = hl_lights_place(context, &made->description, &made->placed, error);
+  if (status == HL_OK && has_suns(&made->description))
+    status = hl_suns_find(context, sky, &made->suns, error);
+  if (status == HL_OK)
+    status = hl_lights_place(context, &made->description, &made->suns, &made->placed, error);
   if (status == HL_OK) status = hl_cuts_place(context, &made->placed, &made->cut, error);
   if (status == HL_OK) status = hl_labels_draw(context, &made->placed, &made->drawn, error);
   if (status != HL_OK) {

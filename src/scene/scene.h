@@ -10,6 +10,7 @@
 #include "scene/cut.h"
 #include "scene/draw_labels.h"
 #include "scene/placement.h"
+#include "scene/suns.h"
 #include "scene/transfer_function.h"
 #include "volume/volume.h"
 
@@ -17,12 +18,14 @@ struct hl_scene {
   hl_context *context;
   atomic_int references;
   hl_scene_description description; /* its arrays and texts are owned by the scene */
-  hl_scene_description placed; /* the same for rendering: all lights in the world, the scene's cuts in its
-                                  volumes, and volumes of occupancy in place of label maps, lattices
-                                  (label/mask.h) in place of masks; owns its array of lights */
-  placed_cuts cut;             /* the placed description's volumes, where the scene has cuts */
-  drawn_labels drawn;          /* the volumes of occupancy and the lattices */
-  uint64_t sky_mark;           /* of the pixels of the sky's image; for keys of kept results */
+  hl_scene_description placed;      /* the same for rendering: all lights in the world, after them the suns of
+                                       the sky, whose image lacks them, the scene's cuts in its volumes, and
+                                       volumes of occupancy in place of label maps, lattices (label/mask.h) in
+                                       place of masks; owns its array of lights */
+  sky_suns suns;                    /* of the sky, where they are lights */
+  placed_cuts cut;                  /* the placed description's volumes, where the scene has cuts */
+  drawn_labels drawn;               /* the volumes of occupancy and the lattices */
+  uint64_t sky_mark;                /* of the pixels of the sky's image; for keys of kept results */
 };
 
 /* Frees the pixels and file names of a light's texture and emission, where they are owned. */

@@ -368,7 +368,9 @@ static const hl_setting sky_rows[] = {
      .sentence = "Nothing shines below the horizon."},
     {.key = "strength", FIELD(hl_sky, strength), .type = HL_SETTING_NUMBER, .unit = "",
      .high = HL_LIMIT_RADIANCE, .standard = {1}, .only_for = SHINING,
-     .sentence = "A factor on the sky's colours.", .mend = "give a factor from {low} to {high}"}};
+     .sentence = "A factor on the sky's colours.", .mend = "give a factor from {low} to {high}"},
+    {.key = "suns", FIELD(hl_sky, suns), A_FLAG, .standard = {1}, .only_for = ONE(HL_SKY_IMAGE), .optional = 1,
+     .sentence = "Up to four compact bright spots of the image cast shadows as parallel lights do."}};
 
 /* clang-format on */
 

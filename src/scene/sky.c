@@ -76,6 +76,7 @@ void hl_sky_key_add(hl_key *key, const hl_sky *sky, uint64_t mark) {
   hl_key_add_numbers(key, sky->up, 3);
   hl_key_add_numbers(key, &sky->rotation_deg, 1);
   hl_key_add_numbers(key, &sky->strength, 1);
+  hl_key_add_whole(key, sky->suns);
   if (sky->type != HL_SKY_IMAGE) return;
   hl_key_add_whole(key, sky->width);
   hl_key_add_whole(key, sky->height);

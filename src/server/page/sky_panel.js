@@ -38,20 +38,21 @@ export function skyPanel({ store, start, overlay }) {
     get: () => sky().rotation_deg ?? 0, set: (value) => change("rotation", { rotation_deg: value }),
   });
   const hemisphere = toggle({ label: "Dark below the horizon", get: () => sky().hemisphere === true, set: (on) => change("hemisphere", { hemisphere: on }) });
+  const suns = toggle({ label: "Suns are lights", get: () => sky().suns !== false, set: (on) => change("suns", { suns: on }) });
   const up = select({
     label: "Up", choices: [["", "own"], ...SIDES.map(([name]) => [name, name])], title: "Where the zenith is",
     get: () => sideOf(sky().up ?? [0, 0, 1]), set: (name) => name && change("up", { up: SIDES.find(([side]) => side === name)[1] }),
   });
-  body.append(kind.element, ...[...colors, strength, rotation, hemisphere, up].map((part) => part.element));
+  body.append(kind.element, ...[...colors, strength, rotation, suns, hemisphere, up].map((part) => part.element));
   element.addEventListener("toggle", () => { overlay.showsSky = element.open; });
 
   function update() {
     kind.update();
     for (const part of colors) part.element.hidden = sky()?.type !== part.type;
     strength.element.hidden = hemisphere.element.hidden = sky() === undefined;
-    rotation.element.hidden = sky()?.type !== "image";
+    rotation.element.hidden = suns.element.hidden = sky()?.type !== "image";
     up.element.hidden = !hasUp(sky());
-    for (const part of [...colors, strength, rotation, hemisphere, up]) if (!part.element.hidden) part.update();
+    for (const part of [...colors, strength, rotation, suns, hemisphere, up]) if (!part.element.hidden) part.update();
   }
   update();
   return { element, update };
