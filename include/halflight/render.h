@@ -52,13 +52,16 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_render(hl_renderer *renderer, const 
                                                    float *pixels, size_t row_stride,
                                                    hl_render_statistics *statistics, hl_error *error);
 
-/* Rows of a strip of a picture. */
+/* Rows and columns of a cell of a picture: the first cells are in its top left corner. */
 #define HL_STRIP_ROWS 16
 
-/* From now on the renderer's pictures have every parts-th strip, from number `part` on (0 to parts - 1); the
- * other rows are zeros. Strips have the bytes that they have in a whole picture, so that several processes
- * can make one: their pictures' sum. Each works through all light, and shades its own strips. Layers are then
- * refused. parts 1 (default): whole pictures. */
+/* From now on the renderer's pictures have one of `parts` parts of each picture, number `part` (0 to parts -
+ * 1); the other pixels are zeros. A part is a band of whole cells, along the direction in the picture of the
+ * brightest light with hard shadows, or each parts-th row of cells: it depends on the scene and on `parts`
+ * alone, and on whether its volumes lie over ranks. Its pixels have the bytes that they have in a
+ * whole picture, so that several processes can make one: their pictures' sum. Of hard shadows each works
+ * through the light that its part reads, of soft shadows through all light. Layers are then refused. parts 1
+ * (default): whole pictures. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_share(hl_renderer *renderer, int part, int parts,
                                                   hl_error *error);
 

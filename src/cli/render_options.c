@@ -412,9 +412,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_RANKS] = FRAMES_OPTION_RANKS,
     [RENDER_STRIPS] = {.name = "strips-over-ranks",
                        .kind = OPTION_SWITCH,
-                       .help =
-                           "under mpirun: its processes make one picture together,\neach its own strips of "
-                           "16 rows"},
+                       .help = "under mpirun: its processes make one picture together,\neach a part of it"},
     [RENDER_VOLUME] = {.name = "volume-over-ranks",
                        .kind = OPTION_SWITCH,
                        .help =

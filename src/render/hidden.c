@@ -81,6 +81,7 @@ static hl_status go_through(sweep *front, hidden_search *search, bool trying, hl
 hl_status hl_sweep_find_hidden(sweep *sweep, hl_render_statistics *statistics, hl_error *error) {
   size_t tiles = (size_t)hl_tiles(sweep->frame->width) * (size_t)hl_tiles(sweep->frame->height);
   frame_sweep turned = turned_round(sweep->geometry);
+  const picture_share whole = {.parts = 1};
   struct sweep front = *sweep;
   hl_context *context = sweep->content.context;
   sweep->shown_from = hl_allocate_zeroed(context, tiles * TILE_BLOCKS, sizeof *sweep->shown_from);
@@ -92,13 +93,13 @@ hl_status hl_sweep_find_hidden(sweep *sweep, hl_render_statistics *statistics, h
   front.layer_pixels = NULL;
   front.first = front.measures = false;
   front.preparatory = true;
-  front.part = 0, front.parts = 1; /* what is tried must not depend on the part, which would change bytes */
+  front.share = &whole; /* what is tried must not depend on the part, which would change bytes */
   front.act = cover_tile;
   front.action = &search;
   hl_status status = hl_sweep_begin(&front, NULL, NULL, error);
   if (status == HL_OK) status = go_through(&front, &search, true, error);
   if (status == HL_OK && is_worth_while(&front)) {
-    front.part = sweep->part, front.parts = sweep->parts;
+    front.share = sweep->share;
     hl_sweep_open(&front);
     status = go_through(&front, &search, false, error);
   }

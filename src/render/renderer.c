@@ -20,7 +20,7 @@
 struct hl_renderer {
   hl_context *context;
   hl_pool *pool;
-  int part, parts;           /* of each picture's strips */
+  int part, parts;           /* of each picture */
   int threads;               /* as the scene says: 0 means one per processor */
   prepared_volume *prepared; /* owned; [prepared_count] */
   size_t prepared_count;
@@ -145,6 +145,7 @@ typedef struct frame_work {
   size_t tiles_x, tiles;
   layer_pixels layers;
   maximum_values maximum;
+  picture_share share;
   int measuring_sweep; /* the one that carries depth and normals */
 } frame_work;
 
@@ -159,6 +160,7 @@ static void release_work(hl_renderer *renderer, frame_work *work) {
   hl_release(context, work->tile_rows);
   hl_layer_pixels_release(context, &work->layers);
   hl_maximum_release(context, &work->maximum);
+  hl_share_release(context, &work->share);
 }
 
 /* Whether a position lies in a volume's box: rays of an eye or a light there begin within it. */
@@ -211,6 +213,7 @@ static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description 
                    (uintptr_t)request->pixels % 64 == 0;
   uint64_t bytes = hl_pixels_bytes(&work->frame, work->in_place ? 0 : work->sweep_count, request->layers);
   bytes += hl_maximum_bytes(scene, work->tiles);
+  if (renderer->parts > 1) bytes += hl_share_bytes(scene->width, scene->height);
   if (work->in_place) bytes += threads * tile_row * sizeof *work->tile_rows;
   /* the blocks that one of several sweeps returns rarely fit the next one */
   renderer->reserve.keeps = work->sweep_count == 1;
@@ -281,6 +284,13 @@ static hl_status update_contact(hl_renderer *renderer, const hl_scene_descriptio
   return hl_surface_tree_create(renderer->context, &renderer->surfaces, distance, tree, error);
 }
 
+/* Finds the part of the picture that this renderer makes. */
+static hl_status share_picture(hl_renderer *renderer, frame_work *work, int volumes, hl_error *error) {
+  const share_content content = {&work->frame, work->grids, volumes};
+  work->share = (picture_share){.part = renderer->part, .parts = renderer->parts};
+  return hl_share_create(renderer->context, &content, &work->share, error);
+}
+
 static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description *scene,
                               const frame_request *request, frame_work *work, hl_error *error) {
   hl_context *context = renderer->context;
@@ -316,6 +326,7 @@ static hl_status set_up_frame(hl_renderer *renderer, const hl_scene_description 
   work->tiles_x = (size_t)hl_tiles(frame->eye.width);
   work->tiles = work->tiles_x * (size_t)hl_tiles(frame->eye.height);
   status = place_pixels(renderer, scene, request, work, error);
+  if (status == HL_OK) status = share_picture(renderer, work, (int)scene->volume_count, error);
   if (status != HL_OK) return status;
   return hl_maximum_create(context, renderer->pool, scene, renderer->prepared, work->tiles, &work->maximum,
                            error);
@@ -356,8 +367,7 @@ static sweep sweep_of(hl_renderer *renderer, const hl_scene_description *scene, 
                  .sky = renderer->sky.light.field != NULL ? &renderer->sky.light : NULL,
                  .phases = &renderer->phases,
                  .maximum = &work->maximum,
-                 .part = renderer->part,
-                 .parts = renderer->parts,
+                 .share = &work->share,
                  .measures = index == work->measuring_sweep,
                  .channels = attenuation_channels(scene),
                  .pixels = work->pixels + (size_t)index * work->tiles * TILE_PIXELS * 4};

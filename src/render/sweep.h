@@ -8,6 +8,7 @@
 #include <halflight/render.h>
 
 #include "render/layers.h"
+#include "render/share.h"
 #include "render/surface_samples.h"
 #include "render/view_sheets.h"
 #include "shadow/shadow_method.h"
@@ -20,7 +21,13 @@ typedef struct sweep_light {
   view_sheets sheets;       /* what the shadow buffer's view sees */
   light_texture texture;    /* the picture that the light projects */
   light_emission *emission; /* owned; the picture on the light itself; null: none */
+  int32_t *needed_until;    /* owned; [tiles of the buffer]; the last slab that needs the tile, 0: none does;
+                               null: all slabs need all tiles */
 } sweep_light;
+
+static inline bool hl_light_needs(const sweep_light *light, size_t tile, int slab) {
+  return light->needed_until == NULL || light->needed_until[tile] >= slab;
+}
 
 /* The sweep advances in stretches of slabs: a tile is taken through all slabs of a stretch by one thread. The
  * lights are a stretch ahead of the picture, and both share the threads (sweep_loop.c). */
@@ -125,12 +132,12 @@ struct sweep {
   const hl_scene_description *scene;
   const frame *frame;
   const frame_sweep *geometry;
-  int channels;     /* of light attenuation: 1 or 3 */
-  tile_action *act; /* steps 12 to 16, or what takes their place */
-  void *action;     /* of act; the caller's */
-  bool first;       /* the sweep that carries ambient light and opacity */
-  bool measures;    /* the sweep that carries depth and normals */
-  int part, parts;  /* of the picture's strips, which this sweep shades; see hl_renderer_share() */
+  int channels;               /* of light attenuation: 1 or 3 */
+  tile_action *act;           /* steps 12 to 16, or what takes their place */
+  void *action;               /* of act; the caller's */
+  bool first;                 /* the sweep that carries ambient light and opacity */
+  bool measures;              /* the sweep that carries depth and normals */
+  const picture_share *share; /* the part of the picture that this sweep shades */
   bool preparatory; /* this sweep prepares another one: it reports no progress, and its sheets are not counted
                      */
   const layer_pixels *layer_pixels; /* pixels of the layers; null: none */

@@ -8,18 +8,12 @@
 #include "core/memory.h"
 #include "grid/relevant.h"
 #include "image/srgb.h"
+#include "render/light_reads.h"
 #include "render/sweep_layers.h"
 #include "render/sweep_surfaces.h"
 #include "volume/colors.h"
 
 enum { SRGB_CODES = 256 };
-
-/* A strip of the picture is `oversampling` rows of the frame's tiles. */
-static bool is_of_part(const sweep *sweep, size_t tile) {
-  return hl_tile_y(sweep, tile) / sweep->frame->oversampling % sweep->parts == sweep->part;
-}
-
-_Static_assert(TILE == HL_STRIP_ROWS, "tiles fill strips");
 
 /* Blocks outside the picture, and those of other parts, are closed from the start. */
 void hl_sweep_open(sweep *sweep) {
@@ -30,7 +24,7 @@ void hl_sweep_open(sweep *sweep) {
       int x = x0 + block % 4 * BLOCK, y = y0 + block / 4 * BLOCK;
       if (x < sweep->frame->width && y < sweep->frame->height) open |= 1u << block;
     }
-    if (!is_of_part(sweep, tile)) open = 0;
+    if (!hl_share_has(sweep->share, hl_tile_x(sweep, tile), hl_tile_y(sweep, tile))) open = 0;
     sweep->arrays.open[tile] = (uint16_t)open;
   }
 }
@@ -75,6 +69,7 @@ static void end_light(const sweep *sweep, sweep_light *light) {
   hl_view_sheets_end(&light->sheets);
   hl_light_texture_release(context, &light->texture);
   hl_release(context, light->emission);
+  hl_release(context, light->needed_until);
   hl_light_shadow_end(&light->shadow);
 }
 
@@ -117,7 +112,8 @@ static void add_light_bytes(sweep *sweep, int index, sweep_bytes *bytes, size_t 
   bytes->passing += of_method.passing.bytes + shadow->method->state_bytes +
                     (size_t)sweep->ring * sizeof *shadow->lookups +
                     (light->emission != NULL ? sizeof *light->emission : 0) +
-                    hl_view_sheets_bytes(&sweep->content, view, shadow->plan.spare);
+                    hl_view_sheets_bytes(&sweep->content, view, shadow->plan.spare) +
+                    hl_light_reads_bytes(sweep, shadow);
   *tasks += (size_t)hl_tiles(view->width) * (size_t)hl_tiles(view->height);
 }
 
@@ -451,6 +447,7 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *me
   sweep->image.beside = longest_way(sweep);
   status = hl_sweep_layers_begin(sweep, error);
   if (status == HL_OK) status = hl_sweep_surfaces_begin(sweep, error);
+  if (status == HL_OK) status = hl_light_reads_find(sweep, error);
   sweep->times.seconds_sort = hl_clock_seconds() - start;
   return status;
 }

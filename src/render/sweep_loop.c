@@ -15,13 +15,6 @@
 /* A tile in a single slab is little work: then two are one task. */
 static int tiles_a_task(const sweep *sweep) { return sweep->content.stretch == 1 ? 2 : 1; }
 
-/* Whether a slab's sheet or the one before may touch a tile. */
-static bool is_touched(const occupancy *occupancy, size_t tile, int sheet) {
-  const uint64_t *after = occupancy->by_sheet + (size_t)sheet * (size_t)occupancy->tile_words;
-  const uint64_t *before = after - occupancy->tile_words;
-  return (before[tile / 64] | after[tile / 64]) >> tile % 64 & 1;
-}
-
 /* Bits of the tiles, in one word, that the sheets of a stretch may touch. */
 static uint64_t touched_tiles(const occupancy *occupancy, slab_stretch stretch, size_t word) {
   uint64_t bits = 0;
@@ -39,15 +32,19 @@ static uint64_t carried_tiles(const shadow_buffer *buffer, slab_stretch stretch,
   return bits;
 }
 
-/* The tiles of a view that a stretch needs. buffer: of a light's view; else null. */
-static int list_tiles(const occupancy *occupancy, const shadow_buffer *buffer, slab_stretch stretch,
+/* The tiles of a view that a stretch needs. light: whose view it is; null: the picture's. */
+static int list_tiles(const occupancy *occupancy, const sweep_light *light, slab_stretch stretch,
                       uint32_t *list) {
   int count = 0;
+  const int32_t *until = light == NULL ? NULL : light->needed_until;
   if (stretch.first == stretch.end) return 0;
   for (size_t word = 0; word < (size_t)occupancy->tile_words; word++) {
     uint64_t bits = touched_tiles(occupancy, stretch, word);
-    if (buffer != NULL) bits |= carried_tiles(buffer, stretch, word);
-    for (; bits != 0; bits &= bits - 1) list[count++] = (uint32_t)word * 64 + (uint32_t)__builtin_ctzll(bits);
+    if (light != NULL) bits |= carried_tiles(light->shadow.buffer, stretch, word);
+    for (; bits != 0; bits &= bits - 1) {
+      uint32_t tile = (uint32_t)word * 64 + (uint32_t)__builtin_ctzll(bits);
+      if (until == NULL || until[tile] >= stretch.first) list[count++] = tile;
+    }
   }
   return count;
 }
@@ -65,7 +62,7 @@ static bool is_reached(const sweep *sweep, const light_shadow *shadow, int sheet
 static void shade_stretch(sweep *sweep, size_t tile, int worker) {
   const slab_stretch stretch = sweep->picture_stretch;
   for (int sheet = stretch.first; sheet < stretch.end; sheet++)
-    if (is_touched(&sweep->image.occupancy, tile, sheet))
+    if (hl_occupancy_touches(&sweep->image.occupancy, tile, sheet))
       hl_sweep_shade(sweep, &sweep->arrays.slab_shades[sheet - stretch.first], tile, worker);
 }
 
@@ -73,9 +70,10 @@ static void attenuate_stretch(sweep *sweep, int index, size_t tile, int worker) 
   const slab_stretch stretch = sweep->light_stretch;
   const sweep_light *light = &sweep->lights[index];
   const attenuate_job *jobs = sweep->arrays.slab_attenuates + (size_t)index * (size_t)sweep->content.stretch;
-  for (int sheet = stretch.first; sheet < stretch.end; sheet++) {
+  for (int sheet = stretch.first; sheet < stretch.end && hl_light_needs(light, tile, sheet); sheet++) {
     hl_shadow_buffer_carry(light->shadow.buffer, tile, sheet);
-    if (is_reached(sweep, &light->shadow, sheet) && is_touched(&light->sheets.occupancy, tile, sheet))
+    if (is_reached(sweep, &light->shadow, sheet) &&
+        hl_occupancy_touches(&light->sheets.occupancy, tile, sheet))
       hl_sweep_attenuate(sweep, index, &jobs[sheet - stretch.first], tile, worker);
   }
 }
@@ -154,7 +152,7 @@ static void run_stretches(sweep *sweep, slab_stretch picture, slab_stretch light
     const sweep_light *of = &sweep->lights[i];
     if (of->shadow.method != NULL) {
       reach_light(sweep, i);
-      count += list_tiles(&of->sheets.occupancy, of->shadow.buffer, light, sweep->arrays.tasks + count);
+      count += list_tiles(&of->sheets.occupancy, of, light, sweep->arrays.tasks + count);
     }
     sweep->task_start[i + 2] = count;
   }

@@ -97,4 +97,11 @@ static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int
   return (int)(bits[sheet / 64] >> (sheet % 64) & 1);
 }
 
+/* Whether a slab's sheet or the one before may touch a tile. */
+static inline bool hl_occupancy_touches(const occupancy *occupancy, size_t tile, int sheet) {
+  const uint64_t *after = occupancy->by_sheet + (size_t)sheet * (size_t)occupancy->tile_words;
+  const uint64_t *before = after - occupancy->tile_words;
+  return (before[tile / 64] | after[tile / 64]) >> tile % 64 & 1;
+}
+
 #endif

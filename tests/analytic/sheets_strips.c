@@ -1,5 +1,6 @@
-/* analytic/sheets_strips.c - the strips of a picture that several renderers make are the picture, bit for
- * bit: with every method of shadows, several sweeps, hidden matter, oversampling and surfaces. */
+/* analytic/sheets_strips.c - the parts of a picture that several renderers make are the picture, bit for
+ * bit: with every method of shadows, several sweeps, hidden matter, oversampling and surfaces. And a part
+ * works through the light that falls on it alone. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,30 +25,46 @@ static void render_part(stage *set, int part, int parts, float *pixels) {
   hl_scene_release(scene);
 }
 
-/* A strip is in the picture of its part, and nothing else is. */
-static void assert_strips(const float *whole, const float *shared, int part, int parts, const char *what) {
-  static const float nothing[ROW_FLOATS];
-  for (int row = 0; row < HEIGHT; row++) {
-    const float *expected = row / HL_STRIP_ROWS % parts == part ? whole + row * ROW_FLOATS : nothing;
-    if (memcmp(shared + row * ROW_FLOATS, expected, sizeof nothing) != 0)
-      fail_msg("%s, part %d of %d: row %d differs", what, part, parts, row);
-  }
+/* What a part shows of a cell: all of its pixels, or nothing. */
+static bool shows_cell(const float *whole, const float *shared, int x, int y, const char *what) {
+  bool all = true, none = true;
+  for (int row = y * HL_STRIP_ROWS; row < (y + 1) * HL_STRIP_ROWS && row < HEIGHT; row++)
+    for (int i = 4 * x * HL_STRIP_ROWS; i < 4 * (x + 1) * HL_STRIP_ROWS && i < ROW_FLOATS; i++) {
+      float expected = whole[row * ROW_FLOATS + i], found = shared[row * ROW_FLOATS + i];
+      all = all && found == expected;
+      none = none && found == 0;
+    }
+  if (!all && !none) fail_msg("%s: cell %d, %d is neither the picture's nor empty", what, x, y);
+  return all && !none;
 }
 
-static void assert_shared(stage *set, const char *what) {
-  static float whole[FLOATS], shared[FLOATS];
-  static const int numbers[] = {1, 2, 3, 7};
+/* Each cell of the picture is in one part's picture, as it is in the whole picture, if it shows anything. */
+static void assert_parts(stage *set, const float *whole, int parts, const char *what) {
+  enum { CELLS_X = (WIDTH + HL_STRIP_ROWS - 1) / HL_STRIP_ROWS, CELLS_Y = (HEIGHT + 15) / HL_STRIP_ROWS };
+  static float shared[FLOATS], sum[FLOATS];
+  int shown[CELLS_X * CELLS_Y] = {0};
+  memset(sum, 0, sizeof sum);
+  for (int part = 0; part < parts; part++) {
+    render_part(set, part, parts, shared);
+    for (int cell = 0; cell < CELLS_X * CELLS_Y; cell++)
+      shown[cell] += shows_cell(whole, shared, cell % CELLS_X, cell / CELLS_X, what);
+    for (int i = 0; i < FLOATS; i++) sum[i] += shared[i];
+  }
+  for (int cell = 0; cell < CELLS_X * CELLS_Y; cell++)
+    if (shown[cell] > 1) fail_msg("%s: %d of %d parts show a cell", what, shown[cell], parts);
+  if (memcmp(sum, whole, sizeof sum) != 0) fail_msg("%s: %d parts do not add up", what, parts);
+}
+
+static void assert_shared(stage *set, const char *what, bool many) {
+  static float whole[FLOATS];
+  static const int numbers[] = {2, 4, 7, 1, 3, 8};
   set->scene.width = WIDTH;
   set->scene.height = HEIGHT;
   stage_render_sheets(set, whole);
   float sum = 0;
   for (int i = 0; i < FLOATS; i++) sum += whole[i];
   assert_true(sum > 100);
-  for (size_t n = 0; n < sizeof numbers / sizeof *numbers; n++)
-    for (int part = 0; part < numbers[n]; part++) {
-      render_part(set, part, numbers[n], shared);
-      assert_strips(whole, shared, part, numbers[n], what);
-    }
+  for (size_t n = 0; n < (many ? 6 : 3); n++) assert_parts(set, whole, numbers[n], what);
 }
 
 static void add_noise(stage *set, double opacity) {
@@ -87,6 +104,28 @@ static void draw_hidden(stage *set) {
   stage_set_opacity(set, &set->volumes[0], 0.95, 1);
   stage_add_directional(set, (vec3){31, 17, 23});
 }
+/* Lights within the volume and beside it, whose rays go in all directions. */
+static void draw_within(stage *set) {
+  stage_add_point(set, (vec3){1.5, -2.5, 3.5})->radius = 0;
+  stage_add_point(set, (vec3){-9, 12, -4})->radius = 0;
+}
+/* The light shines along the middle ray of the eye: its image lies within the picture. */
+static void draw_ahead(stage *set) {
+  set->scene.light_count = 0;
+  stage_add_directional(set, (vec3){-31, -17, -23});
+  set->scene.camera.type = HL_CAMERA_PERSPECTIVE;
+  set->scene.camera.fovy_deg = 60;
+}
+static void draw_orthographic(stage *set) {
+  set->scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
+  set->scene.camera.height = 30;
+}
+/* The eye is in the volume. */
+static void draw_eye_within(stage *set) {
+  stage_look(set, (vec3){2, 1, 1.5}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+  set->scene.camera.type = HL_CAMERA_PERSPECTIVE;
+  set->scene.camera.fovy_deg = 70;
+}
 /* Voxels smaller than pixels: each pixel is a mean of several. */
 static void draw_small(stage *set) { stage_look(set, (vec3){93, 51, 69}, (vec3){0, 0, 0}, (vec3){0, 0, 1}); }
 
@@ -97,10 +136,19 @@ typedef struct way {
 
 static void test_ways(void **state) {
   (void)state;
-  static const way ways[] = {
-      {"hard", draw_hard},           {"paper", draw_paper},           {"cascade", draw_cascade},
-      {"sublights", draw_sublights}, {"maximum", draw_maximum},       {"sky", draw_sky},
-      {"hidden", draw_hidden},       {"isosurface", draw_isosurface}, {"small pixels", draw_small}};
+  static const way ways[] = {{"hard", draw_hard},
+                             {"paper", draw_paper},
+                             {"cascade", draw_cascade},
+                             {"sublights", draw_sublights},
+                             {"maximum", draw_maximum},
+                             {"sky", draw_sky},
+                             {"hidden", draw_hidden},
+                             {"isosurface", draw_isosurface},
+                             {"small pixels", draw_small},
+                             {"lights within", draw_within},
+                             {"light ahead", draw_ahead},
+                             {"orthographic", draw_orthographic},
+                             {"eye within", draw_eye_within}};
   for (size_t n = 0; n < sizeof ways / sizeof *ways; n++) {
     stage set;
     stage_open(&set);
@@ -108,8 +156,51 @@ static void test_ways(void **state) {
     stage_add_directional(&set, (vec3){-1, 0.5, -1})->angular_diameter_deg = 10;
     stage_add_point(&set, (vec3){14, 25, 30})->radius = 3;
     ways[n].draw(&set);
-    assert_shared(&set, ways[n].name);
+    assert_shared(&set, ways[n].name, n == 0);
     stage_close(&set);
+  }
+}
+
+/* An even cube, seen along z by parallel rays, under light from the left and from above it, at an angle of 45
+ * degrees: parts are bands of rows, whose light is a band of the buffer as high. So each of 4 parts needs a
+ * fourth of the light that the whole picture needs, and of a tile and some pixels on either side. */
+static void test_light_of_part(void **state) {
+  (void)state;
+  enum { SIDE = 40, PIXELS = 512, PARTS = 4 };
+  static float voxels[SIDE * SIDE * SIDE];
+  for (size_t v = 0; v < sizeof voxels / sizeof *voxels; v++) voxels[v] = 1;
+  uint64_t filled[PARTS + 1];
+  float *pixels = malloc(PIXELS * PIXELS * 4 * sizeof *pixels);
+  for (int part = 0; part <= PARTS; part++) {
+    stage set;
+    stage_open(&set);
+    stage_add_grid(&set, (const size_t[3]){SIDE, SIDE, SIDE}, (const double[3]){1, 1, 1},
+                   (vec3){-19.5, -19.5, -19.5}, voxels);
+    stage_set_opacity(&set, &set.volumes[0], 0.001, 1);
+    stage_look(&set, (vec3){0, 0, 90}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+    set.scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
+    set.scene.camera.height = 40;
+    stage_add_directional(&set, (vec3){1, 0, -1});
+    set.scene.width = set.scene.height = PIXELS;
+    set.scene.render.shadows = HL_SHADOWS_HARD;
+    hl_scene *scene = NULL;
+    hl_renderer *renderer = NULL;
+    hl_render_statistics statistics = {.struct_size = sizeof statistics};
+    assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, NULL), HL_OK);
+    assert_int_equal(hl_renderer_create(set.context, &renderer, NULL), HL_OK);
+    if (part < PARTS) assert_int_equal(hl_renderer_share(renderer, part, PARTS, NULL), HL_OK);
+    assert_int_equal(hl_renderer_render(renderer, scene, pixels, PIXELS * 4, &statistics, NULL), HL_OK);
+    filled[part] = statistics.pixels_filled_light;
+    hl_renderer_destroy(renderer);
+    hl_scene_release(scene);
+    stage_close(&set);
+  }
+  free(pixels);
+  for (int part = 0; part < PARTS; part++) {
+    assert_true(filled[part] > filled[PARTS] / 8);
+    if (filled[part] > filled[PARTS] / 2)
+      fail_msg("part %d fills %llu of %llu pixels of the light", part, (unsigned long long)filled[part],
+               (unsigned long long)filled[PARTS]);
   }
 }
 
@@ -141,6 +232,7 @@ static void test_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_ways), cmocka_unit_test(test_refused)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_ways), cmocka_unit_test(test_light_of_part),
+                                     cmocka_unit_test(test_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

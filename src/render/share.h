@@ -1,0 +1,46 @@
+/* render/share.h - how a picture is shared out: which of its pixels each of several renderers makes.
+ *
+ * Rays of the eye and of a light that meet lie in one plane with the eye and the light. In the picture these
+ * planes are lines through the light's image, or parallel lines where that is infinitely far away. So a band
+ * of the picture along such lines looks up a band of the light's shadow buffer alone, over all sheets: each
+ * part of a picture is such a band, of the brightest light with hard shadows. Bands are made of whole cells,
+ * and cut so that about as much matter lies under each. Where all light is needed anyway, parts are rows of
+ * cells in turn. */
+#ifndef HL_RENDER_SHARE_H
+#define HL_RENDER_SHARE_H
+
+#include "render/frame.h"
+
+/* A cell is as many pixels of the picture as a tile has of the frame: `oversampling` tiles a side. */
+typedef struct picture_share {
+  int part, parts;       /* this renderer's part; how many there are */
+  int cells_x, cells_y;  /* of the whole picture */
+  int oversampling;      /* tiles of the frame along a cell's side */
+  unsigned char *memory; /* owned; holds part_of; null: the picture is not shared */
+  int32_t *part_of;      /* [cells_y][cells_x] */
+} picture_share;
+
+/* What the picture shows. */
+typedef struct share_content {
+  const frame *frame; /* its eye and lights must be set up */
+  const grid *grids;  /* [grid_count]; the frame's */
+  int grid_count;
+} share_content;
+
+/* The bytes that hl_share_create() allocates for a picture of so many pixels. */
+uint64_t hl_share_bytes(int width, int height);
+
+/* Shares a picture out; the same on every machine. share: its part and parts are set; with one part nothing
+ * is done. Owned by the caller; release it after a failure, too. */
+hl_status hl_share_create(hl_context *context, const share_content *content, picture_share *share,
+                          hl_error *error);
+void hl_share_release(hl_context *context, picture_share *share);
+
+/* Whether a tile of the frame is of this renderer's part. */
+static inline bool hl_share_has(const picture_share *share, int tile_x, int tile_y) {
+  if (share->part_of == NULL) return true;
+  return share->part_of[tile_y / share->oversampling * share->cells_x + tile_x / share->oversampling] ==
+         share->part;
+}
+
+#endif
