@@ -15,6 +15,10 @@ enum { SMALL_TRIANGLES = 16, SMALL_SIDE = 4, SMALL_PIXELS = SMALL_SIDE * SMALL_S
  * without end, and it is hardly lit. */
 #define STEEPEST_SLOPE 12
 
+/* Distances of sheets by which a fragment's slabs may lie above its triangle: the neighbour's fragment of a
+ * pixel on their edge lies beyond it, and both must fill one slab for the pixel to be full there. */
+#define SEAM 2
+
 /* The least delay, in distances of sheets: a surface along the sheets must not come to lie in an earlier slab
  * in the light's view than in the eye's, for rounding. */
 #define LEAST_DELAY 0.02

@@ -214,7 +214,8 @@ static uint32_t cover_small(const small_view *view, const small_triangles *t, sm
     lanes_store(cover->height[k], height);
     store_ints(cover->slab[k], slab_at(view, height));
     if (!view->of_light) continue;
-    lanes start = height + delay, end = lanes_min(height + slope * view->rise, heights.highest) + delay;
+    lanes start = height + delay, highest = heights.highest + (float)SEAM * view->spacing,
+          end = lanes_min(height + slope * view->rise, highest) + delay;
     lanes_store(cover->start[k], start);
     store_ints(cover->first_slab[k], slab_at(view, start));
     store_ints(cover->last_slab[k], slab_at(view, end));

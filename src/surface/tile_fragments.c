@@ -120,7 +120,8 @@ static void add_of_light(const fragment_work *work, fragment_worker *worker, con
                          fragment f, double slope) {
   const fragments_source *source = work->source;
   double delay = plane->leaving ? 0 : source->delay * slope + LEAST_DELAY * source->sheets->spacing;
-  double start = f.height + delay, end = fmin(f.height + source->rise * slope, plane->highest) + delay;
+  double start = f.height + delay, highest = plane->highest + SEAM * source->sheets->spacing,
+         end = fmin(f.height + source->rise * slope, highest) + delay;
   add_to_slabs(work, worker, f, start, hl_slab_of(source->sheets, start), hl_slab_of(source->sheets, end));
 }
 

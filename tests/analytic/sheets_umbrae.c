@@ -1,5 +1,7 @@
 /* analytic/sheets_umbrae.c - floors below things of triangles or spheres: dark where these hide all of a soft
  * light, without streaks and rings, and as bright as the part of a wide light that they leave. */
+#include <string.h>
+
 #include "../asserts.h"
 #include "mesh_stage.h"
 
@@ -24,6 +26,7 @@ static void find_rim(vec3 travels, double angle_deg, vec3 rim[RIM]) {
 typedef struct hider {
   vec3 centre, u, v;
   double radius; /* 0: the rectangle */
+  double dome;   /* above 0: what hides is a dome of triangles of this radius, over the rectangle */
 } hider;
 
 static bool is_hit(const hider *by, vec3 from, vec3 way) {
@@ -79,30 +82,61 @@ static hl_scene_mesh *add_sphere(mesh_stage *all, vec3 centre, double radius) {
   return mesh_stage_describe(all, &d);
 }
 
+/* The upper half of a ball of triangles, some pixels large each. */
+static hl_scene_mesh *add_dome(mesh_stage *all, vec3 centre, double radius) {
+  enum { RINGS = 16, ROUND = 64 };
+  static float positions[(RINGS + 1) * ROUND][3];
+  static uint32_t triangles[2 * RINGS * ROUND][3];
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < (RINGS + 1) * ROUND; i++) {
+    double polar = HL_PI / 2 * (i / ROUND) / RINGS, turn = 2 * HL_PI * (i % ROUND) / ROUND;
+    vec3 way = {sin(polar) * cos(turn), sin(polar) * sin(turn), cos(polar)};
+    vec3_store(positions[i], vec3_add(centre, vec3_scale(way, radius)));
+  }
+  for (uint32_t ring = 0; ring < RINGS; ring++)
+    for (uint32_t i = 0; i < ROUND; i++) {
+      uint32_t a = ring * ROUND + i, b = ring * ROUND + (i + 1) % ROUND;
+      const uint32_t quad[2][3] = {{a, a + ROUND, b + ROUND}, {a, b + ROUND, b}};
+      for (int half = 0; half < 2; half++) memcpy(triangles[count++], quad[half], sizeof quad[half]);
+    }
+  hl_mesh_description d;
+  hl_mesh_description_defaults(&d);
+  d.positions = (const float(*)[3])positions, d.vertex_count = (RINGS + 1) * ROUND;
+  d.triangles = (const uint32_t(*)[3])triangles, d.triangle_count = count;
+  return mesh_stage_describe(all, &d);
+}
+
+/* Adds what hides the light. */
+static hl_scene_mesh *add_hider(mesh_stage *all, const hider *by) {
+  if (by->dome > 0) return add_dome(all, by->centre, by->dome);
+  if (by->radius > 0) return add_sphere(all, by->centre, by->radius);
+  return mesh_stage_add(all, stage_make_quad(&all->set, by->centre, by->u, by->v));
+}
+
 /* A floor of light 1 where nothing hides it, and the sheets slanted against what hides it. pixels:
  * [side][side][4]. */
-static void render_floor(const hider *by, vec3 travels, double angle, int side, float *pixels) {
+static void render_floor(const hider *by, vec3 travels, double angle, hl_soft_method method, int side,
+                         float *pixels) {
   mesh_stage all;
   mesh_stage_open(&all, side, WIDE);
-  hl_scene_mesh *hides = by->radius > 0
-                             ? add_sphere(&all, by->centre, by->radius)
-                             : mesh_stage_add(&all, stage_make_quad(&all.set, by->centre, by->u, by->v));
+  hl_scene_mesh *hides = add_hider(&all, by);
   hides->visible = 0;
   mesh_stage_add(&all, stage_make_quad(&all.set, (vec3){0, 0, FLOOR}, (vec3){FLOOR_EDGE, 0, 0},
                                        (vec3){0, FLOOR_EDGE, 0}));
   hl_light *light = stage_add_directional(&all.set, travels);
   light->angular_diameter_deg = angle;
   all.set.scene.render.shadows = HL_SHADOWS_SOFT;
+  all.set.scene.render.soft_method = method;
   stage_look(&all.set, EYE, (vec3){0, 0, 0}, (vec3){0, 0, 1});
   stage_render_sheets(&all.set, pixels);
   mesh_stage_close(&all);
 }
 
-static void measure(const hider *by, double angle, double *greatest, double *mean) {
+static void measure(const hider *by, double angle, hl_soft_method method, double *greatest, double *mean) {
   static float pixels[PIXELS * 4];
   const vec3 travels = {0.4, 0.3, -1};
   vec3 rim[RIM];
-  render_floor(by, travels, angle, SIDE, pixels);
+  render_floor(by, travels, angle, method, SIDE, pixels);
   find_rim(travels, angle, rim);
   find_leaks(pixels, by, rim, greatest, mean);
 }
@@ -115,7 +149,7 @@ static void test_rectangle(void **state) {
     const double tilt = k % 3 * 0.2, gap = 3 + 2 * (k / 3);
     const hider by = {.centre = {0, 0, FLOOR + gap + 12 * tilt}, .u = {12, 0, 0}, .v = {0, 12, 12 * tilt}};
     double greatest, mean;
-    measure(&by, k % 2 ? 12 : 7, &greatest, &mean);
+    measure(&by, k % 2 ? 12 : 7, HL_SOFT_CASCADE, &greatest, &mean);
     assert_near(greatest, 0, 0.025);
   }
 }
@@ -127,9 +161,24 @@ static void test_ball(void **state) {
   for (int k = 0; k < 3; k++) {
     const hider by = {.centre = {-3, -2, FLOOR + 10 + k}, .radius = 9};
     double greatest, mean;
-    measure(&by, 7, &greatest, &mean);
+    measure(&by, 7, HL_SOFT_CASCADE, &greatest, &mean);
     assert_near(greatest, 0, 0.025);
     assert_near(mean, 0, 0.0002);
+  }
+}
+
+/* Below a dome of small triangles hardly any light comes through their seams, on whose two sides the surface
+ * lies in other slabs. */
+static void test_dome(void **state) {
+  (void)state;
+  for (int k = 0; k < 4; k++) {
+    const double radius = 13, inside = radius / sqrt(2) - 0.3;
+    const hider by = {
+        .centre = {0, 0, FLOOR + 4 + k}, .u = {inside, 0, 0}, .v = {0, inside, 0}, .dome = radius};
+    double greatest, mean;
+    measure(&by, 7, k % 2 ? HL_SOFT_CASCADE : HL_SOFT_SUBLIGHTS, &greatest, &mean);
+    assert_near(greatest, 0, k % 2 ? 0.02 : 0.06);
+    assert_near(mean, 0, k % 2 ? 0.0008 : 0.007);
   }
 }
 
@@ -163,7 +212,7 @@ static void test_ball_under_wide_sun(void **state) {
     const double full = -vec3_normalise(cases[k].travels).z; /* Lambert's cosine */
     double square = 0, greatest = 0;
     int count = 0;
-    render_floor(&by, cases[k].travels, cases[k].angle, LARGE_SIDE, pixels);
+    render_floor(&by, cases[k].travels, cases[k].angle, HL_SOFT_CASCADE, LARGE_SIDE, pixels);
     for (int i = 0; i < LARGE_SIDE * LARGE_SIDE; i += 7) {
       vec3 at = on_floor(i % LARGE_SIDE - LARGE_SIDE / 2 + 0.5, i / LARGE_SIDE - LARGE_SIDE / 2 + 0.5,
                          LARGE_SIDE);
@@ -182,6 +231,6 @@ static void test_ball_under_wide_sun(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_rectangle), cmocka_unit_test(test_ball),
-                                     cmocka_unit_test(test_ball_under_wide_sun)};
+                                     cmocka_unit_test(test_dome), cmocka_unit_test(test_ball_under_wide_sun)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

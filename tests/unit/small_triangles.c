@@ -104,7 +104,8 @@ static void check_pixel(const set_up *s, const small_cover *cover, int k, int t,
          slope = hl_plane_slope(&plane, u, v);
   bool leaving = s->small.dark_backs && hl_plane_linear(plane.way, u, v) > 0;
   double delay = leaving ? 0 : 0.75 * slope + LEAST_DELAY * s->sheets.spacing;
-  double end = fmin(height + 1.25 * slope, plane.highest) + delay, spacing = s->sheets.spacing;
+  double end = fmin(height + 1.25 * slope, plane.highest + SEAM * s->sheets.spacing) + delay,
+         spacing = s->sheets.spacing;
   /* derived: in perspective a height between corners differs from the linear one by at most an eighth of
    * their difference times that of their depths, which is at most twice as large, 80 away; corners rounded to
    * 1/256 pixels move the plane by at most 1/512 pixels across and down; the slope is that of the first
