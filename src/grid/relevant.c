@@ -392,17 +392,17 @@ void hl_grid_mark_relevant(grid *grid, const grid_functions *functions, const cl
 
 void hl_open_faces(grid *grid, const struct grid *other) {
   static const double TOUCHING = 1e-3;
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (int i = 0; i < 8; i++) {
-    vec3 corner = {i & 1 ? other->box_high[0] : other->box_low[0],
-                   i & 2 ? other->box_high[1] : other->box_low[1],
-                   i & 4 ? other->box_high[2] : other->box_low[2]};
-    vec3 at = affine3_apply(grid->frame_to_index, affine3_apply(other->index_to_frame, corner));
-    const double place[3] = {at.x, at.y, at.z};
-    for (int axis = 0; axis < 3; axis++) {
-      low[axis] = fmin(low[axis], place[axis]);
-      high[axis] = fmax(high[axis], place[axis]);
-    }
+  const affine3 placed = affine3_multiply(grid->frame_to_index, other->index_to_frame);
+  const vec3 low_corner = vec3_of(other->box_low), high_corner = vec3_of(other->box_high);
+  const vec3 half = vec3_scale(vec3_subtract(high_corner, low_corner), 0.5);
+  const vec3 at = affine3_apply(placed, vec3_add(low_corner, half));
+  const double middle[3] = {at.x, at.y, at.z};
+  double low[3], high[3];
+  for (int axis = 0; axis < 3; axis++) {
+    const vec3 *row = &placed.linear.row[axis];
+    double reach = fabs(row->x) * half.x + fabs(row->y) * half.y + fabs(row->z) * half.z;
+    low[axis] = middle[axis] - reach;
+    high[axis] = middle[axis] + reach;
   }
   for (int axis = 0; axis < 3; axis++) {
     int u = (axis + 1) % 3, v = (axis + 2) % 3;

@@ -169,7 +169,7 @@ static void lay_out(view_sheets *sheets, hl_layout *layout) {
   sheets->sources = hl_layout_take(layout, (size_t)sheets->reached * grids, sizeof *sheets->sources);
   sheets->runs = hl_layout_take(layout, (size_t)sheets->run_count * grids, sizeof *sheets->runs);
   sheets->patch_runs = hl_layout_take(layout, patches, sizeof *sheets->patch_runs);
-  sheets->next_slab = hl_layout_take(layout, patches, sizeof *sheets->next_slab);
+  sheets->rows = hl_layout_take(layout, patches, sizeof *sheets->rows);
   sheets->density = hl_layout_take(layout, patches * ring, TILE_PIXELS * sizeof *sheets->density);
   if (!any_cut(sheets->content)) return;
   sheets->entry_of = hl_layout_take(layout, patches, sizeof *sheets->entry_of);
@@ -200,7 +200,7 @@ static hl_status keep_patches(view_sheets *sheets, hl_error *error) {
   size_t patches = sheets->occupancy.patch_count, kept = patches * (size_t)sheets->ring;
   for (size_t i = 0; i < kept; i++) sheets->kept[i] = (kept_patch){.sheet = -1};
   for (size_t i = 0; i < patches; i++) sheets->patch_runs[i] = (patch_run){.first = -1};
-  for (size_t i = 0; i < patches; i++) sheets->next_slab[i] = 1;
+  for (size_t i = 0; i < patches; i++) sheets->rows[i] = (slab_row){1, 0};
   for (size_t i = 0; i < patches && sheets->entry_of != NULL; i++) sheets->entry_of[i] = NO_ENTRY;
   for (int g = 0; g < sheets->content->volume_count && sheets->box_rays != NULL; g++) {
     const grid *grid = &sheets->content->grids[g];
@@ -249,8 +249,11 @@ static void reach_run(view_sheets *sheets, int first) {
   }
 }
 
+/* Rays are those of the run to which the slab before the sheet belongs, which was reached before: many
+ * volumes share a frame. */
 static void reach_sheet(view_sheets *sheets, int sheet) {
   const sheet_content *content = sheets->content;
+  const int run = sheet == 0 ? 0 : first_of_run(sheet);
   for (int g = 0; g < content->volume_count; g++) {
     if (!reaches_sheets(sheets, g, sheet, sheet)) continue;
     fill_source *source = &sheets->sources[sheet % sheets->reached * content->volume_count + g];
@@ -259,8 +262,7 @@ static void reach_sheet(view_sheets *sheets, int sheet) {
                             .sheet = sheet,
                             .classifier = &content->volumes[g].classifier,
                             .lists = sheets->lists == NULL ? NULL : &sheets->lists[g]};
-    hl_view_sheet_rays(sheets->view, content->sheets->normal, hl_sheet_height(content->sheets, sheet),
-                       content->grids[g].frame_to_index, &source->rays);
+    source->rays = run_of_grid(sheets, run, g)->rays[sheet - run];
   }
 }
 
@@ -271,8 +273,8 @@ static int end_of_bundle(const view_sheets *sheets, int sheet) {
 }
 
 void hl_view_sheets_reach(view_sheets *sheets, int sheet) {
-  if (sheet == 1) reach_sheet(sheets, 0);
   if (first_of_run(sheet) == sheet - 1) reach_run(sheets, sheet - 1);
+  if (sheet == 1) reach_sheet(sheets, 0);
   if ((sheet - 1) % sheets->bundle != 0) return;
   for (int ahead = sheet; ahead < end_of_bundle(sheets, sheet); ahead++) reach_sheet(sheets, ahead);
 }
@@ -408,9 +410,18 @@ static uint64_t fill_bundle(const view_sheets *sheets, slab_place place, uint32_
   return b.pixels;
 }
 
+/* The last slab of a row that begins with `slab`, as far as one word of bits tells: a slab is touched by its
+ * own sheet or by the one before. */
+static int32_t last_of_row(const occupancy *o, size_t patch, int slab) {
+  uint64_t without = ~(o->by_patch[patch * (size_t)o->words + (size_t)(slab / 64)] >> slab % 64);
+  return slab + (without == 0 ? 64 : __builtin_ctzll(without));
+}
+
 bool hl_patch_reaches(view_sheets *sheets, size_t patch, int slab) {
-  sheets->next_slab[patch] = hl_occupancy_next_slab(&sheets->occupancy, patch, slab);
-  return sheets->next_slab[patch] == slab;
+  const occupancy *o = &sheets->occupancy;
+  int32_t next = hl_occupancy_next_slab(o, patch, slab);
+  sheets->rows[patch] = (slab_row){next, next < o->sheets ? last_of_row(o, patch, next) : next};
+  return next == slab;
 }
 
 uint32_t hl_patch_relevant(const view_sheets *sheets, slab_place place, uint32_t need) {

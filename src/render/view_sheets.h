@@ -41,6 +41,11 @@ typedef struct patch_run {
   uint16_t shows[RUN_SLABS]; /* per slab of the bundle: the filled blocks in which matter is visible */
 } patch_run;
 
+/* Slabs in a row that touch a patch, from the first to the last. */
+typedef struct slab_row {
+  int32_t first, last;
+} slab_row;
+
 /* The last sheets of one view. */
 typedef struct view_sheets {
   const sheet_content *content;
@@ -59,7 +64,7 @@ typedef struct view_sheets {
   slab_run *runs;       /* [runs that a stretch may touch][grids]; of run k at k % run_count */
   int run_count;
   patch_run *patch_runs; /* [patches] */
-  int32_t *next_slab;    /* [patches]; no slab from the last one asked for up to this one touches the patch */
+  slab_row *rows;        /* [patches]; no slab from the last one asked for up to a row touches its patch */
   /* the next two: only where a box cuts anything visible; else null */
   uint32_t *entry_of; /* [patches]; its row of entries; NO_ENTRY where none was asked for */
   box_rays *box_rays; /* [grids] */
@@ -94,7 +99,8 @@ bool hl_patch_reaches(view_sheets *sheets, size_t patch, int slab);
 /* Whether a slab touches a patch; slabs rise. Where many volumes share a tile, most are before or behind a
  * slab. */
 static inline bool hl_patch_is_touched(view_sheets *sheets, size_t patch, int slab) {
-  return sheets->next_slab[patch] <= slab && hl_patch_reaches(sheets, patch, slab);
+  const slab_row *row = &sheets->rows[patch];
+  return slab >= row->first && (slab <= row->last || hl_patch_reaches(sheets, patch, slab));
 }
 
 /* For a patch that the slab touches: the needed blocks in which the slab may show something. May be more than
