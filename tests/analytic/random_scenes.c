@@ -65,11 +65,13 @@ static void check_threads(uint64_t seed, stage *set, const float *expected) {
   set->scene.render.slabs_at_once = 0;
 }
 
-/* The same sheets see the same matter: only rounding may make the shadowed picture brighter. */
+/* The same sheets see the same matter: only rounding may make the shadowed picture brighter. What is not seen
+ * keeps its shadow: without it the sheets would not reach as far. */
 static void check_shadows_darken(uint64_t seed, stage *set, const float *shadowed) {
   static float pixels[FLOATS];
   hl_error error = {0};
-  for (size_t v = 0; v < set->scene.volume_count; v++) set->volumes[v].casts_shadow = 0;
+  for (size_t v = 0; v < set->scene.volume_count; v++)
+    if (set->volumes[v].visible) set->volumes[v].casts_shadow = 0;
   if (render(set, 1, pixels, NULL, &error) != HL_OK)
     fail_msg("scene %llu: %s", (unsigned long long)seed, error.message);
   for (size_t i = 0; i < floats_of(set); i++)

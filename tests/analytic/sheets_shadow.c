@@ -238,7 +238,7 @@ static double rect_penumbra(const rect_case *c, hl_soft_method method, int sampl
   /* as far to the right as the plate goes to the left: the light is above the middle of all, or nearly */
   hl_scene_volume *balance = stage_add_box(&set, (vec3){19, -20, c->plate - 0.25},
                                            (vec3){20, 20, c->plate + 0.25});
-  balance->visible = balance->casts_shadow = 0;
+  balance->visible = 0; /* its shadow falls beside all that is measured */
   set.scene.render.shadows = HL_SHADOWS_SOFT;
   set.scene.render.soft_method = method;
   set.scene.render.light_samples = samples;
