@@ -22,7 +22,7 @@ struct hl_scene {
                                        the sky, whose image lacks them, the scene's cuts in its volumes, and
                                        volumes of occupancy in place of label maps, lattices (label/mask.h) in
                                        place of masks; owns its array of lights */
-  sky_suns suns;                    /* of the sky, where they are lights */
+  sky_suns suns;                    /* of the sky, where they are lights: placed.sky.suns tells */
   placed_cuts cut;                  /* the placed description's volumes, where the scene has cuts */
   drawn_labels drawn;               /* the volumes of occupancy and the lattices */
   uint64_t sky_mark;                /* of the pixels of the sky's image; for keys of kept results */

@@ -93,6 +93,22 @@ hl_scene_volume *stage_add_box(stage *set, vec3 low, vec3 high) {
   return stage_add_grid(set, (size_t[3]){1, 1, 1}, (double[3]){size.x, size.y, size.z}, low, NULL);
 }
 
+hl_scene_volume *stage_add_ball_and_plate(stage *set, const hl_opacity_point opacity[2]) {
+  enum { GRID = 24 };
+  static float voxels[GRID * GRID * GRID];
+  for (int i = 0; i < GRID * GRID * GRID; i++) {
+    double x = i % GRID - 11.5, y = i / GRID % GRID - 11.5, z = i / GRID / GRID - 13;
+    double ball = 6 - sqrt(x * x + y * y + z * z), plate = 4 - (z + 13);
+    double inside = fmax(ball, fabs(x) < 10 && fabs(y) < 10 ? plate : -1);
+    voxels[i] = (float)fmin(fmax(0.5 + inside / 2, 0), 1);
+  }
+  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){GRID, GRID, GRID}, (double[3]){1, 1, 1},
+                                           (vec3){-12, -12, -12}, voxels);
+  volume->transfer_function.opacity = opacity;
+  volume->transfer_function.opacity_count = 2;
+  return volume;
+}
+
 hl_volume_description stage_describe_volume(const hl_volume *volume) {
   hl_volume_info info = {.struct_size = sizeof info};
   assert_int_equal(hl_volume_get_info(volume, &info), HL_OK);

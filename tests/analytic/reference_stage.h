@@ -30,6 +30,9 @@ hl_scene_volume *stage_add_grid(stage *set, const size_t dimensions[3], const do
                                 const float *voxels);
 /* A grid of one voxel that fills the box. */
 hl_scene_volume *stage_add_box(stage *set, vec3 low, vec3 high);
+/* A grid of 24^3 voxels about the origin: a ball above a plate, of smooth values from 0 to 1, 0.5 at their
+ * surfaces. opacity: [2], borrowed. */
+hl_scene_volume *stage_add_ball_and_plate(stage *set, const hl_opacity_point opacity[2]);
 /* A volume's grid, without its voxels. */
 hl_volume_description stage_describe_volume(const hl_volume *volume);
 /* Makes every seventh voxel, and the last one, of the first volume one that is not finite; it must be of

@@ -90,17 +90,7 @@ enum { GRID = 24 };
 
 /* A ball above a plate, of smooth voxels, shaded as surfaces. */
 static void add_scene(stage *set, const hl_opacity_point opacity[2]) {
-  static float voxels[GRID * GRID * GRID];
-  for (int i = 0; i < GRID * GRID * GRID; i++) {
-    double x = i % GRID - 11.5, y = i / GRID % GRID - 11.5, z = i / GRID / GRID - 13;
-    double ball = 6 - sqrt(x * x + y * y + z * z), plate = 4 - (z + 13);
-    double inside = fmax(ball, fabs(x) < 10 && fabs(y) < 10 ? plate : -1);
-    voxels[i] = (float)fmin(fmax(0.5 + inside / 2, 0), 1);
-  }
-  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){GRID, GRID, GRID}, (double[3]){1, 1, 1},
-                                           (vec3){-12, -12, -12}, voxels);
-  volume->transfer_function.opacity = opacity;
-  volume->transfer_function.opacity_count = 2;
+  hl_scene_volume *volume = stage_add_ball_and_plate(set, opacity);
   volume->transfer_function.unit_distance = 1;
   volume->shading = HL_SHADING_PHONG;
   volume->material = (hl_material){.diffuse = 1};

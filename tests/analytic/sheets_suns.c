@@ -7,7 +7,7 @@
 #include "../asserts.h"
 #include "reference_stage.h"
 
-enum { SIDE = 16, PIXELS = SIDE * SIDE, WIDTH = 360, HEIGHT = 180, GRID = 24 };
+enum { SIDE = 16, PIXELS = SIDE * SIDE, WIDTH = 360, HEIGHT = 180 };
 
 static const double DEGREE = HL_PI / 180, RADIUS = 3; /* degrees, of suns */
 
@@ -144,19 +144,9 @@ static const hl_opacity_point OPACITY[2] = {{0.3, 0}, {0.7, 0.9}};
 
 /* A ball above a plate, shaded as surfaces or as a medium, below a sun from the left. */
 static void open_scene(stage *set, hl_shading shading) {
-  static float voxels[GRID * GRID * GRID];
   open_sky(set);
   paint((vec3){-0.8, -0.3, 0.7}, 300, 0.3);
-  for (int i = 0; i < GRID * GRID * GRID; i++) {
-    double x = i % GRID - 11.5, y = i / GRID % GRID - 11.5, z = i / GRID / GRID - 13;
-    double ball = 6 - sqrt(x * x + y * y + z * z), plate = 4 - (z + 13);
-    double inside = fmax(ball, fabs(x) < 10 && fabs(y) < 10 ? plate : -1);
-    voxels[i] = (float)fmin(fmax(0.5 + inside / 2, 0), 1);
-  }
-  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){GRID, GRID, GRID}, (double[3]){1, 1, 1},
-                                           (vec3){-12, -12, -12}, voxels);
-  volume->transfer_function.opacity = OPACITY;
-  volume->transfer_function.opacity_count = 2;
+  hl_scene_volume *volume = stage_add_ball_and_plate(set, OPACITY);
   volume->transfer_function.unit_distance = shading == HL_SHADING_NONE ? 12 : 1;
   volume->shading = shading;
   volume->anisotropy = shading == HL_SHADING_NONE ? 0.7 : 0;
@@ -299,7 +289,8 @@ static void test_same_bytes(void **state) {
 }
 
 /* A renderer that keeps the sky's light shows what a new one shows when the image is turned, brightened, cut
- * at the horizon, and when the sun becomes none. */
+ * at the horizon, and when the sun becomes none: because the sky says so, or because sheets are aligned with
+ * the picture. */
 static void test_kept_light(void **state) {
   (void)state;
   static float kept[PIXELS * 4], fresh[PIXELS * 4];
@@ -308,11 +299,12 @@ static void test_kept_light(void **state) {
   open_scene(&set, HL_SHADING_NONE);
   set.volumes[0].multiple_scattering = 1;
   assert_int_equal(hl_renderer_create(set.context, &renderer, NULL), HL_OK);
-  for (int change = 0; change < 5; change++) {
+  for (int change = 0; change < 6; change++) {
     if (change == 1) set.scene.sky.rotation_deg = 40;
     if (change == 2) set.scene.sky.strength = 0.5;
     if (change == 3) set.scene.sky.suns = 0;
     if (change == 4) set.scene.sky.hemisphere = 1, set.scene.sky.suns = 1;
+    if (change == 5) set.scene.render.slicing = HL_SLICING_IMAGE_ALIGNED;
     stage_render_with(&set, renderer, kept);
     stage_render_sheets(&set, fresh);
     assert_memory_equal(kept, fresh, sizeof kept);
