@@ -80,7 +80,7 @@ typedef struct brightest {
 
 typedef struct search {
   const hl_sky *sky;
-  float *pixels;        /* [height][width][3]; the image without the suns found so far */
+  const float *pixels;  /* [height][width][3]; the image without the suns found so far */
   row_integrals *rows;  /* [height] */
   double (*columns)[2]; /* [width]: sine and cosine of the angle to the middle column */
   brightest *peaks;     /* [height]: outside of the caps that are left out */
@@ -97,8 +97,12 @@ static vec3 direction_of(const search *all, int row, int column) {
   return (vec3){across * all->columns[column][0], across * all->columns[column][1], cos(angle)};
 }
 
-static float *pixel_of(const search *all, int row, int column) {
-  return all->pixels + 3 * ((size_t)row * (size_t)all->sky->width + (size_t)column);
+static size_t place_of(const search *all, int row, int column) {
+  return 3 * ((size_t)row * (size_t)all->sky->width + (size_t)column);
+}
+
+static const float *pixel_of(const search *all, int row, int column) {
+  return all->pixels + place_of(all, row, column);
 }
 
 /* The integral of unit vectors over a pixel's tent. */
@@ -225,10 +229,17 @@ static void add_beyond(const search *all, int row, int column, void *data) {
   of->moment = vec3_add(of->moment, vec3_scale(moment_of(all, row, column), sum));
 }
 
+/* A spot that is taken out of the image. */
+typedef struct taking {
+  const spot *spot;
+  float *rest; /* the image */
+} taking;
+
 static void take_beyond(const search *all, int row, int column, void *data) {
-  const spot *of = data;
-  float *pixel = pixel_of(all, row, column);
-  for (int c = 0; c < 3; c++) pixel[c] = pixel[c] < of->around[c] ? pixel[c] : of->around[c];
+  const taking *of = data;
+  const float *around = of->spot->around;
+  float *pixel = of->rest + place_of(all, row, column);
+  for (int c = 0; c < 3; c++) pixel[c] = pixel[c] < around[c] ? pixel[c] : around[c];
 }
 
 static spot measure_spot(const search *all, vec3 middle, double radius) {
@@ -290,20 +301,37 @@ static void leave_out(search *all, vec3 middle, double radius) {
   renew_peaks(all, out);
 }
 
-static void find_all(search *all, sky_suns *found) {
-  while (found->count < HL_MOST_SUNS && all->left_out_count < TRIES) {
+static size_t image_bytes(const hl_sky *sky) {
+  return (size_t)sky->width * (size_t)sky->height * 3 * sizeof(float);
+}
+
+/* Takes a sun out of the image, of which the first one makes a copy. */
+static hl_status take_out(hl_context *context, search *all, const spot *sun, sky_suns *found,
+                          hl_error *error) {
+  size_t bytes = image_bytes(all->sky);
+  if (found->rest == NULL) {
+    found->rest = hl_allocate(context, bytes, 1);
+    if (found->rest == NULL) return hl_fail_memory(error, bytes, "the suns of a sky's image");
+    memcpy(found->rest, all->pixels, bytes);
+    all->pixels = found->rest;
+  }
+  found->suns[found->count++] = sun_of_spot(sun);
+  visit_cap(all, &sun->cap, -1, take_beyond, &(taking){sun, found->rest});
+  renew_peaks(all, &sun->cap);
+  return HL_OK;
+}
+
+static hl_status find_all(hl_context *context, search *all, sky_suns *found, hl_error *error) {
+  hl_status status = HL_OK;
+  while (status == HL_OK && found->count < HL_MOST_SUNS && all->left_out_count < TRIES) {
     int row = brightest_row(all), column = all->peaks[row].column;
     float brightest = all->peaks[row].brightness;
-    if (!((double)brightest > FAR_ABOVE * all->mean)) return;
+    if (!((double)brightest > FAR_ABOVE * all->mean)) break;
     spot best = find_spot(all, row, column);
-    if (is_sun(all, &best, brightest)) {
-      found->suns[found->count++] = sun_of_spot(&best);
-      visit_cap(all, &best.cap, -1, take_beyond, &best);
-      renew_peaks(all, &best.cap);
-    } else {
-      leave_out(all, direction_of(all, row, column), best.cap.radius);
-    }
+    if (is_sun(all, &best, brightest)) status = take_out(context, all, &best, found, error);
+    else leave_out(all, direction_of(all, row, column), best.cap.radius);
   }
+  return status;
 }
 
 static void set_up(search *all) {
@@ -333,20 +361,17 @@ hl_status hl_suns_find(hl_context *context, const hl_sky *sky, sky_suns *found, 
   if (sky->type != HL_SKY_IMAGE) return HL_OK;
   size_t width = (size_t)sky->width, height = (size_t)sky->height;
   search all = {.sky = sky,
-                .pixels = hl_allocate(context, width * height, 3 * sizeof *all.pixels),
+                .pixels = sky->pixels,
                 .rows = hl_allocate(context, height, sizeof *all.rows),
                 .columns = hl_allocate(context, width, sizeof *all.columns),
                 .peaks = hl_allocate(context, height, sizeof *all.peaks)};
   hl_status status = HL_OK;
-  if (all.pixels == NULL || all.rows == NULL || all.columns == NULL || all.peaks == NULL) {
-    status = hl_fail_memory(error, 3 * width * height * sizeof *all.pixels, "the suns of a sky's image");
+  if (all.rows == NULL || all.columns == NULL || all.peaks == NULL) {
+    status = hl_fail_memory(error, (width + height) * sizeof *all.columns, "the suns of a sky's image");
   } else {
-    memcpy(all.pixels, sky->pixels, 3 * width * height * sizeof *all.pixels);
     set_up(&all);
-    find_all(&all, found);
+    status = find_all(context, &all, found, error);
   }
-  if (found->count > 0) found->rest = all.pixels;
-  else hl_release(context, all.pixels);
   hl_release(context, all.rows);
   hl_release(context, all.columns);
   hl_release(context, all.peaks);
