@@ -90,10 +90,7 @@ void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels) {
 /* The address of one value of a pixel of the frame. */
 static const float *value_at(const layer_grid *grid, const float *pixels, int floats, int column, int row,
                              int value) {
-  size_t tile = (size_t)(row / TILE) * grid->tiles_x + (size_t)(column / TILE);
-  size_t block = (size_t)(row % TILE / BLOCK * 4 + column % TILE / BLOCK);
-  size_t lane = (size_t)(row % BLOCK * 4 + column % BLOCK);
-  return pixels + ((tile * TILE_BLOCKS + block) * (size_t)floats + (size_t)value) * BLOCK_PIXELS + lane;
+  return pixels + hl_place_in_tiles(grid->tiles_x, floats, column, row) + (size_t)value * BLOCK_PIXELS;
 }
 
 /* The sum of one value over the pixels of the frame that make up one pixel of the picture; infinite values

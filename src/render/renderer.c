@@ -12,6 +12,7 @@
 #include "render/estimate.h"
 #include "render/frame.h"
 #include "render/maximum.h"
+#include "render/picture.h"
 #include "render/prepare.h"
 #include "render/sky.h"
 #include "scatter/scatter.h"
@@ -437,56 +438,19 @@ static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *sc
   return status;
 }
 
-/* A pixel's red in a row of tiles; the next channels are BLOCK_PIXELS apart. */
-static const float *pixel_of_tiles(const float *tiles, int column, int row) {
-  size_t block = (size_t)(row % TILE / BLOCK * 4 + column % TILE / BLOCK);
-  size_t lane = (size_t)(row % BLOCK * 4 + column % BLOCK);
-  return tiles + ((size_t)(column / TILE) * TILE_BLOCKS + block) * 4 * BLOCK_PIXELS + lane;
-}
-
-/* One pixel of the frame, all sweeps: contributions of lights add, opacity is the same in every sweep. */
-static void add_pixel(const frame_work *work, int column, int row, float sum[4]) {
-  const float *from = pixel_of_tiles(work->pixels + (size_t)(row / TILE) * work->tiles_x * TILE_PIXELS * 4,
-                                     column, row);
-  for (int c = 0; c < 4; c++) sum[c] += from[c * BLOCK_PIXELS];
-  for (int s = 1; s < work->sweep_count; s++)
-    for (int c = 0; c < 3; c++)
-      sum[c] += from[(size_t)s * work->tiles * TILE_PIXELS * 4 + (size_t)(c * BLOCK_PIXELS)];
-}
-
-typedef struct write_job {
-  const frame_work *work;
-  float *pixels;     /* the caller's */
-  size_t row_stride; /* floats */
-  int width;
-} write_job;
-
-/* Writes one row of the picture from the tiles' blocks; averages pixels where the frame is oversampled. */
-static void write_row(void *data, size_t row, int worker) {
-  (void)worker;
-  const write_job *job = data;
-  int side = job->work->frame.oversampling;
-  for (int column = 0; column < job->width; column++) {
-    float sum[4] = {0, 0, 0, 0}, *to = job->pixels + row * job->row_stride + 4 * (size_t)column;
-    for (int y = 0; y < side; y++)
-      for (int x = 0; x < side; x++) add_pixel(job->work, column * side + x, (int)row * side + y, sum);
-    for (int c = 0; c < 4; c++) to[c] = sum[c] / (float)(side * side);
-  }
-}
-
-/* Reorders one row of tiles in the caller's pixels into sixteen rows of pixels. */
-static void write_in_place(void *data, size_t index, int worker) {
-  const write_job *job = data;
-  size_t floats = job->work->tiles_x * TILE_PIXELS * 4;
-  float *to = job->pixels + index * floats, *tiles = job->work->tile_rows + (size_t)worker * floats;
-  memcpy(tiles, to, floats * sizeof *tiles);
-  for (int row = 0; row < TILE; row++)
-    for (int column = 0; column < job->width; column += BLOCK, to += 4 * BLOCK) {
-      const float *from = pixel_of_tiles(tiles, column, row);
-      for (int pixel = 0; pixel < BLOCK; pixel++)
-        for (int c = 0; c < 4; c++)
-          to[4 * pixel + c] = 0 + from[c * BLOCK_PIXELS + pixel]; /* as a sum: never -0 */
-    }
+static void write_picture(const frame_work *work, const frame_request *request,
+                          const hl_scene_description *scene, hl_pool *pool) {
+  const picture picture = {.tiles = work->pixels,
+                           .sweeps = work->sweep_count,
+                           .tiles_x = work->tiles_x,
+                           .tiles_of_sweep = work->tiles,
+                           .oversampling = work->frame.oversampling,
+                           .pixels = request->pixels,
+                           .row_stride = request->row_stride,
+                           .width = scene->width,
+                           .height = scene->height};
+  if (work->in_place) hl_picture_reorder(&picture, work->tile_rows, pool);
+  else hl_picture_write(&picture, pool);
 }
 
 static void write_layers(const frame_work *work, const hl_scene_description *scene, hl_pool *pool) {
@@ -556,9 +520,7 @@ static hl_status render_frame(hl_renderer *renderer, const frame_request *reques
   if (status != HL_OK) return status;
   if (work->maximum.values != NULL)
     hl_maximum_color(&work->maximum, scene, renderer->prepared, renderer->pool, work->pixels);
-  write_job job = {work, request->pixels, request->row_stride, scene->width};
-  if (work->in_place) hl_pool_run(renderer->pool, (size_t)scene->height / TILE, write_in_place, &job);
-  else hl_pool_run(renderer->pool, (size_t)scene->height, write_row, &job);
+  write_picture(work, request, scene, renderer->pool);
   write_layers(work, scene, renderer->pool);
   if (hl_pool_cancelled(renderer->pool))
     return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");

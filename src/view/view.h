@@ -33,6 +33,14 @@ static inline int hl_pixel_row(int number) {
 /* The number of tiles that cover `pixels` pixels. */
 static inline int hl_tiles(int pixels) { return (pixels + TILE - 1) / TILE; }
 
+/* Where the first of a pixel's values lies in an array [tiles][TILE_BLOCKS][values][BLOCK_PIXELS] of tiles,
+ * of which a row has tiles_x; the next values follow BLOCK_PIXELS apart. */
+static inline size_t hl_place_in_tiles(size_t tiles_x, int values, int column, int row) {
+  size_t tile = (size_t)(row / TILE) * tiles_x + (size_t)(column / TILE);
+  size_t number = (size_t)hl_pixel_number(column % TILE, row % TILE);
+  return (tile * TILE_BLOCKS + number / BLOCK_PIXELS) * (size_t)values * BLOCK_PIXELS + number % BLOCK_PIXELS;
+}
+
 /* The number of pixels of a set of blocks. Counts bits by sums of pairs, of fours and so on: baseline
  * processors have no instruction that counts bits. */
 static inline uint64_t hl_pixels_of_blocks(uint32_t blocks) {
@@ -52,6 +60,11 @@ typedef struct view {
   mat3 inverse;        /* (w, w u, w v) = inverse * (X - origin) for perspective,
                           (distance, u, v) = inverse * (X - corner) for parallel */
 } view;
+
+/* The number of tiles that cover a view. */
+static inline size_t hl_view_tiles(const view *view) {
+  return (size_t)hl_tiles(view->width) * (size_t)hl_tiles(view->height);
+}
 
 /* Fills inverse from the other members; false where the view is degenerate. */
 bool hl_view_finish(view *view);

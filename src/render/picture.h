@@ -1,0 +1,28 @@
+/* render/picture.h - the caller's picture, out of the tiles of a frame's sweeps.
+ *
+ * Contributions of lights add; opacity is the same in every sweep. Pixels are averaged where the frame is
+ * oversampled. */
+#ifndef HL_RENDER_PICTURE_H
+#define HL_RENDER_PICTURE_H
+
+#include "core/pool.h"
+#include "view/view.h"
+
+typedef struct picture {
+  const float *tiles; /* [sweeps][tiles_of_sweep][16][4][16]; R G B A, premultiplied, linear */
+  int sweeps;
+  size_t tiles_x, tiles_of_sweep;
+  int oversampling;  /* pixels of the frame along a side of the picture's */
+  float *pixels;     /* the caller's; [height][row_stride]; R G B A */
+  size_t row_stride; /* floats */
+  int width, height; /* of the picture */
+} picture;
+
+/* Writes the caller's pixels. */
+void hl_picture_write(const picture *picture, hl_pool *pool);
+
+/* The same where the caller's pixels hold the tiles of the only sweep, without oversampling, in whole tiles
+ * and without gaps between rows. rows: [threads][tiles_x][16][4][16], for use here. */
+void hl_picture_reorder(const picture *picture, float *rows, hl_pool *pool);
+
+#endif
