@@ -96,6 +96,15 @@ static inline void vec3_bound(vec3 p, double low[3], double high[3]) {
   for (int a = 0; a < 3; a++) low[a] = fmin(low[a], at[a]), high[a] = fmax(high[a], at[a]);
 }
 
+/* Grows a box so that it holds a ball. */
+static inline void vec3_bound_ball(vec3 middle, double radius, double low[3], double high[3]) {
+  const double at[3] = {middle.x, middle.y, middle.z};
+  for (int a = 0; a < 3; a++) {
+    low[a] = at[a] - radius < low[a] ? at[a] - radius : low[a];
+    high[a] = at[a] + radius > high[a] ? at[a] + radius : high[a];
+  }
+}
+
 static inline affine3 affine3_identity(void) {
   return (affine3){{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
 }

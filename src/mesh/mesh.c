@@ -108,12 +108,15 @@ static hl_status keep_visible(hl_mesh *mesh, hl_error *error) {
                  "the mesh has no triangle with an area, no sphere and no line: give at least one");
 }
 
-uint64_t hl_hash_of_edge(uint32_t a, uint32_t b) {
+/* a is below b. */
+static uint64_t hash_of_edge(uint32_t a, uint32_t b) {
   uint64_t hash = ((uint64_t)a << 32 | b) + 0x9e3779b97f4a7c15u; /* splitmix64 (Steele et al. 2014) */
   hash = (hash ^ hash >> 30) * 0xbf58476d1ce4e5b9u;
   hash = (hash ^ hash >> 27) * 0x94d049bb133111ebu;
   return hash ^ hash >> 31;
 }
+
+uint64_t hl_hash_of_way(uint32_t a, uint32_t b) { return a < b ? hash_of_edge(a, b) : -hash_of_edge(b, a); }
 
 /* Whether each edge runs as often one way as the other, with the volume that the triangles enclose above 0
  * (derived: hashes of edges one way are added, the other way subtracted; another sum than 0 means an open
@@ -125,7 +128,7 @@ static bool is_closed(const hl_mesh_description *d) {
     const uint32_t *corner = d->triangles[t];
     for (int i = 0; i < 3; i++) {
       uint32_t a = corner[i], b = corner[(i + 1) % 3];
-      sum += a < b ? hl_hash_of_edge(a, b) : -hl_hash_of_edge(b, a);
+      sum += hl_hash_of_way(a, b);
     }
     const float *a = d->positions[corner[0]], *b = d->positions[corner[1]], *c = d->positions[corner[2]];
     volume += a[0] * ((double)b[1] * c[2] - (double)b[2] * c[1]) +

@@ -36,8 +36,9 @@ struct hl_mesh {
   uint64_t mark; /* of all that hides light: triangles, spheres and their colours; for keys of kept results */
 };
 
-/* A number for the edge between two vertices, by chance alike for others once in 2^64; a below b. */
-uint64_t hl_hash_of_edge(uint32_t a, uint32_t b);
+/* A number for the way along an edge from one vertex to another, by chance alike for others once in 2^64;
+ * with that of the way back the sum is 0. */
+uint64_t hl_hash_of_way(uint32_t from, uint32_t to);
 
 /* A mesh that is being read: growing arrays. */
 typedef struct mesh_parts {

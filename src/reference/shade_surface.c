@@ -3,24 +3,24 @@
 #include "mesh/mesh.h"
 #include "reference/reference.h"
 
-/* The cosine of 40 degrees: beyond that angle between a triangle and a vertex's normal there is an edge. */
-static const double ROUNDED = 0.766;
+/* The normal of a triangle's corner, of any length: its own where it is at an edge, else its vertex's. */
+static vec3 corner_normal(const reference *all, const hl_scene_mesh *mesh, size_t triangle, int i) {
+  const hl_mesh *of = mesh->mesh;
+  const vec3 *normals = all->surfaces.normals + all->surfaces.first_normal[mesh - all->scene->meshes];
+  uint32_t edge = of->edges != NULL ? of->edges[triangle][i] : HL_NO_EDGE;
+  if (edge == HL_NO_EDGE) return normals[of->description.triangles[triangle][i]];
+  const float *own = of->edge_normals[edge];
+  return mat3_apply(hl_scene_mesh_to_world(mesh).linear, (vec3){own[0], own[1], own[2]});
+}
 
 static vec3 normal_of(const reference *all, const reference_hit *hit, vec3 flat) {
-  const hl_scene_mesh *mesh = hit->triangle->mesh;
-  const uint32_t *corner = mesh->mesh->description.triangles[hit->triangle->index];
-  const vec3 *normals = all->surfaces.normals + all->surfaces.first_normal[mesh - all->scene->meshes];
-  const uint32_t *edges = mesh->mesh->edges != NULL ? mesh->mesh->edges[hit->triangle->index] : NULL;
-  mat3 turned = hl_scene_mesh_to_world(mesh).linear;
   vec3 sum = {0, 0, 0};
   for (int i = 0; i < 3; i++) {
-    const float *edge = edges != NULL && edges[i] != HL_NO_EDGE ? mesh->mesh->edge_normals[edges[i]] : NULL;
-    vec3 own = edge != NULL ? mat3_apply(turned, (vec3){edge[0], edge[1], edge[2]}) : normals[corner[i]];
-    own = vec3_normalise(own);
+    vec3 own = vec3_normalise(corner_normal(all, hit->triangle->mesh, hit->triangle->index, i));
     double along = vec3_dot(own, flat);
-    if (fabs(along) < ROUNDED) own = flat;
-    sum = vec3_add(sum,
-                   vec3_scale(own, along < 0 && fabs(along) >= ROUNDED ? -hit->weight[i] : hit->weight[i]));
+    bool rounded = fabs(along) >= HL_MESH_ROUNDED;
+    if (!rounded) own = flat;
+    sum = vec3_add(sum, vec3_scale(own, along < 0 && rounded ? -hit->weight[i] : hit->weight[i]));
   }
   return vec3_normalise(sum);
 }

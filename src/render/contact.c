@@ -209,15 +209,6 @@ static void find_bounds(const surface_batch *batch, vec3 *low, vec3 *high) {
   *low = hl_surface_vector(least), *high = hl_surface_vector(greatest);
 }
 
-/* Makes a box hold a cube as well. */
-static void hold(double low[3], double high[3], vec3 middle, double half) {
-  const double at[3] = {middle.x, middle.y, middle.z};
-  for (int a = 0; a < 3; a++) {
-    low[a] = at[a] - half < low[a] ? at[a] - half : low[a];
-    high[a] = at[a] + half > high[a] ? at[a] + half : high[a];
-  }
-}
-
 /* Makes a box hold the rays from a point. Rays begin off the point's own flat floor. */
 static void hold_rays(const sweep *sweep, const contact_light *light, vec3 point, double aside, double low[3],
                       double high[3]) {
@@ -225,8 +216,8 @@ static void hold_rays(const sweep *sweep, const contact_light *light, vec3 point
   hull_ball ends = ends_of_rays(light, point, pixel + sweep->geometry->sheets.spacing);
   vec3 way = vec3_subtract(ends.at, point);
   double length = vec3_length(way), start = length > 0 ? RAY_START * pixel / length : 0;
-  hold(low, high, vec3_add(point, vec3_scale(way, start)), aside);
-  hold(low, high, ends.at, aside + ends.radius);
+  vec3_bound_ball(vec3_add(point, vec3_scale(way, start)), aside, low, high);
+  vec3_bound_ball(ends.at, aside + ends.radius, low, high);
 }
 
 /* Whether the picture asks for light on any sample: one that faces the light; a layer asks for both sides. */

@@ -129,17 +129,12 @@ static void read_tile(const reads_task *task, size_t tile) {
   if (first > 0) read_slabs(task, tile, first, last);
 }
 
-static size_t tiles_of(const view *view) {
-  return (size_t)hl_tiles(view->width) * (size_t)hl_tiles(view->height);
-}
-
 static bool is_limited(const sweep *sweep, const light_shadow *shadow) {
   return sweep->share->part_of != NULL && shadow->method != NULL && shadow->method->advance == NULL;
 }
 
 uint64_t hl_light_reads_bytes(const sweep *sweep, const light_shadow *shadow) {
-  if (sweep->share->parts == 1 || shadow->method == NULL || shadow->method->advance != NULL) return 0;
-  return tiles_of(&shadow->plan.view) * sizeof(int32_t);
+  return is_limited(sweep, shadow) ? hl_view_tiles(&shadow->plan.view) * sizeof(int32_t) : 0;
 }
 
 hl_status hl_light_reads_find(sweep *sweep, hl_error *error) {
@@ -148,7 +143,7 @@ hl_status hl_light_reads_find(sweep *sweep, hl_error *error) {
     sweep_light *light = &sweep->lights[i];
     if (!is_limited(sweep, &light->shadow)) continue;
     const view *view = &light->shadow.buffer->view;
-    size_t tiles = tiles_of(view);
+    size_t tiles = hl_view_tiles(view);
     light->needed_until = hl_allocate_zeroed(sweep->content.context, tiles, sizeof *light->needed_until);
     if (light->needed_until == NULL)
       return hl_fail_memory(error, tiles * sizeof *light->needed_until, "a light's tiles");

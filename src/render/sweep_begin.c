@@ -114,7 +114,7 @@ static void add_light_bytes(sweep *sweep, int index, sweep_bytes *bytes, size_t 
                     (light->emission != NULL ? sizeof *light->emission : 0) +
                     hl_view_sheets_bytes(&sweep->content, view, shadow->plan.spare) +
                     hl_light_reads_bytes(sweep, shadow);
-  *tasks += (size_t)hl_tiles(view->width) * (size_t)hl_tiles(view->height);
+  *tasks += hl_view_tiles(view);
 }
 
 /* tasks: tiles of the picture and of all lights. */

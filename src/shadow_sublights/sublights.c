@@ -44,7 +44,7 @@ static void lay_out_sublights(light_shadow *shadow, shadow_layouts *layouts) {
   size_t count = (size_t)all->count, channels = (size_t)all->channels;
   size_t tiles = (size_t)all->tiles_x * (size_t)all->tiles_y;
   const view *slab = &shadow->plan.view;
-  size_t slab_tiles = (size_t)hl_tiles(slab->width) * (size_t)hl_tiles(slab->height);
+  size_t slab_tiles = hl_view_tiles(slab);
   all->memory = hl_layout_take(layout, count * channels, all->plane * sizeof *all->memory);
   all->moved_floats = MOVED_COPIES * channels * hl_shadow_plane(slab, shadow->plan.reach);
   all->moved = hl_layout_take(layout, all->moved_floats, sizeof *all->moved);

@@ -12,8 +12,7 @@
 _Static_assert(HL_LIMIT_MESHES + HL_LIMIT_VOLUMES * HL_LIMIT_ISO <= 65536, "a fragment's mesh has 16 bits");
 
 uint64_t hl_fragments_bytes(const surfaces *all, const view *view, int threads, uint64_t *making) {
-  uint64_t primitives = hl_surfaces_count(all),
-           pixels = (uint64_t)hl_tiles(view->width) * (uint64_t)hl_tiles(view->height) * TILE_PIXELS;
+  uint64_t primitives = hl_surfaces_count(all), pixels = hl_view_tiles(view) * TILE_PIXELS;
   uint64_t list = (primitives + 2 * pixels) * sizeof(fragment);
   /* a thread's list grows by copies, each twice as long as the one before */
   *making = 2 * list + all->vertex_count * 2 * sizeof(int32_t) + hl_primitive_bins_bytes(all, view) +

@@ -141,8 +141,7 @@ static bool find_places(bin_work *work, size_t tasks) {
 }
 
 uint64_t hl_primitive_bins_bytes(const surfaces *all, const view *view) {
-  uint64_t count = hl_surfaces_count(all),
-           tiles = (uint64_t)hl_tiles(view->width) * (uint64_t)hl_tiles(view->height);
+  uint64_t count = hl_surfaces_count(all), tiles = hl_view_tiles(view);
   uint64_t tasks = count / LEAST_A_TASK + 1 < MOST_TASKS ? count / LEAST_A_TASK + 1 : MOST_TASKS;
   return count * (sizeof(tile_span) + sizeof(uint32_t)) + (tasks + 1) * tiles * sizeof(uint32_t);
 }

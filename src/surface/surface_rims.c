@@ -15,7 +15,7 @@ static void sum_edges(const surfaces *all, const surface_mesh *mesh, uint64_t *s
     for (int i = 0; i < 3; i++) {
       uint32_t a = corner[i] - (uint32_t)mesh->first_vertex,
                b = corner[(i + 1) % 3] - (uint32_t)mesh->first_vertex;
-      uint64_t hash = a < b ? hl_hash_of_edge(a, b) : -hl_hash_of_edge(b, a);
+      uint64_t hash = hl_hash_of_way(a, b);
       sum[a] += hash;
       sum[b] += hash;
     }

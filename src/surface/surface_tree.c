@@ -229,13 +229,7 @@ bool hl_surface_tree_overlaps(const surface_tree *tree, const double low[3], con
 
 bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, int count, double least) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (int i = 0; i < count; i++) {
-    const double at[3] = {balls[i].at.x, balls[i].at.y, balls[i].at.z};
-    for (int a = 0; a < 3; a++) {
-      low[a] = lesser(low[a], at[a] - balls[i].radius);
-      high[a] = greater(high[a], at[a] + balls[i].radius);
-    }
-  }
+  for (int i = 0; i < count; i++) vec3_bound_ball(balls[i].at, balls[i].radius, low, high);
   return reaches(tree, low, high, balls, count, least);
 }
 

@@ -57,6 +57,13 @@ static void look_from_within(mesh_stage *all, vec3 eye, vec3 target) {
   stage_look(&all->set, eye, target, (vec3){0, 0, 1});
 }
 
+/* A lamp with the shadows of a kind (mesh_stage_choose_shadows): a point, or a ball. */
+static void add_lamp(mesh_stage *all, vec3 at, int kind) {
+  hl_light *light = stage_add_point(&all->set, at);
+  mesh_stage_choose_shadows(all, light, kind, 0);
+  light->radius = kind == 0 ? 0 : 1;
+}
+
 /* The walls of a room with a lamp in it have the cosine of its light, as those of a room that has one side
  * open: they take no light from themselves. */
 static void test_lamp_in_room(void **state) {
@@ -67,9 +74,7 @@ static void test_lamp_in_room(void **state) {
     mesh_stage all;
     mesh_stage_open(&all, SIDE, 1);
     (void)add_box(&all, half);
-    hl_light *light = stage_add_point(&all.set, lamp);
-    mesh_stage_choose_shadows(&all, light, kind, 0);
-    light->radius = kind == 0 ? 0 : 1;
+    add_lamp(&all, lamp, kind);
     look_from_within(&all, eye, (vec3){0, 0, -3});
     stage_render_sheets(&all.set, pixels);
     int counted = 0;
@@ -95,9 +100,7 @@ static void test_lamp_in_ball(void **state) {
     mesh_stage all;
     mesh_stage_open(&all, SIDE, 1);
     (void)add_sphere(&all, 20);
-    hl_light *light = stage_add_point(&all.set, (vec3){0, 0, 0});
-    mesh_stage_choose_shadows(&all, light, kind, 0);
-    light->radius = kind == 0 ? 0 : 1;
+    add_lamp(&all, (vec3){0, 0, 0}, kind);
     look_from_within(&all, (vec3){2, -12, 1}, (vec3){0, 0, -3});
     stage_render_sheets(&all.set, pixels);
     for (int i = 0; i < PIXELS; i++) assert_near((double)pixels[4 * i], 1, 0.01);
