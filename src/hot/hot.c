@@ -49,7 +49,7 @@ const hot_functions HL_HOT_TABLE = {
     .view = {brick_ranges_in_view, coverage_tile},
     .field = {field_opacity, field_cover, sky_row},
     .fill = {relevant_blocks_tile, splat_tile, gather_tile},
-    .surface = {cover_small},
+    .surface = {cover_small, see_cluster, cover_cluster},
     .shadow = {attenuate_tile,
                lit_blocks_tile,
                {blur_rows_tile, blur_columns_tile, lit_blocks_tile, emission_tile},

@@ -17,6 +17,7 @@
 #include "render/sky.h"
 #include "scatter/scatter.h"
 #include "scene/check.h"
+#include "surface/place_surfaces.h"
 
 struct hl_renderer {
   hl_context *context;

@@ -77,9 +77,10 @@ static void set_corners(const crossing_tile *tile, uint32_t triangle, shown_surf
   for (int i = 0; i < 3; i++) {
     uint32_t vertex = tile->all->triangles[triangle][i];
     vec3 at = hl_surface_vector(tile->all->positions[vertex]);
-    if (tile->seen->at[vertex][0] == VERTEX_IS_CUT) return;
-    x[i] = tile->seen->at[vertex][0] / (double)SUBPIXELS;
-    y[i] = tile->seen->at[vertex][1] / (double)SUBPIXELS;
+    int32_t seen[2];
+    if (!hl_see_vertex(tile->seen, vertex, seen)) return;
+    x[i] = seen[0] / (double)SUBPIXELS;
+    y[i] = seen[1] / (double)SUBPIXELS;
     part[i] = view->perspective ? 1 / vec3_dot(view->inverse.row[0], vec3_subtract(at, view->origin)) : 1;
     rise[i] = (vec3_dot(tile->sheets->normal, at) - tile->sheets->first) * part[i];
   }

@@ -14,7 +14,7 @@
 typedef struct crossing_tile {
   const surfaces *all;
   const view *view;
-  const seen_vertices *seen;
+  const seen_surfaces *seen;
   const sheet_stack *sheets;
   const fragment_order *order;
   int x, y; /* its first pixel */

@@ -6,8 +6,7 @@
 
 /* ---- sorting ---- */
 
-/* A float's bits, so that they grow as the float does; turned round where heights fall. */
-static uint32_t ordered_bits(float height, bool falling) {
+uint32_t hl_ordered_bits(float height, bool falling) {
   uint32_t bits;
   height += 0.0f; /* no minus zero */
   memcpy(&bits, &height, sizeof bits);
@@ -36,8 +35,8 @@ static void sort_short_run(order_key *list, size_t count) {
   }
 }
 
-/* Sorts runs, then merges them; equal keys keep their order. spare: [count]. */
-static void sort_keys(order_key *list, order_key *spare, size_t count) {
+/* Sorts runs, then merges them. */
+void hl_sort_keys(order_key *list, order_key *spare, size_t count) {
   for (size_t at = 0; at < count; at += SHORT_RUN)
     sort_short_run(list + at, count - at < SHORT_RUN ? count - at : SHORT_RUN);
   order_key *from = list, *to = spare;
@@ -92,10 +91,10 @@ size_t hl_sort_by_pixel(const fragment *list, size_t count, const fragment_order
   for (int p = 0; p < TILE_PIXELS; p++) places[p + 1] += places[p];
   for (size_t i = 0; i < count; i++)
     keys[places[list[i].pixel]++] = (order_key){
-        (uint64_t)ordered_bits(list[i].height, order->falling) << 32 | list[i].primitive, (uint32_t)i};
+        (uint64_t)hl_ordered_bits(list[i].height, order->falling) << 32 | list[i].primitive, (uint32_t)i};
   for (size_t p = 0, first = 0; p < TILE_PIXELS; first = places[p++]) { /* a place is now its pixel's end */
     size_t own = places[p] - first;
-    sort_keys(keys + first, keys + count, own);
+    hl_sort_keys(keys + first, keys + count, own);
     if (!order->slabs && !order->apart) {
       kept += copy_uncovered(list, keys + first, own, most, order, sorted + kept);
       continue;

@@ -26,6 +26,12 @@ typedef struct order_key {
   uint32_t index; /* in the list */
 } order_key;
 
+/* A float's bits, so that they grow as the float does; turned round where heights fall. */
+uint32_t hl_ordered_bits(float height, bool falling);
+
+/* Sorts by rising keys; equal ones keep their order. spare: [count]. */
+void hl_sort_keys(order_key *list, order_key *spare, size_t count);
+
 /* Whether a fragment takes all light of its samples. */
 static inline bool hl_is_opaque(const fragment *f, const float *least) {
   return f->opacity * least[f->mesh] >= 1;

@@ -15,7 +15,7 @@ uint64_t hl_fragments_bytes(const surfaces *all, const view *view, int threads, 
   uint64_t primitives = hl_surfaces_count(all), pixels = hl_view_tiles(view) * TILE_PIXELS;
   uint64_t list = (primitives + 2 * pixels) * sizeof(fragment);
   /* a thread's list grows by copies, each twice as long as the one before */
-  *making = 2 * list + all->vertex_count * 2 * sizeof(int32_t) + hl_primitive_bins_bytes(all, view) +
+  *making = 2 * list + hl_primitive_bins_bytes(all, view) +
             (uint64_t)threads * 2 * 2 * TILE_PIXELS * MOST_SLABS * (sizeof(fragment) + sizeof(order_key));
   return list;
 }
@@ -91,21 +91,12 @@ static bool has_dark_backs(const fragments_source *source, const surface_mesh *m
          is_outside(source->view, mesh->scene);
 }
 
-static hl_status bin_primitives(const fragments_source *source, const seen_vertices *seen,
-                                primitive_bins *bins, hl_error *error) {
-  const surfaces *all = source->surfaces;
-  binned *wanted = hl_allocate(source->context, all->mesh_count, sizeof *wanted);
-  if (wanted == NULL) return hl_fail_memory(error, all->mesh_count * sizeof *wanted, "the meshes");
-  for (size_t m = 0; m < all->mesh_count; m++) {
-    const surface_mesh *mesh = &all->meshes[m];
-    bool shades = mesh->scene->casts_shadow,
-         seen_here = source->unseen ? shades && !mesh->scene->visible
-                                    : mesh->scene->visible || (source->of_light && shades);
-    wanted[m] = !seen_here ? BINNED_NOTHING : has_hidden_backs(source, mesh) ? BINNED_FRONTS : BINNED_ALL;
-  }
-  hl_status status = hl_primitive_bins_create(source->context, source->pool, seen, wanted, bins, error);
-  hl_release(source->context, wanted);
-  return status;
+/* What of a mesh a view's fragments are made of. */
+static binned wanted_of(const fragments_source *source, const surface_mesh *mesh) {
+  bool shades = mesh->scene->casts_shadow,
+       seen_here = source->unseen ? shades && !mesh->scene->visible
+                                  : mesh->scene->visible || (source->of_light && shades);
+  return !seen_here ? BINNED_NOTHING : has_hidden_backs(source, mesh) ? BINNED_FRONTS : BINNED_ALL;
 }
 
 /* Finds what is known of each mesh. */
@@ -143,23 +134,33 @@ static hl_status make_tiles(fragment_work *work, fragments *made, hl_error *erro
   return status;
 }
 
-hl_status hl_fragments_create(const fragments_source *source, fragments *made, hl_error *error) {
-  hl_context *context = source->context;
-  seen_vertices seen = {0};
+/* Sorts the primitives into tiles and makes these; work->seen is set. */
+static hl_status bin_and_make(fragment_work *work, fragments *made, hl_error *error) {
+  const fragments_source *source = work->source;
+  const surfaces *all = source->surfaces;
   primitive_bins bins = {0};
+  hl_status status = HL_OK;
+  work->wanted = hl_allocate(source->context, all->mesh_count, sizeof *work->wanted);
+  if (work->wanted == NULL)
+    return hl_fail_memory(error, all->mesh_count * sizeof *work->wanted, "the meshes");
+  for (size_t m = 0; m < all->mesh_count; m++) work->wanted[m] = wanted_of(source, &all->meshes[m]);
+  status = hl_primitive_bins_create(source->context, source->pool, work->seen, work->wanted, &bins, error);
+  work->bins = &bins;
+  if (status == HL_OK) status = make_tiles(work, made, error);
+  hl_primitive_bins_release(source->context, &bins);
+  hl_release(source->context, work->wanted);
+  return status;
+}
+
+hl_status hl_fragments_create(const fragments_source *source, fragments *made, hl_error *error) {
+  const seen_surfaces seen = {source->view, source->surfaces};
   fragment_work work = {.source = source,
                         .seen = &seen,
-                        .bins = &bins,
                         .tiles_x = hl_tiles(source->view->width),
                         .tiles_y = hl_tiles(source->view->height)};
   *made = (fragments){.tiles = (size_t)work.tiles_x * (size_t)work.tiles_y};
-  hl_status status = hl_seen_vertices_create(context, source->pool, source->surfaces, source->view, &seen,
-                                             error);
-  if (status == HL_OK) status = bin_primitives(source, &seen, &bins, error);
-  if (status == HL_OK) status = make_tiles(&work, made, error);
-  hl_seen_vertices_release(context, &seen);
-  hl_primitive_bins_release(context, &bins);
-  if (status != HL_OK) hl_fragments_release(context, made);
+  hl_status status = bin_and_make(&work, made, error);
+  if (status != HL_OK) hl_fragments_release(source->context, made);
   return status;
 }
 

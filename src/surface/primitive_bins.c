@@ -3,7 +3,10 @@
 
 #include "core/memory.h"
 
-enum { LEAST_A_TASK = 1 << 14, MOST_TASKS = 32 };
+enum { LEAST_A_TASK = 1 << 8, MOST_TASKS = 32 };
+
+/* A cluster that touches more tiles is taken apart. */
+enum { MOST_TILES_TOGETHER = 9 };
 
 /* The tiles that a primitive touches, the last ones included; none where x0 is greater than x1. */
 typedef struct tile_span {
@@ -11,23 +14,18 @@ typedef struct tile_span {
 } tile_span;
 
 typedef struct bin_work {
-  const seen_vertices *seen;
+  const seen_surfaces *seen;
   const binned *wanted;
   primitive_bins *bins;
-  tile_span *spans; /* [primitives] */
-  uint32_t *places; /* [tasks][tiles]; first how many entries a task has for a tile, then where they go */
+  tile_span *spans; /* [primitives]; of those that are binned one by one */
+  uint32_t *places; /* [tasks][tiles]; first how many runs a task has for a tile, then where they go */
   size_t tiles;
-  uint32_t a_task; /* primitives of a task */
+  size_t a_task; /* clusters of a task */
   int tiles_x, tiles_y;
 } bin_work;
 
 static uint16_t clamp_tile(int32_t tile, int tiles) {
   return (uint16_t)(tile < 0 ? 0 : tile >= tiles ? tiles - 1 : tile);
-}
-
-/* Twice a triangle's area: below 0 where it faces the view. */
-static int64_t area_of(const int32_t x[3], const int32_t y[3]) {
-  return (int64_t)(x[1] - x[0]) * (y[2] - y[0]) - (int64_t)(x[2] - x[0]) * (y[1] - y[0]);
 }
 
 static void set_triangle_span(const bin_work *work, const int32_t *x, const int32_t *y, int corners,
@@ -49,24 +47,13 @@ static void set_triangle_span(const bin_work *work, const int32_t *x, const int3
 }
 
 static void find_triangle_span(const bin_work *work, uint32_t triangle, binned wanted, tile_span *span) {
-  const uint32_t *vertex = work->seen->all->triangles[triangle];
-  int32_t x[3], y[3];
   seen_polygon polygon;
-  bool cut = false;
-  for (int i = 0; i < 3; i++) {
-    x[i] = work->seen->at[vertex[i]][0], y[i] = work->seen->at[vertex[i]][1];
-    cut = cut || x[i] == VERTEX_IS_CUT;
-  }
-  if (cut) {
-    hl_see_triangle(work->seen, triangle, &polygon);
-    if (polygon.count > 0 && (wanted != BINNED_FRONTS || area_of(polygon.x, polygon.y) <= 0))
-      set_triangle_span(work, polygon.x, polygon.y, polygon.count, span);
-  } else if (wanted != BINNED_FRONTS || area_of(x, y) <= 0) {
-    set_triangle_span(work, x, y, 3, span);
-  }
+  hl_see_triangle(work->seen, triangle, &polygon);
+  if (polygon.count > 0 && (wanted != BINNED_FRONTS || hl_polygon_area(polygon.x, polygon.y) <= 0))
+    set_triangle_span(work, polygon.x, polygon.y, polygon.count, span);
 }
 
-static void set_sphere_span(const bin_work *work, const seen_bounds *bounds, tile_span *span) {
+static void set_bounds_span(const bin_work *work, const seen_bounds *bounds, tile_span *span) {
   const double limit = 1 << 20; /* tiles: whole numbers hold them */
   int32_t at[4];
   const double ends[4] = {bounds->u0, bounds->v0, bounds->u1, bounds->v1};
@@ -79,53 +66,75 @@ static void find_span(const bin_work *work, uint32_t primitive, binned wanted, t
   const surfaces *all = work->seen->all;
   seen_bounds bounds;
   *span = (tile_span){1, 1, 0, 0};
-  if (wanted == BINNED_NOTHING) return;
   if (primitive < all->triangle_count) find_triangle_span(work, primitive, wanted, span);
   else if (hl_see_sphere(work->seen->view, all->spheres[primitive - all->triangle_count], &bounds))
-    set_sphere_span(work, &bounds, span);
+    set_bounds_span(work, &bounds, span);
 }
 
-static void task_range(const bin_work *work, size_t index, uint32_t *first, uint32_t *end) {
-  *first = (uint32_t)index * work->a_task;
-  *end = hl_surfaces_count(work->seen->all);
-  if (*end - *first > work->a_task) *end = *first + work->a_task;
+static int tiles_of(const tile_span *span) {
+  return span->x0 > span->x1 ? 0 : (span->x1 - span->x0 + 1) * (span->y1 - span->y0 + 1);
 }
 
-/* Finds the spans of a task's primitives, and how many of them touch each tile. */
-static void count_task(void *data, size_t index, int worker) {
-  (void)worker;
-  const bin_work *work = data;
-  const surfaces *all = work->seen->all;
-  uint32_t *places = work->places + index * work->tiles, first, end, next;
-  task_range(work, index, &first, &end);
-  for (uint32_t from = first; from < end; from = next) {
-    size_t mesh = hl_surface_mesh_of(all, from);
-    next = hl_surface_mesh_end(all, mesh, from);
-    for (uint32_t t = from; t < next && t < end; t++) {
-      tile_span span;
-      find_span(work, t, work->wanted[mesh], &span);
-      work->spans[t] = span;
-      for (int y = span.y0; y <= span.y1; y++)
-        for (int x = span.x0; x <= span.x1; x++) places[(size_t)y * (size_t)work->tiles_x + (size_t)x]++;
+/* The tiles of a cluster; *whole: all its primitives may be put into each of them together. */
+static void find_cluster_span(const bin_work *work, const surface_cluster *cluster, tile_span *span,
+                              bool *whole) {
+  const view *view = work->seen->view;
+  binned wanted = work->wanted[cluster->mesh];
+  seen_bounds bounds;
+  *span = (tile_span){1, 1, 0, 0};
+  *whole = true;
+  if (wanted == BINNED_NOTHING) return;
+  if (wanted == BINNED_FRONTS && hl_cluster_faces_away(cluster, view)) return;
+  seen_box box = hl_see_box(view, cluster->low, cluster->high, &bounds);
+  if (box == BOX_UNSEEN) return;
+  if (box == BOX_WHOLE) set_bounds_span(work, &bounds, span);
+  *whole = box == BOX_WHOLE &&
+           tiles_of(span) <= (cluster->first < work->seen->all->triangle_count ? MOST_TILES_TOGETHER : 1);
+}
+
+static void task_range(const bin_work *work, size_t index, size_t *first, size_t *end) {
+  size_t count = work->seen->all->cluster_count;
+  *first = index * work->a_task;
+  *end = *first + work->a_task < count ? *first + work->a_task : count;
+}
+
+/* Counts a run in the tiles of a span, or places it. */
+static void add_run(const bin_work *work, uint32_t *places, const tile_span *span, primitive_run run) {
+  for (int y = span->y0; y <= span->y1; y++)
+    for (int x = span->x0; x <= span->x1; x++) {
+      uint32_t place = places[(size_t)y * (size_t)work->tiles_x + (size_t)x]++;
+      if (work->bins->runs != NULL) work->bins->runs[place] = run;
     }
+}
+
+static void add_one_by_one(const bin_work *work, uint32_t *places, const surface_cluster *cluster) {
+  for (uint32_t i = cluster->first; i < cluster->first + cluster->count; i++) {
+    uint32_t p = work->seen->all->order[i];
+    if (work->bins->runs == NULL) find_span(work, p, work->wanted[cluster->mesh], &work->spans[p]);
+    add_run(work, places, &work->spans[p], (primitive_run){p, NO_CLUSTER});
   }
 }
 
-static void place_task(void *data, size_t index, int worker) {
+/* Counts how many runs of a task touch each tile; then, where there is room for them, places them. */
+static void bin_task(void *data, size_t index, int worker) {
   (void)worker;
   const bin_work *work = data;
-  uint32_t *places = work->places + index * work->tiles, first, end;
+  uint32_t *places = work->places + index * work->tiles;
+  size_t first, end;
   task_range(work, index, &first, &end);
-  for (uint32_t t = first; t < end; t++) {
-    tile_span span = work->spans[t];
-    for (int y = span.y0; y <= span.y1; y++)
-      for (int x = span.x0; x <= span.x1; x++)
-        work->bins->primitives[places[(size_t)y * (size_t)work->tiles_x + (size_t)x]++] = t;
+  for (size_t c = first; c < end; c++) {
+    const surface_cluster *cluster = &work->seen->all->clusters[c];
+    tile_span span;
+    bool whole;
+    find_cluster_span(work, cluster, &span, &whole);
+    if (whole)
+      add_run(work, places, &span, (primitive_run){work->seen->all->order[cluster->first], (uint32_t)c});
+    else add_one_by_one(work, places, cluster);
   }
 }
 
-/* Turns the numbers of entries into the index of each bin's first entry. False where there are more than 2^32
- * entries. */
+/* Turns the numbers of runs into the index of each bin's first run. False where there are more than 2^32
+ * of them. */
 static bool find_places(bin_work *work, size_t tasks) {
   uint64_t sum = 0;
   for (size_t tile = 0; tile < work->tiles; tile++) {
@@ -142,30 +151,31 @@ static bool find_places(bin_work *work, size_t tasks) {
 
 uint64_t hl_primitive_bins_bytes(const surfaces *all, const view *view) {
   uint64_t count = hl_surfaces_count(all), tiles = hl_view_tiles(view);
-  uint64_t tasks = count / LEAST_A_TASK + 1 < MOST_TASKS ? count / LEAST_A_TASK + 1 : MOST_TASKS;
-  return count * (sizeof(tile_span) + sizeof(uint32_t)) + (tasks + 1) * tiles * sizeof(uint32_t);
+  uint64_t tasks = all->cluster_count / LEAST_A_TASK + 1;
+  if (tasks > MOST_TASKS) tasks = MOST_TASKS;
+  return count * (sizeof(tile_span) + sizeof(primitive_run)) + (tasks + 1) * tiles * sizeof(uint32_t);
 }
 
-hl_status hl_primitive_bins_create(hl_context *context, hl_pool *pool, const seen_vertices *seen,
+hl_status hl_primitive_bins_create(hl_context *context, hl_pool *pool, const seen_surfaces *seen,
                                    const binned *wanted, primitive_bins *bins, hl_error *error) {
   bin_work work = {.seen = seen, .wanted = wanted, .bins = bins};
-  uint32_t count = hl_surfaces_count(seen->all);
+  size_t count = seen->all->cluster_count;
   work.tiles_x = hl_tiles(seen->view->width);
   work.tiles_y = hl_tiles(seen->view->height);
   work.tiles = (size_t)work.tiles_x * (size_t)work.tiles_y;
   work.a_task = count / MOST_TASKS + 1;
   if (work.a_task < LEAST_A_TASK) work.a_task = LEAST_A_TASK;
-  size_t tasks = ((size_t)count + work.a_task - 1) / work.a_task;
+  size_t tasks = (count + work.a_task - 1) / work.a_task;
   *bins = (primitive_bins){.first = hl_allocate(context, work.tiles + 1, sizeof *bins->first)};
   work.places = hl_allocate_zeroed(context, tasks * work.tiles, sizeof *work.places);
-  work.spans = hl_allocate(context, count, sizeof *work.spans);
+  work.spans = hl_allocate(context, hl_surfaces_count(seen->all), sizeof *work.spans);
   bool room = bins->first != NULL && work.places != NULL && work.spans != NULL;
   if (room) {
-    hl_pool_run(pool, tasks, count_task, &work);
+    hl_pool_run(pool, tasks, bin_task, &work);
     room = find_places(&work, tasks);
-    if (room) bins->primitives = hl_allocate(context, bins->first[work.tiles], sizeof *bins->primitives);
-    room = bins->primitives != NULL;
-    if (room) hl_pool_run(pool, tasks, place_task, &work);
+    if (room) bins->runs = hl_allocate(context, bins->first[work.tiles], sizeof *bins->runs);
+    room = bins->runs != NULL;
+    if (room) hl_pool_run(pool, tasks, bin_task, &work);
   }
   hl_release(context, work.places);
   hl_release(context, work.spans);
@@ -176,6 +186,6 @@ hl_status hl_primitive_bins_create(hl_context *context, hl_pool *pool, const see
 
 void hl_primitive_bins_release(hl_context *context, primitive_bins *bins) {
   hl_release(context, bins->first);
-  hl_release(context, bins->primitives);
+  hl_release(context, bins->runs);
   *bins = (primitive_bins){0};
 }

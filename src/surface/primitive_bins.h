@@ -1,19 +1,29 @@
-/* surface/primitive_bins.h - triangles and spheres sorted by the tiles of a view that they touch. */
+/* surface/primitive_bins.h - triangles and spheres sorted by the tiles of a view that they touch: clusters of
+ * them whole where they touch few tiles, else one by one. */
 #ifndef HL_SURFACE_PRIMITIVE_BINS_H
 #define HL_SURFACE_PRIMITIVE_BINS_H
 
+#include "surface/clusters.h"
 #include "surface/seen.h"
 
+/* One primitive, or those of a cluster, of which some may lie beside the tile, or turn their backs. */
+typedef struct primitive_run {
+  uint32_t primitive; /* of a cluster the first */
+  uint32_t cluster;   /* NO_CLUSTER: this primitive alone */
+} primitive_run;
+
+#define NO_CLUSTER UINT32_MAX
+
 typedef struct primitive_bins {
-  uint32_t *first;      /* owned; [tiles + 1] */
-  uint32_t *primitives; /* owned; by tile, then in their order */
+  uint32_t *first;     /* owned; [tiles + 1] */
+  primitive_run *runs; /* owned; by tile, then in the order of primitives */
 } primitive_bins;
 
 /* What of a mesh is binned. */
 typedef enum binned { BINNED_NOTHING, BINNED_FRONTS, BINNED_ALL } binned;
 
 /* wanted: [mesh_count]; of BINNED_FRONTS the triangles that face the view. */
-hl_status hl_primitive_bins_create(hl_context *context, hl_pool *pool, const seen_vertices *seen,
+hl_status hl_primitive_bins_create(hl_context *context, hl_pool *pool, const seen_surfaces *seen,
                                    const binned *wanted, primitive_bins *bins, hl_error *error);
 /* About the bytes that making bins takes, with each primitive in one tile. */
 uint64_t hl_primitive_bins_bytes(const surfaces *all, const view *view);

@@ -1,8 +1,6 @@
 /* surface/seen.c - see seen.h. */
 #include "surface/seen.h"
 
-#include "core/memory.h"
-
 /* Pixels around the view within which triangles are kept whole. */
 static const double FRAME_AROUND = 4096;
 /* The least distance in front of a perspective view's eye, as a fraction of the distance of the plane at
@@ -33,38 +31,16 @@ static double inside(const view *view, int side, corner c) {
 
 static int32_t subpixels_of(double pixels) { return (int32_t)floor(pixels * SUBPIXELS + 0.5); }
 
-/* ---- vertices ---- */
-
-enum { A_TASK = 1 << 14 };
-
-static void see_task(void *data, size_t index, int worker) {
-  (void)worker;
-  const seen_vertices *seen = data;
-  size_t first = index * A_TASK, end = first + A_TASK;
-  if (end > seen->all->vertex_count) end = seen->all->vertex_count;
-  for (size_t n = first; n < end; n++) {
-    corner c = corner_in_view(seen->view, hl_surface_vector(seen->all->positions[n]));
-    bool whole = true;
-    for (int side = 0; side < 5; side++) whole = whole && inside(seen->view, side, c) >= 0;
-    seen->at[n][0] = whole ? subpixels_of(c.u / c.w) : VERTEX_IS_CUT;
-    seen->at[n][1] = whole ? subpixels_of(c.v / c.w) : 0;
-  }
-}
-
-hl_status hl_seen_vertices_create(hl_context *context, hl_pool *pool, const surfaces *all, const view *view,
-                                  seen_vertices *seen, hl_error *error) {
-  *seen = (seen_vertices){view, all, hl_allocate(context, all->vertex_count, sizeof *seen->at)};
-  if (seen->at == NULL) return hl_fail_memory(error, all->vertex_count * sizeof *seen->at, "the vertices");
-  hl_pool_run(pool, (all->vertex_count + A_TASK - 1) / A_TASK, see_task, seen);
-  return HL_OK;
-}
-
-void hl_seen_vertices_release(hl_context *context, seen_vertices *seen) {
-  hl_release(context, seen->at);
-  seen->at = NULL;
-}
-
 /* ---- triangles ---- */
+
+bool hl_see_vertex(const seen_surfaces *seen, uint32_t vertex, int32_t at[2]) {
+  corner c = corner_in_view(seen->view, hl_surface_vector(seen->all->positions[vertex]));
+  for (int side = 0; side < 5; side++)
+    if (!(inside(seen->view, side, c) >= 0)) return false;
+  at[0] = subpixels_of(c.u / c.w);
+  at[1] = subpixels_of(c.v / c.w);
+  return true;
+}
 
 /* Cuts a polygon by one side; returns how many corners are left. */
 static int clip(const view *view, int side, const corner *from, int count, corner *to) {
@@ -80,7 +56,7 @@ static int clip(const view *view, int side, const corner *from, int count, corne
   return kept;
 }
 
-static void see_cut_triangle(const seen_vertices *seen, const uint32_t *vertex, seen_polygon *polygon) {
+static void see_cut_triangle(const seen_surfaces *seen, const uint32_t *vertex, seen_polygon *polygon) {
   const view *view = seen->view;
   corner corners[2][CLIPPED_CORNERS + 1];
   int count = 3, at = 0;
@@ -100,18 +76,24 @@ static void see_cut_triangle(const seen_vertices *seen, const uint32_t *vertex, 
   }
 }
 
-void hl_see_triangle(const seen_vertices *seen, uint32_t triangle, seen_polygon *polygon) {
+void hl_see_triangle(const seen_surfaces *seen, uint32_t triangle, seen_polygon *polygon) {
   const uint32_t *vertex = seen->all->triangles[triangle];
   polygon->count = 3;
   for (int i = 0; i < 3; i++) {
-    const int32_t *at = seen->at[vertex[i]];
-    if (at[0] == VERTEX_IS_CUT) {
+    int32_t at[2];
+    if (!hl_see_vertex(seen, vertex[i], at)) {
       see_cut_triangle(seen, vertex, polygon);
       return;
     }
     polygon->x[i] = at[0];
     polygon->y[i] = at[1];
   }
+}
+
+bool hl_faces_view(const seen_surfaces *seen, uint32_t triangle) {
+  seen_polygon p;
+  hl_see_triangle(seen, triangle, &p);
+  return p.count > 0 && hl_polygon_area(p.x, p.y) <= 0;
 }
 
 /* ---- spheres ---- */
@@ -138,4 +120,30 @@ bool hl_see_sphere(const view *view, const float sphere[4], seen_bounds *bounds)
     find_extent(c.v, c.w, view->inverse.row[2], nearer, sphere[3], &bounds->v0, &bounds->v1);
   }
   return bounds->u1 >= 0 && bounds->v1 >= 0 && bounds->u0 < view->width && bounds->v0 < view->height;
+}
+
+/* ---- boxes ---- */
+
+seen_box hl_see_box(const view *view, const float low[3], const float high[3], seen_bounds *bounds) {
+  bool whole = true;
+  int outside[5] = {0};
+  *bounds = (seen_bounds){INFINITY, INFINITY, -INFINITY, -INFINITY};
+  for (int i = 0; i < 8; i++) {
+    corner c = corner_in_view(
+        view, (vec3){i & 1 ? high[0] : low[0], i & 2 ? high[1] : low[1], i & 4 ? high[2] : low[2]});
+    for (int side = 0; side < 5; side++)
+      if (!(inside(view, side, c) >= 0)) whole = false, outside[side]++;
+    if (!whole) continue;
+    bounds->u0 = fmin(bounds->u0, c.u / c.w), bounds->u1 = fmax(bounds->u1, c.u / c.w);
+    bounds->v0 = fmin(bounds->v0, c.v / c.w), bounds->v1 = fmax(bounds->v1, c.v / c.w);
+  }
+  for (int side = 0; side < 5; side++)
+    if (outside[side] == 8) return BOX_UNSEEN;
+  if (!whole) return BOX_CUT;
+  const double rounded = 4.0 / SUBPIXELS; /* corners of triangles are */
+  bounds->u0 -= rounded, bounds->v0 -= rounded;
+  bounds->u1 += rounded, bounds->v1 += rounded;
+  return bounds->u1 >= 0 && bounds->v1 >= 0 && bounds->u0 < view->width && bounds->v0 < view->height
+             ? BOX_WHOLE
+             : BOX_UNSEEN;
 }

@@ -5,7 +5,6 @@
 #ifndef HL_SURFACE_SEEN_H
 #define HL_SURFACE_SEEN_H
 
-#include "core/pool.h"
 #include "surface/surfaces.h"
 #include "view/view.h"
 
@@ -17,27 +16,36 @@ typedef struct seen_polygon {
   int32_t x[CLIPPED_CORNERS], y[CLIPPED_CORNERS]; /* 1/256 pixels */
 } seen_polygon;
 
-/* Where a view sees the vertices. */
-typedef struct seen_vertices {
+/* A view and what it sees; borrowed. */
+typedef struct seen_surfaces {
   const view *view;
   const surfaces *all;
-  int32_t (*at)[2]; /* owned; [vertex_count]; 1/256 pixels; x is VERTEX_IS_CUT where the frame or the eye may
-                       cut triangles of the vertex */
-} seen_vertices;
+} seen_surfaces;
 
-#define VERTEX_IS_CUT INT32_MIN
+/* Where the view sees a vertex: 1/256 pixels. False where the frame or the eye may cut triangles of it. */
+bool hl_see_vertex(const seen_surfaces *seen, uint32_t vertex, int32_t at[2]);
 
-hl_status hl_seen_vertices_create(hl_context *context, hl_pool *pool, const surfaces *all, const view *view,
-                                  seen_vertices *seen, hl_error *error);
-void hl_seen_vertices_release(hl_context *context, seen_vertices *seen);
+void hl_see_triangle(const seen_surfaces *seen, uint32_t triangle, seen_polygon *polygon);
 
-void hl_see_triangle(const seen_vertices *seen, uint32_t triangle, seen_polygon *polygon);
+/* Twice the area of the first three corners of a polygon: below 0 where it faces the view. */
+static inline int64_t hl_polygon_area(const int32_t *x, const int32_t *y) {
+  return (int64_t)(x[1] - x[0]) * (y[2] - y[0]) - (int64_t)(x[2] - x[0]) * (y[1] - y[0]);
+}
 
-/* A rectangle around all that a view sees of a sphere; continuous pixels. False: nothing is seen. */
+/* Whether a triangle faces the view, or is seen from its edge. */
+bool hl_faces_view(const seen_surfaces *seen, uint32_t triangle);
+
+/* A rectangle around all that a view sees of a sphere, or a box; continuous pixels. False: nothing is seen.
+ */
 typedef struct seen_bounds {
   double u0, v0, u1, v1;
 } seen_bounds;
 
 bool hl_see_sphere(const view *view, const float sphere[4], seen_bounds *bounds);
+
+/* What a view sees of a box of frame space: nothing; or all of it within *bounds, and no triangle within it
+ * is cut; or neither is known. */
+typedef enum seen_box { BOX_UNSEEN, BOX_WHOLE, BOX_CUT } seen_box;
+seen_box hl_see_box(const view *view, const float low[3], const float high[3], seen_bounds *bounds);
 
 #endif

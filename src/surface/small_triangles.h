@@ -7,6 +7,7 @@
 #ifndef HL_SURFACE_SMALL_TRIANGLES_H
 #define HL_SURFACE_SMALL_TRIANGLES_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 enum { SMALL_TRIANGLES = 16, SMALL_SIDE = 4, SMALL_PIXELS = SMALL_SIDE * SMALL_SIDE };
@@ -33,17 +34,52 @@ typedef struct small_view {
   float from[3], du[3], dv[3];
   float depth[3];    /* perspective: a point's distance in lengths of its ray is depth.(X - from) */
   float delay, rise; /* as in fragments_source */
-  int dark_backs;    /* as in fragment_work: where the rays leave the mesh there is no delay */
+  double inverse[3][3], origin[3]; /* of clusters: w, w u and w v are the products with point - origin; w is 1
+                                   where the view is not a perspective one */
+  int32_t left, top;               /* of clusters: the tile's corner; 1/256 pixels */
+  int fronts;                      /* only triangles that face the view are covered */
+  int dark_backs;                  /* as in fragment_work: where the rays leave the mesh there is no delay */
 } small_view;
 
 typedef struct small_triangles {
   _Alignas(64) int32_t x[3][SMALL_TRIANGLES], y[3][SMALL_TRIANGLES]; /* corners; 1/256 pixels
  from the tile's */
-  float position[3][3][SMALL_TRIANGLES];                             /* corners; frame space; axis by axis */
+  float height[3][SMALL_TRIANGLES];                                  /* of the corners: normal.X - first */
+  float normal[3][SMALL_TRIANGLES]; /* of a light's view: hl_corner_product() */
+  float corner[3][SMALL_TRIANGLES]; /* of a light's perspective view: the first corner; frame space */
 } small_triangles;
+
+/* The cross product of a triangle's sides; frame space. */
+static inline void hl_corner_product(const float *const corner[3], float normal[3]) {
+  float a[3], b[3];
+  for (int axis = 0; axis < 3; axis++) {
+    a[axis] = corner[1][axis] - corner[0][axis];
+    b[axis] = corner[2][axis] - corner[0][axis];
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    int next = (axis + 1) % 3, last = (axis + 2) % 3;
+    normal[axis] = a[next] * b[last] - a[last] * b[next];
+  }
+}
+
+/* Of a cluster's triangles, one column each. */
+enum { CLUSTER_TRIANGLES = 64, CLUSTER_VERTICES = 3 * CLUSTER_TRIANGLES };
+typedef struct cluster_shape {
+  const float *positions;                      /* [3][vertices]; axis by axis; frame space */
+  size_t vertices;                             /* a multiple of 16; those that fill up repeat others */
+  const uint8_t (*corners)[CLUSTER_TRIANGLES]; /* [3]; numbers of vertices */
+  const float (*normals)[CLUSTER_TRIANGLES];   /* [3]; hl_corner_product() */
+} cluster_shape;
+
+/* Where a view sees the vertices of a cluster, of which no triangle is cut. */
+typedef struct seen_cluster {
+  _Alignas(64) int32_t x[CLUSTER_VERTICES], y[CLUSTER_VERTICES]; /* 1/256 pixels */
+  float height[CLUSTER_VERTICES];                                /* as in small_triangles */
+} seen_cluster;
 
 /* Pixel k of a triangle is k % SMALL_SIDE columns and k / SMALL_SIDE rows from the first pixel of its box. */
 typedef struct small_cover {
+  uint32_t large;                 /* the triangles that are not small and touch the tile, one bit each */
   uint32_t covered[SMALL_PIXELS]; /* the triangles that cover samples of it, one bit each; for others the rest
                                      is not set */
   _Alignas(64) int32_t pixel[SMALL_PIXELS][SMALL_TRIANGLES]; /* its number in the tile, block after block */
@@ -61,9 +97,19 @@ typedef struct small_cover {
 typedef uint32_t cover_small_function(const small_view *view, const small_triangles *triangles,
                                       small_cover *cover);
 
+typedef void see_cluster_function(const small_view *view, const cluster_shape *shape, seen_cluster *seen);
+
+/* The same as cover_small_function() for triangles `first` to first + 15 of a cluster; of them those in
+ * `wanted`, one bit each. */
+typedef uint32_t cover_cluster_function(const small_view *view, const cluster_shape *shape,
+                                        const seen_cluster *seen, int first, uint32_t wanted,
+                                        small_cover *cover);
+
 /* The room's functions that are compiled for each instruction set. */
 typedef struct surface_functions {
   cover_small_function *cover_small;
+  see_cluster_function *see_cluster;
+  cover_cluster_function *cover_cluster;
 } surface_functions;
 
 #endif

@@ -5,13 +5,14 @@
 #ifndef HL_SURFACE_SMALL_TRIANGLES_LANES_H
 #define HL_SURFACE_SMALL_TRIANGLES_LANES_H
 
+#include "simd/gathers.h"
 #include "simd/lanes.h"
 #include "surface/fragment.h"
 #include "surface/sample_rows.h"
 #include "surface/small_triangles.h"
 
 /* 1/256 pixels from one sample to the next column or row. */
-enum { SMALL_SUBPIXELS = 256, SMALL_STEP = SMALL_SUBPIXELS / 16 };
+enum { SMALL_SUBPIXELS = 256, SMALL_STEP = SMALL_SUBPIXELS / 16, SMALL_TILE = 16 };
 /* Distances of sheets by which a small triangle's height changes at most. */
 static const float SMALL_RISE = 4;
 
@@ -70,18 +71,10 @@ LANES_INLINE lanes product3(const float a[3], const lanes b[3]) {
   return b[0] * a[0] + b[1] * a[1] + b[2] * a[2];
 }
 
-LANES_INLINE void load_corner(const small_triangles *t, int corner, lanes at[3]) {
-  for (int axis = 0; axis < 3; axis++) at[axis] = lanes_load(t->position[corner][axis]);
-}
-
-LANES_INLINE void find_heights(const small_view *view, const small_triangles *t, const small_shape *shape,
-                               small_heights *heights) {
+LANES_INLINE void find_heights(const small_triangles *t, const small_shape *shape, small_heights *heights) {
   const lanes *x = shape->x, *y = shape->y;
-  lanes height[3], at[3];
-  for (int i = 0; i < 3; i++) {
-    load_corner(t, i, at);
-    height[i] = product3(view->normal, at) - view->first;
-  }
+  lanes height[3];
+  for (int i = 0; i < 3; i++) height[i] = lanes_load(t->height[i]);
   lanes a = height[1] - height[0], b = height[2] - height[0];
   lanes scale = 1.0f / lanes_select(shape->area == 0.0f, lanes_set(1.0f), shape->area);
   heights->corner = height[0];
@@ -95,16 +88,11 @@ LANES_INLINE void find_heights(const small_view *view, const small_triangles *t,
  * its front. Derived: along the ray A + s B a step D aside in the picture moves the point of the plane with
  * normal n by s D - B s (n.D) / (n.B), and its height by s (h.D - (h.B) (n.D) / (n.B)). */
 LANES_INLINE lanes find_slope(const small_view *view, const small_triangles *t, lanes_int *leaving) {
-  lanes corner[3][3], a[3], b[3], normal[3], way[3], depth = lanes_set(1.0f);
-  for (int i = 0; i < 3; i++) load_corner(t, i, corner[i]);
+  lanes normal[3], way[3], depth = lanes_set(1.0f);
   for (int axis = 0; axis < 3; axis++) {
-    a[axis] = corner[1][axis] - corner[0][axis];
-    b[axis] = corner[2][axis] - corner[0][axis];
-    way[axis] = view->perspective ? corner[0][axis] - view->from[axis] : lanes_set(view->from[axis]);
-  }
-  for (int axis = 0; axis < 3; axis++) {
-    int next = (axis + 1) % 3, last = (axis + 2) % 3;
-    normal[axis] = a[next] * b[last] - a[last] * b[next];
+    normal[axis] = lanes_load(t->normal[axis]);
+    way[axis] = view->perspective ? lanes_load(t->corner[axis]) - view->from[axis]
+                                  : lanes_set(view->from[axis]);
   }
   if (view->perspective) depth = product3(view->depth, way);
   lanes facing = normal[0] * way[0] + normal[1] * way[1] + normal[2] * way[2],
@@ -153,6 +141,74 @@ LANES_INLINE void cover_samples(const small_shape *shape, int x, int y, small_sa
   }
 }
 
+/* The number of samples, and the sums of their columns and rows, of each lane's bits. Derived: fields of
+ * neighbouring samples are brought together, each with its number and its sum of columns from its own first;
+ * column c has the row 3 - c + 8 (c odd) + 16 (c in SECOND_TURN), which is (3 + 7 c) modulo 16. */
+LANES_INLINE void count_samples(lanes_int bits, small_samples *samples) {
+  enum { PAIRS = 0x5555, FOURS = 0x3333, EIGHTS = 0x0f0f, SECOND_TURN = 0xf550 };
+  lanes_int odd = (bits >> 1) & PAIRS, turn = bits & SECOND_TURN;
+  lanes_int count = (bits & PAIRS) + odd, sum = odd, above = (count >> 2) & FOURS;
+  turn = (turn & PAIRS) + ((turn >> 1) & PAIRS);
+  lanes_int rows = (odd & FOURS) + ((odd >> 2) & FOURS) + 2 * ((turn & FOURS) + ((turn >> 2) & FOURS));
+  count = (count & FOURS) + above;
+  sum = (sum & FOURS) + ((sum >> 2) & FOURS) + 2 * above;
+  above = (count >> 4) & EIGHTS;
+  count = (count & EIGHTS) + above;
+  sum = (sum & EIGHTS) + ((sum >> 4) & EIGHTS) + 4 * above;
+  rows = (rows & EIGHTS) + ((rows >> 4) & EIGHTS);
+  above = count >> 8;
+  sum = ((sum + (sum >> 8)) & 255) + 8 * above;
+  count = (count & 255) + above;
+  *samples = (small_samples){bits, count, sum, 3 * count - sum + 8 * ((rows + (rows >> 8)) & 255)};
+}
+
+/* The first sample column, or row, of which the middle is at or after the least coordinate, and how many
+ * there are up to the greatest; 1/256 pixels. */
+LANES_INLINE lanes_int sample_range(const lanes at[3], lanes_int *count) {
+  lanes least = lanes_min(lanes_min(at[0], at[1]), at[2]),
+        greatest = lanes_max(lanes_max(at[0], at[1]), at[2]);
+  lanes_int first = (lanes_truncate(least) + (SMALL_STEP / 2 - 1)) >> 4;
+  *count = ((lanes_truncate(greatest) + SMALL_STEP / 2) >> 4) - first;
+  return first;
+}
+
+LANES_INLINE int greatest_of(lanes_int x, lanes_int of) {
+  int32_t each[SMALL_TRIANGLES], most = 0;
+  store_ints(each, x & of);
+  for (int lane = 0; lane < SMALL_TRIANGLES; lane++) most = each[lane] > most ? each[lane] : most;
+  return most;
+}
+
+/* Covers triangles that are at most a pixel high and two wide: of each column of samples the one sample is
+ * tried that lies within the triangle's rows. bits: of each of two rows of pixels those of two pixels, 16
+ * bits each. Returns whether the triangles in `of` are so small. */
+LANES_INLINE int cover_columns(const small_shape *shape, lanes_int of, lanes_int bits[2]) {
+  lanes_int columns, rows, column = sample_range(shape->x, &columns), row = sample_range(shape->y, &rows);
+  if (lanes_bits(of & ((rows > 16) | (column + columns > 32) | (row + rows > 32))) != 0) return 0;
+  const float half = SMALL_STEP / 2;
+  lanes x = lanes_from_int(column) * (float)SMALL_STEP + half, at[3], step[3];
+  for (int i = 0; i < 3; i++) {
+    at[i] = shape->value[i] + shape->down[i] * x;
+    step[i] = shape->down[i] * (float)SMALL_STEP;
+  }
+  lanes_int ahead = column * 7 + 3 - row; /* the sample's row, from the first one, but for turns of 16 */
+  lanes_int bit = 1 << column;
+  bits[0] = bits[1] = lanes_set_int(0);
+  for (int n = greatest_of(columns, of); n > 0; n--) {
+    lanes_int own = row + (ahead & 15);
+    lanes y = lanes_from_int(own) * (float)SMALL_STEP + half;
+    lanes_int outside = (lanes_int)(at[0] - shape->across[0] * y) |
+                        (lanes_int)(at[1] - shape->across[1] * y) | (lanes_int)(at[2] - shape->across[2] * y);
+    lanes_int covered = bit & ~(outside >> 31), upper = own < 16;
+    bits[0] |= covered & upper;
+    bits[1] |= covered & ~upper;
+    ahead += 7;
+    bit += bit;
+    for (int i = 0; i < 3; i++) at[i] = at[i] + step[i];
+  }
+  return 1;
+}
+
 /* The height in the middle of a pixel's covered samples. */
 LANES_INLINE lanes find_height(const small_shape *shape, const small_heights *heights,
                                const small_samples *samples, int x, int y) {
@@ -179,17 +235,25 @@ LANES_INLINE lanes_int number_in_tile(lanes_int column, lanes_int row) {
   return ((row & 12) << 4) | ((column & 12) << 2) | ((row & 3) << 2) | (column & 3);
 }
 
-static uint32_t cover_small(const small_view *view, const small_triangles *t, small_cover *cover) {
+/* Covers the triangles of the lanes in `wanted`. */
+LANES_INLINE uint32_t cover_wanted(const small_view *view, const small_triangles *t, lanes_int wanted,
+                                   small_cover *cover) {
   small_shape shape;
   small_heights heights;
   lanes_int column, row, more_columns, more_rows, leaving;
   lanes_int small = find_first_pixel(t->x, &column, &more_columns);
   small &= find_first_pixel(t->y, &row, &more_rows);
+  wanted &= (column < SMALL_TILE) & (column + more_columns >= 0) & (row < SMALL_TILE) &
+            (row + more_rows >= 0);
+  cover->large = lanes_bits(wanted & ~small);
+  small &= wanted;
   if (lanes_bits(small) == 0) return 0;
   set_shape(t, column, row, &shape);
-  find_heights(view, t, &shape, &heights);
-  small &= heights.highest - heights.lowest <= SMALL_RISE * view->spacing;
-  lanes_int any = small & ((shape.area < 0.0f) | (shape.area > 0.0f));
+  find_heights(t, &shape, &heights);
+  lanes_int flat = heights.highest - heights.lowest <= SMALL_RISE * view->spacing;
+  cover->large |= lanes_bits(small & ~flat);
+  small &= flat;
+  lanes_int any = small & ((shape.area < 0.0f) | ((shape.area > 0.0f) & (view->fronts ? 0 : -1)));
   lanes slope = lanes_set(0), delay = slope;
   if (!view->of_light) store_reach(view, &heights, cover);
   if (view->of_light) {
@@ -197,6 +261,8 @@ static uint32_t cover_small(const small_view *view, const small_triangles *t, sm
     delay = slope * view->delay + (float)LEAST_DELAY * view->spacing;
     if (view->dark_backs) delay = lanes_select(leaving, lanes_set(0), delay);
   }
+  lanes_int by_rows[2];
+  int tiny = cover_columns(&shape, any, by_rows);
   for (int k = 0; k < SMALL_PIXELS; k++) {
     int x = k % SMALL_SIDE * SMALL_SUBPIXELS, y = k / SMALL_SIDE * SMALL_SUBPIXELS;
     lanes_int at_column = column + k % SMALL_SIDE, at_row = row + k / SMALL_SIDE;
@@ -205,9 +271,12 @@ static uint32_t cover_small(const small_view *view, const small_triangles *t, sm
     cover->covered[k] = 0;
     if (lanes_bits(needed) == 0) continue;
     small_samples samples;
-    cover_samples(&shape, x, y, &samples);
+    if (tiny && (k % SMALL_SIDE > 1 || k / SMALL_SIDE > 1)) continue;
+    if (tiny) samples.bits = (by_rows[k / SMALL_SIDE] >> 16 * (k % SMALL_SIDE)) & 0xffff;
+    else cover_samples(&shape, x, y, &samples);
     cover->covered[k] = lanes_bits(needed & (samples.bits != 0));
     if (cover->covered[k] == 0) continue;
+    if (tiny) count_samples(samples.bits, &samples);
     lanes_store_short_int(cover->samples[k], samples.bits);
     store_ints(cover->pixel[k], number_in_tile(at_column, at_row));
     lanes height = find_height(&shape, &heights, &samples, x, y);
@@ -221,6 +290,84 @@ static uint32_t cover_small(const small_view *view, const small_triangles *t, sm
     store_ints(cover->last_slab[k], slab_at(view, end));
   }
   return lanes_bits(small);
+}
+
+static uint32_t cover_small(const small_view *view, const small_triangles *t, small_cover *cover) {
+  return cover_wanted(view, t, lanes_set_int(-1), cover);
+}
+
+/* ---- clusters ---- */
+
+typedef double eight_doubles __attribute__((vector_size(64)));
+typedef int64_t eight_longs __attribute__((vector_size(64)));
+typedef float eight_floats __attribute__((vector_size(32)));
+typedef int32_t eight_ints __attribute__((vector_size(32)));
+
+LANES_INLINE eight_doubles load_doubles(const float *p) {
+  eight_floats v;
+  memcpy(&v, p, sizeof v);
+  return __builtin_convertvector(v, eight_doubles);
+}
+
+/* The next whole number of 1/256 pixels, halves up. Numbers fit into 32 bits. */
+LANES_INLINE void store_subpixels(int32_t *to, eight_doubles pixels) {
+  eight_doubles at = pixels * (double)SMALL_SUBPIXELS + 0.5;
+  eight_ints whole = __builtin_convertvector(at, eight_ints);
+  eight_longs above = __builtin_convertvector(whole, eight_doubles) > at;
+  whole += __builtin_convertvector(above, eight_ints);
+  memcpy(to, &whole, sizeof whole);
+}
+
+/* Vertices `at` to at + 7, with the sums of seen.c in their order. */
+LANES_INLINE void see_eight(const small_view *view, const cluster_shape *shape, size_t at,
+                            seen_cluster *seen) {
+  eight_doubles p[3], c[3];
+  for (int axis = 0; axis < 3; axis++)
+    p[axis] = load_doubles(shape->positions + (size_t)axis * shape->vertices + at) - view->origin[axis];
+  for (int i = 0; i < 3; i++)
+    c[i] = view->inverse[i][0] * p[0] + view->inverse[i][1] * p[1] + view->inverse[i][2] * p[2];
+  if (view->perspective) c[1] = c[1] / c[0], c[2] = c[2] / c[0];
+  store_subpixels(seen->x + at, c[1]);
+  store_subpixels(seen->y + at, c[2]);
+}
+
+static void see_cluster(const small_view *view, const cluster_shape *shape, seen_cluster *seen) {
+  for (size_t at = 0; at < shape->vertices; at += SMALL_TRIANGLES) {
+    lanes p[3];
+    for (int axis = 0; axis < 3; axis++)
+      p[axis] = lanes_load(shape->positions + (size_t)axis * shape->vertices + at);
+    lanes_store(seen->height + at, product3(view->normal, p) - view->first);
+    see_eight(view, shape, at, seen);
+    see_eight(view, shape, at + SMALL_TRIANGLES / 2, seen);
+  }
+}
+
+LANES_INLINE lanes_int load_words(const void *table, const lanes_offsets *offsets) {
+  return lanes_load_words((const unsigned char *)table, offsets);
+}
+
+LANES_INLINE void gather_triangles(const small_view *view, const cluster_shape *shape,
+                                   const seen_cluster *seen, int first, small_triangles *t) {
+  for (int i = 0; i < 3; i++) {
+    lanes_offsets offsets;
+    for (int lane = 0; lane < SMALL_TRIANGLES; lane++)
+      offsets.at[lane] = shape->corners[i][first + lane] * (int32_t)sizeof(float);
+    store_ints(t->x[i], load_words(seen->x, &offsets) - view->left);
+    store_ints(t->y[i], load_words(seen->y, &offsets) - view->top);
+    store_ints((int32_t *)t->height[i], load_words(seen->height, &offsets));
+    if (view->of_light) memcpy(t->normal[i], shape->normals[i] + first, sizeof t->normal[i]);
+    if (i > 0 || !view->of_light || !view->perspective) continue;
+    for (int axis = 0; axis < 3; axis++)
+      store_ints((int32_t *)t->corner[axis],
+                 load_words(shape->positions + (size_t)axis * shape->vertices, &offsets));
+  }
+}
+
+static uint32_t cover_cluster(const small_view *view, const cluster_shape *shape, const seen_cluster *seen,
+                              int first, uint32_t wanted, small_cover *cover) {
+  small_triangles t;
+  gather_triangles(view, shape, seen, first, &t);
+  return cover_wanted(view, &t, lanes_from_bits(wanted), cover);
 }
 
 #endif

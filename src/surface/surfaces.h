@@ -28,17 +28,24 @@ typedef struct surface_mesh {
   bool is_cut;                         /* the cuts may remove some of it */
 } surface_mesh;
 
+typedef struct surface_cluster surface_cluster; /* clusters.h */
+
 /* A primitive is a triangle or a sphere: numbers below triangle_count are triangles, those after it spheres.
  */
 typedef struct surfaces {
-  surface_mesh *meshes;     /* owned; [mesh_count]; their primitives follow each other */
-  float (*positions)[3];    /* owned; [vertex_count]; frame space */
-  float (*normals)[3];      /* owned; [vertex_count]; unit, or 0 where a vertex has none; frame space */
-  float (*edge_normals)[3]; /* owned; [edge_normal_count]; unit; frame space */
-  uint32_t (*triangles)[3]; /* owned; [triangle_count]; indices of positions */
-  float (*spheres)[4];      /* owned; [sphere_count]; centre and radius; frame space */
-  cut_shape *cuts;          /* owned; [cut_count]; the scene's, of frame space */
-  size_t cut_count;
+  surface_mesh *meshes;      /* owned; [mesh_count]; their primitives follow each other */
+  float (*positions)[3];     /* owned; [vertex_count]; frame space */
+  float (*normals)[3];       /* owned; [vertex_count]; unit, or 0 where a vertex has none; frame space */
+  float (*edge_normals)[3];  /* owned; [edge_normal_count]; unit; frame space */
+  uint32_t (*triangles)[3];  /* owned; [triangle_count]; indices of positions */
+  float (*spheres)[4];       /* owned; [sphere_count]; centre and radius; frame space */
+  surface_cluster *clusters; /* owned; [cluster_count] */
+  uint32_t *order; /* owned; [triangle_count + sphere_count]; the primitives in the order of clusters */
+  uint8_t (*cluster_corners)[3][64]; /* owned; [clusters of triangles]; numbers of the cluster's vertices */
+  float (*cluster_normals)[3][64];   /* owned; the same; not unit; axis by axis; frame space */
+  float *cluster_positions;          /* owned; of each cluster of triangles [3][vertices]; frame space */
+  cut_shape *cuts;                   /* owned; [cut_count]; the scene's, of frame space */
+  size_t cut_count, cluster_count;
   size_t mesh_count, vertex_count, edge_normal_count;
   uint32_t triangle_count, sphere_count;
 } surfaces;
@@ -50,19 +57,6 @@ void hl_surfaces_key_add(hl_key *key, const surfaces *all);
 static inline uint32_t hl_surfaces_count(const surfaces *all) {
   return all->triangle_count + all->sphere_count;
 }
-
-/* Brings surfaces up to date: all zero at first, later those of an earlier frame. scene: in frame space; the
- * descriptions of its meshes are borrowed for the frame. */
-hl_status hl_surfaces_update(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
-                             surfaces *kept, hl_error *error);
-void hl_surfaces_release(hl_context *context, surfaces *kept);
-
-/* The bytes that hl_surfaces_update() allocates where nothing is kept. */
-uint64_t hl_surfaces_bytes(const hl_scene_description *scene);
-
-/* Whether the same meshes stand in the same places as in the earlier frame: the update then allocates
- * nothing but a few cuts. */
-bool hl_surfaces_current(const surfaces *kept, const hl_scene_description *scene);
 
 /* The index of the mesh that a primitive belongs to. Slow: fragments know theirs. */
 size_t hl_surface_mesh_of(const surfaces *all, uint32_t primitive);

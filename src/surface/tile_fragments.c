@@ -98,13 +98,24 @@ static bool join_latest(fragment_worker *worker, const fragment *f, int32_t firs
   return false;
 }
 
+/* Remembers what an opaque fragment covers of its pixel from a height on. */
+static void cover_pixel(fragment_worker *worker, const fragment *f, double height) {
+  covered_so_far *covered = &worker->covered[f->pixel];
+  if (covered->samples == 0xffff) return;
+  if (covered->samples == 0 || (double)covered->height < height) covered->height = (float)height;
+  covered->samples |= f->samples;
+}
+
 /* Adds a fragment to the slabs first to last of a light's view, from its delayed height on. Derived: n slabs
  * that take 1 - (1 - a)^(1/n) each take a together. */
 static void add_to_slabs(const fragment_work *work, fragment_worker *worker, fragment f, double start,
                          int32_t first, int32_t last) {
   if (work->least[f.mesh] < 1) last = first; /* opacities by colour cannot be shared out among slabs */
   if (last - first >= MOST_SLABS) last = first + MOST_SLABS - 1;
-  if (f.opacity >= 1 && work->least[f.mesh] >= 1 && join_latest(worker, &f, first, last)) return;
+  if (f.opacity >= 1 && work->least[f.mesh] >= 1) {
+    cover_pixel(worker, &f, start);
+    if (join_latest(worker, &f, first, last)) return;
+  }
   if (last > first && f.opacity < 1) f.opacity = 1 - powf(1 - f.opacity, 1.0f / (float)(last - first + 1));
   for (int32_t slab = first; slab <= last; slab++) {
     f.slab = slab;
@@ -272,6 +283,8 @@ static void add_primitive(const fragment_work *work, fragment_worker *worker, ti
 
 /* ---- small triangles ---- */
 
+static int least(int a, int b) { return a < b ? a : b; }
+
 /* Up to sixteen triangles of one mesh. */
 typedef struct small_batch {
   small_triangles triangles;
@@ -281,6 +294,7 @@ typedef struct small_batch {
   float opacity[SMALL_TRIANGLES];
   int count;
   size_t mesh;
+  bool may_be_covered; /* of a light's view: clusters may lie behind what covers all of their pixels */
 } small_batch;
 
 /* Adds a triangle to a batch; false where the view or the scene's cuts cut it. */
@@ -290,14 +304,22 @@ static bool collect(const fragment_work *work, const tile_part *part, small_batc
   const uint32_t *vertex = all->triangles[primitive];
   int32_t left = part->tile_x * TILE * SUBPIXELS, top = part->tile_y * TILE * SUBPIXELS;
   int lane = batch->count;
+  const float *n = batch->view.normal, *corner[3];
+  float normal[3];
   if (hl_surface_cut(all, &all->meshes[batch->mesh], primitive) != CUT_LEAVES_ALL) return false;
   for (int i = 0; i < 3; i++) {
-    const int32_t *at = work->seen->at[vertex[i]];
-    const float *position = all->positions[vertex[i]];
-    if (at[0] == VERTEX_IS_CUT) return false;
+    int32_t at[2];
+    if (!hl_see_vertex(work->seen, vertex[i], at)) return false;
+    corner[i] = all->positions[vertex[i]];
     batch->triangles.x[i][lane] = at[0] - left;
     batch->triangles.y[i][lane] = at[1] - top;
-    for (int axis = 0; axis < 3; axis++) batch->triangles.position[i][axis][lane] = position[axis];
+    batch->triangles.height[i][lane] = n[0] * corner[i][0] + n[1] * corner[i][1] + n[2] * corner[i][2] -
+                                       batch->view.first;
+  }
+  hl_corner_product(corner, normal);
+  for (int axis = 0; axis < 3; axis++) {
+    batch->triangles.normal[axis][lane] = normal[axis];
+    batch->triangles.corner[axis][lane] = corner[0][axis];
   }
   batch->primitives[batch->count++] = primitive;
   return true;
@@ -325,10 +347,24 @@ static void add_small_pixel(const fragment_work *work, fragment_worker *worker, 
   worker->scratch[worker->count++] = f;
 }
 
-/* The opacities of a batch's triangles. */
-static void find_opacities(const fragment_work *work, small_batch *batch) {
-  for (int lane = 0; lane < batch->count; lane++)
+/* The opacities of the triangles in `lanes`. */
+static void find_opacities(const fragment_work *work, small_batch *batch, uint32_t lanes) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    int lane = __builtin_ctz(lanes);
     batch->opacity[lane] = fragment_of(work, batch->mesh, batch->primitives[lane]).opacity;
+  }
+}
+
+/* Adds what small triangles of a batch cover, one bit each in `small`. */
+static void add_small(const fragment_work *work, fragment_worker *worker, small_batch *batch,
+                      uint32_t small) {
+  if (small == 0) return;
+  uint32_t any = 0;
+  for (int k = 0; k < SMALL_PIXELS; k++) any |= batch->cover.covered[k] & small;
+  find_opacities(work, batch, any);
+  for (int k = 0; k < SMALL_PIXELS; k++)
+    for (uint32_t left = batch->cover.covered[k] & small; left != 0; left &= left - 1)
+      add_small_pixel(work, worker, batch, __builtin_ctz(left), k);
 }
 
 /* Adds a batch's triangles: the small ones together, the others one by one. */
@@ -337,44 +373,159 @@ static void add_batch(const fragment_work *work, fragment_worker *worker, tile_p
   if (batch->count == 0 ||
       !make_room(work->source->context, worker, SMALL_TRIANGLES * SMALL_PIXELS * MOST_SLABS))
     return;
-  uint32_t all = (1u << batch->count) - 1,
-           small = work->source->functions->cover_small(&batch->view, &batch->triangles, &batch->cover);
-  find_opacities(work, batch);
-  for (int k = 0; small != 0 && k < SMALL_PIXELS; k++)
-    for (uint32_t left = batch->cover.covered[k] & all; left != 0; left &= left - 1)
-      add_small_pixel(work, worker, batch, __builtin_ctz(left), k);
-  for (uint32_t left = all & ~small; left != 0 && !worker->failed; left &= left - 1)
+  uint32_t all = (1u << batch->count) - 1;
+  add_small(work, worker, batch,
+            all & work->source->functions->cover_small(&batch->view, &batch->triangles, &batch->cover));
+  for (uint32_t left = all & batch->cover.large; left != 0 && !worker->failed; left &= left - 1)
     add_primitive(work, worker, part, batch->mesh, batch->primitives[__builtin_ctz(left)]);
   batch->count = 0;
 }
 
+/* Whether opaque fragments of a light's view cover all pixels of a tile that a cluster touches, before the
+ * cluster: each of its fragments would be left out when they are sorted. */
+static bool is_covered(const fragment_work *work, const fragment_worker *worker, const tile_part *part,
+                       const cluster_shape *shape, const seen_cluster *seen) {
+  const view *view = work->source->view;
+  int32_t low[2] = {INT32_MAX, INT32_MAX}, high[2] = {INT32_MIN, INT32_MIN};
+  float lowest = INFINITY;
+  for (size_t v = 0; v < shape->vertices; v++) {
+    lowest = seen->height[v] < lowest ? seen->height[v] : lowest;
+    low[0] = least(low[0], seen->x[v]), high[0] = -least(-high[0], -seen->x[v]);
+    low[1] = least(low[1], seen->y[v]), high[1] = -least(-high[1], -seen->y[v]);
+  }
+  int left = part->tile_x * TILE, top = part->tile_y * TILE,
+      right = least(least(left + TILE, view->width) - 1, high[0] >> 8),
+      bottom = least(least(top + TILE, view->height) - 1, high[1] >> 8);
+  left = -least(-left, -(low[0] >> 8)), top = -least(-top, -(low[1] >> 8));
+  for (int y = top; y <= bottom; y++)
+    for (int x = left; x <= right; x++) {
+      const covered_so_far *covered = &worker->covered[hl_pixel_number(x % TILE, y % TILE)];
+      if (covered->samples != 0xffff || covered->height >= lowest) return false;
+    }
+  return true;
+}
+
+/* Adds the triangles of a whole cluster, of which none is cut. */
+static void add_cluster(const fragment_work *work, fragment_worker *worker, tile_part *part,
+                        small_batch *batch, const surface_cluster *cluster) {
+  const surfaces *all = work->source->surfaces;
+  const surface_functions *functions = work->source->functions;
+  const cluster_shape shape = hl_cluster_shape(all, cluster);
+  const uint32_t *order = all->order + cluster->first;
+  seen_cluster seen;
+  functions->see_cluster(&batch->view, &shape, &seen);
+  if (batch->may_be_covered && is_covered(work, worker, part, &shape, &seen)) return;
+  for (int first = 0; first < cluster->count; first += SMALL_TRIANGLES) {
+    int count = least(cluster->count - first, SMALL_TRIANGLES);
+    if (!make_room(work->source->context, worker, SMALL_TRIANGLES * SMALL_PIXELS * MOST_SLABS)) return;
+    memcpy(batch->primitives, order + first, (size_t)count * sizeof *order);
+    uint32_t small = functions->cover_cluster(&batch->view, &shape, &seen, first, (1u << count) - 1,
+                                              &batch->cover);
+    add_small(work, worker, batch, small);
+    for (uint32_t left = batch->cover.large; left != 0 && !worker->failed; left &= left - 1) {
+      uint32_t primitive = batch->primitives[__builtin_ctz(left)];
+      if (!batch->view.fronts || hl_faces_view(work->seen, primitive))
+        add_primitive(work, worker, part, batch->mesh, primitive);
+    }
+  }
+}
+
 /* ---- all primitives of a tile ---- */
 
-static int least(int a, int b) { return a < b ? a : b; }
+/* Begins with the mesh of a primitive; of_mesh: the first of the mesh's primitives of this kind, and the
+ * first after them. */
+static void begin_mesh(const fragment_work *work, small_batch *batch, uint32_t primitive,
+                       uint32_t of_mesh[2]) {
+  const surfaces *all = work->source->surfaces;
+  batch->mesh = hl_surface_mesh_of(all, primitive);
+  const surface_mesh *mesh = &all->meshes[batch->mesh];
+  batch->view.dark_backs = work->dark_backs[batch->mesh];
+  batch->view.fronts = work->wanted[batch->mesh] == BINNED_FRONTS;
+  of_mesh[0] = primitive < all->triangle_count ? mesh->first_triangle
+                                               : all->triangle_count + mesh->first_sphere;
+  of_mesh[1] = hl_surface_mesh_end(all, batch->mesh, primitive);
+}
+
+/* Adds the primitives of a cluster, of which cuts may leave a part. */
+static void add_run(const fragment_work *work, fragment_worker *worker, tile_part *part, small_batch *batch,
+                    primitive_run run) {
+  const surfaces *all = work->source->surfaces;
+  const surface_cluster *cluster = run.cluster != NO_CLUSTER ? &all->clusters[run.cluster] : NULL;
+  bool triangle = run.primitive < all->triangle_count;
+  if (cluster != NULL && triangle && !all->meshes[batch->mesh].is_cut) {
+    add_batch(work, worker, part, batch);
+    if (!worker->failed) add_cluster(work, worker, part, batch, cluster);
+    return;
+  }
+  uint32_t count = cluster != NULL ? cluster->count : 1;
+  for (uint32_t i = 0; i < count && !worker->failed; i++) {
+    uint32_t p = cluster != NULL ? all->order[cluster->first + i] : run.primitive;
+    if (cluster != NULL && batch->view.fronts && triangle && !hl_faces_view(work->seen, p)) continue;
+    if (!triangle || !collect(work, part, batch, p)) add_primitive(work, worker, part, batch->mesh, p);
+    if (batch->count == SMALL_TRIANGLES) add_batch(work, worker, part, batch);
+  }
+}
+
+static void add_next_run(const fragment_work *work, fragment_worker *worker, tile_part *part,
+                         small_batch *batch, primitive_run run, uint32_t of_mesh[2]) {
+  if (run.primitive < of_mesh[0] || run.primitive >= of_mesh[1]) {
+    add_batch(work, worker, part, batch);
+    begin_mesh(work, batch, run.primitive, of_mesh);
+  }
+  if (!worker->failed) add_run(work, worker, part, batch, run);
+}
+
+/* The least height that a run has, or less. */
+static float lowest_of(const fragment_work *work, primitive_run run) {
+  const surfaces *all = work->source->surfaces;
+  const sheet_stack *sheets = work->source->sheets;
+  if (run.cluster != NO_CLUSTER) return (float)hl_lowest_height(sheets, &all->clusters[run.cluster]);
+  if (run.primitive >= all->triangle_count) return (float)-INFINITY;
+  double height = INFINITY;
+  for (int i = 0; i < 3; i++)
+    height = fmin(height, vec3_dot(sheets->normal,
+                                   hl_surface_vector(all->positions[all->triangles[run.primitive][i]])));
+  return (float)(height - sheets->first);
+}
+
+static bool make_room_for_runs(hl_context *context, fragment_worker *worker, size_t count) {
+  if (count <= worker->run_room) return true;
+  order_key *runs = hl_reallocate(context, worker->runs, 4 * count, sizeof *runs);
+  worker->failed = runs == NULL;
+  if (worker->failed) return false;
+  worker->runs = runs;
+  worker->run_room = 2 * count;
+  return true;
+}
+
+/* Adds a tile's runs; the lowest first where the higher ones may be covered. */
+static void add_runs(const fragment_work *work, fragment_worker *worker, tile_part *part, size_t tile,
+                     small_batch *batch) {
+  const primitive_run *runs = work->bins->runs + work->bins->first[tile];
+  uint32_t count = work->bins->first[tile + 1] - work->bins->first[tile];
+  uint32_t of_mesh[2] = {0, 0};
+  if (batch->may_be_covered && !make_room_for_runs(work->source->context, worker, count)) return;
+  order_key *order = worker->runs;
+  for (uint32_t i = 0; batch->may_be_covered && i < count; i++)
+    order[i] = (order_key){hl_ordered_bits(lowest_of(work, runs[i]), false), i};
+  if (batch->may_be_covered) hl_sort_keys(order, order + count, count);
+  for (uint32_t i = 0; i < count && !worker->failed; i++)
+    add_next_run(work, worker, part, batch, runs[batch->may_be_covered ? order[i].index : i], of_mesh);
+  if (!worker->failed) add_batch(work, worker, part, batch);
+}
 
 static void add_primitives(const fragment_work *work, fragment_worker *worker, tile_part *part, size_t tile) {
-  const surfaces *all = work->source->surfaces;
-  uint32_t end = 0; /* of the mesh's triangles, or spheres */
   small_batch batch;
   memset(&batch.triangles, 0, sizeof batch.triangles); /* lanes that stay empty */
   batch.view = work->small;
+  batch.view.left = part->tile_x * TILE * SUBPIXELS;
+  batch.view.top = part->tile_y * TILE * SUBPIXELS;
   batch.view.columns = least(work->source->view->width - part->tile_x * TILE, TILE);
   batch.view.rows = least(work->source->view->height - part->tile_y * TILE, TILE);
   batch.count = 0;
   batch.mesh = 0;
-  for (uint32_t i = work->bins->first[tile]; i < work->bins->first[tile + 1] && !worker->failed; i++) {
-    uint32_t primitive = work->bins->primitives[i];
-    if (primitive >= end) {
-      add_batch(work, worker, part, &batch);
-      batch.mesh = hl_surface_mesh_of(all, primitive);
-      batch.view.dark_backs = work->dark_backs[batch.mesh];
-      end = hl_surface_mesh_end(all, batch.mesh, primitive);
-    }
-    if (primitive >= all->triangle_count || !collect(work, part, &batch, primitive))
-      add_primitive(work, worker, part, batch.mesh, primitive);
-    if (batch.count == SMALL_TRIANGLES) add_batch(work, worker, part, &batch);
-  }
-  if (!worker->failed) add_batch(work, worker, part, &batch);
+  batch.may_be_covered = work->source->of_light && work->source->rise <= 0;
+  add_runs(work, worker, part, tile, &batch);
 }
 
 /* Sorts a tile's fragments, and parts those of the eye's view that cross. Returns how many are left in
@@ -407,6 +558,7 @@ void hl_make_tile_fragments(void *data, size_t tile, int worker_index) {
   work->tiles[tile] = (tile_record){.worker = worker_index};
   worker->count = 0;
   memset(worker->latest, 0, sizeof worker->latest);
+  memset(worker->covered, 0, sizeof worker->covered);
   if (worker->failed) return;
   add_primitives(work, worker, &part, tile);
   if (!worker->failed && make_room(source->context, worker, worker->count)) /* for parts */
@@ -438,6 +590,10 @@ static void set_small_view(const fragments_source *source, small_view *small) {
   vec3_store(small->du, view->du);
   vec3_store(small->dv, view->dv);
   vec3_store(small->depth, view->inverse.row[0]);
+  const vec3 *rows = view->inverse.row, origin = view->perspective ? view->origin : view->corner;
+  for (int i = 0; i < 3; i++)
+    small->inverse[i][0] = rows[i].x, small->inverse[i][1] = rows[i].y, small->inverse[i][2] = rows[i].z;
+  small->origin[0] = origin.x, small->origin[1] = origin.y, small->origin[2] = origin.z;
 }
 
 /* The tiles that look-ups about a pixel may read: its own, and those beside it by less than three pixels. */
@@ -462,6 +618,6 @@ bool hl_fragment_worker_begin(hl_context *context, fragment_worker *worker, int 
 }
 
 void hl_fragment_worker_end(hl_context *context, fragment_worker *worker) {
-  void *owned[] = {worker->scratch, worker->keys, worker->places, worker->near, worker->out};
+  void *owned[] = {worker->scratch, worker->keys, worker->runs, worker->places, worker->near, worker->out};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) hl_release(context, owned[i]);
 }

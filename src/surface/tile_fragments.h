@@ -39,12 +39,21 @@ typedef struct latest_fragments {
   int32_t last; /* slab */
 } latest_fragments;
 
+/* What opaque fragments of a light's view cover of a pixel. */
+typedef struct covered_so_far {
+  float height; /* the greatest of those fragments, up to the one that covered the last sample */
+  uint32_t samples;
+} covered_so_far;
+
 /* One thread's memory; all arrays are owned. */
 typedef struct fragment_worker {
   _Alignas(64) fragment *scratch; /* [2][room]; a tile's fragments, then the same sorted */
   order_key *keys;                /* [2][room]; for sorting */
   size_t count, room;
   latest_fragments latest[TILE_PIXELS];
+  covered_so_far covered[TILE_PIXELS];
+  order_key *runs; /* [2][run_room]; of a light's view: a tile's runs, from the lowest on */
+  size_t run_room;
   uint32_t *places; /* [sheets + 2]; for sorting */
   uint16_t *near;   /* [sheets]; of each slab the tiles to be marked: bit 3 (1 + down) + 1 + across */
   int32_t nearest, farthest; /* slabs of which near is not 0 */
@@ -62,8 +71,9 @@ typedef struct tile_record {
 /* What the tiles of a view share. */
 typedef struct fragment_work {
   const fragments_source *source;
-  const seen_vertices *seen;
+  const seen_surfaces *seen;
   const primitive_bins *bins;
+  binned *wanted;           /* [mesh_count]; what of each mesh is seen */
   small_view small;         /* but for the mesh */
   fragment_worker *workers; /* [threads] */
   float *least;             /* [mesh_count]; as in fragment_order */

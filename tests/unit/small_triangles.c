@@ -69,10 +69,22 @@ static void place_triangles(set_up *s, uint32_t *seed) {
       assert_true(hl_view_project(&s->view, hl_surface_vector(s->positions[3 * t + i]), uv));
       s->input.x[i][t] = (int32_t)floor(uv[0] * SUBPIXELS + 0.5);
       s->input.y[i][t] = (int32_t)floor(uv[1] * SUBPIXELS + 0.5);
-      for (int axis = 0; axis < 3; axis++) s->input.position[i][axis][t] = s->positions[3 * t + i][axis];
     }
   }
   s->all = (surfaces){.positions = s->positions, .triangles = s->triangles};
+}
+
+/* The heights, the normal and the first corner of triangle t, from its positions. */
+static void describe_triangle(set_up *s, int t) {
+  const float *const corner[3] = {s->positions[3 * t], s->positions[3 * t + 1], s->positions[3 * t + 2]},
+                     *n = s->small.normal;
+  float normal[3];
+  hl_corner_product(corner, normal);
+  for (int i = 0; i < 3; i++) {
+    s->input.height[i][t] = n[0] * corner[i][0] + n[1] * corner[i][1] + n[2] * corner[i][2] - s->small.first;
+    s->input.normal[i][t] = normal[i];
+    s->input.corner[i][t] = corner[0][i];
+  }
 }
 
 static void set_small_view(set_up *s, bool closed) {
@@ -91,6 +103,12 @@ static void set_small_view(set_up *s, bool closed) {
   vec3_store(s->small.du, s->view.du);
   vec3_store(s->small.dv, s->view.dv);
   vec3_store(s->small.depth, s->view.inverse.row[0]);
+  const vec3 *rows = s->view.inverse.row, origin = s->view.perspective ? s->view.origin : s->view.corner;
+  for (int i = 0; i < 3; i++)
+    s->small.inverse[i][0] = rows[i].x, s->small.inverse[i][1] = rows[i].y,
+    s->small.inverse[i][2] = rows[i].z;
+  s->small.origin[0] = origin.x, s->small.origin[1] = origin.y, s->small.origin[2] = origin.z;
+  for (int t = 0; t < SMALL_TRIANGLES; t++) describe_triangle(s, t);
 }
 
 /* What is told of a covered pixel: against the plane in doubles. */
@@ -183,12 +201,12 @@ static void test_not_small(void **state) {
   place_triangles(&s, &seed);
   set_small_view(&s, false);
   for (int i = 0; i < 3; i++) s.input.x[i][3] = 256 * 2 + (i == 1 ? 256 * 4 : 0); /* columns 2 to 6 */
-  float *corner[3] = {&s.input.position[1][0][5], &s.input.position[1][1][5], &s.input.position[1][2][5]};
-  const double n[3] = {s.sheets.normal.x, s.sheets.normal.y, s.sheets.normal.z};
-  for (int axis = 0; axis < 3; axis++)
-    *corner[axis] = s.positions[15][axis] + (float)(4.5 * s.sheets.spacing * n[axis]); /* above corner 0 */
-  uint32_t small = function(&s.small, &s.input, &cover);
-  assert_int_equal(small & (1 << 3 | 1 << 5), 0);
+  for (int i = 0; i < 3; i++) s.input.x[i][5] = s.input.y[i][5] = 256 * 4 + 100 * i;
+  s.input.height[1][5] = s.input.height[0][5] + (float)(4.5 * s.sheets.spacing);
+  for (int i = 0; i < 3; i++) s.input.y[i][8] = 256 * 17 + 8; /* below the tile */
+  uint32_t small = function(&s.small, &s.input, &cover), not_small = 1 << 3 | 1 << 5 | 1 << 8;
+  assert_int_equal(small & not_small, 0);
+  assert_int_equal(cover.large & not_small, 1 << 3 | 1 << 5);
 }
 
 /* Each output that is set, byte for byte. */
@@ -227,9 +245,100 @@ static void test_instruction_sets(void **state) {
   }
 }
 
+/* The same triangles as a cluster: its vertices are seen where the view sees them, and the triangles that are
+ * asked for are covered as if they came one by one. */
+static void test_cluster(void **state) {
+  (void)state;
+  uint32_t seed = 5, covered = 0;
+  for (int round = 0; round < ROUNDS; round++) {
+    set_up s = {0};
+    small_cover first, other;
+    seen_cluster seen;
+    float positions[3][CORNERS], normals[3][CLUSTER_TRIANGLES] = {0};
+    uint8_t corners[3][CLUSTER_TRIANGLES] = {0};
+    open_view(&s, round % 2);
+    place_triangles(&s, &seed);
+    set_small_view(&s, round % 4 >= 2);
+    for (int v = 0; v < CORNERS; v++)
+      for (int axis = 0; axis < 3; axis++) positions[axis][v] = s.positions[CORNERS - 1 - v][axis];
+    for (int t = 0; t < SMALL_TRIANGLES; t++)
+      for (int i = 0; i < 3; i++) {
+        corners[i][16 + t] = (uint8_t)(CORNERS - 1 - (3 * t + i));
+        normals[i][16 + t] = s.input.normal[i][t];
+      }
+    const cluster_shape shape = {positions[0], CORNERS, corners, normals};
+    uint32_t small =
+        hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->surface.cover_small(&s.small, &s.input, &first);
+    for (int set = HL_INSTRUCTION_SET_SCALAR; set <= HL_INSTRUCTION_SET_AVX512_VBMI; set++) {
+      if (!hl_cpu_has_instruction_set((hl_instruction_set)set)) continue;
+      const hot_functions *hot = hl_hot_functions((hl_instruction_set)set);
+      hot->surface.see_cluster(&s.small, &shape, &seen);
+      for (int t = 0; t < SMALL_TRIANGLES; t++)
+        for (int i = 0; i < 3; i++) {
+          assert_int_equal(seen.x[corners[i][16 + t]], s.input.x[i][t]);
+          assert_int_equal(seen.y[corners[i][16 + t]], s.input.y[i][t]);
+        }
+      assert_int_equal(hot->surface.cover_cluster(&s.small, &shape, &seen, 16, 0xffff, &other), small);
+      assert_int_equal(other.large, first.large);
+      assert_same(&first, &other);
+      assert_int_equal(hot->surface.cover_cluster(&s.small, &shape, &seen, 16, 0xff, &other), small & 0xff);
+      assert_int_equal(other.covered[0], first.covered[0] & 0xff);
+    }
+    covered += (uint32_t)__builtin_popcount(first.covered[0]);
+  }
+  assert_true(covered > ROUNDS);
+}
+
+/* Triangles of less than a pixel, which cover_columns() covers, have the samples that each has by itself. */
+static void test_tiny(void **state) {
+  (void)state;
+  uint32_t seed = 13;
+  int covered = 0;
+  for (int round = 0; round < ROUNDS; round++) {
+    set_up s = {0};
+    small_cover cover;
+    open_view(&s, false);
+    place_triangles(&s, &seed);
+    set_small_view(&s, false);
+    for (int t = 0; t < SMALL_TRIANGLES; t++) {
+      int32_t x = (int32_t)random_between(&seed, -256, 4096), y = (int32_t)random_between(&seed, -256, 4096);
+      for (int i = 0; i < 3; i++) {
+        s.input.x[i][t] = x + (int32_t)random_between(&seed, 0, 250);
+        s.input.y[i][t] = y + (int32_t)random_between(&seed, 0, 250);
+        s.input.height[i][t] = 1;
+      }
+    }
+    for (int set = HL_INSTRUCTION_SET_SCALAR; set <= HL_INSTRUCTION_SET_AVX512_VBMI; set++) {
+      if (!hl_cpu_has_instruction_set((hl_instruction_set)set)) continue;
+      uint32_t small =
+          hl_hot_functions((hl_instruction_set)set)->surface.cover_small(&s.small, &s.input, &cover);
+      for (int t = 0; t < SMALL_TRIANGLES; t++) {
+        uint16_t samples[TILE_PIXELS], expected[TILE_PIXELS] = {0};
+        pixel_span span = {0};
+        seen_polygon polygon = {.count = 3};
+        for (int i = 0; i < 3; i++) polygon.x[i] = s.input.x[i][t], polygon.y[i] = s.input.y[i][t];
+        bool any = hl_cover_tile(&polygon, 0, 0, &span, expected);
+        if (!(small >> t & 1)) {
+          assert_false(any);
+          continue;
+        }
+        collect_samples(&cover, t, samples);
+        for (int row = 0; row < s.small.rows; row++)
+          for (int column = 0; column < TILE; column++) {
+            bool within = any && column >= span.x0 && column <= span.x1 && row >= span.y0 && row <= span.y1;
+            uint16_t own = samples[hl_pixel_number(column, row)];
+            assert_int_equal(own, within ? expected[row * TILE + column] : 0);
+            covered += own != 0;
+          }
+      }
+    }
+  }
+  assert_true(covered > ROUNDS * SMALL_TRIANGLES);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_against_one_by_one),
-                                     cmocka_unit_test(test_not_small),
-                                     cmocka_unit_test(test_instruction_sets)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_against_one_by_one), cmocka_unit_test(test_not_small),
+      cmocka_unit_test(test_instruction_sets), cmocka_unit_test(test_cluster), cmocka_unit_test(test_tiny)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

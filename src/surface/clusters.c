@@ -1,0 +1,265 @@
+/* surface/clusters.c - see clusters.h. */
+#include "surface/clusters.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "mesh/mesh.h"
+#include "surface/cluster_order.h"
+
+enum { A_TASK = 1 << 9 };
+
+static uint64_t clusters_of(uint64_t primitives) { return (primitives + CLUSTER_SIZE - 1) / CLUSTER_SIZE; }
+
+/* Vertices are read sixteen at a time. */
+static uint16_t filled_up(uint32_t vertices) { return (uint16_t)((vertices + 15) / 16 * 16); }
+
+uint64_t hl_clusters_bytes(const hl_scene_description *scene) {
+  uint64_t bytes = 0, most = 0;
+  for (size_t m = 0; m < scene->mesh_count; m++) {
+    const hl_mesh_description *d = &scene->meshes[m].mesh->description;
+    uint64_t triangles = clusters_of(d->triangle_count), spheres = clusters_of(d->sphere_count),
+             own = hl_cluster_order_bytes(d->triangle_count > d->sphere_count ? d->triangle_count
+                                                                              : d->sphere_count);
+    bytes += (triangles + spheres) * sizeof(surface_cluster) +
+             (d->triangle_count + d->sphere_count) * sizeof(uint32_t) +
+             triangles * CLUSTER_SIZE * 3 * (sizeof(uint8_t) + sizeof(float)) +
+             triangles * CLUSTER_SIZE * sizeof(float[3]); /* about one vertex for each triangle */
+    most = own > most ? own : most;
+  }
+  return bytes + most;
+}
+
+/* ---- boxes ---- */
+
+static void widen(surface_cluster *cluster, const float point[3], float radius) {
+  for (int axis = 0; axis < 3; axis++) {
+    float low = point[axis], high = low;
+    if (radius > 0) low = nextafterf(low - radius, -INFINITY), high = nextafterf(high + radius, INFINITY);
+    cluster->low[axis] = low < cluster->low[axis] ? low : cluster->low[axis];
+    cluster->high[axis] = high > cluster->high[axis] ? high : cluster->high[axis];
+  }
+}
+
+static void find_box(const surfaces *all, surface_cluster *cluster) {
+  for (int axis = 0; axis < 3; axis++) cluster->low[axis] = INFINITY, cluster->high[axis] = -INFINITY;
+  for (uint32_t i = cluster->first; i < cluster->first + cluster->count; i++) {
+    uint32_t p = all->order[i];
+    if (p >= all->triangle_count) {
+      const float *sphere = all->spheres[p - all->triangle_count];
+      widen(cluster, sphere, sphere[3]);
+      continue;
+    }
+    for (int k = 0; k < 3; k++) widen(cluster, all->positions[all->triangles[p][k]], 0);
+  }
+}
+
+/* ---- cones ---- */
+
+static vec3 normal_of(const surfaces *all, uint32_t triangle) {
+  vec3 at[3];
+  for (int i = 0; i < 3; i++) at[i] = hl_surface_vector(all->positions[all->triangles[triangle][i]]);
+  return vec3_normalise(vec3_cross(vec3_subtract(at[1], at[0]), vec3_subtract(at[2], at[0])));
+}
+
+/* The mean of the normals, and the greatest angle from it. Triangles without an area have no normal and are
+ * not seen. */
+static void find_cone(const surfaces *all, surface_cluster *cluster) {
+  vec3 normals[CLUSTER_SIZE], sum = {0, 0, 0};
+  double least = 1;
+  cluster->cosine = -1;
+  memset(cluster->axis, 0, sizeof cluster->axis);
+  if (cluster->first >= all->triangle_count) return;
+  for (int i = 0; i < cluster->count; i++) {
+    normals[i] = normal_of(all, all->order[cluster->first + (uint32_t)i]);
+    if (vec3_length(normals[i]) < 2) sum = vec3_add(sum, normals[i]); /* else not a number */
+  }
+  vec3 axis = vec3_normalise(sum);
+  if (!(vec3_length(axis) < 2)) return;
+  for (int i = 0; i < cluster->count; i++) least = fmin(least, vec3_dot(axis, normals[i]));
+  vec3_store(cluster->axis, axis);
+  cluster->cosine = (float)least;
+}
+
+/* ---- vertices ---- */
+
+/* The vertices of a cluster, found by hashing. */
+enum { SLOTS = 512 };
+typedef struct vertex_set {
+  uint32_t slot[SLOTS]; /* number in `vertex`, plus 1; 0: none */
+  uint32_t vertex[CLUSTER_VERTICES], count;
+} vertex_set;
+
+static uint8_t number_of(vertex_set *set, uint32_t vertex) {
+  uint32_t at = vertex * 2654435769u >> 23;
+  for (; set->slot[at] != 0; at = (at + 1) % SLOTS)
+    if (set->vertex[set->slot[at] - 1] == vertex) return (uint8_t)(set->slot[at] - 1);
+  set->vertex[set->count] = vertex;
+  set->slot[at] = ++set->count;
+  return (uint8_t)(set->count - 1);
+}
+
+/* Numbers the vertices of cluster number c, which is of triangles. */
+static void number_vertices(surfaces *all, size_t c, vertex_set *set) {
+  surface_cluster *cluster = &all->clusters[c];
+  memset(set->slot, 0, sizeof set->slot);
+  set->count = 0;
+  memset(all->cluster_corners[c], 0, sizeof all->cluster_corners[c]);
+  for (uint32_t t = 0; t < cluster->count; t++)
+    for (int i = 0; i < 3; i++)
+      all->cluster_corners[c][i][t] = number_of(set, all->triangles[all->order[cluster->first + t]][i]);
+  cluster->vertices = filled_up(set->count);
+}
+
+static void copy_normals(surfaces *all, size_t c) {
+  const surface_cluster *cluster = &all->clusters[c];
+  memset(all->cluster_normals[c], 0, sizeof all->cluster_normals[c]);
+  for (uint32_t t = 0; t < cluster->count; t++) {
+    const uint32_t *vertex = all->triangles[all->order[cluster->first + t]];
+    const float *const corner[3] = {all->positions[vertex[0]], all->positions[vertex[1]],
+                                    all->positions[vertex[2]]};
+    float normal[3];
+    hl_corner_product(corner, normal);
+    for (int axis = 0; axis < 3; axis++) all->cluster_normals[c][axis][t] = normal[axis];
+  }
+}
+
+/* ---- all clusters ---- */
+
+static size_t end_of_task(size_t task, size_t count) {
+  return (task + 1) * A_TASK < count ? (task + 1) * A_TASK : count;
+}
+
+static void describe_task(void *data, size_t task, int worker) {
+  (void)worker;
+  surfaces *all = data;
+  vertex_set set;
+  for (size_t c = task * A_TASK; c < end_of_task(task, all->cluster_count); c++) {
+    find_box(all, &all->clusters[c]);
+    find_cone(all, &all->clusters[c]);
+    if (all->clusters[c].first >= all->triangle_count) continue;
+    number_vertices(all, c, &set);
+    copy_normals(all, c);
+  }
+}
+
+static void copy_task(void *data, size_t task, int worker) {
+  (void)worker;
+  surfaces *all = data;
+  vertex_set set;
+  for (size_t c = task * A_TASK; c < end_of_task(task, all->cluster_count); c++) {
+    const surface_cluster *cluster = &all->clusters[c];
+    if (cluster->first >= all->triangle_count) continue;
+    float *to = all->cluster_positions + 3 * cluster->first_vertex;
+    number_vertices(all, c, &set);
+    for (uint32_t v = 0; v < cluster->vertices; v++)
+      for (int axis = 0; axis < 3; axis++)
+        to[(size_t)axis * cluster->vertices + v] = all->positions[set.vertex[v < set.count ? v : 0]][axis];
+  }
+}
+
+/* Cuts primitives of a mesh into clusters; returns how many there are. */
+static size_t cut(surface_cluster *clusters, size_t mesh, uint32_t first, uint32_t count) {
+  size_t made = 0;
+  for (uint32_t at = 0; at < count; at += CLUSTER_SIZE) {
+    uint32_t own = count - at < CLUSTER_SIZE ? count - at : CLUSTER_SIZE;
+    clusters[made++] = (surface_cluster){.first = first + at, .count = (uint16_t)own, .mesh = (uint16_t)mesh};
+  }
+  return made;
+}
+
+/* Orders the primitives, and cuts them into clusters. */
+static void cut_all(hl_pool *pool, surfaces *all, uint32_t *spare) {
+  size_t count = 0;
+  for (int spheres = 0; spheres < 2; spheres++)
+    for (size_t m = 0; m < all->mesh_count; m++) {
+      const surface_mesh *mesh = &all->meshes[m];
+      uint32_t first = spheres ? all->triangle_count + mesh->first_sphere : mesh->first_triangle,
+               own = spheres ? mesh->sphere_count : mesh->triangle_count;
+      hl_cluster_order_fill(pool, all, first, own, spare);
+      count += cut(all->clusters + count, m, first, own);
+    }
+}
+
+/* Counts the clusters of triangles, those of all primitives, and the primitives of the largest mesh. */
+static size_t count_clusters(surfaces *all, uint32_t *most) {
+  size_t triangles = 0;
+  *most = 0;
+  all->cluster_count = 0;
+  for (size_t m = 0; m < all->mesh_count; m++) {
+    const surface_mesh *mesh = &all->meshes[m];
+    triangles += clusters_of(mesh->triangle_count);
+    all->cluster_count += clusters_of(mesh->triangle_count) + clusters_of(mesh->sphere_count);
+    *most = mesh->triangle_count > *most ? mesh->triangle_count : *most;
+    *most = mesh->sphere_count > *most ? mesh->sphere_count : *most;
+  }
+  return triangles;
+}
+
+/* Says where the vertices of each cluster of triangles go; returns how many they are. */
+static size_t place_vertices(surfaces *all, size_t triangles) {
+  size_t vertices = 0;
+  for (size_t c = 0; c < triangles; c++) {
+    all->clusters[c].first_vertex = vertices;
+    vertices += all->clusters[c].vertices;
+  }
+  return vertices;
+}
+
+hl_status hl_clusters_create(hl_context *context, hl_pool *pool, surfaces *all, hl_error *error) {
+  uint32_t most;
+  size_t triangles = count_clusters(all, &most), tasks = (all->cluster_count + A_TASK - 1) / A_TASK;
+  uint32_t *spare = hl_allocate(context, hl_cluster_order_bytes(most), 1);
+  all->clusters = hl_allocate(context, all->cluster_count, sizeof *all->clusters);
+  all->order = hl_allocate(context, hl_surfaces_count(all), sizeof *all->order);
+  all->cluster_corners = hl_allocate(context, triangles, sizeof *all->cluster_corners);
+  all->cluster_normals = hl_allocate(context, triangles, sizeof *all->cluster_normals);
+  bool room = spare != NULL && all->clusters != NULL && all->order != NULL && all->cluster_corners != NULL &&
+              all->cluster_normals != NULL;
+  if (room) {
+    cut_all(pool, all, spare);
+    hl_pool_run(pool, tasks, describe_task, all);
+    all->cluster_positions = hl_allocate(context, place_vertices(all, triangles), sizeof(float[3]));
+    room = all->cluster_positions != NULL;
+  }
+  hl_release(context, spare);
+  if (!room) return hl_fail_memory(error, all->cluster_count * sizeof *all->clusters, "the meshes");
+  hl_pool_run(pool, tasks, copy_task, all);
+  return HL_OK;
+}
+
+void hl_clusters_release(hl_context *context, surfaces *all) {
+  hl_release(context, all->clusters);
+  hl_release(context, all->order);
+  hl_release(context, all->cluster_corners);
+  hl_release(context, all->cluster_normals);
+  hl_release(context, all->cluster_positions);
+}
+
+/* Degrees by which triangles are turned away at least, as a sine. */
+static const double AWAY = 0.02;
+
+/* Derived: a normal m within the angle a of the axis n, and a way v from the eye to the middle of the box,
+ * with the angle t between v and n, have m.v >= |v| cos(t + a); to another point of the box, less than r
+ * away, m.(v + w) >= |v| cos(t + a) - r. */
+bool hl_cluster_faces_away(const surface_cluster *cluster, const view *view) {
+  vec3 low = hl_surface_vector(cluster->low), high = hl_surface_vector(cluster->high), way = view->direction;
+  double reach = 0, a = cluster->cosine;
+  if (!(a > 0)) return false;
+  if (view->perspective) {
+    way = vec3_subtract(vec3_scale(vec3_add(low, high), 0.5), view->origin);
+    reach = vec3_length(vec3_subtract(high, low)) / 2;
+  }
+  double length = vec3_length(way), t = vec3_dot(way, hl_surface_vector(cluster->axis)) / length;
+  double both = t * a - sqrt(fmax(1 - t * t, 0) * fmax(1 - a * a, 0));
+  return length * (both - AWAY) > reach;
+}
+
+double hl_lowest_height(const sheet_stack *sheets, const surface_cluster *cluster) {
+  const double n[3] = {sheets->normal.x, sheets->normal.y, sheets->normal.z};
+  double height = -sheets->first;
+  for (int axis = 0; axis < 3; axis++)
+    height += n[axis] * (double)(n[axis] > 0 ? cluster->low[axis] : cluster->high[axis]);
+  return height;
+}

@@ -1,0 +1,22 @@
+/* surface/place_surfaces.h - brings meshes to frame space, finds the normals of their vertices, and cuts them
+ * into clusters. */
+#ifndef HL_SURFACE_PLACE_SURFACES_H
+#define HL_SURFACE_PLACE_SURFACES_H
+
+#include "core/pool.h"
+#include "surface/surfaces.h"
+
+/* Brings surfaces up to date: all zero at first, later those of an earlier frame. scene: in frame space; the
+ * descriptions of its meshes are borrowed for the frame. */
+hl_status hl_surfaces_update(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
+                             surfaces *kept, hl_error *error);
+void hl_surfaces_release(hl_context *context, surfaces *kept);
+
+/* The bytes that hl_surfaces_update() allocates where nothing is kept. */
+uint64_t hl_surfaces_bytes(const hl_scene_description *scene);
+
+/* Whether the same meshes stand in the same places as in the earlier frame: the update then allocates
+ * nothing but a few cuts. */
+bool hl_surfaces_current(const surfaces *kept, const hl_scene_description *scene);
+
+#endif
