@@ -4,6 +4,7 @@
 
 #include "image.h"
 #include "layers.h"
+#include "ranks.h"
 #include "scene.h"
 
 #ifdef __cplusplus
@@ -64,6 +65,14 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_render(hl_renderer *renderer, const 
  * (default): whole pictures. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_share(hl_renderer *renderer, int part, int parts,
                                                   hl_error *error);
+
+/* The same for the processes of an MPI job: part hl_ranks_rank() of hl_ranks_size(). They tell each other of
+ * the light that they work through, so that each works through its part's soft shadows alone where the method
+ * is HL_SOFT_CASCADE; bands then follow the brightest of these lights, too. From now on rendering is
+ * collective: every rank renders the same scenes, in the same order. ranks: borrowed, while the renderer
+ * renders; null: whole pictures. */
+HL_API HL_WARN_UNUSED hl_status hl_renderer_share_over_ranks(hl_renderer *renderer, hl_ranks *ranks,
+                                                             hl_error *error);
 
 /* Renders the picture and the requested layers. Takes longer: each light is shaded once more for its picture
  * and once more for its shadow. */

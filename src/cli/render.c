@@ -149,8 +149,7 @@ static hl_status render_reference(render_job *job, const hl_scene_description *d
 static hl_status render_sheets(render_job *job, const hl_scene_description *description, hl_error *error) {
   hl_renderer *renderer = NULL;
   hl_status status = hl_renderer_create(job->host.context, &renderer, error);
-  if (status == HL_OK)
-    status = hl_renderer_share(renderer, hl_ranks_rank(job->ranks), hl_ranks_size(job->ranks), error);
+  if (status == HL_OK) status = hl_renderer_share_over_ranks(renderer, job->ranks, error);
   if (status == HL_OK)
     status = hl_renderer_render_layers(renderer, job->scene, hl_image_pixels(job->image),
                                        4 * (size_t)description->width, wanted_layers(job),

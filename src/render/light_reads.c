@@ -129,12 +129,62 @@ static void read_tile(const reads_task *task, size_t tile) {
   if (first > 0) read_slabs(task, tile, first, last);
 }
 
+static bool is_exchanged(const sweep *sweep, const light_shadow *shadow) {
+  return sweep->share->part_of != NULL && shadow->method != NULL && shadow->method->exchanges &&
+         shadow->setup.exchange != NULL;
+}
+
 static bool is_limited(const sweep *sweep, const light_shadow *shadow) {
-  return sweep->share->part_of != NULL && shadow->method != NULL && shadow->method->advance == NULL;
+  return is_exchanged(sweep, shadow) ||
+         (sweep->share->part_of != NULL && shadow->method != NULL && shadow->method->advance == NULL);
 }
 
 uint64_t hl_light_reads_bytes(const sweep *sweep, const light_shadow *shadow) {
-  return is_limited(sweep, shadow) ? hl_view_tiles(&shadow->plan.view) * sizeof(int32_t) : 0;
+  uint64_t tiles = hl_view_tiles(&shadow->plan.view), each = is_limited(sweep, shadow) ? sizeof(int32_t) : 0;
+  if (is_exchanged(sweep, shadow)) each += 1 + sizeof(int32_t) * (uint64_t)sweep->share->parts;
+  return tiles * each;
+}
+
+/* ---- owners ---- */
+
+/* The last slab in which bricks or surfaces touch a tile; 0: none do. */
+static int32_t last_touched(const occupancy *occupancy, size_t tile) {
+  for (int slab = occupancy->sheets - 1; slab > 0; slab--)
+    if (hl_occupancy_touches(occupancy, tile, slab)) return slab;
+  return 0;
+}
+
+/* The owner of a tile: of the parts that need it longest the first; of a tile that nobody needs, by its
+ * place. all: [parts][tiles] */
+static int owner_of(const int32_t *all, size_t tile, size_t tiles, int parts) {
+  int owner = 0;
+  for (int part = 1; part < parts; part++)
+    if (all[(size_t)part * tiles + tile] > all[(size_t)owner * tiles + tile]) owner = part;
+  if (all[(size_t)owner * tiles + tile] > 0) return owner;
+  return (int)(tile * (size_t)parts / tiles);
+}
+
+/* Finds the tiles that this part owns: needs them as long as anything touches them, though the picture may
+ * need them no more, so that together the parts know of all light. */
+static hl_status find_owned(sweep *sweep, sweep_light *light, size_t tiles, hl_error *error) {
+  hl_context *context = sweep->content.context;
+  const light_exchange *with = light->shadow.setup.exchange;
+  light->owned = hl_allocate_zeroed(context, tiles, sizeof *light->owned);
+  int32_t *all = hl_allocate(context, (size_t)with->parts * tiles, sizeof *all);
+  if (light->owned == NULL || all == NULL) {
+    hl_release(context, all);
+    return hl_fail_memory(error, (size_t)with->parts * tiles * sizeof *all, "a light's tiles");
+  }
+  with->gather(with->data, light->needed_until, tiles * sizeof *all, all);
+  for (size_t tile = 0; tile < tiles; tile++) {
+    light->owned[tile] = owner_of(all, tile, tiles, with->parts) == with->part;
+    int32_t last = light->owned[tile] ? last_touched(&light->sheets.occupancy, tile) : 0;
+    if (light->needed_until[tile] < last) light->needed_until[tile] = last;
+  }
+  hl_release(context, all);
+  light->shadow.needed_until = light->needed_until;
+  light->shadow.owned = light->owned;
+  return HL_OK;
 }
 
 hl_status hl_light_reads_find(sweep *sweep, hl_error *error) {
@@ -154,5 +204,11 @@ hl_status hl_light_reads_find(sweep *sweep, hl_error *error) {
   }
   for (size_t tile = 0; tile < sweep->tiles && task.light_count > 0; tile++)
     if (sweep->arrays.open[tile] != 0) read_tile(&task, tile);
-  return HL_OK;
+  hl_status status = HL_OK;
+  for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++) {
+    sweep_light *light = &sweep->lights[i];
+    if (is_exchanged(sweep, &light->shadow))
+      status = find_owned(sweep, light, hl_view_tiles(&light->shadow.buffer->view), error);
+  }
+  return status;
 }

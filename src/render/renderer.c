@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "grid/relevant.h"
 #include "isosurface/isosurface.h"
+#include "ranks/ranks.h"
 #include "render/contact.h"
 #include "render/estimate.h"
 #include "render/frame.h"
@@ -23,6 +24,7 @@ struct hl_renderer {
   hl_context *context;
   hl_pool *pool;
   int part, parts;           /* of each picture */
+  light_exchange exchange;   /* with the other parts; gather null: there is none */
   int threads;               /* as the scene says: 0 means one per processor */
   prepared_volume *prepared; /* owned; [prepared_count] */
   size_t prepared_count;
@@ -57,7 +59,25 @@ hl_status hl_renderer_share(hl_renderer *renderer, int part, int parts, hl_error
                    "hl_renderer_share: part %d of %d: give 0 to parts - 1 of at least 1", part, parts);
   renderer->part = part;
   renderer->parts = parts;
+  renderer->exchange = (light_exchange){0};
   return HL_OK;
+}
+
+void hl_renderer_exchange(hl_renderer *renderer, const light_exchange *exchange) {
+  renderer->part = exchange->part;
+  renderer->parts = exchange->parts;
+  renderer->exchange = *exchange;
+}
+
+static void gather_from_ranks(void *data, const void *from, size_t bytes, void *to) {
+  hl_ranks_gather(data, from, bytes, to);
+}
+
+hl_status hl_renderer_share_over_ranks(hl_renderer *renderer, hl_ranks *ranks, hl_error *error) {
+  hl_status status = hl_renderer_share(renderer, hl_ranks_rank(ranks), hl_ranks_size(ranks), error);
+  if (status == HL_OK && hl_ranks_size(ranks) > 1)
+    renderer->exchange = (light_exchange){renderer->part, renderer->parts, gather_from_ranks, ranks};
+  return status;
 }
 
 static void release_volumes(hl_renderer *renderer) {
@@ -289,7 +309,9 @@ static hl_status update_contact(hl_renderer *renderer, const hl_scene_descriptio
 /* Finds the part of the picture that this renderer makes. */
 static hl_status share_picture(hl_renderer *renderer, frame_work *work, int volumes, hl_error *error) {
   const share_content content = {&work->frame, work->grids, volumes};
-  work->share = (picture_share){.part = renderer->part, .parts = renderer->parts};
+  work->share = (picture_share){.part = renderer->part,
+                                .parts = renderer->parts,
+                                .exchange = renderer->exchange.gather != NULL ? &renderer->exchange : NULL};
   return hl_share_create(renderer->context, &content, &work->share, error);
 }
 

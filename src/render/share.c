@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "grid/relevant.h"
+#include "shadow/shadow_method.h"
 
 /* One cell while cells are put in order. */
 typedef struct share_cell {
@@ -39,12 +40,19 @@ static double brightness(const light_source *source, vec3 middle) {
   return color / fmax(vec3_dot(way, way), 1e-12);
 }
 
-/* The brightest light that casts hard shadows; null: none does. */
-static const light_source *brightest(const frame *frame) {
+/* Whether parts work through a light's shadows each for itself. */
+static bool is_divided(const picture_share *share, const light_source *source) {
+  const shadow_method *method = hl_shadow_method(source);
+  if (method == NULL) return false;
+  return method->advance == NULL || (method->exchanges && share->exchange != NULL);
+}
+
+/* The brightest light whose shadows are divided; null: none is. */
+static const light_source *brightest(const frame *frame, const picture_share *share) {
   const light_source *found = NULL;
   for (int i = 0; i < frame->light_count; i++) {
     const light_source *source = &frame->lights[i];
-    if (source->shadows != HL_SHADOWS_HARD) continue;
+    if (!is_divided(share, source)) continue;
     if (found == NULL || brightness(source, frame->middle) > brightness(found, frame->middle)) found = source;
   }
   return found;
@@ -86,7 +94,7 @@ static double turn_of(const double way[2]) {
  * and m' = (-m_y, m_x). Where the light's image lies within the picture or near it, so that not all lines run
  * along m, the key is their angle instead. */
 static void set_keys(const frame *frame, const picture_share *share, share_cell *cells) {
-  const light_image image = image_of(&frame->eye, brightest(frame));
+  const light_image image = image_of(&frame->eye, brightest(frame, share));
   const double middle[2] = {frame->width / 2.0, frame->height / 2.0};
   double m[2], way[2];
   bool along = true;
@@ -171,15 +179,13 @@ static void cut_bands(picture_share *share, const share_cell *cells) {
 }
 
 /* Whether parts are bands. Rows of cells in turn have more equal shares of the work; but bands need less
- * light where shadows are hard, and less of the voxels where no shadows are cast, which counts where these
+ * light where shadows are divided, and less of the voxels where no shadows are cast, which counts where these
  * lie over ranks. Whether they lie in a scratch file must not matter: that is each process's own affair. */
-static bool is_cut_in_bands(const share_content *content) {
+static bool is_cut_in_bands(const share_content *content, const picture_share *share) {
   const frame *frame = content->frame;
   bool soft = false, pages = false;
-  for (int i = 0; i < frame->light_count; i++) {
-    if (frame->lights[i].shadows == HL_SHADOWS_HARD) return true;
-    soft = soft || frame->lights[i].shadows == HL_SHADOWS_SOFT;
-  }
+  if (brightest(frame, share) != NULL) return true;
+  for (int i = 0; i < frame->light_count; i++) soft = soft || frame->lights[i].shadows == HL_SHADOWS_SOFT;
   for (int g = 0; g < content->grid_count; g++)
     pages = pages || (content->grids[g].pages != NULL && content->grids[g].pages->version != NULL);
   return pages && !soft;
@@ -204,7 +210,7 @@ hl_status hl_share_create(hl_context *context, const share_content *content, pic
   share->memory = hl_allocate(context, counted.bytes, 1);
   if (share->memory == NULL) return hl_fail_memory(error, counted.bytes, "a picture's parts");
   lay_out(share, &cells, &(hl_layout){.base = share->memory});
-  if (!is_cut_in_bands(content)) {
+  if (!is_cut_in_bands(content, share)) {
     take_turns(share);
     return HL_OK;
   }
@@ -217,5 +223,5 @@ hl_status hl_share_create(hl_context *context, const share_content *content, pic
 
 void hl_share_release(hl_context *context, picture_share *share) {
   hl_release(context, share->memory);
-  *share = (picture_share){.part = share->part, .parts = share->parts};
+  *share = (picture_share){.part = share->part, .parts = share->parts, .exchange = share->exchange};
 }

@@ -3,21 +3,25 @@
  * Rays of the eye and of a light that meet lie in one plane with the eye and the light. In the picture these
  * planes are lines through the light's image, or parallel lines where that is infinitely far away. So a band
  * of the picture along such lines looks up a band of the light's shadow buffer alone, over all sheets: each
- * part of a picture is such a band, of the brightest light with hard shadows. Bands are made of whole cells,
- * and cut so that about as much matter lies under each. Where all light is needed anyway, parts are rows of
- * cells in turn. */
+ * part of a picture is such a band, of the brightest light whose method lets parts work through their own
+ * light. Bands are made of whole cells, and cut so that about as much matter lies under each. Where all light
+ * is needed anyway, parts are rows of cells in turn. */
 #ifndef HL_RENDER_SHARE_H
 #define HL_RENDER_SHARE_H
 
+#include <halflight/render.h>
+
 #include "render/frame.h"
+#include "shadow/light_exchange.h"
 
 /* A cell is as many pixels of the picture as a tile has of the frame: `oversampling` tiles a side. */
 typedef struct picture_share {
-  int part, parts;       /* this renderer's part; how many there are */
-  int cells_x, cells_y;  /* of the whole picture */
-  int oversampling;      /* tiles of the frame along a cell's side */
-  unsigned char *memory; /* owned; holds part_of; null: the picture is not shared */
-  int32_t *part_of;      /* [cells_y][cells_x] */
+  int part, parts;                /* this renderer's part; how many there are */
+  const light_exchange *exchange; /* borrowed; with the other parts; null: they cannot be asked */
+  int cells_x, cells_y;           /* of the whole picture */
+  int oversampling;               /* tiles of the frame along a cell's side */
+  unsigned char *memory;          /* owned; holds part_of; null: the picture is not shared */
+  int32_t *part_of;               /* [cells_y][cells_x] */
 } picture_share;
 
 /* What the picture shows. */
@@ -35,6 +39,10 @@ uint64_t hl_share_bytes(int width, int height);
 hl_status hl_share_create(hl_context *context, const share_content *content, picture_share *share,
                           hl_error *error);
 void hl_share_release(hl_context *context, picture_share *share);
+
+/* Makes each picture one part of several, as hl_renderer_share() does, of renderers that exchange light: all
+ * of them render the same scenes, in the same order (renderer.c). */
+void hl_renderer_exchange(hl_renderer *renderer, const light_exchange *exchange);
 
 /* Whether a tile of the frame is of this renderer's part. */
 static inline bool hl_share_has(const picture_share *share, int tile_x, int tile_y) {

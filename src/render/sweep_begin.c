@@ -42,6 +42,7 @@ static shadow_setup setup_of_light(const sweep *sweep, const light_source *sourc
                         .emission = emission == NULL || emission->even ? NULL : emission,
                         .sheets = &sweep->geometry->sheets,
                         .eye = &frame->eye,
+                        .exchange = sweep->share->exchange,
                         .channels = sweep->channels,
                         .voxel = frame->voxel,
                         .pixel = frame->pixel,
@@ -69,8 +70,9 @@ static void end_light(const sweep *sweep, sweep_light *light) {
   hl_view_sheets_end(&light->sheets);
   hl_light_texture_release(context, &light->texture);
   hl_release(context, light->emission);
-  hl_release(context, light->needed_until);
   hl_light_shadow_end(&light->shadow);
+  hl_release(context, light->needed_until);
+  hl_release(context, light->owned);
 }
 
 /* ---- how long stretches are ---- */

@@ -29,6 +29,7 @@
 #include "light/light_extent.h"
 #include "scene/soft_methods.h"
 #include "shadow/blur.h"
+#include "shadow/light_exchange.h"
 #include "shadow/shadow_buffer.h"
 
 /* The functions of shadows that are compiled for each instruction set. A method that has such functions
@@ -53,11 +54,13 @@ typedef struct shadow_setup {
                                cells' positions */
   const sheet_stack *sheets;
   const view *eye;
-  int channels;          /* of attenuation: 1 or 3 */
-  double voxel;          /* the smallest edge of a voxel, frame units */
-  double pixel;          /* edge of a picture's pixel where the content is nearest, frame units */
-  double middle_pixel;   /* the same at the content's middle */
-  size_t picture_pixels; /* how many the frame has */
+  const light_exchange *exchange; /* with the other parts of a shared picture; null: there are none, or they
+                                     cannot be asked */
+  int channels;                   /* of attenuation: 1 or 3 */
+  double voxel;                   /* the smallest edge of a voxel, frame units */
+  double pixel;                   /* edge of a picture's pixel where the content is nearest, frame units */
+  double middle_pixel;            /* the same at the content's middle */
+  size_t picture_pixels;          /* how many the frame has */
   const vec3 *
       seen; /* [seen_count]; corners of the content that the eye sees, frame space; valid in plan and begin */
   int seen_count;
@@ -98,6 +101,9 @@ typedef struct light_shadow {
   void *state;                   /* owned; method->state_bytes */
   shadow_memory *kept;           /* the renderer's */
   void *passing;                 /* lent by the reserve */
+  const int32_t *needed_until; /* [tiles]; the last slab at which this part of a shared picture needs a tile,
+                                  0: never; null: it needs all. Borrowed, set before the first slab */
+  const unsigned char *owned;  /* [tiles]; 1 where this part tells the others of a tile; null likewise */
 } light_shadow;
 
 /* A method's memory besides the buffer. */
@@ -124,6 +130,10 @@ struct shadow_method {
   void (*before_tile)(const light_shadow *shadow, size_t tile, attenuate_job *job);
   void (*after_tile)(light_shadow *shadow, size_t tile);
   void (*advance)(light_shadow *shadow, const occupancy *occupancy, int sheet);
+  /* The parts of a shared picture work through the tiles that they need, and tell each other the rest: the
+   * setup's exchange, needed_until and owned. Of each tile that any brick touches one part is the owner,
+   * which needs the tile as long as bricks touch it. */
+  bool exchanges;
   /* Whether `advance` changes anything at a sheet. Null: it may at every sheet. */
   bool (*advances)(const light_shadow *shadow, int sheet);
   void (*end)(light_shadow *shadow);

@@ -92,6 +92,15 @@ typedef struct cascade_level {
   unsigned char *flags; /* owned */
 } cascade_level;
 
+/* Messages between the parts of a shared picture, each of one tile (cascade_exchange.c). */
+typedef struct cascade_exchange {
+  const light_exchange *with;         /* null: nobody */
+  size_t slot_bytes;                  /* of a message */
+  size_t slots;                       /* messages that are gathered at a time from each part */
+  unsigned char *outgoing, *incoming; /* owned; [slots][slot_bytes]; [parts][slots][slot_bytes] */
+  uint32_t *counts;                   /* owned; [parts]; how many messages each part has */
+} cascade_exchange;
+
 typedef struct soft_cascade {
   bool begun; /* its memory holds more than zeros */
   bool parallel;
@@ -118,6 +127,7 @@ typedef struct soft_cascade {
   unsigned char *refilled;    /* owned; [tiles]; REFILLED_BEFORE, REFILLED_NOW */
   unsigned char *touched;     /* owned; [tiles]; 1 where the chunk's slabs absorbed light */
   cascade_reads reads;        /* the tiles that the next chunk's slabs read */
+  cascade_exchange exchange;  /* with the other parts of a shared picture */
 } soft_cascade;
 
 /* Data for every pass over a cascade's fields. */
@@ -132,6 +142,14 @@ void hl_cascade_plan(light_shadow *shadow);
 void hl_cascade_lay_out(light_shadow *shadow, shadow_layouts *layouts);
 hl_status hl_cascade_begin(light_shadow *shadow, hl_error *error);
 void hl_cascade_end(light_shadow *shadow);
+
+/* cascade_exchange.c */
+void hl_cascade_exchange_lay_out(soft_cascade *cascade, const light_exchange *with, shadow_layouts *layouts);
+/* Tells the other parts what the groups at a chunk's two ends hold in the tiles that this part owns and the
+ * chunk has touched, and sets what they hold in the others' tiles. Returns whether the chunk has touched any
+ * tile of any part. */
+bool hl_cascade_exchange_chunk(soft_cascade *cascade, const unsigned char *owned, cascade_group *start,
+                               cascade_group *end);
 
 /* omega at a height. */
 static inline double hl_cascade_omega(const soft_cascade *cascade, double height) {

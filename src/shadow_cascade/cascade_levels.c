@@ -233,6 +233,7 @@ void hl_cascade_lay_out(light_shadow *shadow, shadow_layouts *layouts) {
   cascade->refilled = hl_layout_take(&layouts->passing, tiles, 1);
   reads->before = hl_layout_take(
       &layouts->passing, (size_t)(reads->tiles_x + 1) * (size_t)(reads->tiles_y + 1), sizeof *reads->before);
+  hl_cascade_exchange_lay_out(cascade, shadow->setup.exchange, layouts);
   for (int i = 0; i < cascade->level_count; i++) {
     cascade_level *level = &cascade->level[i];
     size_t tiles_x = (size_t)level->tiles_x, tiles_y = (size_t)level->tiles_y;

@@ -145,15 +145,18 @@ static void absorb_piece(void *data, size_t index, int worker) {
   }
 }
 
-static void push_chunk(soft_cascade *cascade, const shadow_buffer *buffer, double omega, bool any,
+static void push_chunk(soft_cascade *cascade, const light_shadow *shadow, double omega, bool any,
                        const cascade_crew *crew) {
   cascade_level *level = &cascade->level[0];
   cascade_group *start = &level->group[level->count - 1], *end = &level->group[level->count++];
-  end->filled = memchr(cascade->touched, 1, (size_t)level->tiles_x * (size_t)level->tiles_y) != NULL;
-  start->filled = start->filled || end->filled;
   end->omega = omega;
-  absorb_task task = {cascade, buffer, start, end, omega - start->omega, crew->functions->absorbed, any};
+  absorb_task task = {cascade, shadow->buffer, start, end, omega - start->omega, crew->functions->absorbed,
+                      any};
   hl_pool_run(crew->pool, hl_cascade_row_pieces(level), absorb_piece, &task);
+  end->filled = shadow->owned != NULL
+                    ? hl_cascade_exchange_chunk(cascade, shadow->owned, start, end)
+                    : memchr(cascade->touched, 1, (size_t)level->tiles_x * (size_t)level->tiles_y) != NULL;
+  start->filled = start->filled || end->filled;
   level->renewed = true;
   cascade->chunks++;
   if (level->count == level->capacity) hand_over(cascade, crew);
@@ -234,13 +237,14 @@ static void pass_first(const soft_cascade *cascade, cascade_level *level, const 
 /* ---- where the next slabs read ---- */
 
 /* Finds the tiles that sheets up to the next chunk's end can touch. */
-static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const sheet_stack *sheets,
+static void find_reads(soft_cascade *cascade, const occupancy *occupancy, const light_shadow *shadow,
                        int sheet) {
+  const sheet_stack *sheets = shadow->setup.sheets;
   int last = sheet;
   while (last < sheets->count - 1 &&
          hl_cascade_omega(cascade, hl_sheet_height(sheets, last)) - cascade->chunk_start < cascade->chunk)
     last++;
-  hl_cascade_reads_find(&cascade->reads, occupancy, sheet, last);
+  hl_cascade_reads_find(&cascade->reads, occupancy, shadow->needed_until, sheet, last);
 }
 
 /* The reach of the blur and resampling from one group's sum to the next group's level, pixels of the buffer.
@@ -396,10 +400,10 @@ static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, in
   double end = hl_cascade_chunks_on(cascade, omega, 1);
   if (cascade->shrink > 0) cascade->chunk = end - omega;
   cascade->chunk_start = omega;
-  find_reads(cascade, occupancy, sheets, sheet);
+  find_reads(cascade, occupancy, shadow, sheet);
   /* made from the chunks before the one that ends */
   bool any = find_shade(cascade, end, &crew);
-  push_chunk(cascade, shadow->buffer, omega, any, &crew);
+  push_chunk(cascade, shadow, omega, any, &crew);
   refill_buffer(cascade, shadow->buffer, any, &crew);
   begin_chunk(cascade);
 }
@@ -450,5 +454,6 @@ const shadow_method hl_shadow_cascade = {.name = "cascade",
                                          .before_tile = before_tile,
                                          .after_tile = after_tile,
                                          .advance = advance_cascade,
+                                         .exchanges = true,
                                          .advances = ends_chunk,
                                          .end = hl_cascade_end};

@@ -4,7 +4,8 @@
 #include <string.h>
 
 /* Writes 1 for each tile that is read, one row and one column further on. */
-static void mark_tiles(cascade_reads *reads, const occupancy *occupancy, int first_sheet, int last_sheet) {
+static void mark_tiles(cascade_reads *reads, const occupancy *occupancy, const int32_t *needed_until,
+                       int first_sheet, int last_sheet) {
   size_t width = (size_t)reads->tiles_x, words = (size_t)occupancy->tile_words;
   memset(reads->before, 0, (width + 1) * ((size_t)reads->tiles_y + 1) * sizeof *reads->before);
   for (size_t word = 0; word < words; word++) {
@@ -13,14 +14,15 @@ static void mark_tiles(cascade_reads *reads, const occupancy *occupancy, int fir
       bits |= occupancy->by_sheet[(size_t)sheet * words + word];
     for (; bits != 0; bits &= bits - 1) {
       size_t tile = word * 64 + (size_t)__builtin_ctzll(bits);
-      reads->before[(tile / width + 1) * (width + 1) + tile % width + 1] = 1;
+      bool needed = needed_until == NULL || needed_until[tile] >= first_sheet;
+      reads->before[(tile / width + 1) * (width + 1) + tile % width + 1] = needed;
     }
   }
 }
 
-void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, int first_sheet,
-                           int last_sheet) {
-  mark_tiles(reads, occupancy, first_sheet, last_sheet);
+void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, const int32_t *needed_until,
+                           int first_sheet, int last_sheet) {
+  mark_tiles(reads, occupancy, needed_until, first_sheet, last_sheet);
   size_t stride = (size_t)reads->tiles_x + 1;
   for (int y = 1; y <= reads->tiles_y; y++) {
     uint32_t *row = reads->before + (size_t)y * stride, sum = 0;

@@ -15,8 +15,10 @@ typedef struct cascade_reads {
 /* The reach of a pass that must compute all tiles, as its results are kept. */
 enum { READ_EVERYWHERE = -1 };
 
-/* Marks the tiles that these sheets touch in the light's view: their slabs are looked up there. */
-void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, int first_sheet, int last_sheet);
+/* Marks the tiles that these sheets touch in the light's view: their slabs are looked up there. needed_until:
+ * [tiles]; only tiles that a shared picture's part needs at the first sheet's slab are marked; null: all. */
+void hl_cascade_reads_find(cascade_reads *reads, const occupancy *occupancy, const int32_t *needed_until,
+                           int first_sheet, int last_sheet);
 
 /* The table's rows above and below a band of rows of tiles. */
 typedef struct read_band {

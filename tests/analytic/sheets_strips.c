@@ -1,7 +1,10 @@
 /* analytic/sheets_strips.c - the parts of a picture that several renderers make are the picture, bit for
  * bit: with every method of shadows, several sweeps, hidden matter, oversampling and surfaces. And a part
- * works through the light that falls on it alone. */
+ * works through the light that falls on it alone. Renderers in threads of one process exchange light as ranks
+ * do. */
+#define _POSIX_C_SOURCE 200809L /* barriers */
 #include <math.h>
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -11,6 +14,7 @@
 #include <cmocka.h>
 
 #include "reference_stage.h"
+#include "render/share.h"
 
 enum { WIDTH = 36, HEIGHT = 83, ROW_FLOATS = WIDTH * 4, FLOATS = HEIGHT * ROW_FLOATS };
 
@@ -68,12 +72,14 @@ static void assert_shared(stage *set, const char *what, bool many) {
 }
 
 static void add_noise(stage *set, double opacity) {
-  static float voxels[30 * 28 * 33];
+  static float voxels[30 * 28 * 33]; /* made once, before threads read them */
+  static bool made_voxels;
   const size_t n[3] = {30, 28, 33};
   const double spacing[3] = {0.7, 0.7, 0.7};
-  for (size_t v = 0; v < sizeof voxels / sizeof *voxels; v++)
+  for (size_t v = 0; v < sizeof voxels / sizeof *voxels && !made_voxels; v++)
     voxels[v] = stage_noise((double)(v % n[0]) * 0.5, (double)(v / n[0] % n[1]) * 0.6,
                             (double)(v / n[0] / n[1]) * 0.4);
+  made_voxels = true;
   hl_scene_volume *made = stage_add_grid(set, n, spacing, (vec3){-10, -10, -11}, voxels);
   made->shading = HL_SHADING_PHONG;
   stage_set_opacity(set, made, opacity, 6);
@@ -204,6 +210,208 @@ static void test_light_of_part(void **state) {
   }
 }
 
+/* ---- renderers that exchange light ---- */
+
+enum { MOST_PARTS = 8 };
+
+/* A place where all parts of a picture meet. */
+typedef struct meeting {
+  int parts;
+  pthread_barrier_t barrier;
+  const void *from[MOST_PARTS];
+} meeting;
+
+typedef struct part_thread {
+  meeting *meeting;
+  light_exchange exchange;
+  void (*prepare)(stage *set);
+  uint64_t filled, gathered; /* pixels of the light; bytes of this part */
+  float *pixels;
+  int width, height, frames;
+  hl_status status;
+} part_thread;
+
+static void gather_parts(void *data, const void *from, size_t bytes, void *to) {
+  part_thread *part = data;
+  meeting *meeting = part->meeting;
+  part->gathered += bytes;
+  meeting->from[part->exchange.part] = from;
+  pthread_barrier_wait(&meeting->barrier);
+  for (int i = 0; i < meeting->parts; i++)
+    memcpy((unsigned char *)to + (size_t)i * bytes, meeting->from[i], bytes);
+  pthread_barrier_wait(&meeting->barrier); /* nobody changes what others still read */
+}
+
+static void *render_exchanging(void *data) {
+  part_thread *part = data;
+  stage set;
+  hl_scene *scene = NULL;
+  hl_renderer *renderer = NULL;
+  hl_render_statistics statistics = {.struct_size = sizeof statistics};
+  stage_open(&set);
+  part->prepare(&set);
+  set.scene.width = part->width;
+  set.scene.height = part->height;
+  set.scene.render.threads = 1;
+  set.scene.render.sheet_spacing = 1;
+  part->status = hl_scene_create(set.context, &set.scene, &scene, NULL);
+  if (part->status == HL_OK) part->status = hl_renderer_create(set.context, &renderer, NULL);
+  if (part->status == HL_OK) hl_renderer_exchange(renderer, &part->exchange);
+  for (int frame = 0; frame < part->frames && part->status == HL_OK; frame++)
+    part->status = hl_renderer_render(renderer, scene, part->pixels, 4 * (size_t)part->width, &statistics,
+                                      NULL);
+  part->filled = statistics.pixels_filled_light;
+  hl_renderer_destroy(renderer);
+  hl_scene_release(scene);
+  stage_close(&set);
+  return NULL;
+}
+
+enum { TOGETHER_SIDE = 256 };
+
+/* Renders a picture by so many parts at once; its pixels are the parts' sum. A second frame finds memory that
+ * the first has used. threads: [parts]. */
+static void render_together(part_thread *threads, int parts, int width, int height, int frames,
+                            void (*prepare)(stage *set), float *pixels) {
+  static float kept[MOST_PARTS][TOGETHER_SIDE * TOGETHER_SIDE * 4];
+  meeting meeting = {.parts = parts};
+  pthread_t running[MOST_PARTS];
+  assert_true(parts <= MOST_PARTS && width <= TOGETHER_SIDE && height <= TOGETHER_SIDE);
+  pthread_barrier_init(&meeting.barrier, NULL, (unsigned)parts);
+  for (int i = 0; i < parts; i++) {
+    threads[i] = (part_thread){.meeting = &meeting,
+                               .exchange = {i, parts, gather_parts, &threads[i]},
+                               .prepare = prepare,
+                               .pixels = kept[i],
+                               .width = width,
+                               .height = height,
+                               .frames = frames};
+    assert_int_equal(pthread_create(&running[i], NULL, render_exchanging, &threads[i]), 0);
+  }
+  size_t floats = (size_t)width * (size_t)height * 4;
+  memset(pixels, 0, floats * sizeof *pixels);
+  for (int i = 0; i < parts; i++) {
+    pthread_join(running[i], NULL);
+    assert_int_equal(threads[i].status, HL_OK);
+    for (size_t k = 0; k < floats; k++) pixels[k] += kept[i][k];
+  }
+  pthread_barrier_destroy(&meeting.barrier);
+}
+
+static void add_soft_noise(stage *set) {
+  add_noise(set, 0.4);
+  stage_add_directional(set, (vec3){-1, 0.5, -1})->angular_diameter_deg = 10;
+  soften(set, HL_SOFT_CASCADE);
+}
+static void exchange_lamps(stage *set) {
+  add_soft_noise(set);
+  stage_add_point(set, (vec3){14, 25, 30})->radius = 3;
+  stage_add_point(set, (vec3){1.5, -2.5, 3.5})->radius = 0.2; /* within a brick */
+}
+static void exchange_colors(stage *set) {
+  exchange_lamps(set);
+  set->volumes[0].attenuation_color[1] = 0.6;
+  set->volumes[0].attenuation_color[2] = 0.3;
+}
+/* Light along the volume's faces, and from behind, and wide light. */
+static void exchange_along(stage *set) {
+  add_noise(set, 0.4);
+  stage_add_directional(set, (vec3){1, 0, 0})->angular_diameter_deg = 20;
+  stage_add_directional(set, (vec3){30, 18, 22})->angular_diameter_deg = 60;
+  soften(set, HL_SOFT_CASCADE);
+}
+/* Most of the matter lies beside the picture: parts that need no light of it work through it for the others.
+ */
+static void exchange_near(stage *set) {
+  add_soft_noise(set);
+  stage_look(set, (vec3){31, 17, 23}, (vec3){2, 3, -4}, (vec3){0, 0, 1});
+  set->scene.camera.fovy_deg = 6;
+}
+/* Two slabs far apart: the chunks between them are empty, and so are the first chunks of most parts. */
+static void exchange_apart(stage *set) {
+  add_soft_noise(set);
+  const size_t n[3] = {24, 24, 6};
+  const double spacing[3] = {0.5, 0.5, 0.5};
+  float voxels[24 * 24 * 6];
+  for (size_t v = 0; v < sizeof voxels / sizeof *voxels; v++) voxels[v] = 0.8f;
+  hl_scene_volume *made = stage_add_grid(set, n, spacing, (vec3){8, -20, 14}, voxels);
+  stage_set_opacity(set, made, 0.6, 1);
+}
+static void exchange_isosurface(stage *set) {
+  exchange_lamps(set);
+  draw_isosurface(set);
+}
+static void exchange_mixed(stage *set) {
+  add_soft_noise(set);
+  stage_add_point(set, (vec3){-9, 12, -4})->radius = 0;
+  set->scene.render.soft_method = HL_SOFT_CASCADE;
+}
+
+/* The parts' sum has the bytes of the whole picture. */
+static void test_exchange(void **state) {
+  (void)state;
+  static const struct {
+    const char *name;
+    void (*prepare)(stage *set);
+  } ways[] = {{"one light", add_soft_noise},       {"lamps", exchange_lamps}, {"colours", exchange_colors},
+              {"along faces", exchange_along},     {"near", exchange_near},   {"apart", exchange_apart},
+              {"isosurface", exchange_isosurface}, {"mixed", exchange_mixed}};
+  static const int numbers[] = {7, 2, 1, 3, 4, 8};
+  enum { SIDE_X = 100, SIDE_Y = 75 };
+  static float whole[SIDE_X * SIDE_Y * 4], sum[SIDE_X * SIDE_Y * 4];
+  for (size_t n = 0; n < sizeof ways / sizeof *ways; n++) {
+    stage set;
+    part_thread threads[MOST_PARTS];
+    stage_open(&set);
+    ways[n].prepare(&set);
+    set.scene.width = SIDE_X;
+    set.scene.height = SIDE_Y;
+    set.scene.render.sheet_spacing = 1;
+    stage_render_sheets(&set, whole);
+    stage_close(&set);
+    for (size_t i = 0; i < (n == 0 ? sizeof numbers / sizeof *numbers : 1); i++) {
+      int frames = numbers[i] == 4 ? 2 : 1;
+      render_together(threads, numbers[i], SIDE_X, SIDE_Y, frames, ways[n].prepare, sum);
+      if (memcmp(sum, whole, sizeof sum) != 0) fail_msg("%s: %d parts differ", ways[n].name, numbers[i]);
+      for (int part = 0; part < numbers[i] && numbers[i] > 1; part++) assert_true(threads[part].gathered > 0);
+    }
+  }
+}
+
+/* The cube of test_light_of_part(), under soft light. */
+static void exchange_cube(stage *set) {
+  enum { SIDE = 40 };
+  float *voxels = malloc(SIDE * SIDE * SIDE * sizeof *voxels);
+  for (size_t v = 0; v < SIDE * SIDE * SIDE; v++) voxels[v] = 1;
+  stage_add_grid(set, (const size_t[3]){SIDE, SIDE, SIDE}, (const double[3]){1, 1, 1},
+                 (vec3){-19.5, -19.5, -19.5}, voxels);
+  free(voxels);
+  stage_set_opacity(set, &set->volumes[0], 0.001, 1);
+  stage_look(set, (vec3){0, 0, 90}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  set->scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
+  set->scene.camera.height = 40;
+  stage_add_directional(set, (vec3){1, 0, -1})->angular_diameter_deg = 10;
+  soften(set, HL_SOFT_CASCADE);
+}
+
+/* Each of 4 parts fills a fourth of the light, and of a tile and some pixels on either side; what the others
+ * absorb comes in messages. */
+static void test_exchanged_light(void **state) {
+  (void)state;
+  enum { PARTS = 4 };
+  static float pixels[TOGETHER_SIDE * TOGETHER_SIDE * 4];
+  part_thread alone[1], threads[PARTS];
+  render_together(alone, 1, TOGETHER_SIDE, TOGETHER_SIDE, 1, exchange_cube, pixels);
+  render_together(threads, PARTS, TOGETHER_SIDE, TOGETHER_SIDE, 1, exchange_cube, pixels);
+  assert_true(alone[0].gathered == 0 && alone[0].filled > 100000);
+  for (int part = 0; part < PARTS; part++) {
+    assert_true(threads[part].filled > alone[0].filled / 8);
+    if (threads[part].filled > alone[0].filled / 2)
+      fail_msg("part %d fills %llu of %llu pixels of the light", part,
+               (unsigned long long)threads[part].filled, (unsigned long long)alone[0].filled);
+  }
+}
+
 static void test_refused(void **state) {
   (void)state;
   static float pixels[FLOATS], ambient[FLOATS];
@@ -233,6 +441,7 @@ static void test_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_ways), cmocka_unit_test(test_light_of_part),
+                                     cmocka_unit_test(test_exchange), cmocka_unit_test(test_exchanged_light),
                                      cmocka_unit_test(test_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -67,7 +67,7 @@ static void test_rows_within_reach(void **state) {
       by_sheet[rand() % SHEETS * WORDS + tile / 64] |= (uint64_t)1 << tile % 64;
     }
     int first = round % 2, last = 1 + round % 3 / 2;
-    hl_cascade_reads_find(&reads, &occupancy, first, last);
+    hl_cascade_reads_find(&reads, &occupancy, NULL, first, last);
     for (int scale = 1; scale <= 8; scale *= 2)
       for (size_t i = 0; i < sizeof reaches / sizeof reaches[0]; i++)
         for (int y = 0; y * scale < TILES_Y; y++)
