@@ -24,6 +24,7 @@ void hl_mesh_release(hl_mesh *mesh) {
   for (size_t n = 0; n < sizeof arrays / sizeof *arrays; n++) hl_release(mesh->context, (void *)arrays[n]);
   hl_release(mesh->context, mesh->edges);
   hl_release(mesh->context, mesh->edge_normals);
+  hl_release(mesh->context, mesh->insides);
   hl_release(mesh->context, mesh);
 }
 
@@ -118,26 +119,6 @@ static uint64_t hash_of_edge(uint32_t a, uint32_t b) {
 
 uint64_t hl_hash_of_way(uint32_t a, uint32_t b) { return a < b ? hash_of_edge(a, b) : -hash_of_edge(b, a); }
 
-/* Whether each edge runs as often one way as the other, with the volume that the triangles enclose above 0
- * (derived: hashes of edges one way are added, the other way subtracted; another sum than 0 means an open
- * edge, and 0 by chance has the probability 2^-64). */
-static bool is_closed(const hl_mesh_description *d) {
-  uint64_t sum = 0;
-  double volume = 0;
-  for (size_t t = 0; t < d->triangle_count; t++) {
-    const uint32_t *corner = d->triangles[t];
-    for (int i = 0; i < 3; i++) {
-      uint32_t a = corner[i], b = corner[(i + 1) % 3];
-      sum += hl_hash_of_way(a, b);
-    }
-    const float *a = d->positions[corner[0]], *b = d->positions[corner[1]], *c = d->positions[corner[2]];
-    volume += a[0] * ((double)b[1] * c[2] - (double)b[2] * c[1]) +
-              a[1] * ((double)b[2] * c[0] - (double)b[0] * c[2]) +
-              a[2] * ((double)b[0] * c[1] - (double)b[1] * c[0]);
-  }
-  return sum == 0 && volume > 0;
-}
-
 /* Whether all of so many colours have an opacity of 1; null: they have. */
 static bool are_opaque(const float (*colors)[4], size_t count) {
   for (size_t n = 0; colors != NULL && n < count; n++)
@@ -171,9 +152,9 @@ hl_status hl_mesh_of_parts(mesh_parts *parts, hl_mesh **mesh, hl_error *error) {
   *parts = (mesh_parts){.context = parts->context, .path = parts->path};
   status = keep_visible(made, error);
   if (status == HL_OK) status = hl_mesh_find_edges(made, error);
+  if (status == HL_OK) status = hl_mesh_find_insides(made, error);
   if (status == HL_OK) {
     const hl_mesh_description *d = &made->description;
-    made->closed = is_closed(d);
     made->opaque = are_opaque(d->colors, d->vertex_count) && are_opaque(d->face_colors, d->triangle_count);
     made->mark = mark_of(d);
     *mesh = made;

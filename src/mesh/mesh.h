@@ -29,10 +29,12 @@ struct hl_mesh {
   float (*edge_normals)[3]; /* owned; [edge_normal_count]; unit */
   size_t edge_normal_count;
   double low[3], high[3]; /* bounds of all that is seen; world units */
-  bool closed;   /* each edge has a triangle on either side: the mesh has an inside, and its fronts face
-                    outwards */
-  bool opaque;   /* no colour of a triangle lets anything through */
-  bool is_cut;   /* a scene's cuts have been cut out of it already: an isosurface */
+  bool closed;     /* each edge has a triangle on either side: the mesh has an inside, and its fronts face
+                      outwards */
+  int8_t *insides; /* owned; [triangle_count]; the side that is inside of the closed part of the mesh that a
+                      triangle belongs to: -1 its back, 1 its front, 0 where the part is open */
+  bool opaque;     /* no colour of a triangle lets anything through */
+  bool is_cut;     /* a scene's cuts have been cut out of it already: an isosurface */
   uint64_t mark; /* of all that hides light: triangles, spheres and their colours; for keys of kept results */
 };
 
@@ -76,6 +78,9 @@ hl_status hl_mesh_of_parts(mesh_parts *parts, hl_mesh **mesh, hl_error *error);
 
 /* Finds the edges of a mesh without normals, and the normals of corners there: once, when it is made. */
 hl_status hl_mesh_find_edges(hl_mesh *mesh, hl_error *error);
+
+/* Finds which parts of a mesh are closed: insides and closed. */
+hl_status hl_mesh_find_insides(hl_mesh *mesh, hl_error *error);
 
 /* The parts' arrays, borrowed. */
 hl_mesh_description hl_mesh_parts_describe(const mesh_parts *parts);

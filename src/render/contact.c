@@ -48,7 +48,7 @@ typedef struct contact_ray {
   const surfaces *all;
   const surface_mesh *mesh; /* of the sample */
   uint32_t primitive;       /* likewise */
-  vec3 point, normal;       /* likewise; the primitive's own */
+  vec3 point, normal;       /* likewise; the primitive's own, towards the eye */
   vec3 plane;               /* a point of the primitive's plane */
   vec3 smooth;              /* the sample's normal */
   double close;             /* frame units */
@@ -190,6 +190,9 @@ static void place_ray(const sweep *sweep, const tile_slab *slab, const surface_b
     height = vec3_dot(ray->normal, vec3_subtract(ray->point, last->plane));
   } else {
     ray->normal = hl_triangle_normal(all, f->primitive, ray->point, &height);
+    double side = vec3_dot(ray->normal, vector_of(batch->samples.towards_eye, i)) < 0 ? -1 : 1;
+    ray->normal = vec3_scale(ray->normal, side);
+    height *= side;
   }
   ray->plane = ray->point = vec3_subtract(ray->point, vec3_scale(ray->normal, height));
   if (f->seen != f->samples) ray->point = seen_point(sweep, slab, f, ray->normal, ray->point);
@@ -247,16 +250,72 @@ static bool is_close(const sweep *sweep, const contact_light *light, const surfa
   return hl_surface_tree_overlaps(sweep->frame->contact, low, high);
 }
 
+/* Whether all of a light is outside of a mesh. A light's outermost points lie less than half as far again
+ * from its centre as those that stand for it. */
+static bool is_outside(const contact_light *light, const surface_mesh *mesh) {
+  const light_source *source = light->source;
+  return source->parallel || hl_surface_is_outside(mesh->scene, source->position, 1.5 * light->points->reach);
+}
+
+/* The samples, as bits, that the eye sees from within a closed part of their mesh, which lets no light
+ * through. */
+static uint32_t samples_within(const sweep *sweep, const surface_batch *batch) {
+  const surfaces *all = sweep->frame->surfaces;
+  const view *eye = &sweep->frame->eye;
+  uint32_t within = 0;
+  if (!hl_surface_is_opaque(batch->mesh) || !eye->perspective ||
+      hl_surface_is_outside(batch->mesh->scene, eye->origin, 0))
+    return 0;
+  for (int i = 0; i < batch->count; i++) {
+    double height;
+    uint32_t primitive = batch->fragments[i]->primitive;
+    if (primitive >= all->triangle_count) continue;
+    int inside = batch->mesh->mesh->insides[primitive - batch->mesh->first_triangle];
+    vec3 normal = hl_triangle_normal(all, primitive, (vec3){0, 0, 0}, &height);
+    double side = inside * vec3_dot(normal, vector_of(batch->samples.towards_eye, i));
+    within |= (uint32_t)(side > 0) << i;
+  }
+  return within;
+}
+
+/* The lights of a batch while what passes is found. */
+typedef struct contact_search {
+  const sweep *sweep;
+  float (*passing)[SURFACE_SAMPLES]; /* [lights][channels] */
+  bool found;                        /* some light is taken: passing is set */
+} contact_search;
+
+/* Sets what passes to a sample of one light. */
+static void set_passing(contact_search *search, int light, int sample, const double parts[HL_CHANNELS]) {
+  const int channels = search->sweep->channels;
+  for (int row = 0; row < search->sweep->geometry->light_count * channels && !search->found; row++)
+    for (int k = 0; k < SURFACE_SAMPLES; k++) search->passing[row][k] = 1;
+  search->found = true;
+  for (int c = 0; c < channels; c++) search->passing[light * channels + c][sample] = (float)parts[c];
+}
+
+/* No light from outside comes to samples within a closed part of a mesh. */
+static void darken_within(contact_search *search, int light, uint32_t within) {
+  const double nothing[HL_CHANNELS] = {0, 0, 0};
+  for (; within != 0; within &= within - 1) set_passing(search, light, __builtin_ctz(within), nothing);
+}
+
 bool hl_contact_find(const sweep *sweep, const tile_slab *slab, const surface_batch *batch,
                      float (*passing)[SURFACE_SAMPLES]) {
-  const int light_count = sweep->geometry->light_count;
+  contact_search search = {sweep, passing, false};
   contact_ray rays[SURFACE_SAMPLES];
-  bool placed = false, found = false;
-  if (sweep->frame->contact->box_count == 0 || !batch->mesh->scene->receives_shadow) return false;
-  for (int l = 0; l < light_count; l++) {
+  bool placed = false;
+  if (!batch->mesh->scene->receives_shadow) return false;
+  const uint32_t within = samples_within(sweep, batch), all = (1u << batch->count) - 1;
+  if (sweep->frame->contact->box_count == 0 && within == 0) return false;
+  for (int l = 0; l < sweep->geometry->light_count; l++) {
     const contact_light light = {sweep->lights[l].source, &sweep->lights[l].shadow,
                                  &sweep->surfaces.points[l]};
-    if (light.shadow->method == NULL || !is_asked(sweep, &light, batch) || !is_close(sweep, &light, batch))
+    if (light.shadow->method == NULL) continue;
+    const uint32_t dark = within != 0 && is_outside(&light, batch->mesh) ? within : 0;
+    darken_within(&search, l, dark);
+    if (dark == all || sweep->frame->contact->box_count == 0 || !is_asked(sweep, &light, batch) ||
+        !is_close(sweep, &light, batch))
       continue;
     for (int i = 0; i < batch->count && !placed; i++)
       place_ray(sweep, slab, batch, i, i > 0 ? &rays[i - 1] : NULL, &rays[i]);
@@ -264,12 +323,8 @@ bool hl_contact_find(const sweep *sweep, const tile_slab *slab, const surface_ba
     if (!may_find(sweep, &light, rays, batch->count)) continue;
     for (int i = 0; i < batch->count; i++) {
       double parts[HL_CHANNELS];
-      if (!look(sweep, &light, &rays[i], parts)) continue;
-      for (int row = 0; row < light_count * sweep->channels && !found; row++)
-        for (int k = 0; k < SURFACE_SAMPLES; k++) passing[row][k] = 1;
-      found = true;
-      for (int c = 0; c < sweep->channels; c++) passing[l * sweep->channels + c][i] = (float)parts[c];
+      if ((dark >> i & 1) == 0 && look(sweep, &light, &rays[i], parts)) set_passing(&search, l, i, parts);
     }
   }
-  return found;
+  return search.found;
 }

@@ -1,9 +1,12 @@
-/* render/contact.h - the light that reaches points of surfaces close behind the open edges of others.
+/* render/contact.h - the light that reaches points of surfaces close behind others, at their open edges and
+ * in the corners of rooms.
  *
  * A shadow buffer takes a surface into account some pixels late (surface/tile_fragments.h), and at an open
  * edge its look-ups mix the last pixels with those beside the edge: light would leak where a thin wall stands
- * on a floor. So points of surfaces look for what is close before them by rays towards the light. In: the
- * tree of triangles near open edges. Out: the fractions of light that pass what is close. */
+ * on a floor, and from a lit wall to the next one where both meet in the corner of a dark room. So points of
+ * surfaces look for what is close before them by rays towards the light. Within a closed part of a mesh there
+ * is no light from outside, and no ray is needed. In: the tree of triangles near the open edges and corners
+ * of meshes that are not closed. Out: the fractions of light that pass what is close. */
 #ifndef HL_RENDER_CONTACT_H
 #define HL_RENDER_CONTACT_H
 

@@ -60,34 +60,21 @@ static hl_status rasterise(fragment_work *work, fragments *made, hl_error *error
   return status;
 }
 
-/* Whether a mesh has an inside, and an opacity of 1 but for that of its own colours. */
-static bool is_closed(const surface_mesh *mesh) {
-  return mesh->mesh->closed && !mesh->is_cut && mesh->scene->opacity >= 1;
-}
-
 /* Whether a view's rays come from outside of a mesh: where they begin at a point, from outside of its box. */
 static bool is_outside(const view *view, const hl_scene_mesh *mesh) {
-  vec3 corner[8];
-  if (!view->perspective) return true;
-  hl_surface_corners(mesh, 0, corner);
-  for (int axis = 0; axis < 3; axis++) {
-    vec3 edge = vec3_subtract(corner[1 << axis], corner[0]);
-    double at = vec3_dot(vec3_subtract(view->origin, corner[0]), edge), length = vec3_dot(edge, edge);
-    if (at < -0.01 * length || at > 1.01 * length) return true;
-  }
-  return false;
+  return !view->perspective || hl_surface_is_outside(mesh, view->origin, 0);
 }
 
 /* Whether the eye sees none of a mesh's backs: it is closed, opaque, and the eye is outside. */
 static bool has_hidden_backs(const fragments_source *source, const surface_mesh *mesh) {
-  return !source->of_light && !source->unseen && is_closed(mesh) && mesh->colors == NULL &&
+  return !source->of_light && !source->unseen && hl_surface_is_closed(mesh) && mesh->colors == NULL &&
          mesh->face_colors == NULL && is_outside(source->view, mesh->scene);
 }
 
 /* Whether a light lights none of a mesh's backs: the mesh is closed and lets no light through, and the light
- * is outside. least: as in fragment_order. */
-static bool has_dark_backs(const fragments_source *source, const surface_mesh *mesh, float least) {
-  return source->of_light && is_closed(mesh) && mesh->mesh->opaque && least >= 1 &&
+ * is outside. */
+static bool has_dark_backs(const fragments_source *source, const surface_mesh *mesh) {
+  return source->of_light && hl_surface_is_closed(mesh) && hl_surface_is_opaque(mesh) &&
          is_outside(source->view, mesh->scene);
 }
 
@@ -105,7 +92,7 @@ static void describe_meshes(const fragments_source *source, float *least, bool *
     const surface_mesh *mesh = &source->surfaces->meshes[m];
     const double *color = mesh->scene->attenuation_color;
     least[m] = source->of_light ? (float)fmin(color[0], fmin(color[1], color[2])) : 1;
-    dark_backs[m] = has_dark_backs(source, mesh, least[m]);
+    dark_backs[m] = has_dark_backs(source, mesh);
   }
 }
 

@@ -22,6 +22,29 @@ static void sum_edges(const surfaces *all, const surface_mesh *mesh, uint64_t *s
   }
 }
 
+static vec3 normal_of(const surfaces *all, uint32_t triangle) {
+  const uint32_t *corner = all->triangles[triangle];
+  vec3 a = hl_surface_vector(all->positions[corner[0]]);
+  return vec3_normalise(vec3_cross(vec3_subtract(hl_surface_vector(all->positions[corner[1]]), a),
+                                   vec3_subtract(hl_surface_vector(all->positions[corner[2]]), a)));
+}
+
+/* Sets the distance of vertices to 0 at which a triangle bends much against their first one. first:
+ * [vertices]; becomes their first triangles. */
+static void find_creases(const surfaces *all, const surface_mesh *mesh, uint32_t *first, float *from_edge) {
+  for (uint32_t t = mesh->triangle_count; t-- > 0;)
+    for (int i = 0; i < 3; i++) first[all->triangles[mesh->first_triangle + t][i] - mesh->first_vertex] = t;
+  for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+    vec3 own = normal_of(all, mesh->first_triangle + t);
+    for (int i = 0; i < 3; i++) {
+      size_t vertex = all->triangles[mesh->first_triangle + t][i] - mesh->first_vertex;
+      if (first[vertex] == t) continue;
+      vec3 other = normal_of(all, mesh->first_triangle + first[vertex]);
+      if (fabs(vec3_dot(own, other)) < HL_MESH_ROUNDED) from_edge[vertex] = 0;
+    }
+  }
+}
+
 /* Lowers the distances of a triangle's vertices to what its edges allow; returns whether any changed. */
 static bool follow_edges(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, float distance,
                          float *from_edge) {
@@ -45,13 +68,15 @@ hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surfac
                           bool *near, hl_error *error) {
   size_t vertices = mesh->mesh->description.vertex_count;
   uint64_t *sum = hl_allocate_zeroed(context, vertices, sizeof *sum);
+  uint32_t *first = hl_allocate(context, vertices, sizeof *first);
   float *from_edge = hl_allocate(context, vertices, sizeof *from_edge);
-  hl_status status = sum != NULL && from_edge != NULL
+  hl_status status = sum != NULL && first != NULL && from_edge != NULL
                          ? HL_OK
                          : hl_fail_memory(error, vertices * sizeof *sum, "the edges of meshes");
   if (status == HL_OK) {
     sum_edges(all, mesh, sum);
     for (size_t v = 0; v < vertices; v++) from_edge[v] = sum[v] != 0 ? 0 : INFINITY;
+    find_creases(all, mesh, first, from_edge);
     bool changed = true;
     for (int pass = 0; pass < PASSES && changed; pass++) {
       changed = false;
@@ -66,10 +91,12 @@ hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surfac
     }
   }
   hl_release(context, sum);
+  hl_release(context, first);
   hl_release(context, from_edge);
   return status;
 }
 
 uint64_t hl_surface_rims_bytes(const hl_mesh_description *mesh) {
-  return mesh->vertex_count * (sizeof(uint64_t) + sizeof(float)) + mesh->triangle_count * sizeof(bool);
+  return mesh->vertex_count * (sizeof(uint64_t) + sizeof(uint32_t) + sizeof(float)) +
+         mesh->triangle_count * sizeof(bool);
 }

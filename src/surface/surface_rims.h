@@ -1,13 +1,15 @@
-/* surface/surface_rims.h - the triangles of a mesh near its open edges.
+/* surface/surface_rims.h - the triangles of a mesh near its open edges and its corners.
  *
- * An edge is open where no other triangle goes along it the other way. */
+ * An edge is open where no other triangle goes along it the other way. A corner is an edge at which the mesh
+ * bends by more than 40 degrees. */
 #ifndef HL_SURFACE_SURFACE_RIMS_H
 #define HL_SURFACE_SURFACE_RIMS_H
 
 #include "surface/surfaces.h"
 
 /* Sets near[t], of the mesh's triangles, where triangle t has a vertex within a distance, along edges, of an
- * open edge; frame units. The distance is followed over few edges: where triangles are very small it is less.
+ * open edge or a corner; frame units. The distance is followed over few edges: where triangles are very small
+ * it is less.
  */
 hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surface_mesh *mesh, double distance,
                           bool *near, hl_error *error);

@@ -39,6 +39,28 @@ void hl_surface_corners(const hl_scene_mesh *mesh, double least, vec3 corners[8]
         (vec3){corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]});
 }
 
+bool hl_surface_is_closed(const surface_mesh *mesh) {
+  return mesh->mesh->closed && !mesh->is_cut && mesh->scene->opacity >= 1;
+}
+
+bool hl_surface_is_opaque(const surface_mesh *mesh) {
+  const double *color = mesh->scene->attenuation_color;
+  return mesh->scene->casts_shadow && !mesh->is_cut && mesh->scene->opacity >= 1 && mesh->mesh->opaque &&
+         fmin(color[0], fmin(color[1], color[2])) >= 1;
+}
+
+bool hl_surface_is_outside(const hl_scene_mesh *mesh, vec3 centre, double radius) {
+  vec3 corner[8];
+  hl_surface_corners(mesh, 0, corner);
+  for (int axis = 0; axis < 3; axis++) {
+    vec3 edge = vec3_subtract(corner[1 << axis], corner[0]);
+    double at = vec3_dot(vec3_subtract(centre, corner[0]), edge), squared = vec3_dot(edge, edge),
+           beside = radius * sqrt(squared);
+    if (at + beside < -0.01 * squared || at - beside > 1.01 * squared) return true;
+  }
+  return false;
+}
+
 void hl_surfaces_key_add(hl_key *key, const surfaces *all) {
   for (size_t m = 0; all != NULL && m < all->mesh_count; m++) {
     const hl_scene_mesh *mesh = all->meshes[m].scene;

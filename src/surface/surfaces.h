@@ -72,6 +72,15 @@ static inline bool hl_surface_left(const surfaces *all, const surface_mesh *mesh
 /* The corners of a box around a mesh; frame space. A flat mesh gets a box of thickness `least`. */
 void hl_surface_corners(const hl_scene_mesh *mesh, double least, vec3 corners[8]);
 
+/* Whether a mesh has an inside, and an opacity of 1 but for that of its own colours. */
+bool hl_surface_is_closed(const surface_mesh *mesh);
+
+/* Whether no light passes a mesh, of which no cuts remove anything. */
+bool hl_surface_is_opaque(const surface_mesh *mesh);
+
+/* Whether a ball lies outside of a mesh's box, by a hundredth of its edges at least; frame space. */
+bool hl_surface_is_outside(const hl_scene_mesh *mesh, vec3 centre, double radius);
+
 /* A position of surfaces->positions or ->normals. */
 static inline vec3 hl_surface_vector(const float v[3]) { return (vec3){v[0], v[1], v[2]}; }
 

@@ -1,0 +1,86 @@
+/* mesh/insides.c - the parts of a mesh that are closed, and which side of them is the inside.
+ *
+ * In: a mesh's triangles. Out: for each of them on which side its part's inside is. A part is what vertices
+ * hold together: a mesh may hold a room and what stands in it, their fronts towards whichever side. */
+#include "core/memory.h"
+#include "mesh/mesh.h"
+
+/* Parts while they are found. */
+typedef struct part_search {
+  const hl_mesh_description *mesh;
+  uint32_t *parent; /* owned; [vertex_count]; another vertex of the same part; its own: the part's root */
+  uint64_t *ways;   /* owned; [vertex_count]; of roots: the sum of the part's edges, 0 where it is closed */
+  double *volume;   /* owned; [vertex_count]; of roots: six times what the part encloses; below 0 where fronts
+                       face inwards */
+} part_search;
+
+static uint32_t root_of(uint32_t *parent, uint32_t vertex) {
+  for (; parent[vertex] != vertex; vertex = parent[vertex]) parent[vertex] = parent[parent[vertex]];
+  return vertex;
+}
+
+static void join(uint32_t *parent, uint32_t a, uint32_t b) {
+  a = root_of(parent, a), b = root_of(parent, b);
+  if (a < b) parent[b] = a;
+  else parent[a] = b;
+}
+
+/* Six times the volume between a triangle and the origin. */
+static double volume_of(const hl_mesh_description *d, const uint32_t corner[3]) {
+  const float *a = d->positions[corner[0]], *b = d->positions[corner[1]], *c = d->positions[corner[2]];
+  return a[0] * ((double)b[1] * c[2] - (double)b[2] * c[1]) +
+         a[1] * ((double)b[2] * c[0] - (double)b[0] * c[2]) +
+         a[2] * ((double)b[0] * c[1] - (double)b[1] * c[0]);
+}
+
+/* Finds the parts, and sums up their edges and volumes. Returns whether the whole mesh is closed: whether
+ * each edge runs as often one way as the other, with the volume that the triangles enclose above 0 (derived:
+ * hashes of edges one way are added, the other way subtracted; another sum than 0 means an open edge, and 0
+ * by chance has the probability 2^-64). */
+static bool find_parts(part_search *search) {
+  const hl_mesh_description *d = search->mesh;
+  uint64_t sum = 0;
+  double volume = 0;
+  for (size_t v = 0; v < d->vertex_count; v++) search->parent[v] = (uint32_t)v;
+  for (size_t t = 0; t < d->triangle_count; t++)
+    for (int i = 1; i < 3; i++) join(search->parent, d->triangles[t][0], d->triangles[t][i]);
+  for (size_t t = 0; t < d->triangle_count; t++) {
+    const uint32_t *corner = d->triangles[t], root = root_of(search->parent, corner[0]);
+    for (int i = 0; i < 3; i++) {
+      uint64_t way = hl_hash_of_way(corner[i], corner[(i + 1) % 3]);
+      search->ways[root] += way;
+      sum += way;
+    }
+    search->volume[root] += volume_of(d, corner);
+    volume += volume_of(d, corner);
+  }
+  return sum == 0 && volume > 0;
+}
+
+static void set_insides(part_search *search, int8_t *insides) {
+  const hl_mesh_description *d = search->mesh;
+  for (size_t t = 0; t < d->triangle_count; t++) {
+    uint32_t root = root_of(search->parent, d->triangles[t][0]);
+    double volume = search->ways[root] == 0 ? search->volume[root] : 0;
+    insides[t] = (int8_t)((volume < 0) - (volume > 0));
+  }
+}
+
+hl_status hl_mesh_find_insides(hl_mesh *mesh, hl_error *error) {
+  const hl_mesh_description *d = &mesh->description;
+  hl_context *context = mesh->context;
+  part_search search = {.mesh = d};
+  search.parent = hl_allocate(context, d->vertex_count, sizeof *search.parent);
+  search.ways = hl_allocate_zeroed(context, d->vertex_count, sizeof *search.ways);
+  search.volume = hl_allocate_zeroed(context, d->vertex_count, sizeof *search.volume);
+  mesh->insides = hl_allocate(context, d->triangle_count, sizeof *mesh->insides);
+  bool room = search.parent != NULL && search.ways != NULL && search.volume != NULL && mesh->insides != NULL;
+  if (room) {
+    mesh->closed = find_parts(&search);
+    set_insides(&search, mesh->insides);
+  }
+  hl_release(context, search.parent);
+  hl_release(context, search.ways);
+  hl_release(context, search.volume);
+  return room ? HL_OK : hl_fail_memory(error, d->vertex_count * 20, "a mesh's closed parts");
+}
