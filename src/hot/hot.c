@@ -15,6 +15,7 @@
 #include "shadow/blur_lanes.h"
 #include "shadow_cascade/cascade_lanes.h"
 #include "shadow_sublights/sublight_lanes.h"
+#include "surface/small_spheres_lanes.h"
 #include "surface/small_triangles_lanes.h"
 #include "view/brick_ranges_lanes.h"
 
@@ -49,7 +50,7 @@ const hot_functions HL_HOT_TABLE = {
     .view = {brick_ranges_in_view, coverage_tile},
     .field = {field_opacity, field_cover, sky_row},
     .fill = {relevant_blocks_tile, splat_tile, gather_tile},
-    .surface = {cover_small, see_cluster, cover_cluster},
+    .surface = {cover_small, see_cluster, cover_cluster, cover_spheres},
     .shadow = {attenuate_tile,
                lit_blocks_tile,
                {blur_rows_tile, blur_columns_tile, lit_blocks_tile, emission_tile},

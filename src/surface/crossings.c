@@ -16,6 +16,7 @@ typedef struct shown_surface {
   bool leaving;            /* the side of the sphere where rays leave it */
   bool by_corners;         /* a triangle none of whose corners is cut: its height is rise / part, below */
   double rise[3], part[3]; /* linear functions of the pixel, as those of surface_plane */
+  sphere_rays rays;        /* of a sphere */
 } shown_surface;
 
 /* The fragments of a pixel, and the surfaces of those that may cross others. */
@@ -42,7 +43,7 @@ static double height_at(const pixel_fragments *pixel, const shown_surface *surfa
   u += pixel->x, v += pixel->y;
   if (surface->by_corners) return hl_plane_linear(surface->rise, u, v) / hl_plane_linear(surface->part, u, v);
   if (surface->sphere == NULL) return hl_plane_height(&surface->plane, u, v);
-  (void)hl_meet_sphere(tile->view, surface->sphere, u, v, surface->leaving, &point);
+  (void)hl_meet_sphere(&surface->rays, u, v, surface->leaving, &point);
   return vec3_dot(tile->sheets->normal, point) - tile->sheets->first;
 }
 
@@ -103,6 +104,7 @@ static const shown_surface *surface_of(pixel_fragments *pixel, size_t i) {
   } else {
     surface->by_corners = false;
     surface->sphere = tile->all->spheres[f->primitive - tile->all->triangle_count];
+    surface->rays = hl_sphere_rays(tile->view, surface->sphere);
     find_side(pixel, f, surface);
   }
   return surface;

@@ -10,6 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "view/view.h"
+
 enum { SMALL_TRIANGLES = 16, SMALL_SIDE = 4, SMALL_PIXELS = SMALL_SIDE * SMALL_SIDE };
 
 /* The surface's slope in frame units a pixel is no steeper: one that light almost grazes would be delayed
@@ -37,6 +39,8 @@ typedef struct small_view {
   double inverse[3][3], origin[3]; /* of clusters: w, w u and w v are the products with point - origin; w is 1
                                    where the view is not a perspective one */
   int32_t left, top;               /* of clusters: the tile's corner; 1/256 pixels */
+  const view *view;                /* of spheres; borrowed */
+  const sheet_stack *sheets;       /* of spheres; borrowed */
   int fronts;                      /* only triangles that face the view are covered */
   int dark_backs;                  /* as in fragment_work: where the rays leave the mesh there is no delay */
 } small_view;
@@ -84,7 +88,7 @@ typedef struct small_cover {
                                      is not set */
   _Alignas(64) int32_t pixel[SMALL_PIXELS][SMALL_TRIANGLES]; /* its number in the tile, block after block */
   uint16_t samples[SMALL_PIXELS][SMALL_TRIANGLES];           /* covered, one bit each */
-  int32_t reach[SMALL_TRIANGLES];                            /* of the eye's view: of the fragments */
+  int32_t reach[SMALL_PIXELS][SMALL_TRIANGLES];              /* of the eye's view: of the fragments */
   float height[SMALL_PIXELS][SMALL_TRIANGLES]; /* in the middle of the samples; above the first sheet */
   float start[SMALL_PIXELS][SMALL_TRIANGLES];  /* of a light's view: the delayed height */
   int32_t slab[SMALL_PIXELS][SMALL_TRIANGLES]; /* of the height */
@@ -105,11 +109,22 @@ typedef uint32_t cover_cluster_function(const small_view *view, const cluster_sh
                                         const seen_cluster *seen, int first, uint32_t wanted,
                                         small_cover *cover);
 
+/* Spheres that no cut touches and no light passes. */
+typedef struct small_spheres {
+  _Alignas(64) float centre[3][SMALL_TRIANGLES], radius[SMALL_TRIANGLES]; /* frame space */
+} small_spheres;
+
+/* The same for sixteen spheres: those are small whose boxes touch at most four by four pixels of the tile,
+ * and that the view sees from outside. Not for lights' views whose fragments fill several slabs. */
+typedef uint32_t cover_spheres_function(const small_view *view, const small_spheres *spheres,
+                                        small_cover *cover);
+
 /* The room's functions that are compiled for each instruction set. */
 typedef struct surface_functions {
   cover_small_function *cover_small;
   see_cluster_function *see_cluster;
   cover_cluster_function *cover_cluster;
+  cover_spheres_function *cover_spheres;
 } surface_functions;
 
 #endif

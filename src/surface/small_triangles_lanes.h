@@ -13,6 +13,8 @@
 
 /* 1/256 pixels from one sample to the next column or row. */
 enum { SMALL_SUBPIXELS = 256, SMALL_STEP = SMALL_SUBPIXELS / 16, SMALL_TILE = 16 };
+/* As in seen.c. */
+static const double SMALL_NEAREST = 1e-4;
 /* Distances of sheets by which a small triangle's height changes at most. */
 static const float SMALL_RISE = 4;
 
@@ -222,10 +224,10 @@ LANES_INLINE lanes find_height(const small_shape *shape, const small_heights *he
 }
 
 /* As hl_told_reach(). */
-LANES_INLINE void store_reach(const small_view *view, const small_heights *heights, small_cover *cover) {
+LANES_INLINE lanes_int find_reach(const small_view *view, const small_heights *heights) {
   lanes rise = (lanes_abs(heights->by_x) + lanes_abs(heights->by_y)) * (float)SMALL_SUBPIXELS;
   lanes parts = lanes_min(rise, heights->highest - heights->lowest) * (REACH_PARTS / view->spacing);
-  store_ints(cover->reach, lanes_floor(lanes_min(parts, lanes_set(FARTHEST - 1))) + 1);
+  return lanes_floor(lanes_min(parts, lanes_set(FARTHEST - 1))) + 1;
 }
 
 LANES_INLINE lanes_int within(lanes_int at, int32_t count) { return (at >= 0) & (at < count); }
@@ -255,7 +257,7 @@ LANES_INLINE uint32_t cover_wanted(const small_view *view, const small_triangles
   small &= flat;
   lanes_int any = small & ((shape.area < 0.0f) | ((shape.area > 0.0f) & (view->fronts ? 0 : -1)));
   lanes slope = lanes_set(0), delay = slope;
-  if (!view->of_light) store_reach(view, &heights, cover);
+  lanes_int reach = view->of_light ? lanes_set_int(0) : find_reach(view, &heights);
   if (view->of_light) {
     slope = find_slope(view, t, &leaving);
     delay = slope * view->delay + (float)LEAST_DELAY * view->spacing;
@@ -282,7 +284,10 @@ LANES_INLINE uint32_t cover_wanted(const small_view *view, const small_triangles
     lanes height = find_height(&shape, &heights, &samples, x, y);
     lanes_store(cover->height[k], height);
     store_ints(cover->slab[k], slab_at(view, height));
-    if (!view->of_light) continue;
+    if (!view->of_light) {
+      store_ints(cover->reach[k], reach);
+      continue;
+    }
     lanes start = height + delay, highest = heights.highest + (float)SEAM * view->spacing,
           end = lanes_min(height + slope * view->rise, highest) + delay;
     lanes_store(cover->start[k], start);

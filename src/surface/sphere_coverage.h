@@ -8,8 +8,17 @@
 bool hl_cover_sphere(const view *view, const float sphere[4], const seen_bounds *bounds, int tile_x,
                      int tile_y, pixel_span *span, uint16_t covered[TILE_PIXELS]);
 
+/* The ray A + s B of a pixel, from the sphere's centre; both are linear in the pixel. */
+typedef struct sphere_rays {
+  vec3 start, start_u, start_v, way, way_u, way_v, centre;
+  double radius;
+  bool perspective;
+} sphere_rays;
+
+sphere_rays hl_sphere_rays(const view *view, const float sphere[4]);
+
 /* Where the ray of continuous pixel (u, v) enters and leaves a sphere; a ray that misses it: the point
  * nearest to the ray, twice. False where the point lies behind a perspective view's eye. */
-bool hl_meet_sphere(const view *view, const float sphere[4], double u, double v, bool leaving, vec3 *point);
+bool hl_meet_sphere(const sphere_rays *rays, double u, double v, bool leaving, vec3 *point);
 
 #endif

@@ -25,7 +25,8 @@ static vec3 point_of(const seen_part *part, double u, double v) {
   const view *view = part->view;
   vec3 point = {NAN, NAN, NAN};
   if (part->sphere != NULL) {
-    (void)hl_meet_sphere(view, part->sphere, u, v, part->leaving, &point);
+    const sphere_rays rays = hl_sphere_rays(view, part->sphere);
+    (void)hl_meet_sphere(&rays, u, v, part->leaving, &point);
     return point;
   }
   vec3 pixel = vec3_add(view->corner, vec3_add(vec3_scale(view->du, u), vec3_scale(view->dv, v)));

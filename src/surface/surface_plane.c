@@ -7,18 +7,24 @@ static void set_linear(double f[3], vec3 normal, vec3 at, vec3 by_u, vec3 by_v) 
   f[0] = vec3_dot(normal, at), f[1] = vec3_dot(normal, by_u), f[2] = vec3_dot(normal, by_v);
 }
 
-/* The plane through a point. */
-static void set_plane(const view *view, const sheet_stack *sheets, vec3 n, vec3 point, surface_plane *plane) {
+void hl_plane_begin(const view *view, const sheet_stack *sheets, surface_plane *plane) {
   vec3 zero = {0, 0, 0}, h = sheets->normal;
-  vec3 a = view->perspective ? view->origin : view->corner,
-       b = view->perspective ? view->corner : view->direction;
-  vec3 au = view->perspective ? zero : view->du, av = view->perspective ? zero : view->dv;
-  vec3 bu = view->perspective ? view->du : zero, bv = view->perspective ? view->dv : zero;
-  set_linear(plane->rise, vec3_scale(n, -1), vec3_subtract(a, point), au, av);
-  set_linear(plane->way, n, b, bu, bv);
-  set_linear(plane->above, h, a, au, av);
-  set_linear(plane->climb, h, b, bu, bv);
+  bool eye = view->perspective;
+  set_linear(plane->above, h, eye ? view->origin : view->corner, eye ? zero : view->du,
+             eye ? zero : view->dv);
+  set_linear(plane->climb, h, eye ? view->corner : view->direction, eye ? view->du : zero,
+             eye ? view->dv : zero);
   plane->above[0] -= sheets->first;
+}
+
+/* The plane through a point, which has begun. */
+static void set_plane(const view *view, vec3 n, vec3 point, surface_plane *plane) {
+  vec3 zero = {0, 0, 0};
+  bool eye = view->perspective;
+  set_linear(plane->rise, vec3_scale(n, -1), vec3_subtract(eye ? view->origin : view->corner, point),
+             eye ? zero : view->du, eye ? zero : view->dv);
+  set_linear(plane->way, n, eye ? view->corner : view->direction, eye ? view->du : zero,
+             eye ? view->dv : zero);
 }
 
 void hl_plane_of_triangle(const view *view, const sheet_stack *sheets, const surfaces *all, uint32_t triangle,
@@ -27,7 +33,8 @@ void hl_plane_of_triangle(const view *view, const sheet_stack *sheets, const sur
   vec3 point[3];
   for (int i = 0; i < 3; i++) point[i] = hl_surface_vector(all->positions[corner[i]]);
   vec3 n = vec3_normalise(vec3_cross(vec3_subtract(point[1], point[0]), vec3_subtract(point[2], point[0])));
-  set_plane(view, sheets, n, point[0], plane);
+  hl_plane_begin(view, sheets, plane);
+  set_plane(view, n, point[0], plane);
   plane->lowest = INFINITY, plane->highest = -INFINITY;
   for (int i = 0; i < 3; i++) {
     double height = vec3_dot(sheets->normal, point[i]) - sheets->first;
@@ -38,9 +45,15 @@ void hl_plane_of_triangle(const view *view, const sheet_stack *sheets, const sur
 
 void hl_plane_of_sphere(const view *view, const sheet_stack *sheets, const float sphere[4], vec3 point,
                         surface_plane *plane) {
+  hl_plane_begin(view, sheets, plane);
+  hl_plane_touch_sphere(view, sheets, sphere, point, plane);
+}
+
+void hl_plane_touch_sphere(const view *view, const sheet_stack *sheets, const float sphere[4], vec3 point,
+                           surface_plane *plane) {
   vec3 centre = hl_surface_vector(sphere);
   double middle = vec3_dot(sheets->normal, centre) - sheets->first;
-  set_plane(view, sheets, vec3_normalise(vec3_subtract(point, centre)), point, plane);
+  set_plane(view, vec3_normalise(vec3_subtract(point, centre)), point, plane);
   plane->lowest = middle - sphere[3];
   plane->highest = middle + sphere[3];
 }

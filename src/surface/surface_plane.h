@@ -32,6 +32,11 @@ static inline int32_t hl_slab_of(const sheet_stack *sheets, double height) {
 void hl_plane_of_sphere(const view *view, const sheet_stack *sheets, const float sphere[4], vec3 point,
                         surface_plane *plane);
 
+/* The same in two steps: what depends on the view alone, and the rest. */
+void hl_plane_begin(const view *view, const sheet_stack *sheets, surface_plane *plane);
+void hl_plane_touch_sphere(const view *view, const sheet_stack *sheets, const float sphere[4], vec3 point,
+                           surface_plane *plane);
+
 /* Above the first sheet. */
 double hl_plane_height(const surface_plane *plane, double u, double v);
 

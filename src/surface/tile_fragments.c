@@ -179,22 +179,21 @@ typedef struct tile_part {
   uint16_t covered[TILE_PIXELS];
 } tile_part;
 
-/* The next pixel of the view, after pixel number *at of the tile, of which samples are covered. */
-static bool next_pixel(const view *view, const tile_part *part, const seen_part *seen, int *at, fragment *f,
+/* The next pixel of the view, from the tile's column at[0] and row at[1] on, of which samples are covered. */
+static bool next_pixel(const view *view, const tile_part *part, const seen_part *seen, int at[2], fragment *f,
                        covered_pixel *pixel) {
   const pixel_span *span = &part->span;
-  int width = span->x1 - span->x0 + 1, count = width * (span->y1 - span->y0 + 1);
-  for (; *at < count; ++*at) {
-    int column = span->x0 + *at % width, row = span->y0 + *at / width;
-    int x = part->tile_x * TILE + column, y = part->tile_y * TILE + row;
-    f->samples = part->covered[row * TILE + column];
-    if (f->samples == 0 || x >= view->width || y >= view->height) continue;
-    f->samples = hl_left_samples(seen, x, y, f->samples);
-    if (f->samples == 0) continue;
-    *pixel = pixel_of(x, y, f->samples);
-    ++*at;
-    return true;
-  }
+  for (; at[1] <= span->y1; at[0] = span->x0, at[1]++)
+    for (; at[0] <= span->x1; at[0]++) {
+      int x = part->tile_x * TILE + at[0], y = part->tile_y * TILE + at[1];
+      f->samples = part->covered[at[1] * TILE + at[0]];
+      if (f->samples == 0 || x >= view->width || y >= view->height) continue;
+      f->samples = hl_left_samples(seen, x, y, f->samples);
+      if (f->samples == 0) continue;
+      *pixel = pixel_of(x, y, f->samples);
+      at[0]++;
+      return true;
+    }
   return false;
 }
 
@@ -203,14 +202,14 @@ static void add_triangle(const fragment_work *work, fragment_worker *worker, til
   seen_polygon polygon;
   surface_plane plane;
   covered_pixel pixel;
-  int at = 0;
   hl_see_triangle(work->seen, f.primitive, &polygon);
   if (!hl_cover_tile(&polygon, part->tile_x, part->tile_y, &part->span, part->covered)) return;
+  int at[2] = {part->span.x0, part->span.y0};
   hl_plane_of_triangle(source->view, source->sheets, source->surfaces, f.primitive, &plane);
   plane.leaving = work->dark_backs[f.mesh] && hl_plane_linear(plane.way, part->tile_x * TILE + TILE / 2,
                                                               part->tile_y * TILE + TILE / 2) > 0;
   const seen_part seen = {part->is_cut ? source->surfaces : NULL, source->view, &plane, NULL, false};
-  while (next_pixel(source->view, part, &seen, &at, &f, &pixel)) add_pixel(work, worker, &plane, f, &pixel);
+  while (next_pixel(source->view, part, &seen, at, &f, &pixel)) add_pixel(work, worker, &plane, f, &pixel);
 }
 
 /* Whether a light lights nothing of a sphere from within: no light passes it, and the light is outside. */
@@ -227,15 +226,17 @@ static void add_side(const fragment_work *work, fragment_worker *worker, const t
   const fragments_source *source = work->source;
   const float *sphere = source->surfaces->spheres[f.primitive - source->surfaces->triangle_count];
   covered_pixel pixel;
-  int at = 0;
+  int at[2] = {part->span.x0, part->span.y0};
   bool dark = leaving && !part->is_cut && has_dark_inside(work, sphere, &f);
   const seen_part seen = {part->is_cut ? source->surfaces : NULL, source->view, NULL, sphere, leaving};
-  while (next_pixel(source->view, part, &seen, &at, &f, &pixel)) {
-    surface_plane plane;
+  const sphere_rays rays = hl_sphere_rays(source->view, sphere);
+  surface_plane plane;
+  hl_plane_begin(source->view, source->sheets, &plane);
+  plane.leaving = dark;
+  while (next_pixel(source->view, part, &seen, at, &f, &pixel)) {
     vec3 point;
-    if (!hl_meet_sphere(source->view, sphere, pixel.u, pixel.v, leaving, &point)) continue;
-    hl_plane_of_sphere(source->view, source->sheets, sphere, point, &plane);
-    plane.leaving = dark;
+    if (!hl_meet_sphere(&rays, pixel.u, pixel.v, leaving, &point)) continue;
+    hl_plane_touch_sphere(source->view, source->sheets, sphere, point, &plane);
     add_pixel(work, worker, &plane, f, &pixel);
   }
 }
@@ -285,14 +286,16 @@ static void add_primitive(const fragment_work *work, fragment_worker *worker, ti
 
 static int least(int a, int b) { return a < b ? a : b; }
 
-/* Up to sixteen triangles of one mesh. */
+/* Up to sixteen triangles, or spheres, of one mesh. */
 typedef struct small_batch {
   small_triangles triangles;
+  small_spheres spheres;
   small_cover cover;
   small_view view;
   uint32_t primitives[SMALL_TRIANGLES];
   float opacity[SMALL_TRIANGLES];
   int count;
+  bool of_spheres;
   size_t mesh;
   bool may_be_covered; /* of a light's view: clusters may lie behind what covers all of their pixels */
 } small_batch;
@@ -325,6 +328,19 @@ static bool collect(const fragment_work *work, const tile_part *part, small_batc
   return true;
 }
 
+/* Adds a sphere to a batch; false where the scene's cuts may cut it, where light passes it, or where its
+ * fragments may fill several slabs. */
+static bool collect_sphere(const fragment_work *work, small_batch *batch, uint32_t primitive) {
+  const surfaces *all = work->source->surfaces;
+  const surface_mesh *mesh = &all->meshes[batch->mesh];
+  const float *sphere = all->spheres[primitive - all->triangle_count];
+  if (mesh->is_cut || work->source->rise > 0 || opacity_of(all, mesh, primitive) < 1) return false;
+  for (int axis = 0; axis < 3; axis++) batch->spheres.centre[axis][batch->count] = sphere[axis];
+  batch->spheres.radius[batch->count] = sphere[3];
+  batch->primitives[batch->count++] = primitive;
+  return true;
+}
+
 /* Adds what triangle number `lane` of a batch covers of its pixel number k. */
 static void add_small_pixel(const fragment_work *work, fragment_worker *worker, const small_batch *batch,
                             int lane, int k) {
@@ -336,7 +352,7 @@ static void add_small_pixel(const fragment_work *work, fragment_worker *worker, 
                       .samples = cover->samples[k][lane],
                       .mesh = (uint16_t)batch->mesh,
                       .pixel = (uint8_t)cover->pixel[k][lane],
-                      .reach = (uint8_t)cover->reach[lane]};
+                      .reach = (uint8_t)cover->reach[k][lane]};
   mark(work, worker, f.pixel, f.slab);
   if (f.opacity <= 0) return;
   if (work->source->of_light) {
@@ -367,15 +383,17 @@ static void add_small(const fragment_work *work, fragment_worker *worker, small_
       add_small_pixel(work, worker, batch, __builtin_ctz(left), k);
 }
 
-/* Adds a batch's triangles: the small ones together, the others one by one. */
+/* Adds a batch's primitives: the small ones together, the others one by one. */
 static void add_batch(const fragment_work *work, fragment_worker *worker, tile_part *part,
                       small_batch *batch) {
   if (batch->count == 0 ||
       !make_room(work->source->context, worker, SMALL_TRIANGLES * SMALL_PIXELS * MOST_SLABS))
     return;
+  const surface_functions *functions = work->source->functions;
   uint32_t all = (1u << batch->count) - 1;
-  add_small(work, worker, batch,
-            all & work->source->functions->cover_small(&batch->view, &batch->triangles, &batch->cover));
+  uint32_t small = batch->of_spheres ? functions->cover_spheres(&batch->view, &batch->spheres, &batch->cover)
+                                     : functions->cover_small(&batch->view, &batch->triangles, &batch->cover);
+  add_small(work, worker, batch, all & small);
   for (uint32_t left = all & batch->cover.large; left != 0 && !worker->failed; left &= left - 1)
     add_primitive(work, worker, part, batch->mesh, batch->primitives[__builtin_ctz(left)]);
   batch->count = 0;
@@ -439,6 +457,7 @@ static void begin_mesh(const fragment_work *work, small_batch *batch, uint32_t p
   const surfaces *all = work->source->surfaces;
   batch->mesh = hl_surface_mesh_of(all, primitive);
   const surface_mesh *mesh = &all->meshes[batch->mesh];
+  batch->of_spheres = primitive >= all->triangle_count;
   batch->view.dark_backs = work->dark_backs[batch->mesh];
   batch->view.fronts = work->wanted[batch->mesh] == BINNED_FRONTS;
   of_mesh[0] = primitive < all->triangle_count ? mesh->first_triangle
@@ -461,7 +480,8 @@ static void add_run(const fragment_work *work, fragment_worker *worker, tile_par
   for (uint32_t i = 0; i < count && !worker->failed; i++) {
     uint32_t p = cluster != NULL ? all->order[cluster->first + i] : run.primitive;
     if (cluster != NULL && batch->view.fronts && triangle && !hl_faces_view(work->seen, p)) continue;
-    if (!triangle || !collect(work, part, batch, p)) add_primitive(work, worker, part, batch->mesh, p);
+    bool collected = triangle ? collect(work, part, batch, p) : collect_sphere(work, batch, p);
+    if (!collected) add_primitive(work, worker, part, batch->mesh, p);
     if (batch->count == SMALL_TRIANGLES) add_batch(work, worker, part, batch);
   }
 }
@@ -517,6 +537,8 @@ static void add_runs(const fragment_work *work, fragment_worker *worker, tile_pa
 static void add_primitives(const fragment_work *work, fragment_worker *worker, tile_part *part, size_t tile) {
   small_batch batch;
   memset(&batch.triangles, 0, sizeof batch.triangles); /* lanes that stay empty */
+  memset(&batch.spheres, 0, sizeof batch.spheres);
+  batch.of_spheres = false;
   batch.view = work->small;
   batch.view.left = part->tile_x * TILE * SUBPIXELS;
   batch.view.top = part->tile_y * TILE * SUBPIXELS;
@@ -584,7 +606,9 @@ static void set_small_view(const fragments_source *source, small_view *small) {
                         .of_light = source->of_light,
                         .perspective = view->perspective,
                         .delay = (float)source->delay,
-                        .rise = (float)source->rise};
+                        .rise = (float)source->rise,
+                        .view = view,
+                        .sheets = sheets};
   vec3_store(small->normal, sheets->normal);
   vec3_store(small->from, view->perspective ? view->origin : view->direction);
   vec3_store(small->du, view->du);

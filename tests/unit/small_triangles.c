@@ -1,5 +1,5 @@
-/* unit/small_triangles.c - sixteen small triangles at a time cover the samples that they cover one by one, at
- * the heights of their planes, on every instruction set with the same bytes. */
+/* unit/small_triangles.c - sixteen small triangles, or spheres, at a time cover the samples that they cover
+ * one by one, at the heights of their planes, on every instruction set with the same bytes. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,7 +12,7 @@
 #include "../asserts.h"
 #include "core/context.h"
 #include "render/hot.h"
-#include "surface/coverage.h"
+#include "surface/sphere_coverage.h"
 #include "surface/surface_plane.h"
 #include "surface/tile_fragments.h"
 
@@ -336,9 +336,92 @@ static void test_tiny(void **state) {
   assert_true(covered > ROUNDS * SMALL_TRIANGLES);
 }
 
+/* Sixteen spheres about the view; every fourth is too large. */
+static void place_spheres(const set_up *s, uint32_t *seed, small_spheres *spheres) {
+  for (int n = 0; n < SMALL_TRIANGLES; n++) {
+    vec3 start, way;
+    hl_view_ray(&s->view, random_between(seed, -1, 17), random_between(seed, -1, 17), &start, &way);
+    vec3 centre = vec3_add(start, vec3_scale(way, 80 + random_between(seed, -4, 4)));
+    float own[3];
+    vec3_store(own, centre);
+    for (int axis = 0; axis < 3; axis++) spheres->centre[axis][n] = own[axis];
+    spheres->radius[n] = (float)random_between(seed, n % 4 == 3 ? 2.5 : 0.05, n % 4 == 3 ? 4 : 0.8);
+  }
+}
+
+/* Each covered pixel of a sphere: as one sphere is covered by itself, with the same bytes. */
+static void check_sphere(const set_up *s, const small_cover *cover, const float sphere[4], int n,
+                         int *covered) {
+  uint16_t samples[TILE_PIXELS], expected[TILE_PIXELS] = {0};
+  pixel_span span = {0};
+  seen_bounds bounds;
+  bool any = hl_see_sphere(&s->view, sphere, &bounds) &&
+             hl_cover_sphere(&s->view, sphere, &bounds, 0, 0, &span, expected);
+  const sphere_rays rays = hl_sphere_rays(&s->view, sphere);
+  collect_samples(cover, n, samples);
+  for (int row = 0; row < s->small.rows; row++)
+    for (int column = 0; column < TILE; column++) {
+      bool within = any && column >= span.x0 && column <= span.x1 && row >= span.y0 && row <= span.y1;
+      uint16_t own = samples[hl_pixel_number(column, row)];
+      assert_int_equal(own, within ? expected[row * TILE + column] : 0);
+      *covered += own != 0;
+    }
+  for (int k = 0; k < SMALL_PIXELS; k++) {
+    if (!(cover->covered[k] >> n & 1)) continue;
+    surface_plane plane;
+    vec3 point;
+    double u, v;
+    hl_fragment_middle(cover->samples[k][n], &u, &v);
+    u += hl_pixel_column(cover->pixel[k][n]), v += hl_pixel_row(cover->pixel[k][n]);
+    assert_true(hl_meet_sphere(&rays, u, v, false, &point));
+    hl_plane_of_sphere(&s->view, &s->sheets, sphere, point, &plane);
+    float height = (float)fmin(fmax(hl_plane_height(&plane, u, v), plane.lowest), plane.highest);
+    double start = (double)height + (0.75 * hl_plane_slope(&plane, u, v) + LEAST_DELAY * s->sheets.spacing);
+    assert_memory_equal(&cover->height[k][n], &height, sizeof height);
+    assert_int_equal(cover->slab[k][n], hl_slab_of(&s->sheets, (double)height));
+    assert_true(fabs((double)cover->start[k][n] - start) <= 1e-6 * (1 + fabs(start)));
+    assert_int_equal(cover->first_slab[k][n], hl_slab_of(&s->sheets, start));
+    assert_int_equal(cover->last_slab[k][n], hl_slab_of(&s->sheets, start));
+  }
+}
+
+/* Small spheres are covered as they are one by one, on every instruction set; others are left to others. */
+static void test_spheres(void **state) {
+  (void)state;
+  uint32_t seed = 17;
+  int covered = 0;
+  for (int round = 0; round < ROUNDS; round++) {
+    set_up s = {0};
+    small_cover cover;
+    small_spheres spheres;
+    open_view(&s, round % 2);
+    set_small_view(&s, false);
+    s.small.view = &s.view;
+    s.small.sheets = &s.sheets;
+    place_spheres(&s, &seed, &spheres);
+    for (int set = HL_INSTRUCTION_SET_SCALAR; set <= HL_INSTRUCTION_SET_AVX512_VBMI; set++) {
+      if (!hl_cpu_has_instruction_set((hl_instruction_set)set)) continue;
+      uint32_t small =
+          hl_hot_functions((hl_instruction_set)set)->surface.cover_spheres(&s.small, &spheres, &cover);
+      assert_int_equal(small & cover.large, 0);
+      assert_int_equal(small | cover.large, 0xffff);
+      assert_int_equal(small & 0x7777, 0x7777);
+      for (int n = 0; n < SMALL_TRIANGLES; n++) {
+        const float sphere[4] = {spheres.centre[0][n], spheres.centre[1][n], spheres.centre[2][n],
+                                 spheres.radius[n]};
+        if (small >> n & 1) check_sphere(&s, &cover, sphere, n, &covered);
+      }
+    }
+  }
+  assert_true(covered > ROUNDS * SMALL_TRIANGLES);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_against_one_by_one), cmocka_unit_test(test_not_small),
-      cmocka_unit_test(test_instruction_sets), cmocka_unit_test(test_cluster), cmocka_unit_test(test_tiny)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_against_one_by_one),
+                                     cmocka_unit_test(test_not_small),
+                                     cmocka_unit_test(test_instruction_sets),
+                                     cmocka_unit_test(test_cluster),
+                                     cmocka_unit_test(test_tiny),
+                                     cmocka_unit_test(test_spheres)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
