@@ -60,13 +60,28 @@ static bool is_tried(const sweep *sweep, size_t tile) {
  * that, because a few tried tiles are no sure sign. */
 static const double COVERED_PER_SEEN = 0.75;
 
-static bool is_worth_while(const sweep *front) {
-  uint64_t seen = 0, covered = 0;
+static hl_status is_worth_while(const sweep *front, bool *worth, hl_error *error) {
+  enum { SEEN, COVERED, COUNTS };
+  const light_exchange *with = front->share->exchange;
+  uint64_t own[COUNTS] = {0}, *all = own;
+  size_t parts = with == NULL ? 1 : (size_t)with->parts;
   for (int i = 0; i < hl_pool_threads(front->content.pool); i++) {
-    seen += front->arrays.counts[i].pixels_seen;
-    covered += front->arrays.counts[i].pixels_covered;
+    own[SEEN] += front->arrays.counts[i].pixels_seen;
+    own[COVERED] += front->arrays.counts[i].pixels_covered;
   }
-  return (double)covered > COVERED_PER_SEEN * (double)seen;
+  if (with != NULL) {
+    all = hl_allocate(front->content.context, parts, sizeof own);
+    if (all == NULL) return hl_fail_memory(error, parts * sizeof own, "what is hidden");
+    with->gather(with->data, own, sizeof own, all);
+  }
+  double seen = 0, covered = 0; /* whole numbers: in any order the same sums */
+  for (size_t part = 0; part < parts; part++) {
+    seen += (double)all[part * COUNTS + SEEN];
+    covered += (double)all[part * COUNTS + COVERED];
+  }
+  if (with != NULL) hl_release(front->content.context, all);
+  *worth = covered > COVERED_PER_SEEN * seen;
+  return HL_OK;
 }
 
 /* Runs the search for hidden slabs. trying: in the tried tiles alone, where opaque blocks stay open, so that
@@ -93,12 +108,16 @@ hl_status hl_sweep_find_hidden(sweep *sweep, hl_render_statistics *statistics, h
   front.layer_pixels = NULL;
   front.first = front.measures = false;
   front.preparatory = true;
-  front.share = &whole; /* what is tried must not depend on the part, which would change bytes */
+  /* what is tried must not depend on the part, which would change bytes: parts that exchange nothing all try
+   * the whole picture's tiles */
+  bool together = sweep->share->exchange != NULL, worth = false;
+  front.share = together ? sweep->share : &whole;
   front.act = cover_tile;
   front.action = &search;
   hl_status status = hl_sweep_begin(&front, NULL, NULL, error);
   if (status == HL_OK) status = go_through(&front, &search, true, error);
-  if (status == HL_OK && is_worth_while(&front)) {
+  if (status == HL_OK) status = is_worth_while(&front, &worth, error);
+  if (worth) {
     front.share = sweep->share;
     hl_sweep_open(&front);
     status = go_through(&front, &search, false, error);

@@ -378,6 +378,26 @@ static void test_exchange(void **state) {
   }
 }
 
+/* Opaque matter that hides much of what is behind it, lit from behind by one light with hard shadows. */
+static void exchange_hidden(stage *set) {
+  add_noise(set, 0.4);
+  draw_hidden(set);
+  draw_hard(set);
+}
+
+/* Each part tries its own tiles for what is hidden, and all decide by the sums of two counts. */
+static void test_exchanged_search(void **state) {
+  (void)state;
+  enum { PARTS = 4, SIDE_X = 100, SIDE_Y = 75, COUNTS = 2 };
+  static float whole[SIDE_X * SIDE_Y * 4], sum[SIDE_X * SIDE_Y * 4];
+  part_thread alone[1], threads[PARTS];
+  render_together(alone, 1, SIDE_X, SIDE_Y, 1, exchange_hidden, whole);
+  render_together(threads, PARTS, SIDE_X, SIDE_Y, 1, exchange_hidden, sum);
+  assert_memory_equal(sum, whole, sizeof sum);
+  for (int part = 0; part < PARTS; part++)
+    assert_int_equal(threads[part].gathered, COUNTS * sizeof(uint64_t));
+}
+
 /* The cube of test_light_of_part(), under soft light. */
 static void exchange_cube(stage *set) {
   enum { SIDE = 40 };
@@ -440,8 +460,11 @@ static void test_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_ways), cmocka_unit_test(test_light_of_part),
-                                     cmocka_unit_test(test_exchange), cmocka_unit_test(test_exchanged_light),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_ways),
+                                     cmocka_unit_test(test_light_of_part),
+                                     cmocka_unit_test(test_exchange),
+                                     cmocka_unit_test(test_exchanged_light),
+                                     cmocka_unit_test(test_exchanged_search),
                                      cmocka_unit_test(test_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
