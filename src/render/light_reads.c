@@ -7,6 +7,7 @@
 #include "render/light_reads.h"
 
 #include "core/memory.h"
+#include "render/surface_point.h"
 
 /* Sheets by which a sample may lie outside of its slab, and pixels by which it may lie outside of its tile:
  * for rounding. */
@@ -32,8 +33,12 @@ static double moved_away(const view *view, int axis) {
   return 1 + 1.25 * (length[1 + axis] + side * length[0]) / length[1];
 }
 
+/* Cosine by which the edge of a sector is looked for outside of it: for rounding. */
+static const double SECTOR_SPARE = 1e-3;
+
 /* One light while its reads are found. */
 typedef struct reads_of_light {
+  const light_source *source;
   const view *view;
   int32_t *until; /* [tiles_y][tiles_x] */
   int tiles_x, tiles_y;
@@ -129,14 +134,37 @@ static void read_tile(const reads_task *task, size_t tile) {
   if (first > 0) read_slabs(task, tile, first, last);
 }
 
+/* The reads of the surfaces that the eye sees in a tile, in the sectors that light them. */
+static void read_surfaces(const reads_task *task, size_t tile) {
+  const sweep *sweep = task->sweep;
+  const fragments *all = &sweep->surfaces.image;
+  const tile_slab place = {.x = hl_tile_x(sweep, tile), .y = hl_tile_y(sweep, tile)};
+  for (uint32_t n = all->first[tile]; n < all->first[tile + 1]; n++) {
+    const fragment *f = &all->list[n];
+    vec3 point = hl_surface_place(sweep, &place, f, (double)f->height);
+    for (int i = 0; i < task->light_count; i++) {
+      const light_source *source = task->lights[i].source;
+      vec3 way = vec3_subtract(point, source->position);
+      double ahead = vec3_dot(way, source->direction), least = source->sectors->least - SECTOR_SPARE;
+      if (ahead >= least * vec3_length(way)) read_hull(&task->lights[i], &point, 1, f->slab);
+    }
+  }
+}
+
 static bool is_exchanged(const sweep *sweep, const light_shadow *shadow) {
   return sweep->share->part_of != NULL && shadow->method != NULL && shadow->method->exchanges &&
          shadow->setup.exchange != NULL;
 }
 
+/* Whether a light is a sector of one within the content, and there are meshes alone: it is then read at their
+ * points that the eye sees. */
+static bool is_sector_of_meshes(const sweep *sweep, const light_shadow *shadow) {
+  return shadow->setup.source->sectors != NULL && sweep->content.volume_count == 0;
+}
+
 static bool is_limited(const sweep *sweep, const light_shadow *shadow) {
-  return is_exchanged(sweep, shadow) ||
-         (sweep->share->part_of != NULL && shadow->method != NULL && shadow->method->advance == NULL);
+  bool part = sweep->share->part_of != NULL || is_sector_of_meshes(sweep, shadow);
+  return is_exchanged(sweep, shadow) || (part && shadow->method != NULL && shadow->method->advance == NULL);
 }
 
 uint64_t hl_light_reads_bytes(const sweep *sweep, const light_shadow *shadow) {
@@ -198,12 +226,25 @@ hl_status hl_light_reads_find(sweep *sweep, hl_error *error) {
     if (light->needed_until == NULL)
       return hl_fail_memory(error, tiles * sizeof *light->needed_until, "a light's tiles");
     reads_of_light *reads = &task.lights[task.light_count++];
-    *reads = (reads_of_light){
-        view, light->needed_until, hl_tiles(view->width), hl_tiles(view->height), {READ_TAPS, READ_TAPS}};
+    *reads = (reads_of_light){.source = light->source,
+                              .view = view,
+                              .until = light->needed_until,
+                              .tiles_x = hl_tiles(view->width),
+                              .tiles_y = hl_tiles(view->height),
+                              .around = {READ_TAPS, READ_TAPS}};
     for (int a = 0; a < 2 && sweep->frame->surfaces != NULL; a++) reads->around[a] += moved_away(view, a);
   }
-  for (size_t tile = 0; tile < sweep->tiles && task.light_count > 0; tile++)
-    if (sweep->arrays.open[tile] != 0) read_tile(&task, tile);
+  const bool surfaces_alone = task.light_count > 0 && task.lights[0].source->sectors != NULL &&
+                              sweep->content.volume_count == 0 && sweep->surfaces.image.first != NULL;
+  for (size_t tile = 0; tile < sweep->tiles && task.light_count > 0; tile++) {
+    if (sweep->arrays.open[tile] == 0) continue;
+    if (surfaces_alone) read_surfaces(&task, tile);
+    else read_tile(&task, tile);
+  }
+  return HL_OK;
+}
+
+hl_status hl_light_reads_find_owned(sweep *sweep, hl_error *error) {
   hl_status status = HL_OK;
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++) {
     sweep_light *light = &sweep->lights[i];

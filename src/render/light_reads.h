@@ -1,13 +1,18 @@
-/* render/light_reads.h - which tiles of a light's shadow buffer a part of a picture needs, and for how long.
- */
+/* render/light_reads.h - which tiles of a light's shadow buffer a part of a picture, or the sector of a light
+ * within the content, needs, and for how long. */
 #ifndef HL_RENDER_LIGHT_READS_H
 #define HL_RENDER_LIGHT_READS_H
 
 #include "render/sweep.h"
 
-/* Finds each light's needed_until, where the picture is shared and the light's method allows it. After the
- * sweep's views, lights and surfaces have begun. What is left out is never read: pixels do not change. */
+/* Finds each light's needed_until, where the picture is shared, or the light is a sector, and the light's
+ * method allows it. After the sweep's views, lights and the picture's surfaces have begun. What is left out
+ * is never read: pixels do not change. */
 hl_status hl_light_reads_find(sweep *sweep, hl_error *error);
+
+/* Adds the tiles that this part of a shared picture owns, whoever needs them. After the lights' surfaces have
+ * begun. */
+hl_status hl_light_reads_find_owned(sweep *sweep, hl_error *error);
 
 /* The bytes that it allocates for a light whose shadows are planned. */
 uint64_t hl_light_reads_bytes(const sweep *sweep, const light_shadow *shadow);

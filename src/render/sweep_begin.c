@@ -450,6 +450,8 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *me
   status = hl_sweep_layers_begin(sweep, error);
   if (status == HL_OK) status = hl_sweep_surfaces_begin(sweep, error);
   if (status == HL_OK) status = hl_light_reads_find(sweep, error);
+  if (status == HL_OK) status = hl_sweep_surfaces_begin_lights(sweep, error);
+  if (status == HL_OK) status = hl_light_reads_find_owned(sweep, error);
   sweep->times.seconds_sort = hl_clock_seconds() - start;
   return status;
 }

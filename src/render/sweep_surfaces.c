@@ -9,22 +9,26 @@
 
 /* ---- begin and end ---- */
 
-static hl_status make_fragments(sweep *sweep, const view *view, const light_shadow *shadow,
+/* light: whose view it is; null: the eye's. */
+static hl_status make_fragments(sweep *sweep, const view *view, const sweep_light *light,
                                 const occupancy *occupancy, fragments *made, hl_error *error) {
+  const light_shadow *shadow = light != NULL ? &light->shadow : NULL;
   const bool unseen = made == &sweep->surfaces.unseen;
-  const fragments_source source = {.context = sweep->content.context,
-                                   .pool = sweep->content.pool,
-                                   .functions = &sweep->content.hot->surface,
-                                   .surfaces = sweep->frame->surfaces,
-                                   .view = view,
-                                   .sheets = &sweep->geometry->sheets,
-                                   .falling = shadow == NULL && sweep->geometry->back_to_front,
-                                   .of_light = shadow != NULL,
-                                   .unseen = unseen,
-                                   .delay = shadow != NULL ? hl_surface_delay(shadow) : 0,
-                                   .rise = shadow != NULL && shadow->method != &hl_shadow_hard ? 1.25 : 0,
-                                   .marks = unseen ? NULL : occupancy->by_sheet,
-                                   .tile_words = occupancy->tile_words};
+  const fragments_source source = {
+      .context = sweep->content.context,
+      .pool = sweep->content.pool,
+      .functions = &sweep->content.hot->surface,
+      .surfaces = sweep->frame->surfaces,
+      .view = view,
+      .sheets = &sweep->geometry->sheets,
+      .falling = shadow == NULL && sweep->geometry->back_to_front,
+      .of_light = shadow != NULL,
+      .unseen = unseen,
+      .delay = shadow != NULL ? hl_surface_delay(shadow) : 0,
+      .rise = shadow != NULL && shadow->method != &hl_shadow_hard ? 1.25 : 0,
+      .needed = light != NULL && shadow->method->advance == NULL ? light->needed_until : NULL,
+      .marks = unseen ? NULL : occupancy->by_sheet,
+      .tile_words = occupancy->tile_words};
   return hl_fragments_create(&source, made, error);
 }
 
@@ -68,11 +72,18 @@ hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error) {
     status = make_fragments(sweep, &sweep->frame->eye, NULL, &sweep->image.occupancy, &state->image, error);
   if (status == HL_OK && hl_sweep_has_unseen(sweep))
     status = make_fragments(sweep, &sweep->frame->eye, NULL, &sweep->image.occupancy, &state->unseen, error);
+  return status;
+}
+
+hl_status hl_sweep_surfaces_begin_lights(sweep *sweep, hl_error *error) {
+  surface_state *state = &sweep->surfaces;
+  hl_status status = HL_OK;
+  if (sweep->frame->surfaces == NULL || sweep->preparatory) return HL_OK;
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++) {
     sweep_light *light = &sweep->lights[i];
     if (light->shadow.method == NULL) continue;
     hl_contact_points(light->source, &state->points[i]);
-    status = make_fragments(sweep, &light->shadow.buffer->view, &light->shadow, &light->sheets.occupancy,
+    status = make_fragments(sweep, &light->shadow.buffer->view, light, &light->sheets.occupancy,
                             &state->lights[i], error);
   }
   return status;

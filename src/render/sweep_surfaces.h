@@ -8,8 +8,10 @@
 /* Whether the frame has meshes that are not visible and shade its volumes. */
 bool hl_sweep_has_unseen(const sweep *sweep);
 
-/* After the sweep's views and lights have begun. Does nothing where the frame has no surfaces. */
+/* After the sweep's views and lights have begun: the surfaces of the picture; later, when it is known which
+ * tiles of their buffers are needed, those of the lights. They do nothing where the frame has no surfaces. */
 hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error);
+hl_status hl_sweep_surfaces_begin_lights(sweep *sweep, hl_error *error);
 void hl_sweep_surfaces_end(sweep *sweep);
 
 /* The fragments of the eye's view in a slab of a tile; to be asked for once, slabs in rising order. */

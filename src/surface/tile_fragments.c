@@ -581,7 +581,7 @@ void hl_make_tile_fragments(void *data, size_t tile, int worker_index) {
   worker->count = 0;
   memset(worker->latest, 0, sizeof worker->latest);
   memset(worker->covered, 0, sizeof worker->covered);
-  if (worker->failed) return;
+  if (worker->failed || (source->needed != NULL && source->needed[tile] == 0)) return;
   add_primitives(work, worker, &part, tile);
   if (!worker->failed && make_room(source->context, worker, worker->count)) /* for parts */
     kept = order_fragments(work, worker, &order, &part, &sorted);

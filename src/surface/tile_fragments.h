@@ -31,6 +31,7 @@ typedef struct fragments_source {
   uint64_t *marks; /* [sheets][tile_words], bit = tile; may be null. Bits are set for each sheet that ends a
                       slab with a visible or shadow-casting surface in the tile, and in tiles beside it */
   int tile_words;
+  const int32_t *needed; /* [tiles]; 0: nobody asks for the tile's fragments; null: all tiles are needed */
 } fragments_source;
 
 /* The last opaque fragments that a tile's pixel got in a light's view: one in each of some slabs. */

@@ -127,8 +127,37 @@ static void test_glass_box(void **state) {
   }
 }
 
+/* The tiles of a lamp's buffers that are worked through, between a board that hides all else from the eye
+ * and, if it is there, another one. */
+static uint64_t tiles_between_boards(bool second, float *pixels) {
+  mesh_stage all;
+  mesh_stage_open(&all, SIDE, 48);
+  const size_t volumes = all.set.scene.volume_count;
+  const vec3 across = {30, 0, 0}, along = {0, 30, 0};
+  mesh_stage_add(&all, stage_make_quad(&all.set, (vec3){0, 0, 10}, across, along));
+  if (second) mesh_stage_add(&all, stage_make_quad(&all.set, (vec3){0, 0, -10}, across, along));
+  all.set.scene.volume_count = 0;
+  stage_look(&all.set, (vec3){20, 0, 100}, (vec3){20, 0, 0}, (vec3){0, 1, 0});
+  hl_light *lamp = stage_add_point(&all.set, (vec3){0, 0, 9});
+  lamp->shadows = HL_SHADOWS_HARD;
+  hl_render_statistics of = stage_render_counted(&all.set, pixels);
+  all.set.scene.volume_count = volumes;
+  mesh_stage_close(&all);
+  return of.tiles_filled_light;
+}
+
+/* What the eye does not see costs a lamp's hard shadows little: all of the second board would be twice the
+ * work. */
+static void test_hidden_from_eye(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  uint64_t alone = tiles_between_boards(false, pixels), both = tiles_between_boards(true, pixels);
+  assert_true(alone > 0 && both < alone + alone / 2);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_lamp_in_room), cmocka_unit_test(test_lamp_in_ball),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_hidden_from_eye),
+                                     cmocka_unit_test(test_lamp_in_room), cmocka_unit_test(test_lamp_in_ball),
                                      cmocka_unit_test(test_glass_box)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
