@@ -29,20 +29,43 @@ static vec3 normal_of(const surfaces *all, uint32_t triangle) {
                                    vec3_subtract(hl_surface_vector(all->positions[corner[2]]), a)));
 }
 
-/* Sets the distance of vertices to 0 at which a triangle bends much against their first one. first:
- * [vertices]; becomes their first triangles. */
-static void find_creases(const surfaces *all, const surface_mesh *mesh, uint32_t *first, float *from_edge) {
+/* A mesh with more vertices at corners is rough, unless these are fewer than one in MOST_PARTS: it has no
+ * corners of rooms, but rays all over it, which would cost several times the frame. */
+enum { MOST_CORNERS = 4096, MOST_PARTS = 8 };
+
+/* A distance that marks corners. */
+static const float AT_CORNER = -1;
+
+/* Marks vertices at which a triangle bends much against their first one; returns how many. first: [vertices];
+ * becomes their first triangles. */
+static size_t mark_corners(const surfaces *all, const surface_mesh *mesh, uint32_t *first, float *from_edge) {
+  size_t count = 0;
   for (uint32_t t = mesh->triangle_count; t-- > 0;)
     for (int i = 0; i < 3; i++) first[all->triangles[mesh->first_triangle + t][i] - mesh->first_vertex] = t;
   for (uint32_t t = 0; t < mesh->triangle_count; t++) {
     vec3 own = normal_of(all, mesh->first_triangle + t);
     for (int i = 0; i < 3; i++) {
       size_t vertex = all->triangles[mesh->first_triangle + t][i] - mesh->first_vertex;
-      if (first[vertex] == t) continue;
+      if (first[vertex] == t || from_edge[vertex] < 0) continue;
       vec3 other = normal_of(all, mesh->first_triangle + first[vertex]);
-      if (fabs(vec3_dot(own, other)) < HL_MESH_ROUNDED) from_edge[vertex] = 0;
+      if (fabs(vec3_dot(own, other)) >= HL_MESH_ROUNDED) continue;
+      from_edge[vertex] = AT_CORNER;
+      count++;
     }
   }
+  return count;
+}
+
+/* Sets the distance of vertices at open edges and corners to 0, of the others to infinity. sum: [vertices],
+ * of edges. */
+static void begin_distances(const surfaces *all, const surface_mesh *mesh, const uint64_t *sum,
+                            uint32_t *first, float *from_edge) {
+  size_t vertices = mesh->mesh->description.vertex_count;
+  for (size_t v = 0; v < vertices; v++) from_edge[v] = INFINITY;
+  size_t corners = mark_corners(all, mesh, first, from_edge);
+  bool rough = corners > MOST_CORNERS && corners > vertices / MOST_PARTS;
+  for (size_t v = 0; v < vertices; v++)
+    from_edge[v] = sum[v] != 0 || (from_edge[v] < 0 && !rough) ? 0 : INFINITY;
 }
 
 /* Lowers the distances of a triangle's vertices to what its edges allow; returns whether any changed. */
@@ -75,8 +98,7 @@ hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surfac
                          : hl_fail_memory(error, vertices * sizeof *sum, "the edges of meshes");
   if (status == HL_OK) {
     sum_edges(all, mesh, sum);
-    for (size_t v = 0; v < vertices; v++) from_edge[v] = sum[v] != 0 ? 0 : INFINITY;
-    find_creases(all, mesh, first, from_edge);
+    begin_distances(all, mesh, sum, first, from_edge);
     bool changed = true;
     for (int pass = 0; pass < PASSES && changed; pass++) {
       changed = false;
