@@ -192,6 +192,23 @@ static int owner_of(const int32_t *all, size_t tile, size_t tiles, int parts) {
   return (int)(tile * (size_t)parts / tiles);
 }
 
+/* Needs the tiles beside those that this part owns as long: what surfaces hide in a tile depends on pixels up
+ * to a tile beside it (shadow_cascade/cascade_field.h). */
+static void need_beside(sweep_light *light) {
+  const view *view = &light->shadow.buffer->view;
+  const int across = hl_tiles(view->width), down = hl_tiles(view->height);
+  for (int tile = 0; tile < across * down; tile++) {
+    if (!light->owned[tile]) continue;
+    for (int k = 0; k < 9; k++) {
+      int x = tile % across + k % 3 - 1, y = tile / across + k / 3 - 1;
+      if (x < 0 || y < 0 || x >= across || y >= down) continue;
+      size_t beside = (size_t)y * (size_t)across + (size_t)x;
+      int32_t last = last_touched(&light->sheets.occupancy, beside);
+      if (light->needed_until[beside] < last) light->needed_until[beside] = last;
+    }
+  }
+}
+
 /* Finds the tiles that this part owns: needs them as long as anything touches them, though the picture may
  * need them no more, so that together the parts know of all light. */
 static hl_status find_owned(sweep *sweep, sweep_light *light, size_t tiles, hl_error *error) {
@@ -210,6 +227,7 @@ static hl_status find_owned(sweep *sweep, sweep_light *light, size_t tiles, hl_e
     if (light->needed_until[tile] < last) light->needed_until[tile] = last;
   }
   hl_release(context, all);
+  if (sweep->frame->surfaces != NULL) need_beside(light);
   light->shadow.needed_until = light->needed_until;
   light->shadow.owned = light->owned;
   return HL_OK;

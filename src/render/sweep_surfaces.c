@@ -242,7 +242,8 @@ uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint3
 
 /* What a pixel becomes behind a surface that lets a part pass. */
 static float behind_surface(const attenuate_job *job, float before, float passing) {
-  if (!job->marks || before >= DARK_AT_START) return before * passing;
+  if (!job->marks || (before >= DARK_AT_START && passing > 0)) return before * passing;
+  if (before >= DARK_AT_START) return -LEAST_MARK;
   return fminf((before < 0 ? before : -DARK_MARK) * passing, -LEAST_MARK);
 }
 

@@ -39,12 +39,13 @@ typedef struct attenuate_job {
                                  light that the slab absorbs, times `position` */
   size_t moment_stride;
   float position;
-  bool marks; /* surfaces mark pixels that are dark, see below */
+  bool marks; /* surfaces mark pixels that are dark, or that they make so; see below */
 } attenuate_job;
 
 /* A surface in the dark takes no light, but a method that blurs what was taken before needs to know that it
  * is there: light from beside the shadow ends at it, too. Where less than DARK_AT_START is left, the pixel
- * becomes -DARK_MARK times what the chunk's surfaces let pass, at most -LEAST_MARK. Readers take it as 0. */
+ * becomes -DARK_MARK times what the chunk's surfaces let pass, at most -LEAST_MARK. Where a surface takes all
+ * light, the pixel becomes -LEAST_MARK. Readers take marks as 0. */
 #define DARK_AT_START (1.0f / 256)
 #define DARK_MARK     0x1p-64f
 #define LEAST_MARK    0x1p-88f

@@ -31,6 +31,10 @@
  * G + F + (1 - F) s, with G = T(o) (1 - t(o)) of its solid matter and F of its thin matter (derived). Two
  * groups become one with 1 - F = (1 - F1) (1 - F2), and G + F likewise.
  *
+ * Surfaces that let nothing pass, of meshes, count as solid matter in full light and next to their edges,
+ * which is right where several edges end one behind the other. Elsewhere they have F = 1: behind them nothing
+ * is left of the light that things before them leave.
+ *
  * The buffer's axes are the principal axes of the light as the sheets see it; along each the width has its
  * own fraction. */
 #ifndef HL_SHADOW_CASCADE_CASCADE_H

@@ -70,20 +70,24 @@ typedef struct field_emission_job {
 /* Returns whether any pixel of the tile is more than zero. */
 typedef int field_emission_tile_function(const field_emission_job *job, int tile_x, int tile_y);
 
+enum { GREATEST_EDGE = 16 };
+
 /* Adds the light that a chunk's slabs have absorbed, (1 - absorbed_at_start) - now, and the fraction that
  * thin matter absorbed, to two groups: the fraction moment / (length * absorbed light) of both goes to the
  * group at the chunk's end, the rest to the one at its start. Where the chunk began in the dark, marks of
  * surfaces (shadow/attenuate.h) take the light that the groups before the chunk leave, half of it for each
- * group. */
+ * group. Inside of opaque surfaces the group at the end hides all that is before it. */
 typedef struct absorbed_job {
   const float *absorbed_at_start; /* rows stride apart */
-  const float *now;               /* rows stride_now apart */
+  const float *now;               /* rows stride_now apart; pixels up to `edge` beside a tile are read */
   float *moment; /* sum of each slab's absorbed light times its position in the chunk; is cleared */
   float length;  /* of the chunk */
   const field_pixel *before; /* rows stride apart; what the groups before the chunk absorbed; null: unknown */
   field_pixel *start_absorbed, *start_thin; /* rows stride apart; raised */
   field_pixel *end_absorbed, *end_thin;     /* rows stride apart; written */
   size_t stride, stride_now;
+  int edge; /* pixels next to the edges of surfaces that do not hide what is before them; at most
+               GREATEST_EDGE */
 } absorbed_job;
 /* Returns which of the four fields got more than zero, one bit each in their order. */
 typedef uint32_t absorbed_tile_function(const absorbed_job *job, int tile_x, int tile_y);

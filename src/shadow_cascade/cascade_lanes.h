@@ -281,6 +281,47 @@ LANES_INLINE lanes taken_in_dark(const absorbed_job *job, size_t at, lanes start
   return lanes_keep(start < DARK_AT_START, reaching * (1.0f - passing_in_dark(end)));
 }
 
+/* Pixels up to this transmittance are opaque: each slab of a surface takes all. */
+static const float OPAQUE_PASSING = 0x1p-20f;
+
+/* Whether surfaces of the chunk take all light of sixteen pixels in a row. */
+LANES_INLINE lanes_int is_opaque(const float *now) {
+  lanes end = lanes_load(now);
+  return (end < 0.0f) & (passing_in_dark(end) < OPAQUE_PASSING);
+}
+
+/* The same, or that the chunk began in the dark there. */
+LANES_INLINE lanes_int is_hidden(const float *now, const float *absorbed_at_start) {
+  return is_opaque(now) | (lanes_load(absorbed_at_start) > 1.0f - DARK_AT_START);
+}
+
+/* Where more than this is left of the light at a chunk's start, nothing is hidden: sums are right there. */
+static const float HARDLY_HIDDEN = 0.9f;
+
+/* Whether sixteen pixels are opaque, began the chunk with less than all light and lie so far from the edges
+ * of surfaces: pixels beside them in four
+ * directions, 1, 2, 4 ... and job->edge away, are hidden. at: of the first pixel, in absorbed_at_start. */
+LANES_INLINE lanes_int is_inside_surface(const absorbed_job *job, const float *now, size_t at) {
+  const float *start = job->absorbed_at_start + at;
+  lanes_int inside = is_opaque(now) & (lanes_load(start) > 1.0f - HARDLY_HIDDEN);
+  for (int way = 1, before = 0; before < job->edge && lanes_bits(inside) != 0; before = way, way *= 2) {
+    if (way > job->edge) way = job->edge;
+    ptrdiff_t down = way * (ptrdiff_t)job->stride_now, down_at_start = way * (ptrdiff_t)job->stride;
+    inside &= is_hidden(now - way, start - way) & is_hidden(now + way, start + way) &
+              is_hidden(now - down, start - down_at_start) & is_hidden(now + down, start + down_at_start);
+  }
+  return inside;
+}
+
+/* Makes the group at a chunk's end hide all that lies before it, where surfaces let nothing pass. Derived: a
+ * surface at o takes T(o) of the light, and 1 - T(o) is the sum up to o, blurred for a receiver at o. A
+ * receiver r far behind blurs that sum more: a little light is left beside the umbra of what is before o.
+ * But rays that meet an opaque surface end there, whatever they have met before: 1 = F + (1 - F) s, F = 1. */
+LANES_INLINE void hide_behind(lanes_int inside, matter_pair *to) {
+  to->thin[1] = lanes_select(inside, lanes_set(1.0f), to->thin[1]);
+  to->absorbed[1] = lanes_select(inside, lanes_set(1.0f), to->absorbed[1]);
+}
+
 static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
   lanes start[2] = {lanes_set(0), lanes_set(0)}, end[2] = {lanes_set(0), lanes_set(0)};
   const field_pixel *first[] = {job->start_absorbed, job->start_thin, job->end_absorbed, job->end_thin};
@@ -291,11 +332,12 @@ static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
   for (int row = tile_y * TILE; row < (tile_y + 1) * TILE; row++) {
     size_t at = (size_t)row * job->stride + (size_t)tile_x * TILE;
     lanes before = 1.0f - lanes_load(job->absorbed_at_start + at);
-    lanes now = lanes_load(job->now + (size_t)row * job->stride_now + (size_t)tile_x * TILE);
+    const float *now_at = job->now + (size_t)row * job->stride_now + (size_t)tile_x * TILE;
+    lanes now = lanes_load(now_at);
     lanes taken = lanes_max(before - lanes_max(now, lanes_set(0)), lanes_set(0));
-    int marked = job->before != NULL && lanes_bits(now < 0.0f) != 0;
-    lanes in_dark = marked ? taken_in_dark(job, at, before, now) : lanes_set(0);
-    if (lanes_bits(taken + in_dark > 0.0f) == 0) { /* then the moment is zero */
+    int marked = lanes_bits(now < 0.0f) != 0;
+    lanes in_dark = marked && job->before != NULL ? taken_in_dark(job, at, before, now) : lanes_set(0);
+    if (!marked && lanes_bits(taken > 0.0f) == 0) { /* then the moment is zero */
       lanes_store_short(job->end_absorbed + at, lanes_set(0));
       lanes_store_short(job->end_thin + at, lanes_set(0));
       continue;
@@ -307,6 +349,7 @@ static uint32_t absorbed_tile(const absorbed_job *job, int tile_x, int tile_y) {
     lanes thin = fraction * (1.0f - solid);
     position = lanes_select(in_dark > 0.0f, lanes_set(0.5f), position);
     matter_pair to = split_matter(lanes_fma(taken, solid, thin) + in_dark, thin, position);
+    if (marked) hide_behind(is_inside_surface(job, now_at, at), &to);
     lanes_store(job->moment + at, lanes_set(0));
     store_fraction(job->end_absorbed + at, to.absorbed[1], &end[0]);
     store_fraction(job->end_thin + at, to.thin[1], &end[1]);

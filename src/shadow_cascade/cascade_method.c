@@ -99,6 +99,7 @@ typedef struct absorb_task {
   const shadow_buffer *buffer;
   cascade_group *start, *end;
   double length;
+  int edge;
   absorbed_tile_function *absorbed;
   bool any; /* cascade->absorbed is not all zeros */
 } absorb_task;
@@ -119,7 +120,8 @@ static void absorb_tile(const absorb_task *task, size_t tile_x, size_t tile_y, b
                       end[0]->pixels,
                       end[1]->pixels,
                       level->stride,
-                      task->buffer->stride};
+                      task->buffer->stride,
+                      task->edge};
   if (!touched) {
     for (int i = 0; i < 2; i++) hl_cascade_clear_tile(level, end[i], (int)tile_x, (int)tile_y);
     return;
@@ -145,12 +147,29 @@ static void absorb_piece(void *data, size_t index, int worker) {
   }
 }
 
+/* Pixels at the edges of surfaces that hide nothing before them. Derived: where two edges lie one behind the
+ * other, a chunk apart, as at the rim of a ball, the sum of what both take is about right; the sum before the
+ * second edge has, for a receiver w behind it, a penumbra of width sqrt((c + w)^2 - w^2), c being the chunk's
+ * length, and in its dark half the second must not hide what is left. Half of this half is enough: wider
+ * edges leave light where the pieces of a surface meet that lie in two chunks. */
+static int edge_of(double length, double behind) {
+  return (int)fmin(round(sqrt(length * (length + 2 * behind)) / 4), GREATEST_EDGE);
+}
+
 static void push_chunk(soft_cascade *cascade, const light_shadow *shadow, double omega, bool any,
                        const cascade_crew *crew) {
   cascade_level *level = &cascade->level[0];
   cascade_group *start = &level->group[level->count - 1], *end = &level->group[level->count++];
   end->omega = omega;
-  absorb_task task = {cascade, shadow->buffer, start, end, omega - start->omega, crew->functions->absorbed,
+  const sheet_stack *sheets = shadow->setup.sheets;
+  double length = omega - start->omega, last = hl_cascade_omega(cascade, hl_last_height(sheets));
+  absorb_task task = {cascade,
+                      shadow->buffer,
+                      start,
+                      end,
+                      length,
+                      edge_of(length, fmax(last - omega, 0)),
+                      crew->functions->absorbed,
                       any};
   hl_pool_run(crew->pool, hl_cascade_row_pieces(level), absorb_piece, &task);
   end->filled = shadow->owned != NULL

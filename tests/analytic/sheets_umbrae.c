@@ -27,6 +27,7 @@ typedef struct hider {
   vec3 centre, u, v;
   double radius; /* 0: the rectangle */
   double dome;   /* above 0: what hides is a dome of triangles of this radius, over the rectangle */
+  const struct hider *before; /* borrowed; hides a part of the light from this one; null: nothing does */
 } hider;
 
 static bool is_hit(const hider *by, vec3 from, vec3 way) {
@@ -119,8 +120,7 @@ static void render_floor(const hider *by, vec3 travels, double angle, hl_soft_me
                          float *pixels) {
   mesh_stage all;
   mesh_stage_open(&all, side, WIDE);
-  hl_scene_mesh *hides = add_hider(&all, by);
-  hides->visible = 0;
+  for (const hider *one = by; one != NULL; one = one->before) add_hider(&all, one)->visible = 0;
   mesh_stage_add(&all, stage_make_quad(&all.set, (vec3){0, 0, FLOOR}, (vec3){FLOOR_EDGE, 0, 0},
                                        (vec3){0, FLOOR_EDGE, 0}));
   hl_light *light = stage_add_directional(&all.set, travels);
@@ -151,6 +151,21 @@ static void test_rectangle(void **state) {
     double greatest, mean;
     measure(&by, k % 2 ? 12 : 7, HL_SOFT_CASCADE, &greatest, &mean);
     assert_near(greatest, 0, 0.025);
+  }
+}
+
+/* A board above the floor, of which another, above it, hides a half: the second one's penumbra lies across
+ * the first, and leaves no line of light in its umbra. */
+static void test_board_before_board(void **state) {
+  (void)state;
+  for (int k = 0; k < 4; k++) {
+    const double angle = k % 2 ? 12 : 7, gap = 8, apart = k / 2 ? 12 : 7;
+    const hider before = {
+        .centre = {-30 - 0.4 * apart, -0.3 * apart, FLOOR + gap + apart}, .u = {30, 0, 0}, .v = {0, 30, 0}};
+    const hider by = {.centre = {0, 0, FLOOR + gap}, .u = {12, 0, 0}, .v = {0, 12, 0}, .before = &before};
+    double greatest, mean;
+    measure(&by, angle, HL_SOFT_CASCADE, &greatest, &mean);
+    assert_near(greatest, 0, 0.02);
   }
 }
 
@@ -230,7 +245,8 @@ static void test_ball_under_wide_sun(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_rectangle), cmocka_unit_test(test_ball),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_rectangle),
+                                     cmocka_unit_test(test_board_before_board), cmocka_unit_test(test_ball),
                                      cmocka_unit_test(test_dome), cmocka_unit_test(test_ball_under_wide_sun)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

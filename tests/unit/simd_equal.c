@@ -675,6 +675,12 @@ static void mark_dark(float *pixels, float *absorbed_at_start, uint32_t *seed) {
   }
 }
 
+/* Surfaces that take all light, in pieces of forty pixels. */
+static void mark_opaque(float *pixels) {
+  for (int i = 0; i < FIELD * TILE; i++)
+    if (i / 40 % 2) pixels[i] = -LEAST_MARK;
+}
+
 static void test_fields(void **unused) {
   (void)unused;
   static const char *const names[] = {
@@ -716,7 +722,8 @@ static void test_fields(void **unused) {
                                 out + 48 * FIELD,
                                 out + 64 * FIELD,
                                 FIELD,
-                                FIELD};
+                                FIELD,
+                                round % (GREATEST_EDGE + 1)};
     s.part = (split_job){lacking,
                          thin,
                          {out, out + 16 * FIELD},
@@ -781,7 +788,10 @@ static void test_fields(void **unused) {
                     (ptrdiff_t)random_between(&seed, -20, 20);
     for (s.which = 0; s.which < 16; s.which++) {
       if (s.which == 6) mark_dark(s.left.to, s.left.absorbed_at_start, &seed);
-      if (s.which == 7) mark_dark(&s.b[MARGIN][MARGIN], &s.a[MARGIN][MARGIN], &seed);
+      if (s.which == 7) {
+        mark_dark(&s.b[MARGIN][MARGIN], &s.a[MARGIN][MARGIN], &seed);
+        mark_opaque(&s.b[MARGIN][MARGIN]);
+      }
       trial trial = {call_field, &s, &s.out, sizeof s.out};
       try_it(names[s.which], &trial, round);
     }
