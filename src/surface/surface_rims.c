@@ -3,6 +3,7 @@
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
+#include "surface/surface_cuts.h"
 
 /* Passes over all triangles, forwards and backwards in turn: each follows a distance over an edge or more. */
 enum { PASSES = 8 };
@@ -68,6 +69,15 @@ static void begin_distances(const surfaces *all, const surface_mesh *mesh, const
     from_edge[v] = sum[v] != 0 || (from_edge[v] < 0 && !rough) ? 0 : INFINITY;
 }
 
+/* Sets the distance of vertices to 0 of which the scene's cuts cross a triangle. */
+static void begin_at_cuts(const surfaces *all, const surface_mesh *mesh, float *from_edge) {
+  for (uint32_t t = 0; t < mesh->triangle_count && mesh->is_cut; t++) {
+    const uint32_t triangle = mesh->first_triangle + t, *corner = all->triangles[triangle];
+    if (hl_surface_cut(all, mesh, triangle) != CUT_LEAVES_SOME) continue;
+    for (int i = 0; i < 3; i++) from_edge[corner[i] - mesh->first_vertex] = 0;
+  }
+}
+
 /* Lowers the distances of a triangle's vertices to what its edges allow; returns whether any changed. */
 static bool follow_edges(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, float distance,
                          float *from_edge) {
@@ -99,6 +109,7 @@ hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surfac
   if (status == HL_OK) {
     sum_edges(all, mesh, sum);
     begin_distances(all, mesh, sum, first, from_edge);
+    begin_at_cuts(all, mesh, from_edge);
     bool changed = true;
     for (int pass = 0; pass < PASSES && changed; pass++) {
       changed = false;

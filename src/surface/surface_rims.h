@@ -8,8 +8,8 @@
 #include "surface/surfaces.h"
 
 /* Sets near[t], of the mesh's triangles, where triangle t has a vertex within a distance, along edges, of an
- * open edge or a corner; frame units. The distance is followed over few edges: where triangles are very small
- * it is less.
+ * open edge, a cut or a corner; frame units. The distance is followed over few edges: where triangles are
+ * very small it is less.
  */
 hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surface_mesh *mesh, double distance,
                           bool *near, hl_error *error);

@@ -93,7 +93,7 @@ uint64_t hl_surface_tree_bytes(const hl_scene_description *scene) {
 
 /* Whether a tree for a distance holds triangles of a mesh. */
 static bool is_held(const surface_mesh *mesh, double distance) {
-  return hl_mesh_takes_light(mesh->scene) && (isinf(distance) || !mesh->scene->mesh->closed);
+  return hl_mesh_takes_light(mesh->scene) && (isinf(distance) || !mesh->scene->mesh->closed || mesh->is_cut);
 }
 
 /* near: which triangles; null: all, and the spheres. */

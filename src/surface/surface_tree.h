@@ -23,8 +23,8 @@ typedef struct surface_tree {
 } surface_tree;
 
 /* Of which triangles a tree is made: of all meshes that take light away, with their spheres; or only of
- * triangles of meshes that are not closed within a distance of an open edge or a corner (surface_rims.h), in
- * frame units. */
+ * triangles of meshes that are not closed, or that cuts cut, within a distance of an open edge, a cut or a
+ * corner (surface_rims.h), in frame units. */
 #define ALL_SURFACES INFINITY
 
 /* all: null for none. A tree that was not created is all zero, and may be released. */

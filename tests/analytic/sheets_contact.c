@@ -12,7 +12,9 @@ enum { SIDE = 128, PIXELS = SIDE * SIDE };
  * the floor is looked at. */
 static const double HALF_WIDTH = 12, TOP = 16, PLACE = 0.1, THIN = 0.15, BAND = 3, FLOOR_EDGE = 40;
 
-typedef enum wall { SHEET, BOX_WITHOUT_BOTTOM, THROUGH_THE_FLOOR, JOINED, WALLS } wall;
+typedef enum wall { SHEET, BOX_WITHOUT_BOTTOM, CUT_BOX, THROUGH_THE_FLOOR, JOINED, WALLS } wall;
+
+static bool is_box(wall kind) { return kind == BOX_WITHOUT_BOTTOM || kind == CUT_BOX; }
 
 /* Where the light comes from. */
 typedef struct shining {
@@ -34,6 +36,25 @@ static void add_quad(float positions[24][3], uint32_t triangles[12][3], int quad
   uint32_t first = 4 * (uint32_t)quad;
   memcpy(triangles[2 * quad], (uint32_t[3]){first, first + 1, first + 2}, sizeof *triangles);
   memcpy(triangles[2 * quad + 1], (uint32_t[3]){first, first + 2, first + 3}, sizeof *triangles);
+}
+
+/* A closed box that reaches below the floor, where a cut of the scene removes it. */
+static void add_cut_box(mesh_stage *all) {
+  static const uint32_t triangles[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                            {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  static const hl_cut below = {.type = HL_CUT_PLANE, .normal = {0, 0, -1}};
+  float positions[8][3];
+  for (int i = 0; i < 8; i++)
+    vec3_store(positions[i],
+               (vec3){i & 1 ? HALF_WIDTH : -HALF_WIDTH, PLACE + (i & 2 ? THIN : -THIN), i & 4 ? TOP : -TOP});
+  hl_mesh_description d;
+  hl_mesh_description_defaults(&d);
+  d.positions = (const float(*)[3])positions, d.vertex_count = 8;
+  d.triangles = triangles, d.triangle_count = 12;
+  (void)mesh_stage_describe(all, &d);
+  all->meshes[0].cut = 0; /* the floor */
+  all->set.scene.cuts = &below;
+  all->set.scene.cut_count = 1;
 }
 
 static void add_wall(mesh_stage *all, wall kind) {
@@ -72,8 +93,7 @@ static void add_wall(mesh_stage *all, wall kind) {
 
 /* What is known of the light at the point where a ray of the eye ends: -1: nothing. */
 static double expected(const shining *light, wall kind, double margin, vec3 eye, vec3 way) {
-  const double thick = kind == BOX_WITHOUT_BOTTOM ? THIN : 0,
-               side = way.y > 0 ? -1 : 1; /* that the eye sees */
+  const double thick = is_box(kind) ? THIN : 0, side = way.y > 0 ? -1 : 1; /* that the eye sees */
   double to_wall = (PLACE + side * thick - eye.y) / way.y, to_floor = -eye.z / way.z;
   vec3 met = vec3_add(eye, vec3_scale(way, to_wall)), at = vec3_add(eye, vec3_scale(way, to_floor));
   bool near_wall = fabs(met.x) < HALF_WIDTH + 1 && met.z > 0 && met.z < TOP + 1;
@@ -126,7 +146,8 @@ static void render_wall(wall kind, const shining *light, int shadows, vec3 eye, 
   mesh_stage_open(&all, SIDE, 48);
   mesh_stage_add(
       &all, stage_make_quad(&all.set, (vec3){0, 0, 0}, (vec3){FLOOR_EDGE, 0, 0}, (vec3){0, FLOOR_EDGE, 0}));
-  add_wall(&all, kind);
+  if (kind == CUT_BOX) add_cut_box(&all);
+  else add_wall(&all, kind);
   stage_look(&all.set, eye, (vec3){0, 0, 0}, eye.y == 0 ? (vec3){0, 1, 0} : (vec3){0, 0, 1});
   hl_light *made = light->parallel ? stage_add_directional(&all.set, vec3_scale(light->at, -1))
                                    : stage_add_point(&all.set, light->at);
@@ -169,6 +190,7 @@ static void test_soft(void **state) {
     for (int k = 0; k < 4; k++) {
       const shining sun = {direction(25 + 30 * (k % 2), k / 2 * 50), true};
       render_wall(k % 2 ? BOX_WITHOUT_BOTTOM : SHEET, &sun, shadows, EYES[k % 3], 2.5);
+      render_wall(CUT_BOX, &sun, shadows, EYES[k % 3], 2.5);
     }
 }
 
