@@ -181,6 +181,8 @@ LANES_INLINE int greatest_of(lanes_int x, lanes_int of) {
   return most;
 }
 
+typedef uint32_t small_words __attribute__((vector_size(64)));
+
 /* Covers triangles that are at most a pixel high and two wide: of each column of samples the one sample is
  * tried that lies within the triangle's rows. bits: of each of two rows of pixels those of two pixels, 16
  * bits each. Returns whether the triangles in `of` are so small. */
@@ -194,14 +196,14 @@ LANES_INLINE int cover_columns(const small_shape *shape, lanes_int of, lanes_int
     step[i] = shape->down[i] * (float)SMALL_STEP;
   }
   lanes_int ahead = column * 7 + 3 - row; /* the sample's row, from the first one, but for turns of 16 */
-  lanes_int bit = 1 << column;
+  small_words bit = (small_words)(1 << (column & 31)); /* of columns after the last, 0 */
   bits[0] = bits[1] = lanes_set_int(0);
   for (int n = greatest_of(columns, of); n > 0; n--) {
     lanes_int own = row + (ahead & 15);
     lanes y = lanes_from_int(own) * (float)SMALL_STEP + half;
     lanes_int outside = (lanes_int)(at[0] - shape->across[0] * y) |
                         (lanes_int)(at[1] - shape->across[1] * y) | (lanes_int)(at[2] - shape->across[2] * y);
-    lanes_int covered = bit & ~(outside >> 31), upper = own < 16;
+    lanes_int covered = (lanes_int)bit & ~(outside >> 31), upper = own < 16;
     bits[0] |= covered & upper;
     bits[1] |= covered & ~upper;
     ahead += 7;
