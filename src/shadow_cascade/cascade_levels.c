@@ -271,17 +271,15 @@ static void clear_plane(void *data, size_t index, int worker) {
     for (int x = 0; x < level->tiles_x; x++) hl_cascade_clear_tile(level, &field, x, y);
 }
 
-/* Clears the moments and the light at the start of the last, unfinished chunk. */
-static void clear_moments(const soft_cascade *cascade) {
+/* Clears the moments and the light at the start of the last, unfinished chunk. Of all tiles: dark pixels have
+ * moments that no chunk's end clears, of what rounding left there and of matter behind surfaces' marks. */
+static void clear_moments(const soft_cascade *cascade, hl_pool *pool) {
   const cascade_level *level = &cascade->level[0];
-  for (size_t tile = 0; tile < (size_t)level->tiles_x * (size_t)level->tiles_y; tile++) {
-    size_t at = tile / (size_t)level->tiles_x * TILE * level->stride + tile % (size_t)level->tiles_x * TILE;
-    for (int c = 0; c < cascade->channels && cascade->touched[tile]; c++)
-      for (size_t row = 0; row < TILE; row++)
-        memset(cascade->moment[c] + at + row * level->stride, 0, TILE * sizeof(float));
+  size_t bytes = (size_t)level->tiles_y * TILE * level->stride * sizeof(float);
+  for (int c = 0; c < cascade->channels; c++) {
+    hl_pool_clear(pool, cascade->moment[c], bytes);
+    hl_pool_clear(pool, cascade->absorbed_at_start[c], bytes);
   }
-  for (int c = 0; c < cascade->channels; c++)
-    memset(cascade->absorbed_at_start[c], 0, (size_t)level->tiles_y * TILE * level->stride * sizeof(float));
 }
 
 /* Returns the memory filled with zeros, for the next frame. */
@@ -291,6 +289,6 @@ void hl_cascade_end(light_shadow *shadow) {
   if (!cascade->begun) return;
   for (int i = 0; i < cascade->level_count; i++)
     hl_pool_run(pool, cascade->level[i].planes, clear_plane, (void *)&cascade->level[i]);
-  clear_moments(cascade);
+  clear_moments(cascade, pool);
   shadow->kept->zeros = !hl_pool_cancelled(pool);
 }

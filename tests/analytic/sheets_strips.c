@@ -1,7 +1,7 @@
 /* analytic/sheets_strips.c - the parts of a picture that several renderers make are the picture, bit for
  * bit: with every method of shadows, several sweeps, hidden matter, oversampling and surfaces. And a part
  * works through the light that falls on it alone. Renderers in threads of one process exchange light as ranks
- * do. */
+ * do. A renderer's next frame uses the memory of the one before. */
 #define _POSIX_C_SOURCE 200809L /* barriers */
 #include <math.h>
 #include <pthread.h>
@@ -432,6 +432,50 @@ static void test_exchanged_light(void **state) {
   }
 }
 
+/* A mesh of balls within the noise: there is matter in the dark behind them. */
+static hl_mesh *add_balls(stage *set, hl_scene_mesh *balls) {
+  static const float spheres[3][4] = {{0, 0, 0, 3}, {4, -5, 2, 2}, {-5, 3, -3, 2.5f}};
+  hl_mesh_description d;
+  hl_mesh *made = NULL;
+  hl_mesh_description_defaults(&d);
+  d.spheres = spheres, d.sphere_count = sizeof spheres / sizeof *spheres;
+  assert_int_equal(hl_mesh_create(set->context, &d, &made, NULL), HL_OK);
+  hl_scene_mesh_defaults(balls);
+  balls->mesh = made;
+  balls->material = (hl_material){.diffuse = 1};
+  for (int c = 0; c < 3; c++) balls->color[c] = 1;
+  set->scene.meshes = balls, set->scene.mesh_count = 1;
+  return made;
+}
+
+/* Lights take the cascade's memory in turn, and so does the next frame: each leaves it filled with zeros. */
+static void test_next_frame(void **state) {
+  (void)state;
+  static const struct {
+    int width, height;
+    double spacing;
+  } cases[] = {{53, 39, 1}, {92, 69, 0.75}};
+  static float first[92 * 69 * 4], next[92 * 69 * 4];
+  for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+    stage set;
+    hl_scene_mesh balls;
+    hl_renderer *renderer = NULL;
+    stage_open(&set);
+    exchange_lamps(&set);
+    hl_mesh *made = add_balls(&set, &balls);
+    set.scene.width = cases[n].width;
+    set.scene.height = cases[n].height;
+    set.scene.render.sheet_spacing = cases[n].spacing;
+    assert_int_equal(hl_renderer_create(set.context, &renderer, NULL), HL_OK);
+    stage_render_with(&set, renderer, first);
+    stage_render_with(&set, renderer, next);
+    assert_memory_equal(next, first, sizeof *first * 4 * (size_t)(cases[n].width * cases[n].height));
+    hl_renderer_destroy(renderer);
+    hl_mesh_release(made);
+    stage_close(&set);
+  }
+}
+
 static void test_refused(void **state) {
   (void)state;
   static float pixels[FLOATS], ambient[FLOATS];
@@ -465,6 +509,7 @@ int main(void) {
                                      cmocka_unit_test(test_exchange),
                                      cmocka_unit_test(test_exchanged_light),
                                      cmocka_unit_test(test_exchanged_search),
+                                     cmocka_unit_test(test_next_frame),
                                      cmocka_unit_test(test_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
