@@ -285,6 +285,7 @@ static void add_primitive(const fragment_work *work, fragment_worker *worker, ti
 /* ---- small triangles ---- */
 
 static int least(int a, int b) { return a < b ? a : b; }
+static int greatest(int a, int b) { return a > b ? a : b; }
 
 /* Up to sixteen triangles, or spheres, of one mesh. */
 typedef struct small_batch {
@@ -408,13 +409,13 @@ static bool is_covered(const fragment_work *work, const fragment_worker *worker,
   float lowest = INFINITY;
   for (size_t v = 0; v < shape->vertices; v++) {
     lowest = seen->height[v] < lowest ? seen->height[v] : lowest;
-    low[0] = least(low[0], seen->x[v]), high[0] = -least(-high[0], -seen->x[v]);
-    low[1] = least(low[1], seen->y[v]), high[1] = -least(-high[1], -seen->y[v]);
+    low[0] = least(low[0], seen->x[v]), high[0] = greatest(high[0], seen->x[v]);
+    low[1] = least(low[1], seen->y[v]), high[1] = greatest(high[1], seen->y[v]);
   }
   int left = part->tile_x * TILE, top = part->tile_y * TILE,
       right = least(least(left + TILE, view->width) - 1, high[0] >> 8),
       bottom = least(least(top + TILE, view->height) - 1, high[1] >> 8);
-  left = -least(-left, -(low[0] >> 8)), top = -least(-top, -(low[1] >> 8));
+  left = greatest(left, low[0] >> 8), top = greatest(top, low[1] >> 8);
   for (int y = top; y <= bottom; y++)
     for (int x = left; x <= right; x++) {
       const covered_so_far *covered = &worker->covered[hl_pixel_number(x % TILE, y % TILE)];
