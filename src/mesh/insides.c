@@ -51,8 +51,9 @@ static bool find_parts(part_search *search) {
       search->ways[root] += way;
       sum += way;
     }
-    search->volume[root] += volume_of(d, corner);
-    volume += volume_of(d, corner);
+    double own = volume_of(d, corner);
+    search->volume[root] += own;
+    volume += own;
   }
   return sum == 0 && volume > 0;
 }

@@ -267,11 +267,10 @@ static uint32_t samples_within(const sweep *sweep, const surface_batch *batch) {
       hl_surface_is_outside(batch->mesh->scene, eye->origin, 0))
     return 0;
   for (int i = 0; i < batch->count; i++) {
-    double height;
     uint32_t primitive = batch->fragments[i]->primitive;
     if (primitive >= all->triangle_count) continue;
     int inside = batch->mesh->mesh->insides[primitive - batch->mesh->first_triangle];
-    vec3 normal = hl_triangle_normal(all, primitive, (vec3){0, 0, 0}, &height);
+    vec3 normal = hl_surface_normal(all, primitive);
     double side = inside * vec3_dot(normal, vector_of(batch->samples.towards_eye, i));
     within |= (uint32_t)(side > 0) << i;
   }

@@ -192,25 +192,22 @@ static int owner_of(const int32_t *all, size_t tile, size_t tiles, int parts) {
   return (int)(tile * (size_t)parts / tiles);
 }
 
-/* Needs the tiles beside those that this part owns as long: what surfaces hide in a tile depends on pixels up
- * to a tile beside it (shadow_cascade/cascade_field.h). */
-static void need_beside(sweep_light *light) {
+/* Whether this part owns a tile, or one at most `around` tiles beside it. */
+static bool is_owned_around(const sweep_light *light, int tile, int around) {
   const view *view = &light->shadow.buffer->view;
   const int across = hl_tiles(view->width), down = hl_tiles(view->height);
-  for (int tile = 0; tile < across * down; tile++) {
-    if (!light->owned[tile]) continue;
-    for (int k = 0; k < 9; k++) {
-      int x = tile % across + k % 3 - 1, y = tile / across + k / 3 - 1;
-      if (x < 0 || y < 0 || x >= across || y >= down) continue;
-      size_t beside = (size_t)y * (size_t)across + (size_t)x;
-      int32_t last = last_touched(&light->sheets.occupancy, beside);
-      if (light->needed_until[beside] < last) light->needed_until[beside] = last;
+  for (int dy = -around; dy <= around; dy++)
+    for (int dx = -around; dx <= around; dx++) {
+      int x = tile % across + dx, y = tile / across + dy;
+      if (x >= 0 && y >= 0 && x < across && y < down && light->owned[y * across + x]) return true;
     }
-  }
+  return false;
 }
 
 /* Finds the tiles that this part owns: needs them as long as anything touches them, though the picture may
- * need them no more, so that together the parts know of all light. */
+ * need them no more, so that together the parts know of all light. Where there are surfaces it needs the
+ * tiles beside them, too: what surfaces hide in a tile depends on pixels up to a tile beside it
+ * (shadow_cascade/cascade_field.h). */
 static hl_status find_owned(sweep *sweep, sweep_light *light, size_t tiles, hl_error *error) {
   hl_context *context = sweep->content.context;
   const light_exchange *with = light->shadow.setup.exchange;
@@ -221,13 +218,14 @@ static hl_status find_owned(sweep *sweep, sweep_light *light, size_t tiles, hl_e
     return hl_fail_memory(error, (size_t)with->parts * tiles * sizeof *all, "a light's tiles");
   }
   with->gather(with->data, light->needed_until, tiles * sizeof *all, all);
-  for (size_t tile = 0; tile < tiles; tile++) {
+  for (size_t tile = 0; tile < tiles; tile++)
     light->owned[tile] = owner_of(all, tile, tiles, with->parts) == with->part;
-    int32_t last = light->owned[tile] ? last_touched(&light->sheets.occupancy, tile) : 0;
+  hl_release(context, all);
+  for (size_t tile = 0; tile < tiles; tile++) {
+    if (!is_owned_around(light, (int)tile, sweep->frame->surfaces != NULL ? 1 : 0)) continue;
+    int32_t last = last_touched(&light->sheets.occupancy, tile);
     if (light->needed_until[tile] < last) light->needed_until[tile] = last;
   }
-  hl_release(context, all);
-  if (sweep->frame->surfaces != NULL) need_beside(light);
   light->shadow.needed_until = light->needed_until;
   light->shadow.owned = light->owned;
   return HL_OK;

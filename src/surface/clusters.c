@@ -57,12 +57,6 @@ static void find_box(const surfaces *all, surface_cluster *cluster) {
 
 /* ---- cones ---- */
 
-static vec3 normal_of(const surfaces *all, uint32_t triangle) {
-  vec3 at[3];
-  for (int i = 0; i < 3; i++) at[i] = hl_surface_vector(all->positions[all->triangles[triangle][i]]);
-  return vec3_normalise(vec3_cross(vec3_subtract(at[1], at[0]), vec3_subtract(at[2], at[0])));
-}
-
 /* The mean of the normals, and the greatest angle from it. Triangles without an area have no normal and are
  * not seen. */
 static void find_cone(const surfaces *all, surface_cluster *cluster) {
@@ -72,7 +66,7 @@ static void find_cone(const surfaces *all, surface_cluster *cluster) {
   memset(cluster->axis, 0, sizeof cluster->axis);
   if (cluster->first >= all->triangle_count) return;
   for (int i = 0; i < cluster->count; i++) {
-    normals[i] = normal_of(all, all->order[cluster->first + (uint32_t)i]);
+    normals[i] = hl_surface_normal(all, all->order[cluster->first + (uint32_t)i]);
     if (vec3_length(normals[i]) < 2) sum = vec3_add(sum, normals[i]); /* else not a number */
   }
   vec3 axis = vec3_normalise(sum);

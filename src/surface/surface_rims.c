@@ -23,13 +23,6 @@ static void sum_edges(const surfaces *all, const surface_mesh *mesh, uint64_t *s
   }
 }
 
-static vec3 normal_of(const surfaces *all, uint32_t triangle) {
-  const uint32_t *corner = all->triangles[triangle];
-  vec3 a = hl_surface_vector(all->positions[corner[0]]);
-  return vec3_normalise(vec3_cross(vec3_subtract(hl_surface_vector(all->positions[corner[1]]), a),
-                                   vec3_subtract(hl_surface_vector(all->positions[corner[2]]), a)));
-}
-
 /* A mesh with more vertices at corners is rough, unless these are fewer than one in MOST_PARTS: it has no
  * corners of rooms, but rays all over it, which would cost several times the frame. */
 enum { MOST_CORNERS = 4096, MOST_PARTS = 8 };
@@ -44,11 +37,11 @@ static size_t mark_corners(const surfaces *all, const surface_mesh *mesh, uint32
   for (uint32_t t = mesh->triangle_count; t-- > 0;)
     for (int i = 0; i < 3; i++) first[all->triangles[mesh->first_triangle + t][i] - mesh->first_vertex] = t;
   for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-    vec3 own = normal_of(all, mesh->first_triangle + t);
+    vec3 own = hl_surface_normal(all, mesh->first_triangle + t);
     for (int i = 0; i < 3; i++) {
       size_t vertex = all->triangles[mesh->first_triangle + t][i] - mesh->first_vertex;
       if (first[vertex] == t || from_edge[vertex] < 0) continue;
-      vec3 other = normal_of(all, mesh->first_triangle + first[vertex]);
+      vec3 other = hl_surface_normal(all, mesh->first_triangle + first[vertex]);
       if (fabs(vec3_dot(own, other)) >= HL_MESH_ROUNDED) continue;
       from_edge[vertex] = AT_CORNER;
       count++;

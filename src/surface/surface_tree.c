@@ -163,10 +163,8 @@ void hl_surface_tree_release(hl_context *context, surface_tree *tree) {
 /* ---- hulls ---- */
 
 vec3 hl_triangle_normal(const surfaces *all, uint32_t triangle, vec3 point, double *from) {
-  const uint32_t *corner = all->triangles[triangle];
-  vec3 a = hl_surface_vector(all->positions[corner[0]]);
-  vec3 normal = vec3_normalise(vec3_cross(vec3_subtract(hl_surface_vector(all->positions[corner[1]]), a),
-                                          vec3_subtract(hl_surface_vector(all->positions[corner[2]]), a)));
+  vec3 a = hl_surface_vector(all->positions[all->triangles[triangle][0]]),
+       normal = hl_surface_normal(all, triangle);
   *from = vec3_dot(normal, vec3_subtract(point, a));
   return normal;
 }
