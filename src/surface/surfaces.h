@@ -84,7 +84,7 @@ bool hl_surface_is_outside(const hl_scene_mesh *mesh, vec3 centre, double radius
 /* A position of surfaces->positions or ->normals. */
 static inline vec3 hl_surface_vector(const float v[3]) { return (vec3){v[0], v[1], v[2]}; }
 
-/* A triangle's unit normal; not numbers where it has no area. */
+/* A triangle's unit normal; 0 where it has no area. */
 static inline vec3 hl_surface_normal(const surfaces *all, uint32_t triangle) {
   vec3 at[3];
   for (int i = 0; i < 3; i++) at[i] = hl_surface_vector(all->positions[all->triangles[triangle][i]]);
