@@ -139,8 +139,8 @@ static void read_surfaces(const reads_task *task, size_t tile) {
   const sweep *sweep = task->sweep;
   const fragments *all = &sweep->surfaces.image;
   const tile_slab place = {.x = hl_tile_x(sweep, tile), .y = hl_tile_y(sweep, tile)};
-  for (uint32_t n = all->first[tile]; n < all->first[tile + 1]; n++) {
-    const fragment *f = &all->list[n];
+  for (uint32_t n = 0; n < all->of[tile].count; n++) {
+    const fragment *f = &all->of[tile].list[n];
     vec3 point = hl_surface_place(sweep, &place, f, (double)f->height);
     for (int i = 0; i < task->light_count; i++) {
       const light_source *source = task->lights[i].source;
@@ -251,7 +251,7 @@ hl_status hl_light_reads_find(sweep *sweep, hl_error *error) {
     for (int a = 0; a < 2 && sweep->frame->surfaces != NULL; a++) reads->around[a] += moved_away(view, a);
   }
   const bool surfaces_alone = task.light_count > 0 && task.lights[0].source->sectors != NULL &&
-                              sweep->content.volume_count == 0 && sweep->surfaces.image.first != NULL;
+                              sweep->content.volume_count == 0 && sweep->surfaces.image.of != NULL;
   for (size_t tile = 0; tile < sweep->tiles && task.light_count > 0; tile++) {
     if (sweep->arrays.open[tile] == 0) continue;
     if (surfaces_alone) read_surfaces(&task, tile);

@@ -98,7 +98,7 @@ void hl_sweep_surfaces_end(sweep *sweep) {
 }
 
 static fragment_range reach(const fragments *all, size_t tile, int slab) {
-  return all->first != NULL ? hl_fragments_reach(all, tile, slab) : (fragment_range){NULL, 0};
+  return all->of != NULL ? hl_fragments_reach(all, tile, slab) : (fragment_range){NULL, 0};
 }
 
 fragment_range hl_sweep_surfaces_reach(const sweep *sweep, size_t tile, int slab) {
@@ -160,7 +160,7 @@ static uint32_t act_behind(const sweep *sweep, const tile_slab *slab, slab_piece
   int first = slab->job->sheet - NEAR_SLABS;
   const fragments *unseen = &sweep->surfaces.unseen;
   near_fragments near = {.seen = hl_fragments_reached(&sweep->surfaces.image, slab->tile, first)};
-  if (unseen->first != NULL) near.unseen = hl_fragments_reached(unseen, slab->tile, first);
+  if (unseen->of != NULL) near.unseen = hl_fragments_reached(unseen, slab->tile, first);
   if (!hl_near_surfaces_find(sweep, slab, &near, piece, passing)) return sweep->act(sweep, slab);
   shade_job job = *slab->job;
   tile_slab behind = *slab;
@@ -171,7 +171,7 @@ static uint32_t act_behind(const sweep *sweep, const tile_slab *slab, slab_piece
 }
 
 uint32_t hl_sweep_surfaces_beside(const sweep *sweep, const tile_slab *slab) {
-  if (sweep->surfaces.image.first == NULL) return sweep->act(sweep, slab);
+  if (sweep->surfaces.image.of == NULL) return sweep->act(sweep, slab);
   return act_behind(sweep, slab, (slab_piece){NULL, NULL});
 }
 

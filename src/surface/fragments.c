@@ -1,6 +1,4 @@
-/* surface/fragments.c - the fragments of a view: those of its tiles, made by several threads, brought
- * together.
- */
+/* surface/fragments.c - the fragments of a view: those of its tiles, made by several threads. */
 #include "surface/fragments.h"
 
 #include <string.h>
@@ -14,30 +12,19 @@ _Static_assert(HL_LIMIT_MESHES + HL_LIMIT_VOLUMES * HL_LIMIT_ISO <= 65536, "a fr
 uint64_t hl_fragments_bytes(const surfaces *all, const view *view, int threads, uint64_t *making) {
   uint64_t primitives = hl_surfaces_count(all), pixels = hl_view_tiles(view) * TILE_PIXELS;
   uint64_t list = (primitives + 2 * pixels) * sizeof(fragment);
-  /* a thread's list grows by copies, each twice as long as the one before */
-  *making = 2 * list + hl_primitive_bins_bytes(all, view) +
+  *making = hl_primitive_bins_bytes(all, view) +
             (uint64_t)threads * 2 * 2 * TILE_PIXELS * MOST_SLABS * (sizeof(fragment) + sizeof(order_key));
   return list;
 }
 
-/* Brings the tiles' fragments together, in the order of the tiles. */
-static hl_status gather(const fragment_work *work, fragments *made, hl_error *error) {
-  hl_context *context = work->source->context;
-  uint64_t sum = 0;
-  for (size_t tile = 0; tile < made->tiles; tile++) {
-    made->first[tile] = made->cursor[tile] = (uint32_t)sum;
-    sum += work->tiles[tile].count;
-  }
-  made->first[made->tiles] = (uint32_t)sum;
-  if (sum <= UINT32_MAX) made->list = hl_allocate(context, sum, sizeof *made->list);
-  if (made->list == NULL) return hl_fail_memory(error, sum * sizeof *made->list, "the surfaces' fragments");
-  for (size_t tile = 0; tile < made->tiles; tile++) {
-    const tile_record *record = &work->tiles[tile];
-    if (record->count > 0)
-      memcpy(made->list + made->first[tile], work->workers[record->worker].out + record->at,
-             record->count * sizeof *made->list);
-  }
-  return HL_OK;
+/* Takes over the blocks of a worker. */
+static void keep_blocks(fragment_worker *worker, fragments *made) {
+  fragment_block *first = worker->out;
+  if (first == NULL) return;
+  while (first->before != NULL) first = first->before;
+  first->before = made->blocks;
+  made->blocks = worker->out;
+  worker->out = NULL;
 }
 
 static hl_status rasterise(fragment_work *work, fragments *made, hl_error *error) {
@@ -53,10 +40,11 @@ static hl_status rasterise(fragment_work *work, fragments *made, hl_error *error
   hl_status status = HL_OK;
   if (hl_pool_cancelled(work->source->pool))
     status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
-  else
-    status = room ? gather(work, made, error)
-                  : hl_fail_memory(error, sizeof(fragment), "the surfaces' fragments");
-  for (size_t w = 0; w < threads; w++) hl_fragment_worker_end(context, &work->workers[w]);
+  else status = room ? HL_OK : hl_fail_memory(error, sizeof(fragment), "the surfaces' fragments");
+  for (size_t w = 0; w < threads; w++) {
+    keep_blocks(&work->workers[w], made);
+    hl_fragment_worker_end(context, &work->workers[w]);
+  }
   return status;
 }
 
@@ -101,13 +89,10 @@ static hl_status make_tiles(fragment_work *work, fragments *made, hl_error *erro
   hl_context *context = source->context;
   work->least = hl_allocate(context, source->surfaces->mesh_count, sizeof *work->least);
   work->dark_backs = hl_allocate(context, source->surfaces->mesh_count, sizeof *work->dark_backs);
-  made->first = hl_allocate(context, made->tiles + 1, sizeof *made->first);
-  made->cursor = hl_allocate(context, made->tiles, sizeof *made->cursor);
   work->workers = hl_allocate_zeroed(context, (size_t)hl_pool_threads(source->pool), sizeof *work->workers);
-  work->tiles = hl_allocate_zeroed(context, made->tiles, sizeof *work->tiles);
+  work->tiles = made->of = hl_allocate_zeroed(context, made->tiles, sizeof *made->of);
   hl_status status;
-  if (made->first == NULL || made->cursor == NULL || work->workers == NULL || work->tiles == NULL ||
-      work->least == NULL || work->dark_backs == NULL) {
+  if (made->of == NULL || work->workers == NULL || work->least == NULL || work->dark_backs == NULL) {
     status = hl_fail_memory(error, made->tiles * sizeof *work->tiles, "the surfaces' fragments");
   } else {
     describe_meshes(source, work->least, work->dark_backs);
@@ -117,7 +102,6 @@ static hl_status make_tiles(fragment_work *work, fragments *made, hl_error *erro
   hl_release(context, work->least);
   hl_release(context, work->dark_backs);
   hl_release(context, work->workers);
-  hl_release(context, work->tiles);
   return status;
 }
 
@@ -152,23 +136,26 @@ hl_status hl_fragments_create(const fragments_source *source, fragments *made, h
 }
 
 void hl_fragments_release(hl_context *context, fragments *made) {
-  hl_release(context, made->list);
-  hl_release(context, made->first);
-  hl_release(context, made->cursor);
+  hl_fragment_blocks_release(context, made->blocks);
+  hl_release(context, made->of);
   *made = (fragments){0};
 }
 
 fragment_range hl_fragments_reach(const fragments *all, size_t tile, int slab) {
-  uint32_t end = all->first[tile + 1], at = all->cursor[tile];
-  while (at < end && all->list[at].slab < slab) at++;
-  fragment_range range = {all->list + at, 0};
-  while (at < end && all->list[at].slab == slab) at++, range.count++;
-  all->cursor[tile] = at;
+  tile_list *of = &all->of[tile];
+  uint32_t at = of->reached;
+  if (at == of->count) return (fragment_range){NULL, 0};
+  while (at < of->count && of->list[at].slab < slab) at++;
+  fragment_range range = {of->list + at, 0};
+  while (at < of->count && of->list[at].slab == slab) at++, range.count++;
+  of->reached = at;
   return range;
 }
 
 fragment_range hl_fragments_reached(const fragments *all, size_t tile, int first) {
-  uint32_t end = all->cursor[tile], at = end;
-  while (at > all->first[tile] && all->list[at - 1].slab >= first) at--;
-  return (fragment_range){all->list + at, end - at};
+  const tile_list *of = &all->of[tile];
+  uint32_t at = of->reached;
+  if (at == 0) return (fragment_range){NULL, 0};
+  while (at > 0 && of->list[at - 1].slab >= first) at--;
+  return (fragment_range){of->list + at, of->reached - at};
 }

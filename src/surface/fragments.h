@@ -10,9 +10,8 @@
 
 /* The fragments of one view. */
 typedef struct fragments {
-  fragment *list;   /* owned; tile after tile; within a tile by slab, then pixel, then height */
-  uint32_t *first;  /* owned; [tiles + 1]; where a tile's fragments begin */
-  uint32_t *cursor; /* owned; [tiles]; the next fragment that the sweep reaches */
+  tile_list *of;          /* owned; [tiles]; null: there are no surfaces */
+  fragment_block *blocks; /* owned; hold the tiles' fragments */
   size_t tiles;
 } fragments;
 

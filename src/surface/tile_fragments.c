@@ -25,16 +25,31 @@ static bool make_room(hl_context *context, fragment_worker *worker, size_t more)
   return true;
 }
 
+/* Fragments of a thread's first block, and the most of one whose tiles are smaller (6 MiB): each block is
+ * twice as large as the one before. */
+enum { FIRST_BLOCK = 1 << 12, GREATEST_BLOCK = 1 << 18 };
+
+/* Room for a tile's fragments in one block. */
 static bool make_room_for_tile(hl_context *context, fragment_worker *worker, size_t more) {
-  size_t wanted = worker->out_count + more;
-  if (wanted <= worker->out_room) return true;
-  size_t larger = wanted > 2 * worker->out_room ? wanted : 2 * worker->out_room;
-  fragment *out = hl_reallocate(context, worker->out, larger, sizeof *out);
-  worker->failed = out == NULL;
+  fragment_block *before = worker->out;
+  if (before != NULL && more <= before->room - before->count) return true;
+  size_t room = before == NULL ? FIRST_BLOCK : 2 * before->room;
+  room = room < GREATEST_BLOCK ? room : GREATEST_BLOCK;
+  room = room > more ? room : more;
+  fragment_block *block = hl_allocate(context, sizeof *block + room * sizeof *block->list, 1);
+  worker->failed = block == NULL;
   if (worker->failed) return false;
-  worker->out = out;
-  worker->out_room = larger;
+  *block = (fragment_block){.before = before, .room = room};
+  worker->out = block;
   return true;
+}
+
+void hl_fragment_blocks_release(hl_context *context, fragment_block *latest) {
+  while (latest != NULL) {
+    fragment_block *before = latest->before;
+    hl_release(context, latest);
+    latest = before;
+  }
 }
 
 /* Marks a slab about a pixel, block after block. */
@@ -578,7 +593,7 @@ void hl_make_tile_fragments(void *data, size_t tile, int worker_index) {
                     .tile_y = (int)(tile / (size_t)work->tiles_x)};
   fragment *sorted = NULL;
   size_t kept = 0;
-  work->tiles[tile] = (tile_record){.worker = worker_index};
+  work->tiles[tile] = (tile_list){0};
   worker->count = 0;
   memset(worker->latest, 0, sizeof worker->latest);
   memset(worker->covered, 0, sizeof worker->covered);
@@ -589,11 +604,10 @@ void hl_make_tile_fragments(void *data, size_t tile, int worker_index) {
   write_marks(work, worker, part.tile_x, part.tile_y);
   kept = hl_resolve_fragments(sorted, kept, &order);
   if (kept == 0 || !make_room_for_tile(source->context, worker, kept)) return;
-  hl_sort_by_slab(sorted, kept, &order, worker->places, source->sheets->count,
-                  worker->out + worker->out_count);
-  work->tiles[tile].at = worker->out_count;
-  work->tiles[tile].count = (uint32_t)kept;
-  worker->out_count += kept;
+  fragment *list = worker->out->list + worker->out->count;
+  hl_sort_by_slab(sorted, kept, &order, worker->places, source->sheets->count, list);
+  work->tiles[tile] = (tile_list){.list = list, .count = (uint32_t)kept};
+  worker->out->count += kept;
 }
 
 /* ---- begin and end ---- */
@@ -643,6 +657,6 @@ bool hl_fragment_worker_begin(hl_context *context, fragment_worker *worker, int 
 }
 
 void hl_fragment_worker_end(hl_context *context, fragment_worker *worker) {
-  void *owned[] = {worker->scratch, worker->keys, worker->runs, worker->places, worker->near, worker->out};
+  void *owned[] = {worker->scratch, worker->keys, worker->runs, worker->places, worker->near};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) hl_release(context, owned[i]);
 }

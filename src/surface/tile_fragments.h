@@ -1,7 +1,7 @@
 /* surface/tile_fragments.h - rasterises the triangles and spheres of a tile into fragments.
  *
  * In: primitives sorted by tiles (primitive_bins.h), and where the view sees their corners (seen.h). Out: the
- * tile's fragments in a thread's memory, which fragments.c brings together. */
+ * tile's fragments in a thread's blocks, which fragments.c keeps. */
 #ifndef HL_SURFACE_TILE_FRAGMENTS_H
 #define HL_SURFACE_TILE_FRAGMENTS_H
 
@@ -10,6 +10,23 @@
 #include "surface/small_triangles.h"
 
 enum { MOST_SLABS = 16 }; /* that a fragment fills */
+
+/* Memory for the fragments of many tiles: a chain of blocks, none of which is copied when the next one
+ * begins. */
+typedef struct fragment_block {
+  struct fragment_block *before; /* owned */
+  size_t count, room;
+  fragment list[]; /* [room], of which count are in use */
+} fragment_block;
+
+void hl_fragment_blocks_release(hl_context *context, fragment_block *latest);
+
+/* The fragments of one tile, by slab, then pixel, then height. */
+typedef struct tile_list {
+  const fragment *list; /* [count]; in a block */
+  uint32_t count;
+  uint32_t reached; /* how many lie before the next slab that the sweep asks for */
+} tile_list;
 
 /* The input of hl_fragments_create(); borrowed. */
 typedef struct fragments_source {
@@ -58,16 +75,9 @@ typedef struct fragment_worker {
   uint32_t *places; /* [sheets + 2]; for sorting */
   uint16_t *near;   /* [sheets]; of each slab the tiles to be marked: bit 3 (1 + down) + 1 + across */
   int32_t nearest, farthest; /* slabs of which near is not 0 */
-  fragment *out;             /* [out_count]; of the tiles that the thread has made */
-  size_t out_count, out_room;
+  fragment_block *out;       /* of the tiles that the thread has made; null: none yet */
   bool failed;
 } fragment_worker;
-
-typedef struct tile_record {
-  int worker;
-  uint32_t count;
-  size_t at; /* in the worker's out */
-} tile_record;
 
 /* What the tiles of a view share. */
 typedef struct fragment_work {
@@ -80,7 +90,7 @@ typedef struct fragment_work {
   float *least;             /* [mesh_count]; as in fragment_order */
   bool *dark_backs;         /* [mesh_count]; of a light's view: where the light leaves the mesh it lights
                                nothing */
-  tile_record *tiles;       /* [tiles] */
+  tile_list *tiles;         /* [tiles] */
   int tiles_x, tiles_y;
   uint16_t
       near[TILE_PIXELS]; /* of each pixel, block after block: the tiles that look-ups about it may read */
@@ -91,6 +101,7 @@ void hl_fragment_work_begin(fragment_work *work);
 
 /* A worker's arrays that do not grow; false: there is no memory for them. */
 bool hl_fragment_worker_begin(hl_context *context, fragment_worker *worker, int sheets);
+/* Releases all but the blocks of the tiles made. */
 void hl_fragment_worker_end(hl_context *context, fragment_worker *worker);
 
 /* Makes one tile's fragments: a task of the pool. data: fragment_work. */
