@@ -119,6 +119,7 @@ typedef struct soft_cascade {
   double chunk_start;                   /* omega */
   double shortest_chunk;                /* of the sweep */
   double shrink; /* the length of a chunk as a fraction of its start's -omega; 0: all are equally long */
+  double evened; /* omega from which on they are equally long, again; pixels */
   double lookup_variance; /* variance by which look-ups blur, pixels squared */
   uint64_t chunks;        /* finished */
   int channels;
@@ -162,9 +163,17 @@ static inline double hl_cascade_omega(const soft_cascade *cascade, double height
   return distance > 0 ? -cascade->rate / distance : -INFINITY;
 }
 
-/* omega after some more chunks (derived: a chunk from omega on ends at omega (1 - shrink)). */
+/* omega after some more chunks (derived: a chunk from omega on ends at omega (1 - shrink); those from
+ * `evened` on have the length of the one that begins there). */
 static inline double hl_cascade_chunks_on(const soft_cascade *cascade, double omega, double chunks) {
-  return cascade->shrink > 0 ? omega * pow(1 - cascade->shrink, chunks) : omega + cascade->chunk * chunks;
+  if (!(cascade->shrink > 0)) return omega + cascade->chunk * chunks;
+  if (omega < cascade->evened) {
+    double shrinking = log(cascade->evened / omega) / log(1 - cascade->shrink);
+    if (chunks <= shrinking) return omega * pow(1 - cascade->shrink, chunks);
+    omega = cascade->evened;
+    chunks -= shrinking;
+  }
+  return omega - cascade->shrink * cascade->evened * chunks;
 }
 
 /* Finds the absorbed light for receivers around omega = receiver, through the light's emission image, in

@@ -15,8 +15,9 @@ static const double LEAST_CHUNK = 0.15, THICK_CHUNK = 1.3, THICKEST_CHUNK = 2;
 /* Divides omega from start to end into chunks of one length. A near light's omega grows without bound towards
  * the light, so these chunks may be more than the most allowed; then a chunk is a fixed fraction of -omega
  * (derived: at a distance z from the light a penumbra of width w in omega is w z wide in space, and -omega is
- * L / z, so all chunks have penumbrae of one width in space). Returns how many chunks there are. */
-static double divide(soft_cascade *cascade, double start, double end) {
+ * L / z, so all chunks have penumbrae of one width in space). Those of a lamp within the content, whose last
+ * ones would be a small part of a pixel, are no shorter than `thick`. Returns how many chunks there are. */
+static double divide(soft_cascade *cascade, double start, double end, bool within) {
   double length = end - start, few = cascade->parallel ? FAR_CHUNKS : NEAR_CHUNKS;
   double thick = fmin(fmax(length / ENOUGH_CHUNKS, LEAST_CHUNK), THICK_CHUNK);
   double most = fmin(fmax(few, length / THICKEST_CHUNK), GREATEST_CHUNKS);
@@ -29,7 +30,10 @@ static double divide(soft_cascade *cascade, double start, double end) {
   cascade->shrink = 1 - pow(end / start, 1 / most);
   cascade->chunk = cascade->shrink * -start;
   cascade->shortest_chunk = cascade->shrink * -end;
-  return most;
+  if (!within || cascade->shortest_chunk >= thick) return most;
+  cascade->shortest_chunk = thick;
+  cascade->evened = -thick / cascade->shrink;
+  return log(cascade->evened / start) / log(1 - cascade->shrink) + (end - cascade->evened) / thick;
 }
 
 /* The least number of chunks between a receiver and a level's groups: level 0 keeps three groups, level 1
@@ -165,7 +169,7 @@ static void plan_levels(soft_cascade *cascade, const light_shadow *shadow) {
   /* near a light, omega grows without bound, and penumbrae wider than twice the buffer make no difference; of
    * a parallel light even the first slabs may be receivers, which would get shadows without penumbrae */
   if (!cascade->parallel) start = fmax(start, end - 2 * TILE * fmax(tiles_x, tiles_y));
-  double chunks = divide(cascade, start, end);
+  double chunks = divide(cascade, start, end, shadow->setup.source->sectors != NULL);
   /* level j > 1 is first used after 5 * 2^(j-1) - 4 chunks (derived: five groups are kept, here or in levels
    * 0 and 1) */
   int levels = 2 + (int)floor(log2(fmax(chunks + 7, 5) / 5));

@@ -155,9 +155,31 @@ static void test_hidden_from_eye(void **state) {
   assert_true(alone > 0 && both < alone + alone / 2);
 }
 
+/* Of a lamp within the content the cascade has no chunks that are shorter than a pixel: where all have a
+ * fixed fraction of the lamp's width as the buffer sees it, there are twice as many waits for threads. */
+static void test_few_chunks(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  mesh_stage all;
+  mesh_stage_open(&all, SIDE, 48);
+  const size_t volumes = all.set.scene.volume_count;
+  mesh_stage_add(&all, stage_make_quad(&all.set, (vec3){0, 0, 5}, (vec3){3, 0, 0}, (vec3){0, 3, 0}));
+  mesh_stage_add(&all, stage_make_quad(&all.set, (vec3){0, 0, -60}, (vec3){60, 0, 0}, (vec3){0, 60, 0}));
+  all.set.scene.volume_count = 0;
+  stage_look(&all.set, (vec3){20, 0, 100}, (vec3){20, 0, 0}, (vec3){0, 1, 0});
+  hl_light *lamp = stage_add_point(&all.set, (vec3){0, 0, 4});
+  lamp->shadows = HL_SHADOWS_SOFT;
+  lamp->radius = 0.5;
+  all.set.scene.render.soft_method = HL_SOFT_CASCADE;
+  hl_render_statistics of = stage_render_counted(&all.set, pixels);
+  assert_true(of.waits > 0 && 2 * of.waits < 3 * (uint64_t)of.sheets);
+  all.set.scene.volume_count = volumes;
+  mesh_stage_close(&all);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_hidden_from_eye),
-                                     cmocka_unit_test(test_lamp_in_room), cmocka_unit_test(test_lamp_in_ball),
-                                     cmocka_unit_test(test_glass_box)};
+                                     cmocka_unit_test(test_few_chunks), cmocka_unit_test(test_lamp_in_room),
+                                     cmocka_unit_test(test_lamp_in_ball), cmocka_unit_test(test_glass_box)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
