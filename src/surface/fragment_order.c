@@ -173,16 +173,22 @@ static void resolve_pixel(fragment *list, size_t count, const float *least) {
 }
 
 /* The same for a light's view whose buffer is also used for rays of other directions. A pixel that opaque
- * surfaces cover in a slab is opaque there, even where surfaces before it have taken all light of the view's
- * own ray: the other rays pass these by. Fragments of one slab become one; returns how many are left. */
+ * surfaces cover in a slab, or in a slab and the one before it, is opaque there, even where surfaces before
+ * it have taken all light of the view's own ray: the other rays pass these by. Otherwise light would come
+ * through a surface where two of its triangles share a pixel and lie in neighbouring slabs: each takes its
+ * part of the light there, one after the other, and a part of both is left. Fragments of one slab become one;
+ * returns how many are left. */
 static size_t resolve_slabs(fragment *list, size_t count, const float *least) {
   size_t kept = 0;
-  uint32_t covered = 0;
+  uint32_t before = 0, covered = 0; /* samples, in the slab before and in this one */
   for (size_t i = 0; i < count; i++) {
-    bool begins = i == 0 || list[i].slab != list[i - 1].slab;
-    covered = (begins ? 0 : covered) | (hl_is_opaque(&list[i], least) ? list[i].samples : 0u);
-    list[i].primitive = covered ==
-                        0xffff; /* of a light's fragments the primitive is not asked for any more */
+    if (i == 0 || list[i].slab != list[i - 1].slab) {
+      before = i > 0 && list[i].slab == list[i - 1].slab + 1 ? covered : 0;
+      covered = 0;
+    }
+    if (hl_is_opaque(&list[i], least)) covered |= list[i].samples;
+    /* of a light's fragments the primitive is not asked for any more */
+    list[i].primitive = covered != 0 && (before | covered) == 0xffff;
   }
   resolve_pixel(list, count, least);
   for (size_t i = 0; i < count; i++) {

@@ -192,8 +192,8 @@ static void test_dome(void **state) {
         .centre = {0, 0, FLOOR + 4 + k}, .u = {inside, 0, 0}, .v = {0, inside, 0}, .dome = radius};
     double greatest, mean;
     measure(&by, 7, k % 2 ? HL_SOFT_CASCADE : HL_SOFT_SUBLIGHTS, &greatest, &mean);
-    assert_near(greatest, 0, k % 2 ? 0.02 : 0.06);
-    assert_near(mean, 0, k % 2 ? 0.0008 : 0.007);
+    assert_near(greatest, 0, 0.02);
+    assert_near(mean, 0, 0.0008);
   }
 }
 
