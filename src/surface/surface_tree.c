@@ -9,8 +9,13 @@
  * tree too deep. */
 enum { LEAF_PRIMITIVES = 4, DEEP = 32, DEEPEST = DEEP + 40 };
 
+static float lower(float a, float b) { return a < b ? a : b; }
+static float higher(float a, float b) { return a > b ? a : b; }
+
 static double lesser(double a, double b) { return a < b ? a : b; }
 static double greater(double a, double b) { return a > b ? a : b; }
+
+static size_t most_boxes(size_t primitives) { return 2 * primitives; }
 
 /* ---- primitives ---- */
 
@@ -27,59 +32,76 @@ static void box_of(const surfaces *all, uint32_t primitive, float low[3], float 
   for (int a = 0; a < 3; a++) {
     low[a] = high[a] = all->positions[corners[0]][a];
     for (int i = 1; i < 3; i++) {
-      low[a] = fminf(low[a], all->positions[corners[i]][a]);
-      high[a] = fmaxf(high[a], all->positions[corners[i]][a]);
+      low[a] = lower(low[a], all->positions[corners[i]][a]);
+      high[a] = higher(high[a], all->positions[corners[i]][a]);
     }
   }
 }
 
-static float middle_of(const surfaces *all, uint32_t primitive, int axis) {
+/* A primitive with its box, while the tree is made. */
+typedef struct boxed_primitive {
   float low[3], high[3];
-  box_of(all, primitive, low, high);
-  return low[axis] + (high[axis] - low[axis]) / 2;
+  uint32_t primitive;
+} boxed_primitive;
+
+static float middle_of(const boxed_primitive *p, int axis) {
+  return p->low[axis] + (p->high[axis] - p->low[axis]) / 2;
 }
 
 /* ---- the tree ---- */
 
 /* Moves the primitives whose middle lies below `at` to the front; returns how many. */
-static uint32_t part(const surface_tree *tree, uint32_t first, uint32_t count, int axis, float at) {
-  uint32_t *primitives = tree->primitives + first, below = 0;
+static uint32_t part(boxed_primitive *list, uint32_t count, int axis, float at) {
+  uint32_t below = 0;
   for (uint32_t i = 0; i < count; i++) {
-    uint32_t moved = primitives[i];
-    if (middle_of(tree->all, moved, axis) >= at) continue;
-    primitives[i] = primitives[below];
-    primitives[below++] = moved;
+    boxed_primitive moved = list[i];
+    if (middle_of(&moved, axis) >= at) continue;
+    list[i] = list[below];
+    list[below++] = moved;
   }
   return below;
 }
 
-/* Makes the tree of a range of primitives, which it sorts. */
-static void make(surface_tree *tree, uint32_t first, uint32_t count, int depth) {
+/* Makes the tree of a range of primitives, which it sorts. list: of all primitives. */
+static void make(surface_tree *tree, boxed_primitive *list, uint32_t first, uint32_t count, int depth) {
   surface_box *made = &tree->boxes[tree->box_count++];
   float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   *made = (surface_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, first, count};
-  for (uint32_t i = first; i < first + count; i++) {
-    float from[3], to[3];
-    box_of(tree->all, tree->primitives[i], from, to);
+  for (uint32_t i = first; i < first + count; i++)
     for (int a = 0; a < 3; a++) {
-      float middle = from[a] + (to[a] - from[a]) / 2;
-      made->low[a] = fminf(made->low[a], from[a]), made->high[a] = fmaxf(made->high[a], to[a]);
-      low[a] = fminf(low[a], middle), high[a] = fmaxf(high[a], middle);
+      float middle = middle_of(&list[i], a);
+      made->low[a] = lower(made->low[a], list[i].low[a]),
+      made->high[a] = higher(made->high[a], list[i].high[a]);
+      low[a] = lower(low[a], middle), high[a] = higher(high[a], middle);
     }
-  }
   if (count <= LEAF_PRIMITIVES) return;
   int axis = 0;
   for (int other = 1; other < 3; other++)
     if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
-  uint32_t below = part(tree, first, count, axis, low[axis] + (high[axis] - low[axis]) / 2);
+  uint32_t below = part(list + first, count, axis, low[axis] + (high[axis] - low[axis]) / 2);
   if (below == 0 || below == count || depth >= DEEP) below = count / 2;
   made->count = 0;
-  make(tree, first, below, depth + 1);
+  make(tree, list, first, below, depth + 1);
   made->first = tree->box_count;
-  make(tree, first + below, count - below, depth + 1);
+  make(tree, list, first + below, count - below, depth + 1);
 }
 
-static size_t most_boxes(size_t primitives) { return 2 * primitives; }
+/* Makes the tree of its primitives; false: there is no memory. */
+static bool make_boxes(hl_context *context, surface_tree *tree) {
+  boxed_primitive *list = hl_allocate(context, tree->count, sizeof *list);
+  tree->boxes = hl_allocate(context, most_boxes(tree->count), sizeof *tree->boxes);
+  if (list != NULL && tree->boxes != NULL) {
+    for (uint32_t i = 0; i < tree->count; i++) {
+      list[i].primitive = tree->primitives[i];
+      box_of(tree->all, list[i].primitive, list[i].low, list[i].high);
+    }
+    make(tree, list, 0, tree->count, 0);
+    for (uint32_t i = 0; i < tree->count; i++) tree->primitives[i] = list[i].primitive;
+  }
+  bool made = list != NULL && tree->boxes != NULL;
+  hl_release(context, list);
+  return made;
+}
 
 uint64_t hl_surface_tree_bytes(const hl_scene_description *scene) {
   uint64_t count = 0;
@@ -87,7 +109,7 @@ uint64_t hl_surface_tree_bytes(const hl_scene_description *scene) {
     const hl_mesh_description *d = &scene->meshes[m].mesh->description;
     if (hl_mesh_takes_light(&scene->meshes[m])) count += d->triangle_count + d->sphere_count;
   }
-  return count * sizeof(uint32_t) + most_boxes(count) * sizeof(surface_box) +
+  return count * (sizeof(uint32_t) + sizeof(boxed_primitive)) + most_boxes(count) * sizeof(surface_box) +
          scene->mesh_count * sizeof(bool);
 }
 
@@ -137,11 +159,8 @@ hl_status hl_surface_tree_create(hl_context *context, const surfaces *all, doubl
   hl_status status = tree->primitives != NULL && tree->holds != NULL
                          ? choose_primitives(context, tree, most, error)
                          : hl_fail_memory(error, count * sizeof *tree->primitives, "the boxes of meshes");
-  if (status == HL_OK && tree->count > 0) {
-    tree->boxes = hl_allocate(context, most_boxes(tree->count), sizeof *tree->boxes);
-    if (tree->boxes != NULL) make(tree, 0, tree->count, 0);
-    else status = hl_fail_memory(error, most_boxes(tree->count) * sizeof *tree->boxes, "the boxes of meshes");
-  }
+  if (status == HL_OK && tree->count > 0 && !make_boxes(context, tree))
+    status = hl_fail_memory(error, most_boxes(tree->count) * sizeof *tree->boxes, "the boxes of meshes");
   if (status != HL_OK) hl_surface_tree_release(context, tree);
   return status;
 }
