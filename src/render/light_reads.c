@@ -3,7 +3,8 @@
  * Samples of a picture's tile in a run of slabs lie between rays through the tile's corners and between two
  * sheets: in the convex hull of eight points. Seen from the light, all of it ahead, they lie in the convex
  * hull of the points' images (derived: a projection takes lines to lines). The tiles of the buffer around the
- * images are needed until the run's last slab. */
+ * images are needed until the run's last slab. Where a light is many sub-lights, the picture reads their
+ * buffers, and each has tiles of its own. */
 #include "render/light_reads.h"
 
 #include "core/memory.h"
@@ -20,30 +21,73 @@ enum { READ_RUN = 8 };
  * for rounding. */
 enum { READ_TAPS = 3 };
 
-/* The greatest distance, in pixels, by which look-ups at surfaces move away from them (LOOKUP_OFFSET in
- * surface_lanes.h, by the first row of the map), along u or v. Derived: u = (r1.p) / (r0.p) has the gradient
- * (r1 - u r0) / (r0.p), so a way of 1.25 (r0.p) / |r1| moves it by at most 1.25 (|r1| + |u| |r0|) / |r1|; v
- * likewise. */
-static double moved_away(const view *view, int axis) {
-  double rows[3][4], length[3];
-  hl_view_homogeneous(view, affine3_identity(), rows);
-  for (int i = 0; i < 3; i++)
-    length[i] = sqrt(rows[i][0] * rows[i][0] + rows[i][1] * rows[i][1] + rows[i][2] * rows[i][2]);
-  int side = axis == 0 ? view->width : view->height;
-  return 1 + 1.25 * (length[1 + axis] + side * length[0]) / length[1];
-}
+/* Pixels by which look-ups at surfaces move away from them (surface_lanes.h). */
+static const double LOOKUP_AWAY = 1.25;
 
 /* Cosine by which the edge of a sector is looked for outside of it: for rounding. */
 static const double SECTOR_SPARE = 1e-3;
 
-/* One light while its reads are found. */
-typedef struct reads_of_light {
+/* A buffer that the picture reads: a light's, or a sub-light's. */
+typedef struct read_buffer {
   const light_source *source;
-  const view *view;
-  int32_t *until; /* [tiles_y][tiles_x] */
+  double rows[3][4]; /* frame space -> (w, w u, w v) of the buffer */
+  double length[3];  /* of the rows, without their last numbers */
+  int32_t *until;    /* [tiles_y][tiles_x] */
   int tiles_x, tiles_y;
-  double around[2]; /* pixels beside a sample that may be read */
-} reads_of_light;
+  const struct read_buffer *moves; /* look-ups at surfaces move away from them by pixels of this buffer, the
+                                      light's first; null: there are no surfaces */
+} read_buffer;
+
+/* (w, w u, w v) */
+static vec3 place_in(const read_buffer *buffer, vec3 point) {
+  double place[3];
+  for (int i = 0; i < 3; i++)
+    place[i] = buffer->rows[i][0] * point.x + buffer->rows[i][1] * point.y + buffer->rows[i][2] * point.z +
+               buffer->rows[i][3];
+  return vec3_of(place);
+}
+
+/* The pixels that some points lie on. */
+typedef struct read_bounds {
+  double low[2], high[2];
+  double nearest; /* the least w */
+} read_bounds;
+
+/* False where a point does not lie ahead of the light. */
+static bool bound_points(const read_buffer *buffer, const vec3 *points, int count, read_bounds *bounds) {
+  *bounds = (read_bounds){{INFINITY, INFINITY}, {-INFINITY, -INFINITY}, INFINITY};
+  for (int i = 0; i < count; i++) {
+    vec3 place = place_in(buffer, points[i]);
+    if (!(place.x > 0)) return false;
+    const double uv[2] = {place.y / place.x, place.z / place.x};
+    for (int a = 0; a < 2; a++) {
+      bounds->low[a] = fmin(bounds->low[a], uv[a]);
+      bounds->high[a] = fmax(bounds->high[a], uv[a]);
+    }
+    bounds->nearest = fmin(bounds->nearest, place.x);
+  }
+  return count > 0;
+}
+
+/* Widens the bounds by the pixels that are read beside a sample; false where samples may move to where the
+ * light does not shine ahead. Derived: look-ups at surfaces move by at most d = 1.25 w' / |r1'|, w' and r1'
+ * being of the buffer that they move by. u = (r1.p) / w moves by (r1.d - u r0.d) / (w + r0.d), at most
+ * d (|r1| + |u| |r0|) / (w - d |r0|); v likewise. */
+static bool widen(const read_buffer *buffer, const vec3 *points, int count, read_bounds *bounds) {
+  double farthest = 0, way = 0;
+  for (int i = 0; i < count && buffer->moves != NULL; i++)
+    farthest = fmax(farthest, place_in(buffer->moves, points[i]).x);
+  if (buffer->moves != NULL) way = LOOKUP_AWAY * farthest / buffer->moves->length[1];
+  double nearest = bounds->nearest - way * buffer->length[0];
+  if (!(nearest > 0)) return false;
+  for (int a = 0; a < 2; a++) {
+    double at = fmax(fabs(bounds->low[a]), fabs(bounds->high[a])),
+           around = READ_TAPS + way * (buffer->length[1 + a] + at * buffer->length[0]) / nearest;
+    bounds->low[a] -= around;
+    bounds->high[a] += around;
+  }
+  return true;
+}
 
 static int tile_at(double pixel, int tiles) {
   if (!(pixel >= 0)) return 0;
@@ -52,25 +96,18 @@ static int tile_at(double pixel, int tiles) {
 
 /* Raises `until` in the tiles of the buffer that the hull of some points may read: in all tiles where a point
  * does not lie ahead of the light, or where there are no points. */
-static void read_hull(const reads_of_light *light, const vec3 *points, int count, int32_t slab) {
-  int first[2] = {0, 0}, last[2] = {light->tiles_x - 1, light->tiles_y - 1};
-  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, uv[2];
-  bool ahead = count > 0;
-  for (int i = 0; i < count && ahead; i++) {
-    ahead = hl_view_project(light->view, points[i], uv);
-    for (int a = 0; a < 2 && ahead; a++) {
-      low[a] = fmin(low[a], uv[a]);
-      high[a] = fmax(high[a], uv[a]);
+static void read_hull(const read_buffer *buffer, const vec3 *points, int count, int32_t slab) {
+  const int tiles[2] = {buffer->tiles_x, buffer->tiles_y};
+  int first[2] = {0, 0}, last[2] = {tiles[0] - 1, tiles[1] - 1};
+  read_bounds bounds;
+  if (bound_points(buffer, points, count, &bounds) && widen(buffer, points, count, &bounds))
+    for (int a = 0; a < 2; a++) {
+      first[a] = tile_at(bounds.low[a], tiles[a]);
+      last[a] = tile_at(bounds.high[a], tiles[a]);
     }
-  }
-  const int tiles[2] = {light->tiles_x, light->tiles_y};
-  for (int a = 0; a < 2 && ahead; a++) {
-    first[a] = tile_at(low[a] - light->around[a], tiles[a]);
-    last[a] = tile_at(high[a] + light->around[a], tiles[a]);
-  }
   for (int y = first[1]; y <= last[1]; y++)
     for (int x = first[0]; x <= last[0]; x++) {
-      int32_t *until = &light->until[(size_t)y * (size_t)light->tiles_x + (size_t)x];
+      int32_t *until = &buffer->until[(size_t)y * (size_t)buffer->tiles_x + (size_t)x];
       if (*until < slab) *until = slab;
     }
 }
@@ -105,8 +142,8 @@ static int hull_of(const sweep *sweep, size_t tile, double low, double high, vec
 
 typedef struct reads_task {
   const sweep *sweep;
-  reads_of_light lights[FRAME_LIGHTS];
-  int light_count;
+  read_buffer *buffers; /* owned; [buffer_count] */
+  int buffer_count;
 } reads_task;
 
 /* The reads of the slabs from first to last, both included, in a tile. */
@@ -115,7 +152,7 @@ static void read_slabs(const reads_task *task, size_t tile, int first, int last)
   vec3 points[9];
   int count = hull_of(task->sweep, tile, hl_sheet_height(sheets, first - 1) - SHEET_SPARE * sheets->spacing,
                       hl_sheet_height(sheets, last) + SHEET_SPARE * sheets->spacing, points);
-  for (int i = 0; i < task->light_count; i++) read_hull(&task->lights[i], points, count, last);
+  for (int i = 0; i < task->buffer_count; i++) read_hull(&task->buffers[i], points, count, last);
 }
 
 /* The reads of a tile of the picture, run by run. */
@@ -142,11 +179,11 @@ static void read_surfaces(const reads_task *task, size_t tile) {
   for (uint32_t n = 0; n < all->of[tile].count; n++) {
     const fragment *f = &all->of[tile].list[n];
     vec3 point = hl_surface_place(sweep, &place, f, (double)f->height);
-    for (int i = 0; i < task->light_count; i++) {
-      const light_source *source = task->lights[i].source;
+    for (int i = 0; i < task->buffer_count; i++) {
+      const light_source *source = task->buffers[i].source;
       vec3 way = vec3_subtract(point, source->position);
       double ahead = vec3_dot(way, source->direction), least = source->sectors->least - SECTOR_SPARE;
-      if (ahead >= least * vec3_length(way)) read_hull(&task->lights[i], &point, 1, f->slab);
+      if (ahead >= least * vec3_length(way)) read_hull(&task->buffers[i], &point, 1, f->slab);
     }
   }
 }
@@ -163,14 +200,27 @@ static bool is_sector_of_meshes(const sweep *sweep, const light_shadow *shadow) 
 }
 
 static bool is_limited(const sweep *sweep, const light_shadow *shadow) {
-  bool part = sweep->share->part_of != NULL || is_sector_of_meshes(sweep, shadow);
-  return is_exchanged(sweep, shadow) || (part && shadow->method != NULL && shadow->method->advance == NULL);
+  if (shadow->method == NULL) return false;
+  if (sweep->share->part_of != NULL && shadow->method->divides) return true;
+  return is_exchanged(sweep, shadow) ||
+         (is_sector_of_meshes(sweep, shadow) && shadow->method->advance == NULL);
+}
+
+static size_t sublight_tiles(const light_shadow *shadow) {
+  return (size_t)shadow->sublight_count * (size_t)shadow->sublight_tiles_x * (size_t)shadow->sublight_tiles_y;
+}
+
+/* The buffers of a light that the picture reads. */
+static int read_buffers(const light_shadow *shadow) {
+  return shadow->sublight_count > 0 ? shadow->sublight_count : 1;
 }
 
 uint64_t hl_light_reads_bytes(const sweep *sweep, const light_shadow *shadow) {
-  uint64_t tiles = hl_view_tiles(&shadow->plan.view), each = is_limited(sweep, shadow) ? sizeof(int32_t) : 0;
-  if (is_exchanged(sweep, shadow)) each += 1 + sizeof(int32_t) * (uint64_t)sweep->share->parts;
-  return tiles * each;
+  if (!is_limited(sweep, shadow)) return 0;
+  uint64_t buffers = (uint64_t)read_buffers(shadow) * sizeof(read_buffer), tile = sizeof(int32_t);
+  if (shadow->sublight_count > 0) return buffers + sublight_tiles(shadow) * tile;
+  if (is_exchanged(sweep, shadow)) tile += 1 + sizeof(int32_t) * (uint64_t)sweep->share->parts;
+  return buffers + hl_view_tiles(&shadow->plan.view) * tile;
 }
 
 /* ---- owners ---- */
@@ -231,33 +281,82 @@ static hl_status find_owned(sweep *sweep, sweep_light *light, size_t tiles, hl_e
   return HL_OK;
 }
 
-hl_status hl_light_reads_find(sweep *sweep, hl_error *error) {
-  reads_task task = {.sweep = sweep};
-  for (int i = 0; i < sweep->geometry->light_count; i++) {
-    sweep_light *light = &sweep->lights[i];
-    if (!is_limited(sweep, &light->shadow)) continue;
-    const view *view = &light->shadow.buffer->view;
-    size_t tiles = hl_view_tiles(view);
-    light->needed_until = hl_allocate_zeroed(sweep->content.context, tiles, sizeof *light->needed_until);
-    if (light->needed_until == NULL)
-      return hl_fail_memory(error, tiles * sizeof *light->needed_until, "a light's tiles");
-    reads_of_light *reads = &task.lights[task.light_count++];
-    *reads = (reads_of_light){.source = light->source,
-                              .view = view,
-                              .until = light->needed_until,
-                              .tiles_x = hl_tiles(view->width),
-                              .tiles_y = hl_tiles(view->height),
-                              .around = {READ_TAPS, READ_TAPS}};
-    for (int a = 0; a < 2 && sweep->frame->surfaces != NULL; a++) reads->around[a] += moved_away(view, a);
+/* ---- buffers ---- */
+
+static void finish_buffer(read_buffer *buffer) {
+  for (int i = 0; i < 3; i++) {
+    const double *row = buffer->rows[i];
+    buffer->length[i] = sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
   }
-  const bool surfaces_alone = task.light_count > 0 && task.lights[0].source->sectors != NULL &&
-                              sweep->content.volume_count == 0 && sweep->surfaces.image.of != NULL;
-  for (size_t tile = 0; tile < sweep->tiles && task.light_count > 0; tile++) {
-    if (sweep->arrays.open[tile] == 0) continue;
-    if (surfaces_alone) read_surfaces(&task, tile);
-    else read_tile(&task, tile);
+}
+
+static void add_sublights(sweep_light *light, read_buffer *buffers) {
+  const light_shadow *shadow = &light->shadow;
+  size_t tiles = (size_t)shadow->sublight_tiles_x * (size_t)shadow->sublight_tiles_y;
+  for (int n = 0; n < shadow->sublight_count; n++) {
+    buffers[n] = (read_buffer){.source = light->source,
+                               .until = light->sublights_until + (size_t)n * tiles,
+                               .tiles_x = shadow->sublight_tiles_x,
+                               .tiles_y = shadow->sublight_tiles_y};
+    for (int row = 0; row < 3; row++)
+      for (int i = 0; i < 4; i++) buffers[n].rows[row][i] = (double)shadow->sublights[n].map.rows[row][i];
+    finish_buffer(&buffers[n]);
   }
+}
+
+/* Adds the buffers of a light whose reads are limited. */
+static hl_status add_buffers(sweep *sweep, sweep_light *light, reads_task *task, hl_error *error) {
+  const view *view = &light->shadow.buffer->view;
+  const bool divided = light->shadow.sublight_count > 0;
+  const size_t tiles = divided ? sublight_tiles(&light->shadow) : hl_view_tiles(view);
+  int32_t *until = hl_allocate_zeroed(sweep->content.context, tiles, sizeof *until);
+  if (until == NULL) return hl_fail_memory(error, tiles * sizeof *until, "a light's tiles");
+  read_buffer *buffers = &task->buffers[task->buffer_count];
+  task->buffer_count += read_buffers(&light->shadow);
+  if (divided) {
+    light->shadow.sublights_until = light->sublights_until = until;
+    add_sublights(light, buffers);
+  } else {
+    light->needed_until = until;
+    buffers[0] = (read_buffer){.source = light->source,
+                               .until = until,
+                               .tiles_x = hl_tiles(view->width),
+                               .tiles_y = hl_tiles(view->height)};
+    hl_view_homogeneous(view, affine3_identity(), buffers[0].rows);
+    finish_buffer(&buffers[0]);
+  }
+  for (int n = 0; n < read_buffers(&light->shadow); n++)
+    buffers[n].moves = sweep->frame->surfaces != NULL ? &buffers[0] : NULL;
   return HL_OK;
+}
+
+static void read_tiles(const reads_task *task) {
+  const sweep *sweep = task->sweep;
+  const bool surfaces_alone = task->buffers[0].source->sectors != NULL && sweep->content.volume_count == 0 &&
+                              sweep->surfaces.image.of != NULL;
+  for (size_t tile = 0; tile < sweep->tiles; tile++) {
+    if (sweep->arrays.open[tile] == 0) continue;
+    if (surfaces_alone) read_surfaces(task, tile);
+    else read_tile(task, tile);
+  }
+}
+
+hl_status hl_light_reads_find(sweep *sweep, hl_error *error) {
+  hl_context *context = sweep->content.context;
+  reads_task task = {.sweep = sweep};
+  size_t most = 0;
+  hl_status status = HL_OK;
+  for (int i = 0; i < sweep->geometry->light_count; i++)
+    if (is_limited(sweep, &sweep->lights[i].shadow)) most += (size_t)read_buffers(&sweep->lights[i].shadow);
+  if (most == 0) return HL_OK;
+  task.buffers = hl_allocate(context, most, sizeof *task.buffers);
+  if (task.buffers == NULL) return hl_fail_memory(error, most * sizeof *task.buffers, "a light's tiles");
+  for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++)
+    if (is_limited(sweep, &sweep->lights[i].shadow))
+      status = add_buffers(sweep, &sweep->lights[i], &task, error);
+  if (status == HL_OK) read_tiles(&task);
+  hl_release(context, task.buffers);
+  return status;
 }
 
 hl_status hl_light_reads_find_owned(sweep *sweep, hl_error *error) {

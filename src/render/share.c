@@ -44,7 +44,7 @@ static double brightness(const light_source *source, vec3 middle) {
 static bool is_divided(const picture_share *share, const light_source *source) {
   const shadow_method *method = hl_shadow_method(source);
   if (method == NULL) return false;
-  return method->advance == NULL || (method->exchanges && share->exchange != NULL);
+  return method->divides || (method->exchanges && share->exchange != NULL);
 }
 
 /* The brightest light whose shadows are divided; null: none is. */

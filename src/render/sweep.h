@@ -23,6 +23,7 @@ typedef struct sweep_light {
   light_emission *emission; /* owned; the picture on the light itself; null: none */
   int32_t *needed_until;    /* owned; [tiles of the buffer]; the last slab that needs the tile, 0: none does;
                                null: all slabs need all tiles */
+  int32_t *sublights_until; /* owned; light_shadow's */
   unsigned char *owned;     /* owned; [tiles of the buffer]; 1 where this part of a shared picture tells the
                                others of the tile; null: it tells them nothing */
 } sweep_light;

@@ -72,6 +72,7 @@ static void end_light(const sweep *sweep, sweep_light *light) {
   hl_release(context, light->emission);
   hl_light_shadow_end(&light->shadow);
   hl_release(context, light->needed_until);
+  hl_release(context, light->sublights_until);
   hl_release(context, light->owned);
 }
 

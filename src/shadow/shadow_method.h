@@ -96,14 +96,16 @@ typedef struct light_shadow {
   shadow_buffer *buffer;  /* the renderer's */
   shadow_lookup *lookups; /* owned; [the buffer's ring]; how the picture reads the light at each sheet */
   const sublight_lookup *sublights; /* [sublight_count]; where there are any, the picture reads their mean */
-  int sublight_count;
+  int sublight_count, sublight_tiles_x, sublight_tiles_y; /* set by plan; tiles: of each sub-light's buffer */
   const sublight_shifts *shifts; /* of the sub-lights' buffers; null where there are none */
   void *state;                   /* owned; method->state_bytes */
   shadow_memory *kept;           /* the renderer's */
   void *passing;                 /* lent by the reserve */
   const int32_t *needed_until; /* [tiles]; the last slab at which this part of a shared picture needs a tile,
                                   0: never; null: it needs all. Borrowed, set before the first slab */
-  const unsigned char *owned;  /* [tiles]; 1 where this part tells the others of a tile; null likewise */
+  const int32_t *sublights_until; /* [sublight_count][sublight_tiles_y][sublight_tiles_x]; the same for tiles
+                                     of the sub-lights' buffers, where there are any */
+  const unsigned char *owned;     /* [tiles]; 1 where this part tells the others of a tile; null likewise */
 } light_shadow;
 
 /* A method's memory besides the buffer. */
@@ -130,6 +132,9 @@ struct shadow_method {
   void (*before_tile)(const light_shadow *shadow, size_t tile, attenuate_job *job);
   void (*after_tile)(light_shadow *shadow, size_t tile);
   void (*advance)(light_shadow *shadow, const occupancy *occupancy, int sheet);
+  /* The parts of a shared picture each work through the tiles that they need: needed_until, or
+   * sublights_until. */
+  bool divides;
   /* The parts of a shared picture work through the tiles that they need, and tell each other the rest: the
    * setup's exchange, needed_until and owned. Of each tile that any brick touches one part is the owner,
    * which needs the tile as long as bricks touch it. */

@@ -104,7 +104,6 @@ static hl_status begin_sublights(light_shadow *shadow, hl_error *error) {
   for (int i = 0; i < all->count; i++) begin_sublight(shadow, all, i);
   shadow->sublights = all->lookups;
   shadow->shifts = &all->shifts;
-  shadow->sublight_count = all->count;
   if (setup->emission == NULL) return HL_OK;
   return weigh_sublights(setup->context, all, setup->source, setup->settings->light_samples, error);
 }
@@ -179,8 +178,10 @@ typedef struct sublight_task {
   sublights *sublights;
   shadow_buffer *slab;
   const sublight_functions *functions;
-  int x0, x1, y0, y1; /* bounds of the slab's tiles with any pixel below 1 */
-  bool ends_run;      /* the slab is the last of its run: lit blocks are found after it */
+  int x0, x1, y0, y1;          /* bounds of the slab's tiles with any pixel below 1 */
+  bool ends_run;               /* the slab is the last of its run: lit blocks are found after it */
+  const int32_t *needed_until; /* light_shadow's sublights_until */
+  int slab_after;              /* the next slab's number, as needed_until counts them */
 } sublight_task;
 
 /* The first and last tile that pixels x to x + TILE fall on along one axis, scaled and shifted, with a pixel
@@ -233,6 +234,21 @@ static void sublight_tiles(const sublight *sublight, int axis, int low, int high
   tiles_under((double)high * TILE, scale, shift, tiles, &unused, last);
 }
 
+/* Limits a range of the slab's tiles to those over a sub-light's lit tiles, in a row of these. */
+static void lit_range(const sublight_task *task, const sublight *sublight, int y, int *x0, int *x1) {
+  const int tiles = task->sublights->tiles_x;
+  const uint16_t *lit = sublight->lit + (size_t)y * (size_t)tiles;
+  int first = 0, last = tiles - 1, low, high, unused;
+  while (first <= last && lit[first] == 0) first++;
+  while (last > first && lit[last] == 0) last--;
+  const double scale = (double)sublight->job.scale[0], shift = (double)sublight->job.shift[0];
+  tiles_under((double)first * TILE, scale, shift, task->slab->tiles_x, &low, &unused);
+  tiles_under((double)last * TILE, scale, shift, task->slab->tiles_x, &unused, &high);
+  if (*x0 < low) *x0 = low;
+  if (*x1 > high) *x1 = high;
+  if (first > last) *x1 = *x0 - 1;
+}
+
 /* Multiplies a row of tiles of one sub-light by the slab. */
 static void composite_row(const sublight_task *task, sublight *sublight, int y) {
   const sublights *all = task->sublights;
@@ -242,7 +258,9 @@ static void composite_row(const sublight_task *task, sublight *sublight, int y) 
   if (y < first || y > last) return;
   if (sublight->shifted) {
     size_t row = (size_t)y * (size_t)all->tiles_x;
-    task->functions->composite_row(&sublight->job, y, task->x0, task->x1, sublight->lit + row,
+    first = task->x0, last = task->x1;
+    lit_range(task, sublight, y, &first, &last);
+    task->functions->composite_row(&sublight->job, y, first, last, sublight->lit + row,
                                    sublight->touched + row);
     return;
   }
@@ -258,6 +276,17 @@ static void composite_row(const sublight_task *task, sublight *sublight, int y) 
     if (any_present(&sublight->job, x0, x1, y0, y1) && task->functions->composite(&sublight->job, x, y))
       sublight->touched[tile] = 1;
   }
+}
+
+/* Tiles that this part of a shared picture needs no more are as dark ones: work skips them, and the slab's
+ * blocks that no sub-light's tile reads any more. */
+static void forget_tiles(const sublight_task *task, sublight *sublight, int y) {
+  const sublights *all = task->sublights;
+  const size_t tiles_x = (size_t)all->tiles_x, row = (size_t)y * tiles_x;
+  const int32_t *until = task->needed_until +
+                         (size_t)(sublight - all->sublight) * tiles_x * (size_t)all->tiles_y + row;
+  for (size_t x = 0; x < tiles_x; x++)
+    if (until[x] < task->slab_after) sublight->lit[row + x] = 0;
 }
 
 /* Finds the lit blocks again, in the tiles of a row where light was absorbed. */
@@ -280,6 +309,7 @@ static void advance_row(void *data, size_t index, int worker) {
       &all->sublight[index % (size_t)all->count]; /* row by row, all sub-lights in turn: the slab's
                                                      pixels under a row stay in the cache */
   int y = (int)(index / (size_t)all->count);
+  if (task->ends_run && task->needed_until != NULL) forget_tiles(task, sublight, y);
   if (!sublight->reaches) return;
   if (task->x1 >= 0) composite_row(task, sublight, y);
   if (task->ends_run) find_sublight_lit(task, sublight, y);
@@ -378,8 +408,11 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
   for (int i = 0; i < sublights->count; i++)
     map_sublight(sublights, &sublights->sublight[i], slab, sheets->normal, (from + to) / 2);
   note_shifts(sublights);
-  sublight_task task = {
-      .sublights = sublights, .slab = slab, .functions = shadow->setup.functions->sublights};
+  sublight_task task = {.sublights = sublights,
+                        .slab = slab,
+                        .functions = shadow->setup.functions->sublights,
+                        .needed_until = shadow->sublights_until,
+                        .slab_after = sheet + 1};
   hl_pool_run(pool, (size_t)slab->tiles_y, move_row, &task);
   int run = run_of_slab(sublights->slabs++);
   task.ends_run = run_of_slab(sublights->slabs) != run;
@@ -503,6 +536,9 @@ static void plan_sublights(light_shadow *shadow) {
   all->count = side * side;
   all->channels = setup->channels;
   for (int i = 0; i < all->count; i++) view_of_sublight(shadow, i, &unused, &all->tiles_x, &all->tiles_y);
+  shadow->sublight_count = all->count;
+  shadow->sublight_tiles_x = all->tiles_x;
+  shadow->sublight_tiles_y = all->tiles_y;
   lay_out_planes(all);
 }
 
@@ -523,6 +559,7 @@ static void find_lit(light_shadow *shadow, size_t tile) {
 const shadow_method hl_shadow_sublights = {.name = "sublights",
                                            .state_bytes = sizeof(sublights),
                                            .first_slab = 1,
+                                           .divides = true,
                                            .plan = plan_sublights,
                                            .check = check_sublights,
                                            .lay_out = lay_out_sublights,

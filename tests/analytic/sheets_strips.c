@@ -59,16 +59,17 @@ static void assert_parts(stage *set, const float *whole, int parts, const char *
   if (memcmp(sum, whole, sizeof sum) != 0) fail_msg("%s: %d parts do not add up", what, parts);
 }
 
-static void assert_shared(stage *set, const char *what, bool many) {
+/* count: of the numbers of parts that are tried, at most 6. */
+static void assert_shared(stage *set, const char *what, size_t count) {
   static float whole[FLOATS];
-  static const int numbers[] = {2, 4, 7, 1, 3, 8};
+  static const int numbers[] = {7, 2, 4, 8, 3, 1};
   set->scene.width = WIDTH;
   set->scene.height = HEIGHT;
   stage_render_sheets(set, whole);
   float sum = 0;
   for (int i = 0; i < FLOATS; i++) sum += whole[i];
   assert_true(sum > 100);
-  for (size_t n = 0; n < (many ? 6 : 3); n++) assert_parts(set, whole, numbers[n], what);
+  for (size_t n = 0; n < count; n++) assert_parts(set, whole, numbers[n], what);
 }
 
 static void add_noise(stage *set, double opacity) {
@@ -162,7 +163,7 @@ static void test_ways(void **state) {
     stage_add_directional(&set, (vec3){-1, 0.5, -1})->angular_diameter_deg = 10;
     stage_add_point(&set, (vec3){14, 25, 30})->radius = 3;
     ways[n].draw(&set);
-    assert_shared(&set, ways[n].name, n == 0);
+    assert_shared(&set, ways[n].name, n < 4 ? 6 : 3);
     stage_close(&set);
   }
 }
@@ -170,9 +171,8 @@ static void test_ways(void **state) {
 /* An even cube, seen along z by parallel rays, under light from the left and from above it, at an angle of 45
  * degrees: parts are bands of rows, whose light is a band of the buffer as high. So each of 4 parts needs a
  * fourth of the light that the whole picture needs, and of a tile and some pixels on either side. */
-static void test_light_of_part(void **state) {
-  (void)state;
-  enum { SIDE = 40, PIXELS = 512, PARTS = 4 };
+static void assert_light_of_part(const char *what, void (*soften_light)(stage *set)) {
+  enum { SIDE = 40, PIXELS = 256, PARTS = 4 };
   static float voxels[SIDE * SIDE * SIDE];
   for (size_t v = 0; v < sizeof voxels / sizeof *voxels; v++) voxels[v] = 1;
   uint64_t filled[PARTS + 1];
@@ -186,9 +186,9 @@ static void test_light_of_part(void **state) {
     stage_look(&set, (vec3){0, 0, 90}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
     set.scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
     set.scene.camera.height = 40;
-    stage_add_directional(&set, (vec3){1, 0, -1});
+    stage_add_directional(&set, (vec3){1, 0, -1})->angular_diameter_deg = 1;
     set.scene.width = set.scene.height = PIXELS;
-    set.scene.render.shadows = HL_SHADOWS_HARD;
+    soften_light(&set);
     hl_scene *scene = NULL;
     hl_renderer *renderer = NULL;
     hl_render_statistics statistics = {.struct_size = sizeof statistics};
@@ -205,9 +205,15 @@ static void test_light_of_part(void **state) {
   for (int part = 0; part < PARTS; part++) {
     assert_true(filled[part] > filled[PARTS] / 8);
     if (filled[part] > filled[PARTS] / 2)
-      fail_msg("part %d fills %llu of %llu pixels of the light", part, (unsigned long long)filled[part],
-               (unsigned long long)filled[PARTS]);
+      fail_msg("%s: part %d fills %llu of %llu pixels of the light", what, part,
+               (unsigned long long)filled[part], (unsigned long long)filled[PARTS]);
   }
+}
+
+static void test_light_of_part(void **state) {
+  (void)state;
+  assert_light_of_part("hard", draw_hard);
+  assert_light_of_part("sublights", draw_sublights);
 }
 
 /* ---- renderers that exchange light ---- */
@@ -347,32 +353,32 @@ static void exchange_mixed(stage *set) {
   set->scene.render.soft_method = HL_SOFT_CASCADE;
 }
 
+static const way soft_ways[] = {
+    {"one light", add_soft_noise},       {"lamps", exchange_lamps}, {"colours", exchange_colors},
+    {"along faces", exchange_along},     {"near", exchange_near},   {"apart", exchange_apart},
+    {"isosurface", exchange_isosurface}, {"mixed", exchange_mixed}};
+enum { SOFT_WAYS = sizeof soft_ways / sizeof *soft_ways };
+
 /* The parts' sum has the bytes of the whole picture. */
 static void test_exchange(void **state) {
   (void)state;
-  static const struct {
-    const char *name;
-    void (*prepare)(stage *set);
-  } ways[] = {{"one light", add_soft_noise},       {"lamps", exchange_lamps}, {"colours", exchange_colors},
-              {"along faces", exchange_along},     {"near", exchange_near},   {"apart", exchange_apart},
-              {"isosurface", exchange_isosurface}, {"mixed", exchange_mixed}};
-  static const int numbers[] = {7, 2, 1, 3, 4, 8};
+  static const int numbers[] = {7, 2, 8, 3, 4, 1};
   enum { SIDE_X = 100, SIDE_Y = 75 };
   static float whole[SIDE_X * SIDE_Y * 4], sum[SIDE_X * SIDE_Y * 4];
-  for (size_t n = 0; n < sizeof ways / sizeof *ways; n++) {
+  for (size_t n = 0; n < SOFT_WAYS; n++) {
     stage set;
     part_thread threads[MOST_PARTS];
     stage_open(&set);
-    ways[n].prepare(&set);
+    soft_ways[n].draw(&set);
     set.scene.width = SIDE_X;
     set.scene.height = SIDE_Y;
     set.scene.render.sheet_spacing = 1;
     stage_render_sheets(&set, whole);
     stage_close(&set);
-    for (size_t i = 0; i < (n == 0 ? sizeof numbers / sizeof *numbers : 1); i++) {
+    for (size_t i = 0; i < (n == 0 ? sizeof numbers / sizeof *numbers : n == 1 ? 3 : 1); i++) {
       int frames = numbers[i] == 4 ? 2 : 1;
-      render_together(threads, numbers[i], SIDE_X, SIDE_Y, frames, ways[n].prepare, sum);
-      if (memcmp(sum, whole, sizeof sum) != 0) fail_msg("%s: %d parts differ", ways[n].name, numbers[i]);
+      render_together(threads, numbers[i], SIDE_X, SIDE_Y, frames, soft_ways[n].draw, sum);
+      if (memcmp(sum, whole, sizeof sum) != 0) fail_msg("%s: %d parts differ", soft_ways[n].name, numbers[i]);
       for (int part = 0; part < numbers[i] && numbers[i] > 1; part++) assert_true(threads[part].gathered > 0);
     }
   }
@@ -448,6 +454,26 @@ static hl_mesh *add_balls(stage *set, hl_scene_mesh *balls) {
   return made;
 }
 
+/* Soft shadows of methods whose parts need not talk to each other, with balls in the noise and without. */
+static void test_divided(void **state) {
+  (void)state;
+  static const hl_soft_method methods[] = {HL_SOFT_SUBLIGHTS, HL_SOFT_PAPER};
+  for (size_t n = 0; n < 2 * SOFT_WAYS; n++)
+    for (size_t method = 0; method < sizeof methods / sizeof *methods; method++) {
+      stage set;
+      hl_scene_mesh balls;
+      hl_mesh *made = NULL;
+      stage_open(&set);
+      soft_ways[n / 2].draw(&set);
+      soften(&set, methods[method]);
+      set.scene.render.sheet_spacing = 1;
+      if (n % 2 == 1) made = add_balls(&set, &balls);
+      assert_shared(&set, soft_ways[n / 2].name, n / 2 == 1 ? 4 : 1);
+      hl_mesh_release(made);
+      stage_close(&set);
+    }
+}
+
 /* Lights take the cascade's memory in turn, and so does the next frame: each leaves it filled with zeros. */
 static void test_next_frame(void **state) {
   (void)state;
@@ -509,6 +535,7 @@ int main(void) {
                                      cmocka_unit_test(test_exchange),
                                      cmocka_unit_test(test_exchanged_light),
                                      cmocka_unit_test(test_exchanged_search),
+                                     cmocka_unit_test(test_divided),
                                      cmocka_unit_test(test_next_frame),
                                      cmocka_unit_test(test_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
