@@ -3,6 +3,7 @@
 
 #include "light/light_extent.h"
 #include "mesh/mesh.h"
+#include "render/hollow.h"
 #include "render/surface_point.h"
 #include "surface/surface_rims.h"
 
@@ -12,6 +13,11 @@ static const double CLOSE = 3, FARTHEST_CLOSE = 10;
 
 /* A ray begins so many pixels away from its point: beyond what rounding may do to it. */
 static const double RAY_START = 0.0005;
+
+/* The greatest sine of the angle between a light and a hollow surface at which the surface is asked whether
+ * it shades itself, and the sharpest of its bends, in parts of what a buffer is late by: others are
+ * roughness. */
+static const double GRAZING = 0.2, SHARPEST_BEND = 0.12;
 
 /* Where the eye grazes a surface, a pixel's middle is found again up to so many pixels of the picture aside.
  */
@@ -156,6 +162,13 @@ static bool look(const sweep *sweep, const contact_light *light, contact_ray *ra
 
 /* ---- all lights of a batch ---- */
 
+/* A point of a hollow surface. */
+typedef struct hollow {
+  vec3 point, normal;
+  double bend; /* hollow.h */
+  double late; /* by which a buffer takes surfaces into account; frame units */
+} hollow;
+
 static vec3 vector_of(const float v[3][SURFACE_SAMPLES], int i) { return (vec3){v[0][i], v[1][i], v[2][i]}; }
 
 /* The point of a triangle in the middle of what the eye sees of a pixel: a sample's own may lie behind the
@@ -290,7 +303,47 @@ static void set_passing(contact_search *search, int light, int sample, const dou
   for (int row = 0; row < search->sweep->geometry->light_count * channels && !search->found; row++)
     for (int k = 0; k < SURFACE_SAMPLES; k++) search->passing[row][k] = 1;
   search->found = true;
-  for (int c = 0; c < channels; c++) search->passing[light * channels + c][sample] = (float)parts[c];
+  for (int c = 0; c < channels; c++) {
+    float *passing = &search->passing[light * channels + c][sample];
+    *passing = fminf(*passing, (float)parts[c]);
+  }
+}
+
+/* Whether a ray towards a point of a light meets the hollow surface that it leaves again, close by. */
+static bool returns(const contact_search *search, const surface_batch *batch, const hollow *at, vec3 way) {
+  double sine = vec3_dot(way, at->normal), chord = 2 * sine / at->bend;
+  if (sine <= 0) return true;
+  return chord < FARTHEST_CLOSE * at->late && chord * sine < CLOSE * at->late &&
+         hl_surface_left(search->sweep->frame->surfaces, batch->mesh,
+                         vec3_add(at->point, vec3_scale(way, chord)));
+}
+
+/* Takes what hollow surfaces hide of a light from their own points, where it almost grazes them. */
+static void shade_hollows(contact_search *search, int l, const contact_light *light,
+                          const surface_batch *batch) {
+  const light_points *points = light->points;
+  for (int i = 0; i < batch->count; i++) {
+    hollow at = {.point = vector_of(batch->samples.position, i),
+                 .normal = vector_of(batch->samples.normal, i)};
+    vec3 way = way_to(light->source, at.point, (vec3){0, 0, 0});
+    double facing = vec3_dot(way, at.normal);
+    if (facing <= 0 || facing > GRAZING * vec3_length(way)) continue;
+    at.late = pixel_at(light, at.point) + search->sweep->geometry->sheets.spacing;
+    at.bend = hl_hollow_bend(search->sweep->frame->surfaces, batch, i, way);
+    if (at.bend <= 0 || at.bend * at.late > SHARPEST_BEND) continue;
+    double passing = 0, parts[HL_CHANNELS];
+    for (int k = 0; k < points->count; k++) {
+      vec3 to = vec3_normalise(way_to(light->source, at.point, points->offset[k]));
+      passing += returns(search, batch, &at, to) ? 0 : 1.0 / points->count;
+    }
+    for (int c = 0; c < HL_CHANNELS; c++) parts[c] = passing;
+    set_passing(search, l, i, parts);
+  }
+}
+
+/* Whether the eye may see a mesh from within: cuts open it, or it has open edges. */
+static bool may_be_hollow(const surface_mesh *mesh) {
+  return (mesh->is_cut || !mesh->mesh->closed) && hl_surface_takes_all(mesh);
 }
 
 /* No light from outside comes to samples within a closed part of a mesh. */
@@ -306,13 +359,15 @@ bool hl_contact_find(const sweep *sweep, const tile_slab *slab, const surface_ba
   bool placed = false;
   if (!batch->mesh->scene->receives_shadow) return false;
   const uint32_t within = samples_within(sweep, batch), all = (1u << batch->count) - 1;
-  if (sweep->frame->contact->box_count == 0 && within == 0) return false;
+  const bool hollow = may_be_hollow(batch->mesh);
+  if (sweep->frame->contact->box_count == 0 && within == 0 && !hollow) return false;
   for (int l = 0; l < sweep->geometry->light_count; l++) {
     const contact_light light = {sweep->lights[l].source, &sweep->lights[l].shadow,
                                  &sweep->surfaces.points[l]};
     if (light.shadow->method == NULL) continue;
     const uint32_t dark = within != 0 && is_outside(&light, batch->mesh) ? within : 0;
     darken_within(&search, l, dark);
+    if (hollow && dark != all) shade_hollows(&search, l, &light, batch);
     if (dark == all || sweep->frame->contact->box_count == 0 || !is_asked(sweep, &light, batch) ||
         !is_close(sweep, &light, batch))
       continue;

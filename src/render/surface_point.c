@@ -35,16 +35,18 @@ static vec3 corner_normal(const surfaces *all, const surface_mesh *mesh, uint32_
                                               : all->normals[all->triangles[triangle][i]]);
 }
 
+vec3 hl_rounded_normal(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, int i, vec3 flat) {
+  vec3 own = corner_normal(all, mesh, triangle, i);
+  double along = vec3_dot(own, flat);
+  if (fabs(along) < HL_MESH_ROUNDED) return flat;
+  return along < 0 ? vec3_scale(own, -1) : own;
+}
+
 static vec3 smooth_normal(const surfaces *all, const surface_mesh *mesh, uint32_t triangle,
                           const double weight[3], vec3 flat) {
   vec3 sum = {0, 0, 0};
-  for (int i = 0; i < 3; i++) {
-    vec3 own = corner_normal(all, mesh, triangle, i);
-    double along = vec3_dot(own, flat);
-    if (fabs(along) < HL_MESH_ROUNDED) own = flat;
-    else if (along < 0) own = vec3_scale(own, -1);
-    sum = vec3_add(sum, vec3_scale(own, weight[i]));
-  }
+  for (int i = 0; i < 3; i++)
+    sum = vec3_add(sum, vec3_scale(hl_rounded_normal(all, mesh, triangle, i, flat), weight[i]));
   return vec3_normalise(sum);
 }
 

@@ -43,11 +43,13 @@ bool hl_surface_is_closed(const surface_mesh *mesh) {
   return mesh->mesh->closed && !mesh->is_cut && mesh->scene->opacity >= 1;
 }
 
-bool hl_surface_is_opaque(const surface_mesh *mesh) {
+bool hl_surface_takes_all(const surface_mesh *mesh) {
   const double *color = mesh->scene->attenuation_color;
-  return mesh->scene->casts_shadow && !mesh->is_cut && mesh->scene->opacity >= 1 && mesh->mesh->opaque &&
+  return mesh->scene->casts_shadow && mesh->scene->opacity >= 1 && mesh->mesh->opaque &&
          fmin(color[0], fmin(color[1], color[2])) >= 1;
 }
+
+bool hl_surface_is_opaque(const surface_mesh *mesh) { return !mesh->is_cut && hl_surface_takes_all(mesh); }
 
 bool hl_surface_is_outside(const hl_scene_mesh *mesh, vec3 centre, double radius) {
   vec3 corner[8];

@@ -75,6 +75,9 @@ void hl_surface_corners(const hl_scene_mesh *mesh, double least, vec3 corners[8]
 /* Whether a mesh has an inside, and an opacity of 1 but for that of its own colours. */
 bool hl_surface_is_closed(const surface_mesh *mesh);
 
+/* Whether no light passes what cuts leave of a mesh. */
+bool hl_surface_takes_all(const surface_mesh *mesh);
+
 /* Whether no light passes a mesh, of which no cuts remove anything. */
 bool hl_surface_is_opaque(const surface_mesh *mesh);
 

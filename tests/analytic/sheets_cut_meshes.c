@@ -154,6 +154,47 @@ static void test_inside_of_a_bowl(void **state) {
   }
 }
 
+/* A bowl in slanting light: its wall is dark where the light's ray comes through the wall, from where the
+ * light grazes it on, and lit as N.L says where the ray comes through the opening. Derived: a ray from a
+ * point of a ball at which N.L = s meets the ball again after 2 R s. */
+static void test_wall_within(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  static const hl_cut plane = {.type = HL_CUT_PLANE, .normal = {0, 0, 1}};
+  const double radius = 12;
+  for (int k = 0; k < 24; k++) {
+    const double height = (25 + 7 * (k / 8)) * HL_PI / 180, turn = 0.7 * k;
+    const vec3 sun = {cos(height) * cos(turn), cos(height) * sin(turn), sin(height)};
+    int dark = 0, lit = 0;
+    mesh_stage all;
+    mesh_stage_open(&all, SIDE, 32);
+    if (k % 2 == 0) add_sphere(&all, radius);
+    else add_ball(&all, radius);
+    mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, vec3_scale(sun, -1)), k / 2 % 4, 3);
+    cut(&all, &plane, 1);
+    stage_render_sheets(&all.set, pixels);
+    double sum = 0;
+    for (int i = 0; i < PIXELS; i++) {
+      double square = pixel_x(i) * pixel_x(i) + pixel_y(i) * pixel_y(i);
+      if (square > 11 * 11) continue;
+      vec3 at = {pixel_x(i), pixel_y(i), -sqrt(radius * radius - square)};
+      double facing = -vec3_dot(at, sun) / radius, value = (double)pixels[4 * i];
+      double height_met = at.z + 2 * radius * facing * sun.z; /* where the light's ray meets the ball again */
+      if (facing < 0 || height_met < -2) {
+        assert_near(value, 0, 0.02);
+        sum += value;
+        dark++;
+      } else if (height_met > 2) {
+        assert_near(value, facing, 0.01);
+        lit++;
+      }
+    }
+    assert_true(dark > 500 && lit > 50);
+    assert_near(sum / dark, 0, 0.0003);
+    mesh_stage_close(&all);
+  }
+}
+
 /* A floor below a ball that the eye does not see: what is cut off the ball casts no shadow. */
 static void test_shadow_of_half_a_ball(void **state) {
   (void)state;
@@ -330,9 +371,10 @@ static void test_kept_between_frames(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_half_a_ball),           cmocka_unit_test(test_holes),
-      cmocka_unit_test(test_inside_of_a_bowl),      cmocka_unit_test(test_shadow_of_half_a_ball),
-      cmocka_unit_test(test_light_of_fields),       cmocka_unit_test(test_whole_meshes),
-      cmocka_unit_test(test_against_the_reference), cmocka_unit_test(test_kept_between_frames),
+      cmocka_unit_test(test_inside_of_a_bowl),      cmocka_unit_test(test_wall_within),
+      cmocka_unit_test(test_shadow_of_half_a_ball), cmocka_unit_test(test_light_of_fields),
+      cmocka_unit_test(test_whole_meshes),          cmocka_unit_test(test_against_the_reference),
+      cmocka_unit_test(test_kept_between_frames),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
