@@ -36,6 +36,8 @@ uint64_t hl_contact_bytes(const hl_scene_description *scene) {
   return hl_surface_tree_bytes(scene) + most;
 }
 
+_Static_assert(LIGHT_POINTS_SIDE *LIGHT_POINTS_SIDE <= MOST_BUNDLED, "rays of a sample are one bundle");
+
 void hl_contact_points(const light_source *source, light_points *points) {
   const int side = source->shadows == HL_SHADOWS_SOFT ? LIGHT_POINTS_SIDE : 1;
   *points = (light_points){.count = side * side};
@@ -52,13 +54,13 @@ void hl_contact_points(const light_source *source, light_points *points) {
 /* What hides a point of a light from a sample. */
 typedef struct contact_ray {
   const surfaces *all;
-  const surface_mesh *mesh; /* of the sample */
-  uint32_t primitive;       /* likewise */
-  vec3 point, normal;       /* likewise; the primitive's own, towards the eye */
-  vec3 plane;               /* a point of the primitive's plane */
-  vec3 smooth;              /* the sample's normal */
-  double close;             /* frame units */
-  double passing[HL_CHANNELS];
+  const surface_mesh *mesh;       /* of the sample */
+  uint32_t primitive;             /* likewise */
+  vec3 point, normal;             /* likewise; the primitive's own, towards the eye */
+  vec3 plane;                     /* a point of the primitive's plane */
+  vec3 smooth;                    /* the sample's normal */
+  double close;                   /* frame units */
+  double (*passing)[HL_CHANNELS]; /* [points of the light] */
 } contact_ray;
 
 /* Whether two triangles share a vertex. */
@@ -82,7 +84,7 @@ static void meet(void *data, const surface_hit *hit) {
       are_neighbours(ray->all, hit->primitive, ray->primitive))
     return;
   const double *color = hit->mesh->scene->attenuation_color;
-  for (int c = 0; c < HL_CHANNELS; c++) ray->passing[c] *= 1 - hit->opacity * color[c];
+  for (int c = 0; c < HL_CHANNELS; c++) ray->passing[hit->ray][c] *= 1 - hit->opacity * color[c];
 }
 
 /* ---- one light ---- */
@@ -142,19 +144,24 @@ static bool look(const sweep *sweep, const contact_light *light, contact_ray *ra
   const light_points *points = light->points;
   double pixel = pixel_at(light, ray->point), late = pixel + sweep->geometry->sheets.spacing;
   bool any = false;
+  surface_ray rays[LIGHT_POINTS_SIDE * LIGHT_POINTS_SIDE];
+  double parts[LIGHT_POINTS_SIDE * LIGHT_POINTS_SIDE][HL_CHANNELS];
   if (!may_find(sweep, light, ray, 1)) return false;
   ray->close = CLOSE * late;
-  for (int c = 0; c < HL_CHANNELS; c++) passing[c] = 0;
+  ray->passing = parts;
   for (int k = 0; k < points->count; k++) {
     vec3 way = way_to(light->source, ray->point, points->offset[k]);
     double length = vec3_length(way), last = FARTHEST_CLOSE * late / length;
     if (!light->source->parallel) last = fmin(last, 1);
-    for (int c = 0; c < HL_CHANNELS; c++) ray->passing[c] = 1;
-    hl_surface_tree_cast(sweep->frame->contact,
-                         &(surface_ray){ray->point, way, RAY_START * pixel / length, last}, meet, ray);
-    for (int c = 0; c < HL_CHANNELS; c++) {
-      any = any || ray->passing[c] < 1;
-      passing[c] += ray->passing[c] / points->count;
+    rays[k] = (surface_ray){ray->point, way, RAY_START * pixel / length, last};
+    for (int c = 0; c < HL_CHANNELS; c++) parts[k][c] = 1;
+  }
+  hl_surface_tree_cast_bundle(sweep->frame->contact, rays, points->count, meet, ray);
+  for (int c = 0; c < HL_CHANNELS; c++) {
+    passing[c] = 0;
+    for (int k = 0; k < points->count; k++) {
+      any = any || parts[k][c] < 1;
+      passing[c] += parts[k][c] / points->count;
     }
   }
   return any;

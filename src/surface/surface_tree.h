@@ -48,6 +48,7 @@ typedef struct surface_hit {
   double opacity;  /* of the primitive */
   uint32_t primitive;
   const surface_mesh *mesh; /* the primitive's */
+  int ray;                  /* of a bundle; else 0 */
 } surface_hit;
 
 /* Called for each place where a ray meets a surface, in any order. */
@@ -76,5 +77,11 @@ bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, i
 vec3 hl_triangle_normal(const surfaces *all, uint32_t triangle, vec3 point, double *from);
 
 void hl_surface_tree_cast(const surface_tree *tree, const surface_ray *ray, surface_met *met, void *data);
+
+/* The same for at most MOST_BUNDLED rays from one point, whose ends are finite: what none of them can meet is
+ * passed over once for all. Each ray has the hits, and in the order, that hl_surface_tree_cast() tells. */
+enum { MOST_BUNDLED = 16 };
+void hl_surface_tree_cast_bundle(const surface_tree *tree, const surface_ray *rays, int count,
+                                 surface_met *met, void *data);
 
 #endif
