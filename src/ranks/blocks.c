@@ -9,9 +9,8 @@
 
 #include "core/memory.h"
 
-/* Tags of messages, those of replies from TAG_REPLY on; threads of a rank that fetch at once; answers of a
- * rank on their way. */
-enum { TAG_REQUEST = 1, TAG_REPLY = 2, FETCHES = 8, REPLIES = 8 };
+/* Threads of a rank that fetch at once; answers of a rank on their way. */
+enum { FETCHES = 8, REPLIES = 8 };
 
 /* What a rank asks another one for. */
 typedef struct block_request {

@@ -49,6 +49,41 @@ void hl_ranks_gather(hl_ranks *ranks, const void *from, size_t bytes, void *to) 
   hl_ranks_wait(ranks, request);
 }
 
+/* A message of no more than 2^31 - 1 bytes: callers' are some megabytes. Messages between two ranks keep
+ * their order, so that one tag serves all. */
+void hl_ranks_send(hl_ranks *ranks, const void *from, size_t bytes, void *to, size_t most,
+                   mpi_handle *pending) {
+  const mpi_calls *calls = ranks->mpi.calls;
+  pthread_mutex_lock(&ranks->calling);
+  for (int rank = 0; rank < ranks->size; rank++) {
+    if (rank == ranks->rank) continue;
+    calls->receive(&ranks->mpi, (unsigned char *)to + (size_t)rank * most, (int)most, rank, TAG_POST,
+                   &pending[2 * rank]);
+    calls->send(&ranks->mpi, from, (int)bytes, rank, TAG_POST, &pending[2 * rank + 1]);
+  }
+  pthread_mutex_unlock(&ranks->calling);
+}
+
+/* Whether all is done. Requests that are done are MPI_REQUEST_NULL, which may be asked again. */
+static bool all_done(hl_ranks *ranks, mpi_handle *pending) {
+  bool all = true;
+  pthread_mutex_lock(&ranks->calling);
+  for (int i = 0; i < 2 * ranks->size; i++) {
+    int done = 0;
+    if (i / 2 == ranks->rank) continue;
+    ranks->mpi.calls->test(&ranks->mpi, &pending[i], &done);
+    all = all && done;
+  }
+  pthread_mutex_unlock(&ranks->calling);
+  return all;
+}
+
+void hl_ranks_look(hl_ranks *ranks, mpi_handle *pending) { all_done(ranks, pending); }
+
+void hl_ranks_receive(hl_ranks *ranks, mpi_handle *pending) {
+  for (int asked = 0; !all_done(ranks, pending); asked += asked < MOST_VALUES) hl_ranks_pause(asked);
+}
+
 void hl_ranks_sum_counts(hl_ranks *ranks, uint64_t *counts, size_t count) {
   mpi_handle request;
   pthread_mutex_lock(&ranks->calling);

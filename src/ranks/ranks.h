@@ -32,12 +32,25 @@ void hl_ranks_wait(hl_ranks *ranks, mpi_handle request);
 /* Lets a moment pass between two questions, longer ones after many. */
 void hl_ranks_pause(int asked);
 
+/* Tags of messages. Those of replies to requests (blocks.c) go on from the last one. */
+enum { TAG_REQUEST = 1, TAG_POST = 2, TAG_REPLY = 3 };
+
 /* ---- collectives ---- */
 
 void hl_ranks_barrier(hl_ranks *ranks);
 
 /* from: `bytes` bytes of this rank. to: [size][bytes], everyone's. */
 void hl_ranks_gather(hl_ranks *ranks, const void *from, size_t bytes, void *to);
+
+/* Begins to give all other ranks some bytes, and to get theirs, which may be more or fewer, each at most
+ * `most`: to: [size][most]; the piece of this rank itself is left as it is. pending: [2 size], of the caller.
+ * All ranks begin this in the same order; arrays stay as they are until hl_ranks_receive(). */
+void hl_ranks_send(hl_ranks *ranks, const void *from, size_t bytes, void *to, size_t most,
+                   mpi_handle *pending);
+/* Lets it get on. */
+void hl_ranks_look(hl_ranks *ranks, mpi_handle *pending);
+/* Waits until all is done. */
+void hl_ranks_receive(hl_ranks *ranks, mpi_handle *pending);
 
 /* Gives one rank's bytes to all others. */
 void hl_ranks_tell(hl_ranks *ranks, void *bytes, size_t count, int root);

@@ -73,10 +73,26 @@ static void gather_from_ranks(void *data, const void *from, size_t bytes, void *
   hl_ranks_gather(data, from, bytes, to);
 }
 
+static void send_to_ranks(void *data, const light_post *post) {
+  hl_ranks_send(data, post->from, post->bytes, post->to, post->most, post->memory);
+}
+
+static void look_at_ranks(void *data, const light_post *post) { hl_ranks_look(data, post->memory); }
+
+static void receive_from_ranks(void *data, const light_post *post) { hl_ranks_receive(data, post->memory); }
+
 hl_status hl_renderer_share_over_ranks(hl_renderer *renderer, hl_ranks *ranks, hl_error *error) {
   hl_status status = hl_renderer_share(renderer, hl_ranks_rank(ranks), hl_ranks_size(ranks), error);
   if (status == HL_OK && hl_ranks_size(ranks) > 1)
-    renderer->exchange = (light_exchange){renderer->part, renderer->parts, gather_from_ranks, ranks};
+    renderer->exchange = (light_exchange){
+        .part = renderer->part,
+        .parts = renderer->parts,
+        .gather = gather_from_ranks,
+        .data = ranks,
+        .send = send_to_ranks,
+        .look = look_at_ranks,
+        .receive = receive_from_ranks,
+        .post_bytes = 2 * (size_t)hl_ranks_size(ranks) * sizeof(mpi_handle)};
   return status;
 }
 

@@ -100,9 +100,13 @@ typedef struct cascade_level {
 typedef struct cascade_exchange {
   const light_exchange *with;         /* null: nobody */
   size_t slot_bytes;                  /* of a message */
-  size_t slots;                       /* messages that are gathered at a time from each part */
-  unsigned char *outgoing, *incoming; /* owned; [slots][slot_bytes]; [parts][slots][slot_bytes] */
-  uint32_t *counts;                   /* owned; [parts]; how many messages each part has */
+  size_t slots;                       /* messages of a post, at most */
+  light_post post;                    /* of the next two */
+  unsigned char *outgoing, *incoming; /* owned; [post.most]; [parts][post.most] */
+  unsigned char *sends;               /* owned; [tiles]; 1 where this part tells of the last chunk */
+  uint32_t count;                     /* of these tiles */
+  size_t tile;                        /* the next one to tell of */
+  bool sent;                          /* a post of the last chunk is under way */
 } cascade_exchange;
 
 typedef struct soft_cascade {
@@ -150,11 +154,15 @@ void hl_cascade_end(light_shadow *shadow);
 
 /* cascade_exchange.c */
 void hl_cascade_exchange_lay_out(soft_cascade *cascade, const light_exchange *with, shadow_layouts *layouts);
-/* Tells the other parts what the groups at a chunk's two ends hold in the tiles that this part owns and the
- * chunk has touched, and sets what they hold in the others' tiles. Returns whether the chunk has touched any
- * tile of any part. */
-bool hl_cascade_exchange_chunk(soft_cascade *cascade, const unsigned char *owned, cascade_group *start,
-                               cascade_group *end);
+/* Begins to tell the other parts what the groups at the last chunk's two ends hold in the tiles that this
+ * part owns and the chunk has touched. */
+void hl_cascade_exchange_send(soft_cascade *cascade, const unsigned char *owned);
+/* Lets what is under way get on. */
+void hl_cascade_exchange_look(const soft_cascade *cascade);
+/* Sets what these groups hold in the others' tiles, and whether the chunk has touched any tile of any part;
+ * waits until the others have sent it. Before anything reads the groups. Nothing is done where nothing is
+ * under way. */
+void hl_cascade_exchange_receive(soft_cascade *cascade);
 
 /* omega at a height. */
 static inline double hl_cascade_omega(const soft_cascade *cascade, double height) {

@@ -4,14 +4,25 @@
  * A part attenuates the tiles that it needs. Penumbrae bring it the shadows of matter in other tiles, which
  * others attenuate: after each chunk the owner of each tile that the chunk has touched sends what the groups
  * at the chunk's ends hold there. So every part's groups are complete, the same as in one renderer, and each
- * blurs them where its own tiles read them. Messages are gathered a fixed number at a time: their memory does
- * not grow with the tiles. */
+ * blurs them where its own tiles read them.
+ *
+ * The groups of a chunk are read first at the end of the next chunk, when matter before it is blurred (Near
+ * matter, cascade.h). So the messages of a chunk are under way while the next one is filled, lit and seen,
+ * and parts wait for those alone that are more than a chunk behind. Messages go in posts of a fixed number:
+ * their memory does not grow with the tiles. The first post is sent at the chunk's end, and further ones,
+ * where a part has more, when the first one is received. */
 #include <string.h>
 
 #include "shadow_cascade/cascade_passes.h"
 
-/* What is gathered at a time takes about so many bytes. */
-enum { GATHERED_BYTES = 8 << 20 };
+/* The posts of all parts take about so many bytes, where the exchange does not say it. */
+enum { MOST_POSTED = 8 << 20 };
+
+/* The head of a post. */
+typedef struct post_head {
+  uint32_t count;  /* of this part's messages, in all posts of the chunk */
+  uint32_t unused; /* messages begin at a multiple of 8 bytes */
+} post_head;
 
 /* The fields of a channel that a chunk changes: absorbed and thin, of the group at its start and at its end.
  */
@@ -28,14 +39,19 @@ void hl_cascade_exchange_lay_out(soft_cascade *cascade, const light_exchange *wi
   const cascade_level *level = &cascade->level[0];
   exchange->with = with;
   if (with == NULL) return;
-  size_t parts = (size_t)with->parts, most = (size_t)level->tiles_x * (size_t)level->tiles_y;
+  size_t parts = (size_t)with->parts, tiles = (size_t)level->tiles_x * (size_t)level->tiles_y;
   exchange->slot_bytes = sizeof(message_head) +
                          (size_t)cascade->channels * MESSAGE_FIELDS * TILE_PIXELS * sizeof(field_pixel);
-  exchange->slots = GATHERED_BYTES / (parts * exchange->slot_bytes) + 1;
-  if (exchange->slots > most) exchange->slots = most;
-  exchange->outgoing = hl_layout_take(&layouts->passing, exchange->slots, exchange->slot_bytes);
-  exchange->incoming = hl_layout_take(&layouts->passing, parts * exchange->slots, exchange->slot_bytes);
-  exchange->counts = hl_layout_take(&layouts->passing, parts, sizeof *exchange->counts);
+  size_t bytes = with->most_posted > 0 ? with->most_posted : MOST_POSTED;
+  exchange->slots = bytes / (parts * exchange->slot_bytes) + 1;
+  if (exchange->slots > tiles) exchange->slots = tiles;
+  light_post *post = &exchange->post;
+  post->most = sizeof(post_head) + exchange->slots * exchange->slot_bytes;
+  exchange->outgoing = hl_layout_take(&layouts->passing, post->most, 1);
+  post->to = exchange->incoming = hl_layout_take(&layouts->passing, parts, post->most);
+  post->memory = hl_layout_take(&layouts->passing, with->post_bytes, 1);
+  exchange->sends = hl_layout_take(&layouts->passing, tiles, 1);
+  post->from = exchange->outgoing;
 }
 
 static const cascade_field *field_of(const cascade_group *start, const cascade_group *end, int channel,
@@ -64,9 +80,14 @@ static void unpack_tile(const cascade_level *level, const cascade_field *field, 
 /* One chunk's exchange. */
 typedef struct chunk_exchange {
   soft_cascade *cascade;
-  const unsigned char *owned;
-  const cascade_group *start, *end;
+  cascade_group *start, *end;
 } chunk_exchange;
+
+/* The groups at the ends of the last chunk. */
+static chunk_exchange last_chunk(soft_cascade *cascade) {
+  cascade_level *level = &cascade->level[0];
+  return (chunk_exchange){cascade, &level->group[level->count - 2], &level->group[level->count - 1]};
+}
 
 static void write_message(const chunk_exchange *chunk, size_t tile, unsigned char *message) {
   const soft_cascade *cascade = chunk->cascade;
@@ -95,42 +116,71 @@ static void read_message(const chunk_exchange *chunk, const unsigned char *messa
   }
 }
 
-static bool is_sent(const chunk_exchange *chunk, size_t tile) {
-  return chunk->owned[tile] && chunk->cascade->touched[tile];
+/* Sends the next messages. */
+static void send_messages(const chunk_exchange *chunk) {
+  cascade_exchange *exchange = &chunk->cascade->exchange;
+  const cascade_level *level = &chunk->cascade->level[0];
+  size_t tiles = (size_t)level->tiles_x * (size_t)level->tiles_y, slot = 0;
+  unsigned char *to = exchange->outgoing + sizeof(post_head);
+  memcpy(exchange->outgoing, &(post_head){.count = exchange->count}, sizeof(post_head));
+  for (; slot < exchange->slots && exchange->tile < tiles; exchange->tile++)
+    if (exchange->sends[exchange->tile])
+      write_message(chunk, exchange->tile, to + slot++ * exchange->slot_bytes);
+  exchange->post.bytes = sizeof(post_head) + slot * exchange->slot_bytes;
+  hl_light_send(exchange->with, &exchange->post);
 }
 
-/* Writes the next messages, from tile *tile on. */
-static void write_messages(const chunk_exchange *chunk, size_t tiles, size_t *tile) {
+static size_t count_of(const cascade_exchange *exchange, int part) {
+  post_head head = {.count = exchange->count};
+  if (part != exchange->with->part)
+    memcpy(&head, exchange->incoming + (size_t)part * exchange->post.most, sizeof head);
+  return head.count;
+}
+
+/* done: messages of each part that have been read. */
+static void read_messages(const chunk_exchange *chunk, size_t done) {
   const cascade_exchange *exchange = &chunk->cascade->exchange;
-  for (size_t slot = 0; slot < exchange->slots && *tile < tiles; (*tile)++)
-    if (is_sent(chunk, *tile))
-      write_message(chunk, *tile, exchange->outgoing + slot++ * exchange->slot_bytes);
-}
-
-static void read_messages(const chunk_exchange *chunk, size_t done, size_t slots) {
-  const cascade_exchange *exchange = &chunk->cascade->exchange;
-  for (int part = 0; part < exchange->with->parts; part++)
-    for (size_t slot = 0; slot < slots && done + slot < exchange->counts[part]; slot++)
-      if (part != exchange->with->part)
-        read_message(chunk, exchange->incoming + ((size_t)part * slots + slot) * exchange->slot_bytes);
-}
-
-bool hl_cascade_exchange_chunk(soft_cascade *cascade, const unsigned char *owned, cascade_group *start,
-                               cascade_group *end) {
-  const cascade_exchange *exchange = &cascade->exchange;
-  const light_exchange *with = exchange->with;
-  const chunk_exchange chunk = {cascade, owned, start, end};
-  size_t tiles = (size_t)cascade->level[0].tiles_x * (size_t)cascade->level[0].tiles_y, tile = 0, most = 0;
-  uint32_t own = 0;
-  for (size_t i = 0; i < tiles; i++) own += is_sent(&chunk, i);
-  with->gather(with->data, &own, sizeof own, exchange->counts);
-  for (int part = 0; part < with->parts; part++)
-    if (exchange->counts[part] > most) most = exchange->counts[part];
-  for (size_t done = 0; done < most; done += exchange->slots) {
-    size_t slots = most - done < exchange->slots ? most - done : exchange->slots;
-    write_messages(&chunk, tiles, &tile);
-    with->gather(with->data, exchange->outgoing, slots * exchange->slot_bytes, exchange->incoming);
-    read_messages(&chunk, done, slots);
+  for (int part = 0; part < exchange->with->parts; part++) {
+    const unsigned char *from = exchange->incoming + (size_t)part * exchange->post.most + sizeof(post_head);
+    size_t count = count_of(exchange, part);
+    for (size_t slot = 0; slot < exchange->slots && done + slot < count; slot++)
+      if (part != exchange->with->part) read_message(chunk, from + slot * exchange->slot_bytes);
   }
-  return most > 0;
+}
+
+void hl_cascade_exchange_send(soft_cascade *cascade, const unsigned char *owned) {
+  cascade_exchange *exchange = &cascade->exchange;
+  const chunk_exchange chunk = last_chunk(cascade);
+  size_t tiles = (size_t)cascade->level[0].tiles_x * (size_t)cascade->level[0].tiles_y;
+  exchange->tile = exchange->count = 0;
+  for (size_t i = 0; i < tiles; i++) {
+    exchange->sends[i] = owned[i] && cascade->touched[i];
+    exchange->count += exchange->sends[i];
+  }
+  exchange->sent = true;
+  send_messages(&chunk);
+}
+
+void hl_cascade_exchange_look(const soft_cascade *cascade) {
+  const cascade_exchange *exchange = &cascade->exchange;
+  if (exchange->sent) hl_light_look(exchange->with, &exchange->post);
+}
+
+void hl_cascade_exchange_receive(soft_cascade *cascade) {
+  cascade_exchange *exchange = &cascade->exchange;
+  if (!exchange->sent) return;
+  const chunk_exchange chunk = last_chunk(cascade);
+  size_t most = 0;
+  hl_light_receive(exchange->with, &exchange->post);
+  for (int part = 0; part < exchange->with->parts; part++)
+    if (count_of(exchange, part) > most) most = count_of(exchange, part);
+  read_messages(&chunk, 0);
+  for (size_t done = exchange->slots; done < most; done += exchange->slots) {
+    send_messages(&chunk);
+    hl_light_receive(exchange->with, &exchange->post);
+    read_messages(&chunk, done);
+  }
+  exchange->sent = false;
+  chunk.end->filled = most > 0;
+  chunk.start->filled = chunk.start->filled || most > 0;
 }

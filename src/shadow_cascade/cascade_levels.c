@@ -288,9 +288,10 @@ static void clear_moments(const soft_cascade *cascade, hl_pool *pool) {
 
 /* Returns the memory filled with zeros, for the next frame. */
 void hl_cascade_end(light_shadow *shadow) {
-  const soft_cascade *cascade = shadow->state;
+  soft_cascade *cascade = shadow->state;
   hl_pool *pool = shadow->setup.pool;
   if (!cascade->begun) return;
+  hl_cascade_exchange_receive(cascade);
   for (int i = 0; i < cascade->level_count; i++)
     hl_pool_run(pool, cascade->level[i].planes, clear_plane, (void *)&cascade->level[i]);
   clear_moments(cascade, pool);

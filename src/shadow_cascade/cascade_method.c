@@ -172,10 +172,12 @@ static void push_chunk(soft_cascade *cascade, const light_shadow *shadow, double
                       crew->functions->absorbed,
                       any};
   hl_pool_run(crew->pool, hl_cascade_row_pieces(level), absorb_piece, &task);
-  end->filled = shadow->owned != NULL
-                    ? hl_cascade_exchange_chunk(cascade, shadow->owned, start, end)
-                    : memchr(cascade->touched, 1, (size_t)level->tiles_x * (size_t)level->tiles_y) != NULL;
-  start->filled = start->filled || end->filled;
+  if (shadow->owned != NULL) {
+    hl_cascade_exchange_send(cascade, shadow->owned);
+  } else {
+    end->filled = memchr(cascade->touched, 1, (size_t)level->tiles_x * (size_t)level->tiles_y) != NULL;
+    start->filled = start->filled || end->filled;
+  }
   level->renewed = true;
   cascade->chunks++;
   if (level->count == level->capacity) hand_over(cascade, crew);
@@ -413,7 +415,11 @@ static bool ends_chunk(const light_shadow *shadow, int sheet) {
 static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, int sheet) {
   soft_cascade *cascade = shadow->state;
   const sheet_stack *sheets = shadow->setup.sheets;
-  if (!ends_chunk(shadow, sheet)) return;
+  if (!ends_chunk(shadow, sheet)) {
+    hl_cascade_exchange_look(cascade);
+    return;
+  }
+  hl_cascade_exchange_receive(cascade);
   double omega = hl_cascade_omega(cascade, hl_sheet_height(sheets, sheet));
   const cascade_crew crew = {shadow->setup.pool, shadow->setup.functions->cascade, &cascade->reads};
   double end = hl_cascade_chunks_on(cascade, omega, 1);

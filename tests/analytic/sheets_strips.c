@@ -218,20 +218,32 @@ static void test_light_of_part(void **state) {
 
 /* ---- renderers that exchange light ---- */
 
-enum { MOST_PARTS = 8 };
+enum { MOST_PARTS = 8, MOST_POSTS = 20000 };
+
+/* What a part has sent. */
+typedef struct sent_post {
+  unsigned char *bytes; /* owned; [count] */
+  size_t count;
+} sent_post;
 
 /* A place where all parts of a picture meet. */
 typedef struct meeting {
   int parts;
   pthread_barrier_t barrier;
   const void *from[MOST_PARTS];
+  pthread_mutex_t lock;
+  pthread_cond_t arrived;
+  sent_post posts[MOST_PARTS][MOST_POSTS];
+  int post_count[MOST_PARTS];
 } meeting;
 
 typedef struct part_thread {
   meeting *meeting;
   light_exchange exchange;
   void (*prepare)(stage *set);
-  uint64_t filled, gathered; /* pixels of the light; bytes of this part */
+  uint64_t filled, gathered; /* pixels of the light; bytes of this part, sent ones too */
+  int looks;                 /* at posts under way */
+  bool spoiled;              /* a post was changed on its way */
   float *pixels;
   int width, height, frames;
   hl_status status;
@@ -246,6 +258,42 @@ static void gather_parts(void *data, const void *from, size_t bytes, void *to) {
   for (int i = 0; i < meeting->parts; i++)
     memcpy((unsigned char *)to + (size_t)i * bytes, meeting->from[i], bytes);
   pthread_barrier_wait(&meeting->barrier); /* nobody changes what others still read */
+}
+
+static void send_post(void *data, const light_post *post) {
+  part_thread *part = data;
+  meeting *meeting = part->meeting;
+  int own = part->exchange.part, *number = post->memory;
+  assert_true(post->bytes <= post->most && meeting->post_count[own] < MOST_POSTS);
+  part->gathered += post->bytes;
+  memset(post->to, 0xff, (size_t)meeting->parts * post->most); /* nobody reads what has not arrived */
+  pthread_mutex_lock(&meeting->lock);
+  *number = meeting->post_count[own]++;
+  sent_post *sent = &meeting->posts[own][*number];
+  *sent = (sent_post){malloc(post->bytes), post->bytes};
+  memcpy(sent->bytes, post->from, post->bytes);
+  pthread_cond_broadcast(&meeting->arrived);
+  pthread_mutex_unlock(&meeting->lock);
+}
+
+static void look_at_post(void *data, const light_post *post) {
+  (void)post;
+  ((part_thread *)data)->looks++;
+}
+
+static void receive_post(void *data, const light_post *post) {
+  part_thread *part = data;
+  meeting *meeting = part->meeting;
+  int number = *(int *)post->memory;
+  pthread_mutex_lock(&meeting->lock);
+  for (int i = 0; i < meeting->parts; i++) {
+    while (meeting->post_count[i] <= number) pthread_cond_wait(&meeting->arrived, &meeting->lock);
+    const sent_post *sent = &meeting->posts[i][number];
+    if (i != part->exchange.part)
+      memcpy((unsigned char *)post->to + (size_t)i * post->most, sent->bytes, sent->count);
+    else part->spoiled = part->spoiled || memcmp(post->from, sent->bytes, sent->count) != 0;
+  }
+  pthread_mutex_unlock(&meeting->lock);
 }
 
 static void *render_exchanging(void *data) {
@@ -275,23 +323,39 @@ static void *render_exchanging(void *data) {
 
 enum { TOGETHER_SIDE = 256 };
 
+/* How parts exchange light: they wait for each other; they go on meanwhile; in posts of a few tiles. */
+typedef enum exchange_way { WAITING, POSTING, LITTLE_POSTS } exchange_way;
+
 /* Renders a picture by so many parts at once; its pixels are the parts' sum. A second frame finds memory that
  * the first has used. threads: [parts]. */
-static void render_together(part_thread *threads, int parts, int width, int height, int frames,
-                            void (*prepare)(stage *set), float *pixels) {
+static void render_together(part_thread *threads, int parts, exchange_way how, int width, int height,
+                            int frames, void (*prepare)(stage *set), float *pixels) {
   static float kept[MOST_PARTS][TOGETHER_SIDE * TOGETHER_SIDE * 4];
-  meeting meeting = {.parts = parts};
+  static meeting meeting;
+  meeting = (struct meeting){.parts = parts};
   pthread_t running[MOST_PARTS];
   assert_true(parts <= MOST_PARTS && width <= TOGETHER_SIDE && height <= TOGETHER_SIDE);
   pthread_barrier_init(&meeting.barrier, NULL, (unsigned)parts);
+  pthread_mutex_init(&meeting.lock, NULL);
+  pthread_cond_init(&meeting.arrived, NULL);
+  light_exchange exchange = {.parts = parts, .gather = gather_parts};
+  if (how != WAITING) {
+    exchange.send = send_post;
+    exchange.look = look_at_post;
+    exchange.receive = receive_post;
+    exchange.post_bytes = sizeof(int);
+    exchange.most_posted = how == LITTLE_POSTS ? 100000 : 0;
+  }
   for (int i = 0; i < parts; i++) {
     threads[i] = (part_thread){.meeting = &meeting,
-                               .exchange = {i, parts, gather_parts, &threads[i]},
+                               .exchange = exchange,
                                .prepare = prepare,
                                .pixels = kept[i],
                                .width = width,
                                .height = height,
                                .frames = frames};
+    threads[i].exchange.part = i;
+    threads[i].exchange.data = &threads[i];
     assert_int_equal(pthread_create(&running[i], NULL, render_exchanging, &threads[i]), 0);
   }
   size_t floats = (size_t)width * (size_t)height * 4;
@@ -299,9 +363,14 @@ static void render_together(part_thread *threads, int parts, int width, int heig
   for (int i = 0; i < parts; i++) {
     pthread_join(running[i], NULL);
     assert_int_equal(threads[i].status, HL_OK);
+    assert_false(threads[i].spoiled);
     for (size_t k = 0; k < floats; k++) pixels[k] += kept[i][k];
   }
+  for (int i = 0; i < parts; i++)
+    for (int n = 0; n < meeting.post_count[i]; n++) free(meeting.posts[i][n].bytes);
   pthread_barrier_destroy(&meeting.barrier);
+  pthread_mutex_destroy(&meeting.lock);
+  pthread_cond_destroy(&meeting.arrived);
 }
 
 static void add_soft_noise(stage *set) {
@@ -359,7 +428,8 @@ static const way soft_ways[] = {
     {"isosurface", exchange_isosurface}, {"mixed", exchange_mixed}};
 enum { SOFT_WAYS = sizeof soft_ways / sizeof *soft_ways };
 
-/* The parts' sum has the bytes of the whole picture. */
+/* The parts' sum has the bytes of the whole picture. Parts that need not wait go on with their work until the
+ * others' light is wanted, a chunk later. */
 static void test_exchange(void **state) {
   (void)state;
   static const int numbers[] = {7, 2, 8, 3, 4, 1};
@@ -377,9 +447,13 @@ static void test_exchange(void **state) {
     stage_close(&set);
     for (size_t i = 0; i < (n == 0 ? sizeof numbers / sizeof *numbers : n == 1 ? 3 : 1); i++) {
       int frames = numbers[i] == 4 ? 2 : 1;
-      render_together(threads, numbers[i], SIDE_X, SIDE_Y, frames, soft_ways[n].draw, sum);
+      exchange_way how = (n + i) % 3 == 0 ? POSTING : (n + i) % 3 == 1 ? WAITING : LITTLE_POSTS;
+      render_together(threads, numbers[i], how, SIDE_X, SIDE_Y, frames, soft_ways[n].draw, sum);
       if (memcmp(sum, whole, sizeof sum) != 0) fail_msg("%s: %d parts differ", soft_ways[n].name, numbers[i]);
-      for (int part = 0; part < numbers[i] && numbers[i] > 1; part++) assert_true(threads[part].gathered > 0);
+      for (int part = 0; part < numbers[i] && numbers[i] > 1; part++) {
+        assert_true(threads[part].gathered > 0);
+        if (how != WAITING) assert_true(threads[part].looks > 0);
+      }
     }
   }
 }
@@ -397,8 +471,8 @@ static void test_exchanged_search(void **state) {
   enum { PARTS = 4, SIDE_X = 100, SIDE_Y = 75, COUNTS = 2 };
   static float whole[SIDE_X * SIDE_Y * 4], sum[SIDE_X * SIDE_Y * 4];
   part_thread alone[1], threads[PARTS];
-  render_together(alone, 1, SIDE_X, SIDE_Y, 1, exchange_hidden, whole);
-  render_together(threads, PARTS, SIDE_X, SIDE_Y, 1, exchange_hidden, sum);
+  render_together(alone, 1, WAITING, SIDE_X, SIDE_Y, 1, exchange_hidden, whole);
+  render_together(threads, PARTS, WAITING, SIDE_X, SIDE_Y, 1, exchange_hidden, sum);
   assert_memory_equal(sum, whole, sizeof sum);
   for (int part = 0; part < PARTS; part++)
     assert_int_equal(threads[part].gathered, COUNTS * sizeof(uint64_t));
@@ -427,8 +501,8 @@ static void test_exchanged_light(void **state) {
   enum { PARTS = 4 };
   static float pixels[TOGETHER_SIDE * TOGETHER_SIDE * 4];
   part_thread alone[1], threads[PARTS];
-  render_together(alone, 1, TOGETHER_SIDE, TOGETHER_SIDE, 1, exchange_cube, pixels);
-  render_together(threads, PARTS, TOGETHER_SIDE, TOGETHER_SIDE, 1, exchange_cube, pixels);
+  render_together(alone, 1, WAITING, TOGETHER_SIDE, TOGETHER_SIDE, 1, exchange_cube, pixels);
+  render_together(threads, PARTS, POSTING, TOGETHER_SIDE, TOGETHER_SIDE, 1, exchange_cube, pixels);
   assert_true(alone[0].gathered == 0 && alone[0].filled > 100000);
   for (int part = 0; part < PARTS; part++) {
     assert_true(threads[part].filled > alone[0].filled / 8);
