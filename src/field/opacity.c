@@ -88,8 +88,8 @@ static uint32_t cells_of(const opacity_job *job, int volume, const float corner[
   return bits;
 }
 
-static void store_depths(opacity_field *field, const int32_t cell[3], int32_t valid,
-                         float depth[3][FIELD_LANES]) {
+static void add_depths(opacity_field *field, const int32_t cell[3], int32_t valid,
+                       float depth[3][FIELD_LANES]) {
   for (int a = 0; a < 3; a++) {
     field_slices s = hl_field_slices(&field->lattice, a);
     const int along[3] = {s.axis, s.across, s.down};
@@ -98,7 +98,7 @@ static void store_depths(opacity_field *field, const int32_t cell[3], int32_t va
       float *to = field->depth[a] +
                   ((size_t)at[a] * (size_t)s.rows + (size_t)at[s.down]) * 3 * (size_t)s.stride +
                   (size_t)at[s.across];
-      for (int k = 0; k < 3; k++) to[k * s.stride] = depth[along[k]][lane];
+      for (int k = 0; k < 3; k++) to[k * s.stride] += depth[along[k]][lane];
     }
   }
 }
@@ -134,7 +134,7 @@ static void find_slab(void *data, size_t index, int worker) {
       if (any == 0) continue;
       float depth[3][FIELD_LANES];
       job->functions->opacity(&block, depth);
-      store_depths(field, at, valid, depth);
+      add_depths(field, at, valid, depth);
     }
 }
 
@@ -152,16 +152,19 @@ static void spread_slab(void *data, size_t index, int worker) {
   const int32_t *count = job->lattice->count;
   const ptrdiff_t step[3] = {1, count[0], (ptrdiff_t)count[0] * count[1]};
   (void)worker;
-  int32_t at[3] = {0, 0, (int32_t)index};
-  for (at[1] = 0; at[1] < count[1]; at[1]++)
-    for (at[0] = 0; at[0] < count[0]; at[0]++) {
-      ptrdiff_t here = at[0] + at[1] * step[1] + at[2] * step[2];
-      int32_t first = at[job->axis] < NEAR_CELLS ? -at[job->axis] : -NEAR_CELLS,
-              beyond = count[job->axis] - 1 - at[job->axis], last = beyond < NEAR_CELLS ? beyond : NEAR_CELLS;
-      unsigned char any = 0;
-      for (int32_t i = first; i <= last; i++) any |= job->from[here + i * step[job->axis]];
-      job->to[here] = any;
+  for (int32_t y = 0; y < count[1]; y++) {
+    const ptrdiff_t row = y * step[1] + (ptrdiff_t)index * step[2];
+    const int32_t at[3] = {0, y, (int32_t)index};
+    unsigned char *to = job->to + row;
+    memset(to, 0, (size_t)count[0]);
+    for (int32_t i = -NEAR_CELLS; i <= NEAR_CELLS; i++) {
+      int32_t first = 0, end = count[0];
+      if (job->axis == 0) first = i < 0 ? -i : 0, end = count[0] - (i > 0 ? i : 0);
+      else if (at[job->axis] + i < 0 || at[job->axis] + i >= count[job->axis]) continue;
+      const unsigned char *from = job->from + row + i * step[job->axis];
+      for (int32_t x = first; x < end; x++) to[x] |= from[x];
     }
+  }
 }
 
 static void spread(opacity_field *field, unsigned char *scratch, hl_pool *pool) {
@@ -192,13 +195,13 @@ static void find_flags(void *data, size_t slice, int worker) {
     size_t at = (slice * (size_t)s.rows + (size_t)row) * (size_t)s.stride;
     const unsigned char *seen = field->seen + slice * step[s.axis] + (size_t)row * step[s.down];
     for (int32_t column = 0; column < s.columns; column += FIELD_LANES) {
-      unsigned char flags = 0;
-      for (int32_t lane = 0; lane < FIELD_LANES && column + lane < s.columns; lane++) {
-        for (int k = 0; k < 3; k++)
-          if (field->depth[job->axis][3 * at + (size_t)(k * s.stride + column + lane)] > 0)
-            flags |= FIELD_MATTER;
+      const float *depth = field->depth[job->axis] + 3 * at + (size_t)column;
+      bool matter = false;
+      for (int k = 0; k < 3; k++)
+        for (int32_t lane = 0; lane < FIELD_LANES; lane++) matter |= depth[k * s.stride + lane] > 0;
+      unsigned char flags = matter ? FIELD_MATTER : 0;
+      for (int32_t lane = 0; lane < FIELD_LANES && column + lane < s.columns; lane++)
         if (seen[(size_t)(column + lane) * step[s.across]]) flags |= FIELD_RECEIVES;
-      }
       field->flags[job->axis][(at + (size_t)column) / FIELD_LANES] = flags;
     }
   }
@@ -219,29 +222,37 @@ typedef struct cover_job {
   opacity_field *field;
   const field_functions *functions;
   float *const *cover;
-  int axis;
 } cover_job;
 
-/* Adds what surfaces take to the depths of a slice. */
-static void add_cover(void *data, size_t slice, int worker) {
+/* The depths of what surfaces take of cells that follow each other; false: nothing. */
+static bool depths_of_cover(const cover_job *job, size_t first, int32_t valid, float depth[3][FIELD_LANES]) {
+  bool any = false;
+  for (int a = 0; a < 3; a++) {
+    float covered[FIELD_LANES] = {0};
+    const float *from = job->cover[a] + first;
+    bool covers = false;
+    for (int32_t lane = 0; lane < FIELD_LANES; lane++) {
+      depth[a][lane] = 0;
+      if (lane < valid) covered[lane] = from[lane];
+      covers |= covered[lane] > 0;
+    }
+    if (covers) job->functions->cover(covered, FIELD_LANES, depth[a]);
+    any |= covers;
+  }
+  return any;
+}
+
+/* Adds what surfaces take to the depths of a slab's cells. */
+static void add_cover(void *data, size_t index, int worker) {
   const cover_job *job = data;
-  const field_lattice *lattice = &job->field->lattice;
-  field_slices s = hl_field_slices(lattice, job->axis);
-  const int along[3] = {s.axis, s.across, s.down};
-  const size_t step[3] = {1, (size_t)lattice->count[0],
-                          (size_t)lattice->count[0] * (size_t)lattice->count[1]};
+  const int32_t *count = job->field->lattice.count;
   (void)worker;
-  for (int32_t row = 0; row < s.rows; row++)
-    for (int k = 0; k < 3; k++) {
-      const float *from = job->cover[along[k]] + slice * step[s.axis] + (size_t)row * step[s.down];
-      float *to = job->field->depth[job->axis] +
-                  ((slice * (size_t)s.rows + (size_t)row) * 3 + (size_t)k) * (size_t)s.stride;
-      for (int32_t column = 0; column < s.columns; column += FIELD_LANES) {
-        float covered[FIELD_LANES] = {0};
-        for (int32_t lane = 0; lane < FIELD_LANES && column + lane < s.columns; lane++)
-          covered[lane] = from[(size_t)(column + lane) * step[s.across]];
-        job->functions->cover(covered, FIELD_LANES, to + column);
-      }
+  for (int32_t y = 0; y < count[1]; y++)
+    for (int32_t x = 0; x < count[0]; x += FIELD_LANES) {
+      const int32_t cell[3] = {x, y, (int32_t)index}, valid = count[0] - x;
+      const size_t first = (index * (size_t)count[1] + (size_t)y) * (size_t)count[0] + (size_t)x;
+      float depth[3][FIELD_LANES];
+      if (depths_of_cover(job, first, valid, depth)) add_depths(job->field, cell, valid, depth);
     }
 }
 
@@ -253,9 +264,8 @@ static void add_surfaces(const field_content *content, const field_functions *fu
     hl_pool_clear(pool, scratch->cover[a], hl_field_cells(&field->lattice) * sizeof *scratch->cover[a]);
   for (size_t i = 0; i < content->surface_count; i++)
     hl_surface_cover(&content->surfaces[i], field, scratch->cover);
-  for (int a = 0; a < 3; a++)
-    hl_pool_run(pool, (size_t)field->lattice.count[a], add_cover,
-                &(cover_job){field, functions, scratch->cover, a});
+  hl_pool_run(pool, (size_t)field->lattice.count[2], add_cover,
+              &(cover_job){field, functions, scratch->cover});
 }
 
 void hl_opacity_find(const field_content *content, const field_functions *functions,

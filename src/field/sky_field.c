@@ -15,23 +15,29 @@
 /* Cells by which look-ups are lifted off a surface. */
 static const double LIFT_CELLS = 0.5;
 
-enum { SIDE = 4, ENDS = 6, SIDE_SAMPLES = 64 };
+/* A cube's face has so many squares along each side: meshes, whose faces are flat and edges sharp, show where
+ * the light of a single direction ends. */
+enum { SIDE = 4, SIDE_OF_MESHES = 6, ENDS = 6, SIDE_SAMPLES = 64 };
 
-_Static_assert(SIDE *SIDE <= FIELD_DIRECTIONS, "room for a cube's face");
+_Static_assert(SIDE_OF_MESHES *SIDE_OF_MESHES <= FIELD_DIRECTIONS, "room for a cube's face");
+
+static int side_of(const sky_content *content) {
+  return content->content.surface_count > 0 ? SIDE_OF_MESHES : SIDE;
+}
 
 /* The directions about one end of an axis. */
 typedef struct sky_end {
-  sky_direction directions[SIDE * SIDE];
-  float basis[SIDE * SIDE][3 * FIELD_HARMONICS];
+  sky_direction directions[FIELD_DIRECTIONS];
+  float basis[FIELD_DIRECTIONS][3 * FIELD_HARMONICS];
   int count; /* those that shine */
 } sky_end;
 
 /* ---- radiance ---- */
 
 /* How often a square is sampled along each side. */
-static int samples_of_sky(const hl_sky *sky) {
+static int samples_of_sky(const hl_sky *sky, int side) {
   if (sky->type != HL_SKY_IMAGE) return 8;
-  int pixels = sky->width / (4 * SIDE) + 1;
+  int pixels = sky->width / (4 * side) + 1;
   return pixels < 8 ? 8 : pixels > SIDE_SAMPLES ? SIDE_SAMPLES : pixels;
 }
 
@@ -50,12 +56,12 @@ static vec3 direction_of(const field_slices *s, int sign, double x, double y, do
 /* Adds the integrals of a square of a face. white: an even sky of radiance 1 in place of the sky. Derived:
  * the solid angle of dx dy in equal angles is (pi / 4)^2 (1 + u^2) (1 + v^2) / (1 + u^2 + v^2)^(3/2), u and v
  * the slopes. */
-static void integrate_square(const hl_sky *sky, const field_slices *s, int sign, int square,
+static void integrate_square(const hl_sky *sky, const field_slices *s, int sign, int side, int square,
                              double integral[3][FIELD_HARMONICS]) {
   const sky_axes axes = hl_sky_axes(sky);
-  int n = samples_of_sky(sky);
-  double step = 2.0 / (SIDE * n), left = -1 + 2.0 / SIDE * (square % SIDE),
-         top = -1 + 2.0 / SIDE * (square / SIDE);
+  int n = samples_of_sky(sky, side);
+  double step = 2.0 / (side * n), left = -1 + 2.0 / side * (square % side),
+         top = -1 + 2.0 / side * (square / side);
   memset(integral, 0, 3 * sizeof *integral);
   for (int i = 0; i < n * n; i++) {
     double slope[2], radiance[3], harmonics[FIELD_HARMONICS];
@@ -86,11 +92,11 @@ static void set_taps(double u, double v, int32_t plane_stride, sky_direction *di
 static void set_up_end(const sky_content *content, int end_index, int first, int channels,
                        int32_t plane_stride, sky_end *end) {
   field_slices s = hl_field_slices(&content->lattice, end_index / 2);
-  int sign = end_index % 2 ? -1 : 1;
+  int sign = end_index % 2 ? -1 : 1, side = side_of(content);
   end->count = 0;
-  for (int square = 0; square < SIDE * SIDE; square++) {
+  for (int square = 0; square < side * side; square++) {
     double integral[3][FIELD_HARMONICS], slope[2];
-    integrate_square(content->sky, &s, sign, square, integral);
+    integrate_square(content->sky, &s, sign, side, square, integral);
     float *basis = end->basis[end->count];
     bool shines = false;
     for (int c = 0; c < channels; c++)
@@ -101,8 +107,8 @@ static void set_up_end(const sky_content *content, int end_index, int first, int
     if (!shines) continue;
     sky_direction *direction = &end->directions[end->count++];
     *direction = (sky_direction){.basis = basis};
-    (void)direction_of(&s, sign, -1 + (2 * (square % SIDE) + 1.0) / SIDE,
-                       -1 + (2 * (square / SIDE) + 1.0) / SIDE, slope);
+    (void)direction_of(&s, sign, -1 + (2 * (square % side) + 1.0) / side,
+                       -1 + (2 * (square / side) + 1.0) / side, slope);
     set_taps(slope[0], slope[1], plane_stride, direction);
   }
 }
@@ -122,21 +128,28 @@ static void move_row(void *data, size_t row, int worker) {
 
 /* The light of one direction in one slice, with a border of light that nothing hides. */
 typedef struct light_planes {
-  int32_t stride; /* of the longest rows */
+  int32_t stride; /* of rows */
   size_t plane;   /* floats of a plane */
-  float *planes;  /* [2][SIDE * SIDE][plane] */
+  size_t half;    /* floats of the planes of all directions */
 } light_planes;
 
-static light_planes planes_of(const field_lattice *lattice) {
-  light_planes planes = {.stride = 0};
-  int32_t rows = 0;
-  for (int a = 0; a < 3; a++) {
-    field_slices s = hl_field_slices(lattice, a);
-    if (s.stride + 2 * FIELD_LANES > planes.stride) planes.stride = s.stride + 2 * FIELD_LANES;
-    if (s.rows + 2 > rows) rows = s.rows + 2;
-  }
-  planes.plane = (size_t)planes.stride * (size_t)rows;
+static light_planes planes_of(const sky_content *content, const field_slices *s) {
+  const size_t side = (size_t)side_of(content);
+  light_planes planes = {.stride = s->stride + 2 * FIELD_LANES};
+  planes.plane = (size_t)planes.stride * (size_t)(s->rows + 2);
+  planes.half = side * side * planes.plane;
   return planes;
+}
+
+/* The floats of the largest axis's planes, of two slices. */
+static size_t most_light(const sky_content *content) {
+  size_t most = 0;
+  for (int a = 0; a < 3; a++) {
+    field_slices s = hl_field_slices(&content->lattice, a);
+    size_t half = planes_of(content, &s).half;
+    most = half > most ? half : most;
+  }
+  return 2 * most;
 }
 
 /* The field's light: which cells, and which of their harmonics. */
@@ -145,16 +158,17 @@ typedef struct sky_target {
   size_t step[3]; /* floats from cell to cell */
 } sky_target;
 
-static void sweep_end(const sky_content *content, const opacity_field *opacity, const light_planes *planes,
+/* light: [2][directions][plane]. */
+static void sweep_end(const sky_content *content, const opacity_field *opacity, float *light,
                       const sky_target *target, int end_index, int first, int channels,
                       const field_functions *functions, hl_pool *pool) {
   field_slices s = hl_field_slices(&content->lattice, end_index / 2);
+  const light_planes planes = planes_of(content, &s);
   sky_end end;
-  set_up_end(content, end_index, first, channels, planes->stride, &end);
+  set_up_end(content, end_index, first, channels, planes.stride, &end);
   const bool adds_passing = end_index % 2 == 0 && first == 0;
   if (end.count == 0 && !adds_passing) return;
-  size_t half = SIDE * SIDE * planes->plane;
-  hl_pool_fill(pool, planes->planes, 2 * half, 1);
+  hl_pool_fill(pool, light, 2 * planes.half, 1);
   for (int32_t i = 0; i < s.slices && !hl_pool_cancelled(pool); i++) {
     size_t slice = (size_t)(end_index % 2 ? i : s.slices - 1 - i),
            at = slice * (size_t)s.rows * (size_t)s.stride;
@@ -166,10 +180,10 @@ static void sweep_end(const sky_content *content, const opacity_field *opacity, 
                         .flags = opacity->flags[s.axis] + at / FIELD_LANES,
                         .stride = s.stride,
                         .columns = s.columns,
-                        .old = planes->planes + (i % 2 ? half : 0),
-                        .left = planes->planes + (i % 2 ? 0 : half),
-                        .plane_stride = planes->stride,
-                        .plane = planes->plane,
+                        .old = light + (i % 2 ? planes.half : 0),
+                        .left = light + (i % 2 ? 0 : planes.half),
+                        .plane_stride = planes.stride,
+                        .plane = planes.plane,
                         .field = target->field + slice * target->step[s.axis],
                         .across = target->step[s.across],
                         .down = target->step[s.down],
@@ -189,7 +203,7 @@ static size_t field_floats(const sky_content *content) {
 
 typedef struct passing_arrays {
   opacity_field opacity;
-  light_planes planes;
+  float *light; /* of sweep_end() */
   opacity_scratch scratch;
   field_matter *matter;
 } passing_arrays;
@@ -197,8 +211,7 @@ typedef struct passing_arrays {
 static void lay_out(const sky_content *content, passing_arrays *arrays, hl_layout *layout) {
   arrays->opacity.lattice = content->lattice;
   hl_opacity_lay_out(content->content.surface_count > 0, &arrays->opacity, &arrays->scratch, layout);
-  arrays->planes = planes_of(&content->lattice);
-  arrays->planes.planes = hl_layout_take(layout, 2 * SIDE * SIDE * arrays->planes.plane, sizeof(float));
+  arrays->light = hl_layout_take(layout, most_light(content), sizeof(float));
   arrays->matter = hl_layout_take(layout, (size_t)content->content.count, sizeof *arrays->matter);
 }
 
@@ -235,18 +248,19 @@ static void make(const sky_content *content, passing_arrays *arrays, const field
     hl_opacity_find(&matter, functions, &arrays->scratch, &arrays->opacity, pool);
     target.field = field + pass * FIELD_HARMONICS;
     for (int end = 0; end < ENDS; end++)
-      sweep_end(content, &arrays->opacity, &arrays->planes, &target, end, pass,
-                colored ? 1 : content->channels, functions, pool);
+      sweep_end(content, &arrays->opacity, arrays->light, &target, end, pass, colored ? 1 : content->channels,
+                functions, pool);
   }
 }
 
 static void find_open(const sky_content *content, sky_light *light) {
   double sum[3][FIELD_HARMONICS] = {{0}};
+  const int side = side_of(content);
   for (int end = 0; end < ENDS; end++) {
     field_slices s = hl_field_slices(&content->lattice, end / 2);
-    for (int square = 0; square < SIDE * SIDE; square++) {
+    for (int square = 0; square < side * side; square++) {
       double integral[3][FIELD_HARMONICS];
-      integrate_square(content->sky, &s, end % 2 ? -1 : 1, square, integral);
+      integrate_square(content->sky, &s, end % 2 ? -1 : 1, side, square, integral);
       for (int c = 0; c < 3; c++)
         for (int k = 0; k < FIELD_HARMONICS; k++) sum[c][k] += integral[c][k];
     }

@@ -157,6 +157,47 @@ static void test_meshes(void **state) {
   }
 }
 
+/* The part of the light of a whole sky that a rectangle hides whose corner is above a square, parallel to it:
+ * x and y its sides, by its height (the form factor of a corner). */
+static double hidden_by_corner(double x, double y) {
+  double a = sqrt(1 + x * x), b = sqrt(1 + y * y);
+  return (x / a * atan(y / a) + y / b * atan(x / b)) / (2 * HL_PI);
+}
+
+/* Below the edge of a pane light grows evenly: steps do not show where the light of one direction ends. */
+static void test_edge_of_a_mesh(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  const double height = 12, side = 40;
+  double squares = 0;
+  stage set;
+  hl_scene_mesh meshes[2];
+  open_sky(&set);
+  stage_set_opacity(&set, stage_add_box(&set, (vec3){-0.5, -0.5, -0.5}, (vec3){0.5, 0.5, 0.5}), 0, 1);
+  for (int m = 0; m < 2; m++) {
+    hl_scene_mesh_defaults(&meshes[m]);
+    meshes[m].mesh = m == 0 ? stage_make_quad(&set, (vec3){0, 0, 0}, (vec3){12, 0, 0}, (vec3){0, 12, 0})
+                            : stage_make_quad(&set, (vec3){side / 2, 0, height}, (vec3){side / 2, 0, 0},
+                                              (vec3){0, side, 0});
+    meshes[m].material = (hl_material){.diffuse = 1};
+    for (int c = 0; c < 3; c++) meshes[m].color[c] = 1;
+  }
+  meshes[1].visible = 0;
+  set.scene.meshes = meshes;
+  set.scene.mesh_count = 2;
+  stage_render_sheets(&set, pixels);
+  for (int column = 1; column < SIDE - 1; column++) {
+    double x = (column + 0.5 - SIDE / 2) * set.scene.camera.height / SIDE,
+           hidden = 2 * (hidden_by_corner((side - x) / height, side / height) -
+                         hidden_by_corner(-x / height, side / height)),
+           d = (double)pixels[4 * (SIDE / 2 * SIDE + column)] - (1 - hidden);
+    squares += d * d / (SIDE - 2);
+  }
+  assert_near(sqrt(squares), 0, 0.025);
+  for (int m = 0; m < 2; m++) hl_mesh_release(meshes[m].mesh);
+  stage_close(&set);
+}
+
 /* The face that a cut leaves of even matter sees half of the sky, as any plane: it gets the sky's radiance. A
  * clip box and a plane leave the same face. */
 static void test_cut_faces(void **state) {
@@ -240,8 +281,9 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_thin_haze),  cmocka_unit_test(test_slab),
       cmocka_unit_test(test_hemisphere), cmocka_unit_test(test_against_the_reference),
-      cmocka_unit_test(test_meshes),     cmocka_unit_test(test_same_bytes),
-      cmocka_unit_test(test_kept_light), cmocka_unit_test(test_cut_faces),
+      cmocka_unit_test(test_meshes),     cmocka_unit_test(test_edge_of_a_mesh),
+      cmocka_unit_test(test_same_bytes), cmocka_unit_test(test_kept_light),
+      cmocka_unit_test(test_cut_faces),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
