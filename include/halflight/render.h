@@ -68,7 +68,8 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_share(hl_renderer *renderer, int par
 
 /* The same for the processes of an MPI job: part hl_ranks_rank() of hl_ranks_size(). They tell each other of
  * the light that they work through, so that each works through its part's soft shadows alone where the method
- * is HL_SOFT_CASCADE, too; bands then follow the brightest of these lights, too. From now on rendering is
+ * is HL_SOFT_CASCADE, too; bands then follow the brightest of these lights, too, and a part may be of two or
+ * three. From now on rendering is
  * collective: every rank renders the same scenes, in the same order. ranks: borrowed, while the renderer
  * renders; null: whole pictures. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_share_over_ranks(hl_renderer *renderer, hl_ranks *ranks,

@@ -251,7 +251,7 @@ static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description 
                    (uintptr_t)request->pixels % 64 == 0;
   uint64_t bytes = hl_pixels_bytes(&work->frame, work->in_place ? 0 : work->sweep_count, request->layers);
   bytes += hl_maximum_bytes(scene, work->tiles);
-  if (renderer->parts > 1) bytes += hl_share_bytes(scene->width, scene->height);
+  if (renderer->parts > 1) bytes += hl_share_bytes(scene->width, scene->height, renderer->parts);
   if (work->in_place) bytes += threads * tile_row * sizeof *work->tile_rows;
   /* the blocks that one of several sweeps returns rarely fit the next one */
   renderer->reserve.keeps = work->sweep_count == 1;
@@ -324,7 +324,7 @@ static hl_status update_contact(hl_renderer *renderer, const hl_scene_descriptio
 
 /* Finds the part of the picture that this renderer makes. */
 static hl_status share_picture(hl_renderer *renderer, frame_work *work, int volumes, hl_error *error) {
-  const share_content content = {&work->frame, work->grids, volumes};
+  const share_content content = {&work->frame, work->grids, volumes, &work->sweeps[0].sheets};
   work->share = (picture_share){.part = renderer->part,
                                 .parts = renderer->parts,
                                 .exchange = renderer->exchange.gather != NULL ? &renderer->exchange : NULL};

@@ -15,18 +15,34 @@ typedef struct share_cell {
   int32_t index;
 } share_cell;
 
+/* Bands of a part, at most; depths that are told apart. */
+enum { MOST_BANDS = 3, DEPTHS = 32 };
+
+/* The arrays that a picture is cut in. */
+typedef struct share_arrays {
+  share_cell *cells;                    /* [cells] */
+  double *each;                         /* [cells], by index; the weight of each brick under a cell */
+  int32_t *cut[MOST_BANDS];             /* [cells], by index; parts of 1, 2, ... bands */
+  double (*depths[MOST_BANDS])[DEPTHS]; /* [parts]; the weight of such parts at each depth */
+} share_arrays;
+
 static size_t cells_of(const picture_share *share) { return (size_t)share->cells_x * (size_t)share->cells_y; }
 
-static void lay_out(picture_share *share, share_cell **cells, hl_layout *layout) {
+static void lay_out(picture_share *share, share_arrays *arrays, hl_layout *layout) {
   share->part_of = hl_layout_take(layout, cells_of(share), sizeof *share->part_of);
-  *cells = hl_layout_take(layout, cells_of(share), sizeof **cells);
+  arrays->cells = hl_layout_take(layout, cells_of(share), sizeof *arrays->cells);
+  arrays->each = hl_layout_take(layout, cells_of(share), sizeof *arrays->each);
+  for (int i = 0; i < MOST_BANDS; i++) {
+    arrays->cut[i] = hl_layout_take(layout, cells_of(share), sizeof *arrays->cut[i]);
+    arrays->depths[i] = hl_layout_take(layout, (size_t)share->parts, sizeof *arrays->depths[i]);
+  }
 }
 
-uint64_t hl_share_bytes(int width, int height) {
-  picture_share share = {.cells_x = hl_tiles(width), .cells_y = hl_tiles(height)};
-  share_cell *cells;
+uint64_t hl_share_bytes(int width, int height, int parts) {
+  picture_share share = {.cells_x = hl_tiles(width), .cells_y = hl_tiles(height), .parts = parts};
+  share_arrays arrays;
   hl_layout counted = {0};
-  lay_out(&share, &cells, &counted);
+  lay_out(&share, &arrays, &counted);
   return counted.bytes;
 }
 
@@ -123,37 +139,60 @@ static void set_keys(const frame *frame, const picture_share *share, share_cell 
 enum { SHARE_BRICKS = 1 << 18 };
 static const double LEAST_WEIGHT = 0.1;
 
-static void weigh_point(const frame *frame, const picture_share *share, vec3 point, double weight,
-                        share_cell *cells) {
+/* What is done with a brick over a cell. height: of its centre, along the sheets' normal. */
+typedef void brick_action(const share_content *content, const picture_share *share, share_arrays *arrays,
+                          size_t cell, double height, double bricks);
+
+/* The cell of a point of the frame; false: it lies beside the picture. */
+static bool cell_of(const frame *frame, const picture_share *share, vec3 point, size_t *cell) {
   double uv[2], side = (double)TILE * share->oversampling;
-  if (!hl_view_project(&frame->eye, point, uv)) return;
-  if (!(uv[0] >= 0 && uv[1] >= 0 && uv[0] < share->cells_x * side && uv[1] < share->cells_y * side)) return;
-  cells[(size_t)(uv[1] / side) * (size_t)share->cells_x + (size_t)(uv[0] / side)].weight += weight;
+  if (!hl_view_project(&frame->eye, point, uv)) return false;
+  if (!(uv[0] >= 0 && uv[1] >= 0 && uv[0] < share->cells_x * side && uv[1] < share->cells_y * side))
+    return false;
+  *cell = (size_t)(uv[1] / side) * (size_t)share->cells_x + (size_t)(uv[0] / side);
+  return true;
 }
 
-/* Adds the visible bricks of a grid; of all bricks, one in `step` is looked at. Their list would not do:
- * where voxels are in pages it has more of them, which depends on a process's memory. */
-static void weigh_bricks(const frame *frame, const picture_share *share, const grid *grid, size_t step,
-                         share_cell *cells) {
-  size_t bricks = grid->relevant_count > 0 ? hl_grid_bricks(grid) : 0;
+/* Acts on the visible bricks of a grid; of all bricks, one in `step` is looked at, for so many. Their list
+ * would not do: where voxels are in pages it has more of them, which depends on a process's memory. */
+static void visit_grid(const share_content *content, const picture_share *share, const grid *grid,
+                       size_t step, brick_action *act, share_arrays *arrays) {
+  size_t bricks = grid->relevant_count > 0 ? hl_grid_bricks(grid) : 0, cell;
   for (size_t at = step / 2; at < bricks; at += step) {
     int32_t b[3];
     double centre[3], half[3];
     if (!grid->relevant[at]) continue;
     hl_brick_coordinates(grid, (uint32_t)at, b);
     hl_brick_bounds(grid, b, 0, centre, half);
-    weigh_point(frame, share, affine3_apply(grid->index_to_frame, vec3_of(centre)), (double)step, cells);
+    vec3 point = affine3_apply(grid->index_to_frame, vec3_of(centre));
+    if (cell_of(content->frame, share, point, &cell))
+      act(content, share, arrays, cell, vec3_dot(content->sheets->normal, point), (double)step);
   }
 }
 
-static void weigh_cells(const share_content *content, const picture_share *share, share_cell *cells) {
+static void visit_bricks(const share_content *content, const picture_share *share, brick_action *act,
+                         share_arrays *arrays) {
   size_t bricks = 0;
-  double sum = 0;
   for (int g = 0; g < content->grid_count; g++) bricks += hl_grid_bricks(&content->grids[g]);
   for (int g = 0; g < content->grid_count; g++) /* an odd step does not stay in one column of bricks */
-    weigh_bricks(content->frame, share, &content->grids[g], bricks / SHARE_BRICKS | 1, cells);
+    visit_grid(content, share, &content->grids[g], bricks / SHARE_BRICKS | 1, act, arrays);
+}
+
+static void count_brick(const share_content *content, const picture_share *share, share_arrays *arrays,
+                        size_t cell, double height, double bricks) {
+  (void)content, (void)share, (void)height;
+  arrays->cells[cell].weight += bricks;
+}
+
+/* Before the cells are put in order. */
+static void weigh_cells(const share_content *content, const picture_share *share, share_arrays *arrays) {
+  share_cell *cells = arrays->cells;
+  double sum = 0;
+  visit_bricks(content, share, count_brick, arrays);
   for (size_t i = 0; i < cells_of(share); i++) {
-    cells[i].weight = sqrt(cells[i].weight);
+    double bricks = cells[i].weight;
+    cells[i].weight = sqrt(bricks);
+    arrays->each[i] = bricks > 0 ? cells[i].weight / bricks : 0;
     sum += cells[i].weight;
   }
   double least = fmax(LEAST_WEIGHT * sum / (double)cells_of(share), 1e-9);
@@ -168,14 +207,94 @@ static int compare_cells(const void *a, const void *b) {
   return first->index < second->index ? -1 : 1;
 }
 
-/* Gives each cell, in their order, to the part in which the middle of its weight lies. */
-static void cut_bands(picture_share *share, const share_cell *cells) {
+/* Gives each cell, in their order, to the band in which the middle of its weight lies, and bands to parts:
+ * forwards and backwards by turns, so that the last part has two bands side by side, and the first one, too,
+ * where there are three. */
+static void cut_bands(const picture_share *share, const share_cell *cells, int bands, int32_t *part_of) {
   double sum = 0, before = 0;
+  const int parts = share->parts;
   for (size_t i = 0; i < cells_of(share); i++) sum += cells[i].weight;
   for (size_t i = 0; i < cells_of(share); before += cells[i++].weight) {
-    int part = (int)((before + cells[i].weight / 2) / sum * share->parts);
-    share->part_of[cells[i].index] = part < share->parts ? part : share->parts - 1;
+    int band = (int)((before + cells[i].weight / 2) / sum * parts * bands);
+    if (band >= parts * bands) band = parts * bands - 1;
+    part_of[cells[i].index] = band / parts % 2 == 0 ? band % parts : parts - 1 - band % parts;
   }
+}
+
+/* ---- how many bands ---- */
+
+/* Adds a brick to what its parts have at its depth. */
+static void place_brick(const share_content *content, const picture_share *share, share_arrays *arrays,
+                        size_t cell, double height, double bricks) {
+  (void)share;
+  const sheet_stack *sheets = content->sheets;
+  double depth = (height - sheets->first) / (sheets->spacing * sheets->count) * DEPTHS;
+  int at = depth > 0 ? depth < DEPTHS ? (int)depth : DEPTHS - 1 : 0;
+  for (int i = 0; i < MOST_BANDS; i++)
+    arrays->depths[i][arrays->cut[i][cell]][at] += bricks * arrays->each[cell];
+}
+
+/* Whether a cell lies beside one of another part. */
+static bool is_at_border(const picture_share *share, const int32_t *part_of, int32_t index) {
+  int x = index % share->cells_x, y = index / share->cells_x;
+  int32_t own = part_of[index];
+  return (x > 0 && part_of[index - 1] != own) || (y > 0 && part_of[index - share->cells_x] != own) ||
+         (x + 1 < share->cells_x && part_of[index + 1] != own) ||
+         (y + 1 < share->cells_y && part_of[index + share->cells_x] != own);
+}
+
+/* What parts of so many bands would cost, in units of a part's mean: the slowest ones of all depths, for
+ * which the others wait; and half of the cells at borders once more, for light that several parts work
+ * through (measured: docs/performance.md). */
+static double cost_of(const picture_share *share, const share_arrays *arrays, int bands) {
+  const int32_t *part_of = arrays->cut[bands - 1];
+  double(*depths)[DEPTHS] = arrays->depths[bands - 1], all = 0, slowest = 0, cells = 0, border = 0;
+  for (int depth = 0; depth < DEPTHS; depth++) {
+    double most = 0;
+    for (int part = 0; part < share->parts; part++) {
+      most = fmax(most, depths[part][depth]);
+      all += depths[part][depth];
+    }
+    slowest += most;
+  }
+  for (size_t i = 0; i < cells_of(share); i++) {
+    cells += arrays->cells[i].weight;
+    if (is_at_border(share, part_of, arrays->cells[i].index)) border += arrays->cells[i].weight;
+  }
+  return (all > 0 ? slowest * share->parts / all : 1) + border / (2 * cells);
+}
+
+/* More bands must be worth so much: the estimate is rough. */
+static const double LEAST_GAIN = 0.1;
+
+static int choose_bands(const share_content *content, const picture_share *share, share_arrays *arrays) {
+  int chosen = 1;
+  for (int i = 0; i < MOST_BANDS; i++) {
+    cut_bands(share, arrays->cells, i + 1, arrays->cut[i]);
+    memset(arrays->depths[i], 0, (size_t)share->parts * sizeof *arrays->depths[i]);
+  }
+  visit_bricks(content, share, place_brick, arrays);
+  double least = cost_of(share, arrays, 1);
+  for (int bands = 2; bands <= MOST_BANDS; bands++) {
+    double cost = cost_of(share, arrays, bands);
+    if (cost < least * (1 - LEAST_GAIN)) least = cost, chosen = bands;
+  }
+  return chosen;
+}
+
+/* Whether any volume lies in pages over ranks. */
+static bool lies_over_ranks(const share_content *content) {
+  for (int g = 0; g < content->grid_count; g++)
+    if (content->grids[g].pages != NULL && content->grids[g].pages->version != NULL) return true;
+  return false;
+}
+
+/* Whether parts wait for each other from depth to depth. Where volumes lie over ranks, parts of one band need
+ * the fewest pages. */
+static bool waits_at_depths(const share_content *content, const picture_share *share) {
+  const light_source *light = brightest(content->frame, share);
+  const shadow_method *method = light != NULL ? hl_shadow_method(light) : NULL;
+  return method != NULL && method->exchanges && share->exchange != NULL && !lies_over_ranks(content);
 }
 
 /* Whether parts are bands. Rows of cells in turn have more equal shares of the work; but bands need less
@@ -183,12 +302,10 @@ static void cut_bands(picture_share *share, const share_cell *cells) {
  * lie over ranks. Whether they lie in a scratch file must not matter: that is each process's own affair. */
 static bool is_cut_in_bands(const share_content *content, const picture_share *share) {
   const frame *frame = content->frame;
-  bool soft = false, pages = false;
+  bool soft = false;
   if (brightest(frame, share) != NULL) return true;
   for (int i = 0; i < frame->light_count; i++) soft = soft || frame->lights[i].shadows == HL_SHADOWS_SOFT;
-  for (int g = 0; g < content->grid_count; g++)
-    pages = pages || (content->grids[g].pages != NULL && content->grids[g].pages->version != NULL);
-  return pages && !soft;
+  return lies_over_ranks(content) && !soft;
 }
 
 static void take_turns(picture_share *share) {
@@ -199,25 +316,26 @@ static void take_turns(picture_share *share) {
 hl_status hl_share_create(hl_context *context, const share_content *content, picture_share *share,
                           hl_error *error) {
   const frame *frame = content->frame;
-  share_cell *cells;
+  share_arrays arrays;
   hl_layout counted = {0};
   if (share->parts == 1) return HL_OK;
   share->oversampling = frame->oversampling;
   share->cells_x = hl_tiles(frame->width / frame->oversampling);
   share->cells_y = hl_tiles(frame->height / frame->oversampling);
-  lay_out(share, &cells, &counted);
+  lay_out(share, &arrays, &counted);
   share->part_of = NULL;
   share->memory = hl_allocate(context, counted.bytes, 1);
   if (share->memory == NULL) return hl_fail_memory(error, counted.bytes, "a picture's parts");
-  lay_out(share, &cells, &(hl_layout){.base = share->memory});
+  lay_out(share, &arrays, &(hl_layout){.base = share->memory});
   if (!is_cut_in_bands(content, share)) {
     take_turns(share);
     return HL_OK;
   }
-  set_keys(frame, share, cells);
-  weigh_cells(content, share, cells);
-  qsort(cells, cells_of(share), sizeof *cells, compare_cells);
-  cut_bands(share, cells);
+  set_keys(frame, share, arrays.cells);
+  weigh_cells(content, share, &arrays);
+  qsort(arrays.cells, cells_of(share), sizeof *arrays.cells, compare_cells);
+  int bands = waits_at_depths(content, share) ? choose_bands(content, share, &arrays) : 1;
+  cut_bands(share, arrays.cells, bands, share->part_of);
   return HL_OK;
 }
 

@@ -4,8 +4,9 @@
  * planes are lines through the light's image, or parallel lines where that is infinitely far away. So a band
  * of the picture along such lines looks up a band of the light's shadow buffer alone, over all sheets: each
  * part of a picture is such a band, of the brightest light whose method lets parts work through their own
- * light. Bands are made of whole cells, and cut so that about as much matter lies under each. Where all light
- * is needed anyway, parts are rows of cells in turn. */
+ * light. Bands are made of whole cells, and cut so that about as much matter lies under each. Where parts
+ * wait for each other from depth to depth, each may be of two or three bands, which have more equal shares of
+ * the matter at each depth. Where all light is needed anyway, parts are rows of cells in turn. */
 #ifndef HL_RENDER_SHARE_H
 #define HL_RENDER_SHARE_H
 
@@ -29,10 +30,11 @@ typedef struct share_content {
   const frame *frame; /* its eye and lights must be set up */
   const grid *grids;  /* [grid_count]; the frame's */
   int grid_count;
+  const sheet_stack *sheets; /* of the frame's first sweep */
 } share_content;
 
 /* The bytes that hl_share_create() allocates for a picture of so many pixels. */
-uint64_t hl_share_bytes(int width, int height);
+uint64_t hl_share_bytes(int width, int height, int parts);
 
 /* Shares a picture out; the same on every machine. share: its part and parts are set; with one part nothing
  * is done. Owned by the caller; release it after a failure, too. */

@@ -512,6 +512,43 @@ static void test_exchanged_light(void **state) {
   }
 }
 
+/* Matter before the picture's upper half, near the light, and before its lower half, far from it. */
+static void exchange_two_depths(stage *set) {
+  enum { WIDE = 40, HIGH = 20, DEEP = 4 };
+  static float voxels[WIDE * HIGH * DEEP];
+  const size_t n[3] = {WIDE, HIGH, DEEP};
+  const double spacing[3] = {1, 1, 1};
+  for (size_t v = 0; v < sizeof voxels / sizeof *voxels; v++) voxels[v] = 1;
+  for (int half = 0; half < 2; half++) {
+    hl_scene_volume *made = stage_add_grid(
+        set, n, spacing, half == 0 ? (vec3){-19.5, 0.5, 14} : (vec3){-19.5, -19.5, -18}, voxels);
+    stage_set_opacity(set, made, 0.001, 1);
+  }
+  stage_look(set, (vec3){0, 0, 90}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  set->scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
+  set->scene.camera.height = 40;
+  stage_add_directional(set, (vec3){1, 0, -1})->angular_diameter_deg = 10;
+  soften(set, HL_SOFT_CASCADE);
+}
+
+/* Of two parts of a band each one would wait for the other at all depths. So they have bands of both halves
+ * of the picture: about as many rows of each. */
+static void test_bands_at_depths(void **state) {
+  (void)state;
+  enum { PARTS = 2, HALF = TOGETHER_SIDE / 2 };
+  static float pixels[TOGETHER_SIDE * TOGETHER_SIDE * 4];
+  part_thread threads[PARTS];
+  render_together(threads, PARTS, POSTING, TOGETHER_SIDE, TOGETHER_SIDE, 1, exchange_two_depths, pixels);
+  for (int part = 0; part < PARTS; part++)
+    for (int half = 0; half < 2; half++) {
+      int rows = 0;
+      for (int y = half * HALF; y < (half + 1) * HALF; y++)
+        rows += threads[part].pixels[((size_t)y * TOGETHER_SIDE + HALF) * 4 + 3] > 0;
+      if (rows < HALF * 3 / 8 || rows > HALF * 5 / 8)
+        fail_msg("part %d has %d of %d rows of half %d", part, rows, HALF, half);
+    }
+}
+
 /* A mesh of balls within the noise: there is matter in the dark behind them. */
 static hl_mesh *add_balls(stage *set, hl_scene_mesh *balls) {
   static const float spheres[3][4] = {{0, 0, 0, 3}, {4, -5, 2, 2}, {-5, 3, -3, 2.5f}};
@@ -608,6 +645,7 @@ int main(void) {
                                      cmocka_unit_test(test_light_of_part),
                                      cmocka_unit_test(test_exchange),
                                      cmocka_unit_test(test_exchanged_light),
+                                     cmocka_unit_test(test_bands_at_depths),
                                      cmocka_unit_test(test_exchanged_search),
                                      cmocka_unit_test(test_divided),
                                      cmocka_unit_test(test_next_frame),
