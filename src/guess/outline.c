@@ -144,12 +144,48 @@ vec3 hl_even_direction(int n, int count) {
   return (vec3){across * cos(angle), across * sin(angle), z};
 }
 
-static size_t farthest(const hl_outline *outline, vec3 along) {
+/* A box around so many points that follow each other, and the greatest radius of any. */
+enum { POINTS_A_BOX = 64 };
+typedef struct points_box {
+  double low[3], high[3], radius;
+} points_box;
+
+static size_t boxes_of(const hl_outline *outline) {
+  return (outline->count + POINTS_A_BOX - 1) / POINTS_A_BOX;
+}
+
+static void bound_points(const hl_outline *outline, points_box *boxes) {
+  for (size_t b = 0; b < boxes_of(outline); b++)
+    boxes[b] = (points_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
+  for (size_t n = 0; n < outline->count; n++) {
+    points_box *box = &boxes[n / POINTS_A_BOX];
+    vec3_bound_ball(outline->point[n], 0, box->low, box->high);
+    box->radius = fmax(box->radius, outline->radius[n]);
+  }
+}
+
+/* As far as a box's points may lie along a unit vector, with more than rounding adds. */
+static double farthest_of_box(const points_box *box, vec3 along) {
+  const double way[3] = {along.x, along.y, along.z};
+  double sum = box->radius, size = box->radius;
+  for (int a = 0; a < 3; a++) {
+    sum += way[a] > 0 ? box->high[a] * way[a] : box->low[a] * way[a];
+    size += fmax(fabs(box->low[a]), fabs(box->high[a]));
+  }
+  return sum + 1e-12 * size;
+}
+
+/* The first of the points that lie farthest. */
+static size_t farthest(const hl_outline *outline, const points_box *boxes, vec3 along) {
   size_t best = 0;
   double most = -INFINITY;
-  for (size_t n = 0; n < outline->count; n++) {
-    double here = vec3_dot(outline->point[n], along) + outline->radius[n];
-    if (here > most) most = here, best = n;
+  for (size_t b = 0; b < boxes_of(outline); b++) {
+    size_t first = b * POINTS_A_BOX, left = outline->count - first;
+    if (farthest_of_box(&boxes[b], along) <= most) continue;
+    for (size_t n = first; n < first + (left < POINTS_A_BOX ? left : POINTS_A_BOX); n++) {
+      double here = vec3_dot(outline->point[n], along) + outline->radius[n];
+      if (here > most) most = here, best = n;
+    }
   }
   return best;
 }
@@ -157,13 +193,17 @@ static size_t farthest(const hl_outline *outline, vec3 along) {
 hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_error *error) {
   hl_status status = HL_OK;
   *thinned = (hl_outline){.context = outline->context};
+  points_box *boxes = hl_allocate(outline->context, boxes_of(outline), sizeof *boxes);
+  if (boxes == NULL) return hl_fail_memory(error, boxes_of(outline) * sizeof *boxes, "an outline");
+  bound_points(outline, boxes);
   for (int n = 0; status == HL_OK && n < DIRECTIONS; n++) {
-    size_t best = farthest(outline, hl_even_direction(n, DIRECTIONS));
+    size_t best = farthest(outline, boxes, hl_even_direction(n, DIRECTIONS));
     bool known = false;
     for (size_t m = 0; m < thinned->count && !known; m++)
       known = memcmp(&thinned->point[m], &outline->point[best], sizeof *thinned->point) == 0;
     if (!known) status = add(thinned, outline->point[best], outline->radius[best], error);
   }
+  hl_release(outline->context, boxes);
   return status;
 }
 
