@@ -16,7 +16,8 @@
 #include "render/surface_batch.h"
 
 /* The turn of the normal of a batch's sample, towards its own side, per length along the way to a light:
- * above 0 in a hollow; 0 on flat and on rough ones. towards_light: of any length. */
+ * above 0 in a hollow; 0 on flat and on rough ones, and on spheres that light passes. towards_light: of any
+ * length. */
 double hl_hollow_bend(const surfaces *all, const surface_batch *batch, int sample, vec3 towards_light);
 
 #endif

@@ -195,6 +195,30 @@ static void test_wall_within(void **state) {
   }
 }
 
+/* A sphere through which a part of the light passes looks the same whether its own colour says so or its
+ * mesh. */
+static void test_wall_of_a_clear_sphere(void **state) {
+  (void)state;
+  static float pixels[2][PIXELS * 4];
+  const float sphere[1][4] = {{0, 0, 0, 12}}, clear[1][4] = {{1, 1, 1, 0.4f}};
+  for (int k = 0; k < 8; k++) {
+    for (int own = 0; own < 2; own++) {
+      mesh_stage all;
+      hl_mesh_description d;
+      mesh_stage_open(&all, SIDE, 32);
+      hl_mesh_description_defaults(&d);
+      d.spheres = sphere, d.sphere_count = 1;
+      d.sphere_colors = own ? clear : NULL;
+      mesh_stage_describe(&all, &d)->opacity = own ? 1 : (double)clear[0][3];
+      const vec3 travels = {cos(k), sin(k), -0.4};
+      mesh_stage_choose_shadows(&all, stage_add_directional(&all.set, travels), k % 4, 3);
+      stage_render_sheets(&all.set, pixels[own]);
+      mesh_stage_close(&all);
+    }
+    for (int i = 0; i < 4 * PIXELS; i++) assert_near((double)pixels[1][i], (double)pixels[0][i], 1e-5);
+  }
+}
+
 /* A floor below a ball that the eye does not see: what is cut off the ball casts no shadow. */
 static void test_shadow_of_half_a_ball(void **state) {
   (void)state;
@@ -370,10 +394,15 @@ static void test_kept_between_frames(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_half_a_ball),           cmocka_unit_test(test_holes),
-      cmocka_unit_test(test_inside_of_a_bowl),      cmocka_unit_test(test_wall_within),
-      cmocka_unit_test(test_shadow_of_half_a_ball), cmocka_unit_test(test_light_of_fields),
-      cmocka_unit_test(test_whole_meshes),          cmocka_unit_test(test_against_the_reference),
+      cmocka_unit_test(test_half_a_ball),
+      cmocka_unit_test(test_holes),
+      cmocka_unit_test(test_inside_of_a_bowl),
+      cmocka_unit_test(test_wall_within),
+      cmocka_unit_test(test_wall_of_a_clear_sphere),
+      cmocka_unit_test(test_shadow_of_half_a_ball),
+      cmocka_unit_test(test_light_of_fields),
+      cmocka_unit_test(test_whole_meshes),
+      cmocka_unit_test(test_against_the_reference),
       cmocka_unit_test(test_kept_between_frames),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
