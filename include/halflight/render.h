@@ -58,11 +58,11 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_render(hl_renderer *renderer, const 
 
 /* From now on the renderer's pictures have one of `parts` parts of each picture, number `part` (0 to parts -
  * 1); the other pixels are zeros. A part is a band of whole cells, along the direction in the picture of the
- * brightest light with hard shadows or sub-lights, or each parts-th row of cells: it depends on the scene and
+ * brightest light with shadows, but the cascade's, or each parts-th row of cells: it depends on the scene and
  * on `parts` alone, and on whether its volumes lie over ranks. Its pixels have the bytes that they have in a
- * whole picture, so that several processes can make one: their pictures' sum. Of hard shadows and of
- * HL_SOFT_SUBLIGHTS each works through the light that its part reads, of other soft shadows through all
- * light. Layers are then refused. parts 1 (default): whole pictures. */
+ * whole picture, so that several processes can make one: their pictures' sum. Each works through
+ * the light that its part reads, but through all light of HL_SOFT_CASCADE. Layers are then refused. parts 1
+ * (default): whole pictures. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_share(hl_renderer *renderer, int part, int parts,
                                                   hl_error *error);
 

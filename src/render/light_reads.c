@@ -220,6 +220,9 @@ uint64_t hl_light_reads_bytes(const sweep *sweep, const light_shadow *shadow) {
   uint64_t buffers = (uint64_t)read_buffers(shadow) * sizeof(read_buffer), tile = sizeof(int32_t);
   if (shadow->sublight_count > 0) return buffers + sublight_tiles(shadow) * tile;
   if (is_exchanged(sweep, shadow)) tile += 1 + sizeof(int32_t) * (uint64_t)sweep->share->parts;
+  if (shadow->method->widen_needs != NULL) /* two arrays of its own: of the tiles, and of the sheets */
+    return buffers + hl_view_tiles(&shadow->plan.view) * 2 * tile +
+           (uint64_t)shadow->setup.sheets->count * tile;
   return buffers + hl_view_tiles(&shadow->plan.view) * tile;
 }
 
@@ -330,6 +333,14 @@ static hl_status add_buffers(sweep *sweep, sweep_light *light, reads_task *task,
   return HL_OK;
 }
 
+static hl_status widen_needs(sweep_light *light, hl_error *error) {
+  const shadow_method *method = light->shadow.method;
+  if (!method->divides || light->needed_until == NULL) return HL_OK;
+  light->shadow.needed_until = light->needed_until;
+  return method->widen_needs == NULL ? HL_OK
+                                     : method->widen_needs(&light->shadow, light->needed_until, error);
+}
+
 static void read_tiles(const reads_task *task) {
   const sweep *sweep = task->sweep;
   const bool surfaces_alone = task->buffers[0].source->sectors != NULL && sweep->content.volume_count == 0 &&
@@ -355,6 +366,8 @@ hl_status hl_light_reads_find(sweep *sweep, hl_error *error) {
     if (is_limited(sweep, &sweep->lights[i].shadow))
       status = add_buffers(sweep, &sweep->lights[i], &task, error);
   if (status == HL_OK) read_tiles(&task);
+  for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++)
+    if (is_limited(sweep, &sweep->lights[i].shadow)) status = widen_needs(&sweep->lights[i], error);
   hl_release(context, task.buffers);
   return status;
 }

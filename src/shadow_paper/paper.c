@@ -3,9 +3,13 @@
  * One buffer is convolved again and again with a box, or with the light's emission image, of the width that
  * eq. (5) gives for the step from the last convolved sheet to the next one. Convolution adds variances, not
  * widths, so penumbrae grow with the square root of the distance: this is the error that the other methods
- * avoid. */
+ * avoid.
+ *
+ * A part of a shared picture works through the pixels that it reads, and through those within reach of the
+ * convolutions on the way there: the bounds of the light's rays. */
 #include <string.h>
 
+#include "core/memory.h"
 #include "light/light_extent.h"
 #include "shadow/blur.h"
 #include "shadow/shadow_method.h"
@@ -63,7 +67,9 @@ static int widest_reach(const soft_paper *soft, const sheet_stack *sheets) {
  * once. */
 typedef struct convolution {
   shadow_buffer *buffer;
-  const unsigned char *wanted; /* [tiles] */
+  const int32_t *needed_until; /* light_shadow's */
+  int sheet, reach;            /* reach: pixels around a tile that it reads */
+  unsigned char *wanted;       /* [tiles]; of the tiles that can change */
   const blur_functions *blur;
   blur_box box;
   /* with an emission image, instead of the box: */
@@ -144,56 +150,173 @@ static void convolve_with_emission(const soft_paper *soft, convolution *task, in
   hl_pool_run(pool, (size_t)task->buffer->tiles_y, copy_back, task);
 }
 
-/* Marks the tiles within reach of a touched one. */
-static void spread_touched(const shadow_buffer *buffer, int reach_tiles, const unsigned char *from,
-                           unsigned char *to) {
-  for (int y = 0; y < buffer->tiles_y; y++)
-    for (int x = 0; x < buffer->tiles_x; x++) {
-      unsigned char found = 0;
-      for (int j = y - reach_tiles; j <= y + reach_tiles && !found; j++)
-        for (int i = x - reach_tiles; i <= x + reach_tiles && !found; i++)
-          if (i >= 0 && j >= 0 && i < buffer->tiles_x && j < buffer->tiles_y)
-            found = from[(size_t)j * (size_t)buffer->tiles_x + (size_t)i];
-      to[(size_t)y * (size_t)buffer->tiles_x + (size_t)x] = found;
-    }
+/* ---- which tiles ---- */
+
+/* Whether any tile at most `around` tiles away has absorbed light. */
+static bool any_touched(const shadow_buffer *buffer, int x, int y, int around) {
+  int x0 = x < around ? 0 : x - around, y0 = y < around ? 0 : y - around;
+  for (int j = y0; j <= y + around && j < buffer->tiles_y; j++)
+    for (int i = x0; i <= x + around && i < buffer->tiles_x; i++)
+      if (buffer->tile_touched[(size_t)j * (size_t)buffer->tiles_x + (size_t)i]) return true;
+  return false;
 }
 
-/* Convolves the tiles that can change. All others hold 1 in the buffer and in its second planes. */
-static void convolve(const soft_paper *soft, shadow_buffer *buffer, int width, hl_pool *pool,
-                     const blur_functions *blur) {
-  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
-  unsigned char *touched = buffer->tile_touched, *spread = touched + tiles;
+/* Whether any pixel of a tile, or within reach of it, is below 1. */
+static bool any_below_one(const shadow_buffer *buffer, int x, int y, int reach) {
+  const ptrdiff_t stride = (ptrdiff_t)buffer->stride;
+  for (int c = 0; c < buffer->channels; c++) {
+    const float *row = buffer->transmittance[c] + ((ptrdiff_t)y * TILE - reach) * stride +
+                       ((ptrdiff_t)x * TILE - reach);
+    for (int j = 0; j < TILE + 2 * reach; j++, row += stride) {
+      int below = 0;
+      for (int i = 0; i < TILE + 2 * reach; i++) below |= row[i] < 1;
+      if (below) return true;
+    }
+  }
+  return false;
+}
+
+/* Marks the tiles of a row that can change. It depends on pixels within reach alone, so that parts of a
+ * picture, which know no others, mark the same: the sum of an image's weights is not quite 1. */
+static void find_wanted(void *data, size_t index, int worker) {
+  (void)worker;
+  const convolution *task = data;
+  const shadow_buffer *buffer = task->buffer;
+  for (int x = 0; x < buffer->tiles_x; x++) {
+    size_t tile = index * (size_t)buffer->tiles_x + (size_t)x;
+    bool needed = task->needed_until == NULL || task->needed_until[tile] >= task->sheet;
+    task->wanted[tile] = needed && (buffer->tile_touched[tile] ||
+                                    (any_touched(buffer, x, (int)index, (task->reach + TILE - 1) / TILE) &&
+                                     any_below_one(buffer, x, (int)index, task->reach)));
+  }
+}
+
+/* Pixels around a pixel that a convolution reads. */
+static int reach_of(const soft_paper *soft, int width) {
+  if (soft->emission != NULL) return (int)(soft->emission->reach * width) + 2;
   blur_box box = hl_blur_box((float)width);
-  int reach = soft->emission == NULL ? box.reach : (int)(soft->emission->reach * width) + 2;
-  spread_touched(buffer, (reach + TILE) / TILE, touched, spread);
-  convolution task = {.buffer = buffer, .wanted = spread, .blur = blur, .box = box};
+  return box.reach + (box.edge > 0);
+}
+
+/* Convolves the tiles that can change. All others hold 1 in the buffer and in its second planes, or are not
+ * needed. */
+static void convolve(const soft_paper *soft, const light_shadow *shadow, int sheet, int width) {
+  shadow_buffer *buffer = shadow->buffer;
+  hl_pool *pool = shadow->setup.pool;
+  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
+  convolution task = {.buffer = buffer,
+                      .needed_until = shadow->needed_until,
+                      .sheet = sheet,
+                      .reach = reach_of(soft, width),
+                      .wanted = buffer->tile_touched + tiles,
+                      .blur = &shadow->setup.functions->blur,
+                      .box = hl_blur_box((float)width)};
+  hl_pool_run(pool, (size_t)buffer->tiles_y, find_wanted, &task);
   if (soft->emission != NULL) {
     convolve_with_emission(soft, &task, width, pool);
   } else {
     hl_pool_run(pool, (size_t)buffer->tiles_y, blur_rows, &task);
     hl_pool_run(pool, (size_t)buffer->tiles_y, blur_columns, &task);
   }
-  memcpy(touched, spread, tiles);
+  for (size_t tile = 0; tile < tiles; tile++) buffer->tile_touched[tile] |= task.wanted[tile];
 }
 
 /* Section 5.2, (2): accumulates dx until it exceeds two pixels, convolves by its integer part and carries the
  * rest. An emission image has one tap per pixel and no more taps than cells: wider steps take several
- * convolutions. */
-static void advance_paper(light_shadow *shadow, const occupancy *occupancy, int sheet) {
-  (void)occupancy;
-  soft_paper *soft = shadow->state;
-  double next = hl_sheet_height(shadow->setup.sheets, sheet + 1);
+ * convolutions. shadow: null: nothing is convolved. Returns how far the convolutions after a sheet reach
+ * together, pixels. */
+static int pass_sheet(soft_paper *soft, const sheet_stack *sheets, int sheet, const light_shadow *shadow) {
+  double next = hl_sheet_height(sheets, sheet + 1);
   double width = soft->remainder + width_between(soft, soft->last, next);
   double most = soft->emission == NULL ? 2 * soft->reach
                                        : EMISSION_SIDE; /* no box reads beyond the buffer's margin */
-  if (width <= 2) return;
+  int reach = 0;
+  if (width <= 2) return 0;
   do {
-    double whole = fmin(floor(width), most);
-    convolve(soft, shadow->buffer, (int)whole, shadow->setup.pool, &shadow->setup.functions->blur);
+    int whole = (int)fmin(floor(width), most);
+    if (shadow != NULL) convolve(soft, shadow, sheet, whole);
+    reach += reach_of(soft, whole);
     width -= whole;
   } while (width > 2 && soft->emission != NULL);
   soft->remainder = width;
   soft->last = next;
+  return reach;
+}
+
+static void advance_paper(light_shadow *shadow, const occupancy *occupancy, int sheet) {
+  (void)occupancy;
+  (void)pass_sheet(shadow->state, shadow->setup.sheets, sheet, shadow);
+}
+
+/* ---- what a part needs ---- */
+
+/* Raises a tile's value to those of its neighbours less `less`, of the four in the order of rows before it,
+ * or of the four after it. */
+static void raise(const shadow_buffer *buffer, int32_t *far, int x, int y, int sign) {
+  static const int beside[4][2] = {{-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+  int32_t *tile = &far[(ptrdiff_t)y * buffer->tiles_x + x];
+  for (int i = 0; i < 4; i++) {
+    int u = x + sign * beside[i][0], v = y + sign * beside[i][1];
+    if (u < 0 || v < 0 || u >= buffer->tiles_x || v >= buffer->tiles_y) continue;
+    int32_t from = far[(ptrdiff_t)v * buffer->tiles_x + u] - TILE;
+    if (*tile < from) *tile = from;
+  }
+}
+
+/* The greatest value of a tile's neighbours, all eight. */
+static int32_t greatest_beside(const shadow_buffer *buffer, const int32_t *far, int x, int y) {
+  int32_t greatest = -TILE;
+  for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < buffer->tiles_y; v++)
+    for (int u = x > 0 ? x - 1 : 0; u <= x + 1 && u < buffer->tiles_x; u++) {
+      int32_t value = far[(ptrdiff_t)v * buffer->tiles_x + u];
+      if ((u != x || v != y) && greatest < value) greatest = value;
+    }
+  return greatest;
+}
+
+/* The last slab of which pixels come no further than to `far`. reached: [slabs], never falling. */
+static int32_t last_slab(const int32_t *reached, int slabs, int32_t far) {
+  int32_t low = 0, high = slabs;
+  while (high - low > 1) {
+    int32_t middle = (low + high) / 2;
+    if (reached[middle] <= far) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+
+/* Raises needed_until in the tiles whose pixels the convolutions bring to those that the picture reads.
+ * Derived: let reached(k) be how far the convolutions before slab k reach together. A pixel of slab k comes
+ * to one that is read in slab s, d pixels away, if d <= reached(s) - reached(k): its tile is needed until the
+ * last k with reached(k) <= reached(s) - d. Of a tile n tiles beside, d is at least 16 (n - 1) + 1. The
+ * greatest reached(s) - 16 n is found by going through the tiles twice, each time from neighbour to
+ * neighbour. */
+static hl_status widen_needs(light_shadow *shadow, int32_t *needed_until, hl_error *error) {
+  const shadow_buffer *buffer = shadow->buffer;
+  const sheet_stack *sheets = shadow->setup.sheets;
+  soft_paper soft = *(const soft_paper *)shadow->state;
+  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y, slabs = (size_t)sheets->count;
+  int32_t *reached = hl_allocate(shadow->setup.context, slabs + tiles, sizeof *reached),
+          *far = reached + slabs;
+  if (reached == NULL) return hl_fail_memory(error, (slabs + tiles) * sizeof *reached, "a light's tiles");
+  reached[0] = 0;
+  for (int slab = 1; slab < sheets->count; slab++)
+    reached[slab] = reached[slab - 1] + (slab > 1 ? pass_sheet(&soft, sheets, slab - 1, NULL) : 0);
+  for (size_t tile = 0; tile < tiles; tile++)
+    far[tile] = needed_until[tile] > 0 ? reached[needed_until[tile]] : -TILE;
+  for (int y = 0; y < buffer->tiles_y; y++)
+    for (int x = 0; x < buffer->tiles_x; x++) raise(buffer, far, x, y, 1);
+  for (int y = buffer->tiles_y - 1; y >= 0; y--)
+    for (int x = buffer->tiles_x - 1; x >= 0; x--) raise(buffer, far, x, y, -1);
+  for (int y = 0; y < buffer->tiles_y; y++)
+    for (int x = 0; x < buffer->tiles_x; x++) {
+      int32_t *until = &needed_until[(ptrdiff_t)y * buffer->tiles_x + x];
+      int32_t beside = greatest_beside(buffer, far, x, y) - 1;
+      if (beside >= 0 && *until < last_slab(reached, sheets->count, beside))
+        *until = last_slab(reached, sheets->count, beside);
+    }
+  hl_release(shadow->setup.context, reached);
+  return HL_OK;
 }
 
 static void plan_paper(light_shadow *shadow) {
@@ -212,5 +335,7 @@ static void plan_paper(light_shadow *shadow) {
 const shadow_method hl_shadow_paper = {.name = "paper",
                                        .state_bytes = sizeof(soft_paper),
                                        .first_slab = 1,
+                                       .divides = true,
+                                       .widen_needs = widen_needs,
                                        .plan = plan_paper,
                                        .advance = advance_paper};

@@ -171,12 +171,12 @@ static void test_ways(void **state) {
 /* An even cube, seen along z by parallel rays, under light from the left and from above it, at an angle of 45
  * degrees: parts are bands of rows, whose light is a band of the buffer as high. So each of 4 parts needs a
  * fourth of the light that the whole picture needs, and of a tile and some pixels on either side. */
-static void assert_light_of_part(const char *what, void (*soften_light)(stage *set)) {
-  enum { SIDE = 40, PIXELS = 256, PARTS = 4 };
+static void assert_light_of_part(const char *what, int side, void (*soften_light)(stage *set)) {
+  enum { SIDE = 40, PARTS = 4 };
   static float voxels[SIDE * SIDE * SIDE];
   for (size_t v = 0; v < sizeof voxels / sizeof *voxels; v++) voxels[v] = 1;
   uint64_t filled[PARTS + 1];
-  float *pixels = malloc(PIXELS * PIXELS * 4 * sizeof *pixels);
+  float *pixels = malloc((size_t)side * (size_t)side * 4 * sizeof *pixels);
   for (int part = 0; part <= PARTS; part++) {
     stage set;
     stage_open(&set);
@@ -187,7 +187,7 @@ static void assert_light_of_part(const char *what, void (*soften_light)(stage *s
     set.scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
     set.scene.camera.height = 40;
     stage_add_directional(&set, (vec3){1, 0, -1})->angular_diameter_deg = 1;
-    set.scene.width = set.scene.height = PIXELS;
+    set.scene.width = set.scene.height = side;
     soften_light(&set);
     hl_scene *scene = NULL;
     hl_renderer *renderer = NULL;
@@ -195,7 +195,7 @@ static void assert_light_of_part(const char *what, void (*soften_light)(stage *s
     assert_int_equal(hl_scene_create(set.context, &set.scene, &scene, NULL), HL_OK);
     assert_int_equal(hl_renderer_create(set.context, &renderer, NULL), HL_OK);
     if (part < PARTS) assert_int_equal(hl_renderer_share(renderer, part, PARTS, NULL), HL_OK);
-    assert_int_equal(hl_renderer_render(renderer, scene, pixels, PIXELS * 4, &statistics, NULL), HL_OK);
+    assert_int_equal(hl_renderer_render(renderer, scene, pixels, 4 * (size_t)side, &statistics, NULL), HL_OK);
     filled[part] = statistics.pixels_filled_light;
     hl_renderer_destroy(renderer);
     hl_scene_release(scene);
@@ -212,8 +212,9 @@ static void assert_light_of_part(const char *what, void (*soften_light)(stage *s
 
 static void test_light_of_part(void **state) {
   (void)state;
-  assert_light_of_part("hard", draw_hard);
-  assert_light_of_part("sublights", draw_sublights);
+  assert_light_of_part("hard", 512, draw_hard);
+  assert_light_of_part("sublights", 256, draw_sublights);
+  assert_light_of_part("paper", 512, draw_paper);
 }
 
 /* ---- renderers that exchange light ---- */
