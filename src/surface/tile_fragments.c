@@ -4,26 +4,9 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "mesh/mesh.h"
 #include "surface/crossings.h"
-#include "surface/sphere_coverage.h"
+#include "surface/primitive_fragments.h"
 #include "surface/surface_cuts.h"
-#include "surface/surface_plane.h"
-
-/* Room for so many more fragments of a tile. */
-static bool make_room(hl_context *context, fragment_worker *worker, size_t more) {
-  size_t wanted = worker->count + more;
-  if (wanted <= worker->room) return true;
-  size_t larger = wanted > 2 * worker->room ? wanted : 2 * worker->room;
-  fragment *scratch = hl_reallocate(context, worker->scratch, larger * 2, sizeof *scratch);
-  if (scratch != NULL) worker->scratch = scratch;
-  order_key *keys = scratch != NULL ? hl_reallocate(context, worker->keys, larger * 2, sizeof *keys) : NULL;
-  worker->failed = keys == NULL;
-  if (worker->failed) return false;
-  worker->keys = keys;
-  worker->room = larger;
-  return true;
-}
 
 /* Fragments of a thread's first block, and the most of one whose tiles are smaller (6 MiB): each block is
  * twice as large as the one before. */
@@ -52,13 +35,6 @@ void hl_fragment_blocks_release(hl_context *context, fragment_block *latest) {
   }
 }
 
-/* Marks a slab about a pixel, block after block. */
-static void mark(const fragment_work *work, fragment_worker *worker, int pixel, int32_t slab) {
-  worker->near[slab] |= work->near[pixel];
-  worker->nearest = slab < worker->nearest ? slab : worker->nearest;
-  worker->farthest = slab > worker->farthest ? slab : worker->farthest;
-}
-
 static void mark_tile(const fragment_work *work, int x, int y, int32_t slab) {
   const fragments_source *source = work->source;
   if (x < 0 || y < 0 || x >= work->tiles_x || y >= work->tiles_y) return;
@@ -80,221 +56,6 @@ static void write_marks(const fragment_work *work, fragment_worker *worker, int 
   }
   worker->nearest = INT32_MAX;
   worker->farthest = -1;
-}
-
-static double clamped(float opacity) { return fmin(fmax((double)opacity, 0), 1); }
-
-/* The fraction of light that a mesh's surface stops, at the middle of a triangle. */
-static float opacity_of(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
-  double opacity = mesh->scene->opacity, sum = 0;
-  if (primitive >= all->triangle_count) {
-    if (mesh->sphere_colors == NULL) return (float)opacity;
-    return (float)(opacity *
-                   clamped(mesh->sphere_colors[primitive - all->triangle_count - mesh->first_sphere][3]));
-  }
-  if (mesh->face_colors != NULL)
-    return (float)(opacity * clamped(mesh->face_colors[primitive - mesh->first_triangle][3]));
-  if (mesh->colors == NULL) return (float)opacity;
-  for (int i = 0; i < 3; i++)
-    sum += clamped(mesh->colors[all->triangles[primitive][i] - mesh->first_vertex][3]);
-  return (float)(opacity * sum / 3);
-}
-
-/* Adds the samples of an opaque fragment to those that its pixel got last, where both are of one mesh and
- * fill the same slabs: there they take what one surface takes. Returns whether it did. */
-static bool join_latest(fragment_worker *worker, const fragment *f, int32_t first, int32_t last) {
-  latest_fragments *latest = &worker->latest[f->pixel];
-  fragment *own = worker->scratch + latest->end - 1;
-  if (latest->end > 0 && own->mesh == f->mesh && own->slab == first && latest->last == last) {
-    for (int32_t i = 0; i <= last - first; i++) own[i].samples |= f->samples;
-    return true;
-  }
-  *latest = (latest_fragments){(uint32_t)worker->count + 1, last};
-  return false;
-}
-
-/* Remembers what an opaque fragment covers of its pixel from a height on. */
-static void cover_pixel(fragment_worker *worker, const fragment *f, double height) {
-  covered_so_far *covered = &worker->covered[f->pixel];
-  if (covered->samples == 0xffff) return;
-  if (covered->samples == 0 || (double)covered->height < height) covered->height = (float)height;
-  covered->samples |= f->samples;
-}
-
-/* Adds a fragment to the slabs first to last of a light's view, from its delayed height on. Derived: n slabs
- * that take 1 - (1 - a)^(1/n) each take a together. */
-static void add_to_slabs(const fragment_work *work, fragment_worker *worker, fragment f, double start,
-                         int32_t first, int32_t last) {
-  if (work->least[f.mesh] < 1) last = first; /* opacities by colour cannot be shared out among slabs */
-  if (last - first >= MOST_SLABS) last = first + MOST_SLABS - 1;
-  if (f.opacity >= 1 && work->least[f.mesh] >= 1) {
-    cover_pixel(worker, &f, start);
-    if (join_latest(worker, &f, first, last)) return;
-  }
-  if (last > first && f.opacity < 1) f.opacity = 1 - powf(1 - f.opacity, 1.0f / (float)(last - first + 1));
-  for (int32_t slab = first; slab <= last; slab++) {
-    f.slab = slab;
-    f.height = (float)(start + (slab - first) * work->source->sheets->spacing);
-    worker->scratch[worker->count++] = f;
-    mark(work, worker, f.pixel, slab);
-  }
-}
-
-/* Adds a fragment of a light's view: to the slab at its delayed height, and to those above it that the plane
- * crosses within the pixel. Where the backs are dark there is no delay. */
-static void add_of_light(const fragment_work *work, fragment_worker *worker, const surface_plane *plane,
-                         fragment f, double slope) {
-  const fragments_source *source = work->source;
-  double delay = plane->leaving ? 0 : source->delay * slope + LEAST_DELAY * source->sheets->spacing;
-  double start = f.height + delay, highest = plane->highest + SEAM * source->sheets->spacing,
-         end = fmin(f.height + source->rise * slope, highest) + delay;
-  add_to_slabs(work, worker, f, start, hl_slab_of(source->sheets, start), hl_slab_of(source->sheets, end));
-}
-
-/* A pixel of a view, and the middle of the samples that a surface covers of it. */
-typedef struct covered_pixel {
-  int x, y;
-  double u, v;
-} covered_pixel;
-
-static covered_pixel pixel_of(int x, int y, uint16_t samples) {
-  covered_pixel pixel = {x, y, 0, 0};
-  hl_fragment_middle(samples, &pixel.u, &pixel.v);
-  pixel.u += x;
-  pixel.v += y;
-  return pixel;
-}
-
-static void add_pixel(const fragment_work *work, fragment_worker *worker, const surface_plane *plane,
-                      fragment f, const covered_pixel *at) {
-  const fragments_source *source = work->source;
-  double height = hl_plane_height(plane, at->u, at->v);
-  height = fmin(fmax(height, plane->lowest), plane->highest); /* not a number: the lowest */
-  f.slab = hl_slab_of(source->sheets, height);
-  f.height = (float)height;
-  f.pixel = (uint8_t)hl_pixel_number(at->x % TILE, at->y % TILE);
-  mark(work, worker, f.pixel, f.slab);
-  if (f.opacity <= 0) return;
-  double slope = hl_plane_slope(plane, at->u, at->v);
-  if (source->of_light) {
-    add_of_light(work, worker, plane, f, slope);
-    return;
-  }
-  double range = plane->highest - plane->lowest,
-         reach = slope < STEEPEST_SLOPE && slope < range ? slope : range;
-  f.reach = hl_told_reach(reach / source->sheets->spacing);
-  worker->scratch[worker->count++] = f;
-}
-
-/* The part of a primitive in a tile: what its samples cover, and what cuts leave of that. */
-typedef struct tile_part {
-  int tile_x, tile_y;
-  bool is_cut; /* cuts remove some of the primitive */
-  pixel_span span;
-  uint16_t covered[TILE_PIXELS];
-} tile_part;
-
-/* The next pixel of the view, from the tile's column at[0] and row at[1] on, of which samples are covered. */
-static bool next_pixel(const view *view, const tile_part *part, const seen_part *seen, int at[2], fragment *f,
-                       covered_pixel *pixel) {
-  const pixel_span *span = &part->span;
-  for (; at[1] <= span->y1; at[0] = span->x0, at[1]++)
-    for (; at[0] <= span->x1; at[0]++) {
-      int x = part->tile_x * TILE + at[0], y = part->tile_y * TILE + at[1];
-      f->samples = part->covered[at[1] * TILE + at[0]];
-      if (f->samples == 0 || x >= view->width || y >= view->height) continue;
-      f->samples = hl_left_samples(seen, x, y, f->samples);
-      if (f->samples == 0) continue;
-      *pixel = pixel_of(x, y, f->samples);
-      at[0]++;
-      return true;
-    }
-  return false;
-}
-
-static void add_triangle(const fragment_work *work, fragment_worker *worker, tile_part *part, fragment f) {
-  const fragments_source *source = work->source;
-  seen_polygon polygon;
-  surface_plane plane;
-  covered_pixel pixel;
-  hl_see_triangle(work->seen, f.primitive, &polygon);
-  if (!hl_cover_tile(&polygon, part->tile_x, part->tile_y, &part->span, part->covered)) return;
-  int at[2] = {part->span.x0, part->span.y0};
-  hl_plane_of_triangle(source->view, source->sheets, source->surfaces, f.primitive, &plane);
-  plane.leaving = work->dark_backs[f.mesh] && hl_plane_linear(plane.way, part->tile_x * TILE + TILE / 2,
-                                                              part->tile_y * TILE + TILE / 2) > 0;
-  const seen_part seen = {part->is_cut ? source->surfaces : NULL, source->view, &plane, NULL, false};
-  while (next_pixel(source->view, part, &seen, at, &f, &pixel)) add_pixel(work, worker, &plane, f, &pixel);
-}
-
-/* Whether a light lights nothing of a sphere from within: no light passes it, and the light is outside. */
-static bool has_dark_inside(const fragment_work *work, const float sphere[4], const fragment *f) {
-  const view *view = work->source->view;
-  if (f->opacity < 1 || work->least[f->mesh] < 1) return false;
-  vec3 away = vec3_subtract(view->origin, hl_surface_vector(sphere));
-  return !view->perspective || vec3_length(away) > (double)sphere[3];
-}
-
-/* The side of a sphere that rays enter or leave by. */
-static void add_side(const fragment_work *work, fragment_worker *worker, const tile_part *part, fragment f,
-                     bool leaving) {
-  const fragments_source *source = work->source;
-  const float *sphere = source->surfaces->spheres[f.primitive - source->surfaces->triangle_count];
-  covered_pixel pixel;
-  int at[2] = {part->span.x0, part->span.y0};
-  bool dark = leaving && !part->is_cut && has_dark_inside(work, sphere, &f);
-  const seen_part seen = {part->is_cut ? source->surfaces : NULL, source->view, NULL, sphere, leaving};
-  const sphere_rays rays = hl_sphere_rays(source->view, sphere);
-  surface_plane plane;
-  hl_plane_begin(source->view, source->sheets, &plane);
-  plane.leaving = dark;
-  while (next_pixel(source->view, part, &seen, at, &f, &pixel)) {
-    vec3 point;
-    if (!hl_meet_sphere(&rays, pixel.u, pixel.v, leaving, &point)) continue;
-    hl_plane_touch_sphere(source->view, source->sheets, sphere, point, &plane);
-    add_pixel(work, worker, &plane, f, &pixel);
-  }
-}
-
-/* A view sees the far side of an opaque sphere only from within. */
-static bool has_far_side(const fragment_work *work, const float sphere[4], float opacity) {
-  const view *view = work->source->view;
-  if (work->source->rise > 0 || opacity < 1) return true;
-  vec3 away = vec3_subtract(view->origin, hl_surface_vector(sphere));
-  return view->perspective && vec3_length(away) <= 1.01 * (double)sphere[3];
-}
-
-static void add_sphere(const fragment_work *work, fragment_worker *worker, tile_part *part, fragment f) {
-  const fragments_source *source = work->source;
-  const float *sphere = source->surfaces->spheres[f.primitive - source->surfaces->triangle_count];
-  seen_bounds bounds;
-  if (!hl_see_sphere(source->view, sphere, &bounds) ||
-      !hl_cover_sphere(source->view, sphere, &bounds, part->tile_x, part->tile_y, &part->span, part->covered))
-    return;
-  add_side(work, worker, part, f, false);
-  if (part->is_cut || has_far_side(work, sphere, f.opacity)) add_side(work, worker, part, f, true);
-}
-
-static fragment fragment_of(const fragment_work *work, size_t mesh_index, uint32_t primitive) {
-  const fragments_source *source = work->source;
-  const surface_mesh *mesh = &source->surfaces->meshes[mesh_index];
-  bool counts = source->of_light || source->unseen ? mesh->scene->casts_shadow : mesh->scene->visible;
-  return (fragment){.primitive = primitive,
-                    .opacity = counts ? opacity_of(source->surfaces, mesh, primitive) : 0,
-                    .mesh = (uint16_t)mesh_index};
-}
-
-/* Adds a primitive's fragments in a tile. */
-static void add_primitive(const fragment_work *work, fragment_worker *worker, tile_part *part,
-                          size_t mesh_index, uint32_t primitive) {
-  if (!make_room(work->source->context, worker, 2 * TILE_PIXELS * MOST_SLABS)) return;
-  const surfaces *all = work->source->surfaces;
-  cut_answer cut = hl_surface_cut(all, &all->meshes[mesh_index], primitive);
-  if (cut == CUT_LEAVES_NOTHING) return;
-  part->is_cut = cut == CUT_LEAVES_SOME;
-  fragment f = fragment_of(work, mesh_index, primitive);
-  if (primitive < work->source->surfaces->triangle_count) add_triangle(work, worker, part, f);
-  else add_sphere(work, worker, part, f);
 }
 
 /* ---- small triangles ---- */
@@ -350,7 +111,7 @@ static bool collect_sphere(const fragment_work *work, small_batch *batch, uint32
   const surfaces *all = work->source->surfaces;
   const surface_mesh *mesh = &all->meshes[batch->mesh];
   const float *sphere = all->spheres[primitive - all->triangle_count];
-  if (mesh->is_cut || work->source->rise > 0 || opacity_of(all, mesh, primitive) < 1) return false;
+  if (mesh->is_cut || work->source->rise > 0 || hl_primitive_opacity(all, mesh, primitive) < 1) return false;
   for (int axis = 0; axis < 3; axis++) batch->spheres.centre[axis][batch->count] = sphere[axis];
   batch->spheres.radius[batch->count] = sphere[3];
   batch->primitives[batch->count++] = primitive;
@@ -369,11 +130,11 @@ static void add_small_pixel(const fragment_work *work, fragment_worker *worker, 
                       .mesh = (uint16_t)batch->mesh,
                       .pixel = (uint8_t)cover->pixel[k][lane],
                       .reach = (uint8_t)cover->reach[k][lane]};
-  mark(work, worker, f.pixel, f.slab);
+  hl_mark_slab(work, worker, f.pixel, f.slab);
   if (f.opacity <= 0) return;
   if (work->source->of_light) {
-    add_to_slabs(work, worker, f, (double)cover->start[k][lane], cover->first_slab[k][lane],
-                 cover->last_slab[k][lane]);
+    hl_add_to_slabs(work, worker, f, (double)cover->start[k][lane], cover->first_slab[k][lane],
+                    cover->last_slab[k][lane]);
     return;
   }
   worker->scratch[worker->count++] = f;
@@ -383,7 +144,7 @@ static void add_small_pixel(const fragment_work *work, fragment_worker *worker, 
 static void find_opacities(const fragment_work *work, small_batch *batch, uint32_t lanes) {
   for (; lanes != 0; lanes &= lanes - 1) {
     int lane = __builtin_ctz(lanes);
-    batch->opacity[lane] = fragment_of(work, batch->mesh, batch->primitives[lane]).opacity;
+    batch->opacity[lane] = hl_fragment_of(work, batch->mesh, batch->primitives[lane]).opacity;
   }
 }
 
@@ -403,7 +164,7 @@ static void add_small(const fragment_work *work, fragment_worker *worker, small_
 static void add_batch(const fragment_work *work, fragment_worker *worker, tile_part *part,
                       small_batch *batch) {
   if (batch->count == 0 ||
-      !make_room(work->source->context, worker, SMALL_TRIANGLES * SMALL_PIXELS * MOST_SLABS))
+      !hl_tile_make_room(work->source->context, worker, SMALL_TRIANGLES * SMALL_PIXELS * MOST_SLABS))
     return;
   const surface_functions *functions = work->source->functions;
   uint32_t all = (1u << batch->count) - 1;
@@ -411,7 +172,7 @@ static void add_batch(const fragment_work *work, fragment_worker *worker, tile_p
                                      : functions->cover_small(&batch->view, &batch->triangles, &batch->cover);
   add_small(work, worker, batch, all & small);
   for (uint32_t left = all & batch->cover.large; left != 0 && !worker->failed; left &= left - 1)
-    add_primitive(work, worker, part, batch->mesh, batch->primitives[__builtin_ctz(left)]);
+    hl_add_primitive(work, worker, part, batch->mesh, batch->primitives[__builtin_ctz(left)]);
   batch->count = 0;
 }
 
@@ -451,7 +212,8 @@ static void add_cluster(const fragment_work *work, fragment_worker *worker, tile
   if (batch->may_be_covered && is_covered(work, worker, part, &shape, &seen)) return;
   for (int first = 0; first < cluster->count; first += SMALL_TRIANGLES) {
     int count = least(cluster->count - first, SMALL_TRIANGLES);
-    if (!make_room(work->source->context, worker, SMALL_TRIANGLES * SMALL_PIXELS * MOST_SLABS)) return;
+    if (!hl_tile_make_room(work->source->context, worker, SMALL_TRIANGLES * SMALL_PIXELS * MOST_SLABS))
+      return;
     memcpy(batch->primitives, order + first, (size_t)count * sizeof *order);
     uint32_t small = functions->cover_cluster(&batch->view, &shape, &seen, first, (1u << count) - 1,
                                               &batch->cover);
@@ -459,7 +221,7 @@ static void add_cluster(const fragment_work *work, fragment_worker *worker, tile
     for (uint32_t left = batch->cover.large; left != 0 && !worker->failed; left &= left - 1) {
       uint32_t primitive = batch->primitives[__builtin_ctz(left)];
       if (!batch->view.fronts || hl_faces_view(work->seen, primitive))
-        add_primitive(work, worker, part, batch->mesh, primitive);
+        hl_add_primitive(work, worker, part, batch->mesh, primitive);
     }
   }
 }
@@ -497,7 +259,7 @@ static void add_run(const fragment_work *work, fragment_worker *worker, tile_par
     uint32_t p = cluster != NULL ? all->order[cluster->first + i] : run.primitive;
     if (cluster != NULL && batch->view.fronts && triangle && !hl_faces_view(work->seen, p)) continue;
     bool collected = triangle ? collect(work, part, batch, p) : collect_sphere(work, batch, p);
-    if (!collected) add_primitive(work, worker, part, batch->mesh, p);
+    if (!collected) hl_add_primitive(work, worker, part, batch->mesh, p);
     if (batch->count == SMALL_TRIANGLES) add_batch(work, worker, part, batch);
   }
 }
@@ -579,7 +341,7 @@ static size_t order_fragments(const fragment_work *work, fragment_worker *worker
   *sorted = source->of_light || source->unseen ? other : list;
   if (*sorted == other) return kept;
   kept = hl_part_crossings(&crossing, other, kept, list, &parted);
-  for (size_t i = 0; parted && i < kept; i++) mark(work, worker, list[i].pixel, list[i].slab);
+  for (size_t i = 0; parted && i < kept; i++) hl_mark_slab(work, worker, list[i].pixel, list[i].slab);
   return kept;
 }
 
@@ -599,7 +361,7 @@ void hl_make_tile_fragments(void *data, size_t tile, int worker_index) {
   memset(worker->covered, 0, sizeof worker->covered);
   if (worker->failed || (source->needed != NULL && source->needed[tile] == 0)) return;
   add_primitives(work, worker, &part, tile);
-  if (!worker->failed && make_room(source->context, worker, worker->count)) /* for parts */
+  if (!worker->failed && hl_tile_make_room(source->context, worker, worker->count)) /* for parts */
     kept = order_fragments(work, worker, &order, &part, &sorted);
   write_marks(work, worker, part.tile_x, part.tile_y);
   kept = hl_resolve_fragments(sorted, kept, &order);
