@@ -57,21 +57,20 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_render(hl_renderer *renderer, const 
 #define HL_STRIP_ROWS 16
 
 /* From now on the renderer's pictures have one of `parts` parts of each picture, number `part` (0 to parts -
- * 1); the other pixels are zeros. A part is a band of whole cells, along the direction in the picture of the
- * brightest light with shadows, but the cascade's, or each parts-th row of cells: it depends on the scene and
- * on `parts` alone, and on whether its volumes lie over ranks. Its pixels have the bytes that they have in a
- * whole picture, so that several processes can make one: their pictures' sum. Each works through
- * the light that its part reads, but through all light of HL_SOFT_CASCADE. Layers are then refused. parts 1
- * (default): whole pictures. */
+ * 1); the other pixels are zeros. Its pixels have the bytes that they have in a whole picture, so that
+ * several processes can make one: their pictures' sum. Of shadows each part works through the light that it
+ * reads, but of HL_SOFT_CASCADE through all light. A part is a band of whole cells, along the direction in
+ * the picture of the brightest light with shadows that are not the cascade's; without such a light it is each
+ * parts-th row of cells. It depends on the scene and on `parts` alone, and on whether its volumes lie over
+ * ranks. Layers are then refused. parts 1 (default): whole pictures. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_share(hl_renderer *renderer, int part, int parts,
                                                   hl_error *error);
 
 /* The same for the processes of an MPI job: part hl_ranks_rank() of hl_ranks_size(). They tell each other of
- * the light that they work through, so that each works through its part's soft shadows alone where the method
- * is HL_SOFT_CASCADE, too; bands then follow the brightest of these lights, too, and a part may be of two or
- * three. From now on rendering is
- * collective: every rank renders the same scenes, in the same order. ranks: borrowed, while the renderer
- * renders; null: whole pictures. */
+ * the cascade's light that they work through, so that each works through its part's alone, of HL_SOFT_CASCADE
+ * too; bands then follow the brightest light with any shadows, and a part may have two or three of them. From
+ * now on rendering is collective: every rank renders the same scenes, in the same order. ranks: borrowed,
+ * while the renderer renders; null: whole pictures. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_share_over_ranks(hl_renderer *renderer, hl_ranks *ranks,
                                                              hl_error *error);
 
