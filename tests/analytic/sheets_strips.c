@@ -162,6 +162,7 @@ static void test_ways(void **state) {
     add_noise(&set, 0.4);
     stage_add_directional(&set, (vec3){-1, 0.5, -1})->angular_diameter_deg = 10;
     stage_add_point(&set, (vec3){14, 25, 30})->radius = 3;
+    set.scene.render.sheet_spacing = 1;
     ways[n].draw(&set);
     assert_shared(&set, ways[n].name, n < 4 ? 6 : 3);
     stage_close(&set);

@@ -207,9 +207,9 @@ def test_without_shadows_light_is_constant():
 
 
 def test_the_reference_agrees(small):
-    scene = small.replace(shadows="hard", size=(32, 24))
+    scene = small.replace(shadows="hard", sky=0, size=(32, 24))  # the reference takes minutes for a sky
     exact = halflight.reference(scene)
-    assert abs(np.asarray(exact) - Renderer().render(scene)).max() < 0.05
+    assert abs(np.asarray(exact) - Renderer().render(scene)).max() < 0.005
 
 
 def test_lists():

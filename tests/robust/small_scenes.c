@@ -5,8 +5,9 @@
 #include <string.h>
 
 #define HEAD "{\"halflight\": 1, \"image\": {\"width\": 24, \"height\": 20}, "
-#define BLOB                                                                              \
-  "\"volumes\": [{\"voxel_size\": 1, \"shapes\": [{\"type\": \"sphere\", \"radius\": 5}," \
+#define BLOB "\"volumes\": [{\"voxel_size\": 1, " BLOB_SHAPES
+#define BLOB_SHAPES                                     \
+  "\"shapes\": [{\"type\": \"sphere\", \"radius\": 5}," \
   " {\"type\": \"box\", \"size\": [16, 16, 3], \"position\": [0, 0, -8]}]"
 #define SUN \
   "\"lights\": [{\"type\": \"directional\", \"direction\": [0.5, 0.3, -1], \"angular_diameter_deg\": 12}]"
@@ -19,14 +20,16 @@ const small_scene small_scenes[] = {
                            "\"soft_method\": \"sublights\", \"light_samples\": 2}}"},
     {"splat",
      HEAD "\"camera\": {\"type\": \"orthographic\"}, \"lights\": [{\"type\": \"point\", \"position\": [20, "
-          "-20, 30]}], " BLOB ", \"clip\": {\"min\": [-4, -9, -9], \"max\": [9, 9, 9]}}],"
-          " \"render\": {\"threads\": 1, \"shadow_resolution\": 32, \"shadows\": \"hard\", "
-          "\"reconstruction\": \"splat\", \"kernel\": \"gaussian\"}}"},
-    {"lamp", HEAD "\"lights\": [{\"type\": \"point\", \"position\": [0, 0, 0], \"radius\": 1}],"
-                  " \"volumes\": [{\"voxel_size\": 1, \"shapes\": [{\"type\": \"sphere\", \"radius\": 8},"
-                  " {\"type\": \"sphere\", \"radius\": 4, \"operation\": \"subtract\"}],"
-                  " \"transfer_function\": {\"color\": [0.8, 0.6, 0.4], \"opacity\": 0.1}, \"shading\": "
-                  "\"none\"}], \"render\": {\"threads\": 1, \"shadow_resolution\": 32}}"},
+          "-20, 30]}], \"volumes\": [{\"voxel_size\": 2, " BLOB_SHAPES
+          ", \"clip\": {\"min\": [-4, -9, -9], \"max\": [9, 9, 9]}}],"
+          " \"render\": {\"threads\": 1, \"shadow_resolution\": 16, \"shadows\": \"hard\", "
+          "\"reconstruction\": \"splat\", \"kernel\": \"gaussian\", \"sheet_spacing\": 1}}"},
+    {"lamp",
+     HEAD "\"lights\": [{\"type\": \"point\", \"position\": [0, 0, 0], \"radius\": 1}],"
+          " \"volumes\": [{\"voxel_size\": 2, \"shapes\": [{\"type\": \"sphere\", \"radius\": 8},"
+          " {\"type\": \"sphere\", \"radius\": 4, \"operation\": \"subtract\"}],"
+          " \"transfer_function\": {\"color\": [0.8, 0.6, 0.4], \"opacity\": 0.1}, \"shading\": "
+          "\"none\"}], \"render\": {\"threads\": 1, \"shadow_resolution\": 16, \"sheet_spacing\": 1}}"},
     {"colors", HEAD "\"lights\": [{\"type\": \"rect\", \"position\": [0, 0, 30], \"edge1\": [6, 0, 0], "
                     "\"edge2\": [0, 8, 0]},"
                     " {\"type\": \"disk\", \"position\": [25, 0, 10], \"normal\": [-1, 0, 0], \"radius\": 4, "
