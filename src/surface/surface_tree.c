@@ -252,10 +252,11 @@ bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, i
 
 /* ---- rays ---- */
 
-/* A ray as boxes are asked for it. */
+/* A ray, or a bundle of rays about it, as boxes are asked for it. */
 typedef struct box_ray {
   double origin[3], way[3], inverse[3];
   double first, last;
+  double aside[3]; /* of a bundle: how far its rays lie from this one, along each axis */
 } box_ray;
 
 static box_ray ray_of_boxes(const surface_ray *ray) {
@@ -267,11 +268,12 @@ static box_ray ray_of_boxes(const surface_ray *ray) {
   return made;
 }
 
-/* The slab method. */
+/* The slab method. Of a bundle: whether any of its rays may meet the box. */
 static bool meets_box(const surface_box *box, const box_ray *ray) {
   double nearest = ray->first, farthest = ray->last;
   for (int a = 0; a < 3; a++) {
-    double low = (double)box->low[a] - ray->origin[a], high = (double)box->high[a] - ray->origin[a];
+    double low = (double)box->low[a] - ray->aside[a] - ray->origin[a],
+           high = (double)box->high[a] + ray->aside[a] - ray->origin[a];
     if (ray->way[a] == 0) {
       if (low > 0 || high < 0) return false;
       continue;
@@ -359,54 +361,29 @@ void hl_surface_tree_cast(const surface_tree *tree, const surface_ray *ray, surf
   }
 }
 
-/* A bundle as boxes are asked for it: rays from one point lie about the way to the middle of their ends, as
- * far from it along each axis as the ends do (derived: the point at the part t of a ray is origin + t end).
- */
-typedef struct box_bundle {
-  box_ray middle;
-  double aside[3];
-} box_bundle;
-
-static box_bundle bundle_of_rays(const surface_ray *rays, int count) {
+/* Rays from one point lie about the way to the middle of their ends, as far from it along each axis as the
+ * ends do (derived: the point at the part t of a ray is origin + t end). */
+static box_ray bundle_of_rays(const surface_ray *rays, int count) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, middle[3];
-  box_bundle bundle;
   for (int k = 0; k < count; k++) vec3_bound_ball(vec3_scale(rays[k].way, rays[k].last), 0, low, high);
-  for (int a = 0; a < 3; a++) {
-    middle[a] = (low[a] + high[a]) / 2;
-    bundle.aside[a] = (high[a] - low[a]) / 2 + 1e-6 * greater(fabs(low[a]), fabs(high[a])); /* rounding */
-  }
-  bundle.middle = ray_of_boxes(&(surface_ray){rays[0].origin, (vec3){middle[0], middle[1], middle[2]}, 0, 1});
+  for (int a = 0; a < 3; a++) middle[a] = (low[a] + high[a]) / 2;
+  box_ray bundle = ray_of_boxes(&(surface_ray){rays[0].origin, vec3_of(middle), 0, 1});
+  for (int a = 0; a < 3; a++) /* a little more, for rounding */
+    bundle.aside[a] = (high[a] - low[a]) / 2 + 1e-6 * greater(fabs(low[a]), fabs(high[a]));
   return bundle;
-}
-
-/* Whether a bundle may meet a box: its middle one, made wider. */
-static bool may_meet_box(const surface_box *box, const box_bundle *bundle) {
-  const box_ray *ray = &bundle->middle;
-  double nearest = 0, farthest = 1;
-  for (int a = 0; a < 3; a++) {
-    double low = (double)box->low[a] - bundle->aside[a] - ray->origin[a],
-           high = (double)box->high[a] + bundle->aside[a] - ray->origin[a];
-    if (ray->way[a] == 0) {
-      if (low > 0 || high < 0) return false;
-      continue;
-    }
-    double from = low * ray->inverse[a], to = high * ray->inverse[a];
-    nearest = greater(nearest, lesser(from, to)), farthest = lesser(farthest, greater(from, to));
-  }
-  return nearest <= farthest + 1e-9;
 }
 
 void hl_surface_tree_cast_bundle(const surface_tree *tree, const surface_ray *rays, int count,
                                  surface_met *met, void *data) {
   uint32_t waiting[DEEPEST + 2], left = 0;
-  const box_bundle bundle = bundle_of_rays(rays, count);
+  const box_ray bundle = bundle_of_rays(rays, count);
   box_ray boxes[MOST_BUNDLED];
   for (int k = 0; k < count; k++) boxes[k] = ray_of_boxes(&rays[k]);
   if (tree->box_count > 0) waiting[left++] = 0;
   while (left > 0) {
     uint32_t index = waiting[--left];
     const surface_box *box = &tree->boxes[index];
-    if (!may_meet_box(box, &bundle)) continue;
+    if (!meets_box(box, &bundle)) continue;
     if (box->count > 0) {
       for (int k = 0; k < count; k++)
         if (meets_box(box, &boxes[k])) meet_leaf(tree, box, &rays[k], k, met, data);
