@@ -126,6 +126,20 @@ static void test_against_the_reference(void **state) {
   stage_close(&set);
 }
 
+/* A square ground of a half side, and a pane that the eye does not see. meshes: [2]; pane: owned by them. */
+static void add_ground_and_pane(stage *set, hl_scene_mesh *meshes, double half, hl_mesh *pane) {
+  for (int m = 0; m < 2; m++) {
+    hl_scene_mesh_defaults(&meshes[m]);
+    meshes[m].material = (hl_material){.diffuse = 1};
+    for (int c = 0; c < 3; c++) meshes[m].color[c] = 1;
+  }
+  meshes[0].mesh = stage_make_quad(set, (vec3){0, 0, 0}, (vec3){half, 0, 0}, (vec3){0, half, 0});
+  meshes[1].mesh = pane;
+  meshes[1].visible = 0;
+  set->scene.meshes = meshes;
+  set->scene.mesh_count = 2;
+}
+
 /* A square below half of a plane gets (1 - sin a) / 2 of the sky, a the angle at which it sees the plane's
  * edge from the vertical: the mean of the pixels on both sides of the edge is 1/2, 0.8 below a pane that
  * takes 0.4. Nothing above it leaves 1. The pane is a mesh that the eye does not see. */
@@ -138,17 +152,9 @@ static void test_meshes(void **state) {
     hl_scene_mesh meshes[2];
     open_sky(&set);
     stage_set_opacity(&set, stage_add_box(&set, (vec3){-0.5, -0.5, -0.5}, (vec3){0.5, 0.5, 0.5}), 0, 1);
-    for (int m = 0; m < 2; m++) {
-      hl_scene_mesh_defaults(&meshes[m]);
-      meshes[m].mesh = m == 0 ? stage_make_quad(&set, (vec3){0, 0, 0}, (vec3){9, 0, 0}, (vec3){0, 9, 0})
-                              : stage_make_quad(&set, (vec3){40, 0, 5}, (vec3){40, 0, 0}, (vec3){0, 40, 0});
-      meshes[m].material = (hl_material){.diffuse = 1};
-      for (int c = 0; c < 3; c++) meshes[m].color[c] = 1;
-    }
-    meshes[1].visible = 0;
+    add_ground_and_pane(&set, meshes, 9,
+                        stage_make_quad(&set, (vec3){40, 0, 5}, (vec3){40, 0, 0}, (vec3){0, 40, 0}));
     meshes[1].opacity = opacity[k];
-    set.scene.meshes = meshes;
-    set.scene.mesh_count = 2;
     stage_render_sheets(&set, pixels);
     const float *pair = pixels + 4 * (SIDE / 2 * SIDE + SIDE / 2 - 1);
     assert_near((double)(pair[0] + pair[4]) / 2, expected[k], 0.03);
@@ -174,17 +180,9 @@ static void test_edge_of_a_mesh(void **state) {
   hl_scene_mesh meshes[2];
   open_sky(&set);
   stage_set_opacity(&set, stage_add_box(&set, (vec3){-0.5, -0.5, -0.5}, (vec3){0.5, 0.5, 0.5}), 0, 1);
-  for (int m = 0; m < 2; m++) {
-    hl_scene_mesh_defaults(&meshes[m]);
-    meshes[m].mesh = m == 0 ? stage_make_quad(&set, (vec3){0, 0, 0}, (vec3){12, 0, 0}, (vec3){0, 12, 0})
-                            : stage_make_quad(&set, (vec3){side / 2, 0, height}, (vec3){side / 2, 0, 0},
-                                              (vec3){0, side, 0});
-    meshes[m].material = (hl_material){.diffuse = 1};
-    for (int c = 0; c < 3; c++) meshes[m].color[c] = 1;
-  }
-  meshes[1].visible = 0;
-  set.scene.meshes = meshes;
-  set.scene.mesh_count = 2;
+  add_ground_and_pane(
+      &set, meshes, 12,
+      stage_make_quad(&set, (vec3){side / 2, 0, height}, (vec3){side / 2, 0, 0}, (vec3){0, side, 0}));
   stage_render_sheets(&set, pixels);
   for (int column = 1; column < SIDE - 1; column++) {
     double x = (column + 0.5 - SIDE / 2) * set.scene.camera.height / SIDE,
