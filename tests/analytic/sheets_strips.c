@@ -72,16 +72,20 @@ static void assert_shared(stage *set, const char *what, size_t count) {
   for (size_t n = 0; n < count; n++) assert_parts(set, whole, numbers[n], what);
 }
 
+static const size_t noise_size[3] = {30, 28, 33};
+static float noise[30 * 28 * 33];
+
+/* Before any test: threads read it. */
+static void make_noise(void) {
+  const size_t *n = noise_size;
+  for (size_t v = 0; v < sizeof noise / sizeof *noise; v++)
+    noise[v] = stage_noise((double)(v % n[0]) * 0.5, (double)(v / n[0] % n[1]) * 0.6,
+                           (double)(v / n[0] / n[1]) * 0.4);
+}
+
 static void add_noise(stage *set, double opacity) {
-  static float voxels[30 * 28 * 33]; /* made once, before threads read them */
-  static bool made_voxels;
-  const size_t n[3] = {30, 28, 33};
   const double spacing[3] = {0.7, 0.7, 0.7};
-  for (size_t v = 0; v < sizeof voxels / sizeof *voxels && !made_voxels; v++)
-    voxels[v] = stage_noise((double)(v % n[0]) * 0.5, (double)(v / n[0] % n[1]) * 0.6,
-                            (double)(v / n[0] / n[1]) * 0.4);
-  made_voxels = true;
-  hl_scene_volume *made = stage_add_grid(set, n, spacing, (vec3){-10, -10, -11}, voxels);
+  hl_scene_volume *made = stage_add_grid(set, noise_size, spacing, (vec3){-10, -10, -11}, noise);
   made->shading = HL_SHADING_PHONG;
   stage_set_opacity(set, made, opacity, 6);
   stage_look(set, (vec3){31, 17, 23}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
@@ -517,7 +521,7 @@ static void test_exchanged_light(void **state) {
 /* Matter before the picture's upper half, near the light, and before its lower half, far from it. */
 static void exchange_two_depths(stage *set) {
   enum { WIDE = 40, HIGH = 20, DEEP = 4 };
-  static float voxels[WIDE * HIGH * DEEP];
+  float voxels[WIDE * HIGH * DEEP]; /* of each part's thread */
   const size_t n[3] = {WIDE, HIGH, DEEP};
   const double spacing[3] = {1, 1, 1};
   for (size_t v = 0; v < sizeof voxels / sizeof *voxels; v++) voxels[v] = 1;
@@ -642,7 +646,8 @@ static void test_refused(void **state) {
   stage_close(&set);
 }
 
-int main(void) {
+/* usage: sheets_strips [TESTS]: tests whose names match. */
+int main(int count, char **arguments) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_ways),
                                      cmocka_unit_test(test_light_of_part),
                                      cmocka_unit_test(test_exchange),
@@ -652,5 +657,7 @@ int main(void) {
                                      cmocka_unit_test(test_divided),
                                      cmocka_unit_test(test_next_frame),
                                      cmocka_unit_test(test_refused)};
+  make_noise();
+  if (count > 1) cmocka_set_test_filter(arguments[1]);
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
