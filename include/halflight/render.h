@@ -68,9 +68,9 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_share(hl_renderer *renderer, int par
 
 /* The same for the processes of an MPI job: part hl_ranks_rank() of hl_ranks_size(). They tell each other of
  * the cascade's light that they work through, so that each works through its part's alone, of HL_SOFT_CASCADE
- * too; bands then follow the brightest light with any shadows, and a part may have two or three of them. From
- * now on rendering is collective: every rank renders the same scenes, in the same order. ranks: borrowed,
- * while the renderer renders; null: whole pictures. */
+ * too, and of the sky's light, of which each finds a part; bands then follow the brightest light with any
+ * shadows, and a part may have two or three of them. From now on rendering is collective: every rank renders
+ * the same scenes, in the same order. ranks: borrowed, while the renderer renders; null: whole pictures. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_share_over_ranks(hl_renderer *renderer, hl_ranks *ranks,
                                                              hl_error *error);
 

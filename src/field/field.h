@@ -79,7 +79,8 @@ typedef struct opacity_field {
   float *depth[3]; /* [slices][rows][3][stride]; optical depths in powers of 1/2: along the axis, across and
                       down */
   unsigned char
-      *flags[3]; /* [slices][rows][stride / FIELD_LANES]; FIELD_MATTER and FIELD_RECEIVES of its cells */
+      *flags[3];       /* [slices][rows][stride / FIELD_LANES]; FIELD_MATTER and FIELD_RECEIVES of its cells;
+                          the latter of slabs whose light this process finds (field_share.h) alone */
   unsigned char *seen; /* [z][y][x]; 1 where something may be visible, or near it */
 } opacity_field;
 

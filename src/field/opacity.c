@@ -56,6 +56,8 @@ typedef struct opacity_job {
   const field_functions *functions;
   int samples;
   const float (*reach)[3]; /* [count]; half the box around a cell, in each volume's index space */
+  field_share *share;
+  int32_t first, end; /* the slabs that this process samples */
 } opacity_job;
 
 /* Whether a relevant brick of the grid holds points around `at` (index space). */
@@ -69,6 +71,19 @@ static bool reaches_matter(const grid *grid, const float at[3], const float reac
     last[a] = high >= (float)grid->brick_count[a] ? grid->brick_count[a] - 1 : (int32_t)high;
   }
   return hl_any_brick_relevant(grid, first, last);
+}
+
+/* Whether a volume reaches a box of `side` cells by as many, a cell thick, about `middle` (frame space). */
+static bool volume_reaches(const opacity_job *job, int volume, const float middle[3], float side) {
+  const field_matter *matter = &job->content->matter[volume];
+  float at[3], reach[3];
+  if (matter->grid->relevant_count == 0) return false;
+  for (int a = 0; a < 3; a++) {
+    const float *row = matter->to_index[a];
+    at[a] = row[0] * middle[0] + row[1] * middle[1] + row[2] * middle[2] + row[3];
+    reach[a] = job->reach[volume][a] * side;
+  }
+  return reaches_matter(matter->grid, at, reach);
 }
 
 /* The cells of a block that a volume reaches, one bit each. */
@@ -88,9 +103,10 @@ static uint32_t cells_of(const opacity_job *job, int volume, const float corner[
   return bits;
 }
 
-static void add_depths(opacity_field *field, const int32_t cell[3], int32_t valid,
+/* axes: how many of the field's arrays the depths are added to. */
+static void add_depths(opacity_field *field, int axes, const int32_t cell[3], int32_t valid,
                        float depth[3][FIELD_LANES]) {
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < axes; a++) {
     field_slices s = hl_field_slices(&field->lattice, a);
     const int along[3] = {s.axis, s.across, s.down};
     for (int32_t lane = 0; lane < FIELD_LANES && lane < valid; lane++) {
@@ -108,6 +124,7 @@ static void find_slab(void *data, size_t index, int worker) {
   opacity_field *field = job->field;
   const field_lattice *lattice = &field->lattice;
   const field_content *content = job->content;
+  index += (size_t)job->first;
   float cell = (float)lattice->cell, low[3];
   (void)worker;
   vec3_store(low, lattice->low);
@@ -134,8 +151,72 @@ static void find_slab(void *data, size_t index, int worker) {
       if (any == 0) continue;
       float depth[3][FIELD_LANES];
       job->functions->opacity(&block, depth);
-      add_depths(field, at, valid, depth);
+      add_depths(field, 3, at, valid, depth);
     }
+}
+
+/* ---- processes that share a picture ---- */
+
+/* How long a slab takes, about: boxes of 4 x 4 cells, and those that volumes reach, whose cells are sampled
+ * (a cell that is counts twenty times as much as one that is not). */
+static void weigh_slab(void *data, size_t index, int worker) {
+  enum { BOX = 4, SAMPLED = 20 };
+  const opacity_job *job = data;
+  const field_lattice *lattice = &job->field->lattice;
+  const float cell = (float)lattice->cell;
+  uint64_t weight = 0;
+  float low[3];
+  (void)worker;
+  vec3_store(low, lattice->low);
+  for (int32_t y = 0; y < lattice->count[1]; y += BOX)
+    for (int32_t x = 0; x < lattice->count[0]; x += BOX) {
+      const float middle[3] = {low[0] + cell * ((float)x + BOX / 2), low[1] + cell * ((float)y + BOX / 2),
+                               low[2] + cell * ((float)index + 0.5f)};
+      weight++;
+      for (int v = 0; v < job->content->count; v++)
+        if (volume_reaches(job, v, middle, BOX)) weight += SAMPLED;
+    }
+  job->share->weights[index] = weight;
+}
+
+/* Puts the depths of a slab that another process has sampled, which are in the third array, into the others.
+ */
+static void spread_depths(void *data, size_t index, int worker) {
+  const opacity_job *job = data;
+  opacity_field *field = job->field;
+  const field_slices s = hl_field_slices(&field->lattice, 2);
+  const int along[3] = {s.axis, s.across, s.down};
+  (void)worker;
+  if ((int32_t)index >= job->first && (int32_t)index < job->end) return;
+  for (int32_t y = 0; y < s.rows; y++)
+    for (int32_t x = 0; x < s.columns; x += FIELD_LANES) {
+      const float *from = field->depth[2] + (index * (size_t)s.rows + (size_t)y) * 3 * (size_t)s.stride +
+                          (size_t)x;
+      float depth[3][FIELD_LANES];
+      for (int k = 0; k < 3; k++) memcpy(depth[along[k]], from + k * s.stride, sizeof depth[k]);
+      add_depths(field, 2, (const int32_t[3]){x, y, (int32_t)index}, s.columns - x, depth);
+    }
+}
+
+/* Samples the volumes in all slabs. */
+static void find_slabs(opacity_job *job, hl_pool *pool) {
+  opacity_field *field = job->field;
+  field_share *share = job->share;
+  const int32_t slabs = field->lattice.count[2];
+  const field_slices s = hl_field_slices(&field->lattice, 2);
+  job->end = slabs;
+  if (share->with != NULL) {
+    hl_pool_run(pool, (size_t)slabs, weigh_slab, job);
+    hl_field_share_ranges(share, slabs);
+    job->first = share->first[share->with->part];
+    job->end = share->first[share->with->part + 1];
+  }
+  hl_pool_run(pool, (size_t)(job->end - job->first), find_slab, job);
+  if (share->with == NULL) return;
+  hl_field_share_complete(share, true, field->depth[2], slabs,
+                          3 * (size_t)s.rows * (size_t)s.stride * sizeof *field->depth[2]);
+  hl_field_share_complete(share, true, field->seen, slabs, (size_t)s.rows * (size_t)s.columns);
+  hl_pool_run(pool, (size_t)slabs, spread_depths, job);
 }
 
 /* ---- which cells receive light: those near something visible ---- */
@@ -181,6 +262,7 @@ static void spread(opacity_field *field, unsigned char *scratch, hl_pool *pool) 
 
 typedef struct flags_job {
   opacity_field *field;
+  const field_share *share;
   int axis;
 } flags_job;
 
@@ -194,6 +276,7 @@ static void find_flags(void *data, size_t slice, int worker) {
   for (int32_t row = 0; row < s.rows; row++) {
     size_t at = (slice * (size_t)s.rows + (size_t)row) * (size_t)s.stride;
     const unsigned char *seen = field->seen + slice * step[s.axis] + (size_t)row * step[s.down];
+    const bool own = hl_field_share_turn(job->share, s.axis == 2 ? (int32_t)slice : row);
     for (int32_t column = 0; column < s.columns; column += FIELD_LANES) {
       const float *depth = field->depth[job->axis] + 3 * at + (size_t)column;
       bool matter = false;
@@ -201,7 +284,7 @@ static void find_flags(void *data, size_t slice, int worker) {
         for (int32_t lane = 0; lane < FIELD_LANES; lane++) matter |= depth[k * s.stride + lane] > 0;
       unsigned char flags = matter ? FIELD_MATTER : 0;
       for (int32_t lane = 0; lane < FIELD_LANES && column + lane < s.columns; lane++)
-        if (seen[(size_t)(column + lane) * step[s.across]]) flags |= FIELD_RECEIVES;
+        if (own && seen[(size_t)(column + lane) * step[s.across]]) flags |= FIELD_RECEIVES;
       field->flags[job->axis][(at + (size_t)column) / FIELD_LANES] = flags;
     }
   }
@@ -252,7 +335,7 @@ static void add_cover(void *data, size_t index, int worker) {
       const int32_t cell[3] = {x, y, (int32_t)index}, valid = count[0] - x;
       const size_t first = (index * (size_t)count[1] + (size_t)y) * (size_t)count[0] + (size_t)x;
       float depth[3][FIELD_LANES];
-      if (depths_of_cover(job, first, valid, depth)) add_depths(job->field, cell, valid, depth);
+      if (depths_of_cover(job, first, valid, depth)) add_depths(job->field, 3, cell, valid, depth);
     }
 }
 
@@ -269,7 +352,8 @@ static void add_surfaces(const field_content *content, const field_functions *fu
 }
 
 void hl_opacity_find(const field_content *content, const field_functions *functions,
-                     const opacity_scratch *scratch, opacity_field *field, hl_pool *pool) {
+                     const opacity_scratch *scratch, field_share *share, opacity_field *field,
+                     hl_pool *pool) {
   float reach[MOST_MATTER][3];
   for (int v = 0; v < content->count; v++)
     for (int a = 0; a < 3; a++) {
@@ -278,11 +362,12 @@ void hl_opacity_find(const field_content *content, const field_functions *functi
     }
   for (int a = 0; a < 3; a++)
     hl_pool_clear(pool, field->depth[a], floats_along(&field->lattice, a) * sizeof *field->depth[a]);
-  opacity_job job = {field, content, functions, samples_of(field->lattice.cell, content->voxel),
-                     (const float(*)[3])reach};
-  hl_pool_run(pool, (size_t)field->lattice.count[2], find_slab, &job);
+  opacity_job job = {
+      field, content, functions, samples_of(field->lattice.cell, content->voxel), (const float(*)[3])reach,
+      share, 0,       0};
+  find_slabs(&job, pool);
   add_surfaces(content, functions, scratch, field, pool);
   spread(field, scratch->seen, pool);
   for (int a = 0; a < 3; a++)
-    hl_pool_run(pool, (size_t)field->lattice.count[a], find_flags, &(flags_job){field, a});
+    hl_pool_run(pool, (size_t)field->lattice.count[a], find_flags, &(flags_job){field, share, a});
 }

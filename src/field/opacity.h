@@ -4,6 +4,7 @@
 
 #include "core/pool.h"
 #include "field/field.h"
+#include "field/field_share.h"
 
 /* What opacity is found from. */
 typedef struct field_content {
@@ -29,8 +30,8 @@ typedef struct opacity_scratch {
 void hl_opacity_lay_out(bool with_surfaces, opacity_field *field, opacity_scratch *scratch,
                         hl_layout *layout);
 
-/* Fills the field's arrays. */
+/* Fills the field's arrays. Of processes that share a picture each samples the volumes in some slabs. */
 void hl_opacity_find(const field_content *content, const field_functions *functions,
-                     const opacity_scratch *scratch, opacity_field *field, hl_pool *pool);
+                     const opacity_scratch *scratch, field_share *share, opacity_field *field, hl_pool *pool);
 
 #endif

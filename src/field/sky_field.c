@@ -4,7 +4,10 @@
  * Light of one direction moves from slice to slice (sky_lanes.h). Cells keep the sum over directions of
  * transmittance times the integrals of radiance and spherical harmonics: enough for a cosine's or a phase
  * function's mean (lookup_lanes.h; Ramamoorthi and Hanrahan, "An efficient representation for irradiance
- * environment maps", 2001). Each cell's sums have one order. */
+ * environment maps", 2001). Each cell's sums have one order.
+ *
+ * Processes that share a picture each sample the volumes in some slabs of cells, and add the light up in
+ * some; all of them move all light from slice to slice, which is a fifth of the work. */
 #include "field/sky_field.h"
 
 #include <string.h>
@@ -206,6 +209,7 @@ typedef struct passing_arrays {
   float *light; /* of sweep_end() */
   opacity_scratch scratch;
   field_matter *matter;
+  field_share share;
 } passing_arrays;
 
 static void lay_out(const sky_content *content, passing_arrays *arrays, hl_layout *layout) {
@@ -213,6 +217,7 @@ static void lay_out(const sky_content *content, passing_arrays *arrays, hl_layou
   hl_opacity_lay_out(content->content.surface_count > 0, &arrays->opacity, &arrays->scratch, layout);
   arrays->light = hl_layout_take(layout, most_light(content), sizeof(float));
   arrays->matter = hl_layout_take(layout, (size_t)content->content.count, sizeof *arrays->matter);
+  hl_field_share_lay_out(content->exchange, (size_t)content->lattice.count[2], &arrays->share, layout);
 }
 
 uint64_t hl_sky_bytes(const sky_content *content, uint64_t *passing) {
@@ -245,12 +250,14 @@ static void make(const sky_content *content, passing_arrays *arrays, const field
       arrays->matter[v] = content->content.matter[v];
       arrays->matter[v].cast *= (float)content->colors[v][pass];
     }
-    hl_opacity_find(&matter, functions, &arrays->scratch, &arrays->opacity, pool);
+    hl_opacity_find(&matter, functions, &arrays->scratch, &arrays->share, &arrays->opacity, pool);
     target.field = field + pass * FIELD_HARMONICS;
     for (int end = 0; end < ENDS; end++)
       sweep_end(content, &arrays->opacity, arrays->light, &target, end, pass, colored ? 1 : content->channels,
                 functions, pool);
   }
+  if (arrays->share.with != NULL)
+    hl_field_share_complete(&arrays->share, false, field, count[2], target.step[2] * sizeof *field);
 }
 
 static void find_open(const sky_content *content, sky_light *light) {

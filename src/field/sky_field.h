@@ -33,6 +33,8 @@ typedef struct sky_content {
   const double (*colors)[3]; /* attenuation colours */
   field_lattice lattice;
   int channels; /* 3 where light of the channels comes from other directions or is attenuated differently */
+  const light_exchange
+      *exchange; /* with processes that find a part of the field each; null: there are none */
 } sky_content;
 
 /* The bytes that the field holds from frame to frame, and those that making it needs for a while. */

@@ -279,7 +279,7 @@ static hl_status check_sky_room(void *data, uint64_t bytes, hl_error *error) {
 
 static hl_status update_sky(hl_renderer *renderer, const hl_scene_description *scene, const frame_work *work,
                             const hot_functions *hot, uint64_t mark, hl_error *error) {
-  const frame_sky of = {scene, renderer->prepared, work->grids, &work->frame, mark};
+  const frame_sky of = {scene, renderer->prepared, work->grids, &work->frame, mark, work->share.exchange};
   return hl_frame_sky_update(renderer->context, renderer->pool, hot, &of,
                              &(sky_room){check_sky_room, renderer}, &renderer->sky, error);
 }

@@ -12,8 +12,8 @@
 
 #include <halflight/render.h>
 
+#include "core/light_exchange.h"
 #include "render/frame.h"
-#include "shadow/light_exchange.h"
 
 /* A cell is as many pixels of the picture as a tile has of the frame: `oversampling` tiles a side. */
 typedef struct picture_share {

@@ -109,7 +109,8 @@ hl_status hl_frame_sky_update(hl_context *context, hl_pool *pool, const hot_func
       .content = {matter, (int)scene->volume_count, surfaces, surface_count, of->frame->voxel},
       .colors = (const double(*)[3])colors,
       .lattice = hl_field_lattice(of->frame->points, of->frame->point_count, of->frame->voxel, MOST_CELLS),
-      .channels = channels_of(scene)};
+      .channels = channels_of(scene),
+      .exchange = of->exchange};
   if (status == HL_OK) status = make(context, pool, hot, &content, room, field, error);
   if (status != HL_OK) hl_sky_release(context, field);
   hl_release(context, matter);

@@ -12,7 +12,8 @@ typedef struct frame_sky {
   const prepared_volume *volumes;    /* [scene->volume_count] */
   const grid *grids;                 /* the same */
   const frame *frame;
-  uint64_t mark; /* of the pixels of the sky's image */
+  uint64_t mark;                  /* of the pixels of the sky's image */
+  const light_exchange *exchange; /* with the other parts of the picture; null: this renderer finds all */
 } frame_sky;
 
 /* Checks a field against a frame and makes it anew where it does not fit; without a sky it is released.

@@ -24,12 +24,12 @@
 #ifndef HL_SHADOW_SHADOW_METHOD_H
 #define HL_SHADOW_SHADOW_METHOD_H
 
+#include "core/light_exchange.h"
 #include "core/memory.h"
 #include "light/light_emission.h"
 #include "light/light_extent.h"
 #include "scene/soft_methods.h"
 #include "shadow/blur.h"
-#include "shadow/light_exchange.h"
 #include "shadow/shadow_buffer.h"
 
 /* The functions of shadows that are compiled for each instruction set. A method that has such functions

@@ -484,6 +484,58 @@ static void test_exchanged_search(void **state) {
     assert_int_equal(threads[part].gathered, COUNTS * sizeof(uint64_t));
 }
 
+/* A sky that differs all round, over matter of which much stands alone. */
+static void exchange_sky(stage *set) {
+  exchange_hidden(set);
+  set->scene.sky.type = HL_SKY_GRADIENT;
+  for (int c = 0; c < 3; c++) {
+    set->scene.sky.zenith[c] = 0.9 - 0.2 * c;
+    set->scene.sky.horizon[c] = 0.3 + 0.2 * c;
+    set->scene.sky.ground[c] = 0.1;
+  }
+}
+static void exchange_sky_colors(stage *set) {
+  exchange_sky(set);
+  set->volumes[0].attenuation_color[1] = 0.6;
+}
+/* Surfaces have a sky of more directions. */
+static void exchange_sky_surface(stage *set) {
+  exchange_sky(set);
+  draw_isosurface(set);
+}
+static void exchange_even_sky(stage *set) {
+  exchange_hidden(set);
+  draw_sky(set);
+}
+
+/* Each part finds the sky's light in some slabs of cells and gets the others' from those that do, once: the
+ * next frame keeps it. */
+static void test_exchanged_sky(void **state) {
+  (void)state;
+  static const way skies[] = {{"sky", exchange_sky},
+                              {"colours", exchange_sky_colors},
+                              {"surface", exchange_sky_surface},
+                              {"even", exchange_even_sky}};
+  static const int numbers[] = {7, 2, 4, 3};
+  enum { SIDE_X = 50, SIDE_Y = 40, PARTS = 8 };
+  static float whole[SIDE_X * SIDE_Y * 4], sum[SIDE_X * SIDE_Y * 4];
+  part_thread threads[MOST_PARTS];
+  for (size_t n = 0; n < sizeof skies / sizeof *skies; n++) {
+    uint64_t gathered[2];
+    render_together(threads, 1, WAITING, SIDE_X, SIDE_Y, 1, skies[n].draw, whole);
+    assert_true(threads[0].gathered < 100); /* the search for what is hidden has a few bytes */
+    render_together(threads, numbers[n], WAITING, SIDE_X, SIDE_Y, 1, skies[n].draw, sum);
+    if (memcmp(sum, whole, sizeof sum) != 0) fail_msg("%s: %d parts differ", skies[n].name, numbers[n]);
+    for (int frames = 1; frames <= 2; frames++) {
+      render_together(threads, PARTS, WAITING, SIDE_X, SIDE_Y, frames, skies[n].draw, sum);
+      if (memcmp(sum, whole, sizeof sum) != 0) fail_msg("%s: %d frames differ", skies[n].name, frames);
+      gathered[frames - 1] = threads[PARTS - 1].gathered;
+    }
+    assert_true(gathered[0] > 10000);
+    assert_true(gathered[1] - gathered[0] < 100);
+  }
+}
+
 /* The cube of test_light_of_part(), under soft light. */
 static void exchange_cube(stage *set) {
   enum { SIDE = 40 };
@@ -654,6 +706,7 @@ int main(int count, char **arguments) {
                                      cmocka_unit_test(test_exchanged_light),
                                      cmocka_unit_test(test_bands_at_depths),
                                      cmocka_unit_test(test_exchanged_search),
+                                     cmocka_unit_test(test_exchanged_sky),
                                      cmocka_unit_test(test_divided),
                                      cmocka_unit_test(test_next_frame),
                                      cmocka_unit_test(test_refused)};

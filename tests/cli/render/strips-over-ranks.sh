@@ -9,6 +9,13 @@ for ranks in 1 4 8; do
   runs $ranks "$HALFLIGHT" render rings.nrrd --size 60x100 --sheet-spacing 2 --quiet --strips-over-ranks -o shared.npy
   cmp whole.npy shared.npy && rm shared.npy
 done
+# The light of a sky, which processes find in slabs of cells, on a surface, too.
+sky="--size 60x50 --sheet-spacing 2 --sky skyblue:orange --iso 0.3 --quiet"
+halflight render rings.nrrd $sky -o sky.npy
+for ranks in 3 7; do
+  runs $ranks "$HALFLIGHT" render rings.nrrd $sky --strips-over-ranks -o shared.npy
+  cmp sky.npy shared.npy && rm shared.npy
+done
 cat >failing.sh <<'END'
 if [ "${OMPI_COMM_WORLD_RANK-$PMI_RANK}" = 2 ]; then limit="--max-memory 100K"; fi
 exec "$HALFLIGHT" render rings.nrrd --size 60x100 --sheet-spacing 2 --quiet --strips-over-ranks -o shared.npy $limit

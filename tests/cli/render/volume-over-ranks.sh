@@ -25,6 +25,9 @@ for ranks in 1 3 7; do
   runs $ranks "$HALFLIGHT" render scene.json --quiet --volume-over-ranks --max-memory 13M -o shared.npy
   cmp whole.npy shared.npy && rm shared.npy
 done
+halflight render scene.json --quiet --sky skyblue:orange -o sky.npy
+runs 3 "$HALFLIGHT" render scene.json --quiet --sky skyblue:orange --volume-over-ranks -o shared.npy
+cmp sky.npy shared.npy && rm shared.npy sky.npy
 cat >killed.sh <<'END'
 if [ "${OMPI_COMM_WORLD_RANK-$PMI_RANK}" = 1 ]; then (sleep 1; kill -KILL $$) & fi
 exec "$HALFLIGHT" render ball_176x176x176_uint8.raw --size 900x1600 --sheet-spacing 0.04 --quiet --volume-over-ranks -o shared.npy

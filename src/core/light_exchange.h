@@ -1,7 +1,7 @@
-/* shadow/light_exchange.h - how renderers that share a picture tell each other what they know of its light.
+/* core/light_exchange.h - how renderers that share a picture tell each other what they know of its light.
  */
-#ifndef HL_SHADOW_LIGHT_EXCHANGE_H
-#define HL_SHADOW_LIGHT_EXCHANGE_H
+#ifndef HL_CORE_LIGHT_EXCHANGE_H
+#define HL_CORE_LIGHT_EXCHANGE_H
 
 #include <stddef.h>
 
