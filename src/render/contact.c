@@ -72,12 +72,23 @@ static bool are_neighbours(const surfaces *all, uint32_t a, uint32_t b) {
   return false;
 }
 
-/* Takes the light of a triangle that is close to the sample, and no rounded continuation of its own. */
+/* The unit normal of a primitive where a ray meets it; *from: the distance of the ray's point from the plane
+ * there. */
+static vec3 normal_of_hit(const contact_ray *ray, const surface_hit *hit, double *from) {
+  const surfaces *all = ray->all;
+  if (hit->primitive < all->triangle_count) return hl_triangle_normal(all, hit->primitive, ray->point, from);
+  const vec3 centre = hl_surface_vector(all->spheres[hit->primitive - all->triangle_count]),
+             normal = vec3_normalise(vec3_subtract(hit->at, centre));
+  *from = vec3_dot(normal, vec3_subtract(ray->point, hit->at));
+  return normal;
+}
+
+/* Takes the light of a surface that is close to the sample, and no rounded continuation of its own. */
 static void meet(void *data, const surface_hit *hit) {
   contact_ray *ray = data;
   double distance;
   if (hit->primitive == ray->primitive) return;
-  vec3 normal = hl_triangle_normal(ray->all, hit->primitive, ray->point, &distance);
+  vec3 normal = normal_of_hit(ray, hit, &distance);
   if (!(fabs(distance) <= ray->close)) return;
   if (hit->mesh == ray->mesh && ray->mesh->scene->smooth &&
       fabs(vec3_dot(normal, ray->normal)) > HL_MESH_ROUNDED &&

@@ -6,7 +6,8 @@
  * on a floor, and from a lit wall to the next one where both meet in the corner of a dark room. So points of
  * surfaces look for what is close before them by rays towards the light. Within a closed part of a mesh there
  * is no light from outside, and no ray is needed. In: the tree of triangles near the open edges and corners
- * of meshes that are not closed. Out: the fractions of light that pass what is close. */
+ * of meshes that are not closed, and of spheres that cuts cut. Out: the fractions of light that pass what is
+ * close. */
 #ifndef HL_RENDER_CONTACT_H
 #define HL_RENDER_CONTACT_H
 

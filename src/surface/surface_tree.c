@@ -3,6 +3,7 @@
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
+#include "surface/surface_cuts.h"
 #include "surface/surface_rims.h"
 
 /* A range is halved at the middle of its primitives' middles, and by their number where this would make the
@@ -110,21 +111,36 @@ uint64_t hl_surface_tree_bytes(const hl_scene_description *scene) {
     if (hl_mesh_takes_light(&scene->meshes[m])) count += d->triangle_count + d->sphere_count;
   }
   return count * (sizeof(uint32_t) + sizeof(boxed_primitive)) + most_boxes(count) * sizeof(surface_box) +
-         scene->mesh_count * sizeof(bool);
+         scene->mesh_count * sizeof(mesh_held) + scene->cut_count * sizeof(cut_shape);
 }
 
-/* Whether a tree for a distance holds triangles of a mesh. */
-static bool is_held(const surface_mesh *mesh, double distance) {
-  return hl_mesh_takes_light(mesh->scene) && (isinf(distance) || !mesh->scene->mesh->closed || mesh->is_cut);
+/* What a tree for a distance may hold of a mesh. */
+static mesh_held held_of(const surface_mesh *mesh, double distance) {
+  if (!hl_mesh_takes_light(mesh->scene)) return HELD_NOT;
+  if (mesh->is_cut) return HELD_CUT;
+  return isinf(distance) || !mesh->scene->mesh->closed ? HELD_WHOLE : HELD_NOT;
 }
 
-/* near: which triangles; null: all, and the spheres. */
+/* near: which triangles, beside the spheres that are cut; null: all, and all spheres. */
 static void take_primitives(surface_tree *tree, const surface_mesh *mesh, const bool *near) {
   const surfaces *all = tree->all;
   for (uint32_t t = 0; t < mesh->triangle_count; t++)
     if (near == NULL || near[t]) tree->primitives[tree->count++] = mesh->first_triangle + t;
-  for (uint32_t s = 0; s < mesh->sphere_count && near == NULL; s++)
-    tree->primitives[tree->count++] = all->triangle_count + mesh->first_sphere + s;
+  for (uint32_t s = 0; s < mesh->sphere_count && (near == NULL || mesh->is_cut); s++) {
+    const uint32_t sphere = all->triangle_count + mesh->first_sphere + s;
+    if (near == NULL || hl_surface_cut(all, mesh, sphere) == CUT_LEAVES_SOME)
+      tree->primitives[tree->count++] = sphere;
+  }
+}
+
+/* Remembers the cuts, on which it depends what the tree holds. */
+static hl_status keep_cuts(hl_context *context, surface_tree *tree, hl_error *error) {
+  const surfaces *all = tree->all;
+  tree->cuts = hl_allocate(context, all->cut_count, sizeof *tree->cuts);
+  if (tree->cuts == NULL) return hl_fail_memory(error, all->cut_count * sizeof *tree->cuts, "cuts");
+  for (size_t i = 0; i < all->cut_count; i++) tree->cuts[i] = all->cuts[i];
+  tree->cut_count = all->cut_count;
+  return HL_OK;
 }
 
 /* Fills the tree's primitives, for which there is room. most: the triangles of its largest mesh. */
@@ -134,8 +150,8 @@ static hl_status choose_primitives(hl_context *context, surface_tree *tree, uint
   if (near == NULL && !isinf(tree->distance)) return hl_fail_memory(error, most, "the edges of meshes");
   for (size_t m = 0; m < tree->all->mesh_count && status == HL_OK; m++) {
     const surface_mesh *mesh = &tree->all->meshes[m];
-    tree->holds[m] = is_held(mesh, tree->distance);
-    if (!tree->holds[m]) continue;
+    tree->holds[m] = held_of(mesh, tree->distance);
+    if (tree->holds[m] == HELD_NOT) continue;
     if (near != NULL) status = hl_surface_rims(context, tree->all, mesh, tree->distance, near, error);
     if (status == HL_OK) take_primitives(tree, mesh, near);
   }
@@ -149,7 +165,7 @@ hl_status hl_surface_tree_create(hl_context *context, const surfaces *all, doubl
   size_t count = 0;
   uint32_t most = 0;
   for (size_t m = 0; all != NULL && m < all->mesh_count; m++)
-    if (is_held(&all->meshes[m], distance)) {
+    if (held_of(&all->meshes[m], distance) != HELD_NOT) {
       count += all->meshes[m].triangle_count + all->meshes[m].sphere_count;
       most = all->meshes[m].triangle_count > most ? all->meshes[m].triangle_count : most;
     }
@@ -159,21 +175,34 @@ hl_status hl_surface_tree_create(hl_context *context, const surfaces *all, doubl
   hl_status status = tree->primitives != NULL && tree->holds != NULL
                          ? choose_primitives(context, tree, most, error)
                          : hl_fail_memory(error, count * sizeof *tree->primitives, "the boxes of meshes");
+  if (status == HL_OK) status = keep_cuts(context, tree, error);
   if (status == HL_OK && tree->count > 0 && !make_boxes(context, tree))
     status = hl_fail_memory(error, most_boxes(tree->count) * sizeof *tree->boxes, "the boxes of meshes");
   if (status != HL_OK) hl_surface_tree_release(context, tree);
   return status;
 }
 
-bool hl_surface_tree_current(const surface_tree *tree, const surfaces *all, double distance) {
-  if (tree->all != all || tree->distance < distance || tree->distance > distance) return false;
-  for (size_t m = 0; m < all->mesh_count; m++)
-    if (is_held(&all->meshes[m], distance) != (tree->holds != NULL && tree->holds[m])) return false;
+static bool has_same_cuts(const surface_tree *tree, const surfaces *all) {
+  if (tree->cut_count != all->cut_count) return false;
+  for (size_t i = 0; i < all->cut_count; i++)
+    if (!hl_cut_same(&tree->cuts[i], &all->cuts[i])) return false;
   return true;
+}
+
+bool hl_surface_tree_current(const surface_tree *tree, const surfaces *all, double distance) {
+  bool any_cut = false;
+  if (tree->all != all || tree->distance < distance || tree->distance > distance) return false;
+  for (size_t m = 0; m < all->mesh_count; m++) {
+    const mesh_held held = held_of(&all->meshes[m], distance);
+    if (held != (tree->holds != NULL ? tree->holds[m] : HELD_NOT)) return false;
+    any_cut |= held == HELD_CUT;
+  }
+  return !any_cut || has_same_cuts(tree, all);
 }
 
 void hl_surface_tree_release(hl_context *context, surface_tree *tree) {
   hl_release(context, tree->holds);
+  hl_release(context, tree->cuts);
   hl_release(context, tree->primitives);
   hl_release(context, tree->boxes);
   *tree = (surface_tree){0};
@@ -194,10 +223,25 @@ static bool overlap(const float low[3], const float high[3], const double from[3
   return true;
 }
 
-/* Whether a hull has points on both sides of a primitive's plane. */
+/* Whether a hull may have points on both sides of a sphere's surface: not all of it is within, or beyond the
+ * plane that touches the sphere nearest to the first ball (derived: both sides of the plane are convex, and
+ * so is the inside of the sphere). */
+static bool is_parted_by_sphere(const float sphere[4], const hull_ball *balls, int count, double least) {
+  const vec3 centre = hl_surface_vector(sphere), up = vec3_normalise(vec3_subtract(balls[0].at, centre));
+  double lowest = INFINITY, farthest = 0;
+  for (int i = 0; i < count; i++) {
+    vec3 from = vec3_subtract(balls[i].at, centre);
+    lowest = lesser(lowest, vec3_dot(from, up) - balls[i].radius);
+    farthest = greater(farthest, vec3_length(from) + balls[i].radius);
+  }
+  return lowest < (double)sphere[3] - least && farthest > (double)sphere[3] + least;
+}
+
+/* Whether a hull has points on both sides of a primitive's surface, of a triangle its plane. */
 static bool is_parted(const surfaces *all, uint32_t primitive, const hull_ball *balls, int count,
                       double least) {
-  if (primitive >= all->triangle_count) return true;
+  if (primitive >= all->triangle_count)
+    return is_parted_by_sphere(all->spheres[primitive - all->triangle_count], balls, count, least);
   double first;
   vec3 normal = hl_triangle_normal(all, primitive, balls[0].at, &first);
   double lowest = first - balls[0].radius, highest = first + balls[0].radius;
@@ -338,9 +382,11 @@ static void meet_leaf(const surface_tree *tree, const surface_box *leaf, const s
     if (count == 0) continue;
     const surface_mesh *mesh = &all->meshes[hl_surface_mesh_of(all, primitive)];
     double opacity = fmin(fmax(opacity_of(all, mesh, primitive), 0), 1);
-    for (int k = 0; k < count; k++)
-      if (hl_surface_left(all, mesh, vec3_add(ray->origin, vec3_scale(ray->way, distance[k]))))
-        met(data, &(surface_hit){distance[k], opacity, primitive, mesh, number});
+    for (int k = 0; k < count; k++) {
+      const vec3 at = vec3_add(ray->origin, vec3_scale(ray->way, distance[k]));
+      if (hl_surface_left(all, mesh, at))
+        met(data, &(surface_hit){at, distance[k], opacity, primitive, mesh, number});
+    }
   }
 }
 

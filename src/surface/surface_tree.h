@@ -13,18 +13,23 @@ typedef struct surface_box {
                             second child: the first one follows its parent */
 } surface_box;
 
+/* What a tree holds of a mesh: nothing, or something, of a mesh that cuts leave whole or that they cut. */
+typedef enum mesh_held { HELD_NOT, HELD_WHOLE, HELD_CUT } mesh_held;
+
 typedef struct surface_tree {
   const surfaces *all;  /* borrowed */
   uint32_t *primitives; /* owned; [count]; sorted by leaves */
-  bool *holds;          /* owned; [mesh_count of all]; of which meshes */
-  double distance;      /* as it was created with */
-  surface_box *boxes;   /* owned; [box_count]; the root is the first */
+  mesh_held *holds;     /* owned; [mesh_count of all] */
+  cut_shape *cuts;      /* owned; [cut_count]; those of `all` when it was created */
+  size_t cut_count;
+  double distance;    /* as it was created with */
+  surface_box *boxes; /* owned; [box_count]; the root is the first */
   uint32_t count, box_count;
 } surface_tree;
 
-/* Of which triangles a tree is made: of all meshes that take light away, with their spheres; or only of
- * triangles of meshes that are not closed, or that cuts cut, within a distance of an open edge, a cut or a
- * corner (surface_rims.h), in frame units. */
+/* Of what a tree is made: of all meshes that take light away, with their spheres; or only of triangles of
+ * meshes that are not closed, or that cuts cut, within a distance of an open edge, a cut or a corner
+ * (surface_rims.h), in frame units, and of the spheres that cuts cut. */
 #define ALL_SURFACES INFINITY
 
 /* all: null for none. A tree that was not created is all zero, and may be released. */
@@ -44,6 +49,7 @@ static inline bool hl_mesh_takes_light(const hl_scene_mesh *mesh) {
 
 /* A place where a ray meets a surface. */
 typedef struct surface_hit {
+  vec3 at;
   double distance; /* along the ray, in lengths of its way */
   double opacity;  /* of the primitive */
   uint32_t primitive;
@@ -69,8 +75,9 @@ typedef struct hull_ball {
   double radius;
 } hull_ball;
 
-/* Whether some primitive may meet the convex hull of balls. Triangles on whose one side all lies do not; what
- * lies beyond a plane by less than `least` counts as being on it. */
+/* Whether some primitive may meet the convex hull of balls. Triangles on whose one side all lies do not, nor
+ * do spheres that all lies within, or beyond a plane that touches them; what lies beyond a surface by less
+ * than `least` counts as being on it. */
 bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, int count, double least);
 
 /* A triangle's unit normal; *from: a point's distance from its plane, on the normal's side above 0. */
