@@ -7,15 +7,17 @@
 #include "mesh/mesh.h"
 #include "scene/placement.h"
 #include "surface/clusters.h"
+#include "surface/surface_seams.h"
 
 uint64_t hl_surfaces_bytes(const hl_scene_description *scene) {
-  uint64_t bytes = scene->mesh_count * sizeof(surface_mesh) + hl_clusters_bytes(scene);
+  uint64_t bytes = scene->mesh_count * sizeof(surface_mesh) + hl_clusters_bytes(scene), triangles = 0;
   for (size_t m = 0; m < scene->mesh_count; m++) {
     const hl_mesh_description *d = &scene->meshes[m].mesh->description;
     bytes += (d->vertex_count * 2 + scene->meshes[m].mesh->edge_normal_count) * sizeof(float[3]) +
              d->triangle_count * sizeof(uint32_t[3]) + d->sphere_count * sizeof(float[4]);
+    triangles += d->triangle_count;
   }
-  return bytes;
+  return bytes + hl_surface_seams_bytes(triangles);
 }
 
 /* Adds to each corner's normal the triangle's cross product, whose length is twice its area: large faces
@@ -163,6 +165,7 @@ static hl_status create(hl_context *context, hl_pool *pool, const hl_scene_descr
     place_mesh(pool, made, &made->meshes[m]);
   }
   if (status == HL_OK) status = hl_clusters_create(context, pool, made, error);
+  if (status == HL_OK) status = hl_surface_seams_create(context, made, error);
   if (status == HL_OK && hl_pool_cancelled(pool))
     status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
   if (status != HL_OK) hl_surfaces_release(context, made);
@@ -220,6 +223,7 @@ void hl_surfaces_release(hl_context *context, surfaces *kept) {
   hl_release(context, kept->triangles);
   hl_release(context, kept->spheres);
   hl_clusters_release(context, kept);
+  hl_surface_seams_release(context, kept);
   hl_release(context, kept->cuts);
   *kept = (surfaces){0};
 }

@@ -3,6 +3,7 @@
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
+#include "surface/seen_seams.h"
 #include "surface/sphere_coverage.h"
 #include "surface/surface_cuts.h"
 #include "surface/surface_plane.h"
@@ -19,23 +20,6 @@ bool hl_tile_make_room(hl_context *context, fragment_worker *worker, size_t more
   worker->keys = keys;
   worker->room = larger;
   return true;
-}
-
-static double clamped(float opacity) { return fmin(fmax((double)opacity, 0), 1); }
-
-float hl_primitive_opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
-  double opacity = mesh->scene->opacity, sum = 0;
-  if (primitive >= all->triangle_count) {
-    if (mesh->sphere_colors == NULL) return (float)opacity;
-    return (float)(opacity *
-                   clamped(mesh->sphere_colors[primitive - all->triangle_count - mesh->first_sphere][3]));
-  }
-  if (mesh->face_colors != NULL)
-    return (float)(opacity * clamped(mesh->face_colors[primitive - mesh->first_triangle][3]));
-  if (mesh->colors == NULL) return (float)opacity;
-  for (int i = 0; i < 3; i++)
-    sum += clamped(mesh->colors[all->triangles[primitive][i] - mesh->first_vertex][3]);
-  return (float)(opacity * sum / 3);
 }
 
 /* Adds the samples of an opaque fragment to those that its pixel got last, where both are of one mesh and
@@ -77,22 +61,24 @@ void hl_add_to_slabs(const fragment_work *work, fragment_worker *worker, fragmen
   }
 }
 
-/* Adds a fragment of a light's view: to the slab at its delayed height, and to those above it that the plane
- * crosses within the pixel. Where the backs are dark there is no delay. */
-static void add_of_light(const fragment_work *work, fragment_worker *worker, const surface_plane *plane,
-                         fragment f, double slope) {
-  const fragments_source *source = work->source;
-  double delay = plane->leaving ? 0 : source->delay * slope + LEAST_DELAY * source->sheets->spacing;
-  double start = f.height + delay, highest = plane->highest + SEAM * source->sheets->spacing,
-         end = fmin(f.height + source->rise * slope, highest) + delay;
-  hl_add_to_slabs(work, worker, f, start, hl_slab_of(source->sheets, start), hl_slab_of(source->sheets, end));
-}
-
 /* A pixel of a view, and the middle of the samples that a surface covers of it. */
 typedef struct covered_pixel {
   int x, y;
   double u, v;
 } covered_pixel;
+
+/* Adds a fragment of a light's view: to the slab at its delayed height, and to those above it that the plane
+ * crosses within the pixel, or up to where another triangle begins at a corner. Where the backs are dark
+ * there is no delay. */
+static void add_of_light(const fragment_work *work, fragment_worker *worker, const surface_plane *plane,
+                         fragment f, double slope, const covered_pixel *at, const seen_seams *seams) {
+  const fragments_source *source = work->source;
+  double delay = plane->leaving ? 0 : source->delay * slope + LEAST_DELAY * source->sheets->spacing;
+  double start = f.height + delay, highest = plane->highest + SEAM * source->sheets->spacing,
+         end = fmin(f.height + source->rise * slope, highest) + delay;
+  if (seams != NULL) end = hl_seam_end(source, seams, at->u, at->v, end);
+  hl_add_to_slabs(work, worker, f, start, hl_slab_of(source->sheets, start), hl_slab_of(source->sheets, end));
+}
 
 static covered_pixel pixel_of(int x, int y, uint16_t samples) {
   covered_pixel pixel = {x, y, 0, 0};
@@ -103,7 +89,7 @@ static covered_pixel pixel_of(int x, int y, uint16_t samples) {
 }
 
 static void add_pixel(const fragment_work *work, fragment_worker *worker, const surface_plane *plane,
-                      fragment f, const covered_pixel *at) {
+                      fragment f, const covered_pixel *at, const seen_seams *seams) {
   const fragments_source *source = work->source;
   double height = hl_plane_height(plane, at->u, at->v);
   height = fmin(fmax(height, plane->lowest), plane->highest); /* not a number: the lowest */
@@ -114,7 +100,7 @@ static void add_pixel(const fragment_work *work, fragment_worker *worker, const 
   if (f.opacity <= 0) return;
   double slope = hl_plane_slope(plane, at->u, at->v);
   if (source->of_light) {
-    add_of_light(work, worker, plane, f, slope);
+    add_of_light(work, worker, plane, f, slope, at, seams);
     return;
   }
   double range = plane->highest - plane->lowest,
@@ -144,6 +130,7 @@ static bool next_pixel(const view *view, const tile_part *part, const seen_part 
 static void add_triangle(const fragment_work *work, fragment_worker *worker, tile_part *part, fragment f) {
   const fragments_source *source = work->source;
   seen_polygon polygon;
+  seen_seams seams;
   surface_plane plane;
   covered_pixel pixel;
   hl_see_triangle(work->seen, f.primitive, &polygon);
@@ -153,7 +140,9 @@ static void add_triangle(const fragment_work *work, fragment_worker *worker, til
   plane.leaving = work->dark_backs[f.mesh] && hl_plane_linear(plane.way, part->tile_x * TILE + TILE / 2,
                                                               part->tile_y * TILE + TILE / 2) > 0;
   const seen_part seen = {part->is_cut ? source->surfaces : NULL, source->view, &plane, NULL, false};
-  while (next_pixel(source->view, part, &seen, at, &f, &pixel)) add_pixel(work, worker, &plane, f, &pixel);
+  hl_see_seams(work, &f, &seams);
+  while (next_pixel(source->view, part, &seen, at, &f, &pixel))
+    add_pixel(work, worker, &plane, f, &pixel, &seams);
 }
 
 /* Whether a light lights nothing of a sphere from within: no light passes it, and the light is outside. */
@@ -181,7 +170,7 @@ static void add_side(const fragment_work *work, fragment_worker *worker, const t
     vec3 point;
     if (!hl_meet_sphere(&rays, pixel.u, pixel.v, leaving, &point)) continue;
     hl_plane_touch_sphere(source->view, source->sheets, sphere, point, &plane);
-    add_pixel(work, worker, &plane, f, &pixel);
+    add_pixel(work, worker, &plane, f, &pixel, NULL);
   }
 }
 

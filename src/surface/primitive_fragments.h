@@ -27,9 +27,6 @@ static inline void hl_mark_slab(const fragment_work *work, fragment_worker *work
   worker->farthest = slab > worker->farthest ? slab : worker->farthest;
 }
 
-/* The fraction of light that a mesh's surface stops, at the middle of a triangle. */
-float hl_primitive_opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive);
-
 /* A fragment of a primitive, as yet without a place: its opacity is 0 where it only marks slabs. */
 fragment hl_fragment_of(const fragment_work *work, size_t mesh_index, uint32_t primitive);
 

@@ -77,3 +77,20 @@ void hl_surfaces_key_add(hl_key *key, const surfaces *all) {
     if (all->meshes[m].is_cut) hl_cuts_key_add(key, all->cuts, all->cut_count);
   }
 }
+
+static double clamped(float opacity) { return fmin(fmax((double)opacity, 0), 1); }
+
+float hl_primitive_opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
+  double opacity = mesh->scene->opacity, sum = 0;
+  if (primitive >= all->triangle_count) {
+    if (mesh->sphere_colors == NULL) return (float)opacity;
+    return (float)(opacity *
+                   clamped(mesh->sphere_colors[primitive - all->triangle_count - mesh->first_sphere][3]));
+  }
+  if (mesh->face_colors != NULL)
+    return (float)(opacity * clamped(mesh->face_colors[primitive - mesh->first_triangle][3]));
+  if (mesh->colors == NULL) return (float)opacity;
+  for (int i = 0; i < 3; i++)
+    sum += clamped(mesh->colors[all->triangles[primitive][i] - mesh->first_vertex][3]);
+  return (float)(opacity * sum / 3);
+}

@@ -29,6 +29,7 @@ typedef struct surface_mesh {
 } surface_mesh;
 
 typedef struct surface_cluster surface_cluster; /* clusters.h */
+typedef struct surface_seam surface_seam;       /* surface_seams.h */
 
 /* A primitive is a triangle or a sphere: numbers below triangle_count are triangles, those after it spheres.
  */
@@ -44,8 +45,9 @@ typedef struct surfaces {
   uint8_t (*cluster_corners)[3][64]; /* owned; [clusters of triangles]; numbers of the cluster's vertices */
   float (*cluster_normals)[3][64];   /* owned; the same; not unit; axis by axis; frame space */
   float *cluster_positions;          /* owned; of each cluster of triangles [3][vertices]; frame space */
+  surface_seam *seams;               /* owned; [seam_count]; null: none */
   cut_shape *cuts;                   /* owned; [cut_count]; the scene's, of frame space */
-  size_t cut_count, cluster_count;
+  size_t cut_count, cluster_count, seam_count;
   size_t mesh_count, vertex_count, edge_normal_count;
   uint32_t triangle_count, sphere_count;
 } surfaces;
@@ -83,6 +85,9 @@ bool hl_surface_is_opaque(const surface_mesh *mesh);
 
 /* Whether a ball lies outside of a mesh's box, by a hundredth of its edges at least; frame space. */
 bool hl_surface_is_outside(const hl_scene_mesh *mesh, vec3 centre, double radius);
+
+/* The fraction of light that a mesh's surface stops, at the middle of a triangle. */
+float hl_primitive_opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive);
 
 /* A position of surfaces->positions or ->normals. */
 static inline vec3 hl_surface_vector(const float v[3]) { return (vec3){v[0], v[1], v[2]}; }

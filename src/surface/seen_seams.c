@@ -1,0 +1,58 @@
+/* surface/seen_seams.c - see seen_seams.h. */
+#include "surface/seen_seams.h"
+
+#include "surface/surface_seams.h"
+
+/* Pixels from a corner within which fragments fill the slabs up to the other triangle, and by which they
+ * overlap with it: as many slopes as a pixel's height may differ from the corner's. */
+static const double BESIDE = 1.5, OVERLAP = 1;
+
+static bool set_end(const fragments_source *source, uint32_t vertex, double at[2], double *height) {
+  vec3 place = hl_surface_vector(source->surfaces->positions[vertex]);
+  *height = vec3_dot(source->sheets->normal, place) - source->sheets->first;
+  return hl_view_project(source->view, place, at);
+}
+
+/* Whether a triangle casts the shadow of all of it, and takes all light. */
+static bool is_opaque_shade(const fragment_work *work, uint32_t triangle) {
+  const surfaces *all = work->source->surfaces;
+  size_t mesh = hl_surface_mesh_of(all, triangle);
+  return all->meshes[mesh].scene->casts_shadow && !all->meshes[mesh].is_cut && work->least[mesh] >= 1 &&
+         hl_primitive_opacity(all, &all->meshes[mesh], triangle) >= 1;
+}
+
+void hl_see_seams(const fragment_work *work, const fragment *f, seen_seams *seams) {
+  const fragments_source *source = work->source;
+  size_t count;
+  seams->count = 0;
+  if (source->rise <= 0 || source->surfaces->seam_count == 0 || !is_opaque_shade(work, f->primitive)) return;
+  const surface_seam *own = hl_surface_seams_of(source->surfaces, f->primitive, &count);
+  for (size_t i = 0; i < count && seams->count < MOST_SEEN_SEAMS; i++) {
+    seen_seam *seam = &seams->list[seams->count];
+    if (!set_end(source, own[i].ends[0], seam->at[0], &seam->height[0]) ||
+        !set_end(source, own[i].ends[1], seam->at[1], &seam->height[1]) ||
+        !is_opaque_shade(work, own[i].other))
+      continue;
+    hl_plane_of_triangle(source->view, source->sheets, source->surfaces, own[i].other, &seam->other);
+    seams->count++;
+  }
+}
+
+/* The part of the way from the first end of a corner to the second at which it is closest to a point. */
+static double closest_part(const seen_seam *seam, double u, double v) {
+  double x = seam->at[1][0] - seam->at[0][0], y = seam->at[1][1] - seam->at[0][1], square = x * x + y * y;
+  if (!(square > 0)) return 0;
+  return fmin(fmax(((u - seam->at[0][0]) * x + (v - seam->at[0][1]) * y) / square, 0), 1);
+}
+
+double hl_seam_end(const fragments_source *source, const seen_seams *seams, double u, double v, double end) {
+  for (int i = 0; i < seams->count; i++) {
+    const seen_seam *seam = &seams->list[i];
+    double part = closest_part(seam, u, v), x = seam->at[0][0] + part * (seam->at[1][0] - seam->at[0][0]) - u,
+           y = seam->at[0][1] + part * (seam->at[1][1] - seam->at[0][1]) - v;
+    if (x * x + y * y > BESIDE * BESIDE) continue;
+    double height = seam->height[0] + part * (seam->height[1] - seam->height[0]);
+    end = fmax(end, height + (source->delay + OVERLAP) * hl_plane_slope(&seam->other, u, v));
+  }
+  return end;
+}

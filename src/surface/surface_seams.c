@@ -1,0 +1,199 @@
+/* surface/surface_seams.c - see surface_seams.h. */
+#include "surface/surface_seams.h"
+
+#include "core/memory.h"
+#include "mesh/mesh.h"
+#include "surface/clusters.h"
+#include "surface/fragment_order.h"
+
+/* In diagonals of the box around all clusters: edges of large triangles are longer, and ends so close lie in
+ * one place. */
+static const double LARGE = 1.0 / 64, SAME_PLACE = 1e-5;
+
+/* Edges that follow in the order of their keys and are asked at most: others with the same key are chance. */
+enum { MOST_ASKED = 64 };
+
+/* An edge of a large triangle. */
+typedef struct large_edge {
+  uint32_t triangle, ends[2];
+  double key; /* of edges in the same place nearly the same */
+} large_edge;
+
+typedef struct seam_search {
+  surfaces *all;
+  double large, same; /* frame units */
+  large_edge *edges;  /* owned; [edge_room] */
+  order_key *order;   /* owned; [2][edge_count] */
+  size_t edge_count, edge_room;
+} seam_search;
+
+static vec3 position_of(const surfaces *all, uint32_t vertex) {
+  return hl_surface_vector(all->positions[vertex]);
+}
+
+static void set_scale(seam_search *search) {
+  const surfaces *all = search->all;
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (size_t c = 0; c < all->cluster_count; c++) {
+    vec3_bound(hl_surface_vector(all->clusters[c].low), low, high);
+    vec3_bound(hl_surface_vector(all->clusters[c].high), low, high);
+  }
+  double diagonal = vec3_length(vec3_subtract(vec3_of(high), vec3_of(low)));
+  search->large = LARGE * diagonal;
+  search->same = SAME_PLACE * diagonal;
+}
+
+/* A number of the middle of an edge along a direction that walls seldom have. */
+static double key_of(const surfaces *all, const uint32_t ends[2]) {
+  const vec3 direction = {0.57735, 0.70711, 0.40825};
+  return vec3_dot(direction, vec3_add(position_of(all, ends[0]), position_of(all, ends[1]))) / 2;
+}
+
+static bool is_large(const seam_search *search, const uint32_t corner[3]) {
+  double longest = 0;
+  for (int i = 0; i < 3; i++)
+    longest = fmax(longest, vec3_length(vec3_subtract(position_of(search->all, corner[i]),
+                                                      position_of(search->all, corner[(i + 1) % 3]))));
+  return longest > search->large;
+}
+
+static void add_edges(seam_search *search, uint32_t triangle) {
+  const uint32_t *corner = search->all->triangles[triangle];
+  if (!is_large(search, corner)) return;
+  for (int i = 0; i < 3; i++) {
+    large_edge edge = {.triangle = triangle, .ends = {corner[i], corner[(i + 1) % 3]}};
+    edge.key = key_of(search->all, edge.ends);
+    if (isfinite(edge.key)) search->edges[search->edge_count++] = edge;
+  }
+}
+
+/* Whether a cluster may hold a large triangle. */
+static bool may_hold_large(const seam_search *search, const surface_cluster *cluster) {
+  return cluster->first < search->all->triangle_count &&
+         vec3_length(vec3_subtract(hl_surface_vector(cluster->high), hl_surface_vector(cluster->low))) >
+             search->large;
+}
+
+/* Lists the edges of large triangles that belong to no closed part of their mesh. */
+static void list_edges(seam_search *search) {
+  const surfaces *all = search->all;
+  for (size_t c = 0; c < all->cluster_count; c++) {
+    const surface_cluster *cluster = &all->clusters[c];
+    const surface_mesh *mesh = &all->meshes[cluster->mesh];
+    if (!may_hold_large(search, cluster) || mesh->mesh->closed) continue;
+    for (uint32_t i = 0; i < cluster->count && search->edge_count + 3 <= search->edge_room; i++) {
+      uint32_t triangle = all->order[cluster->first + i];
+      if (mesh->mesh->insides[triangle - mesh->first_triangle] == 0) add_edges(search, triangle);
+    }
+  }
+}
+
+static bool is_near(const seam_search *search, uint32_t a, uint32_t b) {
+  vec3 apart = vec3_subtract(position_of(search->all, a), position_of(search->all, b));
+  return vec3_length(apart) <= search->same;
+}
+
+/* Whether two edges lie in one place, and their triangles bend much there. */
+static bool is_corner(const seam_search *search, const large_edge *a, const large_edge *b) {
+  if (a->triangle == b->triangle) return false;
+  if (!(is_near(search, a->ends[0], b->ends[0]) && is_near(search, a->ends[1], b->ends[1])) &&
+      !(is_near(search, a->ends[0], b->ends[1]) && is_near(search, a->ends[1], b->ends[0])))
+    return false;
+  return fabs(vec3_dot(hl_surface_normal(search->all, a->triangle),
+                       hl_surface_normal(search->all, b->triangle))) < HL_MESH_ROUNDED;
+}
+
+static void add_seam(seam_search *search, const large_edge *edge, const large_edge *other) {
+  search->all->seams[search->all->seam_count++] = (surface_seam){
+      edge->triangle, other->triangle, {edge->ends[0], edge->ends[1]}};
+}
+
+/* Adds the seams of edge number i in the order of keys; way: 1 or -1, to which side others are asked. */
+static void find_at(seam_search *search, size_t i, int way) {
+  const large_edge *own = &search->edges[search->order[i].index];
+  int found = 0;
+  size_t at = i;
+  for (int asked = 0; asked < MOST_ASKED && found < MOST_AT_EDGE / 2; asked++) {
+    if (way > 0 ? at + 1 == search->edge_count : at == 0) return;
+    at = way > 0 ? at + 1 : at - 1;
+    const large_edge *other = &search->edges[search->order[at].index];
+    if (fabs(other->key - own->key) > 2 * search->same) return;
+    if (!is_corner(search, own, other)) continue;
+    add_seam(search, own, other);
+    found++;
+  }
+}
+
+/* Sorts edges by their keys: as good as floats tell them. */
+static void sort_edges(seam_search *search) {
+  for (size_t i = 0; i < search->edge_count; i++)
+    search->order[i] = (order_key){(uint64_t)hl_ordered_bits((float)search->edges[i].key, false) << 32,
+                                   (uint32_t)i};
+  hl_sort_keys(search->order, search->order + search->edge_count, search->edge_count);
+}
+
+/* Sorts the seams by their triangles; those of one keep their order. */
+static bool sort_seams(hl_context *context, surfaces *all) {
+  size_t count = all->seam_count;
+  surface_seam *sorted = hl_allocate(context, count, sizeof *sorted);
+  order_key *order = hl_allocate(context, 2 * count, sizeof *order);
+  bool room = sorted != NULL && order != NULL;
+  for (size_t i = 0; room && i < count; i++)
+    order[i] = (order_key){(uint64_t)all->seams[i].triangle << 32, (uint32_t)i};
+  if (room) hl_sort_keys(order, order + count, count);
+  for (size_t i = 0; room && i < count; i++) sorted[i] = all->seams[order[i].index];
+  hl_release(context, order);
+  hl_release(context, room ? all->seams : sorted);
+  if (room) all->seams = sorted;
+  return room;
+}
+
+static bool find_seams(hl_context *context, seam_search *search) {
+  surfaces *all = search->all;
+  search->order = hl_allocate(context, 2 * search->edge_count, sizeof *search->order);
+  all->seams = hl_allocate(context, MOST_AT_EDGE * search->edge_count, sizeof *all->seams);
+  if (search->order == NULL || all->seams == NULL) return false;
+  sort_edges(search);
+  for (size_t i = 0; i < search->edge_count; i++) find_at(search, i, -1), find_at(search, i, 1);
+  return sort_seams(context, all);
+}
+
+uint64_t hl_surface_seams_bytes(uint64_t triangles) {
+  uint64_t edges = 3 * (triangles < MOST_SEAMED ? triangles : MOST_SEAMED);
+  return edges * (sizeof(large_edge) + 2 * sizeof(order_key) +
+                  MOST_AT_EDGE * (2 * sizeof(surface_seam) + 2 * sizeof(order_key)));
+}
+
+hl_status hl_surface_seams_create(hl_context *context, surfaces *all, hl_error *error) {
+  const uint32_t most = all->triangle_count < MOST_SEAMED ? all->triangle_count : MOST_SEAMED;
+  seam_search search = {.all = all, .edge_room = 3 * (size_t)most};
+  search.edges = hl_allocate(context, search.edge_room, sizeof *search.edges);
+  bool room = search.edges != NULL;
+  if (room && most > 0) {
+    set_scale(&search);
+    list_edges(&search);
+  }
+  if (search.edge_count > 0) room = find_seams(context, &search);
+  hl_release(context, search.edges);
+  hl_release(context, search.order);
+  return room ? HL_OK
+              : hl_fail_memory(error, hl_surface_seams_bytes(all->triangle_count), "the corners of meshes");
+}
+
+void hl_surface_seams_release(hl_context *context, surfaces *all) {
+  hl_release(context, all->seams);
+  all->seams = NULL;
+  all->seam_count = 0;
+}
+
+const surface_seam *hl_surface_seams_of(const surfaces *all, uint32_t triangle, size_t *count) {
+  size_t first = 0, end = all->seam_count;
+  while (first < end) {
+    size_t middle = first + (end - first) / 2;
+    if (all->seams[middle].triangle < triangle) first = middle + 1;
+    else end = middle;
+  }
+  for (*count = 0; first + *count < all->seam_count && all->seams[first + *count].triangle == triangle;)
+    ++*count;
+  return all->seams + first;
+}

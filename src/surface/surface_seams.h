@@ -1,0 +1,32 @@
+/* surface/surface_seams.h - corners: where large triangles of meshes that are not closed meet at an edge and
+ * bend.
+ *
+ * Each triangle may have vertices of its own, or be of another mesh: what counts is where the edges' ends
+ * are. In: placed triangles. Out: for each of them its neighbours at corners, of which fragments of a light's
+ * view ask (seen_seams.h). */
+#ifndef HL_SURFACE_SURFACE_SEAMS_H
+#define HL_SURFACE_SURFACE_SEAMS_H
+
+#include "surface/surfaces.h"
+
+/* An edge at which a triangle meets another one, at an angle of more than 40 degrees. */
+struct surface_seam {
+  uint32_t triangle, other; /* of surfaces->triangles */
+  uint32_t ends[2];         /* of surfaces->positions; the triangle's own */
+};
+
+/* The most triangles that are asked, in the order of clusters, and the most neighbours of an edge. */
+enum { MOST_SEAMED = 1 << 14, MOST_AT_EDGE = 4 };
+
+/* The most bytes of the seams, and what finding them takes besides, for so many triangles. */
+uint64_t hl_surface_seams_bytes(uint64_t triangles);
+
+/* Fills all->seams, sorted by their triangles; clusters have been made. A triangle is large where one of its
+ * edges is longer than a 64th of the diagonal of a box around all clusters. */
+hl_status hl_surface_seams_create(hl_context *context, surfaces *all, hl_error *error);
+void hl_surface_seams_release(hl_context *context, surfaces *all);
+
+/* The seams of a triangle: *count of them, borrowed. */
+const surface_seam *hl_surface_seams_of(const surfaces *all, uint32_t triangle, size_t *count);
+
+#endif
