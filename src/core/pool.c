@@ -9,7 +9,10 @@
  * index that one thread takes from the other is one that it also took in the job before. No thread waits for
  * a worker that the system has not woken yet: on a busy machine the caller does all the work. Jobs alternate
  * between two slots, by the generation's parity. A job's description stays in its slot until all workers have
- * reported the indices that they claimed; only then can a later job of the same parity start. */
+ * reported the indices that they claimed; only then can a later job of the same parity start.
+ *
+ * An offer has shares of its own. Workers claim its indices where the current job has none left, and look for
+ * a new job after each. The caller claims none before it ends the offer: jobs wait for the caller. */
 #define _GNU_SOURCE
 #include "core/pool.h"
 
@@ -55,6 +58,12 @@ typedef struct share {
   _Alignas(64) atomic_uint_least64_t range; /* generation << 40 | end << 20 | next index */
 } share;
 
+typedef struct offer {
+  share *shares; /* [share_count]; behind the pool's own */
+  size_t count;  /* 0: nothing is offered */
+  job job;
+} offer;
+
 struct hl_pool {
   hl_context *context;
   int threads;
@@ -62,9 +71,10 @@ struct hl_pool {
   worker *workers; /* owned; [threads]; entry 0 (the caller) unused */
   int started;     /* threads running, the caller included */
   pid_t process;   /* the process that started the threads */
-  share *shares;   /* owned; [share_count] */
+  share *shares;   /* owned; [share_count], then as many of the offer */
   int share_count; /* requested threads; some may not have started */
   job jobs[2];
+  offer offer;
   atomic_uint_least64_t generation; /* number of the last job whose shares are filled */
   atomic_bool stop;
   atomic_bool cancelled; /* remaining indices are skipped */
@@ -142,10 +152,10 @@ static bool claim_of_share(share *share, bool first, claim *claimed) {
   return false;
 }
 
-static bool claim_index(hl_pool *pool, int number, claim *claimed) {
+static bool claim_index(const hl_pool *pool, share *shares, int number, claim *claimed) {
   for (int i = 0; i < pool->share_count; i++) {
     int whose = number + i < pool->share_count ? number + i : number + i - pool->share_count;
-    if (claim_of_share(&pool->shares[whose], (i == 0) == (whose % 2 == 0), claimed)) return true;
+    if (claim_of_share(&shares[whose], (i == 0) == (whose % 2 == 0), claimed)) return true;
   }
   return false;
 }
@@ -154,19 +164,32 @@ static bool claim_index(hl_pool *pool, int number, claim *claimed) {
  * their finished indices, so that all indices claimed between two reports belong to one job. */
 static void work(hl_pool *pool, int number) {
   claim claimed;
-  while (claim_index(pool, number, &claimed)) {
+  while (claim_index(pool, pool->shares, number, &claimed)) {
     job *job = &pool->jobs[claimed.generation & 1];
     size_t done = 0;
     do {
       if (!hl_pool_stops(pool, number)) job->function(job->data, job->base + (size_t)claimed.index, number);
       done++;
-    } while (claim_index(pool, number, &claimed));
+    } while (claim_index(pool, pool->shares, number, &claimed));
     atomic_fetch_add(&job->done, done);
   }
 }
 
 static bool is_idle(hl_pool *pool, uint64_t generation) {
   return atomic_load(&pool->generation) == generation && !atomic_load(&pool->stop);
+}
+
+/* Claims and runs indices of the offer until a new job begins or none is left. */
+static void work_on_offer(hl_pool *pool, int number, uint64_t generation) {
+  job *job = &pool->offer.job;
+  size_t done = 0;
+  claim claimed;
+  while (atomic_load(&pool->generation) == generation &&
+         claim_index(pool, pool->offer.shares, number, &claimed)) {
+    if (!hl_pool_stops(pool, number)) job->function(job->data, (size_t)claimed.index, number);
+    done++;
+  }
+  if (done > 0) atomic_fetch_add(&job->done, done);
 }
 
 static void sleep_until_work(hl_pool *pool, uint64_t generation) {
@@ -183,6 +206,7 @@ static void *worker_main(void *argument) {
   while (!atomic_load(&pool->stop)) {
     uint64_t generation = atomic_load(&pool->generation);
     work(pool, self->number);
+    work_on_offer(pool, self->number, generation);
     int spin = 0;
     for (; spin < pool->spins && is_idle(pool, generation); spin++) relax();
     if (spin == pool->spins) sleep_until_work(pool, generation);
@@ -206,17 +230,22 @@ static void wait_until_done(hl_pool *pool, const job *job, size_t count) {
   }
 }
 
+static void fill_shares(const hl_pool *pool, share *shares, uint64_t generation, size_t count) {
+  uint64_t threads = (uint64_t)pool->threads;
+  for (uint64_t i = 0; i < threads; i++)
+    atomic_store(&shares[i].range, generation << (2 * INDEX_BITS) | count * (i + 1) / threads << INDEX_BITS |
+                                       count * i / threads);
+}
+
 static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(void *, size_t, int),
                      void *data) {
-  uint64_t generation = atomic_load(&pool->generation) + 1, threads = (uint64_t)pool->threads;
+  uint64_t generation = atomic_load(&pool->generation) + 1;
   job *job = &pool->jobs[generation & 1];
   job->function = function;
   job->data = data;
   job->base = base;
   atomic_store(&job->done, 0);
-  for (uint64_t i = 0; i < threads; i++)
-    atomic_store(&pool->shares[i].range, generation << (2 * INDEX_BITS) |
-                                             count * (i + 1) / threads << INDEX_BITS | count * i / threads);
+  fill_shares(pool, pool->shares, generation, count);
   atomic_store(&pool->generation, generation);
   wake_sleepers(pool);
   work(pool, 0);
@@ -232,6 +261,32 @@ void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, i
   }
   for (size_t base = 0; base < count; base += INDEX_MASK)
     run_part(pool, base, count - base < INDEX_MASK ? count - base : INDEX_MASK, function, data);
+}
+
+void hl_pool_offer(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data) {
+  if (pool->threads == 1 || count <= 1 || count > INDEX_MASK) {
+    hl_pool_run(pool, count, function, data);
+    return;
+  }
+  /* a generation of its own, of the parity of the last job, whose shares are empty */
+  uint64_t generation = atomic_load(&pool->generation) + 2;
+  job *job = &pool->offer.job;
+  job->function = function;
+  job->data = data;
+  atomic_store(&job->done, 0);
+  pool->offer.count = count;
+  fill_shares(pool, pool->offer.shares, generation, count);
+  atomic_store(&pool->generation, generation);
+  wake_sleepers(pool);
+}
+
+void hl_pool_finish_offer(hl_pool *pool) {
+  size_t count = pool->offer.count;
+  if (count == 0) return;
+  work_on_offer(pool, 0, atomic_load(&pool->generation));
+  wait_until_done(pool, &pool->offer.job, count);
+  pool->offer.count = 0;
+  pool->waits++;
 }
 
 enum { FLOATS_A_TASK = 1 << 16, BYTES_A_TASK = 1 << 18 };
@@ -302,7 +357,7 @@ hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_er
   if (threads > MAXIMUM_THREADS) threads = MAXIMUM_THREADS;
   hl_pool *made = hl_allocate_zeroed(context, 1, sizeof *made);
   worker *workers = hl_allocate_zeroed(context, (size_t)threads, sizeof *workers);
-  share *shares = hl_allocate_zeroed(context, (size_t)threads, sizeof *shares);
+  share *shares = hl_allocate_zeroed(context, 2 * (size_t)threads, sizeof *shares);
   if (made == NULL || workers == NULL || shares == NULL) {
     hl_release(context, shares);
     hl_release(context, workers);
@@ -314,6 +369,7 @@ hl_status hl_pool_create(hl_context *context, int threads, hl_pool **pool, hl_er
   made->spins = threads <= processors ? SPINS : 0;
   made->workers = workers;
   made->shares = shares;
+  made->offer.shares = shares + threads;
   made->share_count = threads;
   pthread_mutex_init(&made->mutex, NULL);
   pthread_cond_init(&made->wake, NULL);

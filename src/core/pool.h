@@ -33,6 +33,14 @@ uint64_t hl_pool_waits(const hl_pool *pool);
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
                  void *data);
 
+/* Offers the calls that hl_pool_run() makes to threads that have nothing to do in later runs; returns at
+ * once, but for one thread, which makes them all. Until hl_pool_finish_offer() returns, which makes the calls
+ * that are left, nothing that they read may be written, and nothing else may be offered. The calls of later
+ * runs come first. */
+void hl_pool_offer(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
+                   void *data);
+void hl_pool_finish_offer(hl_pool *pool); /* nothing offered: returns at once */
+
 /* Sets floats[0 .. count) to value, on all threads. */
 void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value);
 /* Sets all bytes to value, or to zero, on all threads. */

@@ -4,7 +4,9 @@
  * tasks, with one wait for all threads at its end. A picture of stretch r reads the planes of the sheets
  * before its slabs, K of them; meanwhile the lights write K more, and start from the one before: so the
  * buffers keep the planes of 2 K + 1 sheets. A task takes one tile through all slabs of a stretch, in the
- * order of the sheets: bytes depend neither on K nor on threads.
+ * order of the sheets: bytes depend neither on K nor on threads. Where a light's buffer changes as a whole
+ * after a stretch, in many short runs (cascade), threads that have nothing to do in these work on the
+ * picture.
  *
  * Where some light's method cannot be run in stretches, picture and lights take turns, slab by slab. */
 #include "core/context.h"
@@ -78,15 +80,31 @@ static void attenuate_stretch(sweep *sweep, int index, size_t tile, int worker) 
   }
 }
 
-static void stretch_task(void *data, size_t index, int worker) {
-  sweep *sweep = data;
-  int each = tiles_a_task(sweep), last = sweep->task_start[sweep->geometry->light_count + 1];
-  int first = (int)index * each, end = first + each < last ? first + each : last;
+/* Works on one task of those from `begin` on; tasks are numbered in the order of sweep->task_start. */
+static void work_on_task(sweep *sweep, int begin, size_t index, int last, int worker) {
+  int each = tiles_a_task(sweep);
+  int first = begin + (int)index * each, end = first + each < last ? first + each : last;
   for (int task = first, light = -1; task < end; task++) {
     while (task >= sweep->task_start[light + 2]) light++;
     if (light < 0) shade_stretch(sweep, sweep->arrays.tasks[task], worker);
     else attenuate_stretch(sweep, light, sweep->arrays.tasks[task], worker);
   }
+}
+
+static void stretch_task(void *data, size_t index, int worker) {
+  sweep *sweep = data;
+  work_on_task(sweep, 0, index, sweep->task_start[sweep->geometry->light_count + 1], worker);
+}
+
+static void picture_task(void *data, size_t index, int worker) {
+  sweep *sweep = data;
+  work_on_task(sweep, 0, index, sweep->task_start[1], worker);
+}
+
+static void light_task(void *data, size_t index, int worker) {
+  sweep *sweep = data;
+  work_on_task(sweep, sweep->task_start[1], index, sweep->task_start[sweep->geometry->light_count + 1],
+               worker);
 }
 
 /* ---- what all tiles of a slab have in common ---- */
@@ -140,8 +158,15 @@ static void prepare_lookups(sweep *sweep, slab_stretch stretch) {
 
 /* ---- stretches ---- */
 
-/* Takes the picture and the lights through a stretch each; either may be empty. */
-static void run_stretches(sweep *sweep, slab_stretch picture, slab_stretch light) {
+static size_t count_tasks(const sweep *sweep, int first, int end) {
+  size_t each = (size_t)tiles_a_task(sweep);
+  return ((size_t)(end - first) + each - 1) / each;
+}
+
+/* Takes the picture and the lights through a stretch each; either may be empty. offers: the picture is only
+ * offered to threads that wait for others, until finish_picture(). */
+static void run_stretches(sweep *sweep, slab_stretch picture, slab_stretch light, bool offers) {
+  hl_pool *pool = sweep->content.pool;
   double start = hl_clock_seconds();
   sweep->picture_stretch = picture;
   sweep->light_stretch = light;
@@ -156,8 +181,18 @@ static void run_stretches(sweep *sweep, slab_stretch picture, slab_stretch light
     }
     sweep->task_start[i + 2] = count;
   }
-  size_t each = (size_t)tiles_a_task(sweep);
-  if (count > 0) hl_pool_run(sweep->content.pool, ((size_t)count + each - 1) / each, stretch_task, sweep);
+  if (offers) {
+    hl_pool_offer(pool, count_tasks(sweep, 0, sweep->task_start[1]), picture_task, sweep);
+    hl_pool_run(pool, count_tasks(sweep, sweep->task_start[1], count), light_task, sweep);
+  } else {
+    hl_pool_run(pool, count_tasks(sweep, 0, count), stretch_task, sweep);
+  }
+  sweep->times.seconds_tiles += hl_clock_seconds() - start;
+}
+
+static void finish_picture(sweep *sweep) {
+  double start = hl_clock_seconds();
+  hl_pool_finish_offer(sweep->content.pool);
   sweep->times.seconds_tiles += hl_clock_seconds() - start;
 }
 
@@ -224,13 +259,14 @@ hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
     light = stretch_from(sweep, light.end);
     prepare_lookups(sweep, light);
     if (ahead) {
-      run_stretches(sweep, picture, light);
+      run_stretches(sweep, picture, light, light.first < light.end && any_advances(sweep, light.end - 1));
     } else {
       picture = light;
-      run_stretches(sweep, picture, (slab_stretch){1, 1});
-      run_stretches(sweep, (slab_stretch){1, 1}, light);
+      run_stretches(sweep, picture, (slab_stretch){1, 1}, false);
+      run_stretches(sweep, (slab_stretch){1, 1}, light, false);
     }
     advance_lights(sweep, light);
+    finish_picture(sweep);
     if (!sweep->preparatory)
       hl_progress(sweep->content.context, "render", (double)(picture.end - 1) / sheets);
     if (hl_pool_cancelled(sweep->content.pool))
