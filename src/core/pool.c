@@ -230,11 +230,16 @@ static void wait_until_done(hl_pool *pool, const job *job, size_t count) {
   }
 }
 
-static void fill_shares(const hl_pool *pool, share *shares, uint64_t generation, size_t count) {
+/* Begins a job: deals its indices out to the shares and wakes the workers. The caller has set what else
+ * describes it. */
+static void begin_job(hl_pool *pool, job *job, share *shares, uint64_t generation, size_t count) {
+  atomic_store(&job->done, 0);
   uint64_t threads = (uint64_t)pool->threads;
   for (uint64_t i = 0; i < threads; i++)
     atomic_store(&shares[i].range, generation << (2 * INDEX_BITS) | count * (i + 1) / threads << INDEX_BITS |
                                        count * i / threads);
+  atomic_store(&pool->generation, generation);
+  wake_sleepers(pool);
 }
 
 static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(void *, size_t, int),
@@ -244,10 +249,7 @@ static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(
   job->function = function;
   job->data = data;
   job->base = base;
-  atomic_store(&job->done, 0);
-  fill_shares(pool, pool->shares, generation, count);
-  atomic_store(&pool->generation, generation);
-  wake_sleepers(pool);
+  begin_job(pool, job, pool->shares, generation, count);
   work(pool, 0);
   wait_until_done(pool, job, count);
   pool->waits++;
@@ -268,16 +270,12 @@ void hl_pool_offer(hl_pool *pool, size_t count, void (*function)(void *, size_t,
     hl_pool_run(pool, count, function, data);
     return;
   }
-  /* a generation of its own, of the parity of the last job, whose shares are empty */
-  uint64_t generation = atomic_load(&pool->generation) + 2;
   job *job = &pool->offer.job;
   job->function = function;
   job->data = data;
-  atomic_store(&job->done, 0);
   pool->offer.count = count;
-  fill_shares(pool, pool->offer.shares, generation, count);
-  atomic_store(&pool->generation, generation);
-  wake_sleepers(pool);
+  /* a generation of its own, of the parity of the last job, whose shares are empty */
+  begin_job(pool, job, pool->offer.shares, atomic_load(&pool->generation) + 2, count);
 }
 
 void hl_pool_finish_offer(hl_pool *pool) {

@@ -88,17 +88,11 @@ static bool volume_reaches(const opacity_job *job, int volume, const float middl
 
 /* The cells of a block that a volume reaches, one bit each. */
 static uint32_t cells_of(const opacity_job *job, int volume, const float corner[3], int32_t valid) {
-  const field_matter *matter = &job->content->matter[volume];
-  float half = (float)job->field->lattice.cell / 2;
+  const float half = (float)job->field->lattice.cell / 2;
   uint32_t bits = 0;
-  if (matter->grid->relevant_count == 0) return 0;
   for (int32_t lane = 0; lane < FIELD_LANES && lane < valid; lane++) {
-    float at[3], x = corner[0] + half * (float)(2 * lane + 1), y = corner[1] + half, z = corner[2] + half;
-    for (int a = 0; a < 3; a++) {
-      const float *row = matter->to_index[a];
-      at[a] = row[0] * x + row[1] * y + row[2] * z + row[3];
-    }
-    if (reaches_matter(matter->grid, at, job->reach[volume])) bits |= 1u << lane;
+    const float middle[3] = {corner[0] + half * (float)(2 * lane + 1), corner[1] + half, corner[2] + half};
+    if (volume_reaches(job, volume, middle, 1)) bits |= 1u << lane;
   }
   return bits;
 }

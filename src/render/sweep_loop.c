@@ -80,10 +80,10 @@ static void attenuate_stretch(sweep *sweep, int index, size_t tile, int worker) 
   }
 }
 
-/* Works on one task of those from `begin` on; tasks are numbered in the order of sweep->task_start. */
-static void work_on_task(sweep *sweep, int begin, size_t index, int last, int worker) {
-  int each = tiles_a_task(sweep);
-  int first = begin + (int)index * each, end = first + each < last ? first + each : last;
+static void stretch_task(void *data, size_t index, int worker) {
+  sweep *sweep = data;
+  int each = tiles_a_task(sweep), last = sweep->task_start[sweep->geometry->light_count + 1];
+  int first = (int)index * each, end = first + each < last ? first + each : last;
   for (int task = first, light = -1; task < end; task++) {
     while (task >= sweep->task_start[light + 2]) light++;
     if (light < 0) shade_stretch(sweep, sweep->arrays.tasks[task], worker);
@@ -91,20 +91,10 @@ static void work_on_task(sweep *sweep, int begin, size_t index, int last, int wo
   }
 }
 
-static void stretch_task(void *data, size_t index, int worker) {
-  sweep *sweep = data;
-  work_on_task(sweep, 0, index, sweep->task_start[sweep->geometry->light_count + 1], worker);
-}
-
-static void picture_task(void *data, size_t index, int worker) {
-  sweep *sweep = data;
-  work_on_task(sweep, 0, index, sweep->task_start[1], worker);
-}
-
+/* A task of the lights, where each tile is one task. */
 static void light_task(void *data, size_t index, int worker) {
-  sweep *sweep = data;
-  work_on_task(sweep, sweep->task_start[1], index, sweep->task_start[sweep->geometry->light_count + 1],
-               worker);
+  const sweep *sweep = data;
+  stretch_task(data, (size_t)sweep->task_start[1] + index, worker);
 }
 
 /* ---- what all tiles of a slab have in common ---- */
@@ -158,13 +148,8 @@ static void prepare_lookups(sweep *sweep, slab_stretch stretch) {
 
 /* ---- stretches ---- */
 
-static size_t count_tasks(const sweep *sweep, int first, int end) {
-  size_t each = (size_t)tiles_a_task(sweep);
-  return ((size_t)(end - first) + each - 1) / each;
-}
-
 /* Takes the picture and the lights through a stretch each; either may be empty. offers: the picture is only
- * offered to threads that wait for others, until finish_picture(). */
+ * offered to threads that wait for others, until finish_picture(); in stretches of several slabs alone. */
 static void run_stretches(sweep *sweep, slab_stretch picture, slab_stretch light, bool offers) {
   hl_pool *pool = sweep->content.pool;
   double start = hl_clock_seconds();
@@ -181,11 +166,12 @@ static void run_stretches(sweep *sweep, slab_stretch picture, slab_stretch light
     }
     sweep->task_start[i + 2] = count;
   }
+  size_t each = (size_t)tiles_a_task(sweep), picture_tiles = (size_t)sweep->task_start[1];
   if (offers) {
-    hl_pool_offer(pool, count_tasks(sweep, 0, sweep->task_start[1]), picture_task, sweep);
-    hl_pool_run(pool, count_tasks(sweep, sweep->task_start[1], count), light_task, sweep);
+    hl_pool_offer(pool, picture_tiles, stretch_task, sweep);
+    hl_pool_run(pool, (size_t)count - picture_tiles, light_task, sweep);
   } else {
-    hl_pool_run(pool, count_tasks(sweep, 0, count), stretch_task, sweep);
+    hl_pool_run(pool, ((size_t)count + each - 1) / each, stretch_task, sweep);
   }
   sweep->times.seconds_tiles += hl_clock_seconds() - start;
 }

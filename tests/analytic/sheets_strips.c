@@ -536,6 +536,15 @@ static void test_exchanged_sky(void **state) {
   }
 }
 
+/* A parallel view of 40 units, lit by a wide sun from the side. */
+static void look_under_a_sun(stage *set) {
+  stage_look(set, (vec3){0, 0, 90}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+  set->scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
+  set->scene.camera.height = 40;
+  stage_add_directional(set, (vec3){1, 0, -1})->angular_diameter_deg = 10;
+  soften(set, HL_SOFT_CASCADE);
+}
+
 /* The cube of test_light_of_part(), under soft light. */
 static void exchange_cube(stage *set) {
   enum { SIDE = 40 };
@@ -545,11 +554,7 @@ static void exchange_cube(stage *set) {
                  (vec3){-19.5, -19.5, -19.5}, voxels);
   free(voxels);
   stage_set_opacity(set, &set->volumes[0], 0.001, 1);
-  stage_look(set, (vec3){0, 0, 90}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
-  set->scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
-  set->scene.camera.height = 40;
-  stage_add_directional(set, (vec3){1, 0, -1})->angular_diameter_deg = 10;
-  soften(set, HL_SOFT_CASCADE);
+  look_under_a_sun(set);
 }
 
 /* Each of 4 parts fills a fourth of the light, and of a tile and some pixels on either side; what the others
@@ -582,11 +587,7 @@ static void exchange_two_depths(stage *set) {
         set, n, spacing, half == 0 ? (vec3){-19.5, 0.5, 14} : (vec3){-19.5, -19.5, -18}, voxels);
     stage_set_opacity(set, made, 0.001, 1);
   }
-  stage_look(set, (vec3){0, 0, 90}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
-  set->scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
-  set->scene.camera.height = 40;
-  stage_add_directional(set, (vec3){1, 0, -1})->angular_diameter_deg = 10;
-  soften(set, HL_SOFT_CASCADE);
+  look_under_a_sun(set);
 }
 
 /* Of two parts of a band each one would wait for the other at all depths. So they have bands of both halves
