@@ -1,4 +1,8 @@
-/* field/lookup_lanes.h - the sky's light at samples: read between the cells of its field. */
+/* field/lookup_lanes.h - the sky's light at samples: read between the cells of its field.
+ *
+ * A row of numbers of 16 bits holds a cell's harmonics beside those of the next cell along x (sky_field.h). Four
+ * rows, times the weights of eight cells, are the harmonics at a sample: sums of whole numbers, the same on every
+ * processor. */
 #ifndef HL_FIELD_LOOKUP_LANES_H
 #define HL_FIELD_LOOKUP_LANES_H
 
@@ -6,75 +10,107 @@
 #include "field/sky_field.h"
 #include "simd/lanes.h"
 
-/* The light that comes to sixteen samples, as spherical harmonics. */
-typedef struct sky_harmonics {
-  lanes of[3 * FIELD_HARMONICS]; /* [channels][FIELD_HARMONICS] */
-} sky_harmonics;
+/* The light that comes to sixteen samples: harmonics in the field's numbers, times the sum of the cells' weights. */
+typedef struct sky_rows {
+  float of[LANES][2 * LANES]; /* [lane][FIELD_HARMONICS][channels]; set for the active lanes */
+  lanes unit;                 /* one over the sum of the weights */
+  uint32_t active;
+} sky_rows;
 
-/* A position between cells along one axis. */
-LANES_INLINE void place_between_cells(const sky_light *sky, int axis, lanes position, int32_t first[LANES],
-                                      float fraction[LANES]) {
+/* A position between cells along one axis. Returns the number of the first of the two cells. */
+LANES_INLINE lanes place_between_cells(const sky_light *sky, int axis, lanes position, lanes *fraction) {
   lanes at = lanes_line(position - sky->low[axis], sky->inverse_cell, -0.5f);
   at = lanes_clamp(at, 0, (float)sky->count[axis] - 1.001f);
-  lanes_int whole = lanes_truncate(at);
-  memcpy(first, &whole, sizeof whole);
-  lanes_store(fraction, at - lanes_from_int(whole));
+  lanes whole = lanes_from_int(lanes_truncate(at));
+  *fraction = at - whole;
+  return whole;
 }
 
 /* A cell counts at least this much beside others. */
 static const float LEAST_COUNTED = 1.0f / 1024;
 
-/* Trilinear weights of eight cells, times their transmittances, or, on a volume's surface (1), the cubes of
- * these: dark cells within matter do not darken what lies outside of it. They sum to 1. */
-LANES_INLINE void weigh_cells(const float *const cells[8], int passing, const float fraction[3],
-                              float surface, float weight[8]) {
-  float sum = 0;
-  for (int corner = 0; corner < 8; corner++) {
-    float x = corner & 1 ? fraction[0] : 1 - fraction[0], y = corner & 2 ? fraction[1] : 1 - fraction[1],
-          z = corner & 4 ? fraction[2] : 1 - fraction[2], passes = cells[corner][passing],
-          counted = passes * (1 - surface + surface * passes * passes);
-    weight[corner] = x * y * z * (counted > LEAST_COUNTED ? counted : LEAST_COUNTED);
-    sum += weight[corner];
+/* The weight of a cell beside others: its trilinear weight, times its transmittance, or, on a volume's surface
+ * (1), the cube of it: dark cells within matter do not darken what lies outside of it. */
+LANES_INLINE lanes weight_of_cell(lanes trilinear, lanes_int stored, lanes surface) {
+  lanes passing = lanes_from_int(stored) * (1.0f / SKY_MOST),
+        counted = passing * lanes_fma(surface, passing * passing - 1.0f, lanes_set(1.0f));
+  return trilinear * lanes_max(counted, lanes_set(LEAST_COUNTED));
+}
+
+/* Turns the transmittances of eight cells, in pairs along x, into their weights, in such pairs. The weights are
+ * whole numbers, about SKY_MOST together. Returns one over their sum. */
+LANES_INLINE lanes weigh_cells(const lanes fraction[3], lanes surface, lanes_int pairs[4]) {
+  lanes weight[8], sum = lanes_set(0);
+  for (int pair = 0; pair < 4; pair++) {
+    lanes across = (pair & 1 ? fraction[1] : 1.0f - fraction[1]) *
+                   (pair & 2 ? fraction[2] : 1.0f - fraction[2]),
+          second = across * fraction[0];
+    weight[2 * pair] = weight_of_cell(across - second, pairs[pair] & 0xffff, surface);
+    weight[2 * pair + 1] = weight_of_cell(second, pairs[pair] >> 16, surface);
+    sum = sum + (weight[2 * pair] + weight[2 * pair + 1]);
   }
-  for (int corner = 0; corner < 8; corner++) weight[corner] = weight[corner] / sum;
+  lanes scale = (float)SKY_MOST / sum;
+  lanes_int total = lanes_set_int(0);
+  for (int pair = 0; pair < 4; pair++) {
+    lanes_int first = lanes_truncate(lanes_fma(weight[2 * pair], scale, lanes_set(0.5f))),
+              second = lanes_truncate(lanes_fma(weight[2 * pair + 1], scale, lanes_set(0.5f)));
+    pairs[pair] = first | second << 16;
+    total = total + (first + second);
+  }
+  return 1.0f / lanes_from_int(total);
 }
 
 /* The light between the eight cells around each of the active lanes' positions. surface: 1 on surfaces of a
  * volume's matter, 0 in media and on meshes. */
 LANES_INLINE void look_up_sky(const sky_light *sky, lanes3 position, lanes surface, uint32_t active,
-                              sky_harmonics *found) {
+                              sky_rows *found) {
   const int harmonics = sky->channels * FIELD_HARMONICS;
   const size_t cell = (size_t)harmonics + 1, row = cell * (size_t)sky->count[0],
                slice = row * (size_t)sky->count[1];
-  int32_t first[3][LANES];
-  float fraction[3][LANES], surfaces[LANES], rows[3][LANES][LANES];
-  place_between_cells(sky, 0, position.x, first[0], fraction[0]);
-  place_between_cells(sky, 1, position.y, first[1], fraction[1]);
-  place_between_cells(sky, 2, position.z, first[2], fraction[2]);
-  lanes_store(surfaces, surface);
-  memset(rows, 0, (size_t)sky->channels * sizeof rows[0]);
+  const size_t to_pair[4] = {0, row, slice, row + slice};
+  lanes fraction[3], first[3];
+  const lanes at[3] = {position.x, position.y, position.z};
+  for (int axis = 0; axis < 3; axis++)
+    first[axis] = place_between_cells(sky, axis, at[axis], &fraction[axis]);
+  /* whole numbers below 2^24, which floats hold exactly */
+  lanes number = lanes_add_scaled(first[0], lanes_add_scaled(first[1], first[2], (float)sky->count[1]),
+                                  (float)sky->count[0]);
+  int32_t numbers[LANES], pairs[4][LANES];
+  lanes_int whole = lanes_truncate(number), of_lanes[4];
+  memcpy(numbers, &whole, sizeof numbers);
+  memset(pairs, 0, sizeof pairs);
   for (uint32_t left = active; left != 0; left &= left - 1) {
     int lane = __builtin_ctz(left);
-    const float *at = sky->field + (size_t)first[0][lane] * cell + (size_t)first[1][lane] * row +
-                      (size_t)first[2][lane] * slice;
-    const float *cells[8], within[3] = {fraction[0][lane], fraction[1][lane], fraction[2][lane]};
-    float weight[8];
-    for (int corner = 0; corner < 8; corner++)
-      cells[corner] = at + (corner & 1 ? cell : 0) + (corner & 2 ? row : 0) + (corner & 4 ? slice : 0);
-    weigh_cells(cells, harmonics, within, surfaces[lane], weight);
-    for (int c = 0; c < sky->channels; c++) {
-      lanes sum = lanes_set(0);
-      for (int corner = 0; corner < 8; corner++)
-        sum = lanes_add_scaled(sum, lanes_load(cells[corner] + c * FIELD_HARMONICS), weight[corner]);
-      lanes_store(rows[c][lane], sum);
+    const uint32_t *passing = sky->cells + (size_t)numbers[lane] * cell + harmonics;
+    for (int pair = 0; pair < 4; pair++) pairs[pair][lane] = (int32_t)passing[to_pair[pair]];
+  }
+  memcpy(of_lanes, pairs, sizeof of_lanes);
+  found->unit = weigh_cells(fraction, surface, of_lanes);
+  found->active = active;
+  memcpy(pairs, of_lanes, sizeof pairs);
+  for (uint32_t left = active; left != 0; left &= left - 1) {
+    int lane = __builtin_ctz(left);
+    const uint32_t *of_cell = sky->cells + (size_t)numbers[lane] * cell;
+    lanes_int sum[2] = {lanes_set_int(0), lanes_set_int(0)};
+    for (int pair = 0; pair < 4; pair++) {
+      lanes_int weights = lanes_set_int(pairs[pair][lane]), numbers_of_row[2];
+      memcpy(numbers_of_row, of_cell + to_pair[pair], sizeof numbers_of_row);
+      for (int half = 0; half < 2; half++)
+        sum[half] = sum[half] + lanes_multiply_shorts(numbers_of_row[half], weights);
     }
+    for (int half = 0; half < 2; half++)
+      lanes_store(found->of[lane] + half * LANES, lanes_from_int(sum[half]));
   }
-  for (int k = 0; k < harmonics; k++) {
-    float column[LANES];
-    for (int lane = 0; lane < LANES; lane++)
-      column[lane] = rows[k / FIELD_HARMONICS][lane][k % FIELD_HARMONICS];
-    found->of[k] = lanes_load(column);
+}
+
+/* Brings a harmonic to lanes; those that are not active get 0. */
+LANES_INLINE lanes harmonic_of_rows(const sky_light *sky, const sky_rows *rows, int channel, int k) {
+  float column[LANES] = {0};
+  for (uint32_t left = rows->active; left != 0; left &= left - 1) {
+    int lane = __builtin_ctz(left);
+    column[lane] = rows->of[lane][k * sky->channels + channel];
   }
+  return lanes_load(column) * (rows->unit * sky->stored_unit[channel]);
 }
 
 /* The second degree of the sum over harmonics of light times the harmonic towards d. */
@@ -84,13 +120,60 @@ LANES_INLINE lanes second_degree(const lanes *light, lanes3 d) {
          light[8] * (d.x * d.x - d.y * d.y) * (float)HARMONIC_22;
 }
 
-/* 1 / pi times the integral of light and cosine. The cosine's factors are 1, 2/3 and 1/4 (Ramamoorthi and
- * Hanrahan 2001, divided by pi). */
-LANES_INLINE lanes light_of_surface(const lanes *light, lanes3 normal) {
-  lanes sum = light[0] * (float)HARMONIC_0;
-  lanes first = light[1] * normal.x + light[2] * normal.y + light[3] * normal.z;
-  sum = lanes_add_scaled(sum, first, (float)HARMONIC_1 * (2.0f / 3));
-  return lanes_max(lanes_add_scaled(sum, second_degree(light, normal), 0.25f), lanes_set(0));
+/* What each harmonic adds to 1 / pi times the integral of light and cosine. The cosine's factors are 1, 2/3 and
+ * 1/4 (Ramamoorthi and Hanrahan 2001, divided by pi). */
+LANES_INLINE void factors_of_surface(lanes3 normal, lanes factors[FIELD_HARMONICS]) {
+  const float first = (float)HARMONIC_1 * (2.0f / 3), second = (float)HARMONIC_2 * 0.25f;
+  factors[0] = lanes_set((float)HARMONIC_0);
+  factors[1] = normal.x * first;
+  factors[2] = normal.y * first;
+  factors[3] = normal.z * first;
+  factors[4] = normal.x * normal.y * second;
+  factors[5] = normal.y * normal.z * second;
+  factors[6] = normal.z * normal.x * second;
+  factors[7] = lanes_line(normal.z * normal.z, 3.0f, -1.0f) * ((float)HARMONIC_20 * 0.25f);
+  factors[8] = (normal.x * normal.x - normal.y * normal.y) * ((float)HARMONIC_22 * 0.25f);
+}
+
+/* 1 / pi times the integral of light and cosine, in each channel of the field. Lanes that are not active get 0. */
+LANES_INLINE void light_of_surface(const sky_light *sky, const sky_rows *rows, lanes3 normal, lanes light[3]) {
+  typedef float quad __attribute__((vector_size(16)));
+  lanes factors[FIELD_HARMONICS];
+  float of[FIELD_HARMONICS][LANES], sums[3][LANES] = {{0}};
+  factors_of_surface(normal, factors);
+  memcpy(of, factors, sizeof of);
+  if (sky->channels == 1) {
+    for (uint32_t left = rows->active; left != 0; left &= left - 1) {
+      int lane = __builtin_ctz(left);
+      float sum = 0;
+      for (int k = 0; k < FIELD_HARMONICS; k++) sum = sum + rows->of[lane][k] * of[k][lane];
+      sums[0][lane] = sum;
+    }
+  } else {
+    for (uint32_t left = rows->active; left != 0; left &= left - 1) {
+      int lane = __builtin_ctz(left);
+      quad sum = {0, 0, 0, 0};
+      for (int k = 0; k < FIELD_HARMONICS; k++) {
+        quad colors;
+        memcpy(&colors, rows->of[lane] + 3 * k, sizeof colors);
+        sum = sum + colors * of[k][lane];
+      }
+      for (int c = 0; c < 3; c++) sums[c][lane] = sum[c];
+    }
+  }
+  for (int c = 0; c < sky->channels; c++)
+    light[c] = lanes_max(lanes_load(sums[c]) * (rows->unit * sky->stored_unit[c]), lanes_set(0));
+}
+
+/* The same of light that nothing hides. */
+LANES_INLINE void open_light_of_surface(const sky_light *sky, lanes3 normal, lanes light[3]) {
+  lanes factors[FIELD_HARMONICS];
+  factors_of_surface(normal, factors);
+  for (int c = 0; c < sky->channels; c++) {
+    lanes sum = lanes_set(0);
+    for (int k = 0; k < FIELD_HARMONICS; k++) sum = lanes_add_scaled(sum, factors[k], sky->open[c][k]);
+    light[c] = lanes_max(sum, lanes_set(0));
+  }
 }
 
 #endif

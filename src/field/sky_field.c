@@ -260,8 +260,10 @@ static void make(const sky_content *content, passing_arrays *arrays, const field
     hl_field_share_complete(&arrays->share, false, field, count[2], target.step[2] * sizeof *field);
 }
 
+/* Finds the light that nothing hides, and, as what hides light takes from each direction's share, a bound of each
+ * channel's harmonics. */
 static void find_open(const sky_content *content, sky_light *light) {
-  double sum[3][FIELD_HARMONICS] = {{0}};
+  double sum[3][FIELD_HARMONICS] = {{0}}, bound[3][FIELD_HARMONICS] = {{0}};
   const int side = side_of(content);
   for (int end = 0; end < ENDS; end++) {
     field_slices s = hl_field_slices(&content->lattice, end / 2);
@@ -269,11 +271,69 @@ static void find_open(const sky_content *content, sky_light *light) {
       double integral[3][FIELD_HARMONICS];
       integrate_square(content->sky, &s, end % 2 ? -1 : 1, side, square, integral);
       for (int c = 0; c < 3; c++)
-        for (int k = 0; k < FIELD_HARMONICS; k++) sum[c][k] += integral[c][k];
+        for (int k = 0; k < FIELD_HARMONICS; k++) {
+          sum[c][k] += integral[c][k];
+          bound[c][k] += fabs(integral[c][k]);
+        }
     }
   }
-  for (int c = 0; c < 3; c++)
-    for (int k = 0; k < FIELD_HARMONICS; k++) light->open[c][k] = (float)sum[c][k];
+  for (int c = 0; c < 3; c++) {
+    double greatest = 0;
+    for (int k = 0; k < FIELD_HARMONICS; k++) {
+      light->open[c][k] = (float)sum[c][k];
+      greatest = fmax(greatest, bound[c][k]);
+    }
+    light->stored_unit[c] = (float)(greatest / SKY_MOST);
+  }
+}
+
+/* ---- how the field is stored ---- */
+
+typedef struct store_rows {
+  const sky_light *light;
+  float *field; /* becomes the cells, in place */
+} store_rows;
+
+/* The nearest number of 16 bits. */
+static int32_t stored(float value, float scale) {
+  float number = value * scale;
+  return (int32_t)fminf(fmaxf(number + (number < 0 ? -0.5f : 0.5f), -SKY_MOST), SKY_MOST);
+}
+
+static void store_cell(const sky_light *light, const float *cell, int32_t *numbers) {
+  const int channels = light->channels;
+  for (int c = 0; c < channels; c++) {
+    float scale = light->stored_unit[c] > 0 ? 1 / light->stored_unit[c] : 0;
+    for (int k = 0; k < FIELD_HARMONICS; k++)
+      numbers[k * channels + c] = stored(cell[c * FIELD_HARMONICS + k], scale);
+  }
+  numbers[channels * FIELD_HARMONICS] = stored(cell[channels * FIELD_HARMONICS], SKY_MOST);
+}
+
+/* Stores a row of cells along x. */
+static void store_row(void *data, size_t row, int worker) {
+  const store_rows *rows = data;
+  const int32_t columns = rows->light->count[0];
+  const size_t size = cell_floats(rows->light->channels);
+  float *cell = rows->field + row * (size_t)columns * size;
+  int32_t numbers[2][3 * FIELD_HARMONICS + 1];
+  (void)worker;
+  store_cell(rows->light, cell, numbers[0]);
+  for (int32_t x = 0; x < columns; x++, cell += size) {
+    const int32_t *own = numbers[x & 1], *next = own;
+    if (x + 1 < columns) {
+      store_cell(rows->light, cell + size, numbers[(x + 1) & 1]);
+      next = numbers[(x + 1) & 1];
+    }
+    uint32_t pairs[3 * FIELD_HARMONICS + 1];
+    for (size_t i = 0; i < size; i++) pairs[i] = ((uint32_t)own[i] & 0xffff) | (uint32_t)next[i] << 16;
+    memcpy(cell, pairs, size * sizeof *pairs);
+  }
+}
+
+static void store(const sky_light *light, float *field, hl_pool *pool) {
+  store_rows rows = {light, field};
+  hl_pool_run(pool, (size_t)light->count[1] * (size_t)light->count[2], store_row, &rows);
 }
 
 hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *content,
@@ -313,7 +373,8 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
   hl_pool_clear(pool, made->memory, made->bytes);
   make(&own, &arrays, functions, made->memory, pool);
   hl_release(context, handed.base);
-  light->field = made->memory;
+  store(light, made->memory, pool);
+  light->cells = made->memory;
   return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering") : HL_OK;
 }
 

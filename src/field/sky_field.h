@@ -7,20 +7,26 @@
 #include "field/opacity.h"
 #include "scene/scene.h"
 
+/* Numbers of 16 bits lie between minus and plus this one. */
+enum { SKY_MOST = 32767 };
+
 /* What samples look up. */
 typedef struct sky_light {
-  const float *field; /* [z][y][x][channels x FIELD_HARMONICS + 1]: harmonics, and the cell's transmittance;
-                         zero where nothing is near; null: no sky */
+  const uint32_t *cells; /* [z][y][x][FIELD_HARMONICS x channels + 1]: pairs of numbers of 16 bits, of this cell
+                            in the lower half, of the next one along x in the upper one: harmonics, the channels
+                            of each beside each other, and the cell's transmittance, which is 1 at SKY_MOST; zero
+                            where nothing is near; null: no sky */
   int32_t count[3];
   float low[3], inverse_cell, cell; /* of the lattice */
   float lift; /* by which look-ups are moved off a surface, along its normal; frame units */
   int channels;
+  float stored_unit[3];           /* [channels]; the light that the number 1 stands for */
   float color[3];                 /* a factor on the field's light */
   float open[3][FIELD_HARMONICS]; /* [channels]; light that nothing hides, without the factor */
 } sky_light;
 
 typedef struct sky_field {
-  void *memory; /* owned; the field */
+  void *memory; /* owned; the cells */
   size_t bytes;
   sky_light light;
   hl_key key; /* of what the field was made of */

@@ -59,12 +59,6 @@ LANES_INLINE lanes own_of_surface(const block_slab *slab, own_depths own, float 
   return lanes_min(sum, lanes_set(1.0f));
 }
 
-/* The light where nothing hides the sky. */
-LANES_INLINE void open_sky(const sky_light *sky, sky_harmonics *light) {
-  for (int c = 0; c < sky->channels; c++)
-    for (int k = 0; k < FIELD_HARMONICS; k++) light->of[c * FIELD_HARMONICS + k] = lanes_set(sky->open[c][k]);
-}
-
 /* The sky's light at a sample, in each channel: on a medium, on a surface, and its mean over all directions.
  */
 typedef struct sky_parts {
@@ -87,37 +81,60 @@ LANES_INLINE lanes sent_on(const shade_volume *volume, const sky_parts *parts, l
   return lanes_fma(medium, 1.0f - surface, on_surface);
 }
 
+/* Finds the light that arrives at a volume's samples, before its own matter hides any: the samples lie `lift` off
+ * a surface. */
+LANES_INLINE void find_arriving_sky(const shade_job *job, const block_slab *slab, const block_density *d,
+                                    lanes lift, sky_parts *parts) {
+  const sky_light *sky = job->sky;
+  const shade_volume *volume = d->patch->volume;
+  const uint32_t active = lanes_bits(slab->seen);
+  const bool surfaces = lanes_bits(slab->seen & (d->surface > 0.0f)) != 0,
+             media = lanes_bits(slab->seen & (d->surface < 1.0f)) != 0 || volume->multiple;
+  const lanes none = lanes_set(0);
+  sky_rows rows;
+  for (int c = 0; c < 3; c++) parts->surface[c] = parts->medium[c] = parts->mean[c] = none;
+  if (volume->receives_shadow)
+    look_up_sky(sky, add_scaled3(slab->geometry.position, d->normal, lift), d->surface, active, &rows);
+  if (surfaces && volume->receives_shadow) light_of_surface(sky, &rows, d->normal, parts->surface);
+  else if (surfaces) open_light_of_surface(sky, d->normal, parts->surface);
+  if (!media) return;
+  for (int c = 0; c < sky->channels; c++) {
+    lanes of[FIELD_HARMONICS];
+    for (int k = 0; k < FIELD_HARMONICS; k++) {
+      if (!volume->receives_shadow) of[k] = lanes_set(sky->open[c][k]);
+      else if (k == 0 || volume->anisotropy != 0) of[k] = harmonic_of_rows(sky, &rows, c, k);
+    }
+    parts->medium[c] = light_of_medium(volume->phase_once, volume->anisotropy, of,
+                                       scale3(slab->geometry.towards_eye, lanes_set(-1.0f)));
+    parts->mean[c] = of[0] * (float)HARMONIC_0;
+  }
+}
+
 /* What a volume's samples make of the sky: factors for its colour. */
 LANES_INLINE color_lanes sky_of_volume(const shade_job *job, const block_slab *slab, const block_density *d,
                                        const color_lanes *color) {
   const sky_light *sky = job->sky;
   const shade_volume *volume = d->patch->volume;
   lanes medium = 1.0f - d->surface, own = lanes_set(1.0f), haze = lanes_set(1.0f);
-  lanes3 onwards = scale3(slab->geometry.towards_eye, lanes_set(-1.0f));
   lanes lift = d->surface * sky->lift, in_cell = d->sums.extinction * (HALF_CELL * sky->cell) * medium;
-  sky_harmonics light;
+  sky_parts parts;
   own_depths depths;
+  find_arriving_sky(job, slab, d, lift, &parts);
   if (volume->receives_shadow) {
-    look_up_sky(sky, add_scaled3(slab->geometry.position, d->normal, lift), d->surface,
-                lanes_bits(slab->seen), &light);
     depths = depths_outwards(job, d, lift);
     /* what the gradient tells of matter outside of a cut's face is not there */
     depths.enter = depths.enter * (1.0f - d->skin);
     depths.more = depths.more * (1.0f - d->skin);
-  } else {
-    open_sky(sky, &light);
   }
-  sky_parts parts;
   for (int c = 0; c < sky->channels; c++) {
-    const lanes *of = light.of + c * FIELD_HARMONICS;
     float cast = volume->cast[c];
     if (volume->receives_shadow && (c == 0 || cast != volume->cast[c - 1])) {
       own = own_of_surface(slab, depths, cast);
       haze = exp_of_depth(in_cell * cast);
     }
-    parts.surface[c] = light_of_surface(of, d->normal) * own * (volume->diffuse * d->surface);
-    parts.medium[c] = light_of_medium(volume->phase_once, volume->anisotropy, of, onwards) * haze;
-    parts.mean[c] = of[0] * (float)HARMONIC_0 * haze;
+    parts.surface[c] = parts.surface[c] * own * (volume->diffuse * d->surface);
+    parts.medium[c] = parts.medium[c] * haze;
+    parts.mean[c] = parts.mean[c] * haze;
   }
   color_lanes sent;
   for (int c = 0; c < 3; c++) {

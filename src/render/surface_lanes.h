@@ -91,14 +91,17 @@ static const float MESH_LIFT = 1.25f;
 LANES_INLINE void add_sky(const sky_light *sky, const surface_samples *samples, color_lanes *lit) {
   lanes3 normal = load3(samples->normal);
   lanes_int lit_side = dot3(normal, normal) > 0.0f;
-  sky_harmonics light;
-  if (samples->receives_shadow)
+  lanes light[3];
+  if (samples->receives_shadow) {
+    sky_rows rows;
     look_up_sky(sky, add_scaled3(load3(samples->position), normal, lanes_set(MESH_LIFT * sky->cell)),
-                lanes_set(0), 0xffff, &light);
-  else open_sky(sky, &light);
+                lanes_set(0), 0xffff, &rows);
+    light_of_surface(sky, &rows, normal, light);
+  } else {
+    open_light_of_surface(sky, normal, light);
+  }
   for (int c = 0; c < 3; c++) {
-    const lanes *of = light.of + (sky->channels == 1 ? 0 : c * FIELD_HARMONICS);
-    lanes light_here = lanes_keep(lit_side, light_of_surface(of, normal));
+    lanes light_here = lanes_keep(lit_side, light[sky->channels == 1 ? 0 : c]);
     lit->c[c] = lanes_fma(light_here * (samples->diffuse * sky->color[c]), lanes_load(samples->color[c]),
                           lit->c[c]);
   }

@@ -12,6 +12,8 @@
 
 #if defined(__AVX2__)
 #include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
 #elif defined(__ARM_NEON)
 #include <arm_neon.h>
 #endif
@@ -209,12 +211,11 @@ LANES_INLINE lanes lanes_clamp(lanes x, float low, float high) {
 }
 LANES_INLINE lanes lanes_abs(lanes x) { return (lanes)((lanes_int)x & lanes_set_int(0x7fffffff)); }
 
-#if defined(__AVX2__)
 /* Each lane is two signed numbers of 16 bits: the sum of the products of both. */
 LANES_INLINE lanes_int lanes_multiply_shorts(lanes_int a, lanes_int b) {
 #if defined(__AVX512BW__)
   return (lanes_int)_mm512_madd_epi16((__m512i)a, (__m512i)b);
-#else
+#elif defined(__AVX2__)
   __m256i x[2], y[2];
   memcpy(x, &a, sizeof x);
   memcpy(y, &b, sizeof y);
@@ -222,9 +223,17 @@ LANES_INLINE lanes_int lanes_multiply_shorts(lanes_int a, lanes_int b) {
   x[1] = _mm256_madd_epi16(x[1], y[1]);
   memcpy(&a, x, sizeof a);
   return a;
+#elif defined(__SSE2__)
+  __m128i x[4], y[4];
+  memcpy(x, &a, sizeof x);
+  memcpy(y, &b, sizeof y);
+  for (int i = 0; i < 4; i++) x[i] = _mm_madd_epi16(x[i], y[i]);
+  memcpy(&a, x, sizeof a);
+  return a;
+#else
+  return (a << 16 >> 16) * (b << 16 >> 16) + (a >> 16) * (b >> 16);
 #endif
 }
-#endif
 
 LANES_CALL lanes lanes_sqrt(lanes x) {
 #if defined(__AVX512F__)
