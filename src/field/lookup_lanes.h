@@ -1,8 +1,8 @@
 /* field/lookup_lanes.h - the sky's light at samples: read between the cells of its field.
  *
- * A row of numbers of 16 bits holds a cell's harmonics beside those of the next cell along x (sky_field.h). Four
- * rows, times the weights of eight cells, are the harmonics at a sample: sums of whole numbers, the same on every
- * processor. */
+ * A cell's harmonics are numbers of 16 bits, and fill a line of the cache (sky_field.h). Two neighbouring
+ * cells along x are multiplied by their weights and added at once. Four such pairs are the harmonics at a
+ * sample: sums of whole numbers, the same on every processor. */
 #ifndef HL_FIELD_LOOKUP_LANES_H
 #define HL_FIELD_LOOKUP_LANES_H
 
@@ -10,7 +10,8 @@
 #include "field/sky_field.h"
 #include "simd/lanes.h"
 
-/* The light that comes to sixteen samples: harmonics in the field's numbers, times the sum of the cells' weights. */
+/* The light that comes to sixteen samples: harmonics in the field's numbers, times the sum of the cells'
+ * weights. */
 typedef struct sky_rows {
   float of[LANES][2 * LANES]; /* [lane][FIELD_HARMONICS][channels]; set for the active lanes */
   lanes unit;                 /* one over the sum of the weights */
@@ -29,16 +30,16 @@ LANES_INLINE lanes place_between_cells(const sky_light *sky, int axis, lanes pos
 /* A cell counts at least this much beside others. */
 static const float LEAST_COUNTED = 1.0f / 1024;
 
-/* The weight of a cell beside others: its trilinear weight, times its transmittance, or, on a volume's surface
- * (1), the cube of it: dark cells within matter do not darken what lies outside of it. */
+/* The weight of a cell beside others: its trilinear weight, times its transmittance, or, on a volume's
+ * surface (1), the cube of it: dark cells within matter do not darken what lies outside of it. */
 LANES_INLINE lanes weight_of_cell(lanes trilinear, lanes_int stored, lanes surface) {
   lanes passing = lanes_from_int(stored) * (1.0f / SKY_MOST),
         counted = passing * lanes_fma(surface, passing * passing - 1.0f, lanes_set(1.0f));
   return trilinear * lanes_max(counted, lanes_set(LEAST_COUNTED));
 }
 
-/* Turns the transmittances of eight cells, in pairs along x, into their weights, in such pairs. The weights are
- * whole numbers, about SKY_MOST together. Returns one over their sum. */
+/* Turns the transmittances of eight cells, in pairs along x, into their weights, in such pairs. The weights
+ * are whole numbers, about SKY_MOST together. Returns one over their sum. */
 LANES_INLINE lanes weigh_cells(const lanes fraction[3], lanes surface, lanes_int pairs[4]) {
   lanes weight[8], sum = lanes_set(0);
   for (int pair = 0; pair < 4; pair++) {
@@ -60,43 +61,85 @@ LANES_INLINE lanes weigh_cells(const lanes fraction[3], lanes surface, lanes_int
   return 1.0f / lanes_from_int(total);
 }
 
+/* The first of the eight cells around sixteen positions. */
+typedef struct sky_cells {
+  int32_t rows[LANES], columns[LANES]; /* rows count through all slices */
+  lanes fraction[3];                   /* of the way to the next cell along each axis */
+} sky_cells;
+
+LANES_INLINE void find_cells(const sky_light *sky, lanes3 position, sky_cells *cells) {
+  const lanes at[3] = {position.x, position.y, position.z};
+  lanes first[3];
+  for (int axis = 0; axis < 3; axis++)
+    first[axis] = place_between_cells(sky, axis, at[axis], &cells->fraction[axis]);
+  /* whole numbers below 2^24, which floats hold exactly */
+  lanes_int row = lanes_truncate(lanes_add_scaled(first[1], first[2], (float)sky->count[1])),
+            column = lanes_truncate(first[0]);
+  memcpy(cells->rows, &row, sizeof cells->rows);
+  memcpy(cells->columns, &column, sizeof cells->columns);
+}
+
+/* The numbers of 16 bits from a lane's first cell to those in the next row, in the next slice and in both. */
+typedef struct sky_steps {
+  size_t to_pair[4];
+} sky_steps;
+
+LANES_INLINE sky_steps steps_of_sky(const sky_light *sky) {
+  const size_t row = sky->row_numbers, slice = row * (size_t)sky->count[1];
+  return (sky_steps){{0, row, slice, row + slice}};
+}
+
+LANES_INLINE const int16_t *cell_of_lane(const sky_light *sky, const sky_cells *cells, int lane) {
+  return sky->cells + (size_t)cells->rows[lane] * sky->row_numbers + (size_t)cells->columns[lane] * SKY_CELL;
+}
+
+/* Brings the cells around positions near to the processor: samples wait for memory most of the time
+ * otherwise. */
+LANES_INLINE void fetch_sky(const sky_light *sky, lanes3 position, uint32_t active) {
+  const sky_steps steps = steps_of_sky(sky);
+  sky_cells cells;
+  find_cells(sky, position, &cells);
+  const int16_t *last = NULL;
+  for (uint32_t left = active; left != 0; left &= left - 1) {
+    const int16_t *cell = cell_of_lane(sky, &cells, __builtin_ctz(left));
+    if (cell == last) continue;
+    last = cell;
+    for (int pair = 0; pair < 4; pair++) {
+      __builtin_prefetch(cell + steps.to_pair[pair]);
+      __builtin_prefetch(cell + steps.to_pair[pair] + SKY_CELL);
+    }
+  }
+}
+
 /* The light between the eight cells around each of the active lanes' positions. surface: 1 on surfaces of a
  * volume's matter, 0 in media and on meshes. */
 LANES_INLINE void look_up_sky(const sky_light *sky, lanes3 position, lanes surface, uint32_t active,
                               sky_rows *found) {
-  const int harmonics = sky->channels * FIELD_HARMONICS;
-  const size_t cell = (size_t)harmonics + 1, row = cell * (size_t)sky->count[0],
-               slice = row * (size_t)sky->count[1];
-  const size_t to_pair[4] = {0, row, slice, row + slice};
-  lanes fraction[3], first[3];
-  const lanes at[3] = {position.x, position.y, position.z};
-  for (int axis = 0; axis < 3; axis++)
-    first[axis] = place_between_cells(sky, axis, at[axis], &fraction[axis]);
-  /* whole numbers below 2^24, which floats hold exactly */
-  lanes number = lanes_add_scaled(first[0], lanes_add_scaled(first[1], first[2], (float)sky->count[1]),
-                                  (float)sky->count[0]);
-  int32_t numbers[LANES], pairs[4][LANES];
-  lanes_int whole = lanes_truncate(number), of_lanes[4];
-  memcpy(numbers, &whole, sizeof numbers);
+  const sky_steps steps = steps_of_sky(sky);
+  int32_t pairs[4][LANES];
+  lanes_int of_lanes[4];
+  sky_cells cells;
+  find_cells(sky, position, &cells);
   memset(pairs, 0, sizeof pairs);
   for (uint32_t left = active; left != 0; left &= left - 1) {
     int lane = __builtin_ctz(left);
-    const uint32_t *passing = sky->cells + (size_t)numbers[lane] * cell + harmonics;
-    for (int pair = 0; pair < 4; pair++) pairs[pair][lane] = (int32_t)passing[to_pair[pair]];
+    const int16_t *passing = cell_of_lane(sky, &cells, lane) + SKY_PASSING;
+    for (int pair = 0; pair < 4; pair++)
+      memcpy(&pairs[pair][lane], passing + steps.to_pair[pair], sizeof pairs[pair][lane]);
   }
   memcpy(of_lanes, pairs, sizeof of_lanes);
-  found->unit = weigh_cells(fraction, surface, of_lanes);
+  found->unit = weigh_cells(cells.fraction, surface, of_lanes);
   found->active = active;
   memcpy(pairs, of_lanes, sizeof pairs);
   for (uint32_t left = active; left != 0; left &= left - 1) {
     int lane = __builtin_ctz(left);
-    const uint32_t *of_cell = sky->cells + (size_t)numbers[lane] * cell;
+    const int16_t *cell = cell_of_lane(sky, &cells, lane);
     lanes_int sum[2] = {lanes_set_int(0), lanes_set_int(0)};
     for (int pair = 0; pair < 4; pair++) {
-      lanes_int weights = lanes_set_int(pairs[pair][lane]), numbers_of_row[2];
-      memcpy(numbers_of_row, of_cell + to_pair[pair], sizeof numbers_of_row);
-      for (int half = 0; half < 2; half++)
-        sum[half] = sum[half] + lanes_multiply_shorts(numbers_of_row[half], weights);
+      lanes_int weights = lanes_set_int(pairs[pair][lane]), two[2], both[2];
+      memcpy(two, cell + steps.to_pair[pair], sizeof two);
+      lanes_unpack_shorts(two, both);
+      for (int half = 0; half < 2; half++) sum[half] = sum[half] + lanes_multiply_shorts(both[half], weights);
     }
     for (int half = 0; half < 2; half++)
       lanes_store(found->of[lane] + half * LANES, lanes_from_int(sum[half]));
@@ -120,8 +163,8 @@ LANES_INLINE lanes second_degree(const lanes *light, lanes3 d) {
          light[8] * (d.x * d.x - d.y * d.y) * (float)HARMONIC_22;
 }
 
-/* What each harmonic adds to 1 / pi times the integral of light and cosine. The cosine's factors are 1, 2/3 and
- * 1/4 (Ramamoorthi and Hanrahan 2001, divided by pi). */
+/* What each harmonic adds to 1 / pi times the integral of light and cosine. The cosine's factors are 1, 2/3
+ * and 1/4 (Ramamoorthi and Hanrahan 2001, divided by pi). */
 LANES_INLINE void factors_of_surface(lanes3 normal, lanes factors[FIELD_HARMONICS]) {
   const float first = (float)HARMONIC_1 * (2.0f / 3), second = (float)HARMONIC_2 * 0.25f;
   factors[0] = lanes_set((float)HARMONIC_0);
@@ -135,8 +178,10 @@ LANES_INLINE void factors_of_surface(lanes3 normal, lanes factors[FIELD_HARMONIC
   factors[8] = (normal.x * normal.x - normal.y * normal.y) * ((float)HARMONIC_22 * 0.25f);
 }
 
-/* 1 / pi times the integral of light and cosine, in each channel of the field. Lanes that are not active get 0. */
-LANES_INLINE void light_of_surface(const sky_light *sky, const sky_rows *rows, lanes3 normal, lanes light[3]) {
+/* 1 / pi times the integral of light and cosine, in each channel of the field. Lanes that are not active get
+ * 0. */
+LANES_INLINE void light_of_surface(const sky_light *sky, const sky_rows *rows, lanes3 normal,
+                                   lanes light[3]) {
   typedef float quad __attribute__((vector_size(16)));
   lanes factors[FIELD_HARMONICS];
   float of[FIELD_HARMONICS][LANES], sums[3][LANES] = {{0}};

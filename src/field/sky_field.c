@@ -16,7 +16,7 @@
 #include "scene/sky.h"
 
 /* Cells by which look-ups are lifted off a surface. */
-static const double LIFT_CELLS = 0.5;
+static const double LIFT_CELLS = 1.0;
 
 /* A cube's face has so many squares along each side: meshes, whose faces are flat and edges sharp, show where
  * the light of a single direction ends. */
@@ -197,12 +197,24 @@ static void sweep_end(const sky_content *content, const opacity_field *opacity, 
 
 /* ---- memory ---- */
 
-static size_t cell_floats(int channels) { return FIELD_HARMONICS * (size_t)channels + 1; }
-
-/* Look-ups read whole vectors from the last cell on. */
-static size_t field_floats(const sky_content *content) {
-  return hl_field_cells(&content->lattice) * cell_floats(content->channels) + FIELD_LANES;
+/* The floats of a cell while its light is added up; they give way to SKY_CELL numbers of 16 bits. */
+static size_t cell_floats(int channels) {
+  return channels == 1 ? 16 : FIELD_HARMONICS * (size_t)channels + 1;
 }
+
+_Static_assert(16 * sizeof(float) >= SKY_CELL * sizeof(int16_t) && 16 > FIELD_HARMONICS, "room for a cell");
+
+/* The floats of a row, which begins with a line of the cache. */
+static size_t row_floats(const sky_content *content) {
+  return (cell_floats(content->channels) * (size_t)content->lattice.count[0] + 15) / 16 * 16;
+}
+
+/* The floats of all rows. */
+static size_t field_floats(const sky_content *content) {
+  return row_floats(content) * (size_t)content->lattice.count[1] * (size_t)content->lattice.count[2];
+}
+
+static size_t field_bytes(const sky_content *content) { return field_floats(content) * sizeof(float); }
 
 typedef struct passing_arrays {
   opacity_field opacity;
@@ -225,7 +237,7 @@ uint64_t hl_sky_bytes(const sky_content *content, uint64_t *passing) {
   hl_layout counted = {0};
   lay_out(content, &arrays, &counted);
   *passing = counted.bytes;
-  return field_floats(content) * sizeof(float);
+  return field_bytes(content);
 }
 
 /* ---- the field ---- */
@@ -242,7 +254,7 @@ static void make(const sky_content *content, passing_arrays *arrays, const field
   bool colored = attenuates_in_color(content);
   size_t cell = cell_floats(content->channels);
   const int32_t *count = content->lattice.count;
-  sky_target target = {.step = {cell, cell * (size_t)count[0], cell * (size_t)count[0] * (size_t)count[1]}};
+  sky_target target = {.step = {cell, row_floats(content), row_floats(content) * (size_t)count[1]}};
   field_content matter = content->content;
   matter.matter = arrays->matter;
   for (int pass = 0; pass < (colored ? 3 : 1); pass++) {
@@ -260,8 +272,8 @@ static void make(const sky_content *content, passing_arrays *arrays, const field
     hl_field_share_complete(&arrays->share, false, field, count[2], target.step[2] * sizeof *field);
 }
 
-/* Finds the light that nothing hides, and, as what hides light takes from each direction's share, a bound of each
- * channel's harmonics. */
+/* Finds the light that nothing hides, and, as what hides light takes from each direction's share, a bound of
+ * each channel's harmonics. */
 static void find_open(const sky_content *content, sky_light *light) {
   double sum[3][FIELD_HARMONICS] = {{0}}, bound[3][FIELD_HARMONICS] = {{0}};
   const int side = side_of(content);
@@ -289,51 +301,68 @@ static void find_open(const sky_content *content, sky_light *light) {
 
 /* ---- how the field is stored ---- */
 
+enum { MOST_FLOATS = 3 * FIELD_HARMONICS + 1 };
+
 typedef struct store_rows {
-  const sky_light *light;
-  float *field; /* becomes the cells, in place */
+  float *field; /* [rows][row_floats()]; becomes the cells, in place */
+  size_t row_floats, cell_floats, columns;
+  size_t used;              /* floats of a cell */
+  float scale[MOST_FLOATS]; /* [used]; factors that make numbers of 16 bits of floats */
+  int place[MOST_FLOATS];   /* [used]; where such a number stands among the cell's */
 } store_rows;
 
-/* The nearest number of 16 bits. */
-static int32_t stored(float value, float scale) {
-  float number = value * scale;
-  return (int32_t)fminf(fmaxf(number + (number < 0 ? -0.5f : 0.5f), -SKY_MOST), SKY_MOST);
+static bool is_dark(const float *cell, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (cell[i] != 0) return false;
+  return true;
 }
 
-static void store_cell(const sky_light *light, const float *cell, int32_t *numbers) {
-  const int channels = light->channels;
-  for (int c = 0; c < channels; c++) {
-    float scale = light->stored_unit[c] > 0 ? 1 / light->stored_unit[c] : 0;
-    for (int k = 0; k < FIELD_HARMONICS; k++)
-      numbers[k * channels + c] = stored(cell[c * FIELD_HARMONICS + k], scale);
+static void store_cell(const store_rows *rows, const float *cell, int16_t numbers[SKY_CELL]) {
+  int32_t whole[MOST_FLOATS];
+  for (size_t i = 0; i < rows->used && i < MOST_FLOATS; i++) {
+    float number = cell[i] * rows->scale[i];
+    number += number < 0 ? -0.5f : 0.5f;
+    number = number < -SKY_MOST ? -SKY_MOST : number > SKY_MOST ? SKY_MOST : number;
+    whole[i] = (int32_t)number;
   }
-  numbers[channels * FIELD_HARMONICS] = stored(cell[channels * FIELD_HARMONICS], SKY_MOST);
+  for (size_t i = 0; i < rows->used && i < MOST_FLOATS; i++) numbers[rows->place[i]] = (int16_t)whole[i];
 }
 
-/* Stores a row of cells along x. */
+/* Stores a row of cells along x. A cell's numbers lie before its floats, or begin where they do. Dark cells,
+ * most of them, stay as they are where no brighter cell's floats lay. */
 static void store_row(void *data, size_t row, int worker) {
   const store_rows *rows = data;
-  const int32_t columns = rows->light->count[0];
-  const size_t size = cell_floats(rows->light->channels);
-  float *cell = rows->field + row * (size_t)columns * size;
-  int32_t numbers[2][3 * FIELD_HARMONICS + 1];
+  const size_t size = rows->cell_floats;
+  float *cells = rows->field + row * rows->row_floats;
+  int16_t *at = (int16_t *)cells;
+  size_t written = 0; /* the end of the floats that are not zero, in numbers */
   (void)worker;
-  store_cell(rows->light, cell, numbers[0]);
-  for (int32_t x = 0; x < columns; x++, cell += size) {
-    const int32_t *own = numbers[x & 1], *next = own;
-    if (x + 1 < columns) {
-      store_cell(rows->light, cell + size, numbers[(x + 1) & 1]);
-      next = numbers[(x + 1) & 1];
-    }
-    uint32_t pairs[3 * FIELD_HARMONICS + 1];
-    for (size_t i = 0; i < size; i++) pairs[i] = ((uint32_t)own[i] & 0xffff) | (uint32_t)next[i] << 16;
-    memcpy(cell, pairs, size * sizeof *pairs);
+  for (size_t x = 0; x < rows->columns; x++, at += SKY_CELL) {
+    const float *cell = cells + x * size;
+    int16_t numbers[SKY_CELL] = {0};
+    bool dark = is_dark(cell, rows->used);
+    if (dark && x * SKY_CELL >= written) continue;
+    if (!dark) store_cell(rows, cell, numbers), written = 2 * (x + 1) * size;
+    memcpy(at, numbers, sizeof numbers);
+    if (x > 0 && numbers[SKY_PASSING] != 0) at[SKY_PASSING + 1 - SKY_CELL] = numbers[SKY_PASSING];
   }
 }
 
-static void store(const sky_light *light, float *field, hl_pool *pool) {
-  store_rows rows = {light, field};
+/* Turns the field's floats into what samples look up. */
+static void store(const sky_content *content, void *memory, sky_light *light, hl_pool *pool) {
+  const int harmonics = light->channels * FIELD_HARMONICS;
+  store_rows rows = {memory, row_floats(content), cell_floats(light->channels), (size_t)light->count[0],
+                     .used = (size_t)harmonics + 1};
+  for (int i = 0; i < harmonics; i++) {
+    const int channel = i / FIELD_HARMONICS;
+    rows.scale[i] = light->stored_unit[channel] > 0 ? 1 / light->stored_unit[channel] : 0;
+    rows.place[i] = hl_sky_place(i % FIELD_HARMONICS * light->channels + channel);
+  }
+  rows.scale[harmonics] = SKY_MOST;
+  rows.place[harmonics] = SKY_PASSING;
   hl_pool_run(pool, (size_t)light->count[1] * (size_t)light->count[2], store_row, &rows);
+  light->cells = memory;
+  light->row_numbers = 2 * rows.row_floats;
 }
 
 hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *content,
@@ -344,7 +373,7 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
   passing_arrays arrays;
   hl_layout counted = {0};
   lay_out(content, &arrays, &counted);
-  size_t floats = field_floats(content);
+  const size_t bytes = field_bytes(content);
   *light = (sky_light){
       .channels = content->channels, .cell = (float)content->lattice.cell, .color = {1, 1, 1}};
   vec3_store(light->low, content->lattice.low);
@@ -360,12 +389,12 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
     own.sky = &white;
   }
   find_open(&own, light);
-  if (made->bytes != floats * sizeof(float)) {
+  if (made->bytes != bytes) {
     hl_release(context, made->memory);
     made->bytes = 0;
-    made->memory = hl_allocate(context, floats, sizeof(float));
-    if (made->memory == NULL) return hl_fail_memory(error, floats * sizeof(float), "the light of the sky");
-    made->bytes = floats * sizeof(float);
+    made->memory = hl_allocate(context, bytes, 1);
+    if (made->memory == NULL) return hl_fail_memory(error, bytes, "the light of the sky");
+    made->bytes = bytes;
   }
   hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};
   if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "the light of the sky");
@@ -373,8 +402,7 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
   hl_pool_clear(pool, made->memory, made->bytes);
   make(&own, &arrays, functions, made->memory, pool);
   hl_release(context, handed.base);
-  store(light, made->memory, pool);
-  light->cells = made->memory;
+  store(content, made->memory, light, pool);
   return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering") : HL_OK;
 }
 

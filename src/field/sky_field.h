@@ -10,12 +10,21 @@
 /* Numbers of 16 bits lie between minus and plus this one. */
 enum { SKY_MOST = 32767 };
 
+/* A cell is SKY_CELL numbers of 16 bits. lanes_unpack_shorts() brings those of two cells together; this one
+ * stands where a harmonic then is number `harmonic` of the sums. At SKY_PASSING, where no harmonic is, stand
+ * the cell's transmittance and that of the next cell along x; 1 is SKY_MOST. */
+enum { SKY_CELL = 32, SKY_PASSING = 28 };
+static inline int hl_sky_place(int harmonic) {
+  int low = harmonic < 16, i = low ? harmonic : harmonic - 16;
+  return i / 4 * 8 + i % 4 + (low ? 0 : 4);
+}
+
 /* What samples look up. */
 typedef struct sky_light {
-  const uint32_t *cells; /* [z][y][x][FIELD_HARMONICS x channels + 1]: pairs of numbers of 16 bits, of this cell
-                            in the lower half, of the next one along x in the upper one: harmonics, the channels
-                            of each beside each other, and the cell's transmittance, which is 1 at SKY_MOST; zero
-                            where nothing is near; null: no sky */
+  const int16_t *cells; /* [z][y][x][SKY_CELL], rows row_numbers apart: harmonics, FIELD_HARMONICS x channels
+                           of them, the channels of each beside each other, at hl_sky_place(); zero where
+                           nothing is near; null: no sky */
+  size_t row_numbers;   /* numbers from row to row */
   int32_t count[3];
   float low[3], inverse_cell, cell; /* of the lattice */
   float lift; /* by which look-ups are moved off a surface, along its normal; frame units */

@@ -81,6 +81,23 @@ static void sum_bends(classifier *classifier) {
   if (sum * CLASSIFIER_ENTRIES <= CLASSIFIER_LEAST_BENDING) classifier->bent = NULL;
 }
 
+/* Values above the empty one lie outside of matter where they are lower, values below it where they are
+ * higher. */
+static void fill_outside(classifier *classifier) {
+  const float empty = classifier->offset;
+  float outside = empty;
+  for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
+    if ((float)entry >= empty && !(classifier->sums[entry][0] > 0)) outside = (float)entry;
+    classifier->outside[entry] = outside;
+  }
+  outside = empty;
+  for (int entry = CLASSIFIER_ENTRIES; entry >= 0; entry--) {
+    if ((float)entry + 1 > empty) continue;
+    if (!(classifier->sums[entry + 1][0] > 0)) outside = (float)entry + 1;
+    classifier->outside[entry] = outside;
+  }
+}
+
 static void fill_tables(const hl_scene_volume *volume, double empty, double low, double high,
                         classifier *classifier) {
   const hl_transfer_function *function = &volume->transfer_function;
@@ -105,6 +122,7 @@ static void fill_tables(const hl_scene_volume *volume, double empty, double low,
   while (last > 0 && !(classifier->sums[last][0] > 0)) last--;
   classifier->first_visible = (float)classifier->next_visible[0] - 1;
   classifier->last_visible = (float)last + 1;
+  fill_outside(classifier);
 }
 
 /* The least gradient of a surface: a thousandth of the transfer function's span of values per voxel edge. */
@@ -132,6 +150,7 @@ static void lay_out(const hl_transfer_function *function, classifier *classifier
   classifier->shown = hl_layout_take(layout, COUNT, sizeof *classifier->shown);
   classifier->bent = hl_layout_take(layout, COUNT, sizeof *classifier->bent);
   classifier->next_visible = hl_layout_take(layout, COUNT, sizeof *classifier->next_visible);
+  classifier->outside = hl_layout_take(layout, COUNT, sizeof *classifier->outside);
   if (function->gradient_opacity_count > 0)
     classifier->steepness = hl_layout_take(layout, STEEPNESS_ENTRIES + 2, sizeof *classifier->steepness);
   hl_plane_table_lay_out(function, &classifier->plane, layout);

@@ -22,7 +22,7 @@
 #define BRIGHTEST 0.99  /* fraction of the pixels that are darker */
 #define OPAQUE    0.98
 #define FAINT     0.02 /* least opacity of a step at which a ray meets a surface */
-#define WITHIN    0.8  /* fraction of the light on a cut face that reaches the matter seen there: measured */
+#define WITHIN    0.8  /* fraction of a light on a cut face that reaches the matter seen there: measured */
 #define THINNEST  0.15 /* fraction of the surfaces that are thinner than hl_exposure.thickness */
 
 enum { SIDE = 64, TABLE = 1024, MOST_LIGHTS = 4 };
@@ -34,7 +34,8 @@ typedef struct exposure {
   vec3 right, up,
       forward; /* the camera's; lengths: half the picture's width and height at distance 1, and 1 */
   vec3 towards[MOST_LIGHTS]; /* unit vectors */
-  double left;  /* fraction of the sky, and of lights with shadows, that reaches bright surfaces */
+  double left;  /* fraction of lights with shadows that reaches bright surfaces, and of the sky that reaches
+                   media */
   double step;  /* world units */
   double empty; /* a value of the invisible surroundings */
   double flat;  /* gradients up to this, in values per world unit, belong to no surface */
@@ -96,7 +97,8 @@ typedef struct sample_light {
 static sample_light light_by_gradient(const exposure *e, double value, vec3 gradient) {
   sample_light lit = {.surface = e->volume->shading == HL_SHADING_PHONG && vec3_length(gradient) > e->flat,
                       .normal = vec3_scale(vec3_normalise(gradient), value > e->empty ? -1 : 1),
-                      .sky = e->left};
+                      .sky = 1};
+  if (!lit.surface) lit.sky = e->left; /* surfaces get the sky's light at their outside */
   for (size_t l = 0; l < e->scene->light_count; l++)
     lit.left[l] = e->scene->lights[l].shadows == HL_SHADOWS_OFF ? 1 : e->left;
   return lit;
@@ -203,7 +205,7 @@ static void light_reaching_face(const exposure *e, vec3 point, vec3 normal, samp
     double aside = sqrt(n % 2 ? 0.75 : 0.25), turn = 2 * HL_PI * n / DIRECTIONS;
     vec3 flat = vec3_add(vec3_scale(u, aside * cos(turn)), vec3_scale(v, aside * sin(turn)));
     vec3 towards = vec3_add(flat, vec3_scale(normal, sqrt(1 - aside * aside)));
-    lit->sky += WITHIN * passing(e, point, towards) / DIRECTIONS;
+    lit->sky += passing(e, point, towards) / DIRECTIONS;
   }
 }
 

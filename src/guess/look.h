@@ -10,7 +10,7 @@ typedef struct hl_look {
   hl_shading shading;
   hl_kernel kernel;
   double key, fill, sky; /* intensities: the light with shadows, the one without, the sky */
-  double left;           /* fraction of key light and sky for hl_scene_exposure(); 0: no exposure */
+  double left;           /* fraction of lights with shadows, for hl_scene_exposure(); 0: no exposure */
   bool on_black;         /* the background of a bare volume */
 } hl_look;
 

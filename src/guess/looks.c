@@ -21,20 +21,20 @@ typedef enum subject { BODY, BRAIN, MATTER, LABELS, FIELD, FLOW, SIGNED, MEDIUM,
 /* Rows: name, writer, shading, kernel; intensities of key, fill and sky; left; on_black. Where left
  * is not 0, the exposure scales the intensities afterwards. */
 static const hl_look looks[] = {
-    [BODY] = {"scanned body", hl_write_body, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.06, 1.00, 0.75,
+    [BODY] = {"scanned body", hl_write_body, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.06, 0.62, 0.75,
               false},
-    [BRAIN] = {"scanned brain", hl_write_brain, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.06, 1.00, 0.7,
+    [BRAIN] = {"scanned brain", hl_write_brain, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.06, 0.62, 0.7,
                false},
-    [MATTER] = {"scanned matter", hl_write_matter, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.30, 0.05, 0.90,
+    [MATTER] = {"scanned matter", hl_write_matter, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.30, 0.05, 0.56,
                 0.76, false},
-    [LABELS] = {"labels", hl_write_labels, HL_SHADING_PHONG, HL_KERNEL_LINEAR, 0.90, 0.12, 0.70, 0, false},
-    [FIELD] = {"field", hl_write_field, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.40, 0.20, 0.90, 0.65, false},
-    [FLOW] = {"flow", hl_write_flow, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.20, 0.20, 0.80, 0.9, false},
-    [SIGNED] = {"signed field", hl_write_signed, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.05, 0.15, 0.70, 0.8,
+    [LABELS] = {"labels", hl_write_labels, HL_SHADING_PHONG, HL_KERNEL_LINEAR, 0.90, 0.12, 0.44, 0, false},
+    [FIELD] = {"field", hl_write_field, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.40, 0.20, 0.56, 0.65, false},
+    [FLOW] = {"flow", hl_write_flow, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.20, 0.20, 0.50, 0.9, false},
+    [SIGNED] = {"signed field", hl_write_signed, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.05, 0.15, 0.44, 0.8,
                 false},
     [MEDIUM] = {"smoke or cloud", hl_write_medium, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.15, 0, 0.45, 0,
                 false},
-    [CONSTANT] = {"one value", hl_write_constant, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.20, 0.10, 0.70, 0,
+    [CONSTANT] = {"one value", hl_write_constant, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.20, 0.10, 0.44, 0,
                   false},
 };
 

@@ -92,12 +92,12 @@ double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 
 }
 
 /* Distances and directions in the world: heights h rise there by |(M^-1)^T grad h|, M the placement. */
-void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
-                           double *surface) {
+double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
+                             double *surface) {
   const hl_scene_volume *described = volume->described;
   vec3 face = {0, 0, 0};
   double least = hl_reference_nearest_clip(volume, point, &face);
-  if (described->cut_shading == HL_CUT_SHADING_GRADIENT) return;
+  if (described->cut_shading == HL_CUT_SHADING_GRADIENT) return 0;
   for (size_t i = 0; i < described->cut_count; i++) {
     affine3 world = world_of(volume, &described->cuts[i]);
     height here = height_over(&described->cuts[i], affine3_apply(world, point));
@@ -108,7 +108,7 @@ void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_e
   }
   double skin = fmin(fmax(2 - least / volume->smallest_edge, 0), 1);
   if (described->cut_shading == HL_CUT_SHADING_FACE) skin *= fmin(fmax(10 * vec3_dot(face, to_eye), 0), 1);
-  if (skin == 0) return;
+  if (skin == 0) return 0;
   if (described->cut_shading == HL_CUT_SHADING_FACE) {
     vec3 sum = vec3_add(vec3_scale(face, skin), vec3_scale(*normal, *surface * (1 - skin)));
     *normal = vec3_length(sum) > 0 ? vec3_normalise(sum) : sum;
@@ -116,4 +116,5 @@ void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_e
   } else {
     *surface *= 1 - skin;
   }
+  return skin;
 }

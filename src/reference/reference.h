@@ -230,9 +230,10 @@ bool hl_reference_mesh_left(const hl_scene_description *scene, const hl_scene_me
 /* The least distance above `after` at which a ray of index space crosses the face of a cut; infinite: none.
  */
 double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 direction, double after);
-/* Shades a sample near the face of a cut or of the clip box. normal, surface: those of the data. */
-void hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
-                           double *surface);
+/* Shades a sample near the face of a cut or of the clip box. normal, surface: those of the data. Returns 1 at
+ * the face, falling to 0 away from it. */
+double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
+                             double *surface);
 
 double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]);
 double hl_reference_value(const reference_volume *volume, vec3 point);

@@ -63,6 +63,7 @@ typedef struct surface {
   double own[3]; /* the volume's colour */
   vec3 normal;   /* unit length, outward; 0 in a medium */
   double amount; /* 0: medium, 1: surface */
+  vec3 outside;  /* world; on surfaces, along the normal, where their matter begins */
 } surface;
 
 /* p = (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), cos = -E.L: 1 in all directions for g = 0. */
@@ -97,13 +98,27 @@ static void shade_light(const reference *all, const reference_sample *at, const 
                        arrived->incoming[c] * reach[c];
 }
 
-/* The sky's part. */
+/* Where a surface's matter begins, along the normal from a sample in it: its values fall by the gradient's
+ * length in each unit of the way, down to those that show nothing. At most 8 voxels away, and no way at all
+ * behind the face of a cut. */
+static vec3 outside_of_surface(const reference_sample *at, const surface *here, double behind_face) {
+  const reference_volume *volume = at->volume;
+  double empty = volume->empty_value, outside = empty,
+         steepness = vec3_length(hl_reference_gradient(volume, at->index_point));
+  if (!(here->amount > 0) || !(steepness > 0)) return at->point;
+  (void)hl_transfer_function_transparent(&volume->described->transfer_function, fmin(empty, at->value),
+                                         fmax(empty, at->value), at->value, &outside);
+  double way = fmin(fabs(at->value - outside) / steepness, 8 * volume->smallest_edge);
+  return vec3_add(at->point, vec3_scale(here->normal, way * here->amount * (1 - behind_face)));
+}
+
+/* The sky's part: on a surface the light at its outside. */
 static void shade_sky(const reference *all, const reference_sample *at, const surface *here,
                       reference_worker *worker, reference_parts *sample) {
   const hl_scene_volume *described = at->volume->described;
   reference_sky_light light;
   hl_reference_sky_arrive(all,
-                          &(reference_sky_receiver){.point = at->point,
+                          &(reference_sky_receiver){.point = here->outside,
                                                     .normal = here->normal,
                                                     .to_eye = at->to_eye,
                                                     .surface = here->amount,
@@ -133,8 +148,10 @@ void hl_reference_shade(const reference *all, const reference_sample *at, refere
   hl_reference_color(at->volume, at->value, at->index_point, here.own);
   hl_reference_tint(at->volume, at->index_point, here.own);
   here.normal = find_normal(at->volume, at->index_point, at->value, &here.amount);
+  double behind_face = 0;
   if (described->shading == HL_SHADING_PHONG)
-    hl_reference_cut_face(at->volume, at->index_point, at->to_eye, &here.normal, &here.amount);
+    behind_face = hl_reference_cut_face(at->volume, at->index_point, at->to_eye, &here.normal, &here.amount);
+  here.outside = outside_of_surface(at, &here, behind_face);
   if (sample->object == 0 || weight > sample->greatest) {
     sample->object = (int)(at->volume - all->volumes) + 1;
     sample->greatest = weight;

@@ -272,6 +272,7 @@ LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_den
     block_slab *slab = &tile->slabs[seen[k]];
     find_slopes(job, slab, of[seen[k]], patch_count);
     find_normals(slab, of[seen[k]], patch_count);
+    if (job->sky != NULL) place_sky(job, slab, of[seen[k]], patch_count);
   }
   for (int k = 0; k < count; k++)
     for (int i = 0; i < job->light_count; i++)

@@ -121,7 +121,7 @@ typedef struct shade_job {
 
 /* Bytes of scratch memory for a patch: room for a block, and for up to sixteen slabs into which samples are
  * packed (pack_lanes.h). */
-enum { SHADE_SCRATCH_BYTES = 17 * 1728 };
+enum { SHADE_SCRATCH_BYTES = 17 * 1920 };
 
 /* The slab before the current sheet, in one tile. */
 typedef struct tile_slab {

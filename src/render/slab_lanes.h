@@ -69,6 +69,7 @@ typedef struct block_density {
   lanes3 normal;    /* unit, away from the matter */
   lanes surface;    /* 1 for a surface, falling to 0 for a medium, which has no normal */
   lanes skin;       /* 1 at a cut's face that is shaded, 0 two voxels behind it */
+  lanes3 outside;   /* where the sky's light is looked up; with a sky that volumes hide from each other */
   lanes light_first,
       light_last; /* the light's way within its box to where the slab's covered part starts and ends */
 } block_density;

@@ -235,6 +235,45 @@ LANES_INLINE lanes_int lanes_multiply_shorts(lanes_int a, lanes_int b) {
 #endif
 }
 
+/* Brings the numbers of 16 bits of two vectors together, in pairs. Of each eight numbers of a vector the
+ * first four go to pairs[0], the last four to pairs[1]. */
+LANES_INLINE void lanes_unpack_shorts(const lanes_int of[2], lanes_int pairs[2]) {
+#if defined(__AVX512BW__)
+  pairs[0] = (lanes_int)_mm512_unpacklo_epi16((__m512i)of[0], (__m512i)of[1]);
+  pairs[1] = (lanes_int)_mm512_unpackhi_epi16((__m512i)of[0], (__m512i)of[1]);
+#elif defined(__AVX2__)
+  __m256i x[2], y[2], low[2], high[2];
+  memcpy(x, &of[0], sizeof x);
+  memcpy(y, &of[1], sizeof y);
+  for (int i = 0; i < 2; i++) {
+    low[i] = _mm256_unpacklo_epi16(x[i], y[i]);
+    high[i] = _mm256_unpackhi_epi16(x[i], y[i]);
+  }
+  memcpy(&pairs[0], low, sizeof low);
+  memcpy(&pairs[1], high, sizeof high);
+#elif defined(__SSE2__)
+  __m128i x[4], y[4], low[4], high[4];
+  memcpy(x, &of[0], sizeof x);
+  memcpy(y, &of[1], sizeof y);
+  for (int i = 0; i < 4; i++) {
+    low[i] = _mm_unpacklo_epi16(x[i], y[i]);
+    high[i] = _mm_unpackhi_epi16(x[i], y[i]);
+  }
+  memcpy(&pairs[0], low, sizeof low);
+  memcpy(&pairs[1], high, sizeof high);
+#else
+  uint16_t x[2 * LANES], y[2 * LANES], both[2][2 * LANES];
+  memcpy(x, &of[0], sizeof x);
+  memcpy(y, &of[1], sizeof y);
+  for (int i = 0; i < 2 * LANES; i++) {
+    uint16_t *at = both[i % 8 / 4] + 2 * (i / 8 * 4 + i % 4);
+    at[0] = x[i];
+    at[1] = y[i];
+  }
+  memcpy(pairs, both, sizeof both);
+#endif
+}
+
 LANES_CALL lanes lanes_sqrt(lanes x) {
 #if defined(__AVX512F__)
   return (lanes)_mm512_sqrt_ps((__m512)x);

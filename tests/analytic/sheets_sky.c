@@ -126,6 +126,47 @@ static void test_against_the_reference(void **state) {
   stage_close(&set);
 }
 
+/* A wide slab whose values fall at its upper face from 1 to 0 over `edge` voxels, or a ball of radius 9. */
+static hl_scene_volume *add_soft_matter(stage *set, bool ball, double edge) {
+  static float voxels[GRID * GRID * GRID];
+  for (int i = 0; i < GRID * GRID * GRID; i++) {
+    double x = i % GRID - 11.5, y = i / GRID % GRID - 11.5, z = i / GRID / GRID - 11.5,
+           depth = ball ? 7 - sqrt(x * x + y * y + z * z) : -z;
+    voxels[i] = (float)fmin(fmax(0.5 + depth / edge, 0), 1);
+  }
+  const double wide = ball ? 1 : 8;
+  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){GRID, GRID, GRID}, (double[3]){wide, wide, 1},
+                                           (vec3){-12 * wide, -12 * wide, -12}, voxels);
+  volume->transfer_function.opacity_count = 2;
+  volume->transfer_function.unit_distance = 1;
+  volume->shading = HL_SHADING_PHONG;
+  volume->material = (hl_material){.diffuse = 1};
+  return volume;
+}
+
+static const hl_opacity_point FUNCTIONS[4][2] = {
+    {{0.3, 0}, {0.7, 0.9}}, {{0.2, 0}, {0.6, 0.99}}, {{0.45, 0}, {0.55, 0.999}}, {{0.6, 0}, {0.8, 0.95}}};
+
+/* A white surface of a volume that sees half of an even sky sends its radiance, whatever the transfer
+ * function and the width of its edge: it is lit by the light at its outside. So does a ball from all sides,
+ * of which each point sees half of the sky. */
+static void test_open_surfaces(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  static const double edges[3] = {1, 3, 6};
+  for (int trial = 0; trial < 2 * 4 * 3; trial++) {
+    bool ball = trial % 2;
+    stage set;
+    open_sky(&set);
+    set.scene.camera.height = ball ? 10 : 24;
+    add_soft_matter(&set, ball, edges[trial / 2 % 3])->transfer_function.opacity = FUNCTIONS[trial / 6];
+    stage_look(&set, (vec3){10, -30, 60}, (vec3){0, 0, 0}, (vec3){0, 0, 1});
+    stage_render_sheets(&set, pixels);
+    assert_near(middle(pixels, 0), 1, 0.05);
+    stage_close(&set);
+  }
+}
+
 /* A square ground of a half side, and a pane that the eye does not see. meshes: [2]; pane: owned by them. */
 static void add_ground_and_pane(stage *set, hl_scene_mesh *meshes, double half, hl_mesh *pane) {
   for (int m = 0; m < 2; m++) {
@@ -281,7 +322,7 @@ int main(void) {
       cmocka_unit_test(test_hemisphere), cmocka_unit_test(test_against_the_reference),
       cmocka_unit_test(test_meshes),     cmocka_unit_test(test_edge_of_a_mesh),
       cmocka_unit_test(test_same_bytes), cmocka_unit_test(test_kept_light),
-      cmocka_unit_test(test_cut_faces),
+      cmocka_unit_test(test_cut_faces),  cmocka_unit_test(test_open_surfaces),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

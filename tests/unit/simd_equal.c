@@ -1099,7 +1099,7 @@ enum { SKY_CELLS = 4 * 3 * 5 };
 typedef struct surface_state {
   shade_state shade; /* its job, with lights */
   sky_light sky;
-  float sky_field[SKY_CELLS * (3 * FIELD_HARMONICS + 1) + 16]; /* cells are read sixteen numbers at a time */
+  _Alignas(64) int16_t sky_cells[SKY_CELLS * SKY_CELL];
   surface_samples out;
 } surface_state;
 
@@ -1118,8 +1118,14 @@ static void set_unit_vectors(float to[3][SURFACE_SAMPLES], uint32_t *seed) {
 static void set_up_surface(surface_state *s, uint32_t *seed, int round) {
   surface_samples *out = &s->out;
   set_up_shade(&s->shade, seed, round);
-  fill_salted(s->sky_field, sizeof s->sky_field / sizeof(float), seed, 0, 1);
-  s->sky = (sky_light){.field = s->sky_field,
+  for (int i = 0; i < SKY_CELLS * SKY_CELL; i++) {
+    bool passing = i % SKY_CELL == SKY_PASSING || i % SKY_CELL == SKY_PASSING + 1, whole = i % 7 == 0;
+    float number = whole ? SKY_MOST : random_between(seed, passing ? 0 : -SKY_MOST, SKY_MOST);
+    s->sky_cells[i] = (int16_t)(i % 5 == 0 && !passing ? -number : number);
+  }
+  s->sky = (sky_light){.cells = s->sky_cells,
+                       .row_numbers = 4 * SKY_CELL,
+                       .stored_unit = {1e-4f, 2e-4f, 3e-4f},
                        .count = {4, 3, 5},
                        .low = {-3, -2, -1},
                        .inverse_cell = 0.5f,
