@@ -171,20 +171,24 @@ hl_status input_load_volume(hl_context *context, const cli_input *input,
   return hl_volume_load_with(context, input->title, &chosen, volume, error);
 }
 
+void input_name_source(const hl_volume_load_options *options, hl_scene_volume *volume) {
+  volume->array = options->array;
+  volume->series = options->series;
+  volume->component = options->component;
+  volume->time = options->time, volume->channel = options->channel, volume->level = options->level;
+  hl_volume_selection read = {.struct_size = sizeof read};
+  if (options->pixels > 0 && hl_volume_get_selection(volume->volume, &read) == HL_OK && read.levels > 1)
+    volume->level = read.level; /* the scene may be drawn in another size */
+  memcpy(volume->spacing, options->spacing, sizeof volume->spacing);
+}
+
 /* Writes into the scene the options that its volume was read with. */
 static hl_status name_source(hl_context *context, const hl_volume_load_options *options, hl_scene **scene,
                              hl_error *error) {
   hl_scene_description description = *hl_scene_describe(*scene);
   hl_scene_volume volume = description.volumes[0];
   hl_scene *named = NULL;
-  volume.array = options->array;
-  volume.series = options->series;
-  volume.component = options->component;
-  volume.time = options->time, volume.channel = options->channel, volume.level = options->level;
-  hl_volume_selection read = {.struct_size = sizeof read};
-  if (options->pixels > 0 && hl_volume_get_selection(volume.volume, &read) == HL_OK && read.levels > 1)
-    volume.level = read.level; /* the scene may be drawn in another size */
-  memcpy(volume.spacing, options->spacing, sizeof volume.spacing);
+  input_name_source(options, &volume);
   description.volumes = &volume;
   hl_status status = hl_scene_create(context, &description, &named, error);
   if (status != HL_OK) return status;

@@ -86,6 +86,9 @@ void input_load_options(const cli_value *reading, const cli_value *spacing, hl_v
 hl_status input_load_volume(hl_context *context, const cli_input *input,
                             const hl_volume_load_options *options, hl_volume **volume, hl_error *error);
 
+/* Writes into a scene's volume how it was read, as the scene's text will say. Its strings are borrowed. */
+void input_name_source(const hl_volume_load_options *options, hl_scene_volume *volume);
+
 /* The box around a volume's voxels, half a voxel beyond their outermost centres, in the world of its file:
  * least and greatest x, y, z. */
 void input_world_box(const hl_volume_info *info, double low[3], double high[3]);

@@ -96,13 +96,42 @@ int render_check_options(const cli_value *values);
 
 /* Parts operands into meshes, by their names, and others; both lists end with null. */
 void render_part_meshes(char **operands, char **meshes, char **others);
-/* Adds meshes to a scene; *scene null: makes one for them. bare: the camera frames them too. */
-int render_add_meshes(cli_host *host, char *const *paths, bool bare, hl_scene **scene);
+/* Loads one mesh, in the colour of the index-th; the caller releases mesh->mesh. */
+hl_status render_load_mesh(hl_context *context, const char *path, size_t index, hl_scene_mesh *mesh,
+                           hl_error *error);
+/* Adds meshes to a scene, in the colours from `first` on; *scene null: makes one for them. bare: the camera
+ * frames them too. */
+int render_add_meshes(cli_host *host, char *const *paths, size_t first, bool bare, hl_scene **scene);
 
 /* Adds the label map of --labels to a scene, gives its volumes that of --mask, or makes one of its bare
  * volume, with what --label-table and
  * --show say. */
 int render_add_labels(cli_host *host, const cli_value *values, bool bare, hl_scene **scene);
+
+enum { RENDER_MOST_LABEL_LAYERS = 64 };
+
+/* The layers of a label map's file, as volumes whose labels and voxels are owned here. */
+typedef struct render_label_layers {
+  hl_scene_volume volumes[RENDER_MOST_LABEL_LAYERS];
+  size_t count;
+} render_label_layers;
+
+/* Whether the options say that a bare volume is a label map itself. */
+bool render_is_label_map(const cli_value *values);
+
+/* Loads such a volume, named by --label-table; of its labels those of --show show, and those of --show that
+ * it lacks are passed over. Call render_release_label_layers() even after a failure. Returns the exit code.
+ */
+int render_load_label_map(cli_host *host, const cli_value *values, const char *path,
+                          const hl_volume_load_options *reading, render_label_layers *layers);
+void render_release_label_layers(hl_context *context, render_label_layers *layers);
+
+/* Loads the volumes, or the scene, of operands that are no meshes: the first half of render_load_inputs(). */
+int render_load_volumes(cli_host *host, const cli_value *values, char **operands, bool *bare,
+                        hl_scene **scene);
+
+/* The reading of volumes that the options ask for. */
+void render_load_options(const cli_value *values, hl_volume_load_options *options);
 
 /* Loads the operands into one scene: a scene file, a picture that carries a scene, or one or more volumes,
  * and meshes; *bare: they are volumes. Several volumes share one world, and each keeps its own look. They are

@@ -98,11 +98,15 @@ static int pixels_of(const cli_value *values) {
   return pixels < INT_MAX ? (int)pixels : INT_MAX;
 }
 
+void render_load_options(const cli_value *values, hl_volume_load_options *options) {
+  input_load_options(&values[RENDER_ARRAY], &values[RENDER_SPACING], options);
+  options->pixels = pixels_of(values);
+}
+
 static int load_each(cli_host *host, const cli_value *values, cli_input *inputs, size_t count,
                      hl_scene **scenes) {
   hl_volume_load_options options;
-  input_load_options(&values[RENDER_ARRAY], &values[RENDER_SPACING], &options);
-  options.pixels = pixels_of(values);
+  render_load_options(values, &options);
   for (size_t n = 0; n < count; n++) {
     hl_error error = {0};
     bool bare = inputs[n].kind == INPUT_VOLUME;
@@ -115,7 +119,7 @@ static int load_each(cli_host *host, const cli_value *values, cli_input *inputs,
   return EXIT_CODE_OK;
 }
 
-static int load_volumes(cli_host *host, const cli_value *values, char **operands, bool *bare,
+int render_load_volumes(cli_host *host, const cli_value *values, char **operands, bool *bare,
                         hl_scene **scene) {
   cli_input inputs[MAXIMUM_OPERANDS] = {{0}};
   hl_scene *scenes[MAXIMUM_OPERANDS] = {NULL};
@@ -141,7 +145,7 @@ int render_load_inputs(cli_host *host, const cli_value *values, char **operands,
   int exit_code = EXIT_CODE_OK;
   *bare = true;
   render_part_meshes(operands, meshes, others);
-  if (others[0] != NULL) exit_code = load_volumes(host, values, others, bare, scene);
-  if (exit_code == EXIT_CODE_OK) exit_code = render_add_meshes(host, meshes, *bare, scene);
+  if (others[0] != NULL) exit_code = render_load_volumes(host, values, others, bare, scene);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_add_meshes(host, meshes, 0, *bare, scene);
   return exit_code == EXIT_CODE_OK ? render_add_labels(host, values, *bare, scene) : exit_code;
 }

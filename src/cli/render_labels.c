@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "input.h"
 #include "render.h"
 #include "suggest.h"
 
@@ -14,7 +15,7 @@ typedef struct shown_label {
   double color[3], opacity;
 } shown_label;
 
-enum { MOST_SHOWN = 512, MOST_LAYERS = 64 };
+enum { MOST_SHOWN = 512 };
 
 typedef struct show_list {
   shown_label labels[MOST_SHOWN];
@@ -88,14 +89,8 @@ static void apply_show(show_list *list, hl_label *labels, size_t count) {
   }
 }
 
-/* The layers of a file, each a label map: volumes of which the caller releases labels and voxels. */
-typedef struct label_layers {
-  hl_scene_volume volumes[MOST_LAYERS];
-  size_t count;
-} label_layers;
-
 static const char *name_of_label(const void *data, size_t index) {
-  const label_layers *layers = data;
+  const render_label_layers *layers = data;
   for (size_t layer = 0; layer < layers->count; layer++) {
     const hl_scene_volume *volume = &layers->volumes[layer];
     if (index < volume->label_count)
@@ -105,7 +100,7 @@ static const char *name_of_label(const void *data, size_t index) {
   return NULL;
 }
 
-static int check_found(const show_list *list, const label_layers *layers) {
+static int check_found(const show_list *list, const render_label_layers *layers) {
   for (size_t s = 0; s < list->count; s++) {
     if (list->labels[s].found || list->labels[s].all) continue;
     const char *near = nearest_name(list->labels[s].name, name_of_label, layers);
@@ -115,7 +110,10 @@ static int check_found(const show_list *list, const label_layers *layers) {
   return EXIT_CODE_OK;
 }
 
+/* How many layers the volume's file has: components that are neither time steps nor channels. */
 static size_t layers_of(const hl_volume *volume) {
+  hl_volume_selection read = {.struct_size = sizeof read};
+  if (hl_volume_get_selection(volume, &read) == HL_OK && (read.times > 1 || read.channels > 1)) return 1;
   for (size_t n = 0; n < hl_volume_array_count(volume); n++) {
     hl_volume_array array = {.struct_size = sizeof array};
     if (hl_volume_get_array(volume, n, &array) == HL_OK && array.chosen) return array.components;
@@ -123,35 +121,37 @@ static size_t layers_of(const hl_volume *volume) {
   return 1;
 }
 
-/* Loads one layer and its labels. */
-static hl_status load_layer(hl_context *context, const char *file, const char *table, hl_space space,
-                            label_layers *layers, hl_error *error) {
-  hl_volume_load_options options;
-  hl_volume_load_options_defaults(&options);
-  options.space = space;
-  options.component = (int)layers->count;
+/* Loads one layer and its labels. reading: how the file is read; the layer is its component. */
+static hl_status load_layer(hl_context *context, const char *file, const char *table,
+                            const hl_volume_load_options *reading, render_label_layers *layers,
+                            hl_error *error) {
+  hl_volume_load_options options = *reading;
+  if (options.time < 0 && options.channel < 0) options.component = (int)layers->count;
   hl_scene_volume *made = &layers->volumes[layers->count];
   hl_scene_volume_defaults(made);
+  const int none = made->component;
   hl_status status = hl_volume_load_with(context, file, &options, &made->volume, error);
   if (status != HL_OK) return status;
   layers->count++;
   made->file = file;
-  if (layers_of(made->volume) > 1) made->component = options.component;
+  input_name_source(&options, made);
+  if (layers_of(made->volume) < 2) made->component = none;
   hl_label *labels = NULL;
   status = hl_labels_of_volume(context, made->volume, table, &labels, &made->label_count, error);
   made->labels = labels;
   return status;
 }
 
-static void release_layers(hl_context *context, label_layers *layers) {
+void render_release_label_layers(hl_context *context, render_label_layers *layers) {
   for (size_t n = 0; n < layers->count; n++) {
     hl_labels_release(context, (hl_label *)layers->volumes[n].labels);
     hl_volume_release(layers->volumes[n].volume);
   }
+  layers->count = 0;
 }
 
 /* Makes a scene of the scene's volumes, the first `kept` of them, and the layers. */
-static hl_status add_layers(hl_context *context, const label_layers *layers, size_t kept, bool bare,
+static hl_status add_layers(hl_context *context, const render_label_layers *layers, size_t kept, bool bare,
                             hl_scene **scene, hl_error *error) {
   hl_scene_description description = *hl_scene_describe(*scene);
   hl_scene_volume *volumes = calloc(kept + layers->count, sizeof *volumes);
@@ -207,20 +207,28 @@ static hl_space space_of(const hl_scene_description *description, size_t kept) {
 }
 
 /* Loads all layers of the file, of which the list's labels show. */
-static int load_layers(cli_host *host, const char *path, const char *table, hl_space space, show_list *show,
-                       label_layers *layers) {
+static int load_layers(cli_host *host, const char *path, const char *table,
+                       const hl_volume_load_options *reading, show_list *show, render_label_layers *layers) {
   hl_error error = {0};
   for (size_t count = 1; layers->count < count;) {
-    hl_status status = load_layer(host->context, path, table, space, layers, &error);
+    hl_status status = load_layer(host->context, path, table, reading, layers, &error);
     if (status != HL_OK) return host_fail(host, PHASE_READ, status, &error);
     count = layers_of(layers->volumes[0].volume);
-    if (count > MOST_LAYERS)
+    if (count > RENDER_MOST_LABEL_LAYERS)
       return fail(EXIT_CODE_UNSUPPORTED, "'%s': has %zu layers, at most %d are read", path, count,
-                  MOST_LAYERS);
+                  RENDER_MOST_LABEL_LAYERS);
     hl_scene_volume *layer = &layers->volumes[layers->count - 1];
     apply_show(show, (hl_label *)layer->labels, layer->label_count);
   }
-  return check_found(show, layers);
+  return EXIT_CODE_OK;
+}
+
+/* How a label map is read that is turned into an anatomical space. */
+static hl_volume_load_options reading_in(hl_space space) {
+  hl_volume_load_options reading;
+  hl_volume_load_options_defaults(&reading);
+  reading.space = space;
+  return reading;
 }
 
 /* What --show says of the matter outside of a mask's labels, "rest:FACTOR"; 0 where it does not. */
@@ -266,13 +274,15 @@ static size_t keep_shown(hl_label *labels, size_t count) {
 
 /* --mask: the label map of the file over the scene's volumes. */
 static int add_mask(cli_host *host, const char *path, const char *table, show_list *show,
-                    label_layers *layers, hl_scene **scene) {
+                    render_label_layers *layers, hl_scene **scene) {
   hl_error error = {0};
   const hl_scene_description *description = hl_scene_describe(*scene);
   const double rest = rest_of(show);
   if (description->volume_count == 0)
     return fail(EXIT_CODE_USAGE, "--mask is for volumes: the scene has none");
-  int exit_code = load_layers(host, path, table, space_of(description, 1), show, layers);
+  const hl_volume_load_options reading = reading_in(space_of(description, 1));
+  int exit_code = load_layers(host, path, table, &reading, show, layers);
+  if (exit_code == EXIT_CODE_OK) exit_code = check_found(show, layers);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   if (layers->count > 1)
     return fail(EXIT_CODE_UNSUPPORTED, "'%s': has %zu overlapping layers, a mask takes one: save it as one",
@@ -289,19 +299,39 @@ static int add_mask(cli_host *host, const char *path, const char *table, show_li
 }
 
 /* --labels, or the bare volume itself. */
-static int add_map(cli_host *host, const cli_value *values, bool bare, show_list *show, label_layers *layers,
-                   hl_scene **scene) {
+static int add_map(cli_host *host, const cli_value *values, bool bare, show_list *show,
+                   render_label_layers *layers, hl_scene **scene) {
   const cli_value *table = &values[RENDER_LABEL_TABLE];
   const hl_scene_description *description = hl_scene_describe(*scene);
   hl_error error = {0};
   size_t kept;
   const char *path = file_of_labels(values, bare, description, &kept);
   if (path == NULL) return EXIT_CODE_USAGE;
-  int exit_code = load_layers(host, path, table->given ? table->text : NULL, space_of(description, kept),
-                              show, layers);
+  hl_volume_load_options reading = reading_in(space_of(description, kept));
+  if (render_is_label_map(values))
+    input_load_options(&values[RENDER_ARRAY], &values[RENDER_SPACING], &reading);
+  int exit_code = load_layers(host, path, table->given ? table->text : NULL, &reading, show, layers);
+  if (exit_code == EXIT_CODE_OK) exit_code = check_found(show, layers);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   hl_status status = add_layers(host->context, layers, kept, bare, scene, &error);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
+}
+
+bool render_is_label_map(const cli_value *values) {
+  return !values[RENDER_LABELS].given && !values[RENDER_MASK].given &&
+         (values[RENDER_LABEL_TABLE].given || values[RENDER_SHOW].given);
+}
+
+int render_load_label_map(cli_host *host, const cli_value *values, const char *path,
+                          const hl_volume_load_options *reading, render_label_layers *layers) {
+  const cli_value *table = &values[RENDER_LABEL_TABLE];
+  show_list *show = calloc(1, sizeof *show);
+  int exit_code = show != NULL ? read_show(&values[RENDER_SHOW], show)
+                               : fail(EXIT_CODE_FAILURE, "out of memory for labels");
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = load_layers(host, path, table->given ? table->text : NULL, reading, show, layers);
+  free(show);
+  return exit_code;
 }
 
 int render_add_labels(cli_host *host, const cli_value *values, bool bare, hl_scene **scene) {
@@ -311,14 +341,14 @@ int render_add_labels(cli_host *host, const cli_value *values, bool bare, hl_sce
   if (labels && mask->given)
     return fail(EXIT_CODE_USAGE, "--mask and --labels exclude each other: --show belongs to one of them");
   show_list *show = calloc(1, sizeof *show);
-  label_layers *layers = calloc(1, sizeof *layers);
+  render_label_layers *layers = calloc(1, sizeof *layers);
   int exit_code = show != NULL && layers != NULL ? read_show(&values[RENDER_SHOW], show)
                                                  : fail(EXIT_CODE_FAILURE, "out of memory for labels");
   if (exit_code == EXIT_CODE_OK)
     exit_code = mask->given
                     ? add_mask(host, mask->text, table->given ? table->text : NULL, show, layers, scene)
                     : add_map(host, values, bare, show, layers, scene);
-  if (layers != NULL) release_layers(host->context, layers);
+  if (layers != NULL) render_release_label_layers(host->context, layers);
   free(layers);
   free(show);
   return exit_code;

@@ -53,28 +53,32 @@ static hl_status begin_scene(hl_context *context, hl_scene **scene, hl_error *er
   return hl_scene_from_json(context, text, sizeof text - 1, NULL, "meshes", scene, error);
 }
 
-/* Loads the meshes; *count of them were, of which the caller releases each. */
-static hl_status load_meshes(hl_context *context, char *const *paths, hl_scene_mesh *added, size_t *count,
-                             hl_error *error) {
-  hl_status status = HL_OK;
-  for (*count = 0; paths[*count] != NULL && status == HL_OK; ++*count) {
-    hl_scene_mesh *mesh = &added[*count];
-    hl_scene_mesh_defaults(mesh);
-    mesh->file = paths[*count];
-    status = hl_mesh_load(context, paths[*count], &mesh->mesh, error);
-    const hl_mesh_description *d = status == HL_OK ? hl_mesh_describe(mesh->mesh) : NULL;
-    bool own = d != NULL && (d->colors != NULL || d->face_colors != NULL || d->sphere_colors != NULL);
-    for (int c = 0; c < 3; c++) mesh->color[c] = own ? 1 : render_surface_color(*count)[c];
-  }
+hl_status render_load_mesh(hl_context *context, const char *path, size_t index, hl_scene_mesh *mesh,
+                           hl_error *error) {
+  hl_scene_mesh_defaults(mesh);
+  mesh->file = path;
+  hl_status status = hl_mesh_load(context, path, &mesh->mesh, error);
+  const hl_mesh_description *d = status == HL_OK ? hl_mesh_describe(mesh->mesh) : NULL;
+  bool own = d != NULL && (d->colors != NULL || d->face_colors != NULL || d->sphere_colors != NULL);
+  for (int c = 0; c < 3; c++) mesh->color[c] = own ? 1 : render_surface_color(index)[c];
   return status;
 }
 
-int render_add_meshes(cli_host *host, char *const *paths, bool bare, hl_scene **scene) {
+/* Loads the meshes; *count of them were, of which the caller releases each. */
+static hl_status load_meshes(hl_context *context, char *const *paths, size_t first, hl_scene_mesh *added,
+                             size_t *count, hl_error *error) {
+  hl_status status = HL_OK;
+  for (*count = 0; paths[*count] != NULL && status == HL_OK; ++*count)
+    status = render_load_mesh(context, paths[*count], first + *count, &added[*count], error);
+  return status;
+}
+
+int render_add_meshes(cli_host *host, char *const *paths, size_t first, bool bare, hl_scene **scene) {
   hl_scene_mesh added[MAXIMUM_OPERANDS];
   size_t count = 0;
   hl_error error = {0};
   if (paths[0] == NULL) return EXIT_CODE_OK;
-  hl_status status = load_meshes(host->context, paths, added, &count, &error);
+  hl_status status = load_meshes(host->context, paths, first, added, &count, &error);
   bool alone = *scene == NULL;
   if (status == HL_OK && alone) status = begin_scene(host->context, scene, &error);
   if (status == HL_OK) status = add_meshes(host->context, added, count, bare, alone, scene, &error);

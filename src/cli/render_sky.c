@@ -66,7 +66,7 @@ static int load(cli_host *host, const char *path, hl_sky *sky, float **pixels) {
     sky->height = hl_image_height(image);
   }
   hl_image_destroy(image);
-  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_CHANGE, status, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }
 
 /* One colour is an even sky; black is none. */

@@ -1,0 +1,269 @@
+/* cli/render_series_files.c - the files of a series: their names, and the scene of each.
+ *
+ * A series is of volumes, each of which may be a label map itself, or of meshes. Meshes beside volumes are in
+ * every picture. */
+#define _GNU_SOURCE
+#include <glob.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "frames.h"
+#include "input.h"
+#include "render_series.h"
+
+/* ---- names ---- */
+
+static bool is_pattern(const char *path) { return strpbrk(path, "*?[") != NULL && access(path, F_OK) != 0; }
+
+/* True if the text has one "%d" or "%04d", and no other '%' but "%%". */
+bool series_has_number(const char *text) {
+  int numbers = 0;
+  for (const char *c = strchr(text, '%'); c != NULL; c = strchr(c + 1, '%')) {
+    if (c[1] == '%') {
+      c++;
+      continue;
+    }
+    const char *end = c + 1 + strspn(c + 1, "0123456789");
+    if (*end != 'd' || end - c > 3) return false;
+    numbers++;
+  }
+  return numbers == 1;
+}
+
+bool render_is_series(const cli_value *values, char **operands) {
+  bool pattern = false;
+  for (char **operand = operands; *operand != NULL; operand++) pattern = pattern || is_pattern(*operand);
+  const cli_value *output = &values[RENDER_OUTPUT];
+  return pattern || values[RENDER_PART].given || values[RENDER_RANKS].given ||
+         values[RENDER_RANGE_OF_ALL].given || (output->given && series_has_number(output->text));
+}
+
+static int by_number(const void *a, const void *b) {
+  return strverscmp(*(char *const *)a, *(char *const *)b);
+}
+
+static int fail_names(int count) {
+  return fail(EXIT_CODE_FAILURE, "out of memory for the names of %d files", count);
+}
+
+static int add_file(series_job *job, const char *path) {
+  char **larger = realloc(job->files, ((size_t)job->count + 1) * sizeof *larger);
+  if (larger != NULL) job->files = larger;
+  if (larger == NULL || (larger[job->count] = strdup(path)) == NULL) return fail_names(job->count);
+  job->count++;
+  return EXIT_CODE_OK;
+}
+
+static int add_pattern(series_job *job, const char *pattern) {
+  glob_t found = {0};
+  int answer = glob(pattern, 0, NULL, &found), exit_code = EXIT_CODE_OK;
+  if (answer != 0)
+    exit_code = answer == GLOB_NOMATCH ? fail(EXIT_CODE_INPUT, "%s: there is no such file", pattern)
+                                       : fail(EXIT_CODE_INPUT, "%s: its folder cannot be read", pattern);
+  for (size_t n = 0; n < found.gl_pathc && exit_code == EXIT_CODE_OK; n++)
+    exit_code = add_file(job, found.gl_pathv[n]);
+  globfree(&found);
+  return exit_code;
+}
+
+/* Meshes that are named one by one are in every picture, unless they are all that there is. A pattern that
+ * finds meshes beside volumes is refused: which of them belongs to which volume is not known. */
+static int part_meshes(series_job *job) {
+  int meshes = 0;
+  for (int n = 0; n < job->count; n++) meshes += hl_mesh_reads_name(job->files[n]) != 0;
+  job->of_meshes = meshes > 0;
+  if (meshes == 0 || meshes == job->count) return EXIT_CODE_OK;
+  return fail(EXIT_CODE_USAGE,
+              "a pattern that finds meshes beside volumes: name each mesh that shall be in all pictures");
+}
+
+int series_find_files(series_job *job, char **operands) {
+  int exit_code = EXIT_CODE_OK, operand_count = 0;
+  for (; operands[operand_count] != NULL && exit_code == EXIT_CODE_OK; operand_count++) {
+    char *operand = operands[operand_count];
+    if (is_pattern(operand)) exit_code = add_pattern(job, operand);
+    else if (hl_mesh_reads_name(operand)) job->meshes[job->mesh_count++] = operand;
+    else exit_code = add_file(job, operand);
+  }
+  if (job->mesh_count == operand_count) { /* no volume, no pattern: they are the series */
+    job->mesh_count = 0;
+    for (int n = 0; n < operand_count && exit_code == EXIT_CODE_OK; n++)
+      exit_code = add_file(job, operands[n]);
+  }
+  job->meshes[job->mesh_count] = NULL;
+  if (exit_code == EXIT_CODE_OK) exit_code = part_meshes(job);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  qsort(job->files, (size_t)job->count, sizeof *job->files, by_number);
+  job->bad = calloc((size_t)job->count, sizeof *job->bad);
+  return job->bad != NULL ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "out of memory");
+}
+
+void series_release_files(series_job *job) {
+  for (int n = 0; n < job->count; n++) free(job->files[n]);
+  free(job->files);
+  free(job->bad);
+}
+
+/* ---- what a file holds ---- */
+
+/* Files are read alike: at the first one's resolution, and only in the anatomical space that it is in. */
+static void reading_of(const series_job *job, hl_volume_load_options *options) {
+  render_load_options(job->values, options);
+  if (job->scene != NULL) options->level = hl_scene_describe(job->scene)->volumes[0].level;
+}
+
+static hl_space space_of(const hl_volume *volume) {
+  hl_volume_info info = {.struct_size = sizeof info};
+  return hl_volume_get_info(volume, &info) == HL_OK ? info.space : HL_SPACE_UNKNOWN;
+}
+
+static int check_space(const series_job *job, int number, const hl_volume *volume) {
+  if (job->scene == NULL) return EXIT_CODE_OK;
+  hl_space space = space_of(volume), first = space_of(hl_scene_describe(job->scene)->volumes[0].volume);
+  if (space == first || space == HL_SPACE_UNKNOWN || first == HL_SPACE_UNKNOWN) return EXIT_CODE_OK;
+  return fail(EXIT_CODE_INPUT,
+              "%s: its axes point elsewhere (RAS or LPS) than those of '%s', the first file: "
+              "'halflight convert' both to one format",
+              job->files[number], job->files[job->first]);
+}
+
+/* Marks the file as bad by the exit code of its reading. */
+static int note(series_job *job, int number, int exit_code) {
+  job->bad[number] = exit_code == EXIT_CODE_INPUT || exit_code == EXIT_CODE_UNSUPPORTED;
+  return exit_code;
+}
+
+int series_load_volume(series_job *job, int number, hl_volume **volume) {
+  cli_input input = {0};
+  hl_volume_load_options options;
+  hl_error error = {0};
+  if (job->bad[number]) return EXIT_CODE_INPUT;
+  reading_of(job, &options);
+  int exit_code = input_open(job->files[number], job->values[RENDER_MAX_MEMORY].bytes, &input);
+  if (exit_code == EXIT_CODE_OK) {
+    hl_status status = input_load_volume(job->host.context, &input, &options, volume, &error);
+    if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_READ, status, &error);
+  }
+  input_close(&input);
+  return note(job, number, exit_code);
+}
+
+/* ---- the scene of a file ---- */
+
+/* Makes the first file's scene of other volumes; null: of another first mesh. */
+static hl_status make_scene(const series_job *job, hl_scene_volume *volumes, size_t volume_count,
+                            const hl_scene_mesh *mesh, hl_scene **scene, hl_error *error) {
+  hl_scene_description description = *hl_scene_describe(job->scene);
+  hl_scene_mesh *meshes = mesh != NULL ? calloc(description.mesh_count, sizeof *meshes) : NULL;
+  if (mesh != NULL && meshes == NULL) {
+    snprintf(error->message, sizeof error->message, "out of memory: %zu meshes", description.mesh_count);
+    return error->code = HL_ERROR_MEMORY;
+  }
+  if (meshes != NULL) {
+    memcpy(meshes, description.meshes, description.mesh_count * sizeof *meshes);
+    meshes[0] = *mesh;
+    description.meshes = meshes;
+  } else {
+    description.volumes = volumes;
+    description.volume_count = volume_count;
+  }
+  hl_status status = hl_scene_create(job->host.context, &description, scene, error);
+  free(meshes);
+  return status;
+}
+
+/* A volume in place of the first file's; volume null: the first file's voxels. The others, label maps, stay.
+ */
+static hl_status scene_of_volume(const series_job *job, int number, hl_volume *volume, hl_scene **scene,
+                                 hl_error *error) {
+  const hl_scene_description *description = hl_scene_describe(job->scene);
+  hl_scene_volume volumes[1 + RENDER_MOST_LABEL_LAYERS];
+  memcpy(volumes, description->volumes, description->volume_count * sizeof *volumes);
+  volumes[0].file = job->files[number];
+  if (volume != NULL) volumes[0].volume = volume;
+  return make_scene(job, volumes, description->volume_count, NULL, scene, error);
+}
+
+static int volume_scene(series_job *job, int number, hl_scene **scene) {
+  hl_volume *volume = NULL;
+  hl_error error = {0};
+  int exit_code = series_load_volume(job, number, &volume);
+  if (exit_code == EXIT_CODE_OK) exit_code = note(job, number, check_space(job, number, volume));
+  if (exit_code == EXIT_CODE_OK) {
+    hl_status status = scene_of_volume(job, number, volume, scene, &error);
+    if (status != HL_OK) exit_code = note(job, number, host_fail(&job->host, PHASE_READ, status, &error));
+  }
+  hl_volume_release(volume);
+  return exit_code;
+}
+
+/* Gives a layer of a label map what the options say of the first file's. */
+static void take_settings(const hl_scene_volume *from, hl_scene_volume *layer) {
+  hl_scene_volume made = *from;
+  made.volume = layer->volume;
+  made.file = layer->file;
+  made.component = layer->component;
+  made.level = layer->level;
+  made.labels = layer->labels;
+  made.label_count = layer->label_count;
+  *layer = made;
+}
+
+static int label_scene(series_job *job, int number, hl_scene **scene) {
+  const hl_scene_description *description = hl_scene_describe(job->scene);
+  render_label_layers *layers = calloc(1, sizeof *layers);
+  hl_scene_volume volumes[RENDER_MOST_LABEL_LAYERS];
+  size_t count = 0;
+  hl_error error = {0};
+  hl_volume_load_options options;
+  if (layers == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for labels");
+  reading_of(job, &options);
+  int exit_code = render_load_label_map(&job->host, job->values, job->files[number], &options, layers);
+  if (exit_code == EXIT_CODE_OK) exit_code = check_space(job, number, layers->volumes[0].volume);
+  for (size_t n = 0; n < layers->count; n++) {
+    if (layers->volumes[n].label_count == 0) continue;
+    size_t like = count < description->volume_count ? count : description->volume_count - 1;
+    volumes[count] = layers->volumes[n];
+    take_settings(&description->volumes[like], &volumes[count++]);
+  }
+  if (exit_code == EXIT_CODE_OK) {
+    hl_status status = make_scene(job, volumes, count, NULL, scene, &error);
+    if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_READ, status, &error);
+  }
+  render_release_label_layers(job->host.context, layers);
+  free(layers);
+  return note(job, number, exit_code);
+}
+
+/* A mesh in place of the first file's. */
+static int mesh_scene(series_job *job, int number, hl_scene **scene) {
+  hl_scene_mesh mesh = hl_scene_describe(job->scene)->meshes[0], own;
+  hl_error error = {0};
+  hl_status status = render_load_mesh(job->host.context, job->files[number], 0, &own, &error);
+  mesh.mesh = own.mesh;
+  mesh.file = own.file;
+  memcpy(mesh.color, own.color, sizeof mesh.color);
+  if (status == HL_OK) status = make_scene(job, NULL, 0, &mesh, scene, &error);
+  hl_mesh_release(own.mesh);
+  return note(job, number,
+              status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_READ, status, &error));
+}
+
+int series_scene(series_job *job, int number, hl_scene **scene) {
+  if (job->bad[number]) return EXIT_CODE_INPUT;
+  if (job->of_meshes) return mesh_scene(job, number, scene);
+  return render_is_label_map(job->values) ? label_scene(job, number, scene)
+                                          : volume_scene(job, number, scene);
+}
+
+hl_status series_scene_unread(const series_job *job, int number, hl_scene **scene) {
+  hl_scene_mesh mesh;
+  hl_error error = {0};
+  if (render_is_label_map(job->values)) return HL_ERROR_UNSUPPORTED;
+  if (!job->of_meshes) return scene_of_volume(job, number, NULL, scene, &error);
+  mesh = hl_scene_describe(job->scene)->meshes[0];
+  mesh.file = job->files[number];
+  return make_scene(job, NULL, 0, &mesh, scene, &error);
+}
