@@ -227,12 +227,10 @@ def test_plot(small):
     pyplot.close("all")
 
 
-def test_import_is_quick_and_needs_numpy_alone():
-    code = ("import sys, time; begin = time.process_time(); import numpy; before = set(sys.modules); start = time.process_time(); "
-            "import halflight; print((time.process_time() - start) / (start - begin), "
-            "*sorted({m.partition('.')[0] for m in set(sys.modules) - before}))")
-    runs = [subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.split()
-            for _ in range(3)]
-    names = runs[0][1:]
-    assert "matplotlib" not in names and "tqdm" not in names
-    assert min(float(run[0]) for run in runs) < 1  # of the processor's time that numpy takes, on the same machine
+def test_import_loads_little_and_needs_numpy_alone():
+    code = ("import sys, numpy; before = set(sys.modules); import halflight; "
+            "print(*sorted(set(sys.modules) - before))")
+    added = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.split()
+    others = {name.partition(".")[0] for name in added} - set(sys.stdlib_module_names)
+    assert others <= {"halflight", "_cffi_backend"}
+    assert len(added) < 70  # modules; numpy brings above a hundred

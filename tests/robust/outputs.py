@@ -5,7 +5,6 @@ usage: outputs.py PROGRAM
 
 Whatever goes wrong: the exit code and one line on stderr say so, the old file stands, and nothing new lies beside it.
 """
-import math
 import os
 import pathlib
 import resource
@@ -21,8 +20,7 @@ os.environ.pop("MALLOC_PERTURB_", None)  # fills what is freed, which takes long
 PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
 TOOL = str(pathlib.Path(__file__).resolve().parent.parent / "cli" / "tool.py")
 OLD = b"old"
-PATIENCE = 0.1  # processor seconds from a signal to the end: docs/reliability.md promises a tenth of a second for such pictures
-SLOWER = float(os.environ.get("HALFLIGHT_SLOWER", "1"))  # builds with sanitizers
+HANG = 1800  # seconds; no run takes a tenth of it, on a slow machine either
 
 # (name, arguments, outputs): every kind of file that the program writes
 OUTPUTS = [
@@ -45,7 +43,7 @@ class Skip(Exception):
 def run(arguments, **options):
     return subprocess.run([PROGRAM, *arguments.split(), *([] if arguments.startswith("diff") else ["--quiet"])],
                           stdin=subprocess.DEVNULL, stdout=options.pop("stdout", subprocess.PIPE),
-                          stderr=subprocess.PIPE, timeout=200, **options)
+                          stderr=subprocess.PIPE, timeout=HANG, **options)
 
 
 def check(condition, what):
@@ -152,27 +150,20 @@ def processor_seconds(process):
 
 
 def interrupt(arguments, signal_number, after):
-    """(exit code, processor seconds from the signal to the end) of a run interrupted after so many processor seconds."""
+    """The exit code of a run interrupted after so many processor seconds."""
     child = subprocess.Popen([PROGRAM, *arguments.split()], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
         while processor_seconds(child.pid) < after:
             time.sleep(0.005)
-        os.kill(child.pid, signal.SIGSTOP)  # so that the clock is read when the signal comes
-        while ") T" not in open(f"/proc/{child.pid}/stat").read():
-            time.sleep(0.001)
-        at = processor_seconds(child.pid)
         os.kill(child.pid, signal_number)
-        os.kill(child.pid, signal.SIGCONT)
-        _, status, used = os.wait4(child.pid, 0)
-        child.returncode = os.waitstatus_to_exitcode(status)
-        return child.returncode, used.ru_utime + used.ru_stime - at
+        return child.wait(HANG)
     finally:
-        if child.returncode is None:
-            child.kill()
-            child.wait()
+        child.kill()
+        child.wait()
 
 
 def test_interrupted():
+    """Each of these runs takes far longer than the wait. How much is done after the signal: patience.py."""
     heavy = "ball_64x64x64_uint8.raw --threads 1 --quiet"
     runs = [f"render {heavy} --size 900x900 --sheet-spacing 0.02 -o out.png",
             f"render {heavy} --size 900x900 --sheet-spacing 0.02 --soft-method paper -o out.exr",
@@ -180,23 +171,14 @@ def test_interrupted():
             f"render {heavy} --size 900x900 --sheet-spacing 0.02 --shadows hard --layers -o out.exr",
             f"render {heavy} --size 4000x4000 --reference -o out.npy",
             "make fire-ball --size 700 --threads 1 --quiet -o out.nrrd"]
-    slowest = 0
-    for number, arguments in enumerate(runs):
+    for arguments in runs:
         put_old([arguments.split()[-1]])
         before = sorted(os.listdir())
         for signal_number, after in ((signal.SIGINT, 0.15), (signal.SIGTERM, 0.6), (signal.SIGHUP, 0.3)):
-            seconds = math.inf
-            for _ in range(3):  # the least: where other work takes the processor's other half, processor seconds are long
-                if seconds < PATIENCE * SLOWER:
-                    break
-                code, taken = interrupt(arguments, signal_number, after)
-                check(code == 130, f"{arguments}: exit code {code}")
-                check_untouched(before, [arguments.split()[-1]])
-                seconds = min(seconds, taken)
-            slowest = max(slowest, seconds)
-            check(seconds < PATIENCE * SLOWER, f"{arguments}: {seconds:.3f} processor seconds after the signal")
+            code = interrupt(arguments, signal_number, after)
+            check(code == 130, f"{arguments}: exit code {code}")
+            check_untouched(before, [arguments.split()[-1]])
         os.remove(arguments.split()[-1])
-    print(f"# at most {slowest:.3f} processor seconds from the signal to the end")
 
 
 def feed(path, pieces, pause):
@@ -229,7 +211,7 @@ def test_a_pipe_for_a_volume():
         time.sleep(1)
         check(child.poll() is None, f"{program} did not wait for the pipe's writer")
         child.send_signal(signal.SIGINT)
-        child.communicate(timeout=20)
+        child.communicate(timeout=HANG)
         check(child.returncode == 130, f"{program}: exit code {child.returncode}")
     shutil.rmtree("pipes")
     os.remove("file.npy")

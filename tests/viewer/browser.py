@@ -8,6 +8,8 @@ import subprocess
 import tempfile
 import time
 
+HANG = 300  # seconds, for a browser that hangs alone
+
 
 class BrowserError(Exception):
     """The browser has answered with an error, or not at all."""
@@ -46,7 +48,7 @@ class Browser:
         self.resize(*size)
 
     def _wait_for_page(self):
-        end = time.monotonic() + 30
+        end = time.monotonic() + HANG
         while time.monotonic() < end:
             for target in self.call("Target.getTargets")["targetInfos"]:
                 if target["type"] == "page":
@@ -91,7 +93,7 @@ class Browser:
         elif method == "Log.entryAdded" and parameters["entry"]["level"] == "error":
             self.problems.append(parameters["entry"]["text"] + " " + parameters["entry"].get("url", ""))
 
-    def call(self, method, timeout=30, **parameters):
+    def call(self, method, timeout=HANG, **parameters):
         """Calls a method of the protocol and returns its result."""
         self._number += 1
         message = {"id": self._number, "method": method, "params": parameters}
@@ -115,14 +117,14 @@ class Browser:
         self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
         self.call("Emulation.setTouchEmulationEnabled", enabled=False)
 
-    def run(self, script, timeout=30):
+    def run(self, script, timeout=HANG):
         """The value of a JavaScript expression; promises are awaited."""
         answer = self.call("Runtime.evaluate", timeout=timeout, expression=script, awaitPromise=True, returnByValue=True)
         if "exceptionDetails" in answer:
             raise BrowserError(f"{script}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
 
-    def wait(self, condition, timeout=20):
+    def wait(self, condition, timeout=HANG):
         """Waits until a JavaScript expression is true."""
         end = time.monotonic() + timeout
         while not self.run(condition):

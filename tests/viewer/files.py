@@ -141,27 +141,26 @@ def films(viewer, scene):
     slow = threading.Thread(target=lambda: answers.append(request(viewer, "POST", "film", json.dumps(small), number=3,
                                                                   **{**asked, "turntable": 10000})[0]))
     slow.start()
-    for _ in range(200):
+    for _ in range(3000):
         time.sleep(0.1)
         progress = json.loads(request(viewer, "GET", "film.json", page="film")[1])
         if progress["frames"] == 10000 and progress["done"] > 0:
             break
     check(progress["frames"] == 10000 and progress["done"] > 0, f"a film tells how far it is: {progress}")
     check(request(viewer, "POST", "cancel", page="film", number=4)[0] == 204, "it can be stopped")
-    slow.join(20)
+    slow.join(300)
     check(answers == [204], "and stops")
 
 
 def fair_shares(viewer, scene):
     """Two pages that ask for frames all the time get about as many each, each of its own camera."""
     counts, pictures = [0, 0], [set(), set()]
-    end = time.monotonic() + 4
 
     def ask(who):
         mine = json.loads(json.dumps(scene))
         mine["image"].update(width=160, height=160)
         mine["camera"]["position"][0] += 0.02 * who
-        while time.monotonic() < end:
+        while sum(counts) < 24:
             status, body = request(viewer, "POST", "frame", json.dumps(mine), page=f"fair-{who}", number=counts[who] + 1, format="png")
             check(status == 200, "a frame of one of two pages")
             counts[who] += 1

@@ -22,7 +22,7 @@ class Viewer:
             self.process.kill()
         self.process.communicate()
 
-    def interrupt(self, timeout=20):
+    def interrupt(self, timeout=300):
         """Ctrl-C; returns the exit status."""
         self.process.send_signal(signal.SIGINT)
         return self.process.wait(timeout)
