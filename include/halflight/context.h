@@ -72,7 +72,8 @@ typedef enum hl_mpi {
 
 /* All callbacks may be null (a default is used) and receive user_data. They may be called
  * from the thread that called into the library only, except allocate and release, which may be
- * called from any of its threads. */
+ * called from any of its threads. They may call the library, but not with the renderer whose frame is under
+ * way. Arithmetic in them is that of C's default floating-point environment, whichever the host's is. */
 typedef struct hl_context_options {
   size_t struct_size; /* set by hl_context_options_defaults() */
   void *user_data;

@@ -11,9 +11,10 @@
 extern "C" {
 #endif
 
-/* Reusable: keeps buffers and prepared volumes between frames. For one thread at a time; scenes may be shared
- * by any number of renderers. After fork() the child may use a renderer that was idle, or create one: either
- * starts threads of its own. */
+/* Reusable: keeps buffers and prepared volumes between frames. For one thread at a time: while it makes a
+ * frame it refuses other calls, those of the frame's callbacks too, with HL_ERROR_ARGUMENT, and if it is
+ * destroyed then, the frame's end releases it. Scenes may be shared by any number of renderers. After fork()
+ * the child may use a renderer that was idle, or create one: either starts threads of its own. */
 typedef struct hl_renderer hl_renderer;
 
 typedef struct hl_render_statistics {

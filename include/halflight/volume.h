@@ -47,8 +47,13 @@ typedef struct hl_volume_description {
   double value_offset;       /* default 0 */
   const void *voxels;        /* voxel (0,0,0) */
   ptrdiff_t stride_bytes[3]; /* bytes from one voxel to the next along i, j, k; all 0: packed */
-  int borrow; /* non-zero: u8, u16 and f32 voxels are not copied and must outlive the volume, where those of a
-                 row adjoin; rows and slices may lie apart, in rising order, slices by 64 MiB at most */
+  /* Non-zero: u8, u16 and f32 voxels are not copied and must outlive the volume, where those of a row adjoin;
+   * rows and slices may lie apart, in rising order, slices by 64 MiB at most. They shall stay as they are:
+   * range, histogram, the places that are empty and what a renderer keeps are those of the voxels that were
+   * there when each was found. Where the voxels change all the same, between calls or while one runs, the new
+   * ones are seen in some places and the old in others, and a pixel may be any number or none; but no call
+   * reads or writes other memory, or does not end. For new voxels make a new volume. */
+  int borrow;
   hl_space space; /* default unknown */
   /* Called once when the library no longer reads `voxels`: when the volume's last reference is released, by
    * the thread that does it, or before hl_volume_create() returns where voxels were copied. Not called where

@@ -8,6 +8,7 @@
 
 #include "message.h"
 #include "suggest.h"
+#include "text/plain.h"
 
 static const char *choice_name(const void *choices, size_t index) {
   const cli_choice *choice = (const cli_choice *)choices + index;
@@ -115,7 +116,7 @@ static bool parse_numbers(const cli_option *option, const char *text, cli_value 
   for (int i = 0; i < option->count; i++) {
     size_t length = strspn(at, option->whole ? "0123456789" : "0123456789+-.eE");
     char *end;
-    double number = strtod(at, &end);
+    double number = hl_plain_number(at, &end);
     if (length == 0 || end != at + length || !isfinite(number)) return false;
     value->percent[i] = option->percent && *end == '%';
     if (value->percent[i] && (*at == '-' || number > 100)) return false;

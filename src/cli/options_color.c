@@ -10,6 +10,7 @@
 #include <strings.h>
 
 #include "options.h"
+#include "text/plain.h"
 
 static const struct {
   const char *name;
@@ -190,7 +191,7 @@ static bool parse_linear(const char *text, double low, double high, double color
   for (const char *at = text; count < 3; at++) {
     size_t length = strspn(at, "0123456789+-.eE");
     char *end;
-    double number = strtod(at, &end);
+    double number = hl_plain_number(at, &end);
     if (length == 0 || end != at + length || !(number >= low && number <= high)) return false;
     color[count++] = number;
     if (*end == '\0') break;

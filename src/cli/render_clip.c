@@ -9,13 +9,14 @@
 
 #include "input.h"
 #include "render.h"
+#include "text/plain.h"
 
 bool render_read_coordinate(const char **text, render_coordinate *coordinate) {
   size_t length = strspn(*text, "0123456789+-.eE");
   char *rest;
   *coordinate = (render_coordinate){.given = length > 0};
   if (length == 0) return true;
-  coordinate->number = strtod(*text, &rest);
+  coordinate->number = hl_plain_number(*text, &rest);
   if (rest != *text + length || !isfinite(coordinate->number)) return false;
   *text = rest + (strncmp(rest, "mm", 2) == 0 ? 2 : *rest == 'u' ? 1 : 0);
   coordinate->fraction = *text == rest;

@@ -6,6 +6,7 @@
 
 #include "input.h"
 #include "render.h"
+#include "text/plain.h"
 
 /* The options by the type of their cuts. */
 static const int option_of[] = {
@@ -30,7 +31,7 @@ static bool read_point(const char **text, render_coordinate point[3]) {
 static bool read_normal(const char *text, double normal[3]) {
   for (int a = 0; a < 3; a++) {
     char *rest;
-    normal[a] = strtod(text, &rest);
+    normal[a] = hl_plain_number(text, &rest);
     if (rest == text || !isfinite(normal[a]) || *rest != (a < 2 ? ',' : '\0')) return false;
     text = rest + 1;
   }

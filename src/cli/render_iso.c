@@ -5,13 +5,14 @@
 #include <string.h>
 
 #include "render.h"
+#include "text/plain.h"
 
 enum { COLOR_BYTES = 64 };
 
 /* Reads VALUE[:COLOR[:OPACITY]]; false: it is something else. */
 static bool read_iso(const char *text, hl_isosurface *surface) {
   char *rest, color[COLOR_BYTES];
-  surface->value = strtod(text, &rest);
+  surface->value = hl_plain_number(text, &rest);
   if (rest == text || !isfinite(surface->value)) return false;
   if (*rest == '\0') return true;
   if (*rest++ != ':') return false;
@@ -23,7 +24,7 @@ static bool read_iso(const char *text, hl_isosurface *surface) {
   rest += length;
   if (*rest == '\0') return true;
   const char *opacity = ++rest;
-  surface->opacity = strtod(opacity, &rest);
+  surface->opacity = hl_plain_number(opacity, &rest);
   return rest != opacity && *rest == '\0' && surface->opacity >= 0 && surface->opacity <= 1;
 }
 

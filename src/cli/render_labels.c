@@ -7,6 +7,7 @@
 #include "input.h"
 #include "render.h"
 #include "suggest.h"
+#include "text/plain.h"
 
 /* One of the labels that --show names: NAME|NUMBER|all|rest[=COLOR][:OPACITY]. */
 typedef struct shown_label {
@@ -35,7 +36,7 @@ static int read_item(const char *item, size_t length, shown_label *made) {
   made->name[length] = 0;
   char *colon = strrchr(made->name, ':'), *rest;
   if (colon != NULL) {
-    made->opacity = strtod(colon + 1, &rest);
+    made->opacity = hl_plain_number(colon + 1, &rest);
     if (colon[1] == 0 || *rest != 0 || !(made->opacity >= 0 && made->opacity <= 1))
       return fail_show(made->name, "give an opacity from 0 to 1 after the colon");
     *colon = 0;
@@ -67,7 +68,7 @@ static int read_show(const cli_value *value, show_list *list) {
 
 static bool is_named(const hl_label *label, const shown_label *shown) {
   char *rest;
-  double number = strtod(shown->name, &rest);
+  double number = hl_plain_number(shown->name, &rest);
   return shown->all || (label->name != NULL && strcmp(label->name, shown->name) == 0) ||
          (*rest == 0 && rest != shown->name && number == label->value);
 }

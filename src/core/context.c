@@ -11,6 +11,7 @@
 #endif
 
 #include "core/error.h"
+#include "text/plain.h"
 
 /* Asks the system to place large blocks in large pages. With small pages, every row of a tile lies in a page
  * of its own, and translating so many page addresses took longer than reading the rows. */
@@ -126,7 +127,7 @@ void hl_log(const hl_context *context, hl_log_level level, const char *format, .
   char line[1000];
   va_list arguments;
   va_start(arguments, format);
-  vsnprintf(line, sizeof line, format, arguments);
+  hl_plain_vprint(line, sizeof line, format, arguments);
   va_end(arguments);
   hl_make_printable(line);
   context->options.log(context->options.user_data, level, line);

@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "text/plain.h"
+
 const char *hl_status_name(hl_status status) {
   switch (status) {
     case HL_OK: return "ok";
@@ -33,7 +35,7 @@ static hl_status fail(hl_error *error, hl_status code, int line, int column, int
   error->line = line;
   error->column = column;
   error->byte_offset = offset;
-  vsnprintf(error->message, sizeof error->message, format, arguments);
+  hl_plain_vprint(error->message, sizeof error->message, format, arguments);
   hl_make_printable(error->message);
   return code;
 }

@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -136,6 +137,22 @@ static char *temporary_path(hl_context *context, const char *path) {
   return made;
 }
 
+/* Creates a file of a name that is free, whose last letters are replaced. The system takes the process's
+ * umask off its mode; mkstemp() would make it private, and the umask cannot be asked without changing it. */
+static int create_temporary(char *path) {
+  static const char letters[] = "abcdefghijklmnopqrstuvwxyz234567"; /* 32 */
+  enum { LETTERS = 6, TRIES = 1000 };
+  for (int n = 0; n < TRIES; n++) {
+    unsigned char random[LETTERS];
+    if (getrandom(random, sizeof random, 0) != (ssize_t)sizeof random) return -1;
+    char *end = path + strlen(path) - LETTERS;
+    for (int i = 0; i < LETTERS; i++) end[i] = letters[random[i] % 32];
+    int descriptor = open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0 || errno != EEXIST) return descriptor;
+  }
+  return -1;
+}
+
 hl_status hl_output_begin(hl_context *context, const char *path, hl_output *output, hl_error *error) {
   memset(output, 0, sizeof *output);
   output->context = context;
@@ -147,16 +164,13 @@ hl_status hl_output_begin(hl_context *context, const char *path, hl_output *outp
     return hl_fail_memory(error, strlen(path), path);
   }
   output->temporary_path = temporary;
-  int descriptor = mkostemp(output->temporary_path, O_CLOEXEC);
+  int descriptor = create_temporary(output->temporary_path);
   if (descriptor < 0) {
     hl_release(context, output->temporary_path);
     output->temporary_path = NULL;
     hl_output_abort(output);
     return fail_system(error, path, "write");
   }
-  mode_t mask = umask(0);
-  umask(mask);
-  fchmod(descriptor, 0666 & ~mask);
   output->file = fdopen(descriptor, "wb");
   if (output->file == NULL) {
     close(descriptor);

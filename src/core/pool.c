@@ -25,6 +25,7 @@
 #include <unistd.h>
 
 #include "core/context.h"
+#include "core/door.h"
 #include "core/memory.h"
 #include "core/processors.h"
 
@@ -201,6 +202,7 @@ static void sleep_until_work(hl_pool *pool, uint64_t generation) {
 }
 
 static void *worker_main(void *argument) {
+  HL_DOOR;
   worker *self = argument;
   hl_pool *pool = self->pool;
   while (!atomic_load(&pool->stop)) {

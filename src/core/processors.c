@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "text/plain.h"
+
 /* Greatest number of processors that an affinity is asked for. */
 enum { MOST_PROCESSORS = 1 << 16 };
 
@@ -28,6 +30,15 @@ static int count_of_affinity(void) {
 
 enum { PATH_BYTES = 4096 };
 
+static bool take_number(const char **text, double *number) {
+  char *end;
+  double read = hl_plain_number(*text, &end);
+  if (end == *text) return false;
+  *number = read;
+  *text = end;
+  return true;
+}
+
 /* The first two numbers of a file; "max" counts as -1. Returns how many there are. */
 static int read_numbers(const char *folder, const char *name, double number[2]) {
   char path[PATH_BYTES + 64], text[64] = "";
@@ -37,12 +48,14 @@ static int read_numbers(const char *folder, const char *name, double number[2]) 
   char *line = fgets(text, sizeof text, file);
   fclose(file);
   if (line == NULL) return 0;
+  const char *rest = text;
   if (strncmp(text, "max", 3) == 0) {
     number[0] = -1;
-    return sscanf(text + 3, "%lf", &number[1]) == 1 ? 2 : 1;
+    rest = text + 3;
+    return take_number(&rest, &number[1]) ? 2 : 1;
   }
-  int found = sscanf(text, "%lf %lf", &number[0], &number[1]);
-  return found < 0 ? 0 : found;
+  if (!take_number(&rest, &number[0])) return 0;
+  return take_number(&rest, &number[1]) ? 2 : 1;
 }
 
 /* Processors that one group may use; infinite where it has no limit. */

@@ -15,6 +15,7 @@
 #include <jansson.h>
 
 #include "keys.h"
+#include "text/plain_json.h"
 
 enum turn { TURN_AZIMUTH, TURN_ELEVATION, TURN_ROLL, TURN_ZOOM, TURN_COUNT };
 static const char *const turn_paths[TURN_COUNT] = {"camera.azimuth", "camera.elevation", "camera.roll",
@@ -84,7 +85,7 @@ static hl_status read_frame(const film *f, json_t *text, int frame, hl_scene **s
     if (turn_of(f->keys[k].path) < 0)
       status = write_value(text, f->keys[k].path, film_key_value(&f->keys[k], frame), error);
   if (status != HL_OK) return status;
-  char *written = json_dumps(text, JSON_COMPACT);
+  char *written = hl_plain_json_dump(text, JSON_COMPACT);
   if (written == NULL) return no_memory(error);
   status = hl_scene_from_json_like(f->context, written, strlen(written), NULL, "scene", f->scene, scene,
                                    error);
@@ -180,7 +181,7 @@ static hl_status parse_scene(film *f, hl_error *error) {
   char *text = NULL;
   hl_status status = hl_scene_to_json(f->context, f->scene, &text, error);
   if (status != HL_OK) return status;
-  f->text = json_loads(text, 0, NULL);
+  f->text = hl_plain_json_load_text(text);
   hl_text_release(f->context, text);
   return f->text != NULL ? HL_OK : no_memory(error);
 }

@@ -1,6 +1,7 @@
 /* film/keys.c - reads keys, and finds their values at a frame. */
 #define _GNU_SOURCE
 #include "keys.h"
+#include "text/plain.h"
 
 #include <errno.h>
 #include <math.h>
@@ -28,7 +29,7 @@ static hl_status read_point(const char **at, const film_key *key, int *frame, do
                   key->path, length, *at);
   const char *text = end + 1;
   *frame = (int)number;
-  *value = strtod(text, &end);
+  *value = hl_plain_number(text, &end);
   if (end == text || (*end != ',' && *end != '\0') || !isfinite(*value))
     return refuse(error, "%s: '%.*s' has no finite number after its frame", key->path, length, *at);
   if (key->count > 0 && *frame <= key->frames[key->count - 1])

@@ -8,10 +8,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 #include "process/process.h"
+#include "text/plain.h"
 
 enum { MOST_WORDS = 48, MOST_CODEC_WORDS = 12 };
 
@@ -45,7 +45,7 @@ static const struct kind {
 static const struct kind *kind_of(const char *path) {
   const char *dot = strrchr(path, '.');
   for (int k = 0; dot != NULL && movie_extensions[k] != NULL; k++)
-    if (strcasecmp(dot, movie_extensions[k]) == 0) return &kinds[k];
+    if (hl_plain_equal(dot, movie_extensions[k])) return &kinds[k];
   return NULL;
 }
 

@@ -209,8 +209,8 @@ static void round_bounds(const grid *grid, const float *low, const float *high, 
   for (size_t i = 0; i < count; i++) {
     float a = floorf((low[i] - grid->cell_base) * inverse + 1e-4f),
           b = ceilf((high[i] - grid->cell_base) * inverse - 1e-4f);
-    to_low[i] = (unsigned char)(a < 0 ? 0 : a > 255 ? 255 : a);
-    to_high[i] = (unsigned char)(b < 0 ? 0 : b > 255 ? 255 : b);
+    to_low[i] = (unsigned char)(a > 255 ? 255 : a > 0 ? a : 0); /* NaN: of voxels that their owner changed */
+    to_high[i] = (unsigned char)(b < 0 ? 0 : b < 255 ? b : 255);
   }
 }
 

@@ -215,8 +215,9 @@ bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, 
   float a = (low - grid->empty) * classifier->scale + classifier->offset;
   float b = (high - grid->empty) * classifier->scale + classifier->offset;
   float least = fminf(a, b), greatest = fmaxf(a, b);
-  int32_t first = least <= 0 ? 0 : least >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES : (int32_t)least;
-  int32_t last = greatest <= 0                    ? 1
+  /* NaN, which voxels that their owner changes may have become, is an end, too */
+  int32_t first = !(least > 0) ? 0 : least >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES : (int32_t)least;
+  int32_t last = !(greatest > 0)                  ? 1
                  : greatest >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES + 1
                                                   : (int32_t)greatest + 1;
   return classifier->next_visible[first] <= last;

@@ -1,6 +1,7 @@
 /* guess/floor.c - a floor below all that a scene shows. */
 #include <math.h>
 
+#include "core/door.h"
 #include "core/error.h"
 #include "guess/outline.h"
 #include "scene/placement.h"
@@ -34,6 +35,7 @@ static void find_corners(const hl_outline *outline, vec3 up, double size, float 
 
 hl_status hl_scene_make_floor(hl_context *context, const hl_scene_description *description,
                               const double up[3], double size, hl_mesh **mesh, hl_error *error) {
+  HL_DOOR;
   static const uint32_t triangles[2][3] = {{0, 1, 2}, {0, 2, 3}};
   if (context == NULL || description == NULL || mesh == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_make_floor: null context, description or mesh");

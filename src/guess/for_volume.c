@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/context.h"
+#include "core/door.h"
 #include "core/error.h"
 #include "guess/analysis.h"
 #include "guess/exposure.h"
@@ -94,6 +95,7 @@ static void choose_sky(const hl_look *look, hl_scene_description *description) {
 }
 
 void hl_scene_level_sky(hl_scene_description *description) {
+  HL_DOOR;
   if (description == NULL || description->sky.type == HL_SKY_NONE) return;
   for (int channel = 0; channel < 3; channel++)
     description->ambient[channel] = INSTEAD * description->sky.strength;
@@ -205,6 +207,7 @@ static hl_status make_scene(hl_context *context, hl_volume *volume, const char *
 
 hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char *file, hl_scene **scene,
                               hl_error *error) {
+  HL_DOOR;
   if (context == NULL || volume == NULL || scene == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_volume: null context, volume or scene");
   *scene = NULL;
@@ -213,6 +216,7 @@ hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char
 
 hl_status hl_scene_for_volume_look(hl_context *context, hl_volume *volume, const char *file, const char *look,
                                    hl_scene **scene, hl_error *error) {
+  HL_DOOR;
   if (context == NULL || volume == NULL || look == NULL || scene == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_volume_look: null context, volume, look or scene");
   const hl_look *style = NULL;
@@ -223,6 +227,7 @@ hl_status hl_scene_for_volume_look(hl_context *context, hl_volume *volume, const
 
 hl_status hl_scene_light_factor(const hl_scene_description *description, const char *look, double *factor,
                                 hl_error *error) {
+  HL_DOOR;
   if (description == NULL || description->volume_count == 0 || look == NULL || factor == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_scene_light_factor: null description, look or factor, or no volume");

@@ -5,6 +5,7 @@
  * farther away and turns about a fixed target. */
 #include <string.h>
 
+#include "core/door.h"
 #include "core/error.h"
 #include "guess/outline.h"
 #include "guess/view.h"
@@ -233,6 +234,7 @@ hl_status hl_camera_frame_outline(const hl_scene_description *description, hl_ou
 
 hl_status hl_camera_frame_view(const hl_scene_description *description, const hl_view *view, double zoom,
                                hl_camera *camera, hl_error *error) {
+  HL_DOOR;
   if (description == NULL || view == NULL || camera == NULL || !hl_view_is_possible(view))
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_camera_frame_view: null description or camera, or an impossible view");
@@ -285,6 +287,7 @@ static void place_tightly(const frame_job *job, double zoom, hl_camera *camera) 
 
 hl_status hl_camera_frame(const hl_scene_description *description, double azimuth_deg, double elevation_deg,
                           double zoom, hl_camera *camera) {
+  HL_DOOR;
   if (description == NULL || camera == NULL || !isfinite(azimuth_deg) || !isfinite(elevation_deg))
     return HL_ERROR_ARGUMENT;
   const hl_view view = {{0, 0, 1}, {0, -1, 0}, azimuth_deg, elevation_deg, 0};
@@ -298,6 +301,7 @@ hl_status hl_camera_frame(const hl_scene_description *description, double azimut
 }
 
 hl_status hl_camera_fit(const hl_scene_description *description, double zoom, hl_camera *camera) {
+  HL_DOOR;
   if (description == NULL || camera == NULL) return HL_ERROR_ARGUMENT;
   double distance = vec3_length(vec3_subtract(vec3_of(camera->target), vec3_of(camera->position)));
   if (!(distance > 0 && isfinite(distance) && isfinite(vec3_length(vec3_of(camera->up)))))

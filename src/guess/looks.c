@@ -2,19 +2,19 @@
  *
  * Scans that may be of a body are coloured like skin, all other scans like ivory.
  */
-#define _GNU_SOURCE /* strcasecmp */
 #include "guess/looks.h"
 
 #include <math.h>
 #include <string.h>
-#include <strings.h>
 
+#include "core/door.h"
 #include "core/error.h"
 #include "guess/function_writer.h"
 #include "guess/styles.h"
 #include "scene/scene.h"
 #include "scene/transfer_function.h"
 #include "text/edit_distance.h"
+#include "text/plain.h"
 
 typedef enum subject { BODY, BRAIN, MATTER, LABELS, FIELD, FLOW, SIGNED, MEDIUM, CONSTANT } subject;
 
@@ -44,7 +44,7 @@ bool hl_is_hounsfield(const hl_volume *volume) {
 
 static bool ends_with(const char *text, const char *end) {
   size_t length = text != NULL ? strlen(text) : 0, tail = strlen(end);
-  return length >= tail && strcasecmp(text + length - tail, end) == 0;
+  return length >= tail && hl_plain_equal(text + length - tail, end);
 }
 
 /* True if the file's format (NIfTI) tells a patient's left and right. */
@@ -114,6 +114,7 @@ hl_status hl_look_write(const hl_look *look, const hl_look *style, hl_context *c
 
 hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *volume,
                                          hl_transfer_function *function, hl_error *error) {
+  HL_DOOR;
   if (context == NULL || volume == NULL || function == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_transfer_function_automatic: null context, volume or function");
@@ -125,6 +126,7 @@ hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *v
 }
 
 hl_status hl_volume_guess(const hl_volume *volume, const char *file, const char **kind, hl_error *error) {
+  HL_DOOR;
   if (volume == NULL || kind == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_guess: null volume or kind");
   hl_data_analysis analysis;
@@ -143,6 +145,7 @@ const char *hl_look_name(size_t index) {
 
 hl_status hl_transfer_function_look(hl_context *context, const char *look, const hl_volume *volume,
                                     hl_transfer_function *function, hl_shading *shading, hl_error *error) {
+  HL_DOOR;
   if (context == NULL || look == NULL || volume == NULL || function == NULL || shading == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_transfer_function_look: null context, look, volume, function or shading");
@@ -307,6 +310,7 @@ const char *hl_preset_name(size_t index) { return index < PRESET_COUNT ? presets
 
 hl_status hl_transfer_function_preset(hl_context *context, const char *name, const hl_volume *volume,
                                       hl_transfer_function *function, hl_error *error) {
+  HL_DOOR;
   if (context == NULL || name == NULL || volume == NULL || function == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_transfer_function_preset: null context, name, volume or function");

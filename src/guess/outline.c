@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "core/door.h"
 #include "core/error.h"
 #include "core/memory.h"
 #include "guess/sample.h"
@@ -372,6 +373,7 @@ static double quantile(const double *counts, double sum, double fraction, double
 
 hl_status hl_transfer_function_seen_range(const hl_volume *volume, const hl_transfer_function *function,
                                           double range[2], hl_error *error) {
+  HL_DOOR;
   if (volume == NULL || function == NULL || range == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_transfer_function_seen_range: null volume, function or range");

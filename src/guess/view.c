@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/context.h"
+#include "core/door.h"
 #include "core/error.h"
 #include "core/memory.h"
 #include "guess/sample.h"
@@ -307,6 +308,7 @@ static void look_from(const hl_scene_description *description, hl_side side, hl_
 
 hl_status hl_view_choose(const hl_scene_description *description, hl_side side, const double up[3],
                          hl_view *view, hl_error *error) {
+  HL_DOOR;
   if (description == NULL || view == NULL || description->volume_count + description->mesh_count == 0 ||
       (int)side < 0 || side > HL_SIDE_ISO)
     return hl_fail(error, HL_ERROR_ARGUMENT,

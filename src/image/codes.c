@@ -19,6 +19,7 @@
 
 #include <string.h>
 
+#include "core/door.h"
 #include "image/format.h"
 #include "image/tone.h"
 
@@ -89,6 +90,7 @@ void hl_codes_end(hl_codes *codes) { hl_srgb_encoder_destroy(&codes->encoder); }
 
 hl_status hl_image_to_srgb8(const hl_image *image, const hl_image_write_options *options, uint8_t *bytes,
                             size_t row_stride, hl_error *error) {
+  HL_DOOR;
   if (image == NULL || bytes == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_to_srgb8: image and bytes must not be null");
   if (row_stride < 4 * (size_t)image->width)

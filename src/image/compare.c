@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/door.h"
 #include "core/memory.h"
 #include "image/image.h"
 
@@ -88,6 +89,7 @@ static void measure(const hl_image *a, const hl_image *b, hl_image_difference *d
 
 hl_status hl_image_compare(const hl_image *a, const hl_image *b, hl_image_difference *difference,
                            hl_error *error) {
+  HL_DOOR;
   if (a == NULL || b == NULL || difference == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_compare: a, b and difference must not be null");
   if (difference->struct_size != sizeof *difference)

@@ -7,10 +7,11 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 #include "core/context.h"
+#include "core/door.h"
 #include "core/memory.h"
+#include "text/plain.h"
 
 /* The registry of formats. */
 static const hl_image_format *const formats[] = {&hl_png_format, &hl_exr_format, &hl_npy_format,
@@ -25,7 +26,7 @@ static const size_t extra_bytes_max = (size_t)64 << 20, header_bytes_max = (size
 static const hl_image_format *format_by_name(const char *path) {
   const char *dot = strrchr(path, '.');
   for (size_t i = 0; dot != NULL && i < FORMAT_COUNT; i++)
-    if (strcasecmp(dot, formats[i]->extension) == 0) return formats[i];
+    if (hl_plain_equal(dot, formats[i]->extension)) return formats[i];
   return NULL;
 }
 
@@ -80,6 +81,7 @@ static hl_status write_layers(const hl_image_format *format, hl_context *context
 
 hl_status hl_image_write(hl_context *context, const hl_image *image, const char *path,
                          const hl_image_write_options *options, hl_error *error) {
+  HL_DOOR;
   if (context == NULL || image == NULL || path == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_write: context, image and path must not be null");
   hl_image_write_options chosen;
@@ -106,6 +108,7 @@ hl_status hl_image_write(hl_context *context, const hl_image *image, const char 
 hl_status hl_image_encode(hl_context *context, const hl_image *image, const char *format_name,
                           const hl_image_write_options *options, unsigned char **bytes, size_t *length,
                           hl_error *error) {
+  HL_DOOR;
   if (context == NULL || image == NULL || format_name == NULL || bytes == NULL || length == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_image_encode: context, image, format, bytes and length must not be null");
@@ -171,6 +174,7 @@ static hl_status judge(const char *path, const unsigned char *bytes, size_t leng
 }
 
 hl_status hl_image_read(hl_context *context, const char *path, hl_image **image, hl_error *error) {
+  HL_DOOR;
   if (image != NULL) *image = NULL;
   if (context == NULL || path == NULL || image == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_read: context, path and image must not be null");

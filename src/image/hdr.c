@@ -69,17 +69,34 @@ static hl_status skip_header(hdr_cursor *cursor) {
   }
 }
 
+/* Reads "-Y 512" or "+X 1024", and moves *text past it. */
+static bool take_extent(const char **text, char axis, char *sign, uint64_t *count) {
+  const char *at = *text;
+  *sign = *at;
+  if ((*sign != '+' && *sign != '-') || *++at != axis || *++at != ' ') return false;
+  size_t digits = strspn(++at, "0123456789");
+  if (digits == 0 || digits > 18) return false;
+  *count = 0;
+  for (size_t n = 0; n < digits; n++) *count = 10 * *count + (uint64_t)(at[n] - '0');
+  *text = at + digits;
+  return true;
+}
+
 static hl_status read_header(hdr_cursor *cursor, hdr_header *header) {
-  char line[LINE_MAX_BYTES], vertical = 0, horizontal = 0, rest;
+  char line[LINE_MAX_BYTES];
   hl_status status = skip_header(cursor);
   if (status != HL_OK) return status;
   size_t start = cursor->at;
   if (!take_line(cursor, line)) return fail_end(cursor);
-  int found = sscanf(line, "%cY %18" SCNu64 " %cX %18" SCNu64 "%c", &vertical, &header->height, &horizontal,
-                     &header->width, &rest);
-  header->from_below = vertical == '+';
-  header->from_right = horizontal == '-';
-  if (found == 4 && strchr("+-", vertical) != NULL && strchr("+-", horizontal) != NULL) return HL_OK;
+  const char *text = line;
+  char vertical, horizontal;
+  bool read = take_extent(&text, 'Y', &vertical, &header->height) && *text++ == ' ' &&
+              take_extent(&text, 'X', &horizontal, &header->width) && *text == 0;
+  if (read) {
+    header->from_below = vertical == '+';
+    header->from_right = horizontal == '-';
+    return HL_OK;
+  }
   cursor->at = start;
   return fail_at(cursor, HL_ERROR_UNSUPPORTED,
                  "expected the picture's size, such as -Y 512 +X 1024 (rows, then columns)");

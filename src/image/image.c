@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "core/context.h"
+#include "core/door.h"
 #include "core/memory.h"
 
 enum { ROWS_BETWEEN_QUESTIONS = 64 };
@@ -24,6 +25,7 @@ static bool clear_rows(hl_context *context, float *rows, size_t row_floats, size
 }
 
 hl_status hl_image_create(hl_context *context, int width, int height, hl_image **image, hl_error *error) {
+  HL_DOOR;
   if (image != NULL) *image = NULL;
   if (context == NULL || image == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_image_create: context and image must not be null");

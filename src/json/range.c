@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "json/parts.h"
+#include "text/plain.h"
 #include "volume/volume.h"
 
 /* "99.5%" */
@@ -12,7 +13,7 @@ static bool is_percentage(const json_t *value, double *percent) {
   size_t digits = text != NULL ? strspn(text, "0123456789.") : 0;
   if (digits == 0 || strcmp(text + digits, "%") != 0) return false;
   char *end = NULL;
-  *percent = strtod(text, &end);
+  *percent = hl_plain_number(text, &end);
   return end == text + digits && *percent >= 0 && *percent <= 100;
 }
 

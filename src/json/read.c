@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "text/edit_distance.h"
+#include "text/plain.h"
+#include "text/plain_json.h"
 
 json_t *hl_json_copy(const json_t *value) {
   json_t *copy = json_copy((json_t *)value);
@@ -49,7 +51,7 @@ hl_status hl_json_parse(const char *text, size_t length, const char *name, json_
                    name, length, HL_JSON_LIMIT);
   hl_status status = pass_byte_order_mark(&text, &length, name, error);
   if (status != HL_OK) return status;
-  *root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &fault);
+  *root = hl_plain_json_load(text, length, JSON_REJECT_DUPLICATES, &fault);
   if (*root != NULL) return HL_OK;
   /* jansson gives neither a reason nor a line where it has no memory for its first buffer */
   if (json_error_code(&fault) == json_error_out_of_memory || fault.line < 1)
@@ -62,7 +64,7 @@ hl_status hl_json_fail(hl_json_reader *reader, hl_status code, const char *key, 
   char text[700];
   va_list arguments;
   va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
+  hl_plain_vprint(text, sizeof text, format, arguments);
   va_end(arguments);
   const char *place = key == NULL && reader->place[0] == 0 ? "/" : reader->place;
   return hl_fail(reader->error, code, "%s: %s%s%s: %s", reader->name, place, key != NULL ? "/" : "",

@@ -5,6 +5,7 @@
  */
 #include <string.h>
 
+#include "core/door.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "guess/for_volume.h"
@@ -245,12 +246,14 @@ static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered
 
 hl_status hl_scene_from_json(hl_context *context, const char *text, size_t length, const char *base_folder,
                              const char *name, hl_scene **scene, hl_error *error) {
+  HL_DOOR;
   return hl_scene_from_json_like(context, text, length, base_folder, name, NULL, scene, error);
 }
 
 hl_status hl_scene_from_json_like(hl_context *context, const char *text, size_t length,
                                   const char *base_folder, const char *name, const hl_scene *like,
                                   hl_scene **scene, hl_error *error) {
+  HL_DOOR;
   if (context == NULL || text == NULL || scene == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_from_json: null context, text or scene");
   *scene = NULL;
@@ -275,6 +278,7 @@ hl_status hl_scene_from_json_like(hl_context *context, const char *text, size_t 
 }
 
 hl_status hl_scene_load(hl_context *context, const char *path, hl_scene **scene, hl_error *error) {
+  HL_DOOR;
   if (context == NULL || path == NULL || scene == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_load: null context, path or scene");
   *scene = NULL;

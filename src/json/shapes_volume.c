@@ -2,9 +2,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/door.h"
 #include "core/memory.h"
 #include "json/shapes.h"
 #include "shape/shape.h"
+#include "text/plain_json.h"
 
 enum { LEAST_SIZE = 16, MOST_SIZE = 4096 };
 
@@ -33,6 +35,7 @@ static hl_status require_shapes(hl_json_reader *reader, const json_t *root) {
 
 hl_status hl_volume_from_shapes(hl_context *context, const char *text, size_t length, const char *name,
                                 const hl_shapes_options *options, hl_volume **volume, hl_error *error) {
+  HL_DOOR;
   static const char *const keys[] = {"shapes", "voxel_size", "groups", NULL};
   if (context == NULL || text == NULL || volume == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_from_shapes: null context, text or volume");
@@ -89,7 +92,7 @@ json_t *hl_json_expand_shapes(const json_t *shapes, const json_t *groups) {
 /* True if the text holds all of the tree: without memory, jansson leaves keys out and still reports success.
  */
 static bool says(const char *text, const json_t *root) {
-  json_t *again = text != NULL ? json_loads(text, 0, NULL) : NULL;
+  json_t *again = text != NULL ? hl_plain_json_load_text(text) : NULL;
   bool same = json_equal(root, again);
   json_decref(again);
   return same;
@@ -99,7 +102,7 @@ char *hl_json_shapes_text(hl_context *context, const json_t *shapes, const json_
                           double voxel_size) {
   json_t *root = json_pack("{s:o, s:f}", "shapes", hl_json_expand_shapes(shapes, groups), "voxel_size",
                            voxel_size);
-  char *dumped = root != NULL ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
+  char *dumped = root != NULL ? hl_plain_json_dump(root, JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
   char *text = says(dumped, root) ? hl_copy_text(context, dumped) : NULL;
   json_decref(root);
   free(dumped);

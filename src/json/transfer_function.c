@@ -6,6 +6,7 @@
  */
 #include <string.h>
 
+#include "core/door.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "json/paraview_state.h"
@@ -336,6 +337,7 @@ static hl_status load(hl_json_reader *reader, const char *path, const hl_volume 
 
 hl_status hl_transfer_function_load_for(hl_context *context, const char *path, const hl_volume *volume,
                                         hl_transfer_function *function, hl_error *error) {
+  HL_DOOR;
   if (context == NULL || path == NULL || function == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_load_for: null context, path or function");
   hl_json_reader reader = {.context = context, .name = path, .error = error};
@@ -348,5 +350,6 @@ hl_status hl_transfer_function_load_for(hl_context *context, const char *path, c
 
 hl_status hl_transfer_function_load(hl_context *context, const char *path, hl_transfer_function *function,
                                     hl_error *error) {
+  HL_DOOR;
   return hl_transfer_function_load_for(context, path, NULL, function, error);
 }

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "mesh/mesh.h"
+#include "text/plain_json.h"
 
 static bool is_utf8(const char *text) {
   if (text == NULL) return true;
@@ -17,7 +18,7 @@ static bool is_utf8(const char *text) {
 }
 
 static bool is_text_of_shapes(const char *text) {
-  json_t *root = json_loads(text, 0, NULL);
+  json_t *root = hl_plain_json_load_text(text);
   bool good = json_is_array(json_object_get(root, "shapes"));
   json_decref(root);
   return good;

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/door.h"
 #include "core/memory.h"
 #include "json/read.h"
 #include "json/shapes.h"
@@ -18,6 +19,8 @@
 #include "scene/scene.h"
 #include "scene/settings.h"
 #include "text/json_value.h"
+#include "text/plain.h"
+#include "text/plain_json.h"
 
 /* A growing text. After a failed allocation nothing more is written, and the end reports it. */
 typedef struct writer {
@@ -334,7 +337,7 @@ static void write_json(writer *w, const char *key, const json_t *value) {
 /* Writes shapes with their groups expanded. text: {"shapes": [...], "voxel_size": h, "groups": ...}, checked
  * by is_text_of_shapes(). */
 static void write_shapes(writer *w, const char *text) {
-  json_t *root = json_loads(text, 0, NULL);
+  json_t *root = hl_plain_json_load_text(text);
   json_t *shapes = hl_json_expand_shapes(json_object_get(root, "shapes"), json_object_get(root, "groups"));
   if (shapes == NULL) w->failed = true;
   write_list(w, "shapes", shapes);
@@ -452,7 +455,7 @@ static void write_volume(writer *w, const hl_scene_volume *volume) {
 
 static void put_float(writer *w, float number) {
   char text[HL_JSON_NUMBER_BYTES];
-  snprintf(text, sizeof text, "%.9g", (double)number);
+  hl_plain_print(text, sizeof text, "%.9g", (double)number);
   put_text(w, text);
 }
 
@@ -554,6 +557,7 @@ static void write_scene(writer *w, const hl_scene_description *d) {
 }
 
 hl_status hl_scene_to_json(hl_context *context, const hl_scene *scene, char **text, hl_error *error) {
+  HL_DOOR;
   if (context == NULL || scene == NULL || text == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_to_json: null context, scene or text");
   *text = NULL;

@@ -9,6 +9,7 @@
 
 #include "core/memory.h"
 #include "core/vector.h"
+#include "text/plain_json.h"
 
 enum { DEEPEST_NODE = 100, MODE_TRIANGLES = 4, MODE_STRIP = 5, MODE_FAN = 6 };
 
@@ -263,7 +264,7 @@ static hl_status find_chunks(gltf_reader *reader, mesh_text text, mesh_text *jso
 
 static hl_status parse(gltf_reader *reader, mesh_text json) {
   json_error_t told;
-  reader->file.root = json_loadb((const char *)json.bytes, json.length, 0, &told);
+  reader->file.root = hl_plain_json_load((const char *)json.bytes, json.length, 0, &told);
   if (reader->file.root != NULL && json_is_object(reader->file.root)) return HL_OK;
   return hl_fail(reader->error, HL_ERROR_INPUT, "%s: is no JSON object: line %d: %.100s", reader->file.path,
                  told.line, told.text);

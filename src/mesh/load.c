@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include "core/context.h"
+#include "core/door.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "mesh/mesh.h"
@@ -47,6 +48,7 @@ static mesh_reader *reader_of(const char *path, mesh_text text) {
 }
 
 hl_status hl_mesh_load(hl_context *context, const char *path, hl_mesh **mesh, hl_error *error) {
+  HL_DOOR;
   if (context == NULL || path == NULL || mesh == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_mesh_load: null context, path or mesh");
   *mesh = NULL;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/door.h"
 #include "core/key.h"
 #include "core/memory.h"
 
@@ -33,6 +34,7 @@ const hl_mesh_description *hl_mesh_describe(const hl_mesh *mesh) {
 }
 
 hl_status hl_mesh_get_box(const hl_mesh *mesh, double low[3], double high[3]) {
+  HL_DOOR;
   if (mesh == NULL || low == NULL || high == NULL) return HL_ERROR_ARGUMENT;
   memcpy(low, mesh->low, sizeof mesh->low);
   memcpy(high, mesh->high, sizeof mesh->high);
@@ -231,6 +233,7 @@ static bool copy_arrays(const hl_mesh_description *d, mesh_parts *parts) {
 
 hl_status hl_mesh_create(hl_context *context, const hl_mesh_description *description, hl_mesh **mesh,
                          hl_error *error) {
+  HL_DOOR;
   if (context == NULL || description == NULL || mesh == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_mesh_create: null context, description or mesh");
   *mesh = NULL;

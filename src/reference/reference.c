@@ -7,6 +7,7 @@
 #include <halflight/render.h>
 
 #include "core/context.h"
+#include "core/door.h"
 #include "core/memory.h"
 #include "reference/reference.h"
 #include "scene/check.h"
@@ -404,6 +405,7 @@ static bool shadows_wanted(const hl_layers *layers) {
 hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
                                      const hl_reference_options *options, float *pixels, size_t row_stride,
                                      const hl_layers *layers, hl_error *error) {
+  HL_DOOR;
   if (context == NULL || scene == NULL || pixels == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_reference_render: context, scene and pixels must not be null");
@@ -429,5 +431,6 @@ hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
 
 hl_status hl_reference_render(hl_context *context, const hl_scene *scene, const hl_reference_options *options,
                               float *pixels, size_t row_stride, hl_error *error) {
+  HL_DOOR;
   return hl_reference_render_layers(context, scene, options, pixels, row_stride, NULL, error);
 }

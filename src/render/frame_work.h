@@ -7,6 +7,7 @@
 #define HL_RENDER_FRAME_WORK_H
 
 #include <halflight/render.h>
+#include <stdatomic.h>
 
 #include "render/frame.h"
 #include "render/layers.h"
@@ -20,6 +21,8 @@
 /* renderer.c creates it, changes its parts between frames, and releases it. */
 struct hl_renderer {
   hl_context *context;
+  atomic_bool busy;      /* a call uses it; another one is refused */
+  atomic_bool abandoned; /* destroyed during a frame, whose end releases it */
   hl_pool *pool;
   int part, parts;           /* of each picture */
   light_exchange exchange;   /* with the other parts; gather null: there is none */

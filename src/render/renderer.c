@@ -5,6 +5,7 @@
 #include <halflight/render.h>
 
 #include "core/context.h"
+#include "core/door.h"
 #include "core/memory.h"
 #include "isosurface/isosurface.h"
 #include "ranks/ranks.h"
@@ -30,8 +31,18 @@ hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_err
   return HL_OK;
 }
 
+/* False if a frame is under way: a callback of its own call, or another thread, wants another one. */
+static bool take(hl_renderer *renderer) { return !atomic_exchange(&renderer->busy, true); }
+
+static hl_status fail_busy(const char *caller, hl_error *error) {
+  return hl_fail(error, HL_ERROR_ARGUMENT,
+                 "%s: the renderer makes a frame: callbacks and other threads need renderers of their own",
+                 caller);
+}
+
 hl_status hl_renderer_share(hl_renderer *renderer, int part, int parts, hl_error *error) {
   if (renderer == NULL) return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_share: renderer is null");
+  if (atomic_load(&renderer->busy)) return fail_busy("hl_renderer_share", error);
   if (parts < 1 || part < 0 || part >= parts)
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "hl_renderer_share: part %d of %d: give 0 to parts - 1 of at least 1", part, parts);
@@ -94,8 +105,7 @@ static void release_buffers(hl_renderer *renderer) {
   renderer->buffer_count = 0;
 }
 
-void hl_renderer_destroy(hl_renderer *renderer) {
-  if (renderer == NULL) return;
+static void release_renderer(hl_renderer *renderer) {
   release_volumes(renderer);
   release_buffers(renderer);
   hl_scatter_release(renderer->context, &renderer->scattered);
@@ -106,6 +116,17 @@ void hl_renderer_destroy(hl_renderer *renderer) {
   hl_reserve_release(&renderer->reserve);
   hl_pool_destroy(renderer->pool);
   hl_release(renderer->context, renderer);
+}
+
+void hl_renderer_destroy(hl_renderer *renderer) {
+  if (renderer == NULL) return;
+  atomic_store(&renderer->abandoned, true);
+  if (take(renderer)) release_renderer(renderer);
+}
+
+static void give_back(hl_renderer *renderer) {
+  atomic_store(&renderer->busy, false);
+  if (atomic_load(&renderer->abandoned) && take(renderer)) release_renderer(renderer);
 }
 
 /* Starts the threads, and makes room for the scene's volumes and lights. */
@@ -362,8 +383,10 @@ static hl_status check_request(const hl_renderer *renderer, const hl_scene *scen
 hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene, float *pixels,
                                     size_t row_stride, const hl_layers *layers,
                                     hl_render_statistics *statistics, hl_error *error) {
+  HL_DOOR;
   hl_status status = check_request(renderer, scene, pixels, row_stride, layers, statistics, error);
   if (status != HL_OK) return status;
+  if (!take(renderer)) return fail_busy("hl_renderer_render", error);
   hl_render_statistics counted = {.struct_size = sizeof counted};
   frame_work work = {0};
   const frame_request request = {&scene->placed, scene->sky_mark, layers, pixels, row_stride};
@@ -371,11 +394,13 @@ hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene
   hl_frame_work_release(renderer, &work);
   hl_reserve_end_frame(&renderer->reserve);
   if (status == HL_OK && statistics != NULL) *statistics = counted;
+  give_back(renderer);
   return status;
 }
 
 hl_status hl_renderer_render(hl_renderer *renderer, const hl_scene *scene, float *pixels, size_t row_stride,
                              hl_render_statistics *statistics, hl_error *error) {
+  HL_DOOR;
   return hl_renderer_render_layers(renderer, scene, pixels, row_stride, NULL, statistics, error);
 }
 

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "core/door.h"
 #include "volume/volume.h"
 
 #define STEEP       89.5 /* degrees: steeper views lie too near the view's up for a camera's up */
@@ -27,6 +28,7 @@ bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forwa
 }
 
 void hl_light_direction_beside(double azimuth_deg, double elevation_deg, double direction[3]) {
+  HL_DOOR;
   if (direction == NULL) return;
   double azimuth = azimuth_deg * HL_PI / 180, elevation = elevation_deg * HL_PI / 180;
   direction[0] = -cos(elevation) * sin(azimuth);
@@ -36,6 +38,7 @@ void hl_light_direction_beside(double azimuth_deg, double elevation_deg, double 
 
 void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
                         double direction[3]) {
+  HL_DOOR;
   if (direction == NULL) return;
   for (int a = 0; a < 3; a++) direction[a] = 0;
   if (camera == NULL) return;
@@ -126,6 +129,7 @@ bool hl_view_is_possible(const hl_view *view) {
 }
 
 hl_status hl_camera_turn(const hl_view *view, hl_camera *camera) {
+  HL_DOOR;
   if (view == NULL || camera == NULL || !hl_view_is_possible(view)) return HL_ERROR_ARGUMENT;
   double distance = distance_of(camera);
   if (!(distance > 0 && isfinite(distance))) return HL_ERROR_ARGUMENT;
@@ -150,6 +154,7 @@ static vec3 upright_of(const hl_camera *camera) {
 static double rounded(double degrees) { return round(degrees * ANGLE_STEPS) / ANGLE_STEPS; }
 
 hl_status hl_view_of_camera(const hl_scene_description *description, hl_view *view) {
+  HL_DOOR;
   if (description == NULL || view == NULL) return HL_ERROR_ARGUMENT;
   const hl_camera *camera = &description->camera;
   double distance = distance_of(camera);

@@ -5,6 +5,7 @@
 
 #include <halflight/scene.h>
 
+#include "core/door.h"
 #include "core/memory.h"
 #include "scene/label_table.h"
 #include "scene/scene.h"
@@ -119,6 +120,7 @@ hl_status hl_labels_copy(hl_context *context, const hl_label *labels, size_t cou
 
 hl_status hl_labels_of_volume(hl_context *context, const hl_volume *map, const char *table, hl_label **labels,
                               size_t *count, hl_error *error) {
+  HL_DOOR;
   if (context == NULL || map == NULL || labels == NULL || count == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_labels_of_volume: null context, volume, labels or count");
   hl_label_list rows = {0};

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "core/door.h"
 #include "core/memory.h"
 #include "mesh/mesh.h"
 #include "scene/camera.h"
@@ -38,6 +39,7 @@ affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume) {
 }
 
 void hl_scene_volume_place_point(const hl_scene_volume *volume, double point[3]) {
+  HL_DOOR;
   if (volume == NULL || point == NULL) return;
   vec3 placed = affine3_apply(world_of_file(volume), vec3_of(point));
   memcpy(point, (const double[3]){placed.x, placed.y, placed.z}, sizeof(double[3]));

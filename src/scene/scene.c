@@ -6,6 +6,7 @@
 
 #include <string.h>
 
+#include "core/door.h"
 #include "core/key.h"
 #include "core/memory.h"
 #include "scene/check.h"
@@ -336,6 +337,7 @@ static void mend_up(hl_camera *camera) {
 
 hl_status hl_scene_create(hl_context *context, const hl_scene_description *description, hl_scene **scene,
                           hl_error *error) {
+  HL_DOOR;
   if (context == NULL || description == NULL || scene == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_create: null context, description or scene");
   *scene = NULL;

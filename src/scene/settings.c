@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/vector.h"
+#include "text/plain.h"
 
 _Static_assert(sizeof(hl_shadows) == sizeof(int), "fields of enumerators are read as int");
 
@@ -74,8 +75,8 @@ const char *hl_setting_choice_name(const hl_setting *setting, int value) {
 static int write_limit(char *text, size_t size, double limit) {
   const double exponent = round(log10(fabs(limit)));
   if (fabs(limit) >= 1e5 && fabs(limit) == pow(10, exponent))
-    return snprintf(text, size, "%s1e%.0f", limit < 0 ? "-" : "", exponent);
-  return snprintf(text, size, "%.9g", limit);
+    return hl_plain_print(text, size, "%s1e%.0f", limit < 0 ? "-" : "", exponent);
+  return hl_plain_print(text, size, "%.9g", limit);
 }
 
 void hl_setting_mend(const hl_setting *setting, char *text, size_t size) {

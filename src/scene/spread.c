@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/door.h"
 #include "core/memory.h"
 #include "scene/transfer_function.h"
 
@@ -15,6 +16,7 @@ enum { PIECES = 64 };
 
 hl_status hl_transfer_function_visible_range(const hl_volume *volume, const hl_transfer_function *function,
                                              double range[2], hl_error *error) {
+  HL_DOOR;
   hl_volume_info info = {.struct_size = sizeof info};
   if (function == NULL || range == NULL || hl_volume_get_info(volume, &info) != HL_OK)
     return hl_fail(error, HL_ERROR_ARGUMENT,
@@ -124,6 +126,7 @@ _Static_assert(sizeof(hl_color_point) == 4 * sizeof(double), "colour points are 
 hl_status hl_transfer_function_spread(hl_context *context, const hl_transfer_function *from,
                                       const double old[2], const double range[2], hl_range_scale scale,
                                       hl_transfer_function *to, hl_error *error) {
+  HL_DOOR;
   if (context == NULL || from == NULL || old == NULL || range == NULL || to == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_spread: null argument");
   if (!(old[0] < old[1] && isfinite(old[1] - old[0])))
@@ -146,6 +149,7 @@ hl_status hl_transfer_function_spread(hl_context *context, const hl_transfer_fun
 hl_status hl_transfer_function_colormap_scaled(hl_context *context, const char *name, const double range[2],
                                                hl_range_scale scale, hl_transfer_function *function,
                                                hl_error *error) {
+  HL_DOOR;
   hl_transfer_function even = {0}, scaled = {0};
   if (range == NULL || function == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_colormap_scaled: null range or function");

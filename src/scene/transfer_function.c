@@ -6,6 +6,7 @@
 #include "scene/transfer_function.h"
 #include <math.h>
 #include <string.h>
+#include "core/door.h"
 #include "core/memory.h"
 #include "scene/function_plane.h"
 #include "text/edit_distance.h"
@@ -115,6 +116,7 @@ static hl_status fail_unknown(const char *name, hl_error *error) {
 
 hl_status hl_transfer_function_colormap(hl_context *context, const char *name, double low, double high,
                                         hl_transfer_function *function, hl_error *error) {
+  HL_DOOR;
   double ignored[3];
   if (context == NULL || name == NULL || function == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_colormap: null context, name or function");

@@ -333,6 +333,8 @@ static void add_primitives(const fragment_work *work, fragment_worker *worker, t
 static size_t order_fragments(const fragment_work *work, fragment_worker *worker, const fragment_order *order,
                               const tile_part *part, fragment **sorted) {
   const fragments_source *source = work->source;
+  *sorted = NULL;
+  if (worker->count == 0) return 0;
   fragment *list = worker->scratch, *other = list + worker->room;
   size_t kept = hl_sort_by_pixel(list, worker->count, order, worker->keys, other);
   const crossing_tile crossing = {source->surfaces,    source->view,       work->seen, source->sheets, order,

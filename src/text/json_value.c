@@ -1,7 +1,7 @@
 /* text/json_value.c - numbers and texts as JSON (RFC 8259) writes them. */
 #include "text/json_value.h"
+#include "text/plain.h"
 
-#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,14 +9,8 @@
 
 void hl_json_number_text(double number, char text[HL_JSON_NUMBER_BYTES]) {
   for (int digits = 15; digits <= 17; digits++) {
-    snprintf(text, HL_JSON_NUMBER_BYTES, "%.*g", digits, number);
-    if (strtod(text, NULL) == number) break;
-  }
-  const char *point = localeconv()->decimal_point;
-  char *found = strcmp(point, ".") != 0 ? strstr(text, point) : NULL;
-  if (found != NULL) {
-    *found = '.';
-    memmove(found + 1, found + strlen(point), strlen(found + strlen(point)) + 1);
+    hl_plain_print(text, HL_JSON_NUMBER_BYTES, "%.*g", digits, number);
+    if (hl_plain_number(text, NULL) == number) break;
   }
   if (signbit(number) && number == 0) strcpy(text, "-0.0");
 }

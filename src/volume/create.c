@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/door.h"
 #include "core/memory.h"
 #include "volume/convert.h"
 #include "volume/glimpse.h"
@@ -236,6 +237,7 @@ static bool can_borrow(const hl_volume_description *description, const ptrdiff_t
 
 hl_status hl_volume_create(hl_context *context, const hl_volume_description *description, hl_volume **volume,
                            hl_error *error) {
+  HL_DOOR;
   static const char subject[] = "hl_volume_create";
   if (volume != NULL) *volume = NULL;
   if (context == NULL || description == NULL || volume == NULL)
@@ -309,6 +311,7 @@ void hl_volume_release(hl_volume *volume) {
 }
 
 hl_status hl_volume_get_info(const hl_volume *volume, hl_volume_info *info) {
+  HL_DOOR;
   if (volume == NULL || info == NULL || info->struct_size != sizeof *info) return HL_ERROR_ARGUMENT;
   memcpy(info->dimensions, volume->dimension, sizeof info->dimensions);
   info->type = volume->type;
@@ -378,6 +381,7 @@ hl_status hl_volume_get_selection(const hl_volume *volume, hl_volume_selection *
 }
 
 double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k) {
+  HL_DOOR;
   if (volume == NULL || i >= volume->dimension[0] || j >= volume->dimension[1] || k >= volume->dimension[2])
     return NAN;
   const hl_pages *pages = volume->pages;

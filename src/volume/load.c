@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include "core/context.h"
+#include "core/door.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "volume/bundle_zip.h"
@@ -313,6 +314,7 @@ static hl_status finish(hl_load_request *request, const char *path, hl_status st
 
 hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_volume_load_options *options,
                               hl_volume **volume, hl_error *error) {
+  HL_DOOR;
   if (volume != NULL) *volume = NULL;
   if (context == NULL || path == NULL || volume == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_load: context, path and volume must not be null");
@@ -348,5 +350,6 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
 }
 
 hl_status hl_volume_load(hl_context *context, const char *path, hl_volume **volume, hl_error *error) {
+  HL_DOOR;
   return hl_volume_load_with(context, path, NULL, volume, error);
 }

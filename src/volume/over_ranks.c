@@ -2,6 +2,7 @@
  *
  * In: this rank's block, the caller's (here) or of slices that were read (destination.c). Out: a volume with
  * pages (pages.h) that are fetched from the ranks. */
+#include "core/door.h"
 #include "core/memory.h"
 #include "volume/own_voxels.h"
 #include "volume/pages.h"
@@ -41,6 +42,7 @@ hl_status hl_volume_over_ranks(hl_ranks *ranks, const hl_volume_description *who
 
 hl_status hl_volume_create_over_ranks(hl_ranks *ranks, const hl_volume_description *whole,
                                       const hl_block *block, hl_volume **volume, hl_error *error) {
+  HL_DOOR;
   hl_own_voxels *own = NULL;
   if (volume != NULL) *volume = NULL;
   hl_status status = check(ranks, whole, block, volume, error);

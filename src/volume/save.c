@@ -10,6 +10,7 @@
 #include <zlib.h>
 
 #include "core/context.h"
+#include "core/door.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "volume/convert.h"
@@ -358,6 +359,7 @@ void hl_volume_save_options_defaults(hl_volume_save_options *options) {
 
 hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume, const char *path,
                               const hl_volume_save_options *options, hl_error *error) {
+  HL_DOOR;
   if (context == NULL || volume == NULL || path == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_save: null context, volume or path");
   hl_volume_save_options chosen;
@@ -389,5 +391,6 @@ hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume, cons
 }
 
 hl_status hl_volume_save(hl_context *context, const hl_volume *volume, const char *path, hl_error *error) {
+  HL_DOOR;
   return hl_volume_save_with(context, volume, path, NULL, error);
 }

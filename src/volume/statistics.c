@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "core/context.h"
+#include "core/door.h"
 #include "core/memory.h"
 #include "volume/counts.h"
 #include "volume/pages.h"
@@ -38,8 +39,9 @@ static binning make_binning(tally total, double value_scale) {
 }
 
 static int bin_of(binning bins, double stored) {
-  int bin = (int)((stored - bins.anchor) * bins.factor);
-  return bin < HL_HISTOGRAM_BINS - 1 ? bin : HL_HISTOGRAM_BINS - 1;
+  /* out of the range where voxels have changed since it was found */
+  double place = (stored - bins.anchor) * bins.factor;
+  return !(place > 0) ? 0 : place < HL_HISTOGRAM_BINS - 1 ? (int)place : HL_HISTOGRAM_BINS - 1;
 }
 
 /* Over ranks each counts the voxels of its own block, and then all counts are added up. */
@@ -349,6 +351,7 @@ static bool count_upper(ranking *r) {
 
 hl_status hl_volume_percentiles(const hl_volume *volume, const double *percents, size_t count, double *values,
                                 hl_error *error) {
+  HL_DOOR;
   if (volume == NULL || percents == NULL || values == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_percentiles: null volume, percents or values");
   for (size_t n = 0; n < count; n++)

@@ -2,14 +2,14 @@
  *
  * The C library's conversions follow the program's locale, in which "1.5" may not be a number; these
  * functions do not. */
-#define _GNU_SOURCE
 #include "volume/text.h"
 
-#include <locale.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "text/plain.h"
 
 static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -96,10 +96,7 @@ static double convert_slowly(const char *text, size_t length) {
   char copy[HL_NUMBER_CHARACTERS];
   memcpy(copy, text, length);
   copy[length] = 0;
-  locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-  double value = plain == (locale_t)0 ? NAN : strtod_l(copy, NULL, plain);
-  if (plain != (locale_t)0) freelocale(plain);
-  return value;
+  return hl_plain_number(copy, NULL);
 }
 
 bool hl_text_number(const char *text, size_t length, double *value) {

@@ -13,6 +13,7 @@
 #include "core/context.h"
 #include "core/file.h"
 #include "core/memory.h"
+#include "text/plain.h"
 #include "volume/colors.h"
 #include "volume/convert.h"
 
@@ -60,7 +61,7 @@ static int on_error(TIFF *tiff, void *data, const char *module, const char *form
   (void)tiff, (void)module;
   tiff_file *file = data;
   if (file->message[0] == 0) {
-    vsnprintf(file->message, sizeof file->message, format, arguments);
+    hl_plain_vprint(file->message, sizeof file->message, format, arguments);
     hl_make_printable(file->message);
   }
   return 1;
@@ -71,7 +72,7 @@ static int on_warning(TIFF *tiff, void *data, const char *module, const char *fo
   (void)tiff, (void)module;
   tiff_file *file = data;
   char text[300];
-  vsnprintf(text, sizeof text, format, arguments);
+  hl_plain_vprint(text, sizeof text, format, arguments);
   hl_make_printable(text);
   if (strncmp(text, "Unknown field", 13) != 0 && file->warnings++ < WARNINGS_TOLD)
     hl_log(file->context, HL_LOG_WARNING, "%.300s: %s", file->path, text);

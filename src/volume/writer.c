@@ -10,9 +10,9 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 #include "core/error.h"
+#include "text/plain.h"
 #include "volume/convert.h"
 #include "volume/text.h"
 
@@ -32,8 +32,8 @@ static bool is_little(void) {
 __attribute__((format(printf, 2, 3))) static void add(hl_written_header *header, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  int length = vsnprintf((char *)header->bytes + header->length, sizeof header->bytes - header->length,
-                         format, arguments);
+  int length = hl_plain_vprint((char *)header->bytes + header->length, sizeof header->bytes - header->length,
+                               format, arguments);
   va_end(arguments);
   header->length += (size_t)length;
 }
@@ -320,7 +320,7 @@ const hl_writer *hl_writer_for(const char *path) {
   size_t length = strlen(path);
   for (size_t n = 0; n < sizeof writers / sizeof *writers; n++) {
     size_t tail = strlen(writers[n].ending);
-    if (length > tail && strcasecmp(path + length - tail, writers[n].ending) == 0) return &writers[n];
+    if (length > tail && hl_plain_equal(path + length - tail, writers[n].ending)) return &writers[n];
   }
   return NULL;
 }

@@ -9,6 +9,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "core/vector.h"
+#include "text/plain.h"
 #include "volume/text.h"
 
 /* Makes room for one more item of a list. */
@@ -47,7 +48,7 @@ static hl_status find_series(hl_dicom_set *set, const hl_dicom_header *header, u
 
 const char *hl_dicom_series_text(const hl_dicom_series *series, char *text, size_t size) {
   char number[32] = "no number", description[HL_PRINTABLE_BYTES], modality[HL_PRINTABLE_BYTES];
-  if (!isnan(series->number)) snprintf(number, sizeof number, "%.0f", series->number);
+  if (!isnan(series->number)) hl_plain_print(number, sizeof number, "%.0f", series->number);
   snprintf(text, size, "%s: %s \"%s\", %zu x %zu x %zu", number,
            hl_text_printable(modality, series->modality), hl_text_printable(description, series->description),
            series->columns, series->rows, series->frames);

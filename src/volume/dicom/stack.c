@@ -12,6 +12,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "text/plain.h"
 
 /* A frame, and where it lies along the normal. */
 typedef struct placed_frame {
@@ -301,9 +302,10 @@ static hl_status space_evenly(sorting *s, hl_dicom_stack *stack, hl_error *error
       count = (size_t)fmin(span / step + 1.5, (double)(TIMES_MORE * s->place_count));
       if (count < 2) count = 2;
       char text[200];
-      snprintf(text, sizeof text,
-               "the slices are not evenly spaced: %zu slices, %.4g mm apart, are interpolated from the %zu",
-               count, span / (double)(count - 1), s->place_count);
+      hl_plain_print(
+          text, sizeof text,
+          "the slices are not evenly spaced: %zu slices, %.4g mm apart, are interpolated from the %zu", count,
+          span / (double)(count - 1), s->place_count);
       warn(s, text);
     } else if (count > s->place_count) {
       char text[200];

@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "text/plain.h"
+#include "text/plain_json.h"
 #include "volume/text.h"
 
 hl_status hl_zarr_fail(const hl_bundle *bundle, const char *folder, hl_error *error, hl_status code,
@@ -13,7 +15,7 @@ hl_status hl_zarr_fail(const hl_bundle *bundle, const char *folder, hl_error *er
   char text[500], shown[HL_PRINTABLE_BYTES];
   va_list arguments;
   va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
+  hl_plain_vprint(text, sizeof text, format, arguments);
   va_end(arguments);
   hl_text_printable(shown, folder);
   return hl_fail(error, code, "%s%s%s: %s", bundle->path, shown[0] != 0 ? ", " : "", shown, text);
@@ -72,7 +74,7 @@ hl_status hl_zarr_metadata_read(const hl_bundle *bundle, const char *folder, con
   *object = NULL;
   hl_status status = read_text(bundle, folder, name, &text, &length, error);
   if (status == HL_OK && text != NULL) {
-    *object = json_loadb(text, length, 0, &fault);
+    *object = hl_plain_json_load(text, length, 0, &fault);
     if (*object == NULL && fault.line < 1) /* jansson had no memory for its first buffer */
       status = hl_fail_memory(error, length, folder);
     else if (*object == NULL)

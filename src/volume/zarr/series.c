@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "text/plain.h"
 #include "volume/text.h"
 
 enum { SERIES_MOST = 256 };
@@ -69,7 +70,7 @@ static hl_status list_paths(const hl_bundle *bundle, const char *base, const jso
 
 static bool is_named(const hl_series_entry *entry, const char *wanted) {
   char number[32];
-  snprintf(number, sizeof number, "%.0f", entry->number);
+  hl_plain_print(number, sizeof number, "%.0f", entry->number);
   return strcmp(wanted, number) == 0 || strcmp(wanted, entry->uid) == 0 ||
          strcmp(wanted, entry->description) == 0;
 }

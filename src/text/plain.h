@@ -1,0 +1,25 @@
+/* text/plain.h - numbers and names as they are in the locale "C", whatever locale the host has set: there
+ * "1.5" is a number, and 'I' and 'i' are the same letter. */
+#ifndef HL_TEXT_PLAIN_H
+#define HL_TEXT_PLAIN_H
+
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+/* strtod(), vsnprintf() and snprintf(). */
+double hl_plain_number(const char *text, char **end);
+int hl_plain_vprint(char *text, size_t size, const char *format, va_list arguments);
+__attribute__((format(printf, 3, 4))) int hl_plain_print(char *text, size_t size, const char *format, ...);
+
+/* Whether texts are equal but for the case of the letters A to Z. */
+bool hl_plain_equal(const char *a, const char *b);
+
+/* For other libraries' functions: the calling thread is in the locale "C" from one call to the other. */
+typedef struct hl_plain_section {
+  void *before;
+} hl_plain_section;
+hl_plain_section hl_plain_begin(void);
+void hl_plain_end(hl_plain_section section);
+
+#endif
