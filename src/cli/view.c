@@ -13,7 +13,9 @@
 #include "output.h"
 #include "render.h"
 #ifdef HL_HAS_VIEWER
-#include "server/server.h"
+#include <dlfcn.h>
+
+#include "server/module.h"
 #endif
 
 enum { VIEW_PORT, VIEW_NO_BROWSER, VIEW_OPTION_COUNT };
@@ -201,7 +203,17 @@ static void make_title(char **inputs, char *title, size_t size) {
   else snprintf(title, size, "%s and %zu more", name, count - 1);
 }
 
+/* Loads the module, which stays loaded; null after a message. */
+static const server_module *load_module(void) {
+  void *module = dlopen(SERVER_MODULE_FILE, RTLD_NOW);
+  const server_module *found = module != NULL ? dlsym(module, SERVER_MODULE_NAME) : NULL;
+  if (found == NULL) (void)fail(EXIT_CODE_UNSUPPORTED, "the viewer cannot be loaded: %s", dlerror());
+  return found;
+}
+
 static int run_view(const cli_value *values, char **inputs) {
+  const server_module *module = load_module();
+  if (module == NULL) return EXIT_CODE_UNSUPPORTED;
   view_job job = {.values = values, .render = values + VIEW_OPTION_COUNT};
   const cli_value *render = job.render;
   char title[300], problem[300], folder[PATH_MAX];
@@ -211,8 +223,8 @@ static int run_view(const cli_value *values, char **inputs) {
                               .memory_limit = render[RENDER_MAX_MEMORY].bytes,
                               .data_folder = render[RENDER_DATA].text,
                               .instruction_set = (hl_instruction_set)render[RENDER_INSTRUCTION_SET].choice,
-                              .cancelled = server_is_outdated,
-                              .progressed = server_progress};
+                              .cancelled = module->is_outdated,
+                              .progressed = module->progress};
   int exit_code = render_check_options(render);
   if (exit_code == EXIT_CODE_OK) exit_code = host_open(&options, &job.host);
   if (exit_code == EXIT_CODE_OK) exit_code = load(&job, inputs);
@@ -230,7 +242,7 @@ static int run_view(const cli_value *values, char **inputs) {
                              .stopped = host_interrupted,
                              .user_data = &job,
                              .ready = on_ready};
-    if (!server_run(&server, problem, sizeof problem)) exit_code = fail(EXIT_CODE_FAILURE, "%s", problem);
+    if (!module->run(&server, problem, sizeof problem)) exit_code = fail(EXIT_CODE_FAILURE, "%s", problem);
   }
   hl_scene_release(job.scene);
   host_close(&job.host);

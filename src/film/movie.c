@@ -17,7 +17,8 @@ enum { MOST_WORDS = 48, MOST_CODEC_WORDS = 12 };
 
 struct movie {
   char *path, *unfinished; /* owned */
-  int pipe;                /* into ffmpeg; -1: closed */
+  char *target; /* owned; the unfinished file as ffmpeg names files: other names may be protocols */
+  int pipe;     /* into ffmpeg; -1: closed */
   process ffmpeg;
 };
 
@@ -85,7 +86,7 @@ static hl_status start(movie *m, double frames_per_second, hl_error *error) {
   char rate[40];
   int ends[2];
   snprintf(rate, sizeof rate, "%d/1000", (int)(1000 * frames_per_second + 0.5));
-  command_line(kind_of(m->path), rate, m->unfinished, words);
+  command_line(kind_of(m->path), rate, m->target, words);
   if (pipe2(ends, O_CLOEXEC) != 0) return fail_io(error, m->path, strerror(errno));
   m->pipe = ends[1];
   int problem = process_start(&m->ffmpeg, words, ends[0]);
@@ -106,8 +107,10 @@ hl_status movie_begin(const char *path, double frames_per_second, movie **result
   m->pipe = -1;
   m->path = strdup(path);
   hl_status status = HL_OK;
-  if (m->path == NULL || asprintf(&m->unfinished, "%s.%d.unfinished", path, (int)getpid()) < 0) {
+  if (m->path == NULL || asprintf(&m->unfinished, "%s.%d.unfinished", path, (int)getpid()) < 0)
     m->unfinished = NULL;
+  if (m->unfinished == NULL || asprintf(&m->target, "file:%s", m->unfinished) < 0) {
+    m->target = NULL;
     snprintf(error->message, sizeof error->message, "out of memory");
     status = HL_ERROR_MEMORY;
   }
@@ -140,6 +143,7 @@ static void release(movie *m) {
   process_end(&m->ffmpeg);
   free(m->path);
   free(m->unfinished);
+  free(m->target);
   free(m);
 }
 

@@ -330,11 +330,12 @@ static bool count_neighbours(const hl_volume *volume, double least, tally *talli
   for (size_t k = step / 2; k < n[2]; k += step)
     for (size_t j = step / 2; j < n[1]; j += step)
       for (size_t i = step / 2; i < n[0]; i += step) {
-        double value = hl_volume_value(volume, i, j, k);
+        double value = hl_volume_value_within(volume, i, j, k);
         if (!isfinite(value)) continue;
         if (value != floor(value)) return false;
-        const double next[3] = {hl_volume_value(volume, i + 1, j, k), hl_volume_value(volume, i, j + 1, k),
-                                hl_volume_value(volume, i, j, k + 1)}; /* NaN outside */
+        const double next[3] = {hl_volume_value_within(volume, i + 1, j, k),
+                                hl_volume_value_within(volume, i, j + 1, k),
+                                hl_volume_value_within(volume, i, j, k + 1)}; /* NaN outside */
         tally *own = &tallies[(size_t)(value - least)];
         for (int a = 0; a < 3; a++) {
           own->seen += isfinite(next[a]);

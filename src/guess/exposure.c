@@ -56,7 +56,7 @@ static double smooth_value(const hl_volume *volume, const long at[3], double gra
       long p = at[a] + tap[a] - 1, last = (long)volume->dimension[a] - 1;
       place[a] = (size_t)(p < 0 ? 0 : p > last ? last : p);
     }
-    double v = hl_volume_value(volume, place[0], place[1], place[2]);
+    double v = hl_volume_value_within(volume, place[0], place[1], place[2]);
     const double wx = weight[tap[0]], wy = weight[tap[1]], wz = weight[tap[2]];
     value += v * wx * wy * wz;
     gradient[0] += v * slope[tap[0]] * wy * wz;
@@ -183,7 +183,7 @@ static double passing(const exposure *e, vec3 point, vec3 towards) {
     if (left < FAINT) return 0;
     if (x < 0 || y < 0 || z < 0 || x >= (long)size[0] || y >= (long)size[1] || z >= (long)size[2])
       return left;
-    double value = hl_volume_value(e->volume->volume, (size_t)x, (size_t)y, (size_t)z);
+    double value = hl_volume_value_within(e->volume->volume, (size_t)x, (size_t)y, (size_t)z);
     double clear = isfinite(value) ? 1 - e->opacity[entry_of(e, value)] : 1;
     if (clear < 1 && hl_scene_volume_left(e->volume, at)) left *= pow(clear, STEPS);
   }
@@ -237,8 +237,8 @@ static pixel look_along(const exposure *e, vec3 origin, vec3 direction) {
   for (double t = part[0] + 0.5 * e->step; t < part[1] && alpha < OPAQUE; t += e->step) {
     vec3 place = vec3_add(from, vec3_scale(along, t));
     const long at[3] = {lround(place.x), lround(place.y), lround(place.z)};
-    double near = hl_volume_value(volume, (size_t)at[0], (size_t)at[1], (size_t)at[2]), slope[3], own[3],
-           sent[3];
+    double near = hl_volume_value_within(volume, (size_t)at[0], (size_t)at[1], (size_t)at[2]), slope[3],
+           own[3], sent[3];
     if (!hl_scene_volume_left(e->volume, place)) continue;
     pass_face(e, &face, t, vec3_subtract(place, vec3_scale(along, e->step)), place);
     if (!isfinite(near) || !(e->opacity[entry_of(e, near)] > 0)) continue;

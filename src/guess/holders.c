@@ -116,8 +116,8 @@ static hl_status look_at_matter(const search *s, uint32_t body, const double *li
   for (size_t c = 0; c < cells && count < VOXELS; c++) {
     if (s->bodies.body[c] != body || met++ % each != 0) continue;
     size_t step = seen->step, half = step / 2;
-    double value = hl_volume_value(seen->volume, c % nx * step + half, c / nx % ny * step + half,
-                                   c / nx / ny * step + half);
+    double value = hl_volume_value_within(seen->volume, c % nx * step + half, c / nx % ny * step + half,
+                                          c / nx / ny * step + half);
     if (!isfinite(value)) continue;
     double distance = s->analysis->direction * (value - s->analysis->background);
     distances[count++] = (float)distance;

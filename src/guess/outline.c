@@ -336,8 +336,8 @@ static double least_opacity_around(const hl_volume *volume, const hl_transfer_fu
     size_t next[3] = {at[0], at[1], at[2]};
     /* a negative index becomes a large one: outside of the grid, like one beyond its end */
     next[n / 2] += n % 2 == 0 ? 1 : (size_t)-1;
-    least = fmin(least,
-                 hl_transfer_function_opacity(function, hl_volume_value(volume, next[0], next[1], next[2])));
+    least = fmin(least, hl_transfer_function_opacity(
+                            function, hl_volume_value_within(volume, next[0], next[1], next[2])));
   }
   return least;
 }
@@ -351,7 +351,7 @@ static double count_seen(const hl_volume *volume, const hl_transfer_function *fu
   for (at[2] = 0; at[2] < n[2]; at[2] += step)
     for (at[1] = 0; at[1] < n[1]; at[1] += step)
       for (at[0] = 0; at[0] < n[0]; at[0] += step) {
-        double value = hl_volume_value(volume, at[0], at[1], at[2]),
+        double value = hl_volume_value_within(volume, at[0], at[1], at[2]),
                opacity = hl_transfer_function_opacity(function, value);
         if (!(opacity > 0) || !(value >= low && value <= high)) continue;
         double light = 1 - least_opacity_around(volume, function, at), seen = opacity * light * light;

@@ -42,7 +42,7 @@ static size_t collect(const hl_sample *sample, const hl_volume *volume, const si
   for (size_t k = start[2]; k < high[2]; k += step)
     for (size_t j = start[1]; j < high[1]; j += step)
       for (size_t i = start[0]; i < high[0]; i += step) {
-        double value = hl_volume_value(volume, i, j, k);
+        double value = hl_volume_value_within(volume, i, j, k);
         if (isfinite(value)) values[count++] = (float)((value - sample->low) / sample->range);
       }
   return count;
@@ -158,11 +158,11 @@ double hl_roughness(const hl_volume *volume, const hl_sample *sample, double bac
   for (size_t k = 1; k + 1 < n[2]; k += sample->step)
     for (size_t j = 1; j + 1 < n[1]; j += sample->step)
       for (size_t i = 1; i + 1 < n[0]; i += sample->step) {
-        double centre = hl_volume_value(volume, i, j, k);
+        double centre = hl_volume_value_within(volume, i, j, k);
         if (!(fabs(centre - middle) > far)) continue;
         for (int a = 0; a < 3; a++) {
-          double before = hl_volume_value(volume, i - (a == 0), j - (a == 1), k - (a == 2));
-          double after = hl_volume_value(volume, i + (a == 0), j + (a == 1), k + (a == 2));
+          double before = hl_volume_value_within(volume, i - (a == 0), j - (a == 1), k - (a == 2));
+          double after = hl_volume_value_within(volume, i + (a == 0), j + (a == 1), k + (a == 2));
           if (!isfinite(before) || !isfinite(after)) continue;
           second += fabs(before - 2 * centre + after);
           first += fabs(after - before);

@@ -69,8 +69,9 @@ static void fill(const hl_volume *volume, const hl_data_analysis *analysis, size
   for (int k = 0; k < s->size[2]; k++)
     for (int j = 0; j < s->size[1]; j++)
       for (int i = 0; i < s->size[0]; i++) {
-        double value = hl_volume_value(volume, place_of(volume, s, step, 0, i),
-                                       place_of(volume, s, step, 1, j), place_of(volume, s, step, 2, k));
+        double value = hl_volume_value_within(volume, place_of(volume, s, step, 0, i),
+                                              place_of(volume, s, step, 1, j),
+                                              place_of(volume, s, step, 2, k));
         *solid++ = analysis->direction * (value - analysis->background) > analysis->solid;
       }
 }

@@ -382,6 +382,10 @@ hl_status hl_volume_get_selection(const hl_volume *volume, hl_volume_selection *
 
 double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k) {
   HL_DOOR;
+  return hl_volume_value_within(volume, i, j, k);
+}
+
+double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_t k) {
   if (volume == NULL || i >= volume->dimension[0] || j >= volume->dimension[1] || k >= volume->dimension[2])
     return NAN;
   const hl_pages *pages = volume->pages;

@@ -13,7 +13,7 @@
 #include "core/memory.h"
 
 hl_status hl_scratch_fail(const char *folder, size_t bytes, int number, hl_error *error) {
-  return hl_fail(error, HL_ERROR_IO,
+  return hl_fail(error, HL_ERROR_MEMORY,
                  "%s: no scratch file of %.1f MiB for a volume larger than memory: %s: make room, name "
                  "another folder (TMPDIR), or raise the memory limit",
                  folder, (double)bytes / (1 << 20), strerror(number));

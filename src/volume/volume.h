@@ -119,6 +119,9 @@ static inline const void *hl_volume_row(const hl_volume *volume, size_t j, size_
  * needed where the volume has pages. */
 const void *hl_volume_row_in(const hl_volume *volume, size_t j, size_t k, void *buffer);
 
+/* hl_volume_value() for the library's own functions, which have come through a door (core/door.h). */
+double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_t k);
+
 /* A number of a row of stored values. */
 static inline double hl_stored_number(hl_storage storage, const void *row, size_t i) {
   if (storage == HL_STORAGE_U8) return ((const uint8_t *)row)[i];

@@ -427,10 +427,10 @@ static void test_no_room(void **state) {
   grid.type = HL_VOXEL_U8;
   for (int a = 0; a < 3; a++) grid.dimensions[a] = 10;
   assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
-  assert_int_equal(hl_pages_create(context, "/nowhere", &grid, PAGE_SHIFT, &pages, &error), HL_ERROR_IO);
+  assert_int_equal(hl_pages_create(context, "/nowhere", &grid, PAGE_SHIFT, &pages, &error), HL_ERROR_MEMORY);
   assert_starts(error.message, "/nowhere: no scratch file of 0.0 MiB for a volume larger than memory: ");
   for (int a = 0; a < 3; a++) grid.dimensions[a] = (size_t)1 << 20; /* an exbibyte */
-  assert_int_equal(hl_pages_create(context, "/tmp", &grid, PAGE_SHIFT, &pages, &error), HL_ERROR_IO);
+  assert_int_equal(hl_pages_create(context, "/tmp", &grid, PAGE_SHIFT, &pages, &error), HL_ERROR_MEMORY);
   assert_starts(error.message, "/tmp: no scratch file of ");
   assert_null(pages);
   assert_int_equal(hl_context_memory_held(context), 0);

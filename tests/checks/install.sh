@@ -32,6 +32,19 @@ print(*(option['value'] for option in json.load(open(sys.argv[1])) if option['na
 "$make_volume" ball 24 "$folder/ball_24x24x24_uint8.raw"
 "$program" info "$folder/ball_24x24x24_uint8.raw" | grep -q '24 x 24 x 24'
 
+# The viewer's module is found where it was put, too: the URL of its page is printed.
+if [ -n "$(find "$folder/root" -name halflight-viewer.so)" ]; then
+  "$program" view "$folder/ball_24x24x24_uint8.raw" --no-browser --quiet >"$folder/url" &
+  viewer=$!
+  for _ in $(seq 3000); do
+    if grep -q . "$folder/url" || ! kill -0 $viewer 2>/dev/null; then break; fi
+    sleep 0.1
+  done
+  kill -INT $viewer || true
+  wait $viewer || { echo "the installed viewer does not start"; exit 1; }
+  grep -q '^http://127.0.0.1:' "$folder/url"
+fi
+
 PKG_CONFIG_PATH=$(dirname "$pc")
 PKG_CONFIG_SYSROOT_DIR=$folder/root
 export PKG_CONFIG_PATH PKG_CONFIG_SYSROOT_DIR

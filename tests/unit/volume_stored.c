@@ -253,7 +253,7 @@ static void test_warning_of_pictures(void **state) {
     hl_destination destination;
     warned[0] = '\0';
     assert_int_equal(hl_destination_open(context, &grid, HL_DESTINATION_PIECES, "huge", &destination, NULL),
-                     HL_ERROR_IO);
+                     HL_ERROR_MEMORY);
     assert_string_equal(warned, cases[n].warning);
     hl_destination_close(&destination);
     hl_context_destroy(context);

@@ -150,7 +150,7 @@ def boxes(browser):
     changes(browser, "opacity", lambda: set_control(browser, "Fill opacity", 0.9), "volumes")
     changes(browser, "edge", lambda: set_control(browser, "Soft edge", 0.4), "volumes")
     equals_render(browser, "boxes")
-    copied_command(browser)
+    copied_command(browser, "-o.json")
     check(browser.run("![...document.querySelectorAll('summary')].some((s) => s.textContent === 'Isosurfaces' && s.checkVisibility())"),
           "surfaces are for functions of the value")
     browser.run("document.querySelector('canvas.plane').focus()")

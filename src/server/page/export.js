@@ -7,12 +7,15 @@ export const stem = (title) => title.replace(/\.(gz|json|nrrd|nhdr|nii|mha|mhd|v
 // Shell words in single quotes where they need any.
 export const quoted = (word) => (/^[\w./+:=-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 
+// A file of the title, which no program takes for an option.
+export const fileWord = (title, ending) => quoted(`${stem(title)}${ending}`.replace(/^-/, "./-"));
+
 // The scene file's text: what `halflight render` takes.
 export const sceneText = (scene) => JSON.stringify(scene, null, 2) + "\n";
 
 // A command that needs nothing beside it but the scene's volumes: the scene is its standard input.
 export const commandLine = (scene, title) =>
-  `halflight render - -o ${quoted(`${stem(title)}.png`)} <<'END'\n${sceneText(scene)}END\n`;
+  `halflight render - -o ${fileWord(title, ".png")} <<'END'\n${sceneText(scene)}END\n`;
 
 // The same as a Python program.
 export const pythonProgram = (scene, title) =>

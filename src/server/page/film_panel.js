@@ -2,7 +2,7 @@
 // what `halflight animate` makes; "Pictures" are numbered PNGs in a zip archive, which need no ffmpeg.
 
 import { button, make, row, section, select, toggle } from "./controls.js";
-import { download, quoted, sceneText, stem } from "./export.js";
+import { download, fileWord, quoted, sceneText, stem } from "./export.js";
 import { CAMERA, keyTexts, withKey } from "./timeline.js";
 import { timelineStrip } from "./timeline_strip.js";
 
@@ -19,7 +19,7 @@ export const numberAt = (scene, path) => path.split(".").reduce((at, key) => at?
 
 export const animateCommand = (scene, title, { turntable, frames, keys, fps, format }) =>
   [`halflight animate - --frames ${frames} ${turntable > 0 ? `--turntable ${turntable} ` : ""}`, ...keys.map((key) => `--key ${quoted(key)} `),
-    `--fps ${fps} -o ${quoted(format === "zip" ? stem(title) : `${stem(title)}.${format}`)} <<'END'\n${sceneText(scene)}END\n`].join("");
+    `--fps ${fps} -o ${fileWord(title, format === "zip" ? "" : `.${format}`)} <<'END'\n${sceneText(scene)}END\n`].join("");
 
 function timeLeft(seconds) {
   return seconds < 90 ? `${Math.ceil(seconds)} s` : `${Math.ceil(seconds / 60)} min`;

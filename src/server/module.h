@@ -1,0 +1,20 @@
+/* server/module.h - the viewer as a module: what `halflight view` asks of it.
+ *
+ * The server's libraries (libmicrohttpd, and with it GnuTLS) make a thousand allocations before main(). So
+ * the server is no part of the program: `halflight view` alone loads it. */
+#ifndef HL_SERVER_MODULE_H
+#define HL_SERVER_MODULE_H
+
+#include "server.h"
+
+/* File and symbol. */
+#define SERVER_MODULE_FILE "halflight-viewer.so"
+#define SERVER_MODULE_NAME "halflight_viewer"
+
+typedef struct server_module {
+  bool (*run)(const server_options *options, char *problem, size_t problem_size); /* server_run() */
+  void (*progress)(double fraction);                                              /* server_progress() */
+  bool (*is_outdated)(void);                                                      /* server_is_outdated() */
+} server_module;
+
+#endif
