@@ -19,7 +19,13 @@ enum {
   MOST_POINTS = 4,
   MOST_LIGHTS = 3,
   MOST_VOLUMES = 2,
-  TEXTURE = 3
+  TEXTURE = 3,
+  SKY_WIDTH = 4,
+  SKY_HEIGHT = 3,
+  MOST_MESHES = 2,
+  MOST_VERTICES = 6,
+  MOST_CUTS = 3,
+  MOST_LABELS = 3
 };
 
 /* Everything that a description points at. */
@@ -31,6 +37,12 @@ typedef struct scene_parts {
   hl_scene_volume volumes[MOST_VOLUMES];
   hl_opacity_point opacity[MOST_VOLUMES][MOST_POINTS];
   hl_color_point color[MOST_VOLUMES][MOST_POINTS];
+  float sky[SKY_WIDTH * SKY_HEIGHT * 3];
+  hl_scene_mesh meshes[MOST_MESHES];
+  hl_isosurface iso[2];
+  hl_cut cuts[MOST_CUTS];
+  hl_label labels[MOST_LABELS];
+  hl_volume *mask;
 } scene_parts;
 
 static void draw_vector(fuzz_source *source, double v[3]) {
@@ -220,6 +232,111 @@ static void draw_camera(fuzz_source *source, hl_scene_description *description) 
   if (hl_camera_frame(description, azimuth, elevation, 1, camera) != HL_OK) camera->height = 1;
 }
 
+static void draw_sky(fuzz_source *source, scene_parts *parts, hl_sky *sky) {
+  sky->type = (hl_sky_type)fuzz_choice(source, 4);
+  draw_color(source, sky->color);
+  draw_color(source, sky->zenith);
+  draw_color(source, sky->horizon);
+  draw_vector(source, sky->up);
+  sky->strength = fuzz_unit(source);
+  if (sky->type != HL_SKY_IMAGE) return;
+  sky->pixels = parts->sky;
+  sky->width = 1 + fuzz_choice(source, SKY_WIDTH);
+  sky->height = 1 + fuzz_choice(source, SKY_HEIGHT);
+  for (size_t n = 0; n < sizeof parts->sky / sizeof *parts->sky; n++) {
+    unsigned value = fuzz_byte(source);
+    parts->sky[n] = value > 250 ? 2000.0f * (float)value : (float)value / 64;
+  }
+}
+
+/* A strip of triangles, or spheres. */
+static void draw_mesh(fuzz_source *source, scene_parts *parts, hl_scene_description *description) {
+  float positions[MOST_VERTICES][3], spheres[MOST_VERTICES][4];
+  uint32_t triangles[MOST_VERTICES - 2][3];
+  hl_mesh_description mesh;
+  hl_error error = {0};
+  hl_mesh_description_defaults(&mesh);
+  bool round = fuzz_choice(source, 2) == 1;
+  for (uint32_t n = 0; n < MOST_VERTICES; n++) {
+    for (int a = 0; a < 3; a++) spheres[n][a] = positions[n][a] = (float)fuzz_number(source);
+    spheres[n][3] = (float)fuzz_unit(source);
+    for (uint32_t c = 0; c < 3 && n + 2 < MOST_VERTICES; c++) triangles[n][c] = n + c;
+  }
+  if (round) mesh.spheres = spheres, mesh.sphere_count = MOST_VERTICES;
+  else mesh.positions = positions, mesh.vertex_count = MOST_VERTICES;
+  if (!round) mesh.triangles = triangles, mesh.triangle_count = MOST_VERTICES - 2;
+  hl_scene_mesh *placed = &parts->meshes[description->mesh_count];
+  hl_scene_mesh_defaults(placed);
+  hl_status status = hl_mesh_create(fuzz_context(), &mesh, &placed->mesh, &error);
+  if (!fuzz_check_answer(status, &error, placed->mesh != NULL)) return;
+  draw_color(source, placed->color);
+  placed->opacity = fuzz_unit(source);
+  placed->casts_shadow = fuzz_choice(source, 4) != 0;
+  description->mesh_count++;
+}
+
+static void draw_cuts(fuzz_source *source, scene_parts *parts, hl_scene_volume *volume) {
+  volume->cut_count = (size_t)fuzz_choice(source, MOST_CUTS + 1);
+  volume->cuts = parts->cuts;
+  for (size_t n = 0; n < volume->cut_count; n++) {
+    hl_cut *cut = &parts->cuts[n];
+    hl_cut_defaults(cut);
+    cut->type = (hl_cut_type)fuzz_choice(source, 3);
+    cut->keep = (hl_cut_keep)fuzz_choice(source, 2);
+    draw_vector(source, cut->point);
+    draw_vector(source, cut->normal);
+    draw_vector(source, cut->min);
+    for (int a = 0; a < 3; a++) cut->max[a] = cut->min[a] + fabs(fuzz_number(source));
+    draw_vector(source, cut->center);
+    cut->radius = fabs(fuzz_number(source));
+  }
+  volume->cut_shading = (hl_cut_shading)fuzz_choice(source, 3);
+  volume->cut_casts_shadow = fuzz_choice(source, 2);
+}
+
+static void draw_labels(fuzz_source *source, scene_parts *parts) {
+  for (int n = 0; n < MOST_LABELS; n++) {
+    hl_label *label = &parts->labels[n];
+    label->value = n + 1 + (n > 0 ? fuzz_choice(source, 200) * n : 0);
+    draw_color(source, label->color);
+    for (int c = 0; c < 3; c++) label->color[c] /= 2;
+    label->opacity = fuzz_unit(source);
+    label->visible = fuzz_choice(source, 4) != 0;
+    label->tint = fuzz_unit(source);
+  }
+}
+
+/* What the first volume has besides: surfaces, cuts, labels or a mask; then meshes and a sky. It stands at
+ * the end of an input, so that older inputs keep their meaning. */
+static void draw_more(fuzz_source *source, scene_parts *parts) {
+  hl_scene_description *description = &parts->description;
+  hl_scene_volume *volume = &parts->volumes[0];
+  unsigned kind = fuzz_byte(source);
+  if (kind & 1) {
+    volume->iso = parts->iso;
+    volume->iso_count = 1 + (size_t)fuzz_choice(source, 2);
+    for (int n = 0; n < 2; n++) {
+      hl_isosurface_defaults(&parts->iso[n]);
+      parts->iso[n].value = fuzz_byte(source) + 0.5 * n;
+      parts->iso[n].opacity = fuzz_unit(source);
+    }
+  }
+  if (kind & 2) draw_cuts(source, parts, volume);
+  if (kind & 4) draw_labels(source, parts);
+  if ((kind & 12) == 4) volume->labels = parts->labels, volume->label_count = MOST_LABELS;
+  if ((kind & 12) == 12 && (parts->mask = draw_volume(source)) != NULL)
+    volume->mask = (hl_mask){.volume = parts->mask,
+                             .component = HL_COMPONENT_DEFAULT,
+                             .labels = parts->labels,
+                             .label_count = MOST_LABELS,
+                             .rest = fuzz_unit(source)};
+  for (int n = 0; kind & 16 && n < 1 + fuzz_choice(source, MOST_MESHES); n++)
+    draw_mesh(source, parts, description);
+  description->meshes = parts->meshes;
+  if (kind & 32) draw_sky(source, parts, &description->sky);
+  if ((kind & 80) == 80) description->volume_count = 0; /* meshes alone */
+}
+
 static bool draw_scene(fuzz_source *source, scene_parts *parts) {
   hl_scene_description *description = &parts->description;
   hl_scene_description_defaults(description);
@@ -236,6 +353,7 @@ static bool draw_scene(fuzz_source *source, scene_parts *parts) {
     parts->texture[n] = (float)(n % 7) / 6;
   for (size_t l = 0; l < description->light_count; l++) draw_light(source, parts, (int)l);
   draw_camera(source, description);
+  draw_more(source, parts);
   return true;
 }
 
@@ -294,6 +412,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     hl_scene_release(scene);
   }
   for (int v = 0; v < MOST_VOLUMES; v++) hl_volume_release(parts.volumes[v].volume);
+  for (int m = 0; m < MOST_MESHES; m++) hl_mesh_release(parts.meshes[m].mesh);
+  hl_volume_release(parts.mask);
   fuzz_check_nothing_held();
   return 0;
 }
