@@ -273,11 +273,11 @@ static bool first_decides(const hl_scene_description *description) {
 
 hl_status hl_view_automatic(const hl_scene_description *description, hl_outline *outline, hl_view *view,
                             hl_error *error) {
-  const hl_scene_volume *first = &description->volumes[0];
   hl_view_about(description, (vec3){0, 0, 1}, view);
   /* Programs write left-posterior-superior for any data, so it says little unless the file is DICOM. */
   if (description->volume_count == 0 || hl_scene_is_anatomical(description) || !first_decides(description))
     return HL_OK;
+  const hl_scene_volume *first = &description->volumes[0];
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(first->volume, &analysis, error);
   hl_upright upright;
