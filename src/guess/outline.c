@@ -86,9 +86,12 @@ static hl_status add_shown(hl_outline *outline, const hl_scene_volume *volume, h
   hl_status status = hl_seen_find(volume, &seen, &any, error);
   if (status == HL_OK && any) {
     ptrdiff_t *ends = hl_allocate(outline->context, 4 * rows, sizeof *ends);
-    chain chains[2] = {{ends, ends + rows, 0, -1}, {ends + 2 * rows, ends + 3 * rows, 0, 1}};
-    status = ends != NULL ? add_slices(outline, &seen, hl_scene_volume_index_to_world(volume), chains, error)
-                          : hl_fail_memory(error, 4 * rows * sizeof *ends, "a volume's rows");
+    if (ends != NULL) {
+      chain chains[2] = {{ends, ends + rows, 0, -1}, {ends + 2 * rows, ends + 3 * rows, 0, 1}};
+      status = add_slices(outline, &seen, hl_scene_volume_index_to_world(volume), chains, error);
+    } else {
+      status = hl_fail_memory(error, 4 * rows * sizeof *ends, "a volume's rows");
+    }
     hl_release(outline->context, ends);
   }
   hl_seen_release(&seen);
