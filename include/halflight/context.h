@@ -120,7 +120,19 @@ HL_API HL_WARN_UNUSED hl_status hl_context_create(const hl_context_options *opti
 HL_API HL_WARN_UNUSED hl_status hl_context_limit_memory(hl_context *context, uint64_t memory_limit,
                                                         const char *scratch_folder, hl_error *error);
 
-/* Null is allowed. Everything made with the context must be released before. */
+/* A context for files that strangers wrote. Names of files are relative to `folder` (a path; of a confined
+ * context, one relative to its folder), and so are the names that files hold: of all of them those are opened
+ * that lie below the folder, and are regular files. Absolute names, URLs, "data:..." and what "..", or a
+ * link, leads out of the folder are refused in the words for files that do not exist. folder: null refuses
+ * every file. The rule is about reading: files are written where the caller says.
+ *
+ * All else is that of `context`: its memory and its limit, which they share, its callbacks, except that
+ * `reads` is not called. *confined is owned by the caller, and may be destroyed before what was made with it.
+ * `context` must outlive it all. */
+HL_API HL_WARN_UNUSED hl_status hl_context_confine(hl_context *context, const char *folder,
+                                                   hl_context **confined, hl_error *error);
+
+/* Null is allowed. Everything made with the context must be released before, unless it is confined. */
 HL_API void hl_context_destroy(hl_context *context);
 
 /* Bytes now held through the context, and the most it ever held. */

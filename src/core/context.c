@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #if defined(__linux__)
 #include <sys/mman.h>
 #endif
@@ -85,6 +86,8 @@ hl_status hl_context_create(const hl_context_options *options, hl_context **cont
   atomic_init(&made->peak, 0);
   atomic_init(&made->paged, 0);
   made->ranks = NULL;
+  made->whole = made;
+  made->folder = -1;
   *context = made;
   return HL_OK;
 }
@@ -92,6 +95,9 @@ hl_status hl_context_create(const hl_context_options *options, hl_context **cont
 hl_status hl_context_limit_memory(hl_context *context, uint64_t memory_limit, const char *scratch_folder,
                                   hl_error *error) {
   if (context == NULL) return hl_fail(error, HL_ERROR_ARGUMENT, "hl_context_limit_memory: context is null");
+  if (hl_is_confined(context))
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_context_limit_memory: context is confined: give the one that it was made of");
   hl_context_options *options = &context->options;
   size_t bytes = bytes_of(scratch_folder);
   char *copy = bytes > 0 ? options->allocate(options->user_data, bytes, 64) : NULL;
@@ -103,19 +109,29 @@ hl_status hl_context_limit_memory(hl_context *context, uint64_t memory_limit, co
   return HL_OK;
 }
 
+void hl_context_leave(hl_context *context) {
+  if (atomic_fetch_sub(&context->users, 1) > 1) return;
+  if (context->folder >= 0) close(context->folder);
+  context->options.release(context->options.user_data, context);
+}
+
 void hl_context_destroy(hl_context *context) {
   if (context == NULL) return;
+  if (hl_is_confined(context)) {
+    hl_context_leave(context);
+    return;
+  }
   if (context->scratch_folder != NULL)
     context->options.release(context->options.user_data, context->scratch_folder);
   context->options.release(context->options.user_data, context);
 }
 
 uint64_t hl_context_memory_held(const hl_context *context) {
-  return context == NULL ? 0 : atomic_load(&((hl_context *)context)->held);
+  return context == NULL ? 0 : atomic_load(&context->whole->held);
 }
 
 uint64_t hl_context_memory_peak(const hl_context *context) {
-  return context == NULL ? 0 : atomic_load(&((hl_context *)context)->peak);
+  return context == NULL ? 0 : atomic_load(&context->whole->peak);
 }
 
 hl_instruction_set hl_context_instruction_set(const hl_context *context) {

@@ -13,7 +13,16 @@ struct hl_context {
   char *scratch_folder;             /* owned; of hl_context_limit_memory(); may be null */
   atomic_uint_least64_t paged;      /* bytes of the pages of scratch files (volume/pages.h) held in memory */
   struct hl_ranks *ranks;           /* borrowed: that hold what is loaded (halflight/ranks.h); may be null */
+  struct hl_context *whole; /* of a confined context the one whose memory it takes; else the context itself */
+  int folder;               /* of a confined context: its descriptor; -1: it opens no file */
+  atomic_size_t users;      /* of a confined context: its owner, and the blocks of memory made with it */
 };
+
+/* Whether files are opened below a folder alone. */
+static inline bool hl_is_confined(const hl_context *context) { return context->whole != context; }
+
+/* One user less of a confined context, which goes with the last. */
+void hl_context_leave(hl_context *context);
 
 void hl_log(const hl_context *context, hl_log_level level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

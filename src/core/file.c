@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/beneath.h"
 #include "core/context.h"
 #include "core/memory.h"
 
@@ -20,11 +21,53 @@ static hl_status fail_system(hl_error *error, const char *path, const char *verb
   return hl_fail(error, HL_ERROR_IO, "%s: cannot %s: %s", path, verb, strerror(errno));
 }
 
+/* Opens what the context may open; -1: nothing, and errno says why. */
+static int open_allowed(const hl_context *context, const char *path, int flags) {
+  flags |= O_CLOEXEC;
+  if ((flags & O_PATH) == 0) flags |= O_NONBLOCK | O_NOCTTY; /* neither pipes nor devices are waited for */
+  if (!hl_is_confined(context)) return open(path[0] != 0 ? path : ".", flags);
+  errno = EXDEV;
+  return context->folder >= 0 ? hl_beneath_open(context->folder, path, flags) : -1;
+}
+
+/* In a confined context the words are the same whatever there is outside of its folder. */
+static hl_status fail_open(const hl_context *context, hl_error *error, const char *path) {
+  bool of_process = errno == EMFILE || errno == ENFILE || errno == ENOMEM;
+  if (!hl_is_confined(context) || of_process) return fail_system(error, path, "open");
+  return hl_fail(error, HL_ERROR_IO, "%s: no such file below the folder of the file that was opened", path);
+}
+
+hl_status hl_file_open_again(hl_context *context, const char *path, int *descriptor, hl_error *error) {
+  struct stat about;
+  *descriptor = path[0] != 0 ? open_allowed(context, path, O_RDONLY) : (errno = ENOENT, -1);
+  if (*descriptor < 0) return fail_open(context, error, path);
+  if (!hl_is_confined(context)) return HL_OK;
+  if (fstat(*descriptor, &about) == 0 && (S_ISREG(about.st_mode) || S_ISDIR(about.st_mode))) return HL_OK;
+  close(*descriptor);
+  *descriptor = -1;
+  return hl_fail(error, HL_ERROR_IO, "%s: is not a regular file", path);
+}
+
 hl_status hl_file_open(hl_context *context, const char *path, int *descriptor, hl_error *error) {
-  *descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (*descriptor < 0) return fail_system(error, path, "open");
-  if (context->options.reads != NULL) context->options.reads(context->options.user_data, path);
-  return HL_OK;
+  hl_status status = hl_file_open_again(context, path, descriptor, error);
+  if (status == HL_OK && context->options.reads != NULL)
+    context->options.reads(context->options.user_data, path);
+  return status;
+}
+
+hl_status hl_folder_open(hl_context *context, const char *path, int *descriptor, hl_error *error) {
+  *descriptor = open_allowed(context, path, O_RDONLY | O_DIRECTORY);
+  return *descriptor >= 0 ? HL_OK : fail_open(context, error, path);
+}
+
+char hl_file_kind(const hl_context *context, const char *path) {
+  struct stat about;
+  int descriptor = open_allowed(context, path, O_PATH);
+  if (descriptor < 0) return 0;
+  bool known = fstat(descriptor, &about) == 0;
+  close(descriptor);
+  if (known && S_ISDIR(about.st_mode)) return 'd';
+  return known && (S_ISREG(about.st_mode) || !hl_is_confined(context)) ? 'f' : 0;
 }
 
 hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, void *bytes, size_t capacity,

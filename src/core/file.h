@@ -10,6 +10,15 @@
 /* Opens a file for reading and calls the context's `reads` callback. Does not block on a pipe that has no
  * writer. */
 hl_status hl_file_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
+/* The same without calling `reads`: for threads other than the caller's, which may not call it, and files
+ * that were opened before. */
+hl_status hl_file_open_again(hl_context *context, const char *path, int *descriptor, hl_error *error);
+/* Opens a folder, for hl_beneath_open() and fdopendir(). "" is the current folder, or that of a confined
+ * context. */
+hl_status hl_folder_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
+/* What there is of this name, which the context may open: 'f' a file that can be read, 'd' a folder, 0
+ * nothing of these. */
+char hl_file_kind(const hl_context *context, const char *path);
 /* Reads up to capacity bytes; *count is 0 at the end of the file. While a pipe is empty, waits and polls the
  * cancel callback. */
 hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, void *bytes, size_t capacity,

@@ -30,12 +30,13 @@ static bool reserve(hl_context *context, size_t bytes) {
 void *hl_allocate(hl_context *context, size_t count, size_t size) {
   size_t bytes;
   if (!hl_multiply(count, size, &bytes) || bytes > SIZE_MAX / 2) return NULL;
-  if (!reserve(context, bytes)) return NULL;
+  if (!reserve(context->whole, bytes)) return NULL;
   unsigned char *block = context->options.allocate(context->options.user_data, bytes + HEADER_BYTES, 64);
   if (block == NULL) {
-    atomic_fetch_sub(&context->held, bytes);
+    atomic_fetch_sub(&context->whole->held, bytes);
     return NULL;
   }
+  if (hl_is_confined(context)) atomic_fetch_add(&context->users, 1);
   ((block_header *)block)->size = bytes;
   return block + HEADER_BYTES;
 }
@@ -62,8 +63,9 @@ void *hl_reallocate(hl_context *context, void *old, size_t count, size_t size) {
 void hl_release(hl_context *context, void *memory) {
   if (context == NULL || memory == NULL) return;
   block_header *header = header_of(memory);
-  atomic_fetch_sub(&context->held, header->size);
+  atomic_fetch_sub(&context->whole->held, header->size);
   context->options.release(context->options.user_data, header);
+  if (hl_is_confined(context)) hl_context_leave(context);
 }
 
 char *hl_copy_text(hl_context *context, const char *text) {

@@ -1,6 +1,5 @@
 /* json/volumes.c - one volume of a scene from JSON: its file, transform, material and transfer function. */
 #include <string.h>
-#include <unistd.h>
 
 #include "core/context.h"
 #include "core/file.h"
@@ -360,11 +359,14 @@ static hl_status choose_shading(hl_json_reader *reader, const json_t *value, hl_
   return HL_OK;
 }
 
+/* Whether there is the file, or, where no file is opened, a volume of this name in the open scene. */
 static bool is_there(const hl_json_reader *reader, const char *file) {
   if (is_data(file) && reader->context->options.data_folder == NULL) return false;
   char *path = hl_json_path(reader, file);
-  /* without memory, loading the file reports the error */
-  bool there = path == NULL || access(path, F_OK) == 0;
+  bool there = path == NULL; /* without memory, loading the file reports the error */
+  for (size_t v = 0; !there && reader->like != NULL && v < reader->like->volume_count; v++)
+    there = reader->like->volumes[v].file != NULL && strcmp(reader->like->volumes[v].file, path) == 0;
+  if (!there && reader->like == NULL) there = hl_file_kind(reader->context, path) != 0;
   hl_release(reader->context, path);
   return there;
 }

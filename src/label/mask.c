@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/context.h"
 #include "core/memory.h"
 #include "core/pool.h"
 #include "label/shelf.h"
@@ -300,7 +301,7 @@ hl_status hl_label_mask(hl_context *context, int threads, const hl_mask *mask, h
                                   error);
   mask_job job = {.mask = mask, .occupancies = occupancies};
   if (status == HL_OK) status = fill(context, threads, &job, made, error);
-  if (status == HL_OK && context == mask->volume->context) hl_mask_to_shelf(mask, *made);
+  if (status == HL_OK && context->whole == mask->volume->context->whole) hl_mask_to_shelf(mask, *made);
   for (size_t n = 0; occupancies != NULL && n < mask->label_count; n++) hl_volume_release(occupancies[n]);
   hl_release(context, occupancies);
   hl_release(context, values);

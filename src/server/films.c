@@ -119,7 +119,7 @@ static hl_status take_file(const char *path, server_answer *answer, hl_error *er
 /* Destroy the film with film_destroy(). */
 static hl_status begin_film(const server *s, const hl_scene *scene, const film_request *request, film **f,
                             hl_error *error) {
-  film_options options = {.context = s->options.context,
+  film_options options = {.context = s->sealed,
                           .scene = scene,
                           .keys = request->keys,
                           .key_count = request->key_count,

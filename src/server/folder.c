@@ -27,12 +27,13 @@ bool folder_can_open(const char *name) {
   return false;
 }
 
-bool folder_is(const char *path) {
+static bool is_folder(const char *path) {
   struct stat about;
   return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
 }
 
-bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]) {
+/* The absolute path of what lies below the server's folder; false: it does not, by any link. */
+static bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]) {
   char asked[PATH_BYTES];
   const char *folder = s->options.folder;
   size_t length = strlen(folder);
@@ -40,6 +41,23 @@ bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]) 
       realpath(asked, path) == NULL)
     return false;
   return strncmp(path, folder, length) == 0 && (path[length] == '\0' || path[length] == '/' || length == 1);
+}
+
+bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], server_file *file) {
+  size_t length = strlen(s->options.folder);
+  *file = (server_file){.name = "."};
+  if (inside[0] == '\0' || !folder_resolve(s, inside, path)) return false;
+  const char *below = path + (length == 1 ? 1 : length + (path[length] == '/'));
+  if (is_folder(path)) {
+    file->folder = path;
+    return hl_context_confine(s->below, below, &file->confined, NULL) == HL_OK;
+  }
+  if (!folder_can_open(inside)) return false;
+  char *slash = strrchr(path, '/'); /* of the file's name */
+  *slash = '\0';
+  file->name = slash + 1;
+  file->folder = slash > path ? path : "/";
+  return hl_context_confine(s->below, slash > below ? below : "", &file->confined, NULL) == HL_OK;
 }
 
 /* What the list shows: 'd' a folder, 'f' a file that can be opened, 0 nothing. */

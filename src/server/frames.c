@@ -112,8 +112,8 @@ static hl_status read_scene(server *s, long long number, const char *text, size_
              "this volume is open no longer, as too many others are: open it again");
     return HL_ERROR_INPUT;
   }
-  hl_status status = hl_scene_from_json_like(s->options.context, text, length, NULL, "scene", opened->scene,
-                                             scene, error);
+  hl_status status = hl_scene_from_json_like(s->sealed, text, length, NULL, "scene", opened->scene, scene,
+                                             error);
   opened_leave(s, opened);
   if (status != HL_OK) return status;
   const hl_scene_description *d = hl_scene_describe(*scene);
@@ -256,19 +256,18 @@ bool film_progress(server *s, const char *name, int *done, int *frames) {
   return found;
 }
 
-void answer_open(server *s, const char *path, const char *name, server_answer *answer) {
-  const char *slash = strrchr(name, '/');
+void answer_open(server *s, const server_file *file, const char *title, server_answer *answer) {
   hl_scene *scene = NULL;
   hl_error error = {0};
   current.server = s;
   current.page = NULL;
   current.opening = true;
   atomic_store(&s->opening_part, 0);
-  hl_status status = s->options.open(s->options.user_data, path, name, &scene, &error);
+  hl_status status = s->options.open(s->options.user_data, file, &scene, &error);
   current.opening = false;
   current.server = NULL;
   if (status == HL_OK) {
-    server_opened *opened = opened_add(s, scene, slash != NULL ? slash + 1 : name);
+    server_opened *opened = opened_add(s, scene, title);
     answer->from_malloc = opened != NULL ? (unsigned char *)strdup(opened->start) : NULL;
     if (opened != NULL) opened_leave(s, opened);
     if (answer->from_malloc == NULL) {

@@ -62,6 +62,8 @@ typedef struct server_opened {
 
 typedef struct server {
   server_options options;
+  hl_context *sealed; /* owned; opens no file: for the scenes of pages */
+  hl_context *below;  /* owned; opens what lies below the server's folder; null: there is none */
   char token[TOKEN_DIGITS + 1];
   server_opened opened[MOST_OPENED];
   long long next_opened;   /* under pages_lock */
@@ -125,8 +127,8 @@ void answer_scene(server *s, const frame_request *request, const film_request *f
 void cancel_frames(server *s, const char *page, unsigned long long number);
 /* How far the page's film is; false: it has none. */
 bool film_progress(server *s, const char *page, int *done, int *frames);
-/* Opens a file by its path, and answers with its start.json; name: what its scene calls it. */
-void answer_open(server *s, const char *path, const char *name, server_answer *answer);
+/* Opens a file, and answers with its start.json. */
+void answer_open(server *s, const server_file *file, const char *title, server_answer *answer);
 
 /* films.c */
 hl_status render_film(server *s, server_page *page, const hl_scene *scene, const film_request *request,
@@ -144,9 +146,10 @@ void opened_end(server *s);
 
 /* folder.c */
 bool folder_can_open(const char *name); /* by its extension */
-bool folder_is(const char *path);       /* a folder, which may hold a volume as slices, DICOM or Zarr */
-/* The absolute path of what lies below the server's folder; false: it does not, by any link. */
-bool folder_resolve(const server *s, const char *inside, char path[PATH_BYTES]);
+/* Finds a file below the server's folder, or a folder, which may hold a volume as slices, DICOM or Zarr.
+ * file->confined is owned by the caller. path: its absolute path, to which file->name and file->folder
+ * point. False: it does not lie there, by any link, or cannot be opened. */
+bool folder_find(const server *s, const char *inside, char path[PATH_BYTES], server_file *file);
 /* JSON of what can be opened in a folder below the server's (free()); null: it is none. */
 char *describe_folder(const server *s, const char *at);
 bool upload_folder(const char *name, server_upload *upload); /* the folder alone */

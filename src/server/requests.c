@@ -89,12 +89,27 @@ static const char *query(struct MHD_Connection *connection, const char *name) {
   return MHD_lookup_connection_value(connection, MHD_GET_ARGUMENT_KIND, name);
 }
 
+static enum MHD_Result find_zero(void *found, enum MHD_ValueKind kind, const char *key, size_t key_length,
+                                 const char *value, size_t length) {
+  (void)kind;
+  bool zero = memchr(key, 0, key_length) != NULL || (value != NULL && memchr(value, 0, length) != NULL);
+  *(bool *)found |= zero;
+  return zero ? MHD_NO : MHD_YES;
+}
+
+/* Whether the query holds a zero byte, which would cut a name short. */
+static bool has_zero(struct MHD_Connection *connection) {
+  bool found = false;
+  MHD_get_connection_values_n(connection, MHD_GET_ARGUMENT_KIND, find_zero, &found);
+  return found;
+}
+
 /* A file that is dropped: its name, and room for it. */
 static unsigned check_upload(const server *s, struct MHD_Connection *connection, request *r,
                              const char **line) {
   const char *name = query(connection, "name");
   *line = "this viewer opens no files\n";
-  if (s->options.folder == NULL) return 403;
+  if (s->below == NULL) return 403;
   *line = "this is no file of volumes or scenes that Halflight reads\n";
   if (name == NULL || !upload_begin(name, &r->upload)) return 400;
   const char *length = header(connection, "Content-Length");
@@ -115,6 +130,8 @@ static unsigned check(const server *s, struct MHD_Connection *connection, const 
   *line = "the URL's token is wrong: open the URL that the viewer has printed\n";
   r->path = path_after_token(url, s->token);
   if (r->path == NULL) return 403;
+  *line = "the query holds a zero byte\n";
+  if (has_zero(connection)) return 400;
   *line = "only GET and POST are answered\n";
   bool posts = strcmp(method, "POST") == 0;
   if (!posts && strcmp(method, "GET") != 0) return 405;
@@ -164,7 +181,7 @@ static void answer_json(server_answer *answer, char *text) {
 
 static void answer_folder(const server *s, struct MHD_Connection *connection, server_answer *answer) {
   const char *at = query(connection, "at");
-  char *text = s->options.folder != NULL ? describe_folder(s, at != NULL ? at : "") : NULL;
+  char *text = s->below != NULL ? describe_folder(s, at != NULL ? at : "") : NULL;
   if (text == NULL) answer_problem(answer, 404, "there is no such folder below the viewer's\n");
   else answer_json(answer, text);
 }
@@ -327,17 +344,31 @@ static void post_cancel(server *s, struct MHD_Connection *connection, const requ
 }
 
 static void post_open(server *s, struct MHD_Connection *connection, server_answer *answer) {
-  const char *file = query(connection, "file");
+  const char *name = query(connection, "file");
   char path[PATH_BYTES];
-  bool below = file != NULL && file[0] != '\0' && s->options.folder != NULL && folder_resolve(s, file, path);
-  if (below && (folder_can_open(file) || folder_is(path))) answer_open(s, path, path, answer);
-  else answer_problem(answer, 403, "no such file of volumes or scenes lies below the viewer's folder\n");
+  server_file file;
+  if (name != NULL && s->below != NULL && folder_find(s, name, path, &file)) {
+    const char *slash = strrchr(name, '/');
+    answer_open(s, &file, slash != NULL ? slash + 1 : name, answer);
+    hl_context_destroy(file.confined);
+  } else {
+    answer_problem(answer, 403, "no such file of volumes or scenes lies below the viewer's folder\n");
+  }
+}
+
+/* The folder of a dropped file holds nothing else. */
+static void open_upload(server *s, const server_upload *upload, const char *name, server_answer *answer) {
+  server_file file = {.name = name};
+  if (hl_context_confine(s->options.context, upload->folder, &file.confined, NULL) == HL_OK)
+    answer_open(s, &file, name, answer);
+  else answer_problem(answer, 500, "out of memory for another file\n");
+  hl_context_destroy(file.confined);
 }
 
 static void post_upload(server *s, struct MHD_Connection *connection, request *r, server_answer *answer) {
   if (!upload_finish(&r->upload))
     answer_problem(answer, 500, "the file cannot be stored: is the disk full?\n");
-  else answer_open(s, r->upload.path, query(connection, "name"), answer);
+  else open_upload(s, &r->upload, query(connection, "name"), answer);
   upload_end(&r->upload);
 }
 

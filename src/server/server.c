@@ -74,6 +74,11 @@ bool server_run(const server_options *options, char *problem, size_t problem_siz
   bool good = s != NULL && pages_begin(s);
   if (good) {
     s->options = *options;
+    good = hl_context_confine(options->context, NULL, &s->sealed, NULL) == HL_OK;
+  }
+  if (good && options->folder != NULL)
+    (void)!hl_context_confine(options->context, options->folder, &s->below, NULL);
+  if (good) {
     server_opened *first = opened_add(s, options->scene, options->title);
     good = first != NULL;
     if (good) opened_leave(s, first);
@@ -88,6 +93,8 @@ bool server_run(const server_options *options, char *problem, size_t problem_siz
   if (s != NULL) {
     pages_end(s);
     opened_end(s);
+    hl_context_destroy(s->sealed);
+    hl_context_destroy(s->below);
   }
   free(s);
   return good;

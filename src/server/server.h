@@ -13,7 +13,8 @@
  * file there (?file=PATH), or the file in the body (upload?name=NAME): its start.json, whose number &opened=N
  * says whose volumes a scene has GET  TOKEN/opening.json  how far a file is read
  *
- * Scenes name the volumes and images of what is open: no other file is read for them. A page's
+ * Scenes name the volumes and images of what is open: no other file is read for them. A file that a page
+ * opens may name files below its own folder alone; a dropped one lies in a folder of its own. A page's
  * frames are numbered; one with a higher number cancels those before it, which are answered with 204.
  */
 #ifndef HL_SERVER_SERVER_H
@@ -23,13 +24,20 @@
 
 #include <halflight/halflight.h>
 
+/* A file that a page opens. */
+typedef struct server_file {
+  hl_context *confined; /* to the file's folder, or to itself where it is a folder */
+  const char *name;     /* in that folder; "." where it is a folder */
+  const char *folder;   /* its absolute path, by which the scene names files; null: the file was dropped, and
+                           its   scene can be saved beside it */
+} server_file;
+
 typedef struct server_options {
   hl_context *context; /* its `cancelled` callback is server_is_outdated() */
   hl_scene *scene;
   const char *title;  /* the input's name, for the page's title */
   const char *folder; /* absolute; pages may open what lies below it; null: nothing */
-  /* Reads the file at `path`, which its scene calls `name`. */
-  hl_status (*open)(void *user_data, const char *path, const char *name, hl_scene **scene, hl_error *error);
+  hl_status (*open)(void *user_data, const server_file *file, hl_scene **scene, hl_error *error);
   uint64_t most_upload_bytes; /* of a file that is dropped; 0: no limit */
   int port;                   /* 0: a free one */
   bool (*stopped)(void);      /* asked some times a second; true ends server_run() */

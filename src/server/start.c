@@ -90,7 +90,7 @@ char *describe_start(const server *s, const hl_scene *opened, const char *title,
     const hl_scene_description *d = hl_scene_describe(opened);
     fprintf(out, "{\"version\":\"%s\",\"title\":", hl_version());
     put_json_text(out, title);
-    fprintf(out, ",\"opened\":%lld,\"folder\":%s", number, s->options.folder != NULL ? "true" : "false");
+    fprintf(out, ",\"opened\":%lld,\"folder\":%s", number, s->below != NULL ? "true" : "false");
     fprintf(out, ",\"scene\":%s,\"volumes\":[", scene);
     for (size_t v = 0; v < d->volume_count; v++) {
       if (v > 0) fputc(',', out);

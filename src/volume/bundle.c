@@ -3,12 +3,14 @@
 #include "volume/bundle.h"
 
 #include <dirent.h>
-#include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include "core/beneath.h"
 #include "core/context.h"
 #include "core/file.h"
 #include "core/memory.h"
@@ -29,7 +31,7 @@ void hl_bundle_close(hl_bundle *bundle) {
   for (size_t n = 0; n < bundle->count; n++) hl_release(bundle->context, bundle->entries[n].name);
   hl_release(bundle->context, bundle->entries);
   hl_release(bundle->context, bundle->path);
-  hl_release(bundle->context, bundle->root);
+  if (bundle->is_open) close(bundle->folder);
   *bundle = (hl_bundle){.context = bundle->context};
 }
 
@@ -65,15 +67,17 @@ void hl_bundle_sort(hl_bundle *bundle) {
 
 typedef struct folder_walk {
   hl_bundle *bundle;
-  char root[PATH_MAX]; /* the folder without links, with a '/' at its end */
   char name[PATH_MAX]; /* the current entry, relative to the folder */
   dev_t device;        /* the folder's device: folders on other file systems are not searched */
   size_t files, depth; /* entries of all kinds so far */
 } folder_walk;
 
-static bool leads_inside(const folder_walk *walk, const char *path) {
-  char real[PATH_MAX];
-  return realpath(path, real) != NULL && strncmp(real, walk->root, strlen(walk->root)) == 0;
+/* Whether a regular file is there, and no link on the way to it leads out of the folder. */
+static bool is_inside(const hl_bundle *bundle, const char *name, struct stat *about) {
+  int file = hl_beneath_open(bundle->folder, name, O_PATH);
+  bool inside = file >= 0 && fstat(file, about) == 0 && S_ISREG(about->st_mode);
+  if (file >= 0) close(file);
+  return inside;
 }
 
 static hl_status walk_folder(folder_walk *walk, hl_error *error);
@@ -81,14 +85,11 @@ static hl_status walk_folder(folder_walk *walk, hl_error *error);
 static hl_status walk_entry(folder_walk *walk, hl_error *error) {
   hl_bundle *bundle = walk->bundle;
   struct stat about;
-  char *path = hl_path_join(bundle->context, bundle->path, walk->name);
-  if (path == NULL) return hl_fail_memory(error, PATH_MAX, "a path");
-  bool known = lstat(path, &about) == 0;
+  bool known = fstatat(bundle->folder, walk->name, &about, AT_SYMLINK_NOFOLLOW) == 0;
   if (known && S_ISLNK(about.st_mode)) {
-    known = stat(path, &about) == 0 && S_ISREG(about.st_mode) && leads_inside(walk, path);
+    known = is_inside(bundle, walk->name, &about);
     bundle->links_passed += !known;
   }
-  hl_release(bundle->context, path);
   if (!known) return HL_OK;
   if (S_ISDIR(about.st_mode)) return about.st_dev == walk->device ? walk_folder(walk, error) : HL_OK;
   hl_bundle_entry entry = {.name = walk->name, .size = about.st_size > 0 ? (uint64_t)about.st_size : 0};
@@ -119,12 +120,9 @@ static hl_status walk_entries(folder_walk *walk, DIR *folder, hl_error *error) {
 static hl_status walk_folder(folder_walk *walk, hl_error *error) {
   hl_bundle *bundle = walk->bundle;
   if (walk->depth == HL_BUNDLE_DEPTH_MOST) return HL_OK;
-  char *path = hl_path_join(bundle->context, bundle->path, walk->name);
-  if (path == NULL) return hl_fail_memory(error, PATH_MAX, "a path");
-  DIR *folder = opendir(path);
-  hl_release(bundle->context, path);
-  if (folder == NULL && walk->depth == 0)
-    return hl_fail(error, HL_ERROR_IO, "%s: cannot open: %s", bundle->path, strerror(errno));
+  int descriptor = hl_beneath_open(bundle->folder, walk->name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW);
+  DIR *folder = descriptor >= 0 ? fdopendir(descriptor) : NULL;
+  if (folder == NULL && descriptor >= 0) close(descriptor);
   if (folder == NULL) return HL_OK;
   walk->depth++;
   hl_status status = walk_entries(walk, folder, error);
@@ -138,13 +136,9 @@ hl_status hl_bundle_list(hl_bundle *bundle, hl_error *error) {
   folder_walk *walk = hl_allocate_zeroed(bundle->context, 1, sizeof *walk);
   if (walk == NULL) return hl_fail_memory(error, sizeof *walk, bundle->path);
   walk->bundle = bundle;
-  hl_status status = HL_OK;
+  hl_status status = hl_bundle_find_ready(bundle, error);
   struct stat about;
-  bool there = realpath(bundle->path, walk->root) != NULL && stat(walk->root, &about) == 0;
-  if (there) walk->device = about.st_dev;
-  else status = hl_fail(error, HL_ERROR_IO, "%s: cannot open: %s", bundle->path, strerror(errno));
-  if (walk->root[0] != 0 && walk->root[1] != 0 && strlen(walk->root) + 1 < sizeof walk->root)
-    strcat(walk->root, "/");
+  if (status == HL_OK && fstat(bundle->folder, &about) == 0) walk->device = about.st_dev;
   if (status == HL_OK) status = walk_folder(walk, error);
   hl_release(bundle->context, walk);
   hl_bundle_sort(bundle);
@@ -169,13 +163,10 @@ hl_status hl_bundle_entry_open(const hl_bundle *bundle, const hl_bundle_entry *e
 /* ---- a file of a known name ---- */
 
 hl_status hl_bundle_find_ready(hl_bundle *bundle, hl_error *error) {
-  if (bundle->is_archive || bundle->root != NULL) return HL_OK;
-  char real[PATH_MAX + 1];
-  if (realpath(bundle->path, real) == NULL)
-    return hl_fail(error, HL_ERROR_IO, "%s: cannot open: %s", bundle->path, strerror(errno));
-  if (real[1] != 0) strcat(real, "/");
-  bundle->root = hl_copy_text(bundle->context, real);
-  return bundle->root != NULL ? HL_OK : hl_fail_memory(error, strlen(real), bundle->path);
+  if (bundle->is_archive || bundle->is_open) return HL_OK;
+  hl_status status = hl_folder_open(bundle->context, bundle->path, &bundle->folder, error);
+  bundle->is_open = status == HL_OK;
+  return status;
 }
 
 static hl_status find_in_archive(const hl_bundle *bundle, const char *name, bool quiet, hl_source **source,
@@ -186,23 +177,15 @@ static hl_status find_in_archive(const hl_bundle *bundle, const char *name, bool
   return entry != NULL ? hl_bundle_entry_open(bundle, entry, quiet, source, error) : HL_OK;
 }
 
-/* Whether a file is there, and no link on the way to it leads out of the folder. */
-static bool is_inside(const hl_bundle *bundle, const char *path) {
-  char real[PATH_MAX];
-  struct stat about;
-  return realpath(path, real) != NULL && strncmp(real, bundle->root, strlen(bundle->root)) == 0 &&
-         stat(real, &about) == 0 && S_ISREG(about.st_mode);
-}
-
 hl_status hl_bundle_find(const hl_bundle *bundle, const char *name, bool quiet, hl_source **source,
                          hl_error *error) {
+  struct stat about;
   *source = NULL;
   if (bundle->is_archive) return find_in_archive(bundle, name, quiet, source, error);
-  if (name[0] == '/') return HL_OK;
+  if (!is_inside(bundle, name, &about)) return HL_OK;
   char *path = hl_path_join(bundle->context, bundle->path, name);
   if (path == NULL) return hl_fail_memory(error, PATH_MAX, "a path");
-  hl_status status = is_inside(bundle, path) ? hl_source_open(bundle->context, path, quiet, source, error)
-                                             : HL_OK;
+  hl_status status = hl_source_open(bundle->context, path, quiet, source, error);
   hl_release(bundle->context, path);
   return status;
 }

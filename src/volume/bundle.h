@@ -19,9 +19,9 @@ typedef struct hl_bundle hl_bundle;
 struct hl_bundle {
   hl_context *context;
   char *path; /* owned; of the folder or the archive */
-  char *root; /* owned; of a folder: its path without links, with a '/' at its end, set by
-                 hl_bundle_find_ready; else null */
   bool is_archive, is_file, listed;
+  bool is_open; /* `folder` is open: hl_bundle_find_ready was called */
+  int folder;   /* of a folder: its descriptor, owned */
   const unsigned char
       *memory; /* borrowed; [memory_size]: the content of the archive, or of the only file; null: in files */
   size_t memory_size;

@@ -2,7 +2,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "core/context.h"
 #include "core/door.h"
@@ -178,11 +177,6 @@ static hl_status load_folder(const char *path, hl_load_request *request, hl_volu
   return status;
 }
 
-static bool is_folder(const char *path) {
-  struct stat about;
-  return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
-}
-
 static hl_status load_archive(hl_stream *stream, hl_load_request *request, hl_volume **volume,
                               hl_error *error) {
   hl_bundle bundle = {.context = request->context};
@@ -334,7 +328,7 @@ hl_status hl_volume_load_with(hl_context *context, const char *path, const hl_vo
                              .selection = {1, 1, 1, 0, 0, 0}};
   memcpy(request.spacing, options->spacing, sizeof request.spacing);
   hl_stream *stream = NULL;
-  if (options->bytes == NULL && is_folder(path)) {
+  if (options->bytes == NULL && hl_file_kind(context, path) == 'd') {
     status = finish(&request, path, load_folder(path, &request, volume, error), volume, error);
     if (status == HL_OK) turn_into(context, path, options->space, *volume);
     return status;

@@ -19,12 +19,16 @@ static hl_status fail_unconverted(const char *path, hl_error *error) {
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   const hl_context_options *options = &request->context->options;
   const char *path = (*stream)->path;
+  char opened[40]; /* the file that is open already: the program's own names of files are others */
   const void *bytes = NULL;
   size_t byte_count = 0;
   hl_stream *converted = NULL;
   hl_error reason = {0};
   if (options->convert == NULL || !hl_stream_is_plain_file(*stream)) return fail_unconverted(path, error);
-  hl_status status = options->convert(options->user_data, "OpenVDB", path, &bytes, &byte_count, &reason);
+  snprintf(opened, sizeof opened, "/proc/self/fd/%d", hl_stream_descriptor(*stream));
+  hl_status status = options->convert(options->user_data, "OpenVDB",
+                                      hl_is_confined(request->context) ? opened : path, &bytes, &byte_count,
+                                      &reason);
   if (status == HL_ERROR_UNSUPPORTED) return fail_unconverted(path, error);
   if (status != HL_OK) return hl_fail(error, status, "%s: %.800s", path, reason.message);
   status = hl_stream_open_memory(request->context, path, bytes, byte_count, &converted, error);

@@ -74,7 +74,7 @@ static hl_status map_scratch(hl_context *context, const char *folder, hl_pages *
 /* What is found while voxels are stored. The glimpse takes an eighth of the free memory at most. */
 static hl_status allocate_findings(hl_context *context, hl_pages *pages, hl_error *error) {
   size_t values = hl_values_of(pages->storage);
-  uint64_t taken = atomic_load(&context->held) + atomic_load(&context->paged),
+  uint64_t taken = atomic_load(&context->whole->held) + atomic_load(&context->whole->paged),
            limit = context->options.memory_limit, most = limit > taken ? (limit - taken) / 8 : 0;
   if (values > 0) pages->counts = hl_allocate_zeroed(context, values, sizeof *pages->counts);
   if ((values > 0 && pages->counts == NULL) ||
@@ -168,7 +168,7 @@ void hl_pages_release(hl_pages *pages) {
   hl_own_voxels_release(pages->own);
   if (pages->mapping != NULL) munmap(pages->mapping, pages->mapping_bytes);
   if (pages->file >= 0) close(pages->file);
-  atomic_fetch_sub(&pages->context->paged, pages->held_bytes);
+  atomic_fetch_sub(&pages->context->whole->paged, pages->held_bytes);
   pthread_mutex_destroy(&pages->lock);
   pthread_cond_destroy(&pages->came);
   hl_brick_bounds_release(pages->bricks);
@@ -222,7 +222,7 @@ static void drop(const hl_pages *pages, size_t number) {
 static void count_held(hl_pages *pages, bool more) {
   uint64_t bytes = more ? pages->page_bytes : 0 - (uint64_t)pages->page_bytes;
   __atomic_fetch_add(&pages->held_bytes, bytes, __ATOMIC_RELAXED);
-  atomic_fetch_add(&pages->context->paged, bytes);
+  atomic_fetch_add(&pages->context->whole->paged, bytes);
 }
 
 /* Forgets a page if it is in a state; other threads may change it meanwhile. */
@@ -253,7 +253,7 @@ static uint64_t room(const hl_pages *pages, uint64_t bytes) {
   hl_context *context = pages->context;
   uint64_t limit = context->options.memory_limit, least = LEAST_PAGES * (uint64_t)pages->page_bytes;
   if (limit == 0) return UINT64_MAX;
-  uint64_t others = bytes + atomic_load(&context->held) + atomic_load(&context->paged) -
+  uint64_t others = bytes + atomic_load(&context->whole->held) + atomic_load(&context->whole->paged) -
                     __atomic_load_n(&pages->held_bytes, __ATOMIC_RELAXED);
   return limit < others + least ? least : limit - others;
 }

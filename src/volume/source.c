@@ -4,7 +4,6 @@
 #include "volume/source.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -63,11 +62,11 @@ void hl_source_close(hl_source *source) {
 
 static hl_status begin_file(hl_source *source, bool quiet, hl_error *error) {
   hl_status status = HL_OK;
-  if (quiet) source->descriptor = open(source->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (quiet) status = hl_file_open_again(source->context, source->path, &source->descriptor, error);
   else status = hl_file_open(source->context, source->path, &source->descriptor, error);
   if (status != HL_OK) return status;
   struct stat about;
-  if (source->descriptor < 0 || fstat(source->descriptor, &about) != 0)
+  if (fstat(source->descriptor, &about) != 0)
     return hl_fail(error, HL_ERROR_IO, "%s: cannot open: %s", source->path, strerror(errno));
   if (!S_ISREG(about.st_mode)) return hl_fail(error, HL_ERROR_IO, "%s: is not a regular file", source->path);
   source->size = about.st_size > 0 ? (uint64_t)about.st_size : 0;

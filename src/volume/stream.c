@@ -154,6 +154,8 @@ bool hl_stream_is_plain_file(const hl_stream *stream) {
   return stream->below == NULL && file_of(stream)->regular && file_of(stream)->memory == NULL;
 }
 
+int hl_stream_descriptor(const hl_stream *stream) { return file_of(stream)->descriptor; }
+
 bool hl_stream_memory(const hl_stream *stream, const unsigned char **bytes, size_t *length) {
   const file_stream *file = file_of(stream);
   if (stream->below != NULL || file->memory == NULL) return false;

@@ -44,6 +44,8 @@ hl_status hl_stream_switch(hl_stream **stream, const char *name, hl_error *error
 bool hl_stream_can_restart(const hl_stream *stream);
 /* Whether the stream is a regular file itself, without decoders, pipes or memory. */
 bool hl_stream_is_plain_file(const hl_stream *stream);
+/* The descriptor of such a file. */
+int hl_stream_descriptor(const hl_stream *stream);
 /* Whether the stream is the caller's memory itself, and all of it. */
 bool hl_stream_memory(const hl_stream *stream, const unsigned char **bytes, size_t *length);
 /* Opens *stream's file again from the start. hl_stream_can_restart() must be true. */

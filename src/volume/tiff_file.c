@@ -82,10 +82,10 @@ static int on_warning(TIFF *tiff, void *data, const char *module, const char *fo
 static hl_status open_descriptor(tiff_file *file, bool quiet, hl_error *error) {
   struct stat about;
   hl_status status = HL_OK;
-  if (quiet) file->descriptor = open(file->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (quiet) status = hl_file_open_again(file->context, file->path, &file->descriptor, error);
   else status = hl_file_open(file->context, file->path, &file->descriptor, error);
   if (status != HL_OK) return status;
-  if (file->descriptor < 0 || fstat(file->descriptor, &about) != 0)
+  if (fstat(file->descriptor, &about) != 0)
     return hl_fail(error, HL_ERROR_IO, "%s: cannot open: %s", file->path, strerror(errno));
   if (!S_ISREG(about.st_mode))
     return hl_fail(error, HL_ERROR_IO, "%s: is not a regular file, and TIFF is read from several places",

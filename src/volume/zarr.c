@@ -2,9 +2,11 @@
  *
  * The steps are in zarr/: metadata.c reads JSON files, array_read.c an array's metadata, image.c OME-Zarr's
  * axes and levels, series.c lists the images of a collection, voxels.c and chunk.c read the voxels. */
+#define _GNU_SOURCE
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "core/context.h"
 #include "core/file.h"
@@ -167,9 +169,12 @@ static int by_text(const void *a, const void *b) { return strcmp(*(char *const *
 
 /* The names of the files in a folder, sorted; the list and the names are owned by the caller. */
 static hl_status list_folder(const hl_bundle *bundle, char **names, size_t *count, hl_error *error) {
-  DIR *folder = opendir(bundle->path);
+  int descriptor = -1;
   hl_status status = HL_OK;
   *count = 0;
+  if (hl_folder_open(bundle->context, bundle->path, &descriptor, NULL) != HL_OK) return HL_OK;
+  DIR *folder = fdopendir(descriptor);
+  if (folder == NULL) close(descriptor);
   for (struct dirent *entry;
        folder != NULL && status == HL_OK && *count < HL_ARRAYS_MOST && (entry = readdir(folder)) != NULL;) {
     if (entry->d_name[0] == '.') continue;

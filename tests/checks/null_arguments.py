@@ -17,6 +17,7 @@ import tempfile
 # "function argument": the header says what null means there
 ALLOWED = """
 hl_context_create options
+hl_context_confine folder
 hl_context_limit_memory scratch_folder
 hl_image_write options
 hl_image_encode options

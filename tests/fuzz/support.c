@@ -10,7 +10,7 @@
 
 enum { SLOTS = 4, PATH_BYTES = 512 };
 
-static hl_context *the_context;
+static hl_context *the_context, *the_confined;
 static char the_folder[64];
 static char paths[SLOTS][PATH_BYTES];
 
@@ -57,6 +57,12 @@ const char *fuzz_folder(void) {
   return the_folder;
 }
 
+hl_context *fuzz_confined(void) {
+  if (the_confined == NULL)
+    REQUIRE(hl_context_confine(fuzz_context(), fuzz_folder(), &the_confined, NULL) == HL_OK);
+  return the_confined;
+}
+
 void fuzz_remove_file(int slot) {
   if (paths[slot][0] != 0) unlink(paths[slot]);
   paths[slot][0] = 0;
@@ -96,7 +102,7 @@ static void check_volume(hl_volume *volume) {
 }
 
 /* Reads the same content from memory, with another component and spacing. */
-static void load_otherwise(const char *path, const uint8_t *data, size_t size) {
+static void load_otherwise(const char *name, const uint8_t *data, size_t size) {
   static const int components[] = {HL_COMPONENT_MAGNITUDE, 1};
   for (size_t n = 0; n < 2; n++) {
     hl_volume_load_options options;
@@ -108,7 +114,7 @@ static void load_otherwise(const char *path, const uint8_t *data, size_t size) {
     for (int axis = 0; axis < 3; axis++) options.spacing[axis] = 0.5 * (axis + 1);
     hl_volume *volume = NULL;
     hl_error error = {0};
-    hl_status status = hl_volume_load_with(fuzz_context(), path, &options, &volume, &error);
+    hl_status status = hl_volume_load_with(fuzz_confined(), name, &options, &volume, &error);
     if (fuzz_check_answer(status, &error, volume != NULL)) check_volume(volume);
     hl_volume_release(volume);
     fuzz_check_nothing_held();
@@ -122,14 +128,14 @@ void fuzz_load_volume(const char *name, const char *second_name, const uint8_t *
   fuzz_remove_file(1);
   if (second != NULL)
     fuzz_write_file(1, second_name, second + sizeof cut - 1, size - first_size - (sizeof cut - 1));
-  const char *path = fuzz_write_file(0, name, data, first_size);
+  fuzz_write_file(0, name, data, first_size);
   hl_volume *volume = NULL;
   hl_error error = {0};
-  hl_status status = hl_volume_load(fuzz_context(), path, &volume, &error);
+  hl_status status = hl_volume_load(fuzz_confined(), name, &volume, &error);
   if (fuzz_check_answer(status, &error, volume != NULL)) check_volume(volume);
   hl_volume_release(volume);
   fuzz_check_nothing_held();
-  load_otherwise(path, data, first_size);
+  load_otherwise(name, data, first_size);
 }
 
 static void check_mesh(const hl_mesh *mesh) {
@@ -144,8 +150,8 @@ static void check_mesh(const hl_mesh *mesh) {
 void fuzz_load_mesh(const char *name, const uint8_t *data, size_t size) {
   hl_mesh *mesh = NULL;
   hl_error error = {0};
-  const char *path = fuzz_write_file(0, name, data, size);
-  hl_status status = hl_mesh_load(fuzz_context(), path, &mesh, &error);
+  fuzz_write_file(0, name, data, size);
+  hl_status status = hl_mesh_load(fuzz_confined(), name, &mesh, &error);
   if (fuzz_check_answer(status, &error, mesh != NULL)) check_mesh(mesh);
   hl_mesh_release(mesh);
   fuzz_remove_file(0);

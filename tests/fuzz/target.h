@@ -25,6 +25,10 @@ extern const uint64_t fuzz_memory_limit;
 /* The process's one context, with that limit. */
 hl_context *fuzz_context(void);
 
+/* The same context, confined to the process's own folder: whatever an input names, no other file of the
+ * machine takes part. Names are relative to the folder. */
+hl_context *fuzz_confined(void);
+
 /* After each input: everything was given back. */
 void fuzz_check_nothing_held(void);
 

@@ -4,7 +4,6 @@
 
 #include <limits.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "core/file.h"
 #include "core/memory.h"
@@ -15,7 +14,7 @@ enum { REFERENCED_FILE = 0x00041500, NAME_BYTES = 512 };
 /* Whether the bundle's folder has a file of this name. */
 static bool is_there(const hl_bundle *bundle, const char *name) {
   char *path = hl_path_join(bundle->context, bundle->path, name);
-  bool there = path != NULL && access(path, R_OK) == 0;
+  bool there = path != NULL && hl_file_kind(bundle->context, path) != 0;
   hl_release(bundle->context, path);
   return there;
 }
@@ -25,11 +24,12 @@ static bool is_there(const hl_bundle *bundle, const char *name) {
 static hl_status add_file(hl_bundle *bundle, char *name, hl_error *error) {
   for (char *c = name; *c != 0; c++)
     if (*c == '\\') *c = '/';
-  if (name[0] == 0 || name[0] == '/' || strstr(name, "..") != NULL) return HL_OK;
-  if (!is_there(bundle, name))
+  bool inside = name[0] != '/' && strstr(name, "..") == NULL;
+  if (name[0] == 0) return HL_OK;
+  if (inside && !is_there(bundle, name))
     for (char *c = name; *c != 0; c++)
       if (*c >= 'A' && *c <= 'Z') *c = (char)(*c - 'A' + 'a');
-  if (!is_there(bundle, name)) {
+  if (!inside || !is_there(bundle, name)) {
     bundle->links_passed++;
     return HL_OK;
   }

@@ -1,0 +1,63 @@
+/* core/beneath.c - see beneath.h. Linux's openat2() resolves a name below a folder in one step, so that
+ * nobody can put a link in its way meanwhile. */
+#define _GNU_SOURCE
+#include "core/beneath.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <string.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+#ifdef SYS_openat2
+#include <linux/openat2.h>
+#endif
+
+/* The next component of a name without its slashes, and what follows it; false: it is too long. */
+static int next_component(const char **name, char component[NAME_MAX + 1]) {
+  const char *begin = *name + strspn(*name, "/");
+  size_t length = strcspn(begin, "/");
+  if (length > NAME_MAX) return 0;
+  memcpy(component, begin, length);
+  component[length] = 0;
+  *name = begin + length + strspn(begin + length, "/");
+  return 1;
+}
+
+int hl_beneath_open_by_components(int folder, const char *name, int flags) {
+  enum { ON_THE_WAY = O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC };
+  int at = openat(folder, ".", ON_THE_WAY);
+  if (name[0] == '/' && at >= 0) {
+    close(at);
+    errno = EXDEV;
+    return -1;
+  }
+  for (char component[NAME_MAX + 1]; at >= 0;) {
+    int fits = next_component(&name, component), last = name[0] == 0, next = -1;
+    const char *step = component[0] == 0 ? "." : component;
+    if (!fits) errno = ENAMETOOLONG;
+    else if (strcmp(component, "..") == 0) errno = EXDEV;
+    else next = openat(at, step, last ? flags | O_NOFOLLOW | O_CLOEXEC : ON_THE_WAY);
+    int problem = errno;
+    close(at);
+    errno = problem;
+    if (last || next < 0) return next;
+    at = next;
+  }
+  return -1;
+}
+
+int hl_beneath_open(int folder, const char *name, int flags) {
+#ifdef SYS_openat2
+  enum { ATTEMPTS = 100 }; /* EAGAIN: a folder on the way was renamed meanwhile */
+  const struct open_how how = {.flags = (unsigned)(flags | O_CLOEXEC),
+                               .resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS};
+  for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
+    long opened = syscall(SYS_openat2, folder, name[0] != 0 ? name : ".", &how, sizeof how);
+    if (opened >= 0) return (int)opened;
+    if (errno == ENOSYS || errno == EPERM) break; /* an older system, or one that forbids unknown calls */
+    if (errno != EAGAIN && errno != EINTR) return -1;
+  }
+#endif
+  return hl_beneath_open_by_components(folder, name, flags);
+}

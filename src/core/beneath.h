@@ -1,0 +1,13 @@
+/* core/beneath.h - files below a folder, opened so that neither their name nor a link leads out of it. */
+#ifndef HL_CORE_BENEATH_H
+#define HL_CORE_BENEATH_H
+
+/* Opens `name` relative to a folder's descriptor, with the flags of open(); returns the descriptor, or -1 and
+ * sets errno. "" is the folder itself. Absolute names are refused, and names and links that lead out of the
+ * folder, whether or not there is a file. The descriptor is closed on exec. */
+int hl_beneath_open(int folder, const char *name, int flags);
+
+/* What hl_beneath_open() does where the system has no openat2(): follows no links, and refuses "..". */
+int hl_beneath_open_by_components(int folder, const char *name, int flags);
+
+#endif

@@ -1,0 +1,352 @@
+#!/usr/bin/env python3
+"""A stranger's files: whatever a file names, the viewer reads nothing outside of the folder of the file that was opened,
+and its answer does not tell whether there is such a file. For every format that can name another file.
+
+usage: stranger.py PROGRAM
+"""
+import http.client
+import io
+import json
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import urllib.parse
+import zipfile
+
+from PIL import Image
+
+import checks
+from checks import check
+from viewer import Viewer
+
+PROGRAM = os.path.abspath(sys.argv[1])
+PARAVIEW_STATE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../unit/paraview-points.pvsm")
+VOLUME = "_8x8x8_uint8.raw"  # how names of bare voxels end
+
+
+def request(viewer, path, body=None, **query):
+    """(status, the answer's text)."""
+    connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=60)
+    connection.request("POST", f"/{viewer.token}/{path}?{urllib.parse.urlencode(query)}", body)
+    answer = connection.getresponse()
+    result = answer.status, answer.read().decode(errors="replace")
+    connection.close()
+    return result
+
+
+# ---- DICOM: explicit little-endian elements ----
+
+def element(tag, kind, value):
+    value += b"\0" * (len(value) % 2)
+    long = kind in ("OW", "SQ")
+    return struct.pack("<HH", tag >> 16, tag & 0xffff) + kind.encode() + struct.pack("<HI" if long else "<H", *((0, len(value)) if long else (len(value),))) + value
+
+
+def dicom(*elements):
+    meta = element(0x00020010, "UI", b"1.2.840.10008.1.2.1")
+    return b"\0" * 128 + b"DICM" + element(0x00020000, "UL", struct.pack("<I", len(meta))) + meta + b"".join(elements)
+
+
+def dicom_slice():
+    short = lambda tag, n: element(tag, "US", struct.pack("<H", n))
+    return dicom(element(0x00080060, "CS", b"CT"), element(0x0020000e, "UI", b"1.2.3"), element(0x00200032, "DS", b"0\\0\\0 "),
+                 element(0x00200037, "DS", b"1\\0\\0\\0\\1\\0 "), short(0x00280002, 1), element(0x00280004, "CS", b"MONOCHROME2 "), short(0x00280010, 8),
+                 short(0x00280011, 8), element(0x00280030, "DS", b"1\\1 "), short(0x00280100, 8), short(0x00280101, 8), short(0x00280102, 7),
+                 short(0x00280103, 0), element(0x7fe00010, "OW", bytes(range(64))))
+
+
+def dicomdir(name):
+    item = element(0x00041500, "CS", name.replace("/", "\\").encode())
+    return dicom(element(0x00041220, "SQ", struct.pack("<HHI", 0xfffe, 0xe000, len(item)) + item))
+
+
+# ---- carriers: files that name another file ----
+
+def zipped(name, content):
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as archive:
+        archive.writestr(name, content)
+    return out.getvalue()
+
+
+def meta_image(name):
+    return f"ObjectType = Image\nNDims = 3\nDimSize = 8 8 8\nElementType = MET_UCHAR\nElementDataFile = {name}\n".encode()
+
+
+def detached_nrrd(name):
+    return f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw\ndata file: {name}\n".encode()
+
+
+def ome_tiff(name):
+    text = ('<?xml version="1.0"?><OME xmlns="http://www.openmicroscopy.org/Schemas/OME/2016-06"><Image ID="Image:0"><Pixels ID="Pixels:0" '
+            'DimensionOrder="XYZCT" Type="uint8" SizeX="8" SizeY="8" SizeZ="2" SizeC="1" SizeT="1"><TiffData FirstZ="0" IFD="0" PlaneCount="1">'
+            '<UUID FileName="%s">urn:uuid:1</UUID></TiffData><TiffData FirstZ="1" IFD="0" PlaneCount="1"><UUID FileName="%s">urn:uuid:1</UUID>'
+            '</TiffData></Pixels></Image></OME>' % (name, name))
+    out = io.BytesIO()
+    Image.new("L", (8, 8), 100).save(out, "TIFF", tiffinfo={270: text})
+    return out.getvalue()
+
+
+def scene(**parts):
+    whole = {"halflight": 1, "image": {"width": 16, "height": 16}, "volumes": [{"shapes": [{"type": "sphere", "radius": 5}], "voxel_size": 1}]}
+    return json.dumps({**whole, **parts}).encode()
+
+
+def volume_scene(name, **more):
+    return scene(volumes=[{"file": name, **more}])
+
+
+def with_voxels(**more):
+    """A scene of the voxels that lie beside it, with more keys of the volume."""
+    return volume_scene("own" + VOLUME, **more)
+
+
+def light(**more):
+    return scene(lights=[{"type": "point", "position": [0, 0, 99], **more}])
+
+
+SCREEN = {"center": [0, 0, 20], "right": [9, 0, 0], "up": [0, 9, 0]}
+WINDOW = {"type": "rect", "position": [0, 0, 50], "edge1": [9, 0, 0], "edge2": [0, 9, 0]}
+
+# The file that names another one, what it holds for a name, and how the name ends.
+CARRIERS = [
+    ("mhd.mhd", meta_image, VOLUME),
+    ("nrrd.nhdr", detached_nrrd, VOLUME),
+    ("ome.tif", ome_tiff, ".tif"),
+    ("disc.dcm", dicomdir, ".dcm"),
+    ("volume.json", volume_scene, VOLUME),
+    ("header.json", volume_scene, ".nhdr"),
+    ("slices.json", volume_scene, ".slices"),
+    ("mask.json", lambda name: with_voxels(mask={"file": name, "labels": True}), VOLUME),
+    ("table.json", lambda name: with_voxels(labels=True, label_table=name), ".txt"),
+    ("function.json", lambda name: with_voxels(transfer_function={"file": name}), ".tf.json"),
+    ("slicer.json", lambda name: with_voxels(transfer_function={"file": name}), ".vp"),
+    ("paraview.json", lambda name: with_voxels(transfer_function={"file": name}), ".pvsm"),
+    ("plane.json", lambda name: with_voxels(transfer_function={"second": "gradient", "image": {"file": name, "value": [0, 255], "second": [0, 50]}}), ".png"),
+    ("mesh.json", lambda name: scene(meshes=[{"file": name}]), ".ply"),
+    ("sky.json", lambda name: scene(sky={"type": "image", "file": name}), ".png"),
+    ("texture.json", lambda name: light(texture={"file": name, "screen": SCREEN}), ".png"),
+    ("window.json", lambda name: scene(lights=[{**WINDOW, "emission": {"file": name}}]), ".png"),
+]
+
+# The readers of these refuse all names with a slash, in words of their own.
+ALONE = {"ome.tif"}
+
+# Files beside a scene that name another one: they come with a scene of their own.
+NESTED = [
+    ("descriptor.dat", lambda name: f"ObjectFileName: {name}\nResolution: 8 8 8\nFormat: UCHAR\n".encode(), VOLUME, lambda own: volume_scene(own)),
+    ("buffers.gltf", lambda name: gltf(name), ".bin", lambda own: scene(meshes=[{"file": own}])),
+    ("nested.nhdr", detached_nrrd, VOLUME, lambda own: volume_scene(own)),
+]
+
+POINTS = struct.pack("<9f", 0, 0, 0, 9, 0, 0, 0, 9, 9)
+
+
+def gltf(name):
+    return json.dumps({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+                       "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+                       "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+                       "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": name}]}).encode()
+
+
+def write(path, content):
+    with open(path, "wb") as file:
+        file.write(content)
+
+
+SECRETS = {
+    VOLUME: bytes(n % 7 for n in range(512)),
+    ".nhdr": detached_nrrd("own" + VOLUME),
+    ".txt": b"1 one 255 0 0 255\n2 two 0 255 0 255\n3 three 0 0 255 255\n",
+    ".tf.json": b'{"opacity": [[0, 0], [6, 1]]}',
+    ".ply": b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+            b"property list uchar int vertex_indices\nend_header\n0 0 0\n9 0 0\n0 9 9\n3 0 1 2\n",
+    ".bin": POINTS,
+    ".vp": b"1\n1\n0.9\n0.1\n0.2\n10\n4 0 0 6 0.75\n4 0 0 10 1\n8 0 1 0 0 6 0 0 1\n",
+    ".dcm": dicom_slice(),
+}
+
+
+def make_secrets(folder):
+    """Every kind of file, by the name "secret" and its ending."""
+    for ending, content in SECRETS.items():
+        write(f"{folder}/secret{ending}", content)
+    write(f"{folder}/own{VOLUME}", SECRETS[VOLUME])
+    Image.new("RGB", (8, 8), (200, 100, 50)).save(f"{folder}/secret.png")
+    Image.new("L", (8, 8), 50).save(f"{folder}/secret.tif")
+    os.mkdir(f"{folder}/secret.slices")
+    for n in range(3):
+        Image.new("L", (8, 8), 50 * n).save(f"{folder}/secret.slices/s{n}.png")
+    shutil.copy(PARAVIEW_STATE, f"{folder}/secret.pvsm")
+
+
+def spellings(ending, outside):
+    """Names of the secret, each with the same name of a file that is not there."""
+    there, absent = f"secret{ending}", f"absent{ending}"
+    for folder in (outside, "../outside", "inner/../../outside", "/proc/self/cwd/../outside", f"/proc/self/root{outside}", f"file://{outside}",
+                   "http://127.0.0.1:1", "away"):  # "away": a link to the folder
+        yield f"{folder}/{there}", f"{folder}/{absent}"
+    yield f"leak{ending}", f"dangling{ending}"  # links to the file, and to none
+
+
+def masked(line, name):
+    return line.replace(name, "NAME").replace(name.replace("/", "\\"), "NAME")
+
+
+def tell_nothing(viewer, what, attempt, ending, outside):
+    """Every spelling is refused, in words that do not depend on what there is."""
+    words = set()
+    for there, absent in spellings(ending, outside):
+        answers = []
+        for name in (there, absent):
+            status, line = attempt(viewer, name)
+            check(status == 400, f"{what}: the name {name} is refused, not {status}: {line[:200]}")
+            answers.append(masked(line, name))
+        check(answers[0] == answers[1], f"{what}: {there} and {absent} have the same words: {answers}")
+        words.add(answers[0])
+    return words
+
+
+def by_open(file, make, also=None):
+    """Writes the file into the viewer's folder and opens it."""
+    def attempt(viewer, name):
+        write(file, make(name))
+        if also is not None:
+            write(*also)
+        return request(viewer, "open", file=also[0] if also is not None else file)
+    return attempt
+
+
+def by_upload(file, make):
+    def attempt(viewer, name):
+        return request(viewer, "upload", make(name), name=file)
+    return attempt
+
+
+def every_format(viewer, outside):
+    for file, make, ending in CARRIERS:
+        opened, words = by_open(file, make), tell_nothing(viewer, f"open {file}", by_open(file, make), ending, outside)
+        check(len(words) == 1 or file in ALONE, f"open {file}: one wording: {words}")
+        status, line = opened(viewer, f"secret{ending}")
+        check(status == 200, f"open {file}: what lies beside it is read, not {status}: {line[:300]}")
+        status, line = opened(viewer, f"inner/secret{ending}")
+        check(status == (400 if file in ALONE else 200), f"open {file}: and what lies below, not {status}: {line[:300]}")
+        tell_nothing(viewer, f"upload {file}", by_upload(file, make), ending, outside)
+        status, line = by_upload(file, make)(viewer, f"secret{ending}")
+        check(status == 400, f"upload {file}: nothing is beside it, not {status}")
+    archive = lambda name: zipped("in.mhd", meta_image(name))  # its files name nothing outside of it
+    for attempt in (by_open("archive.zip", archive), by_upload("archive.zip", archive)):
+        tell_nothing(viewer, "archive.zip", attempt, VOLUME, outside)
+        check(attempt(viewer, f"secret{VOLUME}")[0] == 400, "archive.zip: nothing is beside it")
+    for file, make, ending, own in NESTED:
+        opened = by_open(file, make, ("nested.json", own(file)))
+        tell_nothing(viewer, f"{file} in a scene", opened, ending, outside)
+        status, line = opened(viewer, f"secret{ending}")
+        check(status == 200, f"{file} in a scene: what lies beside it is read, not {status}: {line[:300]}")
+
+
+def links_of_known_names(viewer):
+    """Files whose names are not in a header: the voxels of a NIfTI pair, the chunks of Zarr, the slices of a folder."""
+    header = bytearray(348)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, 8, 8, 8, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 2, 8)
+    struct.pack_into("<8f", header, 76, 1, 1, 1, 1, 1, 1, 1, 1)
+    header[344:348] = b"ni1\0"
+    write("pair.hdr", bytes(header))
+    write("pair.json", volume_scene("pair.hdr"))
+    os.symlink(f"../outside/secret{VOLUME}", "pair.img")
+    check(request(viewer, "open", file="pair.json")[0] == 400, "the voxels of a NIfTI pair are no link that leads out")
+    os.remove("pair.img")
+    write("pair.img", SECRETS[VOLUME])
+    check(request(viewer, "open", file="pair.json")[0] == 200, "a NIfTI pair")
+    os.mkdir("store.zarr")
+    write("store.zarr/.zarray", json.dumps({"zarr_format": 2, "shape": [8, 8, 8], "chunks": [8, 8, 8], "dtype": "|u1", "compressor": None,
+                                            "fill_value": 0, "order": "C", "filters": None}).encode())
+    os.symlink(f"../../outside/secret{VOLUME}", "store.zarr/0.0.0")
+    linked = request(viewer, "open", file="store.zarr")
+    os.remove("store.zarr/0.0.0")
+    empty = request(viewer, "open", file="store.zarr")
+    write("store.zarr/0.0.0", SECRETS[VOLUME])
+    full = request(viewer, "open", file="store.zarr")
+    ranges = [json.loads(text)["volumes"][0]["range"] if status == 200 else text for status, text in (linked, empty, full)]
+    check(ranges[0] == ranges[1] and ranges[2] == [0, 6], f"a chunk is no link that leads out: {ranges}")
+    os.mkdir("group.zarr")
+    for path in ("../store.zarr", "../../outside", f"{os.getcwd()}/store.zarr"):
+        write("group.zarr/.zattrs", json.dumps({"multiscales": [{"version": "0.4", "axes": [{"name": n, "type": "space"} for n in "zyx"], "datasets": [
+            {"path": path, "coordinateTransformations": [{"type": "scale", "scale": [1, 1, 1]}]}]}]}).encode())
+        write("group.zarr/.zgroup", b'{"zarr_format": 2}')
+        check(request(viewer, "open", file="group.zarr")[0] == 400, f"an image of OME-Zarr at {path}")
+    os.mkdir("linked")
+    for n in range(3):
+        os.symlink(f"../../outside/secret.slices/s{n}.png", f"linked/s{n}.png")
+    check(request(viewer, "open", file="linked")[0] == 400, "slices are no links that lead out")
+
+
+def pages_scenes(viewer, outside):
+    """The scene that a page sends opens no file, and does not tell whether there is one."""
+    start = json.loads(request(viewer, "open", file="volume.json")[1])
+    query = {"page": "s", "format": "png", "opened": start["opened"]}
+    number = iter(range(1, 10**6))
+    for file, make, ending in [entry for entry in CARRIERS if entry[0].endswith(".json")]:
+        for there, absent in spellings(ending, outside):
+            answers = [request(viewer, "frame", make(name), number=next(number), **query) for name in (there, absent)]
+            check(all(status == 400 for status, _ in answers), f"a page's scene like {file} with {there}: {answers[0]}")
+            check(masked(answers[0][1], there) == masked(answers[1][1], absent), f"a page's scene like {file}: the same words")
+    stand_in = {"shapes": [{"type": "sphere", "radius": 5}], "voxel_size": 1}
+    for name in (f"{outside}/secret{VOLUME}", f"{outside}/absent{VOLUME}"):
+        status, line = request(viewer, "frame", volume_scene(name, stand_in=stand_in), number=next(number), **query)
+        check(status == 400 and "shapes" in line, f"a stand-in takes the place of {name}: {status} {line[:100]}")
+        write("stand.json", volume_scene(name, stand_in=stand_in))
+        status, line = request(viewer, "open", file="stand.json")
+        check(status == 200 and json.loads(line)["volumes"][0]["dimensions"] != [8, 8, 8], f"a stand-in takes the place of {name}: {status}")
+
+
+def odd_files(viewer):
+    """Pipes and devices are not waited for; names with zero bytes are refused."""
+    os.mkfifo(f"pipe{VOLUME}")
+    write("pipe.mhd", meta_image(f"pipe{VOLUME}"))
+    write("pipe.json", volume_scene(f"pipe{VOLUME}"))
+    for file in ("pipe.mhd", "pipe.json", f"pipe{VOLUME}"):
+        check(request(viewer, "open", file=file)[0] == 400, f"{file} is refused, and not waited for")
+    check(request(viewer, "open", file=f"secret{VOLUME}\0.json")[0] == 400, "a name with a zero byte")
+    check(request(viewer, "upload", b"x", name="../a\0.nrrd")[0] == 400, "a name of an upload with a zero byte")
+    check(request(viewer, "open", file=".")[0] in (200, 400) and request(viewer, "open", file="..")[0] == 403, "the folder itself, at most")
+
+
+def data_folder(viewer, outside):
+    """Scenes of pages do not reach the data folder, by which names of the command line begin."""
+    for name in ("data:secret", "data:../outside/secret"):
+        for attempt in (by_open("data.json", volume_scene), by_upload("data.json", volume_scene)):
+            status, line = attempt(viewer, name + VOLUME)
+            check(status == 400 and outside not in line, f"{name} is refused: {line}")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    folder = os.path.realpath(folder)
+    os.environ["TMPDIR"] = tempfile.tempdir = f"{folder}/temporary"
+    for name in ("temporary", "outside", "work", "work/inner"):
+        os.mkdir(f"{folder}/{name}")
+    os.chdir(f"{folder}/work")
+    if subprocess.run([PROGRAM, "view", "none.nrrd", "--no-browser"], capture_output=True, check=False).returncode == 4:
+        print("built without the viewer")
+        sys.exit(77)
+    outside = f"{folder}/outside"
+    for place in (outside, ".", "inner"):
+        make_secrets(place)
+    os.symlink("../outside", "away")
+    for ending in [*SECRETS, ".png", ".tif", ".pvsm", ".slices"]:
+        os.symlink(f"../outside/secret{ending}", f"leak{ending}")
+        os.symlink(f"../outside/absent{ending}", f"dangling{ending}")
+    with Viewer(PROGRAM, f"own{VOLUME}", "--data", outside) as viewer:
+        every_format(viewer, outside)
+        links_of_known_names(viewer)
+        pages_scenes(viewer, outside)
+        odd_files(viewer)
+        data_folder(viewer, outside)
+        left = [name for name in os.listdir(os.environ["TMPDIR"]) if name.startswith("halflight-view")]
+        check(left == [], f"nothing is left of uploads: {left}")
+    print(f"{checks.count} checks passed")
