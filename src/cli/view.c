@@ -1,8 +1,6 @@
 /* cli/view.c - `halflight view INPUT`: the viewer's server, and the browser that shows its page. */
 #define _GNU_SOURCE
-#include <fcntl.h>
 #include <limits.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +14,7 @@
 #include <dlfcn.h>
 
 #include "server/module.h"
+#include "view_browser.h"
 #endif
 
 enum { VIEW_PORT, VIEW_NO_BROWSER, VIEW_OPTION_COUNT };
@@ -62,13 +61,12 @@ static bool has_render_option(size_t row) {
 
 #ifdef HL_HAS_VIEWER
 
-extern char **environ;
-
 /* One run. */
 typedef struct view_job {
   cli_host host;
   const cli_value *values, *render; /* of the command's own options, and of those of `render` */
   hl_scene *scene;                  /* owned */
+  browser_page page;
 } view_job;
 
 /* ---- the scene ---- */
@@ -178,36 +176,21 @@ static hl_status open_file(void *user_data, const server_file *file, hl_scene **
 
 /* ---- the browser ---- */
 
-static bool has_screen(void) {
-  const char *x11 = getenv("DISPLAY"), *wayland = getenv("WAYLAND_DISPLAY");
-  return (x11 != NULL && x11[0] != '\0') || (wayland != NULL && wayland[0] != '\0');
-}
-
-/* The browser's messages are discarded. If it does not open, the user sees as much, and has the URL. */
-static void open_browser(const char *url) {
-  char *arguments[] = {"xdg-open", (char *)url, NULL};
-  posix_spawn_file_actions_t actions;
-  pid_t child;
-  if (posix_spawn_file_actions_init(&actions) != 0) return;
-  for (int descriptor = 0; descriptor < 3; descriptor++)
-    posix_spawn_file_actions_addopen(&actions, descriptor, "/dev/null", O_RDWR, 0);
-  if (posix_spawnp(&child, arguments[0], &actions, NULL, arguments, environ) != 0)
-    warn("xdg-open cannot be run: open the URL yourself");
-  posix_spawn_file_actions_destroy(&actions);
-}
-
 static void on_ready(void *user_data, const char *url) {
   view_job *job = user_data;
   host_clear_bar(&job->host);
   puts(url);
   fflush(stdout);
-  if (!job->values[VIEW_NO_BROWSER].given && has_screen()) open_browser(url);
+  if (!job->values[VIEW_NO_BROWSER].given) browser_open(url, &job->page);
   int port = 0;
   if (sscanf(url, "http://127.0.0.1:%d/", &port) == 1 && !job->host.quiet)
     say("from another machine: ssh -L %d:127.0.0.1:%d THIS-MACHINE, then open the same URL; Ctrl-C ends the "
         "viewer",
         port, port);
 }
+
+/* The browser has the page: the file that led to it is needed no longer. */
+static void on_visit(void *user_data) { browser_forget(&((view_job *)user_data)->page); }
 
 /* ---- the command ---- */
 
@@ -258,8 +241,10 @@ static int run_view(const cli_value *values, char **inputs) {
                              .port = values[VIEW_PORT].given ? (int)values[VIEW_PORT].number[0] : 0,
                              .stopped = host_interrupted,
                              .user_data = &job,
-                             .ready = on_ready};
+                             .ready = on_ready,
+                             .visited = on_visit};
     if (!module->run(&server, problem, sizeof problem)) exit_code = fail(EXIT_CODE_FAILURE, "%s", problem);
+    browser_forget(&job.page);
   }
   hl_scene_release(job.scene);
   host_close(&job.host);

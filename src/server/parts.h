@@ -67,6 +67,8 @@ typedef struct server {
   char token[TOKEN_DIGITS + 1];
   server_opened opened[MOST_OPENED];
   long long next_opened;   /* under pages_lock */
+  atomic_bool announced;   /* options.ready has returned */
+  atomic_bool visited;     /* options.visited was called */
   atomic_int opening_part; /* thousandths of the volume that is being read */
   pthread_mutex_t pages_lock;
   server_page pages[MOST_PAGES];

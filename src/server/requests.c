@@ -211,7 +211,9 @@ static void answer_opening(server *s, server_answer *answer) {
   answer_json(answer, text);
 }
 
-static void answer_asset(const char *path, server_answer *answer) {
+static void answer_asset(server *s, const char *path, server_answer *answer) {
+  if (path[0] == '\0' && atomic_load(&s->announced) && !atomic_exchange(&s->visited, true))
+    s->options.visited(s->options.user_data);
   for (size_t a = 0; a < server_asset_count; a++)
     if (strcmp(server_assets[a].name, path) == 0) {
       answer->status = 200;
@@ -229,7 +231,7 @@ static void answer_get(server *s, struct MHD_Connection *connection, const char 
   else if (strcmp(path, "folder.json") == 0) answer_folder(s, connection, answer);
   else if (strcmp(path, "film.json") == 0) answer_film_progress(s, connection, answer);
   else if (strcmp(path, "opening.json") == 0) answer_opening(s, answer);
-  else answer_asset(path, answer);
+  else answer_asset(s, path, answer);
 }
 
 /* A whole number of the query, from low to high; `standard` if it is absent, -1 if it is anything else. */

@@ -63,6 +63,7 @@ static bool serve(server *s, int listening, char *problem, size_t size) {
   char url[100];
   snprintf(url, sizeof url, "http://127.0.0.1:%d/%s/", port_of(listening), s->token);
   s->options.ready(s->options.user_data, url);
+  atomic_store(&s->announced, true);
   wait_for_stop(&s->options);
   MHD_stop_daemon(daemon); /* frames that are being rendered stop, as they are outdated now */
   return true;

@@ -43,6 +43,7 @@ typedef struct server_options {
   bool (*stopped)(void);      /* asked some times a second; true ends server_run() */
   void *user_data;
   void (*ready)(void *user_data, const char *url); /* called once, as soon as the server answers requests */
+  void (*visited)(void *user_data); /* called once after `ready`, by another thread: a browser has the page */
 } server_options;
 
 /* Serves until options->stopped() returns true. False, with an error line in `problem`, if it could not
