@@ -4,30 +4,32 @@
  * all frames of its page with lower numbers outdated: one that is being rendered stops at its next check for
  * cancellation, and those that wait are not begun. */
 #define _GNU_SOURCE
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "parts.h"
 
 /* The frame that this thread works on. */
 static _Thread_local struct {
   server *server;
+  int socket;        /* of whoever asked for it */
   server_page *page; /* null: none */
   unsigned long long number;
   bool opening; /* a file */
 } current;
 
-static double clock_seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+void work_begin(server *s, int socket) {
+  current.server = s;
+  current.socket = socket;
 }
+
+void work_end(void) { current.server = NULL; }
 
 bool server_is_outdated(void) {
   if (current.server == NULL) return false;
-  if (current.server->options.stopped()) return true;
+  if (current.server->options.stopped() || peer_is_gone(current.socket)) return true;
   return current.page != NULL && atomic_load(&current.page->newest) > current.number;
 }
 
@@ -63,19 +65,28 @@ static server_page *find_page(server *s, const char *name) {
   return best;
 }
 
+/* Frees a page that no request holds. */
+static void release_page(server *s, server_page *page) {
+  if (page->renderer != NULL) atomic_store(&s->released, true);
+  hl_renderer_destroy(page->renderer);
+  page->renderer = NULL;
+  page->name[0] = '\0';
+  page->leaving = false;
+  atomic_store(&page->newest, 0);
+}
+
 /* The page of this name, in use until leave_page(); null: all pages are busy. */
 static server_page *enter_page(server *s, const char *name, unsigned long long number) {
   pthread_mutex_lock(&s->pages_lock);
   server_page *page = find_page(s, name);
   if (page != NULL && strcmp(page->name, name) != 0) {
-    hl_renderer_destroy(page->renderer);
-    page->renderer = NULL;
+    release_page(s, page);
     snprintf(page->name, sizeof page->name, "%s", name);
-    atomic_store(&page->newest, 0);
   }
   if (page != NULL) {
     page->users++;
     page->last_use = ++s->uses;
+    page->last_seen = server_seconds();
     if (atomic_load(&page->newest) < number) atomic_store(&page->newest, number);
   }
   pthread_mutex_unlock(&s->pages_lock);
@@ -85,6 +96,54 @@ static server_page *enter_page(server *s, const char *name, unsigned long long n
 static void leave_page(server *s, server_page *page) {
   pthread_mutex_lock(&s->pages_lock);
   page->users--;
+  page->last_seen = server_seconds();
+  if (page->leaving && page->users == 0) release_page(s, page);
+  pthread_mutex_unlock(&s->pages_lock);
+}
+
+void page_is_gone(server *s, const char *name) {
+  size_t length = strlen(name);
+  pthread_mutex_lock(&s->pages_lock);
+  for (int p = 0; p < MOST_PAGES; p++) {
+    server_page *page = &s->pages[p];
+    if (strncmp(page->name, name, length) != 0 || (page->name[length] != '\0' && page->name[length] != '-'))
+      continue;
+    atomic_store(&page->newest, ULLONG_MAX);
+    page->leaving = true;
+    if (page->users == 0) release_page(s, page);
+  }
+  pthread_mutex_unlock(&s->pages_lock);
+}
+
+void pages_expire(server *s) {
+  double now = server_seconds();
+  pthread_mutex_lock(&s->pages_lock);
+  for (int p = 0; p < MOST_PAGES; p++) {
+    server_page *page = &s->pages[p];
+    if (page->name[0] != '\0' && page->users == 0 && now - page->last_seen > IDLE_PAGE_SECONDS)
+      release_page(s, page);
+  }
+  pthread_mutex_unlock(&s->pages_lock);
+}
+
+int pages_count(server *s, int *rendering) {
+  int count = 0;
+  *rendering = 0;
+  pthread_mutex_lock(&s->pages_lock);
+  for (int p = 0; p < MOST_PAGES; p++) {
+    count += s->pages[p].name[0] != '\0';
+    *rendering += s->pages[p].users;
+  }
+  pthread_mutex_unlock(&s->pages_lock);
+  return count;
+}
+
+/* Makes room in memory: of all pages that no request holds the renderers end. They are made anew with the
+ * next frame. */
+static void spare_memory(server *s) {
+  pthread_mutex_lock(&s->pages_lock);
+  for (int p = 0; p < MOST_PAGES; p++)
+    if (s->pages[p].users == 0) release_page(s, &s->pages[p]);
   pthread_mutex_unlock(&s->pages_lock);
 }
 
@@ -129,13 +188,11 @@ void answer_scene(server *s, const frame_request *request, const film_request *f
                   server_answer *answer) {
   hl_scene *scene = NULL;
   hl_error error = {0};
-  current.server = s;
   current.page = NULL;
   hl_status status = read_scene(s, request->opened, request->text, request->length, &scene, &error);
   if (status == HL_OK && film != NULL) status = turn_to_frame(s, &scene, film, frame, &error);
   if (status == HL_OK) status = hl_scene_to_json(s->options.context, scene, &answer->text, &error);
   hl_scene_release(scene);
-  current.server = NULL;
   if (status != HL_OK) {
     fail_frame(answer, status, &error);
     return;
@@ -185,14 +242,14 @@ static hl_status render(server *s, server_page *page, const hl_scene *scene, con
                         server_answer *answer, hl_error *error) {
   const hl_scene_description *d = hl_scene_describe(scene);
   hl_image *image = NULL;
-  double began = clock_seconds();
+  double began = server_seconds();
   hl_status status = page->renderer == NULL ? hl_renderer_create(s->options.context, &page->renderer, error)
                                             : HL_OK;
   if (status == HL_OK) status = hl_image_create(s->options.context, d->width, d->height, &image, error);
   if (status == HL_OK)
     status = hl_renderer_render(page->renderer, scene, hl_image_pixels(image), 4 * (size_t)d->width, NULL,
                                 error);
-  double rendered = clock_seconds();
+  double rendered = server_seconds();
   if (status == HL_OK) {
     hl_image_write_options options;
     hl_scene_write_options(scene, &options);
@@ -202,7 +259,22 @@ static hl_status render(server *s, server_page *page, const hl_scene *scene, con
   }
   hl_image_destroy(image);
   answer->seconds_render = rendered - began;
-  answer->seconds_encode = clock_seconds() - rendered;
+  answer->seconds_encode = server_seconds() - rendered;
+  return status;
+}
+
+/* Reads the scene and renders it; the page's frames are rendered one after the other. */
+static hl_status make_frame(server *s, server_page *page, const frame_request *request,
+                            const film_request *film, server_answer *answer, hl_error *error) {
+  hl_scene *scene = NULL;
+  double began = server_seconds();
+  if (server_is_outdated()) return HL_ERROR_CANCELLED;
+  hl_status status = read_scene(s, request->opened, request->text, request->length, &scene, error);
+  answer->seconds_read = server_seconds() - began;
+  if (status == HL_OK)
+    status = film != NULL ? render_film(s, page, scene, film, answer, error)
+                          : render(s, page, scene, request, answer, error);
+  hl_scene_release(scene);
   return status;
 }
 
@@ -213,23 +285,19 @@ void answer_frame(server *s, const frame_request *request, const film_request *f
            &(hl_error){.message = "too many pages render at once: close one"});
     return;
   }
-  hl_scene *scene = NULL;
   hl_error error = {0};
   pthread_mutex_lock(&page->rendering);
-  current.server = s;
   current.page = page;
   current.number = request->number;
-  double began = clock_seconds();
-  hl_status status = server_is_outdated()
-                         ? HL_ERROR_CANCELLED
-                         : read_scene(s, request->opened, request->text, request->length, &scene, &error);
-  answer->seconds_read = clock_seconds() - began;
-  if (status == HL_OK)
-    status = film != NULL ? render_film(s, page, scene, film, answer, &error)
-                          : render(s, page, scene, request, answer, &error);
-  current.server = NULL;
+  hl_status status = make_frame(s, page, request, film, answer, &error);
+  if (status == HL_ERROR_MEMORY) { /* once more, with what idle pages held, and what this one held before */
+    spare_memory(s);
+    hl_renderer_destroy(page->renderer);
+    page->renderer = NULL;
+    status = make_frame(s, page, request, film, answer, &error);
+  }
+  current.page = NULL;
   pthread_mutex_unlock(&page->rendering);
-  hl_scene_release(scene);
   leave_page(s, page);
   if (status == HL_OK) answer->status = 200;
   else fail_frame(answer, status, &error);
@@ -259,13 +327,15 @@ bool film_progress(server *s, const char *name, int *done, int *frames) {
 void answer_open(server *s, const server_file *file, const char *title, server_answer *answer) {
   hl_scene *scene = NULL;
   hl_error error = {0};
-  current.server = s;
   current.page = NULL;
   current.opening = true;
   atomic_store(&s->opening_part, 0);
   hl_status status = s->options.open(s->options.user_data, file, &scene, &error);
+  if (status == HL_ERROR_MEMORY) {
+    spare_memory(s);
+    status = s->options.open(s->options.user_data, file, &scene, &error);
+  }
   current.opening = false;
-  current.server = NULL;
   if (status == HL_OK) {
     server_opened *opened = opened_add(s, scene, title);
     answer->from_malloc = opened != NULL ? (unsigned char *)strdup(opened->start) : NULL;

@@ -27,16 +27,26 @@ server_opened *opened_enter(server *s, long long number) {
   return opened;
 }
 
-void opened_leave(server *s, server_opened *opened) {
-  pthread_mutex_lock(&s->pages_lock);
-  opened->users--;
-  pthread_mutex_unlock(&s->pages_lock);
-}
-
-static void release(server_opened *opened) {
+static void release(server *s, server_opened *opened) {
+  if (opened->scene != NULL) atomic_store(&s->released, true);
   hl_scene_release(opened->scene);
   free(opened->start);
   *opened = (server_opened){0};
+}
+
+void opened_leave(server *s, server_opened *opened) {
+  pthread_mutex_lock(&s->pages_lock);
+  opened->users--;
+  if (opened->leaving && opened->users == 0) release(s, opened);
+  pthread_mutex_unlock(&s->pages_lock);
+}
+
+void opened_close(server *s, long long number) {
+  pthread_mutex_lock(&s->pages_lock);
+  server_opened *opened = number > 0 ? find(s, number) : NULL;
+  if (opened != NULL) opened->leaving = true;
+  if (opened != NULL && opened->users == 0) release(s, opened);
+  pthread_mutex_unlock(&s->pages_lock);
 }
 
 /* The place for another scene; null: requests hold all of them. */
@@ -47,7 +57,7 @@ static server_opened *make_room(server *s) {
     if (one->scene == NULL) return one;
     if (one->users == 0 && (best == NULL || one->last_use < best->last_use)) best = one;
   }
-  if (best != NULL) release(best);
+  if (best != NULL) release(s, best);
   return best;
 }
 
@@ -69,6 +79,14 @@ server_opened *opened_add(server *s, hl_scene *scene, const char *title) {
   return opened;
 }
 
+int opened_count(server *s) {
+  int count = 0;
+  pthread_mutex_lock(&s->pages_lock);
+  for (int o = 0; o < MOST_OPENED; o++) count += s->opened[o].scene != NULL;
+  pthread_mutex_unlock(&s->pages_lock);
+  return count;
+}
+
 void opened_end(server *s) {
-  for (int o = 0; o < MOST_OPENED; o++) release(&s->opened[o]);
+  for (int o = 0; o < MOST_OPENED; o++) release(s, &s->opened[o]);
 }

@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "connections.h"
 #include "server.h"
 
 enum {
@@ -19,8 +20,7 @@ enum {
   PATH_BYTES = 4096, /* of a path: Linux's PATH_MAX, which realpath() fills */
   MOST_FILM_KEYS = 32,
   MOST_FILM_FRAMES = 100000,
-  MOST_CONNECTIONS = 64,     /* at once */
-  IDLE_SECONDS = 20,         /* after which a silent connection is closed */
+  IDLE_PAGE_SECONDS = 300,   /* after which a page that asks for nothing loses its renderer */
   MOST_BODY_BYTES = 4 << 20, /* of a scene's text */
   MOST_PIXELS = 64 << 20,    /* of a picture */
   LEAST_QUALITY = 10,
@@ -48,7 +48,9 @@ typedef struct server_page {
   atomic_ullong newest;              /* the highest number of a requested frame */
   atomic_int film_done, film_frames; /* of the film that the page renders; 0 frames: none */
   int users;                         /* requests that hold the page; under server.pages_lock */
+  bool leaving;                      /* it is free when the last of them ends; under server.pages_lock */
   unsigned long long last_use;       /* under server.pages_lock */
+  double last_seen;                  /* by server_seconds(); under server.pages_lock */
 } server_page;
 
 /* A scene that is open. */
@@ -57,6 +59,7 @@ typedef struct server_opened {
   hl_scene *scene;             /* owned; null: free */
   char *start;                 /* owned; the text of its start.json */
   int users;                   /* number of requests that use it; under server.pages_lock */
+  bool leaving;                /* its page has gone; under server.pages_lock */
   unsigned long long last_use; /* under server.pages_lock */
 } server_opened;
 
@@ -69,10 +72,12 @@ typedef struct server {
   long long next_opened;   /* under pages_lock */
   atomic_bool announced;   /* options.ready has returned */
   atomic_bool visited;     /* options.visited was called */
+  atomic_bool released;    /* renderers or scenes since the system was given their memory back */
   atomic_int opening_part; /* thousandths of the volume that is being read */
   pthread_mutex_t pages_lock;
   server_page pages[MOST_PAGES];
   unsigned long long uses;
+  connection_table connections;
 } server;
 
 /* An answer: bytes or a text, with its HTTP status. */
@@ -120,6 +125,14 @@ typedef struct server_upload {
 /* frames.c */
 bool pages_begin(server *s);
 void pages_end(server *s);
+/* Between them the thread works for whoever is at the other end of the socket, as long as he is there. */
+void work_begin(server *s, int socket);
+void work_end(void);
+/* A page was closed: its frames, those of its lanes (NAME-...), and their renderers end. */
+void page_is_gone(server *s, const char *name);
+void pages_expire(server *s); /* renderers of pages that asked for nothing for long; call it now and then */
+/* Those that may hold a renderer; *rendering: the frames that are rendered, or wait for it. */
+int pages_count(server *s, int *rendering);
 /* film: null for a picture. */
 void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer);
 /* The scene with its defaults; with a film, as it is at that frame of the film. film: null for none. */
@@ -142,8 +155,11 @@ hl_status turn_to_frame(server *s, hl_scene **scene, const film_request *film, i
 /* opened.c: scenes that are open. An entered one is held until it is left; null: it is open no longer. */
 server_opened *opened_enter(server *s, long long number);
 void opened_leave(server *s, server_opened *opened);
+/* Closes a scene that a page has opened, when no request holds it any longer. */
+void opened_close(server *s, long long number);
 /* Adds a scene, which is retained, and enters it; null without memory or room. */
 server_opened *opened_add(server *s, hl_scene *scene, const char *title);
+int opened_count(server *s);
 void opened_end(server *s);
 
 /* folder.c */

@@ -211,6 +211,22 @@ static void answer_opening(server *s, server_answer *answer) {
   answer_json(answer, text);
 }
 
+static void answer_state(server *s, server_answer *answer) {
+  char *text = NULL;
+  int open, waiting, rendering, pages = pages_count(s, &rendering);
+  unsigned long long turned_away;
+  connections_count(&s->connections, &open, &waiting, &turned_away);
+  if (asprintf(
+          &text,
+          "{\"pages\":%d,\"rendering\":%d,\"opened\":%d,\"held\":%llu,\"peak\":%llu,\"connections\":%d,"
+          "\"waiting\":%d,"
+          "\"turned_away\":%llu}",
+          pages, rendering, opened_count(s), (unsigned long long)hl_context_memory_held(s->options.context),
+          (unsigned long long)hl_context_memory_peak(s->options.context), open, waiting, turned_away) < 0)
+    text = NULL;
+  answer_json(answer, text);
+}
+
 static void answer_asset(server *s, const char *path, server_answer *answer) {
   if (path[0] == '\0' && atomic_load(&s->announced) && !atomic_exchange(&s->visited, true))
     s->options.visited(s->options.user_data);
@@ -231,6 +247,7 @@ static void answer_get(server *s, struct MHD_Connection *connection, const char 
   else if (strcmp(path, "folder.json") == 0) answer_folder(s, connection, answer);
   else if (strcmp(path, "film.json") == 0) answer_film_progress(s, connection, answer);
   else if (strcmp(path, "opening.json") == 0) answer_opening(s, answer);
+  else if (strcmp(path, "state.json") == 0) answer_state(s, answer);
   else answer_asset(s, path, answer);
 }
 
@@ -345,6 +362,16 @@ static void post_cancel(server *s, struct MHD_Connection *connection, const requ
   else answer_problem(answer, 400, "?page=NAME&number=N is missing\n");
 }
 
+/* A page was closed, or shows another file: what is open for it ends. */
+static void post_leave(server *s, struct MHD_Connection *connection, server_answer *answer) {
+  const char *page = query(connection, "page");
+  long long opened = query_number(connection, "opened", 0, MOST_NUMBER, 0);
+  answer->status = 204;
+  if (is_page_name(page) && opened >= 0) page_is_gone(s, page);
+  else answer_problem(answer, 400, "?page=NAME (&opened=N) is missing\n");
+  opened_close(s, opened);
+}
+
 static void post_open(server *s, struct MHD_Connection *connection, server_answer *answer) {
   const char *name = query(connection, "file");
   char path[PATH_BYTES];
@@ -378,6 +405,7 @@ static void answer_post(server *s, struct MHD_Connection *connection, request *r
   bool frame = strcmp(r->path, "frame") == 0, film = strcmp(r->path, "film") == 0;
   if (r->uploads) post_upload(s, connection, r, answer);
   else if (strcmp(r->path, "open") == 0) post_open(s, connection, answer);
+  else if (strcmp(r->path, "leave") == 0) post_leave(s, connection, answer);
   else if (strcmp(r->path, "cancel") == 0) post_cancel(s, connection, r, answer);
   else if (!frame && !film && strcmp(r->path, "scene") != 0)
     answer_problem(answer, 404, "there is nothing here\n");
@@ -395,7 +423,9 @@ static enum MHD_Result answer(server *s, struct MHD_Connection *connection, cons
     return send_answer(s, connection, &a);
   }
   MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, 0u);
+  work_begin(s, connection_socket(connection));
   answer_post(s, connection, r, &a);
+  work_end();
   MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, (unsigned)IDLE_SECONDS);
   return send_answer(s, connection, &a);
 }
@@ -413,23 +443,28 @@ static enum MHD_Result on_request(void *user_data, struct MHD_Connection *connec
     *own = r;
     unsigned refusal = check(s, connection, method, url, r, &line);
     r->refused = refusal != 0;
+    if (refusal == 0) connection_sends(&s->connections, connection);
     return refusal != 0 ? send_line(connection, refusal, line) : MHD_YES;
   }
   if (*upload_size > 0) {
+    connection_received(&s->connections, connection, *upload_size);
     bool taken = !r->refused && (r->uploads ? upload_add(&r->upload, upload, *upload_size)
                                             : collect(r, upload, *upload_size));
     *upload_size = 0;
     return taken ? MHD_YES : MHD_NO; /* a body larger than its header announced: the connection ends */
   }
   r->path = path_after_token(url, s->token);
-  return r->refused || r->path == NULL ? MHD_NO : answer(s, connection, method, r);
+  if (r->refused || r->path == NULL) return MHD_NO;
+  connection_is_answered(&s->connections, connection);
+  return answer(s, connection, method, r);
 }
 
 static void on_end(void *user_data, struct MHD_Connection *connection, void **own,
                    enum MHD_RequestTerminationCode code) {
-  (void)user_data, (void)connection, (void)code;
+  (void)code;
   request *r = *own;
   if (r != NULL) {
+    if (!r->refused) connection_is_idle(&((server *)user_data)->connections, connection);
     upload_end(&r->upload);
     free(r->body);
   }
@@ -441,6 +476,7 @@ struct MHD_Daemon *listen_to_requests(server *s, int listening_socket) {
   return MHD_start_daemon(MHD_USE_THREAD_PER_CONNECTION | MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_POLL, 0,
                           NULL, NULL, on_request, s, MHD_OPTION_LISTEN_SOCKET, (MHD_socket)listening_socket,
                           MHD_OPTION_CONNECTION_LIMIT, (unsigned)MOST_CONNECTIONS,
-                          MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_SECONDS, MHD_OPTION_NOTIFY_COMPLETED,
-                          on_end, NULL, MHD_OPTION_END);
+                          MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)IDLE_SECONDS, MHD_OPTION_NOTIFY_CONNECTION,
+                          connection_changed, &s->connections, MHD_OPTION_NOTIFY_COMPLETED, on_end, s,
+                          MHD_OPTION_END);
 }

@@ -11,6 +11,9 @@
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <microhttpd.h>
 
@@ -47,9 +50,22 @@ static bool make_token(char token[TOKEN_DIGITS + 1]) {
   return true;
 }
 
-static void wait_for_stop(const server_options *options) {
+/* The C library keeps freed memory for the thread that had it: of many threads, much. */
+static void give_back_memory(server *s) {
+  if (!atomic_exchange(&s->released, false)) return;
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
+static void wait_for_stop(server *s) {
   const struct timespec moment = {.tv_nsec = 100000000};
-  while (!options->stopped()) nanosleep(&moment, NULL);
+  while (!s->options.stopped()) {
+    nanosleep(&moment, NULL);
+    connections_expire(&s->connections);
+    pages_expire(s);
+    give_back_memory(s);
+  }
 }
 
 /* Owns listening. */
@@ -64,7 +80,7 @@ static bool serve(server *s, int listening, char *problem, size_t size) {
   snprintf(url, sizeof url, "http://127.0.0.1:%d/%s/", port_of(listening), s->token);
   s->options.ready(s->options.user_data, url);
   atomic_store(&s->announced, true);
-  wait_for_stop(&s->options);
+  wait_for_stop(s);
   MHD_stop_daemon(daemon); /* frames that are being rendered stop, as they are outdated now */
   return true;
 }
@@ -72,7 +88,7 @@ static bool serve(server *s, int listening, char *problem, size_t size) {
 bool server_run(const server_options *options, char *problem, size_t problem_size) {
   server *s = calloc(1, sizeof *s);
   int listening = -1;
-  bool good = s != NULL && pages_begin(s);
+  bool good = s != NULL && pages_begin(s) && connections_begin(&s->connections);
   if (good) {
     s->options = *options;
     good = hl_context_confine(options->context, NULL, &s->sealed, NULL) == HL_OK;
@@ -94,6 +110,7 @@ bool server_run(const server_options *options, char *problem, size_t problem_siz
   if (s != NULL) {
     pages_end(s);
     opened_end(s);
+    connections_end(&s->connections);
     hl_context_destroy(s->sealed);
     hl_context_destroy(s->below);
   }

@@ -2,16 +2,20 @@
  *
  * It answers on 127.0.0.1 alone, under a path that begins with a random token:
  *
- *     GET  TOKEN/              the page, and the files it consists of (page/, embedded in the program)
- *     GET  TOKEN/start.json    what is open: the scene, its volumes' ranges and histograms, presets,
- * colormaps POST TOKEN/frame         a scene file's text in, its picture out
- * (?page=NAME&number=N&format=FORMAT) POST TOKEN/scene         a scene file's text in, the same scene with
- * all its defaults written out POST TOKEN/film          a scene file's text in, a film out (as a frame,
- * &turntable=N&key0=PATH=...) GET  TOKEN/film.json     how far the page's film is (?page=NAME) POST
- * TOKEN/cancel        makes frames and films of a page outdated (?page=NAME&number=N) GET  TOKEN/folder.json
- * what can be opened in a folder below the one that the viewer was started in (?at=) POST TOKEN/open opens a
- * file there (?file=PATH), or the file in the body (upload?name=NAME): its start.json, whose number &opened=N
- * says whose volumes a scene has GET  TOKEN/opening.json  how far a file is read
+ * - GET TOKEN/: the page, and the files it consists of (page/, embedded in the program)
+ * - GET TOKEN/start.json: what is open: the scene, its volumes' ranges and histograms, presets, colormaps
+ * - POST TOKEN/frame?page=NAME&number=N&format=FORMAT: a scene file's text in, its picture out
+ * - POST TOKEN/scene: a scene file's text in, the same scene with all its defaults written out
+ * - POST TOKEN/film: a scene file's text in, a film out (as a frame, &turntable=N&key0=PATH=...)
+ * - GET TOKEN/film.json?page=NAME: how far the page's film is
+ * - POST TOKEN/cancel?page=NAME&number=N: makes frames and films of a page outdated
+ * - POST TOKEN/leave?page=NAME&opened=N: a page was closed: its frames, its renderers and the file that it
+ * had opened end
+ * - GET TOKEN/folder.json?at=: what can be opened in a folder below the one that the viewer was started in
+ * - POST TOKEN/open?file=PATH: opens a file there; upload?name=NAME: opens the file in the body. Its
+ *   start.json, whose number &opened=N says whose volumes a scene has
+ * - GET TOKEN/opening.json: how far a file is read
+ * - GET TOKEN/state.json: what the server holds: pages, open scenes, bytes, connections
  *
  * Scenes name the volumes and images of what is open: no other file is read for them. A file that a page
  * opens may name files below its own folder alone; a dropped one lies in a folder of its own. A page's

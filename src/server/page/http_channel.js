@@ -56,6 +56,11 @@ export class HttpChannel {
     return (await check(await fetch(`upload?${new URLSearchParams({ name: file.name })}`, { method: "POST", body: file }))).json();
   }
 
+  // The page is closed, or shows another file: the viewer gives back what it held for this one.
+  leave() {
+    navigator.sendBeacon(`leave?${new URLSearchParams({ page: this.#page, opened: this.#opened })}`);
+  }
+
   // How far it is read: { part }, from 0 to 1.
   async opening() {
     return (await check(await fetch("opening.json"))).json();

@@ -3,12 +3,19 @@
 import { HttpChannel } from "./http_channel.js";
 import { mount } from "./viewer.js";
 
+let channel = null;
+
 // Shows what is open, in place of what was.
 function show(start) {
   globalThis.halflight?.end();
+  channel?.leave();
+  channel = new HttpChannel(start.opened);
   document.title = `${start.title} · Halflight`;
-  globalThis.halflight = mount(document.body, new HttpChannel(start.opened), start, { keyboard: document, reopen: show }); // for the console, and for tests
+  globalThis.halflight = mount(document.body, channel, start, { keyboard: document, reopen: show }); // for the console, and for tests
 }
+
+addEventListener("pagehide", () => channel?.leave());
+addEventListener("pageshow", (event) => { if (event.persisted) location.reload(); }); // what it had is given back
 
 try {
   show(await new HttpChannel().start());
