@@ -373,6 +373,11 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_from_json_like(hl_context *context, con
 /* The scene as JSON text, null-terminated; free with hl_text_release(). */
 HL_API HL_WARN_UNUSED hl_status hl_scene_to_json(hl_context *context, const hl_scene *scene, char **text,
                                                  hl_error *error);
+/* The same for a text that will lie in a folder, or in a picture there: files in the folder or below are
+ * named relative to it, others as hl_scene_to_json() does. folder: "" is the current one; null: all as there.
+ */
+HL_API HL_WARN_UNUSED hl_status hl_scene_to_json_beside(hl_context *context, const hl_scene *scene,
+                                                        const char *folder, char **text, hl_error *error);
 HL_API void hl_text_release(hl_context *context, char *text);
 
 /* A scene that shows one volume well with no further choice: three-quarter view, automatic transfer

@@ -129,16 +129,16 @@ class Image:
              ffi.from_buffer("uint8_t[]", codes), codes.strides[0])
         return codes
 
-    def _scene_text(self) -> Any:
-        """The scene for a PNG; none where volumes are arrays, which no file can name."""
+    def _scene_text(self, folder: str | None) -> Any:
+        """The scene for a PNG in a folder; none where volumes are arrays, which no file can name."""
         try:
-            return ffi.new("char[]", self.scene.to_json().encode())
+            return ffi.new("char[]", self.scene._text(folder).encode())
         except ValueError:
             return ffi.NULL
 
     @suggests
     def save(self, path: str | os.PathLike[str], *, depth: int = 8, background: Any = None,
-             exposure: float | None = None, tone: str | None = None) -> None:
+             exposure: float | None = None, tone: str | None = None, metadata: bool = True) -> None:
         """Write a .png (sRGB, over the background, with the scene in it), .exr or .npy (linear; with layers).
 
         Parameters
@@ -150,6 +150,9 @@ class Image:
             Bits per channel of a .png.
         background, exposure, tone : optional
             As in `to_srgb8`; of a .png.
+        metadata : bool
+            Whether a .png carries its scene, with the names of its files: of files beside the picture, or below
+            its folder, relative to it.
         """
         file = os.fspath(path)
         if not file.lower().endswith(".png"):
@@ -158,10 +161,10 @@ class Image:
                 if given:
                     raise ValueError(f"{word} is for .png pictures, not for '{file}': .exr and .npy hold linear floats")
         call(lib.hl_image_write, context, self._handle if not file.lower().endswith(".png") else self._plain(),
-             os.fsencode(file), self._with_scene(self._options(background, exposure, tone, depth)))
+             os.fsencode(file), self._with_scene(self._options(background, exposure, tone, depth), metadata, os.path.dirname(file)))
 
-    def _with_scene(self, options: Any) -> Any:
-        text = self._scene_text()
+    def _with_scene(self, options: Any, metadata: bool, folder: str | None = None) -> Any:
+        text = self._scene_text(folder) if metadata else ffi.NULL
         options.scene_json = text
         return ffi.gc(options, lambda _: text and None)
 
@@ -173,12 +176,12 @@ class Image:
         plain._pixels[...] = self._pixels
         return plain._handle
 
-    def encode(self, format: str = "png", *, depth: int = 8) -> bytes:
-        """The bytes of a "png" (of 8 or 16 bits), "exr" or "npy" file."""
+    def encode(self, format: str = "png", *, depth: int = 8, metadata: bool = True) -> bytes:
+        """The bytes of a "png" (of 8 or 16 bits), "exr" or "npy" file; metadata: as for `save`."""
         choice("format", format, _FORMATS)
         data, length = ffi.new("unsigned char **"), ffi.new("size_t *")
         call(lib.hl_image_encode, context, self._handle if format == "exr" else self._plain(), format.encode(),
-             self._with_scene(self._options(depth=depth)), data, length)
+             self._with_scene(self._options(depth=depth), metadata), data, length)
         try:
             return bytes(ffi.buffer(data[0], length[0]))
         finally:

@@ -127,8 +127,13 @@ class Scene:
 
     def to_json(self) -> str:
         """The scene file's text. Volumes of arrays have no file: save them first."""
+        return self._text(None)
+
+    def _text(self, folder: str | None) -> str:
+        """The text, for a picture in a folder: files in it, or below, are named relative to it."""
         text = ffi.new("char **")
-        call(lib.hl_scene_to_json, context, self._handle, text)
+        call(lib.hl_scene_to_json_beside, context, self._handle,
+             ffi.NULL if folder is None else ffi.new("char[]", os.fsencode(folder)), text)
         try:
             return text_of(text[0])
         finally:

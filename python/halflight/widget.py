@@ -104,7 +104,7 @@ def _encoded(image: Image, asked: dict[str, Any]) -> tuple[str, bytes]:
         return _jpeg(image, min(max(int(asked["quality"]), 10), 100))
     if asked["format"] in ("exr", "npy"):
         return "image/x-exr" if asked["format"] == "exr" else "application/octet-stream", image.encode(asked["format"])
-    return "image/png", image.encode("png", depth=16 if asked["depth"] == 16 else 8)
+    return "image/png", image.encode("png", depth=16 if asked["depth"] == 16 else 8, metadata=bool(asked.get("metadata", True)))
 
 
 class _Frames(threading.Thread):

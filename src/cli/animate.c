@@ -25,6 +25,7 @@ enum {
   ANIMATE_PART,
   ANIMATE_RANKS,
   ANIMATE_KEEP_FRAMES,
+  ANIMATE_NO_METADATA,
   ANIMATE_DATA,
   ANIMATE_MAX_MEMORY,
   ANIMATE_QUIET,
@@ -79,6 +80,7 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
     [ANIMATE_KEEP_FRAMES] = {.name = "keep-frames",
                              .kind = OPTION_SWITCH,
                              .help = "leave the pictures beside the film, in its name with\n\"-frames\""},
+    [ANIMATE_NO_METADATA] = FRAMES_OPTION_NO_METADATA,
     [ANIMATE_DATA] = HOST_OPTION_DATA(NULL),
     [ANIMATE_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
     [ANIMATE_QUIET] = HOST_OPTION_QUIET,
@@ -211,7 +213,8 @@ static int run_job(animate_job *job) {
   animate_frames frames = {.host = &job->host,
                            .film = job->film,
                            .folder = job->folder,
-                           .opaque = job->film_wanted,
+                           .style = {.opaque = job->film_wanted, /* a film has no transparent pixels */
+                                     .no_metadata = job->values[ANIMATE_NO_METADATA].given},
                            .digits = count_digits(film_frames(job->film))};
   job->host.own_bar = true;
   exit_code = animate_render(&frames, job->part, job->parts);

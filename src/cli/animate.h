@@ -3,6 +3,7 @@
 #define HL_CLI_ANIMATE_H
 
 #include "film/film.h"
+#include "frames.h"
 #include "host.h"
 
 /* The numbered pictures of a film, in a folder: "turn-frames/0000.png". */
@@ -10,9 +11,9 @@ typedef struct animate_frames {
   cli_host *host;
   const film *film;
   const char *folder;
-  bool opaque; /* for a film, which has no transparent pixels */
-  int digits;  /* of a picture's number */
-  int done;    /* number of pictures that are there already, among those that this run renders */
+  frames_style style;
+  int digits; /* of a picture's number */
+  int done;   /* number of pictures that are there already, among those that this run renders */
   int rendered;
 } animate_frames;
 

@@ -22,15 +22,13 @@ void animate_frame_path(const animate_frames *frames, int frame, char *path, siz
 }
 
 bool animate_frame_is_there(const animate_frames *frames, int frame) {
-  char path[PATH_BYTES], *text = NULL;
+  char path[PATH_BYTES];
   hl_scene *scene = NULL;
   hl_error error = {0};
   animate_frame_path(frames, frame, path, sizeof path);
   if (access(path, F_OK) != 0) return false;
   hl_status status = film_scene(frames->film, frame, &scene, &error);
-  if (status == HL_OK) status = hl_scene_to_json(frames->host->context, scene, &text, &error);
-  bool there = status == HL_OK && frames_have_scene(frames->host, path, text);
-  hl_text_release(frames->host->context, text);
+  bool there = status == HL_OK && frames_have_scene(frames->host, path, scene);
   hl_scene_release(scene);
   return there;
 }
@@ -43,7 +41,7 @@ static hl_status do_frame(animate_frames *frames, hl_renderer *renderer, int fra
   if (!animate_frame_is_there(frames, frame)) {
     animate_frame_path(frames, frame, path, sizeof path);
     hl_status status = film_scene(frames->film, frame, &scene, error);
-    if (status == HL_OK) status = frames_render(frames->host, renderer, scene, frames->opaque, path, error);
+    if (status == HL_OK) status = frames_render(frames->host, renderer, scene, frames->style, path, error);
     hl_scene_release(scene);
     if (status != HL_OK) return status;
     frames->rendered++;

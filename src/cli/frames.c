@@ -65,9 +65,12 @@ static char *scene_of_picture(const cli_host *host, const char *path) {
   return text;
 }
 
-bool frames_have_scene(const cli_host *host, const char *path, const char *scene) {
-  char *text = scene_of_picture(host, path);
-  bool same = text != NULL && strcmp(text, scene) == 0;
+bool frames_have_scene(const cli_host *host, const char *path, const hl_scene *scene) {
+  char *text = scene_of_picture(host, path), *wanted = NULL;
+  hl_error ignored;
+  bool same = text != NULL && output_scene_text(host->context, scene, path, &wanted, &ignored) == HL_OK &&
+              strcmp(text, wanted) == 0;
+  hl_text_release(host->context, wanted);
   hl_text_release(host->context, text);
   return same;
 }
@@ -91,20 +94,21 @@ void frames_draw_bar(cli_host *host, int done, int wanted, int rendered, double 
   host_draw_bar(host, (double)done / wanted, text);
 }
 
-hl_status frames_render(const cli_host *host, hl_renderer *renderer, const hl_scene *scene, bool opaque,
-                        const char *path, hl_error *error) {
+hl_status frames_render(const cli_host *host, hl_renderer *renderer, const hl_scene *scene,
+                        frames_style style, const char *path, hl_error *error) {
   const hl_scene_description *d = hl_scene_describe(scene);
   hl_image *image = NULL;
   char *text = NULL;
   hl_status status = hl_image_create(host->context, d->width, d->height, &image, error);
   if (status == HL_OK)
     status = hl_renderer_render(renderer, scene, hl_image_pixels(image), 4 * (size_t)d->width, NULL, error);
-  if (status == HL_OK) status = hl_scene_to_json(host->context, scene, &text, error);
+  if (status == HL_OK && !style.no_metadata)
+    status = output_scene_text(host->context, scene, path, &text, error);
   if (status == HL_OK) {
     hl_image_write_options options;
     hl_scene_write_options(scene, &options);
     options.scene_json = text;
-    if (opaque) options.background_transparent = 0;
+    if (style.opaque) options.background_transparent = 0;
     status = host_interrupted() ? HL_ERROR_CANCELLED
                                 : hl_image_write(host->context, image, path, &options, error);
   }

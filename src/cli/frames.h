@@ -17,6 +17,13 @@
     .help = "under mpirun or srun: each of their processes renders its\nshare, as by --part" \
   }
 
+/* The row of --no-metadata. */
+#define FRAMES_OPTION_NO_METADATA                                                \
+  {                                                                              \
+    .name = "no-metadata", .kind = OPTION_SWITCH,                                \
+    .help = "leave the scene, with the names of its files, out of\nthe pictures" \
+  }
+
 /* Reads --part K/N: *part is K - 1; without the option 0 of 1. ranks: --frames-over-ranks, by which a
  * launcher's variables of the environment say K and N. Returns the exit code. */
 int frames_read_part(const cli_value *value, const cli_value *ranks, int *part, int *parts);
@@ -24,14 +31,20 @@ int frames_read_part(const cli_value *value, const cli_value *ranks, int *part, 
 /* A picture's bytes, owned by the caller (free); null where it cannot be read. */
 unsigned char *frames_read_picture(const char *path, size_t *length);
 
-/* Whether the picture is there, made of this scene (hl_scene_to_json). */
-bool frames_have_scene(const cli_host *host, const char *path, const char *scene);
+/* Whether the picture is there and carries this scene. */
+bool frames_have_scene(const cli_host *host, const char *path, const hl_scene *scene);
 
 /* Draws the bar. done of wanted pictures are there; `rendered` of them took `seconds` in this run. */
 void frames_draw_bar(cli_host *host, int done, int wanted, int rendered, double seconds);
 
-/* Renders a scene to a picture that carries it. opaque: also where the scene's background is transparent. */
-hl_status frames_render(const cli_host *host, hl_renderer *renderer, const hl_scene *scene, bool opaque,
-                        const char *path, hl_error *error);
+/* How pictures are written. */
+typedef struct frames_style {
+  bool opaque;      /* also where the scene's background is transparent */
+  bool no_metadata; /* a picture does not carry its scene */
+} frames_style;
+
+/* Renders a scene to a picture. */
+hl_status frames_render(const cli_host *host, hl_renderer *renderer, const hl_scene *scene,
+                        frames_style style, const char *path, hl_error *error);
 
 #endif

@@ -210,15 +210,21 @@ static hl_status load_volume_scene(hl_context *context, const cli_input *input,
   return status;
 }
 
-/* Relative file names in a picture's scene start in the current folder, as on the command line that made the
- * picture. */
+/* Relative file names in a picture's scene start in the picture's folder; where a file is not there, all of
+ * them in the current folder, as on the command line that made the picture. */
 static hl_status load_picture_scene(hl_context *context, const cli_input *input, hl_scene **scene,
                                     hl_error *error) {
-  char *text = NULL;
+  char *text = NULL, *folder = strdup(input->path);
+  hl_error of_folder = {0};
   hl_status status = hl_image_find_scene(context, input->title, input->bytes, input->length, &text, error);
+  if (folder != NULL) folder[base_name(folder) - folder] = '\0';
   if (status == HL_OK)
-    status = hl_scene_from_json(context, text, strlen(text), NULL, input->title, scene, error);
+    status = hl_scene_from_json(context, text, strlen(text), folder, input->title, scene, error);
+  if (status == HL_ERROR_IO && folder != NULL && folder[0] != '\0' &&
+      hl_scene_from_json(context, text, strlen(text), NULL, input->title, scene, &of_folder) == HL_OK)
+    status = HL_OK;
   hl_text_release(context, text);
+  free(folder);
   return status;
 }
 

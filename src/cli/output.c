@@ -75,6 +75,19 @@ int output_to_stdout(const unsigned char *bytes, size_t length) {
   return finish_stdout();
 }
 
+hl_status output_scene_text(hl_context *context, const hl_scene *scene, const char *path, char **text,
+                            hl_error *error) {
+  char *folder = strdup(path);
+  if (folder == NULL) {
+    snprintf(error->message, sizeof error->message, "out of memory for a path");
+    return HL_ERROR_MEMORY;
+  }
+  folder[base_name(folder) - folder] = '\0';
+  hl_status status = hl_scene_to_json_beside(context, scene, folder, text, error);
+  free(folder);
+  return status;
+}
+
 char *output_default_name(const char *input, const char *extension) {
   char folder[PATH_MAX];
   const char *base = base_name(input);

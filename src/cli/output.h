@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <sys/types.h>
 
+#include <halflight/halflight.h>
+
 /* The part of a path after its last slash. */
 const char *base_name(const char *path);
 
@@ -21,6 +23,11 @@ int output_check(const char *path, const char *const *extensions, char *const *i
 
 /* Writes all the bytes to standard output; returns the exit code. */
 int output_to_stdout(const unsigned char *bytes, size_t length);
+
+/* The text of a scene for a picture at this path (hl_text_release()): what lies beside the picture is named
+ * relative to it. */
+hl_status output_scene_text(hl_context *context, const hl_scene *scene, const char *path, char **text,
+                            hl_error *error);
 
 /* "head.png", in the current folder, for "scans/head.nii.gz" and ".png"; owned by the caller (free), null
  * without memory. */

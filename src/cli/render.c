@@ -210,7 +210,10 @@ static int job_write(render_job *job) {
   char *scene_json = NULL;
   int exit_code = EXIT_CODE_OK;
   hl_status status = host_interrupted() ? HL_ERROR_CANCELLED : HL_OK;
-  if (status == HL_OK) status = hl_scene_to_json(job->host.context, job->scene, &scene_json, &error);
+  if (status == HL_OK && !job->values[RENDER_NO_METADATA].given)
+    status = job->to_stdout
+                 ? hl_scene_to_json(job->host.context, job->scene, &scene_json, &error)
+                 : output_scene_text(job->host.context, job->scene, job->output, &scene_json, &error);
   if (status == HL_OK) {
     hl_image_write_options options;
     hl_scene_write_options(job->scene, &options);

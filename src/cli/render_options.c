@@ -51,6 +51,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .kind = OPTION_CHOICE,
                       .choices = depths,
                       .help = "bits per channel of a .png (default 8)"},
+    [RENDER_NO_METADATA] = FRAMES_OPTION_NO_METADATA,
     [RENDER_BACKGROUND] = {.name = "background",
                            .kind = OPTION_COLOR,
                            .argument = "COLOR|transparent",
@@ -467,7 +468,7 @@ int render_check_options(const cli_value *values) {
   if (values[RENDER_THRESHOLD].given && values[RENDER_RANGE].given && !values[RENDER_COLORMAP].given)
     return fail(EXIT_CODE_USAGE,
                 "--threshold says what is opaque: --range beside it needs --colormap, to spread");
-  static const int pictures[] = {RENDER_OUTPUT, RENDER_FORMAT,    RENDER_DEPTH,
+  static const int pictures[] = {RENDER_OUTPUT, RENDER_FORMAT,    RENDER_DEPTH, RENDER_NO_METADATA,
                                  RENDER_LAYERS, RENDER_REFERENCE, RENDER_JSON};
   for (size_t n = 0; values[RENDER_PRINT_SCENE].given && n < sizeof pictures / sizeof *pictures; n++)
     if (values[pictures[n]].given)

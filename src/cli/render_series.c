@@ -112,14 +112,10 @@ static int make_scene(series_job *job) {
 /* Whether the picture is there, of this scene, and not older than the file. */
 static bool is_there(const series_job *job, int number, const hl_scene *scene, const char *path) {
   struct stat picture, file;
-  char *text = NULL;
   if (stat(path, &picture) != 0 || stat(job->files[number], &file) != 0 ||
       picture.st_mtim.tv_sec < file.st_mtim.tv_sec)
     return false;
-  bool there = hl_scene_to_json(job->host.context, scene, &text, NULL) == HL_OK &&
-               frames_have_scene(&job->host, path, text);
-  hl_text_release(job->host.context, text);
-  return there;
+  return frames_have_scene(&job->host, path, scene);
 }
 
 /* Whether the picture is there. The scene's text tells, for which a volume or a mesh need not be read: the
@@ -150,7 +146,8 @@ static int make_picture(series_job *job, hl_renderer *renderer, int number) {
     return bad ? EXIT_CODE_OK : exit_code;
   }
   bool there = is_there(job, number, scene, path); /* of a label map */
-  hl_status status = there ? HL_OK : frames_render(&job->host, renderer, scene, false, path, &error);
+  const frames_style style = {.no_metadata = job->values[RENDER_NO_METADATA].given};
+  hl_status status = there ? HL_OK : frames_render(&job->host, renderer, scene, style, path, &error);
   hl_scene_release(scene);
   if (status == HL_ERROR_CANCELLED) return EXIT_CODE_INTERRUPTED;
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);

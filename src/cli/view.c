@@ -42,6 +42,7 @@ static bool has_render_option(size_t row) {
     case RENDER_FORMAT:
     case RENDER_SIZE: /* the page's own */
     case RENDER_DEPTH:
+    case RENDER_NO_METADATA:
     case RENDER_LAYERS:
     case RENDER_RANGE_OF_ALL:
     case RENDER_REFERENCE:

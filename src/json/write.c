@@ -11,6 +11,7 @@
 
 #include "core/door.h"
 #include "core/memory.h"
+#include "json/file_names.h"
 #include "json/read.h"
 #include "json/shapes.h"
 #include "json/writable.h"
@@ -28,7 +29,8 @@ typedef struct writer {
   char *text;
   size_t length, capacity;
   int depth;
-  bool first; /* no member or element yet at this depth */
+  const char *beside; /* the folder that names of files start in (file_names.h); null: names stay */
+  bool first;         /* no member or element yet at this depth */
   bool failed;
 } writer;
 
@@ -107,6 +109,11 @@ static void write_name(writer *w, const char *key, const char *name) {
   put_quoted(w, name);
 }
 
+static void write_file(writer *w, const char *file) {
+  char name[PATH_MAX];
+  write_name(w, "file", w->beside != NULL ? hl_json_name_from(w->beside, file, name) : file);
+}
+
 static void write_flag(writer *w, const char *key, int flag) {
   begin_item(w, key);
   put_text(w, flag ? "true" : "false");
@@ -150,7 +157,7 @@ static void write_settings(writer *w, hl_setting_kind kind, int type, const void
 static void write_texture(writer *w, const hl_light_texture *texture) {
   if (texture->pixels == NULL) return;
   open_bracket(w, "texture", "{");
-  write_name(w, "file", texture->file);
+  write_file(w, texture->file);
   open_bracket(w, "screen", "{");
   write_row(w, "center", texture->screen_center, 3);
   write_row(w, "right", texture->screen_right, 3);
@@ -162,7 +169,7 @@ static void write_texture(writer *w, const hl_light_texture *texture) {
 static void write_emission(writer *w, const hl_light *light) {
   if (light->emission.pixels == NULL) return;
   open_bracket(w, "emission", "{");
-  write_name(w, "file", light->emission.file);
+  write_file(w, light->emission.file);
   if (light->type != HL_LIGHT_RECT) write_row(w, "up", light->emission.up, 3);
   close_bracket(w, "}");
 }
@@ -190,7 +197,7 @@ static void write_sky(writer *w, const hl_sky *sky) {
   if (sky->type == HL_SKY_NONE) return;
   open_bracket(w, "sky", "{");
   write_settings(w, HL_SETTINGS_SKY, (int)sky->type, sky);
-  if (sky->type == HL_SKY_IMAGE) write_name(w, "file", sky->file);
+  if (sky->type == HL_SKY_IMAGE) write_file(w, sky->file);
   close_bracket(w, "}");
 }
 
@@ -243,7 +250,7 @@ static void write_plane(writer *w, const hl_function_plane *plane) {
   }
   if (plane->image.pixels == NULL) return;
   open_bracket(w, "image", "{");
-  write_name(w, "file", plane->image.file);
+  write_file(w, plane->image.file);
   write_ranges(w, plane->image.low, plane->image.high);
   close_bracket(w, "}");
 }
@@ -349,7 +356,7 @@ static void write_shapes(writer *w, const char *text) {
 
 /* Writes the file, and the options for loading it that are not the default. */
 static void write_source(writer *w, const hl_scene_volume *volume) {
-  write_name(w, "file", volume->file);
+  write_file(w, volume->file);
   if (volume->series != NULL) write_name(w, "series", volume->series);
   if (volume->array != NULL) write_name(w, "array", volume->array);
   const char *component = hl_component_name(volume->component);
@@ -419,7 +426,7 @@ static void write_labels(writer *w, const hl_label *labels, size_t count, bool m
 static void write_mask(writer *w, const hl_mask *mask) {
   if (mask->volume == NULL) return;
   open_bracket(w, "mask", "{");
-  write_name(w, "file", mask->file);
+  write_file(w, mask->file);
   if (mask->component >= 0) write_number(w, "component", mask->component);
   write_labels(w, mask->labels, mask->label_count, true);
   write_number(w, "rest", mask->rest);
@@ -509,7 +516,7 @@ static void write_arrays(writer *w, const hl_mesh *mesh) {
 static void write_mesh(writer *w, const hl_scene_mesh *mesh) {
   open_bracket(w, NULL, "{");
   if (mesh->name != NULL) write_name(w, "name", mesh->name);
-  if (mesh->file != NULL) write_name(w, "file", mesh->file);
+  if (mesh->file != NULL) write_file(w, mesh->file);
   else write_arrays(w, mesh->mesh);
   open_bracket(w, "transform", "{");
   write_key(w, HL_SETTINGS_MESH, "transform/scale", mesh);
@@ -557,13 +564,20 @@ static void write_scene(writer *w, const hl_scene_description *d) {
 }
 
 hl_status hl_scene_to_json(hl_context *context, const hl_scene *scene, char **text, hl_error *error) {
+  return hl_scene_to_json_beside(context, scene, NULL, text, error);
+}
+
+hl_status hl_scene_to_json_beside(hl_context *context, const hl_scene *scene, const char *folder, char **text,
+                                  hl_error *error) {
   HL_DOOR;
+  char found[PATH_MAX];
   if (context == NULL || scene == NULL || text == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_to_json: null context, scene or text");
   *text = NULL;
   hl_status status = hl_json_check_writable(&scene->description, error);
   if (status != HL_OK) return status;
   writer w = {.context = context, .first = true};
+  if (folder != NULL && hl_json_find_folder(folder, found)) w.beside = found;
   write_scene(&w, &scene->description);
   if (w.failed) {
     hl_release(context, w.text);

@@ -225,7 +225,7 @@ static hl_status write_exact(const server *s, const hl_scene *scene, const hl_im
                              hl_image_write_options *options, const frame_request *request,
                              server_answer *answer, hl_error *error) {
   char *json = NULL;
-  hl_status status = hl_scene_to_json(s->options.context, scene, &json, error);
+  hl_status status = request->metadata ? hl_scene_to_json(s->options.context, scene, &json, error) : HL_OK;
   options->scene_json = json;
   options->png_depth = request->depth;
   if (status == HL_OK)

@@ -102,6 +102,7 @@ typedef struct frame_request {
   const char *format; /* "jpeg", "png", "exr" or "npy" */
   int quality;        /* of a JPEG */
   int depth;          /* of a PNG: 8 or 16 */
+  int metadata;       /* 1: a PNG carries its scene; 0: it does not */
   const char *text;   /* the scene */
   size_t length;
 } frame_request;

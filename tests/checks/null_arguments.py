@@ -31,6 +31,7 @@ hl_reference_render options
 hl_reference_render_layers options
 hl_reference_render_layers layers
 hl_scene_from_json base_folder
+hl_scene_to_json_beside folder
 hl_scene_for_volume_look file
 hl_scene_from_json name
 hl_scene_from_json_like base_folder

@@ -50,12 +50,14 @@ def exact_pictures(viewer, scene):
     """A frame in PNG and EXR has the bytes that `halflight render` writes of the same scene, and the scene's bytes too."""
     with open("scene.json", "w") as file:
         json.dump(scene, file)
-    for format, depth in (("png", 8), ("png", 16), ("exr", 8)):
-        status, headers, body = frame(viewer, scene, format=format, depth=depth)
-        subprocess.run([PROGRAM, "render", "scene.json", "-o", f"rendered.{format}", "--quiet", *(["--depth", str(depth)] if format == "png" else [])],
-                       check=True)
-        with open(f"rendered.{format}", "rb") as file:
+    os.mkdir("rendered")  # beside its data a picture would name them relative to itself
+    for format, depth, metadata in (("png", 8, 1), ("png", 16, 1), ("exr", 8, 1), ("png", 8, 0)):
+        status, headers, body = frame(viewer, scene, format=format, depth=depth, metadata=metadata)
+        subprocess.run([PROGRAM, "render", "scene.json", "-o", f"rendered/picture.{format}", "--quiet",
+                        *(["--depth", str(depth)] if format == "png" else []), *([] if metadata else ["--no-metadata"])], check=True)
+        with open(f"rendered/picture.{format}", "rb") as file:
             check(status == 200 and body == file.read(), f"{format} of depth {depth} differs from halflight render's")
+        check((b"halflight:scene" in body) == (format == "png" and metadata == 1), "the scene in it, or not")
         check("render;dur=" in headers["Server-Timing"], "a frame tells its times")
     status, headers, body = frame(viewer, scene, format="jpeg", quality=70)
     check(status == 200 and body[:3] == b"\xff\xd8\xff" and headers["Content-Type"] == "image/jpeg", "a JPEG frame")
@@ -92,7 +94,7 @@ def refusals(viewer, scene):
         check(status == 400 and headers["Content-Type"].startswith("text/plain") and len(line) > 5, f"malformed: {body[:30]!r}")
     for query in ("frame", "frame?page=a&number=1", "frame?page=A&number=1&format=png", "frame?page=a&number=-1&format=png",
                   "frame?page=a&number=1&format=gif", "frame?page=a&number=1&format=jpeg&quality=1000",
-                  "frame?page=a&number=1&format=png&depth=9", f"frame?page={'a' * 33}&number=1&format=png"):
+                  "frame?page=a&number=1&format=png&depth=9", "frame?page=a&number=1&format=png&metadata=2", f"frame?page={'a' * 33}&number=1&format=png"):
         check(request(viewer, "POST", query, text)[0] == 400, query)
     vast = small(scene, 16000)
     check(frame(viewer, vast)[0] == 400, "a picture of 256 million pixels")

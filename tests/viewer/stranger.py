@@ -20,6 +20,7 @@ from PIL import Image
 
 import checks
 from checks import check
+from dicom_files import dicom, dicom_slice, element
 from viewer import Viewer
 
 PROGRAM = os.path.abspath(sys.argv[1])
@@ -37,33 +38,12 @@ def request(viewer, path, body=None, **query):
     return result
 
 
-# ---- DICOM: explicit little-endian elements ----
-
-def element(tag, kind, value):
-    value += b"\0" * (len(value) % 2)
-    long = kind in ("OW", "SQ")
-    return struct.pack("<HH", tag >> 16, tag & 0xffff) + kind.encode() + struct.pack("<HI" if long else "<H", *((0, len(value)) if long else (len(value),))) + value
-
-
-def dicom(*elements):
-    meta = element(0x00020010, "UI", b"1.2.840.10008.1.2.1")
-    return b"\0" * 128 + b"DICM" + element(0x00020000, "UL", struct.pack("<I", len(meta))) + meta + b"".join(elements)
-
-
-def dicom_slice():
-    short = lambda tag, n: element(tag, "US", struct.pack("<H", n))
-    return dicom(element(0x00080060, "CS", b"CT"), element(0x0020000e, "UI", b"1.2.3"), element(0x00200032, "DS", b"0\\0\\0 "),
-                 element(0x00200037, "DS", b"1\\0\\0\\0\\1\\0 "), short(0x00280002, 1), element(0x00280004, "CS", b"MONOCHROME2 "), short(0x00280010, 8),
-                 short(0x00280011, 8), element(0x00280030, "DS", b"1\\1 "), short(0x00280100, 8), short(0x00280101, 8), short(0x00280102, 7),
-                 short(0x00280103, 0), element(0x7fe00010, "OW", bytes(range(64))))
-
+# ---- carriers: files that name another file ----
 
 def dicomdir(name):
     item = element(0x00041500, "CS", name.replace("/", "\\").encode())
     return dicom(element(0x00041220, "SQ", struct.pack("<HHI", 0xfffe, 0xe000, len(item)) + item))
 
-
-# ---- carriers: files that name another file ----
 
 def zipped(name, content):
     out = io.BytesIO()

@@ -53,6 +53,7 @@ export function exportPanel({ store, start, channel, report, copy }) {
     get: () => format, set: (value) => { format = value; },
   });
   const transparent = make("input", { type: "checkbox", id: "transparent" });
+  const bare = make("input", { type: "checkbox", id: "bare", title: "A PNG without the scene, and without the names of its files" });
 
   async function savePicture() {
     const scene = structuredClone(store.scene), image = scene.image;
@@ -63,7 +64,7 @@ export function exportPanel({ store, start, channel, report, copy }) {
     report(`rendering ${image.width} × ${image.height} …`);
     try {
       const type = format === "exr" ? "exr" : "png";
-      const frame = await channel.fetchFrame(scene, { format: type, depth: format === "png16" ? 16 : 8, lane: "-save" });
+      const frame = await channel.fetchFrame(scene, { format: type, depth: format === "png16" ? 16 : 8, metadata: !bare.checked, lane: "-save" });
       if (frame !== null) download(frame.blob, `${name}.${type}`);
       report(frame === null ? "cancelled by another save" : `saved ${name}.${type}`);
     } catch (error) {
@@ -79,7 +80,8 @@ export function exportPanel({ store, start, channel, report, copy }) {
   };
   body.append(
     row(make("span", { class: "name" }, "Size"), make("span", { class: "pair" }, width, "×", height)), kind.element,
-    row(make("label", { for: "transparent" }, "Transparent"), transparent), row("", save),
+    row(make("label", { for: "transparent" }, "Transparent"), transparent),
+    row(make("label", { for: "bare" }, "No metadata"), bare), row("", save),
     row(make("span", { class: "name" }, "Scene"), make("span", { class: "buttons" }, button("save scene", saveScene),
       button("copy scene", () => copy(sceneText(store.scene), "the scene")))),
     row("", make("span", { class: "buttons" },

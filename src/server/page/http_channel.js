@@ -35,8 +35,8 @@ export class HttpChannel {
 
   // A picture of the scene: { blob, times }, or null where a newer frame of this page has cancelled it. `lane` sets
   // frames apart that do not cancel each other.
-  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, lane = "" } = {}) {
-    const query = new URLSearchParams({ page: this.#page + lane, number: ++this.#number, opened: this.#opened, format, quality, depth });
+  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, lane = "" } = {}) {
+    const query = new URLSearchParams({ page: this.#page + lane, number: ++this.#number, opened: this.#opened, format, quality, depth, metadata: +metadata });
     const response = await check(await fetch(`frame?${query}`, { method: "POST", body: JSON.stringify(scene) }));
     if (response.status === 204) return null;
     return { blob: await response.blob(), times: parseTimes(response.headers.get("Server-Timing")) };
