@@ -1,5 +1,7 @@
 """halflight.render(): the program's bytes, and every keyword."""
+import os
 import subprocess
+import zlib
 
 import numpy as np
 import pytest
@@ -53,6 +55,23 @@ def test_a_png_is_the_program_s_too(program, tmp_path, blob):
     command = [program, "render", source, "--quiet", "--size", "64x48", "-o", tmp_path / "program.png"]
     subprocess.run(command, check=True)
     assert (tmp_path / "python.png").read_bytes() == (tmp_path / "program.png").read_bytes()
+
+
+def test_a_png_tells_no_more_than_it_is_asked_to(program, tmp_path, blob):
+    source = tmp_path / "blob.npy"
+    np.save(source, blob)
+    image = halflight.render(source, size=(64, 48))
+    image.save(tmp_path / "told.png")
+    image.save(tmp_path / "bare.png", metadata=False)
+    told, bare = (tmp_path / "told.png").read_bytes(), (tmp_path / "bare.png").read_bytes()
+    packed = told.split(b"halflight:scene\0")[1][2:].split(b"\0", 2)[2]  # an iTXt chunk: flag, method, language, keyword, text
+    text = zlib.decompressobj().decompress(packed)
+    assert b'"file": "blob.npy"' in text and os.fsencode(tmp_path) not in text
+    assert b"halflight:scene" not in bare and b"blob.npy" not in bare
+    assert b"halflight:scene" not in image.encode(metadata=False) and b"halflight:scene" in image.encode()
+    command = [program, "render", source, "--quiet", "--size", "64x48", "--no-metadata", "-o", tmp_path / "program.png"]
+    subprocess.run(command, check=True)
+    assert bare == (tmp_path / "program.png").read_bytes()
 
 
 def test_layers_are_the_program_s(program, tmp_path, blob):
