@@ -2,8 +2,9 @@
  *
  * A connection is a stranger until it has sent a request with the token. Strangers are let in, as browsers
  * are strangers first, but of all that wait for a request only MOST_WAITING stay: a new one takes the place
- * of the stranger that has waited for longest. Heads and bodies of requests have deadlines. A connection ends
- * by shutdown(), which its own thread of libmicrohttpd notices. */
+ * of the stranger that has waited for longest. Nobody is let in for a moment then, so that a browser's
+ * request, which comes with its connection, is read before the connection is the oldest. Heads and bodies of
+ * requests have deadlines. A connection ends by shutdown(), which its own thread of libmicrohttpd notices. */
 #define _GNU_SOURCE
 #include "connections.h"
 
@@ -53,15 +54,16 @@ static connection_place *least_missed(connection_table *table) {
   return best;
 }
 
-/* Takes a place for a new connection; null: there is none. */
-static connection_place *let_in(connection_table *table, int socket) {
+/* Takes a place for a new connection; null: there is none. *crowded: another one had to end for it. */
+static connection_place *let_in(connection_table *table, int socket, bool *crowded) {
   connection_place *taken = NULL;
   int waiting = 0;
   for (int n = 0; n < MOST_CONNECTIONS; n++) {
     if (taken == NULL && table->places[n].state == CONNECTION_FREE) taken = &table->places[n];
     waiting += waits(&table->places[n]);
   }
-  if (waiting >= MOST_WAITING) {
+  *crowded = waiting >= MOST_WAITING;
+  if (*crowded) {
     end(least_missed(table));
     table->turned_away++;
   }
@@ -78,11 +80,13 @@ int connection_socket(struct MHD_Connection *connection) {
 
 void connection_changed(void *user_data, struct MHD_Connection *connection, void **place,
                         enum MHD_ConnectionNotificationCode code) {
+  const struct timespec moment = {.tv_nsec = 1000000};
   connection_table *table = user_data;
+  bool crowded = false;
   pthread_mutex_lock(&table->lock);
   if (code == MHD_CONNECTION_NOTIFY_STARTED) {
     int socket = connection_socket(connection);
-    connection_place *c = let_in(table, socket);
+    connection_place *c = let_in(table, socket, &crowded);
     if (c == NULL) shutdown(socket, SHUT_RDWR);
     *place = c;
   } else if (*place != NULL) {
@@ -90,6 +94,7 @@ void connection_changed(void *user_data, struct MHD_Connection *connection, void
     *place = NULL;
   }
   pthread_mutex_unlock(&table->lock);
+  if (crowded) nanosleep(&moment, NULL); /* this is the thread that lets connections in */
 }
 
 /* Changes a connection's state, unless it ends. */

@@ -10,8 +10,8 @@
 #include <microhttpd.h>
 
 enum {
-  MOST_CONNECTIONS = 128,          /* at once */
-  MOST_WAITING = 32,               /* of them: that wait for a request */
+  MOST_CONNECTIONS = 256,          /* at once */
+  MOST_WAITING = 128,              /* of them: that wait for a request */
   IDLE_SECONDS = 20,               /* that a request may take to come, and a connection may be silent */
   LEAST_BYTES_PER_SECOND = 1 << 14 /* of a body, beyond IDLE_SECONDS */
 };

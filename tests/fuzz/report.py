@@ -40,6 +40,7 @@ SHARED = ("all volume files, what they share included", ["volume/"],
 TARGETS["labels"] = ("label maps, tables of labels", ["label/", "scene/label_list.c", "scene/label_table.c"])
 TARGETS["keys"] = ("keys of films", ["film/keys.c", "film/film.c"])
 TARGETS["words"] = ("the command line", ["cli/options.c", "cli/options_color.c", "cli/render_options.c"])
+TARGETS["http"] = ("requests of the viewer", ["server/"])
 TARGETS["ply"] = ("PLY", ["mesh/ply.c"])
 TARGETS["gltf"] = ("glTF", ["mesh/gltf"])
 TARGETS["vtp"] = ("VTK PolyData", ["mesh/vtp.c", "mesh/legacy_polydata.c", "mesh/polydata.c"])

@@ -22,7 +22,7 @@ from viewer import Viewer
 
 PROGRAM = os.path.abspath(sys.argv[1])
 HANG = 120  # seconds, after which something hangs
-MOST_WAITING = 32  # connections that wait for a request, as the server says
+MOST_WAITING = 128  # connections that wait for a request, as the server says
 numbers = iter(range(1, 10**6))
 
 
@@ -80,13 +80,13 @@ def frame(viewer, scene, page, number=None, side=64, spacing=1, opened=0):
 def silent_strangers(viewer):
     """Many connections without a request: the page is answered after each ten of them."""
     clients = []
-    for n in range(300):
+    for n in range(400):
         clients.append(dial(viewer) if n % 2 else dial(viewer, b"GET /"))
         if n % 10 == 9:
             check(request(viewer, "GET", "start.json")[0] == 200, f"the page among {n + 1} silent strangers")
     now = state(viewer)
-    check(now["waiting"] <= MOST_WAITING and now["turned_away"] >= 300 - MOST_WAITING, f"those who waited for longest have gone: {now}")
-    wait_for("their connections are closed", lambda: sum(map(has_ended, clients)) >= 300 - MOST_WAITING)
+    check(now["waiting"] <= MOST_WAITING and now["turned_away"] >= 400 - MOST_WAITING, f"those who waited for longest have gone: {now}")
+    wait_for("their connections are closed", lambda: sum(map(has_ended, clients)) >= 400 - MOST_WAITING)
     for client in clients:
         client.close()
     wait_for("and forgotten", lambda: state(viewer)["connections"] <= 2)
@@ -98,7 +98,7 @@ def slow_strangers(viewer, scene):
     ended = threading.Event()
 
     def dribble():
-        clients = [dial(viewer, head) for _ in range(16)]
+        clients = [dial(viewer, head) for _ in range(32)]
         while not ended.wait(0.02):
             for n, client in enumerate(clients):
                 try:
