@@ -21,7 +21,8 @@ typedef enum hl_voxel_type {
   HL_VOXEL_I32 = 6,
   HL_VOXEL_F32 = 7,
   HL_VOXEL_F64 = 8,
-  HL_VOXEL_U64 = 9, /* 64 and 32 bit integers and doubles are kept to 24 bits, as float */
+  HL_VOXEL_U64 = 9, /* pictures take 64 and 32 bit integers and doubles to 24 bits, as float; labels, masks,
+                       hl_volume_value(), the range and hl_volume_save() have whole numbers exactly */
   HL_VOXEL_I64 = 10,
   HL_VOXEL_F16 = 11 /* IEEE 754 binary16, kept as float */
 } hl_voxel_type;

@@ -182,6 +182,15 @@ static void print_histogram(const hl_volume_info *info) {
   printf("  %11.5g\n", info->range[1]);
 }
 
+enum { NUMBER_BYTES = 32 };
+
+/* A data value: whole numbers with all their digits. */
+static const char *value_text(double value, char text[NUMBER_BYTES]) {
+  bool whole = value == floor(value) && fabs(value) <= 0x1p64;
+  snprintf(text, NUMBER_BYTES, whole ? "%.20g" : "%.9g", value);
+  return text;
+}
+
 static int print_text(const char *path, const hl_volume *volume, const hl_volume_info *info,
                       const char *kind) {
   const double(*d)[3] = info->direction;
@@ -205,7 +214,9 @@ static int print_text(const char *path, const hl_volume *volume, const hl_volume
   printf("  world box   x %.9g to %.9g, y %.9g to %.9g, z %.9g to %.9g\n", low[0], high[0], low[1], high[1],
          low[2], high[2]);
   if (info->space != HL_SPACE_UNKNOWN) printf("  space       %s\n", hl_space_name(info->space));
-  printf("  range       %.9g to %.9g, mean %.9g\n", info->range[0], info->range[1], info->mean);
+  char least[NUMBER_BYTES], greatest[NUMBER_BYTES];
+  printf("  range       %s to %s, mean %.9g\n", value_text(info->range[0], least),
+         value_text(info->range[1], greatest), info->mean);
   if (info->nonfinite_count > 0)
     printf("  not finite  %" PRIu64 " voxels, rendered as transparent\n", info->nonfinite_count);
   printf("  taken for   %s: render chooses its look from this file; --print-scene keeps it\n", kind);

@@ -39,7 +39,7 @@ enum { VOLUME, FALL, SLOPES, SURFACE_VOXELS, MEASURES };
 
 typedef struct occupancy_job {
   const hl_volume *map;
-  double stored; /* the label, as a stored value */
+  double stored; /* the label, as a number of the map's rows */
   hl_label_part part;
   unsigned char *inside;        /* [size z][y][x]: 1 where the voxel has the label; finally the result */
   size_t *inside_counts;        /* [slices]: voxels that have the label */
@@ -58,7 +58,7 @@ typedef struct label_bounds {
 
 typedef struct parts_job {
   const hl_volume *map;
-  const double *stored; /* [count]; rising: the labels, as stored values */
+  const double *stored; /* [count]; rising: the labels, as numbers of the map's rows */
   size_t count;
   label_bounds *bounds; /* [threads][count] */
 } parts_job;
@@ -87,11 +87,11 @@ static void bound_slice(void *data, size_t z, int worker) {
   label_bounds *bounds = job->bounds + (size_t)worker * job->count;
   const size_t width = job->map->dimension[0];
   for (size_t y = 0; y < job->map->dimension[1]; y++) {
-    const void *row = hl_volume_row(job->map, y, z);
+    const hl_number_row row = hl_volume_numbers(job->map, y, z, NULL);
     for (size_t x = 0; x < width;) {
-      double stored = hl_stored_number(job->map->storage, row, x);
+      double stored = hl_row_number(row, x);
       size_t from = x++;
-      while (x < width && hl_stored_number(job->map->storage, row, x) == stored) x++;
+      while (x < width && hl_row_number(row, x) == stored) x++;
       size_t place = place_of(job, stored);
       if (place == job->count) continue;
       widen(&bounds[place], (int64_t[3]){(int64_t)from, (int64_t)y, (int64_t)z},
@@ -151,9 +151,9 @@ static void mark_slice(void *data, size_t z, int worker) {
   const size_t *first = job->part.first, nx = job->part.size[0];
   size_t at = z * nx * job->part.size[1], count = 0;
   for (size_t y = 0; y < job->part.size[1]; y++, at += nx) {
-    const void *row = hl_volume_row(job->map, first[1] + y, first[2] + z);
+    const hl_number_row row = hl_volume_numbers(job->map, first[1] + y, first[2] + z, NULL);
     for (size_t i = 0; i < nx; i++) {
-      job->inside[at + i] = hl_stored_number(job->map->storage, row, first[0] + i) == job->stored;
+      job->inside[at + i] = hl_row_number(row, first[0] + i) == job->stored;
       job->smooth.values[at + i] = job->inside[at + i];
       count += job->inside[at + i];
     }

@@ -35,7 +35,7 @@ static bool add_value(found_labels *found, double value) {
 }
 
 static hl_status fail_value(double value, hl_error *error) {
-  return hl_fail(error, HL_ERROR_INPUT, "the voxel value %.9g is no label: label maps hold whole numbers",
+  return hl_fail(error, HL_ERROR_INPUT, "the voxel value %.17g is no label: label maps hold whole numbers",
                  value);
 }
 
@@ -46,10 +46,10 @@ static hl_status find_values(const hl_volume *map, found_labels *found, hl_error
                    "labels of a volume that is larger than memory: raise the memory limit");
   for (size_t k = 0; k < map->dimension[2]; k++)
     for (size_t j = 0; j < map->dimension[1]; j++) {
-      const void *row = hl_volume_row(map, j, k);
+      const hl_number_row row = hl_volume_numbers(map, j, k, NULL);
       double last = NAN;
       for (size_t i = 0; i < map->dimension[0]; i++) {
-        double stored = hl_stored_number(map->storage, row, i);
+        double stored = hl_row_number(row, i);
         if (stored == last) continue;
         last = stored;
         double value = stored * map->value_scale + map->value_offset;

@@ -11,6 +11,7 @@
 #include "core/door.h"
 #include "core/memory.h"
 #include "volume/convert.h"
+#include "volume/exact.h"
 #include "volume/glimpse.h"
 #include "volume/pages.h"
 #include "volume/statistics.h"
@@ -155,14 +156,22 @@ static hl_status finish_volume(hl_volume *made, const char *subject, hl_volume *
 
 hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *description, const char *subject,
                           void *voxels, hl_volume **volume, hl_error *error) {
+  return hl_volume_adopt_exact(context, description, subject, voxels, NULL, volume, error);
+}
+
+hl_status hl_volume_adopt_exact(hl_context *context, const hl_volume_description *description,
+                                const char *subject, void *voxels, void *exact, hl_volume **volume,
+                                hl_error *error) {
   *volume = NULL;
   hl_status status = hl_volume_check_grid(description, subject, error);
   hl_volume *made = status == HL_OK ? make_volume(context, description) : NULL;
   if (made == NULL) {
     hl_release(context, voxels);
+    hl_release(context, exact);
     return status != HL_OK ? status : hl_fail_memory(error, sizeof *made, subject);
   }
   made->voxels = made->owned_voxels = voxels;
+  made->exact = exact;
   return finish_volume(made, subject, volume, error);
 }
 
@@ -189,9 +198,27 @@ const void *hl_volume_row_in(const hl_volume *volume, size_t j, size_t k, void *
   return buffer;
 }
 
+hl_number_row hl_volume_numbers(const hl_volume *volume, size_t j, size_t k, void *buffer) {
+  static const hl_voxel_type stored[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32}; /* by hl_storage */
+  if (volume->exact == NULL)
+    return (hl_number_row){stored[volume->storage], hl_volume_row_in(volume, j, k, buffer)};
+  size_t row = (k * volume->dimension[1] + j) * volume->dimension[0];
+  return (hl_number_row){volume->type,
+                         (const unsigned char *)volume->exact + row * hl_voxel_type_bytes(volume->type)};
+}
+
+double hl_row_number(hl_number_row row, size_t i) {
+  switch (row.type) {
+    case HL_VOXEL_U8: return ((const uint8_t *)row.numbers)[i];
+    case HL_VOXEL_U16: return ((const uint16_t *)row.numbers)[i];
+    case HL_VOXEL_F32: return (double)((const float *)row.numbers)[i];
+    default: return hl_exact_number(row.type, row.numbers, i);
+  }
+}
+
 /* Copies strided voxels into stored form; row is scratch for one row in the caller's type. */
 static void copy_voxels(const hl_volume_description *description, const ptrdiff_t stride[3],
-                        unsigned char *row, unsigned char *destination) {
+                        unsigned char *row, unsigned char *destination, hl_exact *exact) {
   const size_t *dimension = description->dimensions;
   size_t voxel_bytes = hl_voxel_type_bytes(description->type);
   size_t row_bytes = dimension[0] * hl_storage_bytes(hl_voxel_type_storage(description->type));
@@ -203,6 +230,7 @@ static void copy_voxels(const hl_volume_description *description, const ptrdiff_
         hl_voxels_gather(source, stride[0], voxel_bytes, dimension[0], row);
         source = row;
       }
+      hl_exact_note(exact, false, source, (k * dimension[1] + j) * dimension[0], dimension[0]);
       hl_voxels_store(description->type, false, source, dimension[0], destination);
       destination += row_bytes;
     }
@@ -277,8 +305,15 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
     hl_volume_release(made);
     return hl_fail_memory(error, count * voxel_bytes, "a volume");
   }
-  copy_voxels(description, stride, row, made->owned_voxels);
+  hl_exact exact;
+  hl_exact_begin(context, description->type, count, false, &exact);
+  copy_voxels(description, stride, row, made->owned_voxels, &exact);
   hl_release(context, row);
+  status = hl_exact_take(&exact, made->voxels, &made->exact, error);
+  if (status != HL_OK) {
+    hl_volume_release(made);
+    return status;
+  }
   hl_status measured = finish_volume(made, subject, volume, error);
   if (measured == HL_OK && description->release != NULL)
     description->release(description->release_data, description->voxels);
@@ -302,6 +337,7 @@ void hl_volume_release(hl_volume *volume) {
   hl_release(volume->context, volume->series);
   hl_release(volume->context, atomic_load(&volume->analysis));
   hl_release(volume->context, volume->owned_voxels);
+  hl_release(volume->context, volume->exact);
   hl_pages_release(volume->pages);
   hl_release(volume->context, volume->colors);
   hl_release(volume->context, volume->slopes);
@@ -391,6 +427,10 @@ double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_
   const hl_pages *pages = volume->pages;
   const void *kept = pages != NULL && pages->glimpse != NULL ? hl_glimpse_voxel(pages->glimpse, i, j, k)
                                                              : NULL;
+  if (volume->exact != NULL) { /* a float that is not finite stays transparent */
+    double number = hl_row_number(hl_volume_numbers(volume, j, k, NULL), i);
+    return isfinite((float)number) ? volume->value_scale * number + volume->value_offset : NAN;
+  }
   double stored = kept != NULL    ? hl_stored_number(volume->storage, kept, 0)
                   : pages != NULL ? hl_page_number(pages, i, j, k)
                                   : hl_stored_number(volume->storage, hl_volume_row(volume, j, k), i);

@@ -38,6 +38,9 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
   size_t bytes = kind == HL_DESTINATION_COLORS ? HL_COLOR_BYTES
                                                : hl_storage_bytes(hl_voxel_type_storage(grid->type));
   *destination = (hl_destination){.context = context, .path = path, .voxel_bytes = bytes};
+  hl_exact_begin(context, kind == HL_DESTINATION_COLORS ? HL_VOXEL_U8 : grid->type, count, false,
+                 &destination->exact);
+  destination->exact.is_off = true;
   if (kind == HL_DESTINATION_PIECES && context->ranks != NULL && count >= LEAST_OVER_RANKS / bytes)
     return hl_own_voxels_allocate(context->ranks, grid, &destination->own, error);
   if (kind == HL_DESTINATION_PIECES && hl_pages_wanted(context, grid)) {
@@ -45,6 +48,7 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
     return hl_pages_create(context, context->options.scratch_folder, grid, PAGE_SHIFT, &destination->pages,
                            error);
   }
+  destination->exact.is_off = false;
   destination->voxels = hl_allocate(context, count, bytes);
   return destination->voxels != NULL ? HL_OK : hl_fail_memory(error, count * bytes, path);
 }
@@ -90,6 +94,16 @@ void hl_destination_put(hl_destination *destination, size_t first, size_t count,
 hl_status hl_destination_adopt(hl_destination *destination, const hl_volume_description *grid,
                                hl_volume **volume, hl_error *error) {
   const hl_destination given = *destination;
+  void *exact = NULL;
+  if (given.exact.is_off && given.exact.rounds)
+    hl_log(
+        given.context, HL_LOG_WARNING,
+        "%s: numbers above 2^24 are rounded to 24 bits, as the volume is larger than memory or spread over "
+        "processes: raise the memory limit (--max-memory) for exact ones",
+        given.path);
+  hl_status status = hl_exact_take(&destination->exact, (const float *)(const void *)given.voxels, &exact,
+                                   error);
+  if (status != HL_OK) return status;
   destination->voxels = NULL;
   destination->pages = NULL;
   destination->own = NULL;
@@ -97,7 +111,7 @@ hl_status hl_destination_adopt(hl_destination *destination, const hl_volume_desc
     return hl_volume_over_ranks(given.context->ranks, grid, given.own, PAGE_SHIFT, given.path, volume, error);
   return given.pages != NULL
              ? hl_volume_adopt_pages(given.context, grid, given.path, given.pages, volume, error)
-             : hl_volume_adopt(given.context, grid, given.path, given.voxels, volume, error);
+             : hl_volume_adopt_exact(given.context, grid, given.path, given.voxels, exact, volume, error);
 }
 
 hl_status hl_destination_adopt_colors(hl_destination *destination, const hl_color_source *source,
@@ -109,6 +123,7 @@ hl_status hl_destination_adopt_colors(hl_destination *destination, const hl_colo
 
 void hl_destination_close(hl_destination *destination) {
   hl_release(destination->context, destination->voxels);
+  if (destination->context != NULL) hl_exact_release(&destination->exact);
   hl_pages_release(destination->pages);
   hl_own_voxels_release(destination->own);
   *destination = (hl_destination){.context = NULL};

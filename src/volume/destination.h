@@ -6,6 +6,7 @@
 #define HL_VOLUME_DESTINATION_H
 
 #include "volume/colors.h"
+#include "volume/exact.h"
 #include "volume/pages.h"
 
 typedef struct hl_destination {
@@ -14,6 +15,7 @@ typedef struct hl_destination {
   size_t voxel_bytes;    /* of a stored value, or of a voxel's colours */
   unsigned char *voxels; /* owned; [k][j][i]; null with pages */
   hl_pages *pages;       /* owned; null: in memory */
+  hl_exact exact;        /* the file's own numbers, where stored values round them: in memory alone */
   hl_own_voxels *own;    /* owned; over ranks: this rank's slices, `voxels` is null; else null */
 } hl_destination;
 
@@ -42,6 +44,12 @@ static inline bool hl_destination_is_apart(const hl_destination *destination) {
   return destination->voxels == NULL;
 }
 void hl_destination_store(hl_destination *destination, size_t first, size_t count, const void *values);
+
+/* Notes voxels as the file has them, in its own type, before they are stored: hl_exact_note(). */
+static inline void hl_destination_note(hl_destination *destination, bool swap, const void *source,
+                                       size_t first, size_t count) {
+  hl_exact_note(&destination->exact, swap, source, first, count);
+}
 
 /* Makes the volume, which takes over what the destination owns, also on failure. grid: as it was opened. */
 hl_status hl_destination_adopt(hl_destination *destination, const hl_volume_description *grid,

@@ -33,6 +33,7 @@ typedef struct walk {
   size_t bytes;        /* of a value of the type */
   size_t stored_bytes; /* of a voxel of the volume */
   unsigned char *voxels;
+  hl_exact *exact;
 } walk;
 
 /* ---- kinds ---- */
@@ -223,10 +224,10 @@ static bool stage_leaf(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned char
   return values != NULL;
 }
 
-/* The value that a tile has everywhere, in stored form. A mask's tiles are as active as `state` says. */
-static bool stored_tile(const walk *w, pnanovdb_address_t address, bool state, unsigned char stored[4]) {
-  unsigned char value[8] = {0};
+/* The value that a tile has everywhere. A mask's tiles are as active as `state` says. */
+static bool tile_value(const walk *w, pnanovdb_address_t address, bool state, unsigned char value[8]) {
   size_t stride;
+  memset(value, 0, 8);
   if (w->grid->kind == PNANOVDB_GRID_TYPE_MASK) value[0] = state;
   else {
     const unsigned char *from = values_at(w, address, 1, &stride);
@@ -234,7 +235,6 @@ static bool stored_tile(const walk *w, pnanovdb_address_t address, bool state, u
     take_value(w, from, value);
     if (w->grid->kind == PNANOVDB_GRID_TYPE_BOOLEAN) value[0] &= 1;
   }
-  hl_voxels_store(w->type, false, value, 1, stored);
   return true;
 }
 
@@ -256,14 +256,23 @@ static unsigned char *voxel_at(const walk *w, int64_t i, int64_t j, int64_t k) {
   return w->voxels + (size_t)((k * w->size[1] + j) * w->size[0] + i) * w->stored_bytes;
 }
 
-static void fill_box(const walk *w, const int64_t begin[3], int64_t side, const unsigned char stored[4]) {
+/* The number of a voxel in the volume. */
+static size_t number_of(const walk *w, int64_t i, int64_t j, int64_t k) {
+  return (size_t)((k * w->size[1] + j) * w->size[0] + i);
+}
+
+static void fill_box(const walk *w, const int64_t begin[3], int64_t side, const unsigned char value[8]) {
   int64_t from[3], to[3];
+  unsigned char stored[4];
   if (!clip(w, begin, side, from, to)) return;
+  hl_voxels_store(w->type, false, value, 1, stored);
   for (int64_t k = from[2]; k < to[2]; k++)
     for (int64_t j = from[1]; j < to[1]; j++) {
       unsigned char *row = voxel_at(w, from[0], j, k);
-      for (int64_t n = 0; n < to[0] - from[0]; n++, row += w->stored_bytes)
+      for (int64_t n = 0; n < to[0] - from[0]; n++, row += w->stored_bytes) {
         memcpy(row, stored, w->stored_bytes);
+        hl_exact_note(w->exact, false, value, number_of(w, from[0] + n, j, k), 1);
+      }
     }
 }
 
@@ -277,8 +286,10 @@ static bool put_leaf(const walk *w, pnanovdb_leaf_handle_t leaf, const int64_t b
     for (int64_t j = from[1]; j < to[1]; j++) {
       unsigned char *row = voxel_at(w, from[0], j, k);
       int64_t n = ((from[0] + w->low[0]) & 7) << 6 | ((j + w->low[1]) & 7) << 3 | ((k + w->low[2]) & 7);
-      for (int64_t i = from[0]; i < to[0]; i++, row += w->stored_bytes, n += LEAF * LEAF)
+      for (int64_t i = from[0]; i < to[0]; i++, row += w->stored_bytes, n += LEAF * LEAF) {
         memcpy(row, stored + (size_t)n * w->stored_bytes, w->stored_bytes);
+        hl_exact_note(w->exact, false, stage + (size_t)n * w->bytes, number_of(w, i, j, k), 1);
+      }
     }
   return true;
 }
@@ -292,15 +303,15 @@ static bool put_lower(const walk *w, pnanovdb_lower_handle_t lower, const int64_
     const int64_t at[3] = {begin[0] + LEAF * (n >> 8), begin[1] + LEAF * (n >> 4 & 15),
                            begin[2] + LEAF * (n & 15)};
     int64_t from[3], to[3];
-    unsigned char stored[4];
+    unsigned char value[8];
     if (!clip(w, at, LEAF, from, to)) continue;
     if (pnanovdb_lower_get_child_mask(w->memory, lower, n)) {
       sound = put_leaf(w, pnanovdb_lower_get_child(kind, w->memory, lower, n), at);
       continue;
     }
     bool state = pnanovdb_lower_get_value_mask(w->memory, lower, n);
-    sound = stored_tile(w, pnanovdb_lower_get_table_address(kind, w->memory, lower, n), state, stored);
-    if (sound) fill_box(w, at, LEAF, stored);
+    sound = tile_value(w, pnanovdb_lower_get_table_address(kind, w->memory, lower, n), state, value);
+    if (sound) fill_box(w, at, LEAF, value);
   }
   return sound;
 }
@@ -326,9 +337,9 @@ static bool put_region(const walk *w, const int64_t begin[3]) {
     value = pnanovdb_root_tile_get_value_address(kind, w->memory, tile);
     state = pnanovdb_root_tile_get_state(w->memory, tile) != 0;
   }
-  unsigned char stored[4];
-  if (!stored_tile(w, value, state, stored)) return false;
-  fill_box(w, begin, LOWER, stored);
+  unsigned char number[8];
+  if (!tile_value(w, value, state, number)) return false;
+  fill_box(w, begin, LOWER, number);
   return true;
 }
 
@@ -344,7 +355,7 @@ static hl_status read_part(void *data, size_t number, int worker, hl_error *erro
 }
 
 hl_status nanovdb_grid_read(const nanovdb_grid *grid, const hl_volume_description *description, void *voxels,
-                            hl_error *error) {
+                            hl_exact *exact, hl_error *error) {
   walk w;
   hl_pool *pool = NULL;
   begin(grid, &w);
@@ -354,6 +365,7 @@ hl_status nanovdb_grid_read(const nanovdb_grid *grid, const hl_volume_descriptio
   w.bytes = hl_voxel_type_bytes(w.type);
   w.stored_bytes = hl_storage_bytes(hl_voxel_type_storage(w.type));
   w.voxels = voxels;
+  w.exact = exact;
   size_t parts = w.count[0] * w.count[1] * w.count[2];
   bool parallel = w.size[0] * w.size[1] * w.size[2] >= PARALLEL_VOXELS;
   status = hl_pool_create(grid->context, parallel ? 0 : 1, &pool, error);

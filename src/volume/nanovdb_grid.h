@@ -5,6 +5,7 @@
 #ifndef HL_VOLUME_NANOVDB_GRID_H
 #define HL_VOLUME_NANOVDB_GRID_H
 
+#include "volume/exact.h"
 #include "volume/format.h"
 
 typedef struct nanovdb_grid {
@@ -23,8 +24,8 @@ void nanovdb_kind(uint32_t kind, hl_voxel_type *type, size_t *components);
 hl_status nanovdb_grid_describe(const nanovdb_grid *grid, hl_volume_description *description,
                                 hl_error *error);
 
-/* Fills voxels [k][j][i] of that box in stored form; type: of the volume. */
+/* Fills voxels [k][j][i] of that box in stored form, and notes their numbers; type: of the volume. */
 hl_status nanovdb_grid_read(const nanovdb_grid *grid, const hl_volume_description *description, void *voxels,
-                            hl_error *error);
+                            hl_exact *exact, hl_error *error);
 
 #endif

@@ -216,15 +216,20 @@ static hl_status allocate(const grid_list *list, const grid_entry *entry, const 
 static hl_status make_volume(const grid_list *list, const grid_entry *entry, nanovdb_grid *grid,
                              hl_payload *payload, hl_load_request *request, hl_volume **volume,
                              hl_error *error) {
-  void *voxels = NULL;
+  void *voxels = NULL, *numbers = NULL;
+  hl_exact exact;
   hl_status status = nanovdb_grid_describe(grid, &payload->grid, error);
   if (status == HL_OK) status = hl_volume_check_grid(&payload->grid, list->path, error);
   if (status != HL_OK) return status;
   hl_volume_description description = hl_payload_grid(payload, request->spacing);
   status = allocate(list, entry, &description, &voxels, error);
-  if (status == HL_OK) status = nanovdb_grid_read(grid, &description, voxels, error);
+  const size_t *n = description.dimensions;
+  hl_exact_begin(request->context, description.type, n[0] * n[1] * n[2], false, &exact);
+  if (status == HL_OK) status = nanovdb_grid_read(grid, &description, voxels, &exact, error);
+  if (status == HL_OK) status = hl_exact_take(&exact, voxels, &numbers, error);
   if (status == HL_OK)
-    return hl_volume_adopt(request->context, &description, list->path, voxels, volume, error);
+    return hl_volume_adopt_exact(request->context, &description, list->path, voxels, numbers, volume, error);
+  hl_exact_release(&exact);
   hl_release(request->context, voxels);
   return status;
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "volume/convert.h"
 #include "volume/format.h"
 #include "volume/text.h"
 
@@ -208,7 +209,8 @@ static hl_status transpose(int grid_axes, hl_volume **volume, hl_error *error) {
   const hl_volume *read = *volume;
   hl_volume_description description;
   hl_volume_description_defaults(&description);
-  size_t bytes = hl_storage_bytes(read->storage);
+  bool exact = read->exact != NULL; /* in the file's type, packed like the stored values */
+  size_t bytes = exact ? hl_voxel_type_bytes(read->type) : hl_storage_bytes(read->storage);
   const ptrdiff_t stride[3] = {(ptrdiff_t)bytes, (ptrdiff_t)(bytes * read->dimension[0]),
                                (ptrdiff_t)(bytes * read->dimension[0] * read->dimension[1])};
   for (int axis = 0; axis < 3; axis++) { /* axis of the file: 0 is z (or y of a plane) */
@@ -219,10 +221,10 @@ static hl_status transpose(int grid_axes, hl_volume **volume, hl_error *error) {
     description.axis[turned][turned] = vec3_length(step);
   }
   static const hl_voxel_type types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32}; /* of the storages */
-  description.type = types[read->storage];
+  description.type = exact ? read->type : types[read->storage];
   description.value_scale = read->value_scale;
   description.value_offset = read->value_offset;
-  description.voxels = read->voxels;
+  description.voxels = exact ? read->exact : read->voxels;
   hl_volume *turned = NULL;
   hl_status status = hl_volume_create(read->context, &description, &turned, error);
   if (status == HL_OK) turned->type = read->type;

@@ -86,16 +86,21 @@ static hl_status fail_short(const hl_stream *stream, const hl_payload *payload, 
                         stream->cut_short ? ": the file is cut short" : ": correct its sizes or type");
 }
 
-/* Reads `count` values into `raw`, and converts them into `place`; `done` values came before. Both may be the
- * same memory. */
+static bool is_swapped(const hl_payload *payload) {
+  return !payload->text && payload->big_endian != native_is_big_endian;
+}
+
+/* Reads `count` values into `raw`, and converts them into `place`, the voxels from number `done` on, before
+ * which as many values came. Both may be the same memory. */
 static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
-                            void *raw, void *place, hl_error *error) {
+                            void *raw, void *place, hl_destination *destination, hl_error *error) {
   hl_voxel_type type = payload->grid.type;
   size_t file_bytes = hl_voxel_type_bytes(type), got;
   hl_status status = hl_stream_read(stream, raw, count * file_bytes, &got, error);
   if (status != HL_OK) return status;
   if (got < count * file_bytes) return fail_short(stream, payload, done * file_bytes + got, error);
-  hl_voxels_store(type, payload->big_endian != native_is_big_endian, raw, count, place);
+  hl_destination_note(destination, is_swapped(payload), raw, done, count);
+  hl_voxels_store(type, is_swapped(payload), raw, count, place);
   return HL_OK;
 }
 
@@ -124,7 +129,8 @@ static hl_status read_into_pages(void *data, size_t index, int worker, hl_error 
   if (!r->failed) {
     status = hl_destination_take(r->destination, first, count, &place, error);
     void *raw = r->in_place ? place : stage;
-    if (status == HL_OK) status = read_piece(r->stream, r->payload, first, count, raw, place, error);
+    if (status == HL_OK)
+      status = read_piece(r->stream, r->payload, first, count, raw, place, r->destination, error);
     r->done += count;
     r->failed = status != HL_OK;
   }
@@ -182,7 +188,7 @@ static hl_status read_binary(hl_stream *stream, const hl_payload *payload, hl_de
     } else {
       status = hl_destination_take(destination, done, wanted, &place, error);
       if (status != HL_OK) return status;
-      status = read_piece(stream, payload, done, wanted, in_place ? place : stage, place, error);
+      status = read_piece(stream, payload, done, wanted, in_place ? place : stage, place, destination, error);
       hl_destination_put(destination, done, wanted, place);
     }
     done += wanted;
@@ -205,18 +211,42 @@ static bool fits_type(hl_voxel_type type, double value) {
   return value >= low[type] && value <= high[type] && value == floor(value);
 }
 
-static void store_number(const hl_volume_description *grid, double value, size_t index, void *voxels) {
-  double stored = value + hl_voxel_type_bias(grid->type);
-  switch (hl_voxel_type_storage(grid->type)) {
-    case HL_STORAGE_U8: ((uint8_t *)voxels)[index] = (uint8_t)stored; break;
-    case HL_STORAGE_U16: ((uint16_t *)voxels)[index] = (uint16_t)stored; break;
-    case HL_STORAGE_F32: ((float *)voxels)[index] = (float)stored; break;
+/* The type that values have in memory when they were read: numbers of a text are not rounded to halves. */
+static hl_voxel_type read_type(const hl_payload *payload) {
+  return payload->text && payload->grid.type == HL_VOXEL_F16 ? HL_VOXEL_F32 : payload->grid.type;
+}
+
+#define PUT(type)                                                \
+  do {                                                           \
+    type number = (type)value;                                   \
+    memcpy(raw + index * sizeof number, &number, sizeof number); \
+  } while (0)
+
+/* Stores a number that fits the type as the type's bytes. */
+static void put_number(hl_voxel_type type, double value, size_t index, unsigned char *raw) {
+  switch (type) {
+    case HL_VOXEL_U8: PUT(uint8_t); break;
+    case HL_VOXEL_I8: PUT(int8_t); break;
+    case HL_VOXEL_U16: PUT(uint16_t); break;
+    case HL_VOXEL_I16: PUT(int16_t); break;
+    case HL_VOXEL_U32: PUT(uint32_t); break;
+    case HL_VOXEL_I32: PUT(int32_t); break;
+    case HL_VOXEL_U64:
+      value = fmin(value, 0x1p64 - 2048); /* the greatest double below 2^64 */
+      PUT(uint64_t);
+      break;
+    case HL_VOXEL_I64:
+      value = fmin(value, 0x1p63 - 1024); /* the greatest double below 2^63 */
+      PUT(int64_t);
+      break;
+    case HL_VOXEL_F64: PUT(double); break;
+    default: PUT(float); break;
   }
 }
 
 /* Reads the next number of a text. done: how many came before. */
 static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t index,
-                                 void *voxels, hl_error *error) {
+                                 unsigned char *raw, hl_error *error) {
   double value;
   bool found;
   hl_status status = hl_next_number(stream, &value, &found, error);
@@ -231,28 +261,38 @@ static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, u
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)stream->offset,
                           "%s, before byte %llu: %.17g does not fit the type %s", stream->path,
                           (unsigned long long)stream->offset, value, hl_voxel_type_name(payload->grid.type));
-  store_number(&payload->grid, value, index, voxels);
+  put_number(read_type(payload), value, index, raw);
   return HL_OK;
 }
 
-static hl_status read_text(hl_stream *stream, const hl_payload *payload, void *voxels, hl_error *error) {
+/* Reads `count` values of the type read_type() into `raw`; `done` values came before. */
+static hl_status read_values(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
+                             unsigned char *raw, hl_error *error) {
+  size_t bytes = hl_voxel_type_bytes(payload->grid.type), got;
+  hl_status status = HL_OK;
+  for (size_t n = 0; payload->text && n < count && status == HL_OK; n++)
+    status = read_text_value(stream, payload, done + n, n, raw, error);
+  if (payload->text) return status;
+  status = hl_stream_read(stream, raw, count * bytes, &got, error);
+  if (status == HL_OK && got < count * bytes) status = fail_short(stream, payload, done * bytes + got, error);
+  return status;
+}
+
+static hl_status read_text(hl_stream *stream, const hl_payload *payload, hl_destination *destination,
+                           hl_error *error) {
+  unsigned char raw[STAGE_VOXELS * 8];
   size_t count = voxel_count(payload);
-  for (size_t done = 0; done < count; done++) {
-    hl_status status = read_text_value(stream, payload, done, done, voxels, error);
-    if (status == HL_OK && done % PIECE_BYTES == 0) status = report(stream, done, count, error);
+  for (size_t done = 0, wanted; done < count; done += wanted) {
+    wanted = count - done < STAGE_VOXELS ? count - done : STAGE_VOXELS;
+    hl_status status = read_values(stream, payload, done, wanted, raw, error);
+    if (status != HL_OK) return status;
+    hl_destination_note(destination, false, raw, done, wanted);
+    hl_voxels_store(read_type(payload), false, raw, wanted,
+                    destination->voxels + done * destination->voxel_bytes);
+    status = report(stream, done, count, error);
     if (status != HL_OK) return status;
   }
   return HL_OK;
-}
-
-static hl_status read_stage(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
-                            void *stage, hl_error *error) {
-  unsigned char raw[STAGE_VOXELS * 8];
-  if (!payload->text) return read_piece(stream, payload, done, count, raw, stage, error);
-  hl_status status = HL_OK;
-  for (size_t n = 0; n < count && status == HL_OK; n++)
-    status = read_text_value(stream, payload, done + n, n, stage, error);
-  return status;
 }
 
 /* ---- several components: one of them, or their magnitude ----
@@ -285,9 +325,11 @@ static void add_square(float *magnitude, size_t component, double value) {
   *magnitude = (float)(component > 0 ? sqrt(before * before + value * value) : fabs(value));
 }
 
-static void take_value(const hl_payload *payload, const unsigned char *stage, size_t index,
-                       const component_place *place, unsigned char *voxels) {
+/* raw, stage: the values as they were read, and as stored values. */
+static void take_value(const hl_payload *payload, const unsigned char *raw, const unsigned char *stage,
+                       size_t index, const component_place *place, hl_destination *destination) {
   size_t voxel = place->first + place->in_block;
+  unsigned char *voxels = destination->voxels;
   if (payload->component == HL_COMPONENT_MAGNITUDE) {
     add_square((float *)voxels + voxel, place->component, value_of(payload, stage, index));
     return;
@@ -298,6 +340,8 @@ static void take_value(const hl_payload *payload, const unsigned char *stage, si
                     voxels + voxel * HL_COLOR_BYTES);
   } else if (place->component == (size_t)payload->component) {
     memcpy(voxels + voxel * bytes, stage + index * bytes, bytes);
+    hl_destination_note(destination, is_swapped(payload),
+                        raw + index * hl_voxel_type_bytes(read_type(payload)), voxel, 1);
   }
 }
 
@@ -321,9 +365,9 @@ static hl_status skip_block(hl_stream *stream, const hl_payload *payload, compon
   return hl_stream_skip(stream, bytes, error);
 }
 
-static hl_status read_components(hl_stream *stream, const hl_payload *payload, void *voxels,
+static hl_status read_components(hl_stream *stream, const hl_payload *payload, hl_destination *destination,
                                  hl_error *error) {
-  unsigned char stage[STAGE_VOXELS * sizeof(float)];
+  unsigned char raw[STAGE_VOXELS * 8], stage[STAGE_VOXELS * sizeof(float)];
   component_place place = {0, 0, 0};
   size_t count = voxel_count(payload);
   for (uint64_t done = 0; place.first < count;) {
@@ -343,10 +387,11 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, v
     if (payload->block - place.in_block < wanted && payload->block > 1)
       wanted = payload->block - place.in_block;
     if (payload->block == 1 && left - place.component < wanted) wanted = (size_t)(left - place.component);
-    status = read_stage(stream, payload, done, wanted, stage, error);
+    status = read_values(stream, payload, done, wanted, raw, error);
     if (status != HL_OK) return status;
+    hl_voxels_store(read_type(payload), is_swapped(payload), raw, wanted, stage);
     for (size_t n = 0; n < wanted; n++) {
-      take_value(payload, stage, n, &place, voxels);
+      take_value(payload, raw, stage, n, &place, destination);
       advance(payload, &place);
     }
     done += wanted;
@@ -414,8 +459,8 @@ hl_status hl_payload_read(hl_stream *stream, const hl_payload *payload, const do
                                stream->path, &to, error);
   if (status == HL_OK) status = report(stream, 0, voxel_count(payload), error);
   if (status == HL_OK)
-    status = payload->components > 1 ? read_components(stream, payload, to.voxels, error)
-             : payload->text         ? read_text(stream, payload, to.voxels, error)
+    status = payload->components > 1 ? read_components(stream, payload, &to, error)
+             : payload->text         ? read_text(stream, payload, &to, error)
                                      : read_binary(stream, payload, &to, error);
   if (status == HL_OK) status = check_end(stream, payload, error);
   if (status == HL_OK && colors) {

@@ -67,13 +67,16 @@ static bool is_whole(const hl_volume *volume) {
 }
 
 /* The first type that the format holds and that holds all data values: the volume's own, else the next larger
- * integers, else floats. */
+ * integers, else floats; doubles where floats round the values. */
 static hl_voxel_type choose_type(const hl_volume *volume, const hl_writer *writer) {
   const hl_voxel_type candidates[] = {volume->type, HL_VOXEL_I16, HL_VOXEL_U16, HL_VOXEL_I32, HL_VOXEL_U32};
+  if (volume->exact != NULL && volume->value_scale == 1 && volume->value_offset == 0 &&
+      (writer->types & 1u << volume->type) != 0)
+    return volume->type;
   for (size_t n = 0; is_whole(volume) && n < sizeof candidates / sizeof *candidates; n++)
     if ((writer->types & 1u << candidates[n]) != 0 && holds(candidates[n], volume->minimum, volume->maximum))
       return candidates[n];
-  return HL_VOXEL_F32;
+  return volume->exact != NULL && (writer->types & 1u << HL_VOXEL_F64) != 0 ? HL_VOXEL_F64 : HL_VOXEL_F32;
 }
 
 static hl_status set_type(saving *s, hl_voxel_type wanted, const char *path, hl_error *error) {
@@ -132,21 +135,13 @@ static void place_box(saving *s) {
 
 /* ---- rows ---- */
 
-static double stored_value(hl_storage storage, const void *row, size_t index) {
-  switch (storage) {
-    case HL_STORAGE_U8: return ((const uint8_t *)row)[index];
-    case HL_STORAGE_U16: return ((const uint16_t *)row)[index];
-    default: return (double)((const float *)row)[index];
-  }
-}
-
 /* Adds the row (j, k) of the volume to the sums; begins them where it is the first. */
 static void add_row(saving *s, size_t j, size_t k) {
   const hl_volume *volume = s->volume;
-  const void *row = hl_volume_row_in(volume, j, k, s->source_row);
+  const hl_number_row row = hl_volume_numbers(volume, j, k, s->source_row);
   for (size_t i = s->begin[0], n = 0; i < s->end[0]; n++)
     for (size_t last = i + s->shrink; i < last && i < s->end[0]; i++) {
-      double value = volume->value_scale * stored_value(volume->storage, row, i) + volume->value_offset;
+      double value = volume->value_scale * hl_row_number(row, i) + volume->value_offset;
       if (s->shrink > 1 && !isfinite(value)) continue;
       s->sums[n] += value;
       s->counts[n]++;
@@ -199,6 +194,19 @@ static double whole_value(saving *s, double value, double low, double high) {
     memcpy(to + n * sizeof stored, &stored, sizeof stored); \
   } while (0)
 
+/* Whether the file's own numbers are written as they are: those of 64 bits do not pass through doubles. */
+static bool keeps_numbers(const saving *s) {
+  const hl_volume *volume = s->volume;
+  return volume->exact != NULL && s->shrink == 1 && s->grid.type == volume->type &&
+         volume->value_scale == 1 && volume->value_offset == 0;
+}
+
+static void copy_row(saving *s, size_t j, size_t k) {
+  size_t bytes = hl_voxel_type_bytes(s->grid.type);
+  const unsigned char *row = hl_volume_numbers(s->volume, s->begin[1] + j, s->begin[2] + k, NULL).numbers;
+  memcpy(s->row, row + s->begin[0] * bytes, s->grid.dimensions[0] * bytes);
+}
+
 static void convert_row(saving *s) {
   unsigned char *to = s->row;
   double low = 0, high = 0;
@@ -248,8 +256,12 @@ static hl_status write_rows(saving *s, hl_error *error) {
   size_t bytes = n[0] * hl_voxel_type_bytes(s->grid.type);
   for (size_t k = 0; k < n[2]; k++) {
     for (size_t j = 0; j < n[1]; j++) {
-      make_row(s, j, k);
-      convert_row(s);
+      if (keeps_numbers(s)) {
+        copy_row(s, j, k);
+      } else {
+        make_row(s, j, k);
+        convert_row(s);
+      }
       put(s, s->row, bytes, k + 1 == n[2] && j + 1 == n[1]);
     }
     hl_progress(s->context, "write", (double)(k + 1) / (double)n[2]);
@@ -343,6 +355,11 @@ static void tell_losses(const saving *s, const char *path) {
   if (s->volume->colors != NULL)
     hl_log(context, HL_LOG_WARNING,
            "%s: the voxels' colours are lost: what is written is what opacity comes from", path);
+  if (s->volume->exact != NULL && (s->grid.type == HL_VOXEL_F32 || s->grid.type == HL_VOXEL_F16))
+    hl_log(
+        context, HL_LOG_WARNING,
+        "%s: numbers above 2^24 are rounded, as %s keeps 24 bits of a number: choose another --type or .nrrd",
+        path, type);
   if (s->clamped > 0)
     hl_log(context, HL_LOG_WARNING,
            "%s: %llu values are beyond the range of %s, and are written as its least or greatest", path,

@@ -6,7 +6,7 @@
 #ifndef HL_VOLUME_SLICE_CODECS_H
 #define HL_VOLUME_SLICE_CODECS_H
 
-#include "volume/volume.h"
+#include "volume/exact.h"
 
 /* A picture file in memory. */
 typedef struct hl_slice_file {
@@ -14,6 +14,8 @@ typedef struct hl_slice_file {
   const char *path; /* for error lines */
   const unsigned char *bytes;
   size_t length;
+  hl_exact *exact; /* notes the slice's numbers; may be null */
+  size_t first;    /* the number of its first voxel in the volume */
 } hl_slice_file;
 
 typedef struct hl_slice_shape {

@@ -6,13 +6,15 @@
 #include "volume/slice_codecs.h"
 #include "volume/tiff_file.h"
 
-static hl_status read(tiff_file *tiff, hl_slice_shape *shape, int component, void *voxels, hl_error *error) {
+static hl_status read(const hl_slice_file *file, tiff_file *tiff, hl_slice_shape *shape, int component,
+                      void *voxels, hl_error *error) {
   tiff_shape page;
   hl_status status = tiff_file_shape(tiff, &page, error);
   if (status != HL_OK) return status;
   *shape = (hl_slice_shape){page.width, page.height, page.components,
                             page.type,  page.colors, page.premultiplied};
-  if (voxels != NULL) return tiff_file_read(tiff, &page, component, voxels, error);
+  const tiff_target target = {voxels, file->exact, file->first};
+  if (voxels != NULL) return tiff_file_read(tiff, &page, component, &target, error);
   return tiff_file_can_hold(tiff, &page)
              ? HL_OK
              : hl_fail(error, HL_ERROR_INPUT,
@@ -24,7 +26,7 @@ hl_status hl_slice_read_tiff(const hl_slice_file *file, hl_slice_shape *shape, i
                              hl_error *error) {
   tiff_file tiff = {.descriptor = -1, .warnings = TIFF_NO_WARNINGS};
   hl_status status = tiff_file_open(file->context, file->path, file->bytes, file->length, true, &tiff, error);
-  if (status == HL_OK) status = read(&tiff, shape, component, voxels, error);
+  if (status == HL_OK) status = read(file, &tiff, shape, component, voxels, error);
   tiff_file_close(&tiff);
   return status;
 }

@@ -150,6 +150,8 @@ static hl_status read_slice(void *data, size_t slice, int worker, hl_error *erro
   hl_status status = read_file(r, slice, slice > 0, path, sizeof path, &file, error);
   if (status == HL_OK) status = hl_destination_take(&r->to, slice * count, count, &voxels, error);
   if (status == HL_OK) {
+    file.exact = &r->to.exact;
+    file.first = slice * count;
     status = hl_slice_decode(&file, &r->shape, r->component, voxels, error);
     hl_destination_put(&r->to, slice * count, count, voxels);
   }

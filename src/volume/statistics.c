@@ -13,6 +13,7 @@
 #include "core/door.h"
 #include "core/memory.h"
 #include "volume/counts.h"
+#include "volume/exact.h"
 #include "volume/pages.h"
 
 enum { LANES = 8 };
@@ -210,6 +211,21 @@ static hl_status record(hl_volume *volume, tally total, const char *subject, hl_
   return HL_OK;
 }
 
+/* Range and sum of the file's own numbers, where floats round them: of those whose floats are finite. */
+static void tally_exact(const hl_volume *volume, tally *total) {
+  if (volume->exact == NULL || total->finite == 0) return;
+  total->low = INFINITY;
+  total->high = -INFINITY;
+  total->sum = 0;
+  for (size_t n = 0; n < hl_volume_voxel_count(volume); n++) {
+    double number = hl_exact_number(volume->type, volume->exact, n);
+    if (!isfinite((float)number)) continue;
+    total->sum += number;
+    if (number < total->low) total->low = number;
+    if (number > total->high) total->high = number;
+  }
+}
+
 static bool measure_f32(hl_volume *volume, void *buffer, tally *total) {
   if (!tally_f32(volume, buffer, total)) return false;
   if (total->finite == 0) return true;
@@ -217,6 +233,7 @@ static bool measure_f32(hl_volume *volume, void *buffer, tally *total) {
   walk w = {.volume = volume, .buffer = buffer, .count = counted_voxels(volume)};
   while (next_piece(&w)) bin_f32(w.voxels, w.piece, bins, volume->histogram);
   if (!w.cancelled) sum_counts(volume, volume->histogram, HL_HISTOGRAM_BINS);
+  tally_exact(volume, total);
   return !w.cancelled;
 }
 

@@ -335,6 +335,7 @@ typedef struct page_reading {
   unsigned char *samples;        /* owned; a row of samples of the type */
   unsigned char *picked;         /* owned; a row of one component */
   unsigned char *voxels;
+  const tiff_target *target;
 } page_reading;
 
 static double sample_value(hl_voxel_type type, const void *stored) {
@@ -362,6 +363,7 @@ static void take_component(page_reading *r, const unsigned char *samples, unsign
     row = r->picked;
   }
   if (r->component != HL_COMPONENT_MAGNITUDE) {
+    hl_exact_note(r->target->exact, false, row, r->target->first + first, count);
     hl_voxels_store(type, false, row, count, r->voxels + first * stored);
     return;
   }
@@ -481,9 +483,10 @@ static hl_status measure_chunks(page_reading *r, hl_error *error) {
   return HL_OK;
 }
 
-hl_status tiff_file_read(tiff_file *file, const tiff_shape *shape, int component, void *voxels,
+hl_status tiff_file_read(tiff_file *file, const tiff_shape *shape, int component, const tiff_target *target,
                          hl_error *error) {
-  page_reading r = {.file = file, .shape = shape, .component = component, .voxels = voxels};
+  page_reading r = {
+      .file = file, .shape = shape, .component = component, .voxels = target->voxels, .target = target};
   file->message[0] = 0;
   hl_status status = measure_chunks(&r, error);
   if (status != HL_OK) return status;

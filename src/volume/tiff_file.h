@@ -7,7 +7,7 @@
 
 #include <tiffio.h>
 
-#include "volume/volume.h"
+#include "volume/exact.h"
 
 /* What a page's directory says about its voxels. */
 typedef struct tiff_shape {
@@ -56,9 +56,15 @@ hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl
  * its compression can reach. */
 bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape);
 
-/* Decodes the current directory's component, or an HL_COMPONENT_ value, into width x height stored voxels, or
- * colours (colors.h). */
-hl_status tiff_file_read(tiff_file *file, const tiff_shape *shape, int component, void *voxels,
+/* Where the voxels of a page go. */
+typedef struct tiff_target {
+  void *voxels;    /* width x height stored voxels, or colours (colors.h) */
+  hl_exact *exact; /* notes the page's numbers; may be null */
+  size_t first;    /* the number of the page's first voxel in the volume */
+} tiff_target;
+
+/* Decodes the current directory's component, or an HL_COMPONENT_ value. */
+hl_status tiff_file_read(tiff_file *file, const tiff_shape *shape, int component, const tiff_target *target,
                          hl_error *error);
 
 #endif

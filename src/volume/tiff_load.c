@@ -225,7 +225,8 @@ static hl_status decode_slice(stack_reading *r, size_t z, int worker, void *voxe
                    "%s: slice %zu has %u x %u pixels of %u samples of %u bits, the first %u x %u, %u, %u",
                    stack->path, z, shape.width, shape.height, shape.components, shape.bits, r->shape.width,
                    r->shape.height, r->shape.components, r->shape.bits);
-  return status == HL_OK ? tiff_file_read(file, &shape, r->component, voxels, error) : status;
+  const tiff_target target = {voxels, &r->to.exact, z * slice_voxels(r)};
+  return status == HL_OK ? tiff_file_read(file, &shape, r->component, &target, error) : status;
 }
 
 static hl_status read_slice(void *data, size_t z, int worker, hl_error *error) {

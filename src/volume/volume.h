@@ -56,6 +56,8 @@ struct hl_volume {
   const void *voxels; /* [k][j][i]; stored values; owned unless borrowed; null with pages. Rows are packed;
                          rows and slices of borrowed voxels may lie further apart than they are long */
   size_t row_bytes, slice_bytes; /* from row to row, and from slice to slice */
+  void *exact; /* owned; [k][j][i]; the file's numbers, of `type`, where the stored floats round any of them
+                  (exact.h); null: the stored values are the numbers */
   unsigned char *colors;      /* owned; [k][j][i][4] (colors.h); null: the transfer function tells colours */
   signed char *slopes;        /* owned; [k][j][i][4]: of a mask's lattice (label/mask.h); null: it is none */
   uint32_t (*mask_bricks)[2]; /* owned: of a mask's lattice (label/mask.h); null: it is none */
@@ -129,11 +131,27 @@ static inline double hl_stored_number(hl_storage storage, const void *row, size_
   return (double)((const float *)row)[i];
 }
 
+/* A row of numbers: the file's own where the stored values round them, else the stored values. */
+typedef struct hl_number_row {
+  hl_voxel_type type; /* U8, U16, F32, or a type of exact.h */
+  const void *numbers;
+} hl_number_row;
+
+/* A row of any volume. data value = value_scale * number + value_offset. buffer: as for hl_volume_row_in().
+ */
+hl_number_row hl_volume_numbers(const hl_volume *volume, size_t j, size_t k, void *buffer);
+double hl_row_number(hl_number_row row, size_t i);
+
 /* Makes a volume of voxels that are already in stored form (hl_voxels_store), packed, in a block of
  * hl_allocate that the volume takes over, also on failure. description: the grid, the type in the file, and
  * value_scale and value_offset for values of the file's type. subject: starts the error lines. */
 hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *description, const char *subject,
                           void *voxels, hl_volume **volume, hl_error *error);
+
+/* As hl_volume_adopt(), with the file's own numbers (hl_exact_take()), which the volume takes over, too. */
+hl_status hl_volume_adopt_exact(hl_context *context, const hl_volume_description *description,
+                                const char *subject, void *voxels, void *exact, hl_volume **volume,
+                                hl_error *error);
 
 /* Makes a volume of voxels that are in pages, which the volume takes over, also on failure; else as
  * hl_volume_adopt(). */

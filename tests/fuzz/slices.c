@@ -9,7 +9,7 @@ const uint64_t fuzz_memory_limit = 6 << 20;
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   hl_context *context = fuzz_context();
-  hl_slice_file file = {context, "v", data, size};
+  hl_slice_file file = {.context = context, .path = "v", .bytes = data, .length = size};
   hl_slice_shape shape;
   hl_slice_stack stack;
   hl_error error = {0};

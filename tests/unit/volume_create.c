@@ -170,8 +170,8 @@ static void test_extremes_of_each_type(void **state) {
   } cases[] = {{HL_VOXEL_I8, i8, -128, 127},
                {HL_VOXEL_I16, i16, -32768, 32767},
                {HL_VOXEL_U16, u16, 0, 65535},
-               {HL_VOXEL_I32, i32, -2147483648.0, 2147483648.0},
-               {HL_VOXEL_U32, u32, 0, 4294967296.0}};
+               {HL_VOXEL_I32, i32, INT32_MIN, INT32_MAX},
+               {HL_VOXEL_U32, u32, 0, UINT32_MAX}};
   for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
     hl_volume_description description = describe(2, 1, 1, cases[n].type, cases[n].voxels);
     hl_volume *volume = NULL;

@@ -25,6 +25,7 @@ typedef struct reading {
   int component; /* the sample to take, or HL_COMPONENT_MAGNITUDE */
   hl_voxel_type type;
   bool as_floats; /* values are computed as floats; else stored values are kept */
+  bool is_plain;  /* the values of all slices are the files' numbers, of `type` */
   double slope, intercept,
       padding[2]; /* the same for all slices; slope and intercept only where as_floats is false */
   size_t slice_voxels, voxel_bytes;
@@ -65,6 +66,12 @@ static void choose_type(reading *r) {
                    type_of(&other->pixels) != r->type || !same_number(other->padding[0], r->padding[0]) ||
                    !same_number(other->padding[1], r->padding[1]);
   }
+  r->is_plain = r->component != HL_COMPONENT_MAGNITUDE;
+  for (size_t n = 0; n < r->stack->place_count; n++) {
+    const hl_dicom_frame *frame = frame_at(r, n);
+    r->is_plain = r->is_plain && frame->slope == 1 && frame->intercept == 0 &&
+                  type_of(&r->set->files[frame->file].pixels) == r->type;
+  }
   if (r->component == HL_COMPONENT_MAGNITUDE) r->as_floats = true;
   r->voxel_bytes = r->as_floats ? sizeof(float) : hl_storage_bytes(hl_voxel_type_storage(r->type));
 }
@@ -85,8 +92,9 @@ static double value_at(const hl_dicom_workspace *space, hl_voxel_type type, size
   }
 }
 
-static void store_floats(const reading *r, const hl_dicom_frame *frame, const hl_dicom_workspace *space,
-                         float *slice) {
+/* first: the number of the slice's first voxel in the volume. */
+static void store_floats(reading *r, const hl_dicom_frame *frame, const hl_dicom_workspace *space,
+                         size_t first, float *slice) {
   const hl_dicom_file *file = &r->set->files[frame->file];
   size_t samples = file->pixels.samples;
   hl_voxel_type type = type_of(&file->pixels);
@@ -104,6 +112,10 @@ static void store_floats(const reading *r, const hl_dicom_frame *frame, const hl
     value = value_at(space, type, at + (samples > 1 ? (size_t)r->component : 0));
     bool padded = value >= file->padding[0] && value <= file->padding[1];
     slice[n] = padded ? NAN : (float)(frame->slope * value + frame->intercept);
+    if (r->is_plain && !padded)
+      hl_destination_note(
+          &r->to, false, space->values + (at + (samples > 1 ? (size_t)r->component : 0)) * space->value_bytes,
+          first + n, 1);
   }
 }
 
@@ -122,13 +134,15 @@ static void store_integers(reading *r, hl_dicom_workspace *space, size_t samples
   hl_voxels_store(r->type, false, space->values, r->slice_voxels, slice);
 }
 
-static hl_status read_slice(reading *r, size_t place, int worker, unsigned char *slice, hl_error *error) {
+/* first: the number of the slice's first voxel in the volume. */
+static hl_status read_slice(reading *r, size_t place, int worker, size_t first, unsigned char *slice,
+                            hl_error *error) {
   hl_dicom_workspace *space = &r->spaces[worker];
   const hl_dicom_frame *frame = frame_at(r, place);
   space->context = r->set->context;
   hl_status status = hl_dicom_read_frame(r->set, frame, space, error);
   if (status != HL_OK) return status;
-  if (r->as_floats) store_floats(r, frame, space, (float *)(void *)slice);
+  if (r->as_floats) store_floats(r, frame, space, first, (float *)(void *)slice);
   else store_integers(r, space, r->set->files[frame->file].pixels.samples, slice);
   return HL_OK;
 }
@@ -150,12 +164,12 @@ static void blend(const reading *r, double weight, unsigned char *slice, const u
   }
 }
 
-static hl_status fill_gap(reading *r, const hl_dicom_slice *slice, int worker, unsigned char *voxels,
-                          hl_error *error) {
+static hl_status fill_gap(reading *r, const hl_dicom_slice *slice, int worker, size_t first,
+                          unsigned char *voxels, hl_error *error) {
   size_t bytes = r->slice_voxels * r->voxel_bytes;
   if (r->others[worker] == NULL) r->others[worker] = hl_allocate(r->set->context, bytes, 1);
   if (r->others[worker] == NULL) return hl_fail_memory(error, bytes, "a slice");
-  hl_status status = read_slice(r, slice->place + 1, worker, r->others[worker], error);
+  hl_status status = read_slice(r, slice->place + 1, worker, first, r->others[worker], error);
   if (status == HL_OK) blend(r, slice->weight, voxels, r->others[worker]);
   return status;
 }
@@ -166,12 +180,13 @@ static hl_status read_one(void *data, size_t index, int worker, hl_error *error)
   reading *r = data;
   const hl_dicom_slice *slice = &r->stack->slices[index];
   void *voxels;
-  if (!hl_destination_wants(&r->to, index * r->slice_voxels, r->slice_voxels)) return HL_OK;
-  hl_status status = hl_destination_take(&r->to, index * r->slice_voxels, r->slice_voxels, &voxels, error);
+  size_t first = index * r->slice_voxels;
+  if (!hl_destination_wants(&r->to, first, r->slice_voxels)) return HL_OK;
+  hl_status status = hl_destination_take(&r->to, first, r->slice_voxels, &voxels, error);
   if (status != HL_OK) return status;
-  status = read_slice(r, slice->place, worker, voxels, error);
-  if (status == HL_OK && slice->weight > 0) status = fill_gap(r, slice, worker, voxels, error);
-  hl_destination_put(&r->to, index * r->slice_voxels, r->slice_voxels, voxels);
+  status = read_slice(r, slice->place, worker, first, voxels, error);
+  if (status == HL_OK && slice->weight > 0) status = fill_gap(r, slice, worker, first, voxels, error);
+  hl_destination_put(&r->to, first, r->slice_voxels, voxels);
   return status;
 }
 
@@ -215,7 +230,7 @@ static hl_status find_padding(reading *r, hl_error *error) {
   size_t middle = r->stack->place_count / 2, bytes = r->slice_voxels * r->voxel_bytes;
   unsigned char *slice = hl_allocate(r->set->context, bytes, 1);
   hl_status status = slice == NULL ? hl_fail_memory(error, bytes, "a slice")
-                                   : read_slice(r, middle, 0, slice, error);
+                                   : read_slice(r, middle, 0, 0, slice, error);
   hl_release(r->set->context, slice);
   if (status != HL_OK || !r->padded) return status;
   r->padded = false;

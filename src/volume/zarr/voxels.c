@@ -117,24 +117,29 @@ static void name_file(const hl_zarr_array *array, const part *p, char key[KEY_BY
 
 /* ---- a chunk's voxels into the volume ---- */
 
-static void fill_row(const reading *r, void *row, size_t count) {
+static void fill_row(const reading *r, void *row, size_t first, size_t count) {
   float wide;
   uint16_t word;
   memcpy(&wide, r->fill, sizeof wide);
   memcpy(&word, r->fill, sizeof word);
   if (r->stored_bytes == 1) memset(row, r->fill[0], count);
   for (size_t n = 0; r->stored_bytes == 2 && n < count; n++) ((uint16_t *)row)[n] = word;
-  for (size_t n = 0; r->stored_bytes == 4 && n < count; n++) ((float *)row)[n] = wide;
+  for (size_t n = 0; r->stored_bytes == 4 && n < count; n++) {
+    ((float *)row)[n] = wide;
+    hl_destination_note(r->to, false, r->array->fill, first + n, 1);
+  }
 }
 
-/* Reads voxels that lie `step` bytes apart; through a small buffer unless they lie side by side. */
-static void store_row(const reading *r, const unsigned char *from, size_t step, size_t count,
+/* Reads voxels that lie `step` bytes apart, those from number `first` on; through a small buffer unless they
+ * lie side by side. */
+static void store_row(const reading *r, const unsigned char *from, size_t step, size_t first, size_t count,
                       unsigned char *row) {
   enum { STAGED = 512 };
   hl_voxel_type type = r->array->type;
   bool swap = r->array->codecs.big_endian != native_is_big_endian;
   size_t bytes = hl_voxel_type_bytes(type);
   if (step == bytes) {
+    hl_destination_note(r->to, swap, from, first, count);
     hl_voxels_store(type, swap, from, count, row);
     return;
   }
@@ -142,6 +147,7 @@ static void store_row(const reading *r, const unsigned char *from, size_t step, 
   for (size_t done = 0; done < count; done += STAGED) {
     size_t some = count - done < STAGED ? count - done : STAGED;
     for (size_t n = 0; n < some; n++) memcpy(stage + n * bytes, from + (done + n) * step, bytes);
+    hl_destination_note(r->to, swap, stage, first + done, some);
     hl_voxels_store(type, swap, stage, some, row + done * r->stored_bytes);
   }
 }
@@ -156,8 +162,8 @@ static void put(const reading *r, const worker *w, const part *p, const unsigned
     for (uint64_t j = 0; j < p->count[1]; j++) {
       uint64_t first = ((p->begin[2] + k) * r->size[1] + p->begin[1] + j) * r->size[0] + p->begin[0];
       void *row = w->row != NULL ? w->row : r->to->voxels + first * r->stored_bytes;
-      if (chunk == NULL) fill_row(r, row, p->count[0]);
-      else store_row(r, chunk + k * step[2] + j * step[1], step[0], p->count[0], row);
+      if (chunk == NULL) fill_row(r, row, first, p->count[0]);
+      else store_row(r, chunk + k * step[2] + j * step[1], step[0], first, p->count[0], row);
       if (w->row != NULL) hl_destination_store(r->to, first, p->count[0], row);
     }
 }

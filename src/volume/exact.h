@@ -1,0 +1,50 @@
+/* volume/exact.h - the file's own numbers, kept beside stored values that round some of them.
+ *
+ * Stored values of 32-bit and 64-bit integers and of doubles are floats, which hold whole numbers exactly up
+ * to 2^24. Where a file has greater numbers that a float rounds (the ids of atlases), the numbers themselves
+ * are kept too, in the file's type: for labels, masks, `info` and `convert`. Pictures of values use the
+ * floats.
+ *
+ * In: voxels as a file or a caller gives them, in pieces of any size and order, from several threads at once.
+ * Out: all numbers, or null where floats hold them all. */
+#ifndef HL_VOLUME_EXACT_H
+#define HL_VOLUME_EXACT_H
+
+#include "core/error.h"
+#include "volume/volume.h"
+
+typedef struct hl_exact {
+  hl_context *context;
+  hl_voxel_type type;
+  size_t count;       /* voxels */
+  bool is_off;        /* numbers are not kept: voxels that are not in memory */
+  atomic_bool rounds; /* a number was noted that its float rounds */
+  atomic_bool failed; /* there was no memory for the numbers */
+  _Atomic(void *)
+      numbers; /* owned; [count] of the type, zeros at first; null until a float rounds a number */
+} hl_exact;
+
+/* is_off: only whether floats round is noted. */
+void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, bool is_off, hl_exact *exact);
+
+/* Notes `count` voxels, from number `first` on. source: packed, of any alignment; swap: in the other byte
+ * order. Where memory is short, hl_exact_take() fails. exact: may be null. */
+void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first, size_t count);
+
+/* Takes the numbers out; the caller owns them. stored: the stored values of all voxels, [count]. *numbers:
+ * null where floats hold them all. */
+hl_status hl_exact_take(hl_exact *exact, const float *stored, void **numbers, hl_error *error);
+void hl_exact_release(hl_exact *exact);
+
+/* A number of a row of the type's values, in native byte order. */
+static inline double hl_exact_number(hl_voxel_type type, const void *row, size_t i) {
+  switch (type) {
+    case HL_VOXEL_U32: return ((const uint32_t *)row)[i];
+    case HL_VOXEL_I32: return ((const int32_t *)row)[i];
+    case HL_VOXEL_U64: return (double)((const uint64_t *)row)[i];
+    case HL_VOXEL_I64: return (double)((const int64_t *)row)[i];
+    default: return ((const double *)row)[i];
+  }
+}
+
+#endif

@@ -1,0 +1,152 @@
+/* tests/unit/volume_exact.c - whole numbers above 2^24 keep their value: in memory, in files and as labels.
+ */
+#define _GNU_SOURCE
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <halflight/scene.h>
+
+#include "volume/volume.h"
+
+enum { SIDE = 4, COUNT = SIDE * SIDE * SIDE };
+
+static char folder[] = "/tmp/halflight-exact-XXXXXX";
+
+static int make_folder(void **state) {
+  (void)state;
+  return mkdtemp(folder) != NULL ? 0 : -1;
+}
+static int remove_folder(void **state) {
+  (void)state;
+  return rmdir(folder);
+}
+
+static hl_context *make_context(void) {
+  hl_context *context = NULL;
+  assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
+  return context;
+}
+
+static hl_volume *make_volume(hl_context *context, hl_voxel_type type, const void *voxels) {
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  for (int axis = 0; axis < 3; axis++) d.dimensions[axis] = SIDE;
+  d.type = type;
+  d.voxels = voxels;
+  hl_volume *volume = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  return volume;
+}
+
+/* Neighbouring whole numbers that one float stands for, of each type. */
+static void fill(hl_voxel_type type, unsigned char bytes[8 * COUNT]) {
+  for (size_t n = 0; n < COUNT; n++) {
+    int64_t wide = (n % 3 == 0 ? 0 : 720575940621039145 + (int64_t)n), narrow = 614454270 + (int64_t)n;
+    uint64_t whole = UINT64_MAX - n;
+    uint32_t word = (uint32_t)(n % 3 == 0 ? 5 : 4294967200u + n);
+    int32_t signed_word = (int32_t)(n % 2 == 0 ? -narrow : narrow);
+    double real = (double)(n % 3 == 0 ? 3 : narrow);
+    switch (type) {
+      case HL_VOXEL_U32: memcpy(bytes + 4 * n, &word, 4); break;
+      case HL_VOXEL_I32: memcpy(bytes + 4 * n, &signed_word, 4); break;
+      case HL_VOXEL_U64: memcpy(bytes + 8 * n, &whole, 8); break;
+      case HL_VOXEL_I64: memcpy(bytes + 8 * n, &wide, 8); break;
+      default: memcpy(bytes + 8 * n, &real, 8); break;
+    }
+  }
+}
+
+static const hl_voxel_type wide_types[] = {HL_VOXEL_U32, HL_VOXEL_I32, HL_VOXEL_U64, HL_VOXEL_I64,
+                                           HL_VOXEL_F64};
+
+/* Every byte comes back from a file, also where doubles cannot hold the number. */
+static void numbers_survive_files(void **state) {
+  (void)state;
+  static const char *const endings[] = {"nrrd", "nii", "mha", "vti"};
+  hl_context *context = make_context();
+  for (size_t t = 0; t < sizeof wide_types / sizeof *wide_types; t++)
+    for (size_t e = 0; e < sizeof endings / sizeof *endings; e++) {
+      unsigned char bytes[8 * COUNT] = {0};
+      char path[200];
+      hl_error error = {0};
+      hl_volume *again = NULL;
+      fill(wide_types[t], bytes);
+      hl_volume *volume = make_volume(context, wide_types[t], bytes);
+      snprintf(path, sizeof path, "%s/a.%s", folder, endings[e]);
+      if (hl_volume_save(context, volume, path, &error) != HL_OK) fail_msg("%s", error.message);
+      if (hl_volume_load(context, path, &again, &error) != HL_OK) fail_msg("%s", error.message);
+      assert_int_equal(again->type, wide_types[t]);
+      assert_non_null(again->exact);
+      assert_memory_equal(again->exact, bytes, COUNT * (t < 2 ? 4 : 8));
+      assert_true(again->minimum == volume->minimum && again->maximum == volume->maximum);
+      unlink(path);
+      hl_volume_release(again);
+      hl_volume_release(volume);
+    }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+static void values_and_range_are_exact(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  int32_t voxels[2 * COUNT]; /* room for numbers of 64 bits, which fill() may write */
+  fill(HL_VOXEL_I32, (unsigned char *)voxels);
+  hl_volume *volume = make_volume(context, HL_VOXEL_I32, voxels);
+  hl_volume_info info = {.struct_size = sizeof info};
+  double sum = 0;
+  for (size_t n = 0; n < COUNT; n++) {
+    assert_true(hl_volume_value(volume, n % SIDE, n / SIDE % SIDE, n / SIDE / SIDE) == voxels[n]);
+    sum += voxels[n];
+  }
+  assert_int_equal(hl_volume_get_info(volume, &info), HL_OK);
+  assert_true(info.range[0] == -614454332 && info.range[1] == 614454333);
+  assert_true(info.mean == sum / COUNT);
+  hl_volume_release(volume);
+  hl_context_destroy(context);
+}
+
+/* Numbers that floats hold need no second copy. */
+static void small_numbers_take_no_memory(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  uint32_t voxels[COUNT];
+  double reals[COUNT];
+  for (uint32_t n = 0; n < COUNT; n++) voxels[n] = n % 2 == 0 ? 1u << 24 : 0x80000000u + (n << 8);
+  for (uint32_t n = 0; n < COUNT; n++) reals[n] = n / 10.0;
+  hl_volume *volume = make_volume(context, HL_VOXEL_U32, voxels),
+            *fractions = make_volume(context, HL_VOXEL_F64, reals);
+  assert_null(volume->exact);
+  assert_null(fractions->exact);
+  hl_volume_release(volume);
+  hl_volume_release(fractions);
+  hl_context_destroy(context);
+}
+
+static void neighbouring_ids_are_two_labels(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  uint32_t voxels[COUNT];
+  for (uint32_t n = 0; n < COUNT; n++) voxels[n] = n < COUNT / 4 ? 0 : 614454277 + (n & 1);
+  hl_volume *map = make_volume(context, HL_VOXEL_U32, voxels);
+  hl_label *labels = NULL;
+  size_t count = 0;
+  assert_int_equal(hl_labels_of_volume(context, map, NULL, &labels, &count, NULL), HL_OK);
+  assert_int_equal(count, 2);
+  assert_true(labels[0].value == 614454277 && labels[1].value == 614454278);
+  hl_labels_release(context, labels);
+  hl_volume_release(map);
+  hl_context_destroy(context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(numbers_survive_files), cmocka_unit_test(values_and_range_are_exact),
+      cmocka_unit_test(small_numbers_take_no_memory), cmocka_unit_test(neighbouring_ids_are_two_labels)};
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
