@@ -37,11 +37,17 @@ static bool is_long(uint16_t vr) {
  * known length. */
 static bool is_wanted_sequence(uint32_t tag) {
   static const uint32_t tags[] = {
-      0x52009229, 0x52009230,                         /* functional groups: shared, per frame */
-      0x00209113, 0x00209116,                         /* plane position, plane orientation */
-      0x00289110, 0x00289145,                         /* pixel measures, pixel value transformation */
-      0x00209111, 0x00189114, 0x00189117, 0x00189118, /* frame content, MR echo, MR diffusion, cardiac */
-      0x00289132, 0x00540022, 0x00041220, 0x0062000a  /* frame VOI LUT, detectors, DICOMDIR, segment */
+      0x52009229, 0x52009230, /* functional groups: shared, per frame */
+      0x00209113, 0x00209116, /* plane position, plane orientation */
+      0x00289110, 0x00289145, /* pixel measures, pixel value transformation */
+      0x00209111, 0x00189114, 0x00189117,
+      0x00189118, /* frame content, MR echo, MR diffusion, cardiac */
+      0x00289132, 0x00540022, 0x00041220,
+      0x0062000a, /* frame VOI LUT, detectors, DICOMDIR, segment of a frame */
+      0x0020930e, 0x0020930f, 0x00209310,
+      0x00620002,                        /* plane position and orientation in an ultrasound volume,
+                                            temporal position, segments */
+      0x00189076, 0x00189226, 0x00189115 /* diffusion directions, MR image frame type, MR modifier */
   };
   for (size_t n = 0; n < sizeof tags / sizeof *tags; n++)
     if (tags[n] == tag) return true;

@@ -283,6 +283,30 @@ static hl_status decode(const hl_dicom_pixels *p, const hl_dicom_packed *packed,
   }
 }
 
+/* ---- tiles and palettes ---- */
+
+/* Keeps one tile of a mosaic. size: bytes of a pixel. */
+static void cut_tile(const hl_dicom_pixels *p, size_t tile, size_t size, unsigned char *values) {
+  size_t rows = hl_dicom_slice_rows(p), columns = hl_dicom_slice_columns(p);
+  size_t x = tile % p->tiles * columns, y = tile / p->tiles * rows;
+  for (size_t row = 0; row < rows; row++)
+    memmove(values + row * columns * size, values + ((y + row) * p->columns + x) * size, columns * size);
+}
+
+/* Replaces pixel values by the colours that they stand for, from the last to the first: colours are longer.
+ */
+static void apply_palette(const hl_dicom_pixels *p, const hl_dicom_palette *palette, size_t count,
+                          hl_dicom_workspace *space) {
+  for (size_t n = count; n-- > 0;) {
+    double value = space->values[n];
+    if (space->value_bytes == 2) value = ((const uint16_t *)(const void *)space->values)[n];
+    if (p->is_signed && space->value_bytes == 1) value = (int8_t)space->values[n];
+    if (p->is_signed && space->value_bytes == 2) value = ((const int16_t *)(const void *)space->values)[n];
+    hl_dicom_palette_color(palette, value, space->values + 3 * n);
+  }
+  space->value_bytes = 1;
+}
+
 hl_status hl_dicom_read_frame(const hl_dicom_set *set, const hl_dicom_frame *frame, hl_dicom_workspace *space,
                               hl_error *error) {
   const hl_dicom_file *file = &set->files[frame->file];
@@ -295,7 +319,7 @@ hl_status hl_dicom_read_frame(const hl_dicom_set *set, const hl_dicom_frame *fra
   hl_status status = hl_dicom_file_open(set, file, &source, error);
   if (status != HL_OK) return status;
   status = make_room(space->context, &space->values, &space->values_capacity,
-                     pixels * p->samples * space->value_bytes, error);
+                     pixels * hl_dicom_read_samples(p) * space->value_bytes, error);
   if (status == HL_OK && p->codec == HL_DICOM_NATIVE) {
     status = read_native(source, file, frame->index, space, pixels, error);
   } else if (status == HL_OK) {
@@ -307,5 +331,7 @@ hl_status hl_dicom_read_frame(const hl_dicom_set *set, const hl_dicom_frame *fra
   if (status != HL_OK) return status;
   place_bits(p, pixels * p->samples, space);
   if (!is_rgb && p->samples == 3 && space->value_bytes == 1) to_rgb(pixels, space->values);
+  if (p->tiles > 1) cut_tile(p, frame->tile, p->samples * space->value_bytes, space->values);
+  if (p->has_palette) apply_palette(p, &file->palette, pixels / (p->tiles * p->tiles), space);
   return HL_OK;
 }

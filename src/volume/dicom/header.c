@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "core/context.h"
 #include "core/memory.h"
 #include "volume/text.h"
 
@@ -33,6 +34,9 @@ bool hl_dicom_may_begin(const unsigned char *bytes, size_t length) {
   return explicit || (bytes[5] == 0 && bytes[6] == 0 && bytes[7] == 0 && bytes[4] <= 64);
 }
 
+/* Implicit, little-endian, but for the pixels, which are big-endian. */
+#define GE_PRIVATE "1.2.840.113619.5.2"
+
 static void use_syntax(hl_dicom_header *header, hl_dicom_reader *reader) {
   static const struct {
     const char *uid; /* the end of the UID, which begins with 1.2.840.10008.1.2 */
@@ -51,6 +55,10 @@ static void use_syntax(hl_dicom_header *header, hl_dicom_reader *reader) {
   header->pixels.codec = HL_DICOM_UNKNOWN_CODEC;
   for (size_t n = 0; n < sizeof syntaxes / sizeof *syntaxes && uid != NULL; n++)
     if (strcmp(uid, syntaxes[n].uid) == 0) header->pixels.codec = syntaxes[n].codec;
+  if (strcmp(header->syntax, GE_PRIVATE) == 0) {
+    header->pixels.codec = HL_DICOM_NATIVE;
+    header->has_swapped_pixels = reader->implicit = true;
+  }
   if (uid == NULL) return;
   reader->implicit = uid[0] == 0;
   reader->big_endian = strcmp(uid, ".2") == 0;
@@ -154,8 +162,13 @@ static const attribute attributes[] = {
     NUMBERS(0x00281050, DS, 1, window[0]),
     NUMBERS(0x00281051, DS, 1, window[1]),
     NUMBERS(0x3004000e, DS, 1, dose_scale),
+    NUMBERS(0x00480006, UL, 1, matrix_columns),
+    NUMBERS(0x00480007, UL, 1, matrix_rows),
     OF_FRAME(0x00200032, DS, 3, position),
     OF_FRAME(0x00200037, DS, 6, orientation),
+    OF_FRAME(0x00209301, FD, 3, volume_position),
+    OF_FRAME(0x00209302, FD, 6, volume_orientation),
+    OF_FRAME(0x00201041, DS, 1, location),
     OF_FRAME(0x00280030, DS, 2, spacing),
     OF_FRAME(0x00281052, DS, 1, intercept),
     OF_FRAME(0x00281053, DS, 1, slope),
@@ -164,9 +177,15 @@ static const attribute attributes[] = {
     OF_FRAME(0x00180081, DS, 1, echo),
     OF_FRAME(0x00189082, FD, 1, echo),
     OF_FRAME(0x00189087, FD, 1, b_value),
+    OF_FRAME(0x00189089, FD, 3, diffusion),
+    OF_FRAME(0x00180082, DS, 1, inversion),
+    OF_FRAME(0x00189079, FD, 1, inversion),
+    OF_FRAME(0x00181314, DS, 1, flip),
     OF_FRAME(0x00181060, DS, 1, trigger),
     OF_FRAME(0x00209153, FD, 1, trigger),
+    OF_FRAME(0x0020930d, FD, 1, trigger),
     OF_FRAME(0x00200012, DS, 1, acquisition),
+    OF_FRAME(0x00080032, DS, 1, time),
     OF_FRAME(0x00200013, DS, 1, instance),
     OF_FRAME(0x0062000b, US, 1, segment),
 };
@@ -174,7 +193,7 @@ static const attribute attributes[] = {
 static void clear_frame(hl_dicom_frame *frame) {
   double *const numbers = (double *)frame;
   for (size_t n = 0; n < offsetof(hl_dicom_frame, file) / sizeof(double); n++) numbers[n] = NAN;
-  frame->file = frame->index = 0;
+  frame->file = frame->index = frame->tile = 0;
 }
 
 static void clear_header(hl_dicom_header *header) {
@@ -185,6 +204,7 @@ static void clear_header(hl_dicom_header *header) {
     double *place = (double *)(void *)((char *)header + a->place);
     for (int k = 0; k < a->numbers; k++) place[k] = NAN;
   }
+  header->segments.fraction_most = NAN;
   clear_frame(&header->base);
 }
 
@@ -238,12 +258,36 @@ static hl_status take_offsets(hl_dicom_reader *reader, const hl_dicom_element *e
   return status;
 }
 
+/* A number for the kind of a picture, the same for the same text (FNV-1a, of 52 bits). */
+static double kind_of(const char *text) {
+  uint64_t hash = 14695981039346656037u;
+  for (; *text != 0; text++) hash = (hash ^ (unsigned char)*text) * 1099511628211u;
+  return (double)(hash >> 12);
+}
+
+/* The kind of a single frame. */
+static hl_status take_frame_type(hl_dicom_reader *reader, const hl_dicom_element *element,
+                                 hl_dicom_header *header, hl_error *error) {
+  char text[2 * HL_DICOM_TEXT_BYTES];
+  hl_dicom_frame *frame;
+  hl_status status = hl_dicom_text(reader, element, text, sizeof text, error);
+  if (status == HL_OK) status = frame_of(reader, header, &frame, error);
+  if (status == HL_OK) frame->kind = kind_of(text);
+  return status;
+}
+
 static hl_status take(hl_dicom_reader *reader, const hl_dicom_element *element, hl_dicom_header *header,
                       hl_error *error) {
   uint32_t outer = reader->depth > 0 ? reader->level[0].tag : 0;
   if (outer == 0 && element->tag == 0x3004000c) return take_offsets(reader, element, header, error);
+  hl_status status = hl_dicom_segments_take(reader, element, &header->segments, error);
+  if (status == HL_OK) status = hl_dicom_mosaic_take(reader, element, &header->mosaic, error);
+  if (status == HL_OK) status = hl_dicom_palette_take(reader, element, &header->palette, error);
+  if (status == HL_OK) status = hl_dicom_vectors_take(reader, element, &header->vectors, error);
+  if (status == HL_OK && outer == GROUPS_OF_FRAMES && element->tag == 0x00089007)
+    return take_frame_type(reader, element, header, error);
   const attribute *a = find_attribute(element->tag);
-  if (a == NULL) return HL_OK;
+  if (a == NULL || status != HL_OK) return status;
   bool of_frames = outer == GROUPS_OF_FRAMES;
   if (outer != 0 && !(a->of_frame && (of_frames || outer == SHARED_GROUPS || outer == DETECTORS)) &&
       !(outer == SHARED_GROUPS && a->tag == 0x00180050) && !(outer == SHARED_GROUPS && a->tag == 0x00180088))
@@ -251,14 +295,14 @@ static hl_status take(hl_dicom_reader *reader, const hl_dicom_element *element, 
   char *place = (char *)header;
   if (a->of_frame) {
     hl_dicom_frame *frame = &header->base;
-    hl_status status = of_frames ? frame_of(reader, header, &frame, error) : HL_OK;
+    status = of_frames ? frame_of(reader, header, &frame, error) : HL_OK;
     if (status != HL_OK) return status;
     place = (char *)frame;
   }
   if (a->vr == 0) return hl_dicom_text(reader, element, place + a->place, a->numbers, error);
   double numbers[6];
   int count;
-  hl_status status = hl_dicom_numbers(reader, element, a->vr, numbers, a->numbers, &count, error);
+  status = hl_dicom_numbers(reader, element, a->vr, numbers, a->numbers, &count, error);
   if (status == HL_OK && count == a->numbers)
     memcpy(place + a->place, numbers, (size_t)count * sizeof *numbers);
   return status;
@@ -301,6 +345,15 @@ static hl_status finish_pixels(const hl_source *source, hl_dicom_header *header,
   p->inverted = hl_text_equal(header->photometric, "MONOCHROME1") && !measured;
   p->is_ybr = hl_text_starts(header->photometric, "YBR_FULL");
   p->is_halved = hl_text_equal(header->photometric, "YBR_FULL_422");
+  p->has_palette = p->samples == 1 && (p->allocated == 8 || p->allocated == 16) &&
+                   hl_text_equal(header->photometric, "PALETTE COLOR") &&
+                   hl_dicom_palette_is_whole(&header->palette) &&
+                   header->segments.kind == HL_DICOM_NO_SEGMENTS;
+  p->tiles = 1;
+  if (header->matrix_rows > header->rows || header->matrix_columns > header->columns)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: tiles of a picture of %.0f x %.0f pixels (whole slide microscopy), and no volume",
+                   hl_source_path(source), header->matrix_columns, header->matrix_rows);
   if (p->codec == HL_DICOM_UNKNOWN_CODEC)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: its transfer syntax %s is not read",
                    hl_source_path(source), header->syntax);
@@ -323,9 +376,34 @@ static hl_status take_pixels(const hl_dicom_reader *reader, const hl_dicom_eleme
   p->length = element->length;
   p->encapsulated = element->length == HL_DICOM_UNDEFINED;
   p->is_float = element->tag != HL_DICOM_PIXEL_DATA;
-  p->big_endian = reader->big_endian;
+  p->big_endian = reader->big_endian || header->has_swapped_pixels;
   p->words = element->vr != HL_DICOM_VR('O', 'B');
   return HL_OK;
+}
+
+/* A frame in the space of an ultrasound volume has its place there, where it has none in the patient. */
+static void take_volume_place(hl_dicom_header *header, hl_dicom_frame *frame) {
+  if (isnan(frame->position[0]) && !isnan(frame->volume_position[0])) {
+    memcpy(frame->position, frame->volume_position, sizeof frame->position);
+    header->is_volume_space = true;
+  }
+  if (isnan(frame->orientation[0]) && !isnan(frame->volume_orientation[0]))
+    memcpy(frame->orientation, frame->volume_orientation, sizeof frame->orientation);
+}
+
+/* The tiles of a mosaic along a side (mosaic.h). Its first slice's position is found from the mosaic's, which
+ * is that of a picture of the mosaic's size around the slice's middle. */
+static void finish_mosaic(const hl_source *source, hl_dicom_header *header) {
+  hl_dicom_pixels *p = &header->pixels;
+  size_t tiles = (size_t)ceil(sqrt(fmin(header->mosaic.slices, 65536)));
+  if (strstr(header->image_type, "MOSAIC") == NULL) return;
+  if (header->mosaic.slices < 1 || tiles < 1 || p->rows % tiles != 0 || p->columns % tiles != 0) {
+    hl_log(hl_source_context(source), HL_LOG_WARNING,
+           "%s: a mosaic of slices that does not tell how many there are: it is shown as one picture",
+           hl_source_path(source));
+    return;
+  }
+  p->tiles = tiles;
 }
 
 /* Frames without attributes of their own get the attributes of the whole file. */
@@ -339,13 +417,18 @@ static void complete_frame(const hl_dicom_header *header, hl_dicom_frame *frame)
 static void finish_base(hl_dicom_header *header) {
   hl_dicom_frame *base = &header->base;
   for (int n = 0; n < 2; n++) base->spacing[n] = or_else(base->spacing[n], header->imager_spacing[n]);
+  base->kind = kind_of(header->image_type);
   base->slope = or_else(base->slope, or_else(header->dose_scale, 1));
   base->intercept = or_else(base->intercept, 0);
   if (!isfinite(base->slope) || base->slope == 0) base->slope = 1;
   if (!isfinite(base->intercept)) base->intercept = 0;
   header->frame_count = within(header->frame_count, 1, HL_DICOM_FRAMES_MOST) ? floor(header->frame_count) : 1;
   if (header->frames_told > (size_t)header->frame_count) header->frames_told = (size_t)header->frame_count;
-  for (size_t n = 0; n < header->frames_told; n++) complete_frame(header, &header->frames[n]);
+  for (size_t n = 0; n < header->frames_told; n++) {
+    complete_frame(header, &header->frames[n]);
+    take_volume_place(header, &header->frames[n]);
+  }
+  take_volume_place(header, base);
 }
 
 hl_status hl_dicom_header_read(hl_source **source, hl_dicom_header *header, hl_error *error) {
@@ -363,12 +446,17 @@ hl_status hl_dicom_header_read(hl_source **source, hl_dicom_header *header, hl_e
   }
   if (status != HL_OK || !header->has_pixels) return status;
   finish_base(header);
-  return finish_pixels(*source, header, error);
+  status = finish_pixels(*source, header, error);
+  if (status == HL_OK) finish_mosaic(*source, header);
+  return status;
 }
 
 void hl_dicom_header_release(hl_context *context, hl_dicom_header *header) {
   hl_release(context, header->frames);
   hl_release(context, header->offsets);
+  hl_dicom_segments_release(context, &header->segments);
+  hl_dicom_palette_release(context, &header->palette);
+  hl_dicom_vectors_release(context, &header->vectors);
   header->frames = NULL;
   header->offsets = NULL;
 }

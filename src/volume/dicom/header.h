@@ -5,6 +5,10 @@
 #define HL_VOLUME_DICOM_HEADER_H
 
 #include "volume/dicom/elements.h"
+#include "volume/dicom/mosaic.h"
+#include "volume/dicom/palette.h"
+#include "volume/dicom/segments.h"
+#include "volume/dicom/vectors.h"
 
 enum { HL_DICOM_UID_BYTES = 66, HL_DICOM_TEXT_BYTES = 66, HL_DICOM_FRAMES_MOST = 1 << 20 };
 
@@ -23,10 +27,14 @@ typedef struct hl_dicom_frame {
   double orientation[6]; /* unit steps along a row, then along a column */
   double spacing[2];     /* between rows, then between columns */
   double slope, intercept;
-  double temporal, echo, b_value, trigger, acquisition,
-      instance; /* differ between volumes at the same positions: echoes, diffusion, phases, times */
-  double segment;
+  double location;                                  /* along the normal, millimetres: SliceLocation */
+  double volume_position[3], volume_orientation[6]; /* in the space of an ultrasound volume */
+  /* What differs between volumes at the same positions: echoes, diffusion, phases, times, kinds of pictures.
+   */
+  double temporal, echo, b_value, diffusion[3], inversion, flip, trigger, kind, acquisition, time, instance;
+  double segment;       /* the number of the segment that the frame shows */
   uint32_t file, index; /* index of the file in the set, and of the frame in the file */
+  uint32_t tile;        /* of a mosaic: its tile */
 } hl_dicom_frame;
 
 /* How the pixels are written. */
@@ -34,9 +42,11 @@ typedef struct hl_dicom_pixels {
   size_t rows, columns, samples;
   int allocated, stored, high;                         /* bits; the place of the highest stored bit */
   bool is_signed, planar, is_float, big_endian, words; /* words: 8-bit pixels lie in 16-bit words */
-  bool inverted;                                       /* MONOCHROME1: the least value is white */
+  size_t tiles;           /* tiles along each side of a mosaic, each of which is a slice; else 1 */
+  bool inverted;          /* MONOCHROME1: the least value is white */
   bool is_ybr, is_halved; /* is_ybr: brightness and two colour differences; is_halved: the differences are
                              stored for every other column only */
+  bool has_palette;       /* pixels of one sample stand for colours: they become three samples of 8 bits */
   hl_dicom_codec codec;
   uint64_t offset, length; /* of the pixel data in the file; the length is unset where encapsulated */
   bool encapsulated;
@@ -44,7 +54,7 @@ typedef struct hl_dicom_pixels {
 
 typedef struct hl_dicom_header {
   char syntax[HL_DICOM_UID_BYTES];
-  bool deflated;
+  bool deflated, has_swapped_pixels; /* has_swapped_pixels: big-endian ones among little-endian elements */
   char series_uid[HL_DICOM_UID_BYTES], modality[HL_DICOM_TEXT_BYTES], description[HL_DICOM_TEXT_BYTES];
   char image_type[2 * HL_DICOM_TEXT_BYTES], photometric[HL_DICOM_TEXT_BYTES];
   double series_number;
@@ -58,9 +68,23 @@ typedef struct hl_dicom_header {
   size_t frames_told, frames_capacity;
   double *offsets; /* owned; [offset_count]: the frames' offsets along the normal, of dose grids */
   size_t offset_count;
+  double matrix_rows, matrix_columns; /* of a picture that the frames are tiles of */
+  hl_dicom_mosaic mosaic;
+  hl_dicom_palette palette;
+  hl_dicom_segments segments;
+  hl_dicom_vectors vectors;
+  bool is_volume_space; /* positions are those of an ultrasound volume, not of the patient */
   bool has_pixels;
   hl_dicom_pixels pixels;
 } hl_dicom_header;
+
+/* The size of a slice: of a mosaic's tile, or of the whole picture. */
+static inline size_t hl_dicom_slice_rows(const hl_dicom_pixels *p) { return p->rows / p->tiles; }
+static inline size_t hl_dicom_slice_columns(const hl_dicom_pixels *p) { return p->columns / p->tiles; }
+/* The samples of a pixel as it is read. */
+static inline size_t hl_dicom_read_samples(const hl_dicom_pixels *p) {
+  return p->has_palette ? 3 : p->samples;
+}
 
 /* Whether bytes may begin a DICOM file: one with the mark "DICM", or one that begins with an element. */
 bool hl_dicom_has_mark(const unsigned char *bytes, size_t length);

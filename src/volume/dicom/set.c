@@ -29,7 +29,8 @@ static hl_status make_room(hl_context *context, void **items, size_t count, size
 static hl_status find_series(hl_dicom_set *set, const hl_dicom_header *header, uint32_t *index,
                              hl_error *error) {
   for (size_t n = set->series_count; n > 0; n--)
-    if (strcmp(set->series[n - 1].uid, header->series_uid) == 0) {
+    if (strcmp(set->series[n - 1].uid, header->series_uid) == 0 && !set->series[n - 1].is_segmentation &&
+        header->segments.kind == HL_DICOM_NO_SEGMENTS) {
       *index = (uint32_t)(n - 1);
       return HL_OK;
     }
@@ -37,8 +38,10 @@ static hl_status find_series(hl_dicom_set *set, const hl_dicom_header *header, u
                                sizeof *set->series, error);
   if (status != HL_OK) return status;
   hl_dicom_series *series = &set->series[set->series_count];
-  *series = (hl_dicom_series){
-      .number = header->series_number, .rows = header->pixels.rows, .columns = header->pixels.columns};
+  *series = (hl_dicom_series){.number = header->series_number,
+                              .rows = hl_dicom_slice_rows(&header->pixels),
+                              .columns = hl_dicom_slice_columns(&header->pixels),
+                              .is_segmentation = header->segments.kind != HL_DICOM_NO_SEGMENTS};
   memcpy(series->uid, header->series_uid, sizeof series->uid);
   memcpy(series->modality, header->modality, sizeof series->modality);
   memcpy(series->description, header->description, sizeof series->description);
@@ -81,7 +84,8 @@ static size_t largest(const hl_dicom_set *set) {
   for (size_t n = 0; n < set->series_count; n++) {
     const hl_dicom_series *series = &set->series[n];
     double size = (double)series->rows * (double)series->columns * (double)series->frames;
-    if (series->frames == 1) size *= 1e-6; /* a single picture is chosen only if there are no stacks */
+    if (series->frames == 1) size *= 1e-6;     /* a single picture is chosen only if there are no stacks */
+    if (series->is_segmentation) size *= 1e-3; /* the scan is meant, before what was found in it */
     if (size > most) {
       most = size;
       chosen = n;
@@ -124,20 +128,44 @@ hl_status hl_dicom_series_choose(const hl_dicom_set *set, const char *wanted, si
 
 /* ---- files ---- */
 
+static void move(hl_dicom_frame *frame, vec3 direction, double distance) {
+  frame->position[0] += distance * direction.x;
+  frame->position[1] += distance * direction.y;
+  frame->position[2] += distance * direction.z;
+}
+
+/* The distance from slice to slice that the file states; below 0: against the normal. */
+static double stated_step(const hl_dicom_header *header) {
+  if (isfinite(header->slice_spacing) && header->slice_spacing != 0) return header->slice_spacing;
+  return header->thickness > 0 && isfinite(header->thickness) ? header->thickness : 1;
+}
+
+/* Places a tile of a mosaic: the mosaic's position is that of a picture of its size around the middle of the
+ * first slice. */
+static void place_tile(const hl_dicom_header *header, size_t tile, hl_dicom_frame *frame) {
+  const hl_dicom_pixels *p = &header->pixels;
+  vec3 row = vec3_of(frame->orientation), column = vec3_of(frame->orientation + 3),
+       way = vec3_cross(row, column);
+  double step = fabs(stated_step(header));
+  if (vec3_dot(way, vec3_of(header->mosaic.normal)) < 0) step = -step;
+  move(frame, row, (double)(p->columns - hl_dicom_slice_columns(p)) / 2 * frame->spacing[1]);
+  move(frame, column, (double)(p->rows - hl_dicom_slice_rows(p)) / 2 * frame->spacing[0]);
+  move(frame, way, (double)tile * step);
+  frame->tile = (uint32_t)tile;
+}
+
 /* Places the frames of a file that does not describe each: they follow each other along the normal. */
 static void place_frame(const hl_dicom_header *header, size_t index, hl_dicom_frame *frame) {
   *frame = index < header->frames_told ? header->frames[index] : header->base;
   frame->index = (uint32_t)index;
   if (header->frames_told > 0 || header->frame_count < 2) return;
-  double distance = (double)index * (header->slice_spacing > 0 ? header->slice_spacing
-                                     : header->thickness > 0   ? header->thickness
-                                                               : 1);
+  size_t slice = hl_dicom_vectors_slice(&header->vectors, index);
+  double distance = (double)slice * stated_step(header),
+         volume = hl_dicom_vectors_volume(&header->vectors, index);
+  if (!isnan(volume)) frame->temporal = volume;
   /* PS3.3, C.8.8.3.2: where the first offset is 0, offsets count from the first frame's position. */
   if (index < header->offset_count) distance = header->offsets[index] - header->offsets[0];
-  vec3 normal = vec3_cross(vec3_of(frame->orientation), vec3_of(frame->orientation + 3));
-  frame->position[0] += distance * normal.x;
-  frame->position[1] += distance * normal.y;
-  frame->position[2] += distance * normal.z;
+  move(frame, vec3_cross(vec3_of(frame->orientation), vec3_of(frame->orientation + 3)), distance);
 }
 
 /* Compares the size that the header promises with the file's length, before anything is allocated. */
@@ -157,16 +185,28 @@ static hl_status check_length(const hl_source *source, const hl_dicom_header *he
                         (unsigned long long)needed, (unsigned long long)left);
 }
 
+/* The slices of a frame: of a mosaic several. */
+static size_t slices_of_frame(const hl_dicom_header *header) {
+  return header->pixels.tiles > 1 ? (size_t)header->mosaic.slices : 1;
+}
+
 static hl_status add_frames(hl_dicom_set *set, const hl_dicom_header *header, size_t file, hl_error *error) {
-  size_t count = (size_t)header->frame_count;
+  size_t slices = slices_of_frame(header), count = (size_t)header->frame_count * slices;
   for (size_t n = 0; n < count; n++) {
     hl_status status = make_room(set->context, (void **)&set->frames, set->frame_count, &set->frame_capacity,
                                  sizeof *set->frames, error);
     if (status != HL_OK) return status;
     hl_dicom_frame *frame = &set->frames[set->frame_count++];
-    place_frame(header, n, frame);
+    place_frame(header, n / slices, frame);
+    if (slices > 1) place_tile(header, n % slices, frame);
     frame->file = (uint32_t)file;
   }
+  if (hl_dicom_vectors_are_projections(&header->vectors))
+    hl_log(set->context, HL_LOG_WARNING,
+           "%s: its frames are projections from several sides, not slices of a volume: they are shown one "
+           "behind the "
+           "other",
+           set->bundle->path);
   return HL_OK;
 }
 
@@ -188,7 +228,8 @@ static void take_padding(const hl_dicom_header *header, double padding[2]) {
   }
 }
 
-static hl_status add_file(hl_dicom_set *set, const hl_dicom_header *header, size_t entry, hl_error *error) {
+/* Takes segments and palette out of the header. */
+static hl_status add_file(hl_dicom_set *set, hl_dicom_header *header, size_t entry, hl_error *error) {
   hl_status status = make_room(set->context, (void **)&set->files, set->file_count, &set->file_capacity,
                                sizeof *set->files, error);
   if (status != HL_OK) return status;
@@ -200,12 +241,19 @@ static hl_status add_file(hl_dicom_set *set, const hl_dicom_header *header, size
                           .window = {header->window[0], header->window[1]},
                           .is_localizer = strstr(header->image_type, "LOCALIZER") != NULL,
                           .is_deflated = header->deflated,
+                          .is_backwards = header->frames_told == 0 && header->frame_count > 1 &&
+                                          header->slice_spacing < 0 && header->offset_count == 0,
+                          .is_volume_space = header->is_volume_space,
                           .frame_count = (size_t)header->frame_count};
   take_padding(header, file->padding);
   status = find_series(set, header, &file->series, error);
   if (status == HL_OK) status = add_frames(set, header, set->file_count, error);
   if (status != HL_OK) return status;
-  set->series[file->series].frames += file->frame_count;
+  set->series[file->series].frames += file->frame_count * slices_of_frame(header);
+  file->segments = header->segments;
+  file->palette = header->palette;
+  header->segments = (hl_dicom_segments){HL_DICOM_NO_SEGMENTS, NAN, NULL, 0, 0};
+  header->palette = (hl_dicom_palette){.entries = {NULL}};
   set->file_count++;
   return HL_OK;
 }
@@ -245,7 +293,11 @@ hl_status hl_dicom_set_read(hl_context *context, const hl_bundle *bundle, bool s
 }
 
 void hl_dicom_set_release(hl_dicom_set *set) {
-  for (size_t n = 0; n < set->file_count; n++) hl_release(set->context, set->files[n].frame_begins);
+  for (size_t n = 0; n < set->file_count; n++) {
+    hl_release(set->context, set->files[n].frame_begins);
+    hl_dicom_segments_release(set->context, &set->files[n].segments);
+    hl_dicom_palette_release(set->context, &set->files[n].palette);
+  }
   hl_release(set->context, set->files);
   hl_release(set->context, set->series);
   hl_release(set->context, set->frames);

@@ -10,6 +10,10 @@ typedef struct hl_dicom_file {
   hl_dicom_pixels pixels;
   double padding[2]; /* the range of values that stand for nothing; NAN: none */
   double slice_spacing, thickness, window[2];
+  bool is_backwards;    /* its frames, without places of their own, follow each other against the normal */
+  bool is_volume_space; /* positions are those of an ultrasound volume, not of the patient */
+  hl_dicom_segments segments; /* owned */
+  hl_dicom_palette palette;   /* owned */
   bool is_localizer, is_deflated;
   size_t frame_count;
   uint64_t *frame_begins; /* owned; [frame_count + 1], positions of the frames' first fragments; null until
@@ -20,7 +24,8 @@ typedef struct hl_dicom_series {
   char uid[HL_DICOM_UID_BYTES], modality[HL_DICOM_TEXT_BYTES], description[HL_DICOM_TEXT_BYTES];
   double number; /* NAN: none */
   size_t frames;
-  size_t rows, columns; /* of its first frame */
+  size_t rows, columns; /* of its first slice */
+  bool is_segmentation; /* it is one file with segments */
 } hl_dicom_series;
 
 typedef struct hl_dicom_set {

@@ -51,10 +51,13 @@ static bool all_finite(const double *numbers, int count) {
 static bool same_grid(const sorting *s, const hl_dicom_frame *a, const hl_dicom_frame *b) {
   const double COSINE_TOLERANCE = 1e-3;
   const hl_dicom_pixels *p = &file_of(s, a)->pixels, *q = &file_of(s, b)->pixels;
-  if (p->rows != q->rows || p->columns != q->columns || p->samples != q->samples) return false;
+  if (p->rows != q->rows || p->columns != q->columns || p->samples != q->samples || p->tiles != q->tiles ||
+      p->has_palette != q->has_palette)
+    return false;
   if (file_of(s, a)->is_localizer != file_of(s, b)->is_localizer) return false;
-  bool known = all_finite(a->orientation, 6) && all_finite(a->position, 3);
-  if (known != (all_finite(b->orientation, 6) && all_finite(b->position, 3))) return false;
+  bool known = all_finite(a->orientation, 6);
+  if (known != all_finite(b->orientation, 6) || all_finite(a->position, 3) != all_finite(b->position, 3))
+    return false;
   for (int n = 0; n < 6 && known; n++)
     if (fabs(a->orientation[n] - b->orientation[n]) > COSINE_TOLERANCE) return false;
   for (int n = 0; n < 2; n++)
@@ -105,10 +108,14 @@ static int compare(double a, double b) {
 /* Compares frames at the same position, which belong to different volumes, by the attributes in which such
  * volumes differ; the most reliable attribute comes first. */
 static int by_volume(const hl_dicom_frame *a, const hl_dicom_frame *b) {
-  const double of_a[] = {a->temporal,    a->echo,     a->b_value, a->trigger, a->segment,
-                         a->acquisition, a->instance, a->file,    a->index};
-  const double of_b[] = {b->temporal,    b->echo,     b->b_value, b->trigger, b->segment,
-                         b->acquisition, b->instance, b->file,    b->index};
+  const double of_a[] = {a->temporal,     a->echo,         a->b_value,   a->diffusion[0],
+                         a->diffusion[1], a->diffusion[2], a->inversion, a->flip,
+                         a->trigger,      a->segment,      a->kind,      a->acquisition,
+                         a->time,         a->instance,     a->file,      a->index};
+  const double of_b[] = {b->temporal,     b->echo,         b->b_value,   b->diffusion[0],
+                         b->diffusion[1], b->diffusion[2], b->inversion, b->flip,
+                         b->trigger,      b->segment,      b->kind,      b->acquisition,
+                         b->time,         b->instance,     b->file,      b->index};
   for (size_t n = 0; n < sizeof of_a / sizeof *of_a; n++) {
     int order = compare(of_a[n], of_b[n]);
     if (order != 0) return order;
@@ -128,6 +135,12 @@ static int by_instance(const void *a, const void *b) {
   return order != 0 ? order : by_volume(x, y);
 }
 
+static int by_location(const void *a, const void *b) {
+  const hl_dicom_frame *x = ((const placed_frame *)a)->frame, *y = ((const placed_frame *)b)->frame;
+  int order = compare(x->location, y->location);
+  return order != 0 ? order : by_volume(x, y);
+}
+
 static double pixel_spacing(const hl_dicom_frame *frame, int which) {
   return frame->spacing[which] > 0 && isfinite(frame->spacing[which]) ? frame->spacing[which] : 1;
 }
@@ -137,36 +150,98 @@ static double pixel_spacing(const hl_dicom_frame *frame, int which) {
 static double stated_spacing(const sorting *s, bool *known) {
   const hl_dicom_file *file = file_of(s, s->frames[0].frame);
   *known = true;
-  if (file->slice_spacing > 0 && isfinite(file->slice_spacing)) return file->slice_spacing;
+  if (file->slice_spacing != 0 && isfinite(file->slice_spacing)) return fabs(file->slice_spacing);
   if (file->thickness > 0 && isfinite(file->thickness)) return file->thickness;
   *known = false;
   return pixel_spacing(s->frames[0].frame, 0);
+}
+
+/* The axis of the patient along which the positions are spread most. */
+static int widest_axis(const sorting *s) {
+  double low[3], high[3];
+  int widest = 2;
+  for (int axis = 0; axis < 3; axis++) {
+    low[axis] = high[axis] = s->frames[0].frame->position[axis];
+    for (size_t n = 1; n < s->count; n++) {
+      low[axis] = fmin(low[axis], s->frames[n].frame->position[axis]);
+      high[axis] = fmax(high[axis], s->frames[n].frame->position[axis]);
+    }
+  }
+  for (int axis = 0; axis < 2; axis++)
+    if (high[axis] - low[axis] > high[widest] - low[widest]) widest = axis;
+  return widest;
+}
+
+/* Slices that tell no orientation stand across the axis along which they lie, as slices usually do: sagittal
+ * slices have rows from front to back, coronal ones from right to left, and both have columns from head to
+ * feet. */
+static void assume_axes(sorting *s) {
+  static const vec3 rows[3] = {{0, 1, 0}, {1, 0, 0}, {1, 0, 0}},
+                    columns[3] = {{0, 0, -1}, {0, 0, -1}, {0, 1, 0}};
+  static const char *const names[3] = {"sagittal", "coronal", "axial"};
+  int axis = widest_axis(s);
+  s->row = rows[axis];
+  s->column = columns[axis];
+  hl_log(s->set->context, HL_LOG_WARNING, "%s: the slices tell no orientation: they are taken for %s ones",
+         s->path, names[axis]);
 }
 
 static void find_axes(sorting *s) {
   const hl_dicom_frame *frame = s->frames[0].frame;
   s->row = (vec3){1, 0, 0};
   s->column = (vec3){0, 1, 0};
-  s->has_positions = all_finite(frame->orientation, 6) && all_finite(frame->position, 3);
+  s->has_positions = all_finite(frame->position, 3);
   vec3 row = vec3_of(frame->orientation), column = vec3_of(frame->orientation + 3);
-  if (s->has_positions) s->has_positions = vec3_length(vec3_cross(row, column)) > 0.1;
-  if (s->has_positions) {
+  bool oriented = all_finite(frame->orientation, 6) && vec3_length(vec3_cross(row, column)) > 0.1;
+  if (oriented) {
     s->row = vec3_normalise(row);
     s->column = vec3_normalise(column);
+  } else if (s->has_positions) {
+    assume_axes(s);
   }
   s->normal = vec3_normalise(vec3_cross(s->row, s->column));
+  if (file_of(s, frame)->is_backwards) s->normal = vec3_scale(s->normal, -1);
 }
 
-/* Sorts the frames by their positions, or by their numbers where positions are missing. */
+/* Whether the frames tell their places along the normal, and not all the same. */
+static bool have_locations(const sorting *s) {
+  bool differ = false;
+  for (size_t n = 0; n < s->count; n++) {
+    if (!all_finite(&s->frames[n].frame->location, 1)) return false;
+    differ = differ || s->frames[n].frame->location != s->frames[0].frame->location;
+  }
+  return differ;
+}
+
+/* Whether there are several frames, of which each has the place of the first. */
+static bool all_at_one_place(const sorting *s) {
+  for (size_t n = 1; n < s->count; n++)
+    for (int axis = 0; axis < 3; axis++)
+      if (s->frames[n].frame->position[axis] != s->frames[0].frame->position[axis]) return false;
+  return s->count > 1;
+}
+
+/* Sorts the frames by their positions; by their locations where positions are missing or all the same; else
+ * by their numbers. */
 static void sort(sorting *s) {
-  if (s->has_positions) {
+  bool known;
+  if (s->has_positions && !(all_at_one_place(s) && have_locations(s))) {
     for (size_t n = 0; n < s->count; n++)
       s->frames[n].distance = vec3_dot(vec3_of(s->frames[n].frame->position), s->normal);
     qsort(s->frames, s->count, sizeof *s->frames, by_distance);
     s->tolerance = 0.01 * fmin(pixel_spacing(s->frames[0].frame, 0), pixel_spacing(s->frames[0].frame, 1));
     return;
   }
-  bool known;
+  s->has_positions = false;
+  if (have_locations(s)) {
+    qsort(s->frames, s->count, sizeof *s->frames, by_location);
+    for (size_t n = 0; n < s->count; n++) s->frames[n].distance = s->frames[n].frame->location;
+    s->tolerance = 0.01 * fmin(pixel_spacing(s->frames[0].frame, 0), pixel_spacing(s->frames[0].frame, 1));
+    warn(s,
+         "the slices tell no positions: their order and distance are those of their locations "
+         "(SliceLocation)");
+    return;
+  }
   qsort(s->frames, s->count, sizeof *s->frames, by_instance);
   double step = stated_spacing(s, &known);
   for (size_t n = 0; n < s->count; n++) s->frames[n].distance = (double)n * step;
@@ -242,6 +317,43 @@ static hl_status gather_places(sorting *s, hl_dicom_stack *stack, hl_error *erro
   return HL_OK;
 }
 
+/* Gathers the frames of each position by the segments that they show. */
+static hl_status gather_segments(sorting *s, hl_dicom_stack *stack, hl_error *error) {
+  const hl_dicom_segments *segments = &file_of(s, s->frames[0].frame)->segments;
+  size_t unknown = 0, doubled = 0, count;
+  if (__builtin_mul_overflow(s->count, segments->count, &count) || count > (size_t)1 << 27)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %zu frames of %zu segments are too many", s->path,
+                   s->count, segments->count);
+  stack->segments = segments;
+  stack->times = segments->count;
+  stack->frames = hl_allocate_zeroed(s->set->context, count, sizeof(hl_dicom_frame *));
+  s->places = hl_allocate(s->set->context, s->count, sizeof *s->places);
+  if (stack->frames == NULL || s->places == NULL)
+    return hl_fail_memory(error, (count + s->count) * sizeof *s->places, "a list of slices");
+  for (size_t begin = 0, end; begin < s->count; begin = end) {
+    end = end_of_place(s, begin);
+    const hl_dicom_frame **places = stack->frames + s->place_count * stack->times;
+    for (size_t n = begin; n < end; n++) {
+      size_t segment = hl_dicom_segment_of(segments, s->frames[n].frame->segment);
+      unknown += segment == SIZE_MAX;
+      doubled += segment != SIZE_MAX && places[segment] != NULL;
+      if (segment != SIZE_MAX && places[segment] == NULL) places[segment] = s->frames[n].frame;
+    }
+    bool any = false;
+    for (size_t n = 0; n < stack->times; n++) any = any || places[n] != NULL;
+    if (any) s->places[s->place_count++] = s->frames[begin].distance;
+  }
+  stack->place_count = s->place_count;
+  if (s->place_count == 0)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: not one frame shows a segment that the file lists", s->path);
+  if (unknown + doubled > 0)
+    hl_log(s->set->context, HL_LOG_WARNING,
+           "%s: %zu frames show no segment that is listed, and %zu one that another frame shows: they are "
+           "left out",
+           s->path, unknown, doubled);
+  return HL_OK;
+}
+
 /* ---- even spacing ---- */
 
 static int compare_doubles(const void *a, const void *b) {
@@ -276,7 +388,12 @@ static bool is_even(const sorting *s, double step, size_t *slices) {
   return true;
 }
 
-/* Puts slices at even distances from the first to the last position. */
+/* Slices between two positions are interpolated where at most this many steps lie between them; else they are
+ * empty. */
+#define WIDEST_FILLED 3.5
+
+/* Puts slices at even distances from the first to the last position. Nothing fills the slices between frames
+ * of segments: a segment is absent where it has no frame. */
 static void spread(const sorting *s, size_t count, bool snap, hl_dicom_stack *stack) {
   double first = s->places[0], span = s->places[s->place_count - 1] - first;
   for (size_t n = 0, place = 0; n < count; n++) {
@@ -285,9 +402,33 @@ static void spread(const sorting *s, size_t count, bool snap, hl_dicom_stack *st
     while (place + 1 < s->place_count && s->places[place + 1] <= at + near) place++;
     double offset = at - s->places[place];
     bool exact = offset <= near || place + 1 == s->place_count;
-    stack->slices[n] = (hl_dicom_slice){place,
-                                        exact ? 0 : offset / (s->places[place + 1] - s->places[place])};
+    double gap = exact ? 0 : s->places[place + 1] - s->places[place];
+    bool empty = gap > WIDEST_FILLED * step || (!exact && stack->segments != NULL);
+    stack->slices[n] = (hl_dicom_slice){place, exact || empty ? 0 : offset / gap, empty};
+    stack->empty_count += empty;
   }
+}
+
+/* Says how slices were put where the file has none. count: of all slices. */
+static void tell_spacing(const sorting *s, const hl_dicom_stack *stack, bool even, size_t count) {
+  char text[300], holes[100] = "";
+  double step = count > 1 ? (s->places[s->place_count - 1] - s->places[0]) / (double)(count - 1) : 0;
+  size_t filled = 0;
+  for (size_t n = 0; n < count; n++) filled += stack->slices[n].weight > 0;
+  if (stack->segments != NULL) return;
+  if (stack->empty_count > 0)
+    snprintf(holes, sizeof holes, "%s%zu slices in wider holes are left empty",
+             even && filled == 0 ? "" : "; ", stack->empty_count);
+  if (!even)
+    snprintf(text, sizeof text,
+             "the slices are not evenly spaced: %zu slices, %.4g mm apart, are interpolated from the %zu%s",
+             count, step, s->place_count, holes);
+  else if (filled > 0)
+    snprintf(text, sizeof text,
+             "%zu of %zu slices are missing: they are interpolated from their neighbours%s", filled, count,
+             holes);
+  else snprintf(text, sizeof text, "slices are missing: %s", holes);
+  if (!even || filled > 0 || stack->empty_count > 0) warn(s, text);
 }
 
 static hl_status space_evenly(sorting *s, hl_dicom_stack *stack, hl_error *error) {
@@ -301,24 +442,13 @@ static hl_status space_evenly(sorting *s, hl_dicom_stack *stack, hl_error *error
     if (!even) {
       count = (size_t)fmin(span / step + 1.5, (double)(TIMES_MORE * s->place_count));
       if (count < 2) count = 2;
-      char text[200];
-      hl_plain_print(
-          text, sizeof text,
-          "the slices are not evenly spaced: %zu slices, %.4g mm apart, are interpolated from the %zu", count,
-          span / (double)(count - 1), s->place_count);
-      warn(s, text);
-    } else if (count > s->place_count) {
-      char text[200];
-      snprintf(text, sizeof text,
-               "%zu of %zu slices are missing: they are interpolated from their neighbours",
-               count - s->place_count, count);
-      warn(s, text);
     }
   }
   stack->slices = hl_allocate(s->set->context, count, sizeof *stack->slices);
   if (stack->slices == NULL) return hl_fail_memory(error, count * sizeof *stack->slices, "a list of slices");
   stack->grid.dimensions[2] = count;
   spread(s, count, even, stack);
+  tell_spacing(s, stack, even, count);
   return HL_OK;
 }
 
@@ -326,17 +456,24 @@ static hl_status space_evenly(sorting *s, hl_dicom_stack *stack, hl_error *error
 
 static void put(vec3 v, double to[3]) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 
+/* The position of a place: that of its first frame. */
+static const hl_dicom_frame *frame_of_place(const hl_dicom_stack *stack, size_t place) {
+  const hl_dicom_frame **frames = stack->frames + place * stack->times;
+  size_t n = 0;
+  while (n + 1 < stack->times && frames[n] == NULL) n++;
+  return frames[n];
+}
+
 /* Warns if slices do not lie on the line from the first to the last slice. */
 static void check_line(const sorting *s, const hl_dicom_stack *stack) {
   size_t last = s->place_count - 1;
   double span = s->places[last] - s->places[0], worst = 0;
-  double pixel = fmin(pixel_spacing(stack->frames[0], 0), pixel_spacing(stack->frames[0], 1));
-  vec3 first = vec3_of(stack->frames[0]->position);
-  vec3 way = vec3_subtract(vec3_of(stack->frames[last * stack->times]->position), first);
+  double pixel = fmin(pixel_spacing(frame_of_place(stack, 0), 0), pixel_spacing(frame_of_place(stack, 0), 1));
+  vec3 first = vec3_of(frame_of_place(stack, 0)->position);
+  vec3 way = vec3_subtract(vec3_of(frame_of_place(stack, last)->position), first);
   for (size_t n = 1; n < last; n++) {
     vec3 there = vec3_add(first, vec3_scale(way, (s->places[n] - s->places[0]) / span));
-    worst = fmax(worst,
-                 vec3_length(vec3_subtract(vec3_of(stack->frames[n * stack->times]->position), there)));
+    worst = fmax(worst, vec3_length(vec3_subtract(vec3_of(frame_of_place(stack, n)->position), there)));
   }
   if (worst <= pixel) return;
   hl_log(s->set->context, HL_LOG_WARNING,
@@ -347,17 +484,17 @@ static void check_line(const sorting *s, const hl_dicom_stack *stack) {
 
 static void make_grid(const sorting *s, hl_dicom_stack *stack) {
   hl_volume_description *grid = &stack->grid;
-  const hl_dicom_frame *first = stack->frames[0];
+  const hl_dicom_frame *first = frame_of_place(stack, 0);
   const hl_dicom_pixels *pixels = &file_of(s, first)->pixels;
   size_t steps = grid->dimensions[2] - 1;
   bool known;
-  grid->dimensions[0] = pixels->columns;
-  grid->dimensions[1] = pixels->rows;
+  grid->dimensions[0] = hl_dicom_slice_columns(pixels);
+  grid->dimensions[1] = hl_dicom_slice_rows(pixels);
   put(vec3_scale(s->row, pixel_spacing(first, 1)), grid->axis[0]);
   put(vec3_scale(s->column, pixel_spacing(first, 0)), grid->axis[1]);
   if (s->has_positions) {
     memcpy(grid->origin, first->position, sizeof grid->origin);
-    grid->space = HL_SPACE_LPS;
+    grid->space = file_of(s, first)->is_volume_space ? HL_SPACE_UNKNOWN : HL_SPACE_LPS;
   }
   if (steps == 0) {
     put(vec3_scale(s->normal, stated_spacing(s, &known)), grid->axis[2]);
@@ -365,7 +502,7 @@ static void make_grid(const sorting *s, hl_dicom_stack *stack) {
   }
   vec3 way = vec3_scale(s->normal, s->places[s->place_count - 1] - s->places[0]);
   if (s->has_positions)
-    way = vec3_subtract(vec3_of(stack->frames[(s->place_count - 1) * stack->times]->position),
+    way = vec3_subtract(vec3_of(frame_of_place(stack, s->place_count - 1)->position),
                         vec3_of(first->position));
   put(vec3_scale(way, 1 / (double)steps), grid->axis[2]);
   if (s->has_positions) check_line(s, stack);
@@ -392,7 +529,11 @@ hl_status hl_dicom_stack_make(const hl_dicom_set *set, size_t series, hl_dicom_s
   if (status == HL_OK) {
     find_axes(&s);
     sort(&s);
-    status = gather_places(&s, stack, error);
+    hl_dicom_segment_kind kind = file_of(&s, s.frames[0].frame)->segments.kind;
+    bool by_segments = kind == HL_DICOM_BINARY || kind == HL_DICOM_FRACTIONAL;
+    status = by_segments && file_of(&s, s.frames[0].frame)->segments.count > 0
+                 ? gather_segments(&s, stack, error)
+                 : gather_places(&s, stack, error);
   }
   if (status == HL_OK) status = space_evenly(&s, stack, error);
   if (status == HL_OK) make_grid(&s, stack);

@@ -12,14 +12,19 @@
 typedef struct hl_dicom_slice {
   size_t place;  /* index of the position at the slice or before it */
   double weight; /* weight of the next position's frame; 0: the slice lies at `place` */
+  bool empty;    /* it lies in a hole between two positions, which nothing fills */
 } hl_dicom_slice;
 
 typedef struct hl_dicom_stack {
   hl_context *context;
-  const hl_dicom_frame **frames; /* owned; [place_count][times] */
+  const hl_dicom_frame *
+      *frames; /* owned; [place_count][times]; of segments: null where a segment has no frame */
   size_t place_count, times;
-  hl_dicom_slice *slices;     /* owned; [grid.dimensions[2]] */
-  hl_volume_description grid; /* dimensions, origin, axes, space */
+  const hl_dicom_segments *segments; /* of a segmentation by frames, which has a place in `times` for each
+                                        segment; else null */
+  size_t empty_count;                /* slices that are empty */
+  hl_dicom_slice *slices;            /* owned; [grid.dimensions[2]] */
+  hl_volume_description grid;        /* dimensions, origin, axes, space */
 } hl_dicom_stack;
 
 /* Release it in any case. */

@@ -16,6 +16,7 @@
 #include "volume/convert.h"
 #include "volume/destination.h"
 #include "volume/dicom/frame.h"
+#include "volume/dicom/segmentation.h"
 #include "volume/parallel.h"
 
 typedef struct reading {
@@ -25,6 +26,7 @@ typedef struct reading {
   int component; /* the sample to take, or HL_COMPONENT_MAGNITUDE */
   hl_voxel_type type;
   bool as_floats; /* values are computed as floats; else stored values are kept */
+  bool as_colors; /* values are colours (colors.h) */
   bool is_plain;  /* the values of all slices are the files' numbers, of `type` */
   double slope, intercept,
       padding[2]; /* the same for all slices; slope and intercept only where as_floats is false */
@@ -45,6 +47,7 @@ static const hl_dicom_frame *frame_at(const reading *r, size_t place) {
 static bool same_number(double a, double b) { return a == b || (isnan(a) && isnan(b)); }
 
 static hl_voxel_type type_of(const hl_dicom_pixels *p) {
+  if (p->has_palette) return HL_VOXEL_U8;
   if (p->is_float) return p->allocated == 32 ? HL_VOXEL_F32 : HL_VOXEL_F64;
   if (p->allocated <= 8) return p->is_signed && p->allocated == 8 ? HL_VOXEL_I8 : HL_VOXEL_U8;
   if (p->allocated == 16) return p->is_signed ? HL_VOXEL_I16 : HL_VOXEL_U16;
@@ -72,8 +75,12 @@ static void choose_type(reading *r) {
     r->is_plain = r->is_plain && frame->slope == 1 && frame->intercept == 0 &&
                   type_of(&r->set->files[frame->file].pixels) == r->type;
   }
-  if (r->component == HL_COMPONENT_MAGNITUDE) r->as_floats = true;
-  r->voxel_bytes = r->as_floats ? sizeof(float) : hl_storage_bytes(hl_voxel_type_storage(r->type));
+  if (r->component == HL_COMPONENT_MAGNITUDE || r->stack->empty_count > 0) r->as_floats = true;
+  r->as_colors = hl_component_is_colors(r->component);
+  if (r->as_colors) r->as_floats = false;
+  r->voxel_bytes = r->as_colors ? HL_COLOR_BYTES : r->voxel_bytes;
+  if (!r->as_colors)
+    r->voxel_bytes = r->as_floats ? sizeof(float) : hl_storage_bytes(hl_voxel_type_storage(r->type));
 }
 
 /* ---- one slice ---- */
@@ -96,7 +103,7 @@ static double value_at(const hl_dicom_workspace *space, hl_voxel_type type, size
 static void store_floats(reading *r, const hl_dicom_frame *frame, const hl_dicom_workspace *space,
                          size_t first, float *slice) {
   const hl_dicom_file *file = &r->set->files[frame->file];
-  size_t samples = file->pixels.samples;
+  size_t samples = hl_dicom_read_samples(&file->pixels);
   hl_voxel_type type = type_of(&file->pixels);
   for (size_t n = 0; n < r->slice_voxels; n++) {
     size_t at = n * samples;
@@ -142,8 +149,11 @@ static hl_status read_slice(reading *r, size_t place, int worker, size_t first, 
   space->context = r->set->context;
   hl_status status = hl_dicom_read_frame(r->set, frame, space, error);
   if (status != HL_OK) return status;
+  size_t samples = hl_dicom_read_samples(&r->set->files[frame->file].pixels);
   if (r->as_floats) store_floats(r, frame, space, first, (float *)(void *)slice);
-  else store_integers(r, space, r->set->files[frame->file].pixels.samples, slice);
+  else if (!r->as_colors) store_integers(r, space, samples, slice);
+  for (size_t s = 0; s < samples && r->as_colors; s++)
+    hl_colors_store(r->type, space->values + s * space->value_bytes, samples, r->slice_voxels, s, slice);
   return HL_OK;
 }
 
@@ -152,12 +162,13 @@ static hl_status read_slice(reading *r, size_t place, int worker, size_t first, 
 static void blend(const reading *r, double weight, unsigned char *slice, const unsigned char *other) {
   float *floats = (float *)(void *)slice;
   uint16_t *words = (uint16_t *)(void *)slice;
-  for (size_t n = 0; n < r->slice_voxels; n++) {
+  size_t count = r->as_colors ? HL_COLOR_BYTES * r->slice_voxels : r->slice_voxels;
+  for (size_t n = 0; n < count; n++) {
     if (r->as_floats) {
       float after = ((const float *)(const void *)other)[n];
       if (isnan(floats[n])) floats[n] = after;
       else if (!isnan(after)) floats[n] = (float)((1 - weight) * (double)floats[n] + weight * (double)after);
-    } else if (r->voxel_bytes == 2) {
+    } else if (!r->as_colors && r->voxel_bytes == 2) {
       double after = ((const uint16_t *)(const void *)other)[n];
       words[n] = (uint16_t)floor((1 - weight) * words[n] + weight * after + 0.5);
     } else slice[n] = (unsigned char)floor((1 - weight) * slice[n] + weight * other[n] + 0.5);
@@ -174,6 +185,12 @@ static hl_status fill_gap(reading *r, const hl_dicom_slice *slice, int worker, s
   return status;
 }
 
+/* Nothing is in the slice: values that are not finite, or black. */
+static void leave_empty(const reading *r, void *slice) {
+  if (!r->as_floats) memset(slice, 0, r->slice_voxels * r->voxel_bytes);
+  for (size_t n = 0; n < r->slice_voxels && r->as_floats; n++) ((float *)slice)[n] = NAN;
+}
+
 /* ---- all slices ---- */
 
 static hl_status read_one(void *data, size_t index, int worker, hl_error *error) {
@@ -184,7 +201,8 @@ static hl_status read_one(void *data, size_t index, int worker, hl_error *error)
   if (!hl_destination_wants(&r->to, first, r->slice_voxels)) return HL_OK;
   hl_status status = hl_destination_take(&r->to, first, r->slice_voxels, &voxels, error);
   if (status != HL_OK) return status;
-  status = read_slice(r, slice->place, worker, first, voxels, error);
+  if (slice->empty) leave_empty(r, voxels);
+  else status = read_slice(r, slice->place, worker, first, voxels, error);
   if (status == HL_OK && slice->weight > 0) status = fill_gap(r, slice, worker, first, voxels, error);
   hl_destination_put(&r->to, first, r->slice_voxels, voxels);
   return status;
@@ -226,7 +244,7 @@ static hl_status make_threads(reading *r, size_t voxels, hl_error *error) {
 
 /* Looks for padding in the middle slice: integers that become floats after all are read need both at once. */
 static hl_status find_padding(reading *r, hl_error *error) {
-  if (r->as_floats || isnan(r->padding[0])) return HL_OK;
+  if (r->as_floats || r->as_colors || isnan(r->padding[0])) return HL_OK;
   size_t middle = r->stack->place_count / 2, bytes = r->slice_voxels * r->voxel_bytes;
   unsigned char *slice = hl_allocate(r->set->context, bytes, 1);
   hl_status status = slice == NULL ? hl_fail_memory(error, bytes, "a slice")
@@ -247,8 +265,9 @@ static hl_voxel_type kept_type(const reading *r) {
 static hl_status read_slices(reading *r, hl_error *error) {
   hl_volume_description grid = r->stack->grid;
   grid.type = kept_type(r);
-  hl_status status = hl_destination_open(r->set->context, &grid, HL_DESTINATION_PIECES, r->set->bundle->path,
-                                         &r->to, error);
+  hl_status status = hl_destination_open(r->set->context, &grid,
+                                         r->as_colors ? HL_DESTINATION_COLORS : HL_DESTINATION_PIECES,
+                                         r->set->bundle->path, &r->to, error);
   if (status != HL_OK) return status;
   return hl_parallel_read(r->set->context, r->pool, r->set->bundle->path, r->stack->grid.dimensions[2],
                           read_one, r, error);
@@ -289,7 +308,7 @@ static void take_window(const reading *r, double window[2]) {
 static hl_status make_volume(reading *r, hl_load_request *request, hl_volume **volume, hl_error *error) {
   hl_volume_description grid = r->stack->grid;
   grid.type = kept_type(r);
-  if (!r->as_floats) {
+  if (!r->as_floats && !r->as_colors) {
     grid.value_scale = r->slope;
     grid.value_offset = r->intercept;
   }
@@ -300,7 +319,9 @@ static hl_status make_volume(reading *r, hl_load_request *request, hl_volume **v
   take_window(r, request->window);
   request->unit = "millimetre";
   request->is_anatomical = grid.space != HL_SPACE_UNKNOWN;
-  return hl_destination_adopt(&r->to, &grid, volume, error);
+  const hl_color_source source = {&grid, r->set->bundle->path, 3, r->component, false};
+  return r->as_colors ? hl_destination_adopt_colors(&r->to, &source, volume, error)
+                      : hl_destination_adopt(&r->to, &grid, volume, error);
 }
 
 static hl_status read_volume(reading *r, hl_load_request *request, hl_volume **volume, hl_error *error) {
@@ -328,8 +349,8 @@ static hl_status choose(reading *r, hl_load_request *request, hl_error *error) {
   hl_payload payload;
   hl_payload_defaults(&payload);
   payload.grid.type = type_of(p);
-  payload.components = p->samples;
-  payload.colors = HL_COLORS_UNREAD;
+  payload.components = hl_dicom_read_samples(p);
+  if (hl_can_be_colors(payload.grid.type, payload.components)) payload.colors = HL_COLORS_MEANT;
   hl_status status = hl_steps_choose(request, path, r->stack->times, 1, error);
   if (status == HL_OK) status = hl_component_only(request, path, false, &payload, error);
   r->time = (size_t)request->selection.time;
@@ -339,6 +360,7 @@ static hl_status choose(reading *r, hl_load_request *request, hl_error *error) {
 
 hl_status hl_dicom_voxels_read(hl_dicom_set *set, hl_dicom_stack *stack, hl_load_request *request,
                                hl_volume **volume, hl_error *error) {
+  if (stack->segments != NULL) return hl_dicom_segmentation_read(set, stack, request, volume, error);
   reading *r = hl_allocate_zeroed(set->context, 1, sizeof *r);
   if (r == NULL) return hl_fail_memory(error, sizeof *r, set->bundle->path);
   r->set = set;
@@ -351,7 +373,12 @@ hl_status hl_dicom_voxels_read(hl_dicom_set *set, hl_dicom_stack *stack, hl_load
   }
   for (size_t n = 0; n < stack->place_count && status == HL_OK; n++)
     status = hl_dicom_find_frames(set, &set->files[frame_at(r, n)->file], error);
+  const hl_dicom_segments *segments = &set->files[frame_at(r, 0)->file].segments;
   if (status == HL_OK) status = read_volume(r, request, volume, error);
+  if (status == HL_OK && segments->kind == HL_DICOM_LABEL_MAP) {
+    status = hl_dicom_name_segments(segments, NULL, *volume, error);
+    if (status != HL_OK) hl_volume_release(*volume), *volume = NULL;
+  }
   hl_release(set->context, r);
   return status;
 }

@@ -1,0 +1,26 @@
+/* volume/dicom/palette.h - the colours that the pixels of a PALETTE COLOR picture stand for.
+ *
+ * Source: DICOM PS3.3, C.7.6.3.1.5 and C.7.6.3.1.6; C.7.9.2 (segmented tables). */
+#ifndef HL_VOLUME_DICOM_PALETTE_H
+#define HL_VOLUME_DICOM_PALETTE_H
+
+#include "volume/dicom/elements.h"
+
+typedef struct hl_dicom_palette {
+  double descriptor[3]
+                   [3]; /* of red, green, blue: entries (0: 65536), the first pixel value, bits of an entry */
+  unsigned char *entries[3]; /* owned; [65536]: codes of 8 bits; null: not told */
+  size_t counts[3];          /* of entries that were told */
+} hl_dicom_palette;
+
+/* Takes an element at the top of a file. Elements of others change nothing. */
+hl_status hl_dicom_palette_take(hl_dicom_reader *reader, const hl_dicom_element *element,
+                                hl_dicom_palette *palette, hl_error *error);
+void hl_dicom_palette_release(hl_context *context, hl_dicom_palette *palette);
+
+bool hl_dicom_palette_is_whole(const hl_dicom_palette *palette);
+
+/* The colour of a pixel value: values beyond the table's ends have the colours of its ends. */
+void hl_dicom_palette_color(const hl_dicom_palette *palette, double value, unsigned char rgb[3]);
+
+#endif
