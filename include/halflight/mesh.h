@@ -44,9 +44,10 @@ HL_API void hl_mesh_description_defaults(hl_mesh_description *description);
 HL_API HL_WARN_UNUSED hl_status hl_mesh_create(hl_context *context, const hl_mesh_description *description,
                                                hl_mesh **mesh, hl_error *error);
 
-/* Reads PLY (ASCII and binary), STL (ASCII and binary), OBJ, glTF 2.0 files (.gltf, .glb: the scene's
- * triangles with base colours; textures are left out) and VTK's PolyData (.vtp, legacy .vtk). Faces of more
- * than three corners become fans of triangles. Colours of 8 bits are sRGB, as other programs take them.
+/* Reads PLY (ASCII and binary), STL (ASCII and binary), OBJ with the colours of its materials, glTF 2.0 files
+ * (.gltf, .glb: the scene's triangles with base colours; textures are left out), VTK's PolyData (.vtp, legacy
+ * .vtk) and the surfaces of its unstructured grids (.vtu). Faces of more than three corners become triangles
+ * that cover them, concave ones, too. Colours of 8 bits are sRGB, as other programs take them.
  *
  * PolyData: vertices become spheres, lines tubes, of the radii that the point array "radius" tells (without
  * it a 400th of the diagonal of the points' box). Colours are the active scalars, or else the first array of

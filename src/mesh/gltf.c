@@ -63,8 +63,8 @@ static affine3 place_of(const json_t *node) {
 /* ---- triangles ---- */
 
 /* Finds an attribute of a primitive, of so many components (most: or one more). *found: it has one. */
-static hl_status find_attribute(const gltf_reader *reader, const json_t *primitive, const char *name,
-                                int least, int most, gltf_accessor *accessor, bool *found) {
+static hl_status find_attribute(gltf_reader *reader, const json_t *primitive, const char *name, int least,
+                                int most, gltf_accessor *accessor, bool *found) {
   size_t index;
   *found = hl_gltf_index(json_object_get(primitive, "attributes"), name, &index);
   if (!*found) return HL_OK;
@@ -149,11 +149,34 @@ static hl_status add_faces(gltf_reader *reader, const gltf_accessor *indices, si
   return status;
 }
 
+/* Whether a primitive has its positions in a buffer too, for programs that do not unpack them. */
+static bool has_plain_positions(const gltf_reader *reader, const json_t *primitive) {
+  size_t index;
+  return hl_gltf_index(json_object_get(primitive, "attributes"), "POSITION", &index) &&
+         json_object_get(item(reader, "accessors", index), "bufferView") != NULL;
+}
+
+static hl_status fail_compressed(const gltf_reader *reader, const char *extension) {
+  bool draco = strstr(extension, "draco") != NULL;
+  return hl_fail(
+      reader->error, HL_ERROR_UNSUPPORTED,
+      "%s: its meshes are compressed%s (%.60s), which is not read: save it without, or unpack it (%s)",
+      reader->file.path,
+      draco                                  ? " by Draco"
+      : strstr(extension, "meshopt") != NULL ? " by meshopt"
+                                             : "",
+      extension, draco ? "gltf-transform copy, gltfpack, Blender" : "gltf-transform copy");
+}
+
 static hl_status add_primitive(gltf_reader *reader, const json_t *primitive, affine3 place) {
   gltf_accessor positions, normals, colors, indices;
   bool has_positions, has_normals, has_colors;
   size_t mode = MODE_TRIANGLES, index;
   (void)hl_gltf_index(primitive, "mode", &mode);
+  const json_t *extensions = json_object_get(primitive, "extensions");
+  if (json_object_get(extensions, "KHR_draco_mesh_compression") != NULL &&
+      !has_plain_positions(reader, primitive))
+    return fail_compressed(reader, "KHR_draco_mesh_compression");
   if (mode < MODE_TRIANGLES || mode > MODE_FAN) return HL_OK; /* points and lines */
   hl_status status = find_attribute(reader, primitive, "POSITION", 3, 3, &positions, &has_positions);
   if (status == HL_OK) status = find_attribute(reader, primitive, "NORMAL", 3, 3, &normals, &has_normals);
@@ -225,9 +248,7 @@ static hl_status add_scene(gltf_reader *reader) {
   for (size_t n = 0; n < json_array_size(required); n++) {
     const char *name = json_string_value(json_array_get(required, n));
     if (name != NULL && (strstr(name, "draco") != NULL || strstr(name, "meshopt") != NULL))
-      return hl_fail(reader->error, HL_ERROR_UNSUPPORTED,
-                     "%s: its meshes are compressed (%.60s), which is not read: save it without",
-                     reader->file.path, name);
+      return fail_compressed(reader, name);
   }
   (void)hl_gltf_index(reader->file.root, "scene", &scene);
   const json_t *roots = json_object_get(item(reader, "scenes", scene), "nodes");
@@ -246,6 +267,11 @@ static uint32_t word_at(const unsigned char *at) {
   return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
 }
 
+/* Whether a chunk that is a buffer begins here. */
+static bool is_buffer(mesh_text text, size_t at) {
+  return text.length >= 8 && at <= text.length - 8 && memcmp(text.bytes + at + 4, "BIN", 4) == 0;
+}
+
 /* Finds the chunks of a GLB file: JSON first, then a buffer. */
 static hl_status find_chunks(gltf_reader *reader, mesh_text text, mesh_text *json) {
   enum { HEADER = 12, CHUNK = 8 };
@@ -253,7 +279,8 @@ static hl_status find_chunks(gltf_reader *reader, mesh_text text, mesh_text *jso
   size_t length = word_at(text.bytes + HEADER), after = HEADER + CHUNK;
   if (length > text.length - after) return refuse(reader, "its JSON is cut short");
   *json = (mesh_text){text.bytes + after, length};
-  after += (length + 3) / 4 * 4;
+  size_t padded = after + (length + 3) / 4 * 4;
+  after = is_buffer(text, after + length) ? after + length : padded; /* some programs leave the padding out */
   if (after > text.length || text.length - after < CHUNK) return HL_OK;
   length = word_at(text.bytes + after);
   after += CHUNK;

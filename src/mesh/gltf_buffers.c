@@ -44,8 +44,7 @@ static hl_status decode_base64(const gltf_file *file, const char *text, gltf_buf
   return HL_OK;
 }
 
-/* Reads a file beside the glTF file. Names that lead out of its folder are refused. */
-static hl_status read_beside(const gltf_file *file, const char *name, gltf_buffer *buffer, hl_error *error) {
+hl_status hl_gltf_read_beside(const gltf_file *file, const char *name, gltf_buffer *buffer, hl_error *error) {
   char path[2000];
   const char *slash = strrchr(file->path, '/');
   size_t folder = slash != NULL ? (size_t)(slash + 1 - file->path) : 0;
@@ -62,6 +61,38 @@ static hl_status read_beside(const gltf_file *file, const char *name, gltf_buffe
   return HL_OK;
 }
 
+static int hex_value(char c) {
+  return c >= '0' && c <= '9'   ? c - '0'
+         : c >= 'a' && c <= 'f' ? c - 'a' + 10
+         : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                : -1;
+}
+
+/* The name that a URI stands for: "%20" is a space (RFC 3986, section 2.1). name: as long as the URI. */
+static void decode_uri(const char *uri, char *name) {
+  for (; *uri != 0; uri++) {
+    int high = *uri == '%' ? hex_value(uri[1]) : -1, low = high >= 0 ? hex_value(uri[2]) : -1;
+    bool coded = low >= 0 && (high > 0 || low > 0); /* no byte of zero */
+    *name++ = coded ? (char)(16 * high + low) : *uri;
+    if (coded) uri += 2;
+  }
+  *name = 0;
+}
+
+/* Reads the file that a URI names; where there is none of the decoded name, that of the URI's own letters. */
+static hl_status read_uri(const gltf_file *file, const char *uri, gltf_buffer *buffer, hl_error *error) {
+  char *name = hl_allocate(file->context, strlen(uri) + 1, 1);
+  if (name == NULL) return hl_fail_memory(error, strlen(uri), "a uri");
+  decode_uri(uri, name);
+  hl_status status = hl_gltf_read_beside(file, name, buffer, error);
+  hl_error ignored;
+  if (status == HL_ERROR_IO && strcmp(name, uri) != 0 &&
+      hl_gltf_read_beside(file, uri, buffer, &ignored) == HL_OK)
+    status = HL_OK;
+  hl_release(file->context, name);
+  return status;
+}
+
 static hl_status read_buffer(gltf_file *file, const json_t *described, gltf_buffer *buffer, hl_error *error) {
   static const char data[] = "data:";
   const char *uri = json_string_value(json_object_get(described, "uri"));
@@ -70,7 +101,7 @@ static hl_status read_buffer(gltf_file *file, const json_t *described, gltf_buff
     return HL_OK;
   }
   const char *comma = strchr(uri, ',');
-  if (strncmp(uri, data, sizeof data - 1) != 0) return read_beside(file, uri, buffer, error);
+  if (strncmp(uri, data, sizeof data - 1) != 0) return read_uri(file, uri, buffer, error);
   if (comma == NULL) return refuse(file, "a buffer's data have no comma", error);
   return decode_base64(file, comma + 1, buffer, error);
 }
@@ -93,6 +124,8 @@ void hl_gltf_release_buffers(gltf_file *file) {
   for (size_t n = 0; n < file->buffer_count; n++)
     if (file->buffers[n].owned) hl_release(file->context, (void *)file->buffers[n].bytes);
   hl_release(file->context, file->buffers);
+  for (size_t n = 0; n < file->kept_count; n++) hl_release(file->context, file->kept[n]);
+  hl_release(file->context, file->kept);
 }
 
 /* ---- accessors ---- */
@@ -133,34 +166,94 @@ static bool find_view(const gltf_file *file, size_t index, size_t offset, gltf_b
   return true;
 }
 
-hl_status hl_gltf_find_accessor(const gltf_file *file, size_t index, gltf_accessor *accessor,
-                                hl_error *error) {
-  const json_t *described = json_array_get(json_object_get(file->root, "accessors"), index);
-  size_t view, offset = 0, type, count;
+/* Fills an accessor's place in a buffer view: bytes and stride. False where the view does not hold it. */
+static bool place_accessor(const gltf_file *file, const json_t *described, size_t count,
+                           gltf_accessor *accessor) {
+  size_t view, offset = 0, element = bytes_of_type(accessor->type) * (size_t)accessor->components;
   gltf_buffer bytes;
-  if (json_object_get(described, "sparse") != NULL)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: accessor %zu is sparse, which is not read", file->path,
-                   index);
   (void)hl_gltf_index(described, "byteOffset", &offset);
-  if (!hl_gltf_index(described, "bufferView", &view) || !hl_gltf_index(described, "componentType", &type) ||
-      !hl_gltf_index(described, "count", &count) || !find_view(file, view, offset, &bytes, &accessor->stride))
-    return hl_fail(error, HL_ERROR_INPUT, "%s: accessor %zu leads outside of the file's buffers", file->path,
-                   index);
-  accessor->type = type <= TYPE_F32 ? (int)type : 0;
-  accessor->components = components_of(json_string_value(json_object_get(described, "type")));
-  accessor->count = count;
+  if (!hl_gltf_index(described, "bufferView", &view) ||
+      !find_view(file, view, offset, &bytes, &accessor->stride))
+    return false;
   accessor->bytes = bytes.bytes;
-  size_t element = bytes_of_type(accessor->type) * (size_t)accessor->components;
   if (accessor->stride == 0) accessor->stride = element;
-  bool holds = element > 0 && count > 0 && element <= bytes.length &&
-               (bytes.length - element) / accessor->stride >= count - 1;
-  if (holds) return HL_OK;
-  return hl_fail(error, HL_ERROR_INPUT,
-                 "%s: accessor %zu has an unknown type, or its buffer is too short for its %zu elements",
-                 file->path, index, count);
+  return element > 0 && count > 0 && element <= bytes.length &&
+         (bytes.length - element) / accessor->stride >= count - 1;
+}
+
+static hl_status fail_accessor(const gltf_file *file, size_t index, size_t count, hl_error *error) {
+  return hl_fail(
+      error, HL_ERROR_INPUT,
+      "%s: accessor %zu leads outside of the file's buffers, has an unknown type, or its buffer is too "
+      "short for its %zu elements",
+      file->path, index, count);
+}
+
+/* Keeps a block of numbers until the file is released. */
+static hl_status keep_numbers(gltf_file *file, size_t count, double **numbers, hl_error *error) {
+  double **list = hl_reallocate(file->context, file->kept, file->kept_count + 1, sizeof *list);
+  if (list == NULL) return hl_fail_memory(error, sizeof *list, "numbers of an accessor");
+  file->kept = list;
+  *numbers = hl_allocate_zeroed(file->context, count, sizeof **numbers);
+  if (*numbers == NULL) return hl_fail_memory(error, count * sizeof **numbers, "numbers of an accessor");
+  list[file->kept_count++] = *numbers;
+  return HL_OK;
+}
+
+/* Replaces some elements of an accessor's numbers (glTF 2.0, section 3.6.2.3). */
+static hl_status put_sparse(const gltf_file *file, const json_t *sparse, size_t index,
+                            gltf_accessor *accessor, double *numbers, hl_error *error) {
+  size_t count = 0, type = 0, components = (size_t)accessor->components;
+  const json_t *of_indices = json_object_get(sparse, "indices"),
+               *of_values = json_object_get(sparse, "values");
+  gltf_accessor indices = {.components = 1}, values = *accessor;
+  (void)hl_gltf_index(sparse, "count", &count);
+  (void)hl_gltf_index(of_indices, "componentType", &type);
+  indices.type = type == TYPE_U8 || type == TYPE_U16 || type == TYPE_U32 ? (int)type : 0;
+  values.numbers = NULL;
+  values.stride = indices.stride = 0;
+  if (count > accessor->count || !place_accessor(file, of_indices, count, &indices) ||
+      !place_accessor(file, of_values, count, &values))
+    return fail_accessor(file, index, accessor->count, error);
+  for (size_t n = 0; n < count; n++) {
+    size_t at = (size_t)hl_gltf_number(&indices, n, 0);
+    if (at >= accessor->count) return fail_accessor(file, index, accessor->count, error);
+    for (size_t c = 0; c < components; c++) numbers[at * components + c] = hl_gltf_number(&values, n, (int)c);
+  }
+  return HL_OK;
+}
+
+hl_status hl_gltf_find_accessor(gltf_file *file, size_t index, gltf_accessor *accessor, hl_error *error) {
+  const json_t *described = json_array_get(json_object_get(file->root, "accessors"), index);
+  const json_t *sparse = json_object_get(described, "sparse");
+  size_t type = 0, count = 0, view;
+  (void)hl_gltf_index(described, "componentType", &type);
+  (void)hl_gltf_index(described, "count", &count);
+  *accessor = (gltf_accessor){
+      .type = type <= TYPE_F32 ? (int)type : 0,
+      .components = components_of(json_string_value(json_object_get(described, "type"))),
+      .count = count,
+      .normalized = json_is_true(json_object_get(described, "normalized"))};
+  bool has_view = hl_gltf_index(described, "bufferView", &view);
+  if (has_view || sparse == NULL)
+    if (!place_accessor(file, described, count, accessor)) return fail_accessor(file, index, count, error);
+  if (sparse == NULL) return HL_OK;
+  size_t components = (size_t)accessor->components, numbers_count;
+  if (components == 0 || count == 0 || count > UINT32_MAX ||
+      __builtin_mul_overflow(count, components, &numbers_count))
+    return fail_accessor(file, index, count, error);
+  double *numbers = NULL;
+  hl_status status = keep_numbers(file, numbers_count, &numbers, error);
+  for (size_t n = 0; status == HL_OK && has_view && n < count; n++)
+    for (size_t c = 0; c < components; c++) numbers[n * components + c] = hl_gltf_number(accessor, n, (int)c);
+  if (status == HL_OK) status = put_sparse(file, sparse, index, accessor, numbers, error);
+  accessor->numbers = numbers;
+  return status;
 }
 
 double hl_gltf_number(const gltf_accessor *accessor, size_t element, int component) {
+  if (accessor->numbers != NULL)
+    return accessor->numbers[element * (size_t)accessor->components + (size_t)component];
   size_t bytes = bytes_of_type(accessor->type);
   const unsigned char *at = accessor->bytes + element * accessor->stride + (size_t)component * bytes;
   uint32_t bits = 0;

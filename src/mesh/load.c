@@ -15,7 +15,8 @@ static const struct {
   const char *ending;
   mesh_reader *read;
 } formats[] = {{".ply", hl_mesh_read_ply},   {".stl", hl_mesh_read_stl},  {".obj", hl_mesh_read_obj},
-               {".gltf", hl_mesh_read_gltf}, {".glb", hl_mesh_read_gltf}, {".vtp", hl_mesh_read_vtp}};
+               {".gltf", hl_mesh_read_gltf}, {".glb", hl_mesh_read_gltf}, {".vtp", hl_mesh_read_vtp},
+               {".vtu", hl_mesh_read_vtp}};
 
 /* Whether the first bytes of a file say that it is PolyData: other .vtk files are volumes. */
 static bool begins_as_polydata(const char *path) {
@@ -61,9 +62,11 @@ hl_status hl_mesh_load(hl_context *context, const char *path, hl_mesh **mesh, hl
   mesh_reader *read = reader_of(path, text);
   if (read == NULL)
     status = hl_fail(error, HL_ERROR_UNSUPPORTED,
-                     "%s: is no mesh that is known: give .ply, .stl, .obj, .gltf, .glb, .vtp or .vtk", path);
+                     "%s: is no mesh that is known: give .ply, .stl, .obj, .gltf, .glb, .vtp, .vtu or .vtk",
+                     path);
   else status = read(text, &parts, error);
   hl_release(context, bytes);
+  if (status == HL_OK) status = hl_mesh_clip_polygons(&parts, error);
   if (status == HL_OK) {
     hl_error told;
     status = hl_mesh_of_parts(&parts, mesh, &told);

@@ -151,6 +151,7 @@ hl_status hl_mesh_of_parts(mesh_parts *parts, hl_mesh **mesh, hl_error *error) {
   made->given_triangles = triangles;
   made->description = hl_mesh_parts_describe(parts);
   atomic_init(&made->references, 1);
+  hl_release(parts->context, parts->polygons);
   *parts = (mesh_parts){.context = parts->context, .path = parts->path};
   status = keep_visible(made, error);
   if (status == HL_OK) status = hl_mesh_find_edges(made, error);

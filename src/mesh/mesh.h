@@ -42,6 +42,11 @@ struct hl_mesh {
  * with that of the way back the sum is 0. */
 uint64_t hl_hash_of_way(uint32_t from, uint32_t to);
 
+/* A polygon that was added as a fan of triangles: those from the first one on. */
+typedef struct mesh_polygon {
+  size_t first, count;
+} mesh_polygon;
+
 /* A mesh that is being read: growing arrays. */
 typedef struct mesh_parts {
   hl_context *context;
@@ -59,6 +64,8 @@ typedef struct mesh_parts {
   float (*line_colors)[4]; /* owned; [line_point_count]; null: none */
   uint32_t *line_lengths;  /* owned; [line_count] */
   size_t line_point_count, line_count;
+  mesh_polygon *polygons; /* owned; [polygon_count]; those of more than three corners */
+  size_t polygon_count, polygon_room;
 } mesh_parts;
 
 /* Makes room for so many vertices, or triangles, in all. with_normals, with_colors: arrays that vertices
@@ -69,6 +76,13 @@ hl_status hl_mesh_reserve_triangles(mesh_parts *parts, size_t count, hl_error *e
 
 /* Adds a triangle. Room for it is made as needed; face_colors has none. */
 hl_status hl_mesh_add_triangle(mesh_parts *parts, uint32_t a, uint32_t b, uint32_t c, hl_error *error);
+
+/* Notes that the triangles from `first` on are the fan of one polygon, around its first corner. */
+hl_status hl_mesh_note_polygon(mesh_parts *parts, size_t first, hl_error *error);
+
+/* Replaces the fans of noted polygons that are not convex by triangles that cover the polygon and nothing
+ * else. All vertices must be there. */
+hl_status hl_mesh_clip_polygons(mesh_parts *parts, hl_error *error);
 
 /* Adds the triangles of the tubes around the parts' lines. */
 hl_status hl_mesh_add_tubes(mesh_parts *parts, hl_error *error);

@@ -1,14 +1,15 @@
-/* mesh/obj.c - Wavefront OBJ files: vertices, their normals and colours, and faces.
+/* mesh/obj.c - Wavefront OBJ files: vertices, their normals and colours, faces, and the colours of their
+ * materials.
  *
- * Materials, groups, texture coordinates and curves are passed over. A vertex has one normal: where faces
- * give it several, the last one. */
+ * Groups, texture coordinates and curves are passed over. A vertex has one normal: where faces give it
+ * several, the last one. Colours of vertices displace those of materials. */
 #define _GNU_SOURCE /* memrchr */
 #include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "image/srgb.h"
-#include "mesh/mesh.h"
+#include "mesh/obj_materials.h"
 #include "volume/text.h"
 
 typedef struct obj_reader {
@@ -17,6 +18,9 @@ typedef struct obj_reader {
   int line;
   float (*normals)[3]; /* owned; [normal_count]; those of the file */
   size_t normal_count, normal_room;
+  obj_materials materials;
+  const obj_material *material; /* of the faces that come; null: none */
+  size_t face_color_room;       /* triangles that parts->face_colors has memory for */
   hl_error *error;
 } obj_reader;
 
@@ -25,18 +29,59 @@ static hl_status fail(obj_reader *reader, const char *what) {
                     reader->line, what);
 }
 
-/* The next word of the line. False at its end. */
+static bool ends_line(char c) { return c == '\n' || c == '\r'; }
+
+/* The bytes of a line's end at `at`: CR, LF or both; 0: there is none. */
+static size_t line_end(const obj_reader *reader, const char *at) {
+  if (at >= reader->end || !ends_line(*at)) return 0;
+  return *at == '\r' && at + 1 < reader->end && at[1] == '\n' ? 2 : 1;
+}
+
+/* The bytes of a backslash and a line's end, after which the line goes on; 0: there are none. */
+static size_t continuation(const obj_reader *reader, const char *at) {
+  size_t end = at < reader->end && *at == '\\' ? line_end(reader, at + 1) : 0;
+  return end > 0 ? end + 1 : 0;
+}
+
+/* The next word of the line, which may go on after a backslash. False at its end, or at a comment. */
 static bool next_word(obj_reader *reader, const char **word, size_t *length) {
-  while (reader->at < reader->end && *reader->at != '\n' && hl_is_space(*reader->at)) reader->at++;
+  for (size_t skipped;;) {
+    skipped = continuation(reader, reader->at);
+    if (skipped > 0) reader->line++;
+    else if (reader->at < reader->end && !ends_line(*reader->at) && hl_is_space(*reader->at)) skipped = 1;
+    if (skipped == 0) break;
+    reader->at += skipped;
+  }
   *word = reader->at;
-  while (reader->at < reader->end && !hl_is_space(*reader->at)) reader->at++;
+  if (reader->at < reader->end && *reader->at == '#') {
+    *length = 0;
+    return false;
+  }
+  while (reader->at < reader->end && !hl_is_space(*reader->at) && continuation(reader, reader->at) == 0)
+    reader->at++;
   *length = (size_t)(reader->at - *word);
   return *length > 0;
 }
 
+/* The rest of the line without blanks around it and without a comment, cut to the buffer. */
+static void rest_of_line(obj_reader *reader, char *text, size_t size) {
+  size_t length = 0;
+  const char *at = reader->at;
+  while (at < reader->end && !ends_line(*at) && *at != '#' && length + 1 < size) text[length++] = *at++;
+  text[length] = 0;
+  char *trimmed = hl_text_trim(text);
+  memmove(text, trimmed, strlen(trimmed) + 1);
+}
+
 static void skip_line(obj_reader *reader) {
-  const char *next = memchr(reader->at, '\n', (size_t)(reader->end - reader->at));
-  reader->at = next != NULL ? next + 1 : reader->end;
+  size_t end;
+  while (reader->at < reader->end && !ends_line(*reader->at)) {
+    size_t skipped = continuation(reader, reader->at);
+    reader->line += skipped > 0;
+    reader->at += skipped > 0 ? skipped : 1;
+  }
+  end = line_end(reader, reader->at);
+  reader->at += end;
   reader->line++;
 }
 
@@ -98,7 +143,7 @@ static int64_t index_of(const char *text, size_t length, size_t count) {
 static hl_status set_normal(obj_reader *reader, uint32_t vertex, const char *text, size_t length) {
   mesh_parts *parts = reader->parts;
   const char *slash = memrchr(text, '/', length);
-  if (slash == NULL || slash == memchr(text, '/', length)) return HL_OK;
+  if (slash == NULL || slash == memchr(text, '/', length) || slash + 1 == text + length) return HL_OK;
   int64_t normal = index_of(slash + 1, length - (size_t)(slash + 1 - text), reader->normal_count);
   if (normal < 0) return fail(reader, "a corner names a normal that is not there");
   if (parts->normals == NULL) {
@@ -110,9 +155,48 @@ static hl_status set_normal(obj_reader *reader, uint32_t vertex, const char *tex
   return HL_OK;
 }
 
+/* Gives the triangles from the first one on, which are those of one face, the colour of its material. Once a
+ * face has a colour, all have. */
+static hl_status color_face(obj_reader *reader, size_t first) {
+  mesh_parts *parts = reader->parts;
+  if (parts->face_colors == NULL && reader->material == NULL) return HL_OK;
+  if (parts->triangle_count > reader->face_color_room || parts->face_colors == NULL) {
+    size_t room = 2 * parts->triangle_count + 1024;
+    float(*grown)[4] = hl_reallocate(parts->context, parts->face_colors, room, sizeof *grown);
+    if (grown == NULL) return hl_fail_memory(reader->error, room * sizeof *grown, parts->path);
+    if (parts->face_colors == NULL)
+      for (size_t t = 0; t < first; t++)
+        for (int c = 0; c < 4; c++) grown[t][c] = 1;
+    parts->face_colors = grown;
+    reader->face_color_room = room;
+  }
+  static const float white[4] = {1, 1, 1, 1};
+  for (size_t t = first; t < parts->triangle_count; t++)
+    memcpy(parts->face_colors[t], reader->material != NULL ? reader->material->color : white, sizeof white);
+  return HL_OK;
+}
+
+static hl_status read_library(obj_reader *reader) {
+  char name[1024], copy[128] = "";
+  rest_of_line(reader, name, sizeof name);
+  if (name[0] == 0) return HL_OK;
+  if (reader->material != NULL) memcpy(copy, reader->material->name, sizeof copy);
+  hl_status status = hl_obj_read_materials(reader->parts->context, reader->parts->path, name,
+                                           &reader->materials, reader->error);
+  if (reader->material != NULL)
+    reader->material = hl_obj_find_material(&reader->materials, copy); /* they moved */
+  return status;
+}
+
+static void use_material(obj_reader *reader) {
+  char name[128];
+  rest_of_line(reader, name, sizeof name);
+  reader->material = hl_obj_find_material(&reader->materials, name);
+}
+
 static hl_status read_face(obj_reader *reader) {
   const char *word;
-  size_t length;
+  size_t length, first_triangle = reader->parts->triangle_count;
   uint32_t first = 0, before = 0;
   for (int corner = 0; next_word(reader, &word, &length); corner++) {
     const char *slash = memchr(word, '/', length);
@@ -126,7 +210,8 @@ static hl_status read_face(obj_reader *reader) {
     if (corner == 0) first = (uint32_t)vertex;
     before = (uint32_t)vertex;
   }
-  return HL_OK;
+  hl_status status = hl_mesh_note_polygon(reader->parts, first_triangle, reader->error);
+  return status == HL_OK ? color_face(reader, first_triangle) : status;
 }
 
 static hl_status read_line(obj_reader *reader) {
@@ -136,6 +221,8 @@ static hl_status read_line(obj_reader *reader) {
   if (length == 1 && word[0] == 'v') return read_vertex(reader);
   if (length == 2 && memcmp(word, "vn", 2) == 0) return read_normal(reader);
   if (length == 1 && word[0] == 'f') return read_face(reader);
+  if (length == 6 && memcmp(word, "mtllib", 6) == 0) return read_library(reader);
+  if (length == 6 && memcmp(word, "usemtl", 6) == 0) use_material(reader);
   return HL_OK;
 }
 
@@ -143,10 +230,16 @@ hl_status hl_mesh_read_obj(mesh_text text, mesh_parts *parts, hl_error *error) {
   const char *start = (const char *)text.bytes;
   obj_reader reader = {.parts = parts, .at = start, .end = start + text.length, .line = 1, .error = error};
   hl_status status = HL_OK;
+  if (text.length >= 3 && memcmp(start, "\xef\xbb\xbf", 3) == 0) reader.at += 3; /* byte order mark */
   while (status == HL_OK && reader.at < reader.end) {
     status = read_line(&reader);
     if (status == HL_OK) skip_line(&reader);
   }
+  if (parts->colors != NULL) {
+    hl_release(parts->context, parts->face_colors);
+    parts->face_colors = NULL;
+  }
   hl_release(parts->context, reader.normals);
+  hl_release(parts->context, reader.materials.list);
   return status;
 }

@@ -22,9 +22,9 @@ hl_mesh_description hl_mesh_parts_describe(const mesh_parts *parts) {
 }
 
 void hl_mesh_parts_release(mesh_parts *parts) {
-  void *const arrays[] = {parts->positions,   parts->normals,     parts->colors,        parts->triangles,
-                          parts->face_colors, parts->spheres,     parts->sphere_colors, parts->line_points,
-                          parts->line_colors, parts->line_lengths};
+  void *const arrays[] = {parts->positions,   parts->normals,      parts->colors,        parts->triangles,
+                          parts->face_colors, parts->spheres,      parts->sphere_colors, parts->line_points,
+                          parts->line_colors, parts->line_lengths, parts->polygons};
   for (size_t n = 0; n < sizeof arrays / sizeof *arrays; n++) hl_release(parts->context, arrays[n]);
   *parts = (mesh_parts){.context = parts->context, .path = parts->path};
 }

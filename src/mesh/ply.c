@@ -63,7 +63,8 @@ typedef struct ply_property {
 } ply_property;
 
 typedef struct ply_element {
-  bool vertices, faces;
+  bool vertices, faces,
+      strips;       /* strips: faces whose corners make strips of triangles, with -1 between them */
   bool face_colors; /* faces that have colours */
   size_t count;
   ply_property property[MOST_PROPERTIES];
@@ -75,6 +76,7 @@ typedef struct ply_reader {
   const char *at, *end; /* the rest of the file */
   int line;             /* of the header */
   bool ascii, big_endian;
+  char line_end; /* of the header's lines: LF, or CR alone */
   ply_element element[MOST_ELEMENTS];
   int element_count;
   size_t face_color_room; /* triangles that parts->face_colors has memory for */
@@ -95,7 +97,7 @@ static hl_status fail_short(ply_reader *reader) {
 
 static bool next_line(ply_reader *reader, const char **line, size_t *length) {
   if (reader->at >= reader->end) return false;
-  const char *stop = memchr(reader->at, '\n', (size_t)(reader->end - reader->at));
+  const char *stop = memchr(reader->at, reader->line_end, (size_t)(reader->end - reader->at));
   *line = reader->at;
   *length = (size_t)((stop != NULL ? stop : reader->end) - reader->at);
   reader->at = stop != NULL ? stop + 1 : reader->end;
@@ -136,7 +138,10 @@ static hl_status add_element(ply_reader *reader, char word[6][WORD_BYTES], int w
     return fail(reader, "an element has a name and a number");
   if (reader->element_count == MOST_ELEMENTS) return fail(reader, "more than 16 elements");
   reader->element[reader->element_count++] = (ply_element){
-      .vertices = hl_text_equal(word[1], "vertex"), .faces = hl_text_equal(word[1], "face"), .count = count};
+      .vertices = hl_text_equal(word[1], "vertex"),
+      .faces = hl_text_equal(word[1], "face") || hl_text_equal(word[1], "tristrips"),
+      .strips = hl_text_equal(word[1], "tristrips"),
+      .count = count};
   return HL_OK;
 }
 
@@ -236,22 +241,51 @@ static hl_status color_faces(ply_reader *reader, size_t first, const float color
   return HL_OK;
 }
 
+static hl_status fail_corner(const ply_reader *reader, double corner) {
+  return hl_fail(reader->error, HL_ERROR_INPUT, "%s: a face names vertex %.9g", reader->parts->path, corner);
+}
+
 /* Reads a face's corners, which make a fan of triangles. */
 static hl_status read_corners(ply_reader *reader, const ply_property *property) {
   double count, corner;
   uint32_t first = 0, before = 0;
+  size_t first_triangle = reader->parts->triangle_count;
   if (!read_number(reader, property->count, &count)) return fail_short(reader);
   for (double n = 0; n < count; n++) {
     if (!read_number(reader, property->type, &corner)) return fail_short(reader);
-    if (!(corner >= 0 && corner <= UINT32_MAX))
-      return hl_fail(reader->error, HL_ERROR_INPUT, "%s: a face names vertex %.9g", reader->parts->path,
-                     corner);
+    if (!(corner >= 0 && corner <= UINT32_MAX)) return fail_corner(reader, corner);
     hl_status status = HL_OK;
-    if (n >= 2 && property->role == ROLE_CORNERS)
-      status = hl_mesh_add_triangle(reader->parts, first, before, (uint32_t)corner, reader->error);
+    if (n >= 2) status = hl_mesh_add_triangle(reader->parts, first, before, (uint32_t)corner, reader->error);
     if (status != HL_OK) return status;
     if (n == 0) first = (uint32_t)corner;
     before = (uint32_t)corner;
+  }
+  return hl_mesh_note_polygon(reader->parts, first_triangle, reader->error);
+}
+
+/* Reads the corners of strips: each makes a triangle with the two before it, every second one turned over; -1
+ * ends a strip. */
+static hl_status read_strips(ply_reader *reader, const ply_property *property) {
+  double count, corner;
+  uint32_t last[2] = {0, 0};
+  size_t length = 0; /* of the strip so far */
+  if (!read_number(reader, property->count, &count)) return fail_short(reader);
+  for (double n = 0; n < count; n++) {
+    if (!read_number(reader, property->type, &corner)) return fail_short(reader);
+    if (corner == -1) {
+      length = 0;
+      continue;
+    }
+    if (!(corner >= 0 && corner <= UINT32_MAX)) return fail_corner(reader, corner);
+    bool turned = length % 2 == 1;
+    hl_status status = HL_OK;
+    if (length >= 2)
+      status = hl_mesh_add_triangle(reader->parts, last[turned], last[!turned], (uint32_t)corner,
+                                    reader->error);
+    if (status != HL_OK) return status;
+    last[0] = last[1];
+    last[1] = (uint32_t)corner;
+    length++;
   }
   return HL_OK;
 }
@@ -272,7 +306,7 @@ static hl_status read_item(ply_reader *reader, const ply_element *element) {
     hl_status status = HL_OK;
     double value;
     if (property->count != PLY_NONE && property->role == ROLE_CORNERS)
-      status = read_corners(reader, property);
+      status = element->strips ? read_strips(reader, property) : read_corners(reader, property);
     else if (property->count != PLY_NONE) status = skip_list(reader, property);
     else if (!read_number(reader, property->type, &value)) status = fail_short(reader);
     else if (element->vertices && property->role != ROLE_NONE)
@@ -340,6 +374,7 @@ hl_status hl_mesh_read_ply(mesh_text text, mesh_parts *parts, hl_error *error) {
   reader.end = reader.at + text.length;
   const char *line;
   size_t length;
+  reader.line_end = text.length > 4 && text.bytes[3] == '\r' && text.bytes[4] != '\n' ? '\r' : '\n';
   if (!next_line(&reader, &line, &length)) return fail(&reader, "is empty");
   hl_status status = read_header(&reader);
   for (int e = 0; status == HL_OK && e < reader.element_count; e++)

@@ -237,6 +237,7 @@ static hl_status convert_faces(const conversion *c, cell_kind kind) {
   for (size_t n = 0; status == HL_OK && n < cells->count; n++) {
     size_t before = c->parts->triangle_count;
     status = add_cell(c, cells, n, kind == CELLS_STRIPS);
+    if (status == HL_OK && kind == CELLS_POLYGONS) status = hl_mesh_note_polygon(c->parts, before, c->error);
     if (c->parts->face_colors != NULL) color_faces(c, before, c->first_cell[kind] + n);
   }
   return status;

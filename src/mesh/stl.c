@@ -101,11 +101,18 @@ static bool next_word(const char **at, const char *end, const char **word, size_
   return *length > 0;
 }
 
+/* Whether a word is this one, in letters of either case. */
+static bool is_word(const char *word, size_t length, const char *wanted) {
+  if (length != strlen(wanted)) return false;
+  for (size_t n = 0; n < length; n++)
+    if ((word[n] | 0x20) != wanted[n]) return false;
+  return true;
+}
+
 static size_t count_facets(mesh_text text) {
   size_t count = 0;
-  for (const char *at = (const char *)text.bytes, *end = at + text.length;
-       (at = memchr(at, 'v', (size_t)(end - at))) != NULL; at++)
-    if ((size_t)(end - at) > 6 && memcmp(at, "vertex", 6) == 0) count++;
+  for (const char *at = (const char *)text.bytes, *end = at + text.length; at < end; at++)
+    if ((*at == 'v' || *at == 'V') && (size_t)(end - at) > 6 && is_word(at, 6, "vertex")) count++;
   return count / 3;
 }
 
@@ -115,7 +122,7 @@ static hl_status read_ascii(mesh_text text, mesh_parts *parts, corner_table *tab
   float corner[3][3];
   hl_status status = make_room(parts, table, count_facets(text), error);
   while (status == HL_OK && next_word(&at, end, &word, &length)) {
-    if (length != 6 || memcmp(word, "vertex", 6) != 0) continue;
+    if (!is_word(word, length, "vertex")) continue;
     for (int axis = 0; axis < 3; axis++) {
       double value;
       if (!next_word(&at, end, &word, &length) || !hl_text_number(word, length, &value))
@@ -129,11 +136,22 @@ static hl_status read_ascii(mesh_text text, mesh_parts *parts, corner_table *tab
   return status;
 }
 
+/* Whether the file is text: "solid" comes first, after a mark of byte order and blanks, in letters of either
+ * case, and there are no zero bytes soon, as there are in binary files whose title begins so. */
+static bool is_text(mesh_text text) {
+  enum { LOOKED_AT = 512 };
+  const char *at = (const char *)text.bytes, *end = at + text.length, *word;
+  size_t length;
+  if (text.length >= 3 && memcmp(at, "\xef\xbb\xbf", 3) == 0) at += 3;
+  return next_word(&at, end, &word, &length) && is_word(word, length, "solid") &&
+         memchr(text.bytes, 0, text.length < LOOKED_AT ? text.length : LOOKED_AT) == NULL;
+}
+
 hl_status hl_mesh_read_stl(mesh_text text, mesh_parts *parts, hl_error *error) {
   corner_table table = {0};
   size_t count = binary_count(text);
   bool exact = text.length >= HEADER_BYTES && text.length - HEADER_BYTES == count * FACET_BYTES;
-  bool solid = text.length > 5 && memcmp(text.bytes, "solid", 5) == 0;
+  bool solid = is_text(text);
   hl_status status;
   if (exact || (!solid && text.length >= HEADER_BYTES))
     status = read_binary(text, count, parts, &table, error);

@@ -1,4 +1,5 @@
-/* mesh/vtp.c - VTK XML PolyData (.vtp): ascii, base64 and appended arrays, plain or in zlib blocks.
+/* mesh/vtp.c - VTK XML PolyData (.vtp) and the surfaces of unstructured grids (.vtu): ascii, base64 and
+ * appended arrays, plain or in compressed blocks.
  *
  * A first pass over the tags lists the pieces and their arrays; then, piece by piece, each array that is
  * needed is read, cells before the arrays whose length they tell; then the pieces are joined. */
@@ -6,6 +7,7 @@
 
 #include "core/memory.h"
 #include "mesh/polydata.h"
+#include "mesh/unstructured.h"
 #include "volume/convert.h"
 #include "volume/numbers.h"
 #include "volume/vtk_xml.h"
@@ -18,10 +20,11 @@ typedef enum section {
   SECTION_POINTS = CELL_KINDS,
   SECTION_POINT_DATA,
   SECTION_CELL_DATA,
+  SECTION_GRID, /* the cells of an unstructured grid */
   SECTION_NONE
 } section;
-static const char *const section_names[SECTION_NONE] = {"Verts",  "Lines",     "Polys",   "Strips",
-                                                        "Points", "PointData", "CellData"};
+static const char *const section_names[SECTION_NONE] = {"Verts",  "Lines",     "Polys",    "Strips",
+                                                        "Points", "PointData", "CellData", "Cells"};
 static const char *const count_names[CELL_KINDS] = {"NumberOfVerts", "NumberOfLines", "NumberOfPolys",
                                                     "NumberOfStrips"};
 
@@ -36,6 +39,8 @@ typedef struct vtp_array {
 /* A piece that has points. */
 typedef struct vtp_piece {
   polydata data;
+  unstructured_cells grid; /* of an unstructured grid */
+  size_t *sources;         /* owned; the cell of the grid that each cell comes from; null: PolyData */
   size_t first_array, array_count;
 } vtp_piece;
 
@@ -48,6 +53,7 @@ typedef struct vtp_file {
   vtp_piece *pieces;                                                         /* owned; [piece_count] */
   vtp_array *arrays; /* owned; [array_count]; piece after piece */
   size_t piece_count, piece_room, array_count, array_room;
+  bool is_grid;  /* an unstructured grid */
   bool in_piece; /* the last piece is open: arrays belong to it */
 } vtp_file;
 
@@ -78,6 +84,8 @@ static hl_status read_piece_tag(vtp_file *file, const hl_xml_tag *tag, hl_error 
   file->in_piece = piece.data.point_count > 0;
   for (int kind = 0; status == HL_OK && kind < CELL_KINDS; kind++)
     status = read_count(file, tag, count_names[kind], &piece.data.cells[kind].count, error);
+  if (status == HL_OK && file->is_grid)
+    status = read_count(file, tag, "NumberOfCells", &piece.grid.count, error);
   if (status != HL_OK || !file->in_piece) return status;
   if (file->piece_count == MOST_PIECES)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: has more than %d pieces: save it as one",
@@ -128,7 +136,11 @@ static hl_status read_tag(vtp_file *file, const hl_xml_tag *tag, hl_error *error
   if (file->xml.header_bytes == 0 && strcmp(tag->name, "VTKFile") != 0)
     return hl_vtk_xml_refuse(&file->xml, HL_ERROR_UNSUPPORTED, "an XML file whose first element is",
                              tag->name, error);
-  if (strcmp(tag->name, "VTKFile") == 0) return hl_vtk_xml_file_tag(&file->xml, tag, "PolyData", error);
+  if (strcmp(tag->name, "VTKFile") == 0) {
+    const char *type = hl_xml_attribute(tag, "type");
+    file->is_grid = type != NULL && strcmp(type, "UnstructuredGrid") == 0;
+    return hl_vtk_xml_file_tag(&file->xml, tag, file->is_grid ? "UnstructuredGrid" : "PolyData", error);
+  }
   if (strcmp(tag->name, "Piece") == 0) return read_piece_tag(file, tag, error);
   if (strcmp(tag->name, "DataArray") == 0) return read_array_tag(file, tag, error);
   if (strcmp(tag->name, "AppendedData") == 0) return hl_vtk_xml_appended_tag(&file->xml, tag, error);
@@ -205,10 +217,47 @@ static hl_status read_cells(vtp_file *file, vtp_piece *piece, int kind, hl_error
   return read_numbers(file, points, cells->point_count, &cells->points, error);
 }
 
+/* Reads the cells of an unstructured grid, and makes those of PolyData of them. */
+static hl_status read_grid(vtp_file *file, vtp_piece *piece, hl_error *error) {
+  unstructured_cells *grid = &piece->grid;
+  const vtp_array *ends = find_array(file, piece, SECTION_GRID, "offsets"),
+                  *points = find_array(file, piece, SECTION_GRID, "connectivity"),
+                  *types = find_array(file, piece, SECTION_GRID, "types");
+  if (grid->count == 0) return HL_OK;
+  if (ends == NULL || points == NULL || types == NULL)
+    return fail_missing(file, "offsets, connectivity or types", error);
+  hl_status status = read_numbers(file, ends, grid->count, &grid->ends, error);
+  if (status == HL_OK) status = read_numbers(file, types, grid->count, &grid->types, error);
+  if (status != HL_OK) return status;
+  double last = grid->ends[grid->count - 1];
+  if (!(last >= 0 && last <= 1e15))
+    return hl_fail(error, HL_ERROR_INPUT, "%s: cells end at point %.9g", piece->data.path, last);
+  grid->point_count = (size_t)last;
+  status = read_numbers(file, points, grid->point_count, &grid->points, error);
+  return status == HL_OK ? hl_unstructured_convert(grid, &piece->data, &piece->sources, error) : status;
+}
+
+/* Gives each cell the values of the grid's cell that it comes from. */
+static hl_status spread_values(const vtp_file *file, const vtp_piece *piece, cell_values *values,
+                               hl_error *error) {
+  size_t count = hl_polydata_tuples(&piece->data, AT_CELLS), components = values->components;
+  double *spread = hl_allocate(file->context, count * components + 1, sizeof *spread);
+  if (spread == NULL) return hl_fail_memory(error, count * components * sizeof *spread, piece->data.path);
+  for (size_t n = 0; n < count; n++)
+    memcpy(spread + n * components, values->values + piece->sources[n] * components,
+           components * sizeof *spread);
+  hl_release(file->context, values->values);
+  values->values = spread;
+  values->tuples = count;
+  return HL_OK;
+}
+
 /* Reads an array of values where it is of use. */
 static hl_status read_values(vtp_file *file, vtp_piece *piece, const vtp_array *array, hl_error *error) {
   value_place place = array->section == SECTION_POINT_DATA ? AT_POINTS : AT_CELLS;
-  cell_values shape = {.components = array->components, .tuples = hl_polydata_tuples(&piece->data, place)};
+  bool of_grid = piece->sources != NULL && place == AT_CELLS;
+  cell_values shape = {.components = array->components,
+                       .tuples = of_grid ? piece->grid.count : hl_polydata_tuples(&piece->data, place)};
   if (!hl_vtk_xml_find_type(array->array.type, &shape.type)) return HL_OK;
   cell_values *values = hl_polydata_claim(&piece->data, array->name, &shape, place, array->active);
   if (values == NULL || shape.tuples == 0) return HL_OK;
@@ -217,12 +266,13 @@ static hl_status read_values(vtp_file *file, vtp_piece *piece, const vtp_array *
   shape.values = values->values;
   hl_status status = read_numbers(file, array, shape.tuples * shape.components, &shape.values, error);
   *values = shape;
-  return status;
+  return status == HL_OK && of_grid ? spread_values(file, piece, values, error) : status;
 }
 
 static hl_status read_piece(vtp_file *file, vtp_piece *piece, hl_error *error) {
   hl_status status = read_points(file, piece, error);
-  for (int kind = 0; status == HL_OK && kind < CELL_KINDS; kind++)
+  if (status == HL_OK && file->is_grid) status = read_grid(file, piece, error);
+  for (int kind = 0; status == HL_OK && !file->is_grid && kind < CELL_KINDS; kind++)
     status = read_cells(file, piece, kind, error);
   for (size_t n = 0; status == HL_OK && n < piece->array_count; n++) {
     const vtp_array *array = &file->arrays[piece->first_array + n];
@@ -246,7 +296,11 @@ static hl_status read_pieces(vtp_file *file, polydata *whole, hl_error *error) {
 
 static void release(vtp_file *file) {
   hl_stream_close(file->xml.stream);
-  for (size_t n = 0; n < file->piece_count; n++) hl_polydata_release(&file->pieces[n].data);
+  for (size_t n = 0; n < file->piece_count; n++) {
+    hl_polydata_release(&file->pieces[n].data);
+    hl_unstructured_release(file->context, &file->pieces[n].grid);
+    hl_release(file->context, file->pieces[n].sources);
+  }
   hl_release(file->context, file->pieces);
   hl_release(file->context, file->arrays);
 }

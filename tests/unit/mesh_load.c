@@ -379,7 +379,7 @@ static void test_refused(void **state) {
        "[{\"attributes\": {\"POSITION\": 0}}]}]}",
        "accessor 0 leads outside of the file's buffers"},
       {"a.gltf", "{\"buffers\": [{\"uri\": \"../secret\"}]}", "is no file beside it"},
-      {"a.off", "OFF\n", "is no mesh that is known: give .ply, .stl, .obj, .gltf, .glb, .vtp or .vtk"}};
+      {"a.off", "OFF\n", "is no mesh that is known: give .ply, .stl, .obj, .gltf, .glb, .vtp, .vtu or .vtk"}};
   hl_context *context = NULL;
   assert_int_equal(hl_context_create(NULL, &context, NULL), HL_OK);
   for (size_t c = 0; c < sizeof cases / sizeof *cases; c++)

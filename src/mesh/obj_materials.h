@@ -1,0 +1,24 @@
+/* mesh/obj_materials.h - the materials of Wavefront OBJ files: the colours of .mtl files by their names. */
+#ifndef HL_MESH_OBJ_MATERIALS_H
+#define HL_MESH_OBJ_MATERIALS_H
+
+#include "mesh/mesh.h"
+
+typedef struct obj_material {
+  char name[128];
+  float color[4]; /* linear RGB and opacity */
+} obj_material;
+
+typedef struct obj_materials {
+  obj_material *list; /* owned; [count] */
+  size_t count, room;
+} obj_materials;
+
+/* Adds the materials of a library beside the OBJ file `path`. A library that cannot be read is told, and adds
+ * none. */
+hl_status hl_obj_read_materials(hl_context *context, const char *path, const char *name,
+                                obj_materials *materials, hl_error *error);
+/* The material of this name; null: there is none. */
+const obj_material *hl_obj_find_material(const obj_materials *materials, const char *name);
+
+#endif
