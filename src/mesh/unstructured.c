@@ -1,5 +1,5 @@
 /* mesh/unstructured.c - see unstructured.h. The types of cells and the order of their points: VTK's file
- * formats, "Linear cell types", and vtkCellType.h. */
+ * formats, "Linear cell types", and its list of cell types. */
 #include "mesh/unstructured.h"
 
 #include <math.h>
