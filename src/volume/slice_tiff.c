@@ -13,7 +13,7 @@ static hl_status read(const hl_slice_file *file, tiff_file *tiff, hl_slice_shape
   if (status != HL_OK) return status;
   *shape = (hl_slice_shape){page.width, page.height, page.components,
                             page.type,  page.colors, page.premultiplied};
-  const tiff_target target = {voxels, file->exact, file->first};
+  const tiff_target target = {voxels, file->exact, file->first, 0, 0};
   if (voxels != NULL) return tiff_file_read(tiff, &page, component, &target, error);
   return tiff_file_can_hold(tiff, &page)
              ? HL_OK

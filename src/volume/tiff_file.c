@@ -16,6 +16,9 @@
 #include "text/plain.h"
 #include "volume/colors.h"
 #include "volume/convert.h"
+#include "volume/unpack.h"
+
+static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
 
 enum { LARGEST_ALLOCATION = 1 << 30, WARNINGS_TOLD = 4, PAGES_MOST = 1 << 22 };
 
@@ -205,6 +208,7 @@ hl_status tiff_file_shape(tiff_file *file, tiff_shape *shape, hl_error *error) {
   TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
   TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
   shape->bits = bits;
+  shape->depth = depth > 1 ? depth : 1;
   shape->components = samples;
   shape->planar = planar == PLANARCONFIG_SEPARATE && samples > 1;
   shape->type = type_of(format, bits);
@@ -216,9 +220,9 @@ hl_status tiff_file_shape(tiff_file *file, tiff_shape *shape, hl_error *error) {
   if (shape->type == 0)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: samples of %u bits and TIFF's format %u are not read",
                    file->path, bits, format);
-  if (depth > 1)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: pages of several slices (ImageDepth %u) are not read",
-                   file->path, depth);
+  if (depth > INT16_MAX)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: a page of %u slices (ImageDepth): at most %d are read",
+                   file->path, depth, INT16_MAX);
   if (!TIFFIsCODECConfigured(compression))
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: TIFF's compression %u is not read: save it with another",
                    file->path, compression);
@@ -234,8 +238,8 @@ hl_status tiff_file_shape(tiff_file *file, tiff_shape *shape, hl_error *error) {
 }
 
 bool tiff_shapes_equal(const tiff_shape *a, const tiff_shape *b) {
-  return a->width == b->width && a->height == b->height && a->type == b->type && a->bits == b->bits &&
-         a->components == b->components && a->planar == b->planar;
+  return a->width == b->width && a->height == b->height && a->depth == b->depth && a->type == b->type &&
+         a->bits == b->bits && a->components == b->components && a->planar == b->planar;
 }
 
 hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl_error *error) {
@@ -266,6 +270,16 @@ hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl
   return file->message[0] == 0 ? HL_OK : tiff_file_fail(file, "a damaged page", error);
 }
 
+uint64_t tiff_file_plain(tiff_file *file, const tiff_shape *shape, uint64_t *bytes) {
+  uint16_t compression = COMPRESSION_NONE;
+  TIFFGetFieldDefaulted(file->tiff, TIFFTAG_COMPRESSION, &compression);
+  *bytes = (uint64_t)shape->width * shape->height * shape->components * (shape->bits / 8);
+  if (compression != COMPRESSION_NONE || TIFFIsTiled(file->tiff) || shape->planar ||
+      shape->bits != 8 * hl_voxel_type_bytes(shape->type) || shape->components > UINT16_MAX)
+    return 0;
+  return TIFFGetStrileOffset(file->tiff, 0);
+}
+
 bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape) {
   uint16_t compression = COMPRESSION_NONE;
   TIFFGetFieldDefaulted(file->tiff, TIFFTAG_COMPRESSION, &compression);
@@ -276,7 +290,7 @@ bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape) {
                 : compression == COMPRESSION_LZW                                                 ? 4096 / 1.5
                 : compression == COMPRESSION_ADOBE_DEFLATE || compression == COMPRESSION_DEFLATE ? 1032
                                                                                                  : 65536;
-  double pixels = (double)shape->width * shape->height;
+  double pixels = (double)shape->width * shape->height * shape->depth;
   double bytes = pixels * shape->components * shape->bits / 8;
   if (bytes <= (double)file->size * most) return true;
   return TIFFGetStrileByteCount(file->tiff, 0) == 0 && bytes <= (double)file->size * 65536; /* sparse */
@@ -328,7 +342,7 @@ typedef struct page_reading {
   tiff_file *file;
   const tiff_shape *shape;
   int component; /* index of the wanted component, or an HL_COMPONENT_ value */
-  uint32_t chunk_width, chunk_height;
+  uint32_t chunk_width, chunk_height, chunk_depth;
   bool tiled;
   size_t row_bytes, chunk_bytes; /* of the rows of a chunk that the page has */
   unsigned char *chunk;          /* owned; [chunk_bytes] */
@@ -398,17 +412,48 @@ static void take_row(page_reading *r, const unsigned char *row, unsigned plane, 
   }
 }
 
+/* Decodes a tile of several slices, which libtiff takes for one of a single slice: uncompressed or deflated.
+ */
+static hl_status decode_deep_tile(page_reading *r, uint32_t index, uint64_t stored, hl_error *error) {
+  tiff_file *file = r->file;
+  hl_context *context = file->context;
+  uint16_t compression = COMPRESSION_NONE, predictor = 1;
+  TIFFGetFieldDefaulted(file->tiff, TIFFTAG_COMPRESSION, &compression);
+  TIFFGetField(file->tiff, TIFFTAG_PREDICTOR, &predictor);
+  bool deflated = compression == COMPRESSION_ADOBE_DEFLATE || compression == COMPRESSION_DEFLATE,
+       sound = false;
+  if ((!deflated && compression != COMPRESSION_NONE) || predictor > 1 ||
+      (r->shape->bits > 8 && (TIFFIsBigEndian(file->tiff) != 0) != native_is_big_endian))
+    return hl_fail(
+        error, HL_ERROR_UNSUPPORTED,
+        "%s: tiles of several slices with compression %u, a predictor or in the other byte order: save it "
+        "with plain deflate, or uncompressed",
+        file->path, compression);
+  if (stored > file->size) return tiff_file_fail(file, "a tile is cut short", error);
+  unsigned char *packed = hl_allocate(context, (size_t)stored + 1, 1);
+  if (packed == NULL) return hl_fail_memory(error, (size_t)stored, file->path);
+  tmsize_t got = TIFFReadRawTile(file->tiff, index, packed, (tmsize_t)stored);
+  size_t length = got < 0 ? 0 : (size_t)got;
+  hl_status status = HL_OK;
+  if (deflated && hl_deflate_can_hold(length, r->chunk_bytes))
+    status = hl_unpack_deflate(context, packed, length, r->chunk, r->chunk_bytes, &sound, error);
+  else if (!deflated && (sound = length >= r->chunk_bytes)) memcpy(r->chunk, packed, r->chunk_bytes);
+  hl_release(context, packed);
+  return status == HL_OK && !sound ? tiff_file_fail(file, "a damaged tile", error) : status;
+}
+
 /* Decodes the first rows of chunk `index`; samples that the file does not contain are 0. */
 static hl_status decode(page_reading *r, uint32_t index, uint32_t rows, hl_error *error) {
   tiff_file *file = r->file;
   file->message[0] = 0;
   int failed = 0;
   uint64_t stored = TIFFGetStrileByteCountWithErr(file->tiff, index, &failed);
-  size_t wanted = r->row_bytes * rows;
+  size_t wanted = r->chunk_depth > 1 ? r->chunk_bytes : r->row_bytes * rows;
   if (stored == 0 && !failed) {
     memset(r->chunk, 0, wanted);
     return HL_OK;
   }
+  if (!failed && r->chunk_depth > 1) return decode_deep_tile(r, index, stored, error);
   tmsize_t got = failed     ? -1
                  : r->tiled ? TIFFReadEncodedTile(file->tiff, index, r->chunk, (tmsize_t)wanted)
                             : TIFFReadEncodedStrip(file->tiff, index, r->chunk, (tmsize_t)wanted);
@@ -421,10 +466,12 @@ static hl_status read_chunk(page_reading *r, unsigned plane, uint32_t x, uint32_
   uint32_t columns = shape->width - x < r->chunk_width ? shape->width - x : r->chunk_width;
   uint32_t rows = shape->height - y < r->chunk_height ? shape->height - y : r->chunk_height;
   uint16_t sample = (uint16_t)(shape->planar ? plane : 0);
-  uint32_t index = r->tiled ? TIFFComputeTile(tiff, x, y, 0, sample) : TIFFComputeStrip(tiff, y, sample);
+  uint32_t slice = r->target->slice;
+  uint32_t index = r->tiled ? TIFFComputeTile(tiff, x, y, slice, sample) : TIFFComputeStrip(tiff, y, sample);
   hl_status status = decode(r, index, rows, error);
+  size_t before = (size_t)(slice % r->chunk_depth) * r->chunk_height * r->row_bytes; /* slices of the tile */
   for (uint32_t row = 0; status == HL_OK && row < rows; row++)
-    take_row(r, r->chunk + row * r->row_bytes, plane, columns, (size_t)(y + row) * shape->width + x);
+    take_row(r, r->chunk + before + row * r->row_bytes, plane, columns, (size_t)(y + row) * shape->width + x);
   return status;
 }
 
@@ -456,6 +503,8 @@ static hl_status measure_chunks(page_reading *r, hl_error *error) {
   r->tiled = TIFFIsTiled(tiff);
   r->chunk_width = shape->width;
   r->chunk_height = shape->height;
+  r->chunk_depth = 1;
+  if (r->tiled && shape->depth > 1) TIFFGetField(tiff, TIFFTAG_TILEDEPTH, &r->chunk_depth);
   if (r->tiled) {
     TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &r->chunk_width);
     TIFFGetField(tiff, TIFFTAG_TILELENGTH, &r->chunk_height);
@@ -464,10 +513,11 @@ static hl_status measure_chunks(page_reading *r, hl_error *error) {
     TIFFGetFieldDefaulted(tiff, TIFFTAG_ROWSPERSTRIP, &rows);
     if (rows < r->chunk_height) r->chunk_height = rows;
   }
-  if (r->chunk_width < 1 || r->chunk_height < 1)
+  if (r->chunk_width < 1 || r->chunk_height < 1 || r->chunk_depth < 1 || r->chunk_depth > INT16_MAX)
     return hl_fail(error, HL_ERROR_INPUT, "%s: a page in chunks of %u x %u pixels", r->file->path,
                    r->chunk_width, r->chunk_height);
   uint64_t height = r->chunk_height < shape->height ? r->chunk_height : shape->height;
+  if (r->chunk_depth > 1) height = (uint64_t)r->chunk_height * r->chunk_depth; /* of all slices of a tile */
   uint64_t samples = (uint64_t)r->chunk_width * (shape->planar ? 1 : shape->components), bits, bytes;
   uint64_t told = r->tiled ? TIFFTileRowSize64(tiff) : TIFFScanlineSize64(tiff);
   if (__builtin_mul_overflow(samples, shape->bits, &bits) || (bits + 7) / 8 != told ||
@@ -483,12 +533,42 @@ static hl_status measure_chunks(page_reading *r, hl_error *error) {
   return HL_OK;
 }
 
+/* Reads pixels that lie one row after the other in the file. */
+static hl_status read_plain(page_reading *r, hl_error *error) {
+  const tiff_shape *shape = r->shape;
+  size_t size = hl_voxel_type_bytes(shape->type), samples = (size_t)shape->width * shape->components;
+  bool swap = size > 1 && (TIFFIsBigEndian(r->file->tiff) != 0) != native_is_big_endian;
+  uint64_t before = r->file->at;
+  hl_status status = HL_OK;
+  r->file->at = r->target->plain;
+  for (uint32_t y = 0; y < shape->height && status == HL_OK; y++) {
+    tmsize_t got = read_bytes(r->file, r->chunk, (tmsize_t)(samples * size));
+    if (got < 0 || (size_t)got < samples * size)
+      status = tiff_file_fail(r->file, "a page is cut short", error);
+    for (size_t n = 0; swap && n < samples * size; n += size)
+      for (size_t b = 0; b < size / 2; b++) {
+        unsigned char first = r->chunk[n + b];
+        r->chunk[n + b] = r->chunk[n + size - 1 - b];
+        r->chunk[n + size - 1 - b] = first;
+      }
+    if (status == HL_OK) take_row(r, r->chunk, 0, shape->width, (size_t)y * shape->width);
+  }
+  r->file->at = before;
+  return status;
+}
+
 hl_status tiff_file_read(tiff_file *file, const tiff_shape *shape, int component, const tiff_target *target,
                          hl_error *error) {
   page_reading r = {
       .file = file, .shape = shape, .component = component, .voxels = target->voxels, .target = target};
   file->message[0] = 0;
-  hl_status status = measure_chunks(&r, error);
+  hl_status status = HL_OK;
+  if (target->plain > 0) {
+    r.chunk_width = shape->width;
+    r.chunk_bytes = (size_t)shape->width * shape->components * hl_voxel_type_bytes(shape->type);
+  } else {
+    status = measure_chunks(&r, error);
+  }
   if (status != HL_OK) return status;
   size_t samples = (size_t)r.chunk_width * (shape->planar ? 1 : shape->components);
   r.chunk = hl_allocate(file->context, r.chunk_bytes, 1);
@@ -496,7 +576,7 @@ hl_status tiff_file_read(tiff_file *file, const tiff_shape *shape, int component
   r.picked = hl_allocate(file->context, r.chunk_width, 8);
   if (r.chunk == NULL || r.samples == NULL || r.picked == NULL)
     status = hl_fail_memory(error, r.chunk_bytes + 16 * samples, file->path);
-  else status = read_chunks(&r, error);
+  else status = target->plain > 0 ? read_plain(&r, error) : read_chunks(&r, error);
   hl_release(file->context, r.chunk);
   hl_release(file->context, r.samples);
   hl_release(file->context, r.picked);

@@ -11,7 +11,7 @@
 
 /* What a page's directory says about its voxels. */
 typedef struct tiff_shape {
-  uint32_t width, height;
+  uint32_t width, height, depth; /* depth: slices of a page, ImageDepth */
   hl_voxel_type type;
   unsigned bits;       /* bits of a sample in the file */
   unsigned components; /* samples of a pixel */
@@ -52,6 +52,10 @@ bool tiff_shapes_equal(const tiff_shape *a, const tiff_shape *b);
 /* Offsets of all directories, owned by the caller (hl_release). */
 hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl_error *error);
 
+/* Where the current directory's first pixels lie in the file, if all of its pixels follow them uncompressed,
+ * a whole number of bytes for each sample; else 0. *bytes: those of a slice. */
+uint64_t tiff_file_plain(tiff_file *file, const tiff_shape *shape, uint64_t *bytes);
+
 /* Whether the current directory's chunks have enough bytes for a page of its shape, at the best ratio that
  * its compression can reach. */
 bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape);
@@ -61,6 +65,9 @@ typedef struct tiff_target {
   void *voxels;    /* width x height stored voxels, or colours (colors.h) */
   hl_exact *exact; /* notes the page's numbers; may be null */
   size_t first;    /* the number of the page's first voxel in the volume */
+  uint32_t slice;  /* of a page of several slices: which */
+  uint64_t
+      plain; /* where the page's pixels lie in the file, one row after the other; 0: libtiff finds them */
 } tiff_target;
 
 /* Decodes the current directory's component, or an HL_COMPONENT_ value. */

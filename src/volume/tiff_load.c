@@ -37,8 +37,10 @@ typedef struct stack_reading {
   tiff_plan plan;
   stack_file *files; /* owned; [plan.file_count] */
   int level;
-  tiff_shape shape;       /* of each slice, at the level */
-  uint32_t width, height; /* at level 0 */
+  uint64_t plain, plain_bytes; /* where the first slice's pixels lie, all others following; bytes of a slice;
+                                  0: each slice is a page of libtiff's */
+  tiff_shape shape;            /* of each slice, at the level */
+  uint32_t width, height;      /* at level 0 */
   int component;
   hl_destination to;
   /* of the threads */
@@ -119,6 +121,38 @@ static hl_status check_size(const stack_reading *r, tiff_file *file, hl_error *e
       (unsigned long long)file->size);
 }
 
+/* Whether the pixels of more slices than the file has pages follow the first page's: ImageJ writes files
+ * above 4 GB so, tifffile where it is asked for, and slices of a page lie so where they are not tiled.
+ * *pages: of all slices. */
+static hl_status find_plain(stack_reading *r, tiff_file *file, const tiff_shape *shape,
+                            const char *description, const stack_file *stack, size_t *pages,
+                            hl_error *error) {
+  size_t told = tiff_plan_pages(description, shape->components);
+  bool deep = shape->depth > 1 && !TIFFIsTiled(file->tiff);
+  if (stack->count != 1 || (told <= *pages && !deep)) return HL_OK;
+  hl_status status = tiff_file_go(file, stack->offsets[0], 0, error);
+  if (status != HL_OK) return status;
+  uint64_t bytes, first = tiff_file_plain(file, shape, &bytes), wanted;
+  size_t count = told > *pages ? told : *pages;
+  bool fits = first > 0 && first <= file->size && !__builtin_mul_overflow(bytes, (uint64_t)count, &wanted) &&
+              wanted <= file->size - first;
+  if (!fits && deep)
+    return hl_fail(
+        error, HL_ERROR_UNSUPPORTED,
+        "%s: a page of %u slices (ImageDepth) in compressed strips: save it in tiles, or uncompressed",
+        file->path, shape->depth);
+  if (!fits) {
+    hl_log(r->context, HL_LOG_WARNING,
+           "%.300s: its description promises %zu pictures, and the file has one page: that one is taken",
+           file->path, told);
+    return HL_OK;
+  }
+  r->plain = first;
+  r->plain_bytes = bytes;
+  *pages = count;
+  return HL_OK;
+}
+
 /* stack: the file, which becomes the reading's first one. */
 static hl_status read_first(stack_reading *r, tiff_file *file, stack_file *stack, hl_error *error) {
   tiff_shape first;
@@ -135,8 +169,10 @@ static hl_status read_first(stack_reading *r, tiff_file *file, stack_file *stack
   if (status == HL_OK) status = tiff_file_pages(file, &stack->offsets, &stack->count, error);
   bool ome = copy != NULL && strstr(copy, "<OME") != NULL;
   if (status == HL_OK && !ome) status = drop_other_pages(file, &first, stack, error);
+  size_t pages = stack->count * first.depth;
+  if (status == HL_OK) status = find_plain(r, file, &first, copy, stack, &pages, error);
   if (status == HL_OK)
-    status = tiff_plan_make(r->request, file->path, copy, stack->count, first.components, resolution,
+    status = tiff_plan_make(r->request, file->path, copy, pages, first.components, first.depth, resolution,
                             &r->plan, error);
   if (status == HL_OK) {
     r->width = first.width, r->height = first.height;
@@ -190,7 +226,7 @@ static hl_status check_slices(const stack_reading *r, hl_error *error) {
   for (size_t z = 0; z < r->plan.slice_count; z++) {
     const tiff_slice *slice = &r->plan.slices[z];
     const stack_file *file = &r->files[slice->file];
-    if (slice->is_there && slice->page >= file->count)
+    if (slice->is_there && r->plain == 0 && slice->page / r->shape.depth >= file->count)
       return hl_fail(error, HL_ERROR_INPUT, "%s: slice %zu is page %u, the file has %zu: is it cut short?",
                      file->path, z, slice->page + 1, file->count);
   }
@@ -218,14 +254,16 @@ static hl_status decode_slice(stack_reading *r, size_t z, int worker, void *voxe
     if (status != HL_OK) r->opened[worker] = UINT32_MAX;
   }
   tiff_shape shape;
-  if (status == HL_OK) status = tiff_file_go(file, stack->offsets[slice->page], r->level, error);
+  size_t page = r->plain > 0 ? 0 : slice->page / r->shape.depth;
+  if (status == HL_OK) status = tiff_file_go(file, stack->offsets[page], r->level, error);
   if (status == HL_OK) status = tiff_file_shape(file, &shape, error);
   if (status == HL_OK && !tiff_shapes_equal(&shape, &r->shape))
     return hl_fail(error, HL_ERROR_INPUT,
                    "%s: slice %zu has %u x %u pixels of %u samples of %u bits, the first %u x %u, %u, %u",
                    stack->path, z, shape.width, shape.height, shape.components, shape.bits, r->shape.width,
                    r->shape.height, r->shape.components, r->shape.bits);
-  const tiff_target target = {voxels, &r->to.exact, z * slice_voxels(r)};
+  const tiff_target target = {voxels, &r->to.exact, z * slice_voxels(r), slice->page % r->shape.depth,
+                              r->plain > 0 ? r->plain + slice->page * r->plain_bytes : 0};
   return status == HL_OK ? tiff_file_read(file, &shape, r->component, &target, error) : status;
 }
 

@@ -6,11 +6,13 @@
  * frame. */
 #include "volume/tiff_plan.h"
 
+#include <jansson.h>
 #include <math.h>
 #include <string.h>
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "volume/lengths.h"
 #include "volume/text.h"
 #include "volume/xml.h"
 
@@ -82,29 +84,29 @@ static bool read_number(const hl_xml_tag *tag, const char *name, size_t other, s
   return text == NULL || (hl_text_sizes(text, number, 1) == 1 && *number <= SIZE_MOST);
 }
 
-/* The length of a voxel in micrometres; 0: not stated. */
-static double read_length(const hl_xml_tag *tag, char axis) {
-  static const struct {
-    const char *names;
-    double micrometres;
-  } units[] = {{"\xc2\xb5m|\xce\xbcm|um|micron", 1},
-               {"nm", 1e-3},
-               {"mm", 1e3},
-               {"cm", 1e4},
-               {"m", 1e6},
-               {"pm", 1e-6},
-               {"\xc3\x85", 1e-4},
-               {"in", 25400}};
+/* The length of a voxel; 0: not stated. *unit: micrometres of its unit; 0: it is none of length ("pixel"). */
+static double read_length(const hl_xml_tag *tag, char axis, double *unit) {
   char name[] = "PhysicalSizeX", unit_name[] = "PhysicalSizeXUnit";
   name[sizeof name - 2] = axis;
   unit_name[12] = axis;
-  const char *text = hl_xml_attribute(tag, name), *unit = hl_xml_attribute(tag, unit_name);
+  const char *text = hl_xml_attribute(tag, name), *told = hl_xml_attribute(tag, unit_name);
   double value;
+  *unit = told != NULL ? hl_micrometres(told) : 1; /* the schema's default */
   if (text == NULL || !hl_text_number(text, strlen(text), &value) || !(value > 0) || !isfinite(value))
     return 0;
-  for (size_t n = 0; unit != NULL && n < sizeof units / sizeof *units; n++)
-    if (hl_text_is_one_of(unit, units[n].names)) return value * units[n].micrometres;
   return value;
+}
+
+/* Lengths in micrometres, if each that is told has a known unit; else the numbers as they are. */
+static void read_lengths(ome_reader *ome, const hl_xml_tag *tag) {
+  double unit[3], *spacing = ome->plan->spacing;
+  bool known = true;
+  for (int axis = 0; axis < 3; axis++) {
+    spacing[axis] = read_length(tag, "XYZ"[axis], &unit[axis]);
+    known = known && (spacing[axis] == 0 || unit[axis] > 0);
+  }
+  for (int axis = 0; axis < 3 && known; axis++) spacing[axis] *= unit[axis];
+  if (known && spacing[0] > 0) ome->request->unit = "micrometre";
 }
 
 static hl_status fail_ome(const ome_reader *ome, const char *what, hl_error *error) {
@@ -125,8 +127,7 @@ static hl_status read_pixels(ome_reader *ome, const hl_xml_tag *tag, hl_error *e
     memcpy(ome->order, order + 2, 3);
   /* colours are the samples of a pixel: one page holds the planes of all of them */
   if (ome->components > 1 && ome->size[1] % ome->components == 0) ome->size[1] /= ome->components;
-  for (int axis = 0; axis < 3; axis++) ome->plan->spacing[axis] = read_length(tag, "XYZ"[axis]);
-  if (ome->plan->spacing[0] > 0) ome->request->unit = "micrometre";
+  read_lengths(ome, tag);
   ome->in_pixels = true;
   return HL_OK;
 }
@@ -267,38 +268,168 @@ static size_t find_count(const char *description, const char *name) {
   return value >= 1 && value <= SIZE_MOST && value == floor(value) ? (size_t)value : 1;
 }
 
-static hl_status plan_pages(hl_load_request *request, const char *path, const char *description, size_t pages,
-                            const double resolution[2], tiff_plan *plan, hl_error *error) {
-  size_t channels = 1, times = 1, slices = pages;
-  plan->is_told = description != NULL && strncmp(description, "ImageJ=", 7) == 0;
-  if (plan->is_told) {
-    channels = find_count(description, "channels");
-    times = find_count(description, "frames");
-    slices = find_count(description, "slices");
-    if (channels * times > pages || slices != pages / (channels * times)) {
-      slices = pages / (channels * times);
-      if (slices == 0 || slices * channels * times != pages) channels = times = 1, slices = pages;
-    }
-    for (int axis = 0; axis < 2; axis++)
-      plan->spacing[axis] = resolution[axis] > 0 ? 1 / resolution[axis] : 1;
-    plan->spacing[2] = fabs(find_number(description, "spacing", 1));
+enum { UNIT_BYTES = 64 };
+
+/* The text after "name=" at the start of a line; "" where there is none. */
+static void find_text(const char *description, const char *name, char text[UNIT_BYTES]) {
+  size_t length = strlen(name);
+  text[0] = 0;
+  for (const char *line = description; line != NULL; line = strchr(line, '\n')) {
+    if (*line == '\n') line++;
+    if (strncmp(line, name, length) != 0 || line[length] != '=') continue;
+    size_t count = strcspn(line + length + 1, "\r\n");
+    if (count >= UNIT_BYTES) return;
+    memcpy(text, line + length + 1, count);
+    text[count] = 0;
+    return;
   }
-  hl_status status = hl_steps_choose(request, path, times, channels, error);
-  if (status == HL_OK) status = make_slices(plan, slices, path, error);
+}
+
+static bool is_imagej(const char *description) {
+  return description != NULL && strncmp(description, "ImageJ=", 7) == 0;
+}
+
+/* ImageJ tells the resolution of x and y, the distance of slices, and units: that of x, and others where they
+ * differ. Lengths become micrometres where all units are known. */
+static void take_imagej_lengths(hl_load_request *request, const char *description, const double resolution[2],
+                                tiff_plan *plan) {
+  static const char *const names[] = {"unit", "yunit", "zunit"};
+  double unit[3];
+  for (int axis = 0; axis < 2; axis++) plan->spacing[axis] = resolution[axis] > 0 ? 1 / resolution[axis] : 1;
+  plan->spacing[2] = fabs(find_number(description, "spacing", 1));
+  for (int axis = 0; axis < 3; axis++) {
+    char text[UNIT_BYTES];
+    find_text(description, names[axis], text);
+    unit[axis] = text[0] != 0 ? hl_micrometres(text) : axis > 0 ? unit[0] : 0;
+  }
+  if (!(unit[0] > 0 && unit[1] > 0 && unit[2] > 0)) return;
+  for (int axis = 0; axis < 3; axis++) plan->spacing[axis] *= unit[axis];
+  request->unit = "micrometre";
+}
+
+/* ---- tifffile's series: a JSON object with the array's shape, and perhaps the letters of its axes ---- */
+
+/* The numbers of pictures along time, channel and slice. */
+typedef struct series_sizes {
+  size_t times, channels, slices;
+  bool channels_first; /* slices follow each other within a channel; else channels within a slice */
+} series_sizes;
+
+enum { SHAPE_MOST = 12 };
+
+/* Axes without letters: the last before y and x is z, the one before it the time, and one more the channel.
+ */
+static void name_axes(size_t count, char letters[SHAPE_MOST]) {
+  static const char usual[] = "CTZ";
+  for (size_t n = 0; n < count; n++) letters[n] = count - n <= 3 ? usual[3 - (count - n)] : 'Q';
+}
+
+/* Sorts the leading axes of a shape. False where they are not times, channels and slices, in the order in
+ * which slices or channels vary fastest and times slowest. */
+static bool sort_axes(const size_t *shape, const char *letters, size_t count, series_sizes *sizes) {
+  *sizes = (series_sizes){1, 1, 1, false};
+  int last = 0; /* 1: a time was met; 2: a channel; 3: a slice */
+  for (size_t n = 0; n < count; n++) {
+    if (shape[n] == 1) continue;
+    char letter = letters[n];
+    size_t *size = letter == 'T' ? &sizes->times : letter == 'C' ? &sizes->channels : &sizes->slices;
+    if (*size > 1 && letter != 'T' && letter != 'C') {
+      if (n > 0 && last != 3) return false;
+      *size *= shape[n]; /* two unknown axes beside each other are slices */
+      continue;
+    }
+    if (*size > 1 || (letter == 'T' && last > 0)) return false;
+    *size = shape[n];
+    if (letter == 'C' && last < 3) sizes->channels_first = true;
+    last = letter == 'T' ? 1 : letter == 'C' ? 2 : 3;
+  }
+  return true;
+}
+
+/* Reads the description; false where it is no series, or one that is not read. samples: of a pixel. */
+static bool read_series(const char *description, size_t samples, series_sizes *sizes) {
+  size_t shape[SHAPE_MOST], count = 0;
+  char letters[SHAPE_MOST];
+  if (description == NULL || description[0] != '{') return false;
+  json_t *root = json_loads(description, 0, NULL);
+  const json_t *list = json_object_get(root, "shape");
+  const char *axes = json_string_value(json_object_get(root, "axes"));
+  size_t rank = json_array_size(list), inner = samples > 1 ? 3 : 2;
+  bool good = rank >= inner && rank - inner <= SHAPE_MOST;
+  for (size_t n = 0; good && n + inner < rank; n++) {
+    json_int_t size = json_integer_value(json_array_get(list, n));
+    good = size >= 1 && size <= SIZE_MOST;
+    shape[count++] = good ? (size_t)size : 1;
+  }
+  if (good) name_axes(count, letters);
+  if (good && axes != NULL && strlen(axes) == rank) memcpy(letters, axes, count);
+  json_decref(root);
+  return good && sort_axes(shape, letters, count, sizes);
+}
+
+size_t tiff_plan_pages(const char *description, size_t components) {
+  series_sizes sizes;
+  if (is_imagej(description)) return find_count(description, "images");
+  if (!read_series(description, components, &sizes)) return 0;
+  return sizes.times * sizes.channels * sizes.slices;
+}
+
+/* The pages in order. */
+static hl_status plan_sizes(hl_load_request *request, const char *path, const series_sizes *sizes,
+                            tiff_plan *plan, hl_error *error) {
+  hl_status status = hl_steps_choose(request, path, sizes->times, sizes->channels, error);
+  if (status == HL_OK) status = make_slices(plan, sizes->slices, path, error);
   const hl_selection *chosen = &request->selection;
-  for (size_t z = 0; status == HL_OK && z < slices; z++)
-    plan->slices[z] = (tiff_slice){
-        0, (uint32_t)(((size_t)chosen->time * slices + z) * channels + (size_t)chosen->channel), true};
+  for (size_t z = 0; status == HL_OK && z < sizes->slices; z++) {
+    size_t channel = (size_t)chosen->channel, time = (size_t)chosen->time;
+    size_t page = sizes->channels_first ? (time * sizes->channels + channel) * sizes->slices + z
+                                        : (time * sizes->slices + z) * sizes->channels + channel;
+    plan->slices[z] = (tiff_slice){0, (uint32_t)page, true};
+  }
   return status;
 }
 
+static hl_status plan_imagej(hl_load_request *request, const char *path, const char *description,
+                             size_t pages, const double resolution[2], tiff_plan *plan, hl_error *error) {
+  series_sizes sizes = {find_count(description, "frames"), find_count(description, "channels"),
+                        find_count(description, "slices"), false};
+  size_t steps = sizes.channels * sizes.times;
+  if (steps > pages || sizes.slices != pages / steps) {
+    sizes.slices = pages / steps;
+    if (sizes.slices == 0 || sizes.slices * steps != pages) sizes = (series_sizes){1, 1, pages, false};
+  }
+  plan->is_told = true;
+  take_imagej_lengths(request, description, resolution, plan);
+  return plan_sizes(request, path, &sizes, plan, error);
+}
+
+static hl_status plan_pages(hl_load_request *request, const char *path, const char *description, size_t pages,
+                            size_t components, size_t depth, const double resolution[2], tiff_plan *plan,
+                            hl_error *error) {
+  if (is_imagej(description)) return plan_imagej(request, path, description, pages, resolution, plan, error);
+  series_sizes sizes;
+  size_t wanted;
+  bool told = read_series(description, components, &sizes) &&
+              hl_multiply(sizes.times, sizes.channels, &wanted) &&
+              hl_multiply(wanted, sizes.slices, &wanted) && wanted <= pages;
+  if (!told && depth > 1) sizes = (series_sizes){pages / depth, 1, depth, false}; /* each page is a volume */
+  else if (!told) sizes = (series_sizes){1, 1, pages, false};
+  if (told && wanted < pages)
+    hl_log(plan->context, HL_LOG_WARNING,
+           "%.300s: the first series of %zu of %zu pages is taken: others follow it in the file", path,
+           wanted, pages);
+  plan->is_told = told;
+  return plan_sizes(request, path, &sizes, plan, error);
+}
+
 hl_status tiff_plan_make(hl_load_request *request, const char *path, const char *description, size_t pages,
-                         size_t components, const double resolution[2], tiff_plan *plan, hl_error *error) {
+                         size_t components, size_t depth, const double resolution[2], tiff_plan *plan,
+                         hl_error *error) {
   *plan = (tiff_plan){.context = request->context};
   uint32_t first;
   hl_status status = add_file(plan, NULL, &first, error);
   if (status != HL_OK) return status;
   bool ome = description != NULL && strstr(description, "<OME") != NULL;
   return ome ? plan_ome(request, path, description, pages, components, plan, error)
-             : plan_pages(request, path, description, pages, resolution, plan, error);
+             : plan_pages(request, path, description, pages, components, depth, resolution, plan, error);
 }

@@ -23,10 +23,16 @@ typedef struct tiff_plan {
   bool is_told;      /* OME-XML or ImageJ's description states the order; else it is that of the pages */
 } tiff_plan;
 
-/* description: of the first page, or null. pages: of the first file; components: samples of a pixel.
- * resolution: pixels per unit along x and y of the first page; 0: none. Release the plan in any case. */
+/* description: of the first page, or null. pages: of the first file, of all slices of its pages; components:
+ * samples of a pixel; depth: slices of a page. resolution: pixels per unit along x and y of the first page;
+ * 0: none. Release the plan in any case. */
 hl_status tiff_plan_make(hl_load_request *request, const char *path, const char *description, size_t pages,
-                         size_t components, const double resolution[2], tiff_plan *plan, hl_error *error);
+                         size_t components, size_t depth, const double resolution[2], tiff_plan *plan,
+                         hl_error *error);
+
+/* How many pictures ImageJ's or tifffile's description promises; 0: none is told. */
+size_t tiff_plan_pages(const char *description, size_t components);
+
 void tiff_plan_release(tiff_plan *plan);
 
 #endif

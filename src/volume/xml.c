@@ -58,7 +58,33 @@ static size_t tag_length(const unsigned char *bytes, size_t length) {
   return 0;
 }
 
-/* Replaces &lt; &gt; &amp; &quot; &apos; in place by their characters; other entities stay as they are. */
+/* Reads a character reference, "&#181;" or "&#xB5;", and writes the character as UTF-8, which is never
+ * longer. Returns the reference's length; 0: it is none. */
+static size_t resolve_number(const char *value, char **out) {
+  bool hex = value[1] == '#' && (value[2] == 'x' || value[2] == 'X');
+  size_t n = hex ? 3 : 2, digits = 0;
+  uint32_t code = 0;
+  if (value[1] != '#') return 0;
+  for (; digits < 6; n++, digits++) {
+    const char *all = "0123456789abcdef",
+               c = value[n] >= 'A' && value[n] <= 'F' ? (char)(value[n] + 32) : value[n];
+    const char *found = c != 0 ? strchr(all, c) : NULL;
+    if (found == NULL || (!hex && found - all > 9)) break;
+    code = code * (hex ? 16 : 10) + (uint32_t)(found - all);
+  }
+  if (digits == 0 || value[n] != ';' || code < ' ' || code > 0xffff) return 0;
+  if (code < 0x80) *(*out)++ = (char)code;
+  else if (code < 0x800) *(*out)++ = (char)(0xc0 | code >> 6);
+  else {
+    *(*out)++ = (char)(0xe0 | code >> 12);
+    *(*out)++ = (char)(0x80 | (code >> 6 & 0x3f));
+  }
+  if (code >= 0x80) *(*out)++ = (char)(0x80 | (code & 0x3f));
+  return n + 1;
+}
+
+/* Replaces &lt; &gt; &amp; &quot; &apos; and character references in place; other entities stay as they are.
+ */
 static void resolve_entities(char *value) {
   static const struct {
     const char *name;
@@ -66,7 +92,7 @@ static void resolve_entities(char *value) {
   } entities[] = {{"&lt;", '<'}, {"&gt;", '>'}, {"&amp;", '&'}, {"&quot;", '"'}, {"&apos;", '\''}};
   char *out = value;
   while (*value != 0) {
-    size_t length = 0;
+    size_t length = *value == '&' ? resolve_number(value, &out) : 0;
     for (size_t n = 0; *value == '&' && length == 0 && n < sizeof entities / sizeof *entities; n++)
       if (strncmp(value, entities[n].name, strlen(entities[n].name)) == 0) {
         length = strlen(entities[n].name);

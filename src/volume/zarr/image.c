@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "volume/lengths.h"
 #include "volume/text.h"
 #include "volume/zarr/array_read.h"
 
@@ -46,20 +47,6 @@ static bool names_are_known(int rank, const hl_zarr_axis *axis) {
   return seen[HL_ZARR_X] == 1 && seen[HL_ZARR_Y] == 1;
 }
 
-/* Micrometres of a unit by its name in UDUNITS-2; 0 for an unknown one. */
-static double micrometres(const char *unit) {
-  static const struct {
-    const char *names;
-    double length;
-  } units[] = {
-      {"angstrom", 1e-4},     {"picometer|pm", 1e-6}, {"nanometer|nm", 1e-3}, {"micrometer|micron|um", 1},
-      {"millimeter|mm", 1e3}, {"centimeter|cm", 1e4}, {"decimeter|dm", 1e5},  {"meter|m", 1e6},
-      {"kilometer|km", 1e9},  {"inch", 25400},        {"foot", 304800}};
-  for (size_t n = 0; unit != NULL && n < sizeof units / sizeof *units; n++)
-    if (hl_text_is_one_of(unit, units[n].names)) return units[n].length;
-  return 0;
-}
-
 /* Sets *unit, the factor of all lengths along the space axes: micrometres if each of the axes has a known
  * unit, else 1. Returns whether each has one. */
 static bool read_axes(const json_t *axes, int rank, hl_zarr_axis *axis, double unit[3]) {
@@ -72,7 +59,8 @@ static bool read_axes(const json_t *axes, int rank, hl_zarr_axis *axis, double u
   if (!told || !names_are_known(rank, axis)) take_places(rank, axis);
   for (int n = 0; n < rank; n++) {
     if (axis[n] > HL_ZARR_Z) continue;
-    double length = micrometres(json_string_value(json_object_get(json_array_get(axes, (size_t)n), "unit")));
+    double length = hl_micrometres(
+        json_string_value(json_object_get(json_array_get(axes, (size_t)n), "unit")));
     all = all && length > 0;
     unit[axis[n]] = length;
   }
