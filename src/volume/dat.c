@@ -73,7 +73,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   if (status == HL_OK) status = hl_volume_check_grid(&header.payload.grid, (*stream)->path, error);
   if (status == HL_OK) status = hl_component_only(request, (*stream)->path, false, &header.payload, error);
   if (status == HL_OK && hl_stream_at_most(*stream) != hl_payload_bytes(&header.payload))
-    status = hl_stream_inflate_if_gzip(stream, error);
+    status = hl_stream_unpack(stream, error);
   return status == HL_OK ? hl_payload_read(*stream, &header.payload, request->spacing, volume, error)
                          : status;
 }

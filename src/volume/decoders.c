@@ -9,6 +9,7 @@
 #include <zlib.h>
 
 #include "core/memory.h"
+#include "volume/unpack.h"
 
 /* ---- compressed: gzip, zlib, VTK's blocks ---- */
 
@@ -32,6 +33,9 @@ typedef struct blocks_stream {
   uint64_t *compressed_bytes;                    /* owned; [block_count] */
   uint64_t block;                                /* the current one */
   uint64_t plain_left, compressed_left;          /* bytes of the current block */
+  hl_vtk_packing packing;
+  unsigned char *packed, *whole; /* owned; a block of LZ4 or xz, and all of it unpacked; null for zlib */
+  size_t whole_done;             /* bytes of `whole` that were pulled; 0: it is not filled yet */
 } blocks_stream;
 
 static void *zlib_allocate(void *context, unsigned items, unsigned size) {
@@ -130,6 +134,7 @@ hl_status hl_stream_push_inflate(hl_stream **stream, hl_error *error) {
 
 static void begin_block(blocks_stream *stream) {
   if (stream->block >= stream->block_count) return;
+  stream->whole_done = 0;
   stream->plain_left = stream->block + 1 == stream->block_count ? stream->last_bytes : stream->block_bytes;
   stream->compressed_left = stream->compressed_bytes[stream->block];
   inflateReset(&stream->zlib);
@@ -182,8 +187,58 @@ static hl_status blocks_pull(hl_stream *base, unsigned char *bytes, size_t capac
   return HL_OK;
 }
 
+/* Fills `whole` with the current block, of LZ4 or xz. */
+static hl_status unpack_block(blocks_stream *stream, hl_error *error) {
+  hl_stream *base = &stream->base;
+  hl_context *context = base->context;
+  size_t length = (size_t)stream->compressed_left, plain = (size_t)stream->plain_left;
+  bool lz4 = stream->packing == HL_VTK_LZ4, sound = false;
+  if (stream->compressed_left > hl_stream_at_most(base->below) ||
+      !hl_packed_can_hold(length, plain, lz4 ? HL_LZ4_RATIO : HL_XZ_RATIO))
+    return fail_block(stream, error);
+  hl_release(context, stream->packed);
+  hl_release(context, stream->whole);
+  stream->packed = hl_allocate(context, length + 1, 1);
+  stream->whole = hl_allocate(context, plain, 1);
+  if (stream->packed == NULL || stream->whole == NULL)
+    return hl_fail_memory(error, length + plain, base->path);
+  hl_status status = hl_stream_read_all(base->below, stream->packed, length, error);
+  if (status == HL_OK)
+    status = lz4 ? hl_unpack_lz4(base->path, stream->packed, length, stream->whole, plain, &sound, error)
+                 : hl_unpack_xz(base->path, stream->packed, length, stream->whole, plain, &sound, error);
+  return status == HL_OK && !sound ? fail_block(stream, error) : status;
+}
+
+static hl_status whole_blocks_pull(hl_stream *base, unsigned char *bytes, size_t capacity, size_t *count,
+                                   hl_error *error) {
+  blocks_stream *stream = (blocks_stream *)base;
+  *count = 0;
+  while (*count < capacity && stream->block < stream->block_count) {
+    if (stream->whole_done == 0) {
+      hl_status status = unpack_block(stream, error);
+      if (status != HL_OK) return status;
+    }
+    size_t room = capacity - *count < stream->plain_left ? capacity - *count : (size_t)stream->plain_left;
+    memcpy(bytes + *count, stream->whole + stream->whole_done, room);
+    *count += room;
+    stream->whole_done += room;
+    stream->plain_left -= room;
+    if (stream->plain_left > 0) continue;
+    stream->block++;
+    begin_block(stream);
+  }
+  return HL_OK;
+}
+
+static uint64_t whole_blocks_at_most(const hl_stream *stream) {
+  uint64_t below = hl_stream_at_most(stream->below), most;
+  return __builtin_mul_overflow(below, (uint64_t)HL_XZ_RATIO, &most) ? UINT64_MAX : most;
+}
+
 static void blocks_close(hl_stream *base) {
   blocks_stream *stream = (blocks_stream *)base;
+  hl_release(base->context, stream->packed);
+  hl_release(base->context, stream->whole);
   if (stream->started) inflateEnd(&stream->zlib);
   hl_release(base->context, stream->compressed_bytes);
 }
@@ -237,26 +292,19 @@ static hl_status read_block_header(blocks_stream *stream, size_t header_bytes, b
   return read_integers(below, header_bytes, big_endian, stream->compressed_bytes, first[0], error);
 }
 
-hl_status hl_stream_push_vtk_blocks(hl_stream **stream, size_t header_bytes, bool big_endian,
-                                    uint64_t promised, hl_error *error) {
+hl_status hl_stream_push_vtk_blocks(hl_stream **stream, hl_vtk_packing packing, size_t header_bytes,
+                                    bool big_endian, uint64_t promised, hl_error *error) {
   blocks_stream *made = (blocks_stream *)hl_stream_make((*stream)->context, sizeof *made, *stream);
   if (made == NULL) return hl_fail_memory(error, HL_STREAM_BUFFER_BYTES, (*stream)->path);
-  made->base.pull = blocks_pull;
-  made->base.at_most = inflate_at_most;
+  bool zlib = packing == HL_VTK_ZLIB;
+  made->packing = packing;
+  made->base.pull = zlib ? blocks_pull : whole_blocks_pull;
+  made->base.at_most = zlib ? inflate_at_most : whole_blocks_at_most;
   made->base.close = blocks_close;
   *stream = &made->base;
   hl_status status = read_block_header(made, header_bytes, big_endian, promised, error);
-  if (status == HL_OK) status = start_zlib(&made->zlib, &made->base, &made->started, error);
+  if (status == HL_OK && zlib) status = start_zlib(&made->zlib, &made->base, &made->started, error);
   if (status == HL_OK) begin_block(made);
-  return status;
-}
-
-hl_status hl_stream_inflate_if_gzip(hl_stream **stream, hl_error *error) {
-  const unsigned char *bytes;
-  size_t length;
-  hl_status status = hl_stream_peek(*stream, 3, &bytes, &length, error);
-  if (status == HL_OK && length >= 3 && memcmp(bytes, "\x1f\x8b\x08", 3) == 0)
-    status = hl_stream_push_inflate(stream, error);
   return status;
 }
 

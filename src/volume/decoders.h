@@ -8,13 +8,19 @@
 #include "volume/stream.h"
 
 hl_status hl_stream_push_inflate(hl_stream **stream, hl_error *error); /* gzip members or zlib */
-hl_status hl_stream_inflate_if_gzip(hl_stream **stream,
-                                    hl_error *error); /* pushes only if gzip's mark comes next */
+hl_status hl_stream_push_bzip2(hl_stream **stream, hl_error *error);
+hl_status hl_stream_push_xz(hl_stream **stream, hl_error *error);
 
-/* VTK's compressed blocks: a header of integers of header_bytes (4 or 8) each, then zlib blocks. Fails unless
- * the blocks hold `promised` bytes in all. */
-hl_status hl_stream_push_vtk_blocks(hl_stream **stream, size_t header_bytes, bool big_endian,
-                                    uint64_t promised, hl_error *error);
+/* Pushes what unpacks the file, if the mark of gzip, bzip2 or xz comes next. */
+hl_status hl_stream_unpack(hl_stream **stream, hl_error *error);
+
+/* How VTK's blocks are packed. */
+typedef enum hl_vtk_packing { HL_VTK_PLAIN, HL_VTK_ZLIB, HL_VTK_LZ4, HL_VTK_XZ } hl_vtk_packing;
+
+/* VTK's compressed blocks: a header of integers of header_bytes (4 or 8) each, then the blocks. Fails unless
+ * they hold `promised` bytes in all. */
+hl_status hl_stream_push_vtk_blocks(hl_stream **stream, hl_vtk_packing packing, size_t header_bytes,
+                                    bool big_endian, uint64_t promised, hl_error *error);
 
 /* Decodes bytes that are written as text; the text ends at the first character that is neither a digit nor
  * white space. */

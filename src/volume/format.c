@@ -57,21 +57,27 @@ static hl_status choose_named(hl_load_request *request, const char *path, hl_err
                  hl_text_printable(shown, request->array), list);
 }
 
+/* Arrays in which VTK notes which values are doubles of others or hidden: they hold no volume. */
+static bool is_ghost(const hl_array_entry *array) {
+  return hl_text_is_one_of(array->name, "vtkGhostType|vtkGhostLevels|vtkValidPointMask");
+}
+
 static size_t choose_default(const hl_load_request *request) {
   for (int cells = 0; cells < 2; cells++)
     for (size_t n = 0; n < request->array_count; n++) {
       const hl_array_entry *array = &request->arrays[n];
-      if (array->of_cells == (cells == 1) && array->components == 1 && array->type != 0) return n;
+      if (array->of_cells == (cells == 1) && array->components == 1 && array->type != 0 && !is_ghost(array))
+        return n;
     }
   for (size_t n = 0; n < request->array_count; n++)
-    if (request->arrays[n].type != 0) return n;
+    if (request->arrays[n].type != 0 && !is_ghost(&request->arrays[n])) return n;
   return 0;
 }
 
 hl_status hl_arrays_choose(hl_load_request *request, const char *path, int active, hl_error *error) {
   if (request->array != NULL) return choose_named(request, path, error);
-  request->chosen = active >= 0 && (size_t)active < request->array_count ? (size_t)active
-                                                                         : choose_default(request);
+  bool usable = active >= 0 && (size_t)active < request->array_count && !is_ghost(&request->arrays[active]);
+  request->chosen = usable ? (size_t)active : choose_default(request);
   if (request->array_count < 2) return HL_OK;
   char list[600], shown[HL_PRINTABLE_BYTES];
   list_arrays(request, list, sizeof list);

@@ -9,6 +9,7 @@
   HL_FORMAT(nrrd)      \
   HL_FORMAT(metaimage) \
   HL_FORMAT(nifti)     \
+  HL_FORMAT(mgh)       \
   HL_FORMAT(vti)       \
   HL_FORMAT(legacy_vtk) \
   HL_FORMAT(npy)       \

@@ -128,7 +128,7 @@ static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_h
   if (header->once && header->file.found) return HL_OK;
   status = hl_arrays_choose(request, (*stream)->path, -1, error);
   if (status == HL_OK) status = hl_stream_restart(stream, error);
-  if (status == HL_OK) status = hl_stream_inflate_if_gzip(stream, error);
+  if (status == HL_OK) status = hl_stream_unpack(stream, error);
   if (status != HL_OK) return status;
   *header = begin(*stream, request, false);
   return hl_legacy_vtk_read(&header->file, error);

@@ -71,8 +71,6 @@ static const char *known_but_unsupported(const unsigned char *bytes, size_t leng
   } marks[] = {
       {0, "\x89PNG", 4, "a picture, not a volume"},
       {0, "\x89HDF", 4, "an HDF5 file (MINC, NeXus, ...): export the volume as NRRD or NIfTI"},
-      {0, "BZh", 3, "compressed with bzip2: decompress it first"},
-      {0, "\3757zXZ", 5, "compressed with xz: decompress it first"},
       {0, "\x28\xb5\x2f\xfd", 4, "compressed with zstd: decompress it first"},
       {0, "11111\n", 6, "a VolVis SLC file: convert it to NRRD or raw"},
   };
@@ -195,7 +193,7 @@ static hl_status load_archive(hl_stream *stream, hl_load_request *request, hl_vo
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   const hl_format *format = by_fit(*stream);
   if (format != NULL) return format->load(stream, request, volume, error);
-  hl_status status = hl_stream_inflate_if_gzip(stream, error);
+  hl_status status = hl_stream_unpack(stream, error);
   if (status != HL_OK) return status;
   const unsigned char *bytes;
   size_t length;

@@ -9,6 +9,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "volume/decoders.h"
+#include "volume/file_list.h"
 #include "volume/format.h"
 #include "volume/text.h"
 
@@ -28,6 +29,8 @@ typedef struct meta_header {
   bool big_endian, compressed, text, is_anatomical;
   double slope, intercept;
   char data_file[NAME_BYTES];
+  hl_file_list files; /* owned; several data files */
+  bool is_list;       /* their names follow the header */
 } meta_header;
 
 static bool has_content(const unsigned char *bytes, size_t length) {
@@ -87,10 +90,13 @@ static hl_status read_dimension(meta_header *header, const char *key, const char
 }
 
 static hl_status read_data_file(meta_header *header, const char *key, const char *value, hl_error *error) {
-  if (hl_text_starts(value, "LIST") || strchr(value, '%') != NULL)
-    return HL_FAIL_LINE(
-        error, HL_ERROR_UNSUPPORTED, header->stream, header->line, "%s",
-        "voxels in several files (ElementDataFile LIST or a pattern) are not read: save them as one");
+  header->is_list = strncmp(value, "LIST", 4) == 0 && (value[4] == 0 || hl_is_space(value[4]));
+  if (strchr(value, '%') != NULL) {
+    bool sound;
+    hl_status status = hl_file_list_pattern(&header->files, value, &sound, error);
+    if (status != HL_OK) return status;
+    if (sound) value = "LIST";
+  }
   if (*value == 0 || strlen(value) >= sizeof header->data_file) return refuse(header, key, value, error);
   strcpy(header->data_file, value);
   return HL_OK;
@@ -157,6 +163,12 @@ static hl_status read_header(hl_stream *stream, meta_header *header, hl_error *e
     status = read_key(header, hl_text_trim(line), hl_text_trim(equals + 1), error);
     if (status != HL_OK) return status;
   }
+  for (bool ended = false; header->is_list && !ended; header->line++) {
+    hl_status status = hl_stream_line(stream, line, &ended, error);
+    const char *name = status == HL_OK && !ended ? hl_text_trim(line) : "";
+    if (status == HL_OK && *name != 0) status = hl_file_list_add(&header->files, name, error);
+    if (status != HL_OK) return status;
+  }
   if (header->type != 0 && header->has_sizes) return HL_OK;
   return hl_fail(error, HL_ERROR_INPUT, "%s: the header has no %s, which MetaImage needs", stream->path,
                  header->has_sizes ? "ElementType" : "DimSize");
@@ -205,8 +217,18 @@ static hl_status find_components(const meta_header *header, bool *is_series, hl_
 }
 
 /* A LOCAL payload follows the header. Another file may begin with a header of its own, which is skipped. */
-static hl_status go_to_voxels(hl_stream **stream, const meta_header *header, const hl_payload *payload,
+static hl_status go_to_voxels(hl_stream **stream, meta_header *header, const hl_payload *payload,
                               hl_error *error) {
+  if (header->is_list || header->files.count > 0) {
+    hl_file_list *files = &header->files;
+    if (header->text)
+      return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: text in several files: save it as one",
+                     (*stream)->path);
+    files->byte_skip = header->header_bytes;
+    files->skip_to_last = header->header_is_rest;
+    files->packing = header->compressed ? HL_FILE_ZLIB : HL_FILE_RAW;
+    return hl_stream_push_files(stream, files, hl_payload_bytes(payload), error);
+  }
   bool local = hl_text_equal(header->data_file, "LOCAL");
   hl_status status = local ? HL_OK : hl_stream_switch(stream, header->data_file, error);
   if (status != HL_OK) return status;
@@ -222,7 +244,7 @@ static hl_status go_to_voxels(hl_stream **stream, const meta_header *header, con
 }
 
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
-  meta_header header = {.dimension = 0};
+  meta_header header = {.dimension = 0, .files.context = request->context};
   hl_payload payload;
   hl_payload_defaults(&payload);
   hl_status status = read_header(*stream, &header, error);
@@ -234,7 +256,9 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   payload.big_endian = header.big_endian;
   payload.text = header.text;
   if (status == HL_OK) status = go_to_voxels(stream, &header, &payload, error);
-  return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
+  if (status == HL_OK) status = hl_payload_read(*stream, &payload, request->spacing, volume, error);
+  hl_file_list_release(&header.files);
+  return status;
 }
 
 const hl_format hl_format_metaimage = {

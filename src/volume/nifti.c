@@ -1,4 +1,8 @@
-/* volume/nifti.c - NIfTI-1 and NIfTI-2: .nii, and pairs of .hdr and .img.
+/* volume/nifti.c - NIfTI-1 and NIfTI-2: .nii, and pairs of .hdr and .img; ANALYZE 7.5 and SPM99, whose
+ * headers are like NIfTI-1's.
+ *
+ * ANALYZE headers tell no orientation. As nibabel does it, x runs to the left, and the world's origin is the
+ * voxel that SPM's field names, if it names one near the volume, else the volume's middle.
  *
  * World coordinates are the file's (x to the right, y to the front, z up): the sform where there is one,
  * else the qform, else the voxel sizes alone. Source of the fields: nifti1.h and nifti2.h of the NIfTI
@@ -30,7 +34,8 @@ static const nifti_layout layout_2 = {2,  HEADER_2_BYTES, 4, 16, 12, 104, 168, 1
 typedef struct nifti_header {
   unsigned char bytes[HEADER_2_BYTES];
   const nifti_layout *layout;
-  bool big_endian, is_pair;
+  bool big_endian, is_pair, is_analyze;
+  hl_context *context;
   const char *path;
 } nifti_header;
 
@@ -89,6 +94,7 @@ static bool has_content(const unsigned char *bytes, size_t length) {
 
 static hl_status read_header(hl_stream *stream, nifti_header *header, hl_error *error) {
   header->path = stream->path;
+  header->context = stream->context;
   hl_status status = hl_stream_read_all(stream, header->bytes, 4, error);
   if (status != HL_OK) return status;
   header->layout = identify(header->bytes, &header->big_endian);
@@ -97,11 +103,11 @@ static hl_status read_header(hl_stream *stream, nifti_header *header, hl_error *
                           stream->path);
   status = hl_stream_read_all(stream, header->bytes + 4, header->layout->header_bytes - 4, error);
   if (status != HL_OK) return status;
-  if (!has_magic(header->bytes, header->layout))
-    return hl_fail_offset(error, HL_ERROR_UNSUPPORTED, (int64_t)header->layout->magic,
-                          "%s, byte %zu: no NIfTI mark: ANALYZE headers are not read, convert to NIfTI",
-                          stream->path, header->layout->magic);
-  header->is_pair = header->bytes[header->layout->magic + 1] == 'i';
+  header->is_analyze = !has_magic(header->bytes, header->layout);
+  if (header->is_analyze && header->layout->version != 1)
+    return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->magic,
+                          "%s, byte %zu: no NIfTI mark", stream->path, header->layout->magic);
+  header->is_pair = header->is_analyze || header->bytes[header->layout->magic + 1] == 'i';
   return HL_OK;
 }
 
@@ -116,6 +122,11 @@ static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3
                           (long long)count);
   for (int n = 1; n <= count; n++) {
     int64_t size = load_dimension(header, n);
+    if (size < 1 && n > 1) { /* as the format's reference implementation repairs it */
+      hl_log(header->context, HL_LOG_WARNING, "%s: dim[%d] is %lld: 1 is taken", header->path, n,
+             (long long)size);
+      size = 1;
+    }
     if (size < 1)
       return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->dim,
                             "%s, byte %zu: dim[%d] is %lld, must be at least 1", header->path,
@@ -173,6 +184,7 @@ static hl_status read_scale(const nifti_header *header, hl_volume_description *g
   double slope = load_real(header, header->layout->slope, 0),
          intercept = load_real(header, header->layout->intercept, 0);
   if (slope == 0 || !isfinite(slope)) return HL_OK;
+  if (!isfinite(intercept) && header->is_analyze) intercept = 0;
   if (!isfinite(intercept))
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->intercept,
                           "%s, byte %zu: scl_inter is not a finite number though scl_slope is %g",
@@ -219,12 +231,40 @@ static void place_by_sizes(const double spacing[3], hl_volume_description *grid)
   for (int axis = 0; axis < 3; axis++) grid->axis[axis][axis] = spacing[axis];
 }
 
+/* ANALYZE: see above. SPM's origin: three whole numbers at byte 253, counted from 1. */
+static void place_by_origin(const nifti_header *header, const double spacing[3],
+                            hl_volume_description *grid) {
+  enum { ORIGIN = 253 };
+  double origin[3];
+  bool any = false, near = true;
+  place_by_sizes(spacing, grid);
+  grid->axis[0][0] = -spacing[0];
+  for (int axis = 0; axis < 3; axis++) {
+    double size = (double)grid->dimensions[axis];
+    origin[axis] = (double)load_short(header, ORIGIN + 2 * (size_t)axis);
+    any = any || origin[axis] != 0;
+    near = near && origin[axis] > -size && origin[axis] < 2 * size;
+  }
+  for (int axis = 0; axis < 3; axis++) {
+    double middle = ((double)grid->dimensions[axis] - 1) / 2;
+    grid->origin[axis] = -(any && near ? origin[axis] - 1 : middle) * grid->axis[axis][axis];
+  }
+  hl_log(header->context, HL_LOG_WARNING,
+         "%s: an ANALYZE header, which tells no orientation: x is taken to run from right to left, and %s "
+         "for the origin",
+         header->path, any && near ? "SPM's origin" : "the volume's middle");
+}
+
 /* Uses the first placement that the file has and that is possible. */
 static void place(const nifti_header *header, hl_volume_description *grid) {
   double spacing[3];
   for (int axis = 0; axis < 3; axis++) {
     spacing[axis] = fabs(load_real(header, header->layout->pixdim, axis + 1));
     if (!(spacing[axis] > 0) || !isfinite(spacing[axis])) spacing[axis] = 1;
+  }
+  if (header->is_analyze) {
+    place_by_origin(header, spacing, grid);
+    return;
   }
   if (load_code(header, header->layout->sform_code) > 0) {
     place_by_sform(header, grid);
@@ -263,6 +303,7 @@ static hl_status go_to_voxels(hl_stream **stream, const nifti_header *header, co
   double offset = header->layout->version == 1
                       ? load_real(header, header->layout->vox_offset, 0)
                       : (double)(int64_t)load_bits(header, header->layout->vox_offset, 8);
+  if (header->is_analyze && offset < 0) offset = -offset; /* of each volume, says the format */
   if (!(offset >= 0 && offset < 9e15) || offset != floor(offset))
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->vox_offset,
                           "%s, byte %zu: vox_offset is %g, must be a whole number of bytes", header->path,
@@ -275,7 +316,7 @@ static hl_status go_to_voxels(hl_stream **stream, const nifti_header *header, co
   }
   hl_status status = switch_to_image(stream, error);
   if (status == HL_OK && hl_stream_at_most(*stream) != skip + hl_payload_bytes(payload))
-    status = hl_stream_inflate_if_gzip(stream, error);
+    status = hl_stream_unpack(stream, error);
   return status == HL_OK ? hl_stream_skip(*stream, skip, error) : status;
 }
 
@@ -306,7 +347,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   place(&header, &payload.grid);
   payload.grid.space = HL_SPACE_RAS;
   request->is_anatomical = true;
-  request->unit = unit_of(&header);
+  request->unit = header.is_analyze ? "millimetre" : unit_of(&header);
   status = hl_volume_check_grid(&payload.grid, (*stream)->path, error);
   payload.big_endian = header.big_endian;
   if (side_by_side > 2) payload.colors = HL_COLORS_MEANT;
@@ -334,7 +375,7 @@ static hl_status switch_to_header(hl_stream **stream, bool *switched, hl_error *
     strcpy(header + length, endings[n]);
     hl_status status = hl_stream_switch(stream, header, error);
     *switched = status == HL_OK;
-    if (status == HL_OK) return hl_stream_inflate_if_gzip(stream, error);
+    if (status == HL_OK) return hl_stream_unpack(stream, error);
     if (status != HL_ERROR_IO) return status;
   }
   return HL_OK;

@@ -11,13 +11,14 @@
 #include "core/memory.h"
 #include "volume/convert.h"
 #include "volume/decoders.h"
+#include "volume/file_list.h"
 #include "volume/format.h"
 #include "volume/text.h"
 #include "volume/volume.h"
 
 enum { NRRD_MOST_AXES = 16, NRRD_KIND_BYTES = 32, NRRD_NAME_BYTES = 1024 };
 
-typedef enum nrrd_encoding { NRRD_RAW, NRRD_GZIP, NRRD_TEXT, NRRD_HEX } nrrd_encoding;
+typedef enum nrrd_encoding { NRRD_RAW, NRRD_GZIP, NRRD_BZIP2, NRRD_TEXT, NRRD_HEX } nrrd_encoding;
 
 typedef struct nrrd_axis {
   size_t size;
@@ -39,7 +40,9 @@ typedef struct nrrd_header {
   double space_origin[3];
   const char *unit; /* of the space's axes, static; null: none, one that is not known, or several */
   hl_space space;
-  char data_file[NRRD_NAME_BYTES]; /* "" if attached */
+  char data_file[NRRD_NAME_BYTES]; /* "" if attached, or several */
+  hl_file_list files;              /* owned; several data files */
+  bool is_list;                    /* their names are the rest of the header */
   size_t line_skip, byte_skip;
   bool skip_to_last;    /* byte skip -1: the voxels are the last bytes of the file */
   hl_segment *segments; /* owned; [segment_count]: of a segmentation by Slicer */
@@ -111,18 +114,19 @@ static hl_status read_type(nrrd_header *header, const char *value, hl_error *err
 }
 
 static hl_status read_encoding(nrrd_header *header, const char *value, hl_error *error) {
-  static const char *const names[] = {"raw", "gzip|gz", "ascii|text|txt", "hex"}; /* as in nrrd_encoding */
+  static const char *const names[] = {"raw", "gzip|gz", "bzip2|bz2", "ascii|text|txt",
+                                      "hex"}; /* as in nrrd_encoding */
   for (int n = NRRD_RAW; n <= NRRD_HEX; n++)
     if (hl_text_is_one_of(value, names[n])) {
       header->encoding = (nrrd_encoding)n;
       header->has_encoding = true;
       return HL_OK;
     }
-  bool known = hl_text_is_one_of(value, "bzip2|bz2|zrl");
+  bool known = hl_text_equal(value, "zrl");
   char shown[HL_PRINTABLE_BYTES];
   return HL_FAIL_LINE(
       error, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream, header->line,
-      "encoding \"%s\" is not read: raw, gzip, ascii and hex are (unu save -f nrrd -e gzip converts)",
+      "encoding \"%s\" is not read: raw, gzip, bzip2, ascii and hex are (unu save -f nrrd -e gzip converts)",
       hl_text_printable(shown, value));
 }
 
@@ -176,8 +180,9 @@ static hl_status read_kinds(nrrd_header *header, const char *value, hl_error *er
   return status;
 }
 
-/* "(x, y, z)": as many numbers as it has, at most 3; the rest become 0. */
-static bool scan_vector(const char **cursor, double vector[3]) {
+/* "(x, y, z)": the first three numbers, of which missing ones become 0. *beyond: further ones (of time, say)
+ * are not all 0. */
+static bool scan_vector(const char **cursor, double vector[3], bool *beyond) {
   const char *text = *cursor;
   while (hl_is_space(*text)) text++;
   const char *end = *text == '(' ? strchr(text, ')') : NULL;
@@ -187,9 +192,19 @@ static bool scan_vector(const char **cursor, double vector[3]) {
   if (length >= sizeof inside) return false;
   for (size_t n = 0; n < length; n++) inside[n] = text[n + 1] == ',' ? ' ' : text[n + 1];
   inside[length] = 0;
-  vector[0] = vector[1] = vector[2] = 0;
+  double numbers[NRRD_MOST_AXES] = {0};
   *cursor = end + 1;
-  return hl_text_numbers(inside, vector, 3) >= 1;
+  int count = hl_text_numbers(inside, numbers, NRRD_MOST_AXES);
+  memcpy(vector, numbers, 3 * sizeof *vector);
+  *beyond = false;
+  for (int n = 3; n < count; n++) *beyond = *beyond || numbers[n] != 0;
+  return count >= 1;
+}
+
+/* Whether a vector is no direction in space: of numbers that are none, as some programs write "none", or
+ * along a fourth axis alone. */
+static bool is_no_direction(const double v[3], bool beyond) {
+  return (isnan(v[0]) && isnan(v[1]) && isnan(v[2])) || (beyond && v[0] == 0 && v[1] == 0 && v[2] == 0);
 }
 
 static hl_status read_directions(nrrd_header *header, const char *value, hl_error *error) {
@@ -201,7 +216,12 @@ static hl_status read_directions(nrrd_header *header, const char *value, hl_erro
     nrrd_axis *place = &header->axis[axis];
     place->has_direction = !hl_text_starts(cursor, "none");
     if (!place->has_direction) cursor += 4;
-    else if (!scan_vector(&cursor, place->direction)) return refuse(header, "space directions", value, error);
+    else {
+      bool beyond;
+      if (!scan_vector(&cursor, place->direction, &beyond))
+        return refuse(header, "space directions", value, error);
+      if (is_no_direction(place->direction, beyond)) place->has_direction = false;
+    }
     header->has_directions = header->has_directions || place->has_direction;
   }
   return HL_OK;
@@ -209,7 +229,9 @@ static hl_status read_directions(nrrd_header *header, const char *value, hl_erro
 
 static hl_status read_origin(nrrd_header *header, const char *value, hl_error *error) {
   const char *cursor = value;
-  if (!scan_vector(&cursor, header->space_origin)) return refuse(header, "space origin", value, error);
+  bool beyond;
+  if (!scan_vector(&cursor, header->space_origin, &beyond))
+    return refuse(header, "space origin", value, error);
   header->has_space_origin = true;
   return HL_OK;
 }
@@ -252,9 +274,13 @@ static hl_status read_space_units(nrrd_header *header, const char *value, hl_err
 }
 
 static hl_status read_data_file(nrrd_header *header, const char *value, hl_error *error) {
-  if (hl_text_starts(value, "LIST") || strchr(value, '%') != NULL)
-    return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, header->stream, header->line, "%s",
-                        "voxels in several data files are not read: join them with unu join or unu save");
+  header->is_list = strncmp(value, "LIST", 4) == 0 && (value[4] == 0 || hl_is_space(value[4]));
+  if (header->is_list) return HL_OK;
+  if (strchr(value, '%') != NULL) {
+    bool sound;
+    hl_status status = hl_file_list_pattern(&header->files, value, &sound, error);
+    if (status != HL_OK || sound) return status;
+  }
   if (*value == 0 || strlen(value) >= sizeof header->data_file)
     return refuse(header, "data file", value, error);
   strcpy(header->data_file, value);
@@ -340,7 +366,7 @@ static hl_status read_pair(nrrd_header *header, char *line, char *colon, hl_erro
   if (name) snprintf(segment->name, sizeof segment->name, "%s", value);
   else if (color)
     segment->has_color = hl_text_numbers(value, segment->srgb, 3) == 3 && is_color(segment->srgb);
-  else if (hl_text_numbers(value, numbers, 1) != 1 || !(fabs(numbers[0]) < 1e6))
+  else if (hl_text_numbers(value, numbers, 1) != 1 || !(fabs(numbers[0]) < (label ? 0x1p53 : 1e6)))
     return refuse(header, line, value, error);
   else if (label) segment->value = numbers[0];
   else segment->layer = (int)numbers[0];
@@ -376,6 +402,11 @@ static hl_status read_header(hl_stream *stream, nrrd_header *header, hl_error *e
     hl_status status = hl_stream_line(stream, line, &ended, error);
     if (status != HL_OK) return status;
     if (ended || (line[0] == 0 && header->line > 1)) break;
+    if (header->is_list) { /* the rest of the header is names of files */
+      status = hl_file_list_add(&header->files, hl_text_trim(line), error);
+      if (status != HL_OK) return status;
+      continue;
+    }
     if (header->line == 1) {
       if (strncmp(line, "NRRD000", 7) != 0 || line[7] < '1' || line[7] > '5' || line[8] != 0)
         return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, stream, 1, "%s",
@@ -391,7 +422,7 @@ static hl_status read_header(hl_stream *stream, nrrd_header *header, hl_error *e
                         header->type == 0    ? "type"
                         : !header->has_sizes ? "sizes"
                                              : "encoding");
-  if (ended && header->data_file[0] == 0)
+  if (ended && header->data_file[0] == 0 && header->files.count == 0)
     return HL_FAIL_LINE(
         error, HL_ERROR_INPUT, stream, header->line, "%s",
         "the file ends with its header: neither an empty line and voxels, nor a \"data file\"");
@@ -523,6 +554,31 @@ static hl_status place_grid(const nrrd_header *header, hl_payload *payload, bool
 
 /* ---- the voxels ---- */
 
+/* The last bytes of packed data: unpacks all of them to know where these begin, and then once more. */
+static hl_status skip_to_last_unpacked(hl_stream **stream, const nrrd_header *header, uint64_t bytes,
+                                       hl_error *error) {
+  unsigned char piece[8192];
+  uint64_t total = 0, begin = (*stream)->below->offset;
+  size_t got = sizeof piece;
+  if (!hl_stream_can_restart(*stream))
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: byte skip -1 with packed voxels in a pipe: give it as a file", (*stream)->path);
+  hl_status status = HL_OK;
+  for (; status == HL_OK && got == sizeof piece; total += got) {
+    status = hl_stream_read(*stream, piece, sizeof piece, &got, error);
+    if (status == HL_OK && hl_cancelled((*stream)->context))
+      status = hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", (*stream)->path);
+  }
+  bool nested = (*stream)->below->below != NULL; /* the whole file is packed, too */
+  if (status == HL_OK) status = hl_stream_restart(stream, error);
+  if (status == HL_OK && nested) status = hl_stream_unpack(stream, error);
+  if (status == HL_OK) status = hl_stream_skip(*stream, begin, error);
+  if (status == HL_OK)
+    status = header->encoding == NRRD_GZIP ? hl_stream_push_inflate(stream, error)
+                                           : hl_stream_push_bzip2(stream, error);
+  return status == HL_OK ? hl_stream_skip(*stream, total > bytes ? total - bytes : 0, error) : status;
+}
+
 static hl_status skip_to_voxels(hl_stream **stream, const nrrd_header *header, const hl_payload *payload,
                                 hl_error *error) {
   char line[HL_LINE_BYTES];
@@ -533,14 +589,34 @@ static hl_status skip_to_voxels(hl_stream **stream, const nrrd_header *header, c
   if (status != HL_OK) return status;
   if (header->encoding == NRRD_GZIP) status = hl_stream_push_inflate(stream, error);
   if (header->encoding == NRRD_HEX) status = hl_stream_push_hex(stream, error);
+  if (header->encoding == NRRD_BZIP2) status = hl_stream_push_bzip2(stream, error);
   uint64_t skip = header->byte_skip, most = hl_stream_at_most(*stream), bytes = hl_payload_bytes(payload);
+  if (status != HL_OK) return status;
   if (header->skip_to_last) {
-    if (header->encoding != NRRD_RAW || most == UINT64_MAX)
-      return hl_fail(error, HL_ERROR_INPUT, "%s: byte skip -1 needs encoding raw and an ordinary file",
+    bool packed = header->encoding == NRRD_GZIP || header->encoding == NRRD_BZIP2;
+    if (!packed && (header->encoding != NRRD_RAW || most == UINT64_MAX))
+      return hl_fail(error, HL_ERROR_INPUT, "%s: byte skip -1 needs binary voxels in an ordinary file",
                      (*stream)->path);
+    if (packed) return skip_to_last_unpacked(stream, header, bytes, error);
     skip = most > bytes ? most - bytes : 0;
   }
   return status == HL_OK ? hl_stream_skip(*stream, skip, error) : status;
+}
+
+/* Several data files follow each other. */
+static hl_status open_files(hl_stream **stream, nrrd_header *header, const hl_payload *payload,
+                            hl_error *error) {
+  hl_file_list *files = &header->files;
+  if (header->encoding == NRRD_TEXT || header->encoding == NRRD_HEX)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: text in several data files: join them with unu join",
+                   (*stream)->path);
+  files->line_skip = header->line_skip;
+  files->byte_skip = header->byte_skip;
+  files->skip_to_last = header->skip_to_last;
+  files->packing = header->encoding == NRRD_GZIP    ? HL_FILE_ZLIB
+                   : header->encoding == NRRD_BZIP2 ? HL_FILE_BZIP2
+                                                    : HL_FILE_RAW;
+  return hl_stream_push_files(stream, files, hl_payload_bytes(payload), error);
 }
 
 static bool has_content(const unsigned char *bytes, size_t length) {
@@ -564,6 +640,10 @@ static hl_status load_with(nrrd_header *read, hl_stream **stream, hl_load_reques
   if (!header.has_endian && !payload.text && hl_voxel_type_bytes(header.type) > 1)
     hl_log((*stream)->context, HL_LOG_WARNING, "%s: no field \"endian\": little-endian is assumed",
            (*stream)->path);
+  if (read->files.count > 0) {
+    status = open_files(stream, read, &payload, error);
+    return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
+  }
   if (header.data_file[0] != 0) status = hl_stream_switch(stream, header.data_file, error);
   if (status == HL_OK) status = skip_to_voxels(stream, &header, &payload, error);
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
@@ -571,7 +651,7 @@ static hl_status load_with(nrrd_header *read, hl_stream **stream, hl_load_reques
 
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   hl_context *context = (*stream)->context;
-  nrrd_header header = {.dimension = 0};
+  nrrd_header header = {.dimension = 0, .files.context = context};
   hl_status status = load_with(&header, stream, request, volume, error);
   if (status == HL_OK) {
     (*volume)->segments = header.segments;
@@ -579,6 +659,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   } else {
     hl_release(context, header.segments);
   }
+  hl_file_list_release(&header.files);
   return status;
 }
 

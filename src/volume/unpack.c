@@ -1,10 +1,21 @@
-/* volume/unpack.c - one block of deflate or Blosc data into memory of the caller's. */
+/* volume/unpack.c - one block of packed data into memory of the caller's. */
 #include "volume/unpack.h"
 
 #include <zlib.h>
 #ifdef HL_HAS_BLOSC
 #include <blosc.h>
 #endif
+
+#ifdef HL_HAS_LZ4
+#include <lz4.h>
+#endif
+#ifdef HL_HAS_BZIP2
+#include <bzlib.h>
+#endif
+#ifdef HL_HAS_LZMA
+#include <lzma.h>
+#endif
+#include <limits.h>
 
 #include "core/memory.h"
 
@@ -68,5 +79,58 @@ hl_status hl_unpack_blosc(const char *path, const unsigned char *packed, size_t 
   *sound = false;
   return hl_fail(error, HL_ERROR_UNSUPPORTED,
                  "%s: packed by Blosc, and this program was built without c-blosc", path);
+#endif
+}
+
+/* ---- LZ4, bzip2, xz ---- */
+
+#if !defined(HL_HAS_LZ4) || !defined(HL_HAS_BZIP2) || !defined(HL_HAS_LZMA)
+static hl_status fail_absent(const char *path, const char *name, bool *sound, hl_error *error) {
+  *sound = false;
+  return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                 "%s: packed by %s, and this program was built without its library", path, name);
+}
+#endif
+
+hl_status hl_unpack_lz4(const char *path, const unsigned char *packed, size_t length, void *bytes,
+                        size_t count, bool *sound, hl_error *error) {
+#ifdef HL_HAS_LZ4
+  (void)path, (void)error;
+  *sound = length <= INT_MAX && count <= INT_MAX &&
+           LZ4_decompress_safe((const char *)packed, bytes, (int)length, (int)count) == (int)count;
+  return HL_OK;
+#else
+  (void)packed, (void)length, (void)bytes, (void)count;
+  return fail_absent(path, "LZ4", sound, error);
+#endif
+}
+
+hl_status hl_unpack_bzip2(const char *path, const unsigned char *packed, size_t length, void *bytes,
+                          size_t count, bool *sound, hl_error *error) {
+#ifdef HL_HAS_BZIP2
+  (void)path, (void)error;
+  unsigned made = count < UINT_MAX ? (unsigned)count : 0;
+  *sound = made == count && length < UINT_MAX &&
+           BZ2_bzBuffToBuffDecompress(bytes, &made, (char *)packed, (unsigned)length, 0, 0) == BZ_OK &&
+           made == count;
+  return HL_OK;
+#else
+  (void)packed, (void)length, (void)bytes, (void)count;
+  return fail_absent(path, "bzip2", sound, error);
+#endif
+}
+
+hl_status hl_unpack_xz(const char *path, const unsigned char *packed, size_t length, void *bytes,
+                       size_t count, bool *sound, hl_error *error) {
+#ifdef HL_HAS_LZMA
+  (void)path, (void)error;
+  uint64_t memory = (uint64_t)256 << 20;
+  size_t taken = 0, made = 0;
+  lzma_ret answer = lzma_stream_buffer_decode(&memory, 0, NULL, packed, &taken, length, bytes, &made, count);
+  *sound = answer == LZMA_OK && made == count;
+  return HL_OK;
+#else
+  (void)packed, (void)length, (void)bytes, (void)count;
+  return fail_absent(path, "xz", sound, error);
 #endif
 }

@@ -1,4 +1,4 @@
-/* volume/unpack.h - unpacks a block whose size is known: deflate and Blosc. */
+/* volume/unpack.h - unpacks a block whose size is known: deflate, Blosc, LZ4, bzip2 and xz. */
 #ifndef HL_VOLUME_UNPACK_H
 #define HL_VOLUME_UNPACK_H
 
@@ -18,5 +18,20 @@ hl_status hl_unpack_deflate(hl_context *context, const unsigned char *packed, si
                             size_t count, bool *sound, hl_error *error);
 hl_status hl_unpack_blosc(const char *path, const unsigned char *packed, size_t length, void *bytes,
                           size_t count, bool *sound, hl_error *error);
+
+/* The same for a block of LZ4 (without a header), and a stream of bzip2 or xz. Without its library each
+ * fails. Whether the data can hold `count` bytes is asked here before anything is unpacked. */
+hl_status hl_unpack_lz4(const char *path, const unsigned char *packed, size_t length, void *bytes,
+                        size_t count, bool *sound, hl_error *error);
+hl_status hl_unpack_bzip2(const char *path, const unsigned char *packed, size_t length, void *bytes,
+                          size_t count, bool *sound, hl_error *error);
+hl_status hl_unpack_xz(const char *path, const unsigned char *packed, size_t length, void *bytes,
+                       size_t count, bool *sound, hl_error *error);
+
+/* Whether `length` bytes of a codec with this greatest ratio can hold `count`. */
+static inline bool hl_packed_can_hold(size_t length, size_t count, size_t ratio) {
+  return count / ratio <= length;
+}
+enum { HL_LZ4_RATIO = 255, HL_BZIP2_RATIO = 25000, HL_XZ_RATIO = 8192 };
 
 #endif

@@ -25,9 +25,11 @@ hl_status hl_vtk_xml_refuse(const hl_vtk_xml *xml, hl_status code, const char *w
 
 static hl_status fail_compressor(const hl_vtk_xml *xml, const char *compressor, hl_error *error) {
   char shown[HL_PRINTABLE_BYTES];
-  return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                 "%s: data compressed by \"%s\" is not read: save it with vtkZLibDataCompressor, or without",
-                 xml->stream->path, hl_text_printable(shown, compressor));
+  return hl_fail(
+      error, HL_ERROR_UNSUPPORTED,
+      "%s: data compressed by \"%s\" is not read: save it with vtkZLibDataCompressor, vtkLZ4DataCompressor, "
+      "vtkLZMADataCompressor, or without",
+      xml->stream->path, hl_text_printable(shown, compressor));
 }
 
 hl_status hl_vtk_xml_file_tag(hl_vtk_xml *xml, const hl_xml_tag *tag, const char *wanted, hl_error *error) {
@@ -42,10 +44,16 @@ hl_status hl_vtk_xml_file_tag(hl_vtk_xml *xml, const hl_xml_tag *tag, const char
   if (header_type != NULL && strcmp(header_type, "UInt32") != 0 && strcmp(header_type, "UInt64") != 0)
     return hl_vtk_xml_refuse(xml, HL_ERROR_INPUT, "header_type", header_type, error);
   xml->header_bytes = header_type != NULL && strcmp(header_type, "UInt64") == 0 ? 8 : 4;
-  xml->compressed = compressor != NULL && *compressor != 0;
-  if (xml->compressed && strcmp(compressor, "vtkZLibDataCompressor") != 0)
-    return fail_compressor(xml, compressor, error);
-  return HL_OK;
+  static const char *const compressors[] = {[HL_VTK_PLAIN] = "",
+                                            [HL_VTK_ZLIB] = "vtkZLibDataCompressor",
+                                            [HL_VTK_LZ4] = "vtkLZ4DataCompressor",
+                                            [HL_VTK_XZ] = "vtkLZMADataCompressor"};
+  for (int n = HL_VTK_PLAIN; n <= HL_VTK_XZ; n++)
+    if (strcmp(compressor != NULL ? compressor : "", compressors[n]) == 0) {
+      xml->packing = (hl_vtk_packing)n;
+      return HL_OK;
+    }
+  return fail_compressor(xml, compressor, error);
 }
 
 bool hl_vtk_xml_find_type(const char *name, hl_voxel_type *type) {
@@ -122,7 +130,7 @@ static hl_status go_to_array(hl_stream **stream, const hl_vtk_xml *xml, const hl
                      (unsigned long long)array->place);
   }
   hl_status status = hl_stream_restart(stream, error);
-  if (status == HL_OK) status = hl_stream_inflate_if_gzip(stream, error);
+  if (status == HL_OK) status = hl_stream_unpack(stream, error);
   return status == HL_OK ? hl_stream_skip(*stream, place, error) : status;
 }
 
@@ -147,7 +155,7 @@ hl_status hl_vtk_xml_open_array(hl_stream **stream, const hl_vtk_xml *xml, const
   if (array->encoding == HL_VTK_BINARY || xml->appended_is_base64)
     status = hl_stream_push_base64(stream, error);
   if (status != HL_OK) return status;
-  return xml->compressed
-             ? hl_stream_push_vtk_blocks(stream, xml->header_bytes, xml->big_endian, promised, error)
-             : read_length(*stream, xml, promised, error);
+  return xml->packing != HL_VTK_PLAIN ? hl_stream_push_vtk_blocks(stream, xml->packing, xml->header_bytes,
+                                                                  xml->big_endian, promised, error)
+                                      : read_length(*stream, xml, promised, error);
 }

@@ -3,6 +3,7 @@
 #ifndef HL_VOLUME_VTK_XML_H
 #define HL_VOLUME_VTK_XML_H
 
+#include "volume/decoders.h"
 #include "volume/volume.h"
 #include "volume/xml.h"
 
@@ -10,9 +11,10 @@ enum { HL_VTK_NAME_BYTES = 256 };
 
 typedef struct hl_vtk_xml {
   hl_stream *stream; /* borrowed; the tags are read from it */
-  bool big_endian, compressed;
-  size_t header_bytes; /* bytes of each integer before binary values; 0: the first tag has not been read */
-  uint64_t appended;   /* offset in the file of the appended data's first byte; 0: none */
+  bool big_endian;
+  hl_vtk_packing packing; /* of binary values */
+  size_t header_bytes;    /* bytes of each integer before binary values; 0: the first tag has not been read */
+  uint64_t appended;      /* offset in the file of the appended data's first byte; 0: none */
   bool appended_is_base64;
 } hl_vtk_xml;
 
