@@ -88,6 +88,7 @@ static hl_status meet(hl_legacy_vtk *file, hl_legacy_array array, const char *ty
   if (__builtin_mul_overflow(array.tuples, array.components, &values) || values > VALUES_MOST)
     return hl_legacy_vtk_fail(file, "impossible number of values in an array of type", type_name, error);
   array.of_points = file->in_point_data;
+  array.of_neither = !file->has_section;
   return file->meet(file, &array, error);
 }
 
@@ -184,6 +185,31 @@ static hl_status skip_metadata(hl_legacy_vtk *file, hl_error *error) {
   return status;
 }
 
+/* Passes over a text of a binary file: its length, in one, two, four or eight bytes as the first two bits
+ * tell, then its letters (vtkDataWriter). */
+static hl_status skip_binary_string(hl_legacy_vtk *file, hl_error *error) {
+  static const size_t more[4] = {7, 3, 1, 0}; /* bytes of the length after the first */
+  unsigned char first, rest[7];
+  hl_status status = hl_stream_read_all(file->stream, &first, 1, error);
+  if (status == HL_OK) status = hl_stream_read_all(file->stream, rest, more[first >> 6], error);
+  uint64_t length = first & 0x3f;
+  for (size_t n = 0; status == HL_OK && n < more[first >> 6]; n++) length = length << 8 | rest[n];
+  return status == HL_OK ? hl_stream_skip(file->stream, length, error) : status;
+}
+
+/* Passes over texts, of which each has a line of its own in a file of text, and over bits. */
+static hl_status skip_other(hl_legacy_vtk *file, const char *type, size_t values, hl_error *error) {
+  char line[HL_LINE_BYTES];
+  bool ended = false;
+  hl_status status = HL_OK;
+  if (hl_text_equal(type, "bit"))
+    return file->text ? skip_values(file, values, 1, error)
+                      : hl_stream_skip(file->stream, values / 8 + (values % 8 != 0), error);
+  for (size_t n = 0; n < values && status == HL_OK && !ended; n++)
+    status = file->text ? hl_legacy_vtk_line(file, line, &ended, error) : skip_binary_string(file, error);
+  return status;
+}
+
 /* "FIELD name n", then n times "name components tuples type" and the values. */
 static hl_status read_fields(hl_legacy_vtk *file, const char *arguments, hl_error *error) {
   char word[WORD_BYTES], line[HL_LINE_BYTES];
@@ -207,6 +233,15 @@ static hl_status read_fields(hl_legacy_vtk *file, const char *arguments, hl_erro
         hl_text_sizes(sizes, &shape[0], 1) != 1 || hl_text_sizes(second, &shape[1], 1) != 1 ||
         !hl_text_word(&cursor, type, sizeof type) || shape[0] < 1)
       return hl_legacy_vtk_fail(file, "expected \"name components tuples type\", not", line, error);
+    size_t values;
+    if (hl_text_is_one_of(type, "string|bit")) {
+      if (__builtin_mul_overflow(shape[0], shape[1], &values) || values > VALUES_MOST)
+        return hl_legacy_vtk_fail(file, "impossible number of values in", line, error);
+      status = skip_other(file, type, values, error);
+      if (status != HL_OK) return status;
+      arrays--;
+      continue;
+    }
     status = meet(
         file, (hl_legacy_array){.kind = "FIELD", .name = word, .components = shape[0], .tuples = shape[1]},
         type, error);
@@ -218,6 +253,7 @@ static hl_status read_fields(hl_legacy_vtk *file, const char *arguments, hl_erro
 
 static hl_status begin_section(hl_legacy_vtk *file, bool points, const char *arguments, hl_error *error) {
   file->in_point_data = points;
+  file->has_section = true;
   if (hl_text_sizes(arguments, &file->tuples, 1) != 1)
     return hl_legacy_vtk_fail(file, "expected the number of values, not", arguments, error);
   return HL_OK;

@@ -13,6 +13,7 @@ typedef struct hl_legacy_array {
   hl_voxel_type type;
   size_t components, tuples;
   bool of_points;   /* under POINT_DATA, not CELL_DATA */
+  bool of_neither;  /* before both: an array of the file itself */
   bool is_fraction; /* as text, 0 to 1 stand for 0 to 255 */
 } hl_legacy_array;
 
@@ -20,12 +21,12 @@ typedef struct hl_legacy_vtk hl_legacy_vtk;
 
 /* A file that is being read. */
 struct hl_legacy_vtk {
-  hl_stream *stream; /* borrowed */
-  int line;          /* the last one that was read; binary values are not counted */
-  bool text;         /* ASCII; else BINARY, big-endian */
-  bool in_point_data;
-  size_t tuples; /* values per array of the POINT_DATA or CELL_DATA section */
-  bool found;    /* reading stops: the stream is at the values that were looked for */
+  hl_stream *stream;               /* borrowed */
+  int line;                        /* the last one that was read; binary values are not counted */
+  bool text;                       /* ASCII; else BINARY, big-endian */
+  bool in_point_data, has_section; /* has_section: POINT_DATA or CELL_DATA came */
+  size_t tuples;                   /* values per array of the POINT_DATA or CELL_DATA section */
+  bool found;                      /* reading stops: the stream is at the values that were looked for */
   /* The values of an array come next: reads them, skips them by hl_legacy_vtk_skip(), or sets file->found. */
   hl_status (*meet)(hl_legacy_vtk *file, const hl_legacy_array *array, hl_error *error);
   /* Reads any other keyword: of a data set's geometry. */

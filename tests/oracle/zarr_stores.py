@@ -6,9 +6,11 @@ Versions 2 and 3, every type and byte order, raw, zlib and gzip, shards, check s
 OME-Zarr's axes, units, levels, collections; archives; links and paths that lead out; damaged files. Chunks packed by zstd
 and Blosc are left to scripts/judges. Exit 77: numpy is missing.
 """
+import bz2
 import gzip
 import itertools
 import json
+import lzma
 import os
 import pathlib
 import shutil
@@ -178,6 +180,48 @@ def fill_cases(root):
         yield Case(str(folder / "shards"), expected)
 
 
+def write_filtered(folder, voxels, filters, packing=None, nested=False, size=CHUNK):
+    """Version 2 with filters, packed by bz2, lzma or lz4 (one literal run). Nested chunks do not say their separator."""
+    packers = {None: bytes, "bz2": bz2.compress, "lzma": lzma.compress,
+               "lz4": lambda data: struct.pack("<I", len(data)) + bytes([0xf0]) + b"\xff" * ((len(data) - 15) // 255) +
+               bytes([(len(data) - 15) % 255]) + data}
+    write(folder / ".zarray", {"zarr_format": 2, "shape": voxels.shape, "chunks": size, "fill_value": 0, "order": "C", "filters": filters or None,
+                               "dtype": voxels.dtype.str, "compressor": packing and {"id": packing}})
+    for place, part in chunks(voxels, size):
+        values = part.ravel()
+        for one in filters:
+            if one["id"] == "delta":
+                values = np.diff(values, prepend=values.dtype.type(0)).astype(one["dtype"])
+            if one["id"] == "fixedscaleoffset":
+                values = np.around((values.astype(float) - one["offset"]) * one["scale"]).astype(one["astype"])
+        data = values.tobytes()
+        for one in filters:
+            if one["id"] == "shuffle":
+                data = np.frombuffer(data, "u1").reshape(-1, one["elementsize"]).T.tobytes()
+        write(folder / ("/" if nested else ".").join(map(str, place)), packers[packing](data))
+
+
+def filter_cases(root):
+    for number, kind in enumerate(("|u1", "<u2", "<i4", "<i8", "<f4")):
+        voxels = np.random.default_rng(number).integers(0, 100, SHAPE).astype(kind)
+        width = np.dtype(kind).itemsize
+        delta, shuffle = {"id": "delta", "dtype": kind}, {"id": "shuffle", "elementsize": width}
+        scaled = {"id": "fixedscaleoffset", "dtype": kind, "astype": "<i2", "scale": 2, "offset": 7}
+        for many, (filters, packing) in enumerate(itertools.product(
+                ([], [delta], [shuffle], [delta, shuffle], [scaled], [scaled, {"id": "shuffle", "elementsize": 2}]), (None, "bz2", "lzma", "lz4"))):
+            folder = root / ("filters%d_%d.zarr" % (number, many))
+            write_filtered(folder, voxels, filters, packing, nested=many % 2 == 1)
+            yield Case(str(folder), voxels)
+    labels = np.random.default_rng(9).integers(0, 3, SHAPE).astype("u1")
+    folder = root / "labels.zarr"
+    write_filtered(folder / "0", labels, [], nested=True)
+    write(folder / ".zgroup", {"zarr_format": 2})
+    write(folder / ".zattrs", {"multiscales": [{"version": "0.3", "axes": ["z", "y", "x"], "datasets": [{"path": "0"}]}], "image-label": {
+        "version": "0.3", "colors": [{"label-value": 1, "rgba": [255, 0, 0, 255]}, {"label-value": 2, "rgba": [0, 0, 255, 9]}],
+        "properties": [{"label-value": 2, "class": "nucleus"}]}})
+    yield Case(str(folder), labels)
+
+
 # ---- OME-Zarr ----
 
 def image_attributes(version, axes, levels, units=None, all_levels=None, **more):
@@ -327,8 +371,8 @@ def refusals(root):
     yield "a shard cut short", changed("shard", cut("c/0/0/0"), write_3, shard=(3, 3, 3)), "index of a shard is damaged"
     yield "a check sum", changed("sum", spoil("c/0/0/0", 3), write_3, codecs=("crc32c",)), "check sum is wrong"
     yield "a shard's index", changed("index", spoil("c/0/0/0", 40), write_3, shard=(3, 3, 3), start=True), "index of a shard"
-    yield "other codecs", changed("lzma", lambda meta, _: meta.update(compressor={"id": "lzma"})), "packed by \"lzma\""
-    yield "filters", changed("filters", lambda meta, _: meta.update(filters=[{"id": "delta"}])), "\"filters\""
+    yield "other codecs", changed("zfpy", lambda meta, _: meta.update(compressor={"id": "zfpy"})), "packed by \"zfpy\""
+    yield "filters", changed("filters", lambda meta, _: meta.update(filters=[{"id": "packbits"}])), "the filter \"packbits\" is not read"
     yield "complex numbers", changed("complex", lambda meta, _: meta.update(dtype="<c8")), "<c8"
     yield "no shape", changed("shape", lambda meta, _: meta.update(shape=[0, 3, 3])), "above 0"
     yield "too much", changed("huge", lambda meta, _: meta.update(shape=[2**40, 2**20, 2**20])), ""
@@ -396,7 +440,7 @@ def main():
     failures = 0
     root = pathlib.Path(tempfile.mkdtemp(prefix="halflight-zarr-"))
     try:
-        for name, cases in (("arrays", array_cases), ("fill values", fill_cases), ("images", image_cases),
+        for name, cases in (("arrays", array_cases), ("fill values", fill_cases), ("filters", filter_cases), ("images", image_cases),
                             ("groups", grouped_cases)):
             failures += run(DUMP, name, list(cases(root)))
         failures += check_refusals(root) + check_levels(root) + check_damage(root)

@@ -504,8 +504,11 @@ static void legacy_samples(sample_function *function, void *data) {
         add_text(&made.file, "FIELD FieldData 1\ntime 1 1 short\n");
         if (text) add_text(&made.file, "7\n");
         else add_text(&made.file, "%c%c\n", 0, 7);
-        add_text(&made.file,
-                 "METADATA\nINFORMATION 0\n\nCELL_DATA 2\nSCALARS c unsigned_char 2\nLOOKUP_TABLE default\n");
+        add_text(
+            &made.file,
+            "METADATA\nINFORMATION 0\n\nCELL_DATA 4\nSCALARS c unsigned_char\nLOOKUP_TABLE default\n"); /* the
+                                                                     grid has two cells: a file that ends here
+                                                                     has no volume */
         add_text(&made.file, "%s", text ? "1 2 3 4\n" : "abcd\n");
       }
       add_text(&made.file, "POINT_DATA 12\n");

@@ -279,7 +279,7 @@ static void test_xml_tags(void **unused) {
   assert_int_equal(hl_xml_next_tag(opened.stream, &tag, &ended, NULL), HL_OK);
   assert_true(tag.is_start && !tag.is_end && strcmp(tag.name, "a") == 0);
   assert_string_equal(hl_xml_attribute(&tag, "b"), "1 > 0");
-  assert_string_equal(hl_xml_attribute(&tag, "c"), "x<&\"'>&#65;");
+  assert_string_equal(hl_xml_attribute(&tag, "c"), "x<&\"'>A");
   assert_null(hl_xml_attribute(&tag, "d"));
   assert_int_equal(hl_xml_next_tag(opened.stream, &tag, &ended, NULL), HL_OK);
   assert_true(tag.is_start && tag.is_end && strcmp(tag.name, "b") == 0);

@@ -14,8 +14,27 @@ typedef enum hl_zarr_compressor {
   HL_ZARR_RAW,
   HL_ZARR_DEFLATE, /* zlib or gzip */
   HL_ZARR_ZSTD,
-  HL_ZARR_BLOSC
+  HL_ZARR_BLOSC,
+  HL_ZARR_LZ4, /* the unpacked size in four bytes, and a block */
+  HL_ZARR_BZIP2,
+  HL_ZARR_XZ
 } hl_zarr_compressor;
+
+/* What was done to a chunk's bytes before they were packed. */
+typedef enum hl_zarr_filter_kind {
+  HL_ZARR_SHUFFLE, /* the bytes of all elements, first bytes first */
+  HL_ZARR_DELTA,   /* differences of neighbours */
+  HL_ZARR_OFFSET   /* (value - offset) * scale, rounded: FixedScaleOffset */
+} hl_zarr_filter_kind;
+
+typedef struct hl_zarr_filter {
+  hl_zarr_filter_kind kind;
+  size_t element;         /* bytes, of shuffling */
+  hl_voxel_type from, to; /* of a chunk's values before and after the filter is undone */
+  double scale, offset;
+} hl_zarr_filter;
+
+enum { HL_ZARR_FILTERS_MOST = 4 };
 
 /* How a chunk's voxels become bytes. */
 typedef struct hl_zarr_codecs {
@@ -23,6 +42,8 @@ typedef struct hl_zarr_codecs {
                                    first */
   bool big_endian;
   hl_zarr_compressor compressor;
+  hl_zarr_filter filters[HL_ZARR_FILTERS_MOST]; /* in the order in which they were applied */
+  int filter_count;
   int inner_checks,
       outer_checks; /* number of CRC32C sums (4 bytes each) after the voxels, and after the packed bytes */
 } hl_zarr_codecs;
@@ -37,8 +58,9 @@ typedef struct hl_zarr_array {
   size_t chunk_bytes;    /* of a chunk's voxels */
   unsigned char fill[8]; /* the value of voxels in missing chunks, native byte order */
   hl_zarr_codecs codecs;
-  char separator;  /* in the names of chunks: '.' or '/' */
-  bool has_prefix; /* names of chunks begin with "c" */
+  char separator;        /* in the names of chunks: '.' or '/' */
+  bool separator_untold; /* version 2: chunks that are not there with '.' are looked for with '/' */
+  bool has_prefix;       /* names of chunks begin with "c" */
   /* shards are files that hold several chunks */
   bool is_sharded;
   uint64_t shard[HL_ZARR_AXES_MOST]; /* in chunks; 1 without shards */

@@ -115,7 +115,12 @@ static bool find_compressor(const char *name, hl_zarr_compressor *compressor) {
   static const struct {
     const char *names;
     hl_zarr_compressor compressor;
-  } known[] = {{"zlib|gzip", HL_ZARR_DEFLATE}, {"zstd", HL_ZARR_ZSTD}, {"blosc", HL_ZARR_BLOSC}};
+  } known[] = {{"zlib|gzip|numcodecs.zlib|numcodecs.gzip", HL_ZARR_DEFLATE},
+               {"zstd|numcodecs.zstd", HL_ZARR_ZSTD},
+               {"blosc|numcodecs.blosc", HL_ZARR_BLOSC},
+               {"lz4|numcodecs.lz4", HL_ZARR_LZ4},
+               {"bz2|numcodecs.bz2", HL_ZARR_BZIP2},
+               {"lzma|numcodecs.lzma", HL_ZARR_XZ}};
   for (size_t n = 0; name != NULL && n < sizeof known / sizeof *known; n++)
     if (hl_text_is_one_of(name, known[n].names)) {
       *compressor = known[n].compressor;
@@ -126,16 +131,75 @@ static bool find_compressor(const char *name, hl_zarr_compressor *compressor) {
 
 static hl_status fail_codec(const hl_zarr_reading *r, const char *name) {
   char shown[HL_PRINTABLE_BYTES];
-  return hl_zarr_reading_fail(
-      r, HL_ERROR_UNSUPPORTED,
-      "chunks packed by \"%s\", or by several codecs: raw, zlib, gzip, zstd and blosc are read",
-      hl_text_printable(shown, name != NULL ? name : "?"));
+  return hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED,
+                              "chunks packed by \"%s\", or by several codecs: raw, zlib, gzip, zstd, blosc, "
+                              "lz4, bz2 and lzma are read",
+                              hl_text_printable(shown, name != NULL ? name : "?"));
 }
 
 hl_status hl_zarr_compressor_2(const hl_zarr_reading *r, const json_t *compressor) {
   const char *name = json_string_value(json_object_get(compressor, "id"));
   if (compressor == NULL || json_is_null(compressor)) return HL_OK;
   return find_compressor(name, &r->array->codecs.compressor) ? HL_OK : fail_codec(r, name);
+}
+
+/* ---- filters of version 2 ---- */
+
+static hl_status fail_filter(const hl_zarr_reading *r, const char *name) {
+  char shown[HL_PRINTABLE_BYTES];
+  return hl_zarr_reading_fail(
+      r, HL_ERROR_UNSUPPORTED,
+      "the filter \"%s\" is not read: shuffle, delta, fixedscaleoffset, quantize and bitround "
+      "are; write the array again without it",
+      hl_text_printable(shown, name != NULL ? name : "?"));
+}
+
+/* The type that a filter names, little-endian or of single bytes; `other` where it names none. */
+static bool filter_type(const json_t *filter, const char *key, hl_voxel_type other, hl_voxel_type *type) {
+  hl_zarr_array array = {.rank = 0};
+  hl_error unused = {0};
+  const hl_zarr_reading reading = {.array = &array, .error = &unused};
+  const json_t *name = json_object_get(filter, key);
+  *type = other;
+  if (name == NULL || json_is_null(name)) return true;
+  if (hl_zarr_type_2(&reading, json_string_value(name)) != HL_OK || array.codecs.big_endian) return false;
+  *type = array.type;
+  return true;
+}
+
+hl_status hl_zarr_filters_2(const hl_zarr_reading *r, const json_t *list) {
+  hl_zarr_codecs *codecs = &r->array->codecs;
+  for (size_t n = 0; n < json_array_size(list); n++) {
+    const json_t *entry = json_array_get(list, n);
+    const char *name = json_string_value(json_object_get(entry, "id"));
+    hl_zarr_filter filter = {.scale = 1};
+    hl_voxel_type own = r->array->type;
+    if (name != NULL && hl_text_is_one_of(name, "quantize|bitround")) {
+      if (!filter_type(entry, "astype", own, &filter.to) || filter.to != own) return fail_filter(r, name);
+      continue; /* values were rounded before: nothing is to be undone */
+    }
+    if (name == NULL || codecs->filter_count == HL_ZARR_FILTERS_MOST || codecs->big_endian)
+      return fail_filter(r, name);
+    if (strcmp(name, "shuffle") == 0) {
+      json_int_t size = json_integer_value(json_object_get(entry, "elementsize"));
+      filter.kind = HL_ZARR_SHUFFLE;
+      filter.element = size >= 1 && size <= 64 ? (size_t)size : 4;
+    } else if (strcmp(name, "delta") == 0 || strcmp(name, "fixedscaleoffset") == 0) {
+      bool delta = strcmp(name, "delta") == 0;
+      filter.kind = delta ? HL_ZARR_DELTA : HL_ZARR_OFFSET;
+      bool sound = filter_type(entry, "dtype", own, &filter.to) &&
+                   filter_type(entry, "astype", filter.to, &filter.from);
+      filter.scale = delta ? 1 : json_number_value(json_object_get(entry, "scale"));
+      filter.offset = json_number_value(json_object_get(entry, "offset"));
+      if (!sound || filter.to != own || filter.scale == 0 || !isfinite(filter.scale) ||
+          !isfinite(filter.offset))
+        return fail_filter(r, name);
+    } else {
+      return fail_filter(r, name);
+    }
+    codecs->filters[codecs->filter_count++] = filter;
+  }
+  return HL_OK;
 }
 
 /* "order" is a permutation: stored axis n is axis order[n] of the array. */

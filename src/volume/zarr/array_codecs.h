@@ -19,6 +19,8 @@ typedef struct hl_zarr_reading {
 hl_status hl_zarr_type_2(const hl_zarr_reading *r, const char *name);
 /* Version 3: "uint16". */
 hl_status hl_zarr_type_3(const hl_zarr_reading *r, const char *name);
+/* The filters of version 2, of which the ones that were applied last are undone first. */
+hl_status hl_zarr_filters_2(const hl_zarr_reading *r, const json_t *list);
 hl_status hl_zarr_compressor_2(const hl_zarr_reading *r, const json_t *compressor);
 hl_status hl_zarr_codecs_3(const hl_zarr_reading *r, const json_t *list, hl_zarr_codecs *codecs);
 /* null is 0. */

@@ -71,11 +71,10 @@ static hl_status read_version_2(const hl_zarr_reading *r, const json_t *node) {
   hl_status status = read_sizes(r, json_object_get(node, "shape"), "shape", array->shape, &array->rank);
   if (status == HL_OK) status = read_chunk_shape(r, json_object_get(node, "chunks"), "chunks", array->chunk);
   if (status == HL_OK) status = hl_zarr_type_2(r, json_string_value(json_object_get(node, "dtype")));
-  if (status == HL_OK && json_array_size(filters) > 0)
-    status = hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED,
-                                  "arrays with \"filters\" are not read: write it again without");
+  if (status == HL_OK) status = hl_zarr_filters_2(r, filters);
   if (status == HL_OK) status = hl_zarr_compressor_2(r, json_object_get(node, "compressor"));
   if (status == HL_OK) status = read_separator(r, json_object_get(node, "dimension_separator"), '.');
+  array->separator_untold = json_object_get(node, "dimension_separator") == NULL;
   bool reversed = order != NULL && strcmp(order, "F") == 0;
   for (int n = 0; n < array->rank; n++) array->codecs.order[n] = reversed ? array->rank - 1 - n : n;
   return status == HL_OK ? hl_zarr_fill_value(r, json_object_get(node, "fill_value")) : status;

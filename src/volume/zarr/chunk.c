@@ -1,20 +1,24 @@
-/* volume/zarr/chunk.c - from a chunk's bytes in a file to its voxels: check sums, zlib, zstd, blosc.
+/* volume/zarr/chunk.c - from a chunk's bytes in a file to its voxels: check sums, codecs, filters.
  *
  * The size of an unpacked chunk is known from the metadata: data that unpack to another size are refused.
  * Where packed data state their unpacked size, it is compared before any memory is taken. */
 #include "volume/zarr/chunk.h"
 
+#include <math.h>
 #include <string.h>
 #ifdef HL_HAS_ZSTD
 #include <zstd.h>
 #endif
 
 #include "core/memory.h"
+#include "volume/convert.h"
+#include "volume/numbers.h"
 #include "volume/unpack.h"
 
 void hl_zarr_unpacker_release(hl_zarr_unpacker *unpacker) {
   hl_release(unpacker->context, unpacker->packed);
   hl_release(unpacker->context, unpacker->voxels);
+  hl_release(unpacker->context, unpacker->filtered);
 #ifdef HL_HAS_ZSTD
   ZSTD_freeDCtx(unpacker->zstd);
 #endif
@@ -55,7 +59,7 @@ static hl_status fail_damaged(const hl_zarr_unpacker *u, const char *codec, hl_e
 }
 
 static hl_status make_room(hl_zarr_unpacker *u, hl_error *error) {
-  size_t bytes = u->array->chunk_bytes + 4;
+  size_t bytes = (u->unpacked > u->array->chunk_bytes ? u->unpacked : u->array->chunk_bytes) + 4;
   if (u->voxels == NULL) u->voxels = hl_allocate(u->context, bytes, 1);
   return u->voxels != NULL ? HL_OK : hl_fail_memory(error, bytes, "a chunk");
 }
@@ -92,6 +96,25 @@ static hl_status unpack_zstd(hl_zarr_unpacker *u, packed_bytes packed, hl_error 
 }
 #endif
 
+/* LZ4, bzip2 and xz. LZ4's block comes after the unpacked size, in four bytes. */
+static hl_status unpack_other(hl_zarr_unpacker *u, packed_bytes packed, hl_error *error) {
+  hl_zarr_compressor kind = u->array->codecs.compressor;
+  bool lz4 = kind == HL_ZARR_LZ4, sound = !lz4 || packed.length >= 4;
+  size_t head = lz4 ? 4 : 0, ratio = lz4                     ? HL_LZ4_RATIO
+                                     : kind == HL_ZARR_BZIP2 ? HL_BZIP2_RATIO
+                                                             : HL_XZ_RATIO;
+  const unsigned char *bytes = packed.bytes + head;
+  sound = sound && hl_packed_can_hold(packed.length - head, packed.unpacked, ratio);
+  hl_status status = sound ? make_room(u, error) : HL_OK;
+  if (!sound || status != HL_OK) return status != HL_OK ? status : fail_damaged(u, "lz4, bz2 or lzma", error);
+  size_t length = packed.length - head;
+  status = lz4 ? hl_unpack_lz4(u->path, bytes, length, u->voxels, packed.unpacked, &sound, error)
+           : kind == HL_ZARR_BZIP2
+               ? hl_unpack_bzip2(u->path, bytes, length, u->voxels, packed.unpacked, &sound, error)
+               : hl_unpack_xz(u->path, bytes, length, u->voxels, packed.unpacked, &sound, error);
+  return status == HL_OK && !sound ? fail_damaged(u, "lz4, bz2 or lzma", error) : status;
+}
+
 static hl_status unpack(hl_zarr_unpacker *u, packed_bytes packed, hl_error *error) {
   switch (u->array->codecs.compressor) {
     case HL_ZARR_DEFLATE: return unpack_deflate(u, packed, error);
@@ -103,8 +126,113 @@ static hl_status unpack(hl_zarr_unpacker *u, packed_bytes packed, hl_error *erro
       return hl_fail(error, HL_ERROR_UNSUPPORTED,
                      "%s: chunks packed by zstd, and this program was built without libzstd", u->path);
 #endif
+    case HL_ZARR_LZ4:
+    case HL_ZARR_BZIP2:
+    case HL_ZARR_XZ: return unpack_other(u, packed, error);
     default: return HL_OK;
   }
+}
+
+/* ---- filters ---- */
+
+static double number_of(hl_voxel_type type, const unsigned char *bytes) {
+  return hl_binary_number(bytes, type, false);
+}
+
+#define PUT(type)                          \
+  do {                                     \
+    type number = (type)value;             \
+    memcpy(bytes, &number, sizeof number); \
+  } while (0)
+
+/* Stores a number as the type's bytes, the least first; whole numbers wrap around as sums of them do. */
+static void put_number(hl_voxel_type type, double value, unsigned char *bytes) {
+  bool whole = type != HL_VOXEL_F32 && type != HL_VOXEL_F64;
+  if (whole && !(fabs(value) < 0x1p62)) value = 0;
+  if (whole) value = floor(value + 0.5);
+  switch (type) {
+    case HL_VOXEL_F32: PUT(float); break;
+    case HL_VOXEL_F64: PUT(double); break;
+    default: {
+      uint64_t bits = (uint64_t)(int64_t)value;
+      for (size_t n = 0; n < hl_voxel_type_bytes(type); n++) bytes[n] = (unsigned char)(bits >> 8 * n);
+    }
+  }
+}
+
+/* The whole number of the type's bytes, its sign extended. */
+static int64_t whole_of(hl_voxel_type type, const unsigned char *bytes) {
+  uint64_t bits = 0;
+  size_t count = hl_voxel_type_bytes(type);
+  for (size_t n = count; n > 0; n--) bits = bits << 8 | bytes[n - 1];
+  bool is_signed = type == HL_VOXEL_I8 || type == HL_VOXEL_I16 || type == HL_VOXEL_I32;
+  if (is_signed && bits >> (8 * count - 1) != 0) bits |= ~(uint64_t)0 << 8 * count;
+  return (int64_t)bits;
+}
+
+/* Sums of differences: whole numbers exactly, modulo the type's range. */
+static void undo_delta(const hl_zarr_filter *filter, const unsigned char *from, size_t count,
+                       unsigned char *to) {
+  size_t step = hl_voxel_type_bytes(filter->from), wide = hl_voxel_type_bytes(filter->to);
+  bool real = filter->to == HL_VOXEL_F32 || filter->to == HL_VOXEL_F64;
+  uint64_t sum = 0;
+  double real_sum = 0;
+  for (size_t n = 0; n < count; n++, to += wide) {
+    if (real) {
+      real_sum += number_of(filter->from, from + n * step);
+      put_number(filter->to, real_sum, to);
+      continue;
+    }
+    sum += (uint64_t)whole_of(filter->from, from + n * step);
+    for (size_t b = 0; b < wide; b++) to[b] = (unsigned char)(sum >> 8 * b);
+  }
+}
+
+static void undo(const hl_zarr_filter *filter, const unsigned char *from, size_t bytes, size_t count,
+                 unsigned char *to) {
+  size_t step = hl_voxel_type_bytes(filter->from), wide = hl_voxel_type_bytes(filter->to);
+  if (filter->kind == HL_ZARR_SHUFFLE) {
+    size_t elements = bytes / filter->element, whole = elements * filter->element;
+    for (size_t n = 0; n < elements; n++)
+      for (size_t b = 0; b < filter->element; b++) to[n * filter->element + b] = from[b * elements + n];
+    memcpy(to + whole, from + whole, bytes - whole);
+  } else if (filter->kind == HL_ZARR_DELTA) {
+    undo_delta(filter, from, count, to);
+  } else {
+    for (size_t n = 0; n < count; n++)
+      put_number(filter->to, number_of(filter->from, from + n * step) / filter->scale + filter->offset,
+                 to + n * wide);
+  }
+}
+
+/* The bytes of a chunk before its filters are undone. */
+static size_t filtered_bytes(const hl_zarr_array *array) {
+  size_t bytes = array->chunk_bytes, count = bytes / hl_voxel_type_bytes(array->type);
+  for (int n = 0; n < array->codecs.filter_count; n++)
+    if (array->codecs.filters[n].kind != HL_ZARR_SHUFFLE)
+      bytes = count * hl_voxel_type_bytes(array->codecs.filters[n].from);
+  return bytes;
+}
+
+/* Undoes the filters, the last first. *voxels: replaced by the unpacker's own memory. */
+static hl_status undo_filters(hl_zarr_unpacker *u, const unsigned char **voxels, hl_error *error) {
+  const hl_zarr_array *array = u->array;
+  const hl_zarr_codecs *codecs = &array->codecs;
+  size_t count = array->chunk_bytes / hl_voxel_type_bytes(array->type), bytes = filtered_bytes(array);
+  size_t room = 8 * count + 64;
+  if (codecs->filter_count == 0) return HL_OK;
+  if (u->filtered == NULL) u->filtered = hl_allocate(u->context, 2 * room, 1);
+  if (u->filtered == NULL) return hl_fail_memory(error, 2 * room, "a chunk");
+  const unsigned char *from = *voxels;
+  for (int n = codecs->filter_count - 1; n >= 0; n--) {
+    unsigned char *to = u->filtered + (size_t)(n % 2) * room;
+    const hl_zarr_filter *filter = &codecs->filters[n];
+    undo(filter, from, bytes, count, to);
+    if (filter->kind != HL_ZARR_SHUFFLE) bytes = count * hl_voxel_type_bytes(filter->to);
+    from = to;
+  }
+  *voxels = from;
+  return HL_OK;
 }
 
 /* ---- the whole ---- */
@@ -130,7 +258,8 @@ hl_status hl_zarr_chunk_read(hl_zarr_unpacker *u, hl_source *source, uint64_t of
   enum { SLACK = 1 << 20 }; /* packing makes no data larger than by this */
   const hl_zarr_codecs *codecs = &u->array->codecs;
   bool is_raw = codecs->compressor == HL_ZARR_RAW;
-  packed_bytes packed = {.unpacked = u->array->chunk_bytes + 4 * (size_t)codecs->inner_checks};
+  packed_bytes packed = {.unpacked = filtered_bytes(u->array) + 4 * (size_t)codecs->inner_checks};
+  u->unpacked = packed.unpacked;
   if (is_raw ? length != packed.unpacked : length > 2 * (uint64_t)packed.unpacked + SLACK)
     return hl_fail(error, HL_ERROR_INPUT, "%s: a chunk of %llu bytes, its voxels have %zu: it is damaged",
                    hl_source_path(source), (unsigned long long)length, packed.unpacked);
@@ -146,6 +275,7 @@ hl_status hl_zarr_chunk_read(hl_zarr_unpacker *u, hl_source *source, uint64_t of
   }
   if (sound && status == HL_OK && codecs->inner_checks > 0)
     sound = hl_zarr_check_sum(*voxels, packed.unpacked);
+  if (sound && status == HL_OK) status = undo_filters(u, voxels, error);
   return sound ? status
                : hl_fail(error, HL_ERROR_INPUT, "%s: a chunk's check sum is wrong: it is damaged",
                          hl_source_path(source));

@@ -12,8 +12,10 @@ typedef struct hl_zarr_unpacker {
   const hl_zarr_array *array;
   unsigned char *packed; /* owned; [capacity] */
   size_t capacity;
-  unsigned char *voxels; /* owned; [array->chunk_bytes], followed by a check sum */
-  void *zstd;            /* owned; zstd's own memory */
+  size_t unpacked;         /* bytes that a chunk unpacks to */
+  unsigned char *filtered; /* owned; two chunks whose filters are undone; null: none was */
+  unsigned char *voxels;   /* owned; [array->chunk_bytes], followed by a check sum */
+  void *zstd;              /* owned; zstd's own memory */
 } hl_zarr_unpacker;
 
 void hl_zarr_unpacker_release(hl_zarr_unpacker *unpacker);

@@ -107,10 +107,10 @@ static bool place_part(const reading *r, uint64_t number, part *p) {
   return true;
 }
 
-static void name_file(const hl_zarr_array *array, const part *p, char key[KEY_BYTES]) {
+static void name_file(const hl_zarr_array *array, const part *p, char separator, char key[KEY_BYTES]) {
   int used = snprintf(key, KEY_BYTES, "%s%s", array->folder, array->has_prefix ? "c" : "");
   for (int axis = 0; axis < array->rank; axis++) {
-    if (axis > 0 || array->has_prefix) key[used++] = array->separator;
+    if (axis > 0 || array->has_prefix) key[used++] = separator;
     used += snprintf(key + used, KEY_BYTES - (size_t)used, "%llu", (unsigned long long)p->file[axis]);
   }
 }
@@ -191,11 +191,15 @@ static hl_status read_index(const reading *r, worker *w, hl_error *error) {
 /* Opens the file of a part, unless it is open already. */
 static hl_status open_file(const reading *r, worker *w, const part *p, hl_error *error) {
   char key[KEY_BYTES];
-  name_file(r->array, p, key);
+  name_file(r->array, p, r->array->separator, key);
   if (strcmp(key, w->key) == 0) return HL_OK;
   hl_source_close(w->source);
   strcpy(w->key, key);
   hl_status status = hl_bundle_find(r->bundle, key, true, &w->source, error);
+  if (status == HL_OK && w->source == NULL && r->array->separator_untold && r->array->rank > 1) {
+    name_file(r->array, p, '/', key);
+    status = hl_bundle_find(r->bundle, key, true, &w->source, error);
+  }
   if (status == HL_OK && w->source != NULL && r->array->is_sharded) status = read_index(r, w, error);
   if (status != HL_OK) w->key[0] = 0;
   return status;
@@ -274,7 +278,7 @@ static hl_status read_parts(reading *r, hl_pool *pool, hl_error *error) {
   if (r->workers == NULL) return hl_fail_memory(error, threads * sizeof *r->workers, "threads");
   for (size_t n = 0; n < threads; n++) {
     worker *w = &r->workers[n];
-    w->unpacker = (hl_zarr_unpacker){context, r->bundle->path, r->array, NULL, 0, NULL, NULL};
+    w->unpacker = (hl_zarr_unpacker){.context = context, .path = r->bundle->path, .array = r->array};
     if (hl_destination_is_apart(r->to) && (w->row = hl_allocate(context, row_bytes, 1)) == NULL)
       status = hl_fail_memory(error, row_bytes, r->bundle->path);
   }
