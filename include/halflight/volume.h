@@ -232,6 +232,21 @@ HL_API size_t hl_volume_series_count(const hl_volume *volume);
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_series(const hl_volume *volume, size_t index,
                                                      hl_volume_series *series);
 
+/* A segment of a label map, as its file names it. */
+typedef struct hl_volume_segment {
+  size_t struct_size; /* set by the caller */
+  const char *name;   /* "" where the file has none; the volume's */
+  double value;       /* of its voxels */
+  int layer;          /* the component whose voxels have it, from 0 */
+  int has_color;
+  double srgb[3]; /* 0 to 1; 0 without a colour */
+} hl_volume_segment;
+
+/* The number of segments that the volume's file names; 0: it names none. */
+HL_API size_t hl_volume_segment_count(const hl_volume *volume);
+HL_API HL_WARN_UNUSED hl_status hl_volume_get_segment(const hl_volume *volume, size_t index,
+                                                      hl_volume_segment *segment);
+
 /* The data value of one voxel, NaN where it is not finite or outside the grid. */
 HL_API double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k);
 

@@ -14,7 +14,7 @@ from ._words import check_keywords
 from .keywords import MaterialSettings, VolumeSettings
 from .transfer import TransferFunction, function_from
 
-__all__ = ["FileArray", "FileSeries", "Info", "Look", "Volume", "info"]
+__all__ = ["FileArray", "FileSegment", "FileSeries", "Info", "Look", "Volume", "info"]
 
 Source = Any  # a path, an array, or an object of one of the packages that halflight.neighbours knows
 
@@ -87,6 +87,16 @@ class FileSeries:
 
 
 @dataclass(frozen=True)
+class FileSegment:
+    """A segment that a label map's file names: `layer` is the component whose voxels have the `value`."""
+
+    value: float
+    name: str
+    layer: int
+    color: tuple[float, float, float] | None
+
+
+@dataclass(frozen=True)
 class Info:
     """What a volume holds, as ``halflight info --json`` says it. Values are data values.
 
@@ -120,6 +130,8 @@ class Info:
         Which of them was read.
     series : tuple of FileSeries
         Of DICOM files: what the folder or archive holds.
+    segments : tuple of FileSegment
+        Of label maps whose file names its labels.
     """
 
     dimensions: tuple[int, int, int]
@@ -141,6 +153,7 @@ class Info:
     levels: int = 1
     level: int = 0
     series: tuple[FileSeries, ...] = ()
+    segments: tuple[FileSegment, ...] = ()
 
 
 class Volume:
@@ -324,8 +337,15 @@ class Volume:
                                        text_of(series.description), (columns, rows, slices), bool(series.chosen)))
         if lib.hl_volume_get_selection(self._handle, selection) != lib.HL_OK:
             raise RuntimeError("the volume is not known")
+        segment, segments = _sized("segment"), list[FileSegment]()
+        for n in range(lib.hl_volume_segment_count(self._handle)):
+            if lib.hl_volume_get_segment(self._handle, n, segment) == lib.HL_OK:
+                red, green, blue = segment.srgb
+                color = (red, green, blue) if segment.has_color else None
+                segments.append(FileSegment(segment.value, text_of(segment.name), segment.layer, color))
         words = ("times", "time", "channels", "channel", "levels", "level")
-        return {word: getattr(selection, word) for word in words} | {"arrays": tuple(arrays), "series": tuple(many)}
+        return {word: getattr(selection, word) for word in words} | {
+            "arrays": tuple(arrays), "series": tuple(many), "segments": tuple(segments)}
 
     def __repr__(self) -> str:
         size = "x".join(map(str, self.dimensions))

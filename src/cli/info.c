@@ -100,6 +100,45 @@ static void print_series(const hl_volume *volume) {
   }
 }
 
+/* A colour as "#rrggbb". */
+static const char *color_text(const double srgb[3], char text[8]) {
+  int c[3];
+  for (int n = 0; n < 3; n++) c[n] = (int)lround(255 * fmin(fmax(srgb[n], 0), 1));
+  snprintf(text, 8, "#%02x%02x%02x", c[0] & 255, c[1] & 255, c[2] & 255);
+  return text;
+}
+
+static void print_json_segments(json_writer *json, const hl_volume *volume) {
+  hl_volume_segment segment = {.struct_size = sizeof segment};
+  char color[8];
+  if (hl_volume_segment_count(volume) == 0) return;
+  json_open_array(json, "segments");
+  for (size_t n = 0; hl_volume_get_segment(volume, n, &segment) == HL_OK; n++) {
+    json_open_object(json, NULL);
+    json_number(json, "value", segment.value);
+    json_text(json, "name", segment.name);
+    json_whole_number(json, "layer", (uint64_t)segment.layer);
+    if (segment.has_color) json_text(json, "color", color_text(segment.srgb, color));
+    json_close(json);
+  }
+  json_close(json);
+}
+
+static void print_segments(const hl_volume *volume) {
+  hl_volume_segment segment = {.struct_size = sizeof segment};
+  char color[8];
+  int layers = 0;
+  for (size_t n = 0; hl_volume_get_segment(volume, n, &segment) == HL_OK; n++)
+    layers = segment.layer > layers ? segment.layer : layers;
+  for (size_t n = 0; hl_volume_get_segment(volume, n, &segment) == HL_OK; n++) {
+    printf("  %s  %.20g: %s%s%s", n == 0 ? "segments  " : "          ", segment.value, segment.name,
+           segment.name[0] != '\0' && segment.has_color ? ", " : "",
+           segment.has_color ? color_text(segment.srgb, color) : "");
+    if (layers > 0) printf(", layer %d", segment.layer);
+    printf("\n");
+  }
+}
+
 /* Whether a file's only array says no more than its type and its time steps, which have lines of their own.
  */
 static bool is_plain(const hl_volume *volume, const hl_volume_array *array) {
@@ -154,6 +193,7 @@ static int print_json(const char *path, const hl_volume *volume, const hl_volume
   print_json_arrays(&json, volume);
   print_json_selection(&json, volume);
   print_json_series(&json, volume);
+  print_json_segments(&json, volume);
   json_text(&json, "taken_for", kind);
   json_whole_numbers(&json, "histogram", info->histogram, HL_HISTOGRAM_BINS);
   json_close(&json);
@@ -202,6 +242,7 @@ static int print_text(const char *path, const hl_volume *volume, const hl_volume
   print_arrays(volume);
   print_selection(volume);
   print_series(volume);
+  print_segments(volume);
   printf("  spacing     %.9g, %.9g, %.9g\n", info->spacing[0], info->spacing[1], info->spacing[2]);
   const char *unit = hl_volume_unit(volume);
   if (unit != NULL) printf("  unit        %s\n", unit);

@@ -11,7 +11,8 @@
 
 /* One of the labels that --show names: NAME|NUMBER|all|rest[=COLOR][:OPACITY]. */
 typedef struct shown_label {
-  char name[128];
+  char name[128], whole[128]; /* whole: all of the text, which may be a name with ":" or "=" in it */
+  const char *wrong;          /* what to do about it unless it is a name; null: nothing */
   bool all, colored, found;
   double color[3], opacity;
 } shown_label;
@@ -34,19 +35,19 @@ static int read_item(const char *item, size_t length, shown_label *made) {
     return fail_show(item, "give labels by name or number, with commas between them: liver,tumour=red:0.5");
   memcpy(made->name, item, length);
   made->name[length] = 0;
+  memcpy(made->whole, made->name, length + 1);
   char *colon = strrchr(made->name, ':'), *rest;
   if (colon != NULL) {
     made->opacity = hl_plain_number(colon + 1, &rest);
     if (colon[1] == 0 || *rest != 0 || !(made->opacity >= 0 && made->opacity <= 1))
-      return fail_show(made->name, "give an opacity from 0 to 1 after the colon");
+      made->wrong = "give an opacity from 0 to 1 after the colon";
     *colon = 0;
   }
   char *equals = strrchr(made->name, '=');
   if (equals != NULL) {
     *equals = 0;
     made->colored = true;
-    if (!parse_color(equals + 1, 0, 1, made->color))
-      return fail_show(equals + 1, "is no colour: give #rrggbb or a CSS name");
+    if (!parse_color(equals + 1, 0, 1, made->color)) made->wrong = "give #rrggbb or a CSS name after \"=\"";
   }
   made->all = strcmp(made->name, "all") == 0;
   return EXIT_CODE_OK;
@@ -66,24 +67,32 @@ static int read_show(const cli_value *value, show_list *list) {
   return EXIT_CODE_OK;
 }
 
+static bool is_whole(const hl_label *label, const shown_label *shown) {
+  return label->name != NULL && strcmp(label->name, shown->whole) == 0;
+}
+
 static bool is_named(const hl_label *label, const shown_label *shown) {
   char *rest;
+  if (is_whole(label, shown)) return true;
+  if (shown->wrong != NULL) return false;
   double number = hl_plain_number(shown->name, &rest);
   return shown->all || (label->name != NULL && strcmp(label->name, shown->name) == 0) ||
          (*rest == 0 && rest != shown->name && number == label->value);
 }
 
-/* Shows those labels that the list names, if it names any. */
+/* Shows those labels that the list names, if it names any. "all" leaves those hidden that a table hides. */
 static void apply_show(show_list *list, hl_label *labels, size_t count) {
   for (size_t n = 0; n < count && list->count > 0; n++) {
+    const bool hidden = !labels[n].visible;
     labels[n].visible = 0;
     for (size_t s = 0; s < list->count; s++) {
       shown_label *shown = &list->labels[s];
-      if (!is_named(&labels[n], shown)) continue;
+      if (!is_named(&labels[n], shown) || (shown->all && hidden)) continue;
+      const bool whole = is_whole(&labels[n], shown);
       shown->found = true;
       labels[n].visible = 1;
-      labels[n].opacity = shown->opacity;
-      if (!shown->colored) continue;
+      labels[n].opacity = whole ? 1 : shown->opacity;
+      if (!shown->colored || whole) continue;
       memcpy(labels[n].color, shown->color, sizeof labels[n].color);
       labels[n].tint = 1; /* in a mask */
     }
@@ -103,7 +112,9 @@ static const char *name_of_label(const void *data, size_t index) {
 
 static int check_found(const show_list *list, const render_label_layers *layers) {
   for (size_t s = 0; s < list->count; s++) {
-    if (list->labels[s].found || list->labels[s].all) continue;
+    if (list->labels[s].found) continue;
+    if (list->labels[s].wrong != NULL) return fail_show(list->labels[s].whole, list->labels[s].wrong);
+    if (list->labels[s].all) continue;
     const char *near = nearest_name(list->labels[s].name, name_of_label, layers);
     return fail(EXIT_CODE_USAGE, "--show: there is no label \"%.100s\"%s%.100s%s", list->labels[s].name,
                 near != NULL ? ": did you mean \"" : "", near != NULL ? near : "", near != NULL ? "\"?" : "");
@@ -335,10 +346,30 @@ int render_load_label_map(cli_host *host, const cli_value *values, const char *p
   return exit_code;
 }
 
+/* Whether the scene's only volume comes from a file that names its segments, and no option asks for another
+ * look: it is then shown as they are. */
+static bool is_segmented(cli_host *host, const cli_value *values, const hl_scene *scene) {
+  const hl_scene_description *description = scene != NULL ? hl_scene_describe(scene) : NULL;
+  if (description == NULL || description->volume_count != 1 || description->volumes[0].file == NULL ||
+      strcmp(description->volumes[0].file, "-") == 0)
+    return false;
+  for (int option = RENDER_ARRAY; option <= RENDER_ISO; option++)
+    if (values[option].given) return false;
+  const hl_volume *volume = description->volumes[0].volume;
+  if (hl_volume_segment_count(volume) == 0 || layers_of(volume) > MOST_LAYERS) return false;
+  hl_label *labels = NULL;
+  size_t count = 0;
+  if (hl_labels_of_volume(host->context, volume, NULL, &labels, &count, NULL) != HL_OK) return false;
+  hl_labels_release(host->context, labels);
+  return true;
+}
+
 int render_add_labels(cli_host *host, const cli_value *values, bool bare, hl_scene **scene) {
   const cli_value *table = &values[RENDER_LABEL_TABLE], *mask = &values[RENDER_MASK];
   bool labels = values[RENDER_LABELS].given;
-  if (!labels && !mask->given && !table->given && !values[RENDER_SHOW].given) return EXIT_CODE_OK;
+  if (!labels && !mask->given && !table->given && !values[RENDER_SHOW].given &&
+      !(bare && is_segmented(host, values, *scene)))
+    return EXIT_CODE_OK;
   if (labels && mask->given)
     return fail(EXIT_CODE_USAGE, "--mask and --labels exclude each other: --show belongs to one of them");
   show_list *show = calloc(1, sizeof *show);

@@ -80,6 +80,8 @@ typedef struct ply_reader {
   ply_element element[MOST_ELEMENTS];
   int element_count;
   size_t face_color_room; /* triangles that parts->face_colors has memory for */
+  size_t colored;         /* triangles that have theirs */
+  bool has_vertices;      /* an element of vertices was read */
   hl_error *error;
 } ply_reader;
 
@@ -226,7 +228,8 @@ static void set_vertex(mesh_parts *parts, int role, ply_type type, double value)
   else set_color(parts->colors[v], role, type, value);
 }
 
-/* Gives the triangles from the first one on, which are those of one face, its colour. */
+/* Gives the triangles from the first one on, which are those of one face, its colour, and white to earlier
+ * ones without. */
 static hl_status color_faces(ply_reader *reader, size_t first, const float color[4]) {
   mesh_parts *parts = reader->parts;
   if (parts->triangle_count > reader->face_color_room || parts->face_colors == NULL) {
@@ -236,8 +239,10 @@ static hl_status color_faces(ply_reader *reader, size_t first, const float color
     parts->face_colors = grown;
     reader->face_color_room = room;
   }
-  for (size_t t = first; t < parts->triangle_count; t++)
-    memcpy(parts->face_colors[t], color, sizeof *parts->face_colors);
+  static const float white[4] = {1, 1, 1, 1}; /* faces of an element without colours */
+  for (size_t t = reader->colored; t < parts->triangle_count; t++)
+    memcpy(parts->face_colors[t], t < first ? white : color, sizeof *parts->face_colors);
+  reader->colored = parts->triangle_count;
   return HL_OK;
 }
 
@@ -362,7 +367,8 @@ static hl_status read_element(ply_reader *reader, ply_element *element) {
     return hl_fail(reader->error, HL_ERROR_INPUT,
                    "%s: claims an element of %zu items, but has only %zu bytes left", reader->parts->path,
                    element->count, left - 1);
-  if (element->vertices && reader->parts->vertex_count > 0) return fail(reader, "vertices twice");
+  if (element->vertices && reader->has_vertices) return fail(reader, "vertices twice");
+  reader->has_vertices |= element->vertices;
   hl_status status = element->vertices ? begin_vertices(reader, element) : HL_OK;
   element->face_colors = element->faces && has_role(element, ROLE_COLOR, ROLE_COLOR + 2);
   for (size_t n = 0; status == HL_OK && n < element->count; n++) status = read_item(reader, element);
@@ -379,5 +385,8 @@ hl_status hl_mesh_read_ply(mesh_text text, mesh_parts *parts, hl_error *error) {
   hl_status status = read_header(&reader);
   for (int e = 0; status == HL_OK && e < reader.element_count; e++)
     status = read_element(&reader, &reader.element[e]);
+  static const float none[4] = {1, 1, 1, 1};
+  if (status == HL_OK && parts->face_colors != NULL && reader.colored < parts->triangle_count)
+    status = color_faces(&reader, parts->triangle_count, none);
   return status;
 }

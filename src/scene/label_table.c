@@ -11,6 +11,7 @@
 #include "volume/text.h"
 
 enum { MOST_BYTES = 4 << 20, MOST_WORDS = 12 };
+#define GREATEST_LABEL 0x1p53 /* up to which doubles tell all whole numbers apart */
 
 /* A word of a line: a number or a text. */
 typedef struct word {
@@ -19,7 +20,18 @@ typedef struct word {
   bool is_number, has_point;
 } word;
 
-static bool is_separator(char c) { return c == ' ' || c == '\t' || c == '\r' || c == ',' || c == ';'; }
+/* The columns of a table with a header that are of use, as BIDS' dseg.tsv has them; -1: none. */
+typedef struct columns {
+  int value, name, color;
+} columns;
+
+static bool is_separator(char c) { return c == ' ' || c == '\t' || c == ',' || c == ';'; }
+
+static word make_word(char *text, bool quoted) {
+  word made = {.text = text, .has_point = strchr(text, '.') != NULL};
+  made.is_number = !quoted && hl_text_numbers(text, &made.number, 1) == 1 && isfinite(made.number);
+  return made;
+}
 
 /* Parts a line into words, in place; quotes hold separators together. */
 static int part_line(char *line, word words[MOST_WORDS]) {
@@ -33,11 +45,41 @@ static int part_line(char *line, word words[MOST_WORDS]) {
     end = at;
     if (*at != 0) at++;
     *end = 0;
-    word *made = &words[count++];
-    *made = (word){.text = begin, .has_point = strchr(begin, '.') != NULL};
-    made->is_number = !quoted && hl_text_numbers(begin, &made->number, 1) == 1 && isfinite(made->number);
+    words[count++] = make_word(begin, quoted);
   }
   return count;
+}
+
+/* Parts a line at its tabs alone, in place: names have blanks, and fields may be empty. */
+static int part_at_tabs(char *line, word words[MOST_WORDS]) {
+  int count = 0;
+  for (char *at = line; at != NULL && count < MOST_WORDS;) {
+    char *end = strchr(at, '\t');
+    if (end != NULL) *end = 0;
+    words[count++] = make_word(at, false);
+    at = end != NULL ? end + 1 : NULL;
+  }
+  return count;
+}
+
+static bool is_word(const char *text, size_t length, const char *word) {
+  return strlen(word) == length && memcmp(text, word, length) == 0;
+}
+
+/* Whether a line is the header of a table with tabs, whose columns may be in any order. */
+static bool read_header(const char *line, columns *found) {
+  *found = (columns){-1, -1, -1};
+  if (strchr(line, '\t') == NULL) return false;
+  int column = 0;
+  for (const char *at = line; column < MOST_WORDS; column++) {
+    const size_t length = strcspn(at, "\t");
+    if (is_word(at, length, "index")) found->value = column;
+    else if (is_word(at, length, "name")) found->name = column;
+    else if (is_word(at, length, "color")) found->color = column;
+    if (at[length] == 0) break;
+    at += length + 1;
+  }
+  return found->value >= 0 && found->name >= 0;
 }
 
 /* The colour that begins at a word: three numbers. */
@@ -72,6 +114,25 @@ static bool read_label(const word *words, int count, hl_label *label) {
   return false;
 }
 
+/* "#rrggbb". */
+static bool read_web_color(const char *text, double color[3]) {
+  char *end;
+  if (text[0] != '#' || strspn(text + 1, "0123456789abcdefABCDEF") != 6 || text[7] != 0) return false;
+  const unsigned long rgb = strtoul(text + 1, &end, 16);
+  for (int c = 0; c < 3; c++) color[c] = hl_srgb_decode((double)(rgb >> (16 - 8 * c) & 255) / 255);
+  return true;
+}
+
+/* Reads one line's label by the columns of a table; one without a colour ("n/a") gets one of its own. */
+static bool read_row(const word *words, int count, const columns *at, hl_label *label) {
+  if (at->name >= count) return false;
+  *label = (hl_label){
+      .value = words[at->value].number, .name = words[at->name].text, .opacity = 1, .visible = 1};
+  if (at->color < 0 || at->color >= count || !read_web_color(words[at->color].text, label->color))
+    hl_label_distinct_color(label->value, label->color);
+  return true;
+}
+
 static int by_value(const void *a, const void *b) {
   const hl_label *x = a, *y = b;
   if (x->value != y->value) return x->value < y->value ? -1 : 1;
@@ -87,16 +148,21 @@ static hl_status fail_line(const char *name, size_t line, const char *what, hl_e
 }
 
 /* Adds a line's label; lines without one are passed over. */
-static hl_status add_line(const char *name, size_t number, char *line, hl_label_list *list, hl_error *error) {
+static hl_status add_line(const char *name, size_t number, char *line, columns *table, hl_label_list *list,
+                          hl_error *error) {
   word words[MOST_WORDS];
-  int count = part_line(line, words);
-  if (count == 0 || words[0].text[0] == '#') return HL_OK;
-  if (!words[0].is_number)
-    return list->count == 0 ? HL_OK : fail_line(name, number, "begins with no number", error);
-  if (words[0].number != floor(words[0].number) || fabs(words[0].number) > 1e9)
+  if (table->value < 0 && list->count == 0 && read_header(line, table)) return HL_OK;
+  const bool has_columns = table->value >= 0;
+  const int count = has_columns ? part_at_tabs(line, words) : part_line(line, words);
+  if (count == 0 || words[0].text[0] == '#' || (count == 1 && words[0].text[0] == 0)) return HL_OK;
+  const int value = has_columns ? table->value : 0;
+  if (value >= count || !words[value].is_number)
+    return list->count == 0 && !has_columns ? HL_OK : fail_line(name, number, "begins with no number", error);
+  if (words[value].number != floor(words[value].number) || fabs(words[value].number) > GREATEST_LABEL)
     return fail_line(name, number, "its number is no label's", error);
   if (list->count == HL_MOST_LABELS) return fail_line(name, number, "too many labels", error);
-  if (!read_label(words, count, &list->labels[list->count]))
+  hl_label *label = &list->labels[list->count];
+  if (!(has_columns ? read_row(words, count, table, label) : read_label(words, count, label)))
     return fail_line(name, number, "is no label", error);
   list->count++;
   return HL_OK;
@@ -113,6 +179,18 @@ static void sort(hl_label_list *list) {
   list->count = kept;
 }
 
+/* Behind the mark of UTF-8 text, if there is one. */
+static char *skip_mark(char *text) { return strncmp(text, "\xef\xbb\xbf", 3) == 0 ? text + 3 : text; }
+
+/* Ends a line at its line feed, its carriage return or both. Returns the next line; null: there is none. */
+static char *end_line(char *line) {
+  char *end = line + strcspn(line, "\r\n");
+  if (*end == 0) return NULL;
+  char *next = end + (end[0] == '\r' && end[1] == '\n' ? 2 : 1);
+  *end = 0;
+  return next;
+}
+
 hl_status hl_label_table_parse(hl_context *context, const char *text, size_t length, const char *name,
                                hl_label_list *list, hl_error *error) {
   *list = (hl_label_list){.labels = hl_allocate(context, HL_MOST_LABELS, sizeof *list->labels),
@@ -125,10 +203,10 @@ hl_status hl_label_table_parse(hl_context *context, const char *text, size_t len
   list->names[length] = 0;
   hl_status status = HL_OK;
   size_t number = 1;
-  for (char *line = list->names; line != NULL && status == HL_OK; number++) {
-    char *end = strchr(line, '\n'), *next = end != NULL ? end + 1 : NULL;
-    if (end != NULL) *end = 0;
-    status = add_line(name, number, line, list, error);
+  columns table = {-1, -1, -1};
+  for (char *line = skip_mark(list->names); line != NULL && status == HL_OK; number++) {
+    char *next = end_line(line);
+    status = add_line(name, number, line, &table, list, error);
     line = next;
   }
   if (status == HL_OK && list->count == 0)

@@ -405,6 +405,22 @@ hl_status hl_volume_get_series(const hl_volume *volume, size_t index, hl_volume_
   return HL_OK;
 }
 
+size_t hl_volume_segment_count(const hl_volume *volume) { return volume != NULL ? volume->segment_count : 0; }
+
+hl_status hl_volume_get_segment(const hl_volume *volume, size_t index, hl_volume_segment *segment) {
+  if (volume == NULL || segment == NULL || segment->struct_size != sizeof *segment ||
+      index >= volume->segment_count)
+    return HL_ERROR_ARGUMENT;
+  const hl_segment *known = &volume->segments[index];
+  *segment = (hl_volume_segment){.struct_size = sizeof *segment,
+                                 .name = known->name,
+                                 .value = known->value,
+                                 .layer = known->layer,
+                                 .has_color = known->has_color};
+  for (int c = 0; c < 3 && known->has_color; c++) segment->srgb[c] = known->srgb[c];
+  return HL_OK;
+}
+
 const char *hl_volume_unit(const hl_volume *volume) { return volume != NULL ? volume->unit : NULL; }
 
 hl_status hl_volume_get_selection(const hl_volume *volume, hl_volume_selection *selection) {

@@ -632,6 +632,10 @@ static hl_status load_with(nrrd_header *read, hl_stream **stream, hl_load_reques
   const nrrd_header header = *read;
   bool is_series = false;
   status = place_grid(&header, &payload, &is_series, error);
+  if (is_series && header.segment_count > 0) { /* layers of segments, of which the volume is one */
+    is_series = false;
+    if (request->component == HL_COMPONENT_DEFAULT) request->component = 0;
+  }
   if (status == HL_OK) status = hl_component_only(request, (*stream)->path, is_series, &payload, error);
   if (status != HL_OK) return status;
   request->unit = header.unit;

@@ -275,8 +275,9 @@ static hl_status describe(const vti_header *header, const vti_piece *piece, cons
 }
 
 /* Goes to the chosen array of a piece and reads it as a volume. */
-static hl_status read_piece(hl_stream **stream, const vti_header *header, size_t index, hl_volume **volume,
+static hl_status read_piece(hl_stream **stream, vti_header *header, size_t index, hl_volume **volume,
                             hl_error *error) {
+  header->xml.stream = *stream; /* the array before may have opened it anew */
   const vti_entry *entry = entry_of(header, index);
   hl_payload payload;
   if (entry == NULL)
@@ -298,8 +299,7 @@ static void place_of(const vti_header *header, const vti_piece *piece, size_t fi
 }
 
 /* Reads all pieces of the file, each to its place. */
-static hl_status read_pieces(hl_stream **stream, const vti_header *header, hl_volume **volume,
-                             hl_error *error) {
+static hl_status read_pieces(hl_stream **stream, vti_header *header, hl_volume **volume, hl_error *error) {
   const vti_piece whole = {.extent = {header->extent[0], header->extent[1], header->extent[2],
                                       header->extent[3], header->extent[4], header->extent[5]}};
   const vti_entry *first_entry = entry_of(header, 0);
@@ -329,7 +329,7 @@ static hl_status read_pieces(hl_stream **stream, const vti_header *header, hl_vo
 }
 
 /* Reads the coordinates of a rectilinear grid, and places the volume by them. */
-static hl_status place_rectilinear(hl_stream **stream, const vti_header *header, hl_volume **volume,
+static hl_status place_rectilinear(hl_stream **stream, vti_header *header, hl_volume **volume,
                                    hl_error *error) {
   hl_context *context = header->request->context;
   double *coordinates[3] = {NULL, NULL, NULL};
@@ -338,6 +338,7 @@ static hl_status place_rectilinear(hl_stream **stream, const vti_header *header,
   for (int axis = 0; axis < 3 && status == HL_OK; axis++) {
     const hl_vtk_array *array = &header->coordinates[axis];
     hl_number_code code = {.text = array->encoding == HL_VTK_ASCII, .big_endian = header->xml.big_endian};
+    header->xml.stream = *stream;
     counts[axis] = (size_t)(header->extent[2 * axis + 1] - header->extent[2 * axis]) + 1;
     status = header->coordinate_count == 3 ? hl_vtk_xml_type(&header->xml, array->type, &code.type, error)
                                            : hl_fail(error, HL_ERROR_INPUT,

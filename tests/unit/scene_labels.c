@@ -71,9 +71,16 @@ static void tables_of_other_programs(void **state) {
   static const char snap[] =
       "################\n# ITK-SnAP\n    4  255    0  128   1  1  1    \"Heart\"\n"
       "    1    0  255  0  1  1 1 \"Left-Lung\"\n";
-  const char *texts[] = {"# FreeSurfer\n4   Heart  255 0 128  0\n1 Left-Lung 0 255 0 0\n\n", snap,
-                         "number,name,red,green,blue\n1,Left-Lung,0,255,0\r\n4,\"Heart\",1.0,0,0.50196\n",
-                         "1 Wrong 1 2 3\n4 Heart 255 0 128\n1 Left-Lung 0 255 0"};
+  const char *texts[] = {
+      "# FreeSurfer\n4   Heart  255 0 128  0\n1 Left-Lung 0 255 0 0\n\n",
+      snap,
+      "number,name,red,green,blue\n1,Left-Lung,0,255,0\r\n4,\"Heart\",1.0,0,0.50196\n",
+      "1 Wrong 1 2 3\n4 Heart 255 0 128\n1 Left-Lung 0 255 0",
+      "\xef\xbb\xbf"
+      "1,Left-Lung,0,255,0\n4,Heart,255,0,128",
+      "# CR alone\r4 Heart 255 0 128\r1 Left-Lung 0 255 0\r",
+      "index\tname\tabbreviation\tcolor\n1\tLeft-Lung\tLL\t#00ff00\n4\tHeart\tH\t#FF0080\n",
+      "\xef\xbb\xbfname\tcolor\tindex\r\nHeart\t#ff0080\t4\r\nLeft-Lung\tn/a\t1\r\n"};
   for (size_t n = 0; n < sizeof texts / sizeof *texts; n++) {
     hl_label_list list;
     assert_int_equal(hl_label_table_parse(context, texts[n], strlen(texts[n]), "t", &list, NULL), HL_OK);
@@ -84,6 +91,24 @@ static void tables_of_other_programs(void **state) {
     assert_true(fabs(list.labels[1].color[2] - hl_srgb_decode(128 / 255.0)) < 1e-4);
     hl_label_list_release(context, &list);
   }
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+static void tables_keep_great_numbers_and_blanks(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  static const char text[] =
+      "index\tname\tcolor\n614454277\tarea 1: left\t#010203\n"
+      "9007199254740991\tgreat, last\tn/a\n0\t\t#000000\n\n";
+  hl_label_list list;
+  assert_int_equal(hl_label_table_parse(context, text, strlen(text), "t", &list, NULL), HL_OK);
+  assert_int_equal(list.count, 3);
+  assert_string_equal(list.labels[1].name, "area 1: left");
+  assert_true(list.labels[1].value == 614454277 && list.labels[2].value == 9007199254740991.0);
+  assert_true(list.labels[1].color[2] == hl_srgb_decode(3 / 255.0));
+  assert_string_equal(list.labels[2].name, "great, last");
+  hl_label_list_release(context, &list);
   assert_int_equal(hl_context_memory_held(context), 0);
   hl_context_destroy(context);
 }
@@ -144,6 +169,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(segmentations_name_their_labels),
       cmocka_unit_test(tables_of_other_programs),
+      cmocka_unit_test(tables_keep_great_numbers_and_blanks),
       cmocka_unit_test(wrong_tables_are_refused),
       cmocka_unit_test(scenes_keep_their_labels),
   };

@@ -141,8 +141,7 @@ static const malformed files[] = {
      "NDims = 4\nDimSize = 3 2 2 5\nElementNumberOfChannels = 3\nElementType = MET_UCHAR\nElementDataFile = "
      "LOCAL\n",
      HL_ERROR_UNSUPPORTED, "3 channels in each of 5 volumes"},
-    {"list.mhd", META "ElementType = MET_UCHAR\nElementDataFile = LIST\na.raw\n", HL_ERROR_IO,
-     "cannot open"},
+    {"list.mhd", META "ElementType = MET_UCHAR\nElementDataFile = LIST\na.raw\n", HL_ERROR_IO, "cannot open"},
     {"tube.mha", "ObjectType = Tube\n", HL_ERROR_INPUT, "ObjectType cannot be \"Tube\""},
     {"flag.mha", META "CompressedData = Perhaps\n", HL_ERROR_INPUT, "CompressedData cannot be \"Perhaps\""},
     {"short.mha", META "ElementType = MET_SHORT\nElementDataFile = LOCAL\n" TWELVE, HL_ERROR_INPUT,
@@ -203,8 +202,8 @@ static const malformed files[] = {
      "byte_order \"Middle\""},
     {"header.vti", "<VTKFile type=\"ImageData\" header_type=\"UInt7\">", HL_ERROR_INPUT,
      "header_type \"UInt7\""},
-    {"lz4.vti", "<VTKFile type=\"ImageData\" compressor=\"vtkLZ4DataCompressor\">", HL_ERROR_UNSUPPORTED,
-     "\"vtkLZ4DataCompressor\" is not read"},
+    {"lz4.vti", "<VTKFile type=\"ImageData\" compressor=\"vtkOtherDataCompressor\">", HL_ERROR_UNSUPPORTED,
+     "\"vtkOtherDataCompressor\" is not read"},
     {"doctype.vti", "<?xml version='1.0'?><!DOCTYPE a [<!ENTITY b \"c\">]>", HL_ERROR_INPUT, "document type"},
     {"extent.vti", VTI "<ImageData WholeExtent=\"0 2 0 1 0\">", HL_ERROR_INPUT, "WholeExtent \"0 2 0 1 0\""},
     {"reverse.vti", VTI "<ImageData WholeExtent=\"0 2 5 1 0 1\">", HL_ERROR_INPUT, "WholeExtent"},
@@ -243,8 +242,8 @@ static const malformed files[] = {
      HL_ERROR_INPUT, "hold another number"},
     {"short.vti", IMAGE "<DataArray type=\"Int8\">1 2 3 4 5 6 7 8 9 10 11</DataArray>", HL_ERROR_INPUT,
      "only 11 numbers"},
-    {"pieces.vti", VTI "<ImageData WholeExtent=\"0 2 0 1 0 1\"><Piece/><Piece/>", HL_ERROR_UNSUPPORTED,
-     "several pieces"},
+    {"pieces.vti", VTI "<ImageData WholeExtent=\"0 2 0 1 0 1\"><Piece/><Piece/>", HL_ERROR_INPUT,
+     "no DataArray"},
     {"tag.vti", VTI "<ImageData WholeExtent=\"0 2 0 1 0 1\"", HL_ERROR_INPUT, "a tag does not end"},
     /* raw and what is no volume */
     {"3x2x2_uint8.raw", "1234567890123", HL_ERROR_INPUT,
@@ -261,7 +260,7 @@ static const malformed files[] = {
     {"notes.txt", "just some text", HL_ERROR_INPUT, "not a volume file that is known"},
     {"picture.png", "\x89PNG\r\n\x1a\n and so on", HL_ERROR_UNSUPPORTED, "a picture"},
     {"smoke.vdb", " BDV and so on", HL_ERROR_UNSUPPORTED, "OpenVDB"},
-    {"packed.nrrd.bz2", "BZh91AY", HL_ERROR_UNSUPPORTED, "bzip2"},
+    {"packed.nrrd.bz2", "BZh91AY", HL_ERROR_INPUT, "not a volume file"},
     {"no.nii", "no header here", HL_ERROR_INPUT, "begins with 348 or 540"},
 };
 
