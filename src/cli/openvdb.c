@@ -1,4 +1,5 @@
-/* cli/openvdb.c - runs Debian's nanovdb_convert in a temporary folder and gives its file as memory.
+/* cli/openvdb.c - runs a converter, our own openvdb_helper.cpp or else Debian's nanovdb_convert, in a
+ * temporary folder and gives its file as memory.
  *
  * The converter sees names of this file's choice only: the input is a link in the folder. */
 #define _GNU_SOURCE
@@ -18,12 +19,30 @@
 #include "process/process.h"
 
 typedef struct workplace {
-  char folder[PATH_MAX / 2], input[PATH_MAX], output[PATH_MAX];
+  char folder[PATH_MAX / 2], input[PATH_MAX], output[PATH_MAX], converter[PATH_MAX];
 } workplace;
 
 static hl_status fail_io(hl_error *error, const char *what) {
-  snprintf(error->message, sizeof error->message, "nanovdb_convert: %.900s", what);
+  snprintf(error->message, sizeof error->message, "the converter of OpenVDB: %.900s", what);
   return HL_ERROR_IO;
+}
+
+/* The converter: what HALFLIGHT_OPENVDB names, the program beside this one, or nanovdb_convert in the PATH.
+ */
+static void find_converter(char path[PATH_MAX]) {
+  static const char name[] = "halflight-openvdb";
+  const char *named = getenv("HALFLIGHT_OPENVDB");
+  if (named != NULL && named[0] != '\0') {
+    snprintf(path, PATH_MAX, "%s", named);
+    return;
+  }
+  ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - sizeof name);
+  while (length > 0 && path[length - 1] != '/') length--;
+  if (length > 0) {
+    memcpy(path + length, name, sizeof name);
+    if (access(path, X_OK) == 0) return;
+  }
+  snprintf(path, PATH_MAX, "nanovdb_convert");
 }
 
 static hl_status make_workplace(const char *path, workplace *w, hl_error *error) {
@@ -65,7 +84,7 @@ static hl_status await(process *p, int (*cancelled)(void *), void *user_data, hl
 
 static hl_status run(const workplace *w, uint64_t limit, int (*cancelled)(void *), void *user_data,
                      hl_error *error) {
-  const char *const words[] = {"nanovdb_convert", w->input, w->output, NULL};
+  const char *const words[] = {w->converter, w->input, w->output, NULL};
   process converter;
   int problem = process_start(&converter, words, -1);
   hl_status status = problem == 0        ? HL_OK
@@ -93,6 +112,7 @@ static hl_status map(const char *path, const void **bytes, size_t *byte_count, h
 hl_status openvdb_convert(const char *path, uint64_t limit, int (*cancelled)(void *user_data),
                           void *user_data, const void **bytes, size_t *byte_count, hl_error *error) {
   workplace w;
+  find_converter(w.converter);
   hl_status status = make_workplace(path, &w, error);
   if (status == HL_OK) status = run(&w, limit, cancelled, user_data, error);
   if (status == HL_OK) status = map(w.output, bytes, byte_count, error);

@@ -1,4 +1,4 @@
-/* cli/openvdb.h - the context's callbacks that read OpenVDB's files by way of nanovdb_convert. */
+/* cli/openvdb.h - the context's callbacks that read OpenVDB's files by way of a converter. */
 #ifndef HL_CLI_OPENVDB_H
 #define HL_CLI_OPENVDB_H
 
@@ -6,8 +6,8 @@
 
 #include <halflight/halflight.h>
 
-/* Runs nanovdb_convert, if it is installed. limit: the most bytes of memory that it may hold and that it may
- * write. cancelled: asked while it runs. *bytes: to openvdb_release(). */
+/* Runs halflight-openvdb or nanovdb_convert, if there is one. limit: the most bytes of memory that it may
+ * hold and that it may write. cancelled: asked while it runs. *bytes: to openvdb_release(). */
 hl_status openvdb_convert(const char *path, uint64_t limit, int (*cancelled)(void *user_data),
                           void *user_data, const void **bytes, size_t *byte_count, hl_error *error);
 void openvdb_release(const void *bytes, size_t byte_count);

@@ -47,5 +47,5 @@ def test_without_the_converter(file, monkeypatch, tmp_path):
 
 def test_damaged(file):
     file.write_bytes(file.read_bytes()[:5000])
-    with pytest.raises(InputError, match=r"smoke\.vdb: nanovdb_convert: "):
+    with pytest.raises(InputError, match=r"smoke\.vdb: (nanovdb_convert|halflight-openvdb): "):
         halflight.Volume(file)

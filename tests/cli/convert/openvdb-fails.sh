@@ -1,7 +1,7 @@
-# A .vdb file where nanovdb_convert is absent, fails, writes no volume, or is interrupted: one line each, and nothing is left behind.
+# A .vdb file where its converter is absent, fails, writes no volume, or is interrupted: one line each, and nothing is left behind.
 mkdir bin none
 printf ' BDV and so on' >smoke.vdb
-PATH=none "$HALFLIGHT" info smoke.vdb && exit 9
+HALFLIGHT_OPENVDB=none/nanovdb_convert "$HALFLIGHT" info smoke.vdb && exit 9
 cat >bin/nanovdb_convert <<'END'
 #!/bin/sh
 echo "cannot read $(basename "$1")" >&2
@@ -10,11 +10,11 @@ END
 chmod +x bin/nanovdb_convert
 mkdir temporary
 export TMPDIR=$PWD/temporary
-PATH=bin:$PATH "$HALFLIGHT" info smoke.vdb && exit 9
+HALFLIGHT_OPENVDB=bin/nanovdb_convert "$HALFLIGHT" info smoke.vdb && exit 9
 printf '#!/bin/sh\necho text >"$2"\n' >bin/nanovdb_convert
-PATH=bin:$PATH "$HALFLIGHT" info smoke.vdb && exit 9
+HALFLIGHT_OPENVDB=bin/nanovdb_convert "$HALFLIGHT" info smoke.vdb && exit 9
 printf '#!/bin/sh\nsleep 60\n' >bin/nanovdb_convert
-PATH=bin:$PATH "$HALFLIGHT" info smoke.vdb &
+HALFLIGHT_OPENVDB=bin/nanovdb_convert "$HALFLIGHT" info smoke.vdb &
 await_handler $!
 kill -INT $!
 wait $! && exit 9

@@ -1,5 +1,6 @@
-# A .vdb file by way of nanovdb_convert; its name could be taken for an option.
-command -v nanovdb_convert >bin.txt && /usr/bin/python3 -c 'import pyopenvdb' 2>import.txt || { echo "no nanovdb_convert or python3-openvdb"; exit 77; }
+# A .vdb file by way of the program beside this one, or of nanovdb_convert; its name could be taken for an option.
+[ -x "$(dirname "$HALFLIGHT")/halflight-openvdb" ] || command -v nanovdb_convert >bin.txt || { echo "no converter of OpenVDB"; exit 77; }
+/usr/bin/python3 -c 'import pyopenvdb' 2>import.txt || { echo "no python3-openvdb"; exit 77; }
 /usr/bin/python3 - <<'END'
 import pyopenvdb
 grid = pyopenvdb.FloatGrid()
