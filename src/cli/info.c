@@ -1,4 +1,4 @@
-/* cli/info.c - `halflight info VOLUME`: what a volume file holds. */
+/* cli/info.c - `halflight info VOLUME`: what a volume file or a scene holds. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -166,38 +166,36 @@ static void print_arrays(const hl_volume *volume) {
   }
 }
 
-static int print_json(const char *path, const hl_volume *volume, const hl_volume_info *info,
-                      const char *kind) {
+static void print_json(json_writer *json, const char *path, const hl_volume *volume,
+                       const hl_volume_info *info, const char *kind) {
   uint64_t dimensions[3] = {info->dimensions[0], info->dimensions[1], info->dimensions[2]};
-  json_writer json = {0};
-  json_open_object(&json, NULL);
-  json_text(&json, "file", path);
-  json_whole_numbers(&json, "dimensions", dimensions, 3);
-  json_text(&json, "type", hl_voxel_type_name(info->type));
-  json_numbers(&json, "spacing", info->spacing, 3);
-  json_numbers(&json, "origin", info->origin, 3);
-  json_open_array(&json, "direction");
-  for (int row = 0; row < 3; row++) json_numbers(&json, NULL, info->direction[row], 3);
-  json_close(&json);
+  json_open_object(json, NULL);
+  json_text(json, "file", path);
+  json_whole_numbers(json, "dimensions", dimensions, 3);
+  json_text(json, "type", hl_voxel_type_name(info->type));
+  json_numbers(json, "spacing", info->spacing, 3);
+  json_numbers(json, "origin", info->origin, 3);
+  json_open_array(json, "direction");
+  for (int row = 0; row < 3; row++) json_numbers(json, NULL, info->direction[row], 3);
+  json_close(json);
   double low[3], high[3];
   input_world_box(info, low, high);
-  json_open_object(&json, "world_box");
-  json_numbers(&json, "min", low, 3);
-  json_numbers(&json, "max", high, 3);
-  json_close(&json);
-  json_text(&json, "space", hl_space_name(info->space));
-  json_text(&json, "unit", hl_volume_unit(volume));
-  json_numbers(&json, "range", info->range, 2);
-  json_number(&json, "mean", info->mean);
-  json_whole_number(&json, "nonfinite_count", info->nonfinite_count);
-  print_json_arrays(&json, volume);
-  print_json_selection(&json, volume);
-  print_json_series(&json, volume);
-  print_json_segments(&json, volume);
-  json_text(&json, "taken_for", kind);
-  json_whole_numbers(&json, "histogram", info->histogram, HL_HISTOGRAM_BINS);
-  json_close(&json);
-  return finish_stdout();
+  json_open_object(json, "world_box");
+  json_numbers(json, "min", low, 3);
+  json_numbers(json, "max", high, 3);
+  json_close(json);
+  json_text(json, "space", hl_space_name(info->space));
+  json_text(json, "unit", hl_volume_unit(volume));
+  json_numbers(json, "range", info->range, 2);
+  json_number(json, "mean", info->mean);
+  json_whole_number(json, "nonfinite_count", info->nonfinite_count);
+  print_json_arrays(json, volume);
+  print_json_selection(json, volume);
+  print_json_series(json, volume);
+  print_json_segments(json, volume);
+  json_text(json, "taken_for", kind);
+  json_whole_numbers(json, "histogram", info->histogram, HL_HISTOGRAM_BINS);
+  json_close(json);
 }
 
 /* Prints a histogram of sixteen bars. Their lengths are logarithmic: there are often a thousand times as many
@@ -231,8 +229,8 @@ static const char *value_text(double value, char text[NUMBER_BYTES]) {
   return text;
 }
 
-static int print_text(const char *path, const hl_volume *volume, const hl_volume_info *info,
-                      const char *kind) {
+static void print_text(const char *path, const hl_volume *volume, const hl_volume_info *info,
+                       const char *kind) {
   const double(*d)[3] = info->direction;
   uint64_t voxels = (uint64_t)info->dimensions[0] * info->dimensions[1] * info->dimensions[2];
   printf("%s\n", path);
@@ -262,7 +260,81 @@ static int print_text(const char *path, const hl_volume *volume, const hl_volume
     printf("  not finite  %" PRIu64 " voxels, rendered as transparent\n", info->nonfinite_count);
   printf("  taken for   %s: render chooses its look from this file; --print-scene keeps it\n", kind);
   print_histogram(info);
-  return finish_stdout();
+}
+
+/* Tells of one volume. json: null for text. */
+static int tell_volume(cli_host *host, json_writer *json, const char *path, hl_volume *volume) {
+  const char *kind = NULL;
+  hl_volume_info info = {.struct_size = sizeof info};
+  hl_error error = {0};
+  if (hl_volume_get_info(volume, &info) != HL_OK)
+    return fail(EXIT_CODE_FAILURE, "%s: the library does not tell what it read", path);
+  hl_status status = hl_volume_guess(volume, path, &kind, &error);
+  if (status != HL_OK) return host_fail(host, PHASE_RUN, status, &error);
+  if (json != NULL) print_json(json, path, volume, &info, kind);
+  else print_text(path, volume, &info, kind);
+  return EXIT_CODE_OK;
+}
+
+static int info_of_volume(cli_host *host, const cli_value *values, const cli_input *input) {
+  hl_volume *volume = NULL;
+  hl_volume_load_options load;
+  hl_error error = {0};
+  json_writer json = {0};
+  input_load_options(&values[INFO_ARRAY], NULL, &load);
+  hl_status status = input_load_volume(host->context, input, &load, &volume, &error);
+  int exit_code = status == HL_OK
+                      ? tell_volume(host, values[INFO_JSON].given ? &json : NULL, input->title, volume)
+                      : host_fail(host, PHASE_READ, status, &error);
+  hl_volume_release(volume);
+  return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
+}
+
+/* Tells of a scene: its picture, how much of each kind it holds, and each volume as of a file. */
+static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_scene_description *scene) {
+  json_writer json = {0};
+  int exit_code = EXIT_CODE_OK;
+  if (as_json) {
+    json_open_object(&json, NULL);
+    json_text(&json, "file", title);
+    json_whole_number(&json, "width", (uint64_t)scene->width);
+    json_whole_number(&json, "height", (uint64_t)scene->height);
+    json_whole_number(&json, "lights", scene->light_count);
+    json_whole_number(&json, "meshes", scene->mesh_count);
+    json_open_array(&json, "volumes");
+  } else {
+    printf("%s\n  scene       %d x %d pixels, lights %zu, volumes %zu, meshes %zu\n", title, scene->width,
+           scene->height, scene->light_count, scene->volume_count, scene->mesh_count);
+  }
+  for (size_t n = 0; n < scene->volume_count && exit_code == EXIT_CODE_OK; n++) {
+    const hl_scene_volume *volume = &scene->volumes[n];
+    const char *path = volume->file != NULL ? volume->file : title;
+    exit_code = tell_volume(host, as_json ? &json : NULL, path, volume->volume);
+    for (size_t label = 0; !as_json && label < volume->label_count; label++)
+      printf("  %s  %.20g: %s%s\n", label == 0 ? "labels    " : "          ", volume->labels[label].value,
+             volume->labels[label].name != NULL ? volume->labels[label].name : "",
+             volume->labels[label].visible ? "" : " (hidden)");
+  }
+  if (as_json) {
+    json_close(&json);
+    json_close(&json);
+  }
+  return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
+}
+
+static int info_of_scene(cli_host *host, const cli_value *values, const cli_input *input) {
+  hl_scene *scene = NULL;
+  hl_error error = {0};
+  for (int which = INFO_ARRAY; which <= INFO_LEVEL; which++)
+    if (values[which].given)
+      return fail(EXIT_CODE_USAGE, "--%s is for volume files, and '%s' is a scene: give its volume's file",
+                  info_options[which].name, input->title);
+  hl_status status = input_load(host->context, input, NULL, &scene, &error);
+  int exit_code = status == HL_OK
+                      ? tell_scene(host, values[INFO_JSON].given, input->title, hl_scene_describe(scene))
+                      : host_fail(host, PHASE_READ, status, &error);
+  hl_scene_release(scene);
+  return exit_code;
 }
 
 static int run_info(const cli_value *values, char **operands) {
@@ -270,28 +342,12 @@ static int run_info(const cli_value *values, char **operands) {
   cli_host_options options = {.memory_limit = values[INFO_MAX_MEMORY].bytes, .subject = operands[0]};
   int exit_code = host_open(&options, &host);
   if (exit_code != EXIT_CODE_OK) return exit_code;
-  hl_volume *volume = NULL;
-  const char *kind = NULL;
-  hl_volume_info info = {.struct_size = sizeof info};
-  hl_error error = {0};
-  hl_volume_load_options load;
   cli_input input = {0};
-  input_load_options(&values[INFO_ARRAY], NULL, &load);
   exit_code = input_open(operands[0], values[INFO_MAX_MEMORY].bytes, &input);
-  hl_status status = exit_code == EXIT_CODE_OK
-                         ? input_load_volume(host.context, &input, &load, &volume, &error)
-                         : HL_OK;
-  if (status != HL_OK) exit_code = host_fail(&host, PHASE_READ, status, &error);
-  else if (exit_code == EXIT_CODE_OK && hl_volume_get_info(volume, &info) != HL_OK)
-    exit_code = fail(EXIT_CODE_FAILURE, "%s: the library does not tell what it read", operands[0]);
-  else if (exit_code == EXIT_CODE_OK &&
-           (status = hl_volume_guess(volume, input.title, &kind, &error)) != HL_OK)
-    exit_code = host_fail(&host, PHASE_RUN, status, &error);
-  else if (exit_code == EXIT_CODE_OK)
-    exit_code = values[INFO_JSON].given ? print_json(input.title, volume, &info, kind)
-                                        : print_text(input.title, volume, &info, kind);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = input.kind == INPUT_VOLUME ? info_of_volume(&host, values, &input)
+                                           : info_of_scene(&host, values, &input);
   input_close(&input);
-  hl_volume_release(volume);
   host_close(&host);
   return exit_code;
 }
@@ -302,7 +358,8 @@ const cli_command info_command = {
     .operand_count = 1,
     .summary = "show size, type, placement, range and histogram of a volume file",
     .description =
-        "Shows what a volume file holds: size, type, spacing, orientation, world box, range and histogram.",
+        "Shows what a volume file holds: size, type, spacing, orientation, world box, range and histogram.\n"
+        "Of a scene, also one in a picture: how much of each kind it has, and the same of each volume.",
     .options = info_options,
     .option_count = INFO_OPTION_COUNT,
     .run = run_info,
