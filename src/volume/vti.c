@@ -318,6 +318,7 @@ static hl_status read_pieces(hl_stream **stream, vti_header *header, hl_volume *
     /* the whole's memory is taken when a first piece was there: a header alone promises what it likes */
     if (status == HL_OK && pieces.to.context == NULL)
       status = hl_pieces_begin(header->request->context, &grid, (*stream)->path, &pieces, error);
+    if (status == HL_OK) pieces.to.path = (*stream)->path; /* of the stream that is open now */
     if (status == HL_OK) status = hl_pieces_put(&pieces, piece, first, error);
     hl_volume_release(piece);
   }
