@@ -356,7 +356,7 @@ static bool is_segmented(cli_host *host, const cli_value *values, const hl_scene
   for (int option = RENDER_ARRAY; option <= RENDER_ISO; option++)
     if (values[option].given) return false;
   const hl_volume *volume = description->volumes[0].volume;
-  if (hl_volume_segment_count(volume) == 0 || layers_of(volume) > MOST_LAYERS) return false;
+  if (hl_volume_segment_count(volume) == 0 || layers_of(volume) > RENDER_MOST_LABEL_LAYERS) return false;
   hl_label *labels = NULL;
   size_t count = 0;
   if (hl_labels_of_volume(host->context, volume, NULL, &labels, &count, NULL) != HL_OK) return false;

@@ -564,6 +564,7 @@ static void write_scene(writer *w, const hl_scene_description *d) {
 }
 
 hl_status hl_scene_to_json(hl_context *context, const hl_scene *scene, char **text, hl_error *error) {
+  HL_DOOR;
   return hl_scene_to_json_beside(context, scene, NULL, text, error);
 }
 

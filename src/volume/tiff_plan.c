@@ -6,12 +6,12 @@
  * frame. */
 #include "volume/tiff_plan.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <string.h>
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "text/plain_json.h"
 #include "volume/lengths.h"
 #include "volume/text.h"
 #include "volume/xml.h"
@@ -351,7 +351,7 @@ static bool read_series(const char *description, size_t samples, series_sizes *s
   size_t shape[SHAPE_MOST], count = 0;
   char letters[SHAPE_MOST];
   if (description == NULL || description[0] != '{') return false;
-  json_t *root = json_loads(description, 0, NULL);
+  json_t *root = hl_plain_json_load_text(description);
   const json_t *list = json_object_get(root, "shape");
   const char *axes = json_string_value(json_object_get(root, "axes"));
   size_t rank = json_array_size(list), inner = samples > 1 ? 3 : 2;
