@@ -11,9 +11,9 @@ typedef struct hl_exposure {
                        a seventh of the visible surfaces is thinner; infinite where nothing is hidden */
 } hl_exposure;
 
-/* Judges a picture of the first volume. left: the fraction of the sky, and of a light with shadows, that
- * reaches bright surfaces. empty: a value of the invisible surroundings, to tell which way surfaces face.
- * Fails for lack of memory. */
+/* Judges a picture of the first volume. left: the fraction of a light with shadows, and in media of the sky,
+ * that reaches bright surfaces. empty: a value of the invisible surroundings, to tell which way surfaces
+ * face. Fails for lack of memory. */
 hl_status hl_scene_exposure(const hl_scene_description *scene, double empty, double left, hl_exposure *result,
                             hl_error *error);
 

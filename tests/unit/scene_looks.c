@@ -267,12 +267,12 @@ static void lights_are_fitted(void **state) {
 
 /* The same under skies alone. Where the zenith is behind the eye, a sky that shines from there lights the
  * ball's middle by 2/3 of its radiance, the mean of the sine weighted by the cosine; an even one lights all
- * of it by 1. */
+ * of it by 1. What is left of lights is not asked: the sky's light is that at the ball's outside. */
 static void skies_are_fitted(void **state) {
   (void)state;
   static const struct {
     double zenith, horizon, ground, color, left, factor;
-  } cases[] = {{2, 0, 0, 0.5, 1, 1.307}, {1, 1, 1, 0.9, 1, 0.968}, {2, 2, 2, 0.9, 0.5, 0.968}};
+  } cases[] = {{2, 0, 0, 0.5, 1, 1.307}, {1, 1, 1, 0.9, 1, 0.968}, {1, 1, 1, 0.9, 0.5, 0.968}};
   hl_context *context = make_context();
   fill(ball_of_bytes);
   parts p;
@@ -360,7 +360,7 @@ static void volumes_stand_under_a_sky(void **state) {
   const hl_scene_description *a = hl_scene_describe(scene), *b = hl_scene_describe(without);
   assert_int_equal(a->sky.type, HL_SKY_GRADIENT);
   assert_memory_equal(a->sky.up, a->camera.up, sizeof a->sky.up);
-  assert_true(a->sky.strength > 0.5 && a->sky.zenith[1] > 4 * a->sky.ground[1]);
+  assert_true(a->sky.strength > 0.25 && a->sky.zenith[1] > 4 * a->sky.ground[1]);
   assert_int_equal(b->sky.type, HL_SKY_NONE);
   assert_true(b->ambient[0] > 4 * a->ambient[0] && a->ambient[0] > 0);
   assert_int_equal(a->light_count, b->light_count);
