@@ -10,6 +10,7 @@ commit that does says why they changed.
 """
 import concurrent.futures
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -30,10 +31,11 @@ COUNTED = [(name, name, "hl_sweep_run", instructions) for name in SCENES for ins
 def count(program, folder, scene, function, instructions):
     """Instructions within a function, in a whole run of the program."""
     name = f"{scene}-{function}-{instructions}"
+    environment = {key: value for key, value in os.environ.items() if key != "MALLOC_PERTURB_"}  # it fills memory
     done = subprocess.run(
         ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", f"--toggle-collect={function}", program, "render",
          str(folder / f"{scene}.json"), "-o", str(folder / f"{name}.png"), "--instruction-set", instructions],
-        capture_output=True, text=True)
+        capture_output=True, text=True, env=environment)
     found = re.search(r"Collected : (\d+)", done.stderr)
     if done.returncode != 0 or found is None or int(found[1]) == 0:
         sys.exit(f"{name}: {done.stderr.strip()[-400:]}")
