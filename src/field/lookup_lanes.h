@@ -111,10 +111,32 @@ LANES_INLINE void fetch_sky(const sky_light *sky, lanes3 position, uint32_t acti
   }
 }
 
+/* Adds up the eight cells around each active lane's position. pairs: their weights. halves: of a cell, 1 or
+ * 2: the first holds the mean of light. */
+LANES_INLINE void add_cells(const sky_light *sky, const sky_cells *cells, const int32_t pairs[4][LANES],
+                            int halves, sky_rows *found) {
+  const sky_steps steps = steps_of_sky(sky);
+  for (uint32_t left = found->active; left != 0; left &= left - 1) {
+    int lane = __builtin_ctz(left);
+    const int16_t *cell = cell_of_lane(sky, cells, lane);
+    lanes_int sum[2] = {lanes_set_int(0), lanes_set_int(0)};
+    for (int pair = 0; pair < 4; pair++) {
+      lanes_int weights = lanes_set_int(pairs[pair][lane]), two[2], both[2];
+      memcpy(two, cell + steps.to_pair[pair], sizeof two);
+      lanes_unpack_shorts(two, both);
+      for (int half = 0; half < halves; half++)
+        sum[half] = sum[half] + lanes_multiply_shorts(both[half], weights);
+    }
+    for (int half = 0; half < halves; half++)
+      lanes_store(found->of[lane] + half * LANES, lanes_from_int(sum[half]));
+  }
+}
+
 /* The light between the eight cells around each of the active lanes' positions. surface: 1 on surfaces of a
- * volume's matter, 0 in media and on meshes. */
+ * volume's matter, 0 in media and on meshes. whole: false where only the mean over all directions is asked
+ * for. */
 LANES_INLINE void look_up_sky(const sky_light *sky, lanes3 position, lanes surface, uint32_t active,
-                              sky_rows *found) {
+                              bool whole, sky_rows *found) {
   const sky_steps steps = steps_of_sky(sky);
   int32_t pairs[4][LANES];
   lanes_int of_lanes[4];
@@ -131,19 +153,8 @@ LANES_INLINE void look_up_sky(const sky_light *sky, lanes3 position, lanes surfa
   found->unit = weigh_cells(cells.fraction, surface, of_lanes);
   found->active = active;
   memcpy(pairs, of_lanes, sizeof pairs);
-  for (uint32_t left = active; left != 0; left &= left - 1) {
-    int lane = __builtin_ctz(left);
-    const int16_t *cell = cell_of_lane(sky, &cells, lane);
-    lanes_int sum[2] = {lanes_set_int(0), lanes_set_int(0)};
-    for (int pair = 0; pair < 4; pair++) {
-      lanes_int weights = lanes_set_int(pairs[pair][lane]), two[2], both[2];
-      memcpy(two, cell + steps.to_pair[pair], sizeof two);
-      lanes_unpack_shorts(two, both);
-      for (int half = 0; half < 2; half++) sum[half] = sum[half] + lanes_multiply_shorts(both[half], weights);
-    }
-    for (int half = 0; half < 2; half++)
-      lanes_store(found->of[lane] + half * LANES, lanes_from_int(sum[half]));
-  }
+  if (whole) add_cells(sky, &cells, pairs, 2, found);
+  else add_cells(sky, &cells, pairs, 1, found);
 }
 
 /* Brings a harmonic to lanes; those that are not active get 0. */

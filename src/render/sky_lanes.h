@@ -77,7 +77,9 @@ LANES_INLINE void find_arriving_sky(const shade_job *job, const block_slab *slab
              media = lanes_bits(slab->seen & (d->surface < 1.0f)) != 0 || volume->multiple;
   sky_rows rows;
   for (int c = 0; c < 3; c++) parts->surface[c] = parts->medium[c] = parts->mean[c] = lanes_set(0);
-  if (volume->receives_shadow) look_up_sky(sky, d->outside, d->surface, lanes_bits(slab->seen), &rows);
+  if (volume->receives_shadow)
+    look_up_sky(sky, d->outside, d->surface, lanes_bits(slab->seen), surfaces || volume->anisotropy != 0,
+                &rows);
   if (surfaces && volume->receives_shadow) light_of_surface(sky, &rows, d->normal, parts->surface);
   else if (surfaces) open_light_of_surface(sky, d->normal, parts->surface);
   if (!media) return;

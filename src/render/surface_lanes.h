@@ -95,7 +95,7 @@ LANES_INLINE void add_sky(const sky_light *sky, const surface_samples *samples, 
   if (samples->receives_shadow) {
     sky_rows rows;
     look_up_sky(sky, add_scaled3(load3(samples->position), normal, lanes_set(MESH_LIFT * sky->cell)),
-                lanes_set(0), 0xffff, &rows);
+                lanes_set(0), 0xffff, true, &rows);
     light_of_surface(sky, &rows, normal, light);
   } else {
     open_light_of_surface(sky, normal, light);
