@@ -81,21 +81,53 @@ static void sum_bends(classifier *classifier) {
   if (sum * CLASSIFIER_ENTRIES <= CLASSIFIER_LEAST_BENDING) classifier->bent = NULL;
 }
 
+/* A second surface begins where extinction rises by this factor, after it has not risen over this part of the
+ * values since the first surface's foot. */
+static const double SECOND_RISE = 1.5, LEVEL_PART = 0.05;
+
+/* Finds the surfaces of values on one side of the empty one, from there outwards. step: 1 or -1. */
+static void fill_side(classifier *classifier, int first, int step) {
+  const float(*sums)[4] = (const float(*)[4])classifier->sums;
+  float foot = classifier->offset, level = 0;
+  int mark = -1, end = step > 0 ? CLASSIFIER_ENTRIES + 2 : -1;
+  for (int at = first; at != end; at += step) {
+    float extinction = sums[at][0];
+    double back = at - step * fmax(ceil(LEVEL_PART * fabs((double)at - (double)foot)), 1);
+    if (!(extinction > 0)) {
+      foot = (float)at;
+      mark = -1;
+    } else if ((back - (double)foot) * step > 0 && extinction <= sums[(int)back][0] &&
+               (mark < 0 || extinction <= level)) {
+      mark = at;
+      level = extinction;
+    } else if (mark >= 0 && (double)extinction >= SECOND_RISE * (double)level) {
+      foot = (float)mark;
+      for (int of = mark; of != at; of += step) classifier->outside[step > 0 ? of : of - 1] = foot;
+      mark = -1;
+    }
+    if (step > 0 || at > 0) classifier->outside[step > 0 ? at : at - 1] = foot;
+  }
+}
+
 /* Values above the empty one lie outside of matter where they are lower, values below it where they are
  * higher. */
 static void fill_outside(classifier *classifier) {
-  const float empty = classifier->offset;
-  float outside = empty;
-  for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
-    if ((float)entry >= empty && !(classifier->sums[entry][0] > 0)) outside = (float)entry;
-    classifier->outside[entry] = outside;
+  const int empty = (int)ceilf(classifier->offset);
+  fill_side(classifier, empty, 1);
+  if (classifier->offset > 0) {
+    classifier->outside[empty - 1] = classifier->offset;
+    fill_side(classifier, (int)floorf(classifier->offset), -1);
   }
-  outside = empty;
-  for (int entry = CLASSIFIER_ENTRIES; entry >= 0; entry--) {
-    if ((float)entry + 1 > empty) continue;
-    if (!(classifier->sums[entry + 1][0] > 0)) outside = (float)entry + 1;
-    classifier->outside[entry] = outside;
+  int surfaces = 0;
+  for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
+    if (!(classifier->sums[entry][0] > 0) && !(classifier->sums[entry + 1][0] > 0)) continue;
+    float foot = classifier->outside[entry], side = (float)entry >= foot ? 1 : -1;
+    if (surfaces > 0 && foot == classifier->only_outside && side == classifier->side) continue;
+    classifier->only_outside = foot;
+    classifier->side = side;
+    surfaces++;
   }
+  classifier->several_surfaces = surfaces > 1;
 }
 
 static void fill_tables(const hl_scene_volume *volume, double empty, double low, double high,

@@ -29,9 +29,12 @@ typedef struct classifier {
   float *bent; /* how much the colour's slope changes at the visible entries up to this one: the sum over
                   them of the greatest channel's change per entry; null: nowhere by much */
   int32_t *next_visible; /* the first entry from this one on with extinction > 0 */
-  float
-      *outside; /* [entries]; for values from an entry to the next: the table coordinate of the nearest value
-                   without extinction on the way to the empty value; the empty value's if there is none */
+  float *outside; /* [entries]; for values from an entry to the next: the table coordinate at which their
+                     surface begins: on the way to the empty value, the nearest value without extinction, or
+                     with the least extinction before a second rise; the empty value's if there is none */
+  bool several_surfaces; /* visible values have more than one such beginning; if not: */
+  float only_outside;    /* this one; visible values lie above it, `side` 1, or below it, `side` -1 */
+  float side;
   float first_visible, last_visible; /* table coordinates: outside of them nothing has extinction */
   /* Gradient opacity: the factor of extinction by the gradient's length, [STEEPNESS_ENTRIES + 2], in the same
    * block; null: 1 everywhere. Table coordinate = length * steepness_scale, clamped to [0,

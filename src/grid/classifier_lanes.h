@@ -57,6 +57,39 @@ LANES_INLINE lanes_int may_be_visible(const classifier *classifier, table_coordi
   return (lanes_max(a.x, b.x) > classifier->first_visible) & (lanes_min(a.x, b.x) < classifier->last_visible);
 }
 
+/* The integral of extinction over entries, from entry 0 to a coordinate. */
+LANES_INLINE lanes integral_to(const classifier *classifier, lanes x) {
+  lanes values[3];
+  table_values(classifier->sums, split_coordinate(x), values);
+  return values[1];
+}
+
+/* Light comes from one surface's matter into another surface, which begins at the value `foot`. A blurred
+ * edge passes through the first one's values, too: then both are one surface, and what the first has taken
+ * lights the second again. A layer that is thicker than a straight ramp of values by these factors is a
+ * surface of its own. */
+static const float SAME_RAMP = 1.2f, OTHER_LAYER = 1.6f;
+
+typedef struct second_surface {
+  lanes kept;  /* the part of what the first surface has taken that counts as the second one's, 0 to 1 */
+  lanes ahead; /* the optical depth from `start` to the second one's foot */
+} second_surface;
+
+/* start: the value where light and `outside`, the light at the first one's outside, are known; first: the
+ * value where the first begins; rise: values per unit of the light's way, above 0. Derived: a straight ramp
+ * from the value a to the value b takes the optical depth |P(b) - P(a)| / rise, P the integral of
+ * extinction. */
+LANES_INLINE second_surface kept_at_foot(const classifier *classifier, lanes first, lanes start, lanes foot,
+                                         lanes rise, lanes light, lanes outside) {
+  lanes at_foot = integral_to(classifier, foot), ramp = lanes_abs(at_foot - integral_to(classifier, first)),
+        ahead = lanes_abs(at_foot - integral_to(classifier, start));
+  lanes taken = lanes_log2(lanes_max(outside, lanes_set(1e-9f)) / lanes_max(light, lanes_set(1e-9f))) *
+                0.6931472f;
+  lanes ratio = lanes_fma(lanes_max(taken, lanes_set(0)), rise, ahead) / lanes_max(ramp, lanes_set(1e-9f));
+  return (second_surface){lanes_clamp((OTHER_LAYER - ratio) * (1.0f / (OTHER_LAYER - SAME_RAMP)), 0, 1),
+                          ahead / lanes_max(rise, lanes_set(1e-9f))};
+}
+
 /* The density's mean distance from a and from b, between the two, weighted by extinction, in entries; 1 and 1
  * where a and b are close or nothing between them has extinction. */
 typedef struct way_means {

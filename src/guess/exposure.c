@@ -22,7 +22,6 @@
 #define BRIGHTEST 0.99  /* fraction of the pixels that are darker */
 #define OPAQUE    0.98
 #define FAINT     0.02 /* least opacity of a step at which a ray meets a surface */
-#define WITHIN    0.8  /* fraction of a light on a cut face that reaches the matter seen there: measured */
 #define THINNEST  0.15 /* fraction of the surfaces that are thinner than hl_exposure.thickness */
 
 enum { SIDE = 64, TABLE = 1024, MOST_LIGHTS = 4 };
@@ -34,11 +33,10 @@ typedef struct exposure {
   vec3 right, up,
       forward; /* the camera's; lengths: half the picture's width and height at distance 1, and 1 */
   vec3 towards[MOST_LIGHTS]; /* unit vectors */
-  double left;  /* fraction of lights with shadows that reaches bright surfaces, and of the sky that reaches
-                   media */
-  double step;  /* world units */
-  double empty; /* a value of the invisible surroundings */
-  double flat;  /* gradients up to this, in values per world unit, belong to no surface */
+  double left;               /* fraction of the sky and of lights with shadows that reaches bright media */
+  double step;               /* world units */
+  double empty;              /* a value of the invisible surroundings */
+  double flat;               /* gradients up to this, in values per world unit, belong to no surface */
   double opacity[TABLE], color[TABLE][3]; /* over the volume's range */
 } exposure;
 
@@ -98,9 +96,9 @@ static sample_light light_by_gradient(const exposure *e, double value, vec3 grad
   sample_light lit = {.surface = e->volume->shading == HL_SHADING_PHONG && vec3_length(gradient) > e->flat,
                       .normal = vec3_scale(vec3_normalise(gradient), value > e->empty ? -1 : 1),
                       .sky = 1};
-  if (!lit.surface) lit.sky = e->left; /* surfaces get the sky's light at their outside */
+  if (!lit.surface) lit.sky = e->left; /* surfaces are lit by the light at their outside */
   for (size_t l = 0; l < e->scene->light_count; l++)
-    lit.left[l] = e->scene->lights[l].shadows == HL_SHADOWS_OFF ? 1 : e->left;
+    lit.left[l] = lit.surface || e->scene->lights[l].shadows == HL_SHADOWS_OFF ? 1 : e->left;
   return lit;
 }
 
@@ -199,7 +197,7 @@ static void light_reaching_face(const exposure *e, vec3 point, vec3 normal, samp
   vec3 u = vec3_normalise(vec3_cross(normal, across)), v = vec3_cross(normal, u);
   point = vec3_add(point, vec3_scale(normal, 3 * e->step));
   for (size_t l = 0; l < scene->light_count; l++)
-    if (scene->lights[l].shadows != HL_SHADOWS_OFF) lit->left[l] = WITHIN * passing(e, point, e->towards[l]);
+    if (scene->lights[l].shadows != HL_SHADOWS_OFF) lit->left[l] = passing(e, point, e->towards[l]);
   lit->sky = 0;
   for (int n = 0; n < DIRECTIONS && scene->sky.type != HL_SKY_NONE; n++) {
     double aside = sqrt(n % 2 ? 0.75 : 0.25), turn = 2 * HL_PI * n / DIRECTIONS;

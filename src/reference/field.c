@@ -360,10 +360,13 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
     hl_status status = hl_reference_coefficients_create(all->context, made, error);
     if (status != HL_OK) return status;
   }
+  hl_status feet = hl_reference_feet_create(all->context, made, error);
+  if (feet != HL_OK) return feet;
   return create_bricks(all->context, made, pool, error);
 }
 
 void hl_reference_volume_release(hl_context *context, reference_volume *volume) {
   hl_release(context, volume->clearance);
   hl_release(context, volume->coefficients);
+  hl_release(context, volume->feet);
 }

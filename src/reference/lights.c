@@ -72,9 +72,6 @@ static void emission_color(const hl_light_emission *emission, const emission_pla
 
 /* ---- points on the lights ---- */
 
-/* Optical depth, in every channel, beyond which a light counts as dark: exp(-18) is 2e-8. */
-static const double DARK_DEPTH = 18;
-
 /* The fractional part of 1/2 + i step. With the golden section as step, the results are spread evenly over 0
  * to 1, however many there are. */
 static double spread(size_t i, double step) {
@@ -317,26 +314,6 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
   for (int c = 0; c < 3; c++) arrived->incoming[c] = light->color[c] * factor;
 }
 
-void hl_reference_transmittance(const reference *all, const reference_ray *ray, crossing *scratch,
-                                double passing[3]) {
-  double depth[3] = {0, 0, 0};
-  march walk;
-  hl_reference_march_begin(all, REFERENCE_CASTS_SHADOW, ray, scratch, &walk);
-  while (hl_reference_march_next(&walk)) {
-    for (size_t v = 0; v < walk.count; v++) {
-      const crossing *part = &walk.crossings[v];
-      if (!part->occupied) continue;
-      double value = hl_reference_value(part->volume, part->here);
-      double extinction = hl_reference_extinction(part->volume, value, part->here);
-      for (int c = 0; c < 3; c++)
-        depth[c] += extinction * walk.length * part->volume->described->attenuation_color[c];
-    }
-    if (fmin(depth[0], fmin(depth[1], depth[2])) > DARK_DEPTH) break;
-  }
-  hl_reference_surfaces_passing(all, ray, passing);
-  for (int c = 0; c < 3; c++) passing[c] *= exp(-depth[c]);
-}
-
 /* The colour of the light texture or emission image for the ray from a point of the light to `point`; false:
  * black. light_point: a direction for directional lights. plane: of the emission image, where it differs from
  * point to point of the light; else null. */
@@ -349,21 +326,24 @@ static bool find_pattern(const reference_light *light, const emission_plane *pla
   return pattern[0] > 0 || pattern[1] > 0 || pattern[2] > 0;
 }
 
-/* The transmittance from `point` to a point of the light; arguments as for find_pattern(). */
-static void find_passing(const reference *all, const reference_light *light, vec3 light_point, vec3 point,
-                         crossing *scratch, double passing[3]) {
-  vec3 offset = vec3_subtract(light_point, point);
-  reference_ray ray = {.origin = point, .direction = light_point, .farthest = INFINITY};
+/* The light that comes from a point of the light to what `at` asks for. */
+static void find_passing(const reference *all, const reference_light *light, vec3 light_point,
+                         const reference_receiver *at, crossing *scratch, double passing[3]) {
+  vec3 offset = vec3_subtract(light_point, at->point);
+  reference_ray ray = {.origin = at->point, .direction = light_point, .farthest = INFINITY};
   if (!light->directional) {
     ray.farthest = vec3_length(offset);
     ray.direction = vec3_normalise(offset);
   }
-  hl_reference_transmittance(all, &ray, scratch, passing);
+  if (at->surface_of != NULL) hl_reference_outside(all, &ray, at, scratch, passing);
+  else hl_reference_transmittance(all, &ray, scratch, passing);
 }
 
-void hl_reference_light_reach(const reference *all, const reference_light *light, vec3 point, bool attenuated,
-                              reference_worker *worker, double reach[3]) {
+void hl_reference_light_reach(const reference *all, const reference_light *light,
+                              const reference_receiver *at, bool attenuated, reference_worker *worker,
+                              double reach[3]) {
   double sum[3] = {0, 0, 0};
+  const vec3 point = at->point;
   vec3 centre = light->directional ? light->towards : light->centre;
   vec3 facing = vec3_normalise(vec3_subtract(point, light->centre));
   if (!(vec3_length(facing) > 0)) facing = (vec3){0, 0, 1};
@@ -379,7 +359,7 @@ void hl_reference_light_reach(const reference *all, const reference_light *light
       light_point = point_of_disk(light->centre, facing, light->described->radius, i, count);
     double pattern[3], passing[3] = {1, 1, 1};
     if (!find_pattern(light, extended ? &plane : NULL, light_point, point, pattern)) continue;
-    if (casts && attenuated) find_passing(all, light, light_point, point, worker->shadow, passing);
+    if (casts && attenuated) find_passing(all, light, light_point, at, worker->shadow, passing);
     for (int c = 0; c < 3; c++) sum[c] += pattern[c] * passing[c];
   }
   for (int c = 0; c < 3; c++) reach[c] = sum[c] / (double)count;

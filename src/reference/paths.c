@@ -105,7 +105,7 @@ static void add_lights(const reference *all, const collision *met, vec3 way, con
     arrival arrived;
     double reach[3];
     hl_reference_light_arrive(&one, met->point, &arrived);
-    hl_reference_light_reach(all, &one, met->point, true, worker, reach);
+    hl_reference_light_reach(all, &one, &(reference_receiver){.point = met->point}, true, worker, reach);
     double turned = hl_reference_light_phase(&one, met->volume->described->anisotropy, vec3_scale(way, -1),
                                              met->point);
     for (int c = 0; c < 3; c++) sum[c] += weight[c] * turned * arrived.incoming[c] * reach[c];

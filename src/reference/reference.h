@@ -55,6 +55,9 @@ typedef struct reference_volume {
   double *coefficients;   /* owned; [k][j][i], stored values: what the interpolating kernel sums in place of
                            * voxels; else null */
   double least, greatest; /* with coefficients: values beyond these count as these */
+  double *feet; /* owned; [HL_REFERENCE_FEET]; for equal steps of values from feet_low to feet_high: the value
+                 * at which their surface begins */
+  double feet_low, feet_high;
   const struct reference_volume *second; /* the other volume of a function of two numbers; else null */
   affine3 index_to_second;               /* from the volume's index space to the second one's */
   affine3 index_to_mask;    /* from the volume's index space to that of its mask, where it has one */
@@ -163,6 +166,14 @@ typedef struct march {
   double at;          /* distance of the current sample */
 } march;
 
+/* What light comes to: a medium, or another point; or the outside of the surface of a volume that the point
+ * lies in. */
+typedef struct reference_receiver {
+  vec3 point;                         /* world */
+  const reference_volume *surface_of; /* null: no surface of a volume */
+  double value;                       /* the volume's at the point */
+} reference_receiver;
+
 /* The light of one source that arrives at a sample. */
 typedef struct arrival {
   vec3 towards;       /* unit vector to the light's centre */
@@ -170,7 +181,8 @@ typedef struct arrival {
   double pattern[3];  /* mean colour of the light texture or emission image over the light's points; 1 without
                          either; eq. (2) */
   double shadowed[3]; /* mean of that image times transmittance over the light's points */
-  bool pattern_known, shadowed_known;
+  double outside[3];  /* the same, at the outside of the surface that the sample lies in */
+  bool pattern_known, shadowed_known, outside_known;
 } arrival;
 
 /* One light's contribution: the light sent to the eye, and the transmittance towards the light. */
@@ -281,8 +293,9 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
 void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival *arrived);
 /* The mean over the light's points of the light texture or emission image (1 without either) times
  * transmittance. attenuated false: the transmittance counts as 1. */
-void hl_reference_light_reach(const reference *all, const reference_light *light, vec3 point, bool attenuated,
-                              reference_worker *worker, double reach[3]);
+void hl_reference_light_reach(const reference *all, const reference_light *light,
+                              const reference_receiver *at, bool attenuated, reference_worker *worker,
+                              double reach[3]);
 
 /* The mean over the light of the phase function times 4 pi, for its light from `point` to the eye. */
 double hl_reference_light_phase(const reference_light *light, double g, vec3 to_eye, vec3 point);
@@ -291,6 +304,13 @@ double hl_reference_light_phase(const reference_light *light, double g, vec3 to_
  * [volume_count]. */
 void hl_reference_transmittance(const reference *all, const reference_ray *ray, crossing *scratch,
                                 double passing[3]);
+/* The same for the outside of the surface of a volume that the ray begins in. */
+enum { HL_REFERENCE_VOLUMES = 64 };
+void hl_reference_outside(const reference *all, const reference_ray *ray, const reference_receiver *at,
+                          crossing *scratch, double passing[3]);
+/* Fills volume->feet; its other fields are known. */
+enum { HL_REFERENCE_FEET = 4096 };
+hl_status hl_reference_feet_create(hl_context *context, reference_volume *volume, hl_error *error);
 /* Henyey and Greenstein's phase function times 4 pi, for light from `towards` (unit vector) to the eye. */
 double hl_reference_phase(double anisotropy, vec3 to_eye, vec3 towards);
 
@@ -379,8 +399,8 @@ void hl_reference_parts_write(const reference_parts *parts, double depth_first, 
 
 /* The fraction of a light that reaches a point, whatever image it projects; of a light with an emission image
  * the fraction in each channel. reach: what hl_reference_light_reach() gives there. */
-void hl_reference_light_shadow(const reference *all, const reference_light *light, vec3 point,
-                               bool attenuated, const double reach[3], reference_worker *worker,
-                               double shadow[3]);
+void hl_reference_light_shadow(const reference *all, const reference_light *light,
+                               const reference_receiver *at, bool attenuated, const double reach[3],
+                               reference_worker *worker, double shadow[3]);
 
 #endif

@@ -14,13 +14,20 @@
 
 /* The light that reaches a point is computed at the first request only: it is by far the costliest part of a
  * sample. */
-static const double *light_reach(const reference *all, const reference_volume *volume, size_t light,
-                                 vec3 point, reference_worker *worker) {
+static const double *light_reach(const reference *all, const reference_sample *at, size_t light, bool surface,
+                                 reference_worker *worker) {
   arrival *arrived = &worker->arrivals[light];
-  bool attenuated = volume->described->receives_shadow, *known = &arrived->pattern_known;
+  bool attenuated = at->volume->described->receives_shadow, *known = &arrived->pattern_known;
   double *reach = arrived->pattern;
+  reference_receiver receiver = {.point = at->point};
   if (attenuated) known = &arrived->shadowed_known, reach = arrived->shadowed;
-  if (!*known) hl_reference_light_reach(all, &all->lights[light], point, attenuated, worker, reach);
+  if (attenuated && surface) {
+    receiver.surface_of = at->volume;
+    receiver.value = at->value;
+    known = &arrived->outside_known;
+    reach = arrived->outside;
+  }
+  if (!*known) hl_reference_light_reach(all, &all->lights[light], &receiver, attenuated, worker, reach);
   *known = true;
   return reach;
 }
@@ -40,13 +47,13 @@ static vec3 find_normal(const reference_volume *volume, vec3 index_point, double
   return vec3_scale(slope, 1 / size);
 }
 
-void hl_reference_light_shadow(const reference *all, const reference_light *light, vec3 point,
-                               bool attenuated, const double reach[3], reference_worker *worker,
-                               double shadow[3]) {
+void hl_reference_light_shadow(const reference *all, const reference_light *light,
+                               const reference_receiver *at, bool attenuated, const double reach[3],
+                               reference_worker *worker, double shadow[3]) {
   reference_light plain = *light;
   if (plain.emission != NULL) {
     double full[3];
-    hl_reference_light_reach(all, &plain, point, false, worker, full);
+    hl_reference_light_reach(all, &plain, at, false, worker, full);
     for (int c = 0; c < 3; c++) shadow[c] = full[c] > 0 ? reach[c] / full[c] : 1;
     return;
   }
@@ -55,7 +62,7 @@ void hl_reference_light_shadow(const reference *all, const reference_light *ligh
     return;
   }
   plain.texture = NULL;
-  hl_reference_light_reach(all, &plain, point, attenuated, worker, shadow);
+  hl_reference_light_reach(all, &plain, at, attenuated, worker, shadow);
 }
 
 /* The properties of a sample that are the same for every light. */
@@ -71,6 +78,19 @@ double hl_reference_phase(double g, vec3 to_eye, vec3 towards) {
   return (1 - g * g) / pow(1 + g * g + 2 * g * vec3_dot(to_eye, towards), 1.5);
 }
 
+/* The fraction of a light that reaches a sample, as a surface and as a medium. */
+static void add_shadow(const reference *all, const reference_sample *at, double amount, size_t light,
+                       reference_worker *worker, double shadow[3]) {
+  for (int surface = 0; surface < 2; surface++) {
+    double weight = surface ? amount : 1 - amount, part[3];
+    if (!(weight > 0)) continue;
+    const reference_receiver receiver = {at->point, surface ? at->volume : NULL, at->value};
+    hl_reference_light_shadow(all, &all->lights[light], &receiver, at->volume->described->receives_shadow,
+                              light_reach(all, at, light, surface, worker), worker, part);
+    for (int c = 0; c < 3; c++) shadow[c] += weight * part[c];
+  }
+}
+
 /* The light of one source that the sample sends to the eye. */
 static void shade_light(const reference *all, const reference_sample *at, const surface *here, size_t light,
                         reference_worker *worker, light_part *part) {
@@ -78,9 +98,7 @@ static void shade_light(const reference *all, const reference_sample *at, const 
   const arrival *arrived = &worker->arrivals[light];
   double cosine = vec3_dot(here->normal, arrived->towards), gloss = 0;
   *part = (light_part){{0, 0, 0}, {0, 0, 0}};
-  if (all->all_shadows)
-    hl_reference_light_shadow(all, &all->lights[light], at->point, at->volume->described->receives_shadow,
-                              light_reach(all, at->volume, light, at->point, worker), worker, part->shadow);
+  if (all->all_shadows) add_shadow(all, at, here->amount, light, worker, part->shadow);
   if (cosine > 0) {
     /* R = 2 (N.L) N - L */
     vec3 reflected = vec3_subtract(vec3_scale(here->normal, 2 * cosine), arrived->towards);
@@ -91,11 +109,14 @@ static void shade_light(const reference *all, const reference_sample *at, const 
                                                                 at->volume->described->anisotropy, at->to_eye,
                                                                 at->point);
   if (surface + medium <= 0 && gloss <= 0) return;
-  const double *reach = light_reach(all, at->volume, light, at->point, worker);
+  static const double dark[3] = {0, 0, 0};
+  const double *on_surface = surface > 0 || gloss > 0 ? light_reach(all, at, light, true, worker) : dark,
+               *on_medium = medium > 0 ? light_reach(all, at, light, false, worker) : dark;
   const double *albedo = at->volume->described->albedo;
   for (int c = 0; c < 3; c++)
-    part->picture[c] = (here->own[c] * (surface + medium * albedo[c]) + here->amount * gloss) *
-                       arrived->incoming[c] * reach[c];
+    part->picture[c] = ((here->own[c] * surface + here->amount * gloss) * on_surface[c] +
+                        here->own[c] * medium * albedo[c] * on_medium[c]) *
+                       arrived->incoming[c];
 }
 
 /* Where a surface's matter begins, along the normal from a sample in it: its values fall by the gradient's

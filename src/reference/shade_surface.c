@@ -59,9 +59,10 @@ static void add_light(const reference *all, size_t light, const reference_surfac
   hl_reference_light_arrive(&all->lights[light], at->point, &arrived);
   double cosine = vec3_dot(at->normal, arrived.towards);
   if (cosine <= 0 && !all->all_shadows) return;
-  hl_reference_light_reach(all, &all->lights[light], at->point, at->receives_shadow, worker, reach);
+  const reference_receiver receiver = {.point = at->point};
+  hl_reference_light_reach(all, &all->lights[light], &receiver, at->receives_shadow, worker, reach);
   if (all->all_shadows)
-    hl_reference_light_shadow(all, &all->lights[light], at->point, at->receives_shadow, reach, worker,
+    hl_reference_light_shadow(all, &all->lights[light], &receiver, at->receives_shadow, reach, worker,
                               part->shadow);
   if (cosine <= 0 && all->lights[light].points != NULL && at->receives_shadow)
     for (int c = 0; c < 3; c++) part->shadow[c] *= at->behind[c];

@@ -17,7 +17,6 @@ enum { NEAR_PIXELS = 4 };
 typedef struct near_pixels {
   lanes u[NEAR_PIXELS], v[NEAR_PIXELS]; /* from the sample to each pixel; in pixels */
   lanes3 along_u, along_v;              /* one pixel along u and along v, on the sheet; frame space */
-  const sublight_shifts *shifts;        /* of sub-lights' buffers; else null */
 } near_pixels;
 
 /* A light as a slab's samples see it. */
@@ -57,7 +56,7 @@ LANES_INLINE void find_steps(const shadow_map *map, int parallel, lanes3 normal,
 }
 
 LANES_INLINE near_pixels pixels_around(const shadow_taps *taps) {
-  near_pixels near = {.shifts = NULL};
+  near_pixels near;
   for (int i = 0; i < NEAR_PIXELS; i++) {
     near.u[i] = lanes_set((float)(i % 2)) - taps->fx;
     near.v[i] = lanes_set((float)(i / 2)) - taps->fy;
@@ -65,8 +64,8 @@ LANES_INLINE near_pixels pixels_around(const shadow_taps *taps) {
   return near;
 }
 
-LANES_INLINE near_pixels pixels_of_sublights(const sublight_shifts *shifts) {
-  near_pixels near = {.shifts = shifts};
+LANES_INLINE near_pixels pixels_of_sublights(void) {
+  near_pixels near;
   for (int i = 0; i < NEAR_PIXELS; i++) {
     near.u[i] = lanes_set(i % 2 ? SUBLIGHT_SPREAD : -SUBLIGHT_SPREAD);
     near.v[i] = lanes_set(i / 2 ? SUBLIGHT_SPREAD : -SUBLIGHT_SPREAD);

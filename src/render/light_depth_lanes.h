@@ -1,11 +1,8 @@
-/* render/light_depth_lanes.h - the light that a slab's own matter absorbs before it reaches the lit position
- * (step 15, derived).
+/* render/light_depth_lanes.h - the light that a slab's own matter absorbs before it reaches a medium at the
+ * lit position (step 15, derived).
  *
  * The shadow buffer holds the light that reaches the slab's first sheet. From there on, the sample's own
- * densities and gradient tell how much is absorbed. Matter near a surface is taken to be a plane's: its
- * density f, in entries of the transfer function's table, falls by k per frame unit towards the light. Light
- * that has come to density f has passed the optical depth P(f) / k, P the integral of extinction over
- * entries. The depths at two positions in the plane's matter differ by (P(f1) - P(f2)) / k. */
+ * densities and gradient tell how much is absorbed. */
 #ifndef HL_RENDER_LIGHT_DEPTH_LANES_H
 #define HL_RENDER_LIGHT_DEPTH_LANES_H
 
@@ -122,151 +119,12 @@ LANES_INLINE ways_in_box find_ways(const block_slab *slab, block_density *densit
 typedef struct light_depths {
   lanes enter[HL_CHANNELS], more[HL_CHANNELS]; /* where the eye's rays enter the matter, and what the depth
                                                   gains until they leave it */
-  lanes near[HL_CHANNELS][NEAR_PIXELS]; /* at the near pixels on the first sheet, minus the depth at the point
-                                           through which the sample's own light comes */
-  lanes_int plane;                      /* lanes where a plane's matter gives `near`; elsewhere it is 0 */
-  lanes_int face; /* lanes near a face of a box; `near` then holds the whole depth from the face on */
-  lanes beside;   /* near a face: how much the face counts, 0 to 1 */
+  lanes near[HL_CHANNELS][NEAR_PIXELS]; /* near a face: from the face to the near pixels on the first sheet */
+  lanes_int face;                       /* lanes near a face of a box */
+  lanes beside;                         /* near a face: how much the face counts, 0 to 1 */
   lanes before_enter[HL_CHANNELS], before_more[HL_CHANNELS]; /* near a face: like enter and more, but for the
                                                                 light's way before the slab */
 } light_depths;
-
-/* A coordinate of the table, with the extinction and the integral there. */
-typedef struct table_origin {
-  lanes x, extinction, integral;
-} table_origin;
-
-LANES_INLINE table_origin origin_at(const classifier *classifier, lanes x) {
-  table_coordinate place = split_coordinate(lanes_clamp(x, 0, CLASSIFIER_ENTRIES));
-  lanes values[3];
-  table_values(classifier->sums, place, values);
-  return (table_origin){place.x, values[0], values[1]};
-}
-
-/* P(to) - P(from). */
-LANES_INLINE lanes integral_between(const table_origin *from, const table_origin *to) {
-  lanes distance = to->x - from->x;
-  return lanes_select(lanes_abs(distance) > CLOSE_ENTRIES, to->integral - from->integral,
-                      (to->extinction + from->extinction) * 0.5f * distance);
-}
-
-/* The plane's matter at the lit position. likely: how surely there is one, 0 to 1. */
-typedef struct plane_matter {
-  lanes likely;
-  lanes3 slope;        /* entries per frame unit */
-  lanes fall, inverse; /* k, entries per frame unit, and 1 / k */
-  table_origin below;  /* where the light to the lit position enters the slab, or the box */
-} plane_matter;
-
-/* How deep below a surface, in voxels, matter counts fully as a plane's; at twice the depth it does not
- * count. The depth is measured by the gradient, from where visible values begin. Where light grazes the
- * surface it counts less: fully from a cosine of 0.2 on, not at all below 0.1. */
-static const float SKIN_VOXELS = 2;
-
-LANES_INLINE plane_matter plane_of(const block_density *d, lanes3 towards, lanes way) {
-  const shade_volume *volume = d->patch->volume;
-  const classifier *classifier = volume->classifier;
-  plane_matter plane = {.likely = lanes_set(0)};
-  lanes_int facing = d->sloped & (dot3(d->normal, towards) > 0.0f);
-  if (!volume->phong || lanes_bits(facing) == 0) return plane;
-  lanes seen = coordinate_seen(d), sense = lanes_set(1.0f);
-  plane.slope = scale3(d->slope, lanes_set(classifier->scale));
-  plane.fall = -dot3(plane.slope, towards);
-  lanes a_voxel = lanes_sqrt(dot3(plane.slope, plane.slope)) * volume->voxel,
-        least = lanes_abs(plane.fall) * volume->voxel;
-  plane.inverse = lanes_select(plane.fall > 0.0f, sense, -sense) * volume->voxel /
-                  lanes_max(least, lanes_set(1e-4f));
-  lanes edge = lanes_select(plane.fall > 0.0f, lanes_set(classifier->first_visible),
-                            lanes_set(classifier->last_visible));
-  lanes deep = lanes_abs(seen - edge) / lanes_max(a_voxel, lanes_set(1e-6f));
-  plane.likely = lanes_keep(facing, lanes_clamp(lanes_line(deep, -1.0f / SKIN_VOXELS, 2.0f), 0, 1));
-  if (volume->cut_count > 0 || volume->clip_faces) plane.likely = plane.likely * (1.0f - d->skin);
-  plane.likely = plane.likely * lanes_clamp((dot3(d->normal, towards) - 0.1f) * (1.0f / (0.2f - 0.1f)), 0, 1);
-  plane.below = origin_at(classifier, lanes_fma(-plane.fall, way, seen));
-  return plane;
-}
-
-/* The light's ways through all boxes to the ends of the eye's way. cut: lanes where a box's face makes a way
- * shorter than it is through the slab. */
-typedef struct light_ways {
-  ways_in_box all;
-  lanes_int cut;
-} light_ways;
-
-/* Adds a plane's depths: from a box's face on where one cuts the way, else from the slab's first sheet on.
- * share: the fraction of the way that lies in this volume. */
-LANES_INLINE void add_plane(const shade_job *job, const block_density *d, const plane_matter *plane,
-                            const light_ways *ways, lanes share, const near_pixels *near,
-                            light_depths *depths) {
-  const int back_to_front = job->back_to_front, channels = job->channels;
-  const shade_volume *volume = d->patch->volume;
-  const classifier *classifier = volume->classifier;
-  lanes depth = plane->inverse * plane->likely * share;
-  if (hl_classifier_is_weighed(classifier)) depth = depth * d->factor;
-  const lanes end[2] = {back_to_front ? d->after : d->before, back_to_front ? d->before : d->after};
-  const lanes way[2] = {back_to_front ? ways->all.last : ways->all.first,
-                        back_to_front ? ways->all.first : ways->all.last};
-  lanes at[2];
-  for (int i = 0; i < 2; i++) {
-    table_origin from = plane->below, to = origin_at(classifier, end[i]);
-    if (lanes_bits(ways->cut) != 0) {
-      table_origin face = origin_at(classifier, lanes_fma(-plane->fall, way[i], end[i]));
-      from = (table_origin){lanes_select(ways->cut, face.x, from.x),
-                            lanes_select(ways->cut, face.extinction, from.extinction),
-                            lanes_select(ways->cut, face.integral, from.integral)};
-    }
-    at[i] = integral_between(&from, &to) * depth;
-  }
-  lanes rise_u = dot3(plane->slope, near->along_u), rise_v = dot3(plane->slope, near->along_v);
-  lanes there[NEAR_PIXELS];
-  for (int i = 0; i < NEAR_PIXELS; i++) {
-    table_origin pixel = origin_at(
-        classifier, lanes_fma(rise_u, near->u[i], lanes_fma(rise_v, near->v[i], plane->below.x)));
-    there[i] = lanes_keep(~ways->cut, integral_between(&plane->below, &pixel) * depth);
-  }
-  for (int c = 0; c < channels; c++) {
-    lanes cast = lanes_set(volume->cast[c]);
-    depths->enter[c] = lanes_fma(cast, at[0], depths->enter[c]);
-    depths->more[c] = lanes_fma(cast, at[1] - at[0], depths->more[c]);
-    for (int i = 0; i < NEAR_PIXELS; i++) depths->near[c][i] = lanes_fma(cast, there[i], depths->near[c][i]);
-  }
-}
-
-/* Adds what a plane's matter absorbs too much in sub-lights' buffers because slabs are shifted. Derived: the
- * light passes the m-th slab before this one between the densities f_m and f_(m+1) = f_m - k path; a shift
- * that raises the density by d adds the optical depth (E(f_m) - E(f_(m+1))) d / k to first order, E the
- * extinction, P's slope. The mean over the sub-lights has the mean of their d. share: as in add_plane(). */
-LANES_INLINE void add_shifts(const shade_job *job, const block_density *d, const plane_matter *plane,
-                             const seen_light *light, lanes share, light_depths *depths) {
-  const shade_volume *volume = d->patch->volume;
-  const near_pixels *near = light->near;
-  lanes rise_u = dot3(plane->slope, near->along_u), rise_v = dot3(plane->slope, near->along_v);
-  lanes fall = plane->fall * light->path, extinction = plane->below.extinction, sum = lanes_set(0);
-  for (int m = 0; m < SHIFTED_SLABS && lanes_bits(extinction > 0.0f) != 0; m++) {
-    const float *shift = near->shifts->mean[m];
-    table_origin before = origin_at(volume->classifier, plane->below.x - fall * (float)(m + 1));
-    sum = lanes_fma(extinction - before.extinction, lanes_fma(rise_u, lanes_set(shift[0]), rise_v * shift[1]),
-                    sum);
-    extinction = before.extinction;
-  }
-  sum = sum * plane->inverse * plane->likely * share;
-  for (int c = 0; c < job->channels; c++)
-    for (int i = 0; i < NEAR_PIXELS; i++)
-      depths->near[c][i] = lanes_fma(lanes_set(volume->cast[c]), sum, depths->near[c][i]);
-}
-
-/* A way at least this fraction of the slab's counts as the whole slab's: the rest is rounding. */
-static const float WHOLE_WAY = 0.999f;
-
-/* Finds the light's ways, and the lanes where a box makes them shorter than the slab. */
-LANES_INLINE light_ways find_light_ways(const block_slab *slab, block_density *densities, int count,
-                                        lanes3 towards, lanes path) {
-  light_ways ways = {.all = find_ways(slab, densities, count, towards, path)};
-  lanes first = slab->part.begin * path, last = (slab->part.begin + slab->part.length) * path;
-  lanes_int shorter = (ways.all.first < first * WHOLE_WAY) | (ways.all.last < last * WHOLE_WAY);
-  ways.cut = shorter | (slab->part.begin > 1.0f - WHOLE_WAY) | (slab->part.length < WHOLE_WAY);
-  return ways;
-}
 
 /* The greatest optical depth: hardly any light is left, and floats still hold exp(-depth). */
 static const float DEEPEST = 80;
@@ -276,13 +134,13 @@ static const float DEEPEST = 80;
 static const float EVEN_LIGHT = 0.1f;
 
 /* Near a box's face: adds the optical depth of a volume's matter between the face and the slab. `before`
- * receives the depths at the near pixels. share: the fraction of the volume's matter that counts. */
+ * receives the depths at the near pixels. */
 LANES_INLINE void add_face(const shade_job *job, const block_slab *slab, const block_density *d,
-                           const seen_light *light, lanes share, lanes before[HL_CHANNELS][NEAR_PIXELS],
+                           const seen_light *light, lanes before[HL_CHANNELS][NEAR_PIXELS],
                            light_depths *depths) {
   const shade_volume *volume = d->patch->volume;
   faces_of_axis faces[3];
-  lanes likely = find_faces(volume, &slab->geometry, light->towards, light->near, faces) * share;
+  lanes likely = find_faces(volume, &slab->geometry, light->towards, light->near, faces);
   lanes_int there = (likely > 0.0f) & slab->seen & (d->sums.extinction > 0.0f);
   if (lanes_bits(there) == 0) return;
   ways_before ways = find_ways_before(volume, faces, slab, light);
@@ -327,39 +185,23 @@ LANES_INLINE void add_before(int channels, lanes before[HL_CHANNELS][NEAR_PIXELS
   }
 }
 
+/* light->near: null where no face of a box can be near. */
 LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab *slab,
                                           block_density *densities, int count, const seen_light *light) {
   const lanes3 towards = light->towards;
-  const lanes path = light->path;
-  const near_pixels *near = light->near;
-  light_depths depths = {.plane = lanes_set_int(0), .face = lanes_set_int(0), .beside = lanes_set(0)};
-  light_ways ways = find_light_ways(slab, densities, count, towards, path);
-  lanes length = lanes_max(ways.all.last, ways.all.first) - ways.all.first;
+  light_depths depths = {.face = lanes_set_int(0), .beside = lanes_set(0)};
+  ways_in_box all = find_ways(slab, densities, count, towards, light->path);
+  lanes length = lanes_max(all.last, all.first) - all.first;
   lanes first[HL_CHANNELS], last[HL_CHANNELS], before[HL_CHANNELS][NEAR_PIXELS];
   for (int c = 0; c < HL_CHANNELS; c++) {
-    first[c] = last[c] = depths.enter[c] = depths.more[c] = lanes_set(0);
-    depths.before_enter[c] = depths.before_more[c] = lanes_set(0);
+    first[c] = last[c] = depths.before_enter[c] = depths.before_more[c] = lanes_set(0);
     for (int i = 0; i < NEAR_PIXELS; i++) depths.near[c][i] = before[c][i] = lanes_set(0);
   }
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (!d->there) continue;
-    lanes way = lanes_fma(length, d->seen, ways.all.first), extinction = extinction_towards(d, towards, way);
-    plane_matter plane = {.likely = lanes_set(0)};
-    if (near != NULL) plane = plane_of(d, towards, way);
-    lanes_int likely = plane.likely > 0.0f;
-    if (lanes_bits(likely) != 0) {
-      lanes share = count == 1 ? lanes_set(1.0f)
-                               : (d->light_first + d->light_last) /
-                                     lanes_max(ways.all.first + ways.all.last, lanes_set(1e-30f));
-      add_plane(job, d, &plane, &ways, lanes_min(share, lanes_set(1.0f)), near, &depths);
-      if (near->shifts != NULL)
-        add_shifts(job, d, &plane, light, lanes_keep(~ways.cut, lanes_min(share, lanes_set(1.0f))), &depths);
-      depths.plane |= likely;
-      extinction = extinction * (1.0f - plane.likely);
-    }
-    if (near != NULL && d->patch->enter != NULL)
-      add_face(job, slab, d, light, 1.0f - plane.likely, before, &depths);
+    lanes way = lanes_fma(length, d->seen, all.first), extinction = extinction_towards(d, towards, way);
+    if (light->near != NULL && d->patch->enter != NULL) add_face(job, slab, d, light, before, &depths);
     for (int c = 0; c < job->channels; c++) {
       lanes cast = extinction * d->patch->volume->cast[c];
       first[c] = lanes_fma(cast, d->light_first, first[c]);
@@ -369,8 +211,8 @@ LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab
   if (lanes_bits(depths.face) != 0) add_before(job->channels, before, &depths);
   for (int c = 0; c < job->channels; c++) {
     last[c] = lanes_max(last[c], first[c]);
-    depths.enter[c] = depths.enter[c] + (job->back_to_front ? last[c] : first[c]);
-    depths.more[c] = depths.more[c] + (job->back_to_front ? first[c] - last[c] : last[c] - first[c]);
+    depths.enter[c] = job->back_to_front ? last[c] : first[c];
+    depths.more[c] = job->back_to_front ? first[c] - last[c] : last[c] - first[c];
   }
   return depths;
 }

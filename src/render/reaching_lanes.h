@@ -17,14 +17,16 @@ LANES_INLINE shadow_taps taps_of_position(const shade_light *light, const shadow
                           lanes_select(ahead, place[2] / safe, outside));
 }
 
-LANES_INLINE color_lanes mean_of_sublights(const shade_light *light, lanes3 position, uint32_t active) {
+/* The mean over the sub-lights of their transmittance, or of the light at the outside of surfaces. */
+LANES_INLINE color_lanes mean_of_sublights(const shade_light *light, lanes3 position, uint32_t active,
+                                           int outside) {
   color_lanes sum = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   for (int i = 0; i < light->sublight_count; i++) {
     const sublight_lookup *sublight = &light->sublights[i];
+    const sublight_pixel *const *planes = outside ? sublight->outside : sublight->transmittance;
     shadow_taps taps = taps_of_position(light, &sublight->map, position);
     for (int c = 0; c < light->channels; c++)
-      sum.c[c] = lanes_add_scaled(sum.c[c],
-                                  look_up_sublight(&sublight->map, &taps, sublight->transmittance[c], active),
+      sum.c[c] = lanes_add_scaled(sum.c[c], look_up_sublight(&sublight->map, &taps, planes[c], active),
                                   sublight->weight[c]);
   }
   for (int c = 0; c < light->channels; c++)
@@ -37,16 +39,17 @@ LANES_INLINE lanes between_chunks(const shadow_lookup *lookup, lanes older, lane
   return lanes_add_scaled(older, younger - older, lookup->young);
 }
 
+LANES_INLINE lanes look_up_plane(const shadow_lookup *lookup, const shadow_taps *taps, int cubic,
+                                 const float *plane) {
+  return cubic ? look_up_cubic(&lookup->map, taps, plane) : look_up(&lookup->map, taps, plane);
+}
+
 /* A channel of the buffer, interpolated. */
 LANES_INLINE lanes interpolated(const shadow_lookup *lookup, const shadow_taps *taps, int cubic,
                                 int channel) {
-  const float *younger = lookup->transmittance[channel], *older = lookup->older[channel];
-  if (cubic) {
-    lanes light = look_up_cubic(&lookup->map, taps, younger);
-    return older == NULL ? light : between_chunks(lookup, look_up_cubic(&lookup->map, taps, older), light);
-  }
-  lanes light = look_up(&lookup->map, taps, younger);
-  return older == NULL ? light : between_chunks(lookup, look_up(&lookup->map, taps, older), light);
+  lanes light = look_up_plane(lookup, taps, cubic, lookup->transmittance[channel]);
+  if (lookup->older[channel] == NULL) return light;
+  return between_chunks(lookup, look_up_plane(lookup, taps, cubic, lookup->older[channel]), light);
 }
 
 LANES_INLINE void near_light(const shadow_lookup *lookup, const shadow_taps *taps, const float *buffer,
@@ -68,91 +71,188 @@ LANES_INLINE void pass_face(light_depths *depths, int channel, lanes found, lane
   depths->more[channel] = lanes_fma(ratio, depths->before_more[channel], depths->more[channel]);
 }
 
-/* The light that reaches the slab where a plane's own matter makes the buffer vary from pixel to pixel.
- * Derived: at each pixel T = O E, where E = exp(-depth) is the transmittance of the plane's matter and O the
- * transmittance of everything else; where O is the same at all pixels, the weighted mean of T is O times the
- * weighted mean of E. The result is at most the brightest pixel's. */
-LANES_INLINE lanes reaching_plane(const shadow_lookup *lookup, const shadow_taps *taps, light_depths *depths,
-                                  int channel) {
-  lanes light[NEAR_PIXELS], own[NEAR_PIXELS], greatest = lanes_set(0);
+/* The light that reaches the slab near a box's face. Derived: at each pixel T = O E, where E = exp(-depth) is
+ * the transmittance of the box's matter and O the transmittance of everything else; where O is the same at
+ * all pixels, the weighted mean of T is O times the weighted mean of E. */
+LANES_INLINE lanes reaching_face(const shadow_lookup *lookup, const shadow_taps *taps, light_depths *depths,
+                                 int channel) {
+  lanes light[NEAR_PIXELS], own[NEAR_PIXELS];
   near_light(lookup, taps, lookup->transmittance[channel], light);
   if (lookup->older[channel] != NULL) {
     lanes older[NEAR_PIXELS];
     near_light(lookup, taps, lookup->older[channel], older);
     for (int i = 0; i < NEAR_PIXELS; i++) light[i] = between_chunks(lookup, older[i], light[i]);
   }
-  for (int i = 0; i < NEAR_PIXELS; i++) {
-    own[i] = exp_of_depth(depths->near[channel][i]);
-    greatest = lanes_max(greatest, light[i]);
-  }
+  for (int i = 0; i < NEAR_PIXELS; i++) own[i] = exp_of_depth(depths->near[channel][i]);
   lanes sum = between_taps(taps, light[0], light[1], light[2], light[3], 1);
   lanes of_own = between_taps(taps, own[0], own[1], own[2], own[3], 1);
-  if (lanes_bits(depths->face) != 0) {
-    pass_face(depths, channel, sum, of_own);
-    of_own = lanes_select(depths->face, lanes_max(of_own, lanes_set(DARK)), of_own);
-    greatest = lanes_select(depths->face, lanes_set(1.0f), greatest);
-  }
-  lanes reached = lanes_min(sum / lanes_max(of_own, lanes_set(1e-6f)), greatest);
+  pass_face(depths, channel, sum, of_own);
+  lanes reached = lanes_min(sum / lanes_max(of_own, lanes_set(DARK)), lanes_set(1.0f));
   return lanes_select(taps->inside, reached, lanes_set(1.0f));
 }
 
 /* The same for sub-lights: their pixels lie in all positions around the sample, so the mean over the near
  * pixels stands for them. */
-LANES_INLINE void correct_parts(light_depths *depths, int channels, color_lanes *reached) {
+LANES_INLINE void correct_faces(light_depths *depths, int channels, color_lanes *reached) {
   for (int c = 0; c < channels; c++) {
     lanes own = lanes_set(0);
     for (int i = 0; i < NEAR_PIXELS; i++) own = own + exp_of_depth(depths->near[c][i]);
-    if (lanes_bits(depths->face) != 0) pass_face(depths, c, reached->c[c], own * (1.0f / NEAR_PIXELS));
+    pass_face(depths, c, reached->c[c], own * (1.0f / NEAR_PIXELS));
     reached->c[c] = lanes_min(reached->c[c] / lanes_max(own * (1.0f / NEAR_PIXELS), lanes_set(1e-6f)),
                               lanes_set(1.0f));
   }
 }
 
-/* The light that reaches the slab's first sheet below a position, in the active lanes. lookup: of that sheet.
- */
-LANES_INLINE color_lanes reaching(const shade_light *light, const shadow_lookup *lookup,
-                                  const shadow_taps *taps, lanes3 position, light_depths *depths,
-                                  uint32_t active) {
-  uint32_t planes = lanes_bits(depths->plane | depths->face) & active;
+/* Where a slab's samples read a light: at the first sheet below them. */
+typedef struct light_place {
+  const shade_light *light;
+  const shadow_lookup *lookup; /* of that sheet */
+  lanes3 position;             /* of the samples */
+  shadow_taps taps;
+  uint32_t active; /* the lanes with samples */
+} light_place;
+
+/* The light that reaches the slab's first sheet, to media. */
+LANES_INLINE color_lanes reaching(const light_place *place, light_depths *depths) {
+  const shade_light *light = place->light;
+  uint32_t faces = lanes_bits(depths->face) & place->active;
   color_lanes reached = {{lanes_set(0), lanes_set(0), lanes_set(0)}};
   if (light->sublight_count > 0) {
-    reached = mean_of_sublights(light, position, active);
-    if (planes != 0) correct_parts(depths, light->channels, &reached);
+    reached = mean_of_sublights(light, place->position, place->active, 0);
+    if (faces != 0) correct_faces(depths, light->channels, &reached);
     return reached;
   }
-  lanes_int faint = depths->face & ~depths->plane & (depths->beside < 1.0f);
-  int fades = light->cubic && (lanes_bits(faint) & active) != 0;
+  lanes_int faint = depths->face & (depths->beside < 1.0f);
+  int fades = light->cubic && (lanes_bits(faint) & place->active) != 0;
   for (int c = 0; c < light->channels; c++) {
-    if (planes != active || fades) reached.c[c] = interpolated(lookup, taps, light->cubic, c);
-    if (planes == 0) continue;
-    lanes of_plane = reaching_plane(lookup, taps, depths, c);
+    if (faces != place->active || fades)
+      reached.c[c] = interpolated(place->lookup, &place->taps, light->cubic, c);
+    if (faces == 0) continue;
+    lanes at_face = reaching_face(place->lookup, &place->taps, depths, c);
     if (fades) { /* adds the cubic look-up minus the bilinear one, less of it the more the face counts */
-      lanes differ = reached.c[c] - interpolated(lookup, taps, 0, c);
-      of_plane = lanes_max(of_plane + lanes_keep(faint, differ * (1.0f - depths->beside)), lanes_set(0));
+      lanes differ = reached.c[c] - interpolated(place->lookup, &place->taps, 0, c);
+      at_face = lanes_max(at_face + lanes_keep(faint, differ * (1.0f - depths->beside)), lanes_set(0));
     }
-    reached.c[c] = lanes_select(depths->plane | depths->face, of_plane, reached.c[c]);
+    reached.c[c] = lanes_select(depths->face, at_face, reached.c[c]);
   }
   return reached;
 }
 
-/* The transmittance of one light to a slab's samples, through everything before the slab and through the
+/* The transmittance of one light to the media of a slab, through everything before the slab and through the
  * slab's own matter, averaged as the eye sees it. path: length of the light's way through the slab. */
-LANES_INLINE color_lanes passing_light(const shade_job *job, const shade_light *light, const block_slab *slab,
-                                       block_density *densities, int count, lanes3 towards, lanes path) {
-  lanes3 position = slab->geometry.position;
-  const shadow_lookup *lookup = &light->lookups[job->plane];
-  const shadow_map *map = light->sublight_count > 0 ? &light->sublights[0].map : &lookup->map;
-  shadow_taps taps = taps_of_position(light, map, position);
-  near_pixels near = light->sublight_count > 0 ? pixels_of_sublights(light->shifts) : pixels_around(&taps);
-  find_steps(map, light->parallel, set3(job->normal), position, &near);
-  const seen_light seen = {towards, path, light->nearest ? NULL : &near};
+LANES_INLINE color_lanes passing_to_media(const shade_job *job, const light_place *place,
+                                          const block_slab *slab, block_density *densities, int count,
+                                          lanes3 towards, lanes path) {
+  const shade_light *light = place->light;
+  const shadow_map *map = light->sublight_count > 0 ? &light->sublights[0].map : &place->lookup->map;
+  int faces = 0;
+  for (int i = 0; i < count; i++) faces |= densities[i].there && densities[i].patch->enter != NULL;
+  near_pixels near;
+  faces = faces && !light->nearest;
+  if (faces) {
+    near = light->sublight_count > 0 ? pixels_of_sublights() : pixels_around(&place->taps);
+    find_steps(map, light->parallel, set3(job->normal), place->position, &near);
+  }
+  const seen_light seen = {towards, path, faces ? &near : NULL};
   light_depths depths = depths_of_light(job, slab, densities, count, &seen);
-  color_lanes passing = reaching(light, lookup, &taps, position, &depths, lanes_bits(slab->seen));
+  color_lanes passing = reaching(place, &depths);
   for (int c = 0; c < light->channels; c++) {
     lanes own = own_transmittance(slab->depth, slab->left, depths.enter[c], depths.more[c]);
     passing.c[c] = lanes_min(passing.c[c] * own, lanes_set(1.0f));
   }
   return passing;
+}
+
+/* What lights a sample's surface of the light at the slab's first sheet. */
+typedef struct own_surface {
+  lanes kept;      /* the part of what has been taken before the slab that lights it again */
+  lanes passing;   /* the part of the other light that comes to the surface within the slab */
+  lanes_int there; /* the volume's matter is visible at the first sheet, or may be */
+} own_surface;
+
+/* Where the light's way leaves another surface of the volume within the slab, this one has taken what was
+ * taken before. A value from which values rise too little to have come from lower ones within the slab
+ * counts as that of a layer of the surface below. way: the light's way within the slab; light, outside: at
+ * the slab's first sheet. */
+LANES_INLINE own_surface find_own_surface(const block_density *d, lanes3 towards, lanes way, lanes light,
+                                          lanes outside) {
+  const classifier *classifier = d->patch->volume->classifier;
+  lanes seen = lanes_clamp(coordinate_seen(d), 0, CLASSIFIER_ENTRIES),
+        change = lanes_keep(d->sloped, dot3(d->slope, towards) * classifier->scale);
+  lanes start = lanes_clamp(lanes_fma(change, way, seen), 0, CLASSIFIER_ENTRIES);
+  lanes foot = lanes_gather(classifier->outside, lanes_truncate(seen));
+  lanes side = lanes_select(seen >= foot, lanes_set(1.0f), lanes_set(-1.0f));
+  lanes below = lanes_gather(classifier->outside,
+                             lanes_truncate(lanes_clamp(foot - side * 0.5f, 0, CLASSIFIER_ENTRIES)));
+  lanes_int layer = lanes_abs(below - foot) > 1.0f; /* matter below the foot is visible */
+  lanes_int beyond = (start - below) * side < 0.0f;
+  start = lanes_select(layer & beyond, below, start);
+  lanes_int entry = lanes_truncate(start);
+  lanes first = lanes_select(layer & beyond, below, lanes_gather(classifier->outside, entry));
+  own_surface own = {lanes_set(1.0f), lanes_set(1.0f), (first != lanes_from_int(entry)) | (layer & beyond)};
+  lanes_int second = own.there & (first != foot);
+  if (lanes_bits(second) == 0) return own;
+  second_surface other = kept_at_foot(classifier, first, start, foot, lanes_abs(change), light, outside);
+  own.kept = lanes_select(second, other.kept, own.kept);
+  own.passing = lanes_select(second, exp_of_depth(lanes_min(other.ahead, lanes_set(DEEPEST))), own.passing);
+  return own;
+}
+
+/* The mean of find_own_surface() over a slab's volumes, weighted by extinction. Where another volume's matter
+ * is at the slab's first sheet, and a volume's own is not, the other one has taken the light. */
+LANES_INLINE own_surface find_own_surfaces(const block_density *densities, int count, lanes3 towards,
+                                           lanes way, lanes light, lanes outside) {
+  own_surface sum = {lanes_set(0), lanes_set(0), lanes_set_int(0)};
+  lanes weight = lanes_set(0);
+  if (count == 1) return find_own_surface(densities, towards, way, light, outside);
+  for (int i = 0; i < count; i++)
+    if (densities[i].there) sum.there |= find_own_surface(&densities[i], towards, way, light, outside).there;
+  for (int i = 0; i < count; i++) {
+    const block_density *d = &densities[i];
+    if (!d->there || !d->patch->volume->visible || !d->patch->volume->phong) continue;
+    own_surface own = find_own_surface(d, towards, way, light, outside);
+    sum.kept = lanes_fma(lanes_keep(own.there | ~sum.there, own.kept), d->extinction, sum.kept);
+    sum.passing = lanes_fma(own.passing, d->extinction, sum.passing);
+    weight = weight + d->extinction;
+  }
+  lanes inverse = 1.0f / lanes_max(weight, lanes_set(1e-30f));
+  return (own_surface){sum.kept * inverse, sum.passing * inverse, sum.there};
+}
+
+/* The light at the outside of the surfaces in a slab (shadow/attenuate.h). way: of the light from the slab's
+ * first sheet to the samples. */
+LANES_INLINE color_lanes passing_to_surfaces(const light_place *place, const block_density *densities,
+                                             int count, lanes3 towards, lanes way) {
+  const shade_light *light = place->light;
+  const shadow_lookup *lookup = place->lookup;
+  const int several = count > 1 || densities->patch->volume->classifier->several_surfaces;
+  color_lanes passing, outside;
+  own_surface own;
+  if (light->sublight_count > 0) {
+    outside = mean_of_sublights(light, place->position, place->active, 1);
+    if (several) passing = mean_of_sublights(light, place->position, place->active, 0);
+  }
+  for (int c = 0; c < light->channels; c++) {
+    if (light->sublight_count == 0) {
+      outside.c[c] = look_up_plane(lookup, &place->taps, light->cubic, lookup->outside[c]);
+      if (several || lookup->older[c] != NULL)
+        passing.c[c] = look_up_plane(lookup, &place->taps, light->cubic, lookup->transmittance[c]);
+      if (lookup->older[c] != NULL) {
+        lanes taken = outside.c[c] - passing.c[c],
+              older = look_up_plane(lookup, &place->taps, light->cubic, lookup->older[c]);
+        passing.c[c] = between_chunks(lookup, older, passing.c[c]);
+        outside.c[c] = passing.c[c] + lanes_max(taken, lanes_set(0));
+      }
+    }
+    if (several && c == 0)
+      own = find_own_surfaces(densities, count, towards, way, passing.c[0], outside.c[0]);
+    if (several) {
+      lanes passed = passing.c[c] * own.passing;
+      outside.c[c] = lanes_fma(outside.c[c] - passed, own.kept, passed);
+    }
+    outside.c[c] = lanes_min(outside.c[c], lanes_set(1.0f));
+  }
+  return outside;
 }
 
 #endif

@@ -13,9 +13,11 @@
 /* The light that arrives from one light, with its direction (step 14 and the first half of step 15; eqs. 1
  * and 2). */
 typedef struct arriving_light {
-  int dark;                   /* it lights nothing; the other fields are not set */
-  lanes3 towards;             /* unit */
-  color_lanes full, shadowed; /* without and with attenuation */
+  int dark;               /* it lights nothing; the other fields are not set */
+  lanes3 towards;         /* unit */
+  color_lanes full;       /* without attenuation */
+  color_lanes shadowed;   /* with attenuation: on media */
+  color_lanes on_surface; /* the same, on surfaces of volumes */
 } arriving_light;
 
 /* Brightness of a spot light: a smooth step over its cone's edge. */
@@ -45,7 +47,8 @@ LANES_INLINE int is_faced(const block_density *densities, int count, lanes_int s
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (d->there && d->patch->volume->visible && d->patch->volume->lit)
-      faced |= (d->surface < 1.0f) | (dot3(d->normal, towards) > 0.0f);
+      faced |= (d->surface < 1.0f) | (dot3(d->normal, towards) > 0.0f) |
+               lanes_set_int(-d->patch->volume->even);
   }
   return lanes_bits(faced & seen) != 0;
 }
@@ -92,6 +95,42 @@ LANES_INLINE void pass_near_surfaces(const shade_job *job, const shade_light *li
                     lanes_gather(job->near_passing[light->number * job->channels + c], row * TILE + column);
 }
 
+/* Multiplies a light by what passes everything before a slab's samples. */
+LANES_INLINE void attenuate_light(const shade_job *job, const shade_light *light, const block_slab *slab,
+                                  color_lanes *passing, color_lanes *arriving) {
+  lanes transmittance = lanes_set(1.0f);
+  if (job->near_passing != NULL) pass_near_surfaces(job, light, slab, passing);
+  for (int c = 0; c < 3; c++) {
+    if (c < light->channels) transmittance = passing->c[c];
+    arriving->c[c] = arriving->c[c] * transmittance;
+  }
+}
+
+/* What a slab's visible volumes are in some lane: media, surfaces, or both. */
+typedef struct receivers {
+  int media, surfaces;
+} receivers;
+
+LANES_INLINE receivers receivers_in_slab(const block_density *densities, int count, lanes_int seen) {
+  lanes_int media = lanes_set_int(0), surfaces = lanes_set_int(0);
+  for (int i = 0; i < count; i++) {
+    const block_density *d = &densities[i];
+    const shade_volume *volume = d->there ? d->patch->volume : NULL;
+    if (volume == NULL || !volume->visible || !volume->receives_shadow) continue;
+    media |= d->surface < 1.0f;
+    surfaces |= d->surface > 0.0f;
+  }
+  return (receivers){lanes_bits(media & seen) != 0, lanes_bits(surfaces & seen) != 0};
+}
+
+LANES_INLINE light_place place_of_slab(const shade_job *job, const shade_light *light,
+                                       const block_slab *slab) {
+  const shadow_lookup *lookup = &light->lookups[job->plane];
+  const shadow_map *map = light->sublight_count > 0 ? &light->sublights[0].map : &lookup->map;
+  return (light_place){light, lookup, slab->geometry.position,
+                       taps_of_position(light, map, slab->geometry.position), lanes_bits(slab->seen)};
+}
+
 LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *light, const block_slab *slab,
                                      block_density *densities, int count) {
   const block_geometry *g = &slab->geometry;
@@ -100,14 +139,17 @@ LANES_INLINE arriving_light light_at(const shade_job *job, const shade_light *li
   arriving.dark = !is_faced(densities, count, slab->seen, arriving.towards);
   if (arriving.dark) return arriving;
   find_full_light(light, g->position, &arriving);
-  arriving.shadowed = arriving.full;
+  arriving.shadowed = arriving.on_surface = arriving.full;
   if (!light->shadowed || is_dark(&arriving.full)) return arriving;
-  color_lanes passing = passing_light(job, light, slab, densities, count, arriving.towards, path);
-  if (job->near_passing != NULL) pass_near_surfaces(job, light, slab, &passing);
-  lanes transmittance = lanes_set(1.0f);
-  for (int c = 0; c < 3; c++) {
-    if (c < light->channels) transmittance = passing.c[c];
-    arriving.shadowed.c[c] = arriving.shadowed.c[c] * transmittance;
+  receivers on = receivers_in_slab(densities, count, slab->seen);
+  light_place place = place_of_slab(job, light, slab);
+  if (on.media) {
+    color_lanes passing = passing_to_media(job, &place, slab, densities, count, arriving.towards, path);
+    attenuate_light(job, light, slab, &passing, &arriving.shadowed);
+  }
+  if (on.surfaces) {
+    color_lanes passing = passing_to_surfaces(&place, densities, count, arriving.towards, slab->place * path);
+    attenuate_light(job, light, slab, &passing, &arriving.on_surface);
   }
   return arriving;
 }
@@ -159,22 +201,27 @@ LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d
   for (int c = 0; c < 3; c++) lit.c[c] = color.c[c] * (volume->ambient * job->ambient[c] + own);
   for (int i = 0; i < job->light_count && volume->lit; i++) {
     if (lights[i].dark) continue;
-    const color_lanes *intensity = volume->receives_shadow ? &lights[i].shadowed : &lights[i].full;
+    const color_lanes *on_medium = volume->receives_shadow ? &lights[i].shadowed : &lights[i].full,
+                      *on_surface = volume->receives_shadow ? &lights[i].on_surface : &lights[i].full;
     lanes facing = dot3(d->normal, lights[i].towards), medium = 1.0f - d->surface;
     if (volume->anisotropy != 0)
       medium = medium *
                phase_of_light(volume->phase_once, volume->anisotropy, &job->lights[i], lights[i].towards, g);
     const bool of_sky = job->lights[i].of_sky > 0;
     if (of_sky) medium = medium * job->lights[i].of_sky;
-    lanes diffuse = lanes_fma(lanes_max(facing, lanes_set(0)) * volume->diffuse, d->surface, medium);
+    for (int c = 0; c < 3; c++) {
+      lanes even = volume->absorbs ? lanes_fma(medium, lanes_set(volume->albedo[c] - 1), medium) : medium;
+      lit.c[c] = lanes_fma(on_medium->c[c], color.c[c] * even, lit.c[c]);
+    }
+    if (!volume->phong) continue;
+    lanes diffuse = (volume->even ? lanes_set(1.0f) : lanes_max(facing, lanes_set(0)) * volume->diffuse) *
+                    d->surface;
     lanes3 mirrored = add_scaled3(scale3(lights[i].towards, lanes_set(-1.0f)), d->normal, facing * 2.0f);
     lanes glint = power(dot3(g->towards_eye, mirrored), lanes_set(volume->shininess)) * volume->specular *
                   d->surface;
     glint = of_sky ? lanes_set(0) : lanes_keep(facing > 0.0f, glint);
-    for (int c = 0; c < 3; c++) {
-      lanes matt = volume->absorbs ? lanes_fma(medium, lanes_set(volume->albedo[c] - 1), diffuse) : diffuse;
-      lit.c[c] = lanes_fma(intensity->c[c], lanes_fma(color.c[c], matt, glint), lit.c[c]);
-    }
+    for (int c = 0; c < 3; c++)
+      lit.c[c] = lanes_fma(on_surface->c[c], lanes_fma(color.c[c], diffuse, glint), lit.c[c]);
   }
   if (volume->multiple && volume->lit) add_scattered(job, d, g, lights, &color, &lit);
   return lit;

@@ -33,8 +33,9 @@ typedef struct shade_volume {
   const grid *grid;
   const kernel *kernel;
   int phong, visible, receives_shadow;
-  int lit;                                     /* 0: shaded flat, no light changes it */
-  float voxel;                                 /* its smallest edge; frame units */
+  int lit;     /* 0: shaded flat, no light changes it */
+  int even;    /* surfaces send on all light that arrives, from any angle: in a light's shadow layer */
+  float voxel; /* its smallest edge; frame units */
   float ambient, diffuse, specular, shininess; /* ka kd ks n */
   float emission;                              /* ke; 1 for a volume shaded flat */
   float cast[HL_CHANNELS];               /* relative extinction towards the lights; 0: casts no shadow */
@@ -83,13 +84,12 @@ typedef struct shade_light {
                                        reaches a sample */
   const sublight_lookup *sublights; /* [sublight_count]; if any, a sample gets the mean of their light */
   int sublight_count, channels;
-  const sublight_shifts *shifts; /* of the sub-lights' buffers */
-  light_texture texture;         /* the picture that the light projects */
-  light_cone cone;               /* of a spot light */
-  sector_fraction sector;        /* of a light within the content */
-  light_caps caps;               /* of a wide light that is not parallel */
-  int parallel_row;              /* of phase tables; of a wide parallel light, else -1 */
-  int number;                    /* among the sweep's lights */
+  light_texture texture;  /* the picture that the light projects */
+  light_cone cone;        /* of a spot light */
+  sector_fraction sector; /* of a light within the content */
+  light_caps caps;        /* of a wide light that is not parallel */
+  int parallel_row;       /* of phase tables; of a wide parallel light, else -1 */
+  int number;             /* among the sweep's lights */
   int nearest, cubic; /* nearest: the lookup takes the nearest pixel; cubic: by cubic convolution (never of
                          sub-lights); else bilinearly */
 } shade_light;

@@ -30,7 +30,7 @@ LANES_INLINE color_lanes light_before_slab(const shade_job *job, const shade_lig
   const shadow_lookup *lookup = &light->lookups[job->plane];
   const shadow_map *map = light->sublight_count > 0 ? &light->sublights[0].map : &lookup->map;
   position = moved_away(light, map, position, normal);
-  if (light->sublight_count > 0) return mean_of_sublights(light, position, 0xffff);
+  if (light->sublight_count > 0) return mean_of_sublights(light, position, 0xffff, 0);
   color_lanes passing = {{lanes_set(1.0f), lanes_set(1.0f), lanes_set(1.0f)}};
   shadow_taps taps = taps_of_position(light, map, position);
   for (int c = 0; c < light->channels; c++) passing.c[c] = interpolated(lookup, &taps, light->cubic, c);

@@ -69,8 +69,8 @@ typedef struct layer_pass {
 typedef struct sweep_layers {
   layer_pass *passes; /* owned; [pass_count] */
   int pass_count;
-  shade_light *white_lights; /* owned; [light_count of the sweep] */
-  shade_volume *white_media; /* owned; [volume_count]; without surfaces */
+  shade_light *white_lights;  /* owned; [light_count of the sweep] */
+  shade_volume *even_volumes; /* owned; [volume_count]; surfaces send on all light that arrives */
   shade_volume *white_volumes,
       *open_volumes;    /* owned; [volume_count]; with surfaces; and receiving no shadow */
   shade_patch *patches; /* owned; [threads][volume_count]; of a pass's own volumes */

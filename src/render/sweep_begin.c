@@ -30,6 +30,15 @@ void hl_sweep_open(sweep *sweep) {
 }
 
 /* seen: [seen_count] corners of what the eye sees. image: null where the light is even. */
+/* Whether some volume that the eye sees has surfaces on which shadows fall. */
+static bool has_surfaces(const sheet_content *content) {
+  for (int v = 0; v < content->volume_count; v++) {
+    const hl_scene_volume *volume = content->volumes[v].scene;
+    if (volume->visible && volume->receives_shadow && volume->shading == HL_SHADING_PHONG) return true;
+  }
+  return false;
+}
+
 static shadow_setup setup_of_light(const sweep *sweep, const light_source *source, light_emission *emission,
                                    const vec3 *seen, int seen_count) {
   const frame *frame = sweep->frame;
@@ -43,6 +52,7 @@ static shadow_setup setup_of_light(const sweep *sweep, const light_source *sourc
                         .sheets = &sweep->geometry->sheets,
                         .eye = &frame->eye,
                         .exchange = sweep->share->exchange,
+                        .surfaces = has_surfaces(&sweep->content),
                         .channels = sweep->channels,
                         .voxel = frame->voxel,
                         .pixel = frame->pixel,
@@ -358,7 +368,6 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
   light->lookups = from->shadow.lookups;
   light->sublights = from->shadow.sublights;
   light->sublight_count = from->shadow.sublight_count;
-  light->shifts = from->shadow.shifts;
 }
 
 static void set_up_jobs(sweep *sweep) {

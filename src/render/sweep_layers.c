@@ -5,8 +5,8 @@
 
 #include "core/memory.h"
 
-/* Sets up copies of the volumes with white matter: as media, which pass on all the light that arrives, and
- * as they are, with and without what hides the sky. */
+/* Sets up copies of the volumes with white matter: such that pass on all the light that arrives, and as they
+ * are, with and without what hides the sky. */
 static void set_up_white_volumes(sweep *sweep) {
   sweep_layers *layers = &sweep->layers;
   for (size_t i = 0; i < CLASSIFIER_ENTRIES + 2; i++)
@@ -22,10 +22,11 @@ static void set_up_white_volumes(sweep *sweep) {
     white.absorbs = white.multiple = 0;
     layers->white_volumes[g] = layers->open_volumes[g] = white;
     layers->open_volumes[g].receives_shadow = 0;
-    white.phong = 0;
+    white.even = 1;
+    white.specular = 0;
     white.anisotropy = 0;
     white.lit = 1;
-    layers->white_media[g] = white;
+    layers->even_volumes[g] = white;
   }
 }
 
@@ -46,14 +47,14 @@ static hl_status allocate_passes(sweep *sweep, hl_error *error) {
   size_t lights = (size_t)sweep->geometry->light_count, volumes = (size_t)sweep->content.volume_count;
   layers->passes = hl_allocate_zeroed(context, 3 * lights + MOST_OTHER_PASSES, sizeof *layers->passes);
   layers->white_lights = hl_allocate_zeroed(context, lights, sizeof *layers->white_lights);
-  layers->white_media = hl_allocate_zeroed(context, volumes, sizeof *layers->white_media);
+  layers->even_volumes = hl_allocate_zeroed(context, volumes, sizeof *layers->even_volumes);
   layers->white_volumes = hl_allocate_zeroed(context, volumes, sizeof *layers->white_volumes);
   layers->open_volumes = hl_allocate_zeroed(context, volumes, sizeof *layers->open_volumes);
   layers->patches = hl_allocate(context, volumes * (size_t)hl_pool_threads(sweep->content.pool),
                                 sizeof *layers->patches);
   layers->white = hl_allocate_zeroed(context, volumes, sizeof *layers->white);
   layers->ones = hl_allocate(context, CLASSIFIER_ENTRIES + 2, sizeof *layers->ones);
-  if (layers->passes == NULL || layers->white_lights == NULL || layers->white_media == NULL ||
+  if (layers->passes == NULL || layers->white_lights == NULL || layers->even_volumes == NULL ||
       layers->white_volumes == NULL || layers->open_volumes == NULL || layers->patches == NULL ||
       layers->white == NULL || layers->ones == NULL)
     return hl_fail_memory(error, (CLASSIFIER_ENTRIES + 2) * sizeof *layers->ones, "the layers");
@@ -125,14 +126,14 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
 
 void hl_sweep_layers_end(sweep *sweep) {
   sweep_layers *layers = &sweep->layers;
-  void *owned[] = {layers->passes,       layers->white_lights, layers->white_media, layers->white_volumes,
-                   layers->open_volumes, layers->patches,      layers->white,       layers->ones};
+  void *owned[] = {layers->passes,       layers->white_lights, layers->even_volumes, layers->white_volumes,
+                   layers->open_volumes, layers->patches,      layers->white,        layers->ones};
   for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->content.context, owned[i]);
 }
 
 /* The tile's patches, of the pass's own volumes. */
 static const shade_patch *patches_of(const sweep *sweep, const tile_slab *slab, layer_matter matter) {
-  const shade_volume *volumes = matter == MATTER_EVEN    ? sweep->layers.white_media
+  const shade_volume *volumes = matter == MATTER_EVEN    ? sweep->layers.even_volumes
                                 : matter == MATTER_WHITE ? sweep->layers.white_volumes
                                                          : sweep->layers.open_volumes;
   shade_patch *patches = sweep->layers.patches + (size_t)slab->worker * (size_t)sweep->content.volume_count;

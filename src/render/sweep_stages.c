@@ -122,6 +122,8 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
     if (slab.blocks == 0) continue;
     volumes[count] = (attenuate_volume){.classifier = &sweep->content.volumes[g].classifier,
                                         .blocks = slab.blocks,
+                                        .surface = scene->shading == HL_SHADING_PHONG,
+                                        .voxel = sweep->arrays.shade_volumes[g].voxel,
                                         .before = slab.before,
                                         .density = slab.current,
                                         .enter = slab.enter,
@@ -142,9 +144,12 @@ static void composite_light_tile(sweep *sweep, light_shadow *shadow, attenuate_j
   const shadow_method *method = shadow->method;
   shadow_buffer *buffer = shadow->buffer;
   int tile_x = (int)(tile % (size_t)buffer->tiles_x), tile_y = (int)(tile / (size_t)buffer->tiles_x);
-  for (int c = 0; c < job.channels; c++)
-    job.transmittance[c] = hl_shadow_plane_at(buffer, job.sheet, false, c) +
-                           (size_t)tile_y * TILE * buffer->stride + (size_t)tile_x * TILE;
+  size_t first = (size_t)tile_y * TILE * buffer->stride + (size_t)tile_x * TILE;
+  for (int c = 0; c < job.channels; c++) {
+    job.transmittance[c] = hl_shadow_plane_at(buffer, job.sheet, SHADOW_TRANSMITTANCE, c) + first;
+    if (buffer->has_outside)
+      job.outside[c] = hl_shadow_plane_at(buffer, job.sheet, SHADOW_OUTSIDE, c) + first;
+  }
   if (method->before_tile != NULL) method->before_tile(shadow, tile, &job);
   uint32_t worked = 0;
   for (int i = 0; i < job.volume_count; i++) worked |= job.volumes[i].blocks;

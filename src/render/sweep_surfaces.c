@@ -256,6 +256,7 @@ bool hl_sweep_surfaces_attenuate(const sweep *sweep, const attenuate_job *job, f
       float *at = job->transmittance[c] + row * job->stride + column, before = *at;
       float passing = 1 - f->opacity * (float)color[c];
       *at = behind_surface(job, before, passing);
+      if (job->outside[c] != NULL) job->outside[c][row * job->stride + column] *= passing;
       if (job->older[c] != NULL) job->older[c][row * job->stride + column] *= passing;
       if (job->moment[c] != NULL)
         job->moment[c][row * job->moment_stride + column] += (fmaxf(before, 0) - fmaxf(*at, 0)) *

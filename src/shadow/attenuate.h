@@ -15,6 +15,8 @@ typedef struct attenuate_volume {
   const float *before;        /* [256], block-major; on the sheet before */
   const float *enter, *leave; /* [256], block-major; null: the box does not cut anything visible */
   uint32_t blocks;            /* blocks with density on either sheet */
+  int surface;                /* it has surfaces; else it is a medium */
+  float voxel;                /* its smallest edge; frame units */
   float weight[HL_CHANNELS];  /* relative extinction of R, G, B */
   int uncut;                  /* the box does not cut the slab here */
   const grid *grid;           /* of gradient opacity: the gradient's */
@@ -34,6 +36,7 @@ typedef struct attenuate_job {
   int channels;                      /* 1: attenuation is grey; 3 */
   float *transmittance[HL_CHANNELS]; /* the tile's first pixel; rows stride apart */
   float *older[HL_CHANNELS];         /* as transmittance, multiplied alike; null: none */
+  float *outside[HL_CHANNELS];       /* as transmittance: the light at the outside of surfaces; null: none */
   size_t stride;
   float *moment[HL_CHANNELS]; /* the tile's first pixel; rows moment_stride apart; null: none. Raised by the
                                  light that the slab absorbs, times `position` */
@@ -41,6 +44,26 @@ typedef struct attenuate_job {
   float position;
   bool marks; /* surfaces mark pixels that are dark, or that they make so; see below */
 } attenuate_job;
+
+/* A volume's surface is lit by the light that arrives at its outside. Matter that light crosses while it goes
+ * deeper into one and the same surface shades all that lies behind, but not this surface. So a pixel keeps,
+ * beside its transmittance T, the light Y at the outside: Y - T is what the surface has taken so far. A slab
+ * that lets t through, from the value x1 to the value x2, changes them so (derived):
+ *
+ *     Y <- T t + k (Y - T) + k' T (1 - t)      T <- T t
+ *
+ * The depth h of a value is its distance from the nearest value without extinction on the way to the empty
+ * one, classifier.outside. While light goes on within one surface, which has one such value at both ends,
+ * k = k' = min(1, h2 / h1)^OUTWARDS_POWER: 1 while it goes deeper, falling to 0 where the surface ends. Light
+ * that enters another surface within the slab has k = 0 and k' = 1; light that leaves one, or a cut's face,
+ * has k = k' = 0. The product over slabs depends on h at both ends alone, and not on how the way is cut into
+ * slabs. Where values hardly change, matter is no surface (classifier.normal_edge): a voxel of such matter on
+ * the light's way divides k and k' by e. In a medium k = k' = 0. Where several volumes share a slab, k and k'
+ * are their means, weighted by optical depth.
+ *
+ * OUTWARDS_POWER: how soon a surface that light leaves again counts as left: h falls to 2/3 within the
+ * outermost voxel or so of an edge, and then 1/25 of what was taken still lights the surface. */
+#define OUTWARDS_POWER 16
 
 /* A surface in the dark takes no light, but a method that blurs what was taken before needs to know that it
  * is there: light from beside the shadow ends at it, too. Where less than DARK_AT_START is left, the pixel
@@ -52,7 +75,7 @@ typedef struct attenuate_job {
 
 /* Blocks of a tile, one bit each. */
 typedef struct attenuated_blocks {
-  uint32_t lit;   /* of the blocks with density: those that light still reaches */
+  uint32_t lit;   /* of the blocks with density: those that light still reaches, or whose surface it lights */
   uint32_t taken; /* blocks in which some light was absorbed */
 } attenuated_blocks;
 

@@ -88,15 +88,96 @@ LANES_INLINE lanes factor_in_block(const attenuate_job *job, const attenuate_vol
       .factor;
 }
 
+/* What is kept of the light that a surface has taken, k and k' in attenuate.h: of the light that it took
+ * before the slab, and of the light that it takes in the slab. */
+typedef struct kept_light {
+  lanes before, within;
+} kept_light;
+
+/* min(1, to / from)^OUTWARDS_POWER, of depths h. */
+LANES_INLINE lanes power_of_depth(lanes from, lanes to) {
+  lanes left = lanes_min(to / lanes_max(from, lanes_set(1e-6f)), lanes_set(1.0f));
+  for (int power = 1; power < OUTWARDS_POWER; power *= 2) left = left * left;
+  return left;
+}
+
+/* The slab's part in a box that ends this near to the slab's own end is rounding. */
+static const float ROUNDING_OF_SPAN = 1e-3f;
+
+/* Where a face cuts the slab, light comes from no surface, or leaves it. */
+LANES_INLINE kept_light kept_in_span(const attenuate_volume *volume, kept_light kept, covered_span span) {
+  if (volume->enter == NULL) return kept;
+  lanes_int ends = span.begin + span.length<1.0f - ROUNDING_OF_SPAN, begins = span.begin> ROUNDING_OF_SPAN;
+  return (kept_light){lanes_keep(~ends & ~begins, kept.before), lanes_keep(~ends, kept.within)};
+}
+
+/* path: of the light's ray through the slab; extinction: of the slab; at: offset of the block's first pixel.
+ */
+LANES_INLINE kept_light kept_in_block(const attenuate_job *job, const attenuate_volume *volume,
+                                      table_coordinate a, table_coordinate b, covered_span span, lanes path,
+                                      lanes extinction, size_t at) {
+  const lanes none = lanes_set(0), all = lanes_set(1.0f);
+  if (!volume->surface) return (kept_light){none, none};
+  lanes way = path * span.length;
+  lanes even = way - lanes_abs(b.x - a.x) * (1.0f / volume->classifier->normal_edge);
+  const int some_even = lanes_bits(even > 0.0f) != 0;
+  if (some_even) even = lanes_exp_negative(lanes_max(even, lanes_set(0)) * (1.0f / volume->voxel));
+  if (!volume->classifier->several_surfaces) {
+    const float foot = volume->classifier->only_outside, side = volume->classifier->side;
+    lanes left = power_of_depth(lanes_max((a.x - foot) * side, none), lanes_max((b.x - foot) * side, none));
+    if (some_even) left = left * even;
+    return kept_in_span(volume, (kept_light){left, left}, span);
+  }
+  lanes foot_a = lanes_gather(volume->classifier->outside, a.entry),
+        foot_b = lanes_gather(volume->classifier->outside, b.entry), deep = b.x - foot_b,
+        depth = extinction * path;
+  lanes left = power_of_depth(lanes_abs(a.x - foot_a), lanes_abs(deep));
+  lanes_int same = foot_a == foot_b, enters = (b.x - a.x) * deep > 0.0f;
+  if (some_even) left = left * even;
+  kept_light kept = {lanes_keep(same, left), lanes_select(same, left, lanes_keep(enters, all))};
+  lanes_int second = enters & ~same & (foot_a != lanes_from_int(a.entry));
+  if (lanes_bits(second) != 0) {
+    lanes rise = lanes_abs(b.x - a.x) / lanes_max(way, lanes_set(1e-9f));
+    second_surface other = kept_at_foot(volume->classifier, foot_a, a.x, foot_b, rise,
+                                        lanes_load_block(job->transmittance[0] + at, job->stride),
+                                        lanes_load_block(job->outside[0] + at, job->stride));
+    lanes of_first = (1.0f - lanes_exp_negative(lanes_min(other.ahead, depth))) /
+                     lanes_max(1.0f - lanes_exp_negative(depth), lanes_set(1e-6f));
+    kept.before = lanes_select(second, other.kept, kept.before);
+    kept.within = lanes_select(second, lanes_fma(of_first, other.kept - 1.0f, all), kept.within);
+  }
+  return kept_in_span(volume, kept, span);
+}
+
+/* The means over volumes, weighted by optical depth. weight: of one volume. */
+LANES_INLINE void add_kept(kept_light *sum, kept_light kept, lanes weight) {
+  sum->before = lanes_fma(kept.before, weight, sum->before);
+  sum->within = lanes_fma(kept.within, weight, sum->within);
+}
+
 typedef struct attenuated_block {
   int taken, lit;
 } attenuated_block;
 
-/* Attenuates one block. taken: whether it absorbed any light; lit: whether enough is left. */
+/* Composites a slab into a channel of the light at the outside. before, after: the transmittance. Returns the
+ * new light. */
+LANES_INLINE lanes pass_outside(float *at, size_t stride, lanes before, lanes after, kept_light kept) {
+  lanes light = lanes_max(before, lanes_set(0)), left = lanes_max(after, lanes_set(0));
+  lanes taken = lanes_max(lanes_load_block(at, stride) - light, lanes_set(0));
+  lanes outside = lanes_fma(taken, kept.before, lanes_fma(light - left, kept.within, left));
+  lanes_store_block(at, stride, outside);
+  return outside;
+}
+
+/* Attenuates one block. taken: whether it absorbed any light; lit: whether enough is left, or was at the
+ * outside. */
 LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volume_count, int channels,
                                               int tile_x, int tile_y, int block) {
   const int x = block % 4 * BLOCK, y = block / 4 * BLOCK, corner[2] = {tile_x * TILE + x, tile_y * TILE + y};
-  lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  lanes depth[HL_CHANNELS] = {lanes_set(0), lanes_set(0), lanes_set(0)}, total = lanes_set(0);
+  kept_light kept = {lanes_set(0), lanes_set(0)};
+  lanes path = path_through_sheet(&job->rays, job->path, block_u(corner[0]), block_v(corner[1]));
+  int hidden = 0; /* a surface may have ended where its matter is hidden, not where values are low */
   for (int i = 0; i < volume_count; i++) {
     const attenuate_volume *volume = &job->volumes[i];
     if (volume_count > 1 && (volume->blocks >> block & 1) == 0) continue;
@@ -110,13 +191,23 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     if (volume->enter != NULL) cut_way(span, &a, &b);
     way_sums sums = sums_of_way(volume->classifier, a, b);
     lanes extinction = sums.extinction * span.length;
-    if (hl_classifier_is_weighed(volume->classifier))
+    if (hl_classifier_is_weighed(volume->classifier)) {
       extinction = extinction * factor_in_block(job, volume, corner, &sums, a.x, b.x, span);
+      hidden = job->outside[0] != NULL;
+    }
     for (int c = 0; c < channels; c++) depth[c] = lanes_add_scaled(depth[c], extinction, volume->weight[c]);
+    if (job->outside[0] == NULL) continue;
+    kept_light own = kept_in_block(job, volume, a, b, span, path, extinction, (size_t)y * job->stride + x);
+    own.before = lanes_keep(extinction > 0.0f, own.before);
+    if (volume_count == 1) kept = own;
+    else add_kept(&kept, own, extinction), total = total + extinction;
   }
   lanes any = channels == 1 ? depth[0] : depth[0] + depth[1] + depth[2];
-  if (lanes_bits(any > 0.0f) == 0) return (attenuated_block){0, 1};
-  lanes path = path_through_sheet(&job->rays, job->path, block_u(corner[0]), block_v(corner[1]));
+  if (lanes_bits(any > 0.0f) == 0 && !hidden) return (attenuated_block){0, 1};
+  if (volume_count > 1 && job->outside[0] != NULL) {
+    lanes inverse = 1.0f / lanes_max(total, lanes_set(1e-30f));
+    kept = (kept_light){kept.before * inverse, kept.within * inverse};
+  }
   lanes greatest = lanes_set(0);
   for (int c = 0; c < channels; c++) {
     float *at = job->transmittance[c] + (size_t)y * job->stride + x;
@@ -124,6 +215,9 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     lanes before = lanes_load_block(at, job->stride), after = before * passing;
     lanes_store_block(at, job->stride, after);
     greatest = lanes_max(greatest, after);
+    if (job->outside[c] != NULL)
+      greatest = lanes_max(greatest, pass_outside(job->outside[c] + (size_t)y * job->stride + x, job->stride,
+                                                  before, after, kept));
     if (job->older[c] != NULL) {
       float *older = job->older[c] + (size_t)y * job->stride + x;
       lanes older_after = lanes_load_block(older, job->stride) * passing;

@@ -145,8 +145,10 @@ static void lay_out(shadow_buffer *buffer, size_t plane_count, hl_layout *layout
   buffer->tile_touched = hl_layout_take(layout, tiles_of(buffer), 2);
 }
 
-/* The planes of one sheet. */
-static size_t count_planes(int channels, bool second) { return (size_t)channels * (second ? 2 : 1); }
+/* How many planes of each channel a sheet has. */
+static size_t kinds_of_planes(bool outside, bool second) {
+  return 1 + (size_t)(outside ? 1 : 0) + (size_t)(second ? 1 : 0);
+}
 
 static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t plane_count, hl_error *error) {
   hl_layout counted = {0};
@@ -161,6 +163,11 @@ static hl_status reserve(hl_context *context, shadow_buffer *buffer, size_t plan
   return HL_OK;
 }
 
+/* All planes of one sheet, of all channels. */
+static size_t planes_of_sheet(const shadow_buffer_size *size) {
+  return (size_t)size->channels * kinds_of_planes(size->outside, size->second);
+}
+
 size_t hl_shadow_plane(const view *view, int reach) {
   shadow_buffer buffer = {0};
   set_size(view, reach, &buffer);
@@ -171,56 +178,68 @@ uint64_t hl_shadow_buffer_bytes(const shadow_buffer_size *size) {
   shadow_buffer buffer = {0};
   hl_layout counted = {0};
   set_size(size->view, size->reach, &buffer);
-  lay_out(&buffer, (size_t)size->ring * count_planes(size->channels, size->second), &counted);
+  lay_out(&buffer, (size_t)size->ring * planes_of_sheet(size), &counted);
   return counted.bytes;
 }
 
 uint64_t hl_shadow_sheet_bytes(const shadow_buffer_size *size) {
-  return count_planes(size->channels, size->second) * hl_shadow_plane(size->view, size->reach) *
-         sizeof(float);
+  return planes_of_sheet(size) * hl_shadow_plane(size->view, size->reach) * sizeof(float);
 }
 
-float *hl_shadow_plane_at(const shadow_buffer *buffer, int sheet, bool second, int channel) {
+float *hl_shadow_plane_at(const shadow_buffer *buffer, int sheet, shadow_plane kind, int channel) {
   size_t channels = (size_t)buffer->channels, slot = (size_t)(sheet % buffer->ring);
-  size_t plane = (slot * (buffer->two ? 2 : 1) + (second ? 1 : 0)) * channels + (size_t)channel;
+  size_t kinds = kinds_of_planes(buffer->has_outside, buffer->has_second),
+         number = kind == SHADOW_TRANSMITTANCE ? 0
+                  : kind == SHADOW_OUTSIDE     ? 1
+                                               : kinds - 1;
+  size_t plane = (slot * kinds + number) * channels + (size_t)channel;
   return buffer->planes + plane * buffer->plane + buffer->origin;
 }
 
 void hl_shadow_buffer_reach(shadow_buffer *buffer, int sheet) {
   buffer->sheet = sheet;
   for (int c = 0; c < buffer->channels; c++) {
-    buffer->transmittance[c] = hl_shadow_plane_at(buffer, sheet, false, c);
-    buffer->second[c] = buffer->two ? hl_shadow_plane_at(buffer, sheet, true, c) : NULL;
+    buffer->transmittance[c] = hl_shadow_plane_at(buffer, sheet, SHADOW_TRANSMITTANCE, c);
+    buffer->outside[c] = buffer->has_outside ? hl_shadow_plane_at(buffer, sheet, SHADOW_OUTSIDE, c) : NULL;
+    buffer->second[c] = buffer->has_second ? hl_shadow_plane_at(buffer, sheet, SHADOW_SECOND, c) : NULL;
   }
+}
+
+/* Copies a tile of a plane from the sheet before. at: the tile's first pixel. */
+static void carry_plane(const shadow_buffer *buffer, shadow_plane kind, int sheet, int channel, size_t at) {
+  const float *from = hl_shadow_plane_at(buffer, sheet - 1, kind, channel) + at;
+  float *to = hl_shadow_plane_at(buffer, sheet, kind, channel) + at;
+  for (size_t row = 0; row < TILE; row++)
+    memcpy(to + row * buffer->stride, from + row * buffer->stride, TILE * sizeof *to);
 }
 
 void hl_shadow_buffer_carry(shadow_buffer *buffer, size_t tile, int sheet) {
   size_t tiles_x = (size_t)buffer->tiles_x;
   size_t at = tile / tiles_x * TILE * buffer->stride + tile % tiles_x * TILE;
   if (buffer->ring == 1 || !hl_shadow_is_carried(buffer, tile, sheet)) return;
-  for (int second = 0; second < (buffer->two ? 2 : 1); second++)
-    for (int c = 0; c < buffer->channels; c++) {
-      const float *from = hl_shadow_plane_at(buffer, sheet - 1, second, c) + at;
-      float *to = hl_shadow_plane_at(buffer, sheet, second, c) + at;
-      for (size_t row = 0; row < TILE; row++)
-        memcpy(to + row * buffer->stride, from + row * buffer->stride, TILE * sizeof *to);
-    }
+  for (int c = 0; c < buffer->channels; c++) {
+    carry_plane(buffer, SHADOW_TRANSMITTANCE, sheet, c, at);
+    if (buffer->has_outside) carry_plane(buffer, SHADOW_OUTSIDE, sheet, c, at);
+    if (buffer->has_second) carry_plane(buffer, SHADOW_SECOND, sheet, c, at);
+  }
 }
 
 hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer,
                                  const shadow_buffer_size *size, hl_error *error) {
-  size_t plane_count = (size_t)size->ring * count_planes(size->channels, size->second);
+  size_t plane_count = (size_t)size->ring * planes_of_sheet(size);
   set_size(size->view, size->reach, buffer);
   buffer->channels = size->channels;
   buffer->ring = size->ring;
-  buffer->two = size->second;
+  buffer->has_outside = size->outside;
+  buffer->has_second = size->second;
   hl_status status = reserve(context, buffer, plane_count, error);
   if (status != HL_OK) return status;
   hl_pool_fill(pool, buffer->planes, plane_count * buffer->plane, 1);
   for (size_t tile = 0; tile < tiles_of(buffer); tile++) buffer->tile_lit[tile] = ALL_BLOCKS;
   memset(buffer->tile_touched, 0, 2 * tiles_of(buffer));
   memset(buffer->changed, 0, tiles_of(buffer) * sizeof *buffer->changed);
-  for (int c = 0; c < HL_CHANNELS; c++) buffer->transmittance[c] = buffer->second[c] = NULL;
+  for (int c = 0; c < HL_CHANNELS; c++)
+    buffer->transmittance[c] = buffer->outside[c] = buffer->second[c] = NULL;
   hl_shadow_buffer_reach(buffer, 0);
   return HL_OK;
 }
@@ -235,7 +254,8 @@ static uint16_t lit_blocks_of(const shadow_buffer *buffer, float *const planes[H
 
 void hl_shadow_buffer_find_lit(shadow_buffer *buffer, int x, int y, bool both,
                                lit_blocks_function *lit_blocks) {
-  uint16_t lit = lit_blocks_of(buffer, buffer->transmittance, x, y, lit_blocks);
+  uint16_t lit = lit_blocks_of(buffer, buffer->has_outside ? buffer->outside : buffer->transmittance, x, y,
+                               lit_blocks);
   if (both) lit |= lit_blocks_of(buffer, buffer->second, x, y, lit_blocks);
   buffer->tile_lit[y * buffer->tiles_x + x] = lit;
 }

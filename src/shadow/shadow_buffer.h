@@ -6,7 +6,11 @@
  *
  * The light runs ahead of the picture, which reads the planes of earlier sheets: so the planes of a ring of
  * sheets are kept, sheet k's at k % ring. A tile that has changed is carried from sheet to sheet until all
- * planes of the ring hold what it became; a tile that never changes costs nothing. */
+ * planes of the ring hold what it became; a tile that never changes costs nothing.
+ *
+ * Surfaces of volumes are lit by the light that arrives at their outside. Where a scene has such surfaces, a
+ * pixel also holds this light: the transmittance, plus what the surface that the light's ray is in has taken
+ * since the ray entered it (attenuate.h). */
 #ifndef HL_SHADOW_SHADOW_BUFFER_H
 #define HL_SHADOW_SHADOW_BUFFER_H
 
@@ -14,6 +18,15 @@
 #include "light/light_source.h"
 #include "shadow/attenuate.h"
 #include "view/occupancy.h"
+
+/* The planes of one sheet. */
+typedef enum shadow_plane {
+  SHADOW_TRANSMITTANCE,
+  SHADOW_OUTSIDE, /* the light at the outside of the surface that a pixel's ray is in; at least the
+                     transmittance */
+  SHADOW_SECOND   /* the method's own; for `paper` the result of half a blur, for `cascade` the light that
+                     samples   fade from */
+} shadow_plane;
 
 typedef struct shadow_buffer {
   view view;
@@ -23,12 +36,11 @@ typedef struct shadow_buffer {
   size_t plane;                      /* floats of one channel, margins included */
   size_t origin;                     /* offset of pixel (0,0) in a plane */
   int ring;                          /* number of sheets that are kept */
-  bool two;                          /* each sheet has second planes */
+  bool has_outside, has_second;      /* which planes each sheet has beside the transmittance */
   float *transmittance[HL_CHANNELS]; /* pixel (0,0); in memory; of the sheet that was reached last */
-  float *second[HL_CHANNELS];  /* pixel (0,0); in memory; null: none. The method's second planes: for `paper`
-                                  the  result of half a blur, for `cascade` the light that samples fade from */
-  int sheet;                   /* that was reached last */
-  float *planes;               /* in memory; [ring][1 or 2][channels][plane] */
+  float *outside[HL_CHANNELS], *second[HL_CHANNELS]; /* the same for other planes; null: there are none */
+  int sheet;                                         /* that was reached last */
+  float *planes;                                     /* in memory; [ring][1 to 3][channels][plane] */
   int32_t *changed;            /* in memory; [tiles]; the last sheet at which the tile's planes changed */
   uint16_t *tile_lit;          /* in memory; [tiles]; blocks that light still reaches */
   unsigned char *tile_touched; /* in memory; [2][tiles]; 1 where some transmittance is below 1 */
@@ -55,10 +67,10 @@ void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_
 /* What a buffer has room for. */
 typedef struct shadow_buffer_size {
   const view *view;
-  int channels; /* 1 or 3 */
-  bool second;  /* a second set of planes, too */
-  int reach;    /* pixels that blurs read beyond a tile */
-  int ring;     /* sheets that are kept; at least 1 */
+  int channels;         /* 1 or 3 */
+  bool outside, second; /* these planes, too */
+  int reach;            /* pixels that blurs read beyond a tile */
+  int ring;             /* sheets that are kept; at least 1 */
 } shadow_buffer_size;
 
 /* (Re)allocates and sets all transmittances to 1. */
@@ -71,9 +83,9 @@ uint64_t hl_shadow_buffer_bytes(const shadow_buffer_size *size);
 /* Bytes of one sheet's planes. */
 uint64_t hl_shadow_sheet_bytes(const shadow_buffer_size *size);
 
-/* Pixel (0,0) of a channel at a sheet. second: of the second planes. */
-float *hl_shadow_plane_at(const shadow_buffer *buffer, int sheet, bool second, int channel);
-/* Points `transmittance` and `second` to a sheet's planes. */
+/* Pixel (0,0) of a channel of the planes of one kind, which the buffer has, at a sheet. */
+float *hl_shadow_plane_at(const shadow_buffer *buffer, int sheet, shadow_plane kind, int channel);
+/* Points `transmittance`, `outside` and `second` to a sheet's planes. */
 void hl_shadow_buffer_reach(shadow_buffer *buffer, int sheet);
 /* Whether a tile at a sheet, or at one after it, must still be carried. */
 static inline bool hl_shadow_is_carried(const shadow_buffer *buffer, size_t tile, int sheet) {
@@ -100,6 +112,7 @@ typedef struct shadow_map {
 typedef struct shadow_lookup {
   shadow_map map;
   const float *transmittance[HL_CHANNELS]; /* pixel (0,0) */
+  const float *outside[HL_CHANNELS];       /* the same, of the light at the outside of surfaces; null: none */
   const float
       *older[HL_CHANNELS]; /* pixel (0,0); null: none. The earlier transmittance, from which samples fade */
   float young;             /* how far samples have faded to `transmittance`, 0 to 1 */
@@ -113,17 +126,9 @@ enum { SUBLIGHT_ONE = 65535 };
 typedef struct sublight_lookup {
   shadow_map map;
   const sublight_pixel *transmittance[HL_CHANNELS]; /* pixel (0,0) */
+  const sublight_pixel *outside[HL_CHANNELS];       /* the same, at the outside of surfaces; null: none */
   float weight[HL_CHANNELS]; /* in the mean over all sub-lights; 1 for lights without an emission image */
 } sublight_lookup;
-
-/* How far the last slabs lie from their places in the sub-lights' buffers: each is multiplied in at the
- * nearest half pixel. */
-enum { SHIFTED_SLABS = 8 };
-typedef struct sublight_shifts {
-  float mean[SHIFTED_SLABS]
-            [2]; /* along u and v, pixels, averaged over all sub-lights; the last slab comes first.
-                    0 where slabs are scaled: then their pixels are shifted either way */
-} sublight_shifts;
 
 /* The map of a view's pixels; the caller sets its stride. */
 shadow_map hl_map_of_view(const view *view);

@@ -6,7 +6,7 @@
 
 hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, hl_error *error) {
   const shadow_method *method = setup->seen_count == 0 ? NULL : hl_shadow_method(setup->source);
-  *shadow = (light_shadow){.setup = *setup, .plan = {.spare = PIXEL_TO_SPARE}};
+  *shadow = (light_shadow){.setup = *setup, .plan = {.spare = PIXEL_TO_SPARE, .outside = setup->surfaces}};
   if (method == NULL) return HL_OK;
   if (method->state_bytes > 0) {
     shadow->state = hl_allocate_zeroed(setup->context, 1, method->state_bytes);
@@ -19,7 +19,12 @@ hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, 
 
 shadow_buffer_size hl_light_shadow_buffer_size(const light_shadow *shadow, int ring) {
   const shadow_plan *plan = &shadow->plan;
-  return (shadow_buffer_size){&plan->view, shadow->setup.channels, plan->second, plan->reach, ring};
+  return (shadow_buffer_size){.view = &plan->view,
+                              .channels = shadow->setup.channels,
+                              .outside = plan->outside,
+                              .second = plan->second,
+                              .reach = plan->reach,
+                              .ring = ring};
 }
 
 shadow_layouts hl_light_shadow_count(light_shadow *shadow) {
@@ -60,8 +65,10 @@ static hl_status set_up_lookups(light_shadow *shadow, hl_error *error) {
     shadow_lookup *lookup = &shadow->lookups[sheet];
     lookup->map = hl_map_of_view(&shadow->plan.view);
     lookup->map.stride = buffer->stride;
-    for (int c = 0; c < buffer->channels; c++)
-      lookup->transmittance[c] = hl_shadow_plane_at(buffer, sheet, false, c);
+    for (int c = 0; c < buffer->channels; c++) {
+      lookup->transmittance[c] = hl_shadow_plane_at(buffer, sheet, SHADOW_TRANSMITTANCE, c);
+      if (buffer->has_outside) lookup->outside[c] = hl_shadow_plane_at(buffer, sheet, SHADOW_OUTSIDE, c);
+    }
   }
   return HL_OK;
 }

@@ -56,6 +56,7 @@ typedef struct shadow_setup {
   const view *eye;
   const light_exchange *exchange; /* with the other parts of a shared picture; null: there are none, or they
                                      cannot be asked */
+  bool surfaces;                  /* some volume has surfaces, which are lit by the light at their outside */
   int channels;                   /* of attenuation: 1 or 3 */
   double voxel;                   /* the smallest edge of a voxel, frame units */
   double pixel;                   /* edge of a picture's pixel where the content is nearest, frame units */
@@ -74,6 +75,7 @@ typedef struct shadow_plan {
   sheet_light seen;     /* soft methods: the light as the sheets see it */
   view view;            /* the buffer's view */
   bool cubic;           /* the buffer is read by cubic convolution */
+  bool outside;         /* the buffer keeps the light at the outside of surfaces, too */
   bool second;          /* the buffer has second planes */
   int reach;            /* pixels beyond a tile that the method reads */
   double spare;         /* pixels beyond a brick's projection that the picture's look-ups may read */
@@ -97,10 +99,9 @@ typedef struct light_shadow {
   shadow_lookup *lookups; /* owned; [the buffer's ring]; how the picture reads the light at each sheet */
   const sublight_lookup *sublights; /* [sublight_count]; where there are any, the picture reads their mean */
   int sublight_count, sublight_tiles_x, sublight_tiles_y; /* set by plan; tiles: of each sub-light's buffer */
-  const sublight_shifts *shifts; /* of the sub-lights' buffers; null where there are none */
-  void *state;                   /* owned; method->state_bytes */
-  shadow_memory *kept;           /* the renderer's */
-  void *passing;                 /* lent by the reserve */
+  void *state;                                            /* owned; method->state_bytes */
+  shadow_memory *kept;                                    /* the renderer's */
+  void *passing;                                          /* lent by the reserve */
   const int32_t *needed_until; /* [tiles]; the last slab at which this part of a shared picture needs a tile,
                                   0: never; null: it needs all. Borrowed, set before the first slab */
   const int32_t *sublights_until; /* [sublight_count][sublight_tiles_y][sublight_tiles_x]; the same for tiles

@@ -52,6 +52,8 @@ typedef struct refill_job {
   float *to;             /* rows stride_to apart; the buffer */
   float *
       older; /* rows stride_to apart; the second planes: become the old `to`, or the new one unless `again` */
+  float *outside; /* rows stride_to apart; the light at the outside of surfaces: what they have taken stays;
+                     null: none */
   size_t stride, stride_to;
   int kept;  /* the chunk's slabs absorbed some light */
   int again; /* `to` was refilled at the chunk's start as well */

@@ -224,6 +224,10 @@ static void refill_tile(const refill_job *job, int tile_x, int tile_y) {
     if (job->kept) left = left * chunk_transmittance(before, 1.0f - lanes_load(job->absorbed_at_start + at));
     lanes_store(job->older + at_to, job->again ? lanes_max(before, lanes_set(0)) : left);
     lanes_store(job->to + at_to, left);
+    if (job->outside != NULL) {
+      lanes taken = lanes_load(job->outside + at_to) - lanes_max(before, lanes_set(0));
+      lanes_store(job->outside + at_to, lanes_min(left + lanes_max(taken, lanes_set(0)), lanes_set(1.0f)));
+    }
     lanes_store(job->absorbed_at_start + at, 1.0f - left);
   }
 }

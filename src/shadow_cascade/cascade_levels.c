@@ -262,7 +262,7 @@ hl_status hl_cascade_begin(light_shadow *shadow, hl_error *error) {
   cascade->begun = true;
   for (int sheet = 0; sheet < shadow->buffer->ring; sheet++)
     for (int c = 0; c < shadow->setup.channels; c++)
-      shadow->lookups[sheet].older[c] = hl_shadow_plane_at(shadow->buffer, sheet, true, c);
+      shadow->lookups[sheet].older[c] = hl_shadow_plane_at(shadow->buffer, sheet, SHADOW_SECOND, c);
   return HL_OK;
 }
 

@@ -357,6 +357,7 @@ static void refill_piece(void *data, size_t index, int worker) {
                         .absorbed_at_start = task->cascade->absorbed_at_start[c],
                         .to = buffer->transmittance[c],
                         .older = buffer->second[c],
+                        .outside = buffer->outside[c],
                         .stride_to = buffer->stride,
                         .kept = kept,
                         .again = again};
@@ -458,7 +459,7 @@ static void before_tile(const light_shadow *shadow, size_t tile, attenuate_job *
   size_t x = tile % (size_t)buffer->tiles_x * TILE, y = tile / (size_t)buffer->tiles_x * TILE;
   job->moment_stride = cascade->level[0].stride;
   for (int c = 0; c < job->channels; c++) {
-    job->older[c] = hl_shadow_plane_at(buffer, job->sheet, true, c) + y * buffer->stride + x;
+    job->older[c] = hl_shadow_plane_at(buffer, job->sheet, SHADOW_SECOND, c) + y * buffer->stride + x;
     job->moment[c] = cascade->moment[c] + y * job->moment_stride + x;
   }
 }

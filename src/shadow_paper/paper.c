@@ -70,6 +70,8 @@ typedef struct convolution {
   const int32_t *needed_until; /* light_shadow's */
   int sheet, reach;            /* reach: pixels around a tile that it reads */
   unsigned char *wanted;       /* [tiles]; of the tiles that can change */
+  shadow_plane kind;           /* the planes that are convolved now */
+  bool last;                   /* they are the last of this convolution */
   const blur_functions *blur;
   blur_box box;
   /* with an emission image, instead of the box: */
@@ -78,14 +80,19 @@ typedef struct convolution {
   const emission_taps *taps;
 } convolution;
 
+/* The planes that are convolved: all channels of the transmittance, and of the light at the outside. */
+static float *const *planes_of(const shadow_buffer *buffer, shadow_plane kind) {
+  return kind == SHADOW_OUTSIDE ? buffer->outside : buffer->transmittance;
+}
+
 static void blur_rows(void *data, size_t index, int worker) {
   (void)worker;
   const convolution *task = data;
   const shadow_buffer *buffer = task->buffer;
+  float *const *planes = planes_of(buffer, task->kind);
   for (int x = 0; x < buffer->tiles_x; x++)
     for (int c = 0; c < buffer->channels && task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]; c++) {
-      const blur_job job = {buffer->transmittance[c], buffer->second[c], buffer->stride, buffer->stride,
-                            task->box};
+      const blur_job job = {planes[c], buffer->second[c], buffer->stride, buffer->stride, task->box};
       task->blur->rows(&job, x, (int)index);
     }
 }
@@ -94,14 +101,14 @@ static void blur_columns(void *data, size_t index, int worker) {
   (void)worker;
   const convolution *task = data;
   shadow_buffer *buffer = task->buffer;
+  float *const *planes = planes_of(buffer, task->kind);
   for (int x = 0; x < buffer->tiles_x; x++) {
     if (!task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]) continue;
     for (int c = 0; c < buffer->channels; c++) {
-      const blur_job job = {buffer->second[c], buffer->transmittance[c], buffer->stride, buffer->stride,
-                            task->box};
+      const blur_job job = {buffer->second[c], planes[c], buffer->stride, buffer->stride, task->box};
       task->blur->columns(&job, x, (int)index);
     }
-    hl_shadow_buffer_find_lit(buffer, x, (int)index, false, task->blur->lit_blocks);
+    if (task->last) hl_shadow_buffer_find_lit(buffer, x, (int)index, false, task->blur->lit_blocks);
   }
 }
 
@@ -109,9 +116,10 @@ static void weigh_emission(void *data, size_t index, int worker) {
   (void)worker;
   const convolution *task = data;
   const shadow_buffer *buffer = task->buffer;
+  float *const *planes = planes_of(buffer, task->kind);
   for (int x = 0; x < buffer->tiles_x; x++)
     for (int c = 0; c < buffer->channels && task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]; c++) {
-      const emission_job job = {.from = buffer->transmittance[c],
+      const emission_job job = {.from = planes[c],
                                 .to = buffer->second[c],
                                 .stride = buffer->stride,
                                 .count = task->count,
@@ -125,15 +133,34 @@ static void copy_back(void *data, size_t index, int worker) {
   (void)worker;
   const convolution *task = data;
   shadow_buffer *buffer = task->buffer;
+  float *const *planes = planes_of(buffer, task->kind);
   for (int x = 0; x < buffer->tiles_x; x++) {
     if (!task->wanted[index * (size_t)buffer->tiles_x + (size_t)x]) continue;
     for (int c = 0; c < buffer->channels; c++)
       for (size_t row = 0; row < TILE; row++) {
         size_t at = (index * TILE + row) * buffer->stride + (size_t)x * TILE;
-        memcpy(buffer->transmittance[c] + at, buffer->second[c] + at, TILE * sizeof(float));
+        memcpy(planes[c] + at, buffer->second[c] + at, TILE * sizeof(float));
       }
-    hl_shadow_buffer_find_lit(buffer, x, (int)index, false, task->blur->lit_blocks);
+    if (task->last) hl_shadow_buffer_find_lit(buffer, x, (int)index, false, task->blur->lit_blocks);
   }
+}
+
+/* Convolves the planes of one kind; those of the other kinds stay. last: the tiles' lit blocks are found
+ * again, too. */
+static void convolve_planes(const soft_paper *soft, convolution *task, shadow_plane kind, bool last,
+                            hl_pool *pool) {
+  size_t rows = (size_t)task->buffer->tiles_y;
+  task->kind = kind;
+  task->last = last;
+  hl_pool_run(pool, rows, soft->emission != NULL ? weigh_emission : blur_rows, task);
+  hl_pool_run(pool, rows, soft->emission != NULL ? copy_back : blur_columns, task);
+}
+
+/* Convolves all planes that the picture reads. */
+static void convolve_all(const soft_paper *soft, convolution *task, hl_pool *pool) {
+  bool outside = task->buffer->has_outside;
+  convolve_planes(soft, task, SHADOW_TRANSMITTANCE, !outside, pool);
+  if (outside) convolve_planes(soft, task, SHADOW_OUTSIDE, true, pool);
 }
 
 static void convolve_with_emission(const soft_paper *soft, convolution *task, int width, hl_pool *pool) {
@@ -146,8 +173,7 @@ static void convolve_with_emission(const soft_paper *soft, convolution *task, in
   task->count = taps.count;
   task->offset = offset;
   task->taps = &taps;
-  hl_pool_run(pool, (size_t)task->buffer->tiles_y, weigh_emission, task);
-  hl_pool_run(pool, (size_t)task->buffer->tiles_y, copy_back, task);
+  convolve_all(soft, task, pool);
 }
 
 /* ---- which tiles ---- */
@@ -215,8 +241,7 @@ static void convolve(const soft_paper *soft, const light_shadow *shadow, int she
   if (soft->emission != NULL) {
     convolve_with_emission(soft, &task, width, pool);
   } else {
-    hl_pool_run(pool, (size_t)buffer->tiles_y, blur_rows, &task);
-    hl_pool_run(pool, (size_t)buffer->tiles_y, blur_columns, &task);
+    convolve_all(soft, &task, pool);
   }
   for (size_t tile = 0; tile < tiles; tile++) buffer->tile_touched[tile] |= task.wanted[tile];
 }

@@ -155,8 +155,9 @@ LANES_INLINE uint32_t lit_columns(const sublight_job *job, size_t at) {
   uint32_t columns = 0;
   for (int row = 0; row < BLOCK; row++)
     for (int c = 0; c < job->channels; c++)
-      columns |= lanes_bits(lanes_load_short(job->transmittance[c] + at + (size_t)row * job->stride) >=
-                            DARK_SUBLIGHT);
+      columns |= lanes_bits(
+          lanes_load_short((job->outside[c] != NULL ? job->outside : job->transmittance)[c] + at +
+                           (size_t)row * job->stride) >= DARK_SUBLIGHT);
   return columns;
 }
 
@@ -169,9 +170,29 @@ static uint32_t sublight_lit(const sublight_job *job, int tile_x, int tile_y, ui
   return lit & left;
 }
 
-/* Multiplies sixteen of a sub-light's pixels by the slab's. */
-LANES_INLINE void composite_sublight(const sublight_job *job, sublight_pixel *at, lanes slab_transmittance) {
-  lanes_store_short_int(at, lanes_truncate(lanes_load_short(at) * slab_transmittance + job->carry));
+/* Multiplies sixteen of a sub-light's pixels by the slab's, `offset` pixels after the first one. */
+LANES_INLINE lanes composite_sublight(const sublight_job *job, int channel, ptrdiff_t offset,
+                                      lanes slab_transmittance) {
+  sublight_pixel *at = job->transmittance[channel] + offset;
+  lanes light = lanes_load_short(at);
+  lanes_store_short_int(at, lanes_truncate(light * slab_transmittance + job->carry));
+  return light;
+}
+
+/* A slab that takes less than this does not tell what of it surfaces keep. */
+static const float LEAST_TAKEN = 1e-5f;
+
+/* Composites the slab into the light at the outside. light: the transmittance before. Derived: with k = k'
+ * (attenuate.h), Y becomes T t + k (Y - T t), and full light becomes Y' = t + k (1 - t), which tells k. */
+LANES_INLINE void composite_outside(const sublight_job *job, int channel, ptrdiff_t offset, lanes light,
+                                    lanes slab_transmittance, lanes slab_outside) {
+  sublight_pixel *at = job->outside[channel] + offset;
+  lanes taken = 1.0f - slab_transmittance, left = light * slab_transmittance;
+  lanes kept = lanes_clamp((slab_outside - slab_transmittance) / lanes_max(taken, lanes_set(LEAST_TAKEN)), 0,
+                           1);
+  kept = lanes_select(taken > LEAST_TAKEN, kept, lanes_set(1.0f));
+  lanes outside = lanes_fma(lanes_max(lanes_load_short(at) - left, lanes_set(0)), kept, left);
+  lanes_store_short_int(at, lanes_truncate(outside + job->carry));
 }
 
 static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
@@ -189,14 +210,18 @@ static int sublight_tile(const sublight_job *job, int tile_x, int tile_y) {
     int row = __builtin_ctz(left);
     ptrdiff_t line = (halves[row] >> 1) * (ptrdiff_t)job->slab_stride;
     for (int c = 0; c < job->channels; c++) {
-      const float *const *copies = &job->slab[c][2 * (halves[row] & 1)];
-      const float *const rows[2] = {copies[0] + line, copies[1] + line};
-      sublight_pixel *at = job->transmittance[c] + corner + (size_t)row * job->stride;
+      const int copy = 2 * (halves[row] & 1);
+      const float *const rows[2] = {job->slab[c][copy] + line, job->slab[c][copy + 1] + line};
+      ptrdiff_t at = (ptrdiff_t)(corner + (size_t)row * job->stride);
       lanes slab_transmittance = slab_row(&taps, rows);
       if (lanes_bits(slab_transmittance < 1.0f) == 0)
         continue; /* the sub-light's row need not come from memory */
-      composite_sublight(job, at, slab_transmittance);
+      lanes light = composite_sublight(job, c, at, slab_transmittance);
       touched = 1;
+      if (job->outside[c] == NULL) continue;
+      const float *const outside[2] = {job->slab_outside[c][copy] + line,
+                                       job->slab_outside[c][copy + 1] + line};
+      composite_outside(job, c, at, light, slab_transmittance, slab_row(&taps, outside));
     }
   }
   return touched;
@@ -233,10 +258,9 @@ LANES_INLINE int is_dark_tile(const sublight_job *job, const uint16_t *lit, int 
   return tile_x < 0 || tile_x >= job->tiles_x || lit[tile_x] == 0;
 }
 
-/* The sub-light's pixels under a tile's first column. */
-LANES_INLINE sublight_pixel *pixels_under(const sublight_job *job, int channel, int tile_x, int tile_y) {
-  return job->transmittance[channel] + (ptrdiff_t)(tile_y * TILE) * (ptrdiff_t)job->stride + tile_x * TILE -
-         (job->half[0] >> 1);
+/* The sub-light's pixels under a tile's first column: their offset from the first pixel. */
+LANES_INLINE ptrdiff_t pixels_under(const sublight_job *job, int tile_x, int tile_y) {
+  return (ptrdiff_t)(tile_y * TILE) * (ptrdiff_t)job->stride + tile_x * TILE - (job->half[0] >> 1);
 }
 
 /* Finds the sub-light's rows that a tile of the slab darkens, marks the sub-light's tiles as touched and
@@ -256,7 +280,7 @@ LANES_INLINE uint32_t begin_shifted(const sublight_job *job, int tile_x, int til
   if (!reached) return 0;
   for (int c = 0; c < job->channels; c++)
     for (uint32_t left = rows; left != 0; left &= left - 1) {
-      const sublight_pixel *at = pixels_under(job, c, tile_x, tile_y) +
+      const sublight_pixel *at = job->transmittance[c] + pixels_under(job, tile_x, tile_y) +
                                  __builtin_ctz(left) * (ptrdiff_t)job->stride;
       __builtin_prefetch(at, 1);
       __builtin_prefetch(at + TILE - 1, 1);
@@ -267,13 +291,17 @@ LANES_INLINE uint32_t begin_shifted(const sublight_job *job, int tile_x, int til
 LANES_INLINE void composite_shifted(const sublight_job *job, int tile_x, int tile_y, uint32_t rows) {
   int top = tile_y * TILE + (job->half[1] >> 1);
   for (int c = 0; c < job->channels; c++) {
-    const float *from = job->slab[c][copy_of_shift(job)] + (ptrdiff_t)top * (ptrdiff_t)job->slab_stride +
-                        tile_x * TILE;
-    sublight_pixel *to = pixels_under(job, c, tile_x, tile_y);
+    const int copy = copy_of_shift(job);
+    const ptrdiff_t from = (ptrdiff_t)top * (ptrdiff_t)job->slab_stride + tile_x * TILE,
+                    to = pixels_under(job, tile_x, tile_y);
     for (uint32_t left = rows; left != 0; left &= left - 1) {
-      int row = __builtin_ctz(left);
-      composite_sublight(job, to + row * (ptrdiff_t)job->stride,
-                         lanes_load(from + row * (ptrdiff_t)job->slab_stride));
+      const ptrdiff_t row = __builtin_ctz(left), at = from + row * (ptrdiff_t)job->slab_stride,
+                      pixel = to + row * (ptrdiff_t)job->stride;
+      lanes slab_transmittance = lanes_load(job->slab[c][copy] + at);
+      lanes light = composite_sublight(job, c, pixel, slab_transmittance);
+      if (job->outside[c] != NULL)
+        composite_outside(job, c, pixel, light, slab_transmittance,
+                          lanes_load(job->slab_outside[c][copy] + at));
     }
   }
 }

@@ -38,15 +38,18 @@ static void lay_out_planes(sublights *sublights) {
   sublights->plane = ((size_t)sublights->tiles_y * TILE + ROWS_BEYOND) * sublights->stride;
 }
 
+/* The planes of one sub-light: all channels of each kind. */
+static size_t planes_of_sublight(const sublights *all) { return (size_t)all->channels * (size_t)all->kinds; }
+
 static void lay_out_sublights(light_shadow *shadow, shadow_layouts *layouts) {
   sublights *all = shadow->state;
   hl_layout *layout = &layouts->passing;
-  size_t count = (size_t)all->count, channels = (size_t)all->channels;
+  size_t count = (size_t)all->count, planes = planes_of_sublight(all);
   size_t tiles = (size_t)all->tiles_x * (size_t)all->tiles_y;
   const view *slab = &shadow->plan.view;
   size_t slab_tiles = hl_view_tiles(slab);
-  all->memory = hl_layout_take(layout, count * channels, all->plane * sizeof *all->memory);
-  all->moved_floats = MOVED_COPIES * channels * hl_shadow_plane(slab, shadow->plan.reach);
+  all->memory = hl_layout_take(layout, count * planes, all->plane * sizeof *all->memory);
+  all->moved_floats = MOVED_COPIES * planes * hl_shadow_plane(slab, shadow->plan.reach);
   all->moved = hl_layout_take(layout, all->moved_floats, sizeof *all->moved);
   all->sublight = hl_layout_take(layout, count, sizeof *all->sublight);
   all->lookups = hl_layout_take(layout, count, sizeof *all->lookups);
@@ -59,7 +62,7 @@ static void lay_out_sublights(light_shadow *shadow, shadow_layouts *layouts) {
 /* Fills all buffers with full light. */
 static void fill_sublights(const light_shadow *shadow, sublights *all) {
   hl_pool *pool = shadow->setup.pool;
-  size_t count = (size_t)all->count, pixels = count * (size_t)all->channels * all->plane;
+  size_t count = (size_t)all->count, pixels = count * planes_of_sublight(all) * all->plane;
   size_t tiles = (size_t)all->tiles_x * (size_t)all->tiles_y;
   size_t slab_tiles = (size_t)shadow->buffer->tiles_x * (size_t)shadow->buffer->tiles_y;
   hl_pool_set(pool, all->memory, pixels * sizeof(sublight_pixel), 0xff); /* SUBLIGHT_ONE */
@@ -83,18 +86,27 @@ static hl_status weigh_sublights(hl_context *context, sublights *sublights, cons
   return HL_OK;
 }
 
+/* Pixel (0,0) of a channel of the transmittance, or of the light at the outside. */
+static sublight_pixel *sublight_plane(const sublights *all, const sublight *one, shadow_plane kind,
+                                      int channel) {
+  size_t number = (size_t)(kind == SHADOW_OUTSIDE ? all->channels : 0) + (size_t)channel;
+  return one->pixels + number * all->plane;
+}
+
 static void begin_sublight(const light_shadow *shadow, sublights *all, int i) {
   sublight *one = &all->sublight[i];
   size_t tiles = (size_t)all->tiles_x * (size_t)all->tiles_y, first = (size_t)i * tiles;
   int unused_x = 0, unused_y = 0;
-  *one = (sublight){.pixels = all->memory + (size_t)i * (size_t)all->channels * all->plane + TILE,
+  *one = (sublight){.pixels = all->memory + (size_t)i * planes_of_sublight(all) * all->plane + TILE,
                     .lit = all->flags + first,
                     .touched = all->marks + first};
   view_of_sublight(shadow, i, &one->view, &unused_x, &unused_y);
   all->lookups[i] = (sublight_lookup){.map = hl_map_of_view(&one->view), .weight = {1, 1, 1}};
   all->lookups[i].map.stride = all->stride;
-  for (int c = 0; c < all->channels; c++)
-    all->lookups[i].transmittance[c] = one->pixels + (size_t)c * all->plane;
+  for (int c = 0; c < all->channels; c++) {
+    all->lookups[i].transmittance[c] = sublight_plane(all, one, SHADOW_TRANSMITTANCE, c);
+    if (all->kinds > 1) all->lookups[i].outside[c] = sublight_plane(all, one, SHADOW_OUTSIDE, c);
+  }
 }
 
 static hl_status begin_sublights(light_shadow *shadow, hl_error *error) {
@@ -103,7 +115,6 @@ static hl_status begin_sublights(light_shadow *shadow, hl_error *error) {
   fill_sublights(shadow, all);
   for (int i = 0; i < all->count; i++) begin_sublight(shadow, all, i);
   shadow->sublights = all->lookups;
-  shadow->shifts = &all->shifts;
   if (setup->emission == NULL) return HL_OK;
   return weigh_sublights(setup->context, all, setup->source, setup->settings->light_samples, error);
 }
@@ -111,8 +122,17 @@ static hl_status begin_sublights(light_shadow *shadow, hl_error *error) {
 /* ---- compositing ---- */
 
 /* Pixel (0,0) of one of the slab's shifted copies; copy: from 1. */
-static float *moved_copy(const sublights *sublights, const shadow_buffer *slab, int channel, int copy) {
-  return sublights->moved + ((size_t)channel * MOVED_COPIES + (size_t)copy - 1) * slab->plane + slab->origin;
+static float *moved_copy(const sublights *sublights, const shadow_buffer *slab, shadow_plane kind,
+                         int channel, int copy) {
+  size_t number = (size_t)(kind == SHADOW_OUTSIDE ? sublights->channels : 0) + (size_t)channel;
+  return sublights->moved + (number * MOVED_COPIES + (size_t)copy - 1) * slab->plane + slab->origin;
+}
+
+/* Pixel (0,0) of the slab itself, copy 0, or of one of its shifted copies. */
+static float *slab_copy(const sublights *sublights, const shadow_buffer *slab, shadow_plane kind, int channel,
+                        int copy) {
+  if (copy > 0) return moved_copy(sublights, slab, kind, channel, copy);
+  return (kind == SHADOW_OUTSIDE ? slab->outside : slab->transmittance)[channel];
 }
 
 /* Where the sub-light's ray through its pixel (at, at) meets a height, in the slab's pixels; false if that
@@ -168,9 +188,13 @@ static void map_sublight(const sublights *sublights, sublight *sublight, const s
   for (int axis = 0; axis < 2 && sublight->shifted; axis++)
     sublight->job.half[axis] = (int)floor(2 * zero[axis] + 0.5);
   for (int c = 0; c < sublights->channels; c++) {
-    sublight->job.slab[c][0] = slab->transmittance[c];
-    for (int i = 1; i < SLAB_COPIES; i++) sublight->job.slab[c][i] = moved_copy(sublights, slab, c, i);
-    sublight->job.transmittance[c] = sublight->pixels + (size_t)c * sublights->plane;
+    for (int i = 0; i < SLAB_COPIES; i++)
+      sublight->job.slab[c][i] = slab_copy(sublights, slab, SHADOW_TRANSMITTANCE, c, i);
+    sublight->job.transmittance[c] = sublight_plane(sublights, sublight, SHADOW_TRANSMITTANCE, c);
+    if (sublights->kinds == 1) continue;
+    for (int i = 0; i < SLAB_COPIES; i++)
+      sublight->job.slab_outside[c][i] = slab_copy(sublights, slab, SHADOW_OUTSIDE, c, i);
+    sublight->job.outside[c] = sublight_plane(sublights, sublight, SHADOW_OUTSIDE, c);
   }
 }
 
@@ -333,11 +357,13 @@ static void move_row(void *data, size_t index, int worker) {
   for (int x = 0; x < slab->tiles_x; x++) {
     int x1 = x + 1 < slab->tiles_x ? x + 1 : x;
     if (!any_touched(slab, x, x1, y, y1)) continue;
-    for (int c = 0; c < all->channels; c++) {
-      half_pixel_job job = {.slab = slab->transmittance[c], .slab_stride = slab->stride};
-      for (int i = 1; i < SLAB_COPIES; i++) job.moved[i] = moved_copy(all, slab, c, i);
-      all->rows[index * (size_t)slab->tiles_x + (size_t)x] |= task->functions->half_pixel(&job, x, y);
-    }
+    for (int k = 0; k < all->kinds; k++)
+      for (int c = 0; c < all->channels; c++) {
+        const shadow_plane kind = k == 0 ? SHADOW_TRANSMITTANCE : SHADOW_OUTSIDE;
+        half_pixel_job job = {.slab = slab_copy(all, slab, kind, c, 0), .slab_stride = slab->stride};
+        for (int i = 1; i < SLAB_COPIES; i++) job.moved[i] = slab_copy(all, slab, kind, c, i);
+        all->rows[index * (size_t)slab->tiles_x + (size_t)x] |= task->functions->half_pixel(&job, x, y);
+      }
   }
 }
 
@@ -351,9 +377,11 @@ static void clear_row(void *data, size_t index, int worker) {
     size_t tile = index * (size_t)slab->tiles_x + (size_t)x,
            at = index * TILE * slab->stride + (size_t)x * TILE;
     for (int c = 0; c < slab->channels; c++)
-      for (int i = 0; i < SLAB_COPIES; i++)
-        fill_ones((i == 0 ? slab->transmittance[c] : moved_copy(all, slab, c, i)) + at, slab->stride,
-                  all->rows[tile] >> TILE * i);
+      for (int i = 0; i < SLAB_COPIES; i++) {
+        const slab_rows rows = all->rows[tile] >> TILE * i;
+        fill_ones(slab_copy(all, slab, SHADOW_TRANSMITTANCE, c, i) + at, slab->stride, rows);
+        if (all->kinds > 1) fill_ones(slab_copy(all, slab, SHADOW_OUTSIDE, c, i) + at, slab->stride, rows);
+      }
     all->rows[tile] = 0;
     slab->tile_touched[tile] = 0;
   }
@@ -383,21 +411,6 @@ static void map_run(sublights *sublights, const shadow_buffer *slab, vec3 normal
   }
 }
 
-/* Tells how far the current slab is shifted: its pixel at x + half / 2 darkens a sub-light's pixel x, in
- * place of the one at x + shift. */
-static void note_shifts(sublights *sublights) {
-  float(*mean)[2] = sublights->shifts.mean;
-  memmove(mean[1], mean[0], (SHIFTED_SLABS - 1) * sizeof *mean);
-  for (int axis = 0; axis < 2; axis++) {
-    double sum = 0;
-    for (int i = 0; i < sublights->count; i++) {
-      const sublight *sublight = &sublights->sublight[i];
-      if (sublight->shifted) sum += 0.5 * sublight->job.half[axis] - (double)sublight->job.shift[axis];
-    }
-    mean[0][axis] = (float)(sum / sublights->count);
-  }
-}
-
 static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, int sheet) {
   (void)occupancy;
   const sheet_stack *sheets = shadow->setup.sheets;
@@ -407,7 +420,6 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
   hl_pool *pool = shadow->setup.pool;
   for (int i = 0; i < sublights->count; i++)
     map_sublight(sublights, &sublights->sublight[i], slab, sheets->normal, (from + to) / 2);
-  note_shifts(sublights);
   sublight_task task = {.sublights = sublights,
                         .slab = slab,
                         .functions = shadow->setup.functions->sublights,
@@ -535,6 +547,7 @@ static void plan_sublights(light_shadow *shadow) {
   view unused;
   all->count = side * side;
   all->channels = setup->channels;
+  all->kinds = plan->outside ? 2 : 1;
   for (int i = 0; i < all->count; i++) view_of_sublight(shadow, i, &unused, &all->tiles_x, &all->tiles_y);
   shadow->sublight_count = all->count;
   shadow->sublight_tiles_x = all->tiles_x;
@@ -544,7 +557,8 @@ static void plan_sublights(light_shadow *shadow) {
 
 static hl_status check_sublights(const light_shadow *shadow, hl_error *error) {
   const sublights *all = shadow->state;
-  double bytes = (double)all->count * all->channels * (double)all->plane * sizeof(sublight_pixel);
+  double bytes = (double)all->count * (double)planes_of_sublight(all) * (double)all->plane *
+                 sizeof(sublight_pixel);
   if (bytes <= GREATEST_BYTES) return HL_OK;
   return hl_fail(error, HL_ERROR_UNSUPPORTED,
                  "/render/light_samples: %d sub-lights need %.1f GB of shadow buffers, more than "

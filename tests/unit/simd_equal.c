@@ -547,7 +547,7 @@ typedef struct attenuate_state {
   attenuate_volume volumes[2];
   float density[2][4][TILE_PIXELS];
   struct {
-    float field[2 * HL_CHANNELS][TILE][TILE];
+    float field[3 * HL_CHANNELS][TILE][TILE];
     attenuated_blocks blocks;
     uint32_t lit;
   } out;
@@ -578,25 +578,29 @@ static void set_up_attenuate(attenuate_state *s, uint32_t *seed, int round) {
   for (int c = 0; c < HL_CHANNELS; c++) {
     s->job.transmittance[c] = &s->out.field[c][0][0];
     s->job.moment[c] = round % 4 ? &s->out.field[HL_CHANNELS + c][0][0] : NULL;
+    s->job.outside[c] = round % 5 ? &s->out.field[2 * HL_CHANNELS + c][0][0] : NULL;
   }
   for (int v = 0; v < 2; v++) {
     fill_salted(s->density[v][0], 2 * TILE_PIXELS, seed, -0.1, 1.1);
     fill_salted(s->density[v][2], 2 * TILE_PIXELS, seed, 0, 2);
     if (round % 8 == 3) s->density[v][0][v] = NAN;
     static const float to_index[3][4] = {{0.4f, 0.1f, 0, 3}, {0, 0.3f, 0.1f, 2}, {0.1f, 0, 0.5f, 4}};
-    s->volumes[v] = (attenuate_volume){classifier_of(round + v),
-                                       s->density[v][0],
-                                       s->density[v][1],
-                                       v == round % 3 ? s->density[v][2] : NULL,
-                                       v == round % 3 ? s->density[v][3] : NULL,
-                                       round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed)),
-                                       {0, 0.5f, 1},
-                                       round % 5 == 4,
-                                       &gradient_bench[(round + v) % GRADIENT_GRIDS].grid,
-                                       hl_kernel_get((hl_kernel)(round % 3)),
-                                       to_index};
+    s->volumes[v] = (attenuate_volume){
+        .classifier = classifier_of(round + v),
+        .density = s->density[v][0],
+        .before = s->density[v][1],
+        .enter = v == round % 3 ? s->density[v][2] : NULL,
+        .leave = v == round % 3 ? s->density[v][3] : NULL,
+        .blocks = round == 0 ? ALL_BLOCKS : (uint32_t)(65536 * bench_random(seed)),
+        .surface = (round + v) % 3 != 0,
+        .voxel = 0.9f,
+        .weight = {0, 0.5f, 1},
+        .uncut = round % 5 == 4,
+        .grid = &gradient_bench[(round + v) % GRADIENT_GRIDS].grid,
+        .kernel = hl_kernel_get((hl_kernel)(round % 3)),
+        .to_index = to_index};
   }
-  for (int c = 0; c < 2 * HL_CHANNELS; c++) {
+  for (int c = 0; c < 3 * HL_CHANNELS; c++) {
     fill_salted(&s->out.field[c][0][0], TILE_PIXELS, seed, 0, 1);
     for (int i = 0; i < TILE_PIXELS && round % 2; i++) (&s->out.field[c][0][0])[i] *= 1e-3f; /* around dark */
   }
@@ -638,6 +642,7 @@ typedef struct field_state {
   struct {
     float pixels[FIELD][FIELD];
     field_pixel lacking[FIELD][FIELD];
+    sublight_pixel outside[FIELD][FIELD];
     int lit;
     unsigned char touched[4];
   } out;
@@ -708,6 +713,7 @@ static void test_fields(void **unused) {
                           .absorbed_at_start = &s.out.pixels[MARGIN + 2 * TILE][MARGIN],
                           .to = &s.out.pixels[MARGIN][MARGIN],
                           .older = &s.out.pixels[MARGIN + 4 * TILE][MARGIN],
+                          .outside = round % 3 ? &s.out.pixels[MARGIN + 4 * TILE][MARGIN + 2 * TILE] : NULL,
                           .stride = FIELD,
                           .stride_to = FIELD,
                           .kept = round & 1,
@@ -758,9 +764,13 @@ static void test_fields(void **unused) {
     for (int c = 0; c < HL_CHANNELS; c++) {
       for (int i = 0; i < SLAB_COPIES; i++) s.sublight.slab[c][i] = &s.a[MARGIN + c][MARGIN + 5 * i];
       s.sublight.transmittance[c] = out;
+      if (round % 4 == 3) continue;
+      for (int i = 0; i < SLAB_COPIES; i++)
+        s.sublight.slab_outside[c][i] = &s.a[MARGIN + c + 3][MARGIN + 5 * i + 1];
+      s.sublight.outside[c] = &s.out.outside[MARGIN][MARGIN];
     }
     s.dark = s.sublight;
-    for (int c = 0; c < HL_CHANNELS; c++) s.dark.transmittance[c] = &s.shade[0][0];
+    for (int c = 0; c < HL_CHANNELS; c++) s.dark.transmittance[c] = &s.shade[0][0], s.dark.outside[c] = NULL;
     for (int i = 0; i < FIELD * FIELD; i++)
       (&s.shade[0][0])[i] = random_between(&seed, 0, 1) < 0.95f
                                 ? 0
@@ -879,12 +889,16 @@ static void set_up_lights(shade_state *s, uint32_t *seed, int round) {
     s->lookups[i].young = 0.3f;
     for (int c = 0; c < HL_CHANNELS; c++) {
       s->lookups[i].transmittance[c] = &s->buffer[c][2][2];
+      s->lookups[i].outside[c] = &s->buffer[c][6][5];
       s->lookups[i].older[c] = round % 2 ? &s->buffer[c][9][7] : NULL;
     }
     for (int part = 0; part < 3; part++) {
       s->sublights[i][part] = (sublight_lookup){.map = random_map(seed, part == 0 ? 9 : 2),
                                                 .weight = {1, 0.7f, salted(seed, 0, 1)}};
-      for (int c = 0; c < HL_CHANNELS; c++) s->sublights[i][part].transmittance[c] = &s->left[c][2][2];
+      for (int c = 0; c < HL_CHANNELS; c++) {
+        s->sublights[i][part].transmittance[c] = &s->left[c][2][2];
+        s->sublights[i][part].outside[c] = &s->left[c][4][7];
+      }
     }
     if (round % 4 == 3) light->cone = (light_cone){{-light->towards[0], 0.6f, -light->towards[2]}, 0.3f, 4};
     if ((round + i) % 3 == 0) {
@@ -954,6 +968,7 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    (round + v) % 7 != 6,
                                    v == 0,
                                    (round + v) % 6 != 5,
+                                   round % 9 == 7,
                                    round % 4 ? 0.9f : 20,
                                    0.5f,
                                    0.8f,

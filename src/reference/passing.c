@@ -1,0 +1,219 @@
+/* reference/passing.c - the light that passes volumes and surfaces on a ray: to a point, and to the outside
+ * of the surface of a volume that the point lies in.
+ *
+ * A volume's surface is lit by the light that arrives at its outside: matter that light crosses while it goes
+ * deeper into one and the same surface does not shade this surface. A ray is followed from the point to the
+ * light. What a step does to the light T and to what the surface has taken, A, is linear in both, so two
+ * factors hold what all steps between it and the point make of T and of A. */
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "reference/reference.h"
+
+/* Optical depth, in every channel, beyond which a light counts as dark: exp(-18) is 2e-8. */
+static const double DARK_DEPTH = 18;
+
+void hl_reference_transmittance(const reference *all, const reference_ray *ray, crossing *scratch,
+                                double passing[3]) {
+  double depth[3] = {0, 0, 0};
+  march walk;
+  hl_reference_march_begin(all, REFERENCE_CASTS_SHADOW, ray, scratch, &walk);
+  while (hl_reference_march_next(&walk)) {
+    for (size_t v = 0; v < walk.count; v++) {
+      const crossing *part = &walk.crossings[v];
+      if (!part->occupied) continue;
+      double value = hl_reference_value(part->volume, part->here);
+      double extinction = hl_reference_extinction(part->volume, value, part->here);
+      for (int c = 0; c < 3; c++)
+        depth[c] += extinction * walk.length * part->volume->described->attenuation_color[c];
+    }
+    if (fmin(depth[0], fmin(depth[1], depth[2])) > DARK_DEPTH) break;
+  }
+  hl_reference_surfaces_passing(all, ray, passing);
+  for (int c = 0; c < 3; c++) passing[c] *= exp(-depth[c]);
+}
+
+/* ---- where surfaces begin ---- */
+
+/* Optical depth in a unit distance of matter of this value; of a function of two numbers, the greatest. */
+static double extinction_at(const reference_volume *volume, double value) {
+  if (value < volume->transparent_below) return 0;
+  double opacity = hl_transfer_function_opacity(&volume->described->transfer_function, value);
+  return -log1p(-fmin(opacity, 1 - 1e-12));
+}
+
+static double value_of_foot(const reference_volume *volume, int index) {
+  return volume->feet_low + (volume->feet_high - volume->feet_low) * (index + 0.5) / HL_REFERENCE_FEET;
+}
+
+static int index_of_value(const reference_volume *volume, double value) {
+  double place = (value - volume->feet_low) / (volume->feet_high - volume->feet_low) * HL_REFERENCE_FEET;
+  return (int)fmin(fmax(place, 0), HL_REFERENCE_FEET - 1);
+}
+
+/* The value at which the surface of a value begins. */
+static double foot_of(const reference_volume *volume, double value) {
+  return volume->feet[index_of_value(volume, value)];
+}
+
+/* Walks from the empty value outwards: a surface begins at the last value without extinction. A second
+ * surface begins after extinction did not rise over a twentieth of the values since the first one's
+ * beginning, and then rises by half. */
+static void find_feet(reference_volume *volume, int first, int step) {
+  double foot = volume->empty_value, level = 0;
+  int beginning = first, mark = -1;
+  for (int at = first; at >= 0 && at < HL_REFERENCE_FEET; at += step) {
+    double extinction = extinction_at(volume, value_of_foot(volume, at));
+    int span = (int)ceil(abs(at - beginning) / 20.0), back = at - step * (span > 1 ? span : 1);
+    bool rose = (back - beginning) * step <= 0 ||
+                extinction > extinction_at(volume, value_of_foot(volume, back));
+    if (!(extinction > 0)) {
+      foot = value_of_foot(volume, at);
+      beginning = at;
+      mark = -1;
+    } else if (!rose && (mark < 0 || extinction <= level)) {
+      mark = at;
+      level = extinction;
+    } else if (mark >= 0 && extinction >= 1.5 * level) {
+      foot = value_of_foot(volume, mark);
+      for (int of = mark; of != at; of += step) volume->feet[of] = foot;
+      beginning = mark;
+      mark = -1;
+    }
+    volume->feet[at] = foot;
+  }
+}
+
+hl_status hl_reference_feet_create(hl_context *context, reference_volume *volume, hl_error *error) {
+  const hl_volume *grid = volume->grid;
+  volume->feet = hl_allocate(context, HL_REFERENCE_FEET, sizeof *volume->feet);
+  if (volume->feet == NULL)
+    return hl_fail_memory(error, HL_REFERENCE_FEET * sizeof *volume->feet, "the reference");
+  volume->feet_low = fmin(grid->minimum, volume->empty_value);
+  volume->feet_high = fmax(grid->maximum, volume->empty_value);
+  if (!(volume->feet_high > volume->feet_low)) volume->feet_high = volume->feet_low + 1;
+  int empty = index_of_value(volume, volume->empty_value);
+  find_feet(volume, empty, -1);
+  find_feet(volume, empty, 1);
+  return HL_OK;
+}
+
+/* ---- the light at the outside ---- */
+
+/* What a step keeps of the light that the surface took before it, and of what it takes itself. second: light
+ * comes from another surface into this one, and a part of what that one took may count as this one's. */
+typedef struct kept_light {
+  double before, within;
+  bool second;
+} kept_light;
+
+/* from, to: the values at the step's ends, as light goes. */
+static kept_light kept_of_step(const reference_volume *volume, double from, double to, double length) {
+  double foot_from = foot_of(volume, from), foot_to = foot_of(volume, to), deep = to - foot_to,
+         left = fmin(fabs(deep) / fmax(fabs(from - foot_from), 1e-300), 1);
+  double even = length - fabs(to - from) / volume->surface_gradient;
+  bool same = foot_from == foot_to, enters = (to - from) * deep > 0;
+  left = pow(left, 16) * exp(-fmax(even, 0) / volume->smallest_edge);
+  if (same) return (kept_light){left, left, false};
+  return (kept_light){0, enters ? 1 : 0, enters && extinction_at(volume, from) > 0};
+}
+
+/* A surface is another one's second, of which it is not yet known whether that one is a layer of its own. */
+typedef struct pending_layer {
+  bool any;
+  double depth, rise, ramp; /* the layer's depth so far; of the second one: values per length; the depth that
+                               a straight ramp would have, times that */
+} pending_layer;
+
+/* What all steps between here and the point make of the light, and of what the surface has taken: factors.
+ * `kept`: the same, if what the layer before took counts as the surface's. */
+typedef struct light_factors {
+  double light[3], kept_light[3], kept_taken;
+} light_factors;
+
+static double ramp_depth(const reference_volume *volume, double from, double to) {
+  const int steps = 256;
+  double sum = 0;
+  for (int i = 0; i < steps; i++) sum += extinction_at(volume, from + (to - from) * (i + 0.5) / steps);
+  return sum / steps * fabs(to - from) / volume->described->transfer_function.unit_distance;
+}
+
+/* A layer up to 1.2 times as thick as a straight ramp of values counts as the surface's, one of 1.6 times not
+ * at all. */
+static void settle(light_factors *all, pending_layer *layer) {
+  double ratio = layer->depth * layer->rise / fmax(layer->ramp, 1e-300),
+         kept = fmin(fmax((1.6 - ratio) / 0.4, 0), 1);
+  for (int c = 0; c < 3; c++) all->light[c] += kept * all->kept_light[c], all->kept_light[c] = 0;
+  all->kept_taken *= kept;
+  layer->any = false;
+}
+
+/* The nearer end of a step in each volume: where the last step was, and its value. */
+typedef struct last_value {
+  double at, value;
+} last_value;
+
+/* Adds a step to the factors. depth: of all volumes in the step, in each channel; kept: their mean. */
+static void add_step(light_factors *all, pending_layer *layer, const double depth[3], kept_light kept) {
+  if (layer->any && kept.before == 0) settle(all, layer);
+  for (int c = 0; c < 3; c++) {
+    double passing = exp(-depth[c]), taken = 1 - passing;
+    if (layer->any) {
+      all->light[c] *= passing;
+      all->kept_light[c] = all->kept_light[c] * passing + all->kept_taken * kept.within * taken;
+    } else {
+      all->light[c] = all->light[c] * passing + all->kept_taken * kept.within * taken;
+    }
+  }
+  if (layer->any) layer->depth += (depth[0] + depth[1] + depth[2]) / 3;
+  if (kept.second) layer->any = true;
+  else all->kept_taken *= kept.before;
+}
+
+void hl_reference_outside(const reference *all, const reference_ray *ray, const reference_receiver *at,
+                          crossing *scratch, double passing[3]) {
+  light_factors factors = {{1, 1, 1}, {0, 0, 0}, 1};
+  pending_layer layer = {.any = false};
+  last_value last[HL_REFERENCE_VOLUMES];
+  march walk;
+  hl_reference_march_begin(all, REFERENCE_CASTS_SHADOW, ray, scratch, &walk);
+  for (size_t v = 0; v < walk.count && v < HL_REFERENCE_VOLUMES; v++)
+    last[v] = (last_value){0, walk.crossings[v].volume == at->surface_of ? at->value : NAN};
+  while (hl_reference_march_next(&walk)) {
+    double depth[3] = {0, 0, 0}, total = 0;
+    kept_light kept = {0, 0, false};
+    for (size_t v = 0; v < walk.count && v < HL_REFERENCE_VOLUMES; v++) {
+      const crossing *part = &walk.crossings[v];
+      const reference_volume *volume = part->volume;
+      if (!part->occupied) continue;
+      double value = hl_reference_value(volume, part->here),
+             here = hl_reference_extinction(volume, value, part->here) * walk.length, nearer = last[v].value;
+      bool beside = walk.at - last[v].at < 1.5 * walk.length, known = !isnan(nearer);
+      last[v] = (last_value){walk.at, value};
+      if (!(here > 0)) continue;
+      for (int c = 0; c < 3; c++) depth[c] += here * volume->described->attenuation_color[c];
+      total += here;
+      if (volume->described->shading != HL_SHADING_PHONG || !beside) continue;
+      kept_light own = kept_of_step(volume, value, known ? nearer : value, walk.length);
+      kept.before += here * own.before;
+      kept.within += here * own.within;
+      if (!own.second) continue;
+      double foot = foot_of(volume, nearer);
+      layer.depth = 0;
+      layer.rise = fabs(nearer - value) / walk.length;
+      layer.ramp = ramp_depth(volume, foot_of(volume, value), foot);
+      kept.second = true;
+    }
+    if (!(total > 0)) {
+      kept.before = 0;
+    } else {
+      kept.before /= total;
+      kept.within /= total;
+    }
+    add_step(&factors, &layer, depth, kept);
+    if (fmax(factors.light[0], fmax(factors.light[1], factors.light[2])) + factors.kept_taken < 1e-8) break;
+  }
+  if (layer.any) settle(&factors, &layer);
+  hl_reference_surfaces_passing(all, ray, passing);
+  for (int c = 0; c < 3; c++) passing[c] *= factors.light[c];
+}
