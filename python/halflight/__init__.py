@@ -14,7 +14,7 @@ if not getattr(_sys, "_is_gil_enabled", lambda: True)():
 
 from ._library import lib as _lib, text_of as _text_of
 from .camera import Camera
-from .colors import colormaps
+from .colors import colormaps, srgb
 from .errors import HalflightWarning, InputError, UnsupportedError
 from .image import Image
 from .lights import Directional, Disk, EmissionImage, Light, Point, Polygon, Rect, Spot, Texture
@@ -31,5 +31,5 @@ __version__ = _text_of(_lib.hl_version())
 __all__ = [
     "Camera", "Directional", "Disk", "EmissionImage", "HalflightWarning", "Image", "Info", "InputError", "Light", "Mesh",
     "Point", "Polygon", "Rect", "Renderer", "Scene", "Spot", "Texture", "TransferFunction", "UnsupportedError", "Volume",
-    "colormaps", "info", "limit_memory", "presets", "reference", "render", "show",
+    "colormaps", "info", "limit_memory", "presets", "reference", "render", "show", "srgb",
 ]

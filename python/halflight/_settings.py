@@ -6,6 +6,8 @@ import numbers
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ._library import ffi, lib, text_of
 from ._words import choice
 
@@ -35,7 +37,7 @@ def table(kind: int) -> dict[str, Setting]:
     return rows
 
 
-def number(place: str, value: object) -> float:
+def number(place: str, value: Any) -> float:
     """A real number."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         if not (hasattr(value, "__float__") and getattr(value, "shape", None) == ()):
@@ -50,6 +52,35 @@ def numbers_of(place: str, value: Any, count: int = 3) -> list[float]:
     if len(value) != count:
         raise ValueError(f"{place}: {len(value)} numbers where {count} are needed")
     return [number(f"{place}[{index}]", one) for index, one in enumerate(value)]
+
+
+def same(one: Any, other: Any) -> bool:
+    """Whether two values of keywords are the same; arrays and whatever holds them, too."""
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        return one.keys() == other.keys() and all(same(value, other[word]) for word, value in one.items())
+    if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):
+        return len(one) == len(other) and all(map(same, one, other))
+    if hasattr(one, "__array__") and hasattr(other, "__array__") and hasattr(one, "dtype"):
+        return np.array_equal(np.asarray(one), np.asarray(other))
+    return bool(one == other)
+
+
+def size_of(place: str, value: Any) -> tuple[int, int]:
+    """(width, height) in pixels of (width, height), one number for a square, or a text such as "640x480"."""
+    if isinstance(value, str):
+        parts = value.lower().replace("×", "x").split("x")
+        if len(parts) not in (1, 2) or not all(part.strip().isdecimal() for part in parts):
+            raise ValueError(f"{place}: '{value}' is no size: give (width, height), a number, or a text such as '640x480'")
+        value = [int(part) for part in parts]
+    elif not hasattr(value, "__len__") and not isinstance(value, bool) and hasattr(value, "__index__"):
+        value = [int(value)]
+    given = numbers_of(place, [*value] * 2 if isinstance(value, list) and len(value) == 1 else value, 2)
+    for word, one in zip(("width", "height"), given, strict=True):
+        if one != int(one):
+            raise ValueError(f"{place}: {word}: {one!r} is no whole number")
+    if min(given) < 1:
+        raise ValueError(f"{place}: {given[0]:g} x {given[1]:g} pixels: give whole numbers from 1 on, (width, height)")
+    return int(given[0]), int(given[1])
 
 
 def to_field(place: str, setting: Setting, value: object) -> object:

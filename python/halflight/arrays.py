@@ -8,6 +8,8 @@ second slice. Other arrays are copied once, by the library.
 from __future__ import annotations
 
 from collections.abc import Sequence
+import weakref
+import zlib
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -51,7 +53,7 @@ def spacing_xyz(spacing: Spacing, axes: str) -> list[float]:
     return [given[axes.index(name)] for name in "xyz"]
 
 
-def _matrix(place: str, value: Any, shapes: Sequence[tuple[int, int]]) -> list[list[float]]:
+def matrix_of(place: str, value: Any, shapes: Sequence[tuple[int, int]]) -> list[list[float]]:
     """A matrix of one of these shapes, or its numbers in a row."""
     try:
         matrix = np.asarray(value, dtype=np.float64)
@@ -71,17 +73,29 @@ def make_place(axes: str, spacing: Spacing | None, origin: Any, direction: Any, 
         for name, value in (("spacing", spacing), ("origin", origin), ("direction", direction)):
             if value is not None:
                 raise TypeError(f"{name} and affine say the same: give one of them")
-        rows = _matrix("affine", affine, [(4, 4), (3, 4)])
+        rows = matrix_of("affine", affine, [(4, 4), (3, 4)])
         return Place(tuple(row[3] for row in rows[:3]), tuple(tuple(row[n] for row in rows[:3]) for n in range(3)))
     along = spacing_xyz(1.0 if spacing is None else spacing, axes)
-    turned = np.eye(3).tolist() if direction is None else _matrix("direction", direction, [(3, 3)])
+    turned = np.eye(3).tolist() if direction is None else matrix_of("direction", direction, [(3, 3)])
     first = [0.0, 0.0, 0.0] if origin is None else numbers_of("origin", origin)
     return Place(tuple(first), tuple(tuple(row[n] * along[n] for row in turned) for n in range(3)))
+
+
+def without_single_axes(array: Any) -> Any:
+    """The array without axes of length 1 beyond three, the first ones first."""
+    while len(array.shape) > 3 and 1 in array.shape:
+        index: list[Any] = [slice(None)] * len(array.shape)
+        index[tuple(array.shape).index(1)] = 0
+        array = array[tuple(index)]
+    return array
 
 
 def readable(array: np.ndarray[Any, Any], axes: str) -> np.ndarray[Any, Any]:
     """The voxels as [z][y][x] in a type and byte order that the library reads; a view where that is possible."""
     if array.ndim != 3:
+        if array.ndim == 2:
+            raise ValueError(f"the array has the shape {array.shape}: a volume has three axes, here '{axes}'; "
+                             "of one slice, use array[None]")
         raise ValueError(f"the array has the shape {array.shape}: a volume has three axes, here '{axes}'; "
                          "of more, choose with an index, such as array[0]")
     if isinstance(array, np.ma.MaskedArray):
@@ -140,11 +154,66 @@ def _as_it_lies(voxels: np.ndarray[Any, Any], place: Place) -> _Lying:
     return _Lying(turned, Place(tuple(origin), tuple(steps[2 - axis] for axis in reversed(order))), strides)
 
 
+class Loan:
+    """Voxels that a volume borrows, [z][y][x], with their place and what a sample of them was when they were borrowed."""
+
+    __slots__ = ("__weakref__", "owner", "place", "sample", "space", "voxels")
+
+    def __init__(self, voxels: np.ndarray[Any, Any], place: Place, space: int, owner: object) -> None:
+        self.voxels, self.place, self.space, self.owner = voxels, place, space, owner
+        self.sample = _sample_of(voxels)
+
+    def is_unchanged(self) -> bool:
+        """Whether the sample is what it was."""
+        return self.sample == _sample_of(self.voxels)
+
+
+_SAMPLED = 48  # voxels along each axis
+
+_loans: weakref.WeakValueDictionary[int, Loan] = weakref.WeakValueDictionary()  # by the address of the volume
+
+
+def _sample_of(voxels: np.ndarray[Any, Any]) -> int:
+    """A checksum of a lattice of voxels, which a change of any box that is as wide as its gaps meets."""
+    steps = tuple(slice(None, None, -(-size // _SAMPLED)) for size in voxels.shape)
+    return zlib.crc32(np.ascontiguousarray(voxels[steps]).view(np.uint8).data)
+
+
+class Packed(NamedTuple):
+    """An array as its bytes lie in memory, with what makes the same view of them: so that copies have its order, too."""
+
+    voxels: np.ndarray[Any, Any]
+    order: tuple[int, ...]
+    turned: tuple[bool, ...]
+
+    def view(self) -> np.ndarray[Any, Any]:
+        """The array, its axes in the order of memory that the packed one's have."""
+        return self.voxels.transpose(self.order)[_from_the_end(self.turned)]
+
+
+def _from_the_end(turned: Sequence[bool]) -> tuple[slice, ...]:
+    return tuple(slice(None, None, -1 if one else None) for one in turned)
+
+
+def packed(array: np.ndarray[Any, Any]) -> Packed:
+    """The array for pickle."""
+    turned = tuple(stride < 0 for stride in array.strides)
+    falling = sorted(range(array.ndim), key=lambda axis: -abs(array.strides[axis]))
+    lying = np.ascontiguousarray(array[_from_the_end(turned)].transpose(falling))
+    return Packed(lying, tuple(falling.index(axis) for axis in range(array.ndim)), turned)
+
+
+def loan_of(handle: Any) -> Loan | None:
+    """What an hl_volume borrows; None where it has its own voxels."""
+    return _loans.get(int(ffi.cast("uintptr_t", handle)))
+
+
 def make_volume(array: np.ndarray[Any, Any], axes: str, place: Place, space: int, owner: object) -> Any:
     """An hl_volume of the array's voxels; `owner` is kept as long as it borrows them."""
     if 0 in array.shape:
         raise ValueError(f"the array has the shape {array.shape}: there is no voxel in it")
-    voxels = readable(array, axes)
+    voxels = readable(without_single_axes(array), axes)
+    given, where = voxels, place
     kind = voxels.dtype.str[1:]
     strides = _strides(voxels)
     if kind in _BORROWED:
@@ -157,11 +226,14 @@ def make_volume(array: np.ndarray[Any, Any], axes: str, place: Place, space: int
     description.origin, description.axis = place.origin, place.steps
     description.space = space
     description.voxels = ffi.cast("void *", voxels.__array_interface__["data"][0])
-    lend(description, (voxels, owner))
+    loan = Loan(given, where, space, owner)
+    lend(description, loan)
     made = ffi.new("hl_volume **")
     try:
         call(lib.hl_volume_create, context, description, made)
     except BaseException:
         unlend(description)
         raise
-    return ffi.gc(made[0], lib.hl_volume_release)
+    handle = ffi.gc(made[0], lib.hl_volume_release)
+    _loans[int(ffi.cast("uintptr_t", handle))] = loan  # ends with this call where the library copied the voxels
+    return handle

@@ -1,12 +1,15 @@
 """The camera."""
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
+import numpy as np
+
 from . import _settings
-from ._library import lib
+from ._library import lib, warn
 from ._words import suggests
 
 __all__ = ["Camera"]
@@ -36,6 +39,62 @@ class Camera:
     up: Sequence[float] = (0.0, 0.0, 1.0)
     fovy_deg: float = 30.0
     height: float | None = None
+
+    @classmethod
+    def from_vtk(cls, camera: Any, aspect: float | None = None) -> Camera:
+        """The camera of VTK, PyVista, ParaView's render views or Slicer's.
+
+        Parameters
+        ----------
+        camera : vtkCamera
+            `parallel_projection` gives an orthographic camera, twice as high as its parallel scale.
+        aspect : float, optional
+            The picture's width over its height, which a camera with a horizontal view angle needs.
+        """
+        words: dict[str, Any] = {"position": tuple(camera.GetPosition()), "target": tuple(camera.GetFocalPoint()),
+                                 "up": tuple(camera.GetViewUp())}
+        if any(camera.GetWindowCenter()):
+            warn("the camera's window centre is left out: Halflight's cameras look at the middle of the picture")
+        if camera.GetParallelProjection():
+            return cls(**words, height=2 * camera.GetParallelScale())
+        angle = camera.GetViewAngle()
+        if camera.GetUseHorizontalViewAngle():
+            if aspect is None:
+                raise TypeError("Camera.from_vtk(): a horizontal view angle needs aspect=width / height")
+            angle = math.degrees(2 * math.atan(math.tan(math.radians(angle) / 2) / aspect))
+        return cls(**words, fovy_deg=angle)
+
+    @classmethod
+    def from_napari(cls, camera: Any, canvas_height: float) -> Camera:
+        """The camera of a napari viewer that shows three dimensions; (x, y, z) are napari's last three axes, last first.
+
+        Parameters
+        ----------
+        camera : napari.components.Camera
+            ``viewer.camera``. A left-handed orientation shows the world mirrored, which no camera here does.
+        canvas_height : float
+            Of napari's canvas, in its pixels: its zoom counts them.
+        """
+        center, view, up = (np.array(one, dtype=float)[-3:][::-1]
+                            for one in (camera.center, camera.view_direction, camera.up_direction))
+        height = float(canvas_height) / camera.zoom
+        distance = height if camera.perspective <= 0 else height / (2 * math.tan(math.radians(camera.perspective) / 2))
+        words: dict[str, Any] = {"fovy_deg": camera.perspective} if camera.perspective > 0 else {"height": height}
+        return cls(position=tuple((center - distance * view).tolist()), target=tuple(center.tolist()),
+                   up=tuple(up.tolist()), **words)
+
+    @classmethod
+    def from_cpos(cls, cpos: Any, fovy_deg: float = 30.0) -> Camera:
+        """The camera of PyVista's ``plotter.camera_position``: position, focal point and up, each (x, y, z).
+
+        Examples
+        --------
+        >>> Camera.from_cpos([(0, -9, 0), (0, 0, 0), (0, 0, 1)]).target
+        (0.0, 0.0, 0.0)
+        """
+        position, target, up = (tuple(_settings.numbers_of(f"camera: {word}", one))
+                                for word, one in zip(("position", "focal point", "up"), cpos, strict=True))
+        return cls(position=position, target=target, up=up, fovy_deg=fovy_deg)
 
     def _fill(self, struct: Any) -> None:
         given = {one.name: getattr(self, one.name) for one in fields(self)}

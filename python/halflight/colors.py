@@ -13,7 +13,7 @@ from ._library import lib, names
 from ._settings import numbers_of
 from ._words import nearest
 
-__all__ = ["colormaps"]
+__all__ = ["colormaps", "srgb"]
 
 # Matplotlib's one-letter names and the commonest CSS ones, sRGB; others come from matplotlib where it is there.
 _NAMED = {
@@ -40,6 +40,41 @@ def to_linear(srgb: Any) -> Any:
     """sRGB values from 0 to 1 as linear light (IEC 61966-2-1)."""
     values = np.asarray(srgb, dtype=np.float64)
     return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+
+
+def to_srgb(linear: Any) -> Any:
+    """Linear light as sRGB values from 0 to 1 (IEC 61966-2-1); what is outside is cut."""
+    values = np.clip(np.asarray(linear, dtype=np.float64), 0, 1)
+    return np.where(values <= 0.0031308, 12.92 * values, 1.055 * values ** (1 / 2.4) - 0.055)
+
+
+def srgb(*color: Any) -> tuple[float, float, float]:
+    """An sRGB colour as linear RGB, which is what numbers mean in Halflight.
+
+    Parameters
+    ----------
+    color : three numbers from 0 to 1, one sequence of them, of uint8 from 0 to 255, or a name or "#rrggbb"
+        As matplotlib, PyVista and CSS give them.
+
+    Examples
+    --------
+    >>> srgb(1, 0.5, 0)
+    (1.0, 0.21404114048223255, 0.0)
+    >>> srgb("#ff8000") == srgb(np.array([255, 128, 0], np.uint8))
+    True
+    """
+    given = color[0] if len(color) == 1 else color
+    if isinstance(given, str):
+        red, green, blue = linear_color("srgb()", given)
+        return red, green, blue
+    values = numbers_of("srgb()", given)
+    if getattr(given, "dtype", None) == np.uint8:
+        values = [value / 255 for value in values]
+    for value in values:
+        if not 0 <= value <= 1:
+            raise ValueError(f"srgb(): {value:g} is not from 0 to 1: divide by 255, or give an array of uint8")
+    red, green, blue = map(float, to_linear(values))
+    return red, green, blue
 
 
 def linear_color(place: str, color: Any) -> list[float]:

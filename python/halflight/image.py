@@ -4,11 +4,12 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
 
-from . import colors
+from . import colors, picture_files
 from ._library import call, context, ffi, lib, made
 from ._settings import number, table, to_field
 from ._words import choice, suggests
@@ -30,11 +31,12 @@ def _view(pointer: Any, owner: Any, shape: tuple[int, ...]) -> Pixels:
     return np.frombuffer(ffi.buffer(kept, 4 * count), np.float32, count).reshape(shape)
 
 
-class Image:
+class Image(NDArrayOperatorsMixin):
     """A picture: ``numpy.asarray(image)`` is float32, [height][width][4], without a copy.
 
     Values are linear premultiplied RGBA of the volumes alone; the background is added where a picture is shown:
-    in `to_srgb8`, PNG files, notebooks and `plot`.
+    in `to_srgb8`, PNG files, notebooks and `plot`. Sums, differences and NumPy's functions give arrays; ``==``
+    tells whether two pictures have the same pixels and layers.
 
     Attributes
     ----------
@@ -53,8 +55,6 @@ class Image:
     >>> np.asarray(image).shape, image.to_srgb8().dtype
     ((24, 32, 4), dtype('uint8'))
     """
-
-    __slots__ = ("__weakref__", "_handle", "_pixels", "layers", "scene", "statistics")
 
     def __init__(self, scene: Scene) -> None:
         width, height = scene.size
@@ -79,6 +79,35 @@ class Image:
                 raise ValueError("the picture is float32: another type needs a copy")
             return self._pixels.astype(dtype)
         return self._pixels.copy() if copy else self._pixels
+
+    @property
+    def __array_interface__(self) -> dict[str, Any]:
+        # The buffer, not its address: arrays then keep the pixels alive, and neither the picture nor its scene.
+        return {**self._pixels.__array_interface__, "data": self._pixels.data.cast("B"), "strides": None}
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **kwargs: Any) -> Any:
+        plain = [one._pixels if isinstance(one, Image) else one for one in inputs]
+        if "out" in kwargs:
+            kwargs["out"] = tuple(one._pixels if isinstance(one, Image) else one for one in kwargs["out"])
+        return getattr(ufunc, method)(*plain, **kwargs)
+
+    def __eq__(self, other: object) -> Any:
+        if not isinstance(other, Image):
+            return NotImplemented
+        return (np.array_equal(self._pixels, other._pixels, equal_nan=True) and self.layers.keys() == other.layers.keys()
+                and all(np.array_equal(one, other.layers[name], equal_nan=True) for name, one in self.layers.items()))
+
+    def __ne__(self, other: object) -> Any:
+        same = self.__eq__(other)
+        return same if same is NotImplemented else not same
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> Any:
+        return _restored, (self.scene, self._pixels.copy(), dict(self.layers), dict(self.statistics))
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Image:
+        return _restored(self.scene, self._pixels, self.layers, dict(self.statistics))
 
     @property
     def size(self) -> tuple[int, int]:
@@ -137,31 +166,51 @@ class Image:
             return ffi.NULL
 
     @suggests
-    def save(self, path: str | os.PathLike[str], *, depth: int = 8, background: Any = None,
-             exposure: float | None = None, tone: str | None = None, metadata: bool = True) -> None:
+    def save(self, path: str | os.PathLike[str] | IO[bytes], *, format: str | None = None, depth: int = 8,
+             background: Any = None, exposure: float | None = None, tone: str | None = None, metadata: bool = True) -> None:
         """Write a .png (sRGB, over the background, with the scene in it), .exr or .npy (linear; with layers).
+
+        Pillow, where it is installed, writes .jpg, .tif, .pdf and .webp, too: 8-bit sRGB, without the scene.
 
         Parameters
         ----------
-        path : path
-            The file appears whole or not at all. Layers are channels of an .exr, and files of their own beside
-            an .npy; a .png is written without them.
+        path : path, or an open binary file such as io.BytesIO
+            A file appears whole or not at all. Layers are channels of an .exr, and files of their own beside
+            an .npy; other pictures are written without them.
+        format : str, optional
+            "png", "exr", ...; by default what the name ends in, and "png" for open files without a name.
         depth : 8 or 16
             Bits per channel of a .png.
         background, exposure, tone : optional
-            As in `to_srgb8`; of a .png.
+            As in `to_srgb8`; not of an .exr or .npy.
         metadata : bool
             Whether a .png carries its scene, with the names of its files: of files beside the picture, or below
             its folder, relative to it.
         """
-        file = os.fspath(path)
-        if not file.lower().endswith(".png"):
-            for word, given in (("depth", depth != 8), ("background", background is not None),
-                                ("exposure", exposure is not None), ("tone", tone is not None)):
-                if given:
-                    raise ValueError(f"{word} is for .png pictures, not for '{file}': .exr and .npy hold linear floats")
-        call(lib.hl_image_write, context, self._handle if not file.lower().endswith(".png") else self._plain(),
-             os.fsencode(file), self._with_scene(self._options(background, exposure, tone, depth), metadata, os.path.dirname(file)))
+        open_file: Any = path if hasattr(path, "write") else None
+        name = str(getattr(path, "name", "")) if open_file is not None else os.fspath(path)  # type: ignore[arg-type]
+        ending = os.path.splitext(name)[1][1:].lower()
+        if format is not None:
+            kind = choice("format", format, [*_FORMATS, *picture_files.FORMATS])
+        else:
+            kind = "png" if open_file is not None and ending not in (*_FORMATS, *picture_files.FORMATS) else ending
+        shown = {"background": background is not None, "exposure": exposure is not None, "tone": tone is not None}
+        for word, given in ({"depth": depth != 8} | (shown if kind not in picture_files.FORMATS else {})).items():
+            if given and kind != "png":
+                raise ValueError(f"{word} is for .png pictures, not for '{name}': " + (
+                    "its colours have 8 bits" if kind in picture_files.FORMATS else ".exr and .npy hold linear floats"))
+        if kind in picture_files.FORMATS:
+            content = picture_files.encode(self.to_srgb8(background, exposure, tone), kind)
+        elif open_file is None and kind == ending or kind not in _FORMATS:
+            call(lib.hl_image_write, context, self._handle if kind != "png" else self._plain(), os.fsencode(name),
+                 self._with_scene(self._options(background, exposure, tone, depth), metadata, os.path.dirname(name)))
+            return
+        else:
+            content = self._encoded(kind, self._options(background, exposure, tone, depth), metadata)
+        if open_file is not None:
+            open_file.write(content)
+        else:
+            picture_files.write_whole(name, content)
 
     def _with_scene(self, options: Any, metadata: bool, folder: str | None = None) -> Any:
         text = self._scene_text(folder) if metadata else ffi.NULL
@@ -177,11 +226,15 @@ class Image:
         return plain._handle
 
     def encode(self, format: str = "png", *, depth: int = 8, metadata: bool = True) -> bytes:
-        """The bytes of a "png" (of 8 or 16 bits), "exr" or "npy" file; metadata: as for `save`."""
-        choice("format", format, _FORMATS)
+        """The bytes of a "png" (of 8 or 16 bits), "exr" or "npy" file, or of one that Pillow writes; metadata: as for `save`."""
+        if choice("format", format, [*_FORMATS, *picture_files.FORMATS]) in picture_files.FORMATS:
+            return picture_files.encode(self.to_srgb8(), format)
+        return self._encoded(format, self._options(depth=depth), metadata)
+
+    def _encoded(self, format: str, options: Any, metadata: bool) -> bytes:
         data, length = ffi.new("unsigned char **"), ffi.new("size_t *")
         call(lib.hl_image_encode, context, self._handle if format == "exr" else self._plain(), format.encode(),
-             self._with_scene(self._options(depth=depth), metadata), data, length)
+             self._with_scene(options, metadata), data, length)
         try:
             return bytes(ffi.buffer(data[0], length[0]))
         finally:
@@ -189,6 +242,24 @@ class Image:
 
     def _repr_png_(self) -> bytes:
         return self.encode("png")
+
+    def show(self) -> None:
+        """Show the picture: in the cell's output in a notebook, else with the program that the system shows a PNG with."""
+        try:
+            from IPython import get_ipython
+            from IPython.display import display
+
+            if getattr(get_ipython(), "kernel", None) is not None:
+                display(self)
+                return
+        except ImportError:
+            pass
+        import tempfile
+        import webbrowser
+
+        folder = tempfile.mkdtemp(prefix="halflight-")
+        self.save(os.path.join(folder, "picture.png"))
+        webbrowser.open(f"file://{folder}/picture.png")
 
     def __repr__(self) -> str:
         return f"<halflight.Image {self.size[0]}x{self.size[1]}>"
@@ -209,3 +280,16 @@ class Image:
         from .plot import plot
 
         return plot(self, ax, colorbar, scale_bar, unit)
+
+
+def _restored(scene: Scene, pixels: Pixels, layers: Mapping[str, Pixels], statistics: Mapping[str, Any]) -> Image:
+    """The picture with these pixels, as pickle and copy make it."""
+    image = Image(scene)
+    image._pixels[...] = pixels
+    found = {}
+    for name, values in layers.items():
+        letters = "Z" if values.ndim == 2 else "XYZ" if name == "normal" else "RGB"
+        _, found[name] = image._add_layer(name, letters)
+        found[name][...] = values
+    image._finish(found, statistics)
+    return image

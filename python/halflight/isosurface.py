@@ -22,7 +22,7 @@ def _parts_of(place: str, given: Any) -> dict[str, Any]:
                 raise TypeError(f"{place}: there is no '{word}': use value, color and opacity")
         parts = dict(given)
     elif isinstance(given, tuple) and 1 <= len(given) <= 3:
-        parts = dict(zip(_WORDS, given, strict=False))
+        parts = {str(word): one for word, one in zip(_WORDS, given, strict=False)}
     elif not isinstance(given, (str, bytes, tuple)) and np.ndim(given) == 0:
         parts = {"value": given}
     else:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TypedDict
+from typing import Literal, TypedDict
 
 
 class VolumeSettings(TypedDict, total=False):
@@ -45,7 +45,7 @@ class VolumeSettings(TypedDict, total=False):
     rotate_axis: Sequence[float]
     rotate_angle_deg: float
     translate: Sequence[float]
-    shading: str
+    shading: Literal["phong", "none", "flat"]
     attenuation_color: Sequence[float]
     anisotropy: float
     albedo: Sequence[float]
@@ -53,7 +53,7 @@ class VolumeSettings(TypedDict, total=False):
     visible: bool
     casts_shadow: bool
     receives_shadow: bool
-    cut_shading: str
+    cut_shading: Literal["face", "gradient", "none"]
     cut_casts_shadow: bool
 
 
@@ -155,7 +155,7 @@ class SkySettings(TypedDict, total=False):
         Up to four compact bright spots of the image cast shadows as parallel lights do. Default: True.
     """
 
-    type: str
+    type: Literal["none", "uniform", "gradient", "image"]
     color: Sequence[float]
     zenith: Sequence[float]
     horizon: Sequence[float]
@@ -180,7 +180,7 @@ class PictureSettings(TypedDict, total=False):
     """
 
     exposure: float
-    tone: str
+    tone: Literal["clip", "filmic"]
 
 
 class RenderSettings(TypedDict, total=False):
@@ -209,7 +209,7 @@ class RenderSettings(TypedDict, total=False):
     shadow_lookup : str
         How light is read between the pixels of a shadow buffer. "auto", "bilinear", "cubic", "nearest".
         Default: "auto".
-    shadow_resolution : int | str
+    shadow_resolution : int | Literal["auto"]
         Pixels along the longer side of a shadow buffer. Pixels, "auto" or 1 to 16384. Default: "auto".
     threads : int
         0: one thread per processor. 0 to 1024. Default: 0.
@@ -221,17 +221,17 @@ class RenderSettings(TypedDict, total=False):
         Default: 0.
     """
 
-    shadows: str
-    soft_method: str
+    shadows: Literal["off", "hard", "soft"]
+    soft_method: Literal["cascade", "paper", "sublights"]
     light_samples: int
     sheet_spacing: float
-    kernel: str
-    reconstruction: str
-    slicing: str
-    shadow_lookup: str
-    shadow_resolution: int | str
+    kernel: Literal["bspline", "gaussian", "linear", "interpolating"]
+    reconstruction: Literal["auto", "splat", "gather"]
+    slicing: Literal["half-vector", "image-aligned"]
+    shadow_lookup: Literal["auto", "bilinear", "cubic", "nearest"]
+    shadow_resolution: int | Literal["auto"]
     threads: int
-    compositing: str
+    compositing: Literal["light", "maximum"]
     slabs_at_once: int
 
 
@@ -249,18 +249,18 @@ class FurtherSettings(TypedDict, total=False):
     visible: bool
     casts_shadow: bool
     receives_shadow: bool
-    cut_shading: str
+    cut_shading: Literal["face", "gradient", "none"]
     cut_casts_shadow: bool
     emission: float
     exposure: float
-    tone: str
-    soft_method: str
+    tone: Literal["clip", "filmic"]
+    soft_method: Literal["cascade", "paper", "sublights"]
     light_samples: int
     sheet_spacing: float
-    kernel: str
-    reconstruction: str
-    slicing: str
-    shadow_lookup: str
-    shadow_resolution: int | str
-    compositing: str
+    kernel: Literal["bspline", "gaussian", "linear", "interpolating"]
+    reconstruction: Literal["auto", "splat", "gather"]
+    slicing: Literal["half-vector", "image-aligned"]
+    shadow_lookup: Literal["auto", "bilinear", "cubic", "nearest"]
+    shadow_resolution: int | Literal["auto"]
+    compositing: Literal["light", "maximum"]
     slabs_at_once: int

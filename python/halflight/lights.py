@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 from . import _settings
 from ._library import ffi, lib
 from ._words import suggests
 from .light_images import EmissionImage, Texture, emission_from, texture_from
 
-__all__ = ["Directional", "Disk", "EmissionImage", "Light", "Point", "Polygon", "Rect", "Spot", "Texture"]
+__all__ = ["Directional", "Disk", "EmissionImage", "Light", "Point", "Polygon", "Rect", "Spot", "Texture", "images_are_same"]
 
 Vector = Sequence[float]
 
@@ -43,9 +43,9 @@ class Light:
 
     color: Vector = (1.0, 1.0, 1.0)
     intensity: float = 1.0
-    falloff: str = "none"
-    shadows: str | None = None
-    frame: str = "world"
+    falloff: Literal["none", "inverse_square"] = "none"
+    shadows: Literal["off", "hard", "soft"] | None = None
+    frame: Literal["world", "camera"] = "world"
     texture: Texture | None = None
     emission: EmissionImage | None = None
     _type: ClassVar[int]
@@ -165,6 +165,12 @@ class Polygon(Light):
 _CLASSES: tuple[type[Light], ...] = (Directional, Point, Spot, Rect, Disk, Polygon)
 for _class in _CLASSES:
     _class.__init__ = suggests(_class.__init__)  # type: ignore[method-assign]
+
+
+def images_are_same(one: Light, other: Light) -> bool:
+    """Whether what two lights project and show is the same: a comparison of lights leaves pixels out."""
+    return all(_settings.same(a.image, b.image) for a, b in ((one.texture, other.texture), (one.emission, other.emission))
+               if a is not None and b is not None)
 
 
 def light_from(struct: Any) -> Light:

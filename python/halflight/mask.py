@@ -9,16 +9,16 @@ import numpy as np
 from . import _settings, colors
 from ._library import call, context, ffi, lib, text_of
 
-__all__ = ["fill"]
+__all__ = ["fill", "fill_labels", "labels_from"]
 
 _WORDS = ("volume", "show", "rest", "table")
 
 
 def _labels_of(volume: Any, table: Any, keep: list[Any]) -> tuple[Any, int]:
-    """All labels of a label map, owned by `keep`."""
+    """All labels of a label map, an hl_volume, owned by `keep`."""
     labels, count = ffi.new("hl_label **"), ffi.new("size_t *")
     path = ffi.NULL if table is None else ffi.new("char[]", str(table).encode())
-    call(lib.hl_labels_of_volume, context, volume._handle, path, labels, count)
+    call(lib.hl_labels_of_volume, context, volume, path, labels, count)
     keep.append(ffi.gc(labels[0], lambda found: lib.hl_labels_release(context, found)))
     return labels[0], int(count[0])
 
@@ -58,6 +58,26 @@ def _show(place: str, show: Any, labels: Any, count: int) -> int:
     return len(named)
 
 
+def fill_labels(struct: Any, given: Any, handle: Any, keep: list[Any], place: str) -> None:
+    """Set the labels of an hl_scene_volume that is a label map, which are valid as long as `keep`."""
+    parts = given if isinstance(given, Mapping) and given.keys() & {"show", "table"} else {"show": given}
+    for word in parts:
+        if word not in ("show", "table"):
+            raise TypeError(f"{place}labels: there is no '{word}': use show and table")
+    labels, count = _labels_of(handle, parts.get("table"), keep)
+    show = parts.get("show")
+    if show is not None and show is not True:
+        count = _show(f"{place}labels", show, labels, count)
+    elif count == 0:
+        raise ValueError(f"{place}labels: the volume has no labels: whole numbers other than 0")
+    struct.labels, struct.label_count = labels, count
+
+
+def labels_from(labels: Any, count: int, tints: bool) -> dict[float, tuple[tuple[float, ...] | None, float]]:
+    """The labels that show, as `show` takes them: colour and opacity by number. tints: of a mask, whose labels may have no colour."""
+    return {one.value: (tuple(one.color) if one.tint or not tints else None, one.opacity) for one in labels[0:count] if one.visible}
+
+
 def fill(struct: Any, mask: Any, as_volume: Callable[[Any], Any], keep: list[Any], place: str) -> None:
     """Set the mask of an hl_scene_volume, which is valid as long as `keep`."""
     parts = dict(mask) if isinstance(mask, Mapping) else {"volume": mask}
@@ -67,7 +87,7 @@ def fill(struct: Any, mask: Any, as_volume: Callable[[Any], Any], keep: list[Any
     if "volume" not in parts:
         raise TypeError(f"{place}mask: has no volume")
     volume = as_volume(parts["volume"])
-    labels, count = _labels_of(volume, parts.get("table"), keep)
+    labels, count = _labels_of(volume._handle, parts.get("table"), keep)
     if parts.get("show") is not None:
         count = _show(f"{place}mask: show", parts["show"], labels, count)
     keep.append(volume)

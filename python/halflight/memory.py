@@ -5,12 +5,20 @@ import os
 
 from ._library import call, context, ffi, lib
 
+_limited: tuple[int | None, str | None] = None, None
+
+
+def current() -> tuple[int | None, str | None]:
+    """The limit in bytes and the scratch folder, each None where none was given."""
+    return _limited
+
 
 def limit_memory(limit: int | None, *, scratch_folder: str | os.PathLike[str] | None = None) -> None:
     """Limit what volumes, scenes and renderers hold, and render larger volumes from a scratch file.
 
-    A volume file whose voxels do not fit is read into a file without a name, and frames are the same, bit for bit.
-    Arrays are never copied into one: they are in memory already. Call it while no other thread loads or renders.
+    A volume file whose voxels do not fit is read into a file without a name, and frames are the same, bit for bit. So is
+    an array of zarr, h5py or dask, slice by slice: its voxels need twice their room on the disk for a moment. Other
+    arrays are in memory already. Call it while no other thread loads or renders.
 
     Parameters
     ----------
@@ -38,3 +46,5 @@ def limit_memory(limit: int | None, *, scratch_folder: str | os.PathLike[str] | 
     if scratch_folder is not None and not os.path.isdir(folder):
         raise FileNotFoundError(f"scratch_folder: there is no folder {folder!r}")
     call(lib.hl_context_limit_memory, context, limit or 0, ffi.new("char[]", os.fsencode(folder)))
+    global _limited
+    _limited = limit, folder

@@ -7,10 +7,12 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from . import _settings, colors
+from . import _settings, colors, mesh_sources
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords
+from .arrays import matrix_of
 from .keywords import MaterialSettings, MeshSettings
+from .mesh_sources import Surface
 
 __all__ = ["Mesh", "MeshLook"]
 
@@ -40,8 +42,8 @@ class Mesh:
     Parameters
     ----------
     source : path, array_like of shape (n, 3), or an object that has vertices and faces, optional
-        A PLY, STL, OBJ, glTF or VTK PolyData file; vertices (x, y, z) in world units; a mesh of PyVista or VTK's `PolyData` wrapped by
-        it, trimesh, or meshio. What is given is copied.
+        A PLY, STL, OBJ, glTF or VTK PolyData file; vertices (x, y, z) in world units; a data set of PyVista or VTK, of
+        which others than PolyData show their surface; a mesh of trimesh or meshio. What is given is copied.
     triangles : array_like of int, shape (m, 3), optional
         Numbers of vertices, for vertices given as an array. Counter-clockwise ones face the viewer.
     normals : array_like, shape (n, 3), optional
@@ -59,7 +61,17 @@ class Mesh:
     line_colors : array_like, shape (n, 3) or (n, 4), optional
         Of the points of all lines, one after the other.
     radius : float, optional
-        Of spheres and lines that have none of their own.
+        Of spheres and lines that have none of their own; by default, of the lines and points of a data set, a 400th of
+        its diagonal.
+    scalars : str, array_like or False, optional
+        What colours the mesh: the name of one of its arrays, of vertices or of cells, or the values; 8-bit RGB and RGBA are
+        colours themselves. By default the active array, where the mesh has one and is given no colour; False: none.
+    cmap, clim, log_scale : optional
+        The colours of `scalars`, as of `render`; by default viridis over all values.
+    nan_color : colour
+        Of values that are no numbers.
+    affine : array_like, shape (4, 4), optional
+        Where the vertices are moved to first, as by an actor's matrix.
     **look : MeshLook
         `name`, `color`, `opacity`, `smooth`, `visible`, ..., and the material: see `halflight.keywords`.
 
@@ -79,15 +91,23 @@ class Mesh:
     def __init__(self, source: Any = None, triangles: Any = None, *, normals: Any = None, colors: Any = None,
                  face_colors: Any = None, spheres: Any = None, sphere_colors: Any = None,
                  lines: Sequence[Any] | None = None, line_colors: Any = None, radius: float | None = None,
-                 **look: Unpack[MeshLook]) -> None:
+                 scalars: Any = None, cmap: Any = None, clim: Any = None, log_scale: bool = False, nan_color: Any = 0.5,
+                 affine: Any = None, **look: Unpack[MeshLook]) -> None:
         check_keywords("Mesh()", look, ["normals", "colors", "face_colors", "spheres", "sphere_colors", "lines",
-                                        "line_colors", "radius", *MeshLook.__annotations__])
+                                        "line_colors", "radius", "scalars", "cmap", "clim", "log_scale", "nan_color",
+                                        "affine", *MeshLook.__annotations__])
         arrays = {"triangles": triangles, "normals": normals, "colors": colors, "face_colors": face_colors,
                   "spheres": spheres, "sphere_colors": sphere_colors, "lines": lines, "line_colors": line_colors}
         self.look: Mapping[str, Any] = dict(look)
         self._handle: Any = None
         self._file: str | None = None
-        if isinstance(source, Mesh):
+        mapping = {"scalars": scalars, "cmap": cmap, "clim": clim}
+        if isinstance(source, (Mesh, str, os.PathLike)):
+            for word, value in mapping.items():
+                if value is not None:
+                    raise TypeError(f"{word} is for arrays and data sets: a {'Mesh' if isinstance(source, Mesh) else 'file'}"
+                                    " has its own colours")
+        if isinstance(source, Mesh) and affine is None:
             self._file, self._handle, self.look = source._file, source._handle, {**source.look, **look}
             return
         if isinstance(source, (str, os.PathLike)):
@@ -97,12 +117,115 @@ class Mesh:
             self._file = os.fspath(source)
             self._handle = made(lib.hl_mesh_load, "hl_mesh", lib.hl_mesh_release, context, os.fsencode(source),
                                 path=self._file)
-            return
-        if source is not None and triangles is None:
-            source, arrays["triangles"] = _vertices_and_faces(source)
+            if affine is None:
+                return
+            source, self._file = Mesh._of(self._handle, None, dict(look)), None
+        if isinstance(source, Mesh):
+            self.look = {**source.look, **look}
+            source, given = source._arrays()
+            arrays.update(given)
+        elif source is not None and triangles is None:
+            source = self._take(mesh_sources.find(source), arrays, mapping, radius, log_scale, nan_color)
         elif source is None and spheres is None and lines is None:
             raise TypeError("Mesh(): give a file, vertices and triangles, spheres or lines")
-        self._handle = _create(source, arrays, radius)
+        elif source is not None and scalars is not None and scalars is not False:
+            surface = mesh_sources.Surface(np.asarray(source), np.asarray(triangles))
+            self._paint(surface, arrays, mapping, log_scale, nan_color)
+        elif any(value is not None for value in (cmap, clim)):
+            raise TypeError("Mesh(): cmap and clim colour scalars: give scalars=, too")
+        self._handle = _create(source, arrays, radius, affine)
+
+    def _paint(self, surface: Surface, arrays: dict[str, Any], mapping: Mapping[str, Any], log: bool, nan_color: Any) -> None:
+        """Colour vertices or triangles, single points and lines by an array."""
+        cmap = "viridis" if mapping["cmap"] is None else mapping["cmap"]
+        rows, of_cells = mesh_sources.painted("Mesh(): ", surface, mapping["scalars"], cmap, mapping["clim"], log, nan_color)
+        self.look = {"color": 1.0, **self.look}
+        single, lines = len(surface.vertices), len(surface.lines)
+        if of_cells:
+            arrays["face_colors"] = rows[single + lines:] if len(surface.triangles) else None
+            of_lines = [np.repeat(row[None], len(line), 0) for row, line in zip(rows[single:single + lines], surface.lines, strict=True)]
+            of_vertices = rows[:single]
+        else:
+            arrays["colors"] = rows if len(surface.triangles) else None
+            of_lines, of_vertices = [rows[line] for line in surface.lines], rows[surface.vertices]
+        if single:
+            arrays["sphere_colors"] = of_vertices
+        if lines:
+            arrays["line_colors"] = np.vstack(of_lines)
+
+    def _take(self, surface: Surface, arrays: dict[str, Any], mapping: dict[str, Any], radius: float | None, log: bool,
+              nan_color: Any) -> Any:
+        """The vertices of another package's mesh; its other arrays go to `arrays`."""
+        colored = "color" in self.look or arrays["colors"] is not None or arrays["face_colors"] is not None
+        if mapping["scalars"] is None and mapping["cmap"] is None and mapping["clim"] is None and colored:
+            mapping["scalars"] = False
+        if mapping["scalars"] is None:
+            mapping["scalars"] = surface.active
+            if surface.active is None and (mapping["cmap"] is not None or mapping["clim"] is not None):
+                raise TypeError("Mesh(): cmap and clim colour scalars, of which the mesh has none active: give scalars=")
+        if mapping["scalars"] is not None and mapping["scalars"] is not False:
+            self._paint(surface, arrays, mapping, log, nan_color)
+        points = np.asarray(surface.points, dtype=np.float64)
+        own = surface.of_points.get("radius")
+        size = float(np.linalg.norm(np.ptp(points, axis=0))) / 400 if radius is None else radius
+        radii = np.full(len(points), size) if own is None or radius is not None else np.asarray(own, dtype=float)
+        solid = np.column_stack([points, radii])
+        if len(surface.vertices) and arrays["spheres"] is None:
+            arrays["spheres"] = solid[surface.vertices]
+        if len(surface.lines) and arrays["lines"] is None:
+            arrays["lines"] = [solid[line] for line in surface.lines]
+        if len(surface.triangles) == 0:
+            if arrays["spheres"] is None and arrays["lines"] is None:
+                raise ValueError("the mesh has no triangles, lines or vertices: there is nothing to see")
+            return None
+        arrays["triangles"] = surface.triangles
+        if arrays["normals"] is None:
+            arrays["normals"] = surface.normals
+        return points
+
+    @classmethod
+    def _of(cls, handle: Any, file: str | None, look: Mapping[str, Any]) -> Mesh:
+        found = cls.__new__(cls)
+        found._handle, found._file, found.look = handle, file, look
+        return found
+
+    def _arrays(self) -> tuple[Any, dict[str, Any]]:
+        """The vertices and the other arrays: tubes are triangles among the others."""
+        struct = lib.hl_mesh_describe(self._handle)
+
+        def rows(pointer: Any, count: int, width: int, kind: Any) -> Any:
+            if pointer == ffi.NULL or count == 0:
+                return None
+            return np.frombuffer(ffi.buffer(pointer, 4 * count * width), kind).reshape(count, width).copy()
+
+        arrays = {word: rows(getattr(struct, word), getattr(struct, count), width, kind) for word, count, width, kind in (
+            ("triangles", "triangle_count", 3, np.uint32), ("normals", "vertex_count", 3, np.float32),
+            ("colors", "vertex_count", 4, np.float32), ("face_colors", "triangle_count", 4, np.float32),
+            ("spheres", "sphere_count", 4, np.float32), ("sphere_colors", "sphere_count", 4, np.float32))}
+        arrays |= {"lines": None, "line_colors": None}
+        return rows(struct.positions, struct.vertex_count, 3, np.float32), arrays
+
+    def __reduce__(self) -> Any:
+        return _restored, (*self._arrays(), self._file and os.path.abspath(self._file), dict(self.look))
+
+    def __copy__(self) -> Mesh:
+        return Mesh._of(self._handle, self._file, dict(self.look))
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Mesh:
+        return self.__copy__()  # meshes do not change
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Mesh):
+            return NotImplemented
+        if dict(self.look) != dict(other.look):
+            return False
+        if self._handle == other._handle:
+            return True
+        (one, ones), (two, twos) = self._arrays(), other._arrays()
+        return np.array_equal(one, two) and all(np.array_equal(ones[word], twos[word]) for word in ones)
+
+    def __hash__(self) -> int:
+        return hash((self.vertex_count, self.triangle_count))
 
     @classmethod
     def floor(cls, scene: Any, size: float = 3, **look: Unpack[MeshLook]) -> Mesh:
@@ -120,10 +243,7 @@ class Mesh:
         """
         place = ffi.new("hl_mesh **")
         call(lib.hl_scene_make_floor, context, lib.hl_scene_describe(scene._handle), ffi.NULL, size, place)
-        made = cls.__new__(cls)
-        made._file, made._handle = None, ffi.gc(place[0], lib.hl_mesh_release)
-        made.look = {"color": 0.5, "specular": 0.0, "cut": False, **look}
-        return made
+        return cls._of(ffi.gc(place[0], lib.hl_mesh_release), None, {"color": 0.5, "specular": 0.0, "cut": False, **look})
 
     def replace(self, **look: Unpack[MeshLook]) -> Mesh:
         """The same triangles with another look."""
@@ -167,25 +287,16 @@ class Mesh:
 
 def mesh_from(struct: Any) -> Mesh:
     """The mesh of an hl_scene_mesh."""
-    found = Mesh.__new__(Mesh)
-    found._file = None if struct.file == ffi.NULL else os.fsdecode(ffi.string(struct.file))
     lib.hl_mesh_retain(struct.mesh)
-    found._handle = ffi.gc(struct.mesh, lib.hl_mesh_release)
     look = _settings.read(struct, lib.HL_SETTINGS_MESH) | _settings.read(struct.material, lib.HL_SETTINGS_MATERIAL)
-    found.look = look if struct.name == ffi.NULL else look | {"name": text_of(struct.name)}
-    return found
+    return Mesh._of(ffi.gc(struct.mesh, lib.hl_mesh_release),
+                    None if struct.file == ffi.NULL else os.fsdecode(ffi.string(struct.file)),
+                    look if struct.name == ffi.NULL else look | {"name": text_of(struct.name)})
 
 
-def _vertices_and_faces(source: Any) -> tuple[Any, Any]:
-    """What PyVista, meshio and trimesh call points or vertices, and faces or cells."""
-    if hasattr(source, "points") and hasattr(source, "triangulate"):
-        plain = source.triangulate()
-        return plain.points, np.asarray(plain.faces).reshape(-1, 4)[:, 1:]
-    if hasattr(source, "points") and hasattr(source, "cells_dict"):
-        return source.points, source.cells_dict.get("triangle", ())
-    if hasattr(source, "vertices") and hasattr(source, "faces"):
-        return source.vertices, source.faces
-    raise TypeError(f"{type(source).__name__} is no path and no mesh: give vertices and triangles")
+def _restored(vertices: Any, arrays: dict[str, Any], file: str | None, look: dict[str, Any]) -> Mesh:
+    """The mesh with these arrays, as pickle makes it."""
+    return Mesh._of(_create(vertices, arrays, None), file, look)
 
 
 def _rows(place: str, values: Any, widths: Sequence[int], kind: Any) -> np.ndarray[Any, Any]:
@@ -230,7 +341,25 @@ def _put(description: Any, name: str, rows: np.ndarray[Any, Any]) -> None:
     setattr(description, name, ffi.cast(f"{kind} (*)[{rows.shape[1]}]", ffi.from_buffer(rows)))
 
 
-def _create(vertices: Any, given: Mapping[str, Any], radius: float | None) -> Any:
+def _move(affine: Any, rows: dict[str, np.ndarray[Any, Any]]) -> None:
+    """Take points, normals and radii to where an affine matrix moves them."""
+    matrix = np.array(matrix_of("affine", affine, [(4, 4), (3, 4)]))[:3]
+    turn, volume = matrix[:, :3], float(np.linalg.det(matrix[:, :3]))
+    if volume == 0 or not np.isfinite(matrix).all():
+        raise ValueError("affine: it flattens the mesh: give a matrix that can be inverted")
+    for word in ("positions", "spheres", "line_points"):
+        if word in rows:
+            moved = rows[word].astype(np.float64)
+            moved[:, :3] = moved[:, :3] @ turn.T + matrix[:, 3]
+            moved[:, 3:] *= abs(volume) ** (1 / 3)
+            rows[word] = np.ascontiguousarray(moved, np.float32)
+    if "normals" in rows:
+        rows["normals"] = np.ascontiguousarray(rows["normals"] @ np.linalg.inv(turn), np.float32)
+    if volume < 0 and "triangles" in rows:  # mirrored: counter-clockwise ones still face the viewer
+        rows["triangles"] = np.ascontiguousarray(rows["triangles"][:, ::-1])
+
+
+def _create(vertices: Any, given: Mapping[str, Any], radius: float | None, affine: Any = None) -> Any:
     """An hl_mesh of arrays; given: those that are not None are used."""
     description = ffi.new("hl_mesh_description *")
     lib.hl_mesh_description_defaults(description)
@@ -257,6 +386,8 @@ def _create(vertices: Any, given: Mapping[str, Any], radius: float | None) -> An
         if word in rows and found != count:
             thing = {"positions": "vertices", "line_points": "points of lines"}.get(wanted, wanted)
             raise ValueError(f"{word}: {found} rows for {count} {thing}")
+    if affine is not None:
+        _move(affine, rows)
     for name, array in rows.items():
         _put(description, name, array)
     description.vertex_count, description.triangle_count = len(rows.get("positions", ())), len(rows.get("triangles", ()))

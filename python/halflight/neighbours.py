@@ -12,7 +12,7 @@ from ._library import lib, warn
 class Found(NamedTuple):
     """An array with what its package knows about it; None where it knows nothing."""
 
-    array: np.ndarray[Any, Any]
+    array: Any  # of NumPy, or one that is read by slices (`is_stored`)
     axes: str | None = None
     place: dict[str, Any] = {}  # keywords of arrays.make_place(); spacing in the order of axes
     space: int = 0
@@ -30,13 +30,15 @@ def find(source: Any) -> Found:
     """
     if isinstance(source, np.ndarray):
         return Found(source)
+    if hasattr(source, "data_vars"):
+        return _xarray(_variable(source, None))
     for matches, read in _READERS:
         if matches(source):
             return read(source)
     if hasattr(source, "__dlpack__") and not hasattr(source, "__array_interface__"):
         return Found(np.from_dlpack(source), owner=source)
-    if hasattr(source, "chunks") or type(source).__module__.partition(".")[0] in ("h5py", "zarr"):
-        return _stored(source)
+    if is_stored(source):
+        return Found(source)
     if hasattr(source, "__array__") or hasattr(source, "__array_interface__") or _has_buffer(source):
         return Found(np.asarray(source), owner=source)
     raise TypeError(f"{type(source).__name__} is no path, array or volume")
@@ -50,13 +52,19 @@ def _has_buffer(source: object) -> bool:
     return True
 
 
-def _stored(source: Any) -> Found:
-    """zarr, h5py and dask: the whole array is read."""
+def is_stored(source: Any) -> bool:
+    """Whether the array is read by slices: one of zarr, h5py or dask."""
+    return not isinstance(source, np.ndarray) and hasattr(source, "shape") and hasattr(source, "dtype") and (
+        hasattr(source, "chunks") or type(source).__module__.partition(".")[0] in ("h5py", "zarr"))
+
+
+def read_whole(source: Any) -> np.ndarray[Any, Any]:
+    """zarr, h5py and dask: the whole array."""
     size = int(np.prod(source.shape)) * np.dtype(source.dtype).itemsize
     if size >= 1 << 30:
-        warn(f"{type(source).__name__}: all {size / 2**30:.1f} GiB are read into memory: "
-             "a slice with a step, such as array[::2, ::2, ::2], is smaller")
-    return Found(np.asarray(source[...]))
+        warn(f"{type(source).__name__}: all {size / 2**30:.1f} GiB are read into memory: limit_memory() has them read by "
+             "pieces, and a slice with a step, such as array[::2, ::2, ::2], is smaller")
+    return np.asarray(source[...])
 
 
 def _nibabel(source: Any) -> Found:
@@ -94,13 +102,67 @@ def _pynrrd(source: Any) -> Found:
     return Found(data, "xyz" if fortran else "zyx", place, spaces.get(str(header.get("space", "")).lower(), 0))
 
 
+_CALLED = {  # what the axes of the world are called in models and microscopes
+    "x": "x xc x_c lon longitude long rlon easting east i column columns col xt_ocean nav_lon".split(),
+    "y": "y yc y_c lat latitude rlat northing north j row rows yt_ocean nav_lat".split(),
+    "z": "z zc z_c lev level levels height altitude alt depth plev pressure isobaric k slice slices plane planes zlev".split(),
+}
+
+
+def _letter(source: Any, name: Any) -> str | None:
+    """Which axis of the world a dimension is: by its coordinate's CF attributes, or its name."""
+    attributes = getattr(source.coords[name], "attrs", {}) if name in source.coords else {}
+    said = str(attributes.get("axis", "")).lower()
+    if said in ("x", "y", "z"):
+        return said
+    return next((letter for letter, names in _CALLED.items() if str(name).lower() in names), None)
+
+
+def _axes_of(source: Any) -> str | None:
+    """The letters of the dimensions where each of x, y and z occurs once."""
+    letters = [_letter(source, name) for name in source.dims]
+    return "".join(str(one) for one in letters) if sorted(map(str, letters)) == ["x", "y", "z"] else None
+
+
+def _variable(dataset: Any, name: str | None) -> Any:
+    """The variable of an xarray.Dataset that is a volume, with this name or the only one."""
+    found = {str(key): value for key, value in dataset.data_vars.items() if sum(size > 1 for size in value.shape) >= 3}
+    if name is None and len(found) == 1:
+        return next(iter(found.values()))
+    if name in found:
+        return found[name]
+    listed = ", ".join(f"'{key}'" for key in found)
+    if name is not None:
+        raise ValueError(f"array: the dataset has no volume '{name}'" + (f": use one of {listed}" if found else ""))
+    raise ValueError(f"the dataset has {len(found)} volumes" + (f": choose one of {listed} with array=" if found else ""))
+
+
+def variable(dataset: Any, name: str) -> Found:
+    """A variable of an xarray.Dataset."""
+    return _xarray(_variable(dataset, name))
+
+
+def _warn_of_shape(source: Any, steps: dict[str, float], axes: str) -> None:
+    """Degrees beside metres make plates and needles."""
+    extents = {letter: abs(steps[letter]) * max(size - 1, 1) for letter, size in zip(axes, source.shape, strict=True)}
+    if max(extents.values()) > 100 * min(extents.values()):
+        said = ", ".join(f"{letter} {extents[letter]:g}" for letter in "xyz")
+        warn(f"by its coordinates the volume is {said} wide: give spacing=, where their units differ")
+
+
 def _xarray(source: Any) -> Found:
-    """Dimensions called x, y and z say the axes; evenly spaced coordinates the place."""
-    axes = "".join(str(name).lower() for name in source.dims)
-    named = sorted(axes) == ["x", "y", "z"]
+    """Dimensions say the axes by their names or CF attributes; evenly spaced coordinates the place."""
+    if len(source.dims) > 3:  # a time, a member or a channel alone
+        single = [name for name, size in zip(source.dims, source.shape, strict=True) if size == 1 and _letter(source, name) is None]
+        source = source.isel(dict.fromkeys(single[:len(source.dims) - 3], 0))
+    axes = _axes_of(source) or "zyx"
+    named = _axes_of(source) is not None
     spacing, origin = [], {}
-    for name, letter in zip(source.dims, axes if named else "zyx", strict=False):
+    for name, letter in zip(source.dims, axes, strict=False):
         values = np.asarray(source.coords[name].values) if name in source.coords else None
+        if values is not None and str(getattr(source.coords[name], "attrs", {}).get("positive", "")).lower() == "down" \
+                and values.dtype.kind in "iuf":
+            values = -values.astype(float)
         if values is None or values.dtype.kind not in "iuf" or len(values) < 2:
             spacing.append(1.0)
             origin[letter] = float(values[0]) if values is not None and values.dtype.kind in "iuf" else 0.0
@@ -110,11 +172,13 @@ def _xarray(source: Any) -> Found:
             raise ValueError(f"the coordinates of '{name}' are not evenly spaced: interpolate them to a regular grid")
         spacing.append(step)
         origin[letter] = float(values[0])
-    steps = dict(zip(axes if named else "zyx", spacing, strict=False))
+    steps = dict(zip(axes, spacing, strict=False))
+    if len(source.dims) == 3:
+        _warn_of_shape(source, steps, axes)
     affine = [[steps[letter] if row == letter else 0.0 for letter in "xyz"] + [origin[row]] for row in "xyz"] if (
-        len(steps) == 3) else None
+        len(source.dims) == 3) else None
     name = str(source.name) if source.name is not None else None
-    array = np.asarray(source.data) if isinstance(source.data, np.ndarray) else _stored(source.data).array
+    array = source.data if is_stored(source.data) else np.asarray(source.data)
     return Found(array, axes if named else None, {} if affine is None else {"affine": affine}, owner=source, name=name)
 
 
@@ -135,12 +199,14 @@ def _vtk(source: Any) -> Found:
         first += 0.5
     if scalars is None:
         raise ValueError(f"{type(source).__name__} has no active scalars: set them, or give an array")
-    values = vtk_to_numpy(scalars)
-    if values.ndim > 1:
+    values: np.ndarray[Any, Any] = vtk_to_numpy(scalars)
+    colors = values.ndim == 2 and values.shape[1] in (3, 4) and values.dtype == np.uint8
+    if values.ndim > 1 and not colors:
         raise ValueError(f"the active scalars have {values.shape[1]} components: give one of them as an array")
     place = {"spacing": steps[::-1], "direction": direction,
              "origin": (np.asarray(origin) + direction @ (first * steps)).tolist()}
-    return Found(values.reshape(dimensions[::-1]), "zyx", place, owner=source, name=scalars.GetName())
+    shape = dimensions[::-1] + ([values.shape[1]] if colors else [])
+    return Found(values.reshape(shape), "zyx", place, owner=source, name=scalars.GetName())
 
 
 def _has(*attributes: str) -> Any:

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .colors import to_srgb
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -26,11 +28,6 @@ def round_length(longest: float) -> float:
     """The greatest of 1, 2 and 5 times a power of ten that is not longer."""
     power = 10.0 ** math.floor(math.log10(longest))
     return next(factor * power for factor in (5, 2, 1) if factor * power <= longest)
-
-
-def _srgb(linear: Any) -> Any:
-    values = np.clip(linear, 0, 1)
-    return np.where(values <= 0.0031308, 12.92 * values, 1.055 * values ** (1 / 2.4) - 0.055)
 
 
 def plot(image: Image, ax: Axes | None, colorbar: bool, scale_bar: bool, unit: str) -> Axes:
@@ -55,7 +52,7 @@ def plot(image: Image, ax: Axes | None, colorbar: bool, scale_bar: bool, unit: s
         low, high = points[0, 0], points[-1, 0]
         if low < high:
             values = np.linspace(low, high, 256)
-            shown = _srgb(np.stack([np.interp(values, points[:, 0], points[:, c]) for c in (1, 2, 3)], 1))
+            shown = to_srgb(np.stack([np.interp(values, points[:, 0], points[:, c]) for c in (1, 2, 3)], 1))
             bar = ScalarMappable(Normalize(low, high), ListedColormap(shown.tolist()))
             axis.figure.colorbar(bar, ax=axis)
     return axis

@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Mapping, Sequence
-from typing import Any, Unpack
+from typing import Any, Literal, Unpack
 
 import numpy as np
 
@@ -17,8 +17,8 @@ from .keywords import FurtherSettings
 from .lights import Light
 from .mesh import Mesh
 from .progress import Progress, told
-from .scene import Scene, Settings
-from .volume import Look, Source, Volume
+from .scene import Scene, Settings, Side
+from .volume import Look, Source, Volume, as_volume
 
 __all__ = ["Renderer", "reference", "render"]
 
@@ -87,6 +87,19 @@ class Renderer:
         self._handle = made(lib.hl_renderer_create, "hl_renderer", lib.hl_renderer_destroy, context)
         self._lock, self._process = threading.Lock(), os.getpid()
 
+    def close(self) -> None:
+        """Let go of what was prepared; the renderer is of no use afterwards. ``with Renderer() as renderer:`` does it."""
+        with self._lock:
+            if self._handle is not None:
+                ffi.release(self._handle)
+            self._handle = None
+
+    def __enter__(self) -> Renderer:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
     @suggests
     def render(self, scene: Scene, *, layers: bool = False, progress: Progress = None) -> Image:
         """The scene's picture.
@@ -105,10 +118,13 @@ class Renderer:
         if self._process != os.getpid():  # a lock that another thread held at the fork stays locked
             self._lock, self._process = threading.Lock(), os.getpid()
         image = Image(_as_scene(scene))
+        scene._check_arrays()
         wanted, found, keep = _add_layers(image) if layers else (ffi.NULL, dict[str, Pixels](), [])
         statistics = ffi.new("hl_render_statistics *")
         statistics.struct_size = ffi.sizeof("hl_render_statistics")
         with self._lock, told(progress):
+            if self._handle is None:
+                raise ValueError("the renderer is closed: make another one")
             call(lib.hl_renderer_render_layers, self._handle, scene._handle, lib.hl_image_pixels(image._handle),
                  4 * image.size[0], wanted, statistics)
         del keep
@@ -145,6 +161,7 @@ def reference(scene: Scene, *, light_points: int = 1024, step: float = 0.25, ray
     True
     """
     image = Image(_as_scene(scene))
+    scene._check_arrays()
     options = ffi.new("hl_reference_options *")
     lib.hl_reference_options_defaults(options)
     options.light_points, options.step, options.rays, options.paths = light_points, step, rays, paths
@@ -214,6 +231,12 @@ def _given(**words: Any) -> dict[str, Any]:
     return {word: value for word, value in words.items() if value is not None}
 
 
+Words = Literal["off", "hard", "soft"]
+Shade = Literal["phong", "none", "flat"]
+Looked = Literal["auto", "surface", "translucent", "xray", "smoke", "vessels"]
+View = Camera | Side | str | Sequence[float] | Sequence[Sequence[float]]
+
+
 class Asked(FurtherSettings, total=False):
     """The keywords of `render` that say what is seen."""
 
@@ -227,16 +250,16 @@ class Asked(FurtherSettings, total=False):
     log_scale: bool
     opacity: Any
     opacity_unit_distance: float
-    shade: bool | str
+    shade: bool | Shade
     ambient: float
     diffuse: float
     specular: float
     shininess: float
     tf: Any
-    shadows: bool | str
+    shadows: bool | Words
     lights: Light | Sequence[Light]
-    camera: Camera | str | tuple[float, float]
-    size: tuple[int, int]
+    camera: View
+    size: tuple[int, int] | int | str
     background: Any
     threads: int
     array: str
@@ -249,7 +272,8 @@ class Asked(FurtherSettings, total=False):
     iso: Any
     cuts: Any
     mask: Any
-    look: str
+    labels: Any
+    look: Looked
     sky: Any
 
 
@@ -271,8 +295,8 @@ def scene_for(volume: Source, **asked: Unpack[Asked]) -> Scene:
         material["shading"] = ("phong" if shade else "flat") if isinstance(shade, (bool, np.bool_)) else shade
     if isinstance(settings.get("shadows"), (bool, np.bool_)):
         settings["shadows"] = "soft" if settings["shadows"] else "off"
-    look = tuple(map(words.get, _LOOK))
-    return _scene_of(volume, place, material, settings, look)  # type: ignore[arg-type]
+    look = {word: words[word] for word in _LOOK if word in words}
+    return _scene_of(volume, place, material, settings, look, words.get("labels"))
 
 
 def _is_scene(volume: Any) -> bool:
@@ -280,18 +304,18 @@ def _is_scene(volume: Any) -> bool:
 
 
 @suggests_also(FurtherSettings.__annotations__)
-def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any = None, direction: Any = None,
+def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, origin: Any = None, direction: Any = None,
            affine: Any = None, axes: str | None = None, cmap: Any = None,
            clim: Sequence[float | str] | None = None, log_scale: bool | None = None, opacity: Any = None,
-           opacity_unit_distance: float | None = None, shade: bool | str | None = None,
+           opacity_unit_distance: float | None = None, shade: bool | Shade | None = None,
            ambient: float | None = None, diffuse: float | None = None, specular: float | None = None,
-           shininess: float | None = None, tf: Any = None, shadows: bool | str | None = None,
-           lights: Light | Sequence[Light] | None = None, camera: Camera | str | tuple[float, float] | None = None,
-           size: tuple[int, int] | None = None, background: Any = None, threads: int | None = None,
+           shininess: float | None = None, tf: Any = None, shadows: bool | Words | None = None,
+           lights: Light | Sequence[Light] | None = None, camera: View | None = None,
+           size: tuple[int, int] | int | str | None = None, background: Any = None, threads: int | None = None,
            layers: bool = False, progress: Progress = None, array: str | None = None,
            component: int | str | None = None, series: str | None = None, time: int | None = None,
            channel: int | None = None, level: int | None = None, meshes: Mesh | Sequence[Mesh] | None = None,
-           iso: Any = None, cuts: Any = None, mask: Any = None, look: str | None = None,
+           iso: Any = None, cuts: Any = None, mask: Any = None, labels: Any = None, look: Looked | None = None,
            sky: Any = None, **further: Unpack[FurtherSettings]) -> Image:
     """A picture of a volume, in one call.
 
@@ -301,8 +325,10 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
 
     Parameters
     ----------
-    volume : path, array, Volume, or an object that has an array
-        A volume file, a scene file (.json), or what `Volume` takes.
+    volume : path, array, Volume, Mesh, an object that has an array, or a list of them
+        A volume file, a scene file (.json), or what `Volume` takes. Of several volumes, such as the channels of a
+        microscope, `cmap`, `clim`, `log_scale`, `opacity`, `opacity_unit_distance` and `tf` may be lists with one for
+        each. None: the `meshes` alone.
     spacing, origin, direction, affine, axes : optional
         The place of an array in the world: see `Volume`.
     cmap : str, matplotlib colormap, colour or colours, optional
@@ -328,9 +354,9 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
         "off", "hard" or "soft"; True is "soft".
     lights : a light or a list of them, optional
         See `halflight.lights`.
-    camera : Camera, str or (azimuth, elevation), optional
-        A side ("front", "left", "top", "iso", ...) and angles in degrees frame the volume.
-    size : (width, height), optional
+    camera : Camera, str, (azimuth, elevation) or (position, focal point, up), optional
+        A side ("front", "left", "top", "iso", "xy", ...) and angles in degrees frame the volume.
+    size : (width, height), int or "640x480", optional
         Pixels; default (512, 512).
     background : colour or "transparent", optional
         Names and "#rrggbb" are sRGB, numbers linear.
@@ -348,6 +374,10 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
         What is cut out of the volume: {"type": "plane", "point": (x, y, z), "normal": (x, y, z)} and others, see `Look`.
     mask : a label map, or a mapping, optional
         Where the volume shows, and in which colours: see `halflight.volume.Look`.
+    labels : True, label map or mapping, optional
+        True, a label or a list of labels: the volume is a label map, and they show as smooth surfaces. A label map (array,
+        path, Volume), or {"volume": map, "show": ..., "table": ...}: its labels show beside the volume. See
+        `halflight.volume.Look`.
     look : str, optional
         "surface", "translucent", "xray", "smoke" or "vessels" in place of the automatic look.
     sky : float, colour or mapping, optional
@@ -372,19 +402,57 @@ def render(volume: Source, *, spacing: arrays.Spacing | None = None, origin: Any
         log_scale=log_scale, opacity=opacity, opacity_unit_distance=opacity_unit_distance, shade=shade, ambient=ambient, diffuse=diffuse,
         specular=specular, shininess=shininess, tf=tf, shadows=shadows, lights=lights, camera=camera, size=size,
         background=background, threads=threads, array=array, component=component, series=series, time=time,
-        channel=channel, level=level, meshes=meshes, iso=iso, cuts=cuts, mask=mask, look=look, sky=sky, **further)
+        channel=channel, level=level, meshes=meshes, iso=iso, cuts=cuts, mask=mask, labels=labels, look=look, sky=sky, **further)
     with told(progress):
         scene = scene_for(volume, **asked)
     return Renderer().render(scene, layers=layers, progress=progress)
 
 
-def _scene_of(volume: Any, place: Mapping[str, Any], material: Mapping[str, Any], settings: Mapping[str, Any],
-              look: tuple[Any, Any, Any, Any, Any, Any]) -> Scene:
+def _look_for(look: Mapping[str, Any], index: int, count: int) -> tuple[Any, ...]:
+    """The keywords of one of several volumes: lists have one for each."""
+    found = []
+    for word in _LOOK:
+        value = look.get(word)
+        if count > 1 and isinstance(value, list):
+            if len(value) != count:
+                raise ValueError(f"{word}: a list of {len(value)} for {count} volumes: give one for each, or one for all")
+            value = value[index]
+        found.append(value)
+    return tuple(found)
+
+
+def _label_volume(labels: Any) -> Volume:
+    """The label map that `labels` shows beside a volume."""
+    parts = dict(labels) if isinstance(labels, Mapping) else {"volume": labels}
+    volume = parts.pop("volume")
+    return as_volume(volume).replace(labels=parts or True)
+
+
+def _shows_itself(labels: Any) -> bool:
+    """Whether the volume itself is the label map: no other one is named."""
+    if isinstance(labels, Mapping):
+        return "volume" not in labels
+    plain = isinstance(labels, (bool, int, float)) or isinstance(labels, str) and not os.path.exists(labels)
+    return plain or isinstance(labels, (list, tuple, set)) and all(isinstance(one, (str, int, float)) for one in labels)
+
+
+def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], settings: dict[str, Any],
+              look: Mapping[str, Any], labels: Any) -> Scene:
+    if labels is not None and labels is not False and _shows_itself(labels):
+        material["labels"], labels = labels, None
     if isinstance(volume, Scene) or _is_scene(volume):
         for word in place:
             raise TypeError(f"{word} is for volumes: a scene says where its volumes are")
         scene = volume if isinstance(volume, Scene) else Scene.load(volume)
-        changed = [_look(one, *look).replace(**material) for one in scene.volumes]
-        return scene.replace(changed, **settings)
-    one = Volume(volume, **place)
-    return Scene(_look(one, *look).replace(**material), **settings)
+        count = len(scene.volumes)
+        changed = [_look(one, *_look_for(look, n, count)).replace(**material) for n, one in enumerate(scene.volumes)]
+        return scene.replace(changed if labels is None else [*changed, _label_volume(labels)], **settings)
+    given = volume if isinstance(volume, list) else [volume] if volume is not None or not settings.get("meshes") else []
+    sources = [one for one in given if not isinstance(one, Mesh)]
+    volumes = [_look(Volume(one, **place), *_look_for(look, n, len(sources))).replace(**material)
+               for n, one in enumerate(sources)]
+    if not volumes:
+        for word in (*place, *look, *material):
+            raise TypeError(f"{word} is for volumes: the picture has none")
+    others = [one for one in given if isinstance(one, Mesh)] + ([] if labels is None else [_label_volume(labels)])
+    return Scene([*volumes, *others], **settings)

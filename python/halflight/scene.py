@@ -3,21 +3,22 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import Any, Unpack
+from typing import Any, Literal, Unpack
 
 import numpy
 
-from . import _settings, colors, cuts
+from . import _settings, arrays, colors, cuts
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords, choice
 from .camera import Camera, camera_from
 from .keywords import PictureSettings, RenderSettings, SkySettings
-from .lights import Light, light_from
+from .lights import Light, images_are_same, light_from
 from .mesh import Mesh, mesh_from
 from .volume import Volume, as_volume, volume_from
 
 __all__ = ["Scene", "Settings"]
 
+Side = Literal["automatic", "front", "back", "left", "right", "top", "bottom", "iso", "xy", "xz", "yz", "yx", "zx", "zy"]
 SIDES = ("automatic", "front", "back", "left", "right", "top", "bottom", "iso")
 
 
@@ -26,14 +27,15 @@ class Settings(PictureSettings, RenderSettings, total=False):
 
     Parameters
     ----------
-    camera : Camera, str or (azimuth, elevation)
-        "front", "back", "left", "right", "top", "bottom" and "iso" are sides; angles in degrees.
+    camera : Camera, str, (azimuth, elevation) or (position, focal point, up)
+        "front", "back", "left", "right", "top", "bottom" and "iso" are sides, "xy", "xz", ... PyVista's: the axes to the
+        picture's right and top; angles in degrees. Three points are PyVista's ``camera_position``.
     lights : a light or a list of them
         See `halflight.lights`.
     ambient : float, (r, g, b) or str
         Light from everywhere.
-    size : (width, height)
-        Pixels.
+    size : (width, height), int or str
+        Pixels; 512 is a square, "640x480" a text.
     background : colour or "transparent"
         What a PNG shows behind the volumes.
     description : str
@@ -48,10 +50,10 @@ class Settings(PictureSettings, RenderSettings, total=False):
         of linear RGB, ``{"type": "image", "pixels": array}``.
     """
 
-    camera: Camera | str | tuple[float, float]
+    camera: Camera | Side | str | Sequence[float] | Sequence[Sequence[float]]
     lights: Light | Sequence[Light]
     ambient: float | Sequence[float] | str
-    size: tuple[int, int]
+    size: tuple[int, int] | int | str
     background: float | Sequence[float] | str
     description: str
     meshes: Mesh | Sequence[Mesh]
@@ -70,7 +72,8 @@ class Scene:
     Parameters
     ----------
     volumes : Volume, path, array, or a list of them
-        Look, lights and camera are chosen from the first, as ``halflight render`` does.
+        Look, lights and camera are chosen from the first, as ``halflight render`` does. Meshes may be among them, or be
+        all that there is.
     **settings : Settings
         `camera` (a Camera; "front", "back", "left", "right", "top", "bottom", "iso"; or azimuth and elevation in
         degrees), `lights`, `ambient`, `size` (width, height in pixels), `background` (a colour or "transparent"),
@@ -87,13 +90,16 @@ class Scene:
 
     __slots__ = ("__weakref__", "_handle", "_volumes")
 
-    def __init__(self, volumes: Any, **settings: Unpack[Settings]) -> None:
+    def __init__(self, volumes: Any = (), **settings: Unpack[Settings]) -> None:
         check_keywords("Scene()", settings, Settings.__annotations__)
-        sources = volumes if isinstance(volumes, list) else [volumes]
-        if not sources:
-            raise ValueError("a scene needs at least one volume")
-        self._volumes = tuple(as_volume(source) for source in sources)
-        base = self._volumes[0]._base_scene()[0]
+        given = list(volumes) if isinstance(volumes, list) or isinstance(volumes, tuple) and not volumes else [volumes]
+        if (own := [one for one in given if isinstance(one, Mesh)]):
+            more = settings.get("meshes", ())
+            settings["meshes"] = [*own, *([more] if isinstance(more, Mesh) else more)]
+        self._volumes = tuple(as_volume(source) for source in given if not isinstance(source, Mesh))
+        if not self._volumes and not settings.get("meshes"):
+            raise ValueError("a scene needs at least one volume or mesh")
+        base = self._volumes[0]._base_scene()[0] if self._volumes else _for_meshes()
         self._handle = _build(base, self._volumes, settings, True)
 
     @classmethod
@@ -155,6 +161,67 @@ class Scene:
         other._handle = _build(self._handle, other._volumes, settings, False)
         return other
 
+    def save(self, path: str | os.PathLike[str], *, copy: bool = False) -> None:
+        """Write a scene file (.json) that `Scene.load` and ``halflight render`` read, with what is in memory alone beside it.
+
+        Arrays, and images of lights and skies that are arrays, go into a folder beside the file, whose name begins as the
+        file's; meshes are written into the scene. Files stay where they are, named relative to the scene where they lie
+        beside or below it.
+
+        Parameters
+        ----------
+        path : path
+            Its name ends in .json.
+        copy : bool
+            Volumes that come from files are written into the folder, too: the scene and its folder can be sent away.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> Scene(np.ones((8, 8, 8), np.uint8), size=16).save("ones.json")
+        >>> Scene.load("ones.json").volumes[0].dimensions
+        (8, 8, 8)
+        """
+        from .bundle import save
+
+        save(self, os.fspath(path), copy)
+
+    def _state(self) -> dict[str, Any]:
+        """All that the scene shows beside its volumes, by the keywords that make it."""
+        state: dict[str, Any] = {word: getattr(self, word) for word in (
+            "camera", "lights", "ambient", "size", "background", "meshes", "cuts", "exposure", "tone", "sky", "description")}
+        return state | dict(self.settings)
+
+    def __reduce__(self) -> Any:
+        return _restored, (self._volumes, self._state())
+
+    def __copy__(self) -> Scene:
+        return self.replace()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Scene:
+        return self.replace()  # scenes do not change
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene):
+            return NotImplemented
+        return self._handle == other._handle or (
+            self._volumes == other._volumes and _settings.same(self._state(), other._state())
+            and all(map(images_are_same, self.lights, other.lights)))
+
+    def __hash__(self) -> int:
+        return hash((self.size, len(self._volumes)))
+
+    def _check_arrays(self) -> None:
+        """Raise ValueError where an array has been changed since a volume borrowed it."""
+        struct = self._struct
+        for n in range(struct.volume_count):
+            for what, handle in (("array", struct.volumes[n].volume), ("mask", struct.volumes[n].mask.volume)):
+                loan = arrays.loan_of(handle) if handle != ffi.NULL else None
+                if loan is not None and not loan.is_unchanged():
+                    where = f"volumes[{n}]: " if struct.volume_count > 1 else ""
+                    raise ValueError(f"{where}the {what} was changed after the volume was made: make a new Volume and Scene of it, "
+                                     "or give copy=True")
+
     @property
     def _struct(self) -> Any:
         return lib.hl_scene_describe(self._handle)
@@ -183,6 +250,21 @@ class Scene:
     def cuts(self) -> list[dict[str, Any]]:
         """What is cut out of all volumes."""
         return cuts.cuts_from(self._struct)
+
+    @property
+    def sky(self) -> dict[str, Any]:
+        """Light from all directions, by the keywords of `halflight.keywords.SkySettings`, with an image's `pixels`."""
+        sky = self._struct.sky
+        found = _settings.read(sky, lib.HL_SETTINGS_SKY)
+        if sky.pixels != ffi.NULL:
+            held = ffi.buffer(sky.pixels, 4 * sky.width * sky.height * 3)
+            found["pixels"] = numpy.frombuffer(held, numpy.float32).reshape(sky.height, sky.width, 3).copy()
+        return found
+
+    @property
+    def description(self) -> str | None:
+        """One sentence on the scene."""
+        return None if self._struct.description == ffi.NULL else text_of(self._struct.description)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -220,7 +302,9 @@ class Scene:
 
     def __repr__(self) -> str:
         width, height = self.size
-        return f"<halflight.Scene {width}x{height}, {len(self.volumes)} volumes, {len(self.lights)} lights>"
+        counts = ((len(self.volumes), "volume"), (self._struct.mesh_count, "mesh"), (len(self.lights), "light"))
+        said = [f"{n} {noun}{'' if n == 1 else 'es' if noun == 'mesh' else 's'}" for n, noun in counts if n or noun != "mesh"]
+        return f"<halflight.Scene {width}x{height}, {', '.join(said)}>"
 
 
 def _set_lights(struct: Any, settings: Mapping[str, Any], keep: list[Any]) -> None:
@@ -314,15 +398,33 @@ def _frame(struct: Any, side: int, angles: Sequence[float] | None) -> None:
             raise ValueError(f"camera: azimuth {angles[0]} and elevation {angles[1]}: the elevation is from -90 to 90")
 
 
+# PyVista's names of views: from where the eye looks, and what is up.
+SIDES_BY_AXES = {"xy": ((0, 0, 1), (0, 1, 0)), "yx": ((0, 0, -1), (1, 0, 0)), "xz": ((0, -1, 0), (0, 0, 1)),
+                 "zx": ((0, 1, 0), (1, 0, 0)), "yz": ((1, 0, 0), (0, 0, 1)), "zy": ((-1, 0, 0), (0, 1, 0))}
+
+
+def _look_along(struct: Any, towards_eye: Sequence[float], up: Sequence[float]) -> None:
+    """Place the camera so that it frames what is seen, from this direction."""
+    camera = struct.camera
+    camera.position, camera.target, camera.up = list(towards_eye), [0.0, 0.0, 0.0], list(up)
+    if lib.hl_camera_fit(ffi.addressof(struct), 1.0, ffi.addressof(camera)) != lib.HL_OK:
+        raise ValueError("camera: what is seen cannot be framed from there")
+
+
 def _set_camera(struct: Any, camera: Any, reframe: bool) -> None:
     if isinstance(camera, Camera):
         camera._fill(struct.camera)
+    elif isinstance(camera, str) and len(camera) == 2 and camera in SIDES_BY_AXES:
+        _look_along(struct, *SIDES_BY_AXES[camera])
     elif isinstance(camera, str):
         side = SIDES.index(choice("camera", camera, SIDES))
         _frame(struct, side, None)
     elif camera is not None:
         if isinstance(camera, (dict, set)) or not hasattr(camera, "__len__"):
             raise TypeError(f"camera: {camera!r} is no Camera, side or (azimuth, elevation)")
+        if len(camera) == 3 and all(hasattr(one, "__len__") for one in camera):
+            Camera.from_cpos(camera, struct.camera.fovy_deg)._fill(struct.camera)
+            return
         angles = _settings.numbers_of("camera", camera, 2)
         if abs(angles[1]) > 90:
             raise ValueError(f"camera: the elevation {angles[1]:g} is not from -90 to 90")
@@ -331,31 +433,48 @@ def _set_camera(struct: Any, camera: Any, reframe: bool) -> None:
         _frame(struct, lib.HL_SIDE_AUTOMATIC, None)
 
 
+def _for_meshes() -> Any:
+    """A scene that meshes alone begin with: the program's camera and light for them."""
+    text = (b'{"halflight": 1, "meshes": [{"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 1]], "triangles": [[0, 1, 2]]}]}')
+    return made(lib.hl_scene_from_json, "hl_scene", lib.hl_scene_release, context, text, len(text), ffi.NULL, b"meshes")
+
+
+def _restored(volumes: tuple[Volume, ...], state: dict[str, Any]) -> Scene:
+    """The scene with this state, as pickle makes it."""
+    scene = Scene.__new__(Scene)
+    scene._volumes = volumes
+    scene._handle = _build(_for_meshes(), volumes, state, False)
+    return scene
+
+
 def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], chosen: bool) -> Any:
     """An hl_scene: that of `base` with other volumes and settings. chosen: its camera was chosen for a volume."""
     keep: list[Any] = [base]
     pointer = ffi.new("hl_scene_description *", lib.hl_scene_describe(base)[0])
     struct = pointer[0]
-    array = ffi.new("hl_scene_volume[]", len(volumes))
+    array = ffi.new("hl_scene_volume[]", len(volumes)) if volumes else ffi.NULL
     for n, volume in enumerate(volumes):
         volume._fill(array[n], keep, f"volumes[{n}]: " if len(volumes) > 1 else "")
     struct.volumes, struct.volume_count = array, len(volumes)
+    if chosen and volumes and volumes[0]._changes.get("labels") and struct.render.kernel == lib.HL_KERNEL_LINEAR:
+        struct.render.kernel = lib.HL_KERNEL_BSPLINE  # smooth labels are splines' coefficients, as the program has it
+    meshes = settings.get("meshes")
+    if meshes is not None and not volumes:  # they are what is framed
+        _set_meshes(struct, meshes, keep)
     if chosen and len(volumes) > 1:
         spacings = [lib.hl_scene_describe(one._base_scene()[0]).render.sheet_spacing for one in volumes]
         struct.render.sheet_spacing = min(spacings)
     if (size := settings.get("size")) is not None:
-        width, height = _settings.numbers_of("size", size, 2)
-        if min(width, height) < 1:
-            raise ValueError(f"size: {width:g} x {height:g} pixels: give whole numbers from 1 on, (width, height)")
+        width, height = _settings.size_of("size", size)
         _settings.fill("size: ", struct, lib.HL_SETTINGS_IMAGE, {"width": width, "height": height})
     if (cut := settings.get("cuts")) is not None:
         cuts.fill(struct, cut, keep, "")
-    reframe = chosen and (size is not None or len(volumes) > 1 or cut is not None or any(one._changes.keys() - {"name"} for one in volumes))
+    reframe = chosen and (size is not None or len(volumes) != 1 or cut is not None or any(one._changes.keys() - {"name"} for one in volumes))
     _set_camera(struct, settings.get("camera"), reframe)
     _set_lights(struct, settings, keep)
     if chosen and len(volumes) == 1:
         _expose_anew(struct, volumes[0], settings, keep)
-    if (meshes := settings.get("meshes")) is not None:
+    if meshes is not None and volumes:
         _set_meshes(struct, meshes, keep)
     if chosen and settings.get("shadows") == "off" and settings.get("sky") is None:  # as the program's --shadows off
         lib.hl_scene_level_sky(pointer)

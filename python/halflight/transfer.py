@@ -86,6 +86,72 @@ class TransferFunction:
         factors = [numbers_of(f"{place}gradient_opacity[{n}]", point, 2) for n, point in enumerate(gradient_opacity)]
         self.gradient_opacity = np.array(factors, dtype=np.float64).reshape(-1, 2)
 
+    @classmethod
+    def from_vtk(cls, property: Any, colors: Any = None, *, unit_distance: float | None = None) -> TransferFunction:
+        """What a vtkVolumeProperty of VTK, PyVista, ParaView or Slicer shows, of its first component.
+
+        Parameters
+        ----------
+        property : vtkVolumeProperty or vtkPiecewiseFunction
+            Midpoints, sharpness and colour spaces are kept by points in between.
+        colors : vtkColorTransferFunction, optional
+            Beside a vtkPiecewiseFunction.
+        unit_distance : float, optional
+            World units; by default the property's, or 1.
+        """
+        from .vtk_functions import function_from_vtk
+
+        return function_from_vtk(property, colors, unit_distance)
+
+    @classmethod
+    def from_napari(cls, layer: Any, *, unit_distance: float = 1.0) -> TransferFunction:
+        """The colours of a napari image layer over its contrast limits, and opacity that rises with them, times the layer's.
+
+        Parameters
+        ----------
+        layer : napari.layers.Image
+            Its colormap, contrast limits, gamma and opacity count.
+        unit_distance : float
+            World units in which the brightest value is as opaque as the layer says.
+        """
+        low, high = map(float, layer.contrast_limits)
+        steps = np.linspace(0, 1, 256)
+        shown = np.asarray(layer.colormap.map(steps ** float(layer.gamma)), dtype=np.float64)
+        values = np.linspace(low, high, 256)
+        opacity = steps ** float(layer.gamma) * shown[:, 3] * float(layer.opacity)
+        return cls(np.column_stack([values, opacity]), np.column_stack([values, colors.to_linear(shown[:, :3])]),
+                   unit_distance)
+
+    @classmethod
+    def from_matplotlib(cls, cmap: Any, clim: tuple[float, float] = (0.0, 1.0), opacity: Any = None, *,
+                        unit_distance: float = 1.0) -> TransferFunction:
+        """A matplotlib colormap over a range of values.
+
+        Parameters
+        ----------
+        cmap : matplotlib colormap, ScalarMappable, str, colour or colours
+            A ScalarMappable, such as what ``imshow`` gives, brings its own range.
+        clim : (low, high)
+            The values that the colours spread over.
+        opacity : optional
+            As of `render`; by default the colormap's alpha where it has one below 1, else "linear".
+
+        Examples
+        --------
+        >>> TransferFunction.from_matplotlib("viridis", (0, 100)).opacity[-1].tolist()
+        [100.0, 1.0]
+        """
+        if hasattr(cmap, "get_cmap") and hasattr(cmap, "get_clim"):
+            clim, cmap = cmap.get_clim(), cmap.get_cmap()
+        low, high = numbers_of("clim", clim, 2)
+        points = colors.sampled("cmap", cmap, low, high)
+        if points is None:
+            points = function_from(_made(lib.hl_transfer_function_colormap, cmap.encode(), low, high)).color.tolist()
+        if opacity is None and callable(cmap):
+            alpha = np.asarray(cmap(np.linspace(0, 1, 256)), dtype=np.float64)[:, 3]
+            opacity = alpha.tolist() if alpha.min() < 1 else None
+        return cls(opacity_points("linear" if opacity is None else opacity, [low, high]), points, unit_distance)
+
     def __repr__(self) -> str:
         return (f"TransferFunction({self.opacity.tolist()}, color={self.color.tolist()}, "
                 f"unit_distance={self.unit_distance}"

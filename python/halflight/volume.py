@@ -4,13 +4,13 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Unpack
+from typing import Any, Literal, Unpack
 
 import numpy as np
 
-from . import _settings, arrays, cuts, isosurface, mask, neighbours
+from . import _settings, arrays, cuts, isosurface, mask, neighbours, pieces
 from ._library import call, context, ffi, lib, made, text_of
-from ._words import check_keywords
+from ._words import check_keywords, choice
 from .keywords import MaterialSettings, VolumeSettings
 from .transfer import TransferFunction, function_from
 
@@ -44,6 +44,9 @@ class Look(VolumeSettings, MaterialSettings, total=False):
         name or number, alone or with a colour, an opacity from 0 to 1, or (colour, opacity); as `rest` what is
         left outside of them; as `table` a file of names and colours: ``{"volume": "organs.seg.nrrd", "show":
         {"bone": None, "tumour": "red", "liver": 0.3}, "rest": 0.02}``.
+    labels : True, a label, a list of labels, or a mapping
+        The volume is a label map, and its labels show as smooth surfaces: all of them, or those that are named, by name or
+        number, with what a mask's `show` may say of each; a mapping may have a `table` of names and colours beside `show`.
     look : str
         "surface", "translucent", "xray", "smoke" or "vessels": the transfer function and shading of that look.
     """
@@ -55,7 +58,8 @@ class Look(VolumeSettings, MaterialSettings, total=False):
     iso: Any
     cuts: Any
     mask: Any
-    look: str
+    labels: Any
+    look: Literal["auto", "surface", "translucent", "xray", "smoke", "vessels"]
 
 
 _OF_FILES = ("array", "component", "series", "time", "channel", "level")
@@ -160,8 +164,8 @@ class Volume:
     """Voxels with their place in the world, and how they look.
 
     Arrays are not copied where the library can read them as they lie: packed uint8, bool, uint16 and float32, in
-    any order of the axes. The array must not be changed while the volume, a scene with it or a renderer of such a
-    scene lives; it may be deleted.
+    any order of the axes. The array may be deleted. Where it is changed while the volume or a scene with it lives, the
+    next picture of the volume is refused: make another `Volume`, or borrow nothing with ``copy=True``.
 
     Parameters
     ----------
@@ -182,7 +186,9 @@ class Volume:
     array, component, series, time, channel, level : optional
         Of a file with several: the array's name; the number of the component, "magnitude", or "color" or
         "luminance" for voxels with colours; a DICOM series by number, UID or description; the number of the time
-        step, channel and resolution.
+        step, channel and resolution. `array` chooses a variable of an xarray.Dataset, too.
+    copy : bool
+        The voxels of an array are copied: it may be changed.
     **look : Look
         How it looks and where it stands: `name`, `transfer_function`, `clip`, `scale`, and the keywords of
         `halflight.keywords.VolumeSettings` and `MaterialSettings`.
@@ -195,19 +201,21 @@ class Volume:
     (6, 5, 4)
     """
 
-    __slots__ = ("__weakref__", "_automatic", "_base", "_changes", "_file", "_handle", "_loading", "_order")
+    __slots__ = ("__weakref__", "_automatic", "_base", "_changes", "_colored", "_file", "_handle", "_loading", "_order", "_shapes")
 
     def __init__(self, source: Source, *, spacing: arrays.Spacing | None = None, origin: Any = None,
                  direction: Any = None, affine: Any = None, axes: str | None = None, array: str | None = None,
                  component: int | str | None = None, series: str | None = None, time: int | None = None,
-                 channel: int | None = None, level: int | None = None, **look: Unpack[Look]) -> None:
-        check_keywords("Volume()", look, [*Look.__annotations__, "spacing", "origin", "direction", "affine", "axes", *_OF_FILES])
+                 channel: int | None = None, level: int | None = None, copy: bool = False, **look: Unpack[Look]) -> None:
+        check_keywords("Volume()", look, [*Look.__annotations__, "spacing", "origin", "direction", "affine", "axes", "copy", *_OF_FILES])
         self._handle: Any = None
         self._file: str | None = None
         self._loading: Any = None
         self._automatic: Any = None  # the scene that shows the volume with no further choice
         self._base: tuple[Any, int] | None = None  # or the scene that it was read from, and its number there
         self._order: tuple[int, ...] | None = None
+        self._colored: Any = None  # the array, where its voxels are colours
+        self._shapes: str | None = None  # the text that the voxels were made from
         self._changes: dict[str, Any] = dict(look)
         if isinstance(source, Volume):
             self._share(source)
@@ -217,31 +225,47 @@ class Volume:
         place = {"spacing": spacing, "origin": origin, "direction": direction, "affine": affine}
         chosen = {"array": array, "component": component, "series": series, "time": time, "channel": channel,
                   "level": level}
-        self._read(source, axes, place, {word: value for word, value in chosen.items() if value is not None})
+        self._read(source, axes, place, {word: value for word, value in chosen.items() if value is not None}, copy)
 
-    def _read(self, source: Source, axes: str | None, place: dict[str, Any], chosen: dict[str, Any]) -> None:
+    def _read(self, source: Source, axes: str | None, place: dict[str, Any], chosen: dict[str, Any], copy: bool) -> None:
         if isinstance(source, (str, os.PathLike)):
             for word in ("origin", "direction", "affine"):
                 if place[word] is not None:
                     raise TypeError(f"{word} is for arrays: a file says it itself")
             self._load(os.fspath(source), place["spacing"], axes or "zyx", chosen)
             return
+        name = chosen.pop("array", None) if hasattr(source, "data_vars") else None
         for word in chosen:
             raise TypeError(f"{word} is for files that hold several: choose by an index")
-        found = neighbours.find(source)
+        found = neighbours.find(source) if name is None else neighbours.variable(source, name)
         order = axes or found.axes or "zyx"
         known = {word: value for word, value in place.items() if value is not None} or found.place
         space = found.space if known is found.place else 0
-        self._handle = arrays.make_volume(found.array, order, arrays.make_place(order, *map(known.get, place)), space,
-                                          found.owner)
-        shape = np.shape(found.array)
-        self._order = tuple(shape[order.index(letter)] for letter in "xyz")
+        where, array = arrays.make_place(order, *map(known.get, place)), arrays.without_single_axes(found.array)
+        self._handle = self._made(array, order, where, space, None if copy else found.owner, copy)
+        if pieces.has_colors(array.shape, array.dtype):
+            self._colored = np.array(array).transpose([order.index(letter) for letter in "zyx"] + [3])
+        if len(array.shape) == 3:
+            self._order = tuple(array.shape[order.index(letter)] for letter in "xyz")
         if found.name is not None:
             self._changes.setdefault("name", found.name)
 
+    @staticmethod
+    def _made(array: Any, order: str, place: arrays.Place, space: int, owner: object, copy: bool) -> Any:
+        """An hl_volume of an array: as it lies, copied, read by pieces, or with its voxels' colours."""
+        if pieces.has_colors(array.shape, array.dtype):
+            return pieces.color_volume(np.asarray(array), order, place, space)
+        if neighbours.is_stored(array):
+            if pieces.does_not_fit(array):
+                return pieces.volume_of_pieces(array, order, place, space)
+            array = neighbours.read_whole(array)
+        elif copy:
+            array = np.array(array, order="C")
+        return arrays.make_volume(array, order, place, space, owner)
+
     def _share(self, other: Volume) -> None:
         self._handle, self._file, self._loading = other._handle, other._file, other._loading
-        self._base, self._order = other._base, other._order
+        self._base, self._order, self._shapes, self._colored = other._base, other._order, other._shapes, other._colored
         self._changes = {**other._changes, **self._changes}
         same = self._changes.get("look") == other._changes.get("look")
         self._automatic = other._automatic if same else None
@@ -283,8 +307,123 @@ class Volume:
             look["iso"] = isosurface.isosurfaces_from(struct)
         if struct.cut_count > 0:
             look["cuts"] = cuts.cuts_from(struct)
+        if struct.label_count > 0:
+            look["labels"] = mask.labels_from(struct.labels, struct.label_count, False)
+        if struct.mask.volume != ffi.NULL:
+            look["mask"] = {"volume": _of_handle(struct.mask.volume, struct.mask.file), "rest": struct.mask.rest,
+                            "show": mask.labels_from(struct.mask.labels, struct.mask.label_count, True)}
         look["scale"] = tuple(struct.scale * one for one in struct.axis_scale)
         return look | self._changes
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray[Any, Any]:
+        """The voxels, [z][y][x]: those of a borrowed array, read-only, else a copy."""
+        loan = arrays.loan_of(self._handle)
+        if loan is None:
+            if copy is False:
+                raise ValueError("the volume's voxels are the library's own: they can only be copied")
+            voxels = pieces.voxels_of(self._handle)
+        else:
+            voxels = loan.voxels.copy() if copy else loan.voxels.view()
+            voxels.flags.writeable = bool(copy)
+        return voxels if dtype is None else voxels.astype(dtype, copy=False)
+
+    @property
+    def affine(self) -> np.ndarray[Any, np.dtype[np.float64]]:
+        """4x4, from the indices (x, y, z) of ``numpy.asarray(volume)`` to the world."""
+        place = self._place()
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = np.array(place.steps).T, place.origin
+        return matrix
+
+    def _place(self) -> arrays.Place:
+        loan = arrays.loan_of(self._handle)
+        if loan is not None:
+            return loan.place
+        info = self.info()
+        return arrays.Place(tuple(info.origin.tolist()), tuple(map(tuple, (info.direction * info.spacing).T.tolist())))
+
+    def save(self, path: str | os.PathLike[str], *, type: str | None = None, shrink: int = 1) -> None:
+        """Write the voxels with their place: .nrrd, .nii, .nii.gz, .mha, .vti, .mrc, .raw or .raw.gz, by the name's ending.
+
+        Parameters
+        ----------
+        path : path
+            It appears whole or not at all. The name of a raw file states size and type, as for reading.
+        type : str, optional
+            Of the voxels, such as "uint8"; by default one that holds all values.
+        shrink : int
+            A written voxel is the mean over so many along each axis.
+
+        Examples
+        --------
+        >>> Volume(np.arange(8, dtype=np.uint8).reshape(2, 2, 2), spacing=0.5).save("eight.nrrd")
+        >>> Volume("eight.nrrd").info().spacing.tolist()
+        [0.5, 0.5, 0.5]
+        """
+        options = ffi.new("hl_volume_save_options *")
+        lib.hl_volume_save_options_defaults(options)
+        if type is not None:
+            kinds = {text_of(lib.hl_voxel_type_name(kind)): kind for kind in range(1, 12)}
+            options.type = kinds[choice("type", type, kinds)]
+        if isinstance(shrink, bool) or shrink != int(shrink) or shrink < 1:
+            raise ValueError(f"shrink: {shrink!r} is no whole number from 1 on")
+        options.shrink = int(shrink)
+        call(lib.hl_volume_save_with, context, self._handle, os.fsencode(path), options)
+
+    def _source(self) -> tuple[str, Any]:
+        """What the voxels are, for pickle and comparison: ("file", (path, how it is read)), ("shapes", text) or ("array", ...)."""
+        if self._shapes is not None:
+            return "shapes", self._shapes
+        if self._file is not None and os.path.exists(self._file):
+            return "file", (os.path.abspath(self._file), self._reading())
+        loan = arrays.loan_of(self._handle)
+        info = self.info()
+        space = next((code for code in range(4) if lib.hl_space_name(code) != ffi.NULL and text_of(lib.hl_space_name(code)) == info.space), 0)
+        voxels = np.asarray(self) if self._colored is None else self._colored
+        return "array", (voxels, tuple(self._place()), loan.space if loan is not None else space, self._order)
+
+    def _reading(self) -> dict[str, Any]:
+        """How the file is read: what differs from the defaults."""
+        struct, plain = self._loading[0] if self._loading is not None else self._struct(), ffi.new("hl_volume_load_options *")
+        said: dict[str, Any] = {}
+        lib.hl_volume_load_options_defaults(plain)
+        for word in ("array", "series", "component", "time", "channel", "level"):
+            value = getattr(struct, word)
+            if word in ("array", "series"):
+                if value != ffi.NULL:
+                    said[word] = text_of(value)
+            elif value != getattr(plain, word):
+                name = lib.hl_component_name(value) if word == "component" else ffi.NULL
+                said[word] = value if name == ffi.NULL else text_of(name)
+        if any(struct.spacing):
+            said["spacing"] = list(struct.spacing)[::-1]
+        return said
+
+    def __reduce__(self) -> Any:
+        look = dict(self._changes) if self._base is None else self.look
+        kind, source = self._source()
+        return _restored, (kind, (arrays.packed(source[0]), *source[1:]) if kind == "array" else source, look)
+
+    def __copy__(self) -> Volume:
+        return Volume(self)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Volume:
+        return Volume(self)  # volumes do not change
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Volume):
+            return NotImplemented
+        if not _settings.same(self.look, other.look):
+            return False
+        if self._handle == other._handle:
+            return True
+        (kind, one), (other_kind, two) = self._source(), other._source()
+        if kind != other_kind or kind != "array":
+            return kind == other_kind and bool(one == two)
+        return one[1:3] == two[1:3] and np.array_equal(one[0], two[0], equal_nan=one[0].dtype.kind == "f")
+
+    def __hash__(self) -> int:
+        return hash(self.dimensions)
 
     @property
     def dimensions(self) -> tuple[int, int, int]:
@@ -386,6 +525,8 @@ class Volume:
             struct.name = text
         if (given := changes.pop("mask", None)) is not None:
             mask.fill(struct, given, as_volume, keep, place)
+        if (labels := changes.pop("labels", None)) is not None and labels is not False:
+            mask.fill_labels(struct, labels, self._handle, keep, place)
         if (look := changes.pop("look", None)) is not None and self._base is not None:
             self._take_look(struct, look, keep)
         if (iso := changes.pop("iso", None)) is not None:
@@ -434,12 +575,41 @@ def _sized(noun: str) -> Any:
 def volume_from(scene: Any, index: int) -> Volume:
     """The volume with this number in a scene."""
     struct = lib.hl_scene_describe(scene).volumes[index]
+    found = _of_handle(struct.volume, struct.file)
+    found._base = scene, index
+    found._shapes = None if struct.shapes == ffi.NULL else text_of(struct.shapes)
+    return found
+
+
+def _of_handle(handle: Any, file: Any) -> Volume:
+    """A Volume of an hl_volume, which it retains."""
     found = Volume.__new__(Volume)
-    found._loading = found._automatic = found._order = None
-    found._file = None if struct.file == ffi.NULL else os.fsdecode(ffi.string(struct.file))
-    found._base, found._changes = (scene, index), {}
-    lib.hl_volume_retain(struct.volume)
-    found._handle = ffi.gc(struct.volume, lib.hl_volume_release)
+    found._loading = found._automatic = found._order = found._shapes = found._base = found._colored = None
+    found._file = None if file == ffi.NULL else os.fsdecode(ffi.string(file))
+    found._changes = {}
+    lib.hl_volume_retain(handle)
+    found._handle = ffi.gc(handle, lib.hl_volume_release)
+    return found
+
+
+def _restored(kind: str, source: Any, look: dict[str, Any]) -> Volume:
+    """The volume that `Volume._source` told of, as pickle makes it."""
+    if kind == "file":
+        return Volume(source[0], **source[1], **look)
+    found = Volume.__new__(Volume)
+    found._file = found._loading = found._automatic = found._base = found._shapes = found._order = found._colored = None
+    found._changes = dict(look)
+    if kind == "shapes":
+        raw = source.encode()
+        found._shapes = source
+        found._handle = made(lib.hl_volume_from_shapes, "hl_volume", lib.hl_volume_release, context, raw, len(raw), b"shapes",
+                             ffi.NULL)
+        return found
+    packed, place, space, found._order = source
+    voxels = packed.view()
+    found._handle = Volume._made(voxels, "zyx", arrays.Place(*place), space, None, False)
+    if voxels.ndim == 4:
+        found._colored = voxels
     return found
 
 

@@ -1,0 +1,105 @@
+"""Pictures as files, in open files, in NumPy's sums, and sizes."""
+import io
+import sys
+
+import numpy as np
+import pytest
+
+import halflight
+from halflight import Renderer
+
+
+@pytest.fixture
+def image(small):
+    return Renderer().render(small)
+
+
+@pytest.mark.parametrize("ending, mark", [("jpg", b"\xff\xd8\xff"), ("jpeg", b"\xff\xd8\xff"), ("tif", b"II*\0"), ("pdf", b"%PDF"), ("webp", b"RIFF")])
+def test_pillow_writes_more_formats(image, tmp_path, ending, mark):
+    Pillow = pytest.importorskip("PIL.Image")
+    image.save(tmp_path / f"a.{ending}")
+    content = (tmp_path / f"a.{ending}").read_bytes()
+    assert content.startswith(mark) and [path.name for path in tmp_path.iterdir()] == [f"a.{ending}"]
+    if ending != "pdf":
+        shown = np.asarray(Pillow.open(io.BytesIO(content)).convert("RGB")).astype(int)
+        assert abs(shown - image.to_srgb8()[..., :3]).max() <= (12 if ending.startswith("jp") else 0)
+    image.save(tmp_path / f"b.{ending}", background="white")
+    assert (tmp_path / f"b.{ending}").read_bytes() != content
+
+
+def test_transparent_pictures_keep_their_alpha(image, tmp_path):
+    Pillow = pytest.importorskip("PIL.Image")
+    image.save(tmp_path / "a.tif", background="transparent")
+    assert np.array_equal(np.asarray(Pillow.open(tmp_path / "a.tif")), image.to_srgb8("transparent"))
+
+
+def test_open_files(image, tmp_path):
+    for word in ("png", "exr", "npy"):
+        place = io.BytesIO()
+        image.save(place, format=word)
+        assert place.getvalue() == image.encode(word)
+    with open(tmp_path / "named.npy", "wb") as file:
+        image.save(file)
+    assert np.array_equal(np.load(tmp_path / "named.npy"), np.asarray(image))
+    place = io.BytesIO()
+    image.save(place, depth=16, background="white")
+    assert place.getvalue()[24] == 16  # bits per channel, in the PNG's header
+    image.save(tmp_path / "picture.dat", format="png")
+    assert (tmp_path / "picture.dat").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_without_pillow(image, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "PIL", None)
+    with pytest.raises(ImportError, match=r"^\.jpg pictures need Pillow: pip install pillow, or save a \.png$"):
+        image.save(tmp_path / "a.jpg")
+    assert not list(tmp_path.iterdir())
+
+
+def test_arithmetic_is_numpy_s(image):
+    array = np.asarray(image)
+    assert np.array_equal(image - image, np.zeros_like(array)) and np.array_equal(2 * image + 1, 2 * array + 1)
+    assert np.array_equal(np.sqrt(image), np.sqrt(array)) and (image > 0.5).dtype == bool
+    assert type(image + image) is np.ndarray and np.array_equal(-image, -array) and image == image
+    interface = np.asarray(memoryview_of(image))
+    assert np.array_equal(interface, array) and np.shares_memory(interface, array)
+
+
+def memoryview_of(image):
+    """What sees the array interface and nothing else."""
+    class Holder:
+        __array_interface__ = image.__array_interface__
+    return Holder()
+
+
+def test_arrays_of_pictures_keep_no_scene(small):
+    import gc
+    import weakref
+
+    image = Renderer().render(small)
+    gone, array = weakref.ref(image), np.asarray(image)
+    expected = array.copy()
+    del image
+    gc.collect()
+    assert gone() is None and np.array_equal(array, expected)
+
+
+def test_show_opens_a_png(image, monkeypatch):
+    shown = []
+    monkeypatch.setattr("webbrowser.open", shown.append)
+    image.show()
+    assert open(shown[0].removeprefix("file://"), "rb").read() == image.encode("png")
+
+
+@pytest.mark.parametrize("size, expected", [(64, (64, 64)), ("64", (64, 64)), ("64x48", (64, 48)), ("64 x 48", (64, 48)), ([64, 48], (64, 48)),
+                                            (np.int64(64), (64, 64)), (np.array([64, 48]), (64, 48))])
+def test_sizes(blob, size, expected):
+    assert halflight.Scene(blob, size=size).size == expected
+
+
+def test_renderers_end(small):
+    with Renderer() as renderer:
+        expected = renderer.render(small)
+    assert expected == Renderer().render(small)
+    with pytest.raises(ValueError, match="the renderer is closed: make another one"):
+        renderer.render(small)
+    renderer.close()
