@@ -24,6 +24,7 @@ from .render import Renderer, reference, render
 from .scene import Scene
 from .transfer import TransferFunction, presets
 from .volume import Info, Volume, info
+from .vtk_scenes import from_pyvista, from_vtk
 from .widget import show
 
 __version__ = _text_of(_lib.hl_version())
@@ -31,5 +32,5 @@ __version__ = _text_of(_lib.hl_version())
 __all__ = [
     "Camera", "Directional", "Disk", "EmissionImage", "HalflightWarning", "Image", "Info", "InputError", "Light", "Mesh",
     "Point", "Polygon", "Rect", "Renderer", "Scene", "Spot", "Texture", "TransferFunction", "UnsupportedError", "Volume",
-    "colormaps", "info", "limit_memory", "presets", "reference", "render", "show", "srgb",
+    "colormaps", "from_pyvista", "from_vtk", "info", "limit_memory", "presets", "reference", "render", "show", "srgb",
 ]

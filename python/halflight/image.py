@@ -158,6 +158,24 @@ class Image(NDArrayOperatorsMixin):
              ffi.from_buffer("uint8_t[]", codes), codes.strides[0])
         return codes
 
+    def as_display(self) -> Image:
+        """The picture whose colours were shaded as screens show them, as VTK does: its numbers are taken for sRGB.
+
+        Returns
+        -------
+        Image
+            Shown or saved, it has this picture's numbers as its colours; without layers. It is opaque, mixed with the
+            scene's background as screens mix, unless that is transparent.
+        """
+        alpha, background = self._pixels[..., 3:], self.scene.background
+        if not isinstance(background, str):
+            mixed = self._pixels[..., :3] + (1 - alpha) * colors.to_srgb(background)
+            opaque = np.concatenate([colors.to_linear(mixed.clip(0)), np.ones_like(alpha)], axis=-1)
+            return _restored(self.scene, opaque.astype(np.float32), {}, self.statistics)
+        plain = np.divide(self._pixels[..., :3], alpha, out=np.zeros_like(self._pixels[..., :3]), where=alpha > 0)
+        linear = colors.to_linear(plain.clip(0)) * alpha
+        return _restored(self.scene, np.concatenate([linear, alpha], axis=-1).astype(np.float32), {}, self.statistics)
+
     def _scene_text(self, folder: str | None) -> Any:
         """The scene for a PNG in a folder; none where volumes are arrays, which no file can name."""
         try:

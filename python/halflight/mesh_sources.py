@@ -97,7 +97,7 @@ def _cells(cells: Any) -> list[Rows]:
 
     if cells.GetNumberOfCells() == 0:
         return []
-    ends = vtk_to_numpy(cells.GetOffsetsArray())
+    ends: Any = vtk_to_numpy(cells.GetOffsetsArray())
     return np.split(vtk_to_numpy(cells.GetConnectivityArray()), ends[1:-1])
 
 

@@ -36,7 +36,7 @@ def plot(image: Image, ax: Axes | None, colorbar: bool, scale_bar: bool, unit: s
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import ListedColormap, Normalize
 
-    axis: Axes = pyplot.subplots()[1] if ax is None else ax
+    axis: Any = pyplot.subplots()[1] if ax is None else ax
     axis.imshow(image.to_srgb8())
     axis.set_axis_off()
     width, height = image.size

@@ -177,12 +177,14 @@ def _make_class() -> Any:
     except ImportError:
         raise ImportError("halflight.show() needs anywidget: pip install anywidget") from None
 
+    traits: Any = traitlets
+
     class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
         """A viewer of one scene."""
 
         _esm = _page.module()
-        sheet = traitlets.Unicode(_page.style()).tag(sync=True)
-        height = traitlets.Int(560).tag(sync=True)
+        sheet = traits.Unicode(_page.style()).tag(sync=True)
+        height = traits.Int(560).tag(sync=True)
 
         def __init__(self, scene: Scene, title: str, height: int) -> None:
             super().__init__(height=height)
