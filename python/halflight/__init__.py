@@ -20,6 +20,7 @@ from .image import Image
 from .lights import Directional, Disk, EmissionImage, Light, Point, Polygon, Rect, Spot, Texture
 from .memory import limit_memory
 from .mesh import Mesh
+from .program import animate, view
 from .render import Renderer, reference, render
 from .scene import Scene
 from .transfer import TransferFunction, presets
@@ -32,5 +33,5 @@ __version__ = _text_of(_lib.hl_version())
 __all__ = [
     "Camera", "Directional", "Disk", "EmissionImage", "HalflightWarning", "Image", "Info", "InputError", "Light", "Mesh",
     "Point", "Polygon", "Rect", "Renderer", "Scene", "Spot", "Texture", "TransferFunction", "UnsupportedError", "Volume",
-    "colormaps", "from_pyvista", "from_vtk", "info", "limit_memory", "presets", "reference", "render", "show", "srgb",
+    "animate", "colormaps", "from_pyvista", "from_vtk", "info", "limit_memory", "presets", "reference", "render", "show", "srgb", "view",
 ]

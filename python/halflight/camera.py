@@ -71,7 +71,8 @@ class Camera:
         Parameters
         ----------
         camera : napari.components.Camera
-            ``viewer.camera``. A left-handed orientation shows the world mirrored, which no camera here does.
+            ``viewer.camera``. Where its orientation shows x, y and z left-handed, as napari's own word "right" for axes z,
+            y, x says, the world is mirrored, which no camera here does.
         canvas_height : float
             Of napari's canvas, in its pixels: its zoom counts them.
         """
