@@ -183,16 +183,39 @@ def _take_actor(taken: _Taken, actor: Any, matrix: np.ndarray[Any, Any]) -> None
         return
     mapper.Update()
     data = mapper.GetInputDataObject(0, 0)
-    if data is None or not hasattr(data, "GetPointData"):
-        warn(f"{type(mapper).__name__} of {type(data).__name__} is left out: give its data's blocks as actors of their own")
-        return
+    if hasattr(mapper, "GetSourceIndexing") and hasattr(mapper, "GetScaleFactor"):
+        warn("glyphs are left out: show the output of a glyph filter")
+    elif hasattr(data, "NewIterator"):
+        blocks = getattr(mapper, "GetCompositeDataDisplayAttributes", lambda: None)()
+        for leaf in _leaves(data):
+            if blocks is None or not blocks.HasBlockVisibility(leaf) or blocks.GetBlockVisibility(leaf):
+                color = blocks.GetBlockColor(leaf) if blocks is not None and blocks.HasBlockColor(leaf) else None
+                _take_data(taken, actor, leaf, matrix, color)
+    elif hasattr(data, "GetPointData"):
+        _take_data(taken, actor, data, matrix, None)
+    elif data is not None:
+        warn(f"{type(mapper).__name__} of {type(data).__name__} is left out: only data sets are meshes")
+
+
+def _leaves(composite: Any) -> Iterator[Any]:
+    """The data sets of a composite one."""
+    iterator = composite.NewIterator()
+    iterator.InitTraversal()
+    while not iterator.IsDoneWithTraversal():
+        if hasattr(leaf := iterator.GetCurrentDataObject(), "GetPointData"):
+            yield leaf
+        iterator.GoToNextItem()
+
+
+def _take_data(taken: _Taken, actor: Any, data: Any, matrix: np.ndarray[Any, Any], color: Any) -> None:
+    """Add a data set as the actor shows it. color: in place of the actor's."""
     if data.GetNumberOfPoints() == 0:
         return
-    prop = actor.GetProperty()
+    mapper, prop = actor.GetMapper(), actor.GetProperty()
     if actor.GetTexture() is not None or prop.GetInterpolation() == 3:
         warn("an actor's texture or physically based material is left out: it has its plain colour")
     points_alone, wireframe = prop.GetRepresentation() == 0, prop.GetRepresentation() == 1
-    mapped = _mapped_colors(mapper, data)
+    mapped = _mapped_colors(mapper, data) if color is None else None
     if mapped is not None and taken.display:  # a mesh makes bytes linear: of these it makes VTK's numbers
         mapped[0][:, :3] = np.rint(255 * colors.to_srgb(mapped[0][:, :3] / 255.0))
     surface = _clipped(_surface(data, mapped, wireframe, points_alone), mapper, matrix)
@@ -207,7 +230,7 @@ def _take_actor(taken: _Taken, actor: Any, matrix: np.ndarray[Any, Any]) -> None
         look |= _UNLIT  # VTK draws them flat, turned to the eye
     smooth = prop.GetInterpolation() != 0 and surface.GetPointData().GetNormals() is not None
     if mapped is None:
-        look["color"] = taken.color(prop.GetDiffuseColor()).tolist()
+        look["color"] = taken.color(prop.GetDiffuseColor() if color is None else color).tolist()
     else:
         words["scalars"] = _COLORS
     taken.meshes.append(Mesh(surface, affine=matrix, smooth=bool(smooth), **words, **look))

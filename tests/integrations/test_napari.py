@@ -172,7 +172,7 @@ def test_the_dock(window, tmp_path, pictures):
     nuclei = rng.uniform((6, 8, 8), (34, 42, 52), (22, 3))
     grid = np.stack(np.mgrid[:40, :50, :60], axis=-1)
     image = sum(np.exp(-((grid - one) ** 2).sum(axis=-1) / rng.uniform(12, 26)) for one in nuclei)
-    window.add_image(image.astype(np.float32), colormap="magma", contrast_limits=(0.2, 1.1), rendering="translucent")
+    window.add_image(image.astype(np.float32), colormap="magma", contrast_limits=(0.2, 1.1))
     window.add_points(nuclei[::3], size=5, face_color="lime")
     window.camera.center, window.camera.zoom, window.camera.angles, window.camera.perspective = (20, 25, 30), 7.0, (15, 30, -100), 0
     dock = Dock(window)
