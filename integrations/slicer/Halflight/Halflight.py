@@ -10,8 +10,11 @@ import halflight
 
 
 def scene_of_view(renderer: Any, size: Any = None, **settings: Any) -> halflight.Scene:
-    """The scene of a 3D view's renderer; Slicer's world is right, front, head. Keywords of `halflight.from_vtk`."""
-    words: dict[str, Any] = {"lights": halflight.Directional.beside_camera(-40, 45, angular_diameter_deg=7, intensity=1.5), "ambient": 0.35}
+    """The scene of a 3D view's renderer; Slicer's world is right, front, head. Keywords of `halflight.from_vtk`.
+
+    Slicer lights from the eye: here a lamp stands beside it, and a sky fills the shadows.
+    """
+    words: dict[str, Any] = {"lights": halflight.Directional.beside_camera(-40, 45, angular_diameter_deg=7, intensity=1.2), "sky": 0.5}
     return halflight.from_vtk(renderer, size=size, **{**words, **settings})
 
 
