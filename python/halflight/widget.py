@@ -6,9 +6,11 @@ request can cancel the one under way.
 """
 from __future__ import annotations
 
+import base64
 import contextvars
 import io
 import json
+import os
 import queue
 import threading
 import time
@@ -16,7 +18,7 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from . import _page
+from . import _page, picture_files
 from ._library import call, context, ffi, lib, made, names, text_of
 from .image import Image
 from .render import Asked, Renderer, scene_for
@@ -113,6 +115,8 @@ class _Frames(threading.Thread):
     def __init__(self, named: _Named, title: str, send: Any) -> None:
         super().__init__(name="halflight.show", daemon=True)
         self.named, self.title, self.send = named, title, send
+        self.scene = named.scene  # what a page begins with
+        self.last: Image | None = None  # the last frame that was wanted as a picture
         self.asked: queue.SimpleQueue[tuple[contextvars.Context, dict[str, Any]] | None] = queue.SimpleQueue()
         self.newest: dict[tuple[str, str], int] = {}
         self.renderer = Renderer()
@@ -143,7 +147,7 @@ class _Frames(threading.Thread):
             request.run(self.send, answer, buffers)
 
     def _do_start(self, message: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
-        return {"text": json.dumps(_start(self.named.scene, self.title))}, []
+        return {"text": json.dumps(_start(self.scene, self.title))}, []
 
     def _do_complete(self, message: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
         return {"text": self.named.read(message["scene"]).to_json()}, []
@@ -163,6 +167,7 @@ class _Frames(threading.Thread):
         read = time.monotonic()
         image = self.renderer.render(scene, progress=stop_if_outdated)
         rendered = time.monotonic()
+        self.last = image
         kind, content = _encoded(image, message)
         times = {"read": 1e3 * (read - began), "render": 1e3 * (rendered - read),
                  "encode": 1e3 * (time.monotonic() - rendered)}
@@ -180,8 +185,18 @@ def _make_class() -> Any:
     traits: Any = traitlets
 
     class Viewer(anywidget.AnyWidget):  # type: ignore[misc]
-        """A viewer of one scene."""
+        """A viewer of one scene, whose camera and lights are traits: `observe` them, and set them.
 
+        Attributes
+        ----------
+        camera : Camera
+        lights : tuple of Light
+        scene : Scene
+            What the page shows now.
+        """
+
+        camera = traits.Any()
+        lights = traits.Any()
         _esm = _page.module()
         sheet = traits.Unicode(_page.style()).tag(sync=True)
         height = traits.Int(560).tag(sync=True)
@@ -190,20 +205,76 @@ def _make_class() -> Any:
             super().__init__(height=height)
             self._named = _Named(scene)
             self._text = self._named.scene.to_json()
+            self._from_page = True  # what sets the traits now is not for the page
+            self.camera, self.lights = scene.camera, scene.lights
+            self._from_page = False
+            self.observe(self._set_from_python, ["camera", "lights"])
             self._frames = _Frames(self._named, title, self.send)
             self._frames.start()
             self.on_msg(self._on_message)
 
         def _on_message(self, _: object, message: dict[str, Any], __: object) -> None:
             if message["kind"] == "arrived":
-                self._text = message["scene"]
+                self._arrive(message["scene"])
             elif message["kind"] in ("start", "complete", "frame"):
                 self._frames.ask(message)
+
+        def _arrive(self, text: str) -> None:
+            """Take the scene that a page has come to."""
+            scene = self._named.read(text)
+            self._text, self._from_page = text, True
+            try:
+                with self.hold_trait_notifications():
+                    self.camera, self.lights = scene.camera, scene.lights
+            finally:
+                self._from_page = False
+            self._frames.scene = scene
+
+        def _set_from_python(self, change: Any) -> None:
+            if self._from_page:
+                return
+            scene = self._named.read(self._text).replace(**{change["name"]: change["new"]})
+            self._text, self._frames.scene = scene.to_json(), scene
+            self.send({"show": self._text})
 
         @property
         def scene(self) -> Scene:
             """The scene that the page shows now."""
             return self._named.restored(self._text)
+
+        def picture(self) -> Image:
+            """The picture that the page shows now, in the scene's size."""
+            last = self._frames.last
+            current = self._named.read(self._text)
+            if last is not None and last.scene == current:
+                return last
+            return Renderer().render(current)
+
+        def to_html(self, path: str | os.PathLike[str] | None = None, *, turntable: int = 0) -> str:
+            """A page that needs nothing else: the last frame or, with `turntable`, so many around it, which dragging turns.
+
+            Parameters
+            ----------
+            path : path, optional
+                Where the page is written, too.
+            turntable : int
+                How many frames one turn about the picture's vertical axis has; 0: the last frame alone.
+            """
+            from .static_page import page_of
+
+            text = page_of(self.picture(), turntable)
+            if path is not None:
+                picture_files.write_whole(os.fspath(path), text.encode())
+            return text
+
+        def _repr_mimebundle_(self, **words: Any) -> Any:
+            """The widget, and its picture for pages that run none: GitHub's, nbconvert's."""
+            bundle = super()._repr_mimebundle_(**words)
+            plain, *rest = bundle if isinstance(bundle, tuple) else (bundle,)
+            if plain is None:
+                return bundle
+            plain = {**plain, "image/png": base64.b64encode(self.picture()._repr_png_()).decode()}
+            return (plain, *rest) if isinstance(bundle, tuple) else plain
 
         def close(self) -> None:
             """End the widget and its thread."""
@@ -236,7 +307,9 @@ def show(volume: Source, *, height: int = 560, title: str | None = None, **asked
     Returns
     -------
     anywidget.AnyWidget
-        Its ``scene`` is the `Scene` that a person has arrived at.
+        Its ``scene`` is the `Scene` that a person has arrived at; ``camera`` and ``lights`` are traits, which follow the page
+        and lead it: ``widget.observe(print, "camera")``, ``widget.lights = [Directional(...)]``. ``to_html("page.html")``
+        keeps the last frame.
     """
     if not _classes:
         _classes.append(_make_class())

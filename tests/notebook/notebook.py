@@ -31,7 +31,9 @@ widget""",
          """import hashlib
 scene = widget.scene
 picture = halflight.Renderer().render(scene)
-print("PIXELS", hashlib.sha256(picture.to_srgb8().tobytes()).hexdigest(), scene.volumes[0])"""]
+print("PIXELS", hashlib.sha256(picture.to_srgb8().tobytes()).hexdigest(), scene.volumes[0])""",
+         """widget.camera = halflight.Camera(position=(120.0, -40.0, 60.0), target=(15.5, 15.5, 15.5))
+widget.lights = [halflight.Directional(direction=(1.0, 0.0, -1.0))]"""]
 PANEL = "[...globalThis.jupyterapp?.shell.widgets('main') ?? []].find((w) => w.context?.path === 'show.ipynb')"
 def skip(reason):
     print(reason)
@@ -158,6 +160,10 @@ with tempfile.TemporaryDirectory() as folder, Browser(chromium, (1280, 900)) as 
         check("32x32x32 float32>" in told, f"its volume is the array again: {told}")
         if len(sys.argv) > 2:
             browser.screenshot(sys.argv[2])
+        run_cell(browser, 2)
+        browser.wait(f"({VIEWER}).store.scene.camera.position[0] === 120 && ({VIEWER}).store.scene.lights[0].direction[0] === 1", timeout=60)
+        browser.wait(f"({VIEWER}).frames.statistics.stage === 'final'", timeout=60)
+        check(pixels(browser) not in (first, turned), "Python's camera and light are seen")
         problems = [one for one in browser.problems if "to activate" not in one]  # JupyterLab's plugins on a busy machine
         check(problems == [], f"the console has errors: {problems}")
         print(f"{checks.count} checks passed; frames: {browser.run(f'({VIEWER}).frames.statistics')}")

@@ -23,6 +23,7 @@ class WidgetChannel {
   }
 
   #answered({ view, number, ...answer }, buffers) {
+    if (answer.show !== undefined) this.onShow?.(JSON.parse(answer.show));
     const finish = view === this.#view ? this.#waiting.get(number) : undefined;
     this.#waiting.delete(number);
     finish?.(answer, buffers);
@@ -73,6 +74,9 @@ export async function render({ model, el }) {
   const start = await channel.start();
   const viewer = mount(cell, channel, start);
   el.halflight = viewer; // for the browser's console, and for tests
+  // Python's camera and lights; the picture stays as large as the page made it.
+  channel.onShow = (scene) => viewer.store.change("python", ({ image: { width, height } }) => (
+    { ...scene, image: { ...scene.image, width, height } }));
   let timer = 0;
   viewer.store.listen(() => {
     clearTimeout(timer);
