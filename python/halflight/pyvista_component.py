@@ -20,7 +20,8 @@ class Halflight:
         self._plotter = plotter
 
     def __call__(self, **settings: Any) -> Image:
-        """The picture: see `halflight.from_pyvista`, whose keywords these are, and `layers` and `progress`."""
+        """The picture: see `halflight.from_pyvista`, whose keywords these are, and `layers` and `progress`; ``legends=False`` leaves
+        scalar bars and text out."""
         return render_pyvista(self._plotter, **settings)
 
     def scene(self, **settings: Any) -> Scene:

@@ -356,8 +356,8 @@ def from_vtk(renderer: Any, *, size: Any = None, shading: Shading = "light", **s
     Returns
     -------
     Scene
-        Lines are tubes and points spheres, as wide as they are drawn. Text, scalar bars and edges on surfaces are left out;
-        rectilinear and unstructured grids that are shown as volumes are sampled to voxels: a warning says to which.
+        Lines are tubes and points spheres, as wide as they are drawn. Edges on surfaces are left out, and so are text and
+        scalar bars, which ``plotter.halflight()`` of PyVista adds; rectilinear and unstructured grids that are shown as volumes are sampled to voxels: a warning says to which.
     """
     from ._settings import size_of
     from ._words import choice
@@ -407,9 +407,55 @@ def from_pyvista(plotter: Any, *, size: Any = None, shading: Shading = "light", 
     return from_vtk(_ready(plotter), size=tuple(plotter.window_size) if size is None else size, shading=shading, **settings)
 
 
-def render_pyvista(plotter: Any, *, shading: Shading = "light", layers: bool = False, progress: Any = None, **settings: Any) -> Image:
-    """The picture of a PyVista plotter, as `from_pyvista` makes the scene."""
+def _legends(plotter: Any, size: tuple[int, int]) -> np.ndarray[Any, Any] | None:
+    """What the plotter draws flat over its picture, [height][width][4] in sRGB: PyVista draws it over black and over white."""
+    props = plotter.renderer.GetViewProps()
+    parts = [props.GetItemAsObject(n) for n in range(props.GetNumberOfItems())]
+    if not any(part.IsA("vtkActor2D") and part.GetVisibility() for part in parts) or plotter.render_window is None:
+        return None
+    if tuple(plotter.window_size) != size:
+        warn(f"scalar bars and text are left out: the picture is not as large as the window, {plotter.window_size[0]} x {plotter.window_size[1]}")
+        return None
+    hidden = [part for part in parts if part.IsA("vtkProp3D") and part.GetVisibility()]
+    background, gradient = plotter.renderer.GetBackground(), plotter.renderer.GetGradientBackground()
+    shown = []
+    try:
+        for part in hidden:
+            part.VisibilityOff()
+        plotter.renderer.SetGradientBackground(False)
+        for grey in (0.0, 1.0):
+            plotter.renderer.SetBackground(grey, grey, grey)
+            plotter.render()
+            shown.append(np.asarray(plotter.screenshot(None, return_img=True))[..., :3] / 255.0)
+    finally:
+        for part in hidden:
+            part.VisibilityOn()
+        plotter.renderer.SetBackground(background)
+        plotter.renderer.SetGradientBackground(gradient)
+    alpha = (1 - (shown[1] - shown[0]).mean(axis=-1, keepdims=True)).clip(0, 1)
+    plain = np.divide(shown[0], alpha, out=np.zeros_like(shown[0]), where=alpha > 0.004)
+    return np.concatenate([plain.clip(0, 1), np.where(alpha > 0.004, alpha, 0)], axis=-1)
+
+
+def render_pyvista(plotter: Any, *, shading: Shading = "light", legends: bool = True, layers: bool = False, progress: Any = None,
+                   **settings: Any) -> Image:
+    """The picture of a PyVista plotter, as `from_pyvista` makes the scene, under the plotter's scalar bars and text."""
     from .render import Renderer
 
     image = Renderer().render(from_pyvista(plotter, shading=shading, **settings), layers=layers, progress=progress)
-    return image.as_display() if shading == "display" else image
+    image = image.as_display() if shading == "display" else image
+    over = _legends(plotter, image.size) if legends else None
+    if over is not None:
+        _lay_over(image, over)
+    return image
+
+
+def _lay_over(image: Image, over: np.ndarray[Any, Any]) -> None:
+    """Mix sRGB into a picture as screens do, over its background; over a transparent one in light."""
+    pixels, alpha, background = np.asarray(image), over[..., 3:], image.scene.background
+    if isinstance(background, str):
+        pixels[...] = np.concatenate([colors.to_linear(over[..., :3]), np.ones_like(alpha)], axis=-1) * alpha + (1 - alpha) * pixels
+        return
+    shown = colors.to_srgb(pixels[..., :3] + (1 - pixels[..., 3:]) * np.asarray(background))
+    mixed = np.concatenate([colors.to_linear(over[..., :3] * alpha + (1 - alpha) * shown), np.ones_like(alpha)], axis=-1)
+    pixels[...] = np.where(alpha > 0, mixed, pixels)

@@ -106,6 +106,19 @@ def test_pyramids_and_colours(viewer):
     assert napari_halflight.scene_of(viewer).volumes[0]._colored.shape == (24, 30, 36, 3)
 
 
+def test_animations(window, tmp_path):
+    napari_animation = pytest.importorskip("napari_animation")
+    window.layers.clear()
+    window.add_image(blob(), contrast_limits=(50, 200))
+    animation = napari_animation.Animation(window)
+    window.camera.angles = (0, 0, 90)
+    animation.capture_keyframe(steps=2)
+    window.camera.angles = (0, 60, 90)
+    animation.capture_keyframe(steps=2)
+    paths = napari_halflight.render_animation(animation, tmp_path / "film", size=(64, 48))
+    assert len(paths) == len(animation._frames) >= 3 and len({pathlib.Path(path).read_bytes() for path in paths}) == len(paths)
+
+
 @pytest.fixture(scope="module")
 def window():
     qtpy = pytest.importorskip("qtpy")

@@ -162,6 +162,24 @@ def host_pixels_without_text(made):
     return host_pixels(made)
 
 
+def test_scalar_bars_lie_over_the_picture(pictures):
+    made = plotter()
+    ball = pyvista.Sphere(theta_resolution=60, phi_resolution=60)
+    ball["height of the ball"] = ball.points[:, 2]
+    made.add_mesh(ball, cmap="coolwarm", scalar_bar_args={"color": "black"})
+    made.add_text("a ball", color="navy", font_size=14)
+    host, codes = host_pixels(made), made.halflight(shading="display").to_srgb8()[..., :3]
+    bar = np.zeros(host.shape[:2], bool)
+    bar[250:, :], bar[:40, :] = True, True  # where the bar and the text are
+    drawn = bar & silhouette(host)
+    assert drawn.sum() > 1500 and abs(host[drawn].astype(int) - codes[drawn]).mean() < 6
+    assert np.array_equal(host_pixels(made), host)  # the plotter is as it was
+    bare = made.halflight(shading="display", legends=False).to_srgb8()
+    assert not silhouette(bare)[bar].any()
+    with pytest.warns(halflight.HalflightWarning, match="scalar bars and text are left out: the picture is not as large as the window, 400 x 300"):
+        made.halflight(size=64)
+
+
 def test_settings_replace_the_host_s():
     made = meshes(plotter())
     scene = halflight.from_pyvista(made, size=200, background="black", lights=halflight.Directional(direction=(0, 0, -1)), camera="top")
