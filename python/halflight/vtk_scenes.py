@@ -434,7 +434,8 @@ def _legends(plotter: Any, size: tuple[int, int]) -> np.ndarray[Any, Any] | None
         plotter.renderer.SetGradientBackground(gradient)
     alpha = (1 - (shown[1] - shown[0]).mean(axis=-1, keepdims=True)).clip(0, 1)
     plain = np.divide(shown[0], alpha, out=np.zeros_like(shown[0]), where=alpha > 0.004)
-    return np.concatenate([plain.clip(0, 1), np.where(alpha > 0.004, alpha, 0)], axis=-1)
+    drawn: np.ndarray[Any, Any] = np.concatenate([plain.clip(0, 1), np.where(alpha > 0.004, alpha, 0)], axis=-1)
+    return drawn
 
 
 def render_pyvista(plotter: Any, *, shading: Shading = "light", legends: bool = True, layers: bool = False, progress: Any = None,
