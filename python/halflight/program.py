@@ -33,7 +33,7 @@ def program_path() -> str:
         found = shutil.which("halflight", path=folder)
         if found is not None and os.path.realpath(found) != own:  # not the script that asks
             return found
-    raise FileNotFoundError("the program halflight is not installed: pip install halflight, or build it by scripts/build")
+    raise FileNotFoundError("the program halflight is not installed: install a wheel of the package, or build it by scripts/build")
 
 
 def main() -> int:

@@ -29,7 +29,7 @@ def test_without_a_program(tmp_path):
         pytest.skip("the package brings its program")
     missing = run("--version", PATH=str(tmp_path), HALFLIGHT_PROGRAM="")
     assert missing.returncode == 1
-    assert missing.stderr == "halflight: the program halflight is not installed: pip install halflight, or build it by scripts/build\n"
+    assert missing.stderr == "halflight: the program halflight is not installed: install a wheel of the package, or build it by scripts/build\n"
 
 
 def test_animate(program, small, tmp_path):

@@ -54,7 +54,7 @@ if slicer is not None:
         def __init__(self, parent: Any) -> None:
             super().__init__(parent)
             parent.title, parent.categories = "Halflight", ["Rendering"]
-            parent.helpText = "Pictures of the 3D view with hard and soft shadows. pip_install('halflight') first."
+            parent.helpText = "Pictures of the 3D view with hard and soft shadows. Install the package by pip_install() first."
 
     class HalflightLogic(ScriptedLoadableModuleLogic):
         """Renders a 3D view."""
