@@ -393,6 +393,31 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume_look(hl_context *context, hl
                                                          const char *file, const char *look, hl_scene **scene,
                                                          hl_error *error);
 
+/* One scene of the scenes of several bare volumes, as hl_scene_for_volume() makes them: all volumes in one
+ * world, each with its own look. Light, background and render settings are those of the first scene, sheets
+ * are as close as the closest, and the camera frames all volumes. A volume without a name is named after its
+ * file, without folder and extensions, and "-2" and so on is appended to names that are taken. scenes:
+ * [count], each with a volume; they may be released afterwards. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_join(hl_context *context, hl_scene *const *scenes, size_t count,
+                                              hl_scene **scene, hl_error *error);
+
+/* A scene of several channels of a file, as of a microscope: each is a volume with the look that
+ * hl_scene_for_volume_look() gives it, in the colour of hl_scene_channel_color(), named as the file names the
+ * channel, or else "channel0" and so on. path, options (null: the defaults): as for hl_volume_load_with();
+ * options->channel is not used, and options->bytes is read once for each channel. channels: [count], their
+ * numbers from 0; count 0: all, at most HL_CHANNELS_MOST. */
+enum { HL_CHANNELS_MOST = 16 };
+HL_API HL_WARN_UNUSED hl_status hl_scene_for_channels(hl_context *context, const char *path,
+                                                      const hl_volume_load_options *options,
+                                                      const int *channels, size_t count, const char *look,
+                                                      hl_scene **scene, hl_error *error);
+
+/* The colour, sRGB from 0 to 1, that tells volume number `index` from the others of its scene: the colour
+ * that its file has for its channel (OME, ImageJ, omero), if the files have one for each volume and they
+ * differ; else green and magenta, and then cyan, yellow, orange, blue. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_channel_color(const hl_scene_description *description, size_t index,
+                                                       double srgb[3]);
+
 /* Puts constant light in place of the sky of a description that one of these functions made: about as bright
  * over the whole picture, without the shadow of the sky, and without the time that the sky takes. */
 HL_API void hl_scene_level_sky(hl_scene_description *description);

@@ -218,6 +218,21 @@ typedef struct hl_volume_selection {
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_selection(const hl_volume *volume,
                                                         hl_volume_selection *selection);
 
+/* A channel of a file with several, as the file tells of it. */
+typedef struct hl_volume_channel {
+  size_t struct_size; /* set by the caller */
+  const char *name;   /* "" where the file has none; the volume's */
+  int has_color;
+  double srgb[3];   /* 0 to 1; 0 without a colour */
+  double window[2]; /* data values between which the file asks to show it; NaN: none */
+  int chosen;       /* the volume was read from this channel */
+} hl_volume_channel;
+
+/* index: below the number of channels (hl_volume_get_selection()). Of a file that tells nothing of its
+ * channels each has neither name nor colour nor window. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_get_channel(const hl_volume *volume, size_t index,
+                                                      hl_volume_channel *channel);
+
 /* A series of DICOM slices, of those that a folder or an archive holds. */
 typedef struct hl_volume_series {
   size_t struct_size;                       /* set by the caller */
@@ -246,6 +261,10 @@ typedef struct hl_volume_segment {
 HL_API size_t hl_volume_segment_count(const hl_volume *volume);
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_segment(const hl_volume *volume, size_t index,
                                                       hl_volume_segment *segment);
+
+/* The label maps that lie beside the volume in its file (the "labels" of OME-Zarr): the path of each within
+ * the file, as "labels/cells", which is opened as a volume of its own. The volume's; null past the last. */
+HL_API const char *hl_volume_label_map(const hl_volume *volume, size_t index);
 
 /* The data value of one voxel, NaN where it is not finite or outside the grid. */
 HL_API double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k);

@@ -266,7 +266,7 @@ class Asked(FurtherSettings, total=False):
     component: int | str
     series: str
     time: int
-    channel: int
+    channel: int | str | Sequence[int]
     level: int
     meshes: Mesh | Sequence[Mesh]
     iso: Any
@@ -314,8 +314,9 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
            size: tuple[int, int] | int | str | None = None, background: Any = None, threads: int | None = None,
            layers: bool = False, progress: Progress = None, array: str | None = None,
            component: int | str | None = None, series: str | None = None, time: int | None = None,
-           channel: int | None = None, level: int | None = None, meshes: Mesh | Sequence[Mesh] | None = None,
-           iso: Any = None, cuts: Any = None, mask: Any = None, labels: Any = None, look: Looked | None = None,
+           channel: int | str | Sequence[int] | None = None, level: int | None = None,
+           meshes: Mesh | Sequence[Mesh] | None = None, iso: Any = None, cuts: Any = None, mask: Any = None,
+           labels: Any = None, look: Looked | None = None,
            sky: Any = None, **further: Unpack[FurtherSettings]) -> Image:
     """A picture of a volume, in one call.
 
@@ -365,7 +366,8 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
     layers, progress : optional
         As for `Renderer.render`.
     array, component, series, time, channel, level : optional
-        Of a file with several: see `Volume`.
+        Of a file with several: see `Volume`. Several channels, ``channel=[0, 2]`` or ``channel="all"``, share the picture,
+        each in a colour of its own: see `Scene.of_channels`.
     meshes : Mesh or a list of them, optional
         Triangles among the volumes.
     iso : a value, (value, color, opacity), or a list of them, optional
@@ -447,6 +449,8 @@ def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], s
         count = len(scene.volumes)
         changed = [_look(one, *_look_for(look, n, count)).replace(**material) for n, one in enumerate(scene.volumes)]
         return scene.replace(changed if labels is None else [*changed, _label_volume(labels)], **settings)
+    if isinstance(channels := place.get("channel"), (str, Sequence)):
+        return _scene_of_channels(volume, channels, place, material, settings, look, labels)
     given = volume if isinstance(volume, list) else [volume] if volume is not None or not settings.get("meshes") else []
     sources = [one for one in given if not isinstance(one, Mesh)]
     volumes = [_look(Volume(one, **place), *_look_for(look, n, len(sources))).replace(**material)
@@ -456,3 +460,18 @@ def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], s
             raise TypeError(f"{word} is for volumes: the picture has none")
     others = [one for one in given if isinstance(one, Mesh)] + ([] if labels is None else [_label_volume(labels)])
     return Scene([*volumes, *others], **settings)
+
+
+def _scene_of_channels(path: Any, channels: str | Sequence[int], place: Mapping[str, Any], material: Mapping[str, Any],
+                       settings: dict[str, Any], look: Mapping[str, Any], labels: Any) -> Scene:
+    if not isinstance(path, (str, os.PathLike)):
+        raise TypeError("channel is for files that hold several: choose by an index")
+    for word in place:
+        if word in ("origin", "direction", "affine", "axes", "component"):
+            raise TypeError(f"{word} is not for several channels of a file")
+    reading = {word: value for word, value in place.items() if word != "channel"}
+    scene = Scene.of_channels(path, channels, look=material.get("look", "auto"), **reading)
+    shown = {word: value for word, value in material.items() if word != "look"}
+    count = len(scene.volumes)
+    volumes = [_look(one, *_look_for(look, n, count)).replace(**shown) for n, one in enumerate(scene.volumes)]
+    return scene.replace(volumes if labels is None else [*volumes, _label_volume(labels)], **settings)

@@ -14,7 +14,7 @@ from .camera import Camera, camera_from
 from .keywords import PictureSettings, RenderSettings, SkySettings
 from .lights import Light, images_are_same, light_from
 from .mesh import Mesh, mesh_from
-from .volume import Volume, as_volume, volume_from
+from .volume import Volume, as_volume, index_of, load_options, volume_from
 
 __all__ = ["Scene", "Settings"]
 
@@ -122,6 +122,33 @@ class Scene:
         file = os.fspath(path)
         return cls._of(made(lib.hl_scene_load, "hl_scene", lib.hl_scene_release, context, os.fsencode(file),
                             path=file))
+
+    @classmethod
+    def of_channels(cls, path: str | os.PathLike[str], channels: str | Sequence[int] = "all", *, look: str = "auto",
+                    array: str | None = None, series: str | None = None, time: int | None = None, level: int | None = None,
+                    spacing: Any = None) -> Scene:
+        """Several channels of a file, as of a microscope, each a volume in a colour of its own: the one that the file
+        tells (OME, ImageJ, omero), or else green and magenta, cyan, yellow, ...
+
+        Parameters
+        ----------
+        path : path
+        channels : "all" or numbers from 0
+        look, array, series, time, level, spacing : optional
+            As for `halflight.render`.
+        """
+        file = os.fspath(path)
+        options, keep = load_options({word: value for word, value in (
+            ("array", array), ("series", series), ("time", time), ("level", level)) if value is not None}, spacing, "zyx")
+        if isinstance(channels, str) and channels != "all":
+            raise ValueError(f"channel: {channels!r}: give a number, several as [0, 2], or 'all'")
+        numbers = [] if isinstance(channels, str) else [index_of("channel", number) for number in channels]
+        if not isinstance(channels, str) and not numbers:
+            raise ValueError("channel: [] names none: give a number, several as [0, 2], or 'all'")
+        scene = cls._of(made(lib.hl_scene_for_channels, "hl_scene", lib.hl_scene_release, context, os.fsencode(file), options,
+                             ffi.new("int[]", numbers) if numbers else ffi.NULL, len(numbers), look.encode(), path=file))
+        del keep  # the texts that `options` borrows
+        return scene
 
     @classmethod
     def _of(cls, handle: Any) -> Scene:

@@ -14,7 +14,7 @@ from ._words import check_keywords, choice
 from .keywords import MaterialSettings, VolumeSettings
 from .transfer import TransferFunction, function_from
 
-__all__ = ["FileArray", "FileSegment", "FileSeries", "Info", "Look", "Volume", "info"]
+__all__ = ["FileArray", "FileChannel", "FileSegment", "FileSeries", "Info", "Look", "Volume", "info"]
 
 Source = Any  # a path, an array, or an object of one of the packages that halflight.neighbours knows
 
@@ -91,6 +91,17 @@ class FileSeries:
 
 
 @dataclass(frozen=True)
+class FileChannel:
+    """What a volume's file tells of a channel: "" and None where it tells nothing. `window`: the data values between which
+    it is to be shown."""
+
+    name: str
+    color: tuple[float, float, float] | None
+    window: tuple[float, float] | None
+    chosen: bool
+
+
+@dataclass(frozen=True)
 class FileSegment:
     """A segment that a label map's file names: `layer` is the component whose voxels have the `value`."""
 
@@ -136,6 +147,8 @@ class Info:
         Of DICOM files: what the folder or archive holds.
     segments : tuple of FileSegment
         Of label maps whose file names its labels.
+    channel_list : tuple of FileChannel
+        The file's channels, where it tells anything of them.
     """
 
     dimensions: tuple[int, int, int]
@@ -158,6 +171,7 @@ class Info:
     level: int = 0
     series: tuple[FileSeries, ...] = ()
     segments: tuple[FileSegment, ...] = ()
+    channel_list: tuple[FileChannel, ...] = ()
 
 
 class Volume:
@@ -271,20 +285,7 @@ class Volume:
         self._automatic = other._automatic if same else None
 
     def _load(self, path: str, spacing: arrays.Spacing | None, axes: str, chosen: dict[str, Any]) -> None:
-        options = ffi.new("hl_volume_load_options *")
-        lib.hl_volume_load_options_defaults(options)
-        keep = []
-        for word, value in chosen.items():
-            if word in ("array", "series"):
-                keep.append(value := ffi.new("char[]", str(value).encode()))
-            elif word == "component" and value in ("magnitude", "color", "luminance"):
-                value = lib.hl_component_of_name(value.encode())
-            elif isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 0:
-                raise ValueError(f"{word}: {value!r} is no number from 0 on"
-                                 + (" and not 'magnitude'" if word == "component" else ""))
-            setattr(options, word, value)
-        if spacing is not None:
-            options.spacing = arrays.spacing_xyz(spacing, axes)
+        options, keep = load_options(chosen, spacing, axes)
         self._file = path
         self._loading = (options, keep)
         self._handle = made(lib.hl_volume_load_with, "hl_volume", lib.hl_volume_release, context, os.fsencode(path),
@@ -482,9 +483,18 @@ class Volume:
                 red, green, blue = segment.srgb
                 color = (red, green, blue) if segment.has_color else None
                 segments.append(FileSegment(segment.value, text_of(segment.name), segment.layer, color))
+        channel, channels = _sized("channel"), list[FileChannel]()
+        for n in range(selection.channels):
+            if lib.hl_volume_get_channel(self._handle, n, channel) == lib.HL_OK:
+                low, high = channel.window
+                red, green, blue = channel.srgb
+                channels.append(FileChannel(text_of(channel.name), (red, green, blue) if channel.has_color else None,
+                                            (low, high) if low == low else None, bool(channel.chosen)))
+        if all(one.name == "" and one.color is None and one.window is None for one in channels):
+            channels = []
         words = ("times", "time", "channels", "channel", "levels", "level")
         return {word: getattr(selection, word) for word in words} | {
-            "arrays": tuple(arrays), "series": tuple(many), "segments": tuple(segments)}
+            "arrays": tuple(arrays), "series": tuple(many), "segments": tuple(segments), "channel_list": tuple(channels)}
 
     def __repr__(self) -> str:
         size = "x".join(map(str, self.dimensions))
@@ -570,6 +580,30 @@ def _sized(noun: str) -> Any:
     struct = ffi.new(f"hl_volume_{noun} *")
     struct.struct_size = ffi.sizeof(f"hl_volume_{noun}")
     return struct
+
+
+def index_of(word: str, value: Any) -> int:
+    """A number from 0 on."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 0:
+        raise ValueError(f"{word}: {value!r} is no number from 0 on" + (" and not 'magnitude'" if word == "component" else ""))
+    return int(value)
+
+
+def load_options(chosen: Mapping[str, Any], spacing: arrays.Spacing | None, axes: str) -> tuple[Any, list[Any]]:
+    """An hl_volume_load_options, which is valid as long as the list."""
+    options, keep = ffi.new("hl_volume_load_options *"), list[Any]()
+    lib.hl_volume_load_options_defaults(options)
+    for word, value in chosen.items():
+        if word in ("array", "series"):
+            keep.append(value := ffi.new("char[]", str(value).encode()))
+        elif word == "component" and value in ("magnitude", "color", "luminance"):
+            value = lib.hl_component_of_name(value.encode())
+        else:
+            value = index_of(word, value)
+        setattr(options, word, value)
+    if spacing is not None:
+        options.spacing = arrays.spacing_xyz(spacing, axes)
+    return options, keep
 
 
 def volume_from(scene: Any, index: int) -> Volume:

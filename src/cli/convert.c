@@ -55,6 +55,7 @@ static const cli_option convert_options[CONVERT_OPTION_COUNT] = {
                           "rounded (default: the volume's\nown, or the next that holds its values)",
                       .choices = types},
     INPUT_OPTIONS(CONVERT_ARRAY, "What of IN"),
+    [CONVERT_CHANNEL] = INPUT_OPTION_CHANNEL,
     [CONVERT_SPACING] = INPUT_OPTION_SPACING,
     [CONVERT_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY("How it runs"),
     [CONVERT_QUIET] = HOST_OPTION_QUIET,

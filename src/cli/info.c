@@ -27,6 +27,7 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
                    .group = "Options",
                    .help = "as JSON, with 256 histogram bins"},
     INPUT_OPTIONS(INFO_ARRAY, NULL),
+    [INFO_CHANNEL] = INPUT_OPTION_CHANNEL,
     [INFO_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
 };
 
@@ -108,6 +109,44 @@ static const char *color_text(const double srgb[3], char text[8]) {
   return text;
 }
 
+/* Whether the file tells anything of a channel. */
+static bool is_told(const hl_volume_channel *channel) {
+  return channel->name[0] != '\0' || channel->has_color || isfinite(channel->window[0]);
+}
+
+static void print_json_channels(json_writer *json, const hl_volume *volume) {
+  hl_volume_channel channel = {.struct_size = sizeof channel};
+  char color[8];
+  bool any = false;
+  for (size_t n = 0; !any && hl_volume_get_channel(volume, n, &channel) == HL_OK; n++)
+    any = is_told(&channel);
+  if (!any) return;
+  json_open_array(json, "channel_list");
+  for (size_t n = 0; hl_volume_get_channel(volume, n, &channel) == HL_OK; n++) {
+    json_open_object(json, NULL);
+    json_text(json, "name", channel.name);
+    if (channel.has_color) json_text(json, "color", color_text(channel.srgb, color));
+    if (isfinite(channel.window[0])) json_numbers(json, "window", channel.window, 2);
+    json_bool(json, "chosen", channel.chosen != 0);
+    json_close(json);
+  }
+  json_close(json);
+}
+
+static void print_channels(const hl_volume *volume) {
+  hl_volume_channel channel = {.struct_size = sizeof channel};
+  char color[8];
+  for (size_t n = 0; hl_volume_get_channel(volume, n, &channel) == HL_OK; n++) {
+    if (!is_told(&channel)) continue;
+    printf("  channel %-3zu %s", n, channel.name);
+    if (channel.has_color)
+      printf("%s%s", channel.name[0] != '\0' ? ", " : "", color_text(channel.srgb, color));
+    if (isfinite(channel.window[0]))
+      printf(", shown from %.9g to %.9g", channel.window[0], channel.window[1]);
+    printf("\n");
+  }
+}
+
 static void print_json_segments(json_writer *json, const hl_volume *volume) {
   hl_volume_segment segment = {.struct_size = sizeof segment};
   char color[8];
@@ -137,6 +176,17 @@ static void print_segments(const hl_volume *volume) {
     if (layers > 0) printf(", layer %d", segment.layer);
     printf("\n");
   }
+}
+
+static void print_label_maps(json_writer *json, const char *path, const hl_volume *volume) {
+  const char *name;
+  if (hl_volume_label_map(volume, 0) == NULL) return;
+  if (json != NULL) json_open_array(json, "label_maps");
+  for (size_t n = 0; (name = hl_volume_label_map(volume, n)) != NULL; n++) {
+    if (json != NULL) json_text(json, NULL, name);
+    else printf("  label map   %s/%s: a volume of its own\n", path, name);
+  }
+  if (json != NULL) json_close(json);
 }
 
 /* Whether a file's only array says no more than its type and its time steps, which have lines of their own.
@@ -191,8 +241,10 @@ static void print_json(json_writer *json, const char *path, const hl_volume *vol
   json_whole_number(json, "nonfinite_count", info->nonfinite_count);
   print_json_arrays(json, volume);
   print_json_selection(json, volume);
+  print_json_channels(json, volume);
   print_json_series(json, volume);
   print_json_segments(json, volume);
+  print_label_maps(json, path, volume);
   json_text(json, "taken_for", kind);
   json_whole_numbers(json, "histogram", info->histogram, HL_HISTOGRAM_BINS);
   json_close(json);
@@ -239,8 +291,10 @@ static void print_text(const char *path, const hl_volume *volume, const hl_volum
   printf("  type        %s\n", hl_voxel_type_name(info->type));
   print_arrays(volume);
   print_selection(volume);
+  print_channels(volume);
   print_series(volume);
   print_segments(volume);
+  print_label_maps(NULL, path, volume);
   printf("  spacing     %.9g, %.9g, %.9g\n", info->spacing[0], info->spacing[1], info->spacing[2]);
   const char *unit = hl_volume_unit(volume);
   if (unit != NULL) printf("  unit        %s\n", unit);

@@ -62,11 +62,11 @@ typedef struct cli_input {
     .help = "distance of voxels in world units (default: the\nfile's)", .count = 3, .separator = ',', \
     .low = 0, .above = true, .high = INFINITY                                                         \
   }
-/* All of these rows but the spacing, from `first` on in this order. */
+/* All of these rows but the channel and the spacing, from `first` on in this order. */
 #define INPUT_OPTIONS(first, heading)                                                         \
   [first] = INPUT_OPTION_ARRAY(heading), [(first) + READ_COMPONENT] = INPUT_OPTION_COMPONENT, \
   [(first) + READ_SERIES] = INPUT_OPTION_SERIES, [(first) + READ_TIME] = INPUT_OPTION_TIME,   \
-  [(first) + READ_CHANNEL] = INPUT_OPTION_CHANNEL, [(first) + READ_LEVEL] = INPUT_OPTION_LEVEL
+  [(first) + READ_LEVEL] = INPUT_OPTION_LEVEL
 extern const cli_choice input_components[];
 
 /* The order in which a subcommand's table has these options. */
@@ -79,7 +79,7 @@ int input_open(const char *path, uint64_t limit, cli_input *input);
 void input_close(cli_input *input);
 
 /* The load options that the options of enum input_reading and --spacing ask for. spacing null: the command
- * does not have --spacing. */
+ * does not have --spacing. Of `render` the channels are a text (render_load_options()). */
 void input_load_options(const cli_value *reading, const cli_value *spacing, hl_volume_load_options *options);
 
 /* Reads an input that is a volume. options: without bytes, which are the input's; null: the defaults. */

@@ -46,6 +46,7 @@ static const cli_option looks_options[LOOKS_OPTION_COUNT] = {
                     .low = 16,
                     .high = 2048},
     INPUT_OPTIONS(LOOKS_ARRAY, "What of VOLUME"),
+    [LOOKS_CHANNEL] = INPUT_OPTION_CHANNEL,
     [LOOKS_SPACING] = INPUT_OPTION_SPACING,
     [LOOKS_THREADS] = HOST_OPTION_THREADS("How it runs"),
     [LOOKS_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),

@@ -131,6 +131,12 @@ void render_release_label_layers(hl_context *context, render_label_layers *layer
 int render_load_volumes(cli_host *host, const cli_value *values, char **operands, bool *bare,
                         hl_scene **scene);
 
+/* The channels that --channel names; *count: 0: all, or the option was not given. Refuses others. */
+int render_channels(const cli_value *values, int channels[HL_CHANNELS_MOST], size_t *count);
+
+/* Whether the options ask for more than one channel: "all" may be one, too. */
+bool render_has_channels(const cli_value *values);
+
 /* The reading of volumes that the options ask for. */
 void render_load_options(const cli_value *values, hl_volume_load_options *options);
 
@@ -169,10 +175,10 @@ bool render_is_maximum(const cli_value *values, const hl_scene_description *desc
 /* Where the picture is made without light, warns of options that concern light, and returns true. */
 bool render_warn_of_no_light(const cli_value *values, const hl_scene_description *description);
 
-/* The colour that --look mip gives volume number `index` among several bare ones, so that channels differ;
- * null: none, as the volume is alone or has a --tf. */
-const char *render_channel_color(const cli_value *values, const hl_scene_description *description,
-                                 size_t index);
+/* The colour that --look mip gives volume number `index` among several bare ones, so that channels differ, as
+ * "#rrggbb"; false: none, as the volume is alone or has a --tf. */
+bool render_channel_color(const cli_value *values, const hl_scene_description *description, size_t index,
+                          char color[8]);
 
 /* The transfer function of volume number `index` with --tf, --range, --threshold and --colormap applied, or
  * `color` where no --colormap is for this volume and color is not null. Its points are owned by the caller,

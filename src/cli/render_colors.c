@@ -294,12 +294,16 @@ static bool is_mip(const cli_value *values) {
   return values[RENDER_LOOK].given && values[RENDER_LOOK].choice == LOOK_MIP;
 }
 
-const char *render_channel_color(const cli_value *values, const hl_scene_description *description,
-                                 size_t index) {
-  static const char *const colors[] = {"#00ff00", "#ff00ff", "#00ffff", "#ffff00", "#ff4000", "#4060ff"};
+bool render_channel_color(const cli_value *values, const hl_scene_description *description, size_t index,
+                          char color[8]) {
+  double srgb[3];
   const hl_scene_volume *volume = &description->volumes[index];
   bool alone = description->volume_count < 2, named = said_of(&values[RENDER_TF], volume, index) != NULL;
-  return alone || named || !is_mip(values) ? NULL : colors[index % (sizeof colors / sizeof *colors)];
+  if (alone || named || !is_mip(values) || hl_scene_channel_color(description, index, srgb) != HL_OK)
+    return false;
+  snprintf(color, 8, "#%02x%02x%02x", (unsigned)lround(255 * srgb[0]) & 255U,
+           (unsigned)lround(255 * srgb[1]) & 255U, (unsigned)lround(255 * srgb[2]) & 255U);
+  return true;
 }
 
 int render_transfer_function(cli_host *host, const cli_value *values, const hl_scene_description *description,

@@ -41,41 +41,6 @@ static int check_kinds(const cli_value *values, const cli_input *inputs, size_t 
   return EXIT_CODE_OK;
 }
 
-/* Names a volume "head" for scans/head.nii.gz, or "head-2" where an earlier volume has that name. */
-static void name_volume(hl_scene_volume *volumes, size_t index, char *name, size_t size) {
-  char stem[200];
-  render_volume_name(&volumes[index], index, stem, sizeof stem);
-  snprintf(name, size, "%s", stem);
-  for (size_t copy = 2, other = 0; other < index; other++)
-    if (strcmp(volumes[other].name, name) == 0) {
-      snprintf(name, size, "%s-%zu", stem, copy++);
-      other = (size_t)-1;
-    }
-  volumes[index].name = name;
-}
-
-/* Makes one scene of the scenes of several volumes. */
-static int join(cli_host *host, hl_scene *const *scenes, size_t count, hl_scene **scene) {
-  enum { NAME_BYTES = 256 };
-  hl_scene_volume volumes[MAXIMUM_OPERANDS];
-  char names[MAXIMUM_OPERANDS][NAME_BYTES];
-  hl_scene_description description = *hl_scene_describe(scenes[0]);
-  for (size_t n = 0; n < count; n++) {
-    const hl_scene_description *own = hl_scene_describe(scenes[n]);
-    volumes[n] = own->volumes[0];
-    name_volume(volumes, n, names[n], NAME_BYTES);
-    description.render.sheet_spacing = fmin(description.render.sheet_spacing, own->render.sheet_spacing);
-  }
-  description.volumes = volumes;
-  description.volume_count = count;
-  hl_view view;
-  hl_error error = {0};
-  hl_status status = hl_view_choose(&description, HL_SIDE_AUTOMATIC, NULL, &view, &error);
-  if (status == HL_OK) status = hl_camera_frame_view(&description, &view, 1, &description.camera, &error);
-  if (status == HL_OK) status = hl_scene_create(host->context, &description, scene, &error);
-  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
-}
-
 /* The anatomical space of a bare volume's scene, which the volumes after it are turned into. */
 static hl_space space_of(const hl_scene *scene) {
   hl_volume_info info = {.struct_size = sizeof info};
@@ -98,9 +63,55 @@ static int pixels_of(const cli_value *values) {
   return pixels < INT_MAX ? (int)pixels : INT_MAX;
 }
 
+/* ---- channels ---- */
+
+int render_channels(const cli_value *values, int channels[HL_CHANNELS_MOST], size_t *count) {
+  const cli_value *said = &values[RENDER_CHANNEL];
+  *count = 0;
+  if (!said->given || strcmp(said->text, "all") == 0) return EXIT_CODE_OK;
+  for (const char *text = said->text;; text++) {
+    char *end;
+    long number = strtol(text, &end, 10);
+    if (text[0] < '0' || text[0] > '9' || number > INT_MAX || (*end != ',' && *end != '\0'))
+      return fail(EXIT_CODE_USAGE, "--channel: '%s': give a number from 0 on, several as 0,2, or all",
+                  said->text);
+    if (*count == HL_CHANNELS_MOST)
+      return fail(EXIT_CODE_USAGE, "--channel: '%s': a picture shows %d channels at most", said->text,
+                  HL_CHANNELS_MOST);
+    for (size_t n = 0; n < *count; n++)
+      if (channels[n] == (int)number)
+        return fail(EXIT_CODE_USAGE, "--channel: '%s': channel %ld is there twice", said->text, number);
+    channels[(*count)++] = (int)number;
+    if (*end == '\0') return EXIT_CODE_OK;
+    text = end;
+  }
+}
+
+bool render_has_channels(const cli_value *values) {
+  const cli_value *said = &values[RENDER_CHANNEL];
+  return said->given && (strcmp(said->text, "all") == 0 || strchr(said->text, ',') != NULL);
+}
+
 void render_load_options(const cli_value *values, hl_volume_load_options *options) {
+  int channels[HL_CHANNELS_MOST];
+  size_t count;
   input_load_options(&values[RENDER_ARRAY], &values[RENDER_SPACING], options);
+  bool one = render_channels(values, channels, &count) == EXIT_CODE_OK && count == 1;
+  options->channel = one ? channels[0] : HL_INDEX_DEFAULT;
   options->pixels = pixels_of(values);
+}
+
+/* The scene of several channels of one file. */
+static hl_status load_channels(cli_host *host, const cli_value *values, const cli_input *input,
+                               hl_volume_load_options options, hl_scene **scene, hl_error *error) {
+  int channels[HL_CHANNELS_MOST];
+  size_t count;
+  const char *look = render_look_name(values);
+  if (render_channels(values, channels, &count) != EXIT_CODE_OK) count = 0; /* checked before */
+  options.bytes = input->bytes;
+  options.byte_count = input->length;
+  return hl_scene_for_channels(host->context, input->title, &options, channels, count,
+                               look != NULL ? look : "auto", scene, error);
 }
 
 static int load_each(cli_host *host, const cli_value *values, cli_input *inputs, size_t count,
@@ -111,12 +122,22 @@ static int load_each(cli_host *host, const cli_value *values, cli_input *inputs,
     hl_error error = {0};
     bool bare = inputs[n].kind == INPUT_VOLUME;
     inputs[n].look = render_look_name(values);
-    hl_status status = input_load(host->context, &inputs[n], bare ? &options : NULL, &scenes[n], &error);
+    hl_status status = bare && render_has_channels(values)
+                           ? load_channels(host, values, &inputs[n], options, &scenes[n], &error)
+                           : input_load(host->context, &inputs[n], bare ? &options : NULL, &scenes[n],
+                                        &error);
     if (bare) render_name_scene(inputs[n].path, true, &error);
     if (status != HL_OK) return host_fail(host, PHASE_READ, status, &error);
     if (options.space == HL_SPACE_UNKNOWN) options.space = space_of(scenes[n]);
   }
   return EXIT_CODE_OK;
+}
+
+/* Makes one scene of the scenes of several volumes. */
+static int join(cli_host *host, hl_scene *const *scenes, size_t count, hl_scene **scene) {
+  hl_error error = {0};
+  hl_status status = hl_scene_join(host->context, scenes, count, scene, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }
 
 int render_load_volumes(cli_host *host, const cli_value *values, char **operands, bool *bare,

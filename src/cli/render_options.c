@@ -137,6 +137,12 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .help = "parallel projection, the same framing"},
 
     INPUT_OPTIONS(RENDER_ARRAY, "Volume files"),
+    [RENDER_CHANNEL] = {.name = "channel",
+                        .kind = OPTION_TEXT,
+                        .argument = "N|N,N|all",
+                        .help = "of several channels this one, from 0 (default: 0);\nseveral, or all, share "
+                                "a picture, each in a "
+                                "colour\nof its own: the file's, or green, magenta, ..."},
     [RENDER_SPACING] = INPUT_OPTION_SPACING,
 
     [RENDER_LOOK] =
@@ -480,7 +486,10 @@ int render_check_options(const cli_value *values) {
     if (values[alone[n]].given)
       return fail(EXIT_CODE_USAGE, "--%s shares a picture by sheets: remove --%s",
                   render_options[over_ranks].name, render_options[alone[n]].name);
-  int exit_code = render_check_clip(&values[RENDER_CLIP]);
+  int channels[HL_CHANNELS_MOST];
+  size_t channel_count;
+  int exit_code = render_channels(values, channels, &channel_count);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_check_clip(&values[RENDER_CLIP]);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_cuts(values);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_iso(&values[RENDER_ISO]);
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_sky(&values[RENDER_SKY]);

@@ -219,9 +219,10 @@ static int change_volume(scene_change *change, size_t index) {
   hl_status status = looks ? render_look_volume(change->host, values, volume, &error) : HL_OK;
   if (status != HL_OK) return host_fail(change->host, PHASE_READ, status, &error);
   if (looks) look = volume->transfer_function;
-  const char *color = looks ? render_channel_color(values, &change->description, index) : NULL;
-  exit_code = render_transfer_function(change->host, values, &change->description, index, color,
-                                       &change->functions[index]);
+  char color[8];
+  bool colored = looks && render_channel_color(values, &change->description, index, color);
+  exit_code = render_transfer_function(change->host, values, &change->description, index,
+                                       colored ? color : NULL, &change->functions[index]);
   volume->transfer_function = change->functions[index];
   hl_transfer_function_release(change->host->context, &look);
   if (exit_code != EXIT_CODE_OK || !iso) return exit_code;

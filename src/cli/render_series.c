@@ -63,7 +63,7 @@ static int find_range(series_job *job) {
     hl_volume *volume = NULL;
     hl_volume_info info = {.struct_size = sizeof info};
     host_draw_bar(&job->host, (double)n / job->count, "ranges of all files");
-    int exit_code = series_load_volume(job, n, &volume);
+    int exit_code = series_load_volume(job, n, HL_INDEX_DEFAULT, &volume);
     if (exit_code == EXIT_CODE_INTERRUPTED) return exit_code;
     if (volume != NULL && hl_volume_get_info(volume, &info) == HL_OK && info.range[0] < info.range[1]) {
       if (!range->given || info.range[0] < range->number[0]) range->number[0] = info.range[0];

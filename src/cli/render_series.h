@@ -28,8 +28,9 @@ bool series_has_number(const char *text);
 int series_find_files(series_job *job, char **operands);
 void series_release_files(series_job *job);
 
-/* Reads a volume of the series. A failure is told once. Returns the exit code. */
-int series_load_volume(series_job *job, int number, hl_volume **volume);
+/* Reads a volume of the series. channel: HL_INDEX_DEFAULT: the one that the options ask for. A failure is
+ * told once. Returns the exit code. */
+int series_load_volume(series_job *job, int number, int channel, hl_volume **volume);
 
 /* The scene of a file: that of the first one, with what this file holds in place of it. Where the exit code
  * is not 0, job->bad[number] says whether the file is to blame. */

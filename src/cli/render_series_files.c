@@ -135,12 +135,13 @@ static int note(series_job *job, int number, int exit_code) {
   return exit_code;
 }
 
-int series_load_volume(series_job *job, int number, hl_volume **volume) {
+int series_load_volume(series_job *job, int number, int channel, hl_volume **volume) {
   cli_input input = {0};
   hl_volume_load_options options;
   hl_error error = {0};
   if (job->bad[number]) return EXIT_CODE_INPUT;
   reading_of(job, &options);
+  if (channel >= 0) options.channel = channel;
   int exit_code = input_open(job->files[number], job->values[RENDER_MAX_MEMORY].bytes, &input);
   if (exit_code == EXIT_CODE_OK) {
     hl_status status = input_load_volume(job->host.context, &input, &options, volume, &error);
@@ -174,28 +175,45 @@ static hl_status make_scene(const series_job *job, hl_scene_volume *volumes, siz
   return status;
 }
 
-/* A volume in place of the first file's; volume null: the first file's voxels. The others, label maps, stay.
- */
-static hl_status scene_of_volume(const series_job *job, int number, hl_volume *volume, hl_scene **scene,
-                                 hl_error *error) {
+/* The volumes of the first file in its scene, one or a channel each; those after them are label maps. */
+static size_t volumes_of_file(const series_job *job) {
   const hl_scene_description *description = hl_scene_describe(job->scene);
-  hl_scene_volume volumes[1 + RENDER_MOST_LABEL_LAYERS];
+  size_t count = 1;
+  while (render_has_channels(job->values) && count < description->volume_count && count < HL_CHANNELS_MOST &&
+         description->volumes[count].file != NULL &&
+         strcmp(description->volumes[count].file, description->volumes[0].file) == 0)
+    count++;
+  return count;
+}
+
+/* Volumes in place of the first file's; null: the first file's voxels. The others, label maps, stay. */
+static hl_status scene_of_volumes(const series_job *job, int number, hl_volume *const *loaded,
+                                  hl_scene **scene, hl_error *error) {
+  const hl_scene_description *description = hl_scene_describe(job->scene);
+  hl_scene_volume volumes[HL_CHANNELS_MOST + RENDER_MOST_LABEL_LAYERS];
   memcpy(volumes, description->volumes, description->volume_count * sizeof *volumes);
-  volumes[0].file = job->files[number];
-  if (volume != NULL) volumes[0].volume = volume;
+  for (size_t n = 0; n < volumes_of_file(job); n++) {
+    volumes[n].file = job->files[number];
+    if (loaded != NULL) volumes[n].volume = loaded[n];
+  }
   return make_scene(job, volumes, description->volume_count, NULL, scene, error);
 }
 
 static int volume_scene(series_job *job, int number, hl_scene **scene) {
-  hl_volume *volume = NULL;
+  hl_volume *loaded[HL_CHANNELS_MOST] = {NULL};
+  size_t count = volumes_of_file(job);
   hl_error error = {0};
-  int exit_code = series_load_volume(job, number, &volume);
-  if (exit_code == EXIT_CODE_OK) exit_code = note(job, number, check_space(job, number, volume));
+  int exit_code = EXIT_CODE_OK;
+  for (size_t n = 0; n < count && exit_code == EXIT_CODE_OK; n++) {
+    int channel = count > 1 ? hl_scene_describe(job->scene)->volumes[n].channel : HL_INDEX_DEFAULT;
+    exit_code = series_load_volume(job, number, channel, &loaded[n]);
+  }
+  if (exit_code == EXIT_CODE_OK) exit_code = note(job, number, check_space(job, number, loaded[0]));
   if (exit_code == EXIT_CODE_OK) {
-    hl_status status = scene_of_volume(job, number, volume, scene, &error);
+    hl_status status = scene_of_volumes(job, number, loaded, scene, &error);
     if (status != HL_OK) exit_code = note(job, number, host_fail(&job->host, PHASE_READ, status, &error));
   }
-  hl_volume_release(volume);
+  for (size_t n = 0; n < count; n++) hl_volume_release(loaded[n]);
   return exit_code;
 }
 
@@ -262,7 +280,7 @@ hl_status series_scene_unread(const series_job *job, int number, hl_scene **scen
   hl_scene_mesh mesh;
   hl_error error = {0};
   if (render_is_label_map(job->values)) return HL_ERROR_UNSUPPORTED;
-  if (!job->of_meshes) return scene_of_volume(job, number, NULL, scene, &error);
+  if (!job->of_meshes) return scene_of_volumes(job, number, NULL, scene, &error);
   mesh = hl_scene_describe(job->scene)->meshes[0];
   mesh.file = job->files[number];
   return make_scene(job, NULL, 0, &mesh, scene, &error);

@@ -333,6 +333,8 @@ void hl_volume_release(hl_volume *volume) {
   if (volume == NULL || atomic_fetch_sub(&volume->references, 1) != 1) return;
   hl_arrays_release(volume->context, volume->arrays, volume->array_count);
   hl_release(volume->context, volume->segments);
+  hl_release(volume->context, volume->channels);
+  hl_release(volume->context, volume->label_maps);
   if (volume->shelf != NULL) volume->release_shelf(volume->context, volume->shelf);
   hl_release(volume->context, volume->series);
   hl_release(volume->context, atomic_load(&volume->analysis));
@@ -405,6 +407,23 @@ hl_status hl_volume_get_series(const hl_volume *volume, size_t index, hl_volume_
   return HL_OK;
 }
 
+hl_status hl_volume_get_channel(const hl_volume *volume, size_t index, hl_volume_channel *channel) {
+  if (volume == NULL || channel == NULL || channel->struct_size != sizeof *channel ||
+      index >= volume->selection.channels)
+    return HL_ERROR_ARGUMENT;
+  *channel = (hl_volume_channel){.struct_size = sizeof *channel,
+                                 .name = "",
+                                 .window = {NAN, NAN},
+                                 .chosen = index == (size_t)volume->selection.channel};
+  if (volume->channels == NULL) return HL_OK;
+  const hl_channel *known = &volume->channels[index];
+  channel->name = known->name;
+  channel->has_color = known->has_color;
+  for (int c = 0; c < 3 && known->has_color; c++) channel->srgb[c] = known->srgb[c];
+  if (known->window[0] < known->window[1]) memcpy(channel->window, known->window, sizeof known->window);
+  return HL_OK;
+}
+
 size_t hl_volume_segment_count(const hl_volume *volume) { return volume != NULL ? volume->segment_count : 0; }
 
 hl_status hl_volume_get_segment(const hl_volume *volume, size_t index, hl_volume_segment *segment) {
@@ -419,6 +438,10 @@ hl_status hl_volume_get_segment(const hl_volume *volume, size_t index, hl_volume
                                  .has_color = known->has_color};
   for (int c = 0; c < 3 && known->has_color; c++) segment->srgb[c] = known->srgb[c];
   return HL_OK;
+}
+
+const char *hl_volume_label_map(const hl_volume *volume, size_t index) {
+  return volume != NULL && index < volume->label_map_count ? volume->label_maps[index] : NULL;
 }
 
 const char *hl_volume_unit(const hl_volume *volume) { return volume != NULL ? volume->unit : NULL; }

@@ -122,6 +122,22 @@ hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t tim
   return status;
 }
 
+/* ---- channels ---- */
+
+hl_status hl_channels_make(hl_load_request *request, hl_error *error) {
+  size_t count = request->selection.channels;
+  hl_release(request->context, request->channels);
+  request->channels = hl_allocate_zeroed(request->context, count, sizeof *request->channels);
+  return request->channels != NULL ? HL_OK
+                                   : hl_fail_memory(error, count * sizeof *request->channels, "channels");
+}
+
+void hl_channel_name(hl_channel *channel, const char *name) {
+  snprintf(channel->name, sizeof channel->name, "%s", name);
+  for (char *c = channel->name; *c != 0; c++)
+    if ((unsigned char)*c < ' ' || *c == 0x7f) *c = '?';
+}
+
 /* ---- levels ---- */
 
 /* A level of more voxels shows nothing more in a picture a thousand pixels across, and takes minutes. */

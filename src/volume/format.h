@@ -21,6 +21,7 @@ typedef struct hl_load_request {
   int time, channel, level; /* HL_INDEX_DEFAULT, or an index */
   int pixels;               /* of the picture's longer side; 0: unknown */
   double window[2];         /* set by readers: data values between which greys are to be shown; equal: none */
+  hl_channel *channels;     /* owned; [selection.channels]; set by readers, where the file tells of them */
   const char *unit;         /* set by readers: of lengths, static; null: not told */
   bool is_anatomical;       /* set by readers of formats that hold bodies: the volume's space is meant */
   const char *series;       /* DICOM: number, UID or description; null: choose */
@@ -60,6 +61,12 @@ hl_status hl_component_choose(hl_load_request *request, const char *path, bool i
  * is out of range. */
 hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t times, size_t channels,
                           hl_error *error);
+
+/* Makes request->channels, without names and colours, once the number of channels is known. */
+hl_status hl_channels_make(hl_load_request *request, hl_error *error);
+
+/* Sets the name of a channel: what is too long is cut, and what cannot be printed becomes '?'. */
+void hl_channel_name(hl_channel *channel, const char *name);
 
 /* A level of a pyramid. */
 typedef struct hl_level_size {

@@ -281,6 +281,7 @@ static hl_status finish(hl_load_request *request, const char *path, hl_status st
   }
   if (status != HL_OK) {
     hl_arrays_release(request->context, request->arrays, request->array_count);
+    hl_release(request->context, request->channels);
     hl_release(request->context, request->series_list);
     return status;
   }
@@ -289,6 +290,9 @@ static hl_status finish(hl_load_request *request, const char *path, hl_status st
     hl_log(request->context, HL_LOG_WARNING, "%s", request->component_told);
   if (request->selection_told[0] != 0)
     hl_log(request->context, HL_LOG_WARNING, "%s", request->selection_told);
+  (*volume)->channels = request->channels;
+  if (request->channels != NULL && !(request->window[0] < request->window[1]))
+    memcpy(request->window, request->channels[request->selection.channel].window, sizeof request->window);
   if (request->window[0] < request->window[1])
     memcpy((*volume)->window, request->window, sizeof request->window);
   (*volume)->is_anatomical = request->is_anatomical;

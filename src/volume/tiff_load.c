@@ -14,6 +14,7 @@
 #include "volume/destination.h"
 #include "volume/parallel.h"
 #include "volume/tiff_file.h"
+#include "volume/tiff_imagej.h"
 #include "volume/tiff_plan.h"
 
 enum {
@@ -153,6 +154,14 @@ static hl_status find_plain(stack_reading *r, tiff_file *file, const tiff_shape 
   return HL_OK;
 }
 
+/* ImageJ's colours and windows of channels, where there are as many as channels. */
+static hl_status take_imagej(stack_reading *r, const hl_channel *channels, size_t count, hl_error *error) {
+  if (count == 0 || count != r->request->selection.channels) return HL_OK;
+  hl_status status = hl_channels_make(r->request, error);
+  if (status == HL_OK) memcpy(r->request->channels, channels, count * sizeof *channels);
+  return status;
+}
+
 /* stack: the file, which becomes the reading's first one. */
 static hl_status read_first(stack_reading *r, tiff_file *file, stack_file *stack, hl_error *error) {
   tiff_shape first;
@@ -162,6 +171,8 @@ static hl_status read_first(stack_reading *r, tiff_file *file, stack_file *stack
   uint64_t start = TIFFCurrentDirOffset(file->tiff);
   read_resolution(file, resolution);
   size_t levels = count_levels(file);
+  hl_channel channels[TIFF_IMAGEJ_CHANNELS_MOST];
+  size_t channel_count = tiff_imagej_channels(file, channels);
   if (status == HL_OK && TIFFGetField(file->tiff, TIFFTAG_IMAGEDESCRIPTION, &description)) {
     copy = hl_copy_text(r->context, description);
     if (copy == NULL) status = hl_fail_memory(error, strlen(description) + 1, file->path);
@@ -174,6 +185,7 @@ static hl_status read_first(stack_reading *r, tiff_file *file, stack_file *stack
   if (status == HL_OK)
     status = tiff_plan_make(r->request, file->path, copy, pages, first.components, first.depth, resolution,
                             &r->plan, error);
+  if (status == HL_OK && !ome) status = take_imagej(r, channels, channel_count, error);
   if (status == HL_OK) {
     r->width = first.width, r->height = first.height;
     r->files = hl_allocate_zeroed(r->context, r->plan.file_count, sizeof *r->files);

@@ -69,6 +69,7 @@ typedef struct ome_reader {
                           the last plane */
   size_t first[3], count, page;
   size_t placed; /* planes of all of them */
+  size_t told;   /* Channel elements so far */
   char file[NAME_BYTES];
 } ome_reader;
 
@@ -138,7 +139,8 @@ static int axis_of(char letter) { return letter == 'Z' ? 0 : letter == 'C' ? 1 :
 static hl_status begin_slices(ome_reader *ome, hl_error *error) {
   if (ome->is_planned) return HL_OK;
   ome->is_planned = true;
-  hl_status status = hl_steps_choose(ome->request, ome->path, ome->size[2], ome->size[1], error);
+  hl_status status = HL_OK;
+  if (ome->told == 0) status = hl_steps_choose(ome->request, ome->path, ome->size[2], ome->size[1], error);
   return status == HL_OK ? make_slices(ome->plan, ome->size[0], ome->path, error) : status;
 }
 
@@ -196,8 +198,29 @@ static hl_status read_file(ome_reader *ome, const hl_xml_tag *tag, hl_error *err
   return HL_OK;
 }
 
+/* The name and the colour of a channel: red, green, blue and alpha from the highest to the lowest byte of a
+ * number of 32 bits. */
+static hl_status read_channel(ome_reader *ome, const hl_xml_tag *tag, hl_error *error) {
+  const char *name = hl_xml_attribute(tag, "Name"), *color = hl_xml_attribute(tag, "Color");
+  double value;
+  hl_status status = HL_OK;
+  if (ome->told == 0) {
+    status = hl_steps_choose(ome->request, ome->path, ome->size[2], ome->size[1], error);
+    if (status == HL_OK) status = hl_channels_make(ome->request, error);
+  }
+  if (status != HL_OK || ome->told++ >= ome->size[1]) return status;
+  hl_channel *channel = &ome->request->channels[ome->told - 1];
+  if (name != NULL) hl_channel_name(channel, name);
+  if (color == NULL || !hl_text_number(color, strlen(color), &value) || !(fabs(value) < 0x1p32)) return HL_OK;
+  uint32_t code = (uint32_t)(int64_t)value;
+  channel->has_color = true;
+  for (int c = 0; c < 3; c++) channel->srgb[c] = (code >> (24 - 8 * c) & 255) / 255.0;
+  return HL_OK;
+}
+
 static hl_status read_tag(ome_reader *ome, const hl_xml_tag *tag, hl_error *error) {
   if (!ome->in_pixels) return tag->is_start && has_name(tag, "Pixels") ? read_pixels(ome, tag, error) : HL_OK;
+  if (tag->is_start && has_name(tag, "Channel") && !ome->is_planned) return read_channel(ome, tag, error);
   if (tag->is_start && has_name(tag, "TiffData")) return begin_planes(ome, tag, error);
   if (tag->is_start && ome->is_open && has_name(tag, "UUID")) return read_file(ome, tag, error);
   if (tag->is_end && ome->is_open && has_name(tag, "TiffData")) return place_planes(ome, error);

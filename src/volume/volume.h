@@ -39,8 +39,17 @@ typedef struct hl_series_entry {
   size_t dimensions[3];
 } hl_series_entry;
 
+/* What a file tells of one of its channels. */
+enum { HL_CHANNEL_NAME_BYTES = 128 };
+typedef struct hl_channel {
+  char name[HL_CHANNEL_NAME_BYTES]; /* printable; "": none */
+  bool has_color;
+  double srgb[3];
+  double window[2]; /* data values between which it is to be shown; equal: none */
+} hl_channel;
+
 /* A named label of a segmentation. */
-enum { HL_SEGMENT_NAME_BYTES = 128, HL_MOST_SEGMENTS = 4096 };
+enum { HL_SEGMENT_NAME_BYTES = 128, HL_MOST_SEGMENTS = 4096, HL_LABEL_MAP_BYTES = 256 };
 typedef struct hl_segment {
   char name[HL_SEGMENT_NAME_BYTES];
   double value, srgb[3];
@@ -83,10 +92,13 @@ struct hl_volume {
   size_t array_count, chosen_array;
   int component; /* index of the component that was read, or HL_COMPONENT_MAGNITUDE */
   hl_selection selection;
+  hl_channel *channels;    /* owned; [selection.channels]; null: the file tells nothing of them */
   hl_series_entry *series; /* owned; [series_count]; null unless loaded from DICOM files */
   size_t series_count, chosen_series;
   hl_segment *segments; /* owned; [segment_count]; null unless the file names labels */
   size_t segment_count;
+  char (*label_maps)[HL_LABEL_MAP_BYTES]; /* owned; [label_map_count]; printable paths within the file */
+  size_t label_map_count;
   bool has_surroundings; /* the data value of what is around the content is known */
   double surroundings;
   double surface_slope; /* of an occupancy: how much it rises per voxel where it passes 1/2 */

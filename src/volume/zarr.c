@@ -13,6 +13,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "volume/zarr/array_read.h"
+#include "volume/zarr/description.h"
 #include "volume/zarr/series.h"
 #include "volume/zarr/voxels.h"
 
@@ -142,54 +143,6 @@ static hl_status load_image(const hl_bundle *bundle, const hl_zarr_image *image,
   return status;
 }
 
-/* ---- what OME-Zarr says of labels and channels ---- */
-
-/* The labels of an image of labels: their colours, and names by the property "class", "name" or "label". */
-static hl_status name_labels(const json_t *ome, hl_volume *volume, hl_error *error) {
-  const json_t *described = json_object_get(ome, "image-label");
-  const json_t *lists[2] = {json_object_get(described, "colors"), json_object_get(described, "properties")};
-  size_t most = json_array_size(lists[0]) + json_array_size(lists[1]), count = 0;
-  if (most == 0) return HL_OK;
-  if (most > HL_MOST_SEGMENTS) most = HL_MOST_SEGMENTS;
-  hl_segment *segments = hl_allocate_zeroed(volume->context, most, sizeof *segments);
-  if (segments == NULL) return hl_fail_memory(error, most * sizeof *segments, "the names of labels");
-  for (int list = 0; list < 2; list++)
-    for (size_t n = 0; n < json_array_size(lists[list]); n++) {
-      const json_t *entry = json_array_get(lists[list], n), *number = json_object_get(entry, "label-value");
-      const json_t *rgba = json_object_get(entry, "rgba");
-      size_t at = 0;
-      if (!json_is_number(number)) continue;
-      while (at < count && segments[at].value != json_number_value(number)) at++;
-      if (at == most) continue;
-      if (at == count) segments[count++].value = json_number_value(number);
-      static const char *const keys[] = {"class", "name", "label"};
-      for (size_t k = 0; k < 3 && segments[at].name[0] == 0; k++) {
-        const char *name = json_string_value(json_object_get(entry, keys[k]));
-        if (name != NULL) snprintf(segments[at].name, sizeof segments[at].name, "%s", name);
-      }
-      if (json_array_size(rgba) < 3) continue;
-      segments[at].has_color = true;
-      for (size_t c = 0; c < 3; c++) {
-        double code = json_number_value(json_array_get(rgba, c)) / 255;
-        segments[at].srgb[c] = code < 0 ? 0 : code > 1 ? 1 : code;
-      }
-    }
-  volume->segments = segments;
-  volume->segment_count = count;
-  return HL_OK;
-}
-
-/* The window in which a viewer is to show the chosen channel. */
-static void take_window(const json_t *ome, hl_load_request *request) {
-  const json_t *channels = json_object_get(json_object_get(ome, "omero"), "channels");
-  const json_t *window = json_object_get(json_array_get(channels, (size_t)request->selection.channel),
-                                         "window");
-  const json_t *start = json_object_get(window, "start"), *end = json_object_get(window, "end");
-  if (!json_is_number(start) || !json_is_number(end)) return;
-  request->window[0] = json_number_value(start);
-  request->window[1] = json_number_value(end);
-}
-
 /* ---- arrays without OME-Zarr's metadata ---- */
 
 static hl_status load_array(const hl_bundle *bundle, const hl_zarr_array *array, hl_load_request *request,
@@ -300,8 +253,9 @@ static hl_status load_described(const hl_bundle *bundle, const char *folder, con
   if (status == HL_OK) status = load_image(bundle, &image, request, volume, error);
   hl_zarr_image_release(&image);
   if (status != HL_OK) return status;
-  take_window(ome, request);
-  status = name_labels(ome, *volume, error);
+  status = hl_zarr_describe_channels(ome, request, error);
+  if (status == HL_OK) status = hl_zarr_name_labels(ome, *volume, error);
+  if (status == HL_OK) status = hl_zarr_list_label_maps(bundle, folder, *volume, error);
   if (status != HL_OK) hl_volume_release(*volume), *volume = NULL;
   return status;
 }

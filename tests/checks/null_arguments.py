@@ -45,6 +45,7 @@ hl_scene_make_floor up
 hl_volume_from_shapes name
 hl_volume_load_with options
 hl_transfer_function_load_for volume
+hl_scene_for_channels options
 hl_ranks_join communicator
 hl_volume_from_shapes options
 """
@@ -69,7 +70,8 @@ VALUES = {
     "hl_label **": "&any", "hl_label *": "NULL",
     "hl_ranks **": "&any", "hl_ranks *": "NULL", "const hl_ranks *": "NULL", "void * communicator": "bytes",
     "hl_view *": "&view", "const hl_view *": "&view",
-    "int part": "2", "size_t length": "2", "size_t row_stride": "16", "int": "4", "size_t": "0", "double": "0.5",
+    "int part": "2", "size_t length": "2", "size_t row_stride": "16", "int": "4", "size_t": "0", "size_t count": "1",
+    "hl_scene const **": "&scene", "const int *": "&zero", "double": "0.5",
 }
 
 FILE = """#include <halflight/halflight.h>
@@ -93,6 +95,7 @@ static hl_transfer_function function;
 static hl_view view = {{0, 0, 1}, {0, -1, 0}, 30, 20, 0};
 static void *any;
 static size_t count;
+static const int zero = 0;
 static hl_error error;
 static float floats[1024];
 static double doubles[64];

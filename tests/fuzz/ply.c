@@ -4,6 +4,6 @@
 const uint64_t fuzz_memory_limit = 4 << 20;
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-  fuzz_load_mesh("m.ply", data, size);
+  fuzz_load_mesh("m.ply", NULL, data, size);
   return 0;
 }

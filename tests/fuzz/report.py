@@ -22,7 +22,6 @@ TARGETS = {
     "metaimage": ("MetaImage", ["volume/metaimage.c"]),
     "legacy_vtk": ("legacy VTK", ["volume/legacy_vtk.c"]),
     "vti": ("VTK XML", ["volume/vti.c", "volume/xml.c"]),
-    "mesh": ("PLY, STL, OBJ", ["mesh/ply.c", "mesh/stl.c", "mesh/obj.c"]),
     "npy": ("NumPy", ["volume/npy.c"]),
     "mrc": ("MRC, CCP4", ["volume/mrc.c"]),
     "dicom": ("DICOM, zip archives", ["volume/dicom.c", "volume/source.c", "volume/bundle_zip.c"] + [
@@ -41,6 +40,10 @@ TARGETS["labels"] = ("label maps, tables of labels", ["label/", "scene/label_lis
 TARGETS["keys"] = ("keys of films", ["film/keys.c", "film/film.c"])
 TARGETS["words"] = ("the command line", ["cli/options.c", "cli/options_color.c", "cli/render_options.c"])
 TARGETS["http"] = ("requests of the viewer", ["server/"])
+TARGETS["obj"] = ("OBJ and its materials", ["mesh/obj"])
+TARGETS["stl"] = ("STL", ["mesh/stl.c"])
+TARGETS["mgh"] = ("FreeSurfer's MGH", ["volume/mgh.c"])
+TARGETS["vtr"] = ("VTK rectilinear grids", ["volume/rectilinear.c"])
 TARGETS["ply"] = ("PLY", ["mesh/ply.c"])
 TARGETS["gltf"] = ("glTF", ["mesh/gltf"])
 TARGETS["vtp"] = ("VTK PolyData", ["mesh/vtp.c", "mesh/legacy_polydata.c", "mesh/polydata.c"])

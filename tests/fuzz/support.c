@@ -121,14 +121,20 @@ static void load_otherwise(const char *name, const uint8_t *data, size_t size) {
   }
 }
 
-void fuzz_load_volume(const char *name, const char *second_name, const uint8_t *data, size_t size) {
+/* Writes the input as one file, or, cut at the first line "%%%%", as two; gives the size of the first. */
+static size_t write_input(const char *name, const char *second_name, const uint8_t *data, size_t size) {
   static const char cut[] = "\n%%%%\n";
-  const uint8_t *second = memmem(data, size, cut, sizeof cut - 1);
+  const uint8_t *second = second_name == NULL ? NULL : memmem(data, size, cut, sizeof cut - 1);
   size_t first_size = second == NULL ? size : (size_t)(second - data);
   fuzz_remove_file(1);
   if (second != NULL)
     fuzz_write_file(1, second_name, second + sizeof cut - 1, size - first_size - (sizeof cut - 1));
   fuzz_write_file(0, name, data, first_size);
+  return first_size;
+}
+
+void fuzz_load_volume(const char *name, const char *second_name, const uint8_t *data, size_t size) {
+  size_t first_size = write_input(name, second_name, data, size);
   hl_volume *volume = NULL;
   hl_error error = {0};
   hl_status status = hl_volume_load(fuzz_confined(), name, &volume, &error);
@@ -147,10 +153,10 @@ static void check_mesh(const hl_mesh *mesh) {
     for (int i = 0; i < 3; i++) REQUIRE(d->triangles[t][i] < d->vertex_count);
 }
 
-void fuzz_load_mesh(const char *name, const uint8_t *data, size_t size) {
+void fuzz_load_mesh(const char *name, const char *second_name, const uint8_t *data, size_t size) {
   hl_mesh *mesh = NULL;
   hl_error error = {0};
-  fuzz_write_file(0, name, data, size);
+  write_input(name, second_name, data, size);
   hl_status status = hl_mesh_load(fuzz_confined(), name, &mesh, &error);
   if (fuzz_check_answer(status, &error, mesh != NULL)) check_mesh(mesh);
   hl_mesh_release(mesh);

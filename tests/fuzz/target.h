@@ -46,8 +46,8 @@ const char *fuzz_folder(void);
  * it. */
 void fuzz_load_volume(const char *name, const char *second_name, const uint8_t *data, size_t size);
 
-/* Loads the input as a mesh's file of this name and checks the mesh. */
-void fuzz_load_mesh(const char *name, const uint8_t *data, size_t size);
+/* The same for a mesh. second_name: null where the format names no other file. */
+void fuzz_load_mesh(const char *name, const char *second_name, const uint8_t *data, size_t size);
 
 /* Numbers drawn from an input; zeros when it is used up. */
 typedef struct fuzz_source {

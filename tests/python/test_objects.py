@@ -94,7 +94,7 @@ def test_info_is_the_program_s(program, tmp_path, blob):
         expected = said.get(name)
         if name == "arrays":
             assert [dict(one) for one in value] == expected
-        elif name in ("series", "segments"):
+        elif name in ("series", "segments", "channel_list"):
             assert list(value) == (expected or [])
         else:
             assert np.asarray(value).tolist() == expected, name
@@ -234,3 +234,43 @@ def test_import_loads_little_and_needs_numpy_alone():
     others = {name.partition(".")[0] for name in added} - set(sys.stdlib_module_names)
     assert others <= {"halflight", "_cffi_backend"}
     assert len(added) < 70  # modules; numpy brings above a hundred
+
+
+def write_channels(folder):
+    """An OME-Zarr image of three channels; omero has colours for them."""
+    z, y, x = np.mgrid[:16, :16, :16]
+    (folder / "0").mkdir(parents=True)
+    axes = [{"name": "c", "type": "channel"}, *({"name": name, "type": "space"} for name in "zyx")]
+    scale = [{"type": "scale", "scale": [1, 1, 1, 1]}]
+    image = {"version": "0.4", "axes": axes, "datasets": [{"path": "0", "coordinateTransformations": scale}]}
+    told = [{"label": "DAPI", "color": "0000FF", "window": {"start": 5, "end": 200}}, {"label": "GFP", "color": "00FF00"}, {"color": "FF0000"}]
+    (folder / ".zgroup").write_text('{"zarr_format": 2}')
+    (folder / ".zattrs").write_text(json.dumps({"multiscales": [image], "omero": {"channels": told}}))
+    (folder / "0/.zarray").write_text(json.dumps({
+        "zarr_format": 2, "shape": [3, 16, 16, 16], "chunks": [1, 16, 16, 16], "dtype": "|u1", "compressor": None, "fill_value": 0,
+        "order": "C", "filters": None}))
+    for n, middle in enumerate((4, 8, 12)):
+        away = np.sqrt((x - middle) ** 2 + (y - 8) ** 2 + (z - 8) ** 2)
+        (folder / f"0/{n}.0.0.0").write_bytes(np.clip(250 - 50 * away, 0, 250).astype(np.uint8).tobytes())
+
+
+def test_channels_of_a_file(program, tmp_path):
+    write_channels(tmp_path / "cells.zarr")
+    told = Volume(tmp_path / "cells.zarr", channel=1).info()
+    assert (told.channels, told.channel) == (3, 1)
+    assert [(one.name, one.color, one.window, one.chosen) for one in told.channel_list] == [
+        ("DAPI", (0, 0, 1), (5, 200), False), ("GFP", (0, 1, 0), None, True), ("", (1, 0, 0), None, False)]
+    for words, channel in (("all", "all"), ("2,0", [2, 0])):
+        subprocess.run([program, "render", "cells.zarr", "--channel", words, "--size", "40x40", "--quiet", "-o", "a.npy"], cwd=tmp_path, check=True)
+        image = halflight.render(tmp_path / "cells.zarr", channel=channel, size=(40, 40))
+        assert np.array_equal(np.load(tmp_path / "a.npy"), np.asarray(image))
+    scene = Scene.of_channels(tmp_path / "cells.zarr", [2, 0])
+    assert [volume.look["name"] for volume in scene.volumes] == ["channel2", "DAPI"]
+    with pytest.raises(ValueError, match="'both': give a number, several as"):
+        Scene.of_channels(tmp_path / "cells.zarr", "both")
+    with pytest.raises(ValueError, match="names none"):
+        halflight.render(tmp_path / "cells.zarr", channel=[])
+    with pytest.raises(TypeError, match="channel is for files that hold several"):
+        halflight.render(np.zeros((4, 4, 4), np.uint8), channel=[0, 1])
+    with pytest.raises(TypeError, match="affine is not for several channels"):
+        halflight.render(tmp_path / "cells.zarr", channel="all", affine=np.eye(4))

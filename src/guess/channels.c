@@ -1,0 +1,235 @@
+/* guess/channels.c - one scene of several bare volumes: files of one volume each, and channels of one file.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/context.h"
+#include "core/door.h"
+#include "core/memory.h"
+#include "scene/scene.h"
+
+enum { NAME_BYTES = 256 };
+
+/* ---- one scene of several ---- */
+
+/* The volumes of the new scene, and their names. */
+typedef struct joined_volumes {
+  hl_scene_volume *volumes;  /* owned; [count] */
+  char (*names)[NAME_BYTES]; /* owned; [count] */
+  size_t count;
+} joined_volumes;
+
+/* "head" for scans/head.nii.gz. */
+static void name_after_file(const hl_scene_volume *volume, size_t index, char name[NAME_BYTES]) {
+  const char *file = volume->file != NULL ? volume->file : "", *slash = strrchr(file, '/');
+  const char *base = slash != NULL ? slash + 1 : file;
+  const char *dot = base[0] != 0 ? strchr(base + 1, '.') : NULL;
+  size_t length = dot != NULL ? (size_t)(dot - base) : strlen(base);
+  if (volume->name != NULL) snprintf(name, NAME_BYTES, "%s", volume->name);
+  else if (length > 0) snprintf(name, NAME_BYTES, "%.*s", (int)(length < 200 ? length : 200), base);
+  else snprintf(name, NAME_BYTES, "volume%zu", index + 1);
+}
+
+static bool is_taken(const joined_volumes *joined, size_t index, const char *name) {
+  for (size_t other = 0; other < index; other++)
+    if (strcmp(joined->names[other], name) == 0) return true;
+  return false;
+}
+
+static void name_volume(joined_volumes *joined, size_t index) {
+  char stem[NAME_BYTES], *name = joined->names[index];
+  name_after_file(&joined->volumes[index], index, stem);
+  snprintf(name, NAME_BYTES, "%s", stem);
+  for (size_t copy = 2; is_taken(joined, index, name); copy++)
+    snprintf(name, NAME_BYTES, "%.230s-%zu", stem, copy);
+  joined->volumes[index].name = name;
+}
+
+static hl_status describe_joined(hl_scene *const *scenes, size_t count, joined_volumes *joined,
+                                 hl_scene_description *description, hl_error *error) {
+  hl_view view;
+  for (size_t n = 0; n < count; n++) {
+    const hl_scene_description *own = &scenes[n]->description;
+    description->render.sheet_spacing = fmin(description->render.sheet_spacing, own->render.sheet_spacing);
+    for (size_t v = 0; v < own->volume_count; v++) {
+      joined->volumes[joined->count] = own->volumes[v];
+      name_volume(joined, joined->count++);
+    }
+  }
+  description->volumes = joined->volumes;
+  description->volume_count = joined->count;
+  hl_status status = hl_view_choose(description, HL_SIDE_AUTOMATIC, NULL, &view, error);
+  return status == HL_OK ? hl_camera_frame_view(description, &view, 1, &description->camera, error) : status;
+}
+
+hl_status hl_scene_join(hl_context *context, hl_scene *const *scenes, size_t count, hl_scene **scene,
+                        hl_error *error) {
+  HL_DOOR;
+  if (scene != NULL) *scene = NULL;
+  if (context == NULL || scenes == NULL || count == 0 || scene == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_join: null context, scenes or scene, or no scene");
+  size_t total = 0;
+  for (size_t n = 0; n < count; n++) {
+    if (scenes[n] == NULL || scenes[n]->description.volume_count == 0)
+      return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_join: scene %zu is null or has no volume", n);
+    total += scenes[n]->description.volume_count;
+  }
+  hl_scene_description description = scenes[0]->description;
+  joined_volumes joined = {hl_allocate(context, total, sizeof *joined.volumes),
+                           hl_allocate(context, total, NAME_BYTES), 0};
+  hl_status status = joined.volumes != NULL && joined.names != NULL
+                         ? describe_joined(scenes, count, &joined, &description, error)
+                         : hl_fail_memory(error, total * (sizeof *joined.volumes + NAME_BYTES), "volumes");
+  if (status == HL_OK) status = hl_scene_create(context, &description, scene, error);
+  hl_release(context, joined.volumes);
+  hl_release(context, joined.names);
+  return status;
+}
+
+/* ---- colours ---- */
+
+/* The colour that a volume's file has for the volume's channel. */
+static bool told_color(const hl_volume *volume, double srgb[3]) {
+  if (volume == NULL || volume->channels == NULL) return false;
+  const hl_channel *channel = &volume->channels[volume->selection.channel];
+  if (channel->has_color) memcpy(srgb, channel->srgb, sizeof channel->srgb);
+  return channel->has_color;
+}
+
+/* Whether files tell a colour for each volume, and none twice. */
+static bool colors_differ(const hl_scene_description *description) {
+  double own[3], other[3];
+  for (size_t n = 0; n < description->volume_count; n++) {
+    if (!told_color(description->volumes[n].volume, own)) return false;
+    for (size_t m = 0; m < n; m++)
+      if (told_color(description->volumes[m].volume, other) && memcmp(own, other, sizeof own) == 0)
+        return false;
+  }
+  return true;
+}
+
+hl_status hl_scene_channel_color(const hl_scene_description *description, size_t index, double srgb[3]) {
+  HL_DOOR;
+  static const unsigned char list[][3] = {{0, 255, 0},   {255, 0, 255}, {0, 255, 255},
+                                          {255, 255, 0}, {255, 64, 0},  {64, 96, 255}};
+  if (description == NULL || srgb == NULL || index >= description->volume_count) return HL_ERROR_ARGUMENT;
+  if (colors_differ(description) && told_color(description->volumes[index].volume, srgb)) return HL_OK;
+  for (int c = 0; c < 3; c++) srgb[c] = list[index % (sizeof list / sizeof *list)][c] / 255.0;
+  return HL_OK;
+}
+
+/* ---- channels of a file ---- */
+
+/* What is made of each channel. */
+typedef struct channel_scenes {
+  hl_context *context;
+  const char *path, *look;
+  hl_volume_load_options options;
+  hl_scene *scenes[HL_CHANNELS_MOST]; /* owned */
+  size_t count;
+} channel_scenes;
+
+/* Writes into the scene of a channel how it was read, and its name. */
+static hl_status name_channel(channel_scenes *made, const hl_volume *volume, hl_scene **scene,
+                              hl_error *error) {
+  char numbered[24];
+  hl_scene_description description = (*scene)->description;
+  hl_scene_volume named = description.volumes[0];
+  const hl_volume_load_options *options = &made->options;
+  int channel = volume->selection.channel;
+  bool is_named = volume->channels != NULL && volume->channels[channel].name[0] != 0;
+  snprintf(numbered, sizeof numbered, "channel%d", channel);
+  named.name = is_named ? volume->channels[channel].name : numbered;
+  named.array = options->array, named.series = options->series, named.component = options->component;
+  named.time = options->time, named.channel = channel, named.level = options->level;
+  if (volume->selection.levels > 1) named.level = volume->selection.level;
+  memcpy(named.spacing, options->spacing, sizeof named.spacing);
+  description.volumes = &named;
+  hl_scene *with_name = NULL;
+  hl_status status = hl_scene_create(made->context, &description, &with_name, error);
+  if (status != HL_OK) return status;
+  hl_scene_release(*scene);
+  *scene = with_name;
+  return HL_OK;
+}
+
+/* *channels: how many the file has. */
+static hl_status add_channel(channel_scenes *made, int channel, size_t *channels, hl_error *error) {
+  hl_volume *volume = NULL;
+  hl_scene *scene = NULL;
+  made->options.channel = channel;
+  hl_status status = hl_volume_load_with(made->context, made->path, &made->options, &volume, error);
+  if (status == HL_OK) {
+    *channels = volume->selection.channels;
+    status = hl_scene_for_volume_look(made->context, volume, made->path, made->look, &scene, error);
+  }
+  if (status == HL_OK) status = name_channel(made, volume, &scene, error);
+  hl_volume_release(volume);
+  if (status == HL_OK) made->scenes[made->count++] = scene;
+  else hl_scene_release(scene);
+  return status;
+}
+
+static hl_status add_channels(channel_scenes *made, const int *channels, size_t count, hl_error *error) {
+  size_t all = count;
+  hl_status status = HL_OK;
+  for (size_t n = 0; status == HL_OK && n < (count > 0 ? count : n == 0 ? 1 : all); n++) {
+    status = add_channel(made, count > 0 ? channels[n] : (int)n, &all, error);
+    if (status == HL_OK && count == 0 && all > HL_CHANNELS_MOST)
+      status = hl_fail(error, HL_ERROR_INPUT,
+                       "%s: it has %zu channels, and a picture shows %d at most: choose by \"channel\" "
+                       "(--channel 0,2)",
+                       made->path, all, HL_CHANNELS_MOST);
+  }
+  return status;
+}
+
+/* Gives each volume its colour in place of those of its look. */
+static hl_status color_channels(hl_context *context, hl_scene **scene, hl_error *error) {
+  hl_scene_description description = (*scene)->description;
+  hl_scene_volume volumes[HL_CHANNELS_MOST];
+  hl_color_point colors[HL_CHANNELS_MOST];
+  hl_scene *colored = NULL;
+  for (size_t n = 0; n < description.volume_count; n++) {
+    volumes[n] = description.volumes[n];
+    double srgb[3];
+    hl_status status = hl_scene_channel_color(&description, n, srgb);
+    if (status != HL_OK) return hl_fail(error, status, "hl_scene_for_channels: channel %zu has no colour", n);
+    colors[n] = (hl_color_point){.value = 0};
+    for (int c = 0; c < 3; c++) colors[n].color[c] = hl_srgb_decode(srgb[c]);
+    volumes[n].transfer_function.color = &colors[n];
+    volumes[n].transfer_function.color_count = 1;
+  }
+  description.volumes = volumes;
+  hl_status status = hl_scene_create(context, &description, &colored, error);
+  if (status != HL_OK) return status;
+  hl_scene_release(*scene);
+  *scene = colored;
+  return HL_OK;
+}
+
+hl_status hl_scene_for_channels(hl_context *context, const char *path, const hl_volume_load_options *options,
+                                const int *channels, size_t count, const char *look, hl_scene **scene,
+                                hl_error *error) {
+  HL_DOOR;
+  if (scene != NULL) *scene = NULL;
+  if (context == NULL || path == NULL || look == NULL || scene == NULL || (count > 0 && channels == NULL))
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_scene_for_channels: null context, path, channels, look or scene");
+  if (count > HL_CHANNELS_MOST)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_channels: %zu channels: give %d at most", count,
+                   HL_CHANNELS_MOST);
+  channel_scenes made = {.context = context, .path = path, .look = look};
+  hl_volume_load_options_defaults(&made.options);
+  if (options != NULL) made.options = *options;
+  hl_status status = add_channels(&made, channels, count, error);
+  if (status == HL_OK) status = hl_scene_join(context, made.scenes, made.count, scene, error);
+  if (status == HL_OK && made.count > 1) status = color_channels(context, scene, error);
+  for (size_t n = 0; n < made.count; n++) hl_scene_release(made.scenes[n]);
+  if (status != HL_OK) {
+    hl_scene_release(*scene);
+    *scene = NULL;
+  }
+  return status;
+}

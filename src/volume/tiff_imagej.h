@@ -1,0 +1,15 @@
+/* volume/tiff_imagej.h - what ImageJ keeps of channels in a tag of its own: colours and windows. */
+#ifndef HL_VOLUME_TIFF_IMAGEJ_H
+#define HL_VOLUME_TIFF_IMAGEJ_H
+
+#include "volume/tiff_file.h"
+#include "volume/volume.h"
+
+enum { TIFF_IMAGEJ_CHANNELS_MOST = 64 };
+
+/* Reads the channels of the file's current page, in order, without names. channels:
+ * [TIFF_IMAGEJ_CHANNELS_MOST]. Returns how many channels there are; 0: the page has no such tag, or a damaged
+ * one. */
+size_t tiff_imagej_channels(const tiff_file *file, hl_channel *channels);
+
+#endif

@@ -1,0 +1,9 @@
+/* tests/fuzz/stl.c - fuzz target: STL meshes, text and binary. */
+#include "target.h"
+
+const uint64_t fuzz_memory_limit = 4 << 20;
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+  fuzz_load_mesh("m.stl", NULL, data, size);
+  return 0;
+}
