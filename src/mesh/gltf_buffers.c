@@ -161,7 +161,7 @@ static bool find_view(const gltf_file *file, size_t index, size_t offset, gltf_b
       buffer >= file->buffer_count || *stride > 65536)
     return false;
   const gltf_buffer *all = &file->buffers[buffer];
-  if (start > all->length || length > all->length - start || offset > length) return false;
+  if (start > all->length || length > all->length - start || offset >= length) return false;
   *bytes = (gltf_buffer){all->bytes + start + offset, length - offset, false};
   return true;
 }

@@ -99,6 +99,9 @@ static hl_status fail_unknown(const hl_stream *stream, const unsigned char *byte
                               hl_error *error) {
   const char *path = stream->path, *advice = known_but_unsupported(bytes, length);
   if (advice != NULL) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %s", path, advice);
+  if (stream->cut_short)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: its compressed data end before the volume's header: is it cut short?", path);
   if (length == 0) return hl_fail(error, HL_ERROR_INPUT, "%s: the file is empty", path);
   if (is_mesh_name(path)) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: a mesh, not a volume", path);
   for (int n = 0; n < FORMAT_COUNT; n++)

@@ -194,10 +194,11 @@ hl_status hl_stream_unpack(hl_stream **stream, hl_error *error) {
   hl_status status = hl_stream_peek(*stream, 10, &bytes, &length, error);
   if (status != HL_OK) return status;
   if (length >= 3 && memcmp(bytes, "\x1f\x8b\x08", 3) == 0) return hl_stream_push_inflate(stream, error);
-  /* "BZh", a digit, and pi, or the root of pi where nothing follows */
-  if (length >= 10 && memcmp(bytes, "BZh", 3) == 0 && bytes[3] >= '1' && bytes[3] <= '9' &&
-      (memcmp(bytes + 4, "\x31\x41\x59\x26\x53\x59", 6) == 0 ||
-       memcmp(bytes + 4, "\x17\x72\x45\x38\x50\x90", 6) == 0))
+  /* "BZh", a digit, and pi, or the root of pi where nothing follows; what a cut file has of them */
+  size_t marked = length < 10 ? (length > 4 ? length - 4 : 0) : 6;
+  if (length >= 4 && memcmp(bytes, "BZh", 3) == 0 && bytes[3] >= '1' && bytes[3] <= '9' &&
+      (memcmp(bytes + 4, "\x31\x41\x59\x26\x53\x59", marked) == 0 ||
+       memcmp(bytes + 4, "\x17\x72\x45\x38\x50\x90", marked) == 0))
     return hl_stream_push_bzip2(stream, error);
   if (length >= 6 && memcmp(bytes, "\3757zXZ\0", 6) == 0) return hl_stream_push_xz(stream, error);
   return HL_OK;

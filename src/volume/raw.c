@@ -1,4 +1,4 @@
-/* volume/raw.c - bare voxels, whose size and type the file's name states.
+/* volume/raw.c - bare voxels, whose size and type the file's name states. Slices of bare voxels: slice_raw.c.
  *
  * Names: anything_256x256x128_uint8.raw, with _be (or _le) after the type for big-endian voxels and .gz for
  * gzip. Bare voxels with a descriptor in another file: dat.c. */
@@ -11,24 +11,24 @@
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/* Reads "256x256x128_"; false if something else is there. */
-static bool scan_sizes(const char **cursor, size_t sizes[3]) {
+/* Reads "256x256x128_", with `count` sizes; false if something else is there. */
+static bool scan_sizes(const char **cursor, int count, size_t sizes[3]) {
   const char *text = *cursor;
-  for (int axis = 0; axis < 3; axis++) {
+  for (int axis = 0; axis < count; axis++) {
     size_t value = 0;
     if (!is_digit(*text)) return false;
     for (; is_digit(*text); text++) {
       if (value > (size_t)1 << 58) return false;
       value = 10 * value + (size_t)(*text - '0');
     }
-    if (*text++ != (axis < 2 ? 'x' : '_')) return false;
+    if (*text++ != (axis < count - 1 ? 'x' : '_')) return false;
     sizes[axis] = value;
   }
   *cursor = text;
   return true;
 }
 
-static bool ends_word(char c) { return c == 0 || c == '.' || c == '_'; }
+static bool ends_word(char c) { return c == 0 || c == '.' || c == '_' || c == '/'; }
 
 static bool scan_type(const char **cursor, hl_voxel_type *type, bool *big_endian) {
   for (int candidate = HL_VOXEL_U8; candidate <= HL_VOXEL_F16; candidate++) {
@@ -37,7 +37,8 @@ static bool scan_type(const char **cursor, hl_voxel_type *type, bool *big_endian
     if (!hl_text_starts(*cursor, name) || !ends_word(*rest)) continue;
     *type = (hl_voxel_type)candidate;
     *big_endian = hl_text_starts(rest, "_be") && ends_word(rest[3]);
-    *cursor = rest;
+    bool told = *big_endian || (hl_text_starts(rest, "_le") && ends_word(rest[3]));
+    *cursor = rest + (told ? 3 : 0);
     return true;
   }
   return false;
@@ -51,9 +52,27 @@ bool hl_raw_name(const char *path, hl_payload *payload) {
   for (const char *place = name; *place != 0; place++) {
     if (!is_digit(*place) || (place > name && is_digit(place[-1]))) continue;
     const char *cursor = place;
-    if (scan_sizes(&cursor, payload->grid.dimensions) &&
+    if (scan_sizes(&cursor, 3, payload->grid.dimensions) &&
         scan_type(&cursor, &payload->grid.type, &payload->big_endian))
       return true;
+  }
+  return false;
+}
+
+bool hl_raw_slice_name(const char *name, size_t length, hl_raw_slice *slice) {
+  for (const char *place = name; place < name + length; place++) {
+    bool within = place > name && (is_digit(place[-1]) || place[-1] == 'x');
+    if (!is_digit(*place) || within) continue;
+    for (int count = 2; count <= 3; count++) {
+      const char *cursor = place;
+      size_t sizes[3] = {0, 0, 1};
+      if (!scan_sizes(&cursor, count, sizes) || sizes[2] != 1 ||
+          !scan_type(&cursor, &slice->type, &slice->big_endian) || cursor > name + length)
+        continue;
+      slice->width = sizes[0], slice->height = sizes[1];
+      slice->begin = (size_t)(place - name), slice->end = (size_t)(cursor - name);
+      return true;
+    }
   }
   return false;
 }

@@ -33,6 +33,11 @@ hl_status hl_slice_read_jpeg(const hl_slice_file *file, hl_slice_shape *shape, u
 hl_status hl_slice_read_tiff(const hl_slice_file *file, hl_slice_shape *shape, int component, void *voxels,
                              hl_error *error);
 
+/* Whether a file's name is that of bare voxels. */
+bool hl_slice_is_raw(const char *name);
+/* Bare voxels; voxels: null: only the shape is found. */
+hl_status hl_slice_read_raw(const hl_slice_file *file, hl_slice_shape *shape, void *voxels, hl_error *error);
+
 /* Holds the pixels that a header promises against the most that `bytes_most` decoded bytes can be; `each` are
  * the bytes of a sample. */
 hl_status hl_slice_check_size(const hl_slice_file *file, const hl_slice_shape *shape, size_t bytes_most,

@@ -11,17 +11,18 @@
 #include "volume/convert.h"
 #include "volume/text.h"
 
-typedef enum picture_kind { KIND_PNG, KIND_JPEG, KIND_TIFF, KIND_OTHER } picture_kind;
+typedef enum picture_kind { KIND_PNG, KIND_JPEG, KIND_TIFF, KIND_RAW, KIND_OTHER } picture_kind;
 
 bool hl_slice_is_named(const char *name) {
   static const char *const endings[] = {".tif", ".tiff", ".png", ".jpg", ".jpeg"};
   for (size_t n = 0; n < sizeof endings / sizeof *endings; n++)
     if (hl_text_ends(name, endings[n])) return true;
-  return false;
+  return hl_slice_is_raw(name);
 }
 
 static picture_kind kind_of(const hl_slice_file *file) {
   const unsigned char *bytes = file->bytes;
+  if (hl_slice_is_raw(file->path)) return KIND_RAW;
   if (file->length < 8) return KIND_OTHER;
   if (memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0) return KIND_PNG;
   if (bytes[0] == 0xff && bytes[1] == 0xd8) return KIND_JPEG;
@@ -48,6 +49,7 @@ static hl_status read(const hl_slice_file *file, hl_slice_shape *shape, unsigned
 
 hl_status hl_slice_measure(const hl_slice_file *file, hl_slice_shape *shape, hl_error *error) {
   if (kind_of(file) == KIND_TIFF) return hl_slice_read_tiff(file, shape, 0, NULL, error);
+  if (kind_of(file) == KIND_RAW) return hl_slice_read_raw(file, shape, NULL, error);
   return read(file, shape, NULL, error);
 }
 
@@ -101,6 +103,7 @@ hl_status hl_slice_decode(const hl_slice_file *file, const hl_slice_shape *shape
         shape->height, shape->samples, hl_voxel_type_name(shape->type));
   if (status != HL_OK) return status;
   if (kind_of(file) == KIND_TIFF) return hl_slice_read_tiff(file, &found, component, voxels, error);
+  if (kind_of(file) == KIND_RAW) return hl_slice_read_raw(file, &found, voxels, error);
   status = read(file, &found, &samples, error);
   if (status == HL_OK) take_component(shape, samples, component, voxels);
   hl_release(file->context, samples);

@@ -1,5 +1,5 @@
-/* volume/slice_picture.h - one picture of a folder of slices, decoded from memory: PNG, JPEG, or the first
- * page of a TIFF file. */
+/* volume/slice_picture.h - one picture of a folder of slices, decoded from memory: PNG, JPEG, the first page
+ * of a TIFF file, or bare voxels. */
 #ifndef HL_VOLUME_SLICE_PICTURE_H
 #define HL_VOLUME_SLICE_PICTURE_H
 

@@ -1,5 +1,5 @@
-/* volume/slices.c - folders and zip archives of numbered pictures: each picture is a slice, in the order of
- * the numbers in the names.
+/* volume/slices.c - folders and zip archives of numbered pictures, or files of bare voxels: each is a slice,
+ * in the order of the numbers in the names.
  *
  * Names of one series differ in their last number alone: "scan_007.tif". Of several series the longest is
  * taken. A series of TIFF files that are volumes of their own (several pages, OME-TIFF) is one of time steps.
@@ -16,6 +16,7 @@
 #include "volume/destination.h"
 #include "volume/format.h"
 #include "volume/parallel.h"
+#include "volume/raw.h"
 #include "volume/slice_picture.h"
 #include "volume/text.h"
 #include "volume/tiff.h"
@@ -50,6 +51,13 @@ static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 static bool cut_name(const hl_bundle_entry *entry, numbered_name *name) {
   const char *slash = strrchr(entry->name, '/'), *base = slash == NULL ? entry->name : slash + 1;
   const char *dot = strrchr(base, '.'), *end = dot == NULL ? base + strlen(base) : dot;
+  hl_raw_slice raw; /* its size and type are no number of a slice */
+  hl_payload whole;
+  if (hl_slice_is_raw(base) && hl_raw_name(base, &whole) && whole.grid.dimensions[2] != 1) return false;
+  if (hl_slice_is_raw(base) && hl_raw_slice_name(base, strlen(base), &raw)) {
+    const char *after = base + raw.end;
+    if (strcspn(after, "0123456789") >= (size_t)(end - after)) end = base + raw.begin;
+  }
   while (end > base && !is_digit(end[-1])) end--;
   const char *begin = end;
   while (begin > base && is_digit(begin[-1])) begin--;

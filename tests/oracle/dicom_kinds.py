@@ -5,6 +5,7 @@ usage: dicom_kinds.py DUMP_VOLUME HALFLIGHT
 Segmentations, mosaics, frames of nuclear medicine and of ultrasound volumes, places that are told in part, colours,
 GE's private syntax, holes. Exit 77: numpy is missing.
 """
+import json
 import shutil
 import struct
 import subprocess
@@ -201,6 +202,24 @@ def test_nuclear_medicine():
     check("projections are told", info and "projections from several sides" in told, told)
 
 
+def test_films():
+    """Frames that the Frame Increment Pointer says are times (PS3.3, C.7.6.6) are times of one slice."""
+    planes = list(VOXELS.astype(np.uint8))
+    for syntax in (EXPLICIT, IMPLICIT):
+        for increment in (0x1063, 0x1065):
+            items = {0x00080060: ("CS", "US"), 0x0020000e: ("UI", "1.2.9"), 0x00181063: ("DS", 33.3), 0x00280009: ("US", [0x18, increment])}
+            items.update(pixel_elements(planes, syntax))
+            path = root / "film.dcm"
+            path.write_bytes(dicom_file(items, syntax))
+            info = expect(f"a film's first frame, {increment:x}", path, VOXELS[:1].astype(float), "time 0 is taken")
+            check("its times", info and info["times"] == 7, info)
+            info = json.loads(subprocess.run([sys.argv[2], "info", "--json", path, "--time", "4"], capture_output=True, text=True).stdout)
+            check("another of them", info["mean"] == VOXELS[4].astype(np.uint8).mean(), info)
+    items[0x00280009] = ("US", [0x54, 0x80])
+    path.write_bytes(dicom_file(items, syntax))
+    info = expect("frames that are slices stay slices", path, VOXELS.astype(float), "tell no positions")
+
+
 def test_ultrasound_volume():
     order = range(6, -1, -1)
     shared = {0x0020930f: ("SQ", [{0x00209302: ("FD", [1.0, 0, 0, 0, 1.0, 0])}]), 0x00289110: SHARED[0x00289110]}
@@ -317,7 +336,7 @@ def test_ge_private():
 
 
 try:
-    for test in (test_segmentations, test_label_map_kind, test_mosaics, test_nuclear_medicine, test_ultrasound_volume,
+    for test in (test_segmentations, test_label_map_kind, test_mosaics, test_nuclear_medicine, test_films, test_ultrasound_volume,
                  test_partial_places, test_several_at_one_place, test_colors, test_ge_private):
         test()
 finally:

@@ -113,6 +113,38 @@ def test_folders():
     check("stacks are time steps", info and info["dimensions"] == [13, 9, 12] and info["times"] == 3, told)
 
 
+def write_raw(name, planes, pattern):
+    folder = root / name
+    folder.mkdir()
+    for n, plane in enumerate(planes):
+        (folder / pattern.format(n)).write_bytes(plane.tobytes())
+    return folder
+
+
+def test_raw():
+    signed = (DEEP.astype(np.int32) - 32768).astype(np.int16)
+    wide = DEEP.astype(np.uint32) * 4099 + 1  # floats round some of them
+    for name, planes, pattern in (
+            ("scan_13x9_uint16", DEEP, "{}.raw"), ("of_names", DEEP, "s{:03}_13x9_uint16.raw"), ("last", GREY, "13x9x1_uint8_{}.raw"),
+            ("big_13x9_uint16_be", DEEP.astype(">u2"), "a{}.raw"), ("little_13x9_int16_le", signed.astype("<i2"), "a.{:04}.raw"),
+            ("floats_13x9_float32", GREY.astype("<f4"), "{}.raw"), ("ids_13x9_uint32", wide, "{}.raw")):
+        expect(f"raw slices {name}/{pattern}", write_raw(name, planes, pattern), planes.astype(np.float64))
+    expect("raw slices in an archive", pack("raw.zip", sorted((root / "of_names").iterdir())), DEEP.astype(np.float64))
+    found, told = read(write_raw("unsaid", GREY, "{}.raw"))
+    check("raw slices whose names say nothing", found is None and "raw slices need their size and type" in told, told)
+    (root / "of_names/s003_13x9_uint16.raw").write_bytes(b"short")
+    found, told = read(root / "of_names")
+    check("a raw slice of another length", found is None and
+          "s003_13x9_uint16.raw: its name promises 13 x 9 voxels of uint16, the file has 5 bytes" in told, told)
+    (root / "far_4000000000x4000000000_uint8").mkdir()
+    for n in range(2):
+        (root / f"far_4000000000x4000000000_uint8/{n}.raw").write_bytes(b"x")
+    found, told = read(root / "far_4000000000x4000000000_uint8")
+    check("raw slices that promise more than there is", found is None and "the file has 1 bytes" in told, told)
+    found, told = read(write_raw("volumes", [GREY, GREY], "v{}_13x9x12_uint8.raw"))
+    check("raw volumes are no slices", found is None and "a folder in which no volume was found" in told, told)
+
+
 def pack(name, paths):
     with zipfile.ZipFile(root / name, "w", zipfile.ZIP_DEFLATED) as archive:
         for path in paths:
@@ -202,6 +234,7 @@ def test_damage():
 
 test_kinds()
 test_folders()
+test_raw()
 test_archives()
 test_hostile_pages()
 test_damage()

@@ -110,9 +110,9 @@ def test_packed():
         expect(f"a whole file by {ending}", write(f"a.nrrd.{ending}", pack(nrrd)), VOXELS)
         half = len(nrrd) // 2
         expect(f"in two parts by {ending}", write(f"a.nrrd.{ending}", pack(nrrd[:half]) + pack(nrrd[half:])), VOXELS)
-        for cut in (20, len(pack(nrrd)) // 2):
+        for cut in (8, 10, 12, 20, len(pack(nrrd)) // 2):
             _, _, told = read(write("cut.nrrd." + ending, pack(nrrd)[:cut]))
-            check(f"cut by {ending} at {cut}", told.count("\n") == 1, told)
+            check(f"cut by {ending} at {cut}", told.count("\n") == 1 and ("cut short" in told or "at most" in told), told)
     mrc = struct.pack("<10i", 5, 6, 7, 1, 0, 0, 0, 5, 6, 7) + struct.pack("<6f", 5, 6, 7, 90, 90, 90) + struct.pack("<3i", 1, 2, 3)
     mrc = mrc.ljust(208, b"\0") + b"MAP \x44\x44\0\0"
     expect("MRC by bzip2", write("a.mrc.bz2", bz2.compress(mrc.ljust(1024, b"\0") + raw)), VOXELS)

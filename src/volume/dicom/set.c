@@ -244,6 +244,7 @@ static hl_status add_file(hl_dicom_set *set, hl_dicom_header *header, size_t ent
                           .is_backwards = header->frames_told == 0 && header->frame_count > 1 &&
                                           header->slice_spacing < 0 && header->offset_count == 0,
                           .is_volume_space = header->is_volume_space,
+                          .are_times = header->vectors.are_times,
                           .frame_count = (size_t)header->frame_count};
   take_padding(header, file->padding);
   status = find_series(set, header, &file->series, error);

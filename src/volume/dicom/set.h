@@ -12,6 +12,7 @@ typedef struct hl_dicom_file {
   double slice_spacing, thickness, window[2];
   bool is_backwards;    /* its frames, without places of their own, follow each other against the normal */
   bool is_volume_space; /* positions are those of an ultrasound volume, not of the patient */
+  bool are_times;       /* its frames follow each other in time */
   hl_dicom_segments segments; /* owned */
   hl_dicom_palette palette;   /* owned */
   bool is_localizer, is_deflated;

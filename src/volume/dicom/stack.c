@@ -244,9 +244,15 @@ static void sort(sorting *s) {
   }
   qsort(s->frames, s->count, sizeof *s->frames, by_instance);
   double step = stated_spacing(s, &known);
-  for (size_t n = 0; n < s->count; n++) s->frames[n].distance = (double)n * step;
+  size_t place = 0;
+  for (size_t n = 0; n < s->count; n++) {
+    const hl_dicom_frame *frame = s->frames[n].frame;
+    bool same = n > 0 && file_of(s, frame)->are_times && frame->file == s->frames[n - 1].frame->file;
+    if (n > 0 && !same) place++;
+    s->frames[n].distance = (double)place * step;
+  }
   s->tolerance = step / 100;
-  if (s->count > 1)
+  if (place > 0)
     hl_log(s->set->context, HL_LOG_WARNING,
            "%s: the slices tell no positions: they are ordered by their numbers, %g%s apart", s->path, step,
            known ? " mm" : " (a pixel's width)");

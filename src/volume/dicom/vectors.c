@@ -30,8 +30,25 @@ static hl_status take_vector(hl_dicom_reader *reader, const hl_dicom_element *el
   return status;
 }
 
+/* The Frame Increment Pointer (0028,0009) names what changes from frame to frame: the Frame Time (0018,1063),
+ * or the Frame Time Vector (0018,1065). */
+static hl_status take_increment(hl_dicom_reader *reader, const hl_dicom_element *element,
+                                hl_dicom_vectors *vectors, hl_error *error) {
+  unsigned char bytes[4];
+  size_t length;
+  if (element->length != sizeof bytes) return HL_OK;
+  hl_status status = hl_source_read(reader->source, element->offset, bytes, sizeof bytes, &length, error);
+  if (status != HL_OK || length != sizeof bytes) return status;
+  uint32_t tag = (uint32_t)hl_dicom_u16(bytes, reader->big_endian) << 16 |
+                 (uint32_t)hl_dicom_u16(bytes + 2, reader->big_endian);
+  vectors->are_times = tag == 0x00181063 || tag == 0x00181065;
+  return HL_OK;
+}
+
 hl_status hl_dicom_vectors_take(hl_dicom_reader *reader, const hl_dicom_element *element,
                                 hl_dicom_vectors *vectors, hl_error *error) {
+  if (element->tag == 0x00280009 && reader->depth == 0)
+    return take_increment(reader, element, vectors, error);
   for (int n = 0; n < HL_DICOM_VECTORS && reader->depth == 0; n++)
     if (element->tag == tags[n]) return take_vector(reader, element, &vectors->list[n], error);
   return HL_OK;
@@ -39,12 +56,12 @@ hl_status hl_dicom_vectors_take(hl_dicom_reader *reader, const hl_dicom_element 
 
 size_t hl_dicom_vectors_slice(const hl_dicom_vectors *vectors, size_t frame) {
   const hl_dicom_vector *slices = &vectors->list[SLICES];
-  if (frame >= slices->count) return frame;
+  if (frame >= slices->count) return vectors->are_times ? 0 : frame;
   return slices->numbers[frame] > 0 ? slices->numbers[frame] - 1u : 0;
 }
 
 double hl_dicom_vectors_volume(const hl_dicom_vectors *vectors, size_t frame) {
-  double number = NAN;
+  double number = vectors->are_times ? (double)frame : NAN;
   for (int n = 0; n < HL_DICOM_VECTORS && vectors->list[SLICES].numbers != NULL; n++) {
     const hl_dicom_vector *vector = &vectors->list[n];
     if (n == SLICES || frame >= vector->count) continue;
