@@ -5,6 +5,7 @@
 
 #include <halflight/scene.h>
 
+#include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
 #include "scene/label_table.h"
@@ -39,17 +40,37 @@ static hl_status fail_value(double value, hl_error *error) {
                  value);
 }
 
+/* Whether a double, by which labels are told apart, rounds a number of the row. */
+static bool rounds_id(hl_number_row row, size_t i) {
+  if (row.type == HL_VOXEL_U64) {
+    uint64_t id = ((const uint64_t *)row.numbers)[i];
+    return id >> 53 != 0 && id >> __builtin_ctzll(id) >> 53 != 0;
+  }
+  if (row.type != HL_VOXEL_I64) return false;
+  int64_t id = ((const int64_t *)row.numbers)[i];
+  uint64_t size = id < 0 ? 0 - (uint64_t)id : (uint64_t)id;
+  return size >> 53 != 0 && size >> __builtin_ctzll(size) >> 53 != 0;
+}
+
 /* Labels come in runs: only a value that differs from the voxel before is looked up. */
 static hl_status find_values(const hl_volume *map, found_labels *found, hl_error *error) {
   if (map->pages != NULL)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "labels of a volume that is larger than memory: raise the memory limit");
+  bool rounded = false;
   for (size_t k = 0; k < map->dimension[2]; k++)
     for (size_t j = 0; j < map->dimension[1]; j++) {
       const hl_number_row row = hl_volume_numbers(map, j, k, NULL);
       double last = NAN;
       for (size_t i = 0; i < map->dimension[0]; i++) {
         double stored = hl_row_number(row, i);
+        if (!rounded && rounds_id(row, i)) {
+          rounded = true;
+          hl_log(map->context, HL_LOG_WARNING,
+                 "labels above 2^53 are told apart as doubles: the voxels of %.0f may be those of several labels "
+                 "near it: number the labels anew",
+                 stored);
+        }
         if (stored == last) continue;
         last = stored;
         double value = stored * map->value_scale + map->value_offset;

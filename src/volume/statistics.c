@@ -2,7 +2,8 @@
  *
  * u8 and u16 voxels are counted per stored value; all statistics follow from the counts exactly. f32 voxels
  * take one pass for range, sum and finiteness, and one for the histogram. Percentiles are exact, too: a
- * voxel's rank is found from counts of the upper and then of the lower half of its value's bits. */
+ * voxel's rank is found from counts of the upper and then of the lower half of its value's bits, of the file's
+ * own numbers (exact.h) in four steps. */
 #include "volume/statistics.h"
 
 #include <float.h>
@@ -333,8 +334,52 @@ static uint32_t place_of(const uint64_t *counts, uint64_t *rank) {
   return place;
 }
 
-/* The stored value that `rank` finite voxels precede in ascending order. False: cancelled. */
+/* The same for the double: the file's own numbers. */
+static uint64_t key_of_f64(double value) {
+  const uint64_t highest = (uint64_t)1 << 63;
+  uint64_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  return bits & highest ? ~bits : bits | highest;
+}
+
+static double number_of_key(uint64_t key) {
+  const uint64_t highest = (uint64_t)1 << 63;
+  uint64_t bits = key & highest ? key & ~highest : ~key;
+  double value;
+  memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+/* Counts the next 16 bits of the keys of the file's numbers that begin with `prefix`, of `known` bits. Numbers
+ * whose floats are not finite do not count. */
+static bool count_digits(ranking *r, uint64_t prefix, int known) {
+  const hl_volume *volume = r->volume;
+  memset(r->lower, 0, sizeof r->lower);
+  for (size_t n = 0; n < hl_volume_voxel_count(volume); n++) {
+    if (n % PIECE == 0 && hl_cancelled(volume->context)) return false;
+    double number = hl_exact_number(volume->type, volume->exact, n);
+    uint64_t key = key_of_f64(number);
+    if (isfinite((float)number) && (known == 0 || key >> (64 - known) == prefix))
+      r->lower[key >> (48 - known) & 0xffffu]++;
+  }
+  return true;
+}
+
+/* The file's own number that `rank` finite voxels precede, as a double. */
+static bool number_at(ranking *r, uint64_t rank, double *number) {
+  uint64_t key = 0;
+  for (int known = 0; known < 64; known += 16) {
+    if (!count_digits(r, key, known)) return false;
+    key = key << 16 | place_of(r->lower, &rank);
+  }
+  *number = number_of_key(key);
+  return true;
+}
+
+/* The number that `rank` finite voxels precede in ascending order: the file's own where the stored values round
+ * it. False: cancelled. */
 static bool stored_at(ranking *r, uint64_t rank, double *stored) {
+  if (r->volume->exact != NULL) return number_at(r, rank, stored);
   uint32_t key = place_of(r->upper, &rank);
   if (r->volume->storage == HL_STORAGE_F32) {
     if (!open_upper(r, key)) return false;

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 #include <halflight/scene.h>
 
-#include "volume/volume.h"
+#include "volume/exact.h"
 
 enum { SIDE = 4, COUNT = SIDE * SIDE * SIDE };
 
@@ -112,6 +112,36 @@ static void values_and_range_are_exact(void **state) {
 }
 
 /* Numbers that floats hold need no second copy. */
+static int by_value(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* As sorting them gives, to the last bit of a double; of numbers whose floats are all the same, too. */
+static void percentiles_are_exact(void **state) {
+  (void)state;
+  static const double percents[] = {0, 1, 12.5, 50, 61.9, 99, 100};
+  enum { PERCENTS = sizeof percents / sizeof *percents };
+  hl_context *context = make_context();
+  for (size_t t = 0; t < sizeof wide_types / sizeof *wide_types; t++) {
+    unsigned char bytes[8 * COUNT] = {0};
+    double sorted[COUNT], found[PERCENTS];
+    fill(wide_types[t], bytes);
+    hl_volume *volume = make_volume(context, wide_types[t], bytes);
+    for (size_t n = 0; n < COUNT; n++) sorted[n] = hl_exact_number(wide_types[t], bytes, n);
+    qsort(sorted, COUNT, sizeof *sorted, by_value);
+    assert_int_equal(hl_volume_percentiles(volume, percents, PERCENTS, found, NULL), HL_OK);
+    for (size_t p = 0; p < PERCENTS; p++) {
+      double place = percents[p] / 100 * (COUNT - 1);
+      size_t rank = (size_t)place, after = rank + 1 < COUNT ? rank + 1 : rank;
+      double wanted = sorted[rank] + (place - (double)rank) * (sorted[after] - sorted[rank]);
+      assert_true(found[p] == wanted);
+    }
+    hl_volume_release(volume);
+  }
+  hl_context_destroy(context);
+}
+
 static void small_numbers_take_no_memory(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -144,9 +174,41 @@ static void neighbouring_ids_are_two_labels(void **state) {
   hl_context_destroy(context);
 }
 
+static void keep_line(void *user_data, hl_log_level level, const char *message) {
+  if (level == HL_LOG_WARNING) snprintf(user_data, 300, "%s", message);
+}
+
+/* Labels are doubles: what they cannot tell apart is told. */
+static void ids_that_doubles_round_are_told(void **state) {
+  (void)state;
+  static const uint64_t first[] = {UINT64_C(720575940621039145), (uint64_t)1 << 60, ((uint64_t)1 << 53) - 1};
+  for (size_t f = 0; f < sizeof first / sizeof *first; f++) {
+    char line[300] = "";
+    hl_context_options options;
+    hl_context_options_defaults(&options);
+    options.log = keep_line;
+    options.user_data = line;
+    hl_context *context = NULL;
+    assert_int_equal(hl_context_create(&options, &context, NULL), HL_OK);
+    uint64_t voxels[COUNT];
+    for (size_t n = 0; n < COUNT; n++) voxels[n] = n < COUNT / 2 ? 0 : first[f];
+    hl_volume *map = make_volume(context, HL_VOXEL_U64, voxels);
+    hl_label *labels = NULL;
+    size_t count = 0;
+    assert_int_equal(hl_labels_of_volume(context, map, NULL, &labels, &count, NULL), HL_OK);
+    assert_int_equal(count, 1);
+    assert_true((strstr(line, "labels above 2^53 are told apart as doubles") != NULL) == (f == 0));
+    hl_labels_release(context, labels);
+    hl_volume_release(map);
+    hl_context_destroy(context);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(numbers_survive_files), cmocka_unit_test(values_and_range_are_exact),
-      cmocka_unit_test(small_numbers_take_no_memory), cmocka_unit_test(neighbouring_ids_are_two_labels)};
+      cmocka_unit_test(percentiles_are_exact),
+      cmocka_unit_test(small_numbers_take_no_memory), cmocka_unit_test(neighbouring_ids_are_two_labels),
+      cmocka_unit_test(ids_that_doubles_round_are_told)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
