@@ -67,7 +67,8 @@ static hl_status find_values(const hl_volume *map, found_labels *found, hl_error
         if (!rounded && rounds_id(row, i)) {
           rounded = true;
           hl_log(map->context, HL_LOG_WARNING,
-                 "labels above 2^53 are told apart as doubles: the voxels of %.0f may be those of several labels "
+                 "labels above 2^53 are told apart as doubles: the voxels of %.0f may be those of several "
+                 "labels "
                  "near it: number the labels anew",
                  stored);
         }

@@ -198,8 +198,29 @@ const void *hl_volume_row_in(const hl_volume *volume, size_t j, size_t k, void *
   return buffer;
 }
 
+bool hl_volume_is_exact(const hl_volume *volume) {
+  return volume->exact != NULL || (volume->pages != NULL && volume->pages->exact_file >= 0);
+}
+
+size_t hl_volume_row_room(const hl_volume *volume) {
+  size_t stored = hl_storage_bytes(volume->storage), width = volume->dimension[0];
+  bool in_file = volume->exact == NULL && hl_volume_is_exact(volume);
+  return width * (in_file ? hl_voxel_type_bytes(volume->type) + stored : stored);
+}
+
+/* The row's own numbers, from the file of numbers of a volume with pages; null: it cannot be read. */
+static const void *numbers_in(const hl_volume *volume, size_t j, size_t k, unsigned char *buffer) {
+  size_t width = volume->dimension[0], first = (k * volume->dimension[1] + j) * width;
+  float *stored = (float *)(void *)(buffer + width * hl_voxel_type_bytes(volume->type));
+  hl_pages_load_row(volume->pages, j, k, stored);
+  return hl_exact_read(volume->pages->exact_file, volume->type, first, width, stored, buffer) ? buffer : NULL;
+}
+
 hl_number_row hl_volume_numbers(const hl_volume *volume, size_t j, size_t k, void *buffer) {
   static const hl_voxel_type stored[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32}; /* by hl_storage */
+  const void *numbers = volume->exact == NULL && hl_volume_is_exact(volume) ? numbers_in(volume, j, k, buffer)
+                                                                            : NULL;
+  if (numbers != NULL) return (hl_number_row){volume->type, numbers};
   if (volume->exact == NULL)
     return (hl_number_row){stored[volume->storage], hl_volume_row_in(volume, j, k, buffer)};
   size_t row = (k * volume->dimension[1] + j) * volume->dimension[0];
@@ -306,7 +327,7 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
     return hl_fail_memory(error, count * voxel_bytes, "a volume");
   }
   hl_exact exact;
-  hl_exact_begin(context, description->type, count, false, &exact);
+  hl_exact_begin(context, description->type, count, HL_EXACT_IN_MEMORY, &exact);
   copy_voxels(description, stride, row, made->owned_voxels, &exact);
   hl_release(context, row);
   status = hl_exact_take(&exact, made->voxels, &made->exact, error);
@@ -469,6 +490,14 @@ double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_
   if (volume->exact != NULL) { /* a float that is not finite stays transparent */
     double number = hl_row_number(hl_volume_numbers(volume, j, k, NULL), i);
     return isfinite((float)number) ? volume->value_scale * number + volume->value_offset : NAN;
+  }
+  if (pages != NULL && pages->exact_file >= 0) {
+    float number = (float)hl_page_number(pages, i, j, k);
+    uint64_t own;
+    size_t first = (k * volume->dimension[1] + j) * volume->dimension[0] + i;
+    if (!isfinite(number)) return NAN;
+    if (hl_exact_read(pages->exact_file, volume->type, first, 1, &number, &own))
+      return volume->value_scale * hl_exact_number(volume->type, &own, 0) + volume->value_offset;
   }
   double stored = kept != NULL    ? hl_stored_number(volume->storage, kept, 0)
                   : pages != NULL ? hl_page_number(pages, i, j, k)

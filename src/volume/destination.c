@@ -38,17 +38,17 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
   size_t bytes = kind == HL_DESTINATION_COLORS ? HL_COLOR_BYTES
                                                : hl_storage_bytes(hl_voxel_type_storage(grid->type));
   *destination = (hl_destination){.context = context, .path = path, .voxel_bytes = bytes};
-  hl_exact_begin(context, kind == HL_DESTINATION_COLORS ? HL_VOXEL_U8 : grid->type, count, false,
+  hl_exact_begin(context, kind == HL_DESTINATION_COLORS ? HL_VOXEL_U8 : grid->type, count, HL_EXACT_NOWHERE,
                  &destination->exact);
-  destination->exact.is_off = true;
   if (kind == HL_DESTINATION_PIECES && context->ranks != NULL && count >= LEAST_OVER_RANKS / bytes)
     return hl_own_voxels_allocate(context->ranks, grid, &destination->own, error);
   if (kind == HL_DESTINATION_PIECES && hl_pages_wanted(context, grid)) {
     warn_of_pictures(context, grid, path);
+    destination->exact.place = HL_EXACT_IN_FILE;
     return hl_pages_create(context, context->options.scratch_folder, grid, PAGE_SHIFT, &destination->pages,
                            error);
   }
-  destination->exact.is_off = false;
+  destination->exact.place = HL_EXACT_IN_MEMORY;
   destination->voxels = hl_allocate(context, count, bytes);
   return destination->voxels != NULL ? HL_OK : hl_fail_memory(error, count * bytes, path);
 }
@@ -95,14 +95,16 @@ hl_status hl_destination_adopt(hl_destination *destination, const hl_volume_desc
                                hl_volume **volume, hl_error *error) {
   const hl_destination given = *destination;
   void *exact = NULL;
-  if (given.exact.is_off && given.exact.rounds)
+  if (given.own != NULL && given.exact.rounds)
     hl_log(
         given.context, HL_LOG_WARNING,
-        "%s: numbers above 2^24 are rounded to 24 bits, as the volume is larger than memory or spread over "
-        "processes: raise the memory limit (--max-memory) for exact ones",
+        "%s: numbers above 2^24 are rounded to 24 bits, as the volume is spread over processes: read it by "
+        "one for exact ones",
         given.path);
-  hl_status status = hl_exact_take(&destination->exact, (const float *)(const void *)given.voxels, &exact,
-                                   error);
+  hl_status status = given.pages != NULL
+                         ? hl_exact_take_file(&destination->exact, &given.pages->exact_file, error)
+                         : hl_exact_take(&destination->exact, (const float *)(const void *)given.voxels,
+                                         &exact, error);
   if (status != HL_OK) return status;
   destination->voxels = NULL;
   destination->pages = NULL;

@@ -15,7 +15,7 @@ typedef struct hl_destination {
   size_t voxel_bytes;    /* of a stored value, or of a voxel's colours */
   unsigned char *voxels; /* owned; [k][j][i]; null with pages */
   hl_pages *pages;       /* owned; null: in memory */
-  hl_exact exact;        /* the file's own numbers, where stored values round them: in memory alone */
+  hl_exact exact;        /* the file's own numbers, where stored values round them */
   hl_own_voxels *own;    /* owned; over ranks: this rank's slices, `voxels` is null; else null */
 } hl_destination;
 

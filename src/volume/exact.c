@@ -1,24 +1,31 @@
 /* volume/exact.c - see exact.h. */
+#define _GNU_SOURCE
 #include "volume/exact.h"
 
+#include <errno.h>
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "core/context.h"
 #include "core/memory.h"
 #include "volume/convert.h"
+#include "volume/scratch_file.h"
 
 /* Floats hold all whole numbers up to 2^24: numbers that are nearer to 0 count as held, whatever their
  * fraction. */
 #define HELD_BELOW 0x1p24
 
-void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, bool is_off, hl_exact *exact) {
+void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_exact_place place,
+                    hl_exact *exact) {
   exact->context = context;
   exact->type = type;
   exact->count = count;
-  exact->is_off = is_off;
+  exact->place = place;
   atomic_init(&exact->rounds, false);
-  atomic_init(&exact->failed, false);
+  atomic_init(&exact->failure, 0);
   atomic_init(&exact->numbers, NULL);
+  atomic_init(&exact->file, -1);
 }
 
 static bool is_wide(hl_voxel_type type) {
@@ -68,21 +75,64 @@ static unsigned char *numbers_of(hl_exact *exact) {
   return none;
 }
 
-void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first, size_t count) {
-  if (exact == NULL || !is_wide(exact->type)) return;
-  const unsigned char *from = source;
+/* The file of numbers, made by the first thread that needs it; -1: it cannot be made. */
+static int file_of(hl_exact *exact) {
+  int made = atomic_load(&exact->file), none = -1;
+  if (made >= 0) return made;
+  made = hl_scratch_open_empty(exact->context, exact->context->options.scratch_folder);
+  if (made < 0 || atomic_compare_exchange_strong(&exact->file, &none, made)) return made;
+  close(made);
+  return none;
+}
+
+static bool write_all(int file, const unsigned char *bytes, size_t count, off_t at) {
+  while (count > 0) {
+    ssize_t written = pwrite(file, bytes, count, at);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes += written, at += written, count -= (size_t)written;
+  }
+  return true;
+}
+
+/* Writes all numbers of each piece in which a float rounds one. */
+static void note_in_file(hl_exact *exact, bool swap, const unsigned char *from, size_t first, size_t count) {
+  enum { PIECE = 2048 };
+  unsigned char piece[8 * PIECE];
+  size_t bytes = hl_voxel_type_bytes(exact->type);
+  for (size_t done = 0, taken; done < count && exact->failure == 0; done += taken, from += taken * bytes) {
+    bool any = false;
+    taken = count - done < PIECE ? count - done : PIECE;
+    for (size_t n = 0; n < taken && !any; n++) any = rounds_number(exact->type, swap, from + n * bytes);
+    if (!any) continue;
+    for (size_t n = 0; n < taken; n++) copy_number(bytes, swap, from + n * bytes, piece + n * bytes);
+    int file = file_of(exact);
+    off_t at = (off_t)((first + done) * bytes);
+    if (file < 0 || !write_all(file, piece, taken * bytes, at)) exact->failure = errno != 0 ? errno : EIO;
+    exact->rounds = true;
+  }
+}
+
+static void note_in_memory(hl_exact *exact, bool swap, const unsigned char *from, size_t first,
+                           size_t count) {
   size_t bytes = hl_voxel_type_bytes(exact->type);
   for (size_t n = 0; n < count; n++) {
     if (!rounds_number(exact->type, swap, from + n * bytes)) continue;
     if (!exact->rounds) exact->rounds = true;
-    if (exact->is_off) return;
+    if (exact->place == HL_EXACT_NOWHERE) return;
     unsigned char *numbers = numbers_of(exact);
     if (numbers == NULL) {
-      exact->failed = true;
+      exact->failure = ENOMEM;
       return;
     }
     copy_number(bytes, swap, from + n * bytes, numbers + (first + n) * bytes);
   }
+}
+
+void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first, size_t count) {
+  if (exact == NULL || !is_wide(exact->type)) return;
+  if (exact->place == HL_EXACT_IN_FILE) note_in_file(exact, swap, source, first, count);
+  else note_in_memory(exact, swap, source, first, count);
 }
 
 /* Gives a voxel whose number was not noted the number that its float holds. */
@@ -104,17 +154,49 @@ static void fill_number(hl_voxel_type type, double stored, size_t n, void *numbe
   }
 }
 
-/* Only numbers that their floats round were noted: of a voxel whose float is not the noted number's, zero at
- * first, the float tells the number. */
+/* Numbers need not be noted where their floats hold them: of a voxel whose float is not the noted number's,
+ * zero at first, the float tells the number. */
+static void fill_numbers(hl_voxel_type type, const float *stored, size_t count, void *numbers) {
+  for (size_t n = 0; n < count; n++)
+    if (!((float)hl_exact_number(type, numbers, n) == stored[n]))
+      fill_number(type, (double)stored[n], n, numbers);
+}
+
 hl_status hl_exact_take(hl_exact *exact, const float *stored, void **numbers, hl_error *error) {
   *numbers = NULL;
-  if (exact->failed)
+  if (exact->failure != 0)
     return hl_fail_memory(error, exact->count * hl_voxel_type_bytes(exact->type), "whole numbers above 2^24");
   *numbers = atomic_exchange(&exact->numbers, NULL);
-  for (size_t n = 0; *numbers != NULL && n < exact->count; n++)
-    if (!((float)hl_exact_number(exact->type, *numbers, n) == stored[n]))
-      fill_number(exact->type, (double)stored[n], n, *numbers);
+  if (*numbers != NULL) fill_numbers(exact->type, stored, exact->count, *numbers);
   return HL_OK;
 }
 
-void hl_exact_release(hl_exact *exact) { hl_release(exact->context, atomic_exchange(&exact->numbers, NULL)); }
+hl_status hl_exact_take_file(hl_exact *exact, int *file, hl_error *error) {
+  *file = -1;
+  if (exact->failure != 0)
+    return hl_scratch_fail(exact->context->options.scratch_folder,
+                           exact->count * hl_voxel_type_bytes(exact->type), exact->failure, error);
+  *file = atomic_exchange(&exact->file, -1);
+  return HL_OK;
+}
+
+bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, const float *stored,
+                   void *numbers) {
+  size_t bytes = hl_voxel_type_bytes(type), wanted = count * bytes, done = 0;
+  while (done < wanted) {
+    ssize_t got = pread(file, (unsigned char *)numbers + done, wanted - done, (off_t)(first * bytes + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return false;
+    if (got == 0) break; /* behind the last number that was noted */
+    done += (size_t)got;
+  }
+  memset((unsigned char *)numbers + done, 0, wanted - done);
+  fill_numbers(type, stored, count, numbers);
+  return true;
+}
+
+void hl_exact_release(hl_exact *exact) {
+  int file = atomic_exchange(&exact->file, -1);
+  if (file >= 0) close(file);
+  hl_release(exact->context, atomic_exchange(&exact->numbers, NULL));
+}

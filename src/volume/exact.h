@@ -2,8 +2,8 @@
  *
  * Stored values of 32-bit and 64-bit integers and of doubles are floats, which hold whole numbers exactly up
  * to 2^24. Where a file has greater numbers that a float rounds (the ids of atlases), the numbers themselves
- * are kept too, in the file's type: for labels, masks, `info` and `convert`. Pictures of values use the
- * floats.
+ * are kept too, in the file's type: for labels, masks, `info`, `convert` and percentiles. Pictures of values
+ * use the floats. Beside voxels in pages they lie in a second scratch file.
  *
  * In: voxels as a file or a caller gives them, in pieces of any size and order, from several threads at once.
  * Out: all numbers, or null where floats hold them all. */
@@ -13,27 +13,40 @@
 #include "core/error.h"
 #include "volume/volume.h"
 
+typedef enum hl_exact_place {
+  HL_EXACT_IN_MEMORY,
+  HL_EXACT_IN_FILE, /* a scratch file: of voxels that lie in pages */
+  HL_EXACT_NOWHERE  /* only whether floats round is noted */
+} hl_exact_place;
+
 typedef struct hl_exact {
   hl_context *context;
   hl_voxel_type type;
-  size_t count;       /* voxels */
-  bool is_off;        /* numbers are not kept: voxels that are not in memory */
+  size_t count; /* voxels */
+  hl_exact_place place;
   atomic_bool rounds; /* a number was noted that its float rounds */
-  atomic_bool failed; /* there was no memory for the numbers */
+  atomic_int failure; /* the system's error number where there was no room for the numbers; else 0 */
   _Atomic(void *)
-      numbers; /* owned; [count] of the type, zeros at first; null until a float rounds a number */
+      numbers;     /* owned; [count] of the type, zeros at first; null until a float rounds a number */
+  atomic_int file; /* owned; the same in a file, which has holes where nothing was noted; -1: none */
 } hl_exact;
 
-/* is_off: only whether floats round is noted. */
-void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, bool is_off, hl_exact *exact);
+void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_exact_place place,
+                    hl_exact *exact);
 
 /* Notes `count` voxels, from number `first` on. source: packed, of any alignment; swap: in the other byte
- * order. Where memory is short, hl_exact_take() fails. exact: may be null. */
+ * order. Where memory or the disk is short, hl_exact_take() fails. exact: may be null. */
 void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first, size_t count);
 
 /* Takes the numbers out; the caller owns them. stored: the stored values of all voxels, [count]. *numbers:
  * null where floats hold them all. */
 hl_status hl_exact_take(hl_exact *exact, const float *stored, void **numbers, hl_error *error);
+/* The same of numbers in a file. *file: owned by the caller; -1: floats hold all numbers. */
+hl_status hl_exact_take_file(hl_exact *exact, int *file, hl_error *error);
+/* Reads `count` numbers of such a file, from number `first` on. stored: their stored values. False: the file
+ * cannot be read. */
+bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, const float *stored,
+                   void *numbers);
 void hl_exact_release(hl_exact *exact);
 
 /* A number of a row of the type's values, in native byte order. */

@@ -224,7 +224,7 @@ static hl_status make_volume(const grid_list *list, const grid_entry *entry, nan
   hl_volume_description description = hl_payload_grid(payload, request->spacing);
   status = allocate(list, entry, &description, &voxels, error);
   const size_t *n = description.dimensions;
-  hl_exact_begin(request->context, description.type, n[0] * n[1] * n[2], false, &exact);
+  hl_exact_begin(request->context, description.type, n[0] * n[1] * n[2], HL_EXACT_IN_MEMORY, &exact);
   if (status == HL_OK) status = nanovdb_grid_read(grid, &description, voxels, &exact, error);
   if (status == HL_OK) status = hl_exact_take(&exact, voxels, &numbers, error);
   if (status == HL_OK)

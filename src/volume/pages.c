@@ -92,7 +92,7 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
   hl_status status = HL_OK;
   bool possible = plan(grid, shift, false, made);
   made->context = context;
-  made->file = -1;
+  made->file = made->exact_file = -1;
   pthread_mutex_init(&made->lock, NULL); /* cannot fail: it has no attributes */
   pthread_cond_init(&made->came, NULL);
   if (!possible) status = hl_fail(error, HL_ERROR_INPUT, "%s: a volume too large for a file", folder);
@@ -134,7 +134,7 @@ static hl_status fill_over_ranks(hl_ranks *ranks, const hl_volume_description *g
   bool possible = plan(grid, shift, true, pages);
   pages->context = ranks->context;
   pages->own = own;
-  pages->file = -1;
+  pages->file = pages->exact_file = -1;
   pthread_mutex_init(&pages->lock, NULL);
   pthread_cond_init(&pages->came, NULL);
   if (!possible) return hl_fail(error, HL_ERROR_INPUT, "a volume too large for the addresses of a process");
@@ -168,6 +168,7 @@ void hl_pages_release(hl_pages *pages) {
   hl_own_voxels_release(pages->own);
   if (pages->mapping != NULL) munmap(pages->mapping, pages->mapping_bytes);
   if (pages->file >= 0) close(pages->file);
+  if (pages->exact_file >= 0) close(pages->exact_file);
   atomic_fetch_sub(&pages->context->whole->paged, pages->held_bytes);
   pthread_mutex_destroy(&pages->lock);
   pthread_cond_destroy(&pages->came);

@@ -57,6 +57,7 @@ typedef struct hl_pages {
   size_t counted; /* stored values */
   struct hl_brick_bounds *bricks; /* owned; of what was stored (volume/brick_bounds.h); null over ranks */
   struct hl_glimpse *glimpse;     /* owned; of it, too (volume/glimpse.h); null: none */
+  int exact_file; /* owned; the file's own numbers (exact.h); -1: the stored values are the numbers */
   int shift;
   size_t row_bytes, slice_bytes, page_bytes; /* in a page, from row to row, and from slice to slice; and from
                                                 page to page */

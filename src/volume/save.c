@@ -70,13 +70,14 @@ static bool is_whole(const hl_volume *volume) {
  * integers, else floats; doubles where floats round the values. */
 static hl_voxel_type choose_type(const hl_volume *volume, const hl_writer *writer) {
   const hl_voxel_type candidates[] = {volume->type, HL_VOXEL_I16, HL_VOXEL_U16, HL_VOXEL_I32, HL_VOXEL_U32};
-  if (volume->exact != NULL && volume->value_scale == 1 && volume->value_offset == 0 &&
+  if (hl_volume_is_exact(volume) && volume->value_scale == 1 && volume->value_offset == 0 &&
       (writer->types & 1u << volume->type) != 0)
     return volume->type;
   for (size_t n = 0; is_whole(volume) && n < sizeof candidates / sizeof *candidates; n++)
     if ((writer->types & 1u << candidates[n]) != 0 && holds(candidates[n], volume->minimum, volume->maximum))
       return candidates[n];
-  return volume->exact != NULL && (writer->types & 1u << HL_VOXEL_F64) != 0 ? HL_VOXEL_F64 : HL_VOXEL_F32;
+  return hl_volume_is_exact(volume) && (writer->types & 1u << HL_VOXEL_F64) != 0 ? HL_VOXEL_F64
+                                                                                 : HL_VOXEL_F32;
 }
 
 static hl_status set_type(saving *s, hl_voxel_type wanted, const char *path, hl_error *error) {
@@ -197,13 +198,14 @@ static double whole_value(saving *s, double value, double low, double high) {
 /* Whether the file's own numbers are written as they are: those of 64 bits do not pass through doubles. */
 static bool keeps_numbers(const saving *s) {
   const hl_volume *volume = s->volume;
-  return volume->exact != NULL && s->shrink == 1 && s->grid.type == volume->type &&
+  return hl_volume_is_exact(volume) && s->shrink == 1 && s->grid.type == volume->type &&
          volume->value_scale == 1 && volume->value_offset == 0;
 }
 
 static void copy_row(saving *s, size_t j, size_t k) {
   size_t bytes = hl_voxel_type_bytes(s->grid.type);
-  const unsigned char *row = hl_volume_numbers(s->volume, s->begin[1] + j, s->begin[2] + k, NULL).numbers;
+  const unsigned char *row =
+      hl_volume_numbers(s->volume, s->begin[1] + j, s->begin[2] + k, s->source_row).numbers;
   memcpy(s->row, row + s->begin[0] * bytes, s->grid.dimensions[0] * bytes);
 }
 
@@ -308,7 +310,7 @@ static hl_status save(saving *s, const char *path, hl_error *error) {
   s->counts = hl_allocate(context, count, sizeof *s->counts);
   s->row = hl_allocate(context, count, hl_voxel_type_bytes(s->grid.type));
   s->packed = hl_allocate(context, OUT_BYTES, 1);
-  size_t source_bytes = s->volume->dimension[0] * hl_storage_bytes(s->volume->storage);
+  size_t source_bytes = hl_volume_row_room(s->volume);
   s->source_row = hl_allocate(context, source_bytes, 1);
   if (s->sums == NULL || s->counts == NULL || s->row == NULL || s->packed == NULL || s->source_row == NULL)
     return hl_fail_memory(error, count * bytes + OUT_BYTES + source_bytes, path);
@@ -355,7 +357,7 @@ static void tell_losses(const saving *s, const char *path) {
   if (s->volume->colors != NULL)
     hl_log(context, HL_LOG_WARNING,
            "%s: the voxels' colours are lost: what is written is what opacity comes from", path);
-  if (s->volume->exact != NULL && (s->grid.type == HL_VOXEL_F32 || s->grid.type == HL_VOXEL_F16))
+  if (hl_volume_is_exact(s->volume) && (s->grid.type == HL_VOXEL_F32 || s->grid.type == HL_VOXEL_F16))
     hl_log(
         context, HL_LOG_WARNING,
         "%s: numbers above 2^24 are rounded, as %s keeps 24 bits of a number: choose another --type or .nrrd",

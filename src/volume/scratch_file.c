@@ -19,8 +19,7 @@ hl_status hl_scratch_fail(const char *folder, size_t bytes, int number, hl_error
                  folder, (double)bytes / (1 << 20), strerror(number));
 }
 
-/* Opens a file without a name. -1: failed, and errno says why. */
-static int open_nameless(hl_context *context, const char *folder) {
+int hl_scratch_open_empty(hl_context *context, const char *folder) {
   static const char ending[] = "/halflight-scratch-XXXXXX";
   char *path = hl_allocate(context, strlen(folder) + sizeof ending, 1);
   if (path == NULL) {
@@ -48,7 +47,7 @@ static int take_space(int file, size_t bytes) {
 }
 
 hl_status hl_scratch_open(hl_context *context, const char *folder, size_t bytes, int *file, hl_error *error) {
-  *file = open_nameless(context, folder);
+  *file = hl_scratch_open_empty(context, folder);
   if (*file < 0) return hl_scratch_fail(folder, bytes, errno, error);
   int number = take_space(*file, bytes);
   if (number == 0) return HL_OK;

@@ -9,6 +9,9 @@
  * caller; -1 on failure. */
 hl_status hl_scratch_open(hl_context *context, const char *folder, size_t bytes, int *file, hl_error *error);
 
+/* The same for an empty file, which grows as it is written. -1: failed, and errno says why. */
+int hl_scratch_open_empty(hl_context *context, const char *folder);
+
 /* Fails as hl_scratch_open() does, for the system's error number. */
 hl_status hl_scratch_fail(const char *folder, size_t bytes, int number, hl_error *error);
 

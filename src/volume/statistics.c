@@ -2,8 +2,8 @@
  *
  * u8 and u16 voxels are counted per stored value; all statistics follow from the counts exactly. f32 voxels
  * take one pass for range, sum and finiteness, and one for the histogram. Percentiles are exact, too: a
- * voxel's rank is found from counts of the upper and then of the lower half of its value's bits, of the file's
- * own numbers (exact.h) in four steps. */
+ * voxel's rank is found from counts of the upper and then of the lower half of its value's bits, of the
+ * file's own numbers (exact.h) in four steps. */
 #include "volume/statistics.h"
 
 #include <float.h>
@@ -87,6 +87,13 @@ static const void *piece_of(const hl_volume *volume, size_t first, size_t count,
     done += taken;
   }
   return buffer;
+}
+
+/* Bytes of a walk's buffer, which holds rows of the file's own numbers, too. */
+static size_t room_of(const hl_volume *volume) {
+  size_t stored = (COPIED_PIECE + volume->dimension[0]) * hl_storage_bytes(volume->storage),
+         row = hl_volume_row_room(volume);
+  return stored > row ? stored : row;
 }
 
 /* Moves to the next piece; false at the end and after cancellation. */
@@ -213,18 +220,22 @@ static hl_status record(hl_volume *volume, tally total, const char *subject, hl_
 }
 
 /* Range and sum of the file's own numbers, where floats round them: of those whose floats are finite. */
-static void tally_exact(const hl_volume *volume, tally *total) {
-  if (volume->exact == NULL || total->finite == 0) return;
+static void tally_exact(const hl_volume *volume, void *buffer, tally *total) {
+  if (!hl_volume_is_exact(volume) || total->finite == 0) return;
   total->low = INFINITY;
   total->high = -INFINITY;
   total->sum = 0;
-  for (size_t n = 0; n < hl_volume_voxel_count(volume); n++) {
-    double number = hl_exact_number(volume->type, volume->exact, n);
-    if (!isfinite((float)number)) continue;
-    total->sum += number;
-    if (number < total->low) total->low = number;
-    if (number > total->high) total->high = number;
-  }
+  for (size_t k = 0; k < volume->dimension[2]; k++)
+    for (size_t j = 0; j < volume->dimension[1]; j++) {
+      const hl_number_row row = hl_volume_numbers(volume, j, k, buffer);
+      for (size_t i = 0; i < volume->dimension[0]; i++) {
+        double number = hl_row_number(row, i);
+        if (!isfinite((float)number)) continue;
+        total->sum += number;
+        if (number < total->low) total->low = number;
+        if (number > total->high) total->high = number;
+      }
+    }
 }
 
 static bool measure_f32(hl_volume *volume, void *buffer, tally *total) {
@@ -234,7 +245,7 @@ static bool measure_f32(hl_volume *volume, void *buffer, tally *total) {
   walk w = {.volume = volume, .buffer = buffer, .count = counted_voxels(volume)};
   while (next_piece(&w)) bin_f32(w.voxels, w.piece, bins, volume->histogram);
   if (!w.cancelled) sum_counts(volume, volume->histogram, HL_HISTOGRAM_BINS);
-  tally_exact(volume, total);
+  tally_exact(volume, buffer, total);
   return !w.cancelled;
 }
 
@@ -251,7 +262,7 @@ hl_status hl_volume_measure(hl_volume *volume, const char *subject, hl_error *er
   hl_context *context = volume->context;
   bool packed = hl_volume_is_packed(volume), integers = volume->storage != HL_STORAGE_F32;
   size_t values = integers ? hl_values_of(volume->storage) : 1;
-  size_t piece = packed ? 0 : (COPIED_PIECE + volume->dimension[0]) * hl_storage_bytes(volume->storage);
+  size_t piece = packed ? 0 : room_of(volume);
   uint64_t *counts = hl_allocate_zeroed(context, values, sizeof *counts);
   void *buffer = packed ? NULL : hl_allocate(context, piece, 1);
   if (counts == NULL || (buffer == NULL && !packed)) {
@@ -350,17 +361,22 @@ static double number_of_key(uint64_t key) {
   return value;
 }
 
-/* Counts the next 16 bits of the keys of the file's numbers that begin with `prefix`, of `known` bits. Numbers
- * whose floats are not finite do not count. */
+/* Counts the next 16 bits of the keys of the file's numbers that begin with `prefix`, of `known` bits.
+ * Numbers whose floats are not finite do not count. */
 static bool count_digits(ranking *r, uint64_t prefix, int known) {
   const hl_volume *volume = r->volume;
   memset(r->lower, 0, sizeof r->lower);
-  for (size_t n = 0; n < hl_volume_voxel_count(volume); n++) {
-    if (n % PIECE == 0 && hl_cancelled(volume->context)) return false;
-    double number = hl_exact_number(volume->type, volume->exact, n);
-    uint64_t key = key_of_f64(number);
-    if (isfinite((float)number) && (known == 0 || key >> (64 - known) == prefix))
-      r->lower[key >> (48 - known) & 0xffffu]++;
+  for (size_t k = 0; k < volume->dimension[2]; k++) {
+    if (hl_cancelled(volume->context)) return false;
+    for (size_t j = 0; j < volume->dimension[1]; j++) {
+      const hl_number_row row = hl_volume_numbers(volume, j, k, r->buffer);
+      for (size_t i = 0; i < volume->dimension[0]; i++) {
+        double number = hl_row_number(row, i);
+        uint64_t key = key_of_f64(number);
+        if (isfinite((float)number) && (known == 0 || key >> (64 - known) == prefix))
+          r->lower[key >> (48 - known) & 0xffffu]++;
+      }
+    }
   }
   return true;
 }
@@ -376,10 +392,10 @@ static bool number_at(ranking *r, uint64_t rank, double *number) {
   return true;
 }
 
-/* The number that `rank` finite voxels precede in ascending order: the file's own where the stored values round
- * it. False: cancelled. */
+/* The number that `rank` finite voxels precede in ascending order: the file's own where the stored values
+ * round it. False: cancelled. */
 static bool stored_at(ranking *r, uint64_t rank, double *stored) {
-  if (r->volume->exact != NULL) return number_at(r, rank, stored);
+  if (hl_volume_is_exact(r->volume)) return number_at(r, rank, stored);
   uint32_t key = place_of(r->upper, &rank);
   if (r->volume->storage == HL_STORAGE_F32) {
     if (!open_upper(r, key)) return false;
@@ -421,7 +437,7 @@ hl_status hl_volume_percentiles(const hl_volume *volume, const double *percents,
       return hl_fail(error, HL_ERROR_INPUT, "percentile %.9g is out of range: give 0 to 100", percents[n]);
   hl_context *context = volume->context;
   bool packed = hl_volume_is_packed(volume);
-  size_t piece = packed ? 0 : (COPIED_PIECE + volume->dimension[0]) * hl_storage_bytes(volume->storage);
+  size_t piece = packed ? 0 : room_of(volume);
   ranking *r = hl_allocate_zeroed(context, 1, sizeof *r);
   void *buffer = packed ? NULL : hl_allocate(context, piece, 1);
   hl_status status = r == NULL || (buffer == NULL && !packed)

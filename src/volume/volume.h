@@ -149,9 +149,14 @@ typedef struct hl_number_row {
   const void *numbers;
 } hl_number_row;
 
-/* A row of any volume. data value = value_scale * number + value_offset. buffer: as for hl_volume_row_in().
- */
+/* Bytes of a buffer for rows of numbers. */
+size_t hl_volume_row_room(const hl_volume *volume);
+
+/* A row of any volume. data value = value_scale * number + value_offset. buffer: with hl_volume_row_room(),
+ * at a place for doubles; needed where the volume has pages. */
 hl_number_row hl_volume_numbers(const hl_volume *volume, size_t j, size_t k, void *buffer);
+/* Whether the stored values round some of the file's numbers, which are kept, too. */
+bool hl_volume_is_exact(const hl_volume *volume);
 double hl_row_number(hl_number_row row, size_t i);
 
 /* Makes a volume of voxels that are already in stored form (hl_voxels_store), packed, in a block of

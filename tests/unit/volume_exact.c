@@ -11,7 +11,9 @@
 #include <cmocka.h>
 #include <halflight/scene.h>
 
+#include "volume/convert.h"
 #include "volume/exact.h"
+#include "volume/pages.h"
 
 enum { SIDE = 4, COUNT = SIDE * SIDE * SIDE };
 
@@ -174,6 +176,91 @@ static void neighbouring_ids_are_two_labels(void **state) {
   hl_context_destroy(context);
 }
 
+enum { LARGE = 112, LARGE_COUNT = LARGE * LARGE * LARGE };
+
+/* Great numbers in some slices alone, small ones in others. */
+static void fill_large(hl_voxel_type type, unsigned char *bytes) {
+  size_t each = type == HL_VOXEL_U32 ? 4 : 8;
+  for (size_t n = 0; n < LARGE_COUNT; n++) {
+    bool great = n / (LARGE * LARGE) % 3 == 1 && n % 5 != 0;
+    uint32_t word = (uint32_t)(great ? 614454277 + n % 7 : n % 1000);
+    int64_t wide = great ? INT64_C(720575940621039145) - (int64_t)n : (int64_t)(n % 1000) - 500;
+    double real = great ? 123456789.25 + (double)n : (double)(n % 1000);
+    memcpy(bytes + each * n,
+           type == HL_VOXEL_U32   ? (void *)&word
+           : type == HL_VOXEL_I64 ? (void *)&wide
+                                  : (void *)&real,
+           each);
+  }
+}
+
+static void write_file(const char *path, const void *bytes, size_t count) {
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  assert_int_equal(fwrite(bytes, 1, count, file), count);
+  assert_int_equal(fclose(file), 0);
+}
+
+static void check_file(const char *path, const void *bytes, size_t count) {
+  unsigned char *found = malloc(count + 1);
+  FILE *file = fopen(path, "rb");
+  assert_non_null(file);
+  assert_int_equal(fread(found, 1, count + 1, file), count);
+  fclose(file);
+  assert_memory_equal(found, bytes, count);
+  free(found);
+}
+
+/* A volume that memory has no room for has its numbers in a second scratch file. */
+static void numbers_larger_than_memory_are_exact(void **state) {
+  (void)state;
+  static const hl_voxel_type types[] = {HL_VOXEL_U32, HL_VOXEL_I64, HL_VOXEL_F64};
+  static const char *const names[] = {"uint32", "int64", "float64"};
+  static const double percents[] = {0, 33, 80.1, 99, 100};
+  unsigned char *bytes = malloc(8 * (size_t)LARGE_COUNT);
+  double *sorted = malloc(LARGE_COUNT * sizeof *sorted), found[5];
+  for (size_t t = 0; t < 3; t++) {
+    size_t each = hl_voxel_type_bytes(types[t]);
+    char path[200], again[200];
+    hl_context_options options;
+    hl_context_options_defaults(&options);
+    options.memory_limit = 6 << 20;
+    options.scratch_folder = "/tmp";
+    hl_context *context = NULL;
+    hl_volume *volume = NULL;
+    hl_error error = {0};
+    assert_int_equal(hl_context_create(&options, &context, NULL), HL_OK);
+    fill_large(types[t], bytes);
+    snprintf(path, sizeof path, "%s/a_%dx%dx%d_%s.raw", folder, LARGE, LARGE, LARGE, names[t]);
+    snprintf(again, sizeof again, "%s/b_%dx%dx%d_%s.raw", folder, LARGE, LARGE, LARGE, names[t]);
+    write_file(path, bytes, each * LARGE_COUNT);
+    if (hl_volume_load(context, path, &volume, &error) != HL_OK) fail_msg("%s", error.message);
+    assert_non_null(volume->pages);
+    assert_true(hl_volume_is_exact(volume));
+    for (size_t n = 0; n < LARGE_COUNT; n++) sorted[n] = hl_exact_number(types[t], bytes, n);
+    for (size_t n = 0; n < LARGE_COUNT; n += 4799)
+      assert_true(hl_volume_value(volume, n % LARGE, n / LARGE % LARGE, n / LARGE / LARGE) == sorted[n]);
+    qsort(sorted, LARGE_COUNT, sizeof *sorted, by_value);
+    assert_true(volume->minimum == sorted[0] && volume->maximum == sorted[LARGE_COUNT - 1]);
+    assert_int_equal(hl_volume_percentiles(volume, percents, 5, found, NULL), HL_OK);
+    for (size_t p = 0; p < 5; p++) {
+      double place = percents[p] / 100 * (LARGE_COUNT - 1);
+      size_t rank = (size_t)place, after = rank + 1 < LARGE_COUNT ? rank + 1 : rank;
+      assert_true(found[p] == sorted[rank] + (place - (double)rank) * (sorted[after] - sorted[rank]));
+    }
+    if (hl_volume_save(context, volume, again, &error) != HL_OK) fail_msg("%s", error.message);
+    check_file(again, bytes, each * LARGE_COUNT);
+    hl_volume_release(volume);
+    assert_int_equal(hl_context_memory_held(context), 0);
+    assert_true(hl_context_memory_peak(context) <= options.memory_limit);
+    hl_context_destroy(context);
+    unlink(path);
+    unlink(again);
+  }
+  free(sorted);
+  free(bytes);
+}
+
 static void keep_line(void *user_data, hl_log_level level, const char *message) {
   if (level == HL_LOG_WARNING) snprintf(user_data, 300, "%s", message);
 }
@@ -205,10 +292,12 @@ static void ids_that_doubles_round_are_told(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(numbers_survive_files), cmocka_unit_test(values_and_range_are_exact),
-      cmocka_unit_test(percentiles_are_exact),
-      cmocka_unit_test(small_numbers_take_no_memory), cmocka_unit_test(neighbouring_ids_are_two_labels),
-      cmocka_unit_test(ids_that_doubles_round_are_told)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(numbers_survive_files),
+                                     cmocka_unit_test(values_and_range_are_exact),
+                                     cmocka_unit_test(percentiles_are_exact),
+                                     cmocka_unit_test(small_numbers_take_no_memory),
+                                     cmocka_unit_test(neighbouring_ids_are_two_labels),
+                                     cmocka_unit_test(ids_that_doubles_round_are_told),
+                                     cmocka_unit_test(numbers_larger_than_memory_are_exact)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
