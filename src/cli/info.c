@@ -205,7 +205,7 @@ static void print_arrays(const hl_volume *volume) {
     printf("  %s  %s%s%s", n == 0 ? "arrays    " : "          ", array.name,
            array.name[0] != '\0' ? ", " : "", hl_voxel_type_name(array.type));
     if (array.components > 1) printf(", %zu components", array.components);
-    printf("%s", array.of_cells ? ", of cells" : "");
+    printf("%s%s", array.of_cells ? ", of cells" : "", array.type == 0 ? ", not read" : "");
     if (array.chosen && array.component == HL_COMPONENT_MAGNITUDE) printf(": the magnitude is shown");
     else if (array.chosen && array.component == HL_COMPONENT_COLOR) printf(": colours, opacity from alpha");
     else if (array.chosen && array.component == HL_COMPONENT_LUMINANCE)

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/context.h"
 #include "core/memory.h"
 #include "core/vector.h"
 #include "text/plain_json.h"
@@ -297,6 +298,19 @@ static hl_status parse(gltf_reader *reader, mesh_text json) {
                  told.line, told.text);
 }
 
+/* Tells what of the file is not shown. */
+static void tell_passed(const gltf_reader *reader) {
+  const json_t *root = reader->file.root;
+  bool textures = json_array_size(json_object_get(root, "textures")) > 0;
+  bool moves = json_array_size(json_object_get(root, "animations")) > 0 ||
+               json_array_size(json_object_get(root, "skins")) > 0;
+  if (textures || moves)
+    hl_log(reader->file.context, HL_LOG_WARNING, "%s: %s%s%s", reader->file.path,
+           textures ? "its textures are not shown: colours are its materials' and vertices'" : "",
+           textures && moves ? "; " : "",
+           moves ? "its animations and skins are not read: it is shown at rest" : "");
+}
+
 hl_status hl_mesh_read_gltf(mesh_text text, mesh_parts *parts, hl_error *error) {
   gltf_reader reader = {
       .file = {.context = parts->context, .path = parts->path}, .parts = parts, .error = error};
@@ -306,6 +320,7 @@ hl_status hl_mesh_read_gltf(mesh_text text, mesh_parts *parts, hl_error *error) 
   if (status == HL_OK) status = parse(&reader, json);
   if (status == HL_OK) status = hl_gltf_read_buffers(&reader.file, error);
   if (status == HL_OK) status = add_scene(&reader);
+  if (status == HL_OK) tell_passed(&reader);
   hl_gltf_release_buffers(&reader.file);
   hl_release(parts->context, reader.visited);
   json_decref(reader.file.root);

@@ -44,6 +44,7 @@ static hl_status read_line(hl_context *context, char *line, obj_materials *mater
   char *arguments = hl_text_trim(line + (rest - line));
   if (strcmp(word, "newmtl") == 0) return add_material(context, arguments, materials, error);
   if (materials->count == 0) return HL_OK;
+  if (strcmp(word, "map_Kd") == 0) materials->has_images = true;
   float *color = materials->list[materials->count - 1].color;
   if (strcmp(word, "Kd") == 0 && hl_text_numbers(arguments, numbers, 3) == 3)
     for (int c = 0; c < 3; c++) color[c] = (float)hl_srgb_decode(fmin(fmax(numbers[c], 0), 1));
@@ -69,6 +70,7 @@ hl_status hl_obj_read_materials(hl_context *context, const char *path, const cha
            hl_text_printable(shown, name));
     return HL_OK;
   }
+  bool had_images = materials->has_images;
   char *text = (char *)buffer.bytes; /* a block of our own, which ends with a zero byte */
   for (char *line = text; status == HL_OK && line != NULL && line < text + buffer.length;) {
     size_t length = strcspn(line, "\r\n");
@@ -78,5 +80,8 @@ hl_status hl_obj_read_materials(hl_context *context, const char *path, const cha
     line = last ? NULL : line + length + 1;
   }
   hl_release(context, text);
+  if (status == HL_OK && materials->has_images && !had_images)
+    hl_log(context, HL_LOG_WARNING,
+           "%s: its textures (map_Kd) are not shown: colours are its materials' (Kd)", path);
   return status;
 }

@@ -12,6 +12,7 @@ typedef struct obj_material {
 typedef struct obj_materials {
   obj_material *list; /* owned; [count] */
   size_t count, room;
+  bool has_images; /* a library names images for its colours, which are not read */
 } obj_materials;
 
 /* Adds the materials of a library beside the OBJ file `path`. A library that cannot be read is told, and adds

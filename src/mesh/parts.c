@@ -59,8 +59,8 @@ hl_status hl_mesh_reserve_triangles(mesh_parts *parts, size_t count, hl_error *e
 
 hl_status hl_mesh_add_triangle(mesh_parts *parts, uint32_t a, uint32_t b, uint32_t c, hl_error *error) {
   if (parts->triangle_count == HL_LIMIT_TRIANGLES)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: more than %d triangles", parts->path,
-                   HL_LIMIT_TRIANGLES);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: more than %d triangles: reduce them (decimate)",
+                   parts->path, HL_LIMIT_TRIANGLES);
   hl_status status = hl_mesh_reserve_triangles(parts, parts->triangle_count + 1, error);
   if (status != HL_OK) return status;
   uint32_t *triangle = parts->triangles[parts->triangle_count++];

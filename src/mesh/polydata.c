@@ -82,8 +82,8 @@ static hl_status check_values(const polydata *data, const cell_values *values, s
 hl_status hl_polydata_check(const polydata *data, hl_error *error) {
   hl_status status = HL_OK;
   if (data->point_count > UINT32_MAX)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: has %zu points: at most %u are read", data->path,
-                   data->point_count, UINT32_MAX);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: has %zu points: at most %u are read: reduce them",
+                   data->path, data->point_count, UINT32_MAX);
   for (int kind = 0; status == HL_OK && kind < CELL_KINDS; kind++)
     status = check_cells(data, &data->cells[kind], error);
   const cell_values *at_points[] = {&data->colors[AT_POINTS], &data->normals, &data->radii};
@@ -173,8 +173,8 @@ static hl_status convert_round(const conversion *c, cell_kind kind, size_t most,
   size_t count = cells->count > 0 ? (size_t)cells->ends[cells->count - 1] : 0;
   if (count > most)
     return hl_fail(c->error, HL_ERROR_UNSUPPORTED,
-                   "%s: has %zu points of lines or vertices: at most %zu are read", c->data->path, count,
-                   most);
+                   "%s: has %zu points of lines or vertices: at most %zu are read: reduce them",
+                   c->data->path, count, most);
   if (!make_round(c, count, points, colors))
     return hl_fail_memory(c->error, count * sizeof **points, c->data->path);
   for (size_t n = 0; n < cells->count; n++)

@@ -47,8 +47,8 @@ static uint32_t vertex_at(mesh_parts *parts, corner_table *table, const float at
 /* Makes room for so many triangles and their corners. */
 static hl_status make_room(mesh_parts *parts, corner_table *table, size_t triangles, hl_error *error) {
   if (triangles > HL_LIMIT_TRIANGLES)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %zu triangles: at most %d", parts->path, triangles,
-                   HL_LIMIT_TRIANGLES);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %zu triangles: at most %d: reduce them (decimate)",
+                   parts->path, triangles, HL_LIMIT_TRIANGLES);
   for (table->size = 64; table->size < 4 * triangles;) table->size *= 2;
   table->slots = hl_allocate_zeroed(parts->context, table->size, sizeof *table->slots);
   if (table->slots == NULL) return hl_fail_memory(error, table->size * sizeof *table->slots, "a mesh");

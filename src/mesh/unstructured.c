@@ -206,7 +206,8 @@ static hl_status check(const unstructured_cells *grid, const polydata *data, hl_
   double before = 0;
   size_t passed = 0;
   if (grid->count > UINT32_MAX)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: more than 2^32 cells", data->path);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: more than 2^32 cells: extract a part of them",
+                   data->path);
   for (size_t n = 0; n < grid->count; n++) {
     const cell_type *type = type_of(grid->types[n]);
     double length = grid->ends[n] - before;

@@ -306,7 +306,7 @@ static void add_runs(const fragment_work *work, fragment_worker *worker, tile_pa
   order_key *order = worker->runs;
   for (uint32_t i = 0; batch->may_be_covered && i < count; i++)
     order[i] = (order_key){hl_ordered_bits(lowest_of(work, runs[i]), false), i};
-  if (batch->may_be_covered) hl_sort_keys(order, order + count, count);
+  if (batch->may_be_covered && count > 1) hl_sort_keys(order, order + count, count);
   for (uint32_t i = 0; i < count && !worker->failed; i++)
     add_next_run(work, worker, part, batch, runs[batch->may_be_covered ? order[i].index : i], of_mesh);
   if (!worker->failed) add_batch(work, worker, part, batch);

@@ -13,7 +13,8 @@ enum { FILES_MOST = 65536, NAME_BYTES = 1024 };
 
 hl_status hl_file_list_add(hl_file_list *list, const char *name, hl_error *error) {
   if (list->count == FILES_MOST)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "more than %d files of voxels", (int)FILES_MOST);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "more than %d files of voxels: join some of them",
+                   (int)FILES_MOST);
   if (list->count == list->room) {
     size_t room = 2 * list->room + 64;
     char **grown = hl_reallocate(list->context, list->names, room, sizeof *grown);

@@ -36,9 +36,9 @@ static void list_arrays(const hl_load_request *request, char *text, size_t size)
     if (array->components > 1)
       snprintf(components, sizeof components, " (%zu components)", array->components);
     used += (size_t)snprintf(
-        text + used, size - used, "%s%s%s%s", n > 0 ? "; " : "",
+        text + used, size - used, "%s%s%s%s%s", n > 0 ? "; " : "",
         array->name[0] != 0 ? hl_text_printable(shown, array->name) : "one without a name", components,
-        array->of_cells ? " of cells" : "");
+        array->of_cells ? " of cells" : "", array->type == 0 ? " (not read)" : "");
   }
   if (request->array_count > NAMED && used < size) snprintf(text + used, size - used, "; ...");
 }
@@ -237,7 +237,8 @@ static hl_status component_of_steps(hl_load_request *request, const char *path, 
   if (!__builtin_mul_overflow(selection->times, channel, &first) &&
       !__builtin_add_overflow(first, time, wanted))
     return HL_OK;
-  return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: time %d of channel %d lies too far in the file", path,
+  return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                 "%s: time %d of channel %d lies too far in the file: save it as a file of its own", path,
                  time, channel);
 }
 
@@ -258,7 +259,8 @@ hl_status hl_component_choose(hl_load_request *request, const char *path, bool i
   if (hl_component_is_colors(wanted) &&
       (is_series || payload->colors == HL_COLORS_UNREAD || !hl_can_be_colors(payload->grid.type, components)))
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "%s: %zu components of %s are not read as colours: these are 3 or 4 of uint8 or uint16",
+                   "%s: %zu components of %s are not read as colours: these are 3 or 4 of uint8 or uint16: "
+                   "choose another by \"component\" (--component)",
                    path, components, hl_voxel_type_name(payload->grid.type));
   if (wanted != HL_COMPONENT_MAGNITUDE && !hl_component_is_colors(wanted) &&
       (wanted < 0 || (size_t)wanted >= components))

@@ -53,10 +53,11 @@ hl_status hl_legacy_vtk_type(const hl_legacy_vtk *file, const char *name, hl_vox
       {"double", HL_VOXEL_F64}};
   if (hl_find_type(types, sizeof types / sizeof *types, name, type)) return HL_OK;
   char shown[HL_PRINTABLE_BYTES];
-  return HL_FAIL_LINE(error, hl_text_is_one_of(name, "bit|string") ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT,
-                      file->stream, file->line,
-                      "values of type \"%s\" are not read: integers, float and double are",
-                      hl_text_printable(shown, name));
+  return HL_FAIL_LINE(
+      error, hl_text_is_one_of(name, "bit|string") ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, file->stream,
+      file->line,
+      "values of type \"%s\" are not read: integers, float and double are: save it as one of these",
+      hl_text_printable(shown, name));
 }
 
 /* Passes over count values of an array. */

@@ -109,7 +109,8 @@ static hl_status read_keyword(hl_legacy_vtk *file, const char *keyword, const ch
     ((vtk_header *)file)->is_rectilinear = hl_text_equal(arguments, "RECTILINEAR_GRID");
     if (hl_text_equal(arguments, "STRUCTURED_POINTS") || ((vtk_header *)file)->is_rectilinear) return HL_OK;
     return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, file->stream, file->line,
-                        "a data set of kind \"%s\" is not read: STRUCTURED_POINTS and RECTILINEAR_GRID are",
+                        "a data set of kind \"%s\" is not read: save it as STRUCTURED_POINTS or "
+                        "RECTILINEAR_GRID (ParaView: Resample To Image)",
                         hl_text_printable(shown, arguments));
   }
   static const char *const geometry[] = {"DIMENSIONS", "SPACING", "ASPECT_RATIO", "ORIGIN"};
@@ -120,10 +121,9 @@ static hl_status read_keyword(hl_legacy_vtk *file, const char *keyword, const ch
   for (int axis = 0; axis < 3; axis++)
     if (hl_text_equal(keyword, coordinates[axis]))
       return read_coordinates((vtk_header *)file, axis, arguments, error);
-  return HL_FAIL_LINE(
-      error, HL_ERROR_UNSUPPORTED, file->stream, file->line,
-      "\"%s\" is not read: the volume must be SCALARS or in a FIELD, and come before other data",
-      hl_text_printable(shown, keyword));
+  return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, file->stream, file->line,
+                      "\"%s\" is not read: save the volume as SCALARS or in a FIELD, before other data",
+                      hl_text_printable(shown, keyword));
 }
 
 static vtk_header begin(hl_stream *stream, hl_load_request *request, bool lists) {

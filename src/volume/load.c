@@ -61,19 +61,41 @@ static hl_status take_byte_order_mark(hl_stream *stream, const unsigned char **b
   return hl_stream_peek(stream, HL_FORMAT_SNIFFED_BYTES, bytes, length, error);
 }
 
-/* Advice for a file of a well-known format that Halflight does not read; null for all other files. */
+/* Advice for a file of a well-known format that Halflight does not read, by the first bytes; null for all
+ * other files. Sources: the formats' own descriptions, and the list of marks of file(1). */
 static const char *known_but_unsupported(const unsigned char *bytes, size_t length) {
+#define MICROSCOPE "convert it to OME-TIFF or OME-Zarr (bfconvert, bioformats2raw)"
   static const struct {
     size_t place;
     const char *mark;
     size_t mark_length;
     const char *advice;
   } marks[] = {
-      {0, "\x89PNG", 4, "a picture, not a volume"},
-      {0, "\x89HDF", 4, "an HDF5 file (MINC, NeXus, ...): export the volume as NRRD or NIfTI"},
+      {0, "\x89PNG", 4, "a picture, not a volume: give a folder of numbered ones"},
+      {0, "\xff\xd8\xff", 3, "a JPEG picture, not a volume: give a folder of numbered ones"},
+      {0, "\x89HDF", 4, "an HDF5 file (MINC, NeXus, Imaris, ...): export the volume as NRRD or NIfTI"},
+      {0, "CDF\001", 4, "a NetCDF file (MINC, ...): export the volume as NRRD or NIfTI"},
+      {0, "CDF\002", 4, "a NetCDF file (MINC, ...): export the volume as NRRD or NIfTI"},
+      {0, "CDF\005", 4, "a NetCDF file: export the volume as NRRD or NIfTI"},
       {0, "\x28\xb5\x2f\xfd", 4, "compressed with zstd: decompress it first"},
+      {0, "7z\xbc\xaf\x27\x1c", 6, "a 7-Zip archive: unpack it"},
+      {0, "Rar!\x1a\x07", 6, "a RAR archive: unpack it"},
+      {257, "ustar", 5, "a tar archive: unpack it"},
+      {0, "ZISRAWFILE", 10, "a CZI file of Zeiss: " MICROSCOPE},
+      {0, "\xda\xce\xbe\x0a", 4, "an ND2 file of Nikon: " MICROSCOPE},
+      {0, "p\0\0\0", 4, "a LIF file of Leica: " MICROSCOPE},
+      {0, "\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", 8, "a compound file (OIB of Olympus, ...): " MICROSCOPE},
+      {0, "# AmiraMesh", 11, "an Amira mesh: save it as NRRD"},
+      {0, "# Avizo", 7, "an Avizo mesh: save it as NRRD"},
+      {0, "SIMPLE  =", 9, "a FITS file: export the cube as NumPy .npy or NRRD"},
+      {0, "MATLAB ", 7, "a file of MATLAB: write the array with niftiwrite, or save it as NumPy .npy"},
+      {0, "MATRIX72v", 9, "an ECAT 7 file: convert it to NIfTI"},
+      {0, "# === DATA DESCRIPTION FILE", 27, "a PAR file of Philips: convert it and its .REC with dcm2niix"},
+      {0, "PVM", 3, "a PVM file of V3: convert it to raw (pvm2raw)"},
+      {0, "DDS v3d", 7, "a PVM file of V3: convert it to raw (pvm2raw)"},
       {0, "11111\n", 6, "a VolVis SLC file: convert it to NRRD or raw"},
   };
+#undef MICROSCOPE
   for (size_t n = 0; n < sizeof marks / sizeof *marks; n++)
     if (length > marks[n].place &&
         begins(bytes + marks[n].place, length - marks[n].place, marks[n].mark, marks[n].mark_length))
@@ -103,7 +125,9 @@ static hl_status fail_unknown(const hl_stream *stream, const unsigned char *byte
     return hl_fail(error, HL_ERROR_INPUT,
                    "%s: its compressed data end before the volume's header: is it cut short?", path);
   if (length == 0) return hl_fail(error, HL_ERROR_INPUT, "%s: the file is empty", path);
-  if (is_mesh_name(path)) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: a mesh, not a volume", path);
+  if (is_mesh_name(path))
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: a mesh, not a volume: give it to `halflight render` beside a volume, or alone", path);
   for (int n = 0; n < FORMAT_COUNT; n++)
     for (int ending = 0; ending < HL_FORMAT_ENDINGS && formats[n]->endings[ending] != NULL; ending++)
       if (hl_text_ends(path, formats[n]->endings[ending]))

@@ -67,7 +67,8 @@ static hl_status read_type(meta_header *header, const char *value, hl_error *err
   char shown[HL_PRINTABLE_BYTES];
   return HL_FAIL_LINE(error, hl_text_starts(value, "MET_") ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT,
                       header->stream, header->line,
-                      "ElementType \"%s\" is not read: MET_UCHAR, MET_SHORT, MET_FLOAT and the like are",
+                      "ElementType \"%s\" is not read: MET_UCHAR, MET_SHORT, MET_FLOAT and the like are: "
+                      "save it as one of these",
                       hl_text_printable(shown, value));
 }
 

@@ -4,6 +4,7 @@
 hl_status hl_nanovdb_load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   (void)request, (void)volume;
   return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                 "%s: a NanoVDB file, and this program was built without PNanoVDB.h (libnanovdb-dev)",
+                 "%s: a NanoVDB file, and this program was built without PNanoVDB.h: install libnanovdb-dev "
+                 "and build anew",
                  (*stream)->path);
 }

@@ -99,8 +99,9 @@ static hl_status check_root(const walk *w, hl_error *error) {
   if (tiles > (size - at - root_bytes) / tile_bytes)
     return fail_damaged(w->grid, "its root has more tiles than there is room for", error);
   if (tiles > TILES_MOST)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %u regions of 4096^3 voxels: at most %d are read",
-                   w->grid->path, tiles, TILES_MOST);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: %u regions of 4096^3 voxels: at most %d are read: crop the grid", w->grid->path,
+                   tiles, TILES_MOST);
   return HL_OK;
 }
 

@@ -96,8 +96,10 @@ static hl_status read_segment(grid_list *list, hl_load_request *request, uint64_
                           (unsigned long long)*at);
   uint64_t count = little(header + 12, 2), size = hl_source_size(list->source);
   if (status == HL_OK && (count == 0 || little(header + 8, 4) >> 21 != 32))
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: no grid, or a version other than 32: %llu", list->path,
-                   (unsigned long long)little(header + 8, 4) >> 21);
+    return hl_fail(
+        error, HL_ERROR_UNSUPPORTED,
+        "%s: no grid, or a version other than 32: %llu: convert it with nanovdb_convert of OpenVDB 8 to 10",
+        list->path, (unsigned long long)little(header + 8, 4) >> 21);
   *at += HEADER_BYTES;
   size_t first = list->count;
   for (uint64_t n = 0; n < count && status == HL_OK && list->count < HL_ARRAYS_MOST; n++)
@@ -122,6 +124,7 @@ static hl_status read_list(grid_list *list, hl_load_request *request, hl_error *
   if (list->entries == NULL) return hl_fail_memory(error, 10000, "a list of grids");
   for (uint64_t at = 0; status == HL_OK && list->count < HL_ARRAYS_MOST && at < hl_source_size(list->source);)
     status = read_segment(list, request, &at, error);
+  if (list->count == HL_ARRAYS_MOST) request->more = true;
   return status;
 }
 
@@ -246,8 +249,9 @@ static hl_status load_grid(grid_list *list, hl_load_request *request, hl_volume 
   payload.colors = HL_COLORS_UNREAD;
   if (payload.grid.type == 0)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "%s: a grid of type %u, which holds no voxels that are read (points, indices)", list->path,
-                   entry->kind);
+                   "%s: a grid of type %u, which holds no voxels that are read (points, indices): choose "
+                   "another by \"array\" (--array), or rasterize it",
+                   list->path, entry->kind);
   status = hl_component_choose(request, list->path, false, &payload, error);
   nanovdb_grid grid = {request->context,          list->path,  NULL,
                        (size_t)entry->grid_bytes, entry->kind, payload.component};

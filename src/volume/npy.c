@@ -74,7 +74,7 @@ static hl_status take_type(npy_header *header, hl_error *error) {
                {"c8", HL_VOXEL_F32, 2}, {"c16", HL_VOXEL_F64, 2}};
   char text[16] = "";
   if (!take_text(header, text, sizeof text))
-    return refuse(header, HL_ERROR_UNSUPPORTED, "elements of one plain type are read, such as '<f4', not",
+    return refuse(header, HL_ERROR_UNSUPPORTED, "save it as an array of one plain type, such as '<f4', not",
                   header->at, error);
   header->big_endian = text[0] == '>' || (text[0] == '=' && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__);
   for (size_t n = 0; n < sizeof types / sizeof *types && text[0] != 0; n++)
@@ -85,7 +85,7 @@ static hl_status take_type(npy_header *header, hl_error *error) {
       return HL_OK;
     }
   return refuse(header, HL_ERROR_UNSUPPORTED,
-                "bool, integers, floats and complex numbers are read, not elements of type", text, error);
+                "save it as bool, integers, floats or complex numbers, not as elements of type", text, error);
 }
 
 static hl_status take_shape(npy_header *header, hl_error *error) {
@@ -150,8 +150,10 @@ static hl_status read_header(hl_stream *stream, npy_header *header, char *text, 
   if (status != HL_OK) return status;
   int version = bytes[6];
   if (version < 1 || version > 3)
-    return hl_fail_offset(error, HL_ERROR_UNSUPPORTED, 6,
-                          "%s, byte 6: version %d of the format: 1, 2 and 3 are read", stream->path, version);
+    return hl_fail_offset(
+        error, HL_ERROR_UNSUPPORTED, 6,
+        "%s, byte 6: version %d of the format: 1, 2 and 3 are read: save it with numpy.save", stream->path,
+        version);
   size_t length = bytes[8] | (size_t)bytes[9] << 8;
   if (version > 1) {
     status = hl_stream_read_all(stream, bytes + MARK_BYTES + 2, 2, error);
@@ -176,8 +178,9 @@ static hl_status make_payload(const npy_header *header, bool *is_series, hl_payl
                               hl_error *error) {
   int axes = header->axes, first = 0;
   if (axes < 2)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: an array of %d axes: a volume has three, [z][y][x]",
-                   header->path, axes);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: an array of %d axes: a volume has three, [z][y][x]: save a part of it", header->path,
+                   axes);
   bool four = axes == 4, last_is_component = four && header->shape[3] <= MOST_COMPONENTS;
   size_t extra = !four ? 1 : header->shape[last_is_component ? 3 : 0];
   *is_series = four && !last_is_component;

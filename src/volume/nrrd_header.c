@@ -66,9 +66,11 @@ static hl_status read_type(nrrd_header *header, const char *value, hl_error *err
       {"double", HL_VOXEL_F64}};
   if (hl_find_type(types, sizeof types / sizeof *types, value, &header->type)) return HL_OK;
   char shown[HL_PRINTABLE_BYTES];
-  return HL_FAIL_LINE(error, hl_text_equal(value, "block") ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT,
-                      header->stream, header->line, "type \"%s\" is not read: integers, float and double are",
-                      hl_text_printable(shown, value));
+  return HL_FAIL_LINE(
+      error, hl_text_equal(value, "block") ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream,
+      header->line,
+      "type \"%s\" is not read: integers, float and double are: save it as one of these (unu convert)",
+      hl_text_printable(shown, value));
 }
 
 static hl_status read_encoding(nrrd_header *header, const char *value, hl_error *error) {
@@ -82,10 +84,10 @@ static hl_status read_encoding(nrrd_header *header, const char *value, hl_error 
     }
   bool known = hl_text_equal(value, "zrl");
   char shown[HL_PRINTABLE_BYTES];
-  return HL_FAIL_LINE(
-      error, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream, header->line,
-      "encoding \"%s\" is not read: raw, gzip, bzip2, ascii and hex are (unu save -f nrrd -e gzip converts)",
-      hl_text_printable(shown, value));
+  return HL_FAIL_LINE(error, known ? HL_ERROR_UNSUPPORTED : HL_ERROR_INPUT, header->stream, header->line,
+                      "encoding \"%s\" is not read: raw, gzip, bzip2, ascii and hex are: convert it by unu "
+                      "save -f nrrd -e gzip",
+                      hl_text_printable(shown, value));
 }
 
 static hl_status read_endian(nrrd_header *header, const char *value, hl_error *error) {
@@ -373,8 +375,9 @@ hl_status hl_nrrd_read_header(hl_stream *stream, nrrd_header *header, hl_error *
     }
     if (header->line == 1) {
       if (strncmp(line, "NRRD000", 7) != 0 || line[7] < '1' || line[7] > '5' || line[8] != 0)
-        return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, stream, 1, "%s",
-                            "expected NRRD0001 to NRRD0005, the versions of the format");
+        return HL_FAIL_LINE(
+            error, HL_ERROR_UNSUPPORTED, stream, 1, "%s",
+            "expected NRRD0001 to NRRD0005, the versions of the format: convert it by unu save -f nrrd");
       continue;
     }
     if (line[0] != '#') status = read_field_line(header, line, error);

@@ -33,7 +33,9 @@ static unsigned at_most(size_t count) { return count < INT_MAX ? (unsigned)count
 #if !defined(HL_HAS_BZIP2) || !defined(HL_HAS_LZMA)
 static hl_status fail_absent(const hl_stream *stream, const char *name, hl_error *error) {
   return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                 "%s: packed by %s, and this program was built without its library", stream->path, name);
+                 "%s: packed by %s, and this program was built without its library: unpack it, or install "
+                 "the library and build anew",
+                 stream->path, name);
 }
 #endif
 

@@ -25,7 +25,8 @@ static hl_status run(struct jpeg_decompress_struct *info, const hl_slice_file *f
   jpeg_read_header(info, TRUE);
   bool grey = info->num_components == 1;
   if (info->num_components != 3 && !grey)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: a JPEG picture of %d components: 1 and 3 are read",
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: a JPEG picture of %d components: 1 and 3 are read: save it as grey or RGB",
                    file->path, info->num_components);
   info->out_color_space = grey ? JCS_GRAYSCALE : JCS_RGB;
   *shape = (hl_slice_shape){

@@ -81,8 +81,8 @@ static void read_pixels(png_slice *s) {
   png_set_interlace_handling(s->png);
   png_read_update_info(s->png, s->info);
   if (png_get_rowbytes(s->png, s->info) != row)
-    stop(s, hl_fail(s->error, HL_ERROR_UNSUPPORTED, "%s: a PNG picture of a palette with transparency",
-                    s->file->path));
+    stop(s, hl_fail(s->error, HL_ERROR_UNSUPPORTED,
+                    "%s: a PNG picture of a palette with transparency: save it as RGBA", s->file->path));
   *s->samples = hl_allocate(context, row, height);
   s->rows = hl_allocate(context, height, sizeof *s->rows);
   if (*s->samples == NULL || s->rows == NULL) stop(s, hl_fail_memory(s->error, row * height, s->file->path));

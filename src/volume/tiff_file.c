@@ -146,7 +146,8 @@ static hl_status measure_directory(tiff_file *file, uint64_t offset, uint64_t *b
   for (size_t n = 0; n < count_bytes; n++)
     entries = entries << 8 | head[high_first ? n : count_bytes - 1 - n];
   if (entries > ENTRIES_MOST)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: a page of %llu tags: at most %d are read", file->path,
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: a page of %llu tags: at most %d are read: save it without them", file->path,
                    (unsigned long long)entries, ENTRIES_MOST);
   *bytes = big ? 8 + 20 * entries + 8 : 2 + 12 * entries + 4;
   return HL_OK;
@@ -218,10 +219,13 @@ hl_status tiff_file_shape(tiff_file *file, tiff_shape *shape, hl_error *error) {
     return hl_fail(error, HL_ERROR_INPUT, "%s: a page of %u x %u pixels with %u samples", file->path,
                    shape->width, shape->height, samples);
   if (shape->type == 0)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: samples of %u bits and TIFF's format %u are not read",
-                   file->path, bits, format);
+    return hl_fail(
+        error, HL_ERROR_UNSUPPORTED,
+        "%s: samples of %u bits and TIFF's format %u are not read: save it as whole numbers or floats",
+        file->path, bits, format);
   if (depth > INT16_MAX)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: a page of %u slices (ImageDepth): at most %d are read",
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: a page of %u slices (ImageDepth): at most %d are read: save a page for each slice",
                    file->path, depth, INT16_MAX);
   if (!TIFFIsCODECConfigured(compression))
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: TIFF's compression %u is not read: save it with another",
@@ -233,8 +237,8 @@ hl_status tiff_file_shape(tiff_file *file, tiff_shape *shape, hl_error *error) {
   }
   TIFFGetFieldDefaulted(tiff, TIFFTAG_YCBCRSUBSAMPLING, &across, &down);
   if (across == 1 && down == 1) return HL_OK;
-  return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: colours of fewer pixels than brightness are not read",
-                 file->path);
+  return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                 "%s: colours of fewer pixels than brightness are not read: save it as RGB", file->path);
 }
 
 bool tiff_shapes_equal(const tiff_shape *a, const tiff_shape *b) {
@@ -263,7 +267,8 @@ hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl
     if (all_bytes > file->size)
       return hl_fail(error, HL_ERROR_INPUT, "%s: damaged pages: their tags lie over each other", file->path);
     if (*count > PAGES_MOST)
-      return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: more than %d pages", file->path, (int)PAGES_MOST);
+      return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: more than %d pages: save it as several files",
+                     file->path, (int)PAGES_MOST);
     if (*count % 64 == 0 && hl_cancelled(file->context))
       return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", file->path);
   } while (TIFFReadDirectory(file->tiff));

@@ -40,7 +40,8 @@ static hl_status add_file(tiff_plan *plan, const char *name, uint32_t *index, hl
       return HL_OK;
     }
   if (plan->file_count >= FILES_MOST)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "a volume of more than %d files", (int)FILES_MOST);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "a volume of more than %d files: save it as one",
+                   (int)FILES_MOST);
   if ((plan->file_count & (plan->file_count - 1)) == 0) { /* a power of two: full */
     size_t wanted = plan->file_count == 0 ? 1 : 2 * plan->file_count;
     char **larger = hl_reallocate(plan->context, plan->files, wanted, sizeof *larger);

@@ -77,8 +77,10 @@ hl_status hl_unpack_blosc(const char *path, const unsigned char *packed, size_t 
 #else
   (void)packed, (void)length, (void)bytes, (void)count;
   *sound = false;
-  return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                 "%s: packed by Blosc, and this program was built without c-blosc", path);
+  return hl_fail(
+      error, HL_ERROR_UNSUPPORTED,
+      "%s: packed by Blosc, and this program was built without c-blosc: install libblosc-dev and build anew",
+      path);
 #endif
 }
 
@@ -87,8 +89,10 @@ hl_status hl_unpack_blosc(const char *path, const unsigned char *packed, size_t 
 #if !defined(HL_HAS_LZ4) || !defined(HL_HAS_BZIP2) || !defined(HL_HAS_LZMA)
 static hl_status fail_absent(const char *path, const char *name, bool *sound, hl_error *error) {
   *sound = false;
-  return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                 "%s: packed by %s, and this program was built without its library", path, name);
+  return hl_fail(
+      error, HL_ERROR_UNSUPPORTED,
+      "%s: packed by %s, and this program was built without its library: install it and build anew", path,
+      name);
 }
 #endif
 

@@ -90,8 +90,9 @@ static hl_status read_image_tag(vti_header *header, const hl_xml_tag *tag, hl_er
 static hl_status grow(const vti_header *header, void **list, size_t count, size_t *room, size_t size,
                       size_t most, hl_error *error) {
   if (count == most)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: more than %zu pieces or arrays",
-                   header->xml.stream->path, most);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: more than %zu pieces or arrays: save it as one, with fewer", header->xml.stream->path,
+                   most);
   if (count < *room) return HL_OK;
   size_t wanted = 2 * *room + 16;
   void *grown = hl_reallocate(header->request->context, *list, wanted, size);

@@ -17,10 +17,11 @@ bool hl_vtk_xml_has_content(const unsigned char *bytes, size_t length) {
 hl_status hl_vtk_xml_refuse(const hl_vtk_xml *xml, hl_status code, const char *what, const char *value,
                             hl_error *error) {
   char shown[HL_PRINTABLE_BYTES];
-  return hl_fail_offset(error, code, (int64_t)xml->stream->offset, "%s, before byte %llu: %s \"%s\"%s",
-                        xml->stream->path, (unsigned long long)xml->stream->offset, what,
-                        hl_text_printable(shown, value),
-                        code == HL_ERROR_UNSUPPORTED ? " is not read" : " is impossible");
+  return hl_fail_offset(
+      error, code, (int64_t)xml->stream->offset, "%s, before byte %llu: %s \"%s\"%s", xml->stream->path,
+      (unsigned long long)xml->stream->offset, what, hl_text_printable(shown, value),
+      code == HL_ERROR_UNSUPPORTED ? " is not read: save it as image data (.vti), or a mesh (.vtp)"
+                                   : " is impossible");
 }
 
 static hl_status fail_compressor(const hl_vtk_xml *xml, const char *compressor, hl_error *error) {

@@ -4,6 +4,7 @@
  * all, so that whatever is rendered for it ends soon; of frames it waits for the answer. */
 #define _GNU_SOURCE
 #include <arpa/inet.h>
+#include <errno.h>
 #include <poll.h>
 #include <pthread.h>
 #include <signal.h>
@@ -107,8 +108,9 @@ static int dial(void) {
   struct sockaddr_in address = {
       .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
   int client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  REQUIRE(client >= 0 && connect(client, (struct sockaddr *)&address, sizeof address) == 0);
-  return client;
+  if (client >= 0 && connect(client, (struct sockaddr *)&address, sizeof address) == 0) return client;
+  fprintf(stderr, "the server is not reached: %s\n", strerror(errno));
+  abort();
 }
 
 static void send_all(int client, const char *bytes, size_t size) {

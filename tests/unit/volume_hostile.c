@@ -155,7 +155,7 @@ static const malformed files[] = {
     {"record.npy", "\x93NUMPY\1.\1\1{'descr': [('a', '<f4')]}" LONG_LINE, HL_ERROR_UNSUPPORTED,
      "one plain type"},
     {"object.npy", "\x93NUMPY\1.\1\1{'descr': '|O'}" LONG_LINE, HL_ERROR_UNSUPPORTED,
-     "not elements of type \"|O\""},
+     "not as elements of type \"|O\""},
     {"key.npy", "\x93NUMPY\1.\1\1{'order': 1}" LONG_LINE, HL_ERROR_INPUT, "not \"order\""},
     {"order.npy", "\x93NUMPY\1.\1\1{'fortran_order': Perhaps}" LONG_LINE, HL_ERROR_INPUT, "True or False"},
     {"lacks.npy", "\x93NUMPY\1.\1\1{'descr': '<f4', 'shape': (2, 2, 2)}" LONG_LINE, HL_ERROR_INPUT,

@@ -279,7 +279,10 @@ static hl_status decode(const hl_dicom_pixels *p, const hl_dicom_packed *packed,
     case HL_DICOM_JPEG: return hl_dicom_decode_jpeg(packed, values, error);
     case HL_DICOM_JPEG_LS: return hl_dicom_decode_jpeg_ls(packed, values, error);
     case HL_DICOM_JPEG_2000: return hl_dicom_decode_jpeg_2000(packed, values, error);
-    default: return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: its transfer syntax is not read", packed->path);
+    default:
+      return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                     "%s: its transfer syntax is not read: decompress it with dcmdjpeg or gdcmconv --raw",
+                     packed->path);
   }
 }
 

@@ -311,7 +311,8 @@ static hl_status take(hl_dicom_reader *reader, const hl_dicom_element *element, 
 /* ---- what they come to ---- */
 
 static hl_status refuse(const hl_source *source, const char *what, hl_error *error) {
-  return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %s", hl_source_path(source), what);
+  return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %s: convert it with gdcmconv or dcm2niix",
+                 hl_source_path(source), what);
 }
 
 static double or_else(double number, double other) { return isnan(number) ? other : number; }
@@ -352,10 +353,12 @@ static hl_status finish_pixels(const hl_source *source, hl_dicom_header *header,
   p->tiles = 1;
   if (header->matrix_rows > header->rows || header->matrix_columns > header->columns)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "%s: tiles of a picture of %.0f x %.0f pixels (whole slide microscopy), and no volume",
+                   "%s: tiles of a picture of %.0f x %.0f pixels (whole slide microscopy), and no volume: "
+                   "export a stack as OME-TIFF",
                    hl_source_path(source), header->matrix_columns, header->matrix_rows);
   if (p->codec == HL_DICOM_UNKNOWN_CODEC)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: its transfer syntax %s is not read",
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: its transfer syntax %s is not read: decompress it with dcmdjpeg or gdcmconv --raw",
                    hl_source_path(source), header->syntax);
   if (p->is_float && p->allocated < 32) return refuse(source, "floats of fewer than 32 bits", error);
   if (p->allocated == 64 && !p->is_float) return refuse(source, "integers of 64 bits", error);

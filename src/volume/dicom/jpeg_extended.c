@@ -45,10 +45,10 @@ static hl_status take_frame(decoder *d, const unsigned char *bytes, size_t lengt
   hl_status status = hl_dicom_check_packed(d->packed, "JPEG", d->columns, d->rows, bytes[5], d->precision,
                                            error);
   if (status == HL_OK && (bytes[5] != 1 || d->precision != 12 || d->quantization >= HL_JPEG_TABLES))
-    status = hl_fail(
-        error, HL_ERROR_UNSUPPORTED,
-        "%s: its pixels are lossy JPEG of %d components of %d bits: 1 of 12 bits is read, or 8 bits",
-        d->packed->path, bytes[5], d->precision);
+    status = hl_fail(error, HL_ERROR_UNSUPPORTED,
+                     "%s: its pixels are lossy JPEG of %d components of %d bits: 1 of 12 bits is read, or 8 "
+                     "bits: decompress it with dcmdjpeg",
+                     d->packed->path, bytes[5], d->precision);
   return status;
 }
 

@@ -101,7 +101,8 @@ static hl_status find_layers(segment_reading *r, hl_error *error) {
   for (size_t s = 0; s < segments && status == HL_OK; s++) {
     r->layers[s] = layer_for(r, s);
     if (r->layers[s] == LAYERS_MOST)
-      status = hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: more than %d segments share a voxel",
+      status = hl_fail(error, HL_ERROR_UNSUPPORTED,
+                       "%s: more than %d segments share a voxel: export some of them alone",
                        r->set->bundle->path, LAYERS_MOST);
     else if ((size_t)r->layers[s] >= r->layer_count) r->layer_count = (size_t)r->layers[s] + 1;
   }

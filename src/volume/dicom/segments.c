@@ -37,8 +37,8 @@ static hl_status segment_of_item(const hl_dicom_reader *reader, hl_dicom_segment
                                  hl_segment **segment, hl_error *error) {
   size_t index = reader->level[0].item;
   if (index >= HL_MOST_SEGMENTS)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: more than %d segments", hl_source_path(reader->source),
-                   HL_MOST_SEGMENTS);
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: more than %d segments: export some of them alone",
+                   hl_source_path(reader->source), HL_MOST_SEGMENTS);
   if (index >= segments->capacity) {
     size_t capacity = 2 * (index + 8);
     hl_segment *larger = hl_reallocate(hl_source_context(reader->source), segments->list, capacity,

@@ -328,7 +328,8 @@ static hl_status gather_segments(sorting *s, hl_dicom_stack *stack, hl_error *er
   const hl_dicom_segments *segments = &file_of(s, s->frames[0].frame)->segments;
   size_t unknown = 0, doubled = 0, count;
   if (__builtin_mul_overflow(s->count, segments->count, &count) || count > (size_t)1 << 27)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %zu frames of %zu segments are too many", s->path,
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: %zu frames of %zu segments are too many: export some of them alone", s->path,
                    s->count, segments->count);
   stack->segments = segments;
   stack->times = segments->count;

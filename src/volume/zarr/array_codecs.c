@@ -14,7 +14,8 @@ static hl_status find_type(const hl_zarr_reading *r, const hl_named_type *types,
   char shown[HL_PRINTABLE_BYTES];
   if (name != NULL && hl_find_type(types, count, name, &r->array->type)) return HL_OK;
   return hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED,
-                              "voxels of type %s: integers of 8 to 64 bits and floats of 16 to 64 are read",
+                              "voxels of type %s: integers of 8 to 64 bits and floats of 16 to 64 are read: "
+                              "write the array in one of them",
                               hl_text_printable(shown, whole != NULL ? whole : "that is not told"));
 }
 
@@ -133,7 +134,7 @@ static hl_status fail_codec(const hl_zarr_reading *r, const char *name) {
   char shown[HL_PRINTABLE_BYTES];
   return hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED,
                               "chunks packed by \"%s\", or by several codecs: raw, zlib, gzip, zstd, blosc, "
-                              "lz4, bz2 and lzma are read",
+                              "lz4, bz2 and lzma are read: write the array again by one of them",
                               hl_text_printable(shown, name != NULL ? name : "?"));
 }
 
@@ -150,7 +151,7 @@ static hl_status fail_filter(const hl_zarr_reading *r, const char *name) {
   return hl_zarr_reading_fail(
       r, HL_ERROR_UNSUPPORTED,
       "the filter \"%s\" is not read: shuffle, delta, fixedscaleoffset, quantize and bitround "
-      "are; write the array again without it",
+      "are: write the array again without it",
       hl_text_printable(shown, name != NULL ? name : "?"));
 }
 

@@ -13,7 +13,8 @@ static hl_status read_sizes(const hl_zarr_reading *r, const json_t *list, const 
                             int *count) {
   size_t length = json_array_size(list);
   if (length < 1 || length > HL_ZARR_AXES_MOST)
-    return hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED, "\"%s\" must be a list of 1 to %d numbers", key,
+    return hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED,
+                                "\"%s\" must be a list of 1 to %d numbers: write an array of fewer axes", key,
                                 HL_ZARR_AXES_MOST);
   *count = (int)length;
   for (size_t n = 0; n < length; n++) {
@@ -41,7 +42,7 @@ static hl_status check_chunk_bytes(const hl_zarr_reading *r) {
   for (int axis = 0; axis < array->rank; axis++)
     if (__builtin_mul_overflow(bytes, array->chunk[axis], &bytes) || bytes > HL_ZARR_CHUNK_BYTES_MOST)
       return hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED,
-                                  "a chunk of more than 2 GiB: smaller ones are read");
+                                  "a chunk of more than 2 GiB: write the array with smaller ones");
   array->chunk_bytes = (size_t)bytes;
   return HL_OK;
 }
@@ -91,8 +92,9 @@ static hl_status read_chunk_names(const hl_zarr_reading *r, const json_t *encodi
   const char *name = json_string_value(json_object_get(encoding, "name"));
   bool plain = name == NULL || strcmp(name, "default") == 0;
   if (!plain && strcmp(name, "v2") != 0)
-    return hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED,
-                                "a \"chunk_key_encoding\" other than default and v2");
+    return hl_zarr_reading_fail(
+        r, HL_ERROR_UNSUPPORTED,
+        "a \"chunk_key_encoding\" other than default and v2: write the array with one of them");
   r->array->has_prefix = plain;
   return read_separator(r, configured(encoding, "separator"), plain ? '/' : '.');
 }
@@ -110,13 +112,16 @@ static hl_status read_shards(const hl_zarr_reading *r, const json_t *codec) {
       status = hl_zarr_reading_fail(r, HL_ERROR_INPUT, "shards must hold whole chunks along every axis");
     else if (__builtin_mul_overflow(array->chunks_in_shard, array->shard[axis], &array->chunks_in_shard) ||
              array->chunks_in_shard > HL_ZARR_CHUNK_BYTES_MOST / 16)
-      status = hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED, "a shard of more chunks than are read");
+      status = hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED,
+                                    "a shard of too many chunks: write the array with smaller shards");
   }
   if (status == HL_OK) status = hl_zarr_codecs_3(r, configured(codec, "codecs"), &array->codecs);
   hl_zarr_codecs index = {.compressor = HL_ZARR_RAW};
   if (status == HL_OK) status = hl_zarr_codecs_3(r, configured(codec, "index_codecs"), &index);
   if (status == HL_OK && (index.compressor != HL_ZARR_RAW || index.big_endian))
-    status = hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED, "a packed or big-endian index of shards");
+    status = hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED,
+                                  "a packed or big-endian index of shards: write the array with codecs "
+                                  "\"bytes\" (little) and \"crc32c\" for it");
   array->index_checks = index.inner_checks;
   const char *place = json_string_value(configured(codec, "index_location"));
   array->index_at_start = place != NULL && strcmp(place, "start") == 0;
@@ -129,7 +134,9 @@ static hl_status read_codecs(const hl_zarr_reading *r, const json_t *codecs) {
   if (name == NULL || strcmp(name, "sharding_indexed") != 0)
     return hl_zarr_codecs_3(r, codecs, &r->array->codecs);
   if (json_array_size(codecs) != 1)
-    return hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED, "codecs beside \"sharding_indexed\"");
+    return hl_zarr_reading_fail(
+        r, HL_ERROR_UNSUPPORTED,
+        "codecs beside \"sharding_indexed\": write the array with those within the shards alone");
   return read_shards(r, first);
 }
 
@@ -140,8 +147,9 @@ static hl_status read_version_3(const hl_zarr_reading *r, const json_t *node) {
   for (int axis = 0; axis < HL_ZARR_AXES_MOST; axis++) array->shard[axis] = 1;
   if (json_array_size(json_object_get(node, "storage_transformers")) > 0 ||
       (grid_name != NULL && strcmp(grid_name, "regular") != 0))
-    return hl_zarr_reading_fail(r, HL_ERROR_UNSUPPORTED,
-                                "a chunk grid that is not regular, or storage transformers");
+    return hl_zarr_reading_fail(
+        r, HL_ERROR_UNSUPPORTED,
+        "a chunk grid that is not regular, or storage transformers: write the array without");
   hl_status status = read_sizes(r, json_object_get(node, "shape"), "shape", array->shape, &array->rank);
   if (status == HL_OK)
     status = read_chunk_shape(r, configured(grid, "chunk_shape"), "chunk_shape", array->chunk);

@@ -124,7 +124,9 @@ static hl_status unpack(hl_zarr_unpacker *u, packed_bytes packed, hl_error *erro
       return unpack_zstd(u, packed, error);
 #else
       return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                     "%s: chunks packed by zstd, and this program was built without libzstd", u->path);
+                     "%s: chunks packed by zstd, and this program was built without libzstd: install "
+                     "libzstd-dev and build anew",
+                     u->path);
 #endif
     case HL_ZARR_LZ4:
     case HL_ZARR_BZIP2:

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/context.h"
 #include "core/memory.h"
 #include "volume/lengths.h"
 #include "volume/text.h"
@@ -89,7 +90,7 @@ static hl_status apply(const hl_bundle *bundle, const char *folder, const json_t
     if (!sound)
       return hl_zarr_fail(bundle, folder, error, HL_ERROR_UNSUPPORTED,
                           "\"coordinateTransformations\" other than \"scale\" (above 0) and \"translation\" "
-                          "of a number for each axis");
+                          "of a number for each axis: write the image with these");
   }
   return HL_OK;
 }
@@ -159,6 +160,10 @@ hl_status hl_zarr_image_read(const hl_bundle *bundle, const char *folder, const 
   if (count < 1 || count > HL_ZARR_LEVELS_MOST)
     return hl_zarr_fail(bundle, folder, error, HL_ERROR_INPUT,
                         "\"multiscales\" must name 1 to %d levels in \"datasets\"", HL_ZARR_LEVELS_MOST);
+  size_t images = json_array_size(json_object_get(ome, "multiscales"));
+  if (images > 1)
+    hl_log(bundle->context, HL_LOG_WARNING,
+           "%.300s: its \"multiscales\" describes %zu images: the first is taken", bundle->path, images);
   hl_status status = make_levels(bundle, (int)count, image, error);
   const char *name = json_string_value(json_object_get(multiscale, "name"));
   if (name != NULL) hl_text_printable(image->name, name);
