@@ -110,14 +110,39 @@ static const char *name_of_label(const void *data, size_t index) {
   return NULL;
 }
 
+/* The labels that there are, by name or else by value: "liver, tumour, 7"; the last words tell how many more.
+ */
+static void list_labels(const render_label_layers *layers, char *text, size_t size) {
+  enum { LISTED = 12 };
+  size_t used = 0, count = 0;
+  text[0] = '\0';
+  for (size_t n = 0; n < layers->count; n++)
+    for (size_t l = 0; l < layers->volumes[n].label_count; l++, count++) {
+      const hl_label *label = &layers->volumes[n].labels[l];
+      bool named = label->name != NULL && label->name[0] != '\0';
+      if (count >= LISTED || used + 100 > size) continue;
+      used += (size_t)(named
+                           ? snprintf(text + used, size - used, "%s%.60s", count > 0 ? ", " : "", label->name)
+                           : snprintf(text + used, size - used, "%s%.20g", count > 0 ? ", " : "",
+                                      label->value));
+    }
+  if (count > LISTED)
+    snprintf(text + used, size - used, " and %zu more: see 'halflight info'", count - LISTED);
+}
+
 static int check_found(const show_list *list, const render_label_layers *layers) {
   for (size_t s = 0; s < list->count; s++) {
     if (list->labels[s].found) continue;
     if (list->labels[s].wrong != NULL) return fail_show(list->labels[s].whole, list->labels[s].wrong);
     if (list->labels[s].all) continue;
     const char *near = nearest_name(list->labels[s].name, name_of_label, layers);
-    return fail(EXIT_CODE_USAGE, "--show: there is no label \"%.100s\"%s%.100s%s", list->labels[s].name,
-                near != NULL ? ": did you mean \"" : "", near != NULL ? near : "", near != NULL ? "\"?" : "");
+    if (near != NULL)
+      return fail(EXIT_CODE_USAGE, "--show: there is no label \"%.100s\": did you mean \"%.100s\"?",
+                  list->labels[s].name, near);
+    char known[1000];
+    list_labels(layers, known, sizeof known);
+    return fail(EXIT_CODE_USAGE, "--show: there is no label \"%.100s\": there is %s", list->labels[s].name,
+                known[0] != '\0' ? known : "none");
   }
   return EXIT_CODE_OK;
 }
