@@ -45,6 +45,37 @@ static bool rounds_double(double value) {
 /* The size of a signed number. */
 static uint64_t magnitude_of(int64_t value) { return value < 0 ? 0 - (uint64_t)value : (uint64_t)value; }
 
+/* Whether any number may be above 2^24, or below -2^24: most files have none, and the loops are such that
+ * compilers make vectors of them. */
+static bool any_great_32(bool is_signed, bool swap, const unsigned char *from, size_t count) {
+  uint32_t bits = 0;
+  for (size_t n = 0; n < count; n++) {
+    uint32_t word;
+    memcpy(&word, from + 4 * n, sizeof word);
+    if (swap) word = __builtin_bswap32(word);
+    bits |= is_signed ? word ^ (uint32_t)((int32_t)word >> 31) : word;
+  }
+  return bits >> 24 != 0;
+}
+
+static bool any_great_64(bool is_signed, bool swap, const unsigned char *from, size_t count) {
+  uint64_t bits = 0;
+  for (size_t n = 0; n < count; n++) {
+    uint64_t word;
+    memcpy(&word, from + 8 * n, sizeof word);
+    if (swap) word = __builtin_bswap64(word);
+    bits |= is_signed ? word ^ (uint64_t)((int64_t)word >> 63) : word;
+  }
+  return bits >> 24 != 0;
+}
+
+static bool any_great(hl_voxel_type type, bool swap, const unsigned char *from, size_t count) {
+  bool is_signed = type == HL_VOXEL_I32 || type == HL_VOXEL_I64;
+  if (type == HL_VOXEL_F64) return true;
+  return hl_voxel_type_bytes(type) == 4 ? any_great_32(is_signed, swap, from, count)
+                                        : any_great_64(is_signed, swap, from, count);
+}
+
 static bool rounds_number(hl_voxel_type type, bool swap, const unsigned char *bytes) {
   uint32_t word;
   uint64_t words;
@@ -130,7 +161,7 @@ static void note_in_memory(hl_exact *exact, bool swap, const unsigned char *from
 }
 
 void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first, size_t count) {
-  if (exact == NULL || !is_wide(exact->type)) return;
+  if (exact == NULL || !is_wide(exact->type) || !any_great(exact->type, swap, source, count)) return;
   if (exact->place == HL_EXACT_IN_FILE) note_in_file(exact, swap, source, first, count);
   else note_in_memory(exact, swap, source, first, count);
 }

@@ -3,7 +3,7 @@
 
 usage: report.py DOCUMENT (from the source folder)
 Executions, seconds and findings come from build-fuzz/logs, line coverage from the corpus programs of build-coverage, run
-over the committed inputs and those of build-fuzz/corpus. Targets without a log or a program keep the row that the document has.
+over the committed inputs and those of build-fuzz/corpus. Targets without a log keep the row that the document has.
 The exit status is 1 if a campaign ended with a finding.
 """
 import json
@@ -101,14 +101,15 @@ def row(title, executions, seconds, speed, covered, finding):
     return f"| {title} | {executions} | {seconds} | {speed} | {covered} | {finding} |"
 
 
-def row_of(target, title, parts):
-    """(row, profile, a finding or not) of a target; None where it has no campaign or no program."""
+def row_of(target, title, parts, old):
+    """(row, profile, a finding or not) of a target; None where it has no campaign. Without a program of build-coverage what
+    is covered stays as the document's row `old` has it, and the profile is None."""
     run = campaign(target)
-    if run is None or not program(target).exists():
+    if run is None:
         return None
     executions, seconds, finding = run
-    made = profile(target)
-    covered = percent(lines([program(target)], made, parts))
+    made = profile(target) if program(target).exists() else None
+    covered = percent(lines([program(target)], made, parts)) if made else old.split("|")[5].strip() if old else ""
     spent = (f"{seconds:,}", f"{executions // max(seconds, 1):,}") if seconds > 0 else ("", "")  # a finding ends the clock too
     return row(title, f"{executions:,}", *spent, covered, "yes" if finding else "none"), made, finding
 
@@ -120,10 +121,11 @@ known = {line.split("|")[1].strip(): line for line in rest.split(END, 1)[0].spli
 rows = ["| target | executions | seconds | a second | lines covered | finding |", "|---|--:|--:|--:|--:|---|"]
 profiles, found = {}, False
 for target, (title, parts) in TARGETS.items():
-    made = row_of(target, title, parts)
+    made = row_of(target, title, parts, known.get(title))
     rows.append(made[0] if made else known.get(title, row(title, "", "", "", "", "not run")))
     if made:
-        profiles[target] = made[1]
+        if made[1]:
+            profiles[target] = made[1]
         found = found or made[2]
 title, parts, members = SHARED
 if all(m in profiles for m in members):
