@@ -1,15 +1,12 @@
 /* label/occupancy.c - see occupancy.h. */
 #include "label/occupancy.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "core/context.h"
 #include "core/memory.h"
-#include "label/filter.h"
-
-/* Voxels around the labels, as far as their occupancy differs from 0. */
-enum { MARGIN = 8 };
+#include "label/enclosed.h"
+#include "label/levels.h"
 
 /* Smooths along an axis. Derived: a Gaussian of standard deviation 2 voxels, cut
  * at 6, less half of its variance times its second difference. The variances cancel: flat and gently curved
@@ -27,124 +24,27 @@ static const label_filter TO_COEFFICIENTS = {2, {1.5f, -10.0f / 36, 1.0f / 36}};
 /* Smoothing and mending take turns. Mending moves voxels' centres that are on the wrong side of the surface:
  * by PUSH times as much as they are further than TOLERATED beyond 1/2. So thin things stay, and what
  * smoothing moves by a fraction of a voxel stays smooth. */
-enum { ROUNDS = 3 };
+enum { ROUNDS = 2 };
 static const float TOLERATED = 0.12f, PUSH = 2.5f;
 
 /* Occupancy from -1/2 to 1.49 as a byte: stored = 64 + 128 * occupancy. */
 static const float STEPS = 128, ZERO = 64;
 
-/* Of a slice: its volume, in voxels; how fast that falls as the level rises; the sum of gradients at the
- * surface. */
-enum { VOLUME, FALL, SLOPES, SURFACE_VOXELS, MEASURES };
-
 typedef struct occupancy_job {
   const hl_volume *map;
-  double stored; /* the label, as a number of the map's rows */
-  hl_label_part part;
-  unsigned char *inside;        /* [size z][y][x]: 1 where the voxel has the label; finally the result */
-  size_t *inside_counts;        /* [slices]: voxels that have the label */
-  label_field smooth;           /* of the part's size */
-  float level;                  /* of the field: where the surface is */
-  double (*measures)[MEASURES]; /* [slices] */
-  double slope;                 /* mean length of the gradient at the surface, per voxel */
-} occupancy_job;
-
-/* ---- the parts of the grid ---- */
-
-/* The least and the greatest coordinates of a label's voxels, both included. */
-typedef struct label_bounds {
-  int64_t low[3], high[3];
-} label_bounds;
-
-typedef struct parts_job {
-  const hl_volume *map;
-  const double *stored; /* [count]; rising: the labels, as numbers of the map's rows */
+  double *stored; /* owned; [count]; rising: the labels, as numbers of the map's rows */
   size_t count;
-  label_bounds *bounds; /* [threads][count] */
-} parts_job;
-
-/* The label's place in the list; count where it is not listed. */
-static size_t place_of(const parts_job *job, double stored) {
-  size_t low = 0, high = job->count;
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (job->stored[middle] < stored) low = middle + 1;
-    else high = middle;
-  }
-  return low < job->count && job->stored[low] == stored ? low : job->count;
-}
-
-static void widen(label_bounds *bounds, const int64_t low[3], const int64_t high[3]) {
-  for (int a = 0; a < 3; a++) {
-    if (low[a] < bounds->low[a]) bounds->low[a] = low[a];
-    if (high[a] > bounds->high[a]) bounds->high[a] = high[a];
-  }
-}
-
-/* Labels come in runs: each run is looked up once. */
-static void bound_slice(void *data, size_t z, int worker) {
-  const parts_job *job = data;
-  label_bounds *bounds = job->bounds + (size_t)worker * job->count;
-  const size_t width = job->map->dimension[0];
-  for (size_t y = 0; y < job->map->dimension[1]; y++) {
-    const hl_number_row row = hl_volume_numbers(job->map, y, z, NULL);
-    for (size_t x = 0; x < width;) {
-      double stored = hl_row_number(row, x);
-      size_t from = x++;
-      while (x < width && hl_row_number(row, x) == stored) x++;
-      size_t place = place_of(job, stored);
-      if (place == job->count) continue;
-      widen(&bounds[place], (int64_t[3]){(int64_t)from, (int64_t)y, (int64_t)z},
-            (int64_t[3]){(int64_t)x - 1, (int64_t)y, (int64_t)z});
-    }
-  }
-}
-
-/* The part with its margin; of the size 0 where there are no voxels. */
-static hl_label_part part_of(const hl_volume *map, const label_bounds *bounds) {
-  hl_label_part part = {{0}, {0}};
-  for (int axis = 0; axis < 3 && bounds->high[axis] >= 0; axis++) {
-    int64_t last = (int64_t)map->dimension[axis] - 1;
-    int64_t begin = bounds->low[axis] - MARGIN < 0 ? 0 : bounds->low[axis] - MARGIN;
-    int64_t end = bounds->high[axis] + MARGIN > last ? last : bounds->high[axis] + MARGIN;
-    part.first[axis] = (size_t)begin;
-    part.size[axis] = (size_t)(end - begin + 1);
-  }
-  return part;
-}
-
-static double stored_of(const hl_volume *map, double value) {
-  return (value - map->value_offset) / map->value_scale;
-}
-
-hl_status hl_label_parts(hl_context *context, hl_pool *pool, const hl_volume *map, const double *labels,
-                         size_t count, hl_label_part *parts, hl_error *error) {
-  const size_t threads = (size_t)hl_pool_threads(pool);
-  double *stored = hl_allocate(context, count, sizeof *stored);
-  parts_job job = {map, stored, count, hl_allocate(context, threads * count, sizeof *job.bounds)};
-  hl_status status = HL_OK;
-  if (stored == NULL || job.bounds == NULL)
-    status = hl_fail_memory(error, threads * count * sizeof *job.bounds, "labels");
-  for (size_t n = 0; status == HL_OK && n < threads * count; n++)
-    job.bounds[n] = (label_bounds){{INT64_MAX, INT64_MAX, INT64_MAX}, {-1, -1, -1}};
-  if (status == HL_OK) {
-    for (size_t n = 0; n < count; n++) stored[n] = stored_of(map, labels[n]);
-    hl_pool_run(pool, map->dimension[2], bound_slice, &job);
-    if (hl_pool_cancelled(pool))
-      status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while reading labels");
-  }
-  for (size_t n = 0; status == HL_OK && n < count; n++) {
-    for (size_t t = 1; t < threads; t++)
-      widen(&job.bounds[n], job.bounds[t * count + n].low, job.bounds[t * count + n].high);
-    parts[n] = part_of(map, &job.bounds[n]);
-  }
-  hl_release(context, job.bounds);
-  hl_release(context, stored);
-  return status;
-}
+  hl_label_part part;
+  unsigned char *inside; /* [size z][y][x]: 1 where the voxel has one of the labels; finally the result */
+  size_t *inside_counts; /* [size z]: voxels that have one */
+  label_field smooth;    /* of the part's size */
+  label_levels levels;
+  label_enclosed enclosed;
+} occupancy_job;
 
 /* ---- steps ---- */
 
+/* Labels come in runs: each run is looked up once. */
 static void mark_slice(void *data, size_t z, int worker) {
   (void)worker;
   const occupancy_job *job = data;
@@ -152,10 +52,14 @@ static void mark_slice(void *data, size_t z, int worker) {
   size_t at = z * nx * job->part.size[1], count = 0;
   for (size_t y = 0; y < job->part.size[1]; y++, at += nx) {
     const hl_number_row row = hl_volume_numbers(job->map, first[1] + y, first[2] + z, NULL);
-    for (size_t i = 0; i < nx; i++) {
-      job->inside[at + i] = hl_row_number(row, first[0] + i) == job->stored;
-      job->smooth.values[at + i] = job->inside[at + i];
-      count += job->inside[at + i];
+    for (size_t i = 0; i < nx;) {
+      const double stored = hl_row_number(row, first[0] + i);
+      const bool is = hl_label_place(job->stored, job->count, stored) < job->count;
+      do {
+        job->inside[at + i] = is;
+        job->smooth.values[at + i] = is;
+        count += is;
+      } while (++i < nx && hl_row_number(row, first[0] + i) == stored);
     }
   }
   job->inside_counts[z] = count;
@@ -173,76 +77,12 @@ static void mend_slice(void *data, size_t z, int worker) {
   }
 }
 
-/* ---- volumes are kept ---- */
-
-/* Marks the voxels of a row that the surface may cross. room: for a row and two values. Returns how many of
- * the others are above the level. */
-static int32_t find_crossed(const occupancy_job *job, size_t y, size_t z, float *room, float *squares,
-                            float *crossed) {
-  const size_t nx = job->part.size[0], ny = job->part.size[1], nz = job->part.size[2], slice = nx * ny;
-  const float *row = job->smooth.values + z * slice + y * nx;
-  memcpy(room + 1, row, nx * sizeof *row);
-  room[0] = row[0], room[nx + 1] = row[nx - 1];
-  const row_neighbours rows = {{room, room + 1, room + 2},
-                               {y > 0 ? row - nx : row, y + 1 < ny ? row + nx : row},
-                               {z > 0 ? row - slice : row, z + 1 < nz ? row + slice : row}};
-  return job->smooth.functions->find_crossed(&rows, nx, job->level, squares, crossed);
-}
-
-/* Adds up a row's volume, in voxels, and how fast it falls as the level rises. Derived: near a plane with
- * the gradient g the part of a voxel above the level t is (f - t) / g + 1/2, clamped to [0, 1]. lines: room.
- */
-static void measure_row(const occupancy_job *job, size_t y, size_t z, float *lines, double *measures) {
-  const size_t nx = job->part.size[0];
-  const float *row = job->smooth.values + (z * job->part.size[1] + y) * nx;
-  float *squares = lines + nx + 2, *crossed = squares + nx;
-  measures[VOLUME] += find_crossed(job, y, z, lines, squares, crossed);
-  for (size_t x = 0; x < nx; x++) {
-    if (crossed[x] == 0) continue;
-    float gradient = 0.5f * sqrtf(squares[x]);
-    if (gradient < HL_LEAST_LABEL_GRADIENT) gradient = HL_LEAST_LABEL_GRADIENT;
-    float part = (row[x] - job->level) / gradient + 0.5f;
-    measures[VOLUME] += part <= 0 ? 0 : part >= 1 ? 1 : (double)part;
-    if (!(part > 0 && part < 1)) continue;
-    measures[FALL] += 1 / (double)gradient;
-    measures[SLOPES] += (double)gradient;
-    measures[SURFACE_VOXELS]++;
-  }
-}
-
-static void measure_slice(void *data, size_t z, int worker) {
-  const occupancy_job *job = data;
-  float *lines = job->smooth.lines + (size_t)worker * job->smooth.line_floats;
-  memset(job->measures[z], 0, sizeof job->measures[z]);
-  for (size_t y = 0; y < job->part.size[1]; y++) measure_row(job, y, z, lines, job->measures[z]);
-}
-
-/* The level at which the field encloses as much as the labels' voxels are, by Newton's method; near 1/2. */
-static void find_level(hl_pool *pool, occupancy_job *job) {
-  enum { STEPS_OF_NEWTON = 3 };
-  static const double FARTHEST = 0.25;
-  double wanted = 0;
-  for (size_t z = 0; z < job->part.size[2]; z++) wanted += (double)job->inside_counts[z];
-  job->level = 0.5f;
-  job->slope = 0.25;
-  for (int step = 0; step < STEPS_OF_NEWTON; step++) {
-    double sum[MEASURES] = {0};
-    hl_pool_run(pool, job->part.size[2], measure_slice, job);
-    for (size_t z = 0; z < job->part.size[2]; z++)
-      for (int m = 0; m < MEASURES; m++) sum[m] += job->measures[z][m];
-    if (!(sum[FALL] > 0)) return;
-    job->slope = sum[SLOPES] / sum[SURFACE_VOXELS];
-    double level = (double)job->level + (sum[VOLUME] - wanted) / sum[FALL];
-    job->level = (float)fmin(fmax(level, 0.5 - FARTHEST), 0.5 + FARTHEST);
-  }
-}
-
 static void store_slice(void *data, size_t z, int worker) {
   (void)worker;
   const occupancy_job *job = data;
   size_t count = job->part.size[0] * job->part.size[1], at = z * count;
   for (size_t i = at; i < at + count; i++) {
-    float stored = ZERO + STEPS * (job->smooth.values[i] + 0.5f - job->level) + 0.5f;
+    float stored = ZERO + STEPS * (job->smooth.values[i] + 0.5f - job->enclosed.level) + 0.5f;
     job->inside[i] = (unsigned char)(stored < 0 ? 0 : stored > 255 ? 255 : stored);
   }
 }
@@ -254,8 +94,10 @@ static void smooth(hl_pool *pool, occupancy_job *job) {
     hl_pool_run(pool, job->part.size[2], mend_slice, job);
   }
   hl_label_filter(pool, &job->smooth, &FINISHING);
-  find_level(pool, job);
+  hl_label_level(pool, job->inside, &job->smooth, &job->levels);
   hl_label_filter(pool, &job->smooth, &TO_COEFFICIENTS);
+  for (size_t z = 0; z < job->part.size[2]; z++) job->enclosed.wanted += (double)job->inside_counts[z];
+  hl_label_enclose(pool, &job->enclosed);
   hl_pool_run(pool, job->part.size[2], store_slice, job);
 }
 
@@ -280,27 +122,37 @@ static hl_status adopt(hl_context *context, const occupancy_job *job, unsigned c
   grid.space = job->map->space;
   hl_status status = hl_volume_adopt(context, &grid, "labels", voxels, made, error);
   if (status == HL_OK) (*made)->has_surroundings = true; /* 0 */
-  if (status == HL_OK) (*made)->surface_slope = job->slope;
+  if (status == HL_OK) (*made)->surface_slope = job->enclosed.slope;
   return status;
 }
 
-static hl_status fill(hl_context *context, hl_pool *pool, occupancy_job *job, hl_volume **made,
-                      hl_error *error) {
-  size_t count = job->part.size[0] * job->part.size[1] * job->part.size[2];
+/* Takes the memory of all steps but the result. */
+static bool make_room(hl_context *context, int threads, occupancy_job *job) {
+  const size_t count = job->part.size[0] * job->part.size[1] * job->part.size[2];
   label_field *field = &job->smooth;
   memcpy(field->size, job->part.size, sizeof field->size);
   field->functions = hl_label_row_functions(context->options.instruction_set);
   field->line_floats = hl_label_line_floats(field->size);
-  field->lines = hl_allocate(context, (size_t)hl_pool_threads(pool) * field->line_floats,
-                             sizeof *field->lines);
+  field->lines = hl_allocate(context, (size_t)threads * field->line_floats, sizeof *field->lines);
   field->values = hl_allocate(context, count, sizeof *field->values);
-  job->inside = hl_allocate(context, count, 1);
+  hl_label_levels_size(field->size, job->levels.size);
+  const size_t *cells = job->levels.size;
+  job->levels.values = hl_allocate(context, HL_LEVEL_PLANES * cells[0] * cells[1] * cells[2],
+                                   sizeof *job->levels.values);
   job->inside_counts = hl_allocate(context, job->part.size[2], sizeof *job->inside_counts);
-  job->measures = hl_allocate(context, job->part.size[2], sizeof *job->measures);
-  if (field->lines == NULL || field->values == NULL || job->inside == NULL || job->inside_counts == NULL ||
-      job->measures == NULL) {
+  job->enclosed.field = field;
+  job->enclosed.measures = hl_allocate(context, job->part.size[2], sizeof *job->enclosed.measures);
+  return field->lines != NULL && field->values != NULL && job->levels.values != NULL &&
+         job->inside_counts != NULL && job->enclosed.measures != NULL;
+}
+
+static hl_status fill(hl_context *context, hl_pool *pool, occupancy_job *job, hl_volume **made,
+                      hl_error *error) {
+  const size_t count = job->part.size[0] * job->part.size[1] * job->part.size[2];
+  job->inside = hl_allocate(context, count, 1);
+  if (!make_room(context, hl_pool_threads(pool), job) || job->inside == NULL) {
     hl_release(context, job->inside);
-    return hl_fail_memory(error, 5 * count, "smooth labels");
+    return hl_fail_memory(error, 7 * count, "smooth labels");
   }
   smooth(pool, job);
   if (hl_pool_cancelled(pool)) {
@@ -310,15 +162,20 @@ static hl_status fill(hl_context *context, hl_pool *pool, occupancy_job *job, hl
   return adopt(context, job, job->inside, made, error);
 }
 
-hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, double label,
-                             const hl_label_part *part, hl_volume **made, hl_error *error) {
+hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, const double *labels,
+                             size_t count, const hl_label_part *part, hl_volume **made, hl_error *error) {
   *made = NULL;
   if (part->size[0] == 0) return HL_OK;
-  occupancy_job job = {.map = map, .stored = stored_of(map, label), .part = *part};
+  occupancy_job job = {.map = map, .count = count, .part = *part};
+  job.stored = hl_allocate(context, count, sizeof *job.stored);
+  if (job.stored == NULL) return hl_fail_memory(error, count * sizeof *job.stored, "labels");
+  for (size_t n = 0; n < count; n++) job.stored[n] = hl_label_stored(map, labels[n]);
   hl_status status = fill(context, pool, &job, made, error);
+  hl_release(context, job.stored);
   hl_release(context, job.smooth.values);
   hl_release(context, job.smooth.lines);
+  hl_release(context, job.levels.values);
   hl_release(context, job.inside_counts);
-  hl_release(context, job.measures);
+  hl_release(context, job.enclosed.measures);
   return status;
 }

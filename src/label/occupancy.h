@@ -1,7 +1,8 @@
-/* label/occupancy.h - a label of a label map as a smooth field whose surface is where its own is.
+/* label/occupancy.h - labels of a label map as a smooth field whose surface is where their own is.
  *
- * A label map's voxels are the numbers of things. The occupancy of a label is 1 within it and 0
- * outside, without the stairs of the voxels: reconstructed by the B-spline, it passes 1/2 at its surface.
+ * A label map's voxels are the numbers of things. The occupancy of a label, or of several together, is 1
+ * within them and 0 outside, without the stairs of the voxels: reconstructed by the B-spline, it passes 1/2
+ * at their surface.
  */
 #ifndef HL_LABEL_OCCUPANCY_H
 #define HL_LABEL_OCCUPANCY_H
@@ -9,7 +10,7 @@
 #include "core/pool.h"
 #include "volume/volume.h"
 
-/* The part of a map's grid that holds a label, with a margin for its smooth surface. */
+/* The part of a map's grid that holds labels, with a margin for their smooth surface. */
 typedef struct hl_label_part {
   size_t first[3], size[3]; /* voxels along i, j, k; a size of 0: no voxel has the label */
 } hl_label_part;
@@ -19,9 +20,21 @@ typedef struct hl_label_part {
 hl_status hl_label_parts(hl_context *context, hl_pool *pool, const hl_volume *map, const double *labels,
                          size_t count, hl_label_part *parts, hl_error *error);
 
-/* Makes the occupancy of a label over its part. *made is null where no voxel has the label. Memory: five
- * bytes a voxel of the part, one of which stays. */
-hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, double label,
-                             const hl_label_part *part, hl_volume **made, hl_error *error);
+/* The least part that holds several; those without voxels do not count. */
+hl_label_part hl_label_part_of_all(const hl_label_part *parts, size_t count);
+
+/* A label as a number of the map's rows. */
+static inline double hl_label_stored(const hl_volume *map, double label) {
+  return (label - map->value_offset) / map->value_scale;
+}
+
+/* The place of a number in a rising list; count where it is not listed. */
+size_t hl_label_place(const double *stored, size_t count, double value);
+
+/* Makes the occupancy of all labels of a list together, over their part. labels: [count]; data values,
+ * rising. *made is null where no voxel has one of the labels. Memory: six and a half bytes a voxel of the
+ * part, one of which stays. */
+hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, const double *labels,
+                             size_t count, const hl_label_part *part, hl_volume **made, hl_error *error);
 
 #endif

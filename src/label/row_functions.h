@@ -11,9 +11,6 @@
 /* How many rows on either side of the middle one the longest filter takes. */
 enum { HL_FILTER_REACH = 7, HL_FILTER_ROWS = 2 * HL_FILTER_REACH + 1 };
 
-/* Gradients, per voxel, count as no less when volumes are measured. */
-#define HL_LEAST_LABEL_GRADIENT 0.05f
-
 /* A row of a field and its neighbours, [count]; at the field's ends the row itself. */
 typedef struct row_neighbours {
   const float *x[3]; /* the row a voxel earlier, itself, and a voxel later */
@@ -26,11 +23,9 @@ typedef struct label_row_functions {
    * 2, 4 or HL_FILTER_REACH. out, [count], overlaps no row. */
   void (*weigh)(const float *taps, int reach, const float *const rows[HL_FILTER_ROWS], size_t count,
                 float *out);
-  /* Marks, with 1 for 0 in crossed, the voxels that the surface at `level` may cross, and writes the squares
-   * of twice the gradients. Returns how many of the others are above the level. squares, crossed: [count];
-   * overlap nothing. */
-  int32_t (*find_crossed)(const row_neighbours *rows, size_t count, float level, float *squares,
-                          float *crossed);
+  /* Marks, with 1 for 0 in crossed, the voxels that the surface at `level` may cross. Returns how many of the
+   * others are above the level. crossed: [count]; overlaps nothing. */
+  int32_t (*find_crossed)(const row_neighbours *rows, size_t count, float level, float *crossed);
 } label_row_functions;
 
 const label_row_functions *hl_label_row_functions(hl_instruction_set set);

@@ -20,20 +20,18 @@ static void weigh(const float *taps, int reach, const float *const rows[HL_FILTE
   else add_rows(taps, HL_FILTER_REACH, rows, count, out);
 }
 
-/* The part of a voxel above the level is over / gradient + 1/2 (occupancy.c): where |over| is more than half
- * of the gradient it is 0 or 1. squares: of twice the gradient, so that this is over^2 > square / 16; with
- * some spare. */
-static int32_t find_crossed(const row_neighbours *rows, size_t count, float level, float *restrict squares,
-                            float *restrict crossed) {
-  const float least = 4 * HL_LEAST_LABEL_GRADIENT * HL_LEAST_LABEL_GRADIENT;
+/* A voxel's corner lies 0.87 voxels from its middle: where |over| is more than the gradient, g, times this,
+ * the surface passes the voxel by. Where a field turns round the gradient in the middle tells little: it
+ * counts as a fifth at least. squares are of 2 g. */
+static int32_t find_crossed(const row_neighbours *rows, size_t count, float level, float *restrict crossed) {
+  const float least = 4 * 0.2f * 0.2f, reach = 0.25f;
   int32_t whole = 0;
   for (size_t i = 0; i < count; i++) {
     float over = rows->x[1][i] - level, dx = rows->x[2][i] - rows->x[0][i],
           dy = rows->y[1][i] - rows->y[0][i], dz = rows->z[1][i] - rows->z[0][i];
     float square = dx * dx + dy * dy + dz * dz, counted = square > least ? square : least;
-    int32_t far = (over * over > 0.065f * counted) | (over > 1) | (over < -1);
+    int32_t far = (over * over > reach * counted) | (over > 1) | (over < -1);
     whole += far & (over > 0);
-    squares[i] = square;
     crossed[i] = (float)(1 - far);
   }
   return whole;

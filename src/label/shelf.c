@@ -94,7 +94,8 @@ static hl_status make_missing(hl_context *context, int threads, hl_volume *map, 
   status = hl_label_parts(context, pool, map, missing->labels, missing->count, missing->parts, error);
   for (size_t n = 0; n < missing->count && status == HL_OK; n++) {
     hl_volume **own = &made[missing->places[n]];
-    status = hl_label_occupancy(map->context, pool, map, missing->labels[n], &missing->parts[n], own, error);
+    status = hl_label_occupancy(map->context, pool, map, &missing->labels[n], 1, &missing->parts[n], own,
+                                error);
     if (status == HL_OK) keep(map, missing->labels[n], *own);
   }
   hl_pool_destroy(pool);

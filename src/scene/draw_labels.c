@@ -57,11 +57,13 @@ hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
 
 enum { POINTS = 4 };
 
-/* A solid label's matter begins at this occupancy and is whole at the next: half a voxel and less, around
- * 1/2. */
-static const double SOLID_FROM = 0.4, SOLID_TO = 0.6, SOLID_OPACITY = 0.9999;
-/* A translucent label is a skin between these occupancies. */
-static const double SKIN_FROM = 0.35, SKIN_TO = 0.65;
+/* A solid label's matter begins at this occupancy and is whole at the next, a sixth of a voxel deeper. A ray
+ * that just touches a ball of a few voxels is half covered where the occupancy is 1/2: outlines are the
+ * label's own. */
+static const double SOLID_FROM = 0.48, SOLID_TO = 0.51, SOLID_OPACITY = 0.9999;
+/* A translucent label is a skin from its surface to this occupancy: a label one voxel thin has both of its
+ * skins. */
+static const double SKIN_FROM = 0.5, SKIN_TO = 0.7;
 
 /* The points of one drawn volume. */
 typedef struct drawn_points {

@@ -221,7 +221,7 @@ typedef struct label_rows_state {
   int reach;
   size_t count;
   struct {
-    float weighed[130], squares[130], crossed[130];
+    float weighed[130], crossed[130];
     int32_t whole;
   } out;
 } label_rows_state;
@@ -231,7 +231,7 @@ static void call_label_rows(const label_row_functions *functions, label_rows_sta
   for (int r = 0; r < HL_FILTER_ROWS; r++) rows[r] = s->rows[r];
   const row_neighbours near = {{rows[0], rows[0] + 1, rows[0] + 2}, {rows[1], rows[2]}, {rows[3], rows[4]}};
   functions->weigh(s->taps, s->reach, rows, s->count, s->out.weighed);
-  s->out.whole = functions->find_crossed(&near, s->count, s->level, s->out.squares, s->out.crossed);
+  s->out.whole = functions->find_crossed(&near, s->count, s->level, s->out.crossed);
 }
 
 /* The table is no part of the renderer's. */

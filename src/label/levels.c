@@ -1,0 +1,216 @@
+/* label/levels.c - see levels.h. */
+#include "label/levels.h"
+
+#include <string.h>
+
+enum { CELL = 2 }; /* voxels along an edge of a cell */
+
+/* The first planes are sums over faces; these and whether the field is thin are blurred. */
+enum { LEVEL_SUMS = HL_LEVEL_FALL + 1, LEVEL_BLENDED = HL_LEVEL_THIN + 1 };
+
+/* Cells are blurred by [1 2 1] / 4, so that there are no steps from cell to cell. */
+static const label_filter BLUR = {2, {0.5f, 0.25f, 0}};
+
+/* Away from any border the field stays as it is: so many faces of a flat border, with 1/2 on them, are added
+ * everywhere. */
+static const float FAINT = 1e-3f;
+
+/* No field is made steeper than if it fell by this across the border's faces. */
+static const float LEAST_FALL = 0.04f;
+
+/* Fields are kept within what a byte holds of them (occupancy.c). */
+static const float LEAST = -0.5f, GREATEST = 1.49f;
+
+/* Where the field's values nearby reach the second of these, what it was made from is at least three voxels
+ * thick; below the first, it is thin. */
+static const float THIN = 0.46f, THICK = 0.5f;
+
+/* How far the border of thin things is moved outwards, in voxels. */
+static const float GROWTH = 0.25f;
+
+typedef struct level_job {
+  const unsigned char *inside;
+  const label_field *field;
+  const label_levels *levels;
+} level_job;
+
+void hl_label_levels_size(const size_t field[3], size_t size[3]) {
+  for (int a = 0; a < 3; a++) size[a] = (field[a] + CELL - 1) / CELL;
+}
+
+static float *plane_of(const label_levels *levels, int plane) {
+  return levels->values + (size_t)plane * levels->size[0] * levels->size[1] * levels->size[2];
+}
+
+/* ---- the border ---- */
+
+/* A row of voxels, and the rows beside it; at the field's ends the row itself. */
+typedef struct border_row {
+  size_t at, beside[4]; /* the first voxels */
+} border_row;
+
+static border_row row_at(const label_field *field, size_t y, size_t z) {
+  const size_t nx = field->size[0], slice = nx * field->size[1], at = z * slice + y * nx;
+  return (border_row){at,
+                      {y > 0 ? at - nx : at, y + 1 < field->size[1] ? at + nx : at, z > 0 ? at - slice : at,
+                       z + 1 < field->size[2] ? at + slice : at}};
+}
+
+/* Marks the voxels of a row that a face of the border touches. */
+static void mark_border(const level_job *job, const border_row *row, unsigned char *marks) {
+  const size_t nx = job->field->size[0];
+  const unsigned char *own = job->inside + row->at, *a = job->inside + row->beside[0],
+                      *b = job->inside + row->beside[1], *c = job->inside + row->beside[2],
+                      *d = job->inside + row->beside[3];
+  for (size_t x = 0; x < nx; x++)
+    marks[x] = (unsigned char)((own[x] ^ a[x]) | (own[x] ^ b[x]) | (own[x] ^ c[x]) | (own[x] ^ d[x]));
+  for (size_t x = 0; x + 1 < nx; x++) marks[x] |= own[x] ^ own[x + 1];
+  for (size_t x = nx - 1; x > 0; x--) marks[x] |= own[x] ^ own[x - 1];
+}
+
+/* Adds the faces between a voxel and its neighbours; each face is added from both of its sides. */
+static void add_faces(const level_job *job, const border_row *row, size_t x, float sums[LEVEL_SUMS]) {
+  const size_t at = row->at + x, nx = job->field->size[0];
+  const size_t beside[6] = {row->beside[0] + x, row->beside[1] + x,  row->beside[2] + x,
+                            row->beside[3] + x, x > 0 ? at - 1 : at, x + 1 < nx ? at + 1 : at};
+  const float *values = job->field->values, own = values[at];
+  for (int n = 0; n < 6; n++) {
+    if (job->inside[beside[n]] == job->inside[at]) continue;
+    const float other = values[beside[n]];
+    sums[HL_LEVEL_FACES] += 1;
+    sums[HL_LEVEL_VALUE] += 0.5f * (own + other);
+    sums[HL_LEVEL_FALL] += job->inside[at] ? own - other : other - own;
+  }
+}
+
+/* Raises cells to the greatest value of a row of voxels. */
+static void raise_most(const float *values, size_t count, float *most) {
+  for (size_t x = 0; x < count; x++)
+    if (values[x] > most[x / CELL]) most[x / CELL] = values[x];
+}
+
+/* Sums over the faces in a slice of cells, and the greatest values. */
+static void sum_cells(void *data, size_t cell_z, int worker) {
+  const level_job *job = data;
+  const label_field *field = job->field;
+  const size_t *cells = job->levels->size, plane = cells[0] * cells[1];
+  unsigned char *marks = (unsigned char *)(field->lines + (size_t)worker * field->line_floats);
+  for (int p = 0; p < HL_LEVEL_PLANES; p++)
+    memset(plane_of(job->levels, p) + cell_z * plane, 0, plane * sizeof(float));
+  for (size_t z = CELL * cell_z; z < CELL * (cell_z + 1) && z < field->size[2]; z++)
+    for (size_t y = 0; y < field->size[1]; y++) {
+      const border_row row = row_at(field, y, z);
+      raise_most(field->values + row.at, field->size[0],
+                 plane_of(job->levels, HL_LEVEL_MOST) + cell_z * plane + y / CELL * cells[0]);
+      mark_border(job, &row, marks);
+      for (size_t x = 0; x < field->size[0]; x++) {
+        if (!marks[x]) continue;
+        float sums[LEVEL_SUMS] = {0};
+        add_faces(job, &row, x, sums);
+        for (int s = 0; s < LEVEL_SUMS; s++)
+          plane_of(job->levels, s)[cell_z * plane + y / CELL * cells[0] + x / CELL] += sums[s];
+      }
+    }
+}
+
+/* The greatest value in a cell and those around it. */
+static float most_around(const label_levels *levels, const size_t cell[3]) {
+  const float *most = plane_of(levels, HL_LEVEL_MOST);
+  size_t low[3], high[3];
+  float greatest = 0;
+  for (int a = 0; a < 3; a++) {
+    low[a] = cell[a] > 0 ? cell[a] - 1 : 0;
+    high[a] = cell[a] + 1 < levels->size[a] ? cell[a] + 1 : cell[a];
+  }
+  for (size_t z = low[2]; z <= high[2]; z++)
+    for (size_t y = low[1]; y <= high[1]; y++)
+      for (size_t x = low[0]; x <= high[0]; x++) {
+        const float here = most[(z * levels->size[1] + y) * levels->size[0] + x];
+        if (here > greatest) greatest = here;
+      }
+  return greatest;
+}
+
+static void find_thin(void *data, size_t z, int worker) {
+  (void)worker;
+  const level_job *job = data;
+  const size_t *cells = job->levels->size;
+  float *thin = plane_of(job->levels, HL_LEVEL_THIN) + z * cells[0] * cells[1];
+  for (size_t y = 0; y < cells[1]; y++)
+    for (size_t x = 0; x < cells[0]; x++, thin++) {
+      const float part = (THICK - most_around(job->levels, (size_t[3]){x, y, z})) / (THICK - THIN);
+      *thin = part < 0 ? 0 : part > 1 ? 1 : part;
+    }
+}
+
+/* ---- the field ---- */
+
+/* The two cells whose middles lie around a voxel along an axis. A voxel's middle lies a quarter of a cell
+ * from that of its own cell. */
+typedef struct cells_around {
+  size_t own, other;
+} cells_around;
+
+enum { OWN = 3, OTHER = 1 }; /* quarters: their weights */
+
+static cells_around around(size_t at, size_t cells) {
+  const size_t own = at / CELL;
+  const size_t other = at % CELL == 0 ? (own > 0 ? own - 1 : own) : (own + 1 < cells ? own + 1 : own);
+  return (cells_around){own, other};
+}
+
+/* The sums between the cells' middles on a row of voxels, but for x. rows: [LEVEL_BLENDED][cells]. */
+static void blend_rows(const label_levels *levels, size_t y, size_t z, float *rows) {
+  const size_t *cells = levels->size;
+  const cells_around j = around(y, cells[1]), k = around(z, cells[2]);
+  for (int s = 0; s < LEVEL_BLENDED; s++, rows += cells[0]) {
+    const float *from = plane_of(levels, s), *a = from + (k.own * cells[1] + j.own) * cells[0],
+                *b = from + (k.own * cells[1] + j.other) * cells[0],
+                *c = from + (k.other * cells[1] + j.own) * cells[0],
+                *d = from + (k.other * cells[1] + j.other) * cells[0];
+    for (size_t x = 0; x < cells[0]; x++)
+      rows[x] = (OWN * OWN * a[x] + OWN * OTHER * (b[x] + c[x]) + OTHER * OTHER * d[x]) * (1.0f / 64);
+  }
+}
+
+static float levelled(const float sums[LEVEL_BLENDED], float value) {
+  const float faces = sums[HL_LEVEL_FACES] + FAINT, middle = (sums[HL_LEVEL_VALUE] + FAINT * 0.5f) / faces,
+              fall = (sums[HL_LEVEL_FALL] + FAINT * HL_LABEL_SLOPE) / faces;
+  value = 0.5f + (value - middle) * (HL_LABEL_SLOPE / (fall > LEAST_FALL ? fall : LEAST_FALL)) +
+          GROWTH * HL_LABEL_SLOPE * sums[HL_LEVEL_THIN];
+  return value < LEAST ? LEAST : value > GREATEST ? GREATEST : value;
+}
+
+static void level_slice(void *data, size_t z, int worker) {
+  const level_job *job = data;
+  const label_field *field = job->field;
+  const size_t cells = job->levels->size[0];
+  float *rows = field->lines + (size_t)worker * field->line_floats;
+  for (size_t y = 0; y < field->size[1]; y++) {
+    float *values = field->values + (z * field->size[1] + y) * field->size[0];
+    blend_rows(job->levels, y, z, rows);
+    for (size_t x = 0; x < field->size[0]; x++) {
+      const cells_around i = around(x, cells);
+      float sums[LEVEL_BLENDED];
+      for (int s = 0; s < LEVEL_BLENDED; s++) {
+        const float *row = rows + (size_t)s * cells;
+        sums[s] = OWN * row[i.own] + OTHER * row[i.other];
+      }
+      values[x] = levelled(sums, values[x]);
+    }
+  }
+}
+
+void hl_label_level(hl_pool *pool, const unsigned char *inside, const label_field *field,
+                    const label_levels *levels) {
+  level_job job = {inside, field, levels};
+  hl_pool_run(pool, levels->size[2], sum_cells, &job);
+  hl_pool_run(pool, levels->size[2], find_thin, &job);
+  for (int p = 0; p < LEVEL_BLENDED; p++) {
+    label_field blurred = *field;
+    blurred.values = plane_of(levels, p);
+    memcpy(blurred.size, levels->size, sizeof blurred.size);
+    hl_label_filter(pool, &blurred, &BLUR);
+  }
+  hl_pool_run(pool, field->size[2], level_slice, &job);
+}

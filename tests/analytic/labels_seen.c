@@ -1,0 +1,222 @@
+/* analytic/labels_seen.c - thin and small labels in pictures: how much of a plate, a shell, a line, a voxel
+ * and of balls of a few voxels is seen. */
+#include <math.h>
+#include <string.h>
+
+#include "../asserts.h"
+#include "reference_stage.h"
+
+enum { SIDE = 160, PIXELS = SIDE * SIDE, N = 40 };
+
+static unsigned char voxels[N * N * N];
+static float pixels[4 * PIXELS];
+
+/* How far inside a shape a point is; below 0: outside. */
+typedef double depth_function(const void *shape, vec3 p);
+
+/* Fills the grid, whose middle is the origin; returns the count of the label's voxels. */
+static int fill_voxels(depth_function *depth, const void *shape) {
+  int count = 0;
+  for (int k = 0; k < N; k++)
+    for (int j = 0; j < N; j++)
+      for (int i = 0; i < N; i++) {
+        const vec3 p = {i - (N - 1) / 2.0, j - (N - 1) / 2.0, k - (N - 1) / 2.0};
+        count += voxels[(k * N + j) * N + i] = depth(shape, p) > 0;
+      }
+  return count;
+}
+
+/* The picture of label 1, solid, seen orthographically along a direction; `height` voxels high. */
+static void draw(vec3 along, double height) {
+  static const hl_label label[] = {{1, NULL, {1, 1, 1}, 1, 1, 0}};
+  stage set;
+  stage_open(&set);
+  set.scene.width = set.scene.height = SIDE;
+  set.scene.camera.height = height;
+  const vec3 up = fabs(along.y) < 0.9 ? (vec3){0, 1, 0} : (vec3){1, 0, 0};
+  stage_look(&set, vec3_scale(vec3_normalise(along), -100), (vec3){0, 0, 0}, up);
+  static float values[N * N * N];
+  for (int n = 0; n < N * N * N; n++) values[n] = voxels[n];
+  hl_scene_volume *map = stage_add_grid(&set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1},
+                                        (vec3){-N / 2, -N / 2, -N / 2}, values);
+  map->labels = label;
+  map->label_count = 1;
+  map->shading = HL_SHADING_FLAT;
+  stage_render_by(&set, false, pixels);
+  stage_close(&set);
+}
+
+/* The area in which the label covers pixels, in squares of voxels. */
+static double area_seen(double height) {
+  double sum = 0;
+  for (int n = 0; n < PIXELS; n++) sum += (double)pixels[4 * n + 3];
+  return sum * height / SIDE * height / SIDE;
+}
+
+/* Where the picture has a point, in the picture's voxels from its middle. */
+static double alpha_at(double x, double y, double height) {
+  const int column = (int)((x / height + 0.5) * SIDE), row = (int)((0.5 - y / height) * SIDE);
+  return (double)pixels[4 * (row * SIDE + column) + 3];
+}
+
+static double random_number(uint32_t *seed) {
+  return (double)(*seed = *seed * 1664525u + 1013904223u) / 4294967296.0;
+}
+
+static vec3 random_direction(uint32_t *seed) {
+  for (;;) {
+    vec3 v = {2 * random_number(seed) - 1, 2 * random_number(seed) - 1, 2 * random_number(seed) - 1};
+    double length = vec3_length(v);
+    if (length > 0.1 && length < 1) return vec3_scale(v, 1 / length);
+  }
+}
+
+/* ---- plates ---- */
+
+typedef struct plate {
+  vec3 normal;
+  double half, radius, offset;
+} plate;
+
+static double depth_in_plate(const void *shape, vec3 p) {
+  const plate *s = shape;
+  const double height = vec3_dot(p, s->normal) - s->offset;
+  const double across = sqrt(fmax(vec3_dot(p, p) - (height + s->offset) * (height + s->offset), 0));
+  return fmin(s->half - fabs(height), s->radius - across);
+}
+
+/* A round plate one voxel thin, as it lies in the grid, shows .9 of what one of two voxels shows: head on,
+ * and from the side. */
+static void test_plates(void **state) {
+  (void)state;
+  uint32_t seed = 3;
+  for (int k = 0; k < 33; k++) {
+    plate s = {.normal = random_direction(&seed), .radius = 13, .offset = 0.5 * random_number(&seed)};
+    if (k < 3) s.normal = (vec3){k == 0, k == 1, k == 2}, s.offset = 0.5;
+    const vec3 aside = random_direction(&seed);
+    for (int view = 0; view < 2; view++) {
+      const vec3 along = view == 0 ? s.normal : vec3_add(s.normal, vec3_scale(aside, 0.8));
+      double area[2];
+      for (int thickness = 1; thickness <= 2; thickness++) {
+        s.half = thickness / 2.0;
+        (void)fill_voxels(depth_in_plate, &s);
+        draw(along, 36);
+        area[thickness - 1] = area_seen(36);
+      }
+      assert_true(area[1] > 0.9 * HL_PI * 13 * 13 * fabs(vec3_dot(s.normal, vec3_normalise(along))));
+      assert_true(area[0] > 0.9 * area[1]);
+    }
+  }
+}
+
+/* ---- shells ---- */
+
+static double depth_in_shell(const void *shape, vec3 p) {
+  return 0.5 - fabs(vec3_length(p) - *(const double *)shape);
+}
+
+static void test_shells(void **state) {
+  (void)state;
+  uint32_t seed = 9;
+  for (int k = 0; k < 6; k++) {
+    const double radius = 8 + 6 * random_number(&seed);
+    (void)fill_voxels(depth_in_shell, &radius);
+    draw(random_direction(&seed), 36);
+    for (int n = 0; n < 4000; n++) {
+      const double r = (radius - 1) * sqrt(random_number(&seed)), turn = 2 * HL_PI * random_number(&seed);
+      assert_true(alpha_at(r * cos(turn), r * sin(turn), 36) > 0.98);
+    }
+  }
+}
+
+/* ---- lines and voxels ---- */
+
+typedef struct line {
+  vec3 direction;
+  double half;
+} line;
+
+/* The voxels that a line passes nearest: each is marked from the line's points. */
+static void fill_line(const line *s) {
+  memset(voxels, 0, sizeof voxels);
+  for (int n = -1000; n <= 1000; n++) {
+    const vec3 p = vec3_scale(s->direction, s->half * n / 1000);
+    const int i = (int)floor(p.x + N / 2), j = (int)floor(p.y + N / 2), k = (int)floor(p.z + N / 2);
+    voxels[(k * N + j) * N + i] = 1;
+  }
+}
+
+/* Seen from the side, a line is a band without a gap. */
+static void test_lines(void **state) {
+  (void)state;
+  uint32_t seed = 4;
+  for (int k = 0; k < 30; k++) {
+    line s = {random_direction(&seed), 14};
+    if (k < 3) s.direction = (vec3){k == 0, k == 1, k == 2};
+    if (k == 3) s.direction = vec3_normalise((vec3){1, 1, 1});
+    const vec3 aside = vec3_normalise(vec3_cross(s.direction, random_direction(&seed)));
+    fill_line(&s);
+    draw(aside, 36);
+    const vec3 up = fabs(aside.y) < 0.9 ? (vec3){0, 1, 0} : (vec3){1, 0, 0};
+    const vec3 right = vec3_normalise(vec3_cross(aside, up)), above = vec3_cross(right, aside);
+    for (int n = -120; n <= 120; n++) {
+      const vec3 p = vec3_scale(s.direction, 13.0 * n / 120);
+      double most = 0;
+      for (int b = -12; b <= 12; b++) {
+        const vec3 q = vec3_add(p, vec3_scale(vec3_cross(s.direction, aside), b / 10.0));
+        most = fmax(most, alpha_at(vec3_dot(q, right), vec3_dot(q, above), 36));
+      }
+      assert_true(most > 0.7);
+    }
+  }
+}
+
+static void test_a_voxel(void **state) {
+  (void)state;
+  uint32_t seed = 6;
+  memset(voxels, 0, sizeof voxels);
+  voxels[(20 * N + 20) * N + 20] = 1;
+  for (int k = 0; k < 8; k++) {
+    draw(random_direction(&seed), 8);
+    assert_true(area_seen(8) > 1); /* a cube shows 1.5 in the mean over all directions */
+    assert_true(area_seen(8) < 2);
+  }
+}
+
+/* ---- volumes ---- */
+
+typedef struct ball {
+  vec3 centre;
+  double radius;
+} ball;
+
+static double depth_in_ball(const void *shape, vec3 p) {
+  const ball *b = shape;
+  return b->radius - vec3_length(vec3_subtract(p, b->centre));
+}
+
+/* A ball of a few voxels: its outlines enclose the area of a ball of the voxels' volume. */
+static void test_outlines_of_balls(void **state) {
+  (void)state;
+  static const double radii[] = {1.5, 2, 3, 4, 6, 10};
+  uint32_t seed = 2;
+  for (int k = 0; k < 6; k++) {
+    const double height = 3 * radii[k] + 2;
+    double sum = 0;
+    enum { VIEWS = 12 };
+    for (int view = 0; view < VIEWS; view++) {
+      const ball b = {{random_number(&seed), random_number(&seed), random_number(&seed)}, radii[k]};
+      const int count = fill_voxels(depth_in_ball, &b);
+      draw(random_direction(&seed), height);
+      sum += pow(area_seen(height) / HL_PI, 1.5) * 4 * HL_PI / 3 / count / VIEWS;
+    }
+    assert_near(sum, 1, radii[k] < 3 ? 0.03 : 0.01);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_plates), cmocka_unit_test(test_shells),
+                                     cmocka_unit_test(test_lines), cmocka_unit_test(test_a_voxel),
+                                     cmocka_unit_test(test_outlines_of_balls)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
