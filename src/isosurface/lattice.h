@@ -8,7 +8,7 @@
 #define HL_ISOSURFACE_LATTICE_H
 
 #include "core/pool.h"
-#include "isosurface/field.h"
+#include "grid/field.h"
 
 /* A brick's points and edges; bit x + 4 y + 16 z. */
 typedef struct lattice_brick {

@@ -1,9 +1,13 @@
-/* reference/clip_faces.c - the faces at which clipping cuts a volume's matter. */
+/* reference/clip_faces.c - the faces of a volume's box, at the grid's border or at a clip, which cut its
+ * matter. */
 #include <math.h>
 
 #include "reference/reference.h"
 
 static const double TOUCHING = 1e-3; /* voxels */
+
+/* Points as far behind a face as these are lit as usual. */
+static const double FACE_VOXELS = 2;
 
 /* The bounds of another volume's box in this one's index space. */
 static void bounds_of(const hl_scene_volume *other, affine3 world_to_index, double low[3], double high[3]) {
@@ -36,25 +40,42 @@ static void join(const hl_scene_volume *other, reference_volume *volume) {
 void hl_reference_find_clip_faces(const hl_scene_description *scene, reference_volume *volume) {
   for (int a = 0; a < 3; a++) {
     bool faces = volume->described->cut_shading != HL_CUT_SHADING_GRADIENT;
-    bool low = faces && volume->low[a] > -0.5,
-         high = faces && volume->high[a] < (double)volume->grid->dimension[a] - 0.5;
-    volume->clip_low[a] = low ? volume->low[a] : -INFINITY;
-    volume->clip_high[a] = high ? volume->high[a] : INFINITY;
+    volume->clip_low[a] = faces ? volume->low[a] : -INFINITY;
+    volume->clip_high[a] = faces ? volume->high[a] : INFINITY;
   }
   for (size_t i = 0; i < scene->volume_count; i++)
     if (&scene->volumes[i] != volume->described && scene->volumes[i].casts_shadow)
       join(&scene->volumes[i], volume);
 }
 
-double hl_reference_nearest_clip(const reference_volume *volume, vec3 point, vec3 *outward) {
+/* Whether a point is seen through matter that a face cuts: what ends by itself close to the face is not.
+ * to_eye: by index coordinates. */
+static bool seen_through_face(const reference_volume *volume, vec3 point, vec3 to_eye, int axis,
+                              double face) {
+  const double p[3] = {point.x, point.y, point.z}, along[3] = {to_eye.x, to_eye.y, to_eye.z};
+  const double way = (face - p[axis]) / along[axis];
+  if (!(way >= 0)) return false;
+  const vec3 at = vec3_add(point, vec3_scale(to_eye, way));
+  const double crossed[3] = {at.x, at.y, at.z};
+  for (int a = 0; a < 3; a++)
+    if (a != axis && (crossed[a] < volume->low[a] || crossed[a] > volume->high[a])) return false;
+  return hl_reference_extinction(volume, hl_reference_value(volume, at), at) > 0;
+}
+
+double hl_reference_nearest_clip(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *outward) {
+  const vec3 along = mat3_apply(volume->world_to_index.linear, to_eye);
   const double p[3] = {point.x, point.y, point.z};
   double least = INFINITY;
   for (int a = 0; a < 3; a++) {
     vec3 rise = mat3_apply(volume->gradient_to_world, (vec3){a == 0, a == 1, a == 2});
-    double edge = 1 / vec3_length(rise), low = fmax(p[a] - volume->clip_low[a], 0) * edge,
-           high = fmax(volume->clip_high[a] - p[a], 0) * edge;
-    if (low < least) least = low, *outward = vec3_scale(rise, -edge);
-    if (high < least) least = high, *outward = vec3_scale(rise, edge);
+    const double edge = 1 / vec3_length(rise), faces[2] = {volume->clip_low[a], volume->clip_high[a]};
+    for (int high = 0; high < 2; high++) {
+      const double depth = fmax(high ? faces[1] - p[a] : p[a] - faces[0], 0) * edge;
+      if (!(depth < least) || depth >= FACE_VOXELS * volume->smallest_edge) continue;
+      if (!seen_through_face(volume, point, along, a, faces[high])) continue;
+      least = depth;
+      *outward = vec3_scale(rise, high ? edge : -edge);
+    }
   }
   return least;
 }

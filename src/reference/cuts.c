@@ -96,7 +96,7 @@ double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to
                              double *surface) {
   const hl_scene_volume *described = volume->described;
   vec3 face = {0, 0, 0};
-  double least = hl_reference_nearest_clip(volume, point, &face);
+  double least = hl_reference_nearest_clip(volume, point, to_eye, &face);
   if (described->cut_shading == HL_CUT_SHADING_GRADIENT) return 0;
   for (size_t i = 0; i < described->cut_count; i++) {
     affine3 world = world_of(volume, &described->cuts[i]);

@@ -45,7 +45,7 @@ typedef struct reference_volume {
   affine3 index_to_world, world_to_index;
   mat3 gradient_to_world;           /* inverse transpose of index-to-world */
   double low[3], high[3];           /* the box, in index space */
-  double clip_low[3], clip_high[3]; /* its faces at which clipping cuts; else infinite */
+  double clip_low[3], clip_high[3]; /* its faces where matter ends; infinite where another volume goes on */
   double empty_value;               /* data value of voxels that are not finite */
   double empty_stored;              /* data value of voxels that are not finite, as a stored value */
   double transparent_below;         /* data values below this are empty space; -infinity: none are */
@@ -259,11 +259,11 @@ vec3 hl_reference_mask_slope(const reference_volume *volume, vec3 point);
 double hl_reference_mask_color(const reference_volume *volume, vec3 point, double color[3]);
 /* Data value per world unit. */
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);
-/* Finds the faces at which clipping cuts the volume and no other one goes on; its box is known. */
+/* Finds the faces of the volume's box at which no other volume goes on; the box is known. */
 void hl_reference_find_clip_faces(const hl_scene_description *scene, reference_volume *volume);
-/* How deep a point of index space lies behind the nearest of them, in world units, and the face's outward
- * normal; infinite: there is none. */
-double hl_reference_nearest_clip(const reference_volume *volume, vec3 point, vec3 *outward);
+/* How deep a point of index space lies behind the nearest of them through whose cut matter it is seen, in
+ * world units, and the face's outward normal; infinite: there is none within two voxels. */
+double hl_reference_nearest_clip(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *outward);
 /* sigma, 1 / world length; algorithm.md's sigma(f) = -ln(1 - alpha(f)) / u, times gradient opacity. value:
  * that at the point. */
 double hl_reference_extinction(const reference_volume *volume, double value, vec3 point);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "grid/faces.h"
 #include "grid/make_grid.h"
 #include "grid/relevant.h"
 #include "isosurface/isosurface.h"
@@ -229,6 +230,7 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
   if (status == HL_OK) status = keep_key(context, prepared, scene, error);
   if (status != HL_OK) return status;
   hl_grid_mark_relevant(&prepared->grid, with->functions, &prepared->classifier, pool);
+  hl_faces_find(pool, hl_kernel_get(kernel), &prepared->classifier, &prepared->grid);
   return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
 }
 

@@ -28,6 +28,15 @@ typedef struct voxel_colors {
   const float *decode;         /* [256]: the linear values of codes */
 } voxel_colors;
 
+/* A face of a volume's box that cuts through visible matter. */
+typedef struct box_face {
+  int axis, high, row, column; /* the map's axes: grid/faces.h */
+  int32_t last[2];             /* the greatest index of the map along its rows and columns */
+  float at;                    /* the face; index space */
+  float edge;                  /* between the planes of voxels along the axis; frame units */
+  const float *map;            /* the density on the face (grid/faces.h) */
+} box_face;
+
 typedef struct shade_volume {
   const classifier *classifier;
   const grid *grid;
@@ -40,9 +49,8 @@ typedef struct shade_volume {
   float emission;                              /* ke; 1 for a volume shaded flat */
   float cast[HL_CHANNELS];               /* relative extinction towards the lights; 0: casts no shadow */
   float to_index[3][4], low[3], high[3]; /* frame space to index space, and the box there */
-  int clip_faces;                        /* clipping cuts through visible matter: */
-  float clip_low[3], clip_high[3];       /* at these faces of the box; far outside where at none */
-  float clip_edge[3];                    /* between the planes of voxels along i, j, k; frame units */
+  box_face faces[6];                     /* [face_count]; those of the box that cut through visible matter */
+  int face_count;
   const float (*shown)[4]; /* in a maximum projection: SHOWN_FROM and so on, per table entry; else null */
   int rank;                /* among the visible volumes */
   float anisotropy;        /* g of the phase function */

@@ -241,6 +241,9 @@ LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
   d->normal = scale3(slope, outward / lanes_max(steepness, lanes_set(1e-18f)));
 }
 
+/* Points so many voxels behind a face are lit as usual, nearer ones more and more by the face. */
+static const float FACE_VOXELS = 2;
+
 /* The nearest face that cuts a volume. */
 typedef struct cut_face {
   lanes depth;    /* of the point behind it; frame units */
@@ -255,14 +258,52 @@ LANES_INLINE void take_nearer(cut_face *nearest, lanes depth, lanes3 outward) {
   nearest->outward.z = lanes_select(nearer, outward.z, nearest->outward.z);
 }
 
-LANES_INLINE void find_nearest_clip(const shade_volume *volume, lanes3 point, cut_face *nearest) {
-  for (int axis = 0; axis < 3; axis++) {
-    const float *row = volume->to_index[axis], edge = volume->clip_edge[axis];
-    lanes at = row_of_point(row, point);
-    take_nearer(nearest, lanes_max(at - volume->clip_low[axis], lanes_set(0)) * edge,
-                scale3(set3(row), lanes_set(-edge)));
-    take_nearer(nearest, lanes_max(volume->clip_high[axis] - at, lanes_set(0)) * edge,
-                scale3(set3(row), lanes_set(edge)));
+/* The density on a face at a point of it: between the points of the face's map. */
+LANES_INLINE lanes density_on_face(const box_face *face, const lanes at[2]) {
+  lanes_int near[2], far[2];
+  lanes part[2];
+  for (int a = 0; a < 2; a++) {
+    lanes inside = lanes_clamp(at[a], 0, (float)face->last[a]);
+    near[a] = lanes_truncate(inside);
+    far[a] = lanes_select_int(near[a] < face->last[a], near[a] + 1, near[a]);
+    part[a] = inside - lanes_from_int(near[a]);
+  }
+  const int32_t width = face->last[0] + 1;
+  lanes side[2];
+  for (int n = 0; n < 2; n++) {
+    lanes_int row = (n == 0 ? near[1] : far[1]) * width;
+    lanes from = lanes_gather(face->map, row + near[0]), to = lanes_gather(face->map, row + far[0]);
+    side[n] = lanes_fma(to - from, part[0], from);
+  }
+  return lanes_fma(side[1] - side[0], part[1], side[0]);
+}
+
+/* Where a point is seen through matter that a face cuts: the eye's ray crosses the face between the eye and
+ * the point, and matter is visible there. beyond: from the point to the face's plane, in voxels. */
+LANES_INLINE lanes_int seen_through_face(const shade_volume *volume, const box_face *face, lanes3 point,
+                                         lanes3 towards_eye, lanes beyond) {
+  lanes way = beyond / some_speed(row_of_vector(volume->to_index[face->axis], towards_eye));
+  lanes_int through = way >= 0.0f;
+  const int axes[2] = {face->row, face->column};
+  lanes at[2];
+  for (int a = 0; a < 2; a++) {
+    const float *row = volume->to_index[axes[a]];
+    at[a] = lanes_fma(row_of_vector(row, towards_eye), way, row_of_point(row, point));
+    through &= (at[a] >= volume->low[axes[a]]) & (at[a] <= volume->high[axes[a]]);
+  }
+  table_coordinate there = coordinate_of_density(volume->classifier, density_on_face(face, at));
+  return through & may_be_visible(volume->classifier, there, there);
+}
+
+LANES_INLINE void find_nearest_box_face(const shade_volume *volume, lanes3 point, lanes3 towards_eye,
+                                        lanes_int seen, cut_face *nearest) {
+  for (int i = 0; i < volume->face_count; i++) {
+    const box_face *face = &volume->faces[i];
+    const float *row = volume->to_index[face->axis], edge = face->high ? face->edge : -face->edge;
+    lanes beyond = face->at - row_of_point(row, point), depth = lanes_max(beyond * edge, lanes_set(0));
+    if (lanes_bits(seen & (depth < FACE_VOXELS * volume->voxel)) == 0) continue;
+    lanes_int cut = seen_through_face(volume, face, point, towards_eye, beyond);
+    take_nearer(nearest, lanes_select(cut, depth, lanes_set(1e30f)), scale3(set3(row), lanes_set(edge)));
   }
 }
 
@@ -275,17 +316,17 @@ LANES_INLINE void find_nearest_cut(const shade_volume *volume, lanes3 point, cut
   }
 }
 
-/* Within two voxels behind the nearest face of a cut or of the clip box, the normal turns to the face's own,
- * or the surface to a medium: the data's gradient, of even matter, is its noise there. No normal turns to a
- * face that the eye does not see: that would darken outlines. To one seen at a cosine below 0.1 they turn
- * less. */
+/* Within two voxels behind the nearest face of a cut or of the volume's box, the normal turns to the face's
+ * own, or the surface to a medium: the data's gradient, of even matter, is its noise there. No normal turns
+ * to a face that the eye does not see: that would darken outlines. To one seen at a cosine below 0.1 they
+ * turn less. */
 LANES_INLINE void find_cut_face(const block_slab *slab, block_density *d) {
   const shade_volume *volume = d->patch->volume;
   lanes3 point = seen_position(slab, d);
   cut_face nearest = {lanes_set(1e30f), {lanes_set(0), lanes_set(0), lanes_set(0)}};
-  if (volume->clip_faces) find_nearest_clip(volume, point, &nearest);
+  find_nearest_box_face(volume, point, slab->geometry.towards_eye, slab->seen, &nearest);
   find_nearest_cut(volume, point, &nearest);
-  d->skin = lanes_clamp(2.0f - nearest.depth * (1.0f / volume->voxel), 0, 1);
+  d->skin = lanes_clamp(FACE_VOXELS - nearest.depth * (1.0f / volume->voxel), 0, 1);
   if (volume->cut_shading == HL_CUT_SHADING_FACE)
     d->skin = d->skin * lanes_clamp(dot3(nearest.outward, slab->geometry.towards_eye) * 10.0f, 0, 1);
   lanes rest = 1.0f - d->skin;
@@ -304,7 +345,7 @@ LANES_INLINE void find_normals(const block_slab *slab, block_density *densities,
     find_normal(slab, &densities[i]);
     densities[i].skin = lanes_set(0);
     const shade_volume *volume = densities[i].patch->volume;
-    bool cut = volume->cut_count > 0 || volume->clip_faces;
+    bool cut = volume->cut_count > 0 || volume->face_count > 0;
     if (cut && volume->phong && volume->cut_shading != HL_CUT_SHADING_GRADIENT)
       find_cut_face(slab, &densities[i]);
   }

@@ -1,11 +1,13 @@
 /* render/sweep_begin.c - steps 1 to 4: views, sorting, memory, full light. */
 #define _POSIX_C_SOURCE 200809L /* clock_gettime */
+#include <math.h>
 #include <string.h>
 #include <time.h>
 
 #include <halflight/render.h>
 
 #include "core/memory.h"
+#include "grid/faces.h"
 #include "grid/relevant.h"
 #include "image/srgb.h"
 #include "render/light_reads.h"
@@ -270,16 +272,23 @@ static void set_up_cuts(sweep *sweep) {
   }
 }
 
-/* Finds the faces at which clipping cuts through visible matter that no other volume continues. */
-static void find_clip_faces(const grid *grid, shade_volume *shade) {
+/* Finds the faces of the box that cut through visible matter which no other volume continues. */
+static void find_box_faces(const grid *grid, shade_volume *shade) {
   for (int axis = 0; axis < 3; axis++) {
-    bool low = grid->box_low[axis] > -0.5 && grid->face_low[axis] > -FACE_FAR_OUT,
-         high = grid->box_high[axis] < (double)grid->dimension[axis] - 0.5 &&
-                grid->face_high[axis] < FACE_FAR_OUT;
-    shade->clip_low[axis] = low ? (float)grid->box_low[axis] : -FACE_FAR_OUT;
-    shade->clip_high[axis] = high ? (float)grid->box_high[axis] : FACE_FAR_OUT;
-    shade->clip_edge[axis] = (float)(1 / vec3_length(grid->frame_to_index.linear.row[axis]));
-    shade->clip_faces = shade->clip_faces || low || high;
+    const float at[2] = {grid->face_low[axis], grid->face_high[axis]};
+    for (int high = 0; high < 2; high++) {
+      if (!grid->face_shows[axis][high] || fabsf(at[high]) >= FACE_FAR_OUT) continue;
+      shade->faces[shade->face_count++] = (box_face){
+          .axis = axis,
+          .high = high,
+          .row = hl_face_row_axis(axis),
+          .column = hl_face_column_axis(axis),
+          .last = {grid->dimension[hl_face_row_axis(axis)] - 1,
+                   grid->dimension[hl_face_column_axis(axis)] - 1},
+          .at = at[high],
+          .edge = (float)(1 / vec3_length(grid->frame_to_index.linear.row[axis])),
+          .map = grid->face_maps[axis][high]};
+    }
   }
 }
 
@@ -331,7 +340,7 @@ static void set_up_shading(sweep *sweep) {
       shade->low[axis] = (float)grid->box_low[axis];
       shade->high[axis] = (float)grid->box_high[axis];
     }
-    if (volume->cut_shading != HL_CUT_SHADING_GRADIENT) find_clip_faces(grid, shade);
+    if (volume->cut_shading != HL_CUT_SHADING_GRADIENT) find_box_faces(grid, shade);
     shade->mask_faces = shade->phong && shade->classifier->mask.slopes != NULL &&
                         volume->cut_shading == HL_CUT_SHADING_FACE;
   }

@@ -1,5 +1,5 @@
-/* isosurface/field.c - see field.h. */
-#include "isosurface/field.h"
+/* grid/field.c - see field.h. */
+#include "grid/field.h"
 
 /* The kernel's value at a distance, and its derivative by the coordinate. */
 static void kernel_at(const kernel *kernel, double distance, double *value, double *slope) {

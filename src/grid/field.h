@@ -1,8 +1,8 @@
-/* isosurface/field.h - what the kernel makes of a grid's voxels at any point: its value and its gradient.
+/* grid/field.h - what the kernel makes of a grid's voxels at any point: its value and its gradient.
  *
  * Points are in index space, values in stored units. Beyond the grid's faces the border's voxels continue. */
-#ifndef HL_ISOSURFACE_FIELD_H
-#define HL_ISOSURFACE_FIELD_H
+#ifndef HL_GRID_FIELD_H
+#define HL_GRID_FIELD_H
 
 #include "grid/grid.h"
 

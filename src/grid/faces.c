@@ -1,0 +1,89 @@
+/* grid/faces.c - see faces.h. */
+#include "grid/faces.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "grid/field.h"
+#include "grid/relevant.h"
+
+void hl_faces_lay_out(grid *grid, hl_layout *layout) {
+  for (int axis = 0; axis < 3; axis++) {
+    const size_t points = (size_t)grid->dimension[hl_face_row_axis(axis)] *
+                          (size_t)grid->dimension[hl_face_column_axis(axis)];
+    for (int high = 0; high < 2; high++)
+      grid->face_maps[axis][high] = hl_layout_take(layout, points, sizeof(float));
+  }
+}
+
+typedef struct face_job {
+  const grid *grid;
+  const kernel *kernel;
+  const classifier *classifier;
+  int axis;
+  float *map;
+  field_taps across; /* the face's place */
+  int visible;       /* any point */
+} face_job;
+
+/* The field at a point of the face; rows: taps along the map's columns. */
+static float value_at(const face_job *job, const field_taps *column, const field_taps *row) {
+  const int u = hl_face_row_axis(job->axis), v = hl_face_column_axis(job->axis);
+  double sum = 0;
+  for (int n = 0; n < FIELD_TAPS * FIELD_TAPS * FIELD_TAPS; n++) {
+    const int a = n / (FIELD_TAPS * FIELD_TAPS), b = n / FIELD_TAPS % FIELD_TAPS, c = n % FIELD_TAPS;
+    const double weight = job->across.weight[a] * column->weight[b] * row->weight[c];
+    if (weight == 0) continue;
+    int64_t at[3];
+    at[job->axis] = job->across.first + a;
+    at[v] = column->first + b;
+    at[u] = row->first + c;
+    sum += weight * (double)hl_stored_value(job->grid, at[0], at[1], at[2]);
+  }
+  return (float)sum;
+}
+
+/* The brick of a point, which has a voxel's coordinates along the face. */
+static bool may_be_visible(const face_job *job, int32_t row, int32_t column) {
+  int32_t at[3];
+  at[job->axis] = job->across.first + 1; /* the cell's lower voxel */
+  at[hl_face_row_axis(job->axis)] = row;
+  at[hl_face_column_axis(job->axis)] = column;
+  for (int a = 0; a < 3; a++) at[a] = (at[a] + 1) / HL_BRICK_CELLS;
+  return job->grid->relevant[hl_brick_index(job->grid, at)] != 0;
+}
+
+static void find_row(void *data, size_t column, int worker) {
+  (void)worker;
+  face_job *job = data;
+  const int32_t count = job->grid->dimension[hl_face_row_axis(job->axis)];
+  float *map = job->map + column * (size_t)count;
+  const field_taps columns = hl_field_taps(job->kernel, (double)column);
+  bool any = false;
+  for (int32_t n = 0; n < count; n++) {
+    map[n] = 0;
+    if (!may_be_visible(job, n, (int32_t)column)) continue;
+    const field_taps rows = hl_field_taps(job->kernel, n);
+    const float value = value_at(job, &columns, &rows);
+    map[n] = value - job->grid->empty;
+    any = any || hl_classifier_span_visible(job->classifier, job->grid, value, value);
+  }
+  if (any) __atomic_store_n(&job->visible, 1, __ATOMIC_RELAXED);
+}
+
+void hl_faces_find(hl_pool *pool, const kernel *kernel, const classifier *classifier, grid *grid) {
+  for (int axis = 0; axis < 3; axis++)
+    for (int high = 0; high < 2; high++) {
+      const float face = high ? grid->face_high[axis] : grid->face_low[axis];
+      grid->face_shows[axis][high] = false;
+      if (fabsf(face) >= FACE_FAR_OUT) continue;
+      face_job job = {.grid = grid,
+                      .kernel = kernel,
+                      .classifier = classifier,
+                      .axis = axis,
+                      .map = grid->face_maps[axis][high],
+                      .across = hl_field_taps(kernel, (double)face)};
+      hl_pool_run(pool, (size_t)grid->dimension[hl_face_column_axis(axis)], find_row, &job);
+      grid->face_shows[axis][high] = job.visible != 0;
+    }
+}
