@@ -7,28 +7,22 @@
 #include "grid/field.h"
 #include "grid/relevant.h"
 
-void hl_faces_lay_out(grid *grid, hl_layout *layout) {
-  for (int axis = 0; axis < 3; axis++) {
-    const size_t points = (size_t)grid->dimension[hl_face_row_axis(axis)] *
-                          (size_t)grid->dimension[hl_face_column_axis(axis)];
-    for (int high = 0; high < 2; high++)
-      grid->face_maps[axis][high] = hl_layout_take(layout, points, sizeof(float));
-  }
-}
+/* The axes along a face across an axis. */
+static int row_axis(int axis) { return axis == 0 ? 1 : 0; }
+static int column_axis(int axis) { return axis == 2 ? 1 : 2; }
 
 typedef struct face_job {
   const grid *grid;
   const kernel *kernel;
   const classifier *classifier;
   int axis;
-  float *map;
   field_taps across; /* the face's place */
   int visible;       /* any point */
 } face_job;
 
-/* The field at a point of the face; rows: taps along the map's columns. */
+/* The field at a point of the face. */
 static float value_at(const face_job *job, const field_taps *column, const field_taps *row) {
-  const int u = hl_face_row_axis(job->axis), v = hl_face_column_axis(job->axis);
+  const int u = row_axis(job->axis), v = column_axis(job->axis);
   double sum = 0;
   for (int n = 0; n < FIELD_TAPS * FIELD_TAPS * FIELD_TAPS; n++) {
     const int a = n / (FIELD_TAPS * FIELD_TAPS), b = n / FIELD_TAPS % FIELD_TAPS, c = n % FIELD_TAPS;
@@ -47,28 +41,24 @@ static float value_at(const face_job *job, const field_taps *column, const field
 static bool may_be_visible(const face_job *job, int32_t row, int32_t column) {
   int32_t at[3];
   at[job->axis] = job->across.first + 1; /* the cell's lower voxel */
-  at[hl_face_row_axis(job->axis)] = row;
-  at[hl_face_column_axis(job->axis)] = column;
+  at[row_axis(job->axis)] = row;
+  at[column_axis(job->axis)] = column;
   for (int a = 0; a < 3; a++) at[a] = (at[a] + 1) / HL_BRICK_CELLS;
   return job->grid->relevant[hl_brick_index(job->grid, at)] != 0;
 }
 
-static void find_row(void *data, size_t column, int worker) {
+static void look_along_row(void *data, size_t column, int worker) {
   (void)worker;
   face_job *job = data;
-  const int32_t count = job->grid->dimension[hl_face_row_axis(job->axis)];
-  float *map = job->map + column * (size_t)count;
   const field_taps columns = hl_field_taps(job->kernel, (double)column);
-  bool any = false;
-  for (int32_t n = 0; n < count; n++) {
-    map[n] = 0;
+  for (int32_t n = 0; n < job->grid->dimension[row_axis(job->axis)]; n++) {
+    if (__atomic_load_n(&job->visible, __ATOMIC_RELAXED)) return;
     if (!may_be_visible(job, n, (int32_t)column)) continue;
     const field_taps rows = hl_field_taps(job->kernel, n);
     const float value = value_at(job, &columns, &rows);
-    map[n] = value - job->grid->empty;
-    any = any || hl_classifier_span_visible(job->classifier, job->grid, value, value);
+    if (hl_classifier_span_visible(job->classifier, job->grid, value, value))
+      __atomic_store_n(&job->visible, 1, __ATOMIC_RELAXED);
   }
-  if (any) __atomic_store_n(&job->visible, 1, __ATOMIC_RELAXED);
 }
 
 void hl_faces_find(hl_pool *pool, const kernel *kernel, const classifier *classifier, grid *grid) {
@@ -81,9 +71,8 @@ void hl_faces_find(hl_pool *pool, const kernel *kernel, const classifier *classi
                       .kernel = kernel,
                       .classifier = classifier,
                       .axis = axis,
-                      .map = grid->face_maps[axis][high],
                       .across = hl_field_taps(kernel, (double)face)};
-      hl_pool_run(pool, (size_t)grid->dimension[hl_face_column_axis(axis)], find_row, &job);
+      hl_pool_run(pool, (size_t)grid->dimension[column_axis(axis)], look_along_row, &job);
       grid->face_shows[axis][high] = job.visible != 0;
     }
 }

@@ -58,7 +58,6 @@ typedef struct grid {
   float face_low[3], face_high[3]; /* the box's faces that cut something visible; others are far outside, and
                                       in a frame those where another volume goes on */
   bool face_shows[3][2];           /* [axis][low, high]: whether something is visible on the face itself */
-  float *face_maps[3][2];          /* in the grid's memory; densities on the face (faces.h) */
   int32_t brick_count[3];
   void *brick_bounds;      /* [bricks z][y][x][2]; least and greatest stored value, of the voxels' type,
                               of the voxels that the brick's cells and the cells around it depend on */

@@ -5,7 +5,6 @@
 
 #include "core/memory.h"
 #include "grid/bounds.h"
-#include "grid/faces.h"
 #include "grid/prefilter.h"
 #include "grid/relevant.h"
 #include "grid/value_pages.h"
@@ -122,7 +121,6 @@ static void lay_out(grid *grid, const hl_volume *volume, const kernel *kernel,
   hl_bricks_lay_out(grid, layout);
   if (grid->pages == NULL && kernel->degree == HL_BSPLINE_DEGREE) hl_cell_bits_lay_out(grid, layout);
   hl_cells_lay_out(grid, layout);
-  hl_faces_lay_out(grid, layout);
 }
 
 uint64_t hl_grid_bytes(const hl_volume *volume, const kernel *kernel, const grid_functions *functions,

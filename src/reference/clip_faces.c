@@ -6,9 +6,6 @@
 
 static const double TOUCHING = 1e-3; /* voxels */
 
-/* Points as far behind a face as these are lit as usual. */
-static const double FACE_VOXELS = 2;
-
 /* The bounds of another volume's box in this one's index space. */
 static void bounds_of(const hl_scene_volume *other, affine3 world_to_index, double low[3], double high[3]) {
   affine3 placement = affine3_multiply(world_to_index, hl_scene_volume_index_to_world(other));
@@ -48,34 +45,19 @@ void hl_reference_find_clip_faces(const hl_scene_description *scene, reference_v
       join(&scene->volumes[i], volume);
 }
 
-/* Whether a point is seen through matter that a face cuts: what ends by itself close to the face is not.
- * to_eye: by index coordinates. */
-static bool seen_through_face(const reference_volume *volume, vec3 point, vec3 to_eye, int axis,
-                              double face) {
-  const double p[3] = {point.x, point.y, point.z}, along[3] = {to_eye.x, to_eye.y, to_eye.z};
-  const double way = (face - p[axis]) / along[axis];
-  if (!(way >= 0)) return false;
-  const vec3 at = vec3_add(point, vec3_scale(to_eye, way));
-  const double crossed[3] = {at.x, at.y, at.z};
-  for (int a = 0; a < 3; a++)
-    if (a != axis && (crossed[a] < volume->low[a] || crossed[a] > volume->high[a])) return false;
-  return hl_reference_extinction(volume, hl_reference_value(volume, at), at) > 0;
-}
-
-double hl_reference_nearest_clip(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *outward) {
-  const vec3 along = mat3_apply(volume->world_to_index.linear, to_eye);
-  const double p[3] = {point.x, point.y, point.z};
+double hl_reference_leaves_box(const reference_volume *volume, vec3 point, vec3 direction, vec3 *outward) {
+  const double p[3] = {point.x, point.y, point.z}, along[3] = {direction.x, direction.y, direction.z};
   double least = INFINITY;
+  bool open = false;
   for (int a = 0; a < 3; a++) {
-    vec3 rise = mat3_apply(volume->gradient_to_world, (vec3){a == 0, a == 1, a == 2});
-    const double edge = 1 / vec3_length(rise), faces[2] = {volume->clip_low[a], volume->clip_high[a]};
-    for (int high = 0; high < 2; high++) {
-      const double depth = fmax(high ? faces[1] - p[a] : p[a] - faces[0], 0) * edge;
-      if (!(depth < least) || depth >= FACE_VOXELS * volume->smallest_edge) continue;
-      if (!seen_through_face(volume, point, along, a, faces[high])) continue;
-      least = depth;
-      *outward = vec3_scale(rise, high ? edge : -edge);
-    }
+    if (along[a] == 0) continue;
+    const bool rising = along[a] > 0;
+    const double way = fmax(((rising ? volume->high[a] : volume->low[a]) - p[a]) / along[a], 0);
+    if (!(way < least)) continue;
+    const vec3 rise = mat3_apply(volume->gradient_to_world, (vec3){a == 0, a == 1, a == 2});
+    least = way;
+    *outward = vec3_scale(vec3_normalise(rise), rising ? 1 : -1);
+    open = isinf(rising ? volume->clip_high[a] : volume->clip_low[a]);
   }
-  return least;
+  return open ? -least : least;
 }

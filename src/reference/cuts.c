@@ -91,24 +91,44 @@ double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 
   return next;
 }
 
-/* Distances and directions in the world: heights h rise there by |(M^-1)^T grad h|, M the placement. */
-double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
-                             double *surface) {
+/* The outward normal, in the world, of the cut whose face is nearest to a point: heights h rise in the world
+ * by
+ * |(M^-1)^T grad h|, M the placement. */
+static vec3 normal_at(const reference_volume *volume, vec3 point) {
   const hl_scene_volume *described = volume->described;
   vec3 face = {0, 0, 0};
-  double least = hl_reference_nearest_clip(volume, point, to_eye, &face);
-  if (described->cut_shading == HL_CUT_SHADING_GRADIENT) return 0;
+  double least = INFINITY;
   for (size_t i = 0; i < described->cut_count; i++) {
     affine3 world = world_of(volume, &described->cuts[i]);
     height here = height_over(&described->cuts[i], affine3_apply(world, point));
     vec3 rise = mat3_apply(volume->gradient_to_world, mat3_apply(mat3_transpose(world.linear), here.rise));
-    double inwards = described->cuts[i].keep == HL_CUT_KEEP_INSIDE ? -1 : 1;
-    double depth = fmax(inwards * here.over / vec3_length(rise), 0);
-    if (depth < least) least = depth, face = vec3_scale(vec3_normalise(rise), -inwards);
+    const double outwards = described->cuts[i].keep == HL_CUT_KEEP_INSIDE ? 1 : -1;
+    const double distance = fabs(here.over) / vec3_length(rise);
+    if (distance < least) least = distance, face = vec3_scale(vec3_normalise(rise), outwards);
   }
-  double skin = fmin(fmax(2 - least / volume->smallest_edge, 0), 1);
-  if (described->cut_shading == HL_CUT_SHADING_FACE) skin *= fmin(fmax(10 * vec3_dot(face, to_eye), 0), 1);
-  if (skin == 0) return 0;
+  return face;
+}
+
+/* A point is seen through a face where the ray to the eye crosses the face first of all, and matter is
+ * visible there. */
+double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
+                             double *surface) {
+  static const double FACE_VOXELS = 2; /* points as far behind a face are lit as usual */
+  const hl_scene_volume *described = volume->described;
+  if (described->cut_shading == HL_CUT_SHADING_GRADIENT) return 0;
+  const vec3 along = mat3_apply(volume->world_to_index.linear, to_eye);
+  vec3 face = {0, 0, 0};
+  double way = hl_reference_leaves_box(volume, point, along, &face);
+  const double cut = hl_reference_next_face(volume, point, along, 0);
+  if (cut < fabs(way)) {
+    way = cut;
+    face = normal_at(volume, vec3_add(point, vec3_scale(along, way)));
+  }
+  const double depth = way * vec3_dot(face, to_eye) / volume->smallest_edge;
+  if (!(way >= 0) || !(depth < FACE_VOXELS)) return 0;
+  const vec3 crossing = vec3_add(point, vec3_scale(along, way));
+  if (!(hl_reference_extinction(volume, hl_reference_value(volume, crossing), crossing) > 0)) return 0;
+  const double skin = fmin(FACE_VOXELS - depth, 1);
   if (described->cut_shading == HL_CUT_SHADING_FACE) {
     vec3 sum = vec3_add(vec3_scale(face, skin), vec3_scale(*normal, *surface * (1 - skin)));
     *normal = vec3_length(sum) > 0 ? vec3_normalise(sum) : sum;

@@ -261,9 +261,9 @@ double hl_reference_mask_color(const reference_volume *volume, vec3 point, doubl
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);
 /* Finds the faces of the volume's box at which no other volume goes on; the box is known. */
 void hl_reference_find_clip_faces(const hl_scene_description *scene, reference_volume *volume);
-/* How deep a point of index space lies behind the nearest of them through whose cut matter it is seen, in
- * world units, and the face's outward normal; infinite: there is none within two voxels. */
-double hl_reference_nearest_clip(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *outward);
+/* The way from a point of index space to where a ray leaves the box, in lengths of the direction, and the
+ * face's outward normal in the world. Below 0: another volume goes on there. */
+double hl_reference_leaves_box(const reference_volume *volume, vec3 point, vec3 direction, vec3 *outward);
 /* sigma, 1 / world length; algorithm.md's sigma(f) = -ln(1 - alpha(f)) / u, times gradient opacity. value:
  * that at the point. */
 double hl_reference_extinction(const reference_volume *volume, double value, vec3 point);

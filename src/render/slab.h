@@ -28,15 +28,6 @@ typedef struct voxel_colors {
   const float *decode;         /* [256]: the linear values of codes */
 } voxel_colors;
 
-/* A face of a volume's box that cuts through visible matter. */
-typedef struct box_face {
-  int axis, high, row, column; /* the map's axes: grid/faces.h */
-  int32_t last[2];             /* the greatest index of the map along its rows and columns */
-  float at;                    /* the face; index space */
-  float edge;                  /* between the planes of voxels along the axis; frame units */
-  const float *map;            /* the density on the face (grid/faces.h) */
-} box_face;
-
 typedef struct shade_volume {
   const classifier *classifier;
   const grid *grid;
@@ -49,8 +40,8 @@ typedef struct shade_volume {
   float emission;                              /* ke; 1 for a volume shaded flat */
   float cast[HL_CHANNELS];               /* relative extinction towards the lights; 0: casts no shadow */
   float to_index[3][4], low[3], high[3]; /* frame space to index space, and the box there */
-  box_face faces[6];                     /* [face_count]; those of the box that cut through visible matter */
-  int face_count;
+  int32_t face_cuts[3][2]; /* [axis][low, high]: -1 where the face of the box cuts visible matter, else 0 */
+  int any_face;            /* some face does */
   const float (*shown)[4]; /* in a maximum projection: SHOWN_FROM and so on, per table entry; else null */
   int rank;                /* among the visible volumes */
   float anisotropy;        /* g of the phase function */

@@ -244,94 +244,88 @@ LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
 /* Points so many voxels behind a face are lit as usual, nearer ones more and more by the face. */
 static const float FACE_VOXELS = 2;
 
-/* The nearest face that cuts a volume. */
+/* The face that the eye's ray to a point of a volume comes through last, before it meets the point. */
 typedef struct cut_face {
-  lanes depth;    /* of the point behind it; frame units */
-  lanes3 outward; /* its normal */
+  lanes way;      /* from the point back to the face; frame units */
+  lanes3 outward; /* its unit normal */
+  lanes_int cuts; /* not where another volume goes on, or where a face of the box has no visible matter */
 } cut_face;
 
-LANES_INLINE void take_nearer(cut_face *nearest, lanes depth, lanes3 outward) {
-  lanes_int nearer = depth < nearest->depth;
-  nearest->depth = lanes_select(nearer, depth, nearest->depth);
+LANES_INLINE void take_nearer(cut_face *nearest, lanes way, lanes3 outward, lanes_int cuts) {
+  lanes_int nearer = way < nearest->way;
+  nearest->way = lanes_select(nearer, way, nearest->way);
   nearest->outward.x = lanes_select(nearer, outward.x, nearest->outward.x);
   nearest->outward.y = lanes_select(nearer, outward.y, nearest->outward.y);
   nearest->outward.z = lanes_select(nearer, outward.z, nearest->outward.z);
+  nearest->cuts = lanes_select_int(nearer, cuts, nearest->cuts);
 }
 
-/* The density on a face at a point of it: between the points of the face's map. */
-LANES_INLINE lanes density_on_face(const box_face *face, const lanes at[2]) {
-  lanes_int near[2], far[2];
-  lanes part[2];
-  for (int a = 0; a < 2; a++) {
-    lanes inside = lanes_clamp(at[a], 0, (float)face->last[a]);
-    near[a] = lanes_truncate(inside);
-    far[a] = lanes_select_int(near[a] < face->last[a], near[a] + 1, near[a]);
-    part[a] = inside - lanes_from_int(near[a]);
-  }
-  const int32_t width = face->last[0] + 1;
-  lanes side[2];
-  for (int n = 0; n < 2; n++) {
-    lanes_int row = (n == 0 ? near[1] : far[1]) * width;
-    lanes from = lanes_gather(face->map, row + near[0]), to = lanes_gather(face->map, row + far[0]);
-    side[n] = lanes_fma(to - from, part[0], from);
-  }
-  return lanes_fma(side[1] - side[0], part[1], side[0]);
-}
-
-/* Where a point is seen through matter that a face cuts: the eye's ray crosses the face between the eye and
- * the point, and matter is visible there. beyond: from the point to the face's plane, in voxels. */
-LANES_INLINE lanes_int seen_through_face(const shade_volume *volume, const box_face *face, lanes3 point,
-                                         lanes3 towards_eye, lanes beyond) {
-  lanes way = beyond / some_speed(row_of_vector(volume->to_index[face->axis], towards_eye));
-  lanes_int through = way >= 0.0f;
-  const int axes[2] = {face->row, face->column};
-  lanes at[2];
-  for (int a = 0; a < 2; a++) {
-    const float *row = volume->to_index[axes[a]];
-    at[a] = lanes_fma(row_of_vector(row, towards_eye), way, row_of_point(row, point));
-    through &= (at[a] >= volume->low[axes[a]]) & (at[a] <= volume->high[axes[a]]);
-  }
-  table_coordinate there = coordinate_of_density(volume->classifier, density_on_face(face, at));
-  return through & may_be_visible(volume->classifier, there, there);
-}
-
-LANES_INLINE void find_nearest_box_face(const shade_volume *volume, lanes3 point, lanes3 towards_eye,
-                                        lanes_int seen, cut_face *nearest) {
-  for (int i = 0; i < volume->face_count; i++) {
-    const box_face *face = &volume->faces[i];
-    const float *row = volume->to_index[face->axis], edge = face->high ? face->edge : -face->edge;
-    lanes beyond = face->at - row_of_point(row, point), depth = lanes_max(beyond * edge, lanes_set(0));
-    if (lanes_bits(seen & (depth < FACE_VOXELS * volume->voxel)) == 0) continue;
-    lanes_int cut = seen_through_face(volume, face, point, towards_eye, beyond);
-    take_nearer(nearest, lanes_select(cut, depth, lanes_set(1e30f)), scale3(set3(row), lanes_set(edge)));
+LANES_INLINE void find_box_face(const shade_volume *volume, lanes3 point, lanes3 towards_eye,
+                                cut_face *nearest) {
+  for (int axis = 0; axis < 3; axis++) {
+    const float *row = volume->to_index[axis];
+    lanes speed = some_speed(row_of_vector(row, towards_eye));
+    lanes_int rising = speed > 0.0f;
+    lanes face = lanes_select(rising, lanes_set(volume->high[axis]), lanes_set(volume->low[axis]));
+    lanes way = lanes_max((face - row_of_point(row, point)) / speed, lanes_set(0));
+    lanes unit = lanes_select(rising, lanes_set(1.0f), lanes_set(-1.0f)) / row_size(row);
+    take_nearer(nearest, way, scale3(set3(row), unit),
+                lanes_select_int(rising, lanes_set_int(volume->face_cuts[axis][1]),
+                                 lanes_set_int(volume->face_cuts[axis][0])));
   }
 }
 
-LANES_INLINE void find_nearest_cut(const shade_volume *volume, lanes3 point, cut_face *nearest) {
-  for (int i = 0; i < volume->cut_count; i++) {
-    cut_height over = height_over_cut(&volume->cuts[i], point);
-    lanes outward = lanes_set(volume->cuts[i].keep_inside ? 1.0f : -1.0f) /
-                    lanes_sqrt(dot3(over.gradient, over.gradient));
-    take_nearer(nearest, lanes_max(-over.height * outward, lanes_set(0)), scale3(over.gradient, outward));
-  }
+LANES_INLINE void find_cut(const shade_cut *cut, lanes3 point, lanes3 towards_eye, lanes least,
+                           cut_face *nearest) {
+  ray_section section = cross_cut(cut, point, towards_eye);
+  lanes way = cut->keep_inside ? section.last : section.first;
+  lanes_int met = (section.first < section.last) & (way > -least) & (way < 1e20f);
+  way = lanes_max(lanes_select(met, way, lanes_set(1e30f)), lanes_set(0));
+  if (lanes_bits(way < nearest->way) == 0) return;
+  cut_height over = height_over_cut(cut, add_scaled3(point, towards_eye, lanes_keep(met, way)));
+  lanes outward = lanes_set(cut->keep_inside ? 1.0f : -1.0f) / lanes_sqrt(dot3(over.gradient, over.gradient));
+  take_nearer(nearest, way, scale3(over.gradient, outward), lanes_set_int(-1));
 }
 
-/* Within two voxels behind the nearest face of a cut or of the volume's box, the normal turns to the face's
- * own, or the surface to a medium: the data's gradient, of even matter, is its noise there. No normal turns
- * to a face that the eye does not see: that would darken outlines. To one seen at a cosine below 0.1 they
- * turn less. */
+/* Whether matter is visible on a face where the eye's rays cross it. */
+LANES_INLINE lanes_int shows_on_face(const shade_volume *volume, lanes3 crossing, uint32_t active,
+                                     uint32_t starts) {
+  const float(*rows)[4] = volume->to_index;
+  lanes3 at = {row_of_point(rows[0], crossing), row_of_point(rows[1], crossing),
+               row_of_point(rows[2], crossing)};
+  lanes density = values_at(volume->grid, volume->kernel, at, active, starts) - volume->grid->empty;
+  table_coordinate there = coordinate_of_density(volume->classifier, density);
+  return may_be_visible(volume->classifier, there, there);
+}
+
+/* How much a point belongs to the face of a cut, or of the volume's box, through whose matter it is seen: 1
+ * at the face, 0 two voxels behind it. The data's gradient, of even matter, is its noise there. */
+LANES_INLINE lanes find_skin(const block_slab *slab, const block_density *d, lanes3 *outward) {
+  const shade_volume *volume = d->patch->volume;
+  const lanes3 point = seen_position(slab, d), towards_eye = slab->geometry.towards_eye;
+  const float deepest = FACE_VOXELS * volume->voxel;
+  cut_face nearest = {.way = lanes_set(1e30f), .cuts = lanes_set_int(0)};
+  nearest.outward = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
+  find_box_face(volume, point, towards_eye, &nearest);
+  for (int i = 0; i < volume->cut_count; i++)
+    find_cut(&volume->cuts[i], point, towards_eye, lanes_set(0.5f * volume->voxel), &nearest);
+  *outward = nearest.outward;
+  lanes depth = nearest.way * dot3(nearest.outward, towards_eye);
+  uint32_t active = lanes_bits(slab->seen & nearest.cuts & (depth < deepest));
+  if (active == 0) return lanes_set(0);
+  lanes3 crossing = add_scaled3(point, towards_eye, lanes_min(nearest.way, lanes_set(1e20f)));
+  lanes_int shown = shows_on_face(volume, crossing, active, slab->starts) & lanes_from_bits(active);
+  return lanes_keep(shown, lanes_clamp(FACE_VOXELS - depth * (1.0f / volume->voxel), 0, 1));
+}
+
+/* Behind a face the normal turns to the face's own, or the surface to a medium. */
 LANES_INLINE void find_cut_face(const block_slab *slab, block_density *d) {
   const shade_volume *volume = d->patch->volume;
-  lanes3 point = seen_position(slab, d);
-  cut_face nearest = {lanes_set(1e30f), {lanes_set(0), lanes_set(0), lanes_set(0)}};
-  find_nearest_box_face(volume, point, slab->geometry.towards_eye, slab->seen, &nearest);
-  find_nearest_cut(volume, point, &nearest);
-  d->skin = lanes_clamp(FACE_VOXELS - nearest.depth * (1.0f / volume->voxel), 0, 1);
-  if (volume->cut_shading == HL_CUT_SHADING_FACE)
-    d->skin = d->skin * lanes_clamp(dot3(nearest.outward, slab->geometry.towards_eye) * 10.0f, 0, 1);
+  lanes3 outward;
+  d->skin = find_skin(slab, d, &outward);
   lanes rest = 1.0f - d->skin;
   if (volume->cut_shading == HL_CUT_SHADING_FACE) {
-    lanes3 sum = add_scaled3(scale3(nearest.outward, d->skin), d->normal, d->surface * rest);
+    lanes3 sum = add_scaled3(scale3(outward, d->skin), d->normal, d->surface * rest);
     d->normal = scale3(sum, 1.0f / lanes_max(lanes_sqrt(dot3(sum, sum)), lanes_set(1e-6f)));
     d->surface = lanes_fma(d->surface, rest, d->skin);
   } else {
@@ -345,7 +339,7 @@ LANES_INLINE void find_normals(const block_slab *slab, block_density *densities,
     find_normal(slab, &densities[i]);
     densities[i].skin = lanes_set(0);
     const shade_volume *volume = densities[i].patch->volume;
-    bool cut = volume->cut_count > 0 || volume->face_count > 0;
+    bool cut = volume->cut_count > 0 || volume->any_face;
     if (cut && volume->phong && volume->cut_shading != HL_CUT_SHADING_GRADIENT)
       find_cut_face(slab, &densities[i]);
   }

@@ -7,7 +7,6 @@
 #include <halflight/render.h>
 
 #include "core/memory.h"
-#include "grid/faces.h"
 #include "grid/relevant.h"
 #include "image/srgb.h"
 #include "render/light_reads.h"
@@ -277,17 +276,9 @@ static void find_box_faces(const grid *grid, shade_volume *shade) {
   for (int axis = 0; axis < 3; axis++) {
     const float at[2] = {grid->face_low[axis], grid->face_high[axis]};
     for (int high = 0; high < 2; high++) {
-      if (!grid->face_shows[axis][high] || fabsf(at[high]) >= FACE_FAR_OUT) continue;
-      shade->faces[shade->face_count++] = (box_face){
-          .axis = axis,
-          .high = high,
-          .row = hl_face_row_axis(axis),
-          .column = hl_face_column_axis(axis),
-          .last = {grid->dimension[hl_face_row_axis(axis)] - 1,
-                   grid->dimension[hl_face_column_axis(axis)] - 1},
-          .at = at[high],
-          .edge = (float)(1 / vec3_length(grid->frame_to_index.linear.row[axis])),
-          .map = grid->face_maps[axis][high]};
+      const bool cuts = grid->face_shows[axis][high] && fabsf(at[high]) < FACE_FAR_OUT;
+      shade->face_cuts[axis][high] = cuts ? -1 : 0;
+      shade->any_face = shade->any_face || cuts;
     }
   }
 }

@@ -956,8 +956,6 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
   fill_salted(&phase_caps[0][0][0], sizeof phase_caps / sizeof(float), seed, 0.1, 2);
   s->phase = (phase_table){0.7, 9, phase_caps, phase_rows};
   set_up_lights(s, seed, round);
-  static float face_map[10 * 10];
-  fill_salted(face_map, sizeof face_map / sizeof(float), seed, -0.1, 1.1);
   for (int v = 0; v < 2; v++) {
     const classifier *classifier = classifier_of(round / 2 + v);
     int masked = classifier->mask.factors != NULL;
@@ -981,10 +979,8 @@ static void set_up_shade(shade_state *s, uint32_t *seed, int round) {
                                    {{0.9f, 0.1f, 0, 4}, {-0.1f, 0.8f, 0.2f, 5}, {0, -0.2f, 1.1f, 6}},
                                    {-0.5f, -0.5f, -0.5f},
                                    {8.5f, 9.5f, 10.5f},
-                                   {{0, 0, 1, 2, {8, 9}, 1, 1.1f, face_map},
-                                    {1, 1, 0, 2, {7, 9}, 7, 1.2f, face_map},
-                                    {2, 0, 0, 1, {7, 8}, 2, 0.9f, face_map}},
-                                   round % 4 == 3 ? 3 : 0,
+                                   {{-1, 0}, {0, -1}, {-1, -1}},
+                                   round % 4 == 3,
                                    NULL,
                                    v,
                                    round % 3 == 1 ? -0.7f : round % 3 * 0.4f,
