@@ -29,8 +29,7 @@ bool hl_cut_face_between(const hl_scene_volume *volume, vec3 before, vec3 here, 
   }
   hl_scene_volume_box(volume, low, high);
   for (int a = 0; a < 3; a++) {
-    double end = (double)volume->volume->dimension[a] - 0.5, at = component(before, a);
-    bool under = at < low[a] && low[a] > -0.5, over = at > high[a] && high[a] < end;
+    const bool under = component(before, a)<low[a], over = component(before, a)> high[a];
     if (!under && !over) continue;
     *outward = (vec3){a == 0, a == 1, a == 2};
     if (under) *outward = vec3_scale(*outward, -1);

@@ -297,6 +297,46 @@ static void test_faces_by_their_own_normal(void **state) {
     }
 }
 
+/* The border of the grid is such a face, too: without shadows each side of a cube of even matter is as bright
+ * as its cosine to the light, evenly. So it is for a cube cropped out of a larger grid of noise. */
+static void test_border_of_the_grid(void **state) {
+  (void)state;
+  static float pixels[FLOATS], voxels[VOXELS * VOXELS * VOXELS];
+  const vec3 light = vec3_normalise((vec3){-0.5, -0.9, -0.7});
+  for (int n = 0; n < VOXELS * VOXELS * VOXELS; n++)
+    voxels[n] = 0.5f + 0.4f * (float)((n * 7919) % 101) / 101;
+  for (int k = 0; k < 4; k++) {
+    const bool by_reference = k % 2, noise = k / 2;
+    stage set;
+    open_stage(&set, NULL);
+    hl_scene_volume *cube = stage_add_grid(&set, (size_t[3]){VOXELS, VOXELS, VOXELS}, (double[3]){1, 1, 1},
+                                           (vec3){-HALF, -HALF, -HALF}, noise ? voxels : NULL);
+    stage_set_opacity(&set, cube, 0.9999, 1);
+    cube->shading = HL_SHADING_PHONG;
+    cube->material = (hl_material){.diffuse = 1};
+    stage_add_directional(&set, light)->shadows = HL_SHADOWS_OFF;
+    stage_render_by(&set, by_reference, pixels);
+    int checked = 0;
+    for (int p = 0; p < SIDE * SIDE; p++) {
+      vec3 origin, way;
+      stage_eye_ray(&set, p % SIDE, p / SIDE, &origin, &way);
+      for (int a = 0; a < 3; a++) { /* the sides that the eye sees are those at HALF */
+        const double t = (HALF - part(origin, a)) / part(way, a);
+        const vec3 at = vec3_add(origin, vec3_scale(way, t));
+        bool on_side = true;
+        for (int b = 0; b < 3; b++) on_side = on_side && (b == a || fabs(part(at, b)) < HALF - 0.5);
+        if (!on_side) continue;
+        checked++;
+        if (!(fabs((double)pixels[4 * p] + part(light, a)) < 0.01))
+          fail_msg("side %d, reference %d: %.4f is not %.4f", a, by_reference, (double)pixels[4 * p],
+                   -part(light, a));
+      }
+    }
+    assert_true(checked > 400);
+    stage_close(&set);
+  }
+}
+
 /* Thin matter seen along -z and lit along x: the half at lower x is cut away, and the eye sees a sample at x
  * through the light's way x, or x + HALF. */
 static void test_shadow_of_what_is_cut_away(void **state) {
@@ -403,6 +443,7 @@ int main(void) {
       cmocka_unit_test(test_scene_cuts_in_the_world),
       cmocka_unit_test(test_scene_cuts_as_cuts_of_each_volume),
       cmocka_unit_test(test_faces_by_their_own_normal),
+      cmocka_unit_test(test_border_of_the_grid),
       cmocka_unit_test(test_shadow_of_what_is_cut_away),
       cmocka_unit_test(test_isosurface),
       cmocka_unit_test(test_same_bytes),
