@@ -7,6 +7,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "core/pool.h"
+#include "label/occupancy_line.h"
 #include "label/shelf.h"
 #include "volume/colors.h"
 
@@ -36,42 +37,6 @@ typedef struct mask_job {
  * opacity, times opacity and tint, and times these and the colour; then room for a line of occupancy. */
 enum { SUM_OCCUPANCY, SUM_SQUARES, SUM_FACTOR, SUM_TINT, SUM_RED, SUM_GREEN, SUM_BLUE, SUM_LINE, SUMS };
 
-/* The grid of an occupancy within the map's. */
-static void first_of(const hl_volume *map, const hl_volume *occupancy, size_t first[3]) {
-  affine3 inverse;
-  vec3 at = {0, 0, 0};
-  if (affine3_invert(map->index_to_world, &inverse))
-    at = affine3_apply(inverse, occupancy->index_to_world.offset);
-  first[0] = (size_t)llround(at.x);
-  first[1] = (size_t)llround(at.y);
-  first[2] = (size_t)llround(at.z);
-}
-
-static float coefficient(const hl_volume *o, size_t i, size_t j, size_t k) {
-  return ((const unsigned char *)hl_volume_row(o, j, k))[i];
-}
-
-/* The neighbours of a coordinate; beyond the ends the border continues. */
-static void neighbours(size_t at, size_t count, size_t found[3]) {
-  found[0] = at > 0 ? at - 1 : 0;
-  found[1] = at;
-  found[2] = at + 1 < count ? at + 1 : at;
-}
-
-/* The B-spline's value at a voxel's centre: weights 1/6, 2/3, 1/6 along each axis. line: the sums over j and
- * k, [i]. */
-static void fill_line(const hl_volume *o, size_t j, size_t k, float *line) {
-  static const float WEIGHT[3] = {1.0f / 6, 2.0f / 3, 1.0f / 6};
-  size_t js[3], ks[3];
-  neighbours(j, o->dimension[1], js);
-  neighbours(k, o->dimension[2], ks);
-  for (size_t i = 0; i < o->dimension[0]; i++) line[i] = 0;
-  for (int b = 0; b < 9; b++) {
-    const float weight = WEIGHT[b % 3] * WEIGHT[b / 3];
-    for (size_t i = 0; i < o->dimension[0]; i++) line[i] += weight * coefficient(o, i, js[b % 3], ks[b / 3]);
-  }
-}
-
 static void add_voxel(float *const sums[SUMS], size_t at, const hl_label *label, float occupancy) {
   if (!(occupancy > LEAST)) return;
   float square = (occupancy - LEAST) * (occupancy - LEAST),
@@ -89,19 +54,13 @@ static void add_label(const mask_job *job, const hl_label *label, const hl_volum
                       float *const sums[SUMS]) {
   size_t first[3];
   const size_t width = job->mask->volume->dimension[0];
-  first_of(job->mask->volume, o, first);
+  hl_occupancy_first(job->mask->volume, o, first);
   if (k < first[2] || k >= first[2] + o->dimension[2]) return;
   for (size_t j = 0; j < o->dimension[1]; j++) {
     float *line = sums[SUM_LINE];
-    fill_line(o, j, k - first[2], line);
-    float before = line[0];
-    for (size_t i = 0; i < o->dimension[0]; i++) {
-      float after = i + 1 < o->dimension[0] ? line[i + 1] : line[i];
-      float stored = (before + 4 * line[i] + after) / 6;
-      before = line[i];
-      add_voxel(sums, (first[1] + j) * width + first[0] + i, label,
-                stored * (float)o->value_scale + (float)o->value_offset);
-    }
+    hl_occupancy_line(o, j, k - first[2], line);
+    for (size_t i = 0; i < o->dimension[0]; i++)
+      add_voxel(sums, (first[1] + j) * width + first[0] + i, label, line[i]);
   }
 }
 

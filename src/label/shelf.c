@@ -11,13 +11,18 @@ typedef struct place {
   hl_volume *made; /* null: no voxel has the label */
 } place;
 
+/* What was made of several labels together. */
+typedef struct joint_place {
+  hl_label *labels; /* owned; [label_count]; without names */
+  size_t label_count;
+  double rest;     /* of a mask */
+  hl_volume *made; /* null: nothing was made */
+} joint_place;
+
 typedef struct shelf {
   place places[PLACES];
-  int next;         /* the place that is filled next; what it held goes */
-  hl_label *labels; /* owned; [label_count]; what the lattice was made of, without names */
-  size_t label_count;
-  double rest;
-  hl_volume *lattice; /* null: none was made */
+  int next; /* the place that is filled next; what it held goes */
+  joint_place lattice, solids;
 } shelf;
 
 static void lock(hl_volume *map) {
@@ -28,8 +33,10 @@ static void unlock(hl_volume *map) { atomic_flag_clear_explicit(&map->shelf_lock
 static void release_shelf(hl_context *context, void *kept) {
   shelf *shelf = kept;
   for (int n = 0; n < PLACES; n++) hl_volume_release(shelf->places[n].made);
-  hl_volume_release(shelf->lattice);
-  hl_release(context, shelf->labels);
+  hl_volume_release(shelf->lattice.made);
+  hl_volume_release(shelf->solids.made);
+  hl_release(context, shelf->lattice.labels);
+  hl_release(context, shelf->solids.labels);
   hl_release(context, shelf);
 }
 
@@ -125,7 +132,7 @@ hl_status hl_label_occupancies(hl_context *context, int threads, hl_volume *map,
   return status;
 }
 
-/* ---- masks ---- */
+/* ---- several labels together ---- */
 
 static bool same_label(const hl_label *a, const hl_label *b) {
   for (int c = 0; c < 3; c++)
@@ -133,41 +140,59 @@ static bool same_label(const hl_label *a, const hl_label *b) {
   return a->value == b->value && a->opacity == b->opacity && a->visible == b->visible && a->tint == b->tint;
 }
 
-hl_volume *hl_mask_from_shelf(const hl_mask *mask) {
-  lock(mask->volume);
-  const shelf *shelf = mask->volume->shelf;
-  bool same = shelf != NULL && shelf->lattice != NULL && shelf->rest == mask->rest &&
-              shelf->label_count == mask->label_count;
-  for (size_t n = 0; same && n < mask->label_count; n++)
-    same = same_label(&shelf->labels[n], &mask->labels[n]);
-  hl_volume *found = same ? shelf->lattice : NULL;
-  hl_volume_retain(found);
-  unlock(mask->volume);
+/* Retains what a place holds, if it was made of these labels. The map's shelf is locked. */
+static hl_volume *find_joint(const joint_place *place, const hl_label *labels, size_t count, double rest) {
+  bool same = place->made != NULL && place->rest == rest && place->label_count == count;
+  for (size_t n = 0; same && n < count; n++) same = same_label(&place->labels[n], &labels[n]);
+  if (!same) return NULL;
+  hl_volume_retain(place->made);
+  return place->made;
+}
+
+static hl_volume *from_shelf(hl_volume *map, bool of_solids, const hl_label *labels, size_t count,
+                             double rest) {
+  lock(map);
+  const shelf *shelf = map->shelf;
+  hl_volume *found = NULL;
+  if (shelf != NULL) found = find_joint(of_solids ? &shelf->solids : &shelf->lattice, labels, count, rest);
+  unlock(map);
   return found;
 }
 
-void hl_mask_to_shelf(const hl_mask *mask, hl_volume *made) {
-  hl_context *context = mask->volume->context;
-  hl_label *labels = hl_allocate(context, mask->label_count, sizeof *labels);
-  if (labels == NULL) return;
-  for (size_t n = 0; n < mask->label_count; n++) {
-    labels[n] = mask->labels[n];
-    labels[n].name = NULL;
+static void to_shelf(hl_volume *map, bool of_solids, const hl_label *labels, size_t count, double rest,
+                     hl_volume *made) {
+  hl_label *copy = hl_allocate(map->context, count, sizeof *copy);
+  if (copy == NULL) return;
+  for (size_t n = 0; n < count; n++) {
+    copy[n] = labels[n];
+    copy[n].name = NULL;
   }
-  hl_volume *old = NULL;
-  hl_label *old_labels = labels;
-  lock(mask->volume);
-  shelf *shelf = shelf_of(mask->volume);
+  joint_place old = {.labels = copy};
+  lock(map);
+  shelf *shelf = shelf_of(map);
   if (shelf != NULL) {
-    old = shelf->lattice;
-    old_labels = shelf->labels;
+    joint_place *place = of_solids ? &shelf->solids : &shelf->lattice;
     hl_volume_retain(made);
-    shelf->lattice = made;
-    shelf->labels = labels;
-    shelf->label_count = mask->label_count;
-    shelf->rest = mask->rest;
+    old = *place;
+    *place = (joint_place){copy, count, rest, made};
   }
-  unlock(mask->volume);
-  hl_volume_release(old);
-  hl_release(context, old_labels);
+  unlock(map);
+  hl_volume_release(old.made);
+  hl_release(map->context, old.labels);
+}
+
+hl_volume *hl_mask_from_shelf(const hl_mask *mask) {
+  return from_shelf(mask->volume, false, mask->labels, mask->label_count, mask->rest);
+}
+
+void hl_mask_to_shelf(const hl_mask *mask, hl_volume *made) {
+  to_shelf(mask->volume, false, mask->labels, mask->label_count, mask->rest, made);
+}
+
+hl_volume *hl_solids_from_shelf(hl_volume *map, const hl_label *labels, size_t count) {
+  return from_shelf(map, true, labels, count, 0);
+}
+
+void hl_solids_to_shelf(hl_volume *map, const hl_label *labels, size_t count, hl_volume *made) {
+  to_shelf(map, true, labels, count, 0, made);
 }

@@ -19,4 +19,8 @@ hl_volume *hl_mask_from_shelf(const hl_mask *mask);
 /* Keeps a lattice, in place of the one before. Without memory it is not kept. */
 void hl_mask_to_shelf(const hl_mask *mask, hl_volume *made);
 
+/* The same for what was made last of solid labels. */
+hl_volume *hl_solids_from_shelf(hl_volume *map, const hl_label *labels, size_t count);
+void hl_solids_to_shelf(hl_volume *map, const hl_label *labels, size_t count, hl_volume *made);
+
 #endif

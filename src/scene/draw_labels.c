@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "label/mask.h"
 #include "label/shelf.h"
+#include "label/solids.h"
 #include "scene/limits.h"
 #include "scene/placement.h"
 #include "scene/transfer_function.h"
@@ -95,12 +96,18 @@ static void set_function(const hl_label *label, hl_scene_volume *drawn, drawn_po
 }
 
 static bool is_drawn(const hl_label *label) { return label->visible && label->opacity > 0; }
+static bool is_solid(const hl_label *label) { return label->visible && label->opacity >= 1; }
+static bool is_skin(const hl_label *label) { return is_drawn(label) && !is_solid(label); }
 
+/* Solid labels are drawn as one volume, each other one by itself. */
 static size_t count_drawn(const hl_scene_volume *volume) {
   if (volume->label_count == 0) return 1;
-  size_t count = 0;
-  for (size_t n = 0; n < volume->label_count; n++) count += is_drawn(&volume->labels[n]);
-  return count;
+  size_t skins = 0, solids = 0;
+  for (size_t n = 0; n < volume->label_count; n++) {
+    skins += is_skin(&volume->labels[n]);
+    solids += is_solid(&volume->labels[n]);
+  }
+  return skins + (solids > 0);
 }
 
 /* Adds a drawn label; takes the occupancy over. */
@@ -115,9 +122,29 @@ static void add_drawn(hl_scene_description *placed, const hl_scene_volume *map, 
   set_function(label, drawn, (*points)++);
 }
 
-/* Adds the volumes that draw a label map. */
-static hl_status draw_map(hl_context *context, hl_scene_description *placed, const hl_scene_volume *map,
-                          drawn_points **points, hl_error *error) {
+/* Adds the labels that are solid together. Where they have colours of their own, these multiply white. */
+static hl_status draw_solids(hl_context *context, hl_scene_description *placed, const hl_scene_volume *map,
+                             drawn_points **points, hl_error *error) {
+  size_t count = 0;
+  hl_volume *made = NULL;
+  hl_label *solids = hl_allocate(context, map->label_count, sizeof *solids);
+  if (solids == NULL) return hl_fail_memory(error, map->label_count * sizeof *solids, "labels");
+  for (size_t n = 0; n < map->label_count; n++)
+    if (is_solid(&map->labels[n])) solids[count++] = map->labels[n];
+  hl_status status = HL_OK;
+  if (count > 0)
+    status = hl_label_solids(context, placed->render.threads, map->volume, solids, count, &made, error);
+  if (made != NULL) {
+    hl_label all = solids[0];
+    for (int c = 0; c < 3 && made->colors != NULL; c++) all.color[c] = 1;
+    add_drawn(placed, map, &all, made, points);
+  }
+  hl_release(context, solids);
+  return status;
+}
+
+static hl_status draw_skins(hl_context *context, hl_scene_description *placed, const hl_scene_volume *map,
+                            drawn_points **points, hl_error *error) {
   size_t count = 0;
   double *values = hl_allocate(context, map->label_count, sizeof *values);
   hl_volume **made = hl_allocate(context, map->label_count, sizeof(hl_volume *));
@@ -125,15 +152,22 @@ static hl_status draw_map(hl_context *context, hl_scene_description *placed, con
   if (values == NULL || made == NULL)
     status = hl_fail_memory(error, map->label_count * sizeof *values, "labels");
   for (size_t n = 0; status == HL_OK && n < map->label_count; n++)
-    if (is_drawn(&map->labels[n])) values[count++] = map->labels[n].value;
+    if (is_skin(&map->labels[n])) values[count++] = map->labels[n].value;
   if (status == HL_OK)
     status = hl_label_occupancies(context, placed->render.threads, map->volume, values, count, made, error);
   count = 0;
   for (size_t n = 0; status == HL_OK && n < map->label_count; n++)
-    if (is_drawn(&map->labels[n])) add_drawn(placed, map, &map->labels[n], made[count++], points);
+    if (is_skin(&map->labels[n])) add_drawn(placed, map, &map->labels[n], made[count++], points);
   hl_release(context, values);
   hl_release(context, made);
   return status;
+}
+
+/* Adds the volumes that draw a label map. */
+static hl_status draw_map(hl_context *context, hl_scene_description *placed, const hl_scene_volume *map,
+                          drawn_points **points, hl_error *error) {
+  hl_status status = draw_solids(context, placed, map, points, error);
+  return status == HL_OK ? draw_skins(context, placed, map, points, error) : status;
 }
 
 /* Adds a volume with its mask as a lattice. */

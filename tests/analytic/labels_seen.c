@@ -214,9 +214,101 @@ static void test_outlines_of_balls(void **state) {
   }
 }
 
+/* ---- labels that touch ---- */
+
+enum { CELLS = 100 };
+
+/* Cuts a ball into labels 1 to CELLS: each voxel belongs to the nearest of as many points. */
+static void fill_atlas(void) {
+  uint32_t seed = 12;
+  vec3 points[CELLS];
+  for (int n = 0; n < CELLS; n++) points[n] = vec3_scale(random_direction(&seed), 16 * random_number(&seed));
+  for (int at = 0; at < N * N * N; at++) {
+    const vec3 p = {at % N - (N - 1) / 2.0, at / N % N - (N - 1) / 2.0, at / N / N - (N - 1) / 2.0};
+    int nearest = 0;
+    for (int n = 1; n < CELLS; n++)
+      if (vec3_length(vec3_subtract(p, points[n])) < vec3_length(vec3_subtract(p, points[nearest])))
+        nearest = n;
+    voxels[at] = vec3_length(p) < 16 ? (unsigned char)(nearest + 1) : 0;
+  }
+}
+
+/* The labels' picture without shadows, lit from the eye. Red and blue take turns, so that each pixel's sum of
+ * channels is what a white body sends, whatever its colour. cut: null: none. */
+static void draw_lit(vec3 along, int label_count, const hl_cut *cut) {
+  static float values[N * N * N];
+  hl_label labels[CELLS];
+  stage set;
+  for (int n = 0; n < label_count; n++)
+    labels[n] = (hl_label){n + 1, NULL, {n % 2 == 0, 0, n % 2 == 1}, 1, 1, 0};
+  for (int n = 0; n < N * N * N; n++) values[n] = voxels[n];
+  stage_open(&set);
+  set.scene.width = set.scene.height = SIDE;
+  set.scene.camera.height = 36;
+  const vec3 up = fabs(along.y) < 0.9 ? (vec3){0, 1, 0} : (vec3){1, 0, 0};
+  stage_look(&set, vec3_scale(along, -100), (vec3){0, 0, 0}, up);
+  hl_scene_volume *map = stage_add_grid(&set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1},
+                                        (vec3){-N / 2, -N / 2, -N / 2}, values);
+  map->labels = labels;
+  map->label_count = (size_t)label_count;
+  map->shading = HL_SHADING_PHONG;
+  map->material = (hl_material){.diffuse = 1};
+  map->cuts = cut;
+  map->cut_count = cut != NULL;
+  stage_add_directional(&set, along)->shadows = HL_SHADOWS_OFF;
+  stage_render_by(&set, false, pixels);
+  stage_close(&set);
+}
+
+static double brightness_at(double x, double y) {
+  const int column = (int)((x / 36 + 0.5) * SIDE), row = (int)((0.5 - y / 36) * SIDE);
+  const float *pixel = &pixels[4 * (row * SIDE + column)];
+  return (double)pixel[0] + (double)pixel[2];
+}
+
+/* A box, half red and half blue, is as bright at the seam as beside it. */
+static void test_seam(void **state) {
+  (void)state;
+  for (int at = 0; at < N * N * N; at++) {
+    const int i = at % N, j = at / N % N, k = at / N / N;
+    const bool inside = i >= 8 && i < 32 && j >= 8 && j < 32 && k >= 8 && k < 32;
+    voxels[at] = !inside ? 0 : i < 20 ? 1 : 2;
+  }
+  draw_lit((vec3){0, 0, -1}, 2, NULL);
+  const double beside = brightness_at(-5, 0);
+  assert_near(beside, 1, 0.01);
+  for (int n = -40; n <= 40; n++)
+    for (int y = -6; y <= 6; y += 3) assert_true(brightness_at(n / 10.0, y) > 0.95 * beside);
+  assert_true(pixels[4 * (SIDE / 2 * SIDE + SIDE / 2 - 12)] > 0.99); /* red and blue, not both everywhere */
+  assert_true(pixels[4 * (SIDE / 2 * SIDE + SIDE / 2 + 12) + 2] > 0.99);
+}
+
+/* A ball of a hundred labels, cut in the middle: no dark line on the face, nor on the ball. */
+static void test_sliced_atlas(void **state) {
+  (void)state;
+  uint32_t seed = 15;
+  fill_atlas();
+  for (int k = 0; k < 20; k++) {
+    const vec3 along = random_direction(&seed);
+    const hl_cut cut = {.type = HL_CUT_PLANE, .normal = {-along.x, -along.y, -along.z}};
+    for (int whole = 0; whole < 2; whole++) {
+      draw_lit(along, CELLS, whole ? NULL : &cut);
+      for (int n = 0; n < 2000; n++) {
+        const double r = 13 * sqrt(random_number(&seed)), turn = 2 * HL_PI * random_number(&seed);
+        const double expected = whole ? sqrt(1 - r * r / (16 * 16)) : 1;
+        assert_true(brightness_at(r * cos(turn), r * sin(turn)) > (whole ? 0.85 : 0.95) * expected);
+      }
+    }
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_plates), cmocka_unit_test(test_shells),
-                                     cmocka_unit_test(test_lines), cmocka_unit_test(test_a_voxel),
-                                     cmocka_unit_test(test_outlines_of_balls)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_plates),
+                                     cmocka_unit_test(test_shells),
+                                     cmocka_unit_test(test_lines),
+                                     cmocka_unit_test(test_a_voxel),
+                                     cmocka_unit_test(test_outlines_of_balls),
+                                     cmocka_unit_test(test_seam),
+                                     cmocka_unit_test(test_sliced_atlas)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
