@@ -1,9 +1,10 @@
 /* isosurface/isosurface.c - see isosurface.h: cells are cut, edges halved where the surface bends, triangles
- * cut at the clip box, and all of it brought to the world. */
+ * cut at the clip box and at cuts, faces added there, and all of it brought to the world. */
 #include "isosurface/isosurface.h"
 
 #include <string.h>
 
+#include "isosurface/caps.h"
 #include "isosurface/clip.h"
 #include "isosurface/triangles.h"
 
@@ -76,6 +77,7 @@ hl_status hl_isosurface_create(hl_pool *pool, const hl_scene_volume *volume, con
   if (status == HL_OK) status = hl_iso_refine(pool, &lattice, &made, error);
   if (status == HL_OK) status = hl_iso_clip_box(context, &made, grid->box_low, grid->box_high, error);
   if (status == HL_OK) status = hl_iso_cut(context, &made, grid->cuts, grid->cut_count, error);
+  if (status == HL_OK) status = hl_iso_cap(pool, &lattice, &made, error);
   hl_lattice_release(&lattice);
   if (status == HL_OK && hl_pool_cancelled(pool))
     status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing");

@@ -2,18 +2,19 @@
  *
  * Over an edge e between the unit normals m and n the surface rises by about |e . (n - m)| / 8 (derived: on a
  * circle of radius r the normals' difference along e is |e| / r, and the arc rises by |e|^2 / (8 r) above its
- * chord). An edge is halved in both triangles beside it, so that there are no gaps. */
+ * chord). An edge is halved in both triangles beside it, so that there are no gaps. Lengths are the world's,
+ * in the smallest edge of a voxel: in long voxels the index's would be many times as long along one axis. */
 #include <stdlib.h>
 
 #include "core/memory.h"
 #include "isosurface/triangles.h"
 #include "mesh/mesh.h"
 
-/* The greatest rise of the surface above an edge that is left whole; voxels. Above the middle of an even
+/* The greatest rise of the surface above an edge that is left whole. Above the middle of an even
  * triangle it rises 4/3 as far. */
 static const double MOST_RISE = 0.015;
 
-/* The longest edge that is left whole however the surface bends, in voxels: noise, whose surfaces bend within
+/* The longest edge that is left whole however the surface bends: noise, whose surfaces bend within
  * a voxel, would be cut to dust. It rises by 0.014 where the radius is 5. */
 static const double LEAST_EDGE = 0.75;
 
@@ -23,16 +24,23 @@ typedef struct halving {
   uint64_t *edges; /* owned; [count]; the lesser vertex in the upper half; in rising order */
   size_t count;
   size_t first_vertex; /* of the middles */
+  mat3 ways, normals;  /* from index coordinates to the world's lengths; of normals, the inverse transpose */
 } halving;
 
-static bool bends(const iso_triangles *made, uint32_t a, uint32_t b) {
-  double rise = 0, length = 0;
-  for (int axis = 0; axis < 3; axis++) {
-    double way = (double)made->positions[b][axis] - (double)made->positions[a][axis];
-    rise += way * ((double)made->normals[b][axis] - (double)made->normals[a][axis]);
-    length += way * way;
-  }
-  return fabs(rise) > 8 * MOST_RISE && length > LEAST_EDGE * LEAST_EDGE;
+static vec3 vertex_of(const float (*of)[3], uint32_t vertex) {
+  return (vec3){(double)of[vertex][0], (double)of[vertex][1], (double)of[vertex][2]};
+}
+
+static vec3 world_normal(const halving *job, uint32_t vertex) {
+  return vec3_normalise(mat3_apply(job->normals, vertex_of((const float(*)[3])job->made->normals, vertex)));
+}
+
+static bool bends(const halving *job, uint32_t a, uint32_t b) {
+  const float(*positions)[3] = (const float(*)[3])job->made->positions;
+  const vec3 way = mat3_apply(job->ways, vec3_subtract(vertex_of(positions, b), vertex_of(positions, a)));
+  if (!(vec3_dot(way, way) > LEAST_EDGE * LEAST_EDGE)) return false;
+  const double rise = vec3_dot(way, vec3_subtract(world_normal(job, b), world_normal(job, a)));
+  return fabs(rise) > 8 * MOST_RISE;
 }
 
 static uint64_t key_of(uint32_t a, uint32_t b) {
@@ -45,12 +53,13 @@ static int compare_keys(const void *a, const void *b) {
 }
 
 /* Lists the edges that are to be halved, each once. keys: room for three a triangle, or null: counts. */
-static size_t list_edges(const iso_triangles *made, uint64_t *keys) {
+static size_t list_edges(const halving *job, uint64_t *keys) {
+  const iso_triangles *made = job->made;
   size_t count = 0, kept = 0;
   for (size_t t = 0; t < made->triangle_count; t++)
     for (int i = 0; i < 3; i++) {
       uint32_t a = made->triangles[t][i], b = made->triangles[t][(i + 1) % 3];
-      if (!bends(made, a, b)) continue;
+      if (!bends(job, a, b)) continue;
       if (keys != NULL) keys[count] = key_of(a, b);
       count++;
     }
@@ -63,7 +72,7 @@ static size_t list_edges(const iso_triangles *made, uint64_t *keys) {
 
 /* The number of an edge's middle; -1: the edge is whole. */
 static int64_t middle_of(const halving *job, uint32_t a, uint32_t b) {
-  if (!bends(job->made, a, b)) return -1;
+  if (!bends(job, a, b)) return -1;
   uint64_t key = key_of(a, b);
   const uint64_t *found = bsearch(&key, job->edges, job->count, sizeof key, compare_keys);
   return found != NULL ? (int64_t)(job->first_vertex + (size_t)(found - job->edges)) : -1;
@@ -187,16 +196,24 @@ static hl_status cut_triangles(halving *job, hl_error *error) {
   return HL_OK;
 }
 
-/* Halves each edge that lies too far from the surface. *any: whether there were such edges. */
+/* Halves each edge that lies too far from the surface. *any: whether there were such edges, and room for the
+ * triangles. */
 static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangles *triangles, bool *any,
                              hl_error *error) {
   halving job = {.lattice = lattice, .made = triangles};
-  size_t listed = list_edges(triangles, NULL);
-  *any = listed > 0;
-  if (listed == 0) return HL_OK;
+  const mat3 placed = lattice->grid->index_to_frame.linear;
+  mat3 inverse;
+  *any = false;
+  if (!mat3_invert(placed, &inverse)) return HL_OK; /* refused when the grid was made */
+  const double voxel = mat3_shortest_column(placed);
+  for (int row = 0; row < 3; row++) job.ways.row[row] = vec3_scale(placed.row[row], 1 / voxel);
+  job.normals = mat3_transpose(inverse);
+  const size_t listed = list_edges(&job, NULL); /* most edges are those of two triangles */
+  if (listed == 0 || triangles->triangle_count + listed > HL_LIMIT_TRIANGLES) return HL_OK;
+  *any = true;
   job.edges = hl_allocate(lattice->context, listed, sizeof *job.edges);
   if (job.edges == NULL) return hl_fail_memory(error, listed * sizeof *job.edges, "an isosurface");
-  job.count = list_edges(triangles, job.edges);
+  job.count = list_edges(&job, job.edges);
   hl_status status = add_middles(pool, &job, error);
   if (status == HL_OK) status = cut_triangles(&job, error);
   hl_release(lattice->context, job.edges);
@@ -204,7 +221,7 @@ static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangle
 }
 
 hl_status hl_iso_refine(hl_pool *pool, const lattice *lattice, iso_triangles *triangles, hl_error *error) {
-  enum { ROUNDS = 2 }; /* an edge across a whole cell is then shorter than LEAST_EDGE */
+  enum { ROUNDS = 8 }; /* a cell twenty times as wide along an axis needs five */
   hl_status status = HL_OK;
   bool any = true;
   for (int round = 0; round < ROUNDS && any && status == HL_OK; round++)

@@ -91,10 +91,8 @@ double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 
   return next;
 }
 
-/* The outward normal, in the world, of the cut whose face is nearest to a point: heights h rise in the world
- * by
- * |(M^-1)^T grad h|, M the placement. */
-static vec3 normal_at(const reference_volume *volume, vec3 point) {
+/* Heights h rise in the world by |(M^-1)^T grad h|, M the placement. */
+vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point) {
   const hl_scene_volume *described = volume->described;
   vec3 face = {0, 0, 0};
   double least = INFINITY;
@@ -122,7 +120,7 @@ double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to
   const double cut = hl_reference_next_face(volume, point, along, 0);
   if (cut < fabs(way)) {
     way = cut;
-    face = normal_at(volume, vec3_add(point, vec3_scale(along, way)));
+    face = hl_reference_cut_normal(volume, vec3_add(point, vec3_scale(along, way)));
   }
   const double depth = way * vec3_dot(face, to_eye) / volume->smallest_edge;
   if (!(way >= 0) || !(depth < FACE_VOXELS)) return 0;

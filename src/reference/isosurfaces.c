@@ -1,5 +1,5 @@
 /* reference/isosurfaces.c - where rays meet surfaces on which a volume has one value: roots of the kernel's
- * field along the ray. */
+ * field along the ray, and the faces at which the volume's box and its cuts end what is inside. */
 #include "reference/reference.h"
 
 /* A stretch of a ray in which the field passes from one side of the value to the other. */
@@ -52,6 +52,63 @@ static void meet_volume(const reference *all, const crossing *part, reference_hi
   }
 }
 
+/* Whether the box and the cuts leave a point of the ray. */
+static bool is_there(const crossing *part, double distance) {
+  const vec3 here = vec3_add(part->origin, vec3_scale(part->direction, distance));
+  const double at[3] = {here.x, here.y, here.z};
+  for (int a = 0; a < 3; a++)
+    if (at[a] < part->volume->low[a] || at[a] > part->volume->high[a]) return false;
+  return hl_reference_left(part->volume, here);
+}
+
+/* The outward normal, in the world, of the box's face nearest to a point of it; 0 where another volume goes
+ * on. */
+static vec3 normal_of_box(const reference_volume *volume, vec3 point) {
+  const double at[3] = {point.x, point.y, point.z};
+  double least = INFINITY;
+  vec3 normal = {0, 0, 0};
+  for (int a = 0; a < 3; a++)
+    for (int high = 0; high < 2; high++) {
+      const double off = fabs(at[a] - (high ? volume->high[a] : volume->low[a]));
+      if (!(off < least)) continue;
+      const bool open = isinf(high ? volume->clip_high[a] : volume->clip_low[a]);
+      const vec3 rise = mat3_apply(volume->gradient_to_world, (vec3){a == 0, a == 1, a == 2});
+      least = off;
+      normal = open ? (vec3){0, 0, 0} : vec3_scale(vec3_normalise(rise), high ? 1 : -1);
+    }
+  return normal;
+}
+
+/* A face is met where the ray crosses from what is there to what is not, within a surface's inside. */
+static void meet_face(const reference *all, const crossing *part, double at, vec3 normal,
+                      reference_hit *hit) {
+  const hl_scene_volume *described = part->volume->described;
+  const double aside = 1e-4 * all->step, value = value_at(part, at);
+  if (vec3_length(normal) == 0 || is_there(part, at - aside) == is_there(part, at + aside)) return;
+  for (size_t i = 0; i < described->iso_count; i++)
+    if (value > described->iso[i].value && at < hit->distance)
+      *hit = (reference_hit){.iso = &described->iso[i],
+                             .volume = part->volume,
+                             .distance = at,
+                             .face = normal,
+                             .opacity = described->iso[i].opacity};
+}
+
+/* part: from `first` on, and to `last`, clipped to the box. */
+static void meet_faces(const reference *all, const crossing *part, double first, double last,
+                       reference_hit *hit) {
+  const vec3 enters = vec3_add(part->origin, vec3_scale(part->direction, part->enter)),
+             leaves = vec3_add(part->origin, vec3_scale(part->direction, part->leave));
+  if (part->enter > first) meet_face(all, part, part->enter, normal_of_box(part->volume, enters), hit);
+  if (part->leave < last) meet_face(all, part, part->leave, normal_of_box(part->volume, leaves), hit);
+  for (double at = part->enter;;) {
+    at = hl_reference_next_face(part->volume, part->origin, part->direction, at);
+    if (!(at < part->leave) || !(at < hit->distance)) return;
+    const vec3 crossing = vec3_add(part->origin, vec3_scale(part->direction, at));
+    meet_face(all, part, at, hl_reference_cut_normal(part->volume, crossing), hit);
+  }
+}
+
 void hl_reference_iso_next(const reference *all, reference_role role, const reference_ray *ray, double after,
                            reference_hit *hit) {
   for (size_t v = 0; v < all->scene->volume_count; v++) {
@@ -60,12 +117,16 @@ void hl_reference_iso_next(const reference *all, reference_role role, const refe
     if (described->iso_count == 0 || !(role == REFERENCE_SEEN ? described->visible : described->casts_shadow))
       continue;
     crossing part = {.volume = volume};
-    hl_reference_cross_box(&part, ray, after + all->step * LEAST_GAP, hit->distance);
-    if (part.enter < part.leave) meet_volume(all, &part, hit);
+    const double first = after + all->step * LEAST_GAP, last = hit->distance;
+    hl_reference_cross_box(&part, ray, first, last);
+    if (!(part.enter < part.leave)) continue;
+    meet_volume(all, &part, hit);
+    meet_faces(all, &part, first, last, hit);
   }
 }
 
 vec3 hl_reference_iso_normal(const reference_hit *hit, vec3 point) {
+  if (vec3_length(hit->face) > 0) return hit->face;
   vec3 index = affine3_apply(hit->volume->world_to_index, point);
   return vec3_scale(vec3_normalise(hl_reference_gradient(hit->volume, index)), -1);
 }

@@ -261,6 +261,8 @@ double hl_reference_mask_color(const reference_volume *volume, vec3 point, doubl
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);
 /* Finds the faces of the volume's box at which no other volume goes on; the box is known. */
 void hl_reference_find_clip_faces(const hl_scene_description *scene, reference_volume *volume);
+/* The outward normal, in the world, of the cut whose face is nearest to a point of index space. */
+vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point);
 /* The way from a point of index space to where a ray leaves the box, in lengths of the direction, and the
  * face's outward normal in the world. Below 0: another volume goes on there. */
 double hl_reference_leaves_box(const reference_volume *volume, vec3 point, vec3 direction, vec3 *outward);
@@ -358,6 +360,7 @@ typedef struct reference_hit {
   double weight[3];               /* of the triangle's corners */
   const hl_isosurface *iso;       /* null: a triangle */
   const reference_volume *volume; /* of the isosurface */
+  vec3 face;                      /* unit; the normal of the face that closes it here; else 0 */
   double opacity;
 } reference_hit;
 

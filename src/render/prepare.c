@@ -267,8 +267,9 @@ static const prepared_iso *known_iso(const prepared_volume *prepared, const hl_s
   return NULL;
 }
 
+/* grid: the prepared one, with open faces. */
 static hl_status prepare_iso(hl_context *context, hl_pool *pool, const hl_scene_volume *scene,
-                             prepared_volume *prepared, hl_error *error) {
+                             const grid *grid, prepared_volume *prepared, hl_error *error) {
   prepared_iso *made = hl_allocate_zeroed(context, scene->iso_count, sizeof *made);
   hl_status status = HL_OK;
   if (made == NULL) return hl_fail_memory(error, scene->iso_count * sizeof *made, "isosurfaces");
@@ -280,8 +281,8 @@ static hl_status prepare_iso(hl_context *context, hl_pool *pool, const hl_scene_
       made[i].mesh = known->mesh;
       hl_mesh_retain(known->mesh);
     } else {
-      status = hl_isosurface_create(pool, scene, &prepared->grid, hl_kernel_get(prepared->kernel),
-                                    made[i].value, &made[i].mesh, error);
+      status = hl_isosurface_create(pool, scene, grid, hl_kernel_get(prepared->kernel), made[i].value,
+                                    &made[i].mesh, error);
     }
   }
   release_iso(context, prepared);
@@ -291,11 +292,26 @@ static hl_status prepare_iso(hl_context *context, hl_pool *pool, const hl_scene_
   return status;
 }
 
+/* A copy of a volume's grid whose faces are open where another volume goes on. */
+static grid grid_with_open_faces(const hl_scene_description *scene, const prepared_volume *prepared,
+                                 size_t volume) {
+  grid grid = prepared[volume].grid;
+  for (int axis = 0; axis < 3; axis++) {
+    grid.face_low[axis] = (float)grid.box_low[axis];
+    grid.face_high[axis] = (float)grid.box_high[axis];
+  }
+  for (size_t i = 0; i < scene->volume_count; i++)
+    if (i != volume && scene->volumes[i].casts_shadow) hl_open_faces(&grid, &prepared[i].grid);
+  return grid;
+}
+
 hl_status hl_prepare_isosurfaces(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
                                  prepared_volume *prepared, hl_error *error) {
   hl_status status = HL_OK;
-  for (size_t i = 0; i < scene->volume_count && status == HL_OK; i++)
-    if (scene->volumes[i].iso_count > 0 || prepared[i].iso_count > 0)
-      status = prepare_iso(context, pool, &scene->volumes[i], &prepared[i], error);
+  for (size_t i = 0; i < scene->volume_count && status == HL_OK; i++) {
+    if (scene->volumes[i].iso_count == 0 && prepared[i].iso_count == 0) continue;
+    const grid grid = grid_with_open_faces(scene, prepared, i);
+    status = prepare_iso(context, pool, &scene->volumes[i], &grid, &prepared[i], error);
+  }
   return status;
 }

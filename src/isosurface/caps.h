@@ -1,0 +1,12 @@
+/* isosurface/caps.h - the faces that close an isosurface where the volume's box or cuts end it. */
+#ifndef HL_ISOSURFACE_CAPS_H
+#define HL_ISOSURFACE_CAPS_H
+
+#include "isosurface/triangles.h"
+
+/* Adds caps to triangles that are clipped and cut already: wherever a face of the box or of a cut runs
+ * through the surface's inside. Faces of the box that are far out (grid->face_low, face_high), where another
+ * volume goes on, get none. */
+hl_status hl_iso_cap(hl_pool *pool, const lattice *lattice, iso_triangles *made, hl_error *error);
+
+#endif
