@@ -12,7 +12,7 @@
 
 /* The greatest rise of the surface above an edge that is left whole. Above the middle of an even
  * triangle it rises 4/3 as far. */
-static const double MOST_RISE = 0.015;
+static const double MOST_RISE = 0.014;
 
 /* The longest edge that is left whole however the surface bends: noise, whose surfaces bend within
  * a voxel, would be cut to dust. It rises by 0.014 where the radius is 5. */
