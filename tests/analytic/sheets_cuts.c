@@ -297,6 +297,50 @@ static void test_faces_by_their_own_normal(void **state) {
     }
 }
 
+/* A face that cuts dense matter is even at any angle to the eye, down to 5 degrees: without shadows its
+ * brightness is its cosine to the light. */
+static void test_even_at_any_angle(void **state) {
+  (void)state;
+  enum { FINE = 96 };
+  static float pixels[FINE * FINE * 4];
+  static const double eyes[] = {70, 45, 20, 10, 5}, lights[] = {70, 30, 15};
+  static const hl_cut planes[] = {{.type = HL_CUT_PLANE, .point = {0.3, 0.2, -0.4}, .normal = {1, 2, 2}}};
+  const vec3 normal = {1.0 / 3, 2.0 / 3, 2.0 / 3}, along = vec3_normalise((vec3){2, 0.3, -1.3});
+  const vec3 flat = vec3_normalise(vec3_subtract(along, vec3_scale(normal, vec3_dot(along, normal))));
+  const vec3 beside = vec3_add(vec3_scale(flat, 0.6), vec3_scale(vec3_cross(normal, flat), 0.8));
+  for (int n = 0; n < 15; n++) {
+    const double eye = eyes[n % 5] * HL_PI / 180, light = lights[n / 5] * HL_PI / 180;
+    stage set;
+    open_stage(&set, NULL);
+    set.scene.width = set.scene.height = FINE;
+    set.scene.camera.height = 20;
+    const vec3 from = vec3_add(vec3_scale(normal, sin(eye)), vec3_scale(flat, cos(eye)));
+    stage_look(&set, vec3_scale(from, 60), (vec3){0, 0, 0}, normal);
+    hl_scene_volume *cube = add_cube(&set, 0.99);
+    cube->shading = HL_SHADING_PHONG;
+    cube->material = (hl_material){.diffuse = 1};
+    cut(cube, planes, 1);
+    const vec3 towards = vec3_add(vec3_scale(normal, sin(light)), vec3_scale(beside, cos(light)));
+    stage_add_directional(&set, vec3_scale(towards, -1))->shadows = HL_SHADOWS_OFF;
+    stage_render_by(&set, false, pixels);
+    int count = 0;
+    for (int p = 0; p < FINE * FINE; p++) {
+      vec3 origin, way;
+      stage_eye_ray(&set, p % FINE, p / FINE, &origin, &way);
+      const double t = vec3_dot(normal, vec3_subtract(vec3_of(planes[0].point), origin)) /
+                       vec3_dot(normal, way);
+      const vec3 at = vec3_add(origin, vec3_scale(way, t));
+      if (fabs(at.x) > HALF - 2 || fabs(at.y) > HALF - 2 || fabs(at.z) > HALF - 2) continue;
+      count++;
+      if (!(fabs((double)pixels[4 * p] / sin(light) - 1) < 0.03))
+        fail_msg("eye at %g, light at %g degrees: %.4f is not %.4f", eyes[n % 5], lights[n / 5],
+                 (double)pixels[4 * p], sin(light));
+    }
+    assert_true(count > 600);
+    stage_close(&set);
+  }
+}
+
 /* The border of the grid is such a face, too: without shadows each side of a cube of even matter is as bright
  * as its cosine to the light, evenly. So it is for a cube cropped out of a larger grid of noise. */
 static void test_border_of_the_grid(void **state) {
@@ -450,6 +494,7 @@ int main(void) {
       cmocka_unit_test(test_scene_cuts_in_the_world),
       cmocka_unit_test(test_scene_cuts_as_cuts_of_each_volume),
       cmocka_unit_test(test_faces_by_their_own_normal),
+      cmocka_unit_test(test_even_at_any_angle),
       cmocka_unit_test(test_border_of_the_grid),
       cmocka_unit_test(test_shadow_of_what_is_cut_away),
       cmocka_unit_test(test_isosurface),
