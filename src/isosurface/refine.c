@@ -24,22 +24,32 @@ typedef struct halving {
   uint64_t *edges; /* owned; [count]; the lesser vertex in the upper half; in rising order */
   size_t count;
   size_t first_vertex; /* of the middles */
-  mat3 ways, normals;  /* from index coordinates to the world's lengths; of normals, the inverse transpose */
+  mat3 ways, turns;    /* from index coordinates to the world's lengths; of normals, the inverse transpose */
+  float (*normals)[3]; /* owned; [vertices before the middles]; the world's unit normals */
 } halving;
 
 static vec3 vertex_of(const float (*of)[3], uint32_t vertex) {
   return (vec3){(double)of[vertex][0], (double)of[vertex][1], (double)of[vertex][2]};
 }
 
-static vec3 world_normal(const halving *job, uint32_t vertex) {
-  return vec3_normalise(mat3_apply(job->normals, vertex_of((const float(*)[3])job->made->normals, vertex)));
+enum { RUN_VERTICES = 4096 };
+
+static void turn_normals(void *data, size_t index, int worker) {
+  (void)worker;
+  const halving *job = data;
+  const size_t end = (index + 1) * RUN_VERTICES;
+  for (size_t v = index * RUN_VERTICES; v < end && v < job->made->vertex_count; v++) {
+    const vec3 own = vertex_of((const float(*)[3])job->made->normals, (uint32_t)v);
+    vec3_store(job->normals[v], vec3_normalise(mat3_apply(job->turns, own)));
+  }
 }
 
 static bool bends(const halving *job, uint32_t a, uint32_t b) {
   const float(*positions)[3] = (const float(*)[3])job->made->positions;
   const vec3 way = mat3_apply(job->ways, vec3_subtract(vertex_of(positions, b), vertex_of(positions, a)));
   if (!(vec3_dot(way, way) > LEAST_EDGE * LEAST_EDGE)) return false;
-  const double rise = vec3_dot(way, vec3_subtract(world_normal(job, b), world_normal(job, a)));
+  const float(*normals)[3] = (const float(*)[3])job->normals;
+  const double rise = vec3_dot(way, vec3_subtract(vertex_of(normals, b), vertex_of(normals, a)));
   return fabs(rise) > 8 * MOST_RISE;
 }
 
@@ -196,6 +206,18 @@ static hl_status cut_triangles(halving *job, hl_error *error) {
   return HL_OK;
 }
 
+/* listed: edges, each of which may be listed more than once. */
+static hl_status halve(hl_pool *pool, halving *job, size_t listed, hl_error *error) {
+  hl_context *context = job->lattice->context;
+  job->edges = hl_allocate(context, listed, sizeof *job->edges);
+  if (job->edges == NULL) return hl_fail_memory(error, listed * sizeof *job->edges, "an isosurface");
+  job->count = list_edges(job, job->edges);
+  hl_status status = add_middles(pool, job, error);
+  if (status == HL_OK) status = cut_triangles(job, error);
+  hl_release(context, job->edges);
+  return status;
+}
+
 /* Halves each edge that lies too far from the surface. *any: whether there were such edges, and room for the
  * triangles. */
 static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangles *triangles, bool *any,
@@ -207,16 +229,15 @@ static hl_status halve_edges(hl_pool *pool, const lattice *lattice, iso_triangle
   if (!mat3_invert(placed, &inverse)) return HL_OK; /* refused when the grid was made */
   const double voxel = mat3_shortest_column(placed);
   for (int row = 0; row < 3; row++) job.ways.row[row] = vec3_scale(placed.row[row], 1 / voxel);
-  job.normals = mat3_transpose(inverse);
+  job.turns = mat3_transpose(inverse);
+  const size_t vertices = triangles->vertex_count;
+  job.normals = hl_allocate(lattice->context, vertices, sizeof *job.normals);
+  if (job.normals == NULL) return hl_fail_memory(error, vertices * sizeof *job.normals, "an isosurface");
+  hl_pool_run(pool, (vertices + RUN_VERTICES - 1) / RUN_VERTICES, turn_normals, &job);
   const size_t listed = list_edges(&job, NULL); /* most edges are those of two triangles */
-  if (listed == 0 || triangles->triangle_count + listed > HL_LIMIT_TRIANGLES) return HL_OK;
-  *any = true;
-  job.edges = hl_allocate(lattice->context, listed, sizeof *job.edges);
-  if (job.edges == NULL) return hl_fail_memory(error, listed * sizeof *job.edges, "an isosurface");
-  job.count = list_edges(&job, job.edges);
-  hl_status status = add_middles(pool, &job, error);
-  if (status == HL_OK) status = cut_triangles(&job, error);
-  hl_release(lattice->context, job.edges);
+  *any = listed > 0 && triangles->triangle_count + listed <= HL_LIMIT_TRIANGLES;
+  const hl_status status = *any ? halve(pool, &job, listed, error) : HL_OK;
+  hl_release(lattice->context, job.normals);
   return status;
 }
 
