@@ -107,6 +107,16 @@ vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point) {
   return face;
 }
 
+/* The way from a point that is left to where a ray meets what the cuts remove. A box's faces are planes
+ * without an end to hl_reference_next_face(). direction: a unit vector of the world, by index coordinates. */
+static double way_to_removed(const reference_volume *volume, vec3 point, vec3 direction) {
+  const double beyond = 1e-4 * volume->smallest_edge;
+  double way = 0;
+  do way = hl_reference_next_face(volume, point, direction, way);
+  while (isfinite(way) && hl_reference_left(volume, vec3_add(point, vec3_scale(direction, way + beyond))));
+  return way;
+}
+
 /* A point is seen through a face where the ray to the eye crosses the face first of all, and matter is
  * visible there. */
 double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
@@ -117,7 +127,7 @@ double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to
   const vec3 along = mat3_apply(volume->world_to_index.linear, to_eye);
   vec3 face = {0, 0, 0};
   double way = hl_reference_leaves_box(volume, point, along, &face);
-  const double cut = hl_reference_next_face(volume, point, along, 0);
+  const double cut = way_to_removed(volume, point, along);
   if (cut < fabs(way)) {
     way = cut;
     face = hl_reference_cut_normal(volume, vec3_add(point, vec3_scale(along, way)));
