@@ -8,6 +8,7 @@
 #include "guess/analysis.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/context.h"
@@ -314,17 +315,37 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
  *
  * Noise and the edges of smooth shapes may be whole numbers too, but there few neighbours are equal. */
 
-#define IN_BLOCKS                                                                                          \
-  0.5                /* a label lies in blocks if more than this fraction of its voxels' neighbours has it \
-                      */
-#define WIDEST 65535 /* the greatest difference of two labels */
+#define IN_BLOCKS                                                                           \
+  0.5 /* a label lies in blocks if more than this fraction of its voxels' neighbours has it \
+       */
 
 typedef struct tally {
+  double value;
   unsigned int seen, shared; /* neighbours of voxels with this value; those of them that have it too */
 } tally;
 
-/* Fills in tallies, one for each whole number from least on; false at a value that is no whole number. */
-static bool count_neighbours(const hl_volume *volume, double least, tally *tallies) {
+enum { TALLIES = 4 * HL_MOST_LABELS, NO_ROOM = -1 };
+
+/* The values that were met: by their hash, or in the next free place. */
+typedef struct value_table {
+  tally tallies[TALLIES]; /* none seen: a free place */
+  size_t count;
+} value_table;
+
+/* The place of a value, new or known; NO_ROOM where there are more values than labels may be. */
+static int place_of(value_table *table, double value) {
+  uint64_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  size_t place = (size_t)((bits * 0x9e3779b97f4a7c15u) >> 32) % TALLIES;
+  while (table->tallies[place].seen != 0 && table->tallies[place].value != value)
+    place = (place + 1) % TALLIES;
+  if (table->tallies[place].seen == 0 && table->count++ > HL_MOST_LABELS) return NO_ROOM;
+  table->tallies[place].value = value;
+  return (int)place;
+}
+
+/* Fills in tallies; false at a value that is no whole number, and where there are too many values. */
+static bool count_neighbours(const hl_volume *volume, value_table *table) {
   const size_t *n = volume->dimension;
   size_t step = hl_lattice_step(n, HL_LATTICE_PLACES);
   for (size_t k = step / 2; k < n[2]; k += step)
@@ -336,7 +357,9 @@ static bool count_neighbours(const hl_volume *volume, double least, tally *talli
         const double next[3] = {hl_volume_value_within(volume, i + 1, j, k),
                                 hl_volume_value_within(volume, i, j + 1, k),
                                 hl_volume_value_within(volume, i, j, k + 1)}; /* NaN outside */
-        tally *own = &tallies[(size_t)(value - least)];
+        const int place = place_of(table, value);
+        if (place == NO_ROOM) return false;
+        tally *own = &table->tallies[place];
         for (int a = 0; a < 3; a++) {
           own->seen += isfinite(next[a]);
           own->shared += next[a] == value;
@@ -345,30 +368,35 @@ static bool count_neighbours(const hl_volume *volume, double least, tally *talli
   return true;
 }
 
-/* Lists the labels: all values but the background, which is 0 if any value is 0 or less. True if there are
- * two or more and most of them lie in blocks. */
-static bool list(const tally *tallies, size_t count, double least, hl_data_analysis *a) {
+static int compare_values(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return x < y ? -1 : x > y;
+}
+
+/* Lists the labels, in rising order: all values but the background, which is 0 if any value is 0 or less.
+ * True if there are two or more and most of them lie in blocks. */
+static bool list(const value_table *table, double least, hl_data_analysis *a) {
   size_t found = 0, in_blocks = 0;
   double background = least <= 0 ? 0 : a->background;
-  for (size_t t = 0; t < count; t++) {
-    if (tallies[t].seen == 0 || least + (double)t == background) continue;
+  for (size_t t = 0; t < TALLIES; t++) {
+    const tally *own = &table->tallies[t];
+    if (own->seen == 0 || own->value == background) continue;
     if (found == HL_MOST_LABELS) return false;
-    a->labels[found++] = least + (double)t;
-    in_blocks += (double)tallies[t].shared > IN_BLOCKS * (double)tallies[t].seen;
+    a->labels[found++] = own->value;
+    in_blocks += (double)own->shared > IN_BLOCKS * (double)own->seen;
   }
+  qsort(a->labels, found, sizeof *a->labels, compare_values);
   a->label_count = found;
   return found > 1 && 2 * in_blocks > found;
 }
 
 hl_status hl_data_find_labels(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error) {
-  double least = volume->minimum, range = volume->maximum - volume->minimum;
-  if (analysis->kind == HL_DATA_CONSTANT || least != floor(least) || !(range <= WIDEST)) return HL_OK;
-  size_t count = (size_t)range + 1;
-  tally *tallies = hl_allocate_zeroed(volume->context, count, sizeof *tallies);
-  if (tallies == NULL) return hl_fail_memory(error, count * sizeof *tallies, "a count of labels");
-  if (count_neighbours(volume, least, tallies) && list(tallies, count, least, analysis))
+  if (analysis->kind == HL_DATA_CONSTANT || volume->minimum != floor(volume->minimum)) return HL_OK;
+  value_table *table = hl_allocate_zeroed(volume->context, 1, sizeof *table);
+  if (table == NULL) return hl_fail_memory(error, sizeof *table, "a count of labels");
+  if (count_neighbours(volume, table) && list(table, volume->minimum, analysis))
     analysis->kind = HL_DATA_LABELS;
   else analysis->label_count = 0;
-  hl_release(volume->context, tallies);
+  hl_release(volume->context, table);
   return HL_OK;
 }

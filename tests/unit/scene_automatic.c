@@ -402,6 +402,34 @@ static void thin_surfaces_of_small_grids_get_more_sheets(void **state) {
   assert_true(thick == 0.25);
 }
 
+/* Ids of atlases are far apart, and far from 0. */
+static void ids_of_any_size_are_labels(void **state) {
+  (void)state;
+  enum { N = 24 };
+  static uint32_t voxels[N * N * N];
+  static hl_data_analysis analysis;
+  for (int at = 0; at < N * N * N; at++) {
+    const int i = at % N, j = at / N % N, k = at / N / N;
+    const bool inside = i >= 4 && i < 20 && j >= 4 && j < 20 && k >= 4 && k < 20;
+    voxels[at] = !inside ? 0 : i < 10 ? 614454278 : i < 15 ? 614454277 : 12;
+  }
+  hl_context *context = make_context();
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  d.dimensions[0] = d.dimensions[1] = d.dimensions[2] = N;
+  d.type = HL_VOXEL_U32;
+  d.voxels = voxels;
+  hl_volume *map = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &map, NULL), HL_OK);
+  assert_int_equal(hl_data_analyse(map, &analysis, NULL), HL_OK);
+  assert_int_equal(hl_data_find_labels(map, &analysis, NULL), HL_OK);
+  assert_int_equal(analysis.kind, HL_DATA_LABELS);
+  assert_int_equal(analysis.label_count, 3);
+  assert_true(analysis.labels[0] == 12 && analysis.labels[1] == 614454277 && analysis.labels[2] == 614454278);
+  hl_volume_release(map);
+  hl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(separates_air_from_things),
@@ -414,6 +442,7 @@ int main(void) {
       cmocka_unit_test(colormaps_have_their_published_colors),
       cmocka_unit_test(names_and_statistics),
       cmocka_unit_test(things_stand_upright),
+      cmocka_unit_test(ids_of_any_size_are_labels),
       cmocka_unit_test(thin_surfaces_of_small_grids_get_more_sheets),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
