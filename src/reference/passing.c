@@ -113,7 +113,7 @@ static kept_light kept_of_step(const reference_volume *volume, double from, doub
          left = fmin(fabs(deep) / fmax(fabs(from - foot_from), 1e-300), 1);
   double even = length - fabs(to - from) / volume->surface_gradient;
   bool same = foot_from == foot_to, enters = (to - from) * deep > 0;
-  left = pow(left, 16) * exp(-fmax(even, 0) / volume->smallest_edge);
+  left = pow(left, 16) * exp(-fmax(even, 0) / (4 * volume->smallest_edge));
   if (same) return (kept_light){left, left, false};
   return (kept_light){0, enters ? 1 : 0, enters && extinction_at(volume, from) > 0};
 }

@@ -78,11 +78,12 @@ double hl_reference_phase(double g, vec3 to_eye, vec3 towards) {
   return (1 - g * g) / pow(1 + g * g + 2 * g * vec3_dot(to_eye, towards), 1.5);
 }
 
-/* The fraction of a light that reaches a sample, as a surface and as a medium. */
-static void add_shadow(const reference *all, const reference_sample *at, double amount, size_t light,
+/* The fraction of a light that reaches a sample: on a surface that faces the light, its outside. */
+static void add_shadow(const reference *all, const reference_sample *at, const surface *here, size_t light,
                        reference_worker *worker, double shadow[3]) {
+  bool faces = vec3_dot(here->normal, worker->arrivals[light].towards) > 0;
   for (int surface = 0; surface < 2; surface++) {
-    double weight = surface ? amount : 1 - amount, part[3];
+    double lit = faces ? here->amount : 0, weight = surface ? lit : 1 - lit, part[3];
     if (!(weight > 0)) continue;
     const reference_receiver receiver = {at->point, surface ? at->volume : NULL, at->value};
     hl_reference_light_shadow(all, &all->lights[light], &receiver, at->volume->described->receives_shadow,
@@ -98,7 +99,7 @@ static void shade_light(const reference *all, const reference_sample *at, const 
   const arrival *arrived = &worker->arrivals[light];
   double cosine = vec3_dot(here->normal, arrived->towards), gloss = 0;
   *part = (light_part){{0, 0, 0}, {0, 0, 0}};
-  if (all->all_shadows) add_shadow(all, at, here->amount, light, worker, part->shadow);
+  if (all->all_shadows) add_shadow(all, at, here, light, worker, part->shadow);
   if (cosine > 0) {
     /* R = 2 (N.L) N - L */
     vec3 reflected = vec3_subtract(vec3_scale(here->normal, 2 * cosine), arrived->towards);

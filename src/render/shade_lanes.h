@@ -117,7 +117,7 @@ LANES_INLINE receivers receivers_in_slab(const block_density *densities, int cou
     const block_density *d = &densities[i];
     const shade_volume *volume = d->there ? d->patch->volume : NULL;
     if (volume == NULL || !volume->visible || !volume->receives_shadow) continue;
-    media |= d->surface < 1.0f;
+    media |= d->surface < (volume->even ? 2.0f : 1.0f);
     surfaces |= d->surface > 0.0f;
   }
   return (receivers){lanes_bits(media & seen) != 0, lanes_bits(surfaces & seen) != 0};
@@ -191,6 +191,17 @@ LANES_INLINE void add_scattered(const shade_job *job, const block_density *d, co
   for (int c = 0; c < 3; c++) lit->c[c] = lanes_fma(light[c], color->c[c] * volume->albedo[c], lit->c[c]);
 }
 
+/* White surfaces that send on all light: on the side of the light what arrives at their outside, on the other
+ * side what passes their matter. */
+LANES_INLINE void add_even(const arriving_light *light, int receives_shadow, lanes_int faces, lanes surface,
+                           color_lanes *lit) {
+  for (int c = 0; c < 3; c++) {
+    lanes arriving = receives_shadow ? lanes_select(faces, light->on_surface.c[c], light->shadowed.c[c])
+                                     : light->full.c[c];
+    lit->c[c] = lanes_fma(arriving, surface, lit->c[c]);
+  }
+}
+
 /* Step 15: eqs. (3) and (4) with the light's centre; a medium scatters by its phase function, its mean over
  * the light. Emission is added; a volume shaded flat has nothing else. */
 LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d, const block_geometry *g,
@@ -214,8 +225,11 @@ LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d
       lit.c[c] = lanes_fma(on_medium->c[c], color.c[c] * even, lit.c[c]);
     }
     if (!volume->phong) continue;
-    lanes diffuse = (volume->even ? lanes_set(1.0f) : lanes_max(facing, lanes_set(0)) * volume->diffuse) *
-                    d->surface;
+    if (volume->even) {
+      add_even(&lights[i], volume->receives_shadow, facing > 0.0f, d->surface, &lit);
+      continue;
+    }
+    lanes diffuse = lanes_max(facing, lanes_set(0)) * volume->diffuse * d->surface;
     lanes3 mirrored = add_scaled3(scale3(lights[i].towards, lanes_set(-1.0f)), d->normal, facing * 2.0f);
     lanes glint = power(dot3(g->towards_eye, mirrored), lanes_set(volume->shininess)) * volume->specular *
                   d->surface;

@@ -57,13 +57,18 @@ typedef struct attenuate_job {
  * k = k' = min(1, h2 / h1)^OUTWARDS_POWER: 1 while it goes deeper, falling to 0 where the surface ends. Light
  * that enters another surface within the slab has k = 0 and k' = 1; light that leaves one, or a cut's face,
  * has k = k' = 0. The product over slabs depends on h at both ends alone, and not on how the way is cut into
- * slabs. Where values hardly change, matter is no surface (classifier.normal_edge): a voxel of such matter on
- * the light's way divides k and k' by e. In a medium k = k' = 0. Where several volumes share a slab, k and k'
- * are their means, weighted by optical depth.
+ * slabs. Where values hardly change, matter is no surface (classifier.normal_edge): EVEN_VOXELS of such
+ * matter on the light's way divide k and k' by e. In a medium k = k' = 0. Where several volumes share a slab,
+ * k and k' are their means, weighted by optical depth.
  *
  * OUTWARDS_POWER: how soon a surface that light leaves again counts as left: h falls to 2/3 within the
  * outermost voxel or so of an edge, and then 1/25 of what was taken still lights the surface. */
 #define OUTWARDS_POWER 16
+
+/* Voxels of even matter after which a surface counts as left: few enough that light hardly goes on from a
+ * wall into the floor below it, and enough for the face of a cut, whose matter is even, to be lit as deep as
+ * it is seen. */
+#define EVEN_VOXELS 4
 
 /* A surface in the dark takes no light, but a method that blurs what was taken before needs to know that it
  * is there: light from beside the shadow ends at it, too. Where less than DARK_AT_START is left, the pixel

@@ -121,7 +121,8 @@ LANES_INLINE kept_light kept_in_block(const attenuate_job *job, const attenuate_
   lanes way = path * span.length;
   lanes even = way - lanes_abs(b.x - a.x) * (1.0f / volume->classifier->normal_edge);
   const int some_even = lanes_bits(even > 0.0f) != 0;
-  if (some_even) even = lanes_exp_negative(lanes_max(even, lanes_set(0)) * (1.0f / volume->voxel));
+  if (some_even)
+    even = lanes_exp_negative(lanes_max(even, lanes_set(0)) * (1.0f / (EVEN_VOXELS * volume->voxel)));
   if (!volume->classifier->several_surfaces) {
     const float foot = volume->classifier->only_outside, side = volume->classifier->side;
     lanes left = power_of_depth(lanes_max((a.x - foot) * side, none), lanes_max((b.x - foot) * side, none));

@@ -95,8 +95,8 @@ static void assert_even(const char *what, double bar) {
 
 /* Settings, name, the bars for floors far and near and for balls, and steps from one direction to the
  * next. */
-static const char *hard[] = {"\"shadows\": \"hard\"", "hard", "0.005", "0.005", "0.007", "1"};
-static const char *cascade[] = {"\"soft_method\": \"cascade\"", "cascade", "0.005", "0.005", "0.007", "1"};
+static const char *hard[] = {"\"shadows\": \"hard\"", "hard", "0.001", "0.003", "0.007", "1"};
+static const char *cascade[] = {"\"soft_method\": \"cascade\"", "cascade", "0.005", "0.005", "0.0095", "1"};
 
 static const char *const CAMERA =
     "\"position\": [300, -420, 500], \"target\": [0, 0, 0], \"up\": [0, 0, 1], \"fovy_deg\": 22";
@@ -223,7 +223,7 @@ static const char *coarse[] = {"\"soft_method\": \"cascade\", \"shadow_resolutio
                                "cascade, coarse",
                                "0.005",
                                "0.007",
-                               "0.007",
+                               "0.0095",
                                "3"};
 static const char *sublights[] = {
     "\"soft_method\": \"sublights\"", "sub-lights", "0.015", "0.008", "0.014", "3"};
