@@ -1,0 +1,177 @@
+/* analytic/sheets_open_surfaces.c - a volume's surface is lit by the light that arrives at its outside: a
+ * white surface sends the cosine of the light's angle, whatever its edge, its transfer function, the eye and
+ * the method of shadows; and a layer shades what lies behind it. */
+#include "../asserts.h"
+#include "reference_stage.h"
+
+enum { SIDE = 12, PIXELS = SIDE * SIDE, GRID = 48 };
+
+static const double DEGREE = HL_PI / 180;
+
+/* A floor at z = 0, wide, whose values fall from 1 to 0 over `edge` voxels. */
+static hl_scene_volume *add_floor(stage *set, double edge) {
+  static float voxels[16 * 16 * GRID];
+  for (int i = 0; i < 16 * 16 * GRID; i++) {
+    double z = i / 256 - (GRID - 1) / 2.0;
+    voxels[i] = (float)fmin(fmax(0.5 - z / edge, 0), 1);
+  }
+  hl_scene_volume *volume = stage_add_grid(set, (size_t[3]){16, 16, GRID}, (double[3]){24, 24, 1},
+                                           (vec3){-192, -192, -GRID / 2.0}, voxels);
+  volume->transfer_function.unit_distance = 1;
+  volume->shading = HL_SHADING_PHONG;
+  volume->material = (hl_material){.diffuse = 1};
+  return volume;
+}
+
+static vec3 way_from(double elevation, double azimuth) {
+  return (vec3){-cos(elevation) * cos(azimuth), -cos(elevation) * sin(azimuth), -sin(elevation)};
+}
+
+static void open_floor(stage *set, hl_shadows shadows, hl_soft_method method) {
+  stage_open(set);
+  set->scene.width = set->scene.height = SIDE;
+  set->scene.camera.type = HL_CAMERA_ORTHOGRAPHIC;
+  set->scene.camera.height = 14;
+  set->scene.render.shadows = shadows;
+  set->scene.render.soft_method = method;
+}
+
+static void look_from(stage *set, double elevation) {
+  vec3 way = way_from(elevation, 0);
+  stage_look(set, vec3_scale(way, -300), (vec3){0, 0, 0},
+             elevation < 1.4 ? (vec3){0, 0, 1} : (vec3){1, 0, 0});
+}
+
+static double mean(const float *pixels) {
+  double sum = 0;
+  for (int i = 0; i < PIXELS; i++) sum += (double)pixels[4 * i];
+  return sum / PIXELS;
+}
+
+static const hl_opacity_point FUNCTIONS[4][3] = {{{0, 0}, {1, 0.999}, {2, 0.999}},
+                                                 {{0.5, 0}, {0.7, 0.99}, {1, 0.99}},
+                                                 {{0.4, 0}, {0.405, 0.9}, {1, 0.9}},
+                                                 {{0.4, 0}, {0.405, 0.999}, {1, 0.999}}};
+
+/* An open floor sends N.L. */
+static void test_floors(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  static const double lights[4] = {10, 25, 50, 90}, eyes[3] = {15, 45, 90}, edges[3] = {1, 3, 6};
+  for (int trial = 0; trial < 4 * 4 * 3 * 3; trial++) {
+    const double light = lights[trial % 4] * DEGREE, eye = eyes[trial / 4 % 3] * DEGREE;
+    const int method = trial % 3; /* hard; soft: the cascade, the paper's */
+    stage set;
+    open_floor(&set, method == 0 ? HL_SHADOWS_HARD : HL_SHADOWS_SOFT,
+               method == 1 ? HL_SOFT_CASCADE : HL_SOFT_PAPER);
+    hl_scene_volume *volume = add_floor(&set, edges[trial / 12 % 3]);
+    volume->transfer_function.opacity = FUNCTIONS[trial / 36];
+    volume->transfer_function.opacity_count = 3;
+    stage_add_directional(&set, way_from(light, 0.5))->angular_diameter_deg = 3;
+    look_from(&set, eye);
+    stage_render_sheets(&set, pixels);
+    assert_near(mean(pixels) / sin(light), 1, 0.03);
+    stage_close(&set);
+  }
+}
+
+/* The same of sub-lights, with fewer trials: each is many lights. */
+static void test_floors_by_sublights(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4];
+  for (int trial = 0; trial < 4; trial++) {
+    stage set;
+    open_floor(&set, HL_SHADOWS_SOFT, HL_SOFT_SUBLIGHTS);
+    hl_scene_volume *volume = add_floor(&set, 2 + trial);
+    volume->transfer_function.opacity = FUNCTIONS[trial];
+    volume->transfer_function.opacity_count = 3;
+    stage_add_directional(&set, way_from((20 + 15 * trial) * DEGREE, 0.5))->angular_diameter_deg = 3;
+    look_from(&set, 40 * DEGREE);
+    stage_render_sheets(&set, pixels);
+    assert_near(mean(pixels) / sin((20 + 15 * trial) * DEGREE), 1, 0.03);
+    stage_close(&set);
+  }
+}
+
+/* White bone below black skin, whose values are each other's neighbours: what bone sends, by what it sends
+ * without shadows, is the light that the skin lets pass. Eye and light come from above. */
+static double light_on_bone(const hl_opacity_point *function, size_t count, double skin) {
+  static float pixels[PIXELS * 4], voxels[16 * 16 * GRID];
+  static const hl_color_point colors[] = {
+      {0, {0, 0, 0}}, {0.64, {0, 0, 0}}, {0.65, {1, 1, 1}}, {1, {1, 1, 1}}};
+  double sent[2];
+  for (int i = 0; i < 16 * 16 * GRID; i++) {
+    double z = i / 256 - (GRID - 1) / 2.0;
+    voxels[i] = z < 0 ? 1 : z < skin ? 0.4f : 0;
+  }
+  for (int shadowed = 0; shadowed < 2; shadowed++) {
+    stage set;
+    open_floor(&set, shadowed ? HL_SHADOWS_HARD : HL_SHADOWS_OFF, HL_SOFT_CASCADE);
+    hl_scene_volume *volume = stage_add_grid(&set, (size_t[3]){16, 16, GRID}, (double[3]){24, 24, 1},
+                                             (vec3){-192, -192, -GRID / 2.0}, voxels);
+    volume->transfer_function = (hl_transfer_function){
+        .opacity = function, .opacity_count = count, .color = colors, .color_count = 4, .unit_distance = 1};
+    volume->shading = HL_SHADING_PHONG;
+    volume->material = (hl_material){.diffuse = 1};
+    stage_add_directional(&set, (vec3){0, 0, -1});
+    look_from(&set, 90 * DEGREE);
+    stage_render_sheets(&set, pixels);
+    sent[shadowed] = mean(pixels);
+    stage_close(&set);
+  }
+  assert_true(sent[0] > 0.01);
+  return sent[1] / sent[0];
+}
+
+/* Without skin, the values of skin in bone's blurred edge do not shade the bone; a skin of voxels does. */
+static void test_layers(void **state) {
+  (void)state;
+  static const hl_opacity_point stair[] = {{0.3, 0}, {0.32, 0.3}, {0.6, 0.3}, {0.7, 0.999}, {1, 0.999}};
+  static const hl_opacity_point valley[] = {{0.3, 0}, {0.32, 0.3},   {0.5, 0.3}, {0.52, 0},
+                                            {0.6, 0}, {0.65, 0.999}, {1, 0.999}};
+  assert_near(light_on_bone(stair, 5, 0), 1, 0.03);
+  for (int skin = 4; skin <= 6; skin += 2) {
+    double passing = pow(0.7, skin);
+    assert_true(light_on_bone(stair, 5, skin) < 1.6 * passing &&
+                light_on_bone(stair, 5, skin) > 0.8 * passing);
+    assert_true(light_on_bone(valley, 7, skin) < 1.9 * passing &&
+                light_on_bone(valley, 7, skin) > 0.8 * passing);
+  }
+}
+
+/* A wall on a floor: behind it no light comes through the corner, before it the floor sends N.L. */
+static void test_wall_on_a_floor(void **state) {
+  (void)state;
+  static float pixels[PIXELS * 4], voxels[64 * 8 * GRID];
+  for (int i = 0; i < 64 * 8 * GRID; i++) {
+    int x = i % 64, z = i / 512;
+    voxels[i] = z < 16 || (x >= 24 && x < 32 && z < 40) ? 1 : 0;
+  }
+  for (int f = 1; f < 4; f++) {
+    stage set;
+    open_floor(&set, HL_SHADOWS_HARD, HL_SOFT_CASCADE);
+    hl_scene_volume *volume = stage_add_grid(&set, (size_t[3]){64, 8, GRID}, (double[3]){1, 24, 1},
+                                             (vec3){-28, -96, -16}, voxels);
+    volume->transfer_function.opacity = FUNCTIONS[f];
+    volume->transfer_function.opacity_count = 3;
+    volume->transfer_function.unit_distance = 1;
+    volume->shading = HL_SHADING_PHONG;
+    volume->material = (hl_material){.diffuse = 1};
+    stage_add_directional(&set, way_from(30 * DEGREE, HL_PI));
+    set.scene.camera.height = 6;
+    for (int side = 0; side < 2; side++) { /* 5 to 11 voxels before the wall, 0 to 6 behind it */
+      double x = side == 0 ? -12 : 7.5;
+      stage_look(&set, (vec3){x, 0, 300}, (vec3){x, 0, 0}, (vec3){0, 1, 0});
+      stage_render_sheets(&set, pixels);
+      assert_near(mean(pixels) / sin(30 * DEGREE), side == 0 ? 1 : 0, 0.03);
+    }
+    stage_close(&set);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_floors),
+                                     cmocka_unit_test(test_floors_by_sublights),
+                                     cmocka_unit_test(test_layers), cmocka_unit_test(test_wall_on_a_floor)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
