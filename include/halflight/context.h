@@ -104,7 +104,16 @@ typedef struct hl_context_options {
    * of 1.15 times the voxels' bytes, and rendered from it. The file has no name. Parts of it are in memory
    * where the limit leaves room beside what the context holds, and always up to 16 times 64^3 voxels. */
   const char *scratch_folder;
-  hl_mpi mpi; /* what hl_ranks_join() loads: of the two, the one whose launcher started the process */
+  /* What makes the frames of renderers: "cpu" (the default, and null), the processors; "gpu", the first GPU;
+   * "auto", the first GPU if at the first frame it turns out faster; "cuda" or "opencl", the first device of
+   * that interface; else the first device whose name has this text in it, such as "H100". Copied. Where there
+   * is no such device, or where it does not make a frame, the processors make it: the same bytes, and
+   * hl_render_statistics says why. Nothing is loaded before the first frame that a device shall make. */
+  const char *device;
+  const char
+      *cache_folder; /* for kernels compiled for devices, 64 MiB at most, the user's alone; made where
+                        its parent folder is there; copied; null (default): kernels are compiled anew */
+  hl_mpi mpi;        /* what hl_ranks_join() loads: of the two, the one whose launcher started the process */
 } hl_context_options;
 
 typedef struct hl_context hl_context; /* usable from several threads at once */

@@ -45,6 +45,7 @@
 #define HALFLIGHT_HALFLIGHT_H
 
 #include "context.h"
+#include "device.h"
 #include "image.h"
 #include "layers.h"
 #include "mesh.h"

@@ -38,6 +38,10 @@ typedef struct hl_render_statistics {
   uint64_t pixels_filled_image,
       pixels_filled_light; /* sheet pixels reconstructed, including those for finding hidden blocks */
   uint64_t pixels_skipped_image, pixels_skipped_light; /* in occupied places, but already opaque or dark */
+  char device[128];        /* that ran the sheets: "cpu", or a device's name (halflight/device.h) */
+  char device_reason[400]; /* "cpu": why no other device did, where the context names one; else empty */
+  double seconds_device;   /* of a device's kernels, by its own clock; 0 of "cpu" */
+  int device_launches;     /* of kernels */
   uint64_t waits; /* how often all threads waited for each other in the loops over the sheets; 0 with one */
 } hl_render_statistics;
 

@@ -78,6 +78,7 @@ static const cli_option bench_options[BENCH_OPTION_COUNT] = {
                                .kind = OPTION_CHOICE,
                                .choices = instruction_set_choices,
                                .help = "the best there is, unless given"},
+    [BENCH_DEVICE] = HOST_OPTION_DEVICE,
     [BENCH_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
     [BENCH_JSON] = {.name = "json", .kind = OPTION_SWITCH, .help = "medians as JSON"},
 };
@@ -166,6 +167,7 @@ static bench_sample sample_of(double frame, const hl_render_statistics *statisti
   sample.stage[STAGE_SHADE] = statistics->seconds_shade;
   sample.stage[STAGE_COMPOSITE_LIGHT] = statistics->seconds_composite_light;
   sample.stage[STAGE_SOFTEN] = statistics->seconds_soften;
+  sample.stage[STAGE_DEVICE] = statistics->seconds_device;
   sample.stage[STAGE_OTHER] = frame;
   for (int stage = 0; stage < STAGE_OTHER; stage++) sample.stage[STAGE_OTHER] -= sample.stage[stage];
   return sample;
@@ -225,7 +227,7 @@ static int measure(cli_host *host, const cli_value *values, const char *path, be
 
 static const char *const move_names[] = {"camera", "light", "tf"};
 static const char *const stage_names[STAGE_COUNT] = {
-    "prepare", "sort", "splat_eye", "splat_light", "shade", "composite_light", "soften", "other"};
+    "prepare", "sort", "splat_eye", "splat_light", "shade", "composite_light", "soften", "device", "other"};
 
 static int compare(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
@@ -267,6 +269,9 @@ static void print_pair(json_writer *json, const char *key, uint64_t filled, uint
 /* The work of the last frame. */
 static void print_work(json_writer *json, const char *key, const hl_render_statistics *s) {
   json_open_object(json, key);
+  json_text(json, "device", s->device);
+  if (s->device_reason[0] != '\0') json_text(json, "device_reason", s->device_reason);
+  json_whole_number(json, "launches", (uint64_t)s->device_launches);
   json_whole_number(json, "sheets", (uint64_t)s->sheets);
   json_whole_number(json, "voxels_kept", s->voxels_kept);
   json_whole_number(json, "samples_shaded", s->samples_shaded);
@@ -373,6 +378,7 @@ static int run_bench(const cli_value *values, char **operands) {
   cli_host_options options = {.quiet = true,
                               .subject = operands[0] != NULL ? operands[0] : "built-in",
                               .memory_limit = values[BENCH_MAX_MEMORY].bytes,
+                              .device = values[BENCH_DEVICE].text,
                               .instruction_set = (hl_instruction_set)values[BENCH_INSTRUCTION_SET].choice};
   int exit_code = host_open(&options, &host);
   if (exit_code != EXIT_CODE_OK) return exit_code;

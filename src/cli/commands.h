@@ -13,5 +13,6 @@ extern const cli_command make_command;    /* make.c */
 extern const cli_command view_command;    /* view.c */
 extern const cli_command animate_command; /* animate.c */
 extern const cli_command looks_command;   /* looks.c */
+extern const cli_command devices_command; /* devices.c */
 
 #endif

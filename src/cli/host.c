@@ -127,6 +127,14 @@ static const char *choose_scratch_folder(void) {
   return named != NULL && named[0] != '\0' ? named : "/var/tmp";
 }
 
+/* The folder of compiled kernels, [bytes]; empty: none. */
+static void choose_cache_folder(char *folder, size_t bytes) {
+  const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+  folder[0] = '\0';
+  if (cache != NULL && cache[0] == '/') snprintf(folder, bytes, "%s/halflight", cache);
+  else if (home != NULL && home[0] == '/') snprintf(folder, bytes, "%s/.cache/halflight", home);
+}
+
 int host_open(const cli_host_options *options, cli_host *host) {
   memset(host, 0, sizeof *host);
   host->quiet = options->quiet;
@@ -153,6 +161,10 @@ int host_open(const cli_host_options *options, cli_host *host) {
   context_options.mpi = options->mpi;
   context_options.scratch_folder = choose_scratch_folder();
   context_options.data_folder = choose_data_folder(options->data_folder);
+  char cache_folder[1024];
+  choose_cache_folder(cache_folder, sizeof cache_folder);
+  context_options.device = options->device;
+  context_options.cache_folder = cache_folder[0] != '\0' ? cache_folder : NULL;
   hl_error error = {0};
   hl_status status = hl_context_create(&context_options, &host->context, &error);
   return status == HL_OK ? EXIT_CODE_OK : fail_with(PHASE_SETUP, status, &error);

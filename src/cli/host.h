@@ -29,6 +29,7 @@ typedef struct cli_host_options {
   const char *subject;
   uint64_t memory_limit; /* bytes; 0: the machine's memory */
   hl_instruction_set instruction_set;
+  const char *device;      /* null: the processors */
   hl_mpi mpi;              /* launcher_mpi() (ranks.h) where processes may join */
   bool (*cancelled)(void); /* may be null; else asked, in addition to signals, on the thread that renders */
   void (*progressed)(double fraction); /* told by the thread that calls the library; or null */
@@ -52,6 +53,13 @@ typedef struct cli_host_options {
   {                                                                                            \
     .name = "max-memory", .kind = OPTION_BYTES, .argument = "BYTES", .group = (heading),       \
     .help = "fail rather than hold more; suffix K, M, G or T\n(default: the machine's memory)" \
+  }
+#define HOST_OPTION_DEVICE                                                               \
+  {                                                                                      \
+    .name = "device", .kind = OPTION_TEXT, .argument = "NAME",                           \
+    .help =                                                                              \
+        "cpu (default), gpu, auto: a GPU where it is\nfaster, or a part of a name that " \
+        "'halflight\ndevices' lists; any gives the same picture"                         \
   }
 #define HOST_OPTION_QUIET \
   { .name = "quiet", .kind = OPTION_SWITCH, .help = "no progress bar, no warnings, no summary" }

@@ -11,9 +11,9 @@
 #include "message.h"
 #include "suggest.h"
 
-static const cli_command *const commands[] = {&render_command,  &info_command,    &make_command,
-                                              &convert_command, &diff_command,    &bench_command,
-                                              &view_command,    &animate_command, &looks_command};
+static const cli_command *const commands[] = {
+    &render_command, &info_command, &make_command,    &convert_command, &diff_command,
+    &bench_command,  &view_command, &animate_command, &looks_command,   &devices_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static const char *command_name(const void *data, size_t index) {

@@ -82,6 +82,7 @@ static int job_open(render_job *job) {
                               .subject = base_name(job->input),
                               .memory_limit = values[RENDER_MAX_MEMORY].bytes,
                               .data_folder = values[RENDER_DATA].text,
+                              .device = values[RENDER_DEVICE].text,
                               .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice,
                               .mpi = launcher_mpi()};
   exit_code = host_open(&options, &job->host);
@@ -142,6 +143,7 @@ static hl_status render_reference(render_job *job, const hl_scene_description *d
   statistics->seconds_render = clock_seconds() - started;
   statistics->threads = options.threads > 0 ? options.threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
   statistics->instruction_set = HL_INSTRUCTION_SET_SCALAR;
+  snprintf(statistics->device, sizeof statistics->device, "cpu");
   statistics->voxels_total = statistics->voxels_kept = count_voxels(description);
   return status;
 }

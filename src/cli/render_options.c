@@ -431,6 +431,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .kind = OPTION_CHOICE,
          .choices = instruction_set_choices,
          .help = "any gives the same picture (default auto: the\nfastest that the processor has)"},
+    [RENDER_DEVICE] = HOST_OPTION_DEVICE,
     [RENDER_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
     [RENDER_PRINT_SCENE] =
         {.name = "print-scene",

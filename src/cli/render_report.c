@@ -113,6 +113,8 @@ int render_print_json(const render_result *result) {
   print_traffic(&json, result->ranks);
   json_whole_number(&json, "threads", (uint64_t)statistics->threads);
   json_text(&json, "instruction_set", hl_instruction_set_name(statistics->instruction_set));
+  json_text(&json, "device", statistics->device);
+  if (statistics->device_reason[0] != '\0') json_text(&json, "device_reason", statistics->device_reason);
   json_close(&json);
   return finish_stdout();
 }

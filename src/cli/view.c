@@ -223,6 +223,7 @@ static int run_view(const cli_value *values, char **inputs) {
                               .subject = base_name(inputs[0]),
                               .memory_limit = render[RENDER_MAX_MEMORY].bytes,
                               .data_folder = render[RENDER_DATA].text,
+                              .device = render[RENDER_DEVICE].text,
                               .instruction_set = (hl_instruction_set)render[RENDER_INSTRUCTION_SET].choice,
                               .cancelled = module->is_outdated,
                               .progressed = module->progress};

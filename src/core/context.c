@@ -74,7 +74,9 @@ hl_status hl_context_create(const hl_context_options *options, hl_context **cont
                    "instruction set %s: this processor or build does not have it; its best is %s",
                    hl_instruction_set_name(chosen.instruction_set), hl_instruction_set_name(best));
   size_t data_bytes = bytes_of(chosen.data_folder), scratch_bytes = bytes_of(chosen.scratch_folder);
-  hl_context *made = chosen.allocate(chosen.user_data, sizeof *made + data_bytes + scratch_bytes, 64);
+  size_t device_bytes = bytes_of(chosen.device), cache_bytes = bytes_of(chosen.cache_folder);
+  hl_context *made = chosen.allocate(
+      chosen.user_data, sizeof *made + data_bytes + scratch_bytes + device_bytes + cache_bytes, 64);
   if (made == NULL) return hl_fail_memory(error, sizeof *made, "a context");
   made->options = chosen;
   made->scratch_folder = NULL;
@@ -82,6 +84,10 @@ hl_status hl_context_create(const hl_context_options *options, hl_context **cont
   if (data_bytes > 0) made->options.data_folder = memcpy(texts, chosen.data_folder, data_bytes);
   if (scratch_bytes > 0)
     made->options.scratch_folder = memcpy(texts + data_bytes, chosen.scratch_folder, scratch_bytes);
+  texts += data_bytes + scratch_bytes;
+  if (device_bytes > 0) made->options.device = memcpy(texts, chosen.device, device_bytes);
+  if (cache_bytes > 0)
+    made->options.cache_folder = memcpy(texts + device_bytes, chosen.cache_folder, cache_bytes);
   atomic_init(&made->held, 0);
   atomic_init(&made->peak, 0);
   atomic_init(&made->paged, 0);

@@ -32,13 +32,16 @@ struct hl_renderer {
   shadow_buffer *buffers; /* owned; [buffer_count]; LIGHT_SECTORS for each of the scene's lights */
   size_t buffer_count;
   shadow_memory shadow_memory[FRAME_LIGHTS]; /* owned; of a sweep's lights */
-  surfaces surfaces;       /* owned; of the last frame's meshes, kept while they stay where they are */
-  surface_tree contact;    /* owned; of these */
-  scatter_field scattered; /* owned; kept while the scene's matter and lights stay the same */
-  sky_field sky;           /* owned; the light of the scene's sky */
-  phase_tables phases;     /* owned; of the scene's media and lights */
-  hl_reserve reserve;      /* owned; blocks that frames and sweeps have returned */
-  uint64_t estimate;       /* bytes; see render/estimate.h */
+  surfaces surfaces;        /* owned; of the last frame's meshes, kept while they stay where they are */
+  surface_tree contact;     /* owned; of these */
+  scatter_field scattered;  /* owned; kept while the scene's matter and lights stay the same */
+  sky_field sky;            /* owned; the light of the scene's sky */
+  phase_tables phases;      /* owned; of the scene's media and lights */
+  struct hl_gpu *gpu;       /* owned; the device that makes frames; null: the processors do */
+  bool device_tried;        /* the device that the context names was looked for */
+  char device_problem[400]; /* why it makes no frames */
+  hl_reserve reserve;       /* owned; blocks that frames and sweeps have returned */
+  uint64_t estimate;        /* bytes; see render/estimate.h */
 };
 
 /* The data of one frame; released when it ends. */

@@ -130,7 +130,7 @@ void hl_prepared_release(hl_context *context, prepared_volume *prepared) {
   hl_volume_release(prepared->volume);
   hl_volume_release(prepared->mask);
   hl_volume_release(prepared->second);
-  memset(prepared, 0, sizeof *prepared);
+  *prepared = (prepared_volume){.version = prepared->version, .tables_version = prepared->tables_version};
 }
 
 /* The grid that is kept serves the scene's volume. */
@@ -212,6 +212,7 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
       status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing");
     if (status != HL_OK) return status;
     hl_volume_retain(scene->volume);
+    prepared->version++;
     prepared->volume = scene->volume;
     prepared->empty = empty;
     prepared->kernel = kernel;
@@ -230,6 +231,7 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
   if (status == HL_OK) status = keep_key(context, prepared, scene, error);
   if (status != HL_OK) return status;
   hl_grid_mark_relevant(&prepared->grid, with->functions, &prepared->classifier, pool);
+  prepared->tables_version++;
   hl_faces_find(pool, hl_kernel_get(kernel), &prepared->classifier, &prepared->grid);
   return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing") : HL_OK;
 }

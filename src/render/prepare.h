@@ -29,8 +29,10 @@ typedef struct prepared_volume {
   hl_transfer_function function; /* points owned; the classifier was made of these */
   double clip[6];
   int clipped;
-  cut_shape *cuts;   /* owned; the grid's cuts */
-  prepared_iso *iso; /* owned; [iso_count] */
+  uint64_t version, tables_version; /* of the grid's voxels, and of all that follows from the transfer
+                                       function: they rise with each change, from 0 on */
+  cut_shape *cuts;                  /* owned; the grid's cuts */
+  prepared_iso *iso;                /* owned; [iso_count] */
   size_t iso_count;
 } prepared_volume;
 

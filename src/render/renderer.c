@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "isosurface/isosurface.h"
 #include "ranks/ranks.h"
+#include "render/device_frame.h"
 #include "render/estimate.h"
 #include "render/frame_work.h"
 #include "render/maximum.h"
@@ -89,6 +90,7 @@ static void release_volumes(hl_renderer *renderer) {
   for (size_t i = 0; i < renderer->prepared_count; i++)
     hl_prepared_release(renderer->context, &renderer->prepared[i]);
   hl_release(renderer->context, renderer->prepared);
+  hl_device_forget(renderer);
   renderer->prepared = NULL;
   renderer->prepared_count = 0;
 }
@@ -106,6 +108,7 @@ static void release_buffers(hl_renderer *renderer) {
 }
 
 static void release_renderer(hl_renderer *renderer) {
+  hl_device_release(renderer);
   release_volumes(renderer);
   release_buffers(renderer);
   hl_scatter_release(renderer->context, &renderer->scattered);
@@ -261,6 +264,14 @@ static hl_status run_sweep(hl_renderer *renderer, const hl_scene_description *sc
   return status;
 }
 
+static hl_status run_sweeps(hl_renderer *renderer, const hl_scene_description *scene, frame_work *work,
+                            hl_render_statistics *statistics, hl_error *error) {
+  hl_status status = check_sweeps_room(renderer, scene, work, error);
+  for (int s = 0; s < work->sweep_count && status == HL_OK && work->frame.point_count > 0; s++)
+    status = run_sweep(renderer, scene, work, s, statistics, error);
+  return status;
+}
+
 static void write_picture(const frame_work *work, const frame_request *request,
                           const hl_scene_description *scene, hl_pool *pool) {
   const picture picture = {.tiles = work->pixels,
@@ -335,11 +346,10 @@ static hl_status render_frame(hl_renderer *renderer, const frame_request *reques
   if (status == HL_OK) status = scatter_light(renderer, scene, work, request->sky_mark, error);
   if (status == HL_OK) status = update_sky(renderer, scene, work, hot, request->sky_mark, error);
   if (status == HL_OK) status = update_phases(renderer, scene, error);
-  if (status == HL_OK) status = check_sweeps_room(renderer, scene, work, error);
   statistics->seconds_prepare = hl_clock_seconds() - start;
   start = hl_clock_seconds();
-  for (int s = 0; s < work->sweep_count && status == HL_OK && work->frame.point_count > 0; s++)
-    status = run_sweep(renderer, scene, work, s, statistics, error);
+  if (status == HL_OK && !hl_make_on_device(renderer, request, work, sweep_of, statistics))
+    status = run_sweeps(renderer, scene, work, statistics, error);
   if (status != HL_OK) return status;
   if (work->maximum.values != NULL)
     hl_maximum_color(&work->maximum, scene, renderer->prepared, renderer->pool, work->pixels);

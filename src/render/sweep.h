@@ -178,6 +178,11 @@ uint32_t hl_light_tile(const sweep *sweep, const tile_slab *slab);
 /* Steps 1 to 4, and memory. The caller keeps both arrays from frame to frame: buffers holds one buffer per
  * light of the frame, memory [FRAME_LIGHTS] blocks that the frame's sweeps use in turn. */
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error);
+/* Plans the sweep's lights and sets its shading up, as hl_sweep_begin() does, but takes no memory for light
+ * and densities: for a device that has its own. hl_sweep_end() ends it. */
+hl_status hl_sweep_describe(sweep *sweep, hl_error *error);
+/* The first slab that a light's shadows reach. */
+int hl_sweep_first_reached(const sweep *sweep, const light_shadow *shadow);
 /* Seconds of a clock that never runs backwards. */
 double hl_clock_seconds(void);
 

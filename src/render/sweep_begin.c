@@ -363,7 +363,7 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
   light->path = (float)spacing;
   if (from->source->parallel)
     light->path = (float)(spacing / fmax(fabs(vec3_dot(from->source->direction, normal)), 1e-3));
-  if (from->shadow.method == NULL) return;
+  if (from->shadow.buffer == NULL) return;
   light->channels = from->shadow.buffer->channels;
   light->lookups = from->shadow.lookups;
   light->sublights = from->shadow.sublights;
@@ -401,7 +401,7 @@ static void set_up_jobs(sweep *sweep) {
     vec3 way = sweep->lights[i].source->direction;
     if (sweep->lights[i].source->parallel)
       vec3_store(job->through, vec3_scale(way, spacing / fmax(vec3_dot(way, normal), 1e-3)));
-    if (sweep->lights[i].shadow.method != NULL) job->stride = sweep->lights[i].shadow.buffer->stride;
+    if (sweep->lights[i].shadow.buffer != NULL) job->stride = sweep->lights[i].shadow.buffer->stride;
   }
 }
 
@@ -464,6 +464,24 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *me
   if (status == HL_OK) status = hl_light_reads_find_owned(sweep, error);
   sweep->times.seconds_sort = hl_clock_seconds() - start;
   return status;
+}
+
+hl_status hl_sweep_describe(sweep *sweep, hl_error *error) {
+  hl_context *context = sweep->content.context;
+  vec3 *points = hl_allocate(context, (size_t)sweep->frame->point_count / 8 * CONTENT_POINTS + 1,
+                             sizeof *points);
+  if (points == NULL) return hl_fail_memory(error, sizeof *points, "the content's corners");
+  hl_status status = HL_OK;
+  find_tiles(sweep);
+  for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++)
+    status = plan_light(sweep, i, points, error);
+  hl_release(context, points);
+  choose_stretch(sweep);
+  if (status == HL_OK) status = allocate(sweep, error);
+  if (status != HL_OK) return status;
+  set_up_shading(sweep);
+  set_up_jobs(sweep);
+  return HL_OK;
 }
 
 void hl_sweep_end(sweep *sweep) {

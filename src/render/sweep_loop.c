@@ -61,6 +61,12 @@ static bool is_reached(const sweep *sweep, const light_shadow *shadow, int sheet
   return is_beyond(sweep, shadow->setup.source, sheet + 1 - shadow->method->first_slab);
 }
 
+int hl_sweep_first_reached(const sweep *sweep, const light_shadow *shadow) {
+  int slab = 1;
+  while (slab < sweep->geometry->sheets.count && !is_reached(sweep, shadow, slab)) slab++;
+  return slab;
+}
+
 static void shade_stretch(sweep *sweep, size_t tile, int worker) {
   const slab_stretch stretch = sweep->picture_stretch;
   for (int sheet = stretch.first; sheet < stretch.end; sheet++)

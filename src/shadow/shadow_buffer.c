@@ -121,8 +121,7 @@ void hl_shadow_view(const light_source *source, vec3 plane_normal, const shadow_
   hl_view_finish(view);
 }
 
-/* Sets the buffer's sizes for a view. */
-static void set_size(const view *view, int reach, shadow_buffer *buffer) {
+void hl_shadow_buffer_measure(const view *view, int reach, shadow_buffer *buffer) {
   size_t margin = ((size_t)reach + 1 + TILE) / TILE * TILE;
   buffer->view = *view;
   buffer->tiles_x = hl_tiles(view->width);
@@ -170,14 +169,14 @@ static size_t planes_of_sheet(const shadow_buffer_size *size) {
 
 size_t hl_shadow_plane(const view *view, int reach) {
   shadow_buffer buffer = {0};
-  set_size(view, reach, &buffer);
+  hl_shadow_buffer_measure(view, reach, &buffer);
   return buffer.plane;
 }
 
 uint64_t hl_shadow_buffer_bytes(const shadow_buffer_size *size) {
   shadow_buffer buffer = {0};
   hl_layout counted = {0};
-  set_size(size->view, size->reach, &buffer);
+  hl_shadow_buffer_measure(size->view, size->reach, &buffer);
   lay_out(&buffer, (size_t)size->ring * planes_of_sheet(size), &counted);
   return counted.bytes;
 }
@@ -227,7 +226,7 @@ void hl_shadow_buffer_carry(shadow_buffer *buffer, size_t tile, int sheet) {
 hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer,
                                  const shadow_buffer_size *size, hl_error *error) {
   size_t plane_count = (size_t)size->ring * planes_of_sheet(size);
-  set_size(size->view, size->reach, buffer);
+  hl_shadow_buffer_measure(size->view, size->reach, buffer);
   buffer->channels = size->channels;
   buffer->ring = size->ring;
   buffer->has_outside = size->outside;

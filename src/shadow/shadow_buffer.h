@@ -76,6 +76,8 @@ typedef struct shadow_buffer_size {
 /* (Re)allocates and sets all transmittances to 1. */
 hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buffer *buffer,
                                  const shadow_buffer_size *size, hl_error *error);
+/* Sets a buffer's view, tiles, stride, plane and origin. reach: as in shadow_buffer_size. */
+void hl_shadow_buffer_measure(const view *view, int reach, shadow_buffer *buffer);
 /* Floats of one channel of a buffer for a view, its margins included. */
 size_t hl_shadow_plane(const view *view, int reach);
 /* The bytes that hl_shadow_buffer_reset() needs. */

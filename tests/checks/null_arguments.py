@@ -17,6 +17,8 @@ import tempfile
 # "function argument": the header says what null means there
 ALLOWED = """
 hl_context_create options
+hl_devices_find missing
+hl_devices_find error
 hl_context_confine folder
 hl_context_limit_memory scratch_folder
 hl_image_write options

@@ -1,0 +1,31 @@
+/* halflight/device.h - the devices that can make pictures besides the processors: GPUs, by CUDA or OpenCL.
+ *
+ * A context names the device for its renderers (`device` of hl_context_options). */
+#ifndef HALFLIGHT_DEVICE_H
+#define HALFLIGHT_DEVICE_H
+
+#include "context.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct hl_device {
+  char name[128];          /* "NVIDIA H100 80GB HBM3" */
+  char interface_name[16]; /* "cuda", "opencl" */
+  char version[128];       /* of the driver and of the compiler */
+  uint64_t memory_bytes;
+  int processor; /* non-zero: it computes on the machine's processors; "gpu" and "auto" never mean it */
+} hl_device;
+
+/* Finds the machine's devices: loads libcuda.so.1 and nvrtc, and libOpenCL.so.1, where they are. devices:
+ * room for `most` of them; *count: how many there are, which may be more. missing: [missing_bytes]; what was
+ * not found, a line, empty where all was; null: not wanted. */
+HL_API HL_WARN_UNUSED hl_status hl_devices_find(hl_context *context, hl_device *devices, size_t most,
+                                                size_t *count, char *missing, size_t missing_bytes,
+                                                hl_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

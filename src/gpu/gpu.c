@@ -1,0 +1,511 @@
+/* gpu/gpu.c - see gpu.h. */
+#include "gpu/gpu.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <dlfcn.h>
+
+#include "gpu/program_cache.h"
+
+extern const char hl_kernel_text[]; /* kernels/text.py */
+
+enum {
+  KERNEL_FILL,
+  KERNEL_TRY,
+  KERNEL_DISTANCES,
+  KERNEL_LIGHT,
+  KERNEL_FIND,
+  KERNEL_SHADE,
+  KERNEL_COMPOSITE,
+  KERNELS
+};
+static const char *const kernel_names[KERNELS] = {"fill_floats",      "try_arithmetic", "spread_distances",
+                                                  "run_light",        "find_samples",   "shade_samples",
+                                                  "composite_samples"};
+
+enum { MOST_VARIANTS = 64, VARIANT_DEFINES = 9, SAMPLE_COUNTERS = 256 };
+
+/* The buffers of a device. */
+enum buffer_use {
+  BUFFER_PLAN,
+  BUFFER_RAYS,
+  BUFFER_VOXELS,
+  BUFFER_DISTANCES,
+  BUFFER_DISTANCES_MADE, /* half of the way */
+  BUFFER_CELL_BITS,
+  BUFFER_TABLES,
+  BUFFER_PIXELS,
+  BUFFER_PLANES,
+  BUFFER_LIGHT,
+  BUFFER_CHANGED,
+  BUFFER_SHOWN_FROM,
+  BUFFER_COUNTS,
+  BUFFER_SLOTS,
+  BUFFER_LIST,
+  BUFFER_MASKS,
+  BUFFERS
+};
+
+typedef struct known_program {
+  plan_variant variant;
+  gpu_program program;
+} known_program;
+
+struct hl_gpu {
+  hl_context *context;
+  void *library;
+  gpu_device device;
+  const char *cache_folder;
+  gpu_buffer buffers[BUFFERS];
+  uint64_t version, tables_version; /* of the volume on the device; 0: none */
+  known_program programs[MOST_VARIANTS];
+  int program_count, launches;
+  int32_t brick_count[3];
+  bool has_distances; /* of bricks; else the buffer says which are relevant */
+};
+
+const gpu_device *hl_gpu_device(const hl_gpu *gpu) { return &gpu->device; }
+const char *hl_gpu_problem(const hl_gpu *gpu) { return gpu->device.problem; }
+
+/* ---- finding and opening devices ---- */
+
+static const gpu_driver *const drivers[] = {&hl_cuda_driver, &hl_opencl_driver};
+enum { DRIVERS = sizeof drivers / sizeof *drivers };
+
+void *hl_load_library(const char *const *names, char *problem) {
+  for (; *names != NULL; names++) {
+    void *library = dlopen(*names, RTLD_NOW | RTLD_LOCAL);
+    if (library != NULL) return library;
+    if (problem[0] != '\0') continue;
+    snprintf(problem, GPU_PROBLEM_BYTES, "there is no %s", *names);
+  }
+  return NULL;
+}
+
+static bool find_of_driver(const gpu_driver *driver, gpu_found *found, void *data, char *problem) {
+  void *library;
+  gpu_device_info info;
+  if (!driver->load(&library, problem)) return true;
+  bool goes_on = true;
+  for (int i = 0; i < driver->count(library) && goes_on; i++)
+    if (driver->describe(library, i, &info)) goes_on = found(data, driver, library, i, &info);
+  if (goes_on) driver->unload(library); /* else the caller has it */
+  return goes_on;
+}
+
+void hl_gpu_find(const char *driver, gpu_found *found, void *data, char *problem) {
+  char of_driver[DRIVERS][GPU_PROBLEM_BYTES] = {{0}};
+  bool goes_on = true;
+  size_t used = 0;
+  problem[0] = '\0';
+  for (int d = 0; d < DRIVERS && goes_on; d++)
+    if (driver == NULL || strcmp(driver, drivers[d]->name) == 0)
+      goes_on = find_of_driver(drivers[d], found, data, of_driver[d]);
+  for (int d = 0; d < DRIVERS; d++)
+    if (of_driver[d][0] != '\0' && used < GPU_PROBLEM_BYTES)
+      used += (size_t)snprintf(problem + used, GPU_PROBLEM_BYTES - used, "%s%s", used > 0 ? "; " : "",
+                               of_driver[d]);
+}
+
+/* What is looked for, and the device that was opened. */
+typedef struct gpu_search {
+  const char *wanted;
+  gpu_device device;
+  void *library;
+  bool met;
+} gpu_search;
+
+static bool has_word(const char *text, const char *word) {
+  for (; *text != '\0'; text++) {
+    size_t i = 0;
+    while (word[i] != '\0' && tolower((unsigned char)text[i]) == tolower((unsigned char)word[i])) i++;
+    if (word[i] == '\0') return true;
+  }
+  return false;
+}
+
+static bool is_wanted(const char *wanted, const gpu_driver *driver, const gpu_device_info *info) {
+  if (strcmp(wanted, "gpu") == 0 || strcmp(wanted, "auto") == 0) return !info->processor;
+  return strcmp(wanted, driver->name) == 0 || has_word(info->name, wanted);
+}
+
+static bool open_if_wanted(void *data, const gpu_driver *driver, void *library, int index,
+                           const gpu_device_info *info) {
+  gpu_search *search = data;
+  if (!is_wanted(search->wanted, driver, info)) return true;
+  search->met = true;
+  search->device.driver = driver;
+  search->device.info = *info;
+  search->library = library;
+  return !driver->open(library, index, &search->device);
+}
+
+hl_gpu *hl_gpu_open(hl_context *context, const char *wanted, const char *cache_folder, char *problem) {
+  gpu_search search = {.wanted = wanted};
+  char missing[GPU_PROBLEM_BYTES];
+  hl_gpu_find(NULL, open_if_wanted, &search, missing);
+  if (search.device.state == NULL) {
+    if (search.met) snprintf(problem, GPU_PROBLEM_BYTES, "%s", search.device.problem);
+    else
+      snprintf(problem, GPU_PROBLEM_BYTES, "no device answers to \"%.60s\"%s%.300s", wanted,
+               missing[0] != '\0' ? ": " : "", missing);
+    return NULL;
+  }
+  hl_gpu *gpu = hl_allocate_zeroed(context, 1, sizeof *gpu);
+  if (gpu == NULL) {
+    search.device.driver->close(&search.device);
+    snprintf(problem, GPU_PROBLEM_BYTES, "no memory is left");
+    return NULL;
+  }
+  gpu->context = context;
+  gpu->library = search.library;
+  gpu->device = search.device;
+  gpu->cache_folder = cache_folder;
+  return gpu;
+}
+
+void hl_gpu_close(hl_gpu *gpu) {
+  if (gpu == NULL) return;
+  const gpu_driver *driver = gpu->device.driver;
+  for (int i = 0; i < gpu->program_count; i++)
+    driver->release_program(&gpu->device, &gpu->programs[i].program);
+  for (int i = 0; i < BUFFERS; i++) driver->release(&gpu->device, &gpu->buffers[i]);
+  driver->close(&gpu->device);
+  driver->unload(gpu->library);
+  hl_release(gpu->context, gpu);
+}
+
+/* ---- memory ---- */
+
+/* Makes room in a buffer; its content is lost where it grows. */
+static bool reserve(hl_gpu *gpu, enum buffer_use use, size_t bytes) {
+  gpu_buffer *buffer = &gpu->buffers[use];
+  if (bytes < 64) bytes = 64;
+  if (buffer->bytes >= bytes) return true;
+  gpu->device.driver->release(&gpu->device, buffer);
+  if (use >= BUFFER_PIXELS || use == BUFFER_RAYS)
+    bytes += bytes / 4; /* a turning camera needs a little more or less */
+  return gpu->device.driver->allocate(&gpu->device, bytes, buffer);
+}
+
+static bool upload(hl_gpu *gpu, enum buffer_use use, size_t offset, const void *from, size_t bytes) {
+  return gpu->device.driver->upload(&gpu->device, &gpu->buffers[use], offset, from, bytes);
+}
+
+static bool reserve_and_upload(hl_gpu *gpu, enum buffer_use use, const void *from, size_t bytes) {
+  return reserve(gpu, use, bytes) && upload(gpu, use, 0, from, bytes);
+}
+
+static size_t storage_bytes(int storage) { return storage == 0 ? 1 : storage == 1 ? 2 : 4; }
+
+/* Rows begin at multiples of sixteen bytes: kernels load aligned words. */
+size_t hl_gpu_row_bytes(const gpu_volume *volume) {
+  return ((size_t)volume->dimension[0] * storage_bytes(volume->storage) + 15) / 16 * 16;
+}
+
+/* The bytes that kernels may read behind the last voxel. */
+enum { READ_BEHIND = 16, STAGE_BYTES = 16 << 20 };
+
+static bool upload_voxels(hl_gpu *gpu, const gpu_volume *volume) {
+  const size_t packed = (size_t)volume->dimension[0] * storage_bytes(volume->storage),
+               row = hl_gpu_row_bytes(volume),
+               rows = (size_t)volume->dimension[1] * (size_t)volume->dimension[2];
+  if (!reserve(gpu, BUFFER_VOXELS, rows * row + READ_BEHIND)) return false;
+  if (packed == row) return upload(gpu, BUFFER_VOXELS, 0, volume->voxels, rows * row);
+  const size_t at_once = STAGE_BYTES / row + 1;
+  unsigned char *stage = hl_allocate_zeroed(gpu->context, at_once, row);
+  if (stage == NULL)
+    return snprintf(gpu->device.problem, sizeof gpu->device.problem, "no memory is left"), false;
+  bool done = true;
+  for (size_t first = 0; first < rows && done; first += at_once) {
+    size_t count = rows - first < at_once ? rows - first : at_once;
+    for (size_t i = 0; i < count; i++)
+      memcpy(stage + i * row, (const unsigned char *)volume->voxels + (first + i) * packed, packed);
+    done = upload(gpu, BUFFER_VOXELS, first * row, stage, count * row);
+  }
+  hl_release(gpu->context, stage);
+  return done;
+}
+
+static bool upload_tables(hl_gpu *gpu, const gpu_volume *volume) {
+  size_t bricks = (size_t)volume->brick_count[0] * (size_t)volume->brick_count[1] *
+                  (size_t)volume->brick_count[2];
+  const size_t column = PLAN_TABLE_ROWS * sizeof(float);
+  bool done = reserve(gpu, BUFFER_TABLES, PLAN_TABLE_FLOATS * sizeof(float)) &&
+              upload(gpu, BUFFER_TABLES, 0, volume->sums, 4 * column) &&
+              upload(gpu, BUFFER_TABLES, 4 * column, volume->color, 4 * column) &&
+              upload(gpu, BUFFER_TABLES, 8 * column, volume->shown, 4 * column);
+  if (done && volume->bent != NULL) done = upload(gpu, BUFFER_TABLES, 12 * column, volume->bent, column);
+  if (done)
+    done = reserve_and_upload(gpu, BUFFER_DISTANCES, volume->relevant, bricks) &&
+           reserve(gpu, BUFFER_DISTANCES_MADE, bricks);
+  memcpy(gpu->brick_count, volume->brick_count, sizeof gpu->brick_count);
+  gpu->has_distances = false;
+  if (done && volume->cell_bits != NULL)
+    done = reserve_and_upload(gpu, BUFFER_CELL_BITS, volume->cell_bits, bricks * sizeof *volume->cell_bits);
+  return done && reserve(gpu, BUFFER_CELL_BITS, 64);
+}
+
+bool hl_gpu_prepare(hl_gpu *gpu, const gpu_volume *volume) {
+  if (gpu->version != volume->version) {
+    gpu->version = gpu->tables_version = 0;
+    if (!upload_voxels(gpu, volume)) return false;
+    gpu->version = volume->version;
+  }
+  if (gpu->tables_version != volume->tables_version) {
+    gpu->tables_version = 0;
+    if (!upload_tables(gpu, volume)) return false;
+    gpu->tables_version = volume->tables_version;
+  }
+  return true;
+}
+
+void hl_gpu_forget(hl_gpu *gpu) { gpu->version = gpu->tables_version = 0; }
+
+/* ---- programs ---- */
+
+static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][40]) {
+  const struct {
+    const char *name;
+    int value;
+  } all[VARIANT_DEFINES] = {{"STORAGE", v->storage},
+                            {"BSPLINE", v->bspline},
+                            {"EYE_PERSPECTIVE", v->eye_perspective},
+                            {"PHONG", v->phong},
+                            {"LIT", v->lit},
+                            {"SHADOWED", v->shadowed},
+                            {"BOXED", v->boxed},
+                            {"BACK_TO_FRONT", v->back_to_front},
+                            {"CHANNELS", v->channels}};
+  for (int i = 0; i < VARIANT_DEFINES; i++)
+    snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
+}
+
+static bool compile(hl_gpu *gpu, const plan_variant *variant, gpu_program *program) {
+  const gpu_driver *driver = gpu->device.driver;
+  char words[VARIANT_DEFINES][40], key[PROGRAM_KEY_BYTES];
+  const char *defines[VARIANT_DEFINES];
+  gpu_binary binary = {0};
+  define_variant(variant, words);
+  int length = snprintf(key, sizeof key, "%s %s, %s, %016llx", driver->name, gpu->device.info.name,
+                        gpu->device.info.version, (unsigned long long)hl_program_number(hl_kernel_text));
+  for (int i = 0; i < VARIANT_DEFINES; i++) {
+    defines[i] = words[i];
+    length += snprintf(key + length, sizeof key - (size_t)length, " %s", words[i]);
+  }
+  bool loaded = hl_program_stored(gpu->cache_folder, key, &binary) &&
+                driver->load_program(&gpu->device, &binary, kernel_names, KERNELS, program);
+  if (!loaded) {
+    free(binary.bytes);
+    binary = (gpu_binary){0};
+    if (!driver->compile(&gpu->device, hl_kernel_text, defines, VARIANT_DEFINES, &binary)) return false;
+    hl_program_store(gpu->cache_folder, key, &binary);
+    loaded = driver->load_program(&gpu->device, &binary, kernel_names, KERNELS, program);
+  }
+  free(binary.bytes);
+  return loaded;
+}
+
+static const gpu_program *program_of(hl_gpu *gpu, const plan_variant *variant) {
+  for (int i = 0; i < gpu->program_count; i++)
+    if (memcmp(&gpu->programs[i].variant, variant, sizeof *variant) == 0) return &gpu->programs[i].program;
+  if (gpu->program_count == MOST_VARIANTS)
+    gpu->device.driver->release_program(&gpu->device, &gpu->programs[--gpu->program_count].program);
+  known_program *next = &gpu->programs[gpu->program_count];
+  if (!compile(gpu, variant, &next->program)) return NULL;
+  next->variant = *variant;
+  gpu->program_count++;
+  return &next->program;
+}
+
+/* ---- a sweep ---- */
+
+static gpu_argument memory(const hl_gpu *gpu, enum buffer_use use) {
+  return (gpu_argument){.buffer = &gpu->buffers[use]};
+}
+static gpu_argument number(int value) { return (gpu_argument){.value = (uint32_t)value}; }
+static gpu_argument number_of_float(float value) {
+  gpu_argument argument = {0};
+  memcpy(&argument.value, &value, sizeof value);
+  return argument;
+}
+
+static bool launch(hl_gpu *gpu, const gpu_program *program, int kernel, int line, uint32_t groups,
+                   const gpu_argument *arguments, int count) {
+  gpu->launches++;
+  return gpu->device.driver->launch(&gpu->device, program, kernel, line, groups, arguments, count);
+}
+
+static uint32_t groups_of(size_t members) { return (uint32_t)((members + GPU_GROUP - 1) / GPU_GROUP); }
+
+/* floats: a multiple of four. */
+static bool fill(hl_gpu *gpu, const gpu_program *program, enum buffer_use use, size_t floats, float value) {
+  uint32_t fours = (uint32_t)(floats / 4);
+  const gpu_argument arguments[] = {memory(gpu, use), {.value = fours}, number_of_float(value)};
+  return fours == 0 || launch(gpu, program, KERNEL_FILL, 0, groups_of(fours), arguments, 3);
+}
+
+/* Three passes, one along each axis. */
+static bool find_distances(hl_gpu *gpu, const gpu_program *program) {
+  size_t bricks = 1;
+  bool done = true;
+  for (int axis = 0; axis < 3; axis++) bricks *= (size_t)gpu->brick_count[axis];
+  for (int axis = 0; axis < 3 && done && !gpu->has_distances; axis++) {
+    enum buffer_use from = axis == 1 ? BUFFER_DISTANCES_MADE : BUFFER_DISTANCES,
+                    to = axis == 1 ? BUFFER_DISTANCES : BUFFER_DISTANCES_MADE;
+    const gpu_argument arguments[] = {memory(gpu, from),
+                                      memory(gpu, to),
+                                      number(gpu->brick_count[0]),
+                                      number(gpu->brick_count[1]),
+                                      number(gpu->brick_count[2]),
+                                      number(axis),
+                                      number(axis == 0)};
+    done = launch(gpu, program, KERNEL_DISTANCES, 0, groups_of(bricks), arguments, 7);
+  }
+  gpu->has_distances = done;
+  return done;
+}
+
+static size_t light_floats(const gpu_sweep *sweep) {
+  return (size_t)sweep->plan->light_tiles * 256 * (size_t)sweep->variant.channels;
+}
+
+/* Of samples, and one for each run's list; a multiple of four. */
+static size_t counters_of(const gpu_sweep *sweep) {
+  return SAMPLE_COUNTERS + ((size_t)(sweep->plan->sheets / sweep->slabs) + 4) / 4 * 4;
+}
+
+static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
+  const frame_plan *plan = sweep->plan;
+  const size_t views = 2 + 2 * (size_t)plan->light_count, tiles = (size_t)plan->tiles,
+               slots = 2 * tiles * 256 * (size_t)sweep->slabs;
+  bool done = reserve_and_upload(gpu, BUFFER_PLAN, plan, sizeof *plan) &&
+              reserve_and_upload(gpu, BUFFER_RAYS, sweep->rays,
+                                 views * (size_t)plan->sheets * sizeof *sweep->rays) &&
+              reserve(gpu, BUFFER_PIXELS, tiles * 1024 * sizeof(float)) &&
+              reserve(gpu, BUFFER_PLANES, sweep->plane_floats * sizeof(float)) &&
+              reserve(gpu, BUFFER_LIGHT, light_floats(sweep) * sizeof(float)) &&
+              reserve(gpu, BUFFER_CHANGED, (size_t)plan->light_tiles * 256 * sizeof(int32_t)) &&
+              reserve(gpu, BUFFER_SHOWN_FROM, tiles * 16 * sizeof(int32_t)) &&
+              reserve(gpu, BUFFER_COUNTS, counters_of(sweep) * sizeof(uint32_t)) &&
+              reserve(gpu, BUFFER_SLOTS, slots * 4 * sizeof(float)) &&
+              reserve(gpu, BUFFER_LIST, slots * sizeof(uint32_t)) &&
+              reserve(gpu, BUFFER_MASKS, 2 * tiles * 256 * sizeof(uint32_t));
+  if (done && sweep->shown_from != NULL)
+    done = upload(gpu, BUFFER_SHOWN_FROM, 0, sweep->shown_from, tiles * 16 * sizeof(int32_t));
+  return done;
+}
+
+/* Full light, an empty picture. */
+static bool reset(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program) {
+  const frame_plan *plan = sweep->plan;
+  bool done = fill(gpu, program, BUFFER_PIXELS, (size_t)plan->tiles * 1024, 0) &&
+              fill(gpu, program, BUFFER_COUNTS, counters_of(sweep), 0) &&
+              fill(gpu, program, BUFFER_PLANES, sweep->plane_floats, 1) &&
+              fill(gpu, program, BUFFER_LIGHT, light_floats(sweep), 1) &&
+              fill(gpu, program, BUFFER_CHANGED, (size_t)plan->light_tiles * 256, 0);
+  if (done && sweep->shown_from == NULL)
+    done = fill(gpu, program, BUFFER_SHOWN_FROM, (size_t)plan->tiles * 16, 0);
+  return done;
+}
+
+/* The lines of launches: lighting and compositing samples; finding them, and the lights. */
+enum { LINE_PICTURE, LINE_AHEAD };
+
+/* Members that light samples: enough to fill any device. */
+enum { SHADING_MEMBERS = 1 << 18 };
+
+/* A run of slabs. */
+typedef struct device_run {
+  int first, end, number;
+} device_run;
+
+static bool launch_kernel(hl_gpu *gpu, const gpu_program *program, int kernel, size_t members,
+                          device_run run) {
+  const gpu_argument arguments[] = {memory(gpu, BUFFER_PLAN),
+                                    memory(gpu, BUFFER_RAYS),
+                                    memory(gpu, BUFFER_VOXELS),
+                                    memory(gpu, BUFFER_DISTANCES_MADE),
+                                    memory(gpu, BUFFER_CELL_BITS),
+                                    memory(gpu, BUFFER_TABLES),
+                                    memory(gpu, BUFFER_PIXELS),
+                                    memory(gpu, BUFFER_PLANES),
+                                    memory(gpu, BUFFER_LIGHT),
+                                    memory(gpu, BUFFER_CHANGED),
+                                    memory(gpu, BUFFER_SHOWN_FROM),
+                                    memory(gpu, BUFFER_COUNTS),
+                                    memory(gpu, BUFFER_SLOTS),
+                                    memory(gpu, BUFFER_LIST),
+                                    memory(gpu, BUFFER_MASKS),
+                                    number(run.first),
+                                    number(run.end),
+                                    number(run.number)};
+  return launch(gpu, program, kernel,
+                kernel == KERNEL_LIGHT || kernel == KERNEL_FIND ? LINE_AHEAD : LINE_PICTURE,
+                groups_of(members), arguments, (int)(sizeof arguments / sizeof *arguments));
+}
+
+/* Samples are found and the light is brought on while those of the run before are lit. What is ahead in run r
+ * writes other planes of the ring and other lists than what is lit in run r - 1, and follows what was lit in
+ * run r - 2. A pixel may be found open though the run before makes it opaque: then its samples are lit in
+ * vain. */
+static bool launch_run(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program, device_run run) {
+  const gpu_driver *driver = gpu->device.driver;
+  const size_t pixels = (size_t)sweep->plan->tiles * 256,
+               light_pixels = (size_t)sweep->plan->light_tiles * 256;
+  return (light_pixels == 0 || launch_kernel(gpu, program, KERNEL_LIGHT, light_pixels, run)) &&
+         launch_kernel(gpu, program, KERNEL_FIND, pixels, run) &&
+         driver->follow(&gpu->device, LINE_PICTURE, LINE_AHEAD) &&
+         driver->follow(&gpu->device, LINE_AHEAD, LINE_PICTURE) &&
+         launch_kernel(gpu, program, KERNEL_SHADE, pixels < SHADING_MEMBERS ? pixels : SHADING_MEMBERS,
+                       run) &&
+         launch_kernel(gpu, program, KERNEL_COMPOSITE, pixels, run);
+}
+
+static bool launch_runs(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program) {
+  const int sheets = sweep->plan->sheets;
+  bool done = gpu->device.driver->follow(&gpu->device, LINE_AHEAD, LINE_PICTURE);
+  for (int first = 1, number = 0; first < sheets && done; first += sweep->slabs, number++)
+    done = launch_run(
+        gpu, sweep, program,
+        (device_run){first, first + sweep->slabs < sheets ? first + sweep->slabs : sheets, number});
+  return done;
+}
+
+/* ---- the trial ---- */
+
+bool hl_gpu_try(hl_gpu *gpu, const float *numbers, uint32_t count, float *results, uint32_t result_count) {
+  const plan_variant plainest = {.bspline = 1, .lit = 1, .channels = 1};
+  const gpu_program *program = program_of(gpu, &plainest);
+  const gpu_argument arguments[] = {memory(gpu, BUFFER_RAYS), memory(gpu, BUFFER_PIXELS), {.value = count}};
+  const size_t bytes = (size_t)count * result_count * sizeof *results;
+  return program != NULL &&
+         reserve_and_upload(gpu, BUFFER_RAYS, numbers, (size_t)count * 3 * sizeof *numbers) &&
+         reserve(gpu, BUFFER_PIXELS, bytes) &&
+         launch(gpu, program, KERNEL_TRY, 0, groups_of(count), arguments, 3) &&
+         gpu->device.driver->download(&gpu->device, &gpu->buffers[BUFFER_PIXELS], 0, results, bytes);
+}
+
+bool hl_gpu_run(hl_gpu *gpu, const gpu_sweep *sweep) {
+  const gpu_program *program = program_of(gpu, &sweep->variant);
+  gpu->launches = 0;
+  return program != NULL && make_room(gpu, sweep) && find_distances(gpu, program) &&
+         gpu->device.driver->mark(&gpu->device, 0) && reset(gpu, sweep, program) &&
+         launch_runs(gpu, sweep, program) && gpu->device.driver->mark(&gpu->device, 1);
+}
+
+bool hl_gpu_read(hl_gpu *gpu, const gpu_sweep *sweep, float *pixels, gpu_times *times) {
+  const gpu_driver *driver = gpu->device.driver;
+  uint32_t counts[SAMPLE_COUNTERS];
+  if (!driver->download(&gpu->device, &gpu->buffers[BUFFER_COUNTS], 0, counts, sizeof counts) ||
+      !driver->download(&gpu->device, &gpu->buffers[BUFFER_PIXELS], 0, pixels,
+                        (size_t)sweep->plan->tiles * 1024 * sizeof *pixels))
+    return false;
+  times->milliseconds += driver->milliseconds(&gpu->device);
+  times->launches += gpu->launches;
+  for (int i = 0; i < SAMPLE_COUNTERS; i++) times->samples += counts[i];
+  return true;
+}

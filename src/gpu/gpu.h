@@ -1,0 +1,75 @@
+/* gpu/gpu.h - the back end for GPUs: a device that keeps a volume, runs the sweeps of a frame and gives their
+ * pixels.
+ *
+ * A frame: hl_gpu_prepare() brings the volume and its tables to the device, unless they are there;
+ * hl_gpu_run() runs one sweep, and hl_gpu_read() waits for its pixels. Functions that can fail return false
+ * and leave a line in hl_gpu_problem(). After a failure the device is closed, and the frame is the
+ * processors'. */
+#ifndef HL_GPU_GPU_H
+#define HL_GPU_GPU_H
+
+#include "core/memory.h"
+#include "gpu/driver.h"
+#include "gpu/frame_plan.h"
+
+typedef struct hl_gpu hl_gpu;
+
+/* Calls `found` for each device of the system, until it returns false. driver: null: of all drivers; else of
+ * the one with this name. problem: [GPU_PROBLEM_BYTES]; why a driver offers nothing. */
+typedef bool gpu_found(void *data, const gpu_driver *driver, void *library, int index,
+                       const gpu_device_info *info);
+void hl_gpu_find(const char *driver, gpu_found *found, void *data, char *problem);
+
+/* Opens a device. wanted: "gpu" or "auto": the first that is no processor; "cuda" or "opencl": the first of
+ * that driver; else the first whose name has `wanted` in it, large and small letters alike. cache_folder: of
+ * compiled kernels; borrowed; null: none are kept. Null: `problem`, [GPU_PROBLEM_BYTES], says why. */
+hl_gpu *hl_gpu_open(hl_context *context, const char *wanted, const char *cache_folder, char *problem);
+void hl_gpu_close(hl_gpu *gpu); /* null is allowed */
+
+const gpu_device *hl_gpu_device(const hl_gpu *gpu);
+const char *hl_gpu_problem(const hl_gpu *gpu);
+
+/* A volume as the renderer has prepared it; borrowed. */
+typedef struct gpu_volume {
+  uint64_t version, tables_version; /* of the voxels, and of what follows from the transfer function */
+  const void *voxels;               /* [z][y][x], rows packed */
+  int storage;                      /* plan_variant's */
+  const int32_t *dimension, *brick_count;
+  const unsigned char *relevant;            /* [bricks] */
+  const uint64_t *cell_bits;                /* [bricks]; null: none */
+  const float *sums, *color, *shown, *bent; /* [PLAN_TABLE_ROWS][4], and of bent [PLAN_TABLE_ROWS]; bent:
+                                               null: none */
+} gpu_volume;
+
+/* The bytes of a row of the device's voxels. */
+size_t hl_gpu_row_bytes(const gpu_volume *volume);
+
+bool hl_gpu_prepare(hl_gpu *gpu, const gpu_volume *volume);
+/* The next volume is another one, whatever its versions. */
+void hl_gpu_forget(hl_gpu *gpu);
+
+/* Computes results of numbers (gpu/kernels/trial.h). numbers: [count][3]; results: [count][result_count]. */
+bool hl_gpu_try(hl_gpu *gpu, const float *numbers, uint32_t count, float *results, uint32_t result_count);
+
+/* A sweep as plain data; borrowed until hl_gpu_read(). */
+typedef struct gpu_sweep {
+  const frame_plan *plan;
+  plan_variant variant;
+  const plan_rays *rays;     /* [2 + 2 lights][sheets] (gpu/kernels/sweep.h) */
+  const int32_t *shown_from; /* [tiles][16]; back to front: the first slab that is seen; null: 1 */
+  size_t plane_floats;       /* of the planes of all lights together */
+  int slabs;                 /* of a run */
+} gpu_sweep;
+
+/* What a sweep took. */
+typedef struct gpu_times {
+  double milliseconds; /* on the device, without copies */
+  int launches;
+  uint64_t samples; /* pixels composited, over slabs */
+} gpu_times;
+
+bool hl_gpu_run(hl_gpu *gpu, const gpu_sweep *sweep);
+/* pixels: [tiles][16][4][16] floats. times: added to. */
+bool hl_gpu_read(hl_gpu *gpu, const gpu_sweep *sweep, float *pixels, gpu_times *times);
+
+#endif

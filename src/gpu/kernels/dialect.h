@@ -1,0 +1,105 @@
+/* gpu/kernels/dialect.h - the dialect of the kernels: what OpenCL C 1.2, CUDA C++ and C17 say differently.
+ *
+ * Every float operation is one IEEE operation, rounded to nearest: products and sums are fused where fused()
+ * says so and nowhere else. So the kernels give the bytes of the processor's functions (simd/lanes.h), each
+ * of which has the same operations in the same order. */
+#ifndef HL_GPU_DIALECT_H
+#define HL_GPU_DIALECT_H
+
+/* Members of a group, and groups of a tile of 256 pixels. */
+#define GROUP       64
+#define TILE_GROUPS (256 / GROUP)
+
+#if defined(__OPENCL_VERSION__)
+
+#pragma OPENCL FP_CONTRACT OFF
+#define GLOBAL      __global
+#define DEVICE      static
+#define DEVICE_CALL static
+/* groups: how many an NVIDIA multiprocessor shall hold at once at least, which limits the registers of each
+ * member. */
+#define KERNEL(groups) __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void
+typedef uchar byte;
+typedef ushort word16;
+typedef ulong wide;
+#define fused(a, b, c)  fma((float)(a), (float)(b), (float)(c))
+#define divided(a, b)   ((float)(a) / (float)(b))
+#define root(x)         sqrt((float)(x))
+#define bits_of(x)      as_int((float)(x))
+#define of_bits(x)      as_float((int)(x))
+#define add_to(at, x)   atomic_add(at, x)
+#define group_number()  ((int)get_group_id(0))
+#define member_number() ((int)get_local_id(0))
+#define work_number()   ((int)get_global_id(0))
+#define work_count()    ((unsigned)get_global_size(0))
+/* Whether a condition holds for any of the sixteen pixels of the member's block. All members call it. votes:
+ * shared by the group, one for each block. */
+/* The least of the numbers of members that step together; here each steps alone, or by one where all of the
+ * group must take the same steps. */
+#define least_of_pack(value)  (value)
+#define least_of_group(value) 1
+#define SHARED_VOTES          __local int votes[GROUP / 16]
+#define UNROLLED
+#define block_any(votes, condition)                                                               \
+  (barrier(CLK_LOCAL_MEM_FENCE),                                                                  \
+   (get_local_id(0) & 15) == 0 ? (void)(votes[get_local_id(0) >> 4] = 0) : (void)0,               \
+   barrier(CLK_LOCAL_MEM_FENCE), (condition) ? (void)(votes[get_local_id(0) >> 4] = 1) : (void)0, \
+   barrier(CLK_LOCAL_MEM_FENCE), votes[get_local_id(0) >> 4])
+
+#elif defined(__CUDACC_RTC__) || defined(__CUDACC__)
+
+#define GLOBAL
+#define DEVICE                static __device__ __forceinline__
+#define DEVICE_CALL           static __device__ __noinline__
+#define KERNEL(groups)        extern "C" __global__ void __launch_bounds__(GROUP, groups)
+typedef unsigned char byte;
+typedef unsigned short word16;
+typedef unsigned long long wide;
+#define fused(a, b, c)        __fmaf_rn(a, b, c)
+#define divided(a, b)         __fdiv_rn(a, b)
+#define root(x)               __fsqrt_rn(x)
+#define bits_of(x)            __float_as_int(x)
+#define of_bits(x)            __int_as_float(x)
+#define add_to(at, x)         atomicAdd(at, x)
+#define group_number()        ((int)blockIdx.x)
+#define member_number()       ((int)threadIdx.x)
+#define work_number()         ((int)(blockIdx.x * blockDim.x + threadIdx.x))
+#define work_count()          (gridDim.x * blockDim.x)
+/* Those of a warp step together. */
+#define least_of_pack(value)  __reduce_min_sync(__activemask(), value)
+#define least_of_group(value) __reduce_min_sync(0xffffffffu, value)
+#define SHARED_VOTES          int votes = 0
+#define UNROLLED              _Pragma("unroll")
+/* A block is half of a warp. */
+#define block_any(votes, condition) \
+  ((votes = (int)(__ballot_sync(0xffffffffu, condition) >> (threadIdx.x & 16) & 0xffffu)) != 0)
+
+#else /* C17, in unit tests */
+
+#define UNROLLED
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+#define GLOBAL
+#define DEVICE         static inline __attribute__((unused))
+#define DEVICE_CALL    static __attribute__((unused))
+typedef unsigned char byte;
+typedef uint16_t word16;
+typedef uint64_t wide;
+#define fused(a, b, c) fmaf(a, b, c)
+#define divided(a, b)  ((a) / (b))
+#define root(x)        sqrtf(x)
+DEVICE int bits_of(float x) {
+  int bits;
+  memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+DEVICE float of_bits(int bits) {
+  float x;
+  memcpy(&x, &bits, sizeof x);
+  return x;
+}
+
+#endif
+
+#endif

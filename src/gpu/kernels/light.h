@@ -1,0 +1,393 @@
+/* gpu/kernels/light.h - the light that reaches a sample: the shadow buffer read at its position, and what the
+ * slab's own matter absorbs. render/reaching_lanes.h, render/light_depth_lanes.h, render/before_slab_lanes.h
+ * and shadow/shadow_lookup_lanes.h for one pixel, one volume and media. */
+#ifndef HL_GPU_LIGHT_H
+#define HL_GPU_LIGHT_H
+
+#include "gpu/kernels/matter.h"
+
+#define DARK        (1.0f / 1024)
+#define THIN_DEPTH  (1.0f / 64)
+#define NEAR_PIXELS 4
+#define ALONG_FACE  0.5f
+#define DEEPEST     80.0f
+#define EVEN_LIGHT  0.1f
+
+/* A pixel's way through a slab, and where its matter is seen. */
+typedef struct slab_sample {
+  vector position, start, step_sheet, towards_eye;
+  float path; /* of the eye's ray through the slab */
+  covered_span part;
+  float place;         /* 0 to 1 through the slab */
+  float before, after; /* coordinates in the tables */
+  way_sums sums;
+  float extinction, depth, left, opacity;
+  float seen, evenly; /* fractions of the way through the slab's covered part */
+  int sloped;
+  vector slope, normal;
+  float surface;
+} slab_sample;
+
+/* ---- the buffer's pixels around a sample ---- */
+
+typedef struct shadow_taps {
+  int inside, column, row;
+  float fx, fy;
+} shadow_taps;
+
+DEVICE shadow_taps taps_of_position(GLOBAL const plan_light *light, vector position) {
+  float u = row_of_point(light->map[1], position), v = row_of_point(light->map[2], position);
+  if (!light->parallel) {
+    float ahead = row_of_point(light->map[0], position);
+    u = ahead > 0.0f ? divided(u, ahead) : -1.0f;
+    v = ahead > 0.0f ? divided(v, ahead) : -1.0f;
+  }
+  shadow_taps taps;
+  taps.inside = u > 0.0f && v > 0.0f && u < (float)light->width && v < (float)light->height;
+  float x = limited(u - 0.5f, 0.0f, (float)(light->width - 1)),
+        y = limited(v - 0.5f, 0.0f, (float)(light->height - 1));
+  if (light->nearest) {
+    x = (float)(int)(x + 0.5f);
+    y = (float)(int)(y + 0.5f);
+  }
+  taps.column = (int)x;
+  taps.row = (int)y;
+  taps.fx = x - (float)taps.column;
+  taps.fy = y - (float)taps.row;
+  return taps;
+}
+
+/* Interpolates between the pixels a b and, in the next row, c d; 1 outside the buffer. */
+DEVICE float between_taps(const shadow_taps *taps, float a, float b, float c, float d) {
+  float top = fused(b - a, taps->fx, a), bottom = fused(d - c, taps->fx, c);
+  return taps->inside ? fused(bottom - top, taps->fy, top) : 1.0f;
+}
+
+/* The first pixel around a sample, in a plane. */
+DEVICE GLOBAL const float *first_tap(GLOBAL const plan_light *light, const shadow_taps *taps,
+                                     GLOBAL const float *plane) {
+  return plane + taps->row * light->stride + taps->column;
+}
+
+DEVICE float look_up(GLOBAL const plan_light *light, const shadow_taps *taps, GLOBAL const float *plane) {
+  GLOBAL const float *at = first_tap(light, taps, plane), *below = at + light->stride;
+  return between_taps(taps, at[0], at[1], below[0], below[1]);
+}
+
+DEVICE void cubic_weights(float way, float weight[4]) {
+  float rest = 1.0f - way, both = way * rest * -0.5f;
+  weight[0] = both * rest;
+  weight[1] = fused(way * way, fused(way, 1.5f, -2.5f), 1.0f);
+  weight[2] = fused(rest * rest, fused(rest, 1.5f, -2.5f), 1.0f);
+  weight[3] = both * way;
+}
+
+DEVICE float look_up_cubic(GLOBAL const plan_light *light, const shadow_taps *taps,
+                           GLOBAL const float *plane) {
+  float across[4], down[4], sum = 0.0f, least = 1.0f, greatest = 0.0f;
+  cubic_weights(taps->fx, across);
+  cubic_weights(taps->fy, down);
+  GLOBAL const float *at = first_tap(light, taps, plane) - light->stride - 1;
+  for (int y = 0; y < 4; y++, at += light->stride) {
+    float along = at[0] * across[0];
+    for (int x = 1; x < 4; x++) along = fused(at[x], across[x], along);
+    sum = fused(along, down[y], sum);
+    if (y == 0 || y == 3) continue;
+    least = lesser(least, lesser(at[1], at[2]));
+    greatest = greater(greatest, greater(at[1], at[2]));
+  }
+  return taps->inside ? lesser(greater(sum, least), greatest) : 1.0f;
+}
+
+DEVICE float interpolated(GLOBAL const plan_light *light, const shadow_taps *taps, int cubic,
+                          GLOBAL const float *plane) {
+  return cubic ? look_up_cubic(light, taps, plane) : look_up(light, taps, plane);
+}
+
+/* ---- what the slab's own matter absorbs ---- */
+
+/* exp(-x), also of negative x. */
+DEVICE float exp_of_depth(float x) { return exp_negative(greater(x, -40.0f)); }
+
+/* (1 - exp(-x)) / x as numerator (over) and denominator (under). left: exp(-x). */
+typedef struct mean_transmittance {
+  float over, under;
+} mean_transmittance;
+
+DEVICE mean_transmittance transmittance_within(float x, float left) {
+  mean_transmittance mean;
+  int thin = x < 0.01f;
+  mean.over = thin ? fused(-x, fused(x, -1.0f / 6, 0.5f), 1.0f) : 1.0f - left;
+  mean.under = thin ? 1.0f : x;
+  return mean;
+}
+
+DEVICE float own_transmittance(float e, float left, float enter, float more) {
+  float sum = e + more, both = magnitude(sum);
+  mean_transmittance of_both = transmittance_within(both, exp_negative(both)),
+                     of_eye = transmittance_within(e, left);
+  float seen = divided(of_both.over * of_eye.under, of_both.under * of_eye.over);
+  return seen * exp_of_depth(enter + lesser(sum, 0.0f));
+}
+
+typedef struct light_ways {
+  float first, last;
+} light_ways;
+
+/* Lengths of the light's way within the volume's box, to where the slab's covered part begins and ends. path:
+ * without a box. */
+DEVICE light_ways ways_in_box(GLOBAL const plan_volume *volume, vector start, vector way, vector towards,
+                              light_ways path) {
+  float leave_first = 1e30f, leave_last = 1e30f, enter_first = 0.0f, enter_last = 0.0f;
+  for (int axis = 0; axis < 3; axis++) {
+    GLOBAL const float *row = volume->to_index[axis];
+    float at = row_of_point(row, start), along = row_of_vector(row, way), speed = row_of_vector(row, towards);
+    if (magnitude(speed) < 1e-12f) speed = 1e-12f;
+    float slowness = divided(1.0f, speed);
+    int rising = speed > 0.0f;
+    float ahead = ((rising ? volume->high[axis] : volume->low[axis]) - at) * slowness,
+          behind = ((rising ? volume->low[axis] : volume->high[axis]) - at) * slowness;
+    leave_first = lesser(leave_first, greater(ahead, 0.0f));
+    leave_last = lesser(leave_last, greater(fused(-along, slowness, ahead), 0.0f));
+    enter_first = greater(enter_first, behind);
+    enter_last = greater(enter_last, fused(-along, slowness, behind));
+  }
+  light_ways ways;
+  ways.first = greater(lesser(path.first, leave_first) - enter_first, 0.0f);
+  ways.last = greater(lesser(path.last, leave_last) - enter_last, 0.0f);
+  return ways;
+}
+
+DEVICE float coordinate_seen(const slab_sample *s) { return fused(s->after - s->before, s->seen, s->before); }
+
+/* The even extinction with which the light's way through the slab has the right optical depth. */
+DEVICE float extinction_towards(const volume_data *volume, const slab_sample *s, vector towards, float way) {
+  if (!s->sloped) return s->sums.extinction;
+  float late = lesser(divided(s->seen, greater(s->evenly, 1e-3f)), 4.0f), seen = coordinate_seen(s);
+  float start = fused(dot3(s->slope, towards), way * volume->plan->scale, seen);
+  way_sums sums = sums_of_way(volume->tables, split_coordinate(limited(start, 0.0f, PLAN_ENTRIES)),
+                              split_coordinate(seen));
+  return late * sums.extinction;
+}
+
+typedef struct light_depths {
+  float enter[CHANNELS], more[CHANNELS];
+#if BOXED
+  float close[CHANNELS][NEAR_PIXELS]; /* the depths at the pixels around the sample, from the face on */
+  int face;                           /* the sample is near a face of the box */
+  float beside;                       /* how much the face counts, 0 to 1 */
+  float before_enter[CHANNELS], before_more[CHANNELS];
+#endif
+} light_depths;
+
+#if BOXED
+
+/* ---- near a face of the box ---- */
+
+typedef struct near_pixels {
+  float u[NEAR_PIXELS], v[NEAR_PIXELS];
+  vector along_u, along_v;
+} near_pixels;
+
+DEVICE near_pixels pixels_around(GLOBAL const plan_light *light, const shadow_taps *taps, vector normal,
+                                 vector position) {
+  near_pixels close;
+  for (int i = 0; i < NEAR_PIXELS; i++) {
+    close.u[i] = (float)(i % 2) - taps->fx;
+    close.v[i] = (float)(i / 2) - taps->fy;
+  }
+  vector gradient_u = vector_at(light->map[1]), gradient_v = vector_at(light->map[2]);
+  if (!light->parallel) {
+    float ahead = row_of_point(light->map[0], position), inverse = divided(1.0f, ahead > 0.0f ? ahead : 1.0f);
+    float u = row_of_point(light->map[1], position) * inverse,
+          v = row_of_point(light->map[2], position) * inverse;
+    gradient_u = scaled(add_scaled(gradient_u, vector_at(light->map[0]), -u), inverse);
+    gradient_v = scaled(add_scaled(gradient_v, vector_at(light->map[0]), -v), inverse);
+  }
+  vector along_u = cross3(gradient_v, normal), along_v = cross3(normal, gradient_u);
+  float rise = dot3(gradient_u, along_u), inverse = divided(1.0f, rise == 0.0f ? 1.0f : rise);
+  close.along_u = scaled(along_u, inverse);
+  close.along_v = scaled(along_v, inverse);
+  return close;
+}
+
+typedef struct faces_of_axis {
+  float ahead, behind, u, v, along;
+} faces_of_axis;
+
+DEVICE float find_faces(GLOBAL const plan_volume *volume, const slab_sample *s, vector towards,
+                        const near_pixels *close_pixels, faces_of_axis faces[3]) {
+  float close[3], reach[3], longest = 1e30f, likely = 0.0f;
+  for (int axis = 0; axis < 3; axis++) {
+    GLOBAL const float *row = volume->to_index[axis];
+    float speed = row_of_vector(row, towards);
+    if (magnitude(speed) < 1e-12f) speed = 1e-12f;
+    float slowness = divided(1.0f, speed), at = row_of_point(row, s->position);
+    int rising = speed > 0.0f;
+    float low = volume->face_low[axis], high = volume->face_high[axis];
+    faces[axis].ahead = ((rising ? high : low) - at) * slowness;
+    faces[axis].behind = ((rising ? low : high) - at) * slowness;
+    faces[axis].u = row_of_vector(row, close_pixels->along_u) * slowness;
+    faces[axis].v = row_of_vector(row, close_pixels->along_v) * slowness;
+    faces[axis].along = row_of_vector(row, s->step_sheet) * slowness;
+    reach[axis] = magnitude(faces[axis].u) + magnitude(faces[axis].v);
+    close[axis] = limited(2.0f - divided(faces[axis].ahead, greater(reach[axis], 1e-30f)), 0.0f, 1.0f);
+    likely = greater(likely, close[axis]);
+    longest = lesser(longest, (volume->high[axis] - volume->low[axis]) * magnitude(slowness));
+  }
+  float through = longest * ALONG_FACE;
+  if (!(likely > 0.0f)) return likely;
+  likely = 0.0f;
+  for (int axis = 0; axis < 3; axis++)
+    likely = greater(likely, close[axis] * limited(2.0f - divided(reach[axis], through), 0.0f, 1.0f));
+  return likely;
+}
+
+/* The light's way within the box before the slab, at a point u, v and along steps away. within: its way from
+ * the slab's first sheet to the point. */
+DEVICE float way_before(const faces_of_axis faces[3], float u, float v, float along, float within) {
+  float leave = 1e30f, enter = within;
+  for (int axis = 0; axis < 3; axis++) {
+    float less = fused(faces[axis].u, u, fused(faces[axis].v, v, faces[axis].along * along));
+    leave = lesser(leave, faces[axis].ahead - less);
+    enter = greater(enter, faces[axis].behind - less);
+  }
+  return greater(leave - enter, 0.0f);
+}
+
+/* Whether a sample is so far from the box's faces that none changes the light's ways to it and to the pixels
+ * around. */
+DEVICE int is_deep(GLOBAL const plan_volume *volume, GLOBAL const plan_light *light, const slab_sample *s) {
+  int deep = 1;
+  for (int axis = 0; axis < 3; axis++) {
+    GLOBAL const float *row = volume->to_index[axis];
+    float at = row_of_point(row, s->position),
+          reach = light->margin[axis] + magnitude(row_of_vector(row, s->step_sheet));
+    deep = deep && at - volume->low[axis] > reach && volume->high[axis] - at > reach;
+  }
+  return deep;
+}
+
+/* Adds the depth of the volume's matter between the face and the slab. */
+DEVICE void add_face(GLOBAL const plan_volume *volume, const slab_sample *s, vector towards, float path,
+                     const near_pixels *close_pixels, light_depths *depths) {
+  faces_of_axis faces[3];
+  float likely = find_faces(volume, s, towards, close_pixels, faces);
+  if (!(likely > 0.0f && s->sums.extinction > 0.0f)) return;
+  float begin = s->part.begin, end = begin + s->part.length, before[CHANNELS][NEAR_PIXELS];
+  float first = way_before(faces, 0.0f, 0.0f, begin - s->place, begin * path);
+  float last = way_before(faces, 0.0f, 0.0f, end - s->place, end * path);
+  depths->face = 1;
+  depths->beside = greater(depths->beside, likely);
+  float filled = lesser(divided(s->part.length, greater(s->part.length, 1e-6f)), 1.0f);
+  float extinction = s->sums.extinction * likely * filled, spread = 0.0f;
+  float enter = BACK_TO_FRONT ? last : first, leave = BACK_TO_FRONT ? first : last;
+  for (int c = 0; c < CHANNELS; c++) {
+    float cast = extinction * volume->cast[c];
+    float at_enter = lesser(cast * enter, DEEPEST), at_leave = lesser(cast * leave, DEEPEST);
+    depths->before_enter[c] = at_enter;
+    depths->before_more[c] = at_leave - at_enter;
+    float least = 0.0f, most = 0.0f;
+    for (int i = 0; i < NEAR_PIXELS; i++) {
+      float way = way_before(faces, close_pixels->u[i], close_pixels->v[i], 0.0f, s->place * path);
+      before[c][i] = lesser(cast * way, DEEPEST);
+      least = i == 0 ? before[c][i] : lesser(least, before[c][i]);
+      most = i == 0 ? before[c][i] : greater(most, before[c][i]);
+    }
+    spread = greater(spread, most - least);
+  }
+  float counts = limited((spread - EVEN_LIGHT) * (1.0f / EVEN_LIGHT), 0.0f, 1.0f);
+  depths->face = counts > 0.0f;
+  depths->beside = depths->beside * counts;
+  for (int c = 0; c < CHANNELS; c++) {
+    depths->before_enter[c] = depths->before_enter[c] * counts;
+    depths->before_more[c] = depths->before_more[c] * counts;
+    for (int i = 0; i < NEAR_PIXELS; i++)
+      depths->close[c][i] = fused(before[c][i], counts, depths->close[c][i]);
+  }
+}
+
+/* The light's transmittance from the face to the slab. found: what the buffer holds; own: if the box's matter
+ * were even and nothing else in the way. */
+DEVICE void pass_face(light_depths *depths, int channel, float found, float own) {
+  float ratio = 1.0f;
+  if (own < 0.999f)
+    ratio = lesser(divided(log_of_two(limited(found, 1e-6f, 1.0f)), log_of_two(limited(own, 1e-36f, 0.999f))),
+                   1.0f);
+  depths->enter[channel] = fused(ratio, depths->before_enter[channel], depths->enter[channel]);
+  depths->more[channel] = fused(ratio, depths->before_more[channel], depths->more[channel]);
+}
+
+/* The light that reaches the slab beside a face. */
+DEVICE float reaching_face(GLOBAL const plan_light *light, const shadow_taps *taps, light_depths *depths,
+                           int channel, GLOBAL const float *plane) {
+  GLOBAL const float *at = first_tap(light, taps, plane), *below = at + light->stride;
+  float own[NEAR_PIXELS];
+  for (int i = 0; i < NEAR_PIXELS; i++) own[i] = exp_of_depth(depths->close[channel][i]);
+  float sum = between_taps(taps, at[0], at[1], below[0], below[1]);
+  float of_own = between_taps(taps, own[0], own[1], own[2], own[3]);
+  pass_face(depths, channel, sum, of_own);
+  of_own = greater(of_own, DARK);
+  float reached = lesser(divided(sum, greater(of_own, 1e-6f)), 1.0f);
+  reached = taps->inside ? reached : 1.0f;
+  if (light->cubic && depths->beside < 1.0f) {
+    float differ = look_up_cubic(light, taps, plane) - sum;
+    reached = greater(reached + differ * (1.0f - depths->beside), 0.0f);
+  }
+  return reached;
+}
+
+#endif
+
+/* The light's transmittance to the sample in each channel, averaged as the eye sees the slab. planes: of the
+ * sheet before the slab. */
+DEVICE void passing_light(const volume_data *volume, vector normal, GLOBAL const plan_light *light,
+                          const slab_sample *s, vector towards, float path, GLOBAL const float *planes,
+                          float passing[CHANNELS]) {
+  shadow_taps taps = taps_of_position(light, s->position);
+  light_depths depths;
+  light_ways ways;
+  ways.first = s->part.begin * path;
+  ways.last = (s->part.begin + s->part.length) * path;
+#if BOXED
+  const int deep = is_deep(volume->plan, light, s);
+  if (!deep)
+    ways = ways_in_box(volume->plan, add_scaled(s->start, s->step_sheet, s->part.begin),
+                       scaled(s->step_sheet, s->part.length), towards, ways);
+  depths.face = 0;
+  depths.beside = 0.0f;
+  for (int c = 0; c < CHANNELS; c++) {
+    depths.before_enter[c] = depths.before_more[c] = depths.enter[c] = depths.more[c] = 0.0f;
+    for (int i = 0; i < NEAR_PIXELS; i++) depths.close[c][i] = 0.0f;
+  }
+#else
+  (void)normal;
+#endif
+  float length = greater(ways.last, ways.first) - ways.first;
+  float extinction = extinction_towards(volume, s, towards, fused(length, s->seen, ways.first));
+#if BOXED
+  if (!light->nearest && !deep) {
+    near_pixels close_pixels = pixels_around(light, &taps, normal, s->position);
+    add_face(volume->plan, s, towards, path, &close_pixels, &depths);
+  }
+#endif
+  for (int c = 0; c < CHANNELS; c++) {
+    float cast = extinction * volume->plan->cast[c], first = cast * ways.first,
+          last = greater(cast * ways.last, first);
+    depths.enter[c] = BACK_TO_FRONT ? last : first;
+    depths.more[c] = BACK_TO_FRONT ? first - last : last - first;
+  }
+  for (int c = 0; c < CHANNELS; c++) {
+    GLOBAL const float *plane = planes + c * light->plane + light->origin;
+#if BOXED
+    float reached = depths.face ? reaching_face(light, &taps, &depths, c, plane)
+                                : interpolated(light, &taps, light->cubic, plane);
+#else
+    float reached = interpolated(light, &taps, light->cubic, plane);
+#endif
+    float own = own_transmittance(s->depth, s->left, depths.enter[c], depths.more[c]);
+    passing[c] = lesser(reached * own, 1.0f);
+  }
+}
+
+#endif

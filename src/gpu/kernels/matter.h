@@ -1,0 +1,87 @@
+/* gpu/kernels/matter.h - the transfer function along a pixel's way through a slab: grid/classifier_lanes.h
+ * and parts of render/slab_lanes.h for one pixel. */
+#ifndef HL_GPU_MATTER_H
+#define HL_GPU_MATTER_H
+
+#include "gpu/kernels/sample.h"
+
+#define CLOSE_ENTRIES 4.0f
+
+/* A coordinate in the tables: x = entry + fraction. */
+typedef struct table_coordinate {
+  float x;
+  int entry;
+  float fraction;
+} table_coordinate;
+
+DEVICE table_coordinate split_coordinate(float x) {
+  table_coordinate at;
+  at.x = x;
+  at.entry = (int)x;
+  at.fraction = x - (float)at.entry;
+  return at;
+}
+/* Not clamped: where densities show. */
+DEVICE float shown_coordinate(GLOBAL const plan_volume *volume, float density) {
+  return fused(density, volume->scale, volume->offset);
+}
+DEVICE table_coordinate coordinate_of_density(GLOBAL const plan_volume *volume, float density) {
+  return split_coordinate(limited(shown_coordinate(volume, density), 0.0f, PLAN_ENTRIES));
+}
+
+DEVICE GLOBAL const float *sums_table(GLOBAL const float *tables) { return tables; }
+DEVICE GLOBAL const float *color_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 4; }
+DEVICE GLOBAL const float *shown_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 8; }
+DEVICE GLOBAL const float *bent_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 12; }
+
+/* A table's first columns at a coordinate. */
+DEVICE void table_values(GLOBAL const float *table, table_coordinate at, int columns, float values[4]) {
+  GLOBAL const float *row = table + at.entry * 4;
+  for (int i = 0; i < columns; i++) values[i] = fused(row[4 + i] - row[i], at.fraction, row[i]);
+}
+
+/* Integrals from one coordinate to another. */
+typedef struct way_sums {
+  float extinction, integral, moment;
+} way_sums;
+
+DEVICE way_sums sums_of_way(GLOBAL const float *tables, table_coordinate a, table_coordinate b) {
+  float at_a[4], at_b[4];
+  table_values(sums_table(tables), a, 3, at_a);
+  table_values(sums_table(tables), b, 3, at_b);
+  float ends = (at_a[0] + at_b[0]) * 0.5f, distance = b.x - a.x;
+  int far = magnitude(distance) > CLOSE_ENTRIES;
+  way_sums sums;
+  sums.integral = far ? at_b[1] - at_a[1] : 0.0f;
+  sums.moment = at_b[2] - at_a[2];
+  sums.extinction = far ? greater(divided(sums.integral, distance), 0.0f) : ends;
+  return sums;
+}
+
+DEVICE int may_be_visible(GLOBAL const plan_volume *volume, table_coordinate a, table_coordinate b) {
+  return greater(a.x, b.x) > volume->first_visible && lesser(a.x, b.x) < volume->last_visible;
+}
+
+typedef struct way_means {
+  float from_a, from_b;
+} way_means;
+
+DEVICE way_means means_of_way(float a, float b, const way_sums *sums) {
+  way_means means;
+  means.from_a = means.from_b = 1.0f;
+  if (!(magnitude(sums->integral) > 0.0f)) return means;
+  float mean = divided(sums->moment, sums->integral);
+  mean = lesser(greater(mean, lesser(a, b)), greater(a, b));
+  means.from_a = magnitude(mean - a);
+  means.from_b = magnitude(mean - b);
+  return means;
+}
+
+/* Moves a and b, on the slab's two sheets, to the ends of its covered part. */
+DEVICE void cut_way(covered_span span, table_coordinate *a, table_coordinate *b) {
+  float from = a->x, way = b->x - a->x;
+  *a = split_coordinate(fused(way, span.begin, from));
+  *b = split_coordinate(fused(way, lesser(span.begin + span.length, 1.0f), from));
+}
+
+#endif

@@ -1,0 +1,156 @@
+/* gpu/kernels/sample.h - the density of a point and its gradient: fill/gather_lanes.h and
+ * fill/gradient_lanes.h for one pixel, and whether a point's cell may show anything (fill/block_lanes.h). */
+#ifndef HL_GPU_SAMPLE_H
+#define HL_GPU_SAMPLE_H
+
+#include "gpu/kernels/rays.h"
+#include "gpu/kernels/taps.h"
+
+#define GRID_MARGIN    4
+#define FARTHEST_BRICK 9
+
+/* A volume on the device. */
+typedef struct volume_data {
+  GLOBAL const plan_volume *plan;
+  GLOBAL const byte *voxels;
+  GLOBAL const byte *distances; /* [bricks z][y][x]; how many bricks away the next one lies that may show
+                                   anything, along the axis where it is farthest; at most FARTHEST_BRICK */
+  GLOBAL const wide *cell_bits; /* likewise; read where plan->has_cell_bits */
+  GLOBAL const float *tables;
+} volume_data;
+
+/* A point's place in the grid; index space, clamped to [-1, n). */
+typedef struct grid_point {
+  float at[3];
+  int inside; /* in the grid or at most GRID_MARGIN outside */
+} grid_point;
+
+DEVICE grid_point point_in_grid(GLOBAL const plan_volume *volume, vector p) {
+  grid_point point;
+  point.inside = 1;
+  point.at[0] = p.x;
+  point.at[1] = p.y;
+  point.at[2] = p.z;
+  for (int a = 0; a < 3; a++) {
+    float count = (float)volume->dimension[a];
+    point.inside = point.inside && point.at[a] > -0.5f - GRID_MARGIN &&
+                   point.at[a] < count - 0.5f + GRID_MARGIN;
+    point.at[a] = limited(point.at[a], -1.0f, count * (1 - 1e-6f));
+  }
+  return point;
+}
+
+/* Whether the point's cell may show something (grid/relevant.h). *voxels: how far, along each axis, every
+ * cell shows nothing; 0 where the point's own brick may. */
+DEVICE int cell_may_show(const volume_data *volume, const grid_point *point, float *voxels) {
+  GLOBAL const plan_volume *plan = volume->plan;
+  *voxels = 0.0f;
+  if (!point->inside) return 0;
+  int x = whole_below(point->at[0]) + 1, y = whole_below(point->at[1]) + 1, z = whole_below(point->at[2]) + 1;
+  wide brick = ((wide)(z >> 2) * (wide)plan->brick_count[1] + (wide)(y >> 2)) * (wide)plan->brick_count[0] +
+               (wide)(x >> 2);
+  int bricks = volume->distances[brick];
+  if (bricks > 0) {
+    *voxels = (float)(bricks - 1) * 4.0f;
+    return 0;
+  }
+  if (!plan->has_cell_bits) return 1;
+  return (int)(volume->cell_bits[brick] >> ((x & 3) | (y & 3) << 2 | (z & 3) << 4) & 1);
+}
+
+DEVICE GLOBAL const byte *first_row(const volume_data *volume, const int cell[3]) {
+  GLOBAL const plan_volume *plan = volume->plan;
+  wide row = (wide)(cell[2] - 1) * plan->slice_rows + (wide)(cell[1] - 1);
+  const int voxel_bytes = STORAGE == STORED_U8 ? 1 : STORAGE == STORED_U16 ? 2 : 4;
+  return volume->voxels + row * plan->row_bytes + (wide)(cell[0] - 1) * (wide)voxel_bytes;
+}
+
+/* A row's weighted sum; and its sum with slopes, from the same voxels. */
+#if STORAGE == STORED_F32
+#define row_sum(row, w) sum_row(row, &(w))
+#else
+#define row_sum(row, w) ((float)weigh(load_row(row), w))
+#endif
+
+/* The weighted sum of the 4x4x4 voxels around a point, less the empty value; the point is inside. Pairs along
+ * x are added first, then y, then z. */
+DEVICE float density_at(const volume_data volume, float x, float y, float z) {
+  GLOBAL const plan_volume *plan = volume.plan;
+  float weight[3][4], at[3];
+  int cell[3], outside = 0;
+  at[0] = x;
+  at[1] = y;
+  at[2] = z;
+  for (int a = 0; a < 3; a++) {
+    cell[a] = whole_below(at[a]);
+    tap_weights(plan, at[a] - (float)cell[a], weight[a]);
+    outside = outside || !taps_inside(cell[a], plan->dimension[a]);
+  }
+  if (outside) {
+#if STORAGE != STORED_F32
+    int rounded[4];
+    round_weights(weight[0], WEIGHT_UNITS, 1, rounded);
+    for (int tap = 0; tap < 4; tap++) weight[0][tap] = (float)rounded[tap] * (1.0f / WEIGHT_UNITS);
+#endif
+    for (int a = 0; a < 3; a++) cell[a] = fold_border(cell[a], plan->dimension[a], weight[a]);
+  }
+  row_weights along = weights_of_row(weight[0]);
+  GLOBAL const byte *slice = first_row(&volume, cell);
+  const wide row_bytes = plan->row_bytes, slice_bytes = plan->slice_rows * row_bytes;
+  float sum = 0.0f;
+  UNROLLED for (int k = 0; k < 4; k++, slice += slice_bytes) {
+    GLOBAL const byte *row = slice;
+    float plane = 0.0f;
+    UNROLLED for (int j = 0; j < 4; j++, row += row_bytes)
+        plane = fused(row_sum(row, along), weight[1][j], plane);
+    sum = fused(plane, weight[2][k], sum);
+  }
+  return from_units(sum) - plan->empty;
+}
+
+/* The gradient at a point of frame space; stored units per frame unit. */
+DEVICE_CALL vector gradient_at(const volume_data volume, vector point) {
+  GLOBAL const plan_volume *plan = volume.plan;
+  float weight[3][4], slope[3][4];
+  int cell[3], outside = 0;
+  for (int a = 0; a < 3; a++) {
+    float at = limited(row_of_point(plan->to_index[a], point), -1.0f,
+                       (float)plan->dimension[a] * (1 - 1e-6f));
+    cell[a] = whole_below(at);
+    tap_weights(plan, at - (float)cell[a], weight[a]);
+    tap_slopes(plan, at - (float)cell[a], slope[a]);
+    outside = outside || !taps_inside(cell[a], plan->dimension[a]);
+  }
+  if (outside)
+    for (int a = 0; a < 3; a++) {
+      fold_border(cell[a], plan->dimension[a], slope[a]);
+      cell[a] = fold_border(cell[a], plan->dimension[a], weight[a]);
+    }
+  row_weights weights = weights_of_row(weight[0]), slopes = slopes_of_row(slope[0]);
+  GLOBAL const byte *slice = first_row(&volume, cell);
+  const wide row_bytes = plan->row_bytes, slice_bytes = plan->slice_rows * row_bytes;
+  float sum_x = 0.0f, sum_y = 0.0f, sum_z = 0.0f;
+  UNROLLED for (int k = 0; k < 4; k++, slice += slice_bytes) {
+    GLOBAL const byte *row = slice;
+    float value = 0.0f, along_x = 0.0f, along_y = 0.0f;
+    UNROLLED for (int j = 0; j < 4; j++, row += row_bytes) {
+#if STORAGE == STORED_F32
+      float plain = sum_row(row, &weights), rising = slope_row(row, &slopes);
+#else
+      row_voxels voxels = load_row(row);
+      float plain = (float)weigh(voxels, weights), rising = (float)weigh_signed(voxels, slopes);
+#endif
+      along_x = fused(rising, weight[1][j], along_x);
+      along_y = fused(plain, slope[1][j], along_y);
+      value = fused(plain, weight[1][j], value);
+    }
+    sum_x = fused(along_x, weight[2][k], sum_x);
+    sum_y = fused(along_y, weight[2][k], sum_y);
+    sum_z = fused(value, slope[2][k], sum_z);
+  }
+  vector found = scaled(vector_at(plan->to_index[2]), from_units(sum_z));
+  found = add_scaled(found, vector_at(plan->to_index[1]), from_units(sum_y));
+  return add_scaled(found, vector_at(plan->to_index[0]), from_slope_units(sum_x));
+}
+
+#endif

@@ -1,0 +1,224 @@
+/* gpu/kernels/shade.h - steps 12 to 16 for one pixel: where a slab is seen, its gradient, its colour, the
+ * light that it sends to the eye. render/slab_lanes.h and render/shade_lanes.h for one volume. */
+#ifndef HL_GPU_SHADE_H
+#define HL_GPU_SHADE_H
+
+#include "gpu/kernels/light.h"
+
+#define CLASSIFIER_LEAST_BENDING (1.0f / 256)
+#define LEAST_PART_OF_SHOWN      (1.0f / 4096)
+#define LEAST_LIGHT_DISTANCE     1e-3f /* HL_LEAST_LIGHT_DISTANCE */
+
+/* ---- where the slab is seen ---- */
+
+/* rays: of the slab's middle. */
+DEVICE void find_geometry(GLOBAL const frame_plan *plan, GLOBAL const plan_rays *rays, float u, float v,
+                          slab_sample *s) {
+  s->position = position_on(rays, EYE_PERSPECTIVE, u, v);
+#if EYE_PERSPECTIVE
+  vector w = direction_of(rays, u, v);
+  float climb = climb_of(rays, u, v), inverse = divided(1.0f, climb), length = root(dot3(w, w));
+  s->path = is_ahead(rays, climb, plan->spacing * 0.5f) ? length * magnitude(inverse) * plan->path : 0.0f;
+  s->step_sheet = scaled(w, inverse * plan->spacing);
+  s->towards_eye = scaled(w, divided(-1.0f, length));
+#else
+  s->path = plan->path;
+  s->step_sheet = vector_at(plan->through);
+  s->towards_eye = vector_at(plan->towards_eye);
+#endif
+}
+
+/* The fraction of a slab's optical depth at which it is seen on average. left: exp(-e). */
+DEVICE float seen_part(float e, float left) {
+  if (e < 0.05f) return fused(e, -1.0f / 12, 0.5f);
+  float lost = 1.0f - left;
+  return divided(fused(-lesser(e, 100.0f), left, lost), greater(e, 0.05f) * lost);
+}
+
+/* The fraction of the way at which the fraction u of the optical depth is reached. */
+DEVICE float way_of_depth(float from_a, float from_b, float u) {
+  int rising = from_a >= from_b;
+  float t = power_of_part(rising ? u : 1.0f - u, divided(lesser(from_a, from_b), greater(from_a, from_b)));
+  return rising ? t : 1.0f - t;
+}
+
+DEVICE void place_slab(GLOBAL const frame_plan *plan, GLOBAL const plan_rays *rays, float u, float v,
+                       slab_sample *s) {
+  find_geometry(plan, rays, u, v, s);
+  s->depth = s->extinction * s->path;
+  s->left = exp_negative(s->depth);
+  s->opacity = 1.0f - s->left;
+  float part = seen_part(s->depth, s->left);
+  if (BACK_TO_FRONT) part = 1.0f - part;
+  s->evenly = part;
+  way_means means = means_of_way(s->before, s->after, &s->sums);
+  s->seen = way_of_depth(means.from_a, means.from_b, part);
+  s->place = fused(s->part.length, s->seen, s->part.begin);
+  s->start = add_scaled(s->position, s->step_sheet, -0.5f);
+  s->position = add_scaled(s->start, s->step_sheet, s->place);
+}
+
+DEVICE void find_normal(const volume_data *volume, float density, slab_sample *s) {
+  s->sloped = s->sums.extinction > 0.0f;
+  s->slope = s->normal = vector_of(0.0f, 0.0f, 0.0f);
+  s->surface = 0.0f;
+#if !PHONG
+  s->sloped = s->sloped && s->sums.extinction * s->part.length * s->path > THIN_DEPTH;
+#endif
+  if (!(PHONG || (LIT && SHADOWED))) s->sloped = 0;
+  if (!s->sloped) return;
+  s->slope = gradient_at(*volume, add_scaled(s->start, s->step_sheet, s->place));
+#if PHONG
+  vector slope = scaled(s->slope, magnitude(volume->plan->scale));
+  float outward = density < 0.0f ? 1.0f : -1.0f, steepness = root(dot3(slope, slope));
+  s->surface = lesser(steepness * divided(1.0f, volume->plan->normal_edge), 1.0f);
+  s->normal = scaled(slope, divided(outward, greater(steepness, 1e-18f)));
+#else
+  (void)density;
+#endif
+}
+
+/* ---- colour ---- */
+
+DEVICE void shown_below(GLOBAL const float *tables, float x, float sums[4]) {
+  table_values(shown_table(tables), split_coordinate(x), 4, sums);
+}
+
+/* The mean colour of the matter, as it shows. */
+DEVICE vector color_of_way(const volume_data *volume, const slab_sample *s) {
+  GLOBAL const float *tables = volume->tables;
+  float values[4];
+  table_values(color_table(tables), split_coordinate(coordinate_seen(s)), 3, values);
+  vector color = vector_of(values[0], values[1], values[2]);
+  if (!volume->plan->bends) return color;
+  float bent = bent_table(tables)[(int)s->after] - bent_table(tables)[(int)s->before];
+  if (!(magnitude(bent * (s->after - s->before)) > CLASSIFIER_LEAST_BENDING)) return color;
+  way_means means = means_of_way(s->before, s->after, &s->sums);
+  int front = s->evenly <= 0.5f;
+  float part = limited(fused(s->evenly, 2.0f, front ? 0.0f : -1.0f), 0.0f, 1.0f);
+  float from = front ? s->before : s->after;
+  float to = fused(s->after - s->before, way_of_depth(means.from_a, means.from_b, part), s->before);
+  float at_from[4], at_to[4];
+  shown_below(tables, from, at_from);
+  shown_below(tables, to, at_to);
+  float shown = at_to[3] - at_from[3];
+  if (!(magnitude(shown) > at_to[3] * LEAST_PART_OF_SHOWN)) return color;
+  float inverse = divided(1.0f, shown);
+  return vector_of(greater((at_to[0] - at_from[0]) * inverse, 0.0f),
+                   greater((at_to[1] - at_from[1]) * inverse, 0.0f),
+                   greater((at_to[2] - at_from[2]) * inverse, 0.0f));
+}
+
+/* ---- lights ---- */
+
+/* Henyey and Greenstein's phase function times 4 pi. turn: minus the cosine of the angle between the light's
+ * direction before and after. */
+DEVICE float phase_of(float g, float turn) {
+  float squared = fused(turn, 2 * g, 1 + g * g);
+  return divided(1 - g * g, squared * root(squared));
+}
+
+DEVICE float within_cone(GLOBAL const plan_light *light, vector towards) {
+  float x = limited((-dot3(towards, vector_at(light->cone_axis)) - light->cone_outer) * light->cone_scale,
+                    0.0f, 1.0f);
+  return x * x * fused(x, -2.0f, 3.0f);
+}
+
+DEVICE float fraction_of_sector(GLOBAL const plan_light *light, vector towards) {
+  float own = 0.0f, sum = 1e-30f;
+  for (int i = 0; i < light->sector_count; i++) {
+    float above = greater(-dot3(towards, vector_at(light->sector_axis[i])) - light->sector_least, 0.0f);
+    sum = fused(above, above, sum);
+    if (i == light->sector) own = above * above;
+  }
+  return divided(own, sum);
+}
+
+/* Where a light comes from at a position. Returns the length of its way through the slab. */
+DEVICE float find_direction(GLOBAL const frame_plan *plan, GLOBAL const plan_light *light, vector position,
+                            vector *towards, float *strength) {
+  *strength = 1.0f;
+  if (light->parallel) {
+    *towards = vector_at(light->towards);
+    return light->path;
+  }
+  vector way = vector_of(light->position[0] - position.x, light->position[1] - position.y,
+                         light->position[2] - position.z);
+  float squared = greater(dot3(way, way), LEAST_LIGHT_DISTANCE * LEAST_LIGHT_DISTANCE),
+        distance_to = root(squared);
+  *towards = scaled(way, divided(1.0f, distance_to));
+  float climb = magnitude(dot3(*towards, vector_at(plan->normal)));
+  float path = lesser(divided(light->path, greater(climb, 1e-3f)), distance_to);
+  if (light->inverse_square) *strength = divided(1.0f, squared);
+  if (light->sector_count > 0) *strength = *strength * fraction_of_sector(light, *towards);
+  if (light->cone_scale > 0) *strength = *strength * within_cone(light, *towards);
+  return path;
+}
+
+/* Adds what a sample sends to the eye of one light. planes: of the light's buffer, at the sheet before the
+ * slab. */
+DEVICE void add_light(GLOBAL const frame_plan *plan, const volume_data *volume,
+                      GLOBAL const plan_light *light, GLOBAL const float *planes, const slab_sample *s,
+                      vector color, vector *lit) {
+  GLOBAL const plan_volume *matter = volume->plan;
+  vector towards;
+  float strength, path = find_direction(plan, light, s->position, &towards, &strength);
+  float facing = dot3(s->normal, towards), medium = 1.0f - s->surface;
+  if (!(s->surface < 1.0f || facing > 0.0f)) return;
+  float intensity[3], passing[CHANNELS], transmittance = 1.0f;
+  for (int c = 0; c < 3; c++) intensity[c] = strength * light->color[c];
+  if (SHADOWED && light->shadowed && matter->receives_shadow &&
+      (intensity[0] > 0.0f || intensity[1] > 0.0f || intensity[2] > 0.0f)) {
+    passing_light(volume, vector_at(plan->normal), light, s, towards, path, planes, passing);
+    for (int c = 0; c < 3; c++) {
+      if (c < CHANNELS) transmittance = passing[c];
+      intensity[c] = intensity[c] * transmittance;
+    }
+  }
+  if (matter->anisotropy != 0) medium = medium * phase_of(matter->anisotropy, dot3(s->towards_eye, towards));
+  if (light->of_sky > 0) medium = medium * light->of_sky;
+  float diffuse = fused(greater(facing, 0.0f) * matter->diffuse, s->surface, medium), glint = 0.0f;
+#if PHONG
+  if (facing > 0.0f && !(light->of_sky > 0)) {
+    vector mirrored = add_scaled(scaled(towards, -1.0f), s->normal, facing * 2.0f);
+    glint = power_of(dot3(s->towards_eye, mirrored), matter->shininess) * matter->specular * s->surface;
+  }
+#endif
+  float of_color[3], sum[3];
+  of_color[0] = color.x;
+  of_color[1] = color.y;
+  of_color[2] = color.z;
+  sum[0] = lit->x;
+  sum[1] = lit->y;
+  sum[2] = lit->z;
+  for (int c = 0; c < 3; c++) {
+    float matt = matter->absorbs ? fused(medium, matter->albedo[c] - 1, diffuse) : diffuse;
+    sum[c] = fused(intensity[c], fused(of_color[c], matt, glint), sum[c]);
+  }
+  *lit = vector_of(sum[0], sum[1], sum[2]);
+}
+
+/* The light that a sample sends to the eye. slot: of the buffers' rings, of the sheet before the slab. */
+DEVICE vector color_of_slab(GLOBAL const frame_plan *plan, const volume_data *volume,
+                            GLOBAL const float *planes, int slot, const slab_sample *s) {
+  GLOBAL const plan_volume *matter = volume->plan;
+  vector color = color_of_way(volume, s);
+  float own = matter->emission * plan->emission;
+  vector lit = vector_of(color.x * (matter->ambient * plan->ambient[0] + own),
+                         color.y * (matter->ambient * plan->ambient[1] + own),
+                         color.z * (matter->ambient * plan->ambient[2] + own));
+#if LIT
+  for (int i = 0; i < plan->light_count; i++) {
+    GLOBAL const plan_light *light = &plan->lights[i];
+    GLOBAL const float *own_planes = planes + (wide)light->planes * 16 +
+                                     (wide)slot * (wide)(light->plane * CHANNELS);
+    add_light(plan, volume, light, own_planes, s, color, &lit);
+  }
+#else
+  (void)planes;
+  (void)slot;
+#endif
+  return lit;
+}
+
+#endif

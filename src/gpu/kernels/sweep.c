@@ -1,0 +1,157 @@
+/* gpu/kernels/sweep.c - the kernels' entries. */
+#include "gpu/kernels/sweep.h"
+#include "gpu/kernels/trial.h"
+
+/* Sets floats to a value, four for each member. */
+KERNEL(16) fill_floats(GLOBAL float *at, unsigned fours, float value) {
+  unsigned number = (unsigned)work_number();
+  if (number >= fours) return;
+  for (unsigned i = 0; i < 4; i++) at[(wide)number * 4 + i] = value;
+}
+
+/* from: [count][3]; to: [count][TRIAL_RESULTS]. */
+KERNEL(8) try_arithmetic(GLOBAL const float *from, GLOBAL float *to, unsigned count) {
+  unsigned number = (unsigned)work_number();
+  float result[TRIAL_RESULTS];
+  if (number >= count) return;
+  try_numbers(from[number * 3], from[number * 3 + 1], from[number * 3 + 2], result);
+  for (int i = 0; i < TRIAL_RESULTS; i++) to[number * TRIAL_RESULTS + (unsigned)i] = result[i];
+}
+
+/* One pass of three that find how many bricks away the next brick lies that may show something: along an
+ * axis. x, y, z: the numbers of bricks. relevant: `from` holds 1 for those bricks, in place of distances. */
+KERNEL(16)
+spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned y, unsigned z, unsigned axis,
+                 unsigned relevant) {
+  wide number = (wide)(unsigned)work_number(), count = (wide)x * y * z;
+  if (number >= count) return;
+  unsigned column = (unsigned)(number % x), row = (unsigned)(number / x % y),
+           slice = (unsigned)(number / x / y);
+  int at = (int)(axis == 0   ? column
+                 : axis == 1 ? row
+                             : slice),
+      length = (int)(axis == 0   ? x
+                     : axis == 1 ? y
+                                 : z);
+  wide stride = axis == 0 ? 1 : axis == 1 ? (wide)x : (wide)x * y;
+  int least = FARTHEST_BRICK;
+  for (int offset = 1 - FARTHEST_BRICK; offset < FARTHEST_BRICK; offset++) {
+    if (at + offset < 0 || at + offset >= length) continue;
+    int value = from[number - (wide)at * stride + (wide)(at + offset) * stride];
+    if (relevant) value = value ? 0 : FARTHEST_BRICK;
+    int size = offset < 0 ? -offset : offset;
+    int farther = value > size ? value : size;
+    if (farther < least) least = farther;
+  }
+  to[number] = (byte)least;
+}
+
+/* What both kernels of slabs are given. */
+#define SWEEP_ARGUMENTS                                                                                  \
+  GLOBAL const frame_plan *plan, GLOBAL const plan_rays *rays, GLOBAL const byte *voxels,                \
+      GLOBAL const byte *distances, GLOBAL const wide *cell_bits, GLOBAL const float *tables,            \
+      GLOBAL float *pixels, GLOBAL float *planes, GLOBAL float *light_state, GLOBAL int *changed,        \
+      GLOBAL const int *shown_from, GLOBAL unsigned *counts, GLOBAL float *slots, GLOBAL unsigned *list, \
+      GLOBAL unsigned *masks, int first, int end, int run
+
+DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
+  sweep_data sweep;
+  sweep.plan = plan;
+  sweep.rays = rays;
+  sweep.volume.plan = &plan->volume;
+  sweep.volume.voxels = voxels;
+  sweep.volume.distances = distances;
+  sweep.volume.cell_bits = cell_bits;
+  sweep.volume.tables = tables;
+  sweep.pixels = pixels;
+  sweep.planes = planes;
+  sweep.light = light_state;
+  sweep.changed = changed;
+  sweep.shown_from = shown_from;
+  sweep.counts = counts;
+  const wide pixel_count = (wide)plan->tiles * 256, slot_count = pixel_count * (wide)(plan->ring / 2);
+  sweep.slots = slots + (wide)(run & 1) * slot_count * 4;
+  sweep.list = list + (wide)(run & 1) * slot_count;
+  sweep.masks = masks + (wide)(run & 1) * pixel_count;
+  (void)first;
+  (void)end;
+  return sweep;
+}
+
+#define SWEEP_OF_ARGUMENTS                                                                         \
+  sweep_of(plan, rays, voxels, distances, cell_bits, tables, pixels, planes, light_state, changed, \
+           shown_from, counts, slots, list, masks, first, end, run)
+
+/* Lists what the picture's pixels may see in slabs first to end - 1. */
+KERNEL(16) find_samples(SWEEP_ARGUMENTS) {
+  const sweep_data sweep = SWEEP_OF_ARGUMENTS;
+  sweep.masks[work_number()] = find_slabs(&sweep, work_number(), first, end, counts + 256 + run);
+}
+
+/* Lights what is listed. */
+KERNEL(10) shade_samples(SWEEP_ARGUMENTS) {
+  const sweep_data sweep = SWEEP_OF_ARGUMENTS;
+  const unsigned count = counts[256 + run];
+  for (unsigned i = (unsigned)work_number(); i < count; i += work_count())
+    shade_slot(&sweep, sweep.list[i], first);
+}
+
+KERNEL(16) composite_samples(SWEEP_ARGUMENTS) {
+  const sweep_data sweep = SWEEP_OF_ARGUMENTS;
+  composite_slabs(&sweep, work_number());
+}
+
+/* Takes the tiles of all lights' buffers through slabs first to end - 1. */
+KERNEL(16) run_light(SWEEP_ARGUMENTS) {
+#if SHADOWED
+  SHARED_VOTES;
+  const sweep_data sweep = SWEEP_OF_ARGUMENTS;
+  const int tile = group_number() / TILE_GROUPS, number = light_of_tile(plan, tile),
+            member = group_number() % TILE_GROUPS * GROUP + member_number();
+  GLOBAL const plan_light *light = &plan->lights[number];
+  const int own_tile = tile - light->first_tile, column = own_tile % light->tiles_x * 16 + column_of(member),
+            row = own_tile / light->tiles_x * 16 + row_of(member), perspective = !light->parallel;
+  const float u = (float)column, v = (float)row;
+  GLOBAL const plan_rays *in_index = rays + (2 + 2 * number) * plan->sheets,
+                         *in_frame = in_index + plan->sheets;
+  GLOBAL float *state = light_state + (wide)tile * (256 * CHANNELS) + member;
+  GLOBAL float *pixel = planes + (wide)light->planes * 16 + light->origin + (wide)row * (wide)light->stride +
+                        column;
+  float passing[CHANNELS];
+  for (int c = 0; c < CHANNELS; c++) passing[c] = state[c * 256];
+  int changed_at = changed[(wide)tile * 256 + member];
+  heights_in_box in_box;
+  in_box.enter = in_box.leave = 0.0f;
+#if BOXED
+  in_box = heights_of(&light->box, u, v);
+#endif
+  int lit = block_any(votes, is_lit(passing));
+  const slab_range slabs = slabs_with_content(&light->content, u, v, plan->spacing, first, end);
+  const int own_first = slabs.first > light->first_slab ? slabs.first : light->first_slab;
+  const float speed = speed_of_ray(in_index + first - 1, perspective, u, v);
+  sheet_way way = no_sheets();
+  for (int sheet = first - 1, step; sheet < end; sheet += step) {
+    step = 1;
+    if (lit && sheet >= own_first - 1 && sheet < slabs.end) {
+      step = fill_way(&sweep.volume, in_index + sheet, perspective, u, v, speed, sheet == own_first - 1,
+                      &way);
+      if ((way.before_shows || way.after_shows) && sheet >= own_first &&
+          attenuate_slab(&sweep, light, in_frame + sheet, u, v, way.before, way.after, &in_box, passing))
+        changed_at = sheet;
+    } else {
+      step = !lit || sheet >= slabs.end ? end - sheet : own_first - 1 - sheet;
+      way.after_known = way.after_shows = 0;
+    }
+    step = least_of_group(step);
+    if (step > end - sheet) step = end - sheet;
+    if (step > 1) way.after_known = way.after_shows = 0;
+    for (int k = sheet < first ? first : sheet;
+         k < sheet + step && changed_at > 0 && changed_at > k - plan->ring; k++)
+      for (int c = 0; c < CHANNELS; c++)
+        pixel[((wide)(k % plan->ring) * CHANNELS + c) * (wide)light->plane] = passing[c];
+    lit = block_any(votes, is_lit(passing));
+  }
+  for (int c = 0; c < CHANNELS; c++) state[c * 256] = passing[c];
+  changed[(wide)tile * 256 + member] = changed_at;
+#endif
+}

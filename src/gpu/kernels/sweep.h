@@ -1,0 +1,285 @@
+/* gpu/kernels/sweep.h - what the kernels do with a run of slabs.
+ *
+ * A light's buffer: a member takes its pixel through all slabs of the run. The picture, in three steps: each
+ * pixel lists the slabs in which it may see something; then each slab of the list is lit, by whichever
+ * member; then each pixel composites its own, in order. Lighting one is long, and of some pixels many are
+ * seen and of others none: from a list all members get alike. Where neither of a slab's two sheets shows
+ * anything, their densities are not even found. */
+#ifndef HL_GPU_SWEEP_H
+#define HL_GPU_SWEEP_H
+
+#include "gpu/kernels/shade.h"
+
+#define PIXEL_OPAQUE (1.0f - 1.0f / 2048)
+
+/* A pixel's way through the sheets: the densities on the last two, where they are known. */
+typedef struct sheet_way {
+  int before_known, after_known;
+  int before_shows, after_shows; /* known, and greater than what shows nothing */
+  float before, after;
+} sheet_way;
+
+DEVICE sheet_way no_sheets(void) {
+  sheet_way way;
+  way.before_known = way.before_shows = way.after_known = way.after_shows = 0;
+  way.before = way.after = 0.0f;
+  return way;
+}
+
+/* Finds the densities of a pixel on a sheet and on the one before, where they are needed: its own where the
+ * cell may show something, and both where one of the two shows something. *way has in its `after` what is
+ * known of the sheet before; starts: nothing, and only the sheet's own is wanted. rays: of the sheet. speed:
+ * voxels that the ray advances from sheet to sheet, along the axis where it is fastest. Returns how many
+ * sheets on this one is, and those behind it are, where the ray meets nothing before. The sums are one piece
+ * of code, that two passes go through. */
+DEVICE int fill_way(const volume_data *volume, GLOBAL const plan_rays *rays, int perspective, float u,
+                    float v, float speed, int starts, sheet_way *way) {
+  GLOBAL const plan_volume *plan = volume->plan;
+  grid_point point = point_in_grid(plan, position_on(rays, perspective, u, v));
+  float voxels;
+  way->before = way->after;
+  way->before_known = way->after_known;
+  way->before_shows = way->after_shows;
+  way->after_shows = 0;
+  way->after = 0.0f;
+  int wanted = way->after_known = cell_may_show(volume, &point, &voxels);
+  for (int pass = 0; pass < 2; pass++) {
+    if (wanted) {
+      float found = point.inside ? density_at(*volume, point.at[0], point.at[1], point.at[2]) : 0.0f;
+      if (pass == 0) {
+        way->after = found;
+        way->after_shows = shown_coordinate(plan, found) > plan->first_visible;
+      } else if (way->after_shows) {
+        way->before = found;
+      } else {
+        way->after = found;
+        way->after_known = 1;
+      }
+    }
+    if (pass == 1 || starts) break;
+    wanted = (way->after_shows && !way->before_known) || (way->before_shows && !way->after_known);
+    if (way->after_shows && !way->before_known)
+      point = point_in_grid(plan, position_on(rays - 1, perspective, u, v));
+  }
+  return 1 + (int)lesser(divided(voxels, speed), 1000.0f);
+}
+
+/* Slabs of a run. */
+typedef struct slab_range {
+  int first, end;
+} slab_range;
+
+/* The slabs of a run in which a ray may meet anything. */
+DEVICE slab_range slabs_with_content(GLOBAL const plan_box *content, float u, float v, float spacing,
+                                     int first, int end) {
+  heights_in_box heights = heights_of(content, u, v);
+  slab_range range;
+  range.first = first;
+  range.end = heights.enter > heights.leave ? first : end;
+  float low = divided(heights.enter, spacing) - 1.0f, high = divided(heights.leave, spacing) + 3.0f;
+  if (low > (float)first) range.first = low < (float)end ? (int)low : end;
+  if (high < (float)end) range.end = high > (float)first ? (int)high : first;
+  return range;
+}
+
+/* Voxels from sheet to sheet, a little more for rounding. */
+DEVICE float speed_of_ray(GLOBAL const plan_rays *rays, int perspective, float u, float v) {
+  vector a = position_on(rays, perspective, u, v), b = position_on(rays + 1, perspective, u, v);
+  float x = magnitude(b.x - a.x), y = magnitude(b.y - a.y), z = magnitude(b.z - a.z);
+  return greater(greater(x, greater(y, z)) * 1.01f, 1e-3f);
+}
+
+/* What all members of a kernel read and write. */
+typedef struct sweep_data {
+  GLOBAL const frame_plan *plan;
+  GLOBAL const plan_rays *rays; /* [2 + 2 lights][sheets]: the eye's to index space; the eye's to frame space,
+                                   in the middle of the slab before each sheet; and each light's to both */
+  volume_data volume;
+  GLOBAL float *pixels;         /* [tiles][16 blocks][R G B A][16] */
+  GLOBAL float *planes;         /* of all lights */
+  GLOBAL float *light;          /* [light tiles][channels][256]; at the last sheet that was reached */
+  GLOBAL int *changed;          /* [light tiles][256]; the last sheet at which it changed */
+  GLOBAL const int *shown_from; /* [tiles][16] */
+  GLOBAL unsigned *counts; /* [256], samples composited, of tile t in t % 256; and [runs], of the lists */
+  GLOBAL float *slots;   /* this and the next two are of every other run; [slabs of a run][256 tiles][4]; of a
+                            pixel's slab: the densities on its two sheets, and   then what it sends to the eye,
+                            and its opacity, -1 where nothing is seen */
+  GLOBAL unsigned *list; /* [slabs of a run * 256 tiles]; the slots in use */
+  GLOBAL unsigned *masks; /* [256 tiles]; bit k: the pixel has a slot for the run's k-th slab */
+} sweep_data;
+
+DEVICE int column_of(int member) { return (member >> 4 & 3) * 4 + (member & 3); }
+DEVICE int row_of(int member) { return (member >> 6) * 4 + (member >> 2 & 3); }
+
+/* The part of the slab below a sheet that lies in the volume's box. */
+DEVICE covered_span part_of_slab(const heights_in_box *in_box, float height, float spacing) {
+#if BOXED
+  return covered(*in_box, height, spacing);
+#else
+  (void)in_box;
+  (void)height;
+  (void)spacing;
+  return whole_slab();
+#endif
+}
+
+/* ---- the picture ---- */
+
+/* A member's pixel. */
+typedef struct tile_pixel {
+  int tile, member, inside; /* inside: some of its block is in the picture */
+  float u, v;
+} tile_pixel;
+
+DEVICE tile_pixel pixel_of(GLOBAL const frame_plan *plan, int number) {
+  tile_pixel pixel;
+  pixel.tile = number / 256;
+  pixel.member = number % 256;
+  int x = pixel.tile % plan->tiles_x * 16, y = pixel.tile / plan->tiles_x * 16, block = pixel.member >> 4;
+  pixel.inside = x + (block & 3) * 4 < plan->width && y + (block >> 2) * 4 < plan->height;
+  pixel.u = (float)(x + column_of(pixel.member));
+  pixel.v = (float)(y + row_of(pixel.member));
+  return pixel;
+}
+
+DEVICE GLOBAL float *values_of(GLOBAL float *pixels, const tile_pixel *pixel) {
+  return pixels + (wide)pixel->tile * 1024 + (pixel->member >> 4) * 64 + (pixel->member & 15);
+}
+
+/* Lists the slabs of a run that a pixel may see; returns a bit for each. count: of the list. */
+DEVICE unsigned find_slabs(const sweep_data *sweep, int number, int run_first, int end,
+                           GLOBAL unsigned *count) {
+  GLOBAL const frame_plan *plan = sweep->plan;
+  GLOBAL const plan_volume *volume = sweep->volume.plan;
+  const tile_pixel pixel = pixel_of(plan, number);
+  if (!pixel.inside) return 0;
+  int first = run_first;
+#if BACK_TO_FRONT
+  const int shown_from = sweep->shown_from[pixel.tile * 16 + (pixel.member >> 4)];
+  if (first < shown_from) first = shown_from;
+#else
+  if (!(values_of(sweep->pixels, &pixel)[48] < PIXEL_OPAQUE)) return 0;
+#endif
+  slab_range slabs = slabs_with_content(&plan->content, pixel.u, pixel.v, plan->spacing, first, end);
+  if (slabs.first >= slabs.end) return 0;
+  slabs.first = least_of_pack(
+      slabs.first); /* all of a pack on one sheet: slabs before `first` are left out */
+  const float speed = speed_of_ray(sweep->rays + slabs.first - 1, EYE_PERSPECTIVE, pixel.u, pixel.v);
+  sheet_way way = no_sheets();
+  unsigned mask = 0;
+  for (int sheet = slabs.first - 1, step; sheet < slabs.end; sheet += step) {
+    step = fill_way(&sweep->volume, sweep->rays + sheet, EYE_PERSPECTIVE, pixel.u, pixel.v, speed,
+                    sheet == slabs.first - 1, &way);
+    if ((way.before_shows || way.after_shows) && sheet >= first &&
+        may_be_visible(volume, coordinate_of_density(volume, way.before),
+                       coordinate_of_density(volume, way.after))) {
+      unsigned slot = (unsigned)(sheet - run_first) * (unsigned)(plan->tiles * 256) + (unsigned)number;
+      sweep->slots[(wide)slot * 4] = way.before;
+      sweep->slots[(wide)slot * 4 + 1] = way.after;
+      sweep->list[add_to(count, 1u)] = slot;
+      mask |= 1u << (sheet - run_first);
+    }
+    step = least_of_pack(step);
+    if (step > 1) way.after_known = way.after_shows = 0;
+  }
+  return mask;
+}
+
+/* Classifies and lights the slab of a slot. */
+DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
+  GLOBAL const frame_plan *plan = sweep->plan;
+  const volume_data *volume = &sweep->volume;
+  const int sheet = run_first + (int)(slot / (unsigned)(plan->tiles * 256));
+  const tile_pixel pixel = pixel_of(plan, (int)(slot % (unsigned)(plan->tiles * 256)));
+  GLOBAL float *at = sweep->slots + (wide)slot * 4;
+  GLOBAL const plan_rays *rays = sweep->rays + plan->sheets + sheet;
+  const float before = at[0], after = at[1];
+  table_coordinate a = coordinate_of_density(volume->plan, before),
+                   b = coordinate_of_density(volume->plan, after);
+  heights_in_box in_box;
+  in_box.enter = in_box.leave = 0.0f;
+#if BOXED
+  in_box = heights_of(&plan->box, pixel.u, pixel.v);
+#endif
+  slab_sample s;
+  s.part = part_of_slab(&in_box, rays->height, plan->spacing);
+#if BOXED
+  cut_way(s.part, &a, &b);
+#endif
+  s.before = a.x;
+  s.after = b.x;
+  s.sums = sums_of_way(volume->tables, a, b);
+  s.extinction = s.sums.extinction * s.part.length;
+  at[3] = -1.0f;
+  if (!(s.extinction > 0.0f)) return;
+  place_slab(plan, rays, pixel.u, pixel.v, &s);
+  find_normal(volume, before + after, &s);
+  vector lit = color_of_slab(plan, volume, sweep->planes, (sheet - 1) % plan->ring, &s);
+  at[0] = lit.x;
+  at[1] = lit.y;
+  at[2] = lit.z;
+  at[3] = s.opacity;
+}
+
+/* Composites a pixel's slabs of a run, in order. */
+DEVICE void composite_slabs(const sweep_data *sweep, int number) {
+  GLOBAL const frame_plan *plan = sweep->plan;
+  unsigned mask = sweep->masks[number], samples = 0;
+  if (mask == 0) return;
+  const tile_pixel place = pixel_of(plan, number);
+  GLOBAL float *values = values_of(sweep->pixels, &place);
+  float pixel[4];
+  for (int c = 0; c < 4; c++) pixel[c] = values[c * 16];
+  for (unsigned k = 0; mask != 0 && (BACK_TO_FRONT || pixel[3] < PIXEL_OPAQUE); k++, mask >>= 1) {
+    if ((mask & 1) == 0) continue;
+    GLOBAL const float *at = sweep->slots + ((wide)k * (wide)(plan->tiles * 256) + (wide)number) * 4;
+    const float opacity = at[3];
+    if (opacity < 0.0f) continue;
+    float weight = BACK_TO_FRONT ? opacity : opacity * (1.0f - pixel[3]);
+    float keep = BACK_TO_FRONT ? 1.0f - opacity : 1.0f;
+    for (int c = 0; c < 3; c++) pixel[c] = fused(at[c], weight, pixel[c] * keep);
+    pixel[3] = fused(pixel[3], keep, weight);
+    samples++;
+  }
+  if (samples == 0) return;
+  for (int c = 0; c < 4; c++) values[c * 16] = pixel[c];
+  add_to(sweep->counts + (place.tile & 255), samples);
+}
+
+/* ---- the lights ---- */
+
+/* Multiplies the light by what a slab lets pass. Returns whether it may have changed. */
+DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *light,
+                          GLOBAL const plan_rays *in_frame, float u, float v, float before, float after,
+                          const heights_in_box *in_box, float passing[CHANNELS]) {
+  GLOBAL const frame_plan *plan = sweep->plan;
+  GLOBAL const plan_volume *volume = sweep->volume.plan;
+  table_coordinate a = coordinate_of_density(volume, before), b = coordinate_of_density(volume, after);
+  if (!may_be_visible(volume, a, b)) return 0;
+  covered_span part = part_of_slab(in_box, in_frame->height, plan->spacing);
+#if BOXED
+  cut_way(part, &a, &b);
+#endif
+  float extinction = sums_of_way(sweep->volume.tables, a, b).extinction * part.length;
+  if (!(extinction > 0.0f)) return 0;
+  float path = path_through_sheet(in_frame, !light->parallel, light->slab_path, u, v);
+  for (int c = 0; c < CHANNELS; c++)
+    passing[c] = passing[c] * exp_negative(fused(extinction, volume->weight[c], 0.0f) * path);
+  return 1;
+}
+
+DEVICE int is_lit(const float passing[CHANNELS]) {
+  int lit = 0;
+  for (int c = 0; c < CHANNELS; c++) lit = lit || passing[c] >= DARK;
+  return lit;
+}
+
+/* The light's number of a tile among those of all lights. */
+DEVICE int light_of_tile(GLOBAL const frame_plan *plan, int tile) {
+  int light = 0;
+  for (int i = 0; i < plan->light_count; i++)
+    if (plan->lights[i].tiles > 0 && tile >= plan->lights[i].first_tile) light = i;
+  return light;
+}
+
+#endif

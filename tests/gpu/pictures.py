@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""Holds pictures that a device makes to the bytes of the processors' pictures, and what is told of those that it does
+not make.
+
+usage: pictures.py PROGRAM
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+program = os.path.abspath(sys.argv[1])
+SIZE = 128
+OPACITY = [[0.1, 0], [0.5, 0.08], [1, 0.3]]
+DENSE = [[0.2, 0], [0.3, 0.95]]
+AROUND = [[0, 0.02], [1, 0.3]]
+
+
+def run(folder, *arguments):
+    environment = {**os.environ, "XDG_CACHE_HOME": str(folder / "cache")}
+    return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, cwd=folder, env=environment)
+
+
+def scene(opacity=OPACITY, shadows="hard", shading="none", direction=(0.4, -0.7, 0.5), volume=None, light=None, camera=None,
+          render=None):
+    view = {"type": "perspective", "position": [50, 32, -88], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30}
+    return {"halflight": 1, "image": {"width": SIZE, "height": SIZE}, "camera": camera or view, "ambient": [0.1, 0.1, 0.1],
+            "lights": [{"color": [1, 0.9, 0.8], "intensity": 1.2, "shadows": shadows,
+                        **(light or {"type": "directional", "direction": list(direction)})}],
+            "volumes": [{"file": "cloud.nrrd", "shading": shading,
+                         "transfer_function": {"unit_distance": 1, "opacity": opacity,
+                                               "color": [[0, 0.5, 0.6, 0.3], [0.5, 0.6, 0.4, 0.2], [1, 1, 1, 1]]},
+                         **(volume or {})}],
+            "render": {"sheet_spacing": 1, "shadows": shadows, **(render or {})}}
+
+
+FLAT = {"type": "orthographic", "position": [50, 32, -88], "target": [0, 0, 0], "up": [0, 1, 0], "height": 50}
+MADE = {
+    "medium": scene(),
+    "boxed, light from behind": scene(opacity=AROUND, direction=(0.2, -0.3, -0.9)),
+    "opaque, light from behind, runs of 5": scene(opacity=DENSE, direction=(0.2, -0.3, -0.9), render={"slabs_at_once": 5}),
+    "opaque": scene(opacity=DENSE),
+    "surface without shadows": scene(opacity=DENSE, shadows="off", shading="phong"),
+    "near light, colours, flat view": scene(light={"type": "point", "position": [40, 50, -50]}, camera=FLAT,
+                                            volume={"attenuation_color": [1, 0.5, 0.2]}),
+}
+LEFT = {
+    "shadows on surfaces": scene(shading="phong"),
+    "surfaces that the volume's border or a clip box cuts": scene(shading="phong", shadows="off", opacity=AROUND),
+    "soft shadows": scene(shadows="soft", light={"type": "directional", "direction": [0.4, -0.7, 0.5],
+                                                 "angular_diameter_deg": 7}),
+    "splatting in place of gathering": scene(render={"reconstruction": "splat"}),
+    "cuts": scene(volume={"cuts": [{"type": "plane", "point": [0, 0, 0], "normal": [1, 0, 0]}]}),
+}
+
+
+def picture(folder, name, device):
+    done = run(folder, "render", f"{name}.json", "--device", device, "-o", f"{device}.npy", "--json")
+    assert done.returncode == 0, f"{name}: {done.stderr}"
+    return (folder / f"{device}.npy").read_bytes(), json.loads(done.stdout)
+
+
+def hold(folder, name, description):
+    (folder / f"{name}.json").write_text(json.dumps(description))
+    own, _ = picture(folder, name, "cpu")
+    other, report = picture(folder, name, "opencl")
+    assert own == other, f"{name}: the device makes another picture than the processors"
+    return report
+
+
+def main():
+    with tempfile.TemporaryDirectory() as made:
+        folder = pathlib.Path(made)
+        (folder / "cache").mkdir()
+        listed = run(folder, "devices", "--json")
+        assert listed.returncode == 0, listed.stderr
+        devices = json.loads(listed.stdout)
+        done = run(folder, "make", "cloud", "--size", 32, "-o", "cloud.nrrd", "--quiet")
+        assert done.returncode == 0, done.stderr
+        nowhere = folder / "nowhere.json"
+        nowhere.write_text(json.dumps(scene()))
+        done = run(folder, "render", nowhere, "--device", "no such device", "-o", "n.npy", "--json")
+        report = json.loads(done.stdout)
+        assert report["device"] == "cpu" and "no device answers" in report["device_reason"], report
+        assert "the processors make the pictures" in done.stderr, done.stderr
+        if not any(device["interface"] == "opencl" for device in devices["devices"]):
+            print("no device of OpenCL is here:", devices.get("missing", ""))
+            sys.exit(77)
+        for name, description in MADE.items():
+            report = hold(folder, name, description)
+            assert report["device"] != "cpu" and report["samples_shaded"] > 1000, f"{name}: {report}"
+        for reason, description in LEFT.items():
+            report = hold(folder, reason, description)
+            assert report["device"] == "cpu" and report["device_reason"] == reason, f"{reason}: {report}"
+        stored = list((folder / "cache/halflight").iterdir())
+        assert stored and all(path.stat().st_mode & 0o777 == 0o600 for path in stored), stored
+        for path in stored: # spoilt programs are no harm: they are compiled anew
+            content = path.read_bytes()
+            path.write_bytes(content[:len(content) // 2])
+        hold(folder, "medium", MADE["medium"])
+
+
+main()
