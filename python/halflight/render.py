@@ -55,7 +55,10 @@ def _add_layers(image: Image) -> tuple[Any, dict[str, Pixels], list[Any]]:
 
 def _told_statistics(struct: Any) -> dict[str, Any]:
     names = [name for name, _ in ffi.typeof("hl_render_statistics").fields if name != "struct_size"]
-    found = {name: getattr(struct, name) for name in names}
+    found: dict[str, Any] = {}
+    for name in names:
+        value = getattr(struct, name)
+        found[name] = text_of(value) if isinstance(value, ffi.CData) else value
     found["instruction_set"] = text_of(lib.hl_instruction_set_name(struct.instruction_set))
     return found
 

@@ -1,7 +1,6 @@
 /* gpu/gpu.c - see gpu.h. */
 #include "gpu/gpu.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -118,10 +117,13 @@ typedef struct gpu_search {
   bool met;
 } gpu_search;
 
+/* An ASCII letter as a small one, whatever the locale. */
+static char small_letter(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
+
 static bool has_word(const char *text, const char *word) {
   for (; *text != '\0'; text++) {
     size_t i = 0;
-    while (word[i] != '\0' && tolower((unsigned char)text[i]) == tolower((unsigned char)word[i])) i++;
+    while (word[i] != '\0' && small_letter(text[i]) == small_letter(word[i])) i++;
     if (word[i] == '\0') return true;
   }
   return false;

@@ -98,7 +98,7 @@ static void test_scales(void **state) {
   const move_case cases[] = {{"2^30", motion_of_scale(0x1p30), 0, 0, 0},
                              {"2^-30", motion_of_scale(0x1p-30), 1, 0, 0},
                              {"1e9", motion_of_scale(1e9), 1, 2e-4, 5e-3},
-                             {"1e-9", motion_of_scale(1e-9), 0, 2e-4, 5e-3}};
+                             {"1e-9", motion_of_scale(1e-9), 0, 2e-4, 1e-2}};
   check_moves(cases, sizeof cases / sizeof *cases, false);
 }
 

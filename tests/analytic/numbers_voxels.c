@@ -216,6 +216,7 @@ static void render_layers(const size_t n[3], int axis, size_t layers, hl_shading
   volume->transfer_function.opacity = opacity;
   volume->transfer_function.opacity_count = 3;
   volume->shading = shading;
+  volume->cut_shading = HL_CUT_SHADING_GRADIENT; /* faces are lit within two voxels, which differ */
   set.scene.render.shadows = HL_SHADOWS_OFF;
   double smallest = fmin(spacing[0], fmin(spacing[1], spacing[2]));
   set.scene.render.sheet_spacing = 0.2 / smallest;

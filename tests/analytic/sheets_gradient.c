@@ -194,6 +194,7 @@ static void test_halved_ramp_is_a_thinner_one(void **state) {
       stage_set_opacity(&set, cube, half ? thin : thick, 4);
       if (half == 0) set_gradient(cube, HALF_AT_THREE, 2);
       if (k >= 4) cube->shading = HL_SHADING_PHONG;
+      cube->cut_shading = HL_CUT_SHADING_GRADIENT; /* not by the grid's faces: by the ramp */
       stage_add_directional(&set, (vec3){-0.6, -0.3, -1});
       if (k % 4 > 0) set.lights[0].angular_diameter_deg = 12;
       set.scene.render.shadows = k % 4 > 0 ? HL_SHADOWS_SOFT : HL_SHADOWS_HARD;

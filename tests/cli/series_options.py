@@ -186,6 +186,7 @@ CASES = {
     "slicing": ["--slicing image-aligned"],
     "data": ["--data ."],
     "threads": ["--threads 2"],
+    "device": ["--device cpu"],
     "instruction-set": ["--instruction-set scalar"],
     "max-memory": ["--max-memory 400M"],
     "no-metadata": ["--no-metadata", ".seg.nrrd --no-metadata"],

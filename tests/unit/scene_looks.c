@@ -248,7 +248,7 @@ static void lights_are_fitted(void **state) {
   static const struct {
     double color, intensity, ambient, left, factor;
   } cases[] = {{1, 1, 0, 1, 0.871},   {0.5, 1, 0, 1, 1.742}, {0.5, 2, 0, 1, 0.871},
-               {0.5, 1, 1, 1, 0.871}, {1, 1, 0, 0.5, 1.742}, {0.1, 1, 0, 1, 2}};
+               {0.5, 1, 1, 1, 0.871}, {1, 1, 0, 0.5, 0.871}, {0.1, 1, 0, 1, 2}};
   for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
     hl_exposure exposure = {0, 0};
     for (int c = 0; c < 3; c++)
@@ -306,7 +306,7 @@ static void skies_are_fitted(void **state) {
  * clip box leaves the same face as a plane does. */
 static void cut_faces_are_fitted(void **state) {
   (void)state;
-  static const double azimuths[] = {0, 45}, factors[] = {1.087, 1.529};
+  static const double azimuths[] = {0, 45}, factors[] = {0.871, 1.223};
   hl_context *context = make_context();
   fill(ball_of_bytes);
   parts p;

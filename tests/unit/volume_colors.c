@@ -118,7 +118,8 @@ static void test_colors_where_asked(void **state) {
   assert_int_equal(load(context, &file, HL_COMPONENT_COLOR, &volume, &error), HL_ERROR_UNSUPPORTED);
   assert_string_equal(
       error.message,
-      "memory: 3 components of float32 are not read as colours: these are 3 or 4 of uint8 or uint16");
+      "memory: 3 components of float32 are not read as colours: these are 3 or 4 of uint8 or uint16: choose "
+      "another by \"component\" (--component)");
   file = nrrd("uint8", "2-vector", 2, false, "1 2\n0 0\n");
   assert_int_equal(load(context, &file, HL_COMPONENT_LUMINANCE, &volume, &error), HL_ERROR_UNSUPPORTED);
   hl_context_destroy(context);

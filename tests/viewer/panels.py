@@ -279,9 +279,9 @@ def cuts(browser):
     changes(browser, "keep", lambda: set_control(browser, "Inside", "", section="Cuts"), "volumes")
     changes(browser, "a second cut", lambda: press_named(browser, "Add: cut"), "volumes")
     changes(browser, "a sphere", lambda: set_control(browser, "Sphere", "", section="Cuts"), "volumes")
-    changes(browser, "radius", number("Radius", 4), "volumes")
     for axis in "yz":
         number(f"Centre {axis}", 7.5)()  # in the picture
+    changes(browser, "radius", number("Radius", 4), "volumes")
     follows(browser, "a sphere's middle", "Middle of the cut", (-12, 9), "volumes", 2)
     follows(browser, "a sphere's rim", "Radius of the cut", (9, 9), "volumes", 1)
     number("Radius", 4)()
