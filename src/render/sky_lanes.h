@@ -59,8 +59,9 @@ LANES_INLINE void place_sky(const shade_job *job, const block_slab *slab, block_
                             int count) {
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
+    if (!d->there) continue; /* then it has no patch either */
     const shade_volume *volume = d->patch->volume;
-    if (!d->there || !volume->visible || !volume->lit || !volume->receives_shadow) continue;
+    if (!volume->visible || !volume->lit || !volume->receives_shadow) continue;
     d->outside = slab->geometry.position;
     if (lanes_bits(slab->seen & (d->surface > 0.0f)) != 0)
       d->outside = add_scaled3(d->outside, d->normal, (way_to_outside(d) + job->sky->lift) * d->surface);
