@@ -11,6 +11,11 @@
 
 /* The address sanitizer keeps what is released for a while: there, only what the context holds can tell, and
  * that is the same from the second round on. */
+#if defined(__has_feature) && !defined(__SANITIZE_ADDRESS__) /* clang's way to tell */
+#if __has_feature(address_sanitizer)
+#define __SANITIZE_ADDRESS__
+#endif
+#endif
 #if defined(__SANITIZE_ADDRESS__)
 enum { KEEPS_RELEASED = 1, FRAMES = 60 };
 #else
