@@ -113,7 +113,7 @@ void hl_gpu_find(const char *driver, gpu_found *found, void *data, char *problem
 typedef struct gpu_search {
   const char *wanted;
   gpu_device device;
-  void *library;
+  void *opened;
   bool met;
 } gpu_search;
 
@@ -141,7 +141,7 @@ static bool open_if_wanted(void *data, const gpu_driver *driver, void *library, 
   search->met = true;
   search->device.driver = driver;
   search->device.info = *info;
-  search->library = library;
+  search->opened = library;
   return !driver->open(library, index, &search->device);
 }
 
@@ -163,7 +163,7 @@ hl_gpu *hl_gpu_open(hl_context *context, const char *wanted, const char *cache_f
     return NULL;
   }
   gpu->context = context;
-  gpu->library = search.library;
+  gpu->library = search.opened;
   gpu->device = search.device;
   gpu->cache_folder = cache_folder;
   return gpu;

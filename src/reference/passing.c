@@ -148,11 +148,6 @@ static void settle(light_factors *all, pending_layer *layer) {
   layer->any = false;
 }
 
-/* The nearer end of a step in each volume: where the last step was, and its value. */
-typedef struct last_value {
-  double at, value;
-} last_value;
-
 /* Adds a step to the factors. depth: of all volumes in the step, in each channel; kept: their mean. */
 static void add_step(light_factors *all, pending_layer *layer, const double depth[3], kept_light kept) {
   if (layer->any && kept.before == 0) settle(all, layer);
@@ -174,22 +169,25 @@ void hl_reference_outside(const reference *all, const reference_ray *ray, const 
                           crossing *scratch, double passing[3]) {
   light_factors factors = {{1, 1, 1}, {0, 0, 0}, 1};
   pending_layer layer = {.any = false};
-  last_value last[HL_REFERENCE_VOLUMES];
   march walk;
   hl_reference_march_begin(all, REFERENCE_CASTS_SHADOW, ray, scratch, &walk);
-  for (size_t v = 0; v < walk.count && v < HL_REFERENCE_VOLUMES; v++)
-    last[v] = (last_value){0, walk.crossings[v].volume == at->surface_of ? at->value : NAN};
+  for (size_t v = 0; v < walk.count; v++) {
+    walk.crossings[v].last_at = 0;
+    walk.crossings[v].last_value = walk.crossings[v].volume == at->surface_of ? at->value : NAN;
+  }
   while (hl_reference_march_next(&walk)) {
     double depth[3] = {0, 0, 0}, total = 0;
     kept_light kept = {0, 0, false};
-    for (size_t v = 0; v < walk.count && v < HL_REFERENCE_VOLUMES; v++) {
-      const crossing *part = &walk.crossings[v];
+    for (size_t v = 0; v < walk.count; v++) {
+      crossing *part = &walk.crossings[v];
       const reference_volume *volume = part->volume;
       if (!part->occupied) continue;
       double value = hl_reference_value(volume, part->here),
-             here = hl_reference_extinction(volume, value, part->here) * walk.length, nearer = last[v].value;
-      bool beside = walk.at - last[v].at < 1.5 * walk.length, known = !isnan(nearer);
-      last[v] = (last_value){walk.at, value};
+             here = hl_reference_extinction(volume, value, part->here) * walk.length,
+             nearer = part->last_value;
+      bool beside = walk.at - part->last_at < 1.5 * walk.length, known = !isnan(nearer);
+      part->last_at = walk.at;
+      part->last_value = value;
       if (!(here > 0)) continue;
       for (int c = 0; c < 3; c++) depth[c] += here * volume->described->attenuation_color[c];
       total += here;

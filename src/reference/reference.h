@@ -147,12 +147,14 @@ typedef struct reference_ray {
 /* A ray's passage through one volume's box. */
 typedef struct crossing {
   const reference_volume *volume;
-  vec3 origin, direction; /* index space; distances along the ray in world units */
-  double enter, leave;    /* distances; the ray misses the box where enter >= leave */
-  bool uncut;             /* the cuts of the volume do not count */
-  bool active;            /* the ray is inside what is left of the box now */
-  bool occupied;          /* active, and the brick may be visible */
-  vec3 here;              /* index space; the current sample, where active */
+  vec3 origin, direction;     /* index space; distances along the ray in world units */
+  double enter, leave;        /* distances; the ray misses the box where enter >= leave */
+  bool uncut;                 /* the cuts of the volume do not count */
+  bool active;                /* the ray is inside what is left of the box now */
+  bool occupied;              /* active, and the brick may be visible */
+  vec3 here;                  /* index space; the current sample, where active */
+  double last_at, last_value; /* of hl_reference_outside(): where the volume was met last, and its value
+                                 there; NaN: not known */
 } crossing;
 
 /* A march along a ray: a stretch is the ray between two box faces, cut into equal steps. */
@@ -307,7 +309,6 @@ double hl_reference_light_phase(const reference_light *light, double g, vec3 to_
 void hl_reference_transmittance(const reference *all, const reference_ray *ray, crossing *scratch,
                                 double passing[3]);
 /* The same for the outside of the surface of a volume that the ray begins in. */
-enum { HL_REFERENCE_VOLUMES = 64 };
 void hl_reference_outside(const reference *all, const reference_ray *ray, const reference_receiver *at,
                           crossing *scratch, double passing[3]);
 /* Fills volume->feet; its other fields are known. */

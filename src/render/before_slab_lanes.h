@@ -23,7 +23,8 @@ typedef struct near_pixels {
 typedef struct seen_light {
   lanes3 towards;          /* unit direction to the light */
   lanes path;              /* of the light through the slab */
-  const near_pixels *near; /* the pixels of its buffer around the sample; null: only the nearest is read */
+  const near_pixels *near; /* the pixels of its buffer around the sample; null: no face of a box is near, or
+                              only the nearest pixel is read */
 } seen_light;
 
 /* The root of 1/6. Bilinear look-ups, averaged over all positions between pixels, weigh by a tent of variance

@@ -163,19 +163,17 @@ LANES_INLINE color_lanes passing_to_media(const shade_job *job, const light_plac
   return passing;
 }
 
-/* What lights a sample's surface of the light at the slab's first sheet. */
-typedef struct own_surface {
-  lanes kept;      /* the part of what has been taken before the slab that lights it again */
-  lanes passing;   /* the part of the other light that comes to the surface within the slab */
-  lanes_int there; /* the volume's matter is visible at the first sheet, or may be */
-} own_surface;
+/* Where the light's way to a volume's sample begins, at the slab's first sheet: coordinates of the
+ * classifier's tables. */
+typedef struct way_begin {
+  lanes start, change; /* the value there, and how much it changes for each unit of the way */
+  lanes first, foot;   /* where the surface of that value begins, and where the sample's own surface does */
+  lanes_int there;     /* the volume's matter is visible there, or may be */
+} way_begin;
 
-/* Where the light's way leaves another surface of the volume within the slab, this one has taken what was
- * taken before. A value from which values rise too little to have come from lower ones within the slab
- * counts as that of a layer of the surface below. way: the light's way within the slab; light, outside: at
- * the slab's first sheet. */
-LANES_INLINE own_surface find_own_surface(const block_density *d, lanes3 towards, lanes way, lanes light,
-                                          lanes outside) {
+/* A value from which values rise too little to have come from lower ones within the slab counts as the value
+ * of a layer below the sample's surface. way: the length of the light's way within the slab. */
+LANES_INLINE way_begin find_begin(const block_density *d, lanes3 towards, lanes way) {
   const classifier *classifier = d->patch->volume->classifier;
   lanes seen = lanes_clamp(coordinate_seen(d), 0, CLASSIFIER_ENTRIES),
         change = lanes_keep(d->sloped, dot3(d->slope, towards) * classifier->scale);
@@ -185,14 +183,28 @@ LANES_INLINE own_surface find_own_surface(const block_density *d, lanes3 towards
   lanes below = lanes_gather(classifier->outside,
                              lanes_truncate(lanes_clamp(foot - side * 0.5f, 0, CLASSIFIER_ENTRIES)));
   lanes_int layer = lanes_abs(below - foot) > 1.0f; /* matter below the foot is visible */
-  lanes_int beyond = (start - below) * side < 0.0f;
-  start = lanes_select(layer & beyond, below, start);
+  lanes_int beyond = layer & ((start - below) * side < 0.0f);
+  start = lanes_select(beyond, below, start);
   lanes_int entry = lanes_truncate(start);
-  lanes first = lanes_select(layer & beyond, below, lanes_gather(classifier->outside, entry));
-  own_surface own = {lanes_set(1.0f), lanes_set(1.0f), (first != lanes_from_int(entry)) | (layer & beyond)};
-  lanes_int second = own.there & (first != foot);
+  lanes first = lanes_select(beyond, below, lanes_gather(classifier->outside, entry));
+  return (way_begin){start, change, first, foot, (first != lanes_from_int(entry)) | beyond};
+}
+
+/* What lights a sample's surface of the light at the slab's first sheet. */
+typedef struct own_surface {
+  lanes kept;    /* the part of what has been taken before the slab that lights it again */
+  lanes passing; /* the part of the other light that comes to the surface within the slab */
+} own_surface;
+
+/* Where the light's way leaves another surface of the volume within the slab, this one has taken what was
+ * taken before. light, outside: at the slab's first sheet. */
+LANES_INLINE own_surface find_own_surface(const classifier *classifier, const way_begin *begin, lanes light,
+                                          lanes outside) {
+  own_surface own = {lanes_set(1.0f), lanes_set(1.0f)};
+  lanes_int second = begin->there & (begin->first != begin->foot);
   if (lanes_bits(second) == 0) return own;
-  second_surface other = kept_at_foot(classifier, first, start, foot, lanes_abs(change), light, outside);
+  second_surface other = kept_at_foot(classifier, begin->first, begin->start, begin->foot,
+                                      lanes_abs(begin->change), light, outside);
   own.kept = lanes_select(second, other.kept, own.kept);
   own.passing = lanes_select(second, exp_of_depth(lanes_min(other.ahead, lanes_set(DEEPEST))), own.passing);
   return own;
@@ -202,21 +214,26 @@ LANES_INLINE own_surface find_own_surface(const block_density *d, lanes3 towards
  * is at the slab's first sheet, and a volume's own is not, the other one has taken the light. */
 LANES_INLINE own_surface find_own_surfaces(const block_density *densities, int count, lanes3 towards,
                                            lanes way, lanes light, lanes outside) {
-  own_surface sum = {lanes_set(0), lanes_set(0), lanes_set_int(0)};
+  own_surface sum = {lanes_set(0), lanes_set(0)};
   lanes weight = lanes_set(0);
-  if (count == 1) return find_own_surface(densities, towards, way, light, outside);
+  lanes_int any = lanes_set_int(0);
+  if (count == 1) {
+    const way_begin begin = find_begin(densities, towards, way);
+    return find_own_surface(densities->patch->volume->classifier, &begin, light, outside);
+  }
   for (int i = 0; i < count; i++)
-    if (densities[i].there) sum.there |= find_own_surface(&densities[i], towards, way, light, outside).there;
+    if (densities[i].there) any |= find_begin(&densities[i], towards, way).there;
   for (int i = 0; i < count; i++) {
     const block_density *d = &densities[i];
     if (!d->there || !d->patch->volume->visible || !d->patch->volume->phong) continue;
-    own_surface own = find_own_surface(d, towards, way, light, outside);
-    sum.kept = lanes_fma(lanes_keep(own.there | ~sum.there, own.kept), d->extinction, sum.kept);
+    const way_begin begin = find_begin(d, towards, way);
+    own_surface own = find_own_surface(d->patch->volume->classifier, &begin, light, outside);
+    sum.kept = lanes_fma(lanes_keep(begin.there | ~any, own.kept), d->extinction, sum.kept);
     sum.passing = lanes_fma(own.passing, d->extinction, sum.passing);
     weight = weight + d->extinction;
   }
   lanes inverse = 1.0f / lanes_max(weight, lanes_set(1e-30f));
-  return (own_surface){sum.kept * inverse, sum.passing * inverse, sum.there};
+  return (own_surface){sum.kept * inverse, sum.passing * inverse};
 }
 
 /* The light at the outside of the surfaces in a slab (shadow/attenuate.h). way: of the light from the slab's

@@ -52,8 +52,8 @@ typedef struct attenuate_job {
  *
  *     Y <- T t + k (Y - T) + k' T (1 - t)      T <- T t
  *
- * The depth h of a value is its distance from the nearest value without extinction on the way to the empty
- * one, classifier.outside. While light goes on within one surface, which has one such value at both ends,
+ * The depth h of a value is its distance from the value at which its surface begins, classifier.outside.
+ * While light goes on within one surface, which begins at one value,
  * k = k' = min(1, h2 / h1)^OUTWARDS_POWER: 1 while it goes deeper, falling to 0 where the surface ends. Light
  * that enters another surface within the slab has k = 0 and k' = 1; light that leaves one, or a cut's face,
  * has k = k' = 0. The product over slabs depends on h at both ends alone, and not on how the way is cut into

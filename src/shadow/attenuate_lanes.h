@@ -107,7 +107,8 @@ static const float ROUNDING_OF_SPAN = 1e-3f;
 /* Where a face cuts the slab, light comes from no surface, or leaves it. */
 LANES_INLINE kept_light kept_in_span(const attenuate_volume *volume, kept_light kept, covered_span span) {
   if (volume->enter == NULL) return kept;
-  lanes_int ends = span.begin + span.length<1.0f - ROUNDING_OF_SPAN, begins = span.begin> ROUNDING_OF_SPAN;
+  lanes_int ends = (span.begin + span.length) < (1.0f - ROUNDING_OF_SPAN);
+  lanes_int begins = span.begin > ROUNDING_OF_SPAN;
   return (kept_light){lanes_keep(~ends & ~begins, kept.before), lanes_keep(~ends, kept.within)};
 }
 

@@ -121,18 +121,12 @@ static hl_status begin_sublights(light_shadow *shadow, hl_error *error) {
 
 /* ---- compositing ---- */
 
-/* Pixel (0,0) of one of the slab's shifted copies; copy: from 1. */
-static float *moved_copy(const sublights *sublights, const shadow_buffer *slab, shadow_plane kind,
-                         int channel, int copy) {
-  size_t number = (size_t)(kind == SHADOW_OUTSIDE ? sublights->channels : 0) + (size_t)channel;
-  return sublights->moved + (number * MOVED_COPIES + (size_t)copy - 1) * slab->plane + slab->origin;
-}
-
 /* Pixel (0,0) of the slab itself, copy 0, or of one of its shifted copies. */
 static float *slab_copy(const sublights *sublights, const shadow_buffer *slab, shadow_plane kind, int channel,
                         int copy) {
-  if (copy > 0) return moved_copy(sublights, slab, kind, channel, copy);
-  return (kind == SHADOW_OUTSIDE ? slab->outside : slab->transmittance)[channel];
+  size_t number = (size_t)(kind == SHADOW_OUTSIDE ? sublights->channels : 0) + (size_t)channel;
+  if (copy == 0) return (kind == SHADOW_OUTSIDE ? slab->outside : slab->transmittance)[channel];
+  return sublights->moved + (number * MOVED_COPIES + (size_t)copy - 1) * slab->plane + slab->origin;
 }
 
 /* Where the sub-light's ray through its pixel (at, at) meets a height, in the slab's pixels; false if that

@@ -116,16 +116,6 @@ static int file_of(hl_exact *exact) {
   return none;
 }
 
-static bool write_all(int file, const unsigned char *bytes, size_t count, off_t at) {
-  while (count > 0) {
-    ssize_t written = pwrite(file, bytes, count, at);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    bytes += written, at += written, count -= (size_t)written;
-  }
-  return true;
-}
-
 /* Writes all numbers of each piece in which a float rounds one. */
 static void note_in_file(hl_exact *exact, bool swap, const unsigned char *from, size_t first, size_t count) {
   enum { PIECE = 2048 };
@@ -139,7 +129,8 @@ static void note_in_file(hl_exact *exact, bool swap, const unsigned char *from, 
     for (size_t n = 0; n < taken; n++) copy_number(bytes, swap, from + n * bytes, piece + n * bytes);
     int file = file_of(exact);
     off_t at = (off_t)((first + done) * bytes);
-    if (file < 0 || !write_all(file, piece, taken * bytes, at)) exact->failure = errno != 0 ? errno : EIO;
+    if (file < 0 || !hl_scratch_write(file, piece, taken * bytes, at))
+      exact->failure = errno != 0 ? errno : EIO;
     exact->rounds = true;
   }
 }

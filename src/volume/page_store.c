@@ -4,14 +4,13 @@
  * write of the mapping would have the system read or clear each unit first, and tell the processor of it.
  * Other parts of rows are copied into the mapping. */
 #define _GNU_SOURCE
-#include <errno.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "volume/brick_bounds.h"
 #include "volume/counts.h"
 #include "volume/glimpse.h"
 #include "volume/pages.h"
+#include "volume/scratch_file.h"
 
 /* ---- parts of rows ---- */
 
@@ -64,16 +63,6 @@ typedef struct row_block {
   const unsigned char *values; /* [k1 - k0][j1 - j0][dimension[0]]; stored values */
 } row_block;
 
-static bool write_all(int file, const unsigned char *bytes, size_t count, off_t at) {
-  while (count > 0) {
-    ssize_t written = pwrite(file, bytes, count, at);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    bytes += written, at += written, count -= (size_t)written;
-  }
-  return true;
-}
-
 static bool all_zero(const unsigned char *bytes, size_t count) {
   return bytes[0] == 0 && memcmp(bytes, bytes + 1, count - 1) == 0;
 }
@@ -116,7 +105,7 @@ static bool write_part(const hl_pages *pages, const page_part *p, size_t k0, siz
   size_t place = (size_t)(pages->first - pages->mapping) + p->number * pages->page_bytes +
                  (k0 - p->z) * pages->slice_bytes + (p->j0 - p->y) * pages->row_bytes;
   return all_zero(part, (size_t)(to - part)) ||
-         write_all(pages->file, part, (size_t)(to - part), (off_t)place);
+         hl_scratch_write(pages->file, part, (size_t)(to - part), (off_t)place);
 }
 
 static bool write_in_page(const hl_pages *pages, const size_t page[3], const row_block *block) {

@@ -55,3 +55,13 @@ hl_status hl_scratch_open(hl_context *context, const char *folder, size_t bytes,
   *file = -1;
   return hl_scratch_fail(folder, bytes, number, error);
 }
+
+bool hl_scratch_write(int file, const unsigned char *bytes, size_t count, off_t at) {
+  while (count > 0) {
+    ssize_t written = pwrite(file, bytes, count, at);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes += written, at += written, count -= (size_t)written;
+  }
+  return true;
+}

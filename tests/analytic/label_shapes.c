@@ -9,6 +9,7 @@
 
 #include "core/vector.h"
 #include "label/occupancy.h"
+#include "reference_stage.h"
 
 enum { N = 48, ORIENTATIONS = 50 };
 
@@ -131,20 +132,8 @@ static void add_offset(offsets *all, double offset) {
   all->count++;
 }
 
-static double random_number(uint32_t *seed) {
-  return (double)(*seed = *seed * 1664525u + 1013904223u) / 4294967296.0;
-}
-
-static vec3 random_direction(uint32_t *seed) {
-  for (;;) {
-    vec3 v = {2 * random_number(seed) - 1, 2 * random_number(seed) - 1, 2 * random_number(seed) - 1};
-    double length = vec3_length(v);
-    if (length > 0.1 && length < 1) return vec3_scale(v, 1 / length);
-  }
-}
-
 static vec3 random_centre(uint32_t *seed) {
-  return (vec3){N / 2 + random_number(seed), N / 2 + random_number(seed), N / 2 + random_number(seed)};
+  return (vec3){N / 2 + stage_random(seed), N / 2 + stage_random(seed), N / 2 + stage_random(seed)};
 }
 
 /* The volume that the surface of a star-shaped thing encloses, from its extent in many directions. */
@@ -176,7 +165,7 @@ static void test_balls(void **state) {
     hl_volume *field = occupancy_of(depth_in_ball, &b, &count);
     offsets all = {0};
     for (int n = 0; n < 400; n++) {
-      vec3 way = random_direction(&seed);
+      vec3 way = stage_random_direction(&seed);
       add_offset(&all, surface_offset(field, vec3_add(b.centre, vec3_scale(way, b.radius)), way));
     }
     double volume = volume_around(field, b.centre, depth_in_ball, &b);
@@ -192,14 +181,14 @@ static void test_boxes(void **state) {
   offsets every = {0};
   for (int k = 0; k < ORIENTATIONS; k++) {
     double count;
-    box b = {random_centre(&seed), {random_direction(&seed)}, {13, 10, 8}};
-    b.axis[1] = vec3_normalise(vec3_cross(b.axis[0], random_direction(&seed)));
+    box b = {random_centre(&seed), {stage_random_direction(&seed)}, {13, 10, 8}};
+    b.axis[1] = vec3_normalise(vec3_cross(b.axis[0], stage_random_direction(&seed)));
     b.axis[2] = vec3_cross(b.axis[0], b.axis[1]);
     hl_volume *field = occupancy_of(depth_in_box, &b, &count);
     for (int n = 0; n < 300; n++) { /* points of the faces, 3 voxels from their edges */
       int a = n % 3, u = (a + 1) % 3, v = (a + 2) % 3;
-      double side = n % 2 ? 1 : -1, on_u = (2 * random_number(&seed) - 1) * (b.half[u] - 4),
-             on_v = (2 * random_number(&seed) - 1) * (b.half[v] - 4);
+      double side = n % 2 ? 1 : -1, on_u = (2 * stage_random(&seed) - 1) * (b.half[u] - 4),
+             on_v = (2 * stage_random(&seed) - 1) * (b.half[v] - 4);
       vec3 normal = vec3_scale(b.axis[a], side);
       vec3 point = vec3_add(b.centre,
                             vec3_add(vec3_scale(normal, b.half[a]),

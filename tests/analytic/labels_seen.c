@@ -59,18 +59,6 @@ static double alpha_at(double x, double y, double height) {
   return (double)pixels[4 * (row * SIDE + column) + 3];
 }
 
-static double random_number(uint32_t *seed) {
-  return (double)(*seed = *seed * 1664525u + 1013904223u) / 4294967296.0;
-}
-
-static vec3 random_direction(uint32_t *seed) {
-  for (;;) {
-    vec3 v = {2 * random_number(seed) - 1, 2 * random_number(seed) - 1, 2 * random_number(seed) - 1};
-    double length = vec3_length(v);
-    if (length > 0.1 && length < 1) return vec3_scale(v, 1 / length);
-  }
-}
-
 /* ---- plates ---- */
 
 typedef struct plate {
@@ -91,9 +79,9 @@ static void test_plates(void **state) {
   (void)state;
   uint32_t seed = 3;
   for (int k = 0; k < 33; k++) {
-    plate s = {.normal = random_direction(&seed), .radius = 13, .offset = 0.5 * random_number(&seed)};
+    plate s = {.normal = stage_random_direction(&seed), .radius = 13, .offset = 0.5 * stage_random(&seed)};
     if (k < 3) s.normal = (vec3){k == 0, k == 1, k == 2}, s.offset = 0.5;
-    const vec3 aside = random_direction(&seed);
+    const vec3 aside = stage_random_direction(&seed);
     for (int view = 0; view < 2; view++) {
       const vec3 along = view == 0 ? s.normal : vec3_add(s.normal, vec3_scale(aside, 0.8));
       double area[2];
@@ -119,11 +107,11 @@ static void test_shells(void **state) {
   (void)state;
   uint32_t seed = 9;
   for (int k = 0; k < 6; k++) {
-    const double radius = 8 + 6 * random_number(&seed);
+    const double radius = 8 + 6 * stage_random(&seed);
     (void)fill_voxels(depth_in_shell, &radius);
-    draw(random_direction(&seed), 36);
+    draw(stage_random_direction(&seed), 36);
     for (int n = 0; n < 4000; n++) {
-      const double r = (radius - 1) * sqrt(random_number(&seed)), turn = 2 * HL_PI * random_number(&seed);
+      const double r = (radius - 1) * sqrt(stage_random(&seed)), turn = 2 * HL_PI * stage_random(&seed);
       assert_true(alpha_at(r * cos(turn), r * sin(turn), 36) > 0.98);
     }
   }
@@ -151,10 +139,10 @@ static void test_lines(void **state) {
   (void)state;
   uint32_t seed = 4;
   for (int k = 0; k < 30; k++) {
-    line s = {random_direction(&seed), 14};
+    line s = {stage_random_direction(&seed), 14};
     if (k < 3) s.direction = (vec3){k == 0, k == 1, k == 2};
     if (k == 3) s.direction = vec3_normalise((vec3){1, 1, 1});
-    const vec3 aside = vec3_normalise(vec3_cross(s.direction, random_direction(&seed)));
+    const vec3 aside = vec3_normalise(vec3_cross(s.direction, stage_random_direction(&seed)));
     fill_line(&s);
     draw(aside, 36);
     const vec3 up = fabs(aside.y) < 0.9 ? (vec3){0, 1, 0} : (vec3){1, 0, 0};
@@ -177,7 +165,7 @@ static void test_a_voxel(void **state) {
   memset(voxels, 0, sizeof voxels);
   voxels[(20 * N + 20) * N + 20] = 1;
   for (int k = 0; k < 8; k++) {
-    draw(random_direction(&seed), 8);
+    draw(stage_random_direction(&seed), 8);
     assert_true(area_seen(8) > 1); /* a cube shows 1.5 in the mean over all directions */
     assert_true(area_seen(8) < 2);
   }
@@ -205,9 +193,9 @@ static void test_outlines_of_balls(void **state) {
     double sum = 0;
     enum { VIEWS = 12 };
     for (int view = 0; view < VIEWS; view++) {
-      const ball b = {{random_number(&seed), random_number(&seed), random_number(&seed)}, radii[k]};
+      const ball b = {{stage_random(&seed), stage_random(&seed), stage_random(&seed)}, radii[k]};
       const int count = fill_voxels(depth_in_ball, &b);
-      draw(random_direction(&seed), height);
+      draw(stage_random_direction(&seed), height);
       sum += pow(area_seen(height) / HL_PI, 1.5) * 4 * HL_PI / 3 / count / VIEWS;
     }
     assert_near(sum, 1, radii[k] < 3 ? 0.03 : 0.01);
@@ -222,7 +210,8 @@ enum { CELLS = 100 };
 static void fill_atlas(void) {
   uint32_t seed = 12;
   vec3 points[CELLS];
-  for (int n = 0; n < CELLS; n++) points[n] = vec3_scale(random_direction(&seed), 16 * random_number(&seed));
+  for (int n = 0; n < CELLS; n++)
+    points[n] = vec3_scale(stage_random_direction(&seed), 16 * stage_random(&seed));
   for (int at = 0; at < N * N * N; at++) {
     const vec3 p = {at % N - (N - 1) / 2.0, at / N % N - (N - 1) / 2.0, at / N / N - (N - 1) / 2.0};
     int nearest = 0;
@@ -289,12 +278,12 @@ static void test_sliced_atlas(void **state) {
   uint32_t seed = 15;
   fill_atlas();
   for (int k = 0; k < 20; k++) {
-    const vec3 along = random_direction(&seed);
+    const vec3 along = stage_random_direction(&seed);
     const hl_cut cut = {.type = HL_CUT_PLANE, .normal = {-along.x, -along.y, -along.z}};
     for (int whole = 0; whole < 2; whole++) {
       draw_lit(along, CELLS, whole ? NULL : &cut);
       for (int n = 0; n < 2000; n++) {
-        const double r = 13 * sqrt(random_number(&seed)), turn = 2 * HL_PI * random_number(&seed);
+        const double r = 13 * sqrt(stage_random(&seed)), turn = 2 * HL_PI * stage_random(&seed);
         const double expected = whole ? sqrt(1 - r * r / (16 * 16)) : 1;
         assert_true(brightness_at(r * cos(turn), r * sin(turn)) > (whole ? 0.85 : 0.95) * expected);
       }

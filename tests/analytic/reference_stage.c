@@ -322,3 +322,15 @@ float stage_noise(double x, double y, double z) {
   }
   return (float)fmin(fmax(0.5 + sum, 0), 1);
 }
+
+double stage_random(uint32_t *seed) {
+  return (double)(*seed = *seed * 1664525u + 1013904223u) / 4294967296.0;
+}
+
+vec3 stage_random_direction(uint32_t *seed) {
+  for (;;) {
+    vec3 v = {2 * stage_random(seed) - 1, 2 * stage_random(seed) - 1, 2 * stage_random(seed) - 1};
+    double length = vec3_length(v);
+    if (length > 0.1 && length < 1) return vec3_scale(v, 1 / length);
+  }
+}

@@ -75,5 +75,8 @@ void stage_refused(stage *set, const char *message);
 
 /* Smooth noise without a library: sums of sines with a fixed pattern, in [0, 1]. */
 float stage_noise(double x, double y, double z);
+/* A repeatable random number from 0 to 1, and a unit vector; seed: any start. */
+double stage_random(uint32_t *seed);
+vec3 stage_random_direction(uint32_t *seed);
 
 #endif
