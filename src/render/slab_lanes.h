@@ -298,6 +298,20 @@ LANES_INLINE lanes_int shows_on_face(const shade_volume *volume, lanes3 crossing
   return may_be_visible(volume->classifier, there, there);
 }
 
+/* Whether some points are so near to a face of the box that shows matter that they may belong to it. */
+LANES_INLINE int is_near_box_face(const shade_volume *volume, lanes3 point, lanes_int seen) {
+  const float reach = FACE_VOXELS * volume->voxel * 1.001f; /* a little more, for rounding */
+  lanes_int near = lanes_set_int(0);
+  for (int axis = 0; axis < 3; axis++) {
+    const float *row = volume->to_index[axis];
+    if ((volume->face_cuts[axis][0] | volume->face_cuts[axis][1]) == 0) continue;
+    lanes at = row_of_point(row, point), steps = row_size(row) * reach;
+    near |= (at - volume->low[axis] < steps) & lanes_set_int(volume->face_cuts[axis][0]);
+    near |= (volume->high[axis] - at < steps) & lanes_set_int(volume->face_cuts[axis][1]);
+  }
+  return lanes_bits(near & seen) != 0;
+}
+
 /* How much a point belongs to the face of a cut, or of the volume's box, through whose matter it is seen: 1
  * at the face, 0 two voxels behind it. The data's gradient, of even matter, is its noise there. */
 LANES_INLINE lanes find_skin(const block_slab *slab, const block_density *d, lanes3 *outward) {
@@ -306,6 +320,8 @@ LANES_INLINE lanes find_skin(const block_slab *slab, const block_density *d, lan
   const float deepest = FACE_VOXELS * volume->voxel;
   cut_face nearest = {.way = lanes_set(1e30f), .cuts = lanes_set_int(0)};
   nearest.outward = (lanes3){lanes_set(0), lanes_set(0), lanes_set(0)};
+  *outward = nearest.outward;
+  if (volume->cut_count == 0 && !is_near_box_face(volume, point, slab->seen)) return lanes_set(0);
   find_box_face(volume, point, towards_eye, &nearest);
   for (int i = 0; i < volume->cut_count; i++)
     find_cut(&volume->cuts[i], point, towards_eye, lanes_set(0.5f * volume->voxel), &nearest);
