@@ -464,6 +464,11 @@ HL_API HL_WARN_UNUSED hl_status hl_labels_of_volume(hl_context *context, const h
                                                     hl_error *error);
 HL_API void hl_labels_release(hl_context *context, hl_label *labels); /* null is allowed */
 
+/* Sets *labels to 1 where the volume's values look like names of regions, else to 0: its file names segments,
+ * or it has few whole numbers, in blocks. A bare volume of which this is true is drawn by its labels. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_is_label_map(hl_context *context, const hl_volume *volume,
+                                                       int *labels, hl_error *error);
+
 /* ---- where the camera stands ---- */
 
 /* A direction of view. */

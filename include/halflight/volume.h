@@ -156,6 +156,8 @@ typedef struct hl_volume_save_options {
   size_t begin[3],
       end[3];    /* the voxels begin[a] <= index < end[a] along axis a; end 0 (default): to the last */
   size_t shrink; /* a written voxel is the mean over shrink^3 voxels, of the finite ones; default 1 */
+  int labels;    /* not 0: a written voxel has the value that most of the shrink^3 voxels have, and of equally
+                    common values the first; the mean of two labels is a third one. Default 0 */
 } hl_volume_save_options;
 
 HL_API void hl_volume_save_options_defaults(hl_volume_save_options *options);

@@ -353,7 +353,7 @@ class Volume:
         type : str, optional
             Of the voxels, such as "uint8"; by default one that holds all values.
         shrink : int
-            A written voxel is the mean over so many along each axis.
+            A written voxel is the mean over this number of voxels along each axis; of a label map it is their commonest label.
 
         Examples
         --------
@@ -369,6 +369,10 @@ class Volume:
         if isinstance(shrink, bool) or shrink != int(shrink) or shrink < 1:
             raise ValueError(f"shrink: {shrink!r} is no whole number from 1 on")
         options.shrink = int(shrink)
+        if options.shrink > 1:
+            labels = ffi.new("int *")
+            call(lib.hl_volume_is_label_map, context, self._handle, labels)
+            options.labels = labels[0]
         call(lib.hl_volume_save_with, context, self._handle, os.fsencode(path), options)
 
     def _source(self) -> tuple[str, Any]:

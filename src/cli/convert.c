@@ -39,14 +39,15 @@ static const cli_option convert_options[CONVERT_OPTION_COUNT] = {
                       .help = "keep voxels A to B - 1 along AXIS, i, j or k, from 0;\n"
                               "repeatable (i=10:200, k=:50, j=20:)",
                       .repeatable = true},
-    [CONVERT_SHRINK] = {.name = "shrink",
-                        .kind = OPTION_NUMBERS,
-                        .argument = "N",
-                        .help = "the means of boxes of N x N x N voxels",
-                        .count = 1,
-                        .whole = true,
-                        .low = 1,
-                        .high = 65536},
+    [CONVERT_SHRINK] =
+        {.name = "shrink",
+         .kind = OPTION_NUMBERS,
+         .argument = "N",
+         .help = "the means of boxes of N x N x N voxels; of a label map\nthe commonest label of each",
+         .count = 1,
+         .whole = true,
+         .low = 1,
+         .high = 65536},
     [CONVERT_TYPE] = {.name = "type",
                       .kind = OPTION_CHOICE,
                       .argument = "TYPE",
@@ -108,7 +109,7 @@ static int check_crop(const cli_value *crop, const hl_volume_save_options *optio
 static void report(const char *output, double seconds) { say("%s: written in %.2f s", output, seconds); }
 
 static int convert(cli_host *host, const cli_value *values, char **operands,
-                   const hl_volume_save_options *options) {
+                   hl_volume_save_options *options) {
   double started = clock_seconds();
   cli_input input = {0};
   hl_volume *volume = NULL;
@@ -124,7 +125,9 @@ static int convert(cli_host *host, const cli_value *values, char **operands,
   if (exit_code == EXIT_CODE_OK) exit_code = check_crop(&values[CONVERT_CROP], options, volume);
   if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&host->read, operands[1], operands[0]);
   if (exit_code == EXIT_CODE_OK) {
-    hl_status status = hl_volume_save_with(host->context, volume, operands[1], options, &error);
+    hl_status status = HL_OK;
+    if (options->shrink > 1) status = hl_volume_is_label_map(host->context, volume, &options->labels, &error);
+    if (status == HL_OK) status = hl_volume_save_with(host->context, volume, operands[1], options, &error);
     host_clear_bar(host);
     if (status != HL_OK) exit_code = host_fail(host, PHASE_CHANGE, status, &error);
     else if (!host->quiet) report(operands[1], clock_seconds() - started);

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "core/context.h"
+#include "core/door.h"
 #include "core/memory.h"
 #include "guess/sample.h"
 
@@ -399,4 +400,14 @@ hl_status hl_data_find_labels(const hl_volume *volume, hl_data_analysis *analysi
   else analysis->label_count = 0;
   hl_release(volume->context, table);
   return HL_OK;
+}
+
+hl_status hl_volume_is_label_map(hl_context *context, const hl_volume *volume, int *labels, hl_error *error) {
+  HL_DOOR;
+  if (context == NULL || volume == NULL || labels == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_is_label_map: null context, volume or result");
+  hl_data_analysis analysis = {0};
+  hl_status status = volume->segment_count > 0 ? HL_OK : hl_data_analyse(volume, &analysis, error);
+  *labels = status == HL_OK && (volume->segment_count > 0 || analysis.kind == HL_DATA_LABELS);
+  return status;
 }

@@ -19,19 +19,23 @@
 #include "volume/writer.h"
 
 enum { OUT_BYTES = 1 << 18, ZLIB_WINDOW = 15, GZIP = 16 /* zlib.h: largest window; added for gzip */ };
+enum { MOST_SHRUNK_LABELS = 64 }; /* a box's values are held: two megabytes for one written voxel */
 
 /* How the voxels are written. */
 typedef struct saving {
   hl_context *context;
   const hl_volume *volume;
   const hl_writer *writer;
-  size_t begin[3], end[3], shrink; /* the box, voxels; each written voxel is the mean of shrink^3 */
+  size_t begin[3], end[3], shrink; /* the box, voxels; each written voxel is made of shrink^3 */
+  bool labels;                     /* it is the commonest of them, not their mean */
   hl_volume_description grid;      /* as written */
   const char *unit;                /* of its lengths, static; null: unknown */
   hl_output output;
-  bool packs;            /* bytes go through the stream now */
-  double *sums;          /* owned; [grid.dimensions[0]]: of data values */
-  uint32_t *counts;      /* owned; [grid.dimensions[0]]: finite voxels in each sum */
+  bool packs;       /* bytes go through the stream now */
+  double *sums;     /* owned; [grid.dimensions[0]]: of data values */
+  uint32_t *counts; /* owned; [grid.dimensions[0]]: finite voxels in each sum */
+  double *boxes;    /* owned; [grid.dimensions[0]][shrink^3]: the finite values, where labels are shrunk; else
+                       null */
   unsigned char *row;    /* owned; [grid.dimensions[0]] voxels of the written type */
   void *source_row;      /* owned; a row of the volume's stored values: for volumes with pages */
   unsigned char *packed; /* owned; [OUT_BYTES] */
@@ -101,6 +105,11 @@ static hl_status set_box(saving *s, const hl_volume_save_options *options, const
                          hl_error *error) {
   const size_t *size = s->volume->dimension;
   s->shrink = options->shrink > 0 ? options->shrink : 1;
+  s->labels = options->labels != 0 && s->shrink > 1;
+  if (s->labels && s->shrink > MOST_SHRUNK_LABELS)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "%s: labels are shrunk by %d at most, not by %zu: shrink them in steps", path,
+                   MOST_SHRUNK_LABELS, s->shrink);
   for (int axis = 0; axis < 3; axis++) {
     s->begin[axis] = options->begin[axis];
     s->end[axis] = options->end[axis] > 0 ? options->end[axis] : size[axis];
@@ -144,13 +153,31 @@ static void add_row(saving *s, size_t j, size_t k) {
     for (size_t last = i + s->shrink; i < last && i < s->end[0]; i++) {
       double value = volume->value_scale * hl_row_number(row, i) + volume->value_offset;
       if (s->shrink > 1 && !isfinite(value)) continue;
+      if (s->labels) s->boxes[n * s->shrink * s->shrink * s->shrink + s->counts[n]] = value;
       s->sums[n] += value;
       s->counts[n]++;
     }
 }
 
-/* The data values of row (j, k) as written, in `sums`: means over the finite voxels; NAN where there are
- * none. */
+/* The value that is most often among these; of equally common ones the first. Boxes have few values: each is
+ * counted where it first stands. */
+static double commonest(const double *values, size_t count) {
+  double best = values[0];
+  size_t most = 0;
+  for (size_t n = 0; n < count && count - n > most; n++) {
+    bool seen = false;
+    for (size_t m = 0; m < n && !seen; m++) seen = values[m] == values[n];
+    if (seen) continue;
+    size_t equal = 0;
+    for (size_t m = n; m < count; m++) equal += values[m] == values[n];
+    if (equal > most) best = values[n];
+    if (equal > most) most = equal;
+  }
+  return best;
+}
+
+/* The data values of row (j, k) as written, in `sums`: of the finite voxels the mean, or of labels the
+ * commonest; NAN where there are none. */
 static void make_row(saving *s, size_t j, size_t k) {
   size_t count = s->grid.dimensions[0];
   memset(s->sums, 0, count * sizeof *s->sums);
@@ -158,8 +185,12 @@ static void make_row(saving *s, size_t j, size_t k) {
   size_t j0 = s->begin[1] + j * s->shrink, k0 = s->begin[2] + k * s->shrink;
   for (size_t z = k0; z < k0 + s->shrink && z < s->end[2]; z++)
     for (size_t y = j0; y < j0 + s->shrink && y < s->end[1]; y++) add_row(s, y, z);
-  for (size_t n = 0; n < count; n++)
-    if (s->counts[n] != 1) s->sums[n] = s->counts[n] > 0 ? s->sums[n] / s->counts[n] : NAN;
+  for (size_t n = 0; n < count; n++) {
+    if (s->counts[n] == 0) s->sums[n] = NAN;
+    else if (s->labels)
+      s->sums[n] = commonest(s->boxes + n * s->shrink * s->shrink * s->shrink, s->counts[n]);
+    else if (s->counts[n] > 1) s->sums[n] /= s->counts[n];
+  }
 }
 
 /* The nearest IEEE 754 binary16, ties to even: as _Float16, which not every compiler has. */
@@ -308,12 +339,15 @@ static hl_status save(saving *s, const char *path, hl_error *error) {
   size_t count = s->grid.dimensions[0], bytes = sizeof *s->sums + sizeof *s->counts + 8;
   s->sums = hl_allocate(context, count, sizeof *s->sums);
   s->counts = hl_allocate(context, count, sizeof *s->counts);
+  size_t box_bytes = s->labels ? s->shrink * s->shrink * s->shrink * sizeof *s->boxes : 0;
+  if (s->labels) s->boxes = hl_allocate(context, count, box_bytes);
   s->row = hl_allocate(context, count, hl_voxel_type_bytes(s->grid.type));
   s->packed = hl_allocate(context, OUT_BYTES, 1);
   size_t source_bytes = hl_volume_row_room(s->volume);
   s->source_row = hl_allocate(context, source_bytes, 1);
-  if (s->sums == NULL || s->counts == NULL || s->row == NULL || s->packed == NULL || s->source_row == NULL)
-    return hl_fail_memory(error, count * bytes + OUT_BYTES + source_bytes, path);
+  if (s->sums == NULL || s->counts == NULL || (s->labels && s->boxes == NULL) || s->row == NULL ||
+      s->packed == NULL || s->source_row == NULL)
+    return hl_fail_memory(error, count * (bytes + box_bytes) + OUT_BYTES + source_bytes, path);
   hl_status status = begin_packing(s, error);
   if (status != HL_OK) return status;
   status = write_file(s, path, error);
@@ -403,6 +437,7 @@ hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume, cons
   if (status == HL_OK) tell_losses(&s, path);
   hl_release(context, s.sums);
   hl_release(context, s.counts);
+  hl_release(context, s.boxes);
   hl_release(context, s.row);
   hl_release(context, s.packed);
   hl_release(context, s.source_row);

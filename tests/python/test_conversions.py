@@ -155,3 +155,14 @@ def test_datasets():
         halflight.Volume(two, array="w")
     with pytest.raises(ValueError, match=r"the array has the shape \(2, 4, 5, 6\)"):
         halflight.Volume(data)
+
+
+def test_shrunk_labels_are_labels(tmp_path):
+    index = np.arange(24)
+    labels = np.array([0, 3, 100])[(np.add.outer(np.add.outer(index, index), index) // 7) % 3].astype(np.uint8)
+    halflight.Volume(labels).save(tmp_path / "labels.nrrd", shrink=2)
+    assert set(np.unique(np.asarray(halflight.Volume(tmp_path / "labels.nrrd")))) == {0, 3, 100}
+    values = np.linspace(0, 250, 24**3).reshape(24, 24, 24).astype(np.float32)
+    halflight.Volume(values).save(tmp_path / "values.nrrd", shrink=2)
+    means = values.reshape(12, 2, 12, 2, 12, 2).mean((1, 3, 5))
+    assert np.asarray(halflight.Volume(tmp_path / "values.nrrd")) == pytest.approx(means, abs=1e-4)

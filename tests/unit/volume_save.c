@@ -117,8 +117,38 @@ static void impossible_names_are_refused(void **state) {
   hl_context_destroy(context);
 }
 
+/* The mean of two labels is a third one: a shrunk label map has the commonest label of each box. */
+static void labels_keep_their_numbers(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  static const int16_t voxels[2][2][4] = {{{1, 5, 7, 3}, {5, 9, 3, 7}}, {{1, 5, 7, 3}, {9, 0, 3, 7}}};
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  d.dimensions[0] = 4, d.dimensions[1] = d.dimensions[2] = 2;
+  d.type = HL_VOXEL_I16;
+  d.voxels = voxels;
+  hl_volume *volume = NULL, *again = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  hl_volume_save_options options;
+  hl_volume_save_options_defaults(&options);
+  options.shrink = 2;
+  options.labels = 1;
+  assert_int_equal(hl_volume_save_with(context, volume, place("b.nrrd"), &options, NULL), HL_OK);
+  assert_int_equal(hl_volume_load(context, place("b.nrrd"), &again, NULL), HL_OK);
+  assert_true(hl_volume_value(again, 0, 0, 0) == 5); /* three of eight */
+  assert_true(hl_volume_value(again, 1, 0, 0) == 7); /* four 7 and four 3: the first */
+  options.shrink = 65;
+  assert_int_equal(hl_volume_save_with(context, volume, place("b.nrrd"), &options, NULL), HL_ERROR_ARGUMENT);
+  unlink(place("b.nrrd"));
+  hl_volume_release(again);
+  hl_volume_release(volume);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(values_and_place_survive),
+                                     cmocka_unit_test(labels_keep_their_numbers),
                                      cmocka_unit_test(impossible_names_are_refused)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
