@@ -140,11 +140,6 @@ def write(job, outcomes, absent, loads):
     save_pictures(outcomes)
     document = DOCUMENT.read_text()
     lines = "\n".join([BEGIN, *text(job, outcomes, absent, loads), END])
-    if BEGIN in document:
-        head, rest = document.split(BEGIN)
-        document = head + lines + rest.split(END)[1]
-    else:
-        head, rest = document.split("## What is left")
-        document = f"{head}{lines}\n\n## What is left{rest}"
-    DOCUMENT.write_text(document)
+    head, rest = document.split(BEGIN)
+    DOCUMENT.write_text(head + lines + rest.split(END)[1])
     print(f"wrote {DOCUMENT.relative_to(jobs.ROOT)}")
