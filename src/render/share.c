@@ -133,9 +133,9 @@ static void set_keys(const frame *frame, const picture_share *share, share_cell 
 
 /* ---- how much lies under a cell ---- */
 
-/* Of all bricks about so many are looked at. A cell weighs as much as the root of their number: where there
- * are many, most of them are hidden (measured: docs/performance.md). A cell without any weighs as much as a
- * fraction of the mean. */
+/* About SHARE_BRICKS bricks of the volume are looked at. A cell weighs as much as the root of the number of
+ * its bricks: most of many bricks are hidden (measured: docs/laboratory/ranks.md). A cell without bricks
+ * weighs LEAST_WEIGHT times the mean. */
 enum { SHARE_BRICKS = 1 << 18 };
 static const double LEAST_WEIGHT = 0.1;
 
@@ -245,7 +245,7 @@ static bool is_at_border(const picture_share *share, const int32_t *part_of, int
 
 /* What parts of so many bands would cost, in units of a part's mean: the slowest ones of all depths, for
  * which the others wait; and half of the cells at borders once more, for light that several parts work
- * through (measured: docs/performance.md). */
+ * through (measured: docs/laboratory/ranks.md). */
 static double cost_of(const picture_share *share, const share_arrays *arrays, int bands) {
   const int32_t *part_of = arrays->cut[bands - 1];
   double(*depths)[DEPTHS] = arrays->depths[bands - 1], all = 0, slowest = 0, cells = 0, border = 0;

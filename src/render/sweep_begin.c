@@ -89,8 +89,9 @@ static void end_light(const sweep *sweep, sweep_light *light) {
 
 /* ---- how long stretches are ---- */
 
-/* Slabs of a stretch where nothing limits them, and the memory for the planes that all lights of a frame keep
- * then (measured: docs/performance.md). With one thread nobody waits, and picture and lights take turns. */
+/* A stretch has LONGEST_STRETCH slabs where nothing limits it (measured: docs/laboratory/threads.md). The
+ * planes that all lights of a frame keep for a stretch take at most RING_BYTES. With one thread nobody waits,
+ * and picture and lights take turns. */
 enum { LONGEST_STRETCH = 8 };
 static const uint64_t RING_BYTES = 64 << 20;
 

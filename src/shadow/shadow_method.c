@@ -97,7 +97,7 @@ void hl_light_shadow_end(light_shadow *shadow) {
 /* ---- the size of a shadow buffer's pixels and the region that it covers, for all methods ---- */
 
 /* Pixels of shadow buffers are as large as possible without visibly adding to the sheets' error (measured
- * against the reference, docs/performance.md): three quarters of the sheets' distance, between three tenths
+ * against the reference, docs/experiments.md): three quarters of the sheets' distance, between three tenths
  * and three quarters of a voxel. SHADOW_PIXEL_PER_IMAGE_PIXEL is for buffers that are blurred. */
 static const double SHADOW_PIXEL_PER_SPACING = 0.75, LEAST_SHADOW_PIXEL = 0.3, GREATEST_SHADOW_PIXEL = 0.75;
 static const double SHADOW_PIXEL_PER_IMAGE_PIXEL = 1.4;
