@@ -3,11 +3,11 @@
 #define HL_CORE_BENEATH_H
 
 /* Opens `name` relative to a folder's descriptor, with the flags of open(); returns the descriptor, or -1 and
- * sets errno. "" is the folder itself. Absolute names are refused, and names and links that lead out of the
- * folder, whether or not there is a file. The descriptor is closed on exec. */
+ * sets errno. "" is the folder itself. Absolute names are refused, and so are names and links that lead out
+ * of the folder, whether or not a file is there. The descriptor is closed on exec. */
 int hl_beneath_open(int folder, const char *name, int flags);
 
-/* What hl_beneath_open() does where the system has no openat2(): follows no links, and refuses "..". */
+/* The substitute for hl_beneath_open() on systems without openat2(): follows no links, and refuses "..". */
 int hl_beneath_open_by_components(int folder, const char *name, int flags);
 
 #endif

@@ -23,7 +23,7 @@ static void *default_allocate(void *user_data, size_t size, size_t alignment) {
   size_t rounded = (size + alignment - 1) / alignment * alignment;
   if (rounded < size) return NULL;
   if (size < LARGE_BLOCK) return aligned_alloc(alignment, rounded);
-  void *block = NULL; /* aligned_alloc would accept multiples of the page size only */
+  void *block = NULL; /* aligned_alloc() might accept only multiples of the page size */
   if (posix_memalign(&block, LARGE_PAGE, rounded) != 0) return NULL;
 #ifdef MADV_HUGEPAGE
   madvise(block, rounded, MADV_HUGEPAGE);
@@ -42,7 +42,7 @@ void hl_context_options_defaults(hl_context_options *options) {
   options->struct_size = sizeof *options;
 }
 
-/* With the zero at the end; 0 of none. */
+/* The length of a text with its terminating zero; 0 for null. */
 static size_t bytes_of(const char *text) { return text != NULL ? strlen(text) + 1 : 0; }
 
 hl_status hl_context_create(const hl_context_options *options, hl_context **context, hl_error *error) {

@@ -9,19 +9,22 @@
 
 struct hl_context {
   hl_context_options options;       /* callbacks filled in; instruction_set resolved */
-  atomic_uint_least64_t held, peak; /* bytes of blocks */
-  char *scratch_folder;             /* owned; of hl_context_limit_memory(); may be null */
+  atomic_uint_least64_t held, peak; /* bytes of the context's blocks of memory: now, and the most so far */
+  char *scratch_folder;             /* owned; the folder given to hl_context_limit_memory(); may be null */
   atomic_uint_least64_t paged;      /* bytes of the pages of scratch files (volume/pages.h) held in memory */
-  struct hl_ranks *ranks;           /* borrowed: that hold what is loaded (halflight/ranks.h); may be null */
-  struct hl_context *whole; /* of a confined context the one whose memory it takes; else the context itself */
-  int folder;               /* of a confined context: its descriptor; -1: it opens no file */
-  atomic_size_t users;      /* of a confined context: its owner, and the blocks of memory made with it */
+  struct hl_ranks *ranks;           /* borrowed; the ranks over which loaded volumes lie (halflight/ranks.h);
+                                     * may be null */
+  struct hl_context *whole; /* the context whose memory is used: for a confined context the context that made
+                             * it, else this one */
+  int folder;               /* a confined context's folder, as a descriptor; -1 if the context may open no
+                             * file */
+  atomic_size_t users;      /* of a confined context: its owner and its blocks of memory, counted */
 };
 
-/* Whether files are opened below a folder alone. */
+/* Whether the context opens only files below a folder. */
 static inline bool hl_is_confined(const hl_context *context) { return context->whole != context; }
 
-/* One user less of a confined context, which goes with the last. */
+/* Removes one user of a confined context. The context is destroyed with its last user. */
 void hl_context_leave(hl_context *context);
 
 void hl_log(const hl_context *context, hl_log_level level, const char *format, ...)
@@ -33,7 +36,7 @@ bool hl_cancelled(const hl_context *context);
 
 hl_instruction_set hl_cpu_best_instruction_set(void);
 
-/* Whether this build has the set's functions and this processor can run them. */
+/* Whether this build has functions for the instruction set and this processor can run them. */
 int hl_cpu_has_instruction_set(hl_instruction_set set);
 
 #endif

@@ -14,15 +14,15 @@
 #include <stdbool.h>
 
 typedef struct hl_door {
-  fenv_t host;         /* whole, where `changed` */
-  unsigned int vector; /* x86: the control and status register of vectors */
+  fenv_t host;         /* saved completely where `changed` is set */
+  unsigned int vector; /* x86: the host's control and status register for vectors */
   bool changed;
 } hl_door;
 
 hl_door hl_door_enter(void);
 void hl_door_leave(hl_door *door);
 
-/* The first statement of a function. */
+/* Stands as the first statement of a function. */
 #define HL_DOOR hl_door hl_own_door __attribute__((cleanup(hl_door_leave), unused)) = hl_door_enter()
 
 #endif

@@ -8,11 +8,11 @@
 __attribute__((format(printf, 3, 4))) hl_status hl_fail(hl_error *error, hl_status code, const char *format,
                                                         ...);
 
-/* hl_fail with a line and a column in the input, from 1 (0: none). */
+/* Fails like hl_fail(), with a line and a column in the input, counted from 1 (0: unknown). */
 __attribute__((format(printf, 5, 6))) hl_status hl_fail_at(hl_error *error, hl_status code, int line,
                                                            int column, const char *format, ...);
 
-/* hl_fail with a byte offset into the input. */
+/* Fails like hl_fail(), with a byte offset in the input. */
 __attribute__((format(printf, 4, 5))) hl_status hl_fail_offset(hl_error *error, hl_status code,
                                                                int64_t offset, const char *format, ...);
 

@@ -21,16 +21,19 @@ static hl_status fail_system(hl_error *error, const char *path, const char *verb
   return hl_fail(error, HL_ERROR_IO, "%s: cannot %s: %s", path, verb, strerror(errno));
 }
 
-/* Opens what the context may open; -1: nothing, and errno says why. */
+/* Opens a file if the context may open it. Returns -1, with errno set, if it may not or if the file cannot be
+ * opened. */
 static int open_allowed(const hl_context *context, const char *path, int flags) {
   flags |= O_CLOEXEC;
-  if ((flags & O_PATH) == 0) flags |= O_NONBLOCK | O_NOCTTY; /* neither pipes nor devices are waited for */
+  /* opening does not wait for a pipe's writer or for a device */
+  if ((flags & O_PATH) == 0) flags |= O_NONBLOCK | O_NOCTTY;
   if (!hl_is_confined(context)) return open(path[0] != 0 ? path : ".", flags);
   errno = EXDEV;
   return context->folder >= 0 ? hl_beneath_open(context->folder, path, flags) : -1;
 }
 
-/* In a confined context the words are the same whatever there is outside of its folder. */
+/* Fails with a line about a file. In a confined context the words do not depend on what exists outside the
+ * context's folder. */
 static hl_status fail_open(const hl_context *context, hl_error *error, const char *path) {
   bool of_process = errno == EMFILE || errno == ENFILE || errno == ENOMEM;
   if (!hl_is_confined(context) || of_process) return fail_system(error, path, "open");
@@ -85,18 +88,18 @@ hl_status hl_file_pull(hl_context *context, int descriptor, const char *path, vo
   }
 }
 
-/* A file on its way into memory. */
+/* A file that is being read into memory. */
 typedef struct file_reading {
   hl_context *context;
   const char *path;
   int descriptor;
-  hl_file_judge judge;  /* null: `limit` is final */
+  hl_file_judge judge;  /* null if `limit` is final */
   size_t limit;         /* greatest length accepted for the file, bytes */
   unsigned char *bytes; /* owned; [capacity] */
   size_t length, capacity;
 } file_reading;
 
-/* Enlarges the block once only one free byte is left, which is kept for the terminating zero. */
+/* Enlarges the block as soon as only one byte is free. This byte is kept for the terminating zero. */
 static hl_status make_room(file_reading *file, hl_error *error) {
   if (file->length + 1 < file->capacity) return HL_OK;
   if (file->judge != NULL) {
@@ -171,7 +174,7 @@ static char *temporary_path(hl_context *context, const char *path) {
   size_t kept = strlen(name), most = NAME_MAX - (sizeof suffix - 1);
   if (kept > most)
     for (kept = most; kept > 0 && ((unsigned char)name[kept] & 0xc0) == 0x80;)
-      kept--; /* not within a UTF-8 character */
+      kept--; /* the cut must not fall within a UTF-8 character */
   size_t length = (size_t)(name - path) + kept;
   char *made = hl_allocate(context, length + sizeof suffix, 1);
   if (made == NULL) return NULL;
@@ -180,10 +183,11 @@ static char *temporary_path(hl_context *context, const char *path) {
   return made;
 }
 
-/* Creates a file of a name that is free, whose last letters are replaced. The system takes the process's
- * umask off its mode; mkstemp() would make it private, and the umask cannot be asked without changing it. */
+/* Creates a file under a free name; the last letters of `path` are replaced. The mode is the one that the
+ * process's umask leaves. mkstemp() would make the file private, and the umask cannot be read without
+ * changing it. */
 static int create_temporary(char *path) {
-  static const char letters[] = "abcdefghijklmnopqrstuvwxyz234567"; /* 32 */
+  static const char letters[] = "abcdefghijklmnopqrstuvwxyz234567"; /* 32 letters */
   enum { LETTERS = 6, TRIES = 1000 };
   for (int n = 0; n < TRIES; n++) {
     unsigned char random[LETTERS];
@@ -252,7 +256,7 @@ void hl_output_abort(hl_output *output) {
 
 /* ---- outputs in memory ---- */
 
-/* Makes room for `end` bytes; new bytes are zero. */
+/* Makes room for `end` bytes. New bytes are zero. */
 static bool reserve(hl_output_memory *memory, size_t end) {
   if (end <= memory->capacity) return true;
   size_t capacity = memory->capacity > 0 ? memory->capacity : 65536;

@@ -10,14 +10,14 @@
 /* Opens a file for reading and calls the context's `reads` callback. Does not block on a pipe that has no
  * writer. */
 hl_status hl_file_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
-/* The same without calling `reads`: for threads other than the caller's, which may not call it, and files
- * that were opened before. */
+/* Opens a file like hl_file_open(), but does not call `reads`. For threads other than the caller's, which may
+ * not call it, and for files that were opened before. */
 hl_status hl_file_open_again(hl_context *context, const char *path, int *descriptor, hl_error *error);
-/* Opens a folder, for hl_beneath_open() and fdopendir(). "" is the current folder, or that of a confined
- * context. */
+/* Opens a folder, for hl_beneath_open() and fdopendir(). "" is the current folder, or the folder of a
+ * confined context. */
 hl_status hl_folder_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
-/* What there is of this name, which the context may open: 'f' a file that can be read, 'd' a folder, 0
- * nothing of these. */
+/* The kind of the file with this name: 'f' is a file that can be read, 'd' a folder, and 0 anything else,
+ * also what the context may not open. */
 char hl_file_kind(const hl_context *context, const char *path);
 /* Reads up to capacity bytes; *count is 0 at the end of the file. While a pipe is empty, waits and polls the
  * cancel callback. */
@@ -67,7 +67,7 @@ typedef struct hl_output_memory {
 /* `memory` must stay at its address until commit or abort. */
 hl_status hl_output_memory_begin(hl_context *context, const char *name, hl_output_memory *memory,
                                  hl_error *error);
-/* *bytes: owned by the caller (hl_release); untouched on failure. */
+/* Gives the written bytes to the caller, who owns *bytes (hl_release). *bytes is untouched on failure. */
 hl_status hl_output_memory_commit(hl_output_memory *memory, unsigned char **bytes, size_t *length,
                                   hl_error *error);
 /* Releases everything; harmless after a commit. */

@@ -10,7 +10,8 @@ void hl_key_add(hl_key *key, const void *bytes, size_t count) {
   key->count += count;
 }
 
-/* Fowler, Noll and Vo's FNV-1a, over words of 64 bits; four sums, so that one need not wait for another. */
+/* Fowler, Noll and Vo's FNV-1a, over words of 64 bits. Four sums run beside each other, so that one need not
+ * wait for another. */
 uint64_t hl_key_mark(const void *bytes, size_t count) {
   enum { WORD = sizeof(uint64_t), SUMS = 4 };
   const uint64_t prime = 0x100000001b3u;

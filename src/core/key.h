@@ -1,4 +1,5 @@
-/* core/key.h - keys of results that are kept: the bytes of all that a result depends on. */
+/* core/key.h - keys of results that are kept. A key consists of the bytes of everything that its result
+ * depends on. */
 #ifndef HL_CORE_KEY_H
 #define HL_CORE_KEY_H
 
@@ -9,7 +10,7 @@
 #include "core/vector.h"
 
 typedef struct hl_key {
-  unsigned char *bytes; /* owned; null: bytes that are added are counted only */
+  unsigned char *bytes; /* owned; null if added bytes are only counted */
   size_t count;
 } hl_key;
 
@@ -26,14 +27,15 @@ static inline void hl_key_add_affine(hl_key *key, const affine3 *map) {
   hl_key_add_numbers(key, &map->offset.x, 3);
 }
 
-/* A number for bytes, to stand for them in keys: by chance alike for other bytes once in 2^64. */
+/* A number that stands for bytes in keys. Other bytes have the same number with a chance of one in 2^64. */
 uint64_t hl_key_mark(const void *bytes, size_t count);
 
-/* Adds all that a result depends on, the same bytes each time it is called for the same data. */
+/* Adds everything that a result depends on to a key. Must add the same bytes each time it is called for the
+ * same data. */
 typedef void hl_key_write(const void *data, hl_key *key);
 
-/* Tells whether the kept key is the data's. If not, it is the data's afterwards. After a failure the kept key
- * is as before. */
+/* Tells whether the kept key is the key of the data. If not, it becomes the key of the data. After a failure
+ * the kept key is unchanged. */
 hl_status hl_key_renew(hl_context *context, hl_key_write *write, const void *data, hl_key *kept, bool *same,
                        hl_error *error);
 

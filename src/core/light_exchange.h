@@ -5,31 +5,34 @@
 
 #include <stddef.h>
 
-/* What a part gives all others, and what it gets from them, while it is under way. */
+/* The bytes that a part sends to all others and the bytes that it receives from them, while the messages are
+ * under way. */
 typedef struct light_post {
-  const void *from; /* [bytes]; nobody changes it until it has arrived */
+  const void *from; /* [bytes]; nobody may change these bytes before they have arrived */
   size_t bytes;     /* at most `most` */
-  void *to;         /* [parts][most]; what the others gave, from the start of each; nobody reads it before */
+  void *to;         /* [parts][most]; the bytes of part n begin at row n; nobody may read them before they
+                     * have arrived */
   size_t most;
-  void *memory; /* [post_bytes] of the exchange, for its own use */
+  void *memory; /* [post_bytes] of the exchange, for the exchange's own use */
 } light_post;
 
-/* The parts of one picture, each made by a renderer of its own. All parts call its functions equally often,
+/* The parts of one picture, each made by a renderer of its own. All parts call these functions equally often
  * and in the same order. */
 typedef struct light_exchange {
-  int part, parts; /* this renderer's number; how many there are */
-  /* Gives everyone the bytes of all parts: from: [bytes]; to: [parts][bytes]. Each time with as many bytes as
-   * the others. */
+  int part, parts; /* number of this renderer's part; number of parts */
+  /* Gives the bytes of all parts to all parts. from: [bytes]; to: [parts][bytes]. All parts give the same
+   * number of bytes. */
   void (*gather)(void *data, const void *from, size_t bytes, void *to);
   void *data; /* borrowed */
-  /* The same while a part goes on with its work; parts may give unequally many bytes, all with the same
-   * `most`. `send` begins and returns at once; `receive` waits until all has arrived; `look` lets it get on
-   * meanwhile, and is called as often as a part likes. All three may be null: it is then gathered at once. */
+  /* Exchanges bytes while a part goes on with its work. Parts may give different numbers of bytes, all with
+   * the same `most`. `send` begins an exchange and returns at once. `look` lets it make progress, and may be
+   * called at any time. `receive` waits until everything has arrived. All three may be null; then bytes are
+   * gathered at once. */
   void (*send)(void *data, const light_post *post);
   void (*look)(void *data, const light_post *post);
   void (*receive)(void *data, const light_post *post);
-  size_t post_bytes;  /* of a post's memory */
-  size_t most_posted; /* bytes of the posts of all parts together, about; 0: some megabytes */
+  size_t post_bytes;  /* size of a post's memory */
+  size_t most_posted; /* bytes of the posts of all parts together, approximately; 0 for some megabytes */
 } light_exchange;
 
 static inline void hl_light_send(const light_exchange *exchange, const light_post *post) {

@@ -13,7 +13,7 @@
  * more. A request for 0 bytes gives a valid block. */
 void *hl_allocate(hl_context *context, size_t count, size_t size);
 
-/* The same, all zero bytes. */
+/* Allocates like hl_allocate(), with all bytes zero. */
 void *hl_allocate_zeroed(hl_context *context, size_t count, size_t size);
 
 /* Moves a block's content to a block of another size, cut to the shorter of both sizes. On failure returns
@@ -37,15 +37,15 @@ bool hl_multiply(size_t a, size_t b, size_t *product);
 enum { RESERVE_BLOCKS = 32 };
 
 typedef struct reserve_block {
-  void *memory; /* owned; null: none */
+  void *memory; /* owned; null if there is no block */
   size_t bytes;
 } reserve_block;
 
 typedef struct hl_reserve {
   hl_context *context;
-  bool keeps;                          /* false: every block is allocated and released anew */
+  bool keeps;                          /* if false, every block is allocated and released anew */
   int taken;                           /* blocks requested in this frame so far */
-  reserve_block block[RESERVE_BLOCKS]; /* count 0: not yet measured */
+  reserve_block block[RESERVE_BLOCKS]; /* a count of 0 means: not yet measured */
 } hl_reserve;
 
 /* count * size uninitialised bytes, from the reserve or else from hl_allocate(); null when hl_allocate()
@@ -68,8 +68,8 @@ void hl_reserve_release(hl_reserve *reserve);
  * `base` set to a block of the counted size, gets the arrays. */
 
 typedef struct hl_layout {
-  unsigned char *base; /* aligned to 64 bytes; null: counts only */
-  size_t bytes;        /* bytes taken so far; SIZE_MAX: overflow */
+  unsigned char *base; /* aligned to 64 bytes; null if bytes are only counted */
+  size_t bytes;        /* bytes taken so far; SIZE_MAX after an overflow */
 } hl_layout;
 
 /* Takes count * size bytes, aligned to 64; returns null while counting. */

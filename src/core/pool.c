@@ -48,7 +48,7 @@ typedef struct worker {
 typedef struct job {
   void (*function)(void *, size_t, int);
   void *data;
-  size_t base;                     /* index that the shares' index 0 stands for */
+  size_t base;                     /* index of the job that index 0 of the shares stands for */
   _Alignas(64) atomic_size_t done; /* finished indices that workers have reported */
 } job;
 
@@ -61,7 +61,7 @@ typedef struct share {
 
 typedef struct offer {
   share *shares; /* [share_count]; behind the pool's own */
-  size_t count;  /* 0: nothing is offered */
+  size_t count;  /* 0 if nothing is offered */
   job job;
 } offer;
 
@@ -72,22 +72,22 @@ struct hl_pool {
   worker *workers; /* owned; [threads]; entry 0 (the caller) unused */
   int started;     /* threads running, the caller included */
   pid_t process;   /* the process that started the threads */
-  share *shares;   /* owned; [share_count], then as many of the offer */
-  int share_count; /* requested threads; some may not have started */
+  share *shares;   /* owned; [share_count] of the jobs, then [share_count] of the offer */
+  int share_count; /* requested number of threads; some may not have started */
   job jobs[2];
   offer offer;
   atomic_uint_least64_t generation; /* number of the last job whose shares are filled */
   atomic_bool stop;
-  atomic_bool cancelled; /* remaining indices are skipped */
+  atomic_bool cancelled; /* if set, remaining indices are skipped */
   atomic_int sleepers;
   pthread_mutex_t mutex;
-  pthread_cond_t wake; /* generation or stop changed */
+  pthread_cond_t wake; /* signalled when `generation` or `stop` has changed */
   /* used by the calling thread only */
   _Alignas(64) int64_t asked,
       read;       /* last call of the cancel callback and last reading of the clock, nanoseconds */
-  uint64_t waits; /* runs that other threads took part in */
+  uint64_t waits; /* number of runs that other threads took part in */
   int readings,
-      unread; /* number of calls from one reading of the clock to the next, and how many of these are left */
+      unread; /* calls from one reading of the clock to the next; calls left until the next reading */
 };
 
 static inline void relax(void) {
@@ -232,8 +232,8 @@ static void wait_until_done(hl_pool *pool, const job *job, size_t count) {
   }
 }
 
-/* Begins a job: deals its indices out to the shares and wakes the workers. The caller has set what else
- * describes it. */
+/* Begins a job: deals its indices out to the shares and wakes the workers. The caller has set the job's other
+ * members. */
 static void begin_job(hl_pool *pool, job *job, share *shares, uint64_t generation, size_t count) {
   atomic_store(&job->done, 0);
   uint64_t threads = (uint64_t)pool->threads;

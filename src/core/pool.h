@@ -33,13 +33,13 @@ uint64_t hl_pool_waits(const hl_pool *pool);
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
                  void *data);
 
-/* Offers the calls that hl_pool_run() makes to threads that have nothing to do in later runs; returns at
- * once, but for one thread, which makes them all. Until hl_pool_finish_offer() returns, which makes the calls
- * that are left, nothing that they read may be written, and nothing else may be offered. The calls of later
- * runs come first. */
+/* Offers the calls that hl_pool_run() would make to threads that have nothing to do in later runs. Returns at
+ * once; with one thread, makes all the calls first. hl_pool_finish_offer() makes the calls that are left.
+ * Until it returns, the memory that the calls read must not be written, and nothing else may be offered. The
+ * calls of later runs come first. */
 void hl_pool_offer(hl_pool *pool, size_t count, void (*function)(void *data, size_t index, int worker),
                    void *data);
-void hl_pool_finish_offer(hl_pool *pool); /* nothing offered: returns at once */
+void hl_pool_finish_offer(hl_pool *pool); /* returns at once if nothing is offered */
 
 /* Sets floats[0 .. count) to value, on all threads. */
 void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value);
@@ -47,10 +47,10 @@ void hl_pool_fill(hl_pool *pool, float *floats, size_t count, float value);
 void hl_pool_set(hl_pool *pool, void *memory, size_t bytes, int value);
 void hl_pool_clear(hl_pool *pool, void *memory, size_t bytes);
 
-/* Whether to stop. Polls the cancel callback; for the calling thread, between runs. */
+/* Whether to stop. Polls the cancel callback. For the calling thread, between runs. */
 bool hl_pool_cancelled(hl_pool *pool);
 
-/* Whether to stop; for functions that spend long on a single index. Cheap; only worker 0 polls the cancel
+/* Whether to stop, for functions that spend long on a single index. Cheap: only worker 0 polls the cancel
  * callback. */
 bool hl_pool_stops(hl_pool *pool, int worker);
 

@@ -1,5 +1,5 @@
-/* core/processors.c - how many processors this process may use: those that it may run on, and no more than
- * the time that its control groups grant it (containers, batch jobs). */
+/* core/processors.c - how many processors this process may use: those that it may run on, limited by the
+ * processor time that its control groups grant (containers, batch jobs). */
 #define _GNU_SOURCE /* sched_getaffinity */
 #include "core/processors.h"
 
@@ -12,7 +12,7 @@
 
 #include "text/plain.h"
 
-/* Greatest number of processors that an affinity is asked for. */
+/* The greatest number of processors that an affinity mask is read for. */
 enum { MOST_PROCESSORS = 1 << 16 };
 
 static int count_of_affinity(void) {
@@ -39,7 +39,7 @@ static bool take_number(const char **text, double *number) {
   return true;
 }
 
-/* The first two numbers of a file; "max" counts as -1. Returns how many there are. */
+/* Reads the first two numbers of a file; "max" counts as -1. Returns how many numbers the file has. */
 static int read_numbers(const char *folder, const char *name, double number[2]) {
   char path[PATH_BYTES + 64], text[64] = "";
   snprintf(path, sizeof path, "%s/%s", folder, name);
@@ -101,7 +101,7 @@ double hl_cpu_quota(const char *root) {
   snprintf(path, sizeof path, "%s/proc/self/cgroup", root);
   FILE *file = fopen(path, "re");
   while (file != NULL && fgets(line, sizeof line, file) != NULL) {
-    /* number:controllers:path */
+    /* a line has the form number:controllers:path */
     line[strcspn(line, "\n")] = '\0';
     char *controllers = strchr(line, ':'), *group = controllers != NULL ? strchr(controllers + 1, ':') : NULL;
     if (group == NULL) continue;

@@ -4,13 +4,13 @@
 
 #include <stdbool.h>
 
-/* Processors that this process may use, at least 1: those of its affinity, and no more than the quota of its
- * control groups, rounded up. */
+/* The number of processors that this process may use, at least 1: those of its affinity, limited by the quota
+ * of its control groups, rounded up. */
 int hl_cpu_count(void);
 
 /* The processor time that the control groups of this process grant, in processors, by cpu.max (version 2) or
- * cpu.cfs_quota_us (version 1); infinite where they set no limit. root: before /proc and /sys; "" but in
- * tests. */
+ * cpu.cfs_quota_us (version 1). Infinite where they set no limit. root: a folder put before /proc and /sys;
+ * "" except in tests. */
 double hl_cpu_quota(const char *root);
 
 #endif

@@ -11,7 +11,7 @@ typedef struct vec3 {
   double x, y, z;
 } vec3;
 
-/* Rows; m * v = (dot(row0, v), ...). */
+/* A matrix of three rows: m * v = (dot(row0, v), dot(row1, v), dot(row2, v)). */
 typedef struct mat3 {
   vec3 row[3];
 } mat3;
@@ -61,7 +61,7 @@ static inline mat3 mat3_multiply(mat3 a, mat3 b) {
                            mat3_apply(a, mat3_column(b, 2)));
 }
 static inline mat3 mat3_transpose(mat3 m) { return mat3_from_columns(m.row[0], m.row[1], m.row[2]); }
-/* The product of the rows' lengths: the greatest determinant that rows of these lengths can have. */
+/* The product of the rows' lengths. No determinant of rows with these lengths is greater. */
 static inline double mat3_row_sizes(mat3 m) {
   return vec3_length(m.row[0]) * vec3_length(m.row[1]) * vec3_length(m.row[2]);
 }
@@ -108,7 +108,7 @@ static inline void vec3_bound_ball(vec3 middle, double radius, double low[3], do
 static inline affine3 affine3_identity(void) {
   return (affine3){{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
 }
-/* The rows of a map, [linear | offset], in float. */
+/* Stores the rows of a map, [linear | offset], as floats. */
 static inline void affine3_store(float rows[3][4], const affine3 *map) {
   const double offset[3] = {map->offset.x, map->offset.y, map->offset.z};
   for (int r = 0; r < 3; r++) {

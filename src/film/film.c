@@ -24,7 +24,7 @@ static const char *const turn_paths[TURN_COUNT] = {"camera.azimuth", "camera.ele
 struct film {
   hl_context *context;
   const hl_scene *scene; /* borrowed */
-  json_t *text;          /* owned; the scene's */
+  json_t *text;          /* owned; the scene's text, parsed */
   film_key *keys;        /* owned; [key_count] */
   size_t key_count;
   int turntable, frames;
@@ -35,7 +35,7 @@ static hl_status no_memory(hl_error *error) {
   return HL_ERROR_MEMORY;
 }
 
-/* The index of the camera's turn that a path names; -1: the path names a number of the scene. */
+/* The index of the camera's turn that a path names, or -1 if the path names a number of the scene. */
 static int turn_of(const char *path) {
   for (int t = 0; t < TURN_COUNT; t++)
     if (strcmp(path, turn_paths[t]) == 0) return t;
@@ -44,7 +44,7 @@ static int turn_of(const char *path) {
 
 /* ---- numbers in the scene's text ---- */
 
-/* The member of an object, or the element of an array, called `name`; null: there is none. */
+/* The member of an object, or the element of an array, that has this name; null if there is none. */
 static json_t *step_into(json_t *at, const char *name) {
   if (json_is_object(at)) return json_object_get(at, name);
   size_t digits = strspn(name, "0123456789");
@@ -58,8 +58,8 @@ static json_t *number_like(const json_t *before, double value) {
   return json_is_integer(before) ? json_integer(llround(value)) : json_real(value);
 }
 
-/* Writes a value at a path. A key that its object lacks is added, as the scene has the key's default there;
- * the library refuses unknown keys. */
+/* Writes a value at a path. A key that is absent from its object is added, as the scene has the key's default
+ * there. The library refuses unknown keys. */
 static hl_status write_value(json_t *root, const char *path, double value, hl_error *error) {
   char *names = strdup(path), *rest = names, *name;
   if (names == NULL) return no_memory(error);
@@ -95,7 +95,7 @@ static hl_status read_frame(const film *f, json_t *text, int frame, hl_scene **s
 
 /* ---- the camera ---- */
 
-/* At zoom 2 everything looks twice as large. */
+/* Zooms a camera: at zoom 2 everything looks twice as large. */
 static void zoom(hl_camera *camera, double factor) {
   if (camera->type == HL_CAMERA_ORTHOGRAPHIC) camera->height /= factor;
   else
@@ -103,7 +103,7 @@ static void zoom(hl_camera *camera, double factor) {
       camera->position[k] = camera->target[k] + (camera->position[k] - camera->target[k]) / factor;
 }
 
-/* given: which of the camera's turns have keys. */
+/* Turns a camera as the keys say at a frame. given: whether each of the camera's turns has keys. */
 static hl_status turn_camera(const film *f, int frame, hl_camera *camera,
                              const hl_scene_description *description, hl_error *error) {
   hl_view view;
@@ -186,8 +186,8 @@ static hl_status parse_scene(film *f, hl_error *error) {
   return f->text != NULL ? HL_OK : no_memory(error);
 }
 
-/* Makes the first and the last frame's scene, so that a mistake in a key shows before any frame is rendered.
- */
+/* Makes the first and the last frame's scene, so that a mistake in a key is reported before any frame is
+ * rendered. */
 static hl_status try_frame(const film *f, int frame, hl_error *error) {
   hl_scene *scene = NULL;
   hl_status status = film_scene(f, frame, &scene, error);

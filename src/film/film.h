@@ -17,18 +17,20 @@ typedef struct film_options {
   const hl_scene *scene;
   const char *const *keys; /* [key_count]: "PATH=FRAME:VALUE,..." */
   size_t key_count;
-  int turntable; /* frames of a whole turn about the picture's vertical axis; 0: none */
+  int turntable; /* frames of a whole turn about the picture's vertical axis; 0 for no turn */
   int frames;    /* number of frames; 0: as many as the turntable has, or up to the last key's last frame */
 } film_options;
 
-/* Makes a film; fails where keys cannot be read or no number lies at their paths (HL_ERROR_ARGUMENT), or
- * where the scene of the first or last frame is refused. Destroy it with film_destroy(), null is allowed. */
+/* Makes a film. Fails where keys cannot be read or no number lies at their paths (HL_ERROR_ARGUMENT), or
+ * where the scene of the first or last frame is refused. The film is destroyed with film_destroy(), which
+ * accepts null. */
 hl_status film_create(const film_options *options, film **result, hl_error *error);
 void film_destroy(film *f);
 
 int film_frames(const film *f);
 
-/* The scene of a frame, from 0, with the volumes of the film's scene; owned by the caller. */
+/* Makes the scene of a frame, counted from 0. The scene has the volumes of the film's scene, and is owned by
+ * the caller. */
 hl_status film_scene(const film *f, int frame, hl_scene **scene, hl_error *error);
 
 #endif

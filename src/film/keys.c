@@ -18,7 +18,7 @@ __attribute__((format(printf, 2, 3))) static hl_status refuse(hl_error *error, c
   return HL_ERROR_ARGUMENT;
 }
 
-/* Reads "FRAME:VALUE" at *at, which moves past it. */
+/* Reads "FRAME:VALUE" at *at, and moves *at past it. */
 static hl_status read_point(const char **at, const film_key *key, int *frame, double *value,
                             hl_error *error) {
   char *end;
@@ -75,7 +75,7 @@ double film_key_value(const film_key *key, int frame) {
   for (size_t p = 1; p < key->count; p++) {
     if (frame > key->frames[p]) continue;
     double span = key->frames[p] - key->frames[p - 1], past = frame - key->frames[p - 1];
-    if (frame == key->frames[p]) return key->values[p]; /* exactly */
+    if (frame == key->frames[p]) return key->values[p]; /* returns exactly the given value */
     return key->values[p - 1] + (key->values[p] - key->values[p - 1]) * past / span;
   }
   return key->values[key->count - 1];

@@ -1,4 +1,4 @@
-/* film/keys.h - values over time: what `--key PATH=FRAME:VALUE,...` says. */
+/* film/keys.h - values over time: the argument of `--key PATH=FRAME:VALUE,...`. */
 #ifndef HL_FILM_KEYS_H
 #define HL_FILM_KEYS_H
 
@@ -10,13 +10,13 @@ enum { FILM_MOST_FRAMES = 1000000, FILM_MOST_POINTS = 1000 };
 typedef struct film_key {
   char *path;     /* owned; path of a number: "camera.azimuth", or keys and numbers of elements as in
                      "lights.0.intensity" */
-  int *frames;    /* owned; [count], rising */
+  int *frames;    /* owned; [count]; frame numbers in rising order */
   double *values; /* owned; [count] */
   size_t count;   /* at least 1 */
 } film_key;
 
-/* Reads "PATH=FRAME:VALUE,FRAME:VALUE,...". HL_ERROR_ARGUMENT, with a line that names the place, where the
- * text is no key. Call film_key_release() even after a failure. */
+/* Reads "PATH=FRAME:VALUE,FRAME:VALUE,...". Returns HL_ERROR_ARGUMENT where the text is no key; the error
+ * names the place in the text. Call film_key_release() even after a failure. */
 hl_status film_key_read(const char *text, film_key *key, hl_error *error);
 void film_key_release(film_key *key);
 

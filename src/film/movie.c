@@ -17,15 +17,16 @@ enum { MOST_WORDS = 48, MOST_CODEC_WORDS = 12 };
 
 struct movie {
   char *path, *unfinished; /* owned */
-  char *target; /* owned; the unfinished file as ffmpeg names files: other names may be protocols */
+  char *target; /* owned; the unfinished file's name in ffmpeg's syntax, in which other names may be
+                 * protocols */
   int pipe;     /* into ffmpeg; -1: closed */
   process ffmpeg;
 };
 
 const char *const movie_extensions[] = {".mp4", ".mov", ".mkv", ".webm", ".gif", NULL};
 
-/* Players expect even widths and heights, colours at half the resolution, and a mark that the colours are
- * sRGB's. */
+/* Options of films for players: players expect even widths and heights, colours at half the resolution, and a
+ * mark that the colours are sRGB. */
 #define FOR_PLAYERS                                                                                     \
   "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=in_range=pc:out_range=tv:out_color_matrix=bt709,format=yuv420p," \
   "setparams=color_primaries=bt709:color_trc=iec61966-2-1:colorspace=bt709"
@@ -67,7 +68,7 @@ static hl_status fail_io(hl_error *error, const char *path, const char *what) {
   return HL_ERROR_IO;
 }
 
-/* The words of ffmpeg's command line; words: [MOST_WORDS]. */
+/* Sets the words of ffmpeg's command line. words: [MOST_WORDS]. */
 static void command_line(const struct kind *kind, const char *rate, const char *file, const char **words) {
   const char *const first[] = {
       "ffmpeg",     "-hide_banner", "-nostdin",   "-loglevel", "error", "-y",     "-f",  "image2pipe",
@@ -147,7 +148,7 @@ static void release(movie *m) {
   free(m);
 }
 
-/* ffmpeg ends when the pipe is closed. */
+/* Closes the pipe, at which ffmpeg ends. */
 hl_status movie_end(movie *m, hl_error *error) {
   char said[400];
   hl_status status = HL_OK;

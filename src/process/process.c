@@ -20,7 +20,7 @@ static void redirect(posix_spawn_file_actions_t *actions, const process *p, int 
   posix_spawn_file_actions_adddup2(actions, fileno(p->messages), STDERR_FILENO);
 }
 
-/* SIGPIPE, which this program may ignore, ends the child as it usually does. */
+/* Starts the child. SIGPIPE, which this program may ignore, ends the child as usual. */
 static int spawn(process *p, const char *const *words, const posix_spawn_file_actions_t *actions) {
   posix_spawnattr_t attributes;
   sigset_t usual;
@@ -56,7 +56,7 @@ void process_limit(const process *p, uint64_t memory, uint64_t file) {
   prlimit(p->child, RLIMIT_FSIZE, &of_file, NULL);
 }
 
-/* Takes note of the child's end. flags: those of waitpid(). */
+/* Waits for the child with the given flags of waitpid(), and notes whether the child has ended. */
 static bool await(process *p, int flags, bool *succeeded) {
   int how = 0;
   pid_t ended;

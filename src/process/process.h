@@ -9,28 +9,30 @@
 #include <sys/types.h>
 
 typedef struct process {
-  pid_t child;    /* 0: it does not run */
-  FILE *messages; /* what it says on standard error; owned */
+  pid_t child;    /* the child's number; 0 if it does not run */
+  FILE *messages; /* owned; the child's standard error */
 } process;
 
-/* Starts the program words[0], looked for in the PATH, with the words up to the null. input: becomes its
- * standard input; -1: an empty one. It runs in a process group of its own, so that Ctrl-C does not reach it,
- * and what it prints is thrown away. Returns 0 or an errno; process_end() is due in any case. */
+/* Starts the program words[0], which is looked for in the PATH. words: the command line, null-terminated.
+ * input: a descriptor that becomes the child's standard input; -1 for an empty input. The child runs in a
+ * process group of its own, so that Ctrl-C does not reach it. Its standard output is discarded. Returns 0 or
+ * an errno. Call process_end() even after a failure. */
 int process_start(process *p, const char *const *words, int input);
 
-/* The most bytes of memory that it may hold, and that each of its files may have. */
+/* Limits a child: memory is the greatest number of bytes that it may hold, file the greatest length of each
+ * file that it writes. */
 void process_limit(const process *p, uint64_t memory, uint64_t file);
 
-/* Waits until it ends by itself. Whether it succeeded. */
+/* Waits until the child ends by itself. Returns whether the child succeeded. */
 bool process_wait(process *p);
 
-/* Whether it has ended; *succeeded then tells how. Does not wait. */
+/* Tells, without waiting, whether the child has ended; *succeeded is then whether it succeeded. */
 bool process_has_ended(process *p, bool *succeeded);
 
-/* The first line that it said; "NAME has failed" where it said nothing. */
+/* Copies the first line that the child wrote to standard error, or "NAME has failed" if it wrote nothing. */
 void process_said(process *p, const char *name, char *text, size_t size);
 
-/* Ends it, if it still runs, and releases what the process owns. */
+/* Ends the child, if it still runs, and releases what the process owns. */
 void process_end(process *p);
 
 #endif

@@ -9,52 +9,52 @@
 
 #include "core/memory.h"
 
-/* Threads of a rank that fetch at once; answers of a rank on their way. */
+/* FETCHES threads of a rank fetch at once. A rank keeps up to REPLIES answers that are on their way. */
 enum { FETCHES = 8, REPLIES = 8 };
 
-/* What a rank asks another one for. */
+/* A request for a part of another rank's block. */
 typedef struct block_request {
-  uint64_t id, from, tag; /* of the blocks; the rank that asks; of the reply */
-  hl_box box;             /* within the block of the rank that is asked */
+  uint64_t id, from, tag; /* number of the array of blocks; rank that asks; tag of the reply */
+  hl_box box;             /* the wanted part, in indices of the asked rank's block */
 } block_request;
 
-/* An answer on its way. */
+/* An answer that is on its way. */
 typedef struct block_reply {
-  unsigned char *bytes; /* in the blocks' memory */
+  unsigned char *bytes; /* lies in the memory of the hl_blocks */
   mpi_handle request;
-  bool sent; /* and not yet known to have arrived */
+  bool sent; /* the answer was sent, and may not have arrived yet */
 } block_reply;
 
-/* A thread's fetch. */
+/* The state of one thread's fetch. */
 typedef struct block_fetch {
-  hl_box *parts;           /* [ranks]; of what is wanted */
-  mpi_handle *pending;     /* [ranks]; requests of MPI */
-  bool *waited;            /* [ranks]; whether `pending` is not done */
+  hl_box *parts;           /* [ranks]; the part that each rank is asked for */
+  mpi_handle *pending;     /* [ranks]; MPI's requests */
+  bool *waited;            /* [ranks]; whether `pending` is still waited for */
   unsigned char *received; /* [shape.most][element_bytes] */
   int number;
-  bool busy; /* with `lock` held */
+  bool busy; /* read and written with `lock` held */
 } block_fetch;
 
 struct hl_blocks {
   hl_ranks *ranks;
-  hl_blocks *next; /* of the server's list */
-  uint64_t id;     /* the same on all ranks */
+  hl_blocks *next; /* next one in the server's list */
+  uint64_t id;     /* number of these blocks, the same on all ranks */
   hl_blocks_shape shape;
   hl_block_source source;
-  void *memory;  /* owned: all arrays */
-  hl_box *boxes; /* [ranks] */
+  void *memory;  /* owned; holds all arrays */
+  hl_box *boxes; /* [ranks]; the box that each rank holds */
   block_fetch fetch[FETCHES];
   pthread_mutex_t lock;
-  pthread_cond_t freed;       /* a fetch has ended */
-  block_reply reply[REPLIES]; /* by turns; used with ranks->calling held */
+  pthread_cond_t freed;       /* signalled when a fetch ends */
+  block_reply reply[REPLIES]; /* used in turn, with ranks->calling held */
   int turn;
 };
 
 struct hl_block_server {
   pthread_t thread;
   atomic_bool stopped;
-  hl_blocks *first; /* with ranks->calling held */
-  uint64_t made;    /* blocks so far */
+  hl_blocks *first; /* read and written with ranks->calling held */
+  uint64_t made;    /* number of block arrays made so far */
   bool running;
 };
 
@@ -85,10 +85,10 @@ static hl_blocks *blocks_with(const struct hl_block_server *server, uint64_t id)
   return blocks;
 }
 
-/* Sends what was asked for. `calling` is held. */
+/* Sends the elements that a request asks for. The caller holds `calling`. */
 static void answer(hl_ranks *ranks, const block_request *asked) {
   hl_blocks *blocks = blocks_with(ranks->server, asked->id);
-  if (blocks == NULL) return; /* this rank has failed, and the job will end */
+  if (blocks == NULL) return; /* this rank has failed, and the job is about to end */
   block_reply *reply = &blocks->reply[blocks->turn++ % REPLIES];
   for (int done = !reply->sent; !done;) ranks->mpi.calls->test(&ranks->mpi, &reply->request, &done);
   blocks->source.copy(blocks->source.data, &asked->box, reply->bytes);
@@ -98,7 +98,7 @@ static void answer(hl_ranks *ranks, const block_request *asked) {
   reply->sent = true;
 }
 
-/* Answers a request, if there is one. */
+/* Answers one waiting request. Returns false if none is waiting. */
 static bool serve(hl_ranks *ranks) {
   int any = 0;
   block_request asked;
@@ -114,7 +114,7 @@ static bool serve(hl_ranks *ranks) {
 
 static void *run_server(void *data) {
   hl_ranks *ranks = data;
-  prctl(PR_SET_TIMERSLACK, 1000UL, 0UL, 0UL, 0UL); /* pauses end in time, not up to 50 us later */
+  prctl(PR_SET_TIMERSLACK, 1000UL, 0UL, 0UL, 0UL); /* pauses last as long as asked, not up to 50 us longer */
   for (int asked = 0; !atomic_load(&ranks->server->stopped);) {
     asked = serve(ranks) ? 0 : asked + (asked < INT32_MAX);
     if (asked > 0) hl_ranks_pause(asked);
@@ -131,7 +131,7 @@ static hl_status start_server(hl_ranks *ranks, hl_error *error) {
   if (server->running) return HL_OK;
   sigset_t all, before;
   sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before); /* signals are for the program's own threads */
+  pthread_sigmask(SIG_SETMASK, &all, &before); /* signals go to the program's own threads */
   int failed = pthread_create(&server->thread, NULL, run_server, ranks);
   pthread_sigmask(SIG_SETMASK, &before, NULL);
   if (failed) return hl_fail(error, HL_ERROR_MEMORY, "the system starts no thread to answer other ranks");
@@ -171,7 +171,8 @@ static hl_status fail_box(const hl_blocks *blocks, int rank, const char *what, h
                  (unsigned long long)box->begin[1], (unsigned long long)box->begin[2], what);
 }
 
-/* Boxes within the array, without overlap, that hold as many elements as it has: they fill it. */
+/* Checks that the boxes fill the array. Boxes fill it if they lie within it, do not overlap, and have as many
+ * elements together as the array. */
 static hl_status check_boxes(const hl_blocks *blocks, hl_error *error) {
   const size_t *n = blocks->shape.dimension;
   size_t elements = 0;
@@ -226,7 +227,7 @@ hl_status hl_blocks_share(hl_ranks *ranks, const hl_blocks_shape *shape, const h
                           hl_blocks **blocks, hl_error *error) {
   hl_status status = make_blocks(ranks, shape, source, blocks, error);
   if (status == HL_OK) {
-    set_first(ranks, *blocks, true); /* before anyone knows that all is ready */
+    set_first(ranks, *blocks, true); /* must happen before any rank knows that all are ready */
     hl_ranks_gather(ranks, &source->box, sizeof source->box, (*blocks)->boxes);
     status = check_boxes(*blocks, error);
   }
@@ -256,7 +257,7 @@ void hl_blocks_release(hl_blocks *blocks, bool together) {
 
 /* ---- fetching ---- */
 
-/* A fetch of this thread's own. */
+/* Takes a fetch for the calling thread; waits until one is free. */
 static block_fetch *begin_fetch(hl_blocks *blocks) {
   block_fetch *fetch = NULL;
   pthread_mutex_lock(&blocks->lock);
@@ -277,7 +278,8 @@ static void end_fetch(hl_blocks *blocks, block_fetch *fetch) {
   pthread_mutex_unlock(&blocks->lock);
 }
 
-/* Asks a rank for a part of its block. The tags of a few arrays' fetches differ; MPI has tags up to 32767. */
+/* Asks a rank for a part of its block. Fetches of different arrays have different tags, within MPI's limit of
+ * 32767. */
 static void ask(hl_blocks *blocks, block_fetch *fetch, int rank, unsigned char *to) {
   enum { MOST_ARRAYS = 4000 };
   hl_ranks *ranks = blocks->ranks;
@@ -295,7 +297,7 @@ static void ask(hl_blocks *blocks, block_fetch *fetch, int rank, unsigned char *
   atomic_fetch_add(&ranks->requests, 1);
 }
 
-/* Copies a part of what was asked for to its place. */
+/* Copies a received part to its place in the caller's array. */
 static void place(const hl_blocks *blocks, const hl_box *box, const hl_box *part, const unsigned char *from,
                   unsigned char *to, const size_t step[2]) {
   size_t bytes = blocks->shape.element_bytes, row = part->count[0] * bytes;
@@ -312,8 +314,8 @@ static uint64_t nanoseconds_now(void) {
   return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
 }
 
-/* Where a packed part can arrive at once: in its place, where whole slices of the array that it goes to are
- * packed, too; else null. */
+/* The place in the caller's array where a packed part can arrive directly. Null if the part's rows or slices
+ * are not packed there. */
 static unsigned char *place_of(const hl_blocks *blocks, const hl_box *box, const hl_box *part,
                                unsigned char *to, const size_t step[2]) {
   bool whole = part->count[0] * blocks->shape.element_bytes == step[0] && part->count[1] * step[0] == step[1];

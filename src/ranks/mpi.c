@@ -27,7 +27,8 @@ static const char *const names[MPI_FUNCTIONS] = {[MPI_INITIALIZED] = "MPI_Initia
 
 /* ---- loading ---- */
 
-/* Sets the functions and handles. Null: all are there; else what the library lacks. */
+/* Sets the functions and handles. Returns null if the library has all of them, else the name of the missing
+ * one. */
 static const char *missing_of(const mpi_library *kind, void *library, mpi *mpi) {
   *mpi = (struct mpi){.name = kind->name, .calls = kind->calls};
   for (int n = 0; n < MPI_FUNCTIONS; n++) {
@@ -38,8 +39,8 @@ static const char *missing_of(const mpi_library *kind, void *library, mpi *mpi) 
   return kind->set_handles(library, mpi) ? NULL : "handles of its kind";
 }
 
-/* Opens the first of a kind's files that is one. flags: for the loader. The library's own modules look for
- * its symbols: they become global. */
+/* Opens the first file of the given kind that is an MPI library. flags: flags for dlopen(). Symbols become
+ * global, because the library's own modules look for them. */
 static hl_status open_kind(const mpi_library *kind, int flags, mpi *mpi, hl_error *error) {
   for (int n = 0; n < 2 && kind->files[n] != NULL; n++) {
     void *library = dlopen(kind->files[n], RTLD_NOW | RTLD_GLOBAL | flags);

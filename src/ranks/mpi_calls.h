@@ -1,10 +1,11 @@
 /* ranks/mpi_calls.h - the calls of mpi.h, written once for both libraries; included by a file that defines
  *
- *     MPI_HANDLE        what the library's handles are
- *     HANDLE(handle)    that member of an mpi_handle
+ *
+ *     MPI_HANDLE        the type of the library's handles
+ *     HANDLE(handle)    the member of an mpi_handle with that type
  *     MPI_ANY_SOURCE, MPI_IN_PLACE, MPI_STATUS_IGNORE
  *
- * It defines `calls`. */
+ * This header defines `calls`. */
 
 static mpi_handle handle_of(void *communicator) {
   mpi_handle handle;

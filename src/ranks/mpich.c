@@ -13,7 +13,7 @@
 #define MPI_STATUS_IGNORE ((void *)1)
 #include "ranks/mpi_calls.h"
 
-/* libmpi.so.12 is also the name of an old Open MPI's library, which has other handles. */
+/* libmpi.so.12 is also the name of the library of an old Open MPI, which has other handles. */
 static bool set_handles(void *library, mpi *mpi) {
   mpi->world.number = 0x44000000;
   mpi->byte.number = 0x4c00010d;
@@ -23,5 +23,5 @@ static bool set_handles(void *library, mpi *mpi) {
   return dlsym(library, "ompi_mpi_comm_world") == NULL;
 }
 
-/* The common name, and that of Debian's libmpich12. */
+/* The common name of the library, and the name in Debian's libmpich12. */
 const mpi_library hl_mpich = {"MPICH", {"libmpi.so.12", "libmpich.so.12"}, &calls, set_handles};

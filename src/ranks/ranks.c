@@ -10,7 +10,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 
-/* Values and bytes of a call: their count is an int. */
+/* Greatest number of values or bytes of one call: MPI counts them by an int. */
 enum { MOST_VALUES = 1 << 28 };
 
 /* ---- waiting ---- */
@@ -49,8 +49,8 @@ void hl_ranks_gather(hl_ranks *ranks, const void *from, size_t bytes, void *to) 
   hl_ranks_wait(ranks, request);
 }
 
-/* A message of no more than 2^31 - 1 bytes: callers' are some megabytes. Messages between two ranks keep
- * their order, so that one tag serves all. */
+/* Messages are shorter than 2^31 bytes: callers send some megabytes. Messages between two ranks keep their
+ * order, so that one tag serves all. */
 void hl_ranks_send(hl_ranks *ranks, const void *from, size_t bytes, void *to, size_t most,
                    mpi_handle *pending) {
   const mpi_calls *calls = ranks->mpi.calls;
@@ -64,7 +64,8 @@ void hl_ranks_send(hl_ranks *ranks, const void *from, size_t bytes, void *to, si
   pthread_mutex_unlock(&ranks->calling);
 }
 
-/* Whether all is done. Requests that are done are MPI_REQUEST_NULL, which may be asked again. */
+/* Whether all requests are done. A request that is done becomes MPI_REQUEST_NULL, which may be tested
+ * again. */
 static bool all_done(hl_ranks *ranks, mpi_handle *pending) {
   bool all = true;
   pthread_mutex_lock(&ranks->calling);
@@ -131,7 +132,9 @@ static hl_status start(hl_ranks *ranks, bool alone, hl_error *error) {
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s does not tell whether it was started", mpi->name);
   if (!running && !alone)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "hl_ranks_join: MPI is not started: call MPI_Init_thread()");
-  if (running) needed = MPI_MULTIPLE; /* whoever started it may call it while a thread answers */
+  if (running)
+    needed = MPI_MULTIPLE; /* the caller that started MPI may call it while a thread of ours
+                            * answers */
   int result = running ? hl_mpi_query_thread(mpi, &given) : hl_mpi_init_thread(mpi, needed, &given);
   if (result != 0) return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s does not start", mpi->name);
   ranks->started = !running;

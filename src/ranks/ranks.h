@@ -1,9 +1,9 @@
-/* ranks/ranks.h - the inside of hl_ranks: MPI's calls one at a time, and what all ranks do together.
+/* ranks/ranks.h - the inside of hl_ranks: MPI's calls, one at a time, and the collective operations.
  *
- * Threads take turns (`calling`), and nothing waits within MPI: a rank that waits for others (for the end of
- * a collective, for voxels) asks again and again, and between two questions other threads make calls. So it
- * answers the others meanwhile, and no two ranks wait for each other. MPI_THREAD_SERIALIZED suffices where no
- * one else calls MPI. */
+ * Threads take turns in calling MPI (`calling`), and no call waits within MPI. A rank that waits for other
+ * ranks (for the end of a collective, for voxels) tests its requests again and again. Between two tests other
+ * threads make calls, so that the rank answers others while it waits, and no two ranks block each other.
+ * MPI_THREAD_SERIALIZED suffices if nobody else in the process calls MPI. */
 #ifndef HL_RANKS_RANKS_H
 #define HL_RANKS_RANKS_H
 
@@ -19,50 +19,52 @@ struct hl_ranks {
   hl_context *context;
   mpi mpi;
   int rank, size;
-  bool started;                          /* MPI was started here, and is ended here */
+  bool started;                          /* MPI was started here, and must be ended here */
   pthread_mutex_t calling;               /* held during each call of MPI */
-  struct hl_block_server *server;        /* owned (blocks.h); null: no blocks are shared */
-  atomic_uint_least64_t bytes, requests; /* that were got from others */
-  atomic_uint_least64_t nanoseconds;     /* that threads waited for them */
+  struct hl_block_server *server;        /* owned (blocks.h); null if no blocks are shared */
+  atomic_uint_least64_t bytes, requests; /* received from other ranks */
+  atomic_uint_least64_t nanoseconds;     /* that threads spent waiting for received bytes */
 };
 
-/* Waits until a request is done, without keeping other threads from calling MPI. */
+/* Waits until a request is done. Other threads can call MPI meanwhile. */
 void hl_ranks_wait(hl_ranks *ranks, mpi_handle request);
 
-/* Lets a moment pass between two questions, longer ones after many. */
+/* Pauses between two tests of a request. Pauses grow with the number of tests so far. */
 void hl_ranks_pause(int asked);
 
-/* Tags of messages. Those of replies to requests (blocks.c) go on from the last one. */
+/* Tags of messages. The tags of replies to requests (blocks.c) begin at TAG_REPLY. */
 enum { TAG_REQUEST = 1, TAG_POST = 2, TAG_REPLY = 3 };
 
 /* ---- collectives ---- */
 
 void hl_ranks_barrier(hl_ranks *ranks);
 
-/* from: `bytes` bytes of this rank. to: [size][bytes], everyone's. */
+/* Gathers `bytes` bytes of every rank on all ranks. from: this rank's bytes. to: [size][bytes]. */
 void hl_ranks_gather(hl_ranks *ranks, const void *from, size_t bytes, void *to);
 
-/* Begins to give all other ranks some bytes, and to get theirs, which may be more or fewer, each at most
- * `most`: to: [size][most]; the piece of this rank itself is left as it is. pending: [2 size], of the caller.
- * All ranks begin this in the same order; arrays stay as they are until hl_ranks_receive(). */
+/* Begins to send this rank's bytes to all other ranks, and to receive theirs. Ranks may send different
+ * numbers of bytes, each at most `most`. to: [size][most]; this rank's own row is left as it is. pending: [2
+ * size], memory of the caller. All ranks begin these exchanges in the same order. The arrays must not change
+ * before hl_ranks_receive() returns. */
 void hl_ranks_send(hl_ranks *ranks, const void *from, size_t bytes, void *to, size_t most,
                    mpi_handle *pending);
-/* Lets it get on. */
+/* Lets an exchange that was begun make progress. */
 void hl_ranks_look(hl_ranks *ranks, mpi_handle *pending);
-/* Waits until all is done. */
+/* Waits until an exchange is complete. */
 void hl_ranks_receive(hl_ranks *ranks, mpi_handle *pending);
 
-/* Gives one rank's bytes to all others. */
+/* Sends one rank's bytes to all other ranks. */
 void hl_ranks_tell(hl_ranks *ranks, void *bytes, size_t count, int root);
 
-/* Adds up everyone's counts; all get the sums. */
+/* Adds up the counts of all ranks; all ranks get the sums. */
 void hl_ranks_sum_counts(hl_ranks *ranks, uint64_t *counts, size_t count);
 
-/* Everyone has computed a part of the elements of an array, those from number hl_ranks_part(n) up to those of
- * the next rank; then all have all. element_bytes: of each. */
+/* Completes an array of which each rank has computed a part: rank n's part ends where the part of rank n + 1
+ * begins, at element hl_ranks_part(n + 1). Afterwards all ranks have all elements. element_bytes: bytes of
+ * one element. */
 void hl_ranks_complete(hl_ranks *ranks, void *elements, size_t count, size_t element_bytes);
 
-/* The first of `count` elements that is a rank's part, or `count` for the rank after the last. */
+/* The number of the first of `count` elements that belongs to a rank; `count` for the rank after the last. */
 static inline size_t hl_ranks_part(const hl_ranks *ranks, size_t count, int rank) {
   return (size_t)((unsigned __int128)count * (unsigned)rank / (unsigned)ranks->size);
 }

@@ -7,7 +7,7 @@
 
 static int least(int a, int b) { return a < b ? a : b; }
 
-/* Three rows of the dynamic programme's table suffice. */
+/* Three rows of the dynamic programme's table are kept at a time. */
 int hl_edit_distance(const char *a, const char *b) {
   int rows[3][HL_EDIT_LONGEST + 1];
   int length_a = (int)strnlen(a, HL_EDIT_LONGEST), length_b = (int)strnlen(b, HL_EDIT_LONGEST);

@@ -4,14 +4,15 @@
 
 #include <stddef.h>
 
-enum { HL_EDIT_LONGEST = 63 }; /* longest compared beginning of a name, characters */
+enum { HL_EDIT_LONGEST = 63 }; /* the longest beginning of a name that is compared, in characters */
 
 /* The number of edits that turn a into b: insert, delete or replace a character, or swap two neighbours. */
 int hl_edit_distance(const char *a, const char *b);
 
 /* ---- The known name that is spelled most like an unknown one, for errors ---- */
 
-/* The nearest of the null-terminated names; null if none is near enough to be meant. */
+/* The name, of a null-terminated list, that is nearest to a given name. Null if no name is near enough to be
+ * meant. */
 const char *hl_nearest_name(const char *name, const char *const *names);
 
 /* The end of an error about an unknown name: the nearest known name as a question, or all known names. */

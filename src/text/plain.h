@@ -1,5 +1,5 @@
-/* text/plain.h - numbers and names as they are in the locale "C", whatever locale the host has set: there
- * "1.5" is a number, and 'I' and 'i' are the same letter. */
+/* text/plain.h - reading and writing of numbers and names in the locale "C", whatever locale the host has
+ * set. In that locale "1.5" is a number, and 'I' and 'i' are the same letter. */
 #ifndef HL_TEXT_PLAIN_H
 #define HL_TEXT_PLAIN_H
 
@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* strtod(), vsnprintf() and snprintf(). */
+/* strtod(), vsnprintf() and snprintf() in the locale "C". */
 double hl_plain_number(const char *text, char **end);
 int hl_plain_vprint(char *text, size_t size, const char *format, va_list arguments);
 __attribute__((format(printf, 3, 4))) int hl_plain_print(char *text, size_t size, const char *format, ...);
@@ -15,7 +15,7 @@ __attribute__((format(printf, 3, 4))) int hl_plain_print(char *text, size_t size
 /* Whether texts are equal but for the case of the letters A to Z. */
 bool hl_plain_equal(const char *a, const char *b);
 
-/* For other libraries' functions: the calling thread is in the locale "C" from one call to the other. */
+/* A section in which the calling thread is in the locale "C", for calls of other libraries' functions. */
 typedef struct hl_plain_section {
   void *before;
 } hl_plain_section;

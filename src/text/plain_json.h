@@ -1,12 +1,12 @@
-/* text/plain_json.h - jansson's readers and writers in the locale "C": jansson takes the decimal point of the
- * host's, and only if it is one byte long. */
+/* text/plain_json.h - jansson's readers and writers in the locale "C": by itself, jansson uses the decimal
+ * point of the host's locale, and only if the point is one byte long. */
 #ifndef HL_TEXT_PLAIN_JSON_H
 #define HL_TEXT_PLAIN_JSON_H
 
 #include <jansson.h>
 #include <stddef.h>
 
-/* json_loadb(), json_loads() with no flags and no error, and json_dumps(). */
+/* json_loadb(), json_loads() with no flags and no error, and json_dumps(), in the locale "C". */
 json_t *hl_plain_json_load(const char *text, size_t length, size_t flags, json_error_t *error);
 json_t *hl_plain_json_load_text(const char *text);
 char *hl_plain_json_dump(const json_t *json, size_t flags);

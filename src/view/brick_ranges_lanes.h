@@ -14,7 +14,8 @@ typedef struct lanes_range {
   lanes low, high;
 } lanes_range;
 
-/* The boxes of the points in bricks' cells, GRID_MARGIN larger at the grid's borders. */
+/* The boxes of the points that lie in the bricks' cells. At the grid's borders a box is larger by
+ * GRID_MARGIN. */
 LANES_INLINE lanes_boxes boxes_of_bricks(const brick_view *view, const grid *grid,
                                          const int32_t brick[3][BRICKS_AT_ONCE]) {
   lanes_boxes boxes;

@@ -217,7 +217,7 @@ static footprint_map map_of_grid(const occupancy_source *source, int g) {
   return map;
 }
 
-/* Counts the patches, and sets the rectangles if there is memory for them. */
+/* Counts the patches, and sets the rectangles if they have memory. */
 static void place_rectangles(const occupancy_source *source, occupancy *o) {
   o->patch_count = 0;
   for (int g = 0; g < source->grid_count; g++) {
@@ -229,10 +229,11 @@ static void place_rectangles(const occupancy_source *source, occupancy *o) {
   }
 }
 
-/* The memory of an occupancy whose sizes are set. */
+/* Lays out the arrays of an occupancy whose sizes are set. */
 static void lay_out(occupancy *o, int grid_count, hl_layout *layout) {
   size_t tiles = (size_t)o->tiles_x * (size_t)o->tiles_y, words = (size_t)o->words;
-  o->rectangle = hl_layout_take(layout, (size_t)grid_count, sizeof *o->rectangle); /* owns the block */
+  /* `rectangle` owns the block */
+  o->rectangle = hl_layout_take(layout, (size_t)grid_count, sizeof *o->rectangle);
   o->patch_of = hl_layout_take(layout, o->patch_count, sizeof *o->patch_of);
   o->patch_grid = hl_layout_take(layout, o->patch_count, sizeof *o->patch_grid);
   o->first_patch = hl_layout_take(layout, tiles + 1, sizeof *o->first_patch);
@@ -241,7 +242,7 @@ static void lay_out(occupancy *o, int grid_count, hl_layout *layout) {
   o->by_sheet = hl_layout_take(layout, words * 64, (size_t)o->tile_words * sizeof *o->by_sheet);
 }
 
-/* Sets the sizes, and counts the memory. */
+/* Sets the sizes of an occupancy, and counts its memory. */
 static hl_layout plan(const occupancy_source *source, occupancy *o) {
   hl_layout counted = {0};
   set_size(source, o);

@@ -12,11 +12,11 @@
  * grid. */
 typedef struct tile_rectangle {
   int x, y, width, height; /* tiles */
-  size_t first;            /* index of its first tile in patch_of; tiles follow row after row */
+  size_t first;            /* index of the rectangle's first tile in patch_of; tiles follow row by row */
 } tile_rectangle;
 
 typedef struct sheet_range {
-  int32_t first, last; /* first > last: none */
+  int32_t first, last; /* empty if first > last */
 } sheet_range;
 
 /* A patch is one grid in one tile. A tile's patches follow each other, in the order of the grids. */
@@ -25,7 +25,7 @@ typedef struct occupancy {
   int words;                 /* 64-bit words of one patch: a bit for each sheet, rounded up */
   int tile_words;            /* 64-bit words of one sheet: a bit for each tile, rounded up */
   double spare;              /* pixels: margin around each brick's projection that counts as touched */
-  tile_rectangle *rectangle; /* [grids]; owns the block of this and the arrays below */
+  tile_rectangle *rectangle; /* [grids]; owns the block that also holds the arrays below */
   size_t patch_count;
   uint32_t *patch_of;     /* [patches]; the patch of each tile of each grid's rectangle */
   uint32_t *first_patch;  /* [tiles + 1]; where a tile's patches begin */
@@ -40,15 +40,16 @@ typedef struct occupancy {
 enum { BRICKS_AT_ONCE = 16, RANGE_AXES = 3 };
 enum range_axis { RANGE_X, RANGE_Y, RANGE_SHEETS };
 
-/* One grid in one view: affine functions of a point of index space, counted from `middle`. */
+/* One grid in one view, as affine functions of a point of the grid's index space. The point is counted from
+ * `middle`. */
 typedef struct brick_view {
-  float view[3][4]; /* w; w times tiles across; w times tiles down */
-  float height[4];  /* sheets */
-  float slack[4];   /* for each of the four functions: a bound of its rounding error */
-  float middle[3];  /* index space */
+  float view[3][4]; /* rows for w, for w times tiles across, and for w times tiles down */
+  float height[4];  /* row for the height, in sheets */
+  float slack[4];   /* for each of the four functions: a bound of the function's rounding error */
+  float middle[3];  /* a point of index space */
   float spare;      /* tiles: margin around each brick's projection that counts as touched */
   int32_t first[RANGE_AXES],
-      last[RANGE_AXES]; /* limits: the grid's tiles across and down, the view's sheets */
+      last[RANGE_AXES]; /* greatest values: the grid's tiles across and down, and the view's sheets */
 } brick_view;
 
 /* The first and last tile across, tile down and sheet that each brick touches. A brick with an empty range
@@ -57,7 +58,7 @@ typedef struct brick_ranges {
   int32_t first[RANGE_AXES][BRICKS_AT_ONCE], last[RANGE_AXES][BRICKS_AT_ONCE];
 } brick_ranges;
 
-/* brick: coordinates along each axis. */
+/* brick: the bricks' coordinates along each axis. */
 typedef void brick_ranges_function(const brick_view *view, const grid *grid,
                                    const int32_t brick[3][BRICKS_AT_ONCE], brick_ranges *ranges);
 
@@ -77,10 +78,10 @@ typedef struct occupancy_source {
   int grid_count;
   const view *view;
   const sheet_stack *sheets;
-  double spare; /* as in occupancy; PIXEL_TO_SPARE at least */
+  double spare; /* pixels; the member of occupancy with this name, at least PIXEL_TO_SPARE */
 } occupancy_source;
 
-/* Fills an empty occupancy. Where it fails, hl_occupancy_release() is still due. */
+/* Fills an empty occupancy. Call hl_occupancy_release() even after a failure. */
 hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, brick_ranges_function *ranges,
                              const occupancy_source *source, occupancy *occupancy, hl_error *error);
 void hl_occupancy_release(hl_context *context, occupancy *occupancy);
@@ -88,8 +89,8 @@ void hl_occupancy_release(hl_context *context, occupancy *occupancy);
 /* The bytes that hl_occupancy_build() would allocate; sets the number of patches. */
 uint64_t hl_occupancy_bytes(const occupancy_source *source, size_t *patch_count);
 
-/* The first slab from this one on in which a patch is touched, by its sheet or the one before; INT32_MAX:
- * none. */
+/* The first slab, from the given one on, in which a patch is touched by the slab's sheet or by the sheet
+ * before. INT32_MAX if there is none. */
 int32_t hl_occupancy_next_slab(const occupancy *occupancy, size_t patch, int slab);
 
 static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int sheet) {
@@ -97,7 +98,7 @@ static inline int hl_occupancy_has(const occupancy *occupancy, size_t patch, int
   return (int)(bits[sheet / 64] >> (sheet % 64) & 1);
 }
 
-/* Whether a slab's sheet or the one before may touch a tile. */
+/* Whether a slab's sheet or the sheet before may touch a tile. */
 static inline bool hl_occupancy_touches(const occupancy *occupancy, size_t tile, int sheet) {
   const uint64_t *after = occupancy->by_sheet + (size_t)sheet * (size_t)occupancy->tile_words;
   const uint64_t *before = after - occupancy->tile_words;

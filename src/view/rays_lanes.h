@@ -16,7 +16,7 @@ LANES_INLINE lanes3 add3(lanes3 a, lanes3 b) { return (lanes3){a.x + b.x, a.y + 
 LANES_INLINE lanes3 set3(const float v[3]) {
   return (lanes3){lanes_set(v[0]), lanes_set(v[1]), lanes_set(v[2])};
 }
-/* a + b s. */
+/* Returns a + b s. */
 LANES_INLINE lanes3 add_scaled3(lanes3 a, lanes3 b, lanes s) {
   return (lanes3){lanes_fma(b.x, s, a.x), lanes_fma(b.y, s, a.y), lanes_fma(b.z, s, a.z)};
 }
@@ -49,12 +49,12 @@ LANES_INLINE lanes3 rays_linear(const float at[3], const float by_u[3], const fl
                   linear_in_view(at[2], by_u[2], by_v[2], u, v)};
 }
 
-/* H = h.W of a perspective view's rays. */
+/* H = h.W, the climb of a perspective view's rays. */
 LANES_INLINE lanes rays_climb(const sheet_rays *rays, lanes u, lanes v) {
   return linear_in_view(rays->h0, rays->hu, rays->hv, u, v);
 }
 
-/* W of a perspective view's rays, not normalised. */
+/* W, the directions of a perspective view's rays, not normalised. */
 LANES_INLINE lanes3 rays_directions(const sheet_rays *rays, lanes u, lanes v) {
   return rays_linear(rays->w0, rays->wu, rays->wv, u, v);
 }
@@ -69,12 +69,12 @@ LANES_INLINE lanes3 rays_positions(const sheet_rays *rays, lanes u, lanes v) {
 
 /* ---- where rays enter and leave a box or a sphere ---- */
 
-/* The sections of rays from `first` to `last`, in their own steps. */
+/* The sections of sixteen rays from `first` to `last`, in units of each ray's own direction vector. */
 typedef struct ray_section {
   lanes first, last;
 } ray_section;
 
-/* The slab method. */
+/* Finds the section of rays within a box by the slab method. */
 LANES_INLINE ray_section section_in_box(const box_rays *rays, lanes u, lanes v) {
   ray_section section = {lanes_set(rays->least), lanes_set(1e30f)};
   for (int axis = 0; axis < 3; axis++) {
@@ -90,8 +90,8 @@ LANES_INLINE ray_section section_in_box(const box_rays *rays, lanes u, lanes v) 
   return section;
 }
 
-/* The roots of |start + s direction| = 1; none where start and direction are q and d: (q.d)^2 <= d.d (q.q -
- * 1). */
+/* The roots s of |start + s direction| = 1. With q = start and d = direction, roots exist where (q.d)^2 >=
+ * d.d (q.q - 1). */
 LANES_INLINE ray_section roots_of_sphere(lanes3 start, lanes3 direction) {
   lanes squared = dot3(direction, direction), along = dot3(start, direction);
   lanes rest = lanes_fma(along, along, squared * (1.0f - dot3(start, start)));
@@ -123,8 +123,8 @@ static void coverage_tile(const box_rays *rays, int tile_x, int tile_y, float *e
   }
 }
 
-/* The section of the slab [height - spacing, height] that lies in the box: its beginning and its length, as
- * fractions of the slab. */
+/* The section of the slab [height - spacing, height] that lies in the box, given by its beginning and its
+ * length as fractions of the slab. */
 typedef struct covered_span {
   lanes begin, length;
 } covered_span;

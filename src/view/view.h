@@ -2,9 +2,10 @@
  *
  * A view is a bundle of rays, one a pixel: from one point (perspective camera, point light) or parallel
  * (orthographic camera, directional light). The picture plane may have any tilt: a shadow buffer is
- * perpendicular to the light for hard shadows and parallel to the sheets for soft ones (fig. 17). Pixel (i,
- * j) has its centre at (i + 1/2, j + 1/2). Positions are in frame space: world moved so that the scene's
- * centre is the origin, which keeps float arithmetic exact enough far from the world's. */
+ * perpendicular to the light for hard shadows and parallel to the sheets for soft shadows (fig. 17 of the
+ * paper). Pixel (i, j) has its centre at (i + 1/2, j + 1/2). Positions are in frame space: the world moved so
+ * that the scene's centre is the origin. Float arithmetic is then exact enough even for scenes far from the
+ * world's origin. */
 #ifndef HL_VIEW_VIEW_H
 #define HL_VIEW_VIEW_H
 
@@ -13,13 +14,16 @@
 
 #include "core/vector.h"
 
-/* Pictures are made of tiles of 16x16 pixels, kept as sixteen blocks of 4x4 pixels: sixteen lanes each. */
+/* Pictures are made of tiles of 16x16 pixels. A tile consists of sixteen blocks of 4x4 pixels; a block fills
+ * sixteen lanes. */
 enum { TILE = 16, BLOCK = 4, TILE_BLOCKS = 16, BLOCK_PIXELS = 16, TILE_PIXELS = 256, ALL_BLOCKS = 0xffff };
 
-/* The alpha from which a pixel counts as opaque: matter behind adds less than half a step of 10 bits. */
+/* The alpha from which a pixel counts as opaque. The matter behind such a pixel adds less than half a step of
+ * 10 bits. */
 #define PIXEL_OPAQUE (1.0f - 1.0f / 2048)
 
-/* A pixel's number in its tile, block after block, from its column and row there; and back. */
+/* Converts a pixel's column and row in its tile to the pixel's number, and back. Numbers go block by
+ * block. */
 static inline int hl_pixel_number(int column, int row) {
   return (row / BLOCK * 4 + column / BLOCK) * BLOCK_PIXELS + row % BLOCK * BLOCK + column % BLOCK;
 }
@@ -33,16 +37,16 @@ static inline int hl_pixel_row(int number) {
 /* The number of tiles that cover `pixels` pixels. */
 static inline int hl_tiles(int pixels) { return (pixels + TILE - 1) / TILE; }
 
-/* Where the first of a pixel's values lies in an array [tiles][TILE_BLOCKS][values][BLOCK_PIXELS] of tiles,
- * of which a row has tiles_x; the next values follow BLOCK_PIXELS apart. */
+/* The place of a pixel's first value in an array [tiles][TILE_BLOCKS][values][BLOCK_PIXELS]. tiles_x: tiles
+ * in a row of the array. The pixel's next values follow at distances of BLOCK_PIXELS. */
 static inline size_t hl_place_in_tiles(size_t tiles_x, int values, int column, int row) {
   size_t tile = (size_t)(row / TILE) * tiles_x + (size_t)(column / TILE);
   size_t number = (size_t)hl_pixel_number(column % TILE, row % TILE);
   return (tile * TILE_BLOCKS + number / BLOCK_PIXELS) * (size_t)values * BLOCK_PIXELS + number % BLOCK_PIXELS;
 }
 
-/* The number of pixels of a set of blocks. Counts bits by sums of pairs, of fours and so on: baseline
- * processors have no instruction that counts bits. */
+/* The number of pixels in a set of blocks. Bits are counted by sums of pairs, of fours and so on, since
+ * baseline processors have no instruction that counts bits. */
 static inline uint64_t hl_pixels_of_blocks(uint32_t blocks) {
   blocks -= blocks >> 1 & 0x5555;
   blocks = (blocks & 0x3333) + (blocks >> 2 & 0x3333);
@@ -54,8 +58,8 @@ typedef struct view {
   bool perspective;
   int width, height;   /* pixels */
   vec3 origin;         /* perspective: the eye, where the rays meet; frame space */
-  vec3 corner, du, dv; /* perspective: ray of continuous pixel (u, v) is corner + u du + v dv;
-                          parallel: the ray's start point */
+  vec3 corner, du, dv; /* perspective: the ray of continuous pixel (u, v) has the direction corner + u du + v
+                        * dv; parallel: corner + u du + v dv is the ray's start */
   vec3 direction;      /* parallel: unit direction of every ray */
   mat3 inverse;        /* (w, w u, w v) = inverse * (X - origin) for perspective,
                           (distance, u, v) = inverse * (X - corner) for parallel */
@@ -66,7 +70,7 @@ static inline size_t hl_view_tiles(const view *view) {
   return (size_t)hl_tiles(view->width) * (size_t)hl_tiles(view->height);
 }
 
-/* Fills inverse from the other members; false where the view is degenerate. */
+/* Sets `inverse` from the other members; false where the view is degenerate. */
 bool hl_view_finish(view *view);
 
 /* Continuous pixel coordinates of a point; false where the point lies behind a perspective view's eye. */
@@ -79,12 +83,12 @@ void hl_view_ray(const view *view, double u, double v, vec3 *start, vec3 *direct
  * the last is the constant. For a parallel view w is 1. */
 void hl_view_homogeneous(const view *view, affine3 to_frame, double rows[3][4]);
 
-/* Where pixels see one sheet, in some space; (u, v) counts pixels from the first pixel's centre. In a
- * perspective view, the position is base + P / H and the direction is W; in a parallel view the position is
- * P; with P = p0 + u pu + v pv, W = w0 + u wu + v wv and H = h.W = h0 + u hu + v hv. Derived: the ray E + s W
- * meets the sheet h.X = z at s = (z - h.E) / H; with any t and Wc, base = E + t Wc gives P = (z - h.E) W - t
- * H Wc, linear as H is. Where Wc is the middle ray and base its point on the sheet, P stays as small as the
- * visible area, however far away the eye is. */
+/* The points where pixels see one sheet, in a space that the maker chooses. (u, v) counts pixels from the
+ * first pixel's centre. In a perspective view, the position is base + P / H and the direction is W; in a
+ * parallel view the position is P; with P = p0 + u pu + v pv, W = w0 + u wu + v wv and H = h.W = h0 + u hu +
+ * v hv. Derived: the ray E + s W meets the sheet h.X = z at s = (z - h.E) / H; with any t and Wc, base = E +
+ * t Wc gives P = (z - h.E) W - t H Wc, linear as H is. Where Wc is the middle ray and base its point on the
+ * sheet, P stays as small as the visible area, however far away the eye is. */
 typedef struct sheet_rays {
   int perspective;
   float base[3], p0[3], pu[3], pv[3];
@@ -114,42 +118,42 @@ static inline double hl_sheet_height(const sheet_stack *sheets, int sheet) {
  * which it enters and leaves the box, and the slab between two sheets counts only as far as it lies between
  * these heights (derived; exact for a homogeneous medium). */
 
-/* Rays of a view in one grid's index space: start + s * direction, s > least, both linear in the pixel, and
- * heights above the first sheet: start_height + s * climb. */
+/* Rays of a view in one grid's index space: start + s * direction with s > least. Start and direction are
+ * linear in the pixel. The ray's height above the first sheet is start_height + s * climb. */
 typedef struct box_rays {
   float start[3], start_u[3], start_v[3];
   float direction[3], direction_u[3], direction_v[3];
   float start_height, start_height_u, start_height_v;
   float climb, climb_u, climb_v;
-  float low[3], high[3]; /* the box, index space */
-  float least;           /* the least s: the eye of a perspective view */
-  int sphere;            /* in place of the box, the points nearer than 1 to the origin */
+  float low[3], high[3]; /* the box, in index space */
+  float least;           /* the least s: the place of the eye in a perspective view */
+  int sphere;            /* if set, the points nearer than 1 to the origin take the place of the box */
 } box_rays;
 
-/* enter, leave: [256], one tile, block after block; heights above the first sheet. A ray that misses the box
- * has enter > leave. */
+/* Finds where the rays of one tile enter and leave the box. enter, leave: [256], block after block; heights
+ * above the first sheet. A ray that misses the box has enter > leave. */
 typedef void coverage_tile_function(const box_rays *rays, int tile_x, int tile_y, float *enter, float *leave);
 
-/* low, high: the box, index space. */
+/* Sets up the rays of a view for one box. low, high: the box, in index space. */
 void hl_box_rays(const view *view, vec3 normal, double first_height, affine3 frame_to_index,
                  const double low[3], const double high[3], box_rays *rays);
 
 /* ---- bounds of boxes in a view ---- */
 
-/* Bounds of a box of index space, in a view and along the sheets' normal. */
+/* Bounds of a box of index space in a view's picture and along the sheets' normal. */
 typedef struct footprint_bounds {
   double low[2], high[2];         /* continuous pixels */
-  double low_height, high_height; /* along the normal */
+  double low_height, high_height; /* heights along the normal */
 } footprint_bounds;
 
-/* Maps a grid's index space to a view and to heights along the sheets' normal. */
+/* Maps of a grid's index space to a view's picture and to heights along the sheets' normal. */
 typedef struct footprint_map {
-  double view[3][4]; /* (w, w u, w v) */
+  double view[3][4]; /* rows for (w, w u, w v) */
   double height[4];
 } footprint_map;
 
 void hl_footprint_map(const view *view, vec3 normal, affine3 index_to_frame, footprint_map *map);
-/* The box is given by its centre and half edges. False where the complete box lies behind the view. */
+/* Bounds a box given by its centre and half edges. False where the complete box lies behind the view. */
 bool hl_footprint_bounds(const footprint_map *map, const double centre[3], const double half[3],
                          footprint_bounds *bounds);
 
