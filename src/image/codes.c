@@ -11,10 +11,10 @@
  * pixels, after averaging 8 x 8 pixels as the eye does at a distance: rounding 0.070 codes (root mean square;
  * 0.34 at worst), an 8 x 8 ordered dither 0.020 (0.08), without contours even at raised contrast. White noise
  * (0.050) and two low-discrepancy patterns (0.019 and 0.029) looked no better, and the ordered dither gives
- * the smallest files. So 8-bit codes are dithered by less than half a code, by position alone, the same in
- * all channels (greys stay grey). Values that are exact codes stay unchanged, so a PNG that is read and
- * written again keeps its pixels. Pixels without any volume are rounded: a flat background stays flat. 16-bit
- * codes are rounded. */
+ * the smallest files. Therefore 8-bit codes are dithered by less than half a code. The dither depends on the
+ * position alone and is the same in all channels, so that greys stay grey. Values that are exact codes stay
+ * unchanged, so that a PNG keeps its pixels when it is read and written again. Pixels without any volume are
+ * rounded, so that a flat background stays flat. 16-bit codes are rounded. */
 #include "image/codes.h"
 
 #include <string.h>
@@ -49,13 +49,13 @@ static bool is_empty(const float pixel[4]) {
   return pixel[0] == 0 && pixel[1] == 0 && pixel[2] == 0 && pixel[3] == 0;
 }
 
-/* What the light of a pixel is multiplied by: exposure, and the tone of light so bright. */
+/* The factor on a pixel's light: the exposure times the tone factor of light this bright. */
 static float factor_of(const hl_codes *codes, const float pixel[4]) {
   const float light[3] = {pixel[0] * codes->exposure, pixel[1] * codes->exposure, pixel[2] * codes->exposure};
   return codes->exposure * hl_tone_factor(codes->tone, light);
 }
 
-/* The linear value, before encoding, of a pixel's colour c. factor: on the pixel's light. */
+/* The linear value, before encoding, of channel c of a pixel. factor: the factor on the pixel's light. */
 static float stored_value(const hl_codes *codes, const float pixel[4], float factor, int c) {
   if (!codes->transparent) return pixel[c] * factor + (1 - pixel[3]) * codes->background[c];
   /* Unassociated colour is light divided by alpha, at most 1. Emission may give more light than alpha: the

@@ -11,7 +11,7 @@ typedef struct hl_codes {
   hl_srgb_encoder encoder;
   int depth;           /* bits of a code: 8 or 16 */
   bool transparent;    /* four codes a pixel, the last one alpha; else three */
-  bool opaque_alpha;   /* four codes a pixel, alpha always the greatest code */
+  bool opaque_alpha;   /* four codes a pixel, of which alpha is always the greatest code */
   float background[3]; /* linear */
   float exposure;      /* factor on the picture's light */
   hl_tone tone;        /* after the exposure */
@@ -21,7 +21,7 @@ hl_status hl_codes_begin(hl_context *context, const hl_image_write_options *opti
                          hl_codes *codes, hl_error *error);
 void hl_codes_end(hl_codes *codes);
 
-/* Row y of a picture, pixels [width][4], as codes: [width][3 or 4], of 16 bits with the greater byte
+/* Converts row y of a picture, [width][4], to codes, [width][3 or 4]. Codes of 16 bits have the greater byte
  * first. */
 void hl_codes_of_row(const hl_codes *codes, const float *pixels, int width, int y, unsigned char *to);
 

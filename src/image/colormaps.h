@@ -4,9 +4,9 @@
 
 #include <stdbool.h>
 
-enum { HL_COLORMAPS_MOST = 32 }; /* more than there are */
+enum { HL_COLORMAPS_MOST = 32 }; /* at least the number of colormaps */
 
-/* Linear RGB at t in [0,1] (clamped); false if there is no such map. */
+/* Sets `linear` to the map's linear RGB at t, which is clamped to [0,1]; false if there is no such map. */
 bool hl_colormap_evaluate(const char *name, double t, double linear[3]);
 
 #endif

@@ -11,7 +11,7 @@
 #include "core/memory.h"
 #include "image/image.h"
 
-/* b - a. Equal values, also infinite ones, differ by 0. A NaN in either picture counts as an infinite
+/* Returns b - a. Equal values, also infinite ones, differ by 0. A NaN in either picture counts as an infinite
  * difference, so that no threshold accepts it. */
 static double channel_difference(float a, float b) {
   if (a == b) return 0;
@@ -32,9 +32,9 @@ static uint32_t difference_bits(const float a[4], const float b[4]) {
   return bits;
 }
 
-/* Finds 16 bits of the rank-th smallest difference: of all pixels its upper 16 bits where `high` is negative,
- * else its lower 16 bits among the pixels whose upper 16 bits are `high`. *rank becomes the difference's rank
- * among the pixels that share the found bits. */
+/* Finds 16 bits of the rank-th smallest difference. If `high` is negative, these are the upper 16 bits among
+ * all pixels; else the lower 16 bits among the pixels whose upper 16 bits are `high`. *rank becomes the
+ * difference's rank among the pixels that share the found bits. */
 static uint32_t select_half(const hl_image *a, const hl_image *b, int64_t high, uint64_t *rank,
                             uint64_t *counts) {
   size_t pixels = (size_t)a->width * (size_t)a->height;
@@ -81,7 +81,8 @@ static void measure(const hl_image *a, const hl_image *b, hl_image_difference *d
     }
   double pixels = (double)a->width * (double)a->height;
   for (int c = 0; c < 4; c++) {
-    difference->mean_signed[c] = isnan(sum[c]) ? INFINITY : sum[c] / pixels; /* infinities of both signs */
+    /* a NaN: infinities of both signs were added */
+    difference->mean_signed[c] = isnan(sum[c]) ? INFINITY : sum[c] / pixels;
     difference->rmse_channel[c] = sqrt(square[c] / pixels);
   }
   difference->rmse = sqrt((square[0] + square[1] + square[2] + square[3]) / (4 * pixels));

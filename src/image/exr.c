@@ -36,10 +36,10 @@ typedef struct exr_reading {
   hl_error *error;
   exr_context_t file;
   unsigned present;        /* bit i: the file has the channel of that channel_index */
-  uint64_t pixel_bytes;    /* of all channels */
+  uint64_t pixel_bytes;    /* bytes of all channels of one pixel */
   exr_attr_box2i_t window; /* the data window */
   hl_image *image;
-  char message[200]; /* OpenEXRCore's first complaint */
+  char message[200]; /* the first complaint of OpenEXRCore */
 } exr_reading;
 
 static int64_t on_size(exr_const_context_t file, void *user_data) {
@@ -96,7 +96,7 @@ static hl_status check_kind(exr_reading *reading) {
 
 enum { CHANNEL_Y = 4, COLOURS = 7, GREY = 1 << CHANNEL_Y };
 
-/* 0..3 for R, G, B, A; CHANNEL_Y for Y; -1 for any other. */
+/* The index of a channel: 0..3 for R, G, B and A, CHANNEL_Y for Y, and -1 for any other name. */
 static int channel_index(const char *name) {
   static const char names[] = "RGBAY";
   const char *found = name[0] != 0 && name[1] == 0 ? strchr(names, name[0]) : NULL;
@@ -132,7 +132,7 @@ static hl_status make_image(exr_reading *reading) {
   if (result != EXR_ERR_SUCCESS) return fail_exr(reading, result);
   int64_t width = (int64_t)reading->window.max.x - reading->window.min.x + 1;
   int64_t height = (int64_t)reading->window.max.y - reading->window.min.y + 1;
-  if (width < 1 || height < 1) width = height = 0; /* refused below */
+  if (width < 1 || height < 1) width = height = 0; /* make_image() refuses this size */
   if (width <= HL_IMAGE_SIDE_MAX && height <= HL_IMAGE_SIDE_MAX &&
       ((uint64_t)(width * height) * reading->pixel_bytes / EXPANSION_MAX > reading->length ||
        chunk_bytes > chunk_bytes_max))
@@ -192,7 +192,7 @@ static hl_status read_chunks(exr_reading *reading) {
   return result == EXR_ERR_SUCCESS ? HL_OK : fail_exr(reading, result);
 }
 
-/* Grey to all three colours, and alpha 1 where the file has none. */
+/* Copies grey to all three colours, and sets alpha to 1 where the file has none. */
 static void fill_missing(const exr_reading *reading) {
   bool grey = (reading->present & COLOURS) == 0, opaque = (reading->present >> 3 & 1) == 0;
   size_t count = (size_t)reading->image->width * (size_t)reading->image->height;
@@ -270,10 +270,10 @@ typedef struct exr_writing {
   const hl_exr_channel *channels; /* borrowed; [channel_count] */
   size_t channel_count;
   hl_output *output;
-  uint64_t at;      /* write position, bytes */
+  uint64_t at;      /* write position in bytes */
   int system_error; /* errno of the first failed write */
   bool write_failed;
-  char message[200]; /* OpenEXRCore's first complaint */
+  char message[200]; /* the first complaint of OpenEXRCore */
 } exr_writing;
 
 static int64_t on_write(exr_const_context_t file, void *user_data, const void *bytes, uint64_t length,
@@ -329,7 +329,7 @@ static void point_at_values(const exr_writing *writing, exr_encode_pipeline_t *p
   }
 }
 
-/* One chunk of lines from row y on; the pipeline keeps its buffers between chunks. */
+/* Writes one chunk of lines from row y on. The pipeline keeps its buffers between chunks. */
 static exr_result_t write_chunk(const exr_writing *writing, exr_context_t file,
                                 exr_encode_pipeline_t *pipeline, int y) {
   exr_chunk_info_t chunk;

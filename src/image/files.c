@@ -19,8 +19,8 @@ static const hl_image_format *const formats[] = {&hl_png_format, &hl_exr_format,
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
 
-/* Greatest accepted sizes, bytes: of a file beyond its pixels (texts, profiles, thumbnails), and of its
- * header. */
+/* Greatest accepted sizes in bytes: of what a file holds beside its pixels (texts, profiles, thumbnails), and
+ * of its header. */
 static const size_t extra_bytes_max = (size_t)64 << 20, header_bytes_max = (size_t)16 << 20;
 
 static const hl_image_format *format_by_name(const char *path) {
@@ -42,7 +42,8 @@ static const hl_image_format *format_by_content(const unsigned char *bytes, size
   return NULL;
 }
 
-/* "folder/picture-layer.npy" for "folder/picture.npy"; owned by the caller; null without memory. */
+/* Makes "folder/picture-layer.npy" from "folder/picture.npy". The result is owned by the caller; null if
+ * memory is short. */
 static char *layer_path(hl_context *context, const char *path, const char *layer) {
   const char *dot = strrchr(path, '.');
   size_t stem = (size_t)(dot - path), length = strlen(path) + strlen(layer) + 2;

@@ -22,8 +22,8 @@ typedef struct hl_image_format {
   unsigned char mark[8]; /* first bytes of every file of the format */
   size_t mark_length;
 
-  /* Writes the whole picture to output->file; null: the format is read alone. The caller commits or aborts.
-   * Failures of the file are HL_ERROR_IO lines that name output->path. */
+  /* Writes the whole picture to output->file. Null if the format can only be read. The caller commits or
+   * aborts the output. Failures to write are HL_ERROR_IO lines that name output->path. */
   hl_status (*encode)(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                       hl_error *error);
 
@@ -31,22 +31,24 @@ typedef struct hl_image_format {
   hl_status (*decode)(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
                       hl_image **image, hl_error *error);
 
-  /* Reads the header only. Leaves size->known false for a broken header; decode then reports the error. */
+  /* Reads the size from the header. Leaves size->known false for a broken header; decode() then reports the
+   * error. */
   hl_image_claim (*claim)(const unsigned char *bytes, size_t length);
 
   bool holds_layers; /* encode writes the layers too */
 
-  /* Writes one layer as a file of its own; null: the format cannot. */
+  /* Writes one layer as a file of its own. Null if the format cannot. */
   hl_status (*encode_layer)(const hl_image *image, const hl_image_layer *layer, hl_output *output,
                             hl_error *error);
 } hl_image_format;
 
 extern const hl_image_format hl_png_format, hl_exr_format, hl_npy_format, hl_hdr_format;
 
-/* Refuses impossible options; caller: the public function's name for errors. */
+/* Refuses impossible options. caller: the public function's name, for errors. */
 hl_status hl_image_check_options(const hl_image_write_options *options, const char *caller, hl_error *error);
 
-/* Encoders call this before each row: reports progress; fails with HL_ERROR_CANCELLED once cancelled. */
+/* Reports progress; encoders call it before each row. Fails with HL_ERROR_CANCELLED once the call is
+ * cancelled. */
 hl_status hl_encode_step(hl_context *context, int row, int height, hl_error *error);
 
 /* Reports a failed write to output->file, from errno. */

@@ -1,4 +1,5 @@
-/* image/hdr.c - pictures in Radiance's format (.hdr, .pic), read alone: environments, mostly.
+/* image/hdr.c - pictures in Radiance's format (.hdr, .pic), which are read but never written; most are
+ * environments.
  *
  * In: bytes. Out: hl_image; linear, alpha 1. Ward, "Real pixels", Graphics Gems II (1991), and Radiance's
  * refman/filefmts.pdf. A header of lines, "#?RADIANCE" first, ends with an empty line; a line with the size
@@ -27,7 +28,8 @@ typedef struct hdr_cursor {
 
 typedef struct hdr_header {
   uint64_t width, height;
-  bool from_below, from_right; /* the first row is the lowest, the first pixel the last on the right */
+  bool from_below, from_right; /* whether the first row is the lowest one, and whether a row's first pixel is
+                                * the rightmost one */
 } hdr_header;
 
 static hl_status fail_at(const hdr_cursor *cursor, hl_status status, const char *what) {
@@ -41,7 +43,8 @@ static hl_status fail_end(const hdr_cursor *cursor) {
 
 /* ---- the header ---- */
 
-/* Copies the next line without its end. False where the file ends before, or the line is too long. */
+/* Copies the next line without its end. False where the file ends before the line does, or the line is too
+ * long. */
 static bool take_line(hdr_cursor *cursor, char line[LINE_MAX_BYTES]) {
   size_t most = cursor->length - cursor->at;
   const unsigned char *from = cursor->bytes + cursor->at, *end = memchr(from, '\n', most);
@@ -53,7 +56,7 @@ static bool take_line(hdr_cursor *cursor, char line[LINE_MAX_BYTES]) {
   return true;
 }
 
-/* Passes over the header's lines up to the empty one. */
+/* Passes over the header's lines up to and including the empty one. */
 static hl_status skip_header(hdr_cursor *cursor) {
   char line[LINE_MAX_BYTES];
   for (;;) {
@@ -104,7 +107,7 @@ static hl_status read_header(hdr_cursor *cursor, hdr_header *header) {
 
 /* ---- rows ---- */
 
-/* Four rows of bytes: red, green, blue, exponents. */
+/* A row of RGBE pixels: four rows of bytes for red, green, blue and the exponents. */
 typedef struct hdr_row {
   unsigned char *bytes; /* [4][width] */
   size_t width;
@@ -116,7 +119,8 @@ static bool in_runs(const hdr_cursor *cursor, size_t width) {
          at[1] == 2 && at[2] < 128;
 }
 
-/* One of the four: counts above 128 repeat the byte that follows, others are followed by so many bytes. */
+/* Reads one of a row's four rows of bytes. A count above 128 repeats the byte that follows; any other count
+ * precedes as many single bytes. */
 static hl_status take_runs(hdr_cursor *cursor, unsigned char *to, size_t width) {
   for (size_t x = 0; x < width;) {
     if (cursor->length - cursor->at < 2) return fail_end(cursor);
@@ -135,7 +139,8 @@ static hl_status take_runs(hdr_cursor *cursor, unsigned char *to, size_t width) 
   return HL_OK;
 }
 
-/* Whole pixels; (1, 1, 1, n) repeats the one before n times, again after it n x 256 times, and so on. */
+/* Reads a row of whole pixels. (1, 1, 1, n) repeats the pixel before n times; a second such code right after
+ * it repeats n x 256 times, and so on. */
 static hl_status take_pixels(hdr_cursor *cursor, const hdr_row *row) {
   int shift = 0;
   for (size_t x = 0; x < row->width;) {
@@ -166,7 +171,7 @@ static hl_status take_row(hdr_cursor *cursor, const hdr_row *row) {
   return status;
 }
 
-/* A mantissa m with the exponent e is m 2^(e - 136); an exponent of 0 is black. */
+/* Converts a row. A mantissa m with the exponent e is m 2^(e - 136); an exponent of 0 is black. */
 static void convert_row(const hdr_row *row, const float scale[EXPONENTS], bool from_right, float *to) {
   for (size_t x = 0; x < row->width; x++) {
     float *pixel = to + 4 * (from_right ? row->width - 1 - x : x);
@@ -178,7 +183,8 @@ static void convert_row(const hdr_row *row, const float scale[EXPONENTS], bool f
 
 /* ---- the picture ---- */
 
-/* The fewest bytes that rows can take: plain ones and those in runs of pixels begin with a pixel. */
+/* The fewest bytes that the rows of this header can take. Plain rows and rows in runs of pixels both begin
+ * with a pixel. */
 static uint64_t least_bytes(const hdr_cursor *cursor, const hdr_header *header) {
   uint64_t row = 4;
   if (in_runs(cursor, (size_t)header->width)) row += 8 * ((header->width + RUN_MAX - 1) / RUN_MAX);

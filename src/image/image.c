@@ -14,8 +14,8 @@
 
 enum { ROWS_BETWEEN_QUESTIONS = 64 };
 
-/* Clears the pixels row by row; false: cancelled. Worth checking for: the system provides memory when it is
- * first touched, only a gigabyte or two a second. */
+/* Clears the pixels row by row; false if cancelled. Cancellation is checked because the system provides
+ * memory when it is first touched, at only a gigabyte or two a second. */
 static bool clear_rows(hl_context *context, float *rows, size_t row_floats, size_t count) {
   for (size_t y = 0; y < count; y++) {
     if (y % ROWS_BETWEEN_QUESTIONS == ROWS_BETWEEN_QUESTIONS - 1 && hl_cancelled(context)) return false;
@@ -68,7 +68,8 @@ hl_status hl_image_create_for_file(hl_context *context, const char *name, uint64
   return status != HL_OK ? status : hl_image_create(context, (int)width, (int)height, image, error);
 }
 
-/* OpenEXR names a channel "layer.C", and NPY a file "picture-layer.npy". */
+/* Whether a text can name a layer: OpenEXR names a channel "layer.C", and NPY names a file
+ * "picture-layer.npy". */
 static bool is_layer_name(const char *name) {
   static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
   size_t length = strlen(name);

@@ -6,8 +6,8 @@
 
 enum {
   HL_IMAGE_SIDE_MAX = 65535,
-  HL_IMAGE_EXPOSURE_MAX = 32, /* greatest exposure in either direction, stops */
-  /* Greatest number of pixels that a reader accepts from a file's header: 2^28, 4 GiB. */
+  HL_IMAGE_EXPOSURE_MAX = 32, /* greatest exposure in either direction, in stops */
+  /* greatest number of pixels that a reader accepts from a file's header: 2^28, which take 4 GiB */
   HL_IMAGE_READ_PIXELS_MAX = 1 << 28
 };
 
@@ -15,7 +15,7 @@ enum { HL_IMAGE_LAYER_NAME = 28, HL_IMAGE_LAYER_CHANNELS = 4 };
 
 typedef struct hl_image_layer {
   char name[HL_IMAGE_LAYER_NAME + 1];
-  char channels[HL_IMAGE_LAYER_CHANNELS + 1]; /* one letter each */
+  char channels[HL_IMAGE_LAYER_CHANNELS + 1]; /* one letter for each channel */
   float *values;                              /* owned; [height][width][channels] */
 } hl_image_layer;
 
@@ -30,7 +30,7 @@ struct hl_image {
 /* Refuses a size that no picture read from a file may have; an error names the file. */
 hl_status hl_image_check_size(const char *name, uint64_t width, uint64_t height, hl_error *error);
 
-/* hl_image_create for a size that a file claims; an error names the file. */
+/* Creates a picture, like hl_image_create(), of a size that a file claims. An error names the file. */
 hl_status hl_image_create_for_file(hl_context *context, const char *name, uint64_t width, uint64_t height,
                                    hl_image **image, hl_error *error);
 

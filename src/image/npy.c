@@ -135,7 +135,7 @@ static bool take_count(npy_cursor *cursor, uint64_t *count) {
   size_t start = cursor->at;
   *count = 0;
   while (cursor->at < cursor->end && cursor->bytes[cursor->at] >= '0' && cursor->bytes[cursor->at] <= '9') {
-    if (cursor->at - start == 18) return false; /* no file is that long */
+    if (cursor->at - start == 18) return false; /* no file has that many bytes */
     *count = *count * 10 + (uint64_t)(cursor->bytes[cursor->at++] - '0');
   }
   return cursor->at > start;
@@ -272,7 +272,7 @@ static hl_status decode(hl_context *context, const char *name, const unsigned ch
   size_t value_bytes = header.type[2] == '8' ? 8 : 4, data = cursor.end;
   uint64_t rest = length - data, row = header.shape[1] * header.shape[2] * value_bytes;
   bool right_size = header.shape[0] <= HL_IMAGE_SIDE_MAX && header.shape[1] <= HL_IMAGE_SIDE_MAX;
-  right_size = !right_size || header.shape[0] * row == rest; /* other shapes are refused below */
+  right_size = !right_size || header.shape[0] * row == rest; /* shapes that are not right are refused below */
   if (!right_size)
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)data,
                           "%s: byte %zu: %" PRIu64 " bytes of data, expected %" PRIu64 " for %" PRIu64

@@ -81,7 +81,7 @@ static void on_read(png_structp png, png_bytep to, size_t length) {
   reading->at += length;
 }
 
-/* Fails by png_error, as libpng does, so that all failures are handled in one place. */
+/* Fails through png_error(), as libpng does itself, so that all failures are handled in one place. */
 static void stop(png_reading *reading, hl_status status) {
   reading->status = status;
   png_error(reading->png, "stopped");
@@ -104,7 +104,7 @@ static void read_header(png_reading *reading) {
   png_set_add_alpha(reading->png, 0xffff, PNG_FILLER_AFTER);
 }
 
-/* sample: big-endian, depth bits */
+/* Takes the code of one sample. sample: big-endian, depth bits. */
 static const unsigned char *take_code(const unsigned char *from, int depth, int *code) {
   *code = depth == 16 ? from[0] << 8 | from[1] : from[0];
   return from + depth / 8;
@@ -140,7 +140,7 @@ static void allocate_pixels(png_reading *reading, int depth, size_t row_bytes, b
   for (size_t i = 0; i < codes; i++) reading->linear[i] = -1;
 }
 
-/* All calls that may longjmp. reading outlives the jump and no local is read after it. */
+/* Makes all calls that may longjmp. `reading` outlives the jump, and no local is read after it. */
 static void read_png(png_reading *reading) {
   if (setjmp(png_jmpbuf(reading->png)) != 0) return;
   png_set_read_fn(reading->png, reading, on_read);
@@ -161,10 +161,10 @@ static void read_png(png_reading *reading) {
   png_read_end(reading->png, NULL);
 }
 
-/* From IHDR (PNG specification, section 11.2.2), which follows the mark: width, height, bit depth, colour
- * type. */
+/* Reads the size from IHDR (PNG specification, section 11.2.2), which follows the mark. IHDR has width,
+ * height, bit depth and colour type. */
 static hl_image_claim claim(const unsigned char *bytes, size_t length) {
-  static const unsigned char channels[7] = {1, 0, 3, 1, 2, 0, 4}; /* of each colour type */
+  static const unsigned char channels[7] = {1, 0, 3, 1, 2, 0, 4}; /* number of channels of each colour type */
   enum { IHDR = 12, WIDTH = 16, HEIGHT = 20, DEPTH = 24, TYPE = 25 };
   hl_image_claim claimed = {0};
   if (length <= TYPE || memcmp(bytes + IHDR, "IHDR", 4) != 0 || bytes[TYPE] > 6 || bytes[DEPTH] > 16)
@@ -247,7 +247,7 @@ static void write_scene(png_writing *writing) {
   png_set_text(writing->png, writing->info, &text, 1);
 }
 
-/* All calls that may longjmp. writing outlives the jump and no local is read after it. */
+/* Makes all calls that may longjmp. `writing` outlives the jump, and no local is read after it. */
 static void write_png(png_writing *writing) {
   const hl_image *image = writing->image;
   if (setjmp(png_jmpbuf(writing->png)) != 0) return;
@@ -362,7 +362,8 @@ static hl_status take_text(hl_context *context, const char *name, const char *ty
   if (memcmp(type, "tEXt", 4) == 0) return copy_text(context, name, body, length, text, error);
   if (memcmp(type, "zTXt", 4) == 0 && length > 1)
     return inflate_text(context, name, body + 1, length - 1, text, error);
-  /* iTXt: whether compressed, the method, language and translated keyword, each ended by a zero byte */
+  /* iTXt has a flag that tells whether it is compressed, the method, and language and translated keyword,
+   * which each end with a zero byte */
   const unsigned char *language_end = length > 2 ? memchr(body + 2, 0, length - 2) : NULL;
   const unsigned char *end = body + length;
   const unsigned char *start = language_end != NULL

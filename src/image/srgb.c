@@ -1,8 +1,8 @@
 /* image/srgb.c - the sRGB transfer curve (IEC 61966-2-1).
  *
- * In: linear floats or whole codes. Out: the other. Used by the PNG writer and reader. Only + - * / and
- * comparisons are used: the C library's pow differs between machines in the last bit, but pictures must be
- * the same everywhere. */
+ * In: linear floats or whole codes. Out: codes or linear floats. Used by the PNG writer and reader. Only + -
+ * * / and comparisons are used: the C library's pow differs between machines in the last bit, but pictures
+ * must be the same everywhere. */
 #include "image/srgb.h"
 
 #include <math.h>
@@ -58,7 +58,7 @@ static float float_from_bits(uint32_t bits) {
 enum {
   KEY_SHIFT = 15,
   KEY_OF_ONE = 127 << 8
-}; /* key of x: its float bits >> KEY_SHIFT, counted downwards from the key of 1 */
+}; /* the key of x is its float bits >> KEY_SHIFT, counted downwards from the key of 1 */
 
 hl_status hl_srgb_encoder_create(hl_context *context, int maximum, hl_srgb_encoder *encoder,
                                  hl_error *error) {
@@ -90,7 +90,7 @@ void hl_srgb_encoder_destroy(hl_srgb_encoder *encoder) {
 }
 
 int hl_srgb_encode(const hl_srgb_encoder *encoder, float linear) {
-  if (!(linear >= encoder->threshold[1])) return 0; /* also NaN */
+  if (!(linear >= encoder->threshold[1])) return 0; /* true for NaN, too */
   if (linear >= 1) return encoder->maximum;
   uint32_t bits;
   memcpy(&bits, &linear, sizeof bits);

@@ -6,10 +6,11 @@
 
 #include "core/error.h"
 
-/* 2^stops, for |stops| up to 32, the same on every machine. */
+/* Returns 2^stops, for |stops| up to 32, the same on every machine. */
 double hl_exposure_factor(double stops);
 
-/* The linear value of an encoded one, for |encoded| up to a little above 1; odd (f(-c) = -f(c)). */
+/* The linear value of an encoded value, for |encoded| up to a little above 1. The function is odd: f(-c) =
+ * -f(c). */
 double hl_srgb_decode(double encoded);
 
 /* Converts linear values to codes 0..maximum by a search among the values at which the code changes. Nothing
@@ -17,20 +18,20 @@ double hl_srgb_decode(double encoded);
 typedef struct hl_srgb_encoder {
   hl_context *context;
   int maximum;      /* 255 or 65535 */
-  float *threshold; /* owned; [maximum + 2]; linear; [k]: the least value whose code is k or more */
+  float *threshold; /* owned; [maximum + 2]; element k is the least linear value whose code is k or more */
   uint16_t *first;  /* owned; [HL_SRGB_KEYS + 1]; the code at the lower end of each interval of float bits */
 } hl_srgb_encoder;
 
-/* Intervals: 8 bits of mantissa in each of the 21 octaves below 1. */
+/* The number of intervals of float bits: 8 bits of mantissa in each of the 21 octaves below 1. */
 enum { HL_SRGB_KEYS = 21 * 256 };
 
 hl_status hl_srgb_encoder_create(hl_context *context, int maximum, hl_srgb_encoder *encoder, hl_error *error);
 void hl_srgb_encoder_destroy(hl_srgb_encoder *encoder);
 
-/* Nearest code; below 0 and NaN give 0, above 1 gives maximum. */
+/* The nearest code of a linear value. Values below 0 and NaN give 0; values above 1 give maximum. */
 int hl_srgb_encode(const hl_srgb_encoder *encoder, float linear);
 
-/* The nearest code after adding offset (in codes, -0.5 < offset < 0.5). */
+/* The nearest code after an offset is added (in codes, -0.5 < offset < 0.5). */
 int hl_srgb_encode_offset(const hl_srgb_encoder *encoder, float linear, float offset);
 
 #endif

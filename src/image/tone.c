@@ -7,11 +7,11 @@
 
 #include <float.h>
 
-#define SHOULDER 0.6f /* light up to here is left as it is: 203 of 255 as sRGB */
+#define SHOULDER 0.6f /* light up to this value is left as it is; its sRGB code is 203 of 255 */
 
-/* Derived: the hyperbola that leaves the line f(x) = x at s with slope 1 and comes near 1 for endless light
- * is f(x) = 1 - d^2 / (x - s + d), d = 1 - s: f(s) = s, f'(x) = d^2 / (x - s + d)^2. Twice the light of
- * white, 1, comes to 0.911, four times to 0.958. */
+/* Maps light x from the value s on. Derived: the hyperbola that leaves the line f(x) = x at s with slope 1
+ * and comes near 1 for endless light is f(x) = 1 - d^2 / (x - s + d), d = 1 - s: f(s) = s, f'(x) = d^2 / (x -
+ * s + d)^2. Twice the light of white, 1, comes to 0.911, four times to 0.958. */
 static float shoulder(float x) {
   const float rest = 1 - SHOULDER;
   return x > SHOULDER ? 1 - rest * rest / (x - SHOULDER + rest) : x;

@@ -4,7 +4,7 @@
 
 #include <halflight/image.h>
 
-/* What light's red, green and blue are multiplied by, one factor for all so that the hue stays. light:
+/* The factor on light's red, green and blue. One factor serves all three, so that the hue stays. light:
  * linear, after the exposure. */
 float hl_tone_factor(hl_tone tone, const float light[3]);
 

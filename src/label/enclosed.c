@@ -1,28 +1,29 @@
 /* label/enclosed.c - see enclosed.h.
  *
- * Voxels that the surface may cross are cut into parts, and each part's share of the volume is found as if
- * the surface were a plane in it. Parts are so small that this holds for a ball of three voxels, too. */
+ * Voxels that the surface may cross are cut into small parts. A part's share of the volume is computed as if
+ * the surface were a plane within the part. The parts are small enough for this even where the surface is a
+ * ball of three voxels. */
 #include "label/enclosed.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { PARTS = 4 }; /* of a voxel, along each axis */
-enum { TAPS = 5 };  /* coefficients along an axis that the parts of a voxel depend on */
+enum { PARTS = 4 }; /* parts of a voxel along each axis */
+enum { TAPS = 5 };  /* number of coefficients along an axis on which the parts of a voxel depend */
 
-/* Sums over a slice: its volume, in voxels; how fast that falls as the level rises; the gradients' lengths at
- * the surface, and of how many parts they are. */
+/* Sums over a slice: VOLUME, in voxels; FALL, the rate at which the volume falls as the level rises; SLOPES,
+ * the gradients' lengths at the surface; SURFACE_PARTS, the number of parts in SLOPES. */
 enum { VOLUME, FALL, SLOPES, SURFACE_PARTS };
 
-/* Gradients, per part, count as no less. */
+/* Shorter gradients, per part, count as this length. */
 static const float LEAST_GRADIENT = 0.05f / PARTS;
 
 typedef struct measuring {
   label_enclosed *enclosed;
-  float weights[PARTS][TAPS]; /* of the coefficients in the parts' middles */
+  float weights[PARTS][TAPS]; /* weights of the coefficients at the parts' middles */
 } measuring;
 
-/* The cubic B-spline. */
+/* The cubic B-spline's value at a distance. */
 static double spline(double at) {
   const double a = fabs(at);
   if (a >= 2) return 0;
@@ -35,7 +36,8 @@ static void find_weights(float weights[PARTS][TAPS]) {
       weights[part][tap] = (float)spline((part + 0.5) / PARTS - 0.5 - (tap - TAPS / 2));
 }
 
-/* The coefficients that a voxel's parts depend on; beyond the field's ends the border's continue. */
+/* Collects the coefficients on which a voxel's parts depend. Beyond the field's ends the coefficients at the
+ * border repeat. */
 static void find_window(const label_field *field, size_t x, size_t y, size_t z,
                         float window[TAPS][TAPS][TAPS]) {
   size_t at[3][TAPS];
@@ -52,7 +54,7 @@ static void find_window(const label_field *field, size_t x, size_t y, size_t z,
     }
 }
 
-/* The field in the middles of a voxel's parts. */
+/* Computes the field at the middles of a voxel's parts. */
 static void find_parts(const float weights[PARTS][TAPS], const float window[TAPS][TAPS][TAPS],
                        float parts[PARTS][PARTS][PARTS]) {
   float rows[TAPS][TAPS][PARTS], planes[TAPS][PARTS][PARTS];
@@ -73,7 +75,8 @@ static void find_parts(const float weights[PARTS][TAPS], const float window[TAPS
         for (int i = 0; i < PARTS; i++) parts[k][j][i] += weights[k][tap] * planes[tap][j][i];
 }
 
-/* The difference per part at `at` in a line of parts, `step` apart; at the ends it is one-sided. */
+/* The difference of neighbouring parts at `at` in a line of parts that lie `step` apart. At the line's ends
+ * it is one-sided. */
 static float difference(const float *parts, int at, int step) {
   const float *here = parts + at * step;
   if (at == 0) return here[step] - here[0];
@@ -81,8 +84,8 @@ static float difference(const float *parts, int at, int step) {
   return 0.5f * (here[step] - here[-step]);
 }
 
-/* Derived: near a plane with the gradient g, per part, the part's share above the level t is (f - t) / g +
- * 1/2, clamped to [0, 1]. */
+/* Adds up the measures of the parts of a voxel. Derived: near a plane with the gradient g, per part, the
+ * part's share above the level t is (f - t) / g + 1/2, clamped to [0, 1]. */
 static void measure_parts(const float *parts, float level, double *measures) {
   enum { ROW = PARTS, PLANE = PARTS * PARTS };
   static const double SHARE = 1.0 / (PARTS * PARTS * PARTS);
@@ -101,8 +104,8 @@ static void measure_parts(const float *parts, float level, double *measures) {
   }
 }
 
-/* Marks the voxels of a row that the surface may cross. room: for a row and two values. Returns how many of
- * the others are above the level. */
+/* Marks the voxels of a row that the surface may cross. room: space for a row and two values. Returns how
+ * many of the unmarked voxels are above the level. */
 static int32_t find_crossed(const label_enclosed *enclosed, size_t y, size_t z, float *room, float *crossed) {
   const label_field *field = enclosed->field;
   const size_t nx = field->size[0], ny = field->size[1], nz = field->size[2], slice = nx * ny;
@@ -139,7 +142,8 @@ static void measure_slice(void *data, size_t z, int worker) {
 
 void hl_label_enclose(hl_pool *pool, label_enclosed *enclosed) {
   enum { STEPS_OF_NEWTON = 2 };
-  static const double FARTHEST = 0.01; /* beyond, things a voxel thin would be thinner than sheets can show */
+  static const double FARTHEST = 0.01; /* a level farther from 1/2 would make things a voxel thin thinner than
+                                        * sheets can show */
   measuring job = {.enclosed = enclosed};
   find_weights(job.weights);
   enclosed->level = 0.5f;

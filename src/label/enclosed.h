@@ -6,13 +6,13 @@
 
 enum { HL_ENCLOSED_MEASURES = 4 };
 
-/* A field whose surface's volume is measured. */
+/* A field whose enclosed volume is measured. */
 typedef struct label_enclosed {
-  const label_field *field;                 /* coefficients of the B-spline */
-  double (*measures)[HL_ENCLOSED_MEASURES]; /* [size z]; room */
-  double wanted;                            /* the volume; voxels */
-  float level;                              /* found: near 1/2 */
-  double slope; /* found: the mean length of the gradient at the surface, per voxel */
+  const label_field *field;                 /* holds the coefficients of the B-spline */
+  double (*measures)[HL_ENCLOSED_MEASURES]; /* [size z]; working space */
+  double wanted;                            /* the volume that the surface shall enclose, in voxels */
+  float level;                              /* result: the level, near 1/2 */
+  double slope; /* result: the mean length of the gradient at the surface, per voxel */
 } label_enclosed;
 
 /* Finds the level and the slope. */

@@ -18,7 +18,7 @@ static void add_rows(const filter_job *job, const float *const rows[HL_FILTER_RO
   job->field->functions->weigh(job->filter->taps, job->filter->reach, rows, job->field->size[0], out);
 }
 
-/* Filters a row along x. line: room for it and REACH more on either side. */
+/* Filters a row along x. line: working space for the row and REACH more values on either side. */
 static void filter_row(const filter_job *job, float *line, float *row) {
   const size_t nx = job->field->size[0];
   const float *rows[HL_FILTER_ROWS];
@@ -35,7 +35,7 @@ static void filter_slice(void *data, size_t z, int worker) {
   const size_t nx = field->size[0], ny = field->size[1];
   float *slice = field->values + z * nx * ny, *kept = field->lines + (size_t)worker * field->line_floats;
   for (size_t y = 0; y < ny; y++) filter_row(job, kept, slice + y * nx);
-  /* rows y - REACH .. y + REACH as they were, [HL_FILTER_ROWS][nx] */
+  /* rows y - REACH .. y + REACH with their unfiltered values, [HL_FILTER_ROWS][nx] */
   for (size_t r = 0; r < HL_FILTER_ROWS; r++) {
     size_t y = r < REACH ? 0 : r - REACH < ny ? r - REACH : ny - 1;
     memcpy(kept + r * nx, slice + y * nx, nx * sizeof *slice);
@@ -45,13 +45,13 @@ static void filter_slice(void *data, size_t z, int worker) {
     for (size_t r = 0; r < HL_FILTER_ROWS; r++) rows[r] = kept + (y + r) % HL_FILTER_ROWS * nx;
     add_rows(job, rows, slice + y * nx);
     size_t next = y + REACH + 1;
-    /* the rows after y are still as they were; the last one's copy continues beyond the end */
+    /* rows after y are still unfiltered; beyond the field's end the copy of the last row repeats */
     const float *from = next < ny ? slice + next * nx : rows[2 * REACH];
     memmove(kept + y % HL_FILTER_ROWS * nx, from, nx * sizeof *slice);
   }
 }
 
-/* Filters the columns along z of one y. */
+/* Filters the columns along z that have one y. */
 static void filter_columns(void *data, size_t y, int worker) {
   const filter_job *job = data;
   const label_field *field = job->field;

@@ -9,20 +9,20 @@ typedef struct label_field {
   float *values;  /* [size z][y][x] */
   size_t size[3]; /* along x, y, z */
   const label_row_functions *functions;
-  float *lines; /* [threads][line_floats]; room for the filters */
+  float *lines; /* [threads][line_floats]; working space of the filters */
   size_t line_floats;
 } label_field;
 
-/* Half of a symmetric filter: its middle tap first, then those up to `reach` values away. */
+/* Half of a symmetric filter. The middle tap comes first; the others follow up to the value `reach` away. */
 typedef struct label_filter {
   int reach; /* 2, 4 or HL_FILTER_REACH */
   float taps[HL_FILTER_REACH + 1];
 } label_filter;
 
-/* The floats that the filters need for each thread. */
+/* The number of floats that the filters need as working space for each thread. */
 size_t hl_label_line_floats(const size_t size[3]);
 
-/* Filters along x, y and z. Beyond the field's ends its border's values continue. */
+/* Filters a field along x, y and z. Beyond the field's ends the values at its border repeat. */
 void hl_label_filter(hl_pool *pool, const label_field *field, const label_filter *filter);
 
 #endif

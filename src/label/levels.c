@@ -3,29 +3,30 @@
 
 #include <string.h>
 
-enum { CELL = 2 }; /* voxels along an edge of a cell */
+enum { CELL = 2 }; /* length of a cell's edge in voxels */
 
-/* The first planes are sums over faces; these and whether the field is thin are blurred. */
+/* LEVEL_SUMS planes are sums over faces. LEVEL_BLENDED planes are blurred: the sums, and the plane that says
+ * whether the field is thin. */
 enum { LEVEL_SUMS = HL_LEVEL_FALL + 1, LEVEL_BLENDED = HL_LEVEL_THIN + 1 };
 
-/* Cells are blurred by [1 2 1] / 4, so that there are no steps from cell to cell. */
+/* The filter that blurs cells, [1 2 1] / 4, so that there are no steps from cell to cell. */
 static const label_filter BLUR = {2, {0.5f, 0.25f, 0}};
 
-/* Away from any border the field stays as it is: so many faces of a flat border, with 1/2 on them, are added
- * everywhere. */
+/* Weight of the faces of an imagined flat border with the field 1/2, which are added everywhere. They keep
+ * the field as it is away from any border. */
 static const float FAINT = 1e-3f;
 
-/* No field is made steeper than if it fell by this across the border's faces. */
+/* Falls across the border's faces count as at least this much, so that no field is made too steep. */
 static const float LEAST_FALL = 0.04f;
 
-/* Fields are kept within what a byte holds of them (occupancy.c). */
+/* Limits of a field's values, which must fit the bytes that store them (occupancy.c). */
 static const float LEAST = -0.5f, GREATEST = 1.49f;
 
-/* Where the field's values nearby reach the second of these, what it was made from is at least three voxels
- * thick; below the first, it is thin. */
+/* A label is at least three voxels thick where the field's values nearby reach THICK, and thin where they
+ * stay below THIN. */
 static const float THIN = 0.46f, THICK = 0.5f;
 
-/* How far the border of thin things is moved outwards, in voxels. */
+/* The distance by which the border of thin things is moved outwards, in voxels. */
 static const float GROWTH = 0.25f;
 
 typedef struct level_job {
@@ -44,9 +45,10 @@ static float *plane_of(const label_levels *levels, int plane) {
 
 /* ---- the border ---- */
 
-/* A row of voxels, and the rows beside it; at the field's ends the row itself. */
+/* A row of voxels and the four rows beside it. At the field's ends the row itself takes the place of a row
+ * that is missing. */
 typedef struct border_row {
-  size_t at, beside[4]; /* the first voxels */
+  size_t at, beside[4]; /* indices of the rows' first voxels */
 } border_row;
 
 static border_row row_at(const label_field *field, size_t y, size_t z) {
@@ -83,13 +85,13 @@ static void add_faces(const level_job *job, const border_row *row, size_t x, flo
   }
 }
 
-/* Raises cells to the greatest value of a row of voxels. */
+/* Raises the greatest values of cells to the greatest values of a row of voxels. */
 static void raise_most(const float *values, size_t count, float *most) {
   for (size_t x = 0; x < count; x++)
     if (values[x] > most[x / CELL]) most[x / CELL] = values[x];
 }
 
-/* Sums over the faces in a slice of cells, and the greatest values. */
+/* Computes the sums over the faces in a slice of cells, and the cells' greatest values. */
 static void sum_cells(void *data, size_t cell_z, int worker) {
   const level_job *job = data;
   const label_field *field = job->field;
@@ -113,7 +115,7 @@ static void sum_cells(void *data, size_t cell_z, int worker) {
     }
 }
 
-/* The greatest value in a cell and those around it. */
+/* The greatest value in a cell and the cells around it. */
 static float most_around(const label_levels *levels, const size_t cell[3]) {
   const float *most = plane_of(levels, HL_LEVEL_MOST);
   size_t low[3], high[3];
@@ -146,12 +148,12 @@ static void find_thin(void *data, size_t z, int worker) {
 /* ---- the field ---- */
 
 /* The two cells whose middles lie around a voxel along an axis. A voxel's middle lies a quarter of a cell
- * from that of its own cell. */
+ * from the middle of its own cell. */
 typedef struct cells_around {
   size_t own, other;
 } cells_around;
 
-enum { OWN = 3, OTHER = 1 }; /* quarters: their weights */
+enum { OWN = 3, OTHER = 1 }; /* weights of the two cells, in quarters */
 
 static cells_around around(size_t at, size_t cells) {
   const size_t own = at / CELL;
@@ -159,7 +161,8 @@ static cells_around around(size_t at, size_t cells) {
   return (cells_around){own, other};
 }
 
-/* The sums between the cells' middles on a row of voxels, but for x. rows: [LEVEL_BLENDED][cells]. */
+/* Interpolates the sums of cells to a row of voxels along y and z; interpolation along x follows later. rows:
+ * [LEVEL_BLENDED][cells]. */
 static void blend_rows(const label_levels *levels, size_t y, size_t z, float *rows) {
   const size_t *cells = levels->size;
   const cells_around j = around(y, cells[1]), k = around(z, cells[2]);

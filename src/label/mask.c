@@ -11,30 +11,32 @@
 #include "label/shelf.h"
 #include "volume/colors.h"
 
-/* The sums of occupancies between which the labels' common share rises from 0 to 1. Each label has a part of
- * that share like the square of its occupancy (derived: between two labels, whose occupancies a and 1 - a add
- * up to 1, a^2 / (a^2 + (1 - a)^2) runs from 0 to 1 with the slope 2 in the middle, as steeply as the common
- * share, and where three meet the parts still add up to 1). */
+/* The labels' common share of the matter rises from 0 to 1 while the sum of their occupancies rises from
+ * SHARE_FROM to SHARE_TO. Each label's part of that share is proportional to the square of its occupancy.
+ * Derived: between two labels, whose occupancies a and 1 - a add up to 1, a^2 / (a^2 + (1 - a)^2) runs from 0
+ * to 1 with the slope 2 in the middle, as steeply as the common share; where three labels meet, the parts
+ * still add up to 1. */
 static const float SHARE_FROM = 0.25f, SHARE_TO = 0.75f;
-/* How much the occupancies themselves count beside the share, for colours: where nothing is visible, the
- * lattice goes on with the colours of the labels nearby. */
+/* Weight of the occupancies themselves, beside the share, in the mean of colours. Where nothing is visible,
+ * the lattice thus continues the colours of the labels nearby. */
 static const float FAINT = 1e-3f;
-/* Occupancies are counted from here on: below are the tails of the smoothing and the steps of bytes. */
+/* Smaller occupancies do not count: they are the tails of the smoothing and the rounding of bytes. */
 static const float LEAST = 1.0f / 16;
 
 typedef struct mask_job {
   const hl_mask *mask;
-  hl_volume *const *occupancies; /* [label_count]; null: no voxel has the label */
+  hl_volume *const *occupancies; /* [label_count]; an element is null if no voxel has the label */
   uint16_t *factors;             /* [k][j][i] */
-  unsigned char *colors;         /* [k][j][i][HL_COLOR_BYTES]; null: no label tints */
+  unsigned char *colors;         /* [k][j][i][HL_COLOR_BYTES]; null if no label tints */
   signed char *slopes;           /* [k][j][i][4] (mask.h) */
   uint32_t (*bricks)[2];         /* [bk][bj][bi][2] (mask.h) */
   float *sums;                   /* [threads][slice floats] */
   size_t slice_floats;
 } mask_job;
 
-/* Sums over the labels at the voxels of a slice, each [j][i]: occupancies, their squares, and those times
- * opacity, times opacity and tint, and times these and the colour; then room for a line of occupancy. */
+/* Sums over the labels at the voxels of a slice, each [j][i]. The sums are of occupancies (SUM_OCCUPANCY), of
+ * their squares, of the squares times opacity (SUM_FACTOR), of the latter times tint (SUM_TINT), and of the
+ * latter times each colour. Space for a line of occupancy follows. */
 enum { SUM_OCCUPANCY, SUM_SQUARES, SUM_FACTOR, SUM_TINT, SUM_RED, SUM_GREEN, SUM_BLUE, SUM_LINE, SUMS };
 
 static void add_voxel(float *const sums[SUMS], size_t at, const hl_label *label, float occupancy) {
@@ -49,7 +51,7 @@ static void add_voxel(float *const sums[SUMS], size_t at, const hl_label *label,
   for (int c = 0; c < 3; c++) sums[SUM_RED + c][at] += tint * (float)label->color[c];
 }
 
-/* Adds a label's occupancy in the slice k of the map. */
+/* Adds a label's occupancy to the sums of slice k of the map. */
 static void add_label(const mask_job *job, const hl_label *label, const hl_volume *o, size_t k,
                       float *const sums[SUMS]) {
   size_t first[3];
@@ -68,8 +70,8 @@ static unsigned char code_of(float value) {
   return (unsigned char)(value <= 0 ? 0 : value >= 1 ? 255 : value * 255 + 0.5f);
 }
 
-/* The matter at a voxel is a mixture of the labels and the rest, each with its factor: colours are weighted
- * by what is visible of them. */
+/* Stores the lattice's values at a voxel. The matter there is a mixture of the labels and the rest, each with
+ * its factor. Colours are weighted by how much of them is visible. */
 static void store_voxel(const mask_job *job, float *const sums[SUMS], size_t at, size_t voxel) {
   const float occupancy = sums[SUM_OCCUPANCY][at], tint = sums[SUM_TINT][at];
   float share = (occupancy - SHARE_FROM) / (SHARE_TO - SHARE_FROM);
@@ -96,7 +98,8 @@ static void fill_slice(void *data, size_t k, int worker) {
   for (size_t at = 0; at < count; at++) store_voxel(job, sums, at, k * count + at);
 }
 
-/* The central difference of the factors at `at` along an axis; beyond the ends the border goes on. */
+/* The central difference of the factors at `at` along an axis. Beyond the ends the factors at the border
+ * repeat. */
 static signed char slope_at(const uint16_t *factors, size_t at, size_t place, size_t count, size_t step) {
   int before = factors[place > 0 ? at - step : at], after = factors[place + 1 < count ? at + step : at];
   return (signed char)lround((after - before) * (HL_MASK_SLOPE_STEPS / 2 / HL_MASK_STEPS));
@@ -134,7 +137,7 @@ static point_box box_of_brick(const size_t dimension[3], const size_t brick[3]) 
   return box;
 }
 
-/* Whether all points of a box have the value of its first one. values: [k][j][i][bytes]. */
+/* Whether all points of a box have the value of the box's first point. values: [k][j][i][bytes]. */
 static bool is_even(const size_t dimension[3], const void *values, size_t bytes, const point_box *box) {
   const unsigned char *from = values, *one = NULL;
   for (size_t k = box->first[2]; k <= box->last[2]; k++)
@@ -147,7 +150,7 @@ static bool is_even(const size_t dimension[3], const void *values, size_t bytes,
   return true;
 }
 
-/* A word from memory: the first byte is its lowest. */
+/* A word from memory; the first byte is the word's lowest. */
 static uint32_t word_of(const unsigned char *bytes) {
   return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
 }
@@ -210,7 +213,7 @@ static bool any_tint(const hl_mask *mask) {
   return false;
 }
 
-/* Fills the lattice of the labels' occupancies. */
+/* Fills the lattice from the labels' occupancies. */
 static hl_status fill(hl_context *context, int threads, mask_job *job, hl_volume **made, hl_error *error) {
   hl_pool *pool = NULL;
   hl_status status = hl_pool_create(context, threads, &pool, error);

@@ -8,22 +8,23 @@
 #include "label/enclosed.h"
 #include "label/levels.h"
 
-/* Smooths along an axis. Derived: a Gaussian of standard deviation 2 voxels, cut
- * at 6, less half of its variance times its second difference. The variances cancel: flat and gently curved
- * surfaces stay where they are (to the fourth power of the scale), and stairs are damped. */
+/* The filter that smooths along an axis. Derived: a Gaussian of standard deviation 2 voxels, cut at 6, less
+ * half of its variance times its second difference. The variances cancel: flat and gently curved surfaces
+ * stay where they are (to the fourth power of the scale), and the steps of voxels are damped. */
 static const label_filter SMOOTHING = {7,
                                        {0.292382144f, 0.238724523f, 0.123441568f, 0.028311217f, -0.011604395f,
                                         -0.014332039f, -0.006349609f, -0.004382337f}};
-/* Likewise with a standard deviation of 1 voxel, cut at 3: what mending leaves rough. */
+/* A filter like SMOOTHING, with a standard deviation of 1 voxel, cut at 3. It smooths the roughness that
+ * mending leaves. */
 static const label_filter FINISHING = {
     4, {0.555422454f, 0.257481129f, -0.014940464f, -0.018044430f, -0.002207463f}};
-/* From values at the voxels' centres to the B-spline's coefficients. Derived: the spline's values 1/6, 2/3,
- * 1/6 are 1 + d/6, d the second difference; its inverse is 1 - d/6 + d d/36 - ... */
+/* The filter that turns values at the voxels' centres into the B-spline's coefficients. Derived: the spline's
+ * values 1/6, 2/3, 1/6 are 1 + d/6, d the second difference; its inverse is 1 - d/6 + d d/36 - ... */
 static const label_filter TO_COEFFICIENTS = {2, {1.5f, -10.0f / 36, 1.0f / 36}};
 
-/* Smoothing and mending take turns. Mending moves voxels' centres that are on the wrong side of the surface:
- * by PUSH times as much as they are further than TOLERATED beyond 1/2. So thin things stay, and what
- * smoothing moves by a fraction of a voxel stays smooth. */
+/* Smoothing and mending take turns for ROUNDS rounds. Mending corrects voxels whose centres are on the wrong
+ * side of the surface, by PUSH times their distance beyond TOLERATED from 1/2. Thin things therefore stay,
+ * and what smoothing moves by a fraction of a voxel stays smooth. */
 enum { ROUNDS = 2 };
 static const float TOLERATED = 0.12f, PUSH = 2.5f;
 
@@ -32,19 +33,20 @@ static const float STEPS = 128, ZERO = 64;
 
 typedef struct occupancy_job {
   const hl_volume *map;
-  double *stored; /* owned; [count]; rising: the labels, as numbers of the map's rows */
+  double *stored; /* owned; [count], rising; the labels, as numbers of the map's rows */
   size_t count;
   hl_label_part part;
-  unsigned char *inside; /* [size z][y][x]: 1 where the voxel has one of the labels; finally the result */
-  size_t *inside_counts; /* [size z]: voxels that have one */
-  label_field smooth;    /* of the part's size */
+  unsigned char *inside; /* [size z][y][x]; 1 where the voxel has one of the labels; in the end the result */
+  size_t *inside_counts; /* [size z]; the number of voxels that have one of the labels */
+  label_field smooth;    /* the smoothed field, of the part's size */
   label_levels levels;
   label_enclosed enclosed;
 } occupancy_job;
 
 /* ---- steps ---- */
 
-/* Labels come in runs: each run is looked up once. */
+/* Marks the voxels of a slice that have one of the labels. Labels come in runs, and each run is looked up
+ * once. */
 static void mark_slice(void *data, size_t z, int worker) {
   (void)worker;
   const occupancy_job *job = data;
@@ -121,12 +123,12 @@ static hl_status adopt(hl_context *context, const occupancy_job *job, unsigned c
   grid.value_offset = -(double)(ZERO / STEPS);
   grid.space = job->map->space;
   hl_status status = hl_volume_adopt(context, &grid, "labels", voxels, made, error);
-  if (status == HL_OK) (*made)->has_surroundings = true; /* 0 */
+  if (status == HL_OK) (*made)->has_surroundings = true; /* voxels outside count as 0 */
   if (status == HL_OK) (*made)->surface_slope = job->enclosed.slope;
   return status;
 }
 
-/* Takes the memory of all steps but the result. */
+/* Allocates the memory of all steps except the result. */
 static bool make_room(hl_context *context, int threads, occupancy_job *job) {
   const size_t count = job->part.size[0] * job->part.size[1] * job->part.size[2];
   label_field *field = &job->smooth;

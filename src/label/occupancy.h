@@ -1,9 +1,8 @@
-/* label/occupancy.h - labels of a label map as a smooth field whose surface is where their own is.
+/* label/occupancy.h - labels of a label map as a smooth field with the labels' own surface.
  *
  * A label map's voxels are the numbers of things. The occupancy of a label, or of several together, is 1
  * within them and 0 outside, without the stairs of the voxels: reconstructed by the B-spline, it passes 1/2
- * at their surface.
- */
+ * at their surface. */
 #ifndef HL_LABEL_OCCUPANCY_H
 #define HL_LABEL_OCCUPANCY_H
 
@@ -12,7 +11,7 @@
 
 /* The part of a map's grid that holds labels, with a margin for their smooth surface. */
 typedef struct hl_label_part {
-  size_t first[3], size[3]; /* voxels along i, j, k; a size of 0: no voxel has the label */
+  size_t first[3], size[3]; /* voxels along i, j, k; the size is 0 if no voxel has the label */
 } hl_label_part;
 
 /* Finds the parts of several labels in one pass over the map. labels: [count]; data values, rising; parts:
@@ -20,20 +19,20 @@ typedef struct hl_label_part {
 hl_status hl_label_parts(hl_context *context, hl_pool *pool, const hl_volume *map, const double *labels,
                          size_t count, hl_label_part *parts, hl_error *error);
 
-/* The least part that holds several; those without voxels do not count. */
+/* The smallest part that holds several parts. Parts without voxels do not count. */
 hl_label_part hl_label_part_of_all(const hl_label_part *parts, size_t count);
 
-/* A label as a number of the map's rows. */
+/* A label's value as a number of the map's rows. */
 static inline double hl_label_stored(const hl_volume *map, double label) {
   return (label - map->value_offset) / map->value_scale;
 }
 
-/* The place of a number in a rising list; count where it is not listed. */
+/* The place of a number in a rising list; `count` if the list lacks the number. */
 size_t hl_label_place(const double *stored, size_t count, double value);
 
-/* Makes the occupancy of all labels of a list together, over their part. labels: [count]; data values,
- * rising. *made is null where no voxel has one of the labels. Memory: six and a half bytes a voxel of the
- * part, one of which stays. */
+/* Makes the occupancy of all labels of a list together, over their common part. labels: [count]; data values,
+ * rising. *made is null if no voxel has one of the labels. The memory is six and a half bytes for each voxel
+ * of the part, of which one byte stays. */
 hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, const double *labels,
                              size_t count, const hl_label_part *part, hl_volume **made, hl_error *error);
 

@@ -17,14 +17,14 @@ static float coefficient(const hl_volume *o, size_t i, size_t j, size_t k) {
   return ((const unsigned char *)hl_volume_row(o, j, k))[i];
 }
 
-/* The neighbours of a coordinate; beyond the ends the border continues. */
+/* Finds the neighbours of a coordinate. Beyond the ends the coordinate at the border repeats. */
 static void neighbours(size_t at, size_t count, size_t found[3]) {
   found[0] = at > 0 ? at - 1 : 0;
   found[1] = at;
   found[2] = at + 1 < count ? at + 1 : at;
 }
 
-/* Weights 1/6, 2/3, 1/6 along each axis. */
+/* The B-spline weighs neighbours by 1/6, 2/3, 1/6 along each axis. */
 void hl_occupancy_line(const hl_volume *o, size_t j, size_t k, float *line) {
   static const float WEIGHT[3] = {1.0f / 6, 2.0f / 3, 1.0f / 6};
   size_t js[3], ks[3];

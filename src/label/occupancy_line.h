@@ -4,10 +4,11 @@
 
 #include "volume/volume.h"
 
-/* The place of an occupancy's first voxel in the map. */
+/* Finds where an occupancy's first voxel lies in the map. */
 void hl_occupancy_first(const hl_volume *map, const hl_volume *occupancy, size_t first[3]);
 
-/* The occupancy at the voxels of one of its lines, [dimension 0]: the B-spline's value at their centres. */
+/* Computes the occupancy at the voxels of one of its lines, [dimension 0]: the B-spline's value at the
+ * voxels' centres. */
 void hl_occupancy_line(const hl_volume *occupancy, size_t j, size_t k, float *line);
 
 #endif

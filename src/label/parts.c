@@ -3,7 +3,7 @@
 #include "core/memory.h"
 #include "label/occupancy.h"
 
-/* Voxels around the labels, as far as their occupancy differs from 0. */
+/* Width of the margin around the labels, in voxels. Beyond it their occupancy is 0. */
 enum { MARGIN = 8 };
 
 /* The least and the greatest coordinates of a label's voxels, both included. */
@@ -13,7 +13,7 @@ typedef struct label_bounds {
 
 typedef struct parts_job {
   const hl_volume *map;
-  const double *stored; /* [count]; rising: the labels, as numbers of the map's rows */
+  const double *stored; /* [count], rising; the labels, as numbers of the map's rows */
   size_t count;
   label_bounds *bounds; /* [threads][count] */
 } parts_job;
@@ -35,7 +35,7 @@ static void widen(label_bounds *bounds, const int64_t low[3], const int64_t high
   }
 }
 
-/* Labels come in runs: each run is looked up once. */
+/* Bounds the labels of a slice. Labels come in runs, and each run is looked up once. */
 static void bound_slice(void *data, size_t z, int worker) {
   const parts_job *job = data;
   label_bounds *bounds = job->bounds + (size_t)worker * job->count;
@@ -54,7 +54,7 @@ static void bound_slice(void *data, size_t z, int worker) {
   }
 }
 
-/* The part with its margin; of the size 0 where there are no voxels. */
+/* The part that bounds make, with its margin; the size is 0 where there are no voxels. */
 static hl_label_part part_of(const hl_volume *map, const label_bounds *bounds) {
   hl_label_part part = {{0}, {0}};
   for (int axis = 0; axis < 3 && bounds->high[axis] >= 0; axis++) {

@@ -1,7 +1,7 @@
 /* label/row_sets.c - see row_functions.h; HL_LABEL_ROWS names the table of an instruction set. */
 #include "label/row_functions.h"
 
-/* Inlined once for each reach, which the compiler then knows. */
+/* Inlined once for each reach, so that the compiler knows the reach. */
 static inline __attribute__((always_inline)) void add_rows(const float *taps, int reach,
                                                            const float *const rows[HL_FILTER_ROWS],
                                                            size_t count, float *restrict out) {
@@ -20,9 +20,10 @@ static void weigh(const float *taps, int reach, const float *const rows[HL_FILTE
   else add_rows(taps, HL_FILTER_REACH, rows, count, out);
 }
 
-/* A voxel's corner lies 0.87 voxels from its middle: where |over| is more than the gradient, g, times this,
- * the surface passes the voxel by. Where a field turns round the gradient in the middle tells little: it
- * counts as a fifth at least. squares are of 2 g. */
+/* Derived: a voxel's corner lies 0.87 voxels from its middle. Where |over| is more than the length of the
+ * gradient g times this distance, the surface does not cross the voxel. Where a field turns round, the
+ * gradient in the middle tells little; its length therefore counts as at least a fifth. `squares` are squares
+ * of 2 g. */
 static int32_t find_crossed(const row_neighbours *rows, size_t count, float level, float *restrict crossed) {
   const float least = 4 * 0.2f * 0.2f, reach = 0.25f;
   int32_t whole = 0;

@@ -8,20 +8,20 @@ enum { PLACES = 1024 };
 typedef struct place {
   bool used;
   double label;
-  hl_volume *made; /* null: no voxel has the label */
+  hl_volume *made; /* null if no voxel has the label */
 } place;
 
-/* What was made of several labels together. */
+/* A volume that was made of several labels together. */
 typedef struct joint_place {
   hl_label *labels; /* owned; [label_count]; without names */
   size_t label_count;
-  double rest;     /* of a mask */
-  hl_volume *made; /* null: nothing was made */
+  double rest;     /* the weight of the rest, for a mask */
+  hl_volume *made; /* null if nothing was made */
 } joint_place;
 
 typedef struct shelf {
   place places[PLACES];
-  int next; /* the place that is filled next; what it held goes */
+  int next; /* the place that is filled next; its former content is released */
   joint_place lattice, solids;
 } shelf;
 
@@ -40,7 +40,7 @@ static void release_shelf(hl_context *context, void *kept) {
   hl_release(context, shelf);
 }
 
-/* Finds what was made of the label before, and retains it. */
+/* Finds and retains the volume that was made of the label before. */
 static bool find(hl_volume *map, double label, hl_volume **made) {
   bool found = false;
   lock(map);
@@ -55,7 +55,7 @@ static bool find(hl_volume *map, double label, hl_volume **made) {
   return found;
 }
 
-/* The map's shelf, which is locked; null without memory. */
+/* The map's shelf, which must be locked; null if memory is short. */
 static shelf *shelf_of(hl_volume *map) {
   if (map->shelf == NULL) {
     map->shelf = hl_allocate_zeroed(map->context, 1, sizeof(shelf));
@@ -64,7 +64,7 @@ static shelf *shelf_of(hl_volume *map) {
   return map->shelf;
 }
 
-/* Keeps what was made. Without memory it is not kept. */
+/* Keeps a volume that was made. If memory is short, the volume is not kept. */
 static void keep(hl_volume *map, double label, hl_volume *made) {
   hl_volume *old = made;
   hl_volume_retain(made);
@@ -82,7 +82,7 @@ static void keep(hl_volume *map, double label, hl_volume *made) {
 /* Labels that are not on the shelf. */
 typedef struct missing_labels {
   double *labels;       /* owned; [count] */
-  size_t *places;       /* owned; of the labels in the caller's list */
+  size_t *places;       /* owned; the labels' places in the caller's list */
   hl_label_part *parts; /* owned */
   size_t count;
 } missing_labels;
@@ -140,7 +140,7 @@ static bool same_label(const hl_label *a, const hl_label *b) {
   return a->value == b->value && a->opacity == b->opacity && a->visible == b->visible && a->tint == b->tint;
 }
 
-/* Retains what a place holds, if it was made of these labels. The map's shelf is locked. */
+/* Retains the volume of a place if it was made of these labels. The map's shelf is locked. */
 static hl_volume *find_joint(const joint_place *place, const hl_label *labels, size_t count, double rest) {
   bool same = place->made != NULL && place->rest == rest && place->label_count == count;
   for (size_t n = 0; same && n < count; n++) same = same_label(&place->labels[n], &labels[n]);

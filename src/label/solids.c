@@ -15,26 +15,27 @@ typedef struct solids_job {
   const hl_volume *map;
   const hl_label *labels; /* [count] */
   size_t count;
-  hl_volume *const *occupancies; /* [count]; null: no voxel has the label */
-  hl_label_part part;            /* of all labels */
+  hl_volume *const *occupancies; /* [count]; an element is null if no voxel has the label */
+  hl_label_part part;            /* the common part of all labels */
   hl_srgb_encoder encoder;
   unsigned char *colors; /* [size z][y][x][HL_COLOR_BYTES] */
   float *sums;           /* [threads][slice floats] */
   size_t slice_floats;
 } solids_job;
 
-/* Sums over the labels at the voxels of a slice, each [y][x]: weights, and those times the colour; then room
- * for a line of occupancy. */
+/* Sums over the labels at the voxels of a slice, each [y][x]: the weights, and the weights times each colour.
+ * Space for a line of occupancy follows. */
 enum { SUM_WEIGHT, SUM_COLOR, SUM_LINE = SUM_COLOR + 3, SUMS };
 
-/* Between two labels, whose occupancies a and 1 - a add up to 1, the share a^4 / (a^4 + (1 - a)^4) runs from
- * 0 to 1 with the slope 4 (derived): over about a voxel, where occupancies rise by a quarter a voxel. */
+/* A label's weight in the mean of colours. Derived: between two labels, whose occupancies a and 1 - a add up
+ * to 1, the share a^4 / (a^4 + (1 - a)^4) runs from 0 to 1 with the slope 4. Occupancies rise by a quarter a
+ * voxel, so that the share rises over about a voxel. */
 static float weight_of(float occupancy) {
   const float square = occupancy > 0 ? occupancy * occupancy : 0;
   return square * square;
 }
 
-/* Adds a label's occupancy in a slice of the part. */
+/* Adds a label's occupancy to the sums of a slice of the part. */
 static void add_label(const solids_job *job, const hl_label *label, const hl_volume *o, size_t z,
                       float *const sums[SUMS]) {
   size_t first[3];
@@ -99,7 +100,7 @@ static hl_status add_colors(hl_context *context, hl_pool *pool, solids_job *job,
   return status;
 }
 
-/* values: [count]; those of the labels; parts: room for as many. */
+/* Makes the volume. values: [count]; the values of the labels. parts: working space for as many parts. */
 static hl_status make(hl_context *context, hl_pool *pool, solids_job *job, const double *values,
                       hl_label_part *parts, hl_volume **made, hl_error *error) {
   hl_status status = hl_label_parts(context, pool, job->map, values, job->count, parts, error);

@@ -1,24 +1,25 @@
-/* mesh/edges.c - normals at the edges of meshes that bring none.
+/* mesh/edges.c - normals at the creases of meshes that bring no normals.
  *
- * In: a mesh's triangles. Out: for each corner at an edge a normal of its own. A vertex has the mean of its
- * triangles, weighted by their areas; where one of them stands out of that mean there is an edge, and each
- * triangle gets the mean of those alone that bend little against it. A long box would otherwise look rounded:
- * its short faces count for little in the means. */
+ * In: a mesh's triangles. Out: a normal for each corner at a crease. A vertex's normal is the mean of its
+ * triangles' normals, weighted by area. A triangle whose normal differs much from this mean is at a crease.
+ * The corners of triangles at a crease get the mean of those triangles alone that bend little against theirs.
+ * Without creases a long box would look rounded, as its short faces count for little in the means. */
 #include "core/memory.h"
 #include "core/vector.h"
 #include "mesh/mesh.h"
 
-/* The cosine of the angle below which two triangles at an edge's vertex share a normal: 60 degrees. */
+/* The cosine of the angle below which two triangles at a crease's vertex share a normal: 60 degrees. */
 static const double SHARED = 0.5;
 
-/* A vertex of more triangles keeps one normal for all of them. */
+/* A vertex with more triangles keeps one normal for all of them. */
 enum { MOST_TRIANGLES = 256 };
 
 typedef struct edge_search {
   const hl_mesh_description *mesh;
-  float (*sums)[3]; /* owned; [vertex_count]; of the triangles' cross products */
-  uint16_t *marks;  /* owned; [vertex_count]; first 1 for vertices at edges, then their corners so far */
-  uint32_t *first;  /* owned; [vertex_count + 1]; where the corners of a vertex at an edge begin */
+  float (*sums)[3]; /* owned; [vertex_count]; sums of the triangles' cross products */
+  uint16_t *marks;  /* owned; [vertex_count]; at first 1 for vertices at creases, later the number of their
+                     * corners so far */
+  uint32_t *first;  /* owned; [vertex_count + 1]; index at which the corners of a vertex at a crease begin */
   size_t *corners;  /* owned; [first[vertex_count]]; 3 x triangle + corner */
 } edge_search;
 
@@ -45,7 +46,7 @@ static void add_up(edge_search *search) {
   }
 }
 
-/* Marks the vertices of which a triangle bends much against the mean; returns whether there is one. */
+/* Marks the vertices at which a triangle bends much against the mean. Returns whether there is one. */
 static bool mark_edges(edge_search *search) {
   const hl_mesh_description *d = search->mesh;
   bool any = false;
@@ -76,7 +77,7 @@ static void count_corners(edge_search *search) {
   }
 }
 
-/* Lists the corners, and tells each its place in the list. */
+/* Lists the corners, and stores in `edges` each corner's place in the list. */
 static void list_corners(edge_search *search, uint32_t (*edges)[3]) {
   const hl_mesh_description *d = search->mesh;
   for (size_t t = 0; t < d->triangle_count; t++)
@@ -89,8 +90,8 @@ static void list_corners(edge_search *search, uint32_t (*edges)[3]) {
     }
 }
 
-/* Finds the normals of one vertex's corners: of each the mean of the triangles that bend little against its
- * own. */
+/* Finds the normals of one vertex's corners. A corner's normal is the mean of the triangles that bend little
+ * against the corner's own triangle. */
 static void find_normals_of(const edge_search *search, size_t vertex, float (*normals)[3]) {
   vec3 cross[MOST_TRIANGLES], unit[MOST_TRIANGLES];
   const size_t *corners = search->corners + search->first[vertex];

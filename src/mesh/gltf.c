@@ -1,5 +1,5 @@
 /* mesh/gltf.c - glTF 2.0 files, as text (.gltf) and binary (.glb): the triangles of the scene, with normals,
- * colours of vertices, and the base colours of materials. Textures, skins and animations are passed over.
+ * colours of vertices, and the base colours of materials. Textures, skins and animations are ignored.
  *
  * The format's specification is Khronos Group, glTF 2.0 (ISO/IEC 12113:2022). */
 #include "mesh/gltf.h"
@@ -17,7 +17,7 @@ enum { DEEPEST_NODE = 100, MODE_TRIANGLES = 4, MODE_STRIP = 5, MODE_FAN = 6 };
 typedef struct gltf_reader {
   gltf_file file;
   mesh_parts *parts;
-  unsigned char *visited; /* owned; [nodes]; a node has one parent */
+  unsigned char *visited; /* owned; [nodes]; whether a node was visited: a node has one parent */
   bool has_normals, has_colors;
   hl_error *error;
 } gltf_reader;
@@ -30,7 +30,7 @@ static const json_t *item(const gltf_reader *reader, const char *list, size_t in
   return json_array_get(json_object_get(reader->file.root, list), index);
 }
 
-/* Reads an array of numbers; false where there is none of this length. */
+/* Reads an array of numbers; false where the key has no array of this length. */
 static bool read_numbers(const json_t *object, const char *key, size_t count, double *numbers) {
   const json_t *list = json_object_get(object, key);
   if (json_array_size(list) != count) return false;
@@ -40,7 +40,7 @@ static bool read_numbers(const json_t *object, const char *key, size_t count, do
 
 /* ---- the place of a node ---- */
 
-/* A unit quaternion as a rotation. */
+/* The rotation of a unit quaternion. */
 static mat3 rotation_of(const double q[4]) {
   double x = q[0], y = q[1], z = q[2], w = q[3];
   return (mat3){{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
@@ -63,7 +63,8 @@ static affine3 place_of(const json_t *node) {
 
 /* ---- triangles ---- */
 
-/* Finds an attribute of a primitive, of so many components (most: or one more). *found: it has one. */
+/* Finds an attribute of a primitive. The attribute must have `least` to `most` components. *found: whether
+ * the primitive has it. */
 static hl_status find_attribute(gltf_reader *reader, const json_t *primitive, const char *name, int least,
                                 int most, gltf_accessor *accessor, bool *found) {
   size_t index;
@@ -75,7 +76,7 @@ static hl_status find_attribute(gltf_reader *reader, const json_t *primitive, co
   return status;
 }
 
-/* The base colour of a primitive's material, linear; opaque unless the material blends. */
+/* The base colour of a primitive's material, linear. It is opaque unless the material blends. */
 static void base_color(const gltf_reader *reader, const json_t *primitive, double color[4]) {
   size_t index = 0;
   for (int c = 0; c < 4; c++) color[c] = 1;
@@ -104,7 +105,7 @@ static void add_color(gltf_reader *reader, const json_t *primitive, const gltf_a
     }
 }
 
-/* Normals are turned by the inverse transpose of the place. */
+/* Adds vertices. Normals are turned by the inverse transpose of the node's transform. */
 static void add_vertices(gltf_reader *reader, const gltf_accessor *positions, const gltf_accessor *normals,
                          affine3 place) {
   mesh_parts *parts = reader->parts;
@@ -125,8 +126,8 @@ static void add_vertices(gltf_reader *reader, const gltf_accessor *positions, co
   }
 }
 
-/* Adds the triangles of `count` corners. indices null: the vertices in their order. flipped: the place is a
- * mirror, which turns triangles over. */
+/* Adds the triangles of `count` corners. indices: null for the vertices in their order. flipped: the node's
+ * transform is a mirror, which turns triangles over. */
 static hl_status add_faces(gltf_reader *reader, const gltf_accessor *indices, size_t count, size_t vertices,
                            size_t mode, bool flipped) {
   mesh_parts *parts = reader->parts;
@@ -150,7 +151,7 @@ static hl_status add_faces(gltf_reader *reader, const gltf_accessor *indices, si
   return status;
 }
 
-/* Whether a primitive has its positions in a buffer too, for programs that do not unpack them. */
+/* Whether a primitive also has its positions unpacked in a buffer, for programs that cannot unpack them. */
 static bool has_plain_positions(const gltf_reader *reader, const json_t *primitive) {
   size_t index;
   return hl_gltf_index(json_object_get(primitive, "attributes"), "POSITION", &index) &&
@@ -228,7 +229,7 @@ static hl_status add_node(gltf_reader *reader, size_t index, affine3 place, int 
   return status;
 }
 
-/* Which attributes any primitive has: all vertices then have them. */
+/* Finds which attributes any primitive has. All vertices then have these attributes. */
 static void find_attributes(gltf_reader *reader) {
   const json_t *meshes = json_object_get(reader->file.root, "meshes");
   for (size_t m = 0; m < json_array_size(meshes); m++) {
@@ -268,12 +269,12 @@ static uint32_t word_at(const unsigned char *at) {
   return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
 }
 
-/* Whether a chunk that is a buffer begins here. */
+/* Whether a chunk that is a buffer begins at `at`. */
 static bool is_buffer(mesh_text text, size_t at) {
   return text.length >= 8 && at <= text.length - 8 && memcmp(text.bytes + at + 4, "BIN", 4) == 0;
 }
 
-/* Finds the chunks of a GLB file: JSON first, then a buffer. */
+/* Finds the chunks of a GLB file: the JSON text, then a buffer. */
 static hl_status find_chunks(gltf_reader *reader, mesh_text text, mesh_text *json) {
   enum { HEADER = 12, CHUNK = 8 };
   if (text.length < HEADER + CHUNK) return refuse(reader, "is too short for a GLB file");
@@ -298,7 +299,7 @@ static hl_status parse(gltf_reader *reader, mesh_text json) {
                  told.line, told.text);
 }
 
-/* Tells what of the file is not shown. */
+/* Warns about content of the file that is not shown. */
 static void tell_passed(const gltf_reader *reader) {
   const json_t *root = reader->file.root;
   bool textures = json_array_size(json_object_get(root, "textures")) > 0;

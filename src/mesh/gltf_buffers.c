@@ -68,18 +68,20 @@ static int hex_value(char c) {
                                 : -1;
 }
 
-/* The name that a URI stands for: "%20" is a space (RFC 3986, section 2.1). name: as long as the URI. */
+/* Decodes the name that a URI stands for: "%20" is a space (RFC 3986, section 2.1). name: has room for as
+ * many bytes as the URI. */
 static void decode_uri(const char *uri, char *name) {
   for (; *uri != 0; uri++) {
     int high = *uri == '%' ? hex_value(uri[1]) : -1, low = high >= 0 ? hex_value(uri[2]) : -1;
-    bool coded = low >= 0 && (high > 0 || low > 0); /* no byte of zero */
+    bool coded = low >= 0 && (high > 0 || low > 0); /* a coded zero byte is not decoded */
     *name++ = coded ? (char)(16 * high + low) : *uri;
     if (coded) uri += 2;
   }
   *name = 0;
 }
 
-/* Reads the file that a URI names; where there is none of the decoded name, that of the URI's own letters. */
+/* Reads the file that a URI names. If there is no file of the decoded name, the URI's own text is the
+ * name. */
 static hl_status read_uri(const gltf_file *file, const char *uri, gltf_buffer *buffer, hl_error *error) {
   char *name = hl_allocate(file->context, strlen(uri) + 1, 1);
   if (name == NULL) return hl_fail_memory(error, strlen(uri), "a uri");
@@ -149,7 +151,7 @@ static int components_of(const char *name) {
   return 0;
 }
 
-/* Finds the bytes of a buffer view, from an offset on. */
+/* Finds the bytes of a buffer view from an offset on. */
 static bool find_view(const gltf_file *file, size_t index, size_t offset, gltf_buffer *bytes,
                       size_t *stride) {
   const json_t *view = json_array_get(json_object_get(file->root, "bufferViews"), index);
@@ -166,7 +168,8 @@ static bool find_view(const gltf_file *file, size_t index, size_t offset, gltf_b
   return true;
 }
 
-/* Fills an accessor's place in a buffer view: bytes and stride. False where the view does not hold it. */
+/* Sets an accessor's bytes and stride from its buffer view. False where the view does not hold the
+ * accessor. */
 static bool place_accessor(const gltf_file *file, const json_t *described, size_t count,
                            gltf_accessor *accessor) {
   size_t view, offset = 0, element = bytes_of_type(accessor->type) * (size_t)accessor->components;

@@ -1,17 +1,20 @@
 /* mesh/insides.c - the parts of a mesh that are closed, and which side of them is the inside.
  *
- * In: a mesh's triangles. Out: for each of them on which side its part's inside is. A part is what vertices
- * hold together: a mesh may hold a room and what stands in it, their fronts towards whichever side. */
+ * In: a mesh's triangles. Out: for each triangle, the side on which the inside of its part lies. A part is a
+ * set of triangles that vertices connect. A mesh may hold a room and the things in it, with the fronts of
+ * each facing either way. */
 #include "core/memory.h"
 #include "mesh/mesh.h"
 
-/* Parts while they are found. */
+/* The search for the parts. */
 typedef struct part_search {
   const hl_mesh_description *mesh;
-  uint32_t *parent; /* owned; [vertex_count]; another vertex of the same part; its own: the part's root */
-  uint64_t *ways;   /* owned; [vertex_count]; of roots: the sum of the part's edges, 0 where it is closed */
-  double *volume;   /* owned; [vertex_count]; of roots: six times what the part encloses; below 0 where fronts
-                       face inwards */
+  uint32_t *parent; /* owned; [vertex_count]; another vertex of the same part; a part's root is its own
+                     * parent */
+  uint64_t *ways;   /* owned; [vertex_count]; for roots: the sum of the hashes of the part's edges, 0 where
+                     * the part is closed */
+  double *volume;   /* owned; [vertex_count]; for roots: six times the volume that the part encloses; negative
+                     * where fronts face inwards */
 } part_search;
 
 static uint32_t root_of(uint32_t *parent, uint32_t vertex) {
@@ -33,10 +36,10 @@ static double volume_of(const hl_mesh_description *d, const uint32_t corner[3]) 
          a[2] * ((double)b[0] * c[1] - (double)b[1] * c[0]);
 }
 
-/* Finds the parts, and sums up their edges and volumes. Returns whether the whole mesh is closed: whether
- * each edge runs as often one way as the other, with the volume that the triangles enclose above 0 (derived:
- * hashes of edges one way are added, the other way subtracted; another sum than 0 means an open edge, and 0
- * by chance has the probability 2^-64). */
+/* Finds the parts, and adds up their edges and volumes. Returns whether the whole mesh is closed: each edge
+ * runs as often one way as the other, and the triangles enclose a volume above 0. Derived: hashes of edges
+ * that run one way are added, hashes of edges that run the other way subtracted. A sum other than 0 means a
+ * boundary edge; 0 by chance has the probability 2^-64. */
 static bool find_parts(part_search *search) {
   const hl_mesh_description *d = search->mesh;
   uint64_t sum = 0;

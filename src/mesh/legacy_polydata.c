@@ -8,7 +8,7 @@
 #include "volume/numbers.h"
 
 typedef struct legacy_file {
-  hl_legacy_vtk file; /* first: its callbacks find the rest by it */
+  hl_legacy_vtk file; /* must come first: callbacks find the other members by the address of this one */
   polydata data;
   bool is_polydata;
 } legacy_file;
@@ -22,7 +22,7 @@ static hl_status read_numbers(hl_legacy_vtk *file, hl_voxel_type type, size_t co
   return hl_read_numbers(file->stream, &code, count, numbers, error);
 }
 
-/* "POINTS n type", then the coordinates. */
+/* Reads "POINTS n type" and the coordinates that follow. */
 static hl_status read_points(legacy_file *reader, const char *arguments, hl_error *error) {
   char number[HL_LEGACY_WORD_BYTES], type_name[HL_LEGACY_WORD_BYTES];
   const char *cursor = arguments;
@@ -36,7 +36,7 @@ static hl_status read_points(legacy_file *reader, const char *arguments, hl_erro
              : status;
 }
 
-/* The next line with a word on it: "keyword type". */
+/* Reads the next line that has a word: "keyword type". */
 static hl_status read_named(hl_legacy_vtk *file, const char *keyword, hl_voxel_type *type, hl_error *error) {
   char line[HL_LINE_BYTES], word[HL_LEGACY_WORD_BYTES], type_name[HL_LEGACY_WORD_BYTES];
   bool ended = false, found = false;
@@ -52,7 +52,7 @@ static hl_status read_named(hl_legacy_vtk *file, const char *keyword, hl_voxel_t
   return hl_legacy_vtk_type(file, type_name, type, error);
 }
 
-/* Cells of version 5.1: the beginnings of all cells and the end of the last, and their points. */
+/* Reads cells of version 5.1: the beginnings of all cells and the end of the last, and their points. */
 static hl_status read_offsets(hl_legacy_vtk *file, cells *cells, size_t offsets, size_t points,
                               hl_error *error) {
   hl_voxel_type type;
@@ -69,7 +69,8 @@ static hl_status read_offsets(hl_legacy_vtk *file, cells *cells, size_t offsets,
   return HL_OK;
 }
 
-/* Cells of older versions: for each its number of points and these. The numbers are moved together. */
+/* Reads cells of older versions. Each cell is its number of points and then the points; the numbers of points
+ * are taken out. */
 static hl_status read_lists(hl_legacy_vtk *file, cells *cells, size_t count, size_t numbers,
                             hl_error *error) {
   hl_status status = HL_OK;
@@ -94,7 +95,7 @@ static hl_status read_lists(hl_legacy_vtk *file, cells *cells, size_t count, siz
   return HL_OK;
 }
 
-/* Whether the line after the keyword's begins the newer form. */
+/* Whether the line after the keyword's line begins the newer form. */
 static hl_status is_newer(hl_legacy_vtk *file, bool *newer, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -142,8 +143,8 @@ static hl_status meet_array(hl_legacy_vtk *file, const hl_legacy_array *array, h
   bool active = hl_text_is_one_of(array->kind, "SCALARS|COLOR_SCALARS");
   cell_values *values = hl_polydata_claim(&reader->data, name, &shape,
                                           array->of_points ? AT_POINTS : AT_CELLS, active);
-  if (values == NULL || array->tuples != file->tuples) /* a FIELD of the whole file has sizes of its own */
-    return hl_legacy_vtk_skip_array(file, array, error);
+  /* an array of the whole file's FIELD has a size of its own */
+  if (values == NULL || array->tuples != file->tuples) return hl_legacy_vtk_skip_array(file, array, error);
   shape.values = values->values;
   size_t count = array->tuples * array->components;
   hl_status status = read_numbers(file, array->type, count, &shape.values, error);

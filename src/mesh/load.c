@@ -18,7 +18,7 @@ static const struct {
                {".gltf", hl_mesh_read_gltf}, {".glb", hl_mesh_read_gltf}, {".vtp", hl_mesh_read_vtp},
                {".vtu", hl_mesh_read_vtp}};
 
-/* Whether the first bytes of a file say that it is PolyData: other .vtk files are volumes. */
+/* Whether a file's first bytes say that it is PolyData. Other .vtk files are volumes. */
 static bool begins_as_polydata(const char *path) {
   char bytes[1025];
   struct stat about;

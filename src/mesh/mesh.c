@@ -43,7 +43,7 @@ hl_status hl_mesh_get_box(const hl_mesh *mesh, double low[3], double high[3]) {
 
 static bool is_finite(const float v[3]) { return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]); }
 
-/* Whether a triangle has an area: its edges' cross product is not zero. */
+/* Whether a triangle has an area: whether the cross product of its edges is not zero. */
 static bool has_area(const float a[3], const float b[3], const float c[3]) {
   double p[3], q[3];
   for (int i = 0; i < 3; i++) p[i] = (double)b[i] - a[i], q[i] = (double)c[i] - a[i];
@@ -58,7 +58,7 @@ static void grow_bounds(hl_mesh *mesh, const float at[3], double radius) {
   }
 }
 
-/* Keeps the triangles that can be seen. Opens the mesh's arrays to writing: they are its own. */
+/* Keeps the triangles that can be seen. The mesh owns its arrays, so that they may be written here. */
 static hl_status keep_triangles(hl_mesh *mesh, hl_error *error) {
   hl_mesh_description *d = &mesh->description;
   uint32_t(*triangles)[3] = (uint32_t(*)[3])d->triangles;
@@ -85,7 +85,7 @@ static hl_status keep_triangles(hl_mesh *mesh, hl_error *error) {
   return HL_OK;
 }
 
-/* Keeps the spheres that have a place and a radius. */
+/* Keeps the spheres that have a finite place and a radius. */
 static void keep_spheres(hl_mesh *mesh) {
   hl_mesh_description *d = &mesh->description;
   float(*spheres)[4] = (float(*)[4])d->spheres, (*colors)[4] = (float(*)[4])d->sphere_colors;
@@ -100,7 +100,7 @@ static void keep_spheres(hl_mesh *mesh) {
   d->sphere_count = kept;
 }
 
-/* Keeps what can be seen, and finds its bounds. */
+/* Keeps the visible elements, and finds their bounds. */
 static hl_status keep_visible(hl_mesh *mesh, hl_error *error) {
   for (int axis = 0; axis < 3; axis++) mesh->low[axis] = INFINITY, mesh->high[axis] = -INFINITY;
   hl_status status = keep_triangles(mesh, error);
@@ -111,7 +111,7 @@ static hl_status keep_visible(hl_mesh *mesh, hl_error *error) {
                  "the mesh has no triangle with an area, no sphere and no line: give at least one");
 }
 
-/* a is below b. */
+/* The hash of the edge from vertex a to vertex b, where a is less than b. */
 static uint64_t hash_of_edge(uint32_t a, uint32_t b) {
   uint64_t hash = ((uint64_t)a << 32 | b) + 0x9e3779b97f4a7c15u; /* splitmix64 (Steele et al. 2014) */
   hash = (hash ^ hash >> 30) * 0xbf58476d1ce4e5b9u;
@@ -121,7 +121,7 @@ static uint64_t hash_of_edge(uint32_t a, uint32_t b) {
 
 uint64_t hl_hash_of_way(uint32_t a, uint32_t b) { return a < b ? hash_of_edge(a, b) : -hash_of_edge(b, a); }
 
-/* Whether all of so many colours have an opacity of 1; null: they have. */
+/* Whether all colours have an opacity of 1; true if `colors` is null. */
 static bool are_opaque(const float (*colors)[4], size_t count) {
   for (size_t n = 0; colors != NULL && n < count; n++)
     if (!(colors[n][3] >= 1)) return false;

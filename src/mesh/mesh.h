@@ -1,4 +1,4 @@
-/* mesh/mesh.h - the inside of hl_mesh, and what its readers share. */
+/* mesh/mesh.h - the inside of hl_mesh, and functions that its readers share. */
 #ifndef HL_MESH_MESH_H
 #define HL_MESH_MESH_H
 
@@ -13,44 +13,46 @@
 enum { HL_LIMIT_TRIANGLES = 1 << 28, HL_LIMIT_SPHERES = 1 << 26, HL_LIMIT_LINE_POINTS = 1 << 23 };
 
 /* The cosine of the greatest angle between a triangle and a vertex's normal at which the surface counts as
- * rounded there: 40 degrees. Beyond it there is an edge. */
+ * rounded: 40 degrees. A greater angle is a crease. */
 #define HL_MESH_ROUNDED 0.766
 
-/* A corner that has no normal of its own. */
+/* Marks a corner that has no normal of its own. */
 #define HL_NO_EDGE UINT32_MAX
 
 struct hl_mesh {
   hl_context *context;
   atomic_int references;
   hl_mesh_description description;        /* its arrays are owned */
-  size_t given_vertices, given_triangles; /* before those of the tubes */
-  uint32_t (*edges)[3];     /* owned; [triangle_count]; of each corner the index of its own normal among
-                               edge_normals, or HL_NO_EDGE: its vertex's; null: of all the vertices' */
+  size_t given_vertices, given_triangles; /* numbers of vertices and triangles before the tubes' own */
+  /* owned; [triangle_count]; for each corner the index of its normal in edge_normals, or HL_NO_EDGE for its
+   * vertex's normal; null if all corners have their vertices' normals */
+  uint32_t (*edges)[3];
   float (*edge_normals)[3]; /* owned; [edge_normal_count]; unit */
   size_t edge_normal_count;
-  double low[3], high[3]; /* bounds of all that is seen; world units */
-  bool closed;     /* each edge has a triangle on either side: the mesh has an inside, and its fronts face
-                      outwards */
-  int8_t *insides; /* owned; [triangle_count]; the side that is inside of the closed part of the mesh that a
-                      triangle belongs to: -1 its back, 1 its front, 0 where the part is open */
-  bool opaque;     /* no colour of a triangle lets anything through */
-  bool is_cut;     /* a scene's cuts have been cut out of it already: an isosurface */
-  uint64_t mark; /* of all that hides light: triangles, spheres and their colours; for keys of kept results */
+  double low[3], high[3]; /* bounds of the visible elements; world units */
+  bool closed;     /* whether each edge has a triangle on either side: the mesh then has an inside, and its
+                    * fronts face outwards */
+  int8_t *insides; /* owned; [triangle_count]; the side of a triangle that is inside of the triangle's closed
+                    * part: -1 is its back, 1 its front, 0 means that the part is open */
+  bool opaque;     /* whether no triangle's colour lets light through */
+  bool is_cut;     /* whether a scene's cuts have been applied already, as for an isosurface */
+  uint64_t mark; /* a hash of all that hides light: triangles, spheres and their colours; for the keys of kept
+                  * results */
 };
 
-/* A number for the way along an edge from one vertex to another, by chance alike for others once in 2^64;
- * with that of the way back the sum is 0. */
+/* A hash of the way along an edge from one vertex to another. Other ways have the same hash with a chance of
+ * one in 2^64. The hashes of a way and of the way back add up to 0. */
 uint64_t hl_hash_of_way(uint32_t from, uint32_t to);
 
-/* A polygon that was added as a fan of triangles: those from the first one on. */
+/* A polygon that was added as a fan of triangles; `first` is the first triangle. */
 typedef struct mesh_polygon {
   size_t first, count;
 } mesh_polygon;
 
-/* A mesh that is being read: growing arrays. */
+/* A mesh that is being read, as growing arrays. */
 typedef struct mesh_parts {
   hl_context *context;
-  const char *path;         /* what errors call the file */
+  const char *path;         /* the file's name in errors */
   float (*positions)[3];    /* owned; [vertex_count] */
   float (*normals)[3];      /* owned; [vertex_count]; null: none */
   float (*colors)[4];       /* owned; [vertex_count]; null: none */
@@ -68,35 +70,37 @@ typedef struct mesh_parts {
   size_t polygon_count, polygon_room;
 } mesh_parts;
 
-/* Makes room for so many vertices, or triangles, in all. with_normals, with_colors: arrays that vertices
- * have. */
+/* Makes room for `count` vertices or triangles in all. with_normals, with_colors: whether vertices have these
+ * arrays. */
 hl_status hl_mesh_reserve_vertices(mesh_parts *parts, size_t count, bool with_normals, bool with_colors,
                                    hl_error *error);
 hl_status hl_mesh_reserve_triangles(mesh_parts *parts, size_t count, hl_error *error);
 
-/* Adds a triangle. Room for it is made as needed; face_colors has none. */
+/* Adds a triangle, and makes room for it. face_colors is not enlarged. */
 hl_status hl_mesh_add_triangle(mesh_parts *parts, uint32_t a, uint32_t b, uint32_t c, hl_error *error);
 
-/* Notes that the triangles from `first` on are the fan of one polygon, around its first corner. */
+/* Notes that the triangles from `first` on are the fan of one polygon around its first corner. */
 hl_status hl_mesh_note_polygon(mesh_parts *parts, size_t first, hl_error *error);
 
-/* Replaces the fans of noted polygons that are not convex by triangles that cover the polygon and nothing
- * else. All vertices must be there. */
+/* Replaces the fans of noted polygons that are not convex by triangles that cover exactly the polygon. All
+ * vertices must have been added. */
 hl_status hl_mesh_clip_polygons(mesh_parts *parts, hl_error *error);
 
-/* Adds the triangles of the tubes around the parts' lines. */
+/* Adds the triangles of the tubes around the lines. */
 hl_status hl_mesh_add_tubes(mesh_parts *parts, hl_error *error);
 
-/* Checks the parts, makes tubes of their lines, and moves all into a mesh, which is owned by the caller. */
+/* Checks the arrays, makes tubes of the lines, and moves everything into a mesh, which is owned by the
+ * caller. */
 hl_status hl_mesh_of_parts(mesh_parts *parts, hl_mesh **mesh, hl_error *error);
 
-/* Finds the edges of a mesh without normals, and the normals of corners there: once, when it is made. */
+/* Finds the creases of a mesh without normals, and the normals of the corners there. Called once, when the
+ * mesh is made. */
 hl_status hl_mesh_find_edges(hl_mesh *mesh, hl_error *error);
 
-/* Finds which parts of a mesh are closed: insides and closed. */
+/* Finds the closed parts of a mesh: sets insides and closed. */
 hl_status hl_mesh_find_insides(hl_mesh *mesh, hl_error *error);
 
-/* The parts' arrays, borrowed. */
+/* A description whose arrays are borrowed from the parts. */
 hl_mesh_description hl_mesh_parts_describe(const mesh_parts *parts);
 
 void hl_mesh_parts_release(mesh_parts *parts);
@@ -107,7 +111,7 @@ typedef struct mesh_text {
   size_t length;
 } mesh_text;
 
-/* Readers of formats: fill empty parts. */
+/* A format's reader, which fills empty parts. */
 typedef hl_status mesh_reader(mesh_text text, mesh_parts *parts, hl_error *error);
 mesh_reader hl_mesh_read_ply, hl_mesh_read_stl, hl_mesh_read_obj, hl_mesh_read_gltf, hl_mesh_read_vtp,
     hl_mesh_read_legacy_vtk;

@@ -1,8 +1,8 @@
 /* mesh/obj.c - Wavefront OBJ files: vertices, their normals and colours, faces, and the colours of their
  * materials.
  *
- * Groups, texture coordinates and curves are passed over. A vertex has one normal: where faces give it
- * several, the last one. Colours of vertices displace those of materials. */
+ * Groups, texture coordinates and curves are ignored. A vertex has one normal; if faces give it several, the
+ * last one counts. Colours of vertices displace colours of materials. */
 #define _GNU_SOURCE /* memrchr */
 #include <math.h>
 #include <string.h>
@@ -16,11 +16,11 @@ typedef struct obj_reader {
   mesh_parts *parts;
   const char *at, *end; /* the rest of the text */
   int line;
-  float (*normals)[3]; /* owned; [normal_count]; those of the file */
+  float (*normals)[3]; /* owned; [normal_count]; the file's normals */
   size_t normal_count, normal_room;
   obj_materials materials;
-  const obj_material *material; /* of the faces that come; null: none */
-  size_t face_color_room;       /* triangles that parts->face_colors has memory for */
+  const obj_material *material; /* the material of the faces that follow; null if there is none */
+  size_t face_color_room;       /* number of triangles that parts->face_colors has memory for */
   hl_error *error;
 } obj_reader;
 
@@ -31,19 +31,21 @@ static hl_status fail(obj_reader *reader, const char *what) {
 
 static bool ends_line(char c) { return c == '\n' || c == '\r'; }
 
-/* The bytes of a line's end at `at`: CR, LF or both; 0: there is none. */
+/* The number of bytes of a line's end at `at`, which is CR, LF or both; 0 if there is no line's end. */
 static size_t line_end(const obj_reader *reader, const char *at) {
   if (at >= reader->end || !ends_line(*at)) return 0;
   return *at == '\r' && at + 1 < reader->end && at[1] == '\n' ? 2 : 1;
 }
 
-/* The bytes of a backslash and a line's end, after which the line goes on; 0: there are none. */
+/* The number of bytes of a backslash and a line's end, after which the line continues; 0 if they are not at
+ * `at`. */
 static size_t continuation(const obj_reader *reader, const char *at) {
   size_t end = at < reader->end && *at == '\\' ? line_end(reader, at + 1) : 0;
   return end > 0 ? end + 1 : 0;
 }
 
-/* The next word of the line, which may go on after a backslash. False at its end, or at a comment. */
+/* Takes the next word of the line, which may continue after a backslash. False at the line's end, or at a
+ * comment. */
 static bool next_word(obj_reader *reader, const char **word, size_t *length) {
   for (size_t skipped;;) {
     skipped = continuation(reader, reader->at);
@@ -85,7 +87,7 @@ static void skip_line(obj_reader *reader) {
   reader->line++;
 }
 
-/* Reads up to `most` numbers of the line; returns how many, -1 for words that are none. */
+/* Reads up to `most` numbers of the line. Returns how many were read, or -1 if a word is no number. */
 static int read_numbers(obj_reader *reader, double *numbers, int most) {
   const char *word;
   size_t length;
@@ -131,7 +133,8 @@ static hl_status read_normal(obj_reader *reader) {
   return HL_OK;
 }
 
-/* An index of a face's corner: from 1 on, or negative from the last one back; -1 where it is out of range. */
+/* The index of a face's corner, counted from 1 on, or if negative from the last one back; -1 if the index is
+ * out of range. */
 static int64_t index_of(const char *text, size_t length, size_t count) {
   double number;
   if (!hl_text_number(text, length, &number) || fabs(number) > 1e15 || number != floor(number)) return -1;
@@ -139,7 +142,7 @@ static int64_t index_of(const char *text, size_t length, size_t count) {
   return index >= 0 && index < (double)count ? (int64_t)index : -1;
 }
 
-/* Gives a vertex the normal that a corner "v//n" or "v/t/n" names, if it names one. */
+/* Sets a vertex's normal if the corner, "v//n" or "v/t/n", names one. */
 static hl_status set_normal(obj_reader *reader, uint32_t vertex, const char *text, size_t length) {
   mesh_parts *parts = reader->parts;
   const char *slash = memrchr(text, '/', length);
@@ -155,8 +158,8 @@ static hl_status set_normal(obj_reader *reader, uint32_t vertex, const char *tex
   return HL_OK;
 }
 
-/* Gives the triangles from the first one on, which are those of one face, the colour of its material. Once a
- * face has a colour, all have. */
+/* Gives the triangles of one face, from `first` on, the colour of the face's material. As soon as one face
+ * has a colour, all have one. */
 static hl_status color_face(obj_reader *reader, size_t first) {
   mesh_parts *parts = reader->parts;
   if (parts->face_colors == NULL && reader->material == NULL) return HL_OK;
@@ -183,8 +186,8 @@ static hl_status read_library(obj_reader *reader) {
   if (reader->material != NULL) memcpy(copy, reader->material->name, sizeof copy);
   hl_status status = hl_obj_read_materials(reader->parts->context, reader->parts->path, name,
                                            &reader->materials, reader->error);
-  if (reader->material != NULL)
-    reader->material = hl_obj_find_material(&reader->materials, copy); /* they moved */
+  if (reader->material != NULL) /* the materials have moved in memory */
+    reader->material = hl_obj_find_material(&reader->materials, copy);
   return status;
 }
 
@@ -230,7 +233,8 @@ hl_status hl_mesh_read_obj(mesh_text text, mesh_parts *parts, hl_error *error) {
   const char *start = (const char *)text.bytes;
   obj_reader reader = {.parts = parts, .at = start, .end = start + text.length, .line = 1, .error = error};
   hl_status status = HL_OK;
-  if (text.length >= 3 && memcmp(start, "\xef\xbb\xbf", 3) == 0) reader.at += 3; /* byte order mark */
+  /* skips the byte order mark */
+  if (text.length >= 3 && memcmp(start, "\xef\xbb\xbf", 3) == 0) reader.at += 3;
   while (status == HL_OK && reader.at < reader.end) {
     status = read_line(&reader);
     if (status == HL_OK) skip_line(&reader);

@@ -1,5 +1,5 @@
-/* mesh/obj_materials.c - see obj_materials.h. Of a material its diffuse colour (Kd, as sRGB, which programs
- * write) and its opacity (d, or 1 - Tr) are taken. */
+/* mesh/obj_materials.c - see obj_materials.h. A material's diffuse colour (Kd, which programs write as sRGB)
+ * and opacity (d, or 1 - Tr) are read. */
 #include "mesh/obj_materials.h"
 
 #include <math.h>
@@ -33,7 +33,7 @@ static hl_status add_material(hl_context *context, const char *name, obj_materia
   return HL_OK;
 }
 
-/* One line of a library: a keyword and what follows it. */
+/* Reads one line of a library: a keyword and its values. */
 static hl_status read_line(hl_context *context, char *line, obj_materials *materials, hl_error *error) {
   char word[16];
   const char *rest = line;
@@ -71,7 +71,7 @@ hl_status hl_obj_read_materials(hl_context *context, const char *path, const cha
     return HL_OK;
   }
   bool had_images = materials->has_images;
-  char *text = (char *)buffer.bytes; /* a block of our own, which ends with a zero byte */
+  char *text = (char *)buffer.bytes; /* the block is our own and ends with a zero byte */
   for (char *line = text; status == HL_OK && line != NULL && line < text + buffer.length;) {
     size_t length = strcspn(line, "\r\n");
     bool last = line + length >= text + buffer.length;

@@ -12,14 +12,14 @@ typedef struct obj_material {
 typedef struct obj_materials {
   obj_material *list; /* owned; [count] */
   size_t count, room;
-  bool has_images; /* a library names images for its colours, which are not read */
+  bool has_images; /* whether a library names images for its colours, which are not read */
 } obj_materials;
 
-/* Adds the materials of a library beside the OBJ file `path`. A library that cannot be read is told, and adds
- * none. */
+/* Adds the materials of a library beside the OBJ file `path`. A library that cannot be read causes a warning
+ * and adds none. */
 hl_status hl_obj_read_materials(hl_context *context, const char *path, const char *name,
                                 obj_materials *materials, hl_error *error);
-/* The material of this name; null: there is none. */
+/* The material with this name; null if there is none. */
 const obj_material *hl_obj_find_material(const obj_materials *materials, const char *name);
 
 #endif

@@ -1,5 +1,5 @@
 /* mesh/ply.c - PLY files (Turk 1994), ASCII and binary of either byte order: vertices with normals and
- * colours, and faces with colours. Other elements and properties are passed over. */
+ * colours, and faces with colours. Other elements and properties are ignored. */
 #include <math.h>
 #include <string.h>
 
@@ -20,9 +20,9 @@ typedef enum ply_type {
   PLY_F64
 } ply_type;
 static const struct {
-  const char *names; /* alternatives */
+  const char *names; /* alternative names of the type */
   ply_type type;
-  hl_voxel_type voxel; /* the same type */
+  hl_voxel_type voxel; /* the voxel type that is the same */
   int bytes;
 } types[] = {{"", PLY_NONE, HL_VOXEL_U8, 0},
              {"char|int8", PLY_I8, HL_VOXEL_I8, 1},
@@ -34,7 +34,7 @@ static const struct {
              {"float|float32", PLY_F32, HL_VOXEL_F32, 4},
              {"double|float64", PLY_F64, HL_VOXEL_F64, 8}};
 
-/* What a property is to a mesh. */
+/* The use that a mesh has for a property. */
 typedef enum ply_role {
   ROLE_NONE = -1,
   ROLE_X,
@@ -58,14 +58,13 @@ static const char *const role_names[ROLES] = {"x",
 enum { MOST_PROPERTIES = 64, MOST_ELEMENTS = 16, WORD_BYTES = 64 };
 
 typedef struct ply_property {
-  ply_type count, type; /* count: PLY_NONE where it is no list */
+  ply_type count, type; /* count: the type of a list's length, PLY_NONE for a property that is no list */
   int role;
 } ply_property;
 
 typedef struct ply_element {
-  bool vertices, faces,
-      strips;       /* strips: faces whose corners make strips of triangles, with -1 between them */
-  bool face_colors; /* faces that have colours */
+  bool vertices, faces, strips; /* faces whose corners make strips of triangles, with -1 between strips */
+  bool face_colors;             /* whether faces have colours */
   size_t count;
   ply_property property[MOST_PROPERTIES];
   int property_count;
@@ -74,14 +73,14 @@ typedef struct ply_element {
 typedef struct ply_reader {
   mesh_parts *parts;
   const char *at, *end; /* the rest of the file */
-  int line;             /* of the header */
+  int line;             /* number of the header line */
   bool ascii, big_endian;
-  char line_end; /* of the header's lines: LF, or CR alone */
+  char line_end; /* the end of header lines: LF, or CR alone */
   ply_element element[MOST_ELEMENTS];
   int element_count;
-  size_t face_color_room; /* triangles that parts->face_colors has memory for */
-  size_t colored;         /* triangles that have theirs */
-  bool has_vertices;      /* an element of vertices was read */
+  size_t face_color_room; /* number of triangles that parts->face_colors has memory for */
+  size_t colored;         /* number of triangles that have colours */
+  bool has_vertices;      /* whether an element of vertices was read */
   hl_error *error;
 } ply_reader;
 
@@ -107,7 +106,7 @@ static bool next_line(ply_reader *reader, const char **line, size_t *length) {
   return true;
 }
 
-/* Splits a header line into words; returns how many. */
+/* Splits a header line into words. Returns the number of words. */
 static int split(const char *line, size_t length, char word[6][WORD_BYTES]) {
   int count = 0;
   for (size_t at = 0; at < length && count < 6;) {
@@ -196,7 +195,7 @@ static bool read_word(ply_reader *reader, double *value) {
   return hl_text_number(start, (size_t)(reader->at - start), value);
 }
 
-/* The next number of a type. False at the end of the file. */
+/* Reads the next number of a type. False at the end of the file. */
 static bool read_number(ply_reader *reader, ply_type type, double *value) {
   if (reader->ascii) return read_word(reader, value);
   int bytes = types[type].bytes;
@@ -228,8 +227,8 @@ static void set_vertex(mesh_parts *parts, int role, ply_type type, double value)
   else set_color(parts->colors[v], role, type, value);
 }
 
-/* Gives the triangles from the first one on, which are those of one face, its colour, and white to earlier
- * ones without. */
+/* Gives the triangles of one face, from `first` on, the face's colour. Earlier triangles without colours
+ * become white. */
 static hl_status color_faces(ply_reader *reader, size_t first, const float color[4]) {
   mesh_parts *parts = reader->parts;
   if (parts->triangle_count > reader->face_color_room || parts->face_colors == NULL) {
@@ -239,7 +238,7 @@ static hl_status color_faces(ply_reader *reader, size_t first, const float color
     parts->face_colors = grown;
     reader->face_color_room = room;
   }
-  static const float white[4] = {1, 1, 1, 1}; /* faces of an element without colours */
+  static const float white[4] = {1, 1, 1, 1}; /* the colour of faces whose element has no colours */
   for (size_t t = reader->colored; t < parts->triangle_count; t++)
     memcpy(parts->face_colors[t], t < first ? white : color, sizeof *parts->face_colors);
   reader->colored = parts->triangle_count;
@@ -250,7 +249,7 @@ static hl_status fail_corner(const ply_reader *reader, double corner) {
   return hl_fail(reader->error, HL_ERROR_INPUT, "%s: a face names vertex %.9g", reader->parts->path, corner);
 }
 
-/* Reads a face's corners, which make a fan of triangles. */
+/* Reads a face's corners, of which a fan of triangles is made. */
 static hl_status read_corners(ply_reader *reader, const ply_property *property) {
   double count, corner;
   uint32_t first = 0, before = 0;
@@ -268,12 +267,12 @@ static hl_status read_corners(ply_reader *reader, const ply_property *property) 
   return hl_mesh_note_polygon(reader->parts, first_triangle, reader->error);
 }
 
-/* Reads the corners of strips: each makes a triangle with the two before it, every second one turned over; -1
- * ends a strip. */
+/* Reads the corners of strips. Each corner makes a triangle with the two corners before it, and every second
+ * triangle is turned over; -1 ends a strip. */
 static hl_status read_strips(ply_reader *reader, const ply_property *property) {
   double count, corner;
   uint32_t last[2] = {0, 0};
-  size_t length = 0; /* of the strip so far */
+  size_t length = 0; /* number of corners of the strip so far */
   if (!read_number(reader, property->count, &count)) return fail_short(reader);
   for (double n = 0; n < count; n++) {
     if (!read_number(reader, property->type, &corner)) return fail_short(reader);

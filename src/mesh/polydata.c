@@ -1,4 +1,4 @@
-/* mesh/polydata.c - VTK's PolyData become the parts of a mesh.
+/* mesh/polydata.c - converts VTK's PolyData to the parts of a mesh.
  *
  * Colours are those of points where there are any, else those of cells. Arrays of bytes with three or four
  * components are sRGB, as VTK's mappers take them; other scalars go through the colormap viridis, from their
@@ -15,7 +15,7 @@
 #include "image/srgb.h"
 #include "volume/text.h"
 
-/* Radius where the file has none, in parts of the diagonal of the box around all points. */
+/* Radius for files that give none, as a fraction of the diagonal of the box around all points. */
 static const double RADIUS_PART = 1.0 / 400;
 
 static bool is_color(const cell_values *shape) {
@@ -119,7 +119,7 @@ static void color_of_bytes(const cell_values *values, float (*colors)[4]) {
   }
 }
 
-/* The colours of all points or cells. *colors: owned by the caller; null without any. */
+/* Makes the colours of all points or cells. *colors is owned by the caller; null if there are none. */
 static hl_status make_colors(const polydata *data, const cell_values *values, float (**colors)[4],
                              hl_error *error) {
   *colors = NULL;
@@ -133,20 +133,20 @@ static hl_status make_colors(const polydata *data, const cell_values *values, fl
 
 /* ---- parts ---- */
 
-/* A conversion under way. */
+/* The state of a conversion. */
 typedef struct conversion {
   const polydata *data;
   mesh_parts *parts;
-  float (*colors)[4]; /* of the points, or else of the cells; null: none */
+  float (*colors)[4]; /* the colours of the points, or else of the cells; null if there are none */
   bool of_points;
   size_t first_cell[CELL_KINDS]; /* index of each kind's first cell among all */
-  double radius;                 /* where the file has none */
+  double radius;                 /* the radius where the file gives none */
   hl_error *error;
 } conversion;
 
 static size_t begin_of(const cells *cells, size_t n) { return n > 0 ? (size_t)cells->ends[n - 1] : 0; }
 
-/* The colour of a point that a cell uses; null: none. */
+/* The colour of a point that a cell uses; null if there is none. */
 static const float *color_of(const conversion *c, size_t point, size_t cell) {
   if (c->colors == NULL) return NULL;
   return c->colors[c->of_points ? point : cell];
@@ -158,7 +158,7 @@ static void round_point(const conversion *c, size_t point, float to[4]) {
   to[3] = (float)(c->data->radii.values != NULL ? c->data->radii.values[point] : c->radius);
 }
 
-/* Memory for so many round points, with colours if there are any. */
+/* Allocates points with radii, and colours if there are any. */
 static bool make_round(const conversion *c, size_t count, float (**points)[4], float (**colors)[4]) {
   if (count == 0) return true;
   *points = hl_allocate(c->data->context, count, sizeof **points);
@@ -166,7 +166,7 @@ static bool make_round(const conversion *c, size_t count, float (**points)[4], f
   return *points != NULL && (c->colors == NULL || *colors != NULL);
 }
 
-/* Fills the points of all cells of a kind, one after the other. */
+/* Converts the points of all cells of a kind, one cell after the other. */
 static hl_status convert_round(const conversion *c, cell_kind kind, size_t most, float (**points)[4],
                                float (**colors)[4]) {
   const cells *cells = &c->data->cells[kind];
@@ -211,7 +211,7 @@ static hl_status convert_lines(const conversion *c) {
   return HL_OK;
 }
 
-/* The triangles of cell n: a fan, or a strip whose every second triangle is turned over. */
+/* Adds the triangles of cell n: a fan, or a strip whose every second triangle is turned over. */
 static hl_status add_cell(const conversion *c, const cells *cells, size_t n, bool strip) {
   hl_status status = HL_OK;
   size_t begin = begin_of(cells, n), end = (size_t)cells->ends[n];
@@ -225,7 +225,7 @@ static hl_status add_cell(const conversion *c, const cells *cells, size_t n, boo
   return status;
 }
 
-/* The colours of the triangles that were added since there were `before`. */
+/* Colours the triangles that were added since the mesh had `before` triangles. */
 static void color_faces(const conversion *c, size_t before, size_t cell) {
   for (size_t t = before; t < c->parts->triangle_count; t++)
     memcpy(c->parts->face_colors[t], c->colors[cell], sizeof *c->parts->face_colors);
@@ -243,7 +243,7 @@ static hl_status convert_faces(const conversion *c, cell_kind kind) {
   return status;
 }
 
-/* How many triangles polygons or strips make. */
+/* The number of triangles that polygons or strips make. */
 static size_t triangle_count(const cells *cells) {
   size_t count = 0;
   for (size_t n = 0; n < cells->count; n++) {
@@ -253,7 +253,7 @@ static size_t triangle_count(const cells *cells) {
   return count;
 }
 
-/* The vertices of all triangles. */
+/* Converts the points to the vertices of the triangles. */
 static hl_status convert_points(const conversion *c) {
   const polydata *data = c->data;
   mesh_parts *parts = c->parts;
@@ -266,7 +266,8 @@ static hl_status convert_points(const conversion *c) {
       parts->positions[p][i] = (float)data->points[3 * p + i];
       if (normals) parts->normals[p][i] = (float)data->normals.values[3 * p + i];
     }
-  if (flat) memset(parts->normals, 0, data->point_count * sizeof *parts->normals); /* none: the triangles' */
+  /* a normal of zero means that the triangle's own normal is used */
+  if (flat) memset(parts->normals, 0, data->point_count * sizeof *parts->normals);
   if (colors) memcpy(parts->colors, c->colors, data->point_count * sizeof *parts->colors);
   parts->vertex_count = data->point_count;
   return HL_OK;
@@ -287,7 +288,7 @@ static hl_status convert_surface(const conversion *c) {
   return status == HL_OK ? convert_faces(c, CELLS_STRIPS) : status;
 }
 
-/* The radius that spheres and tubes get where the file has none; world units. */
+/* The radius of spheres and tubes where the file gives none; world units. */
 static double usual_radius(const polydata *data) {
   double square = 0;
   for (size_t axis = 0; axis < 3; axis++) {

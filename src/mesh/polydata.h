@@ -1,4 +1,4 @@
-/* mesh/polydata.h - VTK's PolyData as its files hold them, and the mesh that they make. */
+/* mesh/polydata.h - the content of VTK's PolyData files, and its conversion to a mesh. */
 #ifndef HL_MESH_POLYDATA_H
 #define HL_MESH_POLYDATA_H
 
@@ -9,7 +9,7 @@
 typedef enum cell_kind { CELLS_VERTICES, CELLS_LINES, CELLS_POLYGONS, CELLS_STRIPS, CELL_KINDS } cell_kind;
 
 typedef struct cells {
-  double *ends;   /* owned; [count]; where each cell's points end in `points`: rising */
+  double *ends;   /* owned; [count], rising; the end of each cell's points in `points` */
   double *points; /* owned; [point_count]; indices of points */
   size_t count, point_count;
 } cells;
@@ -21,22 +21,23 @@ typedef struct cell_values {
   hl_voxel_type type;
 } cell_values;
 
-/* Where values are. */
+/* Whether values belong to points or to cells. */
 typedef enum value_place { AT_POINTS, AT_CELLS, VALUE_PLACES } value_place;
 
 typedef struct polydata {
   hl_context *context;
-  const char *path; /* what errors call the file */
+  const char *path; /* the file's name in errors */
   double *points;   /* owned; [point_count][3]; world units */
   size_t point_count;
   cells cells[CELL_KINDS];
   cell_values colors[VALUE_PLACES]; /* RGB, RGBA, or scalars */
   cell_values normals, radii;       /* at points */
-  bool flat;                        /* cells have normals: where points have none, triangles show their own */
+  bool flat;                        /* whether cells have normals: where points have none, triangles show
+                                     * their own normals */
 } polydata;
 
-/* What an array's name and shape make of it: the place in the data where it belongs; null: its values are of
- * no use, or its place is taken. active: the file calls the array its scalars, which displace colours found
+/* The place in the data for an array, which follows from its name and shape. Null if the array is of no use
+ * or its place is taken. active: the file calls the array its scalars, which displace colours found
  * before. */
 cell_values *hl_polydata_claim(polydata *data, const char *name, const cell_values *shape, value_place place,
                                bool active);
@@ -44,15 +45,15 @@ cell_values *hl_polydata_claim(polydata *data, const char *name, const cell_valu
 /* The number of points, or of cells. */
 size_t hl_polydata_tuples(const polydata *data, value_place place);
 
-/* Checks that cells name points that there are, and that arrays have a value for each. */
+/* Checks that cells name existing points, and that arrays have a value for each point or cell. */
 hl_status hl_polydata_check(const polydata *data, hl_error *error);
 
-/* Joins pieces into one empty whole, points after points and cells after cells of the same kind, and empties
- * them. Pieces must have the same arrays of values. */
+/* Joins pieces into one whole, which must be empty, and empties the pieces. Points follow points, and cells
+ * follow cells of the same kind. Pieces must have the same arrays of values. */
 hl_status hl_polydata_join(polydata *const *pieces, size_t count, polydata *whole, hl_error *error);
 
-/* Checks cells and arrays, and fills the empty parts: polygons and strips become triangles, vertices spheres,
- * and lines stay lines, which become tubes. */
+/* Checks cells and arrays, and fills the empty parts. Polygons and strips become triangles, and vertices
+ * become spheres. Lines stay lines, which become tubes later. */
 hl_status hl_polydata_to_parts(const polydata *data, mesh_parts *parts, hl_error *error);
 
 void hl_polydata_release(polydata *data);

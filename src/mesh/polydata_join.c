@@ -1,14 +1,14 @@
-/* mesh/polydata_join.c - the pieces of a file become one.
+/* mesh/polydata_join.c - joins the pieces of a file.
  *
- * In: pieces, each as its own arrays say. Out: one polydata whose points are those of the pieces, one piece
- * after the other, and whose cells of each kind are, too; so values at cells are put together kind by kind.
- */
+ * In: pieces with arrays of their own. Out: one polydata. Its points are the points of the pieces, one piece
+ * after the other, and so are its cells of each kind. Values at cells are therefore put together kind by
+ * kind. */
 #include <string.h>
 
 #include "core/memory.h"
 #include "mesh/polydata.h"
 
-/* Pieces that are being joined. */
+/* The state of joining. */
 typedef struct joining {
   polydata *const *pieces; /* [count] */
   size_t count;
@@ -16,7 +16,7 @@ typedef struct joining {
   hl_error *error;
 } joining;
 
-/* Memory for so many numbers; null: none is needed, or there is none, and then *status says so. */
+/* Allocates `count` numbers. Null if none are needed, or if memory is short; then *status says so. */
 static double *make_numbers(const joining *join, size_t count, hl_status *status) {
   if (count == 0) return NULL;
   double *made = hl_allocate(join->whole->context, count, sizeof *made);
@@ -41,7 +41,8 @@ static hl_status join_points(const joining *join) {
   return HL_OK;
 }
 
-/* Cells name the points of the whole: those of the pieces before theirs come first. */
+/* Joins the cells of a kind. A cell names points of the whole, in which the points of earlier pieces come
+ * first. */
 static hl_status join_cells(const joining *join, int kind) {
   hl_status status = HL_OK;
   cells *whole = &join->whole->cells[kind];
@@ -65,14 +66,15 @@ static hl_status join_cells(const joining *join, int kind) {
   return HL_OK;
 }
 
-/* Where an array of values lies in a polydata. */
+/* Finds where an array of values lies in a polydata. */
 typedef cell_values *find_values(polydata *data);
 static cell_values *point_colors(polydata *data) { return &data->colors[AT_POINTS]; }
 static cell_values *cell_colors(polydata *data) { return &data->colors[AT_CELLS]; }
 static cell_values *normals(polydata *data) { return &data->normals; }
 static cell_values *radii(polydata *data) { return &data->radii; }
 
-/* Finds what the array is in all pieces that have points or cells for it: nothing, or of one shape. */
+/* Finds the shape of an array in all pieces that have points or cells for it. The array must be absent from
+ * all of them, or have one shape. */
 static hl_status find_shape(const joining *join, find_values *find, value_place place, cell_values *shape) {
   bool first = true, same = true;
   *shape = (cell_values){.type = HL_VOXEL_U8};

@@ -1,9 +1,9 @@
-/* mesh/polygons.c - polygons of more than three corners as triangles that cover them, and nothing else.
+/* mesh/polygons.c - triangles that cover exactly a polygon of more than three corners.
  *
  * Readers add a polygon as a fan of triangles around its first corner, and note it. Where the polygon is not
- * convex a fan may reach beyond it: then, once all vertices are known, its triangles are replaced, as many by
- * as many, by those that ear clipping finds (G. H. Meisters, Polygons Have Ears, American Mathematical
- * Monthly 82, 1975). */
+ * convex a fan may reach beyond it. Once all vertices are known, such a fan is replaced by the same number of
+ * triangles from ear clipping (G. H. Meisters, Polygons Have Ears, American Mathematical Monthly 82,
+ * 1975). */
 #include <math.h>
 
 #include "core/context.h"
@@ -11,8 +11,8 @@
 #include "core/vector.h"
 #include "mesh/mesh.h"
 
-/* Polygons of more corners keep their fan: clipping takes a time that grows with the square of their number.
- */
+/* Polygons with more corners keep their fan, as the time of clipping grows with the square of their
+ * number. */
 enum { CORNERS_MOST = 1 << 14 };
 
 hl_status hl_mesh_note_polygon(mesh_parts *parts, size_t first, hl_error *error) {
@@ -28,11 +28,11 @@ hl_status hl_mesh_note_polygon(mesh_parts *parts, size_t first, hl_error *error)
   return HL_OK;
 }
 
-/* The corners of a polygon, in its plane. */
+/* The corners of a polygon in its plane. */
 typedef struct outline {
-  uint32_t *vertex;        /* owned; [room]; of the mesh */
+  uint32_t *vertex;        /* owned; [room]; index of the corner's vertex in the mesh */
   double (*at)[2];         /* owned; [room] */
-  uint32_t *next, *before; /* owned; [room]; among the corners that are left */
+  uint32_t *next, *before; /* owned; [room]; neighbours among the corners that are left */
   size_t count, room;
 } outline;
 
@@ -55,7 +55,7 @@ static hl_status make_room(hl_context *context, outline *o, size_t count, hl_err
   return hl_fail_memory(error, o->room * 32, "a polygon");
 }
 
-/* Twice the area of a triangle; above 0: counter-clockwise. */
+/* Twice the area of a triangle, positive if it is counter-clockwise. */
 static double area(const double a[2], const double b[2], const double c[2]) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
@@ -76,8 +76,8 @@ static vec3 normal_of(const mesh_parts *parts, const outline *o) {
   return sum;
 }
 
-/* Lays the corners into the plane of two of the axes in which the polygon is widest, counter-clockwise.
- * False: it has no area. */
+/* Projects the corners to the two axes along which the polygon is widest, counter-clockwise. False if the
+ * polygon has no area. */
 static bool flatten(const mesh_parts *parts, outline *o) {
   vec3 normal = normal_of(parts, o);
   const double size[3] = {normal.x, normal.y, normal.z};
@@ -93,7 +93,7 @@ static bool flatten(const mesh_parts *parts, outline *o) {
   return true;
 }
 
-/* Whether no triangle of the fan is turned over: then it covers the polygon. */
+/* Whether the fan covers the polygon: whether no triangle of the fan is turned over. */
 static bool fan_fits(const outline *o) {
   for (size_t n = 1; n + 1 < o->count; n++)
     if (area(o->at[0], o->at[n], o->at[n + 1]) < 0) return false;
@@ -102,7 +102,7 @@ static bool fan_fits(const outline *o) {
 
 static bool same_place(const double a[2], const double b[2]) { return a[0] == b[0] && a[1] == b[1]; }
 
-/* Whether a corner is an ear: convex, and no other corner lies in its triangle. */
+/* Whether a corner is an ear: it is convex, and no other corner lies in its triangle. */
 static bool is_ear(const outline *o, uint32_t corner) {
   const double *a = o->at[o->before[corner]], *b = o->at[corner], *c = o->at[o->next[corner]];
   if (!(area(a, b, c) > 0)) return false;
@@ -114,8 +114,8 @@ static bool is_ear(const outline *o, uint32_t corner) {
   return true;
 }
 
-/* The next ear from a corner on. Where there is none, as in outlines that cross themselves, a corner that is
- * not reflex; else the corner itself. */
+/* The next ear from a corner on. Where there is none, as in outlines that cross themselves, the next corner
+ * that is not reflex, else the corner itself. */
 static uint32_t find_ear(const outline *o, uint32_t from, size_t left) {
   uint32_t corner = from;
   for (size_t n = 0; n < left; n++, corner = o->next[corner])
@@ -142,7 +142,7 @@ static void clip(outline *o, uint32_t (*triangles)[3]) {
   }
 }
 
-/* Takes the corners of a fan. False where one names no vertex: the mesh's check tells it. */
+/* Takes the corners of a fan. False where a corner names no vertex; the mesh's check reports that. */
 static bool take_corners(const mesh_parts *parts, const mesh_polygon *polygon, outline *o) {
   uint32_t(*fan)[3] = parts->triangles + polygon->first;
   o->count = polygon->count + 2;

@@ -1,6 +1,6 @@
 /* mesh/stl.c - STL files, binary and ASCII: triangles without shared vertices.
  *
- * Equal corners become one vertex, so that smooth normals can be found. */
+ * Corners at equal positions become one vertex, so that smooth normals can be found. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,19 +21,19 @@ static float float_at(const unsigned char *bytes) {
 /* ---- corners that are equal become one vertex ---- */
 
 typedef struct corner_table {
-  uint32_t *slots; /* owned; [size]; index of a vertex plus 1; 0: free */
+  uint32_t *slots; /* owned; [size]; index of a vertex plus 1; 0 for a free slot */
   size_t size;     /* a power of two */
 } corner_table;
 
 static uint32_t hash_of(const float at[3]) {
-  uint32_t bits[3], hash = 2166136261u; /* FNV-1a over words, with a last mix */
+  uint32_t bits[3], hash = 2166136261u; /* FNV-1a over words, mixed once more at the end */
   memcpy(bits, at, sizeof bits);
   for (int i = 0; i < 3; i++) hash = (hash ^ bits[i]) * 16777619u;
   hash ^= hash >> 15;
   return hash * 2246822519u ^ hash >> 13;
 }
 
-/* The vertex at a corner; made where there is none. The table has room for it. */
+/* The vertex at a corner's position, which is added if there is none. The table has room for it. */
 static uint32_t vertex_at(mesh_parts *parts, corner_table *table, const float at[3]) {
   size_t slot = hash_of(at) & (table->size - 1);
   for (; table->slots[slot] != 0; slot = (slot + 1) & (table->size - 1))
@@ -44,7 +44,7 @@ static uint32_t vertex_at(mesh_parts *parts, corner_table *table, const float at
   return (uint32_t)parts->vertex_count - 1;
 }
 
-/* Makes room for so many triangles and their corners. */
+/* Makes room for `count` triangles and their corners. */
 static hl_status make_room(mesh_parts *parts, corner_table *table, size_t triangles, hl_error *error) {
   if (triangles > HL_LIMIT_TRIANGLES)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: %zu triangles: at most %d: reduce them (decimate)",
@@ -92,7 +92,7 @@ static hl_status read_binary(mesh_text text, size_t count, mesh_parts *parts, co
 
 /* ---- ASCII ---- */
 
-/* The next word of the text. False at its end. */
+/* Takes the next word of the text. False at the text's end. */
 static bool next_word(const char **at, const char *end, const char **word, size_t *length) {
   while (*at < end && hl_is_space(**at)) (*at)++;
   *word = *at;
@@ -101,7 +101,7 @@ static bool next_word(const char **at, const char *end, const char **word, size_
   return *length > 0;
 }
 
-/* Whether a word is this one, in letters of either case. */
+/* Whether a word is the wanted one, in letters of either case. */
 static bool is_word(const char *word, size_t length, const char *wanted) {
   if (length != strlen(wanted)) return false;
   for (size_t n = 0; n < length; n++)
@@ -136,8 +136,9 @@ static hl_status read_ascii(mesh_text text, mesh_parts *parts, corner_table *tab
   return status;
 }
 
-/* Whether the file is text: "solid" comes first, after a mark of byte order and blanks, in letters of either
- * case, and there are no zero bytes soon, as there are in binary files whose title begins so. */
+/* Whether the file is text. A text begins with "solid", in letters of either case, after an optional byte
+ * order mark and blanks. It has no zero bytes near its beginning; a binary file whose title begins with
+ * "solid" has some. */
 static bool is_text(mesh_text text) {
   enum { LOOKED_AT = 512 };
   const char *at = (const char *)text.bytes, *end = at + text.length, *word;

@@ -1,4 +1,4 @@
-/* mesh/tubes.c - lines become tubes: closed meshes of twelve sides.
+/* mesh/tubes.c - makes tubes of lines: closed meshes of twelve sides.
  *
  * Two pieces of a tube meet in the plane that halves their angle, where both have the same outline (derived:
  * a mirror image of one piece in this plane is the other), so that bends have no gaps. */
@@ -10,18 +10,18 @@
 
 enum { SIDES = 12 };
 
-/* The cosine of half the angle between two pieces from which on their bend is cut short, lest its outer edge
- * reach far out: pieces that turn by more than 120 degrees. */
+/* The cosine of half an angle between two pieces. A bend with a smaller cosine is cut short, lest its outer
+ * edge reach far out: pieces that turn by more than 120 degrees. */
 static const double SHARP = 0.5;
 
-/* A line's piece from one point to the next: its direction, and two directions across it. Right-handed. */
+/* A line's piece from one point to the next: its direction and two directions across it, right-handed. */
 typedef struct piece {
   vec3 along, u, v;
 } piece;
 
 typedef struct tube {
   mesh_parts *parts;
-  float color[4]; /* of the vertices that are added */
+  float color[4]; /* the colour of the vertices that are added */
 } tube;
 
 static void add_vertex(tube *tube, vec3 at, vec3 normal) {
@@ -32,7 +32,7 @@ static void add_vertex(tube *tube, vec3 at, vec3 normal) {
   for (int c = 0; c < 4 && parts->colors != NULL; c++) parts->colors[n][c] = tube->color[c];
 }
 
-/* A ring about a centre. middle: the normal of its plane. */
+/* Adds a ring around a centre. middle: the normal of the ring's plane. */
 static void add_ring(tube *tube, vec3 centre, const piece *piece, vec3 middle, double radius) {
   double across = vec3_dot(piece->along, middle);
   for (int k = 0; k < SIDES; k++) {
@@ -53,7 +53,7 @@ static void add_face(tube *tube, size_t a, size_t b, size_t c) {
   parts->triangle_count++;
 }
 
-/* The faces between two rings, of which the second one lies ahead. */
+/* Adds the faces between two rings; ring `to` lies ahead of ring `from`. */
 static void add_band(tube *tube, size_t from, size_t to) {
   for (size_t k = 0; k < SIDES; k++) {
     size_t next = (k + 1) % SIDES;
@@ -62,7 +62,7 @@ static void add_band(tube *tube, size_t from, size_t to) {
   }
 }
 
-/* A round end beyond the ring `last`; way: 1 at the tube's end, -1 at its beginning. */
+/* Adds a round end beyond the ring `last`. way: 1 at the tube's end, -1 at its beginning. */
 static void add_end(tube *tube, vec3 centre, const piece *piece, double radius, int way, size_t last) {
   double half = sqrt(0.5) * radius;
   vec3 out = vec3_scale(piece->along, way);
@@ -80,8 +80,8 @@ static void add_end(tube *tube, vec3 centre, const piece *piece, double radius, 
 
 static vec3 point_of(const float point[4]) { return (vec3){point[0], point[1], point[2]}; }
 
-/* The piece that follows `before` (null: none) in a direction. Derived: the mirror image in the plane between
- * both turns the first piece's directions into the second one's. */
+/* The piece in a direction that follows the piece `before`, null if there is none. Derived: the mirror image
+ * in the plane between both pieces turns the first piece's directions into the second one's. */
 static piece follow(const piece *before, vec3 along, vec3 middle) {
   piece made = {.along = along};
   if (before != NULL) made.u = vec3_subtract(before->u, vec3_scale(middle, 2 * vec3_dot(before->u, middle)));
@@ -96,7 +96,8 @@ static void set_color(tube *tube, size_t point) {
   for (int c = 0; c < 4; c++) tube->color[c] = colors != NULL ? colors[point][c] : 1;
 }
 
-/* Adds the tube of the line of `count` points from `first` on: at least two, no two neighbours the same. */
+/* Adds the tube of a line of `count` points from `first` on. The line has at least two points, and no two
+ * neighbours are the same. */
 static void add_tube(tube *tube, size_t first, size_t count) {
   const float(*points)[4] = (const float(*)[4])tube->parts->line_points + first;
   piece now = {0};
@@ -120,7 +121,7 @@ static void add_tube(tube *tube, size_t first, size_t count) {
   }
 }
 
-/* Whether a point can be drawn; before: the one before it on its line; null: none. */
+/* Whether a point can be drawn. before: the point before it on its line, null if there is none. */
 static bool is_drawn(const float point[4], const float *before) {
   for (int c = 0; c < 4; c++)
     if (!isfinite(point[c])) return false;
@@ -128,7 +129,7 @@ static bool is_drawn(const float point[4], const float *before) {
   return before == NULL || point[0] != before[0] || point[1] != before[1] || point[2] != before[2];
 }
 
-/* Keeps the points that can be drawn, and the lines of at least two. */
+/* Keeps the points that can be drawn, and the lines with at least two of them. */
 static void keep_lines(mesh_parts *parts) {
   size_t from = 0, to = 0, lines = 0;
   for (size_t line = 0; line < parts->line_count; line++) {
@@ -148,14 +149,14 @@ static void keep_lines(mesh_parts *parts) {
   parts->line_count = lines;
 }
 
-/* Makes the arrays large enough, and gives colours to all vertices where lines have some. */
+/* Makes the arrays large enough, and gives colours to all vertices if any line has colours. */
 static bool make_room(mesh_parts *parts) {
   size_t rings = parts->line_point_count, ends = 2 * parts->line_count;
   size_t vertices = parts->vertex_count + rings * SIDES + ends * (SIDES + 1),
          triangles = parts->triangle_count + (rings + ends / 2) * 2 * SIDES + ends * SIDES;
   hl_error ignored;
   bool colored = parts->colors != NULL || parts->line_colors != NULL, fresh = parts->colors == NULL;
-  if (colored && fresh) parts->vertex_room = 0; /* all arrays get the same room */
+  if (colored && fresh) parts->vertex_room = 0; /* makes all arrays get the same room */
   if (vertices > UINT32_MAX || triangles > HL_LIMIT_TRIANGLES ||
       hl_mesh_reserve_vertices(parts, vertices, parts->normals != NULL, colored, &ignored) != HL_OK ||
       hl_mesh_reserve_triangles(parts, triangles, &ignored) != HL_OK)

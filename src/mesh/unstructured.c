@@ -10,11 +10,11 @@
 
 enum { FACES_MOST = 6, FACE_CORNERS = 4, TYPES = 43 };
 
-/* What a type of cell is. faces: of cells with a volume, seen from outside counter-clockwise; -1: no corner.
- */
+/* The properties of a type of cell. faces: the faces of a cell with a volume, counter-clockwise as seen from
+ * outside; -1 stands for no corner. */
 typedef struct cell_type {
-  signed char kind;    /* of PolyData; VOLUME; or NONE: not shown */
-  signed char corners; /* 0: as many as there are */
+  signed char kind;    /* a kind of PolyData's cells, VOLUME, or NONE if the type is not shown */
+  signed char corners; /* number of corners; 0 if it differs from cell to cell */
   signed char faces[FACES_MOST][FACE_CORNERS];
 } cell_type;
 
@@ -56,7 +56,7 @@ static const cell_type *type_of(double number) {
       [5] = {CELLS_POLYGONS, 3, FLAT},
       [6] = {CELLS_STRIPS, 0, FLAT},
       [7] = {CELLS_POLYGONS, 0, FLAT},
-      [8] = {CELLS_POLYGONS, 4, FLAT}, /* a pixel, whose last corners are exchanged */
+      [8] = {CELLS_POLYGONS, 4, FLAT}, /* a pixel, whose last two corners are exchanged */
       [9] = {CELLS_POLYGONS, 4, FLAT},
       [10] = {VOLUME, 4, TETRAHEDRON},
       [11] = {VOLUME, 8, VOXEL},
@@ -77,7 +77,8 @@ static const cell_type *type_of(double number) {
   bool known = number >= 0 && number < TYPES && number == floor(number);
   if (!known) return &none;
   bool listed = number >= 1 &&
-                (types[(int)number].kind != CELLS_VERTICES || number <= 2); /* others are zeros */
+                /* members left out of the table are zero */
+                (types[(int)number].kind != CELLS_VERTICES || number <= 2);
   return listed ? &types[(int)number] : &none;
 }
 
@@ -85,9 +86,9 @@ static const cell_type *type_of(double number) {
 
 /* A face of a cell with a volume. */
 typedef struct grid_face {
-  double corner[FACE_CORNERS]; /* -1: none */
+  double corner[FACE_CORNERS]; /* -1 for no corner */
   uint32_t cell;
-  uint32_t seen; /* how many cells have it; 0: a free place of the table */
+  uint32_t seen; /* number of cells that have the face; 0 marks a free place of the table */
 } grid_face;
 
 typedef struct face_table {
@@ -95,7 +96,7 @@ typedef struct face_table {
   size_t size;      /* a power of two */
 } face_table;
 
-/* The corners in rising order. */
+/* Sorts the corners in rising order. */
 static void sort_corners(const double from[FACE_CORNERS], double to[FACE_CORNERS]) {
   memcpy(to, from, FACE_CORNERS * sizeof *to);
   for (int n = 1; n < FACE_CORNERS; n++)
@@ -133,7 +134,7 @@ static size_t begin_of(const unstructured_cells *grid, size_t n) {
   return n > 0 ? (size_t)grid->ends[n - 1] : 0;
 }
 
-/* Counts the faces of all cells with a volume. */
+/* Counts for each face the cells with a volume that have it. */
 static hl_status count_faces(hl_context *context, const unstructured_cells *grid, face_table *table,
                              hl_error *error) {
   size_t faces = 0;
@@ -157,10 +158,10 @@ static hl_status count_faces(hl_context *context, const unstructured_cells *grid
 
 /* ---- cells of PolyData ---- */
 
-/* Cells of one kind that are being filled; null arrays: counted alone. */
+/* The cells of one kind that are being filled. If arrays are null, the cells are only counted. */
 typedef struct cell_writer {
   cells *cells;
-  size_t *sources; /* of the kind's cells */
+  size_t *sources; /* the grid's cells from which the kind's cells come */
 } cell_writer;
 
 static void add_point(cell_writer *writer, double point) {
@@ -188,7 +189,7 @@ static void add_cell(const unstructured_cells *grid, size_t n, cell_writer *writ
   end_cell(writer, n);
 }
 
-/* Adds all cells of one kind, and outer faces to the polygons. */
+/* Adds all cells of one kind; outer faces are added to the polygons. */
 static void add_kind(const unstructured_cells *grid, const face_table *table, int kind, cell_writer *writer) {
   writer->cells->count = writer->cells->point_count = 0;
   for (size_t n = 0; n < grid->count; n++)
@@ -201,7 +202,7 @@ static void add_kind(const unstructured_cells *grid, const face_table *table, in
   }
 }
 
-/* Checks that cells end where they can, and have the corners that their types need. */
+/* Checks that cells end where they can, and that they have the corners that their types need. */
 static hl_status check(const unstructured_cells *grid, const polydata *data, hl_error *error) {
   double before = 0;
   size_t passed = 0;

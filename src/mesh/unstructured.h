@@ -1,7 +1,7 @@
-/* mesh/unstructured.h - the cells of VTK's unstructured grids as those of PolyData: what is seen of them.
+/* mesh/unstructured.h - converts the visible cells of VTK's unstructured grids to cells of PolyData.
  *
- * Vertices, lines and faces stay what they are; of cells with a volume those faces are kept that no other
- * cell has, too. Of quadratic cells the corners are taken. */
+ * Vertices, lines and faces keep their kind. A face of a cell with a volume is kept if no other cell has the
+ * same face. Quadratic cells count by their corners alone. */
 #ifndef HL_MESH_UNSTRUCTURED_H
 #define HL_MESH_UNSTRUCTURED_H
 
@@ -9,13 +9,13 @@
 
 /* The cells of a grid. */
 typedef struct unstructured_cells {
-  double *ends, *types; /* owned; [count]: where each cell's points end, and its type */
+  double *ends, *types; /* owned; [count]; the end of each cell's points, and each cell's type */
   double *points;       /* owned; [point_count] */
   size_t count, point_count;
 } unstructured_cells;
 
-/* Fills the empty cells of `data`, whose points are known, and *sources: owned by the caller; for each of its
- * cells, kind after kind, the cell of the grid that it comes from. */
+/* Fills the cells of `data`, which must be empty and whose points must be known. Sets *sources, owned by the
+ * caller: for each of the cells, kind after kind, the grid's cell from which it comes. */
 hl_status hl_unstructured_convert(const unstructured_cells *grid, polydata *data, size_t **sources,
                                   hl_error *error);
 

@@ -1,8 +1,8 @@
 /* mesh/vtp.c - VTK XML PolyData (.vtp) and the surfaces of unstructured grids (.vtu): ascii, base64 and
  * appended arrays, plain or in compressed blocks.
  *
- * A first pass over the tags lists the pieces and their arrays; then, piece by piece, each array that is
- * needed is read, cells before the arrays whose length they tell; then the pieces are joined. */
+ * A first pass over the tags lists the pieces and their arrays; a second pass reads the needed arrays piece
+ * by piece, cells before the arrays whose length follows from them. The pieces are then joined. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -12,10 +12,10 @@
 #include "volume/numbers.h"
 #include "volume/vtk_xml.h"
 
-/* Arrays of a piece beyond these are passed over; a file of more pieces is refused. */
+/* Further arrays of a piece are ignored. A file with more than MOST_PIECES pieces is refused. */
 enum { MOST_ARRAYS = 256, MOST_PIECES = 4096 };
 
-/* The elements that hold arrays: the four kinds of cells first. */
+/* The elements of the file that hold arrays. The four kinds of cells come first. */
 typedef enum section {
   SECTION_POINTS = CELL_KINDS,
   SECTION_POINT_DATA,
@@ -39,8 +39,8 @@ typedef struct vtp_array {
 /* A piece that has points. */
 typedef struct vtp_piece {
   polydata data;
-  unstructured_cells grid; /* of an unstructured grid */
-  size_t *sources;         /* owned; the cell of the grid that each cell comes from; null: PolyData */
+  unstructured_cells grid; /* the cells of a piece of an unstructured grid */
+  size_t *sources;         /* owned; the grid's cell from which each cell comes; null for PolyData */
   size_t first_array, array_count;
 } vtp_piece;
 
@@ -49,12 +49,13 @@ typedef struct vtp_file {
   hl_vtk_xml xml;
   mesh_text text;
   section section;
-  char active_scalars[HL_VTK_NAME_BYTES], active_normals[HL_VTK_NAME_BYTES]; /* of the section */
-  vtp_piece *pieces;                                                         /* owned; [piece_count] */
+  /* names that the section declares active */
+  char active_scalars[HL_VTK_NAME_BYTES], active_normals[HL_VTK_NAME_BYTES];
+  vtp_piece *pieces; /* owned; [piece_count] */
   vtp_array *arrays; /* owned; [array_count]; piece after piece */
   size_t piece_count, piece_room, array_count, array_room;
-  bool is_grid;  /* an unstructured grid */
-  bool in_piece; /* the last piece is open: arrays belong to it */
+  bool is_grid;  /* whether the file is an unstructured grid */
+  bool in_piece; /* whether the last piece is open, so that arrays belong to it */
 } vtp_file;
 
 /* Makes room for one more element. */
@@ -76,7 +77,7 @@ static hl_status read_count(vtp_file *file, const hl_xml_tag *tag, const char *n
   return hl_vtk_xml_refuse(&file->xml, HL_ERROR_INPUT, name, value, error);
 }
 
-/* Pieces without points are passed over: programs that write in parallel leave them. */
+/* Reads the tag of a piece. Pieces without points are ignored: programs that write in parallel leave them. */
 static hl_status read_piece_tag(vtp_file *file, const hl_xml_tag *tag, hl_error *error) {
   vtp_piece piece = {.data = {.context = file->context, .path = file->xml.stream->path},
                      .first_array = file->array_count};
@@ -181,7 +182,7 @@ static hl_status read_numbers(vtp_file *file, const vtp_array *array, size_t cou
   return status;
 }
 
-/* The first array of a piece's section and name; null: none. */
+/* The first array with this name in a piece's section; null if there is none. */
 static const vtp_array *find_array(const vtp_file *file, const vtp_piece *piece, section section,
                                    const char *name) {
   for (size_t n = 0; n < piece->array_count; n++) {
@@ -217,7 +218,7 @@ static hl_status read_cells(vtp_file *file, vtp_piece *piece, int kind, hl_error
   return read_numbers(file, points, cells->point_count, &cells->points, error);
 }
 
-/* Reads the cells of an unstructured grid, and makes those of PolyData of them. */
+/* Reads the cells of an unstructured grid, and converts them to cells of PolyData. */
 static hl_status read_grid(vtp_file *file, vtp_piece *piece, hl_error *error) {
   unstructured_cells *grid = &piece->grid;
   const vtp_array *ends = find_array(file, piece, SECTION_GRID, "offsets"),
@@ -237,7 +238,7 @@ static hl_status read_grid(vtp_file *file, vtp_piece *piece, hl_error *error) {
   return status == HL_OK ? hl_unstructured_convert(grid, &piece->data, &piece->sources, error) : status;
 }
 
-/* Gives each cell the values of the grid's cell that it comes from. */
+/* Gives each cell the values of the grid's cell from which it comes. */
 static hl_status spread_values(const vtp_file *file, const vtp_piece *piece, cell_values *values,
                                hl_error *error) {
   size_t count = hl_polydata_tuples(&piece->data, AT_CELLS), components = values->components;
@@ -252,7 +253,7 @@ static hl_status spread_values(const vtp_file *file, const vtp_piece *piece, cel
   return HL_OK;
 }
 
-/* Reads an array of values where it is of use. */
+/* Reads an array of values if it is of use. */
 static hl_status read_values(vtp_file *file, vtp_piece *piece, const vtp_array *array, hl_error *error) {
   value_place place = array->section == SECTION_POINT_DATA ? AT_POINTS : AT_CELLS;
   bool of_grid = piece->sources != NULL && place == AT_CELLS;
