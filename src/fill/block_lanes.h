@@ -1,5 +1,5 @@
-/* fill/block_lanes.h - the points of a volume that the pixels of a 4x4 block see on a sheet, and whether
- * the cells around them may show something. */
+/* fill/block_lanes.h - the points of a volume where a 4x4 block of pixels sees a sheet, and whether the cells
+ * around these points may show something. */
 #ifndef HL_FILL_BLOCK_LANES_H
 #define HL_FILL_BLOCK_LANES_H
 
@@ -11,13 +11,13 @@
 
 /* The points where a block's rays cross the sheet. */
 typedef struct block_points {
-  lanes3 position;   /* index space, clamped to [-1, n) */
+  lanes3 position;   /* in index space, clamped to [-1, n) */
   lanes_int cell[3]; /* floor(position): -1 .. n-1 */
-  int32_t low[3];    /* the least cell along each axis; set where it is needed (lowest_of_block) */
-  lanes_int inside;  /* lanes in the grid or at most GRID_MARGIN outside */
+  int32_t low[3];    /* the least cell along each axis; set only where it is needed (lowest_of_block) */
+  lanes_int inside;  /* lanes whose point lies in the grid or at most GRID_MARGIN outside */
 } block_points;
 
-/* Lanes whose density is not below every visible density. */
+/* The lanes whose density may be visible: it is not below every visible density. */
 LANES_INLINE lanes_int may_show(const fill_source *source, lanes density) {
   const classifier *classifier = source->classifier;
   if (classifier == NULL) return lanes_set_int(-1);
@@ -33,7 +33,8 @@ LANES_INLINE block_points find_points(const fill_source *source, int x, int y) {
   for (int a = 0; a < 3; a++) {
     float count = (float)grid->dimension[a];
     points.inside &= (axis[a] > -0.5f - GRID_MARGIN) & (axis[a] < count - 0.5f + GRID_MARGIN);
-    /* outside the grid, densities continue the border's values smoothly; constant below -1 and above n */
+    /* outside the grid, densities continue the border's values smoothly; they are constant below -1 and above
+     * n */
     axis[a] = lanes_clamp(axis[a], -1.0f, count * (1 - 1e-6f));
     points.cell[a] = lanes_floor(axis[a]);
   }
@@ -41,8 +42,8 @@ LANES_INLINE block_points find_points(const fill_source *source, int x, int y) {
   return points;
 }
 
-/* The least cell of a block along each axis. Along a row or a column of pixels, cells only rise or only fall,
- * so the least is at a corner, up to rounding. */
+/* Finds the least cell of a block along each axis. Along a row or a column of pixels, cells only rise or only
+ * fall, so that the least cell is at a corner, up to rounding. */
 LANES_INLINE void lowest_of_block(const lanes_int cell[3], int32_t low[3]) {
 #if defined(__AVX512BW__)
   const __m512i of_two = _mm512_set_epi32(0, 0, 0, 0, 15, 12, 3, 0, 31, 28, 19, 16, 15, 12, 3, 0);
@@ -70,8 +71,8 @@ LANES_INLINE void lowest_of_block(const lanes_int cell[3], int32_t low[3]) {
 }
 
 /* Whether the taps of all pixels of a tile lie in the grid, with room for rounding. The area of the sheet
- * that a tile covers has straight edges: all pixels lie between those at its corners, unless some lie behind
- * the view. */
+ * that a tile covers has straight edges: all of the tile's points lie between the points at its corners,
+ * unless some points lie behind the view. */
 LANES_INLINE int tile_is_inside(const fill_source *source, int x, int y) {
   const sheet_rays *rays = &source->rays;
   const float spare = 1.0f / 64;
@@ -85,7 +86,7 @@ LANES_INLINE int tile_is_inside(const fill_source *source, int x, int y) {
   return lanes_bits(inside) == 0xffff;
 }
 
-/* The same as find_points() for a tile that tile_is_inside(). */
+/* Finds the points as find_points() does, for a tile for which tile_is_inside() holds. */
 LANES_INLINE block_points find_points_inside(const fill_source *source, int x, int y) {
   block_points points;
   points.position = rays_positions(&source->rays, block_u(x), block_v(y));
@@ -103,7 +104,7 @@ LANES_INLINE lanes_int bit_of_cell(lanes_int x, lanes_int y, lanes_int z) {
   return lanes_set_int(1) << ((x & 3) | (y & 3) << 2 | (z & 1) << 4);
 }
 
-/* For points in any bricks: loads a word for each point. */
+/* Looks cells up in any bricks: loads a word for each point. */
 static __attribute__((noinline)) int cells_visible_anywhere(const grid *grid, const lanes_int cell[3]) {
   lanes_int x = cell[0] + 1, y = cell[1] + 1, z = cell[2] + 1;
   lanes_int brick = ((z >> 2) * grid->brick_count[1] + (y >> 2)) * grid->brick_count[0] + (x >> 2);
@@ -112,9 +113,10 @@ static __attribute__((noinline)) int cells_visible_anywhere(const grid *grid, co
 }
 
 #if defined(__AVX2__) && !defined(__AVX512F__)
-/* Whether any cell's bit is set in the 2x2x2 bricks from `first_brick` on. within: the cells' coordinates
- * from the first cell of these bricks, a byte each. The bits of two bricks side by side are sixteen bytes,
- * one for four cells along x and two along y: the byte of each cell is looked up among them. */
+/* Whether the bit of any cell in the 2x2x2 bricks from `first_brick` on is set. within: the cells'
+ * coordinates counted from the first cell of these bricks, a byte each. The bits of two bricks side by side
+ * are sixteen bytes; a byte holds four cells along x and two along y. The byte of each cell is looked up
+ * among the sixteen. */
 LANES_INLINE int cells_visible_in_bricks(const grid *grid, size_t first_brick, const __m128i within[3]) {
   size_t row = (size_t)grid->brick_count[0], layer = row * (size_t)grid->brick_count[1];
   const uint64_t *bits = grid->cell_bits + first_brick;
@@ -128,7 +130,7 @@ LANES_INLINE int cells_visible_in_bricks(const grid *grid, size_t first_brick, c
   for (int i = 0; i < 4; i++)
     found[i] = _mm_shuffle_epi8(_mm_loadu_si128((const __m128i *)(const void *)(bits + bricks_on[i])), byte);
   __m128i below = _mm_slli_epi16(y, 5),
-          behind = _mm_slli_epi16(z, 5); /* the highest bit tells the second brick along y, along z */
+          behind = _mm_slli_epi16(z, 5); /* the highest bit chooses the second brick along y or z */
   __m128i word = _mm_blendv_epi8(_mm_blendv_epi8(found[0], found[1], below),
                                  _mm_blendv_epi8(found[2], found[3], below), behind);
   const __m128i bit_of = _mm_setr_epi8(1, 2, 4, 8, 16, 32, 64, (char)128, 0, 0, 0, 0, 0, 0, 0, 0);
@@ -143,7 +145,7 @@ LANES_INLINE int cells_in_bricks(const lanes_int cell[3], const int32_t first[3]
 }
 typedef __m128i cell_offsets;
 #else
-/* The bits of eight bricks, as 32-bit words: brick (x, y, z) has the words 2 x + 4 y + 8 z and the next. */
+/* The bits of eight bricks as 32-bit words. Brick (x, y, z) has word 2 x + 4 y + 8 z and the next word. */
 LANES_INLINE lanes_int bits_of_bricks(const grid *grid, size_t first_brick) {
   size_t row = (size_t)grid->brick_count[0], layer = row * (size_t)grid->brick_count[1];
   const uint64_t *bits = grid->cell_bits + first_brick;
@@ -170,7 +172,7 @@ typedef lanes_int cell_offsets;
 #endif
 
 /* Whether any of a block's points lies in a cell that may show something. cell: floors of the points, clamped
- * as find_points() does; low: the least along each axis. Most often all cells lie in the 2x2x2 bricks from
+ * as in find_points(). low: the least cell along each axis. Most often all cells lie in the 2x2x2 bricks from
  * the least cell's brick on. */
 LANES_INLINE int cells_visible(const grid *grid, const lanes_int cell[3], const int32_t low[3]) {
   int32_t first_cell[3];
@@ -189,13 +191,14 @@ LANES_INLINE int cells_visible(const grid *grid, const lanes_int cell[3], const 
 
 /* ---- samples of several blocks in one vector ---- */
 
-/* The active lanes without those of the last block. starts: the first lane of each block. */
+/* The active lanes without the lanes of the last block. starts: the first lane of each block. */
 LANES_INLINE uint32_t drop_last_block(uint32_t active, uint32_t starts) {
-  uint32_t below = (2u << (31 - __builtin_clz(active))) - 1; /* up to the last lane */
+  /* the bits up to and including the last active lane */
+  uint32_t below = (2u << (31 - __builtin_clz(active))) - 1;
   return active & ((1u << (31 - __builtin_clz(starts & below))) - 1);
 }
 
-/* Copies the lanes with a bit from `some` to `slope`. */
+/* Copies the lanes whose bits are set from `some` to `slope`. */
 LANES_INLINE void join_slopes(uint32_t bits, lanes3 some, lanes3 *slope) {
   lanes_int mask = lanes_from_bits(bits);
   *slope = (lanes3){lanes_select(mask, some.x, slope->x), lanes_select(mask, some.y, slope->y),

@@ -13,49 +13,50 @@
 typedef struct fill_source {
   const grid *grid;
   const kernel *kernel;
-  const classifier *classifier; /* tells which blocks show nothing; null: all may show something */
-  sheet_rays rays;              /* pixels -> index space */
-  const voxel_lists *lists;     /* splat only */
+  const classifier *classifier; /* tells which blocks show nothing; null if all may show something */
+  sheet_rays rays;              /* maps pixels to index space */
+  const voxel_lists *lists;     /* read by splatting only */
   int sheet;
 } fill_source;
 
-/* Blocks of a tile, one bit each: the filled blocks, and those among them where some pixel may show
- * something, either its density or a greater density on the next sheet. */
+/* Blocks of a tile, one bit each: the filled blocks, and the filled blocks in which some pixel may show
+ * something. A pixel may show something by its own density or by a greater density on the next sheet. */
 typedef struct filled_blocks {
   uint32_t filled, showing;
 } filled_blocks;
 
-/* Fills density[16][16] (block, lane) for the blocks in `need`, and for blocks in `others` whose points lie
- * in cells that may show something (grid/relevant.h). The densities of other blocks stay as they are. */
+/* Fills density[16][16] (block, lane) for the blocks in `need`. Also fills blocks in `others` whose points
+ * lie in cells that may show something (grid/relevant.h). The densities of other blocks stay as they are. */
 typedef filled_blocks fill_tile_function(const fill_source *source, int tile_x, int tile_y, uint32_t need,
                                          uint32_t others, float *density);
 
-/* A cut of a grid as a view sees it. */
+/* A cut of a grid, in the units of a view. */
 typedef struct run_cut {
   const cut_shape *shape;
-  float rows[3][4]; /* index space to the shape's own */
-  float size[3];    /* how long these rows are in frame space */
+  float rows[3][4]; /* maps index space to the space of the cut's shape */
+  float size[3];    /* the lengths of these rows in frame space */
 } run_cut;
 
-/* Some consecutive sheets of one grid, and the slabs between them. */
+/* A run: up to RUN_SLABS consecutive slabs of one grid, and the sheets around them. */
 enum { RUN_SLABS = 4 };
 typedef struct slab_run {
   const grid *grid;
-  sheet_rays rays[RUN_SLABS + 1]; /* pixels -> index space */
-  float low[3], high[3];          /* index space: nothing between these is cut by the volume's box */
+  sheet_rays rays[RUN_SLABS + 1]; /* map pixels to index space, one for each sheet */
+  float low[3], high[3];          /* in index space: between low and high the volume's box cuts nothing */
   const run_cut *cuts;            /* [cut_count] */
   int cut_count;
-  float beside; /* how far beside the slabs cuts count; frame units */
+  float beside; /* the distance beside the slabs up to which cuts count; frame units */
 } slab_run;
 
-/* The needed blocks of a tile in which a slab may hold something visible, for each slab, and whether the
- * volume's box cuts none of these. */
+/* The needed blocks of a tile in which a slab may hold something visible, for each slab. Also whether the
+ * volume's box cuts none of these blocks. */
 typedef struct relevant_blocks {
   uint16_t blocks[RUN_SLABS];
   uint16_t uncut; /* one bit for each slab */
 } relevant_blocks;
 
-/* Fills `found` for the slabs with a bit; the others stay as they are. need: the blocks of interest. */
+/* Sets `found` for the slabs whose bits are set. Other slabs stay as they are. need: the blocks of
+ * interest. */
 typedef void relevant_blocks_function(const slab_run *run, int tile_x, int tile_y, uint32_t slabs,
                                       uint32_t need, relevant_blocks *found);
 

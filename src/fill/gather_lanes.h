@@ -14,14 +14,15 @@
 /* The addresses of every lane's 64 taps; all lie in the grid. */
 typedef struct tap_window {
   const unsigned char *voxels;
-  lanes_offsets offsets; /* bytes from voxels to tap (0,0,0) */
+  lanes_offsets offsets; /* bytes from `voxels` to each lane's tap (0,0,0) */
 } tap_window;
 
 LANES_INLINE const unsigned char *window_row(const grid *grid, const tap_window *window, int y, int z) {
   return window->voxels + (size_t)z * grid->slice_bytes + (size_t)y * grid->row_bytes;
 }
 
-/* The loops are not unrolled: they would outgrow the instruction cache and take a compiler minutes. */
+/* Adds up the weighted taps. The loops are not unrolled: they would outgrow the instruction cache and take a
+ * compiler minutes. */
 LANES_INLINE lanes sum_taps(const grid *grid, hl_storage storage, const tap_window *window,
                             const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
@@ -55,8 +56,8 @@ static __attribute__((noinline)) lanes sum_f32(const grid *grid, const tap_windo
   return sum_taps(grid, HL_STORAGE_F32, window, weight);
 }
 
-/* The same sum, in the same order, in grids that are less than four voxels thick along some axis; one lane at
- * a time. */
+/* Adds up the taps in the same order as sum_taps(), one lane at a time. For grids that are less than four
+ * voxels thick along some axis. */
 static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const lanes_int cell[3],
                                                         uint32_t active, const lanes weight[3][4]) {
   lanes sums = lanes_set(0);
@@ -79,8 +80,9 @@ static __attribute__((noinline)) lanes sum_in_thin_grid(const grid *grid, const 
   return sums;
 }
 
-/* Beyond the border its values continue: the weights of taps outside are added to the border voxel's weight,
- * and the four taps move inside. The cells -1, 0, n-2 and n-1 have taps outside. Returns the moved cells. */
+/* Moves taps that lie outside the border into the grid. The border's values continue outside: the weights of
+ * taps outside are added to the border voxel's weight, and the four taps move inside. The cells -1, 0, n-2
+ * and n-1 have taps outside. Returns the moved cells. */
 LANES_INLINE lanes_int fold_border(lanes_int cell, int32_t count, lanes weight[4]) {
   lanes zero = lanes_set(0);
   lanes_int first = cell == -1, second = cell == 0, last_but_one = cell == count - 2,
@@ -103,15 +105,15 @@ LANES_INLINE uint32_t taps_inside(lanes_int cell, int32_t count) {
   return lanes_bits((cell >= 1) & (cell < count - 2));
 }
 
-/* The axes, one bit each, along which taps of active lanes lie outside. */
+/* The axes, one bit each, along which any active lane has taps outside the grid. */
 LANES_INLINE int axes_to_fold(const grid *grid, const lanes_int cell[3], uint32_t active) {
   int axes = 0;
   for (int a = 0; a < 3; a++) axes |= ((taps_inside(cell[a], grid->dimension[a]) & active) != active) << a;
   return axes;
 }
 
-/* Offsets are counted from the first active lane's cell, so that they fit 32 bits in any volume; idle lanes
- * read the taps of that cell. */
+/* The window of every lane's taps. Offsets are counted from the first active lane's cell, so that they fit 32
+ * bits in any volume. Idle lanes read the taps of that cell. */
 LANES_INLINE tap_window window_at(const grid *grid, const lanes_int cell[3], uint32_t active) {
   int first = __builtin_ctz(active);
   int32_t reference[3];
@@ -127,7 +129,7 @@ LANES_INLINE tap_window window_at(const grid *grid, const lanes_int cell[3], uin
 }
 
 /* The sums over voxels in memory. cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid.
- * lowest: as sum_of_windows(). */
+ * lowest: the parameter of sum_of_windows() with this name. */
 LANES_INLINE lanes sum_in_memory(const grid *grid, const lanes_int cell[3], const int32_t *lowest,
                                  uint32_t active, const lanes weight[3][4]) {
 #ifdef HL_WINDOWS
@@ -142,8 +144,8 @@ LANES_INLINE lanes sum_in_memory(const grid *grid, const lanes_int cell[3], cons
   return sum_f32(grid, &window, weight);
 }
 
-/* The page of the first active lane's taps, as a grid; returns the active lanes with taps in this page. cell:
- * tap 0 is at cell - 1. */
+/* Makes a grid of the page that holds the first active lane's taps. Returns the active lanes whose taps lie
+ * in this page. cell: tap 0 is at cell - 1. */
 LANES_INLINE uint32_t lanes_in_page(const grid *grid, const lanes_int cell[3], uint32_t active,
                                     struct grid *view, hl_page_reading *reading) {
   int first = __builtin_ctz(active);
@@ -158,7 +160,8 @@ LANES_INLINE uint32_t lanes_in_page(const grid *grid, const lanes_int cell[3], u
   return lanes_bits(same);
 }
 
-/* The same sums over voxels in pages, page by page: lanes do not depend on each other. */
+/* The sums over voxels in pages, page by page. They are the sums of sum_in_memory(), as lanes do not depend
+ * on each other. */
 static __attribute__((noinline)) lanes sum_in_pages(const grid *grid, const lanes_int cell[3],
                                                     uint32_t active, const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
@@ -174,8 +177,8 @@ static __attribute__((noinline)) lanes sum_in_pages(const grid *grid, const lane
   return sum;
 }
 
-/* The weighted sum for the active lanes of a block. inside: all lanes are active, and all their taps lie in
- * the grid. */
+/* The weighted sums of the active lanes of a block. inside: whether all lanes are active and all their taps
+ * lie in the grid. */
 LANES_INLINE lanes gather_block(const fill_source *source, const block_points *points, uint32_t active,
                                 int degree, int inside) {
   const grid *grid = source->grid;
@@ -188,7 +191,8 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_points *p
   const lanes(*weights)[4] = (const lanes(*)[4])weight;
   int outside = inside ? 0 : axes_to_fold(grid, cell, active);
   if (outside != 0) {
-    if (has_integer_weights(storage)) round_to_weights(weight[0]); /* before folding, as splatting does */
+    /* weights are rounded before they are folded, as in splatting */
+    if (has_integer_weights(storage)) round_to_weights(weight[0]);
     if (grid->dimension[0] < 4 || grid->dimension[1] < 4 || grid->dimension[2] < 4)
       return sum_in_thin_grid(grid, cell, active, weights);
     for (int a = 0; a < 3; a++)
@@ -198,7 +202,7 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_points *p
   return sum_in_memory(grid, cell, inside ? points->low : NULL, active, weights);
 }
 
-/* Fills one block's densities; returns whether any may show something. */
+/* Fills one block's densities. Returns whether any of them may show something. */
 LANES_INLINE int gather_points(const fill_source *source, const block_points *points, int inside,
                                float *density) {
   uint32_t active = inside ? 0xffff : lanes_bits(points->inside);
@@ -228,8 +232,8 @@ LANES_INLINE block_points points_in_tile(const fill_source *source, int tile_x, 
   return points;
 }
 
-/* First decides which of the other blocks show something, then sums them: alternating the two would make the
- * processor mispredict branches and begin sums in vain. inside: tile_is_inside(). */
+/* Decides first which of the other blocks show something, and then sums them. Taking turns would make the
+ * processor mispredict branches and begin sums in vain. inside: the result of tile_is_inside(). */
 LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, int tile_y, uint32_t need,
                                          uint32_t others, int inside, float *density) {
   block_points points[TILE_BLOCKS];

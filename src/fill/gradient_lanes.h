@@ -5,8 +5,8 @@
 
 #include "fill/gather_lanes.h"
 
-/* The three sums share the loads of voxels: each row is summed once with its weights and once with its
- * slopes. */
+/* Sums the gradient's three components. They share the loads of voxels: each row is summed once with its
+ * weights and once with its slopes. */
 LANES_INLINE lanes3 sum_slopes(const grid *grid, hl_storage storage, const tap_window *window,
                                const tap_slope_weights *w) {
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
@@ -55,8 +55,8 @@ static lanes3 slopes_of_taps(const grid *grid, const lanes_int cell[3], uint32_t
   return slopes_f32(grid, &window, w);
 }
 
-/* Whether 32 bits hold the offset between any two voxels; in larger grids they hold offsets within a block.
- */
+/* Whether 32 bits hold the offset between any two voxels. In larger grids 32 bits hold the offsets within a
+ * block. */
 LANES_INLINE int fits_offsets(const grid *grid) {
   return (uint64_t)grid->dimension[2] * grid->slice_bytes <= INT32_MAX;
 }
@@ -94,7 +94,7 @@ LANES_INLINE lanes3 slopes_in_memory(const grid *grid, const lanes_int cell[3], 
   return sum;
 }
 
-/* The same over voxels in pages, page by page. */
+/* The derivatives over voxels in pages, page by page. */
 static __attribute__((noinline)) lanes3 slopes_in_pages(const grid *grid, const lanes_int cell[3],
                                                         uint32_t active, uint32_t starts,
                                                         const tap_slope_weights *w) {
@@ -111,8 +111,8 @@ static __attribute__((noinline)) lanes3 slopes_in_pages(const grid *grid, const 
   return sum;
 }
 
-/* Derivatives along the index axes, stored units per voxel, for the active lanes, at least one. starts: the
- * first lane of each block of pixels, one bit each. */
+/* The derivatives along the index axes, in stored units per voxel, for the active lanes. At least one lane is
+ * active. starts: the first lane of each block of pixels, one bit each. */
 LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int degree, lanes3 point,
                                      uint32_t active, uint32_t starts) {
   tap_slope_weights w;

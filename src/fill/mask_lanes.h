@@ -1,4 +1,4 @@
-/* fill/mask_lanes.h - what a mask multiplies a volume's extinction by, at sixteen points. */
+/* fill/mask_lanes.h - the factor of a mask on a volume's extinction, at sixteen points. */
 #ifndef HL_FILL_MASK_LANES_H
 #define HL_FILL_MASK_LANES_H
 
@@ -6,13 +6,13 @@
 #include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
-/* The lattice's cells around sixteen points, and their parts of the way through them. */
+/* The lattice's cells around sixteen points, and the points' positions within the cells. */
 typedef struct mask_places {
   lanes_int cell[3], outside;
   lanes part[3];
 } mask_places;
 
-/* point: frame space. Points outside are taken to the border. */
+/* Places points of frame space in the lattice. Points outside are moved to the border. */
 LANES_INLINE mask_places places_in_mask(const mask_lattice *lattice, lanes3 point) {
   mask_places p = {.outside = lanes_set_int(0)};
   for (int a = 0; a < 3; a++) {
@@ -26,7 +26,7 @@ LANES_INLINE mask_places places_in_mask(const mask_lattice *lattice, lanes3 poin
   return p;
 }
 
-/* The points before and behind the places along each axis, in points from the first one. */
+/* The lattice points before and behind the places along each axis, counted in points from the first. */
 LANES_INLINE void points_of_places(const mask_lattice *lattice, const mask_places *p, lanes_int near[3],
                                    lanes_int far[3]) {
   for (int a = 0; a < 3; a++) {
@@ -43,12 +43,12 @@ LANES_INLINE lanes_int bricks_of_places(const mask_lattice *lattice, const mask_
   return at * (int32_t)sizeof *lattice->bricks;
 }
 
-/* The first, or the second, word of bricks. */
+/* The first or the second word of bricks. */
 LANES_INLINE lanes_int words_of_bricks(const mask_lattice *lattice, lanes_int bricks, int word) {
   return lanes_gather_bytes((const unsigned char *)&lattice->bricks[0][word], bricks);
 }
 
-/* Linear between the lattice's points, as whole steps. */
+/* Interpolates linearly between the lattice's points, in whole steps. */
 LANES_INLINE lanes steps_between_points(const mask_lattice *lattice, const mask_places *p) {
   lanes_int near[3], far[3];
   lanes plane[2];
@@ -56,7 +56,7 @@ LANES_INLINE lanes steps_between_points(const mask_lattice *lattice, const mask_
   for (int k = 0; k < 2; k++) {
     lanes line[2];
     for (int j = 0; j < 2; j++) {
-      lanes_int a, b; /* where the lattice ends, b is any number, with the weight 0 */
+      lanes_int a, b; /* where the lattice ends, b is any number and has the weight 0 */
       lanes_gather_short_pairs(lattice->factors, near[0] + (j ? far[1] : near[1]) + (k ? far[2] : near[2]),
                                &a, &b);
       line[j] = lanes_fma(lanes_from_int(b - a), p->part[0], lanes_from_int(a));
@@ -66,9 +66,9 @@ LANES_INLINE lanes steps_between_points(const mask_lattice *lattice, const mask_
   return lanes_fma(plane[1] - plane[0], p->part[2], plane[0]);
 }
 
-/* point: frame space. Linear between the lattice's points; `rest` outside the lattice. Known for the active
- * lanes. In even bricks all points have the factor that the brick tells: what is linear between them is just
- * this. */
+/* The mask's factor at points of frame space: linear between the lattice's points, `rest` outside the
+ * lattice. Only active lanes get a result. In even bricks the brick's own factor is the result, as linear
+ * interpolation of equal factors gives the same. */
 LANES_INLINE lanes mask_factor(const mask_lattice *lattice, lanes3 point, uint32_t active) {
   mask_places p = places_in_mask(lattice, point);
   lanes_int words = words_of_bricks(lattice, bricks_of_places(lattice, &p), 0);
@@ -77,7 +77,7 @@ LANES_INLINE lanes mask_factor(const mask_lattice *lattice, lanes3 point, uint32
   return lanes_select(p.outside, lanes_set(lattice->rest), steps * (1.0f / 65535));
 }
 
-/* Linear between the slopes of the lattice's points, per step along each axis. */
+/* Interpolates linearly between the slopes of the lattice's points, per step along each axis. */
 LANES_INLINE void slopes_between_points(const mask_lattice *lattice, const mask_places *p, lanes sum[3]) {
   lanes_int near[3], far[3];
   points_of_places(lattice, p, near, far);
@@ -93,8 +93,8 @@ LANES_INLINE void slopes_between_points(const mask_lattice *lattice, const mask_
   }
 }
 
-/* The factor's slope at points of frame space, per frame unit: linear between those of the lattice's points.
- * Known for the active lanes. */
+/* The factor's slope at points of frame space, per frame unit, linear between the slopes of the lattice's
+ * points. Only active lanes get a result. */
 LANES_INLINE lanes3 mask_slope(const mask_lattice *lattice, lanes3 point, uint32_t active) {
   mask_places p = places_in_mask(lattice, point);
   lanes sum[3] = {lanes_set(0), lanes_set(0), lanes_set(0)};

@@ -9,7 +9,7 @@
 
 /* ---- another volume's value ---- */
 
-/* Sums over voxels in memory, for lanes of any blocks: as slopes_in_memory(). */
+/* Sums over voxels in memory, for lanes of any blocks, with the parameters of slopes_in_memory(). */
 LANES_INLINE lanes values_in_memory(const grid *grid, const lanes_int cell[3], uint32_t active,
                                     uint32_t starts, const lanes weight[3][4]) {
   lanes sum = lanes_set(0);
@@ -46,8 +46,8 @@ LANES_INLINE lanes values_of_degree(const grid *grid, const kernel *kernel, int 
   return values_in_memory(grid, cell, active, starts, weights);
 }
 
-/* A volume's value at points of its index space, for the active lanes, at least one; stored units. starts:
- * the first lane of each block of pixels, one bit each. */
+/* A volume's values at points of its index space, in stored units, for the active lanes. At least one lane is
+ * active. starts: the first lane of each block of pixels, one bit each. */
 static __attribute__((noinline)) lanes values_at(const grid *grid, const kernel *kernel, lanes3 point,
                                                  uint32_t active, uint32_t starts) {
   return kernel->degree == HL_BSPLINE_DEGREE
@@ -57,8 +57,8 @@ static __attribute__((noinline)) lanes values_at(const grid *grid, const kernel 
 
 /* ---- the row of the second number ---- */
 
-/* slope: of the volume itself, stored units per frame unit; not read for another volume. point: frame space.
- */
+/* The row of the table at points. slope: the gradient of the volume itself, stored units per frame unit; not
+ * read if the second number is another volume's value. point: frame space. */
 LANES_INLINE lanes row_of_matter(const plane_table *table, const kernel *kernel, lanes3 slope, lanes3 point,
                                  uint32_t active, uint32_t starts) {
   lanes second, scale = lanes_set(table->row_scale);
@@ -74,7 +74,7 @@ LANES_INLINE lanes row_of_matter(const plane_table *table, const kernel *kernel,
 
 /* ---- the function along a row ---- */
 
-/* A row of the table, with the way to the next one. */
+/* A row of the table and the distance to the next row. */
 typedef struct plane_row {
   lanes_int start; /* the row's first point */
   lanes part;
@@ -89,17 +89,18 @@ LANES_INLINE lanes column_of(const plane_table *table, lanes coordinate) {
   return lanes_line(coordinate, table->column_scale, table->column_offset);
 }
 
-/* Lanes on whose ways between two coordinates the function depends on the second number. */
+/* The lanes in which the function depends on the second number between two coordinates. */
 LANES_INLINE lanes_int depends_on_row(const plane_table *table, lanes from, lanes to) {
   return lanes_max(column_of(table, from), column_of(table, to)) >= table->even_before;
 }
 
-/* Extinction, and its integral over columns, at a column. Extinction is linear between columns, so that after
- * the part f of one the integral has grown by f e0 + f^2 (e1 - e0) / 2 (derived). */
+/* Extinction at a column, and its integral over columns up to that column. Extinction is linear between
+ * columns. After the fraction f of a column the integral has therefore grown by f e0 + f^2 (e1 - e0) / 2
+ * (derived). */
 LANES_INLINE void sums_at_column(const plane_table *table, plane_row row, lanes column, lanes sums[2]) {
   lanes_int whole = lanes_truncate(column);
   lanes part = column - lanes_from_int(whole), of_row[2][2];
-  lanes here[4], next[4]; /* extinction and integral, in the row and in the next one, at two columns */
+  lanes here[4], next[4]; /* extinction and integral at two columns, in the row and in the next row */
   lanes_gather_quad_pairs(&table->sums[0][0], row.start + whole, here, next);
   for (int r = 0; r < 2; r++) {
     lanes rise = next[2 * r] - here[2 * r];
@@ -109,11 +110,11 @@ LANES_INLINE void sums_at_column(const plane_table *table, plane_row row, lanes 
   for (int i = 0; i < 2; i++) sums[i] = lanes_fma(of_row[1][i] - of_row[0][i], row.part, of_row[0][i]);
 }
 
-/* Where the ends of a way are closer than this many columns, the difference of integrals loses digits, and
- * the mean of the two ends is as accurate. */
+/* Two coordinates that are closer than this many columns get the mean of both ends: a difference of integrals
+ * would lose digits, and the mean is as accurate. */
 static const float CLOSE_COLUMNS = 2;
 
-/* The mean extinction in a row between two coordinates of the classifier's tables. */
+/* The mean extinction in a row between two coordinates in the classifier's tables. */
 LANES_INLINE lanes extinction_in_row(const plane_table *table, lanes row, lanes from, lanes to) {
   plane_row at = split_row(row);
   lanes a = column_of(table, from), b = column_of(table, to), at_a[2], at_b[2];
@@ -125,7 +126,7 @@ LANES_INLINE lanes extinction_in_row(const plane_table *table, lanes row, lanes 
   return lanes_select(far, lanes_max(mean, lanes_set(0)), (at_a[0] + at_b[0]) * 0.5f);
 }
 
-/* Sums over columns of colour times opacity, and of opacity, from the row's start to a column. */
+/* The sums of colour times opacity, and of opacity, over columns from the row's start to a column. */
 LANES_INLINE void colors_at_column(const plane_table *table, plane_row row, lanes column, lanes sums[4]) {
   lanes_int whole = lanes_truncate(column);
   lanes part = column - lanes_from_int(whole), of_row[2][4];
@@ -139,7 +140,7 @@ LANES_INLINE void colors_at_column(const plane_table *table, plane_row row, lane
   for (int i = 0; i < 4; i++) sums[i] = lanes_fma(of_row[1][i] - of_row[0][i], row.part, of_row[0][i]);
 }
 
-/* The same between two columns, at least two apart. */
+/* The sums of colors_at_column() between two columns that are at least two apart. */
 LANES_INLINE void colors_between(const plane_table *table, plane_row row, lanes a, lanes b, lanes sums[4]) {
   lanes low[4], high[4];
   lanes from = lanes_clamp(lanes_min(a, b) - 1.0f, 0, PLANE_COLUMNS - 1),
@@ -149,12 +150,12 @@ LANES_INLINE void colors_between(const plane_table *table, plane_row row, lanes 
   for (int i = 0; i < 4; i++) sums[i] = high[i] - low[i];
 }
 
-/* Below this sum of opacities over columns the colour is that of the whole way. */
+/* With a smaller sum of opacities over columns, the colour is the mean over the whole way. */
 static const float SOME_OPACITY = 1e-4f;
 
-/* The colour in a row where matter shows, linear RGB: the mean over the part of a way that shows, and a
- * column on either side; where the function shows nothing there, the mean over the whole way. Both from one
- * coordinate in the classifier's tables to another. Known for the active lanes. */
+/* The colour in a row where matter shows, in linear RGB: the mean over the part of a way that shows and one
+ * column on either side. If the function shows nothing there, the colour is the mean over the whole way. The
+ * way runs from one coordinate in the classifier's tables to another. Only active lanes get a result. */
 static __attribute__((noinline)) void color_in_row(const plane_table *table, lanes row, const lanes shown[2],
                                                    const lanes whole[2], uint32_t active, lanes color[3]) {
   plane_row at = split_row(row);

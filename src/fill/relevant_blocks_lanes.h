@@ -1,6 +1,6 @@
-/* fill/relevant_blocks_lanes.h - which blocks of a tile may show something between two sheets: the box
+/* fill/relevant_blocks_lanes.h - finds which blocks of a tile may show something between two sheets. The box
  * around each block's rays is looked up among the visible cells, sixteen blocks at a time. Several
- * consecutive slabs are done at once: they share boxes and the cells that are read. */
+ * consecutive slabs are examined together, as they share boxes and the cells that are read. */
 #ifndef HL_FILL_RELEVANT_BLOCKS_LANES_H
 #define HL_FILL_RELEVANT_BLOCKS_LANES_H
 
@@ -10,11 +10,11 @@
 
 typedef struct lanes_box {
   lanes low[3], high[3];
-} lanes_box; /* index space */
+} lanes_box; /* in index space */
 
-/* The box of a block's points on a sheet. Derived: on the sheet at base + P / H, the next pixel lies
- * (Pu - (Hu / H) P) / H further; the pixels' centres are at most 3/2 pixels from the block's middle in either
- * direction (a little more is allowed for: H changes within the block). */
+/* The box of a block's points on a sheet. Derived: on the sheet at base + P / H, the next pixel's point lies
+ * (Pu - (Hu / H) P) / H further. The pixels' centres are at most 3/2 pixels from the block's middle in either
+ * direction; a little more is allowed for, as H changes within the block. */
 LANES_INLINE lanes_box box_on_sheet(const sheet_rays *rays, lanes u, lanes v) {
   const float reach = 1.5f * 1.02f;
   lanes3 p = rays_linear(rays->p0, rays->pu, rays->pv, u, v);
@@ -32,9 +32,9 @@ LANES_INLINE lanes_box box_on_sheet(const sheet_rays *rays, lanes u, lanes v) {
   return box;
 }
 
-/* The lanes whose box may show something, by one look-up each; *wide: the lanes whose box spans more units
- * than a look-up covers, which are left out. shift: cells to units. low, high: the box's first and last
- * cells. */
+/* The lanes whose box may show something, found by one look-up each. *wide: the lanes whose box spans more
+ * units than a look-up covers; they are left out of the result. shift: converts cells to units. low, high:
+ * the box's first and last cells. */
 LANES_INLINE lanes_int box_visible(const cell_lookup *lookup, int shift, const lanes_int low[3],
                                    const lanes_int high[3], lanes_int inside, lanes_int *wide) {
   lanes_int first = lanes_set_int(0), bit = first, fits = lanes_set_int(-1);
@@ -76,13 +76,14 @@ LANES_INLINE uint32_t visible_boxes(const grid *grid, const lanes_box *box) {
   return lanes_bits(inside & (visible | (wide & (visible_coarsely | too_wide))));
 }
 
-/* The blocks whose boxes lie within a cut's shape, and outside. */
+/* The blocks whose boxes lie within a cut's shape, and the blocks whose boxes lie outside it. */
 typedef struct sides_of_cut {
   lanes_int within, outside;
 } sides_of_cut;
 
-/* beside: as in slab_run. The box in the shape's own space, where planes, boxes and spheres are simple: its
- * middle, and half its extent along each axis. */
+/* Finds on which side of a cut each box lies. A box is taken to the shape's own space, where planes, boxes
+ * and spheres are simple, as its middle and half its extent along each axis. beside: the member of slab_run
+ * with this name. */
 LANES_INLINE sides_of_cut sides_of_boxes(const run_cut *cut, const lanes_box *box, float beside) {
   lanes middle[3], half[3], farthest = lanes_set(0), nearest = lanes_set(0), far = farthest, near = nearest;
   for (int a = 0; a < 3; a++) {
@@ -105,7 +106,7 @@ LANES_INLINE sides_of_cut sides_of_boxes(const run_cut *cut, const lanes_box *bo
   return (sides_of_cut){far<1.0f, near> 1.0f};
 }
 
-/* Takes the blocks that cuts remove from `visible`, and those near a cut's face from `uncut`. */
+/* Removes the blocks that cuts remove from `visible`, and the blocks near a cut's face from `uncut`. */
 LANES_INLINE void apply_cuts(const slab_run *run, const lanes_box *box, uint32_t *visible, uint32_t *uncut) {
   for (int i = 0; i < run->cut_count; i++) {
     sides_of_cut sides = sides_of_boxes(&run->cuts[i], box, run->beside);
@@ -115,7 +116,7 @@ LANES_INLINE void apply_cuts(const slab_run *run, const lanes_box *box, uint32_t
   }
 }
 
-/* The blocks whose boxes lie where the volume's box cuts nothing. */
+/* The blocks whose boxes lie where the volume's box does not cut anything. */
 LANES_INLINE uint32_t uncut_blocks(const slab_run *run, const lanes_box *box) {
   lanes_int uncut = lanes_set_int(-1);
   for (int axis = 0; axis < 3; axis++)
@@ -136,7 +137,7 @@ static void relevant_blocks_tile(const slab_run *run, int tile_x, int tile_y, ui
     lanes_box box = box_of_slab(&on_sheet[slab], &on_sheet[slab + 1]);
     uint32_t visible = visible_boxes(run->grid, &box), whole = uncut_blocks(run, &box);
     apply_cuts(run, &box, &visible, &whole);
-    /* an eye within the slab cuts blocks too: rays begin at it */
+    /* an eye within the slab cuts blocks, too, as its rays begin there */
     int uncut = rays[0].step * rays[1].step > 0 && (visible & ~whole) == 0;
     found->uncut = (uint16_t)((found->uncut & ~(1u << slab)) | (uint32_t)uncut << slab);
     found->blocks[slab] = (uint16_t)(visible & need);

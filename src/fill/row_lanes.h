@@ -7,10 +7,11 @@
 
 /* ---- weights as integers ---- */
 
-/* Of u8 and u16 voxels, weights along x are integers, so that the sum of four taps is exact on every
- * instruction set: at most 255 * 32766 for u8, which a float holds exactly, and 65535 * 32766 for u16, which
- * 32 bits hold. A weight is never negative and fits a signed 16-bit number. So does a slope, a weight's
- * derivative: the slopes of all kernels and the sums of these stay below 1.08 in magnitude. */
+/* Weights along x of u8 and u16 voxels are integers, so that the sum of four taps is exact on every
+ * instruction set. It is at most 255 * 32766 for u8, which a float holds exactly, and 65535 * 32766 for u16,
+ * which 32 bits hold. A weight is never negative and fits a signed 16-bit number. A slope, which is a
+ * weight's derivative, fits one, too: the slopes of all kernels and their sums stay below 1.08 in
+ * magnitude. */
 enum { WEIGHT_UNITS = 32766, SLOPE_UNITS = 30000 };
 static const float WEIGHT_INVERSE = 1.0f / WEIGHT_UNITS, SLOPE_INVERSE = 1.0f / SLOPE_UNITS;
 
@@ -18,23 +19,23 @@ typedef struct integer_weights {
   lanes_int tap[4];
 } integer_weights;
 
-/* x in units, rounded to the nearest integer; results below 2^22. The last bit of a float from 2^23 to 2^24
- * stands for 1, so that adding 3 * 2^22 rounds to it. */
+/* x in units, rounded to the nearest integer. Results are below 2^22. The last bit of a float from 2^23 to
+ * 2^24 stands for 1, so that adding 3 * 2^22 rounds to integers. */
 LANES_INLINE lanes_int round_to_units(lanes x, int units) {
   const float shift = 3 << 22;
   return (lanes_int)lanes_line(x, (float)units, shift) - (lanes_int)lanes_set(shift);
 }
 
-/* Rounds the sums of weights from the first tap on, not each weight: the error of a row of voxels is then
- * half a unit of the differences between neighbours, and constant rows are exact. total: the sum of all four
- * weights. */
+/* Rounds the sums of weights from the first tap on, not each weight. The error of a row of voxels is then
+ * half a unit times the differences between neighbours, and constant rows are exact. total: the sum of all
+ * four weights. */
 LANES_INLINE integer_weights round_weights(const lanes weight[4], int units, int total) {
   lanes_int first = round_to_units(weight[0], units), two = round_to_units(weight[0] + weight[1], units);
   lanes_int last = round_to_units(weight[3], units);
   return (integer_weights){{first, two - first, total * units - last - two, last}};
 }
 
-/* Rounds weights to integers and turns them back to floats. */
+/* Rounds weights to integers and converts them back to floats. */
 LANES_INLINE void round_to_weights(lanes weight[4]) {
   integer_weights integers = round_weights(weight, WEIGHT_UNITS, 1);
   for (int tap = 0; tap < 4; tap++) weight[tap] = lanes_from_int(integers.tap[tap]) * WEIGHT_INVERSE;
@@ -42,13 +43,13 @@ LANES_INLINE void round_to_weights(lanes weight[4]) {
 
 /* ---- u8 voxels ---- */
 
-/* Four u8 taps in a 32-bit word are weighted and added. The weights are split into the parts that the
+/* The functions below weight and add four u8 taps in a 32-bit word. Weights are split into the parts that the
  * processor's instructions multiply. */
 #if defined(__AVX512VBMI__) && defined(__AVX512VBMI2__) && defined(__AVX512VNNI__)
 #define HL_PERMUTES_BYTES 1
 
 /* A lane's four weights as two bytes each, the higher bytes first. The processor multiplies unsigned bytes by
- * signed ones: weights by voxels less 128, and voxels by slopes. */
+ * signed ones: weights are multiplied by voxels less 128, and voxels by slopes. */
 typedef struct byte_weights {
   __m512i digit[2];
 } byte_weights;
@@ -56,11 +57,11 @@ typedef struct byte_slopes {
   __m512i digit[2];
 } byte_slopes;
 
-/* The lower, or the higher, bytes of four 16-bit numbers a lane, in order. even: numbers 0 and 2; odd: 1
- * and 3. */
+/* The lower bytes, or the higher ones, of four 16-bit numbers in each lane, in order. even: numbers 0 and 2.
+ * odd: numbers 1 and 3. */
 LANES_INLINE __m512i lower_bytes(__m512i even, __m512i odd) {
   return _mm512_ternarylogic_epi32(_mm512_set1_epi32(0x00ff00ff), even, _mm512_slli_epi32(odd, 8),
-                                   0xca); /* a ? b : c */
+                                   0xca); /* selects a ? b : c */
 }
 LANES_INLINE __m512i higher_bytes(__m512i even, __m512i odd) {
   return _mm512_ternarylogic_epi32(_mm512_set1_epi32(0x00ff00ff), _mm512_srli_epi32(even, 8), odd, 0xca);
@@ -75,7 +76,7 @@ LANES_INLINE byte_weights split_weights(const integer_weights *integers) {
   return (byte_weights){{higher_bytes(even, odd), lower_bytes(even, odd)}};
 }
 
-/* A slope is d0 * 256 + d1, both signed: where d1 is negative, d0 is one more. */
+/* Splits slopes. A slope is d0 * 256 + d1, both signed; where d1 is negative, d0 is one more. */
 LANES_INLINE byte_slopes split_slopes(const integer_weights *integers) {
   const __m512i sign = _mm512_set1_epi16((short)0x8080);
   __m512i even = _mm512_add_epi16(two_words(integers->tap[0], integers->tap[2]), sign);
@@ -88,7 +89,7 @@ LANES_INLINE byte_slopes split_slopes(const integer_weights *integers) {
 LANES_INLINE lanes_int taps_with_sign(lanes_int taps) { return taps ^ (int32_t)0x80808080; }
 
 LANES_INLINE lanes_int weigh_signed_bytes(lanes_int less_128, const byte_weights *weights) {
-  /* 128 times the sum of all weights, once it is shifted left by a byte */
+  /* after a shift left by a byte, this is 128 times the sum of all weights */
   const __m512i half = _mm512_set1_epi32(WEIGHT_UNITS / 2);
   __m512i sum = _mm512_dpbusd_epi32(half, weights->digit[0], (__m512i)less_128);
   return (lanes_int)_mm512_dpbusd_epi32(_mm512_slli_epi32(sum, 8), weights->digit[1], (__m512i)less_128);
@@ -101,8 +102,8 @@ LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes)
   return (lanes_int)_mm512_dpbusd_epi32(_mm512_slli_epi32(sum, 8), (__m512i)taps, slopes->digit[1]);
 }
 #elif defined(__AVX2__)
-/* The weights of taps 0 and 2 share a word, and so do those of 1 and 3: one instruction multiplies pairs of
- * signed 16-bit numbers and adds the two products. */
+/* The weights of taps 0 and 2 share a word, and so do the weights of taps 1 and 3. One instruction multiplies
+ * pairs of signed 16-bit numbers and adds the two products. */
 typedef struct byte_weights {
   lanes_int pair[2];
 } byte_weights;
@@ -139,10 +140,11 @@ LANES_INLINE lanes_int slope_of_bytes(lanes_int taps, const byte_slopes *slopes)
 
 /* ---- u16 voxels ---- */
 
-/* Four u16 taps in two 32-bit words are weighted and added. */
+/* The functions below weight and add four u16 taps in two 32-bit words. */
 #if defined(__AVX2__)
-/* The weights of taps 0 and 1 share a word, and so do those of 2 and 3: one instruction multiplies pairs of
- * signed 16-bit numbers and adds the two products. Voxels are taken less 32768, as signed numbers. */
+/* The weights of taps 0 and 1 share a word, and so do the weights of taps 2 and 3. One instruction multiplies
+ * pairs of signed 16-bit numbers and adds the two products. Voxels are signed numbers: 32768 is subtracted
+ * from them. */
 typedef struct short_weights {
   lanes_int pair[2];
 } short_weights;
@@ -157,7 +159,8 @@ LANES_INLINE short_weights pair_weights(const integer_weights *integers) {
 }
 LANES_INLINE short_slopes pair_slopes(const integer_weights *integers) { return pair_weights(integers); }
 
-/* For voxels less 32768. The four slopes add up to 0, so that the 32768 cancel. */
+/* The weighted sum of slopes for voxels less 32768. The four slopes add up to 0, so that the 32768
+ * cancels. */
 LANES_INLINE lanes_int slope_of_signed(lanes_int low, lanes_int high, const short_slopes *slopes) {
   return lanes_multiply_shorts(low, slopes->pair[0]) + lanes_multiply_shorts(high, slopes->pair[1]);
 }
@@ -181,7 +184,7 @@ LANES_INLINE lanes_int weigh_shorts(lanes_int low, lanes_int high, const short_w
   return ((low & 65535) * weights->tap[0] + ((low >> 16) & 65535) * weights->tap[1]) +
          ((high & 65535) * weights->tap[2] + ((high >> 16) & 65535) * weights->tap[3]);
 }
-/* Voxels are taken less 32768, so that all sums fit 32 bits. */
+/* Voxels are read less 32768, so that all sums fit 32 bits. */
 LANES_INLINE lanes_int slope_of_shorts(lanes_int low, lanes_int high, const short_slopes *slopes) {
   return (((low & 65535) - 32768) * slopes->tap[0] + (((low >> 16) & 65535) - 32768) * slopes->tap[1]) +
          (((high & 65535) - 32768) * slopes->tap[2] + (((high >> 16) & 65535) - 32768) * slopes->tap[3]);
@@ -199,7 +202,7 @@ typedef struct tap_slope_weights {
   lanes weight[3][4], slope[3][4];
 } tap_slope_weights;
 
-/* Weights along x and their slopes, in the form for the voxels' type: floats for f32, else integers. */
+/* Weights along x and their slopes, in the form that fits the voxels' type: floats for f32, else integers. */
 typedef struct row_weights {
   lanes real[4];
   byte_weights bytes;
@@ -233,7 +236,7 @@ LANES_INLINE row_slopes slopes_of_row(hl_storage storage, const lanes slope[4]) 
 }
 
 /* The weighted sum of four neighbouring voxels along x, for every lane. offsets: bytes from `row`. With
- * integer weights the result is in units of these. */
+ * integer weights the result is in units of the weights. */
 LANES_INLINE lanes row_f32(const unsigned char *row, const lanes_offsets *offsets, const lanes weight[4]) {
   return weigh_floats((lanes)lanes_load_words(row, offsets), (lanes)lanes_load_words(row + 4, offsets),
                       (lanes)lanes_load_words(row + 8, offsets), (lanes)lanes_load_words(row + 12, offsets),
@@ -247,7 +250,7 @@ LANES_INLINE lanes sum_row(hl_storage storage, const unsigned char *row, const l
   return lanes_from_int(
       weigh_shorts(lanes_load_words(row, offsets), lanes_load_words(row + 4, offsets), &weights->shorts));
 }
-/* The same with slopes, in units of slopes. */
+/* The sum of four neighbouring voxels along x, weighted by slopes, in units of slopes. */
 LANES_INLINE lanes slope_row(hl_storage storage, const unsigned char *row, const lanes_offsets *offsets,
                              const row_slopes *slopes) {
   if (storage == HL_STORAGE_F32) return row_f32(row, offsets, slopes->real);
@@ -257,7 +260,7 @@ LANES_INLINE lanes slope_row(hl_storage storage, const unsigned char *row, const
       slope_of_shorts(lanes_load_words(row, offsets), lanes_load_words(row + 4, offsets), &slopes->shorts));
 }
 
-/* Convert sums from units of weights, or of slopes, to stored units. */
+/* Converts sums in units of weights, or of slopes, to stored units. */
 LANES_INLINE lanes from_units(hl_storage storage, lanes sum) {
   return has_integer_weights(storage) ? sum * WEIGHT_INVERSE : sum;
 }

@@ -1,8 +1,9 @@
-/* fill/rows_avx2_lanes.h - sums along y and z with AVX2, and u16 voxels straight from the volume.
+/* fill/rows_avx2_lanes.h - sums along y and z with AVX2, and sums over u16 voxels that are read directly from
+ * the volume.
  *
- * A register of 256 bits holds the taps of two lanes, lanes k and k + 4 of eight. Weighting them along x
- * leaves one number for each row of taps; transposing these puts lanes side by side, to be summed along y and
- * z. */
+ * A register of 256 bits holds the taps of two lanes, lanes k and k + 4 of eight. Weighting the taps along x
+ * leaves one number for each row of taps. These numbers are transposed, so that lanes lie side by side, and
+ * summed along y and z. */
 #ifndef HL_FILL_ROWS_AVX2_LANES_H
 #define HL_FILL_ROWS_AVX2_LANES_H
 
@@ -10,19 +11,19 @@
 #include "simd/gathers.h"
 #include "view/rays_lanes.h"
 
-/* The taps of lanes k and k + 4 of a half. */
+/* The taps of lanes k and k + 4 of eight lanes. */
 typedef struct pair_of_taps {
   const unsigned char *first, *second;
 } pair_of_taps;
 
-/* Sums along x of eight lanes' rows: [slice][k], four rows of each of the lanes k and k + 4. In units of
- * weights. */
+/* Sums along x of eight lanes' rows, in units of weights. Element [slice][k] holds four rows of lane k and
+ * four rows of lane k + 4. */
 typedef struct sums_of_rows {
   __m256i of_two[4][4];
 } sums_of_rows;
 
-/* Transposes four rows of two lanes in each of four registers to eight lanes in each of four rows, as floats.
- */
+/* Transposes four registers with four rows of two lanes each to four rows with eight lanes each, as
+ * floats. */
 LANES_INLINE void turn_rows(const __m256i of_two[4], __m256 row[4]) {
   __m256i a = _mm256_unpacklo_epi32(of_two[0], of_two[1]), b = _mm256_unpacklo_epi32(of_two[2], of_two[3]);
   __m256i c = _mm256_unpackhi_epi32(of_two[0], of_two[1]), d = _mm256_unpackhi_epi32(of_two[2], of_two[3]);
@@ -42,7 +43,7 @@ LANES_INLINE __m256 add_rows(const __m256 row[4], const lanes weight[4], int hal
   return plane;
 }
 
-/* Eight lanes' sums. */
+/* The sums of eight lanes. */
 LANES_INLINE __m256 add_slices(const sums_of_rows *rows, const lanes weight[3][4], int half) {
   __m256 sum = _mm256_setzero_ps();
   for (int z = 0; z < 4; z++) {
@@ -53,12 +54,13 @@ LANES_INLINE __m256 add_slices(const sums_of_rows *rows, const lanes weight[3][4
   return _mm256_mul_ps(sum, _mm256_set1_ps(WEIGHT_INVERSE));
 }
 
-/* Eight lanes' gradients. */
+/* The gradients of eight lanes. */
 typedef struct half_slope {
   __m256 x, y, z;
 } half_slope;
 
-/* sloped_rows: the same rows with slopes in place of weights, in units of slopes. */
+/* Adds up the gradients of eight lanes. sloped_rows: the sums along x with slopes in place of weights, in
+ * units of slopes. */
 LANES_INLINE half_slope add_slopes(const sums_of_rows *rows, const sums_of_rows *sloped_rows,
                                    const tap_slope_weights *w, int half) {
   __m256 x = _mm256_setzero_ps(), y = x, z = x;
@@ -83,7 +85,8 @@ LANES_INLINE void store_half(half_slope of, int half, lanes3 *slope) {
 
 /* ---- u16 voxels, straight from the volume ---- */
 
-/* voxels, offsets: bytes to every lane's first tap. */
+/* Finds the taps of lanes k and k + 4. voxels, offsets: address of the voxels, and bytes to every lane's
+ * first tap. */
 LANES_INLINE pair_of_taps short_taps_of_pair(const unsigned char *voxels, const lanes_offsets *offsets,
                                              int half, int k) {
   const int32_t *at = offsets->at + 8 * half + k;
@@ -114,7 +117,8 @@ LANES_INLINE short_slice short_slice_of_two(const pair_of_taps *taps, size_t at,
                        short_rows_of_two(taps, at + 2 * row_bytes, row_bytes)};
 }
 
-/* Two lanes' weights or slopes: each lane's four fill a quarter of the register, twice, once for each row. */
+/* The weights, or slopes, of two lanes. Each lane's four weights fill a quarter of the register, and stand
+ * there twice, once for each row. */
 LANES_INLINE __m256i short_weights_of_pair(const short_weights *weights, int half, int k) {
   __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)&weights->pair[0] + half);
   __m256i high = _mm256_loadu_si256((const __m256i *)(const void *)&weights->pair[1] + half);
@@ -122,7 +126,7 @@ LANES_INLINE __m256i short_weights_of_pair(const short_weights *weights, int hal
   return k % 2 == 0 ? _mm256_unpacklo_epi64(both, both) : _mm256_unpackhi_epi64(both, both);
 }
 
-/* The sum of each row. */
+/* The sums of a slice's rows, weighted by slopes. */
 LANES_INLINE __m256i slope_short_slice(const short_slice *slice, __m256i weights) {
   return _mm256_hadd_epi32(_mm256_madd_epi16(slice->upper, weights),
                            _mm256_madd_epi16(slice->lower, weights));
@@ -131,7 +135,8 @@ LANES_INLINE __m256i weigh_short_slice(const short_slice *slice, __m256i weights
   return _mm256_add_epi32(slope_short_slice(slice, weights), _mm256_set1_epi32(LESS_BY));
 }
 
-/* The weighted sums of all lanes' 64 taps. voxels, offsets: bytes to every lane's first tap. */
+/* The weighted sums of all lanes' 64 taps. voxels, offsets: address of the voxels, and bytes to every lane's
+ * first tap. */
 LANES_INLINE lanes sum_short_rows(const grid *grid, const unsigned char *voxels, const lanes_offsets *offsets,
                                   const lanes weight[3][4]) {
   size_t row_bytes = grid->row_bytes, slice_bytes = grid->slice_bytes;

@@ -1,4 +1,5 @@
-/* fill/splat_lanes.h - splatting: each voxel's kernel, cut by the sheet, is added to a tile (steps 8 to 11).
+/* fill/splat_lanes.h - splatting: each voxel's kernel, cut by the sheet, is added to a tile (steps 8 to 11 of
+ * the paper).
  *
  * There is no table of footprints: the kernel is evaluated at each pixel's point on the sheet, which is exact
  * at any orientation, perspective and spacing. */
@@ -16,7 +17,8 @@ typedef struct tile_points {
   lanes3 low, high;
 } tile_points;
 
-/* Clears `inside` of points outside relevant bricks: voxels of other bricks are not in the lists. */
+/* Clears `inside` for points outside relevant bricks, since the voxels of other bricks are not in the
+ * lists. */
 LANES_INLINE void keep_relevant(const grid *grid, block_points *points) {
   if (lanes_bits(points->inside) == 0) return;
   lanes_int brick = (points->cell[2] + 1) >> 2;
@@ -47,7 +49,7 @@ static void find_tile_points(const fill_source *source, int tile_x, int tile_y, 
   }
 }
 
-/* Blocks within reach of a voxel at (x, y, z). */
+/* The blocks within reach of a voxel at (x, y, z). */
 LANES_INLINE uint32_t blocks_in_reach(const tile_points *tile, float x, float y, float z, float reach) {
   lanes_int mask = (tile->low.x < x + reach) & (tile->high.x > x - reach) & (tile->low.y < y + reach) &
                    (tile->high.y > y - reach) & (tile->low.z < z + reach) & (tile->high.z > z - reach);

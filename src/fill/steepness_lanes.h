@@ -1,5 +1,5 @@
-/* fill/steepness_lanes.h - what the length of a volume's gradient, its mask and the second number of its
- * transfer function make of its extinction. */
+/* fill/steepness_lanes.h - the factor on a volume's extinction that the length of its gradient, its mask and
+ * the second number of its transfer function give. */
 #ifndef HL_FILL_STEEPNESS_LANES_H
 #define HL_FILL_STEEPNESS_LANES_H
 
@@ -8,8 +8,8 @@
 #include "fill/plane_lanes.h"
 #include "simd/gathers.h"
 
-/* The gradient at a point of frame space: df/dframe = (dindex/dframe)^T df/dindex; stored units per frame
- * unit. m: frame space to index space. */
+/* The gradient at a point of frame space, in stored units per frame unit: df/dframe = (dindex/dframe)^T
+ * df/dindex. m: frame space to index space. */
 LANES_INLINE lanes3 gradient_in_frame(const grid *grid, const kernel *kernel, const float m[3][4],
                                       lanes3 point, uint32_t active, uint32_t starts) {
   lanes3 at = {row_of_point(m[0], point), row_of_point(m[1], point), row_of_point(m[2], point)};
@@ -17,8 +17,8 @@ LANES_INLINE lanes3 gradient_in_frame(const grid *grid, const kernel *kernel, co
   return add_scaled3(add_scaled3(scale3(set3(m[2]), slope.z), set3(m[1]), slope.y), set3(m[0]), slope.x);
 }
 
-/* What extinction is multiplied by where the gradient is `slope` (stored units per frame unit). The
- * classifier has gradient opacity. */
+/* The factor on extinction where the gradient is `slope` (stored units per frame unit). The classifier must
+ * have gradient opacity. */
 LANES_INLINE lanes factor_of_slope(const classifier *classifier, lanes3 slope) {
   lanes3 scaled = scale3(slope, lanes_set(classifier->steepness_scale));
   lanes x = lanes_clamp(lanes_sqrt(dot3(scaled, scaled)), 0, STEEPNESS_ENTRIES), a, b;
@@ -32,28 +32,29 @@ typedef struct matter_way {
   const grid *grid;
   const kernel *kernel;
   const classifier *classifier;
-  const float (*to_index)[4]; /* frame space to index space */
-  lanes3 point;               /* where it is seen by the value alone; frame space */
-  lanes from, to;             /* coordinates in the tables where the way begins and ends */
-  lanes extinction;           /* the mean by the value alone */
+  const float (*to_index)[4]; /* maps frame space to index space */
+  lanes3 point;               /* the point where the matter is seen by the value alone; frame space */
+  lanes from, to;             /* coordinates in the tables at the way's beginning and end */
+  lanes extinction;           /* the mean extinction by the value alone */
   uint32_t active, starts;    /* lanes with extinction, at least one; the first lane of each block */
-  int wants_slope;            /* the caller reads the slope, whether the factor depends on it or not */
+  int wants_slope;            /* whether the caller reads the slope, even where the factor does not depend on
+                               * it */
 } matter_way;
 
-/* What its extinction is multiplied by. */
+/* The factor on a volume's extinction. */
 typedef struct matter_factor {
   lanes factor;
-  lanes3
-      slope; /* the gradient there, stored units per frame unit; 0 where the factor does not depend on it */
-  lanes row; /* of the second number, in the table of a function of two numbers */
+  lanes3 slope; /* the gradient at the point, in stored units per frame unit; 0 where the factor does not
+                 * depend on it */
+  lanes row;    /* the row of the second number in the table of a function of two numbers */
 } matter_factor;
 
-/* Not inlined: it is large, and frames without it shall not carry it. */
+/* This function is not inlined: it is large, and frames that do not need it should not carry it. */
 static __attribute__((noinline)) matter_factor factor_of_matter(const matter_way *way) {
   const classifier *classifier = way->classifier;
   const plane_table *plane = &classifier->plane;
   matter_factor found = {lanes_set(1.0f), {lanes_set(0), lanes_set(0), lanes_set(0)}, lanes_set(0)};
-  /* where it does not depend on the second number, any row will do */
+  /* where the function does not depend on the second number, any row will do */
   int varies = plane->sums != NULL &&
                (lanes_bits(depends_on_row(plane, way->from, way->to)) & way->active) != 0;
   int needs_slope = classifier->steepness != NULL || (varies && plane->axis == HL_SECOND_GRADIENT);

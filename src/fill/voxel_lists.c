@@ -1,8 +1,8 @@
 /* fill/voxel_lists.c - a counting sort by (tile, bucket), in three passes: count, write, order.
  *
- * Voxels are numbered in the grid padded by two on every side: beyond the border its values continue. Threads
- * write the entries of a bucket in any order; sorting each bucket by index afterwards makes the sums, and so
- * the picture, independent of the threads. */
+ * Voxels are numbered in the grid padded by two voxels on every side, where the values at the border
+ * continue. Threads write the entries of a bucket in any order; sorting each bucket by index afterwards makes
+ * the sums, and so the picture, independent of the threads. */
 #include "fill/voxel_lists.h"
 
 #include <string.h>
@@ -13,17 +13,18 @@ typedef struct sort_job {
   const grid *grid;
   const sheet_stack *sheets;
   footprint_map map;
-  double support; /* voxels */
+  double support; /* the kernel's radius in voxels */
   voxel_lists *lists;
-  uint32_t *cursor; /* [tiles * buckets + 1]: counts, then where to write next */
-  bool writing;     /* false: counting */
+  uint32_t *cursor; /* [tiles * buckets + 1]; at first counts, later the place of the next entry */
+  bool writing;     /* if false, voxels are only counted */
 } sort_job;
 
 static int32_t clamp_brick(int32_t cell, int32_t cells) {
   return (cell < 0 ? 0 : cell > cells ? cells : cell) / HL_BRICK_CELLS;
 }
 
-/* Voxel i contributes to points with floor(p) in i-2 .. i+1: to cells i-1 .. i+2. */
+/* Whether voxel i contributes to a relevant cell. It contributes to points with floor(p) in i-2 .. i+1, and
+ * so to the cells i-1 .. i+2. */
 static bool voxel_relevant(const grid *grid, const int32_t v[3]) {
   int32_t first[3], last[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -42,8 +43,8 @@ static int clamp_tile(double pixel, int tiles) {
   return pixel < 0 ? 0 : pixel >= (double)tiles * TILE ? tiles - 1 : (int)(pixel / TILE);
 }
 
-/* Half edges of the box that a voxel contributes to. Points outside the grid take the border's density: the
- * voxels at the border reach through the margin. */
+/* Half edges of the box of points to which a voxel contributes. Points outside the grid take the border's
+ * density, so that voxels at the border reach through the margin. */
 static void footprint_half(const sort_job *job, const int32_t v[3], double half[3]) {
   for (int axis = 0; axis < 3; axis++) {
     bool border = v[axis] < job->support || v[axis] >= job->grid->dimension[axis] - job->support;
@@ -51,8 +52,8 @@ static void footprint_half(const sort_job *job, const int32_t v[3], double half[
   }
 }
 
-/* Counts or writes a voxel. A sheet reads span buckets: a voxel that touches more than span sheets is listed
- * once every span sheets. */
+/* Counts or writes a voxel. A sheet reads `span` buckets. A voxel that touches more than `span` sheets is
+ * therefore listed again every `span` sheets. */
 static void visit_voxel(const sort_job *job, const int32_t v[3], uint32_t voxel) {
   voxel_lists *lists = job->lists;
   const double centre[3] = {v[0], v[1], v[2]};
@@ -91,7 +92,7 @@ static void visit_slice(void *data, size_t index, int worker) {
   }
 }
 
-/* Sorts the buckets of one tile by index (they are short: insertion sort). */
+/* Sorts the buckets of one tile by index. Buckets are short, so that insertion sort does. */
 static void order_tile(void *data, size_t index, int worker) {
   (void)worker;
   const sort_job *job = data;

@@ -1,4 +1,4 @@
-/* fill/voxel_lists.h - the relevant voxels, sorted by tile and sheet for splatting (step 2). */
+/* fill/voxel_lists.h - the relevant voxels, sorted by tile and sheet for splatting (step 2 of the paper). */
 #ifndef HL_FILL_VOXEL_LISTS_H
 #define HL_FILL_VOXEL_LISTS_H
 
@@ -7,14 +7,15 @@
 /* The voxels that touch each tile of a view, by the first sheet that their kernels touch. */
 typedef struct voxel_lists {
   int tiles_x, tiles_y;
-  int bucket_count; /* sheets + span - 1 */
-  int span; /* how many sheets a kernel can touch; sheet k reads buckets k .. k + span - 1. At the border,
-               where values continue, voxels touch more sheets and are listed again every span sheets */
+  int bucket_count; /* number of sheets + span - 1 */
+  int span; /* number of sheets that a kernel can touch. Sheet k reads buckets k .. k + span - 1. At the
+             * border, where values continue, voxels touch more sheets and are listed again every span
+             * sheets */
   uint32_t *start; /* owned; [tiles * bucket_count + 1] */
   uint32_t *voxel; /* owned; [start[last]]; index in the grid padded by 2 voxels on every side */
 } voxel_lists;
 
-/* The voxels to sort, and where they are seen. */
+/* The voxels to sort, and the view that sees them. */
 typedef struct voxel_sort {
   const grid *grid;
   const kernel *kernel;

@@ -1,13 +1,13 @@
-/* fill/window_taps_avx512_lanes.h - one slice of a window in registers of 512 bits, and the taps that
- * permutations take from it: u16 and f32 voxels, eight voxels each of seven rows of the volume. u8 voxels:
- * window_bytes_avx512_vbmi_lanes.h and window_words_avx512_lanes.h. */
+/* fill/window_taps_avx512_lanes.h - one slice of a window of u16 or f32 voxels in registers of 512 bits, and
+ * the taps that permutations take from it. The slice has eight voxels of each of seven rows of the volume.
+ * For u8 voxels see window_bytes_avx512_vbmi_lanes.h and window_words_avx512_lanes.h. */
 #ifndef HL_FILL_WINDOW_TAPS_AVX512_LANES_H
 #define HL_FILL_WINDOW_TAPS_AVX512_LANES_H
 
 #include "fill/row_lanes.h"
 #include "simd/lanes.h"
 
-/* Registers, as many as the voxels' type fills. */
+/* A slice of a window. Its number of registers depends on the voxels' type. */
 typedef struct window_slice {
   __m512i part[4];
 } window_slice;
@@ -15,14 +15,14 @@ typedef struct window_taps {
   __m512i part[4];
 } window_taps;
 
-/* A set of lanes: a bit for each byte, or other unit, of their taps that a permutation moves. */
+/* A set of lanes: one bit for each unit of the lanes' taps that a permutation moves, such as a byte. */
 typedef __mmask64 window_lanes;
 
-enum { WINDOW_ROWS = GRID_COLUMN - 1 }; /* of u16 and f32 voxels */
+enum { WINDOW_ROWS = GRID_COLUMN - 1 }; /* number of rows in a window of u16 or f32 voxels */
 
 /* ---- u16: two taps a word ---- */
 
-/* The indices of each lane's first two taps, from the coordinates of its first tap in the window. */
+/* The indices of each lane's first two taps, computed from the coordinates of its first tap in the window. */
 LANES_INLINE __m512i index_u16(__m512i x, __m512i y) {
   __m512i first = _mm512_add_epi32(_mm512_slli_epi32(y, 3), x);
   return _mm512_add_epi32(_mm512_or_si512(first, _mm512_slli_epi32(first, 16)),
@@ -31,7 +31,7 @@ LANES_INLINE __m512i index_u16(__m512i x, __m512i y) {
 
 LANES_INLINE __m128i row_of_shorts(const unsigned char *row) { return _mm_loadu_si128((const __m128i *)row); }
 
-/* Four rows, and the three below them, less 32768. */
+/* Loads a slice of voxels less 32768: four rows, and the three rows below them. */
 LANES_INLINE window_slice slice_u16(const unsigned char *row, size_t row_bytes) {
   window_slice slice;
   __m512i upper = _mm512_castsi128_si512(row_of_shorts(row)),
@@ -46,7 +46,7 @@ LANES_INLINE window_slice slice_u16(const unsigned char *row, size_t row_bytes) 
   return slice;
 }
 
-/* The four rows from row y on. They hold tap row y of every lane: a lane's first tap lies in one of four
+/* The four rows from row y on. They hold tap row y of every lane, as a lane's first tap lies in one of four
  * rows. */
 LANES_INLINE window_slice rows_u16(const window_slice *slice, int y) {
   window_slice rows;
@@ -61,7 +61,7 @@ LANES_INLINE __m512i third_u16(__m512i index) {
   return _mm512_add_epi32(index, _mm512_set1_epi32(0x00020002));
 }
 
-/* The four taps of every lane. */
+/* Takes the four taps of every lane. */
 LANES_INLINE window_taps taps_u16(const window_slice *rows, __m512i index) {
   window_taps taps;
   taps.part[0] = _mm512_permutexvar_epi16(index, rows->part[0]);
@@ -75,7 +75,7 @@ LANES_INLINE window_lanes starting_u16(__m512i start, int slice) {
   return _mm512_cmpeq_epi16_mask(both, _mm512_set1_epi16((short)slice));
 }
 
-/* Replaces the taps of some lanes by those from another slice. */
+/* Replaces the taps of some lanes by taps from another slice. */
 LANES_INLINE void replace_taps_u16(window_taps *taps, window_lanes some, const window_slice *rows,
                                    __m512i index) {
   taps->part[0] = _mm512_mask_permutexvar_epi16(taps->part[0], (__mmask32)some, index, rows->part[0]);
@@ -98,7 +98,7 @@ LANES_INLINE __m256i row_of_floats(const unsigned char *row) {
   return _mm256_loadu_si256((const __m256i *)row);
 }
 
-/* Seven rows, two in each register. */
+/* Loads a slice of seven rows, two in each register. */
 LANES_INLINE window_slice slice_f32(const unsigned char *row, size_t row_bytes) {
   window_slice slice;
   for (int pair = 0; pair < 3; pair++, row += 2 * row_bytes)
@@ -114,7 +114,7 @@ LANES_INLINE __m512i rows_f32(const window_slice *slice, int y) {
   return y % 2 == 0 ? pair[0] : _mm512_alignr_epi64(pair[1], pair[0], 4);
 }
 
-/* The four taps of every lane in tap row y: they lie in the four rows from row y on. */
+/* Takes the four taps of every lane in tap row y. They lie in the four rows from row y on. */
 LANES_INLINE window_taps taps_f32(const window_slice *slice, __m512i index, int y) {
   __m512i upper = rows_f32(slice, y), lower = rows_f32(slice, y + 2);
   window_taps taps;

@@ -12,8 +12,8 @@
 
 enum {
   WINDOW_SIDE = GRID_COLUMN,       /* voxels */
-  WINDOW_SPREAD = WINDOW_SIDE - 4, /* voxels: how far lanes' first taps may lie apart */
-  USUAL_SPREAD = 2,                /* few blocks need more; the usual number lets loops be unrolled */
+  WINDOW_SPREAD = WINDOW_SIDE - 4, /* voxels: the greatest distance between lanes' first taps */
+  USUAL_SPREAD = 2,                /* few blocks need more; a usual number lets loops be unrolled */
   USUAL_SLICES = 4 + USUAL_SPREAD
 };
 enum { COPY_BYTES = 4 * WINDOW_SIDE, SLICE_BYTES = (WINDOW_SPREAD + 1) * COPY_BYTES };
@@ -21,23 +21,24 @@ enum { COPY_BYTES = 4 * WINDOW_SIDE, SLICE_BYTES = (WINDOW_SPREAD + 1) * COPY_BY
 typedef struct voxel_window {
   const unsigned char *first; /* the window's first row, in its column */
   size_t slice_bytes;
-  size_t beside;      /* bytes to the next column, or 0 where the window does not reach it */
-  int shift;          /* bits from the column's first voxel to the window's, in every row */
-  int slices, copies; /* copies of each slice: how far lanes' first taps lie apart along x, plus one */
-  __m256i taps;       /* bytes to each lane's first tap in the copies, as simd/narrow.h orders them */
+  size_t beside;      /* bytes to the next column; 0 where the window lies within one column */
+  int shift;          /* bits from the column's first voxel to the window's first voxel, in every row */
+  int slices, copies; /* number of slices; number of copies of each slice, which is one more than the distance
+                       * of lanes' first taps along x */
+  __m256i taps;       /* bytes to each lane's first tap in the copies, in the order of simd/narrow.h */
 } voxel_window;
 
 typedef struct window_copies {
   _Alignas(32) unsigned char slice[WINDOW_SIDE][SLICE_BYTES];
 } window_copies;
 
-/* Whether a grid has windows at all. */
+/* Whether a grid has windows. */
 LANES_INLINE int has_windows(const grid *grid) {
   return grid->columns != NULL && grid->dimension[2] >= USUAL_SLICES;
 }
 
-/* For grids that have windows. cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. lowest:
- * the least cell along each axis. False where the taps do not fit a window. */
+/* Opens a window in a grid that has windows. cell: tap 0 is at cell - 1; all taps of active lanes lie in the
+ * grid. lowest: the least cell along each axis. False where the taps do not fit a window. */
 LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3],
                                 uint32_t active, voxel_window *window) {
   const int32_t side[3] = {WINDOW_SIDE, WINDOW_SIDE, USUAL_SLICES};
@@ -81,7 +82,7 @@ LANES_INLINE int open_window(const grid *grid, const lanes_int cell[3], uint32_t
   return open_window_at(grid, cell, lowest, active, window);
 }
 
-/* Two rows of eight voxels, and the two rows that follow four rows later. */
+/* Two neighbouring rows of eight voxels, and the two rows that lie four rows later. */
 LANES_INLINE __m256i rows_apart(const unsigned char *first) {
   __m256i rows = _mm256_castsi128_si256(_mm_loadu_si128((const __m128i *)(const void *)first));
   return _mm256_inserti128_si256(
@@ -104,8 +105,7 @@ LANES_INLINE void copy_slice_of(const voxel_window *window, int slice, int count
   for (int i = 0; i < 2; i++) {
     rows[i] = _mm256_or_si256(_mm256_srl_epi64(rows_apart(first + 2 * i * GRID_COLUMN), left),
                               _mm256_sll_epi64(rows_apart(beside + 2 * i * GRID_COLUMN), right));
-    rows[i] = _mm256_xor_si256(rows[i],
-                               _mm256_set1_epi8((char)0x80)); /* the voxels of columns are less 128 */
+    rows[i] = _mm256_xor_si256(rows[i], _mm256_set1_epi8((char)0x80)); /* the columns hold voxels less 128 */
   }
   if (count > 4) store_copy(copy + 4 * COPY_BYTES, rows, 1);
   for (int x = 0; x < count && x < 4; x++) {
@@ -131,8 +131,8 @@ LANES_INLINE __m256i lanes_of_two(const lanes_int *x, int half, int k) {
   return _mm256_shuffle_epi8(eight, _mm256_set1_epi32(0x03020100 + k * 0x04040404));
 }
 
-/* Two lanes' weights along x, or slopes, in the pairs of byte_weights: each lane's fill half a register, once
- * for each row. */
+/* The weights along x, or slopes, of two lanes, in the pairs of byte_weights. Each lane's weights fill half a
+ * register, once for each row. */
 typedef struct weights_of_two {
   __m256i pair[2];
 } weights_of_two;
@@ -149,7 +149,7 @@ LANES_INLINE pair_of_taps copied_taps_of_pair(const window_copies *copies, const
   return (pair_of_taps){&copies->slice[0][0] + at[0], &copies->slice[0][0] + at[NARROW_SECOND]};
 }
 
-/* A slice of two lanes' taps, four rows of four, as 16-bit numbers in the pairs of byte_weights. */
+/* A slice of two lanes' taps, four rows of four taps each, as 16-bit numbers in the pairs of byte_weights. */
 typedef struct taps_of_two {
   __m256i pair[2];
 } taps_of_two;
@@ -161,7 +161,7 @@ LANES_INLINE taps_of_two slice_of_two(const pair_of_taps *taps, int z) {
   return (taps_of_two){{_mm256_and_si256(bytes, _mm256_set1_epi16(255)), _mm256_srli_epi16(bytes, 8)}};
 }
 
-/* The sum of each row. */
+/* The weighted sum of each row. */
 LANES_INLINE __m256i weigh_two(const taps_of_two *taps, const weights_of_two *weights) {
   return _mm256_add_epi32(_mm256_madd_epi16(taps->pair[0], weights->pair[0]),
                           _mm256_madd_epi16(taps->pair[1], weights->pair[1]));
@@ -193,7 +193,7 @@ static __attribute__((noinline)) lanes sum_window_u8(const voxel_window *window,
 }
 
 LANES_INLINE lanes sum_of_window(hl_storage storage, const voxel_window *window, const lanes weight[3][4]) {
-  (void)storage; /* there are windows of u8 voxels only */
+  (void)storage; /* only u8 voxels have windows */
   return sum_window_u8(window, weight);
 }
 
@@ -227,8 +227,8 @@ static __attribute__((noinline)) lanes3 slopes_of_copies(const window_copies *co
 _Static_assert(LANES * sizeof(window_copies) <= INT16_MAX,
                "signed 16-bit numbers hold offsets in the copies of sixteen windows");
 
-/* Each window holds as many blocks as fit; one sum takes taps from the copies of all windows. False where a
- * single block does not fit. */
+/* Sums gradients over windows. Each window holds as many blocks as fit; one sum takes taps from the copies of
+ * all windows. False where a single block does not fit. */
 static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, uint32_t starts,
                              const tap_slope_weights *w, lanes3 *slope) {
   window_copies copies[LANES];

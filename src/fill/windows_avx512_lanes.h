@@ -12,15 +12,15 @@
 
 enum {
   WINDOW_SIDE = GRID_COLUMN,      /* voxels */
-  WINDOW_SPREAD = WINDOW_SIDE - 4 /* voxels: how far lanes' first taps may lie apart */
+  WINDOW_SPREAD = WINDOW_SIDE - 4 /* voxels: the greatest distance between lanes' first taps */
 };
 
 typedef struct voxel_window {
-  const unsigned char *first; /* the window's first row: of u8 voxels, in their column */
+  const unsigned char *first; /* the window's first row; for u8 voxels, its place in their column */
   size_t row_bytes, slice_bytes;
-  size_t beside; /* u8: bytes to the next column, or 0 where the window does not reach it */
-  __m512i shift; /* u8: bits from the column's first voxel to the window's, in every row */
-  __m512i index; /* of each lane's taps in tap row 0 */
+  size_t beside; /* for u8: bytes to the next column; 0 where the window lies within one column */
+  __m512i shift; /* for u8: bits from the column's first voxel to the window's first voxel, in every row */
+  __m512i index; /* index of each lane's taps in tap row 0 */
   __m512i start; /* the slice of each lane's first tap; 0 for idle lanes */
   int slices;
 } voxel_window;
@@ -36,7 +36,7 @@ LANES_INLINE __m512i window_index(hl_storage storage, const __m512i offset[3]) {
                                      : index_f32(offset[0], offset[1]);
 }
 
-/* Sets where the window's first voxel lies. */
+/* Sets the place of the window's first voxel. */
 LANES_INLINE void locate_window(const grid *grid, const int32_t low[3], voxel_window *window) {
   if (grid->storage == HL_STORAGE_U8) {
     int32_t within = low[0] % GRID_COLUMN;
@@ -53,14 +53,14 @@ LANES_INLINE void locate_window(const grid *grid, const int32_t low[3], voxel_wi
   }
 }
 
-/* Whether a grid has windows at all. */
+/* Whether a grid has windows. */
 LANES_INLINE int has_windows(const grid *grid) {
   if (grid->storage == HL_STORAGE_U8) return grid->columns != NULL;
   return grid->dimension[0] >= WINDOW_SIDE && grid->dimension[1] >= WINDOW_SIDE;
 }
 
-/* For grids that have windows. cell: tap 0 is at cell - 1; all taps of active lanes lie in the grid. lowest:
- * the least cell along each axis. False where the taps do not fit a window. */
+/* Opens a window in a grid that has windows. cell: tap 0 is at cell - 1; all taps of active lanes lie in the
+ * grid. lowest: the least cell along each axis. False where the taps do not fit a window. */
 LANES_INLINE int open_window_at(const grid *grid, const lanes_int cell[3], const int32_t lowest[3],
                                 uint32_t active, voxel_window *window) {
   __mmask16 lanes_mask = (__mmask16)active, fits = (__mmask16)active;
@@ -100,12 +100,12 @@ LANES_INLINE window_slice slice_of_window(hl_storage storage, const voxel_window
 
 /* ---- u8 and u16: each lane's own four slices ---- */
 
-/* The taps in tap row y and tap slice z are taken for all lanes, then weighted once: from slice z of the
- * window, and from up to `spread` later slices for the lanes whose first tap lies in a later slice. These are
- * fewer sums than one for each slice of the window. */
+/* For each tap row y and tap slice z, the taps of all lanes are taken first and then weighted once. They come
+ * from slice z of the window, or from one of up to `spread` later slices for lanes whose first tap lies in a
+ * later slice. This takes fewer sums than one sum for each slice of the window. */
 typedef struct own_slices {
   window_slice voxels[WINDOW_SIDE];
-  window_lanes later[WINDOW_SPREAD + 1]; /* lanes whose first tap lies in this slice */
+  window_lanes later[WINDOW_SPREAD + 1]; /* element s: the lanes whose first tap lies in slice s */
 } own_slices;
 
 LANES_INLINE void load_own_slices(hl_storage storage, const voxel_window *window, int spread,
@@ -117,7 +117,7 @@ LANES_INLINE void load_own_slices(hl_storage storage, const voxel_window *window
                                                  : starting_u16(window->start, start);
 }
 
-/* The taps (0..3, y, z) of every lane, z from 0 to 3. */
+/* Takes the taps (0..3, y, z) of every lane, for z from 0 to 3. */
 LANES_INLINE void own_taps(hl_storage storage, const own_slices *own, int spread, __m512i index, int y,
                            window_taps taps[4]) {
   window_slice rows[WINDOW_SIDE];
@@ -174,7 +174,7 @@ static __attribute__((noinline)) lanes sum_window_u16(const voxel_window *window
 
 /* ---- f32: slice by slice ---- */
 
-/* Each lane's weight of a slice: the weight of the tap in this slice, or zero. */
+/* Each lane's weight for a slice: the weight of its tap in this slice, or zero. */
 LANES_INLINE lanes weight_of_slice(const voxel_window *window, int slice, const lanes weight[4]) {
   __m512 found = _mm512_setzero_ps();
   for (int tap = 0; tap < 4; tap++) {
@@ -274,7 +274,8 @@ static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window 
   return sum;
 }
 
-/* Each window holds as many blocks as fit. False where a single block does not fit. */
+/* Sums gradients over windows. Each window holds as many blocks as fit. False where a single block does not
+ * fit. */
 static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, uint32_t starts,
                              const tap_slope_weights *w, lanes3 *slope) {
   voxel_window window;

@@ -4,10 +4,10 @@
  * slices. With AVX-512, a slice of a window fills one to four registers, from which permutations take four
  * neighbouring taps of every lane. u8 voxels come from the grid's columns, others from the volume's rows.
  * Lanes whose taps do not reach a slice weight it by zero, which changes no bit of their sums. With AVX2
- * alone, slices of u8 voxels are copied so that loads take many taps; u16 voxels are read from the volume, a
- * row of four taps a load. All of these are the sums of gather_lanes.h and gradient_lanes.h, in the same
- * order. Defines HL_WINDOWS where there are windows, HL_SHORT_ROWS where u16 voxels are read by rows of four.
- * The files that are included for one instruction set have it in their names. */
+ * alone, slices of u8 voxels are copied so that loads take many taps. u16 voxels are read from the volume, a
+ * row of four taps in each load. All sums are the sums of gather_lanes.h and gradient_lanes.h, in the same
+ * order. This header defines HL_WINDOWS where there are windows, and HL_SHORT_ROWS where u16 voxels are read
+ * by rows of four. Files for one instruction set have its name in theirs. */
 #ifndef HL_FILL_WINDOWS_LANES_H
 #define HL_FILL_WINDOWS_LANES_H
 
@@ -23,14 +23,14 @@
 #endif
 
 #ifdef HL_WINDOWS
-/* The sums of a block's active lanes, by one window or by one for each half of the block. lowest: where every
- * lane is active, the least cell along each axis, but for rounding; else null. False where taps lie too far
- * apart. */
+/* The sums of a block's active lanes, by one window, or by one window for each half of the block. lowest: the
+ * least cell along each axis, up to rounding, if every lane is active; else null. False where the taps lie
+ * too far apart. */
 LANES_INLINE int sum_of_windows(const grid *grid, const lanes_int cell[3], const int32_t *lowest,
                                 uint32_t active, const lanes weight[3][4], lanes *sum) {
   hl_storage storage = grid->storage;
   voxel_window window, below;
-  const uint32_t upper = 0x00ff; /* half of a block */
+  const uint32_t upper = 0x00ff; /* the lanes of half a block */
   if (!has_windows(grid)) return 0;
   if ((lowest != NULL && open_window_at(grid, cell, lowest, active, &window)) ||
       open_window(grid, cell, active, &window)) {

@@ -13,7 +13,7 @@
 enum { BEFORE = BRICK_BEFORE, AFTER = BRICK_AFTER, WINDOW = BEFORE + AFTER + 1 };
 _Static_assert((int)HL_BRICK_CELLS == (int)BRICK_SIDE, "volumes and grids have the same bricks");
 
-/* Bytes after the last of an array whose bytes are read four at a time. */
+/* Readable bytes after the last element of an array whose bytes are read four at a time. */
 enum { READ_BEYOND = 4 };
 
 static int32_t clamp_index(int64_t i, int32_t count) {
@@ -24,12 +24,13 @@ typedef struct brick_job {
   const grid *grid;
   bound_rows_function *bound_rows;
   float *columns;        /* [threads][2][dimension 0] */
-  unsigned char *copies; /* [threads][WINDOW * WINDOW][copy_bytes]; rows of grids with pages */
+  unsigned char *copies; /* [threads][WINDOW * WINDOW][copy_bytes]; copies of rows, for grids with pages */
   size_t copy_bytes;
-  size_t first; /* the first layer of bricks to bound: over ranks, others bound those before */
+  size_t first; /* the first layer of bricks to bound; over ranks, other ranks bound the layers before */
 } brick_job;
 
-/* The least and greatest values arrive as floats, which represent the values of every voxel type exactly. */
+/* Stores the least and the greatest value of a brick. They arrive as floats, which represent the values of
+ * every voxel type exactly. */
 static void store_bounds(const grid *grid, size_t brick, float low, float high) {
   if (grid->storage == HL_STORAGE_U8) {
     uint8_t *bounds = (uint8_t *)grid->brick_bounds + 2 * brick;
@@ -50,8 +51,8 @@ void hl_bounds_of_brick(const grid *grid, size_t brick, float bounds[2]) {
                                                   : ((const float *)grid->brick_bounds)[2 * brick + i];
 }
 
-/* Finds the bounds of a row of bricks, the first one number `brick`, from the bounds of the row's voxels at
- * each x. */
+/* Finds the bounds of a row of bricks, which begins with brick number `brick`, from the bounds of the row's
+ * voxels at each x. */
 static void reduce_row(const grid *grid, const float *least, const float *greatest, size_t brick) {
   for (int32_t b = 0; b < grid->brick_count[0]; b++) {
     int32_t first = clamp_index((int64_t)b * HL_BRICK_CELLS - BEFORE, grid->dimension[0]);
@@ -65,7 +66,7 @@ static void reduce_row(const grid *grid, const float *least, const float *greate
   }
 }
 
-/* copies: room for WINDOW * WINDOW rows, for grids with pages. */
+/* Bounds a row of bricks. copies: space for WINDOW * WINDOW rows, for grids with pages. */
 static void bound_brick_row(const brick_job *job, int32_t by, int32_t bz, float *least, float *greatest,
                             unsigned char *copies) {
   const grid *grid = job->grid;
@@ -99,7 +100,7 @@ static void bound_layer_of_bricks(void *data, size_t index, int worker) {
                     job->copies + (size_t)worker * WINDOW * WINDOW * job->copy_bytes);
 }
 
-/* The bounds that were found while the volume's voxels were stored; null: none. */
+/* The bounds that were found while the volume's voxels were stored; null if there are none. */
 static void *stored_bounds(const grid *grid) {
   const hl_brick_bounds *bricks = grid->pages != NULL ? grid->pages->bricks : NULL;
   return bricks != NULL && hl_brick_bounds_whole(bricks) ? bricks->bounds : NULL;
@@ -114,7 +115,7 @@ void hl_bricks_lay_out(grid *grid, hl_layout *layout) {
   grid->relevant_list = hl_layout_take(layout, bricks, sizeof *grid->relevant_list);
 }
 
-/* Scratch of all threads. */
+/* Lays out the scratch memory of all threads. */
 static void lay_out_columns(brick_job *job, int threads, hl_layout *layout) {
   size_t width = (size_t)job->grid->dimension[0];
   job->columns = hl_layout_take(layout, (size_t)threads * 2 * width, sizeof *job->columns);
@@ -122,7 +123,7 @@ static void lay_out_columns(brick_job *job, int threads, hl_layout *layout) {
   job->copies = hl_layout_take(layout, (size_t)threads * WINDOW * WINDOW, job->copy_bytes);
 }
 
-/* Over ranks each bounds its share of the layers. */
+/* Bounds the layers of bricks. Over ranks each rank bounds its share of the layers. */
 static void bound_layers_of_bricks(hl_pool *pool, brick_job *job) {
   const grid *grid = job->grid;
   size_t layers = (size_t)grid->brick_count[2];
@@ -155,7 +156,8 @@ hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functio
 
 /* ---- cells ---- */
 
-/* Bounds of cells are kept as 0 to 255 steps within the range of all stored values, empty included. */
+/* Sets the range of the bounds of cells, which are kept as 0 to 255 steps within it. The range holds all
+ * stored values and the empty value. */
 static void set_cell_range(const hl_volume *volume, grid *grid) {
   float a = (float)((volume->minimum - volume->value_offset) / volume->value_scale);
   float b = (float)((volume->maximum - volume->value_offset) / volume->value_scale);
@@ -165,20 +167,20 @@ static void set_cell_range(const hl_volume *volume, grid *grid) {
 }
 
 /* The bounds of cells are computed slice by slice and kept packed, for all later transfer functions. Packing
- * helps because most bricks of a volume are empty or even. */
+ * saves memory because most bricks of a volume are empty or even. */
 enum { CELL_LAYERS = HL_BRICK_CELLS / HL_LOOKUP_CELLS, LAYERS_A_TASK = 4 };
 
 typedef struct cell_job {
   const grid *grid;
   const grid_functions *functions;
-  bool smooth; /* the kernel is the B-spline */
+  bool smooth; /* whether the kernel is the B-spline */
   hl_context *context;
-  size_t plane;                /* 2x2x2 cells in a slice */
+  size_t plane;                /* number of 2x2x2 cells in a slice */
   struct bound_slices *slices; /* [workers] */
-  bool failed;                 /* for lack of memory; atomic */
+  bool failed;                 /* set where memory is short; atomic */
 } cell_job;
 
-/* Bounds of one slice of voxels along x and y. slice: [2][cells y][cells x], low and high. */
+/* Bounds one slice of voxels along x and y. slice: [2][cells y][cells x], low and high. */
 static void bound_slice(const cell_job *job, int32_t z, float *rows, float *padded, float *slice) {
   const grid *grid = job->grid;
   size_t width = (size_t)grid->lookup[0].count[0];
@@ -200,16 +202,17 @@ static void bound_slice(const cell_job *job, int32_t z, float *rows, float *padd
   }
 }
 
-/* Rounds outwards to 255 steps of the volume's range, with a tolerance of a ten-thousandth of a step: the
- * errors of float sums are far smaller, and an entry of the transfer function's table is sixteen times finer
- * than a step. */
+/* Rounds bounds outwards to 255 steps of the volume's range, with a tolerance of a ten-thousandth of a step.
+ * The errors of float sums are far smaller, and an entry of the transfer function's table is sixteen times
+ * finer than a step. */
 static void round_bounds(const grid *grid, const float *low, const float *high, size_t count,
                          unsigned char *to_low, unsigned char *to_high) {
   float inverse = 1 / grid->cell_step;
   for (size_t i = 0; i < count; i++) {
     float a = floorf((low[i] - grid->cell_base) * inverse + 1e-4f),
           b = ceilf((high[i] - grid->cell_base) * inverse - 1e-4f);
-    to_low[i] = (unsigned char)(a > 255 ? 255 : a > 0 ? a : 0); /* NaN: of voxels that their owner changed */
+    /* a bound is NaN where the owner of the voxels has changed them */
+    to_low[i] = (unsigned char)(a > 255 ? 255 : a > 0 ? a : 0);
     to_high[i] = (unsigned char)(b < 0 ? 0 : b < 255 ? b : 255);
   }
 }
@@ -222,7 +225,7 @@ static size_t greatest_layer_bytes(const grid *grid) {
   return even_bytes(grid) + UNEVEN_BYTES * (size_t)grid->brick_count[0] * (size_t)grid->brick_count[1];
 }
 
-/* A row of bricks has four rows of 2x2x2 cells: two in each of two layers. */
+/* The four rows of 2x2x2 cells in a row of bricks: two rows in each of two layers. */
 typedef const unsigned char *cell_rows[2 * CELL_LAYERS];
 
 /* Copies the eight cells of a brick, two along x at a time. */
@@ -238,7 +241,8 @@ static bool all_alike(const unsigned char cells[BRICK_CELLS]) {
   return memcmp(cells, cells + 1, BRICK_CELLS - 1) == 0;
 }
 
-/* Packs a layer of bricks (bounds.h); returns its bytes. bounds: [CELL_LAYERS][2][plane], lower and upper. */
+/* Packs a layer of bricks (bounds.h). Returns the number of bytes. bounds: [CELL_LAYERS][2][plane], lower and
+ * upper. */
 static size_t pack_layer(const grid *grid, const unsigned char *bounds, size_t plane, unsigned char *to) {
   const int32_t *count = grid->lookup[0].count;
   unsigned char *next = to + even_bytes(grid);
@@ -282,17 +286,18 @@ void hl_cell_bounds_at(const grid *grid, const int32_t cell[3], float *low, floa
 
 /* ---- building ---- */
 
-/* One worker's scratch: slices of voxels, bounded along x and y, and what is made of them. */
+/* One worker's scratch memory: slices of voxels, bounded along x and y, and the bounds of cells made from
+ * them. */
 typedef struct bound_slices {
-  float *slices;           /* [CELL_TAPS][2][plane]; slice z is number z % CELL_TAPS */
+  float *slices;           /* [CELL_TAPS][2][plane]; slice z of the volume is element z % CELL_TAPS */
   float *out;              /* [2][plane] */
-  float *rows, *padded;    /* scratch of bound_slice() */
-  unsigned char *bounds;   /* [CELL_LAYERS][2][plane]; of a layer of bricks */
-  unsigned char *packed;   /* the same, packed */
-  int32_t held[CELL_TAPS]; /* which slice of voxels each of `slices` holds; -1: none */
+  float *rows, *padded;    /* scratch memory of bound_slice() */
+  unsigned char *bounds;   /* [CELL_LAYERS][2][plane]; bounds of a layer of bricks */
+  unsigned char *packed;   /* the same bounds, packed */
+  int32_t held[CELL_TAPS]; /* the slice of the volume that each element of `slices` holds; -1 for no slice */
 } bound_slices;
 
-/* Bounds of a slice of cells. */
+/* Computes the bounds of a slice of cells. */
 static void bound_cells(const cell_job *job, bound_slices *s, int32_t f, unsigned char *bounds) {
   const grid *grid = job->grid;
   const float *low[CELL_TAPS], *high[CELL_TAPS];
@@ -335,8 +340,8 @@ static size_t cells_of(const cell_lookup *lookup) {
   return (size_t)lookup->count[0] * (size_t)lookup->count[1] * (size_t)lookup->count[2];
 }
 
-/* Whether 2x2x2 cells have bounds: 32 bits can number them, and the voxels are in memory. The look-ups'
- * counts are set. */
+/* Whether 2x2x2 cells have bounds. They have bounds where 32 bits can number them and the voxels are in
+ * memory. The look-ups' counts must be set. */
 static bool cells_have_bounds(const grid *grid) {
   return grid->pages == NULL && cells_of(&grid->lookup[0]) < INT32_MAX;
 }
@@ -351,7 +356,8 @@ void hl_cells_lay_out(grid *grid, hl_layout *layout) {
   grid->cell_bounds = hl_layout_take(layout, (size_t)grid->brick_count[2], sizeof *grid->cell_bounds);
 }
 
-/* Lays out the scratch of all threads. While the bytes are only counted, job->plane alone is set. */
+/* Lays out the scratch memory of all threads. While the bytes are only counted, job->plane is the only member
+ * that is set. */
 static void lay_out_slices(cell_job *job, int threads, hl_layout *layout) {
   const grid *grid = job->grid;
   size_t width = (size_t)grid->lookup[0].count[0], plane = width * (size_t)grid->lookup[0].count[1];
@@ -383,7 +389,7 @@ hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_function
   cell_job job = {.grid = grid, .functions = functions, .smooth = smooth, .context = context};
   size_t layers = (size_t)grid->brick_count[2];
   set_cell_range(volume, grid);
-  if (!cells_have_bounds(grid)) return HL_OK; /* bricks alone tell what is visible */
+  if (!cells_have_bounds(grid)) return HL_OK; /* only bricks tell what is visible */
   hl_layout counted = {0};
   lay_out_slices(&job, hl_pool_threads(pool), &counted);
   hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};

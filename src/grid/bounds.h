@@ -1,12 +1,12 @@
-/* grid/bounds.h - the least and greatest value that samples in each brick and in each 2x2x2 cells can have,
- * found once for each volume.
+/* grid/bounds.h - the least and the greatest value that samples in each brick, and in each group of 2x2x2
+ * cells, can have. Found once for each volume.
  *
  * A brick is bounded by the voxels that its cells and the cells around it depend on. Cells are bounded more
  * tightly: between four neighbouring voxels a cubic B-spline lies within its Bezier points. Along an axis,
  * from voxels a b c d, these points are (a + 4 b + c) / 6, (2 b + c) / 3, (b + 2 c) / 3 and (b + 4 c + d) /
  * 6. All weights are non-negative, so bounds found along one axis can serve as input along the next. In noise
- * around a threshold, these bounds mark half as many cells as the least and greatest voxel would. The other
- * kernels use the least and greatest voxel. */
+ *    around a threshold, these bounds mark half as many cells as the least and greatest voxel would. The
+ *    other kernels use the least and greatest voxel. */
 #ifndef HL_GRID_BOUNDS_H
 #define HL_GRID_BOUNDS_H
 
@@ -15,7 +15,8 @@
 
 /* ---- bricks ---- */
 
-/* Takes the grid's brick_bounds, `relevant` and relevant_list; storage and brick_count are set. */
+/* Takes the memory of the grid's brick_bounds, `relevant` and relevant_list. storage and brick_count must be
+ * set. */
 void hl_bricks_lay_out(grid *grid, hl_layout *layout);
 /* Fills the grid's brick_bounds, and clears `relevant`. */
 hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, grid *grid,
@@ -25,27 +26,28 @@ void hl_bounds_of_brick(const grid *grid, size_t brick, float bounds[2]);
 
 /* ---- cells ---- */
 
-/* Takes the grid's look-ups and cell_bounds, and sets the look-ups' counts; dimension and brick_count are
- * set. Takes nothing where 32 bits cannot number the cells. */
+/* Takes the memory of the grid's look-ups and cell_bounds, and sets the look-ups' counts. dimension and
+ * brick_count must be set. Takes nothing where 32 bits cannot number the cells. */
 void hl_cells_lay_out(grid *grid, hl_layout *layout);
-/* Fills the grid's cell_bounds, all null before: allocates each layer when packing has found its size.
- * smooth: the kernel is the B-spline. */
+/* Fills the grid's cell_bounds, which must be null: allocates each layer when packing has found its size.
+ * smooth: whether the kernel is the B-spline. */
 hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, bool smooth,
                          const hl_volume *volume, grid *grid, hl_error *error);
 void hl_cell_bounds_release(hl_context *context, grid *grid);
 
-/* The bytes that hl_bricks_bound() and then hl_cells_bound() hold at most, for a grid that is laid out: one
- * after the other their scratch, and packed layers of the greatest size. */
+/* The greatest number of bytes that hl_bricks_bound() and then hl_cells_bound() hold for a grid that is laid
+ * out: the scratch memory of one after the other, and packed layers of the greatest size. */
 uint64_t hl_bounds_bytes(const grid *grid, int threads);
 
-/* The bounds of the 2x2x2 cells with the coordinates `cell`, stored units; slow: walks through a layer. */
+/* The bounds of the group of 2x2x2 cells with the coordinates `cell`, in stored units. Slow: walks through a
+ * layer. */
 void hl_cell_bounds_at(const grid *grid, const int32_t cell[3], float *low, float *high);
 
-/* The packed bounds of a layer of bricks begin with a bit for each brick; each row of bricks starts a new
- * byte. The bit is 1 where the brick is even: all eight of its 2x2x2 cells have the same bounds. Then follow,
- * brick after brick, the two bounds (lower, upper) of an even brick, or eight lower and eight upper bounds,
- * those of cells (i, j, k) as number i + 2 j + 4 k. Cells beyond the grid have the bounds of their
- * neighbours. */
+/* The form of the packed bounds of a layer of bricks. They begin with a bit for each brick; each row of
+ * bricks starts a new byte. The bit is 1 where the brick is even: all eight of its groups of 2x2x2 cells have
+ * the same bounds. The bricks' bounds follow, brick after brick: two bounds (lower, upper) for an even brick,
+ * else eight lower and eight upper bounds. The bounds of group (i, j, k) have the number i + 2 j + 4 k.
+ * Groups beyond the grid have the bounds of their neighbours. */
 enum { BRICK_CELLS = 8, EVEN_BYTES = 2, UNEVEN_BYTES = 2 * BRICK_CELLS };
 
 static inline size_t hl_even_row_bytes(const grid *grid) { return ((size_t)grid->brick_count[0] + 7) / 8; }

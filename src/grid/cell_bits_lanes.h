@@ -1,5 +1,5 @@
-/* grid/cell_bits_lanes.h - the bits of a brick's 64 cells, from its 7x7x7 voxels: bounds along z, then y,
- * then x. Two rows of eight numbers along x fill sixteen lanes. */
+/* grid/cell_bits_lanes.h - finds the bits of a brick's 64 cells from its 7x7x7 voxels. Bounds are found along
+ * z, then y, then x. Two rows of eight numbers along x fill sixteen lanes. */
 #ifndef HL_GRID_CELL_BITS_LANES_H
 #define HL_GRID_CELL_BITS_LANES_H
 
@@ -14,7 +14,7 @@ LANES_INLINE int32_t bits_voxel_at(int32_t i, int32_t count) {
   return i < 0 ? 0 : i >= count ? count - 1 : i;
 }
 
-/* Eight voxels of each of two rows. */
+/* Loads eight voxels of each of two rows. */
 LANES_INLINE lanes bits_two_rows(hl_storage storage, const unsigned char *const row[2]) {
   if (storage == HL_STORAGE_U8) {
     typedef uint8_t bytes __attribute__((vector_size(LANES)));
@@ -35,7 +35,8 @@ LANES_INLINE lanes bits_two_rows(hl_storage storage, const unsigned char *const 
   return both;
 }
 
-/* Eight voxels of each of two rows that cross the grid's faces, beyond which the border's values continue. */
+/* Loads eight voxels of each of two rows that cross the grid's faces, beyond which the values at the border
+ * continue. */
 LANES_INLINE lanes bits_two_held_rows(const grid *grid, int32_t x, int32_t y, int32_t z) {
   float both[LANES];
   for (int i = 0; i < LANES; i++) both[i] = hl_stored_value(grid, x + i % BITS_ROW, y + i / BITS_ROW, z);
@@ -44,11 +45,11 @@ LANES_INLINE lanes bits_two_held_rows(const grid *grid, int32_t x, int32_t y, in
 
 /* ---- bounds of four cells along an axis ---- */
 
-/* Derived: in units of a third, the Bezier points of the cell between voxels b and c are the thirds 2 b + c
- * and b + 2 c, and its knots, each the mean of the thirds on its two sides: (b + 4 c + d) / 6 = ((b + 2 c) /
- * 3 + (2 c + d) / 3) / 2. */
+/* The Bezier points of a cell in units of a third. Derived: the Bezier points of the cell between voxels b
+ * and c are the thirds 2 b + c and b + 2 c, and its knots. A knot is the mean of the thirds on its two sides:
+ * (b + 4 c + d) / 6 = ((b + 2 c) / 3 + (2 c + d) / 3) / 2. */
 typedef struct bits_thirds {
-  lanes first, second; /* a third and two thirds of the way from b to c */
+  lanes first, second; /* the points at a third and at two thirds of the way from b to c */
 } bits_thirds;
 
 LANES_INLINE bits_thirds thirds_between(lanes b, lanes c) {
@@ -74,7 +75,7 @@ LANES_INLINE void greatest_of_four(const lanes v[CELL_BIT_TAPS], lanes greatest[
 
 /* ---- a brick ---- */
 
-/* Finds bounds along z: [cell z][y][x]. Of the eight rows, the last only fills the lanes. */
+/* Finds bounds along z: [cell z][y][x]. The last of the eight rows only fills the lanes. */
 LANES_INLINE void bits_along_z(const grid *grid, hl_storage storage, const int32_t brick[3], float sign,
                                float bounds[HL_BRICK_CELLS][BITS_ROWS][BITS_ROW]) {
   const int32_t *count = grid->dimension;
@@ -127,7 +128,7 @@ LANES_INLINE uint64_t bits_of_brick(const grid *grid, hl_storage storage, const 
     for (int tap = 0; tap < 4; tap++) v[tap] = lanes_load_block(&along_y[layer][0][tap], BITS_ROW);
     lanes greatest = greatest_of_cell(thirds_between(v[0], v[1]), thirds_between(v[1], v[2]),
                                       thirds_between(v[2], v[3]));
-    /* in units of a third along each axis */
+    /* values are in units of a third along each axis */
     bits |= (uint64_t)lanes_bits(greatest > lanes_set(27 * threshold)) << (16 * layer);
   }
   return bits;

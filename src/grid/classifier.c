@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 
-/* sigma = -ln(1 - alpha) / u, alpha clamped to 0.9999 (algorithm, optical model). */
+/* The extinction of an opacity: sigma = -ln(1 - alpha) / u, with alpha clamped to 0.9999. */
 static double extinction_of(const hl_transfer_function *function, double value) {
   double alpha = hl_transfer_function_opacity(function, value);
   if (alpha <= 0) return 0;
@@ -19,8 +19,8 @@ double hl_transparent_below(const hl_scene_volume *volume, double empty) {
   return below_all ? (empty + volume->volume->minimum) / 2 : -INFINITY;
 }
 
-/* Integrates the table, exactly, as it is piecewise linear: over one step the mean extinction e is (e0 + e1)
- * / 2, its moment about the step's start (e0 + 2 e1) / 6 (derived). */
+/* Integrates the table exactly, as it is piecewise linear. Over one step the mean extinction is (e0 + e1) /
+ * 2, and its moment about the step's start is (e0 + 2 e1) / 6 (derived). */
 static void integrate(classifier *classifier) {
   double integral = 0, moment = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
@@ -33,8 +33,8 @@ static void integrate(classifier *classifier) {
   }
 }
 
-/* Integrates extinction times colour, and extinction: over one step from e0, c0 to e1, c1, both linear, the
- * first is (e0 (2 c0 + c1) + e1 (c0 + 2 c1)) / 6 (derived). */
+/* Integrates extinction times colour, and extinction. Over one step from e0, c0 to e1, c1, both linear, the
+ * integral of extinction times colour is (e0 (2 c0 + c1) + e1 (c0 + 2 c1)) / 6 (derived). */
 static void integrate_colors(classifier *classifier) {
   double integral[4] = {0, 0, 0, 0};
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
@@ -52,7 +52,7 @@ static void integrate_colors(classifier *classifier) {
 /* Fills the colours, and the changes of their slopes at each entry. */
 static void fill_colors(const hl_transfer_function *function, double low, double high,
                         classifier *classifier) {
-  double last[3][3]; /* of entries n, n - 1 and n - 2, at n % 3 and so on */
+  double last[3][3]; /* the colours of entries n, n - 1 and n - 2; entry n is stored at n % 3 */
   classifier->bent[0] = classifier->bent[CLASSIFIER_ENTRIES] = classifier->bent[CLASSIFIER_ENTRIES + 1] = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
     const double *second = last[(entry + 1) % 3], *before = last[(entry + 2) % 3];
@@ -68,8 +68,8 @@ static void fill_colors(const hl_transfer_function *function, double low, double
          sizeof classifier->color[0]);
 }
 
-/* Sums the changes of slope at entries that are visible, or beside visible ones. Where no way can meet enough
- * of them to count, there are none. */
+/* Sums the changes of slope at entries that are visible, or beside visible ones. If no way can meet enough of
+ * them to count, no sums are kept. */
 static void sum_bends(classifier *classifier) {
   double sum = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
@@ -81,11 +81,11 @@ static void sum_bends(classifier *classifier) {
   if (sum * CLASSIFIER_ENTRIES <= CLASSIFIER_LEAST_BENDING) classifier->bent = NULL;
 }
 
-/* A second surface begins where extinction rises by this factor, after it has not risen over this part of the
- * values since the first surface's foot. */
+/* A second surface begins where extinction rises by the factor SECOND_RISE, after it has not risen over the
+ * fraction LEVEL_PART of the values since the first surface's foot. */
 static const double SECOND_RISE = 1.5, LEVEL_PART = 0.05;
 
-/* Finds the surfaces of values on one side of the empty one, from there outwards. step: 1 or -1. */
+/* Finds the surfaces of values on one side of the empty value, from there outwards. step: 1 or -1. */
 static void fill_side(classifier *classifier, int first, int step) {
   const float(*sums)[4] = (const float(*)[4])classifier->sums;
   float foot = classifier->offset, level = 0;
@@ -109,8 +109,8 @@ static void fill_side(classifier *classifier, int first, int step) {
   }
 }
 
-/* Values above the empty one lie outside of matter where they are lower, values below it where they are
- * higher. */
+/* Fills the table of surfaces. Outside of matter, values are lower for values above the empty one, and higher
+ * for values below it. */
 static void fill_outside(classifier *classifier) {
   const int empty = (int)ceilf(classifier->offset);
   fill_side(classifier, empty, 1);
@@ -157,22 +157,22 @@ static void fill_tables(const hl_scene_volume *volume, double empty, double low,
   fill_outside(classifier);
 }
 
-/* The least gradient of a surface: a thousandth of the transfer function's span of values per voxel edge. */
+/* The least gradient of a surface: a thousandth of the transfer function's span of values, per voxel edge. */
 static float normal_edge(const hl_scene_volume *volume, double entries_per_value) {
   const hl_transfer_function *function = &volume->transfer_function;
   double span = function->opacity_count == 0
                     ? 0
                     : function->opacity[function->opacity_count - 1].value - function->opacity[0].value;
   if (!(span > 0)) span = 1;
-  mat3 placed = volume->volume->index_to_world.linear; /* the rotation is left out: it keeps lengths */
+  mat3 placed = volume->volume->index_to_world.linear; /* the rotation is left out, since it keeps lengths */
   for (int axis = 0; axis < 3; axis++)
     placed.row[axis] = vec3_scale(placed.row[axis], volume->axis_scale[axis]);
   double edge = mat3_shortest_column(placed) * volume->scale;
   return (float)fmin(fmax(1e-3 * span / edge * entries_per_value, 1e-30), 1e30);
 }
 
-/* The narrowest range of values that tables cover, as a multiple of value_scale: a float could not hold the
- * scale of a narrower range. Narrower ranges are widened, and their values share one entry. */
+/* The narrowest range of values that tables cover, as a multiple of value_scale. A float could not hold the
+ * scale of a narrower range. Such a range is widened, and its values share one entry. */
 static const double NARROWEST_RANGE = 1e-34;
 
 static void lay_out(const hl_transfer_function *function, classifier *classifier, hl_layout *layout) {
@@ -197,8 +197,8 @@ static hl_layout count_tables(const hl_transfer_function *function) {
 
 uint64_t hl_classifier_bytes(const hl_transfer_function *function) { return count_tables(function).bytes; }
 
-/* Fills the factors of gradient opacity: the table reaches from a gradient of 0 to that of the last point.
- * Where all are 1, there is none. */
+/* Fills the factors of gradient opacity. The table reaches from a gradient of 0 to the gradient of the last
+ * point. If all factors are 1, there is no table. */
 static void fill_steepness(const hl_transfer_function *function, double value_scale, classifier *classifier) {
   size_t count = function->gradient_opacity_count;
   if (count == 0) return;
@@ -247,7 +247,7 @@ bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, 
   float a = (low - grid->empty) * classifier->scale + classifier->offset;
   float b = (high - grid->empty) * classifier->scale + classifier->offset;
   float least = fminf(a, b), greatest = fmaxf(a, b);
-  /* NaN, which voxels that their owner changes may have become, is an end, too */
+  /* a voxel that its owner has changed may be NaN, which counts as an end of the range */
   int32_t first = !(least > 0) ? 0 : least >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES : (int32_t)least;
   int32_t last = !(greatest > 0)                  ? 1
                  : greatest >= CLASSIFIER_ENTRIES ? CLASSIFIER_ENTRIES + 1

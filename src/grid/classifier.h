@@ -14,40 +14,45 @@
 
 enum { CLASSIFIER_ENTRIES = 4096, STEEPNESS_ENTRIES = 4096 };
 
-/* The change of a colour's slope on a way through the table, times the way's entries, that is worth a mean of
- * colours. The mean of a line with one bend, of slope s, over a way w is off the line's value at the mean by
- * s w / 4 at most (derived: half the weight at either end, the bend in the middle): by 1/1024. */
+/* The least bending that is worth a mean of colours. A way's bending is the change of a colour's slope on the
+ * way through the table, times the way's entries. The mean of a line with one bend of slope s over a way w
+ * differs from the line's value at the mean by at most s w / 4 (derived: half the weight at either end, the
+ * bend in the middle): by 1/1024. */
 #define CLASSIFIER_LEAST_BENDING (1.0f / 256)
 
 typedef struct classifier {
   float scale, offset; /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
   /* tables of CLASSIFIER_ENTRIES + 2 entries in one block, which sums owns */
   float (*sums)[4];  /* extinction per world unit; its integral over entries, from entry 0; the integral of
-                        extinction * entry; 0 */
+                      * extinction times the entry's number; 0 */
   float (*color)[4]; /* linear RGB; 0 */
-  float (*shown)[4]; /* integrals over entries, from entry 0: of extinction * linear RGB, and of extinction */
-  float *bent; /* how much the colour's slope changes at the visible entries up to this one: the sum over
-                  them of the greatest channel's change per entry; null: nowhere by much */
-  int32_t *next_visible; /* the first entry from this one on with extinction > 0 */
-  float *outside; /* [entries]; for values from an entry to the next: the table coordinate at which their
-                     surface begins: on the way to the empty value, the nearest value without extinction, or
-                     with the least extinction before a second rise; the empty value's if there is none */
-  bool several_surfaces; /* visible values have more than one such beginning; if not: */
-  float only_outside;    /* this one; visible values lie above it, `side` 1, or below it, `side` -1 */
+  float (*shown)[4]; /* integrals over entries, from entry 0: of extinction times linear RGB, and of
+                      * extinction */
+  /* for each entry, the sum of the changes of the colour's slope at visible entries up to this one; a change
+   * is the greatest channel's change per entry. Null if the slope changes little everywhere */
+  float *bent;
+  int32_t *next_visible; /* for each entry, the first entry from there on with extinction > 0 */
+  /* [entries]; for values from an entry to the next: the table coordinate at which their surface begins. It
+   * is the nearest value, on the way to the empty value, without extinction, or with the least extinction
+   * before a second rise; the empty value's coordinate if there is none */
+  float *outside;
+  bool several_surfaces; /* whether visible values have more than one such beginning */
+  float only_outside;    /* the only beginning, where several_surfaces is false; visible values lie above it
+                          * where `side` is 1, and below it where `side` is -1 */
   float side;
-  float first_visible, last_visible; /* table coordinates: outside of them nothing has extinction */
+  float first_visible, last_visible; /* table coordinates outside of which nothing has extinction */
   /* Gradient opacity: the factor of extinction by the gradient's length, [STEEPNESS_ENTRIES + 2], in the same
-   * block; null: 1 everywhere. Table coordinate = length * steepness_scale, clamped to [0,
+   * block. Null if the factor is 1 everywhere. Table coordinate = length * steepness_scale, clamped to [0,
    * STEEPNESS_ENTRIES]; the length is in stored units per frame unit. */
   float *steepness;
   float steepness_scale;
-  mask_lattice mask; /* of the frame's scene */
-  plane_table plane; /* of a function of two numbers: the other tables then hold bounds over all second
-                        numbers */
+  mask_lattice mask; /* the mask of the frame's scene */
+  plane_table plane; /* a function of two numbers; the other tables then hold bounds over all second
+                      * numbers */
   float normal_edge; /* the least gradient (table entries per frame unit) that counts as a surface */
 } classifier;
 
-/* Whether extinction depends on more than the value: it is multiplied by a factor. */
+/* Whether extinction depends on more than the value, so that a factor multiplies it. */
 static inline bool hl_classifier_is_weighed(const classifier *classifier) {
   return classifier->steepness != NULL || classifier->mask.factors != NULL || classifier->plane.sums != NULL;
 }
@@ -58,7 +63,7 @@ static inline bool hl_classifier_needs_gradient(const classifier *classifier) {
          (classifier->plane.sums != NULL && classifier->plane.axis == HL_SECOND_GRADIENT);
 }
 
-/* second: the other volume of a function of two numbers; else null. */
+/* Makes the tables. second: the other volume of a function of two numbers, else null. */
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume,
                                const hl_scene_volume *second, const grid *grid, classifier *classifier,
                                hl_error *error);

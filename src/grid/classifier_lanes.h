@@ -29,11 +29,11 @@ LANES_INLINE void table_values(float (*table)[4], table_coordinate at, lanes val
   for (int i = 0; i < 3; i++) values[i] = lanes_fma(b[i] - a[i], at.fraction, a[i]);
 }
 
-/* Where a and b are closer than this many entries, the difference of integrals loses digits, and the mean of
- * the two ends is as accurate. */
+/* Two coordinates that are closer than this many entries get the mean of both ends: a difference of integrals
+ * would lose digits, and the mean is as accurate. */
 static const float CLOSE_ENTRIES = 4;
 
-/* Integrals I from coordinate a to coordinate b of a table. */
+/* Integrals I of a table from coordinate a to coordinate b. */
 typedef struct way_sums {
   lanes extinction; /* the mean, (I(b) - I(a)) / (b - a) */
   lanes integral;   /* I(b) - I(a), 0 where the ends are close */
@@ -52,7 +52,7 @@ LANES_INLINE way_sums sums_of_way(const classifier *classifier, table_coordinate
   return sums;
 }
 
-/* Lanes in which some density between a and b can have extinction. */
+/* The lanes in which some density between a and b can have extinction. */
 LANES_INLINE lanes_int may_be_visible(const classifier *classifier, table_coordinate a, table_coordinate b) {
   return (lanes_max(a.x, b.x) > classifier->first_visible) & (lanes_min(a.x, b.x) < classifier->last_visible);
 }
@@ -64,21 +64,22 @@ LANES_INLINE lanes integral_to(const classifier *classifier, lanes x) {
   return values[1];
 }
 
-/* Light comes from one surface's matter into another surface, which begins at the value `foot`. A blurred
- * edge passes through the first one's values, too: then both are one surface, and what the first has taken
- * lights the second again. A layer that is thicker than a straight ramp of values by these factors is a
- * surface of its own. */
+/* Light may come from the matter of one surface into another surface, which begins at the value `foot`. A
+ * blurred edge passes through the first surface's values, too; then both are one surface, and the light that
+ * the first surface has taken lights the second again. A layer that is thicker than a straight ramp of values
+ * by these factors is a surface of its own. */
 static const float SAME_RAMP = 1.2f, OTHER_LAYER = 1.6f;
 
 typedef struct second_surface {
-  lanes kept;  /* the part of what the first surface has taken that counts as the second one's, 0 to 1 */
-  lanes ahead; /* the optical depth from `start` to the second one's foot */
+  lanes kept;  /* the part, 0 to 1, of the light taken by the first surface that counts as taken by the
+                * second */
+  lanes ahead; /* the optical depth from `start` to the second surface's foot */
 } second_surface;
 
-/* start: the value where light and `outside`, the light at the first one's outside, are known; first: the
- * value where the first begins; rise: values per unit of the light's way, above 0. Derived: a straight ramp
- * from the value a to the value b takes the optical depth |P(b) - P(a)| / rise, P the integral of
- * extinction. */
+/* Finds a second surface on the light's way. start: the value where light is known, and so is `outside`, the
+ * light at the first surface's outside. first: the value where the first surface begins. rise: values per
+ * unit of the light's way, above 0. Derived: a straight ramp from the value a to the value b takes the
+ * optical depth |P(b) - P(a)| / rise, where P is the integral of extinction. */
 LANES_INLINE second_surface kept_at_foot(const classifier *classifier, lanes first, lanes start, lanes foot,
                                          lanes rise, lanes light, lanes outside) {
   lanes at_foot = integral_to(classifier, foot), ramp = lanes_abs(at_foot - integral_to(classifier, first)),
@@ -90,8 +91,8 @@ LANES_INLINE second_surface kept_at_foot(const classifier *classifier, lanes fir
                           ahead / lanes_max(rise, lanes_set(1e-9f))};
 }
 
-/* The density's mean distance from a and from b, between the two, weighted by extinction, in entries; 1 and 1
- * where a and b are close or nothing between them has extinction. */
+/* The density's mean distances from a and from b, weighted by extinction between the two, in entries. Both
+ * are 1 where a and b are close or nothing between them has extinction. */
 typedef struct way_means {
   lanes from_a, from_b;
 } way_means;

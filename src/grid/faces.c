@@ -7,7 +7,7 @@
 #include "grid/field.h"
 #include "grid/relevant.h"
 
-/* The axes along a face across an axis. */
+/* The two axes along a face that lies across an axis. */
 static int row_axis(int axis) { return axis == 0 ? 1 : 0; }
 static int column_axis(int axis) { return axis == 2 ? 1 : 2; }
 
@@ -16,8 +16,8 @@ typedef struct face_job {
   const kernel *kernel;
   const classifier *classifier;
   int axis;
-  field_taps across; /* the face's place */
-  int visible;       /* any point */
+  field_taps across; /* the taps across the face */
+  int visible;       /* whether any point is visible */
 } face_job;
 
 /* The field at a point of the face. */
@@ -37,10 +37,10 @@ static float value_at(const face_job *job, const field_taps *column, const field
   return (float)sum;
 }
 
-/* The brick of a point, which has a voxel's coordinates along the face. */
+/* Whether the brick of a point may be visible. The point has a voxel's coordinates along the face. */
 static bool may_be_visible(const face_job *job, int32_t row, int32_t column) {
   int32_t at[3];
-  at[job->axis] = job->across.first + 1; /* the cell's lower voxel */
+  at[job->axis] = job->across.first + 1; /* the lower voxel of the cell */
   at[row_axis(job->axis)] = row;
   at[column_axis(job->axis)] = column;
   for (int a = 0; a < 3; a++) at[a] = (at[a] + 1) / HL_BRICK_CELLS;

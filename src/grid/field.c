@@ -1,7 +1,7 @@
 /* grid/field.c - see field.h. */
 #include "grid/field.h"
 
-/* The kernel's value at a distance, and its derivative by the coordinate. */
+/* The kernel's value at a distance, and its derivative with respect to the coordinate. */
 static void kernel_at(const kernel *kernel, double distance, double *value, double *slope) {
   double a = fabs(distance), sum = 0, rise = 0;
   *value = *slope = 0;
@@ -9,7 +9,7 @@ static void kernel_at(const kernel *kernel, double distance, double *value, doub
   const float *piece = a < 1 ? kernel->inner : kernel->outer;
   if (a >= 1) a -= 1;
   for (int power = kernel->degree; power >= 0; power--) {
-    rise = rise * a + sum; /* Horner's scheme, and its derivative */
+    rise = rise * a + sum; /* Horner's scheme for the derivative */
     sum = sum * a + (double)piece[power];
   }
   *value = sum;

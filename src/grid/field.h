@@ -1,4 +1,4 @@
-/* grid/field.h - what the kernel makes of a grid's voxels at any point: its value and its gradient.
+/* grid/field.h - the field that the kernel makes of a grid's voxels: its value and gradient at any point.
  *
  * Points are in index space, values in stored units. Beyond the grid's faces the border's voxels continue. */
 #ifndef HL_GRID_FIELD_H
@@ -16,10 +16,10 @@ typedef struct field_taps {
 
 field_taps hl_field_taps(const kernel *kernel, double at);
 
-/* Copies a box of voxels: values [size[2]][size[1]][size[0]]. */
+/* Copies a box of voxels to `values`, [size[2]][size[1]][size[0]]. */
 void hl_field_window(const grid *grid, const int32_t first[3], const int32_t size[3], double *values);
 
-/* *slope: by index coordinates. */
+/* The field's value at a point. *slope: the derivative by index coordinates. */
 double hl_field_value_and_slope(const grid *grid, const kernel *kernel, vec3 at, vec3 *slope);
 
 #endif

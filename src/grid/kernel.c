@@ -13,7 +13,7 @@ static const kernel bspline = {
     .degree = HL_BSPLINE_DEGREE,
 };
 
-/* The same over coefficients with which it passes through the voxels' values. */
+/* The cubic B-spline, applied to coefficients with which it passes through the voxels' values. */
 static const kernel interpolating = {
     .name = "interpolating",
     .support = 2,

@@ -19,8 +19,9 @@ typedef struct kernel {
   double variance;                   /* variance along an axis, voxels^2: the blur */
   float inner[HL_KERNEL_DEGREE + 1]; /* |d| in [0,1]: coefficients of a^0 .. a^5, a = |d| */
   float outer[HL_KERNEL_DEGREE + 1]; /* |d| in [1,2]: coefficients, a = |d| - 1 */
-  int degree;                        /* the highest non-zero power */
-  bool interpolates;                 /* it is summed over coefficients (prefilter.h) in place of voxels */
+  int degree;                        /* the highest power with a coefficient other than zero */
+  bool interpolates;                 /* whether it is summed over coefficients (prefilter.h) in place of
+                                      * voxels */
 } kernel;
 
 const kernel *hl_kernel_get(hl_kernel which);

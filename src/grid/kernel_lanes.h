@@ -12,14 +12,14 @@ LANES_INLINE lanes kernel_piece(const float *piece, int degree, lanes a) {
   return sum;
 }
 
-/* The cubic B-spline in fewer operations: for distances up to 1, and for the distance 2 - rest with rest up
- * to 1. */
+/* The cubic B-spline in fewer operations. inner: for distances up to 1. outer: for the distance 2 - rest,
+ * with rest up to 1. */
 LANES_INLINE lanes bspline_inner(lanes distance) {
   return lanes_fma(distance * distance, lanes_line(distance, 0.5f, -1.0f), lanes_set(2.0f / 3));
 }
 LANES_INLINE lanes bspline_outer(lanes rest) { return rest * rest * (rest * (1.0f / 6)); }
 
-/* The kernel at any distance. */
+/* The kernel's value at any distance. */
 LANES_INLINE lanes kernel_at(const kernel *kernel, int degree, lanes distance) {
   lanes a = lanes_abs(distance);
   if (degree == HL_BSPLINE_DEGREE)
@@ -28,7 +28,7 @@ LANES_INLINE lanes kernel_at(const kernel *kernel, int degree, lanes distance) {
   return lanes_keep(a < kernel->support, lanes_select(a < 1.0f, inner, outer));
 }
 
-/* Weights of the four taps at floor-1 .. floor+2 for a point with fraction t; their sum is 1. */
+/* Weights of the four taps at floor-1 .. floor+2 for a point with the fraction t. Their sum is 1. */
 LANES_INLINE void tap_weights(const kernel *kernel, int degree, lanes t, lanes weight[4]) {
   lanes s = 1.0f - t;
   int bspline = degree == HL_BSPLINE_DEGREE;
@@ -46,7 +46,7 @@ LANES_INLINE lanes kernel_piece_slope(const float *piece, int degree, lanes a) {
   return sum;
 }
 
-/* Derivatives of the four taps' weights by t; their sum is 0. The distance to the taps 2 and 3 shrinks as t
+/* Derivatives of the four taps' weights by t. Their sum is 0. The distance to the taps 2 and 3 shrinks as t
  * grows. */
 LANES_INLINE void tap_slopes(const kernel *kernel, int degree, lanes t, lanes slope[4]) {
   lanes s = 1.0f - t;

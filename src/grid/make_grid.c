@@ -11,11 +11,11 @@
 
 /* ---- copies of voxels ---- */
 
-/* Where finite_voxels come from: the grid's voxels, of the volume's storage. */
+/* The source of finite_voxels: the grid's voxels, of the volume's storage. */
 typedef struct copy_job {
   const grid *grid;
   hl_storage storage;
-  float greatest; /* see hl_grid_value() */
+  float greatest; /* the parameter of hl_grid_value() with this name */
 } copy_job;
 
 static float stored_of(hl_storage storage, const void *row, size_t x) {
@@ -39,15 +39,15 @@ static void replace_slice(void *data, size_t index, int worker) {
   }
 }
 
-/* Where rows and slices of the voxels begin. */
+/* Sets the voxels and the distances of rows and slices. */
 static void set_voxels(grid *grid, const void *voxels, size_t row_bytes, size_t slice_bytes) {
   grid->voxels = voxels;
   grid->row_bytes = row_bytes;
   grid->slice_bytes = slice_bytes;
 }
 
-/* Copies voxels as floats, with empty in place of every non-finite one; an interpolating kernel's become
- * coefficients. */
+/* Copies voxels as floats, with the empty value in place of every non-finite one. For an interpolating kernel
+ * the copies become coefficients. */
 static void replace_voxels(hl_pool *pool, hl_storage storage, const kernel *kernel, grid *grid) {
   copy_job job = {grid, storage, hl_greatest_value(kernel)};
   hl_pool_run(pool, (size_t)grid->dimension[2], replace_slice, &job);
@@ -56,14 +56,15 @@ static void replace_voxels(hl_pool *pool, hl_storage storage, const kernel *kern
   set_voxels(grid, grid->finite_voxels, row_bytes, (size_t)grid->dimension[1] * row_bytes);
 }
 
-/* Slices and columns lie an odd number of cache lines apart: at powers of two, all would share few of the
- * cache's sets. */
+/* Rounds the size of slices and columns up to an odd number of cache lines. At powers of two, all would share
+ * few of the cache's sets. */
 static size_t odd_lines(size_t bytes) {
   enum { LINE = 64 };
   return ((bytes + LINE - 1) / LINE | 1) * LINE;
 }
 
-/* Takes the columns where something reads them and slices are large enough for windows of 8x8 voxels. */
+/* Takes the memory of the columns, where something reads them and slices are large enough for windows of 8x8
+ * voxels. */
 static void lay_out_columns(grid *grid, const grid_functions *functions, hl_layout *layout) {
   const int32_t *dimension = grid->dimension;
   if (!functions->reads_columns || grid->storage != HL_STORAGE_U8 || dimension[0] < GRID_COLUMN ||
@@ -75,8 +76,8 @@ static void lay_out_columns(grid *grid, const grid_functions *functions, hl_layo
                                  grid->column_bytes);
 }
 
-/* Copies a slice into all columns, values reduced by 128. The last column is not filled past the row's end:
- * no sum includes these values. */
+/* Copies a slice into all columns, with values reduced by 128. The last column is not filled past the row's
+ * end, as no sum includes these values. */
 static void copy_slice(void *data, size_t index, int worker) {
   (void)worker;
   const grid *grid = data;
@@ -98,7 +99,7 @@ static void copy_slice(void *data, size_t index, int worker) {
 
 /* ---- the grid ---- */
 
-/* Whether sampling needs other values than the voxels': finite ones, or coefficients. */
+/* Whether sampling needs other values than the voxels: finite ones or coefficients. */
 static bool needs_other_values(const hl_volume *volume, const kernel *kernel) {
   return volume->nonfinite_count > 0 || kernel->interpolates;
 }
@@ -112,7 +113,7 @@ static void set_size(const hl_volume *volume, const kernel *kernel, grid *grid) 
   }
 }
 
-/* The memory of a grid whose size is set. */
+/* Lays out the arrays of a grid whose size is set. */
 static void lay_out(grid *grid, const hl_volume *volume, const kernel *kernel,
                     const grid_functions *functions, hl_layout *layout) {
   if (grid->pages == NULL && needs_other_values(volume, kernel))
@@ -142,7 +143,7 @@ static hl_status check_bricks(const hl_volume *volume, hl_error *error) {
       volume->dimension[0], volume->dimension[1], volume->dimension[2], bricks, UINT32_MAX);
 }
 
-/* Gives a grid with pages those of other values, if it needs them. */
+/* Gives a grid with pages the pages of other values, if it needs other values. */
 static hl_status make_value_pages(hl_pool *pool, const grid_source *source, grid *grid, hl_error *error) {
   const hl_volume *volume = source->volume->volume;
   if (grid->pages == NULL || !needs_other_values(volume, source->kernel)) return HL_OK;
@@ -162,7 +163,7 @@ static hl_status allocate(hl_context *context, const grid_functions *functions, 
   grid->memory = handed.base;
   lay_out(grid, volume, source->kernel, functions, &handed);
   for (int32_t layer = 0; grid->cell_bounds != NULL && layer < grid->brick_count[2]; layer++)
-    grid->cell_bounds[layer] = NULL; /* not packed yet */
+    grid->cell_bounds[layer] = NULL; /* the layer is not packed yet */
   return HL_OK;
 }
 

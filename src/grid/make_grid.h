@@ -8,12 +8,13 @@ typedef struct grid_source {
   const hl_scene_volume *volume; /* kept alive by the caller */
   const kernel *kernel;          /* the kernel that the cells' bounds are for */
   affine3 index_to_frame;        /* index space to frame space */
-  double empty;                  /* the empty value, as a data value */
+  double empty;                  /* the data value of empty space */
 } grid_source;
 
 hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_functions *functions,
                          const grid_source *source, grid *grid, hl_error *error);
-/* The bytes that hl_grid_create() holds at most, while it makes the volume's grid for the kernel. */
+/* The greatest number of bytes that hl_grid_create() holds while it makes the volume's grid for the
+ * kernel. */
 uint64_t hl_grid_bytes(const hl_volume *volume, const kernel *kernel, const grid_functions *functions,
                        int threads);
 void hl_grid_release(hl_context *context, grid *grid);

@@ -1,4 +1,4 @@
-/* grid/mask_lattice.h - a volume's mask made ready: what extinction is multiplied by, and colours, on a
+/* grid/mask_lattice.h - a volume's mask, prepared for frames: factors of extinction, and colours, on a
  * lattice of its own, linear between its points. */
 #ifndef HL_GRID_MASK_LATTICE_H
 #define HL_GRID_MASK_LATTICE_H
@@ -7,28 +7,28 @@
 #include "scene/scene.h"
 
 typedef struct mask_lattice {
-  const uint16_t *factors; /* [k][j][i]; borrowed from the scene; 65535 is 1; null: there is no mask. One more
-                              may be read */
-  const unsigned char *colors; /* [k][j][i][4] (label/mask.h); null: the mask has no colours */
+  const uint16_t *factors;     /* [k][j][i]; borrowed from the scene; 65535 stands for 1; null if there is no
+                                * mask. One element more may be read */
+  const unsigned char *colors; /* [k][j][i][4] (label/mask.h); null if the mask has no colours */
   const signed char *slopes;   /* [k][j][i][4] (label/mask.h) */
   const uint32_t (*bricks)[2]; /* (label/mask.h) */
-  int32_t brick_step[3];       /* from brick to brick along i, j, k; in bricks */
+  int32_t brick_step[3];       /* distance from brick to brick along i, j, k; in bricks */
   int32_t last[3];             /* the greatest index along i, j, k */
-  int32_t step[3];             /* from point to point along i, j, k; in points */
-  float to_index[3][4];        /* frame space to index space */
+  int32_t step[3];             /* distance from point to point along i, j, k; in points */
+  float to_index[3][4];        /* maps frame space to index space */
   float rest;                  /* the factor outside the lattice */
 } mask_lattice;
 
-/* volume: in frame space; without a mask the lattice is empty. */
+/* Sets a lattice up. volume: in frame space. Without a mask the lattice is empty. */
 void hl_mask_lattice_set_up(mask_lattice *lattice, const hl_scene_volume *volume);
 
-/* The points around a position, and the position's parts of the way between them. */
+/* The points around a position, and the position's place between them. */
 typedef struct mask_cell {
-  int32_t near[3], far[3]; /* in points from the first, along each axis */
+  int32_t near[3], far[3]; /* numbers of points, counted from the first, along each axis */
   float part[3];
 } mask_cell;
 
-/* False where the position, in frame space, is outside the lattice. */
+/* Finds the cell of a position in frame space. False where the position is outside the lattice. */
 static inline bool hl_mask_cell_at(const mask_lattice *lattice, const float point[3], mask_cell *cell) {
   for (int a = 0; a < 3; a++) {
     const float *row = lattice->to_index[a], last = (float)lattice->last[a];
@@ -54,7 +54,7 @@ static inline size_t hl_mask_corner(const mask_cell *cell, int corner, float *sh
   return at;
 }
 
-/* What extinction is multiplied by at a position in frame space. */
+/* The factor of extinction at a position in frame space. */
 static inline float hl_mask_factor(const mask_lattice *lattice, const float point[3]) {
   mask_cell cell;
   float sum = 0, share;
@@ -70,7 +70,7 @@ static inline float hl_mask_factor(const mask_lattice *lattice, const float poin
  * each t from -1 to 1. */
 bool hl_mask_hides_box(const mask_lattice *lattice, vec3 middle, const vec3 half[3]);
 
-/* Moves a colour towards the mask's at a position in frame space. */
+/* Moves a colour towards the mask's colour at a position in frame space. */
 void hl_mask_tint(const mask_lattice *lattice, const float point[3], float color[3]);
 
 #endif

@@ -1,13 +1,12 @@
-/* grid/matter_key.h - what the extinction of a volume's matter depends on, for keys of what is kept
- * (core/key.h).
- */
+/* grid/matter_key.h - the key (core/key.h) of results that depend on the extinction of a volume's matter. */
 #ifndef HL_GRID_MATTER_KEY_H
 #define HL_GRID_MATTER_KEY_H
 
 #include "core/key.h"
 #include "grid/classifier.h"
 
-/* Voxels are told apart by their volume's address: whoever keeps the result keeps the volume, too. */
+/* Adds everything on which a volume's extinction depends. Voxels are told apart by their volume's address:
+ * whoever keeps the result must keep the volume, too. */
 void hl_matter_key_add(hl_key *key, const hl_scene_volume *volume, const grid *grid,
                        const classifier *classifier);
 

@@ -1,7 +1,8 @@
 /* grid/plane_table.c - see plane_table.h.
  *
- * A point of the table is the function's mean over the part of the plane that is nearer to it than to others,
- * as far as the data reach: a box that ends where the data end is whole there. */
+ * A point of the table is the function's mean over the part of the plane that is nearer to it than to other
+ * points, as far as the data reach. A box that ends where the data end therefore has its full weight
+ * there. */
 #include "grid/plane_table.h"
 
 #include <math.h>
@@ -18,7 +19,7 @@ void hl_plane_table_lay_out(const hl_transfer_function *function, plane_table *t
 
 /* ---- the part of the plane that the table covers ---- */
 
-/* No gradient is longer: along each axis it is at most the range of the values per voxel edge. */
+/* The greatest possible length of a gradient: along each axis the range of the values per voxel edge. */
 static double longest_gradient(const hl_scene_volume *volume, double range) {
   mat3 placed = hl_scene_volume_index_to_world(volume).linear;
   double sum = 0;
@@ -29,7 +30,7 @@ static double longest_gradient(const hl_scene_volume *volume, double range) {
   return range * sqrt(sum);
 }
 
-/* What the data reach on both axes, second numbers as the function has them. */
+/* The box of values that the data reach on both axes. Second numbers have the function's units. */
 static plane_box reach_of_data(const hl_scene_volume *volume, const hl_scene_volume *second,
                                const plane_values *values) {
   double scale = hl_plane_second_scale(&volume->transfer_function.plane), low = 0,
@@ -43,14 +44,14 @@ static plane_box reach_of_data(const hl_scene_volume *volume, const hl_scene_vol
   return (plane_box){{values->low, fmin(low, high)}, {values->high, fmax(low, high)}};
 }
 
-/* An axis of the table: point n of it stands for start + n * step. */
+/* An axis of the table. Point n of it stands for start + n * step. */
 typedef struct table_axis {
   double start, step;
-  double low, high; /* what the data reach */
-  double nothing;   /* below this there is no matter */
+  double low, high; /* the range that the data reach */
+  double nothing;   /* below this value there is no matter */
 } table_axis;
 
-/* The shapes and two steps more, as far as the data reach. */
+/* Makes an axis that covers the shapes and two steps more, as far as the data reach. */
 static table_axis axis_of(const plane_box *bounds, const plane_box *reach, int axis, int count) {
   double low = fmax(bounds->low[axis], reach->low[axis]), high = fmin(bounds->high[axis], reach->high[axis]);
   if (!(high > low))
@@ -59,7 +60,7 @@ static table_axis axis_of(const plane_box *bounds, const plane_box *reach, int a
   return (table_axis){low - 2 * step, step, reach->low[axis], reach->high[axis], -INFINITY};
 }
 
-/* The part of an axis that a point of the table stands for. */
+/* The part of an axis for which a point of the table stands. */
 static void part_of_axis(const table_axis *axis, int n, double *low, double *high) {
   double middle = axis->start + n * axis->step;
   *low = fmin(fmax(middle - axis->step / 2, axis->low), axis->high);
@@ -70,8 +71,8 @@ static void part_of_axis(const table_axis *axis, int n, double *low, double *hig
 
 static size_t place_of(int row, int column) { return (size_t)row * PLANE_STRIDE + (size_t)column; }
 
-/* Fills one row. Extinction is linear between columns, so its integral over one is the mean of its two
- * ends. */
+/* Fills one row. Extinction is linear between columns, so that its integral over one column is the mean of
+ * the column's two ends. */
 static void fill_row(const hl_transfer_function *function, const table_axis axes[2], int row,
                      plane_table *table) {
   double integral = 0, before = 0, sums[4] = {0, 0, 0, 0}, opacity_before[4] = {0, 0, 0, 0};
@@ -96,7 +97,7 @@ static void fill_row(const hl_transfer_function *function, const table_axis axes
   }
 }
 
-/* The last column and row once more: look-ups read a point and the next. width: floats of a point. */
+/* Repeats the last column and row, since look-ups read a point and the next. width: floats of a point. */
 static void repeat_last(float *table, size_t width) {
   for (int row = 0; row < PLANE_ROWS; row++)
     memcpy(table + width * place_of(row, PLANE_COLUMNS), table + width * place_of(row, PLANE_COLUMNS - 1),
@@ -105,7 +106,7 @@ static void repeat_last(float *table, size_t width) {
          width * PLANE_STRIDE * sizeof *table);
 }
 
-/* Beside each point's sums those of the next row's point. */
+/* Puts the sums of the next row's point beside each point's sums. */
 static void join_rows(const plane_table *table) {
   for (int row = 0; row <= PLANE_ROWS; row++) {
     int next = row < PLANE_ROWS ? row + 1 : row;
@@ -131,10 +132,11 @@ static void find_greatest(const plane_table *table, int entries, float (*greates
   }
 }
 
-/* Tables are read up to this many columns beyond a place. */
+/* Tables are read up to this many columns beyond a position. */
 enum { BEYOND = 3 };
 
-/* The first columns do not depend on the second number where all rows hold the same numbers. */
+/* The column before which look-ups do not depend on the second number: all rows hold the same numbers there.
+ */
 static float even_columns(const plane_table *table) {
   int even = PLANE_STRIDE;
   for (int row = 1; row < PLANE_ROWS; row++)
@@ -181,7 +183,7 @@ void hl_plane_table_set_second(plane_table *table, const hl_volume *volume, cons
 
 /* ---- looking up one point ---- */
 
-/* A position in a table: the point before it, and the way from there. */
+/* A position in a table: the point before it, and the distance from there. */
 typedef struct table_place {
   int at;
   float part;
@@ -194,7 +196,8 @@ static table_place place_between(float x, int count) {
   return (table_place){(int)x, x - (float)(int)x};
 }
 
-/* The mean of a colour's integrals' differences over the column around a position, of two rows. */
+/* The mean colour over the column around a position, from the differences of the colour's integrals in two
+ * rows. */
 static float color_between(const plane_table *table, table_place column, table_place row, int c) {
   float of_row[2];
   for (int r = 0; r < 2; r++) {

@@ -2,7 +2,7 @@
  *
  * A column stands for a value, a row for a second number: the gradient's length or another volume's value.
  * Between the table's points the function is bilinear. A ray's way through a slab runs along a row, from one
- * value to another, so rows keep integrals over columns: no box is lost between two sheets. */
+ * value to another. Rows therefore keep integrals over columns, so that no box is lost between two sheets. */
 #ifndef HL_GRID_PLANE_TABLE_H
 #define HL_GRID_PLANE_TABLE_H
 
@@ -15,21 +15,23 @@ enum { PLANE_COLUMNS = 512, PLANE_ROWS = 256, PLANE_STRIDE = PLANE_COLUMNS + 1 }
 typedef struct plane_table {
   /* [PLANE_ROWS + 1][PLANE_STRIDE], the last row and column once more; borrowed from the classifier's block;
    * null: the function is one of the value alone */
-  float (*sums)[4];  /* extinction per world unit; its integral over columns, from column 0; both of the next
-                        row, so that one load takes what lies around a place */
+  float (*sums)[4];  /* extinction per world unit; its integral over columns, from column 0; the same two of
+                      * the next row, so that one load takes everything around a position */
   float (*color)[4]; /* the integrals of linear RGB times opacity, and of opacity */
   float column_scale, column_offset; /* column = coordinate in the classifier's tables * scale + offset */
-  float row_scale, row_offset; /* row = second number * scale + offset; of a gradient in stored units per
-                                  frame unit, of another volume in stored units above its empty value */
-  float even_before;           /* what lies before this column, and is read there, is the same in all rows */
+  /* row = second number * scale + offset. A gradient is in stored units per frame unit, another volume's
+   * value in stored units above that volume's empty value */
+  float row_scale, row_offset;
+  float even_before; /* columns before this one are the same in all rows */
   hl_second_axis axis;
-  /* Of the other volume; borrowed from the frame; null where the second number is the gradient. */
+  /* The volume whose values are the second number; borrowed from the frame; null where the second number is
+   * the gradient. */
   const hl_volume *second_volume;
   const grid *second;
-  float to_second[3][4]; /* frame space to its index space */
+  float to_second[3][4]; /* maps frame space to the second volume's index space */
 } plane_table;
 
-/* Takes the tables' memory from a layout, where the function needs any. */
+/* Takes the tables' memory from a layout, if the function is one of two numbers. */
 void hl_plane_table_lay_out(const hl_transfer_function *function, plane_table *table, hl_layout *layout);
 
 /* The values that a classifier's tables cover, from their entry 0 to their last; values below `nothing` are
@@ -38,10 +40,10 @@ typedef struct plane_values {
   double low, high, nothing;
 } plane_values;
 
-/* Fills the tables. volume: the function's, in frame space. second: the other volume; null where the second
- * number is the gradient. entries: of the classifier's tables, less one. greatest: [entries + 1]; receives a
- * bound of the extinction that values around each entry have with any second number: 0 where nothing shows.
- */
+/* Fills the tables. volume: the function's volume, in frame space. second: the other volume; null where the
+ * second number is the gradient. entries: the number of entries of the classifier's tables, less one.
+ * greatest: [entries + 1]; receives a bound of the extinction that values around each entry have with any
+ * second number, 0 where nothing shows. */
 void hl_plane_table_fill(const hl_scene_volume *volume, const hl_scene_volume *second, const grid *grid,
                          const plane_values *values, int entries, plane_table *table, float (*greatest)[4]);
 
@@ -53,10 +55,10 @@ typedef struct plane_point {
   float extinction, color[3];
 } plane_point;
 
-/* coordinate: in the classifier's tables. second: as row_scale says. */
+/* The function at a point. coordinate: in the classifier's tables. second: in the units of row_scale. */
 plane_point hl_plane_table_at(const plane_table *table, float coordinate, float second);
 
-/* The other volume's value at a position in frame space, linear between its voxels: stored units above its
+/* The other volume's value at a position in frame space, linear between its voxels, in stored units above its
  * empty value. */
 float hl_plane_second_at(const plane_table *table, const float point[3]);
 

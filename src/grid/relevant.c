@@ -38,7 +38,7 @@ void hl_content_bounds(const grid *grid, double margin, double low[3], double hi
   box_of_bricks(grid, grid->content_low, grid->content_high, margin, low, high);
 }
 
-/* The mark of bricks that would be relevant, had a mask not hidden them. */
+/* Marks bricks that only a mask keeps from being relevant. */
 enum { HIDDEN = 2 };
 
 typedef struct brick_job {
@@ -55,9 +55,8 @@ static bool overlaps_box(const grid *grid, const int32_t b[3]) {
   return true;
 }
 
-/* How far around a brick its voxels are needed for what cuts or a mask leave beside it: the kernel's radius,
- * and a cell.
- */
+/* The distance around a brick within which its voxels are needed for matter that cuts or a mask leave beside
+ * it: the kernel's radius and a cell. */
 enum { BESIDE_CUT = 3 };
 
 /* Whether brick b and its surroundings are cut away for the eye and for lights. */
@@ -101,7 +100,7 @@ static void mark_bricks(void *data, size_t index, int worker) {
     }
 }
 
-/* Widens the range from low to high to a brick. */
+/* Widens the range from low to high so that it includes a brick. */
 static void widen_to_brick(const int32_t b[3], bool first, int32_t low[3], int32_t high[3]) {
   for (int axis = 0; axis < 3; axis++) {
     if (first || b[axis] < low[axis]) low[axis] = b[axis];
@@ -109,7 +108,7 @@ static void widen_to_brick(const int32_t b[3], bool first, int32_t low[3], int32
   }
 }
 
-/* Finds the content's bounds; hidden bricks are then not relevant. */
+/* Finds the content's bounds. Afterwards hidden bricks count as not relevant. */
 static void find_content(grid *grid) {
   bool first = true;
   for (size_t at = 0; at < hl_grid_bricks(grid); at++) {
@@ -122,7 +121,7 @@ static void find_content(grid *grid) {
   }
 }
 
-/* The number of voxels that brick b owns along one axis; every voxel has one owner. */
+/* The number of voxels that brick b owns along one axis. Every voxel has one owner. */
 static int voxels_along(int32_t b, int32_t count) {
   int32_t first = b * HL_BRICK_CELLS, last = first + HL_BRICK_CELLS;
   if (last > count) last = count;
@@ -139,7 +138,7 @@ static bool has_visible_cell(const grid *grid, size_t brick) {
 typedef struct cell_job {
   grid *grid;
   uint16_t least_high[256]; /* for each lower bound, the least upper bound with which some value is visible;
-                               256: none */
+                             * 256 if there is none */
 } cell_job;
 
 static void find_least_high(const classifier *classifier, const grid *grid, uint16_t least_high[256]) {
@@ -160,7 +159,7 @@ static size_t packed_row_bytes(const grid *grid, const unsigned char *even) {
   return alike * EVEN_BYTES + (count - alike) * UNEVEN_BYTES;
 }
 
-/* Writes 1 for each of a brick's 2x2x2 cells that show something; returns whether any does. */
+/* Writes 1 for each of a brick's groups of 2x2x2 cells that shows something. Returns whether any does. */
 static unsigned char mark_cells_of_brick(const cell_job *job, const int32_t brick[3],
                                          const unsigned char *bounds, bool even) {
   const cell_lookup *lookup = &job->grid->lookup[0];
@@ -213,7 +212,7 @@ static void mark_cells(grid *grid, const classifier *classifier, hl_pool *pool) 
 
 /* ---- look-ups of boxes of cells ---- */
 
-/* The bits of `visible` (cell_lookup) for boxes three units long along x, y, z. */
+/* The bits of `visible` (cell_lookup) for boxes that are three units long along x, y or z. */
 enum { THREE_ALONG_X = 0xaa, THREE_ALONG_Y = 0xcc, THREE_ALONG_Z = 0xf0 };
 
 /* Converts a row's marks (1: visible) into look-ups along x. */
@@ -224,8 +223,9 @@ static void look_up_row(unsigned char *cells, size_t width) {
     cells[x] = (unsigned char)-(cells[x] | cells[width - 1]);
 }
 
-/* Widens look-ups along y or z, in place, for `width` cells side by side from the first one on. step: from a
- * cell to the next along the axis. three: the bits of boxes three units long along the axis. */
+/* Widens look-ups along y or z, in place, for `width` cells side by side from the first one on. step:
+ * distance from a cell to the next along the axis. three: the bits of boxes that are three units long along
+ * the axis. */
 static void join_axis(unsigned char *cells, size_t step, int32_t count, size_t width, unsigned char three) {
   for (int32_t i = 0; i + 2 < count; i++) {
     unsigned char *cell = cells + (size_t)i * step;
@@ -266,8 +266,8 @@ static void fill_lookups(grid *grid, hl_pool *pool) {
 
 /* ---- a bit for each cell ---- */
 
-/* The most cells that get bits: for larger volumes, an eighth of a byte per voxel would be much compared with
- * their other memory. */
+/* The most cells that get bits. For larger volumes, an eighth of a byte per voxel would be much beside their
+ * other memory. */
 static const uint64_t GREATEST_BYTES = 8 << 20;
 /* The least fraction of the visible bricks' cells that the bits must exclude to be worth reading. */
 static const double LEAST_LEFT_OUT = 1.0 / 8;
@@ -281,7 +281,7 @@ void hl_cell_bits_lay_out(grid *grid, hl_layout *layout) {
 typedef struct bits_job {
   grid *grid;
   brick_bits_function *brick_bits;
-  float sign, threshold;     /* visible: sign * stored value > threshold */
+  float sign, threshold;     /* a value is visible where sign * stored value > threshold */
   uint64_t bricks, set_bits; /* number of visible bricks, and number of their cells with a bit; atomic */
 } bits_job;
 
@@ -304,7 +304,7 @@ static bool find_threshold(const grid *grid, const classifier *classifier, bits_
   return isfinite(job->threshold);
 }
 
-/* Bits are found for all bricks, relevant or not: values that are not visible themselves may lie on a ray's
+/* Finds the bits of all bricks, relevant or not. Values that are not visible themselves may lie on a ray's
  * way from one sheet to a visible value on the next. */
 static uint64_t find_bits(const bits_job *job, size_t at, const int32_t brick[3]) {
   const grid *grid = job->grid;
@@ -345,8 +345,8 @@ static void find_cell_bits(grid *grid, const classifier *classifier, brick_bits_
 
 /* ---- all steps together ---- */
 
-/* Finds which faces of the box cut something visible: those that relevant bricks reach, a slab's neighbours
- * included. */
+/* Finds which faces of the box cut something visible: the faces that relevant bricks, or a slab's neighbours
+ * of them, reach. */
 static void find_faces(grid *grid, bool any_relevant) {
   grid->cut = any_relevant && grid->cut_count > 0;
   for (int axis = 0; axis < 3; axis++) {
@@ -360,7 +360,8 @@ static void find_faces(grid *grid, bool any_relevant) {
   }
 }
 
-/* Lists the relevant bricks, bounds their coordinates, counts their voxels and finds the faces they reach. */
+/* Lists the relevant bricks, bounds their coordinates, counts their voxels and finds the faces that they
+ * reach. */
 static void list_relevant(grid *grid) {
   grid->kept_voxels = 0;
   grid->relevant_count = 0;

@@ -16,32 +16,33 @@
 void hl_grid_mark_relevant(grid *grid, const grid_functions *functions, const classifier *classifier,
                            hl_pool *pool);
 
-/* Finds the box, in index space, of the points in a brick's cells, `margin` voxels larger at the grid's
- * borders. */
+/* Finds the box, in index space, of the points in a brick's cells. At the grid's borders the box is larger by
+ * `margin` voxels. */
 void hl_brick_bounds(const grid *grid, const int32_t b[3], double margin, double centre[3], double half[3]);
 /* Finds the box around all relevant bricks; false if there are none. */
 bool hl_relevant_bounds(const grid *grid, double margin, double low[3], double high[3]);
 
-/* Finds the box around the content: relevant bricks and those that only a mask hides; there is at least one.
- */
+/* Finds the box around the content: relevant bricks, and bricks that only a mask hides. There must be at
+ * least one. */
 void hl_content_bounds(const grid *grid, double margin, double low[3], double high[3]);
 
-/* Faces that cut nothing visible are so far outside the box, voxels. */
+/* The distance outside the box of faces that cut nothing visible, in voxels. */
 #define FACE_FAR_OUT 1e9f
 
-/* Moves the faces of a grid that touch the other grid's box far outside, so that they cut nothing off: matter
- * goes on beyond them. Most often both grids are parts of one volume. */
+/* Moves the faces of a grid that touch the other grid's box far outside, so that they cut nothing off, as
+ * matter goes on beyond them. Most often both grids are parts of one volume. */
 void hl_open_faces(grid *grid, const struct grid *other);
 
-/* A pixel samples a sheet at one point: a block of pixels is empty if no pixel's point lies in a cell that
- * may show something, even if cells between the points do. With a bit for each cell, a quarter of the blocks
- * that pass the test by boxes (fill/relevant_blocks_lanes.h) turn out to be empty. In a cell, a cubic
- * B-spline lies below the greatest of its Bezier points (bounds.h); grids for other kernels get no bits. */
+/* The bits of cells. A pixel samples a sheet at one point. A block of pixels is therefore empty if no pixel's
+ * point lies in a cell that may show something, even if cells between the points do. With a bit for each
+ * cell, a quarter of the blocks that pass the test by boxes (fill/relevant_blocks_lanes.h) turn out to be
+ * empty. In a cell, a cubic B-spline lies below the greatest of its Bezier points (bounds.h); grids for other
+ * kernels get no bits. */
 enum {
-  CELL_BIT_TAPS = HL_BRICK_CELLS + 3 /* voxels along an axis that a brick's cells depend on: 4b-2 .. 4b+4 */
+  CELL_BIT_TAPS = HL_BRICK_CELLS + 3 /* voxels along an axis on which a brick's cells depend: 4b-2 .. 4b+4 */
 };
 
-/* Takes the grid's cell_bits; nothing for large volumes, which have none. */
+/* Takes the memory of the grid's cell_bits. Takes nothing for large volumes, which have none. */
 void hl_cell_bits_lay_out(grid *grid, hl_layout *layout);
 
 #endif

@@ -1,7 +1,8 @@
 /* grid/value_pages.c - see value_pages.h.
  *
- * Some slices at a time are loaded and filtered along x and y. Along z the filter runs over all slices
- * forward and then back: between the two runs they lie in a second scratch file, or over ranks in memory. */
+ * Slices are loaded and filtered along x and y, some slices at a time. Along z the filter runs over all
+ * slices forward and then back. Between the two runs the slices lie in a second scratch file, or over ranks
+ * in memory. */
 #define _GNU_SOURCE
 #include "grid/value_pages.h"
 
@@ -19,13 +20,14 @@ static const char subject[] = "values of a volume larger than memory";
 typedef struct value_job {
   const hl_volume *volume;
   hl_pool *pool;
-  float empty, greatest; /* of hl_grid_value() */
+  float empty, greatest; /* parameters of hl_grid_value() */
   bool filters;
-  size_t width, height, slice; /* voxels of a row, rows of a slice, voxels of a slice */
-  size_t first;                /* slice that slices[0] is */
-  float *slices;               /* [at once][slice] */
-  float *beside;               /* [slice]: the slice before these, or on the way back the one after */
-  bool any_beside;             /* false: there is none */
+  size_t width, height, slice; /* voxels of a row; rows of a slice; voxels of a slice */
+  size_t first;                /* number of the slice in slices[0] */
+  float *slices;               /* [slices loaded at once][slice] */
+  float *beside;               /* [slice]; the slice before the loaded ones, or on the way back the slice
+                                * after them */
+  bool any_beside;             /* whether `beside` holds a slice */
   unsigned char *rows;         /* [threads][row_bytes] */
   size_t row_bytes;
 } value_job;
@@ -83,7 +85,7 @@ static void run_along_z(value_job *job, size_t count, bool forward) {
 
 /* ---- a scratch file ---- */
 
-/* Slices between the two runs, one after another in a file. */
+/* Reads or writes slices between the two runs; they lie one after another in a file. */
 static bool move_slices(int file, bool write, float *slices, size_t bytes, uint64_t at) {
   unsigned char *place = (unsigned char *)slices;
   while (bytes > 0) {
@@ -100,7 +102,7 @@ static hl_status fail_cancelled(const value_job *job, hl_error *error) {
              : HL_OK;
 }
 
-/* Loads all slices, `most` at once; stores them in pages, or, filtered forward, in a file. */
+/* Loads all slices, `most` at once. Stores them in pages, or, filtered forward, in a file. */
 static hl_status run_forward(value_job *job, size_t most, int file, hl_pages *pages, hl_error *error) {
   const size_t depth = job->volume->dimension[2];
   hl_status status = HL_OK;
@@ -144,8 +146,8 @@ static hl_volume_description describe(const hl_volume *volume) {
   return grid;
 }
 
-/* Slices at once: a page takes them in one piece; fewer where they would take more than an eighth of the
- * memory limit. */
+/* The number of slices loaded at once. A page takes that many in one piece; fewer are loaded if they would
+ * take more than an eighth of the memory limit. */
 static size_t slices_at_once(const value_job *job) {
   uint64_t limit = job->volume->context->options.memory_limit, bytes = job->slice * sizeof(float);
   size_t most = 8;
@@ -169,7 +171,7 @@ static hl_status make_file(value_job *job, hl_pages **made, hl_error *error) {
                          ? hl_pages_create(context, folder, &grid, volume->pages->shift, made, error)
                          : hl_fail_memory(error, most * job->slice * sizeof(float), subject);
   if (status == HL_OK) {
-    hl_glimpse_release((*made)->glimpse); /* choices look at the volume's own */
+    hl_glimpse_release((*made)->glimpse); /* automatic choices look at the volume's own glimpse */
     (*made)->glimpse = NULL;
   }
   bool along_z = job->filters && volume->dimension[2] > 1;
@@ -182,7 +184,7 @@ static hl_status make_file(value_job *job, hl_pages **made, hl_error *error) {
 
 /* ---- over ranks ---- */
 
-/* Values of this rank's block, which need not be whole slices. */
+/* Replaces the values of this rank's block, which need not be whole slices. */
 static void replace_own(const value_job *job, const hl_own_voxels *own, hl_own_voxels *made) {
   size_t count = hl_own_voxels_count(own);
   float *values = (float *)(void *)made->slices;
@@ -190,8 +192,8 @@ static void replace_own(const value_job *job, const hl_own_voxels *own, hl_own_v
   for (size_t n = 0; n < count; n++) values[n] = hl_grid_value(values[n], job->greatest, job->empty);
 }
 
-/* Coefficients of this rank's slices: along z rank by rank, and the last slice of each is told to the next.
- */
+/* Filters this rank's slices to coefficients. Along z, rank after rank filters, and each tells its last slice
+ * to the next. */
 static void filter_own(value_job *job, hl_ranks *ranks, hl_own_voxels *made) {
   const size_t count = made->box.count[2], bytes = job->slice * sizeof(float);
   job->slices = (float *)(void *)made->slices;

@@ -1,8 +1,9 @@
-/* grid/value_pages.h - what a grid makes of the voxels of a volume larger than memory: with every non-finite
- * one replaced, or as the coefficients of the interpolating kernel.
+/* grid/value_pages.h - the values that a grid samples for a volume larger than memory: voxels whose
+ * non-finite values are replaced, or the coefficients of the interpolating kernel.
  *
- * In memory these are a copy (make_grid.c). Here they are pages of their own (volume/pages.h): in a scratch
- * file, or of a volume over ranks. Their values are those of the copy, to the bit. */
+ * For a volume in memory these values are a copy (make_grid.c). Here they are pages of their own
+ * (volume/pages.h), in a scratch file or over ranks. The values in the pages have the same bits as such a
+ * copy. */
 #ifndef HL_GRID_VALUE_PAGES_H
 #define HL_GRID_VALUE_PAGES_H
 
@@ -10,9 +11,9 @@
 #include "grid/kernel.h"
 #include "volume/pages.h"
 
-/* volume: with pages. empty: takes the place of what is not finite. *pages: owned by the caller. Over ranks
- * collective, as is the release; coefficients are refused there unless each rank holds whole slices, in the
- * order of the ranks. */
+/* Makes the pages. volume: must have pages. empty: replaces values that are not finite. *pages: owned by the
+ * caller. Over ranks the call is collective, and so is the release. Coefficients are refused there unless
+ * each rank holds whole slices, in the order of the ranks. */
 hl_status hl_value_pages_create(hl_pool *pool, const hl_volume *volume, const kernel *kernel, float empty,
                                 hl_pages **pages, hl_error *error);
 
