@@ -7,16 +7,16 @@
 #include "core/vector.h"
 #include "scene/transfer_function.h"
 
-static double linear_to_srgb(double linear) { /* IEC 61966-2-1 */
+static double linear_to_srgb(double linear) { /* the curve of IEC 61966-2-1 */
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
 }
 
 static double lab_function(double t) { return t > 0.008856 ? cbrt(t) : 7.787 * t + 16.0 / 116; }
 static double lab_inverse(double f) { return f * f * f > 0.008856 ? f * f * f : (f - 16.0 / 116) / 7.787; }
 
-static const double white[3] = {0.9505, 1, 1.089}; /* D65 */
+static const double white[3] = {0.9505, 1, 1.089}; /* the white point D65 */
 
-/* CIE 1976; matrices of IEC 61966-2-1. */
+/* Converts sRGB to CIELAB (CIE 1976) by the matrices of IEC 61966-2-1. */
 static void srgb_to_lab(const double srgb[3], double lab[3]) {
   double r = hl_srgb_decode(srgb[0]), g = hl_srgb_decode(srgb[1]), b = hl_srgb_decode(srgb[2]);
   double x = lab_function((0.4124 * r + 0.3576 * g + 0.1805 * b) / white[0]);
@@ -85,8 +85,8 @@ static msh msh_of(const double srgb[3]) {
   return (msh){m, s, s > 0.001 ? atan2(lab[2], lab[1]) : 0};
 }
 
-/* The hue that an unsaturated colour of magnitude m takes so that colours change evenly towards the saturated
- * one. */
+/* The hue that an unsaturated colour of magnitude m takes, so that colours change evenly towards the
+ * saturated colour. */
 static double spun_hue(msh saturated, double m) {
   if (saturated.m >= m - 0.1) return saturated.h;
   double spin = saturated.s * sqrt(m * m - saturated.m * saturated.m) / (saturated.m * sin(saturated.s));

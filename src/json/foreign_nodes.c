@@ -1,7 +1,7 @@
-/* json/foreign_nodes.c - the points of other programs' transfer functions become Halflight's.
+/* json/foreign_nodes.c - converts the points of other programs' transfer functions to Halflight's.
  *
- * Their colours are sRGB, mixed in the space that the file names. They become points in linear RGB, so close
- * together that straight lines between them come near that mixing. */
+ * The colours of these points are sRGB and are mixed in a space that the file names. Halflight's points are
+ * in linear RGB. They lie so close together that straight lines between them come near the file's mixing. */
 #include "json/foreign_nodes.h"
 
 #include <math.h>
@@ -9,9 +9,9 @@
 #include "core/memory.h"
 #include "scene/scene.h"
 
-#define PIECES 16 /* straight pieces that a curved segment becomes */
+#define PIECES 16 /* number of straight pieces that a curved segment becomes */
 
-/* How far, from 0 to 1, the function has come from one node to the next at the fraction t of their distance
+/* The progress, from 0 to 1, of the function from one node to the next at the fraction t of their distance
  * (vtkPiecewiseFunction). */
 static double ease(double t, const hl_foreign_node *n) {
   if (n->midpoint == 0.5 && n->sharpness < 0.01) return t;
@@ -20,7 +20,7 @@ static double ease(double t, const hl_foreign_node *n) {
   if (n->sharpness < 0.01) return t;
   double power = 1 + 10 * n->sharpness;
   t = t < 0.5 ? 0.5 * pow(2 * t, power) : 1 - 0.5 * pow(2 * (1 - t), power);
-  double slope = 1 - n->sharpness, t2 = t * t, t3 = t2 * t; /* Hermite, with this slope at both ends */
+  double slope = 1 - n->sharpness, t2 = t * t, t3 = t2 * t; /* a Hermite curve with this slope at both ends */
   return (3 * t2 - 2 * t3) + slope * (2 * t3 - 3 * t2 + t);
 }
 
@@ -52,7 +52,7 @@ hl_status hl_foreign_color(hl_context *context, const hl_foreign_node *nodes, si
   size_t made = 0;
   for (size_t n = 0; n < count; n++) {
     bool last = n + 1 == count || nodes[n + 1].value == nodes[n].value;
-    bool step = space == HL_SPACE_STEP && !last; /* two points at one value */
+    bool step = space == HL_SPACE_STEP && !last; /* a step becomes two points at one value */
     for (int piece = 0; piece < (last ? 1 : step ? 2 : PIECES); piece++) {
       double t = step ? 0 : piece / (double)PIECES, srgb[3], end = last ? nodes[n].value : nodes[n + 1].value;
       hl_color_mix(space, nodes[n].y, last ? nodes[n].y : nodes[n + 1].y, step ? piece : ease(t, &nodes[n]),

@@ -14,14 +14,14 @@ typedef struct hl_foreign_node {
   double value, y[3], midpoint, sharpness;
 } hl_foreign_node;
 
-/* Checks points where errors can name the file's own. */
+/* Checks the points where errors can still name the file's own points. */
 hl_status hl_foreign_check(hl_json_reader *reader, const hl_foreign_node *nodes, size_t count);
 
-/* Writes points as opacities, owned by the caller. */
+/* Converts points to opacities, which are owned by the caller. */
 hl_status hl_foreign_opacity(hl_context *context, const hl_foreign_node *nodes, size_t count,
                              const hl_opacity_point **opacity, size_t *opacity_count, hl_error *error);
 
-/* Writes points as the function's colours, owned by it. */
+/* Converts points to the function's colours, which are owned by the function. */
 hl_status hl_foreign_color(hl_context *context, const hl_foreign_node *nodes, size_t count,
                            hl_color_space space, hl_transfer_function *function, hl_error *error);
 

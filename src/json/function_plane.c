@@ -29,7 +29,7 @@ static hl_status read_second(hl_json_reader *reader, const json_t *value, hl_fun
   return plane->volume != NULL ? HL_OK : hl_fail_memory(reader->error, strlen(name) + 1, "a name");
 }
 
-/* A key that must be there. */
+/* Reads a key that must be present. */
 static hl_status read_pair(hl_json_reader *reader, const json_t *value, const char *key, double pair[2]) {
   if (json_object_get(value, key) == NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, key, "is missing: give two numbers, [from, to]");
@@ -109,7 +109,8 @@ static hl_status read_image(hl_json_reader *reader, const json_t *value, hl_func
 
 typedef hl_status read_shape(hl_json_reader *reader, const json_t *value, void *shape);
 
-/* Reads a list of shapes of a size each; *shapes is owned by the caller, after a failure, too. */
+/* Reads a list of shapes that have `size` bytes each. *shapes is owned by the caller, also after a
+ * failure. */
 static hl_status read_shapes(hl_json_reader *reader, const json_t *object, const char *key, size_t size,
                              read_shape *read, void **shapes, size_t *count) {
   const json_t *list = json_object_get(object, key);

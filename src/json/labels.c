@@ -1,8 +1,9 @@
 /* json/labels.c - the labels of a volume that is a label map, from JSON.
  *
  * "labels" is true for all labels that the voxels have, or a list of those that show: each by its number or
- * its name, with a colour, an opacity and a switch of its own. What a label lacks comes from the table that
- * "label_table" names, else from the file, else the colour is one that differs from its neighbours'. */
+ * its name, with a colour, an opacity and a switch of its own. A property that a label lacks comes from the
+ * table that "label_table" names, or else from the file. A colour that neither has is chosen to differ from
+ * the neighbours' colours. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -14,11 +15,11 @@
 
 static const char *const label_keys[] = {"value", "name", "color", "opacity", "visible", "tint", NULL};
 
-/* The labels of the volume, found when one is first asked for. */
+/* The labels of the volume, which are found when they are first needed. */
 typedef struct known_labels {
   hl_json_reader *reader;
   const hl_volume *map;
-  char *table; /* owned path; null: none */
+  char *table; /* owned path; null if there is no table */
   bool found;
   hl_label *labels; /* owned */
   size_t count;
@@ -45,7 +46,8 @@ static const hl_label *known_by_name(const known_labels *known, const char *name
   return NULL;
 }
 
-/* Fills what the object leaves to the file: the label's number by its name, its name and colour. */
+/* Fills the properties that the object leaves to the file: the label's number by its name, its name and
+ * colour. */
 static hl_status take_known(known_labels *known, const json_t *object, const char *name, hl_label *label) {
   bool by_name = json_object_get(object, "value") == NULL;
   if (!by_name && json_object_get(object, "color") != NULL) return HL_OK;
@@ -73,13 +75,14 @@ static hl_status read_label(known_labels *known, const json_t *object, hl_label 
   if (status == HL_OK) status = take_known(known, object, name, label);
   if (status == HL_OK && name != NULL) label->name = name;
   if (status == HL_OK) status = hl_json_numbers(reader, object, "color", 3, label->color);
-  if (json_object_get(object, "color") != NULL) label->tint = 1; /* in a mask */
+  /* In a mask, only a label with a colour tints. */
+  if (json_object_get(object, "color") != NULL) label->tint = 1;
   if (status == HL_OK) status = hl_json_number(reader, object, "tint", &label->tint);
   if (status == HL_OK) status = hl_json_number(reader, object, "opacity", &label->opacity);
   return status == HL_OK ? hl_json_flag(reader, object, "visible", &label->visible) : status;
 }
 
-/* Sorts by number; there are few. */
+/* Sorts labels by number. There are few of them. */
 static void sort(hl_label *labels, size_t count) {
   for (size_t n = 1; n < count; n++)
     for (size_t m = n; m > 0 && labels[m - 1].value > labels[m].value; m--) {
@@ -137,7 +140,7 @@ hl_status hl_json_read_label_list(hl_json_reader *reader, const json_t *object, 
     return table == NULL
                ? HL_OK
                : hl_json_fail(reader, HL_ERROR_INPUT, "label_table", "is for labels: give \"labels\"");
-  if (table != NULL && reader->like != NULL) table = NULL; /* no file is opened */
+  if (table != NULL && reader->like != NULL) table = NULL; /* a scene that is read again opens no file */
   known_labels known = {reader, volume->volume, NULL, false, NULL, 0};
   if (table != NULL && (known.table = hl_json_path(reader, table)) == NULL)
     return hl_fail_memory(reader->error, strlen(table) + 1, "a path");

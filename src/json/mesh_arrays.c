@@ -1,4 +1,4 @@
-/* json/mesh_arrays.c - the arrays of a mesh that a scene gives itself. */
+/* json/mesh_arrays.c - the arrays of a mesh whose elements the scene itself lists. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -8,11 +8,11 @@
 const char *const hl_json_mesh_keys[] = {"vertices", "triangles",     "normals", "colors",      "face_colors",
                                          "spheres",  "sphere_colors", "lines",   "line_colors", NULL};
 
-/* Of an array of rows of numbers. */
+/* The properties of an array of rows of numbers. */
 typedef struct row_kind {
-  size_t least, most; /* numbers of a row */
-  double rest;        /* what numbers are that a row lacks */
-  const char *wanted; /* what to give */
+  size_t least, most; /* least and greatest number of numbers in a row */
+  double rest;        /* value of numbers that a row lacks */
+  const char *wanted; /* what to give instead, for errors */
 } row_kind;
 
 /* Reads one row of a member `key` into `to`, which has kind->most places. */
@@ -38,7 +38,8 @@ static hl_status read_rows(hl_json_reader *reader, const json_t *rows, const row
   return status;
 }
 
-/* Reads an array of rows (absent: leaves *to alone). wanted: how many rows there must be; SIZE_MAX: any. */
+/* Reads an array of rows. An absent array leaves *to alone. wanted: the number of rows that the array must
+ * have; SIZE_MAX for any number. */
 static hl_status read_array(hl_json_reader *reader, const json_t *object, const char *key,
                             const row_kind *kind, size_t wanted, size_t *count, void *to) {
   const json_t *rows = json_object_get(object, key);
@@ -84,7 +85,7 @@ static hl_status read_triangles(hl_json_reader *reader, const json_t *object, me
   return status;
 }
 
-/* "lines": an array of lines, which are arrays of points. */
+/* Reads "lines", an array of lines, each of which is an array of points. */
 static hl_status read_lines(hl_json_reader *reader, const json_t *object, const row_kind *kind,
                             mesh_parts *parts) {
   const json_t *lines = json_object_get(object, "lines");

@@ -15,7 +15,8 @@ static bool same_text(const char *a, const char *b) {
   return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
 
-/* The mesh of the scene that `like` names, or of an earlier mesh of this scene; null: none. */
+/* A known mesh with this path: of the scene that `like` names, or an earlier mesh of this scene. Null if
+ * there is none. */
 static hl_mesh *known_mesh(const hl_json_reader *reader, const hl_mesh_shelf *shelf, const char *path) {
   for (size_t m = 0; m < shelf->count; m++)
     if (same_text(shelf->meshes[m].file, path)) return shelf->meshes[m].mesh;
@@ -24,7 +25,7 @@ static hl_mesh *known_mesh(const hl_json_reader *reader, const hl_mesh_shelf *sh
   return NULL;
 }
 
-/* Loads the file, or takes its mesh from those that are known. *mesh then owns path and mesh. */
+/* Loads the file, or takes its mesh from the known meshes. *mesh then owns path and mesh. */
 static hl_status load(hl_json_reader *reader, const hl_mesh_shelf *shelf, char *path, hl_scene_mesh *mesh) {
   hl_mesh *known = known_mesh(reader, shelf, path);
   mesh->file = path;
@@ -48,7 +49,7 @@ static bool has_arrays(const json_t *value) {
   return false;
 }
 
-/* Refuses a mesh of no source, or of more than one. */
+/* Refuses a mesh that has no source, or more than one. */
 static hl_status check_source(hl_json_reader *reader, const json_t *value) {
   bool file = json_object_get(value, "file") != NULL, floor = json_object_get(value, "floor") != NULL;
   int sources = file + floor + has_arrays(value);
@@ -75,7 +76,7 @@ static hl_status read_look(hl_json_reader *reader, const json_t *value, hl_scene
   return status == HL_OK ? hl_json_settings(reader, value, HL_SETTINGS_MESH, 0, mesh) : status;
 }
 
-/* Reads a mesh that is no floor onto the shelf's end. */
+/* Reads a mesh other than a floor to the end of the shelf. */
 static hl_status read_mesh(hl_json_reader *reader, const json_t *value, hl_mesh_shelf *shelf) {
   hl_scene_mesh *mesh = &shelf->meshes[shelf->count];
   const char *file = NULL;
@@ -93,7 +94,7 @@ static hl_status read_mesh(hl_json_reader *reader, const json_t *value, hl_mesh_
   return status;
 }
 
-/* Reads the look of a floor to where it will stand, behind the meshes: `place`. */
+/* Reads the look of a floor to `place`, its future place behind the meshes. */
 static hl_status read_floor(hl_json_reader *reader, const json_t *value, hl_mesh_shelf *shelf, size_t place) {
   double *size = &shelf->floor_sizes[shelf->floor_count++];
   *size = json_is_true(json_object_get(value, "floor")) ? HL_FLOOR_SIZE : 0;

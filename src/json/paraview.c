@@ -4,8 +4,8 @@
 #include "core/memory.h"
 #include "json/foreign_nodes.h"
 
-/* ParaView: one flat array of four numbers per point: value, red, green, blue (ordinates 3), or value,
- * opacity, midpoint, sharpness (ordinates 1). */
+/* Reads one of ParaView's flat arrays of four numbers per point: value, red, green, blue (ordinates 3), or
+ * value, opacity, midpoint, sharpness (ordinates 1). */
 static hl_status read_flat(hl_json_reader *reader, const json_t *map, const char *key, size_t ordinates,
                            hl_foreign_node **nodes, size_t *count) {
   const json_t *value = json_object_get(map, key);

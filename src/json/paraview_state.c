@@ -1,17 +1,17 @@
 /* json/paraview_state.c - the transfer function of the volume that a ParaView state (.pvsm, XML) shows.
  *
- * In: proxies of representations that show volumes, and of what these name: a lookup table with a function of
- * opacity, or a TransferFunction2D with the properties Boxes (x, y, width, height, sRGB, alpha) and Range.
- * Out: colours and opacities, or Halflight's boxes.
+ * In: proxies of representations that show volumes, and the proxies that these representations name. Such a
+ * proxy is a lookup table with a function of opacity, or a TransferFunction2D with the properties Boxes (x,
+ * y, width, height, sRGB, alpha) and Range. Out: colours and opacities, or Halflight's boxes.
  *
- * A proxy with a group is defined where it stands; one without, within a property, is named by its id. Lookup
- * tables and functions of opacity are kept as objects of JSON, in which ParaView writes colour maps with the
- * same names.
+ * A proxy with a group is defined where it stands. A proxy without a group, within a property, names another
+ * proxy by its id. Lookup tables and functions of opacity are kept as objects of JSON, in which ParaView
+ * writes colour maps with the same names.
  *
- * ParaView's boxes are Gaussians that are cut off at their sides (vtkPVTransferFunction2DBox): at a place
- * where the Gaussian is g, opacity is alpha g. Halflight's weights are of extinction, which is
- * -log(1 - alpha g) = sum over k of (alpha g)^k / k: one box per term, as g^k is a Gaussian, too (derived).
- */
+ * ParaView's boxes are Gaussians that are cut off at their sides (vtkPVTransferFunction2DBox): where the
+ * Gaussian has the value g, opacity is alpha g. Halflight's weights are of extinction, which is
+ * -log(1 - alpha g) = sum over k of (alpha g)^k / k: one box per term, as g^k is a Gaussian, too
+ * (derived). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -26,41 +26,43 @@
 #include "volume/xml.h"
 
 enum { BOX_NUMBERS = 8, TERMS = 8, MOST_BOXES = HL_LIMIT_SHAPES / TERMS };
-static const double deviation = 0.3; /* of a Gaussian, of the box's sides */
+static const double deviation = 0.3; /* standard deviation of a Gaussian, as a fraction of the box's sides */
 static const double most_alpha = 0.9999;
 
 enum { ID_BYTES = 24 };
 
-/* What a representation of a volume says. */
+/* The properties of a representation that shows a volume. */
 typedef struct shown_volume {
   bool by_plane;      /* by a function of two numbers */
-  bool by_gradient;   /* whose second number is the gradient's length */
-  bool other_opacity; /* opacity is by another array */
+  bool by_gradient;   /* the function's second number is the gradient's length */
+  bool other_opacity; /* opacity depends on another array */
   double unit;
   char colors[ID_BYTES], opacities[ID_BYTES]; /* ids of the lookup table and of the function of opacity */
 } shown_volume;
 
-/* What is read of a state. */
+/* The content of a state that is read. */
 typedef struct state {
   double boxes[MOST_BOXES * BOX_NUMBERS], range[4];
   size_t box_numbers, range_numbers;
-  size_t functions;       /* of two numbers, with boxes */
-  size_t planes, volumes; /* representations that show a volume by a function of two numbers; by one of one */
-  shown_volume shown;     /* the last of them */
-  json_t *kept; /* owned; by id, of lookup tables and functions of opacity: arrays of numbers by property */
+  size_t functions;       /* number of functions of two numbers with boxes */
+  size_t planes, volumes; /* number of representations that show a volume by a function of two numbers, and by
+                           * a function of one */
+  shown_volume shown;     /* the last of these representations */
+  json_t *kept;           /* owned; by id, the lookup tables and functions of opacity, as arrays of numbers by
+                           * property */
 } state;
 
-/* What is read of the proxy that the tags are in. */
+/* The content of the proxy that the current tags are in. */
 typedef struct proxy {
-  bool is_function;                 /* of two numbers */
-  bool is_representation, is_other; /* other: it shows no volume */
+  bool is_function;                 /* the proxy is a function of two numbers */
+  bool is_representation, is_other; /* is_other: a representation that shows no volume */
   bool is_named_volume, is_visible;
   shown_volume shown;
-  json_t *kept; /* borrowed of the state; null: none */
+  json_t *kept; /* borrowed from the state; null if nothing is kept */
   double range[4];
   size_t box_numbers, range_numbers;
   char property[32];
-  bool in_domain; /* of values that the property may have */
+  bool in_domain; /* the tags list values that the property may have */
 } proxy;
 
 static hl_status refuse(hl_error *error, const char *path, const char *what) {
@@ -72,7 +74,7 @@ static bool is_one_of(const char *name, const char *const names[]) {
   return *names != NULL;
 }
 
-/* Keeps a number of a lookup table's or a function's property. */
+/* Keeps a number of a property of a lookup table or a function. */
 static hl_status keep(proxy *in, double value, hl_error *error) {
   static const char *const names[] = {
       "RGBPoints",   "Points",        "ColorSpace",         "HSVWrap",
@@ -187,13 +189,13 @@ static hl_status read_tags(hl_stream *stream, hl_xml_tag *tag, state *made, hl_e
 
 /* ---- colours and opacities ---- */
 
-/* The first number of a kept property; 0 where it has none. */
+/* The first number of a kept property; 0 if it has none. */
 static double number_of(const json_t *kept, const char *property) {
   return json_number_value(json_array_get(json_object_get(kept, property), 0));
 }
 
-/* Makes a colour map as ParaView writes it of a lookup table and a function of opacity; owned by the caller,
- * null without memory. */
+/* Makes a colour map of a lookup table and a function of opacity, in the form in which ParaView writes colour
+ * maps. The result is owned by the caller; null if memory is short. */
 static json_t *map_of(const json_t *colors, const json_t *opacities) {
   static const char *const spaces[] = {"RGB", "HSV", "Lab", "Diverging", "Lab/CIEDE2000", "Step"};
   double space = number_of(colors, "ColorSpace");
@@ -232,7 +234,7 @@ static hl_status make_map(hl_context *context, const char *path, const state *ma
 
 /* ---- boxes ---- */
 
-/* How a number of the function's range becomes one of the volume's. */
+/* Converts numbers in the function's range to numbers of the volume. */
 typedef struct fit {
   double from[2], factor[2], to[2];
 } fit;
@@ -250,7 +252,7 @@ static fit fit_to(const state *made, const hl_volume *volume) {
   return f;
 }
 
-/* Writes the boxes of one of ParaView's; returns how many. */
+/* Writes the boxes that stand for one of ParaView's. Returns their number. */
 static size_t write_terms(const double numbers[BOX_NUMBERS], const fit *f, hl_function_box *to) {
   double alpha = fmin(fmax(numbers[7], 0), most_alpha), left = -log1p(-alpha), power = 1;
   size_t made = 0;
@@ -293,7 +295,7 @@ static hl_status make_plane(hl_context *context, const char *path, const state *
   return HL_OK;
 }
 
-/* Makes the function of the one volume that is shown. */
+/* Makes the function of the only volume that is shown. */
 static hl_status make_function(hl_context *context, const char *path, const state *made,
                                const hl_volume *volume, hl_transfer_function *function, hl_error *error) {
   if (made->planes + made->volumes == 0 && made->functions > 0)

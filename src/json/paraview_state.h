@@ -4,10 +4,10 @@
 
 #include "json/parts.h"
 
-/* Reads the function of the one volume that the state FILE.pvsm shows: colours and opacities, or boxes
- * (vtkPVTransferFunction2D) as VTK shows them on this volume: it lays the function's range over the values'
- * range and over a quarter of it as lengths of gradients per mean voxel edge. volume null: the boxes' numbers
- * stay as they are in the file. What is made is owned by *function, after a failure too. */
+/* Reads the function of the only volume that the state FILE.pvsm shows: colours and opacities, or boxes
+ * (vtkPVTransferFunction2D). Boxes are fitted to this volume as VTK fits them: their range covers the range
+ * of the values, and a quarter of that range as lengths of gradients per mean voxel edge. volume: if null,
+ * the boxes keep the file's numbers. The content is owned by *function, also after a failure. */
 hl_status hl_paraview_read_state(hl_context *context, const char *path, const hl_volume *volume,
                                  hl_transfer_function *function, hl_error *error);
 

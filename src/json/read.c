@@ -12,12 +12,12 @@
 json_t *hl_json_copy(const json_t *value) {
   json_t *copy = json_copy((json_t *)value);
   if (json_object_size(copy) == json_object_size(value))
-    return copy; /* for lack of memory jansson leaves members out */
+    return copy; /* without memory, jansson leaves members out */
   json_decref(copy);
   return NULL;
 }
 
-/* How to mend text that JSON does not allow but is often written. */
+/* Advice for text that JSON does not allow but that is often written. */
 static const char *mend_of_fault(const char *fault) {
   static const struct {
     const char *near, *mend;
@@ -53,7 +53,7 @@ hl_status hl_json_parse(const char *text, size_t length, const char *name, json_
   if (status != HL_OK) return status;
   *root = hl_plain_json_load(text, length, JSON_REJECT_DUPLICATES, &fault);
   if (*root != NULL) return HL_OK;
-  /* jansson gives neither a reason nor a line where it has no memory for its first buffer */
+  /* jansson gives neither a reason nor a line if it has no memory for its first buffer */
   if (json_error_code(&fault) == json_error_out_of_memory || fault.line < 1)
     return hl_fail_memory(error, length, name);
   return hl_fail_at(error, HL_ERROR_INPUT, fault.line, fault.column, "%s:%d:%d: %s%s", name, fault.line,

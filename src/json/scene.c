@@ -16,7 +16,7 @@
 #include "scene/scene.h"
 #include "scene/settings.h"
 
-/* Everything that reading allocates; released at the end, after a failure too. */
+/* Everything that reading allocates. It is released at the end, also after a failure. */
 typedef struct gathered {
   hl_scene_description description;
   hl_light *lights;         /* owned; [light_count] */
@@ -113,8 +113,8 @@ static hl_status read_camera_members(hl_json_reader *reader, const json_t *value
                          : status;
 }
 
-/* Reads the camera (value null: absent) when the image's size and the volumes are known; without a position
- * it frames the volumes. */
+/* Reads the camera when the image's size and the volumes are known. value: null if the camera is absent. A
+ * camera without a position frames the volumes. */
 static hl_status read_camera(hl_json_reader *reader, const json_t *value, hl_scene_description *d) {
   size_t mark = hl_json_enter(reader, "camera");
   hl_status status = value != NULL ? read_camera_members(reader, value, d) : frame(reader, d, &d->camera);
@@ -181,7 +181,7 @@ static hl_status read_lights(hl_json_reader *reader, const json_t *root, gathere
   return HL_OK;
 }
 
-/* Checks the volumes early: the camera may have to frame them. */
+/* Checks the volumes early, as the camera may have to frame them. */
 static hl_status check_volumes(hl_json_reader *reader, const hl_scene_description *d) {
   for (size_t v = 0; v < d->volume_count; v++) {
     hl_status status = hl_scene_volume_check(&d->volumes[v], v, reader->error);

@@ -6,18 +6,18 @@
 
 #include "json/read.h"
 
-/* The value must be an object whose keys are all in the table or in the null-terminated list `others`. type:
- * of the light or camera, for which only the keys of this type are allowed; -1: keys of every type are. */
+/* Checks that the value is an object whose keys are all in the table or in the null-terminated list `others`.
+ * type: the type of the light or camera, whose keys alone are allowed; -1 to allow the keys of every type. */
 hl_status hl_json_settings_object(hl_json_reader *reader, const json_t *value, hl_setting_kind kind, int type,
                                   const char *const *others);
 
-/* Reads the object `value`, called `key` in errors, into the struct `target`; its keys must be the table's.
- * value null: nothing is read. */
+/* Reads the object `value` into the struct `target`. key: the object's name in errors. The object's keys must
+ * be the table's. If value is null, nothing is read. */
 hl_status hl_json_settings_member(hl_json_reader *reader, const json_t *value, const char *key,
                                   hl_setting_kind kind, void *target);
 
-/* Reads one key of a table, which may be absent, into the struct `target`. `object` is the innermost one: for
- * the key "transform/translate" the object "transform". */
+/* Reads one key of a table, which may be absent, into the struct `target`. object: the innermost object; for
+ * the key "transform/translate" it is the object "transform". */
 hl_status hl_json_setting(hl_json_reader *reader, const json_t *object, hl_setting_kind kind, const char *key,
                           void *target);
 /* Reads all keys of a table that have no "/" and belong to this type of light or camera. */

@@ -18,7 +18,8 @@ enum { DEFAULT_SIZE = 128, MOST_OCTAVES = 16, HIGHEST_N = 8 };
 static const char *const type_names[] = {"box",   "sphere", "cylinder", "capsule", "cone",
                                          "torus", "plane",  "orbital",  "group",   NULL};
 static const char *const operation_names[] = {"add", "subtract", "intersect", NULL};
-static const char *const pattern_names[] = {"noise", "turbulence", NULL}; /* from HL_PATTERN_NOISE on */
+/* The names of patterns, from HL_PATTERN_NOISE on. */
+static const char *const pattern_names[] = {"noise", "turbulence", NULL};
 
 #define PLACEMENT_KEYS "type", "name", "position", "rotate", "scale"
 #define COMMON_KEYS    PLACEMENT_KEYS, "operation", "blend", "hypertexture"
@@ -35,12 +36,12 @@ static const char *const keys_of_type[][16] = {
     [HL_SHAPE_GROUP] = {COMMON_KEYS, "shapes"},
 };
 
-/* A list being read, and the groups that it is inside of. */
+/* A list that is being read, and the groups that contain it. */
 typedef struct reading {
   hl_json_reader *reader;
   const json_t *groups;
   hl_shape_list *list;
-  const char *open[HL_SHAPES_DEEPEST]; /* [depth]; the groups' names, null for one without a name */
+  const char *open[HL_SHAPES_DEEPEST]; /* [depth]; the groups' names, null for a group without a name */
   size_t depth;
   int seed; /* added to every hypertexture's seed */
 } reading;
@@ -345,7 +346,7 @@ static hl_status read_shape(reading *r, const json_t *value, bool first) {
   if (status == HL_OK) status = read_texture(r, json_object_get(value, "hypertexture"), &shape->texture);
   if (status == HL_OK) status = read_form(reader, value, shape);
   bool group = status == HL_OK && shape->type == HL_SHAPE_GROUP;
-  if (group) status = read_members(r, value); /* which may move the list */
+  if (group) status = read_members(r, value); /* reading members may move the list */
   if (status == HL_OK) r->list->shapes[index].end = r->list->count;
   return status;
 }
@@ -378,8 +379,8 @@ hl_status hl_json_check_groups(hl_json_reader *reader, const json_t *groups) {
   return HL_OK;
 }
 
-/* Chooses the edge of voxels: by size, the voxels along the longest side; for size 0 by "voxel_size", or else
- * by DEFAULT_SIZE. */
+/* Chooses the edge of voxels. size: number of voxels along the longest side; for 0 the edge is "voxel_size",
+ * or follows from DEFAULT_SIZE. */
 static hl_status choose_voxel_size(hl_json_reader *reader, const json_t *object, const hl_shape_list *list,
                                    int size, double *voxel_size) {
   double extent = hl_shapes_extent(list), margin = HL_SHAPE_EDGE + 2 * HL_SHAPE_MARGIN;

@@ -61,7 +61,7 @@ hl_status hl_volume_from_shapes(hl_context *context, const char *text, size_t le
 
 /* ---- expanding groups ---- */
 
-/* left: how many shapes the whole list may still have. */
+/* Expands a list. left: the number of shapes that the whole list may still have. */
 static json_t *expand_list(const json_t *shapes, const json_t *groups, int depth, int *left) {
   json_t *expanded = json_array();
   for (size_t n = 0; n < json_array_size(shapes); n++) {
@@ -89,8 +89,8 @@ json_t *hl_json_expand_shapes(const json_t *shapes, const json_t *groups) {
   return expand_list(shapes, groups, 0, &left);
 }
 
-/* True if the text holds all of the tree: without memory, jansson leaves keys out and still reports success.
- */
+/* Whether the text holds all of the tree. If memory is short, jansson leaves keys out and still reports
+ * success. */
 static bool says(const char *text, const json_t *root) {
   json_t *again = text != NULL ? hl_plain_json_load_text(text) : NULL;
   bool same = json_equal(root, again);

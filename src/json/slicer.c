@@ -1,6 +1,6 @@
 /* json/slicer.c - volume properties as 3D Slicer saves them in JSON (.vp.json): opacity by value and by
- * gradient, and colour, of each component of the voxels. The light on the volume is the scene's: shade and
- * lighting are left aside. */
+ * gradient, and colour, of each component of the voxels. Shade and lighting are ignored, as the scene has its
+ * own. */
 #include "json/slicer.h"
 
 #include <stdio.h>
@@ -12,9 +12,10 @@
 #include "volume/text.h"
 #include "volume/volume.h"
 
-enum { MOST_COMPONENTS = 4 }; /* VTK_MAX_VRCOMP */
+enum { MOST_COMPONENTS = 4 }; /* the value of VTK_MAX_VRCOMP */
 
-/* Slicer: [{"x": value, "y": opacity or "color": [r, g, b], "midpoint": .5, "sharpness": 0}, ...] */
+/* Reads points as Slicer writes them: [{"x": value, "y": opacity or "color": [r, g, b], "midpoint": .5,
+ * "sharpness": 0}, ...] */
 static hl_status read_points(hl_json_reader *reader, const json_t *component, const char *key, bool colors,
                              hl_foreign_node **nodes, size_t *count) {
   const json_t *function = json_object_get(component, key), *points = json_object_get(function, "points");
@@ -80,7 +81,7 @@ void hl_slicer_fit_gradient(const hl_volume *volume, hl_transfer_function *funct
   function->gradient_opacity_count = kept;
 }
 
-/* Opacity by gradient, where the preset has some and it changes anything. */
+/* Reads opacity by gradient, if the preset has any and it changes anything. */
 static hl_status read_gradient(hl_json_reader *reader, const json_t *component,
                                hl_transfer_function *function) {
   if (json_is_true(json_object_get(component, "disableGradientOpacity")) ||
@@ -99,8 +100,8 @@ static hl_status refuse_nearest(hl_json_reader *reader, const json_t *properties
                       "interpolationType %s is not supported: set it to linear", text);
 }
 
-/* How many components the volume's file has beside each other, and which of them was read; below 0: several.
- * The volumes of a series are not beside each other, its channels are. */
+/* The number of components that the volume's file has in each voxel, and the component that was read,
+ * negative if several were read. Channels count as components; volumes of a series do not. */
 static size_t components_of(const hl_volume *volume, int *read) {
   const hl_selection *of = &volume->selection;
   bool series = of->times > 1 || of->channels > 1;
@@ -110,8 +111,8 @@ static size_t components_of(const hl_volume *volume, int *read) {
                                    : 1;
 }
 
-/* Finds the functions that are the volume's: those of the component that was read of its file. As in Slicer,
- * voxels of one component take the first. volume: null for none. */
+/* Finds the functions of the component that was read of the volume's file. Voxels with one component take the
+ * first functions, as in Slicer. volume: null if there is none. */
 static hl_status choose_component(hl_json_reader *reader, size_t count, const hl_volume *volume,
                                   size_t *chosen) {
   int read = 0;
@@ -134,7 +135,7 @@ static hl_status choose_component(hl_json_reader *reader, size_t count, const hl
   return HL_OK;
 }
 
-/* Several components count each for itself and in full. */
+/* Refuses components that are mixed: here several components each count in full. */
 static hl_status refuse_mixing(hl_json_reader *reader, const json_t *properties, const json_t *components) {
   if (json_array_size(components) < 2) return HL_OK;
   if (json_is_false(json_object_get(properties, "independentComponents")))

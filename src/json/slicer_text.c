@@ -1,9 +1,9 @@
 /* json/slicer_text.c - volume properties as 3D Slicer writes them in text: a preset of its presets.xml, and
  * its older .vp files.
  *
- * A function is a line "N x y x y ..." or "N x r g b ...", N being how many numbers follow. Where an x is
- * below the one before it, it counts as that one (vtkMRMLVolumePropertyNode). The light on the volume is the
- * scene's: shade and lighting are left aside. */
+ * A function is a line "N x y x y ..." or "N x r g b ...", where N numbers follow. An x that is less than the
+ * x before counts as equal to it (vtkMRMLVolumePropertyNode). Shade and lighting are ignored, as the scene
+ * has its own. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,14 +18,15 @@
 
 enum { MOST_PRESETS = 256, NAME_BYTES = 64 };
 
-/* The three functions of a property, and how it is interpolated. Texts are borrowed. */
+/* The three functions of a property, and its interpolation. Texts are borrowed. */
 typedef struct property {
   const char *interpolation, *opacity, *gradient, *color;
 } property;
 
 /* ---- the functions ---- */
 
-/* Reads the points of a function of so many ordinates. *nodes is owned by the caller. */
+/* Reads the points of a function. Each point has `ordinates` numbers beside x. *nodes is owned by the
+ * caller. */
 static hl_status read_nodes(hl_json_reader *reader, const char *key, const char *text, size_t ordinates,
                             hl_foreign_node **nodes, size_t *count) {
   size_t width = 1 + ordinates, most = HL_FOREIGN_NODES * width + 1;
@@ -89,7 +90,7 @@ static hl_status read_property(hl_json_reader *reader, const property *from, hl_
 
 /* ---- presets.xml ---- */
 
-/* Where the name of a preset begins in PATH.xml:PRESET; null: no name is given. */
+/* The beginning of the preset's name in PATH.xml:PRESET; null if no name is given. */
 static const char *preset_name(const char *path) {
   const char *found = NULL;
   for (const char *at = path; (at = strstr(at, ".xml:")) != NULL; at++) found = at + strlen(".xml:");
@@ -126,7 +127,7 @@ static void remember(preset_list *list, const char *name) {
   list->known[list->count++] = kept;
 }
 
-/* Finds the property of this name, or a file's only one (wanted null). */
+/* Finds the property with the wanted name, or a file's only one if wanted is null. */
 static hl_status find_preset(hl_json_reader *reader, hl_stream *stream, const char *wanted, hl_xml_tag *tag,
                              preset_list *list, hl_transfer_function *function) {
   bool found = false, ended = false;
@@ -162,8 +163,8 @@ static hl_status read_presets(hl_json_reader *reader, hl_stream *stream, const c
 
 /* ---- .vp ---- */
 
-/* Lines: interpolation, shade, diffuse, ambient, specular, its power, opacity, gradient opacity, colour.
- * text: ends with 0; its line ends become 0. */
+/* Reads the lines of a text: interpolation, shade, diffuse, ambient, specular, its power, opacity, gradient
+ * opacity, colour. text: ends with 0; its line ends become 0. */
 static hl_status read_lines(hl_json_reader *reader, char *text, hl_transfer_function *function) {
   enum { LINES = 9 };
   const char *lines[LINES] = {NULL};

@@ -1,9 +1,9 @@
 /* json/transfer_function.c - a transfer function from JSON: points, a colormap, a preset or another file.
  *
- * The function starts as the preset or the file that is named or, where neither a file nor opacity is given,
- * as the automatic one (for shapes: an opaque solid). Points, colormap and unit_distance then replace its
- * own. A file of its own may also be a scene, whose first volume's function is taken, or another program's.
- */
+ * The function starts as the named preset or file. Where neither a file nor opacity is given, it starts as
+ * the automatic function; for shapes that is an opaque solid. Points, colormap and unit_distance then replace
+ * the starting function's own. A function's file may also be a scene, whose first volume's function is taken,
+ * or a file of another program. */
 #include <string.h>
 
 #include "core/door.h"
@@ -57,12 +57,12 @@ static hl_status read_rows(hl_json_reader *reader, const json_t *object, const c
 _Static_assert(sizeof(hl_opacity_point) == 2 * sizeof(double), "opacity points are rows of two numbers");
 _Static_assert(sizeof(hl_color_point) == 4 * sizeof(double), "colour points are rows of four numbers");
 
-/* A solid's density falls from 1 to 0 over HL_SHAPE_EDGE voxels; the default opacity rises over the middle
- * one of them. */
+/* A solid's density falls from 1 to 0 over HL_SHAPE_EDGE voxels. The default opacity rises over the middle
+ * one of these voxels. */
 enum { SOLID_POINTS = 2 };
 static const double solid_begins = 0.375, solid_is_full = 0.625, solid_opacity = 0.95;
 
-/* Makes a solid clear outside, with this opacity inside. */
+/* Makes a solid clear outside, and gives its inside this opacity. */
 static hl_status set_solid_opacity(hl_json_reader *reader, double opacity, hl_transfer_function *function) {
   hl_opacity_point *points = hl_allocate(reader->context, SOLID_POINTS, sizeof *points);
   if (points == NULL)
@@ -75,7 +75,7 @@ static hl_status set_solid_opacity(hl_json_reader *reader, double opacity, hl_tr
   return HL_OK;
 }
 
-/* One colour for all values. */
+/* Reads one colour for all values. */
 static hl_status read_plain_color(hl_json_reader *reader, const json_t *value,
                                   hl_transfer_function *function) {
   hl_color_point *point = hl_allocate_zeroed(reader->context, 1, sizeof *point);
@@ -86,7 +86,7 @@ static hl_status read_plain_color(hl_json_reader *reader, const json_t *value,
   return hl_json_numbers(reader, value, "color", 3, point->color);
 }
 
-/* An opaque solid. Opacity is per voxel edge, so its skin is one voxel thick. */
+/* Makes an opaque solid. Opacity is per voxel edge, so that the solid's skin is one voxel thick. */
 static hl_status read_solid(hl_json_reader *reader, const hl_volume *volume, hl_transfer_function *function) {
   function->unit_distance = mat3_shortest_column(volume->index_to_world.linear);
   return set_solid_opacity(reader, solid_opacity, function);
@@ -141,8 +141,8 @@ static hl_status read_points(hl_json_reader *reader, const json_t *value, bool i
   return status;
 }
 
-/* Spreads the function that `value` starts from over the range that it gives, where it gives one and no
- * colormap, which is spread instead. */
+/* Spreads the starting function over the range that `value` gives, if any. If `value` gives a colormap, the
+ * colormap is spread instead. */
 static hl_status spread_start(hl_json_reader *reader, const json_t *value, const hl_volume *volume,
                               const hl_json_range *range, hl_transfer_function *function) {
   double old[2];
@@ -178,7 +178,7 @@ static hl_status read_colormap(hl_json_reader *reader, const json_t *value, cons
   return status;
 }
 
-/* Takes the automatic opacity, for files that have colours only. */
+/* Takes the automatic opacity, for files that have only colours. */
 static hl_status take_automatic_opacity(hl_json_reader *reader, const hl_volume *volume,
                                         hl_transfer_function *function) {
   hl_transfer_function automatic;
@@ -191,8 +191,8 @@ static hl_status take_automatic_opacity(hl_json_reader *reader, const hl_volume 
   return HL_OK;
 }
 
-/* Reads the function that `value` starts from: a preset, a file or the automatic one. Points, colormap and
- * unit_distance then change it. */
+/* Reads the function that `value` starts from: a preset, a file or the automatic function. Points, colormap
+ * and unit_distance change it later. */
 static hl_status read_start(hl_json_reader *reader, const json_t *value, hl_function_subject subject,
                             hl_transfer_function *function) {
   const hl_volume *volume = subject.volume;
@@ -233,7 +233,7 @@ static hl_status read_start(hl_json_reader *reader, const json_t *value, hl_func
   return status;
 }
 
-/* Shapes in the plane of two numbers need a second one. */
+/* Refuses shapes in the plane of two numbers without a second number. */
 static hl_status refuse_shapes(hl_json_reader *reader, const json_t *value) {
   for (const char *const *key = (const char *const[]){"boxes", "polygons", "image", NULL}; *key != NULL;
        key++)
@@ -276,14 +276,15 @@ hl_status hl_json_read_transfer_function(hl_json_reader *reader, const json_t *v
     return status;
   }
   size_t mark = subject.volume != NULL ? hl_json_enter(reader, "transfer_function")
-                                       : 0; /* in a file of its own the function is the root */
+                                       : 0; /* in a file that holds only a function, the function is the
+                                             * root */
   hl_status status = read_members(reader, value, subject, function);
   if (status == HL_OK) hl_json_leave(reader, mark);
   return status;
 }
 
-/* The transfer function of a scene's first volume; refused where it depends on the voxels, which are not read
- * here. */
+/* Reads the transfer function of a scene's first volume. Refuses a function that depends on the voxels, which
+ * are not read here. */
 static hl_status read_of_scene(hl_json_reader *reader, const json_t *root, hl_transfer_function *function) {
   const json_t *volume = json_array_get(json_object_get(root, "volumes"), 0);
   const json_t *value = json_object_get(volume, "transfer_function");
@@ -304,7 +305,7 @@ static hl_status read_any(hl_json_reader *reader, const json_t *root, const hl_v
   return hl_json_read_transfer_function(reader, root, (hl_function_subject){.volume = NULL}, function);
 }
 
-/* Reads a JSON text. *by_voxel: its lengths of gradients are per voxel edge. */
+/* Reads a JSON text. *by_voxel: whether its lengths of gradients are per voxel edge. */
 static hl_status load_json(hl_json_reader *reader, const char *path, const hl_volume *volume, bool *by_voxel,
                            hl_transfer_function *function) {
   unsigned char *bytes = NULL;

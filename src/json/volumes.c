@@ -11,7 +11,7 @@
 #include "scene/scene.h"
 #include "volume/volume.h"
 
-#define DATA_PREFIX "data:" /* begins the names of files in the context's data folder */
+#define DATA_PREFIX "data:" /* begins the names of files that lie in the context's data folder */
 
 static const char *const volume_keys[] = {"name",        "stand_in",
                                           "file",        "shapes",
@@ -31,7 +31,7 @@ static const char *const volume_keys[] = {"name",        "stand_in",
 
 #define GIVE_COMPONENT "give a number from 0 on, \"magnitude\", \"color\" or \"luminance\""
 
-/* How a file is read. */
+/* The keys that say how a file is read. */
 static const char *const of_file[] = {"array", "component", "time", "channel", "level", "series", "spacing"};
 
 static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_setting_kind kind,
@@ -46,7 +46,7 @@ static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_set
   return status;
 }
 
-/* One factor; of a volume also three, along the axes of its own file. */
+/* Reads one factor. A volume may also have three factors, along the axes of its own file. */
 static hl_status read_scale(hl_json_reader *reader, const json_t *value, hl_setting_kind kind, void *target) {
   const json_t *scale = json_object_get(value, "scale");
   bool three = kind == HL_SETTINGS_VOLUME;
@@ -102,8 +102,8 @@ static bool same_text(const char *a, const char *b) {
   return a == NULL || b == NULL ? a == b : strcmp(a, b) == 0;
 }
 
-/* The volume that was already read from this source; null: none. options: how a file is read; null: the
- * source is a text of shapes. */
+/* The volume that was already read from this source; null if there is none. options: the options of reading a
+ * file; null if the source is a text of shapes. */
 static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const char *source,
                                            const hl_volume_load_options *options) {
   for (size_t v = 0; v < shelf->count; v++) {
@@ -168,7 +168,7 @@ hl_status hl_json_shelve_known(hl_json_reader *reader, hl_volume_shelf *shelf) {
   return HL_OK;
 }
 
-/* An index, or a word. */
+/* Reads an index or a word. */
 static hl_status read_component(hl_json_reader *reader, const json_t *value, int *component) {
   const json_t *given = json_object_get(value, "component");
   if (given == NULL) return HL_OK;
@@ -212,7 +212,7 @@ static hl_status read_load_options(hl_json_reader *reader, const json_t *value,
 static bool is_data(const char *file) { return strncmp(file, DATA_PREFIX, strlen(DATA_PREFIX)) == 0; }
 
 /* The path of a file that the scene names: in the data folder for "data:...", else relative to the scene's
- * folder. Owned by the caller (hl_release); null without memory. */
+ * folder. Owned by the caller (hl_release); null if memory is short. */
 char *hl_json_path(const hl_json_reader *reader, const char *file) {
   bool data = is_data(file);
   return hl_path_join(reader->context, data ? reader->context->options.data_folder : reader->folder,
@@ -265,8 +265,8 @@ static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_
   return HL_OK;
 }
 
-/* Makes the volume of shapes, or takes it from the shelf if the same shapes with the same voxel size were
- * made before. */
+/* Makes a volume of shapes. If the same shapes were made before with the same voxel size, takes that volume
+ * from the shelf. */
 static hl_status read_shapes(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
                              hl_scene_volume *volume) {
   const json_t *shapes = json_object_get(value, "shapes");
@@ -317,7 +317,7 @@ static hl_status read_source(hl_json_reader *reader, const json_t *value, hl_vol
   return status == HL_OK ? load(reader, file, &options, shelf, volume) : status;
 }
 
-/* The key "mask": a label map with its labels, "rest" and the keys of its file. Its labels are owned by
+/* Reads the key "mask": a label map with its labels, "rest" and the keys of its file. Its labels are owned by
  * *volume (hl_labels_release). */
 static hl_status read_mask(hl_json_reader *reader, const json_t *value, hl_volume_shelf *shelf,
                            hl_scene_volume *volume) {
@@ -347,7 +347,8 @@ static bool is_solid(const hl_scene_volume *volume) {
   return volume->shapes != NULL && volume->volume->storage != HL_STORAGE_F32;
 }
 
-/* Where neither shading nor a transfer function is given, shades what looks like smoke as a medium. */
+/* Chooses the shading where neither shading nor a transfer function is given: volumes that look like smoke
+ * are shaded as media. */
 static hl_status choose_shading(hl_json_reader *reader, const json_t *value, hl_scene_volume *volume) {
   if (json_object_get(value, "shading") != NULL || json_object_get(value, "transfer_function") != NULL ||
       volume->shapes != NULL)
@@ -359,7 +360,7 @@ static hl_status choose_shading(hl_json_reader *reader, const json_t *value, hl_
   return HL_OK;
 }
 
-/* Whether there is the file, or, where no file is opened, a volume of this name in the open scene. */
+/* Whether the file exists. Where no file is opened: whether the open scene has a volume with this name. */
 static bool is_there(const hl_json_reader *reader, const char *file) {
   if (is_data(file) && reader->context->options.data_folder == NULL) return false;
   char *path = hl_json_path(reader, file);
@@ -371,14 +372,15 @@ static bool is_there(const hl_json_reader *reader, const char *file) {
   return there;
 }
 
-/* Where the volume's file is absent, replaces *value by a copy with the keys of its stand-in, which the shelf
- * owns. */
+/* Where the volume's file is absent, replaces *value by a copy with the keys of its stand-in. The shelf owns
+ * the copy. */
 static hl_status choose_stand_in(hl_json_reader *reader, const json_t **value, hl_volume_shelf *shelf) {
   const json_t *stand_in = json_object_get(*value, "stand_in");
   const char *file = NULL;
   if (stand_in == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "stand_in");
-  hl_status status = hl_json_object(reader, stand_in, volume_keys + 2); /* it has no name and no stand-in */
+  /* A stand-in has no name and no stand-in of its own. */
+  hl_status status = hl_json_object(reader, stand_in, volume_keys + 2);
   if (status != HL_OK) return status;
   hl_json_leave(reader, mark);
   if ((status = hl_json_text(reader, *value, "file", &file)) != HL_OK) return status;

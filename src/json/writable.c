@@ -11,7 +11,7 @@
 
 static bool is_utf8(const char *text) {
   if (text == NULL) return true;
-  json_t *string = json_string(text); /* null if it is not UTF-8 */
+  json_t *string = json_string(text); /* null if the text is not UTF-8 */
   bool good = string != NULL;
   json_decref(string);
   return good;
@@ -47,14 +47,14 @@ static hl_status check_volume(const hl_scene_volume *volume, size_t index, hl_er
                  index);
 }
 
-/* Numbers that a mesh is made of. */
+/* The number of numbers that describe a mesh. */
 static size_t numbers_of(const hl_mesh *mesh) {
   const hl_mesh_description *d = &mesh->description;
   return 3 * mesh->given_vertices + 3 * mesh->given_triangles + 4 * d->sphere_count + 4 * d->line_point_count;
 }
 
 static hl_status check_mesh(const hl_scene_mesh *mesh, size_t index, hl_error *error) {
-  enum { MOST_NUMBERS = 300000 }; /* a text of some megabytes */
+  enum { MOST_NUMBERS = 300000 }; /* a text with more numbers would have several megabytes */
   if (mesh->file == NULL && numbers_of(mesh->mesh) > MOST_NUMBERS)
     return hl_fail(
         error, HL_ERROR_ARGUMENT,
@@ -66,7 +66,7 @@ static hl_status check_mesh(const hl_scene_mesh *mesh, size_t index, hl_error *e
                  "/meshes/%zu: name or file is not UTF-8, as JSON texts must be: rename it", index);
 }
 
-/* place: the object that names the image, "/lights/0/texture". */
+/* Checks that an image has a file. place: the object that names the image, such as "/lights/0/texture". */
 static hl_status check_image(const float *pixels, const char *file, const char *place, hl_error *error) {
   if (pixels == NULL) return HL_OK;
   if (file == NULL)

@@ -29,8 +29,9 @@ typedef struct writer {
   char *text;
   size_t length, capacity;
   int depth;
-  const char *beside; /* the folder that names of files start in (file_names.h); null: names stay */
-  bool first;         /* no member or element yet at this depth */
+  const char *beside; /* the folder in which file names start (file_names.h); null if names stay as they
+                       * are */
+  bool first;         /* whether there is no member or element yet at this depth */
   bool failed;
 } writer;
 
@@ -49,7 +50,7 @@ static void put(writer *w, const char *text, size_t length) {
 
 static void put_text(writer *w, const char *text) { put(w, text, strlen(text)); }
 
-/* Comma if needed, new line, indentation, and the key if there is one. */
+/* Writes a comma if needed, a new line, the indentation, and the key if there is one. */
 static void begin_item(writer *w, const char *key) {
   put_text(w, w->first ? "\n" : ",\n");
   w->first = false;
@@ -141,7 +142,7 @@ static void write_key(writer *w, hl_setting_kind kind, const char *key, const vo
   write_setting(w, hl_setting_find(kind, key), object);
 }
 
-/* Writes a setting, unless objects of this type do not have it or it is optional and has its default. */
+/* Writes a setting, unless objects of this type do not have it, or it is optional and has its default. */
 static void write_if_told(writer *w, const hl_setting *setting, int type, const void *object) {
   if (!hl_setting_is_for(setting, type)) return;
   if (!setting->optional || !hl_setting_is_standard(setting, object)) write_setting(w, setting, object);
@@ -283,7 +284,7 @@ static void write_transfer_function(writer *w, const hl_transfer_function *funct
   close_bracket(w, "}");
 }
 
-/* The rotation and the translation of a volume or a mesh. */
+/* Writes the rotation and the translation of a volume or a mesh. */
 static void write_rotation(writer *w, hl_setting_kind kind, const void *object) {
   open_bracket(w, "rotate", "{");
   write_key(w, kind, "transform/rotate/axis", object);
@@ -354,7 +355,7 @@ static void write_shapes(writer *w, const char *text) {
   json_decref(root);
 }
 
-/* Writes the file, and the options for loading it that are not the default. */
+/* Writes the file, and the options of loading that differ from the default. */
 static void write_source(writer *w, const hl_scene_volume *volume) {
   write_file(w, volume->file);
   if (volume->series != NULL) write_name(w, "series", volume->series);
@@ -406,7 +407,7 @@ static void write_scattering(writer *w, const hl_scene_volume *volume) {
   close_bracket(w, "}");
 }
 
-/* masks: the labels are those of a mask, which tint. */
+/* Writes labels. masks: whether the labels belong to a mask, and tint. */
 static void write_labels(writer *w, const hl_label *labels, size_t count, bool masks) {
   open_bracket(w, "labels", "[");
   for (size_t n = 0; n < count; n++) {
@@ -466,7 +467,7 @@ static void put_float(writer *w, float number) {
   put_text(w, text);
 }
 
-/* Rows of floats, all on one line; null: nothing is written. */
+/* Writes rows of floats on one line. If the rows are null, nothing is written. */
 static void write_floats(writer *w, const char *key, const float *rows, size_t count, size_t width) {
   if (rows == NULL || count == 0) return;
   begin_item(w, key);
@@ -497,7 +498,7 @@ static void write_lines(writer *w, const hl_mesh_description *d) {
   close_bracket(w, "]");
 }
 
-/* Writes the arrays that the mesh was made of; its tubes follow from its lines. */
+/* Writes the arrays of which the mesh was made. Tubes are left out, as they follow from lines. */
 static void write_arrays(writer *w, const hl_mesh *mesh) {
   const hl_mesh_description *d = &mesh->description;
   if (mesh->given_triangles > 0) {

@@ -1,10 +1,10 @@
-/* reference/clip_faces.c - the faces of a volume's box, at the grid's border or at a clip, which cut its
- * matter. */
+/* reference/clip_faces.c - the faces of a volume's box that cut its matter, at the grid's border or at a
+ * clip. */
 #include <math.h>
 
 #include "reference/reference.h"
 
-static const double TOUCHING = 1e-3; /* voxels */
+static const double TOUCHING = 1e-3; /* distance in voxels up to which faces touch */
 
 /* The bounds of another volume's box in this one's index space. */
 static void bounds_of(const hl_scene_volume *other, affine3 world_to_index, double low[3], double high[3]) {
@@ -19,7 +19,7 @@ static void bounds_of(const hl_scene_volume *other, affine3 world_to_index, doub
   }
 }
 
-/* Leaves out the faces that touch the other volume, which goes on there. */
+/* Leaves out the faces that touch the other volume's box, beyond which matter goes on. */
 static void join(const hl_scene_volume *other, reference_volume *volume) {
   double low[3], high[3];
   bounds_of(other, volume->world_to_index, low, high);

@@ -1,15 +1,15 @@
-/* reference/cuts.c - what cuts leave of a volume or a mesh, asked in the world that the cut is given in: that
- * of the volume's file, or the scene's.
+/* reference/cuts.c - whether points of a volume or a mesh are left by cuts. A cut is given in the world of
+ * the volume's file, or in the scene's world, and points are tested there.
  *
- * Each cut has a height over its face, in that world's units: above 0 outside of its shape. */
+ * A point's height over a cut's face, in that world's units, is above 0 outside of the cut's shape. */
 #include "reference/reference.h"
 
 typedef struct height {
-  double over; /* the face */
-  vec3 rise;   /* its gradient, a unit vector of the file's world */
+  double over; /* height over the face */
+  vec3 rise;   /* the height's gradient, a unit vector of the file's world */
 } height;
 
-/* Index space to the world that a cut is given in. */
+/* Maps index space to the world in which a cut is given. */
 static affine3 world_of(const reference_volume *volume, const hl_cut *cut) {
   return cut->world ? volume->index_to_world : volume->grid->index_to_world;
 }
@@ -54,7 +54,7 @@ bool hl_reference_mesh_left(const hl_scene_description *scene, const hl_scene_me
   return true;
 }
 
-/* The lesser of `next` and a crossing, where that comes after `after`. */
+/* The lesser of `next` and a crossing, if the crossing comes after `after`. */
 static double sooner(double crossing, double after, double next) {
   return crossing > after && crossing < next ? crossing : next;
 }
@@ -67,7 +67,7 @@ static double next_of_cut(const hl_cut *cut, vec3 o, vec3 d, double after) {
     return speed == 0 ? next
                       : sooner(vec3_dot(normal, vec3_subtract(vec3_of(cut->point), o)) / speed, after, next);
   }
-  if (cut->type == HL_CUT_SPHERE) { /* the roots of a t^2 + 2 b t + c */
+  if (cut->type == HL_CUT_SPHERE) { /* the crossings are the roots of a t^2 + 2 b t + c */
     vec3 from = vec3_subtract(o, vec3_of(cut->center));
     double a = vec3_dot(d, d), b = vec3_dot(from, d), c = vec3_dot(from, from) - cut->radius * cut->radius;
     if (!(b * b > a * c)) return next;
@@ -91,7 +91,7 @@ double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 
   return next;
 }
 
-/* Heights h rise in the world by |(M^-1)^T grad h|, M the placement. */
+/* The normal of a cut's face. With the placement M, a height h rises in the world by |(M^-1)^T grad h|. */
 vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point) {
   const hl_scene_volume *described = volume->described;
   vec3 face = {0, 0, 0};
@@ -107,8 +107,8 @@ vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point) {
   return face;
 }
 
-/* The way from a point that is left to where a ray meets what the cuts remove. A box's faces are planes
- * without an end to hl_reference_next_face(). direction: a unit vector of the world, by index coordinates. */
+/* The length from a point that is left to where a ray meets removed matter. hl_reference_next_face() treats a
+ * box's faces as endless planes. direction: a unit vector of the world, by index coordinates. */
 static double way_to_removed(const reference_volume *volume, vec3 point, vec3 direction) {
   const double beyond = 1e-4 * volume->smallest_edge;
   double way = 0;
@@ -117,11 +117,11 @@ static double way_to_removed(const reference_volume *volume, vec3 point, vec3 di
   return way;
 }
 
-/* A point is seen through a face where the ray to the eye crosses the face first of all, and matter is
- * visible there. */
+/* A point is seen through a face if the ray from it to the eye crosses the face before any other, and matter
+ * is visible there. */
 double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
                              double *surface) {
-  static const double FACE_VOXELS = 2; /* points as far behind a face are lit as usual */
+  static const double FACE_VOXELS = 2; /* points farther behind a face are lit as usual */
   const hl_scene_volume *described = volume->described;
   if (described->cut_shading == HL_CUT_SHADING_GRADIENT) return 0;
   const vec3 along = mat3_apply(volume->world_to_index.linear, to_eye);

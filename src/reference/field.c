@@ -14,7 +14,7 @@
 typedef struct taps {
   size_t voxel[3][4];
   double weight[3][4];
-  double slope[3][4]; /* derivative of weight by the point's coordinate */
+  double slope[3][4]; /* derivative of the weights by the point's coordinate */
 } taps;
 
 static inline double stored_at(const reference_volume *volume, hl_storage storage, const void *row,
@@ -51,7 +51,8 @@ static void bspline_slope(double t, double slope[4]) {
   slope[3] = t * t / 2;
 }
 
-/* exp(-2 d^2) for |d| < 2, divided by the sum over the four taps so that a constant stays constant. */
+/* The Gaussian exp(-2 d^2) for |d| < 2, divided by the sum over the four taps so that a constant stays
+ * constant. */
 static void gaussian(double t, double weight[4]) {
   double sum = 0;
   for (int tap = 0; tap < 4; tap++) {
@@ -61,7 +62,8 @@ static void gaussian(double t, double weight[4]) {
   }
   for (int tap = 0; tap < 4; tap++) weight[tap] /= sum;
 }
-/* With w = g/S and g' = -4 d g: w' = (g' - w S') / S, and g/S is w again. */
+/* The derivative of the Gaussian's weights. With w = g/S and g' = -4 d g: w' = (g' - w S') / S, and g/S is w
+ * again. */
 static void gaussian_slope(double t, const double weight[4], double slope[4]) {
   double sum = 0;
   for (int tap = 0; tap < 4; tap++) sum += slope[tap] = -4 * (t + 1 - tap) * weight[tap];
@@ -83,7 +85,7 @@ static inline size_t clamp_voxel(int64_t voxel, int64_t last) {
   return (size_t)(voxel < 0 ? 0 : voxel > last ? last : voxel);
 }
 
-/* slopes: whether to fill found->slope. */
+/* Finds the taps of a point. slopes: whether to set found->slope. */
 static inline void find_taps(const reference_volume *volume, vec3 point, bool slopes, taps *found) {
   const double p[3] = {point.x, point.y, point.z};
   for (int axis = 0; axis < 3; axis++) {
@@ -110,7 +112,7 @@ static inline void find_taps(const reference_volume *volume, vec3 point, bool sl
   }
 }
 
-/* The sum over 64 voxels, weighted by one weight per tap and axis; storage is a constant at every call. */
+/* The sum over 64 voxels with one weight per tap and axis. storage: a constant at every call. */
 static inline double weigh_stored(const reference_volume *volume, hl_storage storage,
                                   const size_t voxel[3][4], const double *x, const double *y,
                                   const double *z) {
@@ -149,7 +151,7 @@ static double weigh(const reference_volume *volume, const taps *at, const double
   }
 }
 
-/* The interpolating kernel overshoots; what leaves the volume's range counts as the range's end. */
+/* Limits a value to the volume's range, beyond which the interpolating kernel overshoots. */
 static double in_range(const reference_volume *volume, double value) {
   return volume->coefficients == NULL ? value : fmin(fmax(value, volume->least), volume->greatest);
 }
@@ -195,8 +197,8 @@ enum { BRICK_CELLS = 4, FARTHEST = 255 };
 
 static size_t least(size_t a, size_t b) { return a < b ? a : b; }
 
-/* The voxels along an axis of n voxels that samples in brick `brick` (b) depend on: floor(p) from 4b-1 to
- * 4b+2, with taps from one voxel before to two after. */
+/* Finds the voxels along an axis of n voxels on which samples in a brick (number b) depend: floor(p) goes
+ * from 4b-1 to 4b+2, with taps from one voxel before to two after. */
 static void brick_voxels(size_t brick, size_t n, size_t *first, size_t *last) {
   size_t corner = BRICK_CELLS * brick;
   *first = least(corner < 2 ? 0 : corner - 2, n - 1);
@@ -231,7 +233,7 @@ static bool brick_visible(const reference_volume *volume, size_t i, size_t j, si
          holds_iso(volume->described, fmin(a, b), fmax(a, b));
 }
 
-/* Fills one layer of bricks per call. */
+/* Marks the visible bricks of layer k. */
 static void mark_visible(void *data, size_t k, int worker) {
   (void)worker;
   const reference_volume *volume = data;
@@ -240,9 +242,9 @@ static void mark_visible(void *data, size_t k, int worker) {
     for (size_t i = 0; i < volume->bricks[0]; i++) *out++ = brick_visible(volume, i, j, k) ? 0 : FARTHEST;
 }
 
-/* Lowers brick (i, j, k) to one more than the least of its neighbours on one side: those that come before
- * it in memory order (side -1) or after it (+1). Two such sweeps, one each way, give the exact chessboard
- * distance (Rosenfeld and Pfaltz, "Distance functions on digital pictures", 1968). */
+/* Lowers brick (i, j, k) to one more than the least of its neighbours on one side: the neighbours that come
+ * before it in memory order (side -1) or after it (+1). Two such sweeps, one each way, give the exact
+ * chessboard distance (Rosenfeld and Pfaltz, "Distance functions on digital pictures", 1968). */
 static void relax_brick(const reference_volume *volume, ptrdiff_t i, ptrdiff_t j, ptrdiff_t k, int side) {
   const ptrdiff_t n[3] = {(ptrdiff_t)volume->bricks[0], (ptrdiff_t)volume->bricks[1],
                           (ptrdiff_t)volume->bricks[2]};
@@ -273,7 +275,7 @@ static hl_status create_bricks(hl_context *context, reference_volume *volume, hl
                                hl_error *error) {
   size_t count = 1;
   for (int axis = 0; axis < 3; axis++) {
-    /* cells 0 .. n: floor(p) from -1 to n-1 */
+    /* cells 0 .. n stand for floor(p) from -1 to n-1 */
     volume->bricks[axis] = volume->grid->dimension[axis] / BRICK_CELLS + 1;
     count *= volume->bricks[axis];
   }
@@ -350,8 +352,7 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
   made->empty_value = hl_scene_volume_empty_value(described);
   made->empty_stored = grid->value_scale != 0 ? (made->empty_value - grid->value_offset) / grid->value_scale
                                               : 0;
-  /* Where no value is transparent, the empty value lies below all values and means that there is no
-   * matter. */
+  /* If no value is transparent, the empty value lies below all values and means that there is no matter. */
   bool opaque_everywhere = hl_transfer_function_opacity(&described->transfer_function, made->empty_value) > 0;
   made->transparent_below = opaque_everywhere ? (made->empty_value + grid->minimum) / 2 : -INFINITY;
   if (made->kernel == HL_KERNEL_INTERPOLATING) {

@@ -1,10 +1,10 @@
-/* reference/isosurfaces.c - where rays meet surfaces on which a volume has one value: roots of the kernel's
- * field along the ray, and the faces at which the volume's box and its cuts end what is inside. */
+/* reference/isosurfaces.c - where rays meet isosurfaces. A ray meets the surface at roots of the kernel's
+ * field along the ray, and at the faces of the volume's box and cuts where they end the surface's inside. */
 #include "reference/reference.h"
 
 /* A stretch of a ray in which the field passes from one side of the value to the other. */
 typedef struct bracket {
-  double from, to; /* distances */
+  double from, to; /* distances along the ray */
   bool rises;
 } bracket;
 
@@ -23,7 +23,7 @@ static double bisect(const crossing *part, double value, bracket b) {
   return (b.from + b.to) / 2;
 }
 
-/* The first root of any of the volume's values between two distances, where the field is a and b. */
+/* The first root of any of the volume's values between two distances, at which the field is a and b. */
 static void find_roots(const crossing *part, double from, double to, double a, double b, reference_hit *hit) {
   const hl_scene_volume *described = part->volume->described;
   for (size_t i = 0; i < described->iso_count; i++) {
@@ -39,7 +39,7 @@ static void find_roots(const crossing *part, double from, double to, double a, d
   }
 }
 
-/* Walks along the ray in steps, jumping over bricks without the values. */
+/* Walks along the ray in steps, and jumps over bricks that cannot hold the values. */
 static void meet_volume(const reference *all, const crossing *part, reference_hit *hit) {
   double at = part->enter, before = value_at(part, at);
   while (at < part->leave && at < hit->distance) {
@@ -61,8 +61,8 @@ static bool is_there(const crossing *part, double distance) {
   return hl_reference_left(part->volume, here);
 }
 
-/* The outward normal, in the world, of the box's face nearest to a point of it; 0 where another volume goes
- * on. */
+/* The outward normal, in the world, of the box's face nearest to a point of the face; 0 where another volume
+ * goes on. */
 static vec3 normal_of_box(const reference_volume *volume, vec3 point) {
   const double at[3] = {point.x, point.y, point.z};
   double least = INFINITY;
@@ -79,7 +79,8 @@ static vec3 normal_of_box(const reference_volume *volume, vec3 point) {
   return normal;
 }
 
-/* A face is met where the ray crosses from what is there to what is not, within a surface's inside. */
+/* Notes a hit of a face, if the ray crosses there from matter that is left to matter that is removed, within
+ * a surface's inside. */
 static void meet_face(const reference *all, const crossing *part, double at, vec3 normal,
                       reference_hit *hit) {
   const hl_scene_volume *described = part->volume->described;
@@ -94,7 +95,7 @@ static void meet_face(const reference *all, const crossing *part, double at, vec
                              .opacity = described->iso[i].opacity};
 }
 
-/* part: from `first` on, and to `last`, clipped to the box. */
+/* Looks for faces along the ray. part: the ray from `first` to `last`, clipped to the box. */
 static void meet_faces(const reference *all, const crossing *part, double first, double last,
                        reference_hit *hit) {
   const vec3 enters = vec3_add(part->origin, vec3_scale(part->direction, part->enter)),

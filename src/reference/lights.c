@@ -41,7 +41,7 @@ static double neighbours(double place, int count, size_t pixel[2]) {
   return at - (double)pixel[0];
 }
 
-/* The image's colour at s to the right and t upwards, each from -1 to 1. */
+/* The image's colour at s along right and t along up, each from -1 to 1. */
 static void look_up(const float *pixels, int width, int height, double s, double t, double color[3]) {
   size_t column[2], row[2];
   double x = neighbours((1 + s) / 2 * width, width, column),
@@ -94,7 +94,8 @@ static vec3 point_of_disk(vec3 centre, vec3 normal, double radius, size_t i, siz
   return vec3_add(centre, vec3_add(vec3_scale(u_axis, radius * u), vec3_scale(v_axis, radius * v)));
 }
 
-/* One point in each of n strips along the first edge, golden sections apart along the second. */
+/* Fills the points of a rectangle: one point in each of n strips along the first edge, golden sections apart
+ * along the second. */
 static void fill_rect(const hl_light *light, vec3 centre, size_t n, vec3 *points) {
   vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
   for (size_t i = 0; i < n; i++) {
@@ -103,8 +104,8 @@ static void fill_rect(const hl_light *light, vec3 centre, size_t n, vec3 *points
   }
 }
 
-/* Whether a point of the polygon's plane is inside: a ray from the point along u then crosses an odd number
- * of edges. */
+/* Whether a point of the polygon's plane is inside the polygon: a ray from the point along u then crosses an
+ * odd number of edges. */
 static bool inside_polygon(const hl_light *light, vec3 point, vec3 u_axis, vec3 v_axis) {
   bool inside = false;
   for (size_t i = 0; i < light->vertex_count; i++) {
@@ -118,9 +119,9 @@ static bool inside_polygon(const hl_light *light, vec3 point, vec3 u_axis, vec3 
   return inside;
 }
 
-/* Roberts's sequence (by the powers of the plastic number), spread evenly over the rectangle around the
- * polygon; the points inside the polygon are kept. The rectangle has a side along the polygon's longest
- * edge. */
+/* Fills the points of a polygon. Roberts's sequence (powers of the plastic number) spreads points evenly over
+ * a rectangle around the polygon; the points inside the polygon are kept. The rectangle has a side along the
+ * polygon's longest edge. */
 static void fill_polygon(const hl_light *light, size_t n, vec3 *points) {
   const double plastic = 1.32471795724474602596;
   polygon_shape shape = hl_polygon_shape(light->vertices, light->vertex_count);
@@ -155,7 +156,8 @@ static void fill_points(reference_light *light) {
   size_t n = light->point_count;
   if (n == 1) {
     light->points[0] = light->directional ? light->towards : light->centre;
-  } else if (light->directional) { /* a flat disk at unit distance, each of its points a direction */
+    /* The light is a flat disk at unit distance, each of whose points stands for a direction. */
+  } else if (light->directional) {
     double radius = tan(described->angular_diameter_deg * HL_PI / 360);
     for (size_t i = 0; i < n; i++)
       light->points[i] = vec3_normalise(point_of_disk(light->towards, light->towards, radius, i, n));
@@ -182,7 +184,7 @@ static bool has_extent(const hl_light *light) {
   return light->radius > 0;
 }
 
-/* The offset of a light's point from its centre; for a directional light, at distance 1. */
+/* The offset of a light's point from the light's centre; for a directional light, at distance 1. */
 static vec3 offset_of(const reference_light *light, vec3 light_point) {
   if (!light->directional) return vec3_subtract(light_point, light->centre);
   vec3 at_distance_1 = vec3_scale(light_point, 1 / vec3_dot(light_point, light->towards));
@@ -191,7 +193,7 @@ static vec3 offset_of(const reference_light *light, vec3 light_point) {
 
 enum { MEAN_POINTS = 1 << 14 };
 
-/* The image's mean over the light; a light that counts as a point shines in this colour. */
+/* Finds the image's mean over the light. A light that counts as a point shines in this colour. */
 static hl_status find_mean(hl_context *context, reference_light *light, hl_error *error) {
   reference_light dense = *light;
   vec3 facing = light->directional ? vec3_scale(light->towards, -1) : (vec3){0, 0, 1};
@@ -213,7 +215,8 @@ static hl_status find_mean(hl_context *context, reference_light *light, hl_error
   return HL_OK;
 }
 
-/* The points over which the phase function is averaged; a sphere's are computed for every sample. */
+/* Fills the points over which the phase function is averaged. A sphere's points are computed for every
+ * sample. */
 static hl_status fill_extent(hl_context *context, reference_light *light, hl_error *error) {
   if (light->directional || !has_extent(light->described)) return HL_OK;
   reference_light dense = *light;
@@ -254,10 +257,10 @@ hl_status hl_reference_light_create(const reference *all, const hl_light *light,
 
 /* ---- the phase function ---- */
 
-/* The mean of p over the cap of the least cosine c whose middle is at the angle of the given cosine to where
- * light goes straight on: the sum over n of (2 n + 1) g^n k_n P_n(cosine), k_n the mean of P_n over the cap,
- * (P_(n-1)(c) - P_(n+1)(c)) / ((2 n + 1) (1 - c)) (derived: by the addition theorem only the cap's own
- * harmonics stay). */
+/* The mean of the phase function p over a cap of directions. c: the cosine of the cap's half angle. cosine:
+ * of the angle from the cap's middle to the direction of light that goes straight on. The mean is the sum
+ * over n of (2 n + 1) g^n k_n P_n(cosine), where k_n, the mean of P_n over the cap, is (P_(n-1)(c) -
+ * P_(n+1)(c)) / ((2 n + 1) (1 - c)) (derived: by the addition theorem only the cap's own harmonics stay). */
 static double phase_of_cap(double g, double c, double cosine) {
   double before = 1, here = cosine, cap_before = 1, cap_here = c, power = 1, sum = 1;
   for (int n = 1; fabs(power) > 1e-9; n++) {
@@ -314,9 +317,9 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
   for (int c = 0; c < 3; c++) arrived->incoming[c] = light->color[c] * factor;
 }
 
-/* The colour of the light texture or emission image for the ray from a point of the light to `point`; false:
- * black. light_point: a direction for directional lights. plane: of the emission image, where it differs from
- * point to point of the light; else null. */
+/* The colour of the light texture or emission image for the ray from a point of the light to `point`; false
+ * if it is black. light_point: a direction for directional lights. plane: the plane of the emission image, if
+ * the image differs from point to point of the light; else null. */
 static bool find_pattern(const reference_light *light, const emission_plane *plane, vec3 light_point,
                          vec3 point, double pattern[3]) {
   pattern[0] = pattern[1] = pattern[2] = 1;
@@ -326,7 +329,7 @@ static bool find_pattern(const reference_light *light, const emission_plane *pla
   return pattern[0] > 0 || pattern[1] > 0 || pattern[2] > 0;
 }
 
-/* The light that comes from a point of the light to what `at` asks for. */
+/* Finds the light that comes from a point of the light to the receiver `at`. */
 static void find_passing(const reference *all, const reference_light *light, vec3 light_point,
                          const reference_receiver *at, crossing *scratch, double passing[3]) {
   vec3 offset = vec3_subtract(light_point, at->point);
@@ -355,7 +358,7 @@ void hl_reference_light_reach(const reference *all, const reference_light *light
     plane = hl_emission_plane(light->described, light->directional ? vec3_scale(light->towards, -1) : facing);
   for (size_t i = 0; i < count && !hl_pool_stops(all->pool, worker->number); i++) {
     vec3 light_point = casts ? light->points[i] : centre;
-    if (light->sphere) /* a sphere: its disk as seen from the point */
+    if (light->sphere) /* a sphere shows its disk to the point */
       light_point = point_of_disk(light->centre, facing, light->described->radius, i, count);
     double pattern[3], passing[3] = {1, 1, 1};
     if (!find_pattern(light, extended ? &plane : NULL, light_point, point, pattern)) continue;

@@ -6,7 +6,7 @@
  * integrated exactly, wherever its faces lie. */
 #include "reference/reference.h"
 
-/* Entry and exit of the index-space box, by slabs. */
+/* The ray's entry to and exit from the index-space box, by the slab method. */
 static void clip_to_box(crossing *part, double nearest, double farthest) {
   const double o[3] = {part->origin.x, part->origin.y, part->origin.z};
   const double d[3] = {part->direction.x, part->direction.y, part->direction.z};
@@ -45,12 +45,13 @@ void hl_reference_march_begin(const reference *all, reference_role role, const r
   }
 }
 
-/* Where the ray next crosses a face of a cut. */
+/* The next distance at which the ray crosses a face of a cut. */
 static double next_face(const crossing *part, double after) {
   return part->uncut ? INFINITY : hl_reference_next_face(part->volume, part->origin, part->direction, after);
 }
 
-/* Leaves only those volumes active that the cuts leave between the faces of the stretch. True: some is. */
+/* Leaves only the volumes active that the cuts leave between the faces of the stretch. Returns whether any is
+ * left. */
 static bool leave_uncut(march *walk) {
   double middle = (walk->start + walk->end) / 2;
   bool inside = false;

@@ -1,14 +1,16 @@
 /* reference/mask.c - a volume's mask at a point of the volume's index space: linear between the voxels of its
- * lattice (label/mask.h), which has square roots of colours. Outside the lattice the rest's factor holds. */
+ * lattice (label/mask.h), which has square roots of colours. Outside the lattice the factor of the rest
+ * holds. */
 #include "reference/reference.h"
 
-/* The eight voxels around a point, and their shares. */
+/* The eight voxels around a point, and their weights. */
 typedef struct mask_voxels {
   size_t voxel[8];
   double share[8];
 } mask_voxels;
 
-/* p: in the lattice's index space. False outside the lattice; the voxels are then those of its border. */
+/* Finds the voxels around p, which is in the lattice's index space. False outside the lattice; the voxels are
+ * then voxels at its border. */
 static bool find_voxels_at(const hl_volume *mask, const double p[3], mask_voxels *found) {
   bool inside = true;
   for (int corner = 0; corner < 8; corner++) {
@@ -49,7 +51,8 @@ double hl_reference_mask_factor(const reference_volume *volume, vec3 point) {
   return factor_of(mask->volume, &found);
 }
 
-/* Differences over two voxels of the lattice: between its points those are linear, as the factor is. */
+/* Differences over two voxels of the lattice. They are linear between the lattice's points, as the factor
+ * is. */
 vec3 hl_reference_mask_slope(const reference_volume *volume, vec3 point) {
   const hl_mask *mask = &volume->described->mask;
   double slope[3];

@@ -10,14 +10,14 @@ enum { HALVINGS = 40 };
 /* A search along a ray through one volume, and the greatest value found so far. */
 typedef struct search {
   const crossing *part;
-  double greatest, where; /* data value, distance; -infinity: nothing shown yet */
+  double greatest, where; /* data value; distance; -infinity if no value is shown yet */
 } search;
 
 static double value_at(const crossing *part, double at) {
   return hl_reference_value(part->volume, vec3_add(part->origin, vec3_scale(part->direction, at)));
 }
 
-/* The least opacity that counts: voxels and their weighted sums are rounded, which at the foot of a ramp
+/* The least opacity that counts. Voxels and their weighted sums are rounded, which at the foot of a ramp
  * gives a tiny opacity. */
 static const double LEAST_OPACITY = 1e-7;
 
@@ -26,7 +26,7 @@ static bool is_shown(const crossing *part, double value) {
          hl_transfer_function_opacity(&part->volume->described->transfer_function, value) > LEAST_OPACITY;
 }
 
-/* Whether the transfer function shows the value at this distance. */
+/* Notes the value at this distance if the transfer function shows it. Returns whether it does. */
 static bool ask(search *found, double at) {
   double value = value_at(found->part, at);
   if (!is_shown(found->part, value)) return false;
@@ -37,7 +37,8 @@ static bool ask(search *found, double at) {
   return true;
 }
 
-/* The last shown distance between a shown and a hidden one, as close to the border as doubles can tell. */
+/* Searches between a shown and a hidden distance for the last shown one, as close to the border as doubles
+ * can tell. */
 static void ask_at_end(search *found, double shown, double other) {
   for (int i = 0; i < HALVINGS; i++) {
     double middle = (shown + other) / 2;
@@ -46,8 +47,8 @@ static void ask_at_end(search *found, double shown, double other) {
   }
 }
 
-/* Golden-section search (Kiefer 1953) for the peak within one step before and after. Hidden values guide the
- * search, but are never the result. */
+/* Searches for the peak within one step before and after (golden-section search, Kiefer 1953). Hidden values
+ * guide the search, but are never the result. */
 static void ask_at_peak(search *found, double low, double high) {
   static const double golden = 0.6180339887498949;
   for (int i = 0; i < HALVINGS; i++) {

@@ -3,14 +3,14 @@
  *
  * A volume's surface is lit by the light that arrives at its outside: matter that light crosses while it goes
  * deeper into one and the same surface does not shade this surface. A ray is followed from the point to the
- * light. What a step does to the light T and to what the surface has taken, A, is linear in both, so two
- * factors hold what all steps between it and the point make of T and of A. */
+ * light. T is the light, and A the light that the surface has taken. A step changes T and A linearly, so that
+ * two factors hold the effect of all steps between it and the point. */
 #include <stdlib.h>
 
 #include "core/memory.h"
 #include "reference/reference.h"
 
-/* Optical depth, in every channel, beyond which a light counts as dark: exp(-18) is 2e-8. */
+/* The optical depth, in every channel, beyond which a light counts as dark: exp(-18) is 2e-8. */
 static const double DARK_DEPTH = 18;
 
 void hl_reference_transmittance(const reference *all, const reference_ray *ray, crossing *scratch,
@@ -35,7 +35,8 @@ void hl_reference_transmittance(const reference *all, const reference_ray *ray, 
 
 /* ---- where surfaces begin ---- */
 
-/* Optical depth in a unit distance of matter of this value; of a function of two numbers, the greatest. */
+/* The optical depth of matter of this value in a unit distance; for a function of two numbers, the
+ * greatest. */
 static double extinction_at(const reference_volume *volume, double value) {
   if (value < volume->transparent_below) return 0;
   double opacity = hl_transfer_function_opacity(&volume->described->transfer_function, value);
@@ -56,9 +57,9 @@ static double foot_of(const reference_volume *volume, double value) {
   return volume->feet[index_of_value(volume, value)];
 }
 
-/* Walks from the empty value outwards: a surface begins at the last value without extinction. A second
- * surface begins after extinction did not rise over a twentieth of the values since the first one's
- * beginning, and then rises by half. */
+/* Finds the values at which surfaces begin, walking from the empty value outwards. A surface begins at the
+ * last value without extinction. A second surface begins after extinction did not rise over a twentieth of
+ * the values since the first surface's beginning, and then rises by half. */
 static void find_feet(reference_volume *volume, int first, int step) {
   double foot = volume->empty_value, level = 0;
   int beginning = first, mark = -1;
@@ -100,14 +101,15 @@ hl_status hl_reference_feet_create(hl_context *context, reference_volume *volume
 
 /* ---- the light at the outside ---- */
 
-/* What a step keeps of the light that the surface took before it, and of what it takes itself. second: light
- * comes from another surface into this one, and a part of what that one took may count as this one's. */
+/* The fractions that a step keeps: of the light that the surface took before the step, and of the light that
+ * it takes in the step. second: light comes from another surface into this one, and a part of the light which
+ * that surface took may count as taken by this one. */
 typedef struct kept_light {
   double before, within;
   bool second;
 } kept_light;
 
-/* from, to: the values at the step's ends, as light goes. */
+/* The light kept in a step. from, to: the values at the step's ends, in the direction of light. */
 static kept_light kept_of_step(const reference_volume *volume, double from, double to, double length) {
   double foot_from = foot_of(volume, from), foot_to = foot_of(volume, to), deep = to - foot_to,
          left = fmin(fabs(deep) / fmax(fabs(from - foot_from), 1e-300), 1);
@@ -118,15 +120,17 @@ static kept_light kept_of_step(const reference_volume *volume, double from, doub
   return (kept_light){0, enters ? 1 : 0, enters && extinction_at(volume, from) > 0};
 }
 
-/* A surface is another one's second, of which it is not yet known whether that one is a layer of its own. */
+/* A surface that is the second one behind another. It is not yet known whether the other surface is a layer
+ * of its own. */
 typedef struct pending_layer {
   bool any;
-  double depth, rise, ramp; /* the layer's depth so far; of the second one: values per length; the depth that
-                               a straight ramp would have, times that */
+  double depth, rise, ramp; /* depth: the layer's depth so far. rise: the second surface's values per length.
+                             * ramp: the depth that a straight ramp would have, times rise */
 } pending_layer;
 
-/* What all steps between here and the point make of the light, and of what the surface has taken: factors.
- * `kept`: the same, if what the layer before took counts as the surface's. */
+/* The factors by which all steps between here and the point multiply the light and the light taken by the
+ * surface. `kept` holds the factors for the case that the light taken by the layer before counts as taken by
+ * the surface. */
 typedef struct light_factors {
   double light[3], kept_light[3], kept_taken;
 } light_factors;
@@ -138,8 +142,8 @@ static double ramp_depth(const reference_volume *volume, double from, double to)
   return sum / steps * fabs(to - from) / volume->described->transfer_function.unit_distance;
 }
 
-/* A layer up to 1.2 times as thick as a straight ramp of values counts as the surface's, one of 1.6 times not
- * at all. */
+/* Decides about a pending layer. A layer up to 1.2 times as thick as a straight ramp of values counts fully
+ * as the surface's, and a layer 1.6 times as thick not at all. */
 static void settle(light_factors *all, pending_layer *layer) {
   double ratio = layer->depth * layer->rise / fmax(layer->ramp, 1e-300),
          kept = fmin(fmax((1.6 - ratio) / 0.4, 0), 1);
@@ -148,7 +152,8 @@ static void settle(light_factors *all, pending_layer *layer) {
   layer->any = false;
 }
 
-/* Adds a step to the factors. depth: of all volumes in the step, in each channel; kept: their mean. */
+/* Adds a step to the factors. depth: the depth of all volumes in the step, in each channel. kept: the mean of
+ * their kept light. */
 static void add_step(light_factors *all, pending_layer *layer, const double depth[3], kept_light kept) {
   if (layer->any && kept.before == 0) settle(all, layer);
   for (int c = 0; c < 3; c++) {

@@ -1,17 +1,18 @@
 /* reference/paths.c - light that media scatter more than once, by following paths from the eye.
  *
- * A path flies as far as its random optical depth, is turned there by the medium's phase function, flies on,
- * and takes from its second collision on what the lights and the sky send there unscattered: an estimate
- * without bias of light that was scattered twice or more often. The first scattering is integrated (shade.c).
- * Meshes and isosurfaces on a path take their part of it and send nothing on. Random numbers depend on the
- * pixel and the path alone. Paths take the volumes' extinction as grey.
- */
+ * A path flies until it has passed a random optical depth. There it is turned by the medium's phase function,
+ * and flies on. From its second collision on it collects the unscattered light that the lights and the sky
+ * send to the collision: an estimate without bias of light that was scattered twice or more often. The first
+ * scattering is integrated (shade.c). Meshes and isosurfaces on a path absorb their part of the light and
+ * scatter nothing. Random numbers depend on the pixel and the path alone. Paths take the volumes' extinction
+ * as grey. */
 #include "reference/reference.h"
 
-/* Paths go on this often before they may end at random. */
+/* Paths go on for SURE_TURNS turns before they may end at random. */
 enum { SURE_TURNS = 8, MOST_TURNS = 100000 };
 
-/* Steele, Lea and Flood, "Fast splittable pseudorandom number generators" (2014). */
+/* A random number from 0 to 1. Steele, Lea and Flood, "Fast splittable pseudorandom number generators"
+ * (2014). */
 static double uniform(uint64_t *state) {
   uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
   z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
@@ -23,7 +24,7 @@ static double uniform(uint64_t *state) {
 typedef struct collision {
   const reference_volume *volume;
   vec3 point, index_point;
-  double value, distance; /* along the ray */
+  double value, distance; /* distance along the ray */
 } collision;
 
 static double extinction_of(const crossing *part) {
@@ -45,7 +46,7 @@ static void choose_volume(const march *walk, double total, uint64_t *random, col
   }
 }
 
-/* Flies along a ray until something is met; false where nothing is. */
+/* Flies along a ray until a collision; false if there is none. */
 static bool fly(const reference *all, reference_role role, const reference_ray *ray, reference_worker *worker,
                 uint64_t *random, collision *met) {
   march walk;
@@ -67,7 +68,8 @@ static bool fly(const reference *all, reference_role role, const reference_ray *
   return false;
 }
 
-/* Multiplies by what surfaces let through on the way to a collision: they send nothing on. */
+/* Multiplies by the fraction of light that surfaces on the way to a collision let through. Surfaces scatter
+ * nothing. */
 static void take_surfaces(const reference *all, reference_role role, reference_ray way, double distance,
                           double weight[3]) {
   double passing[3] = {1, 1, 1}, after = way.nearest;
@@ -80,11 +82,11 @@ static void take_surfaces(const reference *all, reference_role role, reference_r
   for (int c = 0; c < 3; c++) weight[c] *= passing[c];
 }
 
-/* A direction by Henyey and Greenstein's function about the way before. */
+/* A random direction by Henyey and Greenstein's function about the direction before. */
 static vec3 turn(vec3 way, double g, uint64_t *random) {
   double a = uniform(random), angle = 2 * HL_PI * uniform(random), cosine = 2 * a - 1;
   if (fabs(g) > 1e-6) {
-    double part = (1 - g * g) / (1 - g + 2 * g * a); /* derived: the integral of p solved for the cosine */
+    double part = (1 - g * g) / (1 - g + 2 * g * a); /* derived: the integral of p, solved for the cosine */
     cosine = (1 + g * g - part * part) / (2 * g);
   }
   double sine = sqrt(fmax(1 - cosine * cosine, 0));
@@ -93,13 +95,13 @@ static vec3 turn(vec3 way, double g, uint64_t *random) {
       vec3_scale(way, cosine), vec3_add(vec3_scale(u, sine * cos(angle)), vec3_scale(v, sine * sin(angle)))));
 }
 
-/* Adds what the lights send to a collision, by one random point of each. way: unit, of the path from the eye.
- */
+/* Adds the light that the lights send to a collision, by one random point of each light. way: the direction
+ * of the path from the eye, a unit vector. */
 static void add_lights(const reference *all, const collision *met, vec3 way, const double weight[3],
                        reference_worker *worker, uint64_t *random, double sum[3]) {
   for (size_t l = 0; l < all->scene->light_count; l++) {
     reference_light one = all->lights[l];
-    if (one.points == NULL) continue; /* without shadows: scattered once */
+    if (one.points == NULL) continue; /* a light without shadows is scattered only once */
     vec3 point = one.points[(size_t)(uniform(random) * (double)one.point_count)];
     if (!one.sphere) one.points = &point, one.point_count = 1;
     arrival arrived;
@@ -112,7 +114,7 @@ static void add_lights(const reference *all, const collision *met, vec3 way, con
   }
 }
 
-/* Adds what the sky sends to a collision, from one random cell. */
+/* Adds the light that the sky sends to a collision, by one random cell. */
 static void add_sky(const reference *all, const collision *met, vec3 way, const double weight[3],
                     reference_worker *worker, uint64_t *random, double sum[3]) {
   if (all->sky.count == 0) return;

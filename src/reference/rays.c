@@ -5,10 +5,10 @@
  * (docs/decisions.md); one ray through its centre would give another picture. */
 #include "reference/reference.h"
 
-enum { BRICK_CELLS = 4, LONGEST_SIDE = 4096, SURFACE_RAYS = 4 }; /* SURFACE_RAYS: for the edges of meshes */
+enum { BRICK_CELLS = 4, LONGEST_SIDE = 4096, SURFACE_RAYS = 4 }; /* SURFACE_RAYS is for the edges of meshes */
 
-/* The box around the visible bricks, within the volume's box, in index space; the bricks at the borders reach
- * half a voxel beyond the grid. False: none is visible. */
+/* The box around the visible bricks, within the volume's box, in index space. Bricks at the borders reach
+ * half a voxel beyond the grid. False if no brick is visible. */
 static bool shown_box(const reference_volume *volume, double low[3], double high[3]) {
   const unsigned char *clear = volume->clearance;
   size_t brick[3];
@@ -35,7 +35,7 @@ static bool shown_box(const reference_volume *volume, double low[3], double high
   return any;
 }
 
-/* The corners, in the world, of the boxes around visible bricks: their sum and number, and the least
+/* The corners, in the world, of the boxes around visible bricks: their sum, their number, and their least
  * depth. */
 typedef struct content {
   vec3 sum;
@@ -56,8 +56,8 @@ static void add_volume(const reference_volume *volume, vec3 position, vec3 forwa
   }
 }
 
-/* The edge of a pixel at unit depth; in an orthographic picture, at any depth. Derived: the picture's height
- * divided by its number of pixels, where height = 2 tan(fovy / 2) at unit depth. */
+/* The edge of a pixel at unit depth, or at any depth in an orthographic picture. Derived: the picture's
+ * height divided by its number of pixels, where height = 2 tan(fovy / 2) at unit depth. */
 static double pixel_edge(const hl_scene_description *scene) {
   bool orthographic = scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
   return (orthographic ? scene->camera.height : 2 * tan(scene->camera.fovy_deg * HL_PI / 360)) /

@@ -1,6 +1,6 @@
 /* reference/reference.c - the oracle's entry: camera rays, and emission-absorption along them.
  *
- * In: a scene. Out: linear premultiplied RGBA, the volumes alone, top row first. Pixels are independent of
+ * In: a scene. Out: linear premultiplied RGBA without a background, top row first. Pixels are independent of
  * each other; threads take them in runs. */
 #include <stdatomic.h>
 
@@ -15,12 +15,12 @@
 /* Alpha at which a ray ends. */
 static const double OPAQUE = 1 - 1e-5;
 
-/* Alpha at which a ray has its first depth (halflight/layers.h). */
+/* Alpha at which a ray gets its first depth (halflight/layers.h). */
 static const double FIRST_OPACITY = 0.01;
 
-/* Greatest opacity that one sample may add to a pixel: light that grazes a dense volume fades within a small
- * fraction of a step. The error grows linearly with this bound and quadratically with the step: steps coarser
- * than the default allow as much more opacity. */
+/* The greatest opacity that one sample may add to a pixel: light that grazes a dense volume fades within a
+ * small fraction of a step. The error grows linearly with this bound and quadratically with the step. Steps
+ * that are coarser than the default therefore allow more opacity, in proportion. */
 static const double MOST_OPACITY = 0.02, USUAL_STEP = 0.25, COARSEST_OPACITY = 0.1;
 
 enum { RUN_PIXELS = 16 };
@@ -36,8 +36,8 @@ typedef struct picture {
   const reference *all;
   eye_rays eye;
   reference_worker *workers; /* [threads] */
-  float *pixels;             /* the caller's */
-  const hl_layers *layers;   /* the caller's layers; null: none */
+  float *pixels;             /* the caller's pixels */
+  const hl_layers *layers;   /* the caller's layers; null if there are none */
   size_t row_stride;         /* floats from row to row */
   size_t runs_per_row;
   atomic_size_t runs_done;
@@ -55,7 +55,8 @@ static eye_rays eye_rays_of(const hl_scene_description *scene) {
   return eye;
 }
 
-/* Ray (x, y) of the picture, of which a pixel has rays x rays; direction is a unit vector. */
+/* Ray (x, y) of the picture, counted in rays; a pixel has rays x rays of them. The direction is a unit
+ * vector. */
 static void eye_ray(const picture *all, size_t x, size_t y, vec3 *origin, vec3 *direction) {
   const eye_rays *eye = &all->eye;
   double across = 2 * ((double)x + 0.5) / ((double)all->all->scene->width * all->all->rays) - 1;
@@ -110,15 +111,15 @@ static double composite(const reference *all, const march *walk, double length, 
   return extinction;
 }
 
-/* The distance at which alpha passes FIRST_OPACITY in a step that begins at `start` with alpha `before`: (1 -
- * A) exp(-sigma t) = 1 - FIRST_OPACITY. */
+/* The distance at which alpha passes FIRST_OPACITY in a step that begins at `start` with alpha `before`.
+ * Derived: (1 - A) exp(-sigma t) = 1 - FIRST_OPACITY. */
 static double first_within(double before, double extinction, double start) {
   return start + log((1 - before) / (1 - FIRST_OPACITY)) / extinction;
 }
 
 /* Marches along a part of a camera ray. Every step is cut into pieces that add no more than most_opacity
- * each, judged by the extinction of the piece before. Adds to the ray's contributions in the worker; *first
- * becomes the first depth where it lies in this part. */
+ * each, judged by the extinction of the piece before. Adds to the ray's contributions in the worker. Sets
+ * *first to the first depth if it lies in this part. */
 static void trace_part(const reference *all, const reference_ray *way, reference_worker *worker,
                        double *first) {
   march walk;
@@ -142,8 +143,8 @@ static void trace_part(const reference *all, const reference_ray *way, reference
   }
 }
 
-/* Follows one camera ray, from surface to surface. A perspective ray begins at the eye; an orthographic one
- * has no beginning. Leaves the ray's contributions in the worker; returns the first depth. */
+/* Follows one camera ray, from surface to surface. A perspective ray begins at the eye; an orthographic ray
+ * has no beginning. Leaves the ray's contributions in the worker. Returns the first depth. */
 static double trace(const reference *all, vec3 origin, vec3 direction, reference_worker *worker) {
   reference_parts *ray = &worker->ray;
   bool orthographic = all->scene->camera.type == HL_CAMERA_ORTHOGRAPHIC;
@@ -169,7 +170,7 @@ static double trace(const reference *all, vec3 origin, vec3 direction, reference
   return first;
 }
 
-/* The pixel is the sum of the ray's contributions. */
+/* Writes the pixel, which is the sum of the ray's contributions. */
 static void write_pixel(const reference_parts *ray, size_t light_count, float rgba[4]) {
   for (int c = 0; c < 3; c++) {
     double sum = ray->ambient[c] + ray->emission[c] + ray->sky[c];
@@ -179,7 +180,7 @@ static void write_pixel(const reference_parts *ray, size_t light_count, float rg
   rgba[3] = (float)ray->weight;
 }
 
-/* Adds to the pixel's ambient light what paths find, and writes its standard error. */
+/* Adds the light that paths find to the pixel's ambient light, and writes the light's standard error. */
 static void follow_paths(const picture *all, size_t x, size_t y, reference_worker *worker) {
   size_t rays = (size_t)all->all->rays, pixel = y * (size_t)all->all->scene->width + x;
   double sum[3] = {0, 0, 0}, squares[3] = {0, 0, 0}, count = all->all->paths;
@@ -199,7 +200,7 @@ static void follow_paths(const picture *all, size_t x, size_t y, reference_worke
   }
 }
 
-/* The least of the numbers that occur most often; 0 of none. */
+/* The least of the numbers that occur most often; 0 if there are no numbers. */
 static int most_frequent(const int *numbers, size_t count) {
   size_t most = 0;
   int found = 0;
@@ -213,7 +214,7 @@ static int most_frequent(const int *numbers, size_t count) {
   return found;
 }
 
-/* Averages a pixel's rays, and their first depths over the rays that meet something. */
+/* Averages a pixel's rays, and averages the first depths of the rays that meet something. */
 static void trace_pixel(const picture *all, size_t x, size_t y, int worker) {
   reference_worker *own = &all->workers[worker];
   size_t lights = all->all->scene->light_count, rays = (size_t)all->all->rays, hits = 0;
@@ -418,7 +419,8 @@ hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
   hl_pool *pool = NULL;
   status = hl_pool_create(context, chosen.threads, &pool, error);
   if (status != HL_OK) return status;
-  hl_scene_description whole = scene->placed; /* its sky is the image as it is, without lights for suns */
+  hl_scene_description whole = scene->placed; /* its sky is the image itself, without lights in place of
+                                               * suns */
   whole.sky = scene->description.sky;
   whole.light_count = scene->description.light_count;
   reference all = {.context = context, .pool = pool, .scene = &whole, .all_shadows = shadows_wanted(layers)};

@@ -3,25 +3,25 @@
  * It computes a scene's picture slowly and accurately, to judge the sheet renderer. The two share the scene
  * and its transfer functions, but no rendering code.
  *
+ *
  *     reference.c       camera, rows of pixels, the entry point
  *     march.c           a ray through the volumes' boxes, step by step, jumping over empty bricks
  *     field.c           reconstruction of one volume at a point: value, gradient, extinction, empty bricks
- *     cuts.c            what cuts leave of a volume
- *     clip_faces.c      where clipping cuts matter
+ *     cuts.c            which points cuts leave
+ *     clip_faces.c      the box's faces that cut matter
  *     tint.c            the colours of a volume's own voxels, and of its mask
- *     mask.c            what a mask makes of extinction and colour
- *     coefficients.c    what the interpolating kernel sums in place of voxels
+ *     mask.c            a mask's factor and colour
+ *     coefficients.c    the coefficients of the interpolating kernel
  *     rays.c            how many rays a pixel of a small picture has
  *     lights.c          points on the lights, their images, and the transmittance towards them
  *     sky.c             cells of the sky, and their light that reaches a sample
  *     shade.c           the light that one sample sends to the eye
- *     layers.c          that light by its sources, depth and normals
+ *     layers.c          this light by its sources, depth and normals
  *     surfaces.c        where rays meet meshes
  *     isosurfaces.c     where rays meet surfaces of one value
  *     paths.c           light that media scatter more than once
  *     shade_surface.c   the light that a surface sends to the eye
- *     maximum.c         the greatest value along a ray, in place of light
- */
+ *     maximum.c         the greatest value along a ray, in place of light */
 #ifndef HL_REFERENCE_REFERENCE_H
 #define HL_REFERENCE_REFERENCE_H
 
@@ -37,7 +37,7 @@
 #include "scene/scene.h"
 #include "scene/sky.h"
 
-/* One volume of the scene, made ready for questions at points of its index space. */
+/* One volume of the scene, prepared for sampling at points of its index space. */
 typedef struct reference_volume {
   const hl_scene_volume *described;
   const hl_volume *grid;
@@ -45,82 +45,85 @@ typedef struct reference_volume {
   affine3 index_to_world, world_to_index;
   mat3 gradient_to_world;           /* inverse transpose of index-to-world */
   double low[3], high[3];           /* the box, in index space */
-  double clip_low[3], clip_high[3]; /* its faces where matter ends; infinite where another volume goes on */
+  double clip_low[3], clip_high[3]; /* the faces of the box where matter ends; infinite where another volume
+                                     * goes on */
   double empty_value;               /* data value of voxels that are not finite */
   double empty_stored;              /* data value of voxels that are not finite, as a stored value */
-  double transparent_below;         /* data values below this are empty space; -infinity: none are */
+  double transparent_below;         /* data values below this are empty space; -infinity if there are no such
+                                     * values */
   double surface_gradient;          /* least gradient of a surface, data value per world unit */
   double smallest_edge;             /* shortest edge of a voxel, world units */
-  size_t bricks[3];                 /* i, j, k */
-  double *coefficients;   /* owned; [k][j][i], stored values: what the interpolating kernel sums in place of
-                           * voxels; else null */
-  double least, greatest; /* with coefficients: values beyond these count as these */
-  double *feet; /* owned; [HL_REFERENCE_FEET]; for equal steps of values from feet_low to feet_high: the value
+  size_t bricks[3];                 /* number of bricks along i, j, k */
+  double *coefficients;   /* owned; [k][j][i], stored values; the coefficients that the interpolating kernel
+                           * sums in place of voxels; null for other kernels */
+  double least, greatest; /* with coefficients: values beyond these limits count as the limits */
+  double *feet; /* owned; [HL_REFERENCE_FEET]; for equal steps of values from feet_low to feet_high, the value
                  * at which their surface begins */
   double feet_low, feet_high;
-  const struct reference_volume *second; /* the other volume of a function of two numbers; else null */
-  affine3 index_to_second;               /* from the volume's index space to the second one's */
-  affine3 index_to_mask;    /* from the volume's index space to that of its mask, where it has one */
+  const struct reference_volume *second; /* the other volume of a function of two numbers, else null */
+  affine3 index_to_second;               /* maps the volume's index space to the second volume's */
+  affine3 index_to_mask;    /* maps the volume's index space to its mask's index space, if it has a mask */
   unsigned char *clearance; /* owned; [k][j][i] of bricks: 0 where the brick may be visible, else the distance
                              * in bricks (chessboard metric) to the nearest such brick, at most 255 */
 } reference_volume;
 
-/* One light. points is [point_count]: positions in the world, or unit directions to a directional light. */
+/* One light. points: [point_count]; positions in the world, or unit directions to a directional light. */
 typedef struct reference_light {
   const hl_light *described;
   bool directional;
-  bool sphere;                       /* a sphere: points are computed for every sample */
+  bool sphere;                       /* the light is a sphere, whose points are computed for every sample */
   vec3 centre;                       /* world; not for directional lights */
   vec3 towards;                      /* directional lights: unit vector to the light */
   double color[3];                   /* color * intensity */
-  double least_distance;             /* world; closer it gets no brighter */
-  const hl_light_texture *texture;   /* null: none */
-  const hl_light_emission *emission; /* emission image; null: none */
+  double least_distance;             /* world units; at smaller distances the light gets no brighter */
+  const hl_light_texture *texture;   /* null if absent */
+  const hl_light_emission *emission; /* emission image; null if absent */
   double mean[3];                    /* mean of the emission image over the light's surface */
   vec3 *points;                      /* owned; null where the light casts no shadows; not set for spheres */
   size_t point_count;
-  vec3 *extent; /* owned; [EXTENT_POINTS], positions in the world; null: parallel, or a point */
-  double cap;   /* of a parallel light: cosine of half its angular diameter */
+  vec3 *extent; /* owned; [EXTENT_POINTS], positions in the world; null for parallel light or a point */
+  double cap;   /* for a parallel light: cosine of half its angular diameter */
 } reference_light;
 
-/* Points of a light over which the phase function is averaged. */
+/* The number of points of a light over which the phase function is averaged. */
 enum { EXTENT_POINTS = 256 };
 
 /* A triangle or a sphere of a mesh, in the world. */
 typedef struct reference_triangle {
-  vec3 corner[3]; /* of a sphere: two opposite corners of the box around it, and its centre */
-  double radius;  /* 0: a triangle */
+  vec3 corner[3]; /* for a sphere: two opposite corners of the box around it, and its centre */
+  double radius;  /* 0 for a triangle */
   const hl_scene_mesh *mesh;
-  size_t index; /* among the mesh's triangles, or its spheres */
+  size_t index; /* number among the mesh's triangles, or its spheres */
   double opacity;
 } reference_triangle;
 
-/* A box around triangles. Leaves have no children: second is 0. */
+/* A box around triangles: a node of the tree. second is 0 in a leaf. */
 typedef struct reference_node {
   double low[3], high[3];
-  size_t first, count; /* triangles */
-  size_t second;       /* index of the second child; the first one follows the node */
+  size_t first, count; /* the triangles' first index and number */
+  size_t second;       /* index of the second child; the first child follows the node */
 } reference_node;
 
 typedef struct reference_surfaces {
   reference_triangle *triangles; /* owned; [triangle_count] */
   reference_node *nodes;         /* owned; [node_count] */
-  vec3 *normals;                 /* owned; of all meshes' vertices; of any length */
+  vec3 *normals;                 /* owned; normals of all meshes' vertices, of any length */
   size_t *first_normal;          /* owned; [mesh_count] */
   size_t triangle_count, node_count;
 } reference_surfaces;
 
 /* A part of the sky. */
 typedef struct reference_sky_cell {
-  vec3 direction, mean; /* world: the unit vector to its middle, and the mean of all unit vectors to it; of an
-                           image's cell, to and of its light */
-  double radiance[3];   /* its mean */
+  vec3 direction, mean; /* world: the unit vector to the cell's middle, and the mean of all unit vectors to
+                         * the cell. For a cell of an image: to the middle, and the mean, of the cell's
+                         * light */
+  double radiance[3];   /* the cell's mean radiance */
 } reference_sky_cell;
 
 typedef struct reference_sky {
-  reference_sky_cell *cells; /* owned; [count]; null: no sky */
+  reference_sky_cell *cells; /* owned; [count]; null if there is no sky */
   size_t count;
-  double solid_angle; /* of a cell */
+  double solid_angle; /* solid angle of a cell */
 } reference_sky;
 
 typedef struct reference {
@@ -133,10 +136,12 @@ typedef struct reference {
   reference_sky sky;
   double step;  /* world units */
   int rays;     /* rays along each side of a pixel */
-  int paths;    /* from each pixel, of light scattered more than once; 0: no volume scatters it again */
-  float *error; /* the caller's; [height][width][3]: the standard error of that light; null: not wanted */
+  int paths;    /* number of paths from each pixel for light scattered more than once; 0 if no volume scatters
+                 * it again */
+  float *error; /* the caller's; [height][width][3]: the standard error of the light that paths find; null if
+                 * not wanted */
   double most_opacity; /* greatest opacity that one sample may add to a pixel */
-  bool all_shadows;    /* layers need the transmittance of every light at every sample */
+  bool all_shadows;    /* whether layers need the transmittance of every light at every sample */
 } reference;
 
 typedef struct reference_ray {
@@ -148,13 +153,13 @@ typedef struct reference_ray {
 typedef struct crossing {
   const reference_volume *volume;
   vec3 origin, direction;     /* index space; distances along the ray in world units */
-  double enter, leave;        /* distances; the ray misses the box where enter >= leave */
-  bool uncut;                 /* the cuts of the volume do not count */
-  bool active;                /* the ray is inside what is left of the box now */
+  double enter, leave;        /* distances; enter >= leave if the ray misses the box */
+  bool uncut;                 /* whether the volume's cuts are ignored */
+  bool active;                /* whether the ray is now inside the part of the box that cuts leave */
   bool occupied;              /* active, and the brick may be visible */
   vec3 here;                  /* index space; the current sample, where active */
-  double last_at, last_value; /* of hl_reference_outside(): where the volume was met last, and its value
-                                 there; NaN: not known */
+  double last_at, last_value; /* for hl_reference_outside(): the last distance at which the volume was met,
+                               * and its value there; NaN if not known */
 } crossing;
 
 /* A march along a ray: a stretch is the ray between two box faces, cut into equal steps. */
@@ -162,28 +167,28 @@ typedef struct march {
   crossing *crossings; /* borrowed; [count] */
   size_t count;
   double longest_step;
-  double start, end;  /* the present stretch */
-  double length;      /* of a step */
-  double next, steps; /* whole numbers */
+  double start, end;  /* the current stretch */
+  double length;      /* length of a step */
+  double next, steps; /* whole numbers: the next step, the number of steps */
   double at;          /* distance of the current sample */
 } march;
 
-/* What light comes to: a medium, or another point; or the outside of the surface of a volume that the point
- * lies in. */
+/* The receiver of light: a point in a medium or elsewhere, or the outside of the surface of the volume in
+ * which the point lies. */
 typedef struct reference_receiver {
   vec3 point;                         /* world */
-  const reference_volume *surface_of; /* null: no surface of a volume */
-  double value;                       /* the volume's at the point */
+  const reference_volume *surface_of; /* the volume whose surface receives light; null for other receivers */
+  double value;                       /* the volume's value at the point */
 } reference_receiver;
 
 /* The light of one source that arrives at a sample. */
 typedef struct arrival {
   vec3 towards;       /* unit vector to the light's centre */
-  double incoming[3]; /* brightness without light texture and attenuation; eq. (1) */
+  double incoming[3]; /* brightness before light texture and attenuation; eq. (1) */
   double pattern[3];  /* mean colour of the light texture or emission image over the light's points; 1 without
                          either; eq. (2) */
-  double shadowed[3]; /* mean of that image times transmittance over the light's points */
-  double outside[3];  /* the same, at the outside of the surface that the sample lies in */
+  double shadowed[3]; /* mean of the pattern times transmittance over the light's points */
+  double outside[3];  /* the same mean at the outside of the surface in which the sample lies */
   bool pattern_known, shadowed_known, outside_known;
 } arrival;
 
@@ -194,12 +199,13 @@ typedef struct light_part {
 
 /* The contributions to a sample or to a ray: sums weighted by extinction (sample) or by opacity (ray). */
 typedef struct reference_parts {
-  double weight;   /* sum of the weights; of a ray: alpha */
-  int object;      /* of a sample: the one of the greatest weight; of a ray: where alpha first reaches 0.01 */
-  double greatest; /* of a sample: that weight */
+  double weight;   /* sum of the weights; for a ray: alpha */
+  int object;      /* for a sample: the object of the greatest weight; for a ray: the object where alpha first
+                    * reaches 0.01 */
+  double greatest; /* for a sample: the greatest weight */
   double ambient[3], emission[3], sky[3];
-  double sky_reaching[3],
-      sky_open[3]; /* of white matter: the sky's light, and all of it that nothing hides */
+  double sky_reaching[3], sky_open[3]; /* for white matter: the sky's light that reaches it, and the sky's
+                                        * light without anything that hides it */
   vec3 normal;
   double depth;
   light_part *lights; /* [light_count] */
@@ -223,12 +229,12 @@ typedef struct reference_worker {
 
 hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume *described, hl_pool *pool,
                                      reference_volume *made, hl_error *error);
-/* The number of rays along each side of a pixel, at most HL_REFERENCE_RAYS: more than one where voxels,
- * `edge` world units long, are smaller than pixels. */
+/* Finds the number of rays along each side of a pixel, at most HL_REFERENCE_RAYS. It is more than one where
+ * voxels, `edge` world units long, are smaller than pixels. */
 enum { HL_REFERENCE_RAYS = 8 };
 int hl_reference_rays(const reference *all, double edge);
-/* How far a ray from `point` (index space) stays in transparent bricks, in units of `direction`; 0 where the
- * point's own brick may be visible. */
+/* The distance for which a ray from `point` (index space) stays in transparent bricks, in units of
+ * `direction`; 0 where the point's own brick may be visible. */
 double hl_reference_clearance(const reference_volume *volume, vec3 point, vec3 direction);
 
 /* Fills volume->coefficients. */
@@ -241,41 +247,43 @@ void hl_reference_volume_release(hl_context *context, reference_volume *volume);
 bool hl_reference_left(const reference_volume *volume, vec3 point);
 /* Whether the scene's own cuts leave a point of a mesh, in the world. */
 bool hl_reference_mesh_left(const hl_scene_description *scene, const hl_scene_mesh *mesh, vec3 point);
-/* The least distance above `after` at which a ray of index space crosses the face of a cut; infinite: none.
- */
+/* The least distance above `after` at which a ray of index space crosses the face of a cut; infinite if there
+ * is none. */
 double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 direction, double after);
-/* Shades a sample near the face of a cut or of the clip box. normal, surface: those of the data. Returns 1 at
+/* Shades a sample near the face of a cut or of the clip box. normal, surface: the data's own. Returns 1 at
  * the face, falling to 0 away from it. */
 double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
                              double *surface);
 
 double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]);
 double hl_reference_value(const reference_volume *volume, vec3 point);
-/* Multiplies a colour by that of the volume's own voxels, if they have one, and gives it the mask's tint. */
+/* Multiplies a colour by the colour of the volume's own voxels, if they have one, and gives it the mask's
+ * tint. */
 void hl_reference_tint(const reference_volume *volume, vec3 point, double color[3]);
-/* What the volume's mask multiplies extinction by at a point of the volume's index space; 1 without one. */
+/* The factor of the volume's mask on extinction at a point of the volume's index space; 1 without a mask. */
 double hl_reference_mask_factor(const reference_volume *volume, vec3 point);
-/* The slope of that factor at a point of index space, per world unit; 0 where the mask leaves no faces. */
+/* The slope of the mask's factor at a point of index space, per world unit; 0 where the mask leaves no
+ * faces. */
 vec3 hl_reference_mask_slope(const reference_volume *volume, vec3 point);
-/* The colour that the mask gives, and how much of it matter takes, 0 to 1, which is returned. */
+/* Sets the colour that the mask gives. Returns the part of this colour that matter takes, 0 to 1. */
 double hl_reference_mask_color(const reference_volume *volume, vec3 point, double color[3]);
-/* Data value per world unit. */
+/* The field's gradient, in data values per world unit. */
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point);
-/* Finds the faces of the volume's box at which no other volume goes on; the box is known. */
+/* Finds the faces of the volume's box at which no other volume goes on. The box must be known. */
 void hl_reference_find_clip_faces(const hl_scene_description *scene, reference_volume *volume);
 /* The outward normal, in the world, of the cut whose face is nearest to a point of index space. */
 vec3 hl_reference_cut_normal(const reference_volume *volume, vec3 point);
-/* The way from a point of index space to where a ray leaves the box, in lengths of the direction, and the
- * face's outward normal in the world. Below 0: another volume goes on there. */
+/* The length from a point of index space to where a ray leaves the box, in lengths of the direction, and the
+ * face's outward normal in the world. Negative where another volume goes on there. */
 double hl_reference_leaves_box(const reference_volume *volume, vec3 point, vec3 direction, vec3 *outward);
-/* sigma, 1 / world length; algorithm.md's sigma(f) = -ln(1 - alpha(f)) / u, times gradient opacity. value:
- * that at the point. */
+/* The extinction sigma at a point, 1 / world length: sigma(f) = -ln(1 - alpha(f)) / u, times gradient
+ * opacity. value: the value at the point. */
 double hl_reference_extinction(const reference_volume *volume, double value, vec3 point);
 /* A function of two numbers at a point. */
 plane_sum hl_reference_plane_sum(const reference_volume *volume, double value, vec3 point);
 /* The colour of the transfer function, linear RGB. */
 void hl_reference_color(const reference_volume *volume, double value, vec3 point, double color[3]);
-/* Finds the other volumes of functions of two numbers, when all volumes are there. */
+/* Finds the other volumes of functions of two numbers. Called when all volumes are there. */
 void hl_reference_find_second(const reference *all, size_t index);
 
 /* Sets the volumes of a march. */
@@ -285,54 +293,56 @@ typedef enum reference_role { REFERENCE_SEEN, REFERENCE_CASTS_SHADOW } reference
 void hl_reference_cross_box(crossing *part, const reference_ray *ray, double nearest, double farthest);
 void hl_reference_march_begin(const reference *all, reference_role role, const reference_ray *ray,
                               crossing *crossings, march *walk);
-/* Moves all crossings to a distance within the current stretch. Returns how far every volume is transparent
- * from there; 0 where one may be visible. */
+/* Moves all crossings to a distance within the current stretch. Returns the distance for which every volume
+ * is transparent from there; 0 where one may be visible. */
 double hl_reference_march_place(march *walk, double at);
 /* Moves to the middle of the next step at which some crossing is occupied; false at the end of the ray. */
 bool hl_reference_march_next(march *walk);
 
 hl_status hl_reference_light_create(const reference *all, const hl_light *light, int point_count,
                                     reference_light *made, hl_error *error);
-/* The light at a world point, before any volume. */
+/* The light at a world point without attenuation by volumes. */
 void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival *arrived);
 /* The mean over the light's points of the light texture or emission image (1 without either) times
- * transmittance. attenuated false: the transmittance counts as 1. */
+ * transmittance. If attenuated is false, the transmittance counts as 1. */
 void hl_reference_light_reach(const reference *all, const reference_light *light,
                               const reference_receiver *at, bool attenuated, reference_worker *worker,
                               double reach[3]);
 
-/* The mean over the light of the phase function times 4 pi, for its light from `point` to the eye. */
+/* The mean over the light of the phase function times 4 pi, for light that goes from the light to `point` and
+ * on to the eye. */
 double hl_reference_light_phase(const reference_light *light, double g, vec3 to_eye, vec3 point);
 
-/* exp(-optical depth) along a ray, times what surfaces let through, in each channel. scratch:
- * [volume_count]. */
+/* The fraction of light that passes along a ray, in each channel: exp(-optical depth) times the fraction that
+ * surfaces let through. scratch: [volume_count]. */
 void hl_reference_transmittance(const reference *all, const reference_ray *ray, crossing *scratch,
                                 double passing[3]);
-/* The same for the outside of the surface of a volume that the ray begins in. */
+/* The fraction of light that reaches the outside of the surface of the volume in which the ray begins. */
 void hl_reference_outside(const reference *all, const reference_ray *ray, const reference_receiver *at,
                           crossing *scratch, double passing[3]);
-/* Fills volume->feet; its other fields are known. */
+/* Fills volume->feet. The volume's other members must be known. */
 enum { HL_REFERENCE_FEET = 4096 };
 hl_status hl_reference_feet_create(hl_context *context, reference_volume *volume, hl_error *error);
-/* Henyey and Greenstein's phase function times 4 pi, for light from `towards` (unit vector) to the eye. */
+/* Henyey and Greenstein's phase function times 4 pi, for light that comes from `towards` (unit vector) and
+ * goes to the eye. */
 double hl_reference_phase(double anisotropy, vec3 to_eye, vec3 towards);
 
-/* Adds the light of one random path from the eye, that was scattered twice or more often. seed: the path's
- * own. */
+/* Adds the light of one random path from the eye. The light was scattered twice or more often. seed: the
+ * path's own. */
 void hl_reference_path(const reference *all, vec3 origin, vec3 direction, uint64_t seed,
                        reference_worker *worker, double sum[3]);
 
-/* What the sky lights. */
+/* A point that the sky lights. */
 typedef struct reference_sky_receiver {
   vec3 point, normal, to_eye; /* world; unit vectors; the normal is 0 in a medium */
-  double surface;             /* 0: medium, 1: surface */
+  double surface;             /* 0 for a medium, 1 for a surface */
   double diffuse, anisotropy; /* of the surface; of the medium */
-  const double *albedo;       /* [3]; of the medium; null: 1 */
+  const double *albedo;       /* [3]; the medium's; null for 1 */
   bool receives_shadow;
 } reference_sky_receiver;
 
-/* A sky's light at a receiver: all of it, what reaches it, and of this what it sends on; an even sky of
- * radiance 1 gives 1. */
+/* The sky's light at a receiver: all light, the light that reaches the receiver, and the light that the
+ * receiver sends on. An even sky of radiance 1 gives 1. */
 typedef struct reference_sky_light {
   double open[3], reaching[3], sent[3];
 } reference_sky_light;
@@ -354,55 +364,56 @@ void hl_reference_maximum(const reference *all, vec3 origin, vec3 direction, ref
 hl_status hl_reference_surfaces_create(reference *all, hl_error *error);
 void hl_reference_surfaces_release(reference *all);
 
-/* Where a ray meets a triangle, or a volume's isosurface. */
+/* A hit: the point where a ray meets a triangle or a volume's isosurface. */
 typedef struct reference_hit {
-  const reference_triangle *triangle; /* null: an isosurface */
+  const reference_triangle *triangle; /* null for an isosurface */
   double distance;
-  double weight[3];               /* of the triangle's corners */
-  const hl_isosurface *iso;       /* null: a triangle */
-  const reference_volume *volume; /* of the isosurface */
-  vec3 face;                      /* unit; the normal of the face that closes it here; else 0 */
+  double weight[3];               /* weights of the triangle's corners */
+  const hl_isosurface *iso;       /* null for a triangle */
+  const reference_volume *volume; /* the isosurface's volume */
+  vec3 face;                      /* unit normal of the face that closes the isosurface here; 0 elsewhere */
   double opacity;
 } reference_hit;
 
 /* A point of a surface that is shaded. */
 typedef struct reference_surface_point {
   vec3 point, normal, to_eye; /* world; unit vectors; the normal is on the eye's side */
-  double color[3], behind[3]; /* behind: what it lets through of light from behind */
+  double color[3], behind[3]; /* behind: the light from behind that the surface lets through */
   hl_material material;
   bool receives_shadow;
 } reference_surface_point;
 
-/* The first triangle or isosurface farther along the ray than `after` and nearer than ray->farthest; false:
- * none. */
+/* Finds the first triangle or isosurface farther along the ray than `after` and nearer than ray->farthest;
+ * false if there is none. */
 bool hl_reference_surface_next(const reference *all, reference_role role, const reference_ray *ray,
                                double after, reference_hit *hit);
-/* The first isosurface farther along the ray than `after` and nearer than hit->distance: sets *hit if there
- * is one. */
+/* Sets *hit to the first isosurface farther along the ray than `after` and nearer than hit->distance, if
+ * there is one. */
 void hl_reference_iso_next(const reference *all, reference_role role, const reference_ray *ray, double after,
                            reference_hit *hit);
-/* The unit vector to where the isosurface's inside, of greater values, is not; point: world. */
+/* The unit normal of an isosurface, away from its inside of greater values. point: world. */
 vec3 hl_reference_iso_normal(const reference_hit *hit, vec3 point);
 /* The fractions of red, green and blue light that pass all surfaces on a ray, which may begin on a surface.
  */
 void hl_reference_surfaces_passing(const reference *all, const reference_ray *ray, double passing[3]);
-/* Sets the worker's sample to what the surface sends back along the ray, with weight 1. */
+/* Sets the worker's sample to the light that the surface sends back along the ray, with weight 1. */
 void hl_reference_surface_shade(const reference *all, const reference_hit *hit, const reference_ray *ray,
                                 reference_worker *worker);
 
-/* A surface within this fraction of a step from the beginning of a ray is the one that it begins on. */
+/* A ray that begins on a surface does not meet it again within this fraction of a step. */
 #define LEAST_GAP 1e-3
 
-/* Contributions (layers.c): sets them to zero; adds others, times `scale`; writes the caller's layers of one
- * pixel. */
+/* Contributions (layers.c). clear() sets them to zero. add() adds others, times `scale`. write() writes the
+ * caller's layers of one pixel. */
 void hl_reference_parts_clear(reference_parts *parts, size_t light_count);
 void hl_reference_parts_add(reference_parts *parts, const reference_parts *other, double scale,
                             size_t light_count);
 void hl_reference_parts_write(const reference_parts *parts, double depth_first, const hl_layers *layers,
                               size_t pixel);
 
-/* The fraction of a light that reaches a point, whatever image it projects; of a light with an emission image
- * the fraction in each channel. reach: what hl_reference_light_reach() gives there. */
+/* The fraction of a light that reaches a point, without the image that the light projects. For a light with
+ * an emission image, the fraction is in each channel. reach: the result of hl_reference_light_reach() at the
+ * point. */
 void hl_reference_light_shadow(const reference *all, const reference_light *light,
                                const reference_receiver *at, bool attenuated, const double reach[3],
                                reference_worker *worker, double shadow[3]);

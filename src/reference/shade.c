@@ -1,13 +1,13 @@
 /* reference/shade.c - the colour that a lit sample sends to the eye; eqs. (3) and (4).
  *
+ *
  *     surface   C = c ka Ia + c kd I max(N.L, 0) + ks I max(E.R, 0)^n     (specular only where N.L > 0)
  *     medium    C = c (ka Ia + p I)
- *     flat      C = c, whatever the light
+ *     flat      C = c, for any light
  *
  * p is Henyey and Greenstein's phase function times 4 pi, its mean over the light. Emission adds c ke to a
  * surface and to a medium. A sample of a volume shaded "phong" goes from medium to surface as its gradient
- * grows from nothing.
- */
+ * grows from nothing. */
 #include <string.h>
 
 #include "reference/reference.h"
@@ -67,18 +67,20 @@ void hl_reference_light_shadow(const reference *all, const reference_light *ligh
 
 /* The properties of a sample that are the same for every light. */
 typedef struct surface {
-  double own[3]; /* the volume's colour */
+  double own[3]; /* the volume's own colour */
   vec3 normal;   /* unit length, outward; 0 in a medium */
-  double amount; /* 0: medium, 1: surface */
-  vec3 outside;  /* world; on surfaces, along the normal, where their matter begins */
+  double amount; /* 0 for a medium, 1 for a surface */
+  vec3 outside;  /* world; for surfaces: the place, along the normal, where their matter begins */
 } surface;
 
-/* p = (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), cos = -E.L: 1 in all directions for g = 0. */
+/* The phase function p = (1 - g^2) / (1 + g^2 - 2 g cos)^(3/2), cos = -E.L. It is 1 in all directions for g =
+ * 0. */
 double hl_reference_phase(double g, vec3 to_eye, vec3 towards) {
   return (1 - g * g) / pow(1 + g * g + 2 * g * vec3_dot(to_eye, towards), 1.5);
 }
 
-/* The fraction of a light that reaches a sample: on a surface that faces the light, its outside. */
+/* Adds the fraction of a light that reaches a sample, or its outside if the sample is on a surface that faces
+ * the light. */
 static void add_shadow(const reference *all, const reference_sample *at, const surface *here, size_t light,
                        reference_worker *worker, double shadow[3]) {
   bool faces = vec3_dot(here->normal, worker->arrivals[light].towards) > 0;
@@ -120,9 +122,9 @@ static void shade_light(const reference *all, const reference_sample *at, const 
                        arrived->incoming[c];
 }
 
-/* Where a surface's matter begins, along the normal from a sample in it: its values fall by the gradient's
- * length in each unit of the way, down to those that show nothing. At most 8 voxels away, and no way at all
- * behind the face of a cut. */
+/* The place where a surface's matter begins, along the normal from a sample in it. Values fall by the
+ * gradient's length per unit of length, down to values that show nothing. The place is at most 8 voxels away,
+ * and at the sample itself behind the face of a cut. */
 static vec3 outside_of_surface(const reference_sample *at, const surface *here, double behind_face) {
   const reference_volume *volume = at->volume;
   double empty = volume->empty_value, outside = empty,
@@ -134,7 +136,7 @@ static vec3 outside_of_surface(const reference_sample *at, const surface *here, 
   return vec3_add(at->point, vec3_scale(here->normal, way * here->amount * (1 - behind_face)));
 }
 
-/* The sky's part: on a surface the light at its outside. */
+/* Adds the sky's light; on a surface, the light at its outside. */
 static void shade_sky(const reference *all, const reference_sample *at, const surface *here,
                       reference_worker *worker, reference_parts *sample) {
   const hl_scene_volume *described = at->volume->described;
@@ -156,7 +158,7 @@ static void shade_sky(const reference *all, const reference_sample *at, const su
   }
 }
 
-/* Flat colours receive no shadow: their shadow layers show full light. */
+/* Adds full light to the shadow layers, as flat colours receive no shadow. */
 static void add_no_light(const reference *all, double weight, reference_parts *sample) {
   for (size_t l = 0; l < all->scene->light_count && all->all_shadows; l++)
     for (int c = 0; c < 3; c++) sample->lights[l].shadow[c] += weight;

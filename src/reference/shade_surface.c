@@ -3,7 +3,7 @@
 #include "mesh/mesh.h"
 #include "reference/reference.h"
 
-/* The normal of a triangle's corner, of any length: its own where it is at an edge, else its vertex's. */
+/* The normal of a triangle's corner, of any length: the corner's own at a crease, else its vertex's. */
 static vec3 corner_normal(const reference *all, const hl_scene_mesh *mesh, size_t triangle, int i) {
   const hl_mesh *of = mesh->mesh;
   const vec3 *normals = all->surfaces.normals + all->surfaces.first_normal[mesh - all->scene->meshes];
@@ -50,7 +50,7 @@ static vec3 flat_normal(const reference_hit *hit, vec3 point) {
   return vec3_normalise(vec3_cross(vec3_subtract(corner[1], corner[0]), vec3_subtract(corner[2], corner[0])));
 }
 
-/* Eqs. (3) and (4) for one light. */
+/* Adds one light by eqs. (3) and (4). */
 static void add_light(const reference *all, size_t light, const reference_surface_point *at,
                       reference_worker *worker, light_part *part) {
   const hl_material *material = &at->material;
@@ -91,7 +91,7 @@ static void add_sky(const reference *all, const reference_surface_point *at, ref
   }
 }
 
-/* The normal and the colour where the ray meets a triangle. Returns whether it meets the side behind. */
+/* Finds the normal and the colour where the ray meets a triangle. Returns whether the ray meets the back. */
 static bool find_mesh_point(const reference *all, const reference_hit *hit, reference_surface_point *at) {
   const hl_scene_mesh *mesh = hit->triangle->mesh;
   vec3 flat = flat_normal(hit, at->point);

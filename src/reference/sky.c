@@ -1,21 +1,21 @@
 /* reference/sky.c - light from all directions, integrated over cells of equal solid angle.
  *
  * The sky's sphere, or its upper hemisphere, is cut into rings about `up` and these into cells of nearly
- * equal sides, all of the same solid angle. A cell has the mean radiance of its directions and casts its
- * shadow from its middle, of an image the middle of its light; its cosine is that of the mean of its
- * directions, which is the exact mean wherever no part of the cell is hidden. */
+ * equal sides, all of the same solid angle. A cell has the mean radiance of its directions. Its shadow is
+ * cast from its middle; in an image, from the middle of its light. Its cosine is the cosine of the mean of
+ * its directions, which is the exact mean wherever no part of the cell is hidden. */
 #include "core/memory.h"
 #include "reference/reference.h"
 
-/* An image is sampled so often along each side of its pixels, but at most so often along each side of a cell.
- */
+/* An image is sampled PIXEL_SAMPLES times along each side of its pixels, but at most MOST_SAMPLES times along
+ * each side of a cell. */
 enum { PIXEL_SAMPLES = 3, MOST_SAMPLES = 256 };
 
-/* A ring of cells: heights are cosines of angles to `up`. */
+/* A ring of cells. Heights are cosines of angles to `up`. */
 typedef struct sky_ring {
-  double low, high; /* heights */
+  double low, high; /* heights of its borders */
   size_t cells;
-  double turn; /* of its first cell, in parts of the full circle */
+  double turn; /* angle of its first cell, as a fraction of the full circle */
 } sky_ring;
 
 static vec3 direction_of(const sky_axes *axes, double height, double turn) {
@@ -25,8 +25,9 @@ static vec3 direction_of(const sky_axes *axes, double height, double turn) {
   return vec3_add(level, vec3_scale(axes->up, height));
 }
 
-/* The mean of the radiance over a cell that begins at `turn`, and of the directions, each with its brightness
- * where the sky is an image: a sun in the cell shines from where it is. */
+/* Finds the mean of the radiance over a cell that begins at `turn`, and the mean of the directions. Where the
+ * sky is an image, each direction is weighted by its brightness: a sun in the cell shines from its own
+ * place. */
 static void find_means(const hl_sky *sky, const sky_axes *axes, const sky_ring *ring, double turn,
                        reference_sky_cell *cell) {
   double wide = sky->type == HL_SKY_IMAGE ? ceil(PIXEL_SAMPLES * (double)sky->width / (double)ring->cells)
@@ -51,7 +52,7 @@ static void find_means(const hl_sky *sky, const sky_axes *axes, const sky_ring *
   cell->mean = weighed ? vec3_scale(bright, 1 / brightness) : vec3_scale(sum, 1 / samples);
 }
 
-/* The number of cells in ring i of `rings`, each `angle` high: as many as make them as wide as high. */
+/* The number of cells in ring i of `rings`, each `angle` high. The cells are about as wide as high. */
 static size_t cells_in_ring(size_t i, double angle) {
   double middle = ((double)i + 0.5) * angle;
   return (size_t)fmax(floor(2 * HL_PI * sin(middle) / angle + 0.5), 3);
@@ -61,7 +62,7 @@ hl_status hl_reference_sky_create(reference *all, int cell_count, hl_error *erro
   const hl_sky *sky = &all->scene->sky;
   if (sky->type == HL_SKY_NONE) return HL_OK;
   double least = sky->hemisphere ? 0 : -1, widest = sky->hemisphere ? HL_PI / 2 : HL_PI;
-  /* derived: the cells cover 2 pi (1 - least), and one of angle a on each side covers a^2 */
+  /* derived: the cells cover 2 pi (1 - least), and a cell with the angle a on each side covers a^2 */
   double angle = sqrt(2 * HL_PI * (1 - least) / cell_count);
   size_t rings = (size_t)fmax(floor(widest / angle + 0.5), 1), count = 0;
   angle = widest / (double)rings;
@@ -77,7 +78,7 @@ hl_status hl_reference_sky_create(reference *all, int cell_count, hl_error *erro
   for (size_t i = 0; i < rings; i++) {
     sky_ring ring = {.high = height, .cells = cells_in_ring(i, angle)};
     ring.low = height - taken * (double)ring.cells;
-    ring.turn = (double)i * (sqrt(5) - 1) / 2; /* so that no two rings stand alike */
+    ring.turn = (double)i * (sqrt(5) - 1) / 2; /* no two rings begin at the same angle */
     for (size_t j = 0; j < ring.cells; j++, cell++) {
       double turn = ring.turn + (double)j / (double)ring.cells;
       find_means(sky, &axes, &ring, turn, cell);
@@ -88,8 +89,9 @@ hl_status hl_reference_sky_create(reference *all, int cell_count, hl_error *erro
   return HL_OK;
 }
 
-/* Eqs. (3) and (4) for each cell: a surface takes diffuse / pi times radiance, cosine and solid angle; a
- * medium 1 / (4 pi) times radiance, phase and solid angle, where p is the phase function times 4 pi. */
+/* Applies eqs. (3) and (4) to each cell. A surface receives diffuse / pi times radiance, cosine and solid
+ * angle. A medium receives 1 / (4 pi) times radiance, phase and solid angle, where p is the phase function
+ * times 4 pi. */
 void hl_reference_sky_arrive(const reference *all, const reference_sky_receiver *at, reference_worker *worker,
                              reference_sky_light *light) {
   *light = (reference_sky_light){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};

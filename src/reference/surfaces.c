@@ -1,5 +1,5 @@
-/* reference/surfaces.c - the meshes of a scene for the oracle: where rays meet triangles and spheres, found
- * in a tree of boxes. */
+/* reference/surfaces.c - the meshes of a scene for the oracle: finds where rays meet triangles and spheres,
+ * by a tree of boxes. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -26,7 +26,7 @@ static double middle_of(const reference_triangle *triangle, int axis) {
   return sum / 3;
 }
 
-/* Moves the triangles whose middle lies below `at` to the front; returns how many. */
+/* Moves the triangles whose middle lies below `at` to the front. Returns their number. */
 static size_t part_triangles(reference_triangle *triangles, size_t count, int axis, double at) {
   size_t below = 0;
   for (size_t t = 0; t < count; t++) {
@@ -38,8 +38,8 @@ static size_t part_triangles(reference_triangle *triangles, size_t count, int ax
   return below;
 }
 
-/* Makes the tree of a range of triangles, which it sorts; returns its node. A node's second child is at
- * `second`, the first one follows it. */
+/* Makes the tree of a range of triangles, and sorts the range. Returns the tree's node. The node's first
+ * child follows it; its second child is at `second`. */
 static size_t make_tree(reference_surfaces *all, size_t first, size_t count, int depth) {
   size_t made = all->node_count++;
   reference_node *node = &all->nodes[made];
@@ -101,7 +101,8 @@ static void add_mesh(reference_surfaces *all, const hl_scene_mesh *mesh) {
   }
 }
 
-/* Normals of a mesh's vertices, in the world: the file's, or the sum of the triangles' cross products. */
+/* Adds the normals of a mesh's vertices, in the world: the file's, or the sum of the triangles' cross
+ * products. */
 static void add_normals(const hl_scene_mesh *mesh, vec3 *normals) {
   const hl_mesh_description *d = &mesh->mesh->description;
   affine3 placement = hl_scene_mesh_to_world(mesh);
@@ -153,8 +154,8 @@ void hl_reference_surfaces_release(reference *all) {
 
 /* ---- rays ---- */
 
-/* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection" (1997); the distance, infinite
- * where the ray misses. */
+/* The distance at which a ray meets a triangle, infinite if it misses. Moeller and Trumbore, "Fast, minimum
+ * storage ray/triangle intersection" (1997). */
 static double meet_triangle(const reference_triangle *triangle, const reference_ray *ray, double weight[3]) {
   vec3 ab = vec3_subtract(triangle->corner[1], triangle->corner[0]);
   vec3 ac = vec3_subtract(triangle->corner[2], triangle->corner[0]);
@@ -169,7 +170,8 @@ static double meet_triangle(const reference_triangle *triangle, const reference_
   return vec3_dot(ac, q) / determinant;
 }
 
-/* The first point of a sphere beyond a distance: |origin + s direction - centre| = r. */
+/* The distance of the first point of a sphere beyond a given distance: |origin + s direction - centre| =
+ * r. */
 static double meet_sphere(const reference_triangle *sphere, const reference_ray *ray, double after) {
   vec3 away = vec3_subtract(ray->origin, sphere->corner[2]);
   double along = vec3_dot(away, ray->direction);
@@ -184,7 +186,7 @@ static vec3 along(const reference_ray *ray, double distance) {
   return vec3_add(ray->origin, vec3_scale(ray->direction, distance));
 }
 
-/* The first point beyond a distance that the scene's cuts leave. */
+/* The distance of the first hit beyond a given distance that the scene's cuts leave. */
 static double meet(const hl_scene_description *scene, const reference_triangle *triangle,
                    const reference_ray *ray, double after, double weight[3]) {
   if (triangle->radius == 0) {

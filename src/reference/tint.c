@@ -1,21 +1,21 @@
 /* reference/tint.c - the colours of a volume's own voxels at a point: the trilinear mean of linear colours
- * times weights, divided by that of the weights; then the mask's. */
+ * times weights, divided by the trilinear mean of the weights. The mask's colours follow. */
 #include "reference/reference.h"
 
-/* IEC 61966-2-1. */
+/* The linear value of an sRGB code (IEC 61966-2-1). */
 static double linear_of(unsigned char code) {
   double encoded = code / 255.0;
   return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-/* color: four bytes, the last of which is the weight. */
+/* Adds a voxel's colour. color: four bytes, the last of which is the weight. */
 static void add_voxel(const unsigned char *color, double share, double sum[3], double *weights) {
   double weight = share * color[3];
   *weights += weight;
   for (int c = 0; c < 3; c++) sum[c] += weight * linear_of(color[c]);
 }
 
-/* Multiplies a colour by that of the voxels. */
+/* Multiplies a colour by the colour of the voxels. */
 static void multiply_by_voxels(const reference_volume *volume, vec3 point, double color[3]) {
   const hl_volume *grid = volume->grid;
   const double p[3] = {point.x, point.y, point.z};
