@@ -50,9 +50,10 @@ typedef struct plan_light {
   int first_slab;     /* the first slab that light reaches */
   int stride;         /* floats from row to row of a plane */
   int plane, origin;  /* floats of a plane, and the offset of pixel (0, 0) in it */
-  unsigned planes;    /* where the light's planes begin, in units of 16 floats: [ring][channels][plane] */
-  float map[3][4];    /* frame space to (w, w u, w v) of the buffer */
-  float slab_path;    /* as path in attenuate_job (shadow/attenuate.h) */
+  unsigned planes; /* where the light's planes begin, in units of 16 floats: [ring][1 or 2][channels][plane],
+                      of the transmittance and of the light at the outside of surfaces */
+  float map[3][4]; /* frame space to (w, w u, w v) of the buffer */
+  float slab_path; /* as path in attenuate_job (shadow/attenuate.h) */
   plan_box box, content;
   float margin[3]; /* voxels: farther from the box's faces, no light passes beside them to the pixels around a
                       sample */
@@ -69,6 +70,11 @@ typedef struct plan_volume {
   /* the transfer function's tables (grid/classifier.h) */
   float scale, offset, first_visible, last_visible, normal_edge;
   int bends; /* the table of bent colours is there */
+  int several_surfaces;
+  float only_outside, side;
+  /* surfaces at the box's faces (shade_volume in render/slab.h) */
+  int any_face, cut_shading;
+  int face_cuts[6]; /* [axis][low, high] */
   /* the material (shade_volume in render/slab.h) */
   float ambient, diffuse, specular, shininess, emission;
   float anisotropy;
@@ -98,15 +104,16 @@ typedef struct plan_variant {
   int bspline; /* the kernel is the cubic B-spline; else any polynomial of degree 5 */
   int eye_perspective;
   int phong, lit, shadowed;
-  int boxed; /* the volume's box cuts something visible */
+  int outside; /* the lights' buffers keep the light at the outside of surfaces, too */
+  int boxed;   /* the volume's box cuts something visible */
   int back_to_front;
   int channels; /* of light attenuation: 1 or 3 */
 } plan_variant;
 
 /* Entries of each of the tables, which follow each other: sums, color and shown with four numbers an entry,
- * and bent with one. */
+ * outside and bent with one. */
 #define PLAN_ENTRIES      4096
 #define PLAN_TABLE_ROWS   (PLAN_ENTRIES + 2)
-#define PLAN_TABLE_FLOATS (PLAN_TABLE_ROWS * 13)
+#define PLAN_TABLE_FLOATS (PLAN_TABLE_ROWS * 14)
 
 #endif

@@ -25,7 +25,7 @@ static const char *const kernel_names[KERNELS] = {"fill_floats",      "try_arith
                                                   "run_light",        "find_samples",   "shade_samples",
                                                   "composite_samples"};
 
-enum { MOST_VARIANTS = 64, VARIANT_DEFINES = 9, SAMPLE_COUNTERS = 256 };
+enum { MOST_VARIANTS = 64, VARIANT_DEFINES = 10, SAMPLE_COUNTERS = 256 };
 
 /* The buffers of a device. */
 enum buffer_use {
@@ -240,7 +240,8 @@ static bool upload_tables(hl_gpu *gpu, const gpu_volume *volume) {
               upload(gpu, BUFFER_TABLES, 0, volume->sums, 4 * column) &&
               upload(gpu, BUFFER_TABLES, 4 * column, volume->color, 4 * column) &&
               upload(gpu, BUFFER_TABLES, 8 * column, volume->shown, 4 * column);
-  if (done && volume->bent != NULL) done = upload(gpu, BUFFER_TABLES, 12 * column, volume->bent, column);
+  done = done && upload(gpu, BUFFER_TABLES, 12 * column, volume->outside, column);
+  if (done && volume->bent != NULL) done = upload(gpu, BUFFER_TABLES, 13 * column, volume->bent, column);
   if (done)
     done = reserve_and_upload(gpu, BUFFER_DISTANCES, volume->relevant, bricks) &&
            reserve(gpu, BUFFER_DISTANCES_MADE, bricks);
@@ -273,15 +274,11 @@ static void define_variant(const plan_variant *v, char defines[VARIANT_DEFINES][
   const struct {
     const char *name;
     int value;
-  } all[VARIANT_DEFINES] = {{"STORAGE", v->storage},
-                            {"BSPLINE", v->bspline},
-                            {"EYE_PERSPECTIVE", v->eye_perspective},
-                            {"PHONG", v->phong},
-                            {"LIT", v->lit},
-                            {"SHADOWED", v->shadowed},
-                            {"BOXED", v->boxed},
-                            {"BACK_TO_FRONT", v->back_to_front},
-                            {"CHANNELS", v->channels}};
+  } all[VARIANT_DEFINES] = {
+      {"STORAGE", v->storage},  {"BSPLINE", v->bspline}, {"EYE_PERSPECTIVE", v->eye_perspective},
+      {"PHONG", v->phong},      {"LIT", v->lit},         {"SHADOWED", v->shadowed},
+      {"OUTSIDE", v->outside},  {"BOXED", v->boxed},     {"BACK_TO_FRONT", v->back_to_front},
+      {"CHANNELS", v->channels}};
   for (int i = 0; i < VARIANT_DEFINES; i++)
     snprintf(defines[i], sizeof defines[i], "%s=%d", all[i].name, all[i].value);
 }
@@ -372,7 +369,8 @@ static bool find_distances(hl_gpu *gpu, const gpu_program *program) {
 }
 
 static size_t light_floats(const gpu_sweep *sweep) {
-  return (size_t)sweep->plan->light_tiles * 256 * (size_t)sweep->variant.channels;
+  return (size_t)sweep->plan->light_tiles * 256 * (size_t)sweep->variant.channels *
+         (sweep->variant.outside ? 2 : 1);
 }
 
 /* Of samples, and one for each run's list; a multiple of four. */

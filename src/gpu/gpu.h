@@ -35,10 +35,10 @@ typedef struct gpu_volume {
   const void *voxels;               /* [z][y][x], rows packed */
   int storage;                      /* plan_variant's */
   const int32_t *dimension, *brick_count;
-  const unsigned char *relevant;            /* [bricks] */
-  const uint64_t *cell_bits;                /* [bricks]; null: none */
-  const float *sums, *color, *shown, *bent; /* [PLAN_TABLE_ROWS][4], and of bent [PLAN_TABLE_ROWS]; bent:
-                                               null: none */
+  const unsigned char *relevant;     /* [bricks] */
+  const uint64_t *cell_bits;         /* [bricks]; null: none */
+  const float *sums, *color, *shown; /* [PLAN_TABLE_ROWS][4] */
+  const float *outside, *bent;       /* [PLAN_TABLE_ROWS]; bent: null: none */
 } gpu_volume;
 
 /* The bytes of a row of the device's voxels. */

@@ -48,22 +48,10 @@ static bool is_thin(const asked_frame *f) {
 static bool has_colors(const asked_frame *f) { return f->volume->volume->colors != NULL; }
 static bool is_weighed(const asked_frame *f) { return hl_classifier_is_weighed(&f->prepared->classifier); }
 static bool has_cuts(const asked_frame *f) { return f->volume->cut_count > 0; }
-/* Faces at which a box cuts visible matter are lit as such. */
-static bool has_cut_surface(const asked_frame *f) {
-  return f->volume->shading == HL_SHADING_PHONG && (f->volume->clipped || f->work->grids[0].cut);
-}
 static bool is_soft(const asked_frame *f) {
   for (int i = 0; i < f->work->frame.light_count; i++)
     if (f->work->frame.lights[i].shadows == HL_SHADOWS_SOFT) return true;
   return false;
-}
-static bool has_hard(const asked_frame *f) {
-  for (int i = 0; i < f->work->frame.light_count; i++)
-    if (f->work->frame.lights[i].shadows == HL_SHADOWS_HARD) return true;
-  return false;
-}
-static bool has_shadowed_surface(const asked_frame *f) {
-  return f->volume->shading == HL_SHADING_PHONG && has_hard(f);
 }
 static bool has_images(const asked_frame *f) {
   for (size_t i = 0; i < f->scene->light_count; i++)
@@ -95,9 +83,7 @@ static const struct {
     {has_colors, "voxels with colours"},
     {is_weighed, "gradient opacity, a mask, or a function of two numbers"},
     {has_cuts, "cuts"},
-    {has_cut_surface, "surfaces that the volume's border or a clip box cuts"},
     {is_soft, "soft shadows"},
-    {has_shadowed_surface, "shadows on surfaces"},
     {has_images, "lights with images"},
     {has_phase_tables, "wide lights in media that scatter unevenly"},
 };
@@ -136,6 +122,7 @@ gpu_volume hl_volume_for_device(const prepared_volume *prepared) {
                       .sums = &classifier->sums[0][0],
                       .color = &classifier->color[0][0],
                       .shown = &classifier->shown[0][0],
+                      .outside = classifier->outside,
                       .bent = classifier->bent};
 }
 
@@ -161,6 +148,12 @@ static void plan_matter(const shade_volume *shade, plan_volume *volume) {
   volume->last_visible = classifier->last_visible;
   volume->normal_edge = classifier->normal_edge;
   volume->bends = classifier->bent != NULL;
+  volume->several_surfaces = classifier->several_surfaces;
+  volume->only_outside = classifier->only_outside;
+  volume->side = classifier->side;
+  volume->any_face = shade->any_face;
+  volume->cut_shading = shade->cut_shading;
+  for (int face = 0; face < 6; face++) volume->face_cuts[face] = shade->face_cuts[face / 2][face % 2];
 }
 
 static void plan_material(const shade_volume *shade, const hl_scene_volume *scene, plan_volume *volume) {
@@ -249,6 +242,11 @@ static void plan_margin(const sweep *sweep, int index, plan_light *light) {
   }
 }
 
+/* Planes of one sheet: of the transmittance in each channel, and of the light at the outside of surfaces. */
+static size_t planes_of_sheet(const sweep *sweep, const light_shadow *shadow) {
+  return (size_t)sweep->channels * (shadow->plan.outside ? 2 : 1);
+}
+
 /* Sets a light's buffer; its planes begin at `*floats`, which is raised by theirs. */
 static void plan_buffer(const sweep *sweep, int index, int ring, size_t *floats, int *tiles,
                         plan_light *light) {
@@ -273,7 +271,7 @@ static void plan_buffer(const sweep *sweep, int index, int ring, size_t *floats,
   plan_content(view, sweep, &light->content);
   plan_margin(sweep, index, light);
   *tiles += light->tiles;
-  *floats += ((size_t)ring * (size_t)sweep->channels * buffer.plane + 15) / 16 * 16;
+  *floats += ((size_t)ring * planes_of_sheet(sweep, shadow) * buffer.plane + 15) / 16 * 16;
 }
 
 /* The most bytes of the lights' planes together, slabs of a run where memory allows, and where there are no
@@ -286,7 +284,7 @@ static size_t floats_of_sheet(const sweep *sweep) {
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     const light_shadow *shadow = &sweep->lights[i].shadow;
     if (shadow->method != NULL)
-      floats += (size_t)sweep->channels * hl_shadow_plane(&shadow->plan.view, shadow->plan.reach);
+      floats += planes_of_sheet(sweep, shadow) * hl_shadow_plane(&shadow->plan.view, shadow->plan.reach);
   }
   return floats;
 }
@@ -340,6 +338,13 @@ static hl_status plan_all_rays(const sweep *sweep, planned_sweep *planned, hl_er
 
 /* ---- the sweep ---- */
 
+/* All lights keep the light at the outside of surfaces, or none does. */
+static bool keeps_outside(const sweep *sweep) {
+  for (int i = 0; i < sweep->geometry->light_count; i++)
+    if (sweep->lights[i].shadow.method != NULL && sweep->lights[i].shadow.plan.outside) return true;
+  return false;
+}
+
 static plan_variant variant_of(const sweep *sweep, const frame_plan *plan) {
   const shade_volume *shade = &sweep->arrays.shade_volumes[0];
   const grid *grid = &sweep->content.grids[0];
@@ -349,6 +354,7 @@ static plan_variant variant_of(const sweep *sweep, const frame_plan *plan) {
                         .phong = shade->phong,
                         .lit = shade->lit,
                         .shadowed = plan->light_tiles > 0,
+                        .outside = keeps_outside(sweep),
                         .boxed = grid->cut,
                         .back_to_front = sweep->geometry->back_to_front,
                         .channels = sweep->channels};

@@ -16,6 +16,7 @@ SIZE = 128
 OPACITY = [[0.1, 0], [0.5, 0.08], [1, 0.3]]
 DENSE = [[0.2, 0], [0.3, 0.95]]
 AROUND = [[0, 0.02], [1, 0.3]]
+LAYERS = [[0.15, 0], [0.25, 0.4], [0.4, 0.02], [0.6, 0.02], [0.7, 0], [0.75, 0.8], [1, 0.9]]
 
 
 def run(folder, *arguments):
@@ -37,6 +38,7 @@ def scene(opacity=OPACITY, shadows="hard", shading="none", direction=(0.4, -0.7,
             "render": {"sheet_spacing": 1, "shadows": shadows, **(render or {})}}
 
 
+CLIP = {"min": [5, 3, 4], "max": [24, 20, 15]}
 FLAT = {"type": "orthographic", "position": [50, 32, -88], "target": [0, 0, 0], "up": [0, 1, 0], "height": 50}
 MADE = {
     "medium": scene(),
@@ -44,12 +46,19 @@ MADE = {
     "opaque, light from behind, runs of 5": scene(opacity=DENSE, direction=(0.2, -0.3, -0.9), render={"slabs_at_once": 5}),
     "opaque": scene(opacity=DENSE),
     "surface without shadows": scene(opacity=DENSE, shadows="off", shading="phong"),
+    "faces of the border": scene(shading="phong", shadows="off", opacity=AROUND),
+    "faces of a clip box as media": scene(shading="phong", shadows="off", volume={"clip": CLIP, "cut_shading": "none"}),
+    "surfaces": scene(opacity=DENSE, shading="phong"),
+    "soft surfaces, light from behind": scene(shading="phong", direction=(0.2, -0.3, -0.9)),
+    "faces with shadows": scene(shading="phong", opacity=AROUND, volume={"clip": CLIP}),
+    "several surfaces, colours, near light": scene(opacity=LAYERS, shading="phong", volume={"attenuation_color": [1, 0.5, 0.2]},
+                                                   light={"type": "point", "position": [40, 50, -50]}),
+    "several surfaces, flat view, runs of 3": scene(opacity=LAYERS, shading="phong", camera=FLAT,
+                                                    render={"slabs_at_once": 3, "shadow_lookup": "bilinear"}),
     "near light, colours, flat view": scene(light={"type": "point", "position": [40, 50, -50]}, camera=FLAT,
                                             volume={"attenuation_color": [1, 0.5, 0.2]}),
 }
 LEFT = {
-    "shadows on surfaces": scene(shading="phong"),
-    "surfaces that the volume's border or a clip box cuts": scene(shading="phong", shadows="off", opacity=AROUND),
     "soft shadows": scene(shadows="soft", light={"type": "directional", "direction": [0.4, -0.7, 0.5],
                                                  "angular_diameter_deg": 7}),
     "splatting in place of gathering": scene(render={"reconstruction": "splat"}),

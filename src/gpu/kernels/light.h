@@ -13,6 +13,9 @@
 #define DEEPEST     80.0f
 #define EVEN_LIGHT  0.1f
 
+/* Of a light's buffer. */
+#define PLANES_OF_SHEET (CHANNELS * (1 + OUTSIDE))
+
 /* A pixel's way through a slab, and where its matter is seen. */
 typedef struct slab_sample {
   vector position, start, step_sheet, towards_eye;

@@ -32,7 +32,8 @@ DEVICE table_coordinate coordinate_of_density(GLOBAL const plan_volume *volume, 
 DEVICE GLOBAL const float *sums_table(GLOBAL const float *tables) { return tables; }
 DEVICE GLOBAL const float *color_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 4; }
 DEVICE GLOBAL const float *shown_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 8; }
-DEVICE GLOBAL const float *bent_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 12; }
+DEVICE GLOBAL const float *outside_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 12; }
+DEVICE GLOBAL const float *bent_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 13; }
 
 /* A table's first columns at a coordinate. */
 DEVICE void table_values(GLOBAL const float *table, table_coordinate at, int columns, float values[4]) {

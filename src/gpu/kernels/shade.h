@@ -3,7 +3,7 @@
 #ifndef HL_GPU_SHADE_H
 #define HL_GPU_SHADE_H
 
-#include "gpu/kernels/light.h"
+#include "gpu/kernels/surface.h"
 
 #define CLASSIFIER_LEAST_BENDING (1.0f / 256)
 #define LEAST_PART_OF_SHOWN      (1.0f / 4096)
@@ -66,13 +66,13 @@ DEVICE void find_normal(const volume_data *volume, float density, slab_sample *s
   s->sloped = s->sloped && s->sums.extinction * s->part.length * s->path > THIN_DEPTH;
 #endif
   if (!(PHONG || (LIT && SHADOWED))) s->sloped = 0;
-  if (!s->sloped) return;
-  s->slope = gradient_at(*volume, add_scaled(s->start, s->step_sheet, s->place));
+  if (s->sloped) s->slope = gradient_at(*volume, s->position);
 #if PHONG
   vector slope = scaled(s->slope, magnitude(volume->plan->scale));
   float outward = density < 0.0f ? 1.0f : -1.0f, steepness = root(dot3(slope, slope));
   s->surface = lesser(steepness * divided(1.0f, volume->plan->normal_edge), 1.0f);
   s->normal = scaled(slope, divided(outward, greater(steepness, 1e-18f)));
+  if (volume->plan->any_face) find_cut_face(volume, s);
 #else
   (void)density;
 #endif
@@ -155,6 +155,34 @@ DEVICE float find_direction(GLOBAL const frame_plan *plan, GLOBAL const plan_lig
   return path;
 }
 
+/* The light that arrives at a sample's medium, and at the outside of its surface. */
+typedef struct arriving_light {
+  float on_medium[3], on_surface[3];
+} arriving_light;
+
+/* Takes from a light what lies before a sample. planes: of the light's buffer, at the sheet before the slab.
+ */
+DEVICE void shadow_sample(GLOBAL const frame_plan *plan, const volume_data *volume,
+                          GLOBAL const plan_light *light, GLOBAL const float *planes, const slab_sample *s,
+                          vector towards, float path, arriving_light *arriving) {
+  float passing[CHANNELS], transmittance = 1.0f;
+  if (s->surface < 1.0f) {
+    passing_light(volume, vector_at(plan->normal), light, s, towards, path, planes, passing);
+    for (int c = 0; c < 3; c++) {
+      if (c < CHANNELS) transmittance = passing[c];
+      arriving->on_medium[c] = arriving->on_medium[c] * transmittance;
+    }
+  }
+#if OUTSIDE
+  if (!(s->surface > 0.0f)) return;
+  passing_to_surface(volume, light, s, towards, s->place * path, planes, passing);
+  for (int c = 0; c < 3; c++) {
+    if (c < CHANNELS) transmittance = passing[c];
+    arriving->on_surface[c] = arriving->on_surface[c] * transmittance;
+  }
+#endif
+}
+
 /* Adds what a sample sends to the eye of one light. planes: of the light's buffer, at the sheet before the
  * slab. */
 DEVICE void add_light(GLOBAL const frame_plan *plan, const volume_data *volume,
@@ -165,20 +193,20 @@ DEVICE void add_light(GLOBAL const frame_plan *plan, const volume_data *volume,
   float strength, path = find_direction(plan, light, s->position, &towards, &strength);
   float facing = dot3(s->normal, towards), medium = 1.0f - s->surface;
   if (!(s->surface < 1.0f || facing > 0.0f)) return;
-  float intensity[3], passing[CHANNELS], transmittance = 1.0f;
-  for (int c = 0; c < 3; c++) intensity[c] = strength * light->color[c];
-  if (SHADOWED && light->shadowed && matter->receives_shadow &&
-      (intensity[0] > 0.0f || intensity[1] > 0.0f || intensity[2] > 0.0f)) {
-    passing_light(volume, vector_at(plan->normal), light, s, towards, path, planes, passing);
-    for (int c = 0; c < 3; c++) {
-      if (c < CHANNELS) transmittance = passing[c];
-      intensity[c] = intensity[c] * transmittance;
-    }
-  }
+  arriving_light arriving;
+  for (int c = 0; c < 3; c++) arriving.on_medium[c] = arriving.on_surface[c] = strength * light->color[c];
+#if SHADOWED
+  if (light->shadowed && matter->receives_shadow &&
+      (arriving.on_medium[0] > 0.0f || arriving.on_medium[1] > 0.0f || arriving.on_medium[2] > 0.0f))
+    shadow_sample(plan, volume, light, planes, s, towards, path, &arriving);
+#else
+  (void)planes;
+  (void)path;
+#endif
   if (matter->anisotropy != 0) medium = medium * phase_of(matter->anisotropy, dot3(s->towards_eye, towards));
   if (light->of_sky > 0) medium = medium * light->of_sky;
-  float diffuse = fused(greater(facing, 0.0f) * matter->diffuse, s->surface, medium), glint = 0.0f;
 #if PHONG
+  float diffuse = greater(facing, 0.0f) * matter->diffuse * s->surface, glint = 0.0f;
   if (facing > 0.0f && !(light->of_sky > 0)) {
     vector mirrored = add_scaled(scaled(towards, -1.0f), s->normal, facing * 2.0f);
     glint = power_of(dot3(s->towards_eye, mirrored), matter->shininess) * matter->specular * s->surface;
@@ -192,8 +220,11 @@ DEVICE void add_light(GLOBAL const frame_plan *plan, const volume_data *volume,
   sum[1] = lit->y;
   sum[2] = lit->z;
   for (int c = 0; c < 3; c++) {
-    float matt = matter->absorbs ? fused(medium, matter->albedo[c] - 1, diffuse) : diffuse;
-    sum[c] = fused(intensity[c], fused(of_color[c], matt, glint), sum[c]);
+    float even = matter->absorbs ? fused(medium, matter->albedo[c] - 1, medium) : medium;
+    sum[c] = fused(arriving.on_medium[c], of_color[c] * even, sum[c]);
+#if PHONG
+    sum[c] = fused(arriving.on_surface[c], fused(of_color[c], diffuse, glint), sum[c]);
+#endif
   }
   *lit = vector_of(sum[0], sum[1], sum[2]);
 }
@@ -211,7 +242,7 @@ DEVICE vector color_of_slab(GLOBAL const frame_plan *plan, const volume_data *vo
   for (int i = 0; i < plan->light_count; i++) {
     GLOBAL const plan_light *light = &plan->lights[i];
     GLOBAL const float *own_planes = planes + (wide)light->planes * 16 +
-                                     (wide)slot * (wide)(light->plane * CHANNELS);
+                                     (wide)slot * (wide)(light->plane * PLANES_OF_SHEET);
     add_light(plan, volume, light, own_planes, s, color, &lit);
   }
 #else

@@ -114,44 +114,51 @@ KERNEL(16) run_light(SWEEP_ARGUMENTS) {
   const float u = (float)column, v = (float)row;
   GLOBAL const plan_rays *in_index = rays + (2 + 2 * number) * plan->sheets,
                          *in_frame = in_index + plan->sheets;
-  GLOBAL float *state = light_state + (wide)tile * (256 * CHANNELS) + member;
+  GLOBAL float *state = light_state + (wide)tile * (256 * PLANES_OF_SHEET) + member;
   GLOBAL float *pixel = planes + (wide)light->planes * 16 + light->origin + (wide)row * (wide)light->stride +
                         column;
-  float passing[CHANNELS];
-  for (int c = 0; c < CHANNELS; c++) passing[c] = state[c * 256];
+  light_pixel own;
+  for (int c = 0; c < PLANES_OF_SHEET; c++) own.passing[c] = state[c * 256];
   int changed_at = changed[(wide)tile * 256 + member];
   heights_in_box in_box;
   in_box.enter = in_box.leave = 0.0f;
 #if BOXED
   in_box = heights_of(&light->box, u, v);
 #endif
-  int lit = block_any(votes, is_lit(passing));
+  int lit = block_any(votes, is_lit(&own));
   const slab_range slabs = slabs_with_content(&light->content, u, v, plan->spacing, first, end);
   const int own_first = slabs.first > light->first_slab ? slabs.first : light->first_slab;
   const float speed = speed_of_ray(in_index + first - 1, perspective, u, v);
   sheet_way way = no_sheets();
   for (int sheet = first - 1, step; sheet < end; sheet += step) {
+    int takes = 0;
     step = 1;
     if (lit && sheet >= own_first - 1 && sheet < slabs.end) {
       step = fill_way(&sweep.volume, in_index + sheet, perspective, u, v, speed, sheet == own_first - 1,
                       &way);
-      if ((way.before_shows || way.after_shows) && sheet >= own_first &&
-          attenuate_slab(&sweep, light, in_frame + sheet, u, v, way.before, way.after, &in_box, passing))
-        changed_at = sheet;
+      if ((way.before_shows || way.after_shows) && sheet >= own_first)
+        takes = attenuate_slab(&sweep, light, in_frame + sheet, u, v, way.before, way.after, &in_box, &own);
     } else {
       step = !lit || sheet >= slabs.end ? end - sheet : own_first - 1 - sheet;
       way.after_known = way.after_shows = 0;
     }
+    if (takes) changed_at = sheet;
+#if OUTSIDE
+    if (block_any(votes, takes) && !takes) {
+      leave_surface(&own);
+      changed_at = sheet;
+    }
+#endif
     step = least_of_group(step);
     if (step > end - sheet) step = end - sheet;
     if (step > 1) way.after_known = way.after_shows = 0;
     for (int k = sheet < first ? first : sheet;
          k < sheet + step && changed_at > 0 && changed_at > k - plan->ring; k++)
-      for (int c = 0; c < CHANNELS; c++)
-        pixel[((wide)(k % plan->ring) * CHANNELS + c) * (wide)light->plane] = passing[c];
-    lit = block_any(votes, is_lit(passing));
+      for (int c = 0; c < PLANES_OF_SHEET; c++)
+        pixel[((wide)(k % plan->ring) * PLANES_OF_SHEET + c) * (wide)light->plane] = own.passing[c];
+    lit = block_any(votes, is_lit(&own));
   }
-  for (int c = 0; c < CHANNELS; c++) state[c * 256] = passing[c];
+  for (int c = 0; c < PLANES_OF_SHEET; c++) state[c * 256] = own.passing[c];
   changed[(wide)tile * 256 + member] = changed_at;
 #endif
 }

@@ -95,10 +95,10 @@ typedef struct sweep_data {
   GLOBAL const plan_rays *rays; /* [2 + 2 lights][sheets]: the eye's to index space; the eye's to frame space,
                                    in the middle of the slab before each sheet; and each light's to both */
   volume_data volume;
-  GLOBAL float *pixels;         /* [tiles][16 blocks][R G B A][16] */
-  GLOBAL float *planes;         /* of all lights */
-  GLOBAL float *light;          /* [light tiles][channels][256]; at the last sheet that was reached */
-  GLOBAL int *changed;          /* [light tiles][256]; the last sheet at which it changed */
+  GLOBAL float *pixels; /* [tiles][16 blocks][R G B A][16] */
+  GLOBAL float *planes; /* of all lights */
+  GLOBAL float *light;  /* [light tiles][planes of a sheet][256]; at the last sheet that was reached */
+  GLOBAL int *changed;  /* [light tiles][256]; the last sheet at which it changed */
   GLOBAL const int *shown_from; /* [tiles][16] */
   GLOBAL unsigned *counts; /* [256], samples composited, of tile t in t % 256; and [runs], of the lists */
   GLOBAL float *slots;   /* this and the next two are of every other run; [slabs of a run][256 tiles][4]; of a
@@ -248,10 +248,15 @@ DEVICE void composite_slabs(const sweep_data *sweep, int number) {
 
 /* ---- the lights ---- */
 
-/* Multiplies the light by what a slab lets pass. Returns whether it may have changed. */
+/* A light's pixel: T, and behind it Y where surfaces have it (shadow/attenuate.h). */
+typedef struct light_pixel {
+  float passing[PLANES_OF_SHEET];
+} light_pixel;
+
+/* Multiplies the light by what a slab lets pass. Returns whether the slab takes any. */
 DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *light,
                           GLOBAL const plan_rays *in_frame, float u, float v, float before, float after,
-                          const heights_in_box *in_box, float passing[CHANNELS]) {
+                          const heights_in_box *in_box, light_pixel *pixel) {
   GLOBAL const frame_plan *plan = sweep->plan;
   GLOBAL const plan_volume *volume = sweep->volume.plan;
   table_coordinate a = coordinate_of_density(volume, before), b = coordinate_of_density(volume, after);
@@ -260,17 +265,34 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
 #if BOXED
   cut_way(part, &a, &b);
 #endif
-  float extinction = sums_of_way(sweep->volume.tables, a, b).extinction * part.length;
+  float extinction = sums_of_way(sweep->volume.tables, a, b).extinction * part.length, all = 0.0f;
   if (!(extinction > 0.0f)) return 0;
   float path = path_through_sheet(in_frame, !light->parallel, light->slab_path, u, v);
-  for (int c = 0; c < CHANNELS; c++)
-    passing[c] = passing[c] * exp_negative(fused(extinction, volume->weight[c], 0.0f) * path);
-  return 1;
+#if OUTSIDE
+  const kept_light kept = kept_in_slab(&sweep->volume, a, b, part, path, extinction, pixel->passing[0],
+                                       pixel->passing[CHANNELS]);
+#endif
+  for (int c = 0; c < CHANNELS; c++) {
+    float depth = fused(extinction, volume->weight[c], 0.0f), light_before = pixel->passing[c];
+    all = all + depth;
+    pixel->passing[c] = light_before * exp_negative(depth * path);
+#if OUTSIDE
+    pixel->passing[CHANNELS + c] = pass_outside(pixel->passing[CHANNELS + c], light_before, pixel->passing[c],
+                                                kept);
+#endif
+  }
+  return all > 0.0f;
 }
 
-DEVICE int is_lit(const float passing[CHANNELS]) {
+/* Where a slab takes light in some pixels of a block, surfaces end in the others. */
+DEVICE void leave_surface(light_pixel *pixel) {
+  for (int c = 0; c < PLANES_OF_SHEET - CHANNELS; c++)
+    pixel->passing[CHANNELS + c] = greater(pixel->passing[c], 0.0f);
+}
+
+DEVICE int is_lit(const light_pixel *pixel) {
   int lit = 0;
-  for (int c = 0; c < CHANNELS; c++) lit = lit || passing[c] >= DARK;
+  for (int c = 0; c < PLANES_OF_SHEET; c++) lit = lit || pixel->passing[c] >= DARK;
   return lit;
 }
 
