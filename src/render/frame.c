@@ -238,7 +238,7 @@ void hl_frame_set_up_lights(frame *frame, const hl_scene_description *scene) {
   for (size_t i = 0; i < scene->light_count && !hl_is_maximum(scene); i++) {
     const hl_light *light = &scene->lights[i];
     light_source source = hl_light_source(light, &scene->render, frame->middle);
-    source.light_index = (int)i;
+    source.light_index = frame->order->lights[i];
     if (!hl_is_lit(scene)) source.shadows = HL_SHADOWS_OFF;
     bool narrow = (light->type == HL_LIGHT_SPOT && light->opening_angle_deg <= 120) ||
                   light->texture.pixels != NULL;
@@ -341,12 +341,10 @@ static hl_status copy_arrays(hl_context *context, const hl_scene_description *sc
   if (framed->cuts == NULL || framed->volumes == NULL || framed->lights == NULL || framed->meshes == NULL ||
       framed->mesh_objects == NULL || framed->vertices == NULL || framed->gradients == NULL)
     return hl_fail_memory(error, scene->volume_count * sizeof *framed->volumes, "the scene in frame space");
-  if (scene->volume_count > 0)
-    memcpy(framed->volumes, scene->volumes, scene->volume_count * sizeof *framed->volumes);
-  if (scene->light_count > 0)
-    memcpy(framed->lights, scene->lights, scene->light_count * sizeof *framed->lights);
-  if (scene->mesh_count > 0)
-    memcpy(framed->meshes, scene->meshes, scene->mesh_count * sizeof *framed->meshes);
+  const scene_order *order = framed->order;
+  for (size_t i = 0; i < scene->volume_count; i++) framed->volumes[i] = scene->volumes[order->volumes[i]];
+  for (size_t i = 0; i < scene->light_count; i++) framed->lights[i] = scene->lights[order->lights[i]];
+  for (size_t i = 0; i < scene->mesh_count; i++) framed->meshes[i] = scene->meshes[order->meshes[i]];
   framed->scene.volumes = framed->volumes;
   framed->scene.meshes = framed->meshes;
   framed->scene.lights = framed->lights;
@@ -354,10 +352,10 @@ static hl_status copy_arrays(hl_context *context, const hl_scene_description *sc
   return HL_OK;
 }
 
-hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description *scene, framed_scene *framed,
-                                 hl_error *error) {
+hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description *scene,
+                                 const scene_order *order, framed_scene *framed, hl_error *error) {
   const hl_frame_space space = hl_scene_frame_space(scene);
-  *framed = (framed_scene){.scene = *scene, .unit = space.unit};
+  *framed = (framed_scene){.scene = *scene, .order = order, .unit = space.unit};
   hl_status status = copy_arrays(context, scene, framed, error);
   if (status != HL_OK) return status;
   double(*vertices)[3] = framed->vertices;
@@ -369,18 +367,19 @@ hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description
   }
   move_camera(&space, &framed->scene.camera);
   for (size_t i = 0; i < scene->volume_count; i++) {
-    move_volume(&space, &framed->volumes[i]);
-    move_gradients(&space, &framed->volumes[i].transfer_function, gradients);
-    gradients += scene->volumes[i].transfer_function.gradient_opacity_count;
-    move_cuts(&space, &framed->volumes[i], cuts);
-    cuts += scene->volumes[i].cut_count;
+    hl_scene_volume *volume = &framed->volumes[i];
+    move_volume(&space, volume);
+    move_gradients(&space, &volume->transfer_function, gradients);
+    gradients += volume->transfer_function.gradient_opacity_count;
+    move_cuts(&space, volume, cuts);
+    cuts += volume->cut_count;
   }
   for (size_t i = 0; i < scene->mesh_count; i++) {
     move_point(&space, framed->meshes[i].translate);
     framed->meshes[i].scale /= space.unit;
-    framed->mesh_objects[i] = (int)(scene->volume_count + i + 1);
+    framed->mesh_objects[i] = (int)scene->volume_count + order->meshes[i] + 1;
   }
-  for (size_t i = 0; i < scene->light_count; vertices += scene->lights[i++].vertex_count)
+  for (size_t i = 0; i < scene->light_count; vertices += framed->lights[i++].vertex_count)
     move_light(&space, &framed->lights[i], vertices);
   return HL_OK;
 }

@@ -39,6 +39,7 @@ typedef struct frame {
   light_sectors sectors; /* of lights within the content */
   light_source *lights;  /* [light_count]; owned by the caller; sectors of a light follow each other */
   int light_count;
+  const scene_order *order;    /* of the scene's lists; borrowed */
   const surfaces *surfaces;    /* of the scene's meshes; null: none */
   const surface_tree *contact; /* of what shadow buffers leave light behind (contact.h) */
   const int *mesh_objects;     /* [meshes]; their numbers in the layer of objects */
@@ -87,6 +88,7 @@ int hl_frame_visible_points(const frame *frame, vec3 *points);
 
 /* ---- A scene in frame space: moved to the middle of its volumes, measured in its smallest voxels ---- */
 
+/* Its lights, volumes and meshes stand in the order of frames (scene/order.h). */
 typedef struct framed_scene {
   hl_scene_description
       scene; /* in frame space; voxels, images and texts are borrowed from the scene in the world */
@@ -94,14 +96,15 @@ typedef struct framed_scene {
   hl_light *lights;            /* owned; [light_count] */
   hl_scene_mesh *meshes;       /* owned; [mesh_count], with room for the volumes' isosurfaces */
   int *mesh_objects;           /* owned; likewise; their numbers in the layer of objects */
+  const scene_order *order;    /* borrowed; where in the world's lists volumes, lights and meshes stand */
   double (*vertices)[3];       /* owned; of all polygons */
   hl_opacity_point *gradients; /* owned; of all volumes' gradient opacity */
   hl_cut *cuts;                /* owned; those of the volumes */
   double unit;                 /* world length of 1 in frame space: the smallest voxel edge is from 1 to 2 */
 } framed_scene;
 
-hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description *scene, framed_scene *framed,
-                                 hl_error *error);
+hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description *scene,
+                                 const scene_order *order, framed_scene *framed, hl_error *error);
 void hl_framed_scene_release(hl_context *context, framed_scene *framed);
 
 #endif

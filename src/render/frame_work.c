@@ -158,6 +158,7 @@ hl_status hl_frame_work_set_up(hl_renderer *renderer, const hl_scene_description
                                const frame_request *request, frame_work *work, hl_error *error) {
   hl_context *context = renderer->context;
   frame *frame = &work->frame;
+  frame->order = request->order;
   frame->points = hl_allocate(context, (scene->volume_count + scene->mesh_count) * 8 + 1, sizeof(vec3));
   frame->lights = hl_allocate(context, LIGHT_SECTORS * scene->light_count, sizeof(light_source));
   work->grids = hl_allocate(context, scene->volume_count, sizeof(grid));

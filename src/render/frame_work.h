@@ -64,10 +64,11 @@ typedef struct frame_work {
 /* What the caller wants: a picture of a scene, and its layers. */
 typedef struct frame_request {
   const hl_scene_description *world;
-  uint64_t sky_mark;       /* of the pixels of its sky's image */
-  const hl_layers *layers; /* null: none */
-  float *pixels;           /* the caller's */
-  size_t row_stride;       /* floats */
+  const scene_order *order; /* in which the frame takes its lists */
+  uint64_t sky_mark;        /* of the pixels of its sky's image */
+  const hl_layers *layers;  /* null: none */
+  float *pixels;            /* the caller's */
+  size_t row_stride;        /* floats */
 } frame_request;
 
 /* Refuses a frame that does not fit; first releases blocks kept for later frames if they are in the way, and

@@ -301,7 +301,7 @@ static void add_isosurfaces(const hl_renderer *renderer, framed_scene *framed) {
       hl_mesh *mesh = renderer->prepared[v].iso[i].mesh;
       if (mesh == NULL) continue;
       framed->meshes[scene->mesh_count] = hl_scene_mesh_of_iso(&scene->volumes[v], i, mesh);
-      framed->mesh_objects[scene->mesh_count++] = (int)v + 1;
+      framed->mesh_objects[scene->mesh_count++] = framed->order->volumes[v] + 1;
     }
 }
 
@@ -327,7 +327,8 @@ static hl_status render_frame(hl_renderer *renderer, const frame_request *reques
                               hl_render_statistics *statistics, hl_error *error) {
   double start = hl_clock_seconds();
   const hl_scene_description *scene = &work->framed.scene;
-  hl_status status = hl_framed_scene_create(renderer->context, request->world, &work->framed, error);
+  hl_status status = hl_framed_scene_create(renderer->context, request->world, request->order, &work->framed,
+                                            error);
   if (status == HL_OK) status = make_room(renderer, scene, error);
   if (status == HL_OK) hl_pool_resume(renderer->pool);
   renderer->estimate = 0;
@@ -399,7 +400,7 @@ hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene
   if (!take(renderer)) return fail_busy("hl_renderer_render", error);
   hl_render_statistics counted = {.struct_size = sizeof counted};
   frame_work work = {0};
-  const frame_request request = {&scene->placed, scene->sky_mark, layers, pixels, row_stride};
+  const frame_request request = {&scene->placed, &scene->order, scene->sky_mark, layers, pixels, row_stride};
   status = render_frame(renderer, &request, &work, &counted, error);
   hl_frame_work_release(renderer, &work);
   hl_reserve_end_frame(&renderer->reserve);

@@ -296,7 +296,7 @@ static void set_up_shading(sweep *sweep) {
         .kernel = sweep->content.kernel,
         .phong = volume->shading == HL_SHADING_PHONG,
         .lit = volume->shading != HL_SHADING_FLAT,
-        .object = g + 1,
+        .object = sweep->frame->order->volumes[g] + 1,
         .visible = volume->visible,
         .receives_shadow = volume->receives_shadow,
         .ambient = (float)volume->material.ambient,
@@ -350,7 +350,8 @@ static void set_up_light(sweep *sweep, const sweep_light *from, shade_light *lig
       .texture = from->texture,
       .sector = hl_sector_fraction(from->source->sectors, from->source->sector),
       .number = (int)(light - sweep->shade_lights),
-      .parallel_row = from->source->parallel && hl_light_is_wide(scene) ? from->source->light_index : -1,
+      .parallel_row = from->source->parallel && hl_light_is_wide(scene) ? (int)(scene - sweep->scene->lights)
+                                                                        : -1,
       .cone = hl_light_cone(from->source, sweep->frame->middle, sweep->frame->middle_pixel),
       .nearest = sweep->scene->render.shadow_lookup == HL_LOOKUP_NEAREST,
       .cubic = from->shadow.plan.cubic};

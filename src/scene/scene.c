@@ -100,6 +100,7 @@ static void destroy(hl_scene *scene) {
   for (size_t m = 0; m < d->mesh_count; m++) release_mesh(context, (hl_scene_mesh *)&d->meshes[m]);
   hl_release(context, (void *)d->meshes);
   hl_release(context, (void *)d->cuts);
+  hl_scene_order_release(context, &scene->order);
   hl_drawn_labels_release(context, &scene->placed, &scene->drawn);
   hl_placed_cuts_release(context, &scene->cut);
   hl_placed_lights_release(context, &scene->placed);
@@ -377,6 +378,8 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
     status = hl_lights_place(context, &made->description, &made->suns, &made->placed, error);
   if (status == HL_OK) status = hl_cuts_place(context, &made->placed, &made->cut, error);
   if (status == HL_OK) status = hl_labels_draw(context, &made->placed, &made->drawn, error);
+  if (status == HL_OK)
+    status = hl_scene_order_find(context, &made->description, &made->placed, &made->order, error);
   if (status != HL_OK) {
     destroy(made);
     return status;

@@ -9,6 +9,7 @@
 #include "scene/camera.h"
 #include "scene/cut.h"
 #include "scene/draw_labels.h"
+#include "scene/order.h"
 #include "scene/placement.h"
 #include "scene/suns.h"
 #include "scene/transfer_function.h"
@@ -25,6 +26,7 @@ struct hl_scene {
   sky_suns suns;                    /* of the sky, where they are lights: placed.sky.suns tells */
   placed_cuts cut;                  /* the placed description's volumes, where the scene has cuts */
   drawn_labels drawn;               /* the volumes of occupancy and the lattices */
+  scene_order order;                /* in which frames take the placed description's lists */
   uint64_t sky_mark;                /* of the pixels of the sky's image; for keys of kept results */
 };
 

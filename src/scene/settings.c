@@ -65,6 +65,16 @@ void hl_settings_defaults(hl_setting_kind kind, void *object) {
   }
 }
 
+void hl_settings_key_add(hl_setting_kind kind, const void *object, int type, hl_key *key) {
+  for (size_t s = 0; s < hl_setting_count(kind); s++) {
+    const hl_setting *setting = hl_setting_get(kind, s);
+    const size_t count = doubles_of(setting);
+    if (!hl_setting_is_for(setting, type)) continue;
+    if (count == 0) hl_key_add_whole(key, hl_setting_whole(setting, object));
+    else hl_key_add_numbers(key, hl_setting_field_const(setting, object), count);
+  }
+}
+
 const char *hl_setting_choice_name(const hl_setting *setting, int value) {
   for (const hl_setting_choice *choice = setting->choices; choice != NULL && choice->name != NULL; choice++)
     if (choice->value == value) return choice->name;

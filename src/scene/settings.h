@@ -7,6 +7,7 @@
 #include <halflight/settings.h>
 
 #include "core/error.h"
+#include "core/key.h"
 
 /* The field of a row in its struct. */
 void *hl_setting_field(const hl_setting *setting, void *object);
@@ -23,6 +24,9 @@ bool hl_setting_is_standard(const hl_setting *setting, const void *object);
 
 /* Sets the fields of all rows to their defaults. */
 void hl_settings_defaults(hl_setting_kind kind, void *object);
+
+/* Adds the fields of all rows that objects of this type have, in their order, to a key. */
+void hl_settings_key_add(hl_setting_kind kind, const void *object, int type, hl_key *key);
 
 /* The name of one of the row's choices; null: none has this value. */
 const char *hl_setting_choice_name(const hl_setting *setting, int value);
