@@ -44,6 +44,7 @@
 #ifndef HALFLIGHT_HALFLIGHT_H
 #define HALFLIGHT_HALFLIGHT_H
 
+#include "compose.h"
 #include "context.h"
 #include "device.h"
 #include "image.h"

@@ -181,6 +181,10 @@ HL_API void hl_volume_release(hl_volume *volume); /* null is allowed */
 
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_info(const hl_volume *volume, hl_volume_info *info);
 
+/* The box around a volume's voxels, half a voxel beyond their outermost centres, in the world of its file:
+ * least and greatest x, y, z. Where one of the pointers is null, nothing is done. */
+HL_API void hl_volume_world_box(const hl_volume_info *info, double low[3], double high[3]);
+
 /* The unit of lengths in the volume's world, as its file tells: "metre", "millimetre", "micrometre" or
  * "angstrom"; null where it is unknown. Static. */
 HL_API const char *hl_volume_unit(const hl_volume *volume);

@@ -334,42 +334,15 @@ class Scene:
         return f"<halflight.Scene {width}x{height}, {', '.join(said)}>"
 
 
-def _set_lights(struct: Any, settings: Mapping[str, Any], keep: list[Any]) -> None:
-    lights = settings.get("lights")
-    if lights is None and "shadows" not in settings:
-        return
-    if lights is None:  # as the program's --shadows: of all lights that cast any
-        array = ffi.new("hl_light[]", struct.light_count)
-        ffi.memmove(array, struct.lights, ffi.sizeof("hl_light") * struct.light_count)
-        for light in array:
-            light.shadows = lib.HL_SHADOWS_OFF if light.shadows == lib.HL_SHADOWS_OFF else lib.HL_SHADOWS_DEFAULT
-    else:
-        given = [lights] if isinstance(lights, Light) else list(lights)
-        array = ffi.new("hl_light[]", len(given))
-        for n, light in enumerate(given):
-            if not isinstance(light, Light):
-                raise TypeError(f"lights[{n}]: {light!r} is no light: use Directional, Point, Spot, Rect, Disk or Polygon")
-            light._fill(array[n], keep, f"lights[{n}]: ")
+def _set_lights(struct: Any, lights: Any, keep: list[Any]) -> None:
+    given = [lights] if isinstance(lights, Light) else list(lights)
+    array = ffi.new("hl_light[]", len(given))
+    for n, light in enumerate(given):
+        if not isinstance(light, Light):
+            raise TypeError(f"lights[{n}]: {light!r} is no light: use Directional, Point, Spot, Rect, Disk or Polygon")
+        light._fill(array[n], keep, f"lights[{n}]: ")
     keep.append(array)
     struct.lights, struct.light_count = array, len(array)
-
-
-def _expose_anew(struct: Any, volume: Volume, settings: Mapping[str, Any], keep: list[Any]) -> None:
-    """Automatic light is made for the whole volume: cut open, it gets the light that suits what is left."""
-    cut = settings.get("cuts") is not None or volume._changes.keys() & {"cuts", "clip"}
-    if not cut or volume._base is not None or settings.get("lights") is not None or struct.render.compositing != lib.HL_COMPOSITING_LIGHT:
-        return
-    factor = ffi.new("double *")
-    look = str(volume._changes.get("look") or "auto")
-    call(lib.hl_scene_light_factor, ffi.addressof(struct), ffi.new("char[]", look.encode()), factor)
-    array = ffi.new("hl_light[]", struct.light_count)
-    ffi.memmove(array, struct.lights, ffi.sizeof("hl_light") * struct.light_count)
-    keep.append(array)
-    for light in array:
-        light.intensity *= factor[0]
-    struct.ambient = [channel * factor[0] for channel in struct.ambient]
-    struct.sky.strength *= factor[0]
-    struct.lights = array
 
 
 def _set_meshes(struct: Any, meshes: Mesh | Sequence[Mesh], keep: list[Any]) -> None:
@@ -438,15 +411,14 @@ def _look_along(struct: Any, towards_eye: Sequence[float], up: Sequence[float]) 
         raise ValueError("camera: what is seen cannot be framed from there")
 
 
-def _set_camera(struct: Any, camera: Any, reframe: bool) -> None:
+def _set_camera(struct: Any, camera: Any) -> None:
     if isinstance(camera, Camera):
         camera._fill(struct.camera)
     elif isinstance(camera, str) and len(camera) == 2 and camera in SIDES_BY_AXES:
         _look_along(struct, *SIDES_BY_AXES[camera])
     elif isinstance(camera, str):
-        side = SIDES.index(choice("camera", camera, SIDES))
-        _frame(struct, side, None)
-    elif camera is not None:
+        _frame(struct, SIDES.index(camera), None)
+    else:
         if isinstance(camera, (dict, set)) or not hasattr(camera, "__len__"):
             raise TypeError(f"camera: {camera!r} is no Camera, side or (azimuth, elevation)")
         if len(camera) == 3 and all(hasattr(one, "__len__") for one in camera):
@@ -456,8 +428,6 @@ def _set_camera(struct: Any, camera: Any, reframe: bool) -> None:
         if abs(angles[1]) > 90:
             raise ValueError(f"camera: the elevation {angles[1]:g} is not from -90 to 90")
         _frame(struct, lib.HL_SIDE_AUTOMATIC, angles)
-    elif reframe:
-        _frame(struct, lib.HL_SIDE_AUTOMATIC, None)
 
 
 def _for_meshes() -> Any:
@@ -474,45 +444,70 @@ def _restored(volumes: tuple[Volume, ...], state: dict[str, Any]) -> Scene:
     return scene
 
 
+def _options(settings: Mapping[str, Any], volumes: Sequence[Volume], flags: int) -> dict[str, str]:
+    """The settings whose meaning is the library's (hl_scene_compose), as the program's options."""
+    options: dict[str, str] = {}
+    if (size := settings.get("size")) is not None:
+        width, height = _settings.size_of("size", size)
+        options["size"] = f"{width}x{height}"
+    if isinstance(camera := settings.get("camera"), str) and camera not in SIDES_BY_AXES:
+        if choice("camera", camera, SIDES) != "automatic":
+            options["view"] = camera
+    if (ambient := settings.get("ambient")) is not None:
+        options["ambient"] = ",".join(map(repr, map(float, colors.linear_color("ambient", ambient))))
+    for word in ("shadows", "kernel"):
+        if settings.get(word) is not None:
+            options[word] = str(settings[word])
+    if flags & lib.HL_COMPOSE_CUT and (look := volumes[0]._changes.get("look")) is not None:
+        options["look"] = str(look)
+    return options
+
+
+def _flags(volumes: Sequence[Volume], settings: Mapping[str, Any]) -> int:
+    """What the library is told of a scene whose camera and light were chosen for its first volume."""
+    flags: int = lib.HL_COMPOSE_BARE
+    cut = settings.get("cuts") is not None
+    if cut or len(volumes) != 1 or any(one._changes.keys() - {"name"} for one in volumes):
+        flags |= lib.HL_COMPOSE_CHANGED
+    if settings.get("meshes") is not None:
+        flags |= lib.HL_COMPOSE_MESHES
+    if len(volumes) == 1 and volumes[0]._base is None and (cut or volumes[0]._changes.keys() & {"cuts", "clip"}):
+        flags |= lib.HL_COMPOSE_CUT
+    return flags
+
+
+def _compose(pointer: Any, flags: int, options: Mapping[str, str]) -> Any:
+    """An hl_scene of a description and options."""
+    keep = [(ffi.new("char[]", name.encode()), ffi.new("char[]", value.encode())) for name, value in options.items()]
+    array = ffi.new("hl_option[]", keep) if keep else ffi.NULL
+    return made(lib.hl_scene_compose, "hl_scene", lib.hl_scene_release, context, pointer, flags, array, len(keep))
+
+
 def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], chosen: bool) -> Any:
     """An hl_scene: that of `base` with other volumes and settings. chosen: its camera was chosen for a volume."""
     keep: list[Any] = [base]
     pointer = ffi.new("hl_scene_description *", lib.hl_scene_describe(base)[0])
     struct = pointer[0]
+    flags = _flags(volumes, settings) if chosen else 0
     array = ffi.new("hl_scene_volume[]", len(volumes)) if volumes else ffi.NULL
     for n, volume in enumerate(volumes):
         volume._fill(array[n], keep, f"volumes[{n}]: " if len(volumes) > 1 else "")
     struct.volumes, struct.volume_count = array, len(volumes)
-    if chosen and volumes and volumes[0]._changes.get("labels") and struct.render.kernel == lib.HL_KERNEL_LINEAR:
-        struct.render.kernel = lib.HL_KERNEL_BSPLINE  # smooth labels are splines' coefficients, as the program has it
-    meshes = settings.get("meshes")
-    if meshes is not None and not volumes:  # they are what is framed
-        _set_meshes(struct, meshes, keep)
     if chosen and len(volumes) > 1:
         spacings = [lib.hl_scene_describe(one._base_scene()[0]).render.sheet_spacing for one in volumes]
         struct.render.sheet_spacing = min(spacings)
-    if (size := settings.get("size")) is not None:
-        width, height = _settings.size_of("size", size)
-        _settings.fill("size: ", struct, lib.HL_SETTINGS_IMAGE, {"width": width, "height": height})
+    if (meshes := settings.get("meshes")) is not None:
+        _set_meshes(struct, meshes, keep)
     if (cut := settings.get("cuts")) is not None:
         cuts.fill(struct, cut, keep, "")
-    reframe = chosen and (size is not None or len(volumes) != 1 or cut is not None or any(one._changes.keys() - {"name"} for one in volumes))
-    _set_camera(struct, settings.get("camera"), reframe)
-    _set_lights(struct, settings, keep)
-    if chosen and len(volumes) == 1:
-        _expose_anew(struct, volumes[0], settings, keep)
-    if meshes is not None and volumes:
-        _set_meshes(struct, meshes, keep)
-    if chosen and settings.get("shadows") == "off" and settings.get("sky") is None:  # as the program's --shadows off
-        lib.hl_scene_level_sky(pointer)
-    if (ambient := settings.get("ambient")) is not None:
-        struct.ambient = colors.linear_color("ambient", ambient)
-        if chosen:  # as the program's --ambient: in place of the sky that was chosen for a volume
-            struct.sky.type = lib.HL_SKY_NONE
+    if (lights := settings.get("lights")) is not None:
+        _set_lights(struct, lights, keep)
+        flags |= lib.HL_COMPOSE_LIGHTS
     if (sky := settings.get("sky")) is not None:
         if chosen:
             _forget_sky(struct.sky)
         _set_sky(struct.sky, sky, keep)
+        flags |= lib.HL_COMPOSE_SKY
     if (background := settings.get("background")) is not None:
         _set_background(struct, background)
     if (description := settings.get("description")) is not None:
@@ -522,4 +517,10 @@ def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], ch
     _settings.fill("", struct, lib.HL_SETTINGS_IMAGE, _settings.taken(rest, _IMAGE))
     _settings.fill("", struct, lib.HL_SETTINGS_SCENE, _settings.taken(rest, _TOP))
     _settings.fill("", struct.render, lib.HL_SETTINGS_RENDER, _settings.taken(rest, _RENDER))
-    return made(lib.hl_scene_create, "hl_scene", lib.hl_scene_release, context, pointer)
+    options = _options(settings, volumes, flags)
+    if (camera := settings.get("camera")) is not None and "view" not in options:
+        if "size" in options:
+            struct.width, struct.height = map(int, options["size"].split("x"))
+        _set_camera(struct, camera)
+        flags |= lib.HL_COMPOSE_CAMERA
+    return _compose(pointer, flags, options)

@@ -65,9 +65,10 @@ static void on_progress(void *user_data, const char *stage, double fraction) {
 
 static void on_log(void *user_data, hl_log_level level, const char *message) {
   cli_host *host = user_data;
-  if (level != HL_LOG_WARNING || host->quiet) return;
+  if (host->quiet) return;
   host_clear_bar(host);
-  warn("%s", message);
+  if (level == HL_LOG_WARNING) warn("%s", message);
+  else say("%s", message);
 }
 
 static void on_reads(void *user_data, const char *path) {

@@ -229,7 +229,7 @@ static void print_json(json_writer *json, const char *path, const hl_volume *vol
   for (int row = 0; row < 3; row++) json_numbers(json, NULL, info->direction[row], 3);
   json_close(json);
   double low[3], high[3];
-  input_world_box(info, low, high);
+  hl_volume_world_box(info, low, high);
   json_open_object(json, "world_box");
   json_numbers(json, "min", low, 3);
   json_numbers(json, "max", high, 3);
@@ -303,7 +303,7 @@ static void print_text(const char *path, const hl_volume *volume, const hl_volum
     printf("  %s      %c: %.9g, %.9g, %.9g\n", axis == 0 ? "axes  " : "      ", "ijk"[axis], d[0][axis],
            d[1][axis], d[2][axis]);
   double low[3], high[3];
-  input_world_box(info, low, high);
+  hl_volume_world_box(info, low, high);
   printf("  world box   x %.9g to %.9g, y %.9g to %.9g, z %.9g to %.9g\n", low[0], high[0], low[1], high[1],
          low[2], high[2]);
   if (info->space != HL_SPACE_UNKNOWN) printf("  space       %s\n", hl_space_name(info->space));

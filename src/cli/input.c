@@ -237,15 +237,3 @@ hl_status input_load(hl_context *context, const cli_input *input, const hl_volum
   return hl_scene_from_json(context, (const char *)input->bytes, input->length, NULL, input->title, scene,
                             error);
 }
-
-void input_world_box(const hl_volume_info *info, double low[3], double high[3]) {
-  for (int row = 0; row < 3; row++) {
-    low[row] = high[row] = info->origin[row];
-    for (int axis = 0; axis < 3; axis++) {
-      double step = info->direction[row][axis] * info->spacing[axis];
-      double first = -0.5 * step, last = ((double)info->dimensions[axis] - 0.5) * step;
-      low[row] += fmin(first, last);
-      high[row] += fmax(first, last);
-    }
-  }
-}

@@ -89,10 +89,6 @@ hl_status input_load_volume(hl_context *context, const cli_input *input,
 /* Writes into a scene's volume how it was read, as the scene's text will say. Its strings are borrowed. */
 void input_name_source(const hl_volume_load_options *options, hl_scene_volume *volume);
 
-/* The box around a volume's voxels, half a voxel beyond their outermost centres, in the world of its file:
- * least and greatest x, y, z. */
-void input_world_box(const hl_volume_info *info, double low[3], double high[3]);
-
 /* The scene of an input: read from it, or made for a bare volume, which is read by `options` (null: the
  * defaults). */
 hl_status input_load(hl_context *context, const cli_input *input, const hl_volume_load_options *options,

@@ -1,5 +1,6 @@
 /* cli/looks.c - `halflight looks VOLUME -o sheet.png`: a contact sheet of the looks of --look, each with its
  * option under it. */
+#include <halflight/compose.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -111,13 +112,13 @@ static void put_picture(const looks_job *job, const hl_scene_description *scene,
 /* The number of looks; the last one is the maximum projection. */
 static size_t count_looks(void) {
   size_t count = 0;
-  while (look_choices[count].name != NULL) count++;
+  while (hl_option_choices("look")[count].name != NULL) count++;
   return count;
 }
 
 static hl_status scene_of(const looks_job *job, size_t index, hl_scene **scene, hl_error *error) {
   hl_context *context = job->host.context;
-  const char *name = look_choices[index].name;
+  const char *name = hl_option_choices("look")[index].name;
   hl_scene *made = NULL;
   hl_transfer_function maximum = {0};
   bool projected = strcmp(name, "mip") == 0;
@@ -153,7 +154,7 @@ static hl_status add_look(looks_job *job, size_t index, hl_error *error) {
                                 error);
   if (status == HL_OK) {
     put_picture(job, hl_scene_describe(scene), picture, left, top);
-    put_caption(job, left, top + job->side, look_choices[index].name);
+    put_caption(job, left, top + job->side, hl_option_choices("look")[index].name);
   }
   hl_image_destroy(picture);
   hl_scene_release(scene);

@@ -9,7 +9,7 @@
 
 #include "commands.h"
 #include "message.h"
-#include "suggest.h"
+#include "text/edit_distance.h"
 
 static const cli_command *const commands[] = {
     &render_command, &info_command, &make_command,    &convert_command, &diff_command,
@@ -28,7 +28,7 @@ static const cli_command *find_command(const char *name) {
 }
 
 static int refuse_command(const char *name) {
-  const char *meant = nearest_name(name, command_name, NULL);
+  const char *meant = hl_nearest_candidate(name, command_name, NULL);
   if (meant != NULL) return fail(EXIT_CODE_USAGE, "unknown command '%s': did you mean '%s'?", name, meant);
   if (access(name, F_OK) == 0)
     return fail(EXIT_CODE_USAGE,

@@ -8,7 +8,7 @@
 #include "host.h"
 #include "input.h"
 #include "output.h"
-#include "suggest.h"
+#include "text/edit_distance.h"
 
 enum make_option {
   MAKE_OUTPUT,
@@ -80,7 +80,7 @@ static const char *preset_name(const void *data, size_t index) {
 static int read_text(const char *path, char **text, size_t *length) {
   FILE *file = fopen(path, "rb");
   if (file == NULL && !has_extension(path, ".json")) {
-    const char *meant = nearest_name(path, preset_name, NULL);
+    const char *meant = hl_nearest_candidate(path, preset_name, NULL);
     return fail(EXIT_CODE_USAGE, "'%s' is no ready-made shape and no file: %s%s%s", path,
                 meant != NULL ? "did you mean '" : "see 'halflight make --list'", meant != NULL ? meant : "",
                 meant != NULL ? "'?" : "");

@@ -6,8 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <halflight/compose.h>
+
 #include "message.h"
 #include "suggest.h"
+#include "text/color.h"
+#include "text/edit_distance.h"
 #include "text/plain.h"
 
 static const char *choice_name(const void *choices, size_t index) {
@@ -80,7 +84,7 @@ static int refuse_value(const cli_option *option, const char *text) {
   switch (option->kind) {
     case OPTION_CHOICE:
       list_choices(option, ", ", accepted, sizeof accepted);
-      meant = nearest_name(text, choice_name, option->choices);
+      meant = hl_nearest_candidate(text, choice_name, option->choices);
       return fail(EXIT_CODE_USAGE, "--%s: '%s' is none of %s%s%s%s", option->name, text, accepted,
                   meant != NULL ? " (did you mean " : "", meant != NULL ? meant : "",
                   meant != NULL ? "?)" : "");
@@ -161,7 +165,8 @@ static int parse_value(const cli_option *option, const char *text, cli_value *va
       break;
     case OPTION_BYTES: good = parse_bytes(text, value); break;
     case OPTION_COLOR:
-      good = parse_choice(option, text, value) || parse_color(text, option->low, option->high, value->number);
+      good = parse_choice(option, text, value) ||
+             hl_parse_color(text, option->low, option->high, value->number);
       break;
   }
   if (!good) return refuse_value(option, text);
@@ -197,11 +202,13 @@ static size_t find_letter(const cli_command *command, char letter) {
   return row;
 }
 
-/* A copy of the option with the range and the choices of its setting. */
+/* A copy of the option with the range and the choices of its setting, or the choices of the library's option.
+ */
 static cli_option with_setting(const cli_option *option) {
   cli_option full = *option;
   const hl_setting *setting = option->setting != NULL ? hl_setting_find(option->setting_kind, option->setting)
                                                       : NULL;
+  if (full.choices == NULL) full.choices = hl_option_choices(option->name);
   if (setting == NULL) return full;
   if (setting->choices != NULL) full.choices = setting->choices;
   full.low = setting->low;
@@ -216,7 +223,7 @@ static int refuse_unknown(const cli_command *command, const char *argument) {
   snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), argument + 2);
   const char *advice = strcmp(command->name, "render") == 0 ? advice_for_absent(name) : NULL;
   if (advice != NULL) return fail(EXIT_CODE_USAGE, "unknown option '--%s' of render: %s", name, advice);
-  const char *meant = length > 0 ? nearest_name(name, option_name, command) : NULL;
+  const char *meant = length > 0 ? hl_nearest_candidate(name, option_name, command) : NULL;
   const char *does = synonym_of(name, option_name, command);
   if (does != NULL && meant != NULL && strcmp(does, meant) != 0)
     return fail(EXIT_CODE_USAGE, "unknown option '--%s' of %s: did you mean --%s, or --%s?", name,

@@ -16,7 +16,7 @@
 typedef enum cli_option_kind {
   OPTION_SWITCH,  /* takes no value */
   OPTION_TEXT,    /* any text but an empty one */
-  OPTION_CHOICE,  /* one of `choices` */
+  OPTION_CHOICE,  /* one of `choices`; null: of the library's option of this name */
   OPTION_NUMBERS, /* `count` numbers joined by `separator`; or one of `choices`, if there are any */
   OPTION_BYTES,   /* a whole number with an optional K, M, G or T (powers of 1024) */
   OPTION_COLOR /* linear R,G,B or a grey, #rgb, #rrggbb, a CSS name; or one of `choices`, if there are any */
@@ -88,9 +88,5 @@ int options_parse(const cli_command *command, int argument_count, char **argumen
 
 /* Prints the help text of a subcommand on stdout. */
 void options_print_help(const cli_command *command);
-
-/* Linear RGB of a colour on the command line: numbers from low to high are linear already; #rgb, #rrggbb and
- * CSS names are sRGB. False if text is no colour. */
-bool parse_color(const char *text, double low, double high, double color[3]);
 
 #endif

@@ -167,6 +167,5 @@ int render_load_inputs(cli_host *host, const cli_value *values, char **operands,
   *bare = true;
   render_part_meshes(operands, meshes, others);
   if (others[0] != NULL) exit_code = render_load_volumes(host, values, others, bare, scene);
-  if (exit_code == EXIT_CODE_OK) exit_code = render_add_meshes(host, meshes, 0, *bare, scene);
-  return exit_code == EXIT_CODE_OK ? render_add_labels(host, values, *bare, scene) : exit_code;
+  return exit_code == EXIT_CODE_OK ? render_add_meshes(host, meshes, 0, *bare, scene) : exit_code;
 }

@@ -1,16 +1,11 @@
 /* cli/render_meshes.c - meshes among the operands of `halflight render`: they are added to the scene of the
  * others, in colours of their own. */
+#include <halflight/compose.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "render.h"
-
-const double *render_surface_color(size_t index) {
-  static const double colors[][3] = {{0.75, 0.71, 0.62}, {0.18, 0.40, 0.70}, {0.75, 0.42, 0.10},
-                                     {0.20, 0.50, 0.22}, {0.72, 0.28, 0.32}, {0.38, 0.28, 0.62}};
-  return colors[index % (sizeof colors / sizeof *colors)];
-}
 
 void render_part_meshes(char **operands, char **meshes, char **others) {
   size_t count = 0, left = 0;
@@ -19,6 +14,14 @@ void render_part_meshes(char **operands, char **meshes, char **others) {
     else others[left++] = operands[n];
   }
   meshes[count] = others[left] = NULL;
+}
+
+/* Moves the scene's camera along its direction and zooms so that all that there is now fits into the picture.
+ */
+static hl_status frame_anew(hl_scene_description *description, hl_error *error) {
+  hl_view view;
+  hl_status status = hl_view_of_camera(description, &view);
+  return status == HL_OK ? hl_camera_frame_view(description, &view, 1, &description->camera, error) : status;
 }
 
 /* Makes a scene of the scene and more meshes. replaced: the scene's own meshes are left out. */
@@ -36,7 +39,7 @@ static hl_status add_meshes(hl_context *context, const hl_scene_mesh *added, siz
   memcpy(meshes + before, added, count * sizeof *meshes);
   description.meshes = meshes;
   description.mesh_count = before + count;
-  hl_status status = bare ? render_frame_anew(&description, error) : HL_OK;
+  hl_status status = bare ? frame_anew(&description, error) : HL_OK;
   if (status == HL_OK) status = hl_scene_create(context, &description, &made, error);
   free(meshes);
   if (status != HL_OK) return status;
@@ -60,7 +63,8 @@ hl_status render_load_mesh(hl_context *context, const char *path, size_t index, 
   hl_status status = hl_mesh_load(context, path, &mesh->mesh, error);
   const hl_mesh_description *d = status == HL_OK ? hl_mesh_describe(mesh->mesh) : NULL;
   bool own = d != NULL && (d->colors != NULL || d->face_colors != NULL || d->sphere_colors != NULL);
-  for (int c = 0; c < 3; c++) mesh->color[c] = own ? 1 : render_surface_color(index)[c];
+  hl_surface_color(index, mesh->color);
+  for (int c = 0; c < 3 && own; c++) mesh->color[c] = 1;
   return status;
 }
 

@@ -9,13 +9,6 @@
 
 static const cli_choice depths[] = {{"8", 8}, {"16", 16}, {NULL, 0}};
 static const cli_choice formats[] = {{"png", 0}, {"exr", 1}, {"npy", 2}, {NULL, 0}};
-static const cli_choice backgrounds[] = {{"transparent", 1}, {NULL, 0}};
-static const cli_choice sides[] = {
-    {"front", HL_SIDE_FRONT}, {"back", HL_SIDE_BACK},     {"left", HL_SIDE_LEFT}, {"right", HL_SIDE_RIGHT},
-    {"top", HL_SIDE_TOP},     {"bottom", HL_SIDE_BOTTOM}, {"iso", HL_SIDE_ISO},   {NULL, 0}};
-/* The value is 2 axis + sign. */
-static const cli_choice axes[] = {{"+x", 0}, {"-x", 1}, {"+y", 2}, {"-y", 3}, {"+z", 4},
-                                  {"-z", 5}, {"x", 0},  {"y", 2},  {"z", 4},  {NULL, 0}};
 const cli_choice instruction_set_choices[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
                                               {"scalar", HL_INSTRUCTION_SET_SCALAR},
                                               {"avx2", HL_INSTRUCTION_SET_AVX2},
@@ -23,8 +16,6 @@ const cli_choice instruction_set_choices[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
                                               {"avx512-vbmi", HL_INSTRUCTION_SET_AVX512_VBMI},
                                               {"neon", HL_INSTRUCTION_SET_NEON},
                                               {NULL, 0}};
-
-static const cli_choice range_scales[] = {{"linear", HL_RANGE_LINEAR}, {"log", HL_RANGE_LOG}, {NULL, 0}};
 
 const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_OUTPUT] =
@@ -57,7 +48,6 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                            .argument = "COLOR|transparent",
                            .help = "under a .png: linear R,G,B 0..1, #rrggbb or a CSS\nname (both sRGB; "
                                    "default black, of bare volumes\ndark grey; black for --look mip)",
-                           .choices = backgrounds,
                            .setting_kind = HL_SETTINGS_IMAGE,
                            .setting = "background"},
     [RENDER_EXPOSURE] =
@@ -81,7 +71,6 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
 
     [RENDER_VIEW] = {.name = "view",
                      .kind = OPTION_CHOICE,
-                     .choices = sides,
                      .argument = "SIDE",
                      .group = "Camera",
                      .help = "front, back, left, right, top, bottom or iso: of\nthe body where the file "
@@ -91,7 +80,6 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                    .argument = "AXIS|X,Y,Z",
                    .help =
                        "which way is up: an axis, as +z or -y, or a vector;\nframes anew (default: chosen)",
-                   .choices = axes,
                    .count = 3,
                    .separator = ',',
                    .low = -INFINITY,
@@ -148,7 +136,6 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_LOOK] =
         {.name = "look",
          .kind = OPTION_CHOICE,
-         .choices = look_choices,
          .group = "Look (of every volume)",
          .help = "auto, surface, translucent, xray, smoke or vessels,\nwhich 'halflight looks' shows; or "
                  "mip: the greatest\nvalue along each ray (default auto: chosen from the\ndata)"},
@@ -180,7 +167,6 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                       .high = INFINITY},
     [RENDER_RANGE_SCALE] = {.name = "range-scale",
                             .kind = OPTION_CHOICE,
-                            .choices = range_scales,
                             .help =
                                 "they spread over --range evenly, or evenly over\nthe values' logarithms"},
     [RENDER_RANGE_OF_ALL] = {.name = "range-of-all",
@@ -467,14 +453,6 @@ int render_check_options(const cli_value *values) {
                 "--depth is for .png pictures, not for '%s': .exr and .npy hold 32-bit floats", output->text);
   if (values[RENDER_DEPTH].given && format->given && format->choice != 0)
     return fail(EXIT_CODE_USAGE, "--depth is for .png pictures: %s holds 32-bit floats", format->text);
-  const cli_value *range = &values[RENDER_RANGE];
-  if (range->given && range->percent[0] == range->percent[1] && range->number[0] >= range->number[1])
-    return fail(EXIT_CODE_USAGE, "--range: '%s': LO must be below HI", range->text);
-  if (values[RENDER_RANGE_SCALE].given && !range->given && !values[RENDER_RANGE_OF_ALL].given)
-    return fail(EXIT_CODE_USAGE, "--range-scale says how --range spreads: give --range LO,HI, too");
-  if (values[RENDER_THRESHOLD].given && values[RENDER_RANGE].given && !values[RENDER_COLORMAP].given)
-    return fail(EXIT_CODE_USAGE,
-                "--threshold says what is opaque: --range beside it needs --colormap, to spread");
   static const int pictures[] = {RENDER_OUTPUT, RENDER_FORMAT,    RENDER_DEPTH, RENDER_NO_METADATA,
                                  RENDER_LAYERS, RENDER_REFERENCE, RENDER_JSON};
   for (size_t n = 0; values[RENDER_PRINT_SCENE].given && n < sizeof pictures / sizeof *pictures; n++)
@@ -490,20 +468,12 @@ int render_check_options(const cli_value *values) {
   int channels[HL_CHANNELS_MOST];
   size_t channel_count;
   int exit_code = render_channels(values, channels, &channel_count);
-  if (exit_code == EXIT_CODE_OK) exit_code = render_check_clip(&values[RENDER_CLIP]);
-  if (exit_code == EXIT_CODE_OK) exit_code = render_check_cuts(values);
-  if (exit_code == EXIT_CODE_OK) exit_code = render_check_iso(&values[RENDER_ISO]);
-  if (exit_code == EXIT_CODE_OK) exit_code = render_check_sky(&values[RENDER_SKY]);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_check_scene_options(values);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   exit_code = check_linear_output(values, named);
   if (exit_code != EXIT_CODE_OK) return exit_code;
-  if (values[RENDER_ORTHO].given && values[RENDER_FOVY].given)
-    return fail(EXIT_CODE_USAGE, "--ortho and --fovy exclude each other: give one of them");
   for (int which = RENDER_LIGHT_POINTS; which <= RENDER_RAYS; which++)
     if (values[which].given && !values[RENDER_REFERENCE].given)
       return fail(EXIT_CODE_USAGE, "--%s is for --reference: give both or none", render_options[which].name);
-  if (values[RENDER_LIGHT].given && fabs(values[RENDER_LIGHT].number[1]) > 90)
-    return fail(EXIT_CODE_USAGE, "--light: '%s': the elevation must be from -90 to 90",
-                values[RENDER_LIGHT].text);
   return render_layers_check(values);
 }

@@ -102,7 +102,6 @@ static int make_scene(series_job *job) {
   size_t first = job->of_meshes ? 1 : 0;
   if (exit_code == EXIT_CODE_OK)
     exit_code = render_add_meshes(&job->host, job->meshes, first, bare, &job->scene);
-  if (exit_code == EXIT_CODE_OK) exit_code = render_add_labels(&job->host, job->values, bare, &job->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->values, bare, &job->scene);
   return exit_code;
 }

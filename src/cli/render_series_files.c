@@ -13,6 +13,8 @@
 #include "input.h"
 #include "render_series.h"
 
+enum { MOST_LABEL_LAYERS = 64 };
+
 /* ---- names ---- */
 
 static bool is_pattern(const char *path) { return strpbrk(path, "*?[") != NULL && access(path, F_OK) != 0; }
@@ -190,7 +192,7 @@ static size_t volumes_of_file(const series_job *job) {
 static hl_status scene_of_volumes(const series_job *job, int number, hl_volume *const *loaded,
                                   hl_scene **scene, hl_error *error) {
   const hl_scene_description *description = hl_scene_describe(job->scene);
-  hl_scene_volume volumes[HL_CHANNELS_MOST + RENDER_MOST_LABEL_LAYERS];
+  hl_scene_volume volumes[HL_CHANNELS_MOST + MOST_LABEL_LAYERS];
   memcpy(volumes, description->volumes, description->volume_count * sizeof *volumes);
   for (size_t n = 0; n < volumes_of_file(job); n++) {
     volumes[n].file = job->files[number];
@@ -231,27 +233,27 @@ static void take_settings(const hl_scene_volume *from, hl_scene_volume *layer) {
 
 static int label_scene(series_job *job, int number, hl_scene **scene) {
   const hl_scene_description *description = hl_scene_describe(job->scene);
-  render_label_layers *layers = calloc(1, sizeof *layers);
-  hl_scene_volume volumes[RENDER_MOST_LABEL_LAYERS];
-  size_t count = 0;
+  hl_scene_volume volumes[MOST_LABEL_LAYERS];
+  hl_scene *map = NULL;
   hl_error error = {0};
   hl_volume_load_options options;
-  if (layers == NULL) return fail(EXIT_CODE_FAILURE, "out of memory for labels");
   reading_of(job, &options);
-  int exit_code = render_load_label_map(&job->host, job->values, job->files[number], &options, layers);
-  if (exit_code == EXIT_CODE_OK) exit_code = check_space(job, number, layers->volumes[0].volume);
-  for (size_t n = 0; n < layers->count; n++) {
-    if (layers->volumes[n].label_count == 0) continue;
-    size_t like = count < description->volume_count ? count : description->volume_count - 1;
-    volumes[count] = layers->volumes[n];
-    take_settings(&description->volumes[like], &volumes[count++]);
+  hl_status status = render_load_label_map(&job->host, job->values, job->files[number], &options, &map,
+                                           &error);
+  if (status != HL_OK) return note(job, number, host_fail(&job->host, PHASE_READ, status, &error));
+  const hl_scene_description *layers = hl_scene_describe(map);
+  size_t count = layers->volume_count < MOST_LABEL_LAYERS ? layers->volume_count : MOST_LABEL_LAYERS;
+  for (size_t n = 0; n < count; n++) {
+    size_t like = n < description->volume_count ? n : description->volume_count - 1;
+    volumes[n] = layers->volumes[n];
+    take_settings(&description->volumes[like], &volumes[n]);
   }
+  int exit_code = count > 0 ? check_space(job, number, volumes[0].volume) : EXIT_CODE_OK;
   if (exit_code == EXIT_CODE_OK) {
-    hl_status status = make_scene(job, volumes, count, NULL, scene, &error);
+    status = make_scene(job, volumes, count, NULL, scene, &error);
     if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_READ, status, &error);
   }
-  render_release_label_layers(job->host.context, layers);
-  free(layers);
+  hl_scene_release(map);
   return note(job, number, exit_code);
 }
 

@@ -1,28 +1,9 @@
-/* cli/suggest.c - suggestions for an unknown name: known names that are spelled alike, and this program's
+/* cli/suggest.c - suggestions for an unknown name: this program's
  * names for words of ParaView, VTK, ImageMagick, ffmpeg, Blender, Mitsuba and plotting libraries. */
 #include "suggest.h"
 
 #include <stdbool.h>
 #include <string.h>
-
-#include "text/edit_distance.h"
-
-const char *nearest_name(const char *text, const char *(*candidate)(const void *data, size_t index),
-                         const void *data) {
-  size_t length = strlen(text);
-  const char *best = NULL, *name;
-  size_t best_distance = 2 + length / 4; /* farther names would puzzle more than help */
-  if (length > HL_EDIT_LONGEST) return NULL;
-  for (size_t i = 0; (name = candidate(data, i)) != NULL; i++) {
-    bool part_of_it = length >= 3 && strstr(name, text) != NULL;
-    size_t distance = part_of_it ? 1 : (size_t)hl_edit_distance(text, name);
-    if (distance < best_distance && 2 * distance < strlen(name)) {
-      best = name;
-      best_distance = distance;
-    }
-  }
-  return best;
-}
 
 /* words: separated by blanks, in lower case */
 static const struct {

@@ -4,11 +4,6 @@
 
 #include <stddef.h>
 
-/* The candidate spelled most like text, or null if none is spelled like it. candidate(data, i) is null past
- * the last. */
-const char *nearest_name(const char *text, const char *(*candidate)(const void *data, size_t index),
-                         const void *data);
-
 /* The option for a word of other programs ("rotate" -> "azimuth"), of those that option(data, i) lists; null:
  * none is known. */
 const char *synonym_of(const char *word, const char *(*option)(const void *data, size_t index),

@@ -2,6 +2,7 @@
 #define _GNU_SOURCE /* strnlen */
 #include "text/edit_distance.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -31,8 +32,6 @@ int hl_edit_distance(const char *a, const char *b) {
 
 /* ---- names for error lines ---- */
 
-#define _GNU_SOURCE /* strnlen */
-
 const char *hl_nearest_name(const char *name, const char *const *names) {
   const char *nearest = NULL;
   int length = (int)strnlen(name, HL_EDIT_LONGEST),
@@ -45,6 +44,23 @@ const char *hl_nearest_name(const char *name, const char *const *names) {
     nearest = names[n];
   }
   return nearest;
+}
+
+const char *hl_nearest_candidate(const char *text, const char *(*candidate)(const void *data, size_t index),
+                                 const void *data) {
+  size_t length = strlen(text);
+  const char *best = NULL, *name;
+  size_t best_distance = 2 + length / 4; /* farther names would puzzle more than help */
+  if (length > HL_EDIT_LONGEST) return NULL;
+  for (size_t i = 0; (name = candidate(data, i)) != NULL; i++) {
+    bool part_of_it = length >= 3 && strstr(name, text) != NULL;
+    size_t distance = part_of_it ? 1 : (size_t)hl_edit_distance(text, name);
+    if (distance < best_distance && 2 * distance < strlen(name)) {
+      best = name;
+      best_distance = distance;
+    }
+  }
+  return best;
 }
 
 void hl_suggest_name(const char *name, const char *const *names, char *text, size_t size) {

@@ -15,6 +15,11 @@ int hl_edit_distance(const char *a, const char *b);
  * meant. */
 const char *hl_nearest_name(const char *name, const char *const *names);
 
+/* The nearest of candidate(data, 0), candidate(data, 1), ..., which ends with null; null if none is spelled
+ * like the text. A candidate that holds the text is near. */
+const char *hl_nearest_candidate(const char *text, const char *(*candidate)(const void *data, size_t index),
+                                 const void *data);
+
 /* The end of an error about an unknown name: the nearest known name as a question, or all known names. */
 void hl_suggest_name(const char *name, const char *const *names, char *text, size_t size);
 

@@ -504,3 +504,17 @@ double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_
                                   : hl_stored_number(volume->storage, hl_volume_row(volume, j, k), i);
   return isfinite(stored) ? volume->value_scale * stored + volume->value_offset : NAN;
 }
+
+void hl_volume_world_box(const hl_volume_info *info, double low[3], double high[3]) {
+  HL_DOOR;
+  if (info == NULL || low == NULL || high == NULL) return;
+  for (int row = 0; row < 3; row++) {
+    low[row] = high[row] = info->origin[row];
+    for (int axis = 0; axis < 3; axis++) {
+      double step = info->direction[row][axis] * info->spacing[axis];
+      double first = -0.5 * step, last = ((double)info->dimensions[axis] - 0.5) * step;
+      low[row] += fmin(first, last);
+      high[row] += fmax(first, last);
+    }
+  }
+}

@@ -49,6 +49,9 @@ hl_volume_load_with options
 hl_transfer_function_load_for volume
 hl_scene_for_channels options
 hl_ranks_join communicator
+hl_option_kind_of name
+hl_option_choices name
+hl_scene_for_label_map reading
 hl_volume_from_shapes options
 """
 
@@ -65,6 +68,8 @@ VALUES = {
     "const char * format_name": "\"png\"", "const char *": "\"name\"", "const char **": "&any", "char *": "NULL",
     "const hl_transfer_function *": "&function",
     "const hl_volume_description *": "&description", "const hl_scene_description *": "hl_scene_describe(scene)",
+    "const hl_option *": "&option", "unsigned": "0",
+    "const hl_volume_info *": "&info",
     "const hl_image_write_options *": "&write_options", "const hl_reference_options *": "&reference_options",
     "const hl_shapes_options *": "&shapes_options",
     "hl_mesh *": "mesh", "const hl_mesh *": "mesh", "hl_mesh **": "&any",
@@ -72,7 +77,7 @@ VALUES = {
     "hl_label **": "&any", "hl_label *": "NULL",
     "hl_ranks **": "&any", "hl_ranks *": "NULL", "const hl_ranks *": "NULL", "void * communicator": "bytes",
     "hl_view *": "&view", "const hl_view *": "&view",
-    "int part": "2", "size_t length": "2", "size_t row_stride": "16", "int": "4", "size_t": "0", "size_t count": "1",
+    "int part": "2", "size_t length": "2", "size_t row_stride": "16", "int": "4", "size_t": "0", "size_t count": "1", "size_t option_count": "1",
     "hl_scene const **": "&scene", "const int *": "&zero", "double": "0.5",
 }
 
@@ -93,6 +98,8 @@ static hl_volume_description description;
 static hl_image_write_options write_options;
 static hl_reference_options reference_options;
 static hl_shapes_options shapes_options;
+static hl_option option = {"zoom", "2"};
+static hl_volume_info info;
 static hl_transfer_function function;
 static hl_view view = {{0, 0, 1}, {0, -1, 0}, 30, 20, 0};
 static void *any;

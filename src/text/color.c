@@ -1,4 +1,4 @@
-/* cli/options_color.c - colours on the command line.
+/* text/color.c - colours as text.
  *
  * Numbers are linear RGB, as in scene files. #rgb, #rrggbb and the names of CSS (CSS Color Module Level 4,
  * section 6.1) are sRGB: they are decoded (IEC 61966-2-1), so that a .png shows the very colour that was
@@ -7,9 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
-#include "options.h"
+#include "text/color.h"
 #include "text/plain.h"
 
 static const struct {
@@ -202,9 +201,9 @@ static bool parse_linear(const char *text, double low, double high, double color
   return count != 2;
 }
 
-bool parse_color(const char *text, double low, double high, double color[3]) {
+bool hl_parse_color(const char *text, double low, double high, double color[3]) {
   if (text[0] == '#') return parse_hexadecimal(text + 1, color);
   for (size_t n = 0; n < sizeof css_colors / sizeof *css_colors; n++)
-    if (strcasecmp(css_colors[n].name, text) == 0) return decode(css_colors[n].rgb, color);
+    if (hl_plain_equal(css_colors[n].name, text)) return decode(css_colors[n].rgb, color);
   return parse_linear(text, low, high, color);
 }

@@ -1,28 +1,27 @@
-/* cli/render_cut.c - `--cut-plane POINT:NORMAL`, `--cut-box RANGES` and `--cut-sphere CENTRE:RADIUS`: parts
+/* compose/cuts.c - "cut-plane" POINT:NORMAL, "cut-box" RANGES and "cut-sphere" CENTRE:RADIUS: parts
  * that are cut out of a volume, in its file's world, or of all volumes of a scene, in the scene's. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "input.h"
-#include "render.h"
+#include "compose/composer.h"
+#include "compose/coordinates.h"
 #include "text/plain.h"
 
 /* The options by the type of their cuts. */
 static const int option_of[] = {
-    [HL_CUT_PLANE] = RENDER_CUT_PLANE, [HL_CUT_BOX] = RENDER_CUT_BOX, [HL_CUT_SPHERE] = RENDER_CUT_SPHERE};
+    [HL_CUT_PLANE] = HL_ASK_CUT_PLANE, [HL_CUT_BOX] = HL_ASK_CUT_BOX, [HL_CUT_SPHERE] = HL_ASK_CUT_SPHERE};
 enum { CUT_TYPES = 3 };
 
 /* A cut as typed: a plane's point or a sphere's centre, and what follows the colon; or a box's ranges. */
 typedef struct typed_cut {
-  render_coordinate point[3], radius;
+  hl_coordinate point[3], radius;
   double normal[3];
-  render_axis_range box[3]; /* by axis; those not given have no ends */
+  hl_axis_range box[3]; /* by axis; those not given have no ends */
 } typed_cut;
 
-static bool read_point(const char **text, render_coordinate point[3]) {
+static bool read_point(const char **text, hl_coordinate point[3]) {
   for (int a = 0; a < 3; a++) {
-    if (!render_read_coordinate(text, &point[a]) || !point[a].given) return false;
+    if (!hl_read_coordinate(text, &point[a]) || !point[a].given) return false;
     if (*(*text)++ != (a < 2 ? ',' : ':')) return false;
   }
   return true;
@@ -38,18 +37,18 @@ static bool read_normal(const char *text, double normal[3]) {
   return normal[0] != 0 || normal[1] != 0 || normal[2] != 0;
 }
 
-static bool read_box(const char *text, render_axis_range box[3]) {
-  render_axis_range range;
+static bool read_box(const char *text, hl_axis_range box[3]) {
+  hl_axis_range range;
   do {
-    if (!render_read_range(&text, &range)) return false;
+    if (!hl_read_range(&text, &range)) return false;
     if (box[range.axis].ends[0].given || box[range.axis].ends[1].given) return false;
     box[range.axis] = range;
   } while (*text++ == ',');
   return text[-1] == '\0';
 }
 
-static bool read_radius(const char *text, render_coordinate *radius) {
-  return render_read_coordinate(&text, radius) && radius->given && radius->number > 0 && *text == '\0';
+static bool read_radius(const char *text, hl_coordinate *radius) {
+  return hl_read_coordinate(&text, radius) && radius->given && radius->number > 0 && *text == '\0';
 }
 
 static bool read_cut(hl_cut_type type, const char *text, typed_cut *cut) {
@@ -59,7 +58,7 @@ static bool read_cut(hl_cut_type type, const char *text, typed_cut *cut) {
   return type == HL_CUT_PLANE ? read_normal(text, cut->normal) : read_radius(text, &cut->radius);
 }
 
-int render_check_cuts(const cli_value *values) {
+hl_status hl_check_cuts(const hl_asked *asked, hl_error *error) {
   static const char *const wanted[] = {
       [HL_CUT_PLANE] =
           "X,Y,Z:NX,NY,NZ: a point, in fractions of the volume's box or in its own unit (40mm), and the "
@@ -71,19 +70,19 @@ int render_check_cuts(const cli_value *values) {
           "X,Y,Z:RADIUS, in fractions of the volume's box, the radius of its longest side, or in its own "
           "unit (0.5,0.5,1:0.3)"};
   for (int type = 0; type < CUT_TYPES; type++) {
-    const cli_value *value = &values[option_of[type]];
+    const hl_asked *value = &asked[option_of[type]];
     typed_cut cut;
     for (int n = 0; n < value->count; n++)
       if (!read_cut((hl_cut_type)type, value->texts[n], &cut))
-        return fail(EXIT_CODE_USAGE, "--%s: '%s' is not %s", render_options[option_of[type]].name,
-                    value->texts[n], wanted[type]);
+        return hl_fail(error, HL_ERROR_ARGUMENT, "--%s: '%.300s' is not %s",
+                       hl_option_rows[option_of[type]].name, value->texts[n], wanted[type]);
   }
-  return EXIT_CODE_OK;
+  return HL_OK;
 }
 
-size_t render_cut_count(const cli_value *values) {
+size_t hl_count_cuts(const hl_asked *asked) {
   size_t count = 0;
-  for (int type = 0; type < CUT_TYPES; type++) count += (size_t)values[option_of[type]].count;
+  for (int type = 0; type < CUT_TYPES; type++) count += (size_t)asked[option_of[type]].count;
   return count;
 }
 
@@ -92,71 +91,71 @@ static void place_cut(const typed_cut *typed, const double low[3], const double 
   double longest = 0;
   for (int a = 0; a < 3; a++) {
     double side = high[a] - low[a];
-    const render_coordinate *ends = typed->box[a].ends;
+    const hl_coordinate *ends = typed->box[a].ends;
     longest = fmax(longest, side);
-    cut->point[a] = cut->center[a] = render_coordinate_of(&typed->point[a], 0, low[a], high[a]);
-    cut->min[a] = render_coordinate_of(&ends[0], low[a] - side, low[a], high[a]);
-    cut->max[a] = render_coordinate_of(&ends[1], high[a] + side, low[a], high[a]);
+    cut->point[a] = cut->center[a] = hl_coordinate_of(&typed->point[a], 0, low[a], high[a]);
+    cut->min[a] = hl_coordinate_of(&ends[0], low[a] - side, low[a], high[a]);
+    cut->max[a] = hl_coordinate_of(&ends[1], high[a] + side, low[a], high[a]);
     cut->normal[a] = typed->normal[a];
   }
   cut->radius = typed->radius.fraction ? typed->radius.number * longest : typed->radius.number;
 }
 
 /* Adds the options' cuts, placed in the box. */
-static void add_cuts(const cli_value *values, const double low[3], const double high[3], hl_cut *cuts,
+static void add_cuts(const hl_asked *asked, const double low[3], const double high[3], hl_cut *cuts,
                      size_t *count) {
   for (int type = 0; type < CUT_TYPES; type++)
-    for (int n = 0; n < values[option_of[type]].count; n++) {
+    for (int n = 0; n < asked[option_of[type]].count; n++) {
       hl_cut *cut = &cuts[*count];
       typed_cut typed;
       hl_cut_defaults(cut);
       cut->type = (hl_cut_type)type;
-      if (!read_cut(cut->type, values[option_of[type]].texts[n], &typed)) continue; /* refused before */
+      if (!read_cut(cut->type, asked[option_of[type]].texts[n], &typed)) continue; /* refused before */
       place_cut(&typed, low, high, cut);
       ++*count;
     }
 }
 
 /* Extends a box to the box around a volume in the scene's world. */
-static int extend_box(const hl_scene_volume *volume, double low[3], double high[3]) {
+static hl_status extend_box(const hl_scene_volume *volume, double low[3], double high[3], hl_error *error) {
   double ends[2][3];
   hl_volume_info info = {.struct_size = sizeof info};
   if (hl_volume_get_info(volume->volume, &info) != HL_OK)
-    return fail(EXIT_CODE_FAILURE, "--cut-plane: the volume's place is not known");
-  input_world_box(&info, ends[0], ends[1]);
+    return hl_fail(error, HL_ERROR_INTERNAL, "--cut-plane: the volume's place is not known");
+  hl_volume_world_box(&info, ends[0], ends[1]);
   for (int corner = 0; corner < 8; corner++) {
     double p[3];
     for (int a = 0; a < 3; a++) p[a] = ends[corner >> a & 1][a];
     hl_scene_volume_place_point(volume, p);
     for (int a = 0; a < 3; a++) low[a] = fmin(low[a], p[a]), high[a] = fmax(high[a], p[a]);
   }
-  return EXIT_CODE_OK;
+  return HL_OK;
 }
 
-int render_cuts(const cli_value *values, hl_scene_volume *volume, hl_cut *cuts) {
+hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, hl_cut *cuts) {
   double low[3], high[3];
   hl_volume_info info = {.struct_size = sizeof info};
   size_t count = volume->cut_count;
   if (hl_volume_get_info(volume->volume, &info) != HL_OK)
-    return fail(EXIT_CODE_FAILURE, "--cut-plane: the volume's place is not known");
-  input_world_box(&info, low, high);
+    return hl_fail(composer->error, HL_ERROR_INTERNAL, "--cut-plane: the volume's place is not known");
+  hl_volume_world_box(&info, low, high);
   if (count > 0) memcpy(cuts, volume->cuts, count * sizeof *cuts);
-  add_cuts(values, low, high, cuts, &count);
+  add_cuts(composer->asked, low, high, cuts, &count);
   volume->cuts = cuts;
   volume->cut_count = count;
-  return EXIT_CODE_OK;
+  return HL_OK;
 }
 
-int render_scene_cuts(const cli_value *values, hl_scene_description *scene, hl_cut *cuts) {
+hl_status hl_compose_scene_cuts(const hl_composer *composer, hl_scene_description *scene, hl_cut *cuts) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   size_t count = scene->cut_count;
-  int exit_code = EXIT_CODE_OK;
-  for (size_t v = 0; v < scene->volume_count && exit_code == EXIT_CODE_OK; v++)
-    exit_code = extend_box(&scene->volumes[v], low, high);
-  if (exit_code != EXIT_CODE_OK) return exit_code;
+  hl_status status = HL_OK;
+  for (size_t v = 0; v < scene->volume_count && status == HL_OK; v++)
+    status = extend_box(&scene->volumes[v], low, high, composer->error);
+  if (status != HL_OK) return status;
   if (count > 0) memcpy(cuts, scene->cuts, count * sizeof *cuts);
-  add_cuts(values, low, high, cuts, &count);
+  add_cuts(composer->asked, low, high, cuts, &count);
   scene->cuts = cuts;
   scene->cut_count = count;
-  return EXIT_CODE_OK;
+  return HL_OK;
 }

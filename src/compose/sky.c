@@ -1,12 +1,18 @@
-/* cli/render_sky.c - `--sky COLOR|GRADIENT|IMAGE`: light from all directions. */
-#include <stdio.h>
-#include <stdlib.h>
+/* compose/sky.c - "sky" COLOR|GRADIENT|IMAGE: light from all directions. */
+#include <halflight/image.h>
 #include <string.h>
 
-#include "output.h"
-#include "render.h"
+#include "compose/composer.h"
+#include "core/memory.h"
+#include "text/color.h"
+#include "text/plain.h"
 
 enum { COLOR_BYTES = 64, GRADIENT_COLORS = 3 };
+
+static bool has_extension(const char *path, const char *extension) {
+  size_t length = strlen(path), tail = strlen(extension);
+  return length > tail && hl_plain_equal(path + length - tail, extension);
+}
 
 static bool names_image(const char *text) {
   static const char *const extensions[] = {".exr", ".hdr", ".pic", ".png", ".npy"};
@@ -24,40 +30,38 @@ static int read_colors(const char *text, double colors[GRADIENT_COLORS][3]) {
     if (length >= sizeof color) return 0;
     memcpy(color, text, length);
     color[length] = '\0';
-    if (!parse_color(color, setting->low, setting->high, colors[count])) return 0;
+    if (!hl_parse_color(color, setting->low, setting->high, colors[count])) return 0;
     if (text[length] == '\0') return count + 1;
     text += length + 1;
   }
   return 0;
 }
 
-int render_check_sky(const cli_value *sky) {
+hl_status hl_check_sky(const hl_asked *sky, hl_error *error) {
   double colors[GRADIENT_COLORS][3];
-  if (!sky->given || names_image(sky->text) || read_colors(sky->text, colors) > 0) return EXIT_CODE_OK;
-  return fail(EXIT_CODE_USAGE,
-              "--sky: '%s' is not a colour (a number, linear R,G,B, #rrggbb or a CSS name), a gradient "
-              "ZENITH:HORIZON[:GROUND] of colours, or an image's file (.exr, .hdr, .png, .npy)",
-              sky->text);
+  if (!sky->given || names_image(sky->text) || read_colors(sky->text, colors) > 0) return HL_OK;
+  return hl_fail(
+      error, HL_ERROR_ARGUMENT,
+      "--sky: '%.300s' is not a colour (a number, linear R,G,B, #rrggbb or a CSS name), a gradient "
+      "ZENITH:HORIZON[:GROUND] of colours, or an image's file (.exr, .hdr, .png, .npy)",
+      sky->text);
 }
 
 /* An image's colours without alpha: premultiplied, they are the image over black. */
-static float *take_pixels(const hl_image *image) {
+static float *take_pixels(hl_context *context, const hl_image *image) {
   size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
   const float *from = hl_image_pixels_const(image);
-  float *pixels = malloc(count * 3 * sizeof *pixels);
+  float *pixels = hl_allocate(context, count, 3 * sizeof *pixels);
   for (size_t i = 0; i < count && pixels != NULL; i++)
     for (size_t c = 0; c < 3; c++) pixels[3 * i + c] = from[4 * i + c];
   return pixels;
 }
 
-static int load(cli_host *host, const char *path, hl_sky *sky, float **pixels) {
-  hl_error error = {0};
+static hl_status load(const hl_composer *composer, const char *path, hl_sky *sky, float **pixels) {
   hl_image *image = NULL;
-  hl_status status = hl_image_read(host->context, path, &image, &error);
-  if (status == HL_OK && (*pixels = take_pixels(image)) == NULL) {
-    snprintf(error.message, sizeof error.message, "out of memory for '%.200s'", path);
-    status = error.code = HL_ERROR_MEMORY;
-  }
+  hl_status status = hl_image_read(composer->context, path, &image, composer->error);
+  if (status == HL_OK && (*pixels = take_pixels(composer->context, image)) == NULL)
+    status = hl_fail(composer->error, HL_ERROR_MEMORY, "out of memory for '%.200s'", path);
   if (status == HL_OK) {
     sky->type = HL_SKY_IMAGE;
     sky->file = path;
@@ -66,7 +70,7 @@ static int load(cli_host *host, const char *path, hl_sky *sky, float **pixels) {
     sky->height = hl_image_height(image);
   }
   hl_image_destroy(image);
-  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
+  return status;
 }
 
 /* One colour is an even sky; black is none. */
@@ -85,17 +89,18 @@ static void set_colors(const char *text, hl_sky *sky) {
   if (count == 3) memcpy(sky->ground, colors[2], sizeof sky->ground);
 }
 
-int render_sky(cli_host *host, const cli_value *value, hl_scene_description *description, float **pixels) {
+hl_status hl_compose_sky(const hl_composer *composer, hl_scene_description *description, float **pixels) {
+  const hl_asked *asked = &composer->asked[HL_ASK_SKY];
   hl_scene_description plain;
-  if (!value->given) return EXIT_CODE_OK;
+  if (!asked->given) return HL_OK;
   hl_scene_description_defaults(&plain);
   hl_sky made = plain.sky;
   const hl_sky *before = &description->sky;
   memcpy(made.up, before->type != HL_SKY_NONE ? before->up : description->camera.up, sizeof made.up);
-  int exit_code = EXIT_CODE_OK;
-  if (names_image(value->text)) exit_code = load(host, value->text, &made, pixels);
-  else set_colors(value->text, &made);
+  hl_status status = HL_OK;
+  if (names_image(asked->text)) status = load(composer, asked->text, &made, pixels);
+  else set_colors(asked->text, &made);
   if (made.type == HL_SKY_NONE) made = plain.sky;
-  if (exit_code == EXIT_CODE_OK) description->sky = made;
-  return exit_code;
+  if (status == HL_OK) description->sky = made;
+  return status;
 }

@@ -1,0 +1,83 @@
+/* halflight/compose.h - scenes composed by named options: what a bare volume gets, and what the options mean.
+ *
+ * The program, the Python package and the viewer make their scenes by hl_scene_compose(). An option is a name
+ * and a value as text: the options of `halflight render`, without dashes.
+ */
+#ifndef HALFLIGHT_COMPOSE_H
+#define HALFLIGHT_COMPOSE_H
+
+#include "settings.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One option. An option that may be given several times ("iso", "tf", "show", ...) stands in the list several
+ * times. */
+typedef struct hl_option {
+  const char *name;  /* "look", "iso", "view", ...: hl_option_name() lists all */
+  const char *value; /* as `halflight render` takes it; of a switch null or "" */
+} hl_option;
+
+/* How the value of an option is read. */
+typedef enum hl_option_kind {
+  HL_OPTION_SWITCH = 0,  /* no value */
+  HL_OPTION_TEXT = 1,    /* a text of the option's own form, as "120:gold:0.3" of "iso" */
+  HL_OPTION_CHOICE = 2,  /* one of hl_option_choices() */
+  HL_OPTION_NUMBERS = 3, /* numbers joined by ',' or 'x'; or one of hl_option_choices() */
+  HL_OPTION_COLOR = 4    /* linear R,G,B or a grey, #rrggbb, a CSS name; or one of hl_option_choices() */
+} hl_option_kind;
+
+/* The name of an option that scenes are composed by; null past the last. */
+HL_API const char *hl_option_name(size_t index);
+
+/* The kind of a named option; HL_OPTION_TEXT for an unknown name. */
+HL_API hl_option_kind hl_option_kind_of(const char *name);
+
+/* The choices of a named option, ended by a null name; null: it has none. */
+HL_API const hl_setting_choice *hl_option_choices(const char *name);
+
+/* What is known of the description that hl_scene_compose() changes; flags, joined by |. */
+typedef enum hl_compose_flag {
+  /* It was made by hl_scene_for_volume() or another function that chooses: what follows from an option
+   * (camera, light, sky) is chosen anew. */
+  HL_COMPOSE_BARE = 1,
+  HL_COMPOSE_CHANGED = 2, /* the caller changed what is seen of the volumes: a bare camera frames them anew */
+  HL_COMPOSE_CUT = 4,     /* the caller cut the volume: bare light is made for what is left */
+  HL_COMPOSE_CAMERA = 8,  /* the caller placed the camera: it stays */
+  HL_COMPOSE_LIGHTS = 16, /* the caller chose the lights: they stay as strong as they are */
+  HL_COMPOSE_SKY = 32,    /* the caller chose the sky: it stays */
+  HL_COMPOSE_MESHES = 64, /* the caller added meshes: a bare camera takes them into the picture, too */
+  HL_COMPOSE_SEGMENTS = 128 /* a bare volume whose file names its segments is shown as a label map */
+} hl_compose_flag;
+
+/* Makes the scene of a description and options, which are applied in one order, whatever order they stand in:
+ * label maps, looks and functions, cuts, camera, floor, lights, exposure, sky, ambient light, settings.
+ * flags: of hl_compose_flag. Options that change nothing are told to the context's log. Errors name an option
+ * as the program does, with two dashes: HL_ERROR_ARGUMENT for an impossible value, HL_ERROR_INPUT or
+ * HL_ERROR_IO for a file that an option names. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_compose(hl_context *context, const hl_scene_description *description,
+                                                 unsigned flags, const hl_option *options,
+                                                 size_t option_count, hl_scene **scene, hl_error *error);
+
+/* Refuses options that hl_scene_compose() would refuse before it reads a file: unknown names, values that
+ * cannot be read, options that exclude each other. */
+HL_API HL_WARN_UNUSED hl_status hl_options_check(const hl_option *options, size_t option_count,
+                                                 hl_error *error);
+
+/* A scene of a label map's layers, each a volume whose labels the options "label-table" and "show" say;
+ * labels of "show" that the map lacks are passed over. path, reading (null: the defaults): as for
+ * hl_volume_load_with(). */
+HL_API HL_WARN_UNUSED hl_status hl_scene_for_label_map(hl_context *context, const char *path,
+                                                       const hl_volume_load_options *reading,
+                                                       const hl_option *options, size_t option_count,
+                                                       hl_scene **scene, hl_error *error);
+
+/* The colour of a mesh or an isosurface that has none of its own, linear RGB: ivory, blue, ochre, green,
+ * rose, violet, and again. */
+HL_API void hl_surface_color(size_t index, double color[3]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,105 @@
+/* compose/asked.h - the options of one call by their place in the table of options, with their values read.
+ */
+#ifndef HL_COMPOSE_ASKED_H
+#define HL_COMPOSE_ASKED_H
+
+#include <halflight/compose.h>
+#include <stdbool.h>
+
+typedef enum hl_ask {
+  HL_ASK_SIZE,
+  HL_ASK_BACKGROUND,
+  HL_ASK_EXPOSURE,
+  HL_ASK_TONE,
+  HL_ASK_VIEW,
+  HL_ASK_UP,
+  HL_ASK_AZIMUTH,
+  HL_ASK_ELEVATION,
+  HL_ASK_ROLL,
+  HL_ASK_ZOOM,
+  HL_ASK_FOVY,
+  HL_ASK_ORTHO,
+  HL_ASK_LOOK, /* from here to HL_ASK_SHADING: how volumes look */
+  HL_ASK_TF,
+  HL_ASK_COLORMAP,
+  HL_ASK_RANGE,
+  HL_ASK_RANGE_SCALE,
+  HL_ASK_THRESHOLD,
+  HL_ASK_ISO,
+  HL_ASK_CLIP,
+  HL_ASK_CUT_PLANE,
+  HL_ASK_CUT_BOX,
+  HL_ASK_CUT_SPHERE,
+  HL_ASK_CUT_SHADING,
+  HL_ASK_CUT_CASTS_SHADOW,
+  HL_ASK_WHOLE,
+  HL_ASK_SHADING,
+  HL_ASK_FLOOR,
+  HL_ASK_LABELS,
+  HL_ASK_MASK,
+  HL_ASK_LABEL_TABLE,
+  HL_ASK_SHOW,
+  HL_ASK_AMBIENT,
+  HL_ASK_SKY,
+  HL_ASK_LIGHT,
+  HL_ASK_LIGHT_SIZE,
+  HL_ASK_SHADOWS, /* from here on: settings of hl_render_settings */
+  HL_ASK_SOFT_METHOD,
+  HL_ASK_LIGHT_SAMPLES,
+  HL_ASK_SHADOW_RESOLUTION,
+  HL_ASK_SHADOW_LOOKUP,
+  HL_ASK_SHEET_SPACING,
+  HL_ASK_KERNEL,
+  HL_ASK_RECONSTRUCTION,
+  HL_ASK_SLICING,
+  HL_ASK_THREADS,
+  HL_ASK_COUNT
+} hl_ask;
+
+enum { HL_ASK_MOST_TEXTS = 32 };
+
+/* The choices of "look": the library's looks, and the maximum projection. */
+enum {
+  HL_LOOK_AUTO,
+  HL_LOOK_SURFACE,
+  HL_LOOK_TRANSLUCENT,
+  HL_LOOK_XRAY,
+  HL_LOOK_SMOKE,
+  HL_LOOK_VESSELS,
+  HL_LOOK_MIP
+};
+
+/* The value of one option. */
+typedef struct hl_asked {
+  bool given;
+  const char *text;                     /* as given; of an option that repeats the last one */
+  const char *texts[HL_ASK_MOST_TEXTS]; /* [count] */
+  int count;
+  bool chosen; /* one of the choices was given: `choice` is its value */
+  int choice;
+  double number[3];
+  bool percent[3]; /* the number is a percentile */
+} hl_asked;
+
+/* A row of the table of options. */
+typedef struct hl_option_row {
+  const char *name;
+  hl_option_kind kind;
+  int count;      /* of numbers, 1 to 3 */
+  char separator; /* between numbers */
+  bool percent;   /* each number may be a percentile */
+  bool repeats;
+  const hl_setting_choice *choices; /* null: the setting's, if any */
+  hl_setting_kind setting_kind;
+  const char *setting; /* the setting that it sets; null: none */
+} hl_option_row;
+
+extern const hl_option_row hl_option_rows[HL_ASK_COUNT];
+
+/* Reads options into asked: [HL_ASK_COUNT], whose texts are borrowed of the options. */
+hl_status hl_options_read(const hl_option *options, size_t count, hl_asked *asked, hl_error *error);
+
+/* The choices of a row, its setting's where it has none of its own; null: none. */
+const hl_setting_choice *hl_row_choices(const hl_option_row *row);
+
+#endif

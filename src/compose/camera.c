@@ -1,0 +1,112 @@
+/* compose/camera.c - where the camera stands: "size", "view", "up", "azimuth", "elevation", "roll", "zoom",
+ * "fovy" and "ortho". */
+#include <math.h>
+#include <string.h>
+
+#include "compose/composer.h"
+
+static const double degree = 3.14159265358979323846 / 180;
+
+static void subtract(const double a[3], const double b[3], double difference[3]) {
+  for (int i = 0; i < 3; i++) difference[i] = a[i] - b[i];
+}
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static double distance(const double a[3], const double b[3]) {
+  double difference[3];
+  subtract(a, b, difference);
+  return sqrt(dot(difference, difference));
+}
+
+/* --ortho and --fovy: changes the projection so that the picture shows the same height of the world at the
+ * target as before. */
+static void change_projection(const hl_asked *asked, hl_camera *camera) {
+  double away = distance(camera->position, camera->target);
+  if (asked[HL_ASK_ORTHO].given && camera->type == HL_CAMERA_PERSPECTIVE) {
+    camera->height = 2 * away * tan(camera->fovy_deg * degree / 2);
+    camera->type = HL_CAMERA_ORTHOGRAPHIC;
+  }
+  if (!asked[HL_ASK_FOVY].given) return;
+  if (camera->type == HL_CAMERA_ORTHOGRAPHIC && away > 0) {
+    double wanted = camera->height / (2 * tan(asked[HL_ASK_FOVY].number[0] * degree / 2));
+    for (int i = 0; i < 3; i++)
+      camera->position[i] = camera->target[i] + (camera->position[i] - camera->target[i]) * wanted / away;
+  }
+  camera->type = HL_CAMERA_PERSPECTIVE;
+  camera->fovy_deg = asked[HL_ASK_FOVY].number[0];
+}
+
+/* The view to change: the one that "view" and "up" ask for; without them the view of the scene's camera, or
+ * the automatic view of a bare volume. */
+static hl_status choose_view(const hl_composer *composer, const hl_scene_description *description,
+                             hl_view *view) {
+  const hl_asked *asked = composer->asked, *up = &asked[HL_ASK_UP];
+  if (!composer->bare && !up->given && !asked[HL_ASK_VIEW].given) {
+    if (hl_view_of_camera(description, view) == HL_OK) return HL_OK;
+    return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                   "the scene's camera looks nowhere: mend its position, target or up");
+  }
+  double vector[3];
+  for (int axis = 0; axis < 3; axis++)
+    vector[axis] = !up->chosen ? up->number[axis] : up->choice / 2 != axis ? 0 : up->choice % 2 ? -1 : 1;
+  hl_side side = asked[HL_ASK_VIEW].given ? (hl_side)asked[HL_ASK_VIEW].choice : HL_SIDE_AUTOMATIC;
+  if (up->given && vector[0] == 0 && vector[1] == 0 && vector[2] == 0)
+    return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                   "--up: '%.200s' has no direction: give an axis, as +z, or a vector that is not 0",
+                   up->text);
+  return hl_blame_options(
+      hl_view_choose(description, side, up->given ? vector : NULL, view, composer->error));
+}
+
+/* Sets the angles that are given; false if none of them changes. */
+static bool turn_view(const hl_asked *asked, hl_view *view) {
+  const hl_view before = *view;
+  if (asked[HL_ASK_AZIMUTH].given) view->azimuth_deg = asked[HL_ASK_AZIMUTH].number[0];
+  if (asked[HL_ASK_ELEVATION].given) view->elevation_deg = asked[HL_ASK_ELEVATION].number[0];
+  if (asked[HL_ASK_ROLL].given) view->roll_deg = asked[HL_ASK_ROLL].number[0];
+  return view->azimuth_deg != before.azimuth_deg || view->elevation_deg != before.elevation_deg ||
+         view->roll_deg != before.roll_deg;
+}
+
+hl_status hl_frame_anew(hl_scene_description *description, hl_error *error) {
+  hl_view view;
+  hl_status status = hl_view_of_camera(description, &view);
+  return status == HL_OK ? hl_camera_frame_view(description, &view, 1, &description->camera, error) : status;
+}
+
+/* Frames the camera before it is turned: then all frames of a turn have the same target and distance. */
+static hl_status place(const hl_composer *composer, bool framed, hl_scene_description *description) {
+  const hl_asked *asked = composer->asked;
+  hl_view view;
+  hl_status status = choose_view(composer, description, &view);
+  if (status != HL_OK) return status;
+  if (composer->bare && (composer->flags & HL_COMPOSE_SKY) == 0)
+    memcpy(description->sky.up, view.up, sizeof view.up);
+  double zoom = asked[HL_ASK_ZOOM].given ? asked[HL_ASK_ZOOM].number[0] : 1;
+  if (framed) status = hl_camera_frame_view(description, &view, zoom, &description->camera, composer->error);
+  if (status == HL_ERROR_MEMORY) return status;
+  if (status == HL_OK && turn_view(asked, &view)) status = hl_camera_turn(&view, &description->camera);
+  if (status == HL_OK) return HL_OK;
+  return hl_fail(
+      composer->error, HL_ERROR_ARGUMENT,
+      "--view, --up, --azimuth, --elevation, --roll, --zoom: no visible volume to frame: place the "
+      "camera in the scene");
+}
+
+hl_status hl_compose_camera(const hl_composer *composer, bool seen, hl_scene_description *description) {
+  const hl_asked *asked = composer->asked;
+  if (asked[HL_ASK_SIZE].given) {
+    description->width = (int)asked[HL_ASK_SIZE].number[0];
+    description->height = (int)asked[HL_ASK_SIZE].number[1];
+  }
+  if ((composer->flags & HL_COMPOSE_CAMERA) != 0) return HL_OK;
+  change_projection(asked, &description->camera);
+  bool turned = asked[HL_ASK_AZIMUTH].given || asked[HL_ASK_ELEVATION].given || asked[HL_ASK_ROLL].given;
+  bool reshaped = asked[HL_ASK_SIZE].given || asked[HL_ASK_FOVY].given || asked[HL_ASK_ORTHO].given;
+  bool framed = asked[HL_ASK_ZOOM].given || asked[HL_ASK_VIEW].given || asked[HL_ASK_UP].given ||
+                (composer->bare && (reshaped || seen));
+  if (turned || framed) return place(composer, framed, description);
+  bool taken_in = composer->bare && (composer->flags & HL_COMPOSE_MESHES) != 0;
+  return taken_in ? hl_frame_anew(description, composer->error) : HL_OK;
+}

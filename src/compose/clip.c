@@ -1,0 +1,55 @@
+/* compose/clip.c - "clip" AXIS=LO:HI: keeps a part of each volume along an axis of its file's world.
+ *
+ * A bare number is a fraction of the box around the volume's voxels; a number with a unit is a coordinate. An
+ * end that is left out stays at the end of the scene's own clip box, or else of the volume.
+ */
+#include <string.h>
+
+#include "compose/composer.h"
+#include "compose/coordinates.h"
+
+/* The whole text is a range. */
+static bool read_range(const char *text, hl_axis_range *range) {
+  return hl_read_range(&text, range) && *text == '\0';
+}
+
+hl_status hl_check_clip(const hl_asked *clip, hl_error *error) {
+  hl_axis_range range;
+  for (int n = 0; n < clip->count; n++)
+    if (!read_range(clip->texts[n], &range))
+      return hl_fail(
+          error, HL_ERROR_ARGUMENT,
+          "--clip: '%.300s' is not AXIS=LO:HI with LO below HI: fractions from 0 to 1 (x=0:0.5), or "
+          "coordinates in the "
+          "file's own unit, which is written mm or u whatever it is (x=10mm:40mm)",
+          clip->texts[n]);
+  return HL_OK;
+}
+
+hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume) {
+  const hl_asked *clip = &composer->asked[HL_ASK_CLIP];
+  hl_error *error = composer->error;
+  double low[3], high[3];
+  hl_volume_info info = {.struct_size = sizeof info};
+  if (hl_volume_get_info(volume->volume, &info) != HL_OK)
+    return hl_fail(error, HL_ERROR_INTERNAL, "--clip: the volume's place is not known");
+  hl_volume_world_box(&info, low, high);
+  if (!volume->clipped) {
+    memcpy(volume->clip_min, low, sizeof low);
+    memcpy(volume->clip_max, high, sizeof high);
+    volume->clipped = 1;
+  }
+  for (int n = 0; n < clip->count; n++) {
+    hl_axis_range range;
+    if (!read_range(clip->texts[n], &range)) continue; /* refused before: hl_check_clip() */
+    double *least = &volume->clip_min[range.axis], *greatest = &volume->clip_max[range.axis];
+    *least = hl_coordinate_of(&range.ends[0], *least, low[range.axis], high[range.axis]);
+    *greatest = hl_coordinate_of(&range.ends[1], *greatest, low[range.axis], high[range.axis]);
+    if (!(*least < *greatest))
+      return hl_fail(
+          error, HL_ERROR_ARGUMENT,
+          "--clip: '%.300s': nothing is left between %.9g and %.9g; the volume goes from %.9g to %.9g",
+          clip->texts[n], *least, *greatest, low[range.axis], high[range.axis]);
+  }
+  return HL_OK;
+}

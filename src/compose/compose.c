@@ -1,0 +1,171 @@
+/* compose/compose.c - hl_scene_compose(): the order in which options change a scene.
+ *
+ * A scene cannot be changed: its description is copied and another scene made of the copy. Of the arrays only
+ * those that change (lights, volumes, transfer functions) are copied too.
+ */
+#include <halflight/compose.h>
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#include "compose/composer.h"
+#include "compose/lights.h"
+#include "compose/looks.h"
+#include "compose/volumes.h"
+#include "core/door.h"
+#include "core/memory.h"
+
+/* The changed description and its own arrays. */
+typedef struct scene_change {
+  hl_scene_description description;
+  hl_changed_volumes volumes;
+  hl_light *lights;      /* owned; [description.light_count] */
+  hl_scene_mesh *meshes; /* owned, with the floor, which is the last; null: no floor is added */
+  float *sky;            /* owned; the pixels of the image of "sky"; null: none */
+} scene_change;
+
+/* "floor": adds a mesh below what is seen, when the camera is placed. */
+static hl_status add_floor(const hl_composer *composer, scene_change *change) {
+  hl_scene_description *description = &change->description;
+  if (!composer->asked[HL_ASK_FLOOR].given) return HL_OK;
+  size_t count = description->mesh_count;
+  hl_mesh *floor = NULL;
+  hl_status status = hl_scene_make_floor(composer->context, description, NULL, HL_FLOOR_SIZE, &floor,
+                                         composer->error);
+  if (status != HL_OK) return hl_blame_options(status);
+  change->meshes = hl_allocate_zeroed(composer->context, count + 1, sizeof *change->meshes);
+  if (change->meshes == NULL) {
+    hl_mesh_release(floor);
+    return hl_fail_memory(composer->error, (count + 1) * sizeof *change->meshes, "the scene's meshes");
+  }
+  if (count > 0) memcpy(change->meshes, description->meshes, count * sizeof *change->meshes);
+  hl_scene_floor_defaults(&change->meshes[count]);
+  change->meshes[count].name = "floor";
+  change->meshes[count].mesh = floor;
+  description->meshes = change->meshes;
+  description->mesh_count = count + 1;
+  return HL_OK;
+}
+
+/* Writes each option for a render setting into the setting's field. */
+static void change_render_settings(const hl_asked *asked, hl_render_settings *render) {
+  for (int which = HL_ASK_SHADOWS; which < HL_ASK_COUNT; which++) {
+    if (!asked[which].given) continue;
+    const hl_setting *setting = hl_setting_find(HL_SETTINGS_RENDER, hl_option_rows[which].setting);
+    const double number = asked[which].number[0];
+    const int whole = asked[which].chosen ? asked[which].choice : (int)fmin(fmax(number, INT_MIN), INT_MAX);
+    void *field = (char *)render + setting->offset;
+    if (setting->type == HL_SETTING_NUMBER) memcpy(field, &number, sizeof number);
+    else memcpy(field, &whole, sizeof whole);
+  }
+}
+
+static void change_settings(const hl_asked *asked, hl_scene_description *description) {
+  change_render_settings(asked, &description->render);
+  if (asked[HL_ASK_EXPOSURE].given) description->exposure = asked[HL_ASK_EXPOSURE].number[0];
+  if (asked[HL_ASK_TONE].given) description->tone = (hl_tone)asked[HL_ASK_TONE].choice;
+  const hl_asked *background = &asked[HL_ASK_BACKGROUND];
+  if (!background->given) return;
+  description->background_transparent = background->chosen;
+  if (!background->chosen)
+    memcpy(description->background, background->number, sizeof description->background);
+}
+
+/* Smooth labels are splines' coefficients; numbers of labels, which the scene of a bare label map was made
+ * for, take no spline. */
+static void smooth_labels(const hl_composer *composer, hl_scene_description *description) {
+  bool labels = false;
+  for (size_t v = 0; v < description->volume_count; v++) labels |= description->volumes[v].label_count > 0;
+  if (composer->bare && labels && description->render.kernel == HL_KERNEL_LINEAR)
+    description->render.kernel = HL_KERNEL_BSPLINE;
+}
+
+static hl_status change_all(const hl_composer *composer, scene_change *change) {
+  hl_scene_description *description = &change->description;
+  /* first: the camera frames what is seen of the volumes */
+  hl_status status = hl_compose_volumes(composer, description, &change->volumes);
+  bool seen = change->volumes.volumes != NULL || (composer->flags & HL_COMPOSE_CHANGED) != 0;
+  if (status == HL_OK) smooth_labels(composer, description);
+  if (status == HL_OK) status = hl_compose_camera(composer, seen, description);
+  if (status == HL_OK) status = add_floor(composer, change);
+  if (status == HL_OK) status = hl_compose_lights(composer, description, &change->lights);
+  if (status == HL_OK) status = hl_compose_sky(composer, description, &change->sky);
+  if (status != HL_OK) return status;
+  hl_compose_look(composer, description);
+  hl_compose_ambient(composer, description);
+  change_settings(composer->asked, description);
+  hl_warn_of_idle_options(composer, description);
+  return HL_OK;
+}
+
+static void change_release(hl_context *context, scene_change *change) {
+  hl_changed_volumes_release(context, &change->volumes);
+  hl_release(context, change->sky);
+  if (change->meshes != NULL) hl_mesh_release(change->meshes[change->description.mesh_count - 1].mesh);
+  hl_release(context, change->meshes);
+  hl_release(context, change->lights);
+}
+
+/* Checks of one option alone, and of options beside each other. */
+static hl_status check(const hl_asked *asked, hl_error *error) {
+  const hl_asked *range = &asked[HL_ASK_RANGE];
+  if (range->given && range->percent[0] == range->percent[1] && range->number[0] >= range->number[1])
+    return hl_fail(error, HL_ERROR_ARGUMENT, "--range: '%.200s': LO must be below HI", range->text);
+  if (asked[HL_ASK_RANGE_SCALE].given && !range->given)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "--range-scale says how --range spreads: give --range LO,HI, too");
+  if (asked[HL_ASK_THRESHOLD].given && range->given && !asked[HL_ASK_COLORMAP].given)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "--threshold says what is opaque: --range beside it needs --colormap, to spread");
+  if (asked[HL_ASK_ORTHO].given && asked[HL_ASK_FOVY].given)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "--ortho and --fovy exclude each other: give one of them");
+  if (asked[HL_ASK_LIGHT].given && fabs(asked[HL_ASK_LIGHT].number[1]) > 90)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "--light: '%.200s': the elevation must be from -90 to 90",
+                   asked[HL_ASK_LIGHT].text);
+  for (int n = 0; asked[HL_ASK_SIZE].given && n < 2; n++)
+    if (!(asked[HL_ASK_SIZE].number[n] >= 1 && asked[HL_ASK_SIZE].number[n] <= 65536))
+      return hl_fail(error, HL_ERROR_ARGUMENT, "--size: '%.200s': give WxH in pixels, each from 1 to 65536",
+                     asked[HL_ASK_SIZE].text);
+  hl_status status = hl_check_clip(&asked[HL_ASK_CLIP], error);
+  if (status == HL_OK) status = hl_check_cuts(asked, error);
+  if (status == HL_OK) status = hl_check_isosurfaces(&asked[HL_ASK_ISO], error);
+  return status == HL_OK ? hl_check_sky(&asked[HL_ASK_SKY], error) : status;
+}
+
+hl_status hl_options_check(const hl_option *options, size_t option_count, hl_error *error) {
+  HL_DOOR;
+  hl_asked asked[HL_ASK_COUNT];
+  if (options == NULL && option_count > 0)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_options_check: null options");
+  hl_status status = hl_options_read(options, option_count, asked, error);
+  return status == HL_OK ? check(asked, error) : status;
+}
+
+/* The scene of a description with its label maps: *scene, or, where no option asks for any, null. */
+static hl_status add_labels(const hl_composer *composer, const hl_scene_description *description,
+                            hl_scene **scene) {
+  if (!hl_asks_for_labels(composer, description)) return HL_OK;
+  hl_status status = hl_scene_create(composer->context, description, scene, composer->error);
+  return status == HL_OK ? hl_compose_labels(composer, scene) : status;
+}
+
+hl_status hl_scene_compose(hl_context *context, const hl_scene_description *description, unsigned flags,
+                           const hl_option *options, size_t option_count, hl_scene **scene, hl_error *error) {
+  HL_DOOR;
+  hl_asked asked[HL_ASK_COUNT];
+  if (context == NULL || description == NULL || scene == NULL || (options == NULL && option_count > 0))
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_compose: null context, description, options or scene");
+  *scene = NULL;
+  hl_status status = hl_options_read(options, option_count, asked, error);
+  if (status == HL_OK) status = check(asked, error);
+  if (status != HL_OK) return status;
+  const hl_composer composer = {context, asked, flags, (flags & HL_COMPOSE_BARE) != 0, error};
+  hl_scene *labelled = NULL;
+  status = add_labels(&composer, description, &labelled);
+  scene_change change = {.description = labelled != NULL ? *hl_scene_describe(labelled) : *description};
+  if (status == HL_OK) status = change_all(&composer, &change);
+  if (status == HL_OK) status = hl_scene_create(context, &change.description, scene, error);
+  change_release(context, &change);
+  hl_scene_release(labelled);
+  return status;
+}

@@ -1,0 +1,29 @@
+/* compose/coordinates.h - places in a volume as text: fractions of its box, or coordinates of its file's
+ * world. */
+#ifndef HL_COMPOSE_COORDINATES_H
+#define HL_COMPOSE_COORDINATES_H
+
+#include <halflight/volume.h>
+#include <stdbool.h>
+
+/* A bare number is a fraction of the box around the volume's voxels, a number with a unit is a coordinate of
+ * the file's world. */
+typedef struct hl_coordinate {
+  bool given, fraction;
+  double number;
+} hl_coordinate;
+
+/* Reads "0.25", "10mm" or nothing, and moves *text past it. False if something else is there. */
+bool hl_read_coordinate(const char **text, hl_coordinate *coordinate);
+
+/* The coordinate; otherwise: where it is left out; low, high: the ends of the volume's box. */
+double hl_coordinate_of(const hl_coordinate *coordinate, double otherwise, double low, double high);
+
+/* A range along an axis: "x=LO:HI". Moves *text past it; false if something else is there. */
+typedef struct hl_axis_range {
+  int axis;
+  hl_coordinate ends[2];
+} hl_axis_range;
+bool hl_read_range(const char **text, hl_axis_range *range);
+
+#endif

@@ -1,0 +1,301 @@
+/* compose/functions.c - transfer functions by "tf", "colormap", "range", "range-scale" and "threshold". */
+#include <halflight/transfer_function.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "compose/composer.h"
+#include "compose/looks.h"
+#include "core/context.h"
+#include "core/file.h"
+#include "core/memory.h"
+#include "scene/transfer_function.h"
+#include "text/color.h"
+#include "text/edit_distance.h"
+
+static const char *preset_name(const void *data, size_t index) {
+  (void)data;
+  return hl_preset_name(index);
+}
+
+static const char *colormap_name(const void *data, size_t index) {
+  (void)data;
+  return hl_colormap_name(index);
+}
+
+static bool is_known(const char *name, const char *(*known)(const void *, size_t)) {
+  const char *candidate;
+  for (size_t i = 0; (candidate = known(NULL, i)) != NULL; i++)
+    if (strcmp(candidate, name) == 0) return true;
+  return false;
+}
+
+static hl_status refuse_name(const char *option, const char *name, const char *kind, const char *topic,
+                             const char *(*known)(const void *, size_t), hl_error *error) {
+  const char *meant = hl_nearest_candidate(name, known, NULL);
+  if (meant != NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "--%s: '%.300s' is no %s: did you mean %s?", option, name, kind,
+                   meant);
+  return hl_fail(error, HL_ERROR_ARGUMENT, "--%s: '%.300s' is no %s: see 'halflight help %s'", option, name,
+                 kind, topic);
+}
+
+/* ---- names ---- */
+
+/* The name of a volume in "tf" NAME=... and others: its name in the scene, else its file's without folder and
+ * extensions, else "volume1" and so on. */
+static void name_of(const hl_scene_volume *volume, size_t index, char *name, size_t size) {
+  if (volume->name != NULL) {
+    snprintf(name, size, "%s", volume->name);
+  } else if (volume->file != NULL) {
+    const char *slash = strrchr(volume->file, '/'), *base = slash != NULL ? slash + 1 : volume->file;
+    const char *dot = strchr(base + (base[0] == '.'), '.');
+    snprintf(name, size, "%.*s", dot != NULL ? (int)(dot - base) : (int)strlen(base), base);
+  } else {
+    snprintf(name, size, "volume%zu", index + 1);
+  }
+}
+
+/* The text after "NAME="; null: it is for every volume. A text that names an existing file is that file, even
+ * with a '=' in it. */
+static const char *after_name(const hl_context *context, const char *text) {
+  const char *equals = strchr(text, '=');
+  return equals == NULL || hl_file_kind(context, text) != 0 ? NULL : equals + 1;
+}
+
+bool hl_text_is_for(const hl_composer *composer, const char *text, const hl_scene_volume *volume,
+                    size_t index, const char **rest) {
+  char own[256];
+  const char *after = after_name(composer->context, text);
+  *rest = after != NULL ? after : text;
+  if (after == NULL) return true;
+  name_of(volume, index, own, sizeof own);
+  size_t length = strlen(own);
+  return length == (size_t)(after - text) - 1 && memcmp(own, text, length) == 0;
+}
+
+static bool is_for_any(const hl_composer *composer, const char *text,
+                       const hl_scene_description *description) {
+  const char *rest;
+  for (size_t v = 0; v < description->volume_count; v++)
+    if (hl_text_is_for(composer, text, &description->volumes[v], v, &rest)) return true;
+  return false;
+}
+
+static void list_names(const hl_scene_description *description, char *names, size_t size) {
+  size_t used = 0;
+  names[0] = '\0';
+  for (size_t v = 0; v < description->volume_count && used < size; v++) {
+    char own[256];
+    name_of(&description->volumes[v], v, own, sizeof own);
+    used += (size_t)snprintf(names + used, size - used, "%s%s", v > 0 ? ", " : "", own);
+  }
+}
+
+/* many: the option may be given several times for one volume. */
+static hl_status check_names(const hl_composer *composer, hl_ask option, bool many,
+                             const hl_scene_description *description) {
+  char names[600];
+  const hl_asked *given = &composer->asked[option];
+  const char *name = hl_option_rows[option].name;
+  list_names(description, names, sizeof names);
+  for (int n = 0; n < given->count; n++) {
+    const char *text = given->texts[n];
+    const bool named = after_name(composer->context, text) != NULL;
+    if (!named && given->count > 1 && !many)
+      return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                     "--%s: '%.200s' beside another --%s: say whose each is, NAME=... (volumes: %s)", name,
+                     text, name, names);
+    if (named && !is_for_any(composer, text, description))
+      return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                     "--%s: '%.200s': no volume has the name before '=': there is %s", name, text, names);
+  }
+  return HL_OK;
+}
+
+hl_status hl_check_volume_names(const hl_composer *composer, const hl_scene_description *description) {
+  hl_status status = check_names(composer, HL_ASK_TF, false, description);
+  if (status == HL_OK) status = check_names(composer, HL_ASK_COLORMAP, false, description);
+  return status == HL_OK ? check_names(composer, HL_ASK_ISO, true, description) : status;
+}
+
+const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_scene_volume *volume,
+                        size_t index) {
+  const hl_asked *given = &composer->asked[option];
+  const char *chosen = NULL, *rest;
+  for (int n = 0; n < given->count; n++)
+    if (hl_text_is_for(composer, given->texts[n], volume, index, &rest)) chosen = rest;
+  return chosen;
+}
+
+/* ---- functions ---- */
+
+static hl_status load_function(const hl_composer *composer, const char *name, const hl_volume *volume,
+                               hl_transfer_function *function) {
+  if (is_known(name, preset_name))
+    return hl_transfer_function_preset(composer->context, name, volume, function, composer->error);
+  if (strpbrk(name, "./") != NULL || hl_file_kind(composer->context, name) != 0)
+    return hl_transfer_function_load_for(composer->context, name, volume, function, composer->error);
+  return refuse_name("tf", name, "preset or file", "presets", preset_name, composer->error);
+}
+
+/* Makes values clear below the threshold and nearly opaque, over a voxel's edge, from it on. A ramp below the
+ * threshold lets surfaces be shaded without stairs. It is a twentieth of the volume's range wide, but at most
+ * half the way from the least value to the threshold. */
+static hl_status make_opaque_from(const hl_composer *composer, const hl_volume *volume, double threshold,
+                                  hl_transfer_function *function) {
+  enum { POINTS = 2 };
+  hl_volume_info info = {.struct_size = sizeof info};
+  if (hl_volume_get_info(volume, &info) != HL_OK)
+    return hl_fail(composer->error, HL_ERROR_INTERNAL, "--threshold: the volume is not known");
+  if (threshold > info.range[1] || threshold <= info.range[0])
+    hl_log(composer->context, HL_LOG_WARNING,
+           "--threshold %.9g: the volume's values go from %.9g to %.9g: %s", threshold, info.range[0],
+           info.range[1], threshold > info.range[1] ? "nothing is opaque" : "everything is");
+  hl_opacity_point *points = hl_reallocate(composer->context, (void *)function->opacity, POINTS,
+                                           sizeof *points);
+  if (points == NULL) return hl_fail_memory(composer->error, POINTS * sizeof *points, "a transfer function");
+  double ramp = (info.range[1] - info.range[0]) / 20;
+  if (threshold > info.range[0]) ramp = fmin(ramp, (threshold - info.range[0]) / 2);
+  ramp = fmax(ramp, fabs(threshold) * 1e-9);
+  points[0] = (hl_opacity_point){threshold - ramp, 0};
+  points[1] = (hl_opacity_point){threshold, 0.95};
+  function->opacity = points;
+  function->opacity_count = POINTS;
+  function->gradient_opacity_count = 0;
+  function->unit_distance = fmin(fmin(info.spacing[0], info.spacing[1]), info.spacing[2]);
+  return HL_OK;
+}
+
+/* Gives a function the points of `loaded`. Its own opacity is kept if `loaded` has none. */
+static hl_status replace(const hl_composer *composer, const hl_transfer_function *loaded,
+                         hl_transfer_function *function) {
+  hl_transfer_function both = *loaded, copy = {0};
+  if (loaded->opacity == NULL && loaded->plane.second == HL_SECOND_NONE) {
+    both.unit_distance = function->unit_distance;
+    both.opacity = function->opacity;
+    both.opacity_count = function->opacity_count;
+    both.gradient_opacity = function->gradient_opacity;
+    both.gradient_opacity_count = function->gradient_opacity_count;
+  }
+  hl_status status = hl_transfer_function_copy(composer->context, &both, &copy, composer->error);
+  if (status != HL_OK) return status;
+  hl_transfer_function_release(composer->context, function);
+  *function = copy;
+  return HL_OK;
+}
+
+/* What "range" and "range-scale" say of a volume. */
+typedef struct value_range {
+  bool given;
+  double ends[2];
+  hl_range_scale scale;
+} value_range;
+
+static hl_status find_range(const hl_composer *composer, const hl_volume *volume, value_range *range) {
+  const hl_asked *said = &composer->asked[HL_ASK_RANGE], *scale = &composer->asked[HL_ASK_RANGE_SCALE];
+  *range = (value_range){.given = said->given};
+  if (scale->given) range->scale = (hl_range_scale)scale->choice;
+  for (int n = 0; said->given && n < 2; n++) {
+    range->ends[n] = said->number[n];
+    hl_status status = said->percent[n] ? hl_volume_percentiles(volume, &said->number[n], 1, &range->ends[n],
+                                                                composer->error)
+                                        : HL_OK;
+    if (status != HL_OK) return hl_blame_options(status);
+  }
+  if (said->given && !(range->ends[0] < range->ends[1]))
+    return hl_fail(composer->error, HL_ERROR_INPUT,
+                   "--range: '%s': these values of the volume are %.9g and %.9g: LO must be below HI",
+                   said->text, range->ends[0], range->ends[1]);
+  return HL_OK;
+}
+
+/* Moves the points so that the values that have opacity become those of the range. */
+static hl_status spread(const hl_composer *composer, const hl_volume *volume, const value_range *range,
+                        hl_transfer_function *function) {
+  hl_transfer_function moved = {0};
+  double visible[2];
+  hl_status status = hl_transfer_function_visible_range(volume, function, visible, composer->error);
+  if (status == HL_OK)
+    status = hl_transfer_function_spread(composer->context, function, visible, range->ends, range->scale,
+                                         &moved, composer->error);
+  if (status == HL_OK) status = replace(composer, &moved, function);
+  hl_transfer_function_release(composer->context, &moved);
+  return hl_blame_options(status);
+}
+
+/* Gives all values one colour. ramp, for maximum projections: from black at range[0] to this colour at
+ * range[1]. */
+static hl_status color_plainly(const hl_composer *composer, const double color[3], bool ramp,
+                               const double range[2], hl_transfer_function *function) {
+  hl_color_point points[2] = {{range[0], {0}}, {range[1], {0}}};
+  for (int c = 0; c < 3; c++) points[1].color[c] = color[c];
+  const hl_transfer_function colors = {.color = ramp ? points : points + 1, .color_count = ramp ? 2 : 1};
+  return replace(composer, &colors, function);
+}
+
+/* Colours by a colormap or a colour's name. Without a range they spread over the values that are seen. */
+static hl_status color_by_name(const hl_composer *composer, const char *name, const hl_volume *volume,
+                               value_range range, bool maximum, hl_transfer_function *function) {
+  hl_transfer_function colors = {0};
+  double color[3];
+  bool known = is_known(name, colormap_name);
+  if (!known && !hl_parse_color(name, 0, 1, color))
+    return refuse_name("colormap", name, "colormap and no colour", "colormaps", colormap_name,
+                       composer->error);
+  hl_status status = range.given
+                         ? HL_OK
+                         : hl_transfer_function_seen_range(volume, function, range.ends, composer->error);
+  if (status == HL_OK && !known) return color_plainly(composer, color, maximum, range.ends, function);
+  if (status == HL_OK)
+    status = hl_transfer_function_colormap_scaled(composer->context, name, range.ends, range.scale, &colors,
+                                                  composer->error);
+  if (status == HL_OK) status = replace(composer, &colors, function);
+  hl_transfer_function_release(composer->context, &colors);
+  return hl_blame_options(status);
+}
+
+bool hl_asks_for_functions(const hl_asked *asked) {
+  return asked[HL_ASK_TF].given || asked[HL_ASK_COLORMAP].given || asked[HL_ASK_RANGE].given ||
+         asked[HL_ASK_THRESHOLD].given;
+}
+
+/* "range", "threshold" and "colormap", in this order. */
+static hl_status change_function(const hl_composer *composer, const hl_volume *volume, const char *colormap,
+                                 bool maximum, hl_transfer_function *function) {
+  const hl_asked *threshold = &composer->asked[HL_ASK_THRESHOLD];
+  value_range range;
+  hl_status status = find_range(composer, volume, &range);
+  if (status == HL_OK && range.given && !threshold->given)
+    status = spread(composer, volume, &range, function);
+  if (status == HL_OK && threshold->given)
+    status = make_opaque_from(composer, volume, threshold->number[0], function);
+  if (status == HL_OK && colormap != NULL)
+    status = color_by_name(composer, colormap, volume, range, maximum, function);
+  return status;
+}
+
+hl_status hl_compose_function(const hl_composer *composer, const hl_scene_description *description,
+                              size_t index, const char *color, hl_transfer_function *function) {
+  const hl_asked *asked = composer->asked;
+  const hl_scene_volume *volume = &description->volumes[index];
+  const char *named = hl_text_for(composer, HL_ASK_TF, volume, index);
+  const char *colormap = hl_text_for(composer, HL_ASK_COLORMAP, volume, index);
+  if (colormap == NULL) colormap = color;
+  hl_status status = hl_transfer_function_copy(composer->context, &volume->transfer_function, function,
+                                               composer->error);
+  if (status == HL_OK && named != NULL) {
+    hl_transfer_function loaded = {0};
+    status = load_function(composer, named, volume->volume, &loaded);
+    if (status == HL_OK) status = replace(composer, &loaded, function);
+    hl_transfer_function_release(composer->context, &loaded);
+  }
+  if (status != HL_OK) return status;
+  if (function->plane.second == HL_SECOND_NONE)
+    return change_function(composer, volume->volume, colormap, hl_is_maximum(composer, description),
+                           function);
+  if (!asked[HL_ASK_RANGE].given && !asked[HL_ASK_THRESHOLD].given && colormap == NULL) return HL_OK;
+  return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                 "--range, --threshold and --colormap change functions of the value alone: "
+                 "change the boxes, polygons or image of this one");
+}

@@ -1,0 +1,288 @@
+/* compose/labels.c - "labels", "mask", "label-table" and "show": a label map among the volumes, over them, or
+ * the volume itself as one. */
+#include <string.h>
+
+#include "compose/composer.h"
+#include "compose/shown_labels.h"
+#include "core/door.h"
+#include "core/memory.h"
+
+/* How many layers the volume's file has: components that are neither time steps nor channels. */
+static size_t layers_of(const hl_volume *volume) {
+  hl_volume_selection read = {.struct_size = sizeof read};
+  if (hl_volume_get_selection(volume, &read) == HL_OK && (read.times > 1 || read.channels > 1)) return 1;
+  for (size_t n = 0; n < hl_volume_array_count(volume); n++) {
+    hl_volume_array array = {.struct_size = sizeof array};
+    if (hl_volume_get_array(volume, n, &array) == HL_OK && array.chosen) return array.components;
+  }
+  return 1;
+}
+
+/* Loads one layer and its labels. reading: how the file is read; the layer is its component. */
+static hl_status load_layer(hl_context *context, const char *file, const char *table,
+                            const hl_volume_load_options *reading, hl_label_layers *layers, hl_error *error) {
+  hl_volume_load_options options = *reading;
+  if (options.time < 0 && options.channel < 0) options.component = (int)layers->count;
+  hl_scene_volume *made = &layers->volumes[layers->count];
+  hl_scene_volume_defaults(made);
+  const int none = made->component;
+  hl_status status = hl_volume_load_with(context, file, &options, &made->volume, error);
+  if (status != HL_OK) return status;
+  layers->count++;
+  made->file = file;
+  made->array = options.array, made->series = options.series;
+  made->component = layers_of(made->volume) < 2 ? none : options.component;
+  made->time = options.time, made->channel = options.channel, made->level = options.level;
+  memcpy(made->spacing, options.spacing, sizeof made->spacing);
+  hl_label *labels = NULL;
+  status = hl_labels_of_volume(context, made->volume, table, &labels, &made->label_count, error);
+  made->labels = labels;
+  return status;
+}
+
+/* Loads all layers of the file, of which the list's labels show. */
+static hl_status load_layers(const hl_composer *composer, const char *path, const char *table,
+                             const hl_volume_load_options *reading, hl_shown_list *show,
+                             hl_label_layers *layers) {
+  for (size_t count = 1; layers->count < count;) {
+    hl_status status = load_layer(composer->context, path, table, reading, layers, composer->error);
+    if (status != HL_OK) return status;
+    count = layers_of(layers->volumes[0].volume);
+    if (count > HL_MOST_LABEL_LAYERS)
+      return hl_fail(composer->error, HL_ERROR_UNSUPPORTED, "'%.300s': has %zu layers, at most %d are read",
+                     path, count, HL_MOST_LABEL_LAYERS);
+    hl_scene_volume *layer = &layers->volumes[layers->count - 1];
+    hl_show_labels(show, (hl_label *)layer->labels, layer->label_count);
+  }
+  return HL_OK;
+}
+
+static void release_layers(hl_context *context, hl_label_layers *layers) {
+  for (size_t n = 0; n < layers->count; n++) {
+    hl_labels_release(context, (hl_label *)layers->volumes[n].labels);
+    hl_volume_release(layers->volumes[n].volume);
+  }
+}
+
+/* Replaces *scene by a scene of the description. */
+static hl_status make(const hl_composer *composer, const hl_scene_description *description,
+                      hl_scene **scene) {
+  hl_scene *made = NULL;
+  hl_status status = hl_scene_create(composer->context, description, &made, composer->error);
+  if (status != HL_OK) return status;
+  hl_scene_release(*scene);
+  *scene = made;
+  return HL_OK;
+}
+
+/* Makes a scene of the scene's volumes, the first `kept` of them, and the layers. */
+static hl_status add_layers(const hl_composer *composer, const hl_label_layers *layers, size_t kept,
+                            hl_scene **scene) {
+  hl_scene_description description = *hl_scene_describe(*scene);
+  hl_scene_volume *volumes = hl_allocate(composer->context, kept + layers->count, sizeof *volumes);
+  if (volumes == NULL)
+    return hl_fail_memory(composer->error, (kept + layers->count) * sizeof *volumes, "the scene's volumes");
+  if (kept > 0) memcpy(volumes, description.volumes, kept * sizeof *volumes);
+  description.volume_count = kept;
+  for (size_t n = 0; n < layers->count; n++)
+    if (layers->volumes[n].label_count > 0) volumes[description.volume_count++] = layers->volumes[n];
+  description.volumes = volumes;
+  hl_status status = make(composer, &description, scene);
+  if (status == HL_OK && composer->bare) {
+    description = *hl_scene_describe(*scene); /* labels have become transfer functions */
+    status = hl_frame_anew(&description, composer->error);
+    if (status == HL_OK) status = make(composer, &description, scene);
+  }
+  hl_release(composer->context, volumes);
+  return status;
+}
+
+/* How the file of labels is read: that of "labels" turned into the space of the scene's first volume, that of
+ * the scene's only, bare volume, which the label map then replaces, as this volume was. */
+static hl_volume_load_options reading_of(const hl_scene_description *description, bool itself) {
+  hl_volume_load_options reading;
+  hl_volume_info info = {.struct_size = sizeof info};
+  hl_volume_load_options_defaults(&reading);
+  const hl_scene_volume *first = description->volume_count > 0 ? &description->volumes[0] : NULL;
+  if (first != NULL && itself) {
+    reading.array = first->array, reading.series = first->series;
+    reading.time = first->time, reading.channel = first->channel, reading.level = first->level;
+    memcpy(reading.spacing, first->spacing, sizeof reading.spacing);
+  } else if (first != NULL && hl_volume_get_info(first->volume, &info) == HL_OK) {
+    reading.space = info.space;
+  }
+  return reading;
+}
+
+/* What "show" says of the matter outside of a mask's labels, "rest:FACTOR"; 0 where it does not. */
+static double rest_of(hl_shown_list *show) {
+  double rest = 0;
+  for (size_t s = 0; s < show->count; s++) {
+    if (strcmp(show->labels[s].name, "rest") != 0) continue;
+    show->labels[s].found = true;
+    rest = show->labels[s].opacity;
+  }
+  return rest;
+}
+
+/* Makes a scene whose volumes have the mask; those that are label maps stay as they are. */
+static hl_status put_on_mask(const hl_composer *composer, const hl_mask *mask, hl_scene **scene) {
+  hl_scene_description description = *hl_scene_describe(*scene);
+  hl_scene_volume *volumes = hl_allocate(composer->context, description.volume_count, sizeof *volumes);
+  if (volumes == NULL)
+    return hl_fail_memory(composer->error, description.volume_count * sizeof *volumes, "the scene's volumes");
+  memcpy(volumes, description.volumes, description.volume_count * sizeof *volumes);
+  for (size_t v = 0; v < description.volume_count; v++)
+    if (volumes[v].label_count == 0) volumes[v].mask = *mask;
+  description.volumes = volumes;
+  hl_status status = make(composer, &description, scene);
+  hl_release(composer->context, volumes);
+  return status;
+}
+
+/* Labels that do not show belong to the rest: the others are moved to the front. Returns how many there are.
+ */
+static size_t keep_shown(hl_label *labels, size_t count) {
+  size_t kept = 0;
+  for (size_t n = 0; n < count; n++)
+    if (labels[n].visible) labels[kept++] = labels[n];
+  return kept;
+}
+
+/* "mask": the label map of the file over the scene's volumes. */
+static hl_status add_mask(const hl_composer *composer, hl_shown_list *show, hl_label_layers *layers,
+                          hl_scene **scene) {
+  const hl_scene_description *description = hl_scene_describe(*scene);
+  const char *path = composer->asked[HL_ASK_MASK].text;
+  const double rest = rest_of(show);
+  if (description->volume_count == 0)
+    return hl_fail(composer->error, HL_ERROR_ARGUMENT, "--mask is for volumes: the scene has none");
+  const hl_volume_load_options reading = reading_of(description, false);
+  hl_status status = load_layers(composer, path, composer->asked[HL_ASK_LABEL_TABLE].text, &reading, show,
+                                 layers);
+  if (status == HL_OK) status = hl_check_shown(show, layers, composer->error);
+  if (status != HL_OK) return status;
+  if (layers->count > 1)
+    return hl_fail(composer->error, HL_ERROR_UNSUPPORTED,
+                   "'%.300s': has %zu overlapping layers, a mask takes one: save it as one", path,
+                   layers->count);
+  const hl_scene_volume *map = &layers->volumes[0];
+  const hl_mask mask = {.volume = map->volume,
+                        .file = path,
+                        .component = map->component,
+                        .labels = map->labels,
+                        .label_count = keep_shown((hl_label *)map->labels, map->label_count),
+                        .rest = rest};
+  return put_on_mask(composer, &mask, scene);
+}
+
+/* "labels", or the bare volume itself. */
+static hl_status add_map(const hl_composer *composer, hl_shown_list *show, hl_label_layers *layers,
+                         hl_scene **scene) {
+  const hl_asked *asked = composer->asked;
+  const hl_scene_description *description = hl_scene_describe(*scene);
+  const bool itself = !asked[HL_ASK_LABELS].given;
+  const char *path = asked[HL_ASK_LABELS].text;
+  if (itself && composer->bare && description->volume_count == 1) path = description->volumes[0].file;
+  if (path == NULL)
+    return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                   "--%s is for a label map: give its file as --labels FILE, or alone as INPUT",
+                   asked[HL_ASK_SHOW].given ? "show" : "label-table");
+  hl_volume_load_options reading = reading_of(description, itself);
+  hl_status status = load_layers(composer, path, asked[HL_ASK_LABEL_TABLE].text, &reading, show, layers);
+  if (status == HL_OK) status = hl_check_shown(show, layers, composer->error);
+  return status == HL_OK ? add_layers(composer, layers, itself ? 0 : description->volume_count, scene)
+                         : status;
+}
+
+/* Whether the scene's only volume was read as its file is, without a choice of what to read. */
+static bool is_read_plainly(const hl_scene_volume *volume) {
+  hl_scene_volume plain;
+  hl_scene_volume_defaults(&plain);
+  return volume->array == NULL && volume->series == NULL && volume->component == plain.component &&
+         volume->time == plain.time && volume->channel == plain.channel && volume->level == plain.level &&
+         !(volume->spacing[0] > 0);
+}
+
+/* Whether the only volume comes from a file that names its segments, and no option asks for another look: it
+ * is then shown as they are. */
+static bool is_segmented(const hl_composer *composer, const hl_scene_description *description) {
+  const hl_scene_volume *only = description->volume_count == 1 ? &description->volumes[0] : NULL;
+  if (only == NULL || only->file == NULL || only->label_count > 0 || strncmp(only->file, "/dev/", 5) == 0 ||
+      !is_read_plainly(only))
+    return false;
+  for (int option = HL_ASK_LOOK; option <= HL_ASK_ISO; option++)
+    if (composer->asked[option].given) return false;
+  if (hl_volume_segment_count(only->volume) == 0 || layers_of(only->volume) > HL_MOST_LABEL_LAYERS)
+    return false;
+  hl_label *labels = NULL;
+  size_t count = 0;
+  if (hl_labels_of_volume(composer->context, only->volume, NULL, &labels, &count, NULL) != HL_OK)
+    return false;
+  hl_labels_release(composer->context, labels);
+  return true;
+}
+
+bool hl_asks_for_labels(const hl_composer *composer, const hl_scene_description *description) {
+  const hl_asked *asked = composer->asked;
+  return asked[HL_ASK_LABELS].given || asked[HL_ASK_MASK].given || asked[HL_ASK_LABEL_TABLE].given ||
+         asked[HL_ASK_SHOW].given ||
+         ((composer->flags & HL_COMPOSE_SEGMENTS) != 0 && is_segmented(composer, description));
+}
+
+hl_status hl_compose_labels(const hl_composer *composer, hl_scene **scene) {
+  const hl_asked *mask = &composer->asked[HL_ASK_MASK];
+  if (composer->asked[HL_ASK_LABELS].given && mask->given)
+    return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                   "--mask and --labels exclude each other: --show belongs to one of them");
+  hl_shown_list *show = hl_allocate_zeroed(composer->context, 1, sizeof *show);
+  hl_label_layers *layers = hl_allocate_zeroed(composer->context, 1, sizeof *layers);
+  hl_status status = show != NULL && layers != NULL
+                         ? hl_read_shown(&composer->asked[HL_ASK_SHOW], show, composer->error)
+                         : hl_fail_memory(composer->error, sizeof *show + sizeof *layers, "labels");
+  if (status == HL_OK)
+    status = mask->given ? add_mask(composer, show, layers, scene) : add_map(composer, show, layers, scene);
+  if (layers != NULL) release_layers(composer->context, layers);
+  hl_release(composer->context, layers);
+  hl_release(composer->context, show);
+  return status;
+}
+
+/* A scene of the layers that have labels. */
+static hl_status make_of_layers(const hl_composer *composer, const hl_label_layers *layers,
+                                hl_scene **scene) {
+  hl_scene_volume volumes[HL_MOST_LABEL_LAYERS];
+  hl_scene_description description;
+  hl_scene_description_defaults(&description);
+  for (size_t n = 0; n < layers->count; n++)
+    if (layers->volumes[n].label_count > 0) volumes[description.volume_count++] = layers->volumes[n];
+  description.volumes = volumes;
+  return make(composer, &description, scene);
+}
+
+hl_status hl_scene_for_label_map(hl_context *context, const char *path, const hl_volume_load_options *reading,
+                                 const hl_option *options, size_t option_count, hl_scene **scene,
+                                 hl_error *error) {
+  HL_DOOR;
+  hl_asked asked[HL_ASK_COUNT];
+  hl_volume_load_options plain;
+  hl_volume_load_options_defaults(&plain);
+  if (context == NULL || path == NULL || scene == NULL || (options == NULL && option_count > 0))
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_for_label_map: null context, path, options or scene");
+  *scene = NULL;
+  hl_status status = hl_options_read(options, option_count, asked, error);
+  if (status != HL_OK) return status;
+  const hl_composer composer = {.context = context, .asked = asked, .error = error};
+  hl_shown_list *show = hl_allocate_zeroed(context, 1, sizeof *show);
+  hl_label_layers *layers = hl_allocate_zeroed(context, 1, sizeof *layers);
+  status = show != NULL && layers != NULL ? hl_read_shown(&asked[HL_ASK_SHOW], show, error)
+                                          : hl_fail_memory(error, sizeof *show + sizeof *layers, "labels");
+  if (status == HL_OK)
+    status = load_layers(&composer, path, asked[HL_ASK_LABEL_TABLE].text, reading != NULL ? reading : &plain,
+                         show, layers);
+  if (status == HL_OK) status = make_of_layers(&composer, layers, scene);
+  if (layers != NULL) release_layers(context, layers);
+  hl_release(context, layers);
+  hl_release(context, show);
+  return status;
+}

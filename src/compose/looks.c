@@ -1,0 +1,60 @@
+/* compose/looks.c - see looks.h. */
+#include "compose/looks.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "compose/composer.h"
+
+static bool is_maximum(const hl_asked *asked) {
+  return asked[HL_ASK_LOOK].given && asked[HL_ASK_LOOK].choice == HL_LOOK_MIP;
+}
+
+bool hl_projected_color(const hl_composer *composer, const hl_scene_description *description, size_t index,
+                        char color[8]) {
+  double srgb[3];
+  const hl_scene_volume *volume = &description->volumes[index];
+  bool alone = description->volume_count < 2, named = hl_text_for(composer, HL_ASK_TF, volume, index) != NULL;
+  if (alone || named || !is_maximum(composer->asked) ||
+      hl_scene_channel_color(description, index, srgb) != HL_OK)
+    return false;
+  snprintf(color, 8, "#%02x%02x%02x", (unsigned)lround(255 * srgb[0]) & 255U,
+           (unsigned)lround(255 * srgb[1]) & 255U, (unsigned)lround(255 * srgb[2]) & 255U);
+  return true;
+}
+
+const char *hl_asked_look(const hl_composer *composer) {
+  const hl_asked *look = &composer->asked[HL_ASK_LOOK];
+  return look->given && !is_maximum(composer->asked) ? look->text : NULL;
+}
+
+bool hl_look_replaces_functions(const hl_composer *composer) {
+  return composer->asked[HL_ASK_LOOK].given && is_maximum(composer->asked) == composer->bare;
+}
+
+hl_status hl_compose_volume_look(const hl_composer *composer, hl_scene_volume *volume) {
+  hl_transfer_function function = {0};
+  const char *name = hl_asked_look(composer);
+  hl_shading shading = volume->shading;
+  hl_status status = name == NULL ? hl_transfer_function_preset(composer->context, "mip", volume->volume,
+                                                                &function, composer->error)
+                                  : hl_transfer_function_look(composer->context, name, volume->volume,
+                                                              &function, &shading, composer->error);
+  if (status != HL_OK) return status;
+  volume->transfer_function = function;
+  if (!composer->asked[HL_ASK_SHADING].given && composer->asked[HL_ASK_LOOK].choice != HL_LOOK_AUTO)
+    volume->shading = shading;
+  return HL_OK;
+}
+
+void hl_compose_look(const hl_composer *composer, hl_scene_description *description) {
+  const bool maximum = is_maximum(composer->asked);
+  if (!composer->asked[HL_ASK_LOOK].given) return;
+  description->render.compositing = maximum ? HL_COMPOSITING_MAXIMUM : HL_COMPOSITING_LIGHT;
+  for (int c = 0; c < 3 && composer->bare && maximum; c++) description->background[c] = 0;
+}
+
+bool hl_is_maximum(const hl_composer *composer, const hl_scene_description *description) {
+  if (composer->asked[HL_ASK_LOOK].given) return is_maximum(composer->asked);
+  return description->render.compositing == HL_COMPOSITING_MAXIMUM;
+}

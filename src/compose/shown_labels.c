@@ -1,0 +1,136 @@
+/* compose/shown_labels.c - see shown_labels.h. */
+#include "compose/shown_labels.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "core/error.h"
+#include "text/color.h"
+#include "text/edit_distance.h"
+#include "text/plain.h"
+
+static hl_status fail_show(const char *item, const char *mend, hl_error *error) {
+  return hl_fail(error, HL_ERROR_ARGUMENT, "--show \"%.100s\": %s", item, mend);
+}
+
+/* Reads one item, of `length` characters. */
+static hl_status read_item(const char *item, size_t length, hl_shown_label *made, hl_error *error) {
+  *made = (hl_shown_label){.opacity = 1};
+  if (length == 0 || length >= sizeof made->name)
+    return fail_show(item, "give labels by name or number, with commas between them: liver,tumour=red:0.5",
+                     error);
+  memcpy(made->name, item, length);
+  made->name[length] = 0;
+  memcpy(made->whole, made->name, length + 1);
+  char *colon = strrchr(made->name, ':'), *rest;
+  if (colon != NULL) {
+    made->opacity = hl_plain_number(colon + 1, &rest);
+    if (colon[1] == 0 || *rest != 0 || !(made->opacity >= 0 && made->opacity <= 1))
+      made->wrong = "give an opacity from 0 to 1 after the colon";
+    *colon = 0;
+  }
+  char *equals = strrchr(made->name, '=');
+  if (equals != NULL) {
+    *equals = 0;
+    made->colored = true;
+    if (!hl_parse_color(equals + 1, 0, 1, made->color))
+      made->wrong = "give #rrggbb or a CSS name after \"=\"";
+  }
+  made->all = strcmp(made->name, "all") == 0;
+  return HL_OK;
+}
+
+hl_status hl_read_shown(const hl_asked *value, hl_shown_list *list, hl_error *error) {
+  list->count = 0;
+  for (int n = 0; n < value->count; n++)
+    for (const char *item = value->texts[n]; item != NULL;) {
+      const char *comma = strchr(item, ',');
+      size_t length = comma != NULL ? (size_t)(comma - item) : strlen(item);
+      if (list->count == HL_MOST_SHOWN) return fail_show(item, "names too many labels", error);
+      hl_status status = read_item(item, length, &list->labels[list->count++], error);
+      if (status != HL_OK) return status;
+      item = comma != NULL ? comma + 1 : NULL;
+    }
+  return HL_OK;
+}
+
+static bool is_whole(const hl_label *label, const hl_shown_label *shown) {
+  return label->name != NULL && strcmp(label->name, shown->whole) == 0;
+}
+
+static bool is_named(const hl_label *label, const hl_shown_label *shown) {
+  char *rest;
+  if (is_whole(label, shown)) return true;
+  if (shown->wrong != NULL) return false;
+  double number = hl_plain_number(shown->name, &rest);
+  return shown->all || (label->name != NULL && strcmp(label->name, shown->name) == 0) ||
+         (*rest == 0 && rest != shown->name && number == label->value);
+}
+
+/* Shows those labels that the list names, if it names any. "all" leaves those hidden that a table hides. */
+void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count) {
+  for (size_t n = 0; n < count && list->count > 0; n++) {
+    const bool hidden = !labels[n].visible;
+    labels[n].visible = 0;
+    for (size_t s = 0; s < list->count; s++) {
+      hl_shown_label *shown = &list->labels[s];
+      if (!is_named(&labels[n], shown) || (shown->all && hidden)) continue;
+      const bool whole = is_whole(&labels[n], shown);
+      shown->found = true;
+      labels[n].visible = 1;
+      labels[n].opacity = whole ? 1 : shown->opacity;
+      if (!shown->colored || whole) continue;
+      memcpy(labels[n].color, shown->color, sizeof labels[n].color);
+      labels[n].tint = 1; /* in a mask */
+    }
+  }
+}
+
+static const char *name_of_label(const void *data, size_t index) {
+  const hl_label_layers *layers = data;
+  for (size_t layer = 0; layer < layers->count; layer++) {
+    const hl_scene_volume *volume = &layers->volumes[layer];
+    if (index < volume->label_count)
+      return volume->labels[index].name != NULL ? volume->labels[index].name : "";
+    index -= volume->label_count;
+  }
+  return NULL;
+}
+
+/* The labels that there are, by name or else by value: "liver, tumour, 7"; the last words tell how many more.
+ */
+static void list_labels(const hl_label_layers *layers, char *text, size_t size) {
+  enum { LISTED = 12 };
+  size_t used = 0, count = 0;
+  text[0] = '\0';
+  for (size_t n = 0; n < layers->count; n++)
+    for (size_t l = 0; l < layers->volumes[n].label_count; l++, count++) {
+      const hl_label *label = &layers->volumes[n].labels[l];
+      bool named = label->name != NULL && label->name[0] != '\0';
+      if (count >= LISTED || used + 100 > size) continue;
+      used += (size_t)(named
+                           ? snprintf(text + used, size - used, "%s%.60s", count > 0 ? ", " : "", label->name)
+                           : snprintf(text + used, size - used, "%s%.20g", count > 0 ? ", " : "",
+                                      label->value));
+    }
+  if (count > LISTED)
+    snprintf(text + used, size - used, " and %zu more: see 'halflight info'", count - LISTED);
+}
+
+hl_status hl_check_shown(const hl_shown_list *list, const hl_label_layers *layers, hl_error *error) {
+  for (size_t s = 0; s < list->count; s++) {
+    if (list->labels[s].found) continue;
+    if (list->labels[s].wrong != NULL) return fail_show(list->labels[s].whole, list->labels[s].wrong, error);
+    if (list->labels[s].all) continue;
+    const char *near = hl_nearest_candidate(list->labels[s].name, name_of_label, layers);
+    if (near != NULL)
+      return hl_fail(error, HL_ERROR_ARGUMENT,
+                     "--show: there is no label \"%.100s\": did you mean \"%.100s\"?", list->labels[s].name,
+                     near);
+    char known[1000];
+    list_labels(layers, known, sizeof known);
+    return hl_fail(error, HL_ERROR_ARGUMENT, "--show: there is no label \"%.100s\": there is %s",
+                   list->labels[s].name, known[0] != '\0' ? known : "none");
+  }
+  return HL_OK;
+}

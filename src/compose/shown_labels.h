@@ -1,0 +1,36 @@
+/* compose/shown_labels.h - "show": the labels of a label map that show, with their colours and opacities. */
+#ifndef HL_COMPOSE_SHOWN_LABELS_H
+#define HL_COMPOSE_SHOWN_LABELS_H
+
+#include "compose/asked.h"
+
+/* One of the labels that "show" names: NAME|NUMBER|all|rest[=COLOR][:OPACITY]. */
+typedef struct hl_shown_label {
+  char name[128], whole[128]; /* whole: all of the text, which may be a name with ":" or "=" in it */
+  const char *wrong;          /* what to do about it unless it is a name; null: nothing */
+  bool all, colored, found;
+  double color[3], opacity;
+} hl_shown_label;
+
+enum { HL_MOST_SHOWN = 512, HL_MOST_LABEL_LAYERS = 64 };
+
+typedef struct hl_shown_list {
+  hl_shown_label labels[HL_MOST_SHOWN];
+  size_t count;
+} hl_shown_list;
+
+/* The layers of a label map's file, as volumes whose labels and voxels are owned here. */
+typedef struct hl_label_layers {
+  hl_scene_volume volumes[HL_MOST_LABEL_LAYERS];
+  size_t count;
+} hl_label_layers;
+
+hl_status hl_read_shown(const hl_asked *show, hl_shown_list *list, hl_error *error);
+
+/* Shows those labels that the list names, if it names any. "all" leaves those hidden that a table hides. */
+void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count);
+
+/* Refuses names that no layer had, with the nearest name or all that there are. */
+hl_status hl_check_shown(const hl_shown_list *list, const hl_label_layers *layers, hl_error *error);
+
+#endif

@@ -1,0 +1,123 @@
+/* compose/volumes.c - see volumes.h. */
+#include "compose/volumes.h"
+
+#include <string.h>
+
+#include "compose/looks.h"
+#include "core/context.h"
+#include "core/memory.h"
+#include "scene/transfer_function.h"
+
+static hl_status change_volume(const hl_composer *composer, const hl_scene_description *description,
+                               hl_changed_volumes *changed, size_t index) {
+  const hl_asked *asked = composer->asked;
+  hl_scene_volume *volume = &changed->volumes[index];
+  if (asked[HL_ASK_SHADING].given) volume->shading = (hl_shading)asked[HL_ASK_SHADING].choice;
+  if (asked[HL_ASK_CUT_SHADING].given) volume->cut_shading = (hl_cut_shading)asked[HL_ASK_CUT_SHADING].choice;
+  if (asked[HL_ASK_CUT_CASTS_SHADOW].given) volume->cut_casts_shadow = 1;
+  hl_status status = asked[HL_ASK_CLIP].given ? hl_compose_clip(composer, volume) : HL_OK;
+  if (status == HL_OK && changed->cuts != NULL && description->volume_count == 1)
+    status = hl_compose_cuts(composer, volume, changed->cuts);
+  bool looks = hl_look_replaces_functions(composer), iso = asked[HL_ASK_ISO].given;
+  if (status != HL_OK || (!looks && !iso && !hl_asks_for_functions(asked))) return status;
+  hl_transfer_function look = {0};
+  if (looks) status = hl_compose_volume_look(composer, volume);
+  if (status != HL_OK) return status;
+  if (looks) look = volume->transfer_function;
+  char color[8];
+  bool colored = looks && hl_projected_color(composer, description, index, color);
+  status = hl_compose_function(composer, description, index, colored ? color : NULL,
+                               &changed->functions[index]);
+  volume->transfer_function = changed->functions[index];
+  hl_transfer_function_release(composer->context, &look);
+  if (status != HL_OK || !iso) return status;
+  hl_isosurface *own = changed->surfaces + index * (size_t)asked[HL_ASK_ISO].count;
+  return hl_compose_isosurfaces(composer, index, volume, own);
+}
+
+/* How many planes hl_scene_for_volume() has cut bare volumes by; before the options' cuts are added. */
+static size_t count_holder_planes(const hl_scene_description *description) {
+  size_t planes = 0;
+  for (size_t v = 0; v < description->volume_count; v++) planes += description->volumes[v].cut_count;
+  return planes;
+}
+
+/* Whether to give back what hl_scene_for_volume() cut off beside the object. */
+static bool shows_whole(const hl_composer *composer, const hl_scene_description *description) {
+  const hl_asked *asked = composer->asked;
+  bool chosen = asked[HL_ASK_WHOLE].given || asked[HL_ASK_ISO].given || hl_asks_for_functions(asked);
+  return composer->bare && chosen && count_holder_planes(description) > 0;
+}
+
+/* Says what is not seen of a bare volume. */
+static void tell_of_holders(const hl_composer *composer, const hl_scene_description *description) {
+  size_t planes = count_holder_planes(description);
+  if (composer->bare && planes > 0 && !shows_whole(composer, description))
+    hl_log(composer->context, HL_LOG_INFO,
+           "what holds the object is cut away, by %zu plane%s: --whole shows it", planes,
+           planes == 1 ? "" : "s");
+}
+
+/* Refuses options for the look of volumes where there are none. */
+static hl_status refuse_looks(const hl_composer *composer) {
+  for (int which = HL_ASK_LOOK; which <= HL_ASK_SHADING; which++)
+    if (composer->asked[which].given)
+      return hl_fail(composer->error, HL_ERROR_ARGUMENT, "--%s is for volumes: the picture has none",
+                     hl_option_rows[which].name);
+  return HL_OK;
+}
+
+static bool changes_any(const hl_composer *composer) {
+  const hl_asked *asked = composer->asked;
+  return hl_look_replaces_functions(composer) || hl_asks_for_functions(asked) ||
+         asked[HL_ASK_SHADING].given || asked[HL_ASK_CLIP].given || asked[HL_ASK_ISO].given ||
+         hl_count_cuts(asked) > 0 || asked[HL_ASK_CUT_SHADING].given || asked[HL_ASK_CUT_CASTS_SHADOW].given;
+}
+
+/* Makes room for all that may change; the cuts are the one volume's, or those of a scene with several, beside
+ * the options'. */
+static hl_status make_room(const hl_composer *composer, const hl_scene_description *description,
+                           hl_changed_volumes *changed) {
+  hl_context *context = composer->context;
+  size_t count = description->volume_count, surfaces = (size_t)composer->asked[HL_ASK_ISO].count;
+  size_t own = count == 1 ? description->volumes[0].cut_count : description->cut_count,
+         added = hl_count_cuts(composer->asked);
+  changed->count = count;
+  changed->volumes = hl_allocate(context, count, sizeof *changed->volumes);
+  changed->functions = hl_allocate_zeroed(context, count, sizeof *changed->functions);
+  if (surfaces > 0)
+    changed->surfaces = hl_allocate_zeroed(context, count * surfaces, sizeof *changed->surfaces);
+  if (added > 0) changed->cuts = hl_allocate_zeroed(context, own + added, sizeof *changed->cuts);
+  bool whole = changed->volumes != NULL && changed->functions != NULL &&
+               (surfaces == 0 || changed->surfaces != NULL) && (added == 0 || changed->cuts != NULL);
+  if (!whole) return hl_fail_memory(composer->error, count * sizeof *changed->volumes, "the scene's volumes");
+  memcpy(changed->volumes, description->volumes, count * sizeof *changed->volumes);
+  return HL_OK;
+}
+
+hl_status hl_compose_volumes(const hl_composer *composer, hl_scene_description *description,
+                             hl_changed_volumes *changed) {
+  bool whole = shows_whole(composer, description);
+  tell_of_holders(composer, description);
+  if (description->volume_count == 0) return refuse_looks(composer);
+  if (!whole && !changes_any(composer)) return HL_OK;
+  hl_status status = make_room(composer, description, changed);
+  if (status != HL_OK) return status;
+  description->volumes = changed->volumes;
+  for (size_t v = 0; whole && v < description->volume_count; v++) changed->volumes[v].cut_count = 0;
+  status = hl_check_volume_names(composer, description);
+  if (status == HL_OK && changed->cuts != NULL && description->volume_count > 1)
+    status = hl_compose_scene_cuts(composer, description, changed->cuts);
+  for (size_t i = 0; i < description->volume_count && status == HL_OK; i++)
+    status = change_volume(composer, description, changed, i);
+  return status;
+}
+
+void hl_changed_volumes_release(hl_context *context, hl_changed_volumes *changed) {
+  for (size_t i = 0; changed->functions != NULL && i < changed->count; i++)
+    hl_transfer_function_release(context, &changed->functions[i]);
+  hl_release(context, changed->functions);
+  hl_release(context, changed->surfaces);
+  hl_release(context, changed->cuts);
+  hl_release(context, changed->volumes);
+}

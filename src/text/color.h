@@ -1,0 +1,11 @@
+/* text/color.h - colours as text: numbers, #rrggbb and the names of CSS. */
+#ifndef HL_TEXT_COLOR_H
+#define HL_TEXT_COLOR_H
+
+#include <stdbool.h>
+
+/* Linear RGB of a colour: numbers from low to high are linear already; #rgb, #rrggbb and CSS names are sRGB.
+ * False if text is no colour. */
+bool hl_parse_color(const char *text, double low, double high, double color[3]);
+
+#endif

@@ -1,0 +1,164 @@
+/* tests/unit/scene_compose.c - scenes composed by named options: one order, one meaning, errors that name
+ * them. */
+#include <halflight/compose.h>
+#include <stdio.h>
+
+#include "scene_parts.h"
+
+enum { N = 24 };
+
+static hl_context *context;
+
+/* The scene of a bare ball. */
+static hl_scene *make_bare(void) {
+  static float values[N * N * N];
+  for (int v = 0; v < N * N * N; v++) {
+    double x = v % N - 11.5, y = v / N % N - 11.5, z = v / N / N - 11.5;
+    values[v] = (float)fmax(0, 100 - 8 * sqrt(x * x + y * y + z * z));
+  }
+  hl_volume *volume = make_volume(context, N, values);
+  hl_scene *scene = NULL;
+  assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
+  hl_volume_release(volume);
+  return scene;
+}
+
+static char *text_of(const hl_scene *scene) {
+  static char texts[2][100000];
+  static int turn;
+  hl_scene_description d = *hl_scene_describe(scene);
+  hl_scene_volume volume = d.volumes[0];
+  hl_scene *named = NULL;
+  char *text = NULL, *kept = texts[turn = !turn];
+  volume.file = "ball.nrrd";
+  d.volumes = &volume;
+  assert_int_equal(hl_scene_create(context, &d, &named, NULL), HL_OK);
+  assert_int_equal(hl_scene_to_json(context, named, &text, NULL), HL_OK);
+  snprintf(kept, sizeof texts[0], "%s", text);
+  hl_text_release(context, text);
+  hl_scene_release(named);
+  return kept;
+}
+
+/* Composed of the bare ball and `count` options; null, with *error, where that is refused. */
+static hl_scene *compose(const hl_option *options, size_t count, unsigned flags, hl_error *error) {
+  hl_scene *bare = make_bare(), *made = NULL;
+  hl_status status = hl_scene_compose(context, hl_scene_describe(bare), flags, options, count, &made, error);
+  assert_true((status == HL_OK) == (made != NULL));
+  hl_scene_release(bare);
+  return made;
+}
+
+static void no_option_changes_nothing(void **state) {
+  (void)state;
+  hl_scene *bare = make_bare(), *made = compose(NULL, 0, HL_COMPOSE_BARE, NULL);
+  assert_string_equal(text_of(made), text_of(bare));
+  hl_scene_release(made);
+  hl_scene_release(bare);
+}
+
+static void the_order_of_the_list_does_not_matter(void **state) {
+  (void)state;
+  static const hl_option options[] = {{"azimuth", "30"},   {"colormap", "viridis"}, {"range", "20,80"},
+                                      {"shadows", "hard"}, {"ambient", "0.1"},      {"cut-box", "x=0.5:"},
+                                      {"floor", NULL},     {"light", "10,20"}};
+  enum { COUNT = sizeof options / sizeof *options };
+  hl_option turned[COUNT];
+  for (int n = 0; n < COUNT; n++) turned[n] = options[COUNT - 1 - n];
+  hl_scene *one = compose(options, COUNT, HL_COMPOSE_BARE, NULL),
+           *other = compose(turned, COUNT, HL_COMPOSE_BARE, NULL);
+  const hl_scene_description *d = hl_scene_describe(one);
+  assert_int_equal(d->mesh_count, 1);
+  assert_int_equal(d->volumes[0].cut_count, 1);
+  assert_int_equal(d->sky.type, HL_SKY_NONE); /* --ambient takes its place */
+  assert_true(d->ambient[0] == 0.1);
+  assert_int_equal(d->render.shadows, HL_SHADOWS_HARD);
+  assert_string_equal(text_of(one), text_of(other));
+  hl_scene_release(one);
+  hl_scene_release(other);
+}
+
+/* What was chosen for a volume is chosen anew; what a scene says stays. */
+static void bare_scenes_follow(void **state) {
+  (void)state;
+  static const hl_option ambient = {"ambient", "0.1"}, size = {"size", "300x100"};
+  hl_scene *bare = compose(&ambient, 1, HL_COMPOSE_BARE, NULL), *fixed = compose(&ambient, 1, 0, NULL);
+  assert_int_equal(hl_scene_describe(bare)->sky.type, HL_SKY_NONE);
+  assert_int_equal(hl_scene_describe(fixed)->sky.type, HL_SKY_GRADIENT);
+  hl_scene_release(bare);
+  hl_scene_release(fixed);
+  bare = compose(&size, 1, HL_COMPOSE_BARE, NULL), fixed = compose(&size, 1, 0, NULL);
+  hl_scene *kept = compose(&size, 1, HL_COMPOSE_BARE | HL_COMPOSE_CAMERA, NULL);
+  const double *moved = hl_scene_describe(bare)->camera.position,
+               *same = hl_scene_describe(fixed)->camera.position;
+  assert_true(moved[0] != same[0]); /* framed anew */
+  assert_memory_equal(hl_scene_describe(kept)->camera.position, same, 3 * sizeof(double));
+  assert_int_equal(hl_scene_describe(kept)->width, 300);
+  hl_scene_release(bare);
+  hl_scene_release(fixed);
+  hl_scene_release(kept);
+}
+
+static void errors_name_the_option(void **state) {
+  (void)state;
+  static const struct {
+    hl_option option;
+    hl_status status;
+    const char *message;
+  } wrong[] = {
+      {{"isso", "3"}, HL_ERROR_ARGUMENT, "unknown option '--isso': did you mean --iso?"},
+      {{"look", "surfaec"},
+       HL_ERROR_ARGUMENT,
+       "--look: 'surfaec' is not one of its choices: did you mean \"surface\"?"},
+      {{"zoom", "much"}, HL_ERROR_ARGUMENT, "--zoom: 'much' is not numbers"},
+      {{"range", "5,1"}, HL_ERROR_ARGUMENT, "--range: '5,1': LO must be below HI"},
+      {{"size", "1e300x2"}, HL_ERROR_ARGUMENT, "--size: '1e300x2': give WxH in pixels, each from 1 to 65536"},
+      {{"labels", "missing.nrrd"}, HL_ERROR_IO, "missing.nrrd: cannot open: No such file or directory"},
+      {{"threads", "-1e300"}, HL_ERROR_INPUT, NULL},
+      {{NULL, "x"}, HL_ERROR_ARGUMENT, "option number 1 has no name"},
+  };
+  for (size_t n = 0; n < sizeof wrong / sizeof *wrong; n++) {
+    hl_error error = {0};
+    hl_scene *bare = make_bare(), *made = NULL;
+    assert_int_equal(hl_scene_compose(context, hl_scene_describe(bare), HL_COMPOSE_BARE, &wrong[n].option, 1,
+                                      &made, &error),
+                     wrong[n].status);
+    if (wrong[n].message != NULL) assert_string_equal(error.message, wrong[n].message);
+    assert_null(made);
+    hl_scene_release(bare);
+  }
+}
+
+static void options_are_described(void **state) {
+  (void)state;
+  size_t count = 0;
+  for (; hl_option_name(count) != NULL; count++) {
+    hl_option_kind kind = hl_option_kind_of(hl_option_name(count));
+    if (kind == HL_OPTION_CHOICE) assert_non_null(hl_option_choices(hl_option_name(count)));
+    if (kind == HL_OPTION_SWITCH) assert_null(hl_option_choices(hl_option_name(count)));
+  }
+  assert_true(count > 40);
+  assert_string_equal(hl_option_choices("look")[0].name, "auto");
+  assert_null(hl_option_choices("nothing"));
+}
+
+static int begin(void **state) {
+  (void)state;
+  context = make_context();
+  return 0;
+}
+
+static int end(void **state) {
+  (void)state;
+  hl_context_destroy(context);
+  return 0;
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(no_option_changes_nothing), cmocka_unit_test(the_order_of_the_list_does_not_matter),
+      cmocka_unit_test(bare_scenes_follow),        cmocka_unit_test(errors_name_the_option),
+      cmocka_unit_test(options_are_described),
+  };
+  return cmocka_run_group_tests(tests, begin, end);
+}
