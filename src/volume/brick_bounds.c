@@ -8,7 +8,7 @@
 
 static size_t bricks_of(const hl_brick_bounds *b) { return b->count[0] * b->count[1] * b->count[2]; }
 
-/* The voxels of an axis that a brick depends on. */
+/* The range of voxels along an axis on which a brick depends. */
 static void range_of(size_t brick, size_t dimension, size_t *first, size_t *last) {
   *first = brick * BRICK_SIDE < BRICK_BEFORE ? 0 : brick * BRICK_SIDE - BRICK_BEFORE;
   *last = brick * BRICK_SIDE + BRICK_AFTER;
@@ -77,7 +77,7 @@ void hl_brick_bounds_add(hl_brick_bounds *b, size_t k0, size_t k1, const void *v
   size_t voxels = b->dimension[0] * b->dimension[1];
   size_t scratch_values = 2 * (PADDED(b->dimension[0]) + b->count[0] * b->count[1]);
   void *scratch = hl_allocate(b->context, scratch_values, hl_storage_bytes(b->storage));
-  if (scratch == NULL) return; /* hl_brick_bounds_whole() tells */
+  if (scratch == NULL) return; /* hl_brick_bounds_whole() reports the missing slices */
   for (size_t k = k0; k < k1; k++) {
     size_t first = (k - k0) * voxels;
     switch (b->storage) {

@@ -1,21 +1,22 @@
 /* volume/brick_bounds_of.h - bounds of bricks for one type of stored values, written once for all of them;
  * included once for each type by brick_bounds.c, which defines
  *
+ *
  *     BOUNDS_TYPE                the type
  *     BOUNDS_NAME(name)          a function's name for it
  *     BOUNDS_LEAST, BOUNDS_MOST  its least and greatest value
  *
- * and the functions and macros that are the same for all types. Bounds are separable: those of a slice's
- * voxels are found along y, then along x, then they widen the bounds of the bricks that depend on the slice.
- * A comparison with a value that is not a number is false: it widens nothing. */
+ * and the functions and macros that are the same for all types. Bounds are separable. The bounds of a slice's
+ * voxels are found along y and then along x, and then widen the bounds of the bricks that depend on the
+ * slice. A comparison with a value that is not a number is false, so that such a value widens nothing. */
 
 static void BOUNDS_NAME(begin)(const hl_brick_bounds *b) {
   BOUNDS_TYPE *bounds = b->bounds;
   for (size_t n = 0; n < bricks_of(b); n++) bounds[2 * n] = BOUNDS_MOST, bounds[2 * n + 1] = BOUNDS_LEAST;
 }
 
-/* Bounds along x of the voxels that each brick depends on: those of two, four and eight neighbours, then of
- * nine. row: [padded]; overwritten. out: [bricks]. */
+/* Finds bounds along x of the voxels on which each brick depends: first of two, four and eight neighbours,
+ * then of nine. row: [padded]; overwritten. out: [bricks]. */
 static void BOUNDS_NAME(reduce)(BOUNDS_TYPE *restrict row, size_t bricks, size_t padded, bool greatest,
                                 BOUNDS_TYPE *restrict out) {
   for (size_t shift = 1; shift <= 4; shift *= 2)
@@ -27,7 +28,8 @@ static void BOUNDS_NAME(reduce)(BOUNDS_TYPE *restrict row, size_t bricks, size_t
   }
 }
 
-/* Bounds of one slice along y and x. padded: scratch, [2][PADDED(width)]. low, high: [bricks y][bricks x]. */
+/* Finds bounds of one slice along y and x. padded: scratch memory, [2][PADDED(width)]. low, high: [bricks
+ * y][bricks x]. */
 static void BOUNDS_NAME(bound_slice)(const hl_brick_bounds *b, const BOUNDS_TYPE *slice, BOUNDS_TYPE *padded,
                                      BOUNDS_TYPE *low, BOUNDS_TYPE *high) {
   const size_t width = b->dimension[0], room = PADDED(width);
@@ -48,7 +50,7 @@ static void BOUNDS_NAME(bound_slice)(const hl_brick_bounds *b, const BOUNDS_TYPE
   }
 }
 
-/* Widens the bounds of a layer of bricks by those of a slice. */
+/* Widens the bounds of a layer of bricks by the bounds of a slice. */
 static void BOUNDS_NAME(widen)(BOUNDS_TYPE *restrict bounds, const BOUNDS_TYPE *restrict low,
                                const BOUNDS_TYPE *restrict high, size_t bricks) {
   for (size_t n = 0; n < bricks; n++) {
@@ -57,7 +59,7 @@ static void BOUNDS_NAME(widen)(BOUNDS_TYPE *restrict bounds, const BOUNDS_TYPE *
   }
 }
 
-/* scratch: [2 * (PADDED(width) + bricks y * bricks x)]. */
+/* Adds a slice. scratch: [2 * (PADDED(width) + bricks y * bricks x)]. */
 static void BOUNDS_NAME(add_slice)(hl_brick_bounds *b, size_t k, const BOUNDS_TYPE *slice,
                                    BOUNDS_TYPE *scratch) {
   const size_t plane = b->count[0] * b->count[1];

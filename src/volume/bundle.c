@@ -1,4 +1,4 @@
-/* volume/bundle.c - the files of a folder. bundle_zip.c has those of archives. */
+/* volume/bundle.c - the files of a folder. For files of archives see bundle_zip.c. */
 #define _GNU_SOURCE
 #include "volume/bundle.h"
 
@@ -69,10 +69,10 @@ typedef struct folder_walk {
   hl_bundle *bundle;
   char name[PATH_MAX]; /* the current entry, relative to the folder */
   dev_t device;        /* the folder's device: folders on other file systems are not searched */
-  size_t files, depth; /* entries of all kinds so far */
+  size_t files, depth; /* number of entries of all kinds so far */
 } folder_walk;
 
-/* Whether a regular file is there, and no link on the way to it leads out of the folder. */
+/* Whether a name is a regular file, to which no link leads out of the folder. */
 static bool is_inside(const hl_bundle *bundle, const char *name, struct stat *about) {
   int file = hl_beneath_open(bundle->folder, name, O_PATH);
   bool inside = file >= 0 && fstat(file, about) == 0 && S_ISREG(about->st_mode);
@@ -116,7 +116,7 @@ static hl_status walk_entries(folder_walk *walk, DIR *folder, hl_error *error) {
   return status;
 }
 
-/* Folders that cannot be opened or lie too deep are passed over. */
+/* Walks through a folder. Folders that cannot be opened or lie too deep are ignored. */
 static hl_status walk_folder(folder_walk *walk, hl_error *error) {
   hl_bundle *bundle = walk->bundle;
   if (walk->depth == HL_BUNDLE_DEPTH_MOST) return HL_OK;

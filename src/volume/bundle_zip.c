@@ -1,7 +1,7 @@
 /* volume/bundle_zip.c - the files of a zip archive, zip64 included.
  *
  * Source: PKWARE's APPNOTE.TXT 6.3.10, sections 4.3.7 (local header), 4.3.12 (central directory), 4.3.14 to
- * 4.3.16 (its end) and 4.5.3 (zip64). Nothing is unpacked to disk: names are labels only. */
+ * 4.3.16 (its end) and 4.5.3 (zip64). Nothing is unpacked to disk, so that names are only labels. */
 #include "volume/bundle_zip.h"
 
 #include <string.h>
@@ -79,8 +79,8 @@ static hl_status find_directory(const hl_bundle *bundle, hl_source *source, uint
   return HL_OK;
 }
 
-/* The zip64 extra field holds the numbers that did not fit 32 bits, in this order: size, packed size,
- * position. */
+/* Takes numbers from the zip64 extra field, which holds the numbers that did not fit 32 bits, in this order:
+ * size, packed size, position. */
 static void take_extra(const unsigned char *extra, size_t length, hl_bundle_entry *entry) {
   for (size_t n = 0; n + 4 <= length;) {
     size_t bytes = u16(extra + n + 2);
@@ -98,7 +98,7 @@ static void take_extra(const unsigned char *extra, size_t length, hl_bundle_entr
   }
 }
 
-/* Reads one entry of the directory; folders and encrypted files are passed over. */
+/* Reads one entry of the directory. Folders and encrypted files are ignored. */
 static hl_status take_entry(hl_bundle *bundle, hl_source *source, uint64_t *at, unsigned char *text,
                             hl_error *error) {
   unsigned char central[CENTRAL_BYTES];

@@ -1,4 +1,5 @@
-/* volume/colors.c - colours of voxels: their codes, the densities that opacity comes from, their weights. */
+/* volume/colors.c - the colours of voxels: their codes, their weights, and the densities from which opacity
+ * is computed. */
 #include "volume/colors.h"
 
 #include <math.h>
@@ -6,7 +7,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 
-enum { ALPHA = 3, VOXELS_MOST = 1 << 29 /* so that 32 bits number the bytes of the colours */ };
+enum { ALPHA = 3, VOXELS_MOST = 1 << 29 /* so many that 32 bits number the bytes of the colours */ };
 
 bool hl_can_be_colors(hl_voxel_type type, size_t components) {
   return (components == 3 || components == 4) && (type == HL_VOXEL_U8 || type == HL_VOXEL_U16);
@@ -25,7 +26,8 @@ void hl_colors_store(hl_voxel_type type, const void *stored, size_t step, size_t
                                             : (unsigned char)((wide[n * step] * 255U + 32767U) / 65535U);
 }
 
-/* The luma of the codes, with the weights of ITU-R BT.709, .2126, .7152 and .0722, in parts of 256. */
+/* The luma of colour codes, in parts of 256. The weights are those of ITU-R BT.709: .2126, .7152 and
+ * .0722. */
 static unsigned char luminance_of(const unsigned char *color) {
   return (unsigned char)((54U * color[0] + 183U * color[1] + 19U * color[2] + 128U) >> 8);
 }
@@ -43,8 +45,9 @@ static void divide_by_alpha(unsigned char *color) {
   }
 }
 
-/* Where densities fall to nothing, so do the weights of the colours, so that the colour of transparent voxels
- * tints no edge; at least 1, so that a mean of weights is never 0. */
+/* Splits colours into densities and weighted colours. Where densities fall to nothing, the weights of the
+ * colours fall, too, so that the colour of transparent voxels tints no edge. Weights are at least 1, so that
+ * a mean of weights is never 0. */
 static void split(const hl_color_source *source, bool use_alpha, size_t count, unsigned char *colors,
                   unsigned char *densities) {
   for (size_t n = 0; n < count; n++) {
@@ -85,7 +88,7 @@ hl_status hl_volume_adopt_colors(hl_context *context, const hl_color_source *sou
   return HL_OK;
 }
 
-/* IEC 61966-2-1. */
+/* Decodes sRGB (IEC 61966-2-1). */
 static double decode(double code) {
   return code <= 0.04045 ? code / 12.92 : pow((code + 0.055) / 1.055, 2.4);
 }

@@ -1,7 +1,8 @@
-/* volume/colors.h - voxels with colours of their own: what readers collect, and the volume made of it.
+/* volume/colors.h - voxels with colours of their own: the data that readers collect, and the volume made of
+ * them.
  *
- * A volume keeps, beside the densities that opacity comes from, [k][j][i] colours of 4 bytes: red, green and
- * blue as sRGB's codes, and the weight of the colour between voxels. */
+ * A volume keeps the densities from which opacity is computed and, [k][j][i], colours of 4 bytes: red, green
+ * and blue as sRGB codes, and the colour's weight for interpolation between voxels. */
 #ifndef HL_VOLUME_COLORS_H
 #define HL_VOLUME_COLORS_H
 
@@ -9,33 +10,34 @@
 
 enum { HL_COLOR_BYTES = 4 };
 
-/* Whether components 3 or 4 a voxel, unsigned of 8 or 16 bits, can be colours. */
+/* Whether 3 or 4 components of each voxel can be colours. The components must be unsigned, of 8 or 16
+ * bits. */
 bool hl_can_be_colors(hl_voxel_type type, size_t components);
 
-/* Whether a component that was chosen stands for all of them: HL_COMPONENT_COLOR, HL_COMPONENT_LUMINANCE. */
+/* Whether a chosen component stands for all components: HL_COMPONENT_COLOR or HL_COMPONENT_LUMINANCE. */
 bool hl_component_is_colors(int component);
 
-/* Stores one component (0 to 3) of `count` voxels; stored: every `step`-th of these values, u8 or u16;
- * colors: those of the first voxel. 16 bits are rounded to 8. */
+/* Stores one component (0 to 3) of `count` voxels. stored: u8 or u16 values, of which every `step`-th is
+ * taken. colors: the colours of the first voxel. Values of 16 bits are rounded to 8. */
 void hl_colors_store(hl_voxel_type type, const void *stored, size_t step, size_t count, size_t component,
                      unsigned char *colors);
 
-/* What the readers collected; an alpha that is the same everywhere tells nothing, and the luminance serves.
- */
+/* The collected data. An alpha that is the same everywhere tells nothing; then luminance takes its place. */
 typedef struct hl_color_source {
-  const hl_volume_description *grid; /* of the file: its type is that of a component */
+  const hl_volume_description *grid; /* the file's grid; its type is the type of a component */
   const char *path;
   size_t components;  /* 3 or 4 */
-  int component;      /* HL_COMPONENT_COLOR: opacity from alpha, if there is one; or HL_COMPONENT_LUMINANCE */
-  bool premultiplied; /* alpha is multiplied into the colours */
+  int component;      /* HL_COMPONENT_COLOR takes opacity from alpha, if there is one; the other choice is
+                       * HL_COMPONENT_LUMINANCE */
+  bool premultiplied; /* whether alpha is multiplied into the colours */
 } hl_color_source;
 
-/* Makes the volume, whose component says what opacity comes from. colors: [voxels][HL_COLOR_BYTES], in a
- * block of hl_allocate that the volume takes over, also on failure. */
+/* Makes the volume; its component says from which value opacity is computed. colors:
+ * [voxels][HL_COLOR_BYTES], in a block of hl_allocate() that the volume takes over, also on failure. */
 hl_status hl_volume_adopt_colors(hl_context *context, const hl_color_source *source, unsigned char *colors,
                                  hl_volume **volume, hl_error *error);
 
-/* The linear colour of a voxel, whose coordinates lie in the grid; white where the volume has no colours. */
+/* The linear colour of the voxel at coordinates in the grid; white if the volume has no colours. */
 void hl_volume_color(const hl_volume *volume, size_t i, size_t j, size_t k, double color[3]);
 
 #endif

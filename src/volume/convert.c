@@ -111,11 +111,11 @@ static void store_f64(bool swap, const unsigned char *source, size_t count, unsi
   }
 }
 
-/* IEEE 754 binary16: a sign, five bits of exponent (bias 15), ten of fraction. */
+/* Converts an IEEE 754 binary16: a sign, five bits of exponent (bias 15), ten of fraction. */
 static float half_to_float(uint16_t half) {
   uint32_t sign = (uint32_t)(half & 0x8000) << 16, exponent = half >> 10 & 31, fraction = half & 0x3ff, bits;
   if (exponent == 0) {
-    float value = (float)fraction * 0x1p-24f; /* subnormal: fraction / 2^10 times 2^-14 */
+    float value = (float)fraction * 0x1p-24f; /* a subnormal is fraction / 2^10 times 2^-14 */
     return sign != 0 ? -value : value;
   }
   bits = sign | (exponent == 31 ? 255 : exponent + 112) << 23 | fraction << 13;

@@ -1,8 +1,7 @@
 /* volume/create.c - volumes from memory, their life and their queries.
  *
- * In: a description by the caller, or decoded voxels by the file formats. Out: an immutable, counted
- * hl_volume with its statistics. Everything that renders starts from here.
- */
+ * In: a description from the caller, or decoded voxels from the readers of files. Out: an hl_volume with its
+ * statistics, which is immutable and counts its users. */
 #include "volume/volume.h"
 
 #include <math.h>
@@ -71,7 +70,7 @@ static hl_status check_size(const hl_volume_description *description, const char
 /* The greatest accepted coordinate: its square does not overflow. */
 static double greatest_part(const double v[3]) { return fmax(fmax(fabs(v[0]), fabs(v[1])), fabs(v[2])); }
 
-/* Limits of lengths: beyond them, squares and cubes leave the range of doubles. */
+/* Limits of lengths. Squares and cubes of lengths beyond them leave the range of doubles. */
 static const double SHORTEST_STEP = 1e-100, LONGEST_STEP = 1e100;
 
 static hl_status check_step(const double axis[3], int number, const char *subject, hl_error *error) {
@@ -208,7 +207,7 @@ size_t hl_volume_row_room(const hl_volume *volume) {
   return width * (in_file ? hl_voxel_type_bytes(volume->type) + stored : stored);
 }
 
-/* The row's own numbers, from the file of numbers of a volume with pages; null: it cannot be read. */
+/* The numbers of a row, from the file of numbers of a volume with pages. Null if the file cannot be read. */
 static const void *numbers_in(const hl_volume *volume, size_t j, size_t k, unsigned char *buffer) {
   size_t width = volume->dimension[0], first = (k * volume->dimension[1] + j) * width;
   float *stored = (float *)(void *)(buffer + width * hl_voxel_type_bytes(volume->type));
@@ -217,7 +216,8 @@ static const void *numbers_in(const hl_volume *volume, size_t j, size_t k, unsig
 }
 
 hl_number_row hl_volume_numbers(const hl_volume *volume, size_t j, size_t k, void *buffer) {
-  static const hl_voxel_type stored[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32}; /* by hl_storage */
+  /* The type that each hl_storage stores. */
+  static const hl_voxel_type stored[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
   const void *numbers = volume->exact == NULL && hl_volume_is_exact(volume) ? numbers_in(volume, j, k, buffer)
                                                                             : NULL;
   if (numbers != NULL) return (hl_number_row){volume->type, numbers};
@@ -237,7 +237,7 @@ double hl_row_number(hl_number_row row, size_t i) {
   }
 }
 
-/* Copies strided voxels into stored form; row is scratch for one row in the caller's type. */
+/* Copies strided voxels into stored form. row: scratch memory for one row in the caller's type. */
 static void copy_voxels(const hl_volume_description *description, const ptrdiff_t stride[3],
                         unsigned char *row, unsigned char *destination, hl_exact *exact) {
   const size_t *dimension = description->dimensions;
@@ -266,7 +266,7 @@ static void choose_strides(const hl_volume_description *description, ptrdiff_t s
   memcpy(stride, is_packed ? packed : given, sizeof packed);
 }
 
-/* Slices that lie this far apart at most are borrowed: sampling counts the bytes between a few of them in 32
+/* The greatest distance of slices that are borrowed: sampling counts the bytes between a few slices in 32
  * bits. */
 #define LARGEST_GAP ((ptrdiff_t)1 << 26)
 
@@ -299,8 +299,8 @@ hl_status hl_volume_create(hl_context *context, const hl_volume_description *des
   hl_status status = hl_volume_check_grid(description, subject, error);
   if (status != HL_OK) {
     if (error != NULL)
-      error->code = HL_ERROR_ARGUMENT; /* the grid comes from the caller, not from a file: the status is that
-                                          of an argument */
+      error->code = HL_ERROR_ARGUMENT; /* the grid comes from the caller, not from a file; the status is
+                                        * therefore the one for arguments */
     return HL_ERROR_ARGUMENT;
   }
   ptrdiff_t stride[3];
@@ -487,7 +487,7 @@ double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_
   const hl_pages *pages = volume->pages;
   const void *kept = pages != NULL && pages->glimpse != NULL ? hl_glimpse_voxel(pages->glimpse, i, j, k)
                                                              : NULL;
-  if (volume->exact != NULL) { /* a float that is not finite stays transparent */
+  if (volume->exact != NULL) { /* a value whose float is not finite stays transparent */
     double number = hl_row_number(hl_volume_numbers(volume, j, k, NULL), i);
     return isfinite((float)number) ? volume->value_scale * number + volume->value_offset : NAN;
   }

@@ -1,8 +1,7 @@
 /* volume/dat.c - .dat files, which describe bare voxels in another file.
  *
- * Lines "ObjectFileName: f.raw", "Resolution: 64 64 64", "SliceThickness: 1 1 1", "Format: UCHAR", in any
- * order.
- * */
+ * The file has the lines "ObjectFileName: f.raw", "Resolution: 64 64 64", "SliceThickness: 1 1 1" and
+ * "Format: UCHAR", in any order. */
 #include <string.h>
 
 #include "volume/decoders.h"

@@ -14,9 +14,11 @@
 /* ---- compressed: gzip, zlib, VTK's blocks ---- */
 
 enum {
-  DEFLATE_GREATEST_RATIO = 1032, /* RFC 1951: 258 bytes from two bits, one of length and one of distance */
-  PENDING_BYTES = 65536,         /* bytes, more than zlib can hold back in its window and bit buffer */
-  AUTOMATIC_WINDOW = 15 + 32     /* zlib.h: largest window, gzip and zlib told apart by their first bytes */
+  DEFLATE_GREATEST_RATIO = 1032, /* RFC 1951: 258 bytes from two bits, one for the length and one for the
+                                  * distance */
+  PENDING_BYTES = 65536,         /* more bytes than zlib can hold back in its window and bit buffer */
+  /* zlib.h: the largest window; gzip and zlib are told apart by their first bytes. */
+  AUTOMATIC_WINDOW = 15 + 32
 };
 
 typedef struct inflate_stream {
@@ -29,13 +31,14 @@ typedef struct blocks_stream {
   hl_stream base;
   z_stream zlib;
   bool started;
-  uint64_t block_count, block_bytes, last_bytes; /* plain sizes; last_bytes is that of the last block */
+  uint64_t block_count, block_bytes, last_bytes; /* sizes before packing; last_bytes is the size of the last
+                                                  * block */
   uint64_t *compressed_bytes;                    /* owned; [block_count] */
-  uint64_t block;                                /* the current one */
-  uint64_t plain_left, compressed_left;          /* bytes of the current block */
+  uint64_t block;                                /* index of the current block */
+  uint64_t plain_left, compressed_left;          /* bytes left of the current block */
   hl_vtk_packing packing;
-  unsigned char *packed, *whole; /* owned; a block of LZ4 or xz, and all of it unpacked; null for zlib */
-  size_t whole_done;             /* bytes of `whole` that were pulled; 0: it is not filled yet */
+  unsigned char *packed, *whole; /* owned; a block of LZ4 or xz, packed and unpacked; null for zlib */
+  size_t whole_done;             /* bytes of `whole` that were pulled; 0 if it is not filled yet */
 } blocks_stream;
 
 static void *zlib_allocate(void *context, unsigned items, unsigned size) {
@@ -54,7 +57,7 @@ static hl_status start_zlib(z_stream *zlib, hl_stream *stream, bool *started, hl
 /* The result of one call of zlib's inflate(). At the end of the input, consumed and made may both be 0. */
 typedef struct inflate_result {
   size_t consumed, made; /* bytes */
-  int code;              /* as inflate() returned it */
+  int code;              /* the result of inflate() */
 } inflate_result;
 
 /* Calls inflate() once, on at most input_limit bytes of the stream below. bytes: [capacity]. */
@@ -82,7 +85,7 @@ static hl_status inflate_step(hl_stream *stream, z_stream *zlib, uint64_t input_
   return HL_OK;
 }
 
-/* After one gzip member another may follow; any other bytes end the stream. */
+/* Prepares the next gzip member, which may follow a member. Any other bytes end the stream. */
 static hl_status next_member(inflate_stream *stream, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -149,7 +152,7 @@ static hl_status fail_block(const blocks_stream *stream, hl_error *error) {
                                                                     : stream->block_bytes));
 }
 
-/* The current block is full: lets zlib check its check sum, and skips the rest of its input. */
+/* Ends the current block, which is full: lets zlib verify its checksum, and skips the rest of its input. */
 static hl_status end_block(blocks_stream *stream, hl_error *error) {
   inflate_result step = {.code = Z_OK};
   while (step.code != Z_STREAM_END) {
@@ -187,7 +190,7 @@ static hl_status blocks_pull(hl_stream *base, unsigned char *bytes, size_t capac
   return HL_OK;
 }
 
-/* Fills `whole` with the current block, of LZ4 or xz. */
+/* Fills `whole` with the current block of LZ4 or xz, unpacked. */
 static hl_status unpack_block(blocks_stream *stream, hl_error *error) {
   hl_stream *base = &stream->base;
   hl_context *context = base->context;
@@ -260,12 +263,12 @@ static hl_status read_integers(hl_stream *stream, size_t header_bytes, bool big_
   return HL_OK;
 }
 
-/* The blocks' sizes must add up to the array's size, which the file states elsewhere; this also bounds the
- * number of blocks. */
+/* Reads the sizes of the blocks. They must add up to the array's size, which the file states elsewhere; this
+ * also bounds the number of blocks. */
 static hl_status read_block_header(blocks_stream *stream, size_t header_bytes, bool big_endian,
                                    uint64_t promised, hl_error *error) {
   hl_stream *below = stream->base.below;
-  uint64_t first[3]; /* number of blocks, bytes in each, bytes in the last (0: full) */
+  uint64_t first[3]; /* number of blocks; bytes in each; bytes in the last (0 if it is full) */
   hl_status status = read_integers(below, header_bytes, big_endian, first, 3, error);
   if (status != HL_OK) return status;
   stream->block_count = first[0];
@@ -335,7 +338,7 @@ static hl_status fail_character(const coded_stream *stream, hl_error *error) {
                         stream->digit_bits == 6 ? "base64" : "hexadecimal");
 }
 
-/* Turns a complete group into bytes; false if its padding is impossible. */
+/* Converts a complete group to bytes. False if the group's padding is impossible. */
 static bool end_group(coded_stream *stream, unsigned char bytes[3], unsigned *count) {
   unsigned bits = stream->held * stream->digit_bits;
   *count = bits / 8;

@@ -8,10 +8,11 @@
 #include "volume/brick_bounds.h"
 #include "volume/convert.h"
 
-/* Bytes of a volume that is spread over ranks: smaller ones, as label maps often are, lie in every rank. */
+/* The size in bytes from which a volume is spread over ranks. Smaller volumes, as label maps often are, lie
+ * in every rank. */
 enum { LEAST_OVER_RANKS = 1 << 20 };
 
-/* Warns, before a large file is read, where a picture of it would be refused afterwards: a renderer holds for
+/* Warns, before a large file is read, if a picture of it would be refused afterwards. A renderer holds for
  * each brick its bounds, a flag and a number of 32 bits (grid/bounds.h). */
 static void warn_of_pictures(hl_context *context, const hl_volume_description *grid, const char *path) {
   double bricks = 1, limit = (double)context->options.memory_limit;
@@ -61,7 +62,7 @@ hl_status hl_destination_take(hl_destination *destination, size_t first, size_t 
   return *place != NULL ? HL_OK : hl_fail_memory(error, count * bytes, destination->path);
 }
 
-/* The numbers of the voxels that are this rank's: those of adjoining slices. */
+/* The numbers of the voxels that belong to this rank, which are the voxels of adjacent slices. */
 static void own_range(const hl_own_voxels *own, size_t *begin, size_t *end) {
   size_t slice = own->box.count[0] * own->box.count[1];
   *begin = own->box.begin[2] * slice;

@@ -12,50 +12,51 @@
 typedef struct hl_destination {
   hl_context *context;
   const char *path;      /* borrowed; starts the error lines */
-  size_t voxel_bytes;    /* of a stored value, or of a voxel's colours */
+  size_t voxel_bytes;    /* bytes of a stored value, or of a voxel's colours */
   unsigned char *voxels; /* owned; [k][j][i]; null with pages */
-  hl_pages *pages;       /* owned; null: in memory */
+  hl_pages *pages;       /* owned; null if the voxels are in memory */
   hl_exact exact;        /* the file's own numbers, where stored values round them */
-  hl_own_voxels *own;    /* owned; over ranks: this rank's slices, `voxels` is null; else null */
+  hl_own_voxels *own;    /* owned; over ranks: this rank's slices, and `voxels` is null; null elsewhere */
 } hl_destination;
 
 typedef enum hl_destination_kind {
-  HL_DESTINATION_PIECES, /* in pages where memory has no room, or over ranks */
-  HL_DESTINATION_VOXELS, /* in memory in any case: the reader comes back to voxels */
-  HL_DESTINATION_COLORS  /* in memory in any case: colours (colors.h) */
+  HL_DESTINATION_PIECES, /* in pages where memory is short, or over ranks */
+  HL_DESTINATION_VOXELS, /* always in memory, as the reader comes back to voxels */
+  HL_DESTINATION_COLORS  /* always in memory; the values are colours (colors.h) */
 } hl_destination_kind;
 
-/* grid: checked. Close the destination in any case. */
+/* Opens a destination. grid: must have been checked. Close the destination also after a failure. */
 hl_status hl_destination_open(hl_context *context, const hl_volume_description *grid,
                               hl_destination_kind kind, const char *path, hl_destination *destination,
                               hl_error *error);
 
-/* A place for `count` voxels, those from number `first` on: their own, or a block that is released when it is
- * put. Put each place that was taken. */
+/* Takes a place for `count` voxels from number `first` on: the voxels' own memory, or a block that is
+ * released when the place is put. Every place that was taken must be put. */
 hl_status hl_destination_take(hl_destination *destination, size_t first, size_t count, void **place,
                               hl_error *error);
 void hl_destination_put(hl_destination *destination, size_t first, size_t count, void *place);
 
-/* Whether any of these voxels is kept: the others of a volume over ranks need not be read. */
+/* Whether any of these voxels is kept. Over ranks other voxels need not be read. */
 bool hl_destination_wants(const hl_destination *destination, size_t first, size_t count);
 
-/* Whether there is no array of all voxels: hl_destination_store() copies voxels to where they belong. */
+/* Whether there is no array of all voxels, so that hl_destination_store() copies voxels to their places. */
 static inline bool hl_destination_is_apart(const hl_destination *destination) {
   return destination->voxels == NULL;
 }
 void hl_destination_store(hl_destination *destination, size_t first, size_t count, const void *values);
 
-/* Notes voxels as the file has them, in its own type, before they are stored: hl_exact_note(). */
+/* Notes voxels in the file's own type before they are stored; see hl_exact_note(). */
 static inline void hl_destination_note(hl_destination *destination, bool swap, const void *source,
                                        size_t first, size_t count) {
   hl_exact_note(&destination->exact, swap, source, first, count);
 }
 
-/* Makes the volume, which takes over what the destination owns, also on failure. grid: as it was opened. */
+/* Makes the volume, which takes over the destination's memory, also on failure. grid: the grid with which the
+ * destination was opened. */
 hl_status hl_destination_adopt(hl_destination *destination, const hl_volume_description *grid,
                                hl_volume **volume, hl_error *error);
 
-/* As hl_destination_adopt(), for voxels that are colours. */
+/* Makes the volume like hl_destination_adopt(), of voxels that are colours. */
 hl_status hl_destination_adopt_colors(hl_destination *destination, const hl_color_source *source,
                                       hl_volume **volume, hl_error *error);
 

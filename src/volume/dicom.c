@@ -17,7 +17,7 @@ static bool has_content(const unsigned char *bytes, size_t length) {
   return hl_dicom_has_mark(bytes, length);
 }
 
-/* Old files have no mark. */
+/* Claims files by their name, as old files have no mark. */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   static const char *const endings[] = {".dcm", ".dicom", ".ima"};
   const unsigned char *bytes;
@@ -77,7 +77,8 @@ static hl_status load_series(hl_dicom_set *set, hl_load_request *request, hl_vol
   return status;
 }
 
-/* strict: the bundle is a single file, and an error to read it is reported. */
+/* Loads the files of a bundle. strict: the bundle is a single file, and an error in reading it is
+ * reported. */
 static hl_status load_files(hl_bundle *bundle, bool strict, hl_load_request *request, bool *claimed,
                             hl_volume **volume, hl_error *error) {
   hl_dicom_set set;
@@ -101,7 +102,7 @@ static hl_status load_bundle(hl_bundle *bundle, hl_load_request *request, bool *
   return status == HL_OK ? load_files(bundle, false, request, claimed, volume, error) : status;
 }
 
-/* A file without pixels of its own may be a DICOMDIR. */
+/* Loads a file without pixels of its own, which may be a DICOMDIR. */
 static hl_status load_directory(hl_bundle *one, hl_load_request *request, hl_volume **volume,
                                 hl_error *error) {
   hl_bundle listed = {.context = request->context};
@@ -114,7 +115,7 @@ static hl_status load_directory(hl_bundle *one, hl_load_request *request, hl_vol
   }
   if (status == HL_OK) status = hl_dicom_directory_read(&source, &listed, error);
   if (status == HL_OK && (listed.count > 0 || listed.links_passed > 0)) {
-    if (listed.path[0] == 0) { /* the current folder */
+    if (listed.path[0] == 0) { /* the file lies in the current folder */
       hl_release(request->context, listed.path);
       listed.path = hl_copy_text(request->context, ".");
     }

@@ -12,8 +12,7 @@
 #include "volume/convert.h"
 #include "volume/scratch_file.h"
 
-/* Floats hold all whole numbers up to 2^24: numbers that are nearer to 0 count as held, whatever their
- * fraction. */
+/* Floats hold all whole numbers up to 2^24. Numbers nearer to 0 count as held, whatever their fraction. */
 #define HELD_BELOW 0x1p24
 
 void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_exact_place place,
@@ -33,20 +32,21 @@ static bool is_wide(hl_voxel_type type) {
          type == HL_VOXEL_F64;
 }
 
-/* Whether a float rounds this whole number: it has more than 24 bits between its first and its last one. */
+/* Whether a float rounds this whole number: whether it has more than 24 bits from its first to its last set
+ * bit. */
 static bool rounds_whole(uint64_t magnitude) {
   return magnitude >> 24 != 0 && magnitude >> __builtin_ctzll(magnitude) >> 24 != 0;
 }
 
 static bool rounds_double(double value) {
-  return fabs(value) >= HELD_BELOW && (double)(float)value != value; /* false for NaN */
+  return fabs(value) >= HELD_BELOW && (double)(float)value != value; /* also false for NaN */
 }
 
-/* The size of a signed number. */
+/* The magnitude of a signed number. */
 static uint64_t magnitude_of(int64_t value) { return value < 0 ? 0 - (uint64_t)value : (uint64_t)value; }
 
-/* Whether any number may be above 2^24, or below -2^24: most files have none, and the loops are such that
- * compilers make vectors of them. */
+/* Whether any number may be above 2^24, or below -2^24. Most files have no such number. The loops are of a
+ * kind that compilers vectorise. */
 static bool any_great_32(bool is_signed, bool swap, const unsigned char *from, size_t count) {
   uint32_t bits = 0;
   for (size_t n = 0; n < count; n++) {
@@ -96,7 +96,7 @@ static void copy_number(size_t bytes, bool swap, const unsigned char *from, unsi
   for (size_t n = 0; n < bytes; n++) to[n] = from[swap ? bytes - 1 - n : n];
 }
 
-/* The block of numbers, made by the first thread that needs it; null without memory. */
+/* The block of numbers, which is made by the first thread that needs it; null if memory is short. */
 static unsigned char *numbers_of(hl_exact *exact) {
   void *made = atomic_load(&exact->numbers), *none = NULL;
   if (made != NULL) return made;
@@ -106,7 +106,7 @@ static unsigned char *numbers_of(hl_exact *exact) {
   return none;
 }
 
-/* The file of numbers, made by the first thread that needs it; -1: it cannot be made. */
+/* The file of numbers, which is made by the first thread that needs it; -1 if it cannot be made. */
 static int file_of(hl_exact *exact) {
   int made = atomic_load(&exact->file), none = -1;
   if (made >= 0) return made;
@@ -116,7 +116,7 @@ static int file_of(hl_exact *exact) {
   return none;
 }
 
-/* Writes all numbers of each piece in which a float rounds one. */
+/* Writes all numbers of each piece in which a float rounds a number. */
 static void note_in_file(hl_exact *exact, bool swap, const unsigned char *from, size_t first, size_t count) {
   enum { PIECE = 2048 };
   unsigned char piece[8 * PIECE];
@@ -176,8 +176,8 @@ static void fill_number(hl_voxel_type type, double stored, size_t n, void *numbe
   }
 }
 
-/* Numbers need not be noted where their floats hold them: of a voxel whose float is not the noted number's,
- * zero at first, the float tells the number. */
+/* Fills in the numbers that were not noted, which their floats hold. A noted number is zero at first. If a
+ * voxel's float differs from the float of the noted number, the number was not noted. */
 static void fill_numbers(hl_voxel_type type, const float *stored, size_t count, void *numbers) {
   for (size_t n = 0; n < count; n++)
     if (!((float)hl_exact_number(type, numbers, n) == stored[n]))
@@ -209,7 +209,7 @@ bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, con
     ssize_t got = pread(file, (unsigned char *)numbers + done, wanted - done, (off_t)(first * bytes + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return false;
-    if (got == 0) break; /* behind the last number that was noted */
+    if (got == 0) break; /* the rest of the file lies behind the last noted number */
     done += (size_t)got;
   }
   memset((unsigned char *)numbers + done, 0, wanted - done);

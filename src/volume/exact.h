@@ -15,41 +15,42 @@
 
 typedef enum hl_exact_place {
   HL_EXACT_IN_MEMORY,
-  HL_EXACT_IN_FILE, /* a scratch file: of voxels that lie in pages */
-  HL_EXACT_NOWHERE  /* only whether floats round is noted */
+  HL_EXACT_IN_FILE, /* in a scratch file, for voxels that lie in pages */
+  HL_EXACT_NOWHERE  /* nowhere: only noted is whether floats round any number */
 } hl_exact_place;
 
 typedef struct hl_exact {
   hl_context *context;
   hl_voxel_type type;
-  size_t count; /* voxels */
+  size_t count; /* number of voxels */
   hl_exact_place place;
-  atomic_bool rounds; /* a number was noted that its float rounds */
-  atomic_int failure; /* the system's error number where there was no room for the numbers; else 0 */
+  atomic_bool rounds; /* whether a noted number is rounded by its float */
+  atomic_int failure; /* the system's error number if there was no room for the numbers, else 0 */
   _Atomic(void *)
-      numbers;     /* owned; [count] of the type, zeros at first; null until a float rounds a number */
-  atomic_int file; /* owned; the same in a file, which has holes where nothing was noted; -1: none */
+      numbers;     /* owned; [count], of the type; zeros at first; null until a float rounds a number */
+  atomic_int file; /* owned; the same numbers in a file, which has holes where nothing was noted; -1 if there
+                    * is none */
 } hl_exact;
 
 void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_exact_place place,
                     hl_exact *exact);
 
-/* Notes `count` voxels, from number `first` on. source: packed, of any alignment; swap: in the other byte
- * order. Where memory or the disk is short, hl_exact_take() fails. exact: may be null. */
+/* Notes `count` voxels from number `first` on. source: packed, of any alignment. swap: whether they are in
+ * the other byte order. If memory or the disk is short, hl_exact_take() fails later. exact: may be null. */
 void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first, size_t count);
 
-/* Takes the numbers out; the caller owns them. stored: the stored values of all voxels, [count]. *numbers:
- * null where floats hold them all. */
+/* Takes the numbers out; the caller owns them. stored: the stored values of all voxels, [count]. *numbers is
+ * null if floats hold all numbers. */
 hl_status hl_exact_take(hl_exact *exact, const float *stored, void **numbers, hl_error *error);
-/* The same of numbers in a file. *file: owned by the caller; -1: floats hold all numbers. */
+/* Takes out the numbers of a file. *file is owned by the caller, and -1 if floats hold all numbers. */
 hl_status hl_exact_take_file(hl_exact *exact, int *file, hl_error *error);
-/* Reads `count` numbers of such a file, from number `first` on. stored: their stored values. False: the file
- * cannot be read. */
+/* Reads `count` numbers of a file from hl_exact_take_file(), from number `first` on. stored: the stored
+ * values of these voxels. False if the file cannot be read. */
 bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, const float *stored,
                    void *numbers);
 void hl_exact_release(hl_exact *exact);
 
-/* A number of a row of the type's values, in native byte order. */
+/* One number of a row. The row has values of the type in native byte order. */
 static inline double hl_exact_number(hl_voxel_type type, const void *row, size_t i) {
   switch (type) {
     case HL_VOXEL_U32: return ((const uint32_t *)row)[i];

@@ -34,8 +34,8 @@ void hl_file_list_release(hl_file_list *list) {
   *list = (hl_file_list){.context = list->context};
 }
 
-/* Finds the only "%d", "%5d" or "%05d" ("%i" and "%u" likewise) of a pattern. False where it has none, or
- * another percent sign. */
+/* Finds the only "%d", "%5d" or "%05d" of a pattern ("%i" and "%u" count, too). False if the pattern has
+ * none, or another percent sign. */
 static bool find_number(const char *pattern, size_t *begin, size_t *end, int *width, bool *zeros) {
   const char *percent = strchr(pattern, '%'), *at = percent;
   if (percent == NULL) return false;
@@ -78,14 +78,14 @@ hl_status hl_file_list_pattern(hl_file_list *list, const char *text, bool *sound
 
 typedef struct files_stream {
   hl_stream base;
-  char *header_path; /* owned: files are beside it */
+  char *header_path; /* owned; the files lie beside it */
   hl_file_list list;
-  size_t next;         /* the file that is opened next */
-  hl_stream *file;     /* owned; the current one, at its voxels; null: none */
-  uint64_t each, left; /* bytes that each file gives; that the current one has still to give */
+  size_t next;         /* index of the file that is opened next */
+  hl_stream *file;     /* owned; the current file, at its voxels; null if there is none */
+  uint64_t each, left; /* bytes that each file gives; bytes that the current file has still to give */
 } files_stream;
 
-/* Opens a file and goes to its voxels. *file: owned by the caller, also on failure. */
+/* Opens a file and goes to its voxels. *file is owned by the caller, also on failure. */
 static hl_status open_one(const files_stream *stream, size_t index, hl_stream **file, hl_error *error) {
   const hl_file_list *list = &stream->list;
   char line[HL_LINE_BYTES];
@@ -147,7 +147,8 @@ static void files_close(hl_stream *base) {
   hl_release(base->context, stream->header_path);
 }
 
-/* Holds what is promised of each file against what it can have, before memory is taken for the voxels. */
+/* Compares the size that is promised of each file with the file's length, before memory is taken for the
+ * voxels. */
 static hl_status check_files(const files_stream *stream, hl_error *error) {
   for (size_t n = 0; n < stream->list.count; n++) {
     hl_stream *file = NULL;

@@ -1,7 +1,7 @@
-/* volume/file_list.h - voxels in several files that a header names: one stream of all of them.
+/* volume/file_list.h - voxels in several files that a header names, as one stream.
  *
  * Names come as a list, or as a pattern with one number ("slice%03d.raw", from, to, step). Each file may
- * begin with lines and bytes of its own, and be packed. */
+ * begin with lines and bytes of its own, and may be packed. */
 #ifndef HL_VOLUME_FILE_LIST_H
 #define HL_VOLUME_FILE_LIST_H
 
@@ -13,18 +13,19 @@ typedef struct hl_file_list {
   hl_context *context;
   char **names; /* owned; [count] */
   size_t count, room;
-  size_t line_skip, byte_skip; /* of each file: lines, and then bytes of what they unpack to */
-  bool skip_to_last;           /* the voxels are the last bytes of each file */
+  size_t line_skip, byte_skip; /* lines to skip in each file, and then bytes to skip after unpacking */
+  bool skip_to_last;           /* whether the voxels are the last bytes of each file */
   hl_file_packing packing;
 } hl_file_list;
 
 hl_status hl_file_list_add(hl_file_list *list, const char *name, hl_error *error);
-/* Adds the names of "PATTERN FROM TO STEP ...". *sound: false where the text is no such thing. */
+/* Adds the names that "PATTERN FROM TO STEP ..." stands for. *sound: false if the text is not of this
+ * form. */
 hl_status hl_file_list_pattern(hl_file_list *list, const char *text, bool *sound, hl_error *error);
 void hl_file_list_release(hl_file_list *list);
 
-/* Replaces *stream by one of all files, of which each gives as many of `bytes`. The files are opened beside
- * *stream's. The new stream takes over the list. */
+/* Replaces *stream by one stream of all files, each of which gives an equal part of `bytes`. The files are
+ * looked for beside the file of *stream. The new stream takes over the list. */
 hl_status hl_stream_push_files(hl_stream **stream, hl_file_list *list, uint64_t bytes, hl_error *error);
 
 #endif

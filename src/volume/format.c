@@ -25,7 +25,7 @@ hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t compo
   return HL_OK;
 }
 
-/* "density; velocity (3 components); ..." */
+/* Writes a list of arrays: "density; velocity (3 components); ...". */
 static void list_arrays(const hl_load_request *request, char *text, size_t size) {
   enum { NAMED = 12 };
   size_t used = 0;
@@ -57,7 +57,7 @@ static hl_status choose_named(hl_load_request *request, const char *path, hl_err
                  hl_text_printable(shown, request->array), list);
 }
 
-/* Arrays in which VTK notes which values are doubles of others or hidden: they hold no volume. */
+/* Whether an array holds no volume: VTK notes in such arrays which values are doubles of others or hidden. */
 static bool is_ghost(const hl_array_entry *array) {
   return hl_text_is_one_of(array->name, "vtkGhostType|vtkGhostLevels|vtkValidPointMask");
 }
@@ -89,7 +89,7 @@ hl_status hl_arrays_choose(hl_load_request *request, const char *path, int activ
   return HL_OK;
 }
 
-/* Chooses one of `count` times, channels or levels; the first by default. */
+/* Chooses one of `count` times, channels or levels. The first is the default. */
 static hl_status choose_step(const char *path, const char *kind, int wanted, size_t count, int *chosen,
                              hl_error *error) {
   if (wanted >= 0 && (size_t)wanted >= count && count <= 1)
@@ -140,10 +140,12 @@ void hl_channel_name(hl_channel *channel, const char *name) {
 
 /* ---- levels ---- */
 
-/* A level of more voxels shows nothing more in a picture a thousand pixels across, and takes minutes. */
+/* The greatest number of voxels of a level that is chosen by default. More voxels show nothing more in a
+ * picture a thousand pixels across, and take minutes. */
 static const uint64_t VOXELS_OF_A_PICTURE = (uint64_t)1 << 30;
 
-/* Whether a level's longest axis has a voxel for each pixel of the picture that it fills. */
+/* Whether a level's longest axis has a voxel for each pixel of the part of the picture that the volume
+ * fills. */
 static bool fills_picture(const hl_level_size *level, int pixels) {
   size_t longest = 0;
   for (int axis = 0; axis < 3; axis++)
@@ -151,7 +153,7 @@ static bool fills_picture(const hl_level_size *level, int pixels) {
   return longest >= (size_t)pixels;
 }
 
-/* UINT64_MAX on overflow. */
+/* The number of voxels of a level; UINT64_MAX on overflow. */
 static uint64_t level_voxels(const hl_level_size *level) {
   uint64_t voxels = 1;
   for (int axis = 0; axis < 3; axis++)
@@ -200,7 +202,7 @@ static hl_status check_steps(const hl_load_request *request, const char *path, h
                          : status;
 }
 
-/* Chooses the default component, and writes a warning that names it; of colours nothing need be said. */
+/* Chooses the default component, and writes a warning that names it. Colours need no warning. */
 static int default_component(hl_load_request *request, const char *path, bool is_series,
                              const hl_payload *payload) {
   size_t components = payload->components;
@@ -219,7 +221,7 @@ static int default_component(hl_load_request *request, const char *path, bool is
   return magnitude ? HL_COMPONENT_MAGNITUDE : 0;
 }
 
-/* In a series, sets *wanted to the component that the caller names by its time or channel. */
+/* In a series, sets *wanted to the component that the caller's time or channel stands for. */
 static hl_status component_of_steps(hl_load_request *request, const char *path, bool is_series,
                                     const hl_payload *payload, int *wanted, hl_error *error) {
   hl_selection *selection = &request->selection;
@@ -233,7 +235,7 @@ static hl_status component_of_steps(hl_load_request *request, const char *path, 
         error, HL_ERROR_INPUT,
         "%s: its components are its time steps and channels: leave \"component\" (--component) out", path);
   int time = request->time >= 0 ? request->time : 0, channel = request->channel >= 0 ? request->channel : 0;
-  int first; /* component of the channel's first time step */
+  int first; /* the component of the channel's first time step */
   if (!__builtin_mul_overflow(selection->times, channel, &first) &&
       !__builtin_add_overflow(first, time, wanted))
     return HL_OK;

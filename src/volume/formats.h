@@ -1,8 +1,7 @@
 /* volume/formats.h - the registry of formats, in the order in which hl_volume_load asks them.
  *
- * Each NAME is a reader: a file NAME.c that defines hl_format_NAME (see format.h). meson.build reads the
- * names here.
- */
+ * Each NAME stands for a reader, a file NAME.c that defines hl_format_NAME (see format.h). meson.build reads
+ * the names from this file. */
 /* clang-format off */
 #define HL_FORMATS     \
   HL_FORMAT(raw)       \

@@ -38,30 +38,30 @@ enum { LATTICES = 6 };
 #define NOT_KEPT UINT32_MAX
 
 typedef struct lattice {
-  size_t count[3];       /* indices kept along each axis */
-  uint32_t *place[3];    /* [dimension]; of an index: which of those kept it is, or NOT_KEPT */
+  size_t count[3];       /* number of indices kept along each axis */
+  uint32_t *place[3];    /* [dimension]; for each index its place among the kept indices, or NOT_KEPT */
   unsigned char *voxels; /* [count[2]][count[1]][count[0]]; stored values */
 } lattice;
 
 struct hl_glimpse {
   hl_context *context;
-  size_t dimension[3], bytes; /* bytes: of a stored value */
+  size_t dimension[3], bytes; /* bytes: size of a stored value */
   lattice lattices[LATTICES];
 };
 
-/* Which indices of an axis a lattice keeps. */
+/* The indices of an axis that a lattice keeps. */
 typedef struct series {
-  size_t first, step; /* first, first + step, ... */
-  size_t run;         /* of each the next ones, too: so many in all */
-  bool last;          /* and the axis's last one */
+  size_t first, step; /* the indices first, first + step, ... */
+  size_t run;         /* number of consecutive indices kept at each of them */
+  bool last;          /* whether the axis's last index is kept, too */
 } series;
 
 static bool keeps(const series *s, size_t index, size_t dimension) {
   return (index >= s->first && (index - s->first) % s->step < s->run) || (s->last && index + 1 == dimension);
 }
 
-/* What guess/ looks at: samples from half a step inside on and their next neighbours; those from 0 on and the
- * next two; rows; and the three pairs of faces. */
+/* Lists the indices that guess/ looks at: samples from half a step inside on and their next neighbours;
+ * samples from 0 on and the next two; rows; and the three pairs of faces. */
 static void list_series(const size_t dimension[3], series all[LATTICES][3]) {
   size_t step = hl_lattice_step(dimension, HL_LATTICE_PLACES), border = hl_border_step(dimension),
          rows = hl_row_step(dimension);
@@ -88,7 +88,7 @@ static void lay_out(hl_glimpse *g, series all[LATTICES][3], hl_layout *layout) {
         if (l->place[a] != NULL) l->place[a][i] = kept ? (uint32_t)l->count[a] : NOT_KEPT;
         l->count[a] += kept;
       }
-      voxels *= l->count[a]; /* no overflow: at most the grid's */
+      voxels *= l->count[a]; /* cannot overflow, as it is at most the grid's number of voxels */
     }
     l->voxels = hl_layout_take(layout, voxels, g->bytes);
   }
@@ -117,16 +117,16 @@ bool hl_glimpse_create(hl_context *context, const size_t dimension[3], hl_storag
 }
 
 void hl_glimpse_release(hl_glimpse *glimpse) {
-  if (glimpse != NULL) hl_release(glimpse->context, glimpse); /* its arrays lie in the same block */
+  if (glimpse != NULL) hl_release(glimpse->context, glimpse); /* the glimpse's arrays lie in the same block */
 }
 
-/* Where a lattice keeps the row (j, k); null: nowhere. */
+/* The place where a lattice keeps the row (j, k); null if it does not keep the row. */
 static unsigned char *row_of(const hl_glimpse *g, const lattice *l, size_t j, size_t k) {
   uint32_t y = l->place[1][j], z = l->place[2][k];
   return y == NOT_KEPT || z == NOT_KEPT ? NULL : l->voxels + (z * l->count[1] + y) * l->count[0] * g->bytes;
 }
 
-/* Keeps voxels i0 to i1 - 1 of a row; values: of voxel i0 on. */
+/* Keeps voxels i0 to i1 - 1 of a row. values: the stored values from voxel i0 on. */
 static void store_row(const hl_glimpse *g, const lattice *l, size_t i0, size_t i1,
                       const unsigned char *values, unsigned char *row) {
   if (l->count[0] == g->dimension[0]) {

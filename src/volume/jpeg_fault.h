@@ -1,4 +1,5 @@
-/* volume/jpeg_fault.h - libjpeg's errors as a jump with a message; only where the build has libjpeg. */
+/* volume/jpeg_fault.h - turns libjpeg's errors into a jump with a message. Included only if the build has
+ * libjpeg. */
 #ifndef HL_VOLUME_JPEG_FAULT_H
 #define HL_VOLUME_JPEG_FAULT_H
 
@@ -8,9 +9,9 @@
 #include <jpeglib.h>
 
 typedef struct hl_jpeg_fault {
-  struct jpeg_error_mgr manager; /* the decoder's err */
-  jmp_buf jump;                  /* where an error goes on */
-  char message[JMSG_LENGTH_MAX]; /* after the jump: what is wrong */
+  struct jpeg_error_mgr manager; /* libjpeg's member, to which the decoder's `err` points */
+  jmp_buf jump;                  /* where execution goes on after an error */
+  char message[JMSG_LENGTH_MAX]; /* set by the jump: the error's message */
 } hl_jpeg_fault;
 
 static inline void hl_jpeg_stop(j_common_ptr info) {
@@ -21,7 +22,7 @@ static inline void hl_jpeg_stop(j_common_ptr info) {
 
 static inline void hl_jpeg_pass_over(j_common_ptr info) { (void)info; }
 
-/* Sets the decoder's errors up: an error jumps, a warning is passed over. The caller sets `jump`. */
+/* Sets up the decoder's errors: an error jumps, and a warning is ignored. The caller sets `jump`. */
 static inline void hl_jpeg_catch(struct jpeg_decompress_struct *info, hl_jpeg_fault *fault) {
   info->err = jpeg_std_error(&fault->manager);
   fault->manager.error_exit = hl_jpeg_stop;

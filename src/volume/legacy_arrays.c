@@ -27,7 +27,8 @@ hl_status hl_legacy_vtk_line(hl_legacy_vtk *file, char line[HL_LINE_BYTES], bool
 static hl_status read_opening(hl_legacy_vtk *file, hl_error *error) {
   char line[HL_LINE_BYTES];
   bool ended;
-  hl_status status = hl_legacy_vtk_line(file, line, &ended, error); /* "# vtk DataFile Version x.y" */
+  /* The line "# vtk DataFile Version x.y". */
+  hl_status status = hl_legacy_vtk_line(file, line, &ended, error);
   if (status == HL_OK) status = hl_legacy_vtk_line(file, line, &ended, error);
   do {
     if (status == HL_OK) status = hl_legacy_vtk_line(file, line, &ended, error);
@@ -60,7 +61,7 @@ hl_status hl_legacy_vtk_type(const hl_legacy_vtk *file, const char *name, hl_vox
       hl_text_printable(shown, name));
 }
 
-/* Passes over count values of an array. */
+/* Skips `count` values of an array. */
 static hl_status skip_values(hl_legacy_vtk *file, size_t count, size_t value_bytes, hl_error *error) {
   if (!file->text) return hl_stream_skip(file->stream, (uint64_t)count * value_bytes, error);
   for (bool inside = false; count > 0;) {
@@ -78,10 +79,10 @@ static hl_status skip_values(hl_legacy_vtk *file, size_t count, size_t value_byt
   return HL_OK;
 }
 
-/* The most values of an array. */
+/* The greatest number of values of an array. */
 static const size_t VALUES_MOST = SIZE_MAX / 8;
 
-/* Tells the file's reader of an array, whose type and size are not yet checked. */
+/* Passes an array to the file's reader. Its type and size are not yet checked. */
 static hl_status meet(hl_legacy_vtk *file, hl_legacy_array array, const char *type_name, hl_error *error) {
   size_t values;
   hl_status status = hl_legacy_vtk_type(file, type_name, &array.type, error);
@@ -97,7 +98,7 @@ hl_status hl_legacy_vtk_skip_array(hl_legacy_vtk *file, const hl_legacy_array *a
   return skip_values(file, array->tuples * array->components, hl_voxel_type_bytes(array->type), error);
 }
 
-/* "SCALARS name type [components]", then, in all but some old files, "LOOKUP_TABLE name". */
+/* Reads "SCALARS name type [components]" and "LOOKUP_TABLE name", which some old files lack. */
 static hl_status read_scalars(hl_legacy_vtk *file, const char *arguments, hl_error *error) {
   char name[WORD_BYTES], type[WORD_BYTES], line[HL_LINE_BYTES];
   const char *cursor = arguments;
@@ -120,7 +121,7 @@ static hl_status read_scalars(hl_legacy_vtk *file, const char *arguments, hl_err
              : status;
 }
 
-/* "VECTORS name type" and other keywords with a fixed number of components. */
+/* Reads "VECTORS name type" and other keywords with a fixed number of components. */
 static hl_status read_vectors(hl_legacy_vtk *file, const char *kind, size_t components, const char *arguments,
                               hl_error *error) {
   char name[WORD_BYTES], type[WORD_BYTES];
@@ -132,7 +133,7 @@ static hl_status read_vectors(hl_legacy_vtk *file, const char *kind, size_t comp
               type, error);
 }
 
-/* "TEXTURE_COORDINATES name components type" */
+/* Reads "TEXTURE_COORDINATES name components type". */
 static hl_status read_coordinates(hl_legacy_vtk *file, const char *arguments, hl_error *error) {
   char name[WORD_BYTES], dimension[WORD_BYTES], type[WORD_BYTES];
   const char *cursor = arguments;
@@ -148,7 +149,7 @@ static hl_status read_coordinates(hl_legacy_vtk *file, const char *arguments, hl
       type, error);
 }
 
-/* "LOOKUP_TABLE name size" with four bytes, or numbers, for each colour: passed over. */
+/* Skips "LOOKUP_TABLE name size", which has four bytes, or numbers, for each colour. */
 static hl_status skip_table(hl_legacy_vtk *file, const char *arguments, hl_error *error) {
   char name[WORD_BYTES];
   const char *cursor = arguments;
@@ -159,7 +160,8 @@ static hl_status skip_table(hl_legacy_vtk *file, const char *arguments, hl_error
   return skip_values(file, 4 * colors, 1, error);
 }
 
-/* "COLOR_SCALARS name components", which VTK writes for 8 bit scalars: bytes, or fractions of 255 as text. */
+/* Reads "COLOR_SCALARS name components", which VTK writes for 8 bit scalars: bytes, or fractions of 255 as
+ * text. */
 static hl_status read_color_scalars(hl_legacy_vtk *file, const char *arguments, hl_error *error) {
   char name[WORD_BYTES];
   const char *cursor = arguments;
@@ -176,7 +178,7 @@ static hl_status read_color_scalars(hl_legacy_vtk *file, const char *arguments, 
               "unsigned_char", error);
 }
 
-/* Skips what newer files add after an array: lines up to an empty one. */
+/* Skips the lines that newer files add after an array, up to an empty one. */
 static hl_status skip_metadata(hl_legacy_vtk *file, hl_error *error) {
   char line[HL_LINE_BYTES];
   bool ended;
@@ -186,10 +188,10 @@ static hl_status skip_metadata(hl_legacy_vtk *file, hl_error *error) {
   return status;
 }
 
-/* Passes over a text of a binary file: its length, in one, two, four or eight bytes as the first two bits
- * tell, then its letters (vtkDataWriter). */
+/* Skips a text of a binary file. Its length comes first, in one, two, four or eight bytes as the first two
+ * bits tell, then its letters (vtkDataWriter). */
 static hl_status skip_binary_string(hl_legacy_vtk *file, hl_error *error) {
-  static const size_t more[4] = {7, 3, 1, 0}; /* bytes of the length after the first */
+  static const size_t more[4] = {7, 3, 1, 0}; /* number of bytes of the length after the first */
   unsigned char first, rest[7];
   hl_status status = hl_stream_read_all(file->stream, &first, 1, error);
   if (status == HL_OK) status = hl_stream_read_all(file->stream, rest, more[first >> 6], error);
@@ -198,7 +200,7 @@ static hl_status skip_binary_string(hl_legacy_vtk *file, hl_error *error) {
   return status == HL_OK ? hl_stream_skip(file->stream, length, error) : status;
 }
 
-/* Passes over texts, of which each has a line of its own in a file of text, and over bits. */
+/* Skips arrays of texts, each of which has a line of its own in a text file, and arrays of bits. */
 static hl_status skip_other(hl_legacy_vtk *file, const char *type, size_t values, hl_error *error) {
   char line[HL_LINE_BYTES];
   bool ended = false;
@@ -211,7 +213,7 @@ static hl_status skip_other(hl_legacy_vtk *file, const char *type, size_t values
   return status;
 }
 
-/* "FIELD name n", then n times "name components tuples type" and the values. */
+/* Reads "FIELD name n", which is followed n times by "name components tuples type" and the values. */
 static hl_status read_fields(hl_legacy_vtk *file, const char *arguments, hl_error *error) {
   char word[WORD_BYTES], line[HL_LINE_BYTES];
   const char *cursor = arguments;
@@ -223,7 +225,7 @@ static hl_status read_fields(hl_legacy_vtk *file, const char *arguments, hl_erro
     hl_status status = hl_legacy_vtk_line(file, line, &ended, error);
     if (status != HL_OK || ended) return status;
     cursor = line;
-    if (!hl_text_word(&cursor, word, sizeof word)) continue; /* the line's end after the values */
+    if (!hl_text_word(&cursor, word, sizeof word)) continue; /* this is the line's end after the values */
     if (hl_text_equal(word, "METADATA")) {
       status = skip_metadata(file, error);
       if (status != HL_OK) return status;

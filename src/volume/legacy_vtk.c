@@ -4,8 +4,8 @@
  * After three lines (mark, title, ASCII or BINARY) come keywords. A first pass lists the arrays under
  * POINT_DATA and CELL_DATA (SCALARS, COLOR_SCALARS, VECTORS, NORMALS, TENSORS, TEXTURE_COORDINATES and the
  * arrays of a FIELD), up to the first unknown keyword; a second pass stops at the values of the chosen array.
- * A pipe cannot be read twice: it is read once, up to the first array of one component or of the wanted name.
- */
+ * A pipe cannot be read twice, and is read only up to the first array of one component or with the wanted
+ * name. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -18,20 +18,20 @@
 #include "volume/text.h"
 
 typedef struct vtk_header {
-  hl_legacy_vtk file; /* first: its callbacks find the header by it */
+  hl_legacy_vtk file; /* must come first: callbacks find the header by the address of this member */
   hl_payload payload;
   bool has_dimensions, is_rectilinear;
-  double *coordinates[3]; /* owned; of a rectilinear grid; null: none */
+  double *coordinates[3]; /* owned; the coordinates of a rectilinear grid; null for other grids */
   size_t counts[3];
-  size_t tuples; /* of the volume's array, once it is found */
+  size_t tuples; /* number of values of the volume's array, once it is found */
   hl_load_request *request;
-  bool of_cells; /* the volume's array is of cells */
-  bool lists;    /* first pass: arrays are listed */
-  bool once;     /* there is no second pass: stop at the first suitable array */
+  bool of_cells; /* whether the volume's array is of cells */
+  bool lists;    /* in the first pass: arrays are listed */
+  bool once;     /* there is no second pass, so that reading stops at the first suitable array */
   size_t arrays; /* number of arrays so far that can hold the volume */
 } vtk_header;
 
-/* Whether this pass stops at the array of this number. */
+/* Whether this pass stops at the array with this number. */
 static bool is_wanted(const vtk_header *header, const hl_legacy_array *array, size_t index) {
   const hl_load_request *request = header->request;
   if (!header->lists) return index == request->chosen;
@@ -39,13 +39,13 @@ static bool is_wanted(const vtk_header *header, const hl_legacy_array *array, si
   return request->array != NULL ? strcmp(request->array, array->name) == 0 : array->components == 1;
 }
 
-/* The values of an array come next: stops there if it is the volume's array. */
+/* Called when the values of an array come next. Stops there if it is the volume's array. */
 static hl_status meet_array(hl_legacy_vtk *file, const hl_legacy_array *array, hl_error *error) {
   vtk_header *header = (vtk_header *)file;
   size_t index = header->arrays;
   hl_status status = HL_OK;
   const size_t *n = header->payload.grid.dimensions;
-  /* an array of the file itself is the points', where it has a value for each */
+  /* an array of the file itself belongs to the points if it has a value for each */
   bool usable = !array->of_neither || (header->has_dimensions && array->tuples > 1 &&
                                        (double)array->tuples == (double)n[0] * (double)n[1] * (double)n[2]);
   bool of_cells = !array->of_points && !array->of_neither;
@@ -61,7 +61,8 @@ static hl_status meet_array(hl_legacy_vtk *file, const hl_legacy_array *array, h
   header->payload.grid.type = array->type;
   header->payload.components = array->components;
   header->payload.block = 1;
-  if (array->type == HL_VOXEL_U8) header->payload.colors = HL_COLORS_MEANT; /* as VTK's mappers take bytes */
+  /* VTK's mappers take bytes as colours. */
+  if (array->type == HL_VOXEL_U8) header->payload.colors = HL_COLORS_MEANT;
   header->tuples = array->tuples;
   header->of_cells = of_cells;
   file->found = true;
@@ -85,7 +86,7 @@ static hl_status read_geometry(vtk_header *header, const char *keyword, const ch
   return sound ? HL_OK : hl_legacy_vtk_fail(&header->file, "expected three numbers, not", arguments, error);
 }
 
-/* "X_COORDINATES number type", then the numbers. */
+/* Reads "X_COORDINATES number type" and the numbers. */
 static hl_status read_coordinates(vtk_header *header, int axis, const char *arguments, hl_error *error) {
   char number[HL_LEGACY_WORD_BYTES], type_name[HL_LEGACY_WORD_BYTES];
   const char *cursor = arguments;
@@ -101,7 +102,7 @@ static hl_status read_coordinates(vtk_header *header, int axis, const char *argu
                          : status;
 }
 
-/* A keyword of structured points or a rectilinear grid. */
+/* Reads a keyword of structured points or a rectilinear grid. */
 static hl_status read_keyword(hl_legacy_vtk *file, const char *keyword, const char *arguments,
                               hl_error *error) {
   char shown[HL_PRINTABLE_BYTES];
@@ -153,7 +154,7 @@ static bool is_enough(const hl_load_request *request, hl_status status) {
   return false;
 }
 
-/* Goes to the values of the chosen array. Errors after them in the file do not matter. */
+/* Goes to the values of the chosen array. Errors after them in the file are ignored. */
 static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_header *header,
                              hl_error *error) {
   *header = begin(*stream, request, true);
@@ -176,7 +177,8 @@ static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_h
   return hl_legacy_vtk_read(&header->file, error);
 }
 
-/* Cells lie between the points: one fewer along each axis that has several, half a step further on. */
+/* Moves the grid to the cells, which lie between the points: there is one fewer along each axis that has
+ * several points, and the first lies half a step further. */
 static void move_to_cells(hl_volume_description *grid) {
   for (int axis = 0; axis < 3; axis++) {
     if (grid->dimensions[axis] < 2) continue;

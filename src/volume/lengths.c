@@ -1,5 +1,5 @@
-/* volume/lengths.c - see lengths.h. The symbols are those of OME's schema (UnitsLength) and of the
- * International System of Units; the names are those of UDUNITS-2, and those that ImageJ writes. */
+/* volume/lengths.c - see lengths.h. The symbols come from OME's schema (UnitsLength) and the International
+ * System of Units. The names come from UDUNITS-2 and ImageJ. */
 #include "volume/lengths.h"
 
 #include <stddef.h>
@@ -51,7 +51,7 @@ double hl_micrometres(const char *unit) {
                  {"pc", 3.0856775814913673e22},
                  {"pt", 25400.0 / 72}};
   static const struct {
-    const char *names; /* in letters of either case */
+    const char *names; /* names in letters of either case */
     double micrometres;
   } names[] = {{"angstrom", 1e-4},
                {"picometer|picometre", 1e-6},

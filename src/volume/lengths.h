@@ -2,8 +2,8 @@
 #ifndef HL_VOLUME_LENGTHS_H
 #define HL_VOLUME_LENGTHS_H
 
-/* The micrometres of a unit by its symbol or name; 0: it is no length that is known. Symbols are told apart
- * by the case of their letters: "mm" and "Mm". */
+/* The number of micrometres of a unit, by its symbol or name; 0 if it is no known unit of length. The case of
+ * a symbol's letters matters: "mm" is not "Mm". */
 double hl_micrometres(const char *unit);
 
 #endif

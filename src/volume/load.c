@@ -40,7 +40,7 @@ static const hl_format *by_fit(const hl_stream *stream) {
   return NULL;
 }
 
-/* *format: null if no format claims the file. */
+/* Finds the format by the file's name. *format is null if no format claims the file. */
 static hl_status by_name(hl_stream **stream, const hl_format **format, hl_error *error) {
   bool claimed = false;
   hl_status status = HL_OK;
@@ -61,8 +61,8 @@ static hl_status take_byte_order_mark(hl_stream *stream, const unsigned char **b
   return hl_stream_peek(stream, HL_FORMAT_SNIFFED_BYTES, bytes, length, error);
 }
 
-/* Advice for a file of a well-known format that Halflight does not read, by the first bytes; null for all
- * other files. Sources: the formats' own descriptions, and the list of marks of file(1). */
+/* Advice for a file of a well-known format that Halflight does not read, found by the first bytes; null for
+ * all other files. Sources: the formats' own descriptions, and the list of marks of file(1). */
 static const char *known_but_unsupported(const unsigned char *bytes, size_t length) {
 #define MICROSCOPE "convert it to OME-TIFF or OME-Zarr (bfconvert, bioformats2raw)"
   static const struct {
@@ -143,7 +143,7 @@ static hl_status fail_unknown(const hl_stream *stream, const unsigned char *byte
 
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
 
-/* The only file of an archive, or null; what macOS adds to archives is passed over. */
+/* The only file of an archive, or null. Files that macOS adds to archives do not count. */
 static const hl_bundle_entry *only_file(const hl_bundle *bundle) {
   const hl_bundle_entry *only = NULL;
   for (size_t n = 0; n < bundle->count; n++) {
@@ -178,7 +178,7 @@ static hl_status load_packed(const hl_bundle *bundle, const hl_bundle_entry *ent
   return status;
 }
 
-/* A folder, or a zip archive: asks every format. */
+/* Reads a folder or a zip archive: asks every format. */
 static hl_status load_bundle(hl_bundle *bundle, hl_load_request *request, hl_volume **volume,
                              hl_error *error) {
   bool claimed = false;
@@ -272,13 +272,13 @@ static hl_status check_options(const hl_volume_load_options *options, hl_error *
   return HL_OK;
 }
 
-/* Turns a volume's world into another anatomical space, and tells so: x, y or both change their signs. */
+/* Turns a volume's world into another anatomical space, and logs that: x, y or both change their signs. */
 static void turn_into(hl_context *context, const char *path, hl_space wanted, hl_volume *volume) {
   static const double signs[][2] = {
       [HL_SPACE_RAS] = {1, 1}, [HL_SPACE_LPS] = {-1, -1}, [HL_SPACE_LAS] = {-1, 1}};
   if (wanted == HL_SPACE_UNKNOWN || volume->space == HL_SPACE_UNKNOWN || volume->space == wanted) return;
   affine3 *place = &volume->index_to_world;
-  const vec3 zero = {0, 0, 0}; /* subtracted from, so that no -0 arises */
+  const vec3 zero = {0, 0, 0}; /* subtracting from zero avoids -0 */
   if (signs[wanted][0] != signs[volume->space][0]) {
     place->linear.row[0] = vec3_subtract(zero, place->linear.row[0]);
     place->offset.x = 0 - place->offset.x;
@@ -292,14 +292,14 @@ static void turn_into(hl_context *context, const char *path, hl_space wanted, hl
   volume->space = wanted;
 }
 
-/* Refuses the name of a series where the file has none. */
+/* Refuses the name of a series if the file has no series. */
 static hl_status check_series(const hl_load_request *request, const char *path, hl_error *error) {
   if (request->series == NULL || request->series_count > 0) return HL_OK;
   return hl_fail(error, HL_ERROR_INPUT, "%s: only DICOM files have series: leave \"series\" (--series) out",
                  path);
 }
 
-/* Gives the volume the list of arrays, and tells what was chosen by default. */
+/* Gives the volume the list of arrays, and warns about default choices. */
 static hl_status finish(hl_load_request *request, const char *path, hl_status status, hl_volume **volume,
                         hl_error *error) {
   if (status == HL_OK) {
@@ -323,7 +323,8 @@ static hl_status finish(hl_load_request *request, const char *path, hl_status st
   if (request->window[0] < request->window[1])
     memcpy((*volume)->window, request->window, sizeof request->window);
   (*volume)->is_anatomical = request->is_anatomical;
-  (*volume)->unit = request->spacing[0] > 0 ? NULL : request->unit; /* a spacing of the caller has none */
+  /* A spacing from the caller has no unit. */
+  (*volume)->unit = request->spacing[0] > 0 ? NULL : request->unit;
   (*volume)->selection = request->selection;
   (*volume)->series = request->series_list;
   (*volume)->series_count = request->series_count;

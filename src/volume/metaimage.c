@@ -1,8 +1,7 @@
 /* volume/metaimage.c - MetaImage: .mha (voxels in the same file) and .mhd (voxels in another file).
  *
- * The header is lines "Key = value"; ElementDataFile is the last. World: physical = Offset +
- * sum over axes of index * spacing * row of TransformMatrix, which is how ITK reads the matrix.
- * */
+ * The header consists of lines "Key = value", of which ElementDataFile is the last. World: physical = Offset
+ * + sum over axes of index * spacing * row of TransformMatrix, as ITK reads the matrix. */
 #include <math.h>
 #include <string.h>
 
@@ -18,19 +17,19 @@ enum { MOST_AXES = 10, NAME_BYTES = 1024 };
 typedef struct meta_header {
   const hl_stream *stream;
   int line;
-  int dimension; /* 0: not yet stated */
+  int dimension; /* 0 if not yet stated */
   size_t size[MOST_AXES];
   double spacing[MOST_AXES], element_size[MOST_AXES], offset[MOST_AXES];
-  double matrix[MOST_AXES * MOST_AXES]; /* row a: direction of index axis a */
+  double matrix[MOST_AXES * MOST_AXES]; /* row a is the direction of index axis a */
   bool has_sizes, has_spacing, has_element_size, has_offset, has_matrix;
-  hl_voxel_type type; /* 0: not yet stated */
+  hl_voxel_type type; /* 0 if not yet stated */
   size_t channels, header_bytes;
-  bool header_is_rest; /* HeaderSize -1: the voxels are the last bytes of the file */
+  bool header_is_rest; /* HeaderSize is -1: the voxels are the last bytes of the file */
   bool big_endian, compressed, text, is_anatomical;
   double slope, intercept;
   char data_file[NAME_BYTES];
-  hl_file_list files; /* owned; several data files */
-  bool is_list;       /* their names follow the header */
+  hl_file_list files; /* owned; the list of several data files */
+  bool is_list;       /* whether the names of data files follow the header */
 } meta_header;
 
 static bool has_content(const unsigned char *bytes, size_t length) {
@@ -190,14 +189,14 @@ static void make_grid(const meta_header *header, hl_volume_description *grid) {
     }
   }
   grid->type = header->type;
-  /* ITK's world, whichever way the voxels lie in it */
+  /* the world is ITK's, in whichever direction the axes run */
   grid->space = header->is_anatomical ? HL_SPACE_LPS : HL_SPACE_UNKNOWN;
   grid->value_scale = header->slope;
   grid->value_offset = header->intercept;
 }
 
-/* The channels of a voxel lie side by side; samples along a fourth or later axis are whole volumes, one after
- * the other. */
+/* Finds the components. The channels of a voxel lie side by side. Samples along a fourth or later axis are
+ * whole volumes, one after the other. */
 static hl_status find_components(const meta_header *header, bool *is_series, hl_payload *payload,
                                  hl_error *error) {
   size_t series = 1;
@@ -217,7 +216,8 @@ static hl_status find_components(const meta_header *header, bool *is_series, hl_
   return HL_OK;
 }
 
-/* A LOCAL payload follows the header. Another file may begin with a header of its own, which is skipped. */
+/* Goes to the voxels. A LOCAL payload follows the header. Another file may begin with a header of its own,
+ * which is skipped. */
 static hl_status go_to_voxels(hl_stream **stream, meta_header *header, const hl_payload *payload,
                               hl_error *error) {
   if (header->is_list || header->files.count > 0) {

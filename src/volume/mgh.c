@@ -1,8 +1,8 @@
 /* volume/mgh.c - FreeSurfer's volumes: .mgh, and .mgz, which is packed by gzip.
  *
- * All numbers are big-endian: the version 1, three sizes and the number of frames, the type, and, after a
- * flag that the following is valid, voxel sizes, the directions of the axes and the middle of the volume
- * (RAS, millimetres). Voxels begin at byte 284. Source: FreeSurfer's description of the format
+ * All numbers are big-endian: the version 1, three sizes and the number of frames, the type, and a flag. If
+ * the flag is set, voxel sizes, the directions of the axes and the middle of the volume follow (RAS,
+ * millimetres). Voxels begin at byte 284. Source: FreeSurfer's description of the format
  * ("FsTutorial/MghFormat"). */
 #include <math.h>
 #include <string.h>
@@ -24,7 +24,7 @@ static double real_at(const unsigned char *at) {
   return (double)value;
 }
 
-/* 0: a type that is not known. */
+/* The voxel type of a code; 0 for a type that is not known. */
 static hl_voxel_type type_of(uint32_t code) {
   static const hl_voxel_type types[11] = {
       [0] = HL_VOXEL_U8, [1] = HL_VOXEL_I32, [3] = HL_VOXEL_F32, [4] = HL_VOXEL_I16, [10] = HL_VOXEL_U16};
@@ -40,9 +40,10 @@ static bool has_content(const unsigned char *bytes, size_t length) {
   return bytes[IS_GOOD] == 0 && bytes[IS_GOOD + 1] <= 1;
 }
 
-/* The middle of the volume lies at the index size / 2, also where the size is odd. */
+/* Places the volume, whose middle lies at the index size / 2, also where the size is odd. */
 static void place(const unsigned char *header, hl_volume_description *grid) {
-  static const double usual[12] = {-1, 0, 0, 0, 0, -1, 0, 1, 0, 0, 0, 0}; /* axes i, j, k, and the middle */
+  /* Directions of the axes i, j, k, and the middle. */
+  static const double usual[12] = {-1, 0, 0, 0, 0, -1, 0, 1, 0, 0, 0, 0};
   bool good = header[IS_GOOD + 1] == 1;
   const unsigned char *at = header + PLACE;
   double middle[3];
@@ -74,7 +75,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   payload.grid.type = type_of(word_at(header + TYPE));
   payload.components = word_at(header + SIZES + 12);
   payload.big_endian = true;
-  payload.trailing = HL_TRAILING_IGNORED; /* times of the scan, and tags */
+  payload.trailing = HL_TRAILING_IGNORED; /* times of the scan and tags follow the voxels */
   place(header, &payload.grid);
   request->unit = "millimetre";
   request->is_anatomical = true;
@@ -87,7 +88,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* Damaged headers are claimed too, so that load() says what is wrong with them. */
+/* Claims damaged headers, too, so that load() reports their damage. */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   (void)error;
   static const char *const endings[] = {".mgh", ".mgz", ".mgh.gz"};

@@ -1,10 +1,9 @@
 /* volume/mrc.c - MRC and CCP4 maps of electron microscopy and crystallography: .mrc, .map, .ccp4, .rec, .st.
  *
  * Source of the fields: the MRC2014 format (Cheng et al., Journal of Structural Biology 192, 2015, and the
- * CCP-EM project's page of it). The header is 1024 bytes of 4-byte words, of either byte order, which is
- * found from the numbers themselves. World coordinates are the cell's X, Y, Z in Angstroms: MAPC, MAPR and
- * MAPS say which of them the file's columns, rows and sections follow.
- */
+ * CCP-EM project's page of it). The header has 1024 bytes of 4-byte words. Its byte order follows from the
+ * numbers themselves. World coordinates are the cell's X, Y, Z in Angstroms: MAPC, MAPR and MAPS say along
+ * which of these axes the file's columns, rows and sections run. */
 #include <math.h>
 #include <string.h>
 
@@ -33,9 +32,9 @@ enum {
 typedef struct mrc_header {
   unsigned char bytes[HEADER_BYTES];
   bool big_endian;
-  int64_t sizes[3]; /* columns, rows, sections */
+  int64_t sizes[3]; /* numbers of columns, rows and sections */
   int64_t mode;
-  bool packed; /* two voxels a byte */
+  bool packed; /* whether a byte holds two voxels */
 } mrc_header;
 
 static uint32_t load_word(const unsigned char *bytes, bool big_endian) {
@@ -55,7 +54,7 @@ static double load_real(const mrc_header *header, int place) {
   return (double)value;
 }
 
-/* The modes that there are, by IMOD's and CCP-EM's pages. */
+/* Whether a mode exists, by IMOD's and CCP-EM's pages. */
 static bool is_mode(int64_t mode) {
   return (mode >= 0 && mode <= 4) || mode == 6 || mode == 12 || mode == 16 || mode == 101;
 }
@@ -76,8 +75,8 @@ static hl_status read_header(hl_stream *stream, mrc_header *header, hl_error *er
   hl_status status = hl_stream_read_all(stream, header->bytes, HEADER_BYTES, error);
   if (status != HL_OK) return status;
   bool little = is_possible(header->bytes, false), big = is_possible(header->bytes, true);
-  /* Both byte orders are possible only for sizes like 16777216; then the machine stamp decides: 0x11 is big-
-   * endian. */
+  /* both byte orders are possible only for sizes like 16777216; the machine stamp then decides: 0x11 means
+   * big-endian */
   header->big_endian = big && (!little || header->bytes[AT_MARK + 4] == 0x11);
   if (!little && !big) {
     int64_t mode = load_integer(header, AT_MODE);
@@ -95,8 +94,8 @@ static hl_status read_header(hl_stream *stream, mrc_header *header, hl_error *er
   return HL_OK;
 }
 
-/* IMOD writes unsigned bytes as mode 0, too. Its stamp tells such files; a flag in them marks bytes as
- * signed. */
+/* Whether a file of mode 0 has unsigned bytes. IMOD writes unsigned bytes as mode 0, too; its stamp marks
+ * such files, and a flag in them marks bytes as signed. */
 static bool has_unsigned_bytes(const mrc_header *header) {
   enum { STAMP = 1146047817, SIGNED = 1 };
   return load_integer(header, AT_IMOD_STAMP) == STAMP && (load_integer(header, AT_IMOD_FLAGS) & SIGNED) == 0;
@@ -122,8 +121,8 @@ static void read_type(const mrc_header *header, hl_payload *payload) {
   payload->big_endian = header->big_endian;
 }
 
-/* Stacks of volumes have space groups from 401 on; MZ says how many sections each has. Sets the grid's
- * dimensions, and components and block of a stack. */
+/* Reads a stack of volumes. Stacks have space groups from 401 on; MZ says how many sections each volume has.
+ * Sets the grid's dimensions, and a stack's components and block. */
 static hl_status read_stack(const mrc_header *header, const char *path, hl_payload *payload, bool *is_series,
                             hl_error *error) {
   int64_t group = load_integer(header, AT_SPACE_GROUP), each = load_integer(header, AT_INTERVALS + 8),
@@ -140,21 +139,22 @@ static hl_status read_stack(const mrc_header *header, const char *path, hl_paylo
   size_t rows;
   if (!hl_multiply(payload->grid.dimensions[0], payload->grid.dimensions[1], &rows) ||
       !hl_multiply(rows, (size_t)each, &payload->block))
-    payload->block = SIZE_MAX; /* too large on purpose: the check of the grid then refuses the file */
+    payload->block = SIZE_MAX; /* the size is too large on purpose, so that the check of the grid refuses the
+                                * file */
   return HL_OK;
 }
 
-/* Cosine and sine of an angle in degrees; 0 stands for an angle that was not written. */
+/* The cosine and the sine of an angle in degrees. An angle of 0 was not written, and counts as 90. */
 static void turn(double degrees, double *cosine, double *sine) {
   bool right = degrees == 90 || degrees == 0 || !isfinite(degrees);
   *cosine = right ? 0 : cos(degrees * (HL_PI / 180));
   *sine = right ? 1 : sin(degrees * (HL_PI / 180));
 }
 
-/* The steps of one interval along the cell's axes a, b, c. The cell's angles are alpha (of b and c), beta (c
- * and a) and gamma (a and b); a lies along X and b in the plane of X and Y, as in International Tables for
- * Crystallography, volume F (2001), chapter 11.1 and in PDB files. The third coordinate of c makes its length
- * 1. */
+/* Finds the steps of one interval along the cell's axes a, b, c. The cell's angles are alpha (between b and
+ * c), beta (c and a) and gamma (a and b). Axis a lies along X, and b in the plane of X and Y, as in
+ * International Tables for Crystallography, volume F (2001), chapter 11.1, and in PDB files. The third
+ * coordinate of c gives c the length 1. */
 static void place_cell(const mrc_header *header, double step[3][3]) {
   double length[3], cosine[3], sine[3];
   for (int axis = 0; axis < 3; axis++) {
@@ -171,21 +171,21 @@ static void place_cell(const mrc_header *header, double step[3][3]) {
     for (int row = 0; row < 3; row++) step[axis][row] = length[axis] * unit[axis][row];
 }
 
-/* Which of X, Y, Z the file's columns, rows and sections follow; X, Y, Z where the header's numbers are no
- * order of 1, 2, 3. */
+/* Finds along which of X, Y, Z the file's columns, rows and sections run. The order is X, Y, Z if the
+ * header's numbers are not 1, 2, 3 in some order. */
 static void read_axes(const mrc_header *header, int axes[3]) {
   int seen = 0;
   for (int n = 0; n < 3; n++) {
     int64_t axis = load_integer(header, AT_AXES + 4 * n);
     if (axis >= 1 && axis <= 3) seen |= 1 << axis;
-    axes[n] = (int)(axis - 1); /* of the least int, too, which has none below it */
+    axes[n] = (int)(axis - 1); /* also correct for the least int, below which there is none */
   }
   if (seen == (1 << 1 | 1 << 2 | 1 << 3)) return;
   for (int n = 0; n < 3; n++) axes[n] = n;
 }
 
-/* The first voxel lies at ORIGIN; where that is 0, as in crystallography, NXSTART, NYSTART and NZSTART steps
- * along columns, rows and sections from 0. */
+/* Places the first voxel at ORIGIN. Where ORIGIN is 0, as in crystallography, it lies NXSTART, NYSTART and
+ * NZSTART steps from 0 along columns, rows and sections. */
 static void place(const mrc_header *header, hl_volume_description *grid) {
   double step[3][3], origin[3];
   int axes[3];
@@ -211,7 +211,7 @@ static void place(const mrc_header *header, hl_volume_description *grid) {
 
 typedef struct nibble_stream {
   hl_stream base;
-  uint64_t columns, column; /* numbers in a row; index of the next one in it */
+  uint64_t columns, column; /* numbers in a row; index of the next number in the row */
   unsigned char upper;      /* the voxel in the other half of the last byte */
 } nibble_stream;
 
@@ -280,7 +280,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* Claims headers older than the mark "MAP", and damaged ones, so that load() says what is wrong with them. */
+/* Claims headers older than the mark "MAP", and damaged ones, so that load() reports their damage. */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   static const char *const endings[] = {".mrc", ".mrcs", ".map", ".ccp4", ".rec", ".ali", ".st"};
   const unsigned char *bytes;

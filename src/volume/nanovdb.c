@@ -1,9 +1,9 @@
-/* volume/nanovdb.c - NanoVDB: sparse grids of smoke, fire and level sets, as dense volumes. */
+/* volume/nanovdb.c - NanoVDB: reads sparse grids of smoke, fire and level sets as dense volumes. */
 #include "volume/nanovdb.h"
 
 #include <string.h>
 
-/* "NanoVDB0" begins a file of any kind up to version 32.5, "NanoVDB2" a file since. */
+/* A file of any kind up to version 32.5 begins with "NanoVDB0", and a newer file with "NanoVDB2". */
 static bool has_content(const unsigned char *bytes, size_t length) {
   return length >= 8 && memcmp(bytes, "NanoVDB", 7) == 0 && (bytes[7] == '0' || bytes[7] == '2');
 }

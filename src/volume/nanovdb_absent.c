@@ -1,4 +1,4 @@
-/* volume/nanovdb_absent.c - NanoVDB files in a build without PNanoVDB.h. */
+/* volume/nanovdb_absent.c - refuses NanoVDB files in a build without PNanoVDB.h. */
 #include "volume/nanovdb.h"
 
 hl_status hl_nanovdb_load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {

@@ -1,4 +1,5 @@
-/* volume/nanovdb_grid.c - walks a NanoVDB tree, one lower node (128^3 voxels) per part, on all threads.
+/* volume/nanovdb_grid.c - walks through a NanoVDB tree on all threads. A part of the work is one lower node
+ * (128^3 voxels).
  *
  * In index space x runs along the volume's i, y along j, z along k; in a leaf z runs fastest. */
 #define PNANOVDB_C
@@ -17,7 +18,8 @@ enum {
   LEAF = 8,
   LOWER = 128,
   LEAF_VOXELS = LEAF * LEAF * LEAF,
-  TILES_MOST = 4096, /* of a root: regions of 4096^3 voxels, looked through one by one */
+  TILES_MOST = 4096, /* greatest number of tiles of a root: regions of 4096^3 voxels, which are examined one
+                      * by one */
   FPN_LOG_BITS_MOST = 4,
   PARALLEL_VOXELS = 1 << 20
 };
@@ -26,12 +28,12 @@ typedef struct walk {
   const nanovdb_grid *grid;
   pnanovdb_buf_t memory;
   pnanovdb_root_handle_t root;
-  int64_t low[3], size[3]; /* of the box of active voxels */
-  int64_t first[3];        /* lower nodes: the coordinate of the first, and how many there are */
+  int64_t low[3], size[3]; /* the box of active voxels */
+  int64_t first[3];        /* lower nodes: coordinate of the first one; their number */
   size_t count[3];
-  hl_voxel_type type;  /* of the values as they are staged */
-  size_t bytes;        /* of a value of the type */
-  size_t stored_bytes; /* of a voxel of the volume */
+  hl_voxel_type type;  /* type of the values before they are stored */
+  size_t bytes;        /* bytes of such a value */
+  size_t stored_bytes; /* bytes of a voxel of the volume */
   unsigned char *voxels;
   hl_exact *exact;
 } walk;
@@ -73,7 +75,7 @@ static void begin(const nanovdb_grid *grid, walk *w) {
   w->root = pnanovdb_tree_get_root(w->memory, pnanovdb_grid_get_tree(w->memory, handle));
 }
 
-/* The box, and how many lower nodes it meets; fails if it is empty or its sides are beyond 32 bits. */
+/* Reads the box, and how many lower nodes it meets. Fails if the box is empty or a side is beyond 32 bits. */
 static hl_status read_box(walk *w, hl_error *error) {
   pnanovdb_coord_t low = pnanovdb_root_get_bbox_min(w->memory, w->root),
                    high = pnanovdb_root_get_bbox_max(w->memory, w->root);
@@ -105,7 +107,8 @@ static hl_status check_root(const walk *w, hl_error *error) {
   return HL_OK;
 }
 
-/* The map of index space: world = matrix * index + vector; voxels are centred at whole indices. */
+/* Places the grid by the map of index space: world = matrix * index + vector. Voxels are centred at whole
+ * indices. */
 static void place(const walk *w, hl_volume_description *description) {
   const pnanovdb_grid_handle_t handle = {pnanovdb_address_null()};
   pnanovdb_map_handle_t map = pnanovdb_grid_get_map(w->memory, handle);
@@ -140,7 +143,7 @@ hl_status nanovdb_grid_describe(const nanovdb_grid *grid, hl_volume_description 
 
 /* ---- values ---- */
 
-/* Component `component` of the value at an address, or the magnitude, as a value of the staged type. */
+/* Takes a component of the value at an address, or its magnitude, as a value of the staged type. */
 static void take_value(const walk *w, const unsigned char *from, unsigned char *to) {
   const nanovdb_grid *grid = w->grid;
   if (grid->component != HL_COMPONENT_MAGNITUDE) {
@@ -162,7 +165,7 @@ static void take_value(const walk *w, const unsigned char *from, unsigned char *
   memcpy(to, &magnitude, sizeof magnitude);
 }
 
-/* The bytes of `count` values from an address on; null outside of the grid. */
+/* The bytes of `count` values from an address on; null outside the grid. */
 static const unsigned char *values_at(const walk *w, pnanovdb_address_t address, size_t count,
                                       size_t *stride) {
   *stride = kinds[w->grid->kind].components * hl_voxel_type_bytes(kinds[w->grid->kind].type);
@@ -175,7 +178,7 @@ static bool is_quantised(uint32_t kind) {
          kind == PNANOVDB_GRID_TYPE_FP16 || kind == PNANOVDB_GRID_TYPE_FPN;
 }
 
-/* Leaves of quantised kinds: how many bits, as a power of two. */
+/* The number of bits of a value in leaves of quantised kinds, as a power of two. */
 static uint32_t log_bits(const walk *w, pnanovdb_leaf_handle_t leaf) {
   switch (w->grid->kind) {
     case PNANOVDB_GRID_TYPE_FP4: return 2;
@@ -197,8 +200,8 @@ static bool stage_quantised(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned
   return true;
 }
 
-/* A mask's values are its active voxels. Those of a boolean leaf follow the mask of active voxels, as
- * NanoVDB.h lays them out; PNanoVDB.h has another offset. */
+/* Stages the values of bits. The values of a mask are its active voxels. The values of a boolean leaf follow
+ * the mask of active voxels, as NanoVDB.h lays them out; PNanoVDB.h has another offset. */
 static void stage_bits(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned char *stage) {
   enum { MASK_BYTES = 64 };
   bool active = w->grid->kind == PNANOVDB_GRID_TYPE_MASK;
@@ -208,7 +211,7 @@ static void stage_bits(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned char
     stage[n] = pnanovdb_read_uint32(w->memory, pnanovdb_address_offset(bits, 4 * (n >> 5))) >> (n & 31) & 1;
 }
 
-/* The 512 values of a leaf, in its order; false if it lies outside. */
+/* Stages the 512 values of a leaf in the leaf's order. False if the leaf lies outside the grid. */
 static bool stage_leaf(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned char *stage) {
   uint32_t kind = w->grid->kind;
   if (leaf.address.byte_offset > w->grid->size) return false;
@@ -225,7 +228,7 @@ static bool stage_leaf(const walk *w, pnanovdb_leaf_handle_t leaf, unsigned char
   return values != NULL;
 }
 
-/* The value that a tile has everywhere. A mask's tiles are as active as `state` says. */
+/* The value that a tile has everywhere. For a mask, `state` says whether a tile is active. */
 static bool tile_value(const walk *w, pnanovdb_address_t address, bool state, unsigned char value[8]) {
   size_t stride;
   memset(value, 0, 8);
@@ -241,7 +244,7 @@ static bool tile_value(const walk *w, pnanovdb_address_t address, bool state, un
 
 /* ---- boxes of voxels ---- */
 
-/* The part of [begin, begin + side) that lies in the volume: as voxels of the volume. */
+/* Clips [begin, begin + side) to the volume, and converts it to the volume's own indices. */
 static bool clip(const walk *w, const int64_t begin[3], int64_t side, int64_t from[3], int64_t to[3]) {
   bool any = true;
   for (int a = 0; a < 3; a++) {
@@ -317,7 +320,7 @@ static bool put_lower(const walk *w, pnanovdb_lower_handle_t lower, const int64_
   return sound;
 }
 
-/* The 128^3 voxels from `begin` on, by the root's tile that holds them. */
+/* Stores the 128^3 voxels from `begin` on, by the root's tile that holds them. */
 static bool put_region(const walk *w, const int64_t begin[3]) {
   uint32_t kind = w->grid->kind;
   const pnanovdb_coord_t place = {(int32_t)begin[0], (int32_t)begin[1], (int32_t)begin[2]};

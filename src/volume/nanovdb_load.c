@@ -1,7 +1,8 @@
 /* volume/nanovdb_load.c - the segments and grids of a NanoVDB file; one grid becomes the volume.
  *
- * Source: nanovdb/util/IO.h of OpenVDB 10. A segment is a header of 16 bytes (mark, version, number of grids,
- * codec), for each grid 176 bytes of facts and its name, then the grids. All numbers are little-endian. */
+ * Source: nanovdb/util/IO.h of OpenVDB 10. A segment consists of a header of 16 bytes (mark, version, number
+ * of grids, codec), 176 bytes of facts and a name for each grid, and then the grids. All numbers are
+ * little-endian. */
 #include <stdio.h>
 #include <string.h>
 
@@ -16,7 +17,7 @@
 enum {
   HEADER_BYTES = 16,
   FACTS_BYTES = 176,
-  /* offsets in them */
+  /* offsets of fields in the facts */
   AT_GRID_BYTES = 0,
   AT_FILE_BYTES = 8,
   AT_VOXELS = 24,
@@ -24,7 +25,7 @@ enum {
   AT_NAME_BYTES = 136,
   AT_CODEC = 168,
   NAME_BYTES_MOST = 4096,
-  CHUNK_BYTES = 1 << 30, /* of a grid that Blosc has packed: unpacked bytes of each piece */
+  CHUNK_BYTES = 1 << 30, /* unpacked bytes of each piece of a grid that Blosc has packed */
 };
 
 typedef enum nanovdb_codec { CODEC_NONE = 0, CODEC_ZIP = 1, CODEC_BLOSC = 2 } nanovdb_codec;
@@ -40,7 +41,7 @@ typedef struct grid_list {
   const char *path;
   grid_entry *entries; /* owned; [HL_ARRAYS_MOST], the first `count` are known */
   size_t count;
-  int density; /* index of the grid of that name; -1: none */
+  int density; /* index of the grid with the name "density"; -1 if there is none */
 } grid_list;
 
 static uint64_t little(const unsigned char *bytes, int count) {
@@ -86,7 +87,7 @@ static hl_status read_facts(grid_list *list, hl_load_request *request, uint64_t 
   return status == HL_OK ? hl_arrays_add(request, name, components, type, false, error) : status;
 }
 
-/* A segment's grids lie one after the other behind all of its facts. */
+/* Reads a segment. Its grids lie one after the other behind all of its facts. */
 static hl_status read_segment(grid_list *list, hl_load_request *request, uint64_t *at, hl_error *error) {
   unsigned char header[HEADER_BYTES];
   hl_status status = read_exactly(list, *at, header, sizeof header, error);
@@ -130,7 +131,7 @@ static hl_status read_list(grid_list *list, hl_load_request *request, hl_error *
 
 /* ---- the grid's own memory ---- */
 
-/* The next packed piece: its length in 8 bytes, then the bytes. *packed is owned by the caller. */
+/* Reads the next packed piece: its length in 8 bytes, then its bytes. *packed is owned by the caller. */
 static hl_status read_piece(const grid_list *list, uint64_t *at, uint64_t end, unsigned char **packed,
                             size_t *length, hl_error *error) {
   unsigned char count[8];
@@ -156,7 +157,8 @@ static hl_status fail_packed(const grid_list *list, hl_error *error) {
                  list->path);
 }
 
-/* Unpacks piece by piece into *bytes, which is allocated once the first piece promises what it must. */
+/* Unpacks a grid piece by piece into *bytes, which is allocated as soon as the first piece promises the
+ * required size. */
 static hl_status unpack(const grid_list *list, const grid_entry *entry, unsigned char **bytes,
                         hl_error *error) {
   hl_context *context = hl_source_context(list->source);
@@ -199,7 +201,7 @@ static hl_status read_grid(const grid_list *list, const grid_entry *entry, unsig
 
 /* ---- the volume ---- */
 
-/* Sparse data may be far larger as a volume: says how large. */
+/* Allocates the volume. Sparse data may be far larger as a volume, so that an error says how large. */
 static hl_status allocate(const grid_list *list, const grid_entry *entry, const hl_volume_description *grid,
                           void **voxels, hl_error *error) {
   hl_context *context = hl_source_context(list->source);

@@ -4,10 +4,9 @@
  * ANALYZE headers tell no orientation. As nibabel does it, x runs to the left, and the world's origin is the
  * voxel that SPM's field names, if it names one near the volume, else the volume's middle.
  *
- * World coordinates are the file's (x to the right, y to the front, z up): the sform where there is one,
- * else the qform, else the voxel sizes alone. Source of the fields: nifti1.h and nifti2.h of the NIfTI
- * Data Format Working Group.
- */
+ * World coordinates are the file's (x to the right, y to the front, z up). They come from the sform, else
+ * from the qform, else from the voxel sizes alone. Source of the fields: nifti1.h and nifti2.h of the NIfTI
+ * Data Format Working Group. */
 #include <math.h>
 #include <string.h>
 
@@ -46,7 +45,7 @@ static uint64_t load_bits(const nifti_header *header, size_t place, size_t lengt
   return bits;
 }
 
-/* The two versions differ in the width of almost every number. */
+/* Loads a whole number, whose width differs between the two versions. */
 static int64_t load_short(const nifti_header *header, size_t place) {
   return (int16_t)load_bits(header, place, 2);
 }
@@ -122,7 +121,7 @@ static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3
                           (long long)count);
   for (int n = 1; n <= count; n++) {
     int64_t size = load_dimension(header, n);
-    if (size < 1 && n > 1) { /* as the format's reference implementation repairs it */
+    if (size < 1 && n > 1) { /* such a size is repaired as in the format's reference implementation */
       hl_log(header->context, HL_LOG_WARNING, "%s: dim[%d] is %lld: 1 is taken", header->path, n,
              (long long)size);
       size = 1;
@@ -138,7 +137,7 @@ static hl_status read_dimensions(const nifti_header *header, size_t dimensions[3
   return HL_OK;
 }
 
-/* The unit of lengths, the lower three bits of xyzt_units. */
+/* The unit of lengths, from the lower three bits of xyzt_units. */
 static const char *unit_of(const nifti_header *header) {
   static const char *const units[8] = {NULL, "metre", "millimetre", "micrometre"};
   enum { AT_1 = 123, AT_2 = 500 };
@@ -146,7 +145,7 @@ static const char *unit_of(const nifti_header *header) {
   return units[code & 7];
 }
 
-/* components: numbers that lie side by side in each voxel, as of colours. */
+/* Reads the type. components: the number of values that lie side by side in each voxel, as for colours. */
 static hl_status read_type(const nifti_header *header, hl_voxel_type *type, size_t *components,
                            hl_error *error) {
   static const struct {
@@ -179,7 +178,7 @@ static hl_status read_type(const nifti_header *header, hl_voxel_type *type, size
                         header->layout->datatype, (long long)code);
 }
 
-/* A slope of 0, NaN or infinity means that values are not scaled. */
+/* Reads slope and intercept. A slope of 0, NaN or infinity means that values are not scaled. */
 static hl_status read_scale(const nifti_header *header, hl_volume_description *grid, hl_error *error) {
   double slope = load_real(header, header->layout->slope, 0),
          intercept = load_real(header, header->layout->intercept, 0);
@@ -194,7 +193,7 @@ static hl_status read_scale(const nifti_header *header, hl_volume_description *g
   return HL_OK;
 }
 
-/* Method 3: an affine matrix by rows. */
+/* Places the volume by method 3: an affine matrix by rows. */
 static void place_by_sform(const nifti_header *header, hl_volume_description *grid) {
   for (int row = 0; row < 3; row++) {
     for (int axis = 0; axis < 3; axis++)
@@ -207,7 +206,8 @@ static void place_by_sform(const nifti_header *header, hl_volume_description *gr
  * nifti_quatern_to_mat44() of the format's reference implementation, nifti1_io.c. */
 static const double HALF_TURN = 1e-7;
 
-/* Method 2: a rotation as the unit quaternion (a, b, c, d), a >= 0 left out, voxel sizes and an offset. */
+/* Places the volume by method 2: a rotation as the unit quaternion (a, b, c, d), of which a >= 0 is left out,
+ * voxel sizes and an offset. */
 static void place_by_qform(const nifti_header *header, const double spacing[3], hl_volume_description *grid) {
   double b = load_real(header, header->layout->quaternion, 0),
          c = load_real(header, header->layout->quaternion, 1);
@@ -217,7 +217,7 @@ static void place_by_qform(const nifti_header *header, const double spacing[3], 
   double rotation[3][3] = {{a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)},
                            {2 * (b * c + a * d), a * a + c * c - b * b - d * d, 2 * (c * d - a * b)},
                            {2 * (b * d - a * c), 2 * (c * d + a * b), a * a + d * d - b * b - c * c}};
-  double handedness = load_real(header, header->layout->pixdim, 0) < 0 ? -1 : 1; /* "qfac" */
+  double handedness = load_real(header, header->layout->pixdim, 0) < 0 ? -1 : 1; /* the field "qfac" */
   for (int axis = 0; axis < 3; axis++) {
     for (int row = 0; row < 3; row++)
       grid->axis[axis][row] = rotation[row][axis] * spacing[axis] * (axis == 2 ? handedness : 1);
@@ -231,7 +231,8 @@ static void place_by_sizes(const double spacing[3], hl_volume_description *grid)
   for (int axis = 0; axis < 3; axis++) grid->axis[axis][axis] = spacing[axis];
 }
 
-/* ANALYZE: see above. SPM's origin: three whole numbers at byte 253, counted from 1. */
+/* Places an ANALYZE volume, as described above. SPM's origin is three whole numbers at byte 253, counted from
+ * 1. */
 static void place_by_origin(const nifti_header *header, const double spacing[3],
                             hl_volume_description *grid) {
   enum { ORIGIN = 253 };
@@ -277,7 +278,7 @@ static void place(const nifti_header *header, hl_volume_description *grid) {
   place_by_sizes(spacing, grid);
 }
 
-/* The voxels of a pair: the header's name with .img (or .img.gz) for .hdr. */
+/* Switches from a pair's header to its voxels: the header's name with .img (or .img.gz) in place of .hdr. */
 static hl_status switch_to_image(hl_stream **stream, hl_error *error) {
   const char *slash = strrchr((*stream)->path, '/'), *name = slash == NULL ? (*stream)->path : slash + 1;
   char image[NAME_BYTES];
@@ -303,14 +304,16 @@ static hl_status go_to_voxels(hl_stream **stream, const nifti_header *header, co
   double offset = header->layout->version == 1
                       ? load_real(header, header->layout->vox_offset, 0)
                       : (double)(int64_t)load_bits(header, header->layout->vox_offset, 8);
-  if (header->is_analyze && offset < 0) offset = -offset; /* of each volume, says the format */
+  if (header->is_analyze && offset < 0)
+    offset = -offset; /* the offset within each volume, by the format's
+                       * description */
   if (!(offset >= 0 && offset < 9e15) || offset != floor(offset))
     return hl_fail_offset(error, HL_ERROR_INPUT, (int64_t)header->layout->vox_offset,
                           "%s, byte %zu: vox_offset is %g, must be a whole number of bytes", header->path,
                           header->layout->vox_offset, offset);
   uint64_t skip = (uint64_t)offset;
   if (!header->is_pair) {
-    uint64_t least = header->layout->header_bytes + 4; /* the four bytes that announce extensions */
+    uint64_t least = header->layout->header_bytes + 4; /* four more bytes announce extensions */
     skip = (skip < least ? least : skip) - header->layout->header_bytes;
     return hl_stream_skip(*stream, skip, error);
   }
@@ -320,7 +323,8 @@ static hl_status go_to_voxels(hl_stream **stream, const nifti_header *header, co
   return status == HL_OK ? hl_stream_skip(*stream, skip, error) : status;
 }
 
-/* Colours lie side by side; volumes of a series and components along further axes follow each other. */
+/* Finds the components. Colours lie side by side. Volumes of a series and components along further axes
+ * follow each other. */
 static hl_status find_components(const nifti_header *header, size_t side_by_side, size_t series,
                                  size_t others, hl_payload *payload, hl_error *error) {
   const size_t *dimension = payload->grid.dimensions;
@@ -358,7 +362,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status == HL_OK ? hl_payload_read(*stream, &payload, request->spacing, volume, error) : status;
 }
 
-/* Replaces *stream by the header NAME.hdr where it is the voxels' file NAME.img of a pair; *switched: whether
+/* Replaces *stream by the header NAME.hdr if it is the voxels' file NAME.img of a pair. *switched: whether
  * there was a header. */
 static hl_status switch_to_header(hl_stream **stream, bool *switched, hl_error *error) {
   const char *slash = strrchr((*stream)->path, '/'), *name = slash == NULL ? (*stream)->path : slash + 1;
@@ -381,7 +385,7 @@ static hl_status switch_to_header(hl_stream **stream, bool *switched, hl_error *
   return HL_OK;
 }
 
-/* Damaged headers are claimed too, so that load() says what is wrong with them. */
+/* Claims damaged headers, too, so that load() reports their damage. */
 static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) {
   const unsigned char *bytes;
   size_t length;

@@ -1,9 +1,10 @@
 /* volume/npy.c - NumPy arrays, .npy format 1.0 to 3.0: axes [z][y][x], in C or Fortran order.
  *
- * Header: a mark, two bytes of version, the length of the text, the text: a dictionary of descr,
- * fortran_order and shape. Two axes are [y][x]. Of four, a last one of at most four values holds the
- * components of voxels, else the first one is a series. The file has no positions: the spacing is 1 and the
- * origin 0. Source: NumPy's format specification, numpy/lib/format.py (NEP 1). */
+ * The header consists of a mark, two bytes of version, the length of a text, and the text, which is a
+ * dictionary of descr, fortran_order and shape. Two axes are [y][x]. If there are four axes, the last one
+ * holds the components of voxels if it has at most four values; otherwise the first one is a series. The file
+ * has no positions: the spacing is 1 and the origin 0. Source: NumPy's format specification,
+ * numpy/lib/format.py (NEP 1). */
 #include <string.h>
 
 #include "core/memory.h"
@@ -17,9 +18,9 @@ static const char mark[] = "\x93NUMPY";
 
 typedef struct npy_header {
   const char *path;
-  const char *at; /* in the text, which ends with a zero byte */
+  const char *at; /* position in the text, which ends with a zero byte */
   hl_voxel_type type;
-  size_t numbers; /* 2 for complex values */
+  size_t numbers; /* numbers of a value; 2 for complex values */
   bool big_endian, fortran, has_type, has_order, has_shape;
   int axes;
   size_t shape[MOST_AXES];
@@ -48,7 +49,7 @@ static bool take(npy_header *header, const char *token) {
   return true;
 }
 
-/* A text in quotes of either kind. */
+/* Takes a text in quotes of either kind. */
 static bool take_text(npy_header *header, char *text, size_t capacity) {
   skip_spaces(header);
   char quote = *header->at;
@@ -172,8 +173,8 @@ static hl_status read_header(hl_stream *stream, npy_header *header, char *text, 
 
 /* ---- the voxels ---- */
 
-/* Sizes as the values lie in the file, fastest first: in C order the last axis, in Fortran order the
- * first. */
+/* Makes the payload. Sizes are taken as the values lie in the file, fastest first: in C order the last axis,
+ * in Fortran order the first. */
 static hl_status make_payload(const npy_header *header, bool *is_series, hl_payload *payload,
                               hl_error *error) {
   int axes = header->axes, first = 0;
@@ -186,7 +187,7 @@ static hl_status make_payload(const npy_header *header, bool *is_series, hl_payl
   *is_series = four && !last_is_component;
   if (*is_series) first = 1;
   int grid_axes = four ? 3 : axes;
-  for (int n = 0; n < grid_axes; n++) /* shape[first] is z, or y of a plane */
+  for (int n = 0; n < grid_axes; n++) /* shape[first] is the size along z, or along y of a plane */
     payload->grid.dimensions[header->fortran ? n : grid_axes - 1 - n] = header->shape[first + n];
   if (extra == 0)
     return hl_fail(error, HL_ERROR_INPUT, "%s: the shape has a zero: each must be at least 1", header->path);
@@ -198,11 +199,11 @@ static hl_status make_payload(const npy_header *header, bool *is_series, hl_payl
   payload->components = extra * header->numbers;
   if (last_is_component && header->type == HL_VOXEL_U8) payload->colors = HL_COLORS_MEANT;
   if (header->fortran)
-    payload->colors = HL_COLORS_UNREAD; /* in Fortran order a voxel's components lie apart */
+    payload->colors = HL_COLORS_UNREAD; /* in Fortran order the components of a voxel lie apart */
   hl_status status = hl_volume_check_grid(&payload->grid, header->path, error);
   if (status != HL_OK) return status;
   size_t voxels = payload->grid.dimensions[0] * payload->grid.dimensions[1] * payload->grid.dimensions[2];
-  /* Components vary fastest where they are the last axis in C order or the first axis in Fortran order. */
+  /* components vary fastest if they are the last axis in C order or the first axis in Fortran order */
   payload->block = header->numbers > 1 || last_is_component != header->fortran ? 1 : voxels;
   return HL_OK;
 }
@@ -212,18 +213,19 @@ static hl_status transpose(int grid_axes, hl_volume **volume, hl_error *error) {
   const hl_volume *read = *volume;
   hl_volume_description description;
   hl_volume_description_defaults(&description);
-  bool exact = read->exact != NULL; /* in the file's type, packed like the stored values */
+  bool exact = read->exact != NULL; /* exact numbers have the file's type, packed like the stored values */
   size_t bytes = exact ? hl_voxel_type_bytes(read->type) : hl_storage_bytes(read->storage);
   const ptrdiff_t stride[3] = {(ptrdiff_t)bytes, (ptrdiff_t)(bytes * read->dimension[0]),
                                (ptrdiff_t)(bytes * read->dimension[0] * read->dimension[1])};
-  for (int axis = 0; axis < 3; axis++) { /* axis of the file: 0 is z (or y of a plane) */
+  for (int axis = 0; axis < 3; axis++) { /* axis of the file: 0 is z, or y of a plane */
     int turned = axis < grid_axes ? grid_axes - 1 - axis : axis;
     description.dimensions[turned] = read->dimension[axis];
     description.stride_bytes[turned] = stride[axis];
     vec3 step = mat3_column(read->index_to_world.linear, axis);
     description.axis[turned][turned] = vec3_length(step);
   }
-  static const hl_voxel_type types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32}; /* of the storages */
+  /* The types of the storages. */
+  static const hl_voxel_type types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
   description.type = exact ? read->type : types[read->storage];
   description.value_scale = read->value_scale;
   description.value_offset = read->value_offset;
@@ -250,7 +252,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   if (status != HL_OK) return status;
   int grid_axes = header.axes == 4 ? 3 : header.axes;
   double spacing[3];
-  for (int axis = 0; axis < 3; axis++) /* of x, y and z, here in the file's order */
+  for (int axis = 0; axis < 3; axis++) /* sizes along x, y and z, here in the file's order */
     spacing[axis] = request->spacing[header.fortran && axis < grid_axes ? grid_axes - 1 - axis : axis];
   status = hl_payload_read(*stream, &payload, spacing, volume, error);
   return status == HL_OK && header.fortran ? transpose(grid_axes, volume, error) : status;

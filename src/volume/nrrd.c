@@ -1,4 +1,5 @@
-/* volume/nrrd.c - NRRD, versions 1 to 5, attached and detached: which axes are the grid's, and the voxels. */
+/* volume/nrrd.c - NRRD, versions 1 to 5, attached and detached: chooses the grid's axes, and reads the
+ * voxels. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,8 +24,8 @@ static bool is_component_axis(const nrrd_header *header, const nrrd_axis *axis) 
   return axis->kind[0] != 0 && !hl_text_is_one_of(axis->kind, "domain|space|none|???");
 }
 
-/* Where the file states no kinds of axes and has four axes or more, a first axis of at most four samples
- * holds components. */
+/* Whether a first axis of at most four samples holds components: true where the file states no kinds of axes
+ * and has four axes or more. */
 static bool is_first_of_components(const nrrd_header *header) {
   bool unsaid = header->axis[0].size <= 4 && !header->has_directions;
   int thick = 0;
@@ -35,8 +36,8 @@ static bool is_first_of_components(const nrrd_header *header) {
   return unsaid && thick > 3;
 }
 
-/* Keeps at most three of the axes that are not components: while there are more, drops the last axis of one
- * sample, and if there is none the last axis, a series. */
+/* Keeps at most three of the axes that are not components. While there are more, drops the last axis of one
+ * sample; if there is none, drops the last axis, which is a series. */
 static int drop_thin_axes(int axes[NRRD_MOST_AXES], const nrrd_header *header, int count) {
   for (int n = count - 1; n >= 0 && count > 3; n--)
     if (header->axis[axes[n]].size == 1) {
@@ -46,7 +47,7 @@ static int drop_thin_axes(int axes[NRRD_MOST_AXES], const nrrd_header *header, i
   return count > 3 ? 3 : count;
 }
 
-/* The axes of the grid, fastest first. */
+/* Chooses the axes of the grid, fastest first. */
 static int choose_axes(const nrrd_header *header, int chosen[NRRD_MOST_AXES]) {
   int count = 0;
   for (int n = 0; n < header->dimension; n++)
@@ -55,12 +56,12 @@ static int choose_axes(const nrrd_header *header, int chosen[NRRD_MOST_AXES]) {
   return drop_thin_axes(chosen, header, count);
 }
 
-/* The other axes hold components. They must be neighbours; axes of the grid may come before and after
- * them. */
+/* Finds the components, which the other axes hold. These axes must be neighbours; axes of the grid may come
+ * before and after them. */
 static hl_status find_components(const nrrd_header *header, const int chosen[NRRD_MOST_AXES], int count,
                                  bool *is_series, hl_payload *payload, hl_error *error) {
-  size_t before = 1, since = 1; /* product of the grid axes' sizes: before the components, and since the last
-                                   component axis */
+  size_t before = 1, since = 1; /* products of the grid axes' sizes: before the components, and since the last
+                                 * component axis */
   int grid_axis = 0;
   *is_series = false;
   for (int n = 0; n < header->dimension; n++) {
@@ -99,7 +100,7 @@ static void place_axis(const nrrd_axis *axis, double *spacing, double *first) {
   *first = isfinite(axis->minimum) ? axis->minimum + (axis->is_node ? 0 : *spacing / 2) : 0;
 }
 
-/* Axes that the file does not have get a unit step, perpendicular to the others. */
+/* Gives axes that the file does not have a unit step, perpendicular to the others. */
 static void complete_axes(hl_volume_description *grid, int count) {
   if (count == 1) {
     vec3 across = vec3_perpendicular(vec3_normalise(vec3_of(grid->axis[0])));
@@ -125,7 +126,7 @@ static void make_grid(const nrrd_header *header, const int chosen[NRRD_MOST_AXES
   grid->space = header->space;
 }
 
-/* Fills the payload's grid, components and block. *is_series: components are volumes of a series. */
+/* Fills the payload's grid, components and block. *is_series: whether components are volumes of a series. */
 static hl_status place_grid(const nrrd_header *header, hl_payload *payload, bool *is_series,
                             hl_error *error) {
   int chosen[NRRD_MOST_AXES], count = choose_axes(header, chosen);
@@ -136,7 +137,8 @@ static hl_status place_grid(const nrrd_header *header, hl_payload *payload, bool
 
 /* ---- the voxels ---- */
 
-/* The last bytes of packed data: unpacks all of them to know where these begin, and then once more. */
+/* Goes to the last bytes of packed data: unpacks all of them to find where these bytes begin, and then
+ * unpacks once more. */
 static hl_status skip_to_last_unpacked(hl_stream **stream, const nrrd_header *header, uint64_t bytes,
                                        hl_error *error) {
   unsigned char piece[8192];
@@ -151,7 +153,7 @@ static hl_status skip_to_last_unpacked(hl_stream **stream, const nrrd_header *he
     if (status == HL_OK && hl_cancelled((*stream)->context))
       status = hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", (*stream)->path);
   }
-  bool nested = (*stream)->below->below != NULL; /* the whole file is packed, too */
+  bool nested = (*stream)->below->below != NULL; /* whether the whole file is packed, too */
   if (status == HL_OK) status = hl_stream_restart(stream, error);
   if (status == HL_OK && nested) status = hl_stream_unpack(stream, error);
   if (status == HL_OK) status = hl_stream_skip(*stream, begin, error);
@@ -185,7 +187,7 @@ static hl_status skip_to_voxels(hl_stream **stream, const nrrd_header *header, c
   return status == HL_OK ? hl_stream_skip(*stream, skip, error) : status;
 }
 
-/* Several data files follow each other. */
+/* Opens several data files, which follow each other. */
 static hl_status open_files(hl_stream **stream, nrrd_header *header, const hl_payload *payload,
                             hl_error *error) {
   hl_file_list *files = &header->files;
@@ -214,7 +216,8 @@ static hl_status load_with(nrrd_header *read, hl_stream **stream, hl_load_reques
   const nrrd_header header = *read;
   bool is_series = false;
   status = place_grid(&header, &payload, &is_series, error);
-  if (is_series && header.segment_count > 0) { /* layers of segments, of which the volume is one */
+  /* The series are layers of segments, of which the volume is one. */
+  if (is_series && header.segment_count > 0) {
     is_series = false;
     if (request->component == HL_COMPONENT_DEFAULT) request->component = 0;
   }

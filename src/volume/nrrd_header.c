@@ -1,7 +1,8 @@
 /* volume/nrrd_header.c - the header of an NRRD file.
  *
- * It is lines "field: value" (any case) up to an empty line; "key:=value" pairs and fields that Halflight
- * does not need are skipped. Source: the format's definition by Teem, "Definition of NRRD File Format". */
+ * The header consists of lines "field: value" (in any case) up to an empty line. Pairs "key:=value" and
+ * fields that Halflight does not need are skipped. Source: the format's definition by Teem, "Definition of
+ * NRRD File Format". */
 #include "volume/nrrd_header.h"
 
 #include <math.h>
@@ -75,7 +76,7 @@ static hl_status read_type(nrrd_header *header, const char *value, hl_error *err
 
 static hl_status read_encoding(nrrd_header *header, const char *value, hl_error *error) {
   static const char *const names[] = {"raw", "gzip|gz", "bzip2|bz2", "ascii|text|txt",
-                                      "hex"}; /* as in nrrd_encoding */
+                                      "hex"}; /* in the order of nrrd_encoding */
   for (int n = NRRD_RAW; n <= NRRD_HEX; n++)
     if (hl_text_is_one_of(value, names[n])) {
       header->encoding = (nrrd_encoding)n;
@@ -97,7 +98,7 @@ static hl_status read_endian(nrrd_header *header, const char *value, hl_error *e
                                                               : refuse(header, "endian", value, error);
 }
 
-/* One number per axis, NaN allowed; place is the offset of the number in nrrd_axis. */
+/* Reads one number for each axis; NaN is allowed. place: the offset of the number in nrrd_axis. */
 static hl_status read_per_axis(nrrd_header *header, const char *field, const char *value, size_t place,
                                hl_error *error) {
   double numbers[NRRD_MOST_AXES];
@@ -140,8 +141,8 @@ static hl_status read_kinds(nrrd_header *header, const char *value, hl_error *er
   return status;
 }
 
-/* "(x, y, z)": the first three numbers, of which missing ones become 0. *beyond: further ones (of time, say)
- * are not all 0. */
+/* Reads "(x, y, z)": the first three numbers; missing ones become 0. *beyond: whether any further number (of
+ * time, say) is not 0. */
 static bool scan_vector(const char **cursor, double vector[3], bool *beyond) {
   const char *text = *cursor;
   while (hl_is_space(*text)) text++;
@@ -161,7 +162,7 @@ static bool scan_vector(const char **cursor, double vector[3], bool *beyond) {
   return count >= 1;
 }
 
-/* Whether a vector is no direction in space: of numbers that are none, as some programs write "none", or
+/* Whether a vector is no direction in space: it has no numbers, as some programs write "none", or it runs
  * along a fourth axis alone. */
 static bool is_no_direction(const double v[3], bool beyond) {
   return (isnan(v[0]) && isnan(v[1]) && isnan(v[2])) || (beyond && v[0] == 0 && v[1] == 0 && v[2] == 0);
@@ -196,7 +197,7 @@ static hl_status read_origin(nrrd_header *header, const char *value, hl_error *e
   return HL_OK;
 }
 
-/* Names of other spaces say nothing about anatomy. */
+/* Reads the space. Names of other spaces say nothing about anatomy. */
 static hl_status read_space(nrrd_header *header, const char *value, hl_error *error) {
   (void)error;
   static const struct {
@@ -210,7 +211,7 @@ static hl_status read_space(nrrd_header *header, const char *value, hl_error *er
   return HL_OK;
 }
 
-/* "mm" "mm" "mm": counts where all axes have the same unit of length, which is known. */
+/* Reads units such as "mm" "mm" "mm". They count if all axes have the same known unit of length. */
 static hl_status read_space_units(nrrd_header *header, const char *value, hl_error *error) {
   (void)error;
   static const struct {
@@ -312,7 +313,7 @@ static hl_status need_segment(nrrd_header *header, size_t number, hl_error *erro
   return HL_OK;
 }
 
-/* A pair "key:=value", of which only those about segments count. colon: in the line. */
+/* Reads a pair "key:=value". Only pairs about segments count. colon: the colon in the line. */
 static hl_status read_pair(nrrd_header *header, char *line, char *colon, hl_error *error) {
   static const char prefix[] = "Segment";
   size_t number = 0;
@@ -368,7 +369,7 @@ hl_status hl_nrrd_read_header(hl_stream *stream, nrrd_header *header, hl_error *
     hl_status status = hl_stream_line(stream, line, &ended, error);
     if (status != HL_OK) return status;
     if (ended || (line[0] == 0 && header->line > 1)) break;
-    if (header->is_list) { /* the rest of the header is names of files */
+    if (header->is_list) { /* the rest of the header is the names of files */
       status = hl_file_list_add(&header->files, hl_text_trim(line), error);
       if (status != HL_OK) return status;
       continue;

@@ -1,4 +1,4 @@
-/* volume/nrrd_header.h - what the header of an NRRD file says. */
+/* volume/nrrd_header.h - the content of an NRRD file's header. */
 #ifndef HL_VOLUME_NRRD_HEADER_H
 #define HL_VOLUME_NRRD_HEADER_H
 
@@ -12,8 +12,9 @@ typedef enum nrrd_encoding { NRRD_RAW, NRRD_GZIP, NRRD_BZIP2, NRRD_TEXT, NRRD_HE
 
 typedef struct nrrd_axis {
   size_t size;
-  double spacing, minimum, maximum; /* NaN: not stated */
-  bool is_node;                     /* samples at cell corners; else at cell centres, as Teem assumes */
+  double spacing, minimum, maximum; /* NaN if not stated */
+  bool is_node;                     /* whether samples lie at cell corners; otherwise at cell centres, as Teem
+                                     * assumes */
   bool has_direction;
   double direction[3];
   char kind[NRRD_KIND_BYTES];
@@ -21,26 +22,26 @@ typedef struct nrrd_axis {
 
 typedef struct nrrd_header {
   const hl_stream *stream; /* for error lines */
-  int line;                /* the current one, from 1 */
-  int dimension;           /* 0: not yet stated */
+  int line;                /* number of the current line, from 1 */
+  int dimension;           /* 0 if not yet stated */
   nrrd_axis axis[NRRD_MOST_AXES];
-  hl_voxel_type type; /* 0: not yet stated */
+  hl_voxel_type type; /* 0 if not yet stated */
   nrrd_encoding encoding;
   bool has_encoding, has_endian, big_endian, has_sizes, has_directions, has_space_origin;
   double space_origin[3];
-  const char *unit; /* of the space's axes, static; null: none, one that is not known, or several */
+  const char *unit; /* unit of the space's axes, static; null if there is none, an unknown one, or several */
   hl_space space;
-  char data_file[NRRD_NAME_BYTES]; /* "" if attached, or several */
-  hl_file_list files;              /* owned; several data files */
-  bool is_list;                    /* their names are the rest of the header */
+  char data_file[NRRD_NAME_BYTES]; /* "" if the voxels are attached, or in several files */
+  hl_file_list files;              /* owned; the list of several data files */
+  bool is_list;                    /* whether the rest of the header is the names of files */
   size_t line_skip, byte_skip;
-  bool skip_to_last;    /* byte skip -1: the voxels are the last bytes of the file */
-  hl_segment *segments; /* owned; [segment_count]: of a segmentation by Slicer */
+  bool skip_to_last;    /* byte skip is -1: the voxels are the last bytes of the file */
+  hl_segment *segments; /* owned; [segment_count]; segments of a segmentation by Slicer */
   size_t segment_count;
 } nrrd_header;
 
-/* Reads the header at a stream's beginning, up to the voxels, where they follow. Its lists must be empty and
- * have their context; they are the caller's, whatever is returned. */
+/* Reads the header at a stream's beginning, up to the voxels if they follow it. The header's lists must be
+ * empty and have their context. They are owned by the caller, also on failure. */
 hl_status hl_nrrd_read_header(hl_stream *stream, nrrd_header *header, hl_error *error);
 
 #endif

@@ -1,4 +1,5 @@
-/* volume/openvdb.c - OpenVDB's own files, which another program makes NanoVDB of: the context's `convert`. */
+/* volume/openvdb.c - OpenVDB's own files. The context's `convert` callback has another program convert them
+ * to NanoVDB. */
 #include <stdio.h>
 #include <string.h>
 
@@ -15,11 +16,12 @@ static hl_status fail_unconverted(const char *path, hl_error *error) {
                  path);
 }
 
-/* Reads what the file was converted to, under the file's own name. */
+/* Reads the converted file, under the name of the original file. */
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   const hl_context_options *options = &request->context->options;
   const char *path = (*stream)->path;
-  char opened[40]; /* the file that is open already: the program's own names of files are others */
+  /* A path of the open file. In a confined context `path` would name another file to the program. */
+  char opened[40];
   const void *bytes = NULL;
   size_t byte_count = 0;
   hl_stream *converted = NULL;

@@ -1,7 +1,7 @@
 /* volume/over_ranks.c - volumes whose voxels lie in the memory of all ranks (halflight/ranks.h).
  *
- * In: this rank's block, the caller's (here) or of slices that were read (destination.c). Out: a volume with
- * pages (pages.h) that are fetched from the ranks. */
+ * In: this rank's block. Either the caller gives it (here), or it consists of slices that were read
+ * (destination.c). Out: a volume with pages (pages.h) that are fetched from the ranks. */
 #include "core/door.h"
 #include "core/memory.h"
 #include "volume/own_voxels.h"

@@ -19,7 +19,7 @@ static void pack_strides(hl_own_voxels *own, size_t bytes, const size_t n[3]) {
   own->stride[2] = own->stride[1] * (ptrdiff_t)n[1];
 }
 
-/* Allocates the slices of a block whose box and type are set. On failure releases it. */
+/* Allocates the slices of a block whose box and type are set. Releases the block on failure. */
 static hl_status allocate_slices(hl_own_voxels **own, hl_error *error) {
   hl_own_voxels *made = *own;
   const uint64_t *n = made->box.count;
@@ -34,7 +34,8 @@ static hl_status allocate_slices(hl_own_voxels **own, hl_error *error) {
 
 hl_status hl_own_voxels_allocate(hl_ranks *ranks, const hl_volume_description *whole, hl_own_voxels **own,
                                  hl_error *error) {
-  static const hl_voxel_type stored[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32}; /* by hl_storage */
+  /* The type that each hl_storage stores. */
+  static const hl_voxel_type stored[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
   hl_status status = make(ranks, own, error);
   if (status != HL_OK) return status;
   hl_own_voxels *made = *own;

@@ -10,37 +10,37 @@
 
 typedef struct hl_own_voxels {
   hl_context *context;
-  hl_box box;          /* of the whole volume */
-  hl_voxel_type type;  /* of the voxels in memory; of stored values U8, U16 or F32 */
-  size_t stored_bytes; /* of a stored value */
+  hl_box box;          /* the box of this rank in the whole volume */
+  hl_voxel_type type;  /* type of the voxels in memory; for stored values U8, U16 or F32 */
+  size_t stored_bytes; /* bytes of a stored value */
   const unsigned char *first;
-  ptrdiff_t stride[3]; /* bytes */
+  ptrdiff_t stride[3]; /* distances in bytes */
   unsigned char
-      *slices; /* owned; [count[2]][count[1]][count[0]]; `first` points to it; null: `first` is borrowed */
-  void *row;   /* owned; a row of the voxels' type, where they do not adjoin; else null. Used with
-                  row_lock held */
+      *slices; /* owned; [count[2]][count[1]][count[0]]; `first` points to it; null if `first` is borrowed */
+  void *row;   /* owned; a row of the voxels' type, if the voxels of a row are not adjacent; else null. Used
+                * with row_lock held */
   pthread_mutex_t row_lock;
 } hl_own_voxels;
 
-/* This rank's share of the slices, to be filled. *own: owned by the caller. */
+/* Allocates this rank's share of the slices, to be filled. *own is owned by the caller. */
 hl_status hl_own_voxels_allocate(hl_ranks *ranks, const hl_volume_description *whole, hl_own_voxels **own,
                                  hl_error *error);
 
-/* The caller's voxels. The block is checked against the whole by hl_blocks_share(). */
+/* Borrows the caller's voxels. hl_blocks_share() checks the block against the whole. */
 hl_status hl_own_voxels_borrow(hl_ranks *ranks, const hl_volume_description *whole, const hl_block *block,
                                hl_own_voxels **own, hl_error *error);
 
-/* A block of floats with the place and size of another, to be filled in `slices`. *own: owned by the caller.
- */
+/* Allocates a block of floats with the place and size of another, to be filled in `slices`. *own is owned by
+ * the caller. */
 hl_status hl_own_voxels_like(hl_ranks *ranks, const hl_own_voxels *other, hl_own_voxels **own,
                              hl_error *error);
 
 void hl_own_voxels_release(hl_own_voxels *own); /* null is allowed */
 
-/* hl_block_copier of an hl_own_voxels. */
+/* The hl_block_copier of an hl_own_voxels. */
 void hl_own_voxels_copy(const void *own, const hl_box *box, unsigned char *to);
 
-/* Copies `count` voxels, those from number `first` on in the block's own order. */
+/* Copies `count` voxels from number `first` on, in the block's own order. */
 void hl_own_voxels_run(const hl_own_voxels *own, size_t first, size_t count, unsigned char *to);
 
 static inline size_t hl_own_voxels_count(const hl_own_voxels *own) {

@@ -1,5 +1,5 @@
-/* volume/packed_streams.c - streams that unpack whole files: bzip2 and xz, told by their first bytes, as gzip
- * is.
+/* volume/packed_streams.c - streams that unpack whole files of bzip2 and xz. Such files are recognised by
+ * their first bytes, as files of gzip are.
  *
  * In: packed bytes from the stream below. Out: plain bytes, never more than the reader requests. The two
  * libraries take their own memory: bzip2 some 4 MB, xz at most XZ_MEMORY. */
@@ -43,7 +43,7 @@ static hl_status fail_absent(const hl_stream *stream, const char *name, hl_error
 
 #ifdef HL_HAS_BZIP2
 
-/* A block of 900000 bytes takes some 40 at least. */
+/* The greatest ratio: a block of 900000 bytes takes at least about 40. */
 enum { BZIP2_GREATEST_RATIO = 25000 };
 
 typedef struct bzip2_stream {
@@ -64,7 +64,7 @@ static hl_status bzip2_start(bzip2_stream *stream, hl_error *error) {
   return stream->started ? HL_OK : hl_fail_memory(error, 100000, stream->base.path);
 }
 
-/* After one packed stream another may follow, as parallel programs write them. */
+/* Prepares the next packed stream, which may follow a stream, as parallel programs write them. */
 static hl_status bzip2_next(bzip2_stream *stream, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -130,9 +130,10 @@ hl_status hl_stream_push_bzip2(hl_stream **stream, hl_error *error) {
 
 #ifdef HL_HAS_LZMA
 
-#define XZ_MEMORY \
-  ((uint64_t)256 << 20)            /* the most that unpacking may take; the strongest setting takes 65 MiB */
-enum { XZ_GREATEST_RATIO = 8192 }; /* some 273 bytes from two bits, and the coder's own overhead */
+/* The greatest memory that unpacking may take. The strongest setting takes 65 MiB. */
+#define XZ_MEMORY ((uint64_t)256 << 20)
+/* The greatest ratio: about 273 bytes from two bits, and the coder's own overhead. */
+enum { XZ_GREATEST_RATIO = 8192 };
 
 typedef struct xz_stream {
   hl_stream base;
@@ -196,7 +197,8 @@ hl_status hl_stream_unpack(hl_stream **stream, hl_error *error) {
   hl_status status = hl_stream_peek(*stream, 10, &bytes, &length, error);
   if (status != HL_OK) return status;
   if (length >= 3 && memcmp(bytes, "\x1f\x8b\x08", 3) == 0) return hl_stream_push_inflate(stream, error);
-  /* "BZh", a digit, and pi, or the root of pi where nothing follows; what a cut file has of them */
+  /* the mark is "BZh", a digit, and the digits of pi, or of the root of pi where nothing follows; a cut file
+   * has a part of them */
   size_t marked = length < 10 ? (length > 4 ? length - 4 : 0) : 6;
   if (length >= 4 && memcmp(bytes, "BZh", 3) == 0 && bytes[3] >= '1' && bytes[3] <= '9' &&
       (memcmp(bytes + 4, "\x31\x41\x59\x26\x53\x59", marked) == 0 ||

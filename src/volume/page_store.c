@@ -1,8 +1,8 @@
 /* volume/page_store.c - stores voxels into the pages of a scratch file (pages.h).
  *
- * Whole slices, and whole rows of one, are written to the file, page by page, in as few pieces as possible: a
- * write of the mapping would have the system read or clear each unit first, and tell the processor of it.
- * Other parts of rows are copied into the mapping. */
+ * Whole slices, and whole rows of a slice, are written to the file page by page, in as few pieces as
+ * possible. Writing through the mapping would make the system read or clear each unit of memory first, and
+ * map it. Other parts of rows are copied into the mapping. */
 #define _GNU_SOURCE
 #include <string.h>
 
@@ -14,11 +14,11 @@
 
 /* ---- parts of rows ---- */
 
-/* The pages along an axis that hold a voxel: one, or two where it lies in the overlap. */
+/* The number of the first page along an axis that holds a voxel. One page holds it, or two in the overlap. */
 static size_t first_page(const hl_pages *pages, int axis, size_t voxel, size_t *last) {
   *last = hl_page_of(pages, axis, voxel);
   size_t within = voxel - (*last << pages->shift), first = *last;
-  /* small pages may overlap with several */
+  /* small pages may overlap with several others */
   while (first > 0 &&
          within + ((*last - first + 1) << pages->shift) < ((size_t)1 << pages->shift) + PAGE_OVERLAP)
     first--;
@@ -54,10 +54,10 @@ static void store_in_row(hl_pages *pages, const size_t at[3], size_t count, cons
 enum {
   PAGE_SIDE = (1 << PAGE_SHIFT) + PAGE_OVERLAP,
   PAGE_SLICE_BYTES = PAGE_SIDE * PAGE_SIDE * 4,
-  SLICES_AT_ONCE = 8 /* written to a page */
+  SLICES_AT_ONCE = 8 /* slices written to a page at once */
 };
 
-/* Rows j0 to j1 - 1 of slices k0 to k1 - 1: of several slices all rows. */
+/* Rows j0 to j1 - 1 of slices k0 to k1 - 1. A block of several slices has all rows. */
 typedef struct row_block {
   size_t j0, j1, k0, k1;
   const unsigned char *values; /* [k1 - k0][j1 - j0][dimension[0]]; stored values */
@@ -69,7 +69,7 @@ static bool all_zero(const unsigned char *bytes, size_t count) {
 
 /* The part of a block that lies in a page. */
 typedef struct page_part {
-  size_t x, y, z, number; /* the page's first voxel, and which it is */
+  size_t x, y, z, number; /* the page's first voxel and its number */
   size_t j0, j1, k0, k1;
 } page_part;
 
@@ -83,8 +83,8 @@ static page_part part_in(const hl_pages *pages, const size_t page[3], const row_
   return p;
 }
 
-/* Writes slices k0 to k1 - 1 of a part: in the page they are in one piece. Zeros need not be written: the
- * file begins with them, and its system neither writes nor reads them then. False: the system refused it. */
+/* Writes slices k0 to k1 - 1 of a part; they lie in the page in one piece. Zeros need not be written: the
+ * file is made of zeros, which its system neither writes nor reads. False if the system refused the write. */
 static bool write_part(const hl_pages *pages, const page_part *p, size_t k0, size_t k1,
                        const row_block *block) {
   unsigned char part[SLICES_AT_ONCE * PAGE_SLICE_BYTES], *to = part;
@@ -129,8 +129,8 @@ static bool write_block(const hl_pages *pages, const row_block *block) {
   return true;
 }
 
-/* Writes as many whole slices as `count` voxels from number `first` on begin with, or else whole rows of one
- * slice. Returns the voxels written; 0: none. */
+/* Writes voxels from number `first` on: as many whole slices as `count` voxels begin with, or else whole rows
+ * of one slice. Returns the number of voxels written, which may be 0. */
 static size_t write_rows(hl_pages *pages, size_t first, size_t count, const unsigned char *values) {
   const size_t *n = pages->dimension;
   size_t row = first / n[0], j = row % n[1], k = row / n[1], rows = count / n[0];

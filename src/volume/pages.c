@@ -17,8 +17,8 @@
 
 /* ---- the scratch file ---- */
 
-/* Windows of voxels are loaded as a whole: up to so many slices lie before the first page and after the
- * last. Pages begin at a line of the cache, those of WHOLE_UNITS or more, and those over ranks, at the
+/* Windows of voxels are loaded as a whole: up to SLICES_AROUND slices lie before the first page and after the
+ * last. Pages begin at a cache line. Pages of WHOLE_UNITS or more, and pages over ranks, begin at the
  * system's units of memory. */
 enum { SLICES_AROUND = 16, LINE = 64, UNIT = 4096, WHOLE_UNITS = 16 * UNIT };
 
@@ -31,7 +31,7 @@ static bool multiply_all(const size_t *factors, int count, size_t *product) {
   return true;
 }
 
-/* Sets all sizes; false where they overflow. */
+/* Sets all sizes. False if they overflow. */
 static bool plan(const hl_volume_description *grid, int shift, bool over_ranks, hl_pages *pages) {
   size_t side = (size_t)1 << shift, voxels[3];
   *pages = (hl_pages){.storage = hl_voxel_type_storage(grid->type), .shift = shift};
@@ -71,7 +71,8 @@ static hl_status map_scratch(hl_context *context, const char *folder, hl_pages *
   return HL_OK;
 }
 
-/* What is found while voxels are stored. The glimpse takes an eighth of the free memory at most. */
+/* Allocates the findings that are made while voxels are stored. The glimpse takes at most an eighth of the
+ * free memory. */
 static hl_status allocate_findings(hl_context *context, hl_pages *pages, hl_error *error) {
   size_t values = hl_values_of(pages->storage);
   uint64_t taken = atomic_load(&context->whole->held) + atomic_load(&context->whole->paged),
@@ -106,14 +107,15 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
   return status;
 }
 
-/* Takes addresses alone: memory is taken page by page. */
+/* Reserves addresses only; memory is taken page by page. */
 static hl_status map_nothing(hl_pages *pages, hl_error *error) {
   void *mapping = mmap(NULL, pages->mapping_bytes, PROT_READ | PROT_WRITE,
                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (mapping == MAP_FAILED)
     return hl_fail(error, HL_ERROR_MEMORY, "out of memory: no addresses for %.1f MiB of voxels: %s",
                    (double)pages->mapping_bytes / (1 << 20), strerror(errno));
-  madvise(mapping, pages->mapping_bytes, MADV_NOHUGEPAGE); /* which several pages would share */
+  madvise(mapping, pages->mapping_bytes, MADV_NOHUGEPAGE); /* several pages would share a large page of the
+                                                            * system */
   pages->mapping = mapping;
   pages->first = pages->mapping + round_up(SLICES_AROUND * pages->slice_bytes, UNIT);
   return HL_OK;
@@ -182,11 +184,11 @@ void hl_pages_release(hl_pages *pages) {
 
 /* ---- which volumes ---- */
 
-/* Smaller volumes are not worth a file. */
+/* The size in bytes of a volume that is worth a file. */
 static const uint64_t LEAST_BYTES = 4 << 20;
 
-/* A renderer holds about so many bytes for each voxel beside it: bounds and look-ups (grid/bounds.h), and of
- * u8 voxels a copy in columns. */
+/* The number of bytes that a renderer holds for each voxel beside the voxel itself, approximately: bounds and
+ * look-ups (grid/bounds.h), and a copy in columns of u8 voxels. */
 static double bytes_beside(hl_storage storage) { return storage == HL_STORAGE_U8 ? 1.6 : 0.6; }
 
 bool hl_pages_wanted(const hl_context *context, const hl_volume_description *grid) {
@@ -205,7 +207,8 @@ bool hl_pages_wanted(const hl_context *context, const hl_volume_description *gri
  * fault_around_bytes). */
 enum { FAULT_WINDOW = 1 << 16 };
 
-/* Lets the system take back the memory of a page, and of all units that its faults may have mapped. */
+/* Lets the system take back the memory of a page, and of all units that faults of the page may have
+ * mapped. */
 static void drop(const hl_pages *pages, size_t number) {
   uintptr_t first = (uintptr_t)pages->first + number * pages->page_bytes;
   if (pages->blocks != NULL) {
@@ -226,7 +229,7 @@ static void count_held(hl_pages *pages, bool more) {
   atomic_fetch_add(&pages->context->whole->paged, bytes);
 }
 
-/* Forgets a page if it is in a state; other threads may change it meanwhile. */
+/* Forgets a page if it is in a given state. Other threads may change the state meanwhile. */
 static void forget_if(hl_pages *pages, size_t number, unsigned char state) {
   if (!__atomic_compare_exchange_n(&pages->state[number], &state, (unsigned char)PAGE_FORGOTTEN, false,
                                    __ATOMIC_RELAXED, __ATOMIC_RELAXED))
@@ -239,7 +242,8 @@ static void forget_if(hl_pages *pages, size_t number, unsigned char state) {
   count_held(pages, false);
 }
 
-/* Moves the clock's hand by a page: forgets it if it was not needed since the hand was here. */
+/* Moves the clock's hand by one page, and forgets the page if it was not needed since the hand was there
+ * last. */
 static void move_hand(hl_pages *pages, size_t count) {
   size_t number = __atomic_fetch_add(&pages->hand, 1, __ATOMIC_RELAXED) % count;
   unsigned char state = __atomic_load_n(&pages->state[number], __ATOMIC_RELAXED);
@@ -249,7 +253,8 @@ static void move_hand(hl_pages *pages, size_t count) {
                                 __ATOMIC_RELAXED, __ATOMIC_RELAXED);
 }
 
-/* The bytes of this volume's pages that may be held beside `bytes` more than there are; UINT64_MAX: all. */
+/* The number of bytes of this volume's pages that may be held if `bytes` more are taken; UINT64_MAX for
+ * all. */
 static uint64_t room(const hl_pages *pages, uint64_t bytes) {
   hl_context *context = pages->context;
   uint64_t limit = context->options.memory_limit, least = LEAST_PAGES * (uint64_t)pages->page_bytes;
@@ -259,8 +264,8 @@ static uint64_t room(const hl_pages *pages, uint64_t bytes) {
   return limit < others + least ? least : limit - others;
 }
 
-/* Where pages hold more than there is room for beside `bytes` more, forgets a sixteenth more than necessary,
- * so that the hand seldom moves. */
+/* Makes room for `bytes` more. If pages hold more than is then allowed, forgets a sixteenth more than
+ * necessary, so that the hand seldom moves. */
 static void make_room(hl_pages *pages, uint64_t bytes) {
   uint64_t most = room(pages, bytes);
   if (__atomic_load_n(&pages->held_bytes, __ATOMIC_RELAXED) <= most) return;
@@ -275,16 +280,17 @@ void hl_pages_finish(hl_pages *pages) {
   if (pages->blocks != NULL) return;
   close(pages->file);
   pages->file = -1;
-  madvise(pages->mapping, pages->mapping_bytes, MADV_RANDOM); /* fetch() says what is read */
+  madvise(pages->mapping, pages->mapping_bytes, MADV_RANDOM); /* fetch() says which pages are read */
 }
 
-/* Asks the system to read a page as a whole, at once: by itself it reads what is touched, bit by bit. */
+/* Asks the system to read a page as a whole, at once. By itself the system reads small parts as they are
+ * touched. */
 static void fetch(const hl_pages *pages, size_t number) {
   uintptr_t first = (uintptr_t)pages->first + number * pages->page_bytes, begin = first / UNIT * UNIT;
   madvise((void *)begin, first + pages->page_bytes - begin, MADV_WILLNEED);
 }
 
-/* Copies a page's voxels from the ranks that have them. */
+/* Copies a page's voxels from the ranks that hold them. */
 static void fetch_from_ranks(const hl_pages *pages, size_t number) {
   const size_t *count = pages->count;
   const size_t page[3] = {number % count[0], number / count[0] % count[1], number / count[0] / count[1]};
@@ -299,7 +305,8 @@ static void fetch_from_ranks(const hl_pages *pages, size_t number) {
                   pages->slice_bytes);
 }
 
-/* A page's state becomes PAGE_NEEDED when its voxels are there: other threads read them at once. */
+/* Gets a page over ranks. Its state becomes PAGE_NEEDED only when its voxels are there, as other threads read
+ * them at once. */
 static void hold_over_ranks(hl_pages *pages, size_t number) {
   unsigned char state = PAGE_HELD;
   if (__atomic_compare_exchange_n(&pages->state[number], &state, (unsigned char)PAGE_NEEDED, false,
@@ -323,7 +330,7 @@ static void hold_over_ranks(hl_pages *pages, size_t number) {
 }
 
 void hl_pages_hold(const hl_pages *held, size_t number) {
-  hl_pages *pages = (hl_pages *)held; /* volumes are constant for their readers; these counts are not */
+  hl_pages *pages = (hl_pages *)held; /* volumes are constant for their readers, but these counts are not */
   if (pages->blocks != NULL) {
     hold_over_ranks(pages, number);
     return;
@@ -365,7 +372,7 @@ bool hl_pages_take_counts(hl_pages *pages, uint64_t *counts) {
   return whole;
 }
 
-/* Copies a row of this rank's own block, if it is one. */
+/* Copies a row of this rank's own block. False if the row lies outside the block. */
 static bool own_row(const hl_pages *pages, size_t j, size_t k, void *row) {
   if (pages->own == NULL) return false;
   const hl_box wanted = {{0, j, k}, {pages->dimension[0], 1, 1}};

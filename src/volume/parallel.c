@@ -12,8 +12,8 @@ typedef struct parts {
   hl_part_reader read;
   void *data;
   pthread_mutex_t lock;
-  atomic_size_t done, failed; /* failed: the lowest index of a part that failed; SIZE_MAX: none */
-  hl_status status;           /* of this part */
+  atomic_size_t done, failed; /* failed: the lowest index of a part that failed, or SIZE_MAX */
+  hl_status status;           /* status of this part */
   hl_error error;
 } parts;
 

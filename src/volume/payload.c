@@ -1,8 +1,8 @@
 /* volume/payload.c - reads the voxels that a header promises.
  *
  * In: a stream at the first voxel, and the header. Out: the volume. The file's bytes are read into the
- * volume's own memory and converted there, piece by piece; 8-byte voxels, which become shorter, pass through
- * a small buffer, those of volumes larger than memory through a piece. */
+ * volume's own memory and converted there, piece by piece; Voxels of 8 bytes, which become shorter, pass
+ * through a small buffer. Voxels of volumes larger than memory pass through a piece. */
 #include "volume/payload.h"
 
 #include <math.h>
@@ -56,8 +56,8 @@ static hl_status check_promise(const hl_stream *stream, const hl_payload *payloa
   if (payload->text)
     promised = value_count(payload) > UINT64_MAX / 2
                    ? UINT64_MAX
-                   : 2 * value_count(payload) -
-                         1; /* at least a digit for each value, and a separator between two */
+                   : 2 * value_count(payload) - 1; /* each value has at least a digit, and two values have a
+                                                    * separator between them */
   if (promised <= most) return HL_OK;
   return hl_fail_offset(
       error, HL_ERROR_INPUT, (int64_t)stream->offset,
@@ -68,7 +68,7 @@ static hl_status check_promise(const hl_stream *stream, const hl_payload *payloa
       (unsigned long long)most);
 }
 
-/* Reports progress; fails once cancelled. */
+/* Reports progress. Fails once cancelled. */
 static hl_status report(const hl_stream *stream, size_t done, size_t count, hl_error *error) {
   hl_progress(stream->context, "load", (double)done / (double)count);
   return hl_cancelled(stream->context) ? hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", stream->path)
@@ -90,8 +90,8 @@ static bool is_swapped(const hl_payload *payload) {
   return !payload->text && payload->big_endian != native_is_big_endian;
 }
 
-/* Reads `count` values into `raw`, and converts them into `place`, the voxels from number `done` on, before
- * which as many values came. Both may be the same memory. */
+/* Reads `count` values into `raw`, and converts them into `place`, the memory of the voxels from number
+ * `done` on. `done` values came before. Both may be the same memory. */
 static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
                             void *raw, void *place, hl_destination *destination, hl_error *error) {
   hl_voxel_type type = payload->grid.type;
@@ -104,20 +104,20 @@ static hl_status read_piece(hl_stream *stream, const hl_payload *payload, uint64
   return HL_OK;
 }
 
-/* Voxels on their way into pages: one thread at a time reads them, in order; all copy them into their pages.
- */
+/* Voxels on their way into pages. One thread at a time reads them, in order; all threads copy them into their
+ * pages. */
 typedef struct page_reading {
   hl_stream *stream;
   const hl_payload *payload;
   hl_destination *destination;
-  size_t piece, done; /* voxels; done: of all threads */
-  bool in_place;      /* voxels of the file are as long as stored ones */
-  bool failed;        /* nothing more is read */
+  size_t piece, done; /* voxels of a piece; voxels that all threads have read */
+  bool in_place;      /* whether voxels of the file are as long as stored ones */
+  bool failed;        /* whether reading has stopped after a failure */
   pthread_mutex_t lock;
 } page_reading;
 
-/* Reads the next piece, whichever `index` it has: threads do not take the lock in the order of their pieces.
- */
+/* Reads the next piece, whichever `index` the call has, as threads do not take the lock in the order of their
+ * pieces. */
 static hl_status read_into_pages(void *data, size_t index, int worker, hl_error *error) {
   page_reading *r = data;
   (void)index, (void)worker;
@@ -139,8 +139,9 @@ static hl_status read_into_pages(void *data, size_t index, int worker, hl_error 
   return status;
 }
 
-/* Voxels that a thread reads at once: some slices, which are stored fastest, where an eighth of the memory
- * limit has room for those of all threads; else whole rows of about PIECE_BYTES, or a part of one. */
+/* The number of voxels that a thread reads at once. Some whole slices are stored fastest, and are read if an
+ * eighth of the memory limit has room for the slices of all threads; otherwise whole rows of about
+ * PIECE_BYTES, or a part of a row. */
 static size_t piece_for_pages(const hl_context *context, const hl_payload *payload, int threads,
                               size_t voxel_bytes) {
   enum { SLICES = 8, MOST_BYTES = 1 << 27 };
@@ -211,7 +212,7 @@ static bool fits_type(hl_voxel_type type, double value) {
   return value >= low[type] && value <= high[type] && value == floor(value);
 }
 
-/* The type that values have in memory when they were read: numbers of a text are not rounded to halves. */
+/* The type that values have in memory after they are read. Numbers of a text are not rounded to halves. */
 static hl_voxel_type read_type(const hl_payload *payload) {
   return payload->text && payload->grid.type == HL_VOXEL_F16 ? HL_VOXEL_F32 : payload->grid.type;
 }
@@ -222,7 +223,7 @@ static hl_voxel_type read_type(const hl_payload *payload) {
     memcpy(raw + index * sizeof number, &number, sizeof number); \
   } while (0)
 
-/* Stores a number that fits the type as the type's bytes. */
+/* Stores a number that fits the type as bytes of the type. */
 static void put_number(hl_voxel_type type, double value, size_t index, unsigned char *raw) {
   switch (type) {
     case HL_VOXEL_U8: PUT(uint8_t); break;
@@ -244,7 +245,7 @@ static void put_number(hl_voxel_type type, double value, size_t index, unsigned 
   }
 }
 
-/* Reads the next number of a text. done: how many came before. */
+/* Reads the next number of a text. done: the number of numbers before it. */
 static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t index,
                                  unsigned char *raw, hl_error *error) {
   double value;
@@ -265,7 +266,7 @@ static hl_status read_text_value(hl_stream *stream, const hl_payload *payload, u
   return HL_OK;
 }
 
-/* Reads `count` values of the type read_type() into `raw`; `done` values came before. */
+/* Reads `count` values of the type read_type() into `raw`. `done` values came before. */
 static hl_status read_values(hl_stream *stream, const hl_payload *payload, uint64_t done, size_t count,
                              unsigned char *raw, hl_error *error) {
   size_t bytes = hl_voxel_type_bytes(payload->grid.type), got;
@@ -301,9 +302,9 @@ static hl_status read_text(hl_stream *stream, const hl_payload *payload, hl_dest
  * the components of a voxel lie side by side, and all voxels where components follow each other as a whole.
  * The magnitude is summed up in the voxels themselves, so that any order needs no more memory. */
 
-/* The position, in the file's order, of the value that comes next. */
+/* The position, in the file's order, of the next value. */
 typedef struct component_place {
-  size_t first; /* voxel of the block's first value */
+  size_t first; /* number of the voxel of the block's first value */
   size_t component;
   size_t in_block;
 } component_place;
@@ -319,13 +320,14 @@ static double value_of(const hl_payload *payload, const void *stage, size_t inde
          payload->grid.value_offset;
 }
 
-/* The square root of the sum of squares so far (in double, which holds the squares of all floats). */
+/* Adds a square to a magnitude: the square root of the sum of squares so far, computed in double, which holds
+ * the squares of all floats. */
 static void add_square(float *magnitude, size_t component, double value) {
   double before = component > 0 ? (double)*magnitude : 0;
   *magnitude = (float)(component > 0 ? sqrt(before * before + value * value) : fabs(value));
 }
 
-/* raw, stage: the values as they were read, and as stored values. */
+/* Takes a value. raw: the value as it was read. stage: the stored value. */
 static void take_value(const hl_payload *payload, const unsigned char *raw, const unsigned char *stage,
                        size_t index, const component_place *place, hl_destination *destination) {
   size_t voxel = place->first + place->in_block;
@@ -353,7 +355,7 @@ static void advance(const hl_payload *payload, component_place *place) {
   place->first += payload->block;
 }
 
-/* Skips the current block if it is large and of a component that is not read. */
+/* Skips the current block if it is large and belongs to a component that is not read. */
 static hl_status skip_block(hl_stream *stream, const hl_payload *payload, component_place *place,
                             bool *skipped, hl_error *error) {
   uint64_t bytes = (uint64_t)payload->block * hl_voxel_type_bytes(payload->grid.type);
@@ -371,7 +373,7 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, h
   component_place place = {0, 0, 0};
   size_t count = voxel_count(payload);
   for (uint64_t done = 0; place.first < count;) {
-    /* Planes after the wanted one need not be read. */
+    /* planes after the wanted one need not be read */
     if (payload->block == count && payload->component >= 0 && place.component > (size_t)payload->component)
       break;
     bool skipped;
@@ -382,7 +384,7 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, h
       continue;
     }
     uint64_t left = (uint64_t)(count - place.first) *
-                    payload->components; /* at most so many values are left */
+                    payload->components; /* at most this many values are left */
     size_t wanted = left < STAGE_VOXELS ? (size_t)left : STAGE_VOXELS;
     if (payload->block - place.in_block < wanted && payload->block > 1)
       wanted = payload->block - place.in_block;
@@ -403,7 +405,7 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, h
 
 /* ---- the whole ---- */
 
-/* Requesting one byte more also lets a decompressor verify its check sum. */
+/* requesting one byte more also lets a decompressor verify its checksum */
 static hl_status check_end(hl_stream *stream, const hl_payload *payload, hl_error *error) {
   bool to_the_end = payload->components == 1 || payload->component < 0 ||
                     payload->block < voxel_count(payload);

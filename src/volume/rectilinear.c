@@ -7,17 +7,18 @@
 #include "core/context.h"
 #include "core/memory.h"
 
-/* Even steps, in parts of a step; how many times as many voxels resampling may make along an axis. */
+/* EVEN: the deviation up to which steps count as even, as a fraction of a step. TIMES_MOST: the greatest
+ * factor by which resampling may increase the number of voxels along an axis. */
 static const double EVEN = 1e-3;
 enum { TIMES_MOST = 4 };
 
-/* An axis of the new grid: where its voxels lie among the old ones. */
+/* An axis of the new grid, and the places of its voxels among the old ones. */
 typedef struct axis_map {
-  size_t count;       /* voxels of the new grid */
-  double first, step; /* world */
+  size_t count;       /* number of voxels of the new grid */
+  double first, step; /* in the world */
   bool even;
-  size_t *below;  /* owned; [count]: the old voxel at or before each */
-  double *weight; /* owned; [count]: of the one after it */
+  size_t *below;  /* owned; [count]; the old voxel at or before each new one */
+  double *weight; /* owned; [count]; the weight of the old voxel after it */
 } axis_map;
 
 static bool is_monotonic(const double *c, size_t count) {
@@ -34,7 +35,8 @@ static bool is_even(const double *c, size_t count) {
   return true;
 }
 
-/* Finds the old voxels around each new one. edges: of the old cells, [voxels + 1]; else points, [voxels]. */
+/* Finds the old voxels around each new one. edges: whether c has the edges of the old cells, [voxels + 1], or
+ * else their points, [voxels]. */
 static void fill_map(const double *c, size_t voxels, bool of_cells, axis_map *map) {
   double way = map->step > 0 ? 1 : -1;
   for (size_t n = 0, at = 0; n < map->count; n++) {
@@ -73,7 +75,7 @@ static double number_at(const hl_volume *v, size_t i, size_t j, size_t k) {
   return hl_row_number(hl_volume_numbers(v, j, k, NULL), i) * v->value_scale + v->value_offset;
 }
 
-/* The mean of the voxels around a place, by their weights; of cells and even axes a single one. */
+/* The mean of the voxels around a place, by their weights. For cells and even axes it is a single voxel. */
 static double sample(const hl_volume *v, const axis_map map[3], size_t i, size_t j, size_t k) {
   double sum = 0;
   const size_t at[3] = {i, j, k};

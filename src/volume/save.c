@@ -1,5 +1,5 @@
-/* volume/save.c - writes a volume, or a box of it, to a file: rows of data values, through a type, a packing
- * and a format (writer.h).
+/* volume/save.c - writes a volume, or a box of it, to a file. Rows of data values are converted to a type,
+ * packed, and written in a format (writer.h).
  *
  * The file appears complete or not at all, and the same volume gives the same bytes. One row is held at a
  * time. */
@@ -18,35 +18,36 @@
 #include "volume/volume.h"
 #include "volume/writer.h"
 
-enum { OUT_BYTES = 1 << 18, ZLIB_WINDOW = 15, GZIP = 16 /* zlib.h: largest window; added for gzip */ };
-enum { MOST_SHRUNK_LABELS = 64 }; /* a box's values are held: two megabytes for one written voxel */
+/* ZLIB_WINDOW is zlib's largest window; GZIP is added to it for gzip (zlib.h). */
+enum { OUT_BYTES = 1 << 18, ZLIB_WINDOW = 15, GZIP = 16 };
+enum { MOST_SHRUNK_LABELS = 64 }; /* the values of a box are held: two megabytes for one written voxel */
 
-/* How the voxels are written. */
+/* The state of writing voxels. */
 typedef struct saving {
   hl_context *context;
   const hl_volume *volume;
   const hl_writer *writer;
-  size_t begin[3], end[3], shrink; /* the box, voxels; each written voxel is made of shrink^3 */
-  bool labels;                     /* it is the commonest of them, not their mean */
-  hl_volume_description grid;      /* as written */
-  const char *unit;                /* of its lengths, static; null: unknown */
+  size_t begin[3], end[3], shrink; /* the box in voxels; each written voxel is made of shrink^3 voxels */
+  bool labels;                     /* whether it is the commonest of these, not their mean */
+  hl_volume_description grid;      /* the grid that is written */
+  const char *unit;                /* unit of its lengths, static; null if unknown */
   hl_output output;
-  bool packs;       /* bytes go through the stream now */
-  double *sums;     /* owned; [grid.dimensions[0]]: of data values */
-  uint32_t *counts; /* owned; [grid.dimensions[0]]: finite voxels in each sum */
-  double *boxes;    /* owned; [grid.dimensions[0]][shrink^3]: the finite values, where labels are shrunk; else
+  bool packs;       /* whether bytes are packed now */
+  double *sums;     /* owned; [grid.dimensions[0]]; sums of data values */
+  uint32_t *counts; /* owned; [grid.dimensions[0]]; number of finite voxels in each sum */
+  double *boxes;    /* owned; [grid.dimensions[0]][shrink^3]; the finite values, where labels are shrunk; else
                        null */
-  unsigned char *row;    /* owned; [grid.dimensions[0]] voxels of the written type */
-  void *source_row;      /* owned; a row of the volume's stored values: for volumes with pages */
-  unsigned char *packed; /* owned; [OUT_BYTES] */
-  uint64_t clamped,
-      holes; /* voxels beyond the type's range; not finite, where the type has no such numbers */
+  unsigned char *row;      /* owned; [grid.dimensions[0]] voxels of the written type */
+  void *source_row;        /* owned; a row of the volume's stored values, for volumes with pages */
+  unsigned char *packed;   /* owned; [OUT_BYTES] */
+  uint64_t clamped, holes; /* number of voxels beyond the type's range; number of voxels that are not finite,
+                            * if the type has no such numbers */
   z_stream stream;
 } saving;
 
 /* ---- the type ---- */
 
-/* The range of whole numbers that a type holds; floats: false. */
+/* The range of whole numbers that a type holds. False for floats. */
 static bool whole_range(hl_voxel_type type, double *low, double *high) {
   bool is_signed = type == HL_VOXEL_I8 || type == HL_VOXEL_I16 || type == HL_VOXEL_I32 ||
                    type == HL_VOXEL_I64;
@@ -54,7 +55,7 @@ static bool whole_range(hl_voxel_type type, double *low, double *high) {
   double span = ldexp(1, 8 * (int)hl_voxel_type_bytes(type));
   *low = is_signed ? -span / 2 : 0;
   *high = *low + span - 1;
-  if (*high == *low + span) *high = nextafter(*high, 0); /* 64 bits: the greatest double below */
+  if (*high == *low + span) *high = nextafter(*high, 0); /* for 64 bits: the greatest double below */
   return true;
 }
 
@@ -63,15 +64,15 @@ static bool holds(hl_voxel_type type, double least, double greatest) {
   return whole_range(type, &low, &high) && least >= low && greatest <= high;
 }
 
-/* The data values are whole numbers, all finite: they come from integers, scaled by whole numbers. */
+/* Whether all data values are finite whole numbers: they come from integers, scaled by whole numbers. */
 static bool is_whole(const hl_volume *volume) {
   double low, high;
   return whole_range(volume->type, &low, &high) && volume->value_scale == floor(volume->value_scale) &&
          volume->value_offset == floor(volume->value_offset);
 }
 
-/* The first type that the format holds and that holds all data values: the volume's own, else the next larger
- * integers, else floats; doubles where floats round the values. */
+/* Chooses the first type that the format has and that holds all data values: the volume's own, else the next
+ * larger integers, else floats, or doubles where floats round the values. */
 static hl_voxel_type choose_type(const hl_volume *volume, const hl_writer *writer) {
   const hl_voxel_type candidates[] = {volume->type, HL_VOXEL_I16, HL_VOXEL_U16, HL_VOXEL_I32, HL_VOXEL_U32};
   if (hl_volume_is_exact(volume) && volume->value_scale == 1 && volume->value_offset == 0 &&
@@ -122,8 +123,8 @@ static hl_status set_box(saving *s, const hl_volume_save_options *options, const
   return HL_OK;
 }
 
-/* A written voxel lies at the middle of the voxels whose mean it is (of as many as there are elsewhere, where
- * the box ends before). */
+/* Places the box. A written voxel lies at the middle of the voxels whose mean it is. Where the box ends
+ * before that, the voxel lies as if all voxels were there. */
 static void place_box(saving *s) {
   const hl_volume *volume = s->volume;
   vec3 origin = volume->index_to_world.offset;
@@ -145,7 +146,7 @@ static void place_box(saving *s) {
 
 /* ---- rows ---- */
 
-/* Adds the row (j, k) of the volume to the sums; begins them where it is the first. */
+/* Adds the row (j, k) of the volume to the sums. The first row begins the sums. */
 static void add_row(saving *s, size_t j, size_t k) {
   const hl_volume *volume = s->volume;
   const hl_number_row row = hl_volume_numbers(volume, j, k, s->source_row);
@@ -193,15 +194,16 @@ static void make_row(saving *s, size_t j, size_t k) {
   }
 }
 
-/* The nearest IEEE 754 binary16, ties to even: as _Float16, which not every compiler has. */
+/* Rounds to the nearest IEEE 754 binary16, ties to even. The type _Float16 would do the same, but not every
+ * compiler has it. */
 static uint16_t half_of(double value) {
   uint16_t sign = signbit(value) ? 0x8000 : 0;
   double size = fabs(value);
   if (isnan(value)) return 0x7e00;
   if (size >= 65520) return (uint16_t)(sign | 0x7c00);
   int exponent;
-  frexp(size,
-        &exponent); /* size = f 2^exponent, f from 0.5 to 1: 11 bits, the last worth 2^(exponent - 11) */
+  frexp(size, &exponent); /* size = f 2^exponent with f from 0.5 to 1; of 11 bits the last is worth
+                           * 2^(exponent - 11) */
   int last = exponent - 11 > -24 ? exponent - 11 : -24;
   double units = nearbyint(ldexp(size, -last)); /* at most 2048; below 1024 only for subnormals */
   int biased = last + 24; /* the exponent field of numbers with 1024 units or more, less one */
@@ -209,7 +211,7 @@ static uint16_t half_of(double value) {
                                          : ((unsigned)(biased + 1) << 10) + (unsigned)(units - 1024)));
 }
 
-/* A value for a type of whole numbers: the nearest, within the type's range; 0 for those that are not
+/* A value for a type of whole numbers: the nearest within the type's range, 0 for values that are not
  * finite. */
 static double whole_value(saving *s, double value, double low, double high) {
   if (!isfinite(value)) s->holes++;
@@ -226,7 +228,7 @@ static double whole_value(saving *s, double value, double low, double high) {
     memcpy(to + n * sizeof stored, &stored, sizeof stored); \
   } while (0)
 
-/* Whether the file's own numbers are written as they are: those of 64 bits do not pass through doubles. */
+/* Whether the file's own numbers are written unchanged; numbers of 64 bits do not pass through doubles. */
 static bool keeps_numbers(const saving *s) {
   const hl_volume *volume = s->volume;
   return hl_volume_is_exact(volume) && s->shrink == 1 && s->grid.type == volume->type &&
@@ -268,7 +270,7 @@ static void convert_row(saving *s) {
 
 /* ---- bytes ---- */
 
-/* Short writes are found by hl_output_commit(). */
+/* Writes bytes. hl_output_commit() detects short writes. */
 static void put(saving *s, const void *bytes, size_t count, bool last) {
   if (!s->packs) {
     fwrite(bytes, 1, count, s->output.file);
@@ -357,7 +359,7 @@ static hl_status save(saving *s, const char *path, hl_error *error) {
 
 /* ---- the whole ---- */
 
-/* Only the file's name states the size and type of bare voxels. */
+/* Checks the file's name, which alone states the size and type of bare voxels. */
 static hl_status check_raw_name(const saving *s, const char *path, hl_error *error) {
   hl_payload payload;
   const size_t *n = s->grid.dimensions;
@@ -378,7 +380,7 @@ static bool has_place(const hl_volume_description *grid) {
          memcmp(grid->origin, plain.origin, sizeof plain.origin) != 0;
 }
 
-/* Tells what the file cannot hold. */
+/* Warns about properties that the file cannot hold. */
 static void tell_losses(const saving *s, const char *path) {
   hl_context *context = s->context;
   const char *loses = s->writer->loses, *type = hl_voxel_type_name(s->grid.type);

@@ -1,4 +1,4 @@
-/* volume/slice_codecs.c - what the decoders of slices share. */
+/* volume/slice_codecs.c - shared by the decoders of slices. */
 #include "volume/slice_codecs.h"
 
 #include "core/error.h"

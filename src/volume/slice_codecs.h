@@ -1,8 +1,8 @@
 /* volume/slice_codecs.h - the decoders of slice_picture.c, one for each kind of picture.
  *
- * Each reads the shape, and then, if `samples` is not null, the pixels: [height][width][samples] of the
- * shape's type, native byte order, in a block that the caller releases, also after a failure. A shape that
- * the file is too short for is refused before anything is allocated for it. */
+ * Each decoder reads the shape, and then, if `samples` is not null, the pixels: [height][width][samples] of
+ * the shape's type, native byte order, in a block that the caller releases, also after a failure. If the file
+ * is too short for its shape, it is refused before anything is allocated. */
 #ifndef HL_VOLUME_SLICE_CODECS_H
 #define HL_VOLUME_SLICE_CODECS_H
 
@@ -15,13 +15,14 @@ typedef struct hl_slice_file {
   const unsigned char *bytes;
   size_t length;
   hl_exact *exact; /* notes the slice's numbers; may be null */
-  size_t first;    /* the number of its first voxel in the volume */
+  size_t first;    /* the number of the slice's first voxel in the volume */
 } hl_slice_file;
 
 typedef struct hl_slice_shape {
-  size_t width, height, samples; /* samples of a pixel */
+  size_t width, height, samples; /* samples: number of samples of a pixel */
   hl_voxel_type type;
-  bool colors, premultiplied; /* red, green, blue, perhaps alpha; alpha is multiplied into the colours */
+  bool colors, premultiplied; /* colors: red, green, blue, perhaps alpha; premultiplied: alpha is multiplied
+                               * into the colours */
 } hl_slice_shape;
 
 hl_status hl_slice_read_png(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,
@@ -29,24 +30,24 @@ hl_status hl_slice_read_png(const hl_slice_file *file, hl_slice_shape *shape, un
 hl_status hl_slice_read_jpeg(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,
                              hl_error *error);
 
-/* A TIFF file's first page decodes one component at once. voxels: null: only the shape is read. */
+/* Decodes one component of a TIFF file's first page. voxels: null to read only the shape. */
 hl_status hl_slice_read_tiff(const hl_slice_file *file, hl_slice_shape *shape, int component, void *voxels,
                              hl_error *error);
 
-/* Whether a file's name is that of bare voxels. */
+/* Whether a file's name is a name of bare voxels. */
 bool hl_slice_is_raw(const char *name);
-/* Bare voxels; voxels: null: only the shape is found. */
+/* Reads bare voxels. voxels: null to find only the shape. */
 hl_status hl_slice_read_raw(const hl_slice_file *file, hl_slice_shape *shape, void *voxels, hl_error *error);
 
-/* Holds the pixels that a header promises against the most that `bytes_most` decoded bytes can be; `each` are
- * the bytes of a sample. */
+/* Compares the pixels that a header promises with bytes_most, the greatest number of decoded bytes. each:
+ * bytes of a sample. */
 hl_status hl_slice_check_size(const hl_slice_file *file, const hl_slice_shape *shape, size_t bytes_most,
                               hl_error *error);
 
 typedef enum hl_slice_stack {
   HL_SLICE_ALONE,
-  HL_SLICE_STACK, /* TIFF of several pages: a volume of its own */
-  HL_SLICE_OF_OME /* OME-TIFF, which names all files of its volume */
+  HL_SLICE_STACK, /* a TIFF file of several pages, which is a volume of its own */
+  HL_SLICE_OF_OME /* an OME-TIFF file, which names all files of its volume */
 } hl_slice_stack;
 
 hl_status hl_slice_find_stack(const hl_slice_file *file, hl_slice_stack *stack, hl_error *error);

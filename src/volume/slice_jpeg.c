@@ -17,10 +17,10 @@ hl_status hl_slice_read_jpeg(const hl_slice_file *file, hl_slice_shape *shape, u
 #include "core/memory.h"
 #include "volume/jpeg_fault.h"
 
-/* After this call or a jump out of it the decoder is to be destroyed. */
+/* Runs the decoder. After this call, or a jump out of it, the decoder must be destroyed. */
 static hl_status run(struct jpeg_decompress_struct *info, const hl_slice_file *file, hl_slice_shape *shape,
                      unsigned char **samples, hl_error *error) {
-  enum { PIXELS_OF_BYTE = 8 * 64 }; /* a block of 8 x 8 has a bit at least */
+  enum { PIXELS_OF_BYTE = 8 * 64 }; /* a block of 8 x 8 pixels takes at least a bit */
   jpeg_mem_src(info, file->bytes, file->length);
   jpeg_read_header(info, TRUE);
   bool grey = info->num_components == 1;

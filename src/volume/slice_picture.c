@@ -1,5 +1,5 @@
-/* volume/slice_picture.c - a picture file as a slice of voxels: which kind it is, and one of its components.
- */
+/* volume/slice_picture.c - a picture file as a slice of voxels: finds the file's kind, and takes one of its
+ * components. */
 #include "volume/slice_picture.h"
 
 #include <math.h>
@@ -34,7 +34,7 @@ static hl_status fail_unknown(const hl_slice_file *file, hl_error *error) {
   return hl_fail(error, HL_ERROR_INPUT, "%s: neither a TIFF, PNG nor JPEG picture", file->path);
 }
 
-/* Reads a PNG or JPEG file; samples: null: its shape alone. */
+/* Reads a PNG or JPEG file. samples: null to read only its shape. */
 static hl_status read(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,
                       hl_error *error) {
   hl_status status;
@@ -60,7 +60,8 @@ static double sample_at(const hl_slice_shape *shape, const unsigned char *sample
   return wide;
 }
 
-/* voxels: of the shape's type, which is unsigned, as stored; or floats, of a magnitude; or colours. */
+/* Takes a component. voxels: stored values of the shape's type, which is unsigned; or floats, for a
+ * magnitude; or colours. */
 static void take_component(const hl_slice_shape *shape, const unsigned char *samples, int component,
                            void *voxels) {
   size_t count = shape->width * shape->height, step = shape->samples,

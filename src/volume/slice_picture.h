@@ -8,11 +8,11 @@
 /* Whether a file's name promises a picture that can be a slice. */
 bool hl_slice_is_named(const char *name);
 
-/* Reads a picture's header, and refuses pictures that the file is too short for. */
+/* Reads a picture's header. Refuses a picture for which the file is too short. */
 hl_status hl_slice_measure(const hl_slice_file *file, hl_slice_shape *shape, hl_error *error);
 
 /* Decodes a picture's component, or an HL_COMPONENT_ value, into width x height stored voxels, or colours
- * (colors.h). The picture's shape must be `shape`. */
+ * (colors.h). The picture's own shape must equal `shape`. */
 hl_status hl_slice_decode(const hl_slice_file *file, const hl_slice_shape *shape, int component, void *voxels,
                           hl_error *error);
 

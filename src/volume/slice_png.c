@@ -13,7 +13,7 @@
 typedef struct png_slice {
   const hl_slice_file *file;
   hl_slice_shape *shape;
-  unsigned char **samples; /* null: only the shape is wanted */
+  unsigned char **samples; /* null if only the shape is wanted */
   size_t at;
   png_structp png;
   png_infop info;
@@ -46,7 +46,7 @@ static void on_read(png_structp png, png_bytep to, size_t length) {
   s->at += length;
 }
 
-/* Fails by png_error, as libpng does, so that all failures are handled in one place. */
+/* Fails through png_error(), as libpng does itself, so that all failures are handled in one place. */
 static void stop(png_slice *s, hl_status status) {
   s->status = status;
   png_error(s->png, "stopped");
@@ -54,7 +54,7 @@ static void stop(png_slice *s, hl_status status) {
 
 static void read_shape(png_slice *s) {
   const uint16_t one = 1;
-  enum { DEFLATE_MOST = 1032 }; /* bytes that one byte of deflated data can become */
+  enum { DEFLATE_MOST = 1032 }; /* greatest number of bytes that one byte of deflated data can become */
   png_set_user_limits(s->png, INT32_MAX, INT32_MAX);
   png_set_keep_unknown_chunks(s->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
   png_read_info(s->png, s->info);

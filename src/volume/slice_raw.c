@@ -1,5 +1,5 @@
-/* volume/slice_raw.c - slices of bare voxels, whose size and type their names state, or those of their
- * folders: scan_512x512_uint16/0001.raw, slice_0001_512x512_uint16_be.raw. */
+/* volume/slice_raw.c - slices of bare voxels. Their names, or the names of their folders, state size and
+ * type: scan_512x512_uint16/0001.raw, slice_0001_512x512_uint16_be.raw. */
 #include <string.h>
 
 #include "volume/convert.h"
@@ -9,7 +9,7 @@
 
 bool hl_slice_is_raw(const char *name) { return hl_text_ends(name, ".raw"); }
 
-/* Looks into the names of the file and of its folders, the file's first. */
+/* Searches the names of the file and of its folders, beginning with the file's. */
 static bool find_name(const char *path, hl_raw_slice *slice) {
   for (const char *end = path + strlen(path), *begin; end > path; end = begin - (begin > path)) {
     begin = end;

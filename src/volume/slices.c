@@ -1,9 +1,9 @@
 /* volume/slices.c - folders and zip archives of numbered pictures, or files of bare voxels: each is a slice,
  * in the order of the numbers in the names.
  *
- * Names of one series differ in their last number alone: "scan_007.tif". Of several series the longest is
- * taken. A series of TIFF files that are volumes of their own (several pages, OME-TIFF) is one of time steps.
- */
+ * Names of one series differ in their last number alone: "scan_007.tif". If there are several series, the
+ * longest is taken. A series of TIFF files that are volumes of their own (several pages, OME-TIFF) is a
+ * series of time steps. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +23,7 @@
 
 enum {
   PARALLEL_BYTES = 1 << 20, /* smaller volumes are read sooner than threads start */
-  FILE_BYTES_MOST = 1 << 30 /* of one picture */
+  FILE_BYTES_MOST = 1 << 30 /* greatest length of a picture's file */
 };
 
 /* A picture's name, cut around its last number. */
@@ -36,8 +36,8 @@ typedef struct numbered_name {
 typedef struct slices_reading {
   hl_load_request *request;
   const hl_bundle *bundle;
-  numbered_name *names; /* owned; [count]: the series */
-  size_t first, count;  /* the chosen series among the names */
+  numbered_name *names; /* owned; [count]; the names of all series */
+  size_t first, count;  /* first and number of the chosen series' names */
   hl_slice_shape shape;
   int component;
   hl_destination to;
@@ -47,11 +47,12 @@ typedef struct slices_reading {
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/* Finds the last number of a file's own name; false: there is none, or it is no number of a slice. */
+/* Finds the last number of a file's own name. False if there is none, or if it is not the number of a
+ * slice. */
 static bool cut_name(const hl_bundle_entry *entry, numbered_name *name) {
   const char *slash = strrchr(entry->name, '/'), *base = slash == NULL ? entry->name : slash + 1;
   const char *dot = strrchr(base, '.'), *end = dot == NULL ? base + strlen(base) : dot;
-  hl_raw_slice raw; /* its size and type are no number of a slice */
+  hl_raw_slice raw; /* the numbers of its size and type do not number a slice */
   hl_payload whole;
   if (hl_slice_is_raw(base) && hl_raw_name(base, &whole) && whole.grid.dimensions[2] != 1) return false;
   if (hl_slice_is_raw(base) && hl_raw_slice_name(base, strlen(base), &raw)) {
@@ -128,8 +129,8 @@ static void tell_gaps(const slices_reading *r) {
 
 /* ---- files ---- */
 
-/* Reads a picture's file. file->bytes is owned by the caller, also after a failure; path: [size], for its
- * name. */
+/* Reads a picture's file. file->bytes is owned by the caller, also after a failure. path: [size]; space for
+ * the file's name. */
 static hl_status read_file(const slices_reading *r, size_t slice, bool quiet, char *path, size_t size,
                            hl_slice_file *file, hl_error *error) {
   const hl_bundle_entry *entry = name_of(r, slice)->entry;
@@ -181,7 +182,7 @@ static hl_status measure(slices_reading *r, hl_slice_stack *stack, hl_error *err
     if (hl_cancelled(file.context))
       return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", r->bundle->path);
     uint64_t size = name_of(r, n)->entry->size, least = name_of(r, 0)->entry->size;
-    if (size >= least / 64) continue; /* as many bytes as the first picture's, or nearly so */
+    if (size >= least / 64) continue; /* not much shorter than the first picture's file */
     status = read_file(r, n, true, path, sizeof path, &file, error);
     if (status == HL_OK) status = hl_slice_measure(&file, &shape, error);
     hl_release(file.context, (void *)file.bytes);
@@ -191,7 +192,8 @@ static hl_status measure(slices_reading *r, hl_slice_stack *stack, hl_error *err
 
 /* ---- the volume ---- */
 
-/* Whether the middle slice's three colours are equal: grey that was stored as colours. */
+/* Finds whether the middle slice's three colours are equal, so that the pictures are grey, stored as
+ * colours. */
 static hl_status find_grey(slices_reading *r, bool *is_grey, hl_error *error) {
   hl_context *context = r->request->context;
   size_t bytes = r->shape.width * r->shape.height * hl_storage_bytes(hl_voxel_type_storage(r->shape.type));
@@ -251,7 +253,7 @@ static hl_status load_slices(slices_reading *r, hl_volume **volume, hl_error *er
                 : hl_destination_adopt(&r->to, &grid, volume, error);
 }
 
-/* Reads a TIFF file of an archive as a volume: it is unpacked into memory. */
+/* Reads a TIFF file of an archive as a volume. The file is unpacked into memory. */
 static hl_status load_packed(slices_reading *r, size_t slice, hl_volume **volume, hl_error *error) {
   hl_stream *stream = NULL;
   hl_slice_file file;
@@ -278,7 +280,7 @@ static hl_status load_file(slices_reading *r, size_t slice, hl_volume **volume, 
   return status;
 }
 
-/* Files that are volumes of their own are time steps; one file of an OME-TIFF leads to all others. */
+/* Loads files that are volumes of their own, as time steps. One file of an OME-TIFF leads to all others. */
 static hl_status load_stack(slices_reading *r, hl_slice_stack stack, hl_volume **volume, hl_error *error) {
   hl_load_request *request = r->request;
   if (stack == HL_SLICE_OF_OME) return load_file(r, 0, volume, error);

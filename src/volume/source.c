@@ -1,5 +1,5 @@
-/* volume/source.c - bytes at any position: of files (by pread), of memory, of a part of either, of deflated
- * data (inflated as far as needed, and kept). */
+/* volume/source.c - bytes at any position of a file (by pread), of memory, of a part of either, or of
+ * deflated data, which are inflated as far as needed, and kept. */
 #define _GNU_SOURCE
 #include "volume/source.h"
 
@@ -17,16 +17,16 @@ enum { FIRST_LOOK_BYTES = 2048 };
 struct hl_source {
   hl_context *context;
   char *path;                  /* owned */
-  int descriptor;              /* of a file; else -1 */
-  const unsigned char *memory; /* borrowed; [size]; or null */
+  int descriptor;              /* a file's descriptor, else -1 */
+  const unsigned char *memory; /* borrowed; [size]; may be null */
   uint64_t size;
-  unsigned char *window; /* owned; of files: the bytes [window_begin, + window_length) */
+  unsigned char *window; /* owned; for files: the bytes [window_begin, + window_length) */
   uint64_t window_begin;
-  size_t window_length, window_most; /* window_most: bytes of the last look */
+  size_t window_length, window_most; /* window_most: number of bytes of the last look */
   /* deflated data */
-  hl_source *below;        /* owned; or null */
-  uint64_t below_at;       /* the next byte to take from below */
-  unsigned char *inflated; /* owned; [capacity], the first `length` are known */
+  hl_source *below;        /* owned; may be null */
+  uint64_t below_at;       /* the next byte that is taken from `below` */
+  unsigned char *inflated; /* owned; [capacity]; the first `length` bytes are known */
   size_t length, capacity;
   bool ended;
   z_stream zlib;
@@ -112,11 +112,12 @@ hl_status hl_source_inflate(hl_source **source, uint64_t begin, uint64_t limit, 
   made->zlib.zalloc = zlib_allocate;
   made->zlib.zfree = zlib_release;
   made->zlib.opaque = below->context;
-  if (inflateInit2(&made->zlib, -15) != Z_OK) { /* zlib.h: negative: raw deflate, the largest window */
+  /* zlib.h: a negative number means raw deflate; 15 is the largest window. */
+  if (inflateInit2(&made->zlib, -15) != Z_OK) {
     hl_source_close(made);
     return hl_fail_memory(error, 50000, "decompression");
   }
-  /* Deflate packs at most 1032 bytes into one: 258 bytes into two bits. */
+  /* deflate packs at most 1032 bytes into one: 258 bytes into two bits */
   uint64_t left = begin < below->size ? below->size - begin : 0;
   uint64_t most = left > UINT64_MAX / 1032 ? UINT64_MAX : left * 1032;
   made->below = below;
@@ -157,7 +158,7 @@ static hl_status grow(hl_source *source, uint64_t needed, hl_error *error) {
   return HL_OK;
 }
 
-/* Inflates once, as far as the free room goes. */
+/* Calls inflate() once, with all the free room. */
 static hl_status inflate_more(hl_source *source, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -205,7 +206,9 @@ static hl_status peek_inflated(hl_source *source, uint64_t offset, size_t wanted
   *available = clip(source, offset, wanted);
   if (offset >= source->length) *available = 0;
   else if (source->length - offset < *available) *available = (size_t)(source->length - offset);
-  if (*available > 0) *bytes = source->inflated + offset; /* else *bytes stays at the caller's empty block */
+  if (*available > 0)
+    *bytes = source->inflated + offset; /* otherwise *bytes stays at the caller's empty
+                                         * block */
   return status;
 }
 

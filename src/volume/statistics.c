@@ -1,9 +1,9 @@
 /* volume/statistics.c - range, mean, histogram, non-finite count and percentiles of a volume.
  *
  * u8 and u16 voxels are counted per stored value; all statistics follow from the counts exactly. f32 voxels
- * take one pass for range, sum and finiteness, and one for the histogram. Percentiles are exact, too: a
- * voxel's rank is found from counts of the upper and then of the lower half of its value's bits, of the
- * file's own numbers (exact.h) in four steps. */
+ * take one pass for range, sum and finiteness, and one for the histogram. Percentiles are exact, too. The
+ * value of a rank is found from counts of the upper and then of the lower half of the values' bits; for the
+ * file's own numbers (exact.h), in four steps. */
 #include "volume/statistics.h"
 
 #include <float.h>
@@ -18,8 +18,8 @@
 #include "volume/pages.h"
 
 enum { LANES = 8 };
-/* Voxels between two checks for cancellation: a few milliseconds; and as many as are copied together where
- * rows do not adjoin. Multiples of LANES. */
+/* PIECE: voxels between two checks for cancellation, which take a few milliseconds. COPIED_PIECE: voxels that
+ * are copied together where rows are not adjacent. Both are multiples of LANES. */
 enum { PIECE = 1 << 22, COPIED_PIECE = 1 << 16 };
 
 /* The range of stored values; low > high if no voxel is finite. */
@@ -41,12 +41,13 @@ static binning make_binning(tally total, double value_scale) {
 }
 
 static int bin_of(binning bins, double stored) {
-  /* out of the range where voxels have changed since it was found */
+  /* voxels that have changed since the range was found may lie out of it */
   double place = (stored - bins.anchor) * bins.factor;
   return !(place > 0) ? 0 : place < HL_HISTOGRAM_BINS - 1 ? (int)place : HL_HISTOGRAM_BINS - 1;
 }
 
-/* Over ranks each counts the voxels of its own block, and then all counts are added up. */
+/* This rank's voxels. Over ranks each rank counts the voxels of its own block, and then all counts are added
+ * up. */
 static const hl_own_voxels *own_voxels(const hl_volume *volume) {
   return volume->pages != NULL ? volume->pages->own : NULL;
 }
@@ -59,18 +60,18 @@ static size_t counted_voxels(const hl_volume *volume) {
   return own_voxels(volume) != NULL ? hl_own_voxels_count(own_voxels(volume)) : hl_volume_voxel_count(volume);
 }
 
-/* An iteration over the voxels, piece by piece; begins with piece 0. */
+/* An iteration over the voxels, piece by piece. It begins with piece 0. */
 typedef struct walk {
   const hl_volume *volume;
-  void *buffer; /* owned by hl_volume_measure(); stored values of COPIED_PIECE voxels and of a row; null where
-                   the volume is packed */
-  size_t count, first, piece; /* voxels; the current piece is [first, first + piece) */
-  const void *voxels;         /* of the current piece */
+  void *buffer; /* owned by hl_volume_measure(); stored values of COPIED_PIECE voxels and of a row; null if
+                 * the volume is packed */
+  size_t count, first, piece; /* number of voxels; the current piece is [first, first + piece) */
+  const void *voxels;         /* voxels of the current piece */
   bool cancelled;
 } walk;
 
-/* The stored values of `count` voxels from number `first` on ([k][j][i]): the volume's own where it is
- * packed, else copied into buffer, which has room for them and a row after them. */
+/* The stored values of `count` voxels from number `first` on ([k][j][i]). They are the volume's own if it is
+ * packed. Otherwise they are copied into buffer, which has room for them and a row after them. */
 static const void *piece_of(const hl_volume *volume, size_t first, size_t count, unsigned char *buffer) {
   size_t bytes = hl_storage_bytes(volume->storage), width = volume->dimension[0];
   if (own_voxels(volume) != NULL) {
@@ -89,14 +90,14 @@ static const void *piece_of(const hl_volume *volume, size_t first, size_t count,
   return buffer;
 }
 
-/* Bytes of a walk's buffer, which holds rows of the file's own numbers, too. */
+/* The size in bytes of a walk's buffer, which also holds rows of the file's own numbers. */
 static size_t room_of(const hl_volume *volume) {
   size_t stored = (COPIED_PIECE + volume->dimension[0]) * hl_storage_bytes(volume->storage),
          row = hl_volume_row_room(volume);
   return stored > row ? stored : row;
 }
 
-/* Moves to the next piece; false at the end and after cancellation. */
+/* Moves to the next piece. False at the end and after cancellation. */
 static bool next_piece(walk *w) {
   size_t most = w->buffer == NULL ? PIECE : COPIED_PIECE;
   w->first += w->piece;
@@ -107,7 +108,7 @@ static bool next_piece(walk *w) {
   return true;
 }
 
-/* Counts how often each stored value occurs; counts must be zeros before. False: cancelled. */
+/* Counts how often each stored value occurs. counts must be zeros before. False if cancelled. */
 static bool count_values(const hl_volume *volume, void *buffer, uint64_t *counts) {
   walk w = {.volume = volume, .buffer = buffer, .count = counted_voxels(volume)};
   while (next_piece(&w)) hl_values_count(volume->storage, w.voxels, w.piece, counts);
@@ -132,8 +133,8 @@ static void bin_counts(const uint64_t *counts, int values, binning bins, uint64_
     if (counts[value] != 0) histogram[bin_of(bins, value)] += counts[value];
 }
 
-/* Partial results, one for each remainder of the voxel's index modulo LANES: sums do not wait for one
- * another, and compilers turn them into vectors. */
+/* Partial results, one for each remainder of the voxel's index modulo LANES. Sums then do not wait for one
+ * another, and compilers vectorise them. */
 typedef struct lanes_f32 {
   float low[LANES], high[LANES];
   double sum[LANES];
@@ -152,7 +153,7 @@ static void tally_group(const float group[LANES], lanes_f32 *lanes) {
   }
 }
 
-/* Makes one tally of those of all ranks. */
+/* Joins the tallies of all ranks to one. */
 static void join_tallies(const hl_volume *volume, tally *total) {
   if (own_voxels(volume) == NULL) return;
   hl_ranks *ranks = hl_blocks_ranks(volume->pages->blocks);
@@ -181,7 +182,7 @@ static bool tally_f32(const hl_volume *volume, void *buffer, tally *total) {
     const float *voxels = w.voxels;
     size_t whole = w.piece - w.piece % LANES;
     for (size_t start = 0; start < whole; start += LANES) tally_group(voxels + start, &lanes);
-    memcpy(rest, voxels + whole, (w.piece - whole) * sizeof *rest); /* of the last piece alone */
+    memcpy(rest, voxels + whole, (w.piece - whole) * sizeof *rest); /* only the last piece has a rest */
   }
   tally_group(rest, &lanes);
   *total = (tally){INFINITY, -INFINITY, 0, 0};
@@ -219,7 +220,7 @@ static hl_status record(hl_volume *volume, tally total, const char *subject, hl_
   return HL_OK;
 }
 
-/* Range and sum of the file's own numbers, where floats round them: of those whose floats are finite. */
+/* Finds range and sum of the file's own numbers whose floats are finite, where floats round the numbers. */
 static void tally_exact(const hl_volume *volume, void *buffer, tally *total) {
   if (!hl_volume_is_exact(volume) || total->finite == 0) return;
   total->low = INFINITY;
@@ -285,17 +286,18 @@ hl_status hl_volume_measure(hl_volume *volume, const char *subject, hl_error *er
 
 enum { HALVES = 65536 };
 
-/* The voxels' ranks, looked up by counts of 16 bits of their keys, which sort as the stored values do. */
+/* The search for voxels by their rank, by counts of 16 bits of their keys. Keys sort as the stored values
+ * do. */
 typedef struct ranking {
   const hl_volume *volume;
-  void *buffer;                   /* of `walk` */
-  uint64_t upper[HALVES], finite; /* counts by the upper half of the key, and their sum */
-  uint64_t lower[HALVES];         /* by the lower half, of keys with the upper half `opened` */
-  uint32_t opened;                /* HALVES: none yet */
+  void *buffer;                   /* the buffer of `walk` */
+  uint64_t upper[HALVES], finite; /* counts by the upper half of the key, and the sum of these counts */
+  uint64_t lower[HALVES];         /* counts by the lower half of the keys whose upper half is `opened` */
+  uint32_t opened;                /* HALVES if there is none yet */
 } ranking;
 
-/* An unsigned integer that sorts like the float: the bits of a negative one inverted, of others with the
- * highest bit set. */
+/* An unsigned integer that sorts like the float. The bits of a negative float are inverted; in others the
+ * highest bit is set. */
 static uint32_t key_of_f32(float value) {
   uint32_t bits;
   memcpy(&bits, &value, sizeof bits);
@@ -345,7 +347,7 @@ static uint32_t place_of(const uint64_t *counts, uint64_t *rank) {
   return place;
 }
 
-/* The same for the double: the file's own numbers. */
+/* An unsigned integer that sorts like the double, for the file's own numbers. */
 static uint64_t key_of_f64(double value) {
   const uint64_t highest = (uint64_t)1 << 63;
   uint64_t bits;
@@ -361,7 +363,7 @@ static double number_of_key(uint64_t key) {
   return value;
 }
 
-/* Counts the next 16 bits of the keys of the file's numbers that begin with `prefix`, of `known` bits.
+/* Counts the next 16 bits of the keys of the file's numbers that begin with `prefix`, which has `known` bits.
  * Numbers whose floats are not finite do not count. */
 static bool count_digits(ranking *r, uint64_t prefix, int known) {
   const hl_volume *volume = r->volume;
@@ -381,7 +383,7 @@ static bool count_digits(ranking *r, uint64_t prefix, int known) {
   return true;
 }
 
-/* The file's own number that `rank` finite voxels precede, as a double. */
+/* Finds the file's own number that `rank` finite voxels precede, as a double. */
 static bool number_at(ranking *r, uint64_t rank, double *number) {
   uint64_t key = 0;
   for (int known = 0; known < 64; known += 16) {
@@ -392,8 +394,8 @@ static bool number_at(ranking *r, uint64_t rank, double *number) {
   return true;
 }
 
-/* The number that `rank` finite voxels precede in ascending order: the file's own where the stored values
- * round it. False: cancelled. */
+/* Finds the number that `rank` finite voxels precede in ascending order. It is the file's own number where
+ * the stored values round it. False if cancelled. */
 static bool stored_at(ranking *r, uint64_t rank, double *stored) {
   if (hl_volume_is_exact(r->volume)) return number_at(r, rank, stored);
   uint32_t key = place_of(r->upper, &rank);
@@ -405,8 +407,8 @@ static bool stored_at(ranking *r, uint64_t rank, double *stored) {
   return true;
 }
 
-/* The data value below which `percent` of the finite voxels lie, interpolated between the two nearest in
- * order. */
+/* Finds the data value below which `percent` of the finite voxels lie, interpolated between the two nearest
+ * in order. */
 static bool percentile(ranking *r, double percent, double *value) {
   const hl_volume *volume = r->volume;
   *value = 0;

@@ -4,7 +4,7 @@
 
 #include "volume/volume.h"
 
-/* Fills minimum, maximum, mean, nonfinite_count and histogram from the voxels. subject starts the error
+/* Sets minimum, maximum, mean, nonfinite_count and histogram from the voxels. subject: starts the error
  * lines. */
 hl_status hl_volume_measure(hl_volume *volume, const char *subject, hl_error *error);
 

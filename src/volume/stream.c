@@ -13,10 +13,10 @@
 
 typedef struct file_stream {
   hl_stream base;
-  int descriptor; /* -1 until open */
+  int descriptor; /* -1 until the file is open */
   bool regular;
-  uint64_t size, position;     /* length of a regular file, bytes */
-  const unsigned char *memory; /* borrowed; [size]: the content, where it is in memory; else null */
+  uint64_t size, position;     /* length of a regular file, and the position in it, in bytes */
+  const unsigned char *memory; /* borrowed; [size]; the content if it is in memory, else null */
 } file_stream;
 
 hl_stream *hl_stream_make(hl_context *context, size_t size, hl_stream *below) {
@@ -242,7 +242,7 @@ hl_status hl_stream_read_all(hl_stream *stream, void *bytes, size_t wanted, hl_e
   return status;
 }
 
-/* Passes over bytes of a plain file, or of memory, without reading them, as far as it has them. Returns their
+/* Skips bytes of a plain file, or of memory, without reading them, as far as it has them. Returns their
  * number. */
 static uint64_t seek_over(hl_stream *stream, uint64_t count) {
   if (stream->below != NULL || !file_of(stream)->regular) return 0;
@@ -274,7 +274,7 @@ hl_status hl_stream_skip(hl_stream *stream, uint64_t count, hl_error *error) {
   return HL_OK;
 }
 
-/* Determines the kind of line end from the first line: a CR ends lines only if no LF follows it there. */
+/* Determines the kind of line end from the first line. A CR ends lines only if no LF follows it there. */
 static void learn_line_end(hl_stream *stream, const unsigned char *bytes, size_t length, size_t available) {
   if (stream->line_end_known) return;
   const unsigned char *carriage_return = memchr(bytes, '\r', length);

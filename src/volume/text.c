@@ -1,7 +1,7 @@
 /* volume/text.c - words and numbers of text headers.
  *
- * The C library's conversions follow the program's locale, in which "1.5" may not be a number; these
- * functions do not. */
+ * These functions do not depend on the program's locale. The C library's conversions do, and in some locales
+ * "1.5" is not a number for them. */
 #include "volume/text.h"
 
 #include <math.h>
@@ -38,7 +38,8 @@ bool hl_text_is_one_of(const char *text, const char *alternatives) {
   }
 }
 
-/* sign digits [. digits] [e sign digits]; decimal = mantissa * 10^exponent, exact unless `long_form`. */
+/* A number written as sign digits [. digits] [e sign digits]. It is decimal = mantissa * 10^exponent, exactly
+ * unless `long_form`. */
 typedef struct decimal {
   bool negative, long_form;
   uint64_t mantissa;
@@ -91,7 +92,7 @@ static bool scan_special(const char *text, size_t length, double *value) {
   return true;
 }
 
-/* For numbers that the exact path cannot convert. */
+/* Converts numbers that the exact path cannot convert. */
 static double convert_slowly(const char *text, size_t length) {
   char copy[HL_NUMBER_CHARACTERS];
   memcpy(copy, text, length);
@@ -106,8 +107,8 @@ bool hl_text_number(const char *text, size_t length, double *value) {
   decimal number;
   if (length == 0 || length >= HL_NUMBER_CHARACTERS) return false;
   if (!scan_decimal(text, text + length, &number)) return scan_special(text, length, value);
-  /* Both factors are doubles without error, so one rounding gives the nearest double (W. D. Clinger, "How to
-   * read floating point numbers accurately", 1990, section 2). */
+  /* both factors are doubles without error, so that one rounding gives the nearest double (W. D. Clinger,
+   * "How to read floating point numbers accurately", 1990, section 2) */
   if (!number.long_form && number.mantissa <= (uint64_t)1 << 53 && number.exponent >= -22 &&
       number.exponent <= 22) {
     double magnitude = number.exponent < 0 ? (double)number.mantissa / power_of_ten[-number.exponent]

@@ -7,18 +7,18 @@
 
 enum { HL_NUMBER_CHARACTERS = 128, HL_PRINTABLE_BYTES = 64 };
 
-/* Space, tab, CR, LF, FF, VT. */
+/* Whether a character is a space, tab, CR, LF, FF or VT. */
 static inline bool hl_is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-/* Converts all of [text, text + length) to a number, correctly rounded; also nan, inf and infinity in upper
- * or lower case. False if the text is no number or has HL_NUMBER_CHARACTERS or more characters. */
+/* Converts all of [text, text + length) to a number, correctly rounded. Also accepts nan, inf and infinity in
+ * upper or lower case. False if the text is no number or has HL_NUMBER_CHARACTERS or more characters. */
 bool hl_text_number(const char *text, size_t length, double *value);
 
-/* Reads numbers separated by white space; returns their count, or -1 if the text holds anything else or more
+/* Reads numbers separated by white space. Returns their number, or -1 if the text holds anything else or more
  * than `capacity` numbers. */
 int hl_text_numbers(const char *text, double *values, int capacity);
 
-/* Reads integers from 0 to SIZE_MAX in the same way. */
+/* Reads integers from 0 to SIZE_MAX, like hl_text_numbers(). */
 int hl_text_sizes(const char *text, size_t *values, int capacity);
 
 /* Compares without regard to the case of ASCII letters. */
@@ -32,8 +32,8 @@ bool hl_text_is_one_of(const char *text, const char *alternatives);
 /* Cuts white space from both ends, in place; returns the new start. */
 char *hl_text_trim(char *text);
 
-/* The next word (up to white space) at *cursor, which moves past it; false if there is none or it is too
- * long. */
+/* Takes the next word (up to white space) at *cursor, and moves *cursor past it. False if there is none or it
+ * is too long. */
 bool hl_text_word(const char **cursor, char *word, size_t capacity);
 
 /* Shortens foreign text for an error line: unprintable bytes become '?'. Returns buffer. */

@@ -1,12 +1,13 @@
-/* volume/tiff.h - reads the pages of a TIFF file: tiff_load.c, or tiff_absent.c in builds without libtiff. */
+/* volume/tiff.h - reads the pages of a TIFF file. tiff_load.c implements it, or tiff_absent.c in builds
+ * without libtiff. */
 #ifndef HL_VOLUME_TIFF_H
 #define HL_VOLUME_TIFF_H
 
 #include "volume/bundle.h"
 #include "volume/format.h"
 
-/* archive: holds the stream's file and the other files of its volume; null: these are in the file's folder.
- */
+/* Loads a TIFF file. archive: holds the stream's file and the other files of its volume; null if these are in
+ * the file's folder. */
 hl_status hl_tiff_load(hl_stream **stream, const hl_bundle *archive, hl_load_request *request,
                        hl_volume **volume, hl_error *error);
 

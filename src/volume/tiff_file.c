@@ -1,4 +1,4 @@
-/* volume/tiff_file.c - libtiff behind this library's errors, limits and voxel types. */
+/* volume/tiff_file.c - wraps libtiff with this library's errors, limits and voxel types. */
 #define _GNU_SOURCE
 #include "volume/tiff_file.h"
 
@@ -132,8 +132,8 @@ hl_status tiff_file_fail(const tiff_file *file, const char *what, hl_error *erro
                  file->message);
 }
 
-/* The bytes of the directory at an offset, by its number of entries. Refuses more of them than any program
- * writes: libtiff's time grows with their square. */
+/* The number of bytes of the directory at an offset, by its number of entries. Refuses more entries than any
+ * program writes, as libtiff's time grows with the square of their number. */
 static hl_status measure_directory(tiff_file *file, uint64_t offset, uint64_t *bytes, hl_error *error) {
   enum { ENTRIES_MOST = 512 };
   unsigned char head[8] = {0};
@@ -173,7 +173,7 @@ hl_status tiff_file_go(tiff_file *file, uint64_t offset, int level, hl_error *er
 
 /* ---- pages ---- */
 
-/* The voxel type that samples of this many bits are unpacked to; 0: none. */
+/* The voxel type to which samples of this many bits are unpacked; 0 if there is none. */
 static hl_voxel_type type_of(unsigned format, unsigned bits) {
   bool is_signed = format == SAMPLEFORMAT_INT;
   if (format == SAMPLEFORMAT_IEEEFP)
@@ -288,8 +288,8 @@ uint64_t tiff_file_plain(tiff_file *file, const tiff_shape *shape, uint64_t *byt
 bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape) {
   uint16_t compression = COMPRESSION_NONE;
   TIFFGetFieldDefaulted(file->tiff, TIFFTAG_COMPRESSION, &compression);
-  /* the most bytes that one compressed byte can become: 1032 for deflate (zlib's documentation), 4096 for
-   * LZW, by codes of 12 bits */
+  /* the greatest number of bytes that one compressed byte can become: 1032 for deflate (zlib's
+   * documentation), 4096 for LZW with codes of 12 bits */
   double most = compression == COMPRESSION_NONE                                                  ? 1
                 : compression == COMPRESSION_PACKBITS                                            ? 64
                 : compression == COMPRESSION_LZW                                                 ? 4096 / 1.5
@@ -298,12 +298,14 @@ bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape) {
   double pixels = (double)shape->width * shape->height * shape->depth;
   double bytes = pixels * shape->components * shape->bits / 8;
   if (bytes <= (double)file->size * most) return true;
-  return TIFFGetStrileByteCount(file->tiff, 0) == 0 && bytes <= (double)file->size * 65536; /* sparse */
+  /* A chunk of 0 bytes is absent, as the file is sparse. */
+  return TIFFGetStrileByteCount(file->tiff, 0) == 0 && bytes <= (double)file->size * 65536;
 }
 
 /* ---- voxels ---- */
 
-/* Unpacks `count` samples that are stored bit after bit, the highest bit first, to samples of the type. */
+/* Unpacks `count` samples that are stored bit after bit, the highest bit first, to samples of the voxel
+ * type. */
 static void unpack_bits(const unsigned char *source, size_t count, const tiff_shape *shape,
                         unsigned char *samples) {
   size_t bytes = hl_voxel_type_bytes(shape->type), place = 0;
@@ -329,7 +331,7 @@ static void unpack_bits(const unsigned char *source, size_t count, const tiff_sh
   }
 }
 
-/* libtiff gives 24 bits in native byte order. */
+/* Unpacks samples of 24 bits, which libtiff gives in native byte order. */
 static void unpack_24(const unsigned char *source, size_t count, bool is_signed, unsigned char *samples) {
   const uint16_t one = 1;
   bool little = *(const unsigned char *)&one == 1;
@@ -349,10 +351,10 @@ typedef struct page_reading {
   int component; /* index of the wanted component, or an HL_COMPONENT_ value */
   uint32_t chunk_width, chunk_height, chunk_depth;
   bool tiled;
-  size_t row_bytes, chunk_bytes; /* of the rows of a chunk that the page has */
+  size_t row_bytes, chunk_bytes; /* bytes of the rows of a chunk that the page has */
   unsigned char *chunk;          /* owned; [chunk_bytes] */
-  unsigned char *samples;        /* owned; a row of samples of the type */
-  unsigned char *picked;         /* owned; a row of one component */
+  unsigned char *samples;        /* owned; a row of samples of the voxel type */
+  unsigned char *picked;         /* owned; a row of the wanted component */
   unsigned char *voxels;
   const tiff_target *target;
 } page_reading;
@@ -367,7 +369,7 @@ static double sample_value(hl_voxel_type type, const void *stored) {
   }
 }
 
-/* Stores the component `index` of a row, as a colour too, or adds it to the magnitude. */
+/* Takes the component `index` of a row: stores it, stores it as a colour, or adds it to the magnitude. */
 static void take_component(page_reading *r, const unsigned char *samples, unsigned step, unsigned index,
                            size_t count, size_t first) {
   hl_voxel_type type = r->shape->type;
@@ -395,7 +397,7 @@ static void take_component(page_reading *r, const unsigned char *samples, unsign
   }
 }
 
-/* Takes over a row of a decoded chunk. plane: the component that the chunk holds, if it holds one only. */
+/* Takes a row of a decoded chunk. plane: the component of the chunk, if the chunk holds only one. */
 static void take_row(page_reading *r, const unsigned char *row, unsigned plane, size_t count, size_t first) {
   const tiff_shape *shape = r->shape;
   unsigned each = shape->planar ? 1 : shape->components;
@@ -417,8 +419,8 @@ static void take_row(page_reading *r, const unsigned char *row, unsigned plane, 
   }
 }
 
-/* Decodes a tile of several slices, which libtiff takes for one of a single slice: uncompressed or deflated.
- */
+/* Decodes a tile of several slices, uncompressed or deflated. libtiff would treat it as a tile of one
+ * slice. */
 static hl_status decode_deep_tile(page_reading *r, uint32_t index, uint64_t stored, hl_error *error) {
   tiff_file *file = r->file;
   hl_context *context = file->context;
@@ -447,7 +449,7 @@ static hl_status decode_deep_tile(page_reading *r, uint32_t index, uint64_t stor
   return status == HL_OK && !sound ? tiff_file_fail(file, "a damaged tile", error) : status;
 }
 
-/* Decodes the first rows of chunk `index`; samples that the file does not contain are 0. */
+/* Decodes the first rows of chunk `index`. Samples that the file does not contain are 0. */
 static hl_status decode(page_reading *r, uint32_t index, uint32_t rows, hl_error *error) {
   tiff_file *file = r->file;
   file->message[0] = 0;
@@ -474,7 +476,8 @@ static hl_status read_chunk(page_reading *r, unsigned plane, uint32_t x, uint32_
   uint32_t slice = r->target->slice;
   uint32_t index = r->tiled ? TIFFComputeTile(tiff, x, y, slice, sample) : TIFFComputeStrip(tiff, y, sample);
   hl_status status = decode(r, index, rows, error);
-  size_t before = (size_t)(slice % r->chunk_depth) * r->chunk_height * r->row_bytes; /* slices of the tile */
+  /* Slices of the tile before this one. */
+  size_t before = (size_t)(slice % r->chunk_depth) * r->chunk_height * r->row_bytes;
   for (uint32_t row = 0; status == HL_OK && row < rows; row++)
     take_row(r, r->chunk + before + row * r->row_bytes, plane, columns, (size_t)(y + row) * shape->width + x);
   return status;
@@ -496,12 +499,12 @@ static hl_status read_chunks(page_reading *r, hl_error *error) {
   return status;
 }
 
-/* Tiles may be larger than a page. Those that are more than this many times larger, and than a megabyte, are
- * refused: hundreds of tiny pages in a small file would take seconds. */
+/* Tiles may be larger than a page. A tile is refused if it is more than TILE_IN_PAGES times as large and
+ * larger than a megabyte: hundreds of tiny pages in a small file would take seconds. */
 enum { TILE_IN_PAGES = 1024, SMALL_TILE_BYTES = 1 << 20 };
 
-/* The size of a chunk, of which no more rows are decoded than the page has. Refuses a chunk if libtiff
- * computes another length for its rows. */
+/* Measures a chunk. Only rows that the page has are decoded. Refuses a chunk if libtiff computes another
+ * length for its rows. */
 static hl_status measure_chunks(page_reading *r, hl_error *error) {
   const tiff_shape *shape = r->shape;
   TIFF *tiff = r->file->tiff;
@@ -522,7 +525,8 @@ static hl_status measure_chunks(page_reading *r, hl_error *error) {
     return hl_fail(error, HL_ERROR_INPUT, "%s: a page in chunks of %u x %u pixels", r->file->path,
                    r->chunk_width, r->chunk_height);
   uint64_t height = r->chunk_height < shape->height ? r->chunk_height : shape->height;
-  if (r->chunk_depth > 1) height = (uint64_t)r->chunk_height * r->chunk_depth; /* of all slices of a tile */
+  /* The height of all slices of a tile together. */
+  if (r->chunk_depth > 1) height = (uint64_t)r->chunk_height * r->chunk_depth;
   uint64_t samples = (uint64_t)r->chunk_width * (shape->planar ? 1 : shape->components), bits, bytes;
   uint64_t told = r->tiled ? TIFFTileRowSize64(tiff) : TIFFScanlineSize64(tiff);
   if (__builtin_mul_overflow(samples, shape->bits, &bits) || (bits + 7) / 8 != told ||
@@ -538,7 +542,7 @@ static hl_status measure_chunks(page_reading *r, hl_error *error) {
   return HL_OK;
 }
 
-/* Reads pixels that lie one row after the other in the file. */
+/* Reads pixels whose rows follow each other in the file. */
 static hl_status read_plain(page_reading *r, hl_error *error) {
   const tiff_shape *shape = r->shape;
   size_t size = hl_voxel_type_bytes(shape->type), samples = (size_t)shape->width * shape->components;

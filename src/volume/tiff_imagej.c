@@ -1,10 +1,10 @@
 /* volume/tiff_imagej.c - see tiff_imagej.h.
  *
- * Source: ImageJ's ij/io/TiffEncoder.java and TiffDecoder.java. Tag 50839 has bytes: a header of the mark
- * "IJIJ" and, for each kind of data, its four letters and the number of its pieces; then the pieces. Tag
- * 50838 has the length of the header and of each piece. "rang" is one piece of doubles, a least and a
- * greatest value for each channel; each piece of "luts" has the 256 reds, greens and blues of a channel.
- * Numbers and letters are in the byte order of the file. */
+ * Source: ImageJ's ij/io/TiffEncoder.java and TiffDecoder.java. Tag 50839 holds a header and pieces of data.
+ * The header has the mark "IJIJ" and, for each kind of data, its four letters and the number of its pieces.
+ * Tag 50838 has the length of the header and of each piece. The kind "rang" has one piece of doubles, a least
+ * and a greatest value for each channel. The kind "luts" has a piece for each channel, with its 256 reds,
+ * greens and blues. Numbers and letters are in the byte order of the file. */
 #include "volume/tiff_imagej.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
-/* volume/tiff_imagej.h - what ImageJ keeps of channels in a tag of its own: colours and windows. */
+/* volume/tiff_imagej.h - reads the colours and windows of channels, which ImageJ keeps in a tag of its
+ * own. */
 #ifndef HL_VOLUME_TIFF_IMAGEJ_H
 #define HL_VOLUME_TIFF_IMAGEJ_H
 
@@ -8,7 +9,7 @@
 enum { TIFF_IMAGEJ_CHANNELS_MOST = 64 };
 
 /* Reads the channels of the file's current page, in order, without names. channels:
- * [TIFF_IMAGEJ_CHANNELS_MOST]. Returns how many channels there are; 0: the page has no such tag, or a damaged
+ * [TIFF_IMAGEJ_CHANNELS_MOST]. Returns the number of channels; 0 if the page has no such tag, or a damaged
  * one. */
 size_t tiff_imagej_channels(const tiff_file *file, hl_channel *channels);
 

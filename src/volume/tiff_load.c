@@ -1,7 +1,7 @@
 /* volume/tiff_load.c - the volume of a TIFF file's pages.
  *
- * libtiff decodes the pages (tiff_file.h), their order is found by tiff_plan.h. Slices are decoded in
- * parallel, each thread with a libtiff of its own. */
+ * libtiff decodes the pages (tiff_file.h), and tiff_plan.h finds their order. Slices are decoded in parallel,
+ * by each thread with a tiff_file of its own. */
 #include "volume/tiff.h"
 
 #include <math.h>
@@ -21,11 +21,12 @@ enum {
   PARALLEL_BYTES = 1 << 20, /* smaller volumes are read before other threads would have started */
 };
 
-/* A file and the offsets of its directories. */
+/* A file, and the offsets of its directories. */
 typedef struct stack_file {
   char *path;                  /* owned */
-  const unsigned char *memory; /* [memory_size]; the file's content; null: the file is read */
-  unsigned char *unpacked; /* owned; the memory, if it was read here, from a pipe or an archive; or null */
+  const unsigned char *memory; /* [memory_size]; the file's content; null if the file is read */
+  unsigned char *unpacked; /* owned; the same memory, if it was filled here, from a pipe or an archive; else
+                            * null */
   size_t memory_size;
   uint64_t *offsets; /* owned; [count] */
   size_t count;
@@ -34,20 +35,20 @@ typedef struct stack_file {
 typedef struct stack_reading {
   hl_context *context;
   hl_load_request *request;
-  const hl_bundle *archive; /* holds the files; null: they are in a folder */
+  const hl_bundle *archive; /* holds the files; null if they are in a folder */
   tiff_plan plan;
   stack_file *files; /* owned; [plan.file_count] */
   int level;
-  uint64_t plain, plain_bytes; /* where the first slice's pixels lie, all others following; bytes of a slice;
-                                  0: each slice is a page of libtiff's */
-  tiff_shape shape;            /* of each slice, at the level */
-  uint32_t width, height;      /* at level 0 */
+  uint64_t plain, plain_bytes; /* position of the first slice's pixels, which all others follow, and bytes of
+                                * a slice; 0 if each slice is a page that libtiff decodes */
+  tiff_shape shape;            /* shape of each slice, at the level */
+  uint32_t width, height;      /* size at level 0 */
   int component;
   hl_destination to;
-  /* of the threads */
+  /* the pool of the threads */
   hl_pool *pool;
-  tiff_file *open;  /* owned; [threads]: the file that each thread has open */
-  uint32_t *opened; /* owned; [threads]: that file's index; UINT32_MAX: none */
+  tiff_file *open;  /* owned; [threads]; the file that each thread has open */
+  uint32_t *opened; /* owned; [threads]; the index of that file; UINT32_MAX if there is none */
 } stack_reading;
 
 /* ---- the first file: its pages, and what its first page says ---- */
@@ -60,7 +61,8 @@ static void read_resolution(tiff_file *file, double resolution[2]) {
   resolution[1] = isfinite((double)y) && y > 0 ? (double)y : 0;
 }
 
-/* Leaves out pages of another shape than the first, and pages that are reduced pictures of others. */
+/* Leaves out pages whose shape differs from the first page's, and pages that are reduced pictures of
+ * others. */
 static hl_status drop_other_pages(tiff_file *file, const tiff_shape *first, stack_file *stack,
                                   hl_error *error) {
   size_t kept = 0, others = 0;
@@ -92,7 +94,7 @@ static size_t count_levels(tiff_file *file) {
   return TIFFGetField(file->tiff, TIFFTAG_SUBIFD, &count, &offsets) ? (size_t)count + 1 : 1;
 }
 
-/* Sets the level and the shape of its pages. */
+/* Sets the level and the shape of pages at this level. */
 static hl_status choose_level(stack_reading *r, tiff_file *file, uint64_t offset, size_t count,
                               hl_error *error) {
   hl_level_size *sizes = hl_allocate_zeroed(r->context, count, sizeof *sizes);
@@ -122,9 +124,9 @@ static hl_status check_size(const stack_reading *r, tiff_file *file, hl_error *e
       (unsigned long long)file->size);
 }
 
-/* Whether the pixels of more slices than the file has pages follow the first page's: ImageJ writes files
- * above 4 GB so, tifffile where it is asked for, and slices of a page lie so where they are not tiled.
- * *pages: of all slices. */
+/* Finds whether the pixels of more slices than the file has pages follow the first page's pixels. ImageJ
+ * writes files above 4 GB this way, and tifffile on request; slices of a page lie so unless they are tiled.
+ * *pages: number of all slices. */
 static hl_status find_plain(stack_reading *r, tiff_file *file, const tiff_shape *shape,
                             const char *description, const stack_file *stack, size_t *pages,
                             hl_error *error) {
@@ -154,7 +156,7 @@ static hl_status find_plain(stack_reading *r, tiff_file *file, const tiff_shape 
   return HL_OK;
 }
 
-/* ImageJ's colours and windows of channels, where there are as many as channels. */
+/* Takes ImageJ's colours and windows of channels, if their number is the number of channels. */
 static hl_status take_imagej(stack_reading *r, const hl_channel *channels, size_t count, hl_error *error) {
   if (count == 0 || count != r->request->selection.channels) return HL_OK;
   hl_status status = hl_channels_make(r->request, error);
@@ -162,7 +164,7 @@ static hl_status take_imagej(stack_reading *r, const hl_channel *channels, size_
   return status;
 }
 
-/* stack: the file, which becomes the reading's first one. */
+/* Reads the first file. stack: the file, which becomes the first of the reading. */
 static hl_status read_first(stack_reading *r, tiff_file *file, stack_file *stack, hl_error *error) {
   tiff_shape first;
   char *description = NULL, *copy = NULL;
@@ -261,7 +263,7 @@ static hl_status decode_slice(stack_reading *r, size_t z, int worker, void *voxe
   if (r->opened[worker] != slice->file) {
     tiff_file_close(file);
     r->opened[worker] = slice->file;
-    file->warnings = TIFF_NO_WARNINGS; /* they were logged when the pages were found */
+    file->warnings = TIFF_NO_WARNINGS; /* warnings were logged when the pages were found */
     status = tiff_file_open(r->context, stack->path, stack->memory, stack->memory_size, true, file, error);
     if (status != HL_OK) r->opened[worker] = UINT32_MAX;
   }
@@ -378,7 +380,7 @@ static void release(stack_reading *r) {
   tiff_plan_release(&r->plan);
 }
 
-/* Finds the first file's content in memory, if the stream is no plain file. */
+/* Takes the first file's content into memory, if the stream is not a plain file. */
 static hl_status take_first(hl_stream *stream, stack_file *first, hl_error *error) {
   first->path = hl_copy_text(stream->context, stream->path);
   if (first->path == NULL) return hl_fail_memory(error, strlen(stream->path), stream->path);

@@ -1,8 +1,8 @@
 /* volume/tiff_plan.c - the order of a TIFF file's pages.
  *
  * OME-XML: the schema of 2016-06 of the Open Microscopy Environment: Pixels has the sizes and the order of
- * dimensions, TiffData says from which page of which file planes come. ImageJ: lines "name=value" of the
- * description of the first page, as ij.io.FileSaver writes them; planes follow each other as channel, slice,
+ * dimensions, and TiffData says which page of which file holds a plane. ImageJ: the description of the first
+ * page has lines "name=value", as ij.io.FileSaver writes them; planes follow each other as channel, slice,
  * frame. */
 #include "volume/tiff_plan.h"
 
@@ -31,9 +31,9 @@ static hl_status make_slices(tiff_plan *plan, size_t count, const char *path, hl
   return plan->slices != NULL ? HL_OK : hl_fail_memory(error, count * sizeof *plan->slices, path);
 }
 
-/* Adds a file; null: the first file itself. */
+/* Adds a file. The name is null for the first file itself. */
 static hl_status add_file(tiff_plan *plan, const char *name, uint32_t *index, hl_error *error) {
-  /* searched from the end, as a file is mostly the one added last */
+  /* the search begins at the end, as the file is mostly the one added last */
   for (size_t n = plan->file_count; name != NULL && n-- > 1;)
     if (strcmp(plan->files[n], name) == 0) {
       *index = (uint32_t)n;
@@ -42,7 +42,8 @@ static hl_status add_file(tiff_plan *plan, const char *name, uint32_t *index, hl
   if (plan->file_count >= FILES_MOST)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "a volume of more than %d files: save it as one",
                    (int)FILES_MOST);
-  if ((plan->file_count & (plan->file_count - 1)) == 0) { /* a power of two: full */
+  /* The list is full when its length is a power of two. */
+  if ((plan->file_count & (plan->file_count - 1)) == 0) {
     size_t wanted = plan->file_count == 0 ? 1 : 2 * plan->file_count;
     char **larger = hl_reallocate(plan->context, plan->files, wanted, sizeof *larger);
     if (larger == NULL) return hl_fail_memory(error, wanted * sizeof *larger, "names of files");
@@ -61,16 +62,16 @@ typedef struct ome_reader {
   tiff_plan *plan;
   hl_load_request *request;
   const char *path;
-  size_t pages, components; /* of the first file */
-  size_t size[3];           /* planes along Z, C, T */
-  char order[3];            /* "ZCT" in some order: the first changes fastest */
+  size_t pages, components; /* pages and components of the first file */
+  size_t size[3];           /* numbers of planes along Z, C, T */
+  char order[3];            /* "ZCT" in some order; the first changes fastest */
   bool in_pixels, done, is_planned;
   /* TiffData */
   bool is_open, whole; /* is_open: the planes of the current TiffData are not placed yet; whole: they go on to
-                          the last plane */
+                        * the last plane */
   size_t first[3], count, page;
-  size_t placed; /* planes of all of them */
-  size_t told;   /* Channel elements so far */
+  size_t placed; /* number of planes placed by all elements */
+  size_t told;   /* number of Channel elements so far */
   char file[NAME_BYTES];
 } ome_reader;
 
@@ -79,14 +80,15 @@ static bool has_name(const hl_xml_tag *tag, const char *name) {
   return strcmp(colon != NULL ? colon + 1 : tag->name, name) == 0;
 }
 
-/* The value of an attribute that is a whole number; `other` where it is missing. */
+/* The value of an attribute that is a whole number, or `other` if it is absent. */
 static bool read_number(const hl_xml_tag *tag, const char *name, size_t other, size_t *number) {
   const char *text = hl_xml_attribute(tag, name);
   *number = other;
   return text == NULL || (hl_text_sizes(text, number, 1) == 1 && *number <= SIZE_MOST);
 }
 
-/* The length of a voxel; 0: not stated. *unit: micrometres of its unit; 0: it is none of length ("pixel"). */
+/* The length of a voxel; 0 if not stated. *unit: the micrometres of its unit; 0 if it is no unit of length,
+ * such as "pixel". */
 static double read_length(const hl_xml_tag *tag, char axis, double *unit) {
   char name[] = "PhysicalSizeX", unit_name[] = "PhysicalSizeXUnit";
   name[sizeof name - 2] = axis;
@@ -99,7 +101,8 @@ static double read_length(const hl_xml_tag *tag, char axis, double *unit) {
   return value;
 }
 
-/* Lengths in micrometres, if each that is told has a known unit; else the numbers as they are. */
+/* Converts lengths to micrometres if each stated length has a known unit; otherwise leaves the numbers as
+ * they are. */
 static void read_lengths(ome_reader *ome, const hl_xml_tag *tag) {
   double unit[3], *spacing = ome->plan->spacing;
   bool known = true;
@@ -127,7 +130,7 @@ static hl_status read_pixels(ome_reader *ome, const hl_xml_tag *tag, hl_error *e
   if (order != NULL && strlen(order) == 5 && strchr(order + 2, 'Z') != NULL &&
       strchr(order + 2, 'C') != NULL && strchr(order + 2, 'T') != NULL)
     memcpy(ome->order, order + 2, 3);
-  /* colours are the samples of a pixel: one page holds the planes of all of them */
+  /* colours are the samples of a pixel, so that one page holds the planes of all of them */
   if (ome->components > 1 && ome->size[1] % ome->components == 0) ome->size[1] /= ome->components;
   read_lengths(ome, tag);
   ome->in_pixels = true;
@@ -188,19 +191,20 @@ static hl_status begin_planes(ome_reader *ome, const hl_xml_tag *tag, hl_error *
   return tag->is_end ? place_planes(ome, error) : HL_OK;
 }
 
-/* The name of a file beside the first one; names with a path are refused, as they could lead anywhere. */
+/* Reads the name of a file beside the first one. Names with a path are refused, as they could lead
+ * anywhere. */
 static hl_status read_file(ome_reader *ome, const hl_xml_tag *tag, hl_error *error) {
   const char *name = hl_xml_attribute(tag, "FileName"), *slash = strrchr(ome->path, '/');
   if (name == NULL) return HL_OK;
   if (strchr(name, '/') != NULL || strlen(name) >= sizeof ome->file || name[0] == 0)
     return fail_ome(ome, "names a file that is not beside it", error);
-  /* the first file, named by its own name */
+  /* this is the first file, called by its own name */
   if (strcmp(name, slash != NULL ? slash + 1 : ome->path) != 0) strcpy(ome->file, name);
   return HL_OK;
 }
 
-/* The name and the colour of a channel: red, green, blue and alpha from the highest to the lowest byte of a
- * number of 32 bits. */
+/* Reads the name and the colour of a channel. Red, green, blue and alpha go from the highest to the lowest
+ * byte of a number of 32 bits. */
 static hl_status read_channel(ome_reader *ome, const hl_xml_tag *tag, hl_error *error) {
   const char *name = hl_xml_attribute(tag, "Name"), *color = hl_xml_attribute(tag, "Color");
   double value;
@@ -225,11 +229,11 @@ static hl_status read_tag(ome_reader *ome, const hl_xml_tag *tag, hl_error *erro
   if (tag->is_start && has_name(tag, "TiffData")) return begin_planes(ome, tag, error);
   if (tag->is_start && ome->is_open && has_name(tag, "UUID")) return read_file(ome, tag, error);
   if (tag->is_end && ome->is_open && has_name(tag, "TiffData")) return place_planes(ome, error);
-  if (tag->is_end && has_name(tag, "Pixels")) ome->done = true; /* of the first image */
+  if (tag->is_end && has_name(tag, "Pixels")) ome->done = true; /* only the first image counts */
   return HL_OK;
 }
 
-/* Where TiffData is absent or incomplete, planes are the pages in order. */
+/* Ends the plan. If TiffData is absent or incomplete, planes are the pages in order. */
 static hl_status finish_ome(ome_reader *ome, hl_error *error) {
   if (!ome->in_pixels) return fail_ome(ome, "has no Pixels: is it a companion of another file?", error);
   hl_status status = begin_slices(ome, error);
@@ -274,7 +278,7 @@ static hl_status plan_ome(hl_load_request *request, const char *path, const char
 
 /* ---- ImageJ, and pages alone ---- */
 
-/* The number after "name=" at the start of a line, or `other`. */
+/* The number after "name=" at the start of a line, or `other` if there is none. */
 static double find_number(const char *description, const char *name, double other) {
   size_t length = strlen(name);
   for (const char *line = description; line != NULL; line = strchr(line, '\n')) {
@@ -294,7 +298,7 @@ static size_t find_count(const char *description, const char *name) {
 
 enum { UNIT_BYTES = 64 };
 
-/* The text after "name=" at the start of a line; "" where there is none. */
+/* Finds the text after "name=" at the start of a line; "" if there is none. */
 static void find_text(const char *description, const char *name, char text[UNIT_BYTES]) {
   size_t length = strlen(name);
   text[0] = 0;
@@ -313,8 +317,8 @@ static bool is_imagej(const char *description) {
   return description != NULL && strncmp(description, "ImageJ=", 7) == 0;
 }
 
-/* ImageJ tells the resolution of x and y, the distance of slices, and units: that of x, and others where they
- * differ. Lengths become micrometres where all units are known. */
+/* Takes lengths from ImageJ, which tells the resolution of x and y, the distance of slices, and the unit of
+ * x, with other units where they differ. Lengths become micrometres if all units are known. */
 static void take_imagej_lengths(hl_load_request *request, const char *description, const double resolution[2],
                                 tiff_plan *plan) {
   static const char *const names[] = {"unit", "yunit", "zunit"};
@@ -336,23 +340,24 @@ static void take_imagej_lengths(hl_load_request *request, const char *descriptio
 /* The numbers of pictures along time, channel and slice. */
 typedef struct series_sizes {
   size_t times, channels, slices;
-  bool channels_first; /* slices follow each other within a channel; else channels within a slice */
+  bool channels_first; /* whether slices follow each other within a channel; otherwise channels follow each
+                        * other within a slice */
 } series_sizes;
 
 enum { SHAPE_MOST = 12 };
 
-/* Axes without letters: the last before y and x is z, the one before it the time, and one more the channel.
- */
+/* Names axes that have no letters. The last axis before y and x is z, the one before it the time, and one
+ * more the channel. */
 static void name_axes(size_t count, char letters[SHAPE_MOST]) {
   static const char usual[] = "CTZ";
   for (size_t n = 0; n < count; n++) letters[n] = count - n <= 3 ? usual[3 - (count - n)] : 'Q';
 }
 
-/* Sorts the leading axes of a shape. False where they are not times, channels and slices, in the order in
- * which slices or channels vary fastest and times slowest. */
+/* Sorts the leading axes of a shape. False unless they are times, channels and slices, in an order in which
+ * slices or channels vary fastest and times slowest. */
 static bool sort_axes(const size_t *shape, const char *letters, size_t count, series_sizes *sizes) {
   *sizes = (series_sizes){1, 1, 1, false};
-  int last = 0; /* 1: a time was met; 2: a channel; 3: a slice */
+  int last = 0; /* the last kind of axis met: 1 is a time, 2 a channel, 3 a slice */
   for (size_t n = 0; n < count; n++) {
     if (shape[n] == 1) continue;
     char letter = letters[n];
@@ -370,7 +375,8 @@ static bool sort_axes(const size_t *shape, const char *letters, size_t count, se
   return true;
 }
 
-/* Reads the description; false where it is no series, or one that is not read. samples: of a pixel. */
+/* Reads the description. False if it is no series, or one that is not read. samples: number of samples of a
+ * pixel. */
 static bool read_series(const char *description, size_t samples, series_sizes *sizes) {
   size_t shape[SHAPE_MOST], count = 0;
   char letters[SHAPE_MOST];
@@ -398,7 +404,7 @@ size_t tiff_plan_pages(const char *description, size_t components) {
   return sizes.times * sizes.channels * sizes.slices;
 }
 
-/* The pages in order. */
+/* Plans the pages in order. */
 static hl_status plan_sizes(hl_load_request *request, const char *path, const series_sizes *sizes,
                             tiff_plan *plan, hl_error *error) {
   hl_status status = hl_steps_choose(request, path, sizes->times, sizes->channels, error);

@@ -1,4 +1,4 @@
-/* volume/unpack.c - one block of packed data into memory of the caller's. */
+/* volume/unpack.c - unpacks one block of packed data into memory of the caller. */
 #include "volume/unpack.h"
 
 #include <zlib.h>
@@ -31,12 +31,12 @@ static voidpf zlib_allocate(voidpf context, uInt count, uInt size) {
 }
 static void zlib_release(voidpf context, voidpf memory) { hl_release(context, memory); }
 
-/* zlib counts in 32 bits. */
+/* The part of a length that zlib can take, as zlib counts in 32 bits. */
 static uInt at_most(size_t left) { return left < (1u << 30) ? (uInt)left : 1u << 30; }
 
 hl_status hl_unpack_deflate(hl_context *context, const unsigned char *packed, size_t length, void *bytes,
                             size_t count, bool *sound, hl_error *error) {
-  enum { EITHER_HEADER = 15 + 32 }; /* zlib.h: zlib or gzip, by its first bytes */
+  enum { EITHER_HEADER = 15 + 32 }; /* zlib.h: either zlib or gzip, by the first bytes */
   z_stream zlib = {.zalloc = zlib_allocate,
                    .zfree = zlib_release,
                    .opaque = context,
@@ -48,7 +48,7 @@ hl_status hl_unpack_deflate(hl_context *context, const unsigned char *packed, si
     size_t taken = (size_t)(zlib.next_in - packed), made = (size_t)(zlib.next_out - (Bytef *)bytes);
     zlib.avail_in = at_most(length - taken);
     zlib.avail_out = at_most(count - made);
-    answer = inflate(&zlib, Z_NO_FLUSH); /* Z_BUF_ERROR: no progress without more of either */
+    answer = inflate(&zlib, Z_NO_FLUSH); /* Z_BUF_ERROR means no progress without more input or room */
   }
   *sound = answer == Z_STREAM_END && (size_t)(zlib.next_out - (Bytef *)bytes) == count;
   inflateEnd(&zlib);

@@ -7,20 +7,20 @@
 
 #include "core/error.h"
 
-/* Whether packed data can hold `count` bytes; asked before memory is taken for them. Deflate: by the best
- * that it can do. Blosc: by what the block's own header says. */
+/* Whether packed data can hold `count` bytes; asked before memory is taken for them. Deflate data are judged
+ * by deflate's best ratio, Blosc data by the block's own header. */
 bool hl_deflate_can_hold(size_t length, size_t count);
 bool hl_blosc_can_hold(const unsigned char *packed, size_t length, size_t count);
 
-/* Fills bytes [0, count). *sound: false where the data hold another number of bytes or are damaged. Deflate:
- * with zlib's header or gzip's. Without its library hl_unpack_blosc fails. */
+/* Unpacks into bytes [0, count). *sound: false if the data are damaged or hold another number of bytes.
+ * Deflate data have zlib's header or gzip's. hl_unpack_blosc() fails in builds without its library. */
 hl_status hl_unpack_deflate(hl_context *context, const unsigned char *packed, size_t length, void *bytes,
                             size_t count, bool *sound, hl_error *error);
 hl_status hl_unpack_blosc(const char *path, const unsigned char *packed, size_t length, void *bytes,
                           size_t count, bool *sound, hl_error *error);
 
-/* The same for a block of LZ4 (without a header), and a stream of bzip2 or xz. Without its library each
- * fails. Whether the data can hold `count` bytes is asked here before anything is unpacked. */
+/* Unpack a block of LZ4 (without a header), or a stream of bzip2 or xz. They fail in builds without their
+ * libraries. They check whether the data can hold `count` bytes before anything is unpacked. */
 hl_status hl_unpack_lz4(const char *path, const unsigned char *packed, size_t length, void *bytes,
                         size_t count, bool *sound, hl_error *error);
 hl_status hl_unpack_bzip2(const char *path, const unsigned char *packed, size_t length, void *bytes,
@@ -28,7 +28,7 @@ hl_status hl_unpack_bzip2(const char *path, const unsigned char *packed, size_t 
 hl_status hl_unpack_xz(const char *path, const unsigned char *packed, size_t length, void *bytes,
                        size_t count, bool *sound, hl_error *error);
 
-/* Whether `length` bytes of a codec with this greatest ratio can hold `count`. */
+/* Whether `length` bytes of a codec with this greatest ratio can hold `count` bytes. */
 static inline bool hl_packed_can_hold(size_t length, size_t count, size_t ratio) {
   return count / ratio <= length;
 }

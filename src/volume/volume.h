@@ -1,8 +1,7 @@
 /* volume/volume.h - the inside of hl_volume.
  *
- * Voxels are kept as u8, u16 or f32 in native byte order, never widened further: signed integers are
- * stored with their sign bit flipped (and an offset that undoes it), other types become f32.
- */
+ * Voxels are kept as u8, u16 or f32 in native byte order, and never widened further. Signed integers are
+ * stored with their sign bit flipped, and an offset that undoes it. Other types become f32. */
 #ifndef HL_VOLUME_VOLUME_H
 #define HL_VOLUME_VOLUME_H
 
@@ -21,31 +20,31 @@ typedef enum hl_storage { HL_STORAGE_U8 = 0, HL_STORAGE_U16 = 1, HL_STORAGE_F32 
 typedef struct hl_array_entry {
   char *name; /* owned */
   size_t components;
-  hl_voxel_type type; /* 0: a type that cannot be read */
+  hl_voxel_type type; /* 0 for a type that cannot be read */
   bool of_cells;
 } hl_array_entry;
 
-/* The numbers of time steps, channels and resolutions of a file, each at least 1, and which of them are read.
- */
+/* The numbers of time steps, channels and resolutions of a file, each at least 1, and the ones that are
+ * read. */
 typedef struct hl_selection {
   size_t times, channels, levels;
   int time, channel, level;
 } hl_selection;
 
-/* A DICOM series of the input that a volume was loaded from; printable. */
+/* A DICOM series of the input from which a volume was loaded; printable. */
 typedef struct hl_series_entry {
   char uid[HL_SERIES_TEXT_BYTES], modality[HL_SERIES_TEXT_BYTES], description[HL_SERIES_TEXT_BYTES];
-  double number; /* NAN: none */
+  double number; /* NAN if absent */
   size_t dimensions[3];
 } hl_series_entry;
 
-/* What a file tells of one of its channels. */
+/* A file's description of one of its channels. */
 enum { HL_CHANNEL_NAME_BYTES = 128 };
 typedef struct hl_channel {
-  char name[HL_CHANNEL_NAME_BYTES]; /* printable; "": none */
+  char name[HL_CHANNEL_NAME_BYTES]; /* printable; "" if absent */
   bool has_color;
   double srgb[3];
-  double window[2]; /* data values between which it is to be shown; equal: none */
+  double window[2]; /* data values between which the channel is to be shown; equal if not told */
 } hl_channel;
 
 /* A named label of a segmentation. */
@@ -54,7 +53,7 @@ typedef struct hl_segment {
   char name[HL_SEGMENT_NAME_BYTES];
   double value, srgb[3];
   bool has_color;
-  int layer; /* the component whose voxels have it */
+  int layer; /* the component in whose voxels the label is */
 } hl_segment;
 
 struct hl_volume {
@@ -62,28 +61,30 @@ struct hl_volume {
   atomic_int references;
   size_t dimension[3]; /* i, j, k */
   hl_storage storage;
-  const void *voxels; /* [k][j][i]; stored values; owned unless borrowed; null with pages. Rows are packed;
-                         rows and slices of borrowed voxels may lie further apart than they are long */
-  size_t row_bytes, slice_bytes; /* from row to row, and from slice to slice */
-  void *exact; /* owned; [k][j][i]; the file's numbers, of `type`, where the stored floats round any of them
-                  (exact.h); null: the stored values are the numbers */
-  unsigned char *colors;      /* owned; [k][j][i][4] (colors.h); null: the transfer function tells colours */
-  signed char *slopes;        /* owned; [k][j][i][4]: of a mask's lattice (label/mask.h); null: it is none */
-  uint32_t (*mask_bricks)[2]; /* owned: of a mask's lattice (label/mask.h); null: it is none */
-  struct hl_pages
-      *pages;         /* owned (pages.h): the voxels are in a scratch file, or over ranks; null: in memory */
-  void *owned_voxels; /* the block to hl_release; null if borrowed */
+  const void *voxels; /* [k][j][i]; stored values; owned unless borrowed; null with pages. Rows are packed.
+                       * Rows and slices of borrowed voxels may have gaps between them */
+  size_t row_bytes, slice_bytes; /* bytes from row to row, and from slice to slice */
+  void *exact; /* owned; [k][j][i]; the file's numbers, of `type`, if the stored floats round any of them
+                * (exact.h); null if the stored values are the numbers */
+  unsigned char *colors;      /* owned; [k][j][i][4] (colors.h); null if colours come from the transfer
+                               * function */
+  signed char *slopes;        /* owned; [k][j][i][4]; slopes of a mask's lattice (label/mask.h); null for
+                               * other volumes */
+  uint32_t (*mask_bricks)[2]; /* owned; bricks of a mask's lattice (label/mask.h); null for other volumes */
+  struct hl_pages *pages; /* owned (pages.h); the voxels are in a scratch file, or over ranks; null if they
+                           * are in memory */
+  void *owned_voxels;     /* the block to hl_release; null if borrowed */
   void (*release)(void *release_data, const void *voxels); /* gives borrowed voxels back; may be null */
   void *release_data;
   double value_scale; /* data value = value_scale * stored + value_offset */
   double value_offset;
   affine3 index_to_world; /* voxel centres at integer indices */
-  hl_voxel_type type;     /* as in the file */
+  hl_voxel_type type;     /* the type in the file */
   hl_space space;
-  const char *unit;   /* of lengths in the world, static; null: unknown */
-  bool is_anatomical; /* the space is meant: DICOM's, NIfTI's; other programs write left-posterior-superior
-                         for any data */
-  double window[2];   /* data values between which the file asks to show greys; NAN: none */
+  const char *unit;        /* unit of lengths in the world, static; null if unknown */
+  bool is_anatomical;      /* whether the space is meant, as in DICOM and NIfTI; other programs write
+                            * left-posterior-superior for any data */
+  double window[2];        /* data values between which the file asks to show greys; NAN if not told */
   double minimum, maximum; /* data values over finite voxels */
   double mean;
   uint64_t nonfinite_count;
@@ -92,20 +93,20 @@ struct hl_volume {
   size_t array_count, chosen_array;
   int component; /* index of the component that was read, or HL_COMPONENT_MAGNITUDE */
   hl_selection selection;
-  hl_channel *channels;    /* owned; [selection.channels]; null: the file tells nothing of them */
+  hl_channel *channels;    /* owned; [selection.channels]; null if the file does not describe channels */
   hl_series_entry *series; /* owned; [series_count]; null unless loaded from DICOM files */
   size_t series_count, chosen_series;
   hl_segment *segments; /* owned; [segment_count]; null unless the file names labels */
   size_t segment_count;
   char (*label_maps)[HL_LABEL_MAP_BYTES]; /* owned; [label_map_count]; printable paths within the file */
   size_t label_map_count;
-  bool has_surroundings; /* the data value of what is around the content is known */
+  bool has_surroundings; /* whether the data value around the content is known */
   double surroundings;
-  double surface_slope; /* of an occupancy: how much it rises per voxel where it passes 1/2 */
+  double surface_slope; /* for an occupancy: its slope per voxel where it passes 1/2 */
   _Atomic(struct hl_data_analysis *)
-      analysis; /* owned block: what guess/analysis.h found; null: not asked yet */
-  /* What other rooms keep with the volume: owned, released with it. */
-  atomic_flag shelf_lock; /* held while shelf is looked at */
+      analysis; /* owned block; the findings of guess/analysis.h; null if not asked yet */
+  /* Data that other rooms keep with the volume; owned, and released with it. */
+  atomic_flag shelf_lock; /* held while the shelf is accessed */
   void *shelf;
   void (*release_shelf)(hl_context *context, void *shelf);
 };
@@ -117,7 +118,7 @@ static inline size_t hl_volume_voxel_count(const hl_volume *volume) {
   return volume->dimension[0] * volume->dimension[1] * volume->dimension[2];
 }
 
-/* Whether rows and slices adjoin, in memory. */
+/* Whether rows and slices are adjacent, in memory. */
 static inline bool hl_volume_is_packed(const hl_volume *volume) {
   size_t row = volume->dimension[0] * hl_storage_bytes(volume->storage);
   return volume->pages == NULL && volume->row_bytes == row &&
@@ -129,49 +130,50 @@ static inline const void *hl_volume_row(const hl_volume *volume, size_t j, size_
   return (const unsigned char *)volume->voxels + k * volume->slice_bytes + j * volume->row_bytes;
 }
 
-/* The first voxel of a row of any volume: the volume's own, or in `buffer`, which has room for a row and is
- * needed where the volume has pages. */
+/* The first voxel of a row of any volume: the volume's own, or a copy in `buffer`, which has room for a row
+ * and is needed if the volume has pages. */
 const void *hl_volume_row_in(const hl_volume *volume, size_t j, size_t k, void *buffer);
 
-/* hl_volume_value() for the library's own functions, which have come through a door (core/door.h). */
+/* hl_volume_value() for the library's own functions, which have passed a door already (core/door.h). */
 double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_t k);
 
-/* A number of a row of stored values. */
+/* One number of a row of stored values. */
 static inline double hl_stored_number(hl_storage storage, const void *row, size_t i) {
   if (storage == HL_STORAGE_U8) return ((const uint8_t *)row)[i];
   if (storage == HL_STORAGE_U16) return ((const uint16_t *)row)[i];
   return (double)((const float *)row)[i];
 }
 
-/* A row of numbers: the file's own where the stored values round them, else the stored values. */
+/* A row of numbers: the file's own if the stored values round them, else the stored values. */
 typedef struct hl_number_row {
   hl_voxel_type type; /* U8, U16, F32, or a type of exact.h */
   const void *numbers;
 } hl_number_row;
 
-/* Bytes of a buffer for rows of numbers. */
+/* The size in bytes of a buffer for rows of numbers. */
 size_t hl_volume_row_room(const hl_volume *volume);
 
-/* A row of any volume. data value = value_scale * number + value_offset. buffer: with hl_volume_row_room(),
- * at a place for doubles; needed where the volume has pages. */
+/* A row of numbers of any volume. Data value = value_scale * number + value_offset. buffer: has
+ * hl_volume_row_room() bytes, aligned for doubles; needed if the volume has pages. */
 hl_number_row hl_volume_numbers(const hl_volume *volume, size_t j, size_t k, void *buffer);
 /* Whether the stored values round some of the file's numbers, which are kept, too. */
 bool hl_volume_is_exact(const hl_volume *volume);
 double hl_row_number(hl_number_row row, size_t i);
 
-/* Makes a volume of voxels that are already in stored form (hl_voxels_store), packed, in a block of
- * hl_allocate that the volume takes over, also on failure. description: the grid, the type in the file, and
+/* Makes a volume of packed voxels that are already in stored form (hl_voxels_store()), in a block of
+ * hl_allocate() that the volume takes over, also on failure. description: the grid, the type in the file, and
  * value_scale and value_offset for values of the file's type. subject: starts the error lines. */
 hl_status hl_volume_adopt(hl_context *context, const hl_volume_description *description, const char *subject,
                           void *voxels, hl_volume **volume, hl_error *error);
 
-/* As hl_volume_adopt(), with the file's own numbers (hl_exact_take()), which the volume takes over, too. */
+/* Makes a volume like hl_volume_adopt(), with the file's own numbers (hl_exact_take()), which the volume
+ * takes over, too. */
 hl_status hl_volume_adopt_exact(hl_context *context, const hl_volume_description *description,
                                 const char *subject, void *voxels, void *exact, hl_volume **volume,
                                 hl_error *error);
 
-/* Makes a volume of voxels that are in pages, which the volume takes over, also on failure; else as
- * hl_volume_adopt(). */
+/* Makes a volume like hl_volume_adopt(), of voxels that are in pages, which the volume takes over, also on
+ * failure. */
 hl_status hl_volume_adopt_pages(hl_context *context, const hl_volume_description *description,
                                 const char *subject, struct hl_pages *pages, hl_volume **volume,
                                 hl_error *error);
@@ -179,7 +181,8 @@ hl_status hl_volume_adopt_pages(hl_context *context, const hl_volume_description
 /* Releases a list of arrays. */
 void hl_arrays_release(hl_context *context, hl_array_entry *arrays, size_t count);
 
-/* Checks type, dimensions, their product in bytes, axes, scale and offset; fails if one is impossible. */
+/* Checks type, dimensions, their product in bytes, axes, scale and offset. Fails if any of them is
+ * impossible. */
 hl_status hl_volume_check_grid(const hl_volume_description *description, const char *subject,
                                hl_error *error);
 

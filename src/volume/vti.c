@@ -23,10 +23,10 @@ static const char *const kind_names[] = {"ImageData", "RectilinearGrid", "PImage
 
 enum { PIECES_MOST = 65536, ENTRIES_MOST = 1 << 20 };
 
-/* A piece of the whole: where it lies, and, of several files, its file. */
+/* A piece of the whole volume: its place and, if there are several files, its file. */
 typedef struct vti_piece {
   double extent[6];
-  char *source; /* owned; null: in the same file */
+  char *source; /* owned; null if it is in the same file */
 } vti_piece;
 
 /* An array of a piece. */
@@ -46,12 +46,12 @@ typedef struct vti_header {
   vti_piece *pieces;  /* owned; [piece_count] */
   vti_entry *entries; /* owned; [entry_count]; the arrays of all pieces */
   size_t piece_count, piece_room, entry_count, entry_room;
-  hl_vtk_array coordinates[3]; /* of a rectilinear grid's first piece */
+  hl_vtk_array coordinates[3]; /* coordinates of a rectilinear grid's first piece */
   int coordinate_count;
-  bool is_whole; /* the section's last tag or the appended data has been seen */
+  bool is_whole; /* whether the section's last tag or the appended data have been seen */
   section section;
   char active[HL_VTK_NAME_BYTES];  /* name of the section's active scalars */
-  int active_points, active_cells; /* index of the active scalars; -1: none */
+  int active_points, active_cells; /* index of the active scalars; -1 if there are none */
   hl_load_request *request;        /* lists the same arrays */
 } vti_header;
 
@@ -62,7 +62,7 @@ static hl_status read_numbers(const vti_header *header, const hl_xml_tag *tag, c
   return hl_vtk_xml_refuse(&header->xml, HL_ERROR_INPUT, name, value, error);
 }
 
-/* *extent is left alone where there is none. An extent may be empty: last < first. */
+/* Reads an extent. An absent extent leaves *extent alone. An extent may be empty: last < first. */
 static hl_status read_extent(vti_header *header, const hl_xml_tag *tag, const char *name, double extent[6],
                              bool may_be_empty, hl_error *error) {
   const char *value = hl_xml_attribute(tag, name);
@@ -146,7 +146,7 @@ static hl_status read_array_tag(vti_header *header, const hl_xml_tag *tag, hl_er
   *entry = (vti_entry){
       .piece = header->piece_count > 0 ? header->piece_count - 1 : 0, .cells = cells, .array = array};
   if (name != NULL && strlen(name) < sizeof entry->name) strcpy(entry->name, name);
-  if (entry->piece > 0) return HL_OK; /* the first piece's are listed */
+  if (entry->piece > 0) return HL_OK; /* only the arrays of the first piece are listed */
   if (stated != NULL && (hl_text_sizes(stated, &components, 1) != 1 || components == 0))
     return hl_vtk_xml_refuse(&header->xml, HL_ERROR_INPUT, "NumberOfComponents", stated, error);
   hl_vtk_xml_find_type(array.type, &type);
@@ -212,8 +212,8 @@ static void make_grid(const vti_header *header, const double extent[6], bool cel
   }
 }
 
-/* The index of the active scalars at points; if no array at points has one component, of the active scalars
- * at cells. */
+/* The index of the active scalars at points. If no array at points has one component, the index of the active
+ * scalars at cells. */
 static int active_array(const vti_header *header) {
   if (header->active_points >= 0) return header->active_points;
   for (size_t n = 0; n < header->request->array_count; n++)
@@ -241,7 +241,7 @@ static bool is_empty(const vti_piece *piece) {
   return e[1] < e[0] || e[3] < e[2] || e[5] < e[4];
 }
 
-/* The chosen array of a piece; null: it has none. */
+/* The chosen array of a piece; null if the piece lacks it. */
 static const vti_entry *entry_of(const vti_header *header, size_t piece) {
   const hl_array_entry *chosen = &header->request->arrays[header->request->chosen];
   for (size_t n = 0; n < header->entry_count; n++) {
@@ -268,7 +268,7 @@ static hl_status describe(const vti_header *header, const vti_piece *piece, cons
   bool alone = header->piece_count == 1;
   if (!alone) payload->colors = HL_COLORS_UNREAD;
   else if (payload->grid.type == HL_VOXEL_U8)
-    payload->colors = HL_COLORS_MEANT; /* as VTK's mappers take bytes */
+    payload->colors = HL_COLORS_MEANT; /* VTK's mappers take bytes as colours */
   status = hl_volume_check_grid(&payload->grid, header->xml.stream->path, error);
   return status == HL_OK
              ? hl_component_choose(header->request, header->xml.stream->path, false, payload, error)
@@ -278,7 +278,7 @@ static hl_status describe(const vti_header *header, const vti_piece *piece, cons
 /* Goes to the chosen array of a piece and reads it as a volume. */
 static hl_status read_piece(hl_stream **stream, vti_header *header, size_t index, hl_volume **volume,
                             hl_error *error) {
-  header->xml.stream = *stream; /* the array before may have opened it anew */
+  header->xml.stream = *stream; /* reading the array before may have opened the stream anew */
   const vti_entry *entry = entry_of(header, index);
   hl_payload payload;
   if (entry == NULL)
@@ -295,11 +295,12 @@ static hl_status read_piece(hl_stream **stream, vti_header *header, size_t index
 static void place_of(const vti_header *header, const vti_piece *piece, size_t first[3]) {
   for (int axis = 0; axis < 3; axis++) {
     double before = piece->extent[2 * axis] - header->extent[2 * axis];
-    first[axis] = before >= 0 ? (size_t)before : SIZE_MAX; /* one before the whole does not fit */
+    first[axis] = before >= 0 ? (size_t)before : SIZE_MAX; /* a piece that begins before the whole does not
+                                                            * fit */
   }
 }
 
-/* Reads all pieces of the file, each to its place. */
+/* Reads all pieces of the file, and puts each at its place. */
 static hl_status read_pieces(hl_stream **stream, vti_header *header, hl_volume **volume, hl_error *error) {
   const vti_piece whole = {.extent = {header->extent[0], header->extent[1], header->extent[2],
                                       header->extent[3], header->extent[4], header->extent[5]}};
@@ -316,10 +317,11 @@ static hl_status read_pieces(hl_stream **stream, vti_header *header, hl_volume *
     if (is_empty(&header->pieces[n])) continue;
     place_of(header, &header->pieces[n], first);
     status = read_piece(stream, header, n, &piece, error);
-    /* the whole's memory is taken when a first piece was there: a header alone promises what it likes */
+    /* memory for the whole volume is taken only when a first piece was read, as a header alone can promise
+     * anything */
     if (status == HL_OK && pieces.to.context == NULL)
       status = hl_pieces_begin(header->request->context, &grid, (*stream)->path, &pieces, error);
-    if (status == HL_OK) pieces.to.path = (*stream)->path; /* of the stream that is open now */
+    if (status == HL_OK) pieces.to.path = (*stream)->path; /* the path of the stream that is open now */
     if (status == HL_OK) status = hl_pieces_put(&pieces, piece, first, error);
     hl_volume_release(piece);
   }
@@ -368,7 +370,7 @@ static hl_status place_rectilinear(hl_stream **stream, vti_header *header, hl_vo
 static hl_status load_image(hl_stream **stream, hl_load_request *request, bool nested, hl_volume **volume,
                             hl_error *error);
 
-/* Reads one file. parts: the request for it, whose lists are owned by the caller. */
+/* Reads one file. parts: the request for the file, whose lists are owned by the caller. */
 static hl_status read_part(const vti_header *header, size_t index, hl_load_request *part, hl_volume **volume,
                            hl_error *error) {
   hl_stream *stream = NULL;
@@ -380,7 +382,7 @@ static hl_status read_part(const vti_header *header, size_t index, hl_load_reque
   return status;
 }
 
-/* The grid of the whole, with the type and the place of values of its first part. */
+/* The grid of the whole volume, with the first part's type and placing of values. */
 static hl_volume_description grid_of_parts(const vti_header *header, const hl_volume *part, bool of_cells) {
   hl_volume_description grid;
   hl_volume_description_defaults(&grid);
@@ -413,7 +415,7 @@ static hl_status read_parts(const vti_header *header, hl_volume **volume, hl_err
     size_t at[3];
     part.array = first ? request->array : request->arrays[request->chosen].name;
     status = read_part(header, n, &part, &piece, error);
-    if (status == HL_OK && first) { /* what it listed and chose holds for all */
+    if (status == HL_OK && first) { /* lists and choices of the first file hold for all files */
       request->arrays = part.arrays;
       request->array_count = part.array_count;
       request->chosen = part.chosen;
@@ -440,7 +442,8 @@ static hl_status read_parts(const vti_header *header, hl_volume **volume, hl_err
 
 /* ---- the whole ---- */
 
-/* Of a single piece its own extent counts. Without a Piece, the whole is one. */
+/* Completes the pieces. The extent of a single piece is its own. A file without a Piece has one, the
+ * whole. */
 static hl_status finish_pieces(vti_header *header, hl_error *error) {
   if (header->piece_count == 0 && header->has_extent) {
     hl_status status = grow(header, (void **)&header->pieces, 0, &header->piece_room, sizeof *header->pieces,

@@ -1,4 +1,4 @@
-/* volume/vtk_xml.c - what all of VTK's XML files share. */
+/* volume/vtk_xml.c - shared by the readers of all of VTK's XML files. */
 #include "volume/vtk_xml.h"
 
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "volume/text.h"
 
 bool hl_vtk_xml_has_content(const unsigned char *bytes, size_t length) {
-  size_t n = length >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* byte order mark */
+  size_t n = length >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* skips the byte order mark */
   while (n < length && hl_is_space((char)bytes[n])) n++;
   return (length - n >= 5 && memcmp(bytes + n, "<?xml", 5) == 0) ||
          (length - n >= 8 && memcmp(bytes + n, "<VTKFile", 8) == 0);
@@ -87,7 +87,7 @@ hl_status hl_vtk_xml_array_tag(const hl_vtk_xml *xml, const hl_xml_tag *tag, hl_
   return HL_OK;
 }
 
-/* The appended data begin after the first '_'. */
+/* Finds the appended data, which begin after the first '_'. */
 hl_status hl_vtk_xml_appended_tag(hl_vtk_xml *xml, const hl_xml_tag *tag, hl_error *error) {
   const char *encoding = hl_xml_attribute(tag, "encoding");
   xml->appended_is_base64 = encoding == NULL || strcmp(encoding, "base64") == 0;

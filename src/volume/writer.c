@@ -2,7 +2,7 @@
  *
  * In: the grid of a volume. Out: the bytes before the voxels, native byte order. NIfTI's world is
  * right-anterior-superior and MetaImage's left-posterior-superior: grids of another anatomical space are
- * turned by half a turn about z, so that each voxel stays where it is in the body. */
+ * turned by half a turn about z, so that each voxel stays at its place in the body. */
 #define _GNU_SOURCE
 #include "volume/writer.h"
 
@@ -51,7 +51,7 @@ static void put_real(hl_written_header *header, size_t at, double value) {
   memcpy(header->bytes + at, &real, sizeof real);
 }
 
-/* The place of a grid in a world whose x and y point the other way. */
+/* Places a grid in a world whose x and y point the other way. */
 static void turn(hl_volume_description *grid) {
   for (int row = 0; row < 2; row++) {
     grid->origin[row] = 0 - grid->origin[row];
@@ -59,7 +59,7 @@ static void turn(hl_volume_description *grid) {
   }
 }
 
-/* Brings a grid into the space that a format's world is, if the grid tells its own. */
+/* Brings a grid into the format's anatomical space, if the grid states its own. */
 static void bring_into(hl_space wanted, hl_volume_description *grid) {
   if (grid->space == HL_SPACE_LAS) { /* only x differs from RAS */
     grid->origin[0] = 0 - grid->origin[0];
@@ -78,7 +78,7 @@ static void find_steps(const hl_volume_description *grid, double length[3], doub
 
 /* ---- NRRD ---- */
 
-/* As NRRD's documents write units. */
+/* A unit's name as NRRD's documentation writes it. */
 static const char *short_name(const char *unit) {
   if (strcmp(unit, "metre") == 0) return "m";
   if (strcmp(unit, "millimetre") == 0) return "mm";
@@ -135,7 +135,7 @@ static hl_status make_metaimage(const char *path, const hl_volume_description *g
     for (int row = 0; row < 3; row++) add(header, " %.17g", unit[axis][row]);
   add(header, "\nOffset = %.17g %.17g %.17g\nCenterOfRotation = 0 0 0\n", grid.origin[0], grid.origin[1],
       grid.origin[2]);
-  /* From right, front and foot to left, back and head: MetaIO's name of LPS. */
+  /* MetaIO's name of LPS, from right, front and foot to left, back and head */
   if (grid.space != HL_SPACE_UNKNOWN) add(header, "AnatomicalOrientation = RAI\n");
   add(header, "ElementSpacing = %.17g %.17g %.17g\nDimSize = %zu %zu %zu\n", length[0], length[1], length[2],
       grid.dimensions[0], grid.dimensions[1], grid.dimensions[2]);
@@ -175,7 +175,7 @@ static hl_status make_nifti(const char *path, const hl_volume_description *given
                      "%s: NIfTI holds %d voxels along an axis, not %zu: write .nrrd", path, INT16_MAX,
                      grid.dimensions[axis]);
   bring_into(HL_SPACE_RAS, &grid);
-  header->length = HEADER_BYTES + 4; /* four zeros: no extensions */
+  header->length = HEADER_BYTES + 4; /* four zeros mean that there are no extensions */
   put_integer(header, 0, HEADER_BYTES);
   put_word(header, DIM, 3);
   put_word(header, DATATYPE, codes[grid.type]);
@@ -287,7 +287,7 @@ static hl_status make_mrc(const char *path, const hl_volume_description *grid, h
     put_real(header, ORIGIN + 4 * axis, grid->origin[axis]);
   }
   put_integer(header, MODE, (size_t)modes[grid->type]);
-  /* marks the statistics as unknown: least 0, greatest -1, mean -2, deviation -1 */
+  /* these values mark the statistics as unknown: least 0, greatest -1, mean -2, deviation -1 */
   put_real(header, DMIN + 4, -1);
   put_real(header, DMIN + 8, -2);
   put_real(header, DMIN + 140, -1);
@@ -325,7 +325,7 @@ const hl_writer *hl_writer_for(const char *path) {
   return NULL;
 }
 
-/* The power of ten of a unit, in metres. */
+/* The exponent of ten of a unit in metres. */
 static int power_of(const char *unit) {
   if (hl_text_starts(unit, "metre")) return 0;
   if (hl_text_starts(unit, "millimetre")) return -3;

@@ -1,5 +1,5 @@
-/* volume/writer.h - the formats that volumes are written in: each is a header, then voxels, then at most a
- * few bytes. */
+/* volume/writer.h - the formats in which volumes are written. Each has a header, voxels, and at most a few
+ * bytes after them. */
 #ifndef HL_VOLUME_WRITER_H
 #define HL_VOLUME_WRITER_H
 
@@ -9,8 +9,8 @@ enum { HL_WRITER_HEADER_BYTES = 4096, HL_WRITER_SIZE_CHARACTERS = 20 };
 
 typedef enum hl_packing {
   HL_PACKING_NONE,
-  HL_PACKING_GZIP_ALL,    /* the whole file */
-  HL_PACKING_GZIP_VOXELS, /* the voxels after the header */
+  HL_PACKING_GZIP_ALL,    /* packs the whole file */
+  HL_PACKING_GZIP_VOXELS, /* packs the voxels after the header */
   HL_PACKING_ZLIB_VOXELS
 } hl_packing;
 
@@ -18,26 +18,28 @@ typedef enum hl_packing {
 typedef struct hl_written_header {
   unsigned char bytes[HL_WRITER_HEADER_BYTES];
   size_t length;
-  const char *end;  /* text after the voxels; null: none */
-  const char *unit; /* given: of the grid's lengths, one of the writer's; null: unknown */
-  size_t
-      size_at; /* where the voxels' packed bytes are to be stated, in HL_WRITER_SIZE_CHARACTERS; 0: nowhere */
+  const char *end;  /* text after the voxels; null if there is none */
+  const char *unit; /* input: the unit of the grid's lengths, one of the writer's; null if unknown */
+  size_t size_at;   /* position at which the number of the voxels' packed bytes is stated, in
+                     * HL_WRITER_SIZE_CHARACTERS; 0 if nowhere */
 } hl_written_header;
 
 typedef struct hl_writer {
-  const char *ending; /* of the file's name */
+  const char *ending; /* end of the file's name */
   hl_packing packing;
-  unsigned types; /* bit 1 << hl_voxel_type: voxels of this type can be written */
-  /* Where the grid cannot be told, fails and names the file. grid: dimensions, type, origin, axes, space. */
+  unsigned types; /* bit 1 << hl_voxel_type is set if voxels of this type can be written */
+  /* Makes the header. If the format cannot state the grid, fails and names the file. grid: dimensions, type,
+   * origin, axes, space. */
   hl_status (*make_header)(const char *path, const hl_volume_description *grid, hl_written_header *header,
                            hl_error *error);
-  const char *loses; /* parts of the placement that the format has no words for: "the space"; null: none */
-  const char *units; /* of lengths that the format can tell, between '|': lengths in another one are written
-                        in the first; null: it tells none, and lengths stay as they are */
+  const char *loses; /* parts of the placement that the format cannot state, such as "the space"; null if
+                      * there are none */
+  const char *units; /* units of length that the format can state, between '|'; lengths in other units are
+                      * converted to the first. Null if it states none, so that lengths stay as they are */
 } hl_writer;
 
-/* The unit in which a writer writes lengths of this unit, and the factor that they are multiplied by; null
- * and 1: they stay as they are, as the volume or the format knows no unit. */
+/* The unit in which a writer writes lengths of this unit, and the factor by which they are multiplied. Null
+ * and 1 if lengths stay as they are, as the volume or the format has no unit. */
 const char *hl_written_unit(const hl_writer *writer, const char *unit, double *factor);
 
 /* The writer for a file's name; null if there is none. */

@@ -43,7 +43,7 @@ static hl_status skip_past(hl_stream *stream, const char *ending, hl_error *erro
   }
 }
 
-/* Length of the tag at bytes, '<' and '>' included; 0 if it does not end within length. */
+/* The length of the tag at bytes, including '<' and '>'; 0 if the tag does not end within length. */
 static size_t tag_length(const unsigned char *bytes, size_t length) {
   unsigned char quote = 0;
   for (size_t n = 1; n < length; n++) {
@@ -59,7 +59,7 @@ static size_t tag_length(const unsigned char *bytes, size_t length) {
 }
 
 /* Reads a character reference, "&#181;" or "&#xB5;", and writes the character as UTF-8, which is never
- * longer. Returns the reference's length; 0: it is none. */
+ * longer. Returns the reference's length; 0 if it is none. */
 static size_t resolve_number(const char *value, char **out) {
   bool hex = value[1] == '#' && (value[2] == 'x' || value[2] == 'X');
   size_t n = hex ? 3 : 2, digits = 0;
@@ -106,7 +106,7 @@ static void resolve_entities(char *value) {
 
 static bool ends_name(char c) { return c == 0 || hl_is_space(c) || c == '=' || c == '/'; }
 
-/* Splits name="value" off at *cursor, which moves past it; false if it is malformed. */
+/* Splits name="value" off at *cursor, and moves *cursor past it. False if it is malformed. */
 static bool cut_attribute(char **cursor, hl_xml_tag *tag) {
   if (tag->attribute_count == HL_XML_ATTRIBUTES) return false;
   char *name = *cursor, *end = name;
@@ -127,7 +127,7 @@ static bool cut_attribute(char **cursor, hl_xml_tag *tag) {
   return true;
 }
 
-/* Parses tag->text: the characters between '<' and '>'. */
+/* Parses tag->text, the characters between '<' and '>'. */
 static bool cut_tag(hl_xml_tag *tag) {
   char *cursor = tag->text;
   tag->attribute_count = 0;

@@ -24,7 +24,8 @@ static bool is_marker(const char *name) {
          strcmp(name, ".zattrs") == 0;
 }
 
-/* The root of an archive may lie in a folder: it is where the marker file with the shortest path lies. */
+/* Finds the root of an archive, which may lie in a folder: the folder of the marker file with the shortest
+ * path. */
 static bool find_root_of_archive(const hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES]) {
   int least = HL_BUNDLE_DEPTH_MOST;
   for (size_t n = 0; n < bundle->count; n++) {
@@ -58,7 +59,7 @@ static hl_status find_root(hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES], b
 
 /* ---- one image ---- */
 
-/* The sizes of a level's volume along x, y, z; *others: the product of its other axes' sizes. */
+/* The sizes of a level's volume along x, y, z. *others: the product of its other axes' sizes. */
 static void level_sizes(const hl_zarr_image *image, int level, size_t sizes[3]) {
   const hl_zarr_array *array = &image->levels[level].array;
   for (int a = 0; a < 3; a++) sizes[a] = 1;
@@ -76,7 +77,7 @@ static hl_status choose_level(const hl_zarr_image *image, const char *path, hl_l
   return hl_level_choose(request, path, sizes, (size_t)image->level_count, error);
 }
 
-/* The volume's grid, and the array's axes that are the grid's. */
+/* Describes the volume's grid, and finds the array's axes that are the grid's. */
 static void describe(const hl_zarr_image *image, int number, hl_payload *payload, hl_zarr_choice *choice) {
   const hl_zarr_level *level = &image->levels[number];
   double known = 1;
@@ -95,8 +96,8 @@ static void describe(const hl_zarr_image *image, int number, hl_payload *payload
   if (choice->axis[HL_ZARR_Z] < 0) payload->grid.axis[HL_ZARR_Z][HL_ZARR_Z] = known;
 }
 
-/* The array's size along an axis of a kind (time, channel), and where the chosen index along this axis is
- * kept. */
+/* The array's size along an axis of a kind (time, channel), and the place where the chosen index along this
+ * axis is kept. */
 static size_t count_along(const hl_zarr_image *image, const hl_zarr_array *array, hl_zarr_axis kind,
                           int *axis) {
   *axis = -1;
@@ -154,7 +155,7 @@ static hl_status load_array(const hl_bundle *bundle, const hl_zarr_array *array,
   return status;
 }
 
-/* Lists the array `name` of the group, if there is one and it can hold a volume. */
+/* Lists the array `name` of the group, if it exists and can hold a volume. */
 static hl_status list_array(const hl_bundle *bundle, const char *folder, const char *name,
                             hl_load_request *request, hl_error *error) {
   char path[HL_ZARR_PATH_BYTES];
@@ -169,7 +170,7 @@ static hl_status list_array(const hl_bundle *bundle, const char *folder, const c
 
 static int by_text(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
 
-/* The names of the files in a folder, sorted; the list and the names are owned by the caller. */
+/* Lists the names of the files in a folder, sorted. The list and the names are owned by the caller. */
 static hl_status list_folder(const hl_bundle *bundle, char **names, size_t *count, hl_error *error) {
   int descriptor = -1;
   hl_status status = HL_OK;
@@ -189,7 +190,7 @@ static hl_status list_folder(const hl_bundle *bundle, char **names, size_t *coun
   return status;
 }
 
-/* The names of the arrays in an archive's folder; sorted and owned as in list_folder(). */
+/* Lists the names of the arrays in an archive's folder, sorted and owned as by list_folder(). */
 static hl_status list_archive(const hl_bundle *bundle, const char *root, char **names, size_t *count,
                               hl_error *error) {
   size_t length = strlen(root);
@@ -225,7 +226,7 @@ static hl_status list_arrays(const hl_bundle *bundle, const char *folder, hl_loa
   return status;
 }
 
-/* A group without OME-Zarr's metadata: reads one of its arrays. */
+/* Loads a group without OME-Zarr's metadata: reads one of its arrays. */
 static hl_status load_group(const hl_bundle *bundle, const char *folder, hl_load_request *request,
                             hl_volume **volume, hl_error *error) {
   char path[HL_ZARR_PATH_BYTES];
@@ -260,7 +261,7 @@ static hl_status load_described(const hl_bundle *bundle, const char *folder, con
   return status;
 }
 
-/* depth: how many collections the group lies within (a plate's well, say). */
+/* Loads a node. depth: the number of collections around the group, such as a plate and its well. */
 static hl_status load_node(const hl_bundle *bundle, char folder[HL_ZARR_PATH_BYTES], int depth,
                            hl_load_request *request, hl_volume **volume, hl_error *error) {
   json_t *attributes;

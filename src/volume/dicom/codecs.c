@@ -1,5 +1,5 @@
-/* volume/dicom/codecs.c - what the decoders of compressed frames share: the check of a frame's header against
- * the file's, and the error of a damaged frame. */
+/* volume/dicom/codecs.c - shared by the decoders of compressed frames: the check of a frame's header against
+ * the file's header, and the error of a damaged frame. */
 #include "volume/dicom/codecs.h"
 
 hl_status hl_dicom_fail_packed(const hl_dicom_packed *packed, const char *codec, const char *why,

@@ -1,8 +1,8 @@
 /* volume/dicom/codecs.h - the decoders of compressed frames.
  *
- * Each fills [rows][columns][samples] values of 8 or 16 bits (the pixels' `allocated`), native byte order;
- * bits above the `stored` ones are undefined. A decoder whose library is absent fails and names the library.
- */
+ * Each decoder fills [rows][columns][samples] values of 8 or 16 bits (the pixels' `allocated`), native byte
+ * order; bits above the `stored` ones are undefined. A decoder whose library is absent fails and names the
+ * library. */
 #ifndef HL_VOLUME_DICOM_CODECS_H
 #define HL_VOLUME_DICOM_CODECS_H
 
@@ -25,10 +25,10 @@ hl_status hl_dicom_decode_jpeg_lossless(const hl_dicom_packed *packed, void *val
 hl_status hl_dicom_decode_jpeg_ls(const hl_dicom_packed *packed, void *values, hl_error *error);
 hl_status hl_dicom_decode_jpeg_2000(const hl_dicom_packed *packed, void *values, hl_error *error);
 
-/* "PATH: a damaged CODEC picture: WHY" */
+/* Fails with "PATH: a damaged CODEC picture: WHY". */
 hl_status hl_dicom_fail_packed(const hl_dicom_packed *packed, const char *codec, const char *why,
                                hl_error *error);
-/* Compares a codec's own header with the pixels that the file promises; fails where they differ. */
+/* Compares a codec's own header with the pixels that the file promises. Fails where they differ. */
 hl_status hl_dicom_check_packed(const hl_dicom_packed *packed, const char *codec, size_t columns, size_t rows,
                                 size_t samples, int bits, hl_error *error);
 

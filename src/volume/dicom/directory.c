@@ -1,4 +1,4 @@
-/* volume/dicom/directory.c - the files of a DICOMDIR. Names that lead out of its folder are passed over. */
+/* volume/dicom/directory.c - the files of a DICOMDIR. Names that lead out of its folder are ignored. */
 #define _GNU_SOURCE
 #include "volume/dicom/directory.h"
 
@@ -19,8 +19,8 @@ static bool is_there(const hl_bundle *bundle, const char *name) {
   return there;
 }
 
-/* Turns DICOM\IM0001 into DICOM/IM0001, or into dicom/im0001 where the disc was copied with names in lower
- * case. */
+/* Adds a file. The name DICOM\IM0001 becomes DICOM/IM0001, or dicom/im0001 where the disc was copied with
+ * names in lower case. */
 static hl_status add_file(hl_bundle *bundle, char *name, hl_error *error) {
   for (char *c = name; *c != 0; c++)
     if (*c == '\\') *c = '/';

@@ -4,7 +4,7 @@
 
 #include "volume/bundle.h"
 
-/* Adds the files that a DICOMDIR names and that exist to the bundle's entries. Adds nothing if the source is
+/* Adds to the bundle's entries the files that a DICOMDIR names and that exist. Adds nothing if the source is
  * another kind of DICOM file. */
 hl_status hl_dicom_directory_read(hl_source **source, hl_bundle *bundle, hl_error *error);
 

@@ -25,7 +25,7 @@ static bool is_vr(const unsigned char *letters) {
   return letters[0] >= 'A' && letters[0] <= 'Z' && letters[1] >= 'A' && letters[1] <= 'Z';
 }
 
-/* Whether two reserved bytes and a length of four follow (PS3.5, table 7.1-1). */
+/* Whether a representation has two reserved bytes and a length of four bytes (PS3.5, table 7.1-1). */
 static bool is_long(uint16_t vr) {
   static const char names[] = "OBODOFOLOVOWSQSVUCUNURUTUV";
   for (size_t n = 0; n + 1 < sizeof names; n += 2)
@@ -33,8 +33,8 @@ static bool is_long(uint16_t vr) {
   return false;
 }
 
-/* The sequences that are read in files without value representations: such files do not mark sequences of
- * known length. */
+/* The sequences that are read in files without value representations, since such files do not mark sequences
+ * of known length. */
 static bool is_wanted_sequence(uint32_t tag) {
   static const uint32_t tags[] = {
       0x52009229, 0x52009230, /* functional groups: shared, per frame */
@@ -58,7 +58,7 @@ static uint64_t limited(uint64_t at, uint32_t length, uint64_t most) {
   return length == HL_DICOM_UNDEFINED || at + length > most ? most : at + length;
 }
 
-/* The end of the innermost sequence or item around the reader's position. */
+/* The position where the innermost sequence or item around the reader ends. */
 static uint64_t end_of_item(const hl_dicom_reader *reader) {
   uint64_t end = UINT64_MAX;
   for (int n = 0; n < reader->depth; n++) {
@@ -77,7 +77,7 @@ static hl_status enter(hl_dicom_reader *reader, const hl_dicom_element *element,
       .tag = element->tag,
       .item = UINT32_MAX,
       .fragments = element->tag == HL_DICOM_PIXEL_DATA,
-      /* PS3.5, 6.2.2: a sequence of unknown representation is written implicitly, little-endian. */
+      /* PS3.5, 6.2.2: a sequence of unknown representation is written implicitly, in little-endian order */
       .implicit = outer || element->vr == HL_DICOM_VR('U', 'N'),
       .end = limited(element->offset, element->length, most)};
   reader->at = element->offset;
@@ -110,7 +110,7 @@ static hl_status take_item(hl_dicom_reader *reader, bool *ended, hl_error *error
   return HL_OK;
 }
 
-/* Leaves the items and sequences that end at the reader's position, until an element comes next. */
+/* Leaves the items and sequences that end at the reader's position, until the next thing is an element. */
 static hl_status settle(hl_dicom_reader *reader, bool *ended, hl_error *error) {
   *ended = false;
   while (reader->depth > 0 && !*ended) {
@@ -127,7 +127,8 @@ static hl_status settle(hl_dicom_reader *reader, bool *ended, hl_error *error) {
   return HL_OK;
 }
 
-/* Reads tag, representation and length at reader->at. *header: how many bytes they are; 0 at the end. */
+/* Reads tag, representation and length at reader->at. *header: the number of bytes that they take; 0 at the
+ * end. */
 static hl_status take_header(hl_dicom_reader *reader, hl_dicom_element *element, size_t *header,
                              hl_error *error) {
   const unsigned char *bytes;
@@ -153,8 +154,8 @@ static hl_status take_header(hl_dicom_reader *reader, hl_dicom_element *element,
 }
 
 static bool is_sequence(const hl_dicom_reader *reader, const hl_dicom_element *element) {
-  if (element->tag == HL_DICOM_PIXEL_DATA)
-    return reader->depth > 0 && element->length == HL_DICOM_UNDEFINED; /* of an icon */
+  if (element->tag == HL_DICOM_PIXEL_DATA) /* Pixels within a sequence belong to an icon. */
+    return reader->depth > 0 && element->length == HL_DICOM_UNDEFINED;
   return element->vr == HL_DICOM_VR('S', 'Q') || element->length == HL_DICOM_UNDEFINED ||
          (element->vr == 0 && is_wanted_sequence(element->tag));
 }
@@ -173,7 +174,7 @@ hl_status hl_dicom_next(hl_dicom_reader *reader, hl_dicom_element *element, bool
       reader->level[reader->depth - 1].item_end = reader->at;
       continue;
     }
-    if (element->tag >> 16 == 0xfffe) { /* an end marker that nothing has begun */
+    if (element->tag >> 16 == 0xfffe) { /* an end marker without a beginning is ignored */
       reader->at = element->offset;
       continue;
     }
@@ -207,8 +208,8 @@ hl_status hl_dicom_text(hl_dicom_reader *reader, const hl_dicom_element *element
   return status;
 }
 
-/* Reads numbers written as text, with backslashes between them, up to the first that is empty or malformed.
- */
+/* Reads numbers written as text with backslashes between them, up to the first number that is empty or
+ * malformed. */
 static int parse_numbers(char *text, double *numbers, int most) {
   int count = 0;
   for (char *next = text; next != NULL && count < most; count++) {

@@ -1,8 +1,8 @@
-/* volume/dicom/frame.c - from the bytes of a file to the values of a frame.
+/* volume/dicom/frame.c - converts the bytes of a file to the values of a frame.
  *
  * Encapsulated (compressed) pixel data are a list of items (PS3.5, annex A.4): a table of the frames'
- * offsets, which may be empty, then fragments of frames. In a file of one frame, all fragments belong to it.
- */
+ * offsets, which may be empty, then fragments of frames. In a file of one frame, all fragments belong to
+ * it. */
 #include "volume/dicom/frame.h"
 
 #include <stdlib.h>
@@ -38,7 +38,8 @@ static hl_status fail_short(const hl_source *source, uint64_t at, hl_error *erro
 
 /* ---- fragments ---- */
 
-/* Reads a fragment's header. *length: the fragment's length in bytes; UINT64_MAX: no fragment is left. */
+/* Reads a fragment's header. *length: the fragment's length in bytes, or UINT64_MAX if no fragment is
+ * left. */
 static hl_status peek_fragment(hl_source *source, const hl_dicom_pixels *p, uint64_t at, uint64_t *length,
                                hl_error *error) {
   const unsigned char *bytes;
@@ -77,7 +78,8 @@ static hl_status count_fragments(hl_source *source, const hl_dicom_pixels *p, ui
   }
 }
 
-/* Whether a fragment begins a picture: JPEG's and JPEG 2000's first marker, or the number of RLE segments. */
+/* Whether a fragment begins a picture: with the first marker of JPEG or JPEG 2000, or with the number of RLE
+ * segments. */
 static hl_status begins_picture(hl_source *source, const hl_dicom_pixels *p, uint64_t at, bool *begins,
                                 hl_error *error) {
   const unsigned char *bytes;
@@ -89,8 +91,9 @@ static hl_status begins_picture(hl_source *source, const hl_dicom_pixels *p, uin
   return status;
 }
 
-/* Finds where each frame begins, without the table of offsets, which may be wrong. With as many fragments as
- * frames, each fragment is a frame; else every fragment that begins a picture begins a frame. */
+/* Finds where each frame begins, without the table of offsets, which may be wrong. If there are as many
+ * fragments as frames, each fragment is a frame. Otherwise a frame begins at every fragment that begins a
+ * picture. */
 static hl_status place_frames(hl_source *source, hl_dicom_file *file, uint64_t begin, size_t fragments,
                               uint64_t end, hl_error *error) {
   size_t found = 0;
@@ -181,12 +184,12 @@ static void reverse_each(unsigned char *bytes, size_t count, size_t size) {
 
 static void unpack_bits(const unsigned char *packed, size_t first_bit, size_t count, unsigned char *values) {
   for (size_t n = 0; n < count; n++) {
-    size_t bit = first_bit + n; /* PS3.5, 8.1.1: the first pixel is the lowest bit */
+    size_t bit = first_bit + n; /* PS3.5, 8.1.1: the first pixel is in the lowest bit */
     values[n] = packed[bit / 8] >> (bit % 8) & 1;
   }
 }
 
-/* Y1 Y2 Cb Cr for two pixels (PS3.3, C.7.6.3.1.2). */
+/* Unpacks Y1 Y2 Cb Cr, which stand for two pixels (PS3.3, C.7.6.3.1.2). */
 static void unpack_halved(const unsigned char *packed, size_t pixels, unsigned char *values) {
   for (size_t n = 0; n + 1 < pixels; n += 2, packed += 4, values += 6) {
     const unsigned char two[6] = {packed[0], packed[2], packed[3], packed[1], packed[2], packed[3]};
@@ -194,7 +197,7 @@ static void unpack_halved(const unsigned char *packed, size_t pixels, unsigned c
   }
 }
 
-/* Turns one plane per sample into samples side by side. */
+/* Rearranges one plane for each sample to samples side by side. */
 static void interleave(const unsigned char *planes, size_t pixels, size_t samples, size_t size,
                        unsigned char *values) {
   for (size_t n = 0; n < pixels; n++)
@@ -209,7 +212,7 @@ static hl_status read_native(hl_source *source, const hl_dicom_file *file, uint3
   uint64_t bytes = (uint64_t)count * size, at = p->offset;
   bool halved = p->is_halved && p->samples == 3 && size == 1;
   if (halved) bytes = 2 * (uint64_t)pixels;
-  if (p->encapsulated) { /* pixels that are not compressed, but stored in fragments */
+  if (p->encapsulated) { /* the pixels are not compressed, but are stored in fragments */
     hl_status status = read_fragments(source, file, index, space, &got, error);
     if (status == HL_OK && got < bytes) status = fail_short(source, at, error);
     if (status != HL_OK) return status;
@@ -221,8 +224,8 @@ static hl_status read_native(hl_source *source, const hl_dicom_file *file, uint3
     } else at += index * bytes;
     hl_status status = make_room(space->context, &space->packed, &space->packed_capacity, (size_t)bytes + 2,
                                  error);
-    bool odd = p->big_endian && p->words &&
-               size == 1; /* 8-bit pixels in swapped 16-bit words: an even number of bytes is read */
+    bool odd = p->big_endian && p->words && size == 1; /* 8-bit pixels lie in swapped 16-bit words, so that an
+                                                        * even number of bytes is read */
     if (status == HL_OK) status = hl_source_read(source, at, space->packed, (size_t)bytes + odd, &got, error);
     if (status == HL_OK && got < bytes) status = fail_short(source, at, error);
     if (status != HL_OK) return status;
@@ -262,7 +265,7 @@ static unsigned char to_byte(double value) {
   return (unsigned char)(value < 0 ? 0 : value > 255 ? 255 : value + 0.5);
 }
 
-/* PS3.3, C.7.6.3.1.2: the inverse of YBR_FULL. */
+/* Converts to RGB by the inverse of YBR_FULL (PS3.3, C.7.6.3.1.2). */
 static void to_rgb(size_t pixels, unsigned char *values) {
   for (size_t n = 0; n < pixels; n++, values += 3) {
     double y = values[0], b = values[1] - 128.0, r = values[2] - 128.0;
@@ -288,7 +291,7 @@ static hl_status decode(const hl_dicom_pixels *p, const hl_dicom_packed *packed,
 
 /* ---- tiles and palettes ---- */
 
-/* Keeps one tile of a mosaic. size: bytes of a pixel. */
+/* Cuts one tile out of a mosaic. size: bytes of a pixel. */
 static void cut_tile(const hl_dicom_pixels *p, size_t tile, size_t size, unsigned char *values) {
   size_t rows = hl_dicom_slice_rows(p), columns = hl_dicom_slice_columns(p);
   size_t x = tile % p->tiles * columns, y = tile / p->tiles * rows;
@@ -296,8 +299,8 @@ static void cut_tile(const hl_dicom_pixels *p, size_t tile, size_t size, unsigne
     memmove(values + row * columns * size, values + ((y + row) * p->columns + x) * size, columns * size);
 }
 
-/* Replaces pixel values by the colours that they stand for, from the last to the first: colours are longer.
- */
+/* Replaces pixel values by the colours that they stand for, from the last to the first, as colours are
+ * longer. */
 static void apply_palette(const hl_dicom_pixels *p, const hl_dicom_palette *palette, size_t count,
                           hl_dicom_workspace *space) {
   for (size_t n = count; n-- > 0;) {

@@ -25,7 +25,7 @@ bool hl_dicom_has_mark(const unsigned char *bytes, size_t length) {
   return length >= PREAMBLE_BYTES + 4 && memcmp(bytes + PREAMBLE_BYTES, "DICM", 4) == 0;
 }
 
-/* Whether the bytes look like a file without the mark "DICM": such files begin with an element of group 2 or
+/* Whether the bytes look like a file without the mark "DICM". Such files begin with an element of group 2 or
  * 8 that has a short value. */
 bool hl_dicom_may_begin(const unsigned char *bytes, size_t length) {
   if (hl_dicom_has_mark(bytes, length)) return true;
@@ -34,12 +34,12 @@ bool hl_dicom_may_begin(const unsigned char *bytes, size_t length) {
   return explicit || (bytes[5] == 0 && bytes[6] == 0 && bytes[7] == 0 && bytes[4] <= 64);
 }
 
-/* Implicit, little-endian, but for the pixels, which are big-endian. */
+/* This syntax is implicit and little-endian, except for the pixels, which are big-endian. */
 #define GE_PRIVATE "1.2.840.113619.5.2"
 
 static void use_syntax(hl_dicom_header *header, hl_dicom_reader *reader) {
   static const struct {
-    const char *uid; /* the end of the UID, which begins with 1.2.840.10008.1.2 */
+    const char *uid; /* the end of the UID, whose beginning is 1.2.840.10008.1.2 */
     hl_dicom_codec codec;
   } syntaxes[] = {
       {"", HL_DICOM_NATIVE},          {".1", HL_DICOM_NATIVE},        {".1.98", HL_DICOM_NATIVE},
@@ -65,7 +65,7 @@ static void use_syntax(hl_dicom_header *header, hl_dicom_reader *reader) {
   header->deflated = strcmp(uid, ".1.99") == 0;
 }
 
-/* The file's meta information, group 2, which is always explicit and little-endian (PS3.10, 7.1). */
+/* Reads the file's meta information, group 2, which is always explicit and little-endian (PS3.10, 7.1). */
 static hl_status read_meta(hl_dicom_header *header, hl_dicom_reader *reader, hl_error *error) {
   for (;;) {
     const unsigned char *bytes;
@@ -84,7 +84,7 @@ static hl_status read_meta(hl_dicom_header *header, hl_dicom_reader *reader, hl_
   }
 }
 
-/* Finds the transfer syntax of a file that states none, from its first element. */
+/* Finds the transfer syntax of a file that states none, by its first element. */
 static hl_status guess_syntax(hl_dicom_reader *reader, hl_error *error) {
   const unsigned char *bytes;
   size_t available;
@@ -121,9 +121,9 @@ hl_status hl_dicom_begin(hl_source **source, hl_dicom_header *header, hl_dicom_r
 
 typedef struct attribute {
   uint32_t tag;
-  uint16_t vr;      /* type of its numbers in files that state none; 0: a text */
-  uint16_t numbers; /* how many numbers are kept; of a text: how many bytes */
-  bool of_frame;    /* `place` is an offset in hl_dicom_frame, else in hl_dicom_header */
+  uint16_t vr;      /* type of the attribute's numbers in files that state none; 0 for a text */
+  uint16_t numbers; /* how many numbers are kept; for a text, how many bytes */
+  bool of_frame;    /* whether `place` is an offset in hl_dicom_frame, not in hl_dicom_header */
   size_t place;
 } attribute;
 
@@ -208,7 +208,7 @@ static void clear_header(hl_dicom_header *header) {
   clear_frame(&header->base);
 }
 
-/* Finds the frame that the current element, within the functional groups of frames, belongs to. A new frame
+/* Finds the frame to which the current element, within the functional groups of frames, belongs. A new frame
  * is empty. */
 static hl_status frame_of(const hl_dicom_reader *reader, hl_dicom_header *header, hl_dicom_frame **frame,
                           hl_error *error) {
@@ -235,7 +235,7 @@ static const attribute *find_attribute(uint32_t tag) {
   return NULL;
 }
 
-/* Offsets of a dose grid's frames (PS3.3, C.8.8.3.2). */
+/* Takes the offsets of a dose grid's frames (PS3.3, C.8.8.3.2). */
 static hl_status take_offsets(hl_dicom_reader *reader, const hl_dicom_element *element,
                               hl_dicom_header *header, hl_error *error) {
   enum { BYTES_MOST = 60000 };
@@ -258,14 +258,14 @@ static hl_status take_offsets(hl_dicom_reader *reader, const hl_dicom_element *e
   return status;
 }
 
-/* A number for the kind of a picture, the same for the same text (FNV-1a, of 52 bits). */
+/* A number for the kind of a picture. Equal texts have equal numbers (FNV-1a, cut to 52 bits). */
 static double kind_of(const char *text) {
   uint64_t hash = 14695981039346656037u;
   for (; *text != 0; text++) hash = (hash ^ (unsigned char)*text) * 1099511628211u;
   return (double)(hash >> 12);
 }
 
-/* The kind of a single frame. */
+/* Takes the kind of a single frame. */
 static hl_status take_frame_type(hl_dicom_reader *reader, const hl_dicom_element *element,
                                  hl_dicom_header *header, hl_error *error) {
   char text[2 * HL_DICOM_TEXT_BYTES];
@@ -340,7 +340,7 @@ static hl_status finish_pixels(const hl_source *source, hl_dicom_header *header,
   p->high = (int)high;
   p->is_signed = header->representation == 1;
   p->planar = header->planar == 1;
-  /* CT and PET store measured values, which are never inverted; in other pictures MONOCHROME1 means that the
+  /* CT and PET store measured values, which are never inverted. In other pictures MONOCHROME1 means that the
    * least value is white */
   bool measured = hl_text_equal(header->modality, "CT") || hl_text_equal(header->modality, "PT");
   p->inverted = hl_text_equal(header->photometric, "MONOCHROME1") && !measured;
@@ -384,7 +384,7 @@ static hl_status take_pixels(const hl_dicom_reader *reader, const hl_dicom_eleme
   return HL_OK;
 }
 
-/* A frame in the space of an ultrasound volume has its place there, where it has none in the patient. */
+/* Takes a frame's place in the space of an ultrasound volume, if the frame has no place in the patient. */
 static void take_volume_place(hl_dicom_header *header, hl_dicom_frame *frame) {
   if (isnan(frame->position[0]) && !isnan(frame->volume_position[0])) {
     memcpy(frame->position, frame->volume_position, sizeof frame->position);
@@ -394,8 +394,8 @@ static void take_volume_place(hl_dicom_header *header, hl_dicom_frame *frame) {
     memcpy(frame->orientation, frame->volume_orientation, sizeof frame->orientation);
 }
 
-/* The tiles of a mosaic along a side (mosaic.h). Its first slice's position is found from the mosaic's, which
- * is that of a picture of the mosaic's size around the slice's middle. */
+/* Finds the tiles of a mosaic along a side (mosaic.h), and the position of its first slice. The mosaic's own
+ * position is the position of a picture of the mosaic's size around the slice's middle. */
 static void finish_mosaic(const hl_source *source, hl_dicom_header *header) {
   hl_dicom_pixels *p = &header->pixels;
   size_t tiles = (size_t)ceil(sqrt(fmin(header->mosaic.slices, 65536)));

@@ -1,10 +1,10 @@
-/* volume/dicom/jpeg.c - JPEG frames: the lossless process by jpeg_lossless.c, 12 bits by jpeg_extended.c, 8
- * bits by libjpeg. */
+/* volume/dicom/jpeg.c - JPEG frames. jpeg_lossless.c decodes the lossless process, jpeg_extended.c 12 bits,
+ * and libjpeg 8 bits. */
 #include "core/error.h"
 #include "volume/dicom/codecs.h"
 
-/* The number n of the frame header's marker SOFn, 0 to 15, and its precision in bits (T.81, B.2.2); 0: there
- * is no frame header. */
+/* The number n of the frame header's marker SOFn, 0 to 15, and its precision in bits (T.81, B.2.2). The
+ * precision is 0 if there is no frame header. */
 static int find_process(const hl_dicom_packed *packed, int *bits) {
   const unsigned char *bytes = packed->bytes;
   for (size_t n = 2; n + 5 < packed->length;) {
@@ -36,7 +36,7 @@ static hl_status decode(const hl_dicom_packed *packed, void *values, hl_error *e
 
 #include "volume/jpeg_fault.h"
 
-/* After this call or a jump out of it the decoder is to be destroyed. */
+/* Runs the decoder. After this call, or a jump out of it, the decoder must be destroyed. */
 static hl_status run(struct jpeg_decompress_struct *info, const hl_dicom_packed *packed,
                      unsigned char *values, hl_error *error) {
   const hl_dicom_pixels *p = packed->pixels;
@@ -45,7 +45,7 @@ static hl_status run(struct jpeg_decompress_struct *info, const hl_dicom_packed 
   hl_status status = hl_dicom_check_packed(packed, "JPEG", info->image_width, info->image_height,
                                            (size_t)info->num_components, info->data_precision, error);
   if (status != HL_OK) return status;
-  /* A marker in the JPEG data tells the colours; without such a marker, the DICOM file does. */
+  /* a marker in the JPEG data tells whether they are RGB; without such a marker, the DICOM file tells it */
   bool told = info->saw_Adobe_marker || info->saw_JFIF_marker;
   if (info->num_components == 3 && !told) info->jpeg_color_space = p->is_ybr ? JCS_YCbCr : JCS_RGB;
   info->out_color_space = info->num_components == 3 ? JCS_RGB : JCS_GRAYSCALE;

@@ -17,7 +17,7 @@ hl_status hl_dicom_decode_jpeg_2000(const hl_dicom_packed *packed, void *values,
 #include <openjpeg.h>
 #include <string.h>
 
-/* The frame's bytes as OpenJPEG pulls them. */
+/* The frame's bytes, from which OpenJPEG pulls. */
 typedef struct pulled {
   const unsigned char *bytes;
   size_t length, at;
@@ -93,7 +93,7 @@ static hl_status decode(opj_codec_t *codec, opj_stream_t *stream, const hl_dicom
   return status;
 }
 
-/* A frame is a bare codestream; some writers put it into a JP2 file. */
+/* Decodes a frame, which is a bare codestream; some writers put it into a JP2 file. */
 hl_status hl_dicom_decode_jpeg_2000(const hl_dicom_packed *packed, void *values, hl_error *error) {
   pulled source = {packed->bytes, packed->length, 0};
   bool is_file = packed->length > 12 && memcmp(packed->bytes + 4, "jP  \r\n\x87\n", 8) == 0;

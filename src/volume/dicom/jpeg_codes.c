@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* The next marker segment: its marker and content. False at the end and where there is none. */
+/* Takes the next marker segment: its marker and content. False at the end, or if no segment is there. */
 static bool next_segment(hl_jpeg_reader *r, int *marker, const unsigned char **content, size_t *length) {
   while (r->at + 4 <= r->length && r->bytes[r->at] == 0xff && r->bytes[r->at + 1] == 0xff) r->at++;
   if (r->at + 4 > r->length || r->bytes[r->at] != 0xff) return false;
@@ -16,7 +16,7 @@ static bool next_segment(hl_jpeg_reader *r, int *marker, const unsigned char **c
   return true;
 }
 
-/* T.81, figures C.1 and C.2: codes of each length follow each other. */
+/* Makes the codes of a table. Codes of each length follow each other (T.81, figures C.1 and C.2). */
 static void make_codes(hl_jpeg_table *table, const unsigned char *counts) {
   int code = 0, index = 0;
   memset(table->look, 0, sizeof table->look);
@@ -34,7 +34,7 @@ static void make_codes(hl_jpeg_table *table, const unsigned char *counts) {
   table->known = true;
 }
 
-/* Takes the tables of a segment; false if one is damaged. */
+/* Takes the tables of a segment. False if one of them is damaged. */
 static bool take_tables(hl_jpeg_reader *r, const unsigned char *bytes, size_t length) {
   while (length >= 17) {
     size_t count = 0;
@@ -58,7 +58,7 @@ hl_status hl_jpeg_read_headers(hl_jpeg_reader *r, const hl_dicom_packed *packed,
   int marker = 0;
   r->bytes = packed->bytes;
   r->length = packed->length;
-  r->at = 2; /* behind the picture's own marker */
+  r->at = 2; /* the position after the picture's own marker */
   hl_status status = HL_OK;
   while (status == HL_OK && marker != HL_JPEG_SCAN) {
     if (!next_segment(r, &marker, &content, &length))
@@ -76,7 +76,7 @@ void hl_jpeg_fill(hl_jpeg_reader *r) {
     unsigned byte = 0;
     if (r->at < r->length && r->bytes[r->at] != 0xff) byte = r->bytes[r->at++];
     else if (r->at + 1 < r->length && r->bytes[r->at + 1] == 0) {
-      byte = 0xff; /* followed by a stuffed zero */
+      byte = 0xff; /* 0xff is followed by a stuffed zero */
       r->at += 2;
     } else r->missing++;
     r->bits = r->bits << 8 | byte;

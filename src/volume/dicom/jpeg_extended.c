@@ -1,4 +1,4 @@
-/* volume/dicom/jpeg_extended.c - lossy JPEG of 12 bits (process 4), grey: libjpeg reads 8 bits.
+/* volume/dicom/jpeg_extended.c - lossy grey JPEG of 12 bits (process 4), as libjpeg reads only 8 bits.
  *
  * Source: ITU-T T.81. Frames and scans: annex B. Sequential coefficients: annex F.2. The transform: A.3.3. */
 #include <math.h>
@@ -11,10 +11,10 @@
 typedef struct decoder {
   const hl_dicom_packed *packed;
   hl_jpeg_reader reader;
-  int precision, quantization, id; /* id: of the component */
+  int precision, quantization, id; /* id: the component's number */
   const hl_jpeg_table *dc, *ac;
   size_t rows, columns;
-  uint16_t steps[HL_JPEG_TABLES][64]; /* of quantization, in zigzag order; 0: not told */
+  uint16_t steps[HL_JPEG_TABLES][64]; /* steps of quantization, in zigzag order; 0 if not told */
 } decoder;
 
 static hl_status refuse(const decoder *d, const char *why, hl_error *error) {
@@ -75,13 +75,13 @@ static hl_status take(void *decoder_, int marker, const unsigned char *content, 
 
 /* ---- blocks of 8 x 8 ---- */
 
-/* T.81, figure A.6: places, row times 8 plus column, in the order of the codes. */
+/* The places of coefficients, row times 8 plus column, in the order of the codes (T.81, figure A.6). */
 static const unsigned char zigzag[64] = {0,  1,  8,  16, 9,  2,  3,  10, 17, 24, 32, 25, 18, 11, 4,  5,
                                          12, 19, 26, 33, 40, 48, 41, 34, 27, 20, 13, 6,  7,  14, 21, 28,
                                          35, 42, 49, 56, 57, 50, 43, 36, 29, 22, 15, 23, 30, 37, 44, 51,
                                          58, 59, 52, 45, 38, 31, 39, 46, 53, 60, 61, 54, 47, 55, 62, 63};
 
-/* The coefficients of a block, times their steps; false where the codes are damaged. */
+/* Takes the coefficients of a block, times their steps. False if the codes are damaged. */
 static bool take_block(decoder *d, int *previous, double block[64]) {
   hl_jpeg_reader *r = &d->reader;
   const uint16_t *steps = d->steps[d->quantization];
@@ -96,7 +96,7 @@ static bool take_block(decoder *d, int *previous, double block[64]) {
     if (r->bit_count < 32) hl_jpeg_fill(r);
     int code = hl_jpeg_take_code(r, d->ac), size = code & 15, run = code >> 4;
     if (code < 0) return false;
-    if (size == 0 && run < 15) break; /* the rest are zeros */
+    if (size == 0 && run < 15) break; /* the other coefficients are zeros */
     n += run;
     if (n > 63) return false;
     if (size > 0) block[zigzag[n]] = (double)hl_jpeg_take_number(r, size) * steps[n];
@@ -104,21 +104,22 @@ static bool take_block(decoder *d, int *previous, double block[64]) {
   return true;
 }
 
-/* Half the cosines of n pi / 16, n from 0 to 7; those of n = 0 over the square root of 2. */
+/* Half the cosine of n pi / 16, for n from 0 to 7; for n = 0 divided by the square root of 2. */
 static const double cosines[8] = {0.35355339059327376220, 0.49039264020161522456, 0.46193976625564337806,
                                   0.41573480615127261854, 0.35355339059327376220, 0.27778511650980111237,
                                   0.19134171618254488586, 0.09754516100806413392};
 
 /* The factor of coefficient u at sample x: C(u) / 2 cos((2 x + 1) u pi / 16). */
 static double factor(int x, int u) {
-  int turn = (2 * x + 1) * u % 32; /* of 32 for a full turn; neither 0 nor 16, as u is 7 at most */
+  int turn = (2 * x + 1) * u % 32; /* in units of which 32 are a full turn; neither 0 nor 16, as u is at most
+                                    * 7 */
   if (u == 0) return cosines[0];
   if (turn > 16) turn = 32 - turn;
   if (turn == 8) return 0;
   return turn < 8 ? cosines[turn] : -cosines[16 - turn];
 }
 
-/* T.81, A.3.3: the inverse transform, along rows, then along columns. */
+/* The inverse transform, along rows, then along columns (T.81, A.3.3). */
 static void transform(const double factors[8][8], double block[64]) {
   double rows[64];
   for (int v = 0; v < 8; v++)

@@ -1,4 +1,5 @@
-/* volume/dicom/jpeg_lossless.c - lossless JPEG with Huffman codes, process 14: no library of Debian reads it.
+/* volume/dicom/jpeg_lossless.c - lossless JPEG with Huffman codes, process 14, which no library in Debian
+ * reads.
  *
  * Source: ITU-T T.81, annex H. */
 #include "core/error.h"
@@ -70,7 +71,7 @@ static hl_status take(void *decoder_, int marker, const unsigned char *content, 
 
 /* ---- samples ---- */
 
-/* The next difference (T.81, table H.2); false where the codes are damaged. */
+/* Takes the next difference (T.81, table H.2). False if the codes are damaged. */
 static bool take_difference(hl_jpeg_reader *r, const hl_jpeg_table *table, int *difference) {
   if (r->bit_count < 32) hl_jpeg_fill(r);
   int category = hl_jpeg_take_code(r, table);
@@ -79,7 +80,8 @@ static bool take_difference(hl_jpeg_reader *r, const hl_jpeg_table *table, int *
   return true;
 }
 
-/* T.81, table H.1: a is to the left, b above, c above on the left. */
+/* Predicts a sample (T.81, table H.1). a: the sample to the left. b: the sample above. c: the sample above on
+ * the left. */
 static int predict(int predictor, int a, int b, int c) {
   switch (predictor) {
     case 1: return a;
@@ -92,7 +94,8 @@ static int predict(int predictor, int a, int b, int c) {
   }
 }
 
-/* Decodes a row of `step` samples a pixel. above: the row before; null: there is none since the restart. */
+/* Decodes a row of pixels with `step` samples each. above: the row before, null if there is none since the
+ * restart. */
 static bool take_row(decoder *d, const uint16_t *above, uint16_t *row) {
   size_t step = d->components;
   for (size_t x = 0; x < d->columns; x++)
@@ -117,7 +120,7 @@ static void store_row(const decoder *d, const uint16_t *row, size_t y, void *val
   }
 }
 
-/* Restarts stand at the ends of rows (T.81, H.1.1). */
+/* Decodes rows. Restarts stand at the ends of rows (T.81, H.1.1). */
 static hl_status take_rows(decoder *d, uint16_t *rows, void *values, hl_error *error) {
   size_t count = d->columns * d->components, since = 0;
   if (d->reader.restart % d->columns != 0) return refuse(d, "a restart within a row", error);

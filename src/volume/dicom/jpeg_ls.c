@@ -19,7 +19,7 @@ hl_status hl_dicom_decode_jpeg_ls(const hl_dicom_packed *packed, void *values, h
 
 #include "core/memory.h"
 
-/* Components one after the other become samples side by side. */
+/* Rearranges components that follow each other to samples side by side. */
 static hl_status interleave(const hl_dicom_packed *packed, size_t size, void *values, hl_error *error) {
   const hl_dicom_pixels *p = packed->pixels;
   size_t pixels = p->rows * p->columns, bytes = pixels * p->samples * size;

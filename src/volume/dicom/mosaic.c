@@ -7,16 +7,16 @@
 #include "core/memory.h"
 #include "volume/text.h"
 
-/* The greatest CSA header that is looked into, in bytes; those of scanners have some 12 KiB. */
+/* The greatest CSA header that is read, in bytes. Headers of scanners have some 12 KiB. */
 enum { CSA_BYTES_MOST = 1 << 20, CSA_TAGS_MOST = 1024, CSA_ITEMS_MOST = 1 << 16, NAME_BYTES = 64 };
 
-/* Bytes that are read one after the other. */
+/* A CSA header that is read byte after byte. */
 typedef struct csa_reader {
   const unsigned char *bytes;
   size_t length, at;
 } csa_reader;
 
-/* A number of four bytes; 0 beyond the end. */
+/* Takes a number of four bytes; 0 beyond the end. */
 static uint32_t next_word(csa_reader *csa) {
   if (csa->length - csa->at < 4) {
     csa->at = csa->length;
@@ -30,7 +30,7 @@ static void pass(csa_reader *csa, size_t count) {
   csa->at = count < csa->length - csa->at ? csa->at + count : csa->length;
 }
 
-/* A number written as text. */
+/* The number that a text holds. */
 static double number_of(const unsigned char *bytes, size_t length) {
   char text[64];
   double number;
@@ -41,8 +41,8 @@ static double number_of(const unsigned char *bytes, size_t length) {
   return hl_text_number(trimmed, strlen(trimmed), &number) ? number : 0;
 }
 
-/* Reads the items of a tag: each has four words, one of which is its length, and text, padded to whole words.
- * numbers: [most]; what the first items hold. */
+/* Reads the items of a tag. Each item has four words, one of which is its length, and text, padded to whole
+ * words. numbers: [most]; the numbers in the first items. */
 static void read_items(csa_reader *csa, bool second, uint32_t items, double *numbers, uint32_t most) {
   for (uint32_t n = 0; n < items && csa->at < csa->length; n++) {
     uint32_t words[4];
@@ -62,7 +62,8 @@ static void read_csa(csa_reader *csa, hl_dicom_mosaic *mosaic) {
   next_word(csa);
   for (uint32_t t = 0; t < tags && t < CSA_TAGS_MOST && csa->length - csa->at > NAME_BYTES; t++) {
     const char *name = (const char *)csa->bytes + csa->at;
-    pass(csa, NAME_BYTES + 4 + 4 + 4); /* the name; how many values; their type, twice */
+    pass(csa, NAME_BYTES + 4 + 4 + 4); /* skips the tag's name, number of values, and type, which is stated
+                                        * twice */
     uint32_t items = next_word(csa);
     next_word(csa);
     if (items > CSA_ITEMS_MOST) return;
@@ -89,7 +90,8 @@ static hl_status take_csa(hl_dicom_reader *reader, const hl_dicom_element *eleme
   return status;
 }
 
-/* The block that a private creator of this name reserves; else the one before. */
+/* Takes the name of a private creator, which reserves a block of elements. Returns the block if the name is
+ * the wanted one, else `before`. */
 static hl_status take_creator(hl_dicom_reader *reader, const hl_dicom_element *element, const char *name,
                               unsigned *block, hl_error *error) {
   char text[64];

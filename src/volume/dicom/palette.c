@@ -13,13 +13,14 @@ enum {
   BYTES_MOST = 4 * ENTRIES
 };
 
-/* The number of entries that a colour's descriptor promises. */
+/* The number of entries that the descriptor of a colour promises. */
 static size_t promised(const hl_dicom_palette *palette, int c) {
   double count = palette->descriptor[c][0];
   return count > 0 && count < ENTRIES ? (size_t)count : ENTRIES;
 }
 
-/* The words of a table; of 8 bits, entries may be packed two in a word, or have a word each. */
+/* Reads a plain table's words. A table of 8 bits may have two entries packed in a word, or one entry in each
+ * word. */
 static size_t read_plain(const unsigned char *bytes, size_t length, size_t count, int bits, bool big,
                          unsigned char *entries) {
   bool packed = bits <= 8 && length < 2 * count;
@@ -31,7 +32,7 @@ static size_t read_plain(const unsigned char *bytes, size_t length, size_t count
   return found;
 }
 
-/* What a segmented table is read into. */
+/* The output of reading a segmented table. */
 typedef struct table_writer {
   uint16_t values[ENTRIES];
   size_t count;
@@ -41,8 +42,8 @@ static void add(table_writer *table, uint32_t value) {
   if (table->count < ENTRIES) table->values[table->count++] = (uint16_t)value;
 }
 
-/* Reads a segment at word *at, which moves past it: 0: values; 1: a line to a value; 2: segments before, once
- * more (not within such). */
+/* Reads a segment at word *at, and moves *at past it. A segment is of kind 0 (values), 1 (a line to a value)
+ * or 2 (earlier segments, once more). Segments of kind 2 may not contain each other. */
 static bool read_segment(const unsigned char *bytes, size_t words, bool big, bool nested, size_t *at,
                          table_writer *table) {
   if (*at + 2 > words) return false;

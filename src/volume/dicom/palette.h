@@ -7,20 +7,20 @@
 #include "volume/dicom/elements.h"
 
 typedef struct hl_dicom_palette {
-  double descriptor[3]
-                   [3]; /* of red, green, blue: entries (0: 65536), the first pixel value, bits of an entry */
-  unsigned char *entries[3]; /* owned; [65536]: codes of 8 bits; null: not told */
-  size_t counts[3];          /* of entries that were told */
+  double descriptor[3][3]; /* for red, green, blue: number of entries (0 stands for 65536), first pixel value,
+                            * bits of an entry */
+  unsigned char *entries[3]; /* owned; [65536]; codes of 8 bits; null if not told */
+  size_t counts[3];          /* number of entries that were told */
 } hl_dicom_palette;
 
-/* Takes an element at the top of a file. Elements of others change nothing. */
+/* Takes an element at the top of a file. Elements that have nothing to do with palettes change nothing. */
 hl_status hl_dicom_palette_take(hl_dicom_reader *reader, const hl_dicom_element *element,
                                 hl_dicom_palette *palette, hl_error *error);
 void hl_dicom_palette_release(hl_context *context, hl_dicom_palette *palette);
 
 bool hl_dicom_palette_is_whole(const hl_dicom_palette *palette);
 
-/* The colour of a pixel value: values beyond the table's ends have the colours of its ends. */
+/* The colour of a pixel value. Values beyond the table's ends have the colours of its ends. */
 void hl_dicom_palette_color(const hl_dicom_palette *palette, double value, unsigned char rgb[3]);
 
 #endif

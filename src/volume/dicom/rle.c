@@ -1,7 +1,8 @@
 /* volume/dicom/rle.c - DICOM's run-length coding (PS3.5, annex G).
  *
- * A header of sixteen 32-bit numbers: the number of segments, then where each begins. A segment holds one
- * byte of every pixel, compressed as PackBits does; the segment of a sample's highest byte comes first. */
+ * A frame begins with a header of sixteen 32-bit numbers: the number of segments, then the offset of each. A
+ * segment holds one byte of every pixel, compressed as PackBits does; the segment of a sample's highest byte
+ * comes first. */
 #include <string.h>
 
 #include "core/error.h"
@@ -11,14 +12,14 @@ enum { HEADER_BYTES = 64, SEGMENTS_MOST = 15 };
 
 static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
 
-/* Unpacks a segment to `count` bytes, `step` bytes apart; false: the segment ends too early. */
+/* Unpacks a segment to `count` bytes that lie `step` bytes apart. False if the segment ends too early. */
 static bool unpack(const unsigned char *bytes, size_t length, size_t count, size_t step, unsigned char *to) {
   size_t done = 0;
   for (size_t n = 0; done < count && n < length;) {
     unsigned control = bytes[n++];
     size_t run = control < 128 ? control + 1u : 257u - control;
     if (control == 128) continue;
-    if (run > count - done) run = count - done; /* a row's padding */
+    if (run > count - done) run = count - done; /* the surplus is a row's padding */
     if (control < 128) {
       if (length - n < run) return false;
       for (size_t k = 0; k < run; k++) to[(done + k) * step] = bytes[n + k];
@@ -46,7 +47,7 @@ hl_status hl_dicom_decode_rle(const hl_dicom_packed *packed, void *values, hl_er
     if (end > packed->length) end = packed->length;
     if (begin < HEADER_BYTES || begin > end)
       return hl_dicom_fail_packed(packed, "RLE", "a segment begins outside of it", error);
-    size_t sample = segment / bytes_each, place = segment % bytes_each; /* the highest byte is first */
+    size_t sample = segment / bytes_each, place = segment % bytes_each; /* the highest byte comes first */
     if (!native_is_big_endian) place = bytes_each - 1 - place;
     if (!unpack(packed->bytes + begin, end - begin, p->rows * p->columns, p->samples * bytes_each,
                 (unsigned char *)values + sample * bytes_each + place))

@@ -15,22 +15,22 @@
 #include "volume/dicom/frame.h"
 #include "volume/parallel.h"
 
-/* Components of a label map: more are no picture's. */
+/* The greatest number of components of a label map; a file with more is no picture. */
 enum { LAYERS_MOST = 64 };
 
 typedef struct segment_reading {
   const hl_dicom_set *set;
   const hl_dicom_stack *stack;
-  int *layers;             /* owned; [segments]: the component of each segment */
+  int *layers;             /* owned; [segments]; the component that each segment belongs to */
   unsigned char *overlaps; /* owned; [segments][segments]: 1 where two segments share a voxel */
   size_t layer_count;
-  size_t chosen; /* fractions: the segment; masks: the layer */
+  size_t chosen; /* for fractions: the segment; for masks: the component */
   bool fractions;
   hl_voxel_type type;
   size_t slice_voxels;
   hl_destination to;
   hl_pool *pool;
-  hl_dicom_workspace *spaces; /* owned; one for each worker */
+  hl_dicom_workspace *spaces; /* owned; one workspace for each worker */
 } segment_reading;
 
 static const hl_dicom_frame *frame_at(const segment_reading *r, size_t place, size_t segment) {
@@ -39,7 +39,7 @@ static const hl_dicom_frame *frame_at(const segment_reading *r, size_t place, si
 
 /* ---- which segments overlap ---- */
 
-/* A mask of a slice, a bit for each voxel. */
+/* Packs the mask of a slice, a bit for each voxel. */
 static void pack(const unsigned char *values, size_t count, uint64_t *bits) {
   memset(bits, 0, (count + 63) / 64 * sizeof *bits);
   for (size_t n = 0; n < count; n++) bits[n / 64] |= (uint64_t)(values[n] != 0) << (n % 64);
@@ -51,7 +51,7 @@ static bool share_a_bit(const uint64_t *a, const uint64_t *b, size_t words) {
   return false;
 }
 
-/* Compares the masks of a place's segments. masks: room for all of them. */
+/* Compares the masks of the segments at one place. masks: space for all of them. */
 static hl_status compare_place(segment_reading *r, size_t place, uint64_t *masks, size_t *shown,
                                hl_error *error) {
   size_t words = (r->slice_voxels + 63) / 64, count = 0, segments = r->stack->times;
@@ -70,7 +70,7 @@ static hl_status compare_place(segment_reading *r, size_t place, uint64_t *masks
   return HL_OK;
 }
 
-/* The first layer that has no segment which overlaps this one. */
+/* The first component none of whose segments overlaps the given one. */
 static int layer_for(const segment_reading *r, size_t segment) {
   bool taken[LAYERS_MOST] = {false};
   int layer = 0;
@@ -163,7 +163,7 @@ hl_status hl_dicom_name_segments(const hl_dicom_segments *segments, const int *l
   return HL_OK;
 }
 
-/* Fractions: each segment is an array, by its name or "segment N". */
+/* Chooses a segment of fractions. Each segment is an array, by its name or "segment N". */
 static hl_status choose_fraction(segment_reading *r, hl_load_request *request, hl_error *error) {
   const hl_dicom_segments *segments = r->stack->segments;
   const hl_dicom_pixels *p = &r->set->files[0].pixels;
@@ -180,7 +180,7 @@ static hl_status choose_fraction(segment_reading *r, hl_load_request *request, h
   return status;
 }
 
-/* Says which segments the chosen layer leaves out. */
+/* Warns about the segments that the chosen component leaves out. */
 static void tell_layers(const segment_reading *r, hl_load_request *request) {
   request->component_told[0] = 0;
   if (r->layer_count < 2 || request->component != HL_COMPONENT_DEFAULT) return;

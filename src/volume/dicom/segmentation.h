@@ -6,14 +6,14 @@
 #include "volume/dicom/stack.h"
 #include "volume/format.h"
 
-/* Reads a stack that has segments (stack.h). Masks become a label map, whose values are the segments'
- * numbers: one component, or, where segments overlap, as many as keep each voxel's segments apart. Of
- * fractions the chosen segment is read, as an array of its own. */
+/* Reads a stack that has segments (stack.h). Masks become a label map whose values are the segments' numbers.
+ * It has one component; where segments overlap, it has as many components as are needed to keep each voxel's
+ * segments apart. Of fractions, the chosen segment is read as an array of its own. */
 hl_status hl_dicom_segmentation_read(hl_dicom_set *set, hl_dicom_stack *stack, hl_load_request *request,
                                      hl_volume **volume, hl_error *error);
 
-/* Gives a volume the names and colours of its file's segments. layers: [segments->count]: the component of
- * each; null: the first. */
+/* Gives a volume the names and colours of its file's segments. layers: [segments->count]; the component of
+ * each segment; null if all are in the first. */
 hl_status hl_dicom_name_segments(const hl_dicom_segments *segments, const int *layers, hl_volume *volume,
                                  hl_error *error);
 

@@ -32,7 +32,7 @@ static hl_status take_kind(hl_dicom_reader *reader, const hl_dicom_element *elem
   return status;
 }
 
-/* The segment of the item that is being read; a new one is empty. */
+/* The segment of the item that is being read. A new segment is empty. */
 static hl_status segment_of_item(const hl_dicom_reader *reader, hl_dicom_segments *segments,
                                  hl_segment **segment, hl_error *error) {
   size_t index = reader->level[0].item;
@@ -57,14 +57,14 @@ static double cube_or_line(double t) {
   return t > delta ? t * t * t : 3 * delta * delta * (t - 4.0 / 29);
 }
 
-static double encode_srgb(double linear) { /* IEC 61966-2-1 */
+static double encode_srgb(double linear) { /* the curve of IEC 61966-2-1 */
   double code = linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
   return code <= 0 ? 0 : code >= 1 ? 1 : code;
 }
 
-/* From CIELab with the white point D50 (PS3.3, C.10.7.1.1: 0 to 65535 stand for L* from 0 to 100, a* and b*
- * from -128 to 127) to sRGB. The matrix is sRGB's, adapted from D65 to D50 by Bradford's method (ICC, sRGB
- * profile). */
+/* Converts CIELab with the white point D50 to sRGB. Codes of 0 to 65535 stand for L* from 0 to 100, and for
+ * a* and b* from -128 to 127 (PS3.3, C.10.7.1.1). The matrix is sRGB's, adapted from D65 to D50 by Bradford's
+ * method (ICC, sRGB profile). */
 static void to_srgb(const double codes[3], double srgb[3]) {
   static const double white[3] = {0.9642, 1, 0.8249};
   static const double matrix[3][3] = {{3.1338561, -1.6168667, -0.4906146},

@@ -70,7 +70,8 @@ static void list_series(const hl_dicom_set *set, char *text, size_t size) {
   if (set->series_count > NAMED && used < size) snprintf(text + used, size - used, "; ...");
 }
 
-/* How well a text names a series: 3: by its UID, 2: by its number, 1: by its description, 0: not at all. */
+/* How well a text names a series: 3 if it is the UID, 2 the number, 1 the description, 0 if it is none of
+ * them. */
 static int match(const hl_dicom_series *series, const char *wanted) {
   double number;
   if (strcmp(series->uid, wanted) == 0) return 3;
@@ -85,7 +86,7 @@ static size_t largest(const hl_dicom_set *set) {
     const hl_dicom_series *series = &set->series[n];
     double size = (double)series->rows * (double)series->columns * (double)series->frames;
     if (series->frames == 1) size *= 1e-6;     /* a single picture is chosen only if there are no stacks */
-    if (series->is_segmentation) size *= 1e-3; /* the scan is meant, before what was found in it */
+    if (series->is_segmentation) size *= 1e-3; /* the scan is more likely wanted than a segmentation of it */
     if (size > most) {
       most = size;
       chosen = n;
@@ -134,14 +135,14 @@ static void move(hl_dicom_frame *frame, vec3 direction, double distance) {
   frame->position[2] += distance * direction.z;
 }
 
-/* The distance from slice to slice that the file states; below 0: against the normal. */
+/* The distance from slice to slice that the file states; negative if it runs against the normal. */
 static double stated_step(const hl_dicom_header *header) {
   if (isfinite(header->slice_spacing) && header->slice_spacing != 0) return header->slice_spacing;
   return header->thickness > 0 && isfinite(header->thickness) ? header->thickness : 1;
 }
 
-/* Places a tile of a mosaic: the mosaic's position is that of a picture of its size around the middle of the
- * first slice. */
+/* Places a tile of a mosaic. The mosaic's position is the position of a picture of the mosaic's size around
+ * the middle of the first slice. */
 static void place_tile(const hl_dicom_header *header, size_t tile, hl_dicom_frame *frame) {
   const hl_dicom_pixels *p = &header->pixels;
   vec3 row = vec3_of(frame->orientation), column = vec3_of(frame->orientation + 3),
@@ -154,7 +155,7 @@ static void place_tile(const hl_dicom_header *header, size_t tile, hl_dicom_fram
   frame->tile = (uint32_t)tile;
 }
 
-/* Places the frames of a file that does not describe each: they follow each other along the normal. */
+/* Places the frames of a file that does not place each frame: they follow each other along the normal. */
 static void place_frame(const hl_dicom_header *header, size_t index, hl_dicom_frame *frame) {
   *frame = index < header->frames_told ? header->frames[index] : header->base;
   frame->index = (uint32_t)index;
@@ -163,7 +164,7 @@ static void place_frame(const hl_dicom_header *header, size_t index, hl_dicom_fr
   double distance = (double)slice * stated_step(header),
          volume = hl_dicom_vectors_volume(&header->vectors, index);
   if (!isnan(volume)) frame->temporal = volume;
-  /* PS3.3, C.8.8.3.2: where the first offset is 0, offsets count from the first frame's position. */
+  /* PS3.3, C.8.8.3.2: if the first offset is 0, offsets count from the first frame's position */
   if (index < header->offset_count) distance = header->offsets[index] - header->offsets[0];
   move(frame, vec3_cross(vec3_of(frame->orientation), vec3_of(frame->orientation + 3)), distance);
 }
@@ -175,7 +176,7 @@ static hl_status check_length(const hl_source *source, const hl_dicom_header *he
   uint64_t left = p->offset < size ? size - p->offset : 0;
   uint64_t bits = (uint64_t)p->rows * p->columns * (p->is_halved && !p->encapsulated ? 2 : p->samples) *
                   (uint64_t)p->allocated;
-  if (p->encapsulated) needed = frames * 8; /* each frame has a fragment at least */
+  if (p->encapsulated) needed = frames * 8; /* each frame has at least one fragment */
   else if (__builtin_mul_overflow(bits, frames, &needed)) needed = UINT64_MAX;
   else needed = needed / 8 + (needed % 8 != 0);
   if (needed <= left) return HL_OK;
@@ -185,7 +186,7 @@ static hl_status check_length(const hl_source *source, const hl_dicom_header *he
                         (unsigned long long)needed, (unsigned long long)left);
 }
 
-/* The slices of a frame: of a mosaic several. */
+/* The number of slices of a frame, which is more than one for a mosaic. */
 static size_t slices_of_frame(const hl_dicom_header *header) {
   return header->pixels.tiles > 1 ? (size_t)header->mosaic.slices : 1;
 }
@@ -228,7 +229,7 @@ static void take_padding(const hl_dicom_header *header, double padding[2]) {
   }
 }
 
-/* Takes segments and palette out of the header. */
+/* Adds a file to the set, and moves segments and palette out of the header. */
 static hl_status add_file(hl_dicom_set *set, hl_dicom_header *header, size_t entry, hl_error *error) {
   hl_status status = make_room(set->context, (void **)&set->files, set->file_count, &set->file_capacity,
                                sizeof *set->files, error);

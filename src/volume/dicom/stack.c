@@ -14,7 +14,7 @@
 #include "core/memory.h"
 #include "text/plain.h"
 
-/* A frame, and where it lies along the normal. */
+/* A frame and its place along the normal. */
 typedef struct placed_frame {
   const hl_dicom_frame *frame;
   double distance;
@@ -172,9 +172,9 @@ static int widest_axis(const sorting *s) {
   return widest;
 }
 
-/* Slices that tell no orientation stand across the axis along which they lie, as slices usually do: sagittal
- * slices have rows from front to back, coronal ones from right to left, and both have columns from head to
- * feet. */
+/* Chooses an orientation for slices that tell none: they stand across the axis along which they lie, as
+ * slices usually do. Sagittal slices have rows from front to back, coronal ones from right to left, and both
+ * have columns from head to feet. */
 static void assume_axes(sorting *s) {
   static const vec3 rows[3] = {{0, 1, 0}, {1, 0, 0}, {1, 0, 0}},
                     columns[3] = {{0, 0, -1}, {0, 0, -1}, {0, 1, 0}};
@@ -203,7 +203,7 @@ static void find_axes(sorting *s) {
   if (file_of(s, frame)->is_backwards) s->normal = vec3_scale(s->normal, -1);
 }
 
-/* Whether the frames tell their places along the normal, and not all the same. */
+/* Whether the frames tell their places along the normal, and these places differ. */
 static bool have_locations(const sorting *s) {
   bool differ = false;
   for (size_t n = 0; n < s->count; n++) {
@@ -213,7 +213,7 @@ static bool have_locations(const sorting *s) {
   return differ;
 }
 
-/* Whether there are several frames, of which each has the place of the first. */
+/* Whether there are several frames, all at the place of the first. */
 static bool all_at_one_place(const sorting *s) {
   for (size_t n = 1; n < s->count; n++)
     for (int axis = 0; axis < 3; axis++)
@@ -221,8 +221,8 @@ static bool all_at_one_place(const sorting *s) {
   return s->count > 1;
 }
 
-/* Sorts the frames by their positions; by their locations where positions are missing or all the same; else
- * by their numbers. */
+/* Sorts the frames by their positions. Where positions are missing or all the same, sorts by their locations,
+ * or else by their numbers. */
 static void sort(sorting *s) {
   bool known;
   if (s->has_positions && !(all_at_one_place(s) && have_locations(s))) {
@@ -258,7 +258,7 @@ static void sort(sorting *s) {
            known ? " mm" : " (a pixel's width)");
 }
 
-/* One past the last of the frames that lie at the same position as frame `begin`. */
+/* One past the last frame that lies at the same position as frame `begin`. */
 static size_t end_of_place(const sorting *s, size_t begin) {
   size_t end = begin + 1;
   while (end < s->count && s->frames[end].distance - s->frames[begin].distance <= s->tolerance) end++;
@@ -379,7 +379,7 @@ static double median_step(const sorting *s) {
   return median;
 }
 
-/* Whether all positions are whole multiples of one step, which is close to `step`, away from the first.
+/* Whether all positions are whole multiples of one step away from the first. The step is close to `step`.
  * *slices: the number of steps plus one. */
 static bool is_even(const sorting *s, double step, size_t *slices) {
   const double TOLERANCE = 0.05; /* of a step */
@@ -399,8 +399,8 @@ static bool is_even(const sorting *s, double step, size_t *slices) {
  * empty. */
 #define WIDEST_FILLED 3.5
 
-/* Puts slices at even distances from the first to the last position. Nothing fills the slices between frames
- * of segments: a segment is absent where it has no frame. */
+/* Puts slices at even distances from the first to the last position. Slices between frames of segments stay
+ * empty: a segment is absent where it has no frame. */
 static void spread(const sorting *s, size_t count, bool snap, hl_dicom_stack *stack) {
   double first = s->places[0], span = s->places[s->place_count - 1] - first;
   for (size_t n = 0, place = 0; n < count; n++) {
@@ -416,7 +416,7 @@ static void spread(const sorting *s, size_t count, bool snap, hl_dicom_stack *st
   }
 }
 
-/* Says how slices were put where the file has none. count: of all slices. */
+/* Says how slices were put where the file has none. count: the number of all slices. */
 static void tell_spacing(const sorting *s, const hl_dicom_stack *stack, bool even, size_t count) {
   char text[300], holes[100] = "";
   double step = count > 1 ? (s->places[s->place_count - 1] - s->places[0]) / (double)(count - 1) : 0;
@@ -463,7 +463,7 @@ static hl_status space_evenly(sorting *s, hl_dicom_stack *stack, hl_error *error
 
 static void put(vec3 v, double to[3]) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 
-/* The position of a place: that of its first frame. */
+/* The frame whose position is the position of a place: the first frame there. */
 static const hl_dicom_frame *frame_of_place(const hl_dicom_stack *stack, size_t place) {
   const hl_dicom_frame **frames = stack->frames + place * stack->times;
   size_t n = 0;

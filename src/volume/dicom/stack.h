@@ -1,7 +1,7 @@
-/* volume/dicom/stack.h - from the frames of a series to evenly spaced slices of a grid.
+/* volume/dicom/stack.h - makes evenly spaced slices of a grid from the frames of a series.
  *
- * The grid's axes are those of the rows, the columns, and the way from the first slice to the last: not the
- * normal, so that a tilted gantry's sheared grid stays what it is. */
+ * The grid's axes run along the rows, along the columns, and from the first slice to the last. The third axis
+ * need not be the normal, so that the sheared grid of a tilted gantry is kept. */
 #ifndef HL_VOLUME_DICOM_STACK_H
 #define HL_VOLUME_DICOM_STACK_H
 
@@ -11,23 +11,23 @@
 /* A slice of the grid: at a position that has frames, or interpolated between two such positions. */
 typedef struct hl_dicom_slice {
   size_t place;  /* index of the position at the slice or before it */
-  double weight; /* weight of the next position's frame; 0: the slice lies at `place` */
-  bool empty;    /* it lies in a hole between two positions, which nothing fills */
+  double weight; /* weight of the next position's frame; 0 if the slice lies at `place` */
+  bool empty;    /* whether it lies in a gap between two positions that nothing fills */
 } hl_dicom_slice;
 
 typedef struct hl_dicom_stack {
   hl_context *context;
   const hl_dicom_frame *
-      *frames; /* owned; [place_count][times]; of segments: null where a segment has no frame */
+      *frames; /* owned; [place_count][times]; for segments: null where a segment has no frame */
   size_t place_count, times;
-  const hl_dicom_segments *segments; /* of a segmentation by frames, which has a place in `times` for each
-                                        segment; else null */
-  size_t empty_count;                /* slices that are empty */
+  const hl_dicom_segments *segments; /* for a segmentation by frames, which has a place in `times` for each
+                                      * segment; else null */
+  size_t empty_count;                /* number of empty slices */
   hl_dicom_slice *slices;            /* owned; [grid.dimensions[2]] */
   hl_volume_description grid;        /* dimensions, origin, axes, space */
 } hl_dicom_stack;
 
-/* Release it in any case. */
+/* Makes the stack. Release it also after a failure. */
 hl_status hl_dicom_stack_make(const hl_dicom_set *set, size_t series, hl_dicom_stack *stack, hl_error *error);
 void hl_dicom_stack_release(hl_dicom_stack *stack);
 

@@ -22,20 +22,20 @@
 typedef struct reading {
   const hl_dicom_set *set;
   const hl_dicom_stack *stack;
-  size_t time;   /* the frame to take at each place */
+  size_t time;   /* number of the frame to take at each place */
   int component; /* the sample to take, or HL_COMPONENT_MAGNITUDE */
   hl_voxel_type type;
-  bool as_floats; /* values are computed as floats; else stored values are kept */
-  bool as_colors; /* values are colours (colors.h) */
-  bool is_plain;  /* the values of all slices are the files' numbers, of `type` */
+  bool as_floats; /* whether values are computed as floats; otherwise stored values are kept */
+  bool as_colors; /* whether values are colours (colors.h) */
+  bool is_plain;  /* whether the values of all slices are the files' numbers, of `type` */
   double slope, intercept,
-      padding[2]; /* the same for all slices; slope and intercept only where as_floats is false */
+      padding[2]; /* the same for all slices; slope and intercept are set only where as_floats is false */
   size_t slice_voxels, voxel_bytes;
-  hl_destination to; /* [slices][slice_voxels] of voxel_bytes */
+  hl_destination to; /* [slices][slice_voxels], each of voxel_bytes */
   hl_pool *pool;
-  hl_dicom_workspace *spaces; /* owned; one for each worker */
-  unsigned char **others;     /* owned; one slice for each worker, to fill gaps with; made when needed */
-  atomic_bool padded;         /* a slice has voxels of the padding value */
+  hl_dicom_workspace *spaces; /* owned; one workspace for each worker */
+  unsigned char **others;     /* owned; one slice for each worker, for filling gaps; made when needed */
+  atomic_bool padded;         /* whether a slice has voxels of the padding value */
 } reading;
 
 /* ---- which type ---- */
@@ -99,7 +99,7 @@ static double value_at(const hl_dicom_workspace *space, hl_voxel_type type, size
   }
 }
 
-/* first: the number of the slice's first voxel in the volume. */
+/* Stores a slice as floats. first: the number of the slice's first voxel in the volume. */
 static void store_floats(reading *r, const hl_dicom_frame *frame, const hl_dicom_workspace *space,
                          size_t first, float *slice) {
   const hl_dicom_file *file = &r->set->files[frame->file];
@@ -141,7 +141,7 @@ static void store_integers(reading *r, hl_dicom_workspace *space, size_t samples
   hl_voxels_store(r->type, false, space->values, r->slice_voxels, slice);
 }
 
-/* first: the number of the slice's first voxel in the volume. */
+/* Reads a slice. first: the number of the slice's first voxel in the volume. */
 static hl_status read_slice(reading *r, size_t place, int worker, size_t first, unsigned char *slice,
                             hl_error *error) {
   hl_dicom_workspace *space = &r->spaces[worker];
@@ -185,7 +185,7 @@ static hl_status fill_gap(reading *r, const hl_dicom_slice *slice, int worker, s
   return status;
 }
 
-/* Nothing is in the slice: values that are not finite, or black. */
+/* Fills an empty slice with values that are not finite, or with black. */
 static void leave_empty(const reading *r, void *slice) {
   if (!r->as_floats) memset(slice, 0, r->slice_voxels * r->voxel_bytes);
   for (size_t n = 0; n < r->slice_voxels && r->as_floats; n++) ((float *)slice)[n] = NAN;
@@ -208,7 +208,7 @@ static hl_status read_one(void *data, size_t index, int worker, hl_error *error)
   return status;
 }
 
-/* Turns integers into floats in the same block, from the last to the first; padding becomes NAN. */
+/* Converts integers to floats in the same block, from the last to the first. Padding becomes NAN. */
 static void widen(const reading *r, size_t count, void *voxels) {
   double bias = hl_voxel_type_bias(r->type);
   float *floats = voxels;
@@ -242,7 +242,8 @@ static hl_status make_threads(reading *r, size_t voxels, hl_error *error) {
   return r->spaces != NULL && r->others != NULL ? HL_OK : hl_fail_memory(error, 1000, "threads");
 }
 
-/* Looks for padding in the middle slice: integers that become floats after all are read need both at once. */
+/* Looks for padding in the middle slice. Integers that become floats only after all are read need memory for
+ * both at once. */
 static hl_status find_padding(reading *r, hl_error *error) {
   if (r->as_floats || r->as_colors || isnan(r->padding[0])) return HL_OK;
   size_t middle = r->stack->place_count / 2, bytes = r->slice_voxels * r->voxel_bytes;
@@ -257,7 +258,7 @@ static hl_status find_padding(reading *r, hl_error *error) {
   return HL_OK;
 }
 
-/* The type of the values that are kept. */
+/* The type of the values that are stored. */
 static hl_voxel_type kept_type(const reading *r) {
   return r->as_floats && hl_voxel_type_storage(r->type) != HL_STORAGE_F32 ? HL_VOXEL_F32 : r->type;
 }
@@ -273,22 +274,22 @@ static hl_status read_slices(reading *r, hl_error *error) {
                           read_one, r, error);
 }
 
-/* Whether any slice has padding; over ranks, any rank's. */
+/* Whether any slice has padding. Over ranks: whether any rank has such a slice. */
 static bool any_padded(const reading *r) {
   uint64_t padded = r->padded;
   if (r->to.own != NULL) hl_ranks_sum_counts(r->set->context->ranks, &padded, 1);
   return padded > 0;
 }
 
-/* Integers of which some are padding become floats: in memory afterwards (widen_padded()), elsewhere by being
- * read once more. */
+/* Reads all slices. Integers of which some are padding become floats: voxels in memory are converted
+ * afterwards (widen_padded()), others are read once more. */
 static hl_status read_all(reading *r, hl_error *error) {
   hl_status status = find_padding(r, error);
   if (status == HL_OK) status = read_slices(r, error);
   if (status != HL_OK || r->as_floats || !hl_destination_is_apart(&r->to) || !any_padded(r)) return status;
   hl_destination_close(&r->to);
   for (int w = 0; w < hl_pool_threads(r->pool); w++) {
-    hl_release(r->set->context, r->others[w]); /* its voxels have another size */
+    hl_release(r->set->context, r->others[w]); /* voxels of the gap slices have another size now */
     r->others[w] = NULL;
   }
   r->as_floats = true;
@@ -296,7 +297,8 @@ static hl_status read_all(reading *r, hl_error *error) {
   return read_slices(r, error);
 }
 
-/* The window that the middle slice asks for (PS3.3, C.11.2.1.2: its centre lies half a value lower). */
+/* Takes the window that the middle slice asks for (PS3.3, C.11.2.1.2: the window's centre lies half a value
+ * lower). */
 static void take_window(const reading *r, double window[2]) {
   const hl_dicom_frame *frame = frame_at(r, r->stack->place_count / 2);
   const double *told = r->set->files[frame->file].window; /* centre and width */

@@ -1,4 +1,4 @@
-/* volume/zarr/array_codecs.c - types, fill values and codecs of Zarr arrays by their names. */
+/* volume/zarr/array_codecs.c - finds types, fill values and codecs of Zarr arrays by their names. */
 #include "volume/zarr/array_codecs.h"
 
 #include <math.h>
@@ -41,7 +41,7 @@ hl_status hl_zarr_type_3(const hl_zarr_reading *r, const char *name) {
 /* ---- fill values ---- */
 
 static void store_integer(hl_voxel_type type, int64_t value, unsigned char fill[8]) {
-  /* keeps the low bytes; two's complement makes this right for signed and unsigned types */
+  /* keeps the low bytes, which two's complement makes right for signed and unsigned types */
   uint8_t byte = (uint8_t)value;
   uint16_t word = (uint16_t)value;
   uint32_t wide = (uint32_t)value;
@@ -53,12 +53,13 @@ static void store_integer(hl_voxel_type type, int64_t value, unsigned char fill[
   }
 }
 
-/* Binary16 of a double. The fraction is cut, which is exact for fill values that such an array can hold. */
+/* The binary16 of a double. The fraction is cut, which is exact for fill values that such an array can
+ * hold. */
 static uint16_t half_of(double value) {
   int exponent;
   uint16_t sign = signbit(value) ? 0x8000 : 0;
   if (isnan(value)) return 0x7e00;
-  double mantissa = frexp(fabs(value), &exponent); /* [1/2, 1) */
+  double mantissa = frexp(fabs(value), &exponent); /* in [1/2, 1) */
   if (value == 0) return sign;
   if (isinf(value) || exponent > 16) return sign | 0x7c00;
   if (exponent < -13) return sign | (uint16_t)ldexp(fabs(value), 24);
@@ -73,7 +74,7 @@ static void store_real(hl_voxel_type type, double value, unsigned char fill[8]) 
   else memcpy(fill, &value, sizeof value);
 }
 
-/* "NaN", "Infinity", "-Infinity", or the bits as "0x7fc00000". */
+/* Stores the number that a text stands for: "NaN", "Infinity", "-Infinity", or the bits as "0x7fc00000". */
 static bool store_text(hl_voxel_type type, const char *text, unsigned char fill[8]) {
   double value;
   if (hl_text_number(text, strlen(text), &value)) {
@@ -155,7 +156,7 @@ static hl_status fail_filter(const hl_zarr_reading *r, const char *name) {
       hl_text_printable(shown, name != NULL ? name : "?"));
 }
 
-/* The type that a filter names, little-endian or of single bytes; `other` where it names none. */
+/* The type that a filter names, little-endian or of single bytes; `other` if it names none. */
 static bool filter_type(const json_t *filter, const char *key, hl_voxel_type other, hl_voxel_type *type) {
   hl_zarr_array array = {.rank = 0};
   hl_error unused = {0};
@@ -177,7 +178,7 @@ hl_status hl_zarr_filters_2(const hl_zarr_reading *r, const json_t *list) {
     hl_voxel_type own = r->array->type;
     if (name != NULL && hl_text_is_one_of(name, "quantize|bitround")) {
       if (!filter_type(entry, "astype", own, &filter.to) || filter.to != own) return fail_filter(r, name);
-      continue; /* values were rounded before: nothing is to be undone */
+      continue; /* values were rounded before, so that nothing is to be undone */
     }
     if (name == NULL || codecs->filter_count == HL_ZARR_FILTERS_MOST || codecs->big_endian)
       return fail_filter(r, name);
@@ -203,7 +204,7 @@ hl_status hl_zarr_filters_2(const hl_zarr_reading *r, const json_t *list) {
   return HL_OK;
 }
 
-/* "order" is a permutation: stored axis n is axis order[n] of the array. */
+/* Takes a transposition. "order" is a permutation: stored axis n is axis order[n] of the array. */
 static hl_status take_transpose(const hl_zarr_reading *r, const json_t *configuration,
                                 hl_zarr_codecs *codecs) {
   const json_t *order = json_object_get(configuration, "order");

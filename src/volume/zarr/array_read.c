@@ -99,7 +99,7 @@ static hl_status read_chunk_names(const hl_zarr_reading *r, const json_t *encodi
   return read_separator(r, configured(encoding, "separator"), plain ? '/' : '.');
 }
 
-/* With shards, the chunks of the chunk grid are files of several inner chunks. */
+/* Reads shards: with them the chunks of the chunk grid are files of several inner chunks. */
 static hl_status read_shards(const hl_zarr_reading *r, const json_t *codec) {
   hl_zarr_array *array = r->array;
   uint64_t outer[HL_ZARR_AXES_MOST];
@@ -163,7 +163,7 @@ static hl_status read_version_3(const hl_zarr_reading *r, const json_t *node) {
 
 /* ---- the whole ---- */
 
-/* In version 2, xarray writes the axes' names into an attribute. */
+/* Reads the axes' names from an attribute, where xarray writes them in version 2. */
 static hl_status read_attributed_names(const hl_zarr_reading *r) {
   json_t *attributes;
   hl_status status = hl_zarr_metadata_read(r->bundle, r->array->folder, ".zattrs", &attributes, r->error);

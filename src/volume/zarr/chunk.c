@@ -1,6 +1,6 @@
-/* volume/zarr/chunk.c - from a chunk's bytes in a file to its voxels: check sums, codecs, filters.
+/* volume/zarr/chunk.c - converts a chunk's bytes in a file to its voxels: checksums, codecs, filters.
  *
- * The size of an unpacked chunk is known from the metadata: data that unpack to another size are refused.
+ * The size of an unpacked chunk is known from the metadata, and data that unpack to another size are refused.
  * Where packed data state their unpacked size, it is compared before any memory is taken. */
 #include "volume/zarr/chunk.h"
 
@@ -50,7 +50,7 @@ bool hl_zarr_check_sum(const unsigned char *bytes, size_t length) {
 typedef struct packed_bytes {
   const unsigned char *bytes;
   size_t length;
-  size_t unpacked; /* bytes that unpacking must give */
+  size_t unpacked; /* number of bytes that unpacking must give */
 } packed_bytes;
 
 static hl_status fail_damaged(const hl_zarr_unpacker *u, const char *codec, hl_error *error) {
@@ -96,7 +96,7 @@ static hl_status unpack_zstd(hl_zarr_unpacker *u, packed_bytes packed, hl_error 
 }
 #endif
 
-/* LZ4, bzip2 and xz. LZ4's block comes after the unpacked size, in four bytes. */
+/* Unpacks LZ4, bzip2 and xz. The unpacked size, in four bytes, stands before a block of LZ4. */
 static hl_status unpack_other(hl_zarr_unpacker *u, packed_bytes packed, hl_error *error) {
   hl_zarr_compressor kind = u->array->codecs.compressor;
   bool lz4 = kind == HL_ZARR_LZ4, sound = !lz4 || packed.length >= 4;
@@ -147,7 +147,8 @@ static double number_of(hl_voxel_type type, const unsigned char *bytes) {
     memcpy(bytes, &number, sizeof number); \
   } while (0)
 
-/* Stores a number as the type's bytes, the least first; whole numbers wrap around as sums of them do. */
+/* Stores a number as bytes of the type, the least significant first. Whole numbers wrap around, as sums of
+ * them do. */
 static void put_number(hl_voxel_type type, double value, unsigned char *bytes) {
   bool whole = type != HL_VOXEL_F32 && type != HL_VOXEL_F64;
   if (whole && !(fabs(value) < 0x1p62)) value = 0;
@@ -162,7 +163,7 @@ static void put_number(hl_voxel_type type, double value, unsigned char *bytes) {
   }
 }
 
-/* The whole number of the type's bytes, its sign extended. */
+/* The whole number that bytes of the type stand for, with its sign extended. */
 static int64_t whole_of(hl_voxel_type type, const unsigned char *bytes) {
   uint64_t bits = 0;
   size_t count = hl_voxel_type_bytes(type);
@@ -172,7 +173,7 @@ static int64_t whole_of(hl_voxel_type type, const unsigned char *bytes) {
   return (int64_t)bits;
 }
 
-/* Sums of differences: whole numbers exactly, modulo the type's range. */
+/* Undoes differences by sums, exactly for whole numbers, modulo the type's range. */
 static void undo_delta(const hl_zarr_filter *filter, const unsigned char *from, size_t count,
                        unsigned char *to) {
   size_t step = hl_voxel_type_bytes(filter->from), wide = hl_voxel_type_bytes(filter->to);
@@ -216,7 +217,7 @@ static size_t filtered_bytes(const hl_zarr_array *array) {
   return bytes;
 }
 
-/* Undoes the filters, the last first. *voxels: replaced by the unpacker's own memory. */
+/* Undoes the filters, the last first. *voxels is replaced by the unpacker's own memory. */
 static hl_status undo_filters(hl_zarr_unpacker *u, const unsigned char **voxels, hl_error *error) {
   const hl_zarr_array *array = u->array;
   const hl_zarr_codecs *codecs = &array->codecs;
@@ -257,7 +258,7 @@ static hl_status read_packed(hl_zarr_unpacker *u, hl_source *source, uint64_t of
 
 hl_status hl_zarr_chunk_read(hl_zarr_unpacker *u, hl_source *source, uint64_t offset, uint64_t length,
                              const unsigned char **voxels, hl_error *error) {
-  enum { SLACK = 1 << 20 }; /* packing makes no data larger than by this */
+  enum { SLACK = 1 << 20 }; /* packing makes no data larger by more than this */
   const hl_zarr_codecs *codecs = &u->array->codecs;
   bool is_raw = codecs->compressor == HL_ZARR_RAW;
   packed_bytes packed = {.unpacked = filtered_bytes(u->array) + 4 * (size_t)codecs->inner_checks};

@@ -33,8 +33,8 @@ static hl_zarr_axis axis_of_name(const char *name) {
   return HL_ZARR_OTHER;
 }
 
-/* Axes without names: the last three are z, y and x; before them come the channel and, before that, the time.
- */
+/* Names axes that have no names. The last three are z, y and x; before them come the channel and, before
+ * that, the time. */
 static void take_places(int rank, hl_zarr_axis *axis) {
   static const hl_zarr_axis from_end[] = {HL_ZARR_X, HL_ZARR_Y, HL_ZARR_Z, HL_ZARR_CHANNEL, HL_ZARR_TIME};
   for (int n = 0; n < rank; n++) axis[rank - 1 - n] = n < HL_ZARR_OTHER ? from_end[n] : HL_ZARR_OTHER;
@@ -48,7 +48,7 @@ static bool names_are_known(int rank, const hl_zarr_axis *axis) {
   return seen[HL_ZARR_X] == 1 && seen[HL_ZARR_Y] == 1;
 }
 
-/* Sets *unit, the factor of all lengths along the space axes: micrometres if each of the axes has a known
+/* Sets *unit, the factor on all lengths along the space axes: micrometres if each of these axes has a known
  * unit, else 1. Returns whether each has one. */
 static bool read_axes(const json_t *axes, int rank, hl_zarr_axis *axis, double unit[3]) {
   bool told = json_array_size(axes) == (size_t)rank, all = true;
@@ -95,7 +95,8 @@ static hl_status apply(const hl_bundle *bundle, const char *folder, const json_t
   return HL_OK;
 }
 
-/* Before version 0.4 no level states its scale: all levels are taken to cover the same space. */
+/* Scales levels by their shapes. Before version 0.4 no level states its scale, and all levels are assumed to
+ * cover the same space. */
 static void scale_by_shape(hl_zarr_image *image) {
   for (int n = 1; n < image->level_count; n++)
     for (int axis = 0; axis < image->levels[0].array.rank; axis++) {

@@ -8,25 +8,27 @@
 
 enum { HL_ZARR_PATH_BYTES = 512, HL_ZARR_METADATA_BYTES_MOST = 4 << 20 };
 
-/* Reads the JSON object in folder + name; *object is null if there is no such file, else owned by the caller
- * (json_decref). */
+/* Reads the JSON object in the file folder + name. *object is null if there is no such file, else owned by
+ * the caller (json_decref). */
 hl_status hl_zarr_metadata_read(const hl_bundle *bundle, const char *folder, const char *name,
                                 json_t **object, hl_error *error);
 
-/* The attributes of the group or array in `folder`, from `zarr.json` or `.zattrs`; null if there are none. */
+/* Reads the attributes of the group or array in `folder`, from `zarr.json` or `.zattrs`; null if there are
+ * none. */
 hl_status hl_zarr_attributes_read(const hl_bundle *bundle, const char *folder, json_t **attributes,
                                   hl_error *error);
 
-/* OME-Zarr's part of the attributes: their member "ome" in version 0.5, all of them in 0.4. Borrowed. */
+/* OME-Zarr's part of the attributes: the member "ome" in version 0.5, all attributes in version 0.4.
+ * Borrowed. */
 const json_t *hl_zarr_ome(const json_t *attributes);
 
-/* "PATH/FOLDER...: WHAT" */
+/* Fails with "PATH/FOLDER...: WHAT". */
 __attribute__((format(printf, 5, 6))) hl_status hl_zarr_fail(const hl_bundle *bundle, const char *folder,
                                                              hl_error *error, hl_status code,
                                                              const char *format, ...);
 
-/* Writes folder + name + '/' into `joined`. False if it is too long or leads out of the folder ("..", "/");
- * the names "." and "" stand for the folder itself. */
+/* Writes folder + name + '/' into `joined`. False if that is too long or leads out of the folder ("..", "/").
+ * The names "." and "" stand for the folder itself. */
 bool hl_zarr_join(char joined[HL_ZARR_PATH_BYTES], const char *folder, const char *name);
 
 #endif

@@ -1,7 +1,7 @@
-/* volume/zarr/voxels.c - reads chunks on all threads and puts their voxels where they belong.
+/* volume/zarr/voxels.c - reads chunks on all threads and puts their voxels in their places.
  *
- * A part is one chunk; its file may be a shard, which holds several chunks: parts of the same shard follow
- * each other. A missing chunk holds the fill value. */
+ * A part of the work is one chunk. The chunk's file may be a shard, which holds several chunks; parts of the
+ * same shard follow each other. A missing chunk holds the fill value. */
 #include "volume/zarr/voxels.h"
 
 #include <stdatomic.h>
@@ -22,14 +22,14 @@ enum {
 
 static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
 
-/* A thread's chunk, and the shard that it read last. */
+/* A thread's memory for a chunk, and the shard that the thread read last. */
 typedef struct worker {
   hl_zarr_unpacker unpacker;
-  char key[KEY_BYTES];  /* of the open file; "": none */
-  hl_source *source;    /* owned; null: the file does not exist */
-  unsigned char *index; /* owned; the shard's index: [16 * chunks_in_shard], followed by a check sum */
-  void *row; /* owned; of a chunk, in stored form, on its way to pages or to a rank's slices; null: all voxels
-                are in memory */
+  char key[KEY_BYTES];  /* name of the open file; "" if there is none */
+  hl_source *source;    /* owned; null if the file does not exist */
+  unsigned char *index; /* owned; [16 * chunks_in_shard], followed by a checksum; the shard's index */
+  void *row; /* owned; a row of a chunk, in stored form, on its way to pages or to a rank's slices; null if
+              * all voxels are in memory */
 } worker;
 
 typedef struct reading {
@@ -37,20 +37,20 @@ typedef struct reading {
   const hl_zarr_array *array;
   const hl_zarr_choice *choice;
   hl_destination *to;          /* borrowed */
-  size_t stored_bytes;         /* of a voxel */
-  uint64_t size[3];            /* of the volume */
-  uint64_t files[3], inner[3]; /* along i, j, k: number of files, and of chunks in each file */
-  uint64_t parts;              /* in all */
+  size_t stored_bytes;         /* bytes of a voxel */
+  uint64_t size[3];            /* size of the volume */
+  uint64_t files[3], inner[3]; /* along i, j, k: number of files, and number of chunks in each file */
+  uint64_t parts;              /* number of all parts */
   size_t
-      stride[HL_ZARR_AXES_MOST]; /* bytes from a voxel to the next one in a chunk, along the array's axes */
-  unsigned char fill[4];         /* a voxel in stored form */
+      stride[HL_ZARR_AXES_MOST]; /* along the array's axes: bytes from a voxel to the next one in a chunk */
+  unsigned char fill[4];         /* the fill value in stored form */
   worker *workers;               /* owned; [threads] */
-  atomic_size_t found;           /* chunks that are there */
+  atomic_size_t found;           /* number of chunks that exist */
 } reading;
 
-/* Where a part lies, in chunks and in voxels. */
+/* The place of a part, in chunks and in voxels. */
 typedef struct part {
-  uint64_t file[HL_ZARR_AXES_MOST];  /* coordinates of its file */
+  uint64_t file[HL_ZARR_AXES_MOST];  /* coordinates of the part's file */
   uint64_t inner[HL_ZARR_AXES_MOST]; /* index of the chunk within its file */
   uint64_t begin[3], count[3];       /* the part's voxels in the volume */
 } part;
@@ -75,7 +75,7 @@ static hl_status count_parts(reading *r, hl_error *error) {
   return HL_OK;
 }
 
-/* False where the part lies beyond the array's end. */
+/* Finds the place of a part. False if the part lies beyond the array's end. */
 static bool place_part(const reading *r, uint64_t number, part *p) {
   const hl_zarr_array *array = r->array;
   uint64_t inner[3], file[3];
@@ -130,8 +130,8 @@ static void fill_row(const reading *r, void *row, size_t first, size_t count) {
   }
 }
 
-/* Reads voxels that lie `step` bytes apart, those from number `first` on; through a small buffer unless they
- * lie side by side. */
+/* Reads voxels that lie `step` bytes apart and stores them from number `first` on. They pass through a small
+ * buffer unless they lie side by side. */
 static void store_row(const reading *r, const unsigned char *from, size_t step, size_t first, size_t count,
                       unsigned char *row) {
   enum { STAGED = 512 };
@@ -152,7 +152,7 @@ static void store_row(const reading *r, const unsigned char *from, size_t step, 
   }
 }
 
-/* chunk: the part's voxels; null: the part gets the fill value. */
+/* Stores a part. chunk: the part's voxels; null if the part gets the fill value. */
 static void put(const reading *r, const worker *w, const part *p, const unsigned char *chunk) {
   size_t step[3];
   for (int a = 0; a < 3; a++) step[a] = r->choice->axis[a] < 0 ? 0 : r->stride[r->choice->axis[a]];
@@ -211,7 +211,7 @@ static uint64_t little_u64(const unsigned char *bytes) {
   return value;
 }
 
-/* Finds a chunk in its file; *length 0: the chunk is missing. */
+/* Finds a chunk in its file. *length is 0 if the chunk is missing. */
 static hl_status find_chunk(const reading *r, const worker *w, const part *p, uint64_t *offset,
                             uint64_t *length, hl_error *error) {
   uint64_t size = w->source != NULL ? hl_source_size(w->source) : 0, number = 0;
@@ -236,7 +236,8 @@ static hl_status read_part(void *data, size_t number, int index, hl_error *error
   if (!place_part(r, number, &p)) return HL_OK;
   uint64_t slice = r->size[0] * r->size[1];
   if (!hl_destination_wants(r->to, p.begin[2] * slice, p.count[2] * slice)) {
-    atomic_fetch_add_explicit(&r->found, 1, memory_order_relaxed); /* it is another rank's to know */
+    /* Another rank knows whether the chunk exists. */
+    atomic_fetch_add_explicit(&r->found, 1, memory_order_relaxed);
     return HL_OK;
   }
   hl_status status = open_file(r, w, &p, error);
@@ -263,7 +264,7 @@ static void prepare(reading *r) {
   hl_voxels_store(array->type, false, array->fill, 1, r->fill);
 }
 
-/* The voxels of a chunk's longest row. */
+/* The number of voxels of a chunk's longest row. */
 static size_t longest_row(const reading *r) {
   int axis = r->choice->axis[0];
   uint64_t chunk = axis < 0 ? 1 : r->array->chunk[axis];
