@@ -14,8 +14,8 @@
 #include "core/error.h"
 #include "text/plain.h"
 
-/* Asks the system to place large blocks in large pages. With small pages, every row of a tile lies in a page
- * of its own, and translating so many page addresses took longer than reading the rows. */
+/* Asks the system to place large blocks in large pages. With small pages, every row of a tile would lie in a
+ * page of its own, and translating the pages' addresses took longer than reading the rows. */
 enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 1 << 22 };
 
 static void *default_allocate(void *user_data, size_t size, size_t alignment) {

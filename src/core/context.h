@@ -18,7 +18,7 @@ struct hl_context {
                              * it, else this one */
   int folder;               /* a confined context's folder, as a descriptor; -1 if the context may open no
                              * file */
-  atomic_size_t users;      /* of a confined context: its owner and its blocks of memory, counted */
+  atomic_size_t users;      /* the users of a confined context are its owner and its blocks of memory */
 };
 
 /* Whether the context opens only files below a folder. */

@@ -32,7 +32,7 @@ static int open_allowed(const hl_context *context, const char *path, int flags) 
   return context->folder >= 0 ? hl_beneath_open(context->folder, path, flags) : -1;
 }
 
-/* Fails with a line about a file. In a confined context the words do not depend on what exists outside the
+/* Fails with a line about a file. In a confined context the line does not depend on the files outside the
  * context's folder. */
 static hl_status fail_open(const hl_context *context, hl_error *error, const char *path) {
   bool of_process = errno == EMFILE || errno == ENFILE || errno == ENOMEM;

@@ -16,8 +16,8 @@ hl_status hl_file_open_again(hl_context *context, const char *path, int *descrip
 /* Opens a folder, for hl_beneath_open() and fdopendir(). "" is the current folder, or the folder of a
  * confined context. */
 hl_status hl_folder_open(hl_context *context, const char *path, int *descriptor, hl_error *error);
-/* The kind of the file with this name: 'f' is a file that can be read, 'd' a folder, and 0 anything else,
- * also what the context may not open. */
+/* The kind of the file with this name: 'f' for a file that can be read, 'd' for a folder, and 0 for anything
+ * else. Files that the context may not open have the kind 0, too. */
 char hl_file_kind(const hl_context *context, const char *path);
 /* Reads up to capacity bytes; *count is 0 at the end of the file. While a pipe is empty, waits and polls the
  * cancel callback. */

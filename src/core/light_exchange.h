@@ -1,5 +1,4 @@
-/* core/light_exchange.h - how renderers that share a picture tell each other what they know of its light.
- */
+/* core/light_exchange.h - messages about light between renderers that share a picture. */
 #ifndef HL_CORE_LIGHT_EXCHANGE_H
 #define HL_CORE_LIGHT_EXCHANGE_H
 

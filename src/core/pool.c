@@ -34,7 +34,7 @@ enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
 /* Time between two calls of the cancel callback while a job runs: far less than a person notices, far more
  * than a call takes. */
 static const int64_t NANOSECONDS_BETWEEN_QUESTIONS = 2000000;
-/* The clock is read again after this many calls, or after fewer where so many calls may take longer than
+/* The clock is read again after this many calls, or earlier where these calls may take longer than
  * NANOSECONDS_BETWEEN_READINGS. */
 static const int64_t NANOSECONDS_BETWEEN_READINGS = 50000;
 enum { MOST_UNREAD = 15 };

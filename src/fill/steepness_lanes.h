@@ -33,9 +33,10 @@ typedef struct matter_way {
   const kernel *kernel;
   const classifier *classifier;
   const float (*to_index)[4]; /* maps frame space to index space */
-  lanes3 point;               /* the point where the matter is seen by the value alone; frame space */
+  lanes3 point;               /* the point where the matter is seen, as the value alone places it; frame
+                               * space */
   lanes from, to;             /* coordinates in the tables at the way's beginning and end */
-  lanes extinction;           /* the mean extinction by the value alone */
+  lanes extinction;           /* the mean extinction that the value alone gives */
   uint32_t active, starts;    /* lanes with extinction, at least one; the first lane of each block */
   int wants_slope;            /* whether the caller reads the slope, even where the factor does not depend on
                                * it */

@@ -18,7 +18,8 @@ typedef struct film_options {
   const char *const *keys; /* [key_count]: "PATH=FRAME:VALUE,..." */
   size_t key_count;
   int turntable; /* frames of a whole turn about the picture's vertical axis; 0 for no turn */
-  int frames;    /* number of frames; 0: as many as the turntable has, or up to the last key's last frame */
+  int frames;    /* number of frames; 0 for as many as the turntable has, or up to the last key's last
+                  * frame */
 } film_options;
 
 /* Makes a film. Fails where keys cannot be read or no number lies at their paths (HL_ERROR_ARGUMENT), or

@@ -19,7 +19,7 @@ struct movie {
   char *path, *unfinished; /* owned */
   char *target; /* owned; the unfinished file's name in ffmpeg's syntax, in which other names may be
                  * protocols */
-  int pipe;     /* into ffmpeg; -1: closed */
+  int pipe;     /* a pipe into ffmpeg; -1 if closed */
   process ffmpeg;
 };
 

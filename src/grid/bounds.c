@@ -389,7 +389,9 @@ hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_function
   cell_job job = {.grid = grid, .functions = functions, .smooth = smooth, .context = context};
   size_t layers = (size_t)grid->brick_count[2];
   set_cell_range(volume, grid);
-  if (!cells_have_bounds(grid)) return HL_OK; /* only bricks tell what is visible */
+  if (!cells_have_bounds(grid))
+    return HL_OK; /* bricks are then the only units that tell where something is
+                   * visible */
   hl_layout counted = {0};
   lay_out_slices(&job, hl_pool_threads(pool), &counted);
   hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};

@@ -192,8 +192,8 @@ static void replace_own(const value_job *job, const hl_own_voxels *own, hl_own_v
   for (size_t n = 0; n < count; n++) values[n] = hl_grid_value(values[n], job->greatest, job->empty);
 }
 
-/* Filters this rank's slices to coefficients. Along z, rank after rank filters, and each tells its last slice
- * to the next. */
+/* Filters this rank's slices to coefficients. Along z, rank after rank filters, and each rank sends its last
+ * slice to the next. */
 static void filter_own(value_job *job, hl_ranks *ranks, hl_own_voxels *made) {
   const size_t count = made->box.count[2], bytes = job->slice * sizeof(float);
   job->slices = (float *)(void *)made->slices;

@@ -81,7 +81,7 @@ static void measure(const hl_image *a, const hl_image *b, hl_image_difference *d
     }
   double pixels = (double)a->width * (double)a->height;
   for (int c = 0; c < 4; c++) {
-    /* a NaN: infinities of both signs were added */
+    /* the sum is NaN if infinities of both signs were added */
     difference->mean_signed[c] = isnan(sum[c]) ? INFINITY : sum[c] / pixels;
     difference->rmse_channel[c] = sqrt(square[c] / pixels);
   }

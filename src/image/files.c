@@ -19,8 +19,8 @@ static const hl_image_format *const formats[] = {&hl_png_format, &hl_exr_format,
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
 
-/* Greatest accepted sizes in bytes: of what a file holds beside its pixels (texts, profiles, thumbnails), and
- * of its header. */
+/* Greatest accepted sizes in bytes: of everything in a file beside its pixels (texts, profiles, thumbnails),
+ * and of the file's header. */
 static const size_t extra_bytes_max = (size_t)64 << 20, header_bytes_max = (size_t)16 << 20;
 
 static const hl_image_format *format_by_name(const char *path) {

@@ -56,7 +56,7 @@ static bool take_line(hdr_cursor *cursor, char line[LINE_MAX_BYTES]) {
   return true;
 }
 
-/* Passes over the header's lines up to and including the empty one. */
+/* Skips the header's lines up to and including the empty one. */
 static hl_status skip_header(hdr_cursor *cursor) {
   char line[LINE_MAX_BYTES];
   for (;;) {

@@ -45,8 +45,8 @@ typedef struct png_reading {
   png_structp png;
   png_infop info;
   hl_image *image;
-  float *linear; /* owned; [maximum + 1]; linear value of each code, computed when first needed; below 0: not
-                    yet computed */
+  float *linear; /* owned; [maximum + 1]; linear value of each code; negative until it is computed, at its
+                  * first use */
   unsigned char *rows; /* owned; one row of RGBA samples, or all rows where the file is interlaced */
 } png_reading;
 
@@ -362,8 +362,8 @@ static hl_status take_text(hl_context *context, const char *name, const char *ty
   if (memcmp(type, "tEXt", 4) == 0) return copy_text(context, name, body, length, text, error);
   if (memcmp(type, "zTXt", 4) == 0 && length > 1)
     return inflate_text(context, name, body + 1, length - 1, text, error);
-  /* iTXt has a flag that tells whether it is compressed, the method, and language and translated keyword,
-   * which each end with a zero byte */
+  /* an iTXt chunk has a flag for compression, the method, the language and the translated keyword; language
+   * and translated keyword each end with a zero byte */
   const unsigned char *language_end = length > 2 ? memchr(body + 2, 0, length - 2) : NULL;
   const unsigned char *end = body + length;
   const unsigned char *start = language_end != NULL

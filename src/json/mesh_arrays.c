@@ -12,7 +12,7 @@ const char *const hl_json_mesh_keys[] = {"vertices", "triangles",     "normals",
 typedef struct row_kind {
   size_t least, most; /* least and greatest number of numbers in a row */
   double rest;        /* value of numbers that a row lacks */
-  const char *wanted; /* what to give instead, for errors */
+  const char *wanted; /* for errors: the value that the scene should give instead */
 } row_kind;
 
 /* Reads one row of a member `key` into `to`, which has kind->most places. */

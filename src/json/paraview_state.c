@@ -33,7 +33,7 @@ enum { ID_BYTES = 24 };
 
 /* The properties of a representation that shows a volume. */
 typedef struct shown_volume {
-  bool by_plane;      /* by a function of two numbers */
+  bool by_plane;      /* the volume is shown by a function of two numbers */
   bool by_gradient;   /* the function's second number is the gradient's length */
   bool other_opacity; /* opacity depends on another array */
   double unit;

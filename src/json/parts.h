@@ -52,8 +52,8 @@ typedef struct hl_volume_shelf {
   const json_t *groups; /* the groups of shapes; may be null */
   json_t *stood_in; /* owned; volumes whose file was absent, with the keys of their stand-ins; null if there
                      * are none */
-  hl_space space;   /* the scene's space, which is the space of the first volume that tells one; later volumes
-                     * are turned into it */
+  hl_space space;   /* the scene's space, which is the space of the first volume that states one; later
+                     * volumes are turned into it */
   bool projected;   /* whether the picture is a maximum projection */
   int threads;      /* threads for sampling shapes; 0 for one per processor */
 } hl_volume_shelf;

@@ -24,7 +24,7 @@ static const label_filter TO_COEFFICIENTS = {2, {1.5f, -10.0f / 36, 1.0f / 36}};
 
 /* Smoothing and mending take turns for ROUNDS rounds. Mending corrects voxels whose centres are on the wrong
  * side of the surface, by PUSH times their distance beyond TOLERATED from 1/2. Thin things therefore stay,
- * and what smoothing moves by a fraction of a voxel stays smooth. */
+ * while surfaces that smoothing moves by a fraction of a voxel stay smooth. */
 enum { ROUNDS = 2 };
 static const float TOLERATED = 0.12f, PUSH = 2.5f;
 

@@ -54,19 +54,19 @@ typedef struct mesh_parts {
   hl_context *context;
   const char *path;         /* the file's name in errors */
   float (*positions)[3];    /* owned; [vertex_count] */
-  float (*normals)[3];      /* owned; [vertex_count]; null: none */
-  float (*colors)[4];       /* owned; [vertex_count]; null: none */
+  float (*normals)[3];      /* owned; [vertex_count]; null if vertices have no normals */
+  float (*colors)[4];       /* owned; [vertex_count]; null if vertices have no colours */
   uint32_t (*triangles)[3]; /* owned; [triangle_count] */
-  float (*face_colors)[4];  /* owned; [triangle_count]; null: none */
+  float (*face_colors)[4];  /* owned; [triangle_count]; null if triangles have no colours */
   size_t vertex_count, vertex_room, triangle_count, triangle_room;
   float (*spheres)[4];       /* owned; [sphere_count] */
-  float (*sphere_colors)[4]; /* owned; [sphere_count]; null: none */
+  float (*sphere_colors)[4]; /* owned; [sphere_count]; null if spheres have no colours */
   size_t sphere_count;
   float (*line_points)[4]; /* owned; [line_point_count] */
-  float (*line_colors)[4]; /* owned; [line_point_count]; null: none */
+  float (*line_colors)[4]; /* owned; [line_point_count]; null if lines have no colours */
   uint32_t *line_lengths;  /* owned; [line_count] */
   size_t line_point_count, line_count;
-  mesh_polygon *polygons; /* owned; [polygon_count]; those of more than three corners */
+  mesh_polygon *polygons; /* owned; [polygon_count]; polygons of more than three corners */
   size_t polygon_count, polygon_room;
 } mesh_parts;
 

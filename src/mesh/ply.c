@@ -22,7 +22,7 @@ typedef enum ply_type {
 static const struct {
   const char *names; /* alternative names of the type */
   ply_type type;
-  hl_voxel_type voxel; /* the voxel type that is the same */
+  hl_voxel_type voxel; /* the voxel type with the same numbers */
   int bytes;
 } types[] = {{"", PLY_NONE, HL_VOXEL_U8, 0},
              {"char|int8", PLY_I8, HL_VOXEL_I8, 1},

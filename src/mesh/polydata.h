@@ -16,7 +16,7 @@ typedef struct cells {
 
 /* An array of values at points or at cells. */
 typedef struct cell_values {
-  double *values; /* owned; [tuples][components]; null: none */
+  double *values; /* owned; [tuples][components]; null if there are no values */
   size_t tuples, components;
   hl_voxel_type type;
 } cell_values;

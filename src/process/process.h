@@ -26,13 +26,13 @@ void process_limit(const process *p, uint64_t memory, uint64_t file);
 /* Waits until the child ends by itself. Returns whether the child succeeded. */
 bool process_wait(process *p);
 
-/* Tells, without waiting, whether the child has ended; *succeeded is then whether it succeeded. */
+/* Finds out, without waiting, whether the child has ended; *succeeded is then whether it succeeded. */
 bool process_has_ended(process *p, bool *succeeded);
 
 /* Copies the first line that the child wrote to standard error, or "NAME has failed" if it wrote nothing. */
 void process_said(process *p, const char *name, char *text, size_t size);
 
-/* Ends the child, if it still runs, and releases what the process owns. */
+/* Ends the child, if it still runs, and releases the memory of the process. */
 void process_end(process *p);
 
 #endif

@@ -115,8 +115,7 @@ typedef struct reference_surfaces {
 /* A part of the sky. */
 typedef struct reference_sky_cell {
   vec3 direction, mean; /* world: the unit vector to the cell's middle, and the mean of all unit vectors to
-                         * the cell. For a cell of an image: to the middle, and the mean, of the cell's
-                         * light */
+                         * the cell. In a cell of an image both are weighted by the image's light */
   double radiance[3];   /* the cell's mean radiance */
 } reference_sky_cell;
 
@@ -336,7 +335,7 @@ void hl_reference_path(const reference *all, vec3 origin, vec3 direction, uint64
 typedef struct reference_sky_receiver {
   vec3 point, normal, to_eye; /* world; unit vectors; the normal is 0 in a medium */
   double surface;             /* 0 for a medium, 1 for a surface */
-  double diffuse, anisotropy; /* of the surface; of the medium */
+  double diffuse, anisotropy; /* the surface's diffuse colour factor; the medium's anisotropy */
   const double *albedo;       /* [3]; the medium's; null for 1 */
   bool receives_shadow;
 } reference_sky_receiver;

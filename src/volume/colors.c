@@ -7,7 +7,8 @@
 #include "core/error.h"
 #include "core/memory.h"
 
-enum { ALPHA = 3, VOXELS_MOST = 1 << 29 /* so many that 32 bits number the bytes of the colours */ };
+/* With VOXELS_MOST voxels, 32 bits can number the bytes of the colours. */
+enum { ALPHA = 3, VOXELS_MOST = 1 << 29 };
 
 bool hl_can_be_colors(hl_voxel_type type, size_t components) {
   return (components == 3 || components == 4) && (type == HL_VOXEL_U8 || type == HL_VOXEL_U16);

@@ -16,7 +16,8 @@ typedef struct hl_destination {
   unsigned char *voxels; /* owned; [k][j][i]; null with pages */
   hl_pages *pages;       /* owned; null if the voxels are in memory */
   hl_exact exact;        /* the file's own numbers, where stored values round them */
-  hl_own_voxels *own;    /* owned; over ranks: this rank's slices, and `voxels` is null; null elsewhere */
+  hl_own_voxels *own;    /* owned; this rank's slices, for a volume over ranks, whose `voxels` is null; null
+                          * for other volumes */
 } hl_destination;
 
 typedef enum hl_destination_kind {

@@ -16,7 +16,7 @@
 typedef enum hl_exact_place {
   HL_EXACT_IN_MEMORY,
   HL_EXACT_IN_FILE, /* in a scratch file, for voxels that lie in pages */
-  HL_EXACT_NOWHERE  /* nowhere: only noted is whether floats round any number */
+  HL_EXACT_NOWHERE  /* numbers are not kept; only whether floats round any of them is noted */
 } hl_exact_place;
 
 typedef struct hl_exact {

@@ -1,7 +1,7 @@
 /* volume/payload.c - reads the voxels that a header promises.
  *
  * In: a stream at the first voxel, and the header. Out: the volume. The file's bytes are read into the
- * volume's own memory and converted there, piece by piece; Voxels of 8 bytes, which become shorter, pass
+ * volume's own memory and converted there, piece by piece. Voxels of 8 bytes, which become shorter, pass
  * through a small buffer. Voxels of volumes larger than memory pass through a piece. */
 #include "volume/payload.h"
 

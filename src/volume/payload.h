@@ -31,7 +31,7 @@ typedef struct hl_payload {
                           * binary */
   bool text_is_fraction; /* whether the numbers 0 to 1 of the text stand for the values 0 to 255 of u8 */
   hl_trailing trailing;
-  const char *promiser; /* what states size and type, for error lines, such as "the header" */
+  const char *promiser; /* the place that states size and type, for error lines, such as "the header" */
 } hl_payload;
 
 void hl_payload_defaults(hl_payload *payload);

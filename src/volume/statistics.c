@@ -41,7 +41,7 @@ static binning make_binning(tally total, double value_scale) {
 }
 
 static int bin_of(binning bins, double stored) {
-  /* voxels that have changed since the range was found may lie out of it */
+  /* a voxel that has changed since the range was found may lie outside the range */
   double place = (stored - bins.anchor) * bins.factor;
   return !(place > 0) ? 0 : place < HL_HISTOGRAM_BINS - 1 ? (int)place : HL_HISTOGRAM_BINS - 1;
 }

@@ -45,7 +45,8 @@ static hl_status run(struct jpeg_decompress_struct *info, const hl_dicom_packed 
   hl_status status = hl_dicom_check_packed(packed, "JPEG", info->image_width, info->image_height,
                                            (size_t)info->num_components, info->data_precision, error);
   if (status != HL_OK) return status;
-  /* a marker in the JPEG data tells whether they are RGB; without such a marker, the DICOM file tells it */
+  /* a marker in the JPEG data says whether the picture is RGB; without such a marker, the DICOM file says
+   * it */
   bool told = info->saw_Adobe_marker || info->saw_JFIF_marker;
   if (info->num_components == 3 && !told) info->jpeg_color_space = p->is_ybr ? JCS_YCbCr : JCS_RGB;
   info->out_color_space = info->num_components == 3 ? JCS_RGB : JCS_GRAYSCALE;

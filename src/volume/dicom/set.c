@@ -85,8 +85,10 @@ static size_t largest(const hl_dicom_set *set) {
   for (size_t n = 0; n < set->series_count; n++) {
     const hl_dicom_series *series = &set->series[n];
     double size = (double)series->rows * (double)series->columns * (double)series->frames;
-    if (series->frames == 1) size *= 1e-6;     /* a single picture is chosen only if there are no stacks */
-    if (series->is_segmentation) size *= 1e-3; /* the scan is more likely wanted than a segmentation of it */
+    if (series->frames == 1) size *= 1e-6; /* a single picture is chosen only if there are no stacks */
+    if (series->is_segmentation)
+      size *= 1e-3; /* a user who names no series more likely wants the scan than a
+                     * segmentation of the scan */
     if (size > most) {
       most = size;
       chosen = n;

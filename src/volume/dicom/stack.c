@@ -382,7 +382,7 @@ static double median_step(const sorting *s) {
 /* Whether all positions are whole multiples of one step away from the first. The step is close to `step`.
  * *slices: the number of steps plus one. */
 static bool is_even(const sorting *s, double step, size_t *slices) {
-  const double TOLERANCE = 0.05; /* of a step */
+  const double TOLERANCE = 0.05; /* in parts of a step */
   double span = s->places[s->place_count - 1] - s->places[0], steps = 0;
   for (size_t n = 0; n + 1 < s->place_count; n++)
     steps += fmax(1, floor((s->places[n + 1] - s->places[n]) / step + 0.5));

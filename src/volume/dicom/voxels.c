@@ -28,8 +28,8 @@ typedef struct reading {
   bool as_floats; /* whether values are computed as floats; otherwise stored values are kept */
   bool as_colors; /* whether values are colours (colors.h) */
   bool is_plain;  /* whether the values of all slices are the files' numbers, of `type` */
-  double slope, intercept,
-      padding[2]; /* the same for all slices; slope and intercept are set only where as_floats is false */
+  double slope, intercept, padding[2]; /* padding values are the same for all slices; slope and intercept are
+                                        * set only where as_floats is false */
   size_t slice_voxels, voxel_bytes;
   hl_destination to; /* [slices][slice_voxels], each of voxel_bytes */
   hl_pool *pool;
