@@ -68,6 +68,14 @@ void hl_release(hl_context *context, void *memory) {
   if (hl_is_confined(context)) hl_context_leave(context);
 }
 
+bool hl_layout_pass(hl_layout *layout, hl_context *context) {
+  if (layout->passes == 1) layout->base = hl_allocate(context, layout->bytes, 1);
+  if (layout->passes == 2 || (layout->passes == 1 && layout->base == NULL)) return false;
+  layout->passes++;
+  layout->bytes = 0;
+  return true;
+}
+
 char *hl_copy_text(hl_context *context, const char *text) {
   if (text == NULL) return NULL;
   size_t length = strlen(text) + 1;

@@ -63,25 +63,46 @@ void hl_reserve_release(hl_reserve *reserve);
 
 /* ---- Memory that is planned once ----
  *
- * One description both counts the bytes and assigns them: a function that takes each of its arrays from a
- * layout. The first run, with a layout of zeros, counts bytes and gets null pointers. The second run, with
- * `base` set to a block of the counted size, gets the arrays. */
+ * One function says which arrays a thing has: it takes each of them from a layout. With a layout of zeros it
+ * counts the bytes and gets null pointers; with `base` set to a block of the counted size it gets the arrays.
+ * No second function says how large the block is: an estimate runs the same function, and counts only.
+ *
+ *     hl_layout layout = {0};
+ *     while (hl_layout_pass(&layout, context)) lay_out(thing, &layout);
+ *     if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the thing");
+ *     thing->memory = layout.base;
+ *
+ * An estimate takes the arrays of many things from one layout. Arrays that are released before the next ones
+ * are allocated are given back (hl_layout_give_back): `most` is then the peak. */
 
 typedef struct hl_layout {
-  unsigned char *base; /* aligned to 64 bytes; null if bytes are only counted */
-  size_t bytes;        /* bytes taken so far; SIZE_MAX after an overflow */
+  unsigned char *base; /* aligned to 64 bytes; null: counts only */
+  size_t bytes;        /* bytes taken at present; SIZE_MAX: overflow */
+  size_t most;         /* the most bytes that were taken at one time */
+  int passes;          /* of hl_layout_pass() */
 } hl_layout;
+
+/* True before the pass that counts, and before the pass that hands out a block of the counted size. False
+ * after the second pass; and where the block could not be allocated: then `base` is null. The caller owns
+ * the block. */
+bool hl_layout_pass(hl_layout *layout, hl_context *context);
 
 /* Takes count * size bytes, aligned to 64; returns null while counting. */
 static inline void *hl_layout_take(hl_layout *layout, size_t count, size_t size) {
   size_t bytes;
-  if (!hl_multiply(count, size, &bytes) || bytes > SIZE_MAX - 63 - layout->bytes) {
-    layout->bytes = SIZE_MAX; /* allocating SIZE_MAX bytes always fails */
+  if (!hl_multiply(count, size, &bytes) || bytes > SIZE_MAX / 2 || layout->bytes > SIZE_MAX / 2) {
+    layout->bytes = layout->most = SIZE_MAX; /* allocating SIZE_MAX bytes always fails */
     return NULL;
   }
   void *taken = layout->base == NULL ? NULL : layout->base + layout->bytes;
   layout->bytes += (bytes + 63) / 64 * 64;
+  if (layout->bytes > layout->most) layout->most = layout->bytes;
   return taken;
+}
+
+/* While counting: gives back what was taken since `bytes` had this value. */
+static inline void hl_layout_give_back(hl_layout *layout, size_t bytes) {
+  if (layout->bytes != SIZE_MAX) layout->bytes = bytes;
 }
 
 #endif

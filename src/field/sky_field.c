@@ -232,12 +232,11 @@ static void lay_out(const sky_content *content, passing_arrays *arrays, hl_layou
   hl_field_share_lay_out(content->exchange, (size_t)content->lattice.count[2], &arrays->share, layout);
 }
 
-uint64_t hl_sky_bytes(const sky_content *content, uint64_t *passing) {
+void hl_sky_count(const sky_content *content, const sky_field *held, hl_layout *layout) {
   passing_arrays arrays;
-  hl_layout counted = {0};
-  lay_out(content, &arrays, &counted);
-  *passing = counted.bytes;
-  return field_bytes(content);
+  const size_t kept = field_bytes(content);
+  hl_layout_take(layout, kept > held->bytes ? kept - held->bytes : 0, 1);
+  lay_out(content, &arrays, layout);
 }
 
 /* ---- the field ---- */
@@ -371,8 +370,6 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
   sky_content own = *content;
   sky_light *light = &made->light;
   passing_arrays arrays;
-  hl_layout counted = {0};
-  lay_out(content, &arrays, &counted);
   const size_t bytes = field_bytes(content);
   *light = (sky_light){
       .channels = content->channels, .cell = (float)content->lattice.cell, .color = {1, 1, 1}};
@@ -396,12 +393,12 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
     if (made->memory == NULL) return hl_fail_memory(error, bytes, "the light of the sky");
     made->bytes = bytes;
   }
-  hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};
-  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "the light of the sky");
-  lay_out(content, &arrays, &handed);
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, context)) lay_out(content, &arrays, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the light of the sky");
   hl_pool_clear(pool, made->memory, made->bytes);
   make(&own, &arrays, functions, made->memory, pool);
-  hl_release(context, handed.base);
+  hl_release(context, layout.base);
   store(content, made->memory, light, pool);
   return hl_pool_cancelled(pool) ? hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering") : HL_OK;
 }

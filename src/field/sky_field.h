@@ -3,6 +3,7 @@
 #define HL_FIELD_SKY_FIELD_H
 
 #include "core/key.h"
+#include "core/memory.h"
 #include "core/pool.h"
 #include "field/opacity.h"
 #include "scene/scene.h"
@@ -52,8 +53,8 @@ typedef struct sky_content {
       *exchange; /* with processes that find a part of the field each; null: there are none */
 } sky_content;
 
-/* The bytes that the field holds from frame to frame, and those that making it needs for a while. */
-uint64_t hl_sky_bytes(const sky_content *content, uint64_t *passing);
+/* Counts what hl_sky_make() takes besides what the field holds from the frame before. */
+void hl_sky_count(const sky_content *content, const sky_field *held, hl_layout *layout);
 
 /* Makes the field anew. */
 hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *content,

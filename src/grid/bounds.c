@@ -143,11 +143,9 @@ hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functio
   memset(grid->relevant, 0, hl_grid_bricks(grid) + READ_BEYOND);
   if (stored_bounds(grid) != NULL) return HL_OK;
   brick_job job = {.grid = grid, .bound_rows = functions->rows[grid->storage]};
-  hl_layout counted = {0};
-  lay_out_columns(&job, hl_pool_threads(pool), &counted);
-  hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};
-  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "the bricks of a volume");
-  lay_out_columns(&job, hl_pool_threads(pool), &handed);
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, context)) lay_out_columns(&job, hl_pool_threads(pool), &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the bricks of a volume");
   bound_layers_of_bricks(pool, &job);
   if (grid->pages != NULL) hl_pages_forget(grid->pages);
   hl_release(context, job.columns);
@@ -375,13 +373,15 @@ static void lay_out_slices(cell_job *job, int threads, hl_layout *layout) {
   }
 }
 
-uint64_t hl_bounds_bytes(const grid *grid, int threads) {
-  hl_layout columns = {0}, slices = {0};
-  lay_out_columns(&(brick_job){.grid = grid}, threads, &columns);
-  if (!cells_have_bounds(grid)) return columns.bytes;
-  lay_out_slices(&(cell_job){.grid = grid}, threads, &slices);
-  uint64_t cells = slices.bytes + (uint64_t)grid->brick_count[2] * greatest_layer_bytes(grid);
-  return columns.bytes > cells ? columns.bytes : cells;
+void hl_bounds_count(const grid *grid, int threads, hl_layout *layout) {
+  const size_t kept = layout->bytes;
+  if (stored_bounds(grid) == NULL) lay_out_columns(&(brick_job){.grid = grid}, threads, layout);
+  hl_layout_give_back(layout, kept);
+  if (!cells_have_bounds(grid)) return;
+  hl_layout_take(layout, (size_t)grid->brick_count[2], greatest_layer_bytes(grid)); /* once packed */
+  const size_t packed = layout->bytes;
+  lay_out_slices(&(cell_job){.grid = grid}, threads, layout);
+  hl_layout_give_back(layout, packed);
 }
 
 hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_functions *functions, bool smooth,
@@ -389,14 +389,10 @@ hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_function
   cell_job job = {.grid = grid, .functions = functions, .smooth = smooth, .context = context};
   size_t layers = (size_t)grid->brick_count[2];
   set_cell_range(volume, grid);
-  if (!cells_have_bounds(grid))
-    return HL_OK; /* bricks are then the only units that tell where something is
-                   * visible */
-  hl_layout counted = {0};
-  lay_out_slices(&job, hl_pool_threads(pool), &counted);
-  hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};
-  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "the bounds of a volume's cells");
-  lay_out_slices(&job, hl_pool_threads(pool), &handed);
+  if (!cells_have_bounds(grid)) return HL_OK; /* bricks alone tell what is visible */
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, context)) lay_out_slices(&job, hl_pool_threads(pool), &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the bounds of a volume's cells");
   hl_pool_run(pool, (layers + LAYERS_A_TASK - 1) / LAYERS_A_TASK, bound_layers, &job);
   hl_release(context, job.slices);
   if (!job.failed) return HL_OK;

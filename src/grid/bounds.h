@@ -35,9 +35,9 @@ hl_status hl_cells_bound(hl_context *context, hl_pool *pool, const grid_function
                          const hl_volume *volume, grid *grid, hl_error *error);
 void hl_cell_bounds_release(hl_context *context, grid *grid);
 
-/* The greatest number of bytes that hl_bricks_bound() and then hl_cells_bound() hold for a grid that is laid
- * out: the scratch memory of one after the other, and packed layers of the greatest size. */
-uint64_t hl_bounds_bytes(const grid *grid, int threads);
+/* Counts what hl_bricks_bound() and then hl_cells_bound() take, for a grid that is laid out: packed layers of
+ * the greatest size, and the scratch of each, which is given back. */
+void hl_bounds_count(const grid *grid, int threads, hl_layout *layout);
 
 /* The bounds of the group of 2x2x2 cells with the coordinates `cell`, in stored units. Slow: walks through a
  * layer. */

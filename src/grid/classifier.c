@@ -175,7 +175,7 @@ static float normal_edge(const hl_scene_volume *volume, double entries_per_value
  * scale of a narrower range. Such a range is widened, and its values share one entry. */
 static const double NARROWEST_RANGE = 1e-34;
 
-static void lay_out(const hl_transfer_function *function, classifier *classifier, hl_layout *layout) {
+void hl_classifier_lay_out(const hl_transfer_function *function, classifier *classifier, hl_layout *layout) {
   enum { COUNT = CLASSIFIER_ENTRIES + 2 };
   classifier->sums = hl_layout_take(layout, COUNT, sizeof *classifier->sums);
   classifier->color = hl_layout_take(layout, COUNT, sizeof *classifier->color);
@@ -188,17 +188,8 @@ static void lay_out(const hl_transfer_function *function, classifier *classifier
   hl_plane_table_lay_out(function, &classifier->plane, layout);
 }
 
-static hl_layout count_tables(const hl_transfer_function *function) {
-  classifier classifier = {0};
-  hl_layout counted = {0};
-  lay_out(function, &classifier, &counted);
-  return counted;
-}
-
-uint64_t hl_classifier_bytes(const hl_transfer_function *function) { return count_tables(function).bytes; }
-
-/* Fills the factors of gradient opacity. The table reaches from a gradient of 0 to the gradient of the last
- * point. If all factors are 1, there is no table. */
+/* Fills the factors of gradient opacity: the table reaches from a gradient of 0 to that of the last point.
+ * Where all are 1, there is none. */
 static void fill_steepness(const hl_transfer_function *function, double value_scale, classifier *classifier) {
   size_t count = function->gradient_opacity_count;
   if (count == 0) return;
@@ -219,10 +210,10 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
                                hl_error *error) {
   const hl_transfer_function *function = &volume->transfer_function;
   *classifier = (struct classifier){0};
-  hl_layout counted = count_tables(function), handed = {.base = hl_allocate(context, counted.bytes, 1)};
-  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "a transfer-function table");
-  memset(handed.base, 0, counted.bytes);
-  lay_out(function, classifier, &handed);
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, context)) hl_classifier_lay_out(function, classifier, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "a transfer-function table");
+  memset(layout.base, 0, layout.bytes);
   double empty = grid->empty * grid->value_scale + grid->value_offset;
   double low = fmin(volume->volume->minimum, empty), high = fmax(volume->volume->maximum, empty);
   if (!(high > low)) high = low + fmax(1, 1e-12 * fabs(low)); /* adding 1 to 1e30 changes nothing */

@@ -8,6 +8,7 @@
 #ifndef HL_GRID_CLASSIFIER_H
 #define HL_GRID_CLASSIFIER_H
 
+#include "core/memory.h"
 #include "grid/grid.h"
 #include "grid/mask_lattice.h"
 #include "grid/plane_table.h"
@@ -67,8 +68,8 @@ static inline bool hl_classifier_needs_gradient(const classifier *classifier) {
 hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volume,
                                const hl_scene_volume *second, const grid *grid, classifier *classifier,
                                hl_error *error);
-/* The bytes that hl_classifier_create() allocates. */
-uint64_t hl_classifier_bytes(const hl_transfer_function *function);
+/* Takes the arrays of a classifier; the first of them begins its block. */
+void hl_classifier_lay_out(const hl_transfer_function *function, classifier *classifier, hl_layout *layout);
 void hl_classifier_release(hl_context *context, classifier *classifier);
 
 /* Data values below the result are transparent, whatever the transfer function says. If the transfer function

@@ -124,13 +124,12 @@ static void lay_out(grid *grid, const hl_volume *volume, const kernel *kernel,
   hl_cells_lay_out(grid, layout);
 }
 
-uint64_t hl_grid_bytes(const hl_volume *volume, const kernel *kernel, const grid_functions *functions,
-                       int threads) {
+void hl_grid_count(const hl_volume *volume, const kernel *kernel, const grid_functions *functions,
+                   int threads, hl_layout *layout) {
   grid grid = {0};
-  hl_layout counted = {0};
   set_size(volume, kernel, &grid);
-  lay_out(&grid, volume, kernel, functions, &counted);
-  return counted.bytes + hl_bounds_bytes(&grid, threads);
+  lay_out(&grid, volume, kernel, functions, layout);
+  hl_bounds_count(&grid, threads, layout);
 }
 
 static hl_status check_bricks(const hl_volume *volume, hl_error *error) {
@@ -156,12 +155,10 @@ static hl_status make_value_pages(hl_pool *pool, const grid_source *source, grid
 static hl_status allocate(hl_context *context, const grid_functions *functions, const grid_source *source,
                           grid *grid, hl_error *error) {
   const hl_volume *volume = source->volume->volume;
-  hl_layout counted = {0};
-  lay_out(grid, volume, source->kernel, functions, &counted);
-  hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};
-  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "the grid of a volume");
-  grid->memory = handed.base;
-  lay_out(grid, volume, source->kernel, functions, &handed);
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, context)) lay_out(grid, volume, source->kernel, functions, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the grid of a volume");
+  grid->memory = layout.base;
   for (int32_t layer = 0; grid->cell_bounds != NULL && layer < grid->brick_count[2]; layer++)
     grid->cell_bounds[layer] = NULL; /* the layer is not packed yet */
   return HL_OK;

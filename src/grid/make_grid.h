@@ -2,6 +2,7 @@
 #ifndef HL_GRID_MAKE_GRID_H
 #define HL_GRID_MAKE_GRID_H
 
+#include "core/memory.h"
 #include "grid/grid.h"
 
 typedef struct grid_source {
@@ -13,10 +14,9 @@ typedef struct grid_source {
 
 hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_functions *functions,
                          const grid_source *source, grid *grid, hl_error *error);
-/* The greatest number of bytes that hl_grid_create() holds while it makes the volume's grid for the
- * kernel. */
-uint64_t hl_grid_bytes(const hl_volume *volume, const kernel *kernel, const grid_functions *functions,
-                       int threads);
+/* Counts what hl_grid_create() takes: the grid's memory, and what it gives back when the grid is made. */
+void hl_grid_count(const hl_volume *volume, const kernel *kernel, const grid_functions *functions,
+                   int threads, hl_layout *layout);
 void hl_grid_release(hl_context *context, grid *grid);
 
 #endif

@@ -215,11 +215,10 @@ static hl_status make_blocks(hl_ranks *ranks, const hl_blocks_shape *shape, cons
   pthread_cond_init(&made->freed, NULL);
   made->shape = *shape;
   made->source = *source;
-  hl_layout counted = {0};
-  lay_out(made, &counted);
-  hl_layout handed = {.base = made->memory = hl_allocate(ranks->context, counted.bytes, 1)};
-  if (made->memory == NULL) return hl_fail_memory(error, counted.bytes, "the ranks' blocks");
-  lay_out(made, &handed);
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, ranks->context)) lay_out(made, &layout);
+  made->memory = layout.base;
+  if (made->memory == NULL) return hl_fail_memory(error, layout.bytes, "the ranks' blocks");
   return start_server(ranks, error);
 }
 

@@ -27,15 +27,6 @@ static const double MOST_PIXELS_ASIDE = 8;
  * (a buffer's pixel is at most three quarters of a voxel). */
 double hl_contact_distance(const frame *frame) { return 2 * CLOSE * (0.75 * frame->voxel + frame->spacing); }
 
-uint64_t hl_contact_bytes(const hl_scene_description *scene) {
-  uint64_t most = 0;
-  for (size_t m = 0; m < scene->mesh_count; m++) {
-    uint64_t own = hl_surface_rims_bytes(&scene->meshes[m].mesh->description);
-    most = own > most ? own : most;
-  }
-  return hl_surface_tree_bytes(scene) + most;
-}
-
 _Static_assert(LIGHT_POINTS_SIDE *LIGHT_POINTS_SIDE <= MOST_BUNDLED, "rays of a sample are one bundle");
 
 void hl_contact_points(const light_source *source, light_points *points) {

@@ -16,9 +16,6 @@
 /* The distance from open edges up to which triangles are looked for, before buffers and sheets are known. */
 double hl_contact_distance(const frame *frame);
 
-/* The most bytes of the tree for a scene, and those that making it takes besides. */
-uint64_t hl_contact_bytes(const hl_scene_description *scene);
-
 /* The points that stand for a light. */
 void hl_contact_points(const light_source *source, light_points *points);
 

@@ -8,42 +8,20 @@
 
 enum { SMALL_PARTS = 64 << 10 /* descriptions, sweeps, corners, counts */ };
 
-uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared,
-                          const grid_functions *functions, int threads) {
-  uint64_t bytes = SMALL_PARTS;
+void hl_prepare_count(const hl_scene_description *scene, const prepared_volume *prepared,
+                      const grid_functions *functions, int threads, hl_layout *layout) {
+  hl_layout_take(layout, SMALL_PARTS, 1);
   for (size_t i = 0; i < scene->volume_count; i++)
     if (prepared[i].volume == NULL)
-      bytes += hl_prepared_bytes(&scene->volumes[i], scene->render.kernel, functions, threads);
-  return bytes;
+      hl_prepared_count(&scene->volumes[i], scene->render.kernel, functions, threads, layout);
 }
 
-uint64_t hl_pixels_bytes(const frame *frame, int sweep_count, const hl_layers *layers) {
-  uint64_t tiles = (uint64_t)hl_tiles(frame->width) * (uint64_t)hl_tiles(frame->height),
-           floats = 4 * (uint64_t)sweep_count;
-  if (layers != NULL && layers->ambient != NULL) floats += 4;
-  if (layers != NULL && layers->emission != NULL) floats += 4;
-  if (layers != NULL && layers->sky != NULL) floats += 4;
-  if (layers != NULL && layers->sky_shadow != NULL) floats += 8;
-  if (hl_layers_measure(layers)) floats += MEASURES;
-  for (int i = 0; i < frame->light_count && layers != NULL; i++) {
-    const hl_light_layers light = hl_layers_of_light(layers, &frame->lights[i]);
-    floats += light.picture != NULL ? 4 : 0;
-    if (light.shadow != NULL) floats += frame->lights[i].light->of_sky > 0 ? 8 : 4;
-  }
-  return tiles * TILE_PIXELS * floats * sizeof(float);
-}
-
-uint64_t hl_sweeps_bytes(const sweep_bytes *sweeps, int count, bool with_layers) {
-  uint64_t buffers = 0, passing = 0, memory[FRAME_LIGHTS] = {0};
-  for (int s = 0; s < count; s++) {
-    buffers += sweeps[s].buffers;
-    if (sweeps[s].passing > passing) passing = sweeps[s].passing;
-    for (int i = 0; i < FRAME_LIGHTS; i++)
-      if (sweeps[s].memory[i] > memory[i]) memory[i] = sweeps[s].memory[i];
-  }
-  for (int i = 0; i < FRAME_LIGHTS; i++) buffers += memory[i];
-  uint64_t white = with_layers ? (CLASSIFIER_ENTRIES + 2) * 4 * sizeof(float) : 0; /* a table of ones */
-  return buffers + passing + white + SMALL_PARTS;
+size_t hl_sweeps_bytes(const sweeps_memory *sweeps) {
+  hl_layout all = {.bytes = sweeps->buffers.bytes};
+  for (int i = 0; i < FRAME_LIGHTS; i++) hl_layout_take(&all, sweeps->kept[i], 1);
+  hl_layout_take(&all, sweeps->passing.most, 1);
+  hl_layout_take(&all, SMALL_PARTS, 1);
+  return all.bytes;
 }
 
 hl_status hl_check_room(const hl_context *context, uint64_t bytes, uint64_t *estimate, hl_error *error) {

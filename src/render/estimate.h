@@ -7,16 +7,12 @@
 
 #include "render/sweep.h"
 
-/* The bytes that the volumes that are not prepared yet take at most. Call hl_prepared_release_stale() before.
- */
-uint64_t hl_prepare_bytes(const hl_scene_description *scene, const prepared_volume *prepared,
-                          const grid_functions *functions, int threads);
+/* Counts what the volumes that are not prepared yet take. Call hl_prepared_release_stale() before. */
+void hl_prepare_count(const hl_scene_description *scene, const prepared_volume *prepared,
+                      const grid_functions *functions, int threads, hl_layout *layout);
 
-/* The bytes that the picture and its layers take. sweep_count: how many sweeps keep pixels of their own. */
-uint64_t hl_pixels_bytes(const frame *frame, int sweep_count, const hl_layers *layers);
-
-/* The bytes that the sweeps take together: buffers stay, the rest is released or shared. sweeps: [count]. */
-uint64_t hl_sweeps_bytes(const sweep_bytes *sweeps, int count, bool with_layers);
+/* The bytes that the counted sweeps of a frame take together. */
+size_t hl_sweeps_bytes(const sweeps_memory *sweeps);
 
 /* Whether so many bytes more fit below the context's limit; *estimate is raised to the bytes then held. */
 hl_status hl_check_room(const hl_context *context, uint64_t bytes, uint64_t *estimate, hl_error *error);

@@ -61,34 +61,51 @@ static void choose_measuring_sweep(frame_work *work) {
     hl_frame_add_eye_sweep(&work->frame, work->sweeps, &work->sweep_count);
 }
 
+/* Pixels of the frame's own, or rows of tiles beside the caller's pixels. */
+static void lay_out_pixels(const hl_renderer *renderer, frame_work *work, hl_layout *layout) {
+  size_t floats = TILE_PIXELS * 4 * sizeof(float), threads = (size_t)hl_pool_threads(renderer->pool);
+  if (work->in_place) work->tile_rows = hl_layout_take(layout, threads * work->tiles_x, floats);
+  else work->pixels = hl_layout_take(layout, (size_t)work->sweep_count * work->tiles, floats);
+}
+
+static void count_pixels(const hl_renderer *renderer, const hl_scene_description *scene,
+                         const frame_request *request, frame_work *work, hl_layout *layout) {
+  lay_out_pixels(renderer, work, layout);
+  hl_layer_pixels_count(request->layers, &work->frame, work->tiles, layout);
+  hl_maximum_count(scene, work->tiles, layout);
+}
+
+static hl_status take_pixels(hl_renderer *renderer, const frame_request *request, frame_work *work,
+                             hl_error *error) {
+  hl_layout counted = {0};
+  lay_out_pixels(renderer, work, &counted);
+  hl_layout handed = {.base = work->in_place ? hl_allocate(renderer->context, counted.bytes, 1)
+                                             : hl_reserve_take(&renderer->reserve, counted.bytes, 1)};
+  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "the picture");
+  lay_out_pixels(renderer, work, &handed);
+  if (work->in_place) work->pixels = request->pixels;
+  return HL_OK;
+}
+
 /* Chooses the memory that sweeps composite into: the caller's pixels where one sweep fills them exactly, in
  * whole tiles; else a block of the reserve. */
 static hl_status place_pixels(hl_renderer *renderer, const hl_scene_description *scene,
                               const frame_request *request, frame_work *work, hl_error *error) {
   hl_context *context = renderer->context;
-  size_t threads = (size_t)hl_pool_threads(renderer->pool), tile_row = work->tiles_x * TILE_PIXELS * 4;
   size_t floats = (size_t)work->sweep_count * work->tiles * TILE_PIXELS * 4;
   bool whole = scene->width % TILE == 0 && scene->height % TILE == 0 &&
                request->row_stride == 4 * (size_t)scene->width;
   work->in_place = whole && work->sweep_count == 1 && work->frame.oversampling == 1 &&
                    (uintptr_t)request->pixels % 64 == 0;
-  uint64_t bytes = hl_pixels_bytes(&work->frame, work->in_place ? 0 : work->sweep_count, request->layers);
-  bytes += hl_maximum_bytes(scene, work->tiles);
-  if (renderer->parts > 1) bytes += hl_share_bytes(scene->width, scene->height, renderer->parts);
-  if (work->in_place) bytes += threads * tile_row * sizeof *work->tile_rows;
+  hl_layout counted = {0};
+  hl_share_count(scene->width, scene->height, renderer->parts, &counted);
+  count_pixels(renderer, scene, request, work, &counted);
   /* the blocks that one of several sweeps returns rarely fit the next one */
   renderer->reserve.keeps = work->sweep_count == 1;
   if (!renderer->reserve.keeps) hl_reserve_release(&renderer->reserve);
-  hl_status status = hl_renderer_check_room(renderer, bytes, error);
+  hl_status status = hl_renderer_check_room(renderer, counted.most, error);
+  if (status == HL_OK) status = take_pixels(renderer, request, work, error);
   if (status != HL_OK) return status;
-  if (work->in_place) {
-    work->pixels = request->pixels;
-    work->tile_rows = hl_allocate(context, threads * tile_row, sizeof *work->tile_rows);
-  } else {
-    work->pixels = hl_reserve_take(&renderer->reserve, floats, sizeof *work->pixels);
-  }
-  if (work->pixels == NULL || (work->in_place && work->tile_rows == NULL))
-    return hl_fail_memory(error, work->tiles * TILE_PIXELS * 16, "the picture");
   hl_pool_clear(renderer->pool, work->pixels, floats * sizeof *work->pixels);
   return hl_layer_pixels_create(context, renderer->pool, request->layers, &work->frame, work->tiles,
                                 &work->layers, error);
@@ -109,8 +126,10 @@ static hl_status add_surfaces(hl_renderer *renderer, const hl_scene_description 
     hl_surface_tree_release(renderer->context, &renderer->contact);
     hl_surfaces_release(renderer->context, &renderer->surfaces);
   }
-  uint64_t bytes = renderer->surfaces.mesh_count > 0 ? 0 : hl_surfaces_bytes(scene);
-  hl_status status = hl_renderer_check_room(renderer, bytes, error);
+  hl_layout counted = {0};
+  hl_status status = HL_OK;
+  if (renderer->surfaces.mesh_count == 0) status = hl_surfaces_count_memory(scene, &counted, error);
+  if (status == HL_OK) status = hl_renderer_check_room(renderer, counted.most, error);
   if (status == HL_OK)
     status = hl_surfaces_update(renderer->context, renderer->pool, scene, &renderer->surfaces, error);
   if (status != HL_OK || scene->mesh_count == 0) return status;
@@ -131,8 +150,7 @@ static grid grid_of_frame(const hl_scene_volume *volume, const prepared_volume *
 }
 
 /* Brings the tree of what shadow buffers leave light behind up to date; after the frame's lights. */
-static hl_status update_contact(hl_renderer *renderer, const hl_scene_description *scene, const frame *frame,
-                                hl_error *error) {
+static hl_status update_contact(hl_renderer *renderer, const frame *frame, hl_error *error) {
   surface_tree *tree = &renderer->contact;
   double distance = hl_contact_distance(frame);
   bool shadows = false;
@@ -140,7 +158,9 @@ static hl_status update_contact(hl_renderer *renderer, const hl_scene_descriptio
   if (!shadows || frame->surfaces == NULL || hl_surface_tree_current(tree, &renderer->surfaces, distance))
     return HL_OK;
   hl_surface_tree_release(renderer->context, tree);
-  hl_status status = hl_renderer_check_room(renderer, hl_contact_bytes(scene), error);
+  hl_layout counted = {0};
+  hl_surface_tree_count(&renderer->surfaces, distance, &counted);
+  hl_status status = hl_renderer_check_room(renderer, counted.most, error);
   if (status != HL_OK) return status;
   return hl_surface_tree_create(renderer->context, &renderer->surfaces, distance, tree, error);
 }
@@ -179,7 +199,7 @@ hl_status hl_frame_work_set_up(hl_renderer *renderer, const hl_scene_description
   frame->spacing = fmin(scene->render.sheet_spacing, hl_is_maximum(scene) ? MAXIMUM_SPACING : GRID_MARGIN) *
                    frame->voxel; /* at most the margin by which volumes continue beyond their faces */
   hl_frame_set_up_lights(frame, scene);
-  status = update_contact(renderer, scene, frame, error);
+  status = update_contact(renderer, frame, error);
   if (status != HL_OK) return status;
   for (size_t i = 0; i < scene->volume_count; i++)
     if (rays_start_inside(frame, &work->grids[i])) work->grids[i].cut = true;

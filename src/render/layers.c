@@ -17,19 +17,42 @@ hl_light_layers hl_layers_of_light(const hl_layers *wanted, const light_source *
 
 /* ---- pixels ---- */
 
-typedef struct pixel_room {
-  hl_context *context;
-  hl_pool *pool;
-  size_t tiles;
-} pixel_room;
+static float *take_pixels(hl_layout *layout, bool wanted, size_t tiles, size_t floats) {
+  return wanted ? hl_layout_take(layout, tiles * TILE_PIXELS, floats * sizeof(float)) : NULL;
+}
 
-static float *allocate_pixels(const pixel_room *room, size_t floats, hl_status *status, hl_error *error) {
-  if (*status != HL_OK) return NULL;
-  float *pixels = hl_allocate(room->context, room->tiles * TILE_PIXELS, floats * sizeof *pixels);
-  if (pixels == NULL)
-    *status = hl_fail_memory(error, room->tiles * TILE_PIXELS * floats * sizeof *pixels, "a layer");
-  else hl_pool_clear(room->pool, pixels, room->tiles * TILE_PIXELS * floats * sizeof *pixels);
-  return pixels;
+static void lay_out_light(const hl_layers *wanted, const light_source *source, size_t tiles,
+                          light_pixels *light, hl_layout *layout) {
+  const hl_light_layers asked = hl_layers_of_light(wanted, source);
+  const bool of_sky = source->light->of_sky > 0, shadow = asked.shadow != NULL;
+  *light = (light_pixels){.light_index = (size_t)source->light_index, .of_sky = of_sky};
+  light->picture = take_pixels(layout, asked.picture != NULL, tiles, COLORS);
+  light->shadow = take_pixels(layout, shadow && !of_sky, tiles, COLORS);
+  light->reaching = take_pixels(layout, shadow && of_sky, tiles, COLORS);
+  light->open = take_pixels(layout, shadow && of_sky, tiles, COLORS);
+}
+
+/* Takes the pixels alone. The lights are null where the bytes are counted for an estimate. */
+static void lay_out(const frame *frame, size_t tiles, layer_pixels *pixels, hl_layout *layout) {
+  const hl_layers *wanted = pixels->wanted;
+  pixels->ambient = take_pixels(layout, wanted->ambient != NULL, tiles, COLORS);
+  pixels->emission = take_pixels(layout, wanted->emission != NULL, tiles, COLORS);
+  pixels->sky = take_pixels(layout, wanted->sky != NULL, tiles, COLORS);
+  pixels->sky_reaching = take_pixels(layout, wanted->sky_shadow != NULL, tiles, COLORS);
+  pixels->sky_open = take_pixels(layout, wanted->sky_shadow != NULL, tiles, COLORS);
+  pixels->measures = take_pixels(layout, hl_layers_measure(wanted), tiles, MEASURES);
+  for (size_t i = 0; i < pixels->light_count; i++) {
+    light_pixels counted;
+    lay_out_light(wanted, &frame->lights[i], tiles, pixels->lights != NULL ? &pixels->lights[i] : &counted,
+                  layout);
+  }
+}
+
+void hl_layer_pixels_count(const hl_layers *wanted, const frame *frame, size_t tiles, hl_layout *layout) {
+  layer_pixels pixels = {.wanted = wanted, .light_count = (size_t)frame->light_count};
+  if (wanted == NULL) return;
+  hl_layout_take(layout, pixels.light_count, sizeof *pixels.lights);
+  lay_out(frame, tiles, &pixels, layout);
 }
 
 /* Sets the first depth of all pixels to infinity: no ray has met anything yet. */
@@ -43,46 +66,21 @@ hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_la
                                  const frame *frame, size_t tiles, layer_pixels *pixels, hl_error *error) {
   *pixels = (layer_pixels){.wanted = wanted, .light_count = (size_t)frame->light_count};
   if (wanted == NULL) return HL_OK;
-  hl_status status = HL_OK;
-  const pixel_room room = {context, pool, tiles};
+  hl_layout layout = {0};
   pixels->lights = hl_allocate_zeroed(context, pixels->light_count, sizeof *pixels->lights);
   if (pixels->lights == NULL)
     return hl_fail_memory(error, pixels->light_count * sizeof *pixels->lights, "the lights' layers");
-  if (wanted->ambient != NULL) pixels->ambient = allocate_pixels(&room, COLORS, &status, error);
-  if (wanted->emission != NULL) pixels->emission = allocate_pixels(&room, COLORS, &status, error);
-  if (wanted->sky != NULL) pixels->sky = allocate_pixels(&room, COLORS, &status, error);
-  if (wanted->sky_shadow != NULL) pixels->sky_reaching = allocate_pixels(&room, COLORS, &status, error);
-  if (wanted->sky_shadow != NULL) pixels->sky_open = allocate_pixels(&room, COLORS, &status, error);
-  if (hl_layers_measure(wanted)) pixels->measures = allocate_pixels(&room, MEASURES, &status, error);
-  for (size_t i = 0; i < pixels->light_count; i++) {
-    light_pixels *light = &pixels->lights[i];
-    light->light_index = (size_t)frame->lights[i].light_index;
-    light->of_sky = frame->lights[i].light->of_sky > 0;
-    const hl_light_layers asked = hl_layers_of_light(wanted, &frame->lights[i]);
-    if (asked.picture != NULL) light->picture = allocate_pixels(&room, COLORS, &status, error);
-    if (asked.shadow == NULL) continue;
-    if (!light->of_sky) light->shadow = allocate_pixels(&room, COLORS, &status, error);
-    if (light->of_sky) light->reaching = allocate_pixels(&room, COLORS, &status, error);
-    if (light->of_sky) light->open = allocate_pixels(&room, COLORS, &status, error);
-  }
+  while (hl_layout_pass(&layout, context)) lay_out(frame, tiles, pixels, &layout);
+  pixels->memory = layout.base;
+  if (pixels->memory == NULL) return hl_fail_memory(error, layout.bytes, "the layers");
+  hl_pool_clear(pool, pixels->memory, layout.bytes);
   if (pixels->measures != NULL) clear_first_depth(pixels->measures, tiles);
-  return status;
+  return HL_OK;
 }
 
 void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels) {
-  for (size_t i = 0; pixels->lights != NULL && i < pixels->light_count; i++) {
-    hl_release(context, pixels->lights[i].picture);
-    hl_release(context, pixels->lights[i].shadow);
-    hl_release(context, pixels->lights[i].reaching);
-    hl_release(context, pixels->lights[i].open);
-  }
   hl_release(context, pixels->lights);
-  hl_release(context, pixels->ambient);
-  hl_release(context, pixels->emission);
-  hl_release(context, pixels->sky);
-  hl_release(context, pixels->sky_reaching);
-  hl_release(context, pixels->sky_open);
-  hl_release(context, pixels->measures);
+  hl_release(context, pixels->memory);
 }
 
 /* ---- the caller's buffers ---- */

@@ -11,6 +11,7 @@
 
 #include <halflight/layers.h>
 
+#include "core/memory.h"
 #include "core/pool.h"
 #include "render/frame.h"
 #include "render/hot.h"
@@ -34,11 +35,14 @@ typedef struct layer_pixels {
   float *measures;      /* MEASURES */
   light_pixels *lights; /* owned; [light_count] */
   size_t light_count;   /* of the frame */
+  void *memory;         /* owned; holds all pixels */
 } layer_pixels;
 
 /* Allocates the wanted layers of a frame. tiles: how many the frame has. */
 hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_layers *wanted,
                                  const frame *frame, size_t tiles, layer_pixels *pixels, hl_error *error);
+/* Counts what hl_layer_pixels_create() takes. */
+void hl_layer_pixels_count(const hl_layers *wanted, const frame *frame, size_t tiles, hl_layout *layout);
 void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels);
 
 /* True where depth, normals or objects are wanted: some sweep must then go front to back. */

@@ -7,6 +7,8 @@
  * buffers, and each has tiles of its own. */
 #include "render/light_reads.h"
 
+#include <string.h>
+
 #include "core/memory.h"
 #include "render/surface_point.h"
 
@@ -215,15 +217,44 @@ static int read_buffers(const light_shadow *shadow) {
   return shadow->sublight_count > 0 ? shadow->sublight_count : 1;
 }
 
-uint64_t hl_light_reads_bytes(const sweep *sweep, const light_shadow *shadow) {
-  if (!is_limited(sweep, shadow)) return 0;
-  uint64_t buffers = (uint64_t)read_buffers(shadow) * sizeof(read_buffer), tile = sizeof(int32_t);
-  if (shadow->sublight_count > 0) return buffers + sublight_tiles(shadow) * tile;
-  if (is_exchanged(sweep, shadow)) tile += 1 + sizeof(int32_t) * (uint64_t)sweep->share->parts;
-  if (shadow->method->widen_needs != NULL) /* two arrays of its own: of the tiles, and of the sheets */
-    return buffers + hl_view_tiles(&shadow->plan.view) * 2 * tile +
-           (uint64_t)shadow->setup.sheets->count * tile;
-  return buffers + hl_view_tiles(&shadow->plan.view) * tile;
+/* ---- memory ---- */
+
+static size_t tiles_of(const light_shadow *shadow) {
+  return shadow->sublight_count > 0 ? sublight_tiles(shadow) : hl_view_tiles(&shadow->plan.view);
+}
+
+/* The arrays of a light whose reads are limited. needed_until or sublights_until begins the block. */
+static void lay_out_light(const sweep *sweep, sweep_light *light, hl_layout *layout) {
+  const size_t tiles = tiles_of(&light->shadow);
+  int32_t *until = hl_layout_take(layout, tiles, sizeof *until);
+  if (light->shadow.sublight_count > 0) light->sublights_until = until;
+  else light->needed_until = until;
+  if (is_exchanged(sweep, &light->shadow)) light->owned = hl_layout_take(layout, tiles, sizeof *light->owned);
+}
+
+/* The buffers of all lights whose reads are limited. */
+static read_buffer *lay_out_buffers(const sweep *sweep, hl_layout *layout) {
+  size_t count = 0;
+  for (int i = 0; i < sweep->geometry->light_count; i++)
+    if (is_limited(sweep, &sweep->lights[i].shadow)) count += (size_t)read_buffers(&sweep->lights[i].shadow);
+  return hl_layout_take(layout, count, sizeof(read_buffer));
+}
+
+/* What all parts need of a light. */
+static int32_t *lay_out_needs(const light_shadow *shadow, hl_layout *layout) {
+  return hl_layout_take(layout, (size_t)shadow->setup.exchange->parts * tiles_of(shadow), sizeof(int32_t));
+}
+
+void hl_light_reads_count(sweep *sweep, hl_layout *layout) {
+  for (int i = 0; i < sweep->geometry->light_count; i++)
+    if (is_limited(sweep, &sweep->lights[i].shadow)) lay_out_light(sweep, &sweep->lights[i], layout);
+  const size_t kept = layout->bytes;
+  lay_out_buffers(sweep, layout);
+  hl_layout_give_back(layout, kept);
+  for (int i = 0; i < sweep->geometry->light_count; i++) {
+    if (is_exchanged(sweep, &sweep->lights[i].shadow)) lay_out_needs(&sweep->lights[i].shadow, layout);
+    hl_layout_give_back(layout, kept);
+  }
 }
 
 /* ---- owners ---- */
@@ -261,19 +292,18 @@ static bool is_owned_around(const sweep_light *light, int tile, int around) {
  * need them no more, so that together the parts know of all light. Where there are surfaces it needs the
  * tiles beside them, too: what surfaces hide in a tile depends on pixels up to a tile beside it
  * (shadow_cascade/cascade_field.h). */
-static hl_status find_owned(sweep *sweep, sweep_light *light, size_t tiles, hl_error *error) {
+static hl_status find_owned(sweep *sweep, sweep_light *light, hl_error *error) {
   hl_context *context = sweep->content.context;
   const light_exchange *with = light->shadow.setup.exchange;
-  light->owned = hl_allocate_zeroed(context, tiles, sizeof *light->owned);
-  int32_t *all = hl_allocate(context, (size_t)with->parts * tiles, sizeof *all);
-  if (light->owned == NULL || all == NULL) {
-    hl_release(context, all);
-    return hl_fail_memory(error, (size_t)with->parts * tiles * sizeof *all, "a light's tiles");
-  }
+  const size_t tiles = tiles_of(&light->shadow);
+  int32_t *all = NULL;
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, context)) all = lay_out_needs(&light->shadow, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "a light's tiles");
   with->gather(with->data, light->needed_until, tiles * sizeof *all, all);
   for (size_t tile = 0; tile < tiles; tile++)
     light->owned[tile] = owner_of(all, tile, tiles, with->parts) == with->part;
-  hl_release(context, all);
+  hl_release(context, layout.base);
   for (size_t tile = 0; tile < tiles; tile++) {
     if (!is_owned_around(light, (int)tile, sweep->frame->surfaces != NULL ? 1 : 0)) continue;
     int32_t last = last_touched(&light->sheets.occupancy, tile);
@@ -310,19 +340,19 @@ static void add_sublights(sweep_light *light, read_buffer *buffers) {
 /* Adds the buffers of a light whose reads are limited. */
 static hl_status add_buffers(sweep *sweep, sweep_light *light, reads_task *task, hl_error *error) {
   const view *view = &light->shadow.buffer->view;
-  const bool divided = light->shadow.sublight_count > 0;
-  const size_t tiles = divided ? sublight_tiles(&light->shadow) : hl_view_tiles(view);
-  int32_t *until = hl_allocate_zeroed(sweep->content.context, tiles, sizeof *until);
-  if (until == NULL) return hl_fail_memory(error, tiles * sizeof *until, "a light's tiles");
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, sweep->content.context)) lay_out_light(sweep, light, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "a light's tiles");
+  light->reads = layout.base;
+  memset(light->reads, 0, layout.bytes);
   read_buffer *buffers = &task->buffers[task->buffer_count];
   task->buffer_count += read_buffers(&light->shadow);
-  if (divided) {
-    light->shadow.sublights_until = light->sublights_until = until;
+  if (light->shadow.sublight_count > 0) {
+    light->shadow.sublights_until = light->sublights_until;
     add_sublights(light, buffers);
   } else {
-    light->needed_until = until;
     buffers[0] = (read_buffer){.source = light->source,
-                               .until = until,
+                               .until = light->needed_until,
                                .tiles_x = hl_tiles(view->width),
                                .tiles_y = hl_tiles(view->height)};
     hl_view_homogeneous(view, affine3_identity(), buffers[0].rows);
@@ -333,12 +363,11 @@ static hl_status add_buffers(sweep *sweep, sweep_light *light, reads_task *task,
   return HL_OK;
 }
 
-static hl_status widen_needs(sweep_light *light, hl_error *error) {
+static void widen_needs(sweep_light *light) {
   const shadow_method *method = light->shadow.method;
-  if (!method->divides || light->needed_until == NULL) return HL_OK;
+  if (!method->divides || light->needed_until == NULL) return;
   light->shadow.needed_until = light->needed_until;
-  return method->widen_needs == NULL ? HL_OK
-                                     : method->widen_needs(&light->shadow, light->needed_until, error);
+  if (method->widen_needs != NULL) method->widen_needs(&light->shadow, light->needed_until);
 }
 
 static void read_tiles(const reads_task *task) {
@@ -353,22 +382,21 @@ static void read_tiles(const reads_task *task) {
 }
 
 hl_status hl_light_reads_find(sweep *sweep, hl_error *error) {
-  hl_context *context = sweep->content.context;
   reads_task task = {.sweep = sweep};
-  size_t most = 0;
+  hl_layout layout = {0};
   hl_status status = HL_OK;
-  for (int i = 0; i < sweep->geometry->light_count; i++)
-    if (is_limited(sweep, &sweep->lights[i].shadow)) most += (size_t)read_buffers(&sweep->lights[i].shadow);
-  if (most == 0) return HL_OK;
-  task.buffers = hl_allocate(context, most, sizeof *task.buffers);
-  if (task.buffers == NULL) return hl_fail_memory(error, most * sizeof *task.buffers, "a light's tiles");
+  bool any = false;
+  for (int i = 0; i < sweep->geometry->light_count; i++) any |= is_limited(sweep, &sweep->lights[i].shadow);
+  if (!any) return HL_OK;
+  while (hl_layout_pass(&layout, sweep->content.context)) task.buffers = lay_out_buffers(sweep, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "a light's tiles");
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++)
     if (is_limited(sweep, &sweep->lights[i].shadow))
       status = add_buffers(sweep, &sweep->lights[i], &task, error);
   if (status == HL_OK) read_tiles(&task);
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++)
-    if (is_limited(sweep, &sweep->lights[i].shadow)) status = widen_needs(&sweep->lights[i], error);
-  hl_release(context, task.buffers);
+    if (is_limited(sweep, &sweep->lights[i].shadow)) widen_needs(&sweep->lights[i]);
+  hl_release(sweep->content.context, layout.base);
   return status;
 }
 
@@ -376,8 +404,7 @@ hl_status hl_light_reads_find_owned(sweep *sweep, hl_error *error) {
   hl_status status = HL_OK;
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++) {
     sweep_light *light = &sweep->lights[i];
-    if (is_exchanged(sweep, &light->shadow))
-      status = find_owned(sweep, light, hl_view_tiles(&light->shadow.buffer->view), error);
+    if (is_exchanged(sweep, &light->shadow)) status = find_owned(sweep, light, error);
   }
   return status;
 }

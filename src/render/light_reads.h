@@ -14,7 +14,7 @@ hl_status hl_light_reads_find(sweep *sweep, hl_error *error);
  * begun. */
 hl_status hl_light_reads_find_owned(sweep *sweep, hl_error *error);
 
-/* The bytes that it allocates for a light whose shadows are planned. */
-uint64_t hl_light_reads_bytes(const sweep *sweep, const light_shadow *shadow);
+/* Counts what finding them takes, for lights whose shadows are planned. Sets no pointers. */
+void hl_light_reads_count(sweep *sweep, hl_layout *layout);
 
 #endif

@@ -36,11 +36,9 @@ static void lay_out(maximum_values *maximum, hl_layout *layout) {
   maximum->shown = hl_layout_take(layout, maximum->volume_count, SHOWN_ENTRIES * sizeof *maximum->shown);
 }
 
-uint64_t hl_maximum_bytes(const hl_scene_description *scene, uint64_t tiles) {
+void hl_maximum_count(const hl_scene_description *scene, size_t tiles, hl_layout *layout) {
   maximum_values maximum = plan(scene, tiles);
-  hl_layout counted = {0};
-  if (scene->render.compositing == HL_COMPOSITING_MAXIMUM) lay_out(&maximum, &counted);
-  return counted.bytes;
+  if (scene->render.compositing == HL_COMPOSITING_MAXIMUM) lay_out(&maximum, layout);
 }
 
 /* A transfer function over the coordinates of its table. */
@@ -125,11 +123,9 @@ hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const hl_scene_d
                             hl_error *error) {
   *maximum = plan(scene, tiles);
   if (scene->render.compositing != HL_COMPOSITING_MAXIMUM) return HL_OK;
-  hl_layout counted = {0};
-  lay_out(maximum, &counted);
-  hl_layout handed = {.base = hl_allocate(context, counted.bytes, 1)};
-  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "a maximum projection");
-  lay_out(maximum, &handed);
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, context)) lay_out(maximum, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "a maximum projection");
   hl_pool_run(pool, tiles, clear_tile, maximum);
   size_t rank = 0;
   for (size_t i = 0; i < scene->volume_count; i++)

@@ -20,8 +20,8 @@ hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const hl_scene_d
                             hl_error *error);
 void hl_maximum_release(hl_context *context, maximum_values *maximum);
 
-/* The bytes that hl_maximum_create() would allocate. */
-uint64_t hl_maximum_bytes(const hl_scene_description *scene, uint64_t tiles);
+/* Counts what hl_maximum_create() takes. */
+void hl_maximum_count(const hl_scene_description *scene, size_t tiles, hl_layout *layout);
 
 /* A sweep's action, in place of steps 12 to 16. */
 uint32_t hl_maximum_tile(const sweep *sweep, const tile_slab *slab);

@@ -98,13 +98,18 @@ static size_t table_size(const hl_scene_description *scene) {
   return PHASE_COLUMNS * (scene->light_count + (needs_caps(scene) ? 2 * PHASE_CAPS : 0));
 }
 
-uint64_t hl_phase_bytes(const hl_scene_description *scene) {
-  return wanted_tables(scene) * (table_size(scene) * sizeof(float) + sizeof(phase_table));
+static void lay_out(const hl_scene_description *scene, phase_tables *tables, hl_layout *layout) {
+  size_t most = wanted_tables(scene);
+  tables->tables = hl_layout_take(layout, most, sizeof *tables->tables);
+  tables->numbers = hl_layout_take(layout, most, table_size(scene) * sizeof *tables->numbers);
+}
+
+void hl_phase_count(const hl_scene_description *scene, hl_layout *layout) {
+  lay_out(scene, &(phase_tables){0}, layout);
 }
 
 void hl_phase_release(hl_context *context, phase_tables *tables) {
-  hl_release(context, tables->tables);
-  hl_release(context, tables->numbers);
+  hl_release(context, tables->memory);
   hl_key_release(context, &tables->key);
   *tables = (phase_tables){0};
 }
@@ -180,22 +185,20 @@ static void add_table(const hl_scene_description *scene, double anisotropy, phas
 
 hl_status hl_phase_update(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
                           phase_tables *tables, hl_error *error) {
-  size_t most = wanted_tables(scene), size = most * table_size(scene);
-  if (most == 0) {
+  if (wanted_tables(scene) == 0) {
     hl_phase_release(context, tables);
     return HL_OK;
   }
   bool same;
   hl_status status = hl_key_renew(context, write_key, scene, &tables->key, &same, error);
   if (status != HL_OK || (same && tables->count > 0)) return status;
-  hl_release(context, tables->tables);
-  hl_release(context, tables->numbers);
+  hl_release(context, tables->memory);
   tables->count = 0;
-  tables->bytes = hl_phase_bytes(scene);
-  tables->tables = hl_allocate(context, most, sizeof *tables->tables);
-  tables->numbers = hl_allocate(context, size, sizeof *tables->numbers);
-  if (tables->tables == NULL || tables->numbers == NULL)
-    return hl_fail_memory(error, size * sizeof *tables->numbers, "means of phase functions");
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, context)) lay_out(scene, tables, &layout);
+  tables->memory = layout.base;
+  tables->bytes = layout.bytes;
+  if (tables->memory == NULL) return hl_fail_memory(error, layout.bytes, "means of phase functions");
   for (size_t v = 0; v < scene->volume_count; v++) {
     const hl_scene_volume *volume = &scene->volumes[v];
     if (!scatters_unevenly(volume)) continue;

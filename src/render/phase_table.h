@@ -16,6 +16,7 @@
 #include <halflight/scene.h>
 
 #include "core/key.h"
+#include "core/memory.h"
 #include "core/pool.h"
 
 enum { PHASE_COLUMNS = 512, PHASE_CAPS = 64 };
@@ -30,15 +31,16 @@ typedef struct phase_table {
 
 /* The tables of a scene; kept between frames while anisotropies and lights stay the same. */
 typedef struct phase_tables {
-  phase_table *tables; /* owned; [count] */
+  void *memory;        /* owned; holds tables and numbers */
+  size_t bytes;        /* of memory */
+  phase_table *tables; /* [count] */
   size_t count;        /* 0: no medium needs any */
-  float *numbers;      /* owned; of all tables */
-  uint64_t bytes;      /* of tables and numbers */
+  float *numbers;      /* of all tables */
   hl_key key;
 } phase_tables;
 
-/* The most bytes that hl_phase_update() holds. */
-uint64_t hl_phase_bytes(const hl_scene_description *scene);
+/* Counts what hl_phase_update() takes. */
+void hl_phase_count(const hl_scene_description *scene, hl_layout *layout);
 
 hl_status hl_phase_update(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
                           phase_tables *tables, hl_error *error);

@@ -72,26 +72,20 @@ static void lay_out_points(const hl_transfer_function *function, function_points
                                             sizeof *points->gradient_opacity);
 }
 
-static hl_layout count_points(const hl_transfer_function *function) {
-  function_points points;
-  hl_layout counted = {0};
-  lay_out_points(function, &points, &counted);
-  return counted;
-}
-
-uint64_t hl_prepared_bytes(const hl_scene_volume *scene, hl_kernel kernel, const grid_functions *functions,
-                           int threads) {
-  return hl_grid_bytes(scene->volume, hl_kernel_get(hl_kernel_of_volume(scene, kernel)), functions, threads) +
-         hl_classifier_bytes(&scene->transfer_function) + count_points(&scene->transfer_function).bytes;
+void hl_prepared_count(const hl_scene_volume *scene, hl_kernel kernel, const grid_functions *functions,
+                       int threads, hl_layout *layout) {
+  hl_grid_count(scene->volume, hl_kernel_get(hl_kernel_of_volume(scene, kernel)), functions, threads, layout);
+  hl_classifier_lay_out(&scene->transfer_function, &(classifier){0}, layout);
+  lay_out_points(&scene->transfer_function, &(function_points){0}, layout);
 }
 
 static hl_status keep_key(hl_context *context, prepared_volume *prepared, const hl_scene_volume *scene,
                           hl_error *error) {
   const hl_transfer_function *function = &scene->transfer_function;
   function_points points;
-  hl_layout counted = count_points(function), handed = {.base = hl_allocate(context, counted.bytes, 1)};
-  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "a transfer function");
-  lay_out_points(function, &points, &handed);
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, context)) lay_out_points(function, &points, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "a transfer function");
   if (function->opacity_count > 0)
     memcpy(points.opacity, function->opacity, function->opacity_count * sizeof *points.opacity);
   if (function->color_count > 0)

@@ -2,6 +2,7 @@
 #ifndef HL_RENDER_PREPARE_H
 #define HL_RENDER_PREPARE_H
 
+#include "core/memory.h"
 #include "core/pool.h"
 #include "grid/classifier.h"
 #include "grid/grid.h"
@@ -46,9 +47,9 @@ hl_status hl_prepare_isosurfaces(hl_context *context, hl_pool *pool, const hl_sc
 /* Releases those of prepared[0 .. count) whose grids the scene's volumes cannot use any more. */
 void hl_prepared_release_stale(hl_context *context, const hl_scene_description *scene,
                                prepared_volume *prepared);
-/* The most bytes that preparing one volume takes; kernel: the scene's. */
-uint64_t hl_prepared_bytes(const hl_scene_volume *scene, hl_kernel kernel, const grid_functions *functions,
-                           int threads);
+/* Counts what preparing one volume takes; kernel: the scene's. */
+void hl_prepared_count(const hl_scene_volume *scene, hl_kernel kernel, const grid_functions *functions,
+                       int threads, hl_layout *layout);
 void hl_prepared_release(hl_context *context, prepared_volume *prepared);
 
 #endif

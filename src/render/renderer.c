@@ -208,14 +208,15 @@ static hl_status scatter_light(hl_renderer *renderer, const hl_scene_description
     hl_scatter_release(context, &renderer->scattered);
     return HL_OK;
   }
-  hl_status status = hl_renderer_check_room(renderer, hl_scatter_bytes(scene), error);
-  if (status != HL_OK) return status;
   scatter_volume *volumes = hl_allocate(context, scene->volume_count, sizeof *volumes);
   if (volumes == NULL) return hl_fail_memory(error, scene->volume_count * sizeof *volumes, "the volumes");
   for (size_t v = 0; v < scene->volume_count; v++)
     volumes[v] = (scatter_volume){&scene->volumes[v], &work->grids[v], &renderer->prepared[v].classifier};
   const scatter_scene all = {context, renderer->pool, scene, volumes, sky_mark, work->frame.surfaces};
-  status = hl_scatter_update(&all, &renderer->scattered, error);
+  hl_layout counted = {0};
+  hl_scatter_count(&all, &counted);
+  hl_status status = hl_renderer_check_room(renderer, counted.most, error);
+  if (status == HL_OK) status = hl_scatter_update(&all, &renderer->scattered, error);
   hl_release(context, volumes);
   return status;
 }
@@ -235,19 +236,15 @@ static hl_status check_sweeps_room(hl_renderer *renderer, const hl_scene_descrip
   if (work->frame.point_count == 0) return HL_OK;
   vec3 *points = hl_allocate(context, (size_t)work->frame.point_count / 8 * CONTENT_POINTS + 1,
                              sizeof *points);
-  sweep_bytes *bytes = hl_allocate(context, (size_t)work->sweep_count, sizeof *bytes);
+  sweeps_memory memory = {0};
   hl_status status = HL_OK;
-  if (points == NULL || bytes == NULL)
-    status = hl_fail_memory(error, (size_t)work->sweep_count * sizeof *bytes, "the frame");
+  if (points == NULL) return hl_fail_memory(error, sizeof *points, "the content's corners");
   for (int s = 0; s < work->sweep_count && status == HL_OK; s++) {
-    sweep planned = sweep_of(renderer, scene, work, s);
-    status = hl_sweep_bytes(&planned, points, hl_pool_threads(renderer->pool), &bytes[s], error);
+    sweep counted = sweep_of(renderer, scene, work, s);
+    status = hl_sweep_count_memory(&counted, points, &memory, error);
   }
-  uint64_t needed = status == HL_OK ? hl_sweeps_bytes(bytes, work->sweep_count, work->layers.wanted != NULL)
-                                    : 0;
-  uint64_t kept = kept_buffers(renderer);
+  uint64_t needed = hl_sweeps_bytes(&memory), kept = kept_buffers(renderer);
   hl_release(context, points);
-  hl_release(context, bytes);
   if (status != HL_OK) return status;
   return hl_renderer_check_room(renderer, needed > kept ? needed - kept : 0, error);
 }
@@ -317,10 +314,19 @@ static hl_status update_sky(hl_renderer *renderer, const hl_scene_description *s
 }
 
 static hl_status update_phases(hl_renderer *renderer, const hl_scene_description *scene, hl_error *error) {
-  uint64_t bytes = hl_phase_bytes(scene), held = renderer->phases.bytes;
+  hl_layout counted = {0};
+  hl_phase_count(scene, &counted);
+  uint64_t bytes = counted.bytes, held = renderer->phases.bytes;
   hl_status status = bytes > held ? hl_renderer_check_room(renderer, bytes - held, error) : HL_OK;
   if (status != HL_OK) return status;
   return hl_phase_update(renderer->context, renderer->pool, scene, &renderer->phases, error);
+}
+
+static hl_status check_volumes_room(hl_renderer *renderer, const hl_scene_description *scene,
+                                    const hot_functions *hot, hl_error *error) {
+  hl_layout counted = {0};
+  hl_prepare_count(scene, renderer->prepared, &hot->grid, hl_pool_threads(renderer->pool), &counted);
+  return hl_renderer_check_room(renderer, counted.most, error);
 }
 
 static hl_status render_frame(hl_renderer *renderer, const frame_request *request, frame_work *work,
@@ -334,10 +340,7 @@ static hl_status render_frame(hl_renderer *renderer, const frame_request *reques
   renderer->estimate = 0;
   const hot_functions *hot = hl_hot_functions(renderer->context->options.instruction_set);
   if (status == HL_OK) hl_prepared_release_stale(renderer->context, scene, renderer->prepared);
-  if (status == HL_OK)
-    status = hl_renderer_check_room(
-        renderer, hl_prepare_bytes(scene, renderer->prepared, &hot->grid, hl_pool_threads(renderer->pool)),
-        error);
+  if (status == HL_OK) status = check_volumes_room(renderer, scene, hot, error);
   if (status == HL_OK)
     status = hl_prepare_volumes(renderer->context, renderer->pool, hot, scene, renderer->prepared, error);
   if (status == HL_OK)

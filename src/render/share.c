@@ -38,12 +38,10 @@ static void lay_out(picture_share *share, share_arrays *arrays, hl_layout *layou
   }
 }
 
-uint64_t hl_share_bytes(int width, int height, int parts) {
+void hl_share_count(int width, int height, int parts, hl_layout *layout) {
   picture_share share = {.cells_x = hl_tiles(width), .cells_y = hl_tiles(height), .parts = parts};
   share_arrays arrays;
-  hl_layout counted = {0};
-  lay_out(&share, &arrays, &counted);
-  return counted.bytes;
+  if (parts > 1) lay_out(&share, &arrays, layout);
 }
 
 /* ---- along which lines ---- */
@@ -317,16 +315,14 @@ hl_status hl_share_create(hl_context *context, const share_content *content, pic
                           hl_error *error) {
   const frame *frame = content->frame;
   share_arrays arrays;
-  hl_layout counted = {0};
+  hl_layout layout = {0};
   if (share->parts == 1) return HL_OK;
   share->oversampling = frame->oversampling;
   share->cells_x = hl_tiles(frame->width / frame->oversampling);
   share->cells_y = hl_tiles(frame->height / frame->oversampling);
-  lay_out(share, &arrays, &counted);
-  share->part_of = NULL;
-  share->memory = hl_allocate(context, counted.bytes, 1);
-  if (share->memory == NULL) return hl_fail_memory(error, counted.bytes, "a picture's parts");
-  lay_out(share, &arrays, &(hl_layout){.base = share->memory});
+  while (hl_layout_pass(&layout, context)) lay_out(share, &arrays, &layout);
+  share->memory = layout.base;
+  if (share->memory == NULL) return hl_fail_memory(error, layout.bytes, "a picture's parts");
   if (!is_cut_in_bands(content, share)) {
     take_turns(share);
     return HL_OK;

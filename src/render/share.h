@@ -13,6 +13,7 @@
 #include <halflight/render.h>
 
 #include "core/light_exchange.h"
+#include "core/memory.h"
 #include "render/frame.h"
 
 /* A cell is as many pixels of the picture as a tile has of the frame: `oversampling` tiles a side. */
@@ -33,8 +34,8 @@ typedef struct share_content {
   const sheet_stack *sheets; /* of the frame's first sweep */
 } share_content;
 
-/* The bytes that hl_share_create() allocates for a picture of so many pixels. */
-uint64_t hl_share_bytes(int width, int height, int parts);
+/* Counts what hl_share_create() takes for a picture of width x height pixels. */
+void hl_share_count(int width, int height, int parts, hl_layout *layout);
 
 /* Shares a picture out; the same on every machine. share: its part and parts are set; with one part nothing
  * is done. Owned by the caller; release it after a failure, too. */

@@ -74,9 +74,9 @@ static int channels_of(const hl_scene_description *scene) {
 
 static hl_status make(hl_context *context, hl_pool *pool, const hot_functions *hot,
                       const sky_content *content, const sky_room *room, sky_field *field, hl_error *error) {
-  uint64_t passing, kept = hl_sky_bytes(content, &passing);
-  hl_status status = room->check(room->data, passing + (kept > field->bytes ? kept - field->bytes : 0),
-                                 error);
+  hl_layout counted = {0};
+  hl_sky_count(content, field, &counted);
+  hl_status status = room->check(room->data, counted.most, error);
   return status == HL_OK ? hl_sky_make(context, pool, content, &hot->field, field, error) : status;
 }
 

@@ -21,11 +21,12 @@ typedef struct sweep_light {
   view_sheets sheets;       /* what the shadow buffer's view sees */
   light_texture texture;    /* the picture that the light projects */
   light_emission *emission; /* owned; the picture on the light itself; null: none */
-  int32_t *needed_until;    /* owned; [tiles of the buffer]; the last slab that needs the tile, 0: none does;
-                               null: all slabs need all tiles */
-  int32_t *sublights_until; /* owned; light_shadow's */
-  unsigned char *owned;     /* owned; [tiles of the buffer]; 1 where this part of a shared picture tells the
-                               others of the tile; null: it tells them nothing */
+  void *reads;              /* owned; holds the arrays that follow (light_reads.h) */
+  int32_t *needed_until; /* [tiles of the buffer]; the last slab that needs the tile, 0: none does; null: all
+                            slabs need all tiles */
+  int32_t *sublights_until; /* light_shadow's */
+  unsigned char *owned; /* [tiles of the buffer]; 1 where this part of a shared picture tells the others of
+                           the tile; null: it tells them nothing */
 } sweep_light;
 
 static inline bool hl_light_needs(const sweep_light *light, size_t tile, int slab) {
@@ -67,16 +68,15 @@ typedef struct layer_pass {
 } layer_pass;
 
 typedef struct sweep_layers {
-  layer_pass *passes; /* owned; [pass_count] */
+  layer_pass *passes; /* owned with all arrays that follow; [pass_count] */
   int pass_count;
-  shade_light *white_lights;  /* owned; [light_count of the sweep] */
-  shade_volume *even_volumes; /* owned; [volume_count]; surfaces send on all light that arrives */
-  shade_volume *white_volumes,
-      *open_volumes;    /* owned; [volume_count]; with surfaces; and receiving no shadow */
-  shade_patch *patches; /* owned; [threads][volume_count]; of a pass's own volumes */
-  classifier *white;    /* owned; [volume_count]; the volumes' tables, borrowed, with white colours */
-  sky_light white_sky;  /* the sky without its colour */
-  float (*ones)[4];     /* owned; a colour table */
+  shade_light *white_lights;                  /* [light_count of the sweep] */
+  shade_volume *even_volumes;                 /* [volume_count]; surfaces send on all light that arrives */
+  shade_volume *white_volumes, *open_volumes; /* [volume_count]; with surfaces; and receiving no shadow */
+  shade_patch *patches;                       /* [threads][volume_count]; of a pass's own volumes */
+  classifier *white;   /* [volume_count]; the volumes' tables, borrowed, with white colours */
+  sky_light white_sky; /* the sky without its colour */
+  float (*ones)[4];    /* a colour table */
 } sweep_layers;
 
 /* Points that stand for a light where surfaces look for what is close before them (contact.h). */
@@ -192,18 +192,16 @@ void hl_sweep_open(sweep *sweep);
 void hl_sweep_count(const sweep *sweep, hl_render_statistics *statistics);
 void hl_sweep_end(sweep *sweep);
 
-/* The bytes that hl_sweep_begin would hold. */
-typedef struct sweep_bytes {
-  uint64_t buffers; /* the lights' shadow buffers, which the renderer keeps between frames */
-  uint64_t
-      memory[FRAME_LIGHTS]; /* memory that shadow methods keep between frames; the sweeps use it in turn */
-  uint64_t
-      passing; /* memory that ends with the sweep; without light textures and the lists of splatted voxels */
-} sweep_bytes;
+/* What hl_sweep_begin() takes for the sweeps of a frame that were counted. */
+typedef struct sweeps_memory {
+  hl_layout buffers;         /* the lights' shadow buffers, which the renderer keeps between frames */
+  size_t kept[FRAME_LIGHTS]; /* bytes that shadow methods keep between frames; the sweeps use them in turn */
+  hl_layout passing; /* ends with each sweep; without light textures and the lists of splatted voxels */
+} sweeps_memory;
 
-/* The sweep's context, scene, frame, geometry, grids and channels must be set. points: room for the corners
- * that hl_frame_visible_points() gives. threads: of the pool. */
-hl_status hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads, sweep_bytes *bytes, hl_error *error);
+/* Adds what hl_sweep_begin() takes for a sweep as the caller sets it. points: room for the corners that
+ * hl_frame_visible_points() gives. The sweep then has served: another one is begun. */
+hl_status hl_sweep_count_memory(sweep *sweep, vec3 *points, sweeps_memory *memory, hl_error *error);
 
 /* The sheet loop: steps 3 to 18 (sweep_loop.c). */
 hl_status hl_sweep_run(sweep *sweep, hl_error *error);

@@ -82,9 +82,7 @@ static void end_light(const sweep *sweep, sweep_light *light) {
   hl_light_texture_release(context, &light->texture);
   hl_release(context, light->emission);
   hl_light_shadow_end(&light->shadow);
-  hl_release(context, light->needed_until);
-  hl_release(context, light->sublights_until);
-  hl_release(context, light->owned);
+  hl_release(context, light->reads);
 }
 
 /* ---- how long stretches are ---- */
@@ -114,29 +112,42 @@ static void choose_stretch(sweep *sweep) {
   sweep->ring = stretch == 1 ? 1 : 2 * stretch + 1;
 }
 
-/* Adds the bytes that begin_light() would allocate for one light, and the tiles of its view to *tasks. */
-static void add_light_bytes(sweep *sweep, int index, sweep_bytes *bytes, size_t *tasks) {
-  sweep_light *light = &sweep->lights[index];
-  light_shadow *shadow = &light->shadow;
-  if (shadow->method == NULL) return;
-  const view *view = &shadow->plan.view;
-  const shadow_buffer_size size = hl_light_shadow_buffer_size(shadow, sweep->ring);
-  shadow_layouts of_method = hl_light_shadow_count(shadow);
-  bytes->buffers += hl_shadow_buffer_bytes(&size);
-  bytes->memory[index] = of_method.kept.bytes;
-  bytes->passing += of_method.passing.bytes + shadow->method->state_bytes +
-                    (size_t)sweep->ring * sizeof *shadow->lookups +
-                    (light->emission != NULL ? sizeof *light->emission : 0) +
-                    hl_view_sheets_bytes(&sweep->content, view, shadow->plan.spare) +
-                    hl_light_reads_bytes(sweep, shadow);
-  *tasks += hl_view_tiles(view);
+static void find_tiles(sweep *sweep) {
+  sweep->tiles_x = hl_tiles(sweep->frame->width);
+  sweep->tiles_y = hl_tiles(sweep->frame->height);
+  sweep->tiles = (size_t)sweep->tiles_x * (size_t)sweep->tiles_y;
 }
 
-/* tasks: tiles of the picture and of all lights. */
-static void lay_out(sweep *sweep, size_t tasks, int threads, hl_layout *layout) {
-  size_t volumes = (size_t)sweep->content.volume_count, places = (size_t)threads * volumes;
+/* Counts what begin_light() takes. */
+static void count_light(sweep *sweep, int index, sweeps_memory *memory) {
+  sweep_light *light = &sweep->lights[index];
+  light_shadow *shadow = &light->shadow;
+  hl_layout *passing = &memory->passing;
+  if (light->emission != NULL) hl_layout_take(passing, 1, sizeof *light->emission);
+  if (shadow->method == NULL) return;
+  const shadow_buffer_size size = hl_light_shadow_buffer_size(shadow, sweep->ring);
+  const shadow_layouts of_method = hl_light_shadow_count(shadow);
+  hl_shadow_buffer_count(&size, &memory->buffers);
+  if (of_method.kept.bytes > memory->kept[index]) memory->kept[index] = of_method.kept.bytes;
+  hl_layout_take(passing, of_method.passing.bytes, 1);
+  hl_layout_take(passing, 1, shadow->method->state_bytes);
+  hl_layout_take(passing, (size_t)sweep->ring, sizeof *shadow->lookups);
+  hl_view_sheets_count(&sweep->content, &shadow->plan.view, shadow->plan.spare, passing);
+}
+
+/* The tiles of the picture and of all lights that are planned and cast shadows. */
+static size_t count_tasks(const sweep *sweep) {
+  size_t tasks = sweep->tiles;
+  for (int i = 0; i < sweep->geometry->light_count; i++)
+    if (sweep->lights[i].shadow.method != NULL) tasks += hl_view_tiles(&sweep->lights[i].shadow.plan.view);
+  return tasks;
+}
+
+static void lay_out(sweep *sweep, hl_layout *layout) {
+  size_t threads = (size_t)hl_pool_threads(sweep->content.pool);
+  size_t volumes = (size_t)sweep->content.volume_count, places = threads * volumes;
   sweep->arrays.open = hl_layout_take(layout, sweep->tiles, sizeof *sweep->arrays.open);
-  sweep->arrays.tasks = hl_layout_take(layout, tasks, sizeof *sweep->arrays.tasks);
+  sweep->arrays.tasks = hl_layout_take(layout, count_tasks(sweep), sizeof *sweep->arrays.tasks);
   size_t stretch = (size_t)sweep->content.stretch, lights = (size_t)sweep->geometry->light_count;
   sweep->arrays.slab_shades = hl_layout_take(layout, stretch, sizeof *sweep->arrays.slab_shades);
   sweep->arrays.slab_attenuates = hl_layout_take(layout, lights * stretch,
@@ -150,51 +161,31 @@ static void lay_out(sweep *sweep, size_t tasks, int threads, hl_layout *layout) 
   sweep->arrays.scratch_volumes = hl_layout_take(layout, places, sizeof *sweep->arrays.scratch_volumes);
   sweep->arrays.srgb_decode = hl_layout_take(layout, SRGB_CODES, sizeof *sweep->arrays.srgb_decode);
   sweep->arrays.tint_decode = hl_layout_take(layout, SRGB_CODES, sizeof *sweep->arrays.tint_decode);
-  sweep->arrays.counts = hl_layout_take(layout, (size_t)threads, sizeof *sweep->arrays.counts);
+  sweep->arrays.counts = hl_layout_take(layout, threads, sizeof *sweep->arrays.counts);
 }
 
-static void find_tiles(sweep *sweep) {
-  sweep->tiles_x = hl_tiles(sweep->frame->width);
-  sweep->tiles_y = hl_tiles(sweep->frame->height);
-  sweep->tiles = (size_t)sweep->tiles_x * (size_t)sweep->tiles_y;
-}
-
-/* The surfaces' fragments: those of all views are kept, and made one view after the other. */
-static uint64_t fragments_bytes(const sweep *sweep, int threads) {
-  const surfaces *all = sweep->frame->surfaces;
-  uint64_t making, most;
-  if (all == NULL) return 0;
-  uint64_t kept = hl_fragments_bytes(all, &sweep->frame->eye, threads, &most);
-  if (hl_sweep_has_unseen(sweep)) kept *= 2;
-  for (int i = 0; i < sweep->geometry->light_count; i++) {
-    const light_shadow *shadow = &sweep->lights[i].shadow;
-    if (shadow->method == NULL) continue;
-    kept += hl_fragments_bytes(all, &shadow->plan.view, threads, &making);
-    if (making > most) most = making;
-  }
-  return kept + most;
-}
-
-hl_status hl_sweep_bytes(const sweep *sweep, vec3 *points, int threads, sweep_bytes *bytes, hl_error *error) {
-  struct sweep planned = *sweep;
-  hl_layout counted = {0};
-  find_tiles(&planned);
-  size_t tasks = planned.tiles;
-  hl_status status = HL_OK;
-  for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++)
-    status = plan_light(&planned, i, points, error);
-  choose_stretch(&planned);
-  *bytes = (sweep_bytes){
-      .passing = hl_view_sheets_bytes(&planned.content, &sweep->frame->eye, PIXEL_TO_SPARE)};
-  if (status == HL_OK) bytes->passing += fragments_bytes(&planned, threads);
+/* The lights are planned. */
+static void count_memory(sweep *sweep, sweeps_memory *memory) {
+  hl_layout *passing = &memory->passing;
+  hl_view_sheets_count(&sweep->content, &sweep->frame->eye, PIXEL_TO_SPARE, passing);
   if (sweep->geometry->back_to_front)
-    bytes->passing += planned.tiles * TILE_BLOCKS * sizeof *sweep->shown_from;
-  for (int i = 0; i < sweep->geometry->light_count; i++) {
-    if (status == HL_OK) add_light_bytes(&planned, i, bytes, &tasks);
-    end_light(sweep, &planned.lights[i]);
-  }
-  lay_out(&planned, tasks, threads, &counted);
-  bytes->passing += counted.bytes;
+    hl_layout_take(passing, sweep->tiles * TILE_BLOCKS, sizeof *sweep->shown_from);
+  for (int i = 0; i < sweep->geometry->light_count; i++) count_light(sweep, i, memory);
+  lay_out(sweep, passing);
+  hl_sweep_layers_count(sweep, passing);
+  hl_light_reads_count(sweep, passing);
+  hl_sweep_surfaces_count(sweep, passing);
+  hl_layout_give_back(passing, 0);
+}
+
+hl_status hl_sweep_count_memory(sweep *sweep, vec3 *points, sweeps_memory *memory, hl_error *error) {
+  hl_status status = HL_OK;
+  find_tiles(sweep);
+  for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++)
+    status = plan_light(sweep, i, points, error);
+  choose_stretch(sweep);
+  if (status == HL_OK) count_memory(sweep, memory);
+  for (int i = 0; i < sweep->geometry->light_count; i++) end_light(sweep, &sweep->lights[i]);
   return status;
 }
 
@@ -214,18 +205,12 @@ static hl_status begin_light(sweep *sweep, sweep_light *light, shadow_buffer *bu
 }
 
 static hl_status allocate(sweep *sweep, hl_error *error) {
-  int threads = hl_pool_threads(sweep->content.pool);
-  size_t tasks = sweep->tiles;
-  for (int i = 0; i < sweep->geometry->light_count; i++)
-    tasks += (size_t)sweep->lights[i].sheets.occupancy.tiles_x *
-             (size_t)sweep->lights[i].sheets.occupancy.tiles_y;
-  hl_layout counted = {0};
-  lay_out(sweep, tasks, threads, &counted);
-  sweep->arrays.memory = hl_allocate(sweep->content.context, counted.bytes, 1);
-  if (sweep->arrays.memory == NULL) return hl_fail_memory(error, counted.bytes, "the sheet loop");
-  hl_layout handed = {.base = sweep->arrays.memory};
-  lay_out(sweep, tasks, threads, &handed);
-  memset(sweep->arrays.counts, 0, (size_t)threads * sizeof *sweep->arrays.counts);
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, sweep->content.context)) lay_out(sweep, &layout);
+  sweep->arrays.memory = layout.base;
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the sheet loop");
+  memset(sweep->arrays.counts, 0,
+         (size_t)hl_pool_threads(sweep->content.pool) * sizeof *sweep->arrays.counts);
   return HL_OK;
 }
 

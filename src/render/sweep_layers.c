@@ -41,24 +41,27 @@ static void set_up_white_light(const shade_light *from, shade_light *white) {
 /* Ambient light, emission, the sky, its two pictures of white volumes, measures. */
 enum { MOST_OTHER_PASSES = 6 };
 
-static hl_status allocate_passes(sweep *sweep, hl_error *error) {
-  hl_context *context = sweep->content.context;
+static bool wants_layers(const sweep *sweep) {
+  return sweep->layer_pixels != NULL && sweep->layer_pixels->wanted != NULL;
+}
+
+/* The passes begin the block. */
+static void lay_out(sweep *sweep, hl_layout *layout) {
   sweep_layers *layers = &sweep->layers;
-  size_t lights = (size_t)sweep->geometry->light_count, volumes = (size_t)sweep->content.volume_count;
-  layers->passes = hl_allocate_zeroed(context, 3 * lights + MOST_OTHER_PASSES, sizeof *layers->passes);
-  layers->white_lights = hl_allocate_zeroed(context, lights, sizeof *layers->white_lights);
-  layers->even_volumes = hl_allocate_zeroed(context, volumes, sizeof *layers->even_volumes);
-  layers->white_volumes = hl_allocate_zeroed(context, volumes, sizeof *layers->white_volumes);
-  layers->open_volumes = hl_allocate_zeroed(context, volumes, sizeof *layers->open_volumes);
-  layers->patches = hl_allocate(context, volumes * (size_t)hl_pool_threads(sweep->content.pool),
-                                sizeof *layers->patches);
-  layers->white = hl_allocate_zeroed(context, volumes, sizeof *layers->white);
-  layers->ones = hl_allocate(context, CLASSIFIER_ENTRIES + 2, sizeof *layers->ones);
-  if (layers->passes == NULL || layers->white_lights == NULL || layers->even_volumes == NULL ||
-      layers->white_volumes == NULL || layers->open_volumes == NULL || layers->patches == NULL ||
-      layers->white == NULL || layers->ones == NULL)
-    return hl_fail_memory(error, (CLASSIFIER_ENTRIES + 2) * sizeof *layers->ones, "the layers");
-  return HL_OK;
+  const size_t lights = (size_t)sweep->geometry->light_count, volumes = (size_t)sweep->content.volume_count,
+               threads = (size_t)hl_pool_threads(sweep->content.pool);
+  layers->passes = hl_layout_take(layout, 3 * lights + MOST_OTHER_PASSES, sizeof *layers->passes);
+  layers->white_lights = hl_layout_take(layout, lights, sizeof *layers->white_lights);
+  layers->even_volumes = hl_layout_take(layout, volumes, sizeof *layers->even_volumes);
+  layers->white_volumes = hl_layout_take(layout, volumes, sizeof *layers->white_volumes);
+  layers->open_volumes = hl_layout_take(layout, volumes, sizeof *layers->open_volumes);
+  layers->patches = hl_layout_take(layout, threads * volumes, sizeof *layers->patches);
+  layers->white = hl_layout_take(layout, volumes, sizeof *layers->white);
+  layers->ones = hl_layout_take(layout, CLASSIFIER_ENTRIES + 2, sizeof *layers->ones);
+}
+
+void hl_sweep_layers_count(sweep *sweep, hl_layout *layout) {
+  if (wants_layers(sweep)) lay_out(sweep, layout);
 }
 
 /* Adds a pass that shades the given lights, without ambient light, sky and emission. Returns null where the
@@ -105,9 +108,11 @@ static void add_sky_passes(sweep *sweep) {
 
 hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
   const layer_pixels *pixels = sweep->layer_pixels;
-  if (pixels == NULL || pixels->wanted == NULL) return HL_OK;
-  hl_status status = allocate_passes(sweep, error);
-  if (status != HL_OK) return status;
+  hl_layout layout = {0};
+  if (!wants_layers(sweep)) return HL_OK;
+  while (hl_layout_pass(&layout, sweep->content.context)) lay_out(sweep, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the layers");
+  memset(layout.base, 0, layout.bytes);
   set_up_white_volumes(sweep);
   for (int i = 0; i < sweep->geometry->light_count; i++) add_light_passes(sweep, i);
   layer_pass *ambient = sweep->first ? add_pass(sweep, pixels->ambient, NULL, 0) : NULL;
@@ -124,12 +129,7 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
   return HL_OK;
 }
 
-void hl_sweep_layers_end(sweep *sweep) {
-  sweep_layers *layers = &sweep->layers;
-  void *owned[] = {layers->passes,       layers->white_lights, layers->even_volumes, layers->white_volumes,
-                   layers->open_volumes, layers->patches,      layers->white,        layers->ones};
-  for (size_t i = 0; i < sizeof owned / sizeof owned[0]; i++) hl_release(sweep->content.context, owned[i]);
-}
+void hl_sweep_layers_end(sweep *sweep) { hl_release(sweep->content.context, sweep->layers.passes); }
 
 /* The tile's patches, of the pass's own volumes. */
 static const shade_patch *patches_of(const sweep *sweep, const tile_slab *slab, layer_matter matter) {

@@ -8,6 +8,8 @@
  * are placed, the fragments of a tile. */
 hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error);
 void hl_sweep_layers_end(sweep *sweep);
+/* Counts what begin takes; sets no pointers. */
+void hl_sweep_layers_count(sweep *sweep, hl_layout *layout);
 void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab);
 void hl_sweep_layers_batch(const sweep *sweep, const tile_slab *slab, const surface_batch *batch);
 

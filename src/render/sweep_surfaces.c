@@ -38,23 +38,34 @@ static size_t passings(const sweep *sweep) {
 }
 
 /* Each thread's memory for tiles with fragments. */
-static hl_status make_room(sweep *sweep, hl_error *error) {
+static void lay_out(sweep *sweep, hl_layout *layout) {
   size_t places = (size_t)hl_pool_threads(sweep->content.pool), volumes = (size_t)sweep->content.volume_count;
   surface_state *state = &sweep->surfaces;
+  state->patches = hl_layout_take(layout, places * volumes, sizeof *state->patches);
+  state->cuts = hl_layout_take(layout, places * volumes * 2, sizeof *state->cuts);
+  state->bounds = hl_layout_take(layout, places * 2, sizeof *state->bounds);
+  state->passing = hl_layout_take(layout, places * passings(sweep), sizeof *state->passing);
+  state->contact = hl_layout_take(layout, places * passings(sweep), sizeof *state->contact);
+  state->points = hl_layout_take(layout, (size_t)sweep->geometry->light_count, sizeof *state->points);
+}
+
+static hl_status make_room(sweep *sweep, hl_error *error) {
   hl_layout layout = {0};
-  for (int pass = 0; pass < 2; pass++) {
-    state->patches = hl_layout_take(&layout, places * volumes, sizeof *state->patches);
-    state->cuts = hl_layout_take(&layout, places * volumes * 2, sizeof *state->cuts);
-    state->bounds = hl_layout_take(&layout, places * 2, sizeof *state->bounds);
-    state->passing = hl_layout_take(&layout, places * passings(sweep), sizeof *state->passing);
-    state->contact = hl_layout_take(&layout, places * passings(sweep), sizeof *state->contact);
-    state->points = hl_layout_take(&layout, (size_t)sweep->geometry->light_count, sizeof *state->points);
-    if (pass == 1) break;
-    state->memory = hl_allocate(sweep->content.context, layout.bytes, 1);
-    if (state->memory == NULL) return hl_fail_memory(error, layout.bytes, "the surfaces");
-    layout = (hl_layout){.base = state->memory};
-  }
-  return HL_OK;
+  while (hl_layout_pass(&layout, sweep->content.context)) lay_out(sweep, &layout);
+  sweep->surfaces.memory = layout.base;
+  return layout.base != NULL ? HL_OK : hl_fail_memory(error, layout.bytes, "the surfaces");
+}
+
+void hl_sweep_surfaces_count(sweep *sweep, hl_layout *layout) {
+  const surfaces *all = sweep->frame->surfaces;
+  const int threads = hl_pool_threads(sweep->content.pool);
+  if (all == NULL) return;
+  lay_out(sweep, layout);
+  hl_fragments_count(all, &sweep->frame->eye, threads, layout);
+  if (hl_sweep_has_unseen(sweep)) hl_fragments_count(all, &sweep->frame->eye, threads, layout);
+  for (int i = 0; i < sweep->geometry->light_count; i++)
+    if (sweep->lights[i].shadow.method != NULL)
+      hl_fragments_count(all, &sweep->lights[i].shadow.plan.view, threads, layout);
 }
 
 bool hl_sweep_has_unseen(const sweep *sweep) {

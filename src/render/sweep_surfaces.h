@@ -13,6 +13,8 @@ bool hl_sweep_has_unseen(const sweep *sweep);
 hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error);
 hl_status hl_sweep_surfaces_begin_lights(sweep *sweep, hl_error *error);
 void hl_sweep_surfaces_end(sweep *sweep);
+/* Counts about what they take (fragments.h), for lights whose shadows are planned. Sets no pointers. */
+void hl_sweep_surfaces_count(sweep *sweep, hl_layout *layout);
 
 /* The fragments of the eye's view in a slab of a tile; to be asked for once, slabs in rising order. */
 fragment_range hl_sweep_surfaces_reach(const sweep *sweep, size_t tile, int slab);

@@ -181,13 +181,11 @@ static void lay_out(view_sheets *sheets, hl_layout *layout) {
   sheets->entries = hl_layout_take(layout, patches, sheets->entry_floats * sizeof *sheets->entries);
 }
 
-uint64_t hl_view_sheets_bytes(const sheet_content *content, const view *view, double spare) {
+void hl_view_sheets_count(const sheet_content *content, const view *view, double spare, hl_layout *layout) {
   view_sheets planned = {.content = content, .view = view};
-  hl_layout counted = {0};
   const occupancy_source source = {content->grids, content->volume_count, view, content->sheets, spare};
-  uint64_t bytes = hl_occupancy_bytes(&source, &planned.occupancy.patch_count);
-  lay_out(&planned, &counted);
-  return bytes + counted.bytes;
+  hl_occupancy_count(&source, &planned.occupancy, layout);
+  lay_out(&planned, layout);
 }
 
 static hl_status keep_patches(view_sheets *sheets, hl_error *error) {

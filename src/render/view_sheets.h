@@ -82,9 +82,9 @@ typedef struct view_sheets {
 hl_status hl_view_sheets_begin(const sheet_content *content, const view *view, bool of_light, double spare,
                                view_sheets *sheets, hl_error *error);
 void hl_view_sheets_end(view_sheets *sheets);
-/* The bytes that hl_view_sheets_begin would hold; without the lists of splatted voxels, whose size is known
- * only when they are made. */
-uint64_t hl_view_sheets_bytes(const sheet_content *content, const view *view, double spare);
+/* Counts what hl_view_sheets_begin takes; without the lists of splatted voxels, whose size is known only when
+ * they are made. */
+void hl_view_sheets_count(const sheet_content *content, const view *view, double spare, hl_layout *layout);
 
 /* Call for each slab of a stretch before its patches are asked for; sheets rise from 1. */
 void hl_view_sheets_reach(view_sheets *sheets, int sheet);

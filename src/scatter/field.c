@@ -109,16 +109,25 @@ static void lay_out(const scatter_parts *parts, scatter_arrays *arrays, scatter_
   if (parts->with_walls) lay_out_walls(nodes, &work->walls, layout);
 }
 
-uint64_t hl_scatter_bytes(const hl_scene_description *scene) {
-  if (!hl_scatter_wanted(scene)) return 0;
-  const size_t side = SCATTER_MOST_NODES, nodes = side * side * side;
+static void lay_out_field(const scatter_parts *parts, scatter_field *field, hl_layout *layout) {
+  field->light = hl_layout_take(layout, 3 * parts->nodes, sizeof *field->light);
+  field->flux = parts->with_flux ? hl_layout_take(layout, 9 * parts->nodes, sizeof *field->flux) : NULL;
+}
+
+static scatter_parts parts_of(const scatter_scene *scene, const scatter_nodes *nodes, bool with_walls) {
+  return (scatter_parts){hl_scatter_node_count(nodes), is_uneven(scene->scene), has_sky(scene->scene),
+                         with_walls};
+}
+
+void hl_scatter_count(const scatter_scene *scene, hl_layout *layout) {
+  scatter_nodes nodes;
+  if (!place_nodes(scene, &nodes)) return;
   scatter_arrays arrays;
   scatter_work work;
-  hl_layout counted = {0};
-  const scatter_parts parts = {nodes, is_uneven(scene), has_sky(scene), hl_surface_tree_bytes(scene) > 0};
-  lay_out(&parts, &arrays, &work, &counted);
-  return counted.bytes + hl_surface_tree_bytes(scene) + (is_uneven(scene) ? 12 : 3) * nodes * sizeof(float) +
-         scene->volume_count * sizeof(scatter_volume);
+  const bool with_walls = hl_surface_tree_count(scene->surfaces, ALL_SURFACES, layout);
+  const scatter_parts parts = parts_of(scene, &nodes, with_walls);
+  lay_out_field(&parts, &(scatter_field){0}, layout);
+  lay_out(&parts, &arrays, &work, layout);
 }
 
 /* ---- the key ---- */
@@ -221,22 +230,16 @@ static void solve_channels(const scatter_scene *scene, const scatter_arrays *arr
 
 static hl_status find_field(const scatter_scene *scene, const surface_tree *tree, scatter_field *field,
                             hl_error *error) {
-  size_t count = hl_scatter_node_count(&field->nodes);
   scatter_arrays arrays;
   scatter_work work;
-  hl_layout counted = {0};
-  bool with_flux = is_uneven(scene->scene);
-  const scatter_parts parts = {count, with_flux, has_sky(scene->scene), tree->box_count > 0};
-  lay_out(&parts, &arrays, &work, &counted);
-  hl_layout handed = {.base = hl_allocate(scene->context, counted.bytes, 1)};
-  field->light = hl_allocate(scene->context, (with_flux ? 12 : 3) * count, sizeof *field->light);
-  if (handed.base == NULL || field->light == NULL) {
-    hl_release(scene->context, handed.base);
-    return hl_fail_memory(error, counted.bytes, "multiple scattering");
-  }
-  lay_out(&parts, &arrays, &work, &handed);
+  hl_layout kept = {0}, passing = {0};
+  const scatter_parts parts = parts_of(scene, &field->nodes, tree->box_count > 0);
+  const size_t count = parts.nodes;
+  while (hl_layout_pass(&kept, scene->context)) lay_out_field(&parts, field, &kept);
+  if (kept.base == NULL) return hl_fail_memory(error, kept.bytes, "multiple scattering");
+  while (hl_layout_pass(&passing, scene->context)) lay_out(&parts, &arrays, &work, &passing);
+  if (passing.base == NULL) return hl_fail_memory(error, passing.bytes, "multiple scattering");
   arrays.tree = tree;
-  field->flux = with_flux ? field->light + 3 * count : NULL;
   hl_scatter_fill_matter(scene, &field->nodes, &arrays);
   hl_scatter_fill_direct(scene, &field->nodes, &arrays);
   if (parts.with_walls) hl_scatter_fill_walls(scene, &field->nodes, tree, &work.walls);
@@ -248,7 +251,7 @@ static hl_status find_field(const scatter_scene *scene, const surface_tree *tree
   for (size_t c = 1; c < 3; c++) grey = grey && memcmp(inflow, inflow + c, sizeof *inflow) == 0;
   field->channels = grey ? 1 : 3;
   solve_channels(scene, &arrays, inflow, &work, field);
-  hl_release(scene->context, handed.base);
+  hl_release(scene->context, passing.base);
   if (hl_pool_cancelled(scene->pool))
     return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while light is scattered");
   return HL_OK;

@@ -18,6 +18,7 @@
 #include <halflight/scene.h>
 
 #include "core/key.h"
+#include "core/memory.h"
 #include "core/pool.h"
 #include "grid/classifier.h"
 #include "light/light_source.h"
@@ -60,8 +61,8 @@ typedef struct scatter_field {
 /* True if some volume asks for multiple scattering and can show it. */
 bool hl_scatter_wanted(const hl_scene_description *scene);
 
-/* The most bytes that hl_scatter_update() holds. */
-uint64_t hl_scatter_bytes(const hl_scene_description *scene);
+/* Counts what hl_scatter_update() takes where it has to find the field anew. */
+void hl_scatter_count(const scatter_scene *scene, hl_layout *layout);
 
 /* Brings the field up to date; does nothing where all that it depends on stayed the same. */
 hl_status hl_scatter_update(const scatter_scene *scene, scatter_field *field, hl_error *error);

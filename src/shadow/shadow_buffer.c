@@ -173,12 +173,10 @@ size_t hl_shadow_plane(const view *view, int reach) {
   return buffer.plane;
 }
 
-uint64_t hl_shadow_buffer_bytes(const shadow_buffer_size *size) {
+void hl_shadow_buffer_count(const shadow_buffer_size *size, hl_layout *layout) {
   shadow_buffer buffer = {0};
-  hl_layout counted = {0};
   hl_shadow_buffer_measure(size->view, size->reach, &buffer);
-  lay_out(&buffer, (size_t)size->ring * planes_of_sheet(size), &counted);
-  return counted.bytes;
+  lay_out(&buffer, (size_t)size->ring * planes_of_sheet(size), layout);
 }
 
 uint64_t hl_shadow_sheet_bytes(const shadow_buffer_size *size) {

@@ -14,6 +14,7 @@
 #ifndef HL_SHADOW_SHADOW_BUFFER_H
 #define HL_SHADOW_SHADOW_BUFFER_H
 
+#include "core/memory.h"
 #include "core/pool.h"
 #include "light/light_source.h"
 #include "shadow/attenuate.h"
@@ -80,8 +81,8 @@ hl_status hl_shadow_buffer_reset(hl_context *context, hl_pool *pool, shadow_buff
 void hl_shadow_buffer_measure(const view *view, int reach, shadow_buffer *buffer);
 /* Floats of one channel of a buffer for a view, its margins included. */
 size_t hl_shadow_plane(const view *view, int reach);
-/* The bytes that hl_shadow_buffer_reset() needs. */
-uint64_t hl_shadow_buffer_bytes(const shadow_buffer_size *size);
+/* Counts what hl_shadow_buffer_reset() takes. */
+void hl_shadow_buffer_count(const shadow_buffer_size *size, hl_layout *layout);
 /* Bytes of one sheet's planes. */
 uint64_t hl_shadow_sheet_bytes(const shadow_buffer_size *size);
 

@@ -139,7 +139,7 @@ struct shadow_method {
   /* Raises needed_until, [tiles], where pixels of other tiles come to depend on a tile's. Null: they never
    * do.
    */
-  hl_status (*widen_needs)(light_shadow *shadow, int32_t *needed_until, hl_error *error);
+  void (*widen_needs)(light_shadow *shadow, int32_t *needed_until);
   /* The parts of a shared picture work through the tiles that they need, and tell each other the rest: the
    * setup's exchange, needed_until and owned. Of each tile that any brick touches one part is the owner,
    * which needs the tile as long as bricks touch it. */

@@ -23,6 +23,8 @@ typedef struct soft_paper {
   double last;         /* height of the last convolved sheet */
   double remainder;    /* accumulated width not yet convolved, pixels */
   int reach;           /* pixels beyond a tile that blurs may read: the buffer's margin is as wide */
+  int32_t *reached;    /* [slabs]; of widen_needs() */
+  int32_t *far;        /* [tiles of the buffer]; likewise */
 } soft_paper;
 
 /* The virtual light is the orthogonal projection of the real one onto a plane parallel to the sheets
@@ -316,14 +318,12 @@ static int32_t last_slab(const int32_t *reached, int slabs, int32_t far) {
  * last k with reached(k) <= reached(s) - d. Of a tile n tiles beside, d is at least 16 (n - 1) + 1. The
  * greatest reached(s) - 16 n is found by going through the tiles twice, each time from neighbour to
  * neighbour. */
-static hl_status widen_needs(light_shadow *shadow, int32_t *needed_until, hl_error *error) {
+static void widen_needs(light_shadow *shadow, int32_t *needed_until) {
   const shadow_buffer *buffer = shadow->buffer;
   const sheet_stack *sheets = shadow->setup.sheets;
   soft_paper soft = *(const soft_paper *)shadow->state;
-  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y, slabs = (size_t)sheets->count;
-  int32_t *reached = hl_allocate(shadow->setup.context, slabs + tiles, sizeof *reached),
-          *far = reached + slabs;
-  if (reached == NULL) return hl_fail_memory(error, (slabs + tiles) * sizeof *reached, "a light's tiles");
+  size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
+  int32_t *reached = soft.reached, *far = soft.far;
   reached[0] = 0;
   for (int slab = 1; slab < sheets->count; slab++)
     reached[slab] = reached[slab - 1] + (slab > 1 ? pass_sheet(&soft, sheets, slab - 1, NULL) : 0);
@@ -340,8 +340,13 @@ static hl_status widen_needs(light_shadow *shadow, int32_t *needed_until, hl_err
       if (beside >= 0 && *until < last_slab(reached, sheets->count, beside))
         *until = last_slab(reached, sheets->count, beside);
     }
-  hl_release(shadow->setup.context, reached);
-  return HL_OK;
+}
+
+static void lay_out(light_shadow *shadow, shadow_layouts *layouts) {
+  soft_paper *soft = shadow->state;
+  const size_t slabs = (size_t)shadow->setup.sheets->count, tiles = hl_view_tiles(&shadow->plan.view);
+  soft->reached = hl_layout_take(&layouts->passing, slabs, sizeof *soft->reached);
+  soft->far = hl_layout_take(&layouts->passing, tiles, sizeof *soft->far);
 }
 
 static void plan_paper(light_shadow *shadow) {
@@ -363,4 +368,5 @@ const shadow_method hl_shadow_paper = {.name = "paper",
                                        .divides = true,
                                        .widen_needs = widen_needs,
                                        .plan = plan_paper,
+                                       .lay_out = lay_out,
                                        .advance = advance_paper};

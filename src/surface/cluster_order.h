@@ -5,11 +5,11 @@
 
 #include "surface/surfaces.h"
 
-/* The bytes that hl_cluster_order_fill() needs for `count` primitives, in `spare`. */
-static inline uint64_t hl_cluster_order_bytes(uint64_t count) { return count * 3 * sizeof(uint32_t); }
+/* The numbers of `spare` that hl_cluster_order_fill() needs for each primitive. */
+enum { ORDER_SPARE = 3 };
 
 /* Writes the numbers of the primitives first to first + count - 1, of one kind and mesh, to all->order at
- * `first`, along a curve that fills space. spare: hl_cluster_order_bytes(); for use here. */
+ * `first`, along a curve that fills space. spare: [ORDER_SPARE][count]; for use here. */
 void hl_cluster_order_fill(hl_pool *pool, surfaces *all, uint32_t first, uint32_t count, uint32_t *spare);
 
 #endif

@@ -15,20 +15,51 @@ static uint64_t clusters_of(uint64_t primitives) { return (primitives + CLUSTER_
 /* Vertices are read sixteen at a time. */
 static uint16_t filled_up(uint32_t vertices) { return (uint16_t)((vertices + 15) / 16 * 16); }
 
-uint64_t hl_clusters_bytes(const hl_scene_description *scene) {
-  uint64_t bytes = 0, most = 0;
+/* ---- memory ---- */
+
+/* How many clusters a scene's meshes have. */
+typedef struct cluster_counts {
+  size_t all, triangles; /* clusters; those of triangles */
+  size_t primitives;
+  uint64_t most; /* primitives of one kind of the largest mesh */
+} cluster_counts;
+
+static void count_mesh(uint64_t triangles, uint64_t spheres, cluster_counts *counts) {
+  counts->triangles += clusters_of(triangles);
+  counts->all += clusters_of(triangles) + clusters_of(spheres);
+  counts->primitives += triangles + spheres;
+  counts->most = triangles > counts->most ? triangles : counts->most;
+  counts->most = spheres > counts->most ? spheres : counts->most;
+}
+
+/* The clusters begin the block. */
+static void lay_out(const cluster_counts *counts, surfaces *all, hl_layout *layout) {
+  all->clusters = hl_layout_take(layout, counts->all, sizeof *all->clusters);
+  all->order = hl_layout_take(layout, counts->primitives, sizeof *all->order);
+  all->cluster_corners = hl_layout_take(layout, counts->triangles, sizeof *all->cluster_corners);
+  all->cluster_normals = hl_layout_take(layout, counts->triangles, sizeof *all->cluster_normals);
+}
+
+static uint32_t *lay_out_spare(const cluster_counts *counts, hl_layout *layout) {
+  return hl_layout_take(layout, counts->most, ORDER_SPARE * sizeof(uint32_t));
+}
+
+static void lay_out_vertices(size_t vertices, surfaces *all, hl_layout *layout) {
+  all->cluster_positions = hl_layout_take(layout, vertices, sizeof(float[3]));
+}
+
+void hl_clusters_count(const hl_scene_description *scene, hl_layout *layout) {
+  cluster_counts counts = {0};
+  surfaces all = {0};
   for (size_t m = 0; m < scene->mesh_count; m++) {
     const hl_mesh_description *d = &scene->meshes[m].mesh->description;
-    uint64_t triangles = clusters_of(d->triangle_count), spheres = clusters_of(d->sphere_count),
-             own = hl_cluster_order_bytes(d->triangle_count > d->sphere_count ? d->triangle_count
-                                                                              : d->sphere_count);
-    bytes += (triangles + spheres) * sizeof(surface_cluster) +
-             (d->triangle_count + d->sphere_count) * sizeof(uint32_t) +
-             triangles * CLUSTER_SIZE * 3 * (sizeof(uint8_t) + sizeof(float)) +
-             triangles * CLUSTER_SIZE * sizeof(float[3]); /* about one vertex for each triangle */
-    most = own > most ? own : most;
+    count_mesh(d->triangle_count, d->sphere_count, &counts);
   }
-  return bytes + most;
+  lay_out(&counts, &all, layout);
+  lay_out_vertices(counts.triangles * CLUSTER_SIZE, &all, layout);
+  const size_t kept = layout->bytes;
+  lay_out_spare(&counts, layout);
+  hl_layout_give_back(layout, kept);
 }
 
 /* ---- boxes ---- */
@@ -176,21 +207,6 @@ static void cut_all(hl_pool *pool, surfaces *all, uint32_t *spare) {
     }
 }
 
-/* Counts the clusters of triangles, those of all primitives, and the primitives of the largest mesh. */
-static size_t count_clusters(surfaces *all, uint32_t *most) {
-  size_t triangles = 0;
-  *most = 0;
-  all->cluster_count = 0;
-  for (size_t m = 0; m < all->mesh_count; m++) {
-    const surface_mesh *mesh = &all->meshes[m];
-    triangles += clusters_of(mesh->triangle_count);
-    all->cluster_count += clusters_of(mesh->triangle_count) + clusters_of(mesh->sphere_count);
-    *most = mesh->triangle_count > *most ? mesh->triangle_count : *most;
-    *most = mesh->sphere_count > *most ? mesh->sphere_count : *most;
-  }
-  return triangles;
-}
-
 /* Says where the vertices of each cluster of triangles go; returns how many they are. */
 static size_t place_vertices(surfaces *all, size_t triangles) {
   size_t vertices = 0;
@@ -202,32 +218,29 @@ static size_t place_vertices(surfaces *all, size_t triangles) {
 }
 
 hl_status hl_clusters_create(hl_context *context, hl_pool *pool, surfaces *all, hl_error *error) {
-  uint32_t most;
-  size_t triangles = count_clusters(all, &most), tasks = (all->cluster_count + A_TASK - 1) / A_TASK;
-  uint32_t *spare = hl_allocate(context, hl_cluster_order_bytes(most), 1);
-  all->clusters = hl_allocate(context, all->cluster_count, sizeof *all->clusters);
-  all->order = hl_allocate(context, hl_surfaces_count(all), sizeof *all->order);
-  all->cluster_corners = hl_allocate(context, triangles, sizeof *all->cluster_corners);
-  all->cluster_normals = hl_allocate(context, triangles, sizeof *all->cluster_normals);
-  bool room = spare != NULL && all->clusters != NULL && all->order != NULL && all->cluster_corners != NULL &&
-              all->cluster_normals != NULL;
-  if (room) {
-    cut_all(pool, all, spare);
-    hl_pool_run(pool, tasks, describe_task, all);
-    all->cluster_positions = hl_allocate(context, place_vertices(all, triangles), sizeof(float[3]));
-    room = all->cluster_positions != NULL;
-  }
-  hl_release(context, spare);
-  if (!room) return hl_fail_memory(error, all->cluster_count * sizeof *all->clusters, "the meshes");
+  cluster_counts counts = {0};
+  for (size_t m = 0; m < all->mesh_count; m++)
+    count_mesh(all->meshes[m].triangle_count, all->meshes[m].sphere_count, &counts);
+  const size_t tasks = (counts.all + A_TASK - 1) / A_TASK;
+  uint32_t *spare = NULL;
+  hl_layout kept = {0}, passing = {0}, vertices = {0};
+  all->cluster_count = counts.all;
+  while (hl_layout_pass(&kept, context)) lay_out(&counts, all, &kept);
+  if (kept.base == NULL) return hl_fail_memory(error, kept.bytes, "the meshes");
+  while (hl_layout_pass(&passing, context)) spare = lay_out_spare(&counts, &passing);
+  if (passing.base == NULL) return hl_fail_memory(error, passing.bytes, "the meshes");
+  cut_all(pool, all, spare);
+  hl_release(context, passing.base);
+  hl_pool_run(pool, tasks, describe_task, all);
+  const size_t vertex_count = place_vertices(all, counts.triangles);
+  while (hl_layout_pass(&vertices, context)) lay_out_vertices(vertex_count, all, &vertices);
+  if (vertices.base == NULL) return hl_fail_memory(error, vertices.bytes, "the meshes");
   hl_pool_run(pool, tasks, copy_task, all);
   return HL_OK;
 }
 
 void hl_clusters_release(hl_context *context, surfaces *all) {
   hl_release(context, all->clusters);
-  hl_release(context, all->order);
-  hl_release(context, all->cluster_corners);
-  hl_release(context, all->cluster_normals);
   hl_release(context, all->cluster_positions);
 }
 

@@ -6,6 +6,7 @@
 #ifndef HL_SURFACE_CLUSTERS_H
 #define HL_SURFACE_CLUSTERS_H
 
+#include "core/memory.h"
 #include "surface/small_triangles.h"
 #include "surface/surfaces.h"
 #include "view/view.h"
@@ -23,8 +24,8 @@ struct surface_cluster {
   size_t first_vertex; /* in all->cluster_positions */
 };
 
-/* About the bytes of all clusters, and those that making them takes besides. */
-uint64_t hl_clusters_bytes(const hl_scene_description *scene);
+/* Counts what hl_clusters_create() takes at most: as if triangles shared their vertices with few others. */
+void hl_clusters_count(const hl_scene_description *scene, hl_layout *layout);
 
 /* Makes the clusters of all meshes, in the order of meshes, those of triangles first. */
 hl_status hl_clusters_create(hl_context *context, hl_pool *pool, surfaces *all, hl_error *error);

@@ -9,12 +9,14 @@
 
 _Static_assert(HL_LIMIT_MESHES + HL_LIMIT_VOLUMES * HL_LIMIT_ISO <= 65536, "a fragment's mesh has 16 bits");
 
-uint64_t hl_fragments_bytes(const surfaces *all, const view *view, int threads, uint64_t *making) {
-  uint64_t primitives = hl_surfaces_count(all), pixels = hl_view_tiles(view) * TILE_PIXELS;
-  uint64_t list = (primitives + 2 * pixels) * sizeof(fragment);
-  *making = hl_primitive_bins_bytes(all, view) +
-            (uint64_t)threads * 2 * 2 * TILE_PIXELS * MOST_SLABS * (sizeof(fragment) + sizeof(order_key));
-  return list;
+void hl_fragments_count(const surfaces *all, const view *view, int threads, hl_layout *layout) {
+  const size_t primitives = hl_surfaces_count(all), pixels = hl_view_tiles(view) * TILE_PIXELS;
+  hl_layout_take(layout, primitives + 2 * pixels, sizeof(fragment));
+  const size_t kept = layout->bytes;
+  hl_primitive_bins_count(all, view, layout);
+  hl_layout_take(layout, (size_t)threads * 2 * 2 * TILE_PIXELS * MOST_SLABS,
+                 sizeof(fragment) + sizeof(order_key));
+  hl_layout_give_back(layout, kept);
 }
 
 /* Takes over the blocks of a worker. */

@@ -6,6 +6,7 @@
 #ifndef HL_SURFACE_FRAGMENTS_H
 #define HL_SURFACE_FRAGMENTS_H
 
+#include "core/memory.h"
 #include "surface/tile_fragments.h"
 
 /* The fragments of one view. */
@@ -15,9 +16,9 @@ typedef struct fragments {
   size_t tiles;
 } fragments;
 
-/* About the bytes of a view's fragments, with one for each primitive and two for each pixel; *making: those
- * that making them takes besides, for a while. */
-uint64_t hl_fragments_bytes(const surfaces *all, const view *view, int threads, uint64_t *making);
+/* Counts about what hl_fragments_create() takes: how many fragments there are is known only when they are
+ * made. There is one for each primitive, and there are two for each pixel. */
+void hl_fragments_count(const surfaces *all, const view *view, int threads, hl_layout *layout);
 
 hl_status hl_fragments_create(const fragments_source *source, fragments *made, hl_error *error);
 void hl_fragments_release(hl_context *context, fragments *made);

@@ -9,17 +9,6 @@
 #include "surface/clusters.h"
 #include "surface/surface_seams.h"
 
-uint64_t hl_surfaces_bytes(const hl_scene_description *scene) {
-  uint64_t bytes = scene->mesh_count * sizeof(surface_mesh) + hl_clusters_bytes(scene), triangles = 0;
-  for (size_t m = 0; m < scene->mesh_count; m++) {
-    const hl_mesh_description *d = &scene->meshes[m].mesh->description;
-    bytes += (d->vertex_count * 2 + scene->meshes[m].mesh->edge_normal_count) * sizeof(float[3]) +
-             d->triangle_count * sizeof(uint32_t[3]) + d->sphere_count * sizeof(float[4]);
-    triangles += d->triangle_count;
-  }
-  return bytes + hl_surface_seams_bytes(triangles);
-}
-
 /* Adds to each corner's normal the triangle's cross product, whose length is twice its area: large faces
  * count more. */
 static void add_face_normals(surfaces *made, const surface_mesh *mesh) {
@@ -108,22 +97,26 @@ static void place_mesh(hl_pool *pool, surfaces *made, const surface_mesh *mesh) 
   hl_pool_run(pool, task_count(d->vertex_count), make_units, &placing);
 }
 
+/* ---- memory ---- */
+
+/* Counts the primitives, and describes the meshes where there is room for them. */
 static hl_status count_primitives(const hl_scene_description *scene, surfaces *made, hl_error *error) {
   uint64_t vertices = 0, triangles = 0, spheres = 0, edge_normals = 0;
   for (size_t m = 0; m < scene->mesh_count; m++) {
     const hl_mesh_description *d = &scene->meshes[m].mesh->description;
-    made->meshes[m] = (surface_mesh){.scene = &scene->meshes[m],
-                                     .placement = hl_scene_mesh_to_world(&scene->meshes[m]),
-                                     .colors = d->colors,
-                                     .face_colors = d->face_colors,
-                                     .sphere_colors = d->sphere_colors,
-                                     .edges = (const uint32_t(*)[3])scene->meshes[m].mesh->edges,
-                                     .first_vertex = vertices,
-                                     .first_edge_normal = edge_normals,
-                                     .first_triangle = (uint32_t)triangles,
-                                     .triangle_count = (uint32_t)d->triangle_count,
-                                     .first_sphere = (uint32_t)spheres,
-                                     .sphere_count = (uint32_t)d->sphere_count};
+    if (made->meshes != NULL)
+      made->meshes[m] = (surface_mesh){.scene = &scene->meshes[m],
+                                       .placement = hl_scene_mesh_to_world(&scene->meshes[m]),
+                                       .colors = d->colors,
+                                       .face_colors = d->face_colors,
+                                       .sphere_colors = d->sphere_colors,
+                                       .edges = (const uint32_t(*)[3])scene->meshes[m].mesh->edges,
+                                       .first_vertex = vertices,
+                                       .first_edge_normal = edge_normals,
+                                       .first_triangle = (uint32_t)triangles,
+                                       .triangle_count = (uint32_t)d->triangle_count,
+                                       .first_sphere = (uint32_t)spheres,
+                                       .sphere_count = (uint32_t)d->sphere_count};
     vertices += d->vertex_count;
     edge_normals += scene->meshes[m].mesh->edge_normal_count;
     triangles += d->triangle_count;
@@ -132,7 +125,6 @@ static hl_status count_primitives(const hl_scene_description *scene, surfaces *m
       return hl_fail(error, HL_ERROR_UNSUPPORTED,
                      "/meshes: have more than 2^32 vertices, or triangles and spheres, together");
   }
-  made->mesh_count = scene->mesh_count;
   made->vertex_count = vertices;
   made->edge_normal_count = edge_normals;
   made->triangle_count = (uint32_t)triangles;
@@ -140,25 +132,43 @@ static hl_status count_primitives(const hl_scene_description *scene, surfaces *m
   return HL_OK;
 }
 
-static hl_status make_arrays(hl_context *context, const hl_scene_description *scene, surfaces *made,
-                             hl_error *error) {
-  made->positions = hl_allocate(context, made->vertex_count, sizeof *made->positions);
-  made->normals = hl_allocate(context, made->vertex_count, sizeof *made->normals);
-  made->edge_normals = hl_allocate(context, made->edge_normal_count, sizeof *made->edge_normals);
-  made->triangles = hl_allocate(context, made->triangle_count, sizeof *made->triangles);
-  made->spheres = hl_allocate(context, made->sphere_count, sizeof *made->spheres);
-  if (made->positions != NULL && made->normals != NULL && made->edge_normals != NULL &&
-      made->triangles != NULL && made->spheres != NULL)
-    return HL_OK;
-  return hl_fail_memory(error, hl_surfaces_bytes(scene), "the meshes");
+/* The meshes begin the block. */
+static void lay_out(size_t meshes, surfaces *made, hl_layout *layout) {
+  made->meshes = hl_layout_take(layout, meshes, sizeof *made->meshes);
+  made->positions = hl_layout_take(layout, made->vertex_count, sizeof *made->positions);
+  made->normals = hl_layout_take(layout, made->vertex_count, sizeof *made->normals);
+  made->edge_normals = hl_layout_take(layout, made->edge_normal_count, sizeof *made->edge_normals);
+  made->triangles = hl_layout_take(layout, made->triangle_count, sizeof *made->triangles);
+  made->spheres = hl_layout_take(layout, made->sphere_count, sizeof *made->spheres);
+}
+
+hl_status hl_surfaces_count_memory(const hl_scene_description *scene, hl_layout *layout, hl_error *error) {
+  surfaces planned = {0};
+  hl_status status = count_primitives(scene, &planned, error);
+  if (status != HL_OK) return status;
+  lay_out(scene->mesh_count, &planned, layout);
+  hl_clusters_count(scene, layout);
+  hl_surface_seams_count(planned.triangle_count, layout);
+  return HL_OK;
+}
+
+/* ---- all meshes ---- */
+
+static hl_status allocate(hl_context *context, const hl_scene_description *scene, surfaces *made,
+                          hl_error *error) {
+  hl_layout layout = {0};
+  *made = (surfaces){0};
+  hl_status status = count_primitives(scene, made, error);
+  if (status != HL_OK) return status;
+  while (hl_layout_pass(&layout, context)) lay_out(scene->mesh_count, made, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the meshes");
+  made->mesh_count = scene->mesh_count;
+  return count_primitives(scene, made, error);
 }
 
 static hl_status create(hl_context *context, hl_pool *pool, const hl_scene_description *scene, surfaces *made,
                         hl_error *error) {
-  *made = (surfaces){.meshes = hl_allocate(context, scene->mesh_count, sizeof *made->meshes)};
-  hl_status status = made->meshes != NULL ? count_primitives(scene, made, error)
-                                          : hl_fail_memory(error, sizeof *made->meshes, "the meshes");
-  if (status == HL_OK) status = make_arrays(context, scene, made, error);
+  hl_status status = allocate(context, scene, made, error);
   for (size_t m = 0; status == HL_OK && m < made->mesh_count; m++) {
     made->meshes[m].mesh = scene->meshes[m].mesh;
     hl_mesh_retain(made->meshes[m].mesh);
@@ -217,11 +227,6 @@ hl_status hl_surfaces_update(hl_context *context, hl_pool *pool, const hl_scene_
 void hl_surfaces_release(hl_context *context, surfaces *kept) {
   for (size_t m = 0; m < kept->mesh_count; m++) hl_mesh_release(kept->meshes[m].mesh);
   hl_release(context, kept->meshes);
-  hl_release(context, kept->positions);
-  hl_release(context, kept->normals);
-  hl_release(context, kept->edge_normals);
-  hl_release(context, kept->triangles);
-  hl_release(context, kept->spheres);
   hl_clusters_release(context, kept);
   hl_surface_seams_release(context, kept);
   hl_release(context, kept->cuts);

@@ -3,6 +3,7 @@
 #ifndef HL_SURFACE_PLACE_SURFACES_H
 #define HL_SURFACE_PLACE_SURFACES_H
 
+#include "core/memory.h"
 #include "core/pool.h"
 #include "surface/surfaces.h"
 
@@ -12,8 +13,9 @@ hl_status hl_surfaces_update(hl_context *context, hl_pool *pool, const hl_scene_
                              surfaces *kept, hl_error *error);
 void hl_surfaces_release(hl_context *context, surfaces *kept);
 
-/* The bytes that hl_surfaces_update() allocates where nothing is kept. */
-uint64_t hl_surfaces_bytes(const hl_scene_description *scene);
+/* Counts what hl_surfaces_update() takes where nothing is kept. Fails where there are too many primitives to
+ * number. */
+hl_status hl_surfaces_count_memory(const hl_scene_description *scene, hl_layout *layout, hl_error *error);
 
 /* Whether the same meshes stand in the same places as in the earlier frame: the update then allocates
  * nothing but a few cuts. */

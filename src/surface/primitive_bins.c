@@ -1,6 +1,8 @@
 /* surface/primitive_bins.c - see primitive_bins.h. */
 #include "surface/primitive_bins.h"
 
+#include <string.h>
+
 #include "core/memory.h"
 
 enum { LEAST_A_TASK = 1 << 8, MOST_TASKS = 32 };
@@ -19,7 +21,7 @@ typedef struct bin_work {
   primitive_bins *bins;
   tile_span *spans; /* [primitives]; of those that are binned one by one */
   uint32_t *places; /* [tasks][tiles]; first how many runs a task has for a tile, then where they go */
-  size_t tiles;
+  size_t tiles, tasks;
   size_t a_task; /* clusters of a task */
   int tiles_x, tiles_y;
 } bin_work;
@@ -135,11 +137,11 @@ static void bin_task(void *data, size_t index, int worker) {
 
 /* Turns the numbers of runs into the index of each bin's first run. False where there are more than 2^32
  * of them. */
-static bool find_places(bin_work *work, size_t tasks) {
+static bool find_places(bin_work *work) {
   uint64_t sum = 0;
   for (size_t tile = 0; tile < work->tiles; tile++) {
     work->bins->first[tile] = (uint32_t)sum;
-    for (size_t task = 0; task < tasks; task++) {
+    for (size_t task = 0; task < work->tasks; task++) {
       uint32_t count = work->places[task * work->tiles + tile];
       work->places[task * work->tiles + tile] = (uint32_t)sum;
       sum += count;
@@ -149,39 +151,68 @@ static bool find_places(bin_work *work, size_t tasks) {
   return sum <= UINT32_MAX;
 }
 
-uint64_t hl_primitive_bins_bytes(const surfaces *all, const view *view) {
-  uint64_t count = hl_surfaces_count(all), tiles = hl_view_tiles(view);
-  uint64_t tasks = all->cluster_count / LEAST_A_TASK + 1;
-  if (tasks > MOST_TASKS) tasks = MOST_TASKS;
-  return count * (sizeof(tile_span) + sizeof(primitive_run)) + (tasks + 1) * tiles * sizeof(uint32_t);
+/* ---- memory ---- */
+
+static bin_work work_of(const surfaces *all, const view *view) {
+  bin_work work = {.tiles_x = hl_tiles(view->width), .tiles_y = hl_tiles(view->height)};
+  work.tiles = (size_t)work.tiles_x * (size_t)work.tiles_y;
+  work.a_task = all->cluster_count / MOST_TASKS + 1;
+  if (work.a_task < LEAST_A_TASK) work.a_task = LEAST_A_TASK;
+  work.tasks = (all->cluster_count + work.a_task - 1) / work.a_task;
+  return work;
+}
+
+static void lay_out(const surfaces *all, bin_work *work, hl_layout *layout) {
+  work->places = hl_layout_take(layout, work->tasks * work->tiles, sizeof *work->places);
+  work->spans = hl_layout_take(layout, hl_surfaces_count(all), sizeof *work->spans);
+}
+
+static void lay_out_bins(const bin_work *work, primitive_bins *bins, hl_layout *layout) {
+  bins->first = hl_layout_take(layout, work->tiles + 1, sizeof *bins->first);
+}
+
+static void lay_out_runs(size_t runs, primitive_bins *bins, hl_layout *layout) {
+  bins->runs = hl_layout_take(layout, runs, sizeof *bins->runs);
+}
+
+void hl_primitive_bins_count(const surfaces *all, const view *view, hl_layout *layout) {
+  bin_work work = work_of(all, view);
+  primitive_bins bins;
+  lay_out_bins(&work, &bins, layout);
+  lay_out_runs(hl_surfaces_count(all), &bins, layout);
+  const size_t kept = layout->bytes;
+  lay_out(all, &work, layout);
+  hl_layout_give_back(layout, kept);
+}
+
+/* ---- all bins ---- */
+
+static hl_status fill_bins(hl_context *context, hl_pool *pool, bin_work *work, hl_error *error) {
+  hl_layout passing = {0}, runs = {0};
+  while (hl_layout_pass(&passing, context)) lay_out(work->seen->all, work, &passing);
+  if (passing.base == NULL) return hl_fail_memory(error, passing.bytes, "surfaces sorted by tiles");
+  memset(work->places, 0, work->tasks * work->tiles * sizeof *work->places);
+  hl_pool_run(pool, work->tasks, bin_task, work);
+  if (find_places(work))
+    while (hl_layout_pass(&runs, context)) lay_out_runs(work->bins->first[work->tiles], work->bins, &runs);
+  if (runs.base != NULL) hl_pool_run(pool, work->tasks, bin_task, work);
+  hl_release(context, passing.base);
+  return runs.base != NULL ? HL_OK : hl_fail_memory(error, runs.bytes, "surfaces sorted by tiles");
 }
 
 hl_status hl_primitive_bins_create(hl_context *context, hl_pool *pool, const seen_surfaces *seen,
                                    const binned *wanted, primitive_bins *bins, hl_error *error) {
-  bin_work work = {.seen = seen, .wanted = wanted, .bins = bins};
-  size_t count = seen->all->cluster_count;
-  work.tiles_x = hl_tiles(seen->view->width);
-  work.tiles_y = hl_tiles(seen->view->height);
-  work.tiles = (size_t)work.tiles_x * (size_t)work.tiles_y;
-  work.a_task = count / MOST_TASKS + 1;
-  if (work.a_task < LEAST_A_TASK) work.a_task = LEAST_A_TASK;
-  size_t tasks = (count + work.a_task - 1) / work.a_task;
-  *bins = (primitive_bins){.first = hl_allocate(context, work.tiles + 1, sizeof *bins->first)};
-  work.places = hl_allocate_zeroed(context, tasks * work.tiles, sizeof *work.places);
-  work.spans = hl_allocate(context, hl_surfaces_count(seen->all), sizeof *work.spans);
-  bool room = bins->first != NULL && work.places != NULL && work.spans != NULL;
-  if (room) {
-    hl_pool_run(pool, tasks, bin_task, &work);
-    room = find_places(&work, tasks);
-    if (room) bins->runs = hl_allocate(context, bins->first[work.tiles], sizeof *bins->runs);
-    room = bins->runs != NULL;
-    if (room) hl_pool_run(pool, tasks, bin_task, &work);
-  }
-  hl_release(context, work.places);
-  hl_release(context, work.spans);
-  if (room) return HL_OK;
-  hl_primitive_bins_release(context, bins);
-  return hl_fail_memory(error, (tasks + 1) * work.tiles * sizeof *work.places, "surfaces sorted by tiles");
+  bin_work work = work_of(seen->all, seen->view);
+  hl_layout layout = {0};
+  work.seen = seen;
+  work.wanted = wanted;
+  work.bins = bins;
+  *bins = (primitive_bins){0};
+  while (hl_layout_pass(&layout, context)) lay_out_bins(&work, bins, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "surfaces sorted by tiles");
+  hl_status status = fill_bins(context, pool, &work, error);
+  if (status != HL_OK) hl_primitive_bins_release(context, bins);
+  return status;
 }
 
 void hl_primitive_bins_release(hl_context *context, primitive_bins *bins) {

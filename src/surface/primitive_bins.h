@@ -3,6 +3,7 @@
 #ifndef HL_SURFACE_PRIMITIVE_BINS_H
 #define HL_SURFACE_PRIMITIVE_BINS_H
 
+#include "core/memory.h"
 #include "surface/clusters.h"
 #include "surface/seen.h"
 
@@ -25,8 +26,8 @@ typedef enum binned { BINNED_NOTHING, BINNED_FRONTS, BINNED_ALL } binned;
 /* wanted: [mesh_count]; of BINNED_FRONTS the triangles that face the view. */
 hl_status hl_primitive_bins_create(hl_context *context, hl_pool *pool, const seen_surfaces *seen,
                                    const binned *wanted, primitive_bins *bins, hl_error *error);
-/* About the bytes that making bins takes, with each primitive in one tile. */
-uint64_t hl_primitive_bins_bytes(const surfaces *all, const view *view);
+/* Counts what hl_primitive_bins_create() takes where each primitive lies in one tile. */
+void hl_primitive_bins_count(const surfaces *all, const view *view, hl_layout *layout);
 void hl_primitive_bins_release(hl_context *context, primitive_bins *bins);
 
 #endif

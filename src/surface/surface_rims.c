@@ -1,6 +1,8 @@
 /* surface/surface_rims.c - see surface_rims.h. */
 #include "surface/surface_rims.h"
 
+#include <string.h>
+
 #include "core/memory.h"
 #include "mesh/mesh.h"
 #include "surface/surface_cuts.h"
@@ -90,39 +92,49 @@ static bool follow_edges(const surfaces *all, const surface_mesh *mesh, uint32_t
   return changed;
 }
 
-hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surface_mesh *mesh, double distance,
-                          bool *near, hl_error *error) {
-  size_t vertices = mesh->mesh->description.vertex_count;
-  uint64_t *sum = hl_allocate_zeroed(context, vertices, sizeof *sum);
-  uint32_t *first = hl_allocate(context, vertices, sizeof *first);
-  float *from_edge = hl_allocate(context, vertices, sizeof *from_edge);
-  hl_status status = sum != NULL && first != NULL && from_edge != NULL
-                         ? HL_OK
-                         : hl_fail_memory(error, vertices * sizeof *sum, "the edges of meshes");
-  if (status == HL_OK) {
-    sum_edges(all, mesh, sum);
-    begin_distances(all, mesh, sum, first, from_edge);
-    begin_at_cuts(all, mesh, from_edge);
-    bool changed = true;
-    for (int pass = 0; pass < PASSES && changed; pass++) {
-      changed = false;
-      for (uint32_t i = 0; i < mesh->triangle_count; i++)
-        changed |= follow_edges(all, mesh, pass % 2 ? mesh->triangle_count - 1 - i : i, (float)distance,
-                                from_edge);
-    }
-    for (uint32_t t = 0; t < mesh->triangle_count; t++) {
-      const uint32_t *corner = all->triangles[mesh->first_triangle + t];
-      near[t] = false;
-      for (int i = 0; i < 3; i++) near[t] |= from_edge[corner[i] - mesh->first_vertex] <= (float)distance;
-    }
-  }
-  hl_release(context, sum);
-  hl_release(context, first);
-  hl_release(context, from_edge);
-  return status;
+/* The arrays of the search, one entry for each vertex of the mesh. */
+typedef struct rim_search {
+  uint64_t *sum;
+  uint32_t *first;
+  float *from_edge;
+} rim_search;
+
+static void lay_out(const surface_mesh *mesh, rim_search *search, hl_layout *layout) {
+  const size_t vertices = mesh->mesh->description.vertex_count;
+  search->sum = hl_layout_take(layout, vertices, sizeof *search->sum);
+  search->first = hl_layout_take(layout, vertices, sizeof *search->first);
+  search->from_edge = hl_layout_take(layout, vertices, sizeof *search->from_edge);
 }
 
-uint64_t hl_surface_rims_bytes(const hl_mesh_description *mesh) {
-  return mesh->vertex_count * (sizeof(uint64_t) + sizeof(uint32_t) + sizeof(float)) +
-         mesh->triangle_count * sizeof(bool);
+void hl_surface_rims_count(const surface_mesh *mesh, hl_layout *layout) {
+  const size_t kept = layout->bytes;
+  lay_out(mesh, &(rim_search){0}, layout);
+  hl_layout_give_back(layout, kept);
+}
+
+hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surface_mesh *mesh, double distance,
+                          bool *near, hl_error *error) {
+  rim_search search;
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, context)) lay_out(mesh, &search, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the edges of meshes");
+  memset(search.sum, 0, mesh->mesh->description.vertex_count * sizeof *search.sum);
+  sum_edges(all, mesh, search.sum);
+  begin_distances(all, mesh, search.sum, search.first, search.from_edge);
+  begin_at_cuts(all, mesh, search.from_edge);
+  bool changed = true;
+  for (int pass = 0; pass < PASSES && changed; pass++) {
+    changed = false;
+    for (uint32_t i = 0; i < mesh->triangle_count; i++)
+      changed |= follow_edges(all, mesh, pass % 2 ? mesh->triangle_count - 1 - i : i, (float)distance,
+                              search.from_edge);
+  }
+  for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+    const uint32_t *corner = all->triangles[mesh->first_triangle + t];
+    near[t] = false;
+    for (int i = 0; i < 3; i++)
+      near[t] |= search.from_edge[corner[i] - mesh->first_vertex] <= (float)distance;
+  }
+  hl_release(context, layout.base);
+  return HL_OK;
 }

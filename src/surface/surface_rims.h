@@ -5,6 +5,7 @@
 #ifndef HL_SURFACE_SURFACE_RIMS_H
 #define HL_SURFACE_SURFACE_RIMS_H
 
+#include "core/memory.h"
 #include "surface/surfaces.h"
 
 /* Sets near[t], of the mesh's triangles, where triangle t has a vertex within a distance, along edges, of an
@@ -14,7 +15,7 @@
 hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surface_mesh *mesh, double distance,
                           bool *near, hl_error *error);
 
-/* The most bytes that it takes for a while. */
-uint64_t hl_surface_rims_bytes(const hl_mesh_description *mesh);
+/* Counts what hl_surface_rims() takes for a while. */
+void hl_surface_rims_count(const surface_mesh *mesh, hl_layout *layout);
 
 #endif

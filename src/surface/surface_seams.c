@@ -22,9 +22,12 @@ typedef struct large_edge {
 typedef struct seam_search {
   surfaces *all;
   double large, same; /* frame units */
-  large_edge *edges;  /* owned; [edge_room] */
-  order_key *order;   /* owned; [2][edge_count] */
+  large_edge *edges;  /* [edge_room] */
   size_t edge_count, edge_room;
+  order_key *order;       /* [2][edge_count] */
+  surface_seam *found;    /* [found_count]; in the order in which they were found */
+  order_key *found_order; /* [2][found_count] */
+  size_t found_count;
 } seam_search;
 
 static vec3 position_of(const surfaces *all, uint32_t vertex) {
@@ -104,7 +107,7 @@ static bool is_corner(const seam_search *search, const large_edge *a, const larg
 }
 
 static void add_seam(seam_search *search, const large_edge *edge, const large_edge *other) {
-  search->all->seams[search->all->seam_count++] = (surface_seam){
+  search->found[search->found_count++] = (surface_seam){
       edge->triangle, other->triangle, {edge->ends[0], edge->ends[1]}};
 }
 
@@ -132,52 +135,77 @@ static void sort_edges(seam_search *search) {
   hl_sort_keys(search->order, search->order + search->edge_count, search->edge_count);
 }
 
-/* Sorts the seams by their triangles; those of one keep their order. */
-static bool sort_seams(hl_context *context, surfaces *all) {
-  size_t count = all->seam_count;
-  surface_seam *sorted = hl_allocate(context, count, sizeof *sorted);
-  order_key *order = hl_allocate(context, 2 * count, sizeof *order);
-  bool room = sorted != NULL && order != NULL;
-  for (size_t i = 0; room && i < count; i++)
-    order[i] = (order_key){(uint64_t)all->seams[i].triangle << 32, (uint32_t)i};
-  if (room) hl_sort_keys(order, order + count, count);
-  for (size_t i = 0; room && i < count; i++) sorted[i] = all->seams[order[i].index];
-  hl_release(context, order);
-  hl_release(context, room ? all->seams : sorted);
-  if (room) all->seams = sorted;
-  return room;
+/* ---- memory ---- */
+
+static void lay_out_edges(seam_search *search, hl_layout *layout) {
+  search->edges = hl_layout_take(layout, search->edge_room, sizeof *search->edges);
 }
 
-static bool find_seams(hl_context *context, seam_search *search) {
+/* What `edges` edges need at most. */
+static void lay_out_found(seam_search *search, size_t edges, hl_layout *layout) {
+  search->order = hl_layout_take(layout, 2 * edges, sizeof *search->order);
+  search->found = hl_layout_take(layout, MOST_AT_EDGE * edges, sizeof *search->found);
+  search->found_order = hl_layout_take(layout, MOST_AT_EDGE * edges, 2 * sizeof *search->found_order);
+}
+
+static surface_seam *lay_out_seams(size_t seams, hl_layout *layout) {
+  return hl_layout_take(layout, seams, sizeof(surface_seam));
+}
+
+/* A search among so many triangles. */
+static seam_search search_of(surfaces *all, uint64_t triangles) {
+  return (seam_search){.all = all, .edge_room = 3 * (triangles < MOST_SEAMED ? triangles : MOST_SEAMED)};
+}
+
+void hl_surface_seams_count(uint64_t triangles, hl_layout *layout) {
+  seam_search search = search_of(NULL, triangles);
+  lay_out_seams(MOST_AT_EDGE * search.edge_room, layout);
+  const size_t kept = layout->bytes;
+  lay_out_edges(&search, layout);
+  lay_out_found(&search, search.edge_room, layout);
+  hl_layout_give_back(layout, kept);
+}
+
+/* ---- all seams ---- */
+
+/* Copies the seams that were found, sorted by their triangles; those of one keep their order. */
+static hl_status sort_seams(hl_context *context, const seam_search *search, hl_error *error) {
   surfaces *all = search->all;
-  search->order = hl_allocate(context, 2 * search->edge_count, sizeof *search->order);
-  all->seams = hl_allocate(context, MOST_AT_EDGE * search->edge_count, sizeof *all->seams);
-  if (search->order == NULL || all->seams == NULL) return false;
+  const size_t count = search->found_count;
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, context)) all->seams = lay_out_seams(count, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the corners of meshes");
+  for (size_t i = 0; i < count; i++)
+    search->found_order[i] = (order_key){(uint64_t)search->found[i].triangle << 32, (uint32_t)i};
+  hl_sort_keys(search->found_order, search->found_order + count, count);
+  for (size_t i = 0; i < count; i++) all->seams[i] = search->found[search->found_order[i].index];
+  all->seam_count = count;
+  return HL_OK;
+}
+
+static hl_status find_seams(hl_context *context, seam_search *search, hl_error *error) {
+  hl_layout layout = {0};
+  if (search->edge_count == 0) return HL_OK;
+  while (hl_layout_pass(&layout, context)) lay_out_found(search, search->edge_count, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the corners of meshes");
   sort_edges(search);
   for (size_t i = 0; i < search->edge_count; i++) find_at(search, i, -1), find_at(search, i, 1);
-  return sort_seams(context, all);
-}
-
-uint64_t hl_surface_seams_bytes(uint64_t triangles) {
-  uint64_t edges = 3 * (triangles < MOST_SEAMED ? triangles : MOST_SEAMED);
-  return edges * (sizeof(large_edge) + 2 * sizeof(order_key) +
-                  MOST_AT_EDGE * (2 * sizeof(surface_seam) + 2 * sizeof(order_key)));
+  hl_status status = sort_seams(context, search, error);
+  hl_release(context, layout.base);
+  return status;
 }
 
 hl_status hl_surface_seams_create(hl_context *context, surfaces *all, hl_error *error) {
-  const uint32_t most = all->triangle_count < MOST_SEAMED ? all->triangle_count : MOST_SEAMED;
-  seam_search search = {.all = all, .edge_room = 3 * (size_t)most};
-  search.edges = hl_allocate(context, search.edge_room, sizeof *search.edges);
-  bool room = search.edges != NULL;
-  if (room && most > 0) {
-    set_scale(&search);
-    list_edges(&search);
-  }
-  if (search.edge_count > 0) room = find_seams(context, &search);
-  hl_release(context, search.edges);
-  hl_release(context, search.order);
-  return room ? HL_OK
-              : hl_fail_memory(error, hl_surface_seams_bytes(all->triangle_count), "the corners of meshes");
+  seam_search search = search_of(all, all->triangle_count);
+  hl_layout layout = {0};
+  if (all->triangle_count == 0) return HL_OK;
+  while (hl_layout_pass(&layout, context)) lay_out_edges(&search, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the corners of meshes");
+  set_scale(&search);
+  list_edges(&search);
+  hl_status status = find_seams(context, &search, error);
+  hl_release(context, layout.base);
+  return status;
 }
 
 void hl_surface_seams_release(hl_context *context, surfaces *all) {

@@ -7,6 +7,7 @@
 #ifndef HL_SURFACE_SURFACE_SEAMS_H
 #define HL_SURFACE_SURFACE_SEAMS_H
 
+#include "core/memory.h"
 #include "surface/surfaces.h"
 
 /* An edge at which a triangle meets another one, at an angle of more than 40 degrees. */
@@ -18,8 +19,8 @@ struct surface_seam {
 /* The most triangles that are asked, in the order of clusters, and the most neighbours of an edge. */
 enum { MOST_SEAMED = 1 << 14, MOST_AT_EDGE = 4 };
 
-/* The most bytes of the seams, and what finding them takes besides, for so many triangles. */
-uint64_t hl_surface_seams_bytes(uint64_t triangles);
+/* Counts what hl_surface_seams_create() takes at most for a number of triangles. */
+void hl_surface_seams_count(uint64_t triangles, hl_layout *layout);
 
 /* Fills all->seams, sorted by their triangles; clusters have been made. A triangle is large where one of its
  * edges is longer than a 64th of the diagonal of a box around all clusters. */

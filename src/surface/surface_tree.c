@@ -87,33 +87,6 @@ static void make(surface_tree *tree, boxed_primitive *list, uint32_t first, uint
   make(tree, list, first + below, count - below, depth + 1);
 }
 
-/* Makes the tree of its primitives; false: there is no memory. */
-static bool make_boxes(hl_context *context, surface_tree *tree) {
-  boxed_primitive *list = hl_allocate(context, tree->count, sizeof *list);
-  tree->boxes = hl_allocate(context, most_boxes(tree->count), sizeof *tree->boxes);
-  if (list != NULL && tree->boxes != NULL) {
-    for (uint32_t i = 0; i < tree->count; i++) {
-      list[i].primitive = tree->primitives[i];
-      box_of(tree->all, list[i].primitive, list[i].low, list[i].high);
-    }
-    make(tree, list, 0, tree->count, 0);
-    for (uint32_t i = 0; i < tree->count; i++) tree->primitives[i] = list[i].primitive;
-  }
-  bool made = list != NULL && tree->boxes != NULL;
-  hl_release(context, list);
-  return made;
-}
-
-uint64_t hl_surface_tree_bytes(const hl_scene_description *scene) {
-  uint64_t count = 0;
-  for (size_t m = 0; m < scene->mesh_count; m++) {
-    const hl_mesh_description *d = &scene->meshes[m].mesh->description;
-    if (hl_mesh_takes_light(&scene->meshes[m])) count += d->triangle_count + d->sphere_count;
-  }
-  return count * (sizeof(uint32_t) + sizeof(boxed_primitive)) + most_boxes(count) * sizeof(surface_box) +
-         scene->mesh_count * sizeof(mesh_held) + scene->cut_count * sizeof(cut_shape);
-}
-
 /* What a tree for a distance may hold of a mesh. */
 static mesh_held held_of(const surface_mesh *mesh, double distance) {
   if (!hl_mesh_takes_light(mesh->scene)) return HELD_NOT;
@@ -133,21 +106,96 @@ static void take_primitives(surface_tree *tree, const surface_mesh *mesh, const 
   }
 }
 
+/* ---- memory ---- */
+
+/* What a tree may hold at most. */
+typedef struct tree_size {
+  size_t primitives;
+  uint32_t triangles; /* of its largest mesh */
+} tree_size;
+
+static tree_size size_of(const surfaces *all, double distance) {
+  tree_size size = {0, 0};
+  for (size_t m = 0; all != NULL && m < all->mesh_count; m++) {
+    const surface_mesh *mesh = &all->meshes[m];
+    if (held_of(mesh, distance) == HELD_NOT) continue;
+    size.primitives += mesh->triangle_count + mesh->sphere_count;
+    size.triangles = mesh->triangle_count > size.triangles ? mesh->triangle_count : size.triangles;
+  }
+  return size;
+}
+
+/* The first array begins the block. */
+static void lay_out(surface_tree *tree, const tree_size *size, hl_layout *layout) {
+  tree->primitives = hl_layout_take(layout, size->primitives, sizeof *tree->primitives);
+  tree->holds = hl_layout_take(layout, tree->all->mesh_count, sizeof *tree->holds);
+  tree->cuts = hl_layout_take(layout, tree->all->cut_count, sizeof *tree->cuts);
+}
+
+static void lay_out_boxes(surface_tree *tree, size_t primitives, hl_layout *layout) {
+  tree->boxes = hl_layout_take(layout, most_boxes(primitives), sizeof *tree->boxes);
+}
+
+static boxed_primitive *lay_out_list(size_t primitives, hl_layout *layout) {
+  return hl_layout_take(layout, primitives, sizeof(boxed_primitive));
+}
+
+static bool *lay_out_near(const surface_tree *tree, const tree_size *size, hl_layout *layout) {
+  return isinf(tree->distance) ? NULL : hl_layout_take(layout, size->triangles, sizeof(bool));
+}
+
+bool hl_surface_tree_count(const surfaces *all, double distance, hl_layout *layout) {
+  surface_tree tree = {.all = all, .distance = distance};
+  const tree_size size = size_of(all, distance);
+  if (size.primitives == 0) return false;
+  lay_out(&tree, &size, layout);
+  size_t kept = layout->bytes;
+  lay_out_near(&tree, &size, layout);
+  for (size_t m = 0; !isinf(distance) && m < all->mesh_count; m++)
+    if (held_of(&all->meshes[m], distance) != HELD_NOT) hl_surface_rims_count(&all->meshes[m], layout);
+  hl_layout_give_back(layout, kept);
+  lay_out_boxes(&tree, size.primitives, layout);
+  kept = layout->bytes;
+  lay_out_list(size.primitives, layout);
+  hl_layout_give_back(layout, kept);
+  return true;
+}
+
+/* ---- making it ---- */
+
 /* Remembers the cuts, on which it depends what the tree holds. */
-static hl_status keep_cuts(hl_context *context, surface_tree *tree, hl_error *error) {
+static void keep_cuts(surface_tree *tree) {
   const surfaces *all = tree->all;
-  tree->cuts = hl_allocate(context, all->cut_count, sizeof *tree->cuts);
-  if (tree->cuts == NULL) return hl_fail_memory(error, all->cut_count * sizeof *tree->cuts, "cuts");
   for (size_t i = 0; i < all->cut_count; i++) tree->cuts[i] = all->cuts[i];
   tree->cut_count = all->cut_count;
+}
+
+/* Makes the tree of its primitives. */
+static hl_status make_boxes(hl_context *context, surface_tree *tree, hl_error *error) {
+  boxed_primitive *list = NULL;
+  hl_layout boxes = {0}, passing = {0};
+  while (hl_layout_pass(&boxes, context)) lay_out_boxes(tree, tree->count, &boxes);
+  if (boxes.base == NULL) return hl_fail_memory(error, boxes.bytes, "the boxes of meshes");
+  while (hl_layout_pass(&passing, context)) list = lay_out_list(tree->count, &passing);
+  if (passing.base == NULL) return hl_fail_memory(error, passing.bytes, "the boxes of meshes");
+  for (uint32_t i = 0; i < tree->count; i++) {
+    list[i].primitive = tree->primitives[i];
+    box_of(tree->all, list[i].primitive, list[i].low, list[i].high);
+  }
+  make(tree, list, 0, tree->count, 0);
+  for (uint32_t i = 0; i < tree->count; i++) tree->primitives[i] = list[i].primitive;
+  hl_release(context, passing.base);
   return HL_OK;
 }
 
-/* Fills the tree's primitives, for which there is room. most: the triangles of its largest mesh. */
-static hl_status choose_primitives(hl_context *context, surface_tree *tree, uint32_t most, hl_error *error) {
-  bool *near = isinf(tree->distance) ? NULL : hl_allocate(context, most, sizeof *near);
+/* Fills the tree's primitives, for which there is room. */
+static hl_status choose_primitives(hl_context *context, surface_tree *tree, const tree_size *size,
+                                   hl_error *error) {
+  bool *near = NULL;
+  hl_layout passing = {0};
   hl_status status = HL_OK;
-  if (near == NULL && !isinf(tree->distance)) return hl_fail_memory(error, most, "the edges of meshes");
+  while (hl_layout_pass(&passing, context)) near = lay_out_near(tree, size, &passing);
+  if (passing.base == NULL) return hl_fail_memory(error, passing.bytes, "the edges of meshes");
   for (size_t m = 0; m < tree->all->mesh_count && status == HL_OK; m++) {
     const surface_mesh *mesh = &tree->all->meshes[m];
     tree->holds[m] = held_of(mesh, tree->distance);
@@ -155,29 +203,21 @@ static hl_status choose_primitives(hl_context *context, surface_tree *tree, uint
     if (near != NULL) status = hl_surface_rims(context, tree->all, mesh, tree->distance, near, error);
     if (status == HL_OK) take_primitives(tree, mesh, near);
   }
-  hl_release(context, near);
+  hl_release(context, passing.base);
   return status;
 }
 
 hl_status hl_surface_tree_create(hl_context *context, const surfaces *all, double distance,
                                  surface_tree *tree, hl_error *error) {
   *tree = (surface_tree){.all = all, .distance = distance};
-  size_t count = 0;
-  uint32_t most = 0;
-  for (size_t m = 0; all != NULL && m < all->mesh_count; m++)
-    if (held_of(&all->meshes[m], distance) != HELD_NOT) {
-      count += all->meshes[m].triangle_count + all->meshes[m].sphere_count;
-      most = all->meshes[m].triangle_count > most ? all->meshes[m].triangle_count : most;
-    }
-  if (count == 0) return HL_OK;
-  tree->primitives = hl_allocate(context, count, sizeof *tree->primitives);
-  tree->holds = hl_allocate_zeroed(context, all->mesh_count, sizeof *tree->holds);
-  hl_status status = tree->primitives != NULL && tree->holds != NULL
-                         ? choose_primitives(context, tree, most, error)
-                         : hl_fail_memory(error, count * sizeof *tree->primitives, "the boxes of meshes");
-  if (status == HL_OK) status = keep_cuts(context, tree, error);
-  if (status == HL_OK && tree->count > 0 && !make_boxes(context, tree))
-    status = hl_fail_memory(error, most_boxes(tree->count) * sizeof *tree->boxes, "the boxes of meshes");
+  const tree_size size = size_of(all, distance);
+  hl_layout layout = {0};
+  if (size.primitives == 0) return HL_OK;
+  while (hl_layout_pass(&layout, context)) lay_out(tree, &size, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the boxes of meshes");
+  hl_status status = choose_primitives(context, tree, &size, error);
+  keep_cuts(tree);
+  if (status == HL_OK && tree->count > 0) status = make_boxes(context, tree, error);
   if (status != HL_OK) hl_surface_tree_release(context, tree);
   return status;
 }
@@ -201,8 +241,6 @@ bool hl_surface_tree_current(const surface_tree *tree, const surfaces *all, doub
 }
 
 void hl_surface_tree_release(hl_context *context, surface_tree *tree) {
-  hl_release(context, tree->holds);
-  hl_release(context, tree->cuts);
   hl_release(context, tree->primitives);
   hl_release(context, tree->boxes);
   *tree = (surface_tree){0};

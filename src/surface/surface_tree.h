@@ -5,6 +5,7 @@
 #ifndef HL_SURFACE_SURFACE_TREE_H
 #define HL_SURFACE_SURFACE_TREE_H
 
+#include "core/memory.h"
 #include "surface/surfaces.h"
 
 typedef struct surface_box {
@@ -18,9 +19,9 @@ typedef enum mesh_held { HELD_NOT, HELD_WHOLE, HELD_CUT } mesh_held;
 
 typedef struct surface_tree {
   const surfaces *all;  /* borrowed */
-  uint32_t *primitives; /* owned; [count]; sorted by leaves */
-  mesh_held *holds;     /* owned; [mesh_count of all] */
-  cut_shape *cuts;      /* owned; [cut_count]; those of `all` when it was created */
+  uint32_t *primitives; /* owned with the next two; [count]; sorted by leaves */
+  mesh_held *holds;     /* [mesh_count of all] */
+  cut_shape *cuts;      /* [cut_count]; those of `all` when it was created */
   size_t cut_count;
   double distance;    /* as it was created with */
   surface_box *boxes; /* owned; [box_count]; the root is the first */
@@ -39,8 +40,9 @@ hl_status hl_surface_tree_create(hl_context *context, const surfaces *all, doubl
 bool hl_surface_tree_current(const surface_tree *tree, const surfaces *all, double distance);
 void hl_surface_tree_release(hl_context *context, surface_tree *tree);
 
-/* The most bytes of a tree over all meshes of a scene. */
-uint64_t hl_surface_tree_bytes(const hl_scene_description *scene);
+/* Counts what hl_surface_tree_create() takes at most: as if each triangle of a mesh that is not closed lay
+ * within the distance. False: the tree holds nothing. */
+bool hl_surface_tree_count(const surfaces *all, double distance, hl_layout *layout);
 
 /* Whether a mesh takes light away. */
 static inline bool hl_mesh_takes_light(const hl_scene_mesh *mesh) {

@@ -34,16 +34,16 @@ typedef struct surface_seam surface_seam;       /* surface_seams.h */
 /* A primitive is a triangle or a sphere: numbers below triangle_count are triangles, those after it spheres.
  */
 typedef struct surfaces {
-  surface_mesh *meshes;      /* owned; [mesh_count]; their primitives follow each other */
-  float (*positions)[3];     /* owned; [vertex_count]; frame space */
-  float (*normals)[3];       /* owned; [vertex_count]; unit, or 0 where a vertex has none; frame space */
-  float (*edge_normals)[3];  /* owned; [edge_normal_count]; unit; frame space */
-  uint32_t (*triangles)[3];  /* owned; [triangle_count]; indices of positions */
-  float (*spheres)[4];       /* owned; [sphere_count]; centre and radius; frame space */
-  surface_cluster *clusters; /* owned; [cluster_count] */
-  uint32_t *order; /* owned; [triangle_count + sphere_count]; the primitives in the order of clusters */
-  uint8_t (*cluster_corners)[3][64]; /* owned; [clusters of triangles]; numbers of the cluster's vertices */
-  float (*cluster_normals)[3][64];   /* owned; the same; not unit; axis by axis; frame space */
+  surface_mesh *meshes;      /* owned with the next five; [mesh_count]; their primitives follow each other */
+  float (*positions)[3];     /* [vertex_count]; frame space */
+  float (*normals)[3];       /* [vertex_count]; unit, or 0 where a vertex has none; frame space */
+  float (*edge_normals)[3];  /* [edge_normal_count]; unit; frame space */
+  uint32_t (*triangles)[3];  /* [triangle_count]; indices of positions */
+  float (*spheres)[4];       /* [sphere_count]; centre and radius; frame space */
+  surface_cluster *clusters; /* owned with the next three; [cluster_count] */
+  uint32_t *order;           /* [triangle_count + sphere_count]; the primitives in the order of clusters */
+  uint8_t (*cluster_corners)[3][64]; /* [clusters of triangles]; numbers of the cluster's vertices */
+  float (*cluster_normals)[3][64];   /* the same; not unit; axis by axis; frame space */
   float *cluster_positions;          /* owned; of each cluster of triangles [3][vertices]; frame space */
   surface_seam *seams;               /* owned; [seam_count]; null: none */
   cut_shape *cuts;                   /* owned; [cut_count]; the scene's, of frame space */

@@ -242,27 +242,19 @@ static void lay_out(occupancy *o, int grid_count, hl_layout *layout) {
   o->by_sheet = hl_layout_take(layout, words * 64, (size_t)o->tile_words * sizeof *o->by_sheet);
 }
 
-/* Sets the sizes of an occupancy, and counts its memory. */
-static hl_layout plan(const occupancy_source *source, occupancy *o) {
-  hl_layout counted = {0};
-  set_size(source, o);
-  place_rectangles(source, o);
-  lay_out(o, source->grid_count, &counted);
-  return counted;
-}
-
-uint64_t hl_occupancy_bytes(const occupancy_source *source, size_t *patch_count) {
-  occupancy o = {0};
-  hl_layout counted = plan(source, &o);
-  *patch_count = o.patch_count;
-  return counted.bytes;
+void hl_occupancy_count(const occupancy_source *source, occupancy *occupancy, hl_layout *layout) {
+  set_size(source, occupancy);
+  place_rectangles(source, occupancy);
+  lay_out(occupancy, source->grid_count, layout);
 }
 
 hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, brick_ranges_function *ranges,
                              const occupancy_source *source, occupancy *occupancy, hl_error *error) {
-  hl_layout counted = plan(source, occupancy), handed = {.base = hl_allocate(context, counted.bytes, 1)};
-  if (handed.base == NULL) return hl_fail_memory(error, counted.bytes, "the occupancy of tiles");
-  lay_out(occupancy, source->grid_count, &handed);
+  hl_layout layout = {0};
+  set_size(source, occupancy);
+  place_rectangles(source, occupancy);
+  while (hl_layout_pass(&layout, context)) lay_out(occupancy, source->grid_count, &layout);
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the occupancy of tiles");
   size_t words = (size_t)occupancy->words;
   memset(occupancy->by_patch, 0, occupancy->patch_count * words * sizeof *occupancy->by_patch);
   memset(occupancy->by_sheet, 0, words * 64 * (size_t)occupancy->tile_words * sizeof *occupancy->by_sheet);

@@ -5,6 +5,7 @@
 #ifndef HL_VIEW_OCCUPANCY_H
 #define HL_VIEW_OCCUPANCY_H
 
+#include "core/memory.h"
 #include "grid/grid.h"
 #include "view/view.h"
 
@@ -86,8 +87,9 @@ hl_status hl_occupancy_build(hl_context *context, hl_pool *pool, brick_ranges_fu
                              const occupancy_source *source, occupancy *occupancy, hl_error *error);
 void hl_occupancy_release(hl_context *context, occupancy *occupancy);
 
-/* The bytes that hl_occupancy_build() would allocate; sets the number of patches. */
-uint64_t hl_occupancy_bytes(const occupancy_source *source, size_t *patch_count);
+/* Counts what hl_occupancy_build() takes; sets the number of patches of an occupancy of zeros, and no
+ * pointers. */
+void hl_occupancy_count(const occupancy_source *source, occupancy *occupancy, hl_layout *layout);
 
 /* The first slab, from the given one on, in which a patch is touched by the slab's sheet or by the sheet
  * before. INT32_MAX if there is none. */

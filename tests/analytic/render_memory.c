@@ -165,9 +165,10 @@ static void frames_are_refused_beforehand(void **state) {
 static uint64_t prepare_bytes(stage *set, hl_pool *pool, prepared_volume *prepared) {
   const hot_functions *hot = hl_hot_functions(HL_INSTRUCTION_SET_SCALAR);
   hl_prepared_release_stale(set->context, &set->scene, prepared);
-  uint64_t bytes = hl_prepare_bytes(&set->scene, prepared, &hot->grid, 1);
+  hl_layout counted = {0};
+  hl_prepare_count(&set->scene, prepared, &hot->grid, 1, &counted);
   assert_int_equal(hl_prepare_volumes(set->context, pool, hot, &set->scene, prepared, NULL), HL_OK);
-  return bytes;
+  return counted.most;
 }
 
 /* A volume is made ready anew where its kernel or its clip box alone changes: that memory is foretold, too.

@@ -1,5 +1,5 @@
 /* unit/core_reserve.c - blocks lent again and again: which are kept, for whom, and that all are given
- * back. */
+ * back; and blocks of many arrays, which one function counts and hands out. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -85,9 +85,74 @@ static void test_keeps_nothing(void **state) {
   release(&reserve);
 }
 
+/* ---- layouts ---- */
+
+typedef struct arrays {
+  char *first;
+  double *second;
+} arrays;
+
+static void lay_out(arrays *arrays, hl_layout *layout) {
+  arrays->first = hl_layout_take(layout, 65, 1);
+  arrays->second = hl_layout_take(layout, 3, sizeof *arrays->second);
+}
+
+/* The block is as large as the arrays are, each a multiple of 64 bytes; they lie in it, apart. */
+static void test_lays_out(void **state) {
+  (void)state;
+  hl_reserve reserve = open_reserve(false);
+  hl_layout counted = {0}, layout = {0};
+  arrays arrays;
+  lay_out(&arrays, &counted);
+  assert_null(arrays.first);
+  assert_int_equal(counted.bytes, 128 + 64);
+  int passes = 0;
+  for (; hl_layout_pass(&layout, reserve.context); passes++) lay_out(&arrays, &layout);
+  assert_int_equal(passes, 2);
+  assert_int_equal(held(&reserve), counted.bytes);
+  assert_int_equal(layout.bytes, counted.bytes);
+  assert_ptr_equal(arrays.first, layout.base);
+  assert_ptr_equal(arrays.second, layout.base + 128);
+  hl_release(reserve.context, layout.base);
+  release(&reserve);
+}
+
+/* What is given back counts only where nothing that is taken later is larger. */
+static void test_gives_back(void **state) {
+  (void)state;
+  hl_layout layout = {0};
+  hl_layout_take(&layout, 64, 1);
+  const size_t kept = layout.bytes;
+  hl_layout_take(&layout, 640, 1);
+  hl_layout_give_back(&layout, kept);
+  hl_layout_take(&layout, 64, 3);
+  assert_int_equal(layout.bytes, 256);
+  assert_int_equal(layout.most, 704);
+}
+
+static void test_refuses_overflow(void **state) {
+  (void)state;
+  hl_reserve reserve = open_reserve(false);
+  hl_layout layout = {0};
+  int passes = 0;
+  for (; hl_layout_pass(&layout, reserve.context); passes++) {
+    hl_layout_take(&layout, SIZE_MAX / 2, 3);
+    hl_layout_give_back(&layout, 0);
+    hl_layout_take(&layout, 1, 1);
+  }
+  assert_int_equal(passes, 1);
+  assert_null(layout.base);
+  assert_int_equal(layout.most, SIZE_MAX);
+  release(&reserve);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_lends_again), cmocka_unit_test(test_sizes),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_lends_again),
+                                     cmocka_unit_test(test_sizes),
                                      cmocka_unit_test(test_more_than_it_has_places),
-                                     cmocka_unit_test(test_keeps_nothing)};
+                                     cmocka_unit_test(test_keeps_nothing),
+                                     cmocka_unit_test(test_lays_out),
+                                     cmocka_unit_test(test_gives_back),
+                                     cmocka_unit_test(test_refuses_overflow)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
