@@ -52,6 +52,7 @@
 #include "mesh.h"
 #include "ranks.h"
 #include "render.h"
+#include "reslice.h"
 #include "scene.h"
 #include "settings.h"
 #include "shape.h"

@@ -71,7 +71,7 @@ VALUES = {
     "const hl_option *": "&option", "unsigned": "0",
     "const hl_volume_info *": "&info",
     "const hl_image_write_options *": "&write_options", "const hl_reference_options *": "&reference_options",
-    "const hl_shapes_options *": "&shapes_options",
+    "const hl_shapes_options *": "&shapes_options", "const hl_reslice_options *": "&reslice_options",
     "hl_mesh *": "mesh", "const hl_mesh *": "mesh", "hl_mesh **": "&any",
     "const hl_mesh_description *": "&mesh_description",
     "hl_label **": "&any", "hl_label *": "NULL",
@@ -100,6 +100,7 @@ static hl_reference_options reference_options;
 static hl_shapes_options shapes_options;
 static hl_option option = {"zoom", "2"};
 static hl_volume_info info;
+static hl_reslice_options reslice_options;
 static hl_transfer_function function;
 static hl_view view = {{0, 0, 1}, {0, -1, 0}, 30, 20, 0};
 static void *any;
@@ -118,6 +119,7 @@ static int make(void) {
   hl_image_write_options_defaults(&write_options);
   hl_reference_options_defaults(&reference_options);
   hl_shapes_options_defaults(&shapes_options);
+  hl_reslice_options_defaults(&reslice_options);
   if (hl_context_create(NULL, &context, &error) != HL_OK) return 0;
   static const uint32_t triangle[1][3] = {{0, 1, 2}};
   static const float corners[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

@@ -1,0 +1,48 @@
+/* halflight/reslice.h - planes of voxels out of a volume, at any angle and of any thickness.
+ *
+ * A plane is a grid of samples, placed in the volume's own indices: voxel (i, j, k) has its centre at the
+ * numbers i, j, k, and hl_volume_info tells where these lie in the world.
+ */
+#ifndef HALFLIGHT_RESLICE_H
+#define HALFLIGHT_RESLICE_H
+
+#include "volume.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What becomes of the samples of a thick plane that lie behind each other. */
+typedef enum hl_blend {
+  HL_BLEND_MAXIMUM = 1, /* maximum intensity projection */
+  HL_BLEND_MINIMUM = 2,
+  HL_BLEND_MEAN = 3
+} hl_blend;
+
+typedef struct hl_reslice_options {
+  size_t struct_size;          /* set by hl_reslice_options_defaults() */
+  size_t width, height, depth; /* samples along a row, rows, layers of a thick plane; each at least 1; default
+                                  1 */
+  double origin[3]; /* i, j, k of the first sample of the first row of the first layer; default 0 */
+  double across[3], down[3], through[3]; /* from one sample to the next, from one row to the next and from one
+                                            layer to the next, in voxels along i, j, k; default: the unit
+                                            steps along i, j, k */
+  hl_blend blend;                        /* default HL_BLEND_MAXIMUM */
+  int interpolate; /* non-zero: values between voxels are interpolated linearly; default 0: the nearest
+                      voxel's value */
+} hl_reslice_options;
+
+HL_API void hl_reslice_options_defaults(hl_reslice_options *options);
+
+/* The data values of a plane. values: the caller's, [height][width]; NaN where no finite voxel is met: a
+ * sample beyond half a voxel around the grid meets none, and an interpolated sample none where one of its
+ * voxels is not finite. At the voxels' centres, in a plane of one layer, the values are those of
+ * hl_volume_value(), with and without interpolation. Numbers that are not finite, or beyond 1e9 voxels, are
+ * HL_ERROR_ARGUMENT. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_reslice(const hl_volume *volume, const hl_reslice_options *options,
+                                                  double *values, hl_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
