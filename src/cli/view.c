@@ -15,6 +15,7 @@
 
 #include "server/module.h"
 #include "view_browser.h"
+#include "view_token.h"
 #endif
 
 enum { VIEW_PORT, VIEW_NO_BROWSER, VIEW_OPTION_COUNT };
@@ -217,7 +218,7 @@ static int run_view(const cli_value *values, char **inputs) {
   if (module == NULL) return EXIT_CODE_UNSUPPORTED;
   view_job job = {.values = values, .render = values + VIEW_OPTION_COUNT};
   const cli_value *render = job.render;
-  char title[300], problem[300], folder[PATH_MAX];
+  char title[300], problem[300], folder[PATH_MAX], token[VIEW_TOKEN_DIGITS + 1];
   cli_host_options options = {.quiet = render[RENDER_QUIET].given,
                               .progress = true,
                               .subject = base_name(inputs[0]),
@@ -234,13 +235,15 @@ static int run_view(const cli_value *values, char **inputs) {
     host_clear_bar(&job.host);
     job.host.bar = false; /* frames are rendered by several threads, which share no bar */
     make_title(inputs, title, sizeof title);
+    int port = values[VIEW_PORT].given ? (int)values[VIEW_PORT].number[0] : 0;
     server_options server = {.context = job.host.context,
                              .scene = job.scene,
                              .title = title,
                              .folder = getcwd(folder, sizeof folder),
                              .open = open_file,
                              .most_upload_bytes = job.host.memory_limit,
-                             .port = values[VIEW_PORT].given ? (int)values[VIEW_PORT].number[0] : 0,
+                             .port = port,
+                             .token = port > 0 && view_token_of_port(port, token) ? token : NULL,
                              .stopped = host_interrupted,
                              .user_data = &job,
                              .ready = on_ready,

@@ -34,8 +34,9 @@ bool server_is_outdated(void) {
 }
 
 void server_progress(double fraction) {
-  if (current.server != NULL && current.opening && fraction >= 0 && fraction <= 1)
-    atomic_store(&current.server->opening_part, (int)(1000 * fraction));
+  if (current.server == NULL || !(fraction >= 0 && fraction <= 1)) return;
+  if (current.opening) atomic_store(&current.server->opening_part, (int)(1000 * fraction));
+  else if (current.page != NULL) atomic_store(&current.page->frame_part, (int)(1000 * fraction));
 }
 
 bool pages_begin(server *s) {
@@ -138,6 +139,19 @@ int pages_count(server *s, int *rendering) {
   return count;
 }
 
+int page_progress(server *s, const char *name, int *others) {
+  int part = 0;
+  *others = 0;
+  pthread_mutex_lock(&s->pages_lock);
+  for (int p = 0; p < MOST_PAGES; p++) {
+    if (s->pages[p].users == 0) continue;
+    if (strcmp(s->pages[p].name, name) == 0) part = atomic_load(&s->pages[p].frame_part);
+    else *others += 1;
+  }
+  pthread_mutex_unlock(&s->pages_lock);
+  return part;
+}
+
 /* Makes room in memory: of all pages that no request holds the renderers end. They are made anew with the
  * next frame. */
 static void spare_memory(server *s) {
@@ -149,26 +163,34 @@ static void spare_memory(server *s) {
 
 /* ---- answers ---- */
 
-static void refuse(server_answer *answer, unsigned status, const char *type, const hl_error *error) {
+const char closed_line[] = "this volume is open no longer, as too many others are: open it again";
+
+void refuse_line(server_answer *answer, unsigned status, const char *line) {
   answer->status = status;
-  answer->type = type;
-  snprintf(answer->problem, sizeof answer->problem, "%s", error->message);
+  answer->type = "text/plain; charset=utf-8";
+  snprintf(answer->problem, sizeof answer->problem, "%s", line);
+}
+
+/* Status 410 where what a page has opened is open no longer: the page opens it again. */
+static bool refuse_closed(server *s, long long number, server_answer *answer) {
+  server_opened *opened = opened_enter(s, number);
+  if (opened != NULL) opened_leave(s, opened);
+  else refuse_line(answer, 410, closed_line);
+  return opened == NULL;
 }
 
 /* Status 204: nobody waits for this frame any more. */
 static void fail_frame(server_answer *answer, hl_status status, const hl_error *error) {
   if (status == HL_ERROR_CANCELLED) answer->status = 204;
-  else if (status == HL_ERROR_MEMORY || status == HL_ERROR_INTERNAL)
-    refuse(answer, 500, "text/plain; charset=utf-8", error);
-  else refuse(answer, 400, "text/plain; charset=utf-8", error);
+  else if (status == HL_ERROR_MEMORY || status == HL_ERROR_INTERNAL) refuse_line(answer, 500, error->message);
+  else refuse_line(answer, 400, error->message);
 }
 
 static hl_status read_scene(server *s, long long number, const char *text, size_t length, hl_scene **scene,
                             hl_error *error) {
   server_opened *opened = opened_enter(s, number);
   if (opened == NULL) {
-    snprintf(error->message, sizeof error->message,
-             "this volume is open no longer, as too many others are: open it again");
+    snprintf(error->message, sizeof error->message, "%s", closed_line);
     return HL_ERROR_INPUT;
   }
   hl_status status = hl_scene_from_json_like(s->sealed, text, length, NULL, "scene", opened->scene, scene,
@@ -189,6 +211,7 @@ void answer_scene(server *s, const frame_request *request, const film_request *f
   hl_scene *scene = NULL;
   hl_error error = {0};
   current.page = NULL;
+  if (refuse_closed(s, request->opened, answer)) return;
   hl_status status = read_scene(s, request->opened, request->text, request->length, &scene, &error);
   if (status == HL_OK && film != NULL) status = turn_to_frame(s, &scene, film, frame, &error);
   if (status == HL_OK) status = hl_scene_to_json(s->options.context, scene, &answer->text, &error);
@@ -245,6 +268,8 @@ static hl_status render(server *s, server_page *page, const hl_scene *scene, con
   double began = server_seconds();
   hl_status status = page->renderer == NULL ? hl_renderer_create(s->options.context, &page->renderer, error)
                                             : HL_OK;
+  if (status == HL_OK && strcmp(request->format, "depth") == 0)
+    return render_depth(page, scene, answer, error);
   if (status == HL_OK) status = hl_image_create(s->options.context, d->width, d->height, &image, error);
   if (status == HL_OK)
     status = hl_renderer_render(page->renderer, scene, hl_image_pixels(image), 4 * (size_t)d->width, NULL,
@@ -279,16 +304,17 @@ static hl_status make_frame(server *s, server_page *page, const frame_request *r
 }
 
 void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer) {
+  if (refuse_closed(s, request->opened, answer)) return;
   server_page *page = enter_page(s, request->page, request->number);
   if (page == NULL) {
-    refuse(answer, 503, "text/plain; charset=utf-8",
-           &(hl_error){.message = "too many pages render at once: close one"});
+    refuse_line(answer, 503, "too many pages render at once: close one");
     return;
   }
   hl_error error = {0};
   pthread_mutex_lock(&page->rendering);
   current.page = page;
   current.number = request->number;
+  atomic_store(&page->frame_part, 0);
   hl_status status = make_frame(s, page, request, film, answer, &error);
   if (status == HL_ERROR_MEMORY) { /* once more, with what idle pages held, and what this one held before */
     spare_memory(s);

@@ -20,9 +20,13 @@ enum {
   PATH_BYTES = 4096, /* of a path: Linux's PATH_MAX, which realpath() fills */
   MOST_FILM_KEYS = 32,
   MOST_FILM_FRAMES = 100000,
-  IDLE_PAGE_SECONDS = 300,   /* after which a page that asks for nothing loses its renderer */
-  MOST_BODY_BYTES = 4 << 20, /* of a scene's text */
-  MOST_PIXELS = 64 << 20,    /* of a picture */
+  IDLE_PAGE_SECONDS = 300,          /* after which a page that asks for nothing loses its renderer */
+  MOST_BODY_BYTES = 4 << 20,        /* of a scene's text */
+  MOST_PIXELS = 64 << 20,           /* of a picture */
+  MOST_SLICE_SIDE = 8192,           /* samples of a plane along a row, rows, and layers */
+  MOST_SLICE_SAMPLES = 16 << 20,    /* of all its rows */
+  MOST_LAYERED_SAMPLES = 512 << 20, /* of all its layers */
+  MOST_DEPTH_SIDE = 64,             /* pixels of a picture whose depth is asked for */
   LEAST_QUALITY = 10,
   MOST_QUALITY = 100 /* of a JPEG */
 };
@@ -46,6 +50,7 @@ typedef struct server_page {
   pthread_mutex_t rendering;         /* held while a frame of the page is rendered */
   hl_renderer *renderer;             /* owned; under `rendering` */
   atomic_ullong newest;              /* the highest number of a requested frame */
+  atomic_int frame_part;             /* thousandths of the frame that is being rendered */
   atomic_int film_done, film_frames; /* of the film that the page renders; 0 frames: none */
   int users;                         /* requests that hold the page; under server.pages_lock */
   bool leaving;                      /* it is free when the last of them ends; under server.pages_lock */
@@ -99,7 +104,7 @@ typedef struct frame_request {
   const char *page;
   unsigned long long number;
   long long opened;   /* the open scene whose volumes it has */
-  const char *format; /* "jpeg", "png", "exr" or "npy" */
+  const char *format; /* "jpeg", "png", "exr" or "npy"; "depth": no picture, but how deep its middle lies */
   int quality;        /* of a JPEG */
   int depth;          /* of a PNG: 8 or 16 */
   int metadata;       /* 1: a PNG carries its scene; 0: it does not */
@@ -115,6 +120,13 @@ typedef struct film_request {
   int turntable, frames;
   double frames_per_second;
 } film_request;
+
+/* A plane of voxels that a page asks for. */
+typedef struct slice_request {
+  long long opened, volume; /* the open scene, and which of its volumes */
+  bool of_mask;             /* the label map that masks the volume in place of it */
+  hl_reslice_options plane;
+} slice_request;
 
 /* A file that arrives from a page, in a temporary folder of its own. */
 typedef struct server_upload {
@@ -134,6 +146,9 @@ void page_is_gone(server *s, const char *name);
 void pages_expire(server *s); /* renderers of pages that asked for nothing for long; call it now and then */
 /* Those that may hold a renderer; *rendering: the frames that are rendered, or wait for it. */
 int pages_count(server *s, int *rendering);
+/* How far the page's frame is, in thousandths of its step; *others: pages, and lanes of this one, with frames
+ * of theirs. */
+int page_progress(server *s, const char *name, int *others);
 /* film: null for a picture. */
 void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer);
 /* The scene with its defaults; with a film, as it is at that frame of the film. film: null for none. */
@@ -145,6 +160,17 @@ void cancel_frames(server *s, const char *page, unsigned long long number);
 bool film_progress(server *s, const char *page, int *done, int *frames);
 /* Opens a file, and answers with its start.json. */
 void answer_open(server *s, const server_file *file, const char *title, server_answer *answer);
+
+/* An answer that is an error line. */
+extern const char closed_line[]; /* of what is open no longer: status 410 */
+void refuse_line(server_answer *answer, unsigned status, const char *line);
+
+/* places.c */
+void answer_slice(server *s, const slice_request *request, server_answer *answer);
+bool read_triple(const char *text, double numbers[3]);
+/* Answers how deep lies what the picture's middle pixel shows (hl_layers.depth_first), its opacity, and which
+ * object it is: {"depth": a number or null, "opacity", "object"}. */
+hl_status render_depth(server_page *page, const hl_scene *scene, server_answer *answer, hl_error *error);
 
 /* films.c */
 hl_status render_film(server *s, server_page *page, const hl_scene *scene, const film_request *request,

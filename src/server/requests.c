@@ -195,6 +195,14 @@ static void answer_film_progress(server *s, struct MHD_Connection *connection, s
   answer_json(answer, text);
 }
 
+static void answer_progress(server *s, struct MHD_Connection *connection, server_answer *answer) {
+  const char *page = query(connection, "page");
+  char *text = NULL;
+  int others, part = page_progress(s, page != NULL ? page : "", &others);
+  if (asprintf(&text, "{\"part\":%.3f,\"others\":%d}", part / 1000.0, others) < 0) text = NULL;
+  answer_json(answer, text);
+}
+
 static void answer_start(server *s, server_answer *answer) {
   server_opened *first = opened_enter(s, 0);
   if (first == NULL) {
@@ -246,6 +254,7 @@ static void answer_get(server *s, struct MHD_Connection *connection, const char 
   if (strcmp(path, "start.json") == 0) answer_start(s, answer);
   else if (strcmp(path, "folder.json") == 0) answer_folder(s, connection, answer);
   else if (strcmp(path, "film.json") == 0) answer_film_progress(s, connection, answer);
+  else if (strcmp(path, "progress.json") == 0) answer_progress(s, connection, answer);
   else if (strcmp(path, "opening.json") == 0) answer_opening(s, answer);
   else if (strcmp(path, "state.json") == 0) answer_state(s, answer);
   else answer_asset(s, path, answer);
@@ -304,6 +313,68 @@ static void post_frame(server *s, struct MHD_Connection *connection, const reque
     answer_problem(answer, 400,
                    "a frame needs ?page=NAME&number=N&format=jpeg|png|exr|npy (&quality=10..100, "
                    "&depth=8|16, &metadata=0|1)\n");
+}
+
+/* How deep lies what the middle of a small picture of the scene shows. */
+static void post_depth(server *s, struct MHD_Connection *connection, const request *r,
+                       server_answer *answer) {
+  frame_request wanted = read_query(connection, r);
+  wanted.format = "depth";
+  if (names_page(&wanted) && wanted.opened >= 0) answer_frame(s, &wanted, NULL, answer);
+  else answer_problem(answer, 400, "a depth needs ?page=NAME&number=N (&opened=N)\n");
+}
+
+/* The place of the query's text in a list that ends with null; `standard` if it is absent, -1 if it is none.
+ */
+static int query_choice(struct MHD_Connection *connection, const char *name, const char *const *choices,
+                        int standard) {
+  const char *text = query(connection, name);
+  if (text == NULL) return standard;
+  for (int c = 0; choices[c] != NULL; c++)
+    if (strcmp(text, choices[c]) == 0) return c;
+  return -1;
+}
+
+/* False: the query is no plane, or too large a one. */
+static bool read_slice(struct MHD_Connection *connection, slice_request *wanted) {
+  static const char *const blends[] = {"maximum", "minimum", "mean", NULL};
+  static const char *const sources[] = {"voxels", "mask", NULL}, *const ways[] = {"nearest", "linear", NULL};
+  hl_reslice_options *plane = &wanted->plane;
+  hl_reslice_options_defaults(plane);
+  wanted->opened = query_number(connection, "opened", 0, MOST_NUMBER, 0);
+  wanted->volume = query_number(connection, "volume", 0, MOST_NUMBER, 0);
+  long long sides[] = {query_number(connection, "width", 1, MOST_SLICE_SIDE, -1),
+                       query_number(connection, "height", 1, MOST_SLICE_SIDE, -1),
+                       query_number(connection, "depth", 1, MOST_SLICE_SIDE, 1)};
+  int blend = query_choice(connection, "blend", blends, 0),
+      source = query_choice(connection, "of", sources, 0);
+  int way = query_choice(connection, "between", ways, 0);
+  bool good = wanted->opened >= 0 && wanted->volume >= 0 && sides[0] > 0 && sides[1] > 0 && sides[2] > 0 &&
+              blend >= 0 && source >= 0 && way >= 0 && sides[0] * sides[1] <= MOST_SLICE_SAMPLES &&
+              sides[0] * sides[1] * sides[2] <= MOST_LAYERED_SAMPLES &&
+              read_triple(query(connection, "origin"), plane->origin) &&
+              read_triple(query(connection, "across"), plane->across) &&
+              read_triple(query(connection, "down"), plane->down) &&
+              read_triple(query(connection, "through"), plane->through);
+  if (!good) return false;
+  plane->width = (size_t)sides[0];
+  plane->height = (size_t)sides[1];
+  plane->depth = (size_t)sides[2];
+  plane->blend = (hl_blend)(HL_BLEND_MAXIMUM + blend);
+  plane->interpolate = way;
+  wanted->of_mask = source == 1;
+  return true;
+}
+
+static void post_slice(server *s, struct MHD_Connection *connection, server_answer *answer) {
+  slice_request wanted = {0};
+  if (read_slice(connection, &wanted)) answer_slice(s, &wanted, answer);
+  else
+    answer_problem(
+        answer, 400,
+        "a slice needs ?width=N&height=N (&depth=N&volume=N&of=voxels|mask&origin=I,J,K&across=I,J,K"
+        "&down=I,J,K&through=I,J,K&blend=maximum|minimum|mean&between=nearest|linear), of 8192 samples "
+        "along a side and 16 million in all\n");
 }
 
 /* Whether the query has more keys than a film may have. */
@@ -403,15 +474,18 @@ static void post_upload(server *s, struct MHD_Connection *connection, request *r
 }
 
 static void answer_post(server *s, struct MHD_Connection *connection, request *r, server_answer *answer) {
-  bool frame = strcmp(r->path, "frame") == 0, film = strcmp(r->path, "film") == 0;
+  bool frame = strcmp(r->path, "frame") == 0, film = strcmp(r->path, "film") == 0,
+       depth = strcmp(r->path, "depth") == 0;
   if (r->uploads) post_upload(s, connection, r, answer);
   else if (strcmp(r->path, "open") == 0) post_open(s, connection, answer);
   else if (strcmp(r->path, "leave") == 0) post_leave(s, connection, answer);
   else if (strcmp(r->path, "cancel") == 0) post_cancel(s, connection, r, answer);
-  else if (!frame && !film && strcmp(r->path, "scene") != 0)
+  else if (strcmp(r->path, "slice") == 0) post_slice(s, connection, answer);
+  else if (!frame && !film && !depth && strcmp(r->path, "scene") != 0)
     answer_problem(answer, 404, "there is nothing here\n");
   else if (r->body == NULL) answer_problem(answer, 400, "the scene is missing\n");
   else if (frame) post_frame(s, connection, r, answer);
+  else if (depth) post_depth(s, connection, r, answer);
   else if (film) post_film(s, connection, r, answer);
   else post_scene(s, connection, r, answer);
 }

@@ -99,9 +99,13 @@ bool server_run(const server_options *options, char *problem, size_t problem_siz
     server_opened *first = opened_add(s, options->scene, options->title);
     good = first != NULL;
     if (good) opened_leave(s, first);
+    s->next_opened = (long long)time(
+        NULL); /* a page that has outlived another viewer asks for none of these */
   }
   if (!good) snprintf(problem, problem_size, "out of memory for the viewer");
-  if (good && !make_token(s->token)) {
+  if (good && options->token != NULL && strlen(options->token) == TOKEN_DIGITS)
+    memcpy(s->token, options->token, TOKEN_DIGITS + 1);
+  else if (good && !make_token(s->token)) {
     snprintf(problem, problem_size, "the system gives no random numbers");
     good = false;
   }

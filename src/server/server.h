@@ -6,7 +6,11 @@
  * - GET TOKEN/start.json: what is open: the scene, its volumes' ranges and histograms, presets, colormaps
  * - POST TOKEN/frame?page=NAME&number=N&format=FORMAT: a scene file's text in, its picture out
  * - POST TOKEN/scene: a scene file's text in, the same scene with all its defaults written out
+ * - POST TOKEN/depth?page=NAME&number=N: a scene file's text in; how deep lies what the middle of its
+ * picture, of 64 x 64 pixels at most, shows, as JSON
+ * - POST TOKEN/slice?opened=N&volume=N&width=N&height=N&origin=I,J,K...: the values of a plane of voxels
  * - POST TOKEN/film: a scene file's text in, a film out (as a frame, &turntable=N&key0=PATH=...)
+ * - GET TOKEN/progress.json?page=NAME: how far the page's frame is, and how many other frames are under way
  * - GET TOKEN/film.json?page=NAME: how far the page's film is
  * - POST TOKEN/cancel?page=NAME&number=N: makes frames and films of a page outdated
  * - POST TOKEN/leave?page=NAME&opened=N: a page was closed: its frames, its renderers and the file that it
@@ -44,6 +48,7 @@ typedef struct server_options {
   hl_status (*open)(void *user_data, const server_file *file, hl_scene **scene, hl_error *error);
   uint64_t most_upload_bytes; /* of a file that is dropped; 0: no limit */
   int port;                   /* 0: a free one */
+  const char *token;          /* of the URL: 32 hexadecimal digits; null: a random one */
   bool (*stopped)(void);      /* asked some times a second; true ends server_run() */
   void *user_data;
   void (*ready)(void *user_data, const char *url); /* called once, as soon as the server answers requests */

@@ -25,24 +25,45 @@ static void put_numbers(FILE *out, const double *numbers, size_t count) {
   fputc(']', out);
 }
 
-/* axes: the world steps of one voxel, so that the page can find the box of the voxels. */
+/* The grid of voxels: `axes` are the world steps of one voxel, so that the page can find the box of the
+ * voxels. */
+static void put_grid(FILE *out, const hl_volume_info *info) {
+  fprintf(out, "\"dimensions\":[%zu,%zu,%zu],\"origin\":", info->dimensions[0], info->dimensions[1],
+          info->dimensions[2]);
+  put_numbers(out, info->origin, 3);
+  fputs(",\"axes\":[", out);
+  for (int axis = 0; axis < 3; axis++) {
+    double step[3];
+    for (int row = 0; row < 3; row++) step[row] = info->direction[row][axis] * info->spacing[axis];
+    if (axis > 0) fputc(',', out);
+    put_numbers(out, step, 3);
+  }
+  fputc(']', out);
+}
+
+/* The grid of the label map that masks a volume; null: there is none. */
+static void put_mask(FILE *out, const hl_volume *mask) {
+  hl_volume_info info = {.struct_size = sizeof info};
+  if (mask == NULL || hl_volume_get_info(mask, &info) != HL_OK) {
+    fputs("null", out);
+    return;
+  }
+  fputc('{', out);
+  put_grid(out, &info);
+  fputc('}', out);
+}
+
 static void put_volume(FILE *out, const hl_scene_volume *volume) {
   hl_volume_info info = {.struct_size = sizeof info};
   if (hl_volume_get_info(volume->volume, &info) != HL_OK) {
     fputs("null", out);
     return;
   }
-  fprintf(out, "{\"type\":\"%s\",\"dimensions\":[%zu,%zu,%zu],\"origin\":", hl_voxel_type_name(info.type),
-          info.dimensions[0], info.dimensions[1], info.dimensions[2]);
-  put_numbers(out, info.origin, 3);
-  fputs(",\"axes\":[", out);
-  for (int axis = 0; axis < 3; axis++) {
-    double step[3];
-    for (int row = 0; row < 3; row++) step[row] = info.direction[row][axis] * info.spacing[axis];
-    if (axis > 0) fputc(',', out);
-    put_numbers(out, step, 3);
-  }
-  fputs("],\"range\":", out);
+  fprintf(out, "{\"type\":\"%s\",", hl_voxel_type_name(info.type));
+  put_grid(out, &info);
+  fputs(",\"mask\":", out);
+  put_mask(out, volume->mask.volume);
+  fputs(",\"range\":", out);
   put_numbers(out, info.range, 2);
   const char *space = hl_space_name(info.space);
   fputs(",\"space\":", out);

@@ -83,7 +83,7 @@ def uploads_are_checked(viewer):
     asked = {"page": "up", "number": 1, "format": "png"}
     check(request(viewer, "POST", "frame", text, opened=start["opened"], **asked)[0] == 200, "and can be rendered")
     check(request(viewer, "POST", "frame", text, **{**asked, "number": 2})[0] == 400, "under its own number alone")
-    check(request(viewer, "POST", "frame", text, opened=999, **{**asked, "number": 3})[0] == 400, "a number that was never given")
+    check(request(viewer, "POST", "frame", text, opened=999, **{**asked, "number": 3})[0] == 410, "a number that was never given")
     for name in ("", "a.txt", "../a.nrrd", "a/b.nrrd", ".nrrd", ".hidden.nrrd", "x" * 300 + ".nrrd"):
         check(request(viewer, "POST", "upload", volume, name=name)[0] == 400, f"the name {name[:20]!r} is refused")
     check(request(viewer, "POST", "upload", b"nonsense", name="a.nrrd")[0] == 400, "a file that is none")

@@ -1,6 +1,6 @@
 // Boxes of volumes: of their voxels' cells in their file's world, clipped or not, and their corners in the scene's.
 
-import { add, rotate, normalize, scale } from "./vector.js";
+import { add, rotate, normalize, scale, subtract } from "./vector.js";
 
 // { min, max } of a volume of start.json, half a voxel around its voxels' centres.
 export function worldBox({ origin, axes, dimensions }) {
@@ -19,6 +19,13 @@ export function placed(point, transform = {}) {
   const factor = transform.scale ?? 1, { axis = [0, 0, 1], angle_deg: angle = 0 } = transform.rotate ?? {};
   const scaled = point.map((x, k) => x * (Array.isArray(factor) ? factor[k] : factor));
   return add(rotate(scaled, normalize(axis), (angle * Math.PI) / 180), transform.translate ?? [0, 0, 0]);
+}
+
+// The other way: a point of the scene in the volume's file.
+export function unplaced(point, transform = {}) {
+  const factor = transform.scale ?? 1, { axis = [0, 0, 1], angle_deg: angle = 0 } = transform.rotate ?? {};
+  const turned = rotate(subtract(point, transform.translate ?? [0, 0, 0]), normalize(axis), (-angle * Math.PI) / 180);
+  return turned.map((x, k) => x / (Array.isArray(factor) ? factor[k] : factor));
 }
 
 // The eight corners; bit k of the number of a corner says whether it has the least or the greatest of axis k.

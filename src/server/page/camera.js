@@ -43,14 +43,15 @@ export function pan(camera, right, up) {
 }
 
 // factor > 1 comes nearer. The point of the target's plane under the cursor stays there: `cursor` is [right, up]
-// from the middle, in fractions of the picture's height.
-export function zoom(camera, factor, cursor = [0, 0]) {
+// from the middle, in fractions of the picture's height. An eye that is as near to the target as `nearest` goes on, and takes the target along.
+export function zoom(camera, factor, cursor = [0, 0], nearest = 0) {
   const step = Math.min(Math.max(factor, 1 / LARGEST_STEP), LARGEST_STEP);
   const part = 1 - 1 / step;
   const moved = pan(camera, -cursor[0] * part, -cursor[1] * part);
   const arm = subtract(moved.position, moved.target);
   if (camera.type === "orthographic") return { ...moved, height: camera.height / step };
-  return { ...moved, position: add(moved.target, scale(arm, 1 / step)) };
+  const ahead = scale(arm, -part), position = add(moved.position, ahead);
+  return { ...moved, position, ...(step > 1 && length(arm) / step < nearest ? { target: add(moved.target, ahead) } : {}) };
 }
 
 // Looks along the world's axis, from its positive or negative end, at the same target from the same distance.
@@ -69,6 +70,13 @@ export function reshaped(camera, from, to) {
   if (factor === 1) return camera;
   if (camera.type === "orthographic") return { ...camera, height: camera.height * factor };
   return { ...camera, position: add(camera.target, scale(subtract(camera.position, camera.target), factor)) };
+}
+
+// A camera at `eye` that looks in a direction, and shows this part of the height.
+export function along(camera, eye, direction, part) {
+  const moved = { ...camera, position: eye, target: add(eye, scale(direction, distance(camera))) };
+  if (camera.type === "orthographic") return { ...moved, height: camera.height * part };
+  return { ...moved, fovy_deg: (360 / Math.PI) * Math.atan(Math.tan((camera.fovy_deg * Math.PI) / 360) * part) };
 }
 
 // The other projection, with the same height at the target.

@@ -42,7 +42,7 @@ export function copier(report, title) {
   };
 }
 
-export function exportPanel({ store, start, channel, report, copy }) {
+export function exportPanel({ store, start, channel, report, failed, copy }) {
   const { element, body } = section("Save", false);
   const name = stem(start.title);
   let format = "png";
@@ -68,7 +68,7 @@ export function exportPanel({ store, start, channel, report, copy }) {
       if (frame !== null) download(frame.blob, `${name}.${type}`);
       report(frame === null ? "cancelled by another save" : `saved ${name}.${type}`);
     } catch (error) {
-      report(error.message);
+      failed(error);
     }
     save.disabled = false;
   }

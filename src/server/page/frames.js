@@ -30,6 +30,7 @@ export class Frames {
   #timer = 0;
   #work = 60000; // pixels, for sheets a voxel apart, that take as long as the budget
   #voxels;
+  #scene = null; // what the newest picture is, or will be, of
   statistics = { previews: 0, cancelled: 0, finals: 0, stage: "start" };
 
   // report({ stage, width, height, spacing, milliseconds, bytes, error }) is told of every frame.
@@ -39,7 +40,7 @@ export class Frames {
     this.#channel = channel;
     this.#canvas = canvas;
     this.#report = report;
-    store.listen(() => this.move());
+    store.listen((scene) => { if (scene !== this.#scene) this.move(); }); // marks and layouts change no picture
   }
 
   // No more frames are asked for.
@@ -53,9 +54,11 @@ export class Frames {
   // Something has changed.
   move() {
     if (this.#ended) return;
+    this.#scene = this.#store.scene;
     this.#changed = true;
     this.#generation++;
     clearTimeout(this.#timer);
+    this.#tell("moving", this.#scene, performance.now(), null); // the picture is no longer of this scene
     if (this.statistics.stage === "refining") this.statistics.cancelled++;
     this.statistics.stage = "moving";
     if (!this.#busy) this.#preview();
@@ -92,12 +95,12 @@ export class Frames {
           this.#tell("moving", scene, began, frame.blob);
         }
       } catch (error) {
-        this.#report({ stage: "failed", error });
+        this.#fail(error);
         await new Promise((resolve) => setTimeout(resolve, 300));
       }
     }
     this.#busy = false;
-    if (this.#ended) return;
+    if (this.#ended || this.statistics.stage === "failed") return;
     clearTimeout(this.#timer);
     this.#timer = setTimeout(() => this.#refine(this.#generation), REST_AFTER);
   }
@@ -141,8 +144,13 @@ export class Frames {
         await this.#step(generation, this.#scaled(pixels, spacing), "settled");
       if (generation === this.#generation) await this.#step(generation, scene, "final");
     } catch (error) {
-      if (generation === this.#generation) this.#report({ stage: "failed", error });
+      if (generation === this.#generation) this.#fail(error);
     }
+  }
+
+  #fail(error) {
+    this.statistics.stage = "failed";
+    this.#report({ stage: "failed", error });
   }
 
   async #step(generation, scene, stage) {

@@ -4,7 +4,7 @@ import { hexOf, linearOf } from "./color.js";
 import { button, color, isActive, make, row, section, select, slider } from "./controls.js";
 import { FunctionCanvas } from "./function_canvas.js";
 import { byGradient, planePanel } from "./plane_panel.js";
-import { isPlane, movePoint, moveStop, rangeOf, recolorStop, stretched, withColormap } from "./transfer_function.js";
+import { colormapOf, isPlane, movePoint, moveStop, rangeOf, recolorStop, stretched, withColormap } from "./transfer_function.js";
 
 // The numbers of the point or colour that is chosen in the drawing.
 function chosenPoint(canvas, get, set, range) {
@@ -63,12 +63,14 @@ function rangeRow(get, set) {
   return { element: row(make("span", { class: "name" }, "Range"), make("span", { class: "pair" }, inputs[0], "to", inputs[1])), update };
 }
 
-export function functionPanel({ store, start, current, channel, report }) {
+export function functionPanel({ store, start, current, channel, failed }) {
   const { element, body } = section("Transfer function");
   const volume = () => store.scene.volumes[current.volume];
   const get = () => volume().transfer_function;
   const set = (tf, name = "") =>
     store.changeVolume(current.volume, `function ${name}`, (changed) => ({ ...changed, transfer_function: tf }));
+  const named = new Map(); // by the text of a function: the preset that it is
+  const before = new Map(); // by volume: the function of the value alone that *by gradient* has replaced
   let parts = [], ofTwo = false;
 
   // A preset's points are the program's own: the scene with the preset is sent, and comes back with them.
@@ -80,9 +82,11 @@ export function functionPanel({ store, start, current, channel, report }) {
     });
     try {
       const complete = await channel.completeScene({ ...store.scene, volumes });
-      set(complete.volumes[current.volume].transfer_function, `preset ${name}`);
+      const made = complete.volumes[current.volume].transfer_function;
+      named.set(JSON.stringify(made), name);
+      set(made, `preset ${name}`);
     } catch (error) {
-      report(error.message);
+      failed(error);
     }
   }
 
@@ -94,12 +98,13 @@ export function functionPanel({ store, start, current, channel, report }) {
     const about = start.volumes[current.volume], range = about.range;
     const presets = select({
       label: "Preset", choices: [["", "choose …"], ["automatic", "automatic"], ...start.presets.map((name) => [name, name])],
-      get: () => "", set: (name) => name && applyPreset(name),
+      get: () => named.get(JSON.stringify(get())) ?? "", set: (name) => name && applyPreset(name),
     });
     if (ofTwo) {
       const plane = planePanel({ store, start, current, get, set });
-      body.replaceChildren(...plane.elements, presets.element);
-      parts = plane.parts;
+      const back = button("by value", () => (before.has(current.volume) ? set(before.get(current.volume), "by value") : applyPreset("automatic")), { title: "The line over the values again" });
+      body.replaceChildren(...plane.elements, presets.element, row("", back));
+      parts = [...plane.parts, presets];
       parts.forEach((part) => part.update());
       return;
     }
@@ -113,15 +118,15 @@ export function functionPanel({ store, start, current, channel, report }) {
     });
     const maps = select({
       label: "Colours", choices: [["", "own"], ...Object.keys(start.colormaps).map((name) => [name, name])],
-      get: () => "", set: (name) => name && set(withColormap(get(), start.colormaps[name], rangeOf(get())), `map ${name}`),
+      get: () => colormapOf(get(), start.colormaps), set: (name) => name && set(withColormap(get(), start.colormaps[name], rangeOf(get())), `map ${name}`),
     });
     const zoomed = row(make("span", { class: "name" }, "Show"), make("span", { class: "buttons" },
       button("all values", () => { canvas.shown = range; }),
       button("range", () => { canvas.shown = rangeOf(get()); }),
-      button("by gradient", () => set(byGradient(get(), volume(), about), "by gradient"),
+      button("by gradient", () => { before.set(current.volume, get()); set(byGradient(get(), volume(), about), "by gradient"); },
         { title: "Boxes in the plane of value and gradient in place of the line" })));
     body.replaceChildren(canvas.element, chosen.element, density.element, maps.element, presets.element, ends.element, zoomed);
-    parts = [{ update: () => canvas.draw() }, chosen, density, ends];
+    parts = [{ update: () => canvas.draw() }, chosen, density, maps, presets, ends];
     parts.forEach((part) => part.update());
   }
   const update = () => {

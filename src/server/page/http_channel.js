@@ -1,10 +1,32 @@
 // A viewer's requests to the server that sent its page. All of them stay below the page's own address, which holds
 // the token. The widget of notebooks has a channel of its own with the same methods (widget.js).
+//
+// What a channel may have besides start(), completeScene() and fetchFrame(), for a viewer with slices and measuring:
+//
+// - slice({ volume, of, width, height, depth, origin, across, down, through, blend, between }): the values of a plane of
+//   voxels. volume: the number of a volume of what is open; of: "voxels", or "mask" for the label map that masks it. A grid of
+//   width x height samples, of `depth` layers; origin: [i, j, k], the first sample of the first row of the first layer, in
+//   voxels; across, down, through: [i, j, k], the steps to the next sample, row and layer. blend: what of the layers is
+//   told: "maximum", "minimum" or "mean"; between: "nearest" or "linear". Resolves to { values, width, height }: values is a
+//   Float32Array or Float64Array, whichever holds the voxels' values exactly, row after row; NaN: no voxel is there.
+// - depth(scene): how deep lies what the middle pixel of the scene's picture (at most 64 x 64 pixels) shows:
+//   { depth, opacity, object }. depth: the length along the ray from the eye, or orthographic from the plane through the
+//   camera's position, to where the opacity first reaches 0.01; null: nowhere. object: as in hl_layers. Null: cancelled.
+// - progress(): how far the frame under way is, { part, others }: part from 0 to 1, others: frames of other pages under way.
 
 export class Refused extends Error {}
 
+// The viewer does not answer, or no longer to this page.
+export class Lost extends Error {}
+
+const GONE = 410; // what the page had opened is open no longer
+
 async function check(response) {
   if (response.ok) return response;
+  if (response.status === 403) {
+    const line = (await response.text()).trim();
+    throw line.includes("token") ? new Lost("The viewer runs anew, under another URL: open the one that it has printed in this tab, which keeps your work.") : new Refused(line);
+  }
   throw new Refused((await response.text()).trim() || `the viewer answered ${response.status}`);
 }
 
@@ -13,48 +35,95 @@ function parseTimes(header) {
   return Object.fromEntries((header ?? "").split(", ").map((part) => part.split(";dur=")).map(([k, v]) => [k, +v]));
 }
 
+const numbered = (keys) => Object.fromEntries(keys.map((key, n) => [`key${n}`, key]));
+
 export class HttpChannel {
   #number = 0;
   #opened;
   #page = crypto.getRandomValues(new Uint32Array(2)).reduce((name, n) => name + n.toString(36), "p");
 
-  // opened: the number of what is open (of start.json), whose volumes the scenes have.
-  constructor(opened = 0) {
+  #source;
+
+  // opened: the number of what is open (of start.json), whose volumes the scenes have; source: the path in the viewer's folder
+  // that it was opened by, if it was.
+  constructor(opened = 0, source = null) {
     this.#opened = opened;
+    this.#source = source;
+  }
+
+  // A request below the page's address. What is open no longer, as the viewer has begun anew or has made room, is opened again.
+  async #ask(path, query = {}, options = { method: "POST" }, again = true) {
+    const words = new URLSearchParams(query);
+    if ("opened" in query) words.set("opened", this.#opened);
+    let response;
+    try {
+      response = await fetch(words.size > 0 ? `${path}?${words}` : path, options);
+    } catch {
+      throw new Lost("The viewer does not answer: it has ended, or the network is lost.");
+    }
+    if (response.status === GONE && again && this.#source !== null) {
+      this.#opened = (await this.open(this.#source)).opened;
+      return this.#ask(path, query, options, false);
+    }
+    return check(response);
+  }
+
+  // Whether the viewer answers again.
+  async answers() {
+    await this.#ask("state.json", {}, {});
   }
 
   // What is open, and what there is to choose from: start.json.
   async start() {
-    return (await check(await fetch("start.json"))).json();
+    return (await this.#ask("start.json", {}, {})).json();
+  }
+
+  // The values of a plane of voxels.
+  async slice({ width, height, origin, across, down, through, depth = 1, volume = 0, of = "voxels", blend = "maximum", between = "nearest" }) {
+    const bytes = await (await this.#ask("slice", { opened: 0, volume, of, width, height, depth, origin, across, down, through, blend, between })).arrayBuffer();
+    return { values: bytes.byteLength === 4 * width * height ? new Float32Array(bytes) : new Float64Array(bytes), width, height };
+  }
+
+  // How deep lies what the middle of the scene's picture shows.
+  async depth(scene) {
+    const query = { page: `${this.#page}-pick`, number: ++this.#number, opened: 0 };
+    const response = await this.#ask("depth", query, { method: "POST", body: JSON.stringify(scene) });
+    return response.status === 204 ? null : response.json();
+  }
+
+  async progress() {
+    return (await this.#ask("progress.json", { page: this.#page }, {})).json();
   }
 
   // The scene with its defaults written out: presets as points, a camera that frames everything.
   async completeScene(scene) {
-    return (await check(await fetch(`scene?opened=${this.#opened}`, { method: "POST", body: JSON.stringify(scene) }))).json();
+    return (await this.#ask("scene", { opened: 0 }, { method: "POST", body: JSON.stringify(scene) })).json();
   }
 
   // A picture of the scene: { blob, times }, or null where a newer frame of this page has cancelled it. `lane` sets
   // frames apart that do not cancel each other.
   async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, lane = "" } = {}) {
-    const query = new URLSearchParams({ page: this.#page + lane, number: ++this.#number, opened: this.#opened, format, quality, depth, metadata: +metadata });
-    const response = await check(await fetch(`frame?${query}`, { method: "POST", body: JSON.stringify(scene) }));
+    const query = { page: this.#page + lane, number: ++this.#number, opened: 0, format, quality, depth, metadata: +metadata };
+    const response = await this.#ask("frame", query, { method: "POST", body: JSON.stringify(scene) });
     if (response.status === 204) return null;
     return { blob: await response.blob(), times: parseTimes(response.headers.get("Server-Timing")) };
   }
 
   // What can be opened in a folder below the one that the viewer was started in: { at, entries }.
   async folder(at) {
-    return (await check(await fetch(`folder.json?${new URLSearchParams({ at })}`))).json();
+    return (await this.#ask("folder.json", { at }, {})).json();
   }
 
   // Opens a file of the folder, or one that the browser has: what is open then, for a channel of its own.
   async open(file) {
-    return (await check(await fetch(`open?${new URLSearchParams({ file })}`, { method: "POST" }))).json();
+    return (await this.#ask("open", { file })).json();
   }
 
   async upload(file) {
-    return (await check(await fetch(`upload?${new URLSearchParams({ name: file.name })}`, { method: "POST", body: file }))).json();
+    return (await this.#ask("upload", { name: file.name }, { method: "POST", body: file })).json();
   }
+
+  get opened() { return this.#opened; }
 
   // The page is closed, or shows another file: the viewer gives back what it held for this one.
   leave() {
@@ -63,30 +132,28 @@ export class HttpChannel {
 
   // How far it is read: { part }, from 0 to 1.
   async opening() {
-    return (await check(await fetch("opening.json"))).json();
+    return (await this.#ask("opening.json", {}, {})).json();
   }
 
   // The scene at a frame of its film: exactly the one that the film shows there.
   async sceneAt(scene, { turntable, keys, frames }, frame) {
-    const query = new URLSearchParams({ opened: this.#opened, turntable, frames, frame });
-    keys.forEach((key, n) => query.append(`key${n}`, key));
-    return (await check(await fetch(`scene?${query}`, { method: "POST", body: JSON.stringify(scene) }))).json();
+    const query = { opened: 0, turntable, frames, frame, ...numbered(keys) };
+    return (await this.#ask("scene", query, { method: "POST", body: JSON.stringify(scene) })).json();
   }
 
   // A film of the scene, as a blob; null: it was stopped.
   async film(scene, { turntable, keys, frames, fps, format }) {
-    const query = new URLSearchParams({ page: `${this.#page}-film`, number: ++this.#number, opened: this.#opened, turntable, frames, fps, format });
-    keys.forEach((key, n) => query.append(`key${n}`, key));
-    const response = await check(await fetch(`film?${query}`, { method: "POST", body: JSON.stringify(scene) }));
+    const query = { page: `${this.#page}-film`, number: ++this.#number, opened: 0, turntable, frames, fps, format, ...numbered(keys) };
+    const response = await this.#ask("film", query, { method: "POST", body: JSON.stringify(scene) });
     return response.status === 204 ? null : response.blob();
   }
 
   // { done, frames }.
   async filmProgress() {
-    return (await check(await fetch(`film.json?page=${this.#page}-film`))).json();
+    return (await this.#ask("film.json", { page: `${this.#page}-film` }, {})).json();
   }
 
   async stopFilm() {
-    await fetch(`cancel?page=${this.#page}-film&number=${++this.#number}`, { method: "POST" });
+    await this.#ask("cancel", { page: `${this.#page}-film`, number: ++this.#number });
   }
 }

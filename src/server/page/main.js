@@ -1,24 +1,70 @@
-// The page: a viewer over the whole window, of what the server has open.
+// The page: a viewer over the whole window, of what the server has open, as this tab has left it.
 
 import { HttpChannel } from "./http_channel.js";
+import { filesOf, keepSession, keptSession, readSession } from "./session.js";
 import { mount } from "./viewer.js";
 
-let channel = null;
+let channel = null, shown = { source: null, keeping: null };
 
-// Shows what is open, in place of what was.
-function show(start) {
+// Shows what is open, in place of what was. source: the path by which it was opened; kept: a session to go on with.
+function show(start, source = null, kept = null) {
   globalThis.halflight?.end();
-  channel?.leave();
-  channel = new HttpChannel(start.opened);
+  shown.keeping?.abort();
+  if (channel?.opened !== start.opened) channel?.leave();
+  channel = new HttpChannel(start.opened, source);
+  shown = { source, keeping: new AbortController() };
   document.title = `${start.title} · Halflight`;
-  globalThis.halflight = mount(document.body, channel, start, { keyboard: document, reopen: show }); // for the console, and for tests
+  const viewer = mount(document.body, channel, start, { keyboard: document, reopen: show, source, kept, restore: openSession, startAfresh: () => show(start, source) });
+  globalThis.halflight = viewer; // for the console, and for tests
+  keepSession(viewer.store, start, source, shown.keeping.signal);
+  return viewer;
+}
+
+// The text of a file that was dropped or chosen: whether it was a session, or a scene of the volumes that are open.
+async function openSession(file) {
+  let object;
+  try {
+    object = JSON.parse(await file.text());
+  } catch {
+    throw new Error(`${file.name} is no JSON`);
+  }
+  const session = readSession(object), scene = session?.scene ?? object, { store, start } = globalThis.halflight;
+  if (session === null && object?.halflight === undefined) throw new Error(`${file.name} is neither a session nor a scene`);
+  if (filesOf(scene) !== filesOf(store.scene)) {
+    if (session === null || session.source === null) return session === null ? "other" : missing(session, start);
+    const opened = await channel.open(session.source);
+    if (filesOf(opened.scene) !== filesOf(scene)) return missing(session, start);
+    show(opened, session.source, session);
+    return "opened";
+  }
+  store.replace({ ...session, scene: await channel.completeScene(scene) });
+  return "opened";
+}
+
+function missing(session, start) {
+  throw new Error(`the session is of ${session.title}, and ${start.title} is open: open that first`);
+}
+
+// The file that the tab had open, with what was done; what the viewer began with where there is none.
+async function begin() {
+  const kept = keptSession(), first = new HttpChannel();
+  if (kept?.source) {
+    try {
+      const start = await first.open(kept.source);
+      if (filesOf(start.scene) === filesOf(kept.scene)) return show(start, kept.source, kept);
+    } catch (error) {
+      return show(await first.start()).report(`${kept.title} cannot be opened again: ${error.message}`);
+    }
+  }
+  const start = await first.start(), goesOn = kept !== null && filesOf(start.scene) === filesOf(kept.scene);
+  return show(start, null, goesOn ? kept : null);
 }
 
 addEventListener("pagehide", () => channel?.leave());
 addEventListener("pageshow", (event) => { if (event.persisted) location.reload(); }); // what it had is given back
 
 try {
-  show(await new HttpChannel().start());
+  await begin();
 } catch (error) {
   document.body.textContent = `The page cannot begin: ${error.message}`;
   throw error;

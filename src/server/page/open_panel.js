@@ -7,7 +7,8 @@ const ASK_EVERY = 250; // milliseconds, for how far a file is read
 
 const size = (bytes) => (bytes < 1 << 20 ? `${Math.ceil(bytes / 1024)} KiB` : `${Math.round(bytes / (1 << 20))} MiB`);
 
-export function openPanel({ channel, report, reopen, root }) {
+export function openPanel(viewer) {
+  const { channel, report, failed, reopen, root } = viewer;
   const { element, body } = section("Open", false);
   element.hidden = !channel.open;
   const list = make("ul", { class: "files", "aria-label": "Files and folders" }), bar = make("progress", { max: 1, hidden: true, "aria-label": "Reading the file" });
@@ -18,7 +19,7 @@ export function openPanel({ channel, report, reopen, root }) {
       const folder = await channel.folder(at), up = at.includes("/") ? at.slice(0, at.lastIndexOf("/")) : "";
       const inside = (name) => (at ? `${at}/${name}` : name);
       where.textContent = at ? `in ${at}` : "in the folder that the viewer was started in; or drop a file anywhere";
-      const opener = (path, name, text, more) => button(text, () => load(() => channel.open(path), name), { class: "file", ...more });
+      const opener = (path, name, text, more) => button(text, () => load(() => channel.open(path), name, path), { class: "file", ...more });
       list.replaceChildren(
         ...(at ? [make("li", {}, button("‹ back", () => show(up)), opener(at, at, "open as one volume", { title: "DICOM, slices or Zarr" }))] : []),
         ...folder.entries.map((entry) => make("li", {}, entry.folder && !entry.name.endsWith(".zarr")
@@ -31,7 +32,8 @@ export function openPanel({ channel, report, reopen, root }) {
   }
 
   // Reads a file while the bar tells how far it is; then the viewer shows it.
-  async function load(open, name) {
+  // path: in the viewer's folder; null: the file was dropped.
+  async function load(open, name, path = null) {
     element.open = true;
     bar.hidden = false;
     bar.removeAttribute("value");
@@ -41,21 +43,23 @@ export function openPanel({ channel, report, reopen, root }) {
       if (part > 0) bar.value = part;
     }, ASK_EVERY);
     try {
-      reopen(await open());
+      reopen(await open(), path);
     } catch (error) {
-      report(error.message);
+      failed(error);
     } finally {
       clearInterval(asking);
       bar.hidden = true;
     }
   }
 
+  viewer.upload = (file) => load(() => channel.upload(file), file.name);
   if (channel.open) {
     root.addEventListener("dragover", (event) => event.preventDefault());
     root.addEventListener("drop", (event) => {
       event.preventDefault();
       const [file] = event.dataTransfer.files;
-      if (file) load(() => channel.upload(file), file.name);
+      if (file?.name.endsWith(".json") && viewer.openSession) viewer.openSession(file);
+      else if (file) viewer.upload(file);
     });
     element.addEventListener("toggle", () => { if (element.open && list.childElementCount === 0) show(""); });
   }

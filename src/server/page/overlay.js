@@ -7,6 +7,7 @@ import { CutHandles } from "./cut_handles.js";
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
 import { directionOf, sizeOf, steppedDirection, withDirection, withSize } from "./light.js";
+import { UNITS } from "./marks.js";
 import { SkyRing } from "./sky_ring.js";
 
 const MARKER = { size: 34, left: 64, bottom: 64 }; // pixels
@@ -23,8 +24,6 @@ export function roundLength(most) {
   const power = 10 ** Math.floor(Math.log10(most));
   return [5, 2, 1].map((n) => n * power).find((x) => x <= most * 1.0000001);
 }
-
-const UNITS = { metre: "m", millimetre: "mm", micrometre: "µm", angstrom: "Å" };
 
 // What lengths of the world are measured in: " mm" where volumes tell it, none another, and all keep their size; else nothing.
 function unitOf(scene, volumes) {

@@ -6,6 +6,7 @@ import { pan, roll, turn, zoom } from "./camera.js";
 
 const TURN_OF_HEIGHT = Math.PI; // radians that a drag over the picture's height turns
 const WHEEL_FACTOR = 1.0015; // of zooming, for each pixel of the wheel
+const PINCH_SPEED = 6;
 
 export class Pointer {
   #area;
@@ -13,9 +14,12 @@ export class Pointer {
   #points = new Map(); // of the pointers that are down, by their numbers: [x, y]
   #action = null;
 
-  // area: the element that pointers move over.
-  constructor(area, store) {
+  #nearest;
+
+  // area: the element that pointers move over; nearest: how near the eye comes to its target.
+  constructor(area, store, nearest) {
     this.#area = area;
+    this.#nearest = nearest;
     this.#store = store;
     area.addEventListener("pointerdown", (event) => this.#down(event));
     area.addEventListener("pointermove", (event) => this.#move(event));
@@ -60,7 +64,7 @@ export class Pointer {
     if (right === 0 && down === 0) return;
     let moved;
     if (this.#action === "pan") moved = pan(camera, right, -down);
-    else if (this.#action === "zoom") moved = zoom(camera, Math.exp(-2.5 * down));
+    else if (this.#action === "zoom") moved = zoom(camera, Math.exp(-2.5 * down), [0, 0], this.#nearest);
     else if (this.#action === "roll") {
       const from = this.#fromMiddle(...before), to = this.#fromMiddle(...now);
       moved = roll(camera, Math.atan2(from[1], from[0]) - Math.atan2(to[1], to[0]));
@@ -78,13 +82,14 @@ export class Pointer {
     camera = pan(camera, (now[0] - before[0]) / 2 / height, (before[1] - now[1]) / 2 / height);
     camera = roll(camera, Math.atan2(b[1], b[0]) - Math.atan2(a[1], a[0]));
     const middle = this.#fromMiddle((now[0] + other[0]) / 2, (now[1] + other[1]) / 2);
-    this.#store.setCamera(zoom(camera, factor, middle));
+    this.#store.setCamera(zoom(camera, factor, middle, this.#nearest));
   }
 
   #wheel(event) {
     event.preventDefault();
     const pixels = event.deltaMode === 1 ? 30 * event.deltaY : event.deltaY;
     const cursor = this.#fromMiddle(event.clientX, event.clientY);
-    this.#store.setCamera(zoom(this.#store.scene.camera, WHEEL_FACTOR ** -pixels, cursor));
+    const speed = event.ctrlKey ? PINCH_SPEED : 1; // a trackpad's pinch comes as a wheel with ctrl, in small steps
+    this.#store.setCamera(zoom(this.#store.scene.camera, WHEEL_FACTOR ** (-pixels * speed), cursor, this.#nearest));
   }
 }

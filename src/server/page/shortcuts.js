@@ -7,19 +7,25 @@ const STEP = Math.PI / 36;
 
 const MOUSE = [
   ["left drag", "turn"], ["ctrl + left drag", "roll"], ["shift + left, or middle drag", "pan"],
-  ["wheel, or right drag", "zoom"], ["one finger", "turn"], ["two fingers", "pan, zoom and roll"],
+  ["wheel, or right drag", "zoom"], ["click, with slices or a tool", "crosshair or point to what is seen"], ["one finger", "turn"], ["two fingers", "pan, zoom and roll"],
 ];
 
+const TEXTS = "textarea, input:is([type=text], [type=number], [type=search])";
+const TYPING = `${TEXTS}, select, dialog`;
+// Controls that take some keys for themselves, and leave the others to the viewer.
+const MOVED = "input, [role=slider], canvas.function, [role=radiogroup]";
+const OF_CONTROLS = /^(Arrow.*|Page.*|Home|End|Insert|Delete|Backspace|Enter|Tab| |[+-])$/;
+
 // keyboard: { target, signal }, the element or document whose keys are meant, until the signal says so; area: the picture's; actions: what keys other than those of
-// the camera do, by name.
-export function installShortcuts(store, keyboard, area, actions) {
+// the camera do, by name; nearest: how near the eye comes to its target.
+export function installShortcuts(store, keyboard, area, actions, nearest) {
   const move = (change) => () => store.setCamera(change(store.scene.camera));
   const keys = [
     ["ArrowLeft", "←", "turn left", move((c) => turn(c, -STEP, 0))],
     ["ArrowRight", "→", "turn right", move((c) => turn(c, STEP, 0))],
     ["ArrowUp", "↑", "turn up", move((c) => turn(c, 0, STEP))],
     ["ArrowDown", "↓", "turn down", move((c) => turn(c, 0, -STEP))],
-    ["+", "+", "zoom in", move((c) => zoom(c, 1.1))],
+    ["+", "+", "zoom in", move((c) => zoom(c, 1.1, [0, 0], nearest))],
     ["-", "−", "zoom out", move((c) => zoom(c, 1 / 1.1))],
     ["[", "[", "roll left", move((c) => roll(c, STEP))],
     ["]", "]", "roll right", move((c) => roll(c, -STEP))],
@@ -33,24 +39,33 @@ export function installShortcuts(store, keyboard, area, actions) {
     ["Home", "Home", "the first view", actions.home],
     ["l", "l", "show the lights' handles", actions.lights],
     ["s", "s", "next kind of shadows: off, hard, soft", actions.shadows],
+    ["c", "c", "the view before (C: after)", () => store.undoCamera()],
+    ["C", "", "", () => store.redoCamera()],
+    ["1", "1", "the picture alone", actions.layout("picture")],
+    ["2", "2", "a slice beside the picture", actions.layout("beside")],
+    ["4", "4", "three slices and the picture", actions.layout("four")],
     ["u", "u", "undo (ctrl + z)", () => store.undo()],
     ["U", "U", "redo (ctrl + shift + z)", () => store.redo()],
     ["p", "p", "probe: value, opacity and light under the cursor", actions.probe],
     ["i", "i", "times and sizes of frames", actions.statistics],
     ["b", "b", "show or hide the side bar", actions.sidebar],
     ["t", "t", "dark or light", actions.theme],
+    ["Escape", "Esc", "ends a tool of measuring", actions.cancel],
+    ["Enter", "Enter", "ends a line that is being measured", actions.finish],
     ["?", "?", "this sheet", actions.help],
   ];
   const byKey = new Map(keys.map(([key, , , action]) => [key, action]));
   keyboard.target.addEventListener("keydown", (event) => {
+    const typing = event.target.closest?.(TYPING);
     if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") {
+      if (typing?.matches(TEXTS)) return; // the field's own undo
       if (event.shiftKey) store.redo();
       else store.undo();
       event.preventDefault();
       return;
     }
-    const typing = event.target.closest?.("input, select, textarea, [role=slider], canvas.function, dialog");
-    if (typing || event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
+    const taken = typing || (event.target.closest?.(MOVED) && OF_CONTROLS.test(event.key)) || (event.key === "Enter" && event.target.closest?.("button, summary, a"));
+    if (taken || event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
     const arrows = event.key.startsWith("Arrow") && event.target !== area && event.target !== document.body;
     const action = arrows ? undefined : byKey.get(event.key);
     if (!action) return;

@@ -1,28 +1,36 @@
-// The scene that the page shows, and its history. The scene is the program's own scene file as an object: what is
-// sent for a frame, downloaded and rendered elsewhere is this object and nothing else.
+// What a person works on, and its history: the scene, the marks that stand in it, and how the page shows them. The
+// scene is the program's own scene file as an object: what is sent for a frame, downloaded and rendered elsewhere is
+// this object and nothing else. Objects are never altered, only replaced.
 
-const MOST_STEPS = 100; // that can be undone
-const SAME_GESTURE = 700; // milliseconds within which changes of one name are one step
+import { reshaped } from "./camera.js";
+
+const MOST_STEPS = 100; // that can be undone, of each history
+const UNREMEMBERED = ["camera", "size", "time", "page"]; // changes that are no steps of the main history
 
 // What is undone: everything but the camera and the picture's size.
-function snapshot(scene) {
-  const { camera, image: { width, height, ...image }, ...rest } = scene;
-  return JSON.stringify({ ...rest, image });
+function lasting({ scene: { camera, image: { width, height, ...image }, ...rest }, marks }) {
+  return { rest, image, marks };
 }
 
-function restored(scene, text) {
-  const { image, ...rest } = JSON.parse(text), { width, height } = scene.image;
-  return { ...rest, camera: scene.camera, image: { ...image, width, height } };
-}
+const isSame = (a, b) => Object.keys({ ...a, ...b }).every((key) => a[key] === b[key]);
 
 export class Store {
   #listeners = [];
   #undo = [];
   #redo = [];
-  #last = { name: "", at: 0 };
+  #undoCamera = []; // { camera, image: { width, height } }
+  #redoCamera = [];
+  #gesture = 0; // number of the gesture that is under way, or was the last
+  #holds = false; // a gesture is under way
+  #last = { name: "", gesture: -1 };
+  #lastCamera = -1; // gesture in which the camera was moved last
 
-  constructor(scene) {
+  // marks: what a person has measured and written (marks.js). page: what is no part of pictures: layout, crosshair, bookmarks.
+  constructor(scene, { marks = [], page = {}, history = null } = {}) {
     this.scene = { volumes: [], ...scene }; // a scene may be of meshes alone
+    this.marks = marks;
+    this.page = page;
+    if (history !== null) [this.#undo, this.#redo, this.#undoCamera, this.#redoCamera] = history;
   }
 
   // listener(scene, name) is called after every change.
@@ -30,13 +38,37 @@ export class Store {
     this.#listeners.push(listener);
   }
 
+  // A hand has taken hold of something: all changes until endGesture() are undone together.
+  beginGesture() {
+    this.#gesture++;
+    this.#holds = true;
+  }
+
+  endGesture() {
+    this.#gesture++;
+    this.#holds = false;
+  }
+
   // Replaces the scene by change(scene), which must not alter its argument. `name` says what changes ("camera",
-  // "light 0"); changes of one name that follow each other closely are undone together.
+  // "light 0"). Changes outside of a gesture are undone together as long as they have one name and no gesture comes between.
   change(name, change) {
-    const before = this.scene;
-    this.scene = change(before);
-    if (!["camera", "size", "time"].includes(name)) this.#remember(name, before);
+    const scene = change(this.scene);
+    if (name === "camera") this.#rememberCamera();
+    else this.#remember(name);
+    this.scene = scene;
     this.#tell(name);
+  }
+
+  setMarks(name, marks) {
+    this.#remember(`marks ${name}`);
+    this.marks = marks;
+    this.#tell("marks");
+  }
+
+  // Changes parts of what the page shows besides pictures.
+  setPage(part) {
+    this.page = { ...this.page, ...part };
+    this.#tell("page");
   }
 
   setCamera(camera) {
@@ -59,28 +91,79 @@ export class Store {
     this.change(`render ${key}`, (scene) => ({ ...scene, render: { ...scene.render, [key]: value } }));
   }
 
-  #remember(name, before) {
-    const now = performance.now();
-    const same = name === this.#last.name && now - this.#last.at < SAME_GESTURE;
-    this.#last = { name, at: now };
+  // Replaces all of it, as one step: a session or a scene that was opened. The picture keeps its size.
+  replace({ scene, marks = this.marks, page = this.page }) {
+    const { width, height } = this.scene.image;
+    this.beginGesture();
+    this.#remember("replace");
+    this.#rememberCamera();
+    this.scene = { volumes: [], ...scene, camera: reshaped(scene.camera, scene.image, { width, height }), image: { ...scene.image, width, height } };
+    this.marks = marks;
+    this.page = page;
+    this.endGesture();
+    this.#tell("history");
+  }
+
+  // ---- the history ----
+
+  #remember(name) {
+    if (UNREMEMBERED.includes(name)) return;
+    const same = this.#last.gesture === this.#gesture && (this.#holds || this.#last.name === name);
+    this.#last = { name, gesture: this.#gesture };
     if (same) return;
-    this.#undo.push(snapshot(before));
-    if (this.#undo.length > MOST_STEPS) this.#undo.shift();
+    this.#push(this.#undo, lasting(this));
     this.#redo = [];
+  }
+
+  #view() {
+    const { camera, image: { width, height } } = this.scene;
+    return { camera, image: { width, height } };
+  }
+
+  #rememberCamera() {
+    if (this.#lastCamera === this.#gesture) return;
+    this.#lastCamera = this.#gesture;
+    this.#push(this.#undoCamera, this.#view());
+    this.#redoCamera = [];
+  }
+
+  #push(steps, step) {
+    steps.push(step);
+    if (steps.length > MOST_STEPS) steps.shift();
   }
 
   get canUndo() { return this.#undo.length > 0; }
   get canRedo() { return this.#redo.length > 0; }
+  get canUndoCamera() { return this.#undoCamera.length > 0; }
+  get canRedoCamera() { return this.#redoCamera.length > 0; }
+  get history() { return [this.#undo, this.#redo, this.#undoCamera, this.#redoCamera]; }
 
   undo() { this.#step(this.#undo, this.#redo); }
   redo() { this.#step(this.#redo, this.#undo); }
+  undoCamera() { this.#stepCamera(this.#undoCamera, this.#redoCamera); }
+  redoCamera() { this.#stepCamera(this.#redoCamera, this.#undoCamera); }
 
   #step(from, to) {
     if (from.length === 0) return;
-    to.push(snapshot(this.scene));
-    this.scene = restored(this.scene, from.pop());
-    this.#last = { name: "", at: 0 };
+    const now = lasting(this), { rest, image, marks } = from.pop();
+    to.push(now);
+    this.marks = marks;
+    this.#last = { name: "", gesture: -1 };
+    // A step of marks alone leaves the scene, and so its picture.
+    if (!isSame(rest, now.rest) || !isSame(image, now.image)) {
+      const { camera, image: { width, height } } = this.scene;
+      this.scene = { ...rest, camera, image: { ...image, width, height } };
+    }
     this.#tell("history");
+  }
+
+  #stepCamera(from, to) {
+    if (from.length === 0) return;
+    const { camera, image } = from.pop();
+    to.push(this.#view());
+    this.#lastCamera = -1;
+    this.scene = { ...this.scene, camera: reshaped(camera, image, this.scene.image) };
+    this.#tell("camera");
   }
 
   #tell(name) {

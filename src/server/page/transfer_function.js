@@ -59,6 +59,14 @@ export function withColormap(tf, rows, [low, high]) {
   return { ...tf, color: rows.map(([at, ...rgb]) => [low + at * (high - low), ...rgb]) };
 }
 
+// The name of the colormap whose colours a function has, over any range; "": none.
+export function colormapOf(tf, colormaps) {
+  const [low, high] = [tf.color[0]?.[0], tf.color.at(-1)?.[0]], isNear = (a, b) => Math.abs(a - b) < 1e-9;
+  const has = (rows) => rows.length === tf.color.length && rows.every(([at, ...rgb], n) =>
+    Math.abs(low + ((at - rows[0][0]) / (rows.at(-1)[0] - rows[0][0])) * (high - low) - tf.color[n][0]) <= 1e-6 * (high - low) && rgb.every((c, k) => isNear(c, tf.color[n][k + 1])));
+  return Object.keys(colormaps).find((name) => has(colormaps[name])) ?? "";
+}
+
 // The same colours and opacities over another range.
 export function stretched(tf, [from, to], [low, high]) {
   const moved = ([value, ...rest]) => [low + ((value - from) / (to - from)) * (high - low), ...rest];

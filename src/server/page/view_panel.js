@@ -30,5 +30,5 @@ export function viewPanel({ store, frameEverything, firstView }) {
     tone.element);
   const update = () => { for (const part of [projection, background, exposure, tone]) part.update(); };
   update();
-  return { element, update };
+  return { element, update, updateView: () => projection.update() };
 }

@@ -1,27 +1,36 @@
 // The viewer: the picture, what lies over it, and the panels beside it, in any element of a page or a notebook.
 
+import { worldBox } from "./boxes.js";
 import { reshaped } from "./camera.js";
 import { cutPanel, sceneCutPanel } from "./cut_panel.js";
 import { copier, exportPanel } from "./export.js";
 import { filmPanel } from "./film_panel.js";
 import { Frames } from "./frames.js";
+import { watchConnection } from "./connection.js";
+import { followGestures } from "./gestures.js";
 import { functionPanel } from "./function_panel.js";
 import { labelPanel } from "./label_panel.js";
 import { lightPanel, shadowPanel } from "./light_panel.js";
+import { markPanel } from "./mark_panel.js";
 import { openPanel } from "./open_panel.js";
 import { Overlay } from "./overlay.js";
 import { Pointer } from "./pointer.js";
 import { Probe } from "./probe.js";
 import { helpSheet, installShortcuts } from "./shortcuts.js";
+import { sessionPanel } from "./session_panel.js";
 import { skyPanel } from "./sky_panel.js";
+import { slicePanel } from "./slice_panel.js";
+import { Slices } from "./slices.js";
+import { statusLine } from "./status.js";
 import { Store } from "./store.js";
 import { surfacePanel } from "./surface_panel.js";
 import { installTheme } from "./theme.js";
+import { length, subtract } from "./vector.js";
 import { viewPanel } from "./view_panel.js";
 import { volumeChooser, volumePanel } from "./volume_panel.js";
 
 // One file each; in the order of the side bar.
-const PANELS = [volumeChooser, functionPanel, labelPanel, surfacePanel, lightPanel, shadowPanel, skyPanel, volumePanel, cutPanel, sceneCutPanel, viewPanel, exportPanel, filmPanel, openPanel];
+const PANELS = [volumeChooser, functionPanel, labelPanel, surfacePanel, lightPanel, shadowPanel, skyPanel, volumePanel, cutPanel, sceneCutPanel, slicePanel, markPanel, viewPanel, sessionPanel, exportPanel, filmPanel, openPanel];
 
 const MARKUP = `
   <div class="viewer">
@@ -40,13 +49,16 @@ const MARKUP = `
       </nav>
     </header>
     <main>
+      <div id="workspace" data-layout="picture">
       <div id="view" tabindex="0" role="application" aria-label="The picture. Arrow keys turn, plus and minus zoom, question mark lists all keys.">
         <canvas id="picture" width="16" height="16"></canvas>
         <svg id="overlay" xmlns="http://www.w3.org/2000/svg"></svg>
         <p id="message" role="status" hidden></p>
       </div>
+      </div>
       <footer>
         <span id="stage" data-stage="refining">loading</span>
+        <span id="progress"></span>
         <span id="statistics"></span>
       </footer>
     </main>
@@ -55,7 +67,8 @@ const MARKUP = `
   </div>`;
 
 const MOST_SIDE = 4096; // pixels of the picture
-const MESSAGE_TIME = 5000, GREETING_TIME = 60000; // milliseconds
+const NEAR = 0.02; // of a volume's diagonal
+const MESSAGE_TIME = 5000; // milliseconds
 
 // Returns the function that shows a line over the picture for a while, in milliseconds.
 function messageBox(box) {
@@ -66,24 +79,6 @@ function messageBox(box) {
     clearTimeout(timer);
     timer = setTimeout(() => { box.hidden = true; }, time);
   };
-}
-
-const STAGES = { moving: "moving", settled: "refining", refining: "refining", final: "final" };
-
-// What the line at the bottom says of a frame.
-function showFrame(find, report, frame) {
-  const stage = find("stage");
-  if (frame.error) {
-    stage.textContent = "failed";
-    stage.dataset.stage = "failed";
-    report(frame.error.message === "Failed to fetch" ? "The viewer has ended: start it again." : frame.error.message);
-    return;
-  }
-  stage.textContent = STAGES[frame.stage];
-  stage.dataset.stage = STAGES[frame.stage];
-  if (frame.bytes === 0) return;
-  const seconds = frame.milliseconds < 1000 ? `${Math.round(frame.milliseconds)} ms` : `${(frame.milliseconds / 1000).toFixed(1)} s`;
-  find("statistics").textContent = `${frame.width} × ${frame.height} · sheets ${+frame.spacing.toPrecision(2)} voxels · ${seconds} · ${Math.ceil(frame.bytes / 1024)} KiB`;
 }
 
 // The picture's size follows the window's.
@@ -104,15 +99,18 @@ function followSize(store, area, signal) {
 }
 
 // What is seen fits again, from the same side: only the distance and the target are the program's choice.
-async function frameEverything({ store, channel, report }) {
+async function frameEverything({ store, channel, failed }) {
   const { camera, ...rest } = store.scene;
   try {
     const complete = await channel.completeScene({ ...rest, camera: { type: camera.type, ...(camera.fovy_deg ? { fovy_deg: camera.fovy_deg } : {}) } });
     store.setCamera(complete.camera);
   } catch (error) {
-    report(error.message);
+    failed(error);
   }
 }
+
+// How near the eye comes to its target: a small part of the largest volume.
+const nearestOf = ({ volumes }) => NEAR * Math.max(0, ...volumes.filter(Boolean).map((volume) => length(subtract(worldBox(volume).max, worldBox(volume).min))));
 
 // What keys and buttons do besides moving the camera.
 function actionsOf(viewer, find, root, update) {
@@ -133,26 +131,45 @@ function actionsOf(viewer, find, root, update) {
     sidebar: () => { root.classList.toggle("bare"); },
     theme: installTheme(root, () => { update(); overlay.draw(); }),
     help: () => find("help").showModal(),
+    layout: (layout) => () => { if (viewer.slices.available) store.setPage({ layout }); },
+    cancel: () => viewer.marking.cancel(),
+    finish: () => viewer.marking.finish(),
   };
 }
 
+// A session, or a scene of what is open; a scene of other files is opened as a file.
+async function openSession(file, restore, viewer) {
+  try {
+    if ((await restore(file)) === "other") viewer.upload(file);
+  } catch (error) {
+    viewer.failed(error);
+  }
+}
+
 // Fills an empty element with a viewer. channel: how pictures are asked for (http_channel.js); start: what is open;
-// keyboard: where its keys are listened to; reopen(start): called where a person opens another file. Returns { store,
-// frames, overlay, probe, end }; end() stops all of it.
-export function mount(element, channel, start, { keyboard = element, reopen = () => {} } = {}) {
+// keyboard: where its keys are listened to; reopen(start, source): called where a person opens another file; source: the path
+// by which this one was opened; kept: a session (session.js) to go on with; restore(file): opens a session or a scene;
+// startAfresh(): forgets what was done. Returns { store, frames, overlay, probe, slices, report, end }; end() stops all of it.
+export function mount(element, channel, start, { keyboard = element, reopen = () => {}, source = null, kept = null, restore = null, startAfresh = () => {} } = {}) {
   element.innerHTML = MARKUP;
   const root = element.firstElementChild, find = (id) => root.querySelector(`#${id}`);
   const ended = new AbortController();
-  const store = new Store(start.scene), report = messageBox(find("message"));
-  const viewer = { store, start, channel, report, reopen, root, find, copy: copier(report, start.title), current: { volume: 0, light: 0 } };
+  const store = new Store(kept?.scene ?? start.scene, kept ?? {}), report = messageBox(find("message"));
+  const viewer = { store, start, channel, report, reopen, root, find, source, startAfresh, copy: copier(report, start.title), current: { volume: 0, light: 0 } };
+  const connection = watchConnection(find("view"), channel, report, () => { frames.move(); viewer.slices.update(); });
+  viewer.failed = connection.failed;
+  if (restore !== null) viewer.openSession = (file) => openSession(file, restore, viewer);
   find("title").textContent = start.title;
   followSize(store, find("view"), ended.signal);
+  followGestures(root, store, ended.signal);
   viewer.overlay = new Overlay(find("overlay"), viewer);
+  viewer.slices = new Slices(viewer, find("workspace"), find("view"));
   viewer.firstView = () => store.setCamera(reshaped(start.scene.camera, start.scene.image, store.scene.image));
   viewer.frameEverything = () => frameEverything(viewer);
   viewer.chooseVolume = (index) => {
     viewer.current.volume = index;
     panels.forEach((panel) => panel.rebuild?.());
+    viewer.slices.update();
   };
   const panels = PANELS.map((panel) => panel(viewer));
   find("panels").append(...panels.map((panel) => panel.element));
@@ -161,21 +178,26 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
     find("undo").disabled = !store.canUndo;
     find("redo").disabled = !store.canRedo;
   };
-  store.listen((_, name) => { if (name !== "camera") update(); });
+  // What follows the camera and the layout is little, and is drawn for each of a hand's moves.
+  store.listen((_, name) => {
+    if (name !== "camera" && name !== "page") update();
+    else panels.forEach((panel) => panel.updateView?.());
+  });
   viewer.probe = new Probe(viewer, find("view"));
+  const status = statusLine(find, channel);
   const frames = new Frames(viewer, find("picture"), (frame) => {
-    showFrame(find, report, frame);
+    status.show(frame);
+    if (frame.error) viewer.failed(frame.error);
     if (frame.stage === "final") viewer.probe.rest();
   });
-  new Pointer(find("view"), store);
+  new Pointer(find("view"), store, nearestOf(start));
   const actions = actionsOf(viewer, find, root, update);
-  helpSheet(find("help"), installShortcuts(store, { target: keyboard, signal: ended.signal }, find("view"), actions));
+  helpSheet(find("help"), installShortcuts(store, { target: keyboard, signal: ended.signal }, find("view"), actions, nearestOf(start)));
   const buttons = { undo: () => store.undo(), redo: () => store.redo(), "show-help": actions.help, theme: actions.theme, "show-lights": actions.lights, reset: actions.reset, probe: actions.probe, sidebar: actions.sidebar };
   for (const [id, action] of Object.entries(buttons)) find(id).addEventListener("click", action);
   viewer.overlay.showsLights = true;
+  viewer.slices.update();
   update();
   frames.move();
-  report("Drag to turn. Drag the ringed dot to move the light, its ring to soften shadows. ? lists the rest.", GREETING_TIME);
-  store.listen((_, name) => { if (name !== "size" && find("message").textContent.startsWith("Drag")) find("message").hidden = true; });
-  return { store, frames, overlay: viewer.overlay, probe: viewer.probe, end: () => { ended.abort(); frames.end(); } };
+  return { store, frames, overlay: viewer.overlay, probe: viewer.probe, slices: viewer.slices, report, end: () => { ended.abort(); frames.end(); status.end(); connection.end(); } };
 }

@@ -1,0 +1,42 @@
+// The banner that says that the viewer does not answer, until it does: it is asked again and again, and at once by Retry.
+
+import { button, make } from "./controls.js";
+import { Lost } from "./http_channel.js";
+
+const ASK_EVERY = 2000; // milliseconds
+
+// place: where the banner goes; onBack() is called when the viewer answers again. Returns failed(error), which takes any
+// error of a request, and end().
+export function watchConnection(place, channel, report, onBack) {
+  const text = make("span"), retry = button("Retry", () => ask(), { class: "primary" });
+  const banner = make("div", { class: "banner", role: "alert", hidden: true }, text, retry);
+  let timer = 0, ended = false;
+  place.append(banner);
+
+  async function ask() {
+    clearTimeout(timer);
+    retry.disabled = true;
+    try {
+      await channel.answers();
+      banner.hidden = true;
+      onBack();
+    } catch (error) {
+      text.textContent = error.message;
+      if (!ended && error instanceof Lost) timer = setTimeout(ask, ASK_EVERY);
+    }
+    retry.disabled = false;
+  }
+
+  function failed(error) {
+    if (!(error instanceof Lost) || !channel.answers) {
+      report(error.message);
+      return;
+    }
+    text.textContent = `${error.message} Nothing is lost: what you did is kept in this tab.`;
+    if (!banner.hidden) return;
+    banner.hidden = false;
+    timer = setTimeout(ask, ASK_EVERY);
+  }
+
+  return { failed, get isLost() { return !banner.hidden; }, end: () => { ended = true; clearTimeout(timer); } };
+}

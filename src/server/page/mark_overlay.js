@@ -1,0 +1,92 @@
+// Marks drawn over the picture and over slices, and the handles of their points.
+
+import { axes, projector, worldHeight } from "./camera.js";
+import { make } from "./controls.js";
+import { captionOf, KINDS } from "./marks.js";
+import { PictureHandles } from "./picture_handles.js";
+import { add, scale } from "./vector.js";
+
+const HEAD = 9; // pixels of an arrow's head
+const KEY_REACH = 0.25; // of the height of what is shown, of which a key moves a fiftieth
+
+// The head of an arrow that points to [x, y].
+function head([fromX, fromY], [x, y]) {
+  const far = Math.hypot(x - fromX, y - fromY) || 1, [dx, dy] = [((x - fromX) / far) * HEAD, ((y - fromY) / far) * HEAD];
+  return `M${x} ${y}L${x - dx - dy / 2} ${y - dy + dx / 2}M${x} ${y}L${x - dx + dy / 2} ${y - dy - dx / 2}`;
+}
+
+// The elements of a mark whose points are on the screen at `places`.
+function drawn(mark, places, caption, className) {
+  const path = places.map(([x, y], n) => `${n > 0 ? "L" : "M"}${x} ${y}`).join("") + (mark.kind === "arrow" && places.length === 2 ? head(...places) : "");
+  const at = mark.kind === "ruler" && places.length === 2 ? [(places[0][0] + places[1][0]) / 2, (places[0][1] + places[1][1]) / 2]
+    : mark.kind === "angle" && places.length > 1 ? places[1] : places.at(mark.kind === "arrow" ? 0 : -1);
+  return [make("svg:path", { d: path, class: "mark-halo" }), make("svg:path", { d: path, class: className }),
+    make("svg:text", { x: at[0] + 8, y: at[1] - 8, class: "mark-text" }, caption)];
+}
+
+export class Marks {
+  #viewer;
+  #picture;
+  #planes = new Map(); // by slice view: its handles
+
+  constructor(viewer) {
+    this.#viewer = viewer;
+    this.#picture = this.#makeLayer(viewer.find("overlay"));
+  }
+
+  #makeLayer(parent) {
+    const shapes = make("svg:g", { "aria-hidden": "true" }), handles = new PictureHandles("mark-handle");
+    parent.append(shapes, handles.element);
+    return { shapes, handles };
+  }
+
+  // The marks, and the one that is being made.
+  get #all() {
+    const { store, marking } = this.#viewer;
+    return [...store.marks, ...(marking?.unfinished ? [marking.unfinished] : [])];
+  }
+
+  #draw({ shapes, handles }, project, ways, width, height, faintness) {
+    const inside = ([x, y]) => x >= 0 && y >= 0 && x <= width && y <= height, points = [];
+    shapes.replaceChildren(...this.#all.flatMap((mark, m) => {
+      const places = mark.points.map(project), style = faintness(mark);
+      if (places.length === 0 || places.includes(null) || style === null) return [];
+      if (m < this.#viewer.store.marks.length)
+        mark.points.forEach((point, n) => { if (inside(places[n])) points.push(this.#handle(m, n, mark, point, ways)); });
+      return drawn(mark, places, captionOf(mark, this.#viewer), `mark ${style}`);
+    }));
+    handles.draw(points, project, points[0]?.at ?? [0, 0, 0], width, height);
+  }
+
+  // ways: the two directions of the screen in the scene, as long as KEY_REACH says.
+  #handle(m, n, mark, point, ways) {
+    const { store } = this.#viewer;
+    return {
+      label: `${KINDS[mark.kind].name} ${m + 1}, point ${n + 1}`, kind: mark.kind, at: point,
+      ways: ways.map((way) => ({ to: add(point, way), size: 1, low: 0, high: 1, now: 0 })),
+      move: (steps) => {
+        const moved = steps.reduce((sum, part, k) => add(sum, scale(ways[k], part)), point);
+        store.setMarks(`point ${m} ${n}`, store.marks.map((one, k) => (k === m ? { ...one, points: one.points.map((p, j) => (j === n ? moved : p)) } : one)));
+      },
+    };
+  }
+
+  drawPicture() {
+    const { store, find } = this.#viewer, svg = find("overlay"), width = svg.clientWidth, height = svg.clientHeight;
+    if (height === 0) return;
+    const { right, up } = axes(store.scene.camera), reach = KEY_REACH * worldHeight(store.scene.camera);
+    this.#draw(this.#picture, projector(store.scene.camera, width, height), [scale(right, reach), scale(up, reach)], width, height, () => "");
+  }
+
+  // Marks of the plane, and fainter ones that only pass through it.
+  drawPlane(view) {
+    if (!this.#planes.has(view)) this.#planes.set(view, this.#makeLayer(view.marks));
+    const { clientWidth: width, clientHeight: height } = view.area, project = (point) => view.project(point);
+    const unit = view.directions(), within = view.halfDepth;
+    this.#draw(this.#planes.get(view), project, unit.map((way) => scale(way, KEY_REACH)), width, height, (mark) => {
+      const layers = mark.points.map((point) => project(point)?.[2] ?? Infinity), on = layers.filter((layer) => Math.abs(layer) <= within);
+      const crosses = Math.min(...layers) < 0 && Math.max(...layers) > 0;
+      return on.length === layers.length ? "" : on.length > 0 || crosses ? "faint" : null;
+    });
+  }
+}

@@ -1,0 +1,82 @@
+// The panel of measuring: the tools, and the list of what has been measured and written. While a tool is chosen, clicks in the
+// picture and in slices are its points.
+
+import { button, isActive, make, section } from "./controls.js";
+import { captionOf, KINDS, measured } from "./marks.js";
+import { length, subtract } from "./vector.js";
+
+export function markPanel(viewer) {
+  const { store, root, slices } = viewer, { element, body } = section("Measure", false);
+  let kind = null, points = [];
+
+  const tools = Object.entries(KINDS).map(([name, { name: text }]) => button(text, () => choose(kind === name ? null : name), { "aria-pressed": "false", "data-kind": name }));
+  const hint = make("p", { class: "facts", role: "status" }), list = make("ul", { class: "files marks", "aria-label": "Marks" });
+  const atCrosshair = button("point at the crosshair", () => addPoint(slices.cursor)), done = button("finish", finish);
+
+  function choose(name) {
+    [kind, points] = [name, []];
+    root.classList.toggle("marking", kind !== null);
+    store.setPage({});
+  }
+
+  // Whether the point was taken.
+  function addPoint(point) {
+    if (kind === null) return false;
+    if (points.length > 0 && length(subtract(point, points.at(-1))) === 0) return true; // the second click of two
+    points = [...points, point];
+    if (points.length === KINDS[kind].most) finish();
+    else store.setPage({});
+    return true;
+  }
+
+  // A line that has points enough is done, and so is the tool.
+  function finish() {
+    if (kind === null) return;
+    const made = points.length >= KINDS[kind].least ? { kind, points, text: kind === "text" ? "Text" : "" } : null;
+    const wasText = kind === "text";
+    choose(null);
+    if (made === null) return;
+    store.setMarks(`add ${store.marks.length}`, [...store.marks, made]);
+    element.open = true;
+    if (wasText) list.querySelector("li:last-child input").select();
+  }
+
+  // What other files ask of the tool.
+  viewer.marking = {
+    addPoint, finish, cancel: () => choose(null), get isMaking() { return kind !== null; },
+    get unfinished() { return points.length > 0 ? { kind, points, text: "" } : null; },
+  };
+
+  function line(n) {
+    const mark = store.marks[n], label = `${KINDS[mark.kind].name} ${n + 1}`;
+    const text = make("input", { type: "text", "aria-label": `Text of ${label}`, placeholder: KINDS[mark.kind].name, value: mark.text, oninput: () =>
+      store.setMarks(`text ${n}`, store.marks.map((one, m) => (m === n ? { ...one, text: text.value } : one))) });
+    const said = make("output", { class: "measured" });
+    const show = button("show", () => slices.available && slices.moveTo(store.marks[n].points[0]), { "aria-label": `Crosshair to ${label}` });
+    const remove = button("−", () => store.setMarks(`remove ${n}`, store.marks.filter((_, m) => m !== n)), { "aria-label": `Remove ${label}` });
+    const update = () => {
+      if (!isActive(text)) text.value = store.marks[n].text;
+      said.textContent = measured(store.marks[n], viewer) === null ? "" : captionOf({ ...store.marks[n], text: "" }, viewer);
+    };
+    return { element: make("li", {}, text, said, show, remove), update, kind: mark.kind };
+  }
+
+  let lines = [];
+  function update() {
+    if (lines.length !== store.marks.length || lines.some((one, n) => one.kind !== store.marks[n].kind)) {
+      lines = store.marks.map((_, n) => line(n));
+      list.replaceChildren(...lines.map((one) => one.element));
+    }
+    lines.forEach((one) => one.update());
+    tools.forEach((tool) => tool.setAttribute("aria-pressed", String(tool.dataset.kind === kind)));
+    const missing = kind === null ? 0 : KINDS[kind].most - points.length;
+    hint.textContent = kind === null ? "Choose a tool, then click in the picture or in a slice. Points can be dragged."
+      : kind === "line" ? `Click the line's points; Enter, a double click or “finish” ends it. ${points.length} so far.`
+        : `Click ${missing} ${missing === 1 ? "point" : "points"}${kind === "arrow" ? ", the tip last" : kind === "angle" ? ", the corner second" : ""}. Escape ends the tool.`;
+    atCrosshair.hidden = kind === null || slices.layout === "picture";
+    done.hidden = kind !== "line";
+  }
+  body.append(make("div", { class: "buttons", role: "group", "aria-label": "Tools for measuring" }, ...tools), hint, make("div", { class: "buttons" }, atCrosshair, done), list);
+  update();
+  return { element, update, updateView: update };
+}

@@ -1,0 +1,46 @@
+// Marks that stand in the scene: rulers, angles, lines of several pieces, arrows and texts. A mark is { kind, points, text }:
+// points of the scene's world, [[x, y, z], ...], and what is written at it. What it measures follows from its points.
+
+import { unplaced } from "./boxes.js";
+import { shortNumber } from "./controls.js";
+import { dot, length, subtract } from "./vector.js";
+
+// By kind: its name, and how many points it has, at least and at most.
+export const KINDS = {
+  ruler: { name: "Ruler", least: 2, most: 2 }, angle: { name: "Angle", least: 3, most: 3 }, line: { name: "Line", least: 2, most: 500 },
+  arrow: { name: "Arrow", least: 2, most: 2 }, text: { name: "Text", least: 1, most: 1 },
+};
+
+export const UNITS = { metre: "m", millimetre: "mm", micrometre: "µm", angstrom: "Å" };
+
+// Lengths are those of the first volume's file: { unit, length(a, b), angle }.
+function measures({ store, start }) {
+  const own = (point) => unplaced(point, store.scene.volumes[0]?.transform), unit = UNITS[start.volumes[0]?.unit];
+  return { unit: unit ? ` ${unit}` : "", own };
+}
+
+// The angle at b of a corner a, b, c, in degrees.
+function angleOf([a, b, c]) {
+  const [u, v] = [subtract(a, b), subtract(c, b)], size = length(u) * length(v);
+  return size > 0 ? (180 / Math.PI) * Math.acos(Math.min(Math.max(dot(u, v) / size, -1), 1)) : 0;
+}
+
+// The number that a mark measures; null: none.
+export function measured(mark, viewer) {
+  const { own } = measures(viewer), points = mark.points.map(own);
+  if (mark.kind === "angle") return points.length === 3 ? angleOf(points) : null;
+  if (mark.kind !== "ruler" && mark.kind !== "line") return null;
+  return points.slice(1).reduce((sum, point, n) => sum + length(subtract(point, points[n])), 0);
+}
+
+// What is written at a mark.
+export function captionOf(mark, viewer) {
+  const number = measured(mark, viewer), { unit } = measures(viewer);
+  const said = number === null ? "" : mark.kind === "angle" ? `${number.toFixed(1)}°` : `${shortNumber(number)}${unit}`;
+  return [mark.text, said].filter(Boolean).join(": ");
+}
+
+// Whether an object of a file is a mark.
+export const isMark = (mark) => mark?.kind in KINDS && Array.isArray(mark.points) && mark.points.length >= KINDS[mark.kind].least &&
+  mark.points.length <= KINDS[mark.kind].most && typeof (mark.text ?? "") === "string" &&
+  mark.points.every((point) => Array.isArray(point) && point.length === 3 && point.every(Number.isFinite));

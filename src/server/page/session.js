@@ -1,0 +1,65 @@
+// The whole state of a page as one object, kept in the tab while it is open and saved as a file: the scene, the marks, the
+// layout, the crosshair, bookmarks, and the history. It holds what a person has done, and names the volumes, but not their voxels.
+
+import { isMark } from "./marks.js";
+
+const KEY = "halflight-session", VERSION = 1;
+const KEEP_AFTER = 300; // milliseconds without a change
+
+// source: the path that the viewer's own list opened, or null for what the viewer began with.
+export const sessionOf = (store, { title }, source) =>
+  ({ halflight_session: VERSION, title, source, scene: store.scene, marks: store.marks, page: store.page });
+
+// A session, checked for what the page relies on; null: the object is none.
+export function readSession(object) {
+  if (object === null || typeof object !== "object" || object.halflight_session !== VERSION || typeof object.scene?.camera !== "object") return null;
+  const { source = null, title = "", scene, page = {} } = object, marks = Array.isArray(object.marks) ? object.marks.filter(isMark) : [];
+  const known = typeof page === "object" && page !== null && !Array.isArray(page) ? page : {};
+  return { source: typeof source === "string" ? source : null, title: String(title), scene, marks, page: known };
+}
+
+// The names of the files that a scene is made of.
+export const filesOf = (scene) => JSON.stringify([
+  (scene.volumes ?? []).map(({ file, shapes, array, component, series, time, channel, level, mask }) => [file, shapes, array, component, series, time, channel, level, mask?.file]),
+  (scene.meshes ?? []).map(({ file }) => file ?? "")]);
+
+// Keeps the session in the tab; once more without its history where there is no room for all.
+function keep(store, start, source) {
+  const session = sessionOf(store, start, source);
+  for (const kept of [{ ...session, history: store.history }, session])
+    try {
+      sessionStorage.setItem(KEY, JSON.stringify(kept));
+      return;
+    } catch {
+      // no room, or a browser that keeps nothing
+    }
+}
+
+export function keepSession(store, start, source, signal) {
+  let timer = 0;
+  const now = () => { clearTimeout(timer); keep(store, start, source); };
+  store.listen(() => {
+    clearTimeout(timer);
+    timer = setTimeout(now, KEEP_AFTER);
+  });
+  addEventListener("pagehide", now, { signal });
+  signal.addEventListener("abort", () => clearTimeout(timer));
+}
+
+// What the tab has kept: a session with its history; null: nothing.
+export function keptSession() {
+  try {
+    const object = JSON.parse(sessionStorage.getItem(KEY)), session = readSession(object);
+    return session && { ...session, history: Array.isArray(object.history) && object.history.length === 4 ? object.history : null };
+  } catch {
+    return null;
+  }
+}
+
+export function forgetSession() {
+  try {
+    sessionStorage.removeItem(KEY);
+  } catch {
+    // there is none
+  }
+}

@@ -1,0 +1,74 @@
+// The panel of what is kept: bookmarks of views, and the session as a file.
+
+import { reshaped } from "./camera.js";
+import { button, isActive, make, row, section } from "./controls.js";
+import { download, stem } from "./export.js";
+import { forgetSession, sessionOf } from "./session.js";
+
+const THUMBNAIL = 72; // pixels of height
+
+// The picture as it is shown, small.
+function thumbnail(picture) {
+  const canvas = document.createElement("canvas");
+  canvas.height = THUMBNAIL;
+  canvas.width = Math.round((THUMBNAIL * picture.width) / picture.height);
+  canvas.getContext("2d").drawImage(picture, 0, 0, canvas.width, canvas.height);
+  return canvas.toDataURL("image/jpeg", 0.7);
+}
+
+// The views that a person has marked, in store.page.bookmarks: { name, camera, image: { width, height }, cursor, thumbnail }.
+function bookmarkList({ store, find }) {
+  const list = make("ul", { class: "bookmarks", "aria-label": "Bookmarks" });
+  const all = () => store.page.bookmarks ?? [], setAll = (bookmarks) => store.setPage({ bookmarks });
+  const add = () => {
+    const { camera, image: { width, height } } = store.scene;
+    setAll([...all(), { name: `View ${all().length + 1}`, camera, image: { width, height }, cursor: store.page.cursor, thumbnail: thumbnail(find("picture")) }]);
+  };
+  const go = (n) => {
+    const { camera, image, cursor } = all()[n];
+    store.setCamera(reshaped(camera, image, store.scene.image));
+    if (cursor) store.setPage({ cursor });
+  };
+  function item(n) {
+    const mark = all()[n];
+    const name = make("input", { type: "text", value: mark.name, "aria-label": `Name of view ${n + 1}`, onchange: () => setAll(all().map((one, m) => (m === n ? { ...one, name: name.value } : one))) });
+    const shown = make("img", { src: /^data:image\/jpeg;base64,/.test(mark.thumbnail ?? "") ? mark.thumbnail : "data:,", alt: "", height: THUMBNAIL / 2 });
+    return make("li", {}, make("button", { type: "button", class: "view", "aria-label": `Go to ${mark.name}`, onclick: () => go(n) }, shown), name,
+      button("−", () => setAll(all().filter((_, m) => m !== n)), { "aria-label": `Remove ${mark.name}` }));
+  }
+  let shown = null;
+  function update() {
+    if (shown === all()) return;
+    shown = all();
+    if (![...list.querySelectorAll("input")].some(isActive)) list.replaceChildren(...shown.map((_, n) => item(n)));
+  }
+  return { element: list, add, update };
+}
+
+export function sessionPanel(viewer) {
+  const { store, start, source, report, openSession } = viewer, { element, body } = section("Session", false);
+  const bookmarks = bookmarkList(viewer);
+  const save = () => {
+    const name = `${stem(start.title)}-session.json`;
+    download(new Blob([JSON.stringify(sessionOf(store, start, source ?? null), null, 1)], { type: "application/json" }), name);
+    report(`saved ${name}`);
+  };
+  const chooser = make("input", { type: "file", accept: ".json", hidden: true, "aria-label": "A session or a scene", onchange: async () => {
+    const [file] = chooser.files;
+    chooser.value = "";
+    if (file) openSession(file);
+  } });
+  const afresh = () => { forgetSession(); viewer.startAfresh(); };
+  const backwards = button("camera back", () => store.undoCamera(), { title: "The view before (c)" }), forwards = button("camera on", () => store.redoCamera(), { title: "The view after (C)" });
+  body.append(row(make("span", { class: "name" }, "View"), make("span", { class: "buttons" }, button("bookmark", bookmarks.add), backwards, forwards)), bookmarks.element,
+    row(make("span", { class: "name" }, "Session"), make("span", { class: "buttons" }, button("save session", save),
+      ...(openSession ? [button("open …", () => chooser.click(), { "aria-label": "Open a session or a scene" }), button("start afresh", afresh, { title: "As the viewer began: what was done in this tab is forgotten" })] : []))),
+    chooser, make("p", { class: "facts" }, "A session holds the scene, marks, bookmarks and layout, and names its volumes. This tab keeps it when the page is reloaded or the viewer starts again on the same port."));
+  function update() {
+    bookmarks.update();
+    backwards.disabled = !store.canUndoCamera;
+    forwards.disabled = !store.canRedoCamera;
+  }
+  update();
+  return { element, update, updateView: update };
+}

@@ -1,0 +1,122 @@
+// What slices are made of: the values of planes, asked for one after the other so that the newest wins, and their pictures.
+
+import { hexOf } from "./color.js";
+import { contourPieces } from "./contours.js";
+import { planeIn } from "./sections.js";
+
+const LABEL_STRENGTH = 0.45; // of a label's colour over the greys
+
+// Values between which the greys lie where nobody has chosen: all but the rarest, of which the commonest value, mostly air
+// around things, does not count.
+export function automaticWindow({ histogram, range: [low, high] }) {
+  const commonest = histogram.indexOf(Math.max(...histogram)), counts = histogram.map((count, bin) => (bin === commonest ? 0 : count));
+  const total = counts.reduce((sum, count) => sum + count, 0), width = (high - low) / counts.length;
+  if (!(total > 0)) return [low, high > low ? high : low + 1];
+  const reached = (part) => {
+    let sum = 0;
+    return counts.findIndex((count) => (sum += count) >= part * total);
+  };
+  return [low + reached(0.005) * width, low + (reached(0.995) + 1) * width];
+}
+
+// The volume of the scene that slices are cut out of: the chosen one, or the first that is no label map.
+export function sourceVolume({ store, start, current }) {
+  const { volumes } = store.scene, isGrey = (v) => start.volumes[v] && !volumes[v].labels;
+  if (start.volumes.length === 0) return -1;
+  if (isGrey(current.volume)) return current.volume;
+  const found = volumes.findIndex((_, v) => isGrey(v));
+  return found >= 0 ? found : current.volume;
+}
+
+// Where labels come from: the source itself, its mask, and label maps beside it: { volume, of, grid, transform, labels }.
+export function labelSources({ store, start }, source) {
+  return store.scene.volumes.flatMap((volume, v) => {
+    const about = start.volumes[v];
+    if (!about) return [];
+    if (volume.labels) return [{ volume: v, of: "voxels", grid: about, transform: volume.transform, labels: volume.labels }];
+    if (v === source && volume.mask?.labels && about.mask) return [{ volume: v, of: "mask", grid: about.mask, transform: volume.transform, labels: volume.mask.labels }];
+    return [];
+  });
+}
+
+const asked = ({ name: _n, pitch: _p, edges: _e, ...plane }, volume, of, blend) => ({ ...plane, volume, of, blend });
+
+export class SliceValues {
+  #channel;
+  #onLoad;
+  #onFail;
+  #wanted = null;
+  #busy = false;
+  #known = new Map(); // by the text of a request: its answer; of the newest plane alone
+  shown = null; // { plane, values, labels: [{ values, labels }] }
+
+  constructor(channel, onLoad, onFail) {
+    this.#channel = channel;
+    this.#onLoad = onLoad;
+    this.#onFail = onFail;
+  }
+
+  // source: { volume, grid, transform }; labels: labelSources().
+  want(plane, source, labels, blend) {
+    const requests = [asked(plane, source.volume, "voxels", blend),
+      ...labels.map((map) => asked(planeIn(plane, source, map), map.volume, map.of, "maximum"))].map((request) => JSON.stringify(request));
+    this.#wanted = { plane, requests };
+    if (!this.#busy) this.#load();
+  }
+
+  // Everything is asked for again.
+  forget() {
+    this.#known.clear();
+    this.shown = null;
+  }
+
+  async #load() {
+    this.#busy = true;
+    while (this.#wanted !== null) {
+      const { plane, requests } = this.#wanted;
+      this.#wanted = null;
+      try {
+        const known = new Map();
+        for (const request of requests) known.set(request, this.#known.get(request) ?? (await this.#channel.slice(JSON.parse(request))));
+        this.#known = known;
+        const [values, ...labels] = requests.map((request) => known.get(request));
+        this.shown = { plane, values: values.values, labels: labels.map((one) => one.values) };
+        this.#onLoad();
+      } catch (error) {
+        this.#onFail(error);
+      }
+    }
+    this.#busy = false;
+  }
+}
+
+// Puts greys and labels into a canvas of one pixel a sample. maps: labelSources(), in the order of labels; those that are null
+// are not drawn; isAlone: the values are labels themselves.
+export function paint(canvas, { plane, values, labels }, [low, high], maps, isAlone) {
+  const { width, height } = plane, image = new ImageData(width, height), { data } = image, span = high > low ? high - low : 1;
+  for (let n = 0; n < width * height; n++) {
+    const value = values[n], grey = isAlone ? 0 : (255 * (value - low)) / span; // a Uint8ClampedArray rounds and clamps
+    data[4 * n] = data[4 * n + 1] = data[4 * n + 2] = grey;
+    data[4 * n + 3] = Number.isNaN(value) ? 0 : 255;
+  }
+  maps.forEach((map, m) => { if (map !== null) tint(data, labels[m], map.labels, isAlone ? 1 : LABEL_STRENGTH); });
+  canvas.width = width;
+  canvas.height = height;
+  canvas.getContext("2d").putImageData(image, 0, 0);
+}
+
+function tint(data, values, labels, strength) {
+  const colors = new Map(labels.filter((label) => label.visible !== false).map((label) => [label.value, rgbOf(label.color)]));
+  for (let n = 0; n < values.length; n++) {
+    const color = colors.get(values[n]);
+    if (color === undefined) continue;
+    for (let c = 0; c < 3; c++) data[4 * n + c] += strength * (color[c] - data[4 * n + c]);
+    data[4 * n + 3] = 255;
+  }
+}
+
+const rgbOf = (linear) => [1, 3, 5].map((at) => parseInt(hexOf(linear).slice(at, at + 2), 16));
+
+// The isolines of the source's isosurfaces: [{ color, pieces }].
+export const isolines = ({ plane, values }, surfaces) =>
+  surfaces.map((surface) => ({ color: hexOf(surface.color), pieces: contourPieces(values, plane.width, plane.height, surface.value) }));

@@ -1,0 +1,34 @@
+// The line below the picture: whether it shows what the scene is now, how far the next picture is, and what others are waited for.
+
+const ASK_AFTER = 600, ASK_EVERY = 400; // milliseconds of a picture under way, for how far it is
+const STAGES = { moving: "moving", settled: "refining", refining: "refining", final: "final", waiting: "waiting" };
+
+// find(id): an element of the viewer. Returns show(frame), of frames.js, and end().
+export function statusLine(find, channel) {
+  const stage = find("stage"), progress = find("progress");
+  let timer = 0, number = 0;
+
+  // Tells how far it is, as long as the picture is under way.
+  async function ask(mine) {
+    const { part, others } = await channel.progress().catch(() => ({ part: 0, others: 0 }));
+    if (mine !== number) return;
+    progress.textContent = (part > 0 ? `${Math.round(100 * part)} %` : "") + (others > 0 ? ` · with ${others} other ${others === 1 ? "picture" : "pictures"} under way` : "");
+    timer = setTimeout(() => ask(mine), ASK_EVERY);
+  }
+
+  function show(frame) {
+    const name = frame.error ? "failed" : STAGES[frame.stage];
+    if (name !== stage.dataset.stage || frame.stage === "settled") {
+      number++;
+      clearTimeout(timer);
+      progress.textContent = "";
+      if ((name === "refining" || name === "moving") && channel.progress) timer = setTimeout(ask, ASK_AFTER, number);
+    }
+    stage.textContent = name;
+    stage.dataset.stage = name;
+    if (frame.error || !(frame.bytes > 0)) return;
+    const seconds = frame.milliseconds < 1000 ? `${Math.round(frame.milliseconds)} ms` : `${(frame.milliseconds / 1000).toFixed(1)} s`;
+    find("statistics").textContent = `${frame.width} × ${frame.height} · sheets ${+frame.spacing.toPrecision(2)} voxels · ${seconds} · ${Math.ceil(frame.bytes / 1024)} KiB`;
+  }
+  return { show, end: () => { number++; clearTimeout(timer); } };
+}

@@ -1,0 +1,362 @@
+#!/usr/bin/env python3
+"""Nothing is lost, in a headless Chromium: one step of the history a gesture, menus that follow it, and the whole state after a reload, after
+another start of the viewer, after a lost network and out of a file. What the page says of its picture is true.
+
+usage: session.py PROGRAM [FOLDER]
+FOLDER: where screenshots are kept; without it they are not made.
+"""
+import json
+import os
+import shutil
+import stat
+import subprocess
+import sys
+import tempfile
+import time
+
+import checks
+from browser import Browser
+from checks import check
+from hands import PROGRAM, STAGE, center, equals_render, open_section, press, press_named, rest, scene_of, set_control
+from viewer import Viewer
+
+SHOTS = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else None
+BANNER = "document.querySelector('.banner')"
+
+
+def undo(browser):
+    press_named(browser, "Undo")
+
+
+def slider_at(browser, label):
+    """The middle of the slider with this label, brought into view."""
+    return browser.run(f"""(() => {{ const label = [...document.querySelectorAll('aside label')].find((l) => l.textContent === {json.dumps(label)} && l.offsetParent);
+      const b = document.getElementById(label.htmlFor); b.scrollIntoView({{ block: 'center' }}); const r = b.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; }})()""")
+
+
+def one_step_a_gesture(browser):
+    open_section(browser, "Lights")
+    before = scene_of(browser)["lights"]
+    x, y = slider_at(browser, "Intensity")
+    browser.mouse("mousePressed", x, y)
+    for part in range(4):  # slower than any clock of a history
+        browser.mouse("mouseMoved", x + 8 * part, y)
+        time.sleep(0.4)
+    browser.mouse("mouseReleased", x + 24, y)
+    first = scene_of(browser)["lights"]
+    browser.drag([x + 24, y], [x + 44, y], steps=3)  # at once
+    check(first != before and scene_of(browser)["lights"] != first, "two drags of a slider")
+    undo(browser)
+    check(scene_of(browser)["lights"] == first, "one undo takes the second drag back, however soon it came")
+    undo(browser)
+    check(scene_of(browser)["lights"] == before, "one undo takes the first drag back, however long it took")
+    press_named(browser, "Redo")
+    check(scene_of(browser)["lights"] == first, "redo")
+    undo(browser)
+    browser.run("document.querySelector('.light').focus()")
+    places = [scene_of(browser)["lights"]]
+    for _ in range(3):
+        browser.key("ArrowRight")
+        places.append(scene_of(browser)["lights"])
+    for place in places[-2::-1]:
+        undo(browser)
+        check(scene_of(browser)["lights"] == place, "each press of a key is a step")
+    rest(browser)
+
+
+def cameras_are_undone(browser):
+    open_section(browser, "Session")
+    first = scene_of(browser)["camera"]
+    x, y = center(browser, "#view")
+    browser.drag([x - 120, y + 90], [x - 60, y + 110])
+    second = scene_of(browser)["camera"]
+    browser.drag([x - 120, y + 90], [x - 100, y + 90])
+    lights = scene_of(browser)["lights"]
+    browser.run("document.getElementById('view').focus()")
+    browser.key("c")
+    check(second != first and scene_of(browser)["camera"] == second, "c: the view before")
+    press(browser, "camera back")
+    check(scene_of(browser)["camera"] == first and scene_of(browser)["lights"] == lights, "the first view, and nothing else")
+    browser.run("document.getElementById('view').focus()")
+    browser.key("C")
+    check(scene_of(browser)["camera"] == second, "C: the view after")
+
+
+def menus_follow(browser):
+    chosen = "(label) => document.getElementById([...document.querySelectorAll('aside label')].find((l) => l.textContent === label).htmlFor).value"
+    def menu(label):
+        return browser.run(f"({chosen})({json.dumps(label)})")
+    open_section(browser, "Transfer function")
+    start = menu("Preset")
+    set_control(browser, "Colours", "viridis", "change")
+    check(menu("Colours") == "viridis", "the menu tells the colormap")
+    set_control(browser, "Colours", "magma", "change")
+    undo(browser)
+    check(menu("Colours") == "viridis", "undone: the one before")
+    undo(browser)
+    check(menu("Colours") == "" and menu("Preset") == start, "undone: none")
+    points = "halflight.store.scene.volumes[0].transfer_function.opacity.length"
+    before = browser.run(points)
+    set_control(browser, "Preset", "ct-bone", "change")
+    browser.wait(f"{points} !== {before}")
+    check(menu("Preset") == "ct-bone", "the preset")
+    undo(browser)
+    check(menu("Preset") == start, "undone: no longer the preset")
+    press_named(browser, "Redo")
+    check(menu("Preset") == "ct-bone", "redone: the preset again")
+    line = scene_of(browser)["volumes"][0]["transfer_function"]
+    press(browser, "by gradient")
+    check("boxes" in scene_of(browser)["volumes"][0]["transfer_function"], "by gradient")
+    press(browser, "by value")
+    check(scene_of(browser)["volumes"][0]["transfer_function"] == line, "by value: the line that was")
+    undo(browser)
+    undo(browser)
+    undo(browser)
+    rest(browser)
+
+
+def fields_undo_themselves(browser):
+    """Ctrl + Z in a field is the field's; keys work again after a light was dragged."""
+    open_section(browser, "Lights")
+    set_control(browser, "Intensity", 2)
+    steps = "halflight.store.history[0].length"
+    count = browser.run(steps)
+    browser.run("document.querySelector('details[open] input.number').focus()")
+    browser.call("Input.dispatchKeyEvent", type="keyDown", key="z", modifiers=2)
+    browser.call("Input.dispatchKeyEvent", type="keyUp", key="z")
+    check(browser.run(steps) == count and count > 0, f"a field's Ctrl + Z leaves the scene: {count}, {browser.run(steps)}")
+    handle = center(browser, ".light-dot")
+    browser.drag(handle, [handle[0] + 20, handle[1] + 5])
+    shadows = scene_of(browser)["render"]["shadows"]
+    browser.key("s")
+    check(scene_of(browser)["render"]["shadows"] != shadows, "'s' works after a light was dragged")
+    for _ in range(3):
+        undo(browser)
+
+
+def zoom_goes_on(browser):
+    """The eye passes what it looked at."""
+    x, y = center(browser, "#view")
+    before = scene_of(browser)["camera"]
+    eyes = []
+    for _ in range(60):
+        browser.wheel(x, y, -400)
+        eyes.append(scene_of(browser)["camera"]["position"])
+    last = sum((a - b) ** 2 for a, b in zip(eyes[-1], eyes[-6])) ** 0.5
+    check(last > 0.3, f"the last five steps still move the eye: {last}")
+    browser.run(f"halflight.store.setCamera({json.dumps(before)})")
+
+
+def true_status(browser):
+    """The line under the picture is not 'final' from the very moment of a change; slow pictures tell how far they are."""
+    rest(browser)
+    said = browser.run("(halflight.store.changeRender('sheet_spacing', 0.02), document.getElementById('stage').dataset.stage)")
+    check(said == "moving", f"at the change: {said}")
+    browser.wait(f"{STAGE} === 'refining'")
+    browser.wait("/^[0-9]+ %/.test(document.getElementById('progress').textContent)")
+    check(browser.run("document.getElementById('stage').textContent") != "final", "not final while it is made")
+    undo(browser)
+    rest(browser)
+    check(browser.run("document.getElementById('progress').textContent") == "", "at rest nothing is under way")
+    marks = browser.run("""(halflight.store.setMarks('test', [{ kind: 'text', points: [[0, 0, 0]], text: 'here' }]), document.getElementById('stage').dataset.stage)""")
+    check(marks == "final", "a mark changes no picture")
+    undo(browser)
+    check(browser.run(STAGE) == "final" and browser.run("halflight.store.marks.length") == 0, "nor does its undo")
+
+
+STATE = "JSON.stringify([halflight.store.scene, halflight.store.marks, halflight.store.page])"
+
+
+def work(browser):
+    """Something of everything; returns the state."""
+    set_control(browser, "Colours", "magma", "change")
+    browser.run("halflight.slices.moveTo([3, 4, 5])")
+    browser.run("halflight.store.setPage({ layout: 'four', windows: { 0: [0.25, 0.75] } })")
+    browser.run("halflight.store.setMarks('ruler', [{ kind: 'ruler', points: [[0, 0, 0], [3, 4, 0]], text: 'five' }])")
+    browser.run("[...document.querySelectorAll('details')].find((d) => d.querySelector('summary').textContent === 'Session').open = true")
+    rest(browser)
+    press(browser, "bookmark")
+    x, y = center(browser, "#view")
+    browser.drag([x - 60, y + 60], [x - 30, y + 80])
+    rest(browser)
+    return browser.run(STATE)
+
+
+def reload(browser):
+    browser.run("globalThis.before = true")
+    browser.call("Page.reload")
+    browser.wait("globalThis.before === undefined && globalThis.halflight !== undefined")
+    rest(browser)
+
+
+def after_reload(browser):
+    before = work(browser)
+    reload(browser)
+    check(browser.run(STATE) == before, "a reload: all is as it was")
+    check(browser.run("document.querySelectorAll('.slice:not([hidden])').length") == 3 and browser.run("document.querySelectorAll('.bookmarks li').length") == 1, "and is shown")
+    colors = scene_of(browser)["volumes"][0]["transfer_function"]["color"]
+    undo(browser)
+    check(browser.run("halflight.store.marks.length") == 0, "undo goes on: the ruler")
+    undo(browser)
+    check(scene_of(browser)["volumes"][0]["transfer_function"]["color"] != colors, "and the colours")
+    press_named(browser, "Redo")
+    press_named(browser, "Redo")
+    rest(browser)
+    camera = scene_of(browser)["camera"]
+    browser.run("document.querySelector('.bookmarks .view').click()")
+    check(scene_of(browser)["camera"] != camera, "the bookmark leads back")
+    browser.run("document.getElementById('view').focus()")
+    browser.key("c")
+    check(scene_of(browser)["camera"] == camera, "and is undone as any view")
+    browser.run("halflight.store.setPage({ layout: 'picture' })")
+    equals_render(browser, "reloaded")
+
+
+def shot(browser, name):
+    if SHOTS is not None:
+        browser.screenshot(f"{SHOTS}/{name}.png")
+
+
+def after_restart(browser, viewer, options):
+    """Another viewer on the same port goes on with the page, and with the file that it had opened."""
+    browser.run("fetch('open?file=second.nrrd', { method: 'POST' })")  # numbers of the first viewer are not those of the second
+    open_section(browser, "Open")
+    browser.wait("[...document.querySelectorAll('.files .file')].some((b) => b.textContent === 'second.nrrd')")
+    browser.run("[...document.querySelectorAll('.files .file')].find((b) => b.textContent === 'second.nrrd').click()")
+    browser.wait("document.title.startsWith('second')")
+    rest(browser)
+    set_control(browser, "Colours", "viridis", "change")
+    rest(browser)
+    viewer.interrupt()
+    browser.run("halflight.store.changeRender('shadows', 'hard')")
+    browser.wait(f"{BANNER} && !{BANNER}.hidden")
+    check(browser.run("document.getElementById('stage').textContent") == "failed", "the picture is not the scene's")
+    check("Retry" in browser.run(f"{BANNER}.textContent"), "the banner offers to try again")
+    shot(browser, "banner")
+    before = browser.run(STATE)
+    with Viewer(PROGRAM, *options) as again:
+        check(again.url == viewer.url, f"the same URL: {again.url}")
+        browser.run(f"[...{BANNER}.querySelectorAll('button')][0].click()")
+        browser.wait(f"{BANNER}.hidden")
+        rest(browser)
+        check(browser.run(STATE) == before, "all is as it was")
+        equals_render(browser, "restarted")
+        reload(browser)
+        check(browser.run("document.title").startswith("second") and browser.run(STATE) == before, "the opened file, after a reload too")
+        problems = [line for line in browser.problems if "ERR_CONNECTION_REFUSED" not in line and "410" not in line]
+        check(problems == [], f"the console has errors: {problems}")
+        browser.problems.clear()
+        files(browser)
+        network(browser)
+
+
+def network(browser):
+    """Without a network the banner comes, and goes when the network is back, without a hand."""
+    browser.call("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=-1, uploadThroughput=-1)
+    set_control(browser, "Colours", "magma", "change")
+    browser.wait(f"!{BANNER}.hidden")
+    browser.call("Network.emulateNetworkConditions", offline=False, latency=0, downloadThroughput=-1, uploadThroughput=-1)
+    browser.wait(f"{BANNER}.hidden")
+    rest(browser)
+
+
+def drop(browser, name, text):
+    """A file falls on the page."""
+    browser.run(f"""(() => {{ const transfer = new DataTransfer(); transfer.items.add(new File([{json.dumps(text)}], {json.dumps(name)}));
+      document.querySelector('.viewer').dispatchEvent(new DragEvent('drop', {{ dataTransfer: transfer, bubbles: true, cancelable: true }})); }})()""")
+
+
+def files(browser):
+    """A session as a file brings everything back; a scene of what is open the scene; others are refused in words."""
+    os.mkdir("saved")
+    browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=os.path.abspath("saved"))
+    work(browser)
+    state = json.loads(browser.run(STATE))
+    press(browser, "save session")
+    end = time.monotonic() + 60
+    while not os.path.exists("saved/second-session.json"):
+        check(time.monotonic() < end, "the session is saved")
+        time.sleep(0.05)
+    with open("saved/second-session.json", encoding="utf-8") as file:
+        session = file.read()
+    press(browser, "start afresh")
+    rest(browser)
+    check(json.loads(browser.run(STATE))[1:] == [[], {}] and not browser.run("halflight.store.canUndo"), "as it began")
+    drop(browser, "a-session.json", session)
+    browser.wait("halflight.store.marks.length === 1")
+    rest(browser)
+    check(json.loads(browser.run(STATE)) == state, "the session brings all back")
+    undo(browser)
+    check(json.loads(browser.run(STATE))[1] == [], "as one step")
+    changed = json.loads(session)["scene"]
+    changed["image"]["background"] = [0.1, 0.2, 0.3]
+    drop(browser, "scene.json", json.dumps(changed))
+    browser.wait("halflight.store.scene.image.background[2] === 0.3")
+    rest(browser)
+    for name, text, words in (("a.json", "{", "no JSON"), ("b.json", "[1]", "neither a session nor a scene"), ("c.json", '{"halflight_session": 1}', "neither"),
+                              ("d.json", json.dumps({**json.loads(session), "source": "../none.nrrd", "scene": {**changed, "volumes": []}}), "no such file"),
+                              ("e.json", json.dumps({**changed, "camera": {"type": "fish"}}), "camera")):
+        before = browser.run(STATE)
+        drop(browser, name, text)
+        browser.wait(f"document.getElementById('message').textContent.includes({json.dumps(words)})")
+        check(browser.run(STATE) == before, f"{name} changes nothing")
+    hostile = {**json.loads(session), "marks": [{"kind": "<img>", "points": [[0, 0, 0]]}, {"kind": "text", "points": [[0, None, 0]]}, {"kind": "text", "points": [[1, 2, 3]], "text": "<b>"}]}
+    drop(browser, "f.json", json.dumps(hostile))
+    browser.wait("halflight.store.marks.length === 1 && halflight.store.marks[0].text === '<b>'")
+    rest(browser)
+    browser.problems.clear()  # refused requests
+
+
+def private_tokens(folder):
+    """The token that a port keeps is the user's alone; where it is not, it is replaced, and without a private folder none is kept."""
+    names = [entry for entry in os.listdir(folder) if entry.startswith("halflight-view-")]
+    check(names == [f"halflight-view-{port}"], f"one token is kept: {names}")
+    name = names[0]
+    check(stat.S_IMODE(os.stat(f"{folder}/{name}").st_mode) == 0o600, "the token's file is the user's alone")
+    with Viewer(PROGRAM, "first.nrrd") as free:
+        check(f"halflight-view-{free.port}" not in os.listdir(folder), "a free port keeps none")
+    with Viewer(PROGRAM, "first.nrrd", "--port", port) as again:
+        token = again.token
+    with Viewer(PROGRAM, "first.nrrd", "--port", port) as again:
+        check(again.token == token, "the port's token")
+    for spoil in (lambda path: os.chmod(path, 0o644), lambda path: os.truncate(path, 31), lambda path: [os.unlink(path), os.symlink("/etc/hostname", path)]):
+        spoil(f"{folder}/{name}")
+        with Viewer(PROGRAM, "first.nrrd", "--port", port) as again:
+            check(again.token != token, "a token that others could know is not used")
+            token = again.token
+        check(stat.S_IMODE(os.lstat(f"{folder}/{name}").st_mode) == 0o600, "the new one is the user's alone")
+    os.chmod(folder, 0o755)
+    with Viewer(PROGRAM, "first.nrrd", "--port", port) as again:
+        check(again.token != token, "none is read or kept in a folder that others can enter")
+
+
+chromium = shutil.which("chromium")
+if chromium is None:
+    print("chromium is not installed")
+    sys.exit(77)
+with tempfile.TemporaryDirectory() as place:
+    os.chdir(place)
+    if subprocess.run([PROGRAM, "view", "none.nrrd", "--no-browser"], capture_output=True, check=False).returncode == 4:
+        print("built without the viewer")
+        sys.exit(77)
+    os.mkdir("runtime", 0o700)
+    os.environ["XDG_RUNTIME_DIR"] = os.path.abspath("runtime")
+    for made in ("first", "second"):
+        subprocess.run([PROGRAM, "make", "rings" if made == "first" else "torus", "--size", "32", "--quiet", "-o", f"{made}.nrrd"], check=True)
+    with Viewer(PROGRAM, "first.nrrd") as chosen:
+        port = str(chosen.port)
+    arguments = ["first.nrrd", "--sheet-spacing", "2", "--shadows", "hard", "--port", port]
+    with Viewer(PROGRAM, *arguments) as first, Browser(chromium, (900, 620)) as page:
+        page.open(first.url)
+        rest(page)
+        one_step_a_gesture(page)
+        cameras_are_undone(page)
+        menus_follow(page)
+        fields_undo_themselves(page)
+        zoom_goes_on(page)
+        true_status(page)
+        after_reload(page)
+        check(page.problems == [], f"the console has errors: {page.problems}")
+        after_restart(page, first, arguments)
+    private_tokens("runtime")
+print(f"{checks.count} checks passed")
