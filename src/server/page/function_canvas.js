@@ -3,10 +3,10 @@
 
 import { hexOf } from "./color.js";
 import { make, shortNumber } from "./controls.js";
-import { blankContext, drawBars } from "./histogram.js";
+import { blankContext, drawBars, drawValueAxis } from "./histogram.js";
 import { addPoint, addStop, colorAt, movePoint, moveStop, opacityAt, removePoint, removeStop } from "./transfer_function.js";
 
-const HEIGHT = 168, STRIP = 16, GAP = 8, MARGIN = 9; // pixels
+const HEIGHT = 180, STRIP = 16, GAP = 20, MARGIN = 9; // pixels
 const GRIP = 10; // pixels within which a point is grabbed
 
 export class FunctionCanvas {
@@ -172,6 +172,7 @@ export class FunctionCanvas {
       counts: this.#histogram, range: this.#range, x: (value) => this.#x(value), left: MARGIN, right: MARGIN + this.#width,
       base: this.#y(0), height: 0.92 * this.#plot,
     });
+    drawValueAxis(context, { range: this.#shown, x: (value) => this.#x(value), left: MARGIN, right: MARGIN + this.#width, y: this.#y(0), color: style.getPropertyValue("--dim") });
     context.strokeStyle = style.getPropertyValue("--grid");
     context.lineWidth = 1;
     context.beginPath();

@@ -1,4 +1,6 @@
-// A volume's histogram: bars whose heights are logarithms, so that rare values are seen beside common ones.
+// A volume's histogram: bars whose heights are logarithms, so that rare values are seen beside common ones, and the values below them.
+
+import { shortNumber } from "./controls.js";
 
 // counts: of equal bins over range; x(value): where a value lies; left, right: of the plot; base: the bars' lower end;
 // height: of the tallest.
@@ -12,6 +14,27 @@ export function drawBars(context, { counts, range, x, left, right, base, height 
     context.rect(from, base - tall, to - from + 0.3, tall);
   }
   context.fill();
+}
+
+const TICK_ROOM = 46; // pixels from tick to tick, at least
+const TICK_LINE = 3;
+
+// The axis of values under a plot: ticks at round numbers of its range, with what they are. y: of the plot's lower end.
+export function drawValueAxis(context, { range: [low, high], x, left, right, y, color }) {
+  const least = ((high - low) * TICK_ROOM) / (right - left), power = 10 ** Math.floor(Math.log10(least));
+  const step = [1, 2, 5, 10].map((n) => n * power).find((size) => size >= least * 0.9999999);
+  context.strokeStyle = context.fillStyle = color;
+  context.font = "10px system-ui, sans-serif";
+  context.textBaseline = "top";
+  context.lineWidth = 1;
+  for (let n = Math.ceil(low / step); n * step <= high + 1e-9 * step; n++) {
+    const at = x(n * step), text = shortNumber(+(n * step).toPrecision(12)), half = context.measureText(text).width / 2;
+    context.beginPath();
+    context.moveTo(at, y);
+    context.lineTo(at, y + TICK_LINE);
+    context.stroke();
+    context.fillText(text, Math.min(Math.max(at - half, left - 8), right + 8 - 2 * half), y + TICK_LINE + 1);
+  }
 }
 
 // A canvas made as large as it is shown, emptied; null: it is not shown.

@@ -8,6 +8,7 @@ import { length, subtract } from "./vector.js";
 export function markPanel(viewer) {
   const { store, root, slices } = viewer, { element, body } = section("Measure", false);
   let kind = null, points = [];
+  element.hidden = !viewer.channel.depth && !slices.available; // no click tells a place
 
   const tools = Object.entries(KINDS).map(([name, { name: text }]) => button(text, () => choose(kind === name ? null : name), { "aria-pressed": "false", "data-kind": name }));
   const hint = make("p", { class: "facts", role: "status" }), list = make("ul", { class: "files marks", "aria-label": "Marks" });

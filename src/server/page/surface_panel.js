@@ -2,10 +2,10 @@
 
 import { hexOf, linearOf } from "./color.js";
 import { color, make, section, shortNumber, slider, tabs, toggle } from "./controls.js";
-import { blankContext, drawBars } from "./histogram.js";
+import { blankContext, drawBars, drawValueAxis } from "./histogram.js";
 import { opacityAt, rangeOf } from "./transfer_function.js";
 
-const HEIGHT = 72, MARGIN = 9, GRIP = 10; // pixels
+const HEIGHT = 88, AXIS = 16, MARGIN = 9, GRIP = 10; // pixels
 const OUTWARDS = 0.6; // of the way from the last surface's value to what surrounds things: a further surface lies around it
 const PALETTE = ["#e8c39e", "#4fa3e0", "#d9534f", "#6cc070", "#c48be0", "#e0c04f"];
 
@@ -39,14 +39,15 @@ function lines({ surfaces, chosen, choose, set, about }) {
     if (context === null) return;
     const style = getComputedStyle(canvas);
     context.fillStyle = style.getPropertyValue("--bars");
-    drawBars(context, { counts: about.histogram, range: [low, high], x, left: MARGIN, right: MARGIN + width(), base: HEIGHT - 4, height: HEIGHT - 12 });
+    drawBars(context, { counts: about.histogram, range: [low, high], x, left: MARGIN, right: MARGIN + width(), base: HEIGHT - AXIS, height: HEIGHT - AXIS - 8 });
+    drawValueAxis(context, { range: [low, high], x, left: MARGIN, right: MARGIN + width(), y: HEIGHT - AXIS, color: style.getPropertyValue("--dim") });
     surfaces().forEach((surface, n) => {
       context.fillStyle = hexOf(surface.color);
       context.strokeStyle = style.getPropertyValue(n === chosen() ? "--accent" : "--line");
       context.lineWidth = n === chosen() ? 2.5 : 1.5;
       context.beginPath();
       context.moveTo(x(surface.value), 8);
-      context.lineTo(x(surface.value), HEIGHT - 4);
+      context.lineTo(x(surface.value), HEIGHT - AXIS);
       context.stroke();
       context.beginPath();
       context.arc(x(surface.value), 9, 5, 0, 2 * Math.PI);

@@ -1,0 +1,230 @@
+#!/usr/bin/env python3
+"""Measuring on the page, in a headless Chromium: rulers, angles, lines, arrows and texts by clicks in the picture and in slices, by fingers and keys;
+their numbers are those of the file's lengths, and they stand in the scene.
+
+usage: marks.py PROGRAM [FOLDER]
+FOLDER: where screenshots are kept; without it they are not made.
+"""
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import numpy
+
+import checks
+from browser import Browser
+from checks import check
+from hands import PROGRAM, STAGE, center, open_section, press, press_named, rest, scene_of, set_control
+from viewer import Viewer
+
+SIDE, SPACING = 40, (2.0, 1.0, 1.0)  # voxels; millimetres along x, y, z
+SHOTS = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else None
+
+
+def write_ball():
+    x, y, z = (axis - 19.5 for axis in numpy.mgrid[:SIDE, :SIDE, :SIDE])
+    ball = (250 * numpy.clip(16.5 - numpy.sqrt((2 * x) ** 2 + y * y + z * z), 0, 1)).astype("u1")
+    header = (f"NRRD0004\ntype: uint8\ndimension: 3\nspace dimension: 3\nsizes: {SIDE} {SIDE} {SIDE}\nspace directions: ({SPACING[0]},0,0) (0,1,0) (0,0,1)\n"
+              "space origin: (0,0,0)\nspace units: \"mm\" \"mm\" \"mm\"\nencoding: raw\n\n")
+    with open("ball.nrrd", "wb") as file:
+        file.write(header.encode() + ball.tobytes(order="F"))
+
+
+def world(voxel):
+    return [spacing * index for spacing, index in zip(SPACING, voxel)]
+
+
+def pixel(browser, voxel, name="axial"):
+    return browser.run(f"""(() => {{ const view = halflight.slices.view({json.dumps(name)}), [x, y] = view.project({json.dumps(world(voxel))});
+      const box = view.area.getBoundingClientRect(); return [box.x + x, box.y + y]; }})()""")
+
+
+def in_picture(browser, point):
+    return browser.run(f"""import('./camera.js').then((m) => {{ const view = document.getElementById('view'), box = view.getBoundingClientRect();
+      const [x, y] = m.projector(halflight.store.scene.camera, view.clientWidth, view.clientHeight)({json.dumps(point)}); return [box.x + x, box.y + y]; }})""")
+
+
+def click(browser, place, count=1):
+    for kind in ("mousePressed", "mouseReleased"):
+        browser.call("Input.dispatchMouseEvent", type=kind, x=place[0], y=place[1], button="left", buttons=1 if kind == "mousePressed" else 0, clickCount=count)
+
+
+def marks(browser):
+    return json.loads(browser.run("JSON.stringify(halflight.store.marks)"))
+
+
+def measured(browser):
+    return browser.run("[...document.querySelectorAll('.marks .measured')].map((one) => one.textContent)")
+
+
+def close(point, other, reach):
+    return math.dist(point, other) <= reach
+
+
+def rulers(browser):
+    """From voxel to voxel of a slice: the length of the file, in its unit; one step of undo."""
+    a, b = (10, 12, 20), (28, 30, 20)
+    press(browser, "Ruler")
+    check(browser.run("document.querySelector('[data-kind=ruler]').getAttribute('aria-pressed')") == "true", "the tool is chosen")
+    click(browser, pixel(browser, a))
+    check(marks(browser) == [], "one point is no ruler")
+    click(browser, pixel(browser, b))
+    (ruler,) = marks(browser)
+    length = math.dist(world(a), world(b))
+    check(ruler["kind"] == "ruler" and close(ruler["points"][0], world(a), 0.2) and close(ruler["points"][1], world(b), 0.2), f"the ruler: {ruler}")
+    check(abs(float(measured(browser)[0].split()[0]) - length) < 0.3 and measured(browser)[0].endswith(" mm"), f"{length} mm: {measured(browser)}")
+    check(browser.run("document.querySelector('[data-kind=ruler]').getAttribute('aria-pressed')") == "false", "the tool is done")
+    drawn = browser.run("[...document.querySelectorAll('#overlay .mark-text, [data-plane=axial] .mark-text')].map((t) => t.textContent)")
+    check(drawn == [measured(browser)[0]] * 2, f"it is written in the picture and in the slice: {drawn}")
+    press_named(browser, "Undo")
+    check(marks(browser) == [] and measured(browser) == [], "undo")
+    press_named(browser, "Redo")
+    check(marks(browser) == [ruler], "redo")
+    browser.drag(pixel(browser, b), pixel(browser, (28, 12, 20)))
+    moved = marks(browser)[0]
+    check(close(moved["points"][1], world((28, 12, 20)), 0.3) and moved["points"][0] == ruler["points"][0], f"its end is dragged: {moved}")
+    press_named(browser, "Undo")
+    check(marks(browser) == [ruler], "in one step")
+    browser.run("document.querySelector('[data-plane=axial] .mark-handle').focus()")
+    browser.key("ArrowRight")
+    check(marks(browser)[0]["points"][0] != ruler["points"][0], "and moved by keys")
+    press_named(browser, "Undo")
+
+
+def angles(browser):
+    press(browser, "Angle")
+    for voxel in ((19, 5, 20), (19, 19, 20), (26, 19, 20)):
+        click(browser, pixel(browser, voxel))
+    check(marks(browser)[-1]["kind"] == "angle" and abs(float(measured(browser)[1].rstrip("°")) - 90) < 0.6, f"a right angle: {measured(browser)}")
+
+
+def lines(browser):
+    """A line ends by a double click, by Enter, or is given up by Escape; its length is the sum of its pieces."""
+    corners = ((8, 8, 20), (28, 8, 20), (28, 32, 20))
+    press(browser, "Line")
+    for voxel in corners:
+        click(browser, pixel(browser, voxel))
+    click(browser, pixel(browser, corners[-1]), count=2)
+    line = marks(browser)[-1]
+    check(line["kind"] == "line" and len(line["points"]) == 3, f"a double click ends it: {line}")
+    check(abs(float(measured(browser)[2].split()[0]) - 64) < 0.5, f"40 and 24: {measured(browser)}")
+    press(browser, "Line")
+    for voxel in corners[:2]:
+        click(browser, pixel(browser, voxel))
+    browser.run("document.getElementById('view').focus()")
+    browser.key("Enter")
+    check(len(marks(browser)) == 4 and len(marks(browser)[-1]["points"]) == 2, "Enter ends it")
+    press(browser, "Line")
+    click(browser, pixel(browser, corners[0]))
+    browser.key("Escape")
+    check(len(marks(browser)) == 4 and browser.run("document.querySelectorAll('[aria-pressed=true][data-kind]').length") == 0, "Escape gives it up")
+    count = len(marks(browser))
+    press_named(browser, "Remove Line 4")
+    check(len(marks(browser)) == count - 1, "a mark is removed")
+
+
+def arrows_and_texts(browser):
+    press(browser, "Arrow")
+    browser.touch([pixel(browser, (5, 5, 20))])
+    browser.touch([pixel(browser, (19, 19, 20))])
+    arrow = marks(browser)[-1]
+    check(arrow["kind"] == "arrow" and close(arrow["points"][1], world((19, 19, 20)), 0.5), f"an arrow by fingers: {arrow}")
+    press(browser, "Text")
+    click(browser, pixel(browser, (12, 25, 20)))
+    browser.call("Input.insertText", text="a lesion")
+    check(marks(browser)[-1] == {"kind": "text", "points": marks(browser)[-1]["points"], "text": "a lesion"}, f"a text, typed: {marks(browser)[-1]}")
+    check("a lesion" in browser.run("document.querySelector('#overlay').textContent"), "it is written in the picture")
+
+
+def by_keys(browser):
+    """The crosshair gives points where no pointer does."""
+    browser.run("halflight.slices.moveTo([20, 10, 20])")
+    browser.run("document.querySelector('[data-kind=ruler]').focus()")
+    browser.run("document.activeElement.click()")
+    browser.run("document.querySelector('[data-plane=axial] .slice-area').focus()")
+    browser.key("Enter")
+    for _ in range(5):
+        browser.key("ArrowDown")
+    browser.key("Enter")
+    last = marks(browser)[-1]
+    check(last["kind"] == "ruler" and abs(math.dist(*last["points"]) - 5) < 1e-6, f"five voxels by keys: {last}")
+
+
+def in_the_picture(browser):
+    """Points lie on what is seen, and stay there as the camera turns; other planes do not show them."""
+    press(browser, "Ruler")
+    x, y = center(browser, "#view")
+    count = len(marks(browser))
+    for n, place in enumerate(((x - 20, y + 25), (x + 30, y + 10))):
+        click(browser, place)
+        browser.wait("halflight.marking.unfinished !== null" if n == 0 else f"halflight.store.marks.length === {count + 1}")
+    points = marks(browser)[-1]["points"]
+    middle = world((19.5, 19.5, 19.5))
+    for point, place in zip(points, ((x - 20, y + 25), (x + 30, y + 10))):
+        check(14.5 < math.dist(point, middle) < 18, f"on the ball of 16: {point}")
+        check(math.dist(in_picture(browser, point), place) < 1.5, "under the pointer")
+    browser.run("document.getElementById('view').focus()")
+    for _ in range(4):
+        browser.key("ArrowLeft")
+    check(marks(browser)[-1]["points"] == points and math.dist(in_picture(browser, points[0]), (x - 20, y + 25)) > 3, "they stand in the scene")
+    rest(browser)
+    before = in_picture(browser, points[0])
+    browser.drag(before, [before[0] + 20, before[1] - 10])
+    moved = marks(browser)[-1]["points"]
+    check(moved[1] == points[1] and math.dist(in_picture(browser, moved[0]), [before[0] + 20, before[1] - 10]) < 1.5, "a point is dragged in the picture")
+    camera = scene_of(browser)["camera"]
+    check(browser.run(STAGE) == "final" and scene_of(browser)["camera"] == camera, "which moves no camera")
+
+
+def axis_of_values(browser):
+    """Numbers stand under the histogram's bars."""
+    open_section(browser, "Transfer function")
+    browser.run("""(() => { globalThis.said = []; const own = CanvasRenderingContext2D.prototype.fillText;
+      CanvasRenderingContext2D.prototype.fillText = function (text, ...rest) { said.push([text, rest[0]]); return own.call(this, text, ...rest); }; })()""")
+    set_control(browser, "Colours", "viridis", "change")
+    said = browser.run("said")
+    numbers = [float(text) for text, _ in said][:7]
+    check(len(numbers) >= 4 and numbers[0] >= 0 and numbers[-1] <= 250 and all(b > a for a, b in zip(numbers, numbers[1:])), f"the axis: {said}")
+    press_named(browser, "Undo")
+
+
+chromium = shutil.which("chromium")
+if chromium is None:
+    print("chromium is not installed")
+    sys.exit(77)
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    if subprocess.run([PROGRAM, "view", "none.nrrd", "--no-browser"], capture_output=True, check=False).returncode == 4:
+        print("built without the viewer")
+        sys.exit(77)
+    write_ball()
+    with Viewer(PROGRAM, "ball.nrrd", "--sheet-spacing", "1", "--shadows", "hard") as viewer, Browser(chromium, (1100, 760)) as page:
+        page.open(viewer.url)
+        rest(page)
+        axis_of_values(page)
+        page.run("document.getElementById('view').focus()")
+        page.key("4")
+        page.run(f"halflight.slices.moveTo({json.dumps(world((19, 19, 20)))})")
+        open_section(page, "Measure")
+        rest(page)
+        page.wait("halflight.slices.shown('axial') && halflight.slices.readout")
+        rulers(page)
+        angles(page)
+        lines(page)
+        arrows_and_texts(page)
+        by_keys(page)
+        in_the_picture(page)
+        if SHOTS is not None:
+            for theme in range(2):
+                page.screenshot(f"{SHOTS}/marks-{theme}.png")
+                page.run("document.getElementById('theme').click()")
+        page.run(f"halflight.slices.moveTo({json.dumps(world((19, 19, 8)))})")
+        page.run("new Promise((done) => setTimeout(done, 500))")
+        shown = page.run("document.querySelectorAll('[data-plane=axial] .mark').length")
+        check(shown < len(marks(page)), f"another plane shows fewer: {shown}")
+        check(page.problems == [], f"the console has errors: {page.problems}")
+print(f"{checks.count} checks passed")
