@@ -203,9 +203,11 @@ static bool reserve_and_upload(hl_gpu *gpu, enum buffer_use use, const void *fro
 
 static size_t storage_bytes(int storage) { return storage == 0 ? 1 : storage == 1 ? 2 : 4; }
 
-/* Rows begin at multiples of sixteen bytes: kernels load aligned words. */
+/* Rows begin at multiples of sixteen bytes: kernels load aligned words. An odd number of sixteen bytes:
+ * neighbouring rows of a volume whose rows are 256 or 2048 bytes long would share a cache's banks and sets.
+ */
 size_t hl_gpu_row_bytes(const gpu_volume *volume) {
-  return ((size_t)volume->dimension[0] * storage_bytes(volume->storage) + 15) / 16 * 16;
+  return ((size_t)volume->dimension[0] * storage_bytes(volume->storage) + 15) / 16 * 16 | 16;
 }
 
 /* The bytes that kernels may read behind the last voxel. */

@@ -13,7 +13,9 @@
 #if defined(__OPENCL_VERSION__)
 
 #pragma OPENCL FP_CONTRACT OFF
-#define GLOBAL      __global
+#define GLOBAL __global
+/* Of a pointer to memory that no other pointer of the kernel leads to. */
+#define APART       restrict
 #define DEVICE      static
 #define DEVICE_CALL static
 /* groups: how many an NVIDIA multiprocessor shall hold at once at least, which limits the registers of each
@@ -32,14 +34,15 @@ typedef ulong wide;
 #define member_number() ((int)get_local_id(0))
 #define work_number()   ((int)get_global_id(0))
 #define work_count()    ((unsigned)get_global_size(0))
+/* The least of the numbers of members that step together, and whether a condition holds for one of them; here
+ * each steps alone, or by one where all of the group must take the same steps. */
+#define least_of_pack(value)   (value)
+#define any_of_pack(condition) (condition)
+#define least_of_group(value)  1
+#define SHARED_VOTES           __local int votes[GROUP / 16]
+#define UNROLLED
 /* Whether a condition holds for any of the sixteen pixels of the member's block. All members call it. votes:
  * shared by the group, one for each block. */
-/* The least of the numbers of members that step together; here each steps alone, or by one where all of the
- * group must take the same steps. */
-#define least_of_pack(value)  (value)
-#define least_of_group(value) 1
-#define SHARED_VOTES          __local int votes[GROUP / 16]
-#define UNROLLED
 #define block_any(votes, condition)                                                               \
   (barrier(CLK_LOCAL_MEM_FENCE),                                                                  \
    (get_local_id(0) & 15) == 0 ? (void)(votes[get_local_id(0) >> 4] = 0) : (void)0,               \
@@ -49,27 +52,29 @@ typedef ulong wide;
 #elif defined(__CUDACC_RTC__) || defined(__CUDACC__)
 
 #define GLOBAL
-#define DEVICE                static __device__ __forceinline__
-#define DEVICE_CALL           static __device__ __noinline__
-#define KERNEL(groups)        extern "C" __global__ void __launch_bounds__(GROUP, groups)
+#define APART                  __restrict__
+#define DEVICE                 static __device__ __forceinline__
+#define DEVICE_CALL            static __device__ __noinline__
+#define KERNEL(groups)         extern "C" __global__ void __launch_bounds__(GROUP, groups)
 typedef unsigned char byte;
 typedef unsigned short word16;
 typedef unsigned long long wide;
-#define fused(a, b, c)        __fmaf_rn(a, b, c)
-#define divided(a, b)         __fdiv_rn(a, b)
-#define root(x)               __fsqrt_rn(x)
-#define bits_of(x)            __float_as_int(x)
-#define of_bits(x)            __int_as_float(x)
-#define add_to(at, x)         atomicAdd(at, x)
-#define group_number()        ((int)blockIdx.x)
-#define member_number()       ((int)threadIdx.x)
-#define work_number()         ((int)(blockIdx.x * blockDim.x + threadIdx.x))
-#define work_count()          (gridDim.x * blockDim.x)
+#define fused(a, b, c)         __fmaf_rn(a, b, c)
+#define divided(a, b)          __fdiv_rn(a, b)
+#define root(x)                __fsqrt_rn(x)
+#define bits_of(x)             __float_as_int(x)
+#define of_bits(x)             __int_as_float(x)
+#define add_to(at, x)          atomicAdd(at, x)
+#define group_number()         ((int)blockIdx.x)
+#define member_number()        ((int)threadIdx.x)
+#define work_number()          ((int)(blockIdx.x * blockDim.x + threadIdx.x))
+#define work_count()           (gridDim.x * blockDim.x)
 /* Those of a warp step together. */
-#define least_of_pack(value)  __reduce_min_sync(__activemask(), value)
-#define least_of_group(value) __reduce_min_sync(0xffffffffu, value)
-#define SHARED_VOTES          int votes = 0
-#define UNROLLED              _Pragma("unroll")
+#define least_of_pack(value)   __reduce_min_sync(__activemask(), value)
+#define any_of_pack(condition) (__any_sync(__activemask(), condition) != 0)
+#define least_of_group(value)  __reduce_min_sync(0xffffffffu, value)
+#define SHARED_VOTES           int votes = 0
+#define UNROLLED               _Pragma("unroll")
 /* A block is half of a warp. */
 #define block_any(votes, condition) \
   ((votes = (int)(__ballot_sync(0xffffffffu, condition) >> (threadIdx.x & 16) & 0xffffu)) != 0)

@@ -47,8 +47,8 @@ DEVICE int cell_may_show(const volume_data *volume, const grid_point *point, flo
   *voxels = 0.0f;
   if (!point->inside) return 0;
   int x = whole_below(point->at[0]) + 1, y = whole_below(point->at[1]) + 1, z = whole_below(point->at[2]) + 1;
-  wide brick = ((wide)(z >> 2) * (wide)plan->brick_count[1] + (wide)(y >> 2)) * (wide)plan->brick_count[0] +
-               (wide)(x >> 2);
+  unsigned brick_row = (unsigned)(z >> 2) * (unsigned)plan->brick_count[1] + (unsigned)(y >> 2);
+  wide brick = (wide)brick_row * (unsigned)plan->brick_count[0] + (unsigned)(x >> 2);
   int bricks = volume->distances[brick];
   if (bricks > 0) {
     *voxels = (float)(bricks - 1) * 4.0f;
@@ -60,16 +60,16 @@ DEVICE int cell_may_show(const volume_data *volume, const grid_point *point, flo
 
 DEVICE GLOBAL const byte *first_row(const volume_data *volume, const int cell[3]) {
   GLOBAL const plan_volume *plan = volume->plan;
-  wide row = (wide)(cell[2] - 1) * plan->slice_rows + (wide)(cell[1] - 1);
+  wide row = (wide)(unsigned)(cell[2] - 1) * plan->slice_rows + (unsigned)(cell[1] - 1);
   const int voxel_bytes = STORAGE == STORED_U8 ? 1 : STORAGE == STORED_U16 ? 2 : 4;
-  return volume->voxels + row * plan->row_bytes + (wide)(cell[0] - 1) * (wide)voxel_bytes;
+  return volume->voxels + row * plan->row_bytes + (unsigned)((cell[0] - 1) * voxel_bytes);
 }
 
 /* A row's weighted sum; and its sum with slopes, from the same voxels. */
 #if STORAGE == STORED_F32
-#define row_sum(row, w) sum_row(row, &(w))
+#define row_sum(row, shift, w) sum_row(row, &(w))
 #else
-#define row_sum(row, w) ((float)weigh(load_row(row), w))
+#define row_sum(row, shift, w) ((float)weigh(load_row(row, shift), w))
 #endif
 
 /* The weighted sum of the 4x4x4 voxels around a point, less the empty value; the point is inside. Pairs along
@@ -96,13 +96,15 @@ DEVICE float density_at(const volume_data volume, float x, float y, float z) {
   }
   row_weights along = weights_of_row(weight[0]);
   GLOBAL const byte *slice = first_row(&volume, cell);
+  const unsigned shift = shift_of_row(slice);
+  slice -= shift >> 3; /* rows are all aligned alike */
   const wide row_bytes = plan->row_bytes, slice_bytes = plan->slice_rows * row_bytes;
   float sum = 0.0f;
   UNROLLED for (int k = 0; k < 4; k++, slice += slice_bytes) {
     GLOBAL const byte *row = slice;
     float plane = 0.0f;
     UNROLLED for (int j = 0; j < 4; j++, row += row_bytes)
-        plane = fused(row_sum(row, along), weight[1][j], plane);
+        plane = fused(row_sum(row, shift, along), weight[1][j], plane);
     sum = fused(plane, weight[2][k], sum);
   }
   return from_units(sum) - plan->empty;
@@ -128,6 +130,8 @@ DEVICE_CALL vector gradient_at(const volume_data volume, vector point) {
     }
   row_weights weights = weights_of_row(weight[0]), slopes = slopes_of_row(slope[0]);
   GLOBAL const byte *slice = first_row(&volume, cell);
+  const unsigned shift = shift_of_row(slice);
+  slice -= shift >> 3; /* rows are all aligned alike */
   const wide row_bytes = plan->row_bytes, slice_bytes = plan->slice_rows * row_bytes;
   float sum_x = 0.0f, sum_y = 0.0f, sum_z = 0.0f;
   UNROLLED for (int k = 0; k < 4; k++, slice += slice_bytes) {
@@ -137,7 +141,7 @@ DEVICE_CALL vector gradient_at(const volume_data volume, vector point) {
 #if STORAGE == STORED_F32
       float plain = sum_row(row, &weights), rising = slope_row(row, &slopes);
 #else
-      row_voxels voxels = load_row(row);
+      row_voxels voxels = load_row(row, shift);
       float plain = (float)weigh(voxels, weights), rising = (float)weigh_signed(voxels, slopes);
 #endif
       along_x = fused(rising, weight[1][j], along_x);

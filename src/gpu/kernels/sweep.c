@@ -47,12 +47,13 @@ spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned 
 }
 
 /* What both kernels of slabs are given. */
-#define SWEEP_ARGUMENTS                                                                                  \
-  GLOBAL const frame_plan *plan, GLOBAL const plan_rays *rays, GLOBAL const byte *voxels,                \
-      GLOBAL const byte *distances, GLOBAL const wide *cell_bits, GLOBAL const float *tables,            \
-      GLOBAL float *pixels, GLOBAL float *planes, GLOBAL float *light_state, GLOBAL int *changed,        \
-      GLOBAL const int *shown_from, GLOBAL unsigned *counts, GLOBAL float *slots, GLOBAL unsigned *list, \
-      GLOBAL unsigned *masks, int first, int end, int run
+#define SWEEP_ARGUMENTS                                                                                     \
+  GLOBAL const frame_plan *APART plan, GLOBAL const plan_rays *APART rays, GLOBAL const byte *APART voxels, \
+      GLOBAL const byte *APART distances, GLOBAL const wide *APART cell_bits,                               \
+      GLOBAL const float *APART tables, GLOBAL float *APART pixels, GLOBAL float *APART planes,             \
+      GLOBAL float *APART light_state, GLOBAL int *APART changed, GLOBAL const int *APART shown_from,       \
+      GLOBAL unsigned *APART counts, GLOBAL float *APART slots, GLOBAL unsigned *APART list,                \
+      GLOBAL unsigned *APART masks, int first, int end, int run
 
 DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep_data sweep;
@@ -102,7 +103,7 @@ KERNEL(16) composite_samples(SWEEP_ARGUMENTS) {
 }
 
 /* Takes the tiles of all lights' buffers through slabs first to end - 1. */
-KERNEL(16) run_light(SWEEP_ARGUMENTS) {
+KERNEL(12) run_light(SWEEP_ARGUMENTS) {
 #if SHADOWED
   SHARED_VOTES;
   const sweep_data sweep = SWEEP_OF_ARGUMENTS;

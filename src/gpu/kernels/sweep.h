@@ -27,8 +27,9 @@ DEVICE sheet_way no_sheets(void) {
 }
 
 /* Finds the densities of a pixel on a sheet and on the one before, where they are needed: its own where the
- * cell may show something, and both where one of the two shows something. *way has in its `after` what is
- * known of the sheet before; starts: nothing, and only the sheet's own is wanted. rays: of the sheet. speed:
+ * cell may show something, and both where one of the two shows something. Members of a pack in which one
+ * needs its sheet's find theirs along with it. *way has in its `after` what is known of the sheet before;
+ * starts: nothing, and only the sheet's own is wanted. rays: of the sheet. speed:
  * voxels that the ray advances from sheet to sheet, along the axis where it is fastest. Returns how many
  * sheets on this one is, and those behind it are, where the ray meets nothing before. The sums are one piece
  * of code, that two passes go through. */
@@ -42,13 +43,14 @@ DEVICE int fill_way(const volume_data *volume, GLOBAL const plan_rays *rays, int
   way->before_shows = way->after_shows;
   way->after_shows = 0;
   way->after = 0.0f;
-  int wanted = way->after_known = cell_may_show(volume, &point, &voxels);
+  const int may_show = cell_may_show(volume, &point, &voxels);
+  int wanted = way->after_known = any_of_pack(may_show);
   for (int pass = 0; pass < 2; pass++) {
     if (wanted) {
       float found = point.inside ? density_at(*volume, point.at[0], point.at[1], point.at[2]) : 0.0f;
       if (pass == 0) {
         way->after = found;
-        way->after_shows = shown_coordinate(plan, found) > plan->first_visible;
+        way->after_shows = may_show && shown_coordinate(plan, found) > plan->first_visible;
       } else if (way->after_shows) {
         way->before = found;
       } else {

@@ -104,6 +104,10 @@ DEVICE row_weights weights_of_row(const float weight[4]) {
   return w;
 }
 DEVICE row_weights slopes_of_row(const float slope[4]) { return weights_of_row(slope); }
+DEVICE unsigned shift_of_row(GLOBAL const byte *row) {
+  (void)row;
+  return 0;
+}
 DEVICE float sum_row(GLOBAL const byte *row, const row_weights *w) {
   GLOBAL const float *voxel = (GLOBAL const float *)row;
   return fused(voxel[0], w->tap[0], voxel[1] * w->tap[1]) + fused(voxel[2], w->tap[2], voxel[3] * w->tap[3]);
@@ -192,8 +196,7 @@ DEVICE unsigned second_bytes(const int x[4]) {
 
 #ifdef DOTS
 
-/* Four weights as two bytes each: 256 high + low, with the sign in the high ones. shift: bits from the
- * aligned word below the first voxel to it. */
+/* Four weights as two bytes each: 256 high + low, with the sign in the high ones. */
 typedef struct row_weights {
   unsigned high, low;
 } row_weights;
@@ -209,11 +212,12 @@ typedef struct row_voxels {
   unsigned word[2]; /* u8: the first */
 } row_voxels;
 
-/* Aligned words alone are loaded: rows begin at multiples of four bytes, and eight more may be read. */
-DEVICE row_voxels load_row(GLOBAL const byte *row) {
+/* Aligned words alone are loaded: rows begin at multiples of four bytes, and eight more may be read. shift:
+ * bits from the aligned word below the first voxel, at `row`, to it. */
+DEVICE unsigned shift_of_row(GLOBAL const byte *row) { return ((unsigned)(size_t)row & 3u) * 8u; }
+DEVICE row_voxels load_row(GLOBAL const byte *row, unsigned shift) {
   row_voxels voxels;
-  unsigned shift = ((unsigned)(size_t)row & 3u) * 8u;
-  GLOBAL const unsigned *words = (GLOBAL const unsigned *)(row - (shift >> 3));
+  GLOBAL const unsigned *words = (GLOBAL const unsigned *)row;
 #if STORAGE == STORED_U8
   voxels.word[0] = word_between(words[0], words[1], shift);
   voxels.word[1] = 0;
@@ -257,8 +261,13 @@ DEVICE row_weights split_weights(const int tap[4]) {
 typedef struct row_voxels {
   int voxel[4];
 } row_voxels;
-DEVICE row_voxels load_row(GLOBAL const byte *row) {
+DEVICE unsigned shift_of_row(GLOBAL const byte *row) {
+  (void)row;
+  return 0;
+}
+DEVICE row_voxels load_row(GLOBAL const byte *row, unsigned shift) {
   row_voxels voxels;
+  (void)shift;
 #if STORAGE == STORED_U8
   for (int i = 0; i < 4; i++) voxels.voxel[i] = row[i];
 #else
