@@ -1,0 +1,233 @@
+/* gpu/kernels/surface.h - surfaces of a volume: how much a sample belongs to the face of a box that cuts
+ * matter, and the light at the outside of surfaces, Y in shadow/attenuate.h. Parts of render/slab_lanes.h,
+ * render/reaching_lanes.h, grid/classifier_lanes.h and shadow/attenuate_lanes.h for one pixel and one volume.
+ */
+#ifndef HL_GPU_SURFACE_H
+#define HL_GPU_SURFACE_H
+
+#include "gpu/kernels/light.h"
+
+/* ---- the faces of the box ---- */
+
+#define FACE_VOXELS      2.0f
+#define CUT_SHADING_FACE 0 /* HL_CUT_SHADING_FACE */
+#define FACES_OF_AXIS    2
+
+/* The density where a ray crosses a face; frame space. */
+DEVICE_CALL float density_on_face(const volume_data volume, vector crossing) {
+  GLOBAL const plan_volume *plan = volume.plan;
+  float at[3];
+  for (int a = 0; a < 3; a++)
+    at[a] = limited(row_of_point(plan->to_index[a], crossing), -0.5f, (float)plan->dimension[a] - 0.5f);
+  return density_at(volume, at[0], at[1], at[2]);
+}
+
+DEVICE float row_size(GLOBAL const float *row) {
+  return root(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
+}
+
+/* Whether a point is so near to a face of the box that shows matter that it may belong to it. */
+DEVICE int is_near_face(GLOBAL const plan_volume *volume, vector point) {
+  const float reach = FACE_VOXELS * volume->voxel * 1.001f;
+  int close = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    GLOBAL const float *row = volume->to_index[axis];
+    GLOBAL const int *cuts = volume->face_cuts + FACES_OF_AXIS * axis;
+    float at = row_of_point(row, point), steps = row_size(row) * reach;
+    close = close || (cuts[0] && at - volume->low[axis] < steps) ||
+            (cuts[1] && volume->high[axis] - at < steps);
+  }
+  return close;
+}
+
+/* How much a sample belongs to the face that the eye's ray comes through last before it. */
+DEVICE float find_skin(const volume_data *volume, const slab_sample *s, vector *outward) {
+  GLOBAL const plan_volume *plan = volume->plan;
+  float nearest = 1e30f;
+  int cuts = 0;
+  *outward = vector_of(0.0f, 0.0f, 0.0f);
+  if (!is_near_face(plan, s->position)) return 0.0f;
+  for (int axis = 0; axis < 3; axis++) {
+    GLOBAL const float *row = plan->to_index[axis];
+    float speed = row_of_vector(row, s->towards_eye);
+    if (magnitude(speed) < 1e-12f) speed = 1e-12f;
+    int rising = speed > 0.0f;
+    float face = rising ? plan->high[axis] : plan->low[axis];
+    float way = greater(divided(face - row_of_point(row, s->position), speed), 0.0f);
+    if (!(way < nearest)) continue;
+    nearest = way;
+    *outward = scaled(vector_at(row), divided(rising ? 1.0f : -1.0f, row_size(row)));
+    cuts = plan->face_cuts[FACES_OF_AXIS * axis + rising];
+  }
+  float depth = nearest * dot3(*outward, s->towards_eye);
+  if (!(cuts && depth < FACE_VOXELS * plan->voxel)) return 0.0f;
+  vector crossing = add_scaled(s->position, s->towards_eye, lesser(nearest, 1e20f));
+  table_coordinate there = coordinate_of_density(plan, density_on_face(*volume, crossing));
+  if (!may_be_visible(plan, there, there)) return 0.0f;
+  return limited(FACE_VOXELS - depth * divided(1.0f, plan->voxel), 0.0f, 1.0f);
+}
+
+/* Behind a face the normal turns to the face's own, or the surface to a medium. */
+DEVICE void find_cut_face(const volume_data *volume, slab_sample *s) {
+  vector outward;
+  float skin = find_skin(volume, s, &outward), rest = 1.0f - skin;
+  if (volume->plan->cut_shading == CUT_SHADING_FACE) {
+    vector sum = add_scaled(scaled(outward, skin), s->normal, s->surface * rest);
+    s->normal = scaled(sum, divided(1.0f, greater(root(dot3(sum, sum)), 1e-6f)));
+    s->surface = fused(s->surface, rest, skin);
+  } else {
+    s->surface = s->surface * rest;
+  }
+}
+
+/* ---- where light comes from one surface into another ---- */
+
+#define SAME_RAMP   1.2f
+#define OTHER_LAYER 1.6f
+
+DEVICE float integral_to(GLOBAL const float *tables, float x) {
+  float values[4];
+  table_values(sums_table(tables), split_coordinate(x), 2, values);
+  return values[1];
+}
+
+/* kept: the part of what the first surface has taken that counts as the second one's; ahead: the optical
+ * depth from `start` to the second one's foot. */
+typedef struct second_surface {
+  float kept, ahead;
+} second_surface;
+
+DEVICE second_surface kept_at_foot(GLOBAL const float *tables, float first, float start, float foot,
+                                   float rise, float light, float outside) {
+  float at_foot = integral_to(tables, foot), ramp = magnitude(at_foot - integral_to(tables, first)),
+        ahead = magnitude(at_foot - integral_to(tables, start));
+  float taken = log_of_two(divided(greater(outside, 1e-9f), greater(light, 1e-9f))) * 0.6931472f;
+  float ratio = divided(fused(greater(taken, 0.0f), rise, ahead), greater(ramp, 1e-9f));
+  second_surface other;
+  other.kept = limited((OTHER_LAYER - ratio) * (1.0f / (OTHER_LAYER - SAME_RAMP)), 0.0f, 1.0f);
+  other.ahead = divided(ahead, greater(rise, 1e-9f));
+  return other;
+}
+
+/* ---- a light's way through a slab ---- */
+
+#define EVEN_VOXELS      4
+#define OUTWARDS_POWER   16
+#define ROUNDING_OF_SPAN 1e-3f
+
+/* k and k' of shadow/attenuate.h. */
+typedef struct kept_light {
+  float before, within;
+} kept_light;
+
+DEVICE float power_of_depth(float from, float to) {
+  float left = lesser(divided(to, greater(from, 1e-6f)), 1.0f);
+  for (int power = 1; power < OUTWARDS_POWER; power *= 2) left = left * left;
+  return left;
+}
+
+/* Of a volume with several surfaces. light, outside: T and Y before the slab. */
+DEVICE kept_light kept_of_several(const volume_data *volume, table_coordinate a, table_coordinate b,
+                                  float way, float depth, float even, float light, float outside) {
+  GLOBAL const float *feet = outside_table(volume->tables);
+  float foot_a = feet[a.entry], foot_b = feet[b.entry], deep = b.x - foot_b;
+  float left = power_of_depth(magnitude(a.x - foot_a), magnitude(deep)) * even;
+  int same = foot_a == foot_b, enters = (b.x - a.x) * deep > 0.0f;
+  kept_light kept;
+  kept.before = same ? left : 0.0f;
+  kept.within = same ? left : enters ? 1.0f : 0.0f;
+  if (!(enters && !same && foot_a != (float)a.entry)) return kept;
+  float rise = divided(magnitude(b.x - a.x), greater(way, 1e-9f));
+  second_surface other = kept_at_foot(volume->tables, foot_a, a.x, foot_b, rise, light, outside);
+  float of_first = divided(1.0f - exp_negative(lesser(other.ahead, depth)),
+                           greater(1.0f - exp_negative(depth), 1e-6f));
+  kept.before = other.kept;
+  kept.within = fused(of_first, other.kept - 1.0f, 1.0f);
+  return kept;
+}
+
+/* path: of the light's ray through the slab; extinction: of the slab. */
+DEVICE kept_light kept_in_slab(const volume_data *volume, table_coordinate a, table_coordinate b,
+                               covered_span span, float path, float extinction, float light, float outside) {
+  GLOBAL const plan_volume *plan = volume->plan;
+  float way = path * span.length;
+  float even = way - magnitude(b.x - a.x) * divided(1.0f, plan->normal_edge);
+  even = exp_negative(greater(even, 0.0f) * divided(1.0f, EVEN_VOXELS * plan->voxel));
+  kept_light kept;
+  if (plan->several_surfaces) {
+    kept = kept_of_several(volume, a, b, way, extinction * path, even, light, outside);
+  } else {
+    const float foot = plan->only_outside, side = plan->side;
+    float left = power_of_depth(greater((a.x - foot) * side, 0.0f), greater((b.x - foot) * side, 0.0f));
+    kept.before = kept.within = left * even;
+  }
+#if BOXED
+  int ends = span.begin + span.length<1.0f - ROUNDING_OF_SPAN, begins = span.begin> ROUNDING_OF_SPAN;
+  if (ends || begins) kept.before = 0.0f;
+  if (ends) kept.within = 0.0f;
+#endif
+  return kept;
+}
+
+/* Y after a slab. before, after: T. */
+DEVICE float pass_outside(float outside, float before, float after, kept_light kept) {
+  float light = greater(before, 0.0f), left = greater(after, 0.0f);
+  float taken = greater(outside - light, 0.0f);
+  return fused(taken, kept.before, fused(light - left, kept.within, left));
+}
+
+/* ---- the light that lights a sample's surface ---- */
+
+/* Where the light's way to a sample begins, at the slab's first sheet: as in render/reaching_lanes.h. */
+typedef struct way_begin {
+  float start, change, first, foot;
+  int there;
+} way_begin;
+
+DEVICE way_begin find_begin(const volume_data *volume, const slab_sample *s, vector towards, float way) {
+  GLOBAL const float *feet = outside_table(volume->tables);
+  way_begin begin;
+  float seen = limited(coordinate_seen(s), 0.0f, PLAN_ENTRIES);
+  begin.change = s->sloped ? dot3(s->slope, towards) * volume->plan->scale : 0.0f;
+  begin.start = limited(fused(begin.change, way, seen), 0.0f, PLAN_ENTRIES);
+  begin.foot = feet[(int)seen];
+  float side = seen >= begin.foot ? 1.0f : -1.0f;
+  float below = feet[(int)limited(begin.foot - side * 0.5f, 0.0f, PLAN_ENTRIES)];
+  int layer = magnitude(below - begin.foot) > 1.0f;
+  int beyond = layer && (begin.start - below) * side < 0.0f;
+  if (beyond) begin.start = below;
+  int entry = (int)begin.start;
+  begin.first = beyond ? below : feet[entry];
+  begin.there = begin.first != (float)entry || beyond;
+  return begin;
+}
+
+/* The light at the outside of a sample's surface. way: of the light from the slab's first sheet to the
+ * sample. planes: of the sheet before the slab; Y follows T. */
+DEVICE void passing_to_surface(const volume_data *volume, GLOBAL const plan_light *light,
+                               const slab_sample *s, vector towards, float way, GLOBAL const float *planes,
+                               float passing[CHANNELS]) {
+  const shadow_taps taps = taps_of_position(light, s->position);
+  float own_kept = 1.0f, own_passing = 1.0f;
+  for (int c = 0; c < CHANNELS; c++) {
+    GLOBAL const float *plane = planes + c * light->plane + light->origin;
+    float outside = interpolated(light, &taps, light->cubic, plane + CHANNELS * light->plane);
+    if (volume->plan->several_surfaces) {
+      float passed = interpolated(light, &taps, light->cubic, plane);
+      if (c == 0) {
+        const way_begin begin = find_begin(volume, s, towards, way);
+        if (begin.there && begin.first != begin.foot) {
+          second_surface other = kept_at_foot(volume->tables, begin.first, begin.start, begin.foot,
+                                              magnitude(begin.change), passed, outside);
+          own_kept = other.kept;
+          own_passing = exp_of_depth(lesser(other.ahead, DEEPEST));
+        }
+      }
+      passed = passed * own_passing;
+      outside = fused(outside - passed, own_kept, passed);
+    }
+    passing[c] = lesser(outside, 1.0f);
+  }
+}
+
+#endif
