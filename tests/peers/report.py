@@ -16,17 +16,17 @@ AGAINST = {"off": "off", "hard": "hard", "soft": "cascade"}  # what a renderer's
 TITLES = {"off": "none", "hard": "hard", "soft": "soft", "paper": "soft, `paper`", "cascade": "soft, `cascade`",
           "sublights": "soft, 4x4 sub-lights"}
 LACKS = {
-    "Halflight": "more than one scattering",
-    "VolPack": "soft shadows, a table for what lies between voxels (voxels are classified, then blended), light more than 45 "
-               "degrees off the view's main axis; its shadows begin some voxels behind what casts them; one thread; new "
-               "opacities classify anew",
-    "OpenVDB vdb_render": "soft shadows, colours, transfer functions (its file holds extinctions); its shadows stop at some "
-                          "hundredths of the light; the whole process is in its processor time",
+    "Halflight": "exact multiple scattering; its own is an approximation ([scattering.md](scattering.md))",
+    "VolPack": "soft shadows; a table for the values between voxels (voxels are classified, then blended); light more than 45 "
+               "degrees off the view's main axis; shadows that begin at the object that casts them (they begin some voxels "
+               "behind); more than one thread; new opacities without classifying anew",
+    "OpenVDB vdb_render": "soft shadows, colours, transfer functions (its file holds extinctions). Its shadows stop at some "
+                          "hundredths of the light. Its processor time is the whole process's",
     "VTK": "shadows, in its ray caster for processors",
-    "ParaView": "soft shadows; it is made for graphics processors, and its OpenGL is software here",
-    "Blender Cycles": "pictures without noise: time grows with the samples, noise falls with their root; each frame reads and "
-                      "sorts the volume anew",
-    "Mitsuba 3": "pictures without noise, as Blender; a table for what lies between voxels; new programs are compiled within "
+    "ParaView": "soft shadows. It is made for graphics processors, and its OpenGL is software here",
+    "Blender Cycles": "pictures without noise: time grows with the samples, and noise falls with their root. Each frame reads "
+                      "and sorts the volume anew",
+    "Mitsuba 3": "pictures without noise, as Blender; a table for the values between voxels. New programs are compiled within "
                  "its frame",
 }
 
@@ -122,7 +122,7 @@ def text(job, outcomes, absent, loads):
         "scale, linear, found from two halves of the samples. "
         "*Alike* is the correlation of the luminance with Halflight's: framing and light agree.")
     yield ""
-    yield "What they do not do:"
+    yield "What each renderer lacks:"
     yield ""
     for name in dict.fromkeys(outcome.renderer for outcome in outcomes):
         yield from paragraph(f"* {name}: {LACKS[name]}.")
