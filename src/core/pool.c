@@ -82,7 +82,7 @@ struct hl_pool {
   atomic_int sleepers;
   pthread_mutex_t mutex;
   pthread_cond_t wake; /* signalled when `generation` or `stop` has changed */
-  /* used by the calling thread only */
+  /* Used by the calling thread only. */
   _Alignas(64) int64_t asked,
       read;       /* last call of the cancel callback and last reading of the clock, nanoseconds */
   uint64_t waits; /* number of runs that other threads took part in */

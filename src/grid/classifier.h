@@ -23,14 +23,14 @@ enum { CLASSIFIER_ENTRIES = 4096, STEEPNESS_ENTRIES = 4096 };
 
 typedef struct classifier {
   float scale, offset; /* table coordinate = density * scale + offset, clamped to [0, CLASSIFIER_ENTRIES] */
-  /* tables of CLASSIFIER_ENTRIES + 2 entries in one block, which sums owns */
+  /* Tables of CLASSIFIER_ENTRIES + 2 entries in one block, which sums owns. */
   float (*sums)[4];  /* extinction per world unit; its integral over entries, from entry 0; the integral of
                       * extinction times the entry's number; 0 */
   float (*color)[4]; /* linear RGB; 0 */
   float (*shown)[4]; /* integrals over entries, from entry 0: of extinction times linear RGB, and of
                       * extinction */
-  /* for each entry, the sum of the changes of the colour's slope at visible entries up to this one; a change
-   * is the greatest channel's change per entry. Null if the slope changes little everywhere */
+  /* For each entry, the sum of the changes of the colour's slope at visible entries up to this one; a change
+   * is the greatest channel's change per entry. Null if the slope changes little everywhere. */
   float *bent;
   int32_t *next_visible; /* for each entry, the first entry from there on with extinction > 0 */
   /* [entries]; for values from an entry to the next: the table coordinate at which their surface begins. It

@@ -59,8 +59,8 @@ typedef struct grid {
   double value_scale, value_offset; /* data value = value_scale * stored + value_offset */
   affine3 index_to_frame, frame_to_index;
   double box_low[3], box_high[3]; /* index space: the box in which the volume exists */
-  /* the faces of the box that cut something visible. Other faces are far outside, and so are, in a frame,
-   * faces beyond which another volume goes on */
+  /* The faces of the box that cut something visible. Other faces are far outside, and so are, in a frame,
+   * faces beyond which another volume goes on. */
   float face_low[3], face_high[3];
   bool face_shows[3][2]; /* [axis][low, high]: whether something is visible on the face itself */
   int32_t brick_count[3];

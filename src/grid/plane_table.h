@@ -19,8 +19,8 @@ typedef struct plane_table {
                       * the next row, so that one load takes everything around a position */
   float (*color)[4]; /* the integrals of linear RGB times opacity, and of opacity */
   float column_scale, column_offset; /* column = coordinate in the classifier's tables * scale + offset */
-  /* row = second number * scale + offset. A gradient is in stored units per frame unit, another volume's
-   * value in stored units above that volume's empty value */
+  /* Row = second number * scale + offset. A gradient is in stored units per frame unit, another volume's
+   * value in stored units above that volume's empty value. */
   float row_scale, row_offset;
   float even_before; /* columns before this one are the same in all rows */
   hl_second_axis axis;

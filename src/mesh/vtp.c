@@ -49,7 +49,7 @@ typedef struct vtp_file {
   hl_vtk_xml xml;
   mesh_text text;
   section section;
-  /* names that the section declares active */
+  /* Names that the section declares active. */
   char active_scalars[HL_VTK_NAME_BYTES], active_normals[HL_VTK_NAME_BYTES];
   vtp_piece *pieces; /* owned; [piece_count] */
   vtp_array *arrays; /* owned; [array_count]; piece after piece */

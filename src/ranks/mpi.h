@@ -62,9 +62,9 @@ typedef struct mpi_calls {
   int (*barrier)(const mpi *mpi, mpi_handle *request);
   int (*broadcast)(const mpi *mpi, void *bytes, int count, int root, mpi_handle *request);
   int (*gather_all)(const mpi *mpi, const void *from, int bytes, void *to, mpi_handle *request);
-  /* sums in place; all ranks get the sums */
+  /* Sums in place; all ranks get the sums. */
   int (*sum_counts)(const mpi *mpi, uint64_t *counts, int count, mpi_handle *request);
-  /* sums in place; only rank 0 gets the sums. first: whether this is rank 0 */
+  /* Sums in place; only rank 0 gets the sums. first: whether this is rank 0. */
   int (*sum_floats)(const mpi *mpi, float *values, int count, bool first, mpi_handle *request);
 } mpi_calls;
 

@@ -23,7 +23,7 @@ struct hl_source {
   unsigned char *window; /* owned; for files: the bytes [window_begin, + window_length) */
   uint64_t window_begin;
   size_t window_length, window_most; /* window_most: number of bytes of the last look */
-  /* deflated data */
+  /* Deflated data. */
   hl_source *below;        /* owned; may be null */
   uint64_t below_at;       /* the next byte that is taken from `below` */
   unsigned char *inflated; /* owned; [capacity]; the first `length` bytes are known */

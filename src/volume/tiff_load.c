@@ -45,7 +45,7 @@ typedef struct stack_reading {
   uint32_t width, height;      /* size at level 0 */
   int component;
   hl_destination to;
-  /* the pool of the threads */
+  /* The pool of the threads. */
   hl_pool *pool;
   tiff_file *open;  /* owned; [threads]; the file that each thread has open */
   uint32_t *opened; /* owned; [threads]; the index of that file; UINT32_MAX if there is none */
