@@ -21,7 +21,7 @@ uint64_t hl_key_mark(const void *bytes, size_t count) {
     uint64_t word = 0, *sum = &sums[at / WORD % SUMS];
     memcpy(&word, from + at, count - at < WORD ? count - at : WORD);
     *sum = (*sum ^ word) * prime;
-    *sum ^= *sum >> 32; /* so that high bits count, too */
+    *sum ^= *sum >> 32; /* mixes the bits, so that high bits count, too */
   }
   for (int s = 1; s < SUMS; s++) sums[0] = (sums[0] ^ sums[s]) * prime;
   return (sums[0] ^ count) * prime;

@@ -258,7 +258,7 @@ static void run_part(hl_pool *pool, size_t base, size_t count, void (*function)(
 }
 
 void hl_pool_run(hl_pool *pool, size_t count, void (*function)(void *, size_t, int), void *data) {
-  pool->readings = pool->unread = 0; /* it is unknown how long the indices of the next job take */
+  pool->readings = pool->unread = 0; /* how long the indices of the next job take is not known yet */
   if (pool->threads == 1 || count <= 1) {
     for (size_t index = 0; index < count && !hl_pool_stops(pool, 0); index++) function(data, index, 0);
     return;

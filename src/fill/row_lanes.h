@@ -89,7 +89,7 @@ LANES_INLINE byte_slopes split_slopes(const integer_weights *integers) {
 LANES_INLINE lanes_int taps_with_sign(lanes_int taps) { return taps ^ (int32_t)0x80808080; }
 
 LANES_INLINE lanes_int weigh_signed_bytes(lanes_int less_128, const byte_weights *weights) {
-  /* after a shift left by a byte, this is 128 times the sum of all weights */
+  /* shifted left by a byte, `half` is 128 times the sum of all weights */
   const __m512i half = _mm512_set1_epi32(WEIGHT_UNITS / 2);
   __m512i sum = _mm512_dpbusd_epi32(half, weights->digit[0], (__m512i)less_128);
   return (lanes_int)_mm512_dpbusd_epi32(_mm512_slli_epi32(sum, 8), weights->digit[1], (__m512i)less_128);

@@ -11,7 +11,8 @@
 
 #include <halflight/scene.h>
 
-enum { HL_KERNEL_DEGREE = 5, HL_BSPLINE_DEGREE = 3 /* true for the cubic B-spline only */ };
+/* HL_BSPLINE_DEGREE is the degree of the cubic B-spline; other kernels may have HL_KERNEL_DEGREE. */
+enum { HL_KERNEL_DEGREE = 5, HL_BSPLINE_DEGREE = 3 };
 
 typedef struct kernel {
   const char *name;
@@ -20,8 +21,8 @@ typedef struct kernel {
   float inner[HL_KERNEL_DEGREE + 1]; /* |d| in [0,1]: coefficients of a^0 .. a^5, a = |d| */
   float outer[HL_KERNEL_DEGREE + 1]; /* |d| in [1,2]: coefficients, a = |d| - 1 */
   int degree;                        /* the highest power with a coefficient other than zero */
-  bool interpolates;                 /* whether it is summed over coefficients (prefilter.h) in place of
-                                      * voxels */
+  bool interpolates;                 /* whether the kernel is summed over coefficients (prefilter.h) in place
+                                      * of voxels */
 } kernel;
 
 const kernel *hl_kernel_get(hl_kernel which);

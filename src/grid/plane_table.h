@@ -22,7 +22,8 @@ typedef struct plane_table {
   /* Row = second number * scale + offset. A gradient is in stored units per frame unit, another volume's
    * value in stored units above that volume's empty value. */
   float row_scale, row_offset;
-  float even_before; /* columns before this one are the same in all rows */
+  float even_before; /* the first column that differs between rows; the columns before are the same in all
+                      * rows */
   hl_second_axis axis;
   /* The volume whose values are the second number; borrowed from the frame; null where the second number is
    * the gradient. */

@@ -90,7 +90,7 @@ void hl_srgb_encoder_destroy(hl_srgb_encoder *encoder) {
 }
 
 int hl_srgb_encode(const hl_srgb_encoder *encoder, float linear) {
-  if (!(linear >= encoder->threshold[1])) return 0; /* true for NaN, too */
+  if (!(linear >= encoder->threshold[1])) return 0; /* NaN fails the comparison, too */
   if (linear >= 1) return encoder->maximum;
   uint32_t bits;
   memcpy(&bits, &linear, sizeof bits);

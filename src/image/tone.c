@@ -7,7 +7,7 @@
 
 #include <float.h>
 
-#define SHOULDER 0.6f /* light up to this value is left as it is; its sRGB code is 203 of 255 */
+#define SHOULDER 0.6f /* light up to SHOULDER is left unchanged; the sRGB code of SHOULDER is 203 of 255 */
 
 /* Maps light x from the value s on. Derived: the hyperbola that leaves the line f(x) = x at s with slope 1
  * and comes near 1 for endless light is f(x) = 1 - d^2 / (x - s + d), d = 1 - s: f(s) = s, f'(x) = d^2 / (x -

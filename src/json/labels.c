@@ -82,7 +82,7 @@ static hl_status read_label(known_labels *known, const json_t *object, hl_label 
   return status == HL_OK ? hl_json_flag(reader, object, "visible", &label->visible) : status;
 }
 
-/* Sorts labels by number. There are few of them. */
+/* Sorts labels by number. Lists of labels are short. */
 static void sort(hl_label *labels, size_t count) {
   for (size_t n = 1; n < count; n++)
     for (size_t m = n; m > 0 && labels[m - 1].value > labels[m].value; m--) {

@@ -47,7 +47,7 @@ typedef struct state {
   size_t functions;       /* number of functions of two numbers with boxes */
   size_t planes, volumes; /* number of representations that show a volume by a function of two numbers, and by
                            * a function of one */
-  shown_volume shown;     /* the last of these representations */
+  shown_volume shown;     /* the last representation that shows a volume */
   json_t *kept;           /* owned; by id, the lookup tables and functions of opacity, as arrays of numbers by
                            * property */
 } state;

@@ -21,7 +21,7 @@ typedef struct hl_json_reader {
   const char *folder; /* folder of relative paths; may be null */
   hl_error *error;
   const hl_scene_description
-      *like;       /* if not null, no file is opened: volumes and images are those of this scene */
+      *like;       /* if not null, no file is opened: volumes and images are taken from this scene */
   char place[400]; /* JSON pointer of the value being read */
 } hl_json_reader;
 

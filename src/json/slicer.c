@@ -81,7 +81,7 @@ void hl_slicer_fit_gradient(const hl_volume *volume, hl_transfer_function *funct
   function->gradient_opacity_count = kept;
 }
 
-/* Reads opacity by gradient, if the preset has any and it changes anything. */
+/* Reads opacity by gradient, if the preset has such opacity and it changes anything. */
 static hl_status read_gradient(hl_json_reader *reader, const json_t *component,
                                hl_transfer_function *function) {
   if (json_is_true(json_object_get(component, "disableGradientOpacity")) ||

@@ -15,7 +15,7 @@ enum { TAPS = 5 };  /* number of coefficients along an axis on which the parts o
  * the gradients' lengths at the surface; SURFACE_PARTS, the number of parts in SLOPES. */
 enum { VOLUME, FALL, SLOPES, SURFACE_PARTS };
 
-/* Shorter gradients, per part, count as this length. */
+/* Gradients, per part of a voxel, count as at least this length. */
 static const float LEAST_GRADIENT = 0.05f / PARTS;
 
 typedef struct measuring {

@@ -9,7 +9,7 @@
 #include <sys/types.h>
 
 typedef struct process {
-  pid_t child;    /* the child's number; 0 if it does not run */
+  pid_t child;    /* the child's process number; 0 if no child runs */
   FILE *messages; /* owned; the child's standard error */
 } process;
 

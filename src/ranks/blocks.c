@@ -38,7 +38,7 @@ typedef struct block_fetch {
 struct hl_blocks {
   hl_ranks *ranks;
   hl_blocks *next; /* next one in the server's list */
-  uint64_t id;     /* number of these blocks, the same on all ranks */
+  uint64_t id;     /* number of this array of blocks, the same on all ranks */
   hl_blocks_shape shape;
   hl_block_source source;
   void *memory;  /* owned; holds all arrays */

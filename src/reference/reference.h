@@ -56,7 +56,8 @@ typedef struct reference_volume {
   size_t bricks[3];                 /* number of bricks along i, j, k */
   double *coefficients;   /* owned; [k][j][i], stored values; the coefficients that the interpolating kernel
                            * sums in place of voxels; null for other kernels */
-  double least, greatest; /* with coefficients: values beyond these limits count as the limits */
+  double least, greatest; /* with coefficients: the range of values; values beyond the range count as its
+                           * ends */
   double *feet; /* owned; [HL_REFERENCE_FEET]; for equal steps of values from feet_low to feet_high, the value
                  * at which their surface begins */
   double feet_low, feet_high;
@@ -145,7 +146,7 @@ typedef struct reference {
 
 typedef struct reference_ray {
   vec3 origin, direction;   /* world; the direction has unit length */
-  double nearest, farthest; /* distances along it, which may be infinite */
+  double nearest, farthest; /* distances along the ray, which may be infinite */
 } reference_ray;
 
 /* A ray's passage through one volume's box. */

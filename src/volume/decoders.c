@@ -38,7 +38,7 @@ typedef struct blocks_stream {
   uint64_t plain_left, compressed_left;          /* bytes left of the current block */
   hl_vtk_packing packing;
   unsigned char *packed, *whole; /* owned; a block of LZ4 or xz, packed and unpacked; null for zlib */
-  size_t whole_done;             /* bytes of `whole` that were pulled; 0 if it is not filled yet */
+  size_t whole_done;             /* bytes of `whole` that were pulled; 0 until `whole` is filled */
 } blocks_stream;
 
 static void *zlib_allocate(void *context, unsigned items, unsigned size) {
@@ -268,7 +268,8 @@ static hl_status read_integers(hl_stream *stream, size_t header_bytes, bool big_
 static hl_status read_block_header(blocks_stream *stream, size_t header_bytes, bool big_endian,
                                    uint64_t promised, hl_error *error) {
   hl_stream *below = stream->base.below;
-  uint64_t first[3]; /* number of blocks; bytes in each; bytes in the last (0 if it is full) */
+  uint64_t first[3]; /* number of blocks; bytes in each; bytes in the last block, 0 if the last block is
+                      * full */
   hl_status status = read_integers(below, header_bytes, big_endian, first, 3, error);
   if (status != HL_OK) return status;
   stream->block_count = first[0];

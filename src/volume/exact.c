@@ -39,7 +39,8 @@ static bool rounds_whole(uint64_t magnitude) {
 }
 
 static bool rounds_double(double value) {
-  return fabs(value) >= HELD_BELOW && (double)(float)value != value; /* also false for NaN */
+  /* The comparison is also false for NaN. */
+  return fabs(value) >= HELD_BELOW && (double)(float)value != value;
 }
 
 /* The magnitude of a signed number. */

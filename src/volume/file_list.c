@@ -78,7 +78,7 @@ hl_status hl_file_list_pattern(hl_file_list *list, const char *text, bool *sound
 
 typedef struct files_stream {
   hl_stream base;
-  char *header_path; /* owned; the files lie beside it */
+  char *header_path; /* owned; path of the header, beside which the files lie */
   hl_file_list list;
   size_t next;         /* index of the file that is opened next */
   hl_stream *file;     /* owned; the current file, at its voxels; null if there is none */

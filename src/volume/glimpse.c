@@ -51,8 +51,8 @@ struct hl_glimpse {
 
 /* The indices of an axis that a lattice keeps. */
 typedef struct series {
-  size_t first, step; /* the indices first, first + step, ... */
-  size_t run;         /* number of consecutive indices kept at each of them */
+  size_t first, step; /* the kept indices are first, first + step and so on */
+  size_t run;         /* number of consecutive indices kept at each of these indices */
   bool last;          /* whether the axis's last index is kept, too */
 } series;
 
@@ -88,7 +88,7 @@ static void lay_out(hl_glimpse *g, series all[LATTICES][3], hl_layout *layout) {
         if (l->place[a] != NULL) l->place[a][i] = kept ? (uint32_t)l->count[a] : NOT_KEPT;
         l->count[a] += kept;
       }
-      voxels *= l->count[a]; /* cannot overflow, as it is at most the grid's number of voxels */
+      voxels *= l->count[a]; /* this product cannot overflow, as it is at most the grid's number of voxels */
     }
     l->voxels = hl_layout_take(layout, voxels, g->bytes);
   }

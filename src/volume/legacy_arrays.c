@@ -225,7 +225,8 @@ static hl_status read_fields(hl_legacy_vtk *file, const char *arguments, hl_erro
     hl_status status = hl_legacy_vtk_line(file, line, &ended, error);
     if (status != HL_OK || ended) return status;
     cursor = line;
-    if (!hl_text_word(&cursor, word, sizeof word)) continue; /* this is the line's end after the values */
+    /* A line without a word is the end of the line of values. */
+    if (!hl_text_word(&cursor, word, sizeof word)) continue;
     if (hl_text_equal(word, "METADATA")) {
       status = skip_metadata(file, error);
       if (status != HL_OK) return status;

@@ -12,8 +12,8 @@ typedef struct hl_legacy_array {
   const char *kind, *name; /* kind: the keyword, such as SCALARS, COLOR_SCALARS or NORMALS, or FIELD */
   hl_voxel_type type;
   size_t components, tuples;
-  bool of_points;   /* whether it stands under POINT_DATA, not CELL_DATA */
-  bool of_neither;  /* whether it stands before both, as an array of the file itself */
+  bool of_points;   /* whether the array stands under POINT_DATA, not CELL_DATA */
+  bool of_neither;  /* whether the array stands before both sections, as an array of the file itself */
   bool is_fraction; /* whether 0 to 1 in a text stand for 0 to 255 */
 } hl_legacy_array;
 

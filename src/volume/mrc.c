@@ -178,7 +178,8 @@ static void read_axes(const mrc_header *header, int axes[3]) {
   for (int n = 0; n < 3; n++) {
     int64_t axis = load_integer(header, AT_AXES + 4 * n);
     if (axis >= 1 && axis <= 3) seen |= 1 << axis;
-    axes[n] = (int)(axis - 1); /* also correct for the least int, below which there is none */
+    axes[n] = (int)(axis - 1); /* the subtraction is also correct for the least int, below which there is
+                                * none */
   }
   if (seen == (1 << 1 | 1 << 2 | 1 << 3)) return;
   for (int n = 0; n < 3; n++) axes[n] = n;

@@ -13,7 +13,7 @@ typedef struct nanovdb_grid {
   const char *path;     /* for error lines */
   unsigned char *bytes; /* borrowed; [size]; aligned to 64 bytes */
   size_t size;
-  uint32_t kind; /* a number PNANOVDB_GRID_TYPE_... */
+  uint32_t kind; /* the kind of grid, PNANOVDB_GRID_TYPE_ and a name */
   int component; /* component of vectors and colours, or HL_COMPONENT_MAGNITUDE */
 } nanovdb_grid;
 

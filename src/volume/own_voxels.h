@@ -10,7 +10,7 @@
 
 typedef struct hl_own_voxels {
   hl_context *context;
-  hl_box box;          /* the box of this rank in the whole volume */
+  hl_box box;          /* the box of the whole volume that this rank holds */
   hl_voxel_type type;  /* type of the voxels in memory; for stored values U8, U16 or F32 */
   size_t stored_bytes; /* bytes of a stored value */
   const unsigned char *first;

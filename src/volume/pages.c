@@ -94,7 +94,7 @@ hl_status hl_pages_create(hl_context *context, const char *folder, const hl_volu
   bool possible = plan(grid, shift, false, made);
   made->context = context;
   made->file = made->exact_file = -1;
-  pthread_mutex_init(&made->lock, NULL); /* cannot fail: it has no attributes */
+  pthread_mutex_init(&made->lock, NULL); /* a mutex without attributes cannot fail to be made */
   pthread_cond_init(&made->came, NULL);
   if (!possible) status = hl_fail(error, HL_ERROR_INPUT, "%s: a volume too large for a file", folder);
   if (status == HL_OK) status = map_scratch(context, folder, made, error);
@@ -330,7 +330,8 @@ static void hold_over_ranks(hl_pages *pages, size_t number) {
 }
 
 void hl_pages_hold(const hl_pages *held, size_t number) {
-  hl_pages *pages = (hl_pages *)held; /* volumes are constant for their readers, but these counts are not */
+  hl_pages *pages = (hl_pages *)held; /* volumes are constant for their readers, but the states of pages are
+                                       * not */
   if (pages->blocks != NULL) {
     hold_over_ranks(pages, number);
     return;

@@ -13,7 +13,7 @@ typedef struct parts {
   void *data;
   pthread_mutex_t lock;
   atomic_size_t done, failed; /* failed: the lowest index of a part that failed, or SIZE_MAX */
-  hl_status status;           /* status of this part */
+  hl_status status;           /* status of one part */
   hl_error error;
 } parts;
 

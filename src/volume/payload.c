@@ -384,7 +384,7 @@ static hl_status read_components(hl_stream *stream, const hl_payload *payload, h
       continue;
     }
     uint64_t left = (uint64_t)(count - place.first) *
-                    payload->components; /* at most this many values are left */
+                    payload->components; /* the greatest number of values left to read */
     size_t wanted = left < STAGE_VOXELS ? (size_t)left : STAGE_VOXELS;
     if (payload->block - place.in_block < wanted && payload->block > 1)
       wanted = payload->block - place.in_block;

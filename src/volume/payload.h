@@ -13,8 +13,8 @@ typedef enum hl_trailing {
 
 /* Whether three or four components are colours. */
 typedef enum hl_payload_colors {
-  HL_COLORS_WHERE_ASKED, /* the file does not say whether they are */
-  HL_COLORS_MEANT,       /* the file says that they are */
+  HL_COLORS_WHERE_ASKED, /* the file does not say whether its components are colours */
+  HL_COLORS_MEANT,       /* the file says that its components are colours */
   HL_COLORS_UNREAD       /* the reader cannot collect colours */
 } hl_payload_colors;
 

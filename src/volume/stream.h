@@ -21,7 +21,7 @@ struct hl_stream {
   hl_stream *below;      /* owned; null for a file */
   unsigned char *buffer; /* owned; HL_STREAM_BUFFER_BYTES; bytes [begin, end) are not yet read */
   size_t begin, end;
-  uint64_t offset; /* bytes read from this stream so far */
+  uint64_t offset; /* number of bytes read from the stream so far */
   bool ended;      /* whether nothing more can be pulled */
   bool cut_short;  /* whether the stream ended within compressed or encoded data */
   bool line_end_known, line_end_is_return;
@@ -47,7 +47,7 @@ bool hl_stream_can_restart(const hl_stream *stream);
 bool hl_stream_is_plain_file(const hl_stream *stream);
 /* The descriptor of a plain file. */
 int hl_stream_descriptor(const hl_stream *stream);
-/* Whether the stream is the caller's memory itself, and all of it. */
+/* Whether the stream is the caller's memory itself, from its first byte to its last. */
 bool hl_stream_memory(const hl_stream *stream, const unsigned char **bytes, size_t *length);
 /* Opens *stream's file again from the start. hl_stream_can_restart() must be true. */
 hl_status hl_stream_restart(hl_stream **stream, hl_error *error);

@@ -198,7 +198,7 @@ static hl_status read_file(ome_reader *ome, const hl_xml_tag *tag, hl_error *err
   if (name == NULL) return HL_OK;
   if (strchr(name, '/') != NULL || strlen(name) >= sizeof ome->file || name[0] == 0)
     return fail_ome(ome, "names a file that is not beside it", error);
-  /* this is the first file, called by its own name */
+  /* a name of the first file itself */
   if (strcmp(name, slash != NULL ? slash + 1 : ome->path) != 0) strcpy(ome->file, name);
   return HL_OK;
 }

@@ -102,7 +102,7 @@ struct hl_volume {
   size_t label_map_count;
   bool has_surroundings; /* whether the data value around the content is known */
   double surroundings;
-  double surface_slope; /* for an occupancy: its slope per voxel where it passes 1/2 */
+  double surface_slope; /* for an occupancy: the slope per voxel where the occupancy passes 1/2 */
   _Atomic(struct hl_data_analysis *)
       analysis; /* owned block; the findings of guess/analysis.h; null if not asked yet */
   /* Data that other rooms keep with the volume; owned, and released with it. */

@@ -26,7 +26,7 @@ enum { PIECES_MOST = 65536, ENTRIES_MOST = 1 << 20 };
 /* A piece of the whole volume: its place and, if there are several files, its file. */
 typedef struct vti_piece {
   double extent[6];
-  char *source; /* owned; null if it is in the same file */
+  char *source; /* owned; null if the piece is in the same file */
 } vti_piece;
 
 /* An array of a piece. */

@@ -15,7 +15,7 @@ enum { HL_DICOM_DEPTH_MOST = 16, HL_DICOM_PIXEL_DATA = 0x7fe00010 };
 
 typedef struct hl_dicom_element {
   uint32_t tag; /* group << 16 | element */
-  uint16_t vr;  /* value representation; 0 if the file does not state it */
+  uint16_t vr;  /* value representation; 0 if the file states none */
   uint32_t length;
   uint64_t offset; /* position of the value */
 } hl_dicom_element;

@@ -27,7 +27,7 @@ typedef struct hl_dicom_series {
   double number; /* NAN if absent */
   size_t frames;
   size_t rows, columns; /* rows and columns of its first slice */
-  bool is_segmentation; /* whether it is one file with segments */
+  bool is_segmentation; /* whether the series is one file with segments */
 } hl_dicom_series;
 
 typedef struct hl_dicom_set {

@@ -12,7 +12,7 @@
 typedef struct hl_dicom_slice {
   size_t place;  /* index of the position at the slice or before it */
   double weight; /* weight of the next position's frame; 0 if the slice lies at `place` */
-  bool empty;    /* whether it lies in a gap between two positions that nothing fills */
+  bool empty;    /* whether the slice lies in a gap between two positions that nothing fills */
 } hl_dicom_slice;
 
 typedef struct hl_dicom_stack {

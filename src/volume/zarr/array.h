@@ -41,7 +41,7 @@ typedef struct hl_zarr_codecs {
   int order[HL_ZARR_AXES_MOST]; /* the array's axes in their order in a chunk, the slowest first */
   bool big_endian;
   hl_zarr_compressor compressor;
-  hl_zarr_filter filters[HL_ZARR_FILTERS_MOST]; /* in the order in which they were applied */
+  hl_zarr_filter filters[HL_ZARR_FILTERS_MOST]; /* the filters in the order in which they were applied */
   int filter_count;
   int inner_checks,
       outer_checks; /* number of CRC32C sums (4 bytes each) after the voxels, and after the packed bytes */
