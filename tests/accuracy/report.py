@@ -102,7 +102,7 @@ def strips(results):
     parts = [f"""
 ## Where the differences are
 
-Left to right: the picture (cascade), the reference's shadow factor, and what is wrong with the shadow factor by {", ".join(methods)}:
+Left to right: the picture (cascade), the reference's shadow factor, and the error of the shadow factor by {", ".join(methods)}:
 red is too bright, blue too dark, full colour is a difference of 0.2.
 """]
     parts += [f"\n**{r.name}.** {r.text}\n\n![{r.name}](accuracy/{r.name}.png)\n" for r in results]
@@ -132,14 +132,14 @@ the least of {measure.COST_ROUNDS} rounds in turn.
     meshes = (scenes.HERE / "meshes.md").read_text()
     PATH.write_text(f"""# How exact the pictures are
 
-Written by `scripts/accuracy`; not by hand. {len(results)} scenes of `tests/accuracy`, 160 x 160 pixels, sheets 0.5 voxels apart
+`scripts/accuracy` writes this page; do not edit it by hand. {len(results)} scenes of `tests/accuracy`, 160 x 160 pixels, sheets 0.5 voxels apart
 unless said otherwise, against the reference: a ray marcher in double precision that shares no rendering code with the sheets
 and marches to {scenes.LIGHT_POINTS} points of each light in steps of {scenes.STEP:g} voxels ({scenes.SHARP_STEP:g} where matter is as
-sharp as the grid, {scenes.FINE_STEP:g} with hard shadows). Compared is every fifth pixel of every fifth row. *Far* lights are
+sharp as the grid, {scenes.FINE_STEP:g} with hard shadows). Every fifth pixel of every fifth row is compared. *Far* lights are
 directional, *near* ones stand within twice the scene's size.
 
-Errors are root mean squares, in brackets 99.9 percentiles. The *shadow factor* is the part of the light that reaches what is
-seen, 0 to 1 ([layers](layers.md)); its pixels count with their alpha. The *picture* is linear RGBA, 1 is full scale.
+Errors are root mean squares, in brackets 99.9 percentiles. The *shadow factor* is the fraction of light that reaches the visible
+matter, 0 to 1 ([layers](layers.md)); its pixels count with their alpha. The *picture* is linear RGBA, 1 is full scale.
 
 {bars(results)}
 
@@ -147,7 +147,7 @@ seen, 0 to 1 ([layers](layers.md)); its pixels count with their alpha. The *pict
 
 ## The shadow factor
 
-`hard` is what no penumbra at all costs.
+`hard` is the error of having no penumbra at all.
 
 {error_table(results, "shadow", "shadow_worst")}
 
