@@ -132,9 +132,9 @@ the least of {measure.COST_ROUNDS} rounds in turn.
     meshes = (scenes.HERE / "meshes.md").read_text()
     PATH.write_text(f"""# How exact the pictures are
 
-`scripts/accuracy` writes this page; do not edit it by hand. {len(results)} scenes of `tests/accuracy`, 160 x 160 pixels, sheets 0.5 voxels apart
-unless said otherwise, against the reference: a ray marcher in double precision that shares no rendering code with the sheets
-and marches to {scenes.LIGHT_POINTS} points of each light in steps of {scenes.STEP:g} voxels ({scenes.SHARP_STEP:g} where matter is as
+`scripts/accuracy` writes this page; do not edit it by hand. It compares {len(results)} scenes of `tests/accuracy` (160 x 160
+pixels, sheets 0.5 voxels apart unless said otherwise) with the reference. The reference is a ray marcher in double precision. It
+shares no rendering code with the sheets, and marches to {scenes.LIGHT_POINTS} points of each light in steps of {scenes.STEP:g} voxels ({scenes.SHARP_STEP:g} where matter is as
 sharp as the grid, {scenes.FINE_STEP:g} with hard shadows). Every fifth pixel of every fifth row is compared. *Far* lights are
 directional, *near* ones stand within twice the scene's size.
 
