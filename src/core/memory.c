@@ -69,7 +69,11 @@ void hl_release(hl_context *context, void *memory) {
 }
 
 bool hl_layout_pass(hl_layout *layout, hl_context *context) {
-  if (layout->passes == 1) layout->base = hl_allocate(context, layout->bytes, 1);
+  if (layout->passes == 1) layout->base = hl_allocate(context, layout->counted = layout->bytes, 1);
+  if (layout->passes == 2 && layout->bytes != layout->counted) {
+    hl_release(context, layout->base);
+    layout->base = NULL;
+  }
   if (layout->passes == 2 || (layout->passes == 1 && layout->base == NULL)) return false;
   layout->passes++;
   layout->bytes = 0;

@@ -79,12 +79,13 @@ typedef struct hl_layout {
   unsigned char *base; /* aligned to 64 bytes; null: counts only */
   size_t bytes;        /* bytes taken at present; SIZE_MAX: overflow */
   size_t most;         /* the most bytes that were taken at one time */
+  size_t counted;      /* of hl_layout_pass(): the bytes of the block */
   int passes;          /* of hl_layout_pass() */
 } hl_layout;
 
 /* True before the pass that counts, and before the pass that hands out a block of the counted size. False
- * after the second pass; and where the block could not be allocated: then `base` is null. The caller owns
- * the block. */
+ * after the second pass. `base` is null then where the block could not be allocated, or where the passes took
+ * different numbers of bytes, so that arrays may lie beyond the block. The caller owns the block. */
 bool hl_layout_pass(hl_layout *layout, hl_context *context);
 
 /* Takes count * size bytes, aligned to 64; returns null while counting. */

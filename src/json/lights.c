@@ -9,6 +9,7 @@
 #include "json/parts.h"
 #include "json/settings.h"
 #include "scene/check.h"
+#include "scene/light_kind.h"
 #include "scene/scene.h"
 
 static hl_status read_screen(hl_json_reader *reader, const json_t *value, hl_light_texture *texture) {
@@ -41,13 +42,13 @@ hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_l
   return status;
 }
 
-hl_status hl_json_read_emission(hl_json_reader *reader, const json_t *value, hl_light_type type,
+hl_status hl_json_read_emission(hl_json_reader *reader, const json_t *value, bool has_edges,
                                 hl_light_emission *emission) {
   static const char *const keys[] = {"file", "up", NULL}, *const rect_keys[] = {"file", NULL};
   const hl_json_image image = {&emission->file, &emission->pixels, &emission->width, &emission->height, 3};
   if (value == NULL) return HL_OK;
   size_t mark = hl_json_enter(reader, "emission");
-  hl_status status = hl_json_object(reader, value, type == HL_LIGHT_RECT ? rect_keys : keys);
+  hl_status status = hl_json_object(reader, value, has_edges ? rect_keys : keys);
   if (status == HL_OK) status = hl_json_numbers(reader, value, "up", 3, emission->up);
   if (status == HL_OK) status = hl_json_load_image(reader, value, &image);
   if (status == HL_OK) hl_json_leave(reader, mark);
@@ -93,16 +94,18 @@ hl_status hl_json_read_light(hl_json_reader *reader, const json_t *value, hl_lig
   hl_light_defaults(light);
   hl_status status = hl_json_settings_object(reader, value, HL_SETTINGS_LIGHT, -1, others);
   if (status == HL_OK) status = hl_json_setting(reader, value, HL_SETTINGS_LIGHT, "type", light);
-  const bool polygon = light->type == HL_LIGHT_POLYGON;
+  if (status != HL_OK) return status;
+  const light_kind *kind = hl_light_kind(light);
   if (status == HL_OK)
     status = hl_json_settings_object(reader, value, HL_SETTINGS_LIGHT, (int)light->type,
-                                     others + (polygon ? 0 : 1));
+                                     others + (kind->outline ? 0 : 1));
   if (status == HL_OK) status = hl_json_settings(reader, value, HL_SETTINGS_LIGHT, (int)light->type, light);
   narrow_edge(value, light);
-  if (status == HL_OK && polygon) status = read_vertices(reader, value, light);
+  if (status == HL_OK && kind->outline) status = read_vertices(reader, value, light);
   if (status == HL_OK)
     status = hl_json_read_texture(reader, json_object_get(value, "texture"), &light->texture);
   if (status == HL_OK)
-    status = hl_json_read_emission(reader, json_object_get(value, "emission"), light->type, &light->emission);
+    status = hl_json_read_emission(reader, json_object_get(value, "emission"), kind->parallelogram,
+                                   &light->emission);
   return status;
 }

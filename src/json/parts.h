@@ -29,7 +29,7 @@ hl_status hl_json_read_texture(hl_json_reader *reader, const json_t *value, hl_l
 
 /* Reads the image on a light's own surface; null if absent. Its pixels and file name are owned by
  * *emission. */
-hl_status hl_json_read_emission(hl_json_reader *reader, const json_t *value, hl_light_type type,
+hl_status hl_json_read_emission(hl_json_reader *reader, const json_t *value, bool has_edges,
                                 hl_light_emission *emission);
 
 /* Reads one light. Its vertices (hl_release) and images (hl_light_images_release) are owned by *light. */

@@ -17,6 +17,7 @@
 #include "json/writable.h"
 #include "mesh/mesh.h"
 #include "scene/function_plane.h"
+#include "scene/light_kind.h"
 #include "scene/scene.h"
 #include "scene/settings.h"
 #include "text/json_value.h"
@@ -171,7 +172,7 @@ static void write_emission(writer *w, const hl_light *light) {
   if (light->emission.pixels == NULL) return;
   open_bracket(w, "emission", "{");
   write_file(w, light->emission.file);
-  if (light->type != HL_LIGHT_RECT) write_row(w, "up", light->emission.up, 3);
+  if (!hl_light_kind(light)->parallelogram) write_row(w, "up", light->emission.up, 3);
   close_bracket(w, "}");
 }
 
@@ -186,8 +187,8 @@ static void write_light(writer *w, const hl_light *light) {
   for (size_t s = 0; s < hl_setting_count(HL_SETTINGS_LIGHT); s++) {
     const hl_setting *setting = hl_setting_get(HL_SETTINGS_LIGHT, s);
     bool falloff = setting->offset == offsetof(hl_light, falloff);
-    if (falloff && light->type == HL_LIGHT_POLYGON) write_vertices(w, light);
-    if (!falloff || light->type != HL_LIGHT_DIRECTIONAL) write_if_told(w, setting, (int)light->type, light);
+    if (falloff && hl_light_kind(light)->outline) write_vertices(w, light);
+    if (!falloff || !hl_light_kind(light)->parallel) write_if_told(w, setting, (int)light->type, light);
   }
   write_texture(w, &light->texture);
   write_emission(w, light);

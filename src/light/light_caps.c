@@ -2,21 +2,10 @@
 #include "light/light_caps.h"
 
 #include "light/light_extent.h"
-#include "scene/light_shape.h"
+#include "scene/light_kind.h"
 
 /* Points along each side of a part, of which its middle and spread are means. */
 enum { POINTS_OF_PART = 8 };
-
-static bool is_sphere(const hl_light *light) {
-  return light->type == HL_LIGHT_POINT || light->type == HL_LIGHT_SPOT;
-}
-
-bool hl_light_is_wide(const hl_light *light) {
-  if (light->type == HL_LIGHT_DIRECTIONAL) return light->angular_diameter_deg > 0;
-  if (light->type == HL_LIGHT_RECT)
-    return vec3_length(vec3_of(light->edge1)) + vec3_length(vec3_of(light->edge2)) > 0;
-  return light->type == HL_LIGHT_POLYGON || light->radius > 0;
-}
 
 /* A light that looks at most this wide, over its distance, and about as long, is one part. */
 static const double NARROW = 0.35;
@@ -32,17 +21,13 @@ static void cut_rect(const double length[2], int parts[2]) {
 
 /* Parts along a and b of the unit square (hl_light_point), for a view from the content's middle. */
 static void choose_parts(const light_source *source, int parts[2]) {
-  const hl_light *light = source->light;
+  const light_kind *kind = hl_light_kind(source->light);
   vec3 way = vec3_subtract(source->content, source->position), to = vec3_normalise(way);
-  double length[2] = {2 * light->radius, 2 * light->radius};
-  if (light->type == HL_LIGHT_POLYGON) length[0] = length[1] = INFINITY;
-  if (light->type == HL_LIGHT_RECT) {
-    length[0] = vec3_length(vec3_cross(vec3_of(light->edge1), to));
-    length[1] = vec3_length(vec3_cross(vec3_of(light->edge2), to));
-  }
+  double length[2];
+  kind->apparent_lengths(source->light, to, length);
   bool narrow = fmax(length[0], length[1]) <= NARROW * vec3_length(way);
-  parts[0] = parts[1] = is_sphere(light) || narrow ? 1 : 2;
-  if (light->type == HL_LIGHT_RECT) cut_rect(length, parts);
+  parts[0] = parts[1] = kind->sphere || narrow ? 1 : 2;
+  if (kind->parallelogram) cut_rect(length, parts);
 }
 
 /* Offset of point k of a part from the light's centre. */
@@ -77,7 +62,7 @@ light_caps hl_light_caps(const light_source *source) {
   choose_parts(source, parts);
   caps.count = parts[0] * parts[1];
   for (int i = 0; i < caps.count; i++) caps.cap[i] = cap_of_part(source, parts, i);
-  if (!is_sphere(source->light)) return caps;
+  if (!hl_light_kind(source->light)->sphere) return caps;
   /* a sphere is the disk that faces the point, wherever the point is */
   double radius = source->light->radius;
   vec3_store(caps.cap[0].middle, source->position);

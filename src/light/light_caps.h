@@ -26,7 +26,4 @@ typedef struct light_caps {
 
 light_caps hl_light_caps(const light_source *source);
 
-/* Whether a light is wider than a point, or, if it is parallel, than one direction. */
-bool hl_light_is_wide(const hl_light *light);
-
 #endif

@@ -1,7 +1,7 @@
 /* light/light_source.c - see light_source.h. */
 #include "light/light_source.h"
 
-#include "scene/light_shape.h"
+#include "scene/light_kind.h"
 
 /* Square of the size, as a fraction of its distance, up to which a light is a point: no pixel shows its
  * penumbrae. */
@@ -10,7 +10,7 @@ static const double POINT_LIKE = 1e-12;
 static double trace(mat3 m) { return m.row[0].x + m.row[1].y + m.row[2].z; }
 
 light_source hl_light_source(const hl_light *light, const hl_render_settings *settings, vec3 content) {
-  light_source source = {.parallel = light->type == HL_LIGHT_DIRECTIONAL, .content = content, .light = light};
+  light_source source = {.parallel = hl_light_kind(light)->parallel, .content = content, .light = light};
   source.shadows = light->shadows == HL_SHADOWS_DEFAULT ? settings->shadows : light->shadows;
   source.soft_method = settings->soft_method;
   source.screen_center = vec3_of(light->texture.screen_center);
@@ -21,7 +21,7 @@ light_source hl_light_source(const hl_light *light, const hl_render_settings *se
   } else {
     source.position = hl_light_centre(light);
     vec3 way = vec3_subtract(light->texture.pixels != NULL ? source.screen_center : content, source.position);
-    if (light->type == HL_LIGHT_SPOT) way = vec3_of(light->direction);
+    if (hl_light_kind(light)->cone) way = vec3_of(light->direction);
     source.direction = vec3_length(way) > 0 ? vec3_normalise(way) : (vec3){0, 0, 1};
   }
   source.spread = hl_light_spread(light, source.direction);
@@ -77,7 +77,7 @@ sector_fraction hl_sector_fraction(const light_sectors *sectors, int sector) {
 light_cone hl_light_cone(const light_source *source, vec3 content, double pixel) {
   const hl_light *light = source->light;
   light_cone cone = {.scale = 0};
-  if (light->type != HL_LIGHT_SPOT) return cone;
+  if (!hl_light_kind(light)->cone) return cone;
   double distance = vec3_length(vec3_subtract(content, source->position));
   double edge = light->falloff_angle_deg * HL_PI / 180, opening = light->opening_angle_deg * HL_PI / 360;
   double sharpest = distance > pixel ? pixel / distance : 1, middle = opening - edge / 2;
@@ -144,6 +144,6 @@ void hl_lit_region(const view *view, const light_source *source, double low[2], 
     return; /* occluders outside the lit region cast penumbrae into it */
   if (source->light->texture.pixels != NULL && bound_screen(view, source, lit_low, lit_high))
     cut(lit_low, lit_high, low, high);
-  if (source->light->type == HL_LIGHT_SPOT && bound_cone(view, source, lit_low, lit_high))
+  if (hl_light_kind(source->light)->cone && bound_cone(view, source, lit_low, lit_high))
     cut(lit_low, lit_high, low, high);
 }

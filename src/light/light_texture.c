@@ -4,7 +4,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
-#include "scene/light_shape.h"
+#include "scene/light_kind.h"
 #include "view/view.h"
 
 /* The light's view through its screen, with the image's pixels. Derived: a sample x
@@ -159,8 +159,7 @@ static void spread_on_screen(const light_source *source, const view *view, vec3 
                              double deviation[2]) {
   vec3 ray = source->parallel ? source->direction : vec3_normalise(vec3_subtract(content, source->position));
   mat3 inverse, spread = source->spread;
-  if (source->light->type == HL_LIGHT_POINT ||
-      source->light->type == HL_LIGHT_SPOT) /* the disk that faces the content */
+  if (hl_light_kind(source->light)->sphere) /* the disk that faces the content */
     spread = hl_light_spread(source->light, vec3_scale(ray, -1));
   deviation[0] = deviation[1] = 0;
   if (source->shadows != HL_SHADOWS_SOFT ||
@@ -208,8 +207,9 @@ static hl_status make_levels(hl_context *context, const light_source *source, co
                              hl_error *error) {
   double deviation[2], widest = 0, reach = 0;
   level_plan plans[TEXTURE_LEVELS];
-  kernel_fraction *below = source->light->type == HL_LIGHT_RECT ? box_below : disk_below;
-  double half_widths = source->light->type == HL_LIGHT_RECT ? sqrt(3) : 2; /* in standard deviations */
+  const bool box = hl_light_kind(source->light)->parallelogram;
+  kernel_fraction *below = box ? box_below : disk_below;
+  double half_widths = box ? sqrt(3) : 2; /* in standard deviations */
   spread_on_screen(source, view, use->content, deviation);
   for (int axis = 0; axis < 2; axis++)
     widest = fmax(widest, deviation[axis] * (double)texture->sharpness[axis]);

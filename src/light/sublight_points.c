@@ -1,6 +1,8 @@
 /* light/sublight_points.c - the points that stand for a light as sub-lights. */
 #include "light/light_extent.h"
 
+#include "scene/light_kind.h"
+
 /* Sets of points chosen so that every half-plane holds, as nearly as possible, the fraction of the points
  * that it covers of the light's area; found by scripts/light_points, which says how. Points of disks are
  * given in the unit square, before its map to the disk. With sixteen points on a disk, penumbrae of straight
@@ -74,11 +76,11 @@ void hl_sublight_grid_point(int side, int i, int j, double square[2]) {
 
 /* Polygons have no one shape. */
 void hl_sublight_point(const light_source *source, int side, int i, int j, double square[2]) {
-  if (side < 2 || side >= 2 + SEARCHED_SIDES || source->light->type == HL_LIGHT_POLYGON) {
+  const light_kind *kind = hl_light_kind(source->light);
+  if (side < 2 || side >= 2 + SEARCHED_SIDES || kind->outline) {
     hl_sublight_grid_point(side, i, j, square);
     return;
   }
-  const square_points *points = source->light->type == HL_LIGHT_RECT ? &of_square[side - 2]
-                                                                     : &of_disk[side - 2];
+  const square_points *points = kind->parallelogram ? &of_square[side - 2] : &of_disk[side - 2];
   for (int axis = 0; axis < 2; axis++) square[axis] = (*points)[i * side + j][axis];
 }

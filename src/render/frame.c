@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "grid/relevant.h"
 #include "scene/function_plane.h"
+#include "scene/light_kind.h"
 
 static vec3 camera_up(const hl_camera *camera, vec3 forward) {
   vec3 up = vec3_normalise(vec3_of(camera->up));
@@ -240,7 +241,7 @@ void hl_frame_set_up_lights(frame *frame, const hl_scene_description *scene) {
     light_source source = hl_light_source(light, &scene->render, frame->middle);
     source.light_index = frame->order->lights[i];
     if (!hl_is_lit(scene)) source.shadows = HL_SHADOWS_OFF;
-    bool narrow = (light->type == HL_LIGHT_SPOT && light->opening_angle_deg <= 120) ||
+    bool narrow = (hl_light_kind(light)->cone && light->opening_angle_deg <= 120) ||
                   light->texture.pixels != NULL;
     bool whole = source.shadows == HL_SHADOWS_OFF || narrow ||
                  hl_frame_serves(frame, &scene->render, &source);

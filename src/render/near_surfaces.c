@@ -5,9 +5,11 @@
 #include "surface/small_triangles.h"
 #include "surface/surface_plane.h"
 
+/* Look-ups by cubic convolution reach so far. */
+static const double CUBIC_DELAY = 1.75;
+
 double hl_surface_delay(const light_shadow *shadow) {
-  if (shadow->sublight_count > 0 || shadow->plan.cubic) return 1.75;
-  return shadow->method == &hl_shadow_hard ? 0.75 : 2; /* soft methods blur by a pixel and more */
+  return shadow->plan.cubic ? CUBIC_DELAY : shadow->method->surface_delay;
 }
 
 /* A sample of a volume, near a surface that the same pixel of the eye meets. */

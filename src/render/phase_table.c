@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "core/vector.h"
 #include "light/light_caps.h"
+#include "scene/light_kind.h"
 
 /* ---- the mean over a cap ---- */
 
@@ -73,7 +74,7 @@ static bool has_wide_light(const hl_scene_description *scene, bool near) {
   bool found = false;
   for (size_t i = 0; i < scene->light_count; i++)
     found = found ||
-            (hl_light_is_wide(&scene->lights[i]) && !(near && scene->lights[i].type == HL_LIGHT_DIRECTIONAL));
+            (hl_light_is_wide(&scene->lights[i]) && !(near && hl_light_kind(&scene->lights[i])->parallel));
   return found;
 }
 
@@ -125,7 +126,7 @@ static void write_key(const void *data, hl_key *key) {
   hl_key_add_whole(key, needs_caps(scene));
   for (size_t i = 0; i < scene->light_count; i++) {
     const hl_light *light = &scene->lights[i];
-    bool parallel = light->type == HL_LIGHT_DIRECTIONAL;
+    bool parallel = hl_light_kind(light)->parallel;
     hl_key_add_whole(key, hl_light_is_wide(light) ? parallel ? 2 : 1 : 0);
     if (parallel) hl_key_add_numbers(key, &light->angular_diameter_deg, 1);
   }
@@ -168,7 +169,7 @@ static void fill_row_of_table(void *data, size_t index, int worker) {
     return;
   }
   const hl_light *light = &scene->lights[row];
-  if (light->type == HL_LIGHT_DIRECTIONAL && hl_light_is_wide(light))
+  if (hl_light_kind(light)->parallel && hl_light_is_wide(light))
     fill_row(table->g, cos(light->angular_diameter_deg * HL_PI / 360), &job->rings, table->parallel[row], 1);
 }
 

@@ -12,6 +12,7 @@
 #include "render/light_reads.h"
 #include "render/sweep_layers.h"
 #include "render/sweep_surfaces.h"
+#include "scene/light_kind.h"
 #include "volume/colors.h"
 
 enum { SRGB_CODES = 256 };

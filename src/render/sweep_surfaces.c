@@ -25,7 +25,7 @@ static hl_status make_fragments(sweep *sweep, const view *view, const sweep_ligh
       .of_light = shadow != NULL,
       .unseen = unseen,
       .delay = shadow != NULL ? hl_surface_delay(shadow) : 0,
-      .rise = shadow != NULL && shadow->method != &hl_shadow_hard ? 1.25 : 0,
+      .rise = shadow != NULL ? shadow->method->surface_rise : 0,
       .needed = light != NULL && shadow->method->divides ? light->needed_until : NULL,
       .marks = unseen ? NULL : occupancy->by_sheet,
       .tile_words = occupancy->tile_words};

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "core/vector.h"
+#include "scene/light_kind.h"
 #include "scene/placement.h"
 #include "scene/sky.h"
 
@@ -33,21 +34,6 @@ static hl_status check_camera(const hl_camera *camera, hl_error *error) {
 
 /* ---- checks of several parts together: distances beside voxels, brightness ---- */
 
-/* Checks a length or a distance that floats must hold beside voxels. */
-static hl_status check_reach(const hl_checker *check, const char *key, double length,
-                             const hl_frame_space *space) {
-  if (length <= HL_LIMIT_REACH * space->unit) return HL_OK;
-  return hl_fail(check->error, HL_ERROR_INPUT,
-                 "%s/%s: reaches %.3g from the volumes, whose smallest voxel edge is %.3g: "
-                 "use at most 1e12 times that, or a directional light or orthographic camera",
-                 check->place, key, length, space->unit);
-}
-
-static hl_status check_distance(const hl_checker *check, const char *key, const double point[3],
-                                const hl_frame_space *space) {
-  return check_reach(check, key, vec3_length(vec3_subtract(vec3_of(point), space->centre)), space);
-}
-
 /* Derived: a light that falls with the square of the distance has intensity / d^2 at d. */
 static hl_status check_brightness(const hl_checker *check, const hl_light *light,
                                   const hl_frame_space *space) {
@@ -69,35 +55,27 @@ static hl_status check_light_reach(const hl_light *light, size_t index, const hl
   hl_checker check = {error, ""};
   snprintf(check.place, sizeof check.place, "/lights/%zu", index);
   hl_status status = check_brightness(&check, light, space);
-  bool placed = light->type != HL_LIGHT_DIRECTIONAL, rect = light->type == HL_LIGHT_RECT;
-  if (status == HL_OK && placed && light->type != HL_LIGHT_POLYGON)
-    status = check_distance(&check, "position", light->position, space);
-  if (status == HL_OK && placed) status = check_reach(&check, "radius", light->radius, space);
-  if (status == HL_OK && rect)
-    status = check_reach(&check, "edge1", vec3_length(vec3_of(light->edge1)), space);
-  if (status == HL_OK && rect)
-    status = check_reach(&check, "edge2", vec3_length(vec3_of(light->edge2)), space);
-  for (size_t v = 0; status == HL_OK && v < light->vertex_count && light->type == HL_LIGHT_POLYGON; v++)
-    status = check_distance(&check, "vertices", light->vertices[v], space);
+  if (status == HL_OK) status = hl_light_kind(light)->check_reach(&check, light, space);
   if (status != HL_OK || light->texture.pixels == NULL) return status;
-  status = check_distance(&check, "texture/screen/center", light->texture.screen_center, space);
+  status = hl_check_distance(&check, "texture/screen/center", light->texture.screen_center, space);
   if (status == HL_OK)
-    status = check_reach(&check, "texture/screen/right", vec3_length(vec3_of(light->texture.screen_right)),
-                         space);
+    status = hl_check_reach(&check, "texture/screen/right", vec3_length(vec3_of(light->texture.screen_right)),
+                            space);
   if (status == HL_OK)
-    status = check_reach(&check, "texture/screen/up", vec3_length(vec3_of(light->texture.screen_up)), space);
+    status = hl_check_reach(&check, "texture/screen/up", vec3_length(vec3_of(light->texture.screen_up)),
+                            space);
   return status;
 }
 
 static hl_status check_scales(const hl_scene_description *d, hl_error *error) {
   const hl_frame_space space = hl_scene_frame_space(d);
   hl_checker camera = {error, "/camera"};
-  hl_status status = check_distance(&camera, "position", d->camera.position, &space);
+  hl_status status = hl_check_distance(&camera, "position", d->camera.position, &space);
   for (size_t l = 0; status == HL_OK && l < d->light_count; l++)
     if (d->lights[l].frame == HL_LIGHT_FRAME_CAMERA)
-      status = check_distance(&camera, "target", d->camera.target, &space);
+      status = hl_check_distance(&camera, "target", d->camera.target, &space);
   if (status == HL_OK && d->camera.type == HL_CAMERA_ORTHOGRAPHIC)
-    status = check_reach(&camera, "height", d->camera.height, &space);
+    status = hl_check_reach(&camera, "height", d->camera.height, &space);
   for (size_t l = 0; status == HL_OK && l < d->light_count; l++)
     status = check_light_reach(&d->lights[l], l, &space, error);
   return status;

@@ -1,12 +1,10 @@
-/* scene/light_shape.c - polygons, and the first and second moments of lights. */
+/* scene/light_shape.c - polygons and disks: their points, and the first and second moments of these. */
 #include "scene/light_shape.h"
 
 /* a b' */
-static mat3 outer(vec3 a, vec3 b) {
-  return (mat3){{vec3_scale(b, a.x), vec3_scale(b, a.y), vec3_scale(b, a.z)}};
-}
+mat3 hl_outer(vec3 a, vec3 b) { return (mat3){{vec3_scale(b, a.x), vec3_scale(b, a.y), vec3_scale(b, a.z)}}; }
 
-static mat3 add(mat3 a, mat3 b, double scale) {
+mat3 hl_add_scaled(mat3 a, mat3 b, double scale) {
   for (int row = 0; row < 3; row++) a.row[row] = vec3_add(a.row[row], vec3_scale(b.row[row], scale));
   return a;
 }
@@ -44,11 +42,13 @@ polygon_shape hl_polygon_shape(const double (*vertices)[3], size_t count) {
     vec3 s = vec3_add(b, c);
     double area = vec3_dot(vec3_cross(b, c), shape.normal) / 2;
     sum = vec3_add(sum, vec3_scale(s, area / 3));
-    squares = add(squares, add(add(outer(b, b), outer(c, c), 1), outer(s, s), 1), area / 12);
+    squares = hl_add_scaled(
+        squares, hl_add_scaled(hl_add_scaled(hl_outer(b, b), hl_outer(c, c), 1), hl_outer(s, s), 1),
+        area / 12);
   }
   vec3 centre = vec3_scale(sum, 1 / shape.area);
-  shape.spread = add((mat3){{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, squares, 1 / shape.area);
-  shape.spread = add(shape.spread, outer(centre, centre), -1);
+  shape.spread = hl_add_scaled((mat3){{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, squares, 1 / shape.area);
+  shape.spread = hl_add_scaled(shape.spread, hl_outer(centre, centre), -1);
   shape.centre = vec3_add(first, centre);
   return shape;
 }
@@ -78,67 +78,52 @@ bool hl_polygon_crosses_itself(const polygon_shape *shape, const double (*vertic
   return false;
 }
 
-vec3 hl_light_centre(const hl_light *light) {
-  if (light->type == HL_LIGHT_POLYGON) return hl_polygon_shape(light->vertices, light->vertex_count).centre;
-  return vec3_of(light->position);
-}
+/* ---- disks ---- */
 
-/* Derived: the mean of t^2 over t in [-1/2, 1/2] is 1/12; the mean of x^2 over a disk of radius r is
- * r^2/4. */
-mat3 hl_light_spread(const hl_light *light, vec3 facing) {
-  mat3 spread = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, unit = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  if (light->type == HL_LIGHT_POLYGON) return hl_polygon_shape(light->vertices, light->vertex_count).spread;
-  if (light->type == HL_LIGHT_RECT) {
-    vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
-    return add(add(spread, outer(edge1, edge1), 1.0 / 12), outer(edge2, edge2), 1.0 / 12);
+/* Maps the unit square onto the disk of radius 1, squares around the middle onto circles (Shirley and Chiu,
+ * "A low distortion map between disk and square", 1997). */
+static void square_to_disk(double a, double b, double *x, double *y) {
+  a = 2 * a - 1;
+  b = 2 * b - 1;
+  if (a == 0 && b == 0) {
+    *x = *y = 0;
+    return;
   }
-  bool parallel = light->type == HL_LIGHT_DIRECTIONAL;
-  vec3 normal = light->type == HL_LIGHT_DISK ? vec3_normalise(vec3_of(light->normal)) : facing;
-  double radius = parallel ? tan(light->angular_diameter_deg * HL_PI / 360) : light->radius;
-  return add(spread, add(unit, outer(normal, normal), -1), radius * radius / 4);
+  bool wide = fabs(a) > fabs(b);
+  double radius = wide ? a : b, angle = wide ? HL_PI / 4 * b / a : HL_PI / 2 - HL_PI / 4 * a / b;
+  *x = radius * cos(angle);
+  *y = radius * sin(angle);
 }
 
-/* Unit vectors to the right and upwards, as seen by someone who looks against the normal. */
-static void upright(vec3 normal, vec3 wanted_up, vec3 *right, vec3 *up) {
+vec3 hl_disk_point(vec3 normal, double radius, double a, double b) {
+  vec3 u = vec3_perpendicular(normal), v = vec3_cross(normal, u);
+  double x, y;
+  square_to_disk(a, b, &x, &y);
+  return vec3_add(vec3_scale(u, radius * x), vec3_scale(v, radius * y));
+}
+
+/* Derived: the mean of x^2 over a disk of radius r is r^2/4. */
+mat3 hl_disk_spread(vec3 normal, double radius) {
+  mat3 spread = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, unit = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  return hl_add_scaled(spread, hl_add_scaled(unit, hl_outer(normal, normal), -1), radius * radius / 4);
+}
+
+emission_plane hl_disk_plane(vec3 normal, double radius, vec3 wanted_up) {
+  emission_plane plane = {.middle = {0, 0, 0}};
+  hl_upright(normal, wanted_up, &plane.right, &plane.up);
+  plane.right = vec3_scale(plane.right, radius);
+  plane.up = vec3_scale(plane.up, radius);
+  return plane;
+}
+
+/* ---- images on lights ---- */
+
+void hl_upright(vec3 normal, vec3 wanted_up, vec3 *right, vec3 *up) {
   *right = vec3_cross(vec3_normalise(wanted_up), normal);
   if (!(vec3_length(*right) > 1e-3)) *right = vec3_cross((vec3){0, 1, 0}, normal);
   if (!(vec3_length(*right) > 1e-3)) *right = vec3_cross((vec3){0, 0, 1}, normal);
   *right = vec3_normalise(*right);
   *up = vec3_cross(normal, *right);
-}
-
-/* The rectangle around the vertices. */
-static emission_plane plane_of_polygon(const hl_light *light) {
-  polygon_shape shape = hl_polygon_shape(light->vertices, light->vertex_count);
-  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-  vec3 axis[2];
-  upright(shape.normal, vec3_of(light->emission.up), &axis[0], &axis[1]);
-  for (size_t i = 0; i < light->vertex_count; i++)
-    for (int a = 0; a < 2; a++) {
-      double at = vec3_dot(axis[a], vec3_subtract(vec3_of(light->vertices[i]), shape.centre));
-      low[a] = fmin(low[a], at);
-      high[a] = fmax(high[a], at);
-    }
-  return (emission_plane){
-      vec3_add(vec3_scale(axis[0], (low[0] + high[0]) / 2), vec3_scale(axis[1], (low[1] + high[1]) / 2)),
-      vec3_scale(axis[0], (high[0] - low[0]) / 2), vec3_scale(axis[1], (high[1] - low[1]) / 2)};
-}
-
-emission_plane hl_emission_plane(const hl_light *light, vec3 facing) {
-  emission_plane plane = {.middle = {0, 0, 0}};
-  if (light->type == HL_LIGHT_POLYGON) return plane_of_polygon(light);
-  if (light->type == HL_LIGHT_RECT) {
-    plane.right = vec3_scale(vec3_of(light->edge1), 0.5);
-    plane.up = vec3_scale(vec3_of(light->edge2), 0.5);
-    return plane;
-  }
-  double radius = light->type == HL_LIGHT_DIRECTIONAL ? tan(light->angular_diameter_deg * HL_PI / 360)
-                                                      : light->radius;
-  vec3 normal = light->type == HL_LIGHT_DISK ? vec3_normalise(vec3_of(light->normal)) : facing;
-  upright(normal, vec3_of(light->emission.up), &plane.right, &plane.up);
-  plane.right = vec3_scale(plane.right, radius);
-  plane.up = vec3_scale(plane.up, radius);
-  return plane;
 }
 
 /* offset = middle + s right + t up: right and up need not be perpendicular (derived, by their cross

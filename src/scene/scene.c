@@ -11,6 +11,7 @@
 #include "core/memory.h"
 #include "scene/check.h"
 #include "scene/function_plane.h"
+#include "scene/light_kind.h"
 #include "scene/placement.h"
 #include "scene/settings.h"
 
@@ -295,7 +296,7 @@ static hl_status copy_lights(hl_scene *scene, const hl_scene_description *from, 
   hl_light *lights = copied;
   for (size_t l = 0; l < from->light_count; l++) {
     lights[l].vertices = NULL;
-    if (lights[l].type != HL_LIGHT_POLYGON) lights[l].vertex_count = 0;
+    if (!hl_light_kind(&lights[l])->outline) lights[l].vertex_count = 0;
     forget_images(&lights[l]);
     lights[l].of_sky = 0;
   }

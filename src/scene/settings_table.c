@@ -7,6 +7,7 @@
 
 #include <halflight/settings.h>
 
+#include "scene/light_kinds.h"
 #include "scene/limits.h"
 #include "scene/settings.h"
 #include "scene/soft_methods.h"
@@ -16,13 +17,8 @@
 
 static const hl_setting_choice camera_types[] = {
     {"perspective", HL_CAMERA_PERSPECTIVE}, {"orthographic", HL_CAMERA_ORTHOGRAPHIC}, {NULL, 0}};
-static const hl_setting_choice light_types[] = {{"directional", HL_LIGHT_DIRECTIONAL},
-                                                {"point", HL_LIGHT_POINT},
-                                                {"spot", HL_LIGHT_SPOT},
-                                                {"rect", HL_LIGHT_RECT},
-                                                {"disk", HL_LIGHT_DISK},
-                                                {"polygon", HL_LIGHT_POLYGON},
-                                                {NULL, 0}};
+#define HL_LIGHT_KIND(value, name) {#name, value},
+static const hl_setting_choice light_types[] = {HL_LIGHT_KINDS{NULL, 0}};
 static const hl_setting_choice light_frames[] = {
     {"world", HL_LIGHT_FRAME_WORLD}, {"camera", HL_LIGHT_FRAME_CAMERA}, {NULL, 0}};
 static const hl_setting_choice falloffs[] = {

@@ -471,6 +471,8 @@ static void after_tile(light_shadow *shadow, size_t tile) {
 
 const shadow_method hl_shadow_cascade = {.name = "cascade",
                                          .state_bytes = sizeof(soft_cascade),
+                                         .surface_delay = 2,
+                                         .surface_rise = 1.25,
                                          .first_slab = 1,
                                          .plan = hl_cascade_plan,
                                          .lay_out = hl_cascade_lay_out,

@@ -364,6 +364,8 @@ static void plan_paper(light_shadow *shadow) {
 
 const shadow_method hl_shadow_paper = {.name = "paper",
                                        .state_bytes = sizeof(soft_paper),
+                                       .surface_delay = 2,
+                                       .surface_rise = 1.25,
                                        .first_slab = 1,
                                        .divides = true,
                                        .widen_needs = widen_needs,

@@ -566,6 +566,8 @@ static void find_lit(light_shadow *shadow, size_t tile) {
 
 const shadow_method hl_shadow_sublights = {.name = "sublights",
                                            .state_bytes = sizeof(sublights),
+                                           .surface_delay = 1.75,
+                                           .surface_rise = 1.25,
                                            .first_slab = 1,
                                            .divides = true,
                                            .plan = plan_sublights,

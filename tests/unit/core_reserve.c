@@ -130,6 +130,17 @@ static void test_gives_back(void **state) {
   assert_int_equal(layout.most, 704);
 }
 
+/* Arrays that are larger when they are handed out than when they were counted are not handed out. */
+static void test_refuses_another_size(void **state) {
+  (void)state;
+  hl_reserve reserve = open_reserve(false);
+  hl_layout layout = {0};
+  for (int pass = 1; hl_layout_pass(&layout, reserve.context); pass++)
+    hl_layout_take(&layout, (size_t)pass * 64, 1);
+  assert_null(layout.base);
+  release(&reserve);
+}
+
 static void test_refuses_overflow(void **state) {
   (void)state;
   hl_reserve reserve = open_reserve(false);
@@ -153,6 +164,7 @@ int main(void) {
                                      cmocka_unit_test(test_keeps_nothing),
                                      cmocka_unit_test(test_lays_out),
                                      cmocka_unit_test(test_gives_back),
+                                     cmocka_unit_test(test_refuses_another_size),
                                      cmocka_unit_test(test_refuses_overflow)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
