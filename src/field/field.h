@@ -18,7 +18,7 @@
 enum {
   FIELD_LANES = 16,
   FIELD_HARMONICS = 9,   /* spherical harmonics up to the second degree */
-  FIELD_DIRECTIONS = 36, /* the most directions about one end of an axis */
+  FIELD_DIRECTIONS = 36, /* directions about one end of an axis */
   FIELD_SAMPLES = 4      /* the most samples along an edge of a cell */
 };
 

@@ -31,10 +31,10 @@ LANES_INLINE lanes place_between_cells(const sky_light *sky, int axis, lanes pos
 static const float LEAST_COUNTED = 1.0f / 1024;
 
 /* The weight of a cell beside others: its trilinear weight, times its transmittance, or, on a volume's
- * surface (1), the cube of it: dark cells within matter do not darken what lies outside of it. */
+ * surface (1), the sixth power of it: cells that matter half fills do not darken what lies outside of it. */
 LANES_INLINE lanes weight_of_cell(lanes trilinear, lanes_int stored, lanes surface) {
-  lanes passing = lanes_from_int(stored) * (1.0f / SKY_MOST),
-        counted = passing * lanes_fma(surface, passing * passing - 1.0f, lanes_set(1.0f));
+  lanes passing = lanes_from_int(stored) * (1.0f / SKY_MOST), squared = passing * passing,
+        counted = passing * lanes_fma(surface, squared * squared * passing - 1.0f, lanes_set(1.0f));
   return trilinear * lanes_max(counted, lanes_set(LEAST_COUNTED));
 }
 

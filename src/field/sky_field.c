@@ -16,17 +16,13 @@
 #include "scene/sky.h"
 
 /* Cells by which look-ups are lifted off a surface. */
-static const double LIFT_CELLS = 1.0;
+static const double LIFT_CELLS = 0.5;
 
-/* A cube's face has so many squares along each side: meshes, whose faces are flat and edges sharp, show where
- * the light of a single direction ends. */
-enum { SIDE = 4, SIDE_OF_MESHES = 6, ENDS = 6, SIDE_SAMPLES = 64 };
+/* A cube's face has so many squares along each side: floors of slots, and meshes' flat faces, show where the
+ * light of a single direction ends. */
+enum { SIDE = 6, ENDS = 6, SIDE_SAMPLES = 64 };
 
-_Static_assert(SIDE_OF_MESHES *SIDE_OF_MESHES <= FIELD_DIRECTIONS, "room for a cube's face");
-
-static int side_of(const sky_content *content) {
-  return content->content.surface_count > 0 ? SIDE_OF_MESHES : SIDE;
-}
+_Static_assert(SIDE *SIDE == FIELD_DIRECTIONS, "room for a cube's face");
 
 /* The directions about one end of an axis. */
 typedef struct sky_end {
@@ -38,9 +34,9 @@ typedef struct sky_end {
 /* ---- radiance ---- */
 
 /* How often a square is sampled along each side. */
-static int samples_of_sky(const hl_sky *sky, int side) {
+static int samples_of_sky(const hl_sky *sky) {
   if (sky->type != HL_SKY_IMAGE) return 8;
-  int pixels = sky->width / (4 * side) + 1;
+  int pixels = sky->width / (4 * SIDE) + 1;
   return pixels < 8 ? 8 : pixels > SIDE_SAMPLES ? SIDE_SAMPLES : pixels;
 }
 
@@ -59,12 +55,12 @@ static vec3 direction_of(const field_slices *s, int sign, double x, double y, do
 /* Adds the integrals of a square of a face. white: an even sky of radiance 1 in place of the sky. Derived:
  * the solid angle of dx dy in equal angles is (pi / 4)^2 (1 + u^2) (1 + v^2) / (1 + u^2 + v^2)^(3/2), u and v
  * the slopes. */
-static void integrate_square(const hl_sky *sky, const field_slices *s, int sign, int side, int square,
+static void integrate_square(const hl_sky *sky, const field_slices *s, int sign, int square,
                              double integral[3][FIELD_HARMONICS]) {
   const sky_axes axes = hl_sky_axes(sky);
-  int n = samples_of_sky(sky, side);
-  double step = 2.0 / (side * n), left = -1 + 2.0 / side * (square % side),
-         top = -1 + 2.0 / side * (square / side);
+  int n = samples_of_sky(sky);
+  double step = 2.0 / (SIDE * n), left = -1 + 2.0 / SIDE * (square % SIDE),
+         top = -1 + 2.0 / SIDE * (square / SIDE);
   memset(integral, 0, 3 * sizeof *integral);
   for (int i = 0; i < n * n; i++) {
     double slope[2], radiance[3], harmonics[FIELD_HARMONICS];
@@ -95,11 +91,11 @@ static void set_taps(double u, double v, int32_t plane_stride, sky_direction *di
 static void set_up_end(const sky_content *content, int end_index, int first, int channels,
                        int32_t plane_stride, sky_end *end) {
   field_slices s = hl_field_slices(&content->lattice, end_index / 2);
-  int sign = end_index % 2 ? -1 : 1, side = side_of(content);
+  int sign = end_index % 2 ? -1 : 1;
   end->count = 0;
-  for (int square = 0; square < side * side; square++) {
+  for (int square = 0; square < FIELD_DIRECTIONS; square++) {
     double integral[3][FIELD_HARMONICS], slope[2];
-    integrate_square(content->sky, &s, sign, side, square, integral);
+    integrate_square(content->sky, &s, sign, square, integral);
     float *basis = end->basis[end->count];
     bool shines = false;
     for (int c = 0; c < channels; c++)
@@ -110,8 +106,8 @@ static void set_up_end(const sky_content *content, int end_index, int first, int
     if (!shines) continue;
     sky_direction *direction = &end->directions[end->count++];
     *direction = (sky_direction){.basis = basis};
-    (void)direction_of(&s, sign, -1 + (2 * (square % side) + 1.0) / side,
-                       -1 + (2 * (square / side) + 1.0) / side, slope);
+    (void)direction_of(&s, sign, -1 + (2 * (square % SIDE) + 1.0) / SIDE,
+                       -1 + (2 * (square / SIDE) + 1.0) / SIDE, slope);
     set_taps(slope[0], slope[1], plane_stride, direction);
   }
 }
@@ -136,11 +132,10 @@ typedef struct light_planes {
   size_t half;    /* floats of the planes of all directions */
 } light_planes;
 
-static light_planes planes_of(const sky_content *content, const field_slices *s) {
-  const size_t side = (size_t)side_of(content);
+static light_planes planes_of(const field_slices *s) {
   light_planes planes = {.stride = s->stride + 2 * FIELD_LANES};
   planes.plane = (size_t)planes.stride * (size_t)(s->rows + 2);
-  planes.half = side * side * planes.plane;
+  planes.half = FIELD_DIRECTIONS * planes.plane;
   return planes;
 }
 
@@ -149,7 +144,7 @@ static size_t most_light(const sky_content *content) {
   size_t most = 0;
   for (int a = 0; a < 3; a++) {
     field_slices s = hl_field_slices(&content->lattice, a);
-    size_t half = planes_of(content, &s).half;
+    size_t half = planes_of(&s).half;
     most = half > most ? half : most;
   }
   return 2 * most;
@@ -166,7 +161,7 @@ static void sweep_end(const sky_content *content, const opacity_field *opacity, 
                       const sky_target *target, int end_index, int first, int channels,
                       const field_functions *functions, hl_pool *pool) {
   field_slices s = hl_field_slices(&content->lattice, end_index / 2);
-  const light_planes planes = planes_of(content, &s);
+  const light_planes planes = planes_of(&s);
   sky_end end;
   set_up_end(content, end_index, first, channels, planes.stride, &end);
   const bool adds_passing = end_index % 2 == 0 && first == 0;
@@ -275,12 +270,11 @@ static void make(const sky_content *content, passing_arrays *arrays, const field
  * each channel's harmonics. */
 static void find_open(const sky_content *content, sky_light *light) {
   double sum[3][FIELD_HARMONICS] = {{0}}, bound[3][FIELD_HARMONICS] = {{0}};
-  const int side = side_of(content);
   for (int end = 0; end < ENDS; end++) {
     field_slices s = hl_field_slices(&content->lattice, end / 2);
-    for (int square = 0; square < side * side; square++) {
+    for (int square = 0; square < FIELD_DIRECTIONS; square++) {
       double integral[3][FIELD_HARMONICS];
-      integrate_square(content->sky, &s, end % 2 ? -1 : 1, side, square, integral);
+      integrate_square(content->sky, &s, end % 2 ? -1 : 1, square, integral);
       for (int c = 0; c < 3; c++)
         for (int k = 0; k < FIELD_HARMONICS; k++) {
           sum[c][k] += integral[c][k];

@@ -90,6 +90,10 @@ void hl_scatter_fill_walls(const scatter_scene *scene, const scatter_nodes *node
 void hl_scatter_add_wall(const scatter_walls *walls, int line, size_t node, size_t next,
                          const float *extinction, float length);
 
+/* Changes the light of nodes beside matter: the mean over the lines, which work->along holds. */
+void hl_scatter_continue(const scatter_nodes *nodes, const float *extinction, const scatter_work *work,
+                         float *light);
+
 /* Prepares the lines for one channel of extinction. */
 void hl_scatter_begin_lines(hl_pool *pool, const scatter_nodes *nodes, const float *extinction,
                             scatter_work *work);

@@ -316,6 +316,7 @@ void hl_scatter_enter(hl_pool *pool, const scatter_nodes *nodes, const float *ex
   lines_job job = {.nodes = nodes, .extinction = extinction, .work = work, .inflow = inflow};
   memset(scratch, 0, hl_scatter_node_count(nodes) * sizeof *scratch);
   spread(pool, &job, scratch, light);
+  hl_scatter_continue(nodes, extinction, work, light);
   find_flux(pool, &job, flux);
 }
 
@@ -335,5 +336,6 @@ void hl_scatter_solve(hl_pool *pool, const scatter_nodes *nodes, const float *ex
   for (size_t n = 0; n < count; n++) sent[n] = scattering[n] * direct[n] + root[n] * light[n];
   job.inflow = inflow;
   spread(pool, &job, sent, light);
+  hl_scatter_continue(nodes, extinction, work, light);
   find_flux(pool, &job, flux);
 }

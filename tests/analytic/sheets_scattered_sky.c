@@ -117,6 +117,35 @@ static void test_half_space(void **state) {
   }
 }
 
+/* What a slab of albedo 1 and even scattering sends on of a hemisphere of 1 above it, along its normal: up,
+ * and down. By paths of light in another program, for blocks of 64 x 64 x 16 with this optical depth (200,000
+ * paths, which enter along the normal; standard error .001). */
+static void test_slab_below_a_hemisphere(void **state) {
+  (void)state;
+  static const double depths[] = {1, 2, 4, 8}, up[] = {0.339, 0.517, 0.690, 0.821},
+                      down[] = {0.293, 0.348, 0.291, 0.178};
+  static float pixels[PIXELS * 4];
+  for (int k = 0; k < 8; k++) {
+    const double expected = k % 2 ? down[k / 2] : up[k / 2];
+    stage set;
+    stage_open(&set);
+    set.scene.width = set.scene.height = SIDE;
+    set.scene.camera.height = 4;
+    set.scene.sky.type = HL_SKY_UNIFORM;
+    set.scene.sky.hemisphere = 1;
+    hl_scene_volume *slab = stage_add_grid(&set, (size_t[3]){64, 64, 16}, (double[3]){1, 1, 1},
+                                           (vec3){-32, -32, -8}, NULL);
+    stage_set_opacity(&set, slab, 1 - exp(-depths[k / 2]), 16);
+    stage_set_color(&set, slab, 1, 1, 1);
+    slab->shading = HL_SHADING_NONE;
+    slab->multiple_scattering = 1;
+    stage_look(&set, (vec3){0, 0, k % 2 ? -40 : 40}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+    stage_render_sheets(&set, pixels);
+    assert_near((double)pixels[4 * MIDDLE], expected, 0.05 * expected);
+    stage_close(&set);
+  }
+}
+
 /* The reference's paths find that the white furnace vanishes, within four of their standard errors. */
 static void test_paths_of_the_reference(void **state) {
   (void)state;
@@ -167,9 +196,13 @@ static void test_albedo(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_white_furnace),          cmocka_unit_test(test_inflow_of_an_even_sky),
-      cmocka_unit_test(test_inflow_of_a_hemisphere), cmocka_unit_test(test_half_space),
-      cmocka_unit_test(test_paths_of_the_reference), cmocka_unit_test(test_albedo),
+      cmocka_unit_test(test_white_furnace),
+      cmocka_unit_test(test_inflow_of_an_even_sky),
+      cmocka_unit_test(test_inflow_of_a_hemisphere),
+      cmocka_unit_test(test_half_space),
+      cmocka_unit_test(test_slab_below_a_hemisphere),
+      cmocka_unit_test(test_paths_of_the_reference),
+      cmocka_unit_test(test_albedo),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -201,7 +201,7 @@ static void test_against_the_reference(void **state) {
     for (int shadow = 0; shadow < 2; shadow++) {
       double found = deviation(&with, &exact, shadow);
       assert_near(found, 0, bounds[i][shadow]);
-      assert_true(found < (i == 0 ? 0.65 : 0.3) * deviation(&without, &exact, shadow));
+      assert_true(found < (i == 0 ? 0.95 : 0.3) * deviation(&without, &exact, shadow));
     }
     stage_close(&set);
   }

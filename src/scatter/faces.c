@@ -1,0 +1,61 @@
+/* scatter/faces.c - the light of nodes beside matter, such that samples between nodes are lit as matter is.
+ *
+ * Samples are lit by what lies between nodes, linear in the distance. Between nodes of the extinctions e and
+ * f, each half of the way, light is linear in the optical depth: on a line that crosses the face between
+ * them, from u to v, it is u + (v - u) e / (e + f) in the middle. A linear way meets that where the node of
+ * less matter, f, has v + (v - u) (e - f) / (e + f) (derived). Lines along the face are another case: beside
+ * matter they hold the light of the sky, or none, within it what is scattered there. They stand for all
+ * directions that are nearly along the face. Of these, at the face, one half brings v and the other u, and
+ * soon behind it all bring u: v counts a quarter there, for which the node of less matter has v + (u - v) / 2
+ * (e - f) / (e + f).
+ *
+ * So an empty node beside matter, whose light is that at its face, continues the light of the matter beyond
+ * it, and light that is even stays even. Of several neighbours the mean counts, weighted by how much more
+ * matter they have. */
+#include "scatter/parts.h"
+
+typedef struct faces {
+  const float *extinction;
+  float *const *lines; /* [SCATTER_LINES][nodes]; the light along each line */
+} faces;
+
+typedef struct face_sums {
+  float change, weight;
+} face_sums;
+
+/* between: what meshes let through between the node and its neighbour along an axis. */
+static void add_face(const faces *of, int axis, size_t node, size_t next, float between, face_sums *sums) {
+  const float own = of->extinction[node], other = of->extinction[next];
+  if (!(other > own)) return;
+  const float weight = (other - own) * between;
+  float change = 0;
+  for (int line = 0; line < SCATTER_LINES; line++) {
+    const float difference = of->lines[line][node] - of->lines[line][next];
+    change += hl_scatter_line_weight(line) * (hl_scatter_step(line)[axis] != 0 ? 1 : -0.5f) * difference;
+  }
+  sums->change += weight * change * (other - own) / (other + own);
+  sums->weight += weight;
+}
+
+void hl_scatter_continue(const scatter_nodes *nodes, const float *extinction, const scatter_work *work,
+                         float *light) {
+  const faces of = {extinction, work->along};
+  const int32_t *count = nodes->count;
+  const size_t step[3] = {1, (size_t)count[0], (size_t)count[0] * (size_t)count[1]};
+  size_t node = 0;
+  for (int32_t z = 0; z < count[2]; z++)
+    for (int32_t y = 0; y < count[1]; y++)
+      for (int32_t x = 0; x < count[0]; x++, node++) {
+        const int32_t at[3] = {x, y, z};
+        face_sums sums = {0, 0};
+        for (int axis = 0; axis < 3; axis++) {
+          const float *after = work->walls.after[axis];
+          const size_t before = node - step[axis], next = node + step[axis];
+          if (at[axis] > 0) add_face(&of, axis, node, before, after != NULL ? after[before] : 1, &sums);
+          if (at[axis] < count[axis] - 1)
+            add_face(&of, axis, node, next, after != NULL ? after[node] : 1, &sums);
+        }
+        const float continued = light[node] + (sums.weight > 0 ? sums.change / sums.weight : 0);
+        light[node] = continued > 0 ? continued : 0;
+      }
+}
