@@ -1,4 +1,5 @@
 /* json/shapes_volume.c - hl_volume_from_shapes(), and the text of shapes with their groups expanded. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -98,10 +99,37 @@ static bool says(const char *text, const json_t *root) {
   return same;
 }
 
+/* An integer in place of a real number that is one; null: `value` stays. A page that reads a scene and writes
+ * it again turns 5.0 to 5: both are to be the same text. */
+static json_t *whole_of(const json_t *value) {
+  const double most = 9007199254740992.0; /* 2^53 */
+  double number = json_real_value(value);
+  bool whole = json_is_real(value) && number == floor(number) && fabs(number) <= most;
+  return whole ? json_integer((json_int_t)number) : NULL;
+}
+
+static void spell_whole_numbers(json_t *tree) {
+  json_t *value, *whole;
+  const char *key;
+  void *next;
+  size_t index;
+  json_object_foreach_safe(tree, next, key, value) {
+    if ((whole = whole_of(value)) != NULL) json_object_set_new(tree, key, whole);
+    else spell_whole_numbers(value);
+  }
+  json_array_foreach(tree, index, value) {
+    if ((whole = whole_of(value)) != NULL) json_array_set_new(tree, index, whole);
+    else spell_whole_numbers(value);
+  }
+}
+
 char *hl_json_shapes_text(hl_context *context, const json_t *shapes, const json_t *groups,
                           double voxel_size) {
-  json_t *root = json_pack("{s:o, s:f}", "shapes", hl_json_expand_shapes(shapes, groups), "voxel_size",
-                           voxel_size);
+  json_t *shared = json_pack("{s:o, s:f}", "shapes", hl_json_expand_shapes(shapes, groups), "voxel_size",
+                             voxel_size);
+  json_t *root = json_deep_copy(shared);
+  json_decref(shared);
+  spell_whole_numbers(root);
   char *dumped = root != NULL ? hl_plain_json_dump(root, JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
   char *text = says(dumped, root) ? hl_copy_text(context, dumped) : NULL;
   json_decref(root);

@@ -532,6 +532,25 @@ static void changed_texts_open_no_file(void **state) {
   hl_context_destroy(context);
 }
 
+/* A page writes 4.0 as 4. */
+static void whole_numbers_have_one_spelling(void **state) {
+  (void)state;
+  const char *real =
+                 "{\"halflight\": 1, \"volumes\": [{\"shapes\": [{\"type\": \"sphere\", \"radius\": 4.0, "
+                 "\"position\": [-0.0, 1.5, 2e1]}], \"voxel_size\": 1}]}",
+             *whole =
+                 "{\"halflight\": 1, \"volumes\": [{\"shapes\": [{\"type\": \"sphere\", \"radius\": 4, "
+                 "\"position\": [0, 1.5, 20]}], \"voxel_size\": 1}]}";
+  hl_context *context = make_context();
+  hl_scene *open = NULL, *changed = NULL;
+  assert_int_equal(read_like(context, real, NULL, &open, NULL), HL_OK);
+  assert_int_equal(read_like(context, whole, open, &changed, NULL), HL_OK);
+  assert_ptr_equal(hl_scene_describe(open)->volumes[0].volume, hl_scene_describe(changed)->volumes[0].volume);
+  hl_scene_release(changed);
+  hl_scene_release(open);
+  hl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_case),
@@ -547,6 +566,7 @@ int main(void) {
       cmocka_unit_test(volumes_from_memory_cannot_be_written),
       cmocka_unit_test(odd_values_survive),
       cmocka_unit_test(changed_texts_open_no_file),
+      cmocka_unit_test(whole_numbers_have_one_spelling),
       cmocka_unit_test(damaged_scenes_are_answered),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
