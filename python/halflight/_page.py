@@ -4,6 +4,10 @@ from __future__ import annotations
 import functools
 import re
 from importlib.resources import files
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 _IMPORT = re.compile(r'^import \{([^}]*)\} from "\./(\w+)\.js";\n', re.M)
 _EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const) (\w+))", re.M)
@@ -13,14 +17,14 @@ def _read(name: str) -> str:
     return (files("halflight") / "page" / name).read_text(encoding="utf-8")
 
 
-def _add(name: str, joined: dict[str, str]) -> None:
-    """The file after those that it imports: a function that returns what it exports."""
+def join(name: str, read: Callable[[str], str], joined: dict[str, str]) -> None:
+    """The file after those that it imports: a function that returns what it exports. read: a file's text by its name."""
     if name in joined:
         return
-    text = _read(f"{name}.js")
+    text = read(f"{name}.js")
     uses = _IMPORT.findall(text)
     for _, used in uses:
-        _add(used, joined)
+        join(used, read, joined)
     given = "".join(f"const {{{names}}} = ${used};\n" for names, used in uses)
     exported = ", ".join(_EXPORT.findall(text))
     body = _EXPORT.sub("", _IMPORT.sub("", text))
@@ -31,7 +35,7 @@ def _add(name: str, joined: dict[str, str]) -> None:
 def module() -> str:
     """JavaScript: the widget's module, as anywidget wants it."""
     joined: dict[str, str] = {}
-    _add("widget", joined)
+    join("widget", _read, joined)
     return "".join(joined.values()) + "export default { render: $widget.render };\n"
 
 

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "parts.h"
+#include "start/start.h"
 
 enum { MOST_ENTRIES = 2000 };
 

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "parts.h"
+#include "start/start.h"
 
 static server_opened *find(server *s, long long number) {
   for (int o = 0; o < MOST_OPENED; o++)
@@ -65,7 +66,7 @@ server_opened *opened_add(server *s, hl_scene *scene, const char *title) {
   pthread_mutex_lock(&s->pages_lock);
   long long number = s->next_opened++;
   pthread_mutex_unlock(&s->pages_lock);
-  char *start = describe_start(s, scene, title, number);
+  char *start = describe_start(s->options.context, scene, title, number, s->below != NULL);
   if (start == NULL) return NULL;
   pthread_mutex_lock(&s->pages_lock);
   server_opened *opened = make_room(s);

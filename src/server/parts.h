@@ -203,10 +203,6 @@ bool upload_add(server_upload *upload, const char *bytes, size_t count);
 bool upload_finish(server_upload *upload);
 void upload_end(server_upload *upload); /* removes the file and its folder */
 
-/* start.c: the text of a scene's start.json (free()); null without memory. */
-char *describe_start(const server *s, const hl_scene *scene, const char *title, long long number);
-void put_json_text(FILE *out, const char *text);
-
 /* jpeg.c: a picture as JPEG (free()); rgba: [height][width][4]. Null without memory. */
 unsigned char *encode_jpeg(const uint8_t *rgba, int width, int height, int quality, size_t *length);
 
@@ -221,10 +217,5 @@ const char *path_after_token(const char *path, const char *token);
 
 /* requests.c: libmicrohttpd's callbacks are set up for a server that listens on a socket. */
 struct MHD_Daemon *listen_to_requests(server *s, int listening_socket);
-
-/* Writes how many voxels have a value and a gradient: {"gradient": the greatest that is drawn, "columns" of
- * values over the volume's range, "rows" of gradients from 0, "counts": [row][column]}; null without memory.
- */
-void put_plane_histogram(FILE *out, const hl_volume *volume, const hl_volume_info *info);
 
 #endif

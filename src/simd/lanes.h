@@ -16,6 +16,8 @@
 #include <emmintrin.h>
 #elif defined(__ARM_NEON)
 #include <arm_neon.h>
+#elif defined(__wasm_relaxed_simd__)
+#include <wasm_simd128.h>
 #endif
 
 enum { LANES = 16 };
@@ -131,7 +133,7 @@ LANES_CALL lanes lanes_max(lanes a, lanes b) {
 #endif
 }
 
-#if !defined(__AVX2__) && !defined(__ARM_NEON) && !defined(__FP_FAST_FMAF)
+#if !defined(__AVX2__) && !defined(__ARM_NEON) && !defined(__FP_FAST_FMAF) && !defined(__wasm_relaxed_simd__)
 typedef double lanes_double __attribute__((vector_size(128)));
 typedef int64_t lanes_long __attribute__((vector_size(128)));
 typedef uint32_t lanes_unsigned __attribute__((vector_size(64)));
@@ -188,6 +190,14 @@ LANES_INLINE lanes lanes_fma(lanes a, lanes b, lanes c) {
   memcpy(y, &b, sizeof y);
   memcpy(z, &c, sizeof z);
   for (int i = 0; i < 4; i++) z[i] = vfmaq_f32(z[i], x[i], y[i]);
+  memcpy(&c, z, sizeof c);
+  return c;
+#elif defined(__wasm_relaxed_simd__)
+  v128_t x[4], y[4], z[4];
+  memcpy(x, &a, sizeof x);
+  memcpy(y, &b, sizeof y);
+  memcpy(z, &c, sizeof z);
+  for (int i = 0; i < 4; i++) z[i] = wasm_f32x4_relaxed_madd(x[i], y[i], z[i]); /* once: relaxed_fma.wat */
   memcpy(&c, z, sizeof c);
   return c;
 #elif defined(__FP_FAST_FMAF)

@@ -18,7 +18,7 @@ static bool scan_sizes(const char **cursor, int count, size_t sizes[3]) {
     size_t value = 0;
     if (!is_digit(*text)) return false;
     for (; is_digit(*text); text++) {
-      if (value > (size_t)1 << 58) return false;
+      if (value > SIZE_MAX / 64) return false;
       value = 10 * value + (size_t)(*text - '0');
     }
     if (*text++ != (axis < count - 1 ? 'x' : '_')) return false;

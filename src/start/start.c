@@ -1,11 +1,13 @@
-/* server/start.c - the text that a page loads first: the scene, its volumes, and lists of presets and
+/* start/start.c - the text that a page loads first: the scene, its volumes, and lists of presets and
  * colormaps. */
 #define _GNU_SOURCE
+#include "start.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "parts.h"
+#include "plane_histogram.h"
 #include "text/json_value.h"
 
 void put_json_text(FILE *out, const char *text) {
@@ -101,8 +103,8 @@ static void put_colormaps(FILE *out, hl_context *context) {
   fputc('}', out);
 }
 
-char *describe_start(const server *s, const hl_scene *opened, const char *title, long long number) {
-  hl_context *context = s->options.context;
+char *describe_start(hl_context *context, const hl_scene *opened, const char *title, long long number,
+                     bool folder) {
   char *scene = NULL, *text = NULL;
   size_t length = 0;
   if (hl_scene_to_json(context, opened, &scene, NULL) != HL_OK) return NULL;
@@ -111,7 +113,7 @@ char *describe_start(const server *s, const hl_scene *opened, const char *title,
     const hl_scene_description *d = hl_scene_describe(opened);
     fprintf(out, "{\"version\":\"%s\",\"title\":", hl_version());
     put_json_text(out, title);
-    fprintf(out, ",\"opened\":%lld,\"folder\":%s", number, s->below != NULL ? "true" : "false");
+    fprintf(out, ",\"opened\":%lld,\"folder\":%s", number, folder ? "true" : "false");
     fprintf(out, ",\"scene\":%s,\"volumes\":[", scene);
     for (size_t v = 0; v < d->volume_count; v++) {
       if (v > 0) fputc(',', out);

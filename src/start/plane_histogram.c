@@ -1,12 +1,12 @@
-/* server/plane_histogram.c - how many voxels have a value and a gradient: what the page's editor of transfer
+/* start/plane_histogram.c - how many voxels have a value and a gradient: what the page's editor of transfer
  * functions of two numbers shows under its boxes.
  *
  * Gradients are differences of neighbours, per unit of the file's world; where steps between voxels are not
  * at right angles, as if they were. Large volumes are counted in equal steps. */
+#include "plane_histogram.h"
+
 #include <math.h>
 #include <stdlib.h>
-
-#include "parts.h"
 
 enum { VALUES = 64, GRADIENTS = 48, FINE = 4096 };
 

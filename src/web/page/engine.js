@@ -1,0 +1,97 @@
+// The library, as a WebAssembly file, in one worker or in node: opens files and renders scenes (src/web/web.h).
+
+import { Files } from "./files.js";
+
+const OK = 0, CANCELLED = 6; // hl_status
+const MEBIBYTES = 3800; // of WebAssembly's four gibibytes, beside stacks and code
+
+export class EngineError extends Error {}
+
+export class Engine {
+  static waits = typeof WebAssembly.Suspending === "function"; // JavaScript Promise Integration
+
+  #exports;
+  #files = new Files();
+
+  // hooks: { cancelled(): whether the call that runs is wanted no longer, or a promise of that, where the engine can wait
+  // for one in the middle of a call (Engine.waits); progress(fraction): of a file that is read }.
+  constructor(module, { cancelled = () => false, progress = () => {} } = {}) {
+    const instance = new WebAssembly.Instance(module, {
+      wasi_snapshot_preview1: this.#files.imports(() => this.#exports.memory),
+      page: { cancelled: Engine.waits ? new WebAssembly.Suspending(cancelled) : () => +cancelled(), progress },
+    });
+    this.#exports = { ...instance.exports };
+    if (Engine.waits)
+      for (const name of ["web_begin", "web_open", "web_complete", "web_frame"]) this.#exports[name] = WebAssembly.promising(this.#exports[name]);
+    this.#exports._initialize();
+  }
+
+  static async of(module, hooks) {
+    const engine = new Engine(module, hooks);
+    engine.#check(await engine.#exports.web_begin(MEBIBYTES));
+    return engine;
+  }
+
+  // The engine of the first of some files, the quickest first, that this machine runs to the same bytes.
+  static async best(files, hooks) {
+    for (const bytes of files) {
+      const module = WebAssembly.validate(bytes) ? await WebAssembly.compile(bytes) : null;
+      const engine = module === null ? null : await Engine.of(module, hooks);
+      if (engine?.fuses) return engine;
+    }
+    throw new EngineError("this browser has no WebAssembly with SIMD: use a newer one");
+  }
+
+  // Whether products and sums are rounded once: engines may round those of relaxed SIMD twice.
+  get fuses() { return this.#exports.web_fuses() === 1; }
+
+  get memoryHeld() { return this.#exports.web_memory_held(); }
+
+  #write(text) {
+    const bytes = new TextEncoder().encode(text), pointer = this.#exports.web_text(bytes.length);
+    if (pointer === 0) throw new EngineError("no memory for a scene's text");
+    new Uint8Array(this.#exports.memory.buffer, pointer, bytes.length).set(bytes);
+    return bytes.length;
+  }
+
+  #answer() {
+    return new Uint8Array(this.#exports.memory.buffer, this.#exports.web_answer(), this.#exports.web_answer_bytes());
+  }
+
+  // Null: cancelled.
+  #check(status) {
+    if (status === OK) return this.#answer();
+    if (status === CANCELLED) return null;
+    throw new EngineError(new TextDecoder().decode(this.#answer()));
+  }
+
+  // A short text for a call's own argument.
+  async #with(text, call) {
+    const bytes = new TextEncoder().encode(`${text}\0`), pointer = this.#exports.malloc(bytes.length);
+    new Uint8Array(this.#exports.memory.buffer, pointer, bytes.length).set(bytes);
+    try {
+      return this.#check(await call(pointer));
+    } finally {
+      this.#exports.free(pointer);
+    }
+  }
+
+  // Opens one of some files, or a folder of theirs: { "folder/name": Uint8Array or Blob }. Returns start.json's object.
+  async open(contents, path, title = path) {
+    this.#files.replace(contents);
+    this.#write(`/${path}`);
+    const answer = await this.#with(title, (pointer) => this.#exports.web_open(pointer));
+    return answer === null ? null : JSON.parse(new TextDecoder().decode(answer));
+  }
+
+  async complete(scene) {
+    return JSON.parse(new TextDecoder().decode(this.#check(await this.#exports.web_complete(this.#write(JSON.stringify(scene))))));
+  }
+
+  // A picture's bytes, for the caller to keep; null: cancelled. format: "png", "npy" or "rgba".
+  async frame(scene, { format = "rgba", depth = 8, metadata = true } = {}) {
+    const length = this.#write(JSON.stringify(scene));
+    const answer = await this.#with(format, (pointer) => this.#exports.web_frame(length, pointer, depth, +metadata));
+    return answer?.slice() ?? null;
+  }
+}

@@ -1,0 +1,74 @@
+// The worker of a page without a server: an engine, and what the page asks of it, in turn.
+//
+// Now and then a call waits for the messages that came meanwhile, as one of them may say that its frame is wanted no
+// longer. Where the browser's WebAssembly cannot wait in the middle of a call, frames run to their end.
+
+import { Engine } from "./engine.js";
+
+const ASK_EVERY = 25; // milliseconds
+
+let engine = null, current = 0, asked = 0;
+const gone = new Set(); // numbers of frames that are wanted no longer
+
+// Lets waiting messages be handled.
+const messagesHandled = () => new Promise((resolve) => {
+  const { port1, port2 } = new MessageChannel();
+  port1.onmessage = resolve;
+  port2.postMessage(null);
+});
+
+function cancelled() {
+  if (!Engine.waits || current === 0 || performance.now() - asked < ASK_EVERY) return 0;
+  return messagesHandled().then(() => {
+    asked = performance.now();
+    return +gone.has(current);
+  });
+}
+
+// A blob of a picture. The browser's own encoder makes JPEGs, for frames that are seen for a moment only.
+async function blobOf(bytes, format, { width, height }, quality) {
+  if (format !== "rgba") return new Blob([bytes], { type: format === "png" ? "image/png" : "application/octet-stream" });
+  const canvas = new OffscreenCanvas(width, height);
+  canvas.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(bytes.buffer, bytes.byteOffset, bytes.length), width), 0, 0);
+  return canvas.convertToBlob({ type: "image/jpeg", quality: quality / 100 });
+}
+
+const calls = {
+  async begin({ modules }) {
+    engine = await Engine.best(modules, { cancelled, progress: (part) => postMessage({ part }) });
+    return {};
+  },
+  open: async ({ contents, path, title }) => ({ start: await engine.open(contents, path, title) }),
+  complete: async ({ scene }) => ({ scene: await engine.complete(scene) }),
+  async frame({ scene, format, quality, depth, metadata, number }) {
+    await messagesHandled();
+    if (gone.has(number)) return { blob: null };
+    current = number;
+    asked = performance.now();
+    try {
+      const began = performance.now(), wire = format === "jpeg" ? "rgba" : format;
+      const bytes = await engine.frame(scene, { format: wire, depth, metadata }), rendered = performance.now();
+      if (bytes === null) return { blob: null };
+      const blob = await blobOf(bytes, wire, scene.image, quality);
+      return { blob, times: { render: rendered - began, encode: performance.now() - rendered } };
+    } finally {
+      current = 0;
+    }
+  },
+};
+
+let last = Promise.resolve();
+addEventListener("message", ({ data: { number, kind, ...request } }) => {
+  if (kind === "cancel") {
+    gone.add(number);
+    return;
+  }
+  last = last.then(async () => {
+    try {
+      postMessage({ number, ...(await calls[kind]({ number, ...request })) });
+    } catch (error) {
+      postMessage({ number, problem: error.message });
+    }
+    gone.delete(number);
+  });
+});

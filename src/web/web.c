@@ -1,0 +1,222 @@
+/* web/web.c - see web.h. */
+#include "web.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <halflight/halflight.h>
+
+#include "simd/lanes.h"
+#include "start/start.h"
+
+enum { MOST_PIXELS = 64 << 20 };
+
+static struct {
+  hl_context *context, *sealed; /* owned; `sealed` opens no file */
+  hl_scene *scene;              /* owned; what is open */
+  hl_renderer *renderer;        /* owned; null: not yet made */
+  char *text;                   /* owned; from the page */
+  unsigned char *answer;        /* owned; from malloc */
+  size_t answer_bytes;
+} web;
+
+/* ---- answers ---- */
+
+static int answer(hl_status status, unsigned char *bytes, size_t count) {
+  free(web.answer);
+  web.answer = bytes;
+  web.answer_bytes = count;
+  return status;
+}
+
+static int answer_text(hl_status status, const char *text) {
+  char *copy = text != NULL ? strdup(text) : NULL;
+  if (copy == NULL) return answer(HL_ERROR_MEMORY, NULL, 0);
+  return answer(status, (unsigned char *)copy, strlen(copy));
+}
+
+static int answer_error(hl_status status, const hl_error *error) {
+  return answer_text(status, error->message);
+}
+
+const unsigned char *web_answer(void) { return web.answer; }
+
+size_t web_answer_bytes(void) { return web.answer_bytes; }
+
+char *web_text(size_t bytes) {
+  free(web.text);
+  web.text = malloc(bytes + 1);
+  if (web.text != NULL) web.text[bytes] = '\0';
+  return web.text;
+}
+
+/* ---- the beginning ---- */
+
+int web_fuses(void) {
+  /* (1 + 2^-12)^2 - 1 needs 25 bits: a product that is rounded before the sum loses 2^-24. */
+  volatile float factor = 1.0f + 0x1p-12f, addend = -1.0f;
+  lanes sum = lanes_fma(lanes_set(factor), lanes_set(factor), lanes_set(addend));
+  for (int lane = 0; lane < LANES; lane++)
+    if (sum[lane] != 0x1p-11f + 0x1p-24f) return 0; /* NOLINT: exact */
+  return 1;
+}
+
+static int cancelled(void *user_data) {
+  (void)user_data;
+  return web_cancelled();
+}
+
+static void progress(void *user_data, const char *stage, double fraction) {
+  (void)user_data;
+  if (strcmp(stage, "load") == 0) web_progress(fraction);
+}
+
+int web_begin(uint32_t mebibytes) {
+  hl_error error = {0};
+  hl_context_options options;
+  hl_context_options_defaults(&options);
+  options.cancelled = cancelled;
+  options.progress = progress;
+  options.memory_limit = (uint64_t)mebibytes << 20;
+  hl_status status = hl_context_create(&options, &web.context, &error);
+  if (status == HL_OK) status = hl_context_confine(web.context, NULL, &web.sealed, &error);
+  return answer_error(status, &error);
+}
+
+double web_memory_held(void) { return (double)hl_context_memory_held(web.context); }
+
+/* ---- what is open ---- */
+
+static void forget_renderer(void) {
+  hl_renderer_destroy(web.renderer);
+  web.renderer = NULL;
+}
+
+static bool ends_in(const char *text, const char *ending) {
+  size_t length = strlen(text), end = strlen(ending);
+  return length >= end && strcmp(text + length - end, ending) == 0;
+}
+
+static hl_status load(const char *path, hl_scene **scene, hl_error *error) {
+  hl_volume *volume = NULL;
+  if (ends_in(path, ".json")) return hl_scene_load(web.context, path, scene, error);
+  hl_status status = hl_volume_load(web.context, path, &volume, error);
+  if (status == HL_OK) status = hl_scene_for_volume(web.context, volume, path, scene, error);
+  hl_volume_release(volume);
+  return status;
+}
+
+int web_open(const char *title) {
+  hl_error error = {0};
+  hl_scene *scene = NULL;
+  hl_status status = load(web.text, &scene, &error);
+  if (status == HL_ERROR_MEMORY) { /* once more, without what the renderer holds */
+    forget_renderer();
+    status = load(web.text, &scene, &error);
+  }
+  if (status != HL_OK) return answer_error(status, &error);
+  forget_renderer();
+  hl_scene_release(web.scene);
+  web.scene = scene;
+  char *start = describe_start(web.context, web.scene, title, 0, false);
+  return start != NULL ? answer(HL_OK, (unsigned char *)start, strlen(start))
+                       : answer_text(HL_ERROR_MEMORY, "no memory for what the page is told of a volume");
+}
+
+static hl_status read_scene(size_t length, hl_scene **scene, hl_error *error) {
+  hl_status status = hl_scene_from_json_like(web.sealed, web.text, length, NULL, "scene", web.scene, scene,
+                                             error);
+  if (status != HL_OK) return status;
+  const hl_scene_description *d = hl_scene_describe(*scene);
+  if ((long long)d->width * d->height <= MOST_PIXELS) return HL_OK;
+  snprintf(error->message, sizeof error->message, "/image: %d x %d pixels are more than the page's %d",
+           d->width, d->height, (int)MOST_PIXELS);
+  hl_scene_release(*scene);
+  return HL_ERROR_INPUT;
+}
+
+int web_complete(size_t length) {
+  hl_error error = {0};
+  hl_scene *scene = NULL;
+  char *json = NULL;
+  hl_status status = read_scene(length, &scene, &error);
+  if (status != HL_OK) return answer_error(status, &error);
+  status = hl_scene_to_json(web.context, scene, &json, &error);
+  int answered = status == HL_OK ? answer_text(HL_OK, json) : answer_error(status, &error);
+  hl_text_release(web.context, json);
+  hl_scene_release(scene);
+  return answered;
+}
+
+/* ---- frames ---- */
+
+static hl_status encode_rgba(const hl_image *image, const hl_image_write_options *options, hl_error *error) {
+  size_t row = 4 * (size_t)hl_image_width(image), bytes = row * (size_t)hl_image_height(image);
+  hl_image_write_options opaque = *options;
+  opaque.background_transparent = 0;
+  unsigned char *rgba = malloc(bytes);
+  if (rgba == NULL) {
+    snprintf(error->message, sizeof error->message, "no memory for a picture");
+    return HL_ERROR_MEMORY;
+  }
+  hl_status status = hl_image_to_srgb8(image, &opaque, rgba, row, error);
+  if (status == HL_OK) answer(HL_OK, rgba, bytes);
+  else free(rgba);
+  return status;
+}
+
+/* The same bytes as `halflight render` writes of the scene. */
+static hl_status encode_file(const hl_scene *scene, const hl_image *image, const char *format,
+                             hl_image_write_options *options, bool metadata, hl_error *error) {
+  char *json = NULL;
+  unsigned char *bytes = NULL, *copy = NULL;
+  size_t length = 0;
+  hl_status status = metadata ? hl_scene_to_json(web.context, scene, &json, error) : HL_OK;
+  options->scene_json = json;
+  if (status == HL_OK) status = hl_image_encode(web.context, image, format, options, &bytes, &length, error);
+  if (status == HL_OK && (copy = malloc(length)) == NULL) {
+    snprintf(error->message, sizeof error->message, "no memory for a picture");
+    status = HL_ERROR_MEMORY;
+  }
+  if (status == HL_OK) answer(HL_OK, memcpy(copy, bytes, length), length);
+  hl_bytes_release(web.context, bytes);
+  hl_text_release(web.context, json);
+  return status;
+}
+
+static hl_status render(const hl_scene *scene, const char *format, int depth, bool metadata,
+                        hl_error *error) {
+  const hl_scene_description *d = hl_scene_describe(scene);
+  hl_image *image = NULL;
+  hl_status status = web.renderer == NULL ? hl_renderer_create(web.context, &web.renderer, error) : HL_OK;
+  if (status == HL_OK) status = hl_image_create(web.context, d->width, d->height, &image, error);
+  if (status == HL_OK)
+    status = hl_renderer_render(web.renderer, scene, hl_image_pixels(image), 4 * (size_t)d->width, NULL,
+                                error);
+  if (status == HL_OK) {
+    hl_image_write_options options;
+    hl_scene_write_options(scene, &options);
+    options.png_depth = depth;
+    status = strcmp(format, "rgba") == 0 ? encode_rgba(image, &options, error)
+                                         : encode_file(scene, image, format, &options, metadata, error);
+  }
+  hl_image_destroy(image);
+  return status;
+}
+
+int web_frame(size_t length, const char *format, int depth, int metadata) {
+  hl_error error = {0};
+  hl_scene *scene = NULL;
+  hl_status status = read_scene(length, &scene, &error);
+  if (status != HL_OK) return answer_error(status, &error);
+  status = render(scene, format, depth, metadata != 0, &error);
+  if (status == HL_ERROR_MEMORY) { /* once more, without what the renderer holds of earlier frames */
+    forget_renderer();
+    status = render(scene, format, depth, metadata != 0, &error);
+  }
+  hl_scene_release(scene);
+  return status == HL_OK ? HL_OK : answer_error(status, &error);
+}

@@ -1,0 +1,43 @@
+/* web/web.h - the library for a page without a server: what its worker calls of the WebAssembly file
+ * (page/engine.js).
+ *
+ * One scene is open at a time. A call that can fail returns an hl_status; web_answer() is then its result, or
+ * the error's line. Text and answers lie in the WebAssembly file's memory. */
+#ifndef HL_WEB_WEB_H
+#define HL_WEB_WEB_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* 1 if this build's products and sums are rounded once, which engines may refuse relaxed SIMD. */
+int web_fuses(void);
+
+/* Makes the context, before all other calls. mebibytes: of memory at most. */
+int web_begin(uint32_t mebibytes);
+
+/* Room for a text of the caller, until the next call of this function; null: no memory. */
+char *web_text(size_t bytes);
+
+/* Opens the file, folder or scene that the text names, in place of what is open, if it can. Answer:
+ * start.json. */
+int web_open(const char *title);
+
+/* Answer: the text's scene, whose volumes are of the open one, with all its defaults written out. */
+int web_complete(size_t length);
+
+/* Renders the text's scene, which names the volumes of the open one. format: "png", "npy", or "rgba", bytes
+ * of opaque sRGB, top row first. depth: bits of a PNG's codes. metadata: 0, without the scene's text. */
+int web_frame(size_t length, const char *format, int depth, int metadata);
+
+/* Owned by this side, until the next call that can fail. */
+const unsigned char *web_answer(void);
+size_t web_answer_bytes(void);
+
+/* Bytes held for what is open. */
+double web_memory_held(void);
+
+/* What the page gives: whether the call that runs is no longer wanted, and a place for how far a file is. */
+__attribute__((import_module("page"), import_name("cancelled"))) int web_cancelled(void);
+__attribute__((import_module("page"), import_name("progress"))) void web_progress(double fraction);
+
+#endif

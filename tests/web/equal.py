@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""The library as WebAssembly makes the program's pictures, byte for byte, in node.
+
+usage: equal.py FOLDER PROGRAM
+FOLDER is that of scripts/web. Scenes: those of the budgets, one for each kind of work; the stored pictures'; the examples, in small
+pictures. Those over real volumes are left out where ../shared/data, or the folder HALFLIGHT_DATA, is not there.
+"""
+import json
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "budgets"))
+from scenes import KEY, SCENES, SIDE, SKY, scene, soft, write_volumes  # noqa: E402
+
+DATA = pathlib.Path(os.environ.get("HALFLIGHT_DATA", ROOT.parent / "shared" / "data"))
+SIZE = (72, 64)  # pixels of the examples' pictures
+HAZE = {"file": f"haze_{SIDE}x{SIDE}x{SIDE}_uint8.raw", "shading": "none",
+        "transfer_function": {"opacity": [[40, 0], [255, 0.05]], "color": [[0, 1, 1, 1]]}}
+MORE = {
+    "glow": scene({**HAZE, "scattering": {"multiple": True, "albedo": [0.99, 0.95, 0.9]}}),
+    "glow_in_sky": scene({**HAZE, "scattering": {"multiple": True, "anisotropy": 0.6}}, sky=SKY),
+    "lining": scene({**HAZE, "scattering": {"anisotropy": 0.7}}),
+    "isosurfaces": scene({"transfer_function": {"opacity": [[0, 0]], "color": [[0, 1, 1, 1]]}, "iso": [{"value": 100, "opacity": 0.5}, {"value": 180}]}),
+    "maximum": scene(render={"compositing": "maximum"}),
+    "mask": scene({"mask": {"file": "labels.nrrd", "rest": 0.1, "labels": [{"value": 1, "opacity": 0.8, "color": [1, 0.4, 0.2]}]}}),
+    "sky_soft_mesh": scene(render=soft("cascade"), sky=SKY, meshes=[{"file": "pyramid.stl", "color": [0.7, 0.7, 0.8]}]),
+    "spot": scene(lights=[KEY, {"type": "spot", "position": [-30, -10, 60], "direction": [50, 30, -40], "opening_angle_deg": 40, "intensity": 2}]),
+    "room": scene(lights=[{"type": "point", "position": [-20, -20, 60], "radius": 8}], render=soft("sublights")),
+    "splat_soft": scene(render={**soft("paper"), "reconstruction": "splat"}),
+    "orthographic": scene() | {"camera": {"type": "orthographic", "position": [-60, -40, 70], "target": [20, 20, 20], "up": [0, 0, 1], "height": 50}},
+}
+
+
+def write_stored_volumes(folder):
+    """Volumes of the stored pictures' names and sizes; what they hold is another matter."""
+    for name, side in (("ball_24x24x24_uint8.raw", 24), ("stage_32x32x32_uint8.raw", 32)):
+        places = ((x, y, z) for z in range(side) for y in range(side) for x in range(side))
+        middle = (side - 1) / 2
+        (folder / name).write_bytes(bytes(
+            255 if z < 2 else int(max(0, min(255, 30 * (0.35 * side - math.dist((x, y, z), (middle,) * 3))))) for x, y, z in places))
+    header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 20 24 16\nspacings: 1 1.5 2\nencoding: raw\n\n"
+    voxels = bytes(int(127 + 60 * math.sin(x * 0.7) + 60 * math.cos(y * 0.5 + z)) for z in range(16) for y in range(24) for x in range(20))
+    (folder / "waves.nrrd").write_bytes(header.encode() + voxels)
+
+
+def files_of(value):
+    """The names of files in a scene."""
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            if key == "file" and isinstance(inner, str):
+                yield inner
+            else:
+                yield from files_of(inner)
+    elif isinstance(value, list):
+        for inner in value:
+            yield from files_of(inner)
+
+
+def place_example(path, folder):
+    """An example in a small picture, with its files in the folder; None: its files are not there."""
+    text = path.read_text()
+    for name in set(files_of(json.loads(text))):
+        source = DATA / name[5:] if name.startswith("data:") else path.parent / name
+        if not source.exists():
+            return None
+        place = name.replace("data:", "").lstrip("/")
+        (folder / place).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source, folder / place)
+        text = text.replace(json.dumps(name), json.dumps(place))
+    scene = json.loads(text)
+    scene["image"] |= dict(zip(("width", "height"), SIZE))
+    return scene
+
+
+def write_scenes(folder):
+    """[(name of a scene's file, names of its files)], all in the folder."""
+    write_volumes(folder)
+    write_stored_volumes(folder)
+    scenes = SCENES | MORE
+    scenes |= {path.stem: json.loads(path.read_text()) for path in sorted((ROOT / "tests" / "golden").glob("*.json"))}
+    scenes |= {path.stem: place_example(path, folder) for path in sorted((ROOT / "examples").glob("*.json"))}
+    written = []
+    for name, scene in scenes.items():
+        if scene is not None:
+            (folder / f"{name}.json").write_text(json.dumps(scene))
+            written.append((f"{name}.json", sorted(set(files_of(scene)))))
+    return written
+
+
+def render_web(wasm, folder, scenes):
+    """{name: (bytes, milliseconds)}; a text: why there are none."""
+    jobs = [{"scene": scene, "files": files, "out": "web.npy.d/" + scene[:-5]} for scene, files in scenes]
+    (folder / "web.npy.d").mkdir(exist_ok=True)
+    (folder / "jobs").write_text(json.dumps(jobs))
+    done = subprocess.run(["node", "--experimental-wasm-relaxed-simd", ROOT / "tests" / "web" / "render.mjs", ROOT / "src" / "web" / "page" / "engine.js",
+                           wasm, folder, folder / "jobs"], capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{wasm}: {done.stderr.strip()[-800:]}")
+    if done.stdout.strip() in ("unknown", "unfused"):
+        return {"unknown": "node does not know an instruction of it", "unfused": "node rounds products before their sums"}[done.stdout.strip()]
+    times = dict(line.split() for line in done.stdout.splitlines())
+    return {job["scene"]: ((folder / job["out"]).read_bytes(), int(times[job["scene"]])) for job in jobs}
+
+
+def main():
+    web, program = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
+    sets = [("simd", web / "simd" / "src" / "web" / "halflight.wasm"), ("relaxed", web / "relaxed" / "src" / "web" / "halflight.wasm")]
+    if shutil.which("node") is None or not all(wasm.exists() for _, wasm in sets):
+        print("1..1\nok 1 - pictures # SKIP node or the library as WebAssembly is not there: scripts/web makes it")
+        return
+    with tempfile.TemporaryDirectory(prefix="halflight-web-") as text:
+        folder = pathlib.Path(text)
+        scenes = write_scenes(folder)
+        expected = {}
+        for scene, _ in scenes:
+            subprocess.run([program, "render", folder / scene, "-o", folder / "native.npy", "--quiet"], check=True)
+            expected[scene] = (folder / "native.npy").read_bytes()
+        print(f"1..{len(sets) * len(scenes)}")
+        number = failures = 0
+        for name, wasm in sets:
+            found = render_web(wasm, folder, scenes)
+            for scene, _ in scenes:
+                number += 1
+                if isinstance(found, str):
+                    print(f"ok {number} - {name} {scene} # SKIP {found}")
+                    continue
+                good = found[scene][0] == expected[scene]
+                failures += not good
+                print(f"{'ok' if good else 'not ok'} {number} - {name} {scene}: {found[scene][1]} ms", flush=True)
+        if failures:
+            sys.exit(1)
+
+
+main()

@@ -1,0 +1,195 @@
+#!/usr/bin/env python3
+"""The page without a server, in Chromium from a disk and from a web server, and in Firefox.
+
+usage: page.py FOLDER PROGRAM
+FOLDER is that of scripts/web. What browser is not there is left out.
+"""
+import contextlib
+import functools
+import hashlib
+import http.server
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import urllib.parse
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests" / "viewer"), str(ROOT / "tests" / "budgets")]
+from browser import Browser  # noqa: E402
+from scenes import SCENES, write_volumes  # noqa: E402
+
+HANG = 300  # seconds, for a browser that hangs alone
+number = 0
+
+
+def check(good, what):
+    global number
+    number += 1
+    print(f"{'ok' if good else 'not ok'} {number} - {what}", flush=True)
+    if not good:
+        sys.exit(1)
+
+
+def skip(what, why):
+    global number
+    number += 1
+    print(f"ok {number} - {what} # SKIP {why}", flush=True)
+
+
+def choose_files(browser, files):
+    document = browser.call("DOM.getDocument")["root"]["nodeId"]
+    chooser = browser.call("DOM.querySelector", nodeId=document, selector="input[type=file]")["nodeId"]
+    browser.call("DOM.setFileInputFiles", nodeId=chooser, files=[str(file) for file in files])
+
+
+def saved_scene(browser, folder, name):
+    """The scene that the page shows, for the program, in the folder of its files."""
+    scene = json.loads(browser.run("JSON.stringify(halflight.store.scene)"))
+    for volume in scene["volumes"]:
+        if "file" in volume:
+            volume["file"] = pathlib.PurePosixPath(volume["file"]).name
+    (folder / name).write_text(json.dumps(scene))
+    return scene
+
+
+def final_picture(browser):
+    return bytes(browser.run("halflight.frames.finalPicture.arrayBuffer().then((bytes) => [...new Uint8Array(bytes)])"))
+
+
+def same_pixels(program, folder, picture, scene):
+    (folder / "page.png").write_bytes(picture)
+    subprocess.run([program, "render", folder / scene, "-o", folder / "native.png", "--quiet"], check=True)
+    done = subprocess.run([program, "diff", folder / "page.png", folder / "native.png"], capture_output=True, text=True)
+    return done.returncode == 0
+
+
+def try_chromium(url, what, program, folder):
+    with Browser(size=(900, 500)) as browser:
+        browser.open(url)
+        browser.wait("document.querySelector('.tab-welcome') !== null")
+        choose_files(browser, [folder / "labels.nrrd"])
+        browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
+        saved_scene(browser, folder, "saved.json")
+        check(same_pixels(program, folder, final_picture(browser), "saved.json"), f"{what}: the final picture is the program's")
+        browser.run("halflight.store.changeRender('sheet_spacing', 0.05)")  # a final picture that takes long
+        browser.wait("halflight.frames.statistics.stage === 'refining' && document.querySelector('#stage').textContent === 'refining'")
+        before = json.loads(browser.run("JSON.stringify(halflight.frames.statistics)"))
+        browser.drag((200, 200), (230, 210))
+        browser.wait(f"halflight.frames.statistics.previews > {before['previews']}")
+        after = json.loads(browser.run("JSON.stringify(halflight.frames.statistics)"))
+        check(after["cancelled"] > before["cancelled"] and after["finals"] == before["finals"],
+              f"{what}: a picture that is wanted no longer ends")
+        check(browser.problems == [], f"{what}: no problem in the console: {browser.problems}")
+
+
+class Handler(http.server.SimpleHTTPRequestHandler):
+    """The page's folder; POST: what a browser tells, for the test."""
+
+    extensions_map = {**http.server.SimpleHTTPRequestHandler.extensions_map, ".wasm": "application/wasm", ".js": "text/javascript"}
+
+    def log_message(self, *_):
+        pass
+
+    def do_POST(self):
+        self.server.told.append(json.loads(self.rfile.read(int(self.headers["Content-Length"]))))
+        self.server.arrived.set()
+        self.send_response(204)
+        self.end_headers()
+
+
+@contextlib.contextmanager
+def serve(folder):
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=folder))
+    server.told, server.arrived = [], threading.Event()
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    try:
+        yield server, f"http://127.0.0.1:{server.server_address[1]}/"
+    finally:
+        server.shutdown()
+
+
+# Renders scenes in the page's own worker, and tells the hashes of their pictures.
+HASHES = """<!doctype html><script type="module">
+try {
+  const { modules, jobs } = await (await fetch("jobs.json")).json();
+  const bytes = async (name) => new Uint8Array(await (await fetch(name)).arrayBuffer());
+  const worker = new Worker("worker.js"), answers = [];
+  let finish;
+  worker.onmessage = ({ data }) => { if (data.number !== undefined) finish(data); };
+  worker.onerror = (event) => finish({ problem: event.message });
+  const ask = (content) => new Promise((resolve) => { finish = resolve; worker.postMessage({ number: 1, ...content }); });
+  const begun = await ask({ kind: "begin", modules: await Promise.all(modules.map(bytes)) });
+  if (begun.problem) throw new Error(begun.problem);
+  for (const { scene, files } of jobs) {
+    const contents = Object.fromEntries(await Promise.all([scene, ...files].map(async (name) => [name, await bytes(name)])));
+    const { start, problem } = await ask({ kind: "open", contents, path: scene, title: scene });
+    if (problem) throw new Error(`${scene}: ${problem}`);
+    const { blob } = await ask({ kind: "frame", scene: start.scene, format: "npy" });
+    const digest = await crypto.subtle.digest("SHA-256", await blob.arrayBuffer());
+    answers.push([scene, [...new Uint8Array(digest)].map((byte) => byte.toString(16).padStart(2, "0")).join("")]);
+  }
+  await fetch("tell", { method: "POST", body: JSON.stringify({ answers }) });
+} catch (error) {
+  await fetch("tell", { method: "POST", body: JSON.stringify({ problem: String(error) }) });
+}
+</script>"""
+
+
+def write_hash_page(page, folder, program):
+    """A copy of the page with scenes. Returns {scene: hash of the program's picture}."""
+    shutil.copytree(page, folder)
+    write_volumes(folder)
+    expected, jobs = {}, []
+    for name, scene in SCENES.items():
+        (folder / f"{name}.json").write_text(json.dumps(scene))
+        files = [one["file"] for key in ("volumes", "meshes") for one in scene.get(key, ())]
+        jobs.append({"scene": f"{name}.json", "files": files})
+        subprocess.run([program, "render", folder / f"{name}.json", "-o", folder / "native.npy", "--quiet"], check=True)
+        expected[f"{name}.json"] = hashlib.sha256((folder / "native.npy").read_bytes()).hexdigest()
+    (folder / "jobs.json").write_text(json.dumps({"modules": ["halflight-relaxed.wasm", "halflight.wasm"], "jobs": jobs}))
+    (folder / "hashes.html").write_text(HASHES)
+    return expected
+
+
+def compare_hashes(command, what, folder, expected):
+    with serve(folder) as (server, url), tempfile.TemporaryDirectory(prefix="halflight-web-profile-") as profile:
+        browser = subprocess.Popen([*command(profile), urllib.parse.urljoin(url, "hashes.html")], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            server.arrived.wait(HANG)
+        finally:
+            browser.terminate()
+            browser.wait()
+        told = server.told[0] if server.told else {"problem": "the browser does not answer"}
+        check(dict(told.get("answers", [])) == expected, f"{what}: {len(expected)} pictures are the program's: {told.get('problem', '')}")
+
+
+def main():
+    web, program = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
+    if not (web / "halflight.html").exists():
+        print("ok 1 - page # SKIP the page is not there: scripts/web makes it\n1..1")
+        return
+    with tempfile.TemporaryDirectory(prefix="halflight-web-") as text:
+        folder = pathlib.Path(text)
+        write_volumes(folder)
+        expected = write_hash_page(web / "page", folder / "page", program)
+        if shutil.which("chromium"):
+            try_chromium((web / "halflight.html").as_uri(), "Chromium, one file", program, folder)
+            with serve(web / "page") as (_, url):
+                try_chromium(url, "Chromium, a folder", program, folder)
+            compare_hashes(lambda profile: ["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}"],
+                           "Chromium", folder / "page", expected)
+        else:
+            skip("Chromium", "it is not installed")
+        firefox = shutil.which("firefox-esr") or shutil.which("firefox")
+        if firefox:
+            compare_hashes(lambda profile: [firefox, "--headless", "--no-remote", "--profile", profile], "Firefox", folder / "page", expected)
+        else:
+            skip("Firefox", "it is not installed")
+    print(f"1..{number}")
+
+
+main()
