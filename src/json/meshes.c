@@ -101,7 +101,7 @@ static hl_status read_floor(hl_json_reader *reader, const json_t *value, hl_mesh
   hl_status status = *size > 0 ? HL_OK : hl_json_number(reader, value, "floor", size);
   if (status == HL_OK && !(*size >= 1 && *size <= 1000))
     status = hl_json_fail(reader, HL_ERROR_INPUT, "floor",
-                          "is %g: give true, or how many times as wide as what stands on it it is, 1 to 1000",
+                          "is %g: give true, or the floor's width in widths of the objects on it, 1 to 1000",
                           *size);
   return status == HL_OK ? read_look(reader, value, &shelf->meshes[place]) : status;
 }

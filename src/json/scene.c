@@ -236,7 +236,7 @@ static hl_status read_scene(hl_json_reader *reader, const json_t *root, gathered
   d->mesh_count = g->meshes.count;
   if (status == HL_OK && d->volume_count + d->mesh_count == 0)
     status = hl_json_fail(reader, HL_ERROR_INPUT, "meshes",
-                          "have nothing but a floor: add what stands on it");
+                          "have nothing but a floor: add a volume or a mesh that stands on it");
   if (status == HL_OK) status = read_camera(reader, json_object_get(root, "camera"), d);
   if (status == HL_OK) status = hl_json_add_floors(reader, d, &g->meshes);
   d->mesh_count = g->meshes.count;

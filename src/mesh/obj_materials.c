@@ -66,7 +66,7 @@ hl_status hl_obj_read_materials(hl_context *context, const char *path, const cha
     if (status == HL_ERROR_MEMORY || status == HL_ERROR_CANCELLED)
       return hl_fail(error, status, "%s", told.message);
     hl_log(context, HL_LOG_WARNING,
-           "%s: its materials \"%s\" cannot be read: its faces have no colours of theirs", path,
+           "%s: its materials \"%s\" cannot be read: its faces get no colours from them", path,
            hl_text_printable(shown, name));
     return HL_OK;
   }

@@ -37,7 +37,7 @@ void hl_bundle_close(hl_bundle *bundle) {
 
 hl_status hl_bundle_add(hl_bundle *bundle, hl_bundle_entry entry, hl_error *error) {
   if (bundle->count == HL_BUNDLE_FILES_MOST)
-    return hl_fail(error, HL_ERROR_INPUT, "%s: more than %d files: give a folder of fewer", bundle->path,
+    return hl_fail(error, HL_ERROR_INPUT, "%s: more than %d files: give a folder with fewer", bundle->path,
                    HL_BUNDLE_FILES_MOST);
   if (bundle->count == bundle->capacity) {
     size_t capacity = bundle->capacity > 0 ? 2 * bundle->capacity : 64;
@@ -105,7 +105,7 @@ static hl_status walk_entries(folder_walk *walk, DIR *folder, hl_error *error) {
     if (hl_cancelled(bundle->context))
       return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", bundle->path);
     if (++walk->files > 4 * (size_t)HL_BUNDLE_FILES_MOST)
-      return hl_fail(error, HL_ERROR_INPUT, "%s: more than %d files and folders: give a folder of fewer",
+      return hl_fail(error, HL_ERROR_INPUT, "%s: more than %d files and folders: give a folder with fewer",
                      bundle->path, 4 * HL_BUNDLE_FILES_MOST);
     if (length + strlen(entry->d_name) + 2 > sizeof walk->name) continue;
     if (length > 0) walk->name[length] = '/';

@@ -152,7 +152,7 @@ static hl_status open_entry(const hl_bundle *bundle, const hl_bundle_entry *entr
   if (status == HL_OK && memcmp(local, "PK\3\4", 4) != 0) status = fail_damaged(bundle, error);
   if (status == HL_OK && entry->method != 0 && entry->method != 8)
     status = hl_fail(error, HL_ERROR_UNSUPPORTED,
-                     "%s: packed by method %d: stored and deflated files are read: pack it anew",
+                     "%s: packed by method %d, which is not read: pack it anew, stored or deflated",
                      bundle->path, entry->method);
   if (status == HL_OK) {
     uint64_t begin = entry->at + LOCAL_BYTES + u16(local + 26) + u16(local + 28);

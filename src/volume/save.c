@@ -392,7 +392,7 @@ static void tell_losses(const saving *s, const char *path) {
            s->writer->ending, hl_space_name(s->grid.space));
   if (s->volume->colors != NULL)
     hl_log(context, HL_LOG_WARNING,
-           "%s: the voxels' colours are lost: what is written is what opacity comes from", path);
+           "%s: the voxels' colours are lost: the file gets the densities from which opacity comes", path);
   if (hl_volume_is_exact(s->volume) && (s->grid.type == HL_VOXEL_F32 || s->grid.type == HL_VOXEL_F16))
     hl_log(
         context, HL_LOG_WARNING,
@@ -428,7 +428,7 @@ hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume, cons
     return hl_fail(
         error, HL_ERROR_ARGUMENT,
         "%s: volumes are written as .nrrd, .nii, .nii.gz, .mha, .vti, .mrc, .mrc.gz, .raw or .raw.gz: "
-        "end the name so",
+        "end the name in one of these",
         path);
   hl_volume_description_defaults(&s.grid);
   hl_status status = set_box(&s, options, path, error);

@@ -327,9 +327,9 @@ static hl_status finish_pixels(const hl_source *source, hl_dicom_header *header,
     return hl_fail(error, HL_ERROR_INPUT, "%s: the picture has no rows or no columns",
                    hl_source_path(source));
   if (samples != 1 && samples != 3)
-    return refuse(source, "pixels of one or of three samples are read, not of other numbers", error);
+    return refuse(source, "its pixels have neither one nor three samples", error);
   if (allocated != 1 && allocated != 8 && allocated != 16 && allocated != 32 && allocated != 64)
-    return refuse(source, "pixels of 1, 8, 16, 32 or 64 bits are read, not of other numbers", error);
+    return refuse(source, "its pixels have none of 1, 8, 16, 32 and 64 bits", error);
   if (!within(stored, 1, allocated) || !within(high, stored - 1, allocated - 1))
     stored = allocated, high = allocated - 1;
   p->rows = (size_t)header->rows;
@@ -364,7 +364,7 @@ static hl_status finish_pixels(const hl_source *source, hl_dicom_header *header,
   if (p->allocated == 64 && !p->is_float) return refuse(source, "integers of 64 bits", error);
   bool any_bits = p->codec == HL_DICOM_NATIVE || (p->codec == HL_DICOM_RLE && p->allocated == 32);
   if (!any_bits && p->allocated != 8 && p->allocated != 16)
-    return refuse(source, "compressed pixels have 8 or 16 bits, these have others", error);
+    return refuse(source, "its compressed pixels have neither 8 nor 16 bits", error);
   if (p->codec != HL_DICOM_NATIVE && !p->encapsulated)
     return hl_fail(error, HL_ERROR_INPUT, "%s: its pixels should be compressed, and are not",
                    hl_source_path(source));

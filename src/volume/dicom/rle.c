@@ -40,13 +40,14 @@ hl_status hl_dicom_decode_rle(const hl_dicom_packed *packed, void *values, hl_er
   if (packed->length < HEADER_BYTES)
     return hl_dicom_fail_packed(packed, "RLE", "it is shorter than its header", error);
   if (hl_dicom_u32(packed->bytes, false) != segments || segments > SEGMENTS_MOST)
-    return hl_dicom_fail_packed(packed, "RLE", "the number of its segments is not that of its bytes", error);
+    return hl_dicom_fail_packed(packed, "RLE", "it has another number of segments than a pixel has bytes",
+                                error);
   for (size_t segment = 0; segment < segments; segment++) {
     size_t begin = hl_dicom_u32(packed->bytes + 4 + 4 * segment, false), end = packed->length;
     if (segment + 1 < segments) end = hl_dicom_u32(packed->bytes + 8 + 4 * segment, false);
     if (end > packed->length) end = packed->length;
     if (begin < HEADER_BYTES || begin > end)
-      return hl_dicom_fail_packed(packed, "RLE", "a segment begins outside of it", error);
+      return hl_dicom_fail_packed(packed, "RLE", "a segment begins outside the picture's bytes", error);
     size_t sample = segment / bytes_each, place = segment % bytes_each; /* the highest byte comes first */
     if (!native_is_big_endian) place = bytes_each - 1 - place;
     if (!unpack(packed->bytes + begin, end - begin, p->rows * p->columns, p->samples * bytes_each,

@@ -355,8 +355,9 @@ static hl_status gather_segments(sorting *s, hl_dicom_stack *stack, hl_error *er
     return hl_fail(error, HL_ERROR_INPUT, "%s: not one frame shows a segment that the file lists", s->path);
   if (unknown + doubled > 0)
     hl_log(s->set->context, HL_LOG_WARNING,
-           "%s: %zu frames show no segment that is listed, and %zu one that another frame shows: they are "
-           "left out",
+           "%s: %zu frames show a segment that is not listed, and %zu frames a segment that another frame "
+           "shows: "
+           "they are left out",
            s->path, unknown, doubled);
   return HL_OK;
 }
