@@ -56,22 +56,11 @@ typedef struct contact_ray {
 
 /* Whether two triangles share a vertex. */
 static bool are_neighbours(const surfaces *all, uint32_t a, uint32_t b) {
-  if (a >= all->triangle_count || b >= all->triangle_count) return false;
+  if (!hl_is_triangle(all, a) || !hl_is_triangle(all, b)) return false;
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++)
       if (all->triangles[a][i] == all->triangles[b][k]) return true;
   return false;
-}
-
-/* The unit normal of a primitive where a ray meets it; *from: the distance of the ray's point from the plane
- * there. */
-static vec3 normal_of_hit(const contact_ray *ray, const surface_hit *hit, double *from) {
-  const surfaces *all = ray->all;
-  if (hit->primitive < all->triangle_count) return hl_triangle_normal(all, hit->primitive, ray->point, from);
-  const vec3 centre = hl_surface_vector(all->spheres[hit->primitive - all->triangle_count]),
-             normal = vec3_normalise(vec3_subtract(hit->at, centre));
-  *from = vec3_dot(normal, vec3_subtract(ray->point, hit->at));
-  return normal;
 }
 
 /* Takes the light of a surface that is close to the sample, and no rounded continuation of its own. */
@@ -79,7 +68,8 @@ static void meet(void *data, const surface_hit *hit) {
   contact_ray *ray = data;
   double distance;
   if (hit->primitive == ray->primitive) return;
-  vec3 normal = normal_of_hit(ray, hit, &distance);
+  vec3 normal = hl_primitive_kind(ray->all, hit->primitive)
+                    ->normal(ray->all, hit->primitive, hit->at, ray->point, &distance);
   if (!(fabs(distance) <= ray->close)) return;
   if (hit->mesh == ray->mesh && ray->mesh->scene->smooth &&
       fabs(vec3_dot(normal, ray->normal)) > HL_MESH_ROUNDED &&
@@ -205,7 +195,7 @@ static void place_ray(const sweep *sweep, const tile_slab *slab, const surface_b
                        .point = vector_of(batch->samples.position, i),
                        .smooth = vector_of(batch->samples.normal, i)};
   ray->normal = ray->smooth;
-  if (f->primitive >= all->triangle_count) return;
+  if (!hl_is_triangle(all, f->primitive)) return;
   double height;
   if (last != NULL && last->primitive == f->primitive) {
     ray->normal = last->normal;
@@ -290,7 +280,7 @@ static uint32_t samples_within(const sweep *sweep, const surface_batch *batch) {
     return 0;
   for (int i = 0; i < batch->count; i++) {
     uint32_t primitive = batch->fragments[i]->primitive;
-    if (primitive >= all->triangle_count) continue;
+    if (!hl_is_triangle(all, primitive)) continue;
     int inside = batch->mesh->mesh->insides[primitive - batch->mesh->first_triangle];
     vec3 normal = hl_surface_normal(all, primitive);
     double side = inside * vec3_dot(normal, vector_of(batch->samples.towards_eye, i));

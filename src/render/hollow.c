@@ -59,11 +59,11 @@ double hl_hollow_bend(const surfaces *all, const surface_batch *batch, int sampl
        normal = {samples->normal[0][sample], samples->normal[1][sample], samples->normal[2][sample]};
   vec3 above = vec3_scale(normal, vec3_dot(towards_light, normal)),
        along = vec3_normalise(vec3_subtract(towards_light, above));
-  if (primitive >= all->triangle_count) {
+  if (!hl_is_triangle(all, primitive)) {
     const float(*colors)[4] = batch->mesh->sphere_colors;
     const uint32_t sphere = primitive - all->triangle_count;
     bool passes = colors != NULL && colors[sphere - batch->mesh->first_sphere][3] < 1;
-    return passes ? 0 : bend_of_sphere(all->spheres[sphere], point, normal);
+    return passes ? 0 : bend_of_sphere(hl_sphere_of(all, primitive), point, normal);
   }
   if (!batch->mesh->scene->smooth) return 0;
   const bent_triangle bent = bent_triangle_of(all, batch->mesh, primitive, normal);

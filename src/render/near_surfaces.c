@@ -2,6 +2,7 @@
 #include "render/near_surfaces.h"
 
 #include "render/surface_point.h"
+#include "surface/primitive.h"
 #include "surface/small_triangles.h"
 #include "surface/surface_plane.h"
 
@@ -46,8 +47,7 @@ static double part_missed(const sweep *sweep, int light, const near_sample *samp
   surface_plane plane;
   double uv[2];
   if (!hl_view_project(view, sample->point, uv)) return 0;
-  if (primitive < all->triangle_count) hl_plane_of_triangle(view, sheets, all, primitive, &plane);
-  else hl_plane_of_sphere(view, sheets, all->spheres[primitive - all->triangle_count], sample->met, &plane);
+  hl_primitive_kind(all, primitive)->plane(view, sheets, all, primitive, sample->met, &plane);
   double height = hl_plane_height(&plane, uv[0], uv[1]), middle = middle_of(sample);
   double part = (middle - height) / (sample->high - sample->low) + 0.5; /* beyond the surface */
   if (sample->cut) part = height < middle ? 1 : 0;

@@ -82,7 +82,7 @@ void hl_prepared_count(const hl_scene_volume *scene, hl_kernel kernel, const gri
 static hl_status keep_key(hl_context *context, prepared_volume *prepared, const hl_scene_volume *scene,
                           hl_error *error) {
   const hl_transfer_function *function = &scene->transfer_function;
-  function_points points;
+  function_points points = {0};
   hl_layout layout = {0};
   while (hl_layout_pass(&layout, context)) lay_out_points(function, &points, &layout);
   if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "a transfer function");

@@ -97,7 +97,7 @@ surface_point hl_surface_point_of(const sweep *sweep, const tile_slab *slab, con
   surface_point point = {.position = hl_surface_place(sweep, slab, f, (double)f->height)};
   point.towards_eye = eye->perspective ? vec3_normalise(vec3_subtract(eye->origin, point.position))
                                        : vec3_scale(eye->direction, -1);
-  vec3 flat = f->primitive < all->triangle_count
+  vec3 flat = hl_is_triangle(all, f->primitive)
                   ? find_on_triangle(all, mesh, f->primitive, &point)
                   : find_on_sphere(all, mesh, f->primitive - all->triangle_count, &point);
   if (vec3_dot(flat, point.towards_eye) >= 0) return point;

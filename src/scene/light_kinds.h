@@ -1,5 +1,5 @@
-/* scene/light_kinds.h - the registry of types of light: the enumerator, and the name that scene files use. A
- * type's file is scene/light_NAME.c, its table hl_light_kind_NAME (light_kind.h).
+/* scene/light_kinds.h - the registry of types of light: the enumerator, and the name that scene files use.
+ * The file of a type "rect" is light_rect.c, its table hl_light_kind_rect (light_kind.h).
  */
 /* clang-format off */
 #define HL_LIGHT_KINDS                              \

@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include "surface/primitive.h"
+
 enum { A_TASK = 1 << 15, CODE_BITS = 10, DIGITS = 3, DIGIT = 1 << CODE_BITS };
 
 /* Primitives that are being ordered. */
@@ -15,8 +17,7 @@ typedef struct ordering {
 } ordering;
 
 static const float *place_of(const surfaces *all, uint32_t primitive) {
-  return primitive < all->triangle_count ? all->positions[all->triangles[primitive][0]]
-                                         : all->spheres[primitive - all->triangle_count];
+  return hl_primitive_kind(all, primitive)->place(all, primitive);
 }
 
 /* Puts two zeros after each of ten bits. */

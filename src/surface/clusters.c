@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "mesh/mesh.h"
 #include "surface/cluster_order.h"
+#include "surface/primitive.h"
 
 enum { A_TASK = 1 << 9 };
 
@@ -77,8 +78,8 @@ static void find_box(const surfaces *all, surface_cluster *cluster) {
   for (int axis = 0; axis < 3; axis++) cluster->low[axis] = INFINITY, cluster->high[axis] = -INFINITY;
   for (uint32_t i = cluster->first; i < cluster->first + cluster->count; i++) {
     uint32_t p = all->order[i];
-    if (p >= all->triangle_count) {
-      const float *sphere = all->spheres[p - all->triangle_count];
+    if (!hl_is_triangle(all, p)) {
+      const float *sphere = hl_sphere_of(all, p);
       widen(cluster, sphere, sphere[3]);
       continue;
     }
@@ -95,7 +96,7 @@ static void find_cone(const surfaces *all, surface_cluster *cluster) {
   double least = 1;
   cluster->cosine = -1;
   memset(cluster->axis, 0, sizeof cluster->axis);
-  if (cluster->first >= all->triangle_count) return;
+  if (!hl_is_triangle(all, cluster->first)) return;
   for (int i = 0; i < cluster->count; i++) {
     normals[i] = hl_surface_normal(all, all->order[cluster->first + (uint32_t)i]);
     if (vec3_length(normals[i]) < 2) sum = vec3_add(sum, normals[i]); /* else not a number */
@@ -163,7 +164,7 @@ static void describe_task(void *data, size_t task, int worker) {
   for (size_t c = task * A_TASK; c < end_of_task(task, all->cluster_count); c++) {
     find_box(all, &all->clusters[c]);
     find_cone(all, &all->clusters[c]);
-    if (all->clusters[c].first >= all->triangle_count) continue;
+    if (!hl_is_triangle(all, all->clusters[c].first)) continue;
     number_vertices(all, c, &set);
     copy_normals(all, c);
   }
@@ -175,7 +176,7 @@ static void copy_task(void *data, size_t task, int worker) {
   vertex_set set;
   for (size_t c = task * A_TASK; c < end_of_task(task, all->cluster_count); c++) {
     const surface_cluster *cluster = &all->clusters[c];
-    if (cluster->first >= all->triangle_count) continue;
+    if (!hl_is_triangle(all, cluster->first)) continue;
     float *to = all->cluster_positions + 3 * cluster->first_vertex;
     number_vertices(all, c, &set);
     for (uint32_t v = 0; v < cluster->vertices; v++)
@@ -196,12 +197,12 @@ static size_t cut(surface_cluster *clusters, size_t mesh, uint32_t first, uint32
 
 /* Orders the primitives, and cuts them into clusters. */
 static void cut_all(hl_pool *pool, surfaces *all, uint32_t *spare) {
+  static const primitive_kind *const kinds[] = {&hl_primitive_triangle, &hl_primitive_sphere};
   size_t count = 0;
-  for (int spheres = 0; spheres < 2; spheres++)
+  for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
     for (size_t m = 0; m < all->mesh_count; m++) {
       const surface_mesh *mesh = &all->meshes[m];
-      uint32_t first = spheres ? all->triangle_count + mesh->first_sphere : mesh->first_triangle,
-               own = spheres ? mesh->sphere_count : mesh->triangle_count;
+      const uint32_t first = kinds[k]->first(all, mesh), own = kinds[k]->count(mesh);
       hl_cluster_order_fill(pool, all, first, own, spare);
       count += cut(all->clusters + count, m, first, own);
     }

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "surface/primitive.h"
 #include "surface/sample_rows.h"
 #include "surface/sphere_coverage.h"
 
@@ -97,13 +98,13 @@ static const shown_surface *surface_of(pixel_fragments *pixel, size_t i) {
   shown_surface *surface = &pixel->surfaces[i];
   if (pixel->has_surface >> i & 1) return surface;
   pixel->has_surface |= 1u << i;
-  if (f->primitive < tile->all->triangle_count) {
+  if (hl_is_triangle(tile->all, f->primitive)) {
     surface->sphere = NULL;
     set_corners(tile, f->primitive, surface);
     hl_plane_of_triangle(tile->view, tile->sheets, tile->all, f->primitive, &surface->plane);
   } else {
     surface->by_corners = false;
-    surface->sphere = tile->all->spheres[f->primitive - tile->all->triangle_count];
+    surface->sphere = hl_sphere_of(tile->all, f->primitive);
     surface->rays = hl_sphere_rays(tile->view, surface->sphere);
     find_side(pixel, f, surface);
   }

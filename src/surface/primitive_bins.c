@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "surface/primitive.h"
 
 enum { LEAST_A_TASK = 1 << 8, MOST_TASKS = 32 };
 
@@ -68,8 +69,8 @@ static void find_span(const bin_work *work, uint32_t primitive, binned wanted, t
   const surfaces *all = work->seen->all;
   seen_bounds bounds;
   *span = (tile_span){1, 1, 0, 0};
-  if (primitive < all->triangle_count) find_triangle_span(work, primitive, wanted, span);
-  else if (hl_see_sphere(work->seen->view, all->spheres[primitive - all->triangle_count], &bounds))
+  if (hl_is_triangle(all, primitive)) find_triangle_span(work, primitive, wanted, span);
+  else if (hl_see_sphere(work->seen->view, hl_sphere_of(all, primitive), &bounds))
     set_bounds_span(work, &bounds, span);
 }
 
@@ -91,7 +92,7 @@ static void find_cluster_span(const bin_work *work, const surface_cluster *clust
   if (box == BOX_UNSEEN) return;
   if (box == BOX_WHOLE) set_bounds_span(work, &bounds, span);
   *whole = box == BOX_WHOLE &&
-           tiles_of(span) <= (cluster->first < work->seen->all->triangle_count ? MOST_TILES_TOGETHER : 1);
+           tiles_of(span) <= (hl_is_triangle(work->seen->all, cluster->first) ? MOST_TILES_TOGETHER : 1);
 }
 
 static void task_range(const bin_work *work, size_t index, size_t *first, size_t *end) {

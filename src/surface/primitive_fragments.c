@@ -3,6 +3,7 @@
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
+#include "surface/primitive.h"
 #include "surface/seen_seams.h"
 #include "surface/sphere_coverage.h"
 #include "surface/surface_cuts.h"
@@ -157,7 +158,7 @@ static bool has_dark_inside(const fragment_work *work, const float sphere[4], co
 static void add_side(const fragment_work *work, fragment_worker *worker, const tile_part *part, fragment f,
                      bool leaving) {
   const fragments_source *source = work->source;
-  const float *sphere = source->surfaces->spheres[f.primitive - source->surfaces->triangle_count];
+  const float *sphere = hl_sphere_of(source->surfaces, f.primitive);
   covered_pixel pixel;
   int at[2] = {part->span.x0, part->span.y0};
   bool dark = leaving && !part->is_cut && has_dark_inside(work, sphere, &f);
@@ -184,7 +185,7 @@ static bool has_far_side(const fragment_work *work, const float sphere[4], float
 
 static void add_sphere(const fragment_work *work, fragment_worker *worker, tile_part *part, fragment f) {
   const fragments_source *source = work->source;
-  const float *sphere = source->surfaces->spheres[f.primitive - source->surfaces->triangle_count];
+  const float *sphere = hl_sphere_of(source->surfaces, f.primitive);
   seen_bounds bounds;
   if (!hl_see_sphere(source->view, sphere, &bounds) ||
       !hl_cover_sphere(source->view, sphere, &bounds, part->tile_x, part->tile_y, &part->span, part->covered))
@@ -210,6 +211,6 @@ void hl_add_primitive(const fragment_work *work, fragment_worker *worker, tile_p
   if (cut == CUT_LEAVES_NOTHING) return;
   part->is_cut = cut == CUT_LEAVES_SOME;
   fragment f = hl_fragment_of(work, mesh_index, primitive);
-  if (primitive < work->source->surfaces->triangle_count) add_triangle(work, worker, part, f);
+  if (hl_is_triangle(all, primitive)) add_triangle(work, worker, part, f);
   else add_sphere(work, worker, part, f);
 }

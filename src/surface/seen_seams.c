@@ -1,6 +1,7 @@
 /* surface/seen_seams.c - see seen_seams.h. */
 #include "surface/seen_seams.h"
 
+#include "surface/primitive.h"
 #include "surface/surface_seams.h"
 
 /* Pixels from a corner within which fragments fill the slabs up to the other triangle, and by which they

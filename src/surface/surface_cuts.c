@@ -1,21 +1,15 @@
 /* surface/surface_cuts.c - see surface_cuts.h. */
 #include "surface/surface_cuts.h"
 
+#include "surface/primitive.h"
 #include "surface/sample_rows.h"
 #include "surface/sphere_coverage.h"
 
 cut_answer hl_surface_cut(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   if (!mesh->is_cut) return CUT_LEAVES_ALL;
-  if (primitive < all->triangle_count) {
-    for (int i = 0; i < 3; i++)
-      vec3_bound(hl_surface_vector(all->positions[all->triangles[primitive][i]]), low, high);
-  } else {
-    const float *sphere = all->spheres[primitive - all->triangle_count];
-    vec3 reach = {sphere[3], sphere[3], sphere[3]};
-    vec3_bound(vec3_subtract(hl_surface_vector(sphere), reach), low, high);
-    vec3_bound(vec3_add(hl_surface_vector(sphere), reach), low, high);
-  }
+  float from[3], to[3];
+  hl_primitive_kind(all, primitive)->bound(all, primitive, from, to);
+  const double low[3] = {from[0], from[1], from[2]}, high[3] = {to[0], to[1], to[2]};
   if (hl_cuts_remove_box(all->cuts, all->cut_count, low, high)) return CUT_LEAVES_NOTHING;
   return hl_cuts_leave_box(all->cuts, all->cut_count, low, high) ? CUT_LEAVES_ALL : CUT_LEAVES_SOME;
 }

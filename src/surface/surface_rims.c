@@ -114,7 +114,7 @@ void hl_surface_rims_count(const surface_mesh *mesh, hl_layout *layout) {
 
 hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surface_mesh *mesh, double distance,
                           bool *near, hl_error *error) {
-  rim_search search;
+  rim_search search = {0};
   hl_layout layout = {0};
   while (hl_layout_pass(&layout, context)) lay_out(mesh, &search, &layout);
   if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the edges of meshes");

@@ -5,6 +5,7 @@
 #include "mesh/mesh.h"
 #include "surface/clusters.h"
 #include "surface/fragment_order.h"
+#include "surface/primitive.h"
 
 /* In diagonals of the box around all clusters: edges of large triangles are longer, and ends so close lie in
  * one place. */
@@ -72,7 +73,7 @@ static void add_edges(seam_search *search, uint32_t triangle) {
 
 /* Whether a cluster may hold a large triangle. */
 static bool may_hold_large(const seam_search *search, const surface_cluster *cluster) {
-  return cluster->first < search->all->triangle_count &&
+  return hl_is_triangle(search->all, cluster->first) &&
          vec3_length(vec3_subtract(hl_surface_vector(cluster->high), hl_surface_vector(cluster->low))) >
              search->large;
 }

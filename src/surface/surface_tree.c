@@ -5,6 +5,7 @@
 #include "mesh/mesh.h"
 #include "surface/surface_cuts.h"
 #include "surface/surface_rims.h"
+#include "surface/triangle.h"
 
 /* A range is halved at the middle of its primitives' middles, and by their number where this would make the
  * tree too deep. */
@@ -17,27 +18,6 @@ static double lesser(double a, double b) { return a < b ? a : b; }
 static double greater(double a, double b) { return a > b ? a : b; }
 
 static size_t most_boxes(size_t primitives) { return 2 * primitives; }
-
-/* ---- primitives ---- */
-
-static void box_of(const surfaces *all, uint32_t primitive, float low[3], float high[3]) {
-  if (primitive >= all->triangle_count) {
-    const float *sphere = all->spheres[primitive - all->triangle_count];
-    for (int a = 0; a < 3; a++) {
-      float reach = sphere[3] + 1e-6f * (fabsf(sphere[a]) + sphere[3]); /* what rounding may take */
-      low[a] = sphere[a] - reach, high[a] = sphere[a] + reach;
-    }
-    return;
-  }
-  const uint32_t *corners = all->triangles[primitive];
-  for (int a = 0; a < 3; a++) {
-    low[a] = high[a] = all->positions[corners[0]][a];
-    for (int i = 1; i < 3; i++) {
-      low[a] = lower(low[a], all->positions[corners[i]][a]);
-      high[a] = higher(high[a], all->positions[corners[i]][a]);
-    }
-  }
-}
 
 /* A primitive with its box, while the tree is made. */
 typedef struct boxed_primitive {
@@ -180,7 +160,8 @@ static hl_status make_boxes(hl_context *context, surface_tree *tree, hl_error *e
   if (passing.base == NULL) return hl_fail_memory(error, passing.bytes, "the boxes of meshes");
   for (uint32_t i = 0; i < tree->count; i++) {
     list[i].primitive = tree->primitives[i];
-    box_of(tree->all, list[i].primitive, list[i].low, list[i].high);
+    hl_primitive_kind(tree->all, list[i].primitive)
+        ->bound(tree->all, list[i].primitive, list[i].low, list[i].high);
   }
   make(tree, list, 0, tree->count, 0);
   for (uint32_t i = 0; i < tree->count; i++) tree->primitives[i] = list[i].primitive;
@@ -248,47 +229,10 @@ void hl_surface_tree_release(hl_context *context, surface_tree *tree) {
 
 /* ---- hulls ---- */
 
-vec3 hl_triangle_normal(const surfaces *all, uint32_t triangle, vec3 point, double *from) {
-  vec3 a = hl_surface_vector(all->positions[all->triangles[triangle][0]]),
-       normal = hl_surface_normal(all, triangle);
-  *from = vec3_dot(normal, vec3_subtract(point, a));
-  return normal;
-}
-
 static bool overlap(const float low[3], const float high[3], const double from[3], const double to[3]) {
   for (int a = 0; a < 3; a++)
     if ((double)low[a] > to[a] || (double)high[a] < from[a]) return false;
   return true;
-}
-
-/* Whether a hull may have points on both sides of a sphere's surface: not all of it is within, or beyond the
- * plane that touches the sphere nearest to the first ball (derived: both sides of the plane are convex, and
- * so is the inside of the sphere). */
-static bool is_parted_by_sphere(const float sphere[4], const hull_ball *balls, int count, double least) {
-  const vec3 centre = hl_surface_vector(sphere), up = vec3_normalise(vec3_subtract(balls[0].at, centre));
-  double lowest = INFINITY, farthest = 0;
-  for (int i = 0; i < count; i++) {
-    vec3 from = vec3_subtract(balls[i].at, centre);
-    lowest = lesser(lowest, vec3_dot(from, up) - balls[i].radius);
-    farthest = greater(farthest, vec3_length(from) + balls[i].radius);
-  }
-  return lowest < (double)sphere[3] - least && farthest > (double)sphere[3] + least;
-}
-
-/* Whether a hull has points on both sides of a primitive's surface, of a triangle its plane. */
-static bool is_parted(const surfaces *all, uint32_t primitive, const hull_ball *balls, int count,
-                      double least) {
-  if (primitive >= all->triangle_count)
-    return is_parted_by_sphere(all->spheres[primitive - all->triangle_count], balls, count, least);
-  double first;
-  vec3 normal = hl_triangle_normal(all, primitive, balls[0].at, &first);
-  double lowest = first - balls[0].radius, highest = first + balls[0].radius;
-  for (int i = 1; i < count; i++) {
-    double from = first + vec3_dot(normal, vec3_subtract(balls[i].at, balls[0].at));
-    lowest = lesser(lowest, from - balls[i].radius);
-    highest = greater(highest, from + balls[i].radius);
-  }
-  return lowest < -least && highest > least;
 }
 
 /* balls: null: boxes that overlap are enough. */
@@ -296,9 +240,10 @@ static bool leaf_reaches(const surface_tree *tree, const surface_box *leaf, cons
                          const double high[3], const hull_ball *balls, int count, double least) {
   for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++) {
     float from[3], to[3];
-    box_of(tree->all, tree->primitives[i], from, to);
+    hl_primitive_kind(tree->all, tree->primitives[i])->bound(tree->all, tree->primitives[i], from, to);
     if (overlap(from, to, low, high) &&
-        (balls == NULL || is_parted(tree->all, tree->primitives[i], balls, count, least)))
+        (balls == NULL || hl_primitive_kind(tree->all, tree->primitives[i])
+                              ->parts(tree->all, tree->primitives[i], balls, count, least)))
       return true;
   }
   return false;
@@ -366,23 +311,9 @@ static bool meets_box(const surface_box *box, const box_ray *ray) {
   return nearest <= farthest + 1e-9 * fabs(farthest); /* boxes of flat triangles are flat */
 }
 
-/* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection" (1997). */
-static bool meet_triangle(const surfaces *all, uint32_t primitive, const surface_ray *ray, double *distance) {
-  const uint32_t *corners = all->triangles[primitive];
-  vec3 a = hl_surface_vector(all->positions[corners[0]]),
-       ab = vec3_subtract(hl_surface_vector(all->positions[corners[1]]), a),
-       ac = vec3_subtract(hl_surface_vector(all->positions[corners[2]]), a);
-  vec3 p = vec3_cross(ray->way, ac), away = vec3_subtract(ray->origin, a), q = vec3_cross(away, ab);
-  double determinant = vec3_dot(ab, p);
-  if (determinant == 0) return false;
-  double u = vec3_dot(away, p) / determinant, v = vec3_dot(ray->way, q) / determinant;
-  *distance = vec3_dot(ac, q) / determinant;
-  return u >= 0 && v >= 0 && u + v <= 1 && *distance > ray->first && *distance < ray->last;
-}
-
 static double opacity_of(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
   double opacity = mesh->scene->opacity, sum = 0;
-  if (primitive >= all->triangle_count) {
+  if (!hl_is_triangle(all, primitive)) {
     uint32_t sphere = primitive - all->triangle_count - mesh->first_sphere;
     return mesh->sphere_colors == NULL ? opacity : opacity * (double)mesh->sphere_colors[sphere][3];
   }
@@ -393,20 +324,6 @@ static double opacity_of(const surfaces *all, const surface_mesh *mesh, uint32_t
   return opacity * sum;
 }
 
-/* A ray meets a sphere twice: |origin + s way - centre| = r. */
-static int meet_sphere(const float sphere[4], const surface_ray *ray, double distance[2]) {
-  vec3 away = vec3_subtract(ray->origin, hl_surface_vector(sphere));
-  double square = vec3_dot(ray->way, ray->way), along = vec3_dot(away, ray->way) / square;
-  vec3 nearest = vec3_subtract(away, vec3_scale(ray->way, along));
-  double left = ((double)sphere[3] * (double)sphere[3] - vec3_dot(nearest, nearest)) / square;
-  int count = 0;
-  for (int side = -1; side <= 1 && left > 0; side += 2) {
-    double at = -along + side * sqrt(left);
-    if (at > ray->first && at < ray->last) distance[count++] = at;
-  }
-  return count;
-}
-
 /* number: the ray's, in its bundle. */
 static void meet_leaf(const surface_tree *tree, const surface_box *leaf, const surface_ray *ray, int number,
                       surface_met *met, void *data) {
@@ -414,9 +331,10 @@ static void meet_leaf(const surface_tree *tree, const surface_box *leaf, const s
   for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++) {
     uint32_t primitive = tree->primitives[i];
     double distance[2];
-    int count = primitive < all->triangle_count
-                    ? meet_triangle(all, primitive, ray, distance)
-                    : meet_sphere(all->spheres[primitive - all->triangle_count], ray, distance);
+    const primitive_kind *kind = hl_primitive_kind(all, primitive);
+    int count = kind == &hl_primitive_triangle /* inlined: most are triangles */
+                    ? hl_meet_triangle(all, primitive, ray, distance)
+                    : kind->intersect(all, primitive, ray, distance);
     if (count == 0) continue;
     const surface_mesh *mesh = &all->meshes[hl_surface_mesh_of(all, primitive)];
     double opacity = fmin(fmax(opacity_of(all, mesh, primitive), 0), 1);

@@ -6,7 +6,7 @@
 #define HL_SURFACE_SURFACE_TREE_H
 
 #include "core/memory.h"
-#include "surface/surfaces.h"
+#include "surface/primitive.h"
 
 typedef struct surface_box {
   float low[3], high[3];
@@ -62,28 +62,13 @@ typedef struct surface_hit {
 /* Called for each place where a ray meets a surface, in any order. */
 typedef void surface_met(void *data, const surface_hit *hit);
 
-/* The points origin + s way with first < s < last, which may be infinite. */
-typedef struct surface_ray {
-  vec3 origin, way;
-  double first, last;
-} surface_ray;
-
 /* Whether some primitive's box meets a box. */
 bool hl_surface_tree_overlaps(const surface_tree *tree, const double low[3], const double high[3]);
-
-/* A ball of points of a hull. */
-typedef struct hull_ball {
-  vec3 at;
-  double radius;
-} hull_ball;
 
 /* Whether some primitive may meet the convex hull of balls. Triangles on whose one side all lies do not, nor
  * do spheres that all lies within, or beyond a plane that touches them; what lies beyond a surface by less
  * than `least` counts as being on it. */
 bool hl_surface_tree_reaches(const surface_tree *tree, const hull_ball *balls, int count, double least);
-
-/* A triangle's unit normal; *from: a point's distance from its plane, on the normal's side above 0. */
-vec3 hl_triangle_normal(const surfaces *all, uint32_t triangle, vec3 point, double *from);
 
 void hl_surface_tree_cast(const surface_tree *tree, const surface_ray *ray, surface_met *met, void *data);
 

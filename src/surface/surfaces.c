@@ -4,25 +4,6 @@
 #include "mesh/mesh.h"
 #include "scene/placement.h"
 
-size_t hl_surface_mesh_of(const surfaces *all, uint32_t primitive) {
-  size_t low = 0, high = all->mesh_count;
-  bool sphere = primitive >= all->triangle_count;
-  while (high - low > 1) {
-    size_t middle = (low + high) / 2;
-    const surface_mesh *mesh = &all->meshes[middle];
-    uint32_t first = sphere ? all->triangle_count + mesh->first_sphere : mesh->first_triangle;
-    if (first <= primitive) low = middle;
-    else high = middle;
-  }
-  return low;
-}
-
-uint32_t hl_surface_mesh_end(const surfaces *all, size_t mesh, uint32_t primitive) {
-  const surface_mesh *own = &all->meshes[mesh];
-  return primitive < all->triangle_count ? own->first_triangle + own->triangle_count
-                                         : all->triangle_count + own->first_sphere + own->sphere_count;
-}
-
 void hl_surface_corners(const hl_scene_mesh *mesh, double least, vec3 corners[8]) {
   affine3 placement = hl_scene_mesh_to_world(mesh);
   const hl_mesh *triangles = mesh->mesh;
@@ -76,21 +57,4 @@ void hl_surfaces_key_add(hl_key *key, const surfaces *all) {
     hl_key_add_numbers(key, &mesh->rotate_angle_deg, 1);
     if (all->meshes[m].is_cut) hl_cuts_key_add(key, all->cuts, all->cut_count);
   }
-}
-
-static double clamped(float opacity) { return fmin(fmax((double)opacity, 0), 1); }
-
-float hl_primitive_opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
-  double opacity = mesh->scene->opacity, sum = 0;
-  if (primitive >= all->triangle_count) {
-    if (mesh->sphere_colors == NULL) return (float)opacity;
-    return (float)(opacity *
-                   clamped(mesh->sphere_colors[primitive - all->triangle_count - mesh->first_sphere][3]));
-  }
-  if (mesh->face_colors != NULL)
-    return (float)(opacity * clamped(mesh->face_colors[primitive - mesh->first_triangle][3]));
-  if (mesh->colors == NULL) return (float)opacity;
-  for (int i = 0; i < 3; i++)
-    sum += clamped(mesh->colors[all->triangles[primitive][i] - mesh->first_vertex][3]);
-  return (float)(opacity * sum / 3);
 }

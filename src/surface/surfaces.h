@@ -60,12 +60,6 @@ static inline uint32_t hl_surfaces_count(const surfaces *all) {
   return all->triangle_count + all->sphere_count;
 }
 
-/* The index of the mesh that a primitive belongs to. Slow: fragments know theirs. */
-size_t hl_surface_mesh_of(const surfaces *all, uint32_t primitive);
-
-/* The first primitive after those of the mesh that are of this one's kind. */
-uint32_t hl_surface_mesh_end(const surfaces *all, size_t mesh, uint32_t primitive);
-
 /* Whether the cuts leave a point of a mesh; frame space. */
 static inline bool hl_surface_left(const surfaces *all, const surface_mesh *mesh, vec3 point) {
   return !mesh->is_cut || hl_cuts_leave(all->cuts, all->cut_count, point);
@@ -85,9 +79,6 @@ bool hl_surface_is_opaque(const surface_mesh *mesh);
 
 /* Whether a ball lies outside of a mesh's box, by a hundredth of its edges at least; frame space. */
 bool hl_surface_is_outside(const hl_scene_mesh *mesh, vec3 centre, double radius);
-
-/* The fraction of light that a mesh's surface stops, at the middle of a triangle. */
-float hl_primitive_opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive);
 
 /* A position of surfaces->positions or ->normals. */
 static inline vec3 hl_surface_vector(const float v[3]) { return (vec3){v[0], v[1], v[2]}; }

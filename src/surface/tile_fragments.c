@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "surface/crossings.h"
+#include "surface/primitive.h"
 #include "surface/primitive_fragments.h"
 #include "surface/surface_cuts.h"
 
@@ -110,7 +111,7 @@ static bool collect(const fragment_work *work, const tile_part *part, small_batc
 static bool collect_sphere(const fragment_work *work, small_batch *batch, uint32_t primitive) {
   const surfaces *all = work->source->surfaces;
   const surface_mesh *mesh = &all->meshes[batch->mesh];
-  const float *sphere = all->spheres[primitive - all->triangle_count];
+  const float *sphere = hl_sphere_of(all, primitive);
   if (mesh->is_cut || work->source->rise > 0 || hl_primitive_opacity(all, mesh, primitive) < 1) return false;
   for (int axis = 0; axis < 3; axis++) batch->spheres.centre[axis][batch->count] = sphere[axis];
   batch->spheres.radius[batch->count] = sphere[3];
@@ -235,11 +236,10 @@ static void begin_mesh(const fragment_work *work, small_batch *batch, uint32_t p
   const surfaces *all = work->source->surfaces;
   batch->mesh = hl_surface_mesh_of(all, primitive);
   const surface_mesh *mesh = &all->meshes[batch->mesh];
-  batch->of_spheres = primitive >= all->triangle_count;
+  batch->of_spheres = !hl_is_triangle(all, primitive);
   batch->view.dark_backs = work->dark_backs[batch->mesh];
   batch->view.fronts = work->wanted[batch->mesh] == BINNED_FRONTS;
-  of_mesh[0] = primitive < all->triangle_count ? mesh->first_triangle
-                                               : all->triangle_count + mesh->first_sphere;
+  of_mesh[0] = hl_primitive_kind(all, primitive)->first(all, mesh);
   of_mesh[1] = hl_surface_mesh_end(all, batch->mesh, primitive);
 }
 
@@ -248,7 +248,7 @@ static void add_run(const fragment_work *work, fragment_worker *worker, tile_par
                     primitive_run run) {
   const surfaces *all = work->source->surfaces;
   const surface_cluster *cluster = run.cluster != NO_CLUSTER ? &all->clusters[run.cluster] : NULL;
-  bool triangle = run.primitive < all->triangle_count;
+  bool triangle = hl_is_triangle(all, run.primitive);
   if (cluster != NULL && triangle && !all->meshes[batch->mesh].is_cut) {
     add_batch(work, worker, part, batch);
     if (!worker->failed) add_cluster(work, worker, part, batch, cluster);
@@ -278,7 +278,7 @@ static float lowest_of(const fragment_work *work, primitive_run run) {
   const surfaces *all = work->source->surfaces;
   const sheet_stack *sheets = work->source->sheets;
   if (run.cluster != NO_CLUSTER) return (float)hl_lowest_height(sheets, &all->clusters[run.cluster]);
-  if (run.primitive >= all->triangle_count) return (float)-INFINITY;
+  if (!hl_is_triangle(all, run.primitive)) return (float)-INFINITY;
   double height = INFINITY;
   for (int i = 0; i < 3; i++)
     height = fmin(height, vec3_dot(sheets->normal,

@@ -1,0 +1,78 @@
+/* surface/sphere.c - the kind of primitive that a sphere is. */
+#include "surface/primitive.h"
+
+static uint32_t first_of(const surfaces *all, const surface_mesh *mesh) {
+  return all->triangle_count + mesh->first_sphere;
+}
+
+static uint32_t count_of(const surface_mesh *mesh) { return mesh->sphere_count; }
+
+static double lesser(double a, double b) { return a < b ? a : b; }
+static double greater(double a, double b) { return a > b ? a : b; }
+
+static void bound(const surfaces *all, uint32_t primitive, float low[3], float high[3]) {
+  const float *sphere = hl_sphere_of(all, primitive);
+  for (int a = 0; a < 3; a++) {
+    float reach = sphere[3] + 1e-6f * (fabsf(sphere[a]) + sphere[3]); /* what rounding may take */
+    low[a] = sphere[a] - reach, high[a] = sphere[a] + reach;
+  }
+}
+
+static float opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
+  double opacity = mesh->scene->opacity;
+  if (mesh->sphere_colors == NULL) return (float)opacity;
+  float own = mesh->sphere_colors[primitive - all->triangle_count - mesh->first_sphere][3];
+  return (float)(opacity * fmin(fmax((double)own, 0), 1));
+}
+
+static vec3 normal(const surfaces *all, uint32_t primitive, vec3 met, vec3 point, double *from) {
+  const vec3 centre = hl_surface_vector(hl_sphere_of(all, primitive)),
+             normal = vec3_normalise(vec3_subtract(met, centre));
+  *from = vec3_dot(normal, vec3_subtract(point, met));
+  return normal;
+}
+
+static void plane(const view *view, const sheet_stack *sheets, const surfaces *all, uint32_t primitive,
+                  vec3 met, surface_plane *plane) {
+  hl_plane_of_sphere(view, sheets, hl_sphere_of(all, primitive), met, plane);
+}
+
+/* A ray meets a sphere twice: |origin + s way - centre| = r. */
+static int intersect(const surfaces *all, uint32_t primitive, const surface_ray *ray, double distance[2]) {
+  const float *sphere = hl_sphere_of(all, primitive);
+  vec3 away = vec3_subtract(ray->origin, hl_surface_vector(sphere));
+  double square = vec3_dot(ray->way, ray->way), along = vec3_dot(away, ray->way) / square;
+  vec3 nearest = vec3_subtract(away, vec3_scale(ray->way, along));
+  double left = ((double)sphere[3] * (double)sphere[3] - vec3_dot(nearest, nearest)) / square;
+  int count = 0;
+  for (int side = -1; side <= 1 && left > 0; side += 2) {
+    double at = -along + side * sqrt(left);
+    if (at > ray->first && at < ray->last) distance[count++] = at;
+  }
+  return count;
+}
+
+/* Whether a hull may have points on both sides of a sphere's surface: not all of it is within, or beyond the
+ * plane that touches the sphere nearest to the first ball (derived: both sides of the plane are convex, and
+ * so is the inside of the sphere). */
+static bool parts(const surfaces *all, uint32_t primitive, const hull_ball *balls, int count, double least) {
+  const float *sphere = hl_sphere_of(all, primitive);
+  const vec3 centre = hl_surface_vector(sphere), up = vec3_normalise(vec3_subtract(balls[0].at, centre));
+  double lowest = INFINITY, farthest = 0;
+  for (int i = 0; i < count; i++) {
+    vec3 from = vec3_subtract(balls[i].at, centre);
+    lowest = lesser(lowest, vec3_dot(from, up) - balls[i].radius);
+    farthest = greater(farthest, vec3_length(from) + balls[i].radius);
+  }
+  return lowest < (double)sphere[3] - least && farthest > (double)sphere[3] + least;
+}
+
+const primitive_kind hl_primitive_sphere = {.first = first_of,
+                                            .count = count_of,
+                                            .place = hl_sphere_of,
+                                            .bound = bound,
+                                            .opacity = opacity,
+                                            .normal = normal,
+                                            .plane = plane,
+                                            .intersect = intersect,
+                                            .parts = parts};
