@@ -79,6 +79,11 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_share(hl_renderer *renderer, int par
 HL_API HL_WARN_UNUSED hl_status hl_renderer_share_over_ranks(hl_renderer *renderer, hl_ranks *ranks,
                                                              hl_error *error);
 
+/* What makes the renderer's frames from now on, in place of what its context names: as hl_context_options has
+ * it; copied. Null: the context's again. The frames are the same. */
+HL_API HL_WARN_UNUSED hl_status hl_renderer_use_device(hl_renderer *renderer, const char *device,
+                                                       hl_error *error);
+
 /* Renders the picture and the requested layers. Takes longer: each light is shaded once more for its picture
  * and once more for its shadow. */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene,

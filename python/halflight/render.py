@@ -75,6 +75,13 @@ class Renderer:
     A renderer serves one thread at a time (another one waits); for more, make one for each. After ``fork`` the
     child may go on with it.
 
+    Parameters
+    ----------
+    device : str, optional
+        What makes the pictures: "cpu", the default; "gpu", the first GPU; "auto", a GPU where it is faster; or a part of a
+        name that ``halflight devices`` lists. The pictures are the same. What a GPU does not make, the processors make:
+        ``Image.statistics["device_reason"]`` says why.
+
     Examples
     --------
     >>> import numpy as np
@@ -86,8 +93,12 @@ class Renderer:
 
     __slots__ = ("__weakref__", "_handle", "_lock", "_process")
 
-    def __init__(self) -> None:
+    def __init__(self, device: str | None = None) -> None:
         self._handle = made(lib.hl_renderer_create, "hl_renderer", lib.hl_renderer_destroy, context)
+        if device is not None:
+            if not isinstance(device, str):
+                raise TypeError(f"device: {device!r} is no text: give 'cpu', 'gpu', 'auto' or a part of a GPU's name")
+            call(lib.hl_renderer_use_device, self._handle, ffi.new("char[]", device.encode()))
         self._lock, self._process = threading.Lock(), os.getpid()
 
     def close(self) -> None:
@@ -315,7 +326,7 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
            shininess: float | None = None, tf: Any = None, shadows: bool | Words | None = None,
            lights: Light | Sequence[Light] | None = None, camera: View | None = None,
            size: tuple[int, int] | int | str | None = None, background: Any = None, threads: int | None = None,
-           layers: bool = False, progress: Progress = None, array: str | None = None,
+           layers: bool = False, progress: Progress = None, device: str | None = None, array: str | None = None,
            component: int | str | None = None, series: str | None = None, time: int | None = None,
            channel: int | str | Sequence[int] | None = None, level: int | None = None,
            meshes: Mesh | Sequence[Mesh] | None = None, iso: Any = None, cuts: Any = None, mask: Any = None,
@@ -368,6 +379,8 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
         0, the default, is one per processor. The picture is the same with any number.
     layers, progress : optional
         As for `Renderer.render`.
+    device : str, optional
+        As for `Renderer`.
     array, component, series, time, channel, level : optional
         Of a file with several: see `Volume`. Several channels, ``channel=[0, 2]`` or ``channel="all"``, share the picture,
         each in a colour of its own: see `Scene.of_channels`.
@@ -410,7 +423,7 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
         channel=channel, level=level, meshes=meshes, iso=iso, cuts=cuts, mask=mask, labels=labels, look=look, sky=sky, **further)
     with told(progress):
         scene = scene_for(volume, **asked)
-    return Renderer().render(scene, layers=layers, progress=progress)
+    return Renderer(device).render(scene, layers=layers, progress=progress)
 
 
 def _look_for(look: Mapping[str, Any], index: int, count: int) -> tuple[Any, ...]:

@@ -28,6 +28,7 @@ enum {
   ANIMATE_NO_METADATA,
   ANIMATE_DATA,
   ANIMATE_MAX_MEMORY,
+  ANIMATE_DEVICE,
   ANIMATE_QUIET,
   ANIMATE_OPTION_COUNT
 };
@@ -83,6 +84,7 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
     [ANIMATE_NO_METADATA] = FRAMES_OPTION_NO_METADATA,
     [ANIMATE_DATA] = HOST_OPTION_DATA(NULL),
     [ANIMATE_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
+    [ANIMATE_DEVICE] = HOST_OPTION_DEVICE,
     [ANIMATE_QUIET] = HOST_OPTION_QUIET,
 };
 
@@ -227,6 +229,7 @@ static int run_animate(const cli_value *values, char **operands) {
                               .progress = true,
                               .subject = base_name(job.input),
                               .memory_limit = values[ANIMATE_MAX_MEMORY].bytes,
+                              .device = values[ANIMATE_DEVICE].text,
                               .data_folder = values[ANIMATE_DATA].text};
   int exit_code = frames_read_part(&values[ANIMATE_PART], &values[ANIMATE_RANKS], &job.part, &job.parts);
   if (exit_code == EXIT_CODE_OK) exit_code = choose_output(&job);

@@ -25,6 +25,7 @@ enum looks_option {
   LOOKS_SPACING,
   LOOKS_THREADS,
   LOOKS_MAX_MEMORY,
+  LOOKS_DEVICE,
   LOOKS_QUIET,
   LOOKS_OPTION_COUNT
 };
@@ -51,6 +52,7 @@ static const cli_option looks_options[LOOKS_OPTION_COUNT] = {
     [LOOKS_SPACING] = INPUT_OPTION_SPACING,
     [LOOKS_THREADS] = HOST_OPTION_THREADS("How it runs"),
     [LOOKS_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
+    [LOOKS_DEVICE] = HOST_OPTION_DEVICE,
     [LOOKS_QUIET] = HOST_OPTION_QUIET,
 };
 
@@ -219,7 +221,8 @@ static int run_looks(const cli_value *values, char **operands) {
   cli_host_options host_options = {.quiet = values[LOOKS_QUIET].given,
                                    .progress = true,
                                    .subject = base_name(operands[0]),
-                                   .memory_limit = values[LOOKS_MAX_MEMORY].bytes};
+                                   .memory_limit = values[LOOKS_MAX_MEMORY].bytes,
+                                   .device = values[LOOKS_DEVICE].text};
   if (exit_code == EXIT_CODE_OK) {
     exit_code = host_open(&host_options, &job.host);
     if (exit_code == EXIT_CODE_OK) exit_code = make_and_write(&job);

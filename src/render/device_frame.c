@@ -24,17 +24,31 @@ static void give_up(hl_renderer *renderer, const char *reason) {
   snprintf(renderer->device_problem, sizeof renderer->device_problem, "%.390s", reason);
 }
 
-/* Opens the device that the context names, and tries it, once. */
+/* What makes the renderer's frames; null: the processors. */
+static const char *wanted_device(const hl_renderer *renderer) {
+  return renderer->device[0] != '\0' ? renderer->device : renderer->context->options.device;
+}
+
+bool hl_device_choose(hl_renderer *renderer, const char *device) {
+  if (device == NULL) device = "";
+  if (strlen(device) >= sizeof renderer->device) return false;
+  hl_device_release(renderer);
+  renderer->device_tried = false;
+  renderer->device_problem[0] = '\0';
+  snprintf(renderer->device, sizeof renderer->device, "%s", device);
+  return true;
+}
+
+/* Opens the device that is wanted, and tries it, once. */
 static void open_device(hl_renderer *renderer) {
-  const hl_context_options *options = &renderer->context->options;
+  const char *wanted = wanted_device(renderer);
   char problem[GPU_PROBLEM_BYTES] = "";
   if (renderer->device_tried) return;
   renderer->device_tried = true;
-  renderer->gpu = hl_gpu_open(renderer->context, options->device, options->cache_folder, problem);
-  if (renderer->gpu != NULL && hl_device_passes(renderer, strcmp(options->device, "auto") == 0, problem))
-    return;
+  renderer->gpu = hl_gpu_open(renderer->context, wanted, renderer->context->options.cache_folder, problem);
+  if (renderer->gpu != NULL && hl_device_passes(renderer, strcmp(wanted, "auto") == 0, problem)) return;
   give_up(renderer, problem);
-  if (strcmp(options->device, "auto") != 0)
+  if (strcmp(wanted, "auto") != 0)
     hl_log(renderer->context, HL_LOG_WARNING, "the processors make the pictures: %s",
            renderer->device_problem);
 }
@@ -62,7 +76,7 @@ static bool run_sweep(hl_renderer *renderer, const hl_scene_description *scene, 
 
 bool hl_make_on_device(hl_renderer *renderer, const frame_request *request, frame_work *work,
                        sweep_of_frame *sweep_of, hl_render_statistics *statistics) {
-  const char *wanted = renderer->context->options.device;
+  const char *wanted = wanted_device(renderer);
   const hl_scene_description *scene = &work->framed.scene;
   hl_render_statistics of_frame = *statistics;
   hl_error error = {0};

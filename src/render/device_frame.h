@@ -16,6 +16,10 @@ typedef struct sweep sweep_of_frame(hl_renderer *renderer, const hl_scene_descri
 bool hl_make_on_device(hl_renderer *renderer, const frame_request *request, frame_work *work,
                        sweep_of_frame *sweep_of, hl_render_statistics *statistics);
 
+/* Chooses what makes the renderer's frames from now on; null: what the context names. False where the name is
+ * too long. */
+bool hl_device_choose(hl_renderer *renderer, const char *device);
+
 /* The device's volume is no longer that of renderer->prepared. */
 void hl_device_forget(hl_renderer *renderer);
 void hl_device_release(hl_renderer *renderer);

@@ -38,7 +38,8 @@ struct hl_renderer {
   sky_field sky;            /* owned; the light of the scene's sky */
   phase_tables phases;      /* owned; of the scene's media and lights */
   struct hl_gpu *gpu;       /* owned; the device that makes frames; null: the processors do */
-  bool device_tried;        /* the device that the context names was looked for */
+  char device[128];         /* what makes its frames; empty: what the context names */
+  bool device_tried;        /* the device was looked for */
   char device_problem[400]; /* why it makes no frames */
   hl_reserve reserve;       /* owned; blocks that frames and sweeps have returned */
   uint64_t estimate;        /* bytes; see render/estimate.h */

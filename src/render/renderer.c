@@ -59,6 +59,15 @@ void hl_renderer_exchange(hl_renderer *renderer, const light_exchange *exchange)
   renderer->exchange = *exchange;
 }
 
+hl_status hl_renderer_use_device(hl_renderer *renderer, const char *device, hl_error *error) {
+  if (renderer == NULL) return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_use_device: renderer is null");
+  if (atomic_load(&renderer->busy)) return fail_busy("hl_renderer_use_device", error);
+  if (hl_device_choose(renderer, device)) return HL_OK;
+  return hl_fail(error, HL_ERROR_ARGUMENT,
+                 "hl_renderer_use_device: device: give a name of less than %zu bytes",
+                 sizeof renderer->device);
+}
+
 static void gather_from_ranks(void *data, const void *from, size_t bytes, void *to) {
   hl_ranks_gather(data, from, bytes, to);
 }

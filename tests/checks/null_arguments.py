@@ -27,6 +27,7 @@ hl_volume_save_with options
 hl_image_to_srgb8 options
 hl_renderer_render statistics
 hl_renderer_share_over_ranks ranks
+hl_renderer_use_device device
 hl_renderer_render_layers layers
 hl_renderer_render_layers statistics
 hl_reference_render options

@@ -153,3 +153,17 @@ def test_a_scene_file_is_rendered_as_by_the_program(program, tmp_path):
                      '[{"shapes": [{"type": "torus", "radius": 20, "tube_radius": 6}], "voxel_size": 1}]}')
     halflight.render(scene).save(tmp_path / "python.npy")
     assert (tmp_path / "python.npy").read_bytes() == run(program, tmp_path, scene)
+
+
+def test_device():
+    """A device that is not there: the processors make the picture, and the statistics say why."""
+    volume = np.arange(8 * 8 * 8, dtype=np.uint8).reshape(8, 8, 8)
+    words = {"size": (32, 32), "shadows": "off", "sky": 0}
+    own, other = (halflight.render(volume, device=device, **words) for device in (None, "no such device"))
+    assert np.array_equal(np.asarray(own), np.asarray(other))
+    assert own.statistics["device_reason"] == ""
+    assert other.statistics["device"] == "cpu" and "no device answers" in other.statistics["device_reason"]
+    with pytest.raises(TypeError, match="device: 3 is no text"):
+        halflight.Renderer(device=3)
+    with pytest.raises(ValueError, match="less than 128 bytes"):
+        halflight.Renderer(device="a" * 200)
