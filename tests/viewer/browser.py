@@ -18,6 +18,8 @@ class BrowserError(Exception):
 class Browser:
     """One browser with one page."""
 
+    fingers = 5
+
     def __init__(self, program="chromium", size=(1280, 720)):
         self._folder = tempfile.mkdtemp(prefix="halflight-chromium-")
         to_browser, self._to = os.pipe()
@@ -151,8 +153,17 @@ class Browser:
             self.mouse("mouseMoved", *place, button, modifiers)
         self.mouse("mouseReleased", *end, button, modifiers)
 
-    def wheel(self, x, y, pixels):
-        self.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=pixels)
+    def click(self, place, count=1):
+        """count: the number of this click at its place: 2 is the second of a double click."""
+        for kind in ("mousePressed", "mouseReleased"):
+            buttons = 1 if kind == "mousePressed" else 0
+            self.call("Input.dispatchMouseEvent", type=kind, x=place[0], y=place[1], button="left", buttons=buttons, clickCount=count)
+
+    def wheel(self, x, y, pixels, modifiers=0):
+        self.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=pixels, modifiers=modifiers)
+
+    def type(self, text):
+        self.call("Input.insertText", text=text)
 
     def key(self, key, text=None):
         self.call("Input.dispatchKeyEvent", type="keyDown", key=key, text=text or (key if len(key) == 1 else ""))

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Measuring on the page, in a headless Chromium: rulers, angles, lines, arrows and texts by clicks in the picture and in slices, by fingers and keys;
+"""Measuring on the page, in a headless Chromium or Firefox: rulers, angles, lines, arrows and texts by clicks in the picture and in slices, by fingers and keys;
 their numbers are those of the file's lengths, and they stand in the scene.
 
-usage: marks.py PROGRAM [FOLDER]
+usage: marks.py PROGRAM chromium|firefox-esr [FOLDER]
 FOLDER: where screenshots are kept; without it they are not made.
 """
 import json
@@ -18,11 +18,12 @@ import numpy
 import checks
 from browser import Browser
 from checks import check
+from firefox import Firefox
 from hands import PROGRAM, STAGE, center, open_section, press, press_named, rest, scene_of, set_control
 from viewer import Viewer
 
 SIDE, SPACING = 40, (2.0, 1.0, 1.0)  # voxels; millimetres along x, y, z
-SHOTS = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else None
+SHOTS = os.path.abspath(sys.argv[3]) if len(sys.argv) > 3 else None
 
 
 def write_ball():
@@ -48,11 +49,6 @@ def in_picture(browser, point):
       const [x, y] = m.projector(halflight.store.scene.camera, view.clientWidth, view.clientHeight)({json.dumps(point)}); return [box.x + x, box.y + y]; }})""")
 
 
-def click(browser, place, count=1):
-    for kind in ("mousePressed", "mouseReleased"):
-        browser.call("Input.dispatchMouseEvent", type=kind, x=place[0], y=place[1], button="left", buttons=1 if kind == "mousePressed" else 0, clickCount=count)
-
-
 def marks(browser):
     return json.loads(browser.run("JSON.stringify(halflight.store.marks)"))
 
@@ -70,9 +66,9 @@ def rulers(browser):
     a, b = (10, 12, 20), (28, 30, 20)
     press(browser, "Ruler")
     check(browser.run("document.querySelector('[data-kind=ruler]').getAttribute('aria-pressed')") == "true", "the tool is chosen")
-    click(browser, pixel(browser, a))
+    browser.click(pixel(browser, a))
     check(marks(browser) == [], "one point is no ruler")
-    click(browser, pixel(browser, b))
+    browser.click(pixel(browser, b))
     (ruler,) = marks(browser)
     length = math.dist(world(a), world(b))
     check(ruler["kind"] == "ruler" and close(ruler["points"][0], world(a), 0.2) and close(ruler["points"][1], world(b), 0.2), f"the ruler: {ruler}")
@@ -98,7 +94,7 @@ def rulers(browser):
 def angles(browser):
     press(browser, "Angle")
     for voxel in ((19, 5, 20), (19, 19, 20), (26, 19, 20)):
-        click(browser, pixel(browser, voxel))
+        browser.click(pixel(browser, voxel))
     check(marks(browser)[-1]["kind"] == "angle" and abs(float(measured(browser)[1].rstrip("°")) - 90) < 0.6, f"a right angle: {measured(browser)}")
 
 
@@ -107,19 +103,19 @@ def lines(browser):
     corners = ((8, 8, 20), (28, 8, 20), (28, 32, 20))
     press(browser, "Line")
     for voxel in corners:
-        click(browser, pixel(browser, voxel))
-    click(browser, pixel(browser, corners[-1]), count=2)
+        browser.click(pixel(browser, voxel))
+    browser.click(pixel(browser, corners[-1]), count=2)
     line = marks(browser)[-1]
     check(line["kind"] == "line" and len(line["points"]) == 3, f"a double click ends it: {line}")
     check(abs(float(measured(browser)[2].split()[0]) - 64) < 0.5, f"40 and 24: {measured(browser)}")
     press(browser, "Line")
     for voxel in corners[:2]:
-        click(browser, pixel(browser, voxel))
+        browser.click(pixel(browser, voxel))
     browser.run("document.getElementById('view').focus()")
     browser.key("Enter")
     check(len(marks(browser)) == 4 and len(marks(browser)[-1]["points"]) == 2, "Enter ends it")
     press(browser, "Line")
-    click(browser, pixel(browser, corners[0]))
+    browser.click(pixel(browser, corners[0]))
     browser.key("Escape")
     check(len(marks(browser)) == 4 and browser.run("document.querySelectorAll('[aria-pressed=true][data-kind]').length") == 0, "Escape gives it up")
     count = len(marks(browser))
@@ -134,8 +130,8 @@ def arrows_and_texts(browser):
     arrow = marks(browser)[-1]
     check(arrow["kind"] == "arrow" and close(arrow["points"][1], world((19, 19, 20)), 0.5), f"an arrow by fingers: {arrow}")
     press(browser, "Text")
-    click(browser, pixel(browser, (12, 25, 20)))
-    browser.call("Input.insertText", text="a lesion")
+    browser.click(pixel(browser, (12, 25, 20)))
+    browser.type("a lesion")
     check(marks(browser)[-1] == {"kind": "text", "points": marks(browser)[-1]["points"], "text": "a lesion"}, f"a text, typed: {marks(browser)[-1]}")
     check("a lesion" in browser.run("document.querySelector('#overlay').textContent"), "it is written in the picture")
 
@@ -160,7 +156,7 @@ def in_the_picture(browser):
     x, y = center(browser, "#view")
     count = len(marks(browser))
     for n, place in enumerate(((x - 20, y + 25), (x + 30, y + 10))):
-        click(browser, place)
+        browser.click(place)
         browser.wait("halflight.marking.unfinished !== null" if n == 0 else f"halflight.store.marks.length === {count + 1}")
     points = marks(browser)[-1]["points"]
     middle = world((19.5, 19.5, 19.5))
@@ -192,9 +188,9 @@ def axis_of_values(browser):
     press_named(browser, "Undo")
 
 
-chromium = shutil.which("chromium")
-if chromium is None:
-    print("chromium is not installed")
+kind = {"chromium": Browser, "firefox-esr": Firefox}[sys.argv[2]]
+if shutil.which(sys.argv[2]) is None:
+    print(f"{sys.argv[2]} is not installed")
     sys.exit(77)
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
@@ -202,7 +198,7 @@ with tempfile.TemporaryDirectory() as folder:
         print("built without the viewer")
         sys.exit(77)
     write_ball()
-    with Viewer(PROGRAM, "ball.nrrd", "--sheet-spacing", "1", "--shadows", "hard") as viewer, Browser(chromium, (1100, 760)) as page:
+    with Viewer(PROGRAM, "ball.nrrd", "--sheet-spacing", "1", "--shadows", "hard") as viewer, kind(size=(1100, 760)) as page:
         page.open(viewer.url)
         rest(page)
         axis_of_values(page)

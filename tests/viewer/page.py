@@ -3,12 +3,16 @@
 
 usage: page.py PROGRAM
 """
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import time
+
+from PIL import Image
 
 import checks
 from browser import Browser
@@ -37,7 +41,7 @@ def hands_on_the_camera(browser):
     changes(browser, "the first view", lambda: browser.key("Home"), "camera")
     changes(browser, "arrow key", lambda: browser.key("ArrowLeft"), "camera")
     changes(browser, "parallel projection", lambda: set_control(browser, "Parallel", ""), "camera")
-    changes(browser, "frame everything", lambda: press(browser, "Frame") or browser.wait(f"{STAGE} === 'moving'"), "camera")
+    changes(browser, "frame everything", lambda: press(browser, "Show all") or browser.wait(f"{STAGE} === 'moving'"), "camera")
 
 
 def fingers_on_the_camera(browser):
@@ -52,7 +56,7 @@ def fingers_on_the_camera(browser):
     target = scene_of(browser)["camera"]["target"]
     changes(browser, "two fingers aside", lambda: browser.touch([at, [x, y + 90]], [[at[0] + 40, at[1]], [x + 40, y + 90]]), "camera")
     check(scene_of(browser)["camera"]["target"] != target, "two fingers aside pan")
-    changes(browser, "framed again", lambda: press(browser, "Frame") or browser.wait(f"{STAGE} === 'moving'"), "camera")
+    changes(browser, "framed again", lambda: press(browser, "Show all") or browser.wait(f"{STAGE} === 'moving'"), "camera")
 
 
 def hands_on_the_light(browser):
@@ -132,6 +136,42 @@ def keyboard_and_names(browser):
     check(max(overflow) <= 0, "the page fits into 1280 x 720")
 
 
+def saved_as_seen(browser):
+    """A saved picture that is taller than wide shows as much across as the one on the screen; its sides follow what it is for."""
+    os.mkdir("saved")
+    browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=os.path.abspath("saved"))
+    seen = browser.run("halflight.store.scene.image.width")
+    set_control(browser, "For", "2", "change")
+    sides = browser.run("[...document.querySelectorAll('[aria-label$=\"in pixels\"]')].map((input) => +input.value)")
+    check(sides[0] == 2 * seen, f"twice as seen: {sides}")
+    set_control(browser, "For", "8.5cm", "change")
+    check(browser.run("+document.querySelector('[aria-label=\"Width in pixels\"]').value") == 1004, "8.5 cm at 300 dpi")
+    browser.run("""['Width', 'Height'].forEach((side, n) => { document.querySelector(`[aria-label="${side} in pixels"]`).value = [120, 300][n]; })""")
+    press(browser, "save picture")
+    end = time.monotonic() + 60
+    while not os.path.exists("saved/rings.png"):
+        check(time.monotonic() < end, "it is saved")
+        time.sleep(0.05)
+    with Image.open("saved/rings.png") as image:
+        tall = json.loads(image.text["halflight:scene"])
+    share = """(camera, image) => import('./camera.js').then((m) => m.worldHeight(camera) * Math.min(1, image.width / image.height))"""
+    now, saved = (browser.run(f"({share})({json.dumps(scene['camera'])}, {json.dumps(scene['image'])})") for scene in (scene_of(browser), tall))
+    check((tall["image"]["width"], tall["image"]["height"]) == (120, 300) and abs(saved / now - 1) < 1e-9, f"as much across: {saved}, {now}")
+
+
+def reach(browser):
+    """On a phone, on a tablet and on a desk all buttons are in reach, and none is smaller than 24 pixels."""
+    for size in ((390, 844), (820, 1180), (1280, 720)):
+        browser.resize(*size)
+        browser.run("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+        rest(browser)
+        away = browser.run("""[...document.querySelectorAll('header button, #view')].filter((e) => { const b = e.getBoundingClientRect();
+          return b.width > 0 && (b.left < 0 || b.right > innerWidth || b.bottom > innerHeight); }).map((e) => e.textContent)""")
+        small = browser.run("""[...document.querySelectorAll('button, input:not([type=radio]), select, summary')].filter((e) => { const b = e.getBoundingClientRect();
+          return b.width > 0 && Math.min(b.width, b.height) < 23.9; }).map((e) => e.outerHTML.slice(0, 90))""")
+        check(away == [] and small == [], f"{size}: out of reach: {away}; too small: {small}")
+
+
 chromium = shutil.which("chromium")
 if chromium is None:
     print("chromium is not installed")
@@ -151,6 +191,8 @@ with tempfile.TemporaryDirectory() as folder:
         rest(browser)
         equals_render(browser, "first")
         keyboard_and_names(browser)
+        saved_as_seen(browser)
+        reach(browser)
         narrow_pages(browser)
         browser.resize(720, 420)
         browser.wait("halflight.store.scene.image.width === 380")

@@ -168,7 +168,7 @@ def boxes(browser):
 def scattering(browser):
     open_section(browser, "Volume")
     changes(browser, "a medium", lambda: set_control(browser, "Medium", "", section="Volume"), "volumes")
-    changes(browser, "onwards", lambda: set_control(browser, "Onwards", 0.6, section="Volume"), "volumes")
+    changes(browser, "onwards", lambda: set_control(browser, "Forward", 0.6, section="Volume"), "volumes")
     changes(browser, "albedo", lambda: set_control(browser, "Albedo", 0.5, section="Volume"), "volumes")
     changes(browser, "tint", lambda: set_control(browser, "Tint", "#ff8080", section="Volume"), "volumes")
     check(scene_of(browser)["volumes"][0]["scattering"]["albedo"][0] == 0.5, "the tint leaves the albedo")
@@ -275,7 +275,7 @@ def cuts(browser):
     browser.run(f"""for (let step = 0; step < 9 && halflight.store.scene.volumes[0].cuts[0].point[0] !== {before[0]["point"][0]}; step++)
       halflight.store.undo(); 0""")  # a drag is a step, or a few where the machine is slow
     check(cuts_now() == before, "both are undone")
-    changes(browser, "faces", lambda: set_control(browser, "Faces", "none", "change", section="Cuts"), "volumes")
+    changes(browser, "faces", lambda: set_control(browser, "Cut faces", "none", "change", section="Cuts"), "volumes")
     changes(browser, "keep", lambda: set_control(browser, "Inside", "", section="Cuts"), "volumes")
     changes(browser, "a second cut", lambda: press_named(browser, "Add: cut"), "volumes")
     changes(browser, "a sphere", lambda: set_control(browser, "Sphere", "", section="Cuts"), "volumes")

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Slices on the page, in a headless Chromium: planes lie as radiologists look at them, the crosshair tells the file's values, and
+"""Slices on the page, in a headless Chromium or Firefox: planes lie as radiologists look at them, the crosshair tells the file's values, and
 hands, fingers and keys move it; labels, isolines and slabs; a click in the picture puts the crosshair on what is seen.
 
-usage: slices.py PROGRAM [FOLDER]
+usage: slices.py PROGRAM chromium|firefox-esr [FOLDER]
 FOLDER: where screenshots are kept; without it they are not made.
 """
 import json
@@ -18,13 +18,14 @@ import numpy
 import checks
 from browser import Browser
 from checks import check
+from firefox import Firefox
 from hands import PROGRAM, center, open_section, rest, scene_of, set_control
 from viewer import Viewer
 
 SIDES = (40, 50, 30)  # i, j, k
 SPACING = (1.5, 1.0, 2.0)
 FIRST = (-30.0, 20.0, -25.0)  # of voxel 0, 0, 0, in right, front, head; j runs to the back
-SHOTS = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else None
+SHOTS = os.path.abspath(sys.argv[3]) if len(sys.argv) > 3 else None
 
 
 def write_volumes():
@@ -79,11 +80,6 @@ def color(browser, name, voxel):
     """The colour of a voxel in the slice's canvas."""
     return browser.run(f"""(() => {{ const view = halflight.slices.view({json.dumps(name)}), [x, y] = view.project({json.dumps(world(voxel))});
       return [...view.area.querySelector('canvas').getContext('2d').getImageData(Math.round(x), Math.round(y), 1, 1).data]; }})()""")
-
-
-def click(browser, x, y):
-    browser.mouse("mousePressed", x, y)
-    browser.mouse("mouseReleased", x, y)
 
 
 def shot(browser, name):
@@ -151,7 +147,7 @@ def hands(browser, voxels):
         return found["voxel"]
 
     move(browser, (20, 25, 15))
-    click(browser, *pixel(browser, "axial", (28, 31, 15)))
+    browser.click(pixel(browser, "axial", (28, 31, 15)))
     check(agrees("a click") == [28, 31, 15], "a click in the axial plane")
     browser.drag(pixel(browser, "coronal", (28, 31, 15)), pixel(browser, "coronal", (17, 31, 12)))
     check(agrees("a drag") == [17, 31, 12], "a drag in the coronal plane")
@@ -168,7 +164,12 @@ def hands(browser, voxels):
     browser.touch([place])
     check(agrees("a finger") == [25, 20, 12], "a finger in the axial plane")
     before = pixel(browser, "axial", (0, 0, 12))
-    browser.touch([[x - 30, y], [x + 30, y]], [[x - 60, y], [x + 60, y]])
+    if browser.fingers > 1:
+        browser.touch([[x - 30, y], [x + 30, y]], [[x - 60, y], [x + 60, y]])
+    else:
+        browser.run("halflight.slices.view('axial').area.focus()")
+        for _ in range(3):
+            browser.key("+")
     after = pixel(browser, "axial", (0, 0, 12))
     check(math.hypot(after[0] - x, after[1] - y) > 1.5 * math.hypot(before[0] - x, before[1] - y), "two fingers apart: larger")
     browser.run(f"document.querySelector('{area('axial')}').focus()")
@@ -180,7 +181,7 @@ def hands(browser, voxels):
     under = [round(x) + 50, round(y) + 20]
     at = f"""(() => {{ const view = halflight.slices.view('axial'), box = view.area.getBoundingClientRect(); return view.pointAt([{under[0]} - box.x, {under[1]} - box.y]); }})()"""
     place = browser.run(at)
-    browser.call("Input.dispatchMouseEvent", type="mouseWheel", x=under[0], y=under[1], deltaX=0, deltaY=-100, modifiers=2)
+    browser.wheel(*under, -100, modifiers=2)
     check(max(abs(a - b) for a, b in zip(browser.run(at), place)) < 1e-6, "ctrl + wheel zooms to the cursor")
     browser.key("Home")
     window = browser.run("halflight.slices.window")
@@ -252,7 +253,7 @@ def clicks_in_the_picture(browser):
     x, y = center(browser, "#view")
     middle = world((20, 25, 15))
     for step in ((0, 0), (35, 20), (-30, 25)):
-        click(browser, x + step[0], y + step[1])
+        browser.click((x + step[0], y + step[1]))
         browser.wait(f"JSON.stringify(halflight.slices.cursor) !== {json.dumps(json.dumps(middle, separators=(',', ':')))}")
         still(browser)
         cursor = browser.run("halflight.slices.cursor")
@@ -267,7 +268,7 @@ def clicks_in_the_picture(browser):
     browser.drag([x - 60, y + 40], [x - 20, y + 55])
     still(browser)
     box = browser.run("(({ x, y }) => [x, y])(document.getElementById('view').getBoundingClientRect())")
-    click(browser, box[0] + 8, box[1] + 8)
+    browser.click((box[0] + 8, box[1] + 8))
     browser.wait("/Nothing is seen/.test(document.getElementById('message').textContent)")
     check(browser.run("halflight.slices.cursor") == before, "a drag, and a click beside the ball, leave the crosshair")
 
@@ -296,9 +297,9 @@ def oblique(browser):
     check(browser.run("JSON.stringify(halflight.slices.shown('oblique').plane)") == before, "it keeps its place")
 
 
-chromium = shutil.which("chromium")
-if chromium is None:
-    print("chromium is not installed")
+kind = {"chromium": Browser, "firefox-esr": Firefox}[sys.argv[2]]
+if shutil.which(sys.argv[2]) is None:
+    print(f"{sys.argv[2]} is not installed")
     sys.exit(77)
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
@@ -315,7 +316,7 @@ with tempfile.TemporaryDirectory() as folder:
     scene["volumes"][0]["mask"]["labels"][0]["name"] = "bone"
     with open("head.json", "w", encoding="utf-8") as file:
         json.dump(scene, file)
-    with Viewer(PROGRAM, "head.json") as viewer, Browser(chromium, (1100, 760)) as page:
+    with Viewer(PROGRAM, "head.json") as viewer, kind(size=(1100, 760)) as page:
         page.open(viewer.url)
         rest(page)
         layouts(page)

@@ -127,7 +127,7 @@ export function cutPanel({ store, start, current, report, overlay }) {
   const volume = () => store.scene.volumes[current.volume];
   const others = () => [
     select({
-      label: "Faces", choices: [["face", "by their own normals"], ["gradient", "by the data"], ["none", "as a medium"]],
+      label: "Cut faces", choices: [["face", "lit as flat cuts"], ["gradient", "lit by the data"], ["none", "not lit as faces"]],
       get: () => volume().cut_shading ?? "face", set: (value) => store.changeVolume(current.volume, "cut_shading", (v) => ({ ...v, cut_shading: value })),
     }),
     toggle({

@@ -1,5 +1,6 @@
 // Out of the viewer: the picture, the scene, the command that renders it.
 
+import { reshaped } from "./camera.js";
 import { button, isActive, make, row, section, select } from "./controls.js";
 
 export const stem = (title) => title.replace(/\.(gz|json|nrrd|nhdr|nii|mha|mhd|vti|vtk|raw|npy|png)$/gi, "").replace(/\.nii$/i, "") || "picture";
@@ -52,13 +53,23 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
     label: "Format", choices: [["png", "PNG"], ["png16", "PNG, 16 bits"], ["exr", "EXR, linear float"]],
     get: () => format, set: (value) => { format = value; },
   });
+  // Sides by what the picture is for: multiples of what is seen, or a width in print.
+  const sizes = select({
+    label: "For", choices: [["", "these pixels"], ["1", "as seen"], ["2", "twice as seen"], ["4", "four times as seen"], ["8.5cm", "8.5 cm at 300 dpi"], ["17cm", "17 cm at 300 dpi"]],
+    get: () => "", set: (choice) => {
+      const { image } = store.scene, factor = choice.endsWith("cm") ? (parseFloat(choice) / 2.54) * 300 / image.width : +choice;
+      if (factor > 0) [width.value, height.value] = [Math.round(image.width * factor), Math.round(image.height * factor)];
+      sizes.update();
+    },
+  });
   const transparent = make("input", { type: "checkbox", id: "transparent" });
   const bare = make("input", { type: "checkbox", id: "bare", title: "A PNG without the scene, and without the names of its files" });
 
   async function savePicture() {
-    const scene = structuredClone(store.scene), image = scene.image;
+    const scene = structuredClone(store.scene), image = scene.image, seen = { width: image.width, height: image.height };
     image.width = Math.round(+width.value) || image.width;
     image.height = Math.round(+height.value) || image.height;
+    scene.camera = reshaped(scene.camera, seen, image); // what is seen is in the picture, whatever its shape
     if (transparent.checked) image.background = "transparent";
     save.disabled = true;
     report(`rendering ${image.width} × ${image.height} …`);
@@ -79,7 +90,7 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
     report(`saved ${name}.json`);
   };
   body.append(
-    row(make("span", { class: "name" }, "Size"), make("span", { class: "pair" }, width, "×", height)), kind.element,
+    row(make("span", { class: "name" }, "Size"), make("span", { class: "pair" }, width, "×", height)), sizes.element, kind.element,
     row(make("label", { for: "transparent" }, "Transparent"), transparent),
     row(make("label", { for: "bare" }, "No metadata"), bare), row("", save),
     row(make("span", { class: "name" }, "Scene"), make("span", { class: "buttons" }, button("save scene", saveScene),

@@ -120,7 +120,7 @@ export function functionPanel({ store, start, current, channel, failed }) {
       label: "Colours", choices: [["", "own"], ...Object.keys(start.colormaps).map((name) => [name, name])],
       get: () => colormapOf(get(), start.colormaps), set: (name) => name && set(withColormap(get(), start.colormaps[name], rangeOf(get())), `map ${name}`),
     });
-    const zoomed = row(make("span", { class: "name" }, "Show"), make("span", { class: "buttons" },
+    const zoomed = row(make("span", { class: "name" }, "Zoom to"), make("span", { class: "buttons" },
       button("all values", () => { canvas.shown = range; }),
       button("range", () => { canvas.shown = rangeOf(get()); }),
       button("by gradient", () => { before.set(current.volume, get()); set(byGradient(get(), volume(), about), "by gradient"); },

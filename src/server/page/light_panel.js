@@ -88,7 +88,7 @@ export function shadowPanel({ store }) {
     set: (count) => store.changeRender("light_samples", Math.round(count)),
   });
   const spacing = slider({
-    label: "Sheets", low: 0.25, high: 4, exponential: true, unit: "voxels", title: "The distance of sheets in the final picture: closer is finer and slower",
+    label: "Step", low: 0.25, high: 4, exponential: true, unit: "voxels", title: "How far apart the final picture takes samples (its sheets): closer is finer and slower",
     get: () => render().sheet_spacing, set: (value) => store.changeRender("sheet_spacing", +value.toPrecision(3)),
   });
   body.append(kind.element, method.element, samples.element, spacing.element);

@@ -16,7 +16,7 @@ export class SliceView {
   #slices;
   #name;
   #canvas = make("canvas");
-  #svg = make("svg:svg", { class: "slice-overlay", "aria-hidden": "true" });
+  #svg = make("svg:svg", { class: "slice-overlay" });
   #title = make("figcaption");
   #greys = document.createElement("canvas");
   #lines = [];
@@ -32,7 +32,7 @@ export class SliceView {
   constructor(slices, name) {
     this.#slices = slices;
     this.#name = name;
-    this.#svg.append(make("svg:path", { class: "crosshair" }), make("svg:g"), this.marks);
+    this.#svg.append(make("svg:path", { class: "crosshair", "aria-hidden": "true" }), make("svg:g", { "aria-hidden": "true" }), this.marks);
     this.area = make("div", { class: "slice-area", tabindex: 0, role: "application" }, this.#canvas, this.#svg);
     this.element = make("figure", { class: "slice", "data-plane": name }, this.area, this.#title);
     this.area.addEventListener("pointerdown", (event) => this.#down(event));

@@ -28,7 +28,7 @@ export function statusLine(find, channel) {
     stage.dataset.stage = name;
     if (frame.error || !(frame.bytes > 0)) return;
     const seconds = frame.milliseconds < 1000 ? `${Math.round(frame.milliseconds)} ms` : `${(frame.milliseconds / 1000).toFixed(1)} s`;
-    find("statistics").textContent = `${frame.width} × ${frame.height} · sheets ${+frame.spacing.toPrecision(2)} voxels · ${seconds} · ${Math.ceil(frame.bytes / 1024)} KiB`;
+    find("statistics").textContent = `${frame.width} × ${frame.height} · step ${+frame.spacing.toPrecision(2)} voxels · ${seconds} · ${Math.ceil(frame.bytes / 1024)} KiB`;
   }
   return { show, end: () => { number++; clearTimeout(timer); } };
 }

@@ -26,7 +26,7 @@ export function viewPanel({ store, frameEverything, firstView }) {
     set: (name) => store.change("tone", (scene) => ({ ...scene, image: { ...scene.image, tone: name } })),
   });
   body.append(row(make("span", { class: "name" }, "From"), sides),
-    row("", make("span", { class: "buttons" }, button("frame everything", frameEverything), button("first view", firstView))), projection.element, background.element, exposure.element,
+    row("", make("span", { class: "buttons" }, button("show all", frameEverything), button("first view", firstView))), projection.element, background.element, exposure.element,
     tone.element);
   const update = () => { for (const part of [projection, background, exposure, tone]) part.update(); };
   update();

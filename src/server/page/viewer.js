@@ -2,6 +2,7 @@
 
 import { worldBox } from "./boxes.js";
 import { reshaped } from "./camera.js";
+import { make } from "./controls.js";
 import { cutPanel, sceneCutPanel } from "./cut_panel.js";
 import { copier, exportPanel } from "./export.js";
 import { filmPanel } from "./film_panel.js";
@@ -29,8 +30,11 @@ import { length, subtract } from "./vector.js";
 import { viewPanel } from "./view_panel.js";
 import { volumeChooser, volumePanel } from "./volume_panel.js";
 
-// One file each; in the order of the side bar.
-const PANELS = [volumeChooser, functionPanel, labelPanel, surfacePanel, lightPanel, shadowPanel, skyPanel, volumePanel, cutPanel, sceneCutPanel, slicePanel, markPanel, viewPanel, sessionPanel, exportPanel, filmPanel, openPanel];
+// One file each; in the order of the side bar, whose four parts have names.
+const PARTS = {
+  Look: [volumeChooser, functionPanel, labelPanel, surfacePanel, volumePanel], Light: [lightPanel, shadowPanel, skyPanel],
+  Inside: [cutPanel, sceneCutPanel, slicePanel, markPanel], "Picture and files": [viewPanel, openPanel, exportPanel, sessionPanel, filmPanel],
+};
 
 const MARKUP = `
   <div class="viewer">
@@ -40,10 +44,13 @@ const MARKUP = `
       <nav aria-label="Tools">
         <button id="undo" type="button" title="Undo (ctrl + z)">Undo</button>
         <button id="redo" type="button" title="Redo (ctrl + shift + z)">Redo</button>
-        <button id="reset" type="button" title="Frame everything (r)">Frame</button>
+        <button id="open" type="button" title="Another volume or scene, or a session" hidden>Open</button>
+        <button id="save" type="button" title="The picture, or the scene">Save</button>
+        <button id="reset" type="button" title="Move the camera back until all of it is seen (r)">Show all</button>
         <button id="show-lights" type="button" title="The lights' handles (l)">Lights</button>
         <button id="probe" type="button" aria-pressed="false" title="Value, opacity and light under the cursor (p)">Probe</button>
         <button id="theme" type="button" title="Dark or light (t)">Theme</button>
+        <button id="full" type="button" title="Full screen (f)">Full screen</button>
         <button id="sidebar" type="button" title="The side bar (b)">Panels</button>
         <button id="show-help" type="button" title="Mouse, fingers and keys (?)" aria-label="Help">?</button>
       </nav>
@@ -129,6 +136,7 @@ function actionsOf(viewer, find, root, update) {
     },
     statistics: () => { find("statistics").hidden = !find("statistics").hidden; },
     sidebar: () => { root.classList.toggle("bare"); },
+    full: () => (document.fullscreenElement ? document.exitFullscreen() : root.requestFullscreen().catch(() => viewer.report("This browser has no full screen here."))),
     theme: installTheme(root, () => { update(); overlay.draw(); }),
     help: () => find("help").showModal(),
     layout: (layout) => () => { if (viewer.slices.available) store.setPage({ layout }); },
@@ -144,6 +152,17 @@ async function openSession(file, restore, viewer) {
   } catch (error) {
     viewer.failed(error);
   }
+}
+
+// Unfolds a section of the side bar and leads the keyboard there.
+function revealIn(root) {
+  return (title) => {
+    const element = [...root.querySelectorAll(".section")].find((one) => one.firstElementChild.textContent === title);
+    root.classList.remove("bare");
+    element.open = true;
+    element.scrollIntoView({ block: "nearest" });
+    element.querySelector(".section-body :is(button, input, select):not([hidden])")?.focus();
+  };
 }
 
 // Fills an empty element with a viewer. channel: how pictures are asked for (http_channel.js); start: what is open;
@@ -171,8 +190,8 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
     panels.forEach((panel) => panel.rebuild?.());
     viewer.slices.update();
   };
-  const panels = PANELS.map((panel) => panel(viewer));
-  find("panels").append(...panels.map((panel) => panel.element));
+  const parts = Object.entries(PARTS).map(([name, files]) => [name, files.map((panel) => panel(viewer))]), panels = parts.flatMap(([, made]) => made);
+  find("panels").append(...parts.map(([name, made]) => make("section", { class: "part", "aria-label": name }, make("h2", {}, name), ...made.map((panel) => panel.element))));
   const update = () => {
     panels.forEach((panel) => panel.update());
     find("undo").disabled = !store.canUndo;
@@ -191,10 +210,11 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
     if (frame.stage === "final") viewer.probe.rest();
   });
   new Pointer(find("view"), store, nearestOf(start));
-  const actions = actionsOf(viewer, find, root, update);
+  const reveal = revealIn(root), actions = actionsOf(viewer, find, root, update);
   helpSheet(find("help"), installShortcuts(store, { target: keyboard, signal: ended.signal }, find("view"), actions, nearestOf(start)));
-  const buttons = { undo: () => store.undo(), redo: () => store.redo(), "show-help": actions.help, theme: actions.theme, "show-lights": actions.lights, reset: actions.reset, probe: actions.probe, sidebar: actions.sidebar };
+  const buttons = { undo: () => store.undo(), redo: () => store.redo(), "show-help": actions.help, theme: actions.theme, "show-lights": actions.lights, reset: actions.reset, probe: actions.probe, sidebar: actions.sidebar, full: actions.full, open: () => reveal("Open"), save: () => reveal("Save") };
   for (const [id, action] of Object.entries(buttons)) find(id).addEventListener("click", action);
+  find("open").hidden = !channel.open;
   viewer.overlay.showsLights = true;
   viewer.slices.update();
   update();

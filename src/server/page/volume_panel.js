@@ -61,7 +61,7 @@ export function volumePanel({ store, start, current, overlay, channel, report })
     return [
       toggle({ label: "Multiple scattering", get: () => scattering().multiple === true, set: (on) => set("multiple", { multiple: on }) }),
       slider({
-        label: "Onwards", low: -0.95, high: 0.95, title: "Where a medium scatters light to: above 0 onwards, below 0 back, 0 evenly",
+        label: "Forward", low: -0.95, high: 0.95, title: "Where a medium scatters light to: above 0 forward, below 0 back, 0 evenly",
         get: () => scattering().anisotropy ?? 0, set: (g) => set("anisotropy", { anisotropy: Math.abs(g) < 0.02 ? 0 : g }),
       }),
       slider({
