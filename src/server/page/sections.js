@@ -6,7 +6,7 @@
 // each sample is a voxel; the oblique one is as the picture's.
 
 import { placed, unplaced } from "./boxes.js";
-import { axes as cameraAxes } from "./camera.js";
+import { axes } from "./camera.js";
 import { add, cross, dot, length, scale, subtract } from "./vector.js";
 
 const LARGEST = 1024; // samples along a side of an oblique plane
@@ -97,7 +97,7 @@ function gridPlane(name, { grid, transform, cursor, thickness }) {
 // ---- the plane as the picture's, through the crosshair ----
 
 function obliquePlane({ grid, transform, cursor, thickness, camera }) {
-  const { right, up, towards } = cameraAxes(camera), finest = Math.min(...grid.axes.map((along) => step(grid, transform, along)));
+  const { right, up, towards } = axes(camera), finest = Math.min(...grid.axes.map((along) => step(grid, transform, along)));
   const corners = Array.from({ length: 8 }, (_, n) => pointAt(grid, transform, [0, 1, 2].map((a) => ((n >> a) & 1 ? grid.dimensions[a] - 1 : 0))));
   const spread = (axis) => {
     const along = corners.map((corner) => dot(subtract(corner, cursor), axis));
