@@ -176,6 +176,16 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_save_with(hl_context *context, const h
 HL_API HL_WARN_UNUSED hl_status hl_volume_save(hl_context *context, const hl_volume *volume, const char *path,
                                                hl_error *error);
 
+/* Makes a volume whose voxels are smoothed by a Gaussian of the standard deviation `sigma`, in voxels of each
+ * axis, along thick slices, too: from 0 (the volume itself, which is then not smoothed without being asked
+ * either) to 16. The numbers become floats. Label maps, whose numbers are names, volumes with colours and
+ * volumes larger than memory are refused. *smoothed is owned by the caller (release it). */
+HL_API HL_WARN_UNUSED hl_status hl_volume_smooth(hl_volume *volume, double sigma, hl_volume **smoothed,
+                                                 hl_error *error);
+
+/* What the volume's voxels were smoothed by, in voxels; 0: they are as they were, or the volume is null. */
+HL_API double hl_volume_smoothing(const hl_volume *volume);
+
 HL_API void hl_volume_retain(hl_volume *volume);
 HL_API void hl_volume_release(hl_volume *volume); /* null is allowed */
 

@@ -37,7 +37,7 @@ class _Folder:
 
 def _write_voxels(volume: Volume, path: str) -> None:
     if volume._colored is None:
-        call(lib.hl_volume_save, context, volume._handle, os.fsencode(path))
+        call(lib.hl_volume_save, context, volume._handle if volume._sharp is None else volume._sharp, os.fsencode(path))
     else:
         _, (voxels, place, space, _) = volume._source()
         picture_files.write_whole(path, pieces.color_file(voxels, "zyx", place, space))

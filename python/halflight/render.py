@@ -282,6 +282,7 @@ class Asked(FurtherSettings, total=False):
     time: int
     channel: int | str | Sequence[int]
     level: int
+    smooth: float
     meshes: Mesh | Sequence[Mesh]
     iso: Any
     cuts: Any
@@ -291,7 +292,7 @@ class Asked(FurtherSettings, total=False):
     sky: Any
 
 
-_PLACE = ("spacing", "origin", "direction", "affine", "axes", "array", "component", "series", "time", "channel", "level")
+_PLACE = ("spacing", "origin", "direction", "affine", "axes", "array", "component", "series", "time", "channel", "level", "smooth")
 _MATERIAL = ("ambient", "diffuse", "specular", "shininess", "iso", "cuts", "mask", "look",
              *(word for word in FurtherSettings.__annotations__ if word in Look.__annotations__))
 _SETTINGS = ("shadows", "lights", "camera", "size", "background", "threads", "meshes", "sky",
@@ -328,7 +329,7 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
            size: tuple[int, int] | int | str | None = None, background: Any = None, threads: int | None = None,
            layers: bool = False, progress: Progress = None, device: str | None = None, array: str | None = None,
            component: int | str | None = None, series: str | None = None, time: int | None = None,
-           channel: int | str | Sequence[int] | None = None, level: int | None = None,
+           channel: int | str | Sequence[int] | None = None, level: int | None = None, smooth: float | None = None,
            meshes: Mesh | Sequence[Mesh] | None = None, iso: Any = None, cuts: Any = None, mask: Any = None,
            labels: Any = None, look: Looked | None = None,
            sky: Any = None, **further: Unpack[FurtherSettings]) -> Image:
@@ -384,6 +385,8 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
     array, component, series, time, channel, level : optional
         Of a file with several: see `Volume`. Several channels, ``channel=[0, 2]`` or ``channel="all"``, share the picture,
         each in a colour of its own: see `Scene.of_channels`.
+    smooth : float, optional
+        Smooth the voxels by a Gaussian of so many voxels: see `Volume`.
     meshes : Mesh or a list of them, optional
         Triangles among the volumes.
     iso : a value, (value, color, opacity), or a list of them, optional
@@ -420,7 +423,7 @@ def render(volume: Source = None, *, spacing: arrays.Spacing | None = None, orig
         log_scale=log_scale, opacity=opacity, opacity_unit_distance=opacity_unit_distance, shade=shade, ambient=ambient, diffuse=diffuse,
         specular=specular, shininess=shininess, tf=tf, shadows=shadows, lights=lights, camera=camera, size=size,
         background=background, threads=threads, array=array, component=component, series=series, time=time,
-        channel=channel, level=level, meshes=meshes, iso=iso, cuts=cuts, mask=mask, labels=labels, look=look, sky=sky, **further)
+        channel=channel, level=level, smooth=smooth, meshes=meshes, iso=iso, cuts=cuts, mask=mask, labels=labels, look=look, sky=sky, **further)
     with told(progress):
         scene = scene_for(volume, **asked)
     return Renderer(device).render(scene, layers=layers, progress=progress)
@@ -483,7 +486,7 @@ def _scene_of_channels(path: Any, channels: str | Sequence[int], place: Mapping[
     if not isinstance(path, (str, os.PathLike)):
         raise TypeError("channel is for files that hold several: choose by an index")
     for word in place:
-        if word in ("origin", "direction", "affine", "axes", "component"):
+        if word in ("origin", "direction", "affine", "axes", "component", "smooth"):
             raise TypeError(f"{word} is not for several channels of a file")
     reading = {word: value for word, value in place.items() if word != "channel"}
     scene = Scene.of_channels(path, channels, look=material.get("look", "auto"), **reading)

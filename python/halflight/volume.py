@@ -203,6 +203,9 @@ class Volume:
         step, channel and resolution. `array` chooses a variable of an xarray.Dataset, too.
     copy : bool
         The voxels of an array are copied: it may be changed.
+    smooth : float, optional
+        Smooth the voxels by a Gaussian of so many voxels along each axis; 0: not at all. Without it brains without
+        their skull, which end in a cliff of voxels, and thick slices are smoothed by 0.8.
     **look : Look
         How it looks and where it stands: `name`, `transfer_function`, `clip`, `scale`, and the keywords of
         `halflight.keywords.VolumeSettings` and `MaterialSettings`.
@@ -215,13 +218,15 @@ class Volume:
     (6, 5, 4)
     """
 
-    __slots__ = ("__weakref__", "_automatic", "_base", "_changes", "_colored", "_file", "_handle", "_loading", "_order", "_shapes")
+    __slots__ = ("__weakref__", "_automatic", "_base", "_changes", "_colored", "_file", "_handle", "_loading", "_order", "_shapes", "_sharp")
 
     def __init__(self, source: Source, *, spacing: arrays.Spacing | None = None, origin: Any = None,
                  direction: Any = None, affine: Any = None, axes: str | None = None, array: str | None = None,
                  component: int | str | None = None, series: str | None = None, time: int | None = None,
-                 channel: int | None = None, level: int | None = None, copy: bool = False, **look: Unpack[Look]) -> None:
-        check_keywords("Volume()", look, [*Look.__annotations__, "spacing", "origin", "direction", "affine", "axes", "copy", *_OF_FILES])
+                 channel: int | None = None, level: int | None = None, copy: bool = False,
+                 smooth: float | None = None, **look: Unpack[Look]) -> None:
+        check_keywords("Volume()", look, [*Look.__annotations__, "spacing", "origin", "direction", "affine", "axes", "copy", "smooth", *_OF_FILES])
+        self._sharp: Any = None  # the handle before it was smoothed
         self._handle: Any = None
         self._file: str | None = None
         self._loading: Any = None
@@ -233,6 +238,8 @@ class Volume:
         self._changes: dict[str, Any] = dict(look)
         if isinstance(source, Volume):
             self._share(source)
+            if smooth is not None:
+                self._smooth(smooth)
             return
         if axes is not None:
             arrays.check_axes(axes)
@@ -240,6 +247,16 @@ class Volume:
         chosen = {"array": array, "component": component, "series": series, "time": time, "channel": channel,
                   "level": level}
         self._read(source, axes, place, {word: value for word, value in chosen.items() if value is not None}, copy)
+        if smooth is not None:
+            self._smooth(smooth)
+
+    def _smooth(self, sigma: float) -> None:
+        """Take smoothed voxels in place of the volume's."""
+        sharp = self._handle if self._sharp is None else self._sharp
+        self._handle = made(lib.hl_volume_smooth, "hl_volume", lib.hl_volume_release, sharp, _settings.number("smooth", sigma))
+        self._sharp, self._automatic = sharp, None
+        if self._base is not None:
+            raise TypeError("smooth is for volumes of files and arrays: a scene says it itself")
 
     def _read(self, source: Source, axes: str | None, place: dict[str, Any], chosen: dict[str, Any], copy: bool) -> None:
         if isinstance(source, (str, os.PathLike)):
@@ -280,6 +297,7 @@ class Volume:
     def _share(self, other: Volume) -> None:
         self._handle, self._file, self._loading = other._handle, other._file, other._loading
         self._base, self._order, self._shapes, self._colored = other._base, other._order, other._shapes, other._colored
+        self._sharp = other._sharp
         self._changes = {**other._changes, **self._changes}
         same = self._changes.get("look") == other._changes.get("look")
         self._automatic = other._automatic if same else None
@@ -400,6 +418,8 @@ class Volume:
             elif value != getattr(plain, word):
                 name = lib.hl_component_name(value) if word == "component" else ffi.NULL
                 said[word] = value if name == ffi.NULL else text_of(name)
+        if self._sharp is not None:
+            said["smooth"] = lib.hl_volume_smoothing(self._handle)
         if any(struct.spacing):
             said["spacing"] = list(struct.spacing)[::-1]
         return said
@@ -622,7 +642,7 @@ def volume_from(scene: Any, index: int) -> Volume:
 def _of_handle(handle: Any, file: Any) -> Volume:
     """A Volume of an hl_volume, which it retains."""
     found = Volume.__new__(Volume)
-    found._loading = found._automatic = found._order = found._shapes = found._base = found._colored = None
+    found._sharp = found._loading = found._automatic = found._order = found._shapes = found._base = found._colored = None
     found._file = None if file == ffi.NULL else os.fsdecode(ffi.string(file))
     found._changes = {}
     lib.hl_volume_retain(handle)
@@ -635,7 +655,7 @@ def _restored(kind: str, source: Any, look: dict[str, Any]) -> Volume:
     if kind == "file":
         return Volume(source[0], **source[1], **look)
     found = Volume.__new__(Volume)
-    found._file = found._loading = found._automatic = found._base = found._shapes = found._order = found._colored = None
+    found._sharp = found._file = found._loading = found._automatic = found._base = found._shapes = found._order = found._colored = None
     found._changes = dict(look)
     if kind == "shapes":
         raw = source.encode()

@@ -171,6 +171,20 @@ hl_status input_load_volume(hl_context *context, const cli_input *input,
   return hl_volume_load_with(context, input->title, &chosen, volume, error);
 }
 
+hl_status input_smooth(double sigma, hl_volume **volume, hl_error *error) {
+  hl_volume *smoothed = NULL;
+  hl_error own = {0};
+  hl_status status = hl_volume_smooth(*volume, sigma, &smoothed, &own);
+  if (status != HL_OK) {
+    *error = own;
+    snprintf(error->message, sizeof error->message, "--smooth: %.900s", own.message);
+    return status;
+  }
+  hl_volume_release(*volume);
+  *volume = smoothed;
+  return HL_OK;
+}
+
 void input_name_source(const hl_volume_load_options *options, hl_scene_volume *volume) {
   volume->array = options->array;
   volume->series = options->series;
@@ -202,6 +216,7 @@ static hl_status load_volume_scene(hl_context *context, const cli_input *input,
   hl_volume *volume = NULL;
   const char *file = strcmp(input->path, "-") == 0 ? STANDARD_INPUT : input->path;
   hl_status status = input_load_volume(context, input, options, &volume, error);
+  if (status == HL_OK && input->smooth != NULL) status = input_smooth(*input->smooth, &volume, error);
   if (status == HL_OK)
     status = hl_scene_for_volume_look(context, volume, file, input->look != NULL ? input->look : "auto",
                                       scene, error);

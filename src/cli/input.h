@@ -21,7 +21,8 @@ typedef struct cli_input {
   input_kind kind;
   unsigned char *bytes; /* owned; [length]: the content of a pipe or a picture; else null */
   size_t length;
-  const char *look; /* of a bare volume (hl_look_name); null: the one that the data choose */
+  const char *look;     /* of a bare volume (hl_look_name); null: the one that the data choose */
+  const double *smooth; /* of a bare volume, voxels (hl_volume_smooth()); null: as the data need it */
 } cli_input;
 
 /* The rows of --array, --component, --time, --channel and --level in a subcommand's table of options;
@@ -85,6 +86,9 @@ void input_load_options(const cli_value *reading, const cli_value *spacing, hl_v
 /* Reads an input that is a volume. options: without bytes, which are the input's; null: the defaults. */
 hl_status input_load_volume(hl_context *context, const cli_input *input,
                             const hl_volume_load_options *options, hl_volume **volume, hl_error *error);
+
+/* Replaces a volume by one that --smooth makes of it. */
+hl_status input_smooth(double sigma, hl_volume **volume, hl_error *error);
 
 /* Writes into a scene's volume how it was read, as the scene's text will say. Its strings are borrowed. */
 void input_name_source(const hl_volume_load_options *options, hl_scene_volume *volume);

@@ -32,8 +32,10 @@ static int check_kinds(const cli_value *values, const cli_input *inputs, size_t 
       return fail(EXIT_CODE_USAGE,
                   "'%s' is no volume file: several INPUTs are volumes of one picture, a scene stands alone",
                   inputs[n].path);
+  if (values[RENDER_SMOOTH].given && render_has_channels(values))
+    return fail(EXIT_CODE_USAGE, "--smooth is for one channel: leave it out, or name one --channel");
   if (inputs[0].kind == INPUT_VOLUME) return EXIT_CODE_OK;
-  for (int which = RENDER_ARRAY; which <= RENDER_SPACING; which++)
+  for (int which = RENDER_ARRAY; which <= RENDER_SMOOTH; which++)
     if (values[which].given)
       return fail(EXIT_CODE_USAGE,
                   "--%s is for volume files, and '%s' is a scene: write \"%s\" beside its \"file\"",
@@ -122,6 +124,7 @@ static int load_each(cli_host *host, const cli_value *values, cli_input *inputs,
     hl_error error = {0};
     bool bare = inputs[n].kind == INPUT_VOLUME;
     inputs[n].look = render_look_name(values);
+    inputs[n].smooth = values[RENDER_SMOOTH].given ? &values[RENDER_SMOOTH].number[0] : NULL;
     hl_status status = bare && render_has_channels(values)
                            ? load_channels(host, values, &inputs[n], options, &scenes[n], &error)
                            : input_load(host->context, &inputs[n], bare ? &options : NULL, &scenes[n],

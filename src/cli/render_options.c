@@ -132,6 +132,15 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                                 "a picture, each in a "
                                 "colour\nof its own: the file's, or green, magenta, ..."},
     [RENDER_SPACING] = INPUT_OPTION_SPACING,
+    [RENDER_SMOOTH] =
+        {.name = "smooth",
+         .kind = OPTION_NUMBERS,
+         .argument = "SIGMA",
+         .help = "smooth the voxels by a Gaussian of so many voxels\nalong each axis; 0: not at all "
+                 "(default: 0.8 where\nbare brains or thick slices make stairs)",
+         .count = 1,
+         .low = 0,
+         .high = 16},
 
     [RENDER_LOOK] =
         {.name = "look",

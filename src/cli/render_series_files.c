@@ -147,6 +147,9 @@ int series_load_volume(series_job *job, int number, int channel, hl_volume **vol
   int exit_code = input_open(job->files[number], job->values[RENDER_MAX_MEMORY].bytes, &input);
   if (exit_code == EXIT_CODE_OK) {
     hl_status status = input_load_volume(job->host.context, &input, &options, volume, &error);
+    double smooth = job->scene != NULL ? hl_volume_smoothing(hl_scene_describe(job->scene)->volumes[0].volume)
+                                       : 0;
+    if (status == HL_OK && smooth > 0) status = input_smooth(smooth, volume, &error);
     if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_READ, status, &error);
   }
   input_close(&input);

@@ -10,6 +10,7 @@
 #include "guess/exposure.h"
 #include "guess/holders.h"
 #include "guess/looks.h"
+#include "guess/smoothing.h"
 #include "guess/styles.h"
 #include "guess/view.h"
 #include "scene/check.h"
@@ -167,8 +168,8 @@ static hl_status leave_holders_out(hl_context *context, const hl_look *base, con
 }
 
 /* style: null: the look that suits the volume alone. */
-static hl_status make_scene(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
-                            hl_scene **scene, hl_error *error) {
+static hl_status make_scene_of(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
+                               hl_scene **scene, hl_error *error) {
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(volume, &analysis, error);
   if (status != HL_OK) return status;
@@ -202,6 +203,21 @@ static hl_status make_scene(hl_context *context, hl_volume *volume, const char *
   }
   if (status == HL_OK) status = hl_scene_create(context, &description, scene, error);
   hl_transfer_function_release(context, &scene_volume.transfer_function);
+  return status;
+}
+
+/* The scene of the volume, or, where its voxels make stairs, of a smoother one (smoothing.h). */
+static hl_status make_scene(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
+                            hl_scene **scene, hl_error *error) {
+  hl_data_analysis analysis;
+  double sigma = 0;
+  hl_volume *smoothed = NULL;
+  hl_status status = hl_data_analyse(volume, &analysis, error);
+  if (status == HL_OK) status = hl_smoothing_for(volume, file, &analysis, &sigma, error);
+  if (status == HL_OK && sigma > 0) status = hl_volume_smooth(volume, sigma, &smoothed, error);
+  if (status == HL_OK)
+    status = make_scene_of(context, smoothed != NULL ? smoothed : volume, file, style, scene, error);
+  hl_volume_release(smoothed);
   return status;
 }
 

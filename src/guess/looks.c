@@ -63,7 +63,7 @@ static bool is_mostly_tissue(const hl_volume *volume) {
 }
 
 /* True for a scan of a body: it fills the grid, which trees, vessels and machine parts leave mostly empty. */
-static bool is_body(const hl_volume *volume, const char *file, const hl_data_analysis *a) {
+bool hl_is_body(const hl_volume *volume, const char *file, const hl_data_analysis *a) {
   if (a->kind != HL_DATA_SURFACES || a->direction < 0) return false;
   if (hl_is_hounsfield(volume)) return is_mostly_tissue(volume);
   return (volume->is_anatomical || is_anatomical(file)) && a->filled > 0.15;
@@ -73,7 +73,7 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
   subject is = MATTER;
   switch (analysis->kind) {
     case HL_DATA_SURFACES:
-      if (is_body(volume, file, analysis))
+      if (hl_is_body(volume, file, analysis))
         is = analysis->zeroed > 0.4 ? BRAIN : BODY; /* zeros all around: the skull was removed */
       break;
     case HL_DATA_FIELD: is = FIELD; break;

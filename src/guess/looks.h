@@ -8,6 +8,9 @@
 /* The look for a volume and its analysis; file: as in hl_scene_volume. */
 const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_data_analysis *analysis);
 
+/* True for a scan of a body, with its skull or without; file: as in hl_scene_volume. */
+bool hl_is_body(const hl_volume *volume, const char *file, const hl_data_analysis *analysis);
+
 /* True if the values can be Hounsfield units: they reach from air to denser than water. */
 bool hl_is_hounsfield(const hl_volume *volume);
 

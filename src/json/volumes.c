@@ -13,26 +13,43 @@
 
 #define DATA_PREFIX "data:" /* begins the names of files that lie in the context's data folder */
 
-static const char *const volume_keys[] = {"name",        "stand_in",
-                                          "file",        "shapes",
-                                          "voxel_size",  "transform",
-                                          "shading",     "transfer_function",
-                                          "material",    "attenuation_color",
-                                          "visible",     "casts_shadow",
-                                          "clip",        "receives_shadow",
-                                          "array",       "component",
-                                          "time",        "channel",
-                                          "level",       "spacing",
-                                          "series",      "scattering",
-                                          "iso",         "labels",
-                                          "label_table", "cuts",
-                                          "cut_shading", "cut_casts_shadow",
-                                          "mask",        NULL};
+static const char *const volume_keys[] = {"name",
+                                          "stand_in",
+                                          "file",
+                                          "shapes",
+                                          "voxel_size",
+                                          "transform",
+                                          "shading",
+                                          "transfer_function",
+                                          "material",
+                                          "attenuation_color",
+                                          "visible",
+                                          "casts_shadow",
+                                          "clip",
+                                          "receives_shadow",
+                                          "array",
+                                          "component",
+                                          "time",
+                                          "channel",
+                                          "level",
+                                          "spacing",
+                                          "smooth",
+                                          "series",
+                                          "scattering",
+                                          "iso",
+                                          "labels",
+                                          "label_table",
+                                          "cuts",
+                                          "cut_shading",
+                                          "cut_casts_shadow",
+                                          "mask",
+                                          NULL};
 
 #define GIVE_COMPONENT "give a number from 0 on, \"magnitude\", \"color\" or \"luminance\""
 
 /* The keys that say how a file is read. */
-static const char *const of_file[] = {"array", "component", "time", "channel", "level", "series", "spacing"};
+static const char *const of_file[] = {"array", "component", "time",    "channel",
+                                      "level", "series",    "spacing", "smooth"};
 
 static hl_status read_rotate(hl_json_reader *reader, const json_t *value, hl_setting_kind kind,
                              void *target) {
@@ -105,7 +122,7 @@ static bool same_text(const char *a, const char *b) {
 /* The volume that was already read from this source; null if there is none. options: the options of reading a
  * file; null if the source is a text of shapes. */
 static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const char *source,
-                                           const hl_volume_load_options *options) {
+                                           const hl_volume_load_options *options, double smooth) {
   for (size_t v = 0; v < shelf->count; v++) {
     const hl_loaded_volume *loaded = &shelf->loaded[v];
     if (strcmp(loaded->source, source) != 0) continue;
@@ -113,7 +130,7 @@ static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const c
     bool same_step = loaded->time == options->time && loaded->channel == options->channel &&
                      loaded->level == options->level;
     if (same_text(loaded->array, options->array) && same_text(loaded->series, options->series) && same_step &&
-        loaded->component == options->component &&
+        loaded->component == options->component && loaded->smooth == smooth &&
         memcmp(loaded->spacing, options->spacing, sizeof loaded->spacing) == 0)
       return loaded;
   }
@@ -124,7 +141,7 @@ static const hl_loaded_volume *find_loaded(const hl_volume_shelf *shelf, const c
 static const hl_loaded_volume *put_on_shelf(hl_volume_shelf *shelf, char *source,
                                             const hl_volume_load_options *options, hl_volume *volume) {
   hl_loaded_volume *place = &shelf->loaded[shelf->count++];
-  *place = (hl_loaded_volume){.source = source, .volume = volume};
+  *place = (hl_loaded_volume){.source = source, .volume = volume, .smooth = hl_volume_smoothing(volume)};
   if (options == NULL) return place;
   place->array = options->array;
   place->series = options->series;
@@ -225,15 +242,27 @@ static bool stays_as_it_is(const hl_scene_volume *volume) {
          volume->translate[2] == 0;
 }
 
+/* Replaces a volume by a smoother one; without it after a failure. */
+static hl_status smooth_loaded(hl_json_reader *reader, double smooth, hl_volume **volume) {
+  hl_volume *smoothed = NULL;
+  hl_status status = hl_volume_smooth(*volume, smooth, &smoothed, reader->error);
+  hl_volume_release(*volume);
+  *volume = smoothed;
+  if (status == HL_OK) return HL_OK;
+  hl_json_enter(reader, "smooth");
+  hl_json_prefix(reader, reader->place);
+  return status;
+}
+
 /* Loads the volume's file, or takes it from the shelf. */
 static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_load_options *options,
-                      hl_volume_shelf *shelf, hl_scene_volume *volume) {
+                      double smooth, hl_volume_shelf *shelf, hl_scene_volume *volume) {
   if (is_data(file) && reader->context->options.data_folder == NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "file", "\"%.200s\": no data folder is known: name one",
                         file);
   char *path = hl_json_path(reader, file);
   if (path == NULL) return hl_fail_memory(reader->error, strlen(file) + 1, "a path");
-  const hl_loaded_volume *loaded = find_loaded(shelf, path, options);
+  const hl_loaded_volume *loaded = find_loaded(shelf, path, options, smooth);
   if (loaded != NULL) {
     hl_release(reader->context, path);
   } else if (reader->like != NULL) {
@@ -250,6 +279,11 @@ static hl_status load(hl_json_reader *reader, const char *file, const hl_volume_
       hl_release(reader->context, path);
       hl_json_enter(reader, "file");
       hl_json_prefix(reader, reader->place);
+      return status;
+    }
+    if (smooth > 0) status = smooth_loaded(reader, smooth, &made);
+    if (status != HL_OK) {
+      hl_release(reader->context, path);
       return status;
     }
     loaded = put_on_shelf(shelf, path, options, made);
@@ -272,7 +306,7 @@ static hl_status read_shapes(hl_json_reader *reader, const json_t *value, hl_vol
   const json_t *shapes = json_object_get(value, "shapes");
   double voxel_size = json_number_value(json_object_get(value, "voxel_size"));
   char *text = hl_json_shapes_text(reader->context, shapes, shelf->groups, voxel_size);
-  const hl_loaded_volume *loaded = text != NULL ? find_loaded(shelf, text, NULL) : NULL;
+  const hl_loaded_volume *loaded = text != NULL ? find_loaded(shelf, text, NULL, 0) : NULL;
   hl_release(reader->context, text);
   if (loaded == NULL && reader->like != NULL)
     return hl_json_fail(reader, HL_ERROR_INPUT, "shapes", "are not those of the open scene: open it anew");
@@ -313,8 +347,10 @@ static hl_status read_source(hl_json_reader *reader, const json_t *value, hl_vol
     return hl_json_fail(reader, HL_ERROR_INPUT, "file", "is missing: name the volume's file, or give shapes");
   if (file[0] == 0) return hl_json_fail(reader, HL_ERROR_INPUT, "file", "is empty: name the volume's file");
   hl_volume_load_options options;
+  double smooth = 0;
   status = read_load_options(reader, value, &options);
-  return status == HL_OK ? load(reader, file, &options, shelf, volume) : status;
+  if (status == HL_OK) status = hl_json_number(reader, value, "smooth", &smooth);
+  return status == HL_OK ? load(reader, file, &options, smooth, shelf, volume) : status;
 }
 
 /* Reads the key "mask": a label map with its labels, "rest" and the keys of its file. Its labels are owned by

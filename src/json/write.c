@@ -368,6 +368,7 @@ static void write_source(writer *w, const hl_scene_volume *volume) {
   if (volume->channel >= 0) write_number(w, "channel", volume->channel);
   if (volume->level >= 0) write_number(w, "level", volume->level);
   if (volume->spacing[0] > 0) write_row(w, "spacing", volume->spacing, 3);
+  if (hl_volume_smoothing(volume->volume) > 0) write_number(w, "smooth", hl_volume_smoothing(volume->volume));
 }
 
 static void write_iso(writer *w, const hl_scene_volume *volume) {

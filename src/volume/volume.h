@@ -102,6 +102,8 @@ struct hl_volume {
   size_t label_map_count;
   bool has_surroundings; /* whether the data value around the content is known */
   double surroundings;
+  double smoothing; /* voxels: the standard deviation that the voxels were smoothed by (guess/smoothing.c) */
+  atomic_bool smoothing_chosen; /* hl_volume_smooth() was asked for it, or for none */
   double surface_slope; /* for an occupancy: the slope per voxel where the occupancy passes 1/2 */
   _Atomic(struct hl_data_analysis *)
       analysis; /* owned block; the findings of guess/analysis.h; null if not asked yet */

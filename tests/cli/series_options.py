@@ -155,6 +155,7 @@ CASES = {
     "range": ["--range 20,150", "--range 1%,99%"],
     "range-scale": ["--range 20,150 --range-scale log"],
     "threshold": ["--threshold 80"],
+    "smooth": ["--smooth 1.5"],
     "iso": ["--iso 100", "--iso 60:skyblue:0.5 --iso 150 --tf look.json"],
     "clip": ["--clip x=0.2:0.7"],
     "cut-plane": ["--cut-plane 0.5,0.5,0.5:1,0,0", "--labels map.nrrd --cut-plane 0.5,0.5,0.5:1,0,0"],

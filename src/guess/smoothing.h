@@ -1,0 +1,11 @@
+/* guess/smoothing.h - where a volume's voxels are smoothed without being asked. */
+#ifndef HL_GUESS_SMOOTHING_H
+#define HL_GUESS_SMOOTHING_H
+
+#include "guess/analysis.h"
+
+/* The standard deviation, in voxels, by which a bare volume of a file is smoothed; 0: not at all. */
+hl_status hl_smoothing_for(const hl_volume *volume, const char *file, const hl_data_analysis *analysis,
+                           double *sigma, hl_error *error);
+
+#endif

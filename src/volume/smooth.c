@@ -1,0 +1,140 @@
+/* volume/smooth.c - see smooth.h. Three passes, one along each axis, over a block of floats. */
+#include "volume/smooth.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+
+/* Weights of a Gaussian at whole distances, which sum to 1: exp(-d^2 / (2 sigma^2)), to three standard
+ * deviations. */
+enum { LONGEST = 64 };
+typedef struct gaussian {
+  int radius;
+  float weight[LONGEST + 1]; /* by distance */
+} gaussian;
+
+static gaussian make_gaussian(double sigma) {
+  gaussian made = {.radius = (int)fmin(ceil(3 * sigma), LONGEST)};
+  double weight[LONGEST + 1], sum = 0;
+  for (int d = 0; d <= made.radius; d++) {
+    weight[d] = exp(-0.5 * d * d / (sigma * sigma));
+    sum += d == 0 ? weight[d] : 2 * weight[d];
+  }
+  for (int d = 0; d <= made.radius; d++) made.weight[d] = (float)(weight[d] / sum);
+  return made;
+}
+
+/* Convolves `count` lines of `length` numbers each, `step` apart; the lines adjoin. line: [length][count]
+ * floats of scratch. */
+static void convolve_lines(const gaussian *kernel, float *numbers, size_t length, size_t step, size_t count,
+                           float *line) {
+  for (size_t n = 0; n < length; n++) memcpy(line + n * count, numbers + n * step, count * sizeof *line);
+  for (size_t n = 0; n < length; n++) {
+    float *out = numbers + n * step;
+    for (size_t c = 0; c < count; c++) out[c] = kernel->weight[0] * line[n * count + c];
+    for (int d = 1; d <= kernel->radius; d++) {
+      const float *before = line + (n < (size_t)d ? 0 : n - (size_t)d) * count,
+                  *after = line + (n + (size_t)d < length ? n + (size_t)d : length - 1) * count;
+      for (size_t c = 0; c < count; c++) out[c] += kernel->weight[d] * (before[c] + after[c]);
+    }
+  }
+}
+
+/* Along i, j and k. False: cancelled. */
+static bool convolve(hl_context *context, const gaussian *kernel, const size_t dimension[3], float *numbers,
+                     float *line) {
+  const size_t row = dimension[0], slice = row * dimension[1];
+  for (size_t k = 0; k < dimension[2]; k++) {
+    if (hl_cancelled(context)) return false;
+    for (size_t j = 0; j < dimension[1]; j++)
+      convolve_lines(kernel, numbers + k * slice + j * row, row, 1, 1, line);
+    convolve_lines(kernel, numbers + k * slice, dimension[1], row, row, line);
+  }
+  for (size_t j = 0; j < dimension[1]; j++) {
+    if (hl_cancelled(context)) return false;
+    convolve_lines(kernel, numbers + j * row, dimension[2], slice, row, line);
+  }
+  return true;
+}
+
+/* Data values as floats; those that are not finite become 0, and 0 in finite, the others 1. */
+static void take_values(const hl_volume *volume, float *values, float *finite) {
+  const size_t row = volume->dimension[0];
+  for (size_t k = 0, n = 0; k < volume->dimension[2]; k++)
+    for (size_t j = 0; j < volume->dimension[1]; j++, n += row) {
+      const void *stored = hl_volume_row(volume, j, k);
+      for (size_t i = 0; i < row; i++) {
+        double value = volume->value_scale * hl_stored_number(volume->storage, stored, i) +
+                       volume->value_offset;
+        bool good = isfinite(value);
+        values[n + i] = good ? (float)value : 0;
+        if (finite != NULL) finite[n + i] = good;
+      }
+    }
+}
+
+/* Where there are voxels that are not finite: what the finite ones have of each sum. */
+static void weigh(const hl_volume *volume, float *values, const float *share) {
+  const size_t row = volume->dimension[0];
+  for (size_t k = 0, n = 0; k < volume->dimension[2]; k++)
+    for (size_t j = 0; j < volume->dimension[1]; j++, n += row) {
+      const void *stored = hl_volume_row(volume, j, k);
+      for (size_t i = 0; i < row; i++)
+        values[n + i] = isfinite(hl_stored_number(volume->storage, stored, i)) ? values[n + i] / share[n + i]
+                                                                               : NAN;
+    }
+}
+
+/* The grid of a volume, and what its file tells of its world. */
+static hl_status adopt(const hl_volume *volume, float *values, hl_volume **smoothed, hl_error *error) {
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  for (int a = 0; a < 3; a++) {
+    vec3 axis = mat3_column(volume->index_to_world.linear, a);
+    d.dimensions[a] = volume->dimension[a];
+    d.axis[a][0] = axis.x, d.axis[a][1] = axis.y, d.axis[a][2] = axis.z;
+  }
+  d.origin[0] = volume->index_to_world.offset.x;
+  d.origin[1] = volume->index_to_world.offset.y;
+  d.origin[2] = volume->index_to_world.offset.z;
+  d.type = HL_VOXEL_F32;
+  d.space = volume->space;
+  hl_status status = hl_volume_adopt(volume->context, &d, "smoothed voxels", values, smoothed, error);
+  if (status != HL_OK) return status;
+  hl_volume *made = *smoothed;
+  made->index_to_world = volume->index_to_world;
+  made->unit = volume->unit;
+  made->is_anatomical = volume->is_anatomical;
+  memcpy(made->window, volume->window, sizeof made->window);
+  made->selection = volume->selection;
+  made->component = volume->component;
+  return HL_OK;
+}
+
+hl_status hl_volume_convolve(const hl_volume *volume, double sigma, hl_volume **smoothed, hl_error *error) {
+  hl_context *context = volume->context;
+  const gaussian kernel = make_gaussian(sigma);
+  const size_t count = hl_volume_voxel_count(volume), row = volume->dimension[0],
+               most = volume->dimension[1] > volume->dimension[2] ? volume->dimension[1]
+                                                                  : volume->dimension[2];
+  const bool holes = volume->nonfinite_count > 0;
+  float *values = hl_allocate(context, count, sizeof *values);
+  float *finite = holes ? hl_allocate(context, count, sizeof *finite) : NULL;
+  float *line = hl_allocate(context, row * most, sizeof *line);
+  bool whole = values != NULL && line != NULL && (!holes || finite != NULL);
+  hl_status status = whole ? HL_OK : hl_fail_memory(error, count * sizeof *values, "smoothed voxels");
+  if (whole) {
+    take_values(volume, values, finite);
+    if (!convolve(context, &kernel, volume->dimension, values, line) ||
+        (holes && !convolve(context, &kernel, volume->dimension, finite, line)))
+      status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while voxels were smoothed");
+  }
+  if (status == HL_OK && holes) weigh(volume, values, finite);
+  hl_release(context, finite);
+  hl_release(context, line);
+  if (status == HL_OK) return adopt(volume, values, smoothed, error);
+  hl_release(context, values);
+  return status;
+}

@@ -1,0 +1,193 @@
+/* tests/unit/volume_smooth.c - voxels smoothed by a Gaussian, against closed forms; what is smoothed unasked.
+ */
+#include <float.h>
+
+#include "guess/smoothing.h"
+#include "scene_parts.h"
+
+enum { N = 32, COUNT = N * N * N };
+
+static hl_context *context;
+static float values[COUNT];
+
+static size_t at(int i, int j, int k) { return (size_t)((k * N + j) * N + i); }
+
+/* A volume of values[], of voxels `thick` long along k. */
+static hl_volume *make(double thick) {
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  for (int a = 0; a < 3; a++) d.dimensions[a] = N;
+  d.axis[2][2] = thick;
+  d.origin[0] = 5;
+  d.type = HL_VOXEL_F32;
+  d.voxels = values;
+  hl_volume *volume = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  return volume;
+}
+
+/* The weight of a Gaussian at distance d, of those at whole distances that smooth.c takes. */
+static double weight(double sigma, int d) {
+  int radius = (int)ceil(3 * sigma);
+  double sum = 0;
+  for (int n = -radius; n <= radius; n++) sum += exp(-0.5 * n * n / (sigma * sigma));
+  return abs(d) <= radius ? exp(-0.5 * d * d / (sigma * sigma)) / sum : 0;
+}
+
+static hl_volume *smooth(double thick, double sigma) {
+  hl_volume *sharp = make(thick), *smoothed = NULL;
+  assert_int_equal(hl_volume_smooth(sharp, sigma, &smoothed, NULL), HL_OK);
+  hl_volume_release(sharp);
+  return smoothed;
+}
+
+static void an_impulse_becomes_a_gaussian(void **state) {
+  (void)state;
+  static const double sigmas[] = {0.5, 0.8, 2.25};
+  for (size_t s = 0; s < 3; s++) {
+    memset(values, 0, sizeof values);
+    values[at(15, 16, 14)] = 1000;
+    hl_volume *smoothed = smooth(3, sigmas[s]);
+    for (int k = 0; k < N; k++)
+      for (int j = 0; j < N; j++)
+        for (int i = 0; i < N; i++) {
+          double want = 1000 * weight(sigmas[s], i - 15) * weight(sigmas[s], j - 16) *
+                        weight(sigmas[s], k - 14);
+          double is = hl_volume_value(smoothed, (size_t)i, (size_t)j, (size_t)k);
+          assert_true(fabs(is - want) <= 4 * FLT_EPSILON * want);
+        }
+    assert_true(hl_volume_smoothing(smoothed) == sigmas[s]);
+    hl_volume_release(smoothed);
+  }
+}
+
+/* A step along k becomes the sum of the weights on its far side; the border goes on. */
+static void a_step_becomes_a_ramp(void **state) {
+  (void)state;
+  for (int v = 0; v < COUNT; v++) values[v] = v / N / N < 20 ? -100.5f : 299.5f;
+  hl_volume *smoothed = smooth(1, 0.8);
+  for (int k = 0; k < N; k++) {
+    double far = 0;
+    for (int d = -3; d <= 3; d++) far += k + d >= 20 ? weight(0.8, d) : 0;
+    assert_true(fabs(hl_volume_value(smoothed, 0, 31, (size_t)k) - (-100.5 + 400 * far)) < 1e-4);
+  }
+  hl_volume_info info = {.struct_size = sizeof info};
+  assert_int_equal(hl_volume_get_info(smoothed, &info), HL_OK);
+  assert_true(info.origin[0] == 5 && info.spacing[2] == 1);
+  hl_volume_release(smoothed);
+}
+
+/* A hole stays, and takes nothing from its neighbours: the same value everywhere stays the same. */
+static void holes_stay(void **state) {
+  (void)state;
+  for (int v = 0; v < COUNT; v++) values[v] = (float)(v / 7 % 2 + 40);
+  values[at(3, 4, 5)] = NAN;
+  for (int v = 0; v < COUNT; v++)
+    if (!isnan(values[v])) values[v] = v % N < 16 ? 40 : 41;
+  hl_volume *smoothed = smooth(1, 1);
+  assert_true(isnan(hl_volume_value(smoothed, 3, 4, 5)));
+  assert_true(fabs(hl_volume_value(smoothed, 4, 4, 5) - 40) < 1e-4);
+  hl_volume_release(smoothed);
+}
+
+static double noise(int i, int j, int k) { /* 0..1 */
+  unsigned state = (unsigned)((k * N + j) * N + i) * 2654435761u;
+  state = (state ^ (state >> 15)) * 2246822519u;
+  return (double)((state ^ (state >> 13)) & 0xffff) / 65536;
+}
+
+/* Matter of about 150 in air: cut out of it, or with the rim that a scanner gives; noise in the air, or none.
+ */
+static void fill(bool cut_out, double air) {
+  for (int k = 0; k < N; k++)
+    for (int j = 0; j < N; j++)
+      for (int i = 0; i < N; i++) {
+        double r = sqrt((i - 15.3) * (i - 15.3) + (j - 15.8) * (j - 15.8) + (k - 16.2) * (k - 16.2));
+        double matter = 130 + 40 * noise(i, j, k), share = cut_out ? r < 12 : 1 / (1 + exp((r - 12) / 0.8));
+        values[at(i, j, k)] = (float)floor(matter * share + (cut_out ? 0 : air * noise(k, i, j)));
+      }
+}
+
+static double smoothed_by(double thick) {
+  hl_volume *volume = make(thick);
+  hl_data_analysis analysis;
+  double sigma = -1;
+  assert_int_equal(hl_data_analyse(volume, &analysis, NULL), HL_OK);
+  assert_int_equal(analysis.kind, HL_DATA_SURFACES);
+  assert_int_equal(hl_smoothing_for(volume, "head.nii", &analysis, &sigma, NULL), HL_OK);
+  hl_volume_release(volume);
+  return sigma;
+}
+
+static void cliffs_and_terraces_are_smoothed(void **state) {
+  (void)state;
+  fill(true, 0);
+  assert_true(smoothed_by(1) == 0.8);
+  fill(false, 12);
+  assert_true(smoothed_by(1) == 0);
+  assert_true(smoothed_by(1.25) == 0);
+  assert_true(smoothed_by(1.5) == 0.8);
+}
+
+/* A bare scene is smoothed, and is not where 0 was asked for. */
+static void bare_scenes_are_smoothed(void **state) {
+  (void)state;
+  fill(true, 0);
+  hl_volume *volume = make(1), *same = NULL;
+  hl_scene *scene = NULL;
+  assert_int_equal(hl_scene_for_volume(context, volume, "head.nii", &scene, NULL), HL_OK);
+  assert_true(hl_volume_smoothing(hl_scene_describe(scene)->volumes[0].volume) == 0.8);
+  hl_scene_release(scene);
+  assert_int_equal(hl_volume_smooth(volume, 0, &same, NULL), HL_OK);
+  assert_ptr_equal(same, volume);
+  assert_int_equal(hl_scene_for_volume(context, same, "head.nii", &scene, NULL), HL_OK);
+  assert_ptr_equal(hl_scene_describe(scene)->volumes[0].volume, volume);
+  hl_scene_release(scene);
+  hl_volume_release(same);
+  hl_volume_release(volume);
+}
+
+static void what_has_no_mean_is_refused(void **state) {
+  (void)state;
+  hl_error error = {0};
+  hl_volume *smoothed = NULL;
+  for (int v = 0; v < COUNT; v++) values[v] = v % N < 8 ? 0 : v % N < 20 ? 3 : v / N % N < 16 ? 17 : 42;
+  hl_volume *labels = make(1);
+  assert_int_equal(hl_volume_smooth(labels, 1, &smoothed, &error), HL_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.message, "label map"));
+  hl_volume_release(labels);
+  fill(false, 12);
+  hl_volume *scan = make(1);
+  static const double wrong[] = {-1, 16.5, NAN};
+  for (int n = 0; n < 3; n++) {
+    assert_int_equal(hl_volume_smooth(scan, wrong[n], &smoothed, &error), HL_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.message, "from 0 to 16"));
+    assert_null(smoothed);
+  }
+  hl_volume_release(scan);
+}
+
+static int begin(void **state) {
+  (void)state;
+  context = make_context();
+  return 0;
+}
+
+static int end(void **state) {
+  (void)state;
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+  return 0;
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(an_impulse_becomes_a_gaussian),
+      cmocka_unit_test(a_step_becomes_a_ramp),
+      cmocka_unit_test(holes_stay),
+      cmocka_unit_test(cliffs_and_terraces_are_smoothed),
+      cmocka_unit_test(bare_scenes_are_smoothed),
+      cmocka_unit_test(what_has_no_mean_is_refused),
+  };
+  return cmocka_run_group_tests(tests, begin, end);
+}
