@@ -2,8 +2,8 @@
 """The library as WebAssembly makes the program's pictures, byte for byte, in node.
 
 usage: equal.py FOLDER PROGRAM
-FOLDER is that of scripts/web. Scenes: those of the budgets, one for each kind of work; the stored pictures'; the examples, in small
-pictures. Those over real volumes are left out where ../shared/data, or the folder HALFLIGHT_DATA, is not there.
+FOLDER is that of scripts/web. Scenes: volumes as they are dropped on a page; those of the budgets, one for each kind of work; the stored
+pictures'; the examples, in small pictures. Those over real volumes are left out where ../shared/data, or the folder HALFLIGHT_DATA, is not there.
 """
 import json
 import math
@@ -13,12 +13,16 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import zipfile
+import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "budgets"))
+sys.path[:0] = [str(ROOT / "tests" / "budgets"), str(ROOT / "tests" / "viewer")]
+from dicom_files import dicom_slice  # noqa: E402
 from scenes import KEY, SCENES, SIDE, SKY, scene, soft, write_volumes  # noqa: E402
 
 DATA = pathlib.Path(os.environ.get("HALFLIGHT_DATA", ROOT.parent / "shared" / "data"))
+SIZE_DROPPED = (48, 48)  # of volumes' pictures: a square, as the standard size is
 SIZE = (72, 64)  # pixels of the examples' pictures
 HAZE = {"file": f"haze_{SIDE}x{SIDE}x{SIDE}_uint8.raw", "shading": "none",
         "transfer_function": {"opacity": [[40, 0], [255, 0.05]], "color": [[0, 1, 1, 1]]}}
@@ -89,13 +93,36 @@ def write_scenes(folder):
     for name, scene in scenes.items():
         if scene is not None:
             (folder / f"{name}.json").write_text(json.dumps(scene))
-            written.append((f"{name}.json", sorted(set(files_of(scene)))))
+            written.append((f"{name}.json", [f"{name}.json", *sorted(set(files_of(scene)))]))
     return written
+
+
+def write_dropped(folder, program):
+    """Volumes as they are dropped on a page: [(name, names of its files)], all in the folder."""
+    subprocess.run([program, "make", "rings", "--size", "20", "--quiet", "-o", folder / "rings.nrrd"], check=True)
+    names = [f"rings.{ending}" for ending in ("nii.gz", "vti", "mha", "mrc")]
+    for name in names:
+        subprocess.run([program, "convert", folder / "rings.nrrd", folder / name, "--quiet"], check=True)
+    (folder / "series").mkdir()
+    for place in range(9):
+        (folder / "series" / f"{place}.dcm").write_bytes(dicom_slice(place))
+    multiscales = [{"version": "0.4", "axes": [{"name": axis, "type": "space"} for axis in "zyx"], "datasets": [
+        {"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [2, 1, 1]}]}]}]
+    array = {"zarr_format": 2, "shape": [6, 8, 10], "chunks": [6, 8, 10], "dtype": "|u1", "compressor": {"id": "zlib", "level": 5}, "fill_value": 0,
+             "order": "C", "filters": None}
+    with zipfile.ZipFile(folder / "image.ome.zarr.zip", "w") as store:
+        store.writestr(".zgroup", json.dumps({"zarr_format": 2}))
+        store.writestr(".zattrs", json.dumps({"multiscales": multiscales}))
+        store.writestr("0/.zarray", json.dumps(array))
+        store.writestr("0/0.0.0", zlib.compress(bytes(n % 251 for n in range(480))))
+    series = [f"series/{place}.dcm" for place in range(9)]
+    return [(name, [name]) for name in [*names, "image.ome.zarr.zip"]] + [("series", series)]
 
 
 def render_web(wasm, folder, scenes):
     """{name: (bytes, milliseconds)}; a text: why there are none."""
-    jobs = [{"scene": scene, "files": files, "out": "web.npy.d/" + scene[:-5]} for scene, files in scenes]
+    jobs = [{"scene": scene, "files": files, "out": f"web.npy.d/{scene}", "size": None if scene.endswith(".json") else SIZE_DROPPED}
+            for scene, files in scenes]
     (folder / "web.npy.d").mkdir(exist_ok=True)
     (folder / "jobs").write_text(json.dumps(jobs))
     done = subprocess.run(["node", "--experimental-wasm-relaxed-simd", ROOT / "tests" / "web" / "render.mjs", ROOT / "src" / "web" / "page" / "engine.js",
@@ -116,10 +143,11 @@ def main():
         return
     with tempfile.TemporaryDirectory(prefix="halflight-web-") as text:
         folder = pathlib.Path(text)
-        scenes = write_scenes(folder)
+        scenes = write_dropped(folder, program) + write_scenes(folder)
         expected = {}
         for scene, _ in scenes:
-            subprocess.run([program, "render", folder / scene, "-o", folder / "native.npy", "--quiet"], check=True)
+            size = [] if scene.endswith(".json") else ["--size", "x".join(map(str, SIZE_DROPPED))]
+            subprocess.run([program, "render", folder / scene, "-o", folder / "native.npy", "--quiet", *size], check=True)
             expected[scene] = (folder / "native.npy").read_bytes()
         print(f"1..{len(sets) * len(scenes)}")
         number = failures = 0

@@ -86,6 +86,19 @@ def try_chromium(url, what, program, folder):
         check(browser.problems == [], f"{what}: no problem in the console: {browser.problems}")
 
 
+def try_held_scene(program, folder):
+    """A page that holds a scene shows it without being asked."""
+    (folder / "held.json").write_text(json.dumps(SCENES["labels"]))
+    subprocess.run([ROOT / "scripts" / "web_page", folder / "held.json", folder / "held.html"], check=True)
+    with Browser(size=(900, 500)) as browser:
+        browser.open((folder / "held.html").as_uri())
+        browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
+        saved_scene(browser, folder, "saved.json")
+        check(same_pixels(program, folder, final_picture(browser), "saved.json"), "Chromium: a page that holds a scene shows it")
+        check(browser.run("document.title") == "held · Halflight" and browser.problems == [],
+              f"Chromium: it has the scene's name and no problem in the console: {browser.problems}")
+
+
 class Handler(http.server.SimpleHTTPRequestHandler):
     """The page's folder; POST: what a browser tells, for the test."""
 
@@ -178,6 +191,7 @@ def main():
         expected = write_hash_page(web / "page", folder / "page", program)
         if shutil.which("chromium"):
             try_chromium((web / "halflight.html").as_uri(), "Chromium, one file", program, folder)
+            try_held_scene(program, folder)
             with serve(web / "page") as (_, url):
                 try_chromium(url, "Chromium, a folder", program, folder)
             compare_hashes(lambda profile: ["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}"],

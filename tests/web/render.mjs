@@ -1,7 +1,7 @@
 // Renders scenes by the library as WebAssembly in node, as tests/web/equal.py asks.
 //
 // usage: node render.mjs ENGINE.js FILE.wasm FOLDER JOBS.json
-// JOBS.json: [{ scene, files, out }], names in FOLDER. Prints one line for each picture: "NAME MILLISECONDS", or "unfused".
+// JOBS.json: [{ scene, files, out, size }], names in FOLDER; scene may be a volume, or a folder. Prints one line for each picture: "NAME MILLISECONDS", or "unfused".
 
 import fs from "node:fs";
 import path from "node:path";
@@ -18,9 +18,10 @@ if (!library.fuses) {
   console.log("unfused");
   process.exit(0);
 }
-for (const { scene, files, out } of JSON.parse(fs.readFileSync(jobs))) {
-  const contents = Object.fromEntries([scene, ...files].map((name) => [name, new Uint8Array(fs.readFileSync(path.join(folder, name)))]));
+for (const { scene, files, out, size } of JSON.parse(fs.readFileSync(jobs))) {
+  const contents = Object.fromEntries(files.map((name) => [name, new Uint8Array(fs.readFileSync(path.join(folder, name)))]));
   const start = await library.open(contents, scene);
+  if (size) [start.scene.image.width, start.scene.image.height] = size;
   const began = performance.now();
   fs.writeFileSync(path.join(folder, out), await library.frame(start.scene, { format: "npy" }));
   console.log(scene, Math.round(performance.now() - began));
