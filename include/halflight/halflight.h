@@ -47,6 +47,7 @@
 #include "compose.h"
 #include "context.h"
 #include "device.h"
+#include "figure.h"
 #include "image.h"
 #include "layers.h"
 #include "mesh.h"

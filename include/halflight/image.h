@@ -35,26 +35,28 @@ typedef enum hl_tone {
 
 typedef struct hl_image_write_options {
   size_t struct_size;         /* set by hl_image_write_options_defaults() */
-  int png_depth;              /* 8 or 16 */
-  double background[3];       /* linear RGB; PNG only */
-  int background_transparent; /* PNG keeps alpha (unassociated, as PNG demands) */
+  int png_depth;              /* bits of a code, of a TIFF, too: 8 or 16 */
+  double background[3];       /* linear RGB; PNG and TIFF only */
+  int background_transparent; /* PNG and TIFF keep alpha, unassociated */
   const char *scene_json;     /* stored in the PNG as the text chunk "halflight:scene"; may be null */
   double exposure; /* stops, -32 to 32; PNG only: the picture's light is multiplied by 2^exposure, the
                       background is not */
   hl_tone tone;    /* PNG only: of the picture's light after the exposure; the background keeps its colour */
+  double pixels_per_inch; /* the physical size that a PNG or TIFF states, 1 to 100000; 0, the default: none */
 } hl_image_write_options;
 
 HL_API void hl_image_write_options_defaults(hl_image_write_options *options);
 
-/* Writes a picture in the format of the path's extension: .png (sRGB, composited over the background), .exr
- * (linear float) or .npy (float32, height x width x 4). It is written to a temporary name beside the path and
- * renamed: there is never half a file. Layers become channels "name.R" and so on of an .exr, and files of
- * their own beside an .npy, "picture-name.npy" (height x width x channels, or height x width), which are
- * written before it; for a .png an image with layers is refused. options may be null. */
+/* Writes a picture in the format of the path's extension: .png, .tif or .tiff (sRGB, composited over the
+ * background), .exr (linear float) or .npy (float32, height x width x 4). It is written to a temporary name
+ * beside the path and renamed: there is never half a file. Layers become channels "name.R" and so on of an
+ * .exr, and files of their own beside an .npy, "picture-name.npy" (height x width x channels, or height x
+ * width), which are written before it; for a .png or .tif an image with layers is refused. A build without
+ * libtiff refuses .tif. options may be null. */
 HL_API HL_WARN_UNUSED hl_status hl_image_write(hl_context *context, const hl_image *image, const char *path,
                                                const hl_image_write_options *options, hl_error *error);
 
-/* The same bytes in memory; format: "png", "exr" or "npy". *bytes: [*length], owned by the caller
+/* The same bytes in memory; format: "png", "tif", "exr" or "npy". *bytes: [*length], owned by the caller
  * (hl_bytes_release()). Layers fit into "exr" alone. */
 HL_API HL_WARN_UNUSED hl_status hl_image_encode(hl_context *context, const hl_image *image,
                                                 const char *format, const hl_image_write_options *options,

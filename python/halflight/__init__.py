@@ -16,6 +16,7 @@ from ._library import lib as _lib, text_of as _text_of
 from .camera import Camera
 from .colors import colormaps, srgb
 from .errors import HalflightWarning, InputError, UnsupportedError
+from .figure import Figure, figure
 from .image import Image
 from .lights import Directional, Disk, EmissionImage, Light, Point, Polygon, Rect, Spot, Texture
 from .memory import limit_memory
@@ -31,7 +32,7 @@ from .widget import show
 __version__ = _text_of(_lib.hl_version())
 
 __all__ = [
-    "Camera", "Directional", "Disk", "EmissionImage", "HalflightWarning", "Image", "Info", "InputError", "Light", "Mesh",
+    "Camera", "Directional", "Disk", "EmissionImage", "Figure", "HalflightWarning", "Image", "Info", "InputError", "Light", "Mesh",
     "Point", "Polygon", "Rect", "Renderer", "Scene", "Spot", "Texture", "TransferFunction", "UnsupportedError", "Volume",
-    "animate", "colormaps", "from_pyvista", "from_vtk", "info", "limit_memory", "presets", "reference", "render", "show", "srgb", "view",
+    "animate", "colormaps", "figure", "from_pyvista", "from_vtk", "info", "limit_memory", "presets", "reference", "render", "show", "srgb", "view",
 ]

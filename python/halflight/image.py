@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import IO, TYPE_CHECKING, Any
 
@@ -17,6 +17,8 @@ from .scene import Scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from .figure import Figure
 
 __all__ = ["Image"]
 
@@ -278,6 +280,48 @@ class Image(NDArrayOperatorsMixin):
         folder = tempfile.mkdtemp(prefix="halflight-")
         self.save(os.path.join(folder, "picture.png"))
         webbrowser.open(f"file://{folder}/picture.png")
+
+    @suggests
+    def annotate(self, *, scale_bar: bool | str = False, unit: str | None = None, depth: float | str | None = None,
+                 legend: bool | str = False, axes: str | None = None,
+                 texts: Sequence[tuple[str, Sequence[float]]] | Mapping[str, Sequence[float]] = (), letter: str | None = None,
+                 width: float | str | None = None, dpi: float | None = None, font_size: float = 7, font: str = "Sans") -> Figure:
+        """The picture as a figure, with what is drawn over it; `save` writes .pdf, .svg, .png or .tif.
+
+        Parameters
+        ----------
+        scale_bar : bool or str
+            A bar with its length: True, or a length as "50um".
+        unit : str, optional
+            Of lengths in the volumes, "mm", "um", ... or any other text, where their files do not tell it.
+        depth : float or "target", optional
+            Where the bar holds in a perspective picture, which has no one scale: the distance from the eye.
+        legend : bool or str
+            The volumes' colours over their values, with their opacity; or the names of labels. A text is the title.
+        axes : "arrows" or "letters", optional
+            The world's directions, or the body's at the edges.
+        texts : sequence of (str, (x, y)) or (str, (x, y, z)), or a mapping
+            At fractions of the picture from its upper left, or beside a point of the scene's world.
+        letter : str, optional
+            At the upper left.
+        width : float or str, optional
+            On paper: millimetres, or a text as "89mm", "3.5in".
+        dpi : float, optional
+            Pixels an inch: of .png and .tif; without width it says how large the picture is.
+        font_size, font : float, str
+            In points of a picture of that size (89 mm wide where none is said); a family's name.
+
+        Examples
+        --------
+        >>> import numpy as np, halflight
+        >>> image = halflight.render(np.ones((8, 8, 8), np.uint8), size=(64, 48))
+        >>> image.annotate(legend="Density (g/cm3)", width="40mm").encode("pdf")[:5]
+        b'%PDF-'
+        """
+        from .figure import _Overlay, annotate
+
+        overlay = _Overlay(scale_bar, unit, depth, legend, axes, texts, letter)
+        return annotate(self, overlay, width, dpi, font_size, font)
 
     def __repr__(self) -> str:
         return f"<halflight.Image {self.size[0]}x{self.size[1]}>"

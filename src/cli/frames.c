@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "overlay.h"
 #include "ranks.h"
 
 enum { MOST_PICTURE_BYTES = 1 << 30 };
@@ -109,8 +110,9 @@ hl_status frames_render(const cli_host *host, hl_renderer *renderer, const hl_sc
     hl_scene_write_options(scene, &options);
     options.scene_json = text;
     if (style.opaque) options.background_transparent = 0;
-    status = host_interrupted() ? HL_ERROR_CANCELLED
-                                : hl_image_write(host->context, image, path, &options, error);
+    status = host_interrupted()
+                 ? HL_ERROR_CANCELLED
+                 : overlay_write(host->context, style.overlay, image, scene, path, &options, error);
   }
   hl_text_release(host->context, text);
   hl_image_destroy(image);

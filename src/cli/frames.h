@@ -39,8 +39,9 @@ void frames_draw_bar(cli_host *host, int done, int wanted, int rendered, double 
 
 /* How pictures are written. */
 typedef struct frames_style {
-  bool opaque;      /* also where the scene's background is transparent */
-  bool no_metadata; /* a picture does not carry its scene */
+  bool opaque;                       /* also where the scene's background is transparent */
+  bool no_metadata;                  /* a picture does not carry its scene */
+  const struct cli_overlay *overlay; /* drawn over each; may be null */
 } frames_style;
 
 /* Renders a scene to a picture. */

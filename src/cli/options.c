@@ -221,8 +221,6 @@ static int refuse_unknown(const cli_command *command, const char *argument) {
   char name[80];
   size_t length = argument[1] == '-' ? strcspn(argument + 2, "=") : 0;
   snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), argument + 2);
-  const char *advice = strcmp(command->name, "render") == 0 ? advice_for_absent(name) : NULL;
-  if (advice != NULL) return fail(EXIT_CODE_USAGE, "unknown option '--%s' of render: %s", name, advice);
   const char *meant = length > 0 ? hl_nearest_candidate(name, option_name, command) : NULL;
   const char *does = synonym_of(name, option_name, command);
   if (does != NULL && meant != NULL && strcmp(does, meant) != 0)

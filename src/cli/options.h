@@ -79,7 +79,7 @@ typedef struct cli_command {
   int (*run)(const cli_value *values, char **operands);
 } cli_command;
 
-enum { MAXIMUM_OPTIONS = 96, MAXIMUM_OPERANDS = 16 };
+enum { MAXIMUM_OPTIONS = 128, MAXIMUM_OPERANDS = 16 };
 
 /* Parses the arguments after the subcommand's name. Returns EXIT_CODE_OK, or another exit code after printing
  * an error. At --help or -h *help is set and parsing stops. */

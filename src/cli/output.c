@@ -13,7 +13,8 @@
 
 #include "message.h"
 
-const char *const picture_extensions[] = {".png", ".exr", ".npy", NULL};
+const char *const picture_extensions[] = {".png", ".exr", ".npy", ".tif", ".tiff", NULL};
+const char *const figure_extensions[] = {".png", ".exr", ".npy", ".tif", ".tiff", ".pdf", ".svg", NULL};
 const char *const volume_extensions[] = {".nrrd", ".nii",    ".nii.gz", ".mha",    ".vti",
                                          ".mrc",  ".mrc.gz", ".raw",    ".raw.gz", NULL};
 

@@ -15,7 +15,7 @@ const char *base_name(const char *path);
 bool has_extension(const char *path, const char *extension);
 
 /* The extensions that can be written; null after the last. */
-extern const char *const picture_extensions[], *const volume_extensions[];
+extern const char *const picture_extensions[], *const figure_extensions[], *const volume_extensions[];
 
 /* Refuses a path that ends in none of the extensions, is a folder or one of the inputs, or lies in a folder
  * that cannot be written to. Returns the exit code. */

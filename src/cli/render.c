@@ -16,8 +16,9 @@
 /* One run, from INPUT to OUT. */
 typedef struct render_job {
   cli_host host;
-  const cli_value *values;
-  char **inputs; /* [input_count], null after the last */
+  cli_value values[RENDER_OPTION_COUNT]; /* --size is set by --width */
+  char size_text[RENDER_SIZE_TEXT];      /* of that --size */
+  char **inputs;                         /* [input_count], null after the last */
   int input_count;
   char *input;          /* the first */
   char *output;         /* owned */
@@ -26,16 +27,17 @@ typedef struct render_job {
   hl_scene *scene;      /* owned */
   hl_image *image;      /* owned */
   render_layers layers; /* owned */
+  cli_overlay overlay;  /* owned */
   hl_ranks *ranks;      /* owned; of --strips-over-ranks and --volume-over-ranks; null: alone */
   double started;       /* seconds of clock_seconds() */
   render_result result;
 } render_job;
 
-static const char *const format_names[] = {"png", "exr", "npy"};
+static const char *const format_names[] = {"png", "exr", "npy", "tif", "pdf", "svg"};
 
 /* The extension that --format asks for; .png without it. */
 static const char *wanted_extension(const cli_value *values) {
-  static const char *const extensions[] = {".png", ".exr", ".npy"};
+  static const char *const extensions[] = {".png", ".exr", ".npy", ".tif", ".pdf", ".svg"};
   return extensions[values[RENDER_FORMAT].given ? values[RENDER_FORMAT].choice : 0];
 }
 
@@ -69,13 +71,14 @@ static int choose_output(render_job *job) {
   if (values[RENDER_FORMAT].given && !has_extension(job->output, wanted_extension(values)))
     return fail(EXIT_CODE_USAGE, "--format %s: '%s' does not end in %s: rename OUT, or leave --format out",
                 values[RENDER_FORMAT].text, job->output, wanted_extension(values));
-  return output_check(job->output, picture_extensions, job->inputs, job->input_count);
+  return output_check(job->output, figure_extensions, job->inputs, job->input_count);
 }
 
 static int job_open(render_job *job) {
   const cli_value *values = job->values;
   int exit_code = render_check_options(values);
   if (exit_code == EXIT_CODE_OK) exit_code = choose_output(job);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(values, &job->overlay);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   cli_host_options options = {.quiet = values[RENDER_QUIET].given,
                               .progress = true,
@@ -103,10 +106,17 @@ static int protect_what_was_read(const render_job *job) {
 }
 
 static int job_load(render_job *job) {
+  render_overlay_set_size(job->values, NULL, job->size_text);
   int exit_code = render_load_inputs(&job->host, job->values, job->inputs, &job->bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK) render_overlay_set_size(job->values, job->scene, job->size_text);
   if (exit_code == EXIT_CODE_OK)
     exit_code = render_change_scene(&job->host, job->values, job->bare, &job->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = protect_what_was_read(job);
+  hl_error error = {0};
+  hl_status status = exit_code == EXIT_CODE_OK && !job->values[RENDER_PRINT_SCENE].given
+                         ? overlay_check_scene(job->host.context, &job->overlay, job->scene, &error)
+                         : HL_OK;
+  if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_CHANGE, status, &error);
   job->result.seconds.load = clock_seconds() - job->started;
   return exit_code;
 }
@@ -182,12 +192,13 @@ static int job_render(render_job *job) {
   return EXIT_CODE_OK;
 }
 
-static hl_status write_to_stdout(render_job *job, const hl_image_write_options *options, int *exit_code,
+static hl_status write_to_stdout(render_job *job, hl_image_write_options *options, int *exit_code,
                                  hl_error *error) {
   unsigned char *bytes = NULL;
   size_t length = 0;
   const char *format = format_names[job->values[RENDER_FORMAT].given ? job->values[RENDER_FORMAT].choice : 0];
-  hl_status status = hl_image_encode(job->host.context, job->image, format, options, &bytes, &length, error);
+  hl_status status = overlay_encode(job->host.context, &job->overlay, job->image, job->scene, format, options,
+                                    &bytes, &length, error);
   host_clear_bar(&job->host);
   if (status == HL_OK) *exit_code = output_to_stdout(bytes, length);
   hl_bytes_release(job->host.context, bytes);
@@ -222,7 +233,8 @@ static int job_write(render_job *job) {
     if (job->values[RENDER_DEPTH].given) options.png_depth = job->values[RENDER_DEPTH].choice;
     options.scene_json = scene_json;
     status = job->to_stdout ? write_to_stdout(job, &options, &exit_code, &error)
-                            : hl_image_write(job->host.context, job->image, job->output, &options, &error);
+                            : overlay_write(job->host.context, &job->overlay, job->image, job->scene,
+                                            job->output, &options, &error);
   }
   hl_text_release(job->host.context, scene_json);
   job->result.seconds.write = clock_seconds() - started;
@@ -253,6 +265,7 @@ static int job_report(render_job *job) {
 
 static void job_close(render_job *job, int exit_code) {
   ranks_check(job->ranks, exit_code);
+  overlay_release(&job->overlay);
   render_layers_release(&job->layers);
   hl_image_destroy(job->image);
   hl_scene_release(job->scene);
@@ -268,7 +281,8 @@ static int run_render(const cli_value *values, char **operands) {
                 "--%s makes one picture: of several share the pictures by --frames-over-ranks",
                 render_options[values[RENDER_STRIPS].given ? RENDER_STRIPS : RENDER_VOLUME].name);
   }
-  render_job job = {.values = values, .inputs = operands, .input = operands[0], .started = clock_seconds()};
+  render_job job = {.inputs = operands, .input = operands[0], .started = clock_seconds()};
+  memcpy(job.values, values, sizeof job.values);
   while (operands[job.input_count] != NULL) job.input_count++;
   job.result.input = job.input;
   job.result.reference = values[RENDER_REFERENCE].given;

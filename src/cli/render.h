@@ -4,6 +4,7 @@
 
 #include "host.h"
 #include "options.h"
+#include "overlay.h"
 
 enum render_option {
   RENDER_OUTPUT,
@@ -15,6 +16,14 @@ enum render_option {
   RENDER_EXPOSURE,
   RENDER_TONE,
   RENDER_LAYERS,
+  RENDER_WIDTH,
+  RENDER_DPI,
+  RENDER_SCALE_BAR,
+  RENDER_UNIT,
+  RENDER_LEGEND,
+  RENDER_AXES,
+  RENDER_ANNOTATE,
+  RENDER_FONT_SIZE,
   RENDER_VIEW,
   RENDER_UP,
   RENDER_AZIMUTH,
@@ -84,6 +93,8 @@ enum render_option {
   RENDER_QUIET,
   RENDER_OPTION_COUNT
 };
+
+enum { RENDER_SIZE_TEXT = 32 };
 
 /* Choices that another command has, too. */
 extern const cli_choice instruction_set_choices[];

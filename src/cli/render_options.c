@@ -8,7 +8,12 @@
 #include "render.h"
 
 static const cli_choice depths[] = {{"8", 8}, {"16", 16}, {NULL, 0}};
-static const cli_choice formats[] = {{"png", 0}, {"exr", 1}, {"npy", 2}, {NULL, 0}};
+static const cli_choice formats[] = {{"png", 0}, {"exr", 1}, {"npy", 2}, {"tif", 3},
+                                     {"pdf", 4}, {"svg", 5}, {NULL, 0}};
+static const cli_choice axes_choices[] = {
+    {"arrows", HL_AXES_ARROWS}, {"letters", HL_AXES_LETTERS}, {NULL, 0}};
+/* Names that has_extension() takes for the formats'. */
+static const char *const format_extensions[] = {"-.png", "-.exr", "-.npy", "-.tif", "-.pdf", "-.svg"};
 const cli_choice instruction_set_choices[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
                                               {"scalar", HL_INSTRUCTION_SET_SCALAR},
                                               {"avx2", HL_INSTRUCTION_SET_AVX2},
@@ -18,13 +23,13 @@ const cli_choice instruction_set_choices[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
                                               {NULL, 0}};
 
 const cli_option render_options[RENDER_OPTION_COUNT] = {
-    [RENDER_OUTPUT] =
-        {.name = "output",
-         .letter = 'o',
-         .kind = OPTION_TEXT,
-         .argument = "OUT",
-         .group = "Picture",
-         .help = "file to write: .png, .exr or .npy\n(default: INPUT's name with .png, in this folder)"},
+    [RENDER_OUTPUT] = {.name = "output",
+                       .letter = 'o',
+                       .kind = OPTION_TEXT,
+                       .argument = "OUT",
+                       .group = "Picture",
+                       .help = "file to write: .png, .exr, .npy, .tif, .pdf or .svg\n(default: INPUT's name "
+                               "with .png, in this folder)"},
     [RENDER_FORMAT] = {.name = "format",
                        .kind = OPTION_CHOICE,
                        .choices = formats,
@@ -41,7 +46,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_DEPTH] = {.name = "depth",
                       .kind = OPTION_CHOICE,
                       .choices = depths,
-                      .help = "bits per channel of a .png (default 8)"},
+                      .help = "bits per channel of a .png or .tif (default 8)"},
     [RENDER_NO_METADATA] = FRAMES_OPTION_NO_METADATA,
     [RENDER_BACKGROUND] = {.name = "background",
                            .kind = OPTION_COLOR,
@@ -68,6 +73,55 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
          .kind = OPTION_SWITCH,
          .help =
              "each light, its shadow, ambient, depth, normals:\nchannels of an .exr, files beside an .npy"},
+
+    [RENDER_WIDTH] = {.name = "width",
+                      .kind = OPTION_TEXT,
+                      .argument = "LENGTH",
+                      .group = "Figure",
+                      .help = "width on paper: 89mm, 8.9cm, 3.5in, 252pt; without\n--size the picture has as "
+                              "many pixels as --dpi wants"},
+    [RENDER_DPI] = {.name = "dpi",
+                    .kind = OPTION_NUMBERS,
+                    .argument = "N",
+                    .help = "pixels an inch, which .png and .tif state\n(default 300, with --width)",
+                    .count = 1,
+                    .low = 1,
+                    .high = 10000},
+    [RENDER_SCALE_BAR] = {.name = "scale-bar",
+                          .kind = OPTION_TEXT,
+                          .argument = "auto|LENGTH[@DEPTH]",
+                          .help = "a bar with its length, as 50um; of a perspective\npicture (not --ortho) "
+                                  "@target or at this distance\nfrom the eye"},
+    [RENDER_UNIT] = {.name = "unit",
+                     .kind = OPTION_TEXT,
+                     .argument = "UNIT",
+                     .help =
+                         "of lengths in the volumes' files, where these do\nnot tell it: mm, um, nm, ..."},
+    [RENDER_LEGEND] = {.name = "legend",
+                       .kind = OPTION_TEXT,
+                       .argument = "auto|TITLE",
+                       .help =
+                           "colours and opacity over the values, surfaces, or\nnames of labels; TITLE, as "
+                           "'Density (g/cm3)'"},
+    [RENDER_AXES] = {.name = "axes",
+                     .kind = OPTION_CHOICE,
+                     .choices = axes_choices,
+                     .help = "the world's directions as arrows, or the body's as\nletters at the edges"},
+    [RENDER_ANNOTATE] = {.name = "annotate",
+                         .kind = OPTION_TEXT,
+                         .argument = "TEXT@X,Y[,Z]",
+                         .help = "a text at fractions of the picture from its upper\nleft, or beside a point "
+                                 "X,Y,Z of the world; again for\nmore",
+                         .repeatable = true},
+    [RENDER_FONT_SIZE] = {.name = "font-size",
+                          .kind = OPTION_NUMBERS,
+                          .argument = "POINTS",
+                          .help =
+                              "of letters (default 7, of a picture 89 mm wide where\n--width and --dpi do "
+                              "not say)",
+                          .count = 1,
+                          .low = 1,
+                          .high = 200},
 
     [RENDER_VIEW] = {.name = "view",
                      .kind = OPTION_CHOICE,
@@ -436,18 +490,18 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_QUIET] = {.name = "quiet", .kind = OPTION_SWITCH, .help = "nothing on standard error but errors"},
 };
 
-/* Exposure and tone are for pictures on a screen. */
+/* Exposure, tone and depth are for pictures on a screen. */
 static int check_linear_output(const cli_value *values, bool named) {
-  static const int of_png[] = {RENDER_EXPOSURE, RENDER_TONE};
+  static const int of_png[] = {RENDER_EXPOSURE, RENDER_TONE, RENDER_DEPTH};
   const cli_value *output = &values[RENDER_OUTPUT], *format = &values[RENDER_FORMAT];
   for (size_t n = 0; n < sizeof of_png / sizeof *of_png; n++) {
     const char *name = render_options[of_png[n]].name;
     if (!values[of_png[n]].given) continue;
-    if (named && !has_extension(output->text, ".png"))
+    if (named && (has_extension(output->text, ".exr") || has_extension(output->text, ".npy")))
       return fail(EXIT_CODE_USAGE,
                   "--%s is for .png pictures, not for '%s': .exr and .npy hold linear light as it is", name,
                   output->text);
-    if (format->given && format->choice != 0)
+    if (format->given && (format->choice == 1 || format->choice == 2))
       return fail(EXIT_CODE_USAGE, "--%s is for .png pictures: %s holds linear light as it is", name,
                   format->text);
   }
@@ -457,11 +511,6 @@ static int check_linear_output(const cli_value *values, bool named) {
 int render_check_options(const cli_value *values) {
   const cli_value *output = &values[RENDER_OUTPUT], *format = &values[RENDER_FORMAT];
   bool named = output->given && strcmp(output->text, "-") != 0;
-  if (values[RENDER_DEPTH].given && named && !has_extension(output->text, ".png"))
-    return fail(EXIT_CODE_USAGE,
-                "--depth is for .png pictures, not for '%s': .exr and .npy hold 32-bit floats", output->text);
-  if (values[RENDER_DEPTH].given && format->given && format->choice != 0)
-    return fail(EXIT_CODE_USAGE, "--depth is for .png pictures: %s holds 32-bit floats", format->text);
   static const int pictures[] = {RENDER_OUTPUT, RENDER_FORMAT,    RENDER_DEPTH, RENDER_NO_METADATA,
                                  RENDER_LAYERS, RENDER_REFERENCE, RENDER_JSON};
   for (size_t n = 0; values[RENDER_PRINT_SCENE].given && n < sizeof pictures / sizeof *pictures; n++)
@@ -480,6 +529,10 @@ int render_check_options(const cli_value *values) {
   if (exit_code == EXIT_CODE_OK) exit_code = render_check_scene_options(values);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   exit_code = check_linear_output(values, named);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  exit_code = render_overlay_check_options(values, named           ? output->text
+                                                   : format->given ? format_extensions[format->choice]
+                                                                   : ".png");
   if (exit_code != EXIT_CODE_OK) return exit_code;
   for (int which = RENDER_LIGHT_POINTS; which <= RENDER_RAYS; which++)
     if (values[which].given && !values[RENDER_REFERENCE].given)

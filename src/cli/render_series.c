@@ -41,7 +41,8 @@ static int check_options(series_job *job) {
   job->pattern = output->text;
   int exit_code = frames_read_part(&job->values[RENDER_PART], &job->values[RENDER_RANKS], &job->part,
                                    &job->parts);
-  return exit_code == EXIT_CODE_OK ? render_check_options(job->values) : exit_code;
+  if (exit_code == EXIT_CODE_OK) exit_code = render_check_options(job->values);
+  return exit_code == EXIT_CODE_OK ? render_overlay_read(job->values, &job->overlay) : exit_code;
 }
 
 /* The folder of the pictures is made where it is missing. */
@@ -98,6 +99,7 @@ static int load_first(series_job *job, bool *bare) {
 /* The scene of the first file that can be read, with the other files that are in every picture. */
 static int make_scene(series_job *job) {
   bool bare;
+  render_overlay_set_size(job->values, NULL, job->size_text);
   int exit_code = load_first(job, &bare);
   size_t first = job->of_meshes ? 1 : 0;
   if (exit_code == EXIT_CODE_OK)
@@ -111,6 +113,7 @@ static int make_scene(series_job *job) {
 /* Whether the picture is there, of this scene, and not older than the file. */
 static bool is_there(const series_job *job, int number, const hl_scene *scene, const char *path) {
   struct stat picture, file;
+  if (overlay_is_any(&job->overlay)) return false; /* the scene that it carries does not tell of it */
   if (stat(path, &picture) != 0 || stat(job->files[number], &file) != 0 ||
       picture.st_mtim.tv_sec < file.st_mtim.tv_sec)
     return false;
@@ -145,7 +148,7 @@ static int make_picture(series_job *job, hl_renderer *renderer, int number) {
     return bad ? EXIT_CODE_OK : exit_code;
   }
   bool there = is_there(job, number, scene, path); /* of a label map */
-  const frames_style style = {.no_metadata = job->values[RENDER_NO_METADATA].given};
+  const frames_style style = {.no_metadata = job->values[RENDER_NO_METADATA].given, .overlay = &job->overlay};
   hl_status status = there ? HL_OK : frames_render(&job->host, renderer, scene, style, path, &error);
   hl_scene_release(scene);
   if (status == HL_ERROR_CANCELLED) return EXIT_CODE_INTERRUPTED;
@@ -211,6 +214,7 @@ int render_series(const cli_value *values, char **operands) {
     host_close(&job->host);
   }
   series_release_files(job);
+  overlay_release(&job->overlay);
   free(job);
   return exit_code;
 }

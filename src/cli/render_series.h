@@ -18,6 +18,8 @@ typedef struct series_job {
   int wanted, done, rendered, failed; /* pictures of this part; files of this part that cannot be read */
   double seconds;                     /* of the rendered ones */
   hl_scene *scene;                    /* owned; of the first file that can be read */
+  char size_text[RENDER_SIZE_TEXT];   /* of --size, where --width sets it */
+  cli_overlay overlay;                /* owned; drawn over each picture */
 } series_job;
 
 /* True if the text has one "%d" or "%04d", and no other '%' but "%%". */

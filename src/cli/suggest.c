@@ -12,9 +12,14 @@ static const struct {
     {"output", "out outfile output-file file save screenshot image png write destination dest render-output"},
     {"format", "type filetype file-format output-format ext extension render-format"},
     {"size",
-     "width height w h resolution res geometry resize scale dimensions image-size view-size window-size "
-     "pixels dpi "
+     "height w h resolution res geometry resize scale dimensions image-size view-size window-size pixels "
      "film-size imagesize"},
+    {"width", "figure-width paper-width print-width column-width"},
+    {"dpi", "ppi pixels-per-inch print-resolution"},
+    {"legend", "colorbar color-bar colourbar colour-bar scalar-bar scalarbar"},
+    {"scale-bar", "scalebar scalebars ruler"},
+    {"axes", "axis orientation-axes triad orientation-marker"},
+    {"annotate", "annotation text title caption"},
     {"depth", "bits bit-depth color-depth"},
     {"background",
      "bg background-color bgcolor background-colour canvas backdrop world-color transparent alpha"},
@@ -121,22 +126,5 @@ const char *scene_setting_of(const char *word) {
   if (word[0] == '\0' || strchr(word, ' ') != NULL) return NULL;
   for (size_t n = 0; n < sizeof settings / sizeof *settings; n++)
     if (has_word(settings[n].words, word)) return settings[n].json;
-  return NULL;
-}
-
-/* words: separated by blanks, in lower case */
-static const struct {
-  const char *advice, *words;
-} absent[] = {
-    {"pictures have no colour bar: 'halflight help colormaps' lists the maps, --range sets their ends",
-     "colorbar color-bar colourbar colour-bar legend scalar-bar scalarbar"},
-    {"nothing is written into pictures: with --ortho all lengths have one scale, to draw beside them",
-     "scalebar scale-bar ruler axes axis annotate annotation title caption"},
-};
-
-const char *advice_for_absent(const char *word) {
-  if (word[0] == '\0' || strchr(word, ' ') != NULL) return NULL;
-  for (size_t n = 0; n < sizeof absent / sizeof *absent; n++)
-    if (has_word(absent[n].words, word)) return absent[n].advice;
   return NULL;
 }

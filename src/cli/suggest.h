@@ -13,8 +13,4 @@ const char *synonym_of(const char *word, const char *(*option)(const void *data,
  * \"diffuse\": 0.7 } in a volume"); null: none is known. */
 const char *scene_setting_of(const char *word);
 
-/* What to do instead, for the name of something that pictures do not have ("colorbar"); null: none is known.
- */
-const char *advice_for_absent(const char *word);
-
 #endif

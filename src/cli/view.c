@@ -45,6 +45,14 @@ static bool has_render_option(size_t row) {
     case RENDER_DEPTH:
     case RENDER_NO_METADATA:
     case RENDER_LAYERS:
+    case RENDER_WIDTH:
+    case RENDER_DPI:
+    case RENDER_SCALE_BAR:
+    case RENDER_UNIT:
+    case RENDER_LEGEND:
+    case RENDER_AXES:
+    case RENDER_ANNOTATE:
+    case RENDER_FONT_SIZE:
     case RENDER_RANGE_OF_ALL:
     case RENDER_REFERENCE:
     case RENDER_LIGHT_POINTS:

@@ -15,7 +15,7 @@
 
 /* The registry of formats. */
 static const hl_image_format *const formats[] = {&hl_png_format, &hl_exr_format, &hl_npy_format,
-                                                 &hl_hdr_format};
+                                                 &hl_hdr_format, &hl_tif_format, &hl_tiff_format};
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
 
@@ -37,7 +37,8 @@ static const hl_image_format *written_format(const char *path) {
 
 static const hl_image_format *format_by_content(const unsigned char *bytes, size_t length) {
   for (size_t i = 0; i < FORMAT_COUNT; i++)
-    if (length >= formats[i]->mark_length && memcmp(bytes, formats[i]->mark, formats[i]->mark_length) == 0)
+    if (formats[i]->decode != NULL && length >= formats[i]->mark_length &&
+        memcmp(bytes, formats[i]->mark, formats[i]->mark_length) == 0)
       return formats[i];
   return NULL;
 }
@@ -93,7 +94,7 @@ hl_status hl_image_write(hl_context *context, const hl_image *image, const char 
   const hl_image_format *format = written_format(path);
   if (format == NULL)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "%s: unknown picture format: end the name in .png, .exr or .npy", path);
+                   "%s: unknown picture format: end the name in .png, .tif, .exr or .npy", path);
   status = write_layers(format, context, image, path, error);
   if (status != HL_OK) return status;
   hl_output output;
@@ -125,7 +126,8 @@ hl_status hl_image_encode(hl_context *context, const hl_image *image, const char
   const hl_image_format *format = written_format(extension);
   if (format == NULL)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "hl_image_encode: unknown picture format \"%.20s\": give png, exr or npy", format_name);
+                   "hl_image_encode: unknown picture format \"%.20s\": give png, tif, exr or npy",
+                   format_name);
   if (image->layer_count > 0 && !format->holds_layers)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "hl_image_encode: %s cannot hold layers in one stream: give exr", format->title);
@@ -144,7 +146,7 @@ void hl_bytes_release(hl_context *context, unsigned char *bytes) { hl_release(co
 
 static hl_status fail_unknown(const char *path, hl_error *error) {
   const hl_image_format *named = format_by_name(path);
-  if (named != NULL)
+  if (named != NULL && named->decode != NULL)
     return hl_fail_offset(error, HL_ERROR_INPUT, 0,
                           "%s: byte 0: not a %s file: its first bytes are not the mark of one", path,
                           named->title);

@@ -27,6 +27,9 @@ hl_status hl_image_check_options(const hl_image_write_options *options, const ch
   if (options->tone != HL_TONE_CLIP && options->tone != HL_TONE_FILMIC)
     return hl_fail(error, HL_ERROR_ARGUMENT, "%s: tone is %d, expected an hl_tone", caller,
                    (int)options->tone);
+  if (options->pixels_per_inch != 0 && !(options->pixels_per_inch >= 1 && options->pixels_per_inch <= 1e5))
+    return hl_fail(error, HL_ERROR_ARGUMENT, "%s: pixels_per_inch is %g, expected 0 or 1 to 100000", caller,
+                   options->pixels_per_inch);
   for (int c = 0; c < 3; c++)
     if (!isfinite(options->background[c]))
       return hl_fail(error, HL_ERROR_ARGUMENT, "%s: background[%d] is not a finite number", caller, c);

@@ -27,7 +27,8 @@ typedef struct hl_image_format {
   hl_status (*encode)(const hl_image *image, const hl_image_write_options *options, hl_output *output,
                       hl_error *error);
 
-  /* Decodes a file from its bytes, which may be anything; name: the file's name in errors. */
+  /* Decodes a file from its bytes, which may be anything; name: the file's name in errors. null: the format
+   * is written alone. */
   hl_status (*decode)(hl_context *context, const char *name, const unsigned char *bytes, size_t length,
                       hl_image **image, hl_error *error);
 
@@ -42,7 +43,8 @@ typedef struct hl_image_format {
                             hl_error *error);
 } hl_image_format;
 
-extern const hl_image_format hl_png_format, hl_exr_format, hl_npy_format, hl_hdr_format;
+extern const hl_image_format hl_png_format, hl_exr_format, hl_npy_format, hl_hdr_format, hl_tif_format,
+    hl_tiff_format;
 
 /* Refuses impossible options. caller: the public function's name, for errors. */
 hl_status hl_image_check_options(const hl_image_write_options *options, const char *caller, hl_error *error);

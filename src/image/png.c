@@ -257,6 +257,10 @@ static void write_png(png_writing *writing) {
                writing->options->background_transparent ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
                PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB_gAMA_and_cHRM(writing->png, writing->info, PNG_sRGB_INTENT_PERCEPTUAL);
+  if (writing->options->pixels_per_inch > 0) {
+    png_uint_32 per_metre = (png_uint_32)(writing->options->pixels_per_inch / 0.0254 + 0.5);
+    png_set_pHYs(writing->png, writing->info, per_metre, per_metre, PNG_RESOLUTION_METER);
+  }
   if (writing->options->scene_json != NULL) write_scene(writing);
   png_write_info(writing->png, writing->info);
   for (int y = 0; y < image->height; y++) {

@@ -22,6 +22,9 @@ hl_devices_find error
 hl_context_confine folder
 hl_context_limit_memory scratch_folder
 hl_image_write options
+hl_figure_write options
+hl_figure_encode options
+hl_figure_of_picture scene
 hl_image_encode options
 hl_volume_save_with options
 hl_image_to_srgb8 options
@@ -73,6 +76,7 @@ VALUES = {
     "const hl_volume_info *": "&info",
     "const hl_image_write_options *": "&write_options", "const hl_reference_options *": "&reference_options",
     "const hl_shapes_options *": "&shapes_options", "const hl_reslice_options *": "&reslice_options",
+    "const hl_figure *": "&figure", "hl_figure *": "&other_figure", "hl_figure_panel *": "&panel", "hl_overlay *": "&overlay",
     "hl_mesh *": "mesh", "const hl_mesh *": "mesh", "hl_mesh **": "&any",
     "const hl_mesh_description *": "&mesh_description",
     "hl_label **": "&any", "hl_label *": "NULL",
@@ -102,6 +106,9 @@ static hl_shapes_options shapes_options;
 static hl_option option = {"zoom", "2"};
 static hl_volume_info info;
 static hl_reslice_options reslice_options;
+static hl_figure figure, other_figure;
+static hl_figure_panel panel, other_panel;
+static hl_overlay overlay;
 static hl_transfer_function function;
 static hl_view view = {{0, 0, 1}, {0, -1, 0}, 30, 20, 0};
 static void *any;
@@ -121,6 +128,10 @@ static int make(void) {
   hl_reference_options_defaults(&reference_options);
   hl_shapes_options_defaults(&shapes_options);
   hl_reslice_options_defaults(&reslice_options);
+  hl_figure_defaults(&figure);
+  hl_figure_defaults(&other_figure);
+  hl_overlay_defaults(&other_panel.overlay);
+  figure.width = figure.height = 10, figure.panels = &other_panel;
   if (hl_context_create(NULL, &context, &error) != HL_OK) return 0;
   static const uint32_t triangle[1][3] = {{0, 1, 2}};
   static const float corners[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

@@ -1,0 +1,113 @@
+/* halflight/figure.h - figures: pictures on a page, with scale bars, legends, axes and text over them.
+ *
+ * A figure is written as PDF or SVG (pictures as pixels, all else as vectors) or as PNG or TIFF (pixels). It
+ * is drawn after the pictures are rendered, by cairo and pango; a build without these refuses to draw, with
+ * HL_ERROR_UNSUPPORTED. Lengths on the page are in millimetres, sizes of letters in points (1/72 inch).
+ *
+ * Texts are UTF-8 and are drawn as they are: nothing in them is markup. Control characters but a line break,
+ * and bytes that are no UTF-8, are drawn as U+FFFD. */
+#ifndef HALFLIGHT_FIGURE_H
+#define HALFLIGHT_FIGURE_H
+
+#include "render.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* How the directions of the world are shown. */
+typedef enum hl_axes {
+  HL_AXES_NONE = 0,
+  HL_AXES_ARROWS = 1, /* three arrows at the lower right: x, y and z, or the body's directions where the file
+                         tells them */
+  HL_AXES_LETTERS = 2 /* the body's directions at the picture's edges: R or L, A or P, S or I; refused where
+                         the file does not tell them */
+} hl_axes;
+
+/* A text over a picture. */
+typedef struct hl_annotation {
+  const char *text;
+  double at[3]; /* fractions of the picture's width and height, from its upper left; at[2] is not used */
+  int in_world; /* non-zero: `at` is a point of the scene's world instead, which gets a ring */
+} hl_annotation;
+
+/* Instead of a depth: the distance from the eye to the camera's target. */
+#define HL_DEPTH_OF_TARGET (-1.0)
+
+/* What is drawn over one picture. Fill it by hl_overlay_defaults(): then nothing is. */
+typedef struct hl_overlay {
+  size_t struct_size;
+  int scale_bar;           /* non-zero: a bar at the lower left, with its length */
+  double scale_bar_length; /* in scale_bar_unit; 0: 1, 2 or 5 times a power of ten, at most a quarter of the
+                              picture's width */
+  const char *scale_bar_unit; /* of that length and of the text; null: world_unit, or one that suits it */
+  const char *world_unit; /* of one unit of length in the volumes' files: "m", "mm", "um", "nm", "A", ..., or
+                             any other text, which is written as it is; null: as the files tell, and where
+                             they tell none the bar is refused */
+  double
+      scale_bar_depth; /* for a perspective camera, which has no one scale: the distance from the eye at which
+                          the bar holds, in the scene's units, or HL_DEPTH_OF_TARGET; 0: the bar is refused */
+  int legend; /* non-zero: each visible volume's colours over its values, with their opacity, isosurfaces, or
+                 the names of its labels, at the right */
+  const char *legend_title; /* of the first volume, instead of its name; with the values' unit; may be null */
+  hl_axes axes;
+  const hl_annotation *annotations; /* [annotation_count] */
+  size_t annotation_count;
+  const char *letter; /* at the upper left, bold: "a"; may be null */
+} hl_overlay;
+
+HL_API void hl_overlay_defaults(hl_overlay *overlay);
+
+/* A picture on the page. */
+typedef struct hl_figure_panel {
+  const hl_image *image; /* borrowed; null: nothing is there but the overlay */
+  const hl_scene *scene; /* borrowed; of the picture: its background, exposure, camera and volumes; null: the
+                            overlay may hold annotations in fractions and a letter alone */
+  double left, top, width, height; /* on the page, millimetres from its upper left */
+  int frame;                       /* non-zero: a thin line around it, as of an inset */
+  hl_overlay overlay;
+} hl_figure_panel;
+
+typedef struct hl_figure {
+  size_t struct_size;            /* set by hl_figure_defaults() */
+  double width, height;          /* of the page, millimetres */
+  double pixels_per_inch;        /* of PNG and TIFF; default 300 */
+  double font_points;            /* size of letters; default 7 */
+  const char *font;              /* a family's name; default "Sans" */
+  double background[3];          /* linear RGB; default white */
+  int background_transparent;    /* default 0 */
+  const hl_figure_panel *panels; /* borrowed; [panel_count]; later ones are drawn over earlier ones */
+  size_t panel_count;
+} hl_figure;
+
+/* A page without panels. */
+HL_API void hl_figure_defaults(hl_figure *figure);
+
+/* A page that one picture fills: sets the figure's and the panel's sizes, and figure->panels. width: in
+ * millimetres; 0: not stated, and the page is as wide as gives letters of 7 points a 36th of its width, but
+ * at least 9 pixels. figure and panel must have their defaults. */
+HL_API void hl_figure_of_picture(const hl_image *image, const hl_scene *scene, double width,
+                                 hl_figure *figure, hl_figure_panel *panel);
+
+/* Draws the figure as pixels, width x pixels_per_inch / 25.4 by the same of height, rounded. A picture whose
+ * pixels fit the page's keeps them bit by bit, as 8-bit sRGB. *image is owned by the caller. */
+HL_API HL_WARN_UNUSED hl_status hl_figure_draw(hl_context *context, const hl_figure *figure, hl_image **image,
+                                               hl_error *error);
+
+/* Writes the figure in the format of the path's extension: .pdf, .svg, .png, .tif or .tiff. The file appears
+ * whole or not at all. options: for PNG and TIFF: scene_json, and the size that they state as
+ * pixels_per_inch; may be null: the figure's pixels_per_inch. */
+HL_API HL_WARN_UNUSED hl_status hl_figure_write(hl_context *context, const hl_figure *figure,
+                                                const char *path, const hl_image_write_options *options,
+                                                hl_error *error);
+
+/* The same bytes in memory; format: "pdf", "svg", "png" or "tif". *bytes: [*length], owned by the caller
+ * (hl_bytes_release()). */
+HL_API HL_WARN_UNUSED hl_status hl_figure_encode(hl_context *context, const hl_figure *figure,
+                                                 const char *format, const hl_image_write_options *options,
+                                                 unsigned char **bytes, size_t *length, hl_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

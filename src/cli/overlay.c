@@ -1,0 +1,86 @@
+/* cli/overlay.c - pictures as files, with what is drawn over them. */
+#include "overlay.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double millimetres_per_inch = 25.4;
+
+static bool is_vectors(const char *path) {
+  return has_extension(path, ".pdf") || has_extension(path, ".svg");
+}
+
+void overlay_release(cli_overlay *overlay) {
+  for (int n = 0; n < MAXIMUM_REPEATS; n++) free(overlay->texts[n]);
+}
+
+bool overlay_is_any(const cli_overlay *overlay) {
+  return overlay->drawn || overlay->width > 0 || overlay->pixels_per_inch > 0;
+}
+
+/* The picture's page. image may be null: then width and height are the scene's. */
+static void make_figure(const cli_overlay *overlay, const hl_image *image, const hl_scene *scene,
+                        hl_figure *figure, hl_figure_panel *panel) {
+  double width = overlay->width;
+  if (width == 0 && overlay->pixels_per_inch > 0)
+    width = hl_image_width(image) * millimetres_per_inch / overlay->pixels_per_inch;
+  hl_figure_defaults(figure);
+  *panel = (hl_figure_panel){0};
+  hl_overlay_defaults(&panel->overlay);
+  hl_figure_of_picture(image, scene, width, figure, panel);
+  if (overlay->font_points > 0) figure->font_points = overlay->font_points;
+  panel->overlay = overlay->overlay;
+}
+
+hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, const hl_scene *scene,
+                              hl_error *error) {
+  const hl_scene_description *description = hl_scene_describe(scene);
+  hl_figure figure;
+  hl_figure_panel panel;
+  hl_image *trial = NULL;
+  if (!overlay->drawn) return HL_OK;
+  hl_status status = hl_image_create(context, description->width, description->height, &trial, error);
+  if (status == HL_OK) {
+    make_figure(overlay, trial, scene, &figure, &panel);
+    hl_image_destroy(trial);
+    trial = NULL;
+    panel.image = NULL;
+    figure.pixels_per_inch = fmax(1, figure.pixels_per_inch / 8);
+    status = hl_figure_draw(context, &figure, &trial, error);
+  }
+  hl_image_destroy(trial);
+  return status;
+}
+
+/* Sets the size that a file of pixels states; false: the picture is written as it is, without a figure. */
+static bool begin(const cli_overlay *overlay, const hl_image *image, const hl_scene *scene, bool vectors,
+                  hl_image_write_options *options, hl_figure *figure, hl_figure_panel *panel) {
+  if (overlay == NULL) return false;
+  make_figure(overlay, image, scene, figure, panel);
+  figure->background_transparent = options->background_transparent;
+  if (overlay->pixels_per_inch > 0) options->pixels_per_inch = overlay->pixels_per_inch;
+  else options->pixels_per_inch = overlay->width > 0 ? figure->pixels_per_inch : 0;
+  return overlay->drawn || vectors;
+}
+
+hl_status overlay_write(hl_context *context, const cli_overlay *overlay, const hl_image *image,
+                        const hl_scene *scene, const char *path, hl_image_write_options *options,
+                        hl_error *error) {
+  hl_figure figure;
+  hl_figure_panel panel;
+  if (begin(overlay, image, scene, is_vectors(path), options, &figure, &panel))
+    return hl_figure_write(context, &figure, path, options, error);
+  return hl_image_write(context, image, path, options, error);
+}
+
+hl_status overlay_encode(hl_context *context, const cli_overlay *overlay, const hl_image *image,
+                         const hl_scene *scene, const char *format, hl_image_write_options *options,
+                         unsigned char **bytes, size_t *length, hl_error *error) {
+  hl_figure figure;
+  hl_figure_panel panel;
+  bool vectors = strcmp(format, "pdf") == 0 || strcmp(format, "svg") == 0;
+  if (begin(overlay, image, scene, vectors, options, &figure, &panel))
+    return hl_figure_encode(context, &figure, format, options, bytes, length, error);
+  return hl_image_encode(context, image, format, options, bytes, length, error);
+}

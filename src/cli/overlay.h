@@ -1,0 +1,40 @@
+/* cli/overlay.h - what the options of `halflight render` draw over its pictures, and the pictures' files. */
+#ifndef HL_CLI_OVERLAY_H
+#define HL_CLI_OVERLAY_H
+
+#include "host.h"
+#include "options.h"
+
+typedef struct cli_overlay {
+  hl_overlay overlay; /* its texts are those of the options, or owned below */
+  hl_annotation notes[MAXIMUM_REPEATS];
+  char *texts[MAXIMUM_REPEATS]; /* owned; of `notes` */
+  char unit[40];                /* of --scale-bar */
+  double width;                 /* of --width, millimetres; 0: not stated */
+  double pixels_per_inch;       /* that files state, of --dpi; 0: as --width wants, or none */
+  double font_points;           /* 0: the default */
+  bool drawn;                   /* anything is drawn over pictures */
+} cli_overlay;
+
+void overlay_release(cli_overlay *overlay);
+
+/* Whether pictures differ from those that their scenes alone tell of: by what is drawn, or by their stated
+ * size. */
+bool overlay_is_any(const cli_overlay *overlay);
+
+/* Finds out, before the picture is made, whether all can be drawn over it. */
+hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, const hl_scene *scene,
+                              hl_error *error);
+
+/* Writes a picture, with what is drawn over it, in the format that the path ends in. options: the scene's,
+ * as they are for hl_image_write(). overlay: may be null. */
+hl_status overlay_write(hl_context *context, const cli_overlay *overlay, const hl_image *image,
+                        const hl_scene *scene, const char *path, hl_image_write_options *options,
+                        hl_error *error);
+
+/* The same bytes in memory; format: "png" and so on. */
+hl_status overlay_encode(hl_context *context, const cli_overlay *overlay, const hl_image *image,
+                         const hl_scene *scene, const char *format, hl_image_write_options *options,
+                         unsigned char **bytes, size_t *length, hl_error *error);
+
+#endif

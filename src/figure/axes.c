@@ -1,0 +1,124 @@
+/* figure/axes.c - the directions of the world: arrows at the lower right, or letters at the picture's edges.
+ *
+ * Where a volume's file tells the anatomy, directions have its letters: R or L for the body's right and left,
+ * A and P for front and back, S and I for head and feet. */
+#include <string.h>
+
+#include "figure/overlay.h"
+#include "scene/camera.h"
+
+/* What the ends of the world's axes are called: [axis][0: the negative end, 1: the positive one]. */
+typedef const char *axis_names[3][2];
+
+static const axis_names *names_of(hl_space space) {
+  static const axis_names plain = {{"\u2212x", "x"}, {"\u2212y", "y"}, {"\u2212z", "z"}};
+  static const axis_names ras = {{"L", "R"}, {"P", "A"}, {"I", "S"}},
+                          lps = {{"R", "L"}, {"A", "P"}, {"I", "S"}},
+                          las = {{"R", "L"}, {"P", "A"}, {"I", "S"}};
+  switch (space) {
+    case HL_SPACE_RAS: return &ras;
+    case HL_SPACE_LPS: return &lps;
+    case HL_SPACE_LAS: return &las;
+    default: return &plain;
+  }
+}
+
+/* The world's axis, turned into the picture: right, up, and towards the eye. */
+static vec3 seen(const hl_map *map, int axis) {
+  vec3 unit = {axis == 0, axis == 1, axis == 2};
+  return (vec3){vec3_dot(unit, map->right), vec3_dot(unit, map->up), -vec3_dot(unit, map->forward)};
+}
+
+/* ---- arrows ---- */
+
+/* An arrow to (x, y) from the origin, whose head is filled. */
+static void draw_arrow(const hl_ink *ink, double from_x, double from_y, double x, double y) {
+  const double length = hypot(x, y), head = fmin(0.5 * ink->size, length);
+  cairo_new_path(ink->cairo);
+  cairo_move_to(ink->cairo, from_x, from_y);
+  cairo_line_to(ink->cairo, from_x + x, from_y + y);
+  if (length > 0.2 * ink->size) {
+    double ux = x / length * head, uy = y / length * head;
+    cairo_move_to(ink->cairo, from_x + x - ux - 0.4 * uy, from_y + y - uy + 0.4 * ux);
+    cairo_line_to(ink->cairo, from_x + x, from_y + y);
+    cairo_line_to(ink->cairo, from_x + x - ux + 0.4 * uy, from_y + y - uy - 0.4 * ux);
+  }
+  hl_ink_stroke(ink, 0.11 * ink->size);
+}
+
+static void draw_arrows(const hl_ink *ink, const hl_overlay_place *place) {
+  const axis_names *names = names_of(hl_scene_space(place->scene));
+  const double length = 2.1 * ink->size, room = length + 1.1 * ink->size;
+  const double x = place->picture.left + place->picture.width - place->margin - room;
+  const double y = place->picture.top + place->picture.height - place->margin - room;
+  int order[3] = {0, 1, 2}; /* the farthest first */
+  for (int a = 0; a < 2; a++)
+    for (int b = 0; b < 2; b++)
+      if (seen(&place->map, order[b]).z > seen(&place->map, order[b + 1]).z) {
+        int later = order[b];
+        order[b] = order[b + 1];
+        order[b + 1] = later;
+      }
+  for (int a = 0; a < 3; a++) {
+    vec3 way = seen(&place->map, order[a]);
+    draw_arrow(ink, x, y, length * way.x, -length * way.y);
+    double flat = hypot(way.x, way.y), out = length * flat + 0.65 * ink->size;
+    double ux = flat > 1e-6 ? way.x / flat : 0.7, uy = flat > 1e-6 ? way.y / flat : 0.7;
+    hl_ink_text(ink, &(hl_line_of_text){.text = (*names)[order[a]][1],
+                                        .x = x + out * ux,
+                                        .y = y - out * uy,
+                                        .align_x = 0.5,
+                                        .align_y = 0.5});
+  }
+}
+
+/* ---- letters ---- */
+
+/* The name of a direction of the picture: the axes that lead there by more than half, the greatest first. */
+static void name_direction(const hl_overlay_place *place, const axis_names *names, vec3 way, char name[8]) {
+  double part[3] = {way.x, way.y, way.z};
+  name[0] = '\0';
+  for (int turn = 0; turn < 2; turn++) {
+    int greatest = 0;
+    for (int axis = 1; axis < 3; axis++)
+      if (fabs(part[axis]) > fabs(part[greatest])) greatest = axis;
+    if (fabs(part[greatest]) < 0.4) break;
+    strncat(name, (*names)[greatest][part[greatest] > 0], 3);
+    part[greatest] = 0;
+  }
+  (void)place;
+}
+
+static hl_status draw_letters(const hl_ink *ink, const hl_overlay_place *place, hl_error *error) {
+  hl_space space = hl_scene_space(place->scene);
+  if (space == HL_SPACE_UNKNOWN)
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "axes: the file does not tell the body's directions: letters are for files that do; give arrows");
+  const axis_names *names = names_of(space);
+  const hl_rectangle picture = place->picture;
+  const vec3 right = place->map.right, up = place->map.up;
+  const struct {
+    vec3 way;
+    double x, y;
+  } edges[4] = {{right, 1, 0.5}, {vec3_scale(right, -1), 0, 0.5}, {up, 0.5, 0}, {vec3_scale(up, -1), 0.5, 1}};
+  for (int edge = 0; edge < 4; edge++) {
+    char name[8];
+    name_direction(place, names, edges[edge].way, name);
+    hl_ink_text(ink,
+                &(hl_line_of_text){
+                    .text = name,
+                    .x = picture.left + place->margin + edges[edge].x * (picture.width - 2 * place->margin),
+                    .y = picture.top + place->margin + edges[edge].y * (picture.height - 2 * place->margin),
+                    .align_x = edges[edge].x,
+                    .align_y = edges[edge].y,
+                    .scale = 1.2});
+  }
+  return HL_OK;
+}
+
+hl_status hl_overlay_axes(const hl_ink *ink, const hl_overlay_place *place, hl_error *error) {
+  if (place->overlay->axes == HL_AXES_LETTERS) return draw_letters(ink, place, error);
+  draw_arrows(ink, place);
+  return HL_OK;
+}

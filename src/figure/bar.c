@@ -1,0 +1,141 @@
+/* figure/bar.c - the scale bar: how long a length of the world is in the picture.
+ *
+ * Units are never invented: they are those of the volumes' files, or what the overlay says. Every visible
+ * volume must agree on them, with the scale that the scene gives it. A perspective picture has a scale for
+ * each depth: the bar holds at the one that the overlay states, and says so. */
+#include <stdio.h>
+#include <string.h>
+
+#include "figure/overlay.h"
+#include "figure/units.h"
+#include "text/plain.h"
+
+enum { LABEL_BYTES = 96 };
+
+/* The unit of the scene's lengths. */
+typedef struct bar_unit {
+  const char *name;    /* of a unit of the files */
+  const hl_unit *unit; /* null: a name that is not known */
+  double per_scene;    /* units of the files per unit of the scene */
+} bar_unit;
+
+static const char *name_of(const hl_scene_volume *volume) {
+  return volume->name != NULL ? volume->name : volume->file != NULL ? volume->file : "volume";
+}
+
+/* Takes a volume's unit, or compares it with that of the volumes before. */
+static hl_status add_volume(const hl_overlay *overlay, const hl_scene_volume *volume, bar_unit *unit,
+                            hl_error *error) {
+  const char *name = overlay->world_unit != NULL ? overlay->world_unit : hl_volume_unit(volume->volume);
+  const double *axes = volume->axis_scale;
+  if (name == NULL)
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "scale bar: the file of '%.60s' does not tell the unit of its lengths: say it, as --unit mm",
+        name_of(volume));
+  if (axes[0] != axes[1] || axes[0] != axes[2])
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "scale bar: the scene stretches '%.60s' along its axes: no one scale is left",
+                   name_of(volume));
+  double per_scene = 1 / fabs(volume->scale * axes[0]);
+  if (unit->name != NULL && (strcmp(unit->name, name) != 0 || fabs(unit->per_scene / per_scene - 1) > 1e-9))
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "scale bar: the lengths of '%.60s' have another unit or scale than those of the volumes before",
+        name_of(volume));
+  *unit = (bar_unit){name, hl_unit_find(name), per_scene};
+  return HL_OK;
+}
+
+static hl_status find_unit(const hl_overlay_place *place, bar_unit *unit, hl_error *error) {
+  hl_status status = HL_OK;
+  for (size_t v = 0; status == HL_OK && v < place->scene->volume_count; v++)
+    if (place->scene->volumes[v].visible)
+      status = add_volume(place->overlay, &place->scene->volumes[v], unit, error);
+  if (status != HL_OK || unit->name != NULL) return status;
+  if (place->overlay->world_unit == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "scale bar: no volume tells the unit of lengths: say it, as --unit mm");
+  *unit = (bar_unit){place->overlay->world_unit, hl_unit_find(place->overlay->world_unit), 1};
+  return HL_OK;
+}
+
+static hl_status find_scale(const hl_overlay_place *place, double *scale, hl_error *error) {
+  double depth = place->overlay->scale_bar_depth;
+  if (depth == HL_DEPTH_OF_TARGET) depth = place->map.target_depth;
+  if (place->map.perspective && !(depth > 0))
+    return hl_fail(
+        error, HL_ERROR_ARGUMENT,
+        "scale bar: a perspective picture has a scale for each depth: use --ortho, or say where the bar "
+        "holds, as --scale-bar auto@target");
+  *scale = hl_map_scale(&place->map, depth);
+  return HL_OK;
+}
+
+/* The length of a unit that is written, in units of the files. */
+static hl_status length_of(const hl_unit *written, const bar_unit *unit, double *length, hl_error *error) {
+  if (written == unit->unit) *length = 1;
+  else if (unit->unit != NULL) *length = written->metres / unit->unit->metres;
+  else
+    return hl_fail(error, HL_ERROR_ARGUMENT, "scale bar: '%.20s' is no unit that '%.20s' can be turned into",
+                   unit->name, written->symbol);
+  return HL_OK;
+}
+
+/* Chooses the bar's length, in units of the files, and writes it down. */
+static hl_status choose_length(const hl_overlay *overlay, const bar_unit *unit, double longest,
+                               double *length, char label[LABEL_BYTES], hl_error *error) {
+  const hl_unit *written = unit->unit;
+  double in_files = 1; /* units of the files in a unit that is written */
+  hl_status status = HL_OK;
+  const char *name = overlay->scale_bar_unit;
+  if (name != NULL) {
+    written = hl_unit_find(name);
+    if (written == NULL && strcmp(name, unit->name) != 0)
+      return hl_fail(error, HL_ERROR_ARGUMENT,
+                     "scale bar: '%.20s' is no unit of length: give m, cm, mm, um, nm or A", name);
+  } else if (unit->unit != NULL && overlay->scale_bar_length <= 0) {
+    double number = hl_round_length(longest);
+    if (number < 1 || number >= 1000) written = hl_unit_for(number * unit->unit->metres);
+  }
+  if (written != NULL) status = length_of(written, unit, &in_files, error);
+  if (status != HL_OK) return status;
+  double number = overlay->scale_bar_length > 0 ? overlay->scale_bar_length
+                                                : hl_round_length(longest / in_files);
+  *length = number * in_files;
+  hl_plain_print(label, LABEL_BYTES, "%.4g %.40s", number, written != NULL ? written->symbol : unit->name);
+  return HL_OK;
+}
+
+hl_status hl_overlay_bar(const hl_ink *ink, const hl_overlay_place *place, hl_error *error) {
+  bar_unit unit = {0};
+  double scale = 0, length = 0;
+  char label[LABEL_BYTES];
+  hl_status status = find_unit(place, &unit, error);
+  if (status == HL_OK) status = find_scale(place, &scale, error);
+  double file_unit = scale / unit.per_scene; /* points */
+  if (status == HL_OK)
+    status = choose_length(place->overlay, &unit, place->picture.width / 4 / file_unit, &length, label,
+                           error);
+  if (status != HL_OK) return status;
+  double width = length * file_unit, room = place->picture.width - 2 * place->margin;
+  if (!(width <= room))
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "scale bar: %s is longer than the picture is wide: give a shorter length", label);
+  const double thick = 0.22 * ink->size, left = place->picture.left + place->margin;
+  const double bottom = place->picture.top + place->picture.height - place->margin;
+  if (place->map.perspective && place->overlay->scale_bar_depth == HL_DEPTH_OF_TARGET)
+    strncat(label, " at the target", LABEL_BYTES - strlen(label) - 1);
+  else if (place->map.perspective) {
+    size_t used = strlen(label);
+    hl_plain_print(label + used, LABEL_BYTES - used, " at depth %.4g", place->overlay->scale_bar_depth);
+  }
+  hl_ink_bar(ink, (hl_rectangle){left, bottom - thick, width, thick});
+  double wide, high;
+  hl_line_of_text line = {.text = label, .y = bottom - 1.6 * thick, .align_y = 1, .wide_most = room};
+  hl_ink_measure(ink, &(hl_line_of_text){.text = label}, &wide, &high);
+  bool centred = wide <= width;
+  line.x = centred ? left + (width - wide) / 2 : left;
+  hl_ink_text(ink, &line);
+  return HL_OK;
+}

@@ -1,0 +1,41 @@
+/* figure/ink.h - texts, lines and fills over a picture, readable on any ground: each has a halo. */
+#ifndef HL_FIGURE_INK_H
+#define HL_FIGURE_INK_H
+
+#include <pango/pangocairo.h>
+#include <stdbool.h>
+
+#include "figure/map.h"
+
+typedef struct hl_ink {
+  cairo_t *cairo;     /* borrowed; its unit is the point */
+  double size;        /* of letters, points */
+  const char *font;   /* borrowed */
+  double color, halo; /* grey, sRGB: 0 black, 1 white */
+} hl_ink;
+
+/* A text to draw. */
+typedef struct hl_line_of_text {
+  const char *text;
+  double x, y;             /* points */
+  double align_x, align_y; /* which part of the text lies there: 0 its left or top, 1 its right or bottom */
+  double scale;            /* of the letters' size; 0 counts as 1 */
+  bool bold;
+  bool paragraphs;  /* a line break begins a new line; else it is drawn as a sign */
+  double wide_most; /* points; a longer line ends in "..."; 0: as long as it is */
+} hl_line_of_text;
+
+void hl_ink_text(const hl_ink *ink, const hl_line_of_text *line);
+/* The room that it takes, points. */
+void hl_ink_measure(const hl_ink *ink, const hl_line_of_text *line, double *width, double *height);
+
+/* Fills a rectangle with the ink. */
+void hl_ink_bar(const hl_ink *ink, hl_rectangle bar);
+
+/* Strokes the surface's path, with its halo. width: points. */
+void hl_ink_stroke(const hl_ink *ink, double width);
+
+/* Sets a colour, linear RGB, as cairo's source. */
+void hl_ink_source(cairo_t *cairo, const double linear[3], double alpha);
+
+#endif

@@ -1,0 +1,298 @@
+/* figure/legend.c - what colours mean: for each visible volume its transfer function's colours over its
+ * values, with their opacity, its isosurfaces, or the names of its labels.
+ *
+ * The strip has the function's own colours, as a surface shows them that is fully lit; the curve beside it is
+ * the opacity, from none at the strip to the greatest that the function has in the range. The range is that
+ * of the values which have opacity. */
+#include <stdio.h>
+#include <string.h>
+
+#include "figure/overlay.h"
+#include "figure/units.h"
+#include "scene/transfer_function.h"
+#include "text/plain.h"
+
+enum { STEPS_BETWEEN_POINTS = 8, CURVE_STEPS = 256, TICKS_MOST = 6, NUMBER_BYTES = 40 };
+
+/* Sizes in sizes of letters. */
+static const double row = 1.35, strip_width = 1.1, curve_width = 1.6, gap = 0.45, swatch = 0.9;
+
+/* The legend as it grows downwards. */
+typedef struct legend {
+  const hl_ink *ink;
+  const hl_overlay_place *place;
+  double right, bottom; /* points */
+  double y;             /* of what comes next, points */
+  double strip_height;  /* points */
+} legend;
+
+/* ---- what a volume has ---- */
+
+static bool has_strip(const hl_scene_volume *volume) {
+  const hl_transfer_function *function = &volume->transfer_function;
+  if (volume->label_count > 0) return false;
+  for (size_t p = 0; p < function->opacity_count; p++)
+    if (function->opacity[p].opacity > 0) return true;
+  return false;
+}
+
+static size_t count_rows(const hl_scene_volume *volume) {
+  size_t count = volume->iso_count;
+  for (size_t l = 0; l < volume->label_count; l++) count += volume->labels[l].visible != 0;
+  for (size_t l = 0; l < volume->mask.label_count; l++)
+    count += volume->mask.labels[l].visible != 0 && volume->mask.labels[l].tint > 0;
+  return count;
+}
+
+/* The name above a volume's part; null: it has none. */
+static const char *title_of(const hl_overlay_place *place, const hl_scene_volume *volume, bool first) {
+  if (first && place->overlay->legend_title != NULL) return place->overlay->legend_title;
+  if (volume->name != NULL && volume->name[0] != '\0') return volume->name;
+  for (size_t a = 0; a < hl_volume_array_count(volume->volume); a++) {
+    hl_volume_array array = {.struct_size = sizeof array};
+    if (hl_volume_get_array(volume->volume, a, &array) == HL_OK && array.chosen && array.name[0] != '\0')
+      return array.name;
+  }
+  return NULL;
+}
+
+/* ---- rows: a colour and a name ---- */
+
+/* A text that ends at the right margin, or begins at `left` where that is not negative. */
+static double widest_row(const legend *made, const char *text) {
+  double width, height;
+  hl_ink_measure(made->ink, &(hl_line_of_text){.text = text}, &width, &height);
+  return width;
+}
+
+static bool fits(const legend *made) { return made->y + row * made->ink->size <= made->bottom; }
+
+static void draw_row(legend *made, double left, const double color[3], const char *text) {
+  const double size = made->ink->size, side = swatch * size, middle = made->y + row * size / 2;
+  cairo_t *cairo = made->ink->cairo;
+  cairo_rectangle(cairo, left, middle - side / 2, side, side);
+  hl_ink_stroke(made->ink, 0.12 * size);
+  cairo_rectangle(cairo, left, middle - side / 2, side, side);
+  hl_ink_source(cairo, color, 1);
+  cairo_fill(cairo);
+  hl_ink_text(made->ink, &(hl_line_of_text){.text = text,
+                                            .x = left + side + gap * size,
+                                            .y = middle,
+                                            .align_y = 0.5,
+                                            .wide_most = made->right - left - side - gap * size + 1});
+  made->y += row * size;
+}
+
+/* What the n-th row of a volume shows; false past the last. */
+static bool row_of(const hl_scene_volume *volume, size_t n, const double **color,
+                   char text[NUMBER_BYTES * 4]) {
+  const size_t counts[2] = {volume->label_count, volume->mask.label_count};
+  const hl_label *lists[2] = {volume->labels, volume->mask.labels};
+  for (int list = 0; list < 2; list++)
+    for (size_t l = 0; l < counts[list]; l++) {
+      const hl_label *label = &lists[list][l];
+      if (!label->visible || (list == 1 && !(label->tint > 0)) || n-- > 0) continue;
+      *color = label->color;
+      if (label->name != NULL && label->name[0] != '\0')
+        snprintf(text, NUMBER_BYTES * 4, "%.*s", NUMBER_BYTES * 4 - 1, label->name);
+      else hl_plain_print(text, NUMBER_BYTES, "%g", label->value);
+      return true;
+    }
+  if (n >= volume->iso_count) return false;
+  *color = volume->iso[n].color;
+  hl_plain_print(text, NUMBER_BYTES, "= %.6g", volume->iso[n].value);
+  return true;
+}
+
+static void draw_rows(legend *made, const hl_scene_volume *volume) {
+  const size_t count = count_rows(volume);
+  const double size = made->ink->size, most = 0.45 * made->place->picture.width;
+  double widest = 0;
+  const double *color;
+  char text[NUMBER_BYTES * 4];
+  for (size_t n = 0; row_of(volume, n, &color, text); n++) widest = fmax(widest, widest_row(made, text));
+  double left = made->right - fmin(most, widest + (swatch + gap) * size);
+  for (size_t n = 0; row_of(volume, n, &color, text) && fits(made); n++) {
+    bool last = made->y + 2 * row * size > made->bottom && n + 1 < count;
+    if (!last) {
+      draw_row(made, left, color, text);
+      continue;
+    }
+    snprintf(text, sizeof text, "\u2026 %zu more", count - n);
+    hl_ink_text(made->ink, &(hl_line_of_text){.text = text, .x = made->right, .y = made->y, .align_x = 1});
+    made->y += row * size;
+  }
+}
+
+/* ---- the strip ---- */
+
+/* From the strip's lower end at 0 to its upper one at 1. */
+static void add_stop(cairo_pattern_t *pattern, const double range[2], double value, const double color[3],
+                     cairo_t *scratch) {
+  double r, g, b, a;
+  hl_ink_source(scratch, color, 1);
+  cairo_pattern_get_rgba(cairo_get_source(scratch), &r, &g, &b, &a);
+  cairo_pattern_add_color_stop_rgb(pattern, (value - range[0]) / (range[1] - range[0]), r, g, b);
+}
+
+/* The function's colours between two neighbouring points: straight in linear light, so curved in sRGB. */
+static void add_stretch(cairo_pattern_t *pattern, const double range[2], const hl_color_point *from,
+                        const hl_color_point *to, cairo_t *scratch) {
+  const int steps = to->value > from->value ? STEPS_BETWEEN_POINTS : 1;
+  for (int s = 0; s < steps; s++) {
+    double part = (double)s / steps, color[3];
+    for (int c = 0; c < 3; c++) color[c] = from->color[c] + part * (to->color[c] - from->color[c]);
+    add_stop(pattern, range, from->value + part * (to->value - from->value), color, scratch);
+  }
+  add_stop(pattern, range, to->value, to->color, scratch);
+}
+
+/* The colours from `bottom` up to `top`, both of the page. */
+static cairo_pattern_t *make_pattern(const hl_transfer_function *function, const double range[2],
+                                     double bottom, double top, cairo_t *scratch) {
+  cairo_pattern_t *pattern = cairo_pattern_create_linear(0, bottom, 0, top);
+  hl_color_point from = {.value = range[0]}, to = {.value = range[1]};
+  hl_transfer_function_color(function, from.value, from.color);
+  for (size_t p = 0; p < function->color_count; p++) {
+    const hl_color_point *point = &function->color[p];
+    if (point->value <= range[0] || point->value >= range[1]) continue;
+    add_stretch(pattern, range, &from, point, scratch);
+    from = *point;
+  }
+  hl_transfer_function_color(function, to.value, to.color);
+  add_stretch(pattern, range, &from, &to, scratch);
+  return pattern;
+}
+
+/* The opacity, leftwards from x. */
+static void draw_curve(const legend *made, const hl_transfer_function *function, const double range[2],
+                       double x, double bottom, double top) {
+  cairo_t *cairo = made->ink->cairo;
+  const double size = made->ink->size;
+  double greatest = 0;
+  for (size_t p = 0; p < function->opacity_count; p++)
+    greatest = fmax(greatest, function->opacity[p].opacity);
+  cairo_new_path(cairo);
+  cairo_move_to(cairo, x, bottom);
+  for (int s = 0; s <= CURVE_STEPS; s++) {
+    double part = (double)s / CURVE_STEPS, value = range[0] + part * (range[1] - range[0]);
+    double opacity = hl_transfer_function_opacity(function, value);
+    cairo_line_to(cairo, x - curve_width * size * opacity / greatest, bottom + part * (top - bottom));
+  }
+  cairo_line_to(cairo, x, top);
+  cairo_close_path(cairo);
+  cairo_set_source_rgba(cairo, made->ink->color, made->ink->color, made->ink->color, 0.3);
+  cairo_fill_preserve(cairo);
+  hl_ink_stroke(made->ink, 0.06 * size);
+}
+
+/* The least of 1, 2 and 5 times powers of ten that is at least this. */
+static double round_step(double least) {
+  double power = pow(10, floor(log10(least)));
+  static const double steps[] = {1, 2, 5, 10};
+  for (int s = 0; s < 3; s++)
+    if (steps[s] * power >= least * (1 - 1e-9)) return steps[s] * power;
+  return 10 * power;
+}
+
+static void write_number(double value, double step, const double range[2], char text[NUMBER_BYTES]) {
+  double greatest = fmax(fabs(range[0]), fabs(range[1]));
+  int decimals = step < 1 ? (int)ceil(-log10(step) - 1e-9) : 0;
+  if (fabs(value) < step / 1e6) value = 0;
+  if (greatest >= 1e6 || step < 1e-4) hl_plain_print(text, NUMBER_BYTES, "%.4g", value);
+  else hl_plain_print(text, NUMBER_BYTES, "%.*f", decimals, value);
+}
+
+/* Numbers beside the strip, whose right edge is x; returns the room that they take, and draws where `draws`.
+ */
+static double draw_numbers(const legend *made, const double range[2], double x, double bottom, double top,
+                           bool draws) {
+  const double size = made->ink->size, ticks = fmin(TICKS_MOST, (bottom - top) / (1.6 * size));
+  const double step = round_step((range[1] - range[0]) / fmax(ticks, 1));
+  double widest = 0;
+  for (double n = ceil(range[0] / step - 1e-9); n * step <= range[1] + 1e-9 * step; n++) {
+    char text[NUMBER_BYTES];
+    write_number(n * step, step, range, text);
+    widest = fmax(widest, widest_row(made, text));
+    if (!draws) continue;
+    double y = bottom + (n * step - range[0]) / (range[1] - range[0]) * (top - bottom);
+    cairo_new_path(made->ink->cairo);
+    cairo_move_to(made->ink->cairo, x, y);
+    cairo_line_to(made->ink->cairo, x + 0.3 * size, y);
+    hl_ink_stroke(made->ink, 0.08 * size);
+    hl_ink_text(made->ink,
+                &(hl_line_of_text){.text = text, .x = x + (0.3 + gap) * size, .y = y, .align_y = 0.5});
+  }
+  return widest + (0.3 + gap) * size;
+}
+
+static hl_status draw_strip(legend *made, const hl_scene_volume *volume, hl_error *error) {
+  const hl_transfer_function *function = &volume->transfer_function;
+  const double size = made->ink->size, top = made->y + 0.5 * size, bottom = top + made->strip_height;
+  double range[2];
+  hl_status status = hl_transfer_function_visible_range(volume->volume, function, range, error);
+  if (status != HL_OK) return status;
+  double numbers = draw_numbers(made, range, 0, bottom, top, false), x = made->right - numbers;
+  cairo_t *cairo = made->ink->cairo;
+  cairo_save(cairo);
+  cairo_pattern_t *pattern = make_pattern(function, range, bottom, top, cairo);
+  cairo_restore(cairo);
+  draw_curve(made, function, range, x - strip_width * size, bottom, top);
+  cairo_rectangle(cairo, x - strip_width * size, top, strip_width * size, bottom - top);
+  hl_ink_stroke(made->ink, 0.12 * size);
+  cairo_rectangle(cairo, x - strip_width * size, top, strip_width * size, bottom - top);
+  cairo_set_source(cairo, pattern);
+  cairo_fill(cairo);
+  cairo_pattern_destroy(pattern);
+  draw_numbers(made, range, x, bottom, top, true);
+  made->y = bottom + size;
+  return HL_OK;
+}
+
+/* ---- the whole ---- */
+
+static hl_status draw_volume(legend *made, const hl_scene_volume *volume, bool first, hl_error *error) {
+  const char *title = title_of(made->place, volume, first);
+  if (volume->transfer_function.plane.second != HL_SECOND_NONE)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "legend: the transfer function of '%.60s' takes two numbers: a strip of colours shows one",
+                   title != NULL ? title : "the volume");
+  if (title != NULL && fits(made)) {
+    hl_ink_text(made->ink, &(hl_line_of_text){
+                               .text = title, .x = made->right, .y = made->y, .align_x = 1, .wide_most = 0});
+    made->y += row * made->ink->size;
+  }
+  hl_status status = has_strip(volume) ? draw_strip(made, volume, error) : HL_OK;
+  if (status == HL_OK) draw_rows(made, volume);
+  made->y += 0.5 * made->ink->size;
+  return status;
+}
+
+hl_status hl_overlay_legend(const hl_ink *ink, const hl_overlay_place *place, hl_error *error) {
+  const hl_scene_description *scene = place->scene;
+  const double height = place->picture.height - 2 * place->margin;
+  size_t strips = 0, lines = 0;
+  for (size_t v = 0; v < scene->volume_count; v++) {
+    const hl_scene_volume *volume = &scene->volumes[v];
+    if (!volume->visible) continue;
+    strips += has_strip(volume);
+    lines += 1 + count_rows(volume);
+  }
+  if (lines == 0) return hl_fail(error, HL_ERROR_ARGUMENT, "legend: the picture has no volume");
+  double left_for_strips = 0.75 * height - (double)lines * row * ink->size;
+  double each = strips > 0 ? left_for_strips / (double)strips - 1.5 * ink->size : 0;
+  legend made = {.ink = ink,
+                 .place = place,
+                 .right = place->picture.left + place->picture.width - place->margin,
+                 .bottom = place->picture.top + place->picture.height - place->margin,
+                 .y = place->picture.top + place->margin,
+                 .strip_height = fmax(3 * ink->size, fmin(9 * ink->size, each))};
+  hl_status status = HL_OK;
+  bool first = true;
+  for (size_t v = 0; status == HL_OK && v < scene->volume_count; v++) {
+    if (!scene->volumes[v].visible) continue;
+    status = draw_volume(&made, &scene->volumes[v], first, error);
+    first = false;
+  }
+  return status;
+}

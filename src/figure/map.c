@@ -1,0 +1,33 @@
+/* figure/map.c - where points of a scene's world lie on the page.
+ *
+ * Derived from the camera's definition: a picture of height h shows, orthographically, camera->height units
+ * of the world; in perspective, at the depth d, 2 d tan(fovy / 2). */
+#include "figure/map.h"
+
+#include "scene/camera.h"
+
+hl_map hl_map_of(const hl_camera *camera, hl_rectangle picture) {
+  hl_map map = {.eye = vec3_of(camera->position),
+                .center_x = picture.left + picture.width / 2,
+                .center_y = picture.top + picture.height / 2,
+                .perspective = camera->type == HL_CAMERA_PERSPECTIVE};
+  hl_camera_basis(camera, &map.right, &map.up, &map.forward);
+  double seen = map.perspective ? 2 * tan(camera->fovy_deg * HL_PI / 360) : camera->height;
+  map.scale = picture.height / seen;
+  map.target_depth = vec3_length(vec3_subtract(vec3_of(camera->target), map.eye));
+  return map;
+}
+
+double hl_map_scale(const hl_map *map, double depth) {
+  return map->perspective ? map->scale / depth : map->scale;
+}
+
+bool hl_map_point(const hl_map *map, vec3 world, double *x, double *y) {
+  vec3 from_eye = vec3_subtract(world, map->eye);
+  double depth = vec3_dot(from_eye, map->forward);
+  if (map->perspective && !(depth > 0)) return false;
+  double scale = hl_map_scale(map, depth);
+  *x = map->center_x + scale * vec3_dot(from_eye, map->right);
+  *y = map->center_y - scale * vec3_dot(from_eye, map->up);
+  return true;
+}

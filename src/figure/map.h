@@ -1,0 +1,32 @@
+/* figure/map.h - where points of a scene's world lie on the page. */
+#ifndef HL_FIGURE_MAP_H
+#define HL_FIGURE_MAP_H
+
+#include <halflight/figure.h>
+#include <stdbool.h>
+
+#include "core/vector.h"
+
+/* A rectangle on the page, in points; y runs downwards. */
+typedef struct hl_rectangle {
+  double left, top, width, height;
+} hl_rectangle;
+
+/* The camera's map from the world to the rectangle that the picture fills. */
+typedef struct hl_map {
+  vec3 eye, right, up, forward;
+  double center_x, center_y; /* points */
+  double scale; /* orthographic: points per unit of the world; perspective: the same at a depth of 1 */
+  bool perspective;
+  double target_depth; /* distance from the eye to the camera's target along the line of sight */
+} hl_map;
+
+hl_map hl_map_of(const hl_camera *camera, hl_rectangle picture);
+
+/* Points per unit of the world, at a depth where the camera is a perspective one. */
+double hl_map_scale(const hl_map *map, double depth);
+
+/* The point of the page; false where it lies behind the eye. */
+bool hl_map_point(const hl_map *map, vec3 world, double *x, double *y);
+
+#endif

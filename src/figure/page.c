@@ -1,0 +1,238 @@
+/* figure/page.c - draws a figure's panels, through cairo, on pixels, PDF or SVG.
+ *
+ * In: the figure, checked. Out: a picture, or the bytes of a file. On all three the unit of length is the
+ * point; pictures are laid into their rectangles as 8-bit sRGB, and where their pixels and the page's agree
+ * nothing is resampled. Cairo allocates its surfaces outside of the context's memory. */
+#include "figure/page.h"
+
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "figure/overlay.h"
+#include "image/format.h"
+#include "image/srgb.h"
+
+static const double points_per_millimetre = 72 / 25.4;
+
+/* ---- a picture as a surface ---- */
+
+static const cairo_user_data_key_t bytes_key;
+
+typedef struct page_bytes {
+  hl_context *context;
+  unsigned char *bytes;
+} page_bytes;
+
+static void release_bytes(void *data) {
+  page_bytes *owned = data;
+  hl_context *context = owned->context;
+  hl_release(context, owned->bytes);
+  hl_release(context, owned);
+}
+
+/* From R, G, B, A to cairo's word with alpha in its greatest byte, multiplied into the colours. */
+static void to_cairo(unsigned char *row, int width) {
+  for (int x = 0; x < width; x++, row += 4) {
+    uint32_t alpha = row[3], word = alpha << 24;
+    for (int c = 0; c < 3; c++) word |= (row[c] * alpha + 127) / 255 << (16 - 8 * c);
+    memcpy(row, &word, sizeof word);
+  }
+}
+
+static hl_status make_surface(hl_context *context, const hl_figure_panel *panel, cairo_surface_t **surface,
+                              hl_error *error) {
+  const int width = hl_image_width(panel->image), height = hl_image_height(panel->image);
+  const size_t stride = 4 * (size_t)width, size = stride * (size_t)height;
+  hl_image_write_options options;
+  hl_image_write_options_defaults(&options);
+  if (panel->scene != NULL) hl_scene_write_options(panel->scene, &options);
+  page_bytes *owned = hl_allocate(context, 1, sizeof *owned);
+  unsigned char *bytes = hl_allocate(context, size, 1);
+  hl_status status = owned != NULL && bytes != NULL ? HL_OK
+                                                    : hl_fail_memory(error, size, "a figure's picture");
+  if (status == HL_OK) status = hl_image_to_srgb8(panel->image, &options, bytes, stride, error);
+  if (status != HL_OK) {
+    hl_release(context, owned);
+    hl_release(context, bytes);
+    return status;
+  }
+  for (int y = 0; y < height; y++) to_cairo(bytes + (size_t)y * stride, width);
+  *owned = (page_bytes){context, bytes};
+  *surface = cairo_image_surface_create_for_data(bytes, CAIRO_FORMAT_ARGB32, width, height, (int)stride);
+  if (cairo_surface_set_user_data(*surface, &bytes_key, owned, release_bytes) == CAIRO_STATUS_SUCCESS)
+    return HL_OK;
+  cairo_surface_destroy(*surface);
+  release_bytes(owned);
+  return hl_fail_memory(error, size, "a figure's picture");
+}
+
+/* ---- panels ---- */
+
+static hl_rectangle rectangle_of(const hl_figure_panel *panel) {
+  return (hl_rectangle){panel->left * points_per_millimetre, panel->top * points_per_millimetre,
+                        panel->width * points_per_millimetre, panel->height * points_per_millimetre};
+}
+
+/* Moves a rectangle's edges to the device's pixels. */
+static void snap(cairo_t *cairo, hl_rectangle *place) {
+  double right = place->left + place->width, bottom = place->top + place->height;
+  cairo_user_to_device(cairo, &place->left, &place->top);
+  cairo_user_to_device(cairo, &right, &bottom);
+  place->left = round(place->left);
+  place->top = round(place->top);
+  place->width = fmax(1, round(right) - place->left);
+  place->height = fmax(1, round(bottom) - place->top);
+}
+
+static hl_status draw_picture(hl_context *context, cairo_t *cairo, const hl_figure_panel *panel, bool pixels,
+                              hl_error *error) {
+  cairo_surface_t *surface = NULL;
+  hl_status status = make_surface(context, panel, &surface, error);
+  if (status != HL_OK) return status;
+  hl_rectangle place = rectangle_of(panel);
+  const int width = hl_image_width(panel->image), height = hl_image_height(panel->image);
+  cairo_save(cairo);
+  if (pixels) {
+    snap(cairo, &place);
+    cairo_identity_matrix(cairo);
+  }
+  bool exact = pixels && place.width == width && place.height == height;
+  cairo_translate(cairo, place.left, place.top);
+  if (!exact) cairo_scale(cairo, place.width / width, place.height / height);
+  cairo_set_source_surface(cairo, surface, 0, 0);
+  if (pixels && !exact) cairo_pattern_set_extend(cairo_get_source(cairo), CAIRO_EXTEND_PAD); /* whole edges */
+  cairo_pattern_set_filter(cairo_get_source(cairo), exact ? CAIRO_FILTER_NEAREST : CAIRO_FILTER_GOOD);
+  cairo_rectangle(cairo, 0, 0, width, height);
+  if (exact) cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE);
+  cairo_fill(cairo);
+  cairo_restore(cairo);
+  cairo_surface_destroy(surface);
+  return HL_OK;
+}
+
+static double luma(const double linear[3]) { /* BT.709 */
+  return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
+}
+
+/* White on a dark ground, black on a bright one; half of sRGB's scale is 0.214 of linear light. */
+static hl_ink ink_for(cairo_t *cairo, const hl_figure *figure, const hl_figure_panel *panel) {
+  const double *ground = figure->background;
+  bool paper = figure->background_transparent != 0;
+  if (panel->image != NULL && panel->scene != NULL) {
+    const hl_scene_description *scene = hl_scene_describe(panel->scene);
+    paper = scene->background_transparent && paper;
+    if (!scene->background_transparent) ground = scene->background;
+  }
+  bool dark = !paper && luma(ground) < 0.214;
+  return (hl_ink){.cairo = cairo,
+                  .size = figure->font_points,
+                  .font = figure->font,
+                  .color = dark ? 1 : 0,
+                  .halo = dark ? 0 : 1};
+}
+
+static void draw_frame(const hl_ink *ink, hl_rectangle place) {
+  cairo_new_path(ink->cairo);
+  cairo_rectangle(ink->cairo, place.left, place.top, place.width, place.height);
+  cairo_set_source_rgb(ink->cairo, ink->color, ink->color, ink->color);
+  cairo_set_line_width(ink->cairo, 0.1 * ink->size);
+  cairo_stroke(ink->cairo);
+}
+
+static hl_status draw_panels(hl_context *context, const hl_figure *figure, cairo_t *cairo, bool pixels,
+                             hl_error *error) {
+  if (!figure->background_transparent) {
+    hl_ink_source(cairo, figure->background, 1);
+    cairo_paint(cairo);
+  }
+  hl_status status = HL_OK;
+  for (size_t p = 0; status == HL_OK && p < figure->panel_count; p++) {
+    const hl_figure_panel *panel = &figure->panels[p];
+    if (panel->image != NULL) status = draw_picture(context, cairo, panel, pixels, error);
+    hl_ink ink = ink_for(cairo, figure, panel);
+    if (panel->frame) draw_frame(&ink, rectangle_of(panel));
+    if (status == HL_OK)
+      status = hl_overlay_draw(&ink, &panel->overlay, panel->scene, rectangle_of(panel), error);
+  }
+  if (status == HL_OK && cairo_status(cairo) != CAIRO_STATUS_SUCCESS)
+    status = hl_fail(error, HL_ERROR_INTERNAL, "figure: cairo says: %s",
+                     cairo_status_to_string(cairo_status(cairo)));
+  return status;
+}
+
+/* ---- pixels ---- */
+
+static void from_cairo(const unsigned char *row, int width, const float linear[256], float *pixel) {
+  for (int x = 0; x < width; x++, row += 4, pixel += 4) {
+    uint32_t word;
+    memcpy(&word, row, sizeof word);
+    uint32_t alpha = word >> 24;
+    for (int c = 0; c < 3; c++) {
+      uint32_t code = word >> (16 - 8 * c) & 0xff;
+      uint32_t unassociated = alpha > 0 ? (code * 255 + alpha / 2) / alpha : 0;
+      pixel[c] = linear[unassociated > 255 ? 255 : unassociated] * (float)alpha / 255;
+    }
+    pixel[3] = (float)alpha / 255;
+  }
+}
+
+static hl_status to_image(hl_context *context, cairo_surface_t *surface, hl_image **image, hl_error *error) {
+  const int width = cairo_image_surface_get_width(surface), height = cairo_image_surface_get_height(surface);
+  hl_status status = hl_image_create(context, width, height, image, error);
+  if (status != HL_OK) return status;
+  float linear[256];
+  for (int code = 0; code < 256; code++) linear[code] = (float)hl_srgb_decode((double)code / 255);
+  cairo_surface_flush(surface);
+  const unsigned char *row = cairo_image_surface_get_data(surface);
+  float *pixels = hl_image_pixels(*image);
+  for (int y = 0; y < height;
+       y++, row += cairo_image_surface_get_stride(surface), pixels += 4 * (size_t)width)
+    from_cairo(row, width, linear, pixels);
+  return HL_OK;
+}
+
+hl_status hl_page_draw(hl_context *context, const hl_figure *figure, int width, int height, hl_image **image,
+                       hl_error *error) {
+  cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height);
+  cairo_t *cairo = cairo_create(surface);
+  hl_status status = cairo_status(cairo) == CAIRO_STATUS_SUCCESS
+                         ? HL_OK
+                         : hl_fail_memory(error, 4 * (size_t)width * (size_t)height, "a figure's pixels");
+  cairo_scale(cairo, width / (figure->width * points_per_millimetre),
+              height / (figure->height * points_per_millimetre));
+  if (status == HL_OK) status = draw_panels(context, figure, cairo, true, error);
+  if (status == HL_OK) status = to_image(context, surface, image, error);
+  cairo_destroy(cairo);
+  cairo_surface_destroy(surface);
+  return status;
+}
+
+/* ---- files of vectors ---- */
+
+static cairo_status_t on_write(void *closure, const unsigned char *bytes, unsigned length) {
+  FILE *file = closure;
+  return fwrite(bytes, 1, length, file) == length ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
+}
+
+hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl_error *error) {
+  const double width = figure->width * points_per_millimetre, height = figure->height * points_per_millimetre;
+  cairo_surface_t *surface = pdf ? cairo_pdf_surface_create_for_stream(on_write, output->file, width, height)
+                                 : cairo_svg_surface_create_for_stream(on_write, output->file, width, height);
+  if (pdf) cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, "Halflight");
+  cairo_t *cairo = cairo_create(surface);
+  hl_status status = draw_panels(output->context, figure, cairo, false, error);
+  cairo_destroy(cairo);
+  errno = 0;
+  cairo_surface_finish(surface);
+  cairo_status_t finished = cairo_surface_status(surface);
+  cairo_surface_destroy(surface);
+  if (status == HL_OK && finished == CAIRO_STATUS_WRITE_ERROR) return hl_fail_write(error, output, errno);
+  if (status == HL_OK && finished != CAIRO_STATUS_SUCCESS)
+    status = hl_fail(error, HL_ERROR_INTERNAL, "%s: cannot write: cairo says: %s", output->path,
+                     cairo_status_to_string(finished));
+  return status;
+}

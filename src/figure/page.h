@@ -1,0 +1,17 @@
+/* figure/page.h - a figure drawn on a surface of cairo: pixels, PDF or SVG. */
+#ifndef HL_FIGURE_PAGE_H
+#define HL_FIGURE_PAGE_H
+
+#include <halflight/figure.h>
+#include <stdbool.h>
+
+#include "core/file.h"
+
+/* Draws the figure as pixels, width x height. *image is owned by the caller. */
+hl_status hl_page_draw(hl_context *context, const hl_figure *figure, int width, int height, hl_image **image,
+                       hl_error *error);
+
+/* Writes the figure as PDF, or as SVG, to output->file. */
+hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl_error *error);
+
+#endif

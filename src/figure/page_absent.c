@@ -1,0 +1,18 @@
+/* figure/page_absent.c - in place of page.c in builds without cairo and pango: refuses to draw. */
+#include "figure/page.h"
+
+static hl_status refuse(hl_error *error) {
+  return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                 "this build draws no figures: install cairo and pango, and build with -Dfigures=enabled");
+}
+
+hl_status hl_page_draw(hl_context *context, const hl_figure *figure, int width, int height, hl_image **image,
+                       hl_error *error) {
+  (void)context, (void)figure, (void)width, (void)height, (void)image;
+  return refuse(error);
+}
+
+hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl_error *error) {
+  (void)figure, (void)pdf, (void)output;
+  return refuse(error);
+}

@@ -1,0 +1,12 @@
+/* image/tiff_absent.c - in place of tiff.c in builds without libtiff: refuses to write TIFF files. */
+#include "image/format.h"
+
+static hl_status encode(const hl_image *image, const hl_image_write_options *options, hl_output *output,
+                        hl_error *error) {
+  (void)image, (void)options;
+  return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                 "%s: this build has no libtiff: write a .png, or build with -Dtiff=enabled", output->path);
+}
+
+const hl_image_format hl_tif_format = {.extension = ".tif", .title = "TIFF", .encode = encode};
+const hl_image_format hl_tiff_format = {.extension = ".tiff", .title = "TIFF", .encode = encode};

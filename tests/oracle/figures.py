@@ -1,0 +1,324 @@
+#!/usr/bin/env python3
+"""Figures of `halflight render` and `halflight figure`, read back by other programs: poppler for PDF, an XML parser for SVG, Pillow for PNG and TIFF.
+
+usage: figures.py PROGRAM
+"""
+import json
+import math
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as XML
+from pathlib import Path
+
+try:
+    import nibabel
+    import numpy as np
+    from PIL import Image
+except ImportError as absent:
+    print(f"{absent.name} is not installed")
+    sys.exit(77)
+if not shutil.which("pdftotext"):
+    print("poppler-utils is not installed")
+    sys.exit(77)
+
+program = str(Path(sys.argv[1]).resolve())
+checks = 0
+
+
+def check(condition, what):
+    global checks
+    checks += 1
+    if not condition:
+        sys.exit(f"wrong: {what}")
+
+
+def halflight(*arguments, exit_code=0):
+    done = subprocess.run([program, "render", *map(str, arguments)], capture_output=True, text=True)
+    check(done.returncode == exit_code, f"{arguments}: exit code {done.returncode}: {done.stderr}")
+    return done.stdout if exit_code == 0 else done.stderr
+
+
+def tool(*arguments):
+    return subprocess.run(arguments, check=True, capture_output=True, text=True).stdout
+
+
+def words(path):
+    return tool("pdftotext", path, "-")
+
+
+def nifti(path, voxels, spacing, unit="mm"):
+    image = nibabel.Nifti1Image(voxels, np.diag([spacing] * 3 + [1.0]))
+    image.header.set_xyzt_units(unit)
+    image.to_filename(path)
+
+
+def paths(svg):
+    """[(style, numbers of its path)] of the vectors of an SVG."""
+    found = []
+    for element in XML.parse(svg).iter("{http://www.w3.org/2000/svg}path"):
+        style = element.get("style") or ";".join(f"{k}:{v}" for k, v in element.attrib.items())
+        found.append((style, [float(n) for n in re.findall(r"-?\d+(?:\.\d+)?", element.get("d"))]))
+    return found
+
+
+def white_rectangles(svg):
+    """(left, top, width, height) of the rectangles filled with white."""
+    found = []
+    for style, n in paths(svg):
+        if re.search(r"fill:rgb\(100%,100%,100%\)", style) and "stroke:none" in style and len(n) == 10:
+            found.append((min(n[::2]), min(n[1::2]), max(n[::2]) - min(n[::2]), max(n[1::2]) - min(n[1::2])))
+    return found
+
+
+# Two rods along the line of sight, 40 voxels apart: what a bar is measured against.
+rods = np.zeros((64, 64, 64), np.uint8)
+rods[12, 20:44, 32] = rods[52, 20:44, 32] = 255
+
+
+def rod_distance(picture):
+    """Between the two rods in a picture, in pixels: of the middles of their brightness."""
+    light = np.asarray(Image.open(picture).convert("L")).astype(float)
+    light = np.clip(light - np.median(light), 0, None).sum(0)
+    half = len(light) // 2
+    middle = [(light[part] * np.arange(len(light))[part]).sum() / light[part].sum() for part in (slice(0, half), slice(half, None))]
+    return middle[1] - middle[0]
+
+
+def bars():
+    for spacing, unit, length in (0.5, "mm", "20mm"), (2.0, "micron", "80um"), (1.0, "meter", "4000cm"), (0.25, "micron", "0.01mm"):
+        nifti("rods.nii", rods, spacing, unit)
+        look = ["rods.nii", "--ortho", "--view", "front", "--size", "400x300", "--quiet"]
+        halflight(*look, "-o", "plain.png")
+        halflight(*look, "--scale-bar", length, "-o", "bar.png")
+        halflight(*look, "--scale-bar", length, "-o", "bar.svg")
+        page = float(XML.parse("bar.svg").getroot().get("viewBox").split()[2])
+        (left, top, width, thick), = white_rectangles("bar.svg")
+        pixels = width * 400 / page
+        check(abs(pixels - rod_distance("plain.png")) < 0.3, f"{length}: {pixels} and {rod_distance('plain.png')} pixels")
+        row = np.asarray(Image.open("bar.png").convert("L"))[round((top + thick / 2) * 400 / page)]
+        check(abs(np.count_nonzero(row > 150) - pixels) <= 1, f"{length}: the bar of the PNG")
+        check(not np.array_equal(np.asarray(Image.open("bar.png")), np.asarray(Image.open("plain.png"))), "a bar is drawn")
+
+
+def chosen_lengths():
+    """The unit follows the length, and the length is 1, 2 or 5 times a power of ten, at most a quarter of the width."""
+    for spacing, unit in (0.5, "mm"), (0.0005, "mm"), (40.0, "mm"), (3.0, "meter"), (0.3, "micron"), (0.004, "micron"):
+        nifti("rods.nii", rods, spacing, unit)
+        look = ["rods.nii", "--ortho", "--size", "90x90", "--quiet"]
+        height = json.loads(halflight(*look, "--print-scene"))["camera"]["height"]
+        halflight(*look, "--scale-bar", "auto", "-o", "bar.pdf")
+        number, name = re.fullmatch(r"(\S+) (\S+)\s*", words("bar.pdf")).groups()
+        metres = {"nm": 1e-9, "µm": 1e-6, "mm": 1e-3, "m": 1}
+        part = float(number) * metres[name] / (height * {"mm": 1e-3, "meter": 1, "micron": 1e-6}[unit])
+        check(0.1 < part <= 0.25 and 1 <= float(number) < 1000 and number.rstrip("0") in ("1", "2", "5"), f"{number} {name} of {height} {unit}")
+
+
+def perspective():
+    nifti("rods.nii", rods, 1.0)
+    look = ["rods.nii", "--view", "front", "--size", "200x200", "--quiet"]
+    said = halflight(*look, "--scale-bar", "auto", "-o", "no.png", exit_code=2)
+    check("perspective" in said and "@target" in said and not Path("no.png").exists(), f"refused: {said}")
+    camera = json.loads(halflight(*look, "--print-scene"))["camera"]
+    distance = math.dist(camera["position"], camera["target"])
+    for depth, told in ("target", "at the target"), ("150", "at depth 150"):
+        halflight(*look, "--scale-bar", f"10mm@{depth}", "-o", "bar.svg")
+        halflight(*look, "--scale-bar", f"10mm@{depth}", "-o", "bar.pdf")
+        check(words("bar.pdf").split("\n")[0] == f"10 mm {told}", words("bar.pdf"))
+        away = distance if depth == "target" else 150
+        page = float(XML.parse("bar.svg").getroot().get("viewBox").split()[2])
+        expected = 10 / (2 * away * math.tan(math.radians(camera["fovy_deg"]) / 2)) * page
+        check(abs(white_rectangles("bar.svg")[0][2] - expected) < 0.01, f"at {depth}: {expected} points")
+
+
+def units_are_not_invented():
+    Path("plain_64x64x64_uint8.raw").write_bytes(rods.tobytes())
+    look = ["plain_64x64x64_uint8.raw", "--ortho", "--size", "60x60", "--quiet"]
+    said = halflight(*look, "--scale-bar", "auto", "-o", "no.png", exit_code=2)
+    check("unit" in said and not Path("no.png").exists(), said)
+    halflight(*look, "--scale-bar", "auto", "--unit", "kpc", "-o", "a.pdf")
+    check("kpc" in words("a.pdf"), words("a.pdf"))
+    halflight(*look, "--scale-bar", "20", "--unit", "code units", "-o", "a.pdf")
+    check(words("a.pdf").startswith("20 code units"), words("a.pdf"))
+    said = halflight(*look, "--scale-bar", "20um", "--unit", "code units", "-o", "no.png", exit_code=2)
+    check("code units" in said, said)
+    said = halflight(*look, "--axes", "letters", "-o", "no.png", exit_code=2)
+    check("body" in said, said)
+
+
+def physical_sizes():
+    nifti("rods.nii", rods, 1.0)
+    look = ["rods.nii", "--view", "iso", "--quiet"]
+    halflight(*look, "--width", "30mm", "--dpi", "150", "-o", "a.png")
+    halflight(*look, "--width", "30mm", "--dpi", "150", "-o", "a.tif")
+    halflight(*look, "--width", "30mm", "--dpi", "150", "-o", "a.pdf")
+    halflight(*look, "--width", "3cm", "--dpi", "150", "-o", "deep.tif", "--depth", "16")
+    png, tif = Image.open("a.png"), Image.open("a.tif")
+    wide = round(30 / 25.4 * 150)
+    check(png.size == (wide, wide) and abs(png.info["dpi"][0] - 150) < 0.02, f"{png.size} {png.info['dpi']}")
+    check(tif.size == png.size and tif.info["dpi"][0] == 150 and tif.tag_v2[296] == 2, f"{tif.info}")
+    check(np.array_equal(np.asarray(png.convert("RGB")), np.asarray(tif)), "the TIFF has the PNG's pixels")
+    check(Image.open("deep.tif").tag_v2[258] == (16, 16, 16), "16 bits")
+    page = re.search(r"Page size:\s+(\S+) x (\S+)", tool("pdfinfo", "a.pdf")).groups()
+    check(all(abs(float(side) - 30 / 25.4 * 72) < 0.3 for side in page), f"{page}")
+    tool("pdfimages", "-png", "a.pdf", "inside")
+    check(np.array_equal(np.asarray(Image.open("inside-000.png").convert("RGB")), np.asarray(png.convert("RGB"))), "the PDF has the PNG's pixels")
+    halflight(*look, "--size", "50x40", "-o", "unsized.png")
+    check("dpi" not in Image.open("unsized.png").info, "no size is invented")
+    halflight(*look, "--size", "50x40", "--dpi", "100", "--annotate", "x@0.5,0.5", "-o", "sized.png")
+    check(abs(Image.open("sized.png").info["dpi"][0] - 100) < 0.02, "--dpi alone")
+    said = halflight(*look, "--size", "50x40", "--dpi", "100", "--width", "89mm", "-o", "no.png", exit_code=2)
+    check("contradict" in said, said)
+
+
+def hostile_texts():
+    nifti("rods.nii", rods, 1.0)
+    text = "<b>a</b> & \"c\" \x1b[31m\u202edrow\x07"
+    look = ["rods.nii", "--size", "300x200", "--quiet", "--annotate", f"{text}@0.1,0.5"]
+    halflight(*look, "-o", "a.svg")
+    XML.parse("a.svg")
+    check(not re.search(r"[\x00-\x08\x0b-\x1f]", Path("a.svg").read_text()), "no control characters in the SVG")
+    halflight(*look, "-o", "a.pdf")
+    seen = words("a.pdf")
+    check('<b>a</b> & "c" ' in seen and "[31m" in seen and "drow" in seen and "\x1b" not in seen and "\u202e" not in seen, repr(seen))
+
+
+def srgb(linear):
+    return [0 if c <= 0 else 1 if c >= 1 else 12.92 * c if c <= 0.0031308 else 1.055 * c ** (1 / 2.4) - 0.055 for c in linear]
+
+
+def legends():
+    """The strip's colours are the function's, in the SVG's gradient and in the PNG's pixels."""
+    nifti("rods.nii", np.minimum(rods, 250), 1.0)
+    points = [[50, 0.02, 0.3, 0.9], [100, 0.9, 0.5, 0.05], [100, 0.1, 0.8, 0.1], [250, 1, 1, 0.2]]
+    Path("tf.json").write_text(json.dumps({"opacity": [[50, 0], [60, 1], [250, 0.2]], "color": points}))
+    look = ["rods.nii", "--tf", "tf.json", "--size", "500x500", "--quiet", "--legend", "Flow (m/s)"]
+    for name in "a.svg", "a.pdf", "a.png":
+        halflight(*look, "-o", name)
+    check("Flow (m/s)" in words("a.pdf"), words("a.pdf"))
+    numbers = [float(line) for line in words("a.pdf").split("\n") if re.fullmatch(r"[\d.]+", line)]
+    check(sorted(numbers) == [50, 100, 150, 200, 250], f"{numbers}")
+    table = np.array(points)
+
+    def color(value, before):
+        if value == 100:
+            return srgb(points[1 if before else 2][1:])
+        return srgb([np.interp(value, table[:, 0] + [0, 0, 1e-9, 0], table[:, c]) for c in (1, 2, 3)])
+
+    root = XML.parse("a.svg").getroot()
+    gradient, = root.iter("{http://www.w3.org/2000/svg}linearGradient")
+    stops = [(float(stop.get("offset")), [float(n) / 100 for n in re.findall(r"([\d.]+)%", stop.get("style") or stop.get("stop-color"))])
+             for stop in gradient.iter("{http://www.w3.org/2000/svg}stop")]
+    jump = []
+    for offset, found in stops:
+        value = 50 + 200 * offset
+        value = 100 if abs(value - 100) < 1e-3 else value
+        if value == 100:
+            jump.append(min((True, False), key=lambda before: max(abs(a - b) for a, b in zip(found, color(100, before)))))
+        expected = color(value, bool(jump) and jump[-1])
+        check(max(abs(a - b) for a, b in zip(found, expected)) < 0.002, f"at {value}: {found}, not {expected}")
+    check(len(stops) >= 20 and jump == sorted(jump, reverse=True) and len(set(jump)) == 2, "the jump at 100 has both colours")
+    bottom, top = float(gradient.get("y1")), float(gradient.get("y2"))
+    box, = [n for style, n in paths("a.svg") if "fill:url(#" in style and len(n) == 10]
+    scale = 500 / float(root.get("viewBox").split()[2])
+    picture = np.asarray(Image.open("a.png").convert("RGB")) / 255
+    for value in 60, 80, 95, 110, 150, 200, 240:
+        y = bottom + (value - 50) / 200 * (top - bottom)
+        found = picture[int(y * scale), int((min(box[::2]) + max(box[::2])) / 2 * scale)]
+        check(max(abs(found - color(value, True))) < 0.02, f"at {value}: {found}, not {color(value, True)}")
+
+
+def label_legends():
+    labels = np.zeros((32, 32, 32), np.uint8)
+    labels[4:14, 4:28, 4:28], labels[18:28, 4:28, 4:28] = 3, 7
+    nifti("labels.nii", labels, 1.0)
+    Path("table.txt").write_text("3 Liver<left> 255 0 0 0\n7 Kidney 0 128 255 0\n")
+    look = ["labels.nii", "--label-table", "table.txt", "--show", "all", "--size", "300x300", "--quiet", "--legend", "auto"]
+    halflight(*look, "-o", "a.pdf")
+    seen = words("a.pdf").split("\n")
+    check("Kidney" in seen and any(line.startswith("Liver") for line in seen), f"{seen}")
+    halflight(*look, "-o", "a.svg")
+    fills = [[float(n) for n in re.findall(r"([\d.]+)%", style)][:3] for style, n in paths("a.svg") if len(n) == 10]
+    for wanted in (100, 0, 0), (0, 128 / 2.55, 100):
+        check(any(len(fill) == 3 and max(abs(a - b) for a, b in zip(fill, wanted)) < 0.3 for fill in fills), f"{wanted} among {fills}")
+
+
+def letters():
+    nifti("rods.nii", rods, 1.0)
+    for view, expected in ("front", "SRLI"), ("left", "SAPI"), ("top", "ARLP"):
+        halflight("rods.nii", "--ortho", "--view", view, "--axes", "letters", "--size", "200x200", "--quiet", "-o", "a.pdf")
+        check(sorted(words("a.pdf").split()) == sorted(expected), f"{view}: {words('a.pdf')!r}")
+    boxes = re.findall(r'xMin="([\d.]+)" yMin="([\d.]+)"[^>]*>(\w)<', tool("pdftotext", "-bbox", "a.pdf", "-"))
+    place = {letter: (float(x), float(y)) for x, y, letter in boxes}
+    # From above, of a body that faces someone who stands before it: its front is below, its right at the left.
+    check(place["A"][1] > place["P"][1] and place["L"][0] > place["R"][0], f"{place}")
+
+
+def points_of_the_world():
+    """A ring lies on the voxel that it names."""
+    nifti("rods.nii", rods, 1.0)
+    look = ["rods.nii", "--ortho", "--view", "front", "--size", "400x400", "--quiet"]
+    camera = json.loads(halflight(*look, "--print-scene"))["camera"]
+    halflight(*look, "--annotate", "rod@52,32,32", "-o", "a.svg")
+    page = float(XML.parse("a.svg").getroot().get("viewBox").split()[2])
+    arc = next(n for style, n in paths("a.svg") if "stroke:rgb(100%" in style and "fill:none" in style)
+    middle = (min(arc[::2]) + max(arc[::2])) / 2 * 400 / page
+    halflight(*look, "-o", "plain.npy")
+    cover = np.load("plain.npy")[..., 3].sum(0)
+    halves = [(cover[part] * np.arange(400)[part]).sum() / cover[part].sum() + 0.5 for part in (slice(0, 200), slice(200, 400))]
+    check(min(abs(middle - half) for half in halves) < 0.2 and camera["height"] > 0, f"{middle} among {halves}")
+
+
+def pages():
+    """Panels on a page: places, letters, what is shared, insets."""
+    nifti("rods.nii", rods, 1.0)
+    nifti("far.nii", np.roll(rods, 9, 1) // 2, 1.0)
+    page = {"width": "100mm", "gap": "4mm", "dpi": 127, "share": ["camera", "light", "range"],
+            "options": {"ortho": True, "view": "front", "threshold": 60},
+            "panels": [{"input": "rods.nii", "scale-bar": "20mm", "inset": {"zoom": 3, "part": 0.25, "corner": "upper right"}},
+                       {"input": ["far.nii"], "legend": "Dose (Gy)", "annotate": ["one@0.3,0.6", "two@0.3,0.8"]}]}
+    Path("sub").mkdir(exist_ok=True)
+    for name in "rods.nii", "far.nii":
+        shutil.copy(name, "sub")
+    Path("sub/page.json").write_text(json.dumps(page))
+    run = lambda *arguments: subprocess.run([program, "figure", "sub/page.json", "--quiet", *arguments], capture_output=True, text=True)
+    for name in "page.pdf", "page.png", "page.svg":
+        done = run("-o", name)
+        check(done.returncode == 0 and Path(name).exists(), done.stderr)
+    seen = words("page.pdf").split()
+    check(all(word in seen for word in ["a", "b", "20", "mm", "Dose", "(Gy)", "one", "two"]) and "c" not in seen, f"{seen}")
+    size = [float(n) for n in re.search(r"Page size:\s+(\S+) x (\S+)", tool("pdfinfo", "page.pdf")).groups()]
+    check(abs(size[0] - 100 / 25.4 * 72) < 0.3 and abs(size[1] - 48 / 25.4 * 72) < 0.3, f"{size}")
+    pictures = tool("pdfimages", "-list", "page.pdf").split("\n")[2:-1]
+    check(sorted(int(line.split()[3]) for line in pictures) == [60, 240, 240], f"{pictures}")
+    whole = np.asarray(Image.open("page.png").convert("L")).astype(int)
+    check(whole.shape == (240, 500) and (whole[:, 243:257] == 255).all(), f"{whole.shape}: the gap is white")
+    halves = [np.argwhere(part[100:140] > 90).mean(0) for part in (whole[:, :60], whole[:, 260:320])]
+    check(abs(halves[0] - halves[1]).max() < 1, f"one camera: {halves}")
+    for change, word in (("\"front\"", "\"frnt\""), "front"), (("\"ortho\"", "\"orto\""), "did you mean 'ortho'"), \
+            (("[\"far.nii\"]", "\"../far.nii\""), "leads out"), (("[\"far.nii\"]", "\"/etc/passwd\""), "leads out"), \
+            (("\"100mm\"", "\"wide\""), "lengths"), (("\"gap\"", "\"gab\""), "unknown key 'gab'"):
+        Path("sub/page.json").write_text(json.dumps(page).replace(*change))
+        done = run("-o", "no.pdf")
+        check(done.returncode in (2, 3) and word in done.stderr and done.stderr.count("\n") == 1 and not Path("no.pdf").exists(), done.stderr)
+
+
+def linear_files_are_refused():
+    nifti("rods.nii", rods, 1.0)
+    for name in "a.exr", "a.npy":
+        said = halflight("rods.nii", "--legend", "auto", "-o", name, exit_code=2)
+        check("linear light" in said and not Path(name).exists(), said)
+    said = halflight("rods.nii", "--legend", "auto", "--depth", "16", "-o", "no.png", exit_code=2)
+    check("8 bits" in said, said)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    import os
+    os.chdir(folder)
+    for test in (bars, chosen_lengths, perspective, units_are_not_invented, physical_sizes, hostile_texts, legends, label_legends, letters,
+                 points_of_the_world, pages, linear_files_are_refused):
+        before = checks
+        test()
+        print(f"{test.__name__}: {checks - before} checks", flush=True)

@@ -1,0 +1,67 @@
+"""Figures: pictures with scale bars, legends and texts, and several on a page."""
+import io
+import re
+
+import numpy as np
+import pytest
+
+import halflight
+
+
+@pytest.fixture(scope="module")
+def image():
+    ball = np.hypot(np.hypot(*np.mgrid[-1:1:24j, -1:1:24j]), np.linspace(-1, 1, 24)[:, None, None]) < 0.7
+    return halflight.render(ball, size=(90, 60))
+
+
+def test_a_plain_figure_has_the_picture_s_pixels(image):
+    Pillow = pytest.importorskip("PIL.Image")
+    for kind in "png", "tif":
+        shown = np.asarray(Pillow.open(io.BytesIO(image.annotate().encode(kind))).convert("RGB"))
+        assert np.array_equal(shown, image.to_srgb8()[..., :3])
+
+
+def test_what_is_drawn_changes_pixels(image):
+    plain = image.annotate().encode()
+    for words in dict(legend=True), dict(axes="arrows"), dict(texts=[("x", (0.5, 0.5))]), dict(letter="a"), \
+            dict(scale_bar="5mm", unit="mm", depth="target"), dict(texts={"y": (12, 12, 12)}):
+        assert image.annotate(**words).encode() != plain, words
+
+
+def test_sizes_are_stated(image, tmp_path):
+    Pillow = pytest.importorskip("PIL.Image")
+    image.annotate(legend="D", width="2in").save(tmp_path / "a.png")
+    assert Pillow.open(tmp_path / "a.png").info["dpi"][0] == pytest.approx(45, abs=0.02)
+    assert "dpi" not in Pillow.open(io.BytesIO(image.annotate(legend="D").encode())).info
+    page = halflight.figure([image, image.annotate(legend="D"), image], columns=2, width="50mm", gap=2, dpi=254).encode()
+    assert Pillow.open(io.BytesIO(page)).size == (500, 340)
+
+
+def test_vectors(image):
+    svg = image.annotate(scale_bar=True, unit="kpc", depth="target").encode("svg").decode()
+    assert svg.startswith("<?xml") and "<use" in svg
+    pdf = halflight.figure([image, image], width="89mm").encode("pdf")
+    assert pdf.startswith(b"%PDF") and re.search(rb"/MediaBox \[ 0 0 252\.28", pdf)
+
+
+def test_units_are_not_invented(image):
+    with pytest.raises(ValueError, match="perspective"):
+        image.annotate(scale_bar=True, unit="mm").encode()
+    with pytest.raises(ValueError, match="unit"):
+        image.annotate(scale_bar=True, depth="target").encode()
+    with pytest.raises(ValueError, match="body"):
+        image.annotate(axes="letters").encode()
+
+
+def test_wrong_words(image, tmp_path):
+    with pytest.raises(ValueError, match="arrows"):
+        image.annotate(axes="arows").encode()
+    with pytest.raises(ValueError, match="89mm"):
+        image.annotate(width="89 furlongs")
+    with pytest.raises(ValueError, match="at least one"):
+        halflight.figure([])
+    with pytest.raises(ValueError, match="no panel"):
+        halflight.figure([halflight.figure([image, image])])
+    with pytest.raises(halflight.UnsupportedError, match=r"\.pdf, \.svg"):
+        image.annotate().save(tmp_path / "a.doc")
+    assert not list(tmp_path.iterdir())
