@@ -1,9 +1,10 @@
-/* cli/animate.c - `halflight animate SCENE`: a film of a scene in which numbers change from frame to frame.
+/* cli/animate.c - `halflight animate INPUT`: a film of a scene in which numbers change from frame to frame.
  */
 #define _GNU_SOURCE
 #include "animate.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,22 +15,17 @@
 #include "frames.h"
 #include "input.h"
 #include "render.h"
+#include "render_series.h"
 
 enum {
   ANIMATE_OUTPUT,
+  ANIMATE_PRESET,
   ANIMATE_TURNTABLE,
   ANIMATE_KEY,
+  ANIMATE_EASE,
   ANIMATE_FRAMES,
   ANIMATE_FPS,
-  ANIMATE_SIZE,
-  ANIMATE_PART,
-  ANIMATE_RANKS,
   ANIMATE_KEEP_FRAMES,
-  ANIMATE_NO_METADATA,
-  ANIMATE_DATA,
-  ANIMATE_MAX_MEMORY,
-  ANIMATE_DEVICE,
-  ANIMATE_QUIET,
   ANIMATE_OPTION_COUNT
 };
 
@@ -39,6 +35,11 @@ enum {
     .whole = true, .low = 1, .high = 1e6                                                       \
   }
 
+enum { PRESET_TURNTABLE, PRESET_LIGHT_SWEEP };
+static const cli_choice presets[] = {
+    {"turntable", PRESET_TURNTABLE}, {"light-sweep", PRESET_LIGHT_SWEEP}, {NULL, 0}};
+static const cli_choice easings[] = {{"linear", 0}, {"smooth", 1}, {NULL, 0}};
+
 static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
     [ANIMATE_OUTPUT] = {.name = "output",
                         .letter = 'o',
@@ -46,7 +47,13 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
                         .argument = "OUT",
                         .group = "Options",
                         .help = ".mp4, .mov, .mkv, .webm or .gif, or a folder for numbered\n"
-                                "pictures (default: SCENE's name with .mp4)"},
+                                "pictures (default: INPUT's name with .mp4)"},
+    [ANIMATE_PRESET] =
+        {.name = "preset",
+         .kind = OPTION_CHOICE,
+         .choices = presets,
+         .help = "a whole turn in four seconds; or the first light\nswept from left to right and back in "
+                 "two"},
     [ANIMATE_TURNTABLE] = COUNT_OPTION("turntable", "N",
                                        "turn once about the picture's vertical axis, in N frames"),
     [ANIMATE_KEY] = {.name = "key",
@@ -54,9 +61,14 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
                      .argument = "PATH=FRAME:VALUE,...",
                      .help = "let a number of the scene go from value to value, as\n"
                              "lights.0.intensity=0:1,48:3; camera.azimuth, .elevation,\n"
-                             ".roll (degrees) and .zoom (factor) turn the camera; may\n"
-                             "be given again",
+                             ".roll (degrees) and .zoom (factor) turn the camera,\n"
+                             "lights.0.azimuth and .elevation a light, as --light;\n"
+                             "may be given again",
                      .repeatable = true},
+    [ANIMATE_EASE] = {.name = "ease",
+                      .kind = OPTION_CHOICE,
+                      .choices = easings,
+                      .help = "how --key goes from value to value (default linear);\nsmooth: slowly at both"},
     [ANIMATE_FRAMES] = COUNT_OPTION("frames", "N", "length (default: the turn's, or up to the last FRAME)"),
     [ANIMATE_FPS] = {.name = "fps",
                      .kind = OPTION_NUMBERS,
@@ -65,33 +77,39 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
                      .count = 1,
                      .low = 0.1,
                      .high = 240},
-    [ANIMATE_SIZE] = {.name = "size",
-                      .kind = OPTION_NUMBERS,
-                      .argument = "WIDTHxHEIGHT",
-                      .help = "in pixels (default: the scene's)",
-                      .count = 2,
-                      .separator = 'x',
-                      .whole = true,
-                      .low = 1,
-                      .high = 16384},
-    [ANIMATE_PART] = FRAMES_OPTION_PART("Running",
-                                        "render only every N-th frame, from the K-th on: N runs share\n"
-                                        "the work; the last one to end joins the film"),
-    [ANIMATE_RANKS] = FRAMES_OPTION_RANKS,
     [ANIMATE_KEEP_FRAMES] = {.name = "keep-frames",
                              .kind = OPTION_SWITCH,
                              .help = "leave the pictures beside the film, in its name with\n\"-frames\""},
-    [ANIMATE_NO_METADATA] = FRAMES_OPTION_NO_METADATA,
-    [ANIMATE_DATA] = HOST_OPTION_DATA(NULL),
-    [ANIMATE_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
-    [ANIMATE_DEVICE] = HOST_OPTION_DEVICE,
-    [ANIMATE_QUIET] = HOST_OPTION_QUIET,
 };
+
+/* The options of `render` that say what is shown and how, but not those about one picture or its file. */
+static bool has_render_option(size_t row) {
+  switch ((enum render_option)row) {
+    case RENDER_OUTPUT:
+    case RENDER_FORMAT:
+    case RENDER_DEPTH:
+    case RENDER_LAYERS:
+    case RENDER_WIDTH:
+    case RENDER_DPI:
+    case RENDER_REFERENCE:
+    case RENDER_LIGHT_POINTS:
+    case RENDER_STEP:
+    case RENDER_PATHS:
+    case RENDER_RAYS:
+    case RENDER_STRIPS:
+    case RENDER_VOLUME:
+    case RENDER_PRINT_SCENE:
+    case RENDER_JSON: return false;
+    default: return true;
+  }
+}
 
 /* One run. */
 typedef struct animate_job {
   cli_host host;
-  const cli_value *values;
+  const cli_value *values, *render; /* of the command's own options, and of those of `render` */
+  char **inputs;                    /* null after the last */
+  cli_overlay overlay;              /* owned; drawn over each frame */
   char *input;
   char *output; /* owned; a film, or the folder itself */
   char *folder; /* owned; of the pictures */
@@ -145,27 +163,50 @@ static int make_folder(const animate_job *job) {
 /* ---- the film's scene ---- */
 
 static int load(animate_job *job) {
-  cli_value values[RENDER_OPTION_COUNT] = {{0}};
-  char *inputs[] = {job->input, NULL};
   bool bare;
-  values[RENDER_MAX_MEMORY] = job->values[ANIMATE_MAX_MEMORY];
-  values[RENDER_SIZE] = job->values[ANIMATE_SIZE];
-  int exit_code = render_load_inputs(&job->host, values, inputs, &bare, &job->scene);
-  return exit_code == EXIT_CODE_OK ? render_change_scene(&job->host, values, bare, &job->scene) : exit_code;
+  hl_error error = {0};
+  int exit_code = render_load_inputs(&job->host, job->render, job->inputs, &bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->render, bare, &job->scene);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  hl_status status = overlay_check_scene(job->host.context, &job->overlay, job->scene, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_CHANGE, status, &error);
+}
+
+static double frames_per_second(const animate_job *job) {
+  return job->values[ANIMATE_FPS].given ? job->values[ANIMATE_FPS].number[0] : 30;
+}
+
+/* The sweep's key: from the left, by its own azimuth of 75 degrees to either side, and back, in two seconds.
+ */
+static void write_sweep(const animate_job *job, char text[80]) {
+  int half = (int)fmax(1, frames_per_second(job));
+  snprintf(text, 80, "lights.0.azimuth=0:-75,%d:75,%d:-75", half, 2 * half);
 }
 
 static int plan(animate_job *job) {
-  const cli_value *values = job->values;
-  const bool turns = values[ANIMATE_TURNTABLE].given, frames = values[ANIMATE_FRAMES].given;
+  const cli_value *values = job->values, *preset = &values[ANIMATE_PRESET];
+  const bool frames = values[ANIMATE_FRAMES].given;
+  const bool sweeps = preset->given && preset->choice == PRESET_LIGHT_SWEEP;
+  const char *keys[MAXIMUM_REPEATS + 1];
+  char sweep[80];
+  size_t count = 0;
+  for (int k = 0; k < values[ANIMATE_KEY].count; k++) keys[count++] = values[ANIMATE_KEY].texts[k];
+  write_sweep(job, sweep);
+  if (sweeps) keys[count++] = sweep;
+  int turn = values[ANIMATE_TURNTABLE].given ? (int)values[ANIMATE_TURNTABLE].number[0] : 0;
+  if (preset->given && !sweeps && turn == 0) turn = (int)fmax(1, round(4 * frames_per_second(job)));
   film_options options = {.context = job->host.context,
                           .scene = job->scene,
-                          .keys = values[ANIMATE_KEY].texts,
-                          .key_count = (size_t)values[ANIMATE_KEY].count,
-                          .turntable = turns ? (int)values[ANIMATE_TURNTABLE].number[0] : 0,
+                          .keys = keys,
+                          .key_count = count,
+                          .smooth = values[ANIMATE_EASE].given ? values[ANIMATE_EASE].choice == 1 : sweeps,
+                          .turntable = turn,
                           .frames = frames ? (int)values[ANIMATE_FRAMES].number[0] : 0};
   hl_error error = {0};
-  if (!turns && !values[ANIMATE_KEY].given)
-    return fail(EXIT_CODE_USAGE, "nothing moves: give --turntable N, or --key PATH=FRAME:VALUE,...");
+  if (sweeps && !frames && turn == 0 && count == 1) options.frames = 2 * (int)fmax(1, frames_per_second(job));
+  if (turn == 0 && count == 0)
+    return fail(EXIT_CODE_USAGE,
+                "nothing moves: give --turntable N, --preset NAME, or --key PATH=FRAME:VALUE,...");
   hl_status status = film_create(&options, &job->film, &error);
   render_name_scene(job->input, false, &error);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_CHANGE, status, &error);
@@ -181,7 +222,7 @@ static int count_digits(int frames) {
 
 /* Joins the pictures to a film, if all of them are there. */
 static int finish(const animate_job *job, const animate_frames *frames) {
-  double rate = job->values[ANIMATE_FPS].given ? job->values[ANIMATE_FPS].number[0] : 30;
+  double rate = frames_per_second(job);
   const int count = film_frames(job->film);
   if (!job->film_wanted || !movie_available()) {
     if (!job->host.quiet)
@@ -216,30 +257,95 @@ static int run_job(animate_job *job) {
                            .film = job->film,
                            .folder = job->folder,
                            .style = {.opaque = job->film_wanted, /* a film has no transparent pixels */
-                                     .no_metadata = job->values[ANIMATE_NO_METADATA].given},
+                                     .no_metadata = job->render[RENDER_NO_METADATA].given,
+                                     .overlay = &job->overlay},
                            .digits = count_digits(film_frames(job->film))};
   job->host.own_bar = true;
   exit_code = animate_render(&frames, job->part, job->parts);
   return exit_code == EXIT_CODE_OK ? finish(job, &frames) : exit_code;
 }
 
+/* Joins the pictures of a series of files, one for each. */
+static int finish_series(const animate_job *job, const cli_value *values) {
+  bool quiet = values[RENDER_QUIET].given;
+  if (job->parts > 1 || !movie_available()) {
+    if (!quiet && job->parts > 1)
+      say("%s: once all parts are there, the command without --part joins them", job->folder);
+    else if (!quiet) warn("ffmpeg is not installed: the pictures stay in %s", job->folder);
+    return EXIT_CODE_OK;
+  }
+  series_job *files = calloc(1, sizeof *files);
+  if (files == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  memcpy(files->values, values, sizeof files->values);
+  files->pattern = values[RENDER_OUTPUT].text;
+  int exit_code = series_find_files(files, job->inputs);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = animate_join_series(job->folder, files->count, job->output, frames_per_second(job), quiet);
+  if (exit_code == EXIT_CODE_OK && !job->values[ANIMATE_KEEP_FRAMES].given)
+    animate_remove_series(job->folder, files->count);
+  series_release_files(files);
+  free(files);
+  return exit_code;
+}
+
+/* Pictures of a series of files, which are then joined. */
+static int run_series(animate_job *job) {
+  cli_value *values = calloc(RENDER_OPTION_COUNT, sizeof *values);
+  char *pattern = NULL;
+  int exit_code = EXIT_CODE_OK;
+  for (int which = 0; which < ANIMATE_OPTION_COUNT && exit_code == EXIT_CODE_OK; which++)
+    if (job->values[which].given &&
+        (which == ANIMATE_PRESET || which == ANIMATE_TURNTABLE || which == ANIMATE_KEY ||
+         which == ANIMATE_EASE || which == ANIMATE_FRAMES))
+      exit_code = fail(EXIT_CODE_USAGE,
+                       "--%s: in a film of several files time passes from file to file alone",
+                       animate_options[which].name);
+  if (exit_code == EXIT_CODE_OK && (values == NULL || asprintf(&pattern, "%s/%%06d.png", job->folder) < 0))
+    exit_code = fail(EXIT_CODE_FAILURE, "out of memory");
+  if (exit_code == EXIT_CODE_OK && strchr(job->folder, '%') != NULL)
+    exit_code = fail(EXIT_CODE_USAGE, "--output: '%s': a film of several files has no '%%' in its name",
+                     job->output);
+  if (exit_code == EXIT_CODE_OK) {
+    memcpy(values, job->render, RENDER_OPTION_COUNT * sizeof *values);
+    values[RENDER_OUTPUT] = (cli_value){.given = true, .text = pattern, .texts = {pattern}, .count = 1};
+    if (!values[RENDER_BACKGROUND].given || !values[RENDER_BACKGROUND].chosen)
+      exit_code = render_series(values, job->inputs);
+    else exit_code = fail(EXIT_CODE_USAGE, "--background transparent: a film has no transparent pixels");
+  }
+  if (exit_code == EXIT_CODE_OK && job->film_wanted) exit_code = finish_series(job, values);
+  free(values);
+  free(pattern);
+  return exit_code;
+}
+
 static int run_animate(const cli_value *values, char **operands) {
-  animate_job job = {.values = values, .input = operands[0]};
-  cli_host_options options = {.quiet = values[ANIMATE_QUIET].given,
+  animate_job job = {
+      .values = values, .render = values + ANIMATE_OPTION_COUNT, .inputs = operands, .input = operands[0]};
+  const cli_value *render = job.render;
+  cli_host_options options = {.quiet = render[RENDER_QUIET].given,
                               .progress = true,
                               .subject = base_name(job.input),
-                              .memory_limit = values[ANIMATE_MAX_MEMORY].bytes,
-                              .device = values[ANIMATE_DEVICE].text,
-                              .data_folder = values[ANIMATE_DATA].text};
-  int exit_code = frames_read_part(&values[ANIMATE_PART], &values[ANIMATE_RANKS], &job.part, &job.parts);
+                              .memory_limit = render[RENDER_MAX_MEMORY].bytes,
+                              .device = render[RENDER_DEVICE].text,
+                              .instruction_set = (hl_instruction_set)render[RENDER_INSTRUCTION_SET].choice,
+                              .data_folder = render[RENDER_DATA].text};
+  int exit_code = frames_read_part(&render[RENDER_PART], &render[RENDER_RANKS], &job.part, &job.parts);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_check_options(render);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(render, &job.overlay);
   if (exit_code == EXIT_CODE_OK) exit_code = choose_output(&job);
-  if (exit_code == EXIT_CODE_OK) {
+  bool series = render_has_pattern(operands);
+  if (exit_code == EXIT_CODE_OK && !series && render[RENDER_RANGE_OF_ALL].given)
+    exit_code = fail(EXIT_CODE_USAGE,
+                     "--range-of-all is for a film of several files: give a pattern, as 'flame_*.vti'");
+  if (exit_code == EXIT_CODE_OK && series) exit_code = run_series(&job);
+  if (exit_code == EXIT_CODE_OK && !series) {
     exit_code = host_open(&options, &job.host);
     if (exit_code == EXIT_CODE_OK) exit_code = run_job(&job);
     film_destroy(job.film);
     hl_scene_release(job.scene);
     host_close(&job.host);
   }
+  overlay_release(&job.overlay);
   free(job.folder);
   free(job.output);
   return exit_code;
@@ -247,17 +353,21 @@ static int run_animate(const cli_value *values, char **operands) {
 
 const cli_command animate_command = {
     .name = "animate",
-    .operands = "SCENE",
+    .operands = "INPUT ...",
     .operand_count = 1,
+    .operand_most = MAXIMUM_OPERANDS,
     .summary = "a film: a turn, or numbers of a scene that change",
     .description =
-        "Renders SCENE, a scene (.json), a .png with a scene in it, or a volume file, in frames in which "
-        "the\n"
-        "camera turns and numbers of the scene change, and joins them to a film by ffmpeg's program; "
-        "without\n"
-        "it, numbered pictures stay. A run that was stopped goes on where it was: pictures that are there\n"
-        "already, made of their frame's scene, are kept.",
+        "Renders INPUT, as `halflight render` would with the same options, in frames in which the camera\n"
+        "turns and numbers of the scene change, and joins them to a film by ffmpeg's program; without it,\n"
+        "numbered pictures stay. A pattern of files in quotes ('flame_*.vti') is a film in which time "
+        "passes\n"
+        "from file to file. A run that was stopped goes on where it was: pictures that are there already,\n"
+        "made of their frame's scene, are kept.",
     .options = animate_options,
     .option_count = ANIMATE_OPTION_COUNT,
+    .shared = render_options,
+    .shared_count = RENDER_OPTION_COUNT,
+    .has_shared = has_render_option,
     .run = run_animate,
 };

@@ -14,6 +14,7 @@
 #include "animate.h"
 #include "film/movie.h"
 #include "frames.h"
+#include "overlay.h"
 
 enum { PATH_BYTES = 4096 };
 
@@ -38,7 +39,8 @@ static hl_status do_frame(animate_frames *frames, hl_renderer *renderer, int fra
   char path[PATH_BYTES];
   hl_scene *scene = NULL;
   double began = clock_seconds();
-  if (!animate_frame_is_there(frames, frame)) {
+  /* The scene that a picture carries does not tell what is drawn over it. */
+  if (overlay_is_any(frames->style.overlay) || !animate_frame_is_there(frames, frame)) {
     animate_frame_path(frames, frame, path, sizeof path);
     hl_status status = film_scene(frames->film, frame, &scene, error);
     if (status == HL_OK) status = frames_render(frames->host, renderer, scene, frames->style, path, error);
@@ -76,10 +78,8 @@ bool animate_is_complete(const animate_frames *frames) {
   return true;
 }
 
-static hl_status add_frame(const animate_frames *frames, movie *m, int frame, hl_error *error) {
-  char path[PATH_BYTES];
+static hl_status add_picture(movie *m, const char *path, hl_error *error) {
   size_t length = 0;
-  animate_frame_path(frames, frame, path, sizeof path);
   unsigned char *bytes = frames_read_picture(path, &length);
   if (bytes == NULL) {
     snprintf(error->message, sizeof error->message, "%.900s: cannot be read again: %s", path,
@@ -90,6 +90,12 @@ static hl_status add_frame(const animate_frames *frames, movie *m, int frame, hl
   hl_status status = movie_add(m, bytes, length, error);
   free(bytes);
   return status;
+}
+
+static hl_status add_frame(const animate_frames *frames, movie *m, int frame, hl_error *error) {
+  char path[PATH_BYTES];
+  animate_frame_path(frames, frame, path, sizeof path);
+  return add_picture(m, path, error);
 }
 
 int animate_join(const animate_frames *frames, const char *path, double frames_per_second) {
@@ -111,6 +117,39 @@ int animate_join(const animate_frames *frames, const char *path, double frames_p
     return fail(EXIT_CODE_INTERRUPTED, "interrupted: all pictures are in %s; the same command joins them",
                 frames->folder);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(frames->host, PHASE_RUN, status, &error);
+}
+
+/* ---- pictures of a series of files ---- */
+
+static void series_path(const char *folder, int number, char *path, size_t size) {
+  snprintf(path, size, "%s/%06d.png", folder, number);
+}
+
+int animate_join_series(const char *folder, int count, const char *output, double frames_per_second,
+                        bool quiet) {
+  char path[PATH_BYTES];
+  movie *m = NULL;
+  hl_error error = {0};
+  hl_status status = movie_begin(output, frames_per_second, &m, &error);
+  for (int number = 0; status == HL_OK && number < count; number++) {
+    series_path(folder, number, path, sizeof path);
+    status = add_picture(m, path, &error);
+  }
+  if (status == HL_OK) status = movie_end(m, &error);
+  if (status != HL_OK) return fail_with(PHASE_RUN, status, &error);
+  if (!quiet)
+    say("%s: %d frames, %.3g s at %.4g a second", output, count, count / frames_per_second,
+        frames_per_second);
+  return EXIT_CODE_OK;
+}
+
+void animate_remove_series(const char *folder, int count) {
+  char path[PATH_BYTES];
+  for (int number = 0; number < count; number++) {
+    series_path(folder, number, path, sizeof path);
+    unlink(path);
+  }
+  rmdir(folder);
 }
 
 void animate_remove_frames(const animate_frames *frames) {

@@ -104,6 +104,8 @@ extern const cli_option render_options[RENDER_OPTION_COUNT];
 /* Whether the operands or the options ask for a picture of each of several files; makes these pictures. */
 bool render_is_series(const cli_value *values, char **operands);
 int render_series(const cli_value *values, char **operands);
+/* Whether one of the operands stands for several files. */
+bool render_has_pattern(char **operands);
 
 /* Refuses options that contradict each other. */
 int render_check_options(const cli_value *values);

@@ -34,11 +34,15 @@ bool series_has_number(const char *text) {
   return numbers == 1;
 }
 
-bool render_is_series(const cli_value *values, char **operands) {
+bool render_has_pattern(char **operands) {
   bool pattern = false;
   for (char **operand = operands; *operand != NULL; operand++) pattern = pattern || is_pattern(*operand);
+  return pattern;
+}
+
+bool render_is_series(const cli_value *values, char **operands) {
   const cli_value *output = &values[RENDER_OUTPUT];
-  return pattern || values[RENDER_PART].given || values[RENDER_RANKS].given ||
+  return render_has_pattern(operands) || values[RENDER_PART].given || values[RENDER_RANKS].given ||
          values[RENDER_RANGE_OF_ALL].given || (output->given && series_has_number(output->text));
 }
 

@@ -42,6 +42,22 @@ static int turn_of(const char *path) {
   return -1;
 }
 
+/* The light and the angle that "lights.N.azimuth" or ".elevation" names. */
+static bool is_light_turn(const char *path, size_t *light, bool *azimuth) {
+  int used = 0;
+  unsigned number;
+  if (sscanf(path, "lights.%4u.%n", &number, &used) != 1 || used == 0) return false;
+  *light = number;
+  *azimuth = strcmp(path + used, "azimuth") == 0;
+  return *azimuth || strcmp(path + used, "elevation") == 0;
+}
+
+static bool is_turn(const char *path) {
+  size_t light;
+  bool azimuth;
+  return turn_of(path) >= 0 || is_light_turn(path, &light, &azimuth);
+}
+
 /* ---- numbers in the scene's text ---- */
 
 /* The member of an object, or the element of an array, that has this name; null if there is none. */
@@ -82,7 +98,7 @@ static hl_status write_value(json_t *root, const char *path, double value, hl_er
 static hl_status read_frame(const film *f, json_t *text, int frame, hl_scene **scene, hl_error *error) {
   hl_status status = HL_OK;
   for (size_t k = 0; status == HL_OK && k < f->key_count; k++)
-    if (turn_of(f->keys[k].path) < 0)
+    if (!is_turn(f->keys[k].path))
       status = write_value(text, f->keys[k].path, film_key_value(&f->keys[k], frame), error);
   if (status != HL_OK) return status;
   char *written = hl_plain_json_dump(text, JSON_COMPACT);
@@ -125,9 +141,53 @@ static hl_status turn_camera(const film *f, int frame, hl_camera *camera,
   return status;
 }
 
-static bool camera_turns(const film *f) {
+/* ---- lights ---- */
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* The direction of a light at these angles, in the light's frame. */
+static void direction_at(const hl_light *light, const hl_camera *camera, double azimuth, double elevation,
+                         double direction[3]) {
+  if (light->frame == HL_LIGHT_FRAME_CAMERA) hl_light_direction_beside(azimuth, elevation, direction);
+  else hl_light_direction(camera, azimuth, elevation, direction);
+}
+
+/* The angles of a light: the inverse of hl_light_direction(), whose directions at (0, 0), (90, 0) and (0, 90)
+ * are at right angles. */
+static void angles_of(const hl_light *light, const hl_camera *camera, double *azimuth, double *elevation) {
+  double ahead[3], aside[3], above[3];
+  direction_at(light, camera, 0, 0, ahead);
+  direction_at(light, camera, 90, 0, aside);
+  direction_at(light, camera, 0, 90, above);
+  double up = dot(light->direction, above), x = dot(light->direction, aside),
+         z = dot(light->direction, ahead);
+  const double degrees = 180 / 3.14159265358979323846;
+  *azimuth = atan2(x, z) * degrees;
+  *elevation = atan2(up, hypot(x, z)) * degrees;
+}
+
+static hl_status turn_lights(const film *f, int frame, hl_light *lights, const hl_scene_description *scene,
+                             hl_error *error) {
+  for (size_t k = 0; k < f->key_count; k++) {
+    size_t number;
+    bool azimuth;
+    double angles[2];
+    if (!is_light_turn(f->keys[k].path, &number, &azimuth)) continue;
+    if (number >= scene->light_count || lights[number].type != HL_LIGHT_DIRECTIONAL) {
+      snprintf(error->message, sizeof error->message,
+               "%s: the scene has no directional light there: of others move the position", f->keys[k].path);
+      return HL_ERROR_ARGUMENT;
+    }
+    angles_of(&lights[number], &scene->camera, &angles[0], &angles[1]);
+    angles[azimuth ? 0 : 1] = film_key_value(&f->keys[k], frame);
+    direction_at(&lights[number], &scene->camera, angles[0], angles[1], lights[number].direction);
+  }
+  return HL_OK;
+}
+
+static bool film_turns(const film *f) {
   bool turns = f->turntable > 0;
-  for (size_t k = 0; k < f->key_count; k++) turns |= turn_of(f->keys[k].path) >= 0;
+  for (size_t k = 0; k < f->key_count; k++) turns |= is_turn(f->keys[k].path);
   return turns;
 }
 
@@ -138,13 +198,20 @@ hl_status film_scene(const film *f, int frame, hl_scene **scene, hl_error *error
   hl_status status = text != NULL ? read_frame(f, text, frame, &read, error) : no_memory(error);
   json_decref(text);
   if (status != HL_OK) return status;
-  if (!camera_turns(f)) {
+  if (!film_turns(f)) {
     *scene = read;
     return HL_OK;
   }
   hl_scene_description description = *hl_scene_describe(read);
-  status = turn_camera(f, frame, &description.camera, hl_scene_describe(read), error);
+  hl_light *lights = calloc(description.light_count + 1, sizeof *lights);
+  status = lights != NULL ? turn_camera(f, frame, &description.camera, hl_scene_describe(read), error)
+                          : no_memory(error);
+  if (status == HL_OK && description.light_count > 0)
+    memcpy(lights, description.lights, description.light_count * sizeof *lights);
+  description.lights = lights;
+  if (status == HL_OK) status = turn_lights(f, frame, lights, &description, error);
   if (status == HL_OK) status = hl_scene_create(f->context, &description, scene, error);
+  free(lights);
   hl_scene_release(read);
   return status;
 }
@@ -157,6 +224,7 @@ static hl_status read_keys(film *f, const film_options *options, hl_error *error
   if (f->keys == NULL) return no_memory(error);
   for (; status == HL_OK && f->key_count < options->key_count; f->key_count++) {
     status = film_key_read(options->keys[f->key_count], &f->keys[f->key_count], error);
+    f->keys[f->key_count].smooth = options->smooth;
     for (size_t k = 0; status == HL_OK && k < f->key_count; k++)
       if (strcmp(f->keys[k].path, f->keys[f->key_count].path) == 0) {
         snprintf(error->message, sizeof error->message, "%s: it has two keys: join them by commas",

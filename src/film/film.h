@@ -3,12 +3,14 @@
  * A key's path names a number of the scene's file: keys of objects and numbers of elements, with points
  * between ("volumes.0.transfer_function.opacity.2.1"). Four more paths turn the camera as the options of
  * `halflight render` do: camera.azimuth, camera.elevation and camera.roll in degrees, camera.zoom as a factor
- * of the scene's own.
+ * of the scene's own. lights.N.azimuth and lights.N.elevation turn a directional light as `--light` does:
+ * seen from the camera, after it was turned.
  */
 #ifndef HL_FILM_FILM_H
 #define HL_FILM_FILM_H
 
 #include <halflight/halflight.h>
+#include <stdbool.h>
 
 typedef struct film film;
 
@@ -17,6 +19,7 @@ typedef struct film_options {
   const hl_scene *scene;
   const char *const *keys; /* [key_count]: "PATH=FRAME:VALUE,..." */
   size_t key_count;
+  bool smooth;   /* keys move slowly at both ends of each stretch; if false, at an even pace */
   int turntable; /* frames of a whole turn about the picture's vertical axis; 0 for no turn */
   int frames;    /* number of frames; 0 for as many as the turntable has, or up to the last key's last
                   * frame */

@@ -76,7 +76,9 @@ double film_key_value(const film_key *key, int frame) {
     if (frame > key->frames[p]) continue;
     double span = key->frames[p] - key->frames[p - 1], past = frame - key->frames[p - 1];
     if (frame == key->frames[p]) return key->values[p]; /* returns exactly the given value */
-    return key->values[p - 1] + (key->values[p] - key->values[p - 1]) * past / span;
+    double part = past / span;
+    if (key->smooth) part = part * part * (3 - 2 * part); /* Hermite: no speed at both ends */
+    return key->values[p - 1] + (key->values[p] - key->values[p - 1]) * part;
   }
   return key->values[key->count - 1];
 }

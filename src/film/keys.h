@@ -3,16 +3,19 @@
 #define HL_FILM_KEYS_H
 
 #include <halflight/halflight.h>
+#include <stdbool.h>
 
 enum { FILM_MOST_FRAMES = 1000000, FILM_MOST_POINTS = 1000 };
 
-/* A value at each frame: linear between the given frames, constant before the first and after the last. */
+/* A value at each frame: between the given frames linear, or smooth: slow at both; constant before the first
+ * and after the last. */
 typedef struct film_key {
   char *path;     /* owned; path of a number: "camera.azimuth", or keys and numbers of elements as in
                      "lights.0.intensity" */
   int *frames;    /* owned; [count]; frame numbers in rising order */
   double *values; /* owned; [count] */
   size_t count;   /* at least 1 */
+  bool smooth;
 } film_key;
 
 /* Reads "PATH=FRAME:VALUE,FRAME:VALUE,...". Returns HL_ERROR_ARGUMENT where the text is no key; the error
