@@ -55,6 +55,30 @@ grep -q 'int main' "$folder/picture.c"
 "$@" -std=c99 -pedantic-errors -Wall -Wextra -Werror "$folder/picture.c" -o "$folder/picture" \
   $(pkg-config --cflags --libs halflight)
 
+# CMake finds the package where it was put, compiles the same program, and refuses a version that is not there.
+find_one '*/cmake/halflight/halflightConfig.cmake' >/dev/null
+if command -v cmake >/dev/null; then
+  mkdir "$folder/cmake"
+  cp "$folder/picture.c" "$folder/cmake"
+  prefix=$(dirname "$(dirname "$(dirname "$header")")")
+  project() {
+    cat >"$folder/cmake/CMakeLists.txt" <<END
+cmake_minimum_required(VERSION 3.16)
+project(picture C)
+find_package(halflight $1 REQUIRED CONFIG)
+add_executable(picture picture.c)
+target_link_libraries(picture PRIVATE halflight::halflight)
+END
+    rm -rf "$folder/cmake/build"
+    cmake -S "$folder/cmake" -B "$folder/cmake/build" -DCMAKE_PREFIX_PATH="$prefix" >"$folder/cmake/told" 2>&1
+  }
+  project 0.1 && cmake --build "$folder/cmake/build" >>"$folder/cmake/told" 2>&1 || { cat "$folder/cmake/told"; exit 1; }
+  LD_LIBRARY_PATH=$(dirname "$library") "$folder/cmake/build/picture" "$folder/ball_24x24x24_uint8.raw" "$folder/cmake/ball.png"
+  ! project 9.9 || { echo "CMake takes this version for 9.9"; exit 1; }
+else
+  echo "cmake is not installed: its package file was not tried"
+fi
+
 picture() { LD_LIBRARY_PATH=$(dirname "$library") "$folder/picture" "$@"; }
 picture "$folder/ball_24x24x24_uint8.raw" "$folder/ball.png"
 head -c 8 "$folder/ball.png" | od -An -tx1 | grep -q '89 50 4e 47 0d 0a 1a 0a'
