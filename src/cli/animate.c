@@ -89,6 +89,7 @@ static bool has_render_option(size_t row) {
     case RENDER_FORMAT:
     case RENDER_DEPTH:
     case RENDER_LAYERS:
+    case RENDER_VIEWS:
     case RENDER_WIDTH:
     case RENDER_DPI:
     case RENDER_REFERENCE:

@@ -42,9 +42,9 @@ static bool leads_out(const char *text) {
 
 /* Options that no panel has: the page decides, or they are about the run. */
 static bool is_of_the_page(int which) {
-  static const int kept[] = {RENDER_OUTPUT,      RENDER_FORMAT,      RENDER_SIZE,  RENDER_DEPTH,
-                             RENDER_NO_METADATA, RENDER_LAYERS,      RENDER_WIDTH, RENDER_DPI,
-                             RENDER_FONT_SIZE,   RENDER_RANGE_OF_ALL};
+  static const int kept[] = {RENDER_OUTPUT,      RENDER_FORMAT, RENDER_SIZE,        RENDER_DEPTH,
+                             RENDER_NO_METADATA, RENDER_LAYERS, RENDER_WIDTH,       RENDER_DPI,
+                             RENDER_FONT_SIZE,   RENDER_VIEWS,  RENDER_RANGE_OF_ALL};
   for (size_t n = 0; n < sizeof kept / sizeof *kept; n++)
     if (which == kept[n]) return true;
   return which >= RENDER_REFERENCE;

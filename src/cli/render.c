@@ -275,6 +275,8 @@ static void job_close(render_job *job, int exit_code) {
 }
 
 static int run_render(const cli_value *values, char **operands) {
+  if (values[RENDER_VIEWS].given && !render_is_series(values, operands))
+    return render_views(values, operands);
   if (render_is_series(values, operands)) {
     if (!values[RENDER_STRIPS].given && !values[RENDER_VOLUME].given) return render_series(values, operands);
     return fail(EXIT_CODE_USAGE,

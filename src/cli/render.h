@@ -25,6 +25,7 @@ enum render_option {
   RENDER_ANNOTATE,
   RENDER_FONT_SIZE,
   RENDER_VIEW,
+  RENDER_VIEWS,
   RENDER_UP,
   RENDER_AZIMUTH,
   RENDER_ELEVATION,
@@ -104,6 +105,8 @@ extern const cli_option render_options[RENDER_OPTION_COUNT];
 /* Whether the operands or the options ask for a picture of each of several files; makes these pictures. */
 bool render_is_series(const cli_value *values, char **operands);
 int render_series(const cli_value *values, char **operands);
+/* --views: pictures of several sides. */
+int render_views(const cli_value *values, char **operands);
 /* Whether one of the operands stands for several files. */
 bool render_has_pattern(char **operands);
 

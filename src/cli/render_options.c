@@ -123,12 +123,19 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                           .low = 1,
                           .high = 200},
 
-    [RENDER_VIEW] = {.name = "view",
-                     .kind = OPTION_CHOICE,
-                     .argument = "SIDE",
-                     .group = "Camera",
-                     .help = "front, back, left, right, top, bottom or iso: of\nthe body where the file "
-                             "knows it; frames anew\n(default: a three-quarter view, chosen)"},
+    [RENDER_VIEW] =
+        {.name = "view",
+         .kind = OPTION_CHOICE,
+         .argument = "SIDE",
+         .group = "Camera",
+         .help = "front, back, left, right, top, bottom or iso (the eye\n45 degrees right of front, 35 up; "
+                 "of a file without\n"
+                 "anatomy it sees the octant +x, -y, +z): of the body\nwhere the file knows it; frames anew "
+                 "(default: a\nthree-quarter view, chosen)"},
+    [RENDER_VIEWS] = {.name = "views",
+                      .kind = OPTION_TEXT,
+                      .argument = "SIDE,SIDE,...",
+                      .help = "several sides (front,left,top) on one sheet, or in\nfiles: -o 'head-%s.png'"},
     [RENDER_UP] = {.name = "up",
                    .kind = OPTION_NUMBERS,
                    .argument = "AXIS|X,Y,Z",

@@ -45,6 +45,7 @@ static bool has_render_option(size_t row) {
     case RENDER_DEPTH:
     case RENDER_NO_METADATA:
     case RENDER_LAYERS:
+    case RENDER_VIEWS:
     case RENDER_WIDTH:
     case RENDER_DPI:
     case RENDER_SCALE_BAR:

@@ -202,7 +202,7 @@ CASES = {
     "quiet": ["", ".seg.nrrd", ".obj", "wall.obj", ".obj wall.obj"],
 }
 # They are for one picture: a line says so, or the option that they go with.
-ONE_PICTURE = {"format": "png", "depth": "16", "layers": None, "reference": None, "print-scene": None, "json": None,
+ONE_PICTURE = {"format": "png", "views": "front,left", "depth": "16", "layers": None, "reference": None, "print-scene": None, "json": None,
                "light-points": "4", "step": "1", "paths": "4", "rays": "1", "strips-over-ranks": None,
                "volume-over-ranks": None, "frames-over-ranks": None}
 # They are for a series; tests/cli/series/one-look.sh compares their pictures.
