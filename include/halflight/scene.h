@@ -423,9 +423,9 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_channel_color(const hl_scene_descriptio
 HL_API void hl_scene_level_sky(hl_scene_description *description);
 
 /* What to multiply the strengths of all lights, `ambient` and the sky of such a scene by after a change of
- * what is seen of its volume, as by cuts: they are made for the whole volume, and a cut face that looks at
- * the light would be clipped. look: the one that the scene was made with. *factor is 1 for looks that keep
- * their light, and for orthographic cameras. */
+ * what is seen of its volume, as by cuts or isosurfaces: they are made for the whole volume, and a cut face
+ * that looks at the light, or a white surface, would be clipped. look: the one that the scene was made with.
+ * *factor is 1 for looks that keep their light, and for orthographic cameras. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_light_factor(const hl_scene_description *description,
                                                       const char *look, double *factor, hl_error *error);
 

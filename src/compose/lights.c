@@ -50,16 +50,17 @@ static void change_shadows(const hl_composer *composer, hl_scene_description *de
     if (lights[i].shadows != HL_SHADOWS_OFF) lights[i].shadows = HL_SHADOWS_DEFAULT;
 }
 
-/* Automatic light is made for the whole volume: cut open, a bare volume gets the light that suits what is
- * left. */
+/* Automatic light is made for the whole volume as its transfer function shows it. A bare volume that is cut
+ * open, or that has isosurfaces, gets the light that suits what is seen. */
 static hl_status expose_anew(const hl_composer *composer, hl_scene_description *description,
                              hl_light *lights) {
   double factor = 1;
-  bool cut = hl_count_cuts(composer->asked) > 0 || composer->asked[HL_ASK_CLIP].given ||
-             (composer->flags & HL_COMPOSE_CUT) != 0;
-  if (!composer->bare || !cut || description->volume_count != 1 || hl_is_maximum(composer, description) ||
+  if (!composer->bare || description->volume_count != 1 || hl_is_maximum(composer, description) ||
       (composer->flags & HL_COMPOSE_LIGHTS) != 0)
     return HL_OK;
+  bool cut = hl_count_cuts(composer->asked) > 0 || composer->asked[HL_ASK_CLIP].given ||
+             (composer->flags & HL_COMPOSE_CUT) != 0;
+  if (!cut && description->volumes[0].iso_count == 0) return HL_OK;
   const char *look = hl_asked_look(composer);
   hl_status status = hl_scene_light_factor(description, look != NULL ? look : "auto", &factor,
                                            composer->error);

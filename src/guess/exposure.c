@@ -103,8 +103,8 @@ static sample_light light_by_gradient(const exposure *e, double value, vec3 grad
 }
 
 /* The light that a sample sends to the eye, eqs. (3) and (4). own: the voxel's colour. */
-static void shade(const exposure *e, int entry, const sample_light *lit, vec3 to_eye, const double own[3],
-                  double sent[3]) {
+static void shade(const exposure *e, const double color[3], const sample_light *lit, vec3 to_eye,
+                  const double own[3], double sent[3]) {
   const hl_material *material = &e->volume->material;
   double gloss = 0, matt[3], sky[3];
   sky_light(&e->scene->sky, lit->surface ? &lit->normal : NULL, sky);
@@ -122,7 +122,7 @@ static void shade(const exposure *e, int entry, const sample_light *lit, vec3 to
       gloss += intensity * material->specular *
                pow(fmax(vec3_dot(to_eye, reflected), 0), material->shininess);
   }
-  for (int c = 0; c < 3; c++) sent[c] = e->color[entry][c] * own[c] * matt[c] + gloss;
+  for (int c = 0; c < 3; c++) sent[c] = color[c] * own[c] * matt[c] + gloss;
 }
 
 /* The parameters, from the origin on, where a ray enters and leaves the volume's box; false if it misses it.
@@ -223,38 +223,69 @@ typedef struct pixel {
   double thickness;  /* of the first surface that the ray meets, in steps; infinite where it meets none */
 } pixel;
 
+/* What a ray has gathered. */
+typedef struct gathered {
+  double alpha, seen[3];
+} gathered;
+
+static void gather(const double sent[3], double opacity, gathered *all) {
+  const double share = (1 - all->alpha) * opacity;
+  for (int c = 0; c < 3; c++) all->seen[c] += share * sent[c];
+  all->alpha += share;
+}
+
+/* Adds the isosurfaces that a ray crosses between two voxels with these values, the second one `at`. */
+static void gather_isosurfaces(const exposure *e, double before, double value, const long at[3], vec3 to_eye,
+                               gathered *all) {
+  const hl_scene_volume *volume = e->volume;
+  for (size_t i = 0; i < volume->iso_count; i++) {
+    const hl_isosurface *surface = &volume->iso[i];
+    double slope[3], own[3] = {1, 1, 1}, sent[3];
+    if ((before < surface->value) == (value < surface->value)) continue;
+    if (!isfinite(smooth_value(volume->volume, at, slope))) continue;
+    vec3 gradient = mat3_apply(mat3_transpose(e->world_to_index.linear), vec3_of(slope));
+    sample_light lit = {.surface = true, .normal = vec3_normalise(gradient), .sky = 1};
+    if (vec3_dot(lit.normal, to_eye) < 0) lit.normal = vec3_scale(lit.normal, -1);
+    for (size_t l = 0; l < e->scene->light_count; l++) lit.left[l] = 1;
+    shade(e, surface->color, &lit, to_eye, own, sent);
+    gather(sent, surface->opacity, all);
+  }
+}
+
 static pixel look_along(const exposure *e, vec3 origin, vec3 direction) {
   const hl_volume *volume = e->volume->volume;
   vec3 from = affine3_apply(e->world_to_index, origin),
        along = mat3_apply(e->world_to_index.linear, direction);
   vec3 to_eye = vec3_scale(direction, -1);
-  double part[2], alpha = 0, seen[3] = {0, 0, 0};
+  double part[2], before = e->empty;
+  gathered all = {0, {0, 0, 0}};
   pixel p = {-1, INFINITY};
   ray_face face = {.normal = to_eye, .at = -INFINITY};
   if (!cross_grid(e->volume, from, along, part)) return p;
-  for (double t = part[0] + 0.5 * e->step; t < part[1] && alpha < OPAQUE; t += e->step) {
+  for (double t = part[0] + 0.5 * e->step; t < part[1] && all.alpha < OPAQUE; t += e->step) {
     vec3 place = vec3_add(from, vec3_scale(along, t));
     const long at[3] = {lround(place.x), lround(place.y), lround(place.z)};
     double near = hl_volume_value_within(volume, (size_t)at[0], (size_t)at[1], (size_t)at[2]), slope[3],
            own[3], sent[3];
     if (!hl_scene_volume_left(e->volume, place)) continue;
     pass_face(e, &face, t, vec3_subtract(place, vec3_scale(along, e->step)), place);
-    if (!isfinite(near) || !(e->opacity[entry_of(e, near)] > 0)) continue;
+    if (!isfinite(near)) continue;
+    gather_isosurfaces(e, before, near, at, to_eye, &all);
+    before = near;
+    if (!(e->opacity[entry_of(e, near)] > 0)) continue;
     double value = smooth_value(volume, at, slope);
     if (!isfinite(value)) continue;
     int entry = entry_of(e, value);
-    double share = (1 - alpha) * e->opacity[entry];
     vec3 gradient = mat3_apply(mat3_transpose(e->world_to_index.linear), vec3_of(slope));
-    if (alpha < FAINT && e->opacity[entry] > FAINT && vec3_length(gradient) > e->flat)
+    if (all.alpha < FAINT && e->opacity[entry] > FAINT && vec3_length(gradient) > e->flat)
       p.thickness = thickness_at(e, entry, value, vec3_length(gradient) * e->step);
     hl_volume_color(volume, (size_t)at[0], (size_t)at[1], (size_t)at[2], own);
     sample_light lit = light_by_gradient(e, value, gradient);
     light_by_face(e, &face, t, vec3_add(origin, vec3_scale(direction, t)), to_eye, &lit);
-    shade(e, entry, &lit, to_eye, own, sent);
-    for (int c = 0; c < 3; c++) seen[c] += share * sent[c];
-    alpha += share;
+    shade(e, e->color[entry], &lit, to_eye, own, sent);
+    gather(sent, e->opacity[entry], &all);
   }
-  if (alpha > 0.5) p.brightness = fmax(seen[0], fmax(seen[1], seen[2]));
+  if (all.alpha > 0.5) p.brightness = fmax(all.seen[0], fmax(all.seen[1], all.seen[2]));
   return p;
 }
 

@@ -35,6 +35,16 @@ def test_one_alone_and_by_words(ball):
     assert np.array_equal(np.asarray(halflight.render(ball, iso=-26, **look)), np.asarray(one))
 
 
+def test_automatic_light_is_for_what_is_seen(program, tmp_path, ball):
+    """A white surface of a bare volume is bright and not clipped, though the volume's own look is darker."""
+    np.save(tmp_path / "ball.npy", ball)
+    subprocess.run([program, "render", "ball.npy", "--iso", "-26:white", "--size", "64x64", "--quiet", "-o", "made.npy"], cwd=tmp_path, check=True)
+    made = np.load(tmp_path / "made.npy")
+    surface = made[made[:, :, 3] > 0.99][:, :3].max(1)
+    assert len(surface) > 500 and np.mean(surface > 1) < 0.01 and np.quantile(surface, 0.99) > 0.7
+    assert np.array_equal(np.asarray(halflight.render(str(tmp_path / "ball.npy"), iso=(-26, "white"), size=(64, 64))), made)
+
+
 def test_scenes_keep_them(program, tmp_path, ball):
     np.save(tmp_path / "ball.npy", ball)
     scene = Scene(Volume(str(tmp_path / "ball.npy"), iso=[(-26, "gold"), (-65, "skyblue", 0.5)]), size=(24, 24))
