@@ -15,6 +15,8 @@
 #include "commands.h"
 #include "frames.h"
 #include "suggest.h"
+#include "text/color.h"
+#include "text/edit_distance.h"
 #include "text/plain.h"
 #include "text/plain_json.h"
 
@@ -120,7 +122,7 @@ static int add_json_option(const page_reading *reading, figure_panel *panel, con
     if (*at == '_') *at = '-';
   int which = strlen(key) < sizeof name ? find_option(name) : -1;
   if (which < 0) {
-    const char *meant = nearest_name(name, option_name, NULL);
+    const char *meant = hl_nearest_candidate(name, option_name, NULL);
     return fail(EXIT_CODE_INPUT, "%s: a panel has no key '%.40s'%s%s%s", reading->path, key,
                 meant != NULL ? ": did you mean '" : ": see 'halflight help figure'",
                 meant != NULL ? meant : "", meant != NULL ? "'?" : "");
@@ -331,7 +333,7 @@ static int read_page_numbers(const page_reading *reading, const json_t *root) {
   if (ground == NULL) return EXIT_CODE_OK;
   page->transparent = json_is_string(ground) && strcmp(json_string_value(ground), "transparent") == 0;
   if (page->transparent ||
-      (json_is_string(ground) && parse_color(json_string_value(ground), 0, 1, page->background)))
+      (json_is_string(ground) && hl_parse_color(json_string_value(ground), 0, 1, page->background)))
     return EXIT_CODE_OK;
   return fail(EXIT_CODE_INPUT, "%s: \"background\": give a colour, as \"white\", or \"transparent\"",
               reading->path);

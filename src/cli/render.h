@@ -184,6 +184,19 @@ int render_layers_protect(const cli_host *host, const char *output, size_t light
 /* Refuses --layers for an OUT that cannot hold them. */
 int render_layers_check(const cli_value *values);
 
+/* Reads the options that draw over pictures. Call overlay_release() even after a failure. Returns the exit
+ * code. */
+int render_overlay_read(const cli_value *values, cli_overlay *overlay);
+
+/* Refuses such options if they contradict each other or the file that is written. path: the name of the file,
+ * or
+ * "-.png" and so on. */
+int render_overlay_check_options(const cli_value *values, const char *path);
+
+/* Sets --size to what --width and --dpi ask for, if it is not given. The picture has the shape of this scene,
+ * or of a bare volume's picture (null). text: room for the text of --size, which the values borrow. */
+void render_overlay_set_size(cli_value *values, const hl_scene *scene, char text[RENDER_SIZE_TEXT]);
+
 typedef struct render_seconds {
   double load, prepare, render, write, total;
 } render_seconds;

@@ -104,7 +104,7 @@ struct hl_volume {
   double surroundings;
   double smoothing; /* voxels: the standard deviation that the voxels were smoothed by (guess/smoothing.c) */
   atomic_bool smoothing_chosen; /* hl_volume_smooth() was asked for it, or for none */
-  double surface_slope; /* for an occupancy: the slope per voxel where the occupancy passes 1/2 */
+  double surface_slope;         /* for an occupancy: the slope per voxel where the occupancy passes 1/2 */
   _Atomic(struct hl_data_analysis *)
       analysis; /* owned block; the findings of guess/analysis.h; null if not asked yet */
   /* Data that other rooms keep with the volume; owned, and released with it. */
