@@ -33,7 +33,7 @@ typedef struct views_job {
 
 /* Reads "front,left,top". */
 static int read_views(views_job *job) {
-  const cli_choice *sides = render_options[RENDER_VIEW].choices;
+  const cli_choice *sides = hl_option_choices("view");
   const char *text = job->values[RENDER_VIEWS].text;
   while (*text != '\0') {
     size_t length = strcspn(text, ",");

@@ -35,6 +35,11 @@ def label(k, j, i):
     return 0 if ball(k, j, i) < 50 else 1 + (i > 5) + (ball(k, j, i) == 90)
 
 
+def slope(k, j, i):
+    """As the ball, on a slope: no label map, which --smooth refuses."""
+    return ball(k, j, i) // 2 + 3 * i + 2 * j + k
+
+
 def voxels(value):
     return bytes(value(k, j, i) for k in range(SIZE) for j in range(SIZE) for i in range(SIZE))
 
@@ -103,6 +108,7 @@ def write_inputs():
     """{kind: ending}: each kind is two files with the same content, part_1 and part_2 with this ending."""
     nrrd("part_1.nrrd", voxels(ball))
     nrrd("part_1.vectors.nrrd", bytes(b for v in voxels(ball) for b in (v, 255 - v, 7)), 3)
+    nrrd("part_1.slope.nrrd", voxels(slope))
     nrrd("part_1.seg.nrrd", voxels(label))
     nifti("part_1.nii", voxels(ball) + voxels(label), 2)
     vti("part_1.vti", dict(first=voxels(ball), second=voxels(label)))
@@ -163,7 +169,7 @@ CASES = {
     "range": ["--range 20,150", "--range 1%,99%"],
     "range-scale": ["--range 20,150 --range-scale log"],
     "threshold": ["--threshold 80"],
-    "smooth": ["--smooth 1.5"],
+    "smooth": [".slope.nrrd --smooth 1.5"],
     "iso": ["--iso 100", "--iso 60:skyblue:0.5 --iso 150 --tf look.json"],
     "clip": ["--clip x=0.2:0.7"],
     "cut-plane": ["--cut-plane 0.5,0.5,0.5:1,0,0", "--labels map.nrrd --cut-plane 0.5,0.5,0.5:1,0,0"],

@@ -1,7 +1,9 @@
 // The banner that says that the viewer does not answer, until it does: it is asked again and again, and at once by Retry.
 
 import { button, make } from "./controls.js";
-import { Lost } from "./http_channel.js";
+
+// The viewer does not answer, or no longer to this page. A channel's requests fail with it.
+export class Lost extends Error {}
 
 const ASK_EVERY = 2000; // milliseconds
 

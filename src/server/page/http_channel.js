@@ -14,10 +14,9 @@
 //   camera's position, to where the opacity first reaches 0.01; null: nowhere. object: as in hl_layers. Null: cancelled.
 // - progress(): how far the frame under way is, { part, others }: part from 0 to 1, others: frames of other pages under way.
 
-export class Refused extends Error {}
+import { Lost } from "./connection.js";
 
-// The viewer does not answer, or no longer to this page.
-export class Lost extends Error {}
+export class Refused extends Error {}
 
 const GONE = 410; // what the page had opened is open no longer
 
