@@ -60,7 +60,8 @@ static void size_panel(const figure_page *page, figure_panel *panel) {
   size->number[0] = width;
   size->number[1] = fmax(1, round(width / aspect));
   snprintf(panel->size_text, sizeof panel->size_text, "%.0fx%.0f", size->number[0], size->number[1]);
-  size->text = panel->size_text;
+  size->text = size->texts[0] = panel->size_text;
+  size->count = 1;
 }
 
 /* Takes what the first panel shares into a description of another one. */

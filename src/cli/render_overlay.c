@@ -159,5 +159,6 @@ void render_overlay_set_size(cli_value *values, const hl_scene *scene, char text
   size->number[0] = fmax(1, round(width));
   size->number[1] = fmax(1, round(width * shape.height / shape.width));
   snprintf(text, RENDER_SIZE_TEXT, "%.0fx%.0f", size->number[0], size->number[1]);
-  size->text = text;
+  size->text = size->texts[0] = text;
+  size->count = 1;
 }
