@@ -10,6 +10,19 @@ void hl_key_add(hl_key *key, const void *bytes, size_t count) {
   key->count += count;
 }
 
+/* The bits of a double, read as a whole number, rise with its size. The sign decides which way that is:
+ * negative numbers have all bits turned, others the sign's bit. The highest byte comes first. */
+void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count) {
+  for (size_t n = 0; n < count; n++) {
+    uint64_t bits;
+    memcpy(&bits, &numbers[n], sizeof bits);
+    bits ^= bits >> 63 != 0 ? UINT64_MAX : (uint64_t)1 << 63;
+    unsigned char bytes[sizeof bits];
+    for (size_t byte = 0; byte < sizeof bits; byte++) bytes[byte] = (unsigned char)(bits >> (56 - 8 * byte));
+    hl_key_add(key, bytes, sizeof bytes);
+  }
+}
+
 /* Fowler, Noll and Vo's FNV-1a, over words of 64 bits. Four sums run beside each other, so that one need not
  * wait for another. */
 uint64_t hl_key_mark(const void *bytes, size_t count) {

@@ -16,9 +16,9 @@ typedef struct hl_key {
 
 void hl_key_add(hl_key *key, const void *bytes, size_t count);
 
-static inline void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count) {
-  hl_key_add(key, numbers, count * sizeof *numbers);
-}
+/* Adds numbers so that memcmp() of two keys orders them as the numbers are ordered: -2, -1, 0, 1, 2. An order
+ * by such keys stays when all lengths are multiplied by one factor. */
+void hl_key_add_numbers(hl_key *key, const double *numbers, size_t count);
 
 static inline void hl_key_add_whole(hl_key *key, int64_t number) { hl_key_add(key, &number, sizeof number); }
 

@@ -25,8 +25,7 @@ static void write_light(const void *data, hl_key *key) {
   const hl_light *light = data;
   hl_settings_key_add(HL_SETTINGS_LIGHT, light, light->type, key);
   hl_key_add_whole(key, (int64_t)light->vertex_count);
-  if (light->vertex_count > 0)
-    hl_key_add(key, light->vertices, light->vertex_count * sizeof *light->vertices);
+  if (light->vertex_count > 0) hl_key_add_numbers(key, &light->vertices[0][0], 3 * light->vertex_count);
   add_pixels(key, light->texture.pixels, light->texture.width, light->texture.height);
   hl_key_add_numbers(key, light->texture.screen_center, 3);
   hl_key_add_numbers(key, light->texture.screen_right, 3);
