@@ -10,6 +10,7 @@
 
 #include "connections.h"
 #include "server.h"
+#include "start/places.h"
 
 enum {
   TOKEN_DIGITS = 32,
@@ -20,13 +21,9 @@ enum {
   PATH_BYTES = 4096, /* of a path: Linux's PATH_MAX, which realpath() fills */
   MOST_FILM_KEYS = 32,
   MOST_FILM_FRAMES = 100000,
-  IDLE_PAGE_SECONDS = 300,          /* after which a page that asks for nothing loses its renderer */
-  MOST_BODY_BYTES = 4 << 20,        /* of a scene's text */
-  MOST_PIXELS = 64 << 20,           /* of a picture */
-  MOST_SLICE_SIDE = 8192,           /* samples of a plane along a row, rows, and layers */
-  MOST_SLICE_SAMPLES = 16 << 20,    /* of all its rows */
-  MOST_LAYERED_SAMPLES = 512 << 20, /* of all its layers */
-  MOST_DEPTH_SIDE = 64,             /* pixels of a picture whose depth is asked for */
+  IDLE_PAGE_SECONDS = 300,   /* after which a page that asks for nothing loses its renderer */
+  MOST_BODY_BYTES = 4 << 20, /* of a scene's text */
+  MOST_PIXELS = 64 << 20,    /* of a picture */
   LEAST_QUALITY = 10,
   MOST_QUALITY = 100 /* of a JPEG */
 };
@@ -168,8 +165,7 @@ void refuse_line(server_answer *answer, unsigned status, const char *line);
 /* places.c */
 void answer_slice(server *s, const slice_request *request, server_answer *answer);
 bool read_triple(const char *text, double numbers[3]);
-/* Answers how deep lies what the picture's middle pixel shows (hl_layers.depth_first), its opacity, and which
- * object it is: {"depth": a number or null, "opacity", "object"}. */
+/* Answers how deep lies what the picture's middle pixel shows. */
 hl_status render_depth(server_page *page, const hl_scene *scene, server_answer *answer, hl_error *error);
 
 /* films.c */

@@ -10,16 +10,17 @@
 #include <halflight/halflight.h>
 
 #include "simd/lanes.h"
+#include "start/places.h"
 #include "start/start.h"
 
 enum { MOST_PIXELS = 64 << 20 };
 
 static struct {
-  hl_context *context, *sealed; /* owned; `sealed` opens no file */
-  hl_scene *scene;              /* owned; what is open */
-  hl_renderer *renderer;        /* owned; null: not yet made */
-  char *text;                   /* owned; from the page */
-  unsigned char *answer;        /* owned; from malloc */
+  hl_context *context, *sealed;   /* owned; `sealed` opens no file */
+  hl_scene *scene;                /* owned; what is open */
+  hl_renderer *renderer, *picker; /* owned; null: not yet made; `picker` finds depths, in tiny pictures */
+  char *text;                     /* owned; from the page */
+  unsigned char *answer;          /* owned; from malloc */
   size_t answer_bytes;
 } web;
 
@@ -90,9 +91,10 @@ double web_memory_held(void) { return (double)hl_context_memory_held(web.context
 
 /* ---- what is open ---- */
 
-static void forget_renderer(void) {
+static void forget_renderers(void) {
   hl_renderer_destroy(web.renderer);
-  web.renderer = NULL;
+  hl_renderer_destroy(web.picker);
+  web.renderer = web.picker = NULL;
 }
 
 static bool ends_in(const char *text, const char *ending) {
@@ -113,12 +115,12 @@ int web_open(const char *title) {
   hl_error error = {0};
   hl_scene *scene = NULL;
   hl_status status = load(web.text, &scene, &error);
-  if (status == HL_ERROR_MEMORY) { /* once more, without what the renderer holds */
-    forget_renderer();
+  if (status == HL_ERROR_MEMORY) { /* once more, without what the renderers hold */
+    forget_renderers();
     status = load(web.text, &scene, &error);
   }
   if (status != HL_OK) return answer_error(status, &error);
-  forget_renderer();
+  forget_renderers();
   hl_scene_release(web.scene);
   web.scene = scene;
   char *start = describe_start(web.context, web.scene, title, 0, false);
@@ -213,10 +215,73 @@ int web_frame(size_t length, const char *format, int depth, int metadata) {
   hl_status status = read_scene(length, &scene, &error);
   if (status != HL_OK) return answer_error(status, &error);
   status = render(scene, format, depth, metadata != 0, &error);
-  if (status == HL_ERROR_MEMORY) { /* once more, without what the renderer holds of earlier frames */
-    forget_renderer();
+  if (status == HL_ERROR_MEMORY) { /* once more, without what the renderers hold of earlier frames */
+    forget_renderers();
     status = render(scene, format, depth, metadata != 0, &error);
   }
   hl_scene_release(scene);
   return status == HL_OK ? HL_OK : answer_error(status, &error);
+}
+
+/* ---- places ---- */
+
+enum { PLANE_NUMBERS = 15 };
+
+static hl_status read_plane(const double numbers[PLANE_NUMBERS], hl_reslice_options *plane, hl_error *error) {
+  bool fits = true;
+  hl_reslice_options_defaults(plane);
+  for (int side = 0; side < 3; side++) fits = fits && numbers[side] >= 1 && numbers[side] <= MOST_SLICE_SIDE;
+  if (!fits || numbers[0] * numbers[1] > MOST_SLICE_SAMPLES ||
+      numbers[0] * numbers[1] * numbers[2] > MOST_LAYERED_SAMPLES) {
+    snprintf(error->message, sizeof error->message,
+             "a slice has %d samples along a side at most, and %d in all", (int)MOST_SLICE_SIDE,
+             (int)MOST_SLICE_SAMPLES);
+    return HL_ERROR_INPUT;
+  }
+  plane->width = (size_t)numbers[0];
+  plane->height = (size_t)numbers[1];
+  plane->depth = (size_t)numbers[2];
+  for (int axis = 0; axis < 3; axis++) {
+    plane->origin[axis] = numbers[3 + axis];
+    plane->across[axis] = numbers[6 + axis];
+    plane->down[axis] = numbers[9 + axis];
+    plane->through[axis] = numbers[12 + axis];
+  }
+  return HL_OK;
+}
+
+int web_slice(int number, int of_mask, int blend, int interpolate) {
+  hl_error error = {0};
+  hl_reslice_options plane;
+  double numbers[PLANE_NUMBERS];
+  unsigned char *bytes = NULL;
+  size_t count = 0;
+  const hl_volume *volume = sliced_volume(web.scene, number, of_mask != 0);
+  if (volume == NULL) return answer_text(HL_ERROR_INPUT, "the scene has no such volume or mask");
+  memcpy(numbers, web.text, sizeof numbers);
+  hl_status status = read_plane(numbers, &plane, &error);
+  plane.blend = (hl_blend)blend;
+  plane.interpolate = interpolate;
+  if (status == HL_OK) status = slice_values(volume, &plane, &bytes, &count, &error);
+  return status == HL_OK ? answer(HL_OK, bytes, count) : answer_error(status, &error);
+}
+
+static hl_status find_depth(const hl_scene *scene, char **text, hl_error *error) {
+  hl_status status = web.picker == NULL ? hl_renderer_create(web.context, &web.picker, error) : HL_OK;
+  return status == HL_OK ? middle_depth(web.picker, scene, text, error) : status;
+}
+
+int web_depth(size_t length) {
+  hl_error error = {0};
+  hl_scene *scene = NULL;
+  char *text = NULL;
+  hl_status status = read_scene(length, &scene, &error);
+  if (status != HL_OK) return answer_error(status, &error);
+  status = find_depth(scene, &text, &error);
+  if (status == HL_ERROR_MEMORY) { /* once more, without what the renderers hold of earlier frames */
+    forget_renderers();
+    status = find_depth(scene, &text, &error);
+  }
+  hl_scene_release(scene);
+  return status == HL_OK ? answer(HL_OK, (unsigned char *)text, strlen(text)) : answer_error(status, &error);
 }

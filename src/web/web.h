@@ -29,6 +29,14 @@ int web_complete(size_t length);
  * of opaque sRGB, top row first. depth: bits of a PNG's codes. metadata: 0, without the scene's text. */
 int web_frame(size_t length, const char *format, int depth, int metadata);
 
+/* Answer: the values of a plane of voxels, as slice_values() makes them (start/places.h). The text is 15
+ * doubles: width, height, depth, origin, across, down and through of hl_reslice_options. number: of a volume
+ * of what is open; of_mask: 1, the label map that masks it; blend: an hl_blend; interpolate: 0 or 1. */
+int web_slice(int number, int of_mask, int blend, int interpolate);
+
+/* Answer: how deep lies what the middle pixel of the text's scene shows, as middle_depth() tells it. */
+int web_depth(size_t length);
+
 /* Owned by this side, until the next call that can fail. */
 const unsigned char *web_answer(void);
 size_t web_answer_bytes(void);

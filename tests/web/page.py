@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """The page without a server, in Chromium from a disk and from a web server, and in Firefox.
 
-usage: page.py FOLDER PROGRAM
-FOLDER is that of scripts/web. What browser is not there is left out.
+usage: page.py FOLDER PROGRAM [SHOTS]
+FOLDER is that of scripts/web. What browser is not there is left out. SHOTS: a folder where screenshots are kept.
 """
 import contextlib
 import functools
 import hashlib
 import http.server
+import itertools
 import json
 import pathlib
 import shutil
@@ -20,8 +21,10 @@ import urllib.parse
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "viewer"), str(ROOT / "tests" / "budgets")]
 from browser import Browser  # noqa: E402
-from scenes import SCENES, write_volumes  # noqa: E402
+from firefox import Firefox  # noqa: E402
+from scenes import SCENES, balls, write_volumes  # noqa: E402
 
+SHOTS = pathlib.Path(sys.argv[3]).resolve() if len(sys.argv) > 3 else None
 HANG = 300  # seconds, for a browser that hangs alone
 number = 0
 
@@ -67,6 +70,49 @@ def same_pixels(program, folder, picture, scene):
     return done.returncode == 0
 
 
+def label_at(i, j, k):
+    """The value of labels.nrrd."""
+    return (1 + i // 14) * (balls(i, j, k) > 125)
+
+
+def crosshair_at(browser, voxel):
+    """Puts the crosshair there, and waits for its value: { voxel, value, inside }."""
+    browser.run(f"halflight.slices.moveTo({json.dumps(voxel)})")
+    browser.wait(f"JSON.stringify(halflight.slices.readout?.voxel) === {json.dumps(json.dumps(voxel, separators=(',', ':')))} && Number.isFinite(halflight.slices.readout.value)")
+    return json.loads(browser.run("JSON.stringify(halflight.slices.readout)"))
+
+
+def try_slices(browser, what):
+    """Slices show the file's values, and a click in the picture finds what is seen there."""
+    browser.run("halflight.store.setPage({ layout: 'four' })")
+    places = [[20, 2, 30], [13, 14, 14], [27, 25, 20]]
+    found = [crosshair_at(browser, place)["value"] for place in places]
+    check(found == [label_at(*place) for place in places], f"{what}: slices have the file's values: {found}")
+    painted = browser.run("""new Promise((done) => setTimeout(done, 300)).then(() => [...document.querySelectorAll('.slice canvas')].filter((canvas) => {
+      const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+      return new Set(new Uint32Array(data.buffer)).size > 2; }).length)""")
+    check(painted == 3, f"{what}: three slices are painted")
+    x, y, width, height = browser.run("(() => { const b = document.getElementById('view').getBoundingClientRect(); return [b.x, b.y, b.width, b.height]; })()")
+    before = browser.run("JSON.stringify(halflight.store.page.cursor)")
+    browser.click([x + 0.5 * width, y + 0.6 * height])
+    browser.wait(f"JSON.stringify(halflight.store.page.cursor) !== {json.dumps(before)}")
+    cursor = [round(one) for one in json.loads(browser.run("JSON.stringify(halflight.store.page.cursor)"))]
+    around = [label_at(*(cursor[axis] + step[axis] for axis in range(3))) for step in itertools.product((-1, 0, 1), repeat=3)]
+    check(0 in around and max(around) > 0, f"{what}: a click finds a label's surface: {cursor}")
+
+
+def try_reload(browser, folder, what):
+    """A page that is loaded anew names what was open, and goes on with it where it is dropped again."""
+    browser.run("halflight.store.changeRender('sheet_spacing', 1.5)")
+    browser.run("new Promise((done) => setTimeout(done, 500))")
+    browser.call("Page.reload")
+    browser.wait("globalThis.halflight === undefined && document.querySelector('.tab-message')?.textContent.includes('labels.nrrd')")
+    choose_files(browser, [folder / "labels.nrrd"])
+    browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
+    check(browser.run("halflight.store.scene.render.sheet_spacing") == 1.5 and browser.run("halflight.slices.layout") == "four",
+          f"{what}: a page that is loaded anew goes on with what was done")
+
+
 def try_chromium(url, what, program, folder):
     with Browser(size=(900, 500)) as browser:
         browser.open(url)
@@ -83,20 +129,32 @@ def try_chromium(url, what, program, folder):
         after = json.loads(browser.run("JSON.stringify(halflight.frames.statistics)"))
         check(after["cancelled"] > before["cancelled"] and after["finals"] == before["finals"],
               f"{what}: a picture that is wanted no longer ends")
+        browser.wait("halflight.frames.statistics.stage === 'refining'")
+        finals = browser.run("halflight.frames.statistics.finals")
+        browser.run("halflight.store.setPage({ layout: 'four' })")
+        value = crosshair_at(browser, [13, 14, 14])["value"]
+        check(value == 1 and browser.run("halflight.frames.statistics.finals") == finals, f"{what}: slices do not wait for the picture")
+        browser.run("halflight.store.changeRender('sheet_spacing', 1)")
+        try_slices(browser, what)
+        try_reload(browser, folder, what)
         check(browser.problems == [], f"{what}: no problem in the console: {browser.problems}")
 
 
-def try_held_scene(program, folder):
+def try_held_scene(kind, what, program, folder):
     """A page that holds a scene shows it without being asked."""
     (folder / "held.json").write_text(json.dumps(SCENES["labels"]))
     subprocess.run([ROOT / "scripts" / "web_page", folder / "held.json", folder / "held.html"], check=True)
-    with Browser(size=(900, 500)) as browser:
+    with kind(size=(900, 500)) as browser:
         browser.open((folder / "held.html").as_uri())
         browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
         saved_scene(browser, folder, "saved.json")
-        check(same_pixels(program, folder, final_picture(browser), "saved.json"), "Chromium: a page that holds a scene shows it")
+        check(same_pixels(program, folder, final_picture(browser), "saved.json"), f"{what}: a page that holds a scene shows it")
+        try_slices(browser, what)
+        if SHOTS is not None:
+            browser.wait("halflight.frames.statistics.stage === 'final'")
+            browser.screenshot(SHOTS / f"{what}.png")
         check(browser.run("document.title") == "held · Halflight" and browser.problems == [],
-              f"Chromium: it has the scene's name and no problem in the console: {browser.problems}")
+              f"{what}: it has the scene's name and no problem in the console: {browser.problems}")
 
 
 class Handler(http.server.SimpleHTTPRequestHandler):
@@ -191,7 +249,7 @@ def main():
         expected = write_hash_page(web / "page", folder / "page", program)
         if shutil.which("chromium"):
             try_chromium((web / "halflight.html").as_uri(), "Chromium, one file", program, folder)
-            try_held_scene(program, folder)
+            try_held_scene(Browser, "Chromium", program, folder)
             with serve(web / "page") as (_, url):
                 try_chromium(url, "Chromium, a folder", program, folder)
             compare_hashes(lambda profile: ["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}"],
@@ -200,6 +258,7 @@ def main():
             skip("Chromium", "it is not installed")
         firefox = shutil.which("firefox-esr") or shutil.which("firefox")
         if firefox:
+            try_held_scene(functools.partial(Firefox, firefox), "Firefox", program, folder)
             compare_hashes(lambda profile: [firefox, "--headless", "--no-remote", "--profile", profile], "Firefox", folder / "page", expected)
         else:
             skip("Firefox", "it is not installed")

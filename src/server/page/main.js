@@ -1,7 +1,7 @@
 // The page: a viewer over the whole window, of what the server has open, as this tab has left it.
 
 import { HttpChannel } from "./http_channel.js";
-import { filesOf, keepSession, keptSession, readSession } from "./session.js";
+import { filesOf, keepSession, keptSession, restoreFrom } from "./session.js";
 import { mount } from "./viewer.js";
 
 let channel = null, shown = { source: null, keeping: null };
@@ -14,35 +14,18 @@ function show(start, source = null, kept = null) {
   channel = new HttpChannel(start.opened, source);
   shown = { source, keeping: new AbortController() };
   document.title = `${start.title} · Halflight`;
-  const viewer = mount(document.body, channel, start, { keyboard: document, reopen: show, source, kept, restore: openSession, startAfresh: () => show(start, source) });
+  const viewer = mount(document.body, channel, start, { keyboard: document, reopen: show, source, kept, restore: (file) => restoreFrom(file, viewer, channel, reopen), startAfresh: () => show(start, source) });
   globalThis.halflight = viewer; // for the console, and for tests
   keepSession(viewer.store, start, source, shown.keeping.signal);
   return viewer;
 }
 
-// The text of a file that was dropped or chosen: whether it was a session, or a scene of the volumes that are open.
-async function openSession(file) {
-  let object;
-  try {
-    object = JSON.parse(await file.text());
-  } catch {
-    throw new Error(`${file.name} is no JSON`);
-  }
-  const session = readSession(object), scene = session?.scene ?? object, { store, start } = globalThis.halflight;
-  if (session === null && object?.halflight === undefined) throw new Error(`${file.name} is neither a session nor a scene`);
-  if (filesOf(scene) !== filesOf(store.scene)) {
-    if (session === null || session.source === null) return session === null ? "other" : missing(session, start);
-    const opened = await channel.open(session.source);
-    if (filesOf(opened.scene) !== filesOf(scene)) return missing(session, start);
-    show(opened, session.source, session);
-    return "opened";
-  }
-  store.replace({ ...session, scene: await channel.completeScene(scene) });
-  return "opened";
-}
-
-function missing(session, start) {
-  throw new Error(`the session is of ${session.title}, and ${start.title} is open: open that first`);
+// Opens the file that a session is of, and goes on with it; false: it is not in the viewer's folder, or is another one.
+async function reopen(session) {
+  const opened = session.source === null ? null : await channel.open(session.source);
+  if (opened === null || filesOf(opened.scene) !== filesOf(session.scene)) return false;
+  show(opened, session.source, session);
+  return true;
 }
 
 // The file that the tab had open, with what was done; what the viewer began with where there is none.

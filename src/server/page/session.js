@@ -63,3 +63,21 @@ export function forgetSession() {
     // there is none
   }
 }
+
+// Shows what a file has, a session or a scene, where it is of the volumes that a viewer (mount() of viewer.js) has open. Of a
+// session of other volumes, reopen(session) may open these and show it: it resolves to whether it could. Resolves to "opened", or to
+// "other" for a scene of other files.
+export async function restoreFrom(file, { store, start }, channel, reopen = () => false) {
+  let object;
+  try {
+    object = JSON.parse(await file.text());
+  } catch {
+    throw new Error(`${file.name} is no JSON`);
+  }
+  const session = readSession(object), scene = session?.scene ?? object;
+  if (session === null && object?.halflight === undefined) throw new Error(`${file.name} is neither a session nor a scene`);
+  if (filesOf(scene) === filesOf(store.scene)) store.replace({ ...session, scene: await channel.completeScene(scene) });
+  else if (session === null) return "other";
+  else if (!(await reopen(session))) throw new Error(`the session is of ${session.title}, and ${start.title} is open: open that first`);
+  return "opened";
+}

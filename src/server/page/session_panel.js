@@ -63,7 +63,7 @@ export function sessionPanel(viewer) {
   body.append(row(make("span", { class: "name" }, "View"), make("span", { class: "buttons" }, button("bookmark", bookmarks.add), backwards, forwards)), bookmarks.element,
     row(make("span", { class: "name" }, "Session"), make("span", { class: "buttons" }, button("save session", save),
       ...(openSession ? [button("open …", () => chooser.click(), { "aria-label": "Open a session or a scene" }), button("start afresh", afresh, { title: "As the viewer began: what was done in this tab is forgotten" })] : []))),
-    chooser, ...(openSession ? [make("p", { class: "facts" }, "A session holds the scene, marks, bookmarks and layout, and names its volumes. This tab keeps it when the page is reloaded or the viewer starts again on the same port.")] : []));
+    chooser, ...(openSession ? [make("p", { class: "facts" }, "A session holds the scene, marks, bookmarks and layout, and names its volumes. This tab keeps it, for when the page is reloaded and the same files are open again.")] : []));
   function update() {
     bookmarks.update();
     backwards.disabled = !store.canUndoCamera;

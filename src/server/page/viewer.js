@@ -168,7 +168,7 @@ function revealIn(root) {
 // Fills an empty element with a viewer. channel: how pictures are asked for (http_channel.js); start: what is open;
 // keyboard: where its keys are listened to; reopen(start, source): called where a person opens another file; source: the path
 // by which this one was opened; kept: a session (session.js) to go on with; restore(file): opens a session or a scene;
-// startAfresh(): forgets what was done. Returns { store, frames, overlay, probe, slices, marking, report, end }; end() stops all of it.
+// startAfresh(): forgets what was done. Returns { store, start, frames, overlay, probe, slices, marking, report, end }; end() stops all of it.
 export function mount(element, channel, start, { keyboard = element, reopen = () => {}, source = null, kept = null, restore = null, startAfresh = () => {} } = {}) {
   element.innerHTML = MARKUP;
   const root = element.firstElementChild, find = (id) => root.querySelector(`#${id}`);
@@ -219,5 +219,5 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
   viewer.slices.update();
   update();
   frames.move();
-  return { store, frames, overlay: viewer.overlay, probe: viewer.probe, slices: viewer.slices, marking: viewer.marking, report, end: () => { ended.abort(); frames.end(); status.end(); connection.end(); } };
+  return { store, start, frames, overlay: viewer.overlay, probe: viewer.probe, slices: viewer.slices, marking: viewer.marking, report, end: () => { ended.abort(); frames.end(); status.end(); connection.end(); } };
 }

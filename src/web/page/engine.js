@@ -5,6 +5,11 @@ import { Files } from "./files.js";
 const OK = 0, CANCELLED = 6; // hl_status
 const MEBIBYTES = 3800; // of WebAssembly's four gibibytes, beside stacks and code
 
+const BLENDS = ["maximum", "minimum", "mean"]; // hl_blend, from 1
+
+// As http_channel.js has it: the number of bytes tells whether they are floats or doubles.
+const valuesOf = (buffer, width, height) => ({ values: buffer.byteLength === 4 * width * height ? new Float32Array(buffer) : new Float64Array(buffer), width, height });
+
 export class EngineError extends Error {}
 
 export class Engine {
@@ -22,7 +27,7 @@ export class Engine {
     });
     this.#exports = { ...instance.exports };
     if (Engine.waits)
-      for (const name of ["web_begin", "web_open", "web_complete", "web_frame"]) this.#exports[name] = WebAssembly.promising(this.#exports[name]);
+      for (const name of ["web_begin", "web_open", "web_complete", "web_frame", "web_slice", "web_depth"]) this.#exports[name] = WebAssembly.promising(this.#exports[name]);
     this.#exports._initialize();
   }
 
@@ -47,8 +52,9 @@ export class Engine {
 
   get memoryHeld() { return this.#exports.web_memory_held(); }
 
-  #write(text) {
-    const bytes = new TextEncoder().encode(text), pointer = this.#exports.web_text(bytes.length);
+  // Texts are written as UTF-8, bytes as they are. Returns their number.
+  #write(content) {
+    const bytes = typeof content === "string" ? new TextEncoder().encode(content) : content, pointer = this.#exports.web_text(bytes.length);
     if (pointer === 0) throw new EngineError("no memory for a scene's text");
     new Uint8Array(this.#exports.memory.buffer, pointer, bytes.length).set(bytes);
     return bytes.length;
@@ -93,5 +99,18 @@ export class Engine {
     const length = this.#write(JSON.stringify(scene));
     const answer = await this.#with(format, (pointer) => this.#exports.web_frame(length, pointer, depth, +metadata));
     return answer?.slice() ?? null;
+  }
+
+  // The values of a plane of voxels (slice() of http_channel.js); null: cancelled.
+  async slice({ width, height, origin, across, down, through, depth = 1, volume = 0, of = "voxels", blend = "maximum", between = "nearest" }) {
+    this.#write(new Uint8Array(Float64Array.of(width, height, depth, ...origin, ...across, ...down, ...through).buffer));
+    const answer = this.#check(await this.#exports.web_slice(volume, +(of === "mask"), 1 + BLENDS.indexOf(blend), +(between === "linear")));
+    return answer && valuesOf(answer.slice().buffer, width, height);
+  }
+
+  // How deep lies what the middle of the scene's picture shows (depth() of http_channel.js); null: cancelled.
+  async depth(scene) {
+    const answer = this.#check(await this.#exports.web_depth(this.#write(JSON.stringify(scene))));
+    return answer && JSON.parse(new TextDecoder().decode(answer));
   }
 }

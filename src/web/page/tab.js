@@ -3,6 +3,7 @@
 
 import { chosenFiles, droppedFiles } from "./dropped.js";
 import { heldFiles, part } from "./parts.js";
+import { filesOf, keepSession, keptSession, restoreFrom } from "./session.js";
 import { mount } from "./viewer.js";
 import { WorkerChannel } from "./worker_channel.js";
 
@@ -33,11 +34,23 @@ async function begin() {
 }
 
 // The channel of what is open now. The viewer's panel of a server's files has no use here.
-const viewerChannel = () => ({ completeScene: (scene) => channel.completeScene(scene), fetchFrame: (scene, options) => channel.fetchFrame(scene, options) });
+const viewerChannel = () => Object.fromEntries(["completeScene", "fetchFrame", "slice", "depth"].map((name) => [name, (...values) => channel[name](...values)]));
 
 function say(text) {
   if (globalThis.halflight) globalThis.halflight.report(text);
   else message.textContent = text;
+}
+
+let kept = keptSession(), keeping = null; // kept: what this tab has done before the page was loaded
+
+// Shows what is open, with a session to go on with, or null.
+function show(start, session = null) {
+  globalThis.halflight?.end();
+  keeping?.abort();
+  keeping = new AbortController();
+  document.title = `${start.title} · Halflight`;
+  globalThis.halflight = mount(document.body, viewerChannel(), start, { keyboard: document, kept: session, restore: openSession, startAfresh: () => show(start) });
+  keepSession(globalThis.halflight.store, start, null, keeping.signal);
 }
 
 async function open({ contents, path, title }) {
@@ -45,18 +58,29 @@ async function open({ contents, path, title }) {
   try {
     await begun;
     const start = await channel.open(contents, path, title);
-    globalThis.halflight?.end();
-    document.title = `${start.title} · Halflight`;
-    globalThis.halflight = mount(document.body, viewerChannel(), start, { keyboard: document });
+    const goesOn = kept !== null && kept.title === start.title && filesOf(kept.scene) === filesOf(start.scene);
+    show(start, goesOn ? kept : null);
+    kept = null;
   } catch (error) {
     say(error.message);
   }
 }
 
+// A session, or a scene of what is open; a scene of other files is opened.
+async function openSession(file) {
+  if ((await restoreFrom(file, globalThis.halflight, channel)) === "other") await open(chosenFiles([file]));
+}
+
+async function take(files) {
+  const contents = Object.values(files.contents);
+  if (globalThis.halflight === undefined || contents.length !== 1 || !files.path.endsWith(".json")) return open(files);
+  return openSession(contents[0]).catch((error) => say(error.message));
+}
+
 addEventListener("dragover", (event) => event.preventDefault());
 addEventListener("drop", async (event) => {
   event.preventDefault();
-  open(await droppedFiles(event.dataTransfer));
+  take(await droppedFiles(event.dataTransfer));
 });
 choose.addEventListener("change", () => { if (choose.files.length > 0) open(chosenFiles([...choose.files])); });
 
@@ -65,3 +89,4 @@ const begun = begin();
 begun.catch((error) => say(`The page cannot begin: ${error.message}`));
 const held = await heldFiles();
 if (HELD_SCENE in held) await open({ contents: held, path: HELD_SCENE, title: document.title });
+else if (kept !== null) say(`Drop ${kept.title} again to go on with what you did.`);

@@ -1,13 +1,14 @@
 // The worker of a page without a server: an engine, and what the page asks of it, in turn.
 //
 // Now and then a call waits for the messages that came meanwhile, as one of them may say that its frame is wanted no
-// longer. Where the browser's WebAssembly cannot wait in the middle of a call, frames run to their end.
+// longer, or ask for a slice. Where the browser's WebAssembly cannot wait in the middle of a call, frames run to their end.
 
 import { Engine } from "./engine.js";
 
 const ASK_EVERY = 25; // milliseconds
 
 let engine = null, current = 0, asked = 0;
+const slices = []; // requests that came in the middle of a frame
 const gone = new Set(); // numbers of frames that are wanted no longer
 
 // Lets waiting messages be handled.
@@ -19,10 +20,17 @@ const messagesHandled = () => new Promise((resolve) => {
 
 function cancelled() {
   if (!Engine.waits || current === 0 || performance.now() - asked < ASK_EVERY) return 0;
-  return messagesHandled().then(() => {
-    asked = performance.now();
-    return +gone.has(current);
-  });
+  return between().then(() => +gone.has(current));
+}
+
+// In the middle of a frame: handles messages, and answers those for slices, which need none of what the frame has begun.
+async function between() {
+  const frame = current;
+  await messagesHandled();
+  current = 0; // a slice itself waits for nothing
+  await answerSlices();
+  current = frame;
+  asked = performance.now();
 }
 
 // A blob of a picture. The browser's own encoder makes JPEGs, for frames that are seen for a moment only.
@@ -39,6 +47,8 @@ const calls = {
     return {};
   },
   open: async ({ contents, path, title }) => ({ start: await engine.open(contents, path, title) }),
+  slice: async (plane) => engine.slice(plane),
+  depth: async ({ scene }) => ({ found: await engine.depth(scene) }),
   complete: async ({ scene }) => ({ scene: await engine.complete(scene) }),
   async frame({ scene, format, quality, depth, metadata, number }) {
     await messagesHandled();
@@ -57,18 +67,22 @@ const calls = {
   },
 };
 
-let last = Promise.resolve();
-addEventListener("message", ({ data: { number, kind, ...request } }) => {
-  if (kind === "cancel") {
-    gone.add(number);
-    return;
+async function answer({ number, kind, ...request }) {
+  try {
+    postMessage({ number, ...(await calls[kind]({ number, ...request })) });
+  } catch (error) {
+    postMessage({ number, problem: error.message });
   }
-  last = last.then(async () => {
-    try {
-      postMessage({ number, ...(await calls[kind]({ number, ...request })) });
-    } catch (error) {
-      postMessage({ number, problem: error.message });
-    }
-    gone.delete(number);
-  });
+  gone.delete(number);
+}
+
+async function answerSlices() {
+  while (slices.length > 0) await answer(slices.shift());
+}
+
+let last = Promise.resolve();
+addEventListener("message", ({ data }) => {
+  if (data.kind === "cancel") gone.add(data.number);
+  else if (data.kind === "slice" && current !== 0 && Engine.waits) slices.push(data);
+  else last = last.then(() => answer(data)).then(answerSlices);
 });

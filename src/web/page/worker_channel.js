@@ -47,6 +47,16 @@ export class WorkerChannel {
     return (await this.#ask("complete", { scene })).scene;
   }
 
+  // { values, width, height } of a plane of voxels.
+  slice(plane) {
+    return this.#ask("slice", plane);
+  }
+
+  // Null: cancelled.
+  async depth(scene) {
+    return (await this.#ask("depth", { scene })).found;
+  }
+
   // A new frame ends the frame of its lane that is under way. One that moves ends the probe's, too: there is one worker.
   #cancel(lane) {
     for (const [other, number] of this.#frames)
