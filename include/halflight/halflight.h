@@ -51,6 +51,7 @@
 #include "image.h"
 #include "layers.h"
 #include "mesh.h"
+#include "page.h"
 #include "ranks.h"
 #include "render.h"
 #include "reslice.h"

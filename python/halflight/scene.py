@@ -213,6 +213,39 @@ class Scene:
 
         save(self, os.fspath(path), copy)
 
+    def to_html(self, path: str | os.PathLike[str] | None = None, *, title: str = "Halflight") -> str:
+        """The scene with its data as one page for browsers, with camera, light and all panels alive.
+
+        It opens from a disk. Volumes are cut to the box that shows anything, and lie in 8 bits where these hold all values.
+        The viewer's page itself is made by ``scripts/web``: the package has it where it was there when the package was built;
+        elsewhere the environment's ``HALFLIGHT_PAGE`` names it.
+
+        Parameters
+        ----------
+        path : path
+            The page is written there, too.
+        title : str
+            What the page is called.
+
+        Returns
+        -------
+        str
+            The page's text.
+
+        Raises
+        ------
+        FileNotFoundError
+            The viewer's page is not there.
+        """
+        from .page_file import page_of
+
+        text = page_of(self, title)
+        if path is not None:
+            from . import picture_files
+
+            picture_files.write_whole(os.fspath(path), text.encode())
+        return text
+
     def _state(self) -> dict[str, Any]:
         """All that the scene shows beside its volumes, by the keywords that make it."""
         state: dict[str, Any] = {word: getattr(self, word) for word in (

@@ -4,13 +4,16 @@
 usage: page.py FOLDER PROGRAM [SHOTS]
 FOLDER is that of scripts/web. What browser is not there is left out. SHOTS: a folder where screenshots are kept.
 """
+import base64
 import contextlib
 import functools
+import gzip
 import hashlib
 import http.server
 import itertools
 import json
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -75,18 +78,19 @@ def label_at(i, j, k):
     return (1 + i // 14) * (balls(i, j, k) > 125)
 
 
-def crosshair_at(browser, voxel):
-    """Puts the crosshair there, and waits for its value: { voxel, value, inside }."""
-    browser.run(f"halflight.slices.moveTo({json.dumps(voxel)})")
+def crosshair_at(browser, place, first=(0, 0, 0)):
+    """Puts the crosshair there, and waits for its value: { voxel, value, inside }. first: the place of voxel 0, 0, 0."""
+    browser.run(f"halflight.slices.moveTo({json.dumps(place)})")
+    voxel = [a - b for a, b in zip(place, first)]
     browser.wait(f"JSON.stringify(halflight.slices.readout?.voxel) === {json.dumps(json.dumps(voxel, separators=(',', ':')))} && Number.isFinite(halflight.slices.readout.value)")
     return json.loads(browser.run("JSON.stringify(halflight.slices.readout)"))
 
 
-def try_slices(browser, what):
+def try_slices(browser, what, first=(0, 0, 0)):
     """Slices show the file's values, and a click in the picture finds what is seen there."""
     browser.run("halflight.store.setPage({ layout: 'four' })")
     places = [[20, 2, 30], [13, 14, 14], [27, 25, 20]]
-    found = [crosshair_at(browser, place)["value"] for place in places]
+    found = [crosshair_at(browser, place, first)["value"] for place in places]
     check(found == [label_at(*place) for place in places], f"{what}: slices have the file's values: {found}")
     painted = browser.run("""new Promise((done) => setTimeout(done, 300)).then(() => [...document.querySelectorAll('.slice canvas')].filter((canvas) => {
       const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
@@ -140,16 +144,19 @@ def try_chromium(url, what, program, folder):
         check(browser.problems == [], f"{what}: no problem in the console: {browser.problems}")
 
 
-def try_held_scene(kind, what, program, folder):
+def try_held_scene(kind, what, page, program, folder):
     """A page that holds a scene shows it without being asked."""
     (folder / "held.json").write_text(json.dumps(SCENES["labels"]))
-    subprocess.run([ROOT / "scripts" / "web_page", folder / "held.json", folder / "held.html"], check=True)
+    subprocess.run([program, "export", folder / "held.json", "--page", page, "-o", folder / "held.html", "--quiet"], check=True)
+    held = re.search(r'data-file="volume0.nrrd">([^<]*)<', (folder / "held.html").read_text())[1]
+    (folder / "volume0.nrrd").write_bytes(gzip.decompress(base64.b64decode(held)))
+    facts = json.loads(subprocess.run([program, "info", "--json", folder / "volume0.nrrd"], check=True, capture_output=True, text=True).stdout)
     with kind(size=(900, 500)) as browser:
         browser.open((folder / "held.html").as_uri())
         browser.wait("globalThis.halflight?.frames.statistics.finals > 0")
         saved_scene(browser, folder, "saved.json")
         check(same_pixels(program, folder, final_picture(browser), "saved.json"), f"{what}: a page that holds a scene shows it")
-        try_slices(browser, what)
+        try_slices(browser, what, [round(one) for one in facts["origin"]])
         if SHOTS is not None:
             browser.wait("halflight.frames.statistics.stage === 'final'")
             browser.screenshot(SHOTS / f"{what}.png")
@@ -249,7 +256,7 @@ def main():
         expected = write_hash_page(web / "page", folder / "page", program)
         if shutil.which("chromium"):
             try_chromium((web / "halflight.html").as_uri(), "Chromium, one file", program, folder)
-            try_held_scene(Browser, "Chromium", program, folder)
+            try_held_scene(Browser, "Chromium", web / "halflight.html", program, folder)
             with serve(web / "page") as (_, url):
                 try_chromium(url, "Chromium, a folder", program, folder)
             compare_hashes(lambda profile: ["chromium", "--headless=new", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}"],
@@ -258,7 +265,7 @@ def main():
             skip("Chromium", "it is not installed")
         firefox = shutil.which("firefox-esr") or shutil.which("firefox")
         if firefox:
-            try_held_scene(functools.partial(Firefox, firefox), "Firefox", program, folder)
+            try_held_scene(functools.partial(Firefox, firefox), "Firefox", web / "halflight.html", program, folder)
             compare_hashes(lambda profile: [firefox, "--headless", "--no-remote", "--profile", profile], "Firefox", folder / "page", expected)
         else:
             skip("Firefox", "it is not installed")

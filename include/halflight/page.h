@@ -1,0 +1,27 @@
+/* halflight/page.h - a scene as a page of its own: one HTML file that holds the viewer, the scene and its
+ * data, and that browsers open from a disk, with camera and light alive.
+ */
+#ifndef HALFLIGHT_PAGE_H
+#define HALFLIGHT_PAGE_H
+
+#include "scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Writes the page. viewer: path of the page without a scene, halflight.html, which scripts/web makes
+ * (docs/web.md); title: UTF-8, what the page is called; path: the file to write, which appears whole or not
+ * at all.
+ *
+ * Volumes are cut to the box that shows anything, with a few voxels around it, and lie in 8 bits where these
+ * hold all of the values. Volumes with colours of their own, and images, are held as they lie on the disk.
+ * Where there is no such file, the error is HL_ERROR_INPUT. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_write_page(hl_context *context, const hl_scene *scene,
+                                                    const char *viewer, const char *title, const char *path,
+                                                    hl_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,35 @@
+/* page/held.h - what a page holds of a scene: its text, and the files that the text names. */
+#ifndef HL_PAGE_HELD_H
+#define HL_PAGE_HELD_H
+
+#include <stdio.h>
+
+#include "core/error.h"
+#include "halflight/scene.h"
+
+enum { HELD_NAME_BYTES = 64 };
+
+typedef struct held_file {
+  char name[HELD_NAME_BYTES]; /* in the scene's text */
+  char *path;                 /* owned; where it lies now */
+} held_file;
+
+typedef struct held_scene {
+  hl_context *context;
+  char *folder;     /* owned; of what is written for the page alone; null: not yet made */
+  held_file *files; /* owned; [count] */
+  size_t count, room;
+  hl_scene_volume *volumes; /* owned; as the text has them */
+  hl_light *lights;         /* owned */
+  hl_volume **made;         /* owned; [made_count]; what was written, read again */
+  size_t made_count;
+  char *text; /* owned; hl_text_release() */
+} held_scene;
+
+/* Writes volumes to a folder of their own, cut to what shows, and makes the text. Call held_scene_end() even
+ * after a failure. */
+hl_status held_scene_make(hl_context *context, const hl_scene *scene, held_scene *held, hl_error *error);
+/* Removes the folder. */
+void held_scene_end(held_scene *held);
+
+#endif
