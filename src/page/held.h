@@ -4,8 +4,9 @@
 
 #include <stdio.h>
 
+#include <halflight/scene.h>
+
 #include "core/error.h"
-#include "halflight/scene.h"
 
 enum { HELD_NAME_BYTES = 64 };
 
