@@ -48,13 +48,15 @@ typedef enum hl_compose_flag {
   HL_COMPOSE_LIGHTS = 16, /* the caller chose the lights: they stay as strong as they are */
   HL_COMPOSE_SKY = 32,    /* the caller chose the sky: it stays */
   HL_COMPOSE_MESHES = 64, /* the caller added meshes: a bare camera takes them into the picture, too */
-  HL_COMPOSE_SEGMENTS = 128 /* a bare volume whose file names its segments is shown as a label map */
+  HL_COMPOSE_VALUES = 128 /* bare label maps are drawn by their values, as by options that are about values */
 } hl_compose_flag;
 
 /* Makes the scene of a description and options, which are applied in one order, whatever order they stand in:
  * label maps, looks and functions, cuts, camera, floor, lights, exposure, sky, ambient light, settings.
- * flags: of hl_compose_flag. Options that change nothing are told to the context's log. Errors name an option
- * as the program does, with two dashes: HL_ERROR_ARGUMENT for an impossible value, HL_ERROR_INPUT or
+ * A bare label map is drawn by its values where options say how values are drawn: "tf", "colormap", "range",
+ * "threshold", "iso", "mask" and the maximum projection. The other layers of a bare label map's file show,
+ * too. flags: of hl_compose_flag. Options that change nothing are told to the context's log. Errors name an
+ * option as the program does, with two dashes: HL_ERROR_ARGUMENT for an impossible value, HL_ERROR_INPUT or
  * HL_ERROR_IO for a file that an option names. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_compose(hl_context *context, const hl_scene_description *description,
                                                  unsigned flags, const hl_option *options,

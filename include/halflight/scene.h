@@ -384,7 +384,8 @@ HL_API void hl_text_release(hl_context *context, char *text);
  * function, key light from the upper left with soft shadows, and a sky; where the context's memory limit is
  * below 512 MiB and twice the volume, constant light in place of the sky. What holds a scanned object - a
  * head rest, rails, a towel - is left out: the volume's cuts are up to 8 planes beside the object, which
- * remove nothing of it. file may be null (see hl_scene_volume). */
+ * remove nothing of it. A label map (hl_volume_is_label_map()) has its labels, with the names and colours of
+ * its file. file may be null (see hl_scene_volume). */
 HL_API HL_WARN_UNUSED hl_status hl_scene_for_volume(hl_context *context, hl_volume *volume, const char *file,
                                                     hl_scene **scene, hl_error *error);
 

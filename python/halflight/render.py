@@ -219,7 +219,8 @@ def _look(volume: Volume, cmap: Any, clim: Any, log_scale: Any, opacity: Any, un
         raise ValueError("log_scale: it spreads over clim: give clim=(low, high), too")
     if all(one is None for one in (cmap, clim, opacity, unit_distance, tf)):
         return volume
-    function: transfer.TransferFunction = volume.look["transfer_function"]
+    by_values = volume if "labels" in volume._changes else volume.replace(labels=False)
+    function: transfer.TransferFunction = by_values.look["transfer_function"]
     info = volume.info()
     if tf is not None:
         function = transfer.named_function(tf, volume._handle, function)
@@ -459,7 +460,7 @@ def _shows_itself(labels: Any) -> bool:
 
 def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], settings: dict[str, Any],
               look: Mapping[str, Any], labels: Any) -> Scene:
-    if labels is not None and labels is not False and _shows_itself(labels):
+    if labels is not None and _shows_itself(labels):
         material["labels"], labels = labels, None
     if isinstance(volume, Scene) or _is_scene(volume):
         for word in place:

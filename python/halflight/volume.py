@@ -44,9 +44,11 @@ class Look(VolumeSettings, MaterialSettings, total=False):
         name or number, alone or with a colour, an opacity from 0 to 1, or (colour, opacity); as `rest` what is
         left outside of them; as `table` a file of names and colours: ``{"volume": "organs.seg.nrrd", "show":
         {"bone": None, "tumour": "red", "liver": 0.3}, "rest": 0.02}``.
-    labels : True, a label, a list of labels, or a mapping
+    labels : bool, a label, a list of labels, or a mapping
         The volume is a label map, and its labels show as smooth surfaces: all of them, or those that are named, by name or
         number, with what a mask's `show` may say of each; a mapping may have a `table` of names and colours beside `show`.
+        A volume that is taken for a label map shows all its labels without being told; False: it is drawn by its values, as
+        with a `transfer_function`, `iso` or `mask`.
     look : str
         "surface", "translucent", "xray", "smoke" or "vessels": the transfer function and shading of that look.
     """
@@ -63,6 +65,7 @@ class Look(VolumeSettings, MaterialSettings, total=False):
 
 
 _OF_FILES = ("array", "component", "series", "time", "channel", "level")
+_OF_VALUES = ("transfer_function", "iso", "mask")
 _MATERIAL = _settings.names(lib.HL_SETTINGS_MATERIAL)
 _FIELDS = _settings.names(lib.HL_SETTINGS_VOLUME, "scale", "clip_min", "clip_max")
 
@@ -299,7 +302,7 @@ class Volume:
         self._base, self._order, self._shapes, self._colored = other._base, other._order, other._shapes, other._colored
         self._sharp = other._sharp
         self._changes = {**other._changes, **self._changes}
-        same = self._changes.get("look") == other._changes.get("look")
+        same = (self._changes.get("look"), self._is_of_values()) == (other._changes.get("look"), other._is_of_values())
         self._automatic = other._automatic if same else None
 
     def _load(self, path: str, spacing: arrays.Spacing | None, axes: str, chosen: dict[str, Any]) -> None:
@@ -527,6 +530,11 @@ class Volume:
     def _file_text(self) -> Any:
         return ffi.NULL if self._file is None else ffi.new("char[]", os.fsencode(self._file))
 
+    def _is_of_values(self) -> bool:
+        """Whether a label map is drawn by its values, as settings ask for them, and not by its labels."""
+        labels = self._changes.get("labels")
+        return labels is False or (labels is None and any(self._changes.get(word) is not None for word in _OF_VALUES))
+
     def _base_scene(self) -> tuple[Any, int]:
         """A scene that has the volume, and the volume's number there."""
         if self._base is not None:
@@ -537,6 +545,10 @@ class Volume:
             function = lib.hl_scene_for_volume if look is None else lib.hl_scene_for_volume_look
             self._automatic = made(function, "hl_scene", lib.hl_scene_release, context, self._handle,
                                    self._file_text(), *wanted)
+            if self._is_of_values() and lib.hl_scene_describe(self._automatic).volumes[0].label_count > 0:
+                flags = lib.HL_COMPOSE_BARE | lib.HL_COMPOSE_VALUES
+                self._automatic = made(lib.hl_scene_compose, "hl_scene", lib.hl_scene_release, context,
+                                       lib.hl_scene_describe(self._automatic), flags, ffi.NULL, 0)
         return self._automatic, 0
 
     def _struct(self) -> Any:

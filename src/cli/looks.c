@@ -118,29 +118,33 @@ static size_t count_looks(void) {
   return count;
 }
 
+/* Makes *scene a maximum projection, as --look mip does. */
+static hl_status project(hl_context *context, hl_scene **scene, hl_error *error) {
+  const hl_option maximum = {"look", "mip"};
+  hl_scene *projected = NULL;
+  hl_status status = hl_scene_compose(context, hl_scene_describe(*scene), HL_COMPOSE_BARE, &maximum, 1,
+                                      &projected, error);
+  if (status != HL_OK) return status;
+  hl_scene_release(*scene);
+  *scene = projected;
+  return HL_OK;
+}
+
 static hl_status scene_of(const looks_job *job, size_t index, hl_scene **scene, hl_error *error) {
   hl_context *context = job->host.context;
   const char *name = hl_option_choices("look")[index].name;
   hl_scene *made = NULL;
-  hl_transfer_function maximum = {0};
   bool projected = strcmp(name, "mip") == 0;
   hl_status status = hl_scene_for_volume_look(context, job->volume, NULL, projected ? "auto" : name, &made,
                                               error);
-  if (status != HL_OK) return status;
-  hl_scene_description description = *hl_scene_describe(made);
-  hl_scene_volume volume = description.volumes[0];
-  description.volumes = &volume;
-  description.width = description.height = job->side;
-  if (job->values[LOOKS_THREADS].given)
-    description.render.threads = (int)job->values[LOOKS_THREADS].number[0];
-  if (projected) {
-    status = hl_transfer_function_preset(context, "mip", job->volume, &maximum, error);
-    volume.transfer_function = maximum;
-    description.render.compositing = HL_COMPOSITING_MAXIMUM;
-    memset(description.background, 0, sizeof description.background);
+  if (status == HL_OK && projected) status = project(context, &made, error);
+  if (status == HL_OK) {
+    hl_scene_description description = *hl_scene_describe(made);
+    description.width = description.height = job->side;
+    if (job->values[LOOKS_THREADS].given)
+      description.render.threads = (int)job->values[LOOKS_THREADS].number[0];
+    status = hl_scene_create(context, &description, scene, error);
   }
-  if (status == HL_OK) status = hl_scene_create(context, &description, scene, error);
-  hl_transfer_function_release(context, &maximum);
   hl_scene_release(made);
   return status;
 }

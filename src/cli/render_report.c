@@ -133,9 +133,9 @@ void render_print_summary(const render_result *result) {
       description->width, description->height, light, sheets, seconds->total, seconds->load, seconds->prepare,
       seconds->render, seconds->write);
   if (result->taken_for == NULL || !isatty(STDERR_FILENO)) return;
-  if (strcmp(result->taken_for, "labels") == 0)
-    say("%s: taken for labels, and drawn by value, with thin bands where one label blends into another: "
-        "'halflight render --labels FILE' draws each label by itself",
+  if (description->volumes[0].label_count > 0)
+    say("%s: taken for labels, which are drawn in their colours: --show NAME,... draws some of them, and "
+        "--look surface draws what the file shows as one body",
         result->input);
   else
     say("%s: taken for %s; the transfer function was chosen from this file alone: --print-scene writes it "

@@ -58,9 +58,8 @@ int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_s
   hl_error error = {0};
   hl_scene *composed = NULL;
   list_options(values, &list);
-  hl_status status = hl_scene_compose(host->context, hl_scene_describe(*scene),
-                                      bare ? HL_COMPOSE_BARE | HL_COMPOSE_SEGMENTS : 0, list.options,
-                                      list.count, &composed, &error);
+  hl_status status = hl_scene_compose(host->context, hl_scene_describe(*scene), bare ? HL_COMPOSE_BARE : 0,
+                                      list.options, list.count, &composed, &error);
   if (status != HL_OK)
     return host_fail(host, status == HL_ERROR_ARGUMENT ? PHASE_CHANGE : PHASE_READ, status, &error);
   hl_scene_release(*scene);

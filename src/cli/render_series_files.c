@@ -278,17 +278,22 @@ static int mesh_scene(series_job *job, int number, hl_scene **scene) {
               status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_READ, status, &error));
 }
 
+/* Whether the files are label maps, each of which has its own labels: the options say so, or the first file
+ * does. */
+static bool is_of_label_maps(const series_job *job) {
+  return render_is_label_map(job->values) || hl_scene_describe(job->scene)->volumes[0].label_count > 0;
+}
+
 int series_scene(series_job *job, int number, hl_scene **scene) {
   if (job->bad[number]) return EXIT_CODE_INPUT;
   if (job->of_meshes) return mesh_scene(job, number, scene);
-  return render_is_label_map(job->values) ? label_scene(job, number, scene)
-                                          : volume_scene(job, number, scene);
+  return is_of_label_maps(job) ? label_scene(job, number, scene) : volume_scene(job, number, scene);
 }
 
 hl_status series_scene_unread(const series_job *job, int number, hl_scene **scene) {
   hl_scene_mesh mesh;
   hl_error error = {0};
-  if (render_is_label_map(job->values)) return HL_ERROR_UNSUPPORTED;
+  if (!job->of_meshes && is_of_label_maps(job)) return HL_ERROR_UNSUPPORTED;
   if (!job->of_meshes) return scene_of_volumes(job, number, NULL, scene, &error);
   mesh = hl_scene_describe(job->scene)->meshes[0];
   mesh.file = job->files[number];

@@ -160,12 +160,15 @@ hl_status hl_scene_compose(hl_context *context, const hl_scene_description *desc
   if (status == HL_OK) status = check(asked, error);
   if (status != HL_OK) return status;
   const hl_composer composer = {context, asked, flags, (flags & HL_COMPOSE_BARE) != 0, error};
-  hl_scene *labelled = NULL;
-  status = add_labels(&composer, description, &labelled);
+  hl_scene *values = NULL, *labelled = NULL;
+  status = hl_compose_values(&composer, description, &values);
+  if (values != NULL) description = hl_scene_describe(values);
+  if (status == HL_OK) status = add_labels(&composer, description, &labelled);
   scene_change change = {.description = labelled != NULL ? *hl_scene_describe(labelled) : *description};
   if (status == HL_OK) status = change_all(&composer, &change);
   if (status == HL_OK) status = hl_scene_create(context, &change.description, scene, error);
   change_release(context, &change);
   hl_scene_release(labelled);
+  hl_scene_release(values);
   return status;
 }

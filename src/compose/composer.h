@@ -85,9 +85,16 @@ hl_status hl_compose_camera(const hl_composer *composer, bool seen, hl_scene_des
 /* Moves the camera along its direction and zooms so that all that there is now fits into the picture. */
 hl_status hl_frame_anew(hl_scene_description *description, hl_error *error);
 
+/* ---- values.c ---- */
+
+/* *scene: a scene of the description whose bare label maps have no labels where options ask for their values;
+ * null: there is none. */
+hl_status hl_compose_values(const hl_composer *composer, const hl_scene_description *description,
+                            hl_scene **scene);
+
 /* ---- labels.c ---- */
 
-/* Whether the options ask for a label map, or the only volume comes from a file that names its segments. */
+/* Whether the options ask for a label map, or the only, bare volume is one of several layers of labels. */
 bool hl_asks_for_labels(const hl_composer *composer, const hl_scene_description *description);
 
 /* Replaces *scene by one with the label map of "labels", the mask of "mask", or whose bare volume is shown as

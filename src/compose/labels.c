@@ -204,30 +204,21 @@ static bool is_read_plainly(const hl_scene_volume *volume) {
          !(volume->spacing[0] > 0);
 }
 
-/* Whether the only volume comes from a file that names its segments, and no option asks for another look: it
- * is then shown as they are. */
-static bool is_segmented(const hl_composer *composer, const hl_scene_description *description) {
+/* Whether the only volume is a bare label map whose file has other layers of labels, which show, too. */
+static bool is_layered(const hl_composer *composer, const hl_scene_description *description) {
   const hl_scene_volume *only = description->volume_count == 1 ? &description->volumes[0] : NULL;
-  if (only == NULL || only->file == NULL || only->label_count > 0 || strncmp(only->file, "/dev/", 5) == 0 ||
-      !is_read_plainly(only))
+  if (!composer->bare || (composer->flags & HL_COMPOSE_CHANGED) != 0 || only == NULL || only->file == NULL ||
+      only->label_count == 0 || strncmp(only->file, "/dev/", 5) == 0 || !is_read_plainly(only) ||
+      hl_volume_segment_count(only->volume) == 0)
     return false;
-  for (int option = HL_ASK_LOOK; option <= HL_ASK_ISO; option++)
-    if (composer->asked[option].given) return false;
-  if (hl_volume_segment_count(only->volume) == 0 || layers_of(only->volume) > HL_MOST_LABEL_LAYERS)
-    return false;
-  hl_label *labels = NULL;
-  size_t count = 0;
-  if (hl_labels_of_volume(composer->context, only->volume, NULL, &labels, &count, NULL) != HL_OK)
-    return false;
-  hl_labels_release(composer->context, labels);
-  return true;
+  size_t layers = layers_of(only->volume);
+  return layers > 1 && layers <= HL_MOST_LABEL_LAYERS;
 }
 
 bool hl_asks_for_labels(const hl_composer *composer, const hl_scene_description *description) {
   const hl_asked *asked = composer->asked;
   return asked[HL_ASK_LABELS].given || asked[HL_ASK_MASK].given || asked[HL_ASK_LABEL_TABLE].given ||
-         asked[HL_ASK_SHOW].given ||
-         ((composer->flags & HL_COMPOSE_SEGMENTS) != 0 && is_segmented(composer, description));
+         asked[HL_ASK_SHOW].given || is_layered(composer, description);
 }
 
 hl_status hl_compose_labels(const hl_composer *composer, hl_scene **scene) {

@@ -15,6 +15,7 @@
 #include "guess/view.h"
 #include "scene/check.h"
 #include "scene/cut.h"
+#include "scene/draw_labels.h"
 #include "scene/scene.h"
 
 #define LIGHT_AZIMUTH   -40 /* key light from the upper left, degrees from the line of sight */
@@ -167,7 +168,23 @@ static hl_status leave_holders_out(hl_context *context, const hl_look *base, con
   return status;
 }
 
-/* style: null: the look that suits the volume alone. */
+/* Gives a label map its labels, with their names and colours in its file. A volume whose values cannot be
+ * labels after all, or that is larger than memory, gets none and is drawn by its values. *labels: owned by
+ * the caller; null: none. */
+static hl_status find_labels(hl_context *context, hl_scene_volume *volume, hl_label **labels,
+                             hl_error *error) {
+  int is_label_map = 0;
+  hl_error found = {0};
+  hl_status status = hl_volume_is_label_map(context, volume->volume, &is_label_map, error);
+  if (status != HL_OK || !is_label_map) return status;
+  status = hl_labels_of_volume(context, volume->volume, NULL, labels, &volume->label_count, &found);
+  if (status == HL_ERROR_INPUT || status == HL_ERROR_UNSUPPORTED) status = HL_OK;
+  else if (status != HL_OK && error != NULL) *error = found;
+  volume->labels = *labels;
+  return status;
+}
+
+/* style: null: the look that suits the volume alone, which of a label map are its labels. */
 static hl_status make_scene_of(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
                                hl_scene **scene, hl_error *error) {
   hl_data_analysis analysis;
@@ -178,17 +195,25 @@ static hl_status make_scene_of(hl_context *context, hl_volume *volume, const cha
   scene_volume.volume = volume;
   scene_volume.file = file;
   const hl_look *base = hl_look_for(volume, file, &analysis), *look = style != NULL ? style : base;
-  scene_volume.shading = look->shading;
-  scene_volume.material = (hl_material){.ambient = 1, .diffuse = 0.85, .specular = 0.15, .shininess = 24};
-  status = hl_look_write(base, style, context, volume, &analysis, &scene_volume.transfer_function, error);
-  if (status != HL_OK) return status;
+  hl_label *labels = NULL;
+  if (style == NULL) status = find_labels(context, &scene_volume, &labels, error);
+  bool labelled = status == HL_OK && scene_volume.label_count > 0;
+  if (!labelled) hl_look_material(look, &scene_volume);
+  if (status == HL_OK)
+    status = labelled ? hl_labels_function(context, &scene_volume, &scene_volume.transfer_function, error)
+                      : hl_look_write(base, style, context, volume, &analysis,
+                                      &scene_volume.transfer_function, error);
+  if (status != HL_OK) {
+    hl_labels_release(context, labels);
+    return status;
+  }
   hl_light lights[2];
   hl_cut planes[HL_HOLDER_PLANES];
   hl_scene_description description;
   hl_scene_description_defaults(&description);
   description.volumes = &scene_volume;
   description.volume_count = 1;
-  status = leave_holders_out(context, base, &analysis, planes, &scene_volume, error);
+  if (!labelled) status = leave_holders_out(context, base, &analysis, planes, &scene_volume, error);
   if (status == HL_OK) status = hl_scene_volume_check(&scene_volume, 0, error);
   if (status == HL_OK) status = hl_scene_frame(&description, &description.camera, error);
   if (status == HL_OK) {
@@ -197,12 +222,13 @@ static hl_status make_scene_of(hl_context *context, hl_volume *volume, const cha
     if (!look->on_black)
       memcpy(description.background, (double[3]){0.022, 0.025, 0.030}, sizeof description.background);
     choose_sky(look, &description);
-    description.render.kernel = look->kernel;
+    description.render.kernel = labelled ? HL_KERNEL_BSPLINE : look->kernel; /* smooth labels are splines */
     status = expose(look, &analysis, lights, &description, error);
     if (!has_room_for_sky(volume)) hl_scene_level_sky(&description);
   }
   if (status == HL_OK) status = hl_scene_create(context, &description, scene, error);
   hl_transfer_function_release(context, &scene_volume.transfer_function);
+  hl_labels_release(context, labels);
   return status;
 }
 

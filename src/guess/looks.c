@@ -86,6 +86,11 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
   return &looks[is];
 }
 
+void hl_look_material(const hl_look *look, hl_scene_volume *volume) {
+  volume->shading = look->shading;
+  volume->material = (hl_material){.ambient = 1, .diffuse = 0.85, .specular = 0.15, .shininess = 24};
+}
+
 /* Voxels with colours of their own: white leaves them as they are, and an alpha is the opacity of a voxel,
  * unless a style says otherwise. */
 static void keep_colors(hl_function_writer *w, const hl_volume *volume, const hl_look *style) {
@@ -131,7 +136,9 @@ hl_status hl_volume_guess(const hl_volume *volume, const char *file, const char 
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_guess: null volume or kind");
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(volume, &analysis, error);
-  *kind = status == HL_OK ? hl_look_for(volume, file, &analysis)->name : NULL;
+  const hl_look *look = volume->segment_count > 0 ? &looks[LABELS] : NULL;
+  if (status == HL_OK && look == NULL) look = hl_look_for(volume, file, &analysis);
+  *kind = status == HL_OK ? look->name : NULL;
   return status;
 }
 

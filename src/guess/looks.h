@@ -14,6 +14,9 @@ bool hl_is_body(const hl_volume *volume, const char *file, const hl_data_analysi
 /* True if the values can be Hounsfield units: they reach from air to denser than water. */
 bool hl_is_hounsfield(const hl_volume *volume);
 
+/* Gives a bare volume the shading and the material of its look. */
+void hl_look_material(const hl_look *look, hl_scene_volume *volume);
+
 /* Makes the transfer function of a look; its points are owned by *function. style: takes the place of the
  * look's opacities (styles.h); null: none. */
 hl_status hl_look_write(const hl_look *look, const hl_look *style, hl_context *context,

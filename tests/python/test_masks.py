@@ -43,6 +43,21 @@ def test_one_label_alone_and_all(halves):
                           picture(Volume(even, mask={"volume": halves, "show": [2]}, **EVEN)))
 
 
+def test_label_maps_show_their_labels(program, tmp_path, halves):
+    """A label map shows its labels, and its values where settings ask for them, as the program does."""
+    halves[:4] = halves[-4:] = halves[:, :4] = halves[:, -4:] = 0
+    np.save(tmp_path / "map.npy", halves)
+    path = str(tmp_path / "map.npy")
+    for settings, options in (({}, []), ({"cmap": "viridis"}, ["--colormap", "viridis"]), ({"iso": 1.5}, ["--iso", "1.5"]),
+                              ({"look": "surface"}, ["--look", "surface"])):
+        subprocess.run([program, "render", path, "--size", "48x48", "--quiet", "-o", str(tmp_path / "map.png"), *options], check=True)
+        halflight.render(path, size=48, **settings).save(tmp_path / "own.png")
+        assert (tmp_path / "own.png").read_bytes() == (tmp_path / "map.png").read_bytes(), options
+    assert Volume(path).look["labels"].keys() == {1, 2}
+    assert "labels" not in Volume(path, labels=False).look
+    assert "labels" not in Volume(path, look="surface").look
+
+
 def test_wrong_masks(halves):
     even = np.ones((32, 32, 32), np.uint8)
     for mask, message in (({"show": 1}, "has no volume"), ({"volume": halves, "shown": 1}, "there is no 'shown'"),

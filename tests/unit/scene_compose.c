@@ -129,6 +129,56 @@ static void errors_name_the_option(void **state) {
   }
 }
 
+/* The scene of a bare label map: a cube of labels 3 and 7 in air. */
+static hl_scene *make_label_map(void) {
+  static float values[N * N * N];
+  for (int v = 0; v < N * N * N; v++) {
+    const int x = v % N, y = v / N % N, z = v / N / N;
+    const bool inside = x > 3 && x < 20 && y > 3 && y < 20 && z > 3 && z < 20;
+    values[v] = !inside ? 0 : x < 12 ? 3 : 7;
+  }
+  hl_volume *volume = make_volume(context, N, values);
+  hl_scene *scene = NULL;
+  assert_int_equal(hl_scene_for_volume(context, volume, NULL, &scene, NULL), HL_OK);
+  hl_volume_release(volume);
+  return scene;
+}
+
+/* A bare label map has its labels, until an option asks for its values; a named look has none. */
+static void bare_label_maps_have_their_labels(void **state) {
+  (void)state;
+  static const struct {
+    hl_option option;
+    unsigned flags;
+    size_t labels;
+  } cases[] = {
+      {{"view", "front"}, 0, 2},  {{"shadows", "hard"}, 0, 2},
+      {{"look", "auto"}, 0, 2},   {{"colormap", "viridis"}, 0, 0},
+      {{"tf", "ct-bone"}, 0, 0},  {{"range", "1,5"}, 0, 0},
+      {{"threshold", "4"}, 0, 0}, {{"iso", "5"}, 0, 0},
+      {{"look", "mip"}, 0, 0},    {{"view", "front"}, HL_COMPOSE_VALUES, 0},
+  };
+  hl_scene *bare = make_label_map(), *styled = NULL;
+  const hl_scene_volume *volume = &hl_scene_describe(bare)->volumes[0];
+  assert_int_equal(volume->label_count, 2);
+  assert_true(volume->labels[0].value == 3 && volume->labels[1].value == 7);
+  assert_int_equal(hl_scene_describe(bare)->render.kernel, HL_KERNEL_BSPLINE);
+  for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+    hl_scene *made = NULL;
+    assert_int_equal(hl_scene_compose(context, hl_scene_describe(bare), HL_COMPOSE_BARE | cases[n].flags,
+                                      &cases[n].option, 1, &made, NULL),
+                     HL_OK);
+    assert_int_equal(hl_scene_describe(made)->volumes[0].label_count, cases[n].labels);
+    assert_int_equal(hl_scene_describe(made)->render.kernel,
+                     cases[n].labels > 0 ? HL_KERNEL_BSPLINE : HL_KERNEL_LINEAR);
+    hl_scene_release(made);
+  }
+  assert_int_equal(hl_scene_for_volume_look(context, volume->volume, NULL, "surface", &styled, NULL), HL_OK);
+  assert_int_equal(hl_scene_describe(styled)->volumes[0].label_count, 0);
+  hl_scene_release(styled);
+  hl_scene_release(bare);
+}
+
 static void options_are_described(void **state) {
   (void)state;
   size_t count = 0;
@@ -158,7 +208,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(no_option_changes_nothing), cmocka_unit_test(the_order_of_the_list_does_not_matter),
       cmocka_unit_test(bare_scenes_follow),        cmocka_unit_test(errors_name_the_option),
-      cmocka_unit_test(options_are_described),
+      cmocka_unit_test(options_are_described),     cmocka_unit_test(bare_label_maps_have_their_labels),
   };
   return cmocka_run_group_tests(tests, begin, end);
 }

@@ -1,4 +1,4 @@
-# At a terminal, a label map that is drawn by value names the option that draws each label by itself.
+# A bare label map is drawn by its labels, as --show all draws it; at a terminal, the options for other pictures are named.
 "$PYTHON" -c 'import struct
 header = b"{\x27descr\x27: \x27|u1\x27, \x27fortran_order\x27: False, \x27shape\x27: (24, 24, 24), }"
 header += b" " * (117 - len(header)) + b"\n"
@@ -17,4 +17,9 @@ try:
 except OSError: # the terminal of a process that has ended
     pass
 os.waitpid(pid, 0)
-print(b"--labels FILE" in kept)' "$HALFLIGHT"
+print(b"taken for labels" in kept, b"--look surface" in kept)' "$HALFLIGHT"
+halflight render labels.npy --size 64x64 --no-metadata --quiet -o bare.png
+halflight render labels.npy --size 64x64 --no-metadata --quiet -o shown.png --show all
+cmp bare.png shown.png && echo the same
+halflight render labels.npy --print-scene --quiet | grep -c '"labels"' 
+halflight render labels.npy --print-scene --quiet --colormap viridis | grep -c '"labels"' || true
