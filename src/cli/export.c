@@ -46,16 +46,20 @@ static const cli_option export_options[EXPORT_OPTION_COUNT] = {
 
 static const char *const page_extensions[] = {".html", NULL};
 
-/* Finds the page that is installed with the program, in share/halflight beside bin. */
+/* Finds the page that is installed with the program: in share/halflight beside bin, or in the Python package.
+ */
 static bool find_installed_page(char path[PATH_MAX]) {
-  static const char name[] = "/../share/halflight/halflight.html";
-  ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - sizeof name);
+  static const char *const places[] = {"/../share/halflight/halflight.html", "/../page/halflight.html"};
+  enum { LONGEST = 64 };
+  ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - LONGEST);
   if (length < 0) return false;
   path[length] = '\0';
   char *slash = strrchr(path, '/');
-  if (slash == NULL) return false;
-  memcpy(slash, name, sizeof name);
-  return access(path, R_OK) == 0;
+  for (size_t n = 0; slash != NULL && n < sizeof places / sizeof *places; n++) {
+    snprintf(slash, LONGEST, "%s", places[n]);
+    if (access(path, R_OK) == 0) return true;
+  }
+  return false;
 }
 
 /* The page without a scene; null: there is none. */

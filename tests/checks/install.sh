@@ -32,6 +32,12 @@ print(*(option['value'] for option in json.load(open(sys.argv[1])) if option['na
 "$make_volume" ball 24 "$folder/ball_24x24x24_uint8.raw"
 "$program" info "$folder/ball_24x24x24_uint8.raw" | grep -q '24 x 24 x 24'
 
+# So is the viewer's page without a server, where there is one.
+if [ -n "$(find "$folder/root" -path '*/share/halflight/halflight.html')" ]; then
+  env -u HALFLIGHT_PAGE "$program" export "$folder/ball_24x24x24_uint8.raw" -o "$folder/ball.html" --quiet
+  grep -q 'data-file="scene.json"' "$folder/ball.html"
+fi
+
 # The viewer's module is found where it was put, too: the URL of its page is printed.
 if [ -n "$(find "$folder/root" -name halflight-viewer.so)" ]; then
   "$program" view "$folder/ball_24x24x24_uint8.raw" --no-browser --quiet >"$folder/url" &
