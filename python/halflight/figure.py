@@ -208,11 +208,11 @@ def figure(panels: Sequence[Image | Figure], *, columns: int | None = None, widt
     placed, top = [], 0.0
     for start in range(0, len(flat), columns):
         row = flat[start:start + columns]
-        highs = [each * panel.image.size[1] / panel.image.size[0] for panel in row]
-        for index, (panel, high) in enumerate(zip(row, highs)):
-            overlay = panel.overlay
+        highs = [each * shown.image.size[1] / shown.image.size[0] for shown in row]
+        for index, (shown, high) in enumerate(zip(row, highs)):
+            overlay = shown.overlay
             if letters and overlay.letter is None:
                 overlay = _Overlay(**{**vars(overlay), "letter": chr(first + start + index)})
-            placed.append(_Panel(panel.image, overlay, (index * (each + space), top, each, high)))
+            placed.append(_Panel(shown.image, overlay, (index * (each + space), top, each, high)))
         top += max(highs) + space
     return Figure(placed, (wide, top - space), number("dpi", dpi), number("font_size", font_size), font, background)
