@@ -195,17 +195,26 @@ static size_t volumes_of_file(const series_job *job) {
   return count;
 }
 
-/* Volumes in place of the first file's; null: the first file's voxels. The others, label maps, stay. */
+/* Volumes in place of the first file's; null: the first file's voxels. Bare label maps have their own labels.
+ * The others, the label maps of --labels, stay. */
 static hl_status scene_of_volumes(const series_job *job, int number, hl_volume *const *loaded,
                                   hl_scene **scene, hl_error *error) {
   const hl_scene_description *description = hl_scene_describe(job->scene);
   hl_scene_volume volumes[HL_CHANNELS_MOST + MOST_LABEL_LAYERS];
   memcpy(volumes, description->volumes, description->volume_count * sizeof *volumes);
-  for (size_t n = 0; n < volumes_of_file(job); n++) {
+  hl_label *labels[HL_CHANNELS_MOST] = {NULL};
+  hl_status status = HL_OK;
+  for (size_t n = 0; n < volumes_of_file(job) && status == HL_OK; n++) {
     volumes[n].file = job->files[number];
     if (loaded != NULL) volumes[n].volume = loaded[n];
+    if (loaded == NULL || volumes[n].label_count == 0) continue;
+    status = hl_labels_of_volume(job->host.context, loaded[n], NULL, &labels[n], &volumes[n].label_count,
+                                 error);
+    volumes[n].labels = labels[n];
   }
-  return make_scene(job, volumes, description->volume_count, NULL, scene, error);
+  if (status == HL_OK) status = make_scene(job, volumes, description->volume_count, NULL, scene, error);
+  for (size_t n = 0; n < HL_CHANNELS_MOST; n++) hl_labels_release(job->host.context, labels[n]);
+  return status;
 }
 
 static int volume_scene(series_job *job, int number, hl_scene **scene) {
@@ -278,22 +287,19 @@ static int mesh_scene(series_job *job, int number, hl_scene **scene) {
               status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_READ, status, &error));
 }
 
-/* Whether the files are label maps, each of which has its own labels: the options say so, or the first file
- * does. */
-static bool is_of_label_maps(const series_job *job) {
-  return render_is_label_map(job->values) || hl_scene_describe(job->scene)->volumes[0].label_count > 0;
-}
-
 int series_scene(series_job *job, int number, hl_scene **scene) {
   if (job->bad[number]) return EXIT_CODE_INPUT;
   if (job->of_meshes) return mesh_scene(job, number, scene);
-  return is_of_label_maps(job) ? label_scene(job, number, scene) : volume_scene(job, number, scene);
+  return render_is_label_map(job->values) ? label_scene(job, number, scene)
+                                          : volume_scene(job, number, scene);
 }
 
 hl_status series_scene_unread(const series_job *job, int number, hl_scene **scene) {
   hl_scene_mesh mesh;
   hl_error error = {0};
-  if (!job->of_meshes && is_of_label_maps(job)) return HL_ERROR_UNSUPPORTED;
+  if (!job->of_meshes &&
+      (render_is_label_map(job->values) || hl_scene_describe(job->scene)->volumes[0].label_count > 0))
+    return HL_ERROR_UNSUPPORTED;
   if (!job->of_meshes) return scene_of_volumes(job, number, NULL, scene, &error);
   mesh = hl_scene_describe(job->scene)->meshes[0];
   mesh.file = job->files[number];

@@ -48,13 +48,13 @@ def test_label_maps_show_their_labels(program, tmp_path, halves):
     halves[:4] = halves[-4:] = halves[:, :4] = halves[:, -4:] = 0
     np.save(tmp_path / "map.npy", halves)
     path = str(tmp_path / "map.npy")
-    for settings, options in (({}, []), ({"cmap": "viridis"}, ["--colormap", "viridis"]), ({"iso": 1.5}, ["--iso", "1.5"]),
-                              ({"look": "surface"}, ["--look", "surface"])):
-        subprocess.run([program, "render", path, "--size", "48x48", "--quiet", "-o", str(tmp_path / "map.png"), *options], check=True)
-        halflight.render(path, size=48, **settings).save(tmp_path / "own.png")
+    for settings, options in (({}, []), ({"cmap": "viridis"}, ["--colormap", "viridis"]), ({"look": "surface"}, ["--look", "surface"])):
+        subprocess.run([program, "render", path, "--size", "48x48", "--quiet", "--no-metadata", "-o", str(tmp_path / "map.png"), *options], check=True)
+        halflight.render(path, size=48, **settings).save(tmp_path / "own.png", metadata=False)
         assert (tmp_path / "own.png").read_bytes() == (tmp_path / "map.png").read_bytes(), options
     assert Volume(path).look["labels"].keys() == {1, 2}
     assert "labels" not in Volume(path, labels=False).look
+    assert "labels" not in Volume(path, iso=1.5).look
     assert "labels" not in Volume(path, look="surface").look
 
 
@@ -76,3 +76,13 @@ def test_looks_are_the_programs(program, tmp_path):
     assert looked["transfer_function"] == Scene.from_json(printed).volumes[0].look["transfer_function"]
     assert Volume(path).replace(look="xray").look == looked
     assert looked["shading"] == Scene.from_json(printed).volumes[0].look["shading"]
+
+
+def test_a_look_stays_with_other_colours(program, tmp_path):
+    z, y, x = np.mgrid[-1:1:24j, -1:1:24j, -1:1:24j]
+    np.save(tmp_path / "ball.npy", np.exp(-4 * (x**2 + y**2 + z**2)).astype(np.float32))
+    path = str(tmp_path / "ball.npy")
+    subprocess.run([program, "render", path, "--look", "translucent", "--colormap", "viridis", "--size", "48x48", "--quiet",
+                    "--no-metadata", "-o", str(tmp_path / "ball.png")], check=True)
+    halflight.render(path, size=48, look="translucent", cmap="viridis").save(tmp_path / "own.png", metadata=False)
+    assert (tmp_path / "own.png").read_bytes() == (tmp_path / "ball.png").read_bytes()
