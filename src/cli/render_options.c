@@ -294,8 +294,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_WHOLE] = {.name = "whole",
                       .kind = OPTION_SWITCH,
                       .help = "of a bare volume all: with tables, head rests and\ntowels beside a scanned "
-                              "object, which are cut away\nunless --tf, --colormap, --range, --threshold or "
-                              "--iso\nsay what is seen"},
+                              "object, which are cut away\notherwise"},
     [RENDER_SHADING] = {.name = "shading",
                         .kind = OPTION_CHOICE,
                         .help = "surfaces, a medium such as smoke, or the\ncolours themselves without light "

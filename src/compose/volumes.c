@@ -44,9 +44,7 @@ static size_t count_holder_planes(const hl_scene_description *description) {
 
 /* Whether to give back what hl_scene_for_volume() cut off beside the object. */
 static bool shows_whole(const hl_composer *composer, const hl_scene_description *description) {
-  const hl_asked *asked = composer->asked;
-  bool chosen = asked[HL_ASK_WHOLE].given || asked[HL_ASK_ISO].given || hl_asks_for_functions(asked);
-  return composer->bare && chosen && count_holder_planes(description) > 0;
+  return composer->bare && composer->asked[HL_ASK_WHOLE].given && count_holder_planes(description) > 0;
 }
 
 /* Says what is not seen of a bare volume. */

@@ -1,4 +1,4 @@
-# Rails beside a scanned ball, cut away by planes that the scene names; --whole and a function of one's own show them.
+# Rails beside a scanned ball, cut away by planes that the scene names; --whole alone shows them.
 "$PYTHON" -c '
 import math, sys
 ball = lambda x, y, z: 160 / (1 + math.exp((math.dist((x, y, z), (24, 24, 26)) - 15) / .6)) + 60 * (math.dist((x, y, z), (24, 24, 26)) < 8)
@@ -10,6 +10,9 @@ planes 2>message
 cat message
 planes --look xray --quiet
 planes --whole
-planes --threshold 60
+planes --threshold 60 --quiet
+planes --iso 60 --quiet
+planes --tf ct-bone --quiet
+planes --threshold 60 --whole
 planes --whole --cut-plane 0.5,0.5,0.5:1,0,0
 planes --cut-plane 0.5,0.5,0.5:1,0,0 --quiet
