@@ -196,7 +196,9 @@ typedef struct hl_mask {
   int component;     /* likewise; HL_COMPONENT_DEFAULT is the default */
   const hl_label *labels; /* [label_count]; rising by value */
   size_t label_count;
-  double rest; /* what extinction is multiplied by outside the labels: 0, hidden (the default), to 1 */
+  double
+      rest; /* what extinction is multiplied by outside the labels: 0, hidden (the default), to 1; the option
+               "show" of hl_scene_compose() takes a fraction of opacity, and makes this factor of it */
 } hl_mask;
 
 typedef struct hl_scene_volume {

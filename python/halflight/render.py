@@ -462,18 +462,19 @@ def _scene_of(volume: Any, place: Mapping[str, Any], material: dict[str, Any], s
               look: Mapping[str, Any], labels: Any) -> Scene:
     if labels is not None and _shows_itself(labels):
         material["labels"], labels = labels, None
+    named = {word: material[word] for word in ("look",) if word in material}
     if isinstance(volume, Scene) or _is_scene(volume):
         for word in place:
             raise TypeError(f"{word} is for volumes: a scene says where its volumes are")
         scene = volume if isinstance(volume, Scene) else Scene.load(volume)
         count = len(scene.volumes)
-        changed = [_look(one, *_look_for(look, n, count)).replace(**material) for n, one in enumerate(scene.volumes)]
+        changed = [_look(one.replace(**named), *_look_for(look, n, count)).replace(**material) for n, one in enumerate(scene.volumes)]
         return scene.replace(changed if labels is None else [*changed, _label_volume(labels)], **settings)
     if isinstance(channels := place.get("channel"), (str, Sequence)):
         return _scene_of_channels(volume, channels, place, material, settings, look, labels)
     given = volume if isinstance(volume, list) else [volume] if volume is not None or not settings.get("meshes") else []
     sources = [one for one in given if not isinstance(one, Mesh)]
-    volumes = [_look(Volume(one, **place), *_look_for(look, n, len(sources))).replace(**material)
+    volumes = [_look(Volume(one, **place).replace(**named), *_look_for(look, n, len(sources))).replace(**material)
                for n, one in enumerate(sources)]
     if not volumes:
         for word in (*place, *look, *material):

@@ -84,7 +84,7 @@ static hl_status change_all(const hl_composer *composer, scene_change *change) {
   hl_scene_description *description = &change->description;
   /* first: the camera frames what is seen of the volumes */
   hl_status status = hl_compose_volumes(composer, description, &change->volumes);
-  bool seen = change->volumes.volumes != NULL || (composer->flags & HL_COMPOSE_CHANGED) != 0;
+  bool seen = change->volumes.seen || (composer->flags & HL_COMPOSE_CHANGED) != 0;
   if (status == HL_OK) smooth_labels(composer, description);
   if (status == HL_OK) status = hl_compose_camera(composer, seen, description);
   if (status == HL_OK) status = add_floor(composer, change);

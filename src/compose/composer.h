@@ -92,6 +92,11 @@ hl_status hl_frame_anew(hl_scene_description *description, hl_error *error);
 hl_status hl_compose_values(const hl_composer *composer, const hl_scene_description *description,
                             hl_scene **scene);
 
+/* ---- rest.c ---- */
+
+/* Turns a mask's rest, which "show" says as a fraction of opacity, into the factor of extinction. */
+void hl_compose_rest(hl_scene_volume *volume);
+
 /* ---- labels.c ---- */
 
 /* Whether the options ask for a label map, or the only, bare volume is one of several layers of labels. */

@@ -5,6 +5,10 @@
 #include <stdio.h>
 
 #include "compose/composer.h"
+#include "core/context.h"
+#include "image/srgb.h"
+
+#define MIDDLE_GREY 0.18 /* linear; brighter backgrounds get a projection that ends in black */
 
 static bool is_maximum(const hl_asked *asked) {
   return asked[HL_ASK_LOOK].given && asked[HL_ASK_LOOK].choice == HL_LOOK_MIP;
@@ -45,6 +49,33 @@ hl_status hl_compose_volume_look(const hl_composer *composer, hl_scene_volume *v
   if (!composer->asked[HL_ASK_SHADING].given && composer->asked[HL_ASK_LOOK].choice != HL_LOOK_AUTO)
     volume->shading = shading;
   return HL_OK;
+}
+
+/* Derived: a grey of the preset, encoded, is the fraction t of the way from black to white that it looks
+ * like. The new colour is as far on the way, in encoded values, from the background to the end; from black to
+ * white this is the grey itself. */
+void hl_fit_projection(const hl_composer *composer, hl_transfer_function *function) {
+  const hl_asked *background = &composer->asked[HL_ASK_BACKGROUND];
+  if (!background->given || background->chosen) return;
+  const double *from = background->number;
+  const double luminance = 0.2126 * from[0] + 0.7152 * from[1] + 0.0722 * from[2];
+  const double end = luminance > MIDDLE_GREY ? 0 : 1;
+  for (size_t n = 0; n < function->color_count; n++) {
+    double *color = ((hl_color_point *)function->color)[n].color;
+    for (int c = 0; c < 3; c++) {
+      const double begin = hl_srgb_encode_number(from[c]), t = hl_srgb_encode_number(color[c]);
+      color[c] = hl_srgb_decode(begin + (end - begin) * t);
+    }
+  }
+}
+
+void hl_tell_of_function(const hl_composer *composer) {
+  const hl_asked *look = &composer->asked[HL_ASK_LOOK];
+  if (!look->given || look->choice == HL_LOOK_AUTO || !composer->asked[HL_ASK_TF].given) return;
+  hl_log(composer->context, HL_LOG_INFO,
+         "--tf beside --look %s: the transfer function is the one of --tf, %s", look->text,
+         is_maximum(composer->asked) ? "and the picture a maximum projection of it"
+                                     : "the shading and the light are those of the look");
 }
 
 void hl_compose_look(const hl_composer *composer, hl_scene_description *description) {

@@ -17,6 +17,13 @@ bool hl_look_replaces_functions(const struct hl_composer *composer);
 /* Gives one volume the transfer function (hl_transfer_function_release) and the shading of the look. */
 hl_status hl_compose_volume_look(const struct hl_composer *composer, hl_scene_volume *volume);
 
+/* Makes the greys of a bare volume's maximum projection begin at the colour of "background", so that what is
+ * hardly there is not seen, and end at black or white, whichever is farther from it. */
+void hl_fit_projection(const struct hl_composer *composer, hl_transfer_function *function);
+
+/* Tells the log what "tf" and what "look" gives the picture where both are asked for. */
+void hl_tell_of_function(const struct hl_composer *composer);
+
 /* Makes the picture a maximum projection, or one with light. */
 void hl_compose_look(const struct hl_composer *composer, hl_scene_description *description);
 

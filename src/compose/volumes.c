@@ -24,6 +24,8 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
   if (looks) status = hl_compose_volume_look(composer, volume);
   if (status != HL_OK) return status;
   if (looks) look = volume->transfer_function;
+  if (looks && description->volume_count == 1 && hl_is_maximum(composer, description))
+    hl_fit_projection(composer, &look);
   char color[8];
   bool colored = looks && hl_projected_color(composer, description, index, color);
   status = hl_compose_function(composer, description, index, colored ? color : NULL,
@@ -95,10 +97,12 @@ static hl_status make_room(const hl_composer *composer, const hl_scene_descripti
 
 hl_status hl_compose_volumes(const hl_composer *composer, hl_scene_description *description,
                              hl_changed_volumes *changed) {
-  bool whole = shows_whole(composer, description);
+  bool whole = shows_whole(composer, description), masked = composer->asked[HL_ASK_MASK].given;
+  changed->seen = description->volume_count > 0 && (whole || changes_any(composer));
   tell_of_holders(composer, description);
+  hl_tell_of_function(composer);
   if (description->volume_count == 0) return refuse_looks(composer);
-  if (!whole && !changes_any(composer)) return HL_OK;
+  if (!changed->seen && !masked) return HL_OK;
   hl_status status = make_room(composer, description, changed);
   if (status != HL_OK) return status;
   description->volumes = changed->volumes;
@@ -108,6 +112,8 @@ hl_status hl_compose_volumes(const hl_composer *composer, hl_scene_description *
     status = hl_compose_scene_cuts(composer, description, changed->cuts);
   for (size_t i = 0; i < description->volume_count && status == HL_OK; i++)
     status = change_volume(composer, description, changed, i);
+  for (size_t i = 0; i < description->volume_count && status == HL_OK && masked; i++)
+    hl_compose_rest(&changed->volumes[i]);
   return status;
 }
 

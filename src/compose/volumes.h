@@ -13,6 +13,7 @@ typedef struct hl_changed_volumes {
   hl_isosurface *surfaces;         /* [count][values of "iso"] */
   hl_cut *cuts; /* of the one volume, or of a scene with several, with those of the options */
   size_t count;
+  bool seen; /* what is seen of the volumes has changed */
 } hl_changed_volumes;
 
 /* Changes the description's volumes and cuts, which borrow the arrays. Release them even after a failure. */

@@ -43,6 +43,10 @@ double hl_srgb_decode(double encoded) {
   return square * fifth_root(square, 0.45 + 0.55 * u);
 }
 
+double hl_srgb_encode_number(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+}
+
 /* The least float that is not below value. */
 static float float_at_least(double value) {
   float rounded = (float)value;

@@ -12,6 +12,7 @@ double hl_exposure_factor(double stops);
 /* The linear value of an encoded value, for |encoded| up to a little above 1. The function is odd: f(-c) =
  * -f(c). */
 double hl_srgb_decode(double encoded);
+double hl_srgb_encode_number(double linear); /* its inverse for values of at least 0 */
 
 /* Converts linear values to codes 0..maximum by a search among the values at which the code changes. Nothing
  * is approximated: each float gets the code that its exact encoded value rounds to. */

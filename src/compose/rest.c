@@ -1,0 +1,40 @@
+/* compose/rest.c - "rest:FRACTION" of "show" beside a mask: the rest is seen at this fraction of its opacity.
+ *
+ * hl_mask.rest multiplies extinction. Derived: matter of the optical depth d along a way has the opacity
+ * 1 - exp(-d), and 1 - exp(-f d) with its extinction multiplied by f. This is the fraction r of the former
+ * for f = -ln(1 - r (1 - exp(-d))) / d, which is r where d is small, and 1 for r = 1.
+ */
+#include <math.h>
+
+#include "compose/composer.h"
+#include "scene/placement.h"
+#include "scene/transfer_function.h"
+#include "volume/volume.h"
+
+#define MOST_OPACITY 0.9999 /* per unit distance: an opacity of 1 has no extinction */
+
+/* The optical depth along a typical way: the mean extinction of the visible voxels times the edge of a cube
+ * of as many voxels. 0 where no function of the value alone tells it. */
+static double typical_depth(const hl_scene_volume *seen) {
+  const hl_volume *volume = seen->volume;
+  const hl_transfer_function *function = &seen->transfer_function;
+  if (function->plane.second != HL_SECOND_NONE || !(function->unit_distance > 0)) return 0;
+  const double width = (volume->maximum - volume->minimum) / HL_HISTOGRAM_BINS;
+  double sum = 0, visible = 0;
+  for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) {
+    double opacity = hl_transfer_function_opacity(function, volume->minimum + (bin + 0.5) * width);
+    if (!(opacity > 0)) continue;
+    sum -= (double)volume->histogram[bin] * log1p(-fmin(opacity, MOST_OPACITY)) / function->unit_distance;
+    visible += (double)volume->histogram[bin];
+  }
+  const mat3 placed = hl_scene_volume_index_to_world(seen).linear;
+  const double voxel = fabs(vec3_dot(placed.row[0], vec3_cross(placed.row[1], placed.row[2])));
+  return visible > 0 ? sum / visible * cbrt(visible * voxel) : 0;
+}
+
+void hl_compose_rest(hl_scene_volume *volume) {
+  const double rest = volume->mask.rest;
+  if (volume->mask.volume == NULL || !(rest > 0 && rest < 1)) return;
+  const double depth = typical_depth(volume);
+  if (depth > 0) volume->mask.rest = fmin(-log1p(rest * expm1(-depth)) / depth, 1);
+}
