@@ -53,7 +53,7 @@ def test_label_maps_show_their_labels(program, tmp_path, halves):
         halflight.render(path, size=48, **settings).save(tmp_path / "own.png", metadata=False)
         assert (tmp_path / "own.png").read_bytes() == (tmp_path / "map.png").read_bytes(), options
     assert Volume(path).look["labels"].keys() == {1, 2}
-    assert "labels" not in Volume(path, labels=False).look
+    assert Volume(path, labels=False).look["labels"] is False
     assert "labels" not in Volume(path, iso=1.5).look
     assert "labels" not in Volume(path, look="surface").look
 
