@@ -106,6 +106,8 @@ typedef struct sky_direction {
   int32_t offset;     /* to the first of four cells of the slice before, in floats */
   float weight[4];    /* of that cell, the next one across, and the two below */
   float across, down; /* how far the light moves aside in a slice, squared; in cells */
+  int slope; /* the number of the first direction with the same `across` and `down`: mirrored directions pass
+                the same matter */
   const float *basis; /* [channels x FIELD_HARMONICS]; the integrals of radiance times each harmonic */
 } sky_direction;
 

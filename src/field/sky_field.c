@@ -87,6 +87,13 @@ static void set_taps(double u, double v, int32_t plane_stride, sky_direction *di
   direction->down = (float)(v * v);
 }
 
+/* The number of the first direction that moves aside as far as the last one does. */
+static int find_slope(const sky_end *end) {
+  const sky_direction *last = &end->directions[end->count - 1], *direction = end->directions;
+  while (direction->across != last->across || direction->down != last->down) direction++;
+  return (int)(direction - end->directions);
+}
+
 /* first: the channel that the field's first harmonics are of. */
 static void set_up_end(const sky_content *content, int end_index, int first, int channels,
                        int32_t plane_stride, sky_end *end) {
@@ -109,6 +116,7 @@ static void set_up_end(const sky_content *content, int end_index, int first, int
     (void)direction_of(&s, sign, -1 + (2 * (square % SIDE) + 1.0) / SIDE,
                        -1 + (2 * (square / SIDE) + 1.0) / SIDE, slope);
     set_taps(slope[0], slope[1], plane_stride, direction);
+    direction->slope = find_slope(end);
   }
 }
 

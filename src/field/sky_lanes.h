@@ -50,7 +50,7 @@ static void sky_row(const sky_slice *slice, int32_t row) {
     size_t at = at_row + (size_t)column;
     unsigned char flags = slice->flags[((size_t)row * (size_t)slice->stride + (size_t)column) / FIELD_LANES];
     const float *depth = slice->depth + (size_t)row * 3 * (size_t)slice->stride + (size_t)column;
-    lanes reaching[FIELD_DIRECTIONS], squared[3];
+    lanes reaching[FIELD_DIRECTIONS], passing[FIELD_DIRECTIONS], squared[3];
     for (int a = 0; a < 3; a++) {
       lanes along = lanes_load(depth + a * slice->stride);
       squared[a] = along * along;
@@ -63,7 +63,10 @@ static void sky_row(const sky_slice *slice, int32_t row) {
       light = lanes_add_scaled(light, lanes_load(from + stride), direction->weight[2]);
       light = lanes_add_scaled(light, lanes_load(from + stride + 1), direction->weight[3]);
       reaching[d] = light;
-      if (flags & FIELD_MATTER) light = light * passing_cells(squared, direction);
+      if (flags & FIELD_MATTER) {
+        if (direction->slope == d) passing[d] = passing_cells(squared, direction);
+        light = light * passing[direction->slope];
+      }
       lanes_store(slice->left + (size_t)d * slice->plane + at, light);
     }
     if (!(flags & FIELD_RECEIVES)) continue;

@@ -21,8 +21,15 @@ static void add_pixels(hl_key *key, const float *pixels, int width, int height) 
     hl_key_add_whole(key, (int64_t)hl_key_mark(pixels, 3 * (size_t)width * (size_t)height * sizeof *pixels));
 }
 
+/* A light's type and where it stands come first: the order then stays while colours and intensities change.
+ * Of lights of one type those that shine from above are first, since sheets suit the first one best, and the
+ * main light of a scene mostly stands above. */
 static void write_light(const void *data, hl_key *key) {
   const hl_light *light = data;
+  hl_key_add_whole(key, light->type);
+  hl_key_add_numbers(key, (double[]){light->direction[1], -light->position[1]}, 2);
+  hl_key_add_numbers(key, light->direction, 3);
+  hl_key_add_numbers(key, light->position, 3);
   hl_settings_key_add(HL_SETTINGS_LIGHT, light, light->type, key);
   hl_key_add_whole(key, (int64_t)light->vertex_count);
   if (light->vertex_count > 0) hl_key_add_numbers(key, &light->vertices[0][0], 3 * light->vertex_count);
