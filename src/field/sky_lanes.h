@@ -9,16 +9,23 @@
 #include "field/field.h"
 #include "simd/lanes.h"
 
-/* Adds sixteen cells' light, times each direction's integrals. */
+/* Adds sixteen cells' light, times each direction's integrals. Three sums at a time stay in registers while
+ * the directions go by; FIELD_HARMONICS is a multiple of three. */
 LANES_INLINE void add_harmonics(const sky_slice *slice, const lanes *reaching, int32_t column, float *cells,
                                 int count) {
   float sums[3 * FIELD_HARMONICS][FIELD_LANES];
-  lanes sum[3 * FIELD_HARMONICS];
-  for (int k = 0; k < count; k++) sum[k] = lanes_set(0);
-  for (int d = 0; d < slice->direction_count; d++)
-    for (int k = 0; k < count; k++)
-      sum[k] = lanes_fma(reaching[d], lanes_set(slice->directions[d].basis[k]), sum[k]);
-  for (int k = 0; k < count; k++) lanes_store(sums[k], sum[k]);
+  for (int k = 0; k < count; k += 3) {
+    lanes first = lanes_set(0), second = lanes_set(0), third = lanes_set(0);
+    for (int d = 0; d < slice->direction_count; d++) {
+      const float *basis = slice->directions[d].basis + k;
+      first = lanes_fma(reaching[d], lanes_set(basis[0]), first);
+      second = lanes_fma(reaching[d], lanes_set(basis[1]), second);
+      third = lanes_fma(reaching[d], lanes_set(basis[2]), third);
+    }
+    lanes_store(sums[k], first);
+    lanes_store(sums[k + 1], second);
+    lanes_store(sums[k + 2], third);
+  }
   int32_t valid = slice->columns - column;
   for (int32_t lane = 0; lane < FIELD_LANES && lane < valid; lane++)
     for (int k = 0; k < count; k++) cells[(size_t)lane * slice->across + (size_t)k] += sums[k][lane];
