@@ -20,7 +20,8 @@ export class FunctionCanvas {
   selected = { kind: "point", index: 0 };
   onSelect = () => {};
 
-  // get() gives the transfer function; set(tf, name) takes a changed one. histogram: counts of equal bins over
+  // get() gives the transfer function, or undefined while labels or isosurfaces have taken its place, which another key may do in the
+  // middle of a drag; set(tf, name) takes a changed one. histogram: counts of equal bins over
   // range.
   constructor({ get, set, histogram, range }) {
     this.#get = get;
@@ -32,8 +33,8 @@ export class FunctionCanvas {
       class: "function", tabindex: 0, role: "application",
       "aria-label": "Opacity over values. Arrow keys move the chosen point, Tab with Page Up and Page Down choose " +
         "another, Insert adds one, Delete removes it.",
-      onpointerdown: (event) => this.#down(event), onkeydown: (event) => this.#key(event),
-      ondblclick: (event) => this.#remove(this.#find(event)), onpointermove: (event) => this.#hover(event),
+      onpointerdown: (event) => this.#get() && this.#down(event), onkeydown: (event) => this.#get() && this.#key(event),
+      ondblclick: (event) => this.#get() && this.#remove(this.#find(event)), onpointermove: (event) => this.#get() && this.#hover(event),
       onwheel: (event) => this.#wheel(event), oncontextmenu: (event) => event.preventDefault(),
     });
     this.element = make("div", { class: "function-area" }, this.#canvas);
@@ -102,6 +103,7 @@ export class FunctionCanvas {
     this.#canvas.focus({ preventScroll: true });
     const name = `drag ${Math.random()}`;
     const move = (moved) => {
+      if (!this.#get()) return;
       const [mx, my] = this.#place(moved);
       this.#set(this.#moved(what, this.#value(mx), this.#opacity(my)), name);
     };
