@@ -190,6 +190,16 @@ def made(function: Any, type_name: str, release: Any, *arguments: Any, path: str
     return ffi.gc(place[0], release)
 
 
+def encoded(function: Any, *arguments: Any) -> bytes:
+    """The bytes that `function(*arguments, &bytes, &length, error)` makes."""
+    data, length = ffi.new("unsigned char **"), ffi.new("size_t *")
+    call(function, *arguments, data, length)
+    try:
+        return bytes(ffi.buffer(data[0], length[0]))
+    finally:
+        lib.hl_bytes_release(context, data[0])
+
+
 def names(function: Any) -> list[str]:
     """The names that `function(0)`, `function(1)`, ... tell until null."""
     found: list[str] = []

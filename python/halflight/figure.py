@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from ._library import call, context, ffi, lib
+from ._library import call, context, encoded, ffi, lib
 from ._settings import number, numbers_of
 from ._words import choice, suggests
 from .colors import linear_color
@@ -139,12 +139,8 @@ class Figure:
     def encode(self, format: str = "png") -> bytes:
         """The bytes of a "pdf", "svg", "png" or "tif" file."""
         kept: list[Any] = []
-        made, data, length = self._figure(kept), ffi.new("unsigned char **"), ffi.new("size_t *")
-        call(lib.hl_figure_encode, context, made, choice("format", format, _FORMATS).encode(), self._options(made), data, length)
-        try:
-            return bytes(ffi.buffer(data[0], length[0]))
-        finally:
-            lib.hl_bytes_release(context, data[0])
+        made = self._figure(kept)
+        return encoded(lib.hl_figure_encode, context, made, choice("format", format, _FORMATS).encode(), self._options(made))
 
     def _repr_png_(self) -> bytes:
         return self.encode("png")

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from . import colors, picture_files
-from ._library import call, context, ffi, lib, made
+from ._library import call, context, encoded, ffi, lib, made
 from ._settings import number, table, to_field
 from ._words import choice, suggests
 from .scene import Scene
@@ -252,13 +252,8 @@ class Image(NDArrayOperatorsMixin):
         return self._encoded(format, self._options(depth=depth), metadata)
 
     def _encoded(self, format: str, options: Any, metadata: bool) -> bytes:
-        data, length = ffi.new("unsigned char **"), ffi.new("size_t *")
-        call(lib.hl_image_encode, context, self._handle if format == "exr" else self._plain(), format.encode(),
-             self._with_scene(options, metadata), data, length)
-        try:
-            return bytes(ffi.buffer(data[0], length[0]))
-        finally:
-            lib.hl_bytes_release(context, data[0])
+        return encoded(lib.hl_image_encode, context, self._handle if format == "exr" else self._plain(), format.encode(),
+                       self._with_scene(options, metadata))
 
     def _repr_png_(self) -> bytes:
         return self.encode("png")

@@ -44,24 +44,16 @@ typedef struct figure_job {
   figure_page page;
 } figure_job;
 
-static const double millimetres_per_inch = 25.4;
-
 /* ---- scenes ---- */
 
 /* Gives a panel the width of its place, in pixels, and the shape that it asks for. */
 static void size_panel(const figure_page *page, figure_panel *panel) {
-  int width = (int)fmax(1, round(panel->width / millimetres_per_inch * page->pixels_per_inch));
-  cli_value *size = &panel->values[RENDER_SIZE];
+  int width = (int)fmax(1, round(panel->width / MILLIMETRES_PER_INCH * page->pixels_per_inch));
   hl_scene_description shape;
   hl_scene_description_defaults(&shape);
   if (panel->scene != NULL) shape = *hl_scene_describe(panel->scene);
   double aspect = panel->aspect > 0 ? panel->aspect : (double)shape.width / shape.height;
-  size->given = true;
-  size->number[0] = width;
-  size->number[1] = fmax(1, round(width / aspect));
-  snprintf(panel->size_text, sizeof panel->size_text, "%.0fx%.0f", size->number[0], size->number[1]);
-  size->text = size->texts[0] = panel->size_text;
-  size->count = 1;
+  render_set_size(&panel->values[RENDER_SIZE], width, width / aspect, panel->size_text);
 }
 
 /* Takes what the first panel shares into a description of another one. */

@@ -175,16 +175,14 @@ static bool is_own_key(const char *key) {
 
 /* A length in millimetres: a number, or a text as "89mm". */
 static bool read_length(const json_t *value, double *millimetres) {
-  static const char *const names[] = {"mm", "cm", "in", "pt"};
-  static const double units[] = {1, 10, 25.4, 25.4 / 72};
   if (json_is_number(value)) *millimetres = json_number_value(value);
   const char *text = json_string_value(value);
   if (text == NULL) return json_is_number(value);
   char *rest;
   double number = hl_plain_number(text, &rest);
-  for (int n = 0; n < 4; n++)
-    if (strcmp(rest, names[n]) == 0) return *millimetres = number * units[n], rest > text;
-  return false;
+  if (rest == text || overlay_unit(rest) == 0) return false;
+  *millimetres = number * overlay_unit(rest);
+  return true;
 }
 
 static int read_corner(const page_reading *reading, figure_panel *panel, const json_t *inset) {

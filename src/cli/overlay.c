@@ -5,10 +5,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double millimetres_per_inch = 25.4;
-
 static bool is_vectors(const char *path) {
   return has_extension(path, ".pdf") || has_extension(path, ".svg");
+}
+
+double overlay_unit(const char *name) {
+  static const struct {
+    const char *name;
+    double millimetres;
+  } units[] = {{"mm", 1}, {"cm", 10}, {"in", MILLIMETRES_PER_INCH}, {"pt", MILLIMETRES_PER_INCH / 72}};
+  for (size_t u = 0; u < sizeof units / sizeof *units; u++)
+    if (strcmp(name, units[u].name) == 0) return units[u].millimetres;
+  return 0;
 }
 
 void overlay_release(cli_overlay *overlay) {
@@ -24,7 +32,7 @@ static void make_figure(const cli_overlay *overlay, const hl_image *image, const
                         hl_figure *figure, hl_figure_panel *panel) {
   double width = overlay->width;
   if (width == 0 && overlay->pixels_per_inch > 0)
-    width = hl_image_width(image) * millimetres_per_inch / overlay->pixels_per_inch;
+    width = hl_image_width(image) * MILLIMETRES_PER_INCH / overlay->pixels_per_inch;
   hl_figure_defaults(figure);
   *panel = (hl_figure_panel){0};
   hl_overlay_defaults(&panel->overlay);

@@ -5,6 +5,8 @@
 #include "host.h"
 #include "options.h"
 
+#define MILLIMETRES_PER_INCH 25.4
+
 typedef struct cli_overlay {
   hl_overlay overlay; /* its texts are those of the options, or owned below */
   hl_annotation notes[MAXIMUM_REPEATS];
@@ -16,13 +18,16 @@ typedef struct cli_overlay {
   bool drawn;                   /* anything is drawn over pictures */
 } cli_overlay;
 
+/* The millimetres of a unit of lengths on paper: "mm", "cm", "in" or "pt"; 0 for another text. */
+double overlay_unit(const char *name);
+
 void overlay_release(cli_overlay *overlay);
 
-/* Whether pictures differ from those that their scenes alone tell of: by what is drawn, or by their stated
- * size. */
+/* Whether a picture differs from the one that its scene alone describes, by what is drawn over it or by the
+ * size on paper that its file states. */
 bool overlay_is_any(const cli_overlay *overlay);
 
-/* Finds out, before the picture is made, whether all can be drawn over it. */
+/* Finds out whether everything can be drawn over a picture of the scene, before the picture is made. */
 hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, const hl_scene *scene,
                               hl_error *error);
 

@@ -193,6 +193,9 @@ int render_overlay_read(const cli_value *values, cli_overlay *overlay);
  * "-.png" and so on. */
 int render_overlay_check_options(const cli_value *values, const char *path);
 
+/* Gives --size a value, as if it were typed. text: room for it, which the value borrows. */
+void render_set_size(cli_value *size, double width, double height, char text[RENDER_SIZE_TEXT]);
+
 /* Sets --size to what --width and --dpi ask for, if it is not given. The picture has the shape of this scene,
  * or of a bare volume's picture (null). text: room for the text of --size, which the values borrow. */
 void render_overlay_set_size(cli_value *values, const hl_scene *scene, char text[RENDER_SIZE_TEXT]);

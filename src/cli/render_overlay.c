@@ -10,25 +10,17 @@
 #include "render.h"
 #include "text/plain.h"
 
-static const double millimetres_per_inch = 25.4, default_pixels_per_inch = 300;
+static const double default_pixels_per_inch = 300;
 
 /* ---- reading ---- */
 
 /* "89mm", "8.9cm", "3.5in" or "252pt" in millimetres; 0: no such length. */
 static double read_width(const char *text) {
-  static const struct {
-    const char *name;
-    double millimetres;
-  } units[] = {{"mm", 1}, {"cm", 10}, {"in", 25.4}, {"pt", 25.4 / 72}};
   char *rest;
   double number = hl_plain_number(text, &rest);
   while (*rest == ' ') rest++;
-  for (size_t u = 0; u < sizeof units / sizeof *units; u++)
-    if (strcmp(rest, units[u].name) == 0) {
-      double width = number * units[u].millimetres;
-      return width >= 1 && width <= 5000 ? width : 0;
-    }
-  return 0;
+  double width = number * overlay_unit(rest);
+  return width >= 1 && width <= 5000 ? width : 0;
 }
 
 /* "auto", "50um" or "5", and where the bar holds, "@target" or "@300". */
@@ -140,11 +132,20 @@ int render_overlay_check_options(const cli_value *values, const char *path) {
                      "--axes or --annotate");
   const cli_value *size = &values[RENDER_SIZE];
   if (exit_code == EXIT_CODE_OK && size->given && overlay.width > 0 && overlay.pixels_per_inch > 0 &&
-      fabs(overlay.width / millimetres_per_inch * overlay.pixels_per_inch - size->number[0]) > 0.5)
+      fabs(overlay.width / MILLIMETRES_PER_INCH * overlay.pixels_per_inch - size->number[0]) > 0.5)
     exit_code = fail(EXIT_CODE_USAGE,
                      "--size, --width and --dpi contradict each other: leave one of them out");
   overlay_release(&overlay);
   return exit_code;
+}
+
+void render_set_size(cli_value *size, double width, double height, char text[RENDER_SIZE_TEXT]) {
+  size->given = true;
+  size->number[0] = fmax(1, round(width));
+  size->number[1] = fmax(1, round(height));
+  snprintf(text, RENDER_SIZE_TEXT, "%.0fx%.0f", size->number[0], size->number[1]);
+  size->text = size->texts[0] = text;
+  size->count = 1;
 }
 
 void render_overlay_set_size(cli_value *values, const hl_scene *scene, char text[RENDER_SIZE_TEXT]) {
@@ -154,11 +155,6 @@ void render_overlay_set_size(cli_value *values, const hl_scene *scene, char text
   if (scene != NULL) shape = *hl_scene_describe(scene);
   if (!values[RENDER_WIDTH].given || (size->given && size->text != text)) return;
   double per_inch = values[RENDER_DPI].given ? values[RENDER_DPI].number[0] : default_pixels_per_inch;
-  double width = read_width(values[RENDER_WIDTH].text) / millimetres_per_inch * per_inch;
-  size->given = true;
-  size->number[0] = fmax(1, round(width));
-  size->number[1] = fmax(1, round(width * shape.height / shape.width));
-  snprintf(text, RENDER_SIZE_TEXT, "%.0fx%.0f", size->number[0], size->number[1]);
-  size->text = size->texts[0] = text;
-  size->count = 1;
+  double width = read_width(values[RENDER_WIDTH].text) / MILLIMETRES_PER_INCH * per_inch;
+  render_set_size(size, width, width * shape.height / shape.width, text);
 }

@@ -162,7 +162,7 @@ static hl_status write_sheet(views_job *job, hl_error *error) {
   hl_overlay_defaults(&panels[0].overlay);
   hl_figure_of_picture(job->images[0], job->scenes[0], job->overlay.width, &figure, &panels[0]);
   if (job->overlay.pixels_per_inch > 0) figure.pixels_per_inch = job->overlay.pixels_per_inch;
-  const double pixel = 25.4 / figure.pixels_per_inch, wide = hl_image_width(job->images[0]);
+  const double pixel = MILLIMETRES_PER_INCH / figure.pixels_per_inch, wide = hl_image_width(job->images[0]);
   const double gap = ceil(wide / 50);
   for (size_t v = 0; v < job->count; v++) {
     panels[v] = (hl_figure_panel){.image = job->images[v],

@@ -4,8 +4,9 @@
 #include <string.h>
 
 #include "compose/composer.h"
+#include "core/vector.h"
 
-static const double degree = 3.14159265358979323846 / 180;
+static const double degree = HL_PI / 180;
 
 static void subtract(const double a[3], const double b[3], double difference[3]) {
   for (int i = 0; i < 3; i++) difference[i] = a[i] - b[i];

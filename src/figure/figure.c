@@ -13,8 +13,6 @@
 
 enum { MOST_PANELS = 256, MOST_SIDE_PIXELS = 32767 }; /* cairo's own greatest side */
 
-static const double millimetres_per_inch = 25.4, points_per_inch = 72;
-
 void hl_overlay_defaults(hl_overlay *overlay) {
   if (overlay != NULL) *overlay = (hl_overlay){.struct_size = sizeof *overlay};
 }
@@ -33,11 +31,11 @@ void hl_figure_of_picture(const hl_image *image, const hl_scene *scene, double w
   HL_DOOR;
   if (image == NULL || figure == NULL || panel == NULL) return;
   const double wide = hl_image_width(image), high = hl_image_height(image);
-  const double letter = figure->font_points * millimetres_per_inch / points_per_inch;
+  const double letter = figure->font_points * MILLIMETRES_PER_INCH / POINTS_PER_INCH;
   if (width <= 0) width = fmin(36 * letter, wide / 9 * letter);
   figure->width = width;
   figure->height = width * high / wide;
-  figure->pixels_per_inch = wide * millimetres_per_inch / width;
+  figure->pixels_per_inch = wide * MILLIMETRES_PER_INCH / width;
   figure->panels = panel;
   figure->panel_count = 1;
   panel->image = image;
@@ -95,7 +93,7 @@ static hl_status check(const hl_figure *figure, hl_error *error) {
 }
 
 static double pixels_of(const hl_figure *figure, double length) {
-  return round(length * figure->pixels_per_inch / millimetres_per_inch);
+  return round(length * figure->pixels_per_inch / MILLIMETRES_PER_INCH);
 }
 
 hl_status hl_figure_draw(hl_context *context, const hl_figure *figure, hl_image **image, hl_error *error) {

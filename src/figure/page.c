@@ -16,7 +16,7 @@
 #include "image/format.h"
 #include "image/srgb.h"
 
-static const double points_per_millimetre = 72 / 25.4;
+static const double points_per_millimetre = POINTS_PER_INCH / MILLIMETRES_PER_INCH;
 
 /* ---- a picture as a surface ---- */
 

@@ -7,6 +7,9 @@
 
 #include "core/file.h"
 
+#define MILLIMETRES_PER_INCH 25.4
+#define POINTS_PER_INCH      72.0
+
 /* Draws the figure as pixels, width x height. *image is owned by the caller. */
 hl_status hl_page_draw(hl_context *context, const hl_figure *figure, int width, int height, hl_image **image,
                        hl_error *error);

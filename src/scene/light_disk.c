@@ -5,17 +5,17 @@ static vec3 normal_of(const hl_light *light) { return vec3_normalise(vec3_of(lig
 
 static mat3 spread(const hl_light *light, vec3 facing) {
   (void)facing;
-  return hl_disk_spread(normal_of(light), light->radius);
+  return hl_round_spread(light, normal_of(light));
 }
 
 static vec3 point(const hl_light *light, vec3 facing, double a, double b) {
   (void)facing;
-  return hl_disk_point(normal_of(light), light->radius, a, b);
+  return hl_round_point(light, normal_of(light), a, b);
 }
 
 static emission_plane plane(const hl_light *light, vec3 facing) {
   (void)facing;
-  return hl_disk_plane(normal_of(light), light->radius, vec3_of(light->emission.up));
+  return hl_round_plane(light, normal_of(light));
 }
 
 const light_kind hl_light_kind_disk = {.deviations = 4,

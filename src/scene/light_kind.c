@@ -20,3 +20,13 @@ void hl_apparent_diameter(const hl_light *light, vec3 along, double length[2]) {
   (void)along;
   length[0] = length[1] = 2 * light->radius;
 }
+
+mat3 hl_round_spread(const hl_light *light, vec3 facing) { return hl_disk_spread(facing, light->radius); }
+
+vec3 hl_round_point(const hl_light *light, vec3 facing, double a, double b) {
+  return hl_disk_point(facing, light->radius, a, b);
+}
+
+emission_plane hl_round_plane(const hl_light *light, vec3 facing) {
+  return hl_disk_plane(facing, light->radius, vec3_of(light->emission.up));
+}

@@ -69,6 +69,11 @@ vec3 hl_position_of_light(const hl_light *light);
 hl_status hl_check_round_reach(const hl_checker *check, const hl_light *light, const hl_frame_space *space);
 bool hl_has_radius(const hl_light *light);
 void hl_apparent_diameter(const hl_light *light, vec3 along, double length[2]);
+/* The shape of a disk of this radius that faces along a unit vector: of a sphere whoever looks at it, of a
+ * disk its normal. */
+mat3 hl_round_spread(const hl_light *light, vec3 facing);
+vec3 hl_round_point(const hl_light *light, vec3 facing, double a, double b);
+emission_plane hl_round_plane(const hl_light *light, vec3 facing);
 
 /* The tables, one a file. */
 #define HL_LIGHT_KIND(value, name) extern const light_kind hl_light_kind_##name;

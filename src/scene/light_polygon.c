@@ -85,8 +85,8 @@ static double area_left_of(const flat_polygon *polygon, double x) {
   return area;
 }
 
-/* The y below which the fraction b of the vertical line at x lies, as far as the line runs inside the
- * polygon. */
+/* Finds a place on the vertical line at x. The line may enter and leave the polygon several times: the
+ * fraction b of its length inside the polygon lies below the y that is returned. */
 static double height_of_part(const flat_polygon *polygon, double x, double b) {
   double crossing[HL_LIMIT_VERTICES], length = 0;
   size_t count = 0;

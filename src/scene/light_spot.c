@@ -8,25 +8,15 @@ static hl_status check_cone(const hl_checker *check, const hl_light *light) {
       "give the width of the cone's smooth edge in degrees, from 0 to half the opening angle");
 }
 
-static mat3 spread(const hl_light *light, vec3 facing) { return hl_disk_spread(facing, light->radius); }
-
-static vec3 point(const hl_light *light, vec3 facing, double a, double b) {
-  return hl_disk_point(facing, light->radius, a, b);
-}
-
-static emission_plane plane(const hl_light *light, vec3 facing) {
-  return hl_disk_plane(facing, light->radius, vec3_of(light->emission.up));
-}
-
 const light_kind hl_light_kind_spot = {.sphere = true,
                                        .cone = true,
                                        .deviations = 4,
                                        .check = check_cone,
                                        .check_reach = hl_check_round_reach,
                                        .centre = hl_position_of_light,
-                                       .spread = spread,
-                                       .point = point,
-                                       .plane = plane,
+                                       .spread = hl_round_spread,
+                                       .point = hl_round_point,
+                                       .plane = hl_round_plane,
                                        .has_surface = hl_has_radius,
                                        .is_wide = hl_has_radius,
                                        .apparent_lengths = hl_apparent_diameter};

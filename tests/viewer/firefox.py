@@ -7,10 +7,11 @@ import shutil
 import socket
 import struct
 import subprocess
+import sys
 import tempfile
 import time
 
-from browser import HANG, BrowserError
+from browser import HANG, Browser, BrowserError
 
 KEYS = {"ArrowLeft": "\ue012", "ArrowUp": "\ue013", "ArrowRight": "\ue014", "ArrowDown": "\ue015", "PageUp": "\ue00e", "PageDown": "\ue00f", "Home": "\ue011",
         "Enter": "\ue007", "Escape": "\ue00c", "Delete": "\ue017", "Tab": "\ue004"}
@@ -133,13 +134,7 @@ class Firefox:
             raise BrowserError(f"{script}: {answer['exceptionDetails']['text']}")
         return value_of(answer["result"])
 
-    def wait(self, condition, timeout=HANG):
-        """Waits until a JavaScript expression is true."""
-        end = time.monotonic() + timeout
-        while not self.run(condition):
-            if time.monotonic() > end:
-                raise BrowserError(f"never true: {condition}; {self.problems}")
-            time.sleep(0.03)
+    wait = Browser.wait
 
     def resize(self, width, height):
         self.call("browsingContext.setViewport", context=self._context, viewport={"width": width, "height": height})
@@ -194,3 +189,11 @@ class Firefox:
     def screenshot(self, path):
         with open(path, "wb") as file:
             file.write(base64.b64decode(self.call("browsingContext.captureScreenshot", context=self._context)["data"]))
+
+
+def browser_named(name):
+    """The class that drives "chromium" or "firefox-esr"; ends the test as skipped where that is not installed."""
+    if shutil.which(name) is None:
+        print(f"{name} is not installed")
+        sys.exit(77)
+    return {"chromium": Browser, "firefox-esr": Firefox}[name]

@@ -8,19 +8,16 @@ FOLDER: where screenshots are kept; without it they are not made.
 import json
 import math
 import os
-import shutil
-import subprocess
 import sys
 import tempfile
 
 import numpy
 
 import checks
-from browser import Browser
 from checks import check
-from firefox import Firefox
+from firefox import browser_named
 from hands import PROGRAM, STAGE, center, open_section, press, press_named, rest, scene_of, set_control
-from viewer import Viewer
+from viewer import Viewer, need_viewer
 
 SIDE, SPACING = 40, (2.0, 1.0, 1.0)  # voxels; millimetres along x, y, z
 SHOTS = os.path.abspath(sys.argv[3]) if len(sys.argv) > 3 else None
@@ -188,15 +185,10 @@ def axis_of_values(browser):
     press_named(browser, "Undo")
 
 
-kind = {"chromium": Browser, "firefox-esr": Firefox}[sys.argv[2]]
-if shutil.which(sys.argv[2]) is None:
-    print(f"{sys.argv[2]} is not installed")
-    sys.exit(77)
+kind = browser_named(sys.argv[2])
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    if subprocess.run([PROGRAM, "view", "none.nrrd", "--no-browser"], capture_output=True, check=False).returncode == 4:
-        print("built without the viewer")
-        sys.exit(77)
+    need_viewer(PROGRAM)
     write_ball()
     with Viewer(PROGRAM, "ball.nrrd", "--sheet-spacing", "1", "--shadows", "hard") as viewer, kind(size=(1100, 760)) as page:
         page.open(viewer.url)

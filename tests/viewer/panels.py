@@ -7,7 +7,6 @@ usage: panels.py PROGRAM
 import json
 import os
 import shutil
-import subprocess
 import sys
 import tempfile
 
@@ -16,7 +15,7 @@ from browser import Browser
 from checks import check
 from hands import (PROGRAM, STAGE, center, changes, copied_command, equals_render, open_section, press_named, rest, scene_of, set_control,
                    undone)
-from viewer import Viewer
+from viewer import Viewer, need_viewer
 
 SIZE = (720, 420)  # of the window: the picture is small, and so quick
 
@@ -390,9 +389,7 @@ if chromium is None:
     sys.exit(77)
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    if subprocess.run([PROGRAM, "view", "none.nrrd", "--no-browser"], capture_output=True, check=False).returncode == 4:
-        print("built without the viewer")
-        sys.exit(77)
+    need_viewer(PROGRAM)
     write_inputs()
     for scene, parts in (("soft", (sky, surfaces, boxes, scattering)), ("cut", (cuts,)), ("pair", (scene_cuts,)), ("image", (sky_image,)), ("labels", (labels,)), ("mask", (mask,)),
                          ("numbers", (as_labels,)),

@@ -19,6 +19,7 @@ import urllib.parse
 import checks
 from browser import Browser
 from checks import check
+from viewer import need_viewer
 
 PROGRAM = os.path.abspath(sys.argv[1])
 
@@ -140,9 +141,7 @@ with tempfile.TemporaryDirectory() as folder:
         file.write(OPENER)
     os.chmod("bin/xdg-open", stat.S_IRWXU)
     os.environ.update(PATH=f"{folder}/bin:{os.environ['PATH']}", TMPDIR=f"{folder}/temporary", DISPLAY=":9", XDG_RUNTIME_DIR=f"{folder}/runtime")
-    if subprocess.run([PROGRAM, "view", "none.nrrd", "--no-browser"], capture_output=True, check=False).returncode == 4:
-        print("built without the viewer")
-        sys.exit(77)
+    need_viewer(PROGRAM)
     subprocess.run([PROGRAM, "make", "torus", "--size", "16", "--quiet"], check=True)
     redirect(f"{folder}/runtime")
     without_a_visit()

@@ -18,7 +18,7 @@ import checks
 from browser import Browser
 from checks import check
 from hands import PROGRAM, STAGE, center, equals_render, open_section, press, press_named, rest, scene_of, set_control
-from viewer import Viewer
+from viewer import Viewer, need_viewer
 
 SHOTS = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else None
 BANNER = "document.querySelector('.banner')"
@@ -336,9 +336,7 @@ if chromium is None:
     sys.exit(77)
 with tempfile.TemporaryDirectory() as place:
     os.chdir(place)
-    if subprocess.run([PROGRAM, "view", "none.nrrd", "--no-browser"], capture_output=True, check=False).returncode == 4:
-        print("built without the viewer")
-        sys.exit(77)
+    need_viewer(PROGRAM)
     os.mkdir("runtime", 0o700)
     os.environ["XDG_RUNTIME_DIR"] = os.path.abspath("runtime")
     for made in ("first", "second"):

@@ -8,7 +8,6 @@ FOLDER: where screenshots are kept; without it they are not made.
 import json
 import math
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -16,11 +15,10 @@ import tempfile
 import numpy
 
 import checks
-from browser import Browser
 from checks import check
-from firefox import Firefox
+from firefox import browser_named
 from hands import PROGRAM, center, open_section, rest, scene_of, set_control
-from viewer import Viewer
+from viewer import Viewer, need_viewer
 
 SIDES = (40, 50, 30)  # i, j, k
 SPACING = (1.5, 1.0, 2.0)
@@ -297,15 +295,10 @@ def oblique(browser):
     check(browser.run("JSON.stringify(halflight.slices.shown('oblique').plane)") == before, "it keeps its place")
 
 
-kind = {"chromium": Browser, "firefox-esr": Firefox}[sys.argv[2]]
-if shutil.which(sys.argv[2]) is None:
-    print(f"{sys.argv[2]} is not installed")
-    sys.exit(77)
+kind = browser_named(sys.argv[2])
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    if subprocess.run([PROGRAM, "view", "none.nrrd", "--no-browser"], capture_output=True, check=False).returncode == 4:
-        print("built without the viewer")
-        sys.exit(77)
+    need_viewer(PROGRAM)
     values = write_volumes()
     with open("tf.json", "w", encoding="utf-8") as steep:
         json.dump({"opacity": [[0, 0], [500, 1]], "color": [[0, 0.8, 0.7, 0.6]], "unit_distance": 0.5}, steep)

@@ -18,7 +18,7 @@ import checks
 from browser import Browser
 from checks import check
 from hands import PROGRAM, STAGE, center, changes, copied_command, equals_render, final_picture, rest, scene_of
-from viewer import Viewer
+from viewer import Viewer, need_viewer
 
 
 def exported_texts(browser):
@@ -191,9 +191,7 @@ if chromium is None:
 AXE = glob.glob(f"{os.path.abspath(sys.argv[2])}/**/axe.min.js", recursive=True) if len(sys.argv) > 2 else []
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    if subprocess.run([PROGRAM, "view", "none.nrrd", "--no-browser"], capture_output=True, check=False).returncode == 4:
-        print("built without the viewer")
-        sys.exit(77)
+    need_viewer(PROGRAM)
     write_ball("ball.nrrd")
     with open("white.json", "w") as file:
         file.write('{"unit_distance": 1, "opacity": [[60, 0], [150, 0.6]], "color": [[0, 1, 1, 1]]}')

@@ -1,7 +1,15 @@
 """A running `halflight view`, for tests."""
 import signal
 import subprocess
+import sys
 import urllib.parse
+
+
+def need_viewer(program):
+    """Ends the test as skipped where the program was built without the viewer."""
+    if subprocess.run([program, "view", "none.nrrd", "--no-browser"], capture_output=True, check=False).returncode == 4:
+        print("built without the viewer")
+        sys.exit(77)
 
 
 class Viewer:
