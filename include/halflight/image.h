@@ -35,7 +35,7 @@ typedef enum hl_tone {
 
 typedef struct hl_image_write_options {
   size_t struct_size;         /* set by hl_image_write_options_defaults() */
-  int png_depth;              /* bits of a code, of a TIFF, too: 8 or 16 */
+  int png_depth;              /* bits of a channel in PNG and TIFF files: 8 or 16 */
   double background[3];       /* linear RGB; PNG and TIFF only */
   int background_transparent; /* PNG and TIFF keep alpha, unassociated */
   const char *scene_json;     /* stored in the PNG as the text chunk "halflight:scene"; may be null */

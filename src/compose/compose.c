@@ -106,7 +106,7 @@ static void change_release(hl_context *context, scene_change *change) {
   hl_release(context, change->lights);
 }
 
-/* Checks of one option alone, and of options beside each other. */
+/* Refuses options with values that make no sense, and options that exclude each other. */
 static hl_status check(const hl_asked *asked, hl_error *error) {
   const hl_asked *range = &asked[HL_ASK_RANGE];
   if (range->given && range->percent[0] == range->percent[1] && range->number[0] >= range->number[1])

@@ -49,7 +49,7 @@ typedef struct job {
   void (*function)(void *, size_t, int);
   void *data;
   size_t base;                     /* index of the job that index 0 of the shares stands for */
-  _Alignas(64) atomic_size_t done; /* finished indices that workers have reported */
+  _Alignas(64) atomic_size_t done; /* the number of indices that workers have reported as finished */
 } job;
 
 enum { INDEX_BITS = 20 }; /* bits of a share's next index and of its end; longer jobs run in pieces */
@@ -61,7 +61,7 @@ typedef struct share {
 
 typedef struct offer {
   share *shares; /* [share_count]; behind the pool's own */
-  size_t count;  /* 0 if nothing is offered */
+  size_t count;  /* the number of indices of the offered job; 0 if no job is offered */
   job job;
 } offer;
 

@@ -1,9 +1,9 @@
 /* figure/legend.c - what colours mean: for each visible volume its transfer function's colours over its
  * values, with their opacity, its isosurfaces, or the names of its labels.
  *
- * The strip has the function's own colours, as a surface shows them that is fully lit; the curve beside it is
- * the opacity, from none at the strip to the greatest that the function has in the range. The range is that
- * of the values which have opacity. */
+ * The strip shows the function's own colours, as a fully lit surface has them. Its range begins at the least
+ * value with opacity and ends at the greatest. The curve beside the strip shows the opacity: it touches the
+ * strip where the opacity is 0, and lies farthest from it at the greatest opacity in the range. */
 #include <stdio.h>
 #include <string.h>
 

@@ -57,8 +57,9 @@ static __attribute__((noinline)) lanes values_at(const grid *grid, const kernel 
 
 /* ---- the row of the second number ---- */
 
-/* The row of the table at points. slope: the gradient of the volume itself, stored units per frame unit; not
- * read if the second number is another volume's value. point: frame space. */
+/* The row of a function of two numbers at sixteen points: the place of the second number in the table. slope:
+ * the volume's gradient there, in stored units per frame unit, which is not read if the second number is
+ * another volume's value. point: frame space. */
 LANES_INLINE lanes row_of_matter(const plane_table *table, const kernel *kernel, lanes3 slope, lanes3 point,
                                  uint32_t active, uint32_t starts) {
   lanes second, scale = lanes_set(table->row_scale);

@@ -35,7 +35,7 @@ typedef struct matter_way {
   const float (*to_index)[4]; /* maps frame space to index space */
   lanes3 point;               /* the point where the matter is seen, as the value alone places it; frame
                                * space */
-  lanes from, to;             /* coordinates in the tables at the way's beginning and end */
+  lanes from, to;             /* coordinates in the tables where a sample's part of the ray begins and ends */
   lanes extinction;           /* the mean extinction that the value alone gives */
   uint32_t active, starts;    /* lanes with extinction, at least one; the first lane of each block */
   int wants_slope;            /* whether the caller reads the slope, even where the factor does not depend on

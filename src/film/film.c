@@ -68,8 +68,7 @@ static json_t *step_into(json_t *at, const char *name) {
   return json_array_get(at, strtoul(name, NULL, 10));
 }
 
-/* A number that is whole in the scene stays whole. (The program's own writer of JSON has a json_integer().)
- */
+/* A number that is whole in the scene stays whole. */
 static json_t *number_like(const json_t *before, double value) {
   return json_is_integer(before) ? json_integer(llround(value)) : json_real(value);
 }

@@ -27,9 +27,9 @@ enum {
   GRID_MARGIN = 4
 };
 
-/* A look-up tells where something is visible, in units of 2x2x2 cells or of bricks. A box of two or three
- * units along each axis is looked up at its first unit: bit i + 2 j + 4 k of `visible` tells whether the box
- * of 2 + i by 2 + j by 2 + k units from there on shows something. */
+/* A look-up tells where something is visible. Its units are 2x2x2 cells, or bricks. Each unit has one byte,
+ * for the eight boxes that begin at this unit and have two or three units along each axis: bit i + 2 j + 4 k
+ * tells whether the box of 2 + i by 2 + j by 2 + k units shows something. */
 enum { LOOKUP_SIZES = 2, LOOKUP_REACH = 3 /* units along an axis that one look-up covers */ };
 typedef struct cell_lookup {
   int32_t count[3];

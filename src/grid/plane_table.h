@@ -14,7 +14,8 @@ enum { PLANE_COLUMNS = 512, PLANE_ROWS = 256, PLANE_STRIDE = PLANE_COLUMNS + 1 }
 
 typedef struct plane_table {
   /* [PLANE_ROWS + 1][PLANE_STRIDE], with the last row and column repeated; borrowed from the classifier's
-   * block; null if the function is one of the value alone */
+   * block; null if the transfer function has no second
+   * number */
   float (*sums)[4];  /* extinction per world unit; its integral over columns, from column 0; the same two of
                       * the next row, so that one load takes everything around a position */
   float (*color)[4]; /* the integrals of linear RGB times opacity, and of opacity */

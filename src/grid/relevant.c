@@ -215,7 +215,7 @@ static void mark_cells(grid *grid, const classifier *classifier, hl_pool *pool) 
 /* The bits of `visible` (cell_lookup) for boxes that are three units long along x, y or z. */
 enum { THREE_ALONG_X = 0xaa, THREE_ALONG_Y = 0xcc, THREE_ALONG_Z = 0xf0 };
 
-/* Converts a row's marks (1: visible) into look-ups along x. */
+/* Converts a row's marks (1: the unit is visible) into the bytes of look-ups (grid.h) along x. */
 static void look_up_row(unsigned char *cells, size_t width) {
   for (size_t x = 0; x + 2 < width; x++)
     cells[x] = (unsigned char)(-(cells[x] | cells[x + 1]) | (-cells[x + 2] & THREE_ALONG_X));
@@ -285,9 +285,10 @@ typedef struct bits_job {
   uint64_t bricks, set_bits; /* number of visible bricks, and number of their cells with a bit; atomic */
 } bits_job;
 
-/* Finds the sign and the threshold. The threshold is lowered by the errors that sums of floats and the
- * rounded weights of u8 voxels may have: 6e-6 of the greatest number, and 1e-3 of a table's entry. False
- * where floats are too coarse for the comparison. */
+/* Finds the comparison that tells whether a voxel is visible: its value times a sign lies above a threshold.
+ * Sums of floats and the rounded weights of u8 voxels may have errors of 6e-6 of the greatest number and of
+ * 1e-3 of a table's entry. The threshold is lowered by more than these errors. False if floats are too coarse
+ * to tell values apart at the threshold. */
 static bool find_threshold(const grid *grid, const classifier *classifier, bits_job *job) {
   double high = (double)grid->cell_base + 255.0 * (double)grid->cell_step;
   double greatest = fmax(fmax(fabs((double)grid->cell_base), fabs(high)), fabs((double)grid->empty));

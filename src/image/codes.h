@@ -11,7 +11,7 @@ typedef struct hl_codes {
   hl_srgb_encoder encoder;
   int depth;           /* bits of a code: 8 or 16 */
   bool transparent;    /* four codes a pixel, the last one alpha; else three */
-  bool opaque_alpha;   /* four codes a pixel, of which alpha is always the greatest code */
+  bool opaque_alpha;   /* a pixel has four codes, and its alpha is the code of full opacity */
   float background[3]; /* linear */
   float exposure;      /* factor on the picture's light */
   hl_tone tone;        /* after the exposure */

@@ -8,7 +8,8 @@
  * (codes.c); the scene as a compressed text chunk.
  *
  * Against hostile files: sizes are limited before allocation and compared with the greatest size that the
- * file's bytes can inflate to; every chunk but IHDR, PLTE, tRNS, IDAT and IEND is skipped unread. */
+ * file's bytes can inflate to. While the picture is decoded, every chunk but IHDR, PLTE, tRNS, IDAT and IEND
+ * is skipped unread; the scene's text is found by another pass over the chunks. */
 #include <errno.h>
 #include <png.h>
 #include <setjmp.h>

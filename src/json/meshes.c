@@ -76,7 +76,7 @@ static hl_status read_look(hl_json_reader *reader, const json_t *value, hl_scene
   return status == HL_OK ? hl_json_settings(reader, value, HL_SETTINGS_MESH, 0, mesh) : status;
 }
 
-/* Reads a mesh other than a floor to the end of the shelf. */
+/* Reads one mesh that is no floor, and appends it to the shelf, the list of the scene's meshes. */
 static hl_status read_mesh(hl_json_reader *reader, const json_t *value, hl_mesh_shelf *shelf) {
   hl_scene_mesh *mesh = &shelf->meshes[shelf->count];
   const char *file = NULL;

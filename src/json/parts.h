@@ -96,7 +96,8 @@ typedef struct hl_mesh_shelf {
  * hl_json_release_meshes(), also after a failure. */
 hl_status hl_json_read_meshes(hl_json_reader *reader, const json_t *value, hl_mesh_shelf *shelf);
 
-/* Makes the floors, below the scene's volumes and the shelf's other meshes. */
+/* Makes the meshes that are floors. They lie below the scene's volumes and below all meshes of the scene that
+ * are no floors. shelf: the scene's meshes. */
 hl_status hl_json_add_floors(hl_json_reader *reader, const hl_scene_description *scene, hl_mesh_shelf *shelf);
 
 /* Reads the arrays of a mesh that the scene itself lists: "vertices", "triangles", "spheres", "lines" and

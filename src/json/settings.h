@@ -16,8 +16,9 @@ hl_status hl_json_settings_object(hl_json_reader *reader, const json_t *value, h
 hl_status hl_json_settings_member(hl_json_reader *reader, const json_t *value, const char *key,
                                   hl_setting_kind kind, void *target);
 
-/* Reads one key of a table, which may be absent, into the struct `target`. object: the innermost object; for
- * the key "transform/translate" it is the object "transform". */
+/* Reads one key into the struct `target`. The key stands in the table of settings of this kind, and may be
+ * absent from the object. object: the object in which the key's last name stands; for the key
+ * "transform/translate" it is the object "transform". */
 hl_status hl_json_setting(hl_json_reader *reader, const json_t *object, hl_setting_kind kind, const char *key,
                           void *target);
 /* Reads all keys of a table that have no "/" and belong to this type of light or camera. */

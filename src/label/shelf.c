@@ -40,7 +40,7 @@ static void release_shelf(hl_context *context, void *kept) {
   hl_release(context, shelf);
 }
 
-/* Finds and retains the volume that was made of the label before. */
+/* Looks on the shelf for a volume that was already made of this label, and retains it. */
 static bool find(hl_volume *map, double label, hl_volume **made) {
   bool found = false;
   lock(map);

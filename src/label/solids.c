@@ -27,9 +27,9 @@ typedef struct solids_job {
  * Space for a line of occupancy follows. */
 enum { SUM_WEIGHT, SUM_COLOR, SUM_LINE = SUM_COLOR + 3, SUMS };
 
-/* A label's weight in the mean of colours. Derived: between two labels, whose occupancies a and 1 - a add up
- * to 1, the share a^4 / (a^4 + (1 - a)^4) runs from 0 to 1 with the slope 4. Occupancies rise by a quarter a
- * voxel, so that the share rises over about a voxel. */
+/* A label's weight in the mean of colours: its occupancy to the fourth power. Derived: two labels that touch
+ * have occupancies a and 1 - a. The share of the first is a^4 / (a^4 + (1 - a)^4), whose slope at a = 1/2 is
+ * 4. Occupancies rise by a quarter a voxel, so that the share rises from 0 to 1 over about a voxel. */
 static float weight_of(float occupancy) {
   const float square = occupancy > 0 ? occupancy * occupancy : 0;
   return square * square;

@@ -1,4 +1,5 @@
-/* page/seen.h - the part of a volume that shows anything, and the type of voxel that holds its values. */
+/* page/seen.h - the box of a volume outside which nothing is visible, and the smallest type of voxel that
+ * holds its values exactly. */
 #ifndef HL_PAGE_SEEN_H
 #define HL_PAGE_SEEN_H
 

@@ -317,9 +317,10 @@ void hl_reference_light_arrive(const reference_light *light, vec3 point, arrival
   for (int c = 0; c < 3; c++) arrived->incoming[c] = light->color[c] * factor;
 }
 
-/* The colour of the light texture or emission image for the ray from a point of the light to `point`; false
- * if it is black. light_point: a direction for directional lights. plane: the plane of the emission image, if
- * the image differs from point to point of the light; else null. */
+/* Finds the colour that a light's images give to the ray from a point of the light to `point`. The images are
+ * the texture that the light projects, and the emission image on its surface. Returns false if the colour is
+ * black. light_point: of a directional light a direction. plane: the plane of the emission image; null if
+ * each point of the light has the image's mean. */
 static bool find_pattern(const reference_light *light, const emission_plane *plane, vec3 light_point,
                          vec3 point, double pattern[3]) {
   pattern[0] = pattern[1] = pattern[2] = 1;

@@ -243,9 +243,9 @@ void hl_reference_volume_release(hl_context *context, reference_volume *volume);
 
 /* ---- cuts (cuts.c) ---- */
 
-/* Whether the cuts of a volume leave a point of index space. */
+/* Whether a point of index space is still there after the volume's cuts. */
 bool hl_reference_left(const reference_volume *volume, vec3 point);
-/* Whether the scene's own cuts leave a point of a mesh, in the world. */
+/* Whether a point of a mesh, in the world, is still there after the scene's own cuts. */
 bool hl_reference_mesh_left(const hl_scene_description *scene, const hl_scene_mesh *mesh, vec3 point);
 /* The least distance above `after` at which a ray of index space crosses the face of a cut; infinite if there
  * is none. */
@@ -336,7 +336,8 @@ void hl_reference_path(const reference *all, vec3 origin, vec3 direction, uint64
 typedef struct reference_sky_receiver {
   vec3 point, normal, to_eye; /* world; unit vectors; the normal is 0 in a medium */
   double surface;             /* 0 for a medium, 1 for a surface */
-  double diffuse, anisotropy; /* the surface's diffuse colour factor; the medium's anisotropy */
+  double diffuse;             /* a surface's factor of diffuse colour */
+  double anisotropy;          /* a medium's anisotropy, from -1 to 1 */
   const double *albedo;       /* [3]; the medium's; null for 1 */
   bool receives_shadow;
 } reference_sky_receiver;

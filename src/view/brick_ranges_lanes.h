@@ -14,7 +14,7 @@ typedef struct lanes_range {
   lanes low, high;
 } lanes_range;
 
-/* The boxes of the points that lie in the bricks' cells. At the grid's borders a box is larger by
+/* For each brick, the box around its cells, in index space. At the grid's borders a box is larger by
  * GRID_MARGIN. */
 LANES_INLINE lanes_boxes boxes_of_bricks(const brick_view *view, const grid *grid,
                                          const int32_t brick[3][BRICKS_AT_ONCE]) {

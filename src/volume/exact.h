@@ -35,8 +35,9 @@ typedef struct hl_exact {
 void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_exact_place place,
                     hl_exact *exact);
 
-/* Notes `count` voxels from number `first` on. source: packed, of any alignment. swap: whether they are in
- * the other byte order. If memory or the disk is short, hl_exact_take() fails later. exact: may be null. */
+/* Records the numbers of `count` voxels; the first one is voxel number `first`. source: the numbers as they
+ * stand in the file, one after the other, of any alignment. swap: whether the file has the other byte order.
+ * If memory or the disk is short, hl_exact_take() fails later. exact: may be null. */
 void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first, size_t count);
 
 /* Takes the numbers out; the caller owns them. stored: the stored values of all voxels, [count]. *numbers is

@@ -320,7 +320,7 @@ static void hold_over_ranks(hl_pages *pages, size_t number) {
     __atomic_store_n(&pages->state[number], (unsigned char)PAGE_COMING, __ATOMIC_RELAXED);
     count_held(pages, true);
     make_room(pages, 0);
-    pthread_mutex_unlock(&pages->lock); /* other threads may get other pages meanwhile */
+    pthread_mutex_unlock(&pages->lock); /* while this page is fetched, other threads may fetch other pages */
     fetch_from_ranks(pages, number);
     pthread_mutex_lock(&pages->lock);
     pthread_cond_broadcast(&pages->came);

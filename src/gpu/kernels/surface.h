@@ -1,6 +1,8 @@
 /* gpu/kernels/surface.h - surfaces of a volume: how much a sample belongs to the face of a box that cuts
- * matter, and the light at the outside of surfaces, Y in shadow/attenuate.h. Parts of render/slab_lanes.h,
- * render/reaching_lanes.h, grid/classifier_lanes.h and shadow/attenuate_lanes.h for one pixel and one volume.
+ * matter, and the light at the outside of surfaces, Y in shadow/attenuate.h.
+ *
+ * The functions here do for one pixel and one volume what render/slab_lanes.h, render/reaching_lanes.h,
+ * grid/classifier_lanes.h and shadow/attenuate_lanes.h do for sixteen pixels.
  */
 #ifndef HL_GPU_SURFACE_H
 #define HL_GPU_SURFACE_H

@@ -41,8 +41,9 @@ static double number_of(const unsigned char *bytes, size_t length) {
   return hl_text_number(trimmed, strlen(trimmed), &number) ? number : 0;
 }
 
-/* Reads the items of a tag. Each item has four words, one of which is its length, and text, padded to whole
- * words. numbers: [most]; the numbers in the first items. */
+/* Reads the numbers of a tag from its items. An item consists of four words, of which one is the length of
+ * its text, and of the text, which is padded to whole words. numbers: [most]; the numbers that the texts of
+ * the first items hold. */
 static void read_items(csa_reader *csa, bool second, uint32_t items, double *numbers, uint32_t most) {
   for (uint32_t n = 0; n < items && csa->at < csa->length; n++) {
     uint32_t words[4];

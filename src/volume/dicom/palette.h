@@ -13,7 +13,8 @@ typedef struct hl_dicom_palette {
   size_t counts[3];          /* number of entries that were told */
 } hl_dicom_palette;
 
-/* Takes an element at the top of a file. Elements that have nothing to do with palettes change nothing. */
+/* Reads what a data element of DICOM says of the palette. The element stands at the top level of the file,
+ * not within a sequence. Elements that do not concern palettes change nothing. */
 hl_status hl_dicom_palette_take(hl_dicom_reader *reader, const hl_dicom_element *element,
                                 hl_dicom_palette *palette, hl_error *error);
 void hl_dicom_palette_release(hl_context *context, hl_dicom_palette *palette);
