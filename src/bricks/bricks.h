@@ -1,0 +1,46 @@
+/* bricks/bricks.h - a field at levels: bricks of B-spline coefficients, each at the spacing that its place
+ * needs.
+ *
+ * The lattice. Coefficient i of level l stands at x = 2^l i along each axis, in voxels of level 0. The field
+ * is f(x) = sum_i c[l][i] beta(x / 2^l - i), where beta is the cubic B-spline. Every second point of level l
+ * is a point of level l + 1, so the lattices nest.
+ *
+ * A brick of level l covers side^3 cells of its level. Brick b of an axis holds the cells b side .. b side +
+ * side - 1, and stores its coefficients b side - 1 .. b side + side + 1, which are side + 3 numbers an axis.
+ * Beside a coarser brick the three layers around the border are the coarser brick's coefficients, subdivided:
+ * then the field has continuous second derivatives across the border (truncated hierarchical B-splines:
+ * C. Giannelli, B. Juettler, H. Speleers, THB-splines, 2012).
+ *
+ * In:  who builds a field (meshes of cells, adaptive grids, particles, sparse files) makes the bricks.
+ * Out: who samples a field (grid/, fill/, the reference) looks a cell's brick up in the directory. */
+#ifndef HL_BRICKS_BRICKS_H
+#define HL_BRICKS_BRICKS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum {
+  BRICK_MARGIN = 3,       /* coefficients of an axis that a brick stores beyond its cells' number */
+  BRICK_LEVELS_LIMIT = 16 /* levels of a field at most */
+};
+
+/* What covers one block of side^3 cells of level 0. */
+typedef struct hl_brick_entry {
+  int32_t slot;   /* index into the pool; -1: all coefficients of the brick are `constant` */
+  int32_t level;  /* level of the brick that covers the block */
+  float constant; /* data value; only where slot is -1 */
+} hl_brick_entry;
+
+typedef struct hl_bricks {
+  int shift;                /* side = 2^shift cells */
+  int levels;               /* 1 .. BRICK_LEVELS_LIMIT */
+  size_t dimension[3];      /* lattice points of level 0 along x, y, z, as a dense volume's voxels */
+  size_t directory_size[3]; /* blocks of level 0 along x, y, z: enough that all points lie in one */
+  hl_brick_entry
+      *directory; /* owned; [z][y][x] blocks of level 0; a brick of level l fills 2^l entries an axis */
+  float *pool;    /* owned; [slots][side + 3][side + 3][side + 3], z before y before x; data values */
+  size_t slots;   /* number of bricks in the pool */
+} hl_bricks;
+
+#endif
