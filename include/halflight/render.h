@@ -91,6 +91,13 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_render_layers(hl_renderer *renderer,
                                                           const hl_layers *layers,
                                                           hl_render_statistics *statistics, hl_error *error);
 
+/* Puts the sky behind a picture where the scene's `background_sky` asks for it: pixels that let light through
+ * show the sky's radiance, and all alphas become 1. The renderer and the reference do so with whole pictures;
+ * the sum of the parts of a picture wants this call. Other scenes' pixels stay as they are. pixels,
+ * row_stride: as for hl_renderer_render(). Errors: HL_ERROR_ARGUMENT for null. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_show_sky(const hl_scene *scene, float *pixels, size_t row_stride,
+                                                  hl_error *error);
+
 /* Options for writing the scene's pictures, by hl_image_write() or hl_image_to_srgb8(): the defaults with the
  * scene's background, exposure and tone. scene may be null: the defaults alone. */
 HL_API void hl_scene_write_options(const hl_scene *scene, hl_image_write_options *options);

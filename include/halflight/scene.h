@@ -332,6 +332,8 @@ typedef struct hl_scene_description {
   size_t cut_count;
   hl_tone tone; /* how a PNG shows light that is brighter than white; default HL_TONE_CLIP */
   hl_sky sky;
+  int background_sky; /* non-zero: pictures show the sky behind all else, in place of a background; they have
+                         alpha 1. default 0 */
 } hl_scene_description;
 
 typedef struct hl_scene hl_scene; /* immutable and counted */
@@ -431,6 +433,20 @@ HL_API void hl_scene_level_sky(hl_scene_description *description);
  * *factor is 1 for looks that keep their light, and for orthographic cameras. */
 HL_API HL_WARN_UNUSED hl_status hl_scene_light_factor(const hl_scene_description *description,
                                                       const char *look, double *factor, hl_error *error);
+
+/* The names of light rigs: "studio", "raking", "rim" and "overcast". Null past the last. */
+HL_API const char *hl_light_rig_name(size_t index);
+
+/* Lights of a light rig at most. */
+#define HL_LIGHT_RIG_MOST 4
+
+/* Gives a description the lights of a named rig, which go with the camera, and a sky of the rig's strength:
+ * the one that it has, or one brighter above than below. Together they are about as strong as the light that
+ * the description had; hl_scene_light_factor() says what else brings a bare volume's picture to its exposure.
+ * lights: the caller's, [HL_LIGHT_RIG_MOST], to which description->lights points afterwards. Errors:
+ * HL_ERROR_ARGUMENT for an unknown name. */
+HL_API HL_WARN_UNUSED hl_status hl_scene_light_rig(const char *rig, hl_scene_description *description,
+                                                   hl_light lights[HL_LIGHT_RIG_MOST], hl_error *error);
 
 /* The names of looks: "auto", which the data choose, "surface", "translucent", "xray", "smoke" and "vessels".
  * Null past the last. */

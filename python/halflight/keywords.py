@@ -172,6 +172,8 @@ class PictureSettings(TypedDict, total=False):
 
     Parameters
     ----------
+    background_sky : bool
+        Pictures show the sky behind all else. Default: False.
     exposure : float
         A PNG shows the volumes' light times 2^exposure. Stops, -32 to 32. Default: 0.
     tone : str
@@ -179,6 +181,7 @@ class PictureSettings(TypedDict, total=False):
         "filmic". Default: "clip".
     """
 
+    background_sky: bool
     exposure: float
     tone: Literal["clip", "filmic"]
 
@@ -252,6 +255,7 @@ class FurtherSettings(TypedDict, total=False):
     cut_shading: Literal["face", "gradient", "none"]
     cut_casts_shadow: bool
     emission: float
+    background_sky: bool
     exposure: float
     tone: Literal["clip", "filmic"]
     soft_method: Literal["cascade", "paper", "sublights"]

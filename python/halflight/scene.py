@@ -20,6 +20,8 @@ __all__ = ["Scene", "Settings"]
 
 Side = Literal["automatic", "front", "back", "left", "right", "top", "bottom", "iso", "xy", "xz", "yz", "yx", "zx", "zy"]
 SIDES = ("automatic", "front", "back", "left", "right", "top", "bottom", "iso")
+LightRig = Literal["studio", "raking", "rim", "overcast"]
+LIGHT_RIGS = ("studio", "raking", "rim", "overcast")
 
 
 class Settings(PictureSettings, RenderSettings, total=False):
@@ -30,14 +32,14 @@ class Settings(PictureSettings, RenderSettings, total=False):
     camera : Camera, str, (azimuth, elevation) or (position, focal point, up)
         "front", "back", "left", "right", "top", "bottom" and "iso" are sides, "xy", "xz", ... PyVista's: the axes to the
         picture's right and top; angles in degrees. Three points are PyVista's ``camera_position``.
-    lights : a light or a list of them
-        See `halflight.lights`.
+    lights : a light, a list of them, or the name of a rig
+        See `halflight.lights`. "studio", "raking", "rim" and "overcast" are lights that go with the camera, and a sky.
     ambient : float, (r, g, b) or str
         Light from everywhere.
     size : (width, height), int or str
         Pixels; 512 is a square, "640x480" a text.
-    background : colour or "transparent"
-        What a PNG shows behind the volumes.
+    background : colour, "transparent" or "sky"
+        What a PNG shows behind the volumes; "sky": all pictures show the scene's sky there.
     description : str
         One sentence on the scene, for its file.
     meshes : a Mesh or a list of them
@@ -51,7 +53,7 @@ class Settings(PictureSettings, RenderSettings, total=False):
     """
 
     camera: Camera | Side | str | Sequence[float] | Sequence[Sequence[float]]
-    lights: Light | Sequence[Light]
+    lights: Light | Sequence[Light] | LightRig
     ambient: float | Sequence[float] | str
     size: tuple[int, int] | int | str
     background: float | Sequence[float] | str
@@ -62,7 +64,8 @@ class Settings(PictureSettings, RenderSettings, total=False):
 
 
 _RENDER = _settings.names(lib.HL_SETTINGS_RENDER)
-_IMAGE = _settings.names(lib.HL_SETTINGS_IMAGE, "width", "height", "background", "background_transparent")
+_IMAGE = _settings.names(lib.HL_SETTINGS_IMAGE, "width", "height", "background", "background_transparent",
+                        "background_sky")
 _TOP = _settings.names(lib.HL_SETTINGS_SCENE, "ambient")
 
 
@@ -76,7 +79,8 @@ class Scene:
         all that there is.
     **settings : Settings
         `camera` (a Camera; "front", "back", "left", "right", "top", "bottom", "iso"; or azimuth and elevation in
-        degrees), `lights`, `ambient`, `size` (width, height in pixels), `background` (a colour or "transparent"),
+        degrees), `lights` (a list, or a rig: "studio", "raking", "rim", "overcast"), `ambient`, `size` (width, height in
+        pixels), `background` (a colour, "transparent", or "sky"),
         `description`, and the keywords of `halflight.keywords.PictureSettings` and `RenderSettings`: `shadows`,
         `exposure`, ...
 
@@ -339,8 +343,10 @@ class Scene:
 
     @property
     def background(self) -> tuple[float, float, float] | str:
-        """Linear RGB, or "transparent"."""
+        """Linear RGB, "transparent", or "sky"."""
         red, green, blue = self._struct.background
+        if self._struct.background_sky:
+            return "sky"
         return "transparent" if self._struct.background_transparent else (red, green, blue)
 
     @property
@@ -414,7 +420,10 @@ def _set_sky(struct: Any, sky: Any, keep: list[Any]) -> None:
 
 def _set_background(struct: Any, background: Any) -> None:
     struct.background_transparent = isinstance(background, str) and background == "transparent"
-    if not struct.background_transparent:
+    struct.background_sky = isinstance(background, str) and background == "sky"
+    if struct.background_sky and struct.sky.type == lib.HL_SKY_NONE:
+        raise ValueError("background: 'sky': the scene has no sky: give sky=, as sky=\"skyblue\"")
+    if not struct.background_sky and not struct.background_transparent:
         struct.background = colors.linear_color("background", background)
 
 
@@ -486,6 +495,8 @@ def _options(settings: Mapping[str, Any], volumes: Sequence[Volume], flags: int)
     if isinstance(camera := settings.get("camera"), str) and camera not in SIDES_BY_AXES:
         if choice("camera", camera, SIDES) != "automatic":
             options["view"] = camera
+    if isinstance(rig := settings.get("lights"), str):
+        options["light-rig"] = choice("lights", rig, LIGHT_RIGS)
     if (ambient := settings.get("ambient")) is not None:
         options["ambient"] = ",".join(map(repr, map(float, colors.linear_color("ambient", ambient))))
     for word in ("shadows", "kernel"):
@@ -533,7 +544,7 @@ def _build(base: Any, volumes: Sequence[Volume], settings: Mapping[str, Any], ch
         _set_meshes(struct, meshes, keep)
     if (cut := settings.get("cuts")) is not None:
         cuts.fill(struct, cut, keep, "")
-    if (lights := settings.get("lights")) is not None:
+    if (lights := settings.get("lights")) is not None and not isinstance(lights, str):
         _set_lights(struct, lights, keep)
         flags |= lib.HL_COMPOSE_LIGHTS
     if (sky := settings.get("sky")) is not None:

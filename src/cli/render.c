@@ -189,7 +189,10 @@ static int job_render(render_job *job) {
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
   hl_ranks_sum(job->ranks, hl_image_pixels(job->image),
                4 * (size_t)description->width * (size_t)description->height);
-  return EXIT_CODE_OK;
+  if (job->ranks != NULL)
+    status = hl_scene_show_sky(job->scene, hl_image_pixels(job->image), 4 * (size_t)description->width,
+                               &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
 static hl_status write_to_stdout(render_job *job, hl_image_write_options *options, int *exit_code,

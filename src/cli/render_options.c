@@ -50,9 +50,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_NO_METADATA] = FRAMES_OPTION_NO_METADATA,
     [RENDER_BACKGROUND] = {.name = "background",
                            .kind = OPTION_COLOR,
-                           .argument = "COLOR|transparent",
+                           .argument = "COLOR|transparent|sky",
                            .help = "under a .png: linear R,G,B 0..1, #rrggbb or a CSS\nname (both sRGB; "
-                                   "default black, of bare volumes\ndark grey; black for --look mip)",
+                                   "default black, of bare volumes\ndark grey; black for --look mip); sky: "
+                                   "the light from\nall directions itself is seen",
                            .setting_kind = HL_SETTINGS_IMAGE,
                            .setting = "background"},
     [RENDER_EXPOSURE] =
@@ -301,6 +302,14 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                                 "(default phong;\nof smoke none)",
                         .setting_kind = HL_SETTINGS_VOLUME,
                         .setting = "shading"},
+    [RENDER_SCATTERING] = {.name = "scattering",
+                           .kind = OPTION_COLOR,
+                           .argument = "ALBEDO",
+                           .help =
+                               "media scatter light again and again, as clouds and\nwax do, and keep this "
+                               "fraction of it each time: 0.9,\nor R,G,B",
+                           .setting_kind = HL_SETTINGS_VOLUME,
+                           .setting = "scattering/albedo"},
     [RENDER_FLOOR] =
         {.name = "floor",
          .kind = OPTION_SWITCH,
@@ -350,6 +359,9 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
                  "gradient\nZENITH:HORIZON[:GROUND], or an image's file\n(.exr, .hdr, .png, .npy); 0: none",
          .setting_kind = HL_SETTINGS_SKY,
          .setting = "color"},
+    [RENDER_LIGHT_RIG] = {.name = "light-rig",
+                          .kind = OPTION_CHOICE,
+                          .help = "lights that go with the camera, and a sky, in place\nof the scene's"},
     [RENDER_LIGHT] = {.name = "light",
                       .kind = OPTION_NUMBERS,
                       .argument = "AZ,EL",

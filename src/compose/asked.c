@@ -6,11 +6,13 @@
 
 #include "core/door.h"
 #include "core/error.h"
+#include "guess/rigs.h"
 #include "text/color.h"
 #include "text/edit_distance.h"
 #include "text/plain.h"
 
-static const hl_setting_choice backgrounds[] = {{"transparent", 1}, {NULL, 0}};
+static const hl_setting_choice backgrounds[] = {
+    {"transparent", HL_BACKGROUND_TRANSPARENT}, {"sky", HL_BACKGROUND_SKY}, {NULL, 0}};
 static const hl_setting_choice sides[] = {
     {"front", HL_SIDE_FRONT}, {"back", HL_SIDE_BACK},     {"left", HL_SIDE_LEFT}, {"right", HL_SIDE_RIGHT},
     {"top", HL_SIDE_TOP},     {"bottom", HL_SIDE_BOTTOM}, {"iso", HL_SIDE_ISO},   {NULL, 0}};
@@ -66,6 +68,8 @@ const hl_option_row hl_option_rows[HL_ASK_COUNT] = {
     CHOICE(HL_ASK_CUT_SHADING, "cut-shading", .setting_kind = HL_SETTINGS_VOLUME, .setting = "cut_shading"),
     SWITCH(HL_ASK_CUT_CASTS_SHADOW, "cut-casts-shadow"),
     SWITCH(HL_ASK_WHOLE, "whole"),
+    [HL_ASK_SCATTERING] = {.name = "scattering", .kind = HL_OPTION_COLOR, .setting_kind = HL_SETTINGS_VOLUME,
+                           .setting = "scattering/albedo"},
     CHOICE(HL_ASK_SHADING, "shading", .setting_kind = HL_SETTINGS_VOLUME, .setting = "shading"),
     SWITCH(HL_ASK_FLOOR, "floor"),
     TEXT(HL_ASK_LABELS, "labels"),
@@ -75,6 +79,7 @@ const hl_option_row hl_option_rows[HL_ASK_COUNT] = {
     [HL_ASK_AMBIENT] = {.name = "ambient", .kind = HL_OPTION_COLOR, .setting_kind = HL_SETTINGS_SCENE,
                         .setting = "ambient"},
     TEXT(HL_ASK_SKY, "sky"),
+    CHOICE(HL_ASK_LIGHT_RIG, "light-rig", .choices = hl_light_rig_choices),
     [HL_ASK_LIGHT] = {.name = "light", .kind = HL_OPTION_NUMBERS, .count = 2, .separator = ','},
     NUMBER(HL_ASK_LIGHT_SIZE, "light-size"),
     RENDER_CHOICE(HL_ASK_SHADOWS, "shadows", "shadows"),

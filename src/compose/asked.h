@@ -33,6 +33,7 @@ typedef enum hl_ask {
   HL_ASK_CUT_SHADING,
   HL_ASK_CUT_CASTS_SHADOW,
   HL_ASK_WHOLE,
+  HL_ASK_SCATTERING,
   HL_ASK_SHADING,
   HL_ASK_FLOOR,
   HL_ASK_LABELS,
@@ -41,6 +42,7 @@ typedef enum hl_ask {
   HL_ASK_SHOW,
   HL_ASK_AMBIENT,
   HL_ASK_SKY,
+  HL_ASK_LIGHT_RIG,
   HL_ASK_LIGHT,
   HL_ASK_LIGHT_SIZE,
   HL_ASK_SHADOWS, /* from here on: settings of hl_render_settings */
@@ -57,6 +59,9 @@ typedef enum hl_ask {
 } hl_ask;
 
 enum { HL_ASK_MOST_TEXTS = 32 };
+
+/* The choices of "background". */
+enum { HL_BACKGROUND_TRANSPARENT = 1, HL_BACKGROUND_SKY = 2 };
 
 /* The choices of "look": the library's looks, and the maximum projection. */
 enum {

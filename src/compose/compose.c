@@ -66,7 +66,8 @@ static void change_settings(const hl_asked *asked, hl_scene_description *descrip
   if (asked[HL_ASK_TONE].given) description->tone = (hl_tone)asked[HL_ASK_TONE].choice;
   const hl_asked *background = &asked[HL_ASK_BACKGROUND];
   if (!background->given) return;
-  description->background_transparent = background->chosen;
+  description->background_transparent = background->chosen && background->choice == HL_BACKGROUND_TRANSPARENT;
+  description->background_sky = background->chosen && background->choice == HL_BACKGROUND_SKY;
   if (!background->chosen)
     memcpy(description->background, background->number, sizeof description->background);
 }
@@ -94,6 +95,9 @@ static hl_status change_all(const hl_composer *composer, scene_change *change) {
   hl_compose_look(composer, description);
   hl_compose_ambient(composer, description);
   change_settings(composer->asked, description);
+  if (description->background_sky && description->sky.type == HL_SKY_NONE)
+    return hl_fail(composer->error, HL_ERROR_ARGUMENT,
+                   "--background sky: the scene has no sky: add --sky, as --sky skyblue:white:grey");
   hl_warn_of_idle_options(composer, description);
   return HL_OK;
 }
@@ -119,6 +123,8 @@ static hl_status check(const hl_asked *asked, hl_error *error) {
                    "--threshold says what is opaque: --range beside it needs --colormap, to spread");
   if (asked[HL_ASK_ORTHO].given && asked[HL_ASK_FOVY].given)
     return hl_fail(error, HL_ERROR_ARGUMENT, "--ortho and --fovy exclude each other: give one of them");
+  if (asked[HL_ASK_LIGHT].given && asked[HL_ASK_LIGHT_RIG].given)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "--light-rig and --light exclude each other: give one of them");
   if (asked[HL_ASK_LIGHT].given && fabs(asked[HL_ASK_LIGHT].number[1]) > 90)
     return hl_fail(error, HL_ERROR_ARGUMENT, "--light: '%.200s': the elevation must be from -90 to 90",
                    asked[HL_ASK_LIGHT].text);

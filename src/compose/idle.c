@@ -3,9 +3,9 @@
 #include "core/context.h"
 
 /* Options that have no effect in a picture without light. */
-static const hl_ask of_light[] = {HL_ASK_LIGHT,         HL_ASK_LIGHT_SIZE,    HL_ASK_SHADOWS,
-                                  HL_ASK_SOFT_METHOD,   HL_ASK_LIGHT_SAMPLES, HL_ASK_SHADOW_RESOLUTION,
-                                  HL_ASK_SHADOW_LOOKUP, HL_ASK_AMBIENT,       HL_ASK_SHADING};
+static const hl_ask of_light[] = {
+    HL_ASK_LIGHT,         HL_ASK_LIGHT_RIG,         HL_ASK_LIGHT_SIZE,    HL_ASK_SHADOWS, HL_ASK_SOFT_METHOD,
+    HL_ASK_LIGHT_SAMPLES, HL_ASK_SHADOW_RESOLUTION, HL_ASK_SHADOW_LOOKUP, HL_ASK_AMBIENT, HL_ASK_SHADING};
 
 /* Where the picture is made without light, warns of options that concern light, and returns true. */
 static bool warn_of_no_light(const hl_composer *composer, const hl_scene_description *description) {

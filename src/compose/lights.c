@@ -1,5 +1,5 @@
-/* compose/lights.c - "light", "light-size", "shadows" and "ambient", and the strength of a bare volume's
- * light. */
+/* compose/lights.c - "light-rig", "light", "light-size", "shadows" and "ambient", and the strength of a bare
+ * volume's light. */
 #include "compose/lights.h"
 
 #include <string.h>
@@ -51,7 +51,7 @@ static void change_shadows(const hl_composer *composer, hl_scene_description *de
 }
 
 /* Automatic light is made for the whole volume as its transfer function shows it. A bare volume that is cut
- * open, or that has isosurfaces, gets the light that suits what is seen. */
+ * open, that has isosurfaces or that stands in a light rig gets the light that suits what is seen. */
 static hl_status expose_anew(const hl_composer *composer, hl_scene_description *description,
                              hl_light *lights) {
   double factor = 1;
@@ -60,7 +60,8 @@ static hl_status expose_anew(const hl_composer *composer, hl_scene_description *
     return HL_OK;
   bool cut = hl_count_cuts(composer->asked) > 0 || composer->asked[HL_ASK_CLIP].given ||
              (composer->flags & HL_COMPOSE_CUT) != 0;
-  if (!cut && description->volumes[0].iso_count == 0) return HL_OK;
+  bool rigged = composer->asked[HL_ASK_LIGHT_RIG].given;
+  if (!cut && !rigged && description->volumes[0].iso_count == 0) return HL_OK;
   const char *look = hl_asked_look(composer);
   hl_status status = hl_scene_light_factor(description, look != NULL ? look : "auto", &factor,
                                            composer->error);
@@ -73,14 +74,17 @@ static hl_status expose_anew(const hl_composer *composer, hl_scene_description *
 
 hl_status hl_compose_lights(const hl_composer *composer, hl_scene_description *description,
                             hl_light **lights) {
-  size_t count = description->light_count;
-  *lights = hl_allocate_zeroed(composer->context, count + 1, sizeof **lights);
-  if (*lights == NULL)
-    return hl_fail_memory(composer->error, (count + 1) * sizeof **lights, "the scene's lights");
+  const hl_asked *rig = &composer->asked[HL_ASK_LIGHT_RIG];
+  size_t count = description->light_count, room = count + HL_LIGHT_RIG_MOST;
+  hl_status status = HL_OK;
+  *lights = hl_allocate_zeroed(composer->context, room, sizeof **lights);
+  if (*lights == NULL) return hl_fail_memory(composer->error, room * sizeof **lights, "the scene's lights");
   if (count > 0) memcpy(*lights, description->lights, count * sizeof **lights);
   description->lights = *lights;
+  if (rig->given) status = hl_scene_light_rig(rig->text, description, *lights, composer->error);
+  if (status != HL_OK) return status;
   change_shadows(composer, description, *lights);
-  hl_status status = change_first_light(composer, description, *lights);
+  status = change_first_light(composer, description, *lights);
   return status == HL_OK ? expose_anew(composer, description, *lights) : status;
 }
 

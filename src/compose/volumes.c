@@ -13,6 +13,10 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
   const hl_asked *asked = composer->asked;
   hl_scene_volume *volume = &changed->volumes[index];
   if (asked[HL_ASK_SHADING].given) volume->shading = (hl_shading)asked[HL_ASK_SHADING].choice;
+  if (asked[HL_ASK_SCATTERING].given) {
+    memcpy(volume->albedo, asked[HL_ASK_SCATTERING].number, sizeof volume->albedo);
+    volume->multiple_scattering = 1;
+  }
   if (asked[HL_ASK_CUT_SHADING].given) volume->cut_shading = (hl_cut_shading)asked[HL_ASK_CUT_SHADING].choice;
   if (asked[HL_ASK_CUT_CASTS_SHADOW].given) volume->cut_casts_shadow = 1;
   hl_status status = asked[HL_ASK_CLIP].given ? hl_compose_clip(composer, volume) : HL_OK;
@@ -71,7 +75,8 @@ static bool changes_any(const hl_composer *composer) {
   const hl_asked *asked = composer->asked;
   return hl_look_replaces_functions(composer) || hl_asks_for_functions(asked) ||
          asked[HL_ASK_SHADING].given || asked[HL_ASK_CLIP].given || asked[HL_ASK_ISO].given ||
-         hl_count_cuts(asked) > 0 || asked[HL_ASK_CUT_SHADING].given || asked[HL_ASK_CUT_CASTS_SHADOW].given;
+         hl_count_cuts(asked) > 0 || asked[HL_ASK_CUT_SHADING].given || asked[HL_ASK_SCATTERING].given ||
+         asked[HL_ASK_CUT_CASTS_SHADOW].given;
 }
 
 /* Makes room for all that may change; the cuts are the one volume's, or those of a scene with several, beside

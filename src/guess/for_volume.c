@@ -25,10 +25,8 @@
 /* Least memory limit, beside what a volume in memory takes, for a sky, whose field and what making it takes
  * are less than half of that. */
 #define ROOM_FOR_SKY (512u << 20)
-/* Constant light, as a fraction of the sky's strength: beside a sky, so that no hollow is black, and in place
- * of one. */
-#define BESIDE_SKY 0.04
-#define INSTEAD    0.35
+/* Constant light in place of a sky, as a fraction of the sky's strength. */
+#define INSTEAD 0.35
 /* Sheets across the grid's diagonal. Shaded surfaces need more of them: one normal lights a whole slab. */
 #define SHEETS_OF_MEDIA    540
 #define SHEETS_OF_SURFACES 720
@@ -80,16 +78,14 @@ static bool has_room_for_sky(const hl_volume *volume) {
   return limit == 0 || limit >= ROOM_FOR_SKY + taken;
 }
 
-/* A sky brighter above than below, so that folds and hollows are darker, and a little constant light, so that
- * none is black. */
-static void choose_sky(const hl_look *look, hl_scene_description *description) {
+void hl_scene_choose_sky(double strength, hl_scene_description *description) {
   static const double zenith[3] = {1.00, 1.04, 1.09}, horizon[3] = {0.76, 0.76, 0.77},
                       ground[3] = {0.16, 0.14, 0.12};
   hl_sky *sky = &description->sky;
-  for (int channel = 0; channel < 3; channel++) description->ambient[channel] = BESIDE_SKY * look->sky;
-  if (!(look->sky > 0)) return;
+  for (int channel = 0; channel < 3; channel++) description->ambient[channel] = BESIDE_SKY * strength;
+  if (!(strength > 0)) return;
   sky->type = HL_SKY_GRADIENT;
-  sky->strength = look->sky;
+  sky->strength = strength;
   memcpy(sky->zenith, zenith, sizeof zenith);
   memcpy(sky->horizon, horizon, sizeof horizon);
   memcpy(sky->ground, ground, sizeof ground);
@@ -221,7 +217,7 @@ static hl_status make_scene_of(hl_context *context, hl_volume *volume, const cha
     description.lights = lights;
     if (!look->on_black)
       memcpy(description.background, (double[3]){0.022, 0.025, 0.030}, sizeof description.background);
-    choose_sky(look, &description);
+    hl_scene_choose_sky(look->sky, &description);
     description.render.kernel = labelled ? HL_KERNEL_BSPLINE : look->kernel; /* smooth labels are splines */
     status = expose(look, &analysis, lights, &description, error);
     if (!has_room_for_sky(volume)) hl_scene_level_sky(&description);

@@ -428,6 +428,7 @@ hl_status hl_reference_render_layers(hl_context *context, const hl_scene *scene,
   if (status == HL_OK) status = render(&all, pool, pixels, row_stride, layers, error);
   release(&all);
   hl_pool_destroy(pool);
+  if (status == HL_OK) status = hl_scene_show_sky(scene, pixels, row_stride, error);
   return status;
 }
 

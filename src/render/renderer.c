@@ -417,6 +417,7 @@ hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene
   hl_frame_work_release(renderer, &work);
   hl_reserve_end_frame(&renderer->reserve);
   if (status == HL_OK && statistics != NULL) *statistics = counted;
+  if (status == HL_OK && renderer->parts <= 1) status = hl_scene_show_sky(scene, pixels, row_stride, error);
   give_back(renderer);
   return status;
 }

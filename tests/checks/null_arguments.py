@@ -69,7 +69,7 @@ VALUES = {
     "hl_error *": "&error", "float *": "floats", "float **": "&any", "double *": "doubles", "char **": "&any",
     "unsigned char **": "&any", "size_t *": "&count", "unsigned char *": "bytes", "uint8_t *": "bytes",
     "const char * text": "\"{}\"", "const char * channels": "\"RGB\"", "const char * path": "\"nothing.nrrd\"",
-    "const char * format_name": "\"png\"", "const char *": "\"name\"", "const char **": "&any", "char *": "NULL",
+    "const char * format_name": "\"png\"", "const char * rig": "\"rim\"", "const char *": "\"name\"", "const char **": "&any", "char *": "NULL",
     "const hl_transfer_function *": "&function",
     "const hl_volume_description *": "&description", "const hl_scene_description *": "hl_scene_describe(scene)",
     "const hl_option *": "&option", "unsigned": "0",

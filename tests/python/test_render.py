@@ -37,6 +37,7 @@ CASES = [
     ({"size": (64, 64), "soft_method": "sublights", "light_samples": 3, "sheet_spacing": 1, "kernel": "linear"},
      ["--size", "64x64", "--soft-method", "sublights", "--light-samples", "3", "--sheet-spacing", "1", "--kernel", "linear"]),
     ({"size": (64, 64), "threads": 1, "background": "red"}, ["--size", "64x64", "--threads", "1"]),
+    ({"size": 64, "lights": "rim", "background": "sky"}, ["--size", "64x64", "--light-rig", "rim", "--background", "sky"]),
 ]
 
 

@@ -1,6 +1,7 @@
 /* tests/unit/scene_compose.c - scenes composed by named options: one order, one meaning, errors that name
  * them. */
 #include <halflight/compose.h>
+#include <halflight/render.h>
 #include <stdio.h>
 
 #include "scene_parts.h"
@@ -192,6 +193,73 @@ static void options_are_described(void **state) {
   assert_null(hl_option_choices("nothing"));
 }
 
+/* The brightest channel of a scene's picture of 64x64 pixels, at its largest. */
+static float brightest(const hl_scene *scene, float *least_alpha) {
+  static float pixels[64 * 64 * 4];
+  hl_renderer *renderer = NULL;
+  float most = 0;
+  assert_int_equal(hl_renderer_create(context, &renderer, NULL), HL_OK);
+  assert_int_equal(hl_renderer_render(renderer, scene, pixels, 4 * 64, NULL, NULL), HL_OK);
+  hl_renderer_destroy(renderer);
+  *least_alpha = 1;
+  for (int i = 0; i < 64 * 64; i++) {
+    for (int c = 0; c < 3; c++) most = fmaxf(most, pixels[4 * i + c]);
+    *least_alpha = fminf(*least_alpha, pixels[4 * i + 3]);
+  }
+  return most;
+}
+
+static void light_rigs_expose_bare_volumes(void **state) {
+  (void)state;
+  float alpha;
+  for (size_t n = 0; hl_light_rig_name(n) != NULL; n++) {
+    const hl_option options[] = {{"light-rig", hl_light_rig_name(n)}, {"size", "64x64"}};
+    hl_scene *made = compose(options, 2, HL_COMPOSE_BARE, NULL);
+    const hl_scene_description *d = hl_scene_describe(made);
+    assert_in_range(d->light_count, 1, HL_LIGHT_RIG_MOST);
+    for (size_t l = 0; l < d->light_count; l++) assert_int_equal(d->lights[l].frame, HL_LIGHT_FRAME_CAMERA);
+    assert_int_equal(d->sky.type, HL_SKY_GRADIENT);
+    float most = brightest(made, &alpha);
+    if (!(most > 0.5f && most < 1.5f)) fail_msg("%s: %g", options[0].value, (double)most);
+    hl_scene_release(made);
+  }
+  hl_error error = {0};
+  const hl_option both[] = {{"light-rig", "rim"}, {"light", "0,0"}};
+  assert_null(compose(both, 2, HL_COMPOSE_BARE, &error));
+  assert_non_null(strstr(error.message, "--light-rig and --light exclude each other"));
+}
+
+/* Behind a ball that hides the middle, all other pixels are the sky's one colour, with alpha 1. */
+static void a_sky_is_seen_as_background(void **state) {
+  (void)state;
+  static float pixels[64 * 64 * 4];
+  const hl_option options[] = {{"background", "sky"}, {"sky", "0.25,0.5,0.75"}, {"size", "64x64"}};
+  hl_scene *made = compose(options, 3, HL_COMPOSE_BARE, NULL);
+  hl_renderer *renderer = NULL;
+  assert_int_equal(hl_renderer_create(context, &renderer, NULL), HL_OK);
+  assert_int_equal(hl_renderer_render(renderer, made, pixels, 4 * 64, NULL, NULL), HL_OK);
+  for (int i = 0; i < 64 * 64; i++) assert_true(pixels[4 * i + 3] == 1);
+  for (int corner = 0; corner < 4; corner++) {
+    const float *pixel = pixels + 4 * (64 * 63 * (corner / 2) + 63 * (corner % 2));
+    for (int c = 0; c < 3; c++) assert_true(fabsf(pixel[c] - 0.25f * (float)(c + 1)) < 1e-6f);
+  }
+  hl_renderer_destroy(renderer);
+  hl_scene_release(made);
+  hl_error error = {0};
+  const hl_option none[] = {{"background", "sky"}, {"sky", "0"}};
+  assert_null(compose(none, 2, HL_COMPOSE_BARE, &error));
+  assert_non_null(strstr(error.message, "the scene has no sky"));
+}
+
+static void scattering_is_multiple(void **state) {
+  (void)state;
+  const hl_option options[] = {{"scattering", "0.9,0.8,0.7"}};
+  hl_scene *made = compose(options, 1, HL_COMPOSE_BARE, NULL);
+  const hl_scene_volume *volume = &hl_scene_describe(made)->volumes[0];
+  assert_true(volume->multiple_scattering && volume->albedo[0] == 0.9 && volume->albedo[2] == 0.7);
+  hl_scene_release(made);
+}
+
 static int begin(void **state) {
   (void)state;
   context = make_context();
@@ -206,9 +274,15 @@ static int end(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(no_option_changes_nothing), cmocka_unit_test(the_order_of_the_list_does_not_matter),
-      cmocka_unit_test(bare_scenes_follow),        cmocka_unit_test(errors_name_the_option),
-      cmocka_unit_test(options_are_described),     cmocka_unit_test(bare_label_maps_have_their_labels),
+      cmocka_unit_test(no_option_changes_nothing),
+      cmocka_unit_test(the_order_of_the_list_does_not_matter),
+      cmocka_unit_test(bare_scenes_follow),
+      cmocka_unit_test(errors_name_the_option),
+      cmocka_unit_test(options_are_described),
+      cmocka_unit_test(bare_label_maps_have_their_labels),
+      cmocka_unit_test(light_rigs_expose_bare_volumes),
+      cmocka_unit_test(a_sky_is_seen_as_background),
+      cmocka_unit_test(scattering_is_multiple),
   };
   return cmocka_run_group_tests(tests, begin, end);
 }

@@ -1,0 +1,125 @@
+/* guess/rigs.c - lights by name: what a photographer would set up around the object.
+ *
+ * In:  a name, and a scene with its light.
+ * Out: other lights and another sky, about as strong together as the light that the scene had. */
+#include <math.h>
+#include <string.h>
+
+#include "core/door.h"
+#include "core/error.h"
+#include "guess/for_volume.h"
+#include "guess/rigs.h"
+#include "scene/scene.h"
+#include "text/edit_distance.h"
+
+/* One light of a rig, seen from the camera. */
+typedef struct rig_light {
+  double azimuth_deg, elevation_deg; /* as of hl_light_direction_beside() */
+  double diameter_deg;               /* angular diameter */
+  double share;                      /* intensity over the scene's key light's */
+  double color[3];                   /* linear RGB */
+  bool shadows;
+} rig_light;
+
+typedef struct rig {
+  size_t count;
+  rig_light lights[HL_LIGHT_RIG_MOST];
+  double sky; /* the sky's strength over the scene's */
+} rig;
+
+#define WHITE \
+  { 1, 1, 1 }
+#define WARM \
+  { 1.06, 1, 0.92 }
+#define COOL \
+  { 0.90, 0.98, 1.12 }
+
+/* clang-format off */
+enum { STUDIO, RAKING, RIM, OVERCAST, RIGS };
+
+const hl_setting_choice hl_light_rig_choices[] = {
+    {"studio", STUDIO}, {"raking", RAKING}, {"rim", RIM}, {"overcast", OVERCAST}, {NULL, 0}};
+
+static const rig rigs[RIGS] = {
+    /* a large lamp at the upper left, a weak one from the right, and an edge light from behind */
+    [STUDIO] = {3, {{-42, 38, 24, 0.95, WARM, true},
+                   {  55, 5,  0, 0.16, COOL, false},
+                   { 150, 45, 8, 0.55, COOL, true}}, 0.75},
+    /* a small lamp that grazes the object from the left: relief, long shadows */
+    [RAKING] = {1, {{-82, 14,  4, 1.70, WARM, true}}, 0.40},
+    /* two lamps behind the object outline it; a weak one shows the front */
+    [RIM] = {3, {{-112, 30, 8, 1.70, COOL, true},
+                   { 118, 18, 8, 1.50, WARM, true},
+                   { -25, 35, 24, 0.16, WHITE, true}}, 0.22},
+    /* light from a cloudy sky alone: folds and hollows are darker, nothing casts an edge */
+    [OVERCAST] = {1, {{0, 80, 60, 0.30, WHITE, true}}, 2.2}};
+/* clang-format on */
+
+/* Strength of the sky over the key light's intensity, of scenes that had no sky: as bare volumes have it. */
+#define SKY_OVER_KEY 0.43
+
+const char *hl_light_rig_name(size_t index) { return index < RIGS ? hl_light_rig_choices[index].name : NULL; }
+
+static const rig *rig_named(const char *name) {
+  for (size_t n = 0; n < RIGS; n++)
+    if (strcmp(hl_light_rig_choices[n].name, name) == 0) return &rigs[n];
+  return NULL;
+}
+
+/* The intensity that shares are of: the strongest light's, or that of the light that a scene without any
+ * would get. */
+static double key_intensity(const hl_scene_description *description) {
+  hl_light key;
+  double strongest = 0;
+  for (size_t l = 0; l < description->light_count; l++)
+    strongest = fmax(strongest, description->lights[l].intensity);
+  hl_scene_key_light(&key);
+  return strongest > 0 ? strongest : key.intensity;
+}
+
+/* What all shares are multiplied by. A medium receives all lamps alike, from wherever they shine: where no
+ * volume is shaded, the lamps together are as strong as the key light. */
+static double share_factor(const rig *rig, const hl_scene_description *description) {
+  double sum = 0;
+  bool media = description->volume_count > 0 && description->mesh_count == 0;
+  for (size_t v = 0; v < description->volume_count; v++)
+    media &= description->volumes[v].shading == HL_SHADING_NONE;
+  for (size_t l = 0; l < rig->count; l++) sum += rig->lights[l].share;
+  return media && sum > 1 ? 1 / sum : 1;
+}
+
+hl_status hl_scene_light_rig(const char *rig, hl_scene_description *description,
+                             hl_light lights[HL_LIGHT_RIG_MOST], hl_error *error) {
+  HL_DOOR;
+  if (rig == NULL || description == NULL || lights == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_scene_light_rig: null rig, description or lights");
+  const struct rig *of = rig_named(rig);
+  if (of == NULL) {
+    const char *names[RIGS + 1] = {NULL};
+    char mend[200];
+    for (size_t n = 0; n < RIGS; n++) names[n] = hl_light_rig_choices[n].name;
+    hl_suggest_name(rig, names, mend, sizeof mend);
+    return hl_fail(error, HL_ERROR_ARGUMENT, "'%.80s' is no light rig: %s", rig, mend);
+  }
+  const double before = description->sky.strength, key = key_intensity(description);
+  const double factor = share_factor(of, description);
+  for (size_t l = 0; l < of->count; l++) {
+    const rig_light *row = &of->lights[l];
+    hl_light_defaults(&lights[l]);
+    lights[l].frame = HL_LIGHT_FRAME_CAMERA;
+    hl_light_direction_beside(row->azimuth_deg, row->elevation_deg, lights[l].direction);
+    lights[l].angular_diameter_deg = row->diameter_deg;
+    lights[l].intensity = row->share * factor * key;
+    memcpy(lights[l].color, row->color, sizeof row->color);
+    if (!row->shadows) lights[l].shadows = HL_SHADOWS_OFF;
+  }
+  description->lights = lights;
+  description->light_count = of->count;
+  if (description->sky.type == HL_SKY_NONE) {
+    hl_scene_choose_sky(of->sky * SKY_OVER_KEY * key, description);
+    return HL_OK;
+  }
+  description->sky.strength = of->sky * before;
+  for (int c = 0; c < 3; c++) description->ambient[c] = BESIDE_SKY * of->sky * before;
+  return HL_OK;
+}
