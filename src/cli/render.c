@@ -278,7 +278,7 @@ static void job_close(render_job *job, int exit_code) {
   free(job->output);
 }
 
-static int run_render(const cli_value *values, char **operands) {
+static int render_one(const cli_value *values, char **operands) {
   if (values[RENDER_VIEWS].given && !render_is_series(values, operands))
     return render_views(values, operands);
   if (render_is_series(values, operands)) {
@@ -302,6 +302,11 @@ static int run_render(const cli_value *values, char **operands) {
   if (exit_code == EXIT_CODE_OK && picture) exit_code = job_report(&job);
   job_close(&job, exit_code);
   return exit_code;
+}
+
+static int run_render(const cli_value *values, char **operands) {
+  if (render_are_scenes(operands)) return render_scenes(values, operands, render_one);
+  return render_one(values, operands);
 }
 
 const cli_command render_command = {

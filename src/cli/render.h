@@ -109,6 +109,15 @@ bool render_is_series(const cli_value *values, char **operands);
 int render_series(const cli_value *values, char **operands);
 /* --views: pictures of several sides. */
 int render_views(const cli_value *values, char **operands);
+
+/* Whether the operand is a pattern of scenes' names, as 'fig*.json'. */
+bool render_are_scenes(char **operands);
+
+/* Makes the picture of one scene; returns the exit code. */
+typedef int render_one_fn(const cli_value *values, char **operands);
+
+/* Renders each scene that the pattern finds; returns the exit code. */
+int render_scenes(const cli_value *values, char **operands, render_one_fn *render_one);
 /* Whether one of the operands stands for several files. */
 bool render_has_pattern(char **operands);
 
