@@ -4,10 +4,10 @@
  * Out: hl_bricks whose field has continuous second derivatives, whatever the arrangement of levels is.
  *
  * The coefficient i of level l is active if the cells i - 2 .. i + 1 of that level, along all axes, lie in
- * bricks of level l or finer, or where there is no brick. An active coefficient is the source's own. Any other
- * is the subdivided coefficients of level l + 1 (truncated hierarchical B-splines, see bricks.h). The field is
- * then the coarser level's field plus a sum of B-splines of level l, each of which is zero where a coarser
- * brick lies: so no border shows. */
+ * bricks of level l or finer, or where there is no brick. An active coefficient is the source's own. Any
+ * other is the subdivided coefficients of level l + 1 (truncated hierarchical B-splines, see bricks.h). The
+ * field is then the coarser level's field plus a sum of B-splines of level l, each of which is zero where a
+ * coarser brick lies: so no border shows. */
 #ifndef HL_BRICKS_BUILD_H
 #define HL_BRICKS_BUILD_H
 
@@ -25,9 +25,9 @@ typedef struct hl_bricks_source {
   int shift;           /* side = 2^shift cells; 2 to 8 */
   int levels;          /* 1 .. BRICK_LEVELS_LIMIT */
   size_t dimension[3]; /* lattice points of level 0 along x, y, z */
-  float outside;       /* the value where there is no leaf. Leaves beside such blocks are not changed there, so
-                        * the source's own coefficients must be `outside` at their borders, unless the field is to
-                        * end there in a step */
+  float outside; /* the value where there is no leaf. Leaves beside such blocks are not changed there, so
+                  * the source's own coefficients must be `outside` at their borders, unless the field is to
+                  * end there in a step */
   /* Gives the source's own coefficients of the points first .. first + count - 1 of a level: out is
    * [count[2]][count[1]][count[0]], x fastest. first may be below 0, and points may lie beyond the dimension.
    * Bricks ask for coefficients of their own level, and, beside coarser bricks, for those of coarser levels
@@ -40,12 +40,12 @@ typedef struct hl_bricks_source {
 typedef enum hl_bricks_choice { HL_BRICKS_NOTHING, HL_BRICKS_LEAF, HL_BRICKS_SPLIT } hl_bricks_choice;
 
 /* Lists leaves by descending from the bricks of the coarsest level: `choose` is called for a brick and says
- * whether it is a leaf, is split into the eight bricks of the next finer level, or is left out. A brick of level
- * 0 that is to be split is a leaf. source: fill may be null. *leaves is owned by the caller (hl_release); in
- * the order of the descent. */
+ * whether it is a leaf, is split into the eight bricks of the next finer level, or is left out. A brick of
+ * level 0 that is to be split is a leaf. source: fill may be null. *leaves is owned by the caller
+ * (hl_release); in the order of the descent. */
 hl_status hl_bricks_choose(hl_context *context, const hl_bricks_source *source,
-                           hl_bricks_choice (*choose)(void *data, int level, const size_t brick[3]), void *data,
-                           hl_bricks_leaf **leaves, size_t *count, hl_error *error);
+                           hl_bricks_choice (*choose)(void *data, int level, const size_t brick[3]),
+                           void *data, hl_bricks_leaf **leaves, size_t *count, hl_error *error);
 
 /* Makes the bricks of the leaves. Leaves may lie partly beyond the dimension. Two leaves that cover the same
  * place are refused. A brick whose coefficients are all the same number becomes a constant of the directory.
@@ -64,9 +64,10 @@ static inline size_t hl_bricks_points(size_t dimension, int level) {
 
 /* The field as one dense grid of coefficients of a level. Where bricks are coarser, their coefficients are
  * subdivided, and the dense grid's field is the bricks' field exactly. Where bricks are finer, a coefficient
- * is the field's value at its point. size: hl_bricks_points() of each axis. voxels: [size[2]][size[1]][size[0]],
- * of the caller. Stops early if the pool is cancelled. */
-void hl_bricks_to_dense(hl_pool *pool, const hl_bricks *bricks, int level, const size_t size[3], float *voxels);
+ * is the field's value at its point. size: hl_bricks_points() of each axis. voxels:
+ * [size[2]][size[1]][size[0]], of the caller. Stops early if the pool is cancelled. */
+void hl_bricks_to_dense(hl_pool *pool, const hl_bricks *bricks, int level, const size_t size[3],
+                        float *voxels);
 
 /* Allocates *voxels and calls hl_bricks_to_dense(). *voxels is owned by the caller (hl_release). subject:
  * starts error lines. */

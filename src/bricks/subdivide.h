@@ -1,0 +1,32 @@
+/* bricks/subdivide.h - the coefficients of a level from those of the next coarser level: the same field on a
+ * lattice twice as fine.
+ *
+ * Along each axis, with the coarse coefficients d: coefficient 2j is (d[j-1] + 6 d[j] + d[j+1]) / 8, and 2j +
+ * 1 is (d[j] + d[j+1]) / 2 (J. Lane, R. Riesenfeld, A theoretical development for the computer generation and
+ * display of piecewise polynomial surfaces, 1980). */
+#ifndef HL_BRICKS_SUBDIVIDE_H
+#define HL_BRICKS_SUBDIVIDE_H
+
+#include <stddef.h>
+
+/* A box of lattice points of one level: first .. first + count - 1 along x, y, z. */
+typedef struct hl_lattice_box {
+  ptrdiff_t first[3];
+  size_t count[3];
+} hl_lattice_box;
+
+static inline size_t hl_lattice_points(const hl_lattice_box *box) {
+  return box->count[0] * box->count[1] * box->count[2];
+}
+
+/* The points of the next coarser level on which a box depends. */
+hl_lattice_box hl_subdivision_source(const hl_lattice_box *box);
+
+/* The floats of scratch memory that hl_subdivide() needs for a box. */
+size_t hl_subdivision_scratch(const hl_lattice_box *box);
+
+/* Fills a box. coarse: the coefficients of hl_subdivision_source(box). Boxes are stored [z][y][x]. A constant
+ * stays the same number. */
+void hl_subdivide(const hl_lattice_box *box, const float *coarse, float *scratch, float *fine);
+
+#endif
