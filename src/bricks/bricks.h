@@ -12,10 +12,11 @@
  * C. Giannelli, B. Juettler, H. Speleers, THB-splines, 2012).
  *
  * A volume whose field is bricks has voxels, too: the grid that its box, its framing and saved files follow.
- * Voxel (0,0,0) stands at the lattice coordinates `origin`, and voxels are one apart. The box reaches from half
- * a voxel before the first voxel to half a voxel behind the last one. So cells whose corners are the lattice
- * points have an origin of 1/2 and as many voxels as cells. A lattice that begins before the box, as a sparse
- * file's may, has an origin of some whole number. Beyond the directory's faces the values at the faces go on.
+ * Voxel (0,0,0) stands at the lattice coordinates `origin`, and voxels are one apart. The box reaches from
+ * half a voxel before the first voxel to half a voxel behind the last one. So cells whose corners are the
+ * lattice points have an origin of 1/2 and as many voxels as cells. A lattice that begins before the box, as
+ * a sparse file's may, has an origin of some whole number. Beyond the directory's faces the values at the
+ * faces go on.
  *
  * In:  who builds a field (meshes of cells, adaptive grids, particles, sparse files) makes the bricks.
  * Out: who samples a field (grid/, fill/, the reference) looks a cell's brick up in the directory. */
@@ -39,10 +40,10 @@ typedef struct hl_brick_entry {
 } hl_brick_entry;
 
 typedef struct hl_bricks {
-  int shift;                /* side = 2^shift cells */
-  int levels;               /* 1 .. BRICK_LEVELS_LIMIT */
-  size_t dimension[3];      /* lattice points of level 0 along x, y, z, as a dense volume's voxels */
-  double origin[3];         /* lattice coordinates of the volume's voxel (0,0,0) along x, y, z; not negative */
+  int shift;           /* side = 2^shift cells */
+  int levels;          /* 1 .. BRICK_LEVELS_LIMIT */
+  size_t dimension[3]; /* lattice points of level 0 along x, y, z, as a dense volume's voxels */
+  double origin[3];    /* lattice coordinates of the volume's voxel (0,0,0) along x, y, z; not negative */
   size_t directory_size[3]; /* blocks of level 0 along x, y, z: enough that all points lie in one */
   hl_brick_entry
       *directory; /* owned; [z][y][x] blocks of level 0; a brick of level l fills 2^l entries an axis */

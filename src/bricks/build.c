@@ -11,7 +11,12 @@
 #include "core/context.h"
 #include "core/memory.h"
 
-enum { SHIFT_LEAST = 2, SHIFT_MOST = 8, BLOCKS_MOST = 6 /* blocks along an axis around a box of points */ };
+enum {
+  SHIFT_LEAST = 2,
+  SHIFT_MOST = 8,
+  ACTIVE_CELLS = 4, /* cells along an axis on which a coefficient depends: i - 2 .. i + 1 */
+  CELLS_BEFORE = 2
+};
 
 typedef struct builder {
   const hl_bricks_source *source;
@@ -30,9 +35,6 @@ static size_t brick_points(int shift) {
 
 /* ---- which coefficients are active ---- */
 
-/* The block of a level in which a cell lies. */
-static ptrdiff_t block_of(ptrdiff_t cell, int shift) { return cell >> shift; }
-
 /* Whether a brick that is coarser than the level covers a block of that level. */
 static bool is_coarser(const hl_bricks *bricks, int level, const ptrdiff_t block[3]) {
   size_t at[3];
@@ -45,48 +47,81 @@ static bool is_coarser(const hl_bricks *bricks, int level, const ptrdiff_t block
   return bricks->directory[(at[2] * n[1] + at[1]) * n[0] + at[0]].level > level;
 }
 
-/* The blocks around a box of points, and which of them coarser bricks cover. */
-typedef struct coarse_blocks {
-  ptrdiff_t first[3];
-  int count[3];
-  bool is_coarser[BLOCKS_MOST][BLOCKS_MOST][BLOCKS_MOST];
-  bool any, all;
-} coarse_blocks;
-
-static void find_coarse_blocks(const hl_bricks *bricks, int level, const hl_lattice_box *box,
-                               coarse_blocks *blocks) {
+/* The cells on which it depends whether a box of coefficients is active. */
+static hl_lattice_box cells_of(const hl_lattice_box *box) {
+  hl_lattice_box cells;
   for (int axis = 0; axis < 3; axis++) {
-    ptrdiff_t last = box->first[axis] + (ptrdiff_t)box->count[axis] - 1 + 1;
-    blocks->first[axis] = block_of(box->first[axis] - 2, bricks->shift);
-    blocks->count[axis] = (int)(block_of(last, bricks->shift) - blocks->first[axis]) + 1;
+    cells.first[axis] = box->first[axis] - CELLS_BEFORE;
+    cells.count[axis] = box->count[axis] + ACTIVE_CELLS - 1;
   }
-  blocks->any = false;
-  blocks->all = true;
-  for (int k = 0; k < blocks->count[2]; k++)
-    for (int j = 0; j < blocks->count[1]; j++)
-      for (int i = 0; i < blocks->count[0]; i++) {
-        bool coarser = is_coarser(
-            bricks, level, (ptrdiff_t[3]){blocks->first[0] + i, blocks->first[1] + j, blocks->first[2] + k});
-        blocks->is_coarser[k][j][i] = coarser;
-        blocks->any = blocks->any || coarser;
-        blocks->all = blocks->all && coarser;
-      }
+  return cells;
 }
 
-static bool is_active(const coarse_blocks *blocks, int shift, const ptrdiff_t point[3]) {
-  int low[3], high[3];
+/* Clears the cells of a box that lie in one block. */
+static void clear_block(const hl_lattice_box *cells, const ptrdiff_t block[3], int shift,
+                        unsigned char *own) {
+  size_t low[3], high[3];
   for (int axis = 0; axis < 3; axis++) {
-    low[axis] = (int)(block_of(point[axis] - 2, shift) - blocks->first[axis]);
-    high[axis] = (int)(block_of(point[axis] + 1, shift) - blocks->first[axis]);
+    ptrdiff_t first = block[axis] * ((ptrdiff_t)1 << shift) - cells->first[axis],
+              end = first + ((ptrdiff_t)1 << shift);
+    low[axis] = first > 0 ? (size_t)first : 0;
+    high[axis] = (size_t)end < cells->count[axis] ? (size_t)end : cells->count[axis];
   }
-  for (int k = low[2]; k <= high[2]; k++)
-    for (int j = low[1]; j <= high[1]; j++)
-      for (int i = low[0]; i <= high[0]; i++)
-        if (blocks->is_coarser[k][j][i]) return false;
-  return true;
+  for (size_t k = low[2]; k < high[2]; k++)
+    for (size_t j = low[1]; j < high[1]; j++)
+      memset(own + (k * cells->count[1] + j) * cells->count[0] + low[0], 0, high[0] - low[0]);
+}
+
+/* Clears the cells that coarser bricks cover. */
+static void clear_coarser(const hl_bricks *bricks, int level, const hl_lattice_box *cells,
+                          unsigned char *own) {
+  ptrdiff_t first[3], last[3], block[3];
+  for (int axis = 0; axis < 3; axis++) {
+    first[axis] = cells->first[axis] >> bricks->shift;
+    last[axis] = (cells->first[axis] + (ptrdiff_t)cells->count[axis] - 1) >> bricks->shift;
+  }
+  for (block[2] = first[2]; block[2] <= last[2]; block[2]++)
+    for (block[1] = first[1]; block[1] <= last[1]; block[1]++)
+      for (block[0] = first[0]; block[0] <= last[0]; block[0]++)
+        if (is_coarser(bricks, level, block)) clear_block(cells, block, bricks->shift, own);
+}
+
+/* Turns cells into coefficients along one axis: a coefficient is active if its four cells are set. Neighbours
+ * along the axis are `step` apart, and the result overwrites the cells. */
+static void combine(unsigned char *own, size_t count, size_t step) {
+  for (size_t n = 0; n < count; n++) own[n] = own[n] & own[n + step] & own[n + 2 * step] & own[n + 3 * step];
+}
+
+/* Which coefficients of a box are active. own: has room for the box's cells. Coefficient (i, j, k) of the box
+ * is at own[(k * cells.count[1] + j) * cells.count[0] + i]. */
+typedef enum active_part { ACTIVE_NONE, ACTIVE_SOME, ACTIVE_ALL } active_part;
+
+static active_part find_active(const builder *b, int level, const hl_lattice_box *box, unsigned char *own) {
+  const hl_bricks_source *source = b->source;
+  const hl_lattice_box cells = cells_of(box);
+  const size_t *m = cells.count, *n = box->count;
+  size_t count = hl_lattice_points(&cells), row = m[0], slice = m[0] * m[1], active = 0;
+  if (level + 1 == source->levels) return ACTIVE_ALL;
+  if (source->cover != NULL) source->cover(source->data, level, cells.first, cells.count, own);
+  else memset(own, 1, count);
+  clear_coarser(b->bricks, level, &cells, own);
+  if (memchr(own, 0, count) == NULL) return ACTIVE_ALL;
+  combine(own, count - 3, 1);
+  combine(own, count - 3 - 3 * row, row);
+  combine(own, count - 3 - 3 * row - 3 * slice, slice);
+  for (size_t k = 0; k < n[2]; k++)
+    for (size_t j = 0; j < n[1]; j++)
+      for (size_t i = 0; i < n[0]; i++) active += own[k * slice + j * row + i];
+  return active == 0 ? ACTIVE_NONE : active == hl_lattice_points(box) ? ACTIVE_ALL : ACTIVE_SOME;
 }
 
 /* ---- assembling ---- */
+
+/* The floats of scratch memory that hold the bytes of find_active(). */
+static size_t mask_floats(const hl_lattice_box *box) {
+  const hl_lattice_box cells = cells_of(box);
+  return hl_lattice_points(&cells) / sizeof(float) + 1;
+}
 
 /* The scratch floats that assemble() takes for a box, at most. */
 static size_t scratch_of(hl_lattice_box box, int levels) {
@@ -95,7 +130,8 @@ static size_t scratch_of(hl_lattice_box box, int levels) {
     for (int axis = 0; axis < 3; axis++) box.first[axis] &= ~(ptrdiff_t)1; /* even: needs the most */
     for (int axis = 0; axis < 3; axis++) box.count[axis] |= 1;
     hl_lattice_box coarse = hl_subdivision_source(&box);
-    sum += hl_lattice_points(&coarse) + hl_lattice_points(&box) + hl_subdivision_scratch(&box);
+    sum += mask_floats(&box) + hl_lattice_points(&coarse) + hl_lattice_points(&box) +
+           hl_subdivision_scratch(&box);
     box = coarse;
   }
   return sum;
@@ -104,27 +140,25 @@ static size_t scratch_of(hl_lattice_box box, int levels) {
 /* Fills a box of coefficients of a level. */
 static void assemble(const builder *b, int level, const hl_lattice_box *box, float *scratch, float *out) {
   const hl_bricks_source *source = b->source;
-  coarse_blocks blocks = {.any = false};
-  if (level + 1 < source->levels) find_coarse_blocks(b->bricks, level, box, &blocks);
-  if (!blocks.any) {
+  const hl_lattice_box cells = cells_of(box), coarse_box = hl_subdivision_source(box);
+  unsigned char *own = (unsigned char *)scratch;
+  scratch += mask_floats(box);
+  active_part part = find_active(b, level, box, own);
+  if (part == ACTIVE_ALL) {
     source->fill(source->data, level, box->first, box->count, out);
     return;
   }
-  hl_lattice_box coarse_box = hl_subdivision_source(box);
   float *coarse = scratch, *subdivided = coarse + hl_lattice_points(&coarse_box),
         *further = subdivided + hl_lattice_points(box);
   assemble(b, level + 1, &coarse_box, further, coarse);
-  hl_subdivide(box, coarse, further, blocks.all ? out : subdivided);
-  if (blocks.all) return;
+  hl_subdivide(box, coarse, further, part == ACTIVE_NONE ? out : subdivided);
+  if (part == ACTIVE_NONE) return;
   source->fill(source->data, level, box->first, box->count, out);
   size_t n = 0;
   for (size_t k = 0; k < box->count[2]; k++)
     for (size_t j = 0; j < box->count[1]; j++)
-      for (size_t i = 0; i < box->count[0]; i++, n++) {
-        const ptrdiff_t point[3] = {box->first[0] + (ptrdiff_t)i, box->first[1] + (ptrdiff_t)j,
-                                    box->first[2] + (ptrdiff_t)k};
-        if (!is_active(&blocks, b->bricks->shift, point)) out[n] = subdivided[n];
-      }
+      for (size_t i = 0; i < box->count[0]; i++, n++)
+        if (!own[(k * cells.count[1] + j) * cells.count[0] + i]) out[n] = subdivided[n];
 }
 
 static hl_lattice_box box_of(const hl_bricks_leaf *leaf, int shift) {

@@ -33,7 +33,15 @@ typedef struct hl_bricks_source {
    * Bricks ask for coefficients of their own level, and, beside coarser bricks, for those of coarser levels
    * around their borders. Called from all threads: must give the same number for a point in every call. */
   void (*fill)(void *data, int level, const ptrdiff_t first[3], const size_t count[3], float *out);
-  void *data; /* for fill */
+  /* May be null. Narrows the places where a level has coefficients of its own, for sources whose data do not
+   * end at the borders of bricks: sets covered[n], [count[2]][count[1]][count[0]], to 1 for each cell first
+   * .. first
+   * + count - 1 of a level for which there are data of this level or a finer one, else to 0. A coefficient is
+   * then active only if its cells i - 2 .. i + 1 are all covered. The coarsest level is not asked. Called
+   * from all threads. */
+  void (*cover)(void *data, int level, const ptrdiff_t first[3], const size_t count[3],
+                unsigned char *covered);
+  void *data; /* for fill and cover */
 } hl_bricks_source;
 
 /* Tells for a brick of a level, in hl_bricks_choose(), what becomes of it. */

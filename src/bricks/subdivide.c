@@ -19,13 +19,19 @@ size_t hl_subdivision_scratch(const hl_lattice_box *box) {
   return box->count[0] * coarse.count[2] * (coarse.count[1] + box->count[1]);
 }
 
+/* other - d, or 0 where the other coefficient is not a number. */
+static inline float difference(float other, float d) {
+  float change = other - d;
+  return change == change || d != d ? change : 0;
+}
+
 /* The coefficient i along an axis. from: the coarse coefficients, of which the first is `first`; step: from
  * one to the next. Written with differences, so that equal coefficients give the same number. */
 static inline float along(const float *from, ptrdiff_t first, size_t step, ptrdiff_t i) {
   const float *d = from + (size_t)(half(i) - first) * step;
-  if (i & 1) return 0.5f * (d[0] + d[step]);
+  if (i & 1) return d[0] == d[0] ? d[0] + 0.5f * difference(d[step], d[0]) : d[step];
   const float *before = d - step;
-  return d[0] + 0.125f * ((before[0] - d[0]) + (d[step] - d[0]));
+  return d[0] + 0.125f * (difference(before[0], d[0]) + difference(d[step], d[0]));
 }
 
 void hl_subdivide(const hl_lattice_box *box, const float *coarse, float *scratch, float *fine) {

@@ -3,7 +3,9 @@
  *
  * Along each axis, with the coarse coefficients d: coefficient 2j is (d[j-1] + 6 d[j] + d[j+1]) / 8, and 2j +
  * 1 is (d[j] + d[j+1]) / 2 (J. Lane, R. Riesenfeld, A theoretical development for the computer generation and
- * display of piecewise polynomial surfaces, 1980). */
+ * display of piecewise polynomial surfaces, 1980). Coefficients that are not numbers stand for places without
+ * data: they are left out of the sums, and where all of a sum is left out, the result is not a number either.
+ */
 #ifndef HL_BRICKS_SUBDIVIDE_H
 #define HL_BRICKS_SUBDIVIDE_H
 
