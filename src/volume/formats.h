@@ -16,6 +16,7 @@
   HL_FORMAT(mrc)       \
   HL_FORMAT(nanovdb)   \
   HL_FORMAT(openvdb)   \
+  HL_FORMAT(amrex)     \
   HL_FORMAT(zarr)      \
   HL_FORMAT(dicom)     \
   HL_FORMAT(slices)    \

@@ -1,0 +1,320 @@
+/* bricks/patches.c - see patches.h.
+ *
+ * Each level has a table of its blocks, by a hash of their coordinates. */
+#include "bricks/patches.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+
+enum { BLOCK_SHIFT = 3, BLOCK = 1 << BLOCK_SHIFT, BLOCK_CELLS = BLOCK * BLOCK * BLOCK, SHIFT = 4 };
+
+typedef struct cell_block {
+  uint32_t at[3];           /* the block's coordinates */
+  float value[BLOCK_CELLS]; /* [z][y][x]; NaN where there is no value */
+} cell_block;
+
+/* The blocks of one level. */
+typedef struct block_table {
+  cell_block **blocks; /* owned, each; [size]; null for a free place */
+  size_t size, count;  /* size: a power of two, or 0 */
+} block_table;
+
+struct hl_patches {
+  hl_context *context;
+  int levels;
+  size_t domain[3]; /* cells of level 0 */
+  block_table table[BRICK_LEVELS_LIMIT];
+};
+
+hl_status hl_patches_create(hl_context *context, int levels, const size_t domain[3], hl_patches **patches,
+                            hl_error *error) {
+  hl_patches *made = hl_allocate_zeroed(context, 1, sizeof *made);
+  *patches = NULL;
+  if (made == NULL) return hl_fail_memory(error, sizeof *made, "the patches of an adaptive grid");
+  made->context = context;
+  made->levels = levels;
+  memcpy(made->domain, domain, sizeof made->domain);
+  *patches = made;
+  return HL_OK;
+}
+
+void hl_patches_destroy(hl_patches *patches) {
+  if (patches == NULL) return;
+  for (int level = 0; level < BRICK_LEVELS_LIMIT; level++) {
+    block_table *table = &patches->table[level];
+    for (size_t n = 0; n < table->size; n++) hl_release(patches->context, table->blocks[n]);
+    hl_release(patches->context, table->blocks);
+  }
+  hl_release(patches->context, patches);
+}
+
+/* ---- blocks ---- */
+
+/* The place of a block in a table: where it is, or where it would be put. */
+static size_t place_of(const block_table *table, const uint32_t at[3]) {
+  uint64_t hash = at[0] * 0x9e3779b97f4a7c15u + at[1] * 0xbf58476d1ce4e5b9u + at[2] * 0x94d049bb133111ebu;
+  hash ^= hash >> 29;
+  hash *= 0xbf58476d1ce4e5b9u;
+  for (size_t place = (hash >> 32) & (table->size - 1);; place = (place + 1) & (table->size - 1)) {
+    const cell_block *block = table->blocks[place];
+    if (block == NULL || memcmp(block->at, at, sizeof block->at) == 0) return place;
+  }
+}
+
+static const cell_block *find_block(const block_table *table, const uint32_t at[3]) {
+  return table->size > 0 ? table->blocks[place_of(table, at)] : NULL;
+}
+
+/* Doubles a table. */
+static bool grow_table(hl_context *context, block_table *table) {
+  block_table larger = {.size = table->size > 0 ? 2 * table->size : 64, .count = table->count};
+  larger.blocks = hl_allocate_zeroed(context, larger.size, sizeof(cell_block *));
+  if (larger.blocks == NULL) return false;
+  for (size_t n = 0; n < table->size; n++)
+    if (table->blocks[n] != NULL) larger.blocks[place_of(&larger, table->blocks[n]->at)] = table->blocks[n];
+  hl_release(context, table->blocks);
+  *table = larger;
+  return true;
+}
+
+/* The block at a place, made if there is none; null without memory. */
+static cell_block *make_block(hl_patches *patches, int level, const uint32_t at[3]) {
+  block_table *table = &patches->table[level];
+  if (2 * (table->count + 1) > table->size && !grow_table(patches->context, table)) return NULL;
+  size_t place = place_of(table, at);
+  if (table->blocks[place] != NULL) return table->blocks[place];
+  cell_block *block = hl_allocate(patches->context, 1, sizeof *block);
+  if (block == NULL) return NULL;
+  memcpy(block->at, at, sizeof block->at);
+  for (int n = 0; n < BLOCK_CELLS; n++) block->value[n] = NAN;
+  table->blocks[place] = block;
+  table->count++;
+  return block;
+}
+
+static size_t cell_in_block(size_t x, size_t y, size_t z) {
+  return ((z & (BLOCK - 1)) * BLOCK + (y & (BLOCK - 1))) * BLOCK + (x & (BLOCK - 1));
+}
+
+/* ---- adding patches ---- */
+
+/* Sets the cells of a patch that lie in one block. */
+static void set_cells(cell_block *block, const size_t first[3], const size_t count[3], const float *values) {
+  size_t low[3], high[3], at[3];
+  for (int axis = 0; axis < 3; axis++) {
+    size_t begin = (size_t)block->at[axis] * BLOCK, end = first[axis] + count[axis];
+    low[axis] = begin > first[axis] ? begin : first[axis];
+    high[axis] = begin + BLOCK < end ? begin + BLOCK : end;
+  }
+  for (at[2] = low[2]; at[2] < high[2]; at[2]++)
+    for (at[1] = low[1]; at[1] < high[1]; at[1]++)
+      for (at[0] = low[0]; at[0] < high[0]; at[0]++) {
+        float value =
+            values[((at[2] - first[2]) * count[1] + at[1] - first[1]) * count[0] + at[0] - first[0]];
+        if (isfinite(value)) block->value[cell_in_block(at[0], at[1], at[2])] = value;
+      }
+}
+
+hl_status hl_patches_add(hl_patches *patches, int level, const size_t first[3], const size_t count[3],
+                         const float *values, const char *subject, hl_error *error) {
+  bool inside = level >= 0 && level < patches->levels;
+  for (int axis = 0; axis < 3 && inside; axis++) {
+    size_t cells = patches->domain[axis] >> level;
+    inside = count[axis] > 0 && count[axis] <= cells && first[axis] <= cells - count[axis];
+  }
+  if (!inside)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: a patch of level %d of the lattice lies beyond the domain",
+                   subject, level);
+  uint32_t at[3], low[3], high[3];
+  for (int axis = 0; axis < 3; axis++) {
+    low[axis] = (uint32_t)(first[axis] >> BLOCK_SHIFT);
+    high[axis] = (uint32_t)((first[axis] + count[axis] - 1) >> BLOCK_SHIFT);
+  }
+  for (at[2] = low[2]; at[2] <= high[2]; at[2]++)
+    for (at[1] = low[1]; at[1] <= high[1]; at[1]++)
+      for (at[0] = low[0]; at[0] <= high[0]; at[0]++) {
+        cell_block *block = make_block(patches, level, at);
+        if (block == NULL) return hl_fail_memory(error, sizeof *block, subject);
+        set_cells(block, first, count, values);
+      }
+  return HL_OK;
+}
+
+/* ---- means of finer cells ---- */
+
+/* The mean of the eight finer cells with a corner at (x, y, z) of a block, where all of them have values. */
+static bool mean_of_eight(const cell_block *fine, size_t x, size_t y, size_t z, float *mean) {
+  double sum = 0;
+  for (size_t n = 0; n < 8; n++)
+    sum += (double)fine->value[cell_in_block(x + (n & 1), y + (n >> 1 & 1), z + (n >> 2))];
+  *mean = (float)(sum / 8);
+  return sum == sum;
+}
+
+/* Writes the means of a block of the next finer level. */
+static hl_status average_block(hl_patches *patches, int level, const cell_block *fine, const char *subject,
+                               hl_error *error) {
+  const uint32_t at[3] = {fine->at[0] / 2, fine->at[1] / 2, fine->at[2] / 2};
+  cell_block *block = NULL;
+  for (size_t z = 0; z < BLOCK; z += 2)
+    for (size_t y = 0; y < BLOCK; y += 2)
+      for (size_t x = 0; x < BLOCK; x += 2) {
+        float mean;
+        if (!mean_of_eight(fine, x, y, z, &mean)) continue;
+        if (block == NULL) block = make_block(patches, level, at);
+        if (block == NULL) return hl_fail_memory(error, sizeof *block, subject);
+        size_t half = BLOCK / 2;
+        block->value[cell_in_block((fine->at[0] & 1) * half + x / 2, (fine->at[1] & 1) * half + y / 2,
+                                   (fine->at[2] & 1) * half + z / 2)] = mean;
+      }
+  return HL_OK;
+}
+
+static hl_status average(hl_patches *patches, const char *subject, hl_error *error) {
+  hl_status status = HL_OK;
+  for (int level = 1; level < patches->levels; level++) {
+    const block_table *fine = &patches->table[level - 1];
+    for (size_t n = 0; n < fine->size && status == HL_OK; n++)
+      if (fine->blocks[n] != NULL) status = average_block(patches, level, fine->blocks[n], subject, error);
+  }
+  return status;
+}
+
+/* ---- the source of the field ---- */
+
+/* The nearest cell of the domain. */
+static size_t clamp_cell(const hl_patches *patches, int level, int axis, ptrdiff_t cell) {
+  size_t cells = patches->domain[axis] >> level;
+  return cell < 0 ? 0 : (size_t)cell < cells ? (size_t)cell : cells - 1;
+}
+
+/* The block that was looked up last, for neighbours that lie in the same. */
+typedef struct last_block {
+  uint32_t at[3];
+  const cell_block *block;
+  bool known;
+} last_block;
+
+static float cell_value(const hl_patches *patches, int level, const size_t cell[3], last_block *last) {
+  const uint32_t at[3] = {(uint32_t)(cell[0] >> BLOCK_SHIFT), (uint32_t)(cell[1] >> BLOCK_SHIFT),
+                          (uint32_t)(cell[2] >> BLOCK_SHIFT)};
+  if (!last->known || memcmp(last->at, at, sizeof at) != 0) {
+    memcpy(last->at, at, sizeof at);
+    last->block = find_block(&patches->table[level], at);
+    last->known = true;
+  }
+  return last->block != NULL ? last->block->value[cell_in_block(cell[0], cell[1], cell[2])] : NAN;
+}
+
+/* What a corner's coefficient takes of the four cells along an axis around it. The mean of the middle two
+ * would blur: means over cells, means at corners and the cubic B-spline have the variances 1/12, 1/4 and 1/3
+ * of a cell's edge squared. The weights -1/6, 2/3, 2/3, -1/6 have the variance -5/12, so that the field is
+ * the source's to the fourth order of the edge (derived). */
+enum { AROUND = 4 };
+static const double around[AROUND] = {-1.0 / 6, 2.0 / 3, 2.0 / 3, -1.0 / 6};
+
+/* The coefficient of a corner. It is kept within the least and the greatest of the eight cells that meet
+ * there, so that no shock makes values that no cell has. */
+static float corner_value(const hl_patches *patches, int level, const ptrdiff_t corner[3], last_block *last) {
+  double sum = 0, nearest = 0;
+  float least = INFINITY, greatest = -INFINITY;
+  int count = 0;
+  for (int k = 0; k < AROUND; k++)
+    for (int j = 0; j < AROUND; j++)
+      for (int i = 0; i < AROUND; i++) {
+        const size_t cell[3] = {clamp_cell(patches, level, 0, corner[0] - 2 + i),
+                                clamp_cell(patches, level, 1, corner[1] - 2 + j),
+                                clamp_cell(patches, level, 2, corner[2] - 2 + k)};
+        float value = cell_value(patches, level, cell, last);
+        sum += around[i] * around[j] * around[k] * (double)value;
+        bool meets = i >> 1 != (i & 1) && j >> 1 != (j & 1) && k >> 1 != (k & 1);
+        if (!meets || !(value == value)) continue;
+        nearest += (double)value;
+        least = value < least ? value : least;
+        greatest = value > greatest ? value : greatest;
+        count++;
+      }
+  if (count == 0) return NAN;
+  if (!(sum == sum)) sum = nearest / count; /* cells without values are near */
+  return sum < (double)least ? least : sum > (double)greatest ? greatest : (float)sum;
+}
+
+static void fill(void *data, int level, const ptrdiff_t first[3], const size_t count[3], float *out) {
+  const hl_patches *patches = data;
+  last_block last = {.known = false};
+  size_t n = 0;
+  for (size_t k = 0; k < count[2]; k++)
+    for (size_t j = 0; j < count[1]; j++)
+      for (size_t i = 0; i < count[0]; i++) {
+        const ptrdiff_t corner[3] = {first[0] + (ptrdiff_t)i, first[1] + (ptrdiff_t)j,
+                                     first[2] + (ptrdiff_t)k};
+        out[n++] = corner_value(patches, level, corner, &last);
+      }
+}
+
+static void cover(void *data, int level, const ptrdiff_t first[3], const size_t count[3],
+                  unsigned char *covered) {
+  const hl_patches *patches = data;
+  last_block last = {.known = false};
+  size_t n = 0;
+  for (size_t k = 0; k < count[2]; k++)
+    for (size_t j = 0; j < count[1]; j++)
+      for (size_t i = 0; i < count[0]; i++) {
+        const size_t cell[3] = {clamp_cell(patches, level, 0, first[0] + (ptrdiff_t)i),
+                                clamp_cell(patches, level, 1, first[1] + (ptrdiff_t)j),
+                                clamp_cell(patches, level, 2, first[2] + (ptrdiff_t)k)};
+        float value = cell_value(patches, level, cell, &last);
+        covered[n++] = value == value;
+      }
+}
+
+/* ---- which bricks ---- */
+
+/* A brick is split where the next finer level has a block in it. */
+static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
+  enum { FINER = 1 << (SHIFT + 1 - BLOCK_SHIFT) }; /* blocks of the finer level along a brick's edge */
+  const hl_patches *patches = data;
+  for (int axis = 0; axis < 3; axis++)
+    if (brick[axis] << SHIFT >= patches->domain[axis] >> level) return HL_BRICKS_NOTHING;
+  for (uint32_t n = 0; n < FINER * FINER * FINER && level > 0; n++) {
+    const uint32_t at[3] = {FINER * (uint32_t)brick[0] + n % FINER,
+                            FINER * (uint32_t)brick[1] + n / FINER % FINER,
+                            FINER * (uint32_t)brick[2] + n / FINER / FINER};
+    if (find_block(&patches->table[level - 1], at) != NULL) return HL_BRICKS_SPLIT;
+  }
+  return HL_BRICKS_LEAF;
+}
+
+hl_status hl_patches_build(hl_patches *patches, hl_pool *pool, const char *subject, hl_bricks *bricks,
+                           hl_error *error) {
+  hl_bricks_source source = {.shift = SHIFT,
+                             .levels = patches->levels,
+                             .outside = NAN,
+                             .fill = fill,
+                             .cover = cover,
+                             .data = patches};
+  hl_bricks_leaf *leaves = NULL;
+  size_t count = 0;
+  for (int axis = 0; axis < 3; axis++) source.dimension[axis] = patches->domain[axis];
+  *bricks = (hl_bricks){.shift = 0};
+  hl_status status = average(patches, subject, error);
+  if (status == HL_OK)
+    status = hl_bricks_choose(patches->context, &source, choose, patches, &leaves, &count, error);
+  if (status == HL_OK)
+    status = hl_bricks_build(patches->context, pool, &source, leaves, count, subject, bricks, error);
+  for (int axis = 0; axis < 3; axis++) bricks->origin[axis] = 0.5;
+  hl_release(patches->context, leaves);
+  return status;
+}
+
+void hl_patches_copy(const hl_patches *patches, float *values) {
+  const size_t *n = patches->domain;
+  last_block last = {.known = false};
+  size_t at[3];
+  for (at[2] = 0; at[2] < n[2]; at[2]++)
+    for (at[1] = 0; at[1] < n[1]; at[1]++)
+      for (at[0] = 0; at[0] < n[0]; at[0]++) *values++ = cell_value(patches, 0, at, &last);
+}

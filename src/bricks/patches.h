@@ -1,0 +1,39 @@
+/* bricks/patches.h - adaptive grids: patches of cells at levels of refinement, as a field at levels.
+ *
+ * A cell's value is the mean over the cell. The field's coefficients stand at the corners of cells, because
+ * these nest: a coefficient is the mean of the eight cells around its corner. Cells that finer patches cover
+ * count as the means of the finer cells. The cells along a domain's faces go on beyond it.
+ *
+ * In:  boxes of cells with values (readers of files, arrays of callers).
+ * Out: hl_bricks whose level 0 is the finest level of refinement. */
+#ifndef HL_BRICKS_PATCHES_H
+#define HL_BRICKS_PATCHES_H
+
+#include "bricks/build.h"
+
+/* The cells of all levels that have values, in blocks of 8^3 that are made where a patch needs them. */
+typedef struct hl_patches hl_patches;
+
+/* Makes an empty set. levels: levels of the lattice, of which 0 has the finest cells, and each further one
+ * has cells twice as wide. domain: the number of cells of level 0 along x, y, z; a multiple of 2^(levels -
+ * 1). */
+hl_status hl_patches_create(hl_context *context, int levels, const size_t domain[3], hl_patches **patches,
+                            hl_error *error);
+void hl_patches_destroy(hl_patches *patches); /* null is allowed */
+
+/* Sets the values of cells first .. first + count - 1 of a level, which must lie within the domain. values:
+ * [count[2]][count[1]][count[0]], x fastest. A later patch of the same level overwrites an earlier one. A
+ * value that is not finite leaves its cell as it was. subject: starts error lines. */
+hl_status hl_patches_add(hl_patches *patches, int level, const size_t first[3], const size_t count[3],
+                         const float *values, const char *subject, hl_error *error);
+
+/* Makes the field. *bricks is empty on failure. Its origin is {.5, .5, .5}: voxels of level 0 are cells.
+ * Where no patch has a value, the field is NaN. Can be called once: coarser cells are overwritten by means of
+ * finer ones. */
+hl_status hl_patches_build(hl_patches *patches, hl_pool *pool, const char *subject, hl_bricks *bricks,
+                           hl_error *error);
+
+/* Copies the cells of level 0 to `values`, [domain z][domain y][domain x]: NaN where there is no value. */
+void hl_patches_copy(const hl_patches *patches, float *values);
+
+#endif

@@ -1,0 +1,101 @@
+"""Adaptive grids: constants and linear fields are exact, mass is kept, and broken files are refused in words."""
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import halflight as hl
+
+from amr_files import levels, means, write_plotfile
+
+
+def blob(x: Any, y: Any, z: Any) -> Any:
+    return 1 + np.exp(-((x - 0.45) ** 2 + (y - 0.5) ** 2 + (z - 0.5) ** 2) / (2 * 0.12**2))
+
+
+def linear(x: Any, y: Any, z: Any) -> Any:
+    return 3 + x - 2 * y + 0.5 * z
+
+
+def open_plotfile(folder: Path, *fields: Any, ratio: int = 2, kind: str = "<f8", **chosen: Any) -> hl.Volume:
+    write_plotfile(folder, [f"field {n}" for n in range(len(fields))], [levels(field, ratio) for field in fields], ratio, kind=kind)
+    return hl.Volume(folder, **chosen)
+
+
+@pytest.mark.parametrize("ratio", [2, 4])
+def test_place_and_size(tmp_path: Path, ratio: int) -> None:
+    info = hl.info(open_plotfile(tmp_path / "plt", blob, ratio=ratio))
+    assert info.dimensions == (32 * ratio,) * 3
+    np.testing.assert_allclose(info.spacing, 1 / 32 / ratio)
+    np.testing.assert_allclose(info.origin, 0.5 / 32 / ratio)
+    assert info.arrays[0].name == "field 0" and info.arrays[0].of_cells
+    assert info.nonfinite_count == 0
+
+
+@pytest.mark.parametrize("kind", ["<f8", ">f8", "<f4"])
+def test_constants_are_exact(tmp_path: Path, kind: str) -> None:
+    info = hl.info(open_plotfile(tmp_path / "plt", lambda x, y, z: 0.75 + 0 * x, kind=kind))
+    assert info.range == (0.75, 0.75)
+
+
+@pytest.mark.parametrize("ratio", [2, 4])
+def test_linear_fields_are_exact(tmp_path: Path, ratio: int) -> None:
+    voxels = np.asarray(open_plotfile(tmp_path / "plt", linear, ratio=ratio))
+    cells = 32 * ratio
+    truth = means(linear, cells, (0, 0, 0), (cells,) * 3, 2)
+    inner = (slice(4 * ratio, -4 * ratio),) * 3  # a domain's outermost cells go on beyond it
+    np.testing.assert_allclose(voxels[inner], truth[inner], atol=2e-6)
+
+
+@pytest.mark.parametrize("ratio", [2, 4])
+def test_mass_is_kept(tmp_path: Path, ratio: int) -> None:
+    volume = open_plotfile(tmp_path / "plt", lambda x, y, z: blob(x, y, z) - 1, ratio=ratio)
+    coarse, fine = levels(lambda x, y, z: blob(x, y, z) - 1, ratio)
+    mass = sum(values.sum() for _, values in coarse) / 32**3
+    assert abs(np.asarray(volume, np.float64).mean() / mass - 1) < 1e-3
+
+
+def test_a_component_by_name(tmp_path: Path) -> None:
+    folder = tmp_path / "plt"
+    volume = open_plotfile(folder, linear, lambda x, y, z: 7 + 0 * x, array="field 1")
+    assert hl.info(volume).range == (7, 7)
+    with pytest.raises(hl.InputError, match="field 0"):
+        hl.Volume(folder, array="pressure")
+
+
+def test_one_level_is_a_dense_volume(tmp_path: Path) -> None:
+    coarse = levels(blob)[:1]
+    write_plotfile(tmp_path / "plt", ["density"], [coarse])
+    np.testing.assert_array_equal(np.asarray(hl.Volume(tmp_path / "plt")), means(blob, 32, (0, 0, 0), (32,) * 3).astype(np.float32))
+
+
+@pytest.mark.parametrize(("file", "old", "new", "words"), [
+    ("Header", "\n3\n", "\n2\n", "2 dimensions"),
+    ("Header", "\n2 \n", "\n3 \n", "refined by 3"),
+    ("Header", "((0,0,0) (31,31,31)", "((0,0,0) (15,31,31)", "beyond the domain"),
+    ("Level_1/Cell_H", "FabOnDisk: Cell_D_00000", "FabOnDisk: ../../secret", "has no file"),
+    ("Level_1/Cell_H", "(3 0", "(2000000 0", "as many boxes as it promises"),
+    ("Level_1/Cell_H", "FabOnDisk: Cell_D_00000 0", "FabOnDisk: Cell_D_00000 99999999", "expected \"FAB\""),
+    ("Level_1/Cell_D_00000", "(64 11 52", "(63 11 52", "expected \"FAB\""),
+])
+def test_broken_plotfiles_are_refused(tmp_path: Path, file: str, old: str, new: str, words: str) -> None:
+    folder = tmp_path / "plt"
+    open_plotfile(folder, blob)
+    (tmp_path / "secret").write_bytes((folder / "Level_1" / "Cell_D_00000").read_bytes())
+    bytes = (folder / file).read_bytes()
+    assert old.encode() in bytes
+    (folder / file).write_bytes(bytes.replace(old.encode(), new.encode()))
+    with pytest.raises((hl.InputError, hl.UnsupportedError), match=words):
+        hl.Volume(folder)
+
+
+def test_cut_plotfiles_are_refused(tmp_path: Path) -> None:
+    folder = tmp_path / "plt"
+    open_plotfile(folder, blob)
+    data = folder / "Level_1" / "Cell_D_00000"
+    data.write_bytes(data.read_bytes()[:-100])
+    with pytest.raises(hl.InputError, match="ends before"):
+        hl.Volume(folder)
