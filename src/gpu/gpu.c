@@ -381,7 +381,7 @@ static size_t counters_of(const gpu_sweep *sweep) {
 }
 
 static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
-  const frame_plan *plan = sweep->plan;
+  const device_sweep *plan = sweep->plan;
   const size_t views = 2 + 2 * (size_t)plan->light_count, tiles = (size_t)plan->tiles,
                slots = 2 * tiles * 256 * (size_t)sweep->slabs;
   bool done = reserve_and_upload(gpu, BUFFER_PLAN, plan, sizeof *plan) &&
@@ -403,7 +403,7 @@ static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
 
 /* Full light, an empty picture. */
 static bool reset(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program) {
-  const frame_plan *plan = sweep->plan;
+  const device_sweep *plan = sweep->plan;
   bool done = fill(gpu, program, BUFFER_PIXELS, (size_t)plan->tiles * 1024, 0) &&
               fill(gpu, program, BUFFER_COUNTS, counters_of(sweep), 0) &&
               fill(gpu, program, BUFFER_PLANES, sweep->plane_floats, 1) &&

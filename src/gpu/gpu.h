@@ -9,8 +9,8 @@
 #define HL_GPU_GPU_H
 
 #include "core/memory.h"
+#include "gpu/device_sweep.h"
 #include "gpu/driver.h"
-#include "gpu/frame_plan.h"
 
 typedef struct hl_gpu hl_gpu;
 
@@ -53,7 +53,7 @@ bool hl_gpu_try(hl_gpu *gpu, const float *numbers, uint32_t count, float *result
 
 /* A sweep as plain data; borrowed until hl_gpu_read(). */
 typedef struct gpu_sweep {
-  const frame_plan *plan;
+  const device_sweep *plan;
   plan_variant variant;
   const plan_rays *rays;     /* [2 + 2 lights][sheets] (gpu/kernels/sweep.h) */
   const int32_t *shown_from; /* [tiles][16]; back to front: the first slab that is seen; null: 1 */

@@ -17,6 +17,9 @@ enum { HL_CHANNELS = 3 }; /* R, G, B */
 
 enum { LIGHT_SECTORS = 6 };
 
+/* Lights that share one pass over the sheets, at most. */
+enum { MAXIMUM_SWEEP_LIGHTS = 16 };
+
 typedef struct light_sectors {
   vec3 axis[LIGHT_SECTORS]; /* unit, the way a sector's light travels; frame space */
   double least;             /* cosine to its axis at which a sector has faded out */

@@ -59,9 +59,9 @@ static bool try_arithmetic(hl_renderer *renderer, char *problem) {
   float *results = numbers + 3 * NUMBERS;
   uint64_t state = 1;
   for (int i = 0; i < 3 * NUMBERS; i++) numbers[i] = next_number(&state, i);
-  bool passes = hl_gpu_try(renderer->gpu, numbers, NUMBERS, results, TRIAL_RESULTS);
-  if (!passes) snprintf(problem, GPU_PROBLEM_BYTES, "%s", hl_gpu_problem(renderer->gpu));
-  else passes = compare_numbers(numbers, results, problem, hl_gpu_device(renderer->gpu)->info.name);
+  bool passes = hl_gpu_try(renderer->device.gpu, numbers, NUMBERS, results, TRIAL_RESULTS);
+  if (!passes) snprintf(problem, GPU_PROBLEM_BYTES, "%s", hl_gpu_problem(renderer->device.gpu));
+  else passes = compare_numbers(numbers, results, problem, hl_gpu_device(renderer->device.gpu)->info.name);
   hl_release(renderer->context, numbers);
   return passes;
 }
@@ -117,17 +117,17 @@ static hl_status render(hl_renderer *owner, bool on_device, const hl_scene *scen
   hl_renderer *renderer = NULL;
   hl_status status = hl_renderer_create(owner->context, &renderer, error);
   if (status != HL_OK) return status;
-  renderer->device_tried = true;
-  renderer->gpu = on_device ? owner->gpu : NULL;
-  if (renderer->gpu != NULL) hl_gpu_forget(renderer->gpu);
+  renderer->device.tried = true;
+  renderer->device.gpu = on_device ? owner->device.gpu : NULL;
+  if (renderer->device.gpu != NULL) hl_gpu_forget(renderer->device.gpu);
   for (int i = 0; i < frames && status == HL_OK; i++)
     status = hl_renderer_render(renderer, scene, pixels, 4 * PICTURE, statistics, error);
-  if (on_device) owner->gpu = renderer->gpu; /* null where it failed */
-  if (on_device && renderer->gpu == NULL && status == HL_OK)
-    status = hl_fail(error, HL_ERROR_UNSUPPORTED, "%s", renderer->device_problem);
-  renderer->gpu = NULL;
+  if (on_device) owner->device.gpu = renderer->device.gpu; /* null where it failed */
+  if (on_device && renderer->device.gpu == NULL && status == HL_OK)
+    status = hl_fail(error, HL_ERROR_UNSUPPORTED, "%s", renderer->device.problem);
+  renderer->device.gpu = NULL;
   hl_renderer_destroy(renderer);
-  if (owner->gpu != NULL) hl_gpu_forget(owner->gpu);
+  if (owner->device.gpu != NULL) hl_gpu_forget(owner->device.gpu);
   return status;
 }
 

@@ -2,7 +2,7 @@
 #ifndef HL_RENDER_DEVICE_TRIAL_H
 #define HL_RENDER_DEVICE_TRIAL_H
 
-#include "render/frame_work.h"
+#include "render/renderer_state.h"
 
 /* Whether the renderer's device gives the processors' bytes. faster: and whether it is faster than they are.
  * problem: [GPU_PROBLEM_BYTES]; why not. */

@@ -4,7 +4,6 @@
 #include "render/estimate.h"
 
 #include "core/context.h"
-#include "render/prepare.h"
 
 enum { SMALL_PARTS = 64 << 10 /* descriptions, sweeps, corners, counts */ };
 

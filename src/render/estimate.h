@@ -5,6 +5,7 @@
 
 #include <halflight/render.h>
 
+#include "render/prepare.h"
 #include "render/sweep.h"
 
 /* Counts what the volumes that are not prepared yet take. Call hl_prepared_release_stale() before. */

@@ -8,9 +8,8 @@
 #include "render/sweep.h"
 
 /* The same sheets, the last one first. */
-static frame_sweep turned_round(const frame_sweep *geometry) {
-  const sheet_stack *sheets = &geometry->sheets;
-  frame_sweep turned = {.sheets = *sheets};
+static sweep_sheets turned_round(const sheet_stack *sheets) {
+  sweep_sheets turned = {.sheets = *sheets};
   turned.sheets.normal = vec3_scale(sheets->normal, -1);
   turned.sheets.first = -hl_sheet_height(sheets, sheets->count - 1);
   return turned;
@@ -44,7 +43,7 @@ static uint32_t cover_tile(const sweep *sweep, const tile_slab *slab) {
   tile_slab uncovered = *slab;
   uncovered.blocks = seen;
   uint32_t open = sweep->content.hot->render.cover(
-      slab->job, &uncovered, sweep->pixels + slab->tile * 4 * TILE_PIXELS, &counts->samples);
+      slab->job, &uncovered, sweep->target.pixels + slab->tile * 4 * TILE_PIXELS, &counts->samples);
   for (uint32_t closed = seen & ~open; closed != 0; closed &= closed - 1)
     shown_from[__builtin_ctz(closed)] = first_shown(sweep, slab->job->sheet);
   return search->trying ? slab->blocks : open;
@@ -93,38 +92,45 @@ static hl_status go_through(sweep *front, hidden_search *search, bool trying, hl
   return hl_sweep_run(front, error);
 }
 
-hl_status hl_sweep_find_hidden(sweep *sweep, hl_render_statistics *statistics, hl_error *error) {
-  size_t tiles = (size_t)hl_tiles(sweep->frame->width) * (size_t)hl_tiles(sweep->frame->height);
-  frame_sweep turned = turned_round(sweep->geometry);
-  const picture_share whole = {.parts = 1};
-  struct sweep front = *sweep;
-  hl_context *context = sweep->content.context;
-  sweep->shown_from = hl_allocate_zeroed(context, tiles * TILE_BLOCKS, sizeof *sweep->shown_from);
-  if (sweep->shown_from == NULL)
-    return hl_fail_memory(error, tiles * TILE_BLOCKS * sizeof *sweep->shown_from, "what is hidden");
-  hidden_search search = {.shown_from = sweep->shown_from};
-  front.geometry = &turned;
-  front.content.sheets = &turned.sheets;
-  front.layer_pixels = NULL;
-  front.first = front.measures = false;
-  front.preparatory = true;
+/* Tries some tiles; where that pays, goes through the others. front: has begun. */
+static hl_status search_tiles(sweep *front, hidden_search *search, hl_error *error) {
   /* what is tried must not depend on the part, which would change bytes: parts that exchange nothing all try
    * the whole picture's tiles */
-  bool together = sweep->share->exchange != NULL, worth = false;
-  front.share = together ? sweep->share : &whole;
+  const picture_share *own = front->share, whole = {.parts = 1};
+  bool worth = false;
+  if (own->exchange == NULL) front->share = &whole;
+  hl_sweep_open(front);
+  hl_status status = go_through(front, search, true, error);
+  if (status == HL_OK) status = is_worth_while(front, &worth, error);
+  front->share = own;
+  if (!worth) return status;
+  hl_sweep_open(front);
+  return go_through(front, search, false, error);
+}
+
+hl_status hl_find_hidden(const sweep_means *means, const frame_plan *frame_plan, const sweep_plan *plan,
+                         float *pixels, int32_t **shown_from, hl_render_statistics *statistics,
+                         hl_error *error) {
+  const size_t tiles = frame_plan->tiles;
+  *shown_from = NULL;
+  if (!plan->geometry->back_to_front) return HL_OK;
+  *shown_from = hl_allocate_zeroed(means->context, tiles * TILE_BLOCKS, sizeof **shown_from);
+  if (*shown_from == NULL)
+    return hl_fail_memory(error, tiles * TILE_BLOCKS * sizeof **shown_from, "what is hidden");
+  hidden_search search = {.shown_from = *shown_from};
+  const sweep_sheets turned = turned_round(&plan->geometry->sheets);
+  const sweep_plan of_search = {.geometry = &turned};
+  const sweep_target target = {.pixels = pixels};
+  sweep front;
+  hl_sweep_set_up(&front, means, frame_plan, &of_search, &target);
+  front.purpose = SWEEP_SEARCH;
   front.act = cover_tile;
   front.action = &search;
   hl_status status = hl_sweep_begin(&front, NULL, NULL, error);
-  if (status == HL_OK) status = go_through(&front, &search, true, error);
-  if (status == HL_OK) status = is_worth_while(&front, &worth, error);
-  if (worth) {
-    front.share = sweep->share;
-    hl_sweep_open(&front);
-    status = go_through(&front, &search, false, error);
-  }
+  if (status == HL_OK) status = search_tiles(&front, &search, error);
   if (status == HL_OK) hl_sweep_count(&front, statistics);
   hl_sweep_end(&front);
   /* removes the opacities that the search left */
-  hl_pool_clear(sweep->content.pool, sweep->pixels, tiles * TILE_PIXELS * 4 * sizeof *sweep->pixels);
+  hl_pool_clear(means->pool, pixels, tiles * TILE_PIXELS * 4 * sizeof *pixels);
   return status;
 }

@@ -5,11 +5,6 @@
 
 #include "core/memory.h"
 
-bool hl_layers_measure(const hl_layers *wanted) {
-  return wanted != NULL && (wanted->depth_first != NULL || wanted->depth_mean != NULL ||
-                            wanted->normal != NULL || wanted->object != NULL);
-}
-
 hl_light_layers hl_layers_of_light(const hl_layers *wanted, const light_source *light) {
   if (light->light->of_sky > 0) return (hl_light_layers){wanted->sky, wanted->sky_shadow};
   return wanted->light_count > 0 ? wanted->lights[light->light_index] : (hl_light_layers){NULL, NULL};

@@ -13,7 +13,7 @@
 
 #include "core/memory.h"
 #include "core/pool.h"
-#include "render/frame.h"
+#include "plan/frame_plan.h"
 #include "render/hot.h"
 
 /* The pixels of a light's layers, in the picture's order: [tiles][16][floats per pixel][16]. Null where a
@@ -44,9 +44,6 @@ hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_la
 /* Counts what hl_layer_pixels_create() takes. */
 void hl_layer_pixels_count(const hl_layers *wanted, const frame *frame, size_t tiles, hl_layout *layout);
 void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels);
-
-/* True where depth, normals or objects are wanted: some sweep must then go front to back. */
-bool hl_layers_measure(const hl_layers *wanted);
 
 /* The wanted layers that a light of the frame is part of. */
 hl_light_layers hl_layers_of_light(const hl_layers *wanted, const light_source *light);

@@ -90,20 +90,18 @@ static void fill_step(const shown_values *values, int entry, double below, float
   row[3] = 0;
 }
 
-static double end_of(const prepared_volume *prepared, double step) {
-  const hl_volume *volume = prepared->scene->volume;
-  double greatest = fmax(fmax(fabs(volume->minimum), fabs(volume->maximum)), fabs(prepared->empty));
+static double end_of(const frame_volume *of, double step) {
+  const hl_volume *volume = of->scene->volume;
+  double greatest = fmax(fmax(fabs(volume->minimum), fabs(volume->maximum)), fabs(of->empty));
   return fmax(LEAST_END, ROUNDINGS * FLT_EPSILON * greatest / step);
 }
 
 /* rows: [SHOWN_ENTRIES]; fills their columns, SHOWN_FROM and so on. */
-static void fill_shown(const prepared_volume *prepared, float (*rows)[4]) {
-  const classifier *classifier = &prepared->classifier;
-  const grid *grid = &prepared->grid;
-  double empty = prepared->empty, step = grid->value_scale / (double)classifier->scale;
-  const shown_values values = {&prepared->scene->transfer_function, empty - (double)classifier->offset * step,
-                               step, hl_transparent_below(prepared->scene, empty),
-                               end_of(prepared, fabs(step))};
+static void fill_shown(const frame_volume *volume, const grid *grid, float (*rows)[4]) {
+  const classifier *classifier = volume->classifier;
+  double empty = volume->empty, step = grid->value_scale / (double)classifier->scale;
+  const shown_values values = {&volume->scene->transfer_function, empty - (double)classifier->offset * step,
+                               step, hl_transparent_below(volume->scene, empty), end_of(volume, fabs(step))};
   double below = -1;
   for (int entry = 0; entry < SHOWN_ENTRIES; entry++) {
     fill_step(&values, entry < CLASSIFIER_ENTRIES ? entry : CLASSIFIER_ENTRIES, below, rows[entry]);
@@ -118,18 +116,19 @@ static void clear_tile(void *data, size_t tile, int worker) {
   for (size_t i = 0; i < floats_of_tile(maximum); i++) values[i] = -1;
 }
 
-hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
-                            const prepared_volume *prepared, size_t tiles, maximum_values *maximum,
+hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const frame_plan *of, maximum_values *maximum,
                             hl_error *error) {
-  *maximum = plan(scene, tiles);
+  const hl_scene_description *scene = &of->framed->scene;
+  *maximum = plan(scene, of->tiles);
   if (scene->render.compositing != HL_COMPOSITING_MAXIMUM) return HL_OK;
   hl_layout layout = {0};
   while (hl_layout_pass(&layout, context)) lay_out(maximum, &layout);
   if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "a maximum projection");
-  hl_pool_run(pool, tiles, clear_tile, maximum);
+  hl_pool_run(pool, of->tiles, clear_tile, maximum);
   size_t rank = 0;
   for (size_t i = 0; i < scene->volume_count; i++)
-    if (scene->volumes[i].visible) fill_shown(&prepared[i], maximum->shown + SHOWN_ENTRIES * rank++);
+    if (scene->volumes[i].visible)
+      fill_shown(&of->volumes.list[i], &of->volumes.grids[i], maximum->shown + SHOWN_ENTRIES * rank++);
   return HL_OK;
 }
 
@@ -141,8 +140,7 @@ void hl_maximum_release(hl_context *context, maximum_values *maximum) {
 
 typedef struct color_job {
   const maximum_values *maximum;
-  const hl_scene_description *scene;
-  const prepared_volume *prepared;
+  const plan_volumes *volumes;
   float *pixels;
 } color_job;
 
@@ -165,23 +163,22 @@ static void color_tile(void *data, size_t tile, int worker) {
   (void)worker;
   const color_job *job = data;
   const float *values = job->maximum->values + tile * floats_of_tile(job->maximum);
-  for (size_t i = 0; i < job->scene->volume_count; i++) {
-    if (!job->scene->volumes[i].visible) continue;
+  for (int i = 0; i < job->volumes->count; i++) {
+    if (!job->volumes->list[i].scene->visible) continue;
     for (int block = 0; block < TILE_BLOCKS; block++)
-      color_block(job->prepared[i].classifier.color, values + block * BLOCK_PIXELS,
+      color_block(job->volumes->list[i].classifier->color, values + block * BLOCK_PIXELS,
                   job->pixels + (tile * TILE_BLOCKS + (size_t)block) * 4 * BLOCK_PIXELS);
     values += MAXIMUM_ROWS * TILE_PIXELS;
   }
 }
 
-void hl_maximum_color(const maximum_values *maximum, const hl_scene_description *scene,
-                      const prepared_volume *prepared, hl_pool *pool, float *pixels) {
-  color_job job = {maximum, scene, prepared, pixels};
+void hl_maximum_color(const maximum_values *maximum, const frame_plan *of, hl_pool *pool, float *pixels) {
+  color_job job = {maximum, &of->volumes, pixels};
   hl_pool_run(pool, maximum->tiles, color_tile, &job);
 }
 
 uint32_t hl_maximum_tile(const sweep *sweep, const tile_slab *slab) {
-  const maximum_values *maximum = sweep->maximum;
+  const maximum_values *maximum = sweep->target.maximum;
   float *values = maximum->values + slab->tile * maximum->volume_count * MAXIMUM_ROWS * TILE_PIXELS;
   return sweep->content.hot->render.maximum(slab->job, slab, values,
                                             &sweep->arrays.counts[slab->worker].samples);

@@ -90,7 +90,7 @@ static void fill_with_ones(float (*passing)[TILE_PIXELS], int count) {
 static bool find_near(const sweep *sweep, const tile_slab *slab, fragment_range near, bool cut,
                       slab_piece piece, bool any, float (*passing)[TILE_PIXELS]) {
   const shade_job *job = slab->job;
-  const float *pixels = sweep->pixels + slab->tile * 4 * TILE_PIXELS;
+  const float *pixels = sweep->target.pixels + slab->tile * 4 * TILE_PIXELS;
   for (size_t i = 0; i < near.count; i++) {
     const fragment *f = &near.first[i];
     int block = f->pixel / BLOCK_PIXELS, lane = f->pixel % BLOCK_PIXELS;

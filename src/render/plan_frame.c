@@ -1,408 +1,231 @@
-/* render/plan_frame.c - see plan_frame.h.
- *
- * What the processors' sweep has in its structs (render/slab.h, shadow/attenuate.h) is copied, number by
- * number: a device then computes with the same floats. */
+/* render/plan_frame.c - see plan_frame.h. */
 #include "render/plan_frame.h"
 
-#include <string.h>
+#include <math.h>
 
+#include "core/context.h"
+#include "core/memory.h"
 #include "grid/relevant.h"
-#include "scatter/scatter.h"
+#include "render/contact.h"
+#include "render/maximum.h"
+#include "surface/place_surfaces.h"
 
-_Static_assert(PLAN_LIGHTS >= MAXIMUM_SWEEP_LIGHTS && PLAN_SECTORS == LIGHT_SECTORS &&
-                   PLAN_ENTRIES == CLASSIFIER_ENTRIES && PLAN_KERNEL_POWERS == HL_KERNEL_DEGREE + 1,
-               "plans hold what sweeps hold");
-_Static_assert(offsetof(plan_rays, height) == sizeof(sheet_rays) && sizeof(plan_box) == sizeof(box_rays),
-               "rays of plans are rays of views");
+/* ---- volumes and surfaces ---- */
 
-/* ---- what devices do not make yet ---- */
-
-typedef struct asked_frame {
-  const hl_renderer *renderer;
-  const frame_request *request;
-  const frame_work *work;
-  const hl_scene_description *scene;
-  const hl_scene_volume *volume; /* the first */
-  const prepared_volume *prepared;
-} asked_frame;
-
-static bool has_no_volume(const asked_frame *f) {
-  return f->scene->volume_count == 0 || f->work->frame.point_count == 0;
-}
-static bool has_volumes(const asked_frame *f) { return f->scene->volume_count > 1; }
-static bool is_hidden(const asked_frame *f) { return !f->volume->visible; }
-static bool is_maximum(const asked_frame *f) { return hl_is_maximum(f->scene); }
-static bool has_layers(const asked_frame *f) { return f->request->layers != NULL; }
-static bool is_shared(const asked_frame *f) { return f->renderer->parts > 1; }
-static bool has_surfaces(const asked_frame *f) { return f->work->frame.surfaces != NULL; }
-static bool has_sky(const asked_frame *f) { return f->renderer->sky.light.cells != NULL; }
-static bool scatters(const asked_frame *f) { return hl_scatter_wanted(f->scene); }
-static bool splats(const asked_frame *f) {
-  return f->scene->render.reconstruction == HL_RECONSTRUCTION_SPLAT;
-}
-static bool has_pages(const asked_frame *f) { return f->prepared->grid.pages != NULL; }
-static bool is_thin(const asked_frame *f) {
-  const int32_t *dimension = f->prepared->grid.dimension;
-  return dimension[0] < 4 || dimension[1] < 4 || dimension[2] < 4;
-}
-static bool has_colors(const asked_frame *f) { return f->volume->volume->colors != NULL; }
-static bool is_weighed(const asked_frame *f) { return hl_classifier_is_weighed(&f->prepared->classifier); }
-static bool has_cuts(const asked_frame *f) { return f->volume->cut_count > 0; }
-static bool is_soft(const asked_frame *f) {
-  for (int i = 0; i < f->work->frame.light_count; i++)
-    if (f->work->frame.lights[i].shadows == HL_SHADOWS_SOFT) return true;
-  return false;
-}
-static bool has_images(const asked_frame *f) {
-  for (size_t i = 0; i < f->scene->light_count; i++)
-    if (f->scene->lights[i].texture.pixels != NULL || f->scene->lights[i].emission.pixels != NULL)
-      return true;
-  return false;
-}
-static bool has_phase_tables(const asked_frame *f) {
-  return hl_phase_table(&f->renderer->phases, f->volume->anisotropy) != NULL;
+/* Whether a position lies in a volume's box: rays of an eye or a light there begin within it. */
+static bool inside_box(const grid *grid, vec3 origin) {
+  vec3 p = affine3_apply(grid->frame_to_index, origin);
+  const double at[3] = {p.x, p.y, p.z};
+  for (int axis = 0; axis < 3; axis++)
+    if (at[axis] < grid->box_low[axis] || at[axis] > grid->box_high[axis]) return false;
+  return true;
 }
 
-/* In this order: the first that applies is told. */
-static const struct {
-  bool (*applies)(const asked_frame *frame);
-  const char *reason;
-} reasons[] = {
-    {has_no_volume, "it shows no volume"},
-    {is_maximum, "a maximum projection"},
-    {has_layers, "layers"},
-    {is_shared, "a part of a shared picture"},
-    {has_surfaces, "meshes or isosurfaces"},
-    {has_volumes, "several volumes"},
-    {is_hidden, "a volume that only casts shadows"},
-    {has_sky, "the light of a sky"},
-    {scatters, "multiple scattering"},
-    {splats, "splatting in place of gathering"},
-    {has_pages, "voxels outside of memory"},
-    {is_thin, "a volume less than four voxels thick"},
-    {has_colors, "voxels with colours"},
-    {is_weighed, "gradient opacity, a mask, or a function of two numbers"},
-    {has_cuts, "cuts"},
-    {is_soft, "soft shadows"},
-    {has_images, "lights with images"},
-    {has_phase_tables, "wide lights in media that scatter unevenly"},
-};
-
-const char *hl_reason_for_processors(const hl_renderer *renderer, const frame_request *request,
-                                     const frame_work *work) {
-  const hl_scene_description *scene = &work->framed.scene;
-  const asked_frame frame = {renderer, request, work, scene, scene->volumes, renderer->prepared};
-  for (size_t i = 0; i < sizeof reasons / sizeof *reasons; i++)
-    if (reasons[i].applies(&frame)) return reasons[i].reason;
-  return NULL;
-}
-
-/* ---- the volume ---- */
-
-static int storage_of(const grid *grid) {
-  return grid->storage == HL_STORAGE_U8 ? 0 : grid->storage == HL_STORAGE_U16 ? 1 : 2;
-}
-
-/* Tables of the grid's cells are asked where the processors ask them. */
-static const uint64_t *bits_of_cells(const grid *grid) {
-  return grid->cell_bits_tell ? grid->cell_bits : NULL;
-}
-
-gpu_volume hl_volume_for_device(const prepared_volume *prepared) {
-  const grid *grid = &prepared->grid;
-  const classifier *classifier = &prepared->classifier;
-  return (gpu_volume){.version = prepared->version,
-                      .tables_version = prepared->tables_version,
-                      .voxels = grid->voxels,
-                      .storage = storage_of(grid),
-                      .dimension = grid->dimension,
-                      .brick_count = grid->brick_count,
-                      .relevant = grid->relevant,
-                      .cell_bits = bits_of_cells(grid),
-                      .sums = &classifier->sums[0][0],
-                      .color = &classifier->color[0][0],
-                      .shown = &classifier->shown[0][0],
-                      .outside = classifier->outside,
-                      .bent = classifier->bent};
-}
-
-static void plan_matter(const shade_volume *shade, plan_volume *volume) {
-  const grid *grid = shade->grid;
-  const classifier *classifier = shade->classifier;
-  const kernel *kernel = shade->kernel;
-  memcpy(volume->dimension, grid->dimension, sizeof volume->dimension);
-  memcpy(volume->brick_count, grid->brick_count, sizeof volume->brick_count);
-  volume->slice_rows = (unsigned)grid->dimension[1];
-  volume->empty = grid->empty;
-  volume->has_cell_bits = bits_of_cells(grid) != NULL;
-  memcpy(volume->inner, kernel->inner, sizeof volume->inner);
-  memcpy(volume->outer, kernel->outer, sizeof volume->outer);
-  memcpy(volume->to_index, shade->to_index, sizeof volume->to_index);
-  memcpy(volume->low, shade->low, sizeof volume->low);
-  memcpy(volume->high, shade->high, sizeof volume->high);
-  memcpy(volume->face_low, grid->face_low, sizeof volume->face_low);
-  memcpy(volume->face_high, grid->face_high, sizeof volume->face_high);
-  volume->scale = classifier->scale;
-  volume->offset = classifier->offset;
-  volume->first_visible = classifier->first_visible;
-  volume->last_visible = classifier->last_visible;
-  volume->normal_edge = classifier->normal_edge;
-  volume->bends = classifier->bent != NULL;
-  volume->several_surfaces = classifier->several_surfaces;
-  volume->only_outside = classifier->only_outside;
-  volume->side = classifier->side;
-  volume->any_face = shade->any_face;
-  volume->cut_shading = shade->cut_shading;
-  for (int face = 0; face < 6; face++) volume->face_cuts[face] = shade->face_cuts[face / 2][face % 2];
-}
-
-static void plan_material(const shade_volume *shade, const hl_scene_volume *scene, plan_volume *volume) {
-  volume->ambient = shade->ambient;
-  volume->diffuse = shade->diffuse;
-  volume->specular = shade->specular;
-  volume->shininess = shade->shininess;
-  volume->emission = shade->emission;
-  volume->anisotropy = shade->anisotropy;
-  memcpy(volume->albedo, shade->albedo, sizeof volume->albedo);
-  volume->absorbs = shade->absorbs;
-  volume->receives_shadow = shade->receives_shadow;
-  volume->voxel = shade->voxel;
-  for (int c = 0; c < HL_CHANNELS; c++) {
-    volume->cast[c] = shade->cast[c];
-    volume->weight[c] = scene->casts_shadow ? (float)scene->attenuation_color[c] : 0;
+static bool rays_start_inside(const frame *frame, const grid *grid) {
+  bool inside = frame->eye.perspective && inside_box(grid, frame->eye.origin);
+  for (int i = 0; i < frame->light_count; i++) {
+    const light_source *light = &frame->lights[i];
+    inside = inside ||
+             (light->shadows != HL_SHADOWS_OFF && !light->parallel && inside_box(grid, light->position));
   }
+  return inside;
 }
 
-/* ---- the lights ---- */
-
-static void plan_brightness(const shade_light *shade, plan_light *light) {
-  light->parallel = shade->parallel;
-  light->shadowed = shade->shadowed;
-  light->inverse_square = shade->inverse_square;
-  light->nearest = shade->nearest;
-  light->cubic = shade->cubic;
-  memcpy(light->towards, shade->towards, sizeof light->towards);
-  memcpy(light->position, shade->position, sizeof light->position);
-  memcpy(light->color, shade->color, sizeof light->color);
-  light->of_sky = shade->of_sky;
-  light->path = shade->path;
-  memcpy(light->cone_axis, shade->cone.axis, sizeof light->cone_axis);
-  light->cone_outer = shade->cone.outer;
-  light->cone_scale = shade->cone.scale;
-  light->sector_count = shade->sector.count;
-  light->sector = shade->sector.sector;
-  memcpy(light->sector_axis, shade->sector.axis, sizeof light->sector_axis);
-  light->sector_least = shade->sector.least;
+/* Opens faces where volumes touch, in the frame's copies of the grids only (hl_open_faces). */
+static void open_faces(const hl_scene_description *scene, grid *grids) {
+  for (size_t i = 0; i < scene->volume_count; i++)
+    for (size_t k = 0; k < scene->volume_count; k++)
+      if (k != i && scene->volumes[k].casts_shadow) hl_open_faces(&grids[i], &grids[k]);
 }
 
-static void plan_box_rays(const view *view, const sweep *sweep, plan_box *box) {
-  const sheet_stack *sheets = &sweep->geometry->sheets;
-  const grid *grid = &sweep->content.grids[0];
-  box_rays rays;
-  hl_box_rays(view, sheets->normal, sheets->first, grid->frame_to_index, grid->box_low, grid->box_high,
-              &rays);
-  memcpy(box, &rays, sizeof *box);
-}
-
-/* The box around what shows, a voxel larger for rounding. */
-static void plan_content(const view *view, const sweep *sweep, plan_box *box) {
-  const sheet_stack *sheets = &sweep->geometry->sheets;
-  const grid *grid = &sweep->content.grids[0];
-  double low[3], high[3];
-  box_rays rays;
-  if (!hl_relevant_bounds(grid, GRID_MARGIN, low, high)) return;
-  for (int axis = 0; axis < 3; axis++) {
-    low[axis] -= 1;
-    high[axis] += 1;
+/* Brings the meshes to frame space, and adds their boxes to the content. */
+static hl_status add_surfaces(hl_renderer *renderer, const framed_scene *framed, frame *frame,
+                              hl_error *error) {
+  const hl_scene_description *scene = &framed->scene;
+  if (!hl_surfaces_current(&renderer->cache.surfaces, scene)) {
+    hl_surface_tree_release(renderer->context, &renderer->cache.contact);
+    hl_surfaces_release(renderer->context, &renderer->cache.surfaces);
   }
-  hl_box_rays(view, sheets->normal, sheets->first, grid->frame_to_index, low, high, &rays);
-  memcpy(box, &rays, sizeof *box);
-}
-
-/* Derived: on the sheet, one pixel of a parallel light's buffer along u is (grad v x h) / (grad u . (grad v x
- * h)), h the sheets' normal, and likewise along v. The pixels around a sample are one such step away at most,
- * and a face counts where it is up to twice as far; the light's way through the slab is as long as its path.
- * A little is added for rounding. Of near lights pixels grow with distance: all samples count as near a face.
- */
-static void plan_margin(const sweep *sweep, int index, plan_light *light) {
-  const sheet_stack *sheets = &sweep->geometry->sheets;
-  const light_source *source = sweep->lights[index].source;
-  const mat3 *to_index = &sweep->content.grids[0].frame_to_index.linear;
-  double rows[3][4];
-  hl_view_homogeneous(&sweep->lights[index].shadow.plan.view, affine3_identity(), rows);
-  const vec3 u = {rows[1][0], rows[1][1], rows[1][2]}, v = {rows[2][0], rows[2][1], rows[2][2]};
-  vec3 along_u = vec3_cross(v, sheets->normal), along_v = vec3_cross(sheets->normal, u);
-  double rise = vec3_dot(u, along_u);
-  for (int axis = 0; axis < 3; axis++) {
-    double pixels = fabs(vec3_dot(to_index->row[axis], along_u)) +
-                    fabs(vec3_dot(to_index->row[axis], along_v)),
-           way = fabs(vec3_dot(to_index->row[axis], source->direction)) * (double)light->path;
-    bool known = source->parallel && fabs(rise) > 1e-9 * (vec3_length(along_u) + vec3_length(along_v));
-    light->margin[axis] = known ? (float)(2.05 * pixels / fabs(rise) + 1.05 * way + 0.01) : 1e30f;
-  }
-}
-
-/* Planes of one sheet: of the transmittance in each channel, and of the light at the outside of surfaces. */
-static size_t planes_of_sheet(const sweep *sweep, const light_shadow *shadow) {
-  return (size_t)sweep->channels * (shadow->plan.outside ? 2 : 1);
-}
-
-/* Sets a light's buffer; its planes begin at `*floats`, which is raised by theirs. */
-static void plan_buffer(const sweep *sweep, int index, int ring, size_t *floats, int *tiles,
-                        plan_light *light) {
-  const light_shadow *shadow = &sweep->lights[index].shadow;
-  const view *view = &shadow->plan.view;
-  shadow_buffer buffer = {0};
-  hl_shadow_buffer_measure(view, shadow->plan.reach, &buffer);
-  const shadow_map map = hl_map_of_view(view);
-  light->width = view->width;
-  light->height = view->height;
-  light->tiles_x = buffer.tiles_x;
-  light->tiles = buffer.tiles_x * buffer.tiles_y;
-  light->first_tile = *tiles;
-  light->first_slab = hl_sweep_first_reached(sweep, shadow);
-  light->stride = (int)buffer.stride;
-  light->plane = (int)buffer.plane;
-  light->origin = (int)buffer.origin;
-  light->planes = (unsigned)(*floats / 16);
-  memcpy(light->map, map.rows, sizeof light->map);
-  light->slab_path = sweep->attenuate[index].path;
-  plan_box_rays(view, sweep, &light->box);
-  plan_content(view, sweep, &light->content);
-  plan_margin(sweep, index, light);
-  *tiles += light->tiles;
-  *floats += ((size_t)ring * planes_of_sheet(sweep, shadow) * buffer.plane + 15) / 16 * 16;
-}
-
-/* The most bytes of the lights' planes together, slabs of a run where memory allows, and where there are no
- * shadows' planes to keep. */
-static const size_t PLANES_BYTES = (size_t)1 << 30, SLOTS_BYTES = (size_t)1 << 30;
-enum { SLABS_OF_RUN = 32 /* a bit each */, SLOT_BYTES = 40 };
-
-static size_t floats_of_sheet(const sweep *sweep) {
-  size_t floats = 0;
-  for (int i = 0; i < sweep->geometry->light_count; i++) {
-    const light_shadow *shadow = &sweep->lights[i].shadow;
-    if (shadow->method != NULL)
-      floats += planes_of_sheet(sweep, shadow) * hl_shadow_plane(&shadow->plan.view, shadow->plan.reach);
-  }
-  return floats;
-}
-
-static int slabs_of_run(const sweep *sweep) {
-  int slabs = sweep->scene->render.slabs_at_once > 0 ? sweep->scene->render.slabs_at_once : SLABS_OF_RUN;
-  const size_t sheet = floats_of_sheet(sweep) * sizeof(float),
-               slots = sweep->tiles * TILE_PIXELS * SLOT_BYTES;
-  if (slabs > SLABS_OF_RUN) slabs = SLABS_OF_RUN;
-  while (slabs > 1 && (size_t)slabs * slots > SLOTS_BYTES) slabs--;
-  while (slabs > 1 && (2 * (size_t)slabs + 1) * sheet > PLANES_BYTES) slabs--;
-  return slabs;
-}
-
-/* ---- the rays ---- */
-
-static void plan_rays_of(const view *view, const sheet_stack *sheets, double height, affine3 from_frame,
-                         int sheet, plan_rays *rays) {
-  sheet_rays found;
-  hl_view_sheet_rays(view, sheets->normal, height, from_frame, &found);
-  memcpy(rays, &found, sizeof found);
-  rays->height = (float)(sheet * sheets->spacing);
-}
-
-/* middle: rays end in the middle of the slab before each sheet, else on the sheet. */
-static void plan_view(const view *view, const sheet_stack *sheets, affine3 from_frame, bool middle,
-                      plan_rays *rays) {
-  for (int sheet = 0; sheet < sheets->count; sheet++)
-    plan_rays_of(view, sheets, hl_sheet_height(sheets, sheet) - (middle ? 0.5 * sheets->spacing : 0),
-                 from_frame, sheet, &rays[sheet]);
-}
-
-static hl_status plan_all_rays(const sweep *sweep, planned_sweep *planned, hl_error *error) {
-  const sheet_stack *sheets = &sweep->geometry->sheets;
-  const int lights = sweep->geometry->light_count;
-  const size_t count = (2 + 2 * (size_t)lights) * (size_t)sheets->count;
-  const affine3 to_index = sweep->content.grids[0].frame_to_index;
-  plan_rays *rays = planned->rays = hl_allocate_zeroed(sweep->content.context, count, sizeof *planned->rays);
-  if (rays == NULL) return hl_fail_memory(error, count * sizeof *planned->rays, "the rays");
-  plan_view(&sweep->frame->eye, sheets, to_index, false, rays);
-  plan_view(&sweep->frame->eye, sheets, affine3_identity(), true, rays + sheets->count);
-  for (int i = 0; i < lights; i++) {
-    const light_shadow *shadow = &sweep->lights[i].shadow;
-    if (shadow->method == NULL) continue;
-    plan_rays *of_light = rays + (2 + 2 * i) * sheets->count;
-    plan_view(&shadow->plan.view, sheets, to_index, false, of_light);
-    plan_view(&shadow->plan.view, sheets, affine3_identity(), false, of_light + sheets->count);
-  }
+  hl_layout counted = {0};
+  hl_status status = HL_OK;
+  if (renderer->cache.surfaces.mesh_count == 0) status = hl_surfaces_count_memory(scene, &counted, error);
+  if (status == HL_OK) status = hl_renderer_check_room(renderer, counted.most, error);
+  if (status == HL_OK)
+    status = hl_surfaces_update(renderer->context, renderer->pool, scene, &renderer->cache.surfaces, error);
+  if (status != HL_OK || scene->mesh_count == 0) return status;
+  for (size_t i = 0; i < scene->mesh_count; i++, frame->point_count += 8)
+    hl_surface_corners(&scene->meshes[i], frame->voxel, frame->points + frame->point_count);
+  frame->surfaces = &renderer->cache.surfaces;
+  frame->contact = &renderer->cache.contact;
+  frame->mesh_objects = framed->mesh_objects;
   return HL_OK;
 }
 
-/* ---- the sweep ---- */
-
-/* All lights keep the light at the outside of surfaces, or none does. */
-static bool keeps_outside(const sweep *sweep) {
-  for (int i = 0; i < sweep->geometry->light_count; i++)
-    if (sweep->lights[i].shadow.method != NULL && sweep->lights[i].shadow.plan.outside) return true;
-  return false;
+/* A volume that neither shows nor casts a shadow may be the second number of another's function: frames do
+ * not fill its samples. */
+static grid grid_of_frame(const hl_scene_volume *volume, const prepared_volume *prepared) {
+  grid grid = prepared->grid;
+  if (!volume->visible && !volume->casts_shadow) grid.relevant_count = 0;
+  return grid;
 }
 
-static plan_variant variant_of(const sweep *sweep, const frame_plan *plan) {
-  const shade_volume *shade = &sweep->arrays.shade_volumes[0];
-  const grid *grid = &sweep->content.grids[0];
-  return (plan_variant){.storage = storage_of(grid),
-                        .bspline = sweep->content.kernel->degree == HL_BSPLINE_DEGREE,
-                        .eye_perspective = sweep->frame->eye.perspective,
-                        .phong = shade->phong,
-                        .lit = shade->lit,
-                        .shadowed = plan->light_tiles > 0,
-                        .outside = keeps_outside(sweep),
-                        .boxed = grid->cut,
-                        .back_to_front = sweep->geometry->back_to_front,
-                        .channels = sweep->channels};
+/* Brings the tree of what shadow buffers leave light behind up to date; after the frame's lights. */
+static hl_status update_contact(hl_renderer *renderer, const frame *frame, hl_error *error) {
+  surface_tree *tree = &renderer->cache.contact;
+  double distance = hl_contact_distance(frame);
+  bool shadows = false;
+  for (int i = 0; i < frame->light_count; i++) shadows |= frame->lights[i].shadows != HL_SHADOWS_OFF;
+  if (!shadows || frame->surfaces == NULL ||
+      hl_surface_tree_current(tree, &renderer->cache.surfaces, distance))
+    return HL_OK;
+  hl_surface_tree_release(renderer->context, tree);
+  hl_layout counted = {0};
+  hl_surface_tree_count(&renderer->cache.surfaces, distance, &counted);
+  hl_status status = hl_renderer_check_room(renderer, counted.most, error);
+  if (status != HL_OK) return status;
+  return hl_surface_tree_create(renderer->context, &renderer->cache.surfaces, distance, tree, error);
 }
 
-hl_status hl_plan_sweep(const sweep *sweep, planned_sweep *planned, hl_error *error) {
-  frame_plan *plan = &planned->plan;
-  const shade_job *job = &sweep->shade;
-  const shade_volume *shade = &sweep->arrays.shade_volumes[0];
-  memset(planned, 0, sizeof *planned);
-  const int slabs = slabs_of_run(sweep);
-  plan->sheets = sweep->geometry->sheets.count;
-  plan->ring = 2 * slabs + 1;
-  plan->width = sweep->frame->width;
-  plan->height = sweep->frame->height;
-  plan->tiles_x = sweep->tiles_x;
-  plan->tiles = (int)sweep->tiles;
-  plan->light_count = sweep->geometry->light_count;
-  plan->spacing = job->spacing;
-  plan->path = job->path;
-  memcpy(plan->through, job->through, sizeof plan->through);
-  memcpy(plan->towards_eye, job->towards_eye, sizeof plan->towards_eye);
-  memcpy(plan->normal, job->normal, sizeof plan->normal);
-  memcpy(plan->ambient, job->ambient, sizeof plan->ambient);
-  plan->emission = job->emission;
-  plan_matter(shade, &plan->volume);
-  plan_material(shade, sweep->content.volumes[0].scene, &plan->volume);
-  const gpu_volume volume = hl_volume_for_device(&sweep->content.volumes[0]);
-  plan->volume.row_bytes = (unsigned)hl_gpu_row_bytes(&volume);
-  plan_box_rays(&sweep->frame->eye, sweep, &plan->box);
-  plan_content(&sweep->frame->eye, sweep, &plan->content);
-  size_t floats = 0;
-  for (int i = 0; i < plan->light_count; i++) {
-    plan_brightness(&sweep->shade_lights[i], &plan->lights[i]);
-    if (sweep->lights[i].shadow.method != NULL)
-      plan_buffer(sweep, i, plan->ring, &floats, &plan->light_tiles, &plan->lights[i]);
+/* ---- light ---- */
+
+/* The number of channels of light attenuation: three where matter absorbs the colours differently, or where
+ * an emission image's colours come from different places; else one. */
+static int attenuation_channels(const hl_scene_description *scene) {
+  for (size_t i = 0; i < scene->light_count; i++)
+    if (hl_light_emission_colored(&scene->lights[i])) return 3;
+  for (size_t i = 0; i < scene->volume_count; i++)
+    if (scene->volumes[i].casts_shadow && !hl_is_grey(scene->volumes[i].attenuation_color)) return 3;
+  for (size_t i = 0; i < scene->mesh_count; i++)
+    if (scene->meshes[i].casts_shadow && !hl_is_grey(scene->meshes[i].attenuation_color)) return 3;
+  return 1;
+}
+
+/* Finds the light that is scattered more than once, where the scene asks for it. */
+static hl_status scatter_light(hl_renderer *renderer, const hl_scene_description *scene,
+                               const frame_plan *plan, uint64_t sky_mark, hl_error *error) {
+  hl_context *context = renderer->context;
+  if (!hl_scatter_wanted(scene)) {
+    hl_scatter_release(context, &renderer->cache.scattered);
+    return HL_OK;
   }
-  hl_status status = plan_all_rays(sweep, planned, error);
-  planned->sweep = (gpu_sweep){.plan = plan,
-                               .variant = variant_of(sweep, plan),
-                               .rays = planned->rays,
-                               .shown_from = sweep->shown_from,
-                               .plane_floats = floats,
-                               .slabs = slabs};
+  scatter_volume *volumes = hl_allocate(context, scene->volume_count, sizeof *volumes);
+  if (volumes == NULL) return hl_fail_memory(error, scene->volume_count * sizeof *volumes, "the volumes");
+  for (size_t v = 0; v < scene->volume_count; v++)
+    volumes[v] = (scatter_volume){&scene->volumes[v], &plan->volumes.grids[v],
+                                  &renderer->cache.prepared[v].classifier};
+  const scatter_scene all = {context, renderer->pool, scene, volumes, sky_mark, plan->frame.surfaces};
+  hl_layout counted = {0};
+  hl_scatter_count(&all, &counted);
+  hl_status status = hl_renderer_check_room(renderer, counted.most, error);
+  if (status == HL_OK) status = hl_scatter_update(&all, &renderer->cache.scattered, error);
+  hl_release(context, volumes);
   return status;
 }
 
-void hl_plan_release(hl_context *context, planned_sweep *planned) {
-  hl_release(context, planned->rays);
-  planned->rays = NULL;
+static hl_status check_sky_room(void *data, uint64_t bytes, hl_error *error) {
+  return hl_renderer_check_room(data, bytes, error);
+}
+
+static hl_status update_sky(hl_renderer *renderer, const hl_scene_description *scene, const frame_plan *plan,
+                            uint64_t mark, hl_error *error) {
+  const frame_sky of = {scene, renderer->cache.prepared, plan->volumes.grids, &plan->frame,
+                        mark,  plan->share.exchange};
+  const hot_functions *hot = hl_hot_functions(renderer->context->options.instruction_set);
+  return hl_frame_sky_update(renderer->context, renderer->pool, hot, &of,
+                             &(sky_room){check_sky_room, renderer}, &renderer->cache.sky, error);
+}
+
+static hl_status update_phases(hl_renderer *renderer, const hl_scene_description *scene, hl_error *error) {
+  hl_layout counted = {0};
+  hl_phase_count(scene, &counted);
+  uint64_t bytes = counted.bytes, held = renderer->cache.phases.bytes;
+  hl_status status = bytes > held ? hl_renderer_check_room(renderer, bytes - held, error) : HL_OK;
+  if (status != HL_OK) return status;
+  return hl_phase_update(renderer->context, renderer->pool, scene, &renderer->cache.phases, error);
+}
+
+/* ---- the plan ---- */
+
+/* Brings the volumes to the frame: their grids, which differ from the prepared ones where the frame does not
+ * fill their samples and at faces that touch, and the corners of what they show. */
+static void place_volumes(const hl_renderer *renderer, frame_plan *plan) {
+  const hl_scene_description *scene = &plan->framed->scene;
+  plan_volumes *volumes = &plan->volumes;
+  frame *frame = &plan->frame;
+  volumes->count = (int)scene->volume_count;
+  volumes->kernel = hl_kernel_get(scene->render.kernel);
+  volumes->splat = scene->render.reconstruction == HL_RECONSTRUCTION_SPLAT;
+  for (size_t i = 0; i < scene->volume_count; i++) {
+    const prepared_volume *prepared = &renderer->cache.prepared[i];
+    volumes->grids[i] = grid_of_frame(&scene->volumes[i], prepared);
+    volumes->list[i] = (frame_volume){.scene = prepared->scene,
+                                      .classifier = &prepared->classifier,
+                                      .empty = prepared->empty,
+                                      .version = prepared->version,
+                                      .tables_version = prepared->tables_version};
+    if (volumes->grids[i].relevant_count == 0) continue;
+    hl_frame_content(&volumes->grids[i], frame->points + frame->point_count);
+    frame->point_count += 8;
+  }
+  open_faces(scene, volumes->grids);
+  frame->voxel = hl_scene_smallest_edge(scene);
+}
+
+/* The eye, and the lights in frame space. */
+static hl_status place_eye_and_lights(frame_plan *plan, hl_error *error) {
+  const hl_scene_description *scene = &plan->framed->scene;
+  frame *frame = &plan->frame;
+  hl_status status = hl_frame_set_up_eye(frame, scene, error);
+  if (status != HL_OK) return status;
+  frame->spacing = fmin(scene->render.sheet_spacing, hl_is_maximum(scene) ? MAXIMUM_SPACING : GRID_MARGIN) *
+                   frame->voxel; /* at most the margin by which volumes continue beyond their faces */
+  hl_frame_set_up_lights(frame, scene);
+  for (int i = 0; i < plan->volumes.count; i++)
+    if (rays_start_inside(frame, &plan->volumes.grids[i])) plan->volumes.grids[i].cut = true;
+  plan->channels = attenuation_channels(scene);
+  return HL_OK;
+}
+
+/* Finds the part of the picture that this renderer makes. */
+static hl_status share_picture(hl_renderer *renderer, frame_plan *plan, hl_error *error) {
+  const hl_scene_description *scene = &plan->framed->scene;
+  const share_content content = {&plan->frame, plan->volumes.grids, plan->volumes.count,
+                                 &plan->sweeps.sheets[0].sheets};
+  hl_layout counted = {0};
+  plan->share = (picture_share){.part = renderer->part,
+                                .parts = renderer->parts,
+                                .exchange = renderer->exchange.gather != NULL ? &renderer->exchange : NULL};
+  hl_share_count(scene->width, scene->height, renderer->parts, &counted);
+  hl_status status = hl_renderer_check_room(renderer, counted.most, error);
+  return status == HL_OK ? hl_share_create(renderer->context, &content, &plan->share, error) : status;
+}
+
+/* Light that does not travel along the sheets: what is scattered more than once, the sky's, and the tables of
+ * phase functions. */
+static hl_status find_fields(hl_renderer *renderer, uint64_t sky_mark, frame_plan *plan, hl_error *error) {
+  const hl_scene_description *scene = &plan->framed->scene;
+  hl_status status = scatter_light(renderer, scene, plan, sky_mark, error);
+  if (status == HL_OK) status = update_sky(renderer, scene, plan, sky_mark, error);
+  if (status == HL_OK) status = update_phases(renderer, scene, error);
+  plan->fields = (plan_fields){
+      .scattered = renderer->cache.scattered.light != NULL ? &renderer->cache.scattered : NULL,
+      .sky = renderer->cache.sky.light.cells != NULL ? &renderer->cache.sky.light : NULL,
+      .phases = &renderer->cache.phases};
+  return status;
+}
+
+hl_status hl_plan_frame(hl_renderer *renderer, const framed_scene *framed, const frame_request *request,
+                        frame_plan *plan, hl_error *error) {
+  hl_context *context = renderer->context;
+  plan->layers = request->layers;
+  hl_status status = hl_frame_plan_create(context, framed, plan, error);
+  if (status != HL_OK) return status;
+  place_volumes(renderer, plan);
+  status = add_surfaces(renderer, framed, &plan->frame, error);
+  if (status == HL_OK) status = place_eye_and_lights(plan, error);
+  if (status == HL_OK) status = update_contact(renderer, &plan->frame, error);
+  if (status == HL_OK) status = hl_plan_sweeps(context, plan, error);
+  if (status == HL_OK) status = share_picture(renderer, plan, error);
+  if (status == HL_OK) status = find_fields(renderer, request->sky_mark, plan, error);
+  return status == HL_OK ? hl_plan_lights(context, plan, error) : status;
 }

@@ -3,7 +3,7 @@
 #define HL_RENDER_SKY_H
 
 #include "field/sky_field.h"
-#include "render/frame.h"
+#include "plan/frame.h"
 #include "render/prepare.h"
 
 /* What a frame's sky lights. */

@@ -10,13 +10,11 @@
 #include "light/light_caps.h"
 #include "light/light_source.h"
 #include "light/light_texture.h"
+#include "light/phase_table.h"
 #include "render/cut.h"
-#include "render/phase_table.h"
 #include "scatter/scatter.h"
 #include "shadow/attenuate.h"
 #include "shadow/shadow_buffer.h"
-
-enum { MAXIMUM_SWEEP_LIGHTS = 16 };
 
 struct surface_samples;
 

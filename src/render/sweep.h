@@ -1,4 +1,5 @@
-/* render/sweep.h - one pass over the sheets: its state, and the stages that the sheet loop calls.
+/* render/sweep.h - one pass over the sheets on the processors: its state, and the stages that the sheet loop
+ * calls. What the pass does is the plan's (plan/frame_plan.h), which it only reads.
  *
  * Threads own tiles: an image tile is filled, shaded and composited by one task, a light tile filled and
  * composited by one task, always in the same order, so that the picture does not depend on threads. */
@@ -7,9 +8,10 @@
 
 #include <halflight/render.h>
 
+#include "plan/frame_plan.h"
 #include "render/layers.h"
-#include "render/share.h"
 #include "render/surface_samples.h"
+#include "render/sweep_constants.h"
 #include "render/view_sheets.h"
 #include "shadow/shadow_method.h"
 #include "surface/fragments.h"
@@ -18,10 +20,9 @@
 typedef struct sweep_light {
   const light_source *source;
   light_shadow shadow;
-  view_sheets sheets;       /* what the shadow buffer's view sees */
-  light_texture texture;    /* the picture that the light projects */
-  light_emission *emission; /* owned; the picture on the light itself; null: none */
-  void *reads;              /* owned; holds the arrays that follow (light_reads.h) */
+  view_sheets sheets;    /* what the shadow buffer's view sees */
+  light_texture texture; /* the picture that the light projects */
+  void *reads;           /* owned; holds the arrays that follow (light_reads.h) */
   int32_t *needed_until; /* [tiles of the buffer]; the last slab that needs the tile, 0: none does; null: all
                             slabs need all tiles */
   int32_t *sublights_until; /* light_shadow's */
@@ -113,14 +114,10 @@ typedef struct loop_arrays {
   uint32_t *tasks;                   /* [tiles of the image and of all lights]; the stretches' tiles */
   shade_job *slab_shades;            /* [stretch]; of the picture's slabs */
   attenuate_job *slab_attenuates;    /* [lights][stretch]; of the lights' slabs */
-  shade_volume *shade_volumes;       /* [volumes] */
-  shade_cut *shade_cuts;             /* of all volumes, one after the other */
   shade_patch *shade_patches;        /* [threads][volumes] */
   unsigned char *scratch;            /* [threads][volumes][SHADE_SCRATCH_BYTES] */
   attenuate_volume *scratch_volumes; /* [threads][volumes] */
   sweep_counts *counts;              /* [threads] */
-  float *srgb_decode;                /* [256]: the linear values of sRGB's codes, for voxels with colours */
-  float *tint_decode;                /* [256]: the linear values of a mask's codes, their squares */
 } loop_arrays;
 
 /* What a sweep took. */
@@ -129,48 +126,68 @@ typedef struct sweep_times {
   uint64_t waits; /* how often all threads have waited for each other */
 } sweep_times;
 
-struct sweep {
-  /* the frame; set by the caller */
-  sheet_content content; /* sheets: of geometry */
-  const hl_scene_description *scene;
-  const frame *frame;
-  const frame_sweep *geometry;
-  int channels;               /* of light attenuation: 1 or 3 */
-  tile_action *act;           /* steps 12 to 16, or what takes their place */
-  void *action;               /* of act; the caller's */
-  bool first;                 /* the sweep that carries ambient light and opacity */
-  bool measures;              /* the sweep that carries depth and normals */
-  const picture_share *share; /* the part of the picture that this sweep shades */
-  bool preparatory; /* this sweep prepares another one: it reports no progress, and its sheets are not counted
-                     */
-  const layer_pixels *layer_pixels; /* pixels of the layers; null: none */
-  const scatter_field *scattered;   /* null: none */
-  const sky_light *sky;             /* null: none */
-  const phase_tables *phases;
-  const maximum_values *maximum; /* values of a maximum projection; values null: matter is lit */
-  float *pixels;                 /* [tiles][16][4][16] */
-  int32_t *shown_from;           /* [tiles][16]; first visible slab per block; null: nothing is hidden */
-  /* the picture */
-  view_sheets image;
-  size_t tiles;
-  int tiles_x, tiles_y;
-  sweep_light lights[FRAME_LIGHTS];
-  shade_light shade_lights[FRAME_LIGHTS];
-  attenuate_job attenuate[FRAME_LIGHTS]; /* what is the same for all slabs is filled in */
-  shade_job shade;                       /* likewise */
-  sweep_layers layers;
-  surface_state surfaces;
-  /* the loop */
+/* The loop over the sheets. */
+typedef struct sweep_loop {
   int ring; /* sheets whose light is kept; 1: picture and lights take turns, slab by slab */
   slab_stretch picture_stretch, light_stretch;
   int task_start[FRAME_LIGHTS + 2]; /* the picture's first task, each light's, and one past the last task */
-  loop_arrays arrays;
   sweep_times times;
+} sweep_loop;
+
+/* The pixels that a sweep makes. */
+typedef struct sweep_target {
+  float *pixels;                 /* [tiles][16][4][16]; the sweep's own */
+  const int32_t *shown_from;     /* [tiles][16]; first visible slab per block; null: nothing is hidden */
+  const layer_pixels *layers;    /* pixels of the layers; null: none */
+  const maximum_values *maximum; /* values of a maximum projection; null, or values null: matter is lit */
+} sweep_target;
+
+/* Whose a sweep is: a picture's, or a search that prepares one, which lights nothing (hidden.c). */
+typedef enum sweep_purpose { SWEEP_PICTURE, SWEEP_SEARCH } sweep_purpose;
+
+struct sweep {
+  /* set by hl_sweep_set_up() */
+  const frame_plan *frame_plan;
+  const sweep_plan *plan;
+  const sweep_sheets *geometry; /* the plan's */
+  const frame *frame;           /* the frame plan's */
+  const picture_share *share;   /* the part of the picture that this sweep shades */
+  sheet_content content;
+  sweep_target target;
+  sweep_purpose purpose;
+  tile_action *act; /* steps 12 to 16, or what takes their place */
+  void *action;     /* of act; the caller's */
+  int channels;     /* of light attenuation: 1 or 3 */
+  size_t tiles;     /* of the picture */
+  int tiles_x;
+  /* the views */
+  view_sheets image;
+  sweep_light lights[FRAME_LIGHTS];
+  sweep_constants constants;
+  sweep_layers layers;
+  surface_state surfaces;
+  loop_arrays arrays;
+  sweep_loop loop;
 };
 
-/* hidden.c. Called before the steps of a sweep that goes from back to front. Allocates and fills shown_from,
- * which the caller releases. The sweep's pixels must be zeros, and are zeros afterwards. */
-hl_status hl_sweep_find_hidden(sweep *sweep, hl_render_statistics *statistics, hl_error *error);
+/* The processors, and the memory that they may use. */
+typedef struct sweep_means {
+  hl_context *context;
+  hl_pool *pool;
+  hl_reserve *reserve;
+  const hot_functions *hot;
+} sweep_means;
+
+/* A sweep of a plan, without memory: hl_sweep_begin() follows, or hl_sweep_count_memory(). */
+void hl_sweep_set_up(sweep *sweep, const sweep_means *means, const frame_plan *frame_plan,
+                     const sweep_plan *plan, const sweep_target *target);
+
+/* Finds, before a sweep that goes from back to front, what opaque matter hides from the eye (hidden.c).
+ * pixels: the sweep's, zeros, which are zeros afterwards. *shown_from: [tiles][16]; the caller releases it;
+ * null where the sweep goes from front to back. */
+hl_status hl_find_hidden(const sweep_means *means, const frame_plan *frame_plan, const sweep_plan *plan,
+                         float *pixels, int32_t **shown_from, hl_render_statistics *statistics,
+                         hl_error *error);
 
 /* The tile action of a lit picture: steps 12 to 16, and the layers (sweep_stages.c). */
 uint32_t hl_light_tile(const sweep *sweep, const tile_slab *slab);
@@ -178,11 +195,6 @@ uint32_t hl_light_tile(const sweep *sweep, const tile_slab *slab);
 /* Steps 1 to 4, and memory. The caller keeps both arrays from frame to frame: buffers holds one buffer per
  * light of the frame, memory [FRAME_LIGHTS] blocks that the frame's sweeps use in turn. */
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error);
-/* Plans the sweep's lights and sets its shading up, as hl_sweep_begin() does, but takes no memory for light
- * and densities: for a device that has its own. hl_sweep_end() ends it. */
-hl_status hl_sweep_describe(sweep *sweep, hl_error *error);
-/* The first slab that a light's shadows reach. */
-int hl_sweep_first_reached(const sweep *sweep, const light_shadow *shadow);
 /* Seconds of a clock that never runs backwards. */
 double hl_clock_seconds(void);
 
@@ -199,9 +211,8 @@ typedef struct sweeps_memory {
   hl_layout passing; /* ends with each sweep; without light textures and the lists of splatted voxels */
 } sweeps_memory;
 
-/* Adds what hl_sweep_begin() takes for a sweep as the caller sets it. points: room for the corners that
- * hl_frame_visible_points() gives. The sweep then has served: another one is begun. */
-hl_status hl_sweep_count_memory(sweep *sweep, vec3 *points, sweeps_memory *memory, hl_error *error);
+/* Adds what hl_sweep_begin() takes for a sweep that is set up. It then has served: another one is begun. */
+void hl_sweep_count_memory(sweep *sweep, sweeps_memory *memory);
 
 /* The sheet loop: steps 3 to 18 (sweep_loop.c). */
 hl_status hl_sweep_run(sweep *sweep, hl_error *error);

@@ -12,10 +12,10 @@ static void set_up_white_volumes(sweep *sweep) {
   for (size_t i = 0; i < CLASSIFIER_ENTRIES + 2; i++)
     layers->ones[i][0] = layers->ones[i][1] = layers->ones[i][2] = 1;
   for (int g = 0; g < sweep->content.volume_count; g++) {
-    layers->white[g] = sweep->content.volumes[g].classifier;
+    layers->white[g] = *sweep->content.volumes[g].classifier;
     layers->white[g].color = layers->ones;
     layers->white[g].plane.color = NULL;
-    shade_volume white = sweep->arrays.shade_volumes[g];
+    shade_volume white = sweep->constants.volumes[g];
     white.classifier = &layers->white[g];
     white.colors.voxels = NULL;
     white.ambient = white.emission = 0;
@@ -42,7 +42,7 @@ static void set_up_white_light(const shade_light *from, shade_light *white) {
 enum { MOST_OTHER_PASSES = 6 };
 
 static bool wants_layers(const sweep *sweep) {
-  return sweep->layer_pixels != NULL && sweep->layer_pixels->wanted != NULL;
+  return sweep->target.layers != NULL && sweep->target.layers->wanted != NULL;
 }
 
 /* The passes begin the block. */
@@ -79,8 +79,8 @@ static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *ligh
 
 /* The passes of a light: its picture and its shadow; of a sun of the sky, its parts of the sky's pictures. */
 static void add_light_passes(sweep *sweep, int index) {
-  const light_pixels *to = &sweep->layer_pixels->lights[sweep->geometry->light[index]];
-  const shade_light *light = &sweep->shade_lights[index];
+  const light_pixels *to = &sweep->target.layers->lights[sweep->geometry->light[index]];
+  const shade_light *light = &sweep->constants.lights[index];
   shade_light *white = &sweep->layers.white_lights[index];
   (void)add_pass(sweep, to->picture, light, 1);
   set_up_white_light(light, white);
@@ -93,13 +93,13 @@ static void add_light_passes(sweep *sweep, int index) {
 }
 
 static void add_sky_passes(sweep *sweep) {
-  const layer_pixels *pixels = sweep->layer_pixels;
+  const layer_pixels *pixels = sweep->target.layers;
   sweep_layers *layers = &sweep->layers;
-  if (sweep->shade.sky == NULL) return;
-  layers->white_sky = *sweep->shade.sky;
+  if (sweep->constants.shade.sky == NULL) return;
+  layers->white_sky = *sweep->constants.shade.sky;
   for (int c = 0; c < 3; c++) layers->white_sky.color[c] = 1;
   layer_pass *sky = add_pass(sweep, pixels->sky, NULL, 0);
-  if (sky != NULL) sky->sky = sweep->shade.sky;
+  if (sky != NULL) sky->sky = sweep->constants.shade.sky;
   layer_pass *reaching = add_pass(sweep, pixels->sky_reaching, NULL, 0);
   if (reaching != NULL) reaching->sky = &layers->white_sky, reaching->matter = MATTER_WHITE;
   layer_pass *open = add_pass(sweep, pixels->sky_open, NULL, 0);
@@ -107,7 +107,7 @@ static void add_sky_passes(sweep *sweep) {
 }
 
 hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
-  const layer_pixels *pixels = sweep->layer_pixels;
+  const layer_pixels *pixels = sweep->target.layers;
   hl_layout layout = {0};
   if (!wants_layers(sweep)) return HL_OK;
   while (hl_layout_pass(&layout, sweep->content.context)) lay_out(sweep, &layout);
@@ -115,13 +115,13 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
   memset(layout.base, 0, layout.bytes);
   set_up_white_volumes(sweep);
   for (int i = 0; i < sweep->geometry->light_count; i++) add_light_passes(sweep, i);
-  layer_pass *ambient = sweep->first ? add_pass(sweep, pixels->ambient, NULL, 0) : NULL;
-  for (int c = 0; c < 3 && ambient != NULL; c++) ambient->ambient[c] = sweep->shade.ambient[c];
-  if (ambient != NULL) ambient->scattered = sweep->shade.scattered;
-  layer_pass *emission = sweep->first ? add_pass(sweep, pixels->emission, NULL, 0) : NULL;
-  if (emission != NULL) emission->emission = sweep->shade.emission;
+  layer_pass *ambient = sweep->plan->adds_even_light ? add_pass(sweep, pixels->ambient, NULL, 0) : NULL;
+  for (int c = 0; c < 3 && ambient != NULL; c++) ambient->ambient[c] = sweep->constants.shade.ambient[c];
+  if (ambient != NULL) ambient->scattered = sweep->constants.shade.scattered;
+  layer_pass *emission = sweep->plan->adds_even_light ? add_pass(sweep, pixels->emission, NULL, 0) : NULL;
+  if (emission != NULL) emission->emission = sweep->constants.shade.emission;
   add_sky_passes(sweep);
-  layer_pass *measures = sweep->measures ? add_pass(sweep, pixels->measures, NULL, 0) : NULL;
+  layer_pass *measures = sweep->plan->measures ? add_pass(sweep, pixels->measures, NULL, 0) : NULL;
   if (measures != NULL) {
     measures->shade = sweep->content.hot->render.measure;
     measures->tile_floats = MEASURES * TILE_PIXELS;
@@ -139,7 +139,7 @@ static const shade_patch *patches_of(const sweep *sweep, const tile_slab *slab, 
   shade_patch *patches = sweep->layers.patches + (size_t)slab->worker * (size_t)sweep->content.volume_count;
   for (int i = 0; i < slab->patch_count; i++) {
     patches[i] = slab->patches[i];
-    patches[i].volume = &volumes[slab->patches[i].volume - sweep->arrays.shade_volumes];
+    patches[i].volume = &volumes[slab->patches[i].volume - sweep->constants.volumes];
   }
   return patches;
 }

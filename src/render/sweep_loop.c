@@ -51,36 +51,20 @@ static int list_tiles(const occupancy *occupancy, const sweep_light *light, slab
   return count;
 }
 
-/* Whether a slab lies beyond the light, on the side that its rays travel to in this sweep. */
-static bool is_beyond(const sweep *sweep, const light_source *source, int sheet) {
-  const sheet_stack *sheets = &sweep->geometry->sheets;
-  return source->parallel || hl_sheet_height(sheets, sheet - 1) >= vec3_dot(sheets->normal, source->position);
-}
-
-static bool is_reached(const sweep *sweep, const light_shadow *shadow, int sheet) {
-  return is_beyond(sweep, shadow->setup.source, sheet + 1 - shadow->method->first_slab);
-}
-
-int hl_sweep_first_reached(const sweep *sweep, const light_shadow *shadow) {
-  int slab = 1;
-  while (slab < sweep->geometry->sheets.count && !is_reached(sweep, shadow, slab)) slab++;
-  return slab;
-}
-
 static void shade_stretch(sweep *sweep, size_t tile, int worker) {
-  const slab_stretch stretch = sweep->picture_stretch;
+  const slab_stretch stretch = sweep->loop.picture_stretch;
   for (int sheet = stretch.first; sheet < stretch.end; sheet++)
     if (hl_occupancy_touches(&sweep->image.occupancy, tile, sheet))
       hl_sweep_shade(sweep, &sweep->arrays.slab_shades[sheet - stretch.first], tile, worker);
 }
 
 static void attenuate_stretch(sweep *sweep, int index, size_t tile, int worker) {
-  const slab_stretch stretch = sweep->light_stretch;
+  const slab_stretch stretch = sweep->loop.light_stretch;
   const sweep_light *light = &sweep->lights[index];
   const attenuate_job *jobs = sweep->arrays.slab_attenuates + (size_t)index * (size_t)sweep->content.stretch;
   for (int sheet = stretch.first; sheet < stretch.end && hl_light_needs(light, tile, sheet); sheet++) {
     hl_shadow_buffer_carry(light->shadow.buffer, tile, sheet);
-    if (is_reached(sweep, &light->shadow, sheet) &&
+    if (hl_is_reached(&sweep->geometry->sheets, &light->shadow, sheet) &&
         hl_occupancy_touches(&light->sheets.occupancy, tile, sheet))
       hl_sweep_attenuate(sweep, index, &jobs[sheet - stretch.first], tile, worker);
   }
@@ -88,10 +72,10 @@ static void attenuate_stretch(sweep *sweep, int index, size_t tile, int worker) 
 
 static void stretch_task(void *data, size_t index, int worker) {
   sweep *sweep = data;
-  int each = tiles_a_task(sweep), last = sweep->task_start[sweep->geometry->light_count + 1];
+  int each = tiles_a_task(sweep), last = sweep->loop.task_start[sweep->geometry->light_count + 1];
   int first = (int)index * each, end = first + each < last ? first + each : last;
   for (int task = first, light = -1; task < end; task++) {
-    while (task >= sweep->task_start[light + 2]) light++;
+    while (task >= sweep->loop.task_start[light + 2]) light++;
     if (light < 0) shade_stretch(sweep, sweep->arrays.tasks[task], worker);
     else attenuate_stretch(sweep, light, sweep->arrays.tasks[task], worker);
   }
@@ -100,24 +84,24 @@ static void stretch_task(void *data, size_t index, int worker) {
 /* A task of the lights, where each tile is one task. */
 static void light_task(void *data, size_t index, int worker) {
   const sweep *sweep = data;
-  stretch_task(data, (size_t)sweep->task_start[1] + index, worker);
+  stretch_task(data, (size_t)sweep->loop.task_start[1] + index, worker);
 }
 
 /* ---- what all tiles of a slab have in common ---- */
 
 static void reach_picture(sweep *sweep) {
   const sheet_stack *sheets = &sweep->geometry->sheets;
-  const slab_stretch stretch = sweep->picture_stretch;
+  const slab_stretch stretch = sweep->loop.picture_stretch;
   for (int sheet = stretch.first; sheet < stretch.end; sheet++) {
     shade_job *job = &sweep->arrays.slab_shades[sheet - stretch.first];
-    *job = sweep->shade;
+    *job = sweep->constants.shade;
     hl_view_sheets_reach(&sweep->image, sheet);
     hl_view_sheet_rays(&sweep->frame->eye, sheets->normal,
                        hl_sheet_height(sheets, sheet) - 0.5 * sheets->spacing, affine3_identity(),
                        &job->rays);
     job->height = (float)(sheet * sheets->spacing);
     job->sheet = sheet;
-    job->plane = (sheet - 1) % sweep->ring;
+    job->plane = (sheet - 1) % sweep->loop.ring;
   }
 }
 
@@ -125,7 +109,7 @@ static void reach_light_slab(sweep *sweep, int index, int sheet, attenuate_job *
   sweep_light *light = &sweep->lights[index];
   const sheet_stack *sheets = &sweep->geometry->sheets;
   light_shadow *shadow = &light->shadow;
-  *job = sweep->attenuate[index];
+  *job = sweep->constants.attenuate[index];
   hl_view_sheets_reach(&light->sheets, sheet);
   hl_view_sheet_rays(&shadow->buffer->view, sheets->normal, hl_sheet_height(sheets, sheet),
                      affine3_identity(), &job->rays);
@@ -135,7 +119,7 @@ static void reach_light_slab(sweep *sweep, int index, int sheet, attenuate_job *
 }
 
 static void reach_light(sweep *sweep, int index) {
-  const slab_stretch stretch = sweep->light_stretch;
+  const slab_stretch stretch = sweep->loop.light_stretch;
   attenuate_job *jobs = sweep->arrays.slab_attenuates + (size_t)index * (size_t)sweep->content.stretch;
   for (int sheet = stretch.first; sheet < stretch.end; sheet++)
     reach_light_slab(sweep, index, sheet, &jobs[sheet - stretch.first]);
@@ -148,7 +132,7 @@ static void prepare_lookups(sweep *sweep, slab_stretch stretch) {
     light_shadow *shadow = &sweep->lights[i].shadow;
     if (shadow->method == NULL || shadow->method->before_shading == NULL) continue;
     for (int sheet = stretch.first; sheet < stretch.end; sheet++)
-      shadow->method->before_shading(shadow, sheet, &shadow->lookups[(sheet - 1) % sweep->ring]);
+      shadow->method->before_shading(shadow, sheet, &shadow->lookups[(sheet - 1) % sweep->loop.ring]);
   }
 }
 
@@ -159,33 +143,33 @@ static void prepare_lookups(sweep *sweep, slab_stretch stretch) {
 static void run_stretches(sweep *sweep, slab_stretch picture, slab_stretch light, bool offers) {
   hl_pool *pool = sweep->content.pool;
   double start = hl_clock_seconds();
-  sweep->picture_stretch = picture;
-  sweep->light_stretch = light;
+  sweep->loop.picture_stretch = picture;
+  sweep->loop.light_stretch = light;
   reach_picture(sweep);
   int count = list_tiles(&sweep->image.occupancy, NULL, picture, sweep->arrays.tasks);
-  sweep->task_start[1] = count;
+  sweep->loop.task_start[1] = count;
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     const sweep_light *of = &sweep->lights[i];
     if (of->shadow.method != NULL) {
       reach_light(sweep, i);
       count += list_tiles(&of->sheets.occupancy, of, light, sweep->arrays.tasks + count);
     }
-    sweep->task_start[i + 2] = count;
+    sweep->loop.task_start[i + 2] = count;
   }
-  size_t each = (size_t)tiles_a_task(sweep), picture_tiles = (size_t)sweep->task_start[1];
+  size_t each = (size_t)tiles_a_task(sweep), picture_tiles = (size_t)sweep->loop.task_start[1];
   if (offers) {
     hl_pool_offer(pool, picture_tiles, stretch_task, sweep);
     hl_pool_run(pool, (size_t)count - picture_tiles, light_task, sweep);
   } else {
     hl_pool_run(pool, ((size_t)count + each - 1) / each, stretch_task, sweep);
   }
-  sweep->times.seconds_tiles += hl_clock_seconds() - start;
+  sweep->loop.times.seconds_tiles += hl_clock_seconds() - start;
 }
 
 static void finish_picture(sweep *sweep) {
   double start = hl_clock_seconds();
   hl_pool_finish_offer(sweep->content.pool);
-  sweep->times.seconds_tiles += hl_clock_seconds() - start;
+  sweep->loop.times.seconds_tiles += hl_clock_seconds() - start;
 }
 
 /* Whether some light's buffer changes as a whole at a sheet. */
@@ -193,7 +177,9 @@ static bool any_advances(const sweep *sweep, int sheet) {
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     const light_shadow *shadow = &sweep->lights[i].shadow;
     const shadow_method *method = shadow->method;
-    if (method == NULL || method->advance == NULL || !is_beyond(sweep, shadow->setup.source, sheet)) continue;
+    if (method == NULL || method->advance == NULL ||
+        !hl_is_beyond(&sweep->geometry->sheets, shadow->setup.source, sheet))
+      continue;
     if (method->advances == NULL || method->advances(shadow, sheet)) return true;
   }
   return false;
@@ -215,12 +201,13 @@ static void advance_lights(sweep *sweep, slab_stretch stretch) {
   for (int i = 0; i < sweep->geometry->light_count && stretch.first < stretch.end; i++) {
     sweep_light *light = &sweep->lights[i];
     light_shadow *shadow = &light->shadow;
-    if (shadow->method == NULL || shadow->method->advance == NULL || !is_beyond(sweep, light->source, sheet))
+    if (shadow->method == NULL || shadow->method->advance == NULL ||
+        !hl_is_beyond(&sweep->geometry->sheets, light->source, sheet))
       continue;
     hl_shadow_buffer_reach(shadow->buffer, sheet);
     shadow->method->advance(shadow, &light->sheets.occupancy, sheet);
   }
-  sweep->times.seconds_soften += hl_clock_seconds() - start;
+  sweep->loop.times.seconds_soften += hl_clock_seconds() - start;
 }
 
 /* The paper's loop over the sheets (section 3.1, eighteen steps).
@@ -243,7 +230,7 @@ static void advance_lights(sweep *sweep, slab_stretch stretch) {
  * slabs before it. The first and the last sheet lie outside the content. */
 hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
   const int sheets = sweep->geometry->sheets.count;
-  const bool ahead = sweep->ring > 1;
+  const bool ahead = sweep->loop.ring > 1;
   uint64_t waits = hl_pool_waits(sweep->content.pool);
   slab_stretch picture = {1, 1}, light = {1, 1};
   while (picture.end < sheets) {
@@ -259,11 +246,11 @@ hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
     }
     advance_lights(sweep, light);
     finish_picture(sweep);
-    if (!sweep->preparatory)
+    if (sweep->purpose == SWEEP_PICTURE)
       hl_progress(sweep->content.context, "render", (double)(picture.end - 1) / sheets);
     if (hl_pool_cancelled(sweep->content.pool))
       return hl_fail(error, HL_ERROR_CANCELLED, "cancelled while rendering");
   }
-  sweep->times.waits += hl_pool_waits(sweep->content.pool) - waits;
+  sweep->loop.times.waits += hl_pool_waits(sweep->content.pool) - waits;
   return HL_OK;
 }

@@ -20,8 +20,8 @@ static void fetch_opacities(const float *pixels, uint32_t blocks) {
 
 /* The blocks of a tile in which a slab is not hidden. */
 static uint32_t shown_blocks(const sweep *sweep, size_t tile, int slab) {
-  if (sweep->shown_from == NULL) return ALL_BLOCKS;
-  const int32_t *shown_from = sweep->shown_from + tile * TILE_BLOCKS;
+  if (sweep->target.shown_from == NULL) return ALL_BLOCKS;
+  const int32_t *shown_from = sweep->target.shown_from + tile * TILE_BLOCKS;
   uint32_t shown = 0;
   for (int block = 0; block < TILE_BLOCKS; block++) shown |= (uint32_t)(shown_from[block] <= slab) << block;
   return shown;
@@ -43,11 +43,11 @@ static int fill_image_tile(sweep *sweep, slab_place place, uint32_t need, int wo
     place.patch = p;
     uint32_t near = hl_patch_relevant(sheets, place, need);
     if (near == 0) continue;
-    fetch_opacities(sweep->pixels + tile * 4 * TILE_PIXELS, near);
+    fetch_opacities(sweep->target.pixels + tile * 4 * TILE_PIXELS, near);
     patch_slab slab = hl_patch_slab(sheets, place, need, &counts->pixels_image);
     if (slab.blocks == 0) continue;
     *blocks |= slab.blocks;
-    patches[count++] = (shade_patch){&sweep->arrays.shade_volumes[g],
+    patches[count++] = (shade_patch){&sweep->constants.volumes[g],
                                      slab.before,
                                      slab.current,
                                      slab.blocks,
@@ -60,7 +60,7 @@ static int fill_image_tile(sweep *sweep, slab_place place, uint32_t need, int wo
 
 uint32_t hl_light_tile(const sweep *sweep, const tile_slab *slab) {
   uint32_t open = sweep->content.hot->render.shade(slab->job, slab,
-                                                   sweep->pixels + slab->tile * 4 * TILE_PIXELS,
+                                                   sweep->target.pixels + slab->tile * 4 * TILE_PIXELS,
                                                    &sweep->arrays.counts[slab->worker].samples);
   hl_sweep_layers_tile(sweep, slab);
   return open;
@@ -120,10 +120,10 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
     if (hl_patch_relevant(sheets, place, need) == 0) continue;
     patch_slab slab = hl_patch_slab(sheets, place, need, pixels);
     if (slab.blocks == 0) continue;
-    volumes[count] = (attenuate_volume){.classifier = &sweep->content.volumes[g].classifier,
+    volumes[count] = (attenuate_volume){.classifier = sweep->content.volumes[g].classifier,
                                         .blocks = slab.blocks,
                                         .surface = scene->shading == HL_SHADING_PHONG,
-                                        .voxel = sweep->arrays.shade_volumes[g].voxel,
+                                        .voxel = sweep->constants.volumes[g].voxel,
                                         .before = slab.before,
                                         .density = slab.current,
                                         .enter = slab.enter,
@@ -131,7 +131,7 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
                                         .uncut = slab.uncut,
                                         .grid = &sweep->content.grids[g],
                                         .kernel = sweep->content.kernel,
-                                        .to_index = sweep->arrays.shade_volumes[g].to_index};
+                                        .to_index = sweep->constants.volumes[g].to_index};
     for (int c = 0; c < HL_CHANNELS; c++) volumes[count].weight[c] = (float)scene->attenuation_color[c];
     count++;
   }

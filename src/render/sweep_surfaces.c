@@ -76,7 +76,7 @@ bool hl_sweep_has_unseen(const sweep *sweep) {
 }
 
 hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error) {
-  if (sweep->frame->surfaces == NULL || sweep->preparatory) return HL_OK;
+  if (sweep->frame->surfaces == NULL || sweep->purpose != SWEEP_PICTURE) return HL_OK;
   surface_state *state = &sweep->surfaces;
   hl_status status = make_room(sweep, error);
   if (status == HL_OK)
@@ -89,7 +89,7 @@ hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error) {
 hl_status hl_sweep_surfaces_begin_lights(sweep *sweep, hl_error *error) {
   surface_state *state = &sweep->surfaces;
   hl_status status = HL_OK;
-  if (sweep->frame->surfaces == NULL || sweep->preparatory) return HL_OK;
+  if (sweep->frame->surfaces == NULL || sweep->purpose != SWEEP_PICTURE) return HL_OK;
   for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++) {
     sweep_light *light = &sweep->lights[i];
     if (light->shadow.method == NULL) continue;
@@ -131,7 +131,8 @@ static void shade_batch(const sweep *sweep, const tile_slab *slab, surface_batch
   if (hl_contact_find(sweep, slab, batch, contact))
     batch->samples.contact = (const float(*)[SURFACE_SAMPLES])contact;
   sweep->content.hot->render.surface(slab->job, &batch->samples);
-  hl_surface_batch_composite(batch, slab->job->back_to_front, sweep->pixels + slab->tile * 4 * TILE_PIXELS);
+  hl_surface_batch_composite(batch, slab->job->back_to_front,
+                             sweep->target.pixels + slab->tile * 4 * TILE_PIXELS);
   hl_sweep_layers_batch(sweep, slab, batch);
   batch->count = 0;
 }
@@ -211,7 +212,7 @@ static uint32_t shade_piece(const sweep *sweep, const tile_slab *slab, const flo
 
 /* The blocks, among `blocks`, of which some pixel is not opaque. */
 static uint32_t open_blocks(const sweep *sweep, const tile_slab *slab, uint32_t blocks) {
-  const float *pixels = sweep->pixels + slab->tile * 4 * TILE_PIXELS;
+  const float *pixels = sweep->target.pixels + slab->tile * 4 * TILE_PIXELS;
   uint32_t open = 0;
   for (; blocks != 0; blocks &= blocks - 1) {
     int block = __builtin_ctz(blocks);

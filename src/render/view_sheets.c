@@ -258,7 +258,7 @@ static void reach_sheet(view_sheets *sheets, int sheet) {
     *source = (fill_source){.grid = &content->grids[g],
                             .kernel = content->kernel,
                             .sheet = sheet,
-                            .classifier = &content->volumes[g].classifier,
+                            .classifier = content->volumes[g].classifier,
                             .lists = sheets->lists == NULL ? NULL : &sheets->lists[g]};
     source->rays = run_of_grid(sheets, run, g)->rays[sheet - run];
   }

@@ -5,9 +5,8 @@
 
 #include "core/memory.h"
 #include "fill/voxel_lists.h"
-#include "render/frame.h"
+#include "plan/frame_plan.h"
 #include "render/hot.h"
-#include "render/prepare.h"
 
 /* Data that all views of a sweep share; borrowed. */
 typedef struct sheet_content {
@@ -16,8 +15,8 @@ typedef struct sheet_content {
   hl_reserve *reserve;
   const hot_functions *hot;
   const sheet_stack *sheets;
-  const prepared_volume *volumes; /* [volume_count] */
-  const grid *grids;              /* [volume_count], the frame's */
+  const frame_volume *volumes; /* [volume_count] */
+  const grid *grids;           /* [volume_count], the frame's */
   int volume_count;
   const kernel *kernel;
   bool splat;  /* else gather */

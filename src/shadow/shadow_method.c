@@ -2,6 +2,8 @@
  * tools for all methods. */
 #include "shadow/shadow_method.h"
 
+#include <string.h>
+
 #include "core/memory.h"
 
 hl_status hl_light_shadow_plan(light_shadow *shadow, const shadow_setup *setup, hl_error *error) {
@@ -48,7 +50,7 @@ static hl_status hand_out(light_shadow *shadow, shadow_memory *kept, hl_error *e
   shadow_layouts counted = hl_light_shadow_count(shadow);
   hl_status status = grow(setup->context, kept, counted.kept.bytes, error);
   if (status != HL_OK) return status;
-  shadow->passing = hl_reserve_take(setup->reserve, counted.passing.bytes, 1);
+  shadow->passing = hl_reserve_take(shadow->means.reserve, counted.passing.bytes, 1);
   if (shadow->passing == NULL) return hl_fail_memory(error, counted.passing.bytes, "a light's shadows");
   shadow->kept = kept;
   shadow_layouts handed = {.kept.base = kept->planes, .passing.base = shadow->passing};
@@ -73,12 +75,27 @@ static hl_status set_up_lookups(light_shadow *shadow, hl_error *error) {
   return HL_OK;
 }
 
-hl_status hl_light_shadow_begin(light_shadow *shadow, int ring, shadow_buffer *buffer, shadow_memory *memory,
-                                hl_error *error) {
+/* The method's own numbers, as the plan has them. */
+static hl_status copy_state(const light_shadow *planned, light_shadow *shadow, hl_error *error) {
+  const size_t bytes = planned->method->state_bytes;
+  if (bytes == 0) return HL_OK;
+  shadow->state = hl_allocate(planned->setup.context, 1, bytes);
+  if (shadow->state == NULL) return hl_fail_memory(error, bytes, "a light's shadows");
+  memcpy(shadow->state, planned->state, bytes);
+  return HL_OK;
+}
+
+hl_status hl_light_shadow_begin(light_shadow *shadow, const light_shadow *planned, const shadow_means *means,
+                                int ring, shadow_buffer *buffer, shadow_memory *memory, hl_error *error) {
   const shadow_setup *setup = &shadow->setup;
+  *shadow = *planned;
+  shadow->means = *means;
+  shadow->state = NULL;
+  hl_status status = copy_state(planned, shadow, error);
+  if (status != HL_OK) return status;
   const shadow_buffer_size size = hl_light_shadow_buffer_size(shadow, ring);
   shadow->buffer = buffer;
-  hl_status status = hl_shadow_buffer_reset(setup->context, setup->pool, buffer, &size, error);
+  status = hl_shadow_buffer_reset(setup->context, means->pool, buffer, &size, error);
   if (status == HL_OK) status = set_up_lookups(shadow, error);
   if (status == HL_OK && shadow->method->check != NULL) status = shadow->method->check(shadow, error);
   if (status == HL_OK && shadow->method->lay_out != NULL) status = hand_out(shadow, memory, error);
@@ -87,8 +104,8 @@ hl_status hl_light_shadow_begin(light_shadow *shadow, int ring, shadow_buffer *b
 }
 
 void hl_light_shadow_end(light_shadow *shadow) {
-  if (shadow->method != NULL && shadow->method->end != NULL) shadow->method->end(shadow);
-  if (shadow->passing != NULL) hl_reserve_return(shadow->setup.reserve, shadow->passing);
+  if (shadow->buffer != NULL && shadow->method->end != NULL) shadow->method->end(shadow);
+  if (shadow->passing != NULL) hl_reserve_return(shadow->means.reserve, shadow->passing);
   hl_release(shadow->setup.context, shadow->lookups);
   hl_release(shadow->setup.context, shadow->state);
   *shadow = (light_shadow){0};

@@ -42,12 +42,16 @@ typedef struct shadow_functions {
   const struct sublight_functions *sublights; /* shadow_sublights/sublight_field.h */
 } shadow_functions;
 
-/* The input of a method: one light of one sweep. Borrowed; it must outlive the method. */
-typedef struct shadow_setup {
-  hl_context *context;
+/* The means by which a back end makes shadows. */
+typedef struct shadow_means {
   hl_pool *pool;
   hl_reserve *reserve; /* of blocks for one sweep */
   const shadow_functions *functions;
+} shadow_means;
+
+/* The input of a method: one light of one sweep. Borrowed; it must outlive the method. */
+typedef struct shadow_setup {
+  hl_context *context;
   const hl_render_settings *settings;
   const light_source *source;
   light_emission *emission; /* the light's emission image; null where the light is even. The method sets its
@@ -94,6 +98,7 @@ typedef struct shadow_method shadow_method;
 typedef struct light_shadow {
   const shadow_method *method; /* null: the light casts no shadows, or the eye sees nothing */
   shadow_setup setup;
+  shadow_means means; /* from begin on */
   shadow_plan plan;
   shadow_buffer *buffer;  /* the renderer's */
   shadow_lookup *lookups; /* owned; [the buffer's ring]; how the picture reads the light at each sheet */
@@ -168,9 +173,9 @@ static inline bool hl_runs_in_stretches(const shadow_method *method) {
 shadow_buffer_size hl_light_shadow_buffer_size(const light_shadow *shadow, int ring);
 /* After plan: the bytes of the method's memory. */
 shadow_layouts hl_light_shadow_count(light_shadow *shadow);
-/* After plan: buffer and memory are the renderer's. */
-hl_status hl_light_shadow_begin(light_shadow *shadow, int ring, shadow_buffer *buffer, shadow_memory *memory,
-                                hl_error *error);
+/* Begins a copy of a planned shadow, which stays as it is. buffer and memory are the renderer's. */
+hl_status hl_light_shadow_begin(light_shadow *shadow, const light_shadow *planned, const shadow_means *means,
+                                int ring, shadow_buffer *buffer, shadow_memory *memory, hl_error *error);
 /* After plan or begin, even if they failed; allowed for a struct of zeros. */
 void hl_light_shadow_end(light_shadow *shadow);
 

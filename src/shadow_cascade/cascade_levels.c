@@ -254,7 +254,7 @@ hl_status hl_cascade_begin(light_shadow *shadow, hl_error *error) {
   size_t tiles = (size_t)cascade->reads.tiles_x * (size_t)cascade->reads.tiles_y;
   memset(cascade->touched, 0, tiles);
   memset(cascade->refilled, 0, tiles);
-  if (!memory->zeros) hl_pool_clear(shadow->setup.pool, memory->planes, memory->capacity);
+  if (!memory->zeros) hl_pool_clear(shadow->means.pool, memory->planes, memory->capacity);
   memory->zeros = false;
   for (int i = 0; i < cascade->level_count; i++) begin_level(cascade, i, &shadow->plan.seen);
   cascade->level[0].count = 1; /* at the first chunk's start */
@@ -289,7 +289,7 @@ static void clear_moments(const soft_cascade *cascade, hl_pool *pool) {
 /* Returns the memory filled with zeros, for the next frame. */
 void hl_cascade_end(light_shadow *shadow) {
   soft_cascade *cascade = shadow->state;
-  hl_pool *pool = shadow->setup.pool;
+  hl_pool *pool = shadow->means.pool;
   if (!cascade->begun) return;
   hl_cascade_exchange_receive(cascade);
   for (int i = 0; i < cascade->level_count; i++)

@@ -422,7 +422,7 @@ static void advance_cascade(light_shadow *shadow, const occupancy *occupancy, in
   }
   hl_cascade_exchange_receive(cascade);
   double omega = hl_cascade_omega(cascade, hl_sheet_height(sheets, sheet));
-  const cascade_crew crew = {shadow->setup.pool, shadow->setup.functions->cascade, &cascade->reads};
+  const cascade_crew crew = {shadow->means.pool, shadow->means.functions->cascade, &cascade->reads};
   double end = hl_cascade_chunks_on(cascade, omega, 1);
   if (cascade->shrink > 0) cascade->chunk = end - omega;
   cascade->chunk_start = omega;

@@ -230,14 +230,14 @@ static int reach_of(const soft_paper *soft, int width) {
  * needed. */
 static void convolve(const soft_paper *soft, const light_shadow *shadow, int sheet, int width) {
   shadow_buffer *buffer = shadow->buffer;
-  hl_pool *pool = shadow->setup.pool;
+  hl_pool *pool = shadow->means.pool;
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y;
   convolution task = {.buffer = buffer,
                       .needed_until = shadow->needed_until,
                       .sheet = sheet,
                       .reach = reach_of(soft, width),
                       .wanted = buffer->tile_touched + tiles,
-                      .blur = &shadow->setup.functions->blur,
+                      .blur = &shadow->means.functions->blur,
                       .box = hl_blur_box((float)width)};
   hl_pool_run(pool, (size_t)buffer->tiles_y, find_wanted, &task);
   if (soft->emission != NULL) {

@@ -61,7 +61,7 @@ static void lay_out_sublights(light_shadow *shadow, shadow_layouts *layouts) {
 
 /* Fills all buffers with full light. */
 static void fill_sublights(const light_shadow *shadow, sublights *all) {
-  hl_pool *pool = shadow->setup.pool;
+  hl_pool *pool = shadow->means.pool;
   size_t count = (size_t)all->count, pixels = count * planes_of_sublight(all) * all->plane;
   size_t tiles = (size_t)all->tiles_x * (size_t)all->tiles_y;
   size_t slab_tiles = (size_t)shadow->buffer->tiles_x * (size_t)shadow->buffer->tiles_y;
@@ -411,12 +411,12 @@ static void advance_sublights(light_shadow *shadow, const occupancy *occupancy, 
   double from = hl_sheet_height(sheets, sheet - 1), to = hl_sheet_height(sheets, sheet);
   sublights *sublights = shadow->state;
   shadow_buffer *slab = shadow->buffer;
-  hl_pool *pool = shadow->setup.pool;
+  hl_pool *pool = shadow->means.pool;
   for (int i = 0; i < sublights->count; i++)
     map_sublight(sublights, &sublights->sublight[i], slab, sheets->normal, (from + to) / 2);
   sublight_task task = {.sublights = sublights,
                         .slab = slab,
-                        .functions = shadow->setup.functions->sublights,
+                        .functions = shadow->means.functions->sublights,
                         .needed_until = shadow->sublights_until,
                         .slab_after = sheet + 1};
   hl_pool_run(pool, (size_t)slab->tiles_y, move_row, &task);

@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "reference_stage.h"
-#include "render/share.h"
+#include "render/renderer_state.h"
 
 enum { WIDTH = 36, HEIGHT = 83, ROW_FLOATS = WIDTH * 4, FLOATS = HEIGHT * ROW_FLOATS };
 

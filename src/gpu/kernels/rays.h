@@ -3,7 +3,7 @@
 #ifndef HL_GPU_RAYS_H
 #define HL_GPU_RAYS_H
 
-#include "gpu/frame_plan.h"
+#include "gpu/device_sweep.h"
 #include "gpu/kernels/numbers.h"
 
 DEVICE float climb_of(GLOBAL const plan_rays *rays, float u, float v) {

@@ -12,7 +12,7 @@
 /* ---- where the slab is seen ---- */
 
 /* rays: of the slab's middle. */
-DEVICE void find_geometry(GLOBAL const frame_plan *plan, GLOBAL const plan_rays *rays, float u, float v,
+DEVICE void find_geometry(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *rays, float u, float v,
                           slab_sample *s) {
   s->position = position_on(rays, EYE_PERSPECTIVE, u, v);
 #if EYE_PERSPECTIVE
@@ -42,7 +42,7 @@ DEVICE float way_of_depth(float from_a, float from_b, float u) {
   return rising ? t : 1.0f - t;
 }
 
-DEVICE void place_slab(GLOBAL const frame_plan *plan, GLOBAL const plan_rays *rays, float u, float v,
+DEVICE void place_slab(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *rays, float u, float v,
                        slab_sample *s) {
   find_geometry(plan, rays, u, v, s);
   s->depth = s->extinction * s->path;
@@ -135,7 +135,7 @@ DEVICE float fraction_of_sector(GLOBAL const plan_light *light, vector towards) 
 }
 
 /* Where a light comes from at a position. Returns the length of its way through the slab. */
-DEVICE float find_direction(GLOBAL const frame_plan *plan, GLOBAL const plan_light *light, vector position,
+DEVICE float find_direction(GLOBAL const device_sweep *plan, GLOBAL const plan_light *light, vector position,
                             vector *towards, float *strength) {
   *strength = 1.0f;
   if (light->parallel) {
@@ -162,7 +162,7 @@ typedef struct arriving_light {
 
 /* Takes from a light what lies before a sample. planes: of the light's buffer, at the sheet before the slab.
  */
-DEVICE void shadow_sample(GLOBAL const frame_plan *plan, const volume_data *volume,
+DEVICE void shadow_sample(GLOBAL const device_sweep *plan, const volume_data *volume,
                           GLOBAL const plan_light *light, GLOBAL const float *planes, const slab_sample *s,
                           vector towards, float path, arriving_light *arriving) {
   float passing[CHANNELS], transmittance = 1.0f;
@@ -185,7 +185,7 @@ DEVICE void shadow_sample(GLOBAL const frame_plan *plan, const volume_data *volu
 
 /* Adds what a sample sends to the eye of one light. planes: of the light's buffer, at the sheet before the
  * slab. */
-DEVICE void add_light(GLOBAL const frame_plan *plan, const volume_data *volume,
+DEVICE void add_light(GLOBAL const device_sweep *plan, const volume_data *volume,
                       GLOBAL const plan_light *light, GLOBAL const float *planes, const slab_sample *s,
                       vector color, vector *lit) {
   GLOBAL const plan_volume *matter = volume->plan;
@@ -230,7 +230,7 @@ DEVICE void add_light(GLOBAL const frame_plan *plan, const volume_data *volume,
 }
 
 /* The light that a sample sends to the eye. slot: of the buffers' rings, of the sheet before the slab. */
-DEVICE vector color_of_slab(GLOBAL const frame_plan *plan, const volume_data *volume,
+DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *volume,
                             GLOBAL const float *planes, int slot, const slab_sample *s) {
   GLOBAL const plan_volume *matter = volume->plan;
   vector color = color_of_way(volume, s);

@@ -47,13 +47,13 @@ spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned 
 }
 
 /* What both kernels of slabs are given. */
-#define SWEEP_ARGUMENTS                                                                                     \
-  GLOBAL const frame_plan *APART plan, GLOBAL const plan_rays *APART rays, GLOBAL const byte *APART voxels, \
-      GLOBAL const byte *APART distances, GLOBAL const wide *APART cell_bits,                               \
-      GLOBAL const float *APART tables, GLOBAL float *APART pixels, GLOBAL float *APART planes,             \
-      GLOBAL float *APART light_state, GLOBAL int *APART changed, GLOBAL const int *APART shown_from,       \
-      GLOBAL unsigned *APART counts, GLOBAL float *APART slots, GLOBAL unsigned *APART list,                \
-      GLOBAL unsigned *APART masks, int first, int end, int run
+#define SWEEP_ARGUMENTS                                                                                 \
+  GLOBAL const device_sweep *APART plan, GLOBAL const plan_rays *APART rays,                            \
+      GLOBAL const byte *APART voxels, GLOBAL const byte *APART distances,                              \
+      GLOBAL const wide *APART cell_bits, GLOBAL const float *APART tables, GLOBAL float *APART pixels, \
+      GLOBAL float *APART planes, GLOBAL float *APART light_state, GLOBAL int *APART changed,           \
+      GLOBAL const int *APART shown_from, GLOBAL unsigned *APART counts, GLOBAL float *APART slots,     \
+      GLOBAL unsigned *APART list, GLOBAL unsigned *APART masks, int first, int end, int run
 
 DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep_data sweep;

@@ -93,7 +93,7 @@ DEVICE float speed_of_ray(GLOBAL const plan_rays *rays, int perspective, float u
 
 /* What all members of a kernel read and write. */
 typedef struct sweep_data {
-  GLOBAL const frame_plan *plan;
+  GLOBAL const device_sweep *plan;
   GLOBAL const plan_rays *rays; /* [2 + 2 lights][sheets]: the eye's to index space; the eye's to frame space,
                                    in the middle of the slab before each sheet; and each light's to both */
   volume_data volume;
@@ -133,7 +133,7 @@ typedef struct tile_pixel {
   float u, v;
 } tile_pixel;
 
-DEVICE tile_pixel pixel_of(GLOBAL const frame_plan *plan, int number) {
+DEVICE tile_pixel pixel_of(GLOBAL const device_sweep *plan, int number) {
   tile_pixel pixel;
   pixel.tile = number / 256;
   pixel.member = number % 256;
@@ -151,7 +151,7 @@ DEVICE GLOBAL float *values_of(GLOBAL float *pixels, const tile_pixel *pixel) {
 /* Lists the slabs of a run that a pixel may see; returns a bit for each. count: of the list. */
 DEVICE unsigned find_slabs(const sweep_data *sweep, int number, int run_first, int end,
                            GLOBAL unsigned *count) {
-  GLOBAL const frame_plan *plan = sweep->plan;
+  GLOBAL const device_sweep *plan = sweep->plan;
   GLOBAL const plan_volume *volume = sweep->volume.plan;
   const tile_pixel pixel = pixel_of(plan, number);
   if (!pixel.inside) return 0;
@@ -189,7 +189,7 @@ DEVICE unsigned find_slabs(const sweep_data *sweep, int number, int run_first, i
 
 /* Classifies and lights the slab of a slot. */
 DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
-  GLOBAL const frame_plan *plan = sweep->plan;
+  GLOBAL const device_sweep *plan = sweep->plan;
   const volume_data *volume = &sweep->volume;
   const int sheet = run_first + (int)(slot / (unsigned)(plan->tiles * 256));
   const tile_pixel pixel = pixel_of(plan, (int)(slot % (unsigned)(plan->tiles * 256)));
@@ -225,7 +225,7 @@ DEVICE void shade_slot(const sweep_data *sweep, unsigned slot, int run_first) {
 
 /* Composites a pixel's slabs of a run, in order. */
 DEVICE void composite_slabs(const sweep_data *sweep, int number) {
-  GLOBAL const frame_plan *plan = sweep->plan;
+  GLOBAL const device_sweep *plan = sweep->plan;
   unsigned mask = sweep->masks[number], samples = 0;
   if (mask == 0) return;
   const tile_pixel place = pixel_of(plan, number);
@@ -259,7 +259,7 @@ typedef struct light_pixel {
 DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *light,
                           GLOBAL const plan_rays *in_frame, float u, float v, float before, float after,
                           const heights_in_box *in_box, light_pixel *pixel) {
-  GLOBAL const frame_plan *plan = sweep->plan;
+  GLOBAL const device_sweep *plan = sweep->plan;
   GLOBAL const plan_volume *volume = sweep->volume.plan;
   table_coordinate a = coordinate_of_density(volume, before), b = coordinate_of_density(volume, after);
   if (!may_be_visible(volume, a, b)) return 0;
@@ -299,7 +299,7 @@ DEVICE int is_lit(const light_pixel *pixel) {
 }
 
 /* The light's number of a tile among those of all lights. */
-DEVICE int light_of_tile(GLOBAL const frame_plan *plan, int tile) {
+DEVICE int light_of_tile(GLOBAL const device_sweep *plan, int tile) {
   int light = 0;
   for (int i = 0; i < plan->light_count; i++)
     if (plan->lights[i].tiles > 0 && tile >= plan->lights[i].first_tile) light = i;

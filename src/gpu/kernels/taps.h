@@ -1,10 +1,10 @@
 /* gpu/kernels/taps.h - the kernel's weights, and four neighbouring voxels along x weighted and added:
  * grid/kernel_lanes.h and fill/row_lanes.h for one pixel. STORAGE and BSPLINE are the variant's
- * (gpu/frame_plan.h). */
+ * (gpu/device_sweep.h). */
 #ifndef HL_GPU_TAPS_H
 #define HL_GPU_TAPS_H
 
-#include "gpu/frame_plan.h"
+#include "gpu/device_sweep.h"
 #include "gpu/kernels/numbers.h"
 
 #define STORED_U8    0

@@ -1,5 +1,5 @@
-/* render/share.c - cuts a picture into bands along the brightest light's lines, or into rows in turn. */
-#include "render/share.h"
+/* plan/share.c - cuts a picture into bands along the brightest light's lines, or into rows in turn. */
+#include "plan/share.h"
 
 #include <stdlib.h>
 #include <string.h>

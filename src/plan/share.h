@@ -1,4 +1,4 @@
-/* render/share.h - how a picture is shared out: which of its pixels each of several renderers makes.
+/* plan/share.h - how a picture is shared out: which of its pixels each of several renderers makes.
  *
  * Rays of the eye and of a light that meet lie in one plane with the eye and the light. In the picture these
  * planes are lines through the light's image, or parallel lines where that is infinitely far away. So a band
@@ -7,14 +7,12 @@
  * light. Bands are made of whole cells, and cut so that about as much matter lies under each. Where parts
  * wait for each other from depth to depth, each may be of two or three bands, which have more equal shares of
  * the matter at each depth. Where all light is needed anyway, parts are rows of cells in turn. */
-#ifndef HL_RENDER_SHARE_H
-#define HL_RENDER_SHARE_H
-
-#include <halflight/render.h>
+#ifndef HL_PLAN_SHARE_H
+#define HL_PLAN_SHARE_H
 
 #include "core/light_exchange.h"
 #include "core/memory.h"
-#include "render/frame.h"
+#include "plan/frame.h"
 
 /* A cell is as many pixels of the picture as a tile has of the frame: `oversampling` tiles a side. */
 typedef struct picture_share {
@@ -42,10 +40,6 @@ void hl_share_count(int width, int height, int parts, hl_layout *layout);
 hl_status hl_share_create(hl_context *context, const share_content *content, picture_share *share,
                           hl_error *error);
 void hl_share_release(hl_context *context, picture_share *share);
-
-/* Makes each picture one part of several, as hl_renderer_share() does, of renderers that exchange light: all
- * of them render the same scenes, in the same order (renderer.c). */
-void hl_renderer_exchange(hl_renderer *renderer, const light_exchange *exchange);
 
 /* Whether a tile of the frame is of this renderer's part. */
 static inline bool hl_share_has(const picture_share *share, int tile_x, int tile_y) {

@@ -1,5 +1,5 @@
-/* render/phase_table.c - see phase_table.h. */
-#include "render/phase_table.h"
+/* light/phase_table.c - see phase_table.h. */
+#include "light/phase_table.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
-/* gpu/frame_plan.h - one sweep of a frame as plain data: all that a device needs besides voxels and tables.
+/* gpu/device_sweep.h - one sweep of a frame as plain data: all that a device needs besides voxels and tables.
  *
- * The structs have members of 32 bits alone and no pointers. The host fills them (render/plan_frame.c), and
+ * The structs have members of 32 bits alone and no pointers. The host fills them (render/device_plan.c), and
  * the kernels read the same text: it is C17, OpenCL C 1.2 and CUDA C++. Lengths are in frame units, positions
  * in frame space, where no comment says otherwise. */
 #ifndef HL_GPU_FRAME_PLAN_H
@@ -86,7 +86,7 @@ typedef struct plan_volume {
 } plan_volume;
 
 /* One sweep: all slabs of one slicing direction. */
-typedef struct frame_plan {
+typedef struct device_sweep {
   int sheets, ring;                  /* planes that shadow buffers keep: sheet k's at k % ring */
   int width, height, tiles_x, tiles; /* of the picture */
   int light_count, light_tiles;
@@ -96,7 +96,7 @@ typedef struct frame_plan {
   plan_volume volume;
   plan_box box, content; /* the eye's rays, and the volume's box and that of its bricks that show something */
   plan_light lights[PLAN_LIGHTS];
-} frame_plan;
+} device_sweep;
 
 /* What kernels are compiled for: the values of the macros of the same names in capitals. */
 typedef struct plan_variant {

@@ -1,5 +1,7 @@
-/* render/slicing.c - chooses the direction of the sheets (section 3.1), and which lights share a sweep. */
-#include "render/frame.h"
+/* plan/slicing.c - chooses the direction of the sheets (section 3.1), and which lights share a sweep. */
+#include "plan/slicing.h"
+
+#include "scene/light_kind.h"
 
 /* cos 60 degrees: lights share a sweep only if the eye's direction and each light's are within this angle of
  * the slicing axis. */
@@ -121,13 +123,48 @@ static bool axis_of_light(const frame *frame, const hl_render_settings *settings
   return true;
 }
 
-bool hl_frame_serves(const frame *frame, const hl_render_settings *settings, const light_source *source) {
+/* False where the light's rays do not cross the sheets that would serve it and the eye: it must be cut into
+ * sectors. */
+static bool serves(const frame *frame, const hl_render_settings *settings, const light_source *source) {
   bool back_to_front;
   vec3 h;
   return axis_of_light(frame, settings, source, &h, &back_to_front);
 }
 
-static bool axis_serves(const frame *frame, const frame_sweep *sweep, vec3 h, bool back_to_front) {
+/* ---- the lights ---- */
+
+/* The angle of the eye's outermost ray to its direction. */
+static double widest_ray(const frame *frame) {
+  double least = 1;
+  for (int corner = 0; corner < 4; corner++) {
+    vec3 start, way;
+    hl_view_ray(&frame->eye, corner & 1 ? frame->eye.width : 0, corner & 2 ? frame->eye.height : 0, &start,
+                &way);
+    least = fmin(least, vec3_dot(vec3_normalise(way), frame->eye_direction));
+  }
+  return acos(fmax(least, -1));
+}
+
+void hl_frame_set_up_lights(frame *frame, const hl_scene_description *scene) {
+  frame->sectors = hl_light_sectors(frame->eye_direction, widest_ray(frame));
+  frame->light_count = 0;
+  for (size_t i = 0; i < scene->light_count && !hl_is_maximum(scene); i++) {
+    const hl_light *light = &scene->lights[i];
+    light_source source = hl_light_source(light, &scene->render, frame->middle);
+    source.light_index = frame->order->lights[i];
+    if (!hl_is_lit(scene)) source.shadows = HL_SHADOWS_OFF;
+    bool narrow = (hl_light_kind(light)->cone && light->opening_angle_deg <= 120) ||
+                  light->texture.pixels != NULL;
+    bool whole = source.shadows == HL_SHADOWS_OFF || narrow || serves(frame, &scene->render, &source);
+    for (int sector = 0; sector < (whole ? 1 : LIGHT_SECTORS); sector++)
+      frame->lights[frame->light_count++] = whole ? source
+                                                  : hl_light_in_sector(&source, &frame->sectors, sector);
+  }
+}
+
+/* ---- the sweeps ---- */
+
+static bool axis_serves(const frame *frame, const sweep_sheets *sweep, vec3 h, bool back_to_front) {
   double e = vec3_dot(frame->eye_direction, h) * (back_to_front ? -1 : 1);
   if (e < STEEPEST) return false;
   for (int i = 0; i < sweep->light_count; i++) {
@@ -137,14 +174,15 @@ static bool axis_serves(const frame *frame, const frame_sweep *sweep, vec3 h, bo
   return true;
 }
 
-static vec3 sum_of_directions(const frame *frame, const frame_sweep *sweep) {
+static vec3 sum_of_directions(const frame *frame, const sweep_sheets *sweep) {
   vec3 sum = {0, 0, 0};
   for (int i = 0; i < sweep->light_count; i++) sum = vec3_add(sum, frame->lights[sweep->light[i]].direction);
   return vec3_normalise(sum);
 }
 
 /* Adds the light to the sweep if one axis serves all of its lights. */
-static bool try_light(const frame *frame, const hl_render_settings *settings, frame_sweep *sweep, int light) {
+static bool try_light(const frame *frame, const hl_render_settings *settings, sweep_sheets *sweep,
+                      int light) {
   if (sweep->light_count == FRAME_LIGHTS || sweep->of_sectors) return false;
   sweep->light[sweep->light_count++] = light;
   bool back_to_front;
@@ -179,48 +217,48 @@ static void place_sheets(const frame *frame, sheet_stack *sheets) {
 }
 
 /* Puts a sector into the sweep of the same sectors of other lights. */
-static void add_sector(const frame *frame, int light, frame_sweep *sweeps, int *count) {
+static void add_sector(const frame *frame, int light, sweep_sheets *sweeps, int *count) {
   vec3 axis = frame->lights[light].direction;
   int s = 0;
   while (s < *count && !(sweeps[s].of_sectors && sweeps[s].light_count < FRAME_LIGHTS &&
                          frame->lights[sweeps[s].light[0]].sector == frame->lights[light].sector))
     s++;
   if (s == *count)
-    sweeps[(*count)++] = (frame_sweep){.sheets = {.normal = axis},
-                                       .of_sectors = true,
-                                       .back_to_front = vec3_dot(frame->eye_direction, axis) < 0};
+    sweeps[(*count)++] = (sweep_sheets){.sheets = {.normal = axis},
+                                        .of_sectors = true,
+                                        .back_to_front = vec3_dot(frame->eye_direction, axis) < 0};
   sweeps[s].light[sweeps[s].light_count++] = light;
 }
 
 static void add_shadowing_light(const frame *frame, const hl_render_settings *settings, int light,
-                                frame_sweep *sweeps, int *count) {
+                                sweep_sheets *sweeps, int *count) {
   if (frame->lights[light].sectors != NULL) {
     add_sector(frame, light, sweeps, count);
     return;
   }
   for (int s = 0; s < *count; s++)
     if (try_light(frame, settings, &sweeps[s], light)) return;
-  sweeps[*count] = (frame_sweep){0};
+  sweeps[*count] = (sweep_sheets){0};
   (void)try_light(frame, settings, &sweeps[(*count)++], light);
 }
 
 /* Section 2.2: h = e. */
-void hl_frame_add_eye_sweep(const frame *frame, frame_sweep *sweeps, int *count) {
-  frame_sweep *added = &sweeps[(*count)++];
-  *added = (frame_sweep){.sheets = {.normal = frame->eye_direction}};
+void hl_frame_add_eye_sweep(const frame *frame, sweep_sheets *sweeps, int *count) {
+  sweep_sheets *added = &sweeps[(*count)++];
+  *added = (sweep_sheets){.sheets = {.normal = frame->eye_direction}};
   place_sheets(frame, &added->sheets);
 }
 
 /* Adds a light without shadows to any sweep with room, else to a new image-aligned sweep. light -1: adds only
  * the sweep. */
-static void add_plain_light(const frame *frame, int light, frame_sweep *sweeps, int *count) {
+static void add_plain_light(const frame *frame, int light, sweep_sheets *sweeps, int *count) {
   int s = 0;
   while (s < *count && sweeps[s].light_count == FRAME_LIGHTS) s++;
   if (s == *count) hl_frame_add_eye_sweep(frame, sweeps, count);
   if (light >= 0) sweeps[s].light[sweeps[s].light_count++] = light;
 }
 
-int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, frame_sweep *sweeps) {
+int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, sweep_sheets *sweeps) {
   int count = 0;
   for (int light = 0; light < frame->light_count; light++)
     if (frame->lights[light].shadows != HL_SHADOWS_OFF)
@@ -232,13 +270,13 @@ int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, fram
   return count;
 }
 
-static bool has_sun(const frame *frame, const frame_sweep *sweep) {
+static bool has_sun(const frame *frame, const sweep_sheets *sweep) {
   bool any = false;
   for (int i = 0; i < sweep->light_count; i++) any |= frame->lights[sweep->light[i]].light->of_sky > 0;
   return any;
 }
 
-hl_status hl_frame_check_sweeps(const frame *frame, const frame_sweep *sweeps, int count, hl_error *error) {
+hl_status hl_frame_check_sweeps(const frame *frame, const sweep_sheets *sweeps, int count, hl_error *error) {
   for (int s = 0; s < count; s++) {
     if (sweeps[s].sheets.count > GREATEST_SHEETS)
       return hl_fail(

@@ -1,4 +1,4 @@
-/* render/phase_table.h - Henyey and Greenstein's phase function, its mean over wide lights and parts of a
+/* light/phase_table.h - Henyey and Greenstein's phase function, its mean over wide lights and parts of a
  * sky.
  *
  * A table for each anisotropy holds the mean of p over round caps of directions, over p in the direction of
@@ -10,8 +10,8 @@
  * g > 0, which runs from 1 - g to 1 + g: columns are even steps of s, rows even steps of its logarithm. For g
  * < 0 the table is that of -g, and angles are those to the opposite of the light. A row of its own, exactly
  * at its size, serves each wide parallel light. */
-#ifndef HL_RENDER_PHASE_TABLE_H
-#define HL_RENDER_PHASE_TABLE_H
+#ifndef HL_LIGHT_PHASE_TABLE_H
+#define HL_LIGHT_PHASE_TABLE_H
 
 #include <halflight/scene.h>
 

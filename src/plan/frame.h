@@ -1,0 +1,58 @@
+/* plan/frame.h - the geometry of one frame: where the eye, the lights and the content are, in frame space
+ * (framed_scene.h). */
+#ifndef HL_PLAN_FRAME_H
+#define HL_PLAN_FRAME_H
+
+#include "core/error.h"
+#include "grid/grid.h"
+#include "light/light_source.h"
+#include "scene/scene.h"
+#include "surface/surface_tree.h"
+#include "view/view.h"
+
+enum { FRAME_LIGHTS = MAXIMUM_SWEEP_LIGHTS, CONTENT_POINTS = 64 };
+
+typedef struct frame {
+  int width, height; /* pixels: those of the picture times oversampling */
+  int oversampling;  /* a pixel of the picture is the mean of oversampling x oversampling pixels of the
+                      * frame */
+  view eye;
+  vec3 eye_direction;  /* e: unit, from the eye towards the content */
+  vec3 middle;         /* of the content */
+  double pixel;        /* edge of an image pixel where the content is nearest, frame units */
+  double middle_pixel; /* edge of an image pixel at the content's middle, frame units */
+  double voxel;        /* the smallest edge of a voxel, frame units */
+  double spacing;      /* ds, frame units */
+  vec3 *points;        /* corners of the content of all grids; owned by the caller; [8 * grids] */
+  int point_count;
+  light_sectors sectors; /* of lights within the content */
+  light_source *lights;  /* [light_count]; owned by the caller; sectors of a light follow each other */
+  int light_count;
+  const scene_order *order;    /* of the scene's lists; borrowed */
+  const surfaces *surfaces;    /* of the scene's meshes; null: none */
+  const surface_tree *contact; /* of what shadow buffers leave light behind (contact.h) */
+  const int *mesh_objects;     /* [meshes]; their numbers in the layer of objects */
+} frame;
+
+/* The eye's view in width x height pixels. */
+hl_status hl_frame_eye(const hl_camera *camera, int width, int height, view *eye, hl_error *error);
+
+/* Sets the frame's size, oversampling, eye and middle. The frame's points and voxel must be set. */
+hl_status hl_frame_set_up_eye(frame *frame, const hl_scene_description *scene, hl_error *error);
+
+/* Whether any picture of a volume or a mesh depends on arriving light: flat colours and maximum projections
+ * do not. */
+bool hl_is_lit(const hl_scene_description *scene);
+
+static inline bool hl_is_maximum(const hl_scene_description *scene) {
+  return scene->render.compositing == HL_COMPOSITING_MAXIMUM;
+}
+
+/* Corners of the box around a grid's relevant bricks, of which there is one at least. */
+void hl_frame_content(const grid *grid, vec3 corners[8]);
+
+/* Corners of the part of the content that the eye sees: what a shadow buffer must cover. points: room for
+ * CONTENT_POINTS a grid. */
+int hl_frame_visible_points(const frame *frame, vec3 *points);
+
+#endif

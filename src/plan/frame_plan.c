@@ -1,0 +1,140 @@
+/* plan/frame_plan.c - see frame_plan.h. */
+#include "plan/frame_plan.h"
+
+#include "core/memory.h"
+
+/* ---- memory ---- */
+
+hl_status hl_frame_plan_create(hl_context *context, const framed_scene *framed, frame_plan *plan,
+                               hl_error *error) {
+  const hl_scene_description *scene = &framed->scene;
+  const size_t volumes = scene->volume_count, sources = LIGHT_SECTORS * scene->light_count;
+  plan->framed = framed;
+  plan->frame.order = framed->order;
+  plan->frame.points = hl_allocate(context, (volumes + scene->mesh_count) * 8 + 1,
+                                   sizeof *plan->frame.points);
+  plan->frame.lights = hl_allocate(context, sources, sizeof *plan->frame.lights);
+  plan->volumes.grids = hl_allocate(context, volumes, sizeof *plan->volumes.grids);
+  plan->volumes.list = hl_allocate(context, volumes, sizeof *plan->volumes.list);
+  plan->sweeps.sheets = hl_allocate_zeroed(context, sources + 1, sizeof *plan->sweeps.sheets);
+  if (plan->frame.points == NULL || plan->frame.lights == NULL || plan->volumes.grids == NULL ||
+      plan->volumes.list == NULL || plan->sweeps.sheets == NULL)
+    return hl_fail_memory(error, sources * sizeof *plan->sweeps.sheets, "the frame");
+  return HL_OK;
+}
+
+void hl_frame_plan_release(hl_context *context, frame_plan *plan) {
+  for (int i = 0; i < plan->sweeps.light_count && plan->sweeps.lights != NULL; i++) {
+    hl_light_shadow_end(&plan->sweeps.lights[i].shadow);
+    hl_release(context, plan->sweeps.lights[i].emission);
+  }
+  hl_release(context, plan->sweeps.lights);
+  hl_release(context, plan->sweeps.list);
+  hl_release(context, plan->sweeps.sheets);
+  hl_release(context, plan->seen);
+  hl_release(context, plan->volumes.list);
+  hl_release(context, plan->volumes.grids);
+  hl_release(context, plan->frame.lights);
+  hl_release(context, plan->frame.points);
+  hl_share_release(context, &plan->share);
+}
+
+/* ---- the sweeps ---- */
+
+bool hl_layers_measure(const hl_layers *wanted) {
+  return wanted != NULL && (wanted->depth_first != NULL || wanted->depth_mean != NULL ||
+                            wanted->normal != NULL || wanted->object != NULL);
+}
+
+/* Depth and normals are measured in a sweep that goes front to back for the eye; adds one if there is none.
+ */
+static int choose_measuring_sweep(const frame *frame, plan_sweeps *sweeps) {
+  int chosen = 0;
+  while (chosen < sweeps->count && sweeps->sheets[chosen].back_to_front) chosen++;
+  if (chosen == sweeps->count) hl_frame_add_eye_sweep(frame, sweeps->sheets, &sweeps->count);
+  return chosen;
+}
+
+hl_status hl_plan_sweeps(hl_context *context, frame_plan *plan, hl_error *error) {
+  plan_sweeps *sweeps = &plan->sweeps;
+  int measuring = 0;
+  sweeps->count = hl_frame_sweeps(&plan->frame, hl_plan_settings(plan), sweeps->sheets);
+  if (hl_layers_measure(plan->layers)) measuring = choose_measuring_sweep(&plan->frame, sweeps);
+  plan->tiles_x = hl_tiles(plan->frame.width);
+  plan->tiles = (size_t)plan->tiles_x * (size_t)hl_tiles(plan->frame.height);
+  sweeps->list = hl_allocate(context, (size_t)sweeps->count, sizeof *sweeps->list);
+  if (sweeps->list == NULL) return hl_fail_memory(error, sizeof *sweeps->list, "the frame");
+  for (int s = 0; s < sweeps->count; s++)
+    sweeps->list[s] = (sweep_plan){
+        .geometry = &sweeps->sheets[s], .adds_even_light = s == 0, .measures = s == measuring};
+  return hl_frame_check_sweeps(&plan->frame, sweeps->sheets, sweeps->count, error);
+}
+
+/* ---- the lights ---- */
+
+/* Whether some volume that the eye sees has surfaces on which shadows fall. */
+static bool has_surfaces(const plan_volumes *volumes) {
+  for (int v = 0; v < volumes->count; v++) {
+    const hl_scene_volume *volume = volumes->list[v].scene;
+    if (volume->visible && volume->receives_shadow && volume->shading == HL_SHADING_PHONG) return true;
+  }
+  return false;
+}
+
+static shadow_setup setup_of_light(hl_context *context, const frame_plan *plan, const sweep_plan *sweep,
+                                   const light_plan *light) {
+  const frame *frame = &plan->frame;
+  return (shadow_setup){.context = context,
+                        .settings = hl_plan_settings(plan),
+                        .source = light->source,
+                        .emission = light->emission == NULL || light->emission->even ? NULL : light->emission,
+                        .sheets = &sweep->geometry->sheets,
+                        .eye = &frame->eye,
+                        .exchange = plan->share.exchange,
+                        .surfaces = has_surfaces(&plan->volumes),
+                        .channels = plan->channels,
+                        .voxel = frame->voxel,
+                        .pixel = frame->pixel,
+                        .middle_pixel = frame->middle_pixel,
+                        .picture_pixels = (size_t)frame->width * (size_t)frame->height,
+                        .seen = plan->seen,
+                        .seen_count = plan->seen_count,
+                        .content = frame->points,
+                        .content_count = frame->point_count};
+}
+
+static hl_status plan_light(hl_context *context, const frame_plan *plan, const sweep_plan *sweep,
+                            light_plan *light, hl_error *error) {
+  hl_status status = hl_light_emission_create(context, light->source, &light->emission, error);
+  if (status != HL_OK) return status;
+  const shadow_setup setup = setup_of_light(context, plan, sweep, light);
+  status = hl_light_shadow_plan(&light->shadow, &setup, error);
+  if (status == HL_OK && light->shadow.method != NULL) light->memory = hl_light_shadow_count(&light->shadow);
+  return status;
+}
+
+static hl_status find_seen(hl_context *context, frame_plan *plan, hl_error *error) {
+  const size_t boxes = (size_t)plan->frame.point_count / 8;
+  plan->seen = hl_allocate(context, boxes * CONTENT_POINTS + 1, sizeof *plan->seen);
+  if (plan->seen == NULL) return hl_fail_memory(error, sizeof *plan->seen, "the content's corners");
+  plan->seen_count = hl_frame_visible_points(&plan->frame, plan->seen);
+  return HL_OK;
+}
+
+hl_status hl_plan_lights(hl_context *context, frame_plan *plan, hl_error *error) {
+  plan_sweeps *sweeps = &plan->sweeps;
+  for (int s = 0; s < sweeps->count; s++) sweeps->light_count += sweeps->sheets[s].light_count;
+  sweeps->lights = hl_allocate_zeroed(context, (size_t)sweeps->light_count, sizeof *sweeps->lights);
+  if (sweeps->lights == NULL) return hl_fail_memory(error, sizeof *sweeps->lights, "the lights");
+  light_plan *next = sweeps->lights;
+  hl_status status = find_seen(context, plan, error);
+  for (int s = 0; s < sweeps->count && status == HL_OK; s++) {
+    sweep_plan *sweep = &sweeps->list[s];
+    sweep->lights = next;
+    for (int i = 0; i < sweep->geometry->light_count && status == HL_OK; i++, next++) {
+      next->source = &plan->frame.lights[sweep->geometry->light[i]];
+      status = plan_light(context, plan, sweep, next, error);
+    }
+  }
+  return status;
+}

@@ -1,0 +1,116 @@
+/* plan/frame_plan.h - the plan of a frame: all that is decided before its first sheet, as plain data in frame
+ * space.
+ *
+ * A plan is made once (render/plan_frame.c) and never changes afterwards. A back end (render/backend.h) makes
+ * the picture of a plan; the processors and a device read the same one. A part of a shared picture is the
+ * same plan with another share. What a plan borrows stays as it is until the frame ends. */
+#ifndef HL_PLAN_FRAME_PLAN_H
+#define HL_PLAN_FRAME_PLAN_H
+
+#include <halflight/layers.h>
+
+#include "field/sky_field.h"
+#include "grid/classifier.h"
+#include "grid/kernel.h"
+#include "light/phase_table.h"
+#include "plan/framed_scene.h"
+#include "plan/share.h"
+#include "plan/slicing.h"
+#include "scatter/scatter.h"
+#include "shadow/shadow_method.h"
+
+/* A volume of the frame. Its grid is the plan's grid of the same index. */
+typedef struct frame_volume {
+  const hl_scene_volume *scene;     /* borrowed; its look and material, in frame space */
+  const classifier *classifier;     /* borrowed; the transfer function's tables */
+  double empty;                     /* data value beyond the volume */
+  uint64_t version, tables_version; /* of the grid's voxels, and of what follows from the transfer function:
+                                       they rise with each change */
+} frame_volume;
+
+/* The volumes, and how their samples are made. */
+typedef struct plan_volumes {
+  frame_volume *list; /* owned; [count] */
+  grid *grids;        /* owned; [count] */
+  int count;
+  const kernel *kernel;
+  bool splat; /* else gather */
+} plan_volumes;
+
+/* Light that does not travel along the sheets. */
+typedef struct plan_fields {
+  const scatter_field *scattered; /* borrowed; light scattered more than once; null: none */
+  const sky_light *sky;           /* borrowed; null: none */
+  const phase_tables *phases;     /* borrowed */
+} plan_fields;
+
+/* A light of a sweep. */
+typedef struct light_plan {
+  const light_source *source;
+  light_emission *emission; /* owned; the picture on the light itself; null: none */
+  light_shadow shadow;      /* as planned: a back end works on a copy (hl_light_shadow_begin) */
+  shadow_layouts memory;    /* of the shadow's method */
+} light_plan;
+
+/* One pass over the sheets. */
+typedef struct sweep_plan {
+  const sweep_sheets *geometry;
+  light_plan *lights;   /* [geometry->light_count] */
+  bool adds_even_light; /* ambient light, emission, the sky and scattered light are added in this sweep */
+  bool measures;        /* depth and normals are measured in this sweep, which goes front to back */
+} sweep_plan;
+
+typedef struct plan_sweeps {
+  sweep_sheets *sheets; /* owned; [count] */
+  sweep_plan *list;     /* owned; [count] */
+  light_plan *lights;   /* owned; [light_count]; of all sweeps, one after the other */
+  int count, light_count;
+} plan_sweeps;
+
+typedef struct frame_plan {
+  const framed_scene *framed; /* borrowed; the scene in frame space */
+  frame frame;                /* the eye, the lights, the surfaces; its arrays are the plan's own */
+  plan_volumes volumes;
+  plan_fields fields;
+  plan_sweeps sweeps;
+  picture_share share;     /* the part of the picture that is made */
+  const hl_layers *layers; /* borrowed; the layers that are wanted; null: none */
+  int channels;            /* of light attenuation: 1 or 3 */
+  int tiles_x;             /* of the picture */
+  size_t tiles;
+  vec3 *seen; /* owned; [seen_count]; corners of the content that the eye sees */
+  int seen_count;
+} frame_plan;
+
+static inline const hl_render_settings *hl_plan_settings(const frame_plan *plan) {
+  return &plan->framed->scene.render;
+}
+
+/* Allocates the arrays of a plan of zeros for a scene in frame space. Release the plan after a failure, too.
+ */
+hl_status hl_frame_plan_create(hl_context *context, const framed_scene *framed, frame_plan *plan,
+                               hl_error *error);
+void hl_frame_plan_release(hl_context *context, frame_plan *plan);
+
+/* After the frame's eye and lights: chooses the sweeps, and refuses those that no sheets serve. */
+hl_status hl_plan_sweeps(hl_context *context, frame_plan *plan, hl_error *error);
+
+/* True where depth, normals or objects are wanted: some sweep must then go front to back. */
+bool hl_layers_measure(const hl_layers *wanted);
+
+/* The last step, after the share: plans the shadows of all lights. */
+hl_status hl_plan_lights(hl_context *context, frame_plan *plan, hl_error *error);
+
+/* ---- what light reaches ---- */
+
+/* Whether a slab lies beyond the light, on the side that its rays travel to in this sweep. */
+static inline bool hl_is_beyond(const sheet_stack *sheets, const light_source *source, int sheet) {
+  return source->parallel || hl_sheet_height(sheets, sheet - 1) >= vec3_dot(sheets->normal, source->position);
+}
+
+/* Whether a light's shadows reach a slab. */
+static inline bool hl_is_reached(const sheet_stack *sheets, const light_shadow *shadow, int sheet) {
+  return hl_is_beyond(sheets, shadow->setup.source, sheet + 1 - shadow->method->first_slab);
+}
+
+#endif

@@ -1,0 +1,30 @@
+/* plan/framed_scene.h - a scene in frame space: moved to the middle of its volumes, and measured in units of
+ * about their smallest voxel edge. */
+#ifndef HL_PLAN_FRAMED_SCENE_H
+#define HL_PLAN_FRAMED_SCENE_H
+
+#include <halflight/scene.h>
+
+#include "core/error.h"
+#include "scene/order.h"
+
+/* Its lights, volumes and meshes stand in the order of frames (scene/order.h). */
+typedef struct framed_scene {
+  hl_scene_description
+      scene; /* in frame space; voxels, images and texts are borrowed from the scene in the world */
+  hl_scene_volume *volumes;    /* owned; [volume_count] */
+  hl_light *lights;            /* owned; [light_count] */
+  hl_scene_mesh *meshes;       /* owned; [mesh_count], with room for the volumes' isosurfaces */
+  int *mesh_objects;           /* owned; likewise; their numbers in the layer of objects */
+  const scene_order *order;    /* borrowed; where in the world's lists volumes, lights and meshes stand */
+  double (*vertices)[3];       /* owned; of all polygons */
+  hl_opacity_point *gradients; /* owned; of all volumes' gradient opacity */
+  hl_cut *cuts;                /* owned; those of the volumes */
+  double unit;                 /* world length of 1 in frame space: the smallest voxel edge is from 1 to 2 */
+} framed_scene;
+
+hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description *scene,
+                                 const scene_order *order, framed_scene *framed, hl_error *error);
+void hl_framed_scene_release(hl_context *context, framed_scene *framed);
+
+#endif

@@ -1,0 +1,34 @@
+/* plan/slicing.h - the sweeps of a frame: the direction of the sheets of each, and the lights that share
+ * them. */
+#ifndef HL_PLAN_SLICING_H
+#define HL_PLAN_SLICING_H
+
+#include "plan/frame.h"
+#include "view/occupancy.h"
+
+/* One pass over the sheets, with the lights that one slicing direction serves. */
+typedef struct sweep_sheets {
+  sheet_stack sheets;
+  bool back_to_front;      /* the eye meets the last sheet first; light always travels with rising sheets */
+  bool of_sectors;         /* the lights are sectors of lights, and the slicing direction is theirs */
+  int light[FRAME_LIGHTS]; /* indices into frame lights */
+  int light_count;
+} sweep_sheets;
+
+/* After the eye. Brings the lights to frame space, and cuts lights that no sheets serve into sectors. Narrow
+ * spot lights and lights with a texture shine in one direction and are never cut. The frame's lights need
+ * room for LIGHT_SECTORS each. */
+void hl_frame_set_up_lights(frame *frame, const hl_scene_description *scene);
+
+/* Groups lights into sweeps and slices each (section 3.1 and fig. 3); sweeps: room for light_count + 1.
+ * Returns how many there are: at least one. */
+int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, sweep_sheets *sweeps);
+
+/* One more sweep, without lights, image-aligned: front to back for the eye. */
+void hl_frame_add_eye_sweep(const frame *frame, sweep_sheets *sweeps, int *count);
+
+/* Refuses a sweep of too many sheets, or whose sheets some ray of the eye or a shadowing light does not
+ * cross. */
+hl_status hl_frame_check_sweeps(const frame *frame, const sweep_sheets *sweeps, int count, hl_error *error);
+
+#endif

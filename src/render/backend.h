@@ -1,0 +1,30 @@
+/* render/backend.h - a back end makes the picture of a plan: the processors, or a device.
+ *
+ * A renderer asks its back ends in the order of their list (renderer.c). The first that makes ready for a
+ * plan makes the frame, sweep by sweep. Where a back end fails that is not the last one, the frame is the
+ * next one's, from zeros on. */
+#ifndef HL_RENDER_BACKEND_H
+#define HL_RENDER_BACKEND_H
+
+#include "plan/frame_plan.h"
+#include "render/renderer_state.h"
+#include "render/target.h"
+
+typedef struct backend {
+  /* Makes ready for a plan's frame. Not HL_OK: another back end makes it; the error says why. */
+  hl_status (*prepare)(hl_renderer *renderer, const frame_plan *plan, const frame_target *target,
+                       hl_error *error);
+  /* Makes a sweep of the plan. Sweeps come in their order, each once. */
+  hl_status (*run)(hl_renderer *renderer, const frame_plan *plan, int sweep, frame_target *target,
+                   hl_render_statistics *statistics, hl_error *error);
+  /* After the last sweep: all pixels of the picture lie in the target. Null: they do already. */
+  hl_status (*read)(hl_renderer *renderer, const frame_plan *plan, frame_target *target,
+                    hl_render_statistics *statistics, hl_error *error);
+} backend;
+
+/* The processors, which make every frame (processor_backend.c). */
+extern const backend hl_processor_backend;
+/* The device that the renderer is to use (device_backend.c). */
+extern const backend hl_device_backend;
+
+#endif

@@ -1,0 +1,433 @@
+/* render/device_plan.c - see device_plan.h.
+ *
+ * What the processors' sweep has in its structs (render/slab.h, shadow/attenuate.h) is copied, number by
+ * number: a device then computes with the same floats. */
+#include "render/device_plan.h"
+
+#include <string.h>
+
+#include "grid/relevant.h"
+#include "scatter/scatter.h"
+
+_Static_assert(PLAN_LIGHTS >= MAXIMUM_SWEEP_LIGHTS && PLAN_SECTORS == LIGHT_SECTORS &&
+                   PLAN_ENTRIES == CLASSIFIER_ENTRIES && PLAN_KERNEL_POWERS == HL_KERNEL_DEGREE + 1,
+               "plans hold what sweeps hold");
+_Static_assert(offsetof(plan_rays, height) == sizeof(sheet_rays) && sizeof(plan_box) == sizeof(box_rays),
+               "rays of plans are rays of views");
+
+/* ---- what devices do not make yet ---- */
+
+static const hl_scene_description *scene_of(const frame_plan *plan) { return &plan->framed->scene; }
+static const hl_scene_volume *volume_of(const frame_plan *plan) { return plan->volumes.list[0].scene; }
+
+static bool has_no_volume(const frame_plan *plan) {
+  return plan->volumes.count == 0 || plan->frame.point_count == 0;
+}
+static bool has_volumes(const frame_plan *plan) { return plan->volumes.count > 1; }
+static bool is_hidden(const frame_plan *plan) { return !volume_of(plan)->visible; }
+static bool is_maximum(const frame_plan *plan) { return hl_is_maximum(scene_of(plan)); }
+static bool has_layers(const frame_plan *plan) { return plan->layers != NULL; }
+static bool is_shared(const frame_plan *plan) { return plan->share.parts > 1; }
+static bool has_surfaces(const frame_plan *plan) { return plan->frame.surfaces != NULL; }
+static bool has_sky(const frame_plan *plan) { return plan->fields.sky != NULL; }
+static bool scatters(const frame_plan *plan) { return hl_scatter_wanted(scene_of(plan)); }
+static bool splats(const frame_plan *plan) { return plan->volumes.splat; }
+static bool has_pages(const frame_plan *plan) { return plan->volumes.grids[0].pages != NULL; }
+static bool is_thin(const frame_plan *plan) {
+  const int32_t *dimension = plan->volumes.grids[0].dimension;
+  return dimension[0] < 4 || dimension[1] < 4 || dimension[2] < 4;
+}
+static bool has_colors(const frame_plan *plan) { return volume_of(plan)->volume->colors != NULL; }
+static bool is_weighed(const frame_plan *plan) {
+  return hl_classifier_is_weighed(plan->volumes.list[0].classifier);
+}
+static bool has_cuts(const frame_plan *plan) { return volume_of(plan)->cut_count > 0; }
+static bool is_soft(const frame_plan *plan) {
+  for (int i = 0; i < plan->frame.light_count; i++)
+    if (plan->frame.lights[i].shadows == HL_SHADOWS_SOFT) return true;
+  return false;
+}
+static bool has_images(const frame_plan *plan) {
+  const hl_scene_description *scene = scene_of(plan);
+  for (size_t i = 0; i < scene->light_count; i++)
+    if (scene->lights[i].texture.pixels != NULL || scene->lights[i].emission.pixels != NULL) return true;
+  return false;
+}
+static bool has_phase_tables(const frame_plan *plan) {
+  return hl_phase_table(plan->fields.phases, volume_of(plan)->anisotropy) != NULL;
+}
+
+/* In this order: the first that applies is told. */
+static const struct {
+  bool (*applies)(const frame_plan *plan);
+  const char *reason;
+} reasons[] = {
+    {has_no_volume, "it shows no volume"},
+    {is_maximum, "a maximum projection"},
+    {has_layers, "layers"},
+    {is_shared, "a part of a shared picture"},
+    {has_surfaces, "meshes or isosurfaces"},
+    {has_volumes, "several volumes"},
+    {is_hidden, "a volume that only casts shadows"},
+    {has_sky, "the light of a sky"},
+    {scatters, "multiple scattering"},
+    {splats, "splatting in place of gathering"},
+    {has_pages, "voxels outside of memory"},
+    {is_thin, "a volume less than four voxels thick"},
+    {has_colors, "voxels with colours"},
+    {is_weighed, "gradient opacity, a mask, or a function of two numbers"},
+    {has_cuts, "cuts"},
+    {is_soft, "soft shadows"},
+    {has_images, "lights with images"},
+    {has_phase_tables, "wide lights in media that scatter unevenly"},
+};
+
+const char *hl_reason_for_processors(const frame_plan *plan) {
+  for (size_t i = 0; i < sizeof reasons / sizeof *reasons; i++)
+    if (reasons[i].applies(plan)) return reasons[i].reason;
+  return NULL;
+}
+
+/* ---- the volume ---- */
+
+static int storage_of(const grid *grid) {
+  return grid->storage == HL_STORAGE_U8 ? 0 : grid->storage == HL_STORAGE_U16 ? 1 : 2;
+}
+
+/* Tables of the grid's cells are asked where the processors ask them. */
+static const uint64_t *bits_of_cells(const grid *grid) {
+  return grid->cell_bits_tell ? grid->cell_bits : NULL;
+}
+
+gpu_volume hl_volume_for_device(const frame_plan *plan) {
+  const frame_volume *volume = &plan->volumes.list[0];
+  const grid *grid = &plan->volumes.grids[0];
+  const classifier *classifier = volume->classifier;
+  return (gpu_volume){.version = volume->version,
+                      .tables_version = volume->tables_version,
+                      .voxels = grid->voxels,
+                      .storage = storage_of(grid),
+                      .dimension = grid->dimension,
+                      .brick_count = grid->brick_count,
+                      .relevant = grid->relevant,
+                      .cell_bits = bits_of_cells(grid),
+                      .sums = &classifier->sums[0][0],
+                      .color = &classifier->color[0][0],
+                      .shown = &classifier->shown[0][0],
+                      .outside = classifier->outside,
+                      .bent = classifier->bent};
+}
+
+static void plan_matter(const shade_volume *shade, plan_volume *volume) {
+  const grid *grid = shade->grid;
+  const classifier *classifier = shade->classifier;
+  const kernel *kernel = shade->kernel;
+  memcpy(volume->dimension, grid->dimension, sizeof volume->dimension);
+  memcpy(volume->brick_count, grid->brick_count, sizeof volume->brick_count);
+  volume->slice_rows = (unsigned)grid->dimension[1];
+  volume->empty = grid->empty;
+  volume->has_cell_bits = bits_of_cells(grid) != NULL;
+  memcpy(volume->inner, kernel->inner, sizeof volume->inner);
+  memcpy(volume->outer, kernel->outer, sizeof volume->outer);
+  memcpy(volume->to_index, shade->to_index, sizeof volume->to_index);
+  memcpy(volume->low, shade->low, sizeof volume->low);
+  memcpy(volume->high, shade->high, sizeof volume->high);
+  memcpy(volume->face_low, grid->face_low, sizeof volume->face_low);
+  memcpy(volume->face_high, grid->face_high, sizeof volume->face_high);
+  volume->scale = classifier->scale;
+  volume->offset = classifier->offset;
+  volume->first_visible = classifier->first_visible;
+  volume->last_visible = classifier->last_visible;
+  volume->normal_edge = classifier->normal_edge;
+  volume->bends = classifier->bent != NULL;
+  volume->several_surfaces = classifier->several_surfaces;
+  volume->only_outside = classifier->only_outside;
+  volume->side = classifier->side;
+  volume->any_face = shade->any_face;
+  volume->cut_shading = shade->cut_shading;
+  for (int face = 0; face < 6; face++) volume->face_cuts[face] = shade->face_cuts[face / 2][face % 2];
+}
+
+static void plan_material(const shade_volume *shade, const hl_scene_volume *scene, plan_volume *volume) {
+  volume->ambient = shade->ambient;
+  volume->diffuse = shade->diffuse;
+  volume->specular = shade->specular;
+  volume->shininess = shade->shininess;
+  volume->emission = shade->emission;
+  volume->anisotropy = shade->anisotropy;
+  memcpy(volume->albedo, shade->albedo, sizeof volume->albedo);
+  volume->absorbs = shade->absorbs;
+  volume->receives_shadow = shade->receives_shadow;
+  volume->voxel = shade->voxel;
+  for (int c = 0; c < HL_CHANNELS; c++) {
+    volume->cast[c] = shade->cast[c];
+    volume->weight[c] = scene->casts_shadow ? (float)scene->attenuation_color[c] : 0;
+  }
+}
+
+/* ---- the lights ---- */
+
+static void plan_brightness(const shade_light *shade, plan_light *light) {
+  light->parallel = shade->parallel;
+  light->shadowed = shade->shadowed;
+  light->inverse_square = shade->inverse_square;
+  light->nearest = shade->nearest;
+  light->cubic = shade->cubic;
+  memcpy(light->towards, shade->towards, sizeof light->towards);
+  memcpy(light->position, shade->position, sizeof light->position);
+  memcpy(light->color, shade->color, sizeof light->color);
+  light->of_sky = shade->of_sky;
+  light->path = shade->path;
+  memcpy(light->cone_axis, shade->cone.axis, sizeof light->cone_axis);
+  light->cone_outer = shade->cone.outer;
+  light->cone_scale = shade->cone.scale;
+  light->sector_count = shade->sector.count;
+  light->sector = shade->sector.sector;
+  memcpy(light->sector_axis, shade->sector.axis, sizeof light->sector_axis);
+  light->sector_least = shade->sector.least;
+}
+
+/* A sweep that is described. */
+typedef struct sweep_task {
+  const frame_plan *frame_plan;
+  const sweep_plan *plan;
+  const sweep_constants *constants;
+} sweep_task;
+
+/* The first slab that a light's shadows reach. */
+static int first_reached(const sheet_stack *sheets, const light_shadow *shadow) {
+  int slab = 1;
+  while (slab < sheets->count && !hl_is_reached(sheets, shadow, slab)) slab++;
+  return slab;
+}
+
+static void plan_box_rays(const view *view, const sweep_task *task, plan_box *box) {
+  const sheet_stack *sheets = &task->plan->geometry->sheets;
+  const grid *grid = &task->frame_plan->volumes.grids[0];
+  box_rays rays;
+  hl_box_rays(view, sheets->normal, sheets->first, grid->frame_to_index, grid->box_low, grid->box_high,
+              &rays);
+  memcpy(box, &rays, sizeof *box);
+}
+
+/* The box around what shows, a voxel larger for rounding. */
+static void plan_content(const view *view, const sweep_task *task, plan_box *box) {
+  const sheet_stack *sheets = &task->plan->geometry->sheets;
+  const grid *grid = &task->frame_plan->volumes.grids[0];
+  double low[3], high[3];
+  box_rays rays;
+  if (!hl_relevant_bounds(grid, GRID_MARGIN, low, high)) return;
+  for (int axis = 0; axis < 3; axis++) {
+    low[axis] -= 1;
+    high[axis] += 1;
+  }
+  hl_box_rays(view, sheets->normal, sheets->first, grid->frame_to_index, low, high, &rays);
+  memcpy(box, &rays, sizeof *box);
+}
+
+/* Derived: on the sheet, one pixel of a parallel light's buffer along u is (grad v x h) / (grad u . (grad v x
+ * h)), h the sheets' normal, and likewise along v. The pixels around a sample are one such step away at most,
+ * and a face counts where it is up to twice as far; the light's way through the slab is as long as its path.
+ * A little is added for rounding. Of near lights pixels grow with distance: all samples count as near a face.
+ */
+static void plan_margin(const sweep_task *task, int index, plan_light *light) {
+  const sheet_stack *sheets = &task->plan->geometry->sheets;
+  const light_source *source = task->plan->lights[index].source;
+  const mat3 *to_index = &task->frame_plan->volumes.grids[0].frame_to_index.linear;
+  double rows[3][4];
+  hl_view_homogeneous(&task->plan->lights[index].shadow.plan.view, affine3_identity(), rows);
+  const vec3 u = {rows[1][0], rows[1][1], rows[1][2]}, v = {rows[2][0], rows[2][1], rows[2][2]};
+  vec3 along_u = vec3_cross(v, sheets->normal), along_v = vec3_cross(sheets->normal, u);
+  double rise = vec3_dot(u, along_u);
+  for (int axis = 0; axis < 3; axis++) {
+    double pixels = fabs(vec3_dot(to_index->row[axis], along_u)) +
+                    fabs(vec3_dot(to_index->row[axis], along_v)),
+           way = fabs(vec3_dot(to_index->row[axis], source->direction)) * (double)light->path;
+    bool known = source->parallel && fabs(rise) > 1e-9 * (vec3_length(along_u) + vec3_length(along_v));
+    light->margin[axis] = known ? (float)(2.05 * pixels / fabs(rise) + 1.05 * way + 0.01) : 1e30f;
+  }
+}
+
+/* Planes of one sheet: of the transmittance in each channel, and of the light at the outside of surfaces. */
+static size_t planes_of_sheet(const sweep_task *task, const light_shadow *shadow) {
+  return (size_t)task->frame_plan->channels * (shadow->plan.outside ? 2 : 1);
+}
+
+/* Sets a light's buffer; its planes begin at `*floats`, which is raised by theirs. */
+static void plan_buffer(const sweep_task *task, int index, int ring, size_t *floats, int *tiles,
+                        plan_light *light) {
+  const light_shadow *shadow = &task->plan->lights[index].shadow;
+  const view *view = &shadow->plan.view;
+  shadow_buffer buffer = {0};
+  hl_shadow_buffer_measure(view, shadow->plan.reach, &buffer);
+  const shadow_map map = hl_map_of_view(view);
+  light->width = view->width;
+  light->height = view->height;
+  light->tiles_x = buffer.tiles_x;
+  light->tiles = buffer.tiles_x * buffer.tiles_y;
+  light->first_tile = *tiles;
+  light->first_slab = first_reached(&task->plan->geometry->sheets, shadow);
+  light->stride = (int)buffer.stride;
+  light->plane = (int)buffer.plane;
+  light->origin = (int)buffer.origin;
+  light->planes = (unsigned)(*floats / 16);
+  memcpy(light->map, map.rows, sizeof light->map);
+  light->slab_path = task->constants->attenuate[index].path;
+  plan_box_rays(view, task, &light->box);
+  plan_content(view, task, &light->content);
+  plan_margin(task, index, light);
+  *tiles += light->tiles;
+  *floats += ((size_t)ring * planes_of_sheet(task, shadow) * buffer.plane + 15) / 16 * 16;
+}
+
+/* The most bytes of the lights' planes together, slabs of a run where memory allows, and where there are no
+ * shadows' planes to keep. */
+static const size_t PLANES_BYTES = (size_t)1 << 30, SLOTS_BYTES = (size_t)1 << 30;
+enum { SLABS_OF_RUN = 32 /* a bit each */, SLOT_BYTES = 40 };
+
+static size_t floats_of_sheet(const sweep_task *task) {
+  size_t floats = 0;
+  for (int i = 0; i < task->plan->geometry->light_count; i++) {
+    const light_shadow *shadow = &task->plan->lights[i].shadow;
+    if (shadow->method != NULL)
+      floats += planes_of_sheet(task, shadow) * hl_shadow_plane(&shadow->plan.view, shadow->plan.reach);
+  }
+  return floats;
+}
+
+static int slabs_of_run(const sweep_task *task) {
+  int slabs = hl_plan_settings(task->frame_plan)->slabs_at_once > 0
+                  ? hl_plan_settings(task->frame_plan)->slabs_at_once
+                  : SLABS_OF_RUN;
+  const size_t sheet = floats_of_sheet(task) * sizeof(float),
+               slots = task->frame_plan->tiles * TILE_PIXELS * SLOT_BYTES;
+  if (slabs > SLABS_OF_RUN) slabs = SLABS_OF_RUN;
+  while (slabs > 1 && (size_t)slabs * slots > SLOTS_BYTES) slabs--;
+  while (slabs > 1 && (2 * (size_t)slabs + 1) * sheet > PLANES_BYTES) slabs--;
+  return slabs;
+}
+
+/* ---- the rays ---- */
+
+static void plan_rays_of(const view *view, const sheet_stack *sheets, double height, affine3 from_frame,
+                         int sheet, plan_rays *rays) {
+  sheet_rays found;
+  hl_view_sheet_rays(view, sheets->normal, height, from_frame, &found);
+  memcpy(rays, &found, sizeof found);
+  rays->height = (float)(sheet * sheets->spacing);
+}
+
+/* middle: rays end in the middle of the slab before each sheet, else on the sheet. */
+static void plan_view(const view *view, const sheet_stack *sheets, affine3 from_frame, bool middle,
+                      plan_rays *rays) {
+  for (int sheet = 0; sheet < sheets->count; sheet++)
+    plan_rays_of(view, sheets, hl_sheet_height(sheets, sheet) - (middle ? 0.5 * sheets->spacing : 0),
+                 from_frame, sheet, &rays[sheet]);
+}
+
+static hl_status plan_all_rays(hl_context *context, const sweep_task *task, planned_sweep *planned,
+                               hl_error *error) {
+  const sheet_stack *sheets = &task->plan->geometry->sheets;
+  const int lights = task->plan->geometry->light_count;
+  const size_t count = (2 + 2 * (size_t)lights) * (size_t)sheets->count;
+  const affine3 to_index = task->frame_plan->volumes.grids[0].frame_to_index;
+  plan_rays *rays = planned->rays = hl_allocate_zeroed(context, count, sizeof *planned->rays);
+  if (rays == NULL) return hl_fail_memory(error, count * sizeof *planned->rays, "the rays");
+  plan_view(&task->frame_plan->frame.eye, sheets, to_index, false, rays);
+  plan_view(&task->frame_plan->frame.eye, sheets, affine3_identity(), true, rays + sheets->count);
+  for (int i = 0; i < lights; i++) {
+    const light_shadow *shadow = &task->plan->lights[i].shadow;
+    if (shadow->method == NULL) continue;
+    plan_rays *of_light = rays + (2 + 2 * i) * sheets->count;
+    plan_view(&shadow->plan.view, sheets, to_index, false, of_light);
+    plan_view(&shadow->plan.view, sheets, affine3_identity(), false, of_light + sheets->count);
+  }
+  return HL_OK;
+}
+
+/* ---- the sweep ---- */
+
+/* All lights keep the light at the outside of surfaces, or none does. */
+static bool keeps_outside(const sweep_task *task) {
+  for (int i = 0; i < task->plan->geometry->light_count; i++)
+    if (task->plan->lights[i].shadow.method != NULL && task->plan->lights[i].shadow.plan.outside) return true;
+  return false;
+}
+
+static plan_variant variant_of(const sweep_task *task, const device_sweep *plan) {
+  const shade_volume *shade = &task->constants->volumes[0];
+  const grid *grid = &task->frame_plan->volumes.grids[0];
+  return (plan_variant){.storage = storage_of(grid),
+                        .bspline = task->frame_plan->volumes.kernel->degree == HL_BSPLINE_DEGREE,
+                        .eye_perspective = task->frame_plan->frame.eye.perspective,
+                        .phong = shade->phong,
+                        .lit = shade->lit,
+                        .shadowed = plan->light_tiles > 0,
+                        .outside = keeps_outside(task),
+                        .boxed = grid->cut,
+                        .back_to_front = task->plan->geometry->back_to_front,
+                        .channels = task->frame_plan->channels};
+}
+
+static hl_status find_constants(hl_context *context, const frame_plan *frame_plan, const sweep_plan *plan,
+                                planned_sweep *planned, hl_error *error) {
+  hl_layout layout = {0};
+  while (hl_layout_pass(&layout, context))
+    hl_sweep_constants_lay_out(frame_plan, &planned->constants, &layout);
+  planned->memory = layout.base;
+  if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the device's sweep");
+  hl_sweep_constants_find(frame_plan, plan, NULL, &planned->constants);
+  return HL_OK;
+}
+
+hl_status hl_plan_sweep(hl_context *context, const frame_plan *frame_plan, const sweep_plan *of,
+                        const int32_t *shown_from, planned_sweep *planned, hl_error *error) {
+  const sweep_task sweep = {frame_plan, of, &planned->constants}, *task = &sweep;
+  device_sweep *plan = &planned->plan;
+  memset(planned, 0, sizeof *planned);
+  hl_status status = find_constants(context, frame_plan, of, planned, error);
+  if (status != HL_OK) return status;
+  const shade_job *job = &planned->constants.shade;
+  const shade_volume *shade = &planned->constants.volumes[0];
+  const int slabs = slabs_of_run(task);
+  plan->sheets = task->plan->geometry->sheets.count;
+  plan->ring = 2 * slabs + 1;
+  plan->width = task->frame_plan->frame.width;
+  plan->height = task->frame_plan->frame.height;
+  plan->tiles_x = task->frame_plan->tiles_x;
+  plan->tiles = (int)task->frame_plan->tiles;
+  plan->light_count = task->plan->geometry->light_count;
+  plan->spacing = job->spacing;
+  plan->path = job->path;
+  memcpy(plan->through, job->through, sizeof plan->through);
+  memcpy(plan->towards_eye, job->towards_eye, sizeof plan->towards_eye);
+  memcpy(plan->normal, job->normal, sizeof plan->normal);
+  memcpy(plan->ambient, job->ambient, sizeof plan->ambient);
+  plan->emission = job->emission;
+  plan_matter(shade, &plan->volume);
+  plan_material(shade, frame_plan->volumes.list[0].scene, &plan->volume);
+  const gpu_volume volume = hl_volume_for_device(frame_plan);
+  plan->volume.row_bytes = (unsigned)hl_gpu_row_bytes(&volume);
+  plan_box_rays(&task->frame_plan->frame.eye, task, &plan->box);
+  plan_content(&task->frame_plan->frame.eye, task, &plan->content);
+  size_t floats = 0;
+  for (int i = 0; i < plan->light_count; i++) {
+    plan_brightness(&task->constants->lights[i], &plan->lights[i]);
+    if (task->plan->lights[i].shadow.method != NULL)
+      plan_buffer(task, i, plan->ring, &floats, &plan->light_tiles, &plan->lights[i]);
+  }
+  status = plan_all_rays(context, task, planned, error);
+  planned->sweep = (gpu_sweep){.plan = plan,
+                               .variant = variant_of(task, plan),
+                               .rays = planned->rays,
+                               .shown_from = shown_from,
+                               .plane_floats = floats,
+                               .slabs = slabs};
+  return status;
+}
+
+void hl_plan_release(hl_context *context, planned_sweep *planned) {
+  hl_release(context, planned->memory);
+  hl_release(context, planned->rays);
+  planned->memory = planned->rays = NULL;
+}

@@ -1,0 +1,31 @@
+/* render/device_plan.h - a sweep of a plan as numbers of 32 bits for a device (gpu/device_sweep.h), and which
+ * frames a device can make. */
+#ifndef HL_RENDER_DEVICE_PLAN_H
+#define HL_RENDER_DEVICE_PLAN_H
+
+#include "gpu/gpu.h"
+#include "plan/frame_plan.h"
+#include "render/sweep_constants.h"
+
+/* Why a device does not make a frame: a part of a sentence, "its meshes are not there yet". Null: it does. */
+const char *hl_reason_for_processors(const frame_plan *plan);
+
+/* The volume that the frame shows. */
+gpu_volume hl_volume_for_device(const frame_plan *plan);
+
+/* A sweep for a device. */
+typedef struct planned_sweep {
+  sweep_constants constants;
+  void *memory; /* owned; holds the arrays of the constants */
+  device_sweep plan;
+  gpu_sweep sweep;
+  plan_rays *rays; /* owned */
+} planned_sweep;
+
+/* shown_from: as a sweep's target has it; borrowed. planned: release it after a failure, too; it must not
+ * move. */
+hl_status hl_plan_sweep(hl_context *context, const frame_plan *frame_plan, const sweep_plan *plan,
+                        const int32_t *shown_from, planned_sweep *planned, hl_error *error);
+void hl_plan_release(hl_context *context, planned_sweep *planned);
+
+#endif

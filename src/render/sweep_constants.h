@@ -1,0 +1,28 @@
+/* render/sweep_constants.h - what all slabs of a sweep have in common, in the form in which the loops over
+ * samples read it: made from the plan, for every back end. */
+#ifndef HL_RENDER_SWEEP_CONSTANTS_H
+#define HL_RENDER_SWEEP_CONSTANTS_H
+
+#include "core/memory.h"
+#include "plan/frame_plan.h"
+#include "render/slab.h"
+
+typedef struct sweep_constants {
+  shade_volume *volumes; /* [volumes] */
+  shade_cut *cuts;       /* of all volumes, one after the other */
+  float *srgb_decode;    /* [256]: the linear values of sRGB's codes, for voxels with colours */
+  float *tint_decode;    /* [256]: the linear values of a mask's codes, their squares */
+  shade_light lights[FRAME_LIGHTS];
+  attenuate_job attenuate[FRAME_LIGHTS];
+  shade_job shade;
+} sweep_constants;
+
+/* Takes the arrays. */
+void hl_sweep_constants_lay_out(const frame_plan *plan, sweep_constants *constants, hl_layout *layout);
+
+/* After the arrays are there: fills them, and all members but what a back end adds for a light's shadow
+ * buffer and texture. constants must not move afterwards. maximum: null: matter is lit. */
+void hl_sweep_constants_find(const frame_plan *plan, const sweep_plan *sweep, const maximum_values *maximum,
+                             sweep_constants *constants);
+
+#endif
