@@ -119,7 +119,8 @@ class _Frames(threading.Thread):
         self.last: Image | None = None  # the last frame that was wanted as a picture
         self.asked: queue.SimpleQueue[tuple[contextvars.Context, dict[str, Any]] | None] = queue.SimpleQueue()
         self.newest: dict[tuple[str, str], int] = {}
-        self.renderer = Renderer()
+        self.renderer, self.quick_renderer = Renderer(), Renderer()
+        self.preview: Any = None  # the scene's volumes at coarser resolutions
 
     def ask(self, message: dict[str, Any]) -> None:
         if message["kind"] == "frame":
@@ -146,6 +147,13 @@ class _Frames(threading.Thread):
             # message by the request that the answer named, and a thread's own context names none.
             request.run(self.send, answer, buffers)
 
+    def _quick(self, scene: Scene) -> Scene:
+        """The scene as it is rendered while something moves (halflight/preview.h); the scene itself where it stays."""
+        if self.preview is None:
+            self.preview = made(lib.hl_preview_create, "hl_preview", lib.hl_preview_destroy, context, self.named.scene._handle)
+        handle = made(lib.hl_preview_scene, "hl_scene", lib.hl_scene_release, self.preview, scene._handle)
+        return scene if handle == scene._handle else Scene._of(handle)
+
     def _do_start(self, message: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
         return {"text": json.dumps(_start(self.scene, self.title))}, []
 
@@ -165,7 +173,9 @@ class _Frames(threading.Thread):
         if scene.size[0] * scene.size[1] > _MOST_PIXELS:
             raise ValueError(f"{scene.size[0]} x {scene.size[1]} pixels are more than the viewer's {_MOST_PIXELS}")
         read = time.monotonic()
-        image = self.renderer.render(scene, progress=stop_if_outdated)
+        quick = self._quick(scene) if message.get("moving") else scene
+        renderer = self.renderer if quick is scene else self.quick_renderer
+        image = renderer.render(quick, progress=stop_if_outdated)
         rendered = time.monotonic()
         self.last = image
         kind, content = _encoded(image, message)

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "parts.h"
 
@@ -17,7 +18,8 @@ static _Thread_local struct {
   int socket;        /* of whoever asked for it */
   server_page *page; /* null: none */
   unsigned long long number;
-  bool opening; /* a file */
+  const server_opened *opened; /* for which a preview is made; null: none */
+  bool opening;                /* a file */
 } current;
 
 void work_begin(server *s, int socket) {
@@ -25,11 +27,21 @@ void work_begin(server *s, int socket) {
   current.socket = socket;
 }
 
-void work_end(void) { current.server = NULL; }
+void work_end(void) {
+  current.server = NULL;
+  current.opened = NULL;
+}
+
+void work_begin_for(server *s, const server_opened *opened) {
+  current.server = s;
+  current.opened = opened;
+}
 
 bool server_is_outdated(void) {
   if (current.server == NULL) return false;
-  if (current.server->options.stopped() || peer_is_gone(current.socket)) return true;
+  if (current.server->options.stopped()) return true;
+  if (current.opened != NULL) return atomic_load(&current.opened->leaving);
+  if (peer_is_gone(current.socket)) return true;
   return current.page != NULL && atomic_load(&current.page->newest) > current.number;
 }
 
@@ -45,9 +57,15 @@ bool pages_begin(server *s) {
   return good;
 }
 
+static void forget_renderers(server_page *page) {
+  hl_renderer_destroy(page->renderer);
+  hl_renderer_destroy(page->quick);
+  page->renderer = page->quick = NULL;
+}
+
 void pages_end(server *s) {
   for (int p = 0; p < MOST_PAGES; p++) {
-    hl_renderer_destroy(s->pages[p].renderer);
+    forget_renderers(&s->pages[p]);
     pthread_mutex_destroy(&s->pages[p].rendering);
   }
   pthread_mutex_destroy(&s->pages_lock);
@@ -68,9 +86,8 @@ static server_page *find_page(server *s, const char *name) {
 
 /* Frees a page that no request holds. */
 static void release_page(server *s, server_page *page) {
-  if (page->renderer != NULL) atomic_store(&s->released, true);
-  hl_renderer_destroy(page->renderer);
-  page->renderer = NULL;
+  if (page->renderer != NULL || page->quick != NULL) atomic_store(&s->released, true);
+  forget_renderers(page);
   page->name[0] = '\0';
   page->leaving = false;
   atomic_store(&page->newest, 0);
@@ -186,6 +203,18 @@ static void fail_frame(server_answer *answer, hl_status status, const hl_error *
   else refuse_line(answer, 400, error->message);
 }
 
+/* The scene that is rendered while something moves, which may be the scene itself. Waits for the coarser
+ * volumes, which are made sooner than a frame of a large volume. */
+static hl_status make_quick(server *s, long long number, hl_scene *scene, hl_scene **quick, hl_error *error) {
+  const struct timespec moment = {.tv_nsec = 2000000};
+  server_opened *opened = opened_enter(s, number);
+  while (opened != NULL && !atomic_load(&opened->prepared) && !server_is_outdated()) nanosleep(&moment, NULL);
+  hl_preview *preview = opened != NULL ? atomic_load(&opened->preview) : NULL;
+  hl_status status = preview != NULL ? hl_preview_scene(preview, scene, quick, error) : HL_OK;
+  if (opened != NULL) opened_leave(s, opened);
+  return status;
+}
+
 static hl_status read_scene(server *s, long long number, const char *text, size_t length, hl_scene **scene,
                             hl_error *error) {
   server_opened *opened = opened_enter(s, number);
@@ -261,19 +290,18 @@ static hl_status write_exact(const server *s, const hl_scene *scene, const hl_im
   return status;
 }
 
-static hl_status render(server *s, server_page *page, const hl_scene *scene, const frame_request *request,
-                        server_answer *answer, hl_error *error) {
+/* renderer: the page's, for what moves or for what rests. */
+static hl_status render(server *s, server_page *page, hl_renderer **renderer, const hl_scene *scene,
+                        const frame_request *request, server_answer *answer, hl_error *error) {
   const hl_scene_description *d = hl_scene_describe(scene);
   hl_image *image = NULL;
   double began = server_seconds();
-  hl_status status = page->renderer == NULL ? hl_renderer_create(s->options.context, &page->renderer, error)
-                                            : HL_OK;
+  hl_status status = *renderer == NULL ? hl_renderer_create(s->options.context, renderer, error) : HL_OK;
   if (status == HL_OK && strcmp(request->format, "depth") == 0)
     return render_depth(page, scene, answer, error);
   if (status == HL_OK) status = hl_image_create(s->options.context, d->width, d->height, &image, error);
   if (status == HL_OK)
-    status = hl_renderer_render(page->renderer, scene, hl_image_pixels(image), 4 * (size_t)d->width, NULL,
-                                error);
+    status = hl_renderer_render(*renderer, scene, hl_image_pixels(image), 4 * (size_t)d->width, NULL, error);
   double rendered = server_seconds();
   if (status == HL_OK) {
     hl_image_write_options options;
@@ -291,14 +319,18 @@ static hl_status render(server *s, server_page *page, const hl_scene *scene, con
 /* Reads the scene and renders it; the page's frames are rendered one after the other. */
 static hl_status make_frame(server *s, server_page *page, const frame_request *request,
                             const film_request *film, server_answer *answer, hl_error *error) {
-  hl_scene *scene = NULL;
+  hl_scene *scene = NULL, *quick = NULL;
   double began = server_seconds();
   if (server_is_outdated()) return HL_ERROR_CANCELLED;
   hl_status status = read_scene(s, request->opened, request->text, request->length, &scene, error);
+  if (status == HL_OK && request->moving) status = make_quick(s, request->opened, scene, &quick, error);
+  bool coarser = quick != NULL && quick != scene;
   answer->seconds_read = server_seconds() - began;
   if (status == HL_OK)
     status = film != NULL ? render_film(s, page, scene, film, answer, error)
-                          : render(s, page, scene, request, answer, error);
+                          : render(s, page, coarser ? &page->quick : &page->renderer, coarser ? quick : scene,
+                                   request, answer, error);
+  hl_scene_release(quick);
   hl_scene_release(scene);
   return status;
 }
@@ -318,8 +350,7 @@ void answer_frame(server *s, const frame_request *request, const film_request *f
   hl_status status = make_frame(s, page, request, film, answer, &error);
   if (status == HL_ERROR_MEMORY) { /* once more, with what idle pages held, and what this one held before */
     spare_memory(s);
-    hl_renderer_destroy(page->renderer);
-    page->renderer = NULL;
+    forget_renderers(page);
     status = make_frame(s, page, request, film, answer, &error);
   }
   current.page = NULL;

@@ -4,9 +4,11 @@
  * another, if no request holds it.
  */
 #define _GNU_SOURCE
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "parts.h"
 #include "start/start.h"
@@ -30,6 +32,7 @@ server_opened *opened_enter(server *s, long long number) {
 
 static void release(server *s, server_opened *opened) {
   if (opened->scene != NULL) atomic_store(&s->released, true);
+  hl_preview_destroy(atomic_load(&opened->preview));
   hl_scene_release(opened->scene);
   free(opened->start);
   *opened = (server_opened){0};
@@ -38,16 +41,63 @@ static void release(server *s, server_opened *opened) {
 void opened_leave(server *s, server_opened *opened) {
   pthread_mutex_lock(&s->pages_lock);
   opened->users--;
-  if (opened->leaving && opened->users == 0) release(s, opened);
+  if (atomic_load(&opened->leaving) && opened->users == 0) release(s, opened);
   pthread_mutex_unlock(&s->pages_lock);
 }
 
 void opened_close(server *s, long long number) {
   pthread_mutex_lock(&s->pages_lock);
   server_opened *opened = number > 0 ? find(s, number) : NULL;
-  if (opened != NULL) opened->leaving = true;
+  if (opened != NULL) atomic_store(&opened->leaving, true);
   if (opened != NULL && opened->users == 0) release(s, opened);
   pthread_mutex_unlock(&s->pages_lock);
+}
+
+/* ---- previews: made once for each scene, by a thread in the background ---- */
+
+typedef struct preparation {
+  server *server;
+  long long number;
+} preparation;
+
+static void *prepare(void *user_data) {
+  const preparation about = *(preparation *)user_data;
+  free(user_data);
+  server *s = about.server;
+  server_opened *opened = opened_enter(s, about.number);
+  hl_preview *made = NULL;
+  if (opened != NULL) {
+    work_begin_for(s, opened);
+    if (hl_preview_create(s->options.context, opened->scene, &made, NULL) == HL_OK)
+      atomic_store(&opened->preview, made);
+    atomic_store(&opened->prepared, true);
+    work_end();
+    opened_leave(s, opened);
+  }
+  atomic_fetch_sub(&s->preparing, 1);
+  return NULL;
+}
+
+/* Without a thread or memory for it, frames are of the volumes as they are. */
+static void begin_preview(server *s, server_opened *opened) {
+  pthread_t thread;
+  preparation *about = malloc(sizeof *about);
+  if (about != NULL) {
+    *about = (preparation){s, opened->number};
+    atomic_fetch_add(&s->preparing, 1);
+    if (pthread_create(&thread, NULL, prepare, about) == 0) {
+      pthread_detach(thread);
+      return;
+    }
+    atomic_fetch_sub(&s->preparing, 1);
+    free(about);
+  }
+  atomic_store(&opened->prepared, true);
+}
+
+static void wait_for_previews(server *s) {
+  const struct timespec moment = {.tv_nsec = 1000000};
+  while (atomic_load(&s->preparing) > 0) nanosleep(&moment, NULL);
 }
 
 /* The place for another scene; null: requests hold all of them. */
@@ -77,6 +127,7 @@ server_opened *opened_add(server *s, hl_scene *scene, const char *title) {
   }
   pthread_mutex_unlock(&s->pages_lock);
   if (opened == NULL) free(start);
+  else begin_preview(s, opened);
   return opened;
 }
 
@@ -89,5 +140,6 @@ int opened_count(server *s) {
 }
 
 void opened_end(server *s) {
+  wait_for_previews(s);
   for (int o = 0; o < MOST_OPENED; o++) release(s, &s->opened[o]);
 }

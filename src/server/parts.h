@@ -8,6 +8,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include <halflight/preview.h>
+
 #include "connections.h"
 #include "server.h"
 #include "start/places.h"
@@ -45,7 +47,8 @@ extern const size_t server_asset_count;
 typedef struct server_page {
   char name[PAGE_NAME_LENGTH + 1];   /* "": free */
   pthread_mutex_t rendering;         /* held while a frame of the page is rendered */
-  hl_renderer *renderer;             /* owned; under `rendering` */
+  hl_renderer *renderer;             /* owned; under `rendering`; null: not yet made */
+  hl_renderer *quick;                /* the same for frames while something moves, of coarser volumes */
   atomic_ullong newest;              /* the highest number of a requested frame */
   atomic_int frame_part;             /* thousandths of the frame that is being rendered */
   atomic_int film_done, film_frames; /* of the film that the page renders; 0 frames: none */
@@ -57,12 +60,14 @@ typedef struct server_page {
 
 /* A scene that is open. */
 typedef struct server_opened {
-  long long number;            /* by which pages name it; 0: the program's input */
-  hl_scene *scene;             /* owned; null: free */
-  char *start;                 /* owned; the text of its start.json */
-  int users;                   /* number of requests that use it; under server.pages_lock */
-  bool leaving;                /* its page has gone; under server.pages_lock */
-  unsigned long long last_use; /* under server.pages_lock */
+  long long number;              /* by which pages name it; 0: the program's input */
+  hl_scene *scene;               /* owned; null: free */
+  char *start;                   /* owned; the text of its start.json */
+  _Atomic(hl_preview *) preview; /* owned; null until it is made, and where it cannot be */
+  atomic_bool prepared;          /* the preview is made, or cannot be */
+  int users;                     /* number of requests that use it; under server.pages_lock */
+  atomic_bool leaving;           /* its page has gone; set under server.pages_lock */
+  unsigned long long last_use;   /* under server.pages_lock */
 } server_opened;
 
 typedef struct server {
@@ -76,6 +81,7 @@ typedef struct server {
   atomic_bool visited;     /* options.visited was called */
   atomic_bool released;    /* renderers or scenes since the system was given their memory back */
   atomic_int opening_part; /* thousandths of the volume that is being read */
+  atomic_int preparing;    /* threads that make previews */
   pthread_mutex_t pages_lock;
   server_page pages[MOST_PAGES];
   unsigned long long uses;
@@ -105,7 +111,8 @@ typedef struct frame_request {
   int quality;        /* of a JPEG */
   int depth;          /* of a PNG: 8 or 16 */
   int metadata;       /* 1: a PNG carries its scene; 0: it does not */
-  const char *text;   /* the scene */
+  int moving; /* 1: a quick frame, of coarser volumes where the sheets are wide; 0: the scene as it is */
+  const char *text; /* the scene */
   size_t length;
 } frame_request;
 
@@ -138,6 +145,8 @@ void pages_end(server *s);
 /* Between them the thread works for whoever is at the other end of the socket, as long as he is there. */
 void work_begin(server *s, int socket);
 void work_end(void);
+/* The thread works for what is open, as long as its page is there. */
+void work_begin_for(server *s, const server_opened *opened);
 /* A page was closed: its frames, those of its lanes (NAME-...), and their renderers end. */
 void page_is_gone(server *s, const char *name);
 void pages_expire(server *s); /* renderers of pages that asked for nothing for long; call it now and then */

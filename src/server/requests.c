@@ -295,6 +295,7 @@ static frame_request read_query(struct MHD_Connection *connection, const request
                          .quality = (int)query_number(connection, "quality", LEAST_QUALITY, MOST_QUALITY, 85),
                          .depth = (int)query_number(connection, "depth", 8, 16, 8),
                          .metadata = (int)query_number(connection, "metadata", 0, 1, 1),
+                         .moving = (int)query_number(connection, "moving", 0, 1, 0),
                          .text = r->body,
                          .length = r->length};
 }
@@ -307,12 +308,12 @@ static void post_frame(server *s, struct MHD_Connection *connection, const reque
                        server_answer *answer) {
   frame_request wanted = read_query(connection, r);
   if (names_page(&wanted) && is_format(wanted.format) && wanted.quality > 0 && wanted.metadata >= 0 &&
-      (wanted.depth == 8 || wanted.depth == 16))
+      wanted.moving >= 0 && (wanted.depth == 8 || wanted.depth == 16))
     answer_frame(s, &wanted, NULL, answer);
   else
     answer_problem(answer, 400,
                    "a frame needs ?page=NAME&number=N&format=jpeg|png|exr|npy (&quality=10..100, "
-                   "&depth=8|16, &metadata=0|1)\n");
+                   "&depth=8|16, &metadata=0|1, &moving=0|1)\n");
 }
 
 /* How deep lies what the middle of a small picture of the scene shows. */

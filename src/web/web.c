@@ -16,11 +16,13 @@
 enum { MOST_PIXELS = 64 << 20 };
 
 static struct {
-  hl_context *context, *sealed;   /* owned; `sealed` opens no file */
-  hl_scene *scene;                /* owned; what is open */
-  hl_renderer *renderer, *picker; /* owned; null: not yet made; `picker` finds depths, in tiny pictures */
-  char *text;                     /* owned; from the page */
-  unsigned char *answer;          /* owned; from malloc */
+  hl_context *context, *sealed;           /* owned; `sealed` opens no file */
+  hl_scene *scene;                        /* owned; what is open */
+  hl_preview *preview;                    /* owned; null: not yet made */
+  hl_renderer *renderer, *quick, *picker; /* owned; null: not yet made; `quick` makes frames while something
+                                             moves, `picker` finds depths, in tiny pictures */
+  char *text;                             /* owned; from the page */
+  unsigned char *answer;                  /* owned; from malloc */
   size_t answer_bytes;
 } web;
 
@@ -93,8 +95,9 @@ double web_memory_held(void) { return (double)hl_context_memory_held(web.context
 
 static void forget_renderers(void) {
   hl_renderer_destroy(web.renderer);
+  hl_renderer_destroy(web.quick);
   hl_renderer_destroy(web.picker);
-  web.renderer = web.picker = NULL;
+  web.renderer = web.quick = web.picker = NULL;
 }
 
 static bool ends_in(const char *text, const char *ending) {
@@ -121,6 +124,8 @@ int web_open(const char *title) {
   }
   if (status != HL_OK) return answer_error(status, &error);
   forget_renderers();
+  hl_preview_destroy(web.preview);
+  web.preview = NULL;
   hl_scene_release(web.scene);
   web.scene = scene;
   char *start = describe_start(web.context, web.scene, title, 0, false);
@@ -189,15 +194,21 @@ static hl_status encode_file(const hl_scene *scene, const hl_image *image, const
   return status;
 }
 
-static hl_status render(const hl_scene *scene, const char *format, int depth, bool metadata,
-                        hl_error *error) {
+/* The scene that is rendered while something moves, which may be the scene itself. */
+static hl_status make_quick(hl_scene *scene, hl_scene **quick, hl_error *error) {
+  if (web.preview == NULL && hl_preview_create(web.context, web.scene, &web.preview, NULL) != HL_OK)
+    return HL_OK;
+  return hl_preview_scene(web.preview, scene, quick, error);
+}
+
+static hl_status render(hl_renderer **renderer, const hl_scene *scene, const char *format, int depth,
+                        bool metadata, hl_error *error) {
   const hl_scene_description *d = hl_scene_describe(scene);
   hl_image *image = NULL;
-  hl_status status = web.renderer == NULL ? hl_renderer_create(web.context, &web.renderer, error) : HL_OK;
+  hl_status status = *renderer == NULL ? hl_renderer_create(web.context, renderer, error) : HL_OK;
   if (status == HL_OK) status = hl_image_create(web.context, d->width, d->height, &image, error);
   if (status == HL_OK)
-    status = hl_renderer_render(web.renderer, scene, hl_image_pixels(image), 4 * (size_t)d->width, NULL,
-                                error);
+    status = hl_renderer_render(*renderer, scene, hl_image_pixels(image), 4 * (size_t)d->width, NULL, error);
   if (status == HL_OK) {
     hl_image_write_options options;
     hl_scene_write_options(scene, &options);
@@ -209,16 +220,21 @@ static hl_status render(const hl_scene *scene, const char *format, int depth, bo
   return status;
 }
 
-int web_frame(size_t length, const char *format, int depth, int metadata) {
+int web_frame(size_t length, const char *format, int depth, int metadata, int moving) {
   hl_error error = {0};
-  hl_scene *scene = NULL;
+  hl_scene *scene = NULL, *quick = NULL;
   hl_status status = read_scene(length, &scene, &error);
   if (status != HL_OK) return answer_error(status, &error);
-  status = render(scene, format, depth, metadata != 0, &error);
+  if (moving != 0) status = make_quick(scene, &quick, &error);
+  bool coarser = quick != NULL && quick != scene;
+  hl_renderer **renderer = coarser ? &web.quick : &web.renderer;
+  const hl_scene *rendered = coarser ? quick : scene;
+  if (status == HL_OK) status = render(renderer, rendered, format, depth, metadata != 0, &error);
   if (status == HL_ERROR_MEMORY) { /* once more, without what the renderers hold of earlier frames */
     forget_renderers();
-    status = render(scene, format, depth, metadata != 0, &error);
+    status = render(renderer, rendered, format, depth, metadata != 0, &error);
   }
+  hl_scene_release(quick);
   hl_scene_release(scene);
   return status == HL_OK ? HL_OK : answer_error(status, &error);
 }

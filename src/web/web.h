@@ -26,8 +26,9 @@ int web_open(const char *title);
 int web_complete(size_t length);
 
 /* Renders the text's scene, which names the volumes of the open one. format: "png", "npy", or "rgba", bytes
- * of opaque sRGB, top row first. depth: bits of a PNG's codes. metadata: 0, without the scene's text. */
-int web_frame(size_t length, const char *format, int depth, int metadata);
+ * of opaque sRGB, top row first. depth: bits of a PNG's codes. metadata: 0, without the scene's text. moving:
+ * not 0, a quick picture, of coarser volumes where the sheets are wide (halflight/preview.h). */
+int web_frame(size_t length, const char *format, int depth, int metadata, int moving);
 
 /* Answer: the values of a plane of voxels, as slice_values() makes them (start/places.h). The text is 15
  * doubles: width, height, depth, origin, across, down and through of hl_reslice_options. number: of a volume

@@ -22,7 +22,7 @@ cp "$examples"/*.c "$folder/work"
 cd "$folder/work"
 sed -n '/^ \*     #include/,/^ \*     }$/s/^ \*     \{0,1\}//p' "$header" >picture.c
 grep -q 'int main' picture.c
-[ "$(ls)" = "$(printf 'animation.c\nfrom_memory.c\nlayers.c\nover_ranks.c\npicture.c\npixels.c')" ] || { echo "other examples:" && ls && exit 1; }
+[ "$(ls)" = "$(printf 'animation.c\nfrom_memory.c\nlayers.c\nover_ranks.c\npicture.c\npixels.c\npreview.c')" ] || { echo "other examples:" && ls && exit 1; }
 
 strict='-pedantic-errors -Wall -Wextra -Werror'
 sanitizer=-fsanitize=address
@@ -30,7 +30,7 @@ echo 'int main(void) { return 0; }' >nothing.c
 "$@" $sanitizer nothing.c -o nothing 2>/dev/null && ./nothing 2>/dev/null || sanitizer=
 [ -n "$sanitizer" ] || echo "without the address sanitizer: leaks would go unnoticed"
 # shellcheck disable=SC2046,SC2086 # one word per flag
-for name in animation from_memory layers over_ranks picture pixels; do
+for name in animation from_memory layers over_ranks picture pixels preview; do
   "$@" -std=c99 $strict -g $sanitizer $name.c -o $name $(pkg-config --cflags --libs halflight) -lm
   [ "$cxx" = none ] || $cxx -std=c++11 $strict -x c++ $name.c -o $name-cxx $(pkg-config --cflags --libs halflight) -lm
 done
@@ -46,11 +46,12 @@ fails() { # CODE: the sanitizer's, which reports a leak, is another
 run picture ball_24x24x24_uint8.raw picture.png
 run from_memory memory.png
 run animation ball_24x24x24_uint8.raw 64 48 frame
+run preview ball_24x24x24_uint8.raw 64 48 turn
 run pixels ball_24x24x24_uint8.raw pixels.ppm
 run layers ball_24x24x24_uint8.raw lit
-for name in picture animation pixels layers; do
+for name in picture animation pixels layers preview; do
   arguments=out.png
-  [ $name != animation ] || arguments='8 8 out'
+  [ $name != animation ] && [ $name != preview ] || arguments='8 8 out'
   # shellcheck disable=SC2086 # one word per argument
   fails 1 $name missing.nrrd $arguments
   grep -q 'missing.nrrd: cannot open' message
@@ -66,6 +67,8 @@ fails 1 from_memory no/folder.png
 cmp expected.ppm pixels.ppm
 "$make_volume" png-header frame-23.png | grep -q '^64 48 8 2$'
 [ "$(ls frame-*.png | wc -l)" = 24 ]
+[ "$(ls turn-*.png | wc -l)" = 25 ]
+"$make_volume" png-header turn-rest.png | grep -q '^64 48 8 2$'
 ! cmp -s frame-00.png frame-06.png
 "$make_volume" png-header memory.png | grep -q '^480 360 8 2$'
 "$program" diff memory.png memory.png >differences

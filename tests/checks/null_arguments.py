@@ -64,6 +64,7 @@ VALUES = {
     "hl_context *": "context", "const hl_context *": "context", "hl_context **": "&any",
     "hl_volume *": "volume", "const hl_volume *": "volume", "hl_volume **": "&any",
     "hl_scene *": "scene", "const hl_scene *": "scene", "hl_scene **": "&any",
+    "hl_preview *": "preview", "const hl_preview *": "preview", "hl_preview **": "&any",
     "hl_renderer *": "renderer", "hl_renderer **": "&any",
     "hl_image *": "image", "const hl_image *": "image", "hl_image **": "&any",
     "hl_error *": "&error", "float *": "floats", "float **": "&any", "double *": "doubles", "char **": "&any",
@@ -95,6 +96,7 @@ FILE = """#include <halflight/halflight.h>
 static hl_context *context;
 static hl_volume *volume;
 static hl_scene *scene;
+static hl_preview *preview;
 static hl_renderer *renderer;
 static hl_image *image;
 static hl_mesh *mesh;
@@ -146,7 +148,7 @@ static int make(void) {
     return 0;
   hl_scene_description small = *hl_scene_describe(large);
   small.width = small.height = 4;
-  return hl_scene_create(context, &small, &scene, &error) == HL_OK;
+  return hl_scene_create(context, &small, &scene, &error) == HL_OK && hl_preview_create(context, scene, &preview, &error) == HL_OK;
 }
 
 %s

@@ -4,6 +4,7 @@
 usage: server.py PROGRAM
 """
 import http.client
+import io
 import json
 import os
 import socket
@@ -12,6 +13,9 @@ import sys
 import tempfile
 import threading
 import time
+
+import numpy
+from PIL import Image
 
 import checks
 from checks import check
@@ -208,6 +212,28 @@ def newer_frames_cancel(viewer, scene):
     check(answers["slow"] == 204 and answers["late"] == 204, f"outdated frames are cancelled: {answers}")
 
 
+def quick_frames():
+    """While something moves, frames with wide sheets are of coarser volumes; with close sheets they are of the volume itself."""
+    subprocess.run([PROGRAM, "make", "rings", "--size", "96", "--quiet", "-o", "fine.nrrd"], check=True)
+    with Viewer(PROGRAM, "fine.nrrd") as viewer:
+        scene = small(json.loads(request(viewer, "GET", "start.json")[2])["scene"], 160)
+        scene["image"]["tone"], scene["render"]["sheet_spacing"] = "clip", 0.5
+
+        def picture(spacing, moving):
+            wanted = json.loads(json.dumps(scene))
+            wanted["render"]["sheet_spacing"] = spacing
+            status, _, body = frame(viewer, wanted, moving=moving)
+            check(status == 200, f"a frame: {body[:200]}")
+            with Image.open(io.BytesIO(body)) as image:
+                return numpy.asarray(image.convert("RGB")).astype(float)
+
+        exact, quick = picture(0.5, 0), picture(2, 1)
+        check(not numpy.array_equal(quick, picture(2, 0)), "a quick frame is of another volume")
+        check(abs(quick.mean() / exact.mean() - 1) < 0.05, f"as bright: {quick.mean()}, {exact.mean()}")
+        check(numpy.array_equal(picture(0.5, 1), exact), "with close sheets a frame is of the volume itself")
+        check(request(viewer, "POST", "frame?page=a&number=1&format=png&moving=2", "{}")[0] == 400, "moving is 0 or 1")
+
+
 def many_pages(viewer, scene):
     """More pages than are kept: each gets its own camera's picture."""
     pictures = {}
@@ -294,5 +320,6 @@ with tempfile.TemporaryDirectory() as folder:
         bad_clients(viewer, scene)
         ends_cleanly(viewer, scene)
     begins_as_told()
+    quick_frames()
     busy_port()
 print(f"{checks.count} checks passed")

@@ -1,8 +1,10 @@
 // Frames: which picture is asked for next, and how good it is.
 //
-// While something moves, small pictures with wide sheets follow each other, each asked for when the last one has
-// come, as large as keeps FRAMES_PER_SECOND. At rest a picture of full size follows, as fine as fits into half a
-// second; then the exact one, which is what `halflight render` makes of the same scene.
+// While something moves, quick pictures follow each other, each asked for when the last one has come. Their size is what
+// fits into a frame's time, down to LEAST_PIXELS; where that takes too long their sheets are wider, and their volumes
+// coarser: the channel takes volumes whose voxels are about as long as the sheets are apart, so that thin surfaces stay whole.
+// At rest a picture of full size follows, as fine as fits into half a second; then the exact one, which is what
+// `halflight render` makes of the same scene.
 
 import { worldHeight } from "./camera.js";
 import { length } from "./vector.js";
@@ -10,8 +12,8 @@ import { length } from "./vector.js";
 const BUDGET = 1000 / 20; // milliseconds of a frame while something moves
 const REST_AFTER = 120; // milliseconds without a change
 const SETTLED_WITHIN = 350; // milliseconds for the first picture of full size, so that it is there half a second after
-const WIDEST = 4; // voxels between sheets while something moves, at most
-const LARGEST_PIXEL = 1.45; // voxels: the renderer averages several samples for larger pixels, which saves no time
+const LEAST_PIXELS = 480 * 320; // of a picture while something moves, where the full one has more
+const WIDEST = 8; // voxels between sheets while something moves, at most: the coarsest volumes have voxels of this length
 const SHADOW_PIXELS = 0.5; // of a moving picture's longer side, along that of a shadow buffer
 const ADAPTION = 0.6; // how much of an error in time one frame corrects, as an exponent
 
@@ -28,7 +30,7 @@ export class Frames {
   #ended = false;
   #generation = 0;
   #timer = 0;
-  #work = 60000; // pixels, for sheets a voxel apart, that take as long as the budget
+  #work = 100000; // pixels, for sheets a voxel apart, that take as long as the budget
   #voxels;
   #scene = null; // what the newest picture is, or will be, of
   statistics = { previews: 0, cancelled: 0, finals: 0, stage: "start" };
@@ -87,7 +89,7 @@ export class Frames {
       this.#changed = false;
       const scene = this.#affordable(), began = performance.now();
       try {
-        const frame = await this.#channel.fetchFrame(scene, { quality: 80 });
+        const frame = await this.#channel.fetchFrame(scene, { quality: 80, moving: true });
         if (frame !== null) {
           await this.#show(frame.blob, scene.image);
           this.#learn(performance.now() - began);
@@ -107,27 +109,23 @@ export class Frames {
 
   // How much work fits into the budget, by how long the last picture took.
   #learn(milliseconds) {
-    const factor = Math.min(Math.max(BUDGET / milliseconds, 0.25), 2) ** ADAPTION;
-    const least = this.#leastPixels() / WIDEST, most = this.#full().pixels;
-    this.#work = Math.min(Math.max(this.#work * factor, least), most);
+    const factor = Math.min(Math.max(BUDGET / milliseconds, 0.25), 2) ** ADAPTION, full = this.#full().pixels;
+    this.#work = Math.min(Math.max(this.#work * factor, Math.min(LEAST_PIXELS, full) / WIDEST), full);
   }
 
-  // The pixels of the smallest picture that is worth while, whose pixels are hardly larger than voxels.
-  #leastPixels() {
+  // How many voxels a pixel of a picture of this many pixels is long, at the target.
+  #voxelsInPixel(pixels) {
     const { camera, volumes, image } = this.#store.scene;
     const scale = volumes.map(({ transform }) => [transform?.scale ?? 1].flat().map(Math.abs));
     const voxel = Math.min(...volumes.map((_, v) => this.#voxels[v] * Math.min(...scale[v])));
-    const height = Math.min(worldHeight(camera) / (LARGEST_PIXEL * voxel), image.height);
-    return Math.max(height, 96) ** 2 * (image.width / image.height);
+    return worldHeight(camera) / voxel / Math.sqrt((pixels * image.height) / image.width);
   }
 
-  // From the smallest picture with the widest sheets to the full one with sheets a voxel apart, both by equal
-  // factors, so that their work is what fits into the budget.
+  // Pixels before sheets: a picture gets smaller first, and then its sheets wider. Sheets are no closer than pixels: the
+  // renderer averages several samples where voxels are smaller than pixels, and coarser volumes have done that already.
   #affordable() {
-    const full = this.#full().pixels, least = Math.min(this.#leastPixels(), full);
-    const at = Math.log((WIDEST * this.#work) / least) / Math.log((WIDEST * full) / least);
-    const part = Math.min(Math.max(at, 0), 1);
-    const scene = this.#scaled(least * (full / least) ** part, WIDEST ** (1 - part));
+    const full = this.#full().pixels, pixels = Math.min(Math.max(this.#work, LEAST_PIXELS), full);
+    const scene = this.#scaled(pixels, Math.min(Math.max(pixels / this.#work, this.#voxelsInPixel(pixels), 1), WIDEST));
     if (scene.render.shadow_resolution !== "auto") return scene;
     const { width, height } = scene.image;
     return { ...scene, render: { ...scene.render, shadow_resolution: Math.ceil(SHADOW_PIXELS * Math.max(width, height)) } };
@@ -155,7 +153,7 @@ export class Frames {
 
   async #step(generation, scene, stage) {
     const began = performance.now();
-    const options = stage === "final" ? { format: "png" } : { quality: 92 };
+    const options = stage === "final" ? { format: "png" } : { quality: 92, moving: true };
     if (stage === "final") this.#tell("refining", scene, began, null);
     const frame = await this.#channel.fetchFrame(scene, options);
     if (frame === null || generation !== this.#generation) return;

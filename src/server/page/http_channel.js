@@ -100,9 +100,9 @@ export class HttpChannel {
   }
 
   // A picture of the scene: { blob, times }, or null where a newer frame of this page has cancelled it. `lane` sets
-  // frames apart that do not cancel each other.
-  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, lane = "" } = {}) {
-    const query = { page: this.#page + lane, number: ++this.#number, opened: 0, format, quality, depth, metadata: +metadata };
+  // frames apart that do not cancel each other; `moving` makes a quick picture, of coarser volumes where the sheets are wide.
+  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "" } = {}) {
+    const query = { page: this.#page + lane, number: ++this.#number, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving };
     const response = await this.#ask("frame", query, { method: "POST", body: JSON.stringify(scene) });
     if (response.status === 204) return null;
     return { blob: await response.blob(), times: parseTimes(response.headers.get("Server-Timing")) };

@@ -52,8 +52,8 @@ class WidgetChannel {
     return JSON.parse((await this.#ask("complete", { scene: JSON.stringify(scene) })).text);
   }
 
-  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, lane = "" } = {}) {
-    const { type, times, buffers } = await this.#ask("frame", { scene: JSON.stringify(scene), format, quality, depth, metadata, lane });
+  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "" } = {}) {
+    const { type, times, buffers } = await this.#ask("frame", { scene: JSON.stringify(scene), format, quality, depth, metadata, moving, lane });
     if (type === undefined) return null; // cancelled
     return { blob: new Blob(buffers, { type }), times };
   }

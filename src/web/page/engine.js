@@ -95,9 +95,9 @@ export class Engine {
   }
 
   // A picture's bytes, for the caller to keep; null: cancelled. format: "png", "npy" or "rgba".
-  async frame(scene, { format = "rgba", depth = 8, metadata = true } = {}) {
+  async frame(scene, { format = "rgba", depth = 8, metadata = true, moving = false } = {}) {
     const length = this.#write(JSON.stringify(scene));
-    const answer = await this.#with(format, (pointer) => this.#exports.web_frame(length, pointer, depth, +metadata));
+    const answer = await this.#with(format, (pointer) => this.#exports.web_frame(length, pointer, depth, +metadata, +moving));
     return answer?.slice() ?? null;
   }
 

@@ -50,14 +50,14 @@ const calls = {
   slice: async (plane) => engine.slice(plane),
   depth: async ({ scene }) => ({ found: await engine.depth(scene) }),
   complete: async ({ scene }) => ({ scene: await engine.complete(scene) }),
-  async frame({ scene, format, quality, depth, metadata, number }) {
+  async frame({ scene, format, quality, depth, metadata, moving, number }) {
     await messagesHandled();
     if (gone.has(number)) return { blob: null };
     current = number;
     asked = performance.now();
     try {
       const began = performance.now(), wire = format === "jpeg" ? "rgba" : format;
-      const bytes = await engine.frame(scene, { format: wire, depth, metadata }), rendered = performance.now();
+      const bytes = await engine.frame(scene, { format: wire, depth, metadata, moving }), rendered = performance.now();
       if (bytes === null) return { blob: null };
       const blob = await blobOf(bytes, wire, scene.image, quality);
       return { blob, times: { render: rendered - began, encode: performance.now() - rendered } };

@@ -66,9 +66,9 @@ export class WorkerChannel {
       }
   }
 
-  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, lane = "" } = {}) {
+  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "" } = {}) {
     this.#cancel(lane);
-    const asked = this.#ask("frame", { scene, format, quality, depth, metadata }), number = this.#number;
+    const asked = this.#ask("frame", { scene, format, quality, depth, metadata, moving }), number = this.#number;
     this.#frames.set(lane, number);
     try {
       const { blob, times } = await asked;

@@ -1,0 +1,12 @@
+/* volume/coarser.h - a volume at half its resolution. */
+#ifndef HL_VOLUME_COARSER_H
+#define HL_VOLUME_COARSER_H
+
+#include "volume/volume.h"
+
+/* Makes a volume whose voxels are means of two voxels along the axes whose voxels are short: those that are
+ * less than 1.5 times as long as the shortest. A mean is over the finite values; values of whole numbers are
+ * rounded. The volume is of values, not of labels or colours, and not over ranks. */
+hl_status hl_volume_make_coarser(const hl_volume *volume, hl_volume **coarser, hl_error *error);
+
+#endif

@@ -1,0 +1,170 @@
+/* tests/unit/scene_preview.c - coarser copies of volumes, and which of them a preview takes for a scene's
+ * sheets. */
+#include <halflight/preview.h>
+
+#include "scene_parts.h"
+#include "volume/coarser.h"
+
+static hl_context *context;
+
+/* A volume of floats whose voxel (i, j, k) is i + 10 j + 100 k, of voxels `thick` long along k. */
+static hl_volume *make(const size_t size[3], double thick) {
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  size_t count = size[0] * size[1] * size[2];
+  float *values = malloc(count * sizeof *values);
+  for (size_t n = 0; n < count; n++)
+    values[n] = (float)(n % size[0]) + 10 * (float)(n / size[0] % size[1]) +
+                100 * (float)(n / size[0] / size[1]);
+  memcpy(d.dimensions, size, sizeof d.dimensions);
+  d.axis[2][2] = thick;
+  d.origin[0] = 5;
+  d.type = HL_VOXEL_F32;
+  d.voxels = values;
+  hl_volume *volume = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &volume, NULL), HL_OK);
+  free(values);
+  return volume;
+}
+
+static void voxels_are_means(void **state) {
+  (void)state;
+  hl_volume *fine = make((const size_t[3]){5, 4, 6}, 1), *coarse = NULL;
+  assert_int_equal(hl_volume_make_coarser(fine, &coarse, NULL), HL_OK);
+  hl_volume_info info = {.struct_size = sizeof info};
+  assert_int_equal(hl_volume_get_info(coarse, &info), HL_OK);
+  assert_int_equal(info.dimensions[0], 3);
+  assert_int_equal(info.dimensions[1], 2);
+  assert_int_equal(info.dimensions[2], 3);
+  assert_float_equal(info.spacing[0], 2, 0);
+  assert_float_equal(info.origin[0], 5.5, 0);
+  assert_float_equal(info.origin[2], 0.5, 0);
+  assert_float_equal(hl_volume_value(coarse, 1, 1, 2), 2.5 + 25 + 450, 0);
+  assert_float_equal(hl_volume_value(coarse, 2, 0, 0), 4 + 5 + 50, 0); /* the last column is of one voxel */
+  hl_volume_release(coarse);
+  hl_volume_release(fine);
+}
+
+static void long_axes_stay(void **state) {
+  (void)state;
+  hl_volume *fine = make((const size_t[3]){8, 8, 4}, 3), *coarse = NULL, *coarser = NULL;
+  assert_int_equal(hl_volume_make_coarser(fine, &coarse, NULL), HL_OK);
+  assert_int_equal(hl_volume_make_coarser(coarse, &coarser, NULL), HL_OK);
+  assert_int_equal(coarse->dimension[2], 4);  /* voxels of 2 x 2 x 3 */
+  assert_int_equal(coarser->dimension[2], 4); /* of 4 x 4 x 3: now the third is the short one */
+  assert_int_equal(coarse->dimension[0], 4);
+  assert_int_equal(coarser->dimension[0], 2);
+  hl_volume_release(coarser);
+  hl_volume_release(coarse);
+  hl_volume_release(fine);
+}
+
+static void numbers_that_are_none_are_left_out(void **state) {
+  (void)state;
+  hl_volume_description d;
+  hl_volume_description_defaults(&d);
+  float values[16] = {1, NAN, NAN, NAN};
+  for (int n = 4; n < 16; n++) values[n] = n < 8 ? NAN : 3; /* along i: 1 and nothing in the first pair */
+  for (int a = 0; a < 3; a++) d.dimensions[a] = a == 0 ? 4 : 2;
+  d.type = HL_VOXEL_F32;
+  d.voxels = values;
+  hl_volume *fine = NULL, *coarse = NULL;
+  assert_int_equal(hl_volume_create(context, &d, &fine, NULL), HL_OK);
+  assert_int_equal(hl_volume_make_coarser(fine, &coarse, NULL), HL_OK);
+  assert_float_equal(hl_volume_value(coarse, 0, 0, 0), (1 + 4 * 3) / 5.0, 1e-6);
+  assert_float_equal(hl_volume_value(coarse, 1, 0, 0), 3, 0);
+  hl_volume_release(coarse);
+  hl_volume_release(fine);
+}
+
+static hl_scene *scene_of(hl_volume *volume, double spacing) {
+  hl_scene *chosen = NULL, *scene = NULL;
+  assert_int_equal(hl_scene_for_volume(context, volume, NULL, &chosen, NULL), HL_OK);
+  hl_scene_description d = *hl_scene_describe(chosen);
+  d.render.sheet_spacing = spacing;
+  d.width = d.height = 64;
+  assert_int_equal(hl_scene_create(context, &d, &scene, NULL), HL_OK);
+  hl_scene_release(chosen);
+  return scene;
+}
+
+static void copies_suit_the_sheets(void **state) {
+  (void)state;
+  static const struct {
+    double spacing, quick;
+    size_t side;
+  } rows[] = {{0.5, 0.5, 128}, {1.4, 1.4, 128}, {1.5, 0.75, 64}, {2, 1, 64}, {4, 1, 32}, {16, 4, 32}};
+  hl_volume *volume = make((const size_t[3]){128, 128, 128}, 1);
+  hl_scene *first = scene_of(volume, 1);
+  hl_preview *preview = NULL;
+  assert_int_equal(hl_preview_create(context, first, &preview, NULL), HL_OK);
+  for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+    hl_scene *scene = scene_of(volume, rows[r].spacing), *quick = NULL;
+    assert_int_equal(hl_preview_scene(preview, scene, &quick, NULL), HL_OK);
+    const hl_scene_description *d = hl_scene_describe(quick);
+    assert_float_equal(d->render.sheet_spacing, rows[r].quick, 1e-12);
+    assert_int_equal(d->volumes[0].volume->dimension[1], rows[r].side);
+    assert_true((quick == scene) == (rows[r].side == 128));
+    hl_scene_release(quick);
+    hl_scene_release(scene);
+  }
+  hl_preview_destroy(preview);
+  hl_scene_release(first);
+  hl_volume_release(volume);
+}
+
+static void labels_stay(void **state) {
+  (void)state;
+  static const hl_label labels[] = {{.value = 1, .color = {1, 0, 0}, .opacity = 1, .visible = 1}};
+  hl_volume *volume = make((const size_t[3]){128, 64, 64}, 1);
+  hl_scene *plain = scene_of(volume, 4), *scene = NULL, *quick = NULL;
+  hl_scene_description d = *hl_scene_describe(plain);
+  hl_scene_volume of_labels = d.volumes[0];
+  of_labels.labels = labels;
+  of_labels.label_count = 1;
+  d.volumes = &of_labels;
+  assert_int_equal(hl_scene_create(context, &d, &scene, NULL), HL_OK);
+  hl_preview *preview = NULL;
+  assert_int_equal(hl_preview_create(context, plain, &preview, NULL), HL_OK);
+  assert_int_equal(hl_preview_scene(preview, scene, &quick, NULL), HL_OK);
+  assert_ptr_equal(quick, scene);
+  hl_scene_release(quick);
+  hl_scene_release(scene);
+  hl_scene_release(plain);
+  hl_preview_destroy(preview);
+  hl_volume_release(volume);
+}
+
+static void null_is_refused(void **state) {
+  (void)state;
+  hl_error error = {0};
+  hl_preview *preview = NULL;
+  assert_int_equal(hl_preview_create(context, NULL, &preview, &error), HL_ERROR_ARGUMENT);
+  assert_int_equal(hl_preview_scene(NULL, NULL, NULL, &error), HL_ERROR_ARGUMENT);
+  hl_preview_destroy(NULL);
+}
+
+static int begin(void **state) {
+  (void)state;
+  context = make_context();
+  return 0;
+}
+
+static int end(void **state) {
+  (void)state;
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+  return 0;
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(voxels_are_means),
+      cmocka_unit_test(long_axes_stay),
+      cmocka_unit_test(numbers_that_are_none_are_left_out),
+      cmocka_unit_test(copies_suit_the_sheets),
+      cmocka_unit_test(labels_stay),
+      cmocka_unit_test(null_is_refused),
+  };
+  return cmocka_run_group_tests(tests, begin, end);
+}
