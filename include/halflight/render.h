@@ -98,6 +98,14 @@ HL_API HL_WARN_UNUSED hl_status hl_renderer_render_layers(hl_renderer *renderer,
 HL_API HL_WARN_UNUSED hl_status hl_scene_show_sky(const hl_scene *scene, float *pixels, size_t row_stride,
                                                   hl_error *error);
 
+/* Plans the frame of a scene as hl_renderer_render() does, and makes no picture. *text: the plan as JSON, one
+ * object, for those who ask why a frame takes its time or its memory: the picture's size and tiles, the
+ * volumes with the bricks that show anything, and the sweeps, each with the number, spacing and direction of
+ * its sheets, and its lights with their shadow buffers. Lengths are the world's. Members may be added.
+ * Null-terminated; free with hl_text_release(). */
+HL_API HL_WARN_UNUSED hl_status hl_renderer_plan(hl_renderer *renderer, const hl_scene *scene, char **text,
+                                                 hl_error *error);
+
 /* Options for writing the scene's pictures, by hl_image_write() or hl_image_to_srgb8(): the defaults with the
  * scene's background, exposure and tone. scene may be null: the defaults alone. */
 HL_API void hl_scene_write_options(const hl_scene *scene, hl_image_write_options *options);

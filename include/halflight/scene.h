@@ -96,8 +96,6 @@ typedef struct hl_light {
   hl_light_texture texture;   /* copied with its pixels by hl_scene_create() */
   hl_light_emission emission; /* the image on the light's own surface; copied with its pixels; a light has
                                  this or a texture, not both */
-  double of_sky; /* set by the renderer for the suns of a sky, which make no highlights: the part of the light
-                    that a medium takes; 0 in all lights of a description */
 } hl_light;
 
 typedef enum hl_sky_type {

@@ -71,7 +71,6 @@ typedef struct hl_function_plane {
   size_t polygon_count;
   hl_function_image image;
   double second_scale; /* the second number is multiplied by this first; 0 counts as 1 */
-  uint64_t mark;       /* of all of it; a scene sets it */
 } hl_function_plane;
 
 /* Piecewise linear in data values, constant beyond the end points. */

@@ -100,6 +100,7 @@ static bool has_render_option(size_t row) {
     case RENDER_STRIPS:
     case RENDER_VOLUME:
     case RENDER_PRINT_SCENE:
+    case RENDER_PRINT_PLAN:
     case RENDER_JSON: return false;
     default: return true;
   }

@@ -47,6 +47,11 @@ static const char *nameable(const char *input) {
   return strncmp(input, "/dev/fd/", 8) == 0 ? "pipe" : input;
 }
 
+/* Whether a text is printed and no picture is made. */
+static bool prints_text(const cli_value *values) {
+  return values[RENDER_PRINT_SCENE].given || values[RENDER_PRINT_PLAN].given;
+}
+
 /* INPUT's name with the format's extension. Where INPUT is NAME.png itself, "NAME-again.png". */
 static char *default_output(const render_job *job) {
   const char *extension = wanted_extension(job->values);
@@ -60,7 +65,7 @@ static int choose_output(render_job *job) {
   job->to_stdout = output->given && strcmp(output->text, "-") == 0;
   job->output = output->given ? strdup(output->text) : default_output(job);
   if (job->output == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
-  if (values[RENDER_PRINT_SCENE].given) return EXIT_CODE_OK;
+  if (prints_text(values)) return EXIT_CODE_OK;
   if (job->to_stdout && isatty(STDOUT_FILENO))
     return fail(EXIT_CODE_USAGE,
                 "--output: standard output is a terminal, which shows no picture: redirect it");
@@ -98,7 +103,7 @@ static int job_open(render_job *job) {
 
 /* Refuses to write over a file that the scene needs. */
 static int protect_what_was_read(const render_job *job) {
-  if (job->to_stdout || job->values[RENDER_PRINT_SCENE].given) return EXIT_CODE_OK;
+  if (job->to_stdout || prints_text(job->values)) return EXIT_CODE_OK;
   int exit_code = read_files_protect(&job->host.read, job->output, job->input);
   if (exit_code != EXIT_CODE_OK || !job->values[RENDER_LAYERS].given) return exit_code;
   return render_layers_protect(&job->host, job->output, hl_scene_describe(job->scene)->light_count,
@@ -113,7 +118,7 @@ static int job_load(render_job *job) {
     exit_code = render_change_scene(&job->host, job->values, job->bare, &job->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = protect_what_was_read(job);
   hl_error error = {0};
-  hl_status status = exit_code == EXIT_CODE_OK && !job->values[RENDER_PRINT_SCENE].given
+  hl_status status = exit_code == EXIT_CODE_OK && !prints_text(job->values)
                          ? overlay_check_scene(job->host.context, &job->overlay, job->scene, &error)
                          : HL_OK;
   if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_CHANGE, status, &error);
@@ -208,11 +213,21 @@ static hl_status write_to_stdout(render_job *job, hl_image_write_options *option
   return status;
 }
 
-/* --print-scene: prints the scene that would be rendered. */
-static int job_print_scene(render_job *job) {
+static hl_status describe_frame(const render_job *job, char **text, hl_error *error) {
+  hl_renderer *renderer = NULL;
+  hl_status status = hl_renderer_create(job->host.context, &renderer, error);
+  if (status == HL_OK) status = hl_renderer_plan(renderer, job->scene, text, error);
+  hl_renderer_destroy(renderer);
+  return status;
+}
+
+/* --print-scene, --print-plan: prints the scene that would be rendered, or the plan of its frame. */
+static int job_print(render_job *job) {
   char *text = NULL;
   hl_error error = {0};
-  hl_status status = hl_scene_to_json(job->host.context, job->scene, &text, &error);
+  hl_status status = job->values[RENDER_PRINT_PLAN].given
+                         ? describe_frame(job, &text, &error)
+                         : hl_scene_to_json(job->host.context, job->scene, &text, &error);
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
   host_clear_bar(&job->host);
   int exit_code = output_to_stdout((const unsigned char *)text, strlen(text));
@@ -294,8 +309,8 @@ static int render_one(const cli_value *values, char **operands) {
   job.result.reference = values[RENDER_REFERENCE].given;
   int exit_code = job_open(&job);
   if (exit_code == EXIT_CODE_OK) exit_code = job_load(&job);
-  bool picture = !values[RENDER_PRINT_SCENE].given;
-  if (exit_code == EXIT_CODE_OK && !picture) exit_code = job_print_scene(&job);
+  bool picture = !prints_text(values);
+  if (exit_code == EXIT_CODE_OK && !picture) exit_code = job_print(&job);
   if (exit_code == EXIT_CODE_OK && picture) exit_code = job_render(&job);
   picture = picture && hl_ranks_rank(job.ranks) == 0;
   if (exit_code == EXIT_CODE_OK && picture) exit_code = job_write(&job);

@@ -504,6 +504,10 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
         {.name = "print-scene",
          .kind = OPTION_SWITCH,
          .help = "the scene on standard output, no picture: a\nscene file that gives the same bytes"},
+    [RENDER_PRINT_PLAN] = {.name = "print-plan",
+                           .kind = OPTION_SWITCH,
+                           .help = "the frame's plan as JSON on standard output, no\npicture: sheets, "
+                                   "sweeps, lights and their buffers"},
     [RENDER_JSON] = {.name = "json", .kind = OPTION_SWITCH, .help = "statistics on standard output"},
     [RENDER_QUIET] = {.name = "quiet", .kind = OPTION_SWITCH, .help = "nothing on standard error but errors"},
 };
@@ -531,11 +535,14 @@ int render_check_options(const cli_value *values) {
   bool named = output->given && strcmp(output->text, "-") != 0;
   static const int pictures[] = {RENDER_OUTPUT, RENDER_FORMAT,    RENDER_DEPTH, RENDER_NO_METADATA,
                                  RENDER_LAYERS, RENDER_REFERENCE, RENDER_JSON};
-  for (size_t n = 0; values[RENDER_PRINT_SCENE].given && n < sizeof pictures / sizeof *pictures; n++)
+  const int printed = values[RENDER_PRINT_SCENE].given ? RENDER_PRINT_SCENE : RENDER_PRINT_PLAN;
+  if (values[RENDER_PRINT_SCENE].given && values[RENDER_PRINT_PLAN].given)
+    return fail(EXIT_CODE_USAGE, "--print-scene and --print-plan: standard output takes one of them");
+  for (size_t n = 0; values[printed].given && n < sizeof pictures / sizeof *pictures; n++)
     if (values[pictures[n]].given)
-      return fail(EXIT_CODE_USAGE, "--print-scene makes no picture: remove --%s",
+      return fail(EXIT_CODE_USAGE, "--%s makes no picture: remove --%s", render_options[printed].name,
                   render_options[pictures[n]].name);
-  static const int alone[] = {RENDER_LAYERS, RENDER_REFERENCE, RENDER_PRINT_SCENE};
+  static const int alone[] = {RENDER_LAYERS, RENDER_REFERENCE, RENDER_PRINT_SCENE, RENDER_PRINT_PLAN};
   int over_ranks = values[RENDER_VOLUME].given ? RENDER_VOLUME : RENDER_STRIPS;
   for (size_t n = 0; values[over_ranks].given && n < sizeof alone / sizeof *alone; n++)
     if (values[alone[n]].given)

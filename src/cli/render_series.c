@@ -28,8 +28,8 @@ static void picture_path(const series_job *job, int number, char *path, size_t s
 /* ---- before the first picture ---- */
 
 static int check_options(series_job *job) {
-  static const int alone[] = {RENDER_VIEWS, RENDER_LAYERS, RENDER_REFERENCE, RENDER_PRINT_SCENE,
-                              RENDER_JSON,  RENDER_FORMAT, RENDER_DEPTH};
+  static const int alone[] = {RENDER_VIEWS,      RENDER_LAYERS, RENDER_REFERENCE, RENDER_PRINT_SCENE,
+                              RENDER_PRINT_PLAN, RENDER_JSON,   RENDER_FORMAT,    RENDER_DEPTH};
   const cli_value *output = &job->values[RENDER_OUTPUT];
   for (size_t n = 0; n < sizeof alone / sizeof *alone; n++)
     if (job->values[alone[n]].given)

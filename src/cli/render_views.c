@@ -65,8 +65,9 @@ static bool has_name(const char *text) {
 }
 
 static int check_options(views_job *job) {
-  static const int alone[] = {RENDER_VIEW, RENDER_LAYERS, RENDER_REFERENCE, RENDER_PRINT_SCENE,
-                              RENDER_JSON, RENDER_FORMAT, RENDER_STRIPS,    RENDER_VOLUME};
+  static const int alone[] = {RENDER_VIEW,        RENDER_LAYERS,     RENDER_REFERENCE,
+                              RENDER_PRINT_SCENE, RENDER_PRINT_PLAN, RENDER_JSON,
+                              RENDER_FORMAT,      RENDER_STRIPS,     RENDER_VOLUME};
   const cli_value *output = &job->values[RENDER_OUTPUT];
   for (size_t n = 0; n < sizeof alone / sizeof *alone; n++)
     if (job->values[alone[n]].given)

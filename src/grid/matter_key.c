@@ -8,13 +8,13 @@ static void add_points(hl_key *key, const hl_opacity_point *points, size_t count
 }
 
 /* Adds a function of two numbers, and the volume whose values are the second number. */
-static void add_plane(hl_key *key, const hl_function_plane *plane, const plane_table *table) {
-  hl_key_add_whole(key, (int64_t)plane->mark);
+static void add_plane(hl_key *key, uint64_t mark, const plane_table *table) {
+  hl_key_add_whole(key, (int64_t)mark);
   hl_key_add_whole(key, (int64_t)(uintptr_t)table->second_volume);
   if (table->second != NULL) hl_key_add_affine(key, &table->second->index_to_frame);
 }
 
-void hl_matter_key_add(hl_key *key, const hl_scene_volume *volume, const grid *grid,
+void hl_matter_key_add(hl_key *key, const hl_scene_volume *volume, uint64_t plane_mark, const grid *grid,
                        const classifier *classifier) {
   const hl_transfer_function *function = &volume->transfer_function;
   hl_key_add_whole(key, (int64_t)(uintptr_t)volume->volume);
@@ -26,7 +26,7 @@ void hl_matter_key_add(hl_key *key, const hl_scene_volume *volume, const grid *g
   hl_key_add_numbers(key, &function->unit_distance, 1);
   add_points(key, function->opacity, function->opacity_count);
   add_points(key, function->gradient_opacity, function->gradient_opacity_count);
-  add_plane(key, &function->plane, &classifier->plane);
+  add_plane(key, plane_mark, &classifier->plane);
   hl_key_add_numbers(key, volume->attenuation_color, 3);
   hl_key_add_whole(key, (int64_t)(uintptr_t)volume->mask.volume);
   if (volume->mask.volume != NULL) hl_key_add_numbers(key, &volume->mask.rest, 1);

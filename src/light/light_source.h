@@ -51,7 +51,9 @@ typedef struct light_source {
   hl_shadows shadows; /* off, hard or soft */
   hl_soft_method soft_method;
   const hl_light *light;
-  int light_index;              /* in the scene */
+  double of_sky;   /* a sun of the sky, which makes no highlights: the part of its light that a medium takes;
+                      else 0 */
+  int light_index; /* in the scene */
   const light_sectors *sectors; /* the frame's, where this is one sector of a light; else null */
   int sector;
   vec3 screen_center, screen_right, screen_up; /* of a light with a texture: the light screen; frame space */

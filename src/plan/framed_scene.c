@@ -95,8 +95,11 @@ static hl_status copy_arrays(hl_context *context, const hl_scene_description *sc
   framed->vertices = hl_allocate(context, vertices, sizeof *framed->vertices);
   framed->gradients = hl_allocate(context, gradients, sizeof *framed->gradients);
   framed->cuts = hl_allocate(context, cuts, sizeof *framed->cuts);
+  framed->sun_parts = hl_allocate_zeroed(context, scene->light_count, sizeof *framed->sun_parts);
+  framed->plane_marks = hl_allocate(context, scene->volume_count, sizeof *framed->plane_marks);
   if (framed->cuts == NULL || framed->volumes == NULL || framed->lights == NULL || framed->meshes == NULL ||
-      framed->mesh_objects == NULL || framed->vertices == NULL || framed->gradients == NULL)
+      framed->mesh_objects == NULL || framed->vertices == NULL || framed->gradients == NULL ||
+      framed->sun_parts == NULL || framed->plane_marks == NULL)
     return hl_fail_memory(error, scene->volume_count * sizeof *framed->volumes, "the scene in frame space");
   const scene_order *order = framed->order;
   for (size_t i = 0; i < scene->volume_count; i++) framed->volumes[i] = scene->volumes[order->volumes[i]];
@@ -109,12 +112,27 @@ static hl_status copy_arrays(hl_context *context, const hl_scene_description *sc
   return HL_OK;
 }
 
-hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description *scene,
-                                 const scene_order *order, framed_scene *framed, hl_error *error) {
+/* What the scene found out about its lights and volumes, in the order of frames. The suns are the last
+ * lights. */
+static void copy_findings(const hl_scene *scene, framed_scene *framed) {
+  const hl_scene_description *placed = &scene->placed;
+  const int first_sun = (int)placed->light_count - scene->suns.count;
+  for (size_t i = 0; i < placed->light_count; i++)
+    if (scene->order.lights[i] >= first_sun)
+      framed->sun_parts[i] = hl_sun_part_of_media(&scene->suns.suns[scene->order.lights[i] - first_sun]);
+  for (size_t i = 0; i < placed->volume_count; i++)
+    framed->plane_marks[i] = scene->plane_marks[scene->order.volumes[i]];
+}
+
+hl_status hl_framed_scene_create(hl_context *context, const hl_scene *from, framed_scene *framed,
+                                 hl_error *error) {
+  const hl_scene_description *scene = &from->placed;
+  const scene_order *order = &from->order;
   const hl_frame_space space = hl_scene_frame_space(scene);
   *framed = (framed_scene){.scene = *scene, .order = order, .unit = space.unit};
   hl_status status = copy_arrays(context, scene, framed, error);
   if (status != HL_OK) return status;
+  copy_findings(from, framed);
   double(*vertices)[3] = framed->vertices;
   hl_opacity_point *gradients = framed->gradients;
   hl_cut *cuts = framed->cuts;
@@ -149,4 +167,6 @@ void hl_framed_scene_release(hl_context *context, framed_scene *framed) {
   hl_release(context, framed->vertices);
   hl_release(context, framed->gradients);
   hl_release(context, framed->cuts);
+  hl_release(context, framed->sun_parts);
+  hl_release(context, framed->plane_marks);
 }

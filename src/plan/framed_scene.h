@@ -6,7 +6,7 @@
 #include <halflight/scene.h>
 
 #include "core/error.h"
-#include "scene/order.h"
+#include "scene/scene.h"
 
 /* Its lights, volumes and meshes stand in the order of frames (scene/order.h). */
 typedef struct framed_scene {
@@ -20,11 +20,15 @@ typedef struct framed_scene {
   double (*vertices)[3];       /* owned; of all polygons */
   hl_opacity_point *gradients; /* owned; of all volumes' gradient opacity */
   hl_cut *cuts;                /* owned; those of the volumes */
-  double unit;                 /* world length of 1 in frame space: the smallest voxel edge is from 1 to 2 */
+  double *sun_parts;     /* owned; [light_count]; of suns of the sky: what a medium takes of their light;
+                            else 0 */
+  uint64_t *plane_marks; /* owned; [volume_count]; of the content of functions of two numbers */
+  double unit;           /* world length of 1 in frame space: the smallest voxel edge is from 1 to 2 */
 } framed_scene;
 
-hl_status hl_framed_scene_create(hl_context *context, const hl_scene_description *scene,
-                                 const scene_order *order, framed_scene *framed, hl_error *error);
+/* scene: borrowed. */
+hl_status hl_framed_scene_create(hl_context *context, const hl_scene *scene, framed_scene *framed,
+                                 hl_error *error);
 void hl_framed_scene_release(hl_context *context, framed_scene *framed);
 
 #endif

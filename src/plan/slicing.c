@@ -145,13 +145,15 @@ static double widest_ray(const frame *frame) {
   return acos(fmax(least, -1));
 }
 
-void hl_frame_set_up_lights(frame *frame, const hl_scene_description *scene) {
+void hl_frame_set_up_lights(frame *frame, const framed_scene *framed) {
+  const hl_scene_description *scene = &framed->scene;
   frame->sectors = hl_light_sectors(frame->eye_direction, widest_ray(frame));
   frame->light_count = 0;
   for (size_t i = 0; i < scene->light_count && !hl_is_maximum(scene); i++) {
     const hl_light *light = &scene->lights[i];
     light_source source = hl_light_source(light, &scene->render, frame->middle);
     source.light_index = frame->order->lights[i];
+    source.of_sky = framed->sun_parts[i];
     if (!hl_is_lit(scene)) source.shadows = HL_SHADOWS_OFF;
     bool narrow = (hl_light_kind(light)->cone && light->opening_angle_deg <= 120) ||
                   light->texture.pixels != NULL;
@@ -272,7 +274,7 @@ int hl_frame_sweeps(const frame *frame, const hl_render_settings *settings, swee
 
 static bool has_sun(const frame *frame, const sweep_sheets *sweep) {
   bool any = false;
-  for (int i = 0; i < sweep->light_count; i++) any |= frame->lights[sweep->light[i]].light->of_sky > 0;
+  for (int i = 0; i < sweep->light_count; i++) any |= frame->lights[sweep->light[i]].of_sky > 0;
   return any;
 }
 

@@ -4,6 +4,7 @@
 #define HL_PLAN_SLICING_H
 
 #include "plan/frame.h"
+#include "plan/framed_scene.h"
 #include "view/occupancy.h"
 
 /* One pass over the sheets, with the lights that one slicing direction serves. */
@@ -18,7 +19,7 @@ typedef struct sweep_sheets {
 /* After the eye. Brings the lights to frame space, and cuts lights that no sheets serve into sectors. Narrow
  * spot lights and lights with a texture shine in one direction and are never cut. The frame's lights need
  * room for LIGHT_SECTORS each. */
-void hl_frame_set_up_lights(frame *frame, const hl_scene_description *scene);
+void hl_frame_set_up_lights(frame *frame, const framed_scene *framed);
 
 /* Groups lights into sweeps and slices each (section 3.1 and fig. 3); sweeps: room for light_count + 1.
  * Returns how many there are: at least one. */

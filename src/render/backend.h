@@ -1,6 +1,6 @@
 /* render/backend.h - a back end makes the picture of a plan: the processors, or a device.
  *
- * A renderer asks its back ends in the order of their list (renderer.c). The first that makes ready for a
+ * A renderer asks its back ends in the order of their list. The first that makes ready for a
  * plan makes the frame, sweep by sweep. Where a back end fails that is not the last one, the frame is the
  * next one's, from zeros on. */
 #ifndef HL_RENDER_BACKEND_H
@@ -22,9 +22,14 @@ typedef struct backend {
                     hl_render_statistics *statistics, hl_error *error);
 } backend;
 
-/* The processors, which make every frame (processor_backend.c). */
-extern const backend hl_processor_backend;
-/* The device that the renderer is to use (device_backend.c). */
-extern const backend hl_device_backend;
+/* All back ends, in the order in which a renderer asks them. A back end NAME is a file NAME_backend.c,
+ * which defines hl_NAME_backend. The last one makes every frame. */
+#define HL_BACKENDS  \
+  HL_BACKEND(device) \
+  HL_BACKEND(processor)
+
+#define HL_BACKEND(name) extern const backend hl_##name##_backend;
+HL_BACKENDS
+#undef HL_BACKEND
 
 #endif

@@ -6,7 +6,7 @@
 #include "core/memory.h"
 
 hl_light_layers hl_layers_of_light(const hl_layers *wanted, const light_source *light) {
-  if (light->light->of_sky > 0) return (hl_light_layers){wanted->sky, wanted->sky_shadow};
+  if (light->of_sky > 0) return (hl_light_layers){wanted->sky, wanted->sky_shadow};
   return wanted->light_count > 0 ? wanted->lights[light->light_index] : (hl_light_layers){NULL, NULL};
 }
 
@@ -19,7 +19,7 @@ static float *take_pixels(hl_layout *layout, bool wanted, size_t tiles, size_t f
 static void lay_out_light(const hl_layers *wanted, const light_source *source, size_t tiles,
                           light_pixels *light, hl_layout *layout) {
   const hl_light_layers asked = hl_layers_of_light(wanted, source);
-  const bool of_sky = source->light->of_sky > 0, shadow = asked.shadow != NULL;
+  const bool of_sky = source->of_sky > 0, shadow = asked.shadow != NULL;
   *light = (light_pixels){.light_index = (size_t)source->light_index, .of_sky = of_sky};
   light->picture = take_pixels(layout, asked.picture != NULL, tiles, COLORS);
   light->shadow = take_pixels(layout, shadow && !of_sky, tiles, COLORS);

@@ -111,9 +111,10 @@ static hl_status scatter_light(hl_renderer *renderer, const hl_scene_description
   scatter_volume *volumes = hl_allocate(context, scene->volume_count, sizeof *volumes);
   if (volumes == NULL) return hl_fail_memory(error, scene->volume_count * sizeof *volumes, "the volumes");
   for (size_t v = 0; v < scene->volume_count; v++)
-    volumes[v] = (scatter_volume){&scene->volumes[v], &plan->volumes.grids[v],
+    volumes[v] = (scatter_volume){&scene->volumes[v], plan->framed->plane_marks[v], &plan->volumes.grids[v],
                                   &renderer->cache.prepared[v].classifier};
-  const scatter_scene all = {context, renderer->pool, scene, volumes, sky_mark, plan->frame.surfaces};
+  const scatter_scene all = {context,  renderer->pool,      scene, plan->framed->sun_parts, volumes,
+                             sky_mark, plan->frame.surfaces};
   hl_layout counted = {0};
   hl_scatter_count(&all, &counted);
   hl_status status = hl_renderer_check_room(renderer, counted.most, error);
@@ -179,7 +180,7 @@ static hl_status place_eye_and_lights(frame_plan *plan, hl_error *error) {
   if (status != HL_OK) return status;
   frame->spacing = fmin(scene->render.sheet_spacing, hl_is_maximum(scene) ? MAXIMUM_SPACING : GRID_MARGIN) *
                    frame->voxel; /* at most the margin by which volumes continue beyond their faces */
-  hl_frame_set_up_lights(frame, scene);
+  hl_frame_set_up_lights(frame, plan->framed);
   for (int i = 0; i < plan->volumes.count; i++)
     if (rays_start_inside(frame, &plan->volumes.grids[i])) plan->volumes.grids[i].cut = true;
   plan->channels = attenuation_channels(scene);
@@ -226,6 +227,6 @@ hl_status hl_plan_frame(hl_renderer *renderer, const framed_scene *framed, const
   if (status == HL_OK) status = update_contact(renderer, &plan->frame, error);
   if (status == HL_OK) status = hl_plan_sweeps(context, plan, error);
   if (status == HL_OK) status = share_picture(renderer, plan, error);
-  if (status == HL_OK) status = find_fields(renderer, request->sky_mark, plan, error);
+  if (status == HL_OK) status = find_fields(renderer, request->scene->sky_mark, plan, error);
   return status == HL_OK ? hl_plan_lights(context, plan, error) : status;
 }

@@ -18,8 +18,7 @@ static bool same_points(const void *a, const void *b, size_t bytes) {
 static bool same_function(const hl_transfer_function *a, const hl_transfer_function *b) {
   return a->unit_distance == b->unit_distance && a->opacity_count == b->opacity_count &&
          a->color_count == b->color_count && a->gradient_opacity_count == b->gradient_opacity_count &&
-         a->plane.second == b->plane.second && a->plane.mark == b->plane.mark &&
-         a->plane.second_scale == b->plane.second_scale &&
+         a->plane.second == b->plane.second && a->plane.second_scale == b->plane.second_scale &&
          same_points(a->opacity, b->opacity, a->opacity_count * sizeof *a->opacity) &&
          same_points(a->color, b->color, a->color_count * sizeof *a->color) &&
          same_points(a->gradient_opacity, b->gradient_opacity,
@@ -187,7 +186,8 @@ static void hold_second(prepared_volume *prepared, const hl_scene_volume *second
 }
 
 static hl_status prepare_volume(const preparation *with, const hl_scene_volume *scene,
-                                const hl_scene_volume *second, prepared_volume *prepared, hl_error *error) {
+                                const hl_scene_volume *second, uint64_t plane_mark, prepared_volume *prepared,
+                                hl_error *error) {
   hl_context *context = with->context;
   hl_pool *pool = with->pool;
   const hl_kernel kernel = hl_kernel_of_volume(scene, with->kernel);
@@ -197,7 +197,7 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
   bool same_voxels = has_same_voxels(prepared, scene, kernel);
   bool same_cut = same_voxels && same_cuts(prepared, scene);
   bool same = same_cut && same_function(&prepared->function, &scene->transfer_function) &&
-              same_second(prepared, second);
+              prepared->plane_mark == plane_mark && same_second(prepared, second);
   if (!same_voxels) {
     hl_prepared_release(context, prepared);
     const grid_source source = {scene, hl_kernel_get(kernel), index_to_frame, empty};
@@ -223,6 +223,7 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
   status = hl_classifier_create(context, scene, second, &prepared->grid, &prepared->classifier, error);
   set_up_mask(with, prepared, scene);
   if (status == HL_OK) status = keep_key(context, prepared, scene, error);
+  prepared->plane_mark = plane_mark;
   if (status != HL_OK) return status;
   hl_grid_mark_relevant(&prepared->grid, with->functions, &prepared->classifier, pool);
   prepared->tables_version++;
@@ -231,12 +232,13 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
 }
 
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
-                             const hl_scene_description *scene, prepared_volume *prepared, hl_error *error) {
+                             const hl_scene_description *scene, const uint64_t *plane_marks,
+                             prepared_volume *prepared, hl_error *error) {
   const preparation with = {context, pool, &hot->grid, scene->render.kernel,
                             scene->render.compositing == HL_COMPOSITING_MAXIMUM};
   for (size_t i = 0; i < scene->volume_count; i++) {
     const hl_scene_volume *second = second_of(scene, &scene->volumes[i]);
-    hl_status status = prepare_volume(&with, &scene->volumes[i], second, &prepared[i], error);
+    hl_status status = prepare_volume(&with, &scene->volumes[i], second, plane_marks[i], &prepared[i], error);
     if (status != HL_OK) {
       hl_prepared_release(context, &prepared[i]);
       return status;

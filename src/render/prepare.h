@@ -28,6 +28,7 @@ typedef struct prepared_volume {
   double empty;                  /* data value */
   hl_kernel kernel;              /* the grid's cells are bounded for this kernel */
   hl_transfer_function function; /* points owned; the classifier was made of these */
+  uint64_t plane_mark;           /* of the content of the function of two numbers; 0: there is none */
   double clip[6];
   int clipped;
   uint64_t version, tables_version; /* of the grid's voxels, and of all that follows from the transfer
@@ -38,9 +39,10 @@ typedef struct prepared_volume {
 } prepared_volume;
 
 /* Brings prepared[0 .. count) up to date with the scene's volumes; reuses what has not changed. scene: in
- * frame space (frame.h). */
+ * frame space (plan/framed_scene.h). plane_marks: [scene->volume_count]; of functions of two numbers. */
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
-                             const hl_scene_description *scene, prepared_volume *prepared, hl_error *error);
+                             const hl_scene_description *scene, const uint64_t *plane_marks,
+                             prepared_volume *prepared, hl_error *error);
 /* Brings the volumes' isosurfaces up to date, after the volumes. */
 hl_status hl_prepare_isosurfaces(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
                                  prepared_volume *prepared, hl_error *error);

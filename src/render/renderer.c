@@ -9,6 +9,7 @@
 #include "core/door.h"
 #include "core/memory.h"
 #include "isosurface/isosurface.h"
+#include "plan/plan_text.h"
 #include "ranks/exchange.h"
 #include "render/device_backend.h"
 #include "render/estimate.h"
@@ -156,14 +157,15 @@ static hl_status prepare_scene(hl_renderer *renderer, const frame_request *reque
   hl_context *context = renderer->context;
   const hl_scene_description *scene = &framed->scene;
   const hot_functions *hot = hl_hot_functions(context->options.instruction_set);
-  hl_status status = hl_framed_scene_create(context, request->world, request->order, framed, error);
+  hl_status status = hl_framed_scene_create(context, request->scene, framed, error);
   if (status == HL_OK) status = make_room(renderer, scene, error);
   if (status != HL_OK) return status;
   prepared_volume *prepared = renderer->cache.prepared;
   hl_pool_resume(renderer->pool);
   hl_prepared_release_stale(context, scene, prepared);
   status = check_volumes_room(renderer, scene, hot, error);
-  if (status == HL_OK) status = hl_prepare_volumes(context, renderer->pool, hot, scene, prepared, error);
+  if (status == HL_OK)
+    status = hl_prepare_volumes(context, renderer->pool, hot, scene, framed->plane_marks, prepared, error);
   if (status == HL_OK) status = hl_prepare_isosurfaces(context, renderer->pool, scene, prepared, error);
   if (status == HL_OK) add_isosurfaces(renderer, framed);
   return status;
@@ -180,8 +182,9 @@ static hl_status run_plan(const backend *backend, hl_renderer *renderer, const f
                                                   : status;
 }
 
-/* In this order: the first that makes ready for a plan makes the frame. The last one makes every frame. */
-static const backend *const backends[] = {&hl_device_backend, &hl_processor_backend};
+#define HL_BACKEND(name) &hl_##name##_backend,
+static const backend *const backends[] = {HL_BACKENDS};
+#undef HL_BACKEND
 
 /* Makes the plan's picture. Where a device fails, it is the processors'; statistics->device_reason says why.
  */
@@ -286,7 +289,7 @@ hl_status hl_renderer_render_layers(hl_renderer *renderer, const hl_scene *scene
   if (!take(renderer)) return fail_busy("hl_renderer_render", error);
   hl_render_statistics counted = {.struct_size = sizeof counted};
   frame_work work = {0};
-  const frame_request request = {&scene->placed, &scene->order, scene->sky_mark, layers, pixels, row_stride};
+  const frame_request request = {scene, layers, pixels, row_stride};
   status = render_frame(renderer, &request, &work, &counted, error);
   release_work(renderer, &work);
   if (status == HL_OK && statistics != NULL) *statistics = counted;
@@ -299,6 +302,21 @@ hl_status hl_renderer_render(hl_renderer *renderer, const hl_scene *scene, float
                              hl_render_statistics *statistics, hl_error *error) {
   HL_DOOR;
   return hl_renderer_render_layers(renderer, scene, pixels, row_stride, NULL, statistics, error);
+}
+
+hl_status hl_renderer_plan(hl_renderer *renderer, const hl_scene *scene, char **text, hl_error *error) {
+  HL_DOOR;
+  if (renderer == NULL || scene == NULL || text == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_renderer_plan: renderer, scene or text is null");
+  *text = NULL;
+  if (!take(renderer)) return fail_busy("hl_renderer_plan", error);
+  frame_work work = {0};
+  const frame_request request = {.scene = scene};
+  hl_status status = plan_frame(renderer, &request, &work, error);
+  if (status == HL_OK) status = hl_plan_text(renderer->context, &work.plan, text, error);
+  release_work(renderer, &work);
+  give_back(renderer);
+  return status;
 }
 
 /* ---- how a scene wants its pictures written ---- */

@@ -51,12 +51,10 @@ struct hl_renderer {
 
 /* What the caller wants: a picture of a scene, and its layers. */
 typedef struct frame_request {
-  const hl_scene_description *world;
-  const scene_order *order; /* in which the frame takes its lists */
-  uint64_t sky_mark;        /* of the pixels of its sky's image */
-  const hl_layers *layers;  /* null: none */
-  float *pixels;            /* the caller's */
-  size_t row_stride;        /* floats */
+  const hl_scene *scene;   /* borrowed until the frame ends */
+  const hl_layers *layers; /* null: none */
+  float *pixels;           /* the caller's */
+  size_t row_stride;       /* floats */
 } frame_request;
 
 /* Makes each picture one part of several, as hl_renderer_share() does, of renderers that exchange light: all

@@ -18,7 +18,7 @@ static const double MOST_CELLS = 1200000;
 
 static void add_volume(hl_key *key, const prepared_volume *prepared, const grid *grid) {
   /* the prepared volume keeps the voxels */
-  hl_matter_key_add(key, prepared->scene, grid, &prepared->classifier);
+  hl_matter_key_add(key, prepared->scene, prepared->plane_mark, grid, &prepared->classifier);
   hl_key_add_whole(key, 2 * (int64_t)prepared->kernel + (prepared->scene->visible != 0));
 }
 

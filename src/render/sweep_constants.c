@@ -160,7 +160,7 @@ static void set_up_light(const frame_plan *plan, const sweep_plan *sweep, int in
       .cone = hl_light_cone(source, plan->frame.middle, plan->frame.middle_pixel),
       .nearest = whole->render.shadow_lookup == HL_LOOKUP_NEAREST,
       .cubic = from->shadow.plan.cubic};
-  light->of_sky = (float)scene->of_sky;
+  light->of_sky = (float)source->of_sky;
   if (plan->fields.phases->count > 0) light->caps = hl_light_caps(source);
   vec3_store(light->towards, vec3_scale(source->direction, -1));
   vec3_store(light->position, source->position);

@@ -105,7 +105,7 @@ static void add_point(const direct_job *job, const int32_t at[3], size_t node, c
                               : vec3_subtract(vec3_add(source->position, offset), here);
   double distance = vec3_length(way), centre = 1;
   float passing[3], strength = 1 / (float)(job->side * job->side);
-  if (source->light->of_sky > 0) strength *= (float)source->light->of_sky;
+  if (source->of_sky > 0) strength *= (float)source->of_sky;
   if (!(distance > 0)) return;
   vec3 towards = vec3_scale(way, 1 / distance);
   if (!source->parallel) {
@@ -150,6 +150,7 @@ void hl_scatter_fill_direct(const scatter_scene *scene, const scatter_nodes *nod
                  nodes->origin[2] + 0.5 * nodes->spacing * (nodes->count[2] - 1)};
   for (size_t l = 0; l < scene->scene->light_count; l++) {
     light_source source = hl_light_source(&scene->scene->lights[l], &scene->scene->render, middle);
+    source.of_sky = scene->sun_parts[l];
     if (source.shadows == HL_SHADOWS_OFF) continue;
     job.source = &source;
     job.side = source.shadows == HL_SHADOWS_SOFT ? SOFT_SIDE : 1;

@@ -135,7 +135,7 @@ void hl_scatter_count(const scatter_scene *scene, hl_layout *layout) {
 static void add_volume(hl_key *key, const scatter_volume *volume) {
   const hl_scene_volume *scene = volume->scene;
   const hl_transfer_function *function = &scene->transfer_function;
-  hl_matter_key_add(key, scene, volume->grid, volume->classifier);
+  hl_matter_key_add(key, scene, volume->plane_mark, volume->grid, volume->classifier);
   hl_key_add_whole(key, scatters(scene));
   hl_key_add_numbers(key, &scene->anisotropy, 1);
   hl_key_add_numbers(key, scene->albedo, 3);
@@ -143,14 +143,14 @@ static void add_volume(hl_key *key, const scatter_volume *volume) {
   hl_key_add(key, function->color, function->color_count * sizeof *function->color);
 }
 
-static void add_light(hl_key *key, const hl_light *light) {
+static void add_light(hl_key *key, const hl_light *light, double sun_part) {
   const int64_t kinds[] = {light->type, light->falloff, light->shadows, (int64_t)light->vertex_count};
   const double numbers[] = {light->angular_diameter_deg,
                             light->opening_angle_deg,
                             light->falloff_angle_deg,
                             light->radius,
                             light->intensity,
-                            light->of_sky};
+                            sun_part};
   const double *const vectors[] = {light->position, light->direction, light->edge1,
                                    light->edge2,    light->normal,    light->color};
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) hl_key_add_whole(key, kinds[k]);
@@ -165,7 +165,8 @@ static void write_key(const void *data, hl_key *key) {
   hl_sky_key_add(key, &scene->scene->sky, scene->sky_mark);
   hl_surfaces_key_add(key, scene->surfaces);
   for (size_t v = 0; v < scene->scene->volume_count; v++) add_volume(key, &scene->volumes[v]);
-  for (size_t l = 0; l < scene->scene->light_count; l++) add_light(key, &scene->scene->lights[l]);
+  for (size_t l = 0; l < scene->scene->light_count; l++)
+    add_light(key, &scene->scene->lights[l], scene->sun_parts[l]);
 }
 
 /* ---- the whole ---- */

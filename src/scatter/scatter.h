@@ -27,6 +27,7 @@
 /* A volume of the scene, made ready. */
 typedef struct scatter_volume {
   const hl_scene_volume *scene; /* in frame space */
+  uint64_t plane_mark;          /* of the content of its function of two numbers */
   const grid *grid;
   const classifier *classifier;
 } scatter_volume;
@@ -36,6 +37,7 @@ typedef struct scatter_scene {
   hl_context *context;
   hl_pool *pool;
   const hl_scene_description *scene; /* in frame space */
+  const double *sun_parts;           /* [scene->light_count]; of suns of the sky (light_source.of_sky) */
   const scatter_volume *volumes;     /* [scene->volume_count] */
   uint64_t sky_mark;                 /* of the pixels of the sky's image */
   const surfaces *surfaces;          /* of the scene's meshes, which take light away; null: none */

@@ -47,8 +47,8 @@ hl_status hl_plane_copy(hl_context *context, const hl_function_plane *from, hl_f
                         hl_error *error);
 void hl_plane_release(hl_context *context, hl_function_plane *plane);
 
-/* Sets the mark of the plane's content. */
-void hl_plane_set_mark(hl_function_plane *plane);
+/* A mark of the plane's content: of other content, another one. */
+uint64_t hl_plane_mark(const hl_function_plane *plane);
 
 /* Checks the plane of a transfer function; place: what errors call the function. */
 hl_status hl_plane_check(const hl_function_plane *plane, const char *place, hl_error *error);

@@ -7,6 +7,7 @@
 #include "core/key.h"
 #include "core/memory.h"
 #include "mesh/mesh.h"
+#include "scene/function_plane.h"
 #include "scene/placement.h"
 #include "scene/settings.h"
 #include "volume/volume.h"
@@ -63,7 +64,7 @@ static void add_function(hl_key *key, const hl_transfer_function *function) {
   hl_key_add_whole(key, (int64_t)function->color_count);
   if (function->color_count > 0)
     hl_key_add(key, function->color, function->color_count * sizeof *function->color);
-  hl_key_add_whole(key, (int64_t)function->plane.mark);
+  hl_key_add_whole(key, hl_has_plane(function) ? (int64_t)hl_plane_mark(&function->plane) : 0);
 }
 
 static void add_mask(hl_key *key, const hl_mask *mask) {

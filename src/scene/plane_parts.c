@@ -174,7 +174,7 @@ static bool copy_text(hl_context *context, const char *from, const char **to) {
 hl_status hl_plane_copy(hl_context *context, const hl_function_plane *from, hl_function_plane *to,
                         hl_error *error) {
   const hl_function_image *image = &from->image;
-  *to = (hl_function_plane){.second = from->second, .second_scale = from->second_scale, .mark = from->mark};
+  *to = (hl_function_plane){.second = from->second, .second_scale = from->second_scale};
   if (from->second == HL_SECOND_NONE) return HL_OK;
   to->boxes = copy_of(context, from->boxes, from->box_count, sizeof *from->boxes);
   to->box_count = from->box_count;
@@ -197,7 +197,7 @@ static void add_block(uint64_t *mark, const void *bytes, size_t count) {
   *mark = hl_key_mark(both, sizeof both);
 }
 
-void hl_plane_set_mark(hl_function_plane *plane) {
+uint64_t hl_plane_mark(const hl_function_plane *plane) {
   const hl_function_image *image = &plane->image;
   uint64_t mark = 1;
   const double numbers[] = {(double)plane->second,
@@ -221,5 +221,5 @@ void hl_plane_set_mark(hl_function_plane *plane) {
   }
   if (image->pixels != NULL)
     add_block(&mark, image->pixels, 4 * sizeof(float) * (size_t)image->width * (size_t)image->height);
-  plane->mark = mark;
+  return mark;
 }

@@ -102,6 +102,7 @@ static void destroy(hl_scene *scene) {
   hl_release(context, (void *)d->meshes);
   hl_release(context, (void *)d->cuts);
   hl_scene_order_release(context, &scene->order);
+  hl_release(context, scene->plane_marks);
   hl_drawn_labels_release(context, &scene->placed, &scene->drawn);
   hl_placed_cuts_release(context, &scene->cut);
   hl_placed_lights_release(context, &scene->placed);
@@ -164,7 +165,6 @@ static hl_status copy_function(hl_context *context, const hl_transfer_function *
                                hl_transfer_function *to, hl_error *error) {
   hl_status status = hl_transfer_function_copy(context, from, to, error);
   if (status != HL_OK || !hl_has_plane(from)) return status;
-  hl_plane_set_mark(&to->plane);
   hl_release(context, (void *)to->opacity);
   hl_release(context, (void *)to->color);
   return hl_plane_outline(context, volume->minimum, volume->maximum, to, error);
@@ -298,7 +298,6 @@ static hl_status copy_lights(hl_scene *scene, const hl_scene_description *from, 
     lights[l].vertices = NULL;
     if (!hl_light_kind(&lights[l])->outline) lights[l].vertex_count = 0;
     forget_images(&lights[l]);
-    lights[l].of_sky = 0;
   }
   scene->description.lights = lights;
   scene->description.light_count = from->light_count;
@@ -320,6 +319,18 @@ static hl_status copy_sky(hl_scene *scene, const hl_sky *from, hl_error *error) 
   if (from->type != HL_SKY_IMAGE) return HL_OK;
   return copy_picture(scene->context, (light_picture){from->pixels, from->width, from->height, from->file},
                       &to->pixels, &to->file, error);
+}
+
+/* After the placed volumes. */
+static hl_status mark_planes(hl_scene *scene, hl_error *error) {
+  const hl_scene_description *placed = &scene->placed;
+  scene->plane_marks = hl_allocate_zeroed(scene->context, placed->volume_count, sizeof *scene->plane_marks);
+  if (scene->plane_marks == NULL)
+    return hl_fail_memory(error, sizeof *scene->plane_marks, "a scene's volumes");
+  for (size_t v = 0; v < placed->volume_count; v++)
+    if (hl_has_plane(&placed->volumes[v].transfer_function))
+      scene->plane_marks[v] = hl_plane_mark(&placed->volumes[v].transfer_function.plane);
+  return HL_OK;
 }
 
 /* Whether suns of the sky's image are lights: they cast shadows as the scene's lights do. */
@@ -379,6 +390,7 @@ hl_status hl_scene_create(hl_context *context, const hl_scene_description *descr
     status = hl_lights_place(context, &made->description, &made->suns, &made->placed, error);
   if (status == HL_OK) status = hl_cuts_place(context, &made->placed, &made->cut, error);
   if (status == HL_OK) status = hl_labels_draw(context, &made->placed, &made->drawn, error);
+  if (status == HL_OK) status = mark_planes(made, error);
   if (status == HL_OK)
     status = hl_scene_order_find(context, &made->description, &made->placed, &made->order, error);
   if (status != HL_OK) {

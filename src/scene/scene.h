@@ -27,7 +27,9 @@ struct hl_scene {
   placed_cuts cut;                  /* the placed description's volumes, where the scene has cuts */
   drawn_labels drawn;               /* the volumes of occupancy and the lattices */
   scene_order order;                /* in which frames take the placed description's lists */
-  uint64_t sky_mark;                /* of the pixels of the sky's image; for keys of kept results */
+  uint64_t *plane_marks; /* owned; [placed.volume_count]; of the content of functions of two numbers,
+                            0 where there is none; for keys of kept results */
+  uint64_t sky_mark;     /* of the pixels of the sky's image; for keys of kept results */
 };
 
 /* Frees the pixels and file names of a light's texture and emission, where they are owned. */

@@ -388,7 +388,7 @@ void hl_suns_release(hl_context *context, sky_suns *found) {
 /* Derived: a sky of irradiance E from about one direction gives a surface E / pi times the cosine to the mean
  * of its directions, and a medium E / (4 pi) times its phase function (halflight/scene.h); a light of colour
  * I gives I times the cosine to its middle, and I times the phase function. So I is E / pi times the length
- * of that mean, of which a medium takes a quarter over this length. */
+ * of that mean, of which a medium takes a quarter over this length (hl_sun_part_of_media). */
 hl_light hl_sun_light(const hl_sky *sky, const sky_sun *sun) {
   const sky_axes axes = hl_sky_axes(sky);
   hl_light light;
@@ -401,6 +401,5 @@ hl_light hl_sun_light(const hl_sky *sky, const sky_sun *sun) {
   light.angular_diameter_deg = 2 * sun->half_angle * 180 / HL_PI;
   for (int c = 0; c < 3; c++) light.color[c] = sun->irradiance[c] * sky->strength * sun->straight / HL_PI;
   light.intensity = 1;
-  light.of_sky = 1 / (4 * sun->straight);
   return light;
 }

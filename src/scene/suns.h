@@ -33,4 +33,7 @@ void hl_suns_release(hl_context *context, sky_suns *found);
 /* The parallel light, in the world, that shines as a sun of this sky does. */
 hl_light hl_sun_light(const hl_sky *sky, const sky_sun *sun);
 
+/* The part of a sun's light that a medium takes. */
+static inline double hl_sun_part_of_media(const sky_sun *sun) { return 1 / (4 * sun->straight); }
+
 #endif

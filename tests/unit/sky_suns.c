@@ -209,7 +209,7 @@ static void test_nothing_is_lost(void **state) {
       double sum = rest[c];
       for (int i = 0; i < found.count; i++) {
         hl_light light = hl_sun_light(&sky, &found.suns[i]);
-        sum += light.color[c] * light.intensity * light.of_sky * 4 * HL_PI;
+        sum += light.color[c] * light.intensity * hl_sun_part_of_media(&found.suns[i]) * 4 * HL_PI;
       }
       assert_true(rest[c] < 0.7 * whole[c]);
       assert_near(sum / whole[c], 1, 1e-4);

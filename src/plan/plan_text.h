@@ -1,0 +1,11 @@
+/* plan/plan_text.h - the plan of a frame as text, for those who ask why a frame is made as it is. */
+#ifndef HL_PLAN_PLAN_TEXT_H
+#define HL_PLAN_PLAN_TEXT_H
+
+#include "plan/frame_plan.h"
+
+/* A JSON object, as halflight/render.h describes it (hl_renderer_plan); null-terminated; free with
+ * hl_release(). */
+hl_status hl_plan_text(hl_context *context, const frame_plan *plan, char **text, hl_error *error);
+
+#endif
