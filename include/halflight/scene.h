@@ -176,7 +176,7 @@ typedef enum hl_cut_shading {
 
 /* A label of a label map: what the voxels with this value are. */
 typedef struct hl_label {
-  double value;     /* a whole number */
+  int64_t value;
   const char *name; /* may be null */
   double color[3];  /* linear RGB */
   double opacity;   /* 1: solid; below: a skin that takes this fraction of the light that crosses it */

@@ -267,7 +267,7 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_get_series(const hl_volume *volume, si
 typedef struct hl_volume_segment {
   size_t struct_size; /* set by the caller */
   const char *name;   /* "" where the file has none; the volume's */
-  double value;       /* of its voxels */
+  int64_t value;      /* of its voxels */
   int layer;          /* the component whose voxels have it, from 0 */
   int has_color;
   double srgb[3]; /* 0 to 1; 0 without a colour */
@@ -281,6 +281,13 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_get_segment(const hl_volume *volume, s
 /* The label maps that lie beside the volume in its file (the "labels" of OME-Zarr): the path of each within
  * the file, as "labels/cells", which is opened as a volume of its own. The volume's; null past the last. */
 HL_API const char *hl_volume_label_map(const hl_volume *volume, size_t index);
+
+enum { HL_NUMBER_TEXT_BYTES = 64 };
+
+/* Writes the least (end 0) or the greatest (end 1) finite data value as a decimal number that reads back as
+ * the same number. Whole numbers have all their digits, also those of 64 bits, which a double rounds. text:
+ * has room for HL_NUMBER_TEXT_BYTES bytes. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_write_range(const hl_volume *volume, int end, char *text);
 
 /* The data value of one voxel, NaN where it is not finite or outside the grid. */
 HL_API double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k);

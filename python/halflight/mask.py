@@ -73,7 +73,7 @@ def fill_labels(struct: Any, given: Any, handle: Any, keep: list[Any], place: st
     struct.labels, struct.label_count = labels, count
 
 
-def labels_from(labels: Any, count: int, tints: bool) -> dict[float, tuple[tuple[float, ...] | None, float]]:
+def labels_from(labels: Any, count: int, tints: bool) -> dict[int, tuple[tuple[float, ...] | None, float]]:
     """The labels that show, as `show` takes them: colour and opacity by number. tints: of a mask, whose labels may have no colour."""
     return {one.value: (tuple(one.color) if one.tint or not tints else None, one.opacity) for one in labels[0:count] if one.visible}
 

@@ -108,7 +108,7 @@ class FileChannel:
 class FileSegment:
     """A segment that a label map's file names: `layer` is the component whose voxels have the `value`."""
 
-    value: float
+    value: int
     name: str
     layer: int
     color: tuple[float, float, float] | None
@@ -129,7 +129,7 @@ class Info:
     direction : ndarray of float64, shape (3, 3)
         Its columns are the unit vectors of the index axes x, y, z.
     range : tuple of 2 float
-        The least and the greatest finite value.
+        The least and the greatest finite value; an int where a float would round it.
     mean : float
         Of the finite voxels.
     nonfinite_count : int
@@ -470,10 +470,18 @@ class Volume:
             dimensions=(int(dimensions[0]), int(dimensions[1]), int(dimensions[2])),
             type=text_of(lib.hl_voxel_type_name(raw.type)), spacing=np.array(list(raw.spacing)),
             origin=np.array(list(raw.origin)), direction=np.array([list(row) for row in raw.direction]),
-            range=(raw.range[0], raw.range[1]), mean=raw.mean, nonfinite_count=raw.nonfinite_count,
+            range=(self._range_end(0, raw.range[0]), self._range_end(1, raw.range[1])), mean=raw.mean, nonfinite_count=raw.nonfinite_count,
             histogram=np.array(list(raw.histogram), dtype=np.uint64),
             space=None if lib.hl_space_name(raw.space) == ffi.NULL else text_of(lib.hl_space_name(raw.space)),
             taken_for=text_of(kind[0]), **self._choices())
+
+    def _range_end(self, end: int, value: float) -> float:
+        """The least or the greatest value: an int where a float rounds a whole number."""
+        text = ffi.new("char[]", lib.HL_NUMBER_TEXT_BYTES)
+        if abs(value) < 2**53 or lib.hl_volume_write_range(self._handle, end, text) != lib.HL_OK:
+            return value
+        digits = text_of(text)
+        return int(digits) if digits.lstrip("-").isdigit() else value
 
     def percentile(self, percent: float) -> float:
         """The data value below which so many percent of the finite voxels lie, as ``numpy.percentile`` says.

@@ -154,7 +154,7 @@ static void print_json_segments(json_writer *json, const hl_volume *volume) {
   json_open_array(json, "segments");
   for (size_t n = 0; hl_volume_get_segment(volume, n, &segment) == HL_OK; n++) {
     json_open_object(json, NULL);
-    json_number(json, "value", segment.value);
+    json_signed_number(json, "value", segment.value);
     json_text(json, "name", segment.name);
     json_whole_number(json, "layer", (uint64_t)segment.layer);
     if (segment.has_color) json_text(json, "color", color_text(segment.srgb, color));
@@ -170,7 +170,7 @@ static void print_segments(const hl_volume *volume) {
   for (size_t n = 0; hl_volume_get_segment(volume, n, &segment) == HL_OK; n++)
     layers = segment.layer > layers ? segment.layer : layers;
   for (size_t n = 0; hl_volume_get_segment(volume, n, &segment) == HL_OK; n++) {
-    printf("  %s  %.20g: %s%s%s", n == 0 ? "segments  " : "          ", segment.value, segment.name,
+    printf("  %s  %" PRId64 ": %s%s%s", n == 0 ? "segments  " : "          ", segment.value, segment.name,
            segment.name[0] != '\0' && segment.has_color ? ", " : "",
            segment.has_color ? color_text(segment.srgb, color) : "");
     if (layers > 0) printf(", layer %d", segment.layer);
@@ -216,6 +216,18 @@ static void print_arrays(const hl_volume *volume) {
   }
 }
 
+enum { RANGE_BYTES = 2 * HL_NUMBER_TEXT_BYTES + 8 };
+
+/* The range as JSON, with all digits. */
+static void print_json_range(json_writer *json, const hl_volume *volume) {
+  char ends[2][HL_NUMBER_TEXT_BYTES], text[RANGE_BYTES];
+  if (hl_volume_write_range(volume, 0, ends[0]) != HL_OK ||
+      hl_volume_write_range(volume, 1, ends[1]) != HL_OK)
+    return;
+  snprintf(text, sizeof text, "[%s, %s]", ends[0], ends[1]);
+  json_written(json, "range", text);
+}
+
 static void print_json(json_writer *json, const char *path, const hl_volume *volume,
                        const hl_volume_info *info, const char *kind) {
   uint64_t dimensions[3] = {info->dimensions[0], info->dimensions[1], info->dimensions[2]};
@@ -236,7 +248,7 @@ static void print_json(json_writer *json, const char *path, const hl_volume *vol
   json_close(json);
   json_text(json, "space", hl_space_name(info->space));
   json_text(json, "unit", hl_volume_unit(volume));
-  json_numbers(json, "range", info->range, 2);
+  print_json_range(json, volume);
   json_number(json, "mean", info->mean);
   json_whole_number(json, "nonfinite_count", info->nonfinite_count);
   print_json_arrays(json, volume);
@@ -272,12 +284,12 @@ static void print_histogram(const hl_volume_info *info) {
   printf("  %11.5g\n", info->range[1]);
 }
 
-enum { NUMBER_BYTES = 32 };
-
-/* A data value: whole numbers with all their digits. */
-static const char *value_text(double value, char text[NUMBER_BYTES]) {
+/* A data value: whole numbers with all their digits. end: 0, the least, or 1, the greatest. */
+static const char *value_text(const hl_volume *volume, int end, double value,
+                              char text[HL_NUMBER_TEXT_BYTES]) {
   bool whole = value == floor(value) && fabs(value) <= 0x1p64;
-  snprintf(text, NUMBER_BYTES, whole ? "%.20g" : "%.9g", value);
+  if (whole && fabs(value) >= 0x1p53 && hl_volume_write_range(volume, end, text) == HL_OK) return text;
+  snprintf(text, HL_NUMBER_TEXT_BYTES, whole ? "%.20g" : "%.9g", value);
   return text;
 }
 
@@ -307,9 +319,9 @@ static void print_text(const char *path, const hl_volume *volume, const hl_volum
   printf("  world box   x %.9g to %.9g, y %.9g to %.9g, z %.9g to %.9g\n", low[0], high[0], low[1], high[1],
          low[2], high[2]);
   if (info->space != HL_SPACE_UNKNOWN) printf("  space       %s\n", hl_space_name(info->space));
-  char least[NUMBER_BYTES], greatest[NUMBER_BYTES];
-  printf("  range       %s to %s, mean %.9g\n", value_text(info->range[0], least),
-         value_text(info->range[1], greatest), info->mean);
+  char least[HL_NUMBER_TEXT_BYTES], greatest[HL_NUMBER_TEXT_BYTES];
+  printf("  range       %s to %s, mean %.9g\n", value_text(volume, 0, info->range[0], least),
+         value_text(volume, 1, info->range[1], greatest), info->mean);
   if (info->nonfinite_count > 0)
     printf("  not finite  %" PRIu64 " voxels, rendered as transparent\n", info->nonfinite_count);
   printf("  taken for   %s: render chooses its look from this file; --print-scene keeps it\n", kind);
@@ -365,7 +377,8 @@ static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_
     const char *path = volume->file != NULL ? volume->file : title;
     exit_code = tell_volume(host, as_json ? &json : NULL, path, volume->volume);
     for (size_t label = 0; !as_json && label < volume->label_count; label++)
-      printf("  %s  %.20g: %s%s\n", label == 0 ? "labels    " : "          ", volume->labels[label].value,
+      printf("  %s  %" PRId64 ": %s%s\n", label == 0 ? "labels    " : "          ",
+             volume->labels[label].value,
              volume->labels[label].name != NULL ? volume->labels[label].name : "",
              volume->labels[label].visible ? "" : " (hidden)");
   }

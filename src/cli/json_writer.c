@@ -65,6 +65,11 @@ void json_whole_number(json_writer *writer, const char *key, uint64_t value) {
   printf("%" PRIu64, value);
 }
 
+void json_signed_number(json_writer *writer, const char *key, int64_t value) {
+  begin_value(writer, key);
+  printf("%" PRId64, value);
+}
+
 void json_number(json_writer *writer, const char *key, double value) {
   begin_value(writer, key);
   print_number(value);
@@ -77,6 +82,11 @@ void json_numbers(json_writer *writer, const char *key, const double *values, si
     print_number(values[i]);
   }
   putchar(']');
+}
+
+void json_written(json_writer *writer, const char *key, const char *value) {
+  begin_value(writer, key);
+  fputs(value, stdout);
 }
 
 void json_whole_numbers(json_writer *writer, const char *key, const uint64_t *values, size_t count) {

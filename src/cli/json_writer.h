@@ -23,9 +23,12 @@ void json_close(json_writer *writer);
 void json_text(json_writer *writer, const char *key, const char *value); /* null becomes null */
 void json_bool(json_writer *writer, const char *key, bool value);
 void json_whole_number(json_writer *writer, const char *key, uint64_t value);
+void json_signed_number(json_writer *writer, const char *key, int64_t value);
 void json_number(json_writer *writer, const char *key, double value); /* not finite becomes null */
 /* One line: [a, b, c] */
 void json_numbers(json_writer *writer, const char *key, const double *values, size_t count);
+/* A value that is written already. */
+void json_written(json_writer *writer, const char *key, const char *value);
 void json_whole_numbers(json_writer *writer, const char *key, const uint64_t *values, size_t count);
 
 #endif

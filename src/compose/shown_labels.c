@@ -1,6 +1,7 @@
 /* compose/shown_labels.c - see shown_labels.h. */
 #include "compose/shown_labels.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -8,6 +9,7 @@
 #include "text/color.h"
 #include "text/edit_distance.h"
 #include "text/plain.h"
+#include "volume/text.h"
 
 static hl_status fail_show(const char *item, const char *mend, hl_error *error) {
   return hl_fail(error, HL_ERROR_ARGUMENT, "--show \"%.100s\": %s", item, mend);
@@ -59,12 +61,11 @@ static bool is_whole(const hl_label *label, const hl_shown_label *shown) {
 }
 
 static bool is_named(const hl_label *label, const hl_shown_label *shown) {
-  char *rest;
   if (is_whole(label, shown)) return true;
   if (shown->wrong != NULL) return false;
-  double number = hl_plain_number(shown->name, &rest);
+  int64_t number;
   return shown->all || (label->name != NULL && strcmp(label->name, shown->name) == 0) ||
-         (*rest == 0 && rest != shown->name && number == label->value);
+         (hl_text_whole(shown->name, &number) && number == label->value);
 }
 
 /* Shows those labels that the list names, if it names any. "all" leaves those hidden that a table hides. */
@@ -110,7 +111,7 @@ static void list_labels(const hl_label_layers *layers, char *text, size_t size) 
       if (count >= LISTED || used + 100 > size) continue;
       used += (size_t)(named
                            ? snprintf(text + used, size - used, "%s%.60s", count > 0 ? ", " : "", label->name)
-                           : snprintf(text + used, size - used, "%s%.20g", count > 0 ? ", " : "",
+                           : snprintf(text + used, size - used, "%s%" PRId64, count > 0 ? ", " : "",
                                       label->value));
     }
   if (count > LISTED)

@@ -4,6 +4,7 @@
  * The strip shows the function's own colours, as a fully lit surface has them. Its range begins at the least
  * value with opacity and ends at the greatest. The curve beside the strip shows the opacity: it touches the
  * strip where the opacity is 0, and lies farthest from it at the greatest opacity in the range. */
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -95,7 +96,7 @@ static bool row_of(const hl_scene_volume *volume, size_t n, const double **color
       *color = label->color;
       if (label->name != NULL && label->name[0] != '\0')
         snprintf(text, NUMBER_BYTES * 4, "%.*s", NUMBER_BYTES * 4 - 1, label->name);
-      else hl_plain_print(text, NUMBER_BYTES, "%g", label->value);
+      else snprintf(text, NUMBER_BYTES, "%" PRId64, label->value);
       return true;
     }
   if (n >= volume->iso_count) return false;

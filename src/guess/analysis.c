@@ -321,7 +321,7 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
        */
 
 typedef struct tally {
-  double value;
+  int64_t value;
   unsigned int seen, shared; /* neighbours of voxels with this value; those of them that have it too */
 } tally;
 
@@ -334,10 +334,8 @@ typedef struct value_table {
 } value_table;
 
 /* The place of a value, new or known; NO_ROOM where there are more values than labels may be. */
-static int place_of(value_table *table, double value) {
-  uint64_t bits;
-  memcpy(&bits, &value, sizeof bits);
-  size_t place = (size_t)((bits * 0x9e3779b97f4a7c15u) >> 32) % TALLIES;
+static int place_of(value_table *table, int64_t value) {
+  size_t place = (size_t)(((uint64_t)value * 0x9e3779b97f4a7c15u) >> 32) % TALLIES;
   while (table->tallies[place].seen != 0 && table->tallies[place].value != value)
     place = (place + 1) % TALLIES;
   if (table->tallies[place].seen == 0 && table->count++ > HL_MOST_LABELS) return NO_ROOM;
@@ -352,18 +350,17 @@ static bool count_neighbours(const hl_volume *volume, value_table *table) {
   for (size_t k = step / 2; k < n[2]; k += step)
     for (size_t j = step / 2; j < n[1]; j += step)
       for (size_t i = step / 2; i < n[0]; i += step) {
-        double value = hl_volume_value_within(volume, i, j, k);
-        if (!isfinite(value)) continue;
-        if (value != floor(value)) return false;
-        const double next[3] = {hl_volume_value_within(volume, i + 1, j, k),
-                                hl_volume_value_within(volume, i, j + 1, k),
-                                hl_volume_value_within(volume, i, j, k + 1)}; /* NaN outside */
+        int64_t value, next;
+        hl_whole found = hl_volume_whole(volume, i, j, k, &value);
+        if (found == HL_WHOLE_ABSENT) continue;
+        if (found == HL_WHOLE_FRACTION) return false;
         const int place = place_of(table, value);
         if (place == NO_ROOM) return false;
         tally *own = &table->tallies[place];
         for (int a = 0; a < 3; a++) {
-          own->seen += isfinite(next[a]);
-          own->shared += next[a] == value;
+          found = hl_volume_whole(volume, i + (a == 0), j + (a == 1), k + (a == 2), &next);
+          own->seen += found != HL_WHOLE_ABSENT;
+          own->shared += found == HL_WHOLE_FOUND && next == value;
         }
       }
   return true;
@@ -381,13 +378,15 @@ static bool list(const value_table *table, double least, hl_data_analysis *a) {
   double background = least <= 0 ? 0 : a->background;
   for (size_t t = 0; t < TALLIES; t++) {
     const tally *own = &table->tallies[t];
-    if (own->seen == 0 || own->value == background) continue;
+    if (own->seen == 0 || (double)own->value == background) continue;
     if (found == HL_MOST_LABELS) return false;
-    a->labels[found++] = own->value;
+    a->labels[found++] = (double)own->value;
     in_blocks += (double)own->shared > IN_BLOCKS * (double)own->seen;
   }
   qsort(a->labels, found, sizeof *a->labels, compare_values);
-  a->label_count = found;
+  a->label_count = 0;
+  for (size_t n = 0; n < found; n++) /* doubles round great labels */
+    if (n == 0 || a->labels[n] > a->labels[n - 1]) a->labels[a->label_count++] = a->labels[n];
   return found > 1 && 2 * in_blocks > found;
 }
 
@@ -408,6 +407,6 @@ hl_status hl_volume_is_label_map(hl_context *context, const hl_volume *volume, i
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_is_label_map: null context, volume or result");
   hl_data_analysis analysis = {0};
   hl_status status = volume->segment_count > 0 ? HL_OK : hl_data_analyse(volume, &analysis, error);
-  *labels = status == HL_OK && (volume->segment_count > 0 || analysis.kind == HL_DATA_LABELS);
+  *labels = status == HL_OK && hl_data_is_label_map(volume, &analysis);
   return status;
 }

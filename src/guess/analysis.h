@@ -59,4 +59,9 @@ void hl_data_find_materials(const hl_volume *volume, hl_data_analysis *analysis)
  * in blocks, so that a voxel's neighbours mostly have its own value. Fails for lack of memory. */
 hl_status hl_data_find_labels(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error);
 
+/* Whether a volume's values are names of regions: its file names segments, or the values look like labels. */
+static inline bool hl_data_is_label_map(const hl_volume *volume, const hl_data_analysis *analysis) {
+  return volume->segment_count > 0 || analysis->kind == HL_DATA_LABELS;
+}
+
 #endif

@@ -84,7 +84,7 @@ static hl_status refuse(const hl_volume *volume, const hl_data_analysis *analysi
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "%.9g voxels of smoothing are out of range: give a number from 0 to %d", sigma,
                    GREATEST_SIGMA);
-  if (analysis->kind == HL_DATA_LABELS)
+  if (hl_data_is_label_map(volume, analysis))
     return hl_fail(error, HL_ERROR_ARGUMENT,
                    "a label map cannot be smoothed: its numbers are names and have no mean: show its labels, "
                    "which are smooth");

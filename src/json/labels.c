@@ -4,6 +4,7 @@
  * its name, with a colour, an opacity and a switch of its own. A property that a label lacks comes from the
  * table that "label_table" names, or else from the file. A colour that neither has is chosen to differ from
  * the neighbours' colours. */
+#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -34,7 +35,7 @@ static hl_status find_known(known_labels *known) {
   return status;
 }
 
-static const hl_label *known_by_value(const known_labels *known, double value) {
+static const hl_label *known_by_value(const known_labels *known, int64_t value) {
   for (size_t n = 0; n < known->count; n++)
     if (known->labels[n].value == value) return &known->labels[n];
   return NULL;
@@ -62,13 +63,24 @@ static hl_status take_known(known_labels *known, const json_t *object, const cha
   return HL_OK;
 }
 
+/* Reads the number of a label, which no double rounds. */
+static hl_status read_value(hl_json_reader *reader, const json_t *object, int64_t *number) {
+  const json_t *value = json_object_get(object, "value");
+  double real = json_is_real(value) ? json_real_value(value) : 0.5;
+  if (value == NULL) return HL_OK;
+  if (!json_is_integer(value) && !(real == floor(real) && fabs(real) < 0x1p63))
+    return hl_json_fail(reader, HL_ERROR_INPUT, "value", "is no whole number: give the label's");
+  *number = json_is_integer(value) ? json_integer_value(value) : (int64_t)real;
+  return HL_OK;
+}
+
 static hl_status read_label(known_labels *known, const json_t *object, hl_label *label) {
   hl_json_reader *reader = known->reader;
   const char *name = NULL;
   *label = (hl_label){.opacity = 1, .visible = 1};
   hl_status status = hl_json_object(reader, object, label_keys);
   if (status == HL_OK) status = hl_json_text(reader, object, "name", &name);
-  if (status == HL_OK) status = hl_json_number(reader, object, "value", &label->value);
+  if (status == HL_OK) status = read_value(reader, object, &label->value);
   if (status == HL_OK && name == NULL && json_object_get(object, "value") == NULL)
     status = hl_json_fail(reader, HL_ERROR_INPUT, "value",
                           "is missing: give the label's number, or its name");

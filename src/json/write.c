@@ -3,6 +3,7 @@
  * Numbers have the fewest digits that give the same double again; rows of numbers stay on one line.
  */
 #define _GNU_SOURCE
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -94,6 +95,13 @@ static void put_quoted(writer *w, const char *text) {
 static void write_number(writer *w, const char *key, double number) {
   begin_item(w, key);
   put_number(w, number);
+}
+
+static void write_whole(writer *w, const char *key, int64_t number) {
+  char text[HL_JSON_NUMBER_BYTES];
+  begin_item(w, key);
+  snprintf(text, sizeof text, "%" PRId64, number);
+  put_text(w, text);
 }
 
 static void write_row(writer *w, const char *key, const double *numbers, size_t count) {
@@ -415,7 +423,7 @@ static void write_labels(writer *w, const hl_label *labels, size_t count, bool m
   for (size_t n = 0; n < count; n++) {
     const hl_label *label = &labels[n];
     open_bracket(w, NULL, "{");
-    write_number(w, "value", label->value);
+    write_whole(w, "value", label->value);
     if (label->name != NULL) write_name(w, "name", label->name);
     write_row(w, "color", label->color, 3);
     write_number(w, "opacity", label->opacity);

@@ -252,7 +252,7 @@ hl_status hl_label_mask(hl_context *context, int threads, const hl_mask *mask, h
                         hl_error *error) {
   *made = hl_mask_from_shelf(mask);
   if (*made != NULL) return HL_OK;
-  double *values = hl_allocate(context, mask->label_count + 1, sizeof *values);
+  int64_t *values = hl_allocate(context, mask->label_count + 1, sizeof *values);
   hl_volume **occupancies = hl_allocate_zeroed(context, mask->label_count + 1, sizeof(hl_volume *));
   hl_status status = HL_OK;
   if (values == NULL || occupancies == NULL)

@@ -33,7 +33,7 @@ static const float STEPS = 128, ZERO = 64;
 
 typedef struct occupancy_job {
   const hl_volume *map;
-  double *stored; /* owned; [count], rising; the labels, as numbers of the map's rows */
+  const int64_t *labels; /* [count], rising */
   size_t count;
   hl_label_part part;
   unsigned char *inside; /* [size z][y][x]; 1 where the voxel has one of the labels; in the end the result */
@@ -55,13 +55,13 @@ static void mark_slice(void *data, size_t z, int worker) {
   for (size_t y = 0; y < job->part.size[1]; y++, at += nx) {
     const hl_number_row row = hl_volume_numbers(job->map, first[1] + y, first[2] + z, NULL);
     for (size_t i = 0; i < nx;) {
-      const double stored = hl_row_number(row, first[0] + i);
-      const bool is = hl_label_place(job->stored, job->count, stored) < job->count;
+      const size_t run = first[0] + i;
+      const bool is = hl_label_place(job->labels, job->count, job->map, row, run) < job->count;
       do {
         job->inside[at + i] = is;
         job->smooth.values[at + i] = is;
         count += is;
-      } while (++i < nx && hl_row_number(row, first[0] + i) == stored);
+      } while (++i < nx && hl_row_repeats(row, first[0] + i, run));
     }
   }
   job->inside_counts[z] = count;
@@ -164,16 +164,12 @@ static hl_status fill(hl_context *context, hl_pool *pool, occupancy_job *job, hl
   return adopt(context, job, job->inside, made, error);
 }
 
-hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, const double *labels,
+hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, const int64_t *labels,
                              size_t count, const hl_label_part *part, hl_volume **made, hl_error *error) {
   *made = NULL;
   if (part->size[0] == 0) return HL_OK;
-  occupancy_job job = {.map = map, .count = count, .part = *part};
-  job.stored = hl_allocate(context, count, sizeof *job.stored);
-  if (job.stored == NULL) return hl_fail_memory(error, count * sizeof *job.stored, "labels");
-  for (size_t n = 0; n < count; n++) job.stored[n] = hl_label_stored(map, labels[n]);
+  occupancy_job job = {.map = map, .labels = labels, .count = count, .part = *part};
   hl_status status = fill(context, pool, &job, made, error);
-  hl_release(context, job.stored);
   hl_release(context, job.smooth.values);
   hl_release(context, job.smooth.lines);
   hl_release(context, job.levels.values);

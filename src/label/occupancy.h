@@ -14,26 +14,20 @@ typedef struct hl_label_part {
   size_t first[3], size[3]; /* voxels along i, j, k; the size is 0 if no voxel has the label */
 } hl_label_part;
 
-/* Finds the parts of several labels in one pass over the map. labels: [count]; data values, rising; parts:
- * [count]. */
-hl_status hl_label_parts(hl_context *context, hl_pool *pool, const hl_volume *map, const double *labels,
+/* Finds the parts of several labels in one pass over the map. labels: [count], rising; parts: [count]. */
+hl_status hl_label_parts(hl_context *context, hl_pool *pool, const hl_volume *map, const int64_t *labels,
                          size_t count, hl_label_part *parts, hl_error *error);
 
 /* The smallest part that holds several parts. Parts without voxels do not count. */
 hl_label_part hl_label_part_of_all(const hl_label_part *parts, size_t count);
 
-/* A label's value as a number of the map's rows. */
-static inline double hl_label_stored(const hl_volume *map, double label) {
-  return (label - map->value_offset) / map->value_scale;
-}
+/* The place of a voxel's label in a rising list; `count` if the list lacks it. */
+size_t hl_label_place(const int64_t *labels, size_t count, const hl_volume *map, hl_number_row row, size_t i);
 
-/* The place of a number in a rising list; `count` if the list lacks the number. */
-size_t hl_label_place(const double *stored, size_t count, double value);
-
-/* Makes the occupancy of all labels of a list together, over their common part. labels: [count]; data values,
+/* Makes the occupancy of all labels of a list together, over their common part. labels: [count],
  * rising. *made is null if no voxel has one of the labels. The memory is six and a half bytes for each voxel
  * of the part, of which one byte stays. */
-hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, const double *labels,
+hl_status hl_label_occupancy(hl_context *context, hl_pool *pool, const hl_volume *map, const int64_t *labels,
                              size_t count, const hl_label_part *part, hl_volume **made, hl_error *error);
 
 #endif

@@ -13,19 +13,22 @@ typedef struct label_bounds {
 
 typedef struct parts_job {
   const hl_volume *map;
-  const double *stored; /* [count], rising; the labels, as numbers of the map's rows */
+  const int64_t *labels; /* [count], rising */
   size_t count;
   label_bounds *bounds; /* [threads][count] */
 } parts_job;
 
-size_t hl_label_place(const double *stored, size_t count, double value) {
+size_t hl_label_place(const int64_t *labels, size_t count, const hl_volume *map, hl_number_row row,
+                      size_t i) {
   size_t low = 0, high = count;
+  int64_t value;
+  if (!hl_row_whole(map, row, i, &value)) return count;
   while (low < high) {
     size_t middle = low + (high - low) / 2;
-    if (stored[middle] < value) low = middle + 1;
+    if (labels[middle] < value) low = middle + 1;
     else high = middle;
   }
-  return low < count && stored[low] == value ? low : count;
+  return low < count && labels[low] == value ? low : count;
 }
 
 static void widen(label_bounds *bounds, const int64_t low[3], const int64_t high[3]) {
@@ -43,10 +46,9 @@ static void bound_slice(void *data, size_t z, int worker) {
   for (size_t y = 0; y < job->map->dimension[1]; y++) {
     const hl_number_row row = hl_volume_numbers(job->map, y, z, NULL);
     for (size_t x = 0; x < width;) {
-      double stored = hl_row_number(row, x);
       size_t from = x++;
-      while (x < width && hl_row_number(row, x) == stored) x++;
-      size_t place = hl_label_place(job->stored, job->count, stored);
+      while (x < width && hl_row_repeats(row, x, from)) x++;
+      size_t place = hl_label_place(job->labels, job->count, job->map, row, from);
       if (place == job->count) continue;
       widen(&bounds[place], (int64_t[3]){(int64_t)from, (int64_t)y, (int64_t)z},
             (int64_t[3]){(int64_t)x - 1, (int64_t)y, (int64_t)z});
@@ -67,18 +69,15 @@ static hl_label_part part_of(const hl_volume *map, const label_bounds *bounds) {
   return part;
 }
 
-hl_status hl_label_parts(hl_context *context, hl_pool *pool, const hl_volume *map, const double *labels,
+hl_status hl_label_parts(hl_context *context, hl_pool *pool, const hl_volume *map, const int64_t *labels,
                          size_t count, hl_label_part *parts, hl_error *error) {
   const size_t threads = (size_t)hl_pool_threads(pool);
-  double *stored = hl_allocate(context, count, sizeof *stored);
-  parts_job job = {map, stored, count, hl_allocate(context, threads * count, sizeof *job.bounds)};
+  parts_job job = {map, labels, count, hl_allocate(context, threads * count, sizeof *job.bounds)};
   hl_status status = HL_OK;
-  if (stored == NULL || job.bounds == NULL)
-    status = hl_fail_memory(error, threads * count * sizeof *job.bounds, "labels");
+  if (job.bounds == NULL) status = hl_fail_memory(error, threads * count * sizeof *job.bounds, "labels");
   for (size_t n = 0; status == HL_OK && n < threads * count; n++)
     job.bounds[n] = (label_bounds){{INT64_MAX, INT64_MAX, INT64_MAX}, {-1, -1, -1}};
   if (status == HL_OK) {
-    for (size_t n = 0; n < count; n++) stored[n] = hl_label_stored(map, labels[n]);
     hl_pool_run(pool, map->dimension[2], bound_slice, &job);
     if (hl_pool_cancelled(pool))
       status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while reading labels");
@@ -89,7 +88,6 @@ hl_status hl_label_parts(hl_context *context, hl_pool *pool, const hl_volume *ma
     parts[n] = part_of(map, &job.bounds[n]);
   }
   hl_release(context, job.bounds);
-  hl_release(context, stored);
   return status;
 }
 

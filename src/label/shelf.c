@@ -7,7 +7,7 @@ enum { PLACES = 1024 };
 
 typedef struct place {
   bool used;
-  double label;
+  int64_t label;
   hl_volume *made; /* null if no voxel has the label */
 } place;
 
@@ -41,7 +41,7 @@ static void release_shelf(hl_context *context, void *kept) {
 }
 
 /* Looks on the shelf for a volume that was already made of this label, and retains it. */
-static bool find(hl_volume *map, double label, hl_volume **made) {
+static bool find(hl_volume *map, int64_t label, hl_volume **made) {
   bool found = false;
   lock(map);
   const shelf *shelf = map->shelf;
@@ -65,7 +65,7 @@ static shelf *shelf_of(hl_volume *map) {
 }
 
 /* Keeps a volume that was made. If memory is short, the volume is not kept. */
-static void keep(hl_volume *map, double label, hl_volume *made) {
+static void keep(hl_volume *map, int64_t label, hl_volume *made) {
   hl_volume *old = made;
   hl_volume_retain(made);
   lock(map);
@@ -81,7 +81,7 @@ static void keep(hl_volume *map, double label, hl_volume *made) {
 
 /* Labels that are not on the shelf. */
 typedef struct missing_labels {
-  double *labels;       /* owned; [count] */
+  int64_t *labels;      /* owned; [count] */
   size_t *places;       /* owned; the labels' places in the caller's list */
   hl_label_part *parts; /* owned */
   size_t count;
@@ -109,7 +109,7 @@ static hl_status make_missing(hl_context *context, int threads, hl_volume *map, 
   return status;
 }
 
-hl_status hl_label_occupancies(hl_context *context, int threads, hl_volume *map, const double *labels,
+hl_status hl_label_occupancies(hl_context *context, int threads, hl_volume *map, const int64_t *labels,
                                size_t count, hl_volume **made, hl_error *error) {
   missing_labels missing = {hl_allocate(context, count, sizeof *missing.labels),
                             hl_allocate(context, count, sizeof *missing.places),

@@ -101,7 +101,7 @@ static hl_status add_colors(hl_context *context, hl_pool *pool, solids_job *job,
 }
 
 /* Makes the volume. values: [count]; the values of the labels. parts: working space for as many parts. */
-static hl_status make(hl_context *context, hl_pool *pool, solids_job *job, const double *values,
+static hl_status make(hl_context *context, hl_pool *pool, solids_job *job, const int64_t *values,
                       hl_label_part *parts, hl_volume **made, hl_error *error) {
   hl_status status = hl_label_parts(context, pool, job->map, values, job->count, parts, error);
   if (status != HL_OK) return status;
@@ -121,7 +121,7 @@ hl_status hl_label_solids(hl_context *context, int threads, hl_volume *map, cons
   *made = hl_solids_from_shelf(map, labels, count);
   if (*made != NULL) return HL_OK;
   const bool colored = !one_color(labels, count);
-  double *values = hl_allocate(context, count, sizeof *values);
+  int64_t *values = hl_allocate(context, count, sizeof *values);
   hl_label_part *parts = hl_allocate(context, count, sizeof *parts);
   hl_volume **occupancies = hl_allocate_zeroed(context, count, sizeof(hl_volume *));
   hl_pool *pool = NULL;

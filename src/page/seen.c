@@ -12,6 +12,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "volume/volume.h"
 
 enum { AROUND = 3 }; /* voxels that kernels and normals reach, beyond what shows */
 
@@ -26,7 +27,7 @@ static bool has_opacity_at(const hl_transfer_function *function, double value) {
   return point[n].opacity > 0 || point[n - 1].opacity > 0; /* within a straight piece */
 }
 
-static bool label_shows(const hl_scene_volume *volume, double value) {
+static bool label_shows(const hl_scene_volume *volume, int64_t value) {
   size_t low = 0, high = volume->label_count;
   while (low < high) { /* they rise by value */
     size_t middle = (low + high) / 2;
@@ -74,7 +75,10 @@ static hl_status find_ranges(hl_context *context, const hl_scene_volume *volume,
         double value = hl_volume_value(volume->volume, i, j, k);
         *bytes = *bytes && value >= 0 && value <= 255 && value == floor(value);
         if (!isfinite(value)) continue;
-        if (volume->label_count > 0) value = label_shows(volume, value);
+        int64_t label;
+        if (volume->label_count > 0)
+          value = hl_volume_whole(volume->volume, i, j, k, &label) == HL_WHOLE_FOUND &&
+                  label_shows(volume, label);
         widen(&of_i[i], value);
         widen(&of_j[j], value);
         widen(&of_k[k], value);

@@ -232,10 +232,7 @@ static hl_status check_labels(const hl_checker *check, const char *list, const h
     const hl_label *label = &labels[n];
     char key[64];
     snprintf(key, sizeof key, "%s/%zu/value", list, n);
-    status = hl_check_range(check, key, label->value, -1e9, 1e9, "give the label's number");
-    if (status == HL_OK && label->value != floor(label->value))
-      status = hl_check_refuse(check, key, "is no whole number: give the label's");
-    if (status == HL_OK && n > 0 && label->value <= label[-1].value)
+    if (n > 0 && label->value <= label[-1].value)
       status = hl_check_refuse(check, key,
                                "does not come after the label before: sort them by number, each once");
     snprintf(key, sizeof key, "%s/%zu/opacity", list, n);

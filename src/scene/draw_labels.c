@@ -31,16 +31,19 @@ hl_status hl_labels_function(hl_context *context, const hl_scene_volume *volume,
     return hl_fail_memory(error, OPACITY_A_LABEL * labels * sizeof *opacity, "a transfer function");
   }
   double end = -INFINITY, last = 0; /* where the label before ends, and its opacity */
-  opacity[opacity_count++] = (hl_opacity_point){labels > 0 ? volume->labels[0].value - 1 : 0, 0};
+  if (labels > 0) opacity[opacity_count++] = (hl_opacity_point){(double)volume->labels[0].value - 1, 0};
   for (size_t n = 0; n < labels; n++) {
     const hl_label *label = &volume->labels[n];
-    double begin = label->value - 0.5, shown = label->visible ? label->opacity : 0;
+    const double value = (double)label->value;
+    /* The voxels are floats: those of a great label lie within this distance of it. */
+    const double around = fmax(0.5, fabs(value) * 0x1p-24);
+    double begin = fmax(value - around, end), shown = label->visible ? label->opacity : 0;
     if (begin > end && last > 0) opacity[opacity_count++] = (hl_opacity_point){end, last};
     if (begin > end && last > 0) opacity[opacity_count++] = (hl_opacity_point){end, last = 0};
     opacity[opacity_count++] = (hl_opacity_point){begin, last};
     opacity[opacity_count++] = (hl_opacity_point){begin, shown};
     last = shown;
-    end = label->value + 0.5;
+    end = value + around;
     for (int side = 0; side < COLORS_A_LABEL; side++) {
       hl_color_point *point = &color[color_count++];
       point->value = side == 0 ? begin : end;
@@ -146,7 +149,7 @@ static hl_status draw_solids(hl_context *context, hl_scene_description *placed, 
 static hl_status draw_skins(hl_context *context, hl_scene_description *placed, const hl_scene_volume *map,
                             drawn_points **points, hl_error *error) {
   size_t count = 0;
-  double *values = hl_allocate(context, map->label_count, sizeof *values);
+  int64_t *values = hl_allocate(context, map->label_count, sizeof *values);
   hl_volume **made = hl_allocate(context, map->label_count, sizeof(hl_volume *));
   hl_status status = HL_OK;
   if (values == NULL || made == NULL)

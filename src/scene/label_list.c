@@ -15,12 +15,12 @@
 
 /* Labels that were found, rising. */
 typedef struct found_labels {
-  double *values; /* owned; [HL_MOST_LABELS] */
+  int64_t *values; /* owned; [HL_MOST_LABELS] */
   size_t count;
 } found_labels;
 
 /* Adds a label where it is new; false where there are too many. */
-static bool add_value(found_labels *found, double value) {
+static bool add_value(found_labels *found, int64_t value) {
   size_t low = 0, high = found->count;
   while (low < high) {
     size_t middle = low + (high - low) / 2;
@@ -36,20 +36,9 @@ static bool add_value(found_labels *found, double value) {
 }
 
 static hl_status fail_value(double value, hl_error *error) {
-  return hl_fail(error, HL_ERROR_INPUT, "the voxel value %.17g is no label: label maps hold whole numbers",
+  return hl_fail(error, HL_ERROR_INPUT,
+                 "the voxel value %.17g is no label: label maps hold whole numbers of 64 bits with a sign",
                  value);
-}
-
-/* Whether a double, by which labels are told apart, rounds a number of the row. */
-static bool rounds_id(hl_number_row row, size_t i) {
-  if (row.type == HL_VOXEL_U64) {
-    uint64_t id = ((const uint64_t *)row.numbers)[i];
-    return id >> 53 != 0 && id >> __builtin_ctzll(id) >> 53 != 0;
-  }
-  if (row.type != HL_VOXEL_I64) return false;
-  int64_t id = ((const int64_t *)row.numbers)[i];
-  uint64_t size = id < 0 ? 0 - (uint64_t)id : (uint64_t)id;
-  return size >> 53 != 0 && size >> __builtin_ctzll(size) >> 53 != 0;
 }
 
 /* Labels come in runs: only a value that differs from the voxel before is looked up. */
@@ -57,27 +46,15 @@ static hl_status find_values(const hl_volume *map, found_labels *found, hl_error
   if (map->pages != NULL)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "labels of a volume that is larger than memory: raise the memory limit");
-  bool rounded = false;
   for (size_t k = 0; k < map->dimension[2]; k++)
     for (size_t j = 0; j < map->dimension[1]; j++) {
       const hl_number_row row = hl_volume_numbers(map, j, k, NULL);
-      double last = NAN;
       for (size_t i = 0; i < map->dimension[0]; i++) {
-        double stored = hl_row_number(row, i);
-        if (!rounded && rounds_id(row, i)) {
-          rounded = true;
-          hl_log(map->context, HL_LOG_WARNING,
-                 "labels above 2^53 are told apart as doubles: the voxels of %.0f may be those of several "
-                 "labels "
-                 "near it: number the labels anew",
-                 stored);
-        }
-        if (stored == last) continue;
-        last = stored;
-        double value = stored * map->value_scale + map->value_offset;
-        if (value == 0) continue;
-        if (value != floor(value)) return fail_value(value, error);
-        if (!add_value(found, value))
+        int64_t value;
+        if (i > 0 && hl_row_repeats(row, i, i - 1)) continue;
+        if (!hl_row_whole(map, row, i, &value))
+          return fail_value(map->value_scale * hl_row_number(row, i) + map->value_offset, error);
+        if (value != 0 && !add_value(found, value))
           return hl_fail(error, HL_ERROR_UNSUPPORTED,
                          "the volume has more than %d values: it is no label map", HL_MOST_LABELS);
       }
@@ -85,7 +62,7 @@ static hl_status find_values(const hl_volume *map, found_labels *found, hl_error
   return HL_OK;
 }
 
-static const hl_segment *segment_of(const hl_volume *map, double value) {
+static const hl_segment *segment_of(const hl_volume *map, int64_t value) {
   for (size_t n = 0; n < map->segment_count; n++)
     if (map->segments[n].value == value &&
         (map->segments[n].layer == map->component || map->component < 0 || map->array_count == 0))
@@ -93,14 +70,14 @@ static const hl_segment *segment_of(const hl_volume *map, double value) {
   return NULL;
 }
 
-static const hl_label *row_of(const hl_label_list *table, double value) {
+static const hl_label *row_of(const hl_label_list *table, int64_t value) {
   for (size_t n = 0; n < table->count; n++)
     if (table->labels[n].value == value) return &table->labels[n];
   return NULL;
 }
 
 /* Names and colours one label: by the table first, then by the file. */
-static void describe(const hl_volume *map, const hl_label_list *table, double value, hl_label *label) {
+static void describe(const hl_volume *map, const hl_label_list *table, int64_t value, hl_label *label) {
   *label = (hl_label){.value = value, .opacity = 1, .visible = 1};
   hl_label_distinct_color(value, label->color);
   const hl_segment *segment = segment_of(map, value);

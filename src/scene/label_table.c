@@ -11,13 +11,13 @@
 #include "volume/text.h"
 
 enum { MOST_BYTES = 4 << 20, MOST_WORDS = 12 };
-#define GREATEST_LABEL 0x1p53 /* up to which doubles tell all whole numbers apart */
 
 /* A word of a line: a number or a text. */
 typedef struct word {
   char *text; /* in the list's names; ends with 0 */
   double number;
-  bool is_number, has_point;
+  int64_t whole;
+  bool is_number, is_whole, has_point;
 } word;
 
 /* The columns of a table with a header that are of use, as BIDS' dseg.tsv has them; -1: none. */
@@ -29,6 +29,7 @@ static bool is_separator(char c) { return c == ' ' || c == '\t' || c == ',' || c
 
 static word make_word(char *text, bool quoted) {
   word made = {.text = text, .has_point = strchr(text, '.') != NULL};
+  made.is_whole = !quoted && hl_text_whole(text, &made.whole);
   made.is_number = !quoted && hl_text_numbers(text, &made.number, 1) == 1 && isfinite(made.number);
   return made;
 }
@@ -96,7 +97,7 @@ static bool read_color(const word *words, double color[3]) {
 
 /* Reads one line's label; false: it has none of the forms. */
 static bool read_label(const word *words, int count, hl_label *label) {
-  *label = (hl_label){.value = words[0].number, .opacity = 1, .visible = 1};
+  *label = (hl_label){.value = words[0].whole, .opacity = 1, .visible = 1};
   if (count >= 5 && !words[1].is_number) {
     label->name = words[1].text;
     return read_color(words + 2, label->color);
@@ -127,7 +128,7 @@ static bool read_web_color(const char *text, double color[3]) {
 static bool read_row(const word *words, int count, const columns *at, hl_label *label) {
   if (at->name >= count) return false;
   *label = (hl_label){
-      .value = words[at->value].number, .name = words[at->name].text, .opacity = 1, .visible = 1};
+      .value = words[at->value].whole, .name = words[at->name].text, .opacity = 1, .visible = 1};
   if (at->color < 0 || at->color >= count || !read_web_color(words[at->color].text, label->color))
     hl_label_distinct_color(label->value, label->color);
   return true;
@@ -158,8 +159,7 @@ static hl_status add_line(const char *name, size_t number, char *line, columns *
   const int value = has_columns ? table->value : 0;
   if (value >= count || !words[value].is_number)
     return list->count == 0 && !has_columns ? HL_OK : fail_line(name, number, "begins with no number", error);
-  if (words[value].number != floor(words[value].number) || fabs(words[value].number) > GREATEST_LABEL)
-    return fail_line(name, number, "its number is no label's", error);
+  if (!words[value].is_whole) return fail_line(name, number, "its number is no label's", error);
   if (list->count == HL_MOST_LABELS) return fail_line(name, number, "too many labels", error);
   hl_label *label = &list->labels[list->count];
   if (!(has_columns ? read_row(words, count, table, label) : read_label(words, count, label)))
@@ -233,12 +233,14 @@ void hl_label_list_release(hl_context *context, hl_label_list *list) {
   *list = (hl_label_list){0};
 }
 
-/* The golden ratio's fraction, by which successive hues are as far from all earlier ones as can be. */
-static const double GOLDEN = 0.61803398874989485;
+/* The golden ratio's fraction, times 2^64. By it successive hues are as far from all earlier ones as can be.
+ * The product with a label, modulo 2^64, is the fraction of the turn, exact for numbers of any size. */
+static const uint64_t GOLDEN = 0x9e3779b97f4a7c15u;
 
-void hl_label_distinct_color(double value, double linear[3]) {
-  double turn = value * GOLDEN, hue = 6 * (turn - floor(turn));
-  double strength = fmod(fabs(value), 3) < 1 ? 0.72 : fmod(fabs(value), 3) < 2 ? 0.5 : 0.85;
+void hl_label_distinct_color(int64_t value, double linear[3]) {
+  static const double strengths[3] = {0.72, 0.5, 0.85};
+  double hue = 6 * (double)((uint64_t)value * GOLDEN >> 11) * 0x1p-53;
+  double strength = strengths[(value < 0 ? 0 - (uint64_t)value : (uint64_t)value) % 3];
   for (int c = 0; c < 3; c++) {
     double away = fabs(fmod(hue + 6 - 2 * c, 6) - 3); /* 3: this channel's own hue is opposite */
     double pure = fmin(fmax(away - 1, 0), 1);

@@ -26,6 +26,6 @@ hl_status hl_label_table_parse(hl_context *context, const char *text, size_t len
 void hl_label_list_release(hl_context *context, hl_label_list *list);
 
 /* A colour of its own for each label: hues a golden angle apart. */
-void hl_label_distinct_color(double value, double linear[3]);
+void hl_label_distinct_color(int64_t value, double linear[3]);
 
 #endif

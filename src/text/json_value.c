@@ -15,8 +15,7 @@ void hl_json_number_text(double number, char text[HL_JSON_NUMBER_BYTES]) {
   if (signbit(number) && number == 0) strcpy(text, "-0.0");
 }
 
-/* The length in bytes of the well-formed UTF-8 sequence at c; 0 if there is none (RFC 3629). */
-static size_t utf8_length(const unsigned char *c) {
+size_t hl_utf8_length(const unsigned char *c) {
   static const unsigned char least_second[4] = {0x80, 0x80, 0xa0,
                                                 0x90}; /* after 0xe0 and 0xf0: excludes overlong sequences */
   size_t length = c[0] < 0x80 ? 1 : c[0] < 0xc2 ? 0 : c[0] < 0xe0 ? 2 : c[0] < 0xf0 ? 3 : c[0] < 0xf5 ? 4 : 0;
@@ -30,7 +29,7 @@ static size_t utf8_length(const unsigned char *c) {
 
 size_t hl_json_piece(const char **text, char piece[HL_JSON_PIECE_BYTES]) {
   const unsigned char *c = (const unsigned char *)*text;
-  size_t length = utf8_length(c);
+  size_t length = hl_utf8_length(c);
   if (*c == 0) return 0;
   *text += length > 0 ? length : 1;
   if (*c == '"' || *c == '\\') return (size_t)snprintf(piece, HL_JSON_PIECE_BYTES, "\\%c", *c);

@@ -10,6 +10,9 @@ enum { HL_JSON_NUMBER_BYTES = 64, HL_JSON_PIECE_BYTES = 8 };
  */
 void hl_json_number_text(double number, char text[HL_JSON_NUMBER_BYTES]);
 
+/* The length in bytes of the well-formed UTF-8 sequence at c; 0 if there is none (RFC 3629). */
+size_t hl_utf8_length(const unsigned char *c);
+
 /* Writes the character at *text, escaped for use between quotes, moves *text past it, and returns the piece's
  * length; 0 at the end. Bytes that are not UTF-8, as file names may hold, become U+FFFD. */
 size_t hl_json_piece(const char **text, char piece[HL_JSON_PIECE_BYTES]);

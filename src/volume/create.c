@@ -4,11 +4,14 @@
  * statistics, which is immutable and counts its users. */
 #include "volume/volume.h"
 
+#include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core/door.h"
 #include "core/memory.h"
+#include "text/json_value.h"
 #include "volume/convert.h"
 #include "volume/exact.h"
 #include "volume/glimpse.h"
@@ -201,6 +204,9 @@ bool hl_volume_is_exact(const hl_volume *volume) {
   return volume->exact != NULL || (volume->pages != NULL && volume->pages->exact_file >= 0);
 }
 
+/* The type that each hl_storage stores. */
+static const hl_voxel_type stored_types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
+
 size_t hl_volume_row_room(const hl_volume *volume) {
   size_t stored = hl_storage_bytes(volume->storage), width = volume->dimension[0];
   bool in_file = volume->exact == NULL && hl_volume_is_exact(volume);
@@ -216,13 +222,11 @@ static const void *numbers_in(const hl_volume *volume, size_t j, size_t k, unsig
 }
 
 hl_number_row hl_volume_numbers(const hl_volume *volume, size_t j, size_t k, void *buffer) {
-  /* The type that each hl_storage stores. */
-  static const hl_voxel_type stored[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
   const void *numbers = volume->exact == NULL && hl_volume_is_exact(volume) ? numbers_in(volume, j, k, buffer)
                                                                             : NULL;
   if (numbers != NULL) return (hl_number_row){volume->type, numbers};
   if (volume->exact == NULL)
-    return (hl_number_row){stored[volume->storage], hl_volume_row_in(volume, j, k, buffer)};
+    return (hl_number_row){stored_types[volume->storage], hl_volume_row_in(volume, j, k, buffer)};
   size_t row = (k * volume->dimension[1] + j) * volume->dimension[0];
   return (hl_number_row){volume->type,
                          (const unsigned char *)volume->exact + row * hl_voxel_type_bytes(volume->type)};
@@ -235,6 +239,21 @@ double hl_row_number(hl_number_row row, size_t i) {
     case HL_VOXEL_F32: return (double)((const float *)row.numbers)[i];
     default: return hl_exact_number(row.type, row.numbers, i);
   }
+}
+
+/* The least number that 64 bits with a sign do not hold. */
+static const double TOO_GREAT = 0x1p63;
+
+bool hl_row_whole(const hl_volume *volume, hl_number_row row, size_t i, int64_t *whole) {
+  bool is_64 = row.type == HL_VOXEL_I64 || row.type == HL_VOXEL_U64;
+  if (is_64 && volume->value_scale == 1 && volume->value_offset == 0) {
+    memcpy(whole, (const int64_t *)row.numbers + i, sizeof *whole);
+    return row.type == HL_VOXEL_I64 || *whole >= 0; /* the greatest unsigned ones look negative */
+  }
+  double value = volume->value_scale * hl_row_number(row, i) + volume->value_offset;
+  if (!(value >= -TOO_GREAT && value < TOO_GREAT && value == floor(value))) return false;
+  *whole = (int64_t)value;
+  return true;
 }
 
 /* Copies strided voxels into stored form. row: scratch memory for one row in the caller's type. */
@@ -393,6 +412,18 @@ hl_status hl_volume_get_info(const hl_volume *volume, hl_volume_info *info) {
   return HL_OK;
 }
 
+hl_status hl_volume_write_range(const hl_volume *volume, int end, char *text) {
+  HL_DOOR;
+  if (volume == NULL || text == NULL || (end != 0 && end != 1)) return HL_ERROR_ARGUMENT;
+  const uint64_t whole = volume->whole_range[end];
+  const bool is_exact = hl_volume_is_exact(volume) && volume->value_scale == 1 && volume->value_offset == 0;
+  if (is_exact && volume->type == HL_VOXEL_U64) snprintf(text, HL_NUMBER_TEXT_BYTES, "%" PRIu64, whole);
+  else if (is_exact && volume->type == HL_VOXEL_I64)
+    snprintf(text, HL_NUMBER_TEXT_BYTES, "%" PRId64, (int64_t)whole);
+  else hl_json_number_text(end == 0 ? volume->minimum : volume->maximum, text);
+  return HL_OK;
+}
+
 size_t hl_volume_array_count(const hl_volume *volume) { return volume != NULL ? volume->array_count : 0; }
 
 hl_status hl_volume_get_array(const hl_volume *volume, size_t index, hl_volume_array *array) {
@@ -481,28 +512,42 @@ double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k) {
   return hl_volume_value_within(volume, i, j, k);
 }
 
-double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_t k) {
-  if (volume == NULL || i >= volume->dimension[0] || j >= volume->dimension[1] || k >= volume->dimension[2])
-    return NAN;
+/* One voxel's number, as the only one of a row. own: room for the number. */
+static hl_number_row number_of(const hl_volume *volume, size_t i, size_t j, size_t k, uint64_t *own) {
   const hl_pages *pages = volume->pages;
-  const void *kept = pages != NULL && pages->glimpse != NULL ? hl_glimpse_voxel(pages->glimpse, i, j, k)
-                                                             : NULL;
-  if (volume->exact != NULL) { /* a value whose float is not finite stays transparent */
-    double number = hl_row_number(hl_volume_numbers(volume, j, k, NULL), i);
-    return isfinite((float)number) ? volume->value_scale * number + volume->value_offset : NAN;
+  if (pages == NULL) {
+    hl_number_row row = hl_volume_numbers(volume, j, k, NULL);
+    row.numbers = (const unsigned char *)row.numbers + i * hl_voxel_type_bytes(row.type);
+    return row;
   }
-  if (pages != NULL && pages->exact_file >= 0) {
-    float number = (float)hl_page_number(pages, i, j, k);
-    uint64_t own;
-    size_t first = (k * volume->dimension[1] + j) * volume->dimension[0] + i;
-    if (!isfinite(number)) return NAN;
-    if (hl_exact_read(pages->exact_file, volume->type, first, 1, &number, &own))
-      return volume->value_scale * hl_exact_number(volume->type, &own, 0) + volume->value_offset;
-  }
-  double stored = kept != NULL    ? hl_stored_number(volume->storage, kept, 0)
-                  : pages != NULL ? hl_page_number(pages, i, j, k)
-                                  : hl_stored_number(volume->storage, hl_volume_row(volume, j, k), i);
-  return isfinite(stored) ? volume->value_scale * stored + volume->value_offset : NAN;
+  const void *kept = pages->glimpse != NULL ? hl_glimpse_voxel(pages->glimpse, i, j, k) : NULL;
+  if (kept != NULL && pages->exact_file < 0) return (hl_number_row){stored_types[volume->storage], kept};
+  float stored = (float)hl_page_number(pages, i, j, k);
+  size_t at = (k * volume->dimension[1] + j) * volume->dimension[0] + i;
+  if (pages->exact_file >= 0 && hl_exact_read(pages->exact_file, volume->type, at, 1, &stored, own))
+    return (hl_number_row){volume->type, own};
+  memcpy(own, &stored, sizeof stored);
+  return (hl_number_row){HL_VOXEL_F32, own};
+}
+
+static bool is_outside(const hl_volume *volume, size_t i, size_t j, size_t k) {
+  return i >= volume->dimension[0] || j >= volume->dimension[1] || k >= volume->dimension[2];
+}
+
+double hl_volume_value_within(const hl_volume *volume, size_t i, size_t j, size_t k) {
+  if (volume == NULL || is_outside(volume, i, j, k)) return NAN;
+  uint64_t own;
+  double number = hl_row_number(number_of(volume, i, j, k, &own), 0);
+  /* a value whose float is not finite stays transparent */
+  return isfinite((float)number) ? volume->value_scale * number + volume->value_offset : NAN;
+}
+
+hl_whole hl_volume_whole(const hl_volume *volume, size_t i, size_t j, size_t k, int64_t *whole) {
+  if (is_outside(volume, i, j, k)) return HL_WHOLE_ABSENT;
+  uint64_t own;
+  const hl_number_row row = number_of(volume, i, j, k, &own);
+  if (hl_row_whole(volume, row, 0, whole)) return HL_WHOLE_FOUND;
+  return isfinite((float)hl_row_number(row, 0)) ? HL_WHOLE_FRACTION : HL_WHOLE_ABSENT;
 }
 
 void hl_volume_world_box(const hl_volume_info *info, double low[3], double high[3]) {

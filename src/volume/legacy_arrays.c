@@ -238,6 +238,10 @@ static hl_status read_fields(hl_legacy_vtk *file, const char *arguments, hl_erro
         !hl_text_word(&cursor, type, sizeof type) || shape[0] < 1)
       return hl_legacy_vtk_fail(file, "expected \"name components tuples type\", not", line, error);
     size_t values;
+    if (shape[1] == 0) { /* an array without values */
+      arrays--;
+      continue;
+    }
     if (hl_text_is_one_of(type, "string|bit")) {
       if (__builtin_mul_overflow(shape[0], shape[1], &values) || values > VALUES_MOST)
         return hl_legacy_vtk_fail(file, "impossible number of values in", line, error);

@@ -5,6 +5,7 @@
  * NRRD File Format". */
 #include "volume/nrrd_header.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -329,14 +330,14 @@ static hl_status read_pair(nrrd_header *header, char *line, char *colon, hl_erro
   hl_status status = need_segment(header, number, error);
   if (status != HL_OK) return status;
   hl_segment *segment = &header->segments[number];
-  double numbers[3];
+  int64_t whole;
   if (name) snprintf(segment->name, sizeof segment->name, "%s", value);
   else if (color)
     segment->has_color = hl_text_numbers(value, segment->srgb, 3) == 3 && is_color(segment->srgb);
-  else if (hl_text_numbers(value, numbers, 1) != 1 || !(fabs(numbers[0]) < (label ? 0x1p53 : 1e6)))
+  else if (!hl_text_whole(value, &whole) || (layer && (whole < 0 || whole > INT_MAX)))
     return refuse(header, line, value, error);
-  else if (label) segment->value = numbers[0];
-  else segment->layer = (int)numbers[0];
+  else if (label) segment->value = whole;
+  else segment->layer = (int)whole;
   return HL_OK;
 }
 

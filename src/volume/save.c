@@ -35,8 +35,8 @@ typedef struct saving {
   bool packs;       /* whether bytes are packed now */
   double *sums;     /* owned; [grid.dimensions[0]]; sums of data values */
   uint32_t *counts; /* owned; [grid.dimensions[0]]; number of finite voxels in each sum */
-  double *boxes;    /* owned; [grid.dimensions[0]][shrink^3]; the finite values, where labels are shrunk; else
-                       null */
+  uint64_t *boxes;  /* owned; [grid.dimensions[0]][shrink^3]; the bits of the finite values, where labels are
+                     * shrunk, or of the file's own numbers (keeps_numbers()); else null */
   unsigned char *row;      /* owned; [grid.dimensions[0]] voxels of the written type */
   void *source_row;        /* owned; a row of the volume's stored values, for volumes with pages */
   unsigned char *packed;   /* owned; [OUT_BYTES] */
@@ -146,6 +146,23 @@ static void place_box(saving *s) {
 
 /* ---- rows ---- */
 
+/* Whether the file's own numbers are written unchanged; numbers of 64 bits do not pass through doubles. */
+static bool keeps_numbers(const saving *s) {
+  const hl_volume *volume = s->volume;
+  return hl_volume_is_exact(volume) && (s->shrink == 1 || s->labels) && s->grid.type == volume->type &&
+         volume->value_scale == 1 && volume->value_offset == 0;
+}
+
+/* The bits of a label: of its value, or of the file's own number. Equal labels have equal bits. */
+static uint64_t bits_of(const saving *s, hl_number_row row, size_t i, double value) {
+  uint64_t bits = 0;
+  const size_t bytes = hl_voxel_type_bytes(row.type);
+  value += 0.0; /* -0 becomes 0 */
+  if (keeps_numbers(s)) memcpy(&bits, (const unsigned char *)row.numbers + i * bytes, bytes);
+  else memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
 /* Adds the row (j, k) of the volume to the sums. The first row begins the sums. */
 static void add_row(saving *s, size_t j, size_t k) {
   const hl_volume *volume = s->volume;
@@ -154,7 +171,8 @@ static void add_row(saving *s, size_t j, size_t k) {
     for (size_t last = i + s->shrink; i < last && i < s->end[0]; i++) {
       double value = volume->value_scale * hl_row_number(row, i) + volume->value_offset;
       if (s->shrink > 1 && !isfinite(value)) continue;
-      if (s->labels) s->boxes[n * s->shrink * s->shrink * s->shrink + s->counts[n]] = value;
+      if (s->labels)
+        s->boxes[n * s->shrink * s->shrink * s->shrink + s->counts[n]] = bits_of(s, row, i, value);
       s->sums[n] += value;
       s->counts[n]++;
     }
@@ -162,8 +180,8 @@ static void add_row(saving *s, size_t j, size_t k) {
 
 /* The value that is most often among these; of equally common ones the first. Boxes have few values: each is
  * counted where it first stands. */
-static double commonest(const double *values, size_t count) {
-  double best = values[0];
+static uint64_t commonest(const uint64_t *values, size_t count) {
+  uint64_t best = values[0];
   size_t most = 0;
   for (size_t n = 0; n < count && count - n > most; n++) {
     bool seen = false;
@@ -177,10 +195,17 @@ static double commonest(const double *values, size_t count) {
   return best;
 }
 
+/* Puts a label's bits where they belong: among the values, or among the numbers that are written. */
+static void put_label(saving *s, size_t n, uint64_t bits) {
+  const size_t bytes = hl_voxel_type_bytes(s->grid.type);
+  if (keeps_numbers(s)) memcpy(s->row + n * bytes, &bits, bytes);
+  else memcpy(&s->sums[n], &bits, sizeof bits);
+}
+
 /* The data values of row (j, k) as written, in `sums`: of the finite voxels the mean, or of labels the
- * commonest; NAN where there are none. */
+ * commonest; NAN where there are none. Labels that keep their numbers stand in `row`. */
 static void make_row(saving *s, size_t j, size_t k) {
-  size_t count = s->grid.dimensions[0];
+  const size_t count = s->grid.dimensions[0], box = s->shrink * s->shrink * s->shrink;
   memset(s->sums, 0, count * sizeof *s->sums);
   memset(s->counts, 0, count * sizeof *s->counts);
   size_t j0 = s->begin[1] + j * s->shrink, k0 = s->begin[2] + k * s->shrink;
@@ -188,8 +213,10 @@ static void make_row(saving *s, size_t j, size_t k) {
     for (size_t y = j0; y < j0 + s->shrink && y < s->end[1]; y++) add_row(s, y, z);
   for (size_t n = 0; n < count; n++) {
     if (s->counts[n] == 0) s->sums[n] = NAN;
-    else if (s->labels)
-      s->sums[n] = commonest(s->boxes + n * s->shrink * s->shrink * s->shrink, s->counts[n]);
+    if (s->counts[n] == 0 && keeps_numbers(s))
+      memcpy(s->row + n * sizeof(double), &s->sums[n], sizeof(double));
+    if (s->counts[n] == 0) continue; /* of the types that keep numbers, only doubles have no number */
+    if (s->labels) put_label(s, n, commonest(s->boxes + n * box, s->counts[n]));
     else if (s->counts[n] > 1) s->sums[n] /= s->counts[n];
   }
 }
@@ -227,13 +254,6 @@ static double whole_value(saving *s, double value, double low, double high) {
     type stored = (type)value;                              \
     memcpy(to + n * sizeof stored, &stored, sizeof stored); \
   } while (0)
-
-/* Whether the file's own numbers are written unchanged; numbers of 64 bits do not pass through doubles. */
-static bool keeps_numbers(const saving *s) {
-  const hl_volume *volume = s->volume;
-  return hl_volume_is_exact(volume) && s->shrink == 1 && s->grid.type == volume->type &&
-         volume->value_scale == 1 && volume->value_offset == 0;
-}
 
 static void copy_row(saving *s, size_t j, size_t k) {
   size_t bytes = hl_voxel_type_bytes(s->grid.type);
@@ -291,12 +311,9 @@ static hl_status write_rows(saving *s, hl_error *error) {
   size_t bytes = n[0] * hl_voxel_type_bytes(s->grid.type);
   for (size_t k = 0; k < n[2]; k++) {
     for (size_t j = 0; j < n[1]; j++) {
-      if (keeps_numbers(s)) {
-        copy_row(s, j, k);
-      } else {
-        make_row(s, j, k);
-        convert_row(s);
-      }
+      if (keeps_numbers(s) && s->shrink == 1) copy_row(s, j, k);
+      else make_row(s, j, k);
+      if (!keeps_numbers(s)) convert_row(s);
       put(s, s->row, bytes, k + 1 == n[2] && j + 1 == n[1]);
     }
     hl_progress(s->context, "write", (double)(k + 1) / (double)n[2]);

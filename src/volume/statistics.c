@@ -220,8 +220,22 @@ static hl_status record(hl_volume *volume, tally total, const char *subject, hl_
   return HL_OK;
 }
 
+/* Whether one number of 64 bits is less than another. */
+static bool is_less(hl_voxel_type type, uint64_t a, uint64_t b) {
+  return type == HL_VOXEL_I64 ? (int64_t)a < (int64_t)b : a < b;
+}
+
+/* Widens a range of whole numbers by a row. */
+static void widen_whole(hl_number_row row, size_t count, uint64_t range[2]) {
+  const uint64_t *numbers = row.numbers;
+  for (size_t i = 0; i < count; i++) {
+    if (is_less(row.type, numbers[i], range[0])) range[0] = numbers[i];
+    if (is_less(row.type, range[1], numbers[i])) range[1] = numbers[i];
+  }
+}
+
 /* Finds range and sum of the file's own numbers whose floats are finite, where floats round the numbers. */
-static void tally_exact(const hl_volume *volume, void *buffer, tally *total) {
+static void tally_exact(hl_volume *volume, void *buffer, tally *total) {
   if (!hl_volume_is_exact(volume) || total->finite == 0) return;
   total->low = INFINITY;
   total->high = -INFINITY;
@@ -229,6 +243,11 @@ static void tally_exact(const hl_volume *volume, void *buffer, tally *total) {
   for (size_t k = 0; k < volume->dimension[2]; k++)
     for (size_t j = 0; j < volume->dimension[1]; j++) {
       const hl_number_row row = hl_volume_numbers(volume, j, k, buffer);
+      if (row.type == HL_VOXEL_I64 || row.type == HL_VOXEL_U64) {
+        const uint64_t *numbers = row.numbers;
+        if (j == 0 && k == 0) volume->whole_range[0] = volume->whole_range[1] = numbers[0];
+        widen_whole(row, volume->dimension[0], volume->whole_range);
+      }
       for (size_t i = 0; i < volume->dimension[0]; i++) {
         double number = hl_row_number(row, i);
         if (!isfinite((float)number)) continue;

@@ -120,6 +120,21 @@ bool hl_text_number(const char *text, size_t length, double *value) {
   return true;
 }
 
+bool hl_text_whole(const char *text, int64_t *whole) {
+  const size_t length = strlen(text);
+  decimal number;
+  double value;
+  if (scan_decimal(text, text + length, &number) && !number.long_form && number.exponent == 0) {
+    if (number.mantissa > (uint64_t)INT64_MAX + number.negative) return false;
+    *whole = (int64_t)(number.negative ? 0 - number.mantissa : number.mantissa);
+    return true;
+  }
+  if (!hl_text_number(text, length, &value)) return false;
+  if (!(value >= -0x1p63 && value < 0x1p63 && value == floor(value))) return false;
+  *whole = (int64_t)value;
+  return true;
+}
+
 static const char *word_end(const char *text) {
   while (*text != 0 && !hl_is_space(*text)) text++;
   return text;

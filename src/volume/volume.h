@@ -51,7 +51,8 @@ typedef struct hl_channel {
 enum { HL_SEGMENT_NAME_BYTES = 128, HL_MOST_SEGMENTS = 4096, HL_LABEL_MAP_BYTES = 256 };
 typedef struct hl_segment {
   char name[HL_SEGMENT_NAME_BYTES];
-  double value, srgb[3];
+  int64_t value;
+  double srgb[3];
   bool has_color;
   int layer; /* the component in whose voxels the label is */
 } hl_segment;
@@ -86,6 +87,8 @@ struct hl_volume {
                             * left-posterior-superior for any data */
   double window[2];        /* data values between which the file asks to show greys; NAN if not told */
   double minimum, maximum; /* data values over finite voxels */
+  uint64_t whole_range[2]; /* the same as 64-bit integers of `type`, where doubles round the file's numbers
+                            * (hl_volume_is_exact()) */
   double mean;
   uint64_t nonfinite_count;
   uint64_t histogram[HL_HISTOGRAM_BINS];
@@ -161,6 +164,32 @@ hl_number_row hl_volume_numbers(const hl_volume *volume, size_t j, size_t k, voi
 /* Whether the stored values round some of the file's numbers, which are kept, too. */
 bool hl_volume_is_exact(const hl_volume *volume);
 double hl_row_number(hl_number_row row, size_t i);
+
+/* Whether two voxels of a row have the same number. */
+static inline bool hl_row_repeats(hl_number_row row, size_t a, size_t b) {
+  switch (row.type) {
+    case HL_VOXEL_U8: return ((const uint8_t *)row.numbers)[a] == ((const uint8_t *)row.numbers)[b];
+    case HL_VOXEL_U16: return ((const uint16_t *)row.numbers)[a] == ((const uint16_t *)row.numbers)[b];
+    case HL_VOXEL_U64:
+    case HL_VOXEL_I64:
+    case HL_VOXEL_F64: return ((const uint64_t *)row.numbers)[a] == ((const uint64_t *)row.numbers)[b];
+    default: return ((const uint32_t *)row.numbers)[a] == ((const uint32_t *)row.numbers)[b];
+  }
+}
+
+/* A data value of a row as a whole number, which no double rounds: a label. False where the value is none
+ * that 64 bits with a sign hold. */
+bool hl_row_whole(const hl_volume *volume, hl_number_row row, size_t i, int64_t *whole);
+
+/* Whether a voxel's data value is a whole number that hl_row_whole() reads. */
+typedef enum hl_whole {
+  HL_WHOLE_ABSENT, /* outside the grid, or not finite */
+  HL_WHOLE_FRACTION,
+  HL_WHOLE_FOUND
+} hl_whole;
+
+/* The same for one voxel of any volume. */
+hl_whole hl_volume_whole(const hl_volume *volume, size_t i, size_t j, size_t k, int64_t *whole);
 
 /* Makes a volume of packed voxels that are already in stored form (hl_voxels_store()), in a block of
  * hl_allocate() that the volume takes over, also on failure. description: the grid, the type in the file, and

@@ -74,7 +74,7 @@ static hl_volume *occupancy_of(depth_function *depth, const void *shape, double 
   d.voxels = voxels;
   hl_volume *map = NULL, *made = NULL;
   assert_int_equal(hl_volume_create(context, &d, &map, NULL), HL_OK);
-  const double labels[] = {3, 7};
+  const int64_t labels[] = {3, 7};
   hl_label_part parts[2];
   assert_int_equal(hl_label_parts(context, pool, map, labels, 2, parts, NULL), HL_OK);
   assert_int_equal(hl_label_occupancy(context, pool, map, &labels[1], 1, &parts[1], &made, NULL), HL_OK);

@@ -100,12 +100,12 @@ static void tables_keep_great_numbers_and_blanks(void **state) {
   hl_context *context = make_context();
   static const char text[] =
       "index\tname\tcolor\n614454277\tarea 1: left\t#010203\n"
-      "9007199254740991\tgreat, last\tn/a\n0\t\t#000000\n\n";
+      "9223372036854775807\tgreat, last\tn/a\n0\t\t#000000\n\n";
   hl_label_list list;
   assert_int_equal(hl_label_table_parse(context, text, strlen(text), "t", &list, NULL), HL_OK);
   assert_int_equal(list.count, 3);
   assert_string_equal(list.labels[1].name, "area 1: left");
-  assert_true(list.labels[1].value == 614454277 && list.labels[2].value == 9007199254740991.0);
+  assert_true(list.labels[1].value == 614454277 && list.labels[2].value == INT64_MAX);
   assert_true(list.labels[1].color[2] == hl_srgb_decode(3 / 255.0));
   assert_string_equal(list.labels[2].name, "great, last");
   hl_label_list_release(context, &list);
@@ -165,6 +165,32 @@ static void scenes_keep_their_labels(void **state) {
   hl_context_destroy(context);
 }
 
+/* The number of a label in a scene's text is whole, however it is written. */
+static void numbers_of_labels_are_whole(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  write_segmentation(1);
+  static const char *const numbers[] = {"4.0", "9223372036854775807", "1.5", "1e300", "\"4\""};
+  for (int n = 0; n < 5; n++) {
+    hl_scene *scene = NULL;
+    hl_error error = {0};
+    char text[300];
+    snprintf(text, sizeof text,
+             "{\"halflight\": 1, \"volumes\": [{\"file\": \"%s\", \"labels\": [{\"value\": %s}, {\"value\": "
+             "1}]}]}",
+             path, numbers[n]);
+    hl_status status = hl_scene_from_json(context, text, strlen(text), NULL, "s", &scene, &error);
+    assert_int_equal(status, n < 2 ? HL_OK : HL_ERROR_INPUT);
+    if (n == 0) assert_true(hl_scene_describe(scene)->volumes[0].labels[1].value == 4);
+    if (n == 1) assert_true(hl_scene_describe(scene)->volumes[0].labels[1].value == INT64_MAX);
+    if (n >= 2) assert_non_null(strstr(error.message, "/volumes/0/labels/0/value: is no whole number"));
+    hl_scene_release(scene);
+  }
+  unlink(path);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(segmentations_name_their_labels),
@@ -172,6 +198,7 @@ int main(void) {
       cmocka_unit_test(tables_keep_great_numbers_and_blanks),
       cmocka_unit_test(wrong_tables_are_refused),
       cmocka_unit_test(scenes_keep_their_labels),
+      cmocka_unit_test(numbers_of_labels_are_whole),
   };
   return cmocka_run_group_tests(tests, make_file, remove_file);
 }

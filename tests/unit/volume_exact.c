@@ -261,34 +261,90 @@ static void numbers_larger_than_memory_are_exact(void **state) {
   free(bytes);
 }
 
-static void keep_line(void *user_data, hl_log_level level, const char *message) {
-  if (level == HL_LOG_WARNING) snprintf(user_data, 300, "%s", message);
-}
-
-/* Labels are doubles: what they cannot tell apart is told. */
-static void ids_that_doubles_round_are_told(void **state) {
+/* Two neighbouring ids that doubles take for one: as labels, in a scene's text, shrunk, and as the range. */
+static void ids_above_doubles_stay_apart(void **state) {
   (void)state;
-  static const uint64_t first[] = {UINT64_C(720575940621039145), (uint64_t)1 << 60, ((uint64_t)1 << 53) - 1};
-  for (size_t f = 0; f < sizeof first / sizeof *first; f++) {
-    char line[300] = "";
-    hl_context_options options;
-    hl_context_options_defaults(&options);
-    options.log = keep_line;
-    options.user_data = line;
-    hl_context *context = NULL;
-    assert_int_equal(hl_context_create(&options, &context, NULL), HL_OK);
-    uint64_t voxels[COUNT];
-    for (size_t n = 0; n < COUNT; n++) voxels[n] = n < COUNT / 2 ? 0 : first[f];
-    hl_volume *map = make_volume(context, HL_VOXEL_U64, voxels);
+  enum { EDGE = 8 };
+  static const int64_t ids[2] = {INT64_C(720575940621039145), INT64_C(720575940621039146)};
+  hl_context *context = make_context();
+  for (int sign = -1; sign <= 1; sign += 2) {
+    int64_t voxels[EDGE * EDGE * EDGE], least = sign * ids[sign > 0 ? 0 : 1];
+    for (int n = 0; n < EDGE * EDGE * EDGE; n++)
+      voxels[n] = n < EDGE * EDGE * 2 ? 0 : sign * ids[n >= EDGE * EDGE * 4];
+    hl_volume_description description;
+    hl_volume_description_defaults(&description);
+    for (int a = 0; a < 3; a++) description.dimensions[a] = EDGE;
+    description.type = sign > 0 ? HL_VOXEL_U64 : HL_VOXEL_I64;
+    description.voxels = voxels;
+    hl_volume *map = NULL, *small = NULL;
+    assert_int_equal(hl_volume_create(context, &description, &map, NULL), HL_OK);
     hl_label *labels = NULL;
     size_t count = 0;
     assert_int_equal(hl_labels_of_volume(context, map, NULL, &labels, &count, NULL), HL_OK);
-    assert_int_equal(count, 1);
-    assert_true((strstr(line, "labels above 2^53 are told apart as doubles") != NULL) == (f == 0));
+    assert_int_equal(count, 2);
+    assert_true(labels[0].value == least && labels[1].value == least + 1);
+    assert_true(memcmp(labels[0].color, labels[1].color, sizeof labels[0].color) != 0);
+    char text[HL_NUMBER_TEXT_BYTES], wanted[32];
+    assert_int_equal(hl_volume_write_range(map, 0, text), HL_OK);
+    assert_string_equal(text, sign > 0 ? "0" : "-720575940621039146");
+    assert_int_equal(hl_volume_write_range(map, 1, text), HL_OK);
+    assert_string_equal(text, sign > 0 ? "720575940621039146" : "0");
+    int is_map = 0;
+    assert_int_equal(hl_volume_is_label_map(context, map, &is_map, NULL), HL_OK);
+    assert_true(is_map);
+
+    hl_scene *scene = NULL;
+    char *json = NULL;
+    assert_int_equal(hl_scene_for_volume(context, map, "ids.nrrd", &scene, NULL), HL_OK);
+    assert_int_equal(hl_scene_describe(scene)->volumes[0].label_count, 2);
+    assert_int_equal(hl_scene_to_json(context, scene, &json, NULL), HL_OK);
+    snprintf(wanted, sizeof wanted, "%lld", (long long)least);
+    assert_non_null(strstr(json, wanted));
+    hl_scene_release(scene);
+    hl_text_release(context, json);
+
+    char path[] = "/tmp/halflight-ids-XXXXXX.nrrd";
+    int file = mkstemps(path, 5);
+    assert_true(file >= 0 && close(file) == 0);
+    hl_volume_save_options saving;
+    hl_volume_save_options_defaults(&saving);
+    saving.shrink = 2;
+    saving.labels = 1;
+    assert_int_equal(hl_volume_save_with(context, map, path, &saving, NULL), HL_OK);
+    assert_int_equal(hl_volume_load(context, path, &small, NULL), HL_OK);
     hl_labels_release(context, labels);
+    assert_int_equal(hl_labels_of_volume(context, small, NULL, &labels, &count, NULL), HL_OK);
+    assert_int_equal(count, 2);
+    assert_true(labels[0].value == least && labels[1].value == least + 1);
+    unlink(path);
+    hl_labels_release(context, labels);
+    hl_volume_release(small);
     hl_volume_release(map);
-    hl_context_destroy(context);
   }
+  hl_context_destroy(context);
+}
+
+/* No label has a number that 64 bits with a sign do not hold: it is refused, and the volume is drawn by its
+ * values. */
+static void numbers_beyond_labels_are_refused(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  uint64_t voxels[COUNT];
+  for (size_t n = 0; n < COUNT; n++) voxels[n] = n < COUNT / 2 ? 7 : UINT64_MAX;
+  hl_volume *map = make_volume(context, HL_VOXEL_U64, voxels);
+  hl_label *labels = NULL;
+  size_t count = 0;
+  hl_error error;
+  int is_map = 1;
+  char text[HL_NUMBER_TEXT_BYTES];
+  assert_int_equal(hl_labels_of_volume(context, map, NULL, &labels, &count, &error), HL_ERROR_INPUT);
+  assert_non_null(strstr(error.message, "64 bits with a sign"));
+  assert_int_equal(hl_volume_is_label_map(context, map, &is_map, NULL), HL_OK);
+  assert_false(is_map);
+  assert_int_equal(hl_volume_write_range(map, 1, text), HL_OK);
+  assert_string_equal(text, "18446744073709551615");
+  hl_volume_release(map);
+  hl_context_destroy(context);
 }
 
 int main(void) {
@@ -297,7 +353,8 @@ int main(void) {
                                      cmocka_unit_test(percentiles_are_exact),
                                      cmocka_unit_test(small_numbers_take_no_memory),
                                      cmocka_unit_test(neighbouring_ids_are_two_labels),
-                                     cmocka_unit_test(ids_that_doubles_round_are_told),
+                                     cmocka_unit_test(ids_above_doubles_stay_apart),
+                                     cmocka_unit_test(numbers_beyond_labels_are_refused),
                                      cmocka_unit_test(numbers_larger_than_memory_are_exact)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

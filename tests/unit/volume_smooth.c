@@ -1,6 +1,8 @@
 /* tests/unit/volume_smooth.c - voxels smoothed by a Gaussian, against closed forms; what is smoothed unasked.
  */
 #include <float.h>
+#include <stdio.h>
+#include <unistd.h>
 
 #include "guess/smoothing.h"
 #include "scene_parts.h"
@@ -153,6 +155,21 @@ static void what_has_no_mean_is_refused(void **state) {
   hl_volume *smoothed = NULL;
   for (int v = 0; v < COUNT; v++) values[v] = v % N < 8 ? 0 : v % N < 20 ? 3 : v / N % N < 16 ? 17 : 42;
   hl_volume *labels = make(1);
+  assert_int_equal(hl_volume_smooth(labels, 1, &smoothed, &error), HL_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.message, "label map"));
+  hl_volume_release(labels);
+
+  /* A segmentation of one label looks like no label map, but its file names the label. */
+  FILE *file = fopen("halflight-one.seg.nrrd", "wb");
+  assert_non_null(file);
+  fputs(
+      "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 4 4 4\nencoding: raw\nSegment0_Name:=liver\n"
+      "Segment0_LabelValue:=1\n\n",
+      file);
+  for (int v = 0; v < 64; v++) fputc(v >= 32, file);
+  assert_int_equal(fclose(file), 0);
+  assert_int_equal(hl_volume_load(context, "halflight-one.seg.nrrd", &labels, NULL), HL_OK);
+  unlink("halflight-one.seg.nrrd");
   assert_int_equal(hl_volume_smooth(labels, 1, &smoothed, &error), HL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "label map"));
   hl_volume_release(labels);

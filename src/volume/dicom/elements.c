@@ -1,10 +1,13 @@
 /* volume/dicom/elements.c - tags, value representations, sequences and items, in either byte order. */
 #include "volume/dicom/elements.h"
 
+#include <stdio.h>
 #include <string.h>
 
+#include "text/json_value.h"
 #include "volume/text.h"
 
+enum { MOST_TEXT_BYTES = 4096 /* the longest text that is converted */ };
 enum { ITEM = 0xfffee000, ITEM_END = 0xfffee00d, SEQUENCE_END = 0xfffee0dd };
 
 uint32_t hl_dicom_u16(const unsigned char *bytes, bool big_endian) {
@@ -195,6 +198,38 @@ hl_status hl_dicom_next(hl_dicom_reader *reader, hl_dicom_element *element, bool
   }
 }
 
+static bool is_utf8(const char *text) {
+  const unsigned char *c = (const unsigned char *)text;
+  size_t length = 1;
+  for (; *c != 0 && length > 0; c += length) length = hl_utf8_length(c);
+  return length > 0;
+}
+
+/* Cuts off the last character of a text if only some of its bytes are there. */
+static void cut_part_of_character(char *text) {
+  size_t count = strlen(text), begin = count;
+  while (begin > 0 && ((unsigned char)text[begin - 1] & 0xc0) == 0x80) begin--;
+  if (begin > 0 && (unsigned char)text[begin - 1] >= 0xc0) begin--;
+  if (begin < count && hl_utf8_length((const unsigned char *)text + begin) == 0) text[begin] = 0;
+}
+
+/* Makes UTF-8 of Latin-1, the other character set that is common in DICOM files (PS3.3, C.12.1.1.2). What
+ * does not fit is cut off. */
+static void convert_latin_1(char *text, size_t size) {
+  char copy[MOST_TEXT_BYTES];
+  size_t used = 0;
+  snprintf(copy, sizeof copy, "%s", text);
+  for (const char *c = copy; *c != 0 && used + 3 <= size; c++) {
+    const unsigned char code = (unsigned char)*c;
+    if (code < 0x80) text[used++] = *c;
+    else {
+      text[used++] = (char)(0xc0 | code >> 6);
+      text[used++] = (char)(0x80 | (code & 0x3f));
+    }
+  }
+  text[used] = 0;
+}
+
 hl_status hl_dicom_text(hl_dicom_reader *reader, const hl_dicom_element *element, char *text, size_t size,
                         hl_error *error) {
   const unsigned char *bytes;
@@ -205,6 +240,8 @@ hl_status hl_dicom_text(hl_dicom_reader *reader, const hl_dicom_element *element
   text[available] = 0;
   char *trimmed = hl_text_trim(text);
   memmove(text, trimmed, strlen(trimmed) + 1);
+  if (wanted < element->length) cut_part_of_character(text);
+  if (!is_utf8(text)) convert_latin_1(text, size);
   return status;
 }
 

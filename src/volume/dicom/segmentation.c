@@ -130,7 +130,7 @@ static hl_status fill_slice(const segment_reading *r, size_t place, hl_dicom_wor
     status = hl_dicom_read_frame(r->set, frame, space, error);
     if (status != HL_OK) return status;
     if (r->fractions) hl_voxels_store(r->type, false, space->values, r->slice_voxels, slice);
-    else put_mask(r, space->values, r->stack->segments->list[s].value, slice);
+    else put_mask(r, space->values, (double)r->stack->segments->list[s].value, slice);
   }
   return status;
 }
@@ -172,7 +172,7 @@ static hl_status choose_fraction(segment_reading *r, hl_load_request *request, h
   for (size_t n = 0; n < segments->count && status == HL_OK; n++) {
     char name[HL_SEGMENT_NAME_BYTES];
     snprintf(name, sizeof name, "%s", segments->list[n].name);
-    if (name[0] == 0) snprintf(name, sizeof name, "segment %.0f", segments->list[n].value);
+    if (name[0] == 0) snprintf(name, sizeof name, "segment %lld", (long long)segments->list[n].value);
     status = hl_arrays_add(request, name, 1, r->type, false, error);
   }
   if (status == HL_OK) status = hl_arrays_choose(request, r->set->bundle->path, -1, error);
@@ -197,7 +197,8 @@ static hl_status choose_layer(segment_reading *r, hl_load_request *request, hl_e
   double most = 0;
   hl_payload payload;
   hl_payload_defaults(&payload);
-  for (size_t n = 0; n < r->stack->segments->count; n++) most = fmax(most, r->stack->segments->list[n].value);
+  for (size_t n = 0; n < r->stack->segments->count; n++)
+    most = fmax(most, (double)r->stack->segments->list[n].value);
   hl_status status = find_layers(r, error);
   if (status != HL_OK) return status;
   payload.grid.type = r->type = most > 255 ? HL_VOXEL_U16 : HL_VOXEL_U8;

@@ -14,10 +14,11 @@ enum {
   LABEL = 0x00620005,
   COLOR = 0x0062000d
 };
+enum { HL_NO_SEGMENT = -1 /* the number of a segment whose item tells none: no frame names it */ };
 
 size_t hl_dicom_segment_of(const hl_dicom_segments *segments, double number) {
   for (size_t n = 0; n < segments->count; n++)
-    if (segments->list[n].value == number) return n;
+    if ((double)segments->list[n].value == number) return n;
   return SIZE_MAX;
 }
 
@@ -47,7 +48,7 @@ static hl_status segment_of_item(const hl_dicom_reader *reader, hl_dicom_segment
     segments->list = larger;
     segments->capacity = capacity;
   }
-  while (segments->count <= index) segments->list[segments->count++] = (hl_segment){.value = NAN};
+  while (segments->count <= index) segments->list[segments->count++] = (hl_segment){.value = HL_NO_SEGMENT};
   *segment = &segments->list[index];
   return HL_OK;
 }
@@ -90,7 +91,7 @@ static hl_status take_of_segment(hl_dicom_reader *reader, const hl_dicom_element
     return hl_dicom_text(reader, element, segment->name, sizeof segment->name, error);
   status = hl_dicom_numbers(reader, element, HL_DICOM_VR('U', 'S'), numbers, element->tag == COLOR ? 3 : 1,
                             &count, error);
-  if (status == HL_OK && element->tag == NUMBER && count == 1) segment->value = numbers[0];
+  if (status == HL_OK && element->tag == NUMBER && count == 1) segment->value = (int64_t)numbers[0];
   if (status == HL_OK && element->tag == COLOR && count == 3) {
     to_srgb(numbers, segment->srgb);
     segment->has_color = true;

@@ -249,7 +249,9 @@ static hl_status add_file(hl_dicom_set *set, hl_dicom_header *header, size_t ent
                           .is_volume_space = header->is_volume_space,
                           .are_times = header->vectors.are_times,
                           .frame_count = (size_t)header->frame_count};
-  take_padding(header, file->padding);
+  /* Padding tells where a picture shows nothing. In segmentations, 0 does. */
+  if (header->segments.kind == HL_DICOM_NO_SEGMENTS) take_padding(header, file->padding);
+  else file->padding[0] = file->padding[1] = NAN;
   status = find_series(set, header, &file->series, error);
   if (status == HL_OK) status = add_frames(set, header, set->file_count, error);
   if (status != HL_OK) return status;

@@ -1,6 +1,7 @@
 /* volume/zarr/description.c - see description.h. */
 #include "volume/zarr/description.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -21,9 +22,12 @@ hl_status hl_zarr_name_labels(const json_t *ome, hl_volume *volume, hl_error *er
       const json_t *rgba = json_object_get(entry, "rgba");
       size_t at = 0;
       if (!json_is_number(number)) continue;
-      while (at < count && segments[at].value != json_number_value(number)) at++;
+      int64_t value = json_is_integer(number) ? json_integer_value(number) : 0;
+      if (json_is_real(number) && fabs(json_real_value(number)) < 0x1p63)
+        value = (int64_t)json_real_value(number);
+      while (at < count && segments[at].value != value) at++;
       if (at == most) continue;
-      if (at == count) segments[count++].value = json_number_value(number);
+      if (at == count) segments[count++].value = value;
       static const char *const keys[] = {"class", "name", "label"};
       for (size_t k = 0; k < 3 && segments[at].name[0] == 0; k++) {
         const char *name = json_string_value(json_object_get(entry, keys[k]));
