@@ -1,4 +1,4 @@
-/* cli/info.c - `halflight info VOLUME`: what a volume file or a scene holds. */
+/* cli/info.c - `halflight info FILE`: what a volume, a scene or a mesh file holds. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -389,13 +389,20 @@ static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_
   return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
 }
 
+/* Refuses the options that choose among what a volume file holds. */
+static int refuse_reading(const cli_value *values, const char *title, const char *what) {
+  for (int which = INFO_ARRAY; which <= INFO_LEVEL; which++)
+    if (values[which].given)
+      return fail(EXIT_CODE_USAGE, "--%s is for volume files, and '%s' is %s", info_options[which].name,
+                  title, what);
+  return EXIT_CODE_OK;
+}
+
 static int info_of_scene(cli_host *host, const cli_value *values, const cli_input *input) {
   hl_scene *scene = NULL;
   hl_error error = {0};
-  for (int which = INFO_ARRAY; which <= INFO_LEVEL; which++)
-    if (values[which].given)
-      return fail(EXIT_CODE_USAGE, "--%s is for volume files, and '%s' is a scene: give its volume's file",
-                  info_options[which].name, input->title);
+  int refused = refuse_reading(values, input->title, "a scene: give its volume's file");
+  if (refused != EXIT_CODE_OK) return refused;
   hl_status status = input_load(host->context, input, NULL, &scene, &error);
   int exit_code = status == HL_OK
                       ? tell_scene(host, values[INFO_JSON].given, input->title, hl_scene_describe(scene))
@@ -404,11 +411,63 @@ static int info_of_scene(cli_host *host, const cli_value *values, const cli_inpu
   return exit_code;
 }
 
+static void print_json_mesh(const char *path, const hl_mesh_description *mesh, const double low[3],
+                            const double high[3]) {
+  json_writer json = {0};
+  json_open_object(&json, NULL);
+  json_text(&json, "file", path);
+  json_whole_number(&json, "vertices", mesh->vertex_count);
+  json_whole_number(&json, "triangles", mesh->triangle_count);
+  json_whole_number(&json, "spheres", mesh->sphere_count);
+  json_whole_number(&json, "lines", mesh->line_count);
+  json_bool(&json, "normals", mesh->normals != NULL);
+  json_text(&json, "colors", mesh->colors != NULL ? "vertices" : mesh->face_colors != NULL ? "faces" : NULL);
+  json_open_object(&json, "box");
+  json_numbers(&json, "min", low, 3);
+  json_numbers(&json, "max", high, 3);
+  json_close(&json);
+  json_close(&json);
+}
+
+static void print_mesh(const char *path, const hl_mesh_description *mesh, const double low[3],
+                       const double high[3]) {
+  printf("%s\n  mesh        %zu triangles of %zu vertices", path, mesh->triangle_count, mesh->vertex_count);
+  if (mesh->sphere_count > 0) printf(", %zu spheres", mesh->sphere_count);
+  if (mesh->line_count > 0) printf(", %zu lines, whose tubes are among the triangles", mesh->line_count);
+  printf("\n  normals     %s\n", mesh->normals != NULL ? "of the file" : "none: faces and edges are found");
+  printf("  colours     %s\n", mesh->colors != NULL        ? "of vertices"
+                               : mesh->face_colors != NULL ? "of faces"
+                                                           : "none");
+  printf("  world box   x %.9g to %.9g, y %.9g to %.9g, z %.9g to %.9g\n", low[0], high[0], low[1], high[1],
+         low[2], high[2]);
+}
+
+static int info_of_mesh(cli_host *host, const cli_value *values, const char *path) {
+  hl_mesh *mesh = NULL;
+  hl_error error = {0};
+  double low[3], high[3];
+  int exit_code = refuse_reading(values, path, "a mesh");
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  hl_status status = hl_mesh_load(host->context, path, &mesh, &error);
+  if (status != HL_OK) return host_fail(host, PHASE_READ, status, &error);
+  if (hl_mesh_get_box(mesh, low, high) != HL_OK)
+    exit_code = fail(EXIT_CODE_FAILURE, "%s: the library does not tell what it read", path);
+  else if (values[INFO_JSON].given) print_json_mesh(path, hl_mesh_describe(mesh), low, high);
+  else print_mesh(path, hl_mesh_describe(mesh), low, high);
+  hl_mesh_release(mesh);
+  return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
+}
+
 static int run_info(const cli_value *values, char **operands) {
   cli_host host;
   cli_host_options options = {.memory_limit = values[INFO_MAX_MEMORY].bytes, .subject = operands[0]};
   int exit_code = host_open(&options, &host);
   if (exit_code != EXIT_CODE_OK) return exit_code;
+  if (hl_mesh_reads_name(operands[0])) {
+    exit_code = info_of_mesh(&host, values, operands[0]);
+    host_close(&host);
+    return exit_code;
+  }
   cli_input input = {0};
   exit_code = input_open(operands[0], values[INFO_MAX_MEMORY].bytes, &input);
   if (exit_code == EXIT_CODE_OK)
@@ -421,12 +480,13 @@ static int run_info(const cli_value *values, char **operands) {
 
 const cli_command info_command = {
     .name = "info",
-    .operands = "VOLUME",
+    .operands = "FILE",
     .operand_count = 1,
-    .summary = "show size, type, placement, range and histogram of a volume file",
+    .summary = "show what a volume, a scene or a mesh file holds",
     .description =
         "Shows what a volume file holds: size, type, spacing, orientation, world box, range and histogram.\n"
-        "Of a scene, also one in a picture: how much of each kind it has, and the same of each volume.",
+        "Of a scene, also one in a picture: how much of each kind it has, and the same of each volume.\n"
+        "Of a mesh file: triangles, spheres, lines, normals, colours and the box.",
     .options = info_options,
     .option_count = INFO_OPTION_COUNT,
     .run = run_info,

@@ -25,8 +25,6 @@ typedef struct columns {
   int value, name, color;
 } columns;
 
-static bool is_separator(char c) { return c == ' ' || c == '\t' || c == ',' || c == ';'; }
-
 static word make_word(char *text, bool quoted) {
   word made = {.text = text, .has_point = strchr(text, '.') != NULL};
   made.is_whole = !quoted && hl_text_whole(text, &made.whole);
@@ -34,18 +32,29 @@ static word make_word(char *text, bool quoted) {
   return made;
 }
 
+/* The characters that part a line's words. Names have blanks where another character follows the number and
+ * parts the rest: commas, semicolons, or tabs between all of the words. */
+static const char *separators_of(const char *line) {
+  const char *at = line + strspn(line, " \t");
+  at += strspn(at, "-0123456789");
+  at += strspn(at, " ");
+  int tabs = 0;
+  for (const char *c = line; *c != 0; c++) tabs += *c == '\t' && c[1] != '\t';
+  return *at == ',' ? "," : *at == ';' ? ";" : *at == '\t' && tabs >= 4 ? "\t" : " \t,;";
+}
+
 /* Parts a line into words, in place; quotes hold separators together. */
 static int part_line(char *line, word words[MOST_WORDS]) {
   int count = 0;
-  for (char *at = line; *at != 0 && count < MOST_WORDS;) {
-    while (is_separator(*at)) at++;
+  const char *separators = separators_of(line);
+  for (char *at = line; count < MOST_WORDS;) {
+    while (*at == ' ' || (*at != 0 && strchr(separators, *at) != NULL)) at++;
     if (*at == 0) break;
     bool quoted = *at == '"';
-    char *begin = quoted ? ++at : at, *end;
-    while (*at != 0 && (quoted ? *at != '"' : !is_separator(*at))) at++;
-    end = at;
-    if (*at != 0) at++;
+    char *begin = quoted ? ++at : at, *end = at + strcspn(at, quoted ? "\"" : separators);
+    at = end + (*end != 0);
     *end = 0;
+    while (!quoted && end > begin && end[-1] == ' ') *--end = 0;
     words[count++] = make_word(begin, quoted);
   }
   return count;

@@ -1,8 +1,9 @@
 /* volume/nifti.c - NIfTI-1 and NIfTI-2: .nii, and pairs of .hdr and .img; ANALYZE 7.5 and SPM99, whose
  * headers are like NIfTI-1's.
  *
- * ANALYZE headers tell no orientation. As nibabel does it, x runs to the left, and the world's origin is the
- * voxel that SPM's field names, if it names one near the volume, else the volume's middle.
+ * ANALYZE headers tell no orientation. As nibabel does it, SPM's file NAME.mat beside the header tells it;
+ * else x runs to the left, and the world's origin is the voxel that SPM's field names, if it names one near
+ * the volume, else the volume's middle.
  *
  * World coordinates are the file's (x to the right, y to the front, z up). They come from the sform, else
  * from the qform, else from the voxel sizes alone. Source of the fields: nifti1.h and nifti2.h of the NIfTI
@@ -14,6 +15,7 @@
 #include "core/memory.h"
 #include "volume/decoders.h"
 #include "volume/format.h"
+#include "volume/spm_mat.h"
 #include "volume/text.h"
 
 enum { HEADER_1_BYTES = 348, HEADER_2_BYTES = 540, NAME_BYTES = 1024 };
@@ -238,6 +240,11 @@ static void place_by_origin(const nifti_header *header, const double spacing[3],
   enum { ORIGIN = 253 };
   double origin[3];
   bool any = false, near = true;
+  if (hl_spm_mat_place(header->context, header->path, grid)) {
+    hl_log(header->context, HL_LOG_WARNING,
+           "%s: an ANALYZE header, which tells no orientation: SPM's .mat file beside it does", header->path);
+    return;
+  }
   place_by_sizes(spacing, grid);
   grid->axis[0][0] = -spacing[0];
   for (int axis = 0; axis < 3; axis++) {

@@ -7,7 +7,9 @@
 #include "volume/slice_codecs.h"
 #include "volume/text.h"
 
-bool hl_slice_is_raw(const char *name) { return hl_text_ends(name, ".raw"); }
+bool hl_slice_is_raw(const char *name) {
+  return hl_text_ends(name, ".raw") || hl_text_ends(name, ".bin") || hl_text_ends(name, ".img");
+}
 
 /* Searches the names of the file and of its folders, beginning with the file's. */
 static bool find_name(const char *path, hl_raw_slice *slice) {

@@ -212,7 +212,8 @@ static hl_status record(hl_volume *volume, tally total, const char *subject, hl_
   double last = volume->value_scale * total.high + volume->value_offset;
   volume->minimum = fmin(first, last);
   volume->maximum = fmax(first, last);
-  volume->mean = volume->value_scale * (total.sum / (double)total.finite) + volume->value_offset;
+  const double mean = volume->value_scale * (total.sum / (double)total.finite) + volume->value_offset;
+  volume->mean = fmin(fmax(mean, volume->minimum), volume->maximum); /* a sum of great numbers is rounded */
   if (!isfinite(volume->maximum - volume->minimum))
     return hl_fail(error, HL_ERROR_INPUT,
                    "%s: values scaled by %g and shifted by %g leave the range of numbers", subject,

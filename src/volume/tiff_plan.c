@@ -337,11 +337,12 @@ static void take_imagej_lengths(hl_load_request *request, const char *descriptio
 
 /* ---- tifffile's series: a JSON object with the array's shape, and perhaps the letters of its axes ---- */
 
-/* The numbers of pictures along time, channel and slice. */
+/* Times, channels and slices: how many there are, and how many pages lie from one to the next. */
+typedef struct series_axis {
+  size_t count, step;
+} series_axis;
 typedef struct series_sizes {
-  size_t times, channels, slices;
-  bool channels_first; /* whether slices follow each other within a channel; otherwise channels follow each
-                        * other within a slice */
+  series_axis times, channels, slices;
 } series_sizes;
 
 enum { SHAPE_MOST = 12 };
@@ -353,24 +354,23 @@ static void name_axes(size_t count, char letters[SHAPE_MOST]) {
   for (size_t n = 0; n < count; n++) letters[n] = count - n <= 3 ? usual[3 - (count - n)] : 'Q';
 }
 
-/* Sorts the leading axes of a shape. False unless they are times, channels and slices, in an order in which
- * slices or channels vary fastest and times slowest. */
+/* Sorts the leading axes of a shape. False unless they are times, channels and slices, each once; axes of
+ * other letters that lie beside each other are slices together. */
 static bool sort_axes(const size_t *shape, const char *letters, size_t count, series_sizes *sizes) {
-  *sizes = (series_sizes){1, 1, 1, false};
-  int last = 0; /* the last kind of axis met: 1 is a time, 2 a channel, 3 a slice */
-  for (size_t n = 0; n < count; n++) {
+  size_t step = 1;
+  const series_axis *before = NULL;
+  *sizes = (series_sizes){{1, 0}, {1, 0}, {1, 0}};
+  for (size_t n = count; n-- > 0;) { /* the last axis varies fastest */
     if (shape[n] == 1) continue;
-    char letter = letters[n];
-    size_t *size = letter == 'T' ? &sizes->times : letter == 'C' ? &sizes->channels : &sizes->slices;
-    if (*size > 1 && letter != 'T' && letter != 'C') {
-      if (n > 0 && last != 3) return false;
-      *size *= shape[n]; /* two unknown axes beside each other are slices */
-      continue;
-    }
-    if (*size > 1 || (letter == 'T' && last > 0)) return false;
-    *size = shape[n];
-    if (letter == 'C' && last < 3) sizes->channels_first = true;
-    last = letter == 'T' ? 1 : letter == 'C' ? 2 : 3;
+    series_axis *axis = letters[n] == 'T'   ? &sizes->times
+                        : letters[n] == 'C' ? &sizes->channels
+                                            : &sizes->slices;
+    const bool joins = axis == &sizes->slices && before == axis;
+    if (axis->count > 1 && !joins) return false;
+    if (axis->count == 1) axis->step = step;
+    if (!hl_multiply(axis->count, shape[n], &axis->count) || !hl_multiply(step, shape[n], &step))
+      return false;
+    before = axis;
   }
   return true;
 }
@@ -401,19 +401,18 @@ size_t tiff_plan_pages(const char *description, size_t components) {
   series_sizes sizes;
   if (is_imagej(description)) return find_count(description, "images");
   if (!read_series(description, components, &sizes)) return 0;
-  return sizes.times * sizes.channels * sizes.slices;
+  return sizes.times.count * sizes.channels.count * sizes.slices.count;
 }
 
 /* Plans the pages in order. */
 static hl_status plan_sizes(hl_load_request *request, const char *path, const series_sizes *sizes,
                             tiff_plan *plan, hl_error *error) {
-  hl_status status = hl_steps_choose(request, path, sizes->times, sizes->channels, error);
-  if (status == HL_OK) status = make_slices(plan, sizes->slices, path, error);
+  hl_status status = hl_steps_choose(request, path, sizes->times.count, sizes->channels.count, error);
+  if (status == HL_OK) status = make_slices(plan, sizes->slices.count, path, error);
   const hl_selection *chosen = &request->selection;
-  for (size_t z = 0; status == HL_OK && z < sizes->slices; z++) {
+  for (size_t z = 0; status == HL_OK && z < sizes->slices.count; z++) {
     size_t channel = (size_t)chosen->channel, time = (size_t)chosen->time;
-    size_t page = sizes->channels_first ? (time * sizes->channels + channel) * sizes->slices + z
-                                        : (time * sizes->slices + z) * sizes->channels + channel;
+    size_t page = time * sizes->times.step + channel * sizes->channels.step + z * sizes->slices.step;
     plan->slices[z] = (tiff_slice){0, (uint32_t)page, true};
   }
   return status;
@@ -421,13 +420,12 @@ static hl_status plan_sizes(hl_load_request *request, const char *path, const se
 
 static hl_status plan_imagej(hl_load_request *request, const char *path, const char *description,
                              size_t pages, const double resolution[2], tiff_plan *plan, hl_error *error) {
-  series_sizes sizes = {find_count(description, "frames"), find_count(description, "channels"),
-                        find_count(description, "slices"), false};
-  size_t steps = sizes.channels * sizes.times;
-  if (steps > pages || sizes.slices != pages / steps) {
-    sizes.slices = pages / steps;
-    if (sizes.slices == 0 || sizes.slices * steps != pages) sizes = (series_sizes){1, 1, pages, false};
-  }
+  size_t times = find_count(description, "frames"), channels = find_count(description, "channels");
+  const size_t steps = channels * times, whole = steps > pages ? 0 : pages / steps;
+  if (whole == 0 || (whole * steps != pages && whole != find_count(description, "slices")))
+    times = channels = 1;
+  const size_t slices = pages / (channels * times);
+  const series_sizes sizes = {{times, slices * channels}, {channels, 1}, {slices, channels}};
   plan->is_told = true;
   take_imagej_lengths(request, description, resolution, plan);
   return plan_sizes(request, path, &sizes, plan, error);
@@ -440,10 +438,10 @@ static hl_status plan_pages(hl_load_request *request, const char *path, const ch
   series_sizes sizes;
   size_t wanted;
   bool told = read_series(description, components, &sizes) &&
-              hl_multiply(sizes.times, sizes.channels, &wanted) &&
-              hl_multiply(wanted, sizes.slices, &wanted) && wanted <= pages;
-  if (!told && depth > 1) sizes = (series_sizes){pages / depth, 1, depth, false}; /* each page is a volume */
-  else if (!told) sizes = (series_sizes){1, 1, pages, false};
+              hl_multiply(sizes.times.count, sizes.channels.count, &wanted) &&
+              hl_multiply(wanted, sizes.slices.count, &wanted) && wanted <= pages;
+  const size_t slices = depth > 1 ? depth : pages; /* of a depth, each page is a volume */
+  if (!told) sizes = (series_sizes){{pages / slices, slices}, {1, 0}, {slices, 1}};
   if (told && wanted < pages)
     hl_log(plan->context, HL_LOG_WARNING,
            "%.300s: the first series of %zu of %zu pages is taken: others follow it in the file", path,

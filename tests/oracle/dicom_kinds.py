@@ -121,9 +121,22 @@ def test_label_map_kind():
              0x00620002: ("SQ", [{0x00620004: ("US", n), 0x00620005: ("LO", f"part {n}")} for n in (1, 2)]),
              0x52009229: ("SQ", [SHARED]), 0x52009230: ("SQ", frames)}
     items.update(pixel_elements(planes, EXPLICIT))
+    items[0x00280120] = ("US", 0)  # a picture shows nothing there: it is the background
     path = root / "labelmap.dcm"
     path.write_bytes(dicom_file(items, EXPLICIT))
     expect("a label map of segments", path, np.stack(planes).astype(float))
+
+
+def test_letters():
+    """Names in Latin-1 and in UTF-8, also one that is cut in the middle of a letter."""
+    masks = {1: {k: VOXELS[k] < 60 for k in range(3)}}
+    for name, coded in (("Körper".encode("latin-1"), "Körper"), ("Körper".encode(), "Körper"), (b"x" + 63 * "é".encode(), "x" + 63 * "é"),
+                        (b"xx" + 63 * "é".encode(), "xx" + 62 * "é")):
+        data = segmentation(masks, names={1: "y" * len(name)}).replace(b"y" * len(name), name)
+        path = root / "letters.dcm"
+        path.write_bytes(data)
+        info, _, told = read(path)
+        check(f"the name {coded}", info and info["segments"][0]["name"] == coded, (told, info and info["segments"]))
 
 
 # ---- mosaics ----
@@ -336,7 +349,7 @@ def test_ge_private():
 
 
 try:
-    for test in (test_segmentations, test_label_map_kind, test_mosaics, test_nuclear_medicine, test_films, test_ultrasound_volume,
+    for test in (test_segmentations, test_label_map_kind, test_letters, test_mosaics, test_nuclear_medicine, test_films, test_ultrasound_volume,
                  test_partial_places, test_several_at_one_place, test_colors, test_ge_private):
         test()
 finally:

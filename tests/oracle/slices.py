@@ -127,7 +127,8 @@ def test_raw():
     for name, planes, pattern in (
             ("scan_13x9_uint16", DEEP, "{}.raw"), ("of_names", DEEP, "s{:03}_13x9_uint16.raw"), ("last", GREY, "13x9x1_uint8_{}.raw"),
             ("big_13x9_uint16_be", DEEP.astype(">u2"), "a{}.raw"), ("little_13x9_int16_le", signed.astype("<i2"), "a.{:04}.raw"),
-            ("floats_13x9_float32", GREY.astype("<f4"), "{}.raw"), ("ids_13x9_uint32", wide, "{}.raw")):
+            ("floats_13x9_float32", GREY.astype("<f4"), "{}.raw"), ("ids_13x9_uint32", wide, "{}.raw"),
+            ("bin_13x9_uint16", DEEP, "z{}.bin"), ("img_13x9_uint16", DEEP, "{:04}.img")):
         expect(f"raw slices {name}/{pattern}", write_raw(name, planes, pattern), planes.astype(np.float64))
     expect("raw slices in an archive", pack("raw.zip", sorted((root / "of_names").iterdir())), DEEP.astype(np.float64))
     found, told = read(write_raw("unsaid", GREY, "{}.raw"))

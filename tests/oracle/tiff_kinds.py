@@ -137,6 +137,7 @@ def test_series():
         expect(f"CZYX, channel {channel}", tiff(VOXELS[0].reshape(-1, 6, 5), shaped((2, 7, 6, 5), axes="CZYX")), VOXELS[0, channel], options=pick)
         expect(f"ZCYX, channel {channel}", tiff(zcyx, shaped((7, 2, 6, 5), axes="ZCYX")), VOXELS[0, channel], options=pick)
     expect("TCZYX", tiff(planes, shaped((3, 2, 7, 6, 5), axes="TCZYX")), VOXELS[2, 1], options=("--time", "2", "--channel", "1"))
+    expect("CTZYX", tiff(VOXELS.transpose(1, 0, 2, 3, 4).reshape(-1, 6, 5), shaped((2, 3, 7, 6, 5), axes="CTZYX")), VOXELS[2, 1], options=("--time", "2", "--channel", "1"))
     expect("three axes", tiff(VOXELS[0, 0], shaped((7, 6, 5))), VOXELS[0, 0])
     expect("one page of a series", tiff([tzyx[0]], shaped((3, 7, 6, 5), axes="TZYX"), tail=tzyx[1:].tobytes()), VOXELS[1, 0], options=("--time", "1"))
     expect("an unknown axis is slices", tiff(tzyx, shaped((3, 7, 6, 5), axes="QQYX")), tzyx)

@@ -158,6 +158,22 @@ def test_nifti():
             axes = np.diag([-2.0, 3, 4])
             for name in ("b.hdr", "b.img"):
                 expect(f"ANALYZE {order} {origin}, {name}", path.with_name(name), VOXELS, (2, 3, 4), -axes @ index, axes, "an ANALYZE header")
+    mat = np.array([[0, -3, 0, 50], [2, 0, 0, -60], [0, 0, 4, 70], [0, 0, 0, 1.0]])
+    place = dict(spacing=(2, 3, 4), axes=mat[:3, :3], origin=mat[:3, :4].sum(1))
+    for order in "<>":
+        level_4 = lambda name, matrix: struct.pack(order + "5i", 1000 * (order == ">"), *matrix.shape, 0, len(name) + 1) + name.encode() + b"\0" + \
+            matrix.T.astype(order + "f8").tobytes()  # noqa: E731
+        older = level_4("M", np.diag([-1, 1, 1, 1]) @ mat)
+        for name, content in (("M", older), ("mat", level_4("mat", mat)), ("both", level_4("M", mat * 7) + level_4("mat", mat)), ("another before", level_4("x", np.zeros((3, 5))) + older)):
+            write("b.mat", content)
+            write("b.hdr", nifti((4, 5, 6, 7, 1, 1, 1, 1), b"\0" * 4, ">", offset=0.0))
+            expect(f"SPM's .mat, {name}, {order}", root / "b.hdr", VOXELS, **place, told="SPM's .mat file beside it does")
+        for length in range(0, len(older), 3):
+            write("b.mat", older[:length])
+            expect(f"SPM's .mat cut at {length}", root / "b.hdr", VOXELS, (2, 3, 4), told="is not read")
+    write("b.mat", b"MATLAB 5.0 MAT-file, Platform: GLNXA64".ljust(200))
+    expect("a newer .mat", root / "b.hdr", VOXELS, (2, 3, 4), told="save -v4")
+    (root / "b.mat").unlink()
     write("b.hdr", nifti((4, 5, 6, 7, 1, 1, 1, 1), b"\0" * 4, ">", slope=0.5, offset=0.0))
     expect("SPM's scale", root / "b.hdr", VOXELS * 0.5, (2, 3, 4), told="an ANALYZE header")
 
@@ -198,6 +214,8 @@ def test_legacy():
             b"FIELD FieldData 1\nname 1 2 string\n" + bytes([0xc0 | 4]) + b"half" + struct.pack(">H", 0x8000 | 70) + b"x" * 70 + b"\n"
         field = b"FIELD FieldData 1\nGID 1 210 short\n" + values
         expect(f"texts before, {binary}", write("a.vtk", legacy(text + b"POINT_DATA 210\nSCALARS s short\nLOOKUP_TABLE default\n" + values, binary)), VOXELS, **place)
+        empty = b"FIELD FieldData 2\nnothing 1 0 float\n\nGID 1 210 short\n" + values
+        expect(f"an array without values, {binary}", write("a.vtk", legacy(b"POINT_DATA 210\n" + empty, binary)), VOXELS, **place)
         expect(f"a FIELD alone, {binary}", write("a.vtk", legacy(b"POINT_DATA 210\n" + field, binary)), VOXELS, **place)
         expect(f"a FIELD of the file, {binary}", write("a.vtk", legacy(field, binary)), VOXELS, **place)
         cells = b"DATASET STRUCTURED_POINTS\nDIMENSIONS 6 7 8\nSPACING 0.5 1 2\nORIGIN 1 2 3\n"

@@ -95,6 +95,24 @@ static void tables_of_other_programs(void **state) {
   hl_context_destroy(context);
 }
 
+/* Where commas, semicolons or tabs part the words, names have blanks. */
+static void names_of_tables_have_blanks(void **state) {
+  (void)state;
+  static const char *const lines[] = {"4,left lung,255,0,128",       "4, left lung , 255, 0, 128",
+                                      "4;left lung;255;0;128",       "4\tleft lung\t255\t0\t128\t0",
+                                      "4\t\tleft lung\t255\t0\t128", "4 \"left lung\" 255 0 128"};
+  hl_context *context = make_context();
+  for (size_t n = 0; n < sizeof lines / sizeof *lines; n++) {
+    hl_label_list list;
+    assert_int_equal(hl_label_table_parse(context, lines[n], strlen(lines[n]), "t", &list, NULL), HL_OK);
+    assert_int_equal(list.count, 1);
+    assert_string_equal(list.labels[0].name, "left lung");
+    assert_true(list.labels[0].value == 4 && list.labels[0].color[0] == 1 && list.labels[0].color[1] == 0);
+    hl_label_list_release(context, &list);
+  }
+  hl_context_destroy(context);
+}
+
 static void tables_keep_great_numbers_and_blanks(void **state) {
   (void)state;
   hl_context *context = make_context();
@@ -186,7 +204,6 @@ static void numbers_of_labels_are_whole(void **state) {
     if (n >= 2) assert_non_null(strstr(error.message, "/volumes/0/labels/0/value: is no whole number"));
     hl_scene_release(scene);
   }
-  unlink(path);
   assert_int_equal(hl_context_memory_held(context), 0);
   hl_context_destroy(context);
 }
@@ -196,6 +213,7 @@ int main(void) {
       cmocka_unit_test(segmentations_name_their_labels),
       cmocka_unit_test(tables_of_other_programs),
       cmocka_unit_test(tables_keep_great_numbers_and_blanks),
+      cmocka_unit_test(names_of_tables_have_blanks),
       cmocka_unit_test(wrong_tables_are_refused),
       cmocka_unit_test(scenes_keep_their_labels),
       cmocka_unit_test(numbers_of_labels_are_whole),
