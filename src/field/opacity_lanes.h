@@ -40,7 +40,7 @@ LANES_INLINE float linear_value(const grid *grid, hl_storage storage, const floa
     for (int y = 0; y < 2; y++) {
       int32_t j = y ? next[1] : first[1], k = z ? next[2] : first[2];
       float a, b;
-      if (grid->pages == NULL) {
+      if (grid->voxels != NULL) {
         const unsigned char *row = hl_grid_row(grid, j, k);
         a = stored_number(row, storage, first[0]), b = stored_number(row, storage, next[0]);
       } else {

@@ -177,6 +177,84 @@ static __attribute__((noinline)) lanes sum_in_pages(const grid *grid, const lane
   return sum;
 }
 
+/* ---- fields in bricks ---- */
+
+/* The lanes whose points lie in one brick, and where in it. */
+typedef struct brick_lanes {
+  const hl_brick_entry *entry;
+  uint32_t bits;
+  lanes_int cell[3]; /* cells of the brick's level, counted from its first cell, plus 1: tap 0 is at cell - 1
+                      * of the coefficients that the brick stores */
+  lanes part[3];     /* the point's place between the cell's corners, 0 to 1 */
+  float step;        /* cells of the brick's level in one of level 0 */
+} brick_lanes;
+
+/* Finds the brick of the first of the lanes `left`, and all of these lanes whose points lie in it. cell,
+ * part: cells of level 0 of the lattice, and places in them. */
+LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3], const lanes part[3],
+                                 uint32_t left, brick_lanes *found) {
+  int first = __builtin_ctz(left);
+  size_t block = 0;
+  for (int a = 2; a >= 0; a--)
+    block = block * bricks->directory_size[a] + (size_t)(cell[a][first] >> bricks->shift);
+  found->entry = &bricks->directory[block];
+  int level = found->entry->level, shift = bricks->shift + level;
+  int32_t below = (1 << level) - 1;
+  lanes_int same = lanes_from_bits(left);
+  found->step = 1.0f / (float)(1 << level);
+  for (int a = 0; a < 3; a++) {
+    same &= ((cell[a] ^ cell[a][first]) >> shift) == 0;
+    found->cell[a] = ((cell[a] & ((1 << shift) - 1)) >> level) + 1;
+    /* at level 0 this adds 0 and multiplies by 1, which changes no bit */
+    found->part[a] = (lanes_from_int(cell[a] & below) + part[a]) * found->step;
+  }
+  found->bits = lanes_bits(same);
+}
+
+/* Makes a grid of the coefficients of a brick, for sum_in_memory(): only what that reads is set. */
+LANES_INLINE void grid_of_brick(const hl_bricks *bricks, const hl_brick_entry *entry, struct grid *view) {
+  size_t width = ((size_t)1 << bricks->shift) + BRICK_MARGIN;
+  view->voxels = bricks->pool + (size_t)entry->slot * width * width * width;
+  view->row_bytes = width * sizeof *bricks->pool;
+  view->slice_bytes = width * view->row_bytes;
+  view->columns = NULL;
+  view->storage = HL_STORAGE_F32;
+  for (int a = 0; a < 3; a++) view->dimension[a] = (int32_t)width;
+}
+
+/* The weights of a brick's taps along an axis. A field of several levels has the B-spline's, one of a single
+ * level those of any kernel. */
+LANES_INLINE void weights_in_brick(const kernel *kernel, lanes part, lanes weight[4]) {
+  if (kernel->degree == HL_BSPLINE_DEGREE) tap_weights(kernel, HL_BSPLINE_DEGREE, part, weight);
+  else tap_weights(kernel, HL_KERNEL_DEGREE, part, weight);
+}
+
+/* The sums over a field in bricks, brick by brick. Each brick's sums are those of sum_in_memory(). cell,
+ * part: cells of the grid, and places in them. */
+static __attribute__((noinline)) lanes sum_in_bricks(const grid *grid, const kernel *kernel,
+                                                     const lanes_int cell[3], const lanes part[3],
+                                                     uint32_t active) {
+  const lanes_int at[3] = {cell[0] + 1, cell[1] + 1, cell[2] + 1};
+  lanes sum = lanes_set(0);
+  for (uint32_t left = active; left != 0;) {
+    brick_lanes brick;
+    lanes some;
+    lanes_in_brick(grid->bricks, at, part, left, &brick);
+    if (brick.entry->slot < 0) {
+      some = lanes_set(brick.entry->constant);
+    } else {
+      struct grid view;
+      lanes weight[3][4];
+      grid_of_brick(grid->bricks, brick.entry, &view);
+      for (int a = 0; a < 3; a++) weights_in_brick(kernel, brick.part[a], weight[a]);
+      some = sum_in_memory(&view, brick.cell, NULL, brick.bits, (const lanes(*)[4])weight);
+    }
+    sum = lanes_select(lanes_from_bits(brick.bits), some, sum);
+    left &= ~brick.bits;
+  }
+  return sum;
+}
+
 /* The weighted sums of the active lanes of a block. inside: whether all lanes are active and all their taps
  * lie in the grid. */
 LANES_INLINE lanes gather_block(const fill_source *source, const block_points *points, uint32_t active,
@@ -185,9 +263,11 @@ LANES_INLINE lanes gather_block(const fill_source *source, const block_points *p
   hl_storage storage = grid->storage;
   lanes weight[3][4];
   lanes_int cell[3] = {points->cell[0], points->cell[1], points->cell[2]};
-  tap_weights(source->kernel, degree, points->position.x - lanes_from_int(cell[0]), weight[0]);
-  tap_weights(source->kernel, degree, points->position.y - lanes_from_int(cell[1]), weight[1]);
-  tap_weights(source->kernel, degree, points->position.z - lanes_from_int(cell[2]), weight[2]);
+  const lanes part[3] = {points->position.x - lanes_from_int(cell[0]),
+                         points->position.y - lanes_from_int(cell[1]),
+                         points->position.z - lanes_from_int(cell[2])};
+  if (grid->bricks != NULL) return sum_in_bricks(grid, source->kernel, cell, part, active);
+  for (int a = 0; a < 3; a++) tap_weights(source->kernel, degree, part[a], weight[a]);
   const lanes(*weights)[4] = (const lanes(*)[4])weight;
   int outside = inside ? 0 : axes_to_fold(grid, cell, active);
   if (outside != 0) {

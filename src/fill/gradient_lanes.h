@@ -111,18 +111,48 @@ static __attribute__((noinline)) lanes3 slopes_in_pages(const grid *grid, const 
   return sum;
 }
 
+/* The derivatives over a field in bricks, brick by brick, with the parameters of sum_in_bricks(). */
+static __attribute__((noinline)) lanes3 slopes_in_bricks(const grid *grid, const kernel *kernel,
+                                                         const lanes_int cell[3], const lanes part[3],
+                                                         uint32_t active, uint32_t starts) {
+  const lanes_int at[3] = {cell[0] + 1, cell[1] + 1, cell[2] + 1};
+  lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
+  for (uint32_t left = active; left != 0;) {
+    brick_lanes brick;
+    lanes_in_brick(grid->bricks, at, part, left, &brick);
+    left &= ~brick.bits;
+    if (brick.entry->slot < 0) continue;
+    struct grid view;
+    tap_slope_weights w;
+    grid_of_brick(grid->bricks, brick.entry, &view);
+    for (int a = 0; a < 3; a++) {
+      weights_in_brick(kernel, brick.part[a], w.weight[a]);
+      if (kernel->degree == HL_BSPLINE_DEGREE)
+        tap_slopes(kernel, HL_BSPLINE_DEGREE, brick.part[a], w.slope[a]);
+      else tap_slopes(kernel, HL_KERNEL_DEGREE, brick.part[a], w.slope[a]);
+      for (int tap = 0; tap < 4; tap++) w.slope[a][tap] = w.slope[a][tap] * brick.step;
+    }
+    join_slopes(brick.bits, slopes_in_memory(&view, brick.cell, brick.bits, starts, &w), &sum);
+  }
+  return sum;
+}
+
 /* The derivatives along the index axes, in stored units per voxel, for the active lanes. At least one lane is
  * active. starts: the first lane of each block of pixels, one bit each. */
 LANES_INLINE lanes3 slopes_of_degree(const grid *grid, const kernel *kernel, int degree, lanes3 point,
                                      uint32_t active, uint32_t starts) {
   tap_slope_weights w;
   lanes_int cell[3];
-  lanes at[3] = {point.x, point.y, point.z};
+  lanes at[3] = {point.x, point.y, point.z}, part[3];
   for (int a = 0; a < 3; a++) {
     at[a] = lanes_clamp(at[a], -1.0f, (float)grid->dimension[a] * (1 - 1e-6f));
     cell[a] = lanes_floor(at[a]);
-    tap_weights(kernel, degree, at[a] - lanes_from_int(cell[a]), w.weight[a]);
-    tap_slopes(kernel, degree, at[a] - lanes_from_int(cell[a]), w.slope[a]);
+    part[a] = at[a] - lanes_from_int(cell[a]);
+  }
+  if (grid->bricks != NULL) return slopes_in_bricks(grid, kernel, cell, part, active, starts);
+  for (int a = 0; a < 3; a++) {
+    tap_weights(kernel, degree, part[a], w.weight[a]);
+    tap_slopes(kernel, degree, part[a], w.slope[a]);
   }
   int outside = axes_to_fold(grid, cell, active);
   if (outside != 0) {

@@ -26,13 +26,15 @@ LANES_INLINE lanes values_in_memory(const grid *grid, const lanes_int cell[3], u
 
 LANES_INLINE lanes values_of_degree(const grid *grid, const kernel *kernel, int degree, lanes3 point,
                                     uint32_t active, uint32_t starts) {
-  lanes weight[3][4], at[3] = {point.x, point.y, point.z};
+  lanes weight[3][4], at[3] = {point.x, point.y, point.z}, part[3];
   lanes_int cell[3];
   for (int a = 0; a < 3; a++) {
     at[a] = lanes_clamp(at[a], -0.5f, (float)grid->dimension[a] - 0.5f);
     cell[a] = lanes_floor(at[a]);
-    tap_weights(kernel, degree, at[a] - lanes_from_int(cell[a]), weight[a]);
+    part[a] = at[a] - lanes_from_int(cell[a]);
   }
+  if (grid->bricks != NULL) return sum_in_bricks(grid, kernel, cell, part, active);
+  for (int a = 0; a < 3; a++) tap_weights(kernel, degree, part[a], weight[a]);
   const lanes(*weights)[4] = (const lanes(*)[4])weight;
   int outside = axes_to_fold(grid, cell, active);
   if (outside != 0) {

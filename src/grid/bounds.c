@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "bricks/evaluate.h"
 #include "core/memory.h"
 #include "volume/brick_bounds.h"
 
@@ -115,6 +116,27 @@ void hl_bricks_lay_out(grid *grid, hl_layout *layout) {
   grid->relevant_list = hl_layout_take(layout, bricks, sizeof *grid->relevant_list);
 }
 
+/* Bounds a layer of the grid's bricks by the field's coefficients. Cells of the grid are those of the
+ * lattice.
+ */
+static void bound_layer_of_field(void *data, size_t index, int worker) {
+  (void)worker;
+  const grid *grid = ((const brick_job *)data)->grid;
+  size_t at = index * (size_t)grid->brick_count[1] * (size_t)grid->brick_count[0];
+  for (int32_t by = 0; by < grid->brick_count[1]; by++)
+    for (int32_t bx = 0; bx < grid->brick_count[0]; bx++, at++) {
+      const int64_t brick[3] = {bx, by, (int64_t)index};
+      int64_t first[3], last[3];
+      float bounds[2];
+      for (int axis = 0; axis < 3; axis++) {
+        first[axis] = brick[axis] * HL_BRICK_CELLS - 1;
+        last[axis] = (brick[axis] + 1) * HL_BRICK_CELLS;
+      }
+      hl_bricks_range(grid->bricks, first, last, bounds);
+      store_bounds(grid, at, bounds[0], bounds[1]);
+    }
+}
+
 /* Lays out the scratch memory of all threads. */
 static void lay_out_columns(brick_job *job, int threads, hl_layout *layout) {
   size_t width = (size_t)job->grid->dimension[0];
@@ -143,6 +165,10 @@ hl_status hl_bricks_bound(hl_context *context, hl_pool *pool, const grid_functio
   memset(grid->relevant, 0, hl_grid_bricks(grid) + READ_BEYOND);
   if (stored_bounds(grid) != NULL) return HL_OK;
   brick_job job = {.grid = grid, .bound_rows = functions->rows[grid->storage]};
+  if (grid->bricks != NULL) {
+    hl_pool_run(pool, (size_t)grid->brick_count[2], bound_layer_of_field, &job);
+    return HL_OK;
+  }
   hl_layout layout = {0};
   while (hl_layout_pass(&layout, context)) lay_out_columns(&job, hl_pool_threads(pool), &layout);
   if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "the bricks of a volume");
@@ -341,7 +367,7 @@ static size_t cells_of(const cell_lookup *lookup) {
 /* Whether 2x2x2 cells have bounds. They have bounds where 32 bits can number them and the voxels are in
  * memory. The look-ups' counts must be set. */
 static bool cells_have_bounds(const grid *grid) {
-  return grid->pages == NULL && cells_of(&grid->lookup[0]) < INT32_MAX;
+  return grid->pages == NULL && grid->bricks == NULL && cells_of(&grid->lookup[0]) < INT32_MAX;
 }
 
 void hl_cells_lay_out(grid *grid, hl_layout *layout) {
@@ -375,7 +401,8 @@ static void lay_out_slices(cell_job *job, int threads, hl_layout *layout) {
 
 void hl_bounds_count(const grid *grid, int threads, hl_layout *layout) {
   const size_t kept = layout->bytes;
-  if (stored_bounds(grid) == NULL) lay_out_columns(&(brick_job){.grid = grid}, threads, layout);
+  if (stored_bounds(grid) == NULL && grid->bricks == NULL)
+    lay_out_columns(&(brick_job){.grid = grid}, threads, layout);
   hl_layout_give_back(layout, kept);
   if (!cells_have_bounds(grid)) return;
   hl_layout_take(layout, (size_t)grid->brick_count[2], greatest_layer_bytes(grid)); /* once packed */

@@ -1,6 +1,8 @@
 /* grid/field.c - see field.h. */
 #include "grid/field.h"
 
+#include "bricks/evaluate.h"
+
 /* The kernel's value at a distance, and its derivative with respect to the coordinate. */
 static void kernel_at(const kernel *kernel, double distance, double *value, double *slope) {
   double a = fabs(distance), sum = 0, rise = 0;
@@ -30,6 +32,18 @@ field_taps hl_field_taps(const kernel *kernel, double at) {
 
 /* ---- voxels ---- */
 
+float hl_value_outside_memory(const grid *grid, int64_t x, int64_t y, int64_t z) {
+  const int64_t wanted[3] = {x, y, z};
+  size_t at[3];
+  if (grid->bricks != NULL)
+    return hl_bricks_coefficient(grid->bricks, (const int64_t[3]){x + 1, y + 1, z + 1});
+  for (int axis = 0; axis < 3; axis++) {
+    int64_t last = grid->dimension[axis] - 1;
+    at[axis] = (size_t)(wanted[axis] < 0 ? 0 : wanted[axis] > last ? last : wanted[axis]);
+  }
+  return (float)hl_page_number(grid->pages, at[0], at[1], at[2]);
+}
+
 static void copy_row(const grid *grid, const unsigned char *row, int32_t count, double *values) {
   switch (grid->storage) {
     case HL_STORAGE_U8:
@@ -49,7 +63,7 @@ static size_t voxel_bytes(const grid *grid) {
 }
 
 void hl_field_window(const grid *grid, const int32_t first[3], const int32_t size[3], double *values) {
-  bool within = grid->pages == NULL;
+  bool within = grid->voxels != NULL;
   for (int axis = 0; axis < 3; axis++)
     within = within && first[axis] >= 0 && first[axis] + size[axis] <= grid->dimension[axis];
   for (int32_t k = 0; k < size[2]; k++)

@@ -10,6 +10,7 @@
 #ifndef HL_GRID_GRID_H
 #define HL_GRID_GRID_H
 
+#include "bricks/bricks.h"
 #include "core/error.h"
 #include "core/pool.h"
 #include "grid/kernel.h"
@@ -41,9 +42,17 @@ typedef struct grid {
   void *memory;          /* owned; holds all arrays except the volume's voxels and the layers of
                           * cell_bounds */
   const void *voxels;    /* [dimension[2]][dimension[1]][dimension[0]]; stored values: the volume's own or
-                          * finite_voxels; rows are packed. Null with pages */
+                          * finite_voxels; rows are packed. Null with pages or bricks */
   const hl_pages *pages; /* the volume's pages (volume/pages.h), or value_pages; null if the voxels are in
                           * memory. With pages, only bricks tell where something is visible */
+  /* The field in bricks; borrowed from the volume; null if there are voxels. The lattice's coordinate is one
+   * more than the grid's, so that cells of the grid (floor(p) + 1) are those of the lattice. The grid's
+   * "voxels" are the field's coefficients of level 0. As with pages, only the grid's bricks tell where
+   * something is visible */
+  const hl_bricks *bricks;
+  hl_bricks *finite_bricks; /* in the grid's memory; a copy with the empty value where there are no data; null
+                             * if all is finite */
+  double shift[3];          /* grid coordinate = voxel index + shift; 0 without bricks */
   hl_pages *value_pages; /* owned (value_pages.h); null if sampling needs no other values than the voxels */
   size_t row_bytes, slice_bytes; /* bytes of the voxels from row to row, and from slice to slice */
   /* A second copy of u8 voxels, in columns eight voxels wide. Eight rows of a column are 64 consecutive
@@ -174,13 +183,22 @@ static inline void hl_grid_of_page(const grid *grid, const size_t page[3], struc
   view->slice_bytes = pages->slice_bytes;
 }
 
+/* hl_stored_value() for a grid in pages or bricks. */
+float hl_value_outside_memory(const grid *grid, int64_t x, int64_t y, int64_t z);
+
+/* Places the grid in a frame: the volume's index space to frame space. False if the axes are singular. */
+static inline bool hl_grid_place(grid *grid, affine3 voxel_to_frame) {
+  const vec3 moved = mat3_apply(voxel_to_frame.linear, vec3_of(grid->shift));
+  grid->index_to_frame = (affine3){voxel_to_frame.linear, vec3_subtract(voxel_to_frame.offset, moved)};
+  return affine3_invert(grid->index_to_frame, &grid->frame_to_index);
+}
+
 /* The stored value of a voxel. Beyond the grid's faces the values at the border continue. */
 static inline float hl_stored_value(const grid *grid, int64_t x, int64_t y, int64_t z) {
   int64_t at[3] = {x, y, z};
+  if (grid->voxels == NULL) return hl_value_outside_memory(grid, x, y, z);
   for (int a = 0; a < 3; a++)
     at[a] = at[a] < 0 ? 0 : at[a] >= grid->dimension[a] ? grid->dimension[a] - 1 : at[a];
-  if (grid->pages != NULL)
-    return (float)hl_page_number(grid->pages, (size_t)at[0], (size_t)at[1], (size_t)at[2]);
   const void *row = hl_grid_row(grid, at[1], at[2]);
   if (grid->storage == HL_STORAGE_U8) return ((const uint8_t *)row)[at[0]];
   if (grid->storage == HL_STORAGE_U16) return ((const uint16_t *)row)[at[0]];

@@ -1,8 +1,10 @@
 /* grid/make_grid.c - see make_grid.h. */
 #include "grid/make_grid.h"
 
+#include <math.h>
 #include <string.h>
 
+#include "bricks/evaluate.h"
 #include "core/memory.h"
 #include "grid/bounds.h"
 #include "grid/prefilter.h"
@@ -101,26 +103,48 @@ static void copy_slice(void *data, size_t index, int worker) {
 
 /* Whether sampling needs other values than the voxels: finite ones or coefficients. */
 static bool needs_other_values(const hl_volume *volume, const kernel *kernel) {
-  return volume->nonfinite_count > 0 || kernel->interpolates;
+  return volume->bricks == NULL && (volume->nonfinite_count > 0 || kernel->interpolates);
+}
+
+/* The greatest number that a cell can have: a grid of voxels has as many voxels. One in bricks ends with the
+ * cell that holds the box's end, but no later than the lattice, whose first cell has the number 0. */
+static int32_t greatest_cell(const hl_volume *volume, int axis) {
+  if (volume->bricks == NULL) return (int32_t)volume->dimension[axis];
+  double end = ceil(volume->bricks->origin[axis] + (double)volume->dimension[axis] - 1.5);
+  return (int32_t)fmin(end, (double)hl_bricks_cells(volume->bricks, axis) - 1);
 }
 
 static void set_size(const hl_volume *volume, const kernel *kernel, grid *grid) {
   grid->pages = volume->pages;
+  grid->bricks = volume->bricks;
   grid->storage = kernel->interpolates ? HL_STORAGE_F32 : volume->storage;
   for (int axis = 0; axis < 3; axis++) {
-    grid->dimension[axis] = (int32_t)volume->dimension[axis];
+    grid->dimension[axis] = greatest_cell(volume, axis);
+    if (volume->bricks != NULL) grid->shift[axis] = volume->bricks->origin[axis] - 1;
     grid->brick_count[axis] = grid->dimension[axis] / HL_BRICK_CELLS + 1;
   }
+}
+
+/* Takes the memory of a copy of the bricks, whose arrays are set. */
+static void lay_out_bricks(const hl_bricks *bricks, grid *grid, hl_layout *layout) {
+  const size_t *n = bricks->directory_size;
+  hl_bricks arrays = {0};
+  grid->finite_bricks = hl_layout_take(layout, 1, sizeof *grid->finite_bricks);
+  arrays.directory = hl_layout_take(layout, n[0] * n[1] * n[2], sizeof *arrays.directory);
+  arrays.pool = hl_layout_take(layout, bricks->slots * hl_brick_coefficients(bricks), sizeof *arrays.pool);
+  if (grid->finite_bricks != NULL) *grid->finite_bricks = arrays;
 }
 
 /* Lays out the arrays of a grid whose size is set. */
 static void lay_out(grid *grid, const hl_volume *volume, const kernel *kernel,
                     const grid_functions *functions, hl_layout *layout) {
-  if (grid->pages == NULL && needs_other_values(volume, kernel))
+  if (volume->voxels != NULL && needs_other_values(volume, kernel))
     grid->finite_voxels = hl_layout_take(layout, hl_volume_voxel_count(volume), sizeof *grid->finite_voxels);
-  if (grid->pages == NULL) lay_out_columns(grid, functions, layout);
+  if (volume->voxels != NULL) lay_out_columns(grid, functions, layout);
+  if (volume->bricks != NULL && !hl_bricks_are_finite(volume->bricks))
+    lay_out_bricks(volume->bricks, grid, layout);
   hl_bricks_lay_out(grid, layout);
-  if (grid->pages == NULL && kernel->degree == HL_BSPLINE_DEGREE) hl_cell_bits_lay_out(grid, layout);
+  if (volume->voxels != NULL && kernel->degree == HL_BSPLINE_DEGREE) hl_cell_bits_lay_out(grid, layout);
   hl_cells_lay_out(grid, layout);
 }
 
@@ -134,7 +158,7 @@ void hl_grid_count(const hl_volume *volume, const kernel *kernel, const grid_fun
 
 static hl_status check_bricks(const hl_volume *volume, hl_error *error) {
   double bricks = 1;
-  for (int axis = 0; axis < 3; axis++) bricks *= (double)(volume->dimension[axis] / HL_BRICK_CELLS + 1);
+  for (int axis = 0; axis < 3; axis++) bricks *= (double)greatest_cell(volume, axis) / HL_BRICK_CELLS + 1;
   if (bricks <= (double)UINT32_MAX) return HL_OK;
   return hl_fail(
       error, HL_ERROR_UNSUPPORTED,
@@ -174,11 +198,12 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_function
   grid->value_scale = volume->value_scale;
   grid->value_offset = volume->value_offset;
   grid->empty = (float)((source->empty - volume->value_offset) / volume->value_scale);
-  grid->index_to_frame = source->index_to_frame;
-  if (!affine3_invert(source->index_to_frame, &grid->frame_to_index))
+  set_size(volume, source->kernel, grid);
+  if (!hl_grid_place(grid, source->index_to_frame))
     return hl_fail(error, HL_ERROR_INPUT, "a volume's axes are singular: the three must span space");
   hl_scene_volume_box(source->volume, grid->box_low, grid->box_high);
-  set_size(volume, source->kernel, grid);
+  for (int axis = 0; axis < 3; axis++)
+    grid->box_low[axis] += grid->shift[axis], grid->box_high[axis] += grid->shift[axis];
   status = make_value_pages(pool, source, grid, error);
   if (status == HL_OK) status = allocate(context, functions, source, grid, error);
   if (status != HL_OK) {
@@ -186,6 +211,10 @@ hl_status hl_grid_create(hl_context *context, hl_pool *pool, const grid_function
     return status;
   }
   if (grid->finite_voxels != NULL) replace_voxels(pool, volume->storage, source->kernel, grid);
+  if (grid->finite_bricks != NULL) {
+    hl_bricks_fill_holes(volume->bricks, grid->empty, grid->finite_bricks);
+    grid->bricks = grid->finite_bricks;
+  }
   if (grid->columns != NULL) hl_pool_run(pool, (size_t)grid->dimension[2], copy_slice, grid);
   status = hl_bricks_bound(context, pool, functions, grid, error);
   bool smooth = source->kernel->degree == HL_BSPLINE_DEGREE;

@@ -73,7 +73,7 @@ static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count
  * share a volume choose alike. */
 static bool has_room_for_sky(const hl_volume *volume) {
   uint64_t limit = volume->context->options.memory_limit, taken = 0;
-  if (volume->pages == NULL)
+  if (volume->voxels != NULL)
     taken = 2 * (uint64_t)hl_volume_voxel_count(volume) * hl_storage_bytes(volume->storage);
   return limit == 0 || limit >= ROOM_FOR_SKY + taken;
 }

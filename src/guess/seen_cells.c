@@ -289,9 +289,9 @@ static hl_status make_cells(hl_seen *seen, hl_error *error) {
   }
   seen->kind = hl_allocate_zeroed(volume->context, cells, 1);
   seen->mean = hl_allocate_zeroed(volume->context, cells, sizeof *seen->mean);
-  if (volume->pages != NULL)
+  if (volume->voxels == NULL)
     seen->row = hl_allocate(volume->context, volume->dimension[0], hl_storage_bytes(volume->storage));
-  return seen->kind != NULL && seen->mean != NULL && (volume->pages == NULL || seen->row != NULL)
+  return seen->kind != NULL && seen->mean != NULL && (volume->voxels != NULL || seen->row != NULL)
              ? HL_OK
              : hl_fail_memory(error, cells * sizeof *seen->mean, "a volume's cells");
 }

@@ -8,9 +8,10 @@
 #include "isosurface/clip.h"
 #include "isosurface/triangles.h"
 
-/* Index space to the world of the volume's file times axis_scale. */
-static affine3 placement_of(const hl_scene_volume *volume) {
+/* The grid's index space to the world of the volume's file times axis_scale. */
+static affine3 placement_of(const hl_scene_volume *volume, const grid *grid) {
   affine3 placement = volume->volume->index_to_world;
+  placement.offset = vec3_subtract(placement.offset, mat3_apply(placement.linear, vec3_of(grid->shift)));
   vec3 *row = placement.linear.row;
   for (int a = 0; a < 3; a++) row[a] = vec3_scale(row[a], volume->axis_scale[a]);
   placement.offset = (vec3){placement.offset.x * volume->axis_scale[0],
@@ -39,8 +40,8 @@ static void move_vertices(void *data, size_t index, int worker) {
 }
 
 /* Brings the triangles to the world; a mirroring placement turns them around. */
-static void place(hl_pool *pool, const hl_scene_volume *volume, iso_triangles *made) {
-  move_job job = {.placement = placement_of(volume), .made = made};
+static void place(hl_pool *pool, const hl_scene_volume *volume, const grid *grid, iso_triangles *made) {
+  move_job job = {.placement = placement_of(volume, grid), .made = made};
   mat3 inverse, m = job.placement.linear;
   if (!mat3_invert(m, &inverse)) return; /* refused when the scene was checked */
   job.normals = mat3_transpose(inverse);
@@ -82,7 +83,7 @@ hl_status hl_isosurface_create(hl_pool *pool, const hl_scene_volume *volume, con
   if (status == HL_OK && hl_pool_cancelled(pool))
     status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while preparing");
   if (status == HL_OK && made.triangle_count > 0) {
-    place(pool, volume, &made);
+    place(pool, volume, grid, &made);
     status = mesh_of(context, &made, mesh, error);
     if (status == HL_OK) (*mesh)->is_cut = true;
   }

@@ -169,6 +169,7 @@ hl_status hl_lattice_create(hl_context *context, hl_pool *pool, const grid *grid
                             double value, lattice *made, hl_error *error) {
   *made = (lattice){.context = context, .grid = grid, .kernel = kernel};
   made->value = (value - grid->value_offset) / grid->value_scale;
+  made->outside = grid->bricks != NULL ? 1 : 0.5;
   made->sign = grid->value_scale < 0 ? -1 : 1;
   size_t total = 1;
   for (int axis = 0; axis < 3; axis++) {

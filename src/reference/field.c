@@ -6,6 +6,7 @@
  * here on purpose: the oracle shares no code with the renderer. */
 #include <string.h>
 
+#include "bricks/bricks.h"
 #include "core/memory.h"
 #include "reference/reference.h"
 #include "scene/draw_labels.h"
@@ -81,6 +82,23 @@ static void linear_slope(double slope[4]) {
   slope[2] = 1;
 }
 
+void hl_reference_weights(hl_kernel kernel, double t, double weight[4], double slope[4]) {
+  switch (kernel) {
+    case HL_KERNEL_GAUSSIAN:
+      gaussian(t, weight);
+      if (slope != NULL) gaussian_slope(t, weight, slope);
+      break;
+    case HL_KERNEL_LINEAR:
+      linear(t, weight);
+      if (slope != NULL) linear_slope(slope);
+      break;
+    default:
+      bspline(t, weight);
+      if (slope != NULL) bspline_slope(t, slope);
+      break;
+  }
+}
+
 static inline size_t clamp_voxel(int64_t voxel, int64_t last) {
   return (size_t)(voxel < 0 ? 0 : voxel > last ? last : voxel);
 }
@@ -95,20 +113,7 @@ static inline void find_taps(const reference_volume *volume, vec3 point, bool sl
     int64_t base = (int64_t)(inside + 1) - 1; /* rounded down, as inside + 1 is positive */
     double t = inside - (double)base, *weight = found->weight[axis], *slope = found->slope[axis];
     for (int tap = 0; tap < 4; tap++) found->voxel[axis][tap] = clamp_voxel(base - 1 + tap, last);
-    switch (volume->kernel) {
-      case HL_KERNEL_GAUSSIAN:
-        gaussian(t, weight);
-        if (slopes) gaussian_slope(t, weight, slope);
-        break;
-      case HL_KERNEL_LINEAR:
-        linear(t, weight);
-        if (slopes) linear_slope(slope);
-        break;
-      default:
-        bspline(t, weight);
-        if (slopes) bspline_slope(t, slope);
-        break;
-    }
+    hl_reference_weights(volume->kernel, t, weight, slopes ? slope : NULL);
   }
 }
 
@@ -158,6 +163,7 @@ static double in_range(const reference_volume *volume, double value) {
 
 double hl_reference_value(const reference_volume *volume, vec3 point) {
   taps at;
+  if (volume->grid->bricks != NULL) return hl_reference_bricks_value(volume, point);
   find_taps(volume, point, false, &at);
   double stored = weigh(volume, &at, at.weight[0], at.weight[1], at.weight[2]);
   return in_range(volume, volume->grid->value_scale * stored + volume->grid->value_offset);
@@ -165,6 +171,8 @@ double hl_reference_value(const reference_volume *volume, vec3 point) {
 
 vec3 hl_reference_gradient(const reference_volume *volume, vec3 point) {
   taps at;
+  if (volume->grid->bricks != NULL)
+    return mat3_apply(volume->gradient_to_world, hl_reference_bricks_slope(volume, point));
   find_taps(volume, point, true, &at);
   vec3 stored = {weigh(volume, &at, at.slope[0], at.weight[1], at.weight[2]),
                  weigh(volume, &at, at.weight[0], at.slope[1], at.weight[2]),
@@ -212,9 +220,18 @@ static bool holds_iso(const hl_scene_volume *volume, double low, double high) {
   return false;
 }
 
-static bool brick_visible(const reference_volume *volume, size_t i, size_t j, size_t k) {
+/* The range of the stored values on which a brick depends. */
+static void range_of_brick(const reference_volume *volume, const size_t brick[3], double range[2]) {
   size_t first[3], last[3], voxel[3];
-  const size_t brick[3] = {i, j, k};
+  if (volume->ranges != NULL) {
+    double begin[3], end[3];
+    for (int axis = 0; axis < 3; axis++) {
+      begin[axis] = BRICK_CELLS * (double)brick[axis] - 1;
+      end[axis] = begin[axis] + BRICK_CELLS;
+    }
+    hl_reference_bricks_range(volume->grid->bricks, volume->empty_stored, volume->ranges, begin, end, range);
+    return;
+  }
   for (int axis = 0; axis < 3; axis++)
     brick_voxels(brick[axis], volume->grid->dimension[axis], &first[axis], &last[axis]);
   double low = INFINITY, high = -INFINITY;
@@ -225,8 +242,15 @@ static bool brick_visible(const reference_volume *volume, size_t i, size_t j, si
         low = fmin(low, stored);
         high = fmax(high, stored);
       }
-  double a = volume->grid->value_scale * low + volume->grid->value_offset;
-  double b = volume->grid->value_scale * high + volume->grid->value_offset;
+  range[0] = low;
+  range[1] = high;
+}
+
+static bool brick_visible(const reference_volume *volume, size_t i, size_t j, size_t k) {
+  double range[2];
+  range_of_brick(volume, (const size_t[3]){i, j, k}, range);
+  double a = volume->grid->value_scale * range[0] + volume->grid->value_offset;
+  double b = volume->grid->value_scale * range[1] + volume->grid->value_offset;
   a = in_range(volume, a);
   b = in_range(volume, b);
   return hl_transfer_function_visible(&volume->described->transfer_function, fmin(a, b), fmax(a, b)) ||
@@ -352,6 +376,10 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
   made->empty_value = hl_scene_volume_empty_value(described);
   made->empty_stored = grid->value_scale != 0 ? (made->empty_value - grid->value_offset) / grid->value_scale
                                               : 0;
+  if (grid->bricks != NULL &&
+      !hl_reference_bricks_ranges(all->context, grid->bricks, made->empty_stored, &made->ranges))
+    return hl_fail_memory(error, grid->bricks->slots * sizeof *made->ranges,
+                          "the ranges of a volume's bricks");
   /* If no value is transparent, the empty value lies below all values and means that there is no matter. */
   bool opaque_everywhere = hl_transfer_function_opacity(&described->transfer_function, made->empty_value) > 0;
   made->transparent_below = opaque_everywhere ? (made->empty_value + grid->minimum) / 2 : -INFINITY;
@@ -369,5 +397,6 @@ hl_status hl_reference_volume_create(const reference *all, const hl_scene_volume
 void hl_reference_volume_release(hl_context *context, reference_volume *volume) {
   hl_release(context, volume->clearance);
   hl_release(context, volume->coefficients);
+  hl_release(context, volume->ranges);
   hl_release(context, volume->feet);
 }

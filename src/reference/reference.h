@@ -6,6 +6,7 @@
  *
  *     reference.c       camera, rows of pixels, the entry point
  *     march.c           a ray through the volumes' boxes, step by step, jumping over empty bricks
+ *     bricks.c          fields in bricks
  *     field.c           reconstruction of one volume at a point: value, gradient, extinction, empty bricks
  *     cuts.c            which points cuts leave
  *     clip_faces.c      the box's faces that cut matter
@@ -58,6 +59,8 @@ typedef struct reference_volume {
                            * sums in place of voxels; null for other kernels */
   double least, greatest; /* with coefficients: the range of values; values beyond the range count as its
                            * ends */
+  double (*ranges)[2];    /* owned; [slots]; the least and greatest coefficient of each brick of a field in
+                           * bricks; null where there are voxels */
   double *feet; /* owned; [HL_REFERENCE_FEET]; for equal steps of values from feet_low to feet_high, the value
                  * at which their surface begins */
   double feet_low, feet_high;
@@ -254,6 +257,22 @@ double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 
  * the face, falling to 0 away from it. */
 double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
                              double *surface);
+
+/* The weights of the four taps around a point at t from 0 to 1 after the second, and their slopes (may be
+ * null). */
+void hl_reference_weights(hl_kernel kernel, double t, double weight[4], double slope[4]);
+
+/* A field in bricks at a point of the volume's index space: its value, and its derivative by the coordinates.
+ * The empty value takes the place of coefficients that are not finite. */
+double hl_reference_bricks_value(const reference_volume *volume, vec3 point);
+vec3 hl_reference_bricks_slope(const reference_volume *volume, vec3 point);
+/* Finds the range of the coefficients of each brick. *ranges: owned by the caller. False if memory is short.
+ */
+bool hl_reference_bricks_ranges(hl_context *context, const struct hl_bricks *bricks, double empty,
+                                double (**ranges)[2]);
+/* The range of the bricks that a box of index space touches: values in the box lie in it. */
+void hl_reference_bricks_range(const struct hl_bricks *bricks, double empty, double (*ranges)[2],
+                               const double low[3], const double high[3], double range[2]);
 
 double hl_reference_stored_value(const reference_volume *volume, const size_t voxel[3]);
 double hl_reference_value(const reference_volume *volume, vec3 point);

@@ -33,6 +33,7 @@ static bool has_sky(const frame_plan *plan) { return plan->fields.sky != NULL; }
 static bool scatters(const frame_plan *plan) { return hl_scatter_wanted(scene_of(plan)); }
 static bool splats(const frame_plan *plan) { return plan->volumes.splat; }
 static bool has_pages(const frame_plan *plan) { return plan->volumes.grids[0].pages != NULL; }
+static bool has_bricks(const frame_plan *plan) { return plan->volumes.grids[0].bricks != NULL; }
 static bool is_thin(const frame_plan *plan) {
   const int32_t *dimension = plan->volumes.grids[0].dimension;
   return dimension[0] < 4 || dimension[1] < 4 || dimension[2] < 4;
@@ -73,6 +74,7 @@ static const struct {
     {scatters, "multiple scattering"},
     {splats, "splatting in place of gathering"},
     {has_pages, "voxels outside of memory"},
+    {has_bricks, "a field in bricks"},
     {is_thin, "a volume less than four voxels thick"},
     {has_colors, "voxels with colours"},
     {is_weighed, "gradient opacity, a mask, or a function of two numbers"},

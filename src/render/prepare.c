@@ -50,7 +50,11 @@ static hl_status keep_cuts(hl_context *context, prepared_volume *prepared, const
   if (scene->cut_count == 0) return HL_OK;
   prepared->cuts = hl_allocate(context, scene->cut_count, sizeof *prepared->cuts);
   if (prepared->cuts == NULL) return hl_fail_memory(error, scene->cut_count * sizeof(cut_shape), "cuts");
-  for (size_t i = 0; i < scene->cut_count; i++) prepared->cuts[i] = hl_cut_shape(scene, i);
+  for (size_t i = 0; i < scene->cut_count; i++) {
+    affine3 *to_shape = &prepared->cuts[i].to_shape;
+    prepared->cuts[i] = hl_cut_shape(scene, i);
+    to_shape->offset = vec3_subtract(to_shape->offset, mat3_apply(to_shape->linear, vec3_of(grid->shift)));
+  }
   grid->cuts = prepared->cuts;
   grid->cut_count = scene->cut_count;
   grid->cut_casts_shadow = scene->cut_casts_shadow != 0;
@@ -212,8 +216,7 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
     prepared->kernel = kernel;
   }
   prepared->scene = scene;
-  prepared->grid.index_to_frame = index_to_frame;
-  if (!affine3_invert(index_to_frame, &prepared->grid.frame_to_index))
+  if (!hl_grid_place(&prepared->grid, index_to_frame))
     return hl_fail(error, HL_ERROR_INPUT, "a volume's axes are singular: the three must span space");
   hold_second(prepared, second);
   if (hold_mask(with, prepared, scene) && same) return HL_OK;

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "bricks/bricks.h"
 #include "core/vector.h"
 #include "scene/light_kind.h"
 #include "scene/placement.h"
@@ -105,6 +106,25 @@ static hl_status check_second(const hl_scene_description *d, size_t v, hl_error 
   return HL_OK;
 }
 
+/* Checks what a field in bricks needs of the scene: those of several levels are sums of B-splines. */
+static hl_status check_bricks(const hl_scene_description *d, size_t v, hl_error *error) {
+  const hl_kernel kernel = d->render.kernel;
+  if (d->volumes[v].volume->bricks == NULL) return HL_OK;
+  if (d->volumes[v].volume->bricks->levels > 1 && kernel != HL_KERNEL_BSPLINE &&
+      kernel != HL_KERNEL_INTERPOLATING)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "/render/kernel: volume %zu is a field at levels, made of B-splines: use \"bspline\" or "
+                   "\"interpolating\", which are the same there, or save it as voxels",
+                   v);
+  if (d->render.reconstruction == HL_RECONSTRUCTION_SPLAT)
+    return hl_fail(
+        error, HL_ERROR_UNSUPPORTED,
+        "/render/reconstruction: volume %zu is a field in bricks, which has no voxels to splat: use "
+        "\"gather\"",
+        v);
+  return HL_OK;
+}
+
 hl_status hl_description_check(const hl_scene_description *d, hl_error *error) {
   hl_checker root = {error, ""};
   hl_status status = hl_settings_check(HL_SETTINGS_IMAGE, d, 0, "/image", error);
@@ -134,6 +154,7 @@ hl_status hl_description_check(const hl_scene_description *d, hl_error *error) {
       status = hl_fail(error, HL_ERROR_UNSUPPORTED,
                        "/volumes/%zu/iso: is not in maximum projections: remove it, or render with light", v);
   for (size_t v = 0; v < d->volume_count && status == HL_OK; v++) status = check_second(d, v, error);
+  for (size_t v = 0; v < d->volume_count && status == HL_OK; v++) status = check_bricks(d, v, error);
   return status == HL_OK ? hl_settings_check(HL_SETTINGS_RENDER, &d->render, 0, "/render", error) : status;
 }
 

@@ -8,11 +8,11 @@
 #include "core/error.h"
 #include "volume/volume.h"
 
-/* The kernel of a volume in a scene of this one: an occupancy's voxels are coefficients of the B-spline
- * already, and no values to pass through. */
+/* The kernel of a volume in a scene of this one: an occupancy's voxels and a field's bricks are coefficients
+ * of the B-spline already, and no values to pass through. */
 static inline hl_kernel hl_kernel_of_volume(const hl_scene_volume *volume, hl_kernel of_scene) {
-  bool drawn = volume->volume->surface_slope > 0;
-  return drawn && of_scene == HL_KERNEL_INTERPOLATING ? HL_KERNEL_BSPLINE : of_scene;
+  bool has_coefficients = volume->volume->surface_slope > 0 || volume->volume->bricks != NULL;
+  return has_coefficients && of_scene == HL_KERNEL_INTERPOLATING ? HL_KERNEL_BSPLINE : of_scene;
 }
 
 /* The volumes that draw a scene's label maps; all null where there are neither label maps nor masks. */

@@ -46,6 +46,9 @@ static hl_status find_values(const hl_volume *map, found_labels *found, hl_error
   if (map->pages != NULL)
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "labels of a volume that is larger than memory: raise the memory limit");
+  if (map->bricks != NULL)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "labels of a field in bricks, whose numbers are no names: give a label map of voxels");
   for (size_t k = 0; k < map->dimension[2]; k++)
     for (size_t j = 0; j < map->dimension[1]; j++) {
       const hl_number_row row = hl_volume_numbers(map, j, k, NULL);

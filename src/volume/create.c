@@ -15,6 +15,7 @@
 #include "volume/convert.h"
 #include "volume/exact.h"
 #include "volume/glimpse.h"
+#include "volume/in_bricks.h"
 #include "volume/pages.h"
 #include "volume/statistics.h"
 
@@ -150,7 +151,8 @@ static hl_volume *make_volume(hl_context *context, const hl_volume_description *
 }
 
 static hl_status finish_volume(hl_volume *made, const char *subject, hl_volume **volume, hl_error *error) {
-  hl_status status = hl_volume_measure(made, subject, error);
+  hl_status status = made->bricks != NULL ? hl_volume_measure_bricks(made, subject, error)
+                                          : hl_volume_measure(made, subject, error);
   if (status == HL_OK) *volume = made;
   else hl_volume_release(made);
   return status;
@@ -194,9 +196,27 @@ hl_status hl_volume_adopt_pages(hl_context *context, const hl_volume_description
   return status;
 }
 
+hl_status hl_volume_take_bricks(hl_context *context, hl_bricks *bricks, const hl_volume_description *grid,
+                                const char *subject, hl_volume **volume, hl_error *error) {
+  *volume = NULL;
+  hl_status status = hl_volume_check_grid(grid, subject, error);
+  if (status == HL_OK) status = hl_volume_check_bricks(bricks, grid, subject, error);
+  hl_volume *made = status == HL_OK ? make_volume(context, grid) : NULL;
+  if (made != NULL) made->bricks = hl_allocate(context, 1, sizeof *made->bricks);
+  if (made == NULL || made->bricks == NULL) {
+    hl_volume_release(made);
+    hl_bricks_release(context, bricks);
+    return status != HL_OK ? status : hl_fail_memory(error, sizeof *made + sizeof *bricks, subject);
+  }
+  *made->bricks = *bricks;
+  *bricks = (hl_bricks){0};
+  return finish_volume(made, subject, volume, error);
+}
+
 const void *hl_volume_row_in(const hl_volume *volume, size_t j, size_t k, void *buffer) {
-  if (volume->pages == NULL) return hl_volume_row(volume, j, k);
-  hl_pages_load_row(volume->pages, j, k, buffer);
+  if (volume->voxels != NULL) return hl_volume_row(volume, j, k);
+  if (volume->bricks != NULL) hl_volume_row_of_bricks(volume, j, k, buffer);
+  else hl_pages_load_row(volume->pages, j, k, buffer);
   return buffer;
 }
 
@@ -381,6 +401,8 @@ void hl_volume_release(hl_volume *volume) {
   hl_release(volume->context, volume->owned_voxels);
   hl_release(volume->context, volume->exact);
   hl_pages_release(volume->pages);
+  if (volume->bricks != NULL) hl_bricks_release(volume->context, volume->bricks);
+  hl_release(volume->context, volume->bricks);
   hl_release(volume->context, volume->colors);
   hl_release(volume->context, volume->slopes);
   hl_release(volume->context, volume->mask_bricks);
@@ -515,6 +537,11 @@ double hl_volume_value(const hl_volume *volume, size_t i, size_t j, size_t k) {
 /* One voxel's number, as the only one of a row. own: room for the number. */
 static hl_number_row number_of(const hl_volume *volume, size_t i, size_t j, size_t k, uint64_t *own) {
   const hl_pages *pages = volume->pages;
+  if (volume->bricks != NULL) {
+    float value = hl_volume_value_of_bricks(volume, (const size_t[3]){i, j, k});
+    memcpy(own, &value, sizeof value);
+    return (hl_number_row){HL_VOXEL_F32, own};
+  }
   if (pages == NULL) {
     hl_number_row row = hl_volume_numbers(volume, j, k, NULL);
     row.numbers = (const unsigned char *)row.numbers + i * hl_voxel_type_bytes(row.type);

@@ -1,94 +1,163 @@
-/* volume/in_bricks.c - see in_bricks.h. The field is evaluated to dense coefficients of level 0.
- *
- * Where voxels stand between lattice points, by half a voxel, their coefficients are found from the field's
- * values there: c = (-f[-1] + 8 f[0] - f[1]) / 6 along each axis, exact for cubic fields (derived: the
- * B-spline of f'' / 6 is what the kernel's 1/6, 2/3, 1/6 adds). */
+/* volume/in_bricks.c - see in_bricks.h. */
 #include "volume/in_bricks.h"
 
+#include <math.h>
 #include <string.h>
 
-#include "bricks/build.h"
-#include "core/memory.h"
+#include "bricks/evaluate.h"
+#include "core/context.h"
 
-enum { TAPS = 6 };
+enum { SHIFT_LEAST = 2, SHIFT_MOST = 8 };
 
-/* The weights of six lattice points around a place half-way between the third and the fourth: the values
- * there and one voxel before and behind, (1 23 23 1)/48, combined. */
-static const double half_way[TAPS] = {-1.0 / 288,  -15.0 / 288, 160.0 / 288,
-                                      160.0 / 288, -15.0 / 288, -1.0 / 288};
+/* ---- checks ---- */
 
-/* Moves a row of coefficients from `points` lattice points to `voxels` places, which begin at `origin`. */
-static void move_row(const float *points, size_t count, size_t step, double origin, size_t voxels,
-                     double *row) {
-  bool is_half = origin != (double)(size_t)origin;
-  for (size_t n = 0; n < voxels; n++) {
-    ptrdiff_t at = (ptrdiff_t)origin + (ptrdiff_t)n;
-    double sum = 0;
-    for (int tap = 0; tap < TAPS; tap++) {
-      ptrdiff_t place = is_half ? at - 2 + tap : at;
-      place = place < 0 ? 0 : place >= (ptrdiff_t)count ? (ptrdiff_t)count - 1 : place;
-      double value = (double)points[(size_t)place * step];
-      if (is_half) sum += half_way[tap] * value;
-      else sum = value;
-    }
-    row[n] = sum;
+static hl_status check_entries(const hl_bricks *bricks, const char *subject, hl_error *error) {
+  size_t count = bricks->directory_size[0] * bricks->directory_size[1] * bricks->directory_size[2];
+  for (size_t n = 0; n < count; n++) {
+    const hl_brick_entry *entry = &bricks->directory[n];
+    if (entry->level < 0 || entry->level >= bricks->levels ||
+        (entry->slot >= 0 && (size_t)entry->slot >= bricks->slots))
+      return hl_fail(error, HL_ERROR_INPUT, "%s: directory entry %zu: level %d or slot %d does not exist",
+                     subject, n, (int)entry->level, (int)entry->slot);
   }
-}
-
-/* Moves all rows along an axis, in place: the moved grid is not larger. */
-static void move_axis(float *values, size_t size[3], int axis, double origin, size_t voxels, double *row) {
-  size_t step = 1, rows = 1, moved[3] = {size[0], size[1], size[2]};
-  for (int a = 0; a < axis; a++) step *= size[a];
-  for (int a = axis + 1; a < 3; a++) rows *= size[a];
-  moved[axis] = voxels;
-  for (size_t r = 0; r < rows; r++)
-    for (size_t s = 0; s < step; s++) {
-      move_row(values + r * step * size[axis] + s, size[axis], step, origin, voxels, row);
-      for (size_t n = 0; n < voxels; n++) values[(r * voxels + n) * step + s] = (float)row[n];
-    }
-  memcpy(size, moved, sizeof moved);
-}
-
-/* Evaluates the field at all lattice points, those on the far faces included. */
-static hl_status evaluate(hl_context *context, const hl_bricks *bricks, const char *subject, size_t size[3],
-                          float **values, hl_error *error) {
-  hl_pool *pool = NULL;
-  size_t count = 1;
-  for (int axis = 0; axis < 3; axis++) {
-    size[axis] = bricks->dimension[axis] + 1;
-    if (!hl_multiply(count, size[axis], &count)) return hl_fail_memory(error, SIZE_MAX, subject);
-  }
-  *values = hl_allocate(context, count, sizeof **values);
-  if (*values == NULL) return hl_fail_memory(error, count > SIZE_MAX / 4 ? SIZE_MAX : 4 * count, subject);
-  hl_status status = hl_pool_create(context, 0, &pool, error);
-  if (status == HL_OK) hl_bricks_to_dense(pool, bricks, 0, size, *values);
-  if (status == HL_OK && hl_pool_cancelled(pool))
-    status = hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", subject);
-  hl_pool_destroy(pool);
-  return status;
-}
-
-static hl_status move_grid(hl_context *context, const hl_bricks *bricks, const hl_volume_description *grid,
-                           size_t size[3], float *values, hl_error *error) {
-  const size_t *n = grid->dimensions;
-  size_t longest = n[0] > n[1] ? n[0] : n[1];
-  if (n[2] > longest) longest = n[2];
-  double *row = hl_allocate(context, longest, sizeof *row);
-  if (row == NULL) return hl_fail_memory(error, longest * sizeof *row, "a row of voxels");
-  for (int axis = 0; axis < 3; axis++) move_axis(values, size, axis, bricks->origin[axis], n[axis], row);
-  hl_release(context, row);
   return HL_OK;
 }
 
-hl_status hl_volume_take_bricks(hl_context *context, hl_bricks *bricks, const hl_volume_description *grid,
-                                const char *subject, hl_volume **volume, hl_error *error) {
-  float *voxels = NULL;
-  size_t size[3];
-  hl_status status = hl_volume_check_grid(grid, subject, error);
-  if (status == HL_OK) status = evaluate(context, bricks, subject, size, &voxels, error);
-  if (status == HL_OK) status = move_grid(context, bricks, grid, size, voxels, error);
-  hl_bricks_release(context, bricks);
-  if (status == HL_OK) return hl_volume_adopt(context, grid, subject, voxels, volume, error);
-  hl_release(context, voxels);
-  return status;
+hl_status hl_volume_check_bricks(const hl_bricks *bricks, const hl_volume_description *grid,
+                                 const char *subject, hl_error *error) {
+  if (grid->type != HL_VOXEL_F32 || grid->value_scale != 1 || grid->value_offset != 0)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: the voxels of a field in bricks are f32 without scale or offset", subject);
+  if (bricks->shift < SHIFT_LEAST || bricks->shift > SHIFT_MOST || bricks->levels < 1 ||
+      bricks->levels > BRICK_LEVELS_LIMIT || bricks->directory == NULL ||
+      (bricks->slots > 0 && bricks->pool == NULL))
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: bricks of 2^%d cells at %d levels: give 2^%d to 2^%d, and 1 to %d", subject,
+                   bricks->shift, bricks->levels, SHIFT_LEAST, SHIFT_MOST, BRICK_LEVELS_LIMIT);
+  for (int axis = 0; axis < 3; axis++) {
+    double last = bricks->origin[axis] + (double)grid->dimensions[axis] - 1;
+    if (!(bricks->origin[axis] >= 0 && last <= (double)hl_bricks_cells(bricks, axis)))
+      return hl_fail(
+          error, HL_ERROR_INPUT,
+          "%s: voxels from %.9g to %.9g along axis %d leave the bricks' lattice, which ends at %.0f", subject,
+          bricks->origin[axis], last, axis, (double)hl_bricks_cells(bricks, axis));
+  }
+  return check_entries(bricks, subject, error);
+}
+
+/* ---- voxels ---- */
+
+/* Whether voxels stand on points of the lattice. */
+static bool stand_on_points(const hl_bricks *bricks) {
+  bool whole = true;
+  for (int axis = 0; axis < 3; axis++) whole = whole && bricks->origin[axis] == floor(bricks->origin[axis]);
+  return whole;
+}
+
+float hl_volume_value_of_bricks(const hl_volume *volume, const size_t voxel[3]) {
+  const hl_bricks *bricks = volume->bricks;
+  int64_t point[3];
+  double at[3];
+  for (int axis = 0; axis < 3; axis++) {
+    at[axis] = (double)voxel[axis] + bricks->origin[axis];
+    point[axis] = (int64_t)at[axis];
+  }
+  return stand_on_points(bricks) ? hl_bricks_coefficient(bricks, point) : (float)hl_bricks_value(bricks, at);
+}
+
+void hl_volume_row_of_bricks(const hl_volume *volume, size_t j, size_t k, float *row) {
+  for (size_t i = 0; i < volume->dimension[0]; i++)
+    row[i] = hl_volume_value_of_bricks(volume, (const size_t[3]){i, j, k});
+}
+
+/* ---- statistics ---- */
+
+typedef struct brick_tally {
+  const hl_volume *volume;
+  double low, high, sum;
+  double counted;   /* cells of level 0 */
+  double nonfinite; /* cells of level 0 without a number */
+  bool binned;      /* whether the range is known, and the histogram is filled */
+} brick_tally;
+
+static void add_value(brick_tally *tally, float value, uint64_t weight, uint64_t *histogram) {
+  if (!isfinite(value)) {
+    tally->nonfinite += (double)weight;
+    return;
+  }
+  if (tally->binned) {
+    double width = tally->high - tally->low;
+    double place = width > 0 ? ((double)value - tally->low) * (HL_HISTOGRAM_BINS / width) : 0;
+    histogram[place < HL_HISTOGRAM_BINS - 1 ? (int)place : HL_HISTOGRAM_BINS - 1] += weight;
+    return;
+  }
+  tally->low = fmin(tally->low, (double)value);
+  tally->high = fmax(tally->high, (double)value);
+  tally->sum += (double)value * (double)weight;
+  tally->counted += (double)weight;
+}
+
+/* The range of cells of a level, of those from `first` on that a brick has, whose first points lie in the
+ * box; cells are counted from the brick's first. */
+static void range_in_box(const hl_volume *volume, int axis, int level, int64_t first, int64_t count,
+                         int64_t range[2]) {
+  double origin = volume->bricks->origin[axis], step = ldexp(1, level);
+  double low = origin - 0.5, high = origin + (double)volume->dimension[axis] - 0.5;
+  double from = ceil(low / step), to = ceil(high / step); /* the end is outside */
+  range[0] = (int64_t)fmin(fmax(from - (double)first, 0), (double)count);
+  range[1] = (int64_t)fmin(fmax(to - (double)first, 0), (double)count);
+}
+
+/* Adds one block of level 0, and the whole of a brick with its first block. */
+static void add_block(brick_tally *tally, const int64_t block[3], uint64_t *histogram) {
+  const hl_bricks *bricks = tally->volume->bricks;
+  const hl_brick_entry *entry = hl_bricks_entry(bricks, block);
+  int level = entry->slot >= 0 ? entry->level : 0;
+  int64_t side = (int64_t)1 << bricks->shift, range[3][2];
+  for (int axis = 0; axis < 3; axis++) {
+    if ((block[axis] & (((int64_t)1 << level) - 1)) != 0) return;
+    range_in_box(tally->volume, axis, level, block[axis] >> level << bricks->shift, side, range[axis]);
+    if (range[axis][0] >= range[axis][1]) return;
+  }
+  if (entry->slot < 0) {
+    uint64_t cells = 1;
+    for (int axis = 0; axis < 3; axis++) cells *= (uint64_t)(range[axis][1] - range[axis][0]);
+    add_value(tally, entry->constant, cells, histogram);
+    return;
+  }
+  size_t width = hl_brick_width(bricks);
+  const float *brick = hl_brick_pool(bricks, entry->slot);
+  for (int64_t k = range[2][0]; k < range[2][1]; k++)
+    for (int64_t j = range[1][0]; j < range[1][1]; j++) {
+      const float *row = brick + ((size_t)(k + 1) * width + (size_t)(j + 1)) * width + 1;
+      for (int64_t i = range[0][0]; i < range[0][1]; i++)
+        add_value(tally, row[i], (uint64_t)1 << 3 * level, histogram);
+    }
+}
+
+static bool add_blocks(brick_tally *tally, uint64_t *histogram) {
+  const hl_bricks *bricks = tally->volume->bricks;
+  int64_t block[3], count[3];
+  for (int axis = 0; axis < 3; axis++) count[axis] = (int64_t)bricks->directory_size[axis];
+  for (block[2] = 0; block[2] < count[2]; block[2]++) {
+    if (hl_cancelled(tally->volume->context)) return false;
+    for (block[1] = 0; block[1] < count[1]; block[1]++)
+      for (block[0] = 0; block[0] < count[0]; block[0]++) add_block(tally, block, histogram);
+  }
+  return true;
+}
+
+hl_status hl_volume_measure_bricks(hl_volume *volume, const char *subject, hl_error *error) {
+  brick_tally tally = {.volume = volume, .low = INFINITY, .high = -INFINITY};
+  memset(volume->histogram, 0, sizeof volume->histogram);
+  bool finished = add_blocks(&tally, NULL);
+  volume->nonfinite_count = (uint64_t)tally.nonfinite;
+  tally.binned = true;
+  if (finished && tally.counted > 0) finished = add_blocks(&tally, volume->histogram);
+  if (!finished) return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", subject);
+  if (!(tally.counted > 0)) return HL_OK;
+  volume->minimum = tally.low;
+  volume->maximum = tally.high;
+  volume->mean = tally.sum / tally.counted;
+  return HL_OK;
 }

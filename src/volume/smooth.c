@@ -59,12 +59,13 @@ static bool convolve(hl_context *context, const gaussian *kernel, const size_t d
   return true;
 }
 
-/* Data values as floats; those that are not finite become 0, and 0 in finite, the others 1. */
-static void take_values(const hl_volume *volume, float *values, float *finite) {
+/* Data values as floats; those that are not finite become 0, and 0 in finite, the others 1. line: room
+ * for a row of voxels. */
+static void take_values(const hl_volume *volume, float *line, float *values, float *finite) {
   const size_t row = volume->dimension[0];
   for (size_t k = 0, n = 0; k < volume->dimension[2]; k++)
     for (size_t j = 0; j < volume->dimension[1]; j++, n += row) {
-      const void *stored = hl_volume_row(volume, j, k);
+      const void *stored = hl_volume_row_in(volume, j, k, line);
       for (size_t i = 0; i < row; i++) {
         double value = volume->value_scale * hl_stored_number(volume->storage, stored, i) +
                        volume->value_offset;
@@ -76,11 +77,11 @@ static void take_values(const hl_volume *volume, float *values, float *finite) {
 }
 
 /* Where there are voxels that are not finite: what the finite ones have of each sum. */
-static void weigh(const hl_volume *volume, float *values, const float *share) {
+static void weigh(const hl_volume *volume, float *line, float *values, const float *share) {
   const size_t row = volume->dimension[0];
   for (size_t k = 0, n = 0; k < volume->dimension[2]; k++)
     for (size_t j = 0; j < volume->dimension[1]; j++, n += row) {
-      const void *stored = hl_volume_row(volume, j, k);
+      const void *stored = hl_volume_row_in(volume, j, k, line);
       for (size_t i = 0; i < row; i++)
         values[n + i] = isfinite(hl_stored_number(volume->storage, stored, i)) ? values[n + i] / share[n + i]
                                                                                : NAN;
@@ -126,12 +127,12 @@ hl_status hl_volume_convolve(const hl_volume *volume, double sigma, hl_volume **
   bool whole = values != NULL && line != NULL && (!holes || finite != NULL);
   hl_status status = whole ? HL_OK : hl_fail_memory(error, count * sizeof *values, "smoothed voxels");
   if (whole) {
-    take_values(volume, values, finite);
+    take_values(volume, line, values, finite);
     if (!convolve(context, &kernel, volume->dimension, values, line) ||
         (holes && !convolve(context, &kernel, volume->dimension, finite, line)))
       status = hl_fail(error, HL_ERROR_CANCELLED, "cancelled while voxels were smoothed");
   }
-  if (status == HL_OK && holes) weigh(volume, values, finite);
+  if (status == HL_OK && holes) weigh(volume, line, values, finite);
   hl_release(context, finite);
   hl_release(context, line);
   if (status == HL_OK) return adopt(volume, values, smoothed, error);

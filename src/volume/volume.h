@@ -62,8 +62,9 @@ struct hl_volume {
   atomic_int references;
   size_t dimension[3]; /* i, j, k */
   hl_storage storage;
-  const void *voxels; /* [k][j][i]; stored values; owned unless borrowed; null with pages. Rows are packed.
-                       * Rows and slices of borrowed voxels may have gaps between them */
+  const void *voxels; /* [k][j][i]; stored values; owned unless borrowed; null with pages or bricks. Rows are
+                       * packed.                       * Rows and slices of borrowed voxels may have gaps
+                       * between them */
   size_t row_bytes, slice_bytes; /* bytes from row to row, and from slice to slice */
   void *exact; /* owned; [k][j][i]; the file's numbers, of `type`, if the stored floats round any of them
                 * (exact.h); null if the stored values are the numbers */
@@ -72,9 +73,11 @@ struct hl_volume {
   signed char *slopes;        /* owned; [k][j][i][4]; slopes of a mask's lattice (label/mask.h); null for
                                * other volumes */
   uint32_t (*mask_bricks)[2]; /* owned; bricks of a mask's lattice (label/mask.h); null for other volumes */
-  struct hl_pages *pages; /* owned (pages.h); the voxels are in a scratch file, or over ranks; null if they
-                           * are in memory */
-  void *owned_voxels;     /* the block to hl_release; null if borrowed */
+  struct hl_pages *pages;   /* owned (pages.h); the voxels are in a scratch file, or over ranks; null if they
+                             * are in memory */
+  struct hl_bricks *bricks; /* owned (bricks/bricks.h, in_bricks.h); the field itself; null if there are
+                             * voxels. Voxels are found in it when they are asked for */
+  void *owned_voxels;       /* the block to hl_release; null if borrowed */
   void (*release)(void *release_data, const void *voxels); /* gives borrowed voxels back; may be null */
   void *release_data;
   double value_scale; /* data value = value_scale * stored + value_offset */
@@ -126,17 +129,17 @@ static inline size_t hl_volume_voxel_count(const hl_volume *volume) {
 /* Whether rows and slices are adjacent, in memory. */
 static inline bool hl_volume_is_packed(const hl_volume *volume) {
   size_t row = volume->dimension[0] * hl_storage_bytes(volume->storage);
-  return volume->pages == NULL && volume->row_bytes == row &&
+  return volume->voxels != NULL && volume->row_bytes == row &&
          volume->slice_bytes == row * volume->dimension[1];
 }
 
-/* The first voxel of a row of a volume in memory. */
+/* The first voxel of a row of a volume whose voxels are in memory (voxels is not null). */
 static inline const void *hl_volume_row(const hl_volume *volume, size_t j, size_t k) {
   return (const unsigned char *)volume->voxels + k * volume->slice_bytes + j * volume->row_bytes;
 }
 
 /* The first voxel of a row of any volume: the volume's own, or a copy in `buffer`, which has room for a row
- * and is needed if the volume has pages. */
+ * and is needed if the voxels are not in memory. */
 const void *hl_volume_row_in(const hl_volume *volume, size_t j, size_t k, void *buffer);
 
 /* hl_volume_value() for the library's own functions, which have passed a door already (core/door.h). */
@@ -159,7 +162,7 @@ typedef struct hl_number_row {
 size_t hl_volume_row_room(const hl_volume *volume);
 
 /* A row of numbers of any volume. Data value = value_scale * number + value_offset. buffer: has
- * hl_volume_row_room() bytes, aligned for doubles; needed if the volume has pages. */
+ * hl_volume_row_room() bytes, aligned for doubles; needed if the voxels are not in memory. */
 hl_number_row hl_volume_numbers(const hl_volume *volume, size_t j, size_t k, void *buffer);
 /* Whether the stored values round some of the file's numbers, which are kept, too. */
 bool hl_volume_is_exact(const hl_volume *volume);

@@ -1,0 +1,50 @@
+/* bricks/evaluate.h - a field in bricks at single places: coefficients of level 0, values, ranges.
+ *
+ * The whole field is one B-spline of level 0, because every level's B-splines are sums of those of the next
+ * finer level. Its coefficients are those of the bricks of level 0, and the subdivided ones of coarser
+ * bricks. All functions continue the field beyond the directory's faces by the value at the faces. */
+#ifndef HL_BRICKS_EVALUATE_H
+#define HL_BRICKS_EVALUATE_H
+
+#include "bricks/bricks.h"
+
+/* Coefficients along an axis that a brick stores. */
+static inline size_t hl_brick_width(const hl_bricks *bricks) {
+  return ((size_t)1 << bricks->shift) + BRICK_MARGIN;
+}
+static inline size_t hl_brick_coefficients(const hl_bricks *bricks) {
+  return hl_brick_width(bricks) * hl_brick_width(bricks) * hl_brick_width(bricks);
+}
+/* The number of cells of level 0 along an axis: the field is told from 0 to this coordinate. */
+static inline int64_t hl_bricks_cells(const hl_bricks *bricks, int axis) {
+  return (int64_t)bricks->directory_size[axis] << bricks->shift;
+}
+/* The entry of a block of level 0, which must lie in the directory. */
+static inline const hl_brick_entry *hl_bricks_entry(const hl_bricks *bricks, const int64_t block[3]) {
+  const size_t *n = bricks->directory_size;
+  return &bricks->directory[((size_t)block[2] * n[1] + (size_t)block[1]) * n[0] + (size_t)block[0]];
+}
+static inline const float *hl_brick_pool(const hl_bricks *bricks, int32_t slot) {
+  return bricks->pool + (size_t)slot * hl_brick_coefficients(bricks);
+}
+
+/* The coefficient of level 0 of a lattice point. */
+float hl_bricks_coefficient(const hl_bricks *bricks, const int64_t point[3]);
+
+/* The field's value at a point of the lattice. */
+double hl_bricks_value(const hl_bricks *bricks, const double point[3]);
+
+/* The least and the greatest coefficient on which the cells first .. last of level 0 depend: the field's
+ * values there lie between them. */
+void hl_bricks_range(const hl_bricks *bricks, const int64_t first[3], const int64_t last[3], float range[2]);
+
+/* Whether all coefficients and constants are finite. Others are places without data. */
+bool hl_bricks_are_finite(const hl_bricks *bricks);
+/* Copies bricks with `empty` in place of what is not finite. filled: its directory and pool have room for
+ * those of `bricks`; the rest is set. */
+void hl_bricks_fill_holes(const hl_bricks *bricks, float empty, hl_bricks *filled);
+
+/* The bytes of the directory and the pool. */
+size_t hl_bricks_bytes(const hl_bricks *bricks);
+
+#endif

@@ -1,0 +1,152 @@
+/* Fields at levels as they are sampled (bricks/evaluate.h, fill/): every instruction set gives the same
+ * bytes, which are the field's values; constants and linear fields are exact. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "../octree.h"
+#include "bricks/evaluate.h"
+#include "core/context.h"
+#include "render/hot.h"
+
+enum { SIDE = 48 }; /* cells of the field along each axis */
+
+typedef struct field_bench {
+  hl_context *context;
+  hl_bricks bricks;
+} field_bench;
+
+static void open_bench(field_bench *bench, uint64_t seed, octree_value *value, int shift) {
+  assert_int_equal(hl_context_create(NULL, &bench->context, NULL), HL_OK);
+  octree source = {seed, value};
+  octree_build(bench->context, 2, &source, (const size_t[3]){SIDE + 1, SIDE + 1, SIDE + 1}, shift, 4,
+               &bench->bricks);
+}
+
+static void close_bench(field_bench *bench) {
+  hl_bricks_release(bench->context, &bench->bricks);
+  assert_true(hl_context_memory_held(bench->context) == 0);
+  hl_context_destroy(bench->context);
+}
+
+/* ---- one B-spline of level 0 ---- */
+
+/* The coefficients of level 0 are the dense grid's, and the sum of these is the field's value. */
+static void test_coefficients(void **state) {
+  (void)state;
+  for (int shift = 2; shift <= 4; shift++) {
+    field_bench bench;
+    open_bench(&bench, 5 + (uint64_t)shift, octree_random_value, shift);
+    size_t size[3];
+    float *dense = NULL;
+    hl_pool *pool = NULL;
+    assert_int_equal(hl_pool_create(bench.context, 2, &pool, NULL), HL_OK);
+    assert_int_equal(
+        hl_bricks_evaluate_dense(bench.context, pool, &bench.bricks, 0, "test", size, &dense, NULL), HL_OK);
+    hl_pool_destroy(pool);
+    size_t at = 0;
+    for (int64_t k = 0; k < (int64_t)size[2]; k++)
+      for (int64_t j = 0; j < (int64_t)size[1]; j++)
+        for (int64_t i = 0; i < (int64_t)size[0]; i++, at++) {
+          float found = hl_bricks_coefficient(&bench.bricks, (const int64_t[3]){i, j, k});
+          assert_true(fabs((double)found - (double)dense[at]) < 1e-6);
+        }
+    hl_release(bench.context, dense);
+    close_bench(&bench);
+  }
+}
+
+/* ---- sampling ---- */
+
+/* A sheet of parallel rays, and the grid, as a frame has them. */
+static void make_source(const field_bench *bench, uint64_t seed, grid *grid, fill_source *source) {
+  memset(grid, 0, sizeof *grid);
+  memset(source, 0, sizeof *source);
+  grid->bricks = &bench->bricks;
+  grid->storage = HL_STORAGE_F32;
+  for (int axis = 0; axis < 3; axis++)
+    grid->dimension[axis] = (int32_t)hl_bricks_cells(&bench->bricks, axis) - 1;
+  source->grid = grid;
+  source->kernel = hl_kernel_get(HL_KERNEL_BSPLINE);
+  for (int axis = 0; axis < 3; axis++) {
+    source->rays.p0[axis] = (float)(octree_random(seed, (uint64_t)axis) * (SIDE + 6) - 4);
+    source->rays.pu[axis] = (float)(octree_random(seed, (uint64_t)axis + 3) * 2 - 1);
+    source->rays.pv[axis] = (float)(octree_random(seed, (uint64_t)axis + 6) * 2 - 1);
+  }
+}
+
+enum { SHEETS = 400 };
+
+static void test_gathered(void **state) {
+  (void)state;
+  octree_value *values[] = {octree_random_value, octree_constant_value, octree_linear_value};
+  for (int n = 0; n < 9; n++) {
+    field_bench bench;
+    open_bench(&bench, 90 + (uint64_t)n, values[n % 3], 2 + n / 3);
+    double size = n % 3 == 2 ? 200 : 1; /* of the values */
+    for (uint64_t sheet = 0; sheet < SHEETS; sheet++) {
+      grid grid;
+      fill_source source;
+      make_source(&bench, 1000 * (uint64_t)n + sheet, &grid, &source);
+      float scalar[TILE_PIXELS], density[TILE_PIXELS];
+      hl_hot_scalar.fill.gather(&source, 0, 0, ALL_BLOCKS, 0, scalar);
+      for (int i = 0; i < TILE_PIXELS; i++) {
+        double at[3];
+        bool within = true;
+        for (int axis = 0; axis < 3; axis++) {
+          double p = (double)source.rays.p0[axis] + hl_pixel_column(i) * (double)source.rays.pu[axis] +
+                     hl_pixel_row(i) * (double)source.rays.pv[axis];
+          within = within && p > -0.999 && p < grid.dimension[axis] - 0.01;
+          at[axis] = p + 1; /* the lattice's coordinate */
+        }
+        double expected = n % 3 == 1   ? octree_constant_value(0, 0, (const ptrdiff_t[3]){0, 0, 0})
+                          : n % 3 == 2 ? octree_linear_at(at)
+                                       : hl_bricks_value(&bench.bricks, at);
+        /* positions are floats, and the steepest slope is a few values a cell */
+        if (within && !(fabs((double)scalar[i] - expected) < 1e-5 * size))
+          fail_msg("field %d at %g %g %g: %.9g, not %.9g", n, at[0], at[1], at[2], (double)scalar[i],
+                   expected);
+      }
+      for (int set = HL_INSTRUCTION_SET_SCALAR; set <= HL_INSTRUCTION_SET_AVX512_VBMI; set++) {
+        if (!hl_cpu_has_instruction_set((hl_instruction_set)set)) continue;
+        hl_hot_functions((hl_instruction_set)set)->fill.gather(&source, 0, 0, ALL_BLOCKS, 0, density);
+        assert_memory_equal(density, scalar, sizeof density);
+      }
+    }
+    close_bench(&bench);
+  }
+}
+
+/* The range of any box of cells holds the values in it. */
+static void test_ranges(void **state) {
+  (void)state;
+  field_bench bench;
+  open_bench(&bench, 77, octree_random_value, 3);
+  for (uint64_t n = 0; n < 3000; n++) {
+    int64_t first[3], last[3];
+    double at[3];
+    float range[2];
+    for (int axis = 0; axis < 3; axis++) {
+      first[axis] = (int64_t)(octree_random(n, (uint64_t)axis) * SIDE) - 1;
+      last[axis] = first[axis] + (int64_t)(octree_random(n, 3 + (uint64_t)axis) * 6);
+      at[axis] = (double)first[axis] +
+                 octree_random(n, 6 + (uint64_t)axis) * (double)(last[axis] + 1 - first[axis]);
+    }
+    hl_bricks_range(&bench.bricks, first, last, range);
+    double value = hl_bricks_value(&bench.bricks, at);
+    assert_true(value >= (double)range[0] - 1e-6 && value <= (double)range[1] + 1e-6);
+    assert_true(range[1] - range[0] <= 1);
+  }
+  close_bench(&bench);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_coefficients), cmocka_unit_test(test_gathered),
+                                     cmocka_unit_test(test_ranges)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
