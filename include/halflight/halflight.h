@@ -52,6 +52,7 @@
 #include "layers.h"
 #include "mesh.h"
 #include "page.h"
+#include "particles.h"
 #include "preview.h"
 #include "ranks.h"
 #include "render.h"

@@ -89,7 +89,8 @@ HL_API HL_WARN_UNUSED hl_status hl_volume_create(hl_context *context,
                                                  hl_error *error);
 
 /* Reads raw (by name), NRRD, MetaImage, NIfTI, VTK .vti, legacy .vtk, NumPy .npy (axes [z][y][x]), MRC,
- * TIFF, NanoVDB, OpenVDB (by the context's `convert`) and DICOM files, and folders and zip archives of DICOM
+ * TIFF, NanoVDB, OpenVDB (by the context's `convert`) and DICOM files, particles in tables, dumps of LAMMPS
+ * and XYZ files (as log10 of their density: halflight/particles.h), and folders and zip archives of DICOM
  * files or of Zarr arrays (OME-Zarr). The format is recognised by the content, or by the name where the
  * content has no mark. Of several arrays or components one is read by default (hl_volume_load_options), and a
  * warning says which. */

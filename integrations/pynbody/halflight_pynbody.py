@@ -1,4 +1,4 @@
-"""Particles of pynbody's snapshots as volumes: deposited on a grid by the cloud in cell, or SPH-smoothed by pynbody."""
+"""Particles of pynbody's snapshots as volumes, spread by their SPH kernels."""
 from __future__ import annotations
 
 from typing import Any
@@ -7,9 +7,9 @@ import halflight
 import numpy as np
 
 
-def volume_of(snapshot: Any, quantity: str = "rho", *, width: float | None = None, size: int = 128, log: bool = True, smooth: bool | None = None,
+def volume_of(snapshot: Any, quantity: str = "rho", *, width: float | None = None, size: int = 256, log: bool = True,
               **look: Any) -> halflight.Volume:
-    """A quantity of particles on a cubic grid around the origin of the snapshot's coordinates.
+    """A quantity of particles on a grid around the origin of the snapshot's coordinates.
 
     Parameters
     ----------
@@ -17,47 +17,33 @@ def volume_of(snapshot: Any, quantity: str = "rho", *, width: float | None = Non
     quantity : str
         "rho" is mass over volume; others are means weighted by mass.
     width : float, optional
-        Of the cube in the snapshot's units; by default what holds 99 % of the particles.
+        Of the cube in the snapshot's units whose particles are taken; by default all are.
     size : int
-        Voxels along each side.
+        Most voxels along a side.
     log : bool
-        Logarithms to base 10.
-    smooth : bool, optional
-        True: pynbody's own SPH interpolation, which gas particles want; by default for gas alone.
+        The density's logarithm to base 10; of other quantities the mean of their logarithms.
     **look
         Keywords of `halflight.Volume`.
     """
-    places, masses = np.asarray(snapshot["pos"], dtype=float), np.asarray(snapshot["mass"], dtype=float)
-    if width is None:
-        width = 2 * float(np.quantile(abs(places).max(axis=1), 0.99))
-    step = width / size
-    if smooth:
-        from pynbody.sph import render_3d_grid
-
-        values = np.asarray(render_3d_grid(snapshot, quantity, nx=size, x2=width / 2, z_plane=0.0))
-    else:
-        density = deposit(places, masses, width, size) / step**3
-        values = density
-        if quantity != "rho":
-            carried = deposit(places, masses * np.asarray(snapshot[quantity], dtype=float), width, size) / step**3
-            values = np.divide(carried, density, out=np.full_like(density, np.nan), where=density > 0)
-    if log:
-        with np.errstate(divide="ignore"):
-            values = np.where(values > 0, np.log10(values), np.nan)
-    corner = -width / 2 + step / 2
+    particles, inside = particles_of(snapshot, width)
     look.setdefault("name", quantity)
-    return halflight.Volume(values.astype(np.float32), axes="xyz", spacing=step, origin=(corner, corner, corner), **look)
+    if quantity == "rho":
+        return particles.volume("log density" if log else "density", size=size, **look)
+    values = np.asarray(snapshot[quantity], dtype=float)[inside]
+    if log:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            values = np.log10(values)
+        values = np.where(np.isfinite(values), values, np.min(values[np.isfinite(values)], initial=0))
+    return particles.volume(values, size=size, **look)
 
 
-def deposit(places: np.ndarray, weights: np.ndarray, width: float, size: int) -> np.ndarray:
-    """The weights of points on a grid [x][y][z] around the origin, each shared among the eight voxels beside it."""
-    scaled = (places / width + 0.5) * size - 0.5
-    first = np.floor(scaled).astype(np.int64)
-    rest = scaled - first
-    total = np.zeros(size**3)
-    for corner in np.ndindex(2, 2, 2):
-        index = first + corner
-        share = np.prod(np.where(corner, rest, 1 - rest), axis=1) * weights
-        inside = ((index >= 0) & (index < size)).all(axis=1)
-        total += np.bincount(np.ravel_multi_index(index[inside].T, (size,) * 3), share[inside], size**3)
-    return total.reshape((size,) * 3)
+def particles_of(snapshot: Any, width: float | None = None) -> tuple[halflight.Particles, np.ndarray]:
+    """The particles, and which of the snapshot's they are.
+
+    Smoothing lengths that the file has are taken; others are found from the distances of neighbours. pynbody's reach to
+    twice of them, as Halflight's.
+    """
+    places = np.asarray(snapshot["pos"], dtype=float)
+    inside = np.ones(len(places), bool) if width is None else (abs(places) <= width / 2).all(axis=1)
+    h = np.asarray(snapshot["smooth"], dtype=float)[inside] if "smooth" in snapshot.loadable_keys() else None
+    return halflight.Particles(places[inside], np.asarray(snapshot["mass"], dtype=float)[inside], h=h), inside

@@ -21,9 +21,11 @@ from .image import Image
 from .lights import Directional, Disk, EmissionImage, Light, Point, Polygon, Rect, Spot, Texture
 from .memory import limit_memory
 from .mesh import Mesh
+from .particles import Particles
 from .program import animate, view
 from .render import Renderer, reference, render
 from .scene import Scene
+from .snapshots import Snapshot, open_snapshot
 from .transfer import TransferFunction, presets
 from .volume import Info, Volume, info
 from .vtk_scenes import from_pyvista, from_vtk
@@ -33,6 +35,6 @@ __version__ = _text_of(_lib.hl_version())
 
 __all__ = [
     "Camera", "Directional", "Disk", "EmissionImage", "Figure", "HalflightWarning", "Image", "Info", "InputError", "Light", "Mesh",
-    "Point", "Polygon", "Rect", "Renderer", "Scene", "Spot", "Texture", "TransferFunction", "UnsupportedError", "Volume",
-    "animate", "colormaps", "figure", "from_pyvista", "from_vtk", "info", "limit_memory", "presets", "reference", "render", "show", "srgb", "view",
+    "Particles", "Point", "Polygon", "Rect", "Renderer", "Scene", "Snapshot", "Spot", "Texture", "TransferFunction", "UnsupportedError", "Volume",
+    "animate", "colormaps", "figure", "from_pyvista", "from_vtk", "info", "limit_memory", "open_snapshot", "presets", "reference", "render", "show", "srgb", "view",
 ]

@@ -670,6 +670,11 @@ def _of_handle(handle: Any, file: Any) -> Volume:
     return found
 
 
+def volume_of_handle(handle: Any) -> Volume:
+    """A Volume of voxels that the library made, of an hl_volume."""
+    return _of_handle(handle, ffi.NULL)
+
+
 def _restored(kind: str, source: Any, look: dict[str, Any]) -> Volume:
     """The volume that `Volume._source` told of, as pickle makes it."""
     if kind == "file":

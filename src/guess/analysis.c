@@ -234,11 +234,12 @@ static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample
                            : hl_mode(sample->values, sample->count);
   spread s = spread_of(sample, a->background);
   double mode = hl_mode(sample->values, sample->count);
-  bool flow = is_flow(volume, sample, &s, mode, memory);
+  bool logarithms = volume->is_log_density, flow = !logarithms && is_flow(volume, sample, &s, mode, memory);
   if (flow && s.signs) a->background = s.zero;
-  bool lobes = (flow && s.signs) || has_lobes(sample, &s, a->background, memory);
+  bool lobes = !logarithms && ((flow && s.signs) || has_lobes(sample, &s, a->background, memory));
   hl_status status = HL_OK;
-  choose_side(&s, lobes, a);
+  if (logarithms) a->background = s.low, a->direction = 1;
+  else choose_side(&s, lobes, a);
   if (lobes) {
     a->kind = HL_DATA_SIGNED;
     status = find_two_sided(sample, &d, a, error);
@@ -250,6 +251,7 @@ static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample
     a->kind = kind_of(volume, sample, &d, a);
   }
   if (flow && !s.signs) a->kind = HL_DATA_FLOW;
+  if (logarithms) a->kind = HL_DATA_PARTICLES;
   find_middle(sample, mode, a);
   return status;
 }
@@ -288,7 +290,8 @@ static hl_status analyse(const hl_volume *volume, hl_data_analysis *analysis, hl
   for (size_t n = 0; n < sizeof distance / sizeof *distance; n++) *distance[n] *= sample.range;
   hl_sample_release(&sample);
   if (status == HL_OK && analysis->kind == HL_DATA_SURFACES) hl_data_find_materials(volume, analysis);
-  return status == HL_OK ? hl_data_find_labels(volume, analysis, error) : status;
+  bool may_be_labels = status == HL_OK && analysis->kind != HL_DATA_PARTICLES;
+  return may_be_labels ? hl_data_find_labels(volume, analysis, error) : status;
 }
 
 /* Keeps a copy with the volume. Volumes are constant for their readers; what is found out about them is not.

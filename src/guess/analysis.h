@@ -15,7 +15,8 @@ typedef enum hl_data_kind {
   HL_DATA_MEDIUM = 3,   /* smoke and clouds */
   HL_DATA_CONSTANT = 4, /* one value everywhere */
   HL_DATA_LABELS = 5,   /* few whole numbers, in blocks: names of regions, not amounts */
-  HL_DATA_FLOW = 6      /* a smooth quantity that fills its grid: turbulence, speed, temperature */
+  HL_DATA_FLOW = 6,     /* a smooth quantity that fills its grid: turbulence, speed, temperature */
+  HL_DATA_PARTICLES = 7 /* the logarithm of the density of particles, over decades */
 } hl_data_kind;
 
 #define HL_MOST_LABELS    255

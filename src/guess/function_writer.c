@@ -86,6 +86,17 @@ void hl_write_field(hl_function_writer *w) {
   hl_add_colormap(w, "plasma", a->faint, a->solid + 0.6 * (top - a->solid), 0.25, 0.92);
 }
 
+/* Matter over decades of density: what fills most of the space is nearly clear, and the densest is nearly
+ * opaque. Rows: fraction of the way from there to the densest, optical depth across the object. */
+void hl_write_particles(hl_function_writer *w) {
+  static const double rows[][2] = {{0, 0}, {0.2, 0.3}, {0.4, 1.5}, {0.6, 6}, {0.8, 25}, {1, 80}};
+  const hl_data_analysis *a = w->analysis;
+  double from = 0.5 * a->mean, top = fmax(a->top, 1.001 * a->mean);
+  for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
+    hl_add_opacity(w, from + rows[n][0] * (top - from), hl_opacity_for(a, rows[n][1]));
+  hl_add_colormap(w, "inferno", from, top, 0.25, 1);
+}
+
 /* The opacities on one side of a flow's middle: common values are clear, rare ones dense. Rows: fraction of
  * the way from the middle to the end of the values, optical depth. */
 static void add_rare(hl_function_writer *w, double reach, int side) {

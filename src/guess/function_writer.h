@@ -36,6 +36,7 @@ void hl_write_body(hl_function_writer *w);
 void hl_write_brain(hl_function_writer *w);
 void hl_write_field(hl_function_writer *w);
 void hl_write_flow(hl_function_writer *w);
+void hl_write_particles(hl_function_writer *w);
 void hl_write_signed(hl_function_writer *w);
 void hl_write_medium(hl_function_writer *w);
 void hl_write_labels(hl_function_writer *w);

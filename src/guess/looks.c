@@ -16,7 +16,18 @@
 #include "text/edit_distance.h"
 #include "text/plain.h"
 
-typedef enum subject { BODY, BRAIN, MATTER, LABELS, FIELD, FLOW, SIGNED, MEDIUM, CONSTANT } subject;
+typedef enum subject {
+  BODY,
+  BRAIN,
+  MATTER,
+  LABELS,
+  FIELD,
+  FLOW,
+  SIGNED,
+  MEDIUM,
+  CONSTANT,
+  PARTICLES
+} subject;
 
 /* Rows: name, writer, shading, kernel; intensities of key, fill and sky; left; on_black. Where left
  * is not 0, the exposure scales the intensities afterwards. */
@@ -36,6 +47,8 @@ static const hl_look looks[] = {
                 false},
     [CONSTANT] = {"one value", hl_write_constant, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.20, 0.10, 0.44, 0,
                   false},
+    [PARTICLES] = {"particles", hl_write_particles, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.15, 0.35, 0.45,
+                   0.85, true},
 };
 
 bool hl_is_hounsfield(const hl_volume *volume) {
@@ -82,6 +95,7 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
     case HL_DATA_CONSTANT: is = CONSTANT; break;
     case HL_DATA_LABELS: is = LABELS; break;
     case HL_DATA_FLOW: is = FLOW; break;
+    case HL_DATA_PARTICLES: is = PARTICLES; break;
   }
   return &looks[is];
 }

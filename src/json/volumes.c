@@ -392,7 +392,8 @@ static hl_status choose_shading(hl_json_reader *reader, const json_t *value, hl_
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(volume->volume, &analysis, reader->error);
   if (status != HL_OK) return hl_json_prefix(reader, reader->place), status;
-  if (analysis.kind == HL_DATA_MEDIUM) volume->shading = HL_SHADING_NONE;
+  if (analysis.kind == HL_DATA_MEDIUM || analysis.kind == HL_DATA_PARTICLES)
+    volume->shading = HL_SHADING_NONE;
   return HL_OK;
 }
 

@@ -20,4 +20,7 @@
   HL_FORMAT(zarr)      \
   HL_FORMAT(dicom)     \
   HL_FORMAT(slices)    \
+  HL_FORMAT(lammps)    \
+  HL_FORMAT(particle_table) \
+  HL_FORMAT(xyz)       \
   HL_FORMAT(dat)

@@ -108,6 +108,7 @@ struct hl_volume {
   size_t label_map_count;
   bool has_surroundings; /* whether the data value around the content is known */
   double surroundings;
+  bool is_log_density; /* whether values are logarithms of the density of particles (particles.c) */
   double smoothing; /* voxels: the standard deviation that the voxels were smoothed by (guess/smoothing.c) */
   atomic_bool smoothing_chosen; /* hl_volume_smooth() was asked for it, or for none */
   double surface_slope;         /* for an occupancy: the slope per voxel where the occupancy passes 1/2 */

@@ -1,0 +1,18 @@
+/* particles/kernel.h - the cubic spline kernel of smoothed particle hydrodynamics.
+ *
+ * W(q) with q = distance / h is 1 - 3/2 q^2 + 3/4 q^3 up to 1, (2 - q)^3 / 4 up to 2, and 0 beyond
+ * (J. J. Monaghan, J. C. Lattanzio, 1985), times 1 / (pi h^3). Its variance along an axis is 3/10 h^2
+ * (derived: 4/3 times the integral of q^4 W(q), which is 9/40). */
+#ifndef HL_PARTICLES_KERNEL_H
+#define HL_PARTICLES_KERNEL_H
+
+/* W(q) without the factor; derived: both pieces are (2 - q)^3 / 4 - (1 - q)^3, where negative bases count as
+ * 0. */
+static inline float hl_sph_kernel(float q) {
+  float outer = 2 - q, inner = 1 - q;
+  outer = outer > 0 ? outer : 0;
+  inner = inner > 0 ? inner : 0;
+  return 0.25f * outer * outer * outer - inner * inner * inner;
+}
+
+#endif

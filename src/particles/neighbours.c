@@ -1,0 +1,325 @@
+/* particles/neighbours.c - smoothing lengths from the distances of neighbours.
+ *
+ * In: particles in Morton order. Out: the exact distance of each particle's k-th neighbour, halved. Runs of
+ * sixteen particles are the leaves of a tree; eight nodes of a layer are a node of the next. A node knows the
+ * box around its particles. A search visits near nodes first, and leaves out those that are farther than the
+ * k-th of the distances found so far. The k-th distance at one particle plus the way to the next particle
+ * bounds the search there. */
+#include "particles/particles.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+
+enum {
+  LEAF = 16,          /* particles of a leaf */
+  FANOUT = 8,         /* nodes of a node */
+  LAYERS = 12,        /* at most: 16 * 8^11 particles */
+  FOUND_MOST = 4096,  /* distances that are collected before the farthest are dropped; particles of a crowd */
+  AT_ONCE = 64 * LEAF /* particles of one call */
+};
+
+typedef struct box {
+  uint32_t low[3], high[3];
+} box;
+
+typedef struct tree {
+  const hl_particle_set *set;
+  box *layer[LAYERS]; /* owned; layer 0: the leaves */
+  size_t count[LAYERS];
+  int layers;
+  float unit[3];     /* of places, in the least of the units: distances are 0 or at least 1 */
+  double least_unit; /* world */
+  size_t neighbours; /* k */
+} tree;
+
+/* One search. */
+typedef struct search {
+  const tree *tree;
+  const uint32_t *place;
+  float bound;             /* squared distance that neighbours are below */
+  float found[FOUND_MOST]; /* squared distances, the particle's own among them */
+  size_t count;
+} search;
+
+static void grow(box *b, const uint32_t low[3], const uint32_t high[3]) {
+  for (int a = 0; a < 3; a++) {
+    if (low[a] < b->low[a]) b->low[a] = low[a];
+    if (high[a] > b->high[a]) b->high[a] = high[a];
+  }
+}
+
+static void make_leaves(void *data, size_t index, int worker) {
+  tree *t = data;
+  (void)worker;
+  size_t last = (index + 1) * AT_ONCE / LEAF;
+  for (size_t n = index * AT_ONCE / LEAF; n < last && n < t->count[0]; n++) {
+    box b = {{UINT32_MAX, UINT32_MAX, UINT32_MAX}, {0, 0, 0}};
+    for (size_t p = n * LEAF; p < (n + 1) * LEAF && p < t->set->count; p++)
+      grow(&b, t->set->place[p], t->set->place[p]);
+    t->layer[0][n] = b;
+  }
+}
+
+static hl_status make_tree(hl_context *context, hl_pool *pool, const char *subject, tree *t,
+                           hl_error *error) {
+  size_t count = (t->set->count + LEAF - 1) / LEAF;
+  for (t->layers = 0; t->layers < LAYERS; count = (count + FANOUT - 1) / FANOUT) {
+    int l = t->layers++;
+    t->count[l] = count;
+    t->layer[l] = hl_allocate(context, count, sizeof *t->layer[l]);
+    if (t->layer[l] == NULL) return hl_fail_memory(error, count * sizeof *t->layer[l], subject);
+    if (l == 0) hl_pool_run(pool, (t->set->count + AT_ONCE - 1) / AT_ONCE, make_leaves, t);
+    for (size_t n = 0; l > 0 && n < count; n++) {
+      box b = t->layer[l - 1][n * FANOUT];
+      for (size_t c = n * FANOUT + 1; c < (n + 1) * FANOUT && c < t->count[l - 1]; c++)
+        grow(&b, t->layer[l - 1][c].low, t->layer[l - 1][c].high);
+      t->layer[l][n] = b;
+    }
+    if (count == 1) break;
+  }
+  return HL_OK;
+}
+
+/* The least squared distance of a place from a box; across the border of a period where that is nearer. */
+static float box_distance(const tree *t, const uint32_t place[3], const box *b) {
+  float sum = 0;
+  for (int a = 0; a < 3; a++) {
+    uint32_t below = b->low[a] - place[a], above = place[a] - b->high[a];
+    if (place[a] >= b->low[a] && place[a] <= b->high[a]) continue;
+    uint32_t gap = place[a] < b->low[a] ? below : above;
+    if (t->set->periodic[a]) gap = below < above ? below : above;
+    float d = (float)gap * t->unit[a];
+    sum += d * d;
+  }
+  return sum;
+}
+
+/* Moves the k least of the numbers to the front; returns the k-th. k: from 1 to count. Quickselect with the
+ * median of three. */
+static float select_least(float *x, size_t count, size_t k) {
+  size_t low = 0, high = count - 1, wanted = k - 1;
+  while (low < high) {
+    float a = x[low], b = x[low + (high - low) / 2], c = x[high];
+    float pivot = a < b ? (b < c ? b : a < c ? c : a) : (a < c ? a : b < c ? c : b);
+    size_t i = low, j = high;
+    for (;;) {
+      while (x[i] < pivot) i++;
+      while (x[j] > pivot) j--;
+      if (i >= j) break;
+      float swap = x[i];
+      x[i++] = x[j], x[j--] = swap;
+    }
+    if (wanted <= j) high = j;
+    else low = j + 1;
+  }
+  return x[wanted];
+}
+
+/* Drops all but the k least distances. */
+static void drop_far(search *s) {
+  size_t k = s->tree->neighbours + 1;
+  if (s->count < k) return;
+  float least = select_least(s->found, s->count, k);
+  s->count = k;
+  if (least < s->bound) s->bound = least;
+}
+
+static void look_at_leaf(search *s, size_t leaf) {
+  const hl_particle_set *set = s->tree->set;
+  const float *unit = s->tree->unit;
+  size_t begin = leaf * LEAF, end = begin + LEAF < set->count ? begin + LEAF : set->count;
+  if (s->count + LEAF > FOUND_MOST) drop_far(s);
+  for (size_t n = begin; n < end; n++) {
+    float x = (float)(int32_t)(set->place[n][0] - s->place[0]) * unit[0],
+          y = (float)(int32_t)(set->place[n][1] - s->place[1]) * unit[1],
+          z = (float)(int32_t)(set->place[n][2] - s->place[2]) * unit[2];
+    float distance = x * x + y * y + z * z;
+    s->found[s->count] = distance;
+    s->count += distance < s->bound;
+  }
+}
+
+/* Visits the nodes below a node, the nearest first. */
+static void look_at(search *s, int layer, size_t node) {
+  const tree *t = s->tree;
+  if (layer == 0) {
+    look_at_leaf(s, node);
+    return;
+  }
+  size_t first = node * FANOUT, count = t->count[layer - 1] - first;
+  if (count > FANOUT) count = FANOUT;
+  float distance[FANOUT];
+  for (size_t c = 0; c < count; c++) distance[c] = box_distance(t, s->place, &t->layer[layer - 1][first + c]);
+  for (size_t visited = 0; visited < count; visited++) {
+    size_t nearest = 0;
+    for (size_t c = 1; c < count; c++) nearest = distance[c] < distance[nearest] ? c : nearest;
+    if (!(distance[nearest] < s->bound)) return;
+    look_at(s, layer - 1, first + nearest);
+    distance[nearest] = INFINITY;
+  }
+}
+
+static float distance_between(const tree *t, const uint32_t a[3], const uint32_t b[3]) {
+  float sum = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    float d = (float)(int32_t)(a[axis] - b[axis]) * t->unit[axis];
+    sum += d * d;
+  }
+  return sqrtf(sum);
+}
+
+/* The k-th distance at a particle. bound: another number that it does not exceed. */
+static float search_one(search *s, size_t n, float bound) {
+  s->place = s->tree->set->place[n];
+  s->count = 0;
+  s->bound = bound * bound * 1.0001f;   /* more than distances are rounded by */
+  if (!(s->bound > 0)) s->bound = 0.5f; /* more than 0, and less than any other distance */
+  look_at(s, s->tree->layers - 1, 0);
+  drop_far(s);
+  return sqrtf(s->bound);
+}
+
+/* ---- all of a leaf ---- */
+
+/* The particles that those of a leaf may have as neighbours. */
+typedef struct crowd {
+  uint32_t place[3][FOUND_MOST];
+  float distance[FOUND_MOST]; /* squared, from one particle of the leaf */
+  size_t count;
+} crowd;
+
+/* The least squared distance of two boxes; across the border of a period where that is nearer. */
+static float distance_of_boxes(const tree *t, const box *one, const box *other) {
+  float sum = 0;
+  for (int a = 0; a < 3; a++) {
+    if (one->low[a] <= other->high[a] && other->low[a] <= one->high[a]) continue;
+    uint32_t above = other->low[a] - one->high[a], below = one->low[a] - other->high[a];
+    uint32_t gap = other->low[a] > one->high[a] ? above : below;
+    if (t->set->periodic[a]) gap = above < below ? above : below;
+    float d = (float)gap * t->unit[a];
+    sum += d * d;
+  }
+  return sum;
+}
+
+/* Gathers the leaves below a node that are nearer to a leaf than the bound (squared); false: they are too
+ * many. */
+static bool gather(const tree *t, int layer, size_t node, const box *leaf, float bound, crowd *c) {
+  if (layer > 0) {
+    size_t first = node * FANOUT, last = first + FANOUT;
+    if (last > t->count[layer - 1]) last = t->count[layer - 1];
+    for (size_t n = first; n < last; n++)
+      if (distance_of_boxes(t, leaf, &t->layer[layer - 1][n]) < bound &&
+          !gather(t, layer - 1, n, leaf, bound, c))
+        return false;
+    return true;
+  }
+  size_t begin = node * LEAF, end = begin + LEAF < t->set->count ? begin + LEAF : t->set->count;
+  if (c->count + LEAF > FOUND_MOST) return false;
+  for (size_t n = begin; n < end; n++, c->count++)
+    for (int a = 0; a < 3; a++) c->place[a][c->count] = t->set->place[n][a];
+  return true;
+}
+
+/* The k-th distance at a particle, whose neighbours are in the crowd. */
+static float search_crowd(search *s, crowd *c, size_t n, float bound) {
+  const uint32_t *place = s->tree->set->place[n];
+  const float *unit = s->tree->unit;
+  s->bound = bound * bound * 1.0001f;
+  if (!(s->bound > 0)) s->bound = 0.5f;
+  for (size_t m = 0; m < c->count; m++) {
+    float x = (float)(int32_t)(c->place[0][m] - place[0]) * unit[0],
+          y = (float)(int32_t)(c->place[1][m] - place[1]) * unit[1],
+          z = (float)(int32_t)(c->place[2][m] - place[2]) * unit[2];
+    c->distance[m] = x * x + y * y + z * z;
+  }
+  s->count = 0;
+  for (size_t m = 0; m < c->count; m++) {
+    s->found[s->count] = c->distance[m];
+    s->count += c->distance[m] < s->bound;
+  }
+  drop_far(s);
+  return sqrtf(s->bound);
+}
+
+/* The particle of a leaf that is nearest to the middle of its box; *way: from it to the farthest of the leaf.
+ */
+static size_t middle_of(const tree *t, size_t leaf, size_t begin, size_t end, float *way) {
+  const box *b = &t->layer[0][leaf];
+  uint32_t middle[3];
+  for (int a = 0; a < 3; a++) middle[a] = b->low[a] + (b->high[a] - b->low[a]) / 2;
+  size_t nearest = begin;
+  for (size_t n = begin + 1; n < end; n++)
+    if (distance_between(t, t->set->place[n], middle) < distance_between(t, t->set->place[nearest], middle))
+      nearest = n;
+  *way = 0;
+  for (size_t n = begin; n < end; n++) {
+    float to = distance_between(t, t->set->place[n], t->set->place[nearest]);
+    *way = to > *way ? to : *way;
+  }
+  return nearest;
+}
+
+/* bound: a number that the k-th distance at the middle does not exceed. Returns the k-th distance there. */
+static float search_leaf(search *s, crowd *c, size_t leaf, size_t middle, float way, float bound) {
+  const tree *t = s->tree;
+  size_t begin = leaf * LEAF, end = begin + LEAF < t->set->count ? begin + LEAF : t->set->count;
+  float at_middle = search_one(s, middle, bound), reach = (at_middle + way) * 1.0001f;
+  c->count = 0;
+  bool gathered = gather(t, t->layers - 1, 0, &t->layer[0][leaf], reach * reach * 1.0001f + 1, c);
+  for (size_t n = begin; n < end; n++) {
+    float most = at_middle + distance_between(t, t->set->place[n], t->set->place[middle]);
+    float distance = n == middle ? at_middle
+                     : gathered  ? search_crowd(s, c, n, most)
+                                 : search_one(s, n, most);
+    t->set->length[n] = (float)(0.5 * (double)distance * t->least_unit);
+  }
+  return at_middle;
+}
+
+static void find_distances(void *data, size_t index, int worker) {
+  const tree *t = data;
+  search s = {.tree = t};
+  crowd c;
+  float before = INFINITY;
+  size_t last_middle = 0;
+  (void)worker;
+  for (size_t leaf = index * (AT_ONCE / LEAF); leaf < (index + 1) * (AT_ONCE / LEAF) && leaf < t->count[0];
+       leaf++) {
+    size_t begin = leaf * LEAF, end = begin + LEAF < t->set->count ? begin + LEAF : t->set->count;
+    float way;
+    size_t middle = middle_of(t, leaf, begin, end, &way);
+    if (before < INFINITY) before += distance_between(t, t->set->place[middle], t->set->place[last_middle]);
+    before = search_leaf(&s, &c, leaf, middle, way, before);
+    last_middle = middle;
+  }
+}
+
+/* Particles at one place with all their neighbours have no length of their own: they get the least of the
+ * others. */
+static hl_status mend_lengths(hl_particle_set *set, const char *subject, hl_error *error) {
+  float least = INFINITY;
+  for (size_t n = 0; n < set->count; n++)
+    if (set->length[n] > 0 && set->length[n] < least) least = set->length[n];
+  if (!(least < INFINITY))
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: all particles are at one place: give smoothing lengths, or more places", subject);
+  for (size_t n = 0; n < set->count; n++)
+    if (!(set->length[n] > 0)) set->length[n] = least;
+  return HL_OK;
+}
+
+hl_status hl_particles_find_lengths(hl_context *context, hl_pool *pool, const char *subject,
+                                    hl_particle_set *set, hl_error *error) {
+  tree t = {.set = set};
+  t.neighbours = set->count - 1 < HL_PARTICLES_NEIGHBOURS ? set->count - 1 : HL_PARTICLES_NEIGHBOURS;
+  t.least_unit = fmin(fmin(set->unit[0], set->unit[1]), set->unit[2]);
+  for (int a = 0; a < 3; a++) t.unit[a] = (float)(set->unit[a] / t.least_unit);
+  hl_status status = make_tree(context, pool, subject, &t, error);
+  if (status == HL_OK) hl_pool_run(pool, (set->count + AT_ONCE - 1) / AT_ONCE, find_distances, &t);
+  for (int l = 0; l < t.layers; l++) hl_release(context, t.layer[l]);
+  if (status == HL_OK && hl_pool_cancelled(pool))
+    status = hl_fail(error, HL_ERROR_CANCELLED, "%s: stopped", subject);
+  return status == HL_OK ? mend_lengths(set, subject, error) : status;
+}

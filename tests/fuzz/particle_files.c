@@ -1,0 +1,10 @@
+/* tests/fuzz/particle_files.c - fuzz target: particles in tables, in dumps of LAMMPS, and in XYZ files. */
+#include "target.h"
+
+const uint64_t fuzz_memory_limit = 8 << 20;
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+  fuzz_load_volume("v.csv", "v.raw", data, size);
+  fuzz_load_volume("v.xyz", "v.raw", data, size);
+  return 0;
+}
