@@ -82,10 +82,18 @@ def _described(volume: Volume) -> dict[str, Any]:
             "histogram": [int(count) for count in info.histogram]}
 
 
+def _choices(option: bytes) -> list[str]:
+    """The choices of an option that scenes are composed by; none where there is no such option."""
+    choices, found = lib.hl_option_choices(option), []
+    while choices != ffi.NULL and choices[len(found)].name != ffi.NULL:
+        found.append(text_of(choices[len(found)].name))
+    return found
+
+
 def _start(scene: Scene, title: str) -> dict[str, Any]:
     """What the page is told first, as the program's server tells it."""
     return {"title": title, "scene": json.loads(scene.to_json()), "volumes": [_described(one) for one in scene.volumes],
-            "presets": names(lib.hl_preset_name),
+            "presets": names(lib.hl_preset_name), "looks": _choices(b"look"), "rigs": _choices(b"light-rig"),
             "colormaps": {name: colormap_points(name) for name in names(lib.hl_colormap_name)}}
 
 
@@ -107,6 +115,18 @@ def _encoded(image: Image, asked: dict[str, Any]) -> tuple[str, bytes]:
     if asked["format"] in ("exr", "npy"):
         return "image/x-exr" if asked["format"] == "exr" else "application/octet-stream", image.encode(asked["format"])
     return "image/png", image.encode("png", depth=16 if asked["depth"] == 16 else 8, metadata=bool(asked.get("metadata", True)))
+
+
+def _composed(scene: Scene, choices: dict[str, str]) -> Scene:
+    """The scene with the look and the light rig that the page asks for by name."""
+    keep = [(name, ffi.new("char[]", choices[word].encode())) for word, name in (("look", b"look"), ("rig", b"light-rig")) if choices.get(word)]
+    if not keep:
+        return scene
+    options, names_of_options = ffi.new("hl_option[]", len(keep)), [ffi.new("char[]", name) for name, _ in keep]
+    for option, name, (_, value) in zip(options, names_of_options, keep, strict=True):
+        option.name, option.value = name, value
+    return Scene._of(made(lib.hl_scene_compose, "hl_scene", lib.hl_scene_release, context, lib.hl_scene_describe(scene._handle), 0,
+                          options, len(keep)))
 
 
 class _Frames(threading.Thread):
@@ -158,7 +178,7 @@ class _Frames(threading.Thread):
         return {"text": json.dumps(_start(self.scene, self.title))}, []
 
     def _do_complete(self, message: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
-        return {"text": self.named.read(message["scene"]).to_json()}, []
+        return {"text": _composed(self.named.read(message["scene"]), message.get("choices", {})).to_json()}, []
 
     def _do_frame(self, message: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
         lane = self._lane(message)

@@ -235,13 +235,14 @@ static hl_status read_scene(server *s, long long number, const char *text, size_
   return HL_ERROR_INPUT;
 }
 
-void answer_scene(server *s, const frame_request *request, const film_request *film, int frame,
-                  server_answer *answer) {
+void answer_scene(server *s, const frame_request *request, const composed_choices *choices,
+                  const film_request *film, int frame, server_answer *answer) {
   hl_scene *scene = NULL;
   hl_error error = {0};
   current.page = NULL;
   if (refuse_closed(s, request->opened, answer)) return;
   hl_status status = read_scene(s, request->opened, request->text, request->length, &scene, &error);
+  if (status == HL_OK) status = compose_choices(s->sealed, choices, &scene, &error);
   if (status == HL_OK && film != NULL) status = turn_to_frame(s, &scene, film, frame, &error);
   if (status == HL_OK) status = hl_scene_to_json(s->options.context, scene, &answer->text, &error);
   hl_scene_release(scene);

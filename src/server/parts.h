@@ -12,6 +12,7 @@
 
 #include "connections.h"
 #include "server.h"
+#include "start/composed.h"
 #include "start/places.h"
 
 enum {
@@ -157,9 +158,10 @@ int pages_count(server *s, int *rendering);
 int page_progress(server *s, const char *name, int *others);
 /* film: null for a picture. */
 void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer);
-/* The scene with its defaults; with a film, as it is at that frame of the film. film: null for none. */
-void answer_scene(server *s, const frame_request *request, const film_request *film, int frame,
-                  server_answer *answer);
+/* The scene with its defaults and the page's choices; with a film, as it is at that frame of the film. film:
+ * null for none. */
+void answer_scene(server *s, const frame_request *request, const composed_choices *choices,
+                  const film_request *film, int frame, server_answer *answer);
 /* Makes the page's frames below this number outdated. */
 void cancel_frames(server *s, const char *page, unsigned long long number);
 /* How far the page's film is; false: it has none. */

@@ -405,10 +405,11 @@ static void post_scene(server *s, struct MHD_Connection *connection, const reque
                        server_answer *answer) {
   frame_request wanted = read_query(connection, r);
   film_request film = read_film(connection, NULL);
+  composed_choices choices = {query(connection, "look"), query(connection, "rig")};
   bool turns = query(connection, "frame") != NULL;
   int frame = (int)query_number(connection, "frame", 0, MOST_FILM_FRAMES, 0);
   if (frame >= 0 && film.turntable >= 0 && film.frames >= 0)
-    answer_scene(s, &wanted, turns ? &film : NULL, frame, answer);
+    answer_scene(s, &wanted, &choices, turns ? &film : NULL, frame, answer);
   else
     answer_problem(answer, 400,
                    "a scene of a film needs ?frame=N&frames=N&turntable=N&key0=... (32 keys at most)\n");

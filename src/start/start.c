@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "start.h"
 
+#include <halflight/compose.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -55,7 +56,33 @@ static void put_mask(FILE *out, const hl_volume *mask) {
   fputc('}', out);
 }
 
-static void put_volume(FILE *out, const hl_scene_volume *volume) {
+/* Whether the volume has the cuts that are chosen for it where nobody says which, to take away what holds it.
+ */
+static bool has_chosen_cuts(hl_context *context, const hl_scene_volume *volume) {
+  hl_scene *chosen = NULL;
+  if (volume->cut_count == 0 ||
+      hl_scene_for_volume(context, volume->volume, volume->file, &chosen, NULL) != HL_OK)
+    return false;
+  const hl_scene_volume *other = &hl_scene_describe(chosen)->volumes[0];
+  bool same = other->cut_count == volume->cut_count;
+  for (size_t c = 0; same && c < volume->cut_count; c++) {
+    const hl_cut *a = &volume->cuts[c], *b = &other->cuts[c];
+    same = a->type == b->type && memcmp(a->point, b->point, sizeof a->point) == 0 &&
+           memcmp(a->normal, b->normal, sizeof a->normal) == 0;
+  }
+  hl_scene_release(chosen);
+  return same;
+}
+
+/* What the volume holds, and what was chosen for it. */
+static void put_chosen(FILE *out, hl_context *context, const hl_scene_volume *volume) {
+  const char *kind = NULL;
+  if (hl_volume_guess(volume->volume, volume->file, &kind, NULL) != HL_OK) kind = "";
+  fprintf(out, ",\"kind\":\"%s\",\"chosen_cuts\":%s", kind,
+          has_chosen_cuts(context, volume) ? "true" : "false");
+}
+
+static void put_volume(FILE *out, hl_context *context, const hl_scene_volume *volume) {
   hl_volume_info info = {.struct_size = sizeof info};
   if (hl_volume_get_info(volume->volume, &info) != HL_OK) {
     fputs("null", out);
@@ -80,7 +107,19 @@ static void put_volume(FILE *out, const hl_scene_volume *volume) {
     fprintf(out, "%s%llu", bin > 0 ? "," : "", (unsigned long long)info.histogram[bin]);
   fputs("],\"plane\":", out);
   put_plane_histogram(out, volume->volume, &info);
+  put_chosen(out, context, volume);
   fputs("}", out);
+}
+
+/* The choices of an option that scenes are composed by; none where there is no such option. */
+static void put_choices(FILE *out, const char *name, const char *option) {
+  const hl_setting_choice *choices = hl_option_choices(option);
+  fprintf(out, ",\"%s\":[", name);
+  for (size_t c = 0; choices != NULL && choices[c].name != NULL; c++) {
+    if (c > 0) fputc(',', out);
+    put_json_text(out, choices[c].name);
+  }
+  fputc(']', out);
 }
 
 /* Writes each colormap as rows of value, r, g, b over values from 0 to 1. */
@@ -117,7 +156,7 @@ char *describe_start(hl_context *context, const hl_scene *opened, const char *ti
     fprintf(out, ",\"scene\":%s,\"volumes\":[", scene);
     for (size_t v = 0; v < d->volume_count; v++) {
       if (v > 0) fputc(',', out);
-      put_volume(out, &d->volumes[v]);
+      put_volume(out, context, &d->volumes[v]);
     }
     fputs("],\"presets\":[", out);
     for (size_t p = 0; hl_preset_name(p) != NULL; p++) {
@@ -126,6 +165,8 @@ char *describe_start(hl_context *context, const hl_scene *opened, const char *ti
     }
     fputs("],", out);
     put_colormaps(out, context);
+    put_choices(out, "looks", "look");
+    put_choices(out, "rigs", "light-rig");
     fputs("}", out);
     bool failed = ferror(out) != 0;
     if (fclose(out) != 0 || failed) {

@@ -10,6 +10,7 @@
 #include <halflight/halflight.h>
 
 #include "simd/lanes.h"
+#include "start/composed.h"
 #include "start/places.h"
 #include "start/start.h"
 
@@ -145,13 +146,16 @@ static hl_status read_scene(size_t length, hl_scene **scene, hl_error *error) {
   return HL_ERROR_INPUT;
 }
 
-int web_complete(size_t length) {
+int web_complete(size_t length, const char *look_and_rig) {
   hl_error error = {0};
   hl_scene *scene = NULL;
   char *json = NULL;
   hl_status status = read_scene(length, &scene, &error);
   if (status != HL_OK) return answer_error(status, &error);
-  status = hl_scene_to_json(web.context, scene, &json, &error);
+  const char *look = look_and_rig, *rig = look_and_rig + strlen(look_and_rig) + 1;
+  const composed_choices choices = {look[0] != '\0' ? look : NULL, rig[0] != '\0' ? rig : NULL};
+  status = compose_choices(web.sealed, &choices, &scene, &error);
+  if (status == HL_OK) status = hl_scene_to_json(web.context, scene, &json, &error);
   int answered = status == HL_OK ? answer_text(HL_OK, json) : answer_error(status, &error);
   hl_text_release(web.context, json);
   hl_scene_release(scene);

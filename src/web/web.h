@@ -22,8 +22,9 @@ char *web_text(size_t bytes);
  * start.json. */
 int web_open(const char *title);
 
-/* Answer: the text's scene, whose volumes are of the open one, with all its defaults written out. */
-int web_complete(size_t length);
+/* Answer: the text's scene, whose volumes are of the open one, with all its defaults written out, and with a
+ * look and a light rig where they are not "": two texts, each with a zero at its end. */
+int web_complete(size_t length, const char *look_and_rig);
 
 /* Renders the text's scene, which names the volumes of the open one. format: "png", "npy", or "rgba", bytes
  * of opaque sRGB, top row first. depth: bits of a PNG's codes. metadata: 0, without the scene's text. moving:

@@ -94,9 +94,10 @@ export class HttpChannel {
     return (await this.#ask("progress.json", { page: this.#page }, {})).json();
   }
 
-  // The scene with its defaults written out: presets as points, a camera that frames everything.
-  async completeScene(scene) {
-    return (await this.#ask("scene", { opened: 0 }, { method: "POST", body: JSON.stringify(scene) })).json();
+  // The scene with its defaults written out: presets as points, a camera that frames everything. choices: { look, rig }, names
+  // of what it is to have.
+  async completeScene(scene, choices = {}) {
+    return (await this.#ask("scene", { opened: 0, ...choices }, { method: "POST", body: JSON.stringify(scene) })).json();
   }
 
   // A picture of the scene: { blob, times }, or null where a newer frame of this page has cancelled it. `lane` sets

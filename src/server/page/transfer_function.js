@@ -11,11 +11,12 @@ const nearest = (rows, value) => rows.reduce((best, row, n) => (Math.abs(row[0] 
 // Whether a volume's function takes two numbers, and has boxes in place of points.
 export const isPlane = (volume) => volume?.transfer_function?.second !== undefined;
 
-// Opacity points that may stand at one value, as at a step, keep their order.
+// Opacity points that may stand at one value, as at a step, keep their order. The first and the last may go as far as
+// `range`, or stay beyond it where their neighbours are.
 export function movePoint(tf, index, value, opacity, range) {
-  const low = index > 0 ? tf.opacity[index - 1][0] : range[0];
-  const high = index < tf.opacity.length - 1 ? tf.opacity[index + 1][0] : range[1];
-  const point = [clamp(value, Math.min(low, high), Math.max(low, high)), clamp(opacity, 0, 1)];
+  const before = tf.opacity[index - 1]?.[0] ?? Math.min(range[0], tf.opacity[index][0]);
+  const after = tf.opacity[index + 1]?.[0] ?? Math.max(range[1], tf.opacity[index][0]);
+  const point = [clamp(value, before, after), clamp(opacity, 0, 1)];
   const points = tf.opacity.map((p, n) => (n === index ? point : p));
   return isReadable(points) ? { ...tf, opacity: points } : tf;
 }

@@ -48,8 +48,8 @@ class WidgetChannel {
     return JSON.parse((await this.#ask("start", {})).text);
   }
 
-  async completeScene(scene) {
-    return JSON.parse((await this.#ask("complete", { scene: JSON.stringify(scene) })).text);
+  async completeScene(scene, choices = {}) {
+    return JSON.parse((await this.#ask("complete", { scene: JSON.stringify(scene), choices })).text);
   }
 
   async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "" } = {}) {

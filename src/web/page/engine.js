@@ -90,8 +90,10 @@ export class Engine {
     return answer === null ? null : JSON.parse(new TextDecoder().decode(answer));
   }
 
-  async complete(scene) {
-    return JSON.parse(new TextDecoder().decode(this.#check(await this.#exports.web_complete(this.#write(JSON.stringify(scene))))));
+  async complete(scene, { look = "", rig = "" } = {}) {
+    const length = this.#write(JSON.stringify(scene));
+    const answer = await this.#with(`${look}\0${rig}`, (pointer) => this.#exports.web_complete(length, pointer));
+    return JSON.parse(new TextDecoder().decode(answer));
   }
 
   // A picture's bytes, for the caller to keep; null: cancelled. format: "png", "npy" or "rgba".

@@ -49,7 +49,7 @@ const calls = {
   open: async ({ contents, path, title }) => ({ start: await engine.open(contents, path, title) }),
   slice: async (plane) => engine.slice(plane),
   depth: async ({ scene }) => ({ found: await engine.depth(scene) }),
-  complete: async ({ scene }) => ({ scene: await engine.complete(scene) }),
+  complete: async ({ scene, choices }) => ({ scene: await engine.complete(scene, choices) }),
   async frame({ scene, format, quality, depth, metadata, moving, number }) {
     await messagesHandled();
     if (gone.has(number)) return { blob: null };

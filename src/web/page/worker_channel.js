@@ -43,8 +43,8 @@ export class WorkerChannel {
     return (await this.#ask("open", { contents, path, title })).start;
   }
 
-  async completeScene(scene) {
-    return (await this.#ask("complete", { scene })).scene;
+  async completeScene(scene, choices = {}) {
+    return (await this.#ask("complete", { scene, choices })).scene;
   }
 
   // { values, width, height } of a plane of voxels.

@@ -1,0 +1,17 @@
+/* start/composed.h - a scene that a page has sent, with the choices that it asks for by name. */
+#ifndef HL_START_COMPOSED_H
+#define HL_START_COMPOSED_H
+
+#include <halflight/compose.h>
+
+/* The choices of a page. Null: none. */
+typedef struct composed_choices {
+  const char *look; /* as the option "look" of hl_scene_compose() */
+  const char *rig;  /* as the option "light-rig" */
+} composed_choices;
+
+/* Replaces the scene by the one with the choices. context: opens no file. On an error the scene stays. */
+hl_status compose_choices(hl_context *context, const composed_choices *choices, hl_scene **scene,
+                          hl_error *error);
+
+#endif
