@@ -67,9 +67,9 @@ def set_control(browser, label, value, event="input", section=""):
     """Moves the slider, list or switch with this label as a hand would; section: the title of the panel, where others have such a label too."""
     browser.run(f"""(() => {{
       const label = [...document.querySelectorAll('aside label')].find((l) => l.textContent.trim() === {json.dumps(label)} &&
-        l.closest('details').querySelector('summary').textContent.includes({json.dumps(section)}));
+        ({json.dumps(section)} === '' || l.closest('details')?.querySelector('summary').textContent.includes({json.dumps(section)})));
       const control = document.getElementById(label.htmlFor);
-      control.closest('details').open = true;
+      if (control.closest('details')) control.closest('details').open = true;
       if (control.type === 'checkbox' || control.type === 'radio') control.click();
       else {{ control.value = {json.dumps(value)}; control.dispatchEvent(new Event({json.dumps(event)})); }}
     }})()""")

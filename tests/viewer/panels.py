@@ -82,6 +82,7 @@ def surfaces(browser):
     changes(browser, "matter too", lambda: set_control(browser, "Surfaces alone", "", section="Isosurfaces"), "volumes")
     check(scene_of(browser)["volumes"][0]["transfer_function"] == before[0]["transfer_function"], "the function comes back")
     changes(browser, "surfaces alone", lambda: set_control(browser, "Surfaces alone", "", section="Isosurfaces"), "volumes")
+    press_named(browser, "cut 2")
     changes(browser, "remove", lambda: press_named(browser, "Remove this isosurface"), "volumes")
     changes(browser, "remove the last", lambda: press_named(browser, "Remove this isosurface"), "volumes")
     check(scene_of(browser)["volumes"] == before, "what was there is there again")

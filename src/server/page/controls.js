@@ -30,9 +30,15 @@ export function shortNumber(value) {
   return String(+value.toPrecision(size >= 1000 ? 5 : 3));
 }
 
+// A button that adds a key of numbers of the scene to the film, seen while the panel of films is open (film_panel.js listens).
+export const keyButton = (label, path) => make("button", {
+  type: "button", class: "key-here", title: "Key of the film: this number at the chosen frame", "aria-label": `Add a key of ${label}`,
+  onclick: (event) => event.currentTarget.dispatchEvent(new CustomEvent("halflight-key", { bubbles: true, detail: [path()].flat() })),
+}, "◆");
+
 // A slider with its number beside it. get() gives the value, set(value) takes it; exponential: the slider moves in
-// equal factors. Returns { element, update }.
-export function slider({ label, low, high, step = "any", unit = "", exponential = false, get, set, title }) {
+// equal factors. path(): the path of the number in the scene, or a list of several, for keys of films. Returns { element, update }.
+export function slider({ label, low, high, step = "any", unit = "", exponential = false, get, set, title, path }) {
   const toSlider = exponential ? Math.log : (x) => x, fromSlider = exponential ? Math.exp : (x) => x;
   const id = newId();
   const range = make("input", {
@@ -57,7 +63,7 @@ export function slider({ label, low, high, step = "any", unit = "", exponential 
     if (!isActive(number)) number.value = shortNumber(value);
   }
   const name = make("label", { for: id, title }, label);
-  return { element: row(name, range, make("span", { class: "measure" }, number, make("span", { class: "unit" }, unit))), update };
+  return { element: row(name, range, make("span", { class: "measure" }, number, make("span", { class: "unit" }, unit), ...(path ? [keyButton(label, path)] : []))), update };
 }
 
 // One of some choices, as buttons side by side: [[value, text], ...].
@@ -72,11 +78,11 @@ export function segments({ label, choices, get, set }) {
   return { element: row(make("span", { class: "name" }, label), group), update };
 }
 
-// A drop-down list: [[value, text], ...].
+// A drop-down list: [[value, text], ...], or { group, choices } in their place for a group of them with a name.
 export function select({ label, choices, get, set, title }) {
-  const id = newId();
+  const id = newId(), option = ([value, text]) => make("option", { value }, text);
   const input = make("select", { id, title, onchange: () => set(input.value) },
-    ...choices.map(([value, text]) => make("option", { value }, text)));
+    ...choices.map((choice) => (choice.group ? make("optgroup", { label: choice.group }, ...choice.choices.map(option)) : option(choice))));
   const update = () => { input.value = get(); };
   return { element: row(make("label", { for: id }, label), input), update };
 }

@@ -96,13 +96,11 @@ function panelOf({ title, noun, overlay, report, owner, cuts: cutsNow, take: tak
     ];
   }
 
-  const allOn = () => toggle({ label: "All cuts", get: () => list.some((one) => one.on), set: (on) => take("all", list.map((one) => ({ ...one, on }))) });
-
   function build() {
     element.hidden = owner() < 0;
     if (element.hidden) return;
     follow();
-    parts = [...(list.length > 1 ? [allOn()] : []), numbered, ...(list.length > 0 ? [...cutParts(), ...others()] : [])];
+    parts = [numbered, ...(list.length > 0 ? [...cutParts(), ...others()] : [])];
     body.replaceChildren(...parts.map((part) => part.element));
     parts.forEach((part) => part.update());
   }
@@ -121,6 +119,41 @@ function panelOf({ title, noun, overlay, report, owner, cuts: cutsNow, take: tak
   element.addEventListener("toggle", () => overlay.draw());
   build();
   return { element, update, rebuild: build };
+}
+
+// The switch of everything that is cut away: the cuts and clip boxes of all volumes and the scene's cuts. It says what the
+// program has cut by itself, below the picture too, where one click brings it back.
+export function cutSwitch(viewer) {
+  const { store, start, find } = viewer;
+  const cutsOf = ({ volumes, cuts }) => ({ volumes: volumes.map(({ cuts: own, clip }) => ({ cuts: own, clip })), cuts });
+  const isCut = ({ volumes, cuts }) => cuts?.length > 0 || volumes.some((volume) => volume.cuts?.length > 0 || volume.clip);
+  const withCuts = ({ cuts: _, ...scene }, { volumes, cuts }) => ({
+    ...scene, ...(cuts ? { cuts } : {}),
+    volumes: scene.volumes.map(({ cuts: __, clip: ___, ...volume }, n) => ({ ...volume, ...(volumes[n]?.cuts ? { cuts: volumes[n].cuts } : {}), ...(volumes[n]?.clip ? { clip: volumes[n].clip } : {}) })),
+  });
+  const chosen = start.volumes.reduce((count, about, n) => count + (about?.chosen_cuts ? start.scene.volumes[n].cuts.length : 0), 0);
+  let away = null; // what the switch has taken off
+  function set(on) {
+    if (on && away !== null) store.change("all cuts", (scene) => withCuts(scene, away));
+    else if (!on) {
+      away = cutsOf(store.scene);
+      store.change("all cuts", (scene) => withCuts(scene, { volumes: [] }));
+    }
+  }
+  const all = toggle({ label: "All cuts", get: () => isCut(store.scene), set });
+  const why = `${chosen} ${chosen === 1 ? "plane takes" : "planes take"} away what holds the object`;
+  const told = make("p", { class: "facts", hidden: chosen === 0 }, `${why}: chosen by the program, as nobody said what to cut.`);
+  const note = make("button", { type: "button", class: "note", hidden: chosen === 0, onclick: () => set(!isCut(store.scene)) });
+  find("statistics").before(note);
+  viewer.toggleCuts = () => { if (isCut(store.scene) || away !== null) set(!isCut(store.scene)); };
+  const element = make("div", { class: "chooser" }, all.element, told);
+  function update() {
+    all.update();
+    element.hidden = !isCut(store.scene) && away === null;
+    note.textContent = isCut(store.scene) ? `show what holds it: ${chosen} ${chosen === 1 ? "plane cuts" : "planes cut"} it away` : "cut away again what holds it";
+  }
+  update();
+  return { element, update };
 }
 
 export function cutPanel({ store, start, current, report, overlay }) {

@@ -137,7 +137,7 @@ function maker(film, { start, channel }) {
 }
 
 export function filmPanel(viewer) {
-  const { store, start, channel, report, copy, find } = viewer, film = new Film(viewer);
+  const { store, start, channel, report, copy, find, root } = viewer, film = new Film(viewer);
   const { element, body } = section("Film", false);
   const number = (label, key, low, high) => make("input", {
     type: "number", min: low, max: high, step: 1, value: film[key], "aria-label": label,
@@ -152,6 +152,12 @@ export function filmPanel(viewer) {
   const strip = timelineStrip({ get: () => film, setTracks: (tracks) => film.set({ tracks }), show: (frame) => film.show(frame), play: () => film.play(), canShow: channel.sceneAt !== undefined });
 
   const addKey = (name, value) => film.set({ tracks: withKey(film.tracks, name, film.frame, value) });
+  // A button beside a slider (controls.js).
+  root.addEventListener("halflight-key", ({ detail }) => {
+    const values = detail.map((name) => numberAt(store.scene, name));
+    if (values.some((value) => typeof value !== "number")) report("This number is not in the scene yet: change it first.");
+    else detail.forEach((name, n) => addKey(name, values[n]));
+  });
   function addNumber() {
     const name = path.value.trim(), value = numberAt(store.scene, name);
     if (typeof value === "number") addKey(name, value);
@@ -160,6 +166,7 @@ export function filmPanel(viewer) {
 
   element.addEventListener("toggle", () => {
     strip.element.hidden = !element.open;
+    root.classList.toggle("filming", element.open);
     if (element.open) names.replaceChildren(...numberPaths(store.scene).map((value) => make("option", { value })));
     strip.update();
   });
@@ -171,7 +178,7 @@ export function filmPanel(viewer) {
     names, row("", path), row("", button("key of this number now", addNumber)),
     ...(channel.film ? [kind.element, ...maker(film, viewer)] : []),
     row("", button("copy animate command", () => copy(animateCommand(film.scene, start.title, film.wanted), "the command"))),
-    make("p", { class: "facts" }, "Choose a frame below the picture, turn the camera or change a number, and add its key."));
+    make("p", { class: "facts" }, "Choose a frame below the picture, turn the camera or move a slider, and add its key: ◆ beside the slider."));
   film.changed = () => { strip.update(); turn.update(); };
   kind.update();
   film.changed();

@@ -33,6 +33,7 @@ export class Frames {
   #work = 100000; // pixels, for sheets a voxel apart, that take as long as the budget
   #voxels;
   #scene = null; // what the newest picture is, or will be, of
+  #animation = null; // { change, began, milliseconds }
   statistics = { previews: 0, cancelled: 0, finals: 0, stage: "start" };
 
   // report({ stage, width, height, spacing, milliseconds, bytes, error }) is told of every frame.
@@ -49,6 +50,7 @@ export class Frames {
   end() {
     this.#ended = true;
     this.#changed = false;
+    this.#animation = null;
     this.#generation++;
     clearTimeout(this.#timer);
   }
@@ -57,6 +59,7 @@ export class Frames {
   move() {
     if (this.#ended) return;
     this.#scene = this.#store.scene;
+    this.#animation = null;
     this.#changed = true;
     this.#generation++;
     clearTimeout(this.#timer);
@@ -64,6 +67,21 @@ export class Frames {
     if (this.statistics.stage === "refining") this.statistics.cancelled++;
     this.statistics.stage = "moving";
     if (!this.#busy) this.#preview();
+  }
+
+  // Shows change(scene, part) in place of the scene, for a part from 0 to 1 that grows for this long, or until something
+  // changes.
+  animate(change, milliseconds) {
+    this.move();
+    this.#animation = { change, began: performance.now(), milliseconds };
+  }
+
+  // A frame of the animation; the scene itself where there is none, or no more.
+  #animated(scene) {
+    if (this.#animation === null) return scene;
+    const { change, began, milliseconds } = this.#animation, part = (performance.now() - began) / milliseconds;
+    if (part >= 1) this.#animation = null;
+    return part < 1 ? change(scene, part) : scene;
   }
 
   #full() {
@@ -85,9 +103,9 @@ export class Frames {
 
   async #preview() {
     this.#busy = true;
-    while (this.#changed) {
+    while (this.#changed || this.#animation !== null) {
       this.#changed = false;
-      const scene = this.#affordable(), began = performance.now();
+      const scene = this.#animated(this.#affordable()), began = performance.now();
       try {
         const frame = await this.#channel.fetchFrame(scene, { quality: 80, moving: true });
         if (frame !== null) {
@@ -97,6 +115,7 @@ export class Frames {
           this.#tell("moving", scene, began, frame.blob);
         }
       } catch (error) {
+        this.#animation = null;
         this.#fail(error);
         await new Promise((resolve) => setTimeout(resolve, 300));
       }

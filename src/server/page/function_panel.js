@@ -44,6 +44,9 @@ function chosenPoint(canvas, get, set, range) {
   return { element: make("div", { class: "row chosen" }, make("label", { class: "inline" }, "value ", value), opacityLabel, shadeLabel), update };
 }
 
+// A function of one value has no range: its colours go over the volume's.
+const spread = ([low, high], range) => (high > low ? [low, high] : range);
+
 // Two numbers between which colours and opacities lie.
 function rangeRow(get, set) {
   const inputs = [0, 1].map((end) => make("input", {
@@ -61,6 +64,17 @@ function rangeRow(get, set) {
     });
   }
   return { element: row(make("span", { class: "name" }, "Range"), make("span", { class: "pair" }, inputs[0], "to", inputs[1])), update };
+}
+
+// Presets for what the program takes the volume for come first. Values of a scan that reach below those of fat are Hounsfield units.
+const SUITED = { "scanned brain": /^mr-/, "smoke or cloud": /^smoke/, field: /^electron/ };
+const LEAST_OF_MR = -500;
+
+function presetGroups(names, { kind, range }) {
+  const suits = kind === "scanned body" || kind === "scanned matter" ? (range[0] <= LEAST_OF_MR ? /^ct-/ : /^(ct|mr)-/) : SUITED[kind];
+  const listed = (some) => some.map((name) => [name, name]), suited = names.filter((name) => suits?.test(name));
+  if (suited.length === 0) return listed(names);
+  return [{ group: `for a ${kind}`, choices: listed(suited) }, { group: "for other volumes", choices: listed(names.filter((name) => !suited.includes(name))) }];
 }
 
 export function functionPanel({ store, start, current, channel, failed }) {
@@ -97,7 +111,7 @@ export function functionPanel({ store, start, current, channel, failed }) {
     ofTwo = isPlane(volume());
     const about = start.volumes[current.volume], range = about.range;
     const presets = select({
-      label: "Preset", choices: [["", "choose …"], ["automatic", "automatic"], ...start.presets.map((name) => [name, name])],
+      label: "Preset", choices: [["", "choose …"], ["automatic", "automatic"], ...presetGroups(start.presets, about)],
       get: () => named.get(JSON.stringify(get())) ?? "", set: (name) => name && applyPreset(name),
     });
     if (ofTwo) {
@@ -113,12 +127,12 @@ export function functionPanel({ store, start, current, channel, failed }) {
     canvas.onSelect = () => chosen.update();
     const unit = get().unit_distance;
     const density = slider({
-      label: "Opacity", low: 0.02, high: 50, exponential: true, unit: "×", title: "How much a length of matter hides",
+      label: "Opacity", path: () => `volumes.${current.volume}.transfer_function.unit_distance`, low: 0.02, high: 50, exponential: true, unit: "×", title: "How much a length of matter hides",
       get: () => unit / get().unit_distance, set: (factor) => set({ ...get(), unit_distance: unit / factor }, "density"),
     });
     const maps = select({
       label: "Colours", choices: [["", "own"], ...Object.keys(start.colormaps).map((name) => [name, name])],
-      get: () => colormapOf(get(), start.colormaps), set: (name) => name && set(withColormap(get(), start.colormaps[name], rangeOf(get())), `map ${name}`),
+      get: () => colormapOf(get(), start.colormaps), set: (name) => name && set(withColormap(get(), start.colormaps[name], spread(rangeOf(get()), range)), `map ${name}`),
     });
     const zoomed = row(make("span", { class: "name" }, "Zoom to"), make("span", { class: "buttons" },
       button("all values", () => { canvas.shown = range; }),

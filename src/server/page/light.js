@@ -8,6 +8,7 @@ import { add, dot, length, normalize, scale, subtract, turnBetween } from "./vec
 
 const radians = Math.PI / 180;
 export const LARGEST_SIZE = 60; // degrees
+const SWEEP = 120 * radians;
 
 const isInCamera = (light) => light.frame === "camera";
 const pivot = (light, camera) => (isInCamera(light) ? [0, 0, 0] : camera.target);
@@ -55,6 +56,15 @@ export function steppedDirection([right, up, towards], dx, dy, degrees) {
   const azimuth = Math.atan2(right, towards) + dx * degrees * radians;
   const elevation = Math.min(Math.max(Math.asin(Math.min(Math.max(up, -1), 1)) + dy * degrees * radians, -1.55), 1.55);
   return [Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation), Math.cos(elevation) * Math.cos(azimuth)];
+}
+
+// The scene with the first of its lights that cast shadows on the way to where it stands, from behind the left; part: from 0 to 1.
+export function sweptLight(scene, part) {
+  const index = scene.lights.findIndex((light) => light.shadows !== "off");
+  if (index < 0) return scene;
+  const { camera } = scene, [right, up, towards] = directionOf(scene.lights[index], camera), left = SWEEP * (1 - part) ** 3;
+  const turned = [right * Math.cos(left) - towards * Math.sin(left), up, towards * Math.cos(left) + right * Math.sin(left)];
+  return { ...scene, lights: scene.lights.map((light, l) => (l === index ? withDirection(light, camera, turned) : light)) };
 }
 
 // Half of the light's width.

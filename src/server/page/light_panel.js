@@ -1,13 +1,32 @@
 // The panels of lights and shadows.
 
 import { hexOf, linearOf } from "./color.js";
-import { color, make, section, segments, select, slider, tabs, toggle } from "./controls.js";
+import { comparison } from "./comparison.js";
+import { color, keyButton, make, row, section, segments, select, slider, tabs, toggle } from "./controls.js";
+import { gallery } from "./gallery.js";
 import { LARGEST_SIZE, newLight, sizeOf, withOtherFrame, withSize } from "./light.js";
 
 // Where a light's colour has been made so that its brightest part is 1: its strength is the intensity.
 const shown = (light) => light.color.map((c) => c / Math.max(...light.color, 1e-9));
 
-export function lightPanel({ store, current, overlay }) {
+// The rigs: lights and a sky by name. They begin from the light that the viewer began with, so that one after the other is as bright.
+function rigsOf(viewer) {
+  const { store, start, channel, atRest } = viewer, { lights, sky, ambient } = start.scene;
+  const told = (scene) => JSON.stringify([scene.lights, scene.sky]);
+  const rigs = gallery({
+    label: "Light rigs", names: start.rigs ?? [], viewer, lane: "-rigs", made: (rig) => channel.completeScene({ ...store.scene, lights, ...(sky ? { sky } : {}), ...(ambient ? { ambient } : {}) }, { rig }),
+    isTaken: (scene) => told(scene) === told(store.scene),
+    take: (name, made) => store.change(`rig ${name}`, (scene) => ({ ...scene, lights: made.lights, sky: made.sky, ambient: made.ambient })),
+  });
+  atRest.push(rigs.atRest);
+  return rigs;
+}
+
+// The paths of the numbers that say where a light is.
+const placesOf = (light, index) => ["direction", "position"].filter((key) => light[key]).flatMap((key) => [0, 1, 2].map((axis) => `lights.${index}.${key}.${axis}`));
+
+export function lightPanel(viewer) {
+  const { store, current, overlay } = viewer;
   const { element, body } = section("Lights");
   const light = () => store.scene.lights[current.light];
   const change = (name, set) => store.changeLight(current.light, name, set);
@@ -33,11 +52,11 @@ export function lightPanel({ store, current, overlay }) {
   });
   const rows = [
     slider({
-      label: "Intensity", low: 0, high: 4, get: () => light().intensity ?? 1,
+      label: "Intensity", low: 0, high: 4, path: () => `lights.${current.light}.intensity`, get: () => light().intensity ?? 1,
       set: (intensity) => change("intensity", (l) => ({ ...l, intensity })),
     }),
     slider({
-      label: "Size", low: 0, high: LARGEST_SIZE, unit: "°", title: "How wide the light is: wider lights cast softer shadows",
+      label: "Size", low: 0, high: LARGEST_SIZE, unit: "°", path: () => `lights.${current.light}.${light().type === "directional" ? "angular_diameter_deg" : "radius"}`, title: "How wide the light is: wider lights cast softer shadows",
       get: () => sizeOf(light(), store.scene.camera),
       set: (degrees) => change("size", (l) => withSize(l, store.scene.camera, degrees)),
     }),
@@ -56,15 +75,20 @@ export function lightPanel({ store, current, overlay }) {
   ];
   const own = make("div", {}, ...rows.map((r) => r.element));
   const ambient = slider({
-    label: "Ambient", low: 0, high: 1, get: () => Math.max(...(store.scene.ambient ?? [0.2, 0.2, 0.2])),
+    label: "Ambient", low: 0, high: 1, path: () => [0, 1, 2].map((c) => `ambient.${c}`), get: () => Math.max(...(store.scene.ambient ?? [0.2, 0.2, 0.2])),
     set: (level) => store.change("ambient", (scene) => ({ ...scene, ambient: [level, level, level] })),
   });
-  body.append(list.element, handles.element, own, ambient.element);
+  const rigs = rigsOf(viewer), place = row(make("span", { class: "name" }, "Place"), make("span", { class: "facts" }, "drag it in the picture"), keyButton("the light's place", () => placesOf(light(), current.light)));
+  place.classList.add("place");
+  own.append(place);
+  element.addEventListener("toggle", rigs.atRest);
+  body.append(rigs.element, list.element, handles.element, own, ambient.element);
   function update() {
     current.light = Math.min(current.light, Math.max(store.scene.lights.length - 1, 0));
     list.update();
     handles.update();
     ambient.update();
+    rigs.update();
     own.hidden = light() === undefined;
     if (light() !== undefined) rows.forEach((r) => r.update());
   }
@@ -72,7 +96,8 @@ export function lightPanel({ store, current, overlay }) {
   return { element, update };
 }
 
-export function shadowPanel({ store }) {
+export function shadowPanel(viewer) {
+  const { store } = viewer;
   const { element, body } = section("Shadows");
   const render = () => store.scene.render;
   const kind = segments({
@@ -91,9 +116,12 @@ export function shadowPanel({ store }) {
     label: "Step", low: 0.25, high: 4, exponential: true, unit: "voxels", title: "How far apart the final picture takes samples (its sheets): closer is finer and slower",
     get: () => render().sheet_spacing, set: (value) => store.changeRender("sheet_spacing", +value.toPrecision(3)),
   });
-  body.append(kind.element, method.element, samples.element, spacing.element);
+  const compared = comparison(viewer);
+  viewer.compare = compared.compare;
+  viewer.atRest.push(compared.atRest);
+  body.append(kind.element, ...compared.elements, method.element, samples.element, spacing.element);
   function update() {
-    for (const part of [kind, method, samples, spacing]) part.update();
+    for (const part of [kind, method, samples, spacing, compared]) part.update();
     method.element.hidden = render().shadows !== "soft";
     samples.element.hidden = method.element.hidden || render().soft_method !== "sublights";
   }

@@ -1,6 +1,7 @@
 // The page: a viewer over the whole window, of what the server has open, as this tab has left it.
 
 import { HttpChannel } from "./http_channel.js";
+import { isLink } from "./link.js";
 import { filesOf, keepSession, keptSession, restoreFrom } from "./session.js";
 import { mount } from "./viewer.js";
 
@@ -17,7 +18,16 @@ function show(start, source = null, kept = null) {
   const viewer = mount(document.body, channel, start, { keyboard: document, reopen: show, source, kept, restore: (file) => restoreFrom(file, viewer, channel, reopen), startAfresh: () => show(start, source) });
   globalThis.halflight = viewer; // for the console, and for tests
   keepSession(viewer.store, start, source, shown.keeping.signal);
+  followAddress();
   return viewer;
+}
+
+// Shows what a link at the end of the address tells, and takes it out of there: a reload goes on with what was done since.
+function followAddress() {
+  const { hash } = location;
+  if (!isLink(hash)) return;
+  history.replaceState(null, "", location.pathname);
+  globalThis.halflight.followLink(hash);
 }
 
 // Opens the file that a session is of, and goes on with it; false: it is not in the viewer's folder, or is another one.
@@ -43,6 +53,7 @@ async function begin() {
   return show(start, null, goesOn ? kept : null);
 }
 
+addEventListener("hashchange", followAddress);
 addEventListener("pagehide", () => channel?.leave());
 addEventListener("pageshow", (event) => { if (event.persisted) location.reload(); }); // what it had is given back
 

@@ -179,10 +179,11 @@ export class Overlay {
   #makeHandle(l) {
     const ring = make("svg:circle", { class: "light-ring", onpointerdown: (event) => this.#grab(event, l, "size") });
     const dot = make("svg:circle", { class: "light-dot", r: 9, onpointerdown: (event) => this.#grab(event, l, "place") });
+    const target = make("svg:circle", { class: "target", r: 12, onpointerdown: (event) => this.#grab(event, l, "place") });
     return make("svg:g", {
       class: "light", tabindex: 0, role: "slider", "aria-label": `Light ${l + 1}`, "aria-valuenow": l + 1, "data-light": l,
       onfocus: () => this.#choose(l), onkeydown: (event) => this.#key(event, l),
-    }, ring, dot);
+    }, ring, dot, target);
   }
 
   #choose(l) {

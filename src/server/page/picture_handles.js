@@ -56,10 +56,9 @@ export class PictureHandles {
   }
 
   #make(n) {
-    return make("svg:rect", {
-      x: -6, y: -6, width: 12, height: 12, rx: 3, tabindex: 0, role: "slider",
-      onpointerdown: (event) => this.#grab(event, this.#handles[n]), onkeydown: (event) => this.#key(event, this.#handles[n]),
-    });
+    return make("svg:g", {
+      tabindex: 0, role: "slider", onpointerdown: (event) => this.#grab(event, this.#handles[n]), onkeydown: (event) => this.#key(event, this.#handles[n]),
+    }, make("svg:rect", { class: "target", x: -12, y: -12, width: 24, height: 24 }), make("svg:rect", { class: "square", x: -6, y: -6, width: 12, height: 12, rx: 3 }));
   }
 
   #grab(event, handle) {

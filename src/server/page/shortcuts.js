@@ -39,6 +39,8 @@ export function installShortcuts(store, keyboard, area, actions, nearest) {
     ["Home", "Home", "the first view", actions.home],
     ["l", "l", "show the lights' handles", actions.lights],
     ["s", "s", "next kind of shadows: off, hard, soft", actions.shadows],
+    ["k", "k", "all cuts on or off", actions.cuts],
+    ["a", "a", "beside the picture without shadows", actions.compare],
     ["c", "c", "the view before (C: after)", () => store.undoCamera()],
     ["C", "", "", () => store.redoCamera()],
     ["1", "1", "the picture alone", actions.layout("picture")],

@@ -138,9 +138,9 @@ export function surfacePanel({ store, start, current, failed, channel }) {
     element.hidden = false;
     const drawing = lines({ surfaces, chosen: () => chosen, choose, set: (value) => changeSurface("value", { value }), about: about() });
     parts = [
-      slider({ label: "Value", low: about().range[0], high: about().range[1], get: () => surface().value, set: (value) => changeSurface("value", { value }) }),
+      slider({ label: "Value", path: () => `volumes.${current.volume}.iso.${chosen}.value`, low: about().range[0], high: about().range[1], get: () => surface().value, set: (value) => changeSurface("value", { value }) }),
       color({ label: "Colour", get: () => hexOf(surface().color), set: (hex) => changeSurface("color", { color: linearOf(hex) }) }),
-      slider({ label: "Opacity", low: 0, high: 1, title: "The fraction of light that the surface stops", get: () => surface().opacity, set: (opacity) => changeSurface("opacity", { opacity }) }),
+      slider({ label: "Opacity", path: () => `volumes.${current.volume}.iso.${chosen}.opacity`, low: 0, high: 1, title: "The fraction of light that the surface stops", get: () => surface().opacity, set: (opacity) => changeSurface("opacity", { opacity }) }),
       toggle({ label: "Surfaces alone", get: () => isClear(volume().transfer_function), set: setAlone }),
       drawing,
     ];

@@ -18,7 +18,7 @@ export function viewPanel({ store, frameEverything, firstView }) {
     set: (hex) => store.change("background", (scene) => ({ ...scene, image: { ...scene.image, background: linearOf(hex) } })),
   });
   const exposure = slider({
-    label: "Exposure", low: -4, high: 4, unit: "stops", get: () => store.scene.image.exposure ?? 0,
+    label: "Exposure", path: () => "image.exposure", low: -4, high: 4, unit: "stops", get: () => store.scene.image.exposure ?? 0,
     set: (stops) => store.change("exposure", (scene) => ({ ...scene, image: { ...scene.image, exposure: Math.abs(stops) < 0.03 ? 0 : stops } })),
   });
   const tone = segments({

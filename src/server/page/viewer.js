@@ -3,7 +3,7 @@
 import { worldBox } from "./boxes.js";
 import { reshaped } from "./camera.js";
 import { make } from "./controls.js";
-import { cutPanel, sceneCutPanel } from "./cut_panel.js";
+import { cutPanel, cutSwitch, sceneCutPanel } from "./cut_panel.js";
 import { copier, exportPanel } from "./export.js";
 import { filmPanel } from "./film_panel.js";
 import { Frames } from "./frames.js";
@@ -11,7 +11,9 @@ import { watchConnection } from "./connection.js";
 import { followGestures } from "./gestures.js";
 import { functionPanel } from "./function_panel.js";
 import { labelPanel } from "./label_panel.js";
+import { sweptLight } from "./light.js";
 import { lightPanel, shadowPanel } from "./light_panel.js";
+import { lookPanel } from "./look_panel.js";
 import { markPanel } from "./mark_panel.js";
 import { openPanel } from "./open_panel.js";
 import { Overlay } from "./overlay.js";
@@ -32,8 +34,8 @@ import { volumeChooser, volumePanel } from "./volume_panel.js";
 
 // One file each; in the order of the side bar, whose four parts have names.
 const PARTS = {
-  Look: [volumeChooser, functionPanel, labelPanel, surfacePanel, volumePanel], Light: [lightPanel, shadowPanel, skyPanel],
-  Inside: [cutPanel, sceneCutPanel, slicePanel, markPanel], "Picture and files": [viewPanel, openPanel, exportPanel, sessionPanel, filmPanel],
+  Look: [volumeChooser, lookPanel, functionPanel, labelPanel, surfacePanel, volumePanel], Light: [lightPanel, shadowPanel, skyPanel],
+  Inside: [cutSwitch, cutPanel, sceneCutPanel, slicePanel, markPanel], "Picture and files": [viewPanel, openPanel, exportPanel, sessionPanel, filmPanel],
 };
 
 const MARKUP = `
@@ -76,6 +78,7 @@ const MARKUP = `
 const MOST_SIDE = 4096; // pixels of the picture
 const NEAR = 0.02; // of a volume's diagonal
 const MESSAGE_TIME = 5000; // milliseconds
+const SWEEP_TIME = 1800; // milliseconds of the light that shows, once, what it is that shadows tell
 
 // Returns the function that shows a line over the picture for a while, in milliseconds.
 function messageBox(box) {
@@ -137,6 +140,8 @@ function actionsOf(viewer, find, root, update) {
     statistics: () => { find("statistics").hidden = !find("statistics").hidden; },
     sidebar: () => { root.classList.toggle("bare"); },
     full: () => (document.fullscreenElement ? document.exitFullscreen() : root.requestFullscreen().catch(() => viewer.report("This browser has no full screen here."))),
+    cuts: () => viewer.toggleCuts(),
+    compare: () => viewer.compare("off"),
     theme: installTheme(root, () => { update(); overlay.draw(); }),
     help: () => find("help").showModal(),
     layout: (layout) => () => { if (viewer.slices.available) store.setPage({ layout }); },
@@ -168,13 +173,13 @@ function revealIn(root) {
 // Fills an empty element with a viewer. channel: how pictures are asked for (http_channel.js); start: what is open;
 // keyboard: where its keys are listened to; reopen(start, source): called where a person opens another file; source: the path
 // by which this one was opened; kept: a session (session.js) to go on with; restore(file): opens a session or a scene;
-// startAfresh(): forgets what was done. Returns { store, start, frames, overlay, probe, slices, marking, report, end }; end() stops all of it.
-export function mount(element, channel, start, { keyboard = element, reopen = () => {}, source = null, kept = null, restore = null, startAfresh = () => {} } = {}) {
+// startAfresh(): forgets what was done; address: what goes before a link's end. Returns { store, start, frames, overlay, probe, slices, marking, report, end }; end() stops all of it.
+export function mount(element, channel, start, { keyboard = element, reopen = () => {}, source = null, kept = null, restore = null, startAfresh = () => {}, address = "" } = {}) {
   element.innerHTML = MARKUP;
   const root = element.firstElementChild, find = (id) => root.querySelector(`#${id}`);
   const ended = new AbortController();
   const store = new Store(kept?.scene ?? start.scene, kept ?? {}), report = messageBox(find("message"));
-  const viewer = { store, start, channel, report, reopen, root, find, source, startAfresh, copy: copier(report, start.title), current: { volume: 0, light: 0 } };
+  const viewer = { store, start, channel, report, reopen, root, find, source, startAfresh, copy: copier(report, start.title), current: { volume: 0, light: 0 }, address, atRest: [], frames: () => frames };
   const connection = watchConnection(find("view"), channel, report, () => { frames.move(); viewer.slices.update(); });
   viewer.failed = connection.failed;
   if (restore !== null) viewer.openSession = (file) => openSession(file, restore, viewer);
@@ -207,7 +212,10 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
   const frames = new Frames(viewer, find("picture"), (frame) => {
     status.show(frame);
     if (frame.error) viewer.failed(frame.error);
-    if (frame.stage === "final") viewer.probe.rest();
+    if (frame.stage === "final") {
+      viewer.probe.rest();
+      viewer.atRest.forEach((rest) => rest());
+    }
   });
   new Pointer(find("view"), store, nearestOf(start));
   const reveal = revealIn(root), actions = actionsOf(viewer, find, root, update);
@@ -218,6 +226,7 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
   viewer.overlay.showsLights = true;
   viewer.slices.update();
   update();
-  frames.move();
-  return { store, start, frames, overlay: viewer.overlay, probe: viewer.probe, slices: viewer.slices, marking: viewer.marking, report, end: () => { ended.abort(); frames.end(); status.end(); connection.end(); } };
+  if (kept === null && !matchMedia("(prefers-reduced-motion: reduce)").matches) frames.animate(sweptLight, SWEEP_TIME);
+  else frames.move();
+  return { store, start, frames, overlay: viewer.overlay, probe: viewer.probe, slices: viewer.slices, marking: viewer.marking, report, followLink: viewer.followLink, end: () => { ended.abort(); frames.end(); status.end(); connection.end(); } };
 }

@@ -2,10 +2,10 @@
 
 import { worldBox } from "./boxes.js";
 import { hexOf, linearOf } from "./color.js";
-import { button, color, make, row, section, segments, select, shortNumber, slider, toggle } from "./controls.js";
+import { button, color, keyButton, make, row, section, segments, select, shortNumber, slider, toggle } from "./controls.js";
 
 // Two sliders on one track: from where to where the volume is kept along an axis.
-function clipRow(axis, box, get, set) {
+function clipRow(axis, box, get, set, paths) {
   const name = "xyz"[axis], span = box.max[axis] - box.min[axis];
   const input = (end) => make("input", {
     type: "range", min: box.min[axis], max: box.max[axis], step: span / 400,
@@ -18,7 +18,7 @@ function clipRow(axis, box, get, set) {
     },
   });
   const inputs = { min: input("min"), max: input("max") };
-  const text = make("span", { class: "measure wide" });
+  const text = make("span", { class: "value" }), measure = make("span", { class: "measure wide" }, text, keyButton(`clip ${name}`, paths));
   const track = make("span", { class: "double" }, inputs.min, inputs.max);
   function update() {
     const ends = ["min", "max"].map((end) => get()[end][axis]);
@@ -26,7 +26,7 @@ function clipRow(axis, box, get, set) {
     text.textContent = ends.map(shortNumber).join(" … ");
     ends.forEach((value, n) => track.style.setProperty(n === 0 ? "--from" : "--to", (value - box.min[axis]) / span));
   }
-  return { element: row(make("span", { class: `name axis-name axis-${axis}` }, `Clip ${name}`), track, text), update };
+  return { element: row(make("span", { class: `name axis-name axis-${axis}` }, `Clip ${name}`), track, measure), update };
 }
 
 // Above all panels, where there are several volumes: which of them the panels are about.
@@ -47,7 +47,7 @@ export function volumePanel({ store, start, current, overlay, channel, report })
   function materialSliders() {
     const limits = [["ambient", "Ambient", 0, 2], ["diffuse", "Diffuse", 0, 2], ["specular", "Specular", 0, 2], ["shininess", "Shininess", 1, 200], ["emission", "Emission", 0, 4]];
     return limits.map(([key, label, low, high]) => slider({
-      label, low, high, get: () => volume().material?.[key] ?? 0,
+      label, path: () => `volumes.${current.volume}.material.${key}`, low, high, get: () => volume().material?.[key] ?? 0,
       set: (value) => change(key, (v) => ({ ...v, material: { ...v.material, [key]: value } })),
     }));
   }
@@ -61,7 +61,7 @@ export function volumePanel({ store, start, current, overlay, channel, report })
     return [
       toggle({ label: "Multiple scattering", get: () => scattering().multiple === true, set: (on) => set("multiple", { multiple: on }) }),
       slider({
-        label: "Forward", low: -0.95, high: 0.95, title: "Where a medium scatters light to: above 0 forward, below 0 back, 0 evenly",
+        label: "Forward", path: () => `volumes.${current.volume}.scattering.anisotropy`, low: -0.95, high: 0.95, title: "Where a medium scatters light to: above 0 forward, below 0 back, 0 evenly",
         get: () => scattering().anisotropy ?? 0, set: (g) => set("anisotropy", { anisotropy: Math.abs(g) < 0.02 ? 0 : g }),
       }),
       slider({
@@ -89,7 +89,7 @@ export function volumePanel({ store, start, current, overlay, channel, report })
     if (element.hidden) return;
     const about = start.volumes[current.volume], box = worldBox(about);
     const clip = () => volume().clip ?? box;
-    const rows = [0, 1, 2].map((axis) => clipRow(axis, box, clip, (changed, a) => change(`clip ${a}`, (v) => ({ ...v, clip: changed }))));
+    const rows = [0, 1, 2].map((axis) => clipRow(axis, box, clip, (changed, a) => change(`clip ${a}`, (v) => ({ ...v, clip: changed })), () => ["min", "max"].map((end) => `volumes.${current.volume}.clip.${end}.${axis}`)));
     const reset = row("", button("whole volume", () => change("clip reset", ({ clip: _, ...v }) => v)));
     const shading = segments({
       label: "Shading", choices: [["phong", "Surface"], ["none", "Medium"], ["flat", "Flat"]],

@@ -49,7 +49,7 @@ function show(start, session = null) {
   keeping?.abort();
   keeping = new AbortController();
   document.title = `${start.title} · Halflight`;
-  globalThis.halflight = mount(document.body, viewerChannel(), start, { keyboard: document, kept: session, restore: openSession, startAfresh: () => show(start) });
+  globalThis.halflight = mount(document.body, viewerChannel(), start, { keyboard: document, kept: session, address: location.href.split("#")[0], restore: openSession, startAfresh: () => show(start) });
   keepSession(globalThis.halflight.store, start, null, keeping.signal);
 }
 

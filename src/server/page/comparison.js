@@ -1,0 +1,108 @@
+// Two pictures in one: left of a line, which is dragged, the same view with other shadows, or with all that was kept before.
+
+import { make, row, button, select } from "./controls.js";
+
+const KEY_STEP = 0.05; // of the picture's width
+const NAMES = { off: "without shadows", hard: "hard shadows", soft: "soft shadows", kept: "kept before" };
+
+const withShadows = (scene, shadows) => ({ ...scene, render: { ...scene.render, shadows }, lights: scene.lights.map((light) => (light.shadows === "off" ? light : (({ shadows: _, ...rest }) => rest)(light))) });
+
+// Returns { element, update, atRest, compare }: element is a row of the panel of shadows; compare(what) chooses what is shown.
+export function comparison({ store, channel, failed, find, report }) {
+  const canvas = make("canvas", { class: "compared", "aria-hidden": "true", hidden: true });
+  const left = make("span", { class: "side" }), right = make("span", { class: "side" });
+  const line = make("div", {
+    class: "divider", tabindex: 0, role: "slider", "aria-label": "Where the compared pictures meet", "aria-valuemin": 0, "aria-valuemax": 100, hidden: true,
+    onpointerdown: grab, onkeydown: key,
+  }, left, right);
+  const view = find("view");
+  let what = "", kept = null, part = 0.5, asked = null;
+  find("picture").after(canvas);
+  find("overlay").after(line);
+
+  function place() {
+    canvas.style.clipPath = `inset(0 ${100 * (1 - part)}% 0 0)`;
+    line.style.left = `${100 * part}%`;
+    line.setAttribute("aria-valuenow", Math.round(100 * part));
+  }
+
+  function grab(event) {
+    event.stopPropagation();
+    event.preventDefault();
+    line.focus({ preventScroll: true });
+    line.setPointerCapture(event.pointerId);
+    const box = view.getBoundingClientRect();
+    const move = (moved) => { part = Math.min(Math.max((moved.clientX - box.left) / box.width, 0), 1); place(); };
+    line.addEventListener("pointermove", move);
+    for (const over of ["pointerup", "pointercancel"]) line.addEventListener(over, () => line.removeEventListener("pointermove", move), { once: true });
+  }
+
+  function key(event) {
+    const step = { ArrowLeft: -KEY_STEP, ArrowRight: KEY_STEP }[event.key];
+    if (event.key === "Escape") compare("");
+    else if (step) part = Math.min(Math.max(part + step, 0), 1);
+    else return;
+    place();
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  // The scene on the left of the line.
+  function other(scene) {
+    if (what !== "kept") return withShadows(scene, what);
+    const { width, height } = scene.image;
+    return { ...kept, camera: scene.camera, image: { ...kept.image, width, height } };
+  }
+
+  async function atRest() {
+    const { scene } = store;
+    if (what === "" || asked === scene) return;
+    asked = scene;
+    try {
+      const frame = await channel.fetchFrame(other(scene), { quality: 92, lane: "-compared" });
+      if (frame === null || store.scene !== scene || what === "") return;
+      const bitmap = await createImageBitmap(frame.blob);
+      canvas.width = bitmap.width;
+      canvas.height = bitmap.height;
+      canvas.getContext("2d").drawImage(bitmap, 0, 0);
+      bitmap.close();
+      canvas.hidden = false;
+    } catch (error) {
+      failed(error);
+    } finally {
+      if (canvas.hidden) asked = null;
+    }
+  }
+
+  function compare(wanted) {
+    what = wanted === what ? "" : wanted;
+    line.hidden = what === "";
+    canvas.hidden = true;
+    asked = null;
+    update();
+    place();
+    atRest();
+  }
+
+  store.listen(() => {
+    if (asked === null || store.scene === asked) return;
+    asked = null;
+    canvas.hidden = true; // it is of another view, until the picture has come to rest
+  });
+  const choice = select({
+    label: "Compare", choices: [["", "nothing"], ...["off", "hard", "soft", "kept"].map((name) => [name, `with ${NAMES[name]}`])], get: () => what,
+    set: (name) => {
+      if (name === "kept" && kept === null) report("Keep this picture first: “keep” remembers it.");
+      else if (name !== what) compare(name);
+      update();
+    }, title: "Left of the line in the picture",
+  });
+  const keep = button("keep", () => { kept = store.scene; report("This look and light is kept: change them, then compare."); }, { title: "Remembers the look and the light of this picture, to compare with later" });
+  function update() {
+    choice.update();
+    left.textContent = NAMES[what] ?? "";
+    right.textContent = what === "kept" ? "now" : NAMES[store.scene.render.shadows] ?? "";
+  }
+  update();
+  return { elements: [choice.element, row("", keep)], update, atRest, compare };
+}

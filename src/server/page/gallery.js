@@ -1,0 +1,62 @@
+// Small pictures of what is open with each of some choices, made while the picture rests; a click takes one.
+
+import { reshaped } from "./camera.js";
+import { make } from "./controls.js";
+
+const SIDES = { width: 112, height: 80 }; // pixels
+const STEP = 2; // voxels between sheets
+
+// names: the choices. made(name) resolves to the scene with one of them; take(name, scene) takes it; isTaken(scene of a choice): whether
+// the viewer shows it now. lane: of the pictures. Returns { element, update, atRest }: atRest() is called when the picture has come to rest.
+export function gallery({ label, names, viewer: { store, channel, failed, frames }, made, take, isTaken, lane }) {
+  const images = new Map(), scenes = new Map(); // by name
+  const buttons = names.map((name) => {
+    const image = make("img", { alt: "", width: SIDES.width, height: SIDES.height, hidden: true });
+    images.set(name, image);
+    return make("button", { type: "button", class: "choice", "aria-pressed": "false", onclick: () => choose(name) }, image, make("span", {}, name));
+  });
+  const element = make("div", { class: "gallery", role: "group", "aria-label": label }, ...buttons);
+  let busy = false, drawn = 0; // number of the pictures that are there
+
+  async function choose(name) {
+    try {
+      const scene = await made(name);
+      scenes.set(name, scene);
+      take(name, scene);
+    } catch (error) {
+      failed(error);
+    }
+  }
+
+  const isResting = () => frames().statistics.stage === "final" && element.offsetParent !== null;
+
+  async function draw(name) {
+    const scene = await made(name), image = { ...scene.image, ...SIDES };
+    scenes.set(name, scene);
+    const small = { ...scene, image, camera: reshaped(store.scene.camera, store.scene.image, image), render: { ...scene.render, sheet_spacing: Math.max(STEP, scene.render.sheet_spacing) } };
+    const frame = await channel.fetchFrame(small, { quality: 85, moving: true, lane });
+    if (frame === null) return false;
+    const shown = images.get(name);
+    shown.onload = () => URL.revokeObjectURL(shown.src);
+    shown.src = URL.createObjectURL(frame.blob);
+    shown.hidden = false;
+    return true;
+  }
+
+  async function atRest() {
+    if (busy) return;
+    busy = true;
+    try {
+      while (drawn < names.length && isResting()) if (await draw(names[drawn])) drawn++;
+    } catch {
+      drawn = names.length; // the names do without pictures
+    }
+    busy = false;
+    update();
+  }
+
+  function update() {
+    names.forEach((name, n) => buttons[n].setAttribute("aria-pressed", String(scenes.has(name) && isTaken(scenes.get(name)))));
+  }
+  return { element, update, atRest };
+}

@@ -1,0 +1,78 @@
+// What a person has done as a short text, for the end of an address: how the scene, the marks and the layout differ from what
+// the viewer began with. It names no files: it fits any viewer of the same file.
+
+import { reshaped } from "./camera.js";
+import { isMark } from "./marks.js";
+
+const MARK = "#view=";
+const MOST_BYTES = 1 << 20; // of the text that a link unfolds to
+
+// A difference: { to: value }, { gone: 1 }, or { in: { key: difference } } of an object or an array of the same length; undefined: none.
+export function difference(from, to) {
+  if (JSON.stringify(from) === JSON.stringify(to)) return undefined;
+  const both = (test) => test(from) && test(to), isObject = (x) => x !== null && typeof x === "object" && !Array.isArray(x);
+  if (!both(isObject) && !(both(Array.isArray) && from.length === to.length && from.length > 0)) return { to };
+  const keys = [...new Set([...Object.keys(from), ...Object.keys(to)])];
+  const parts = keys.map((key) => [key, key in to ? (Object.hasOwn(from, key) ? difference(from[key], to[key]) : { to: to[key] }) : { gone: 1 }]);
+  return { in: Object.fromEntries(parts.filter(([, part]) => part !== undefined)) };
+}
+
+export function changed(from, part) {
+  if (part === undefined) return from;
+  if (part.in === undefined) return part.to;
+  const entries = Array.isArray(from) ? from.map((value, n) => [n, value]) : Object.entries(from ?? {});
+  const values = new Map(entries.map(([key, value]) => [String(key), value]));
+  for (const [key, inner] of Object.entries(part.in)) {
+    if (inner?.gone) values.delete(key);
+    else values.set(key, changed(values.get(key), inner));
+  }
+  return Array.isArray(from) ? [...values.values()] : Object.fromEntries(values);
+}
+
+const streamed = (bytes, stream) => new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer();
+
+async function packed(text) {
+  const bytes = new Uint8Array(await streamed(new TextEncoder().encode(text), new CompressionStream("deflate-raw")));
+  return btoa(String.fromCharCode(...bytes)).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+}
+
+async function unpacked(word) {
+  const bytes = Uint8Array.from(atob(word.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
+  const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw")).getReader(), pieces = [];
+  for (let size = 0; ;) {
+    const { done, value } = await reader.read();
+    if (done) return new Blob(pieces).text();
+    size += value.length;
+    if (size > MOST_BYTES) throw new Error("it is too long");
+    pieces.push(value);
+  }
+}
+
+// In the size of the picture that the viewer began with, so that a link does not tell how large a window is.
+function comparable(store, start) {
+  const { scene, marks, page: { bookmarks: _, ...page } } = store, { width, height } = start.scene.image;
+  return { scene: { ...scene, camera: reshaped(scene.camera, scene.image, { width, height }), image: { ...scene.image, width, height } }, marks, page };
+}
+
+const beginning = (start) => ({ scene: { volumes: [], ...start.scene }, marks: [], page: {} });
+
+export async function linkOf(store, start) {
+  return MARK + (await packed(JSON.stringify(difference(beginning(start), comparable(store, start)) ?? {})));
+}
+
+export const isLink = (text) => text.includes(MARK);
+
+// Shows what a link tells, as one step. Throws where it is no link, or does not fit what is open.
+export async function follow(text, { store, start, channel }) {
+  let told;
+  try {
+    told = changed(beginning(start), JSON.parse(await unpacked(text.slice(text.indexOf(MARK) + MARK.length))));
+  } catch (error) {
+    throw new Error(`this link cannot be read: ${error.message || "it is cut short"}`);
+  }
+  const marks = Array.isArray(told?.marks) ? told.marks.filter(isMark) : [], page = told?.page;
+  const scene = await channel.completeScene(told?.scene ?? {});
+  store.replace({
+    scene, marks, page: { ...(page !== null && typeof page === "object" && !Array.isArray(page) ? page : {}), bookmarks: store.page.bookmarks },
+  });
+}

@@ -1,0 +1,222 @@
+#!/usr/bin/env python3
+"""The first seconds of the page, what it offers by itself, and how it is handed on: the light that sweeps, looks and light rigs with small
+pictures, two pictures side by side, presets of the volume's kind, the switch of all cuts, links, keys of films beside sliders.
+
+usage: begin.py PROGRAM BROWSER
+"""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import checks
+from checks import check
+from firefox import browser_named
+from hands import PROGRAM, STAGE, center, changes, open_section, press, press_named, rest, scene_of, set_control
+from viewer import Viewer, need_viewer
+
+
+def sweeps(browser, url):
+    """The light moves while the page opens, and comes to rest where the scene has it; not where motion is unwanted."""
+    browser.open(url)
+    browser.wait(f"{STAGE} !== undefined")
+    browser.run("""(() => { const own = window.fetch; window.ways = [];
+      window.fetch = (path, options) => { if (/^frame\?page=\w+&/.test(path)) { const { lights } = JSON.parse(options.body); ways.push(JSON.stringify(lights)); }
+        return own(path, options); }; })()""")
+    browser.run("halflight.frames.animate((scene, part) => ({ ...scene, lights: scene.lights.map((l) => ({ ...l, intensity: part })) }), 400)")
+    rest(browser)
+    ways = browser.run("ways")
+    check(len(set(ways)) >= 2 and ways[-1] == browser.run("JSON.stringify(halflight.store.scene.lights)"), f"frames of an animation, and then the scene's: {len(ways)}")
+    part = browser.run("""import('./light.js').then(({ sweptLight, directionOf }) => { const { scene } = halflight.store;
+      return [0, 0.5, 1].map((part) => directionOf(sweptLight(scene, part).lights[0], scene.camera)); })""")
+    own = browser.run("import('./light.js').then(({ directionOf }) => directionOf(halflight.store.scene.lights[0], halflight.store.scene.camera))")
+    check(max(abs(a - b) for a, b in zip(part[2], own)) < 1e-9 and part[0][2] < own[2] - 0.3, f"the sweep ends at the light's own place: {part}, {own}")
+    check(all(abs(row[1] - own[1]) < 1e-9 for row in part), "at one height")
+    check(not browser.run("halflight.store.canUndo"), "the sweep is no step of the history")
+
+
+def pictures_of(browser, label):
+    return f"[...document.querySelectorAll('[aria-label={json.dumps(label)}] img')]"
+
+
+def looks(browser):
+    """Each look has a small picture of this volume, which differ; a click takes the look, one undo the one before."""
+    open_section(browser, "Looks")
+    browser.wait(f"{pictures_of(browser, 'Looks')}.every((image) => !image.hidden && image.naturalWidth > 0)")
+    names = browser.run("[...document.querySelectorAll('[aria-label=Looks] button')].map((b) => b.textContent)")
+    check({"surface", "translucent", "mip"} <= set(names), f"the program's looks: {names}")
+    drawn = browser.run(f"""{pictures_of(browser, 'Looks')}.map((image) => {{ const c = document.createElement('canvas'); c.width = 112; c.height = 80;
+      const context = c.getContext('2d'); context.drawImage(image, 0, 0); return context.getImageData(0, 0, 112, 80).data.reduce((sum, x) => sum + x, 0); }})""")
+    check(len(set(drawn)) >= 4, f"pictures differ: {drawn}")
+    before, camera = scene_of(browser)["volumes"], scene_of(browser)["camera"]
+    press(browser, "translucent")
+    browser.wait("halflight.store.canUndo")
+    rest(browser)
+    check(scene_of(browser)["volumes"] != before and scene_of(browser)["camera"] == camera, "the look is taken, from the same view")
+    browser.wait("document.querySelector('[aria-label=Looks] [aria-pressed=true]')?.textContent === 'translucent'")
+    press_named(browser, "Undo")
+    rest(browser)
+    check(scene_of(browser)["volumes"] == before, "undone in one step")
+    check(browser.run("document.querySelector('[aria-label=Looks] [aria-pressed=true]')?.textContent") != "translucent", "and the panel follows")
+
+
+def rigs(browser):
+    """Four rigs; one after the other is as bright as from the beginning."""
+    open_section(browser, "Lights")
+    names = browser.run("halflight.start.rigs")
+    check(names == ["studio", "raking", "rim", "overcast"], f"four rigs: {names}")
+    browser.wait(f"{pictures_of(browser, 'Light rigs')}.every((image) => !image.hidden)")
+    first = scene_of(browser)["lights"]
+
+    def take(name):
+        before = scene_of(browser)["lights"]
+        press(browser, name)
+        browser.wait(f"JSON.stringify(halflight.store.scene.lights) !== {json.dumps(json.dumps(before, separators=(',', ':')))}")
+        browser.wait(f"document.querySelector('[aria-label=\"Light rigs\"] [aria-pressed=true]')?.textContent === {json.dumps(name)}")
+        return scene_of(browser)["lights"]
+
+    studio = take("studio")
+    check(len(studio) == 3 and studio != first, "lights of a studio")
+    take("overcast")
+    check(take("studio") == studio, "as bright as at first")
+    for _ in range(3):
+        press_named(browser, "Undo")
+    check(scene_of(browser)["lights"] == first, "a step each")
+    rest(browser)
+
+
+def two_pictures(browser):
+    """Left of a line the picture without shadows; the line is dragged and moved by keys."""
+    set_control(browser, "Compare", "off", "change")
+    browser.wait("!document.querySelector('.compared').hidden && !document.querySelector('.divider').hidden")
+    differ = browser.run("""(() => { const [a, b] = ['.compared', '#picture'].map((name) => { const c = document.querySelector(name);
+      return c.getContext('2d').getImageData(0, 0, c.width, c.height).data; });
+      return a.length === b.length ? a.reduce((sum, x, n) => sum + Math.abs(x - b[n]), 0) / a.length : -1; })()""")
+    check(differ > 0.2, f"shadows make a difference: {differ}")
+    check(browser.run("[...document.querySelectorAll('.side')].map((s) => s.textContent)") == ["without shadows", "soft shadows"], "both sides are named")
+    x, y = center(browser, ".divider")
+    browser.drag([x, y], [x - 90, y + 5])
+    at = browser.run("+document.querySelector('.divider').getAttribute('aria-valuenow')")
+    check(at < 50, f"dragged to {at}")
+    browser.run("document.querySelector('.divider').focus()")
+    browser.key("ArrowRight")
+    check(browser.run("+document.querySelector('.divider').getAttribute('aria-valuenow')") == at + 5, "moved by a key")
+    browser.run("import('./camera.js').then((m) => halflight.store.setCamera(m.turn(halflight.store.scene.camera, 0.2, 0)))")
+    check(browser.run("document.querySelector('.compared').hidden"), "the other picture is not shown for another view")
+    browser.wait("!document.querySelector('.compared').hidden")
+    set_control(browser, "Compare", "", "change")
+    check(browser.run("document.querySelector('.compared').hidden && document.querySelector('.divider').hidden"), "it ends")
+    press(browser, "keep")
+    changes(browser, "no shadows", lambda: browser.run("halflight.store.changeRender('shadows', 'off')"), "render")
+    set_control(browser, "Compare", "kept", "change")
+    browser.wait("!document.querySelector('.compared').hidden")
+    check(browser.run("[...document.querySelectorAll('.side')].map((s) => s.textContent)") == ["kept before", "now"], "what was kept, and now")
+    set_control(browser, "Compare", "", "change")
+    press_named(browser, "Undo")
+    rest(browser)
+
+
+def links(browser, url):
+    """A link holds what was changed, and no names of files; the page of another tab shows the same."""
+    browser.run("halflight.store.changeLight(0, 'intensity', (l) => ({ ...l, intensity: 0.75 }))")
+    rest(browser)
+    link = browser.run("import('./link.js').then((m) => m.linkOf(halflight.store, halflight.start))")
+    check(link.startswith("#view=") and len(link) < 700, f"a short link: {len(link)}")
+    told = browser.run(f"""(async () => {{ const bytes = Uint8Array.from(atob({json.dumps(link[6:])}.replaceAll('-', '+').replaceAll('_', '/')), (c) => c.charCodeAt(0));
+      return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'))).text(); }})()""")
+    check("ball" not in told, f"it names no file: {told}")
+    wanted = scene_of(browser)
+    browser.run("sessionStorage.clear(); window.onpagehide = null; 0")
+    browser.run("halflight.store.replace({ scene: halflight.start.scene, marks: [], page: {} })")
+    check(scene_of(browser)["lights"] != wanted["lights"], "the beginning again")
+    browser.run(f"location.hash = {json.dumps(link)}")
+    browser.wait("halflight.store.scene.lights[0].intensity === 0.75")
+    now = scene_of(browser)
+    check(now["lights"] == wanted["lights"], "the lights of the link")
+    far = max(abs(a - b) for a, b in zip(now["camera"]["position"], wanted["camera"]["position"]))
+    check(far < 1e-6 * max(map(abs, wanted["camera"]["position"])), f"its view: {far}")
+    check(browser.run("location.hash") == "", "the address is clean again")
+    for bad in ("#view=!!", "#view=" + link[6:20], "#view=e30", "#view="):
+        before = scene_of(browser)
+        browser.run(f"halflight.followLink({json.dumps(bad)})")
+        check(scene_of(browser)["volumes"] == before["volumes"], f"{bad}: is refused, or changes nothing")
+    rest(browser)
+
+
+def keys_beside_sliders(browser):
+    """While the panel of films is open, a button beside a slider adds a key of its number."""
+    check(browser.run("[...document.querySelectorAll('.key-here')].every((b) => b.offsetParent === null)"), "unseen before")
+    browser.run("document.querySelectorAll('details').forEach((d) => { d.open = ['Film', 'Lights', 'View', 'Volume'].includes(d.querySelector('summary').textContent); })")
+    browser.wait("document.querySelector('.viewer').classList.contains('filming')")
+    set_control(browser, "Exposure", 1)
+    for name in ("Add a key of Intensity", "Add a key of Exposure", "Add a key of the light's place", "Add a key of Specular", "Add a key of clip x"):
+        press_named(browser, name)
+    tracks = browser.run("[...document.querySelectorAll('.track-name')].map((n) => n.textContent)")
+    check(tracks == ["lights.0.intensity", "image.exposure", *(f"lights.0.direction.{n}" for n in range(3)), "volumes.0.material.specular"],
+          f"tracks: {tracks}; {browser.run('document.getElementById(`message`).textContent')}")
+    check("not in the scene yet" in browser.run("document.getElementById('message').textContent"), "a number that is not there is refused with its reason")
+    browser.run("document.querySelectorAll('details').forEach((d) => { d.open = false; })")
+
+
+def points_in_order(browser):
+    """Points that lie beyond the volume's range keep their order when the first of them is dragged into it."""
+    moved = browser.run("""import('./transfer_function.js').then((m) => { const tf = { opacity: [[-3000, 0], [-2000, 0.1], [50, 0.5], [4000, 1], [5000, 1]], color: [] };
+      return [[0, 10], [0, -9000], [4, 100], [4, 1e9]].map(([n, value]) => m.movePoint(tf, n, value, 0.3, [0, 255]).opacity.map((p) => p[0])); })""")
+    check(all(row == sorted(row) for row in moved), f"in order: {moved}")
+    check(moved[0][0] == -2000 and moved[1][0] == -3000 and moved[3][4] == 5000, f"as far as the neighbour, or where it was: {moved}")
+
+
+def cuts_of_the_program(browser, url):
+    """What the program has cut away by itself is said below the picture, and one click brings it back."""
+    browser.open(url)
+    rest(browser)
+    cuts = scene_of(browser)["volumes"][0]["cuts"]
+    note = "document.querySelector('.note')"
+    check("show what holds it" in browser.run(f"{note}.textContent") and str(len(cuts)) in browser.run(f"{note}.textContent"), "it is said")
+    changes(browser, "show what was cut away", lambda: browser.run(f"{note}.click()"), "volumes")
+    check("cuts" not in scene_of(browser)["volumes"][0], "nothing is cut")
+    changes(browser, "cut again", lambda: browser.run(f"{note}.click()"), "volumes")
+    check(scene_of(browser)["volumes"][0]["cuts"] == cuts, "as before")
+    browser.run("document.getElementById('view').focus()")
+    changes(browser, "by the key", lambda: browser.key("k"), "volumes")
+    changes(browser, "by the switch", lambda: set_control(browser, "All cuts", ""), "volumes")
+    check(scene_of(browser)["volumes"][0]["cuts"] == cuts, "the same cuts")
+    groups = browser.run("[...document.querySelectorAll('optgroup')].map((g) => g.label)")
+    check(groups == ["for a scanned body", "for other volumes"], f"presets of its kind come first: {groups}")
+
+
+def real_head():
+    """A head in a scanner, at a quarter of its resolution; None where there are no real volumes."""
+    data = os.environ.get("HALFLIGHT_DATA", os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../shared/data"))
+    path = os.path.join(data, "cranium_mha/cranium.mha")
+    if not os.path.exists(path):
+        return None
+    subprocess.run([PROGRAM, "convert", path, "head.nrrd", "--shrink", "4", "--quiet"], check=True)
+    return "head.nrrd"
+
+
+name = sys.argv[2]
+if shutil.which(name) is None:
+    print(f"{name} is not installed")
+    sys.exit(77)
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    need_viewer(PROGRAM)
+    subprocess.run([PROGRAM, "make", "rings", "--size", "32", "--quiet", "-o", "ball.nrrd"], check=True)
+    head = real_head()
+    with browser_named(name)(name, (900, 600)) as browser:
+        with Viewer(PROGRAM, "ball.nrrd") as viewer:
+            sweeps(browser, viewer.url)
+            points_in_order(browser)
+            looks(browser)
+            rigs(browser)
+            two_pictures(browser)
+            links(browser, viewer.url)
+            keys_beside_sliders(browser)
+        if head is not None:
+            with Viewer(PROGRAM, head) as viewer:
+                cuts_of_the_program(browser, viewer.url)
+        check(browser.problems == [], f"the console has errors: {browser.problems}")
+        print(f"{checks.count} checks passed{'' if head else ', without a real head'}")
