@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "openvdb.h"
+#include "platform/paths.h"
 
 /* Set by the signal handler, read by the library's cancel callback. */
 static volatile sig_atomic_t interrupted = 0;
@@ -125,7 +126,7 @@ static const char *choose_data_folder(const char *asked) {
 /* The folder of scratch files. */
 static const char *choose_scratch_folder(void) {
   const char *named = getenv("TMPDIR");
-  return named != NULL && named[0] != '\0' ? named : "/var/tmp";
+  return named != NULL && named[0] != '\0' ? named : hl_temporary_folder();
 }
 
 /* The folder of compiled kernels, [bytes]; empty: none. */

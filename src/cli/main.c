@@ -9,6 +9,7 @@
 
 #include "commands.h"
 #include "message.h"
+#include "platform/program.h"
 #include "text/edit_distance.h"
 
 static const cli_command *const commands[] = {
@@ -94,6 +95,7 @@ static void take_errors_for_signals(void) {
 }
 
 int main(int argc, char **argv) {
+  hl_program_begin(&argc, &argv);
   keep_standard_streams();
   take_errors_for_signals();
   if (argc < 2) return fail(EXIT_CODE_USAGE, "a command is missing: see 'halflight --help'");

@@ -1,5 +1,4 @@
 /* core/context.c - creation of contexts, and their callbacks. */
-#define _GNU_SOURCE /* madvise */
 #include "core/context.h"
 
 #include <stdarg.h>
@@ -7,33 +6,21 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
 
 #include "core/error.h"
+#include "platform/memory.h"
 #include "text/plain.h"
-
-/* Asks the system to place large blocks in large pages. With small pages, every row of a tile would lie in a
- * page of its own, and translating the pages' addresses took longer than reading the rows. */
-enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 1 << 22 };
 
 static void *default_allocate(void *user_data, size_t size, size_t alignment) {
   (void)user_data;
   size_t rounded = (size + alignment - 1) / alignment * alignment;
   if (rounded < size) return NULL;
-  if (size < LARGE_BLOCK) return aligned_alloc(alignment, rounded);
-  void *block = NULL; /* aligned_alloc() might accept only multiples of the page size */
-  if (posix_memalign(&block, LARGE_PAGE, rounded) != 0) return NULL;
-#ifdef MADV_HUGEPAGE
-  madvise(block, rounded, MADV_HUGEPAGE);
-#endif
-  return block;
+  return hl_aligned_allocate(rounded, alignment);
 }
 
 static void default_release(void *user_data, void *memory) {
   (void)user_data;
-  free(memory);
+  hl_aligned_release(memory);
 }
 
 void hl_context_options_defaults(hl_context_options *options) {
@@ -165,8 +152,6 @@ bool hl_cancelled(const hl_context *context) {
 }
 
 /* ---- instruction sets and processors ---- */
-
-#define _GNU_SOURCE
 
 int hl_cpu_has_instruction_set(hl_instruction_set set) {
   if (set == HL_INSTRUCTION_SET_SCALAR) return 1;

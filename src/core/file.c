@@ -16,6 +16,7 @@
 #include "core/beneath.h"
 #include "core/context.h"
 #include "core/memory.h"
+#include "platform/paths.h"
 
 static hl_status fail_system(hl_error *error, const char *path, const char *verb) {
   return hl_fail(error, HL_ERROR_IO, "%s: cannot %s: %s", path, verb, strerror(errno));
@@ -270,26 +271,24 @@ static bool reserve(hl_output_memory *memory, size_t end) {
   return true;
 }
 
-static ssize_t on_write(void *cookie, const char *bytes, size_t length) {
-  hl_output_memory *memory = cookie;
+static bool on_write(void *data, const char *bytes, size_t length) {
+  hl_output_memory *memory = data;
   if (memory->place > SIZE_MAX - length || !reserve(memory, memory->place + length)) {
-    memory->full = true;
     errno = ENOMEM;
-    return 0;
+    return false;
   }
   memcpy(memory->bytes + memory->place, bytes, length);
   memory->place += length;
   if (memory->place > memory->length) memory->length = memory->place;
-  return (ssize_t)length;
+  return true;
 }
 
-static int on_seek(void *cookie, off64_t *offset, int whence) {
-  hl_output_memory *memory = cookie;
-  off64_t from = whence == SEEK_SET ? 0 : (off64_t)(whence == SEEK_CUR ? memory->place : memory->length);
-  if (from + *offset < 0) return -1;
-  memory->place = (size_t)(from + *offset);
-  *offset = from + *offset;
-  return 0;
+static int64_t on_seek(void *data, int64_t offset, int whence) {
+  hl_output_memory *memory = data;
+  int64_t from = whence == SEEK_SET ? 0 : (int64_t)(whence == SEEK_CUR ? memory->place : memory->length);
+  if (from + offset < 0) return -1;
+  memory->place = (size_t)(from + offset);
+  return from + offset;
 }
 
 hl_status hl_output_memory_begin(hl_context *context, const char *name, hl_output_memory *memory,
@@ -297,8 +296,8 @@ hl_status hl_output_memory_begin(hl_context *context, const char *name, hl_outpu
   memset(memory, 0, sizeof *memory);
   memory->output.context = context;
   memory->output.path = hl_copy_text(context, name);
-  cookie_io_functions_t functions = {.write = on_write, .seek = on_seek};
-  if (memory->output.path != NULL) memory->output.file = fopencookie(memory, "wb", functions);
+  memory->stream = (hl_byte_stream){.data = memory, .write = on_write, .seek = on_seek};
+  if (memory->output.path != NULL) memory->output.file = hl_byte_stream_open(&memory->stream);
   if (memory->output.file != NULL) return HL_OK;
   hl_output_memory_abort(memory);
   return hl_fail_memory(error, 65536, name);
@@ -306,8 +305,7 @@ hl_status hl_output_memory_begin(hl_context *context, const char *name, hl_outpu
 
 hl_status hl_output_memory_commit(hl_output_memory *memory, unsigned char **bytes, size_t *length,
                                   hl_error *error) {
-  bool failed = fflush(memory->output.file) != 0 || ferror(memory->output.file);
-  if (failed) {
+  if (!hl_byte_stream_finish(&memory->stream, memory->output.file)) {
     hl_fail_memory(error, memory->capacity > 0 ? memory->capacity : 65536, memory->output.path);
     hl_output_memory_abort(memory);
     return HL_ERROR_MEMORY;
@@ -329,7 +327,7 @@ void hl_output_memory_abort(hl_output_memory *memory) {
 /* ---- paths ---- */
 
 char *hl_path_join(hl_context *context, const char *folder, const char *path) {
-  if (path[0] == '/' || folder == NULL || folder[0] == 0) return hl_copy_text(context, path);
+  if (hl_path_is_absolute(path) || folder == NULL || folder[0] == 0) return hl_copy_text(context, path);
   size_t folder_length = strlen(folder), path_length = strlen(path);
   char *joined = hl_allocate(context, folder_length + path_length + 2, 1);
   if (joined == NULL) return NULL;

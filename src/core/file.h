@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "core/error.h"
+#include "platform/byte_stream.h"
 
 /* Opens a file for reading and calls the context's `reads` callback. Does not block on a pipe that has no
  * writer. */
@@ -61,7 +62,8 @@ typedef struct hl_output_memory {
   hl_output output;     /* path: a name for messages; file: writes to this memory */
   unsigned char *bytes; /* owned; [capacity]; the first `length` are written */
   size_t length, capacity, place;
-  bool full; /* an allocation failed */
+  bool full;             /* an allocation failed */
+  hl_byte_stream stream; /* whose bytes come to this memory */
 } hl_output_memory;
 
 /* `memory` must stay at its address until commit or abort. */

@@ -27,7 +27,7 @@
 #include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
-#include "core/processors.h"
+#include "platform/processors.h"
 
 enum { MAXIMUM_THREADS = 256, SPINS = 4000 };
 

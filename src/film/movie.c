@@ -4,7 +4,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -51,17 +50,7 @@ static const struct kind *kind_of(const char *path) {
   return NULL;
 }
 
-bool movie_available(void) {
-  const char *folders = getenv("PATH");
-  char path[PATH_MAX];
-  for (const char *at = folders; at != NULL && *at != '\0';) {
-    int length = (int)strcspn(at, ":");
-    snprintf(path, sizeof path, "%.*s/ffmpeg", length, at);
-    if (length > 0 && access(path, X_OK) == 0) return true;
-    at += length + (at[length] == ':');
-  }
-  return false;
-}
+bool movie_available(void) { return process_is_there("ffmpeg"); }
 
 static hl_status fail_io(hl_error *error, const char *path, const char *what) {
   snprintf(error->message, sizeof error->message, "%.300s: %.600s", path, what);

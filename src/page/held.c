@@ -11,6 +11,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "page/seen.h"
+#include "platform/paths.h"
 #include "volume/volume.h"
 
 /* ---- files ---- */
@@ -32,7 +33,7 @@ static hl_status make_folder(held_scene *held, hl_error *error) {
   const char *place = held->context->scratch_folder != NULL ? held->context->scratch_folder
                                                             : getenv("TMPDIR");
   if (held->folder != NULL) return HL_OK;
-  held->folder = hl_path_join(held->context, place != NULL && *place != '\0' ? place : "/tmp",
+  held->folder = hl_path_join(held->context, place != NULL && *place != '\0' ? place : hl_temporary_folder(),
                               "halflight-page-XXXXXX");
   if (held->folder == NULL) return hl_fail_memory(error, 1, "a folder's name");
   if (mkdtemp(held->folder) != NULL) return HL_OK;

@@ -4,8 +4,10 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -31,10 +33,22 @@ static int spawn(process *p, const char *const *words, const posix_spawn_file_ac
   posix_spawnattr_setsigdefault(&attributes, &usual);
   posix_spawnattr_setpgroup(&attributes, 0);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
-  problem = posix_spawnp(&p->child, words[0], actions, &attributes, (char *const *)words, environ);
-  if (problem != 0) p->child = 0;
+  pid_t child;
+  problem = posix_spawnp(&child, words[0], actions, &attributes, (char *const *)words, environ);
+  if (problem == 0) p->child = child;
   posix_spawnattr_destroy(&attributes);
   return problem;
+}
+
+bool process_is_there(const char *name) {
+  char path[PATH_MAX];
+  for (const char *at = getenv("PATH"); at != NULL && *at != '\0';) {
+    int length = (int)strcspn(at, ":");
+    snprintf(path, sizeof path, "%.*s/%s", length, at, name);
+    if (length > 0 && access(path, X_OK) == 0) return true;
+    at += length + (at[length] == ':');
+  }
+  return false;
 }
 
 int process_start(process *p, const char *const *words, int input) {
@@ -52,8 +66,8 @@ int process_start(process *p, const char *const *words, int input) {
 void process_limit(const process *p, uint64_t memory, uint64_t file) {
   const struct rlimit of_memory = {memory, memory}, of_file = {file, file};
   if (p->child <= 0) return;
-  prlimit(p->child, RLIMIT_AS, &of_memory, NULL);
-  prlimit(p->child, RLIMIT_FSIZE, &of_file, NULL);
+  prlimit((pid_t)p->child, RLIMIT_AS, &of_memory, NULL);
+  prlimit((pid_t)p->child, RLIMIT_FSIZE, &of_file, NULL);
 }
 
 /* Waits for the child with the given flags of waitpid(), and notes whether the child has ended. */
@@ -62,7 +76,7 @@ static bool await(process *p, int flags, bool *succeeded) {
   pid_t ended;
   *succeeded = false;
   if (p->child <= 0) return true;
-  while ((ended = waitpid(p->child, &how, flags)) < 0 && errno == EINTR) continue;
+  while ((ended = waitpid((pid_t)p->child, &how, flags)) < 0 && errno == EINTR) continue;
   if (ended == 0) return false;
   *succeeded = ended == p->child && WIFEXITED(how) && WEXITSTATUS(how) == 0;
   p->child = 0;
@@ -77,16 +91,8 @@ bool process_wait(process *p) {
   return succeeded;
 }
 
-void process_said(process *p, const char *name, char *text, size_t size) {
-  snprintf(text, size, "%s has failed", name);
-  if (p->messages == NULL) return;
-  rewind(p->messages);
-  if (fgets(text, (int)size, p->messages) == NULL) snprintf(text, size, "%s has failed", name);
-  text[strcspn(text, "\n")] = '\0';
-}
-
 void process_end(process *p) {
-  if (p->child > 0) kill(p->child, SIGKILL);
+  if (p->child > 0) kill((pid_t)p->child, SIGKILL);
   process_wait(p);
   if (p->messages != NULL) fclose(p->messages);
   p->messages = NULL;

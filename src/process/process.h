@@ -6,10 +6,9 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <sys/types.h>
 
 typedef struct process {
-  pid_t child;    /* the child's process number; 0 if no child runs */
+  intptr_t child; /* the child's process number, on Windows its handle; 0 if no child runs */
   FILE *messages; /* owned; the child's standard error */
 } process;
 
@@ -18,6 +17,9 @@ typedef struct process {
  * process group of its own, so that Ctrl-C does not reach it. Its standard output is discarded. Returns 0 or
  * an errno. Call process_end() even after a failure. */
 int process_start(process *p, const char *const *words, int input);
+
+/* Whether a program of this name is in the PATH. */
+bool process_is_there(const char *name);
 
 /* Limits a child: memory is the greatest number of bytes that it may hold, file the greatest length of each
  * file that it writes. */

@@ -279,7 +279,7 @@ static void advance_paper(light_shadow *shadow, const occupancy *occupancy, int 
 
 /* Raises a tile's value to those of its neighbours less `less`, of the four in the order of rows before it,
  * or of the four after it. */
-static void raise(const shadow_buffer *buffer, int32_t *far, int x, int y, int sign) {
+static void raise_tile(const shadow_buffer *buffer, int32_t *far, int x, int y, int sign) {
   static const int beside[4][2] = {{-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
   int32_t *tile = &far[(ptrdiff_t)y * buffer->tiles_x + x];
   for (int i = 0; i < 4; i++) {
@@ -330,9 +330,9 @@ static void widen_needs(light_shadow *shadow, int32_t *needed_until) {
   for (size_t tile = 0; tile < tiles; tile++)
     far[tile] = needed_until[tile] > 0 ? reached[needed_until[tile]] : -TILE;
   for (int y = 0; y < buffer->tiles_y; y++)
-    for (int x = 0; x < buffer->tiles_x; x++) raise(buffer, far, x, y, 1);
+    for (int x = 0; x < buffer->tiles_x; x++) raise_tile(buffer, far, x, y, 1);
   for (int y = buffer->tiles_y - 1; y >= 0; y--)
-    for (int x = buffer->tiles_x - 1; x >= 0; x--) raise(buffer, far, x, y, -1);
+    for (int x = buffer->tiles_x - 1; x >= 0; x--) raise_tile(buffer, far, x, y, -1);
   for (int y = 0; y < buffer->tiles_y; y++)
     for (int x = 0; x < buffer->tiles_x; x++) {
       int32_t *until = &needed_until[(ptrdiff_t)y * buffer->tiles_x + x];

@@ -323,7 +323,7 @@ static hl_status write_rows(saving *s, hl_error *error) {
 }
 
 static hl_status state_size(saving *s, size_t at, hl_error *error) {
-  if (fseek(s->output.file, (long)at, SEEK_SET) != 0)
+  if (fseeko(s->output.file, (off_t)at, SEEK_SET) != 0)
     return hl_fail(error, HL_ERROR_IO, "%s: cannot be written: %s", s->output.path, strerror(errno));
   fprintf(s->output.file, "%-*llu", HL_WRITER_SIZE_CHARACTERS, (unsigned long long)s->stream.total_out);
   return HL_OK;

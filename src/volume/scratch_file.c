@@ -5,12 +5,12 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
 #include "core/memory.h"
+#include "platform/nameless_file.h"
 
 hl_status hl_scratch_fail(const char *folder, size_t bytes, int number, hl_error *error) {
   return hl_fail(error, HL_ERROR_MEMORY,
@@ -27,9 +27,7 @@ int hl_scratch_open_empty(hl_context *context, const char *folder) {
     return -1;
   }
   sprintf(path, "%s%s", folder, ending);
-  int file = mkstemp(path);
-  if (file >= 0) unlink(path);
-  int number = errno;
+  int file = hl_nameless_file(path), number = errno;
   hl_release(context, path);
   errno = number;
   return file;

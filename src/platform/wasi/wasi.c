@@ -1,6 +1,6 @@
-/* wasi/wasi.c - see wasi.h. */
+/* platform/wasi/wasi.c - see wasi.h. */
 #define _GNU_SOURCE /* madvise */
-#include "wasi.h"
+#include "platform/wasi/wasi.h"
 
 #include <errno.h>
 #include <math.h>
@@ -10,7 +10,7 @@
 #include <sys/random.h>
 #include <unistd.h>
 
-#include "core/processors.h"
+#include "platform/processors.h"
 
 /* The tag of the exceptions that longjmp() throws: clang names it in each file and defines it in none. */
 __asm__(".globl __c_longjmp\n.tagtype __c_longjmp i32\n__c_longjmp:\n");

@@ -1,7 +1,7 @@
-/* core/processors.c - how many processors this process may use: those that it may run on, limited by the
- * processor time that its control groups grant (containers, batch jobs). */
+/* platform/linux/processors.c - how many processors this process may use: those that it may run on, limited
+ * by the processor time that its control groups grant (containers, batch jobs). */
 #define _GNU_SOURCE /* sched_getaffinity */
-#include "core/processors.h"
+#include "platform/processors.h"
 
 #include <limits.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-/* unit/core_processors.c - the processors that control groups grant, of both versions. */
+/* unit/platform_processors.c - the processors that control groups grant, of both versions. */
 #define _GNU_SOURCE
 #include <math.h>
 #include <setjmp.h>
@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "core/processors.h"
+#include "platform/processors.h"
 
 /* A folder that stands for the system's root. */
 static char root[64];
@@ -107,5 +107,5 @@ int main(void) {
       cmocka_unit_test(test_no_groups), cmocka_unit_test(test_version_2), cmocka_unit_test(test_container),
       cmocka_unit_test(test_version_1), cmocka_unit_test(test_nonsense),  cmocka_unit_test(test_count),
   };
-  return cmocka_run_group_tests_name("core_processors", tests, make_root, remove_root);
+  return cmocka_run_group_tests_name("platform_processors", tests, make_root, remove_root);
 }

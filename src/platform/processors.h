@@ -1,6 +1,6 @@
-/* core/processors.h - how many processors this process may use. */
-#ifndef HL_CORE_PROCESSORS_H
-#define HL_CORE_PROCESSORS_H
+/* platform/processors.h - how many processors this process may use. */
+#ifndef HL_PLATFORM_PROCESSORS_H
+#define HL_PLATFORM_PROCESSORS_H
 
 #include <stdbool.h>
 

@@ -1,0 +1,67 @@
+# shellcheck shell=sh
+# Sourced by the scripts that build for other systems: ziglang's compilers, and libraries from Debian's sources.
+#
+# The caller sets `out`, the folder of its build, `library_target`, zig's name of the system, and `library_flags`, more flags of the compiler.
+
+install_zig() {
+  root=$out/root
+  mkdir -p "$out"
+  [ -x "$out/tools/bin/meson" ] || { python3 -m venv "$out/tools" && "$out/tools/bin/pip" install -q meson==1.12.1 ziglang==0.17.1; }
+  zig=$("$out/tools/bin/python" -c 'import os, ziglang; print(os.path.dirname(ziglang.__file__))')
+}
+
+# fetch_sources PACKAGE ...: the sources of Debian packages, with apt's lists in a folder of this build: this machine's own lists may have no
+# sources. Where the security updates that are listed are gone, the release's own sources serve.
+fetch_sources() {
+  packages=$*
+  mkdir -p "$root/apt/lists/partial" "$root/apt/archives/partial" "$root/sources"
+  sources=$root/apt/sources
+  cat /etc/apt/sources.list /etc/apt/sources.list.d/debian.sources 2>/dev/null | sed 's/^deb /deb-src /; s/^Types: .*/Types: deb-src/' >"$sources.sources"
+  grep -q '^deb-src' "$sources.sources" && mv "$sources.sources" "$sources.list"
+  sources=$(ls "$sources".*)
+  set -- -q -o Dir::Etc::sourcelist="$sources" -o Dir::Etc::sourceparts=/dev/null -o Dir::State="$root/apt" \
+    -o Dir::Cache="$root/apt" -o Debug::NoLocking=true -o APT::Sandbox::User=root
+  apt-get "$@" update
+  release=$(. /etc/os-release && echo "$VERSION_CODENAME")
+  for package in $packages; do
+    (cd "$root/sources" && { apt-get "$@" source --only-source "$package" || apt-get "$@" source --only-source "$package/$release"; })
+  done
+  rm -rf "$root/apt"
+}
+
+# library NAME FOLDER FILE ...: compiles files of a folder to root/lib/libNAME.a.
+library() {
+  name=$1 folder=$2
+  shift 2
+  mkdir -p "$root/objects/$name" "$root/lib"
+  for file in "$@"; do
+    # shellcheck disable=SC2086 # several flags
+    "$zig/zig" cc -w -target "$library_target" -O2 $library_flags \
+      -DHAVE_UNISTD_H -DHAVE_STDINT_H -DHAVE_SYS_TYPES_H -DHAVE_STRTOLL -I"$root/include" -c "$folder/$file.c" -o "$root/objects/$name/$file.o"
+  done
+  rm -f "$root/lib/lib$name.a"
+  "$zig/zig" ar rcs "$root/lib/lib$name.a" "$root/objects/$name"/*.o
+  rm -rf "$root/objects"
+}
+
+# package NAME LIBRARY VERSION: what pkg-config says of it.
+package() {
+  mkdir -p "$root/lib/pkgconfig"
+  printf 'Name: %s\nDescription: %s\nVersion: %s\nLibs: -L%s -l%s\nCflags: -I%s\n' "$1" "$1" "$3" "$root/lib" "$2" "$root/include" \
+    >"$root/lib/pkgconfig/$1.pc"
+}
+
+# zlib, libpng and jansson. EXTRA ...: more files of libpng's folder.
+build_base_libraries() {
+  mkdir -p "$root/include"
+  z=$(echo "$root"/sources/zlib-*/) png=$(echo "$root"/sources/libpng*-*/) jansson=$(echo "$root"/sources/jansson-*/)
+  cp "$z"zlib.h "$z"zconf.h "$png"png.h "$png"pngconf.h "$jansson"src/jansson.h "$jansson"android/jansson_config.h "$root/include"
+  cp "$png"scripts/pnglibconf.h.prebuilt "$root/include/pnglibconf.h"
+  : >"$root/include/jansson_private_config.h"
+  library z "$z" adler32 compress crc32 deflate inffast inflate inftrees trees uncompr zutil
+  library png "$png" png pngerror pngget pngmem pngpread pngread pngrio pngrtran pngrutil pngset pngtrans pngwio pngwrite pngwtran pngwutil "$@"
+  library jansson "${jansson}src" dump error hashtable hashtable_seed load memory pack_unpack strbuffer strconv utf value version
+  package zlib z "$(sed -n 's/#define ZLIB_VERSION "\([0-9.]*\).*/\1/p' "$z"zlib.h)"
+  package libpng png "$(sed -n 's/#define PNG_LIBPNG_VER_STRING "\(.*\)"/\1/p' "$png"png.h)"
+  package jansson jansson "$(sed -n 's/#define JANSSON_VERSION  *"\(.*\)"/\1/p' "$jansson"src/jansson.h)"
+}

@@ -1,0 +1,11 @@
+/* platform/memory.h - blocks of memory at round addresses. */
+#ifndef HL_PLATFORM_MEMORY_H
+#define HL_PLATFORM_MEMORY_H
+
+#include <stddef.h>
+
+/* bytes: a multiple of the alignment, which is a power of two. Returns null without memory. */
+void *hl_aligned_allocate(size_t bytes, size_t alignment);
+void hl_aligned_release(void *memory);
+
+#endif

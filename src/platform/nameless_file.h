@@ -1,0 +1,9 @@
+/* platform/nameless_file.h - files that are gone when they are closed, or when the process ends. */
+#ifndef HL_PLATFORM_NAMELESS_FILE_H
+#define HL_PLATFORM_NAMELESS_FILE_H
+
+/* Makes an empty file for reading and writing. path: its folder and a name that ends in "XXXXXX", which is
+ * changed. Returns a descriptor, or -1 with errno set. */
+int hl_nameless_file(char *path);
+
+#endif

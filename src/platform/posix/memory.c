@@ -1,0 +1,22 @@
+/* platform/posix/memory.c - see platform/memory.h. */
+#define _GNU_SOURCE /* madvise */
+#include "platform/memory.h"
+
+#include <stdlib.h>
+#include <sys/mman.h>
+
+/* Asks the system to place large blocks in large pages. With small pages, every row of a tile would lie in a
+ * page of its own, and translating the pages' addresses took longer than reading the rows. */
+enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 1 << 22 };
+
+void *hl_aligned_allocate(size_t bytes, size_t alignment) {
+  if (bytes < LARGE_BLOCK) return aligned_alloc(alignment, bytes);
+  void *block = NULL; /* aligned_alloc() might accept only multiples of the page size */
+  if (posix_memalign(&block, LARGE_PAGE, bytes) != 0) return NULL;
+#ifdef MADV_HUGEPAGE
+  madvise(block, bytes, MADV_HUGEPAGE);
+#endif
+  return block;
+}
+
+void hl_aligned_release(void *memory) { free(memory); }

@@ -1,0 +1,17 @@
+/* platform/windows/include/dirent.h - POSIX's <dirent.h>, over a folder's handle. */
+#ifndef HL_PLATFORM_WINDOWS_DIRENT_H
+#define HL_PLATFORM_WINDOWS_DIRENT_H
+
+typedef struct hl_folder_listing DIR;
+
+struct dirent {
+  char d_name[768]; /* UTF-8 */
+};
+
+DIR *opendir(const char *path);
+DIR *fdopendir(int descriptor);
+struct dirent *readdir(DIR *folder);
+int closedir(DIR *folder);
+int dirfd(DIR *folder);
+
+#endif

@@ -1,0 +1,13 @@
+/* platform/windows/include/dlfcn.h - POSIX's <dlfcn.h>: the system's own libraries. */
+#ifndef HL_PLATFORM_WINDOWS_DLFCN_H
+#define HL_PLATFORM_WINDOWS_DLFCN_H
+
+enum { RTLD_LOCAL = 0, RTLD_NOW = 2, RTLD_NOLOAD = 4, RTLD_GLOBAL = 8 };
+
+/* Loads a library of the system's folder. */
+void *dlopen(const char *name, int flags);
+void *dlsym(void *library, const char *name);
+int dlclose(void *library);
+const char *dlerror(void);
+
+#endif

@@ -1,0 +1,30 @@
+/* platform/windows/include/fcntl.h - POSIX's <fcntl.h>: files open as binary ones, by names in UTF-8. */
+#ifndef HL_PLATFORM_WINDOWS_FCNTL_H
+#define HL_PLATFORM_WINDOWS_FCNTL_H
+
+#include_next <fcntl.h>
+
+#include <sys/types.h>
+
+#define O_CLOEXEC  _O_NOINHERIT
+#define O_NONBLOCK 0 /* no open() waits here: a pipe without a writer fails */
+#define O_NOCTTY   0
+/* Flags of hl_posix_open() and hl_posix_openat() alone, beyond those of the C library. */
+#define O_PATH      0x10000000 /* a descriptor for fstat(), and to open what is below it */
+#define O_DIRECTORY 0x20000000
+#define O_NOFOLLOW  0x40000000 /* links, junctions and mounted folders fail with ELOOP */
+
+#define AT_SYMLINK_NOFOLLOW 0x100
+#define F_GETFD             1
+
+int hl_posix_open(const char *path, int flags, ...);
+/* path: relative, with '/'. Names with a colon or a backslash do not exist. Links fail as for O_NOFOLLOW. */
+int hl_posix_openat(int folder, const char *path, int flags, ...);
+/* Makes a file at least that long. Returns an error number or 0. */
+int posix_fallocate(int descriptor, off_t offset, off_t bytes);
+int hl_posix_fcntl(int descriptor, int command);
+#define open   hl_posix_open
+#define openat hl_posix_openat
+#define fcntl  hl_posix_fcntl
+
+#endif

@@ -1,0 +1,19 @@
+/* platform/windows/include/glob.h - the part of POSIX's <glob.h> that finds files by a pattern. */
+#ifndef HL_PLATFORM_WINDOWS_GLOB_H
+#define HL_PLATFORM_WINDOWS_GLOB_H
+
+#include <stddef.h>
+
+typedef struct {
+  size_t gl_pathc;
+  char **gl_pathv;
+} glob_t;
+
+enum { GLOB_NOSPACE = 1, GLOB_ABORTED, GLOB_NOMATCH };
+
+/* pattern: '*', '?' and '[...]' stand for characters of one name, in folders' names too. The files are not
+ * sorted. flags: 0; on_error: null. */
+int glob(const char *pattern, int flags, int (*on_error)(const char *, int), glob_t *found);
+void globfree(glob_t *found);
+
+#endif

@@ -1,0 +1,13 @@
+/* platform/windows/include/limits.h - <limits.h> with the length that names may have in UTF-8. */
+#include_next <limits.h>
+
+#ifndef HL_PLATFORM_WINDOWS_LIMITS_H
+#define HL_PLATFORM_WINDOWS_LIMITS_H
+
+#undef PATH_MAX
+#define PATH_MAX 4096
+#ifndef NAME_MAX
+#define NAME_MAX 255
+#endif
+
+#endif

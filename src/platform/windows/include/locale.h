@@ -1,0 +1,15 @@
+/* platform/windows/include/locale.h - <locale.h> with the part of POSIX's locales that text/plain.c asks for:
+ * there is one object, of the locale "C". */
+#ifndef HL_PLATFORM_WINDOWS_LOCALE_H
+#define HL_PLATFORM_WINDOWS_LOCALE_H
+
+#include_next <locale.h>
+
+typedef void *locale_t;
+#define LC_ALL_MASK 0x1f
+locale_t newlocale(int mask, const char *name, locale_t base);
+/* Sets the calling thread's locale, and returns an object that sets the one before. It must be given back. */
+locale_t uselocale(locale_t locale);
+double strtod_l(const char *text, char **end, locale_t locale);
+
+#endif

@@ -1,0 +1,15 @@
+/* platform/windows/include/poll.h - POSIX's <poll.h>, for one descriptor that is read. */
+#ifndef HL_PLATFORM_WINDOWS_POLL_H
+#define HL_PLATFORM_WINDOWS_POLL_H
+
+#define POLLIN 1
+
+struct pollfd {
+  int fd;
+  short events, revents;
+};
+
+/* Waits until a pipe has bytes or an end; other files are always ready. count: 1. */
+int poll(struct pollfd *wanted, unsigned count, int milliseconds);
+
+#endif

@@ -1,0 +1,16 @@
+/* platform/windows/include/stdio.h - <stdio.h> with names in UTF-8, binary files and renaming over a file. */
+#ifndef HL_PLATFORM_WINDOWS_STDIO_H
+#define HL_PLATFORM_WINDOWS_STDIO_H
+
+#include_next <stdio.h>
+
+FILE *hl_posix_fopen(const char *path, const char *mode);
+int hl_posix_rename(const char *from, const char *to);
+FILE *hl_posix_tmpfile(void);
+#undef fopen
+#define fopen  hl_posix_fopen
+#define rename hl_posix_rename
+#undef tmpfile
+#define tmpfile hl_posix_tmpfile
+
+#endif

@@ -1,0 +1,15 @@
+/* platform/windows/include/stdlib.h - <stdlib.h> with POSIX's functions on names, in UTF-8. */
+#ifndef HL_PLATFORM_WINDOWS_STDLIB_H
+#define HL_PLATFORM_WINDOWS_STDLIB_H
+
+#include_next <stdlib.h>
+
+/* The absolute name, with '/'. resolved: [PATH_MAX], or null for a block of malloc(). */
+char *realpath(const char *path, char *resolved);
+char *hl_posix_mkdtemp(char *path);
+/* The value in UTF-8, which stays until the process ends. */
+char *hl_posix_getenv(const char *name);
+#define mkdtemp hl_posix_mkdtemp
+#define getenv  hl_posix_getenv
+
+#endif

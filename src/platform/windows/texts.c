@@ -1,0 +1,11 @@
+/* platform/windows/texts.c - BSD's strsep(). */
+#include <string.h>
+
+char *strsep(char **text, const char *separators) {
+  char *begin = *text;
+  if (begin == NULL) return NULL;
+  char *end = begin + strcspn(begin, separators);
+  *text = *end != '\0' ? end + 1 : NULL;
+  *end = '\0';
+  return begin;
+}
