@@ -37,7 +37,7 @@ library() {
   for file in "$@"; do
     # shellcheck disable=SC2086 # several flags
     "$zig/zig" cc -w -target "$library_target" -O2 $library_flags \
-      -DHAVE_UNISTD_H -DHAVE_STDINT_H -DHAVE_SYS_TYPES_H -DHAVE_STRTOLL -I"$root/include" -c "$folder/$file.c" -o "$root/objects/$name/$file.o"
+      -DHAVE_UNISTD_H -DHAVE_STDINT_H -DHAVE_SYS_TYPES_H -DHAVE_STRTOLL -I"$root/include" -c "$folder/$file.c" -o "$root/objects/$name/$(basename "$file").o"
   done
   rm -f "$root/lib/lib$name.a"
   "$zig/zig" ar rcs "$root/lib/lib$name.a" "$root/objects/$name"/*.o
@@ -64,4 +64,34 @@ build_base_libraries() {
   package zlib z "$(sed -n 's/#define ZLIB_VERSION "\([0-9.]*\).*/\1/p' "$z"zlib.h)"
   package libpng png "$(sed -n 's/#define PNG_LIBPNG_VER_STRING "\(.*\)"/\1/p' "$png"png.h)"
   package jansson jansson "$(sed -n 's/#define JANSSON_VERSION  *"\(.*\)"/\1/p' "$jansson"src/jansson.h)"
+}
+
+# bzip2, LZ4 and Zstandard.
+build_codec_libraries() {
+  bzip2=$(echo "$root"/sources/bzip2-*/) lz4=$(echo "$root"/sources/lz4-*/)lib/ zstd=$(echo "$root"/sources/libzstd-*/)lib/
+  cp "$bzip2"bzlib.h "$lz4"lz4.h "$zstd"zstd.h "$zstd"zstd_errors.h "$root/include"
+  library bz2 "$bzip2" blocksort bzlib compress crctable decompress huffman randtable
+  library lz4 "$lz4" lz4
+  usual_flags=$library_flags
+  library_flags="$library_flags -DZSTD_DISABLE_ASM"
+  # shellcheck disable=SC2046 # several names
+  library zstd "$zstd" $(cd "$zstd" && ls common/*.c compress/*.c decompress/*.c | sed 's/\.c$//')
+  library_flags=$usual_flags
+  package liblz4 lz4 "$(sed -n 's/#define LZ4_VERSION_\(MAJOR\|MINOR\|RELEASE\) *\([0-9]*\).*/\2/p' "$lz4"lz4.h | paste -sd.)"
+  package libzstd zstd "$(sed -n 's/#define ZSTD_VERSION_\(MAJOR\|MINOR\|RELEASE\) *\([0-9]*\).*/\2/p' "$zstd"zstd.h | paste -sd.)"
+}
+
+# musl's functions of <math.h>: the last bits of the systems' own differ, and with them pictures would. The web build's C library is musl.
+build_math_library() {
+  math=$(echo "$root"/sources/musl-*/)src
+  mkdir -p "$root/math"
+  : >"$root/math/fp_arch.h"
+  printf '#define __LITTLE_ENDIAN 1234\n#define __BYTE_ORDER 1234\n' >"$root/math/endian.h"
+  printf '#define hidden __attribute__((__visibility__("hidden")))\n#define weak_alias(old, new)\n' >"$root/math/features.h"
+  usual_flags=$library_flags
+  library_flags="$library_flags -I$root/math -I$math/internal -include features.h -D_GNU_SOURCE -ffp-contract=off -fno-builtin"
+  library muslmath "$math/math" __cos __math_divzero __math_invalid __math_oflow __math_uflow __math_xflow __math_divzerof __math_invalidf __math_oflowf \
+    __math_uflowf __math_xflowf __rem_pio2 __rem_pio2_large __sin __tan acos asin atan atan2 cbrt cos cosh erf exp exp2f_data exp_data expm1 fmod hypot log \
+    log10 log1p log2 log2_data log_data pow pow_data powf powf_data sin sincos sinh tan tanh
+  library_flags=$usual_flags
 }

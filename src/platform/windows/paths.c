@@ -14,9 +14,12 @@
 #include "platform/paths.h"
 #include "platform/windows/names.h"
 
+/* Names of the network ("//server/share/file") are none: a scene that names one would make the system show
+ * its user to that server. Behind a folder's name they lead to a place below it. */
 bool hl_path_is_absolute(const char *path) {
   bool drive = ((path[0] | 0x20) >= 'a' && (path[0] | 0x20) <= 'z') && path[1] == ':';
-  return path[0] == '/' || path[0] == '\\' || drive;
+  bool slash = path[0] == '/' || path[0] == '\\';
+  return drive || (slash && path[1] != '/' && path[1] != '\\');
 }
 
 FILE *hl_posix_fopen(const char *path, const char *mode) {

@@ -1,0 +1,17 @@
+/* platform/macos/include/fcntl.h - <fcntl.h> with Linux's names. */
+#ifndef HL_PLATFORM_MACOS_FCNTL_H
+#define HL_PLATFORM_MACOS_FCNTL_H
+
+#include_next <fcntl.h>
+
+#include <sys/types.h>
+
+#ifndef O_NOFOLLOW
+#define O_NOFOLLOW 0x100 /* declared for sources without a POSIX version alone */
+#endif
+#define O_PATH 0 /* a descriptor for a name alone is one for reading */
+
+/* Makes a file at least that long, on its disk. Returns an error number or 0. */
+int posix_fallocate(int descriptor, off_t offset, off_t bytes);
+
+#endif

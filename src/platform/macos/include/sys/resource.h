@@ -1,0 +1,14 @@
+/* platform/macos/include/sys/resource.h - <sys/resource.h> with memory in KiB, as on Linux. */
+#ifndef HL_PLATFORM_MACOS_SYS_RESOURCE_H
+#define HL_PLATFORM_MACOS_SYS_RESOURCE_H
+
+#include_next <sys/resource.h>
+
+#include <sys/types.h>
+
+int hl_posix_getrusage(int who, struct rusage *usage);
+#define getrusage hl_posix_getrusage
+/* Another process's limits cannot be set: fails. */
+int prlimit(pid_t process, int what, const struct rlimit *limit, struct rlimit *before);
+
+#endif

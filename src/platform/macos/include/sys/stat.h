@@ -1,0 +1,9 @@
+/* platform/macos/include/sys/stat.h - <sys/stat.h> with POSIX's name of a time. */
+#ifndef HL_PLATFORM_MACOS_SYS_STAT_H
+#define HL_PLATFORM_MACOS_SYS_STAT_H
+
+#include_next <sys/stat.h>
+
+#define st_mtim st_mtimespec
+
+#endif

@@ -1,0 +1,11 @@
+/* platform/macos/include/unistd.h - <unistd.h> with Linux's pipe2(). */
+#ifndef HL_PLATFORM_MACOS_UNISTD_H
+#define HL_PLATFORM_MACOS_UNISTD_H
+
+#include_next <unistd.h>
+
+/* macOS 27 has a pipe2() of its own. */
+int hl_posix_pipe2(int ends[2], int flags);
+#define pipe2 hl_posix_pipe2
+
+#endif
