@@ -37,6 +37,8 @@ hl_status hl_vtk_xml_file_tag(hl_vtk_xml *xml, const hl_xml_tag *tag, const char
   const char *type = hl_xml_attribute(tag, "type"), *order = hl_xml_attribute(tag, "byte_order");
   const char *header_type = hl_xml_attribute(tag, "header_type"),
              *compressor = hl_xml_attribute(tag, "compressor");
+  if (xml->header_bytes != 0)
+    return hl_vtk_xml_refuse(xml, HL_ERROR_INPUT, "a second element", tag->name, error);
   if (type == NULL || strcmp(type, wanted) != 0)
     return hl_vtk_xml_refuse(xml, HL_ERROR_UNSUPPORTED, "a VTKFile of type", type == NULL ? "" : type, error);
   if (order != NULL && strcmp(order, "BigEndian") != 0 && strcmp(order, "LittleEndian") != 0)
