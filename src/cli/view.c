@@ -228,7 +228,7 @@ static int run_view(const cli_value *values, char **inputs) {
   if (module == NULL) return EXIT_CODE_UNSUPPORTED;
   view_job job = {.values = values, .render = values + VIEW_OPTION_COUNT};
   const cli_value *render = job.render;
-  char title[300], problem[300], folder[PATH_MAX], token[VIEW_TOKEN_DIGITS + 1];
+  char title[300], problem[300], folder[PATH_MAX];
   cli_host_options options = {.quiet = render[RENDER_QUIET].given,
                               .progress = true,
                               .subject = base_name(inputs[0]),
@@ -253,7 +253,7 @@ static int run_view(const cli_value *values, char **inputs) {
                              .open = open_file,
                              .most_upload_bytes = job.host.memory_limit,
                              .port = port,
-                             .token = port > 0 && view_token_of_port(port, token) ? token : NULL,
+                             .token = view_token_of_port,
                              .stopped = host_interrupted,
                              .user_data = &job,
                              .ready = on_ready,

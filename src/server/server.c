@@ -103,14 +103,15 @@ bool server_run(const server_options *options, char *problem, size_t problem_siz
         NULL); /* a page that has outlived another viewer asks for none of these */
   }
   if (!good) snprintf(problem, problem_size, "out of memory for the viewer");
-  if (good && options->token != NULL && strlen(options->token) == TOKEN_DIGITS)
-    memcpy(s->token, options->token, TOKEN_DIGITS + 1);
-  else if (good && !make_token(s->token)) {
+  if (good) listening = listen_on(options->port, problem, problem_size);
+  good = listening >= 0;
+  bool kept = good && options->token != NULL && options->port > 0 && options->token(options->port, s->token);
+  if (good && !kept && !make_token(s->token)) {
     snprintf(problem, problem_size, "the system gives no random numbers");
+    close(listening);
     good = false;
   }
-  if (good) listening = listen_on(options->port, problem, problem_size);
-  good = listening >= 0 && serve(s, listening, problem, problem_size);
+  good = good && serve(s, listening, problem, problem_size);
   if (s != NULL) {
     pages_end(s);
     opened_end(s);

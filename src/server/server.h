@@ -48,8 +48,10 @@ typedef struct server_options {
   hl_status (*open)(void *user_data, const server_file *file, hl_scene **scene, hl_error *error);
   uint64_t most_upload_bytes; /* of a file that is dropped; 0: no limit */
   int port;                   /* 0: a free one */
-  const char *token;          /* of the URL: 32 hexadecimal digits; null: a random one */
-  bool (*stopped)(void);      /* asked some times a second; true ends server_run() */
+  bool (*token)(int port,
+                char token[33]); /* the token of the URL, 32 hexadecimal digits, kept for `port`: asked for
+                                  * when the port is this viewer's. Null, or false: a random one */
+  bool (*stopped)(void);         /* asked some times a second; true ends server_run() */
   void *user_data;
   void (*ready)(void *user_data, const char *url); /* called once, as soon as the server answers requests */
   void (*visited)(void *user_data); /* called once after `ready`, by another thread: a browser has the page */

@@ -1,5 +1,5 @@
 /* start/composed.c - see composed.h. */
-#include "start/composed.h"
+#include "composed.h"
 
 hl_status compose_choices(hl_context *context, const composed_choices *choices, hl_scene **scene,
                           hl_error *error) {

@@ -38,17 +38,17 @@ def sweeps(browser, url):
 
 
 def pictures_of(browser, label):
-    return f"[...document.querySelectorAll('[aria-label={json.dumps(label)}] img')]"
+    return f"[...document.querySelectorAll('[aria-label={json.dumps(label)}] canvas')]"
 
 
 def looks(browser):
     """Each look has a small picture of this volume, which differ; a click takes the look, one undo the one before."""
     open_section(browser, "Looks")
-    browser.wait(f"{pictures_of(browser, 'Looks')}.every((image) => !image.hidden && image.naturalWidth > 0)")
+    browser.wait(f"{pictures_of(browser, 'Looks')}.every((canvas) => canvas.dataset.drawn === '')")
     names = browser.run("[...document.querySelectorAll('[aria-label=Looks] button')].map((b) => b.textContent)")
     check({"surface", "translucent", "mip"} <= set(names), f"the program's looks: {names}")
-    drawn = browser.run(f"""{pictures_of(browser, 'Looks')}.map((image) => {{ const c = document.createElement('canvas'); c.width = 112; c.height = 80;
-      const context = c.getContext('2d'); context.drawImage(image, 0, 0); return context.getImageData(0, 0, 112, 80).data.reduce((sum, x) => sum + x, 0); }})""")
+    drawn = browser.run(f"""{pictures_of(browser, 'Looks')}.map((canvas) =>
+      canvas.getContext('2d').getImageData(0, 0, 112, 80).data.reduce((sum, x) => sum + x, 0))""")
     check(len(set(drawn)) >= 4, f"pictures differ: {drawn}")
     before, camera = scene_of(browser)["volumes"], scene_of(browser)["camera"]
     press(browser, "translucent")
@@ -67,7 +67,7 @@ def rigs(browser):
     open_section(browser, "Lights")
     names = browser.run("halflight.start.rigs")
     check(names == ["studio", "raking", "rim", "overcast"], f"four rigs: {names}")
-    browser.wait(f"{pictures_of(browser, 'Light rigs')}.every((image) => !image.hidden)")
+    browser.wait(f"{pictures_of(browser, 'Light rigs')}.every((canvas) => canvas.dataset.drawn === '')")
     first = scene_of(browser)["lights"]
 
     def take(name):
@@ -172,6 +172,7 @@ def cuts_of_the_program(browser, url):
     """What the program has cut away by itself is said below the picture, and one click brings it back."""
     browser.open(url)
     rest(browser)
+    browser.problems.clear()  # the page before has lost its viewer
     cuts = scene_of(browser)["volumes"][0]["cuts"]
     note = "document.querySelector('.note')"
     check("show what holds it" in browser.run(f"{note}.textContent") and str(len(cuts)) in browser.run(f"{note}.textContent"), "it is said")
@@ -215,6 +216,7 @@ with tempfile.TemporaryDirectory() as folder:
             two_pictures(browser)
             links(browser, viewer.url)
             keys_beside_sliders(browser)
+            check(browser.problems == [], f"the console has errors: {browser.problems}")
         if head is not None:
             with Viewer(PROGRAM, head) as viewer:
                 cuts_of_the_program(browser, viewer.url)

@@ -18,7 +18,7 @@ STAGE = "globalThis.halflight?.frames.statistics.stage"
 
 def rest(browser):
     """Waits for the final picture; returns the SHA-256 of the pixels on the screen, R, G, B, A."""
-    browser.wait(f"{STAGE} === 'final'")
+    browser.wait(f"{STAGE} === 'final' && document.querySelector('.gallery[data-busy]') === null")
     return browser.run("""(() => {
       const canvas = document.getElementById('picture');
       const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);

@@ -76,6 +76,7 @@ def hands_on_the_light(browser):
 
 
 def hands_on_the_function(browser):
+    browser.run("document.querySelector('canvas.function').scrollIntoView({ block: 'center' })")
     box = browser.run("(({ x, y, width, height }) => [x, y, width, height])(document.querySelector('canvas.function').getBoundingClientRect())")
     place = [box[0] + 0.5 * box[2], box[1] + 0.3 * box[3]]
     count = "halflight.store.scene.volumes[0].transfer_function.opacity.length"

@@ -325,6 +325,20 @@ def private_tokens(folder):
             check(again.token != token, "a token that others could know is not used")
             token = again.token
         check(stat.S_IMODE(os.lstat(f"{folder}/{name}").st_mode) == 0o600, "the new one is the user's alone")
+    with Viewer(PROGRAM, "first.nrrd", "--port", port) as again:
+        os.unlink(f"{folder}/{name}")
+        refused = subprocess.run([PROGRAM, "view", "--no-browser", "first.nrrd", "--port", port], capture_output=True, text=True, check=False)
+        check(refused.returncode != 0 and "is taken" in refused.stderr, f"a second viewer does not get the port: {refused.stderr}")
+        check(not os.path.exists(f"{folder}/{name}"), "and does not touch the first one's token")
+    os.mkdir(f"{folder}/{name}")
+    with Viewer(PROGRAM, "first.nrrd", "--port", port) as again:
+        check(len(again.token) == 32 and again.token != token, "a folder of the token's name stays, and the token is a new one")
+        token = again.token
+    os.rmdir(f"{folder}/{name}")
+    os.mkfifo(f"{folder}/{name}", 0o600)
+    with Viewer(PROGRAM, "first.nrrd", "--port", port) as again:
+        check(again.token != token and stat.S_ISREG(os.lstat(f"{folder}/{name}").st_mode), "a pipe of its name is replaced, and not waited for")
+        token = again.token
     os.chmod(folder, 0o755)
     with Viewer(PROGRAM, "first.nrrd", "--port", port) as again:
         check(again.token != token, "none is read or kept in a folder that others can enter")

@@ -105,7 +105,7 @@ def keyboard_only(browser):
     """Tab reaches every control, and comes back out of the transfer function's drawing."""
     browser.run("document.querySelectorAll('details').forEach((d) => { d.open = true; }); document.activeElement.blur()")
     reached = set()
-    for _ in range(160):
+    for _ in range(320):
         browser.call("Input.dispatchKeyEvent", type="keyDown", key="Tab", code="Tab", windowsVirtualKeyCode=9)
         browser.call("Input.dispatchKeyEvent", type="keyUp", key="Tab", code="Tab", windowsVirtualKeyCode=9)
         reached.add(browser.run("""(() => { const e = document.activeElement; e.dataset.reached = 1;
@@ -136,6 +136,7 @@ def random_hands(browser, viewer, count=500):
             browser.run("document.getElementById('view').focus()")
             browser.key(chance.choice(keys))
         elif kind == 3:
+            browser.run("document.querySelector('canvas.function').scrollIntoView({ block: 'center' })")
             box = browser.run("(({ x, y, width, height }) => [x, y, width, height])(document.querySelector('canvas.function').getBoundingClientRect())")
             at = [box[0] + chance.random() * box[2], box[1] + chance.random() * box[3]]
             browser.drag(at, [at[0] + chance.randint(-60, 60), at[1] + chance.randint(-40, 40)], 3)

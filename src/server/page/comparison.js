@@ -90,7 +90,7 @@ export function comparison({ store, channel, failed, find, report }) {
     canvas.hidden = true; // it is of another view, until the picture has come to rest
   });
   const choice = select({
-    label: "Compare", choices: [["", "nothing"], ...["off", "hard", "soft", "kept"].map((name) => [name, `with ${NAMES[name]}`])], get: () => what,
+    label: "Compare", choices: [["", "nothing"], ...["off", "hard", "soft", "kept"].map((name) => [name, NAMES[name]])], get: () => what,
     set: (name) => {
       if (name === "kept" && kept === null) report("Keep this picture first: “keep” remembers it.");
       else if (name !== what) compare(name);

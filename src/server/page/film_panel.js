@@ -170,7 +170,7 @@ export function filmPanel(viewer) {
     if (element.open) names.replaceChildren(...numberPaths(store.scene).map((value) => make("option", { value })));
     strip.update();
   });
-  find("view").after(strip.element);
+  find("workspace").after(strip.element);
   body.append(
     row(make("span", { class: "name" }, "Length"), make("span", { class: "pair" }, number("Frames of the film", "frames", 2, 100000), "frames, at", number("Frames a second", "fps", 1, 240), "/ s")),
     turn.element,

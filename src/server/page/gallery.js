@@ -9,11 +9,11 @@ const STEP = 2; // voxels between sheets
 // names: the choices. made(name) resolves to the scene with one of them; take(name, scene) takes it; isTaken(scene of a choice): whether
 // the viewer shows it now. lane: of the pictures. Returns { element, update, atRest }: atRest() is called when the picture has come to rest.
 export function gallery({ label, names, viewer: { store, channel, failed, frames }, made, take, isTaken, lane }) {
-  const images = new Map(), scenes = new Map(); // by name
+  const canvases = new Map(), scenes = new Map(); // by name
   const buttons = names.map((name) => {
-    const image = make("img", { alt: "", width: SIDES.width, height: SIDES.height, hidden: true });
-    images.set(name, image);
-    return make("button", { type: "button", class: "choice", "aria-pressed": "false", onclick: () => choose(name) }, image, make("span", {}, name));
+    const canvas = make("canvas", { "aria-hidden": "true", ...SIDES });
+    canvases.set(name, canvas);
+    return make("button", { type: "button", class: "choice", "aria-pressed": "false", onclick: () => choose(name) }, canvas, make("span", {}, name));
   });
   const element = make("div", { class: "gallery", role: "group", "aria-label": label }, ...buttons);
   let busy = false, drawn = 0; // number of the pictures that are there
@@ -36,22 +36,24 @@ export function gallery({ label, names, viewer: { store, channel, failed, frames
     const small = { ...scene, image, camera: reshaped(store.scene.camera, store.scene.image, image), render: { ...scene.render, sheet_spacing: Math.max(STEP, scene.render.sheet_spacing) } };
     const frame = await channel.fetchFrame(small, { quality: 85, moving: true, lane });
     if (frame === null) return false;
-    const shown = images.get(name);
-    shown.onload = () => URL.revokeObjectURL(shown.src);
-    shown.src = URL.createObjectURL(frame.blob);
-    shown.hidden = false;
+    const bitmap = await createImageBitmap(frame.blob), canvas = canvases.get(name);
+    canvas.getContext("2d").drawImage(bitmap, 0, 0);
+    canvas.dataset.drawn = "";
+    bitmap.close();
     return true;
   }
 
   async function atRest() {
     if (busy) return;
     busy = true;
+    element.dataset.busy = ""; // tests wait for it
     try {
       while (drawn < names.length && isResting()) if (await draw(names[drawn])) drawn++;
     } catch {
       drawn = names.length; // the names do without pictures
     }
     busy = false;
+    delete element.dataset.busy;
     update();
   }
 
