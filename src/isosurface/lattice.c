@@ -1,6 +1,7 @@
 /* isosurface/lattice.c - see lattice.h. */
 #include "isosurface/lattice.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -169,10 +170,11 @@ hl_status hl_lattice_create(hl_context *context, hl_pool *pool, const grid *grid
                             double value, lattice *made, hl_error *error) {
   *made = (lattice){.context = context, .grid = grid, .kernel = kernel};
   made->value = (value - grid->value_offset) / grid->value_scale;
-  made->outside = grid->bricks != NULL ? 1 : 0.5;
   made->sign = grid->value_scale < 0 ? -1 : 1;
   size_t total = 1;
   for (int axis = 0; axis < 3; axis++) {
+    /* the outermost points lie at the box's faces, which are half a voxel, or a whole one, away */
+    made->outside[axis] = fmin(fmax(0.5 - grid->shift[axis], 0.5), 1);
     made->points[axis] = grid->dimension[axis] + 2;
     made->brick_count[axis] = (made->points[axis] + SIDE - 1) / SIDE;
     total *= (size_t)made->brick_count[axis];

@@ -28,7 +28,7 @@ typedef struct lattice {
   const kernel *kernel;
   double value;      /* of the surface; stored units */
   double sign;       /* 1: inside are greater values; -1: lesser */
-  double outside;    /* the distance of the outermost points from the outermost voxels */
+  double outside[3]; /* the distance of the outermost points from the outermost voxels */
   int32_t points[3]; /* n + 2 */
   int32_t brick_count[3];
   uint32_t *slot;        /* owned; [bricks z][y][x]; index of `bricks`; LATTICE_NONE: not kept */
@@ -43,7 +43,9 @@ void hl_lattice_release(lattice *made);
 
 /* The position of point i along an axis. */
 static inline double hl_lattice_position(const lattice *lattice, int axis, int32_t i) {
-  return i == 0 ? -lattice->outside : i == lattice->points[axis] - 1 ? i - 2 + lattice->outside : i - 1.0;
+  return i == 0                           ? -lattice->outside[axis]
+         : i == lattice->points[axis] - 1 ? i - 2 + lattice->outside[axis]
+                                          : i - 1.0;
 }
 
 /* The kept brick at these coordinates; null: none. */
