@@ -75,6 +75,15 @@ static void begin(const nanovdb_grid *grid, walk *w) {
   w->root = pnanovdb_tree_get_root(w->memory, pnanovdb_grid_get_tree(w->memory, handle));
 }
 
+/* Finds which lower nodes the box meets. */
+static void find_lower_nodes(walk *w) {
+  for (int a = 0; a < 3; a++) {
+    int64_t low = w->low[a], high = w->low[a] + w->size[a] - 1;
+    w->first[a] = (low - (low & (LOWER - 1))) / LOWER;
+    w->count[a] = (size_t)((high - (high & (LOWER - 1))) / LOWER - w->first[a] + 1);
+  }
+}
+
 /* Reads the box, and how many lower nodes it meets. Fails if the box is empty or a side is beyond 32 bits. */
 static hl_status read_box(walk *w, hl_error *error) {
   pnanovdb_coord_t low = pnanovdb_root_get_bbox_min(w->memory, w->root),
@@ -85,9 +94,8 @@ static hl_status read_box(walk *w, hl_error *error) {
     w->size[a] = highs[a] - lows[a] + 1;
     if (w->size[a] < 1 || w->size[a] > INT32_MAX)
       return hl_fail(error, HL_ERROR_INPUT, "%s: the grid has no active voxels", w->grid->path);
-    w->first[a] = (lows[a] - (lows[a] & (LOWER - 1))) / LOWER;
-    w->count[a] = (size_t)((highs[a] - (highs[a] & (LOWER - 1))) / LOWER - w->first[a] + 1);
   }
+  find_lower_nodes(w);
   return HL_OK;
 }
 
@@ -376,5 +384,23 @@ hl_status nanovdb_grid_read(const nanovdb_grid *grid, const hl_volume_descriptio
   if (status == HL_OK)
     status = hl_parallel_read(grid->context, pool, grid->path, parts, read_part, &w, error);
   hl_pool_destroy(pool);
+  return status;
+}
+
+hl_status nanovdb_grid_read_box(const nanovdb_grid *grid, const size_t first[3], const size_t size[3],
+                                float *voxels, hl_error *error) {
+  walk w;
+  begin(grid, &w);
+  hl_status status = read_box(&w, error);
+  for (int a = 0; a < 3; a++) {
+    w.low[a] += (int64_t)first[a];
+    w.size[a] = (int64_t)size[a];
+  }
+  find_lower_nodes(&w);
+  w.type = HL_VOXEL_F32;
+  w.bytes = w.stored_bytes = sizeof *voxels;
+  w.voxels = (unsigned char *)voxels;
+  for (size_t part = 0; part < w.count[0] * w.count[1] * w.count[2] && status == HL_OK; part++)
+    status = read_part(&w, part, 0, error);
   return status;
 }

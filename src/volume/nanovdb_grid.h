@@ -30,4 +30,9 @@ hl_status nanovdb_grid_describe(const nanovdb_grid *grid, hl_volume_description 
 hl_status nanovdb_grid_read(const nanovdb_grid *grid, const hl_volume_description *description, void *voxels,
                             hl_exact *exact, hl_error *error);
 
+/* Reads voxels [k][j][i] of a part of that box as 32-bit floats, which the grid's values must be. first,
+ * size: of the part, in the box's own indices. */
+hl_status nanovdb_grid_read_box(const nanovdb_grid *grid, const size_t first[3], const size_t size[3],
+                                float *voxels, hl_error *error);
+
 #endif

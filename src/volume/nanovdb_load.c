@@ -10,7 +10,9 @@
 #include "core/memory.h"
 #include "volume/bundle.h"
 #include "volume/convert.h"
+#include "volume/in_bricks.h"
 #include "volume/nanovdb.h"
+#include "volume/nanovdb_bricks.h"
 #include "volume/nanovdb_grid.h"
 #include "volume/unpack.h"
 
@@ -227,6 +229,11 @@ static hl_status make_volume(const grid_list *list, const grid_entry *entry, nan
   if (status == HL_OK) status = hl_volume_check_grid(&payload->grid, list->path, error);
   if (status != HL_OK) return status;
   hl_volume_description description = hl_payload_grid(payload, request->spacing);
+  hl_bricks bricks = {0};
+  if (description.type == HL_VOXEL_F32) status = nanovdb_bricks_read(grid, &description, &bricks, error);
+  if (status != HL_OK) return status;
+  if (bricks.directory != NULL)
+    return hl_volume_take_bricks(request->context, &bricks, &description, list->path, volume, error);
   status = allocate(list, entry, &description, &voxels, error);
   const size_t *n = description.dimensions;
   hl_exact_begin(request->context, description.type, n[0] * n[1] * n[2], HL_EXACT_IN_MEMORY, &exact);
