@@ -195,8 +195,13 @@ LANES_INLINE void lanes_in_brick(const hl_bricks *bricks, const lanes_int cell[3
                                  uint32_t left, brick_lanes *found) {
   int first = __builtin_ctz(left);
   size_t block = 0;
-  for (int a = 2; a >= 0; a--)
-    block = block * bricks->directory_size[a] + (size_t)(cell[a][first] >> bricks->shift);
+  for (int a = 2; a >= 0; a--) {
+    int32_t at = cell[a][first] >> bricks->shift, last = (int32_t)bricks->directory_size[a] - 1;
+    at = at < 0      ? 0
+         : at > last ? last
+                     : at; /* whatever a ray's numbers are, the entry is one of the directory */
+    block = block * bricks->directory_size[a] + (size_t)at;
+  }
   found->entry = &bricks->directory[block];
   int level = found->entry->level, shift = bricks->shift + level;
   int32_t below = (1 << level) - 1;
