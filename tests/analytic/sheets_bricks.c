@@ -318,8 +318,7 @@ static void test_against_reference(void **state) {
 static void test_same_bytes(void **state) {
   (void)state;
   for (size_t n = 0; n < sizeof ways / sizeof *ways - 1; n++) {
-    if (ways[n].draw == draw_cut)
-      continue; /* where a cut crosses the box's face, last digits depend on the set */
+    if (ways[n].draw == draw_cut) continue; /* the last digit may differ there: docs/limits.md */
     static float first[FLOATS], pixels[FLOATS];
     bool any = false;
     for (int set_of = HL_INSTRUCTION_SET_SCALAR; set_of <= HL_INSTRUCTION_SET_AVX512_VBMI; set_of++) {
