@@ -8,7 +8,7 @@ from typing import Any, Literal, Unpack
 
 import numpy as np
 
-from . import _settings, arrays, cuts, isosurface, mask, neighbours, pieces
+from . import _settings, arrays, cuts, grids, isosurface, mask, neighbours, pieces
 from ._library import call, context, ffi, lib, made, text_of
 from ._words import check_keywords, choice
 from .keywords import MaterialSettings, VolumeSettings
@@ -269,6 +269,16 @@ class Volume:
             self._load(os.fspath(source), place["spacing"], axes or "zyx", chosen)
             return
         name = chosen.pop("array", None) if hasattr(source, "data_vars") else None
+        mesh = None if isinstance(source, np.ndarray) else grids.of_vtk(source)
+        if mesh is not None:
+            source = mesh[0]
+            if mesh[1] is not None:
+                self._changes.setdefault("name", mesh[1])
+        if isinstance(source, (grids.Cells, grids.Patches)):
+            for word in [word for word, value in place.items() if value is not None] + list(chosen):
+                raise TypeError(f"{word} is for arrays and files: a grid has places of its own")
+            self._handle = source.handle()
+            return
         for word in chosen:
             raise TypeError(f"{word} is for files that hold several: choose by an index")
         found = neighbours.find(source) if name is None else neighbours.variable(source, name)
@@ -311,6 +321,64 @@ class Volume:
         self._loading = (options, keep)
         self._handle = made(lib.hl_volume_load_with, "hl_volume", lib.hl_volume_release, context, os.fsencode(path),
                             options, path=path)
+
+    @classmethod
+    def from_cells(cls, points: Any, cells: Any, types: Any, values: Any, **look: Unpack[Look]) -> Volume:
+        """A mesh of cells with values, sampled at about half of a cell's edge; outside of the cells there is nothing.
+
+        Parameters
+        ----------
+        points : array_like, shape (points, 3)
+            In the world.
+        cells : array_like of int, shape (cells, corners) or flat
+            Points, from 0, in VTK's order. A flat list has each cell's number of corners before them, as PyVista's
+            ``grid.cells``.
+        types : int, or array_like of int, shape (cells,)
+            VTK's numbers: 10 tetrahedra, 12 hexahedra, 13 wedges, 14 pyramids. Quadratic cells are read by their corners.
+        values : array_like, shape (points,) or (cells,)
+            NaN where there is none. Values of cells are averaged at the points.
+
+        Examples
+        --------
+        >>> points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+        >>> import warnings
+        >>> with warnings.catch_warnings():
+        ...     warnings.simplefilter("ignore")  # it tells how far the samples are from the mesh
+        ...     Volume.from_cells(points, [(0, 1, 2, 3)], 10, [0, 1, 1, 2]).dimensions
+        (2, 2, 2)
+        """
+        return cls(grids.Cells(points, cells, types, values), **look)
+
+    @classmethod
+    def from_amr(cls, patches: Any, *, ratio: int | Sequence[int] = 2, cells: Sequence[int] | None = None,
+                 first: Sequence[int] = (0, 0, 0), origin: Sequence[float] = (0, 0, 0),
+                 spacing: float | Sequence[float] = 1, **look: Unpack[Look]) -> Volume:
+        """An adaptive grid, without seams where the level changes.
+
+        Parameters
+        ----------
+        patches : iterable of (level, (x, y, z), array)
+            The level from 0, the coarsest; the patch's first cell in the level's index space; and the means of the
+            values over its cells, [z][y][x]. Finer patches count where they cover coarser ones.
+        ratio : int or ints
+            How much finer each level is than the one before: 2, 4, 8, ...
+        cells : (x, y, z), optional
+            Cells of level 0 in the domain; else what its patches cover.
+        first : (x, y, z)
+            The domain's first cell of level 0.
+        origin : (x, y, z)
+            World position of the domain's corner with the least coordinates.
+        spacing : float or 3 floats
+            World units: the edges x, y, z of a cell of level 0.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> patches = [(0, (0, 0, 0), np.ones((8, 8, 8))), (1, (4, 4, 4), np.ones((8, 8, 8)))]
+        >>> Volume.from_amr(patches).dimensions
+        (16, 16, 16)
+        """
+        return cls(grids.Patches(patches, ratio, cells, first, origin, spacing), **look)
 
     def replace(self, **look: Unpack[Look]) -> Volume:
         """The same voxels with another look."""

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from . import colors
+from . import colors, grids
 from ._library import warn
 from .camera import Camera
 from .lights import Directional, Light, Point, Spot
@@ -286,8 +287,8 @@ def _take_volume(taken: _Taken, actor: Any, matrix: np.ndarray[Any, Any]) -> Non
     if mapper is None:
         return
     mapper.Update()
-    image = _regular(mapper.GetInputDataObject(0, 0))
-    array = find(image).array
+    mesh = grids.of_vtk(mapper.GetInputDataObject(0, 0))
+    image = _regular(mapper.GetInputDataObject(0, 0)) if mesh is None else None
     function = TransferFunction.from_vtk(prop)
     if taken.display:
         function.color = function.color.copy()
@@ -308,7 +309,11 @@ def _take_volume(taken: _Taken, actor: Any, matrix: np.ndarray[Any, Any]) -> Non
     if blend not in (0, 1):
         warn("the volume's blend mode is left out: Halflight composites, or shows the maximum")
     taken.nearest |= prop.GetInterpolationType() == 0
-    taken.volumes.append(Volume(array, axes="zyx", affine=matrix @ _image_affine(image), **look))
+    if mesh is not None:
+        points = np.asarray(mesh[0].points, float) @ matrix[:3, :3].T + matrix[:3, 3]
+        taken.volumes.append(Volume(replace(mesh[0], points=points), **look))
+    else:
+        taken.volumes.append(Volume(find(image).array, axes="zyx", affine=matrix @ _image_affine(image), **look))
 
 
 # ---- lights, and the whole
@@ -357,7 +362,8 @@ def from_vtk(renderer: Any, *, size: Any = None, shading: Shading = "light", **s
     -------
     Scene
         Lines are tubes and points spheres, as wide as they are drawn. Edges on surfaces are left out, and so are text and
-        scalar bars, which ``plotter.halflight()`` of PyVista adds; rectilinear and unstructured grids that are shown as volumes are sampled to voxels: a warning says to which.
+        scalar bars, which ``plotter.halflight()`` of PyVista adds; rectilinear grids that are shown as volumes are sampled to voxels: a warning says to which. Unstructured and curvilinear
+        grids are read by their cells (`Volume.from_cells`).
     """
     from ._settings import size_of
     from ._words import choice

@@ -178,7 +178,8 @@ static void make_brick(void *data, size_t index, int worker) {
   float *out = b->bricks->pool + index * count;
   assemble(b, leaf->level, &box, b->scratch + (size_t)worker * b->scratch_floats, out);
   bool same = true;
-  for (size_t n = 1; n < count && same; n++) same = out[n] == out[0];
+  for (size_t n = 1; n < count && same; n++)
+    same = out[n] == out[0] || (out[n] != out[n] && out[0] != out[0]);
   b->is_constant[index] = same;
 }
 

@@ -126,7 +126,7 @@ bool render_has_pattern(char **operands);
 int render_check_options(const cli_value *values);
 
 /* Parts operands into meshes, by their names, and others; both lists end with null. */
-void render_part_meshes(char **operands, char **meshes, char **others);
+void render_part_meshes(hl_context *context, char **operands, char **meshes, char **others);
 /* Loads one mesh, in the colour of the index-th; the caller releases mesh->mesh. */
 hl_status render_load_mesh(hl_context *context, const char *path, size_t index, hl_scene_mesh *mesh,
                            hl_error *error);

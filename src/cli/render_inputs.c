@@ -168,7 +168,7 @@ int render_load_inputs(cli_host *host, const cli_value *values, char **operands,
   char *meshes[MAXIMUM_OPERANDS + 1], *others[MAXIMUM_OPERANDS + 1];
   int exit_code = EXIT_CODE_OK;
   *bare = true;
-  render_part_meshes(operands, meshes, others);
+  render_part_meshes(host->context, operands, meshes, others);
   if (others[0] != NULL) exit_code = render_load_volumes(host, values, others, bare, scene);
   return exit_code == EXIT_CODE_OK ? render_add_meshes(host, meshes, 0, *bare, scene) : exit_code;
 }

@@ -9,6 +9,8 @@
   HL_FORMAT(metaimage) \
   HL_FORMAT(nifti)     \
   HL_FORMAT(mgh)       \
+  HL_FORMAT(vtu)       \
+  HL_FORMAT(vthb)      \
   HL_FORMAT(vti)       \
   HL_FORMAT(legacy_vtk) \
   HL_FORMAT(npy)       \

@@ -80,6 +80,7 @@ VALUES = {
     "const hl_figure *": "&figure", "hl_figure *": "&other_figure", "hl_figure_panel *": "&panel", "hl_overlay *": "&overlay",
     "hl_mesh *": "mesh", "const hl_mesh *": "mesh", "hl_mesh **": "&any",
     "const hl_mesh_description *": "&mesh_description",
+    "const hl_cells_description *": "&cells_description", "const hl_amr_description *": "&amr_description",
     "hl_label **": "&any", "hl_label *": "NULL",
     "hl_ranks **": "&any", "hl_ranks *": "NULL", "const hl_ranks *": "NULL", "void * communicator": "bytes",
     "hl_view *": "&view", "const hl_view *": "&view",
@@ -101,6 +102,8 @@ static hl_renderer *renderer;
 static hl_image *image;
 static hl_mesh *mesh;
 static hl_mesh_description mesh_description;
+static hl_cells_description cells_description;
+static hl_amr_description amr_description;
 static hl_volume_description description;
 static hl_image_write_options write_options;
 static hl_reference_options reference_options;
@@ -141,6 +144,17 @@ static int make(void) {
   mesh_description.positions = corners, mesh_description.vertex_count = 3;
   mesh_description.triangles = triangle, mesh_description.triangle_count = 1;
   if (hl_mesh_create(context, &mesh_description, &mesh, &error) != HL_OK) return 0;
+  static const double points[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, values[4] = {0, 1, 2, 3};
+  static const unsigned char tetrahedron[1] = {10};
+  static const int64_t ends[1] = {4}, names[4] = {0, 1, 2, 3};
+  hl_cells_description_defaults(&cells_description);
+  cells_description.points = points[0], cells_description.point_count = 4, cells_description.values = values;
+  cells_description.types = tetrahedron, cells_description.ends = ends, cells_description.cell_count = 1;
+  cells_description.corners = names, cells_description.corner_count = 4;
+  static const hl_patch patch = {.count = {2, 2, 2}, .values = floats};
+  hl_amr_description_defaults(&amr_description);
+  amr_description.patches = &patch, amr_description.patch_count = 1;
+  for (int axis = 0; axis < 3; axis++) amr_description.count[axis] = 2;
   hl_scene *large;
   if (hl_volume_create(context, &description, &volume, &error) != HL_OK ||
       hl_scene_for_volume(context, volume, "ball.nrrd", &large, &error) != HL_OK ||

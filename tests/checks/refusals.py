@@ -31,7 +31,7 @@ MEND = re.compile(r": (choose|convert|crop|decompress|export|extract|give|instal
                   r": (unpack|resample) it")
 # Where the text is put together of parts, which hold the mend.
 PARTS = {"volume/load.c": "%s: %s", "volume/dicom/header.c": "%s: %s: convert it with gdcmconv or dcm2niix",
-         "volume/npy.c": ("save it as", ""), "volume/vti.c": "an XML file whose first element is", "mesh/vtp.c": "an XML file whose first element is",
+         "volume/npy.c": ("save it as", ""), "volume/vti.c": "an XML file whose first element is", "volume/vtu.c": "an XML file whose first element is", "mesh/vtp.c": "an XML file whose first element is",
          "volume/vtk_xml.c": ("a VTKFile of type", "a DataArray of type", " is not read: save it")}
 
 

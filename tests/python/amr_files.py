@@ -22,7 +22,7 @@ def levels(field: Callable[..., Any], ratio: int = 2, cells: int = 32) -> list[l
     """A coarse level over the unit cube, in eight patches, and a finer level around the cube's middle."""
     half, fine = cells // 2, cells * ratio
     coarse = [((x, y, z), means(field, cells, (x, y, z), (half,) * 3)) for z in (0, half) for y in (0, half) for x in (0, half)]
-    boxes = [((8, 8, 8), (8, 16, 16)), ((16, 8, 8), (8, 8, 16)), ((16, 16, 12), (4, 8, 8))]
+    boxes = [((8, 8, 8), (8, 16, 16)), ((16, 8, 8), (8, 8, 16)), ((16, 16, 12), (4, 8, 8))] if cells >= 24 else [((4, 4, 4), (8, 8, 4))]
     finer = []
     for first, count in boxes:
         first, count = tuple(ratio * n for n in first), tuple(ratio * n for n in count)
@@ -55,3 +55,22 @@ def write_plotfile(folder: Path, names: Sequence[str], components: Sequence[list
         (folder / f"Level_{level}" / "Cell_H").write_text("\n".join(text))
         lines += [f"{level} {len(places)} 0.25", "0", f"Level_{level}/Cell"]
     (folder / "Header").write_text("\n".join(lines) + "\n")
+
+
+def write_vthb(path: Path, parts: list[list[Patch]], ratio: int = 2, cells: int = 32) -> None:
+    """VTK's overlapping AMR over the unit cube, with a file for each box."""
+    lines = ['<VTKFile type="vtkOverlappingAMR" version="1.1" byte_order="LittleEndian"><vtkOverlappingAMR origin="0 0 0" grid_description="XYZ">']
+    for level, row in enumerate(parts):
+        step = 1 / cells / ratio**level
+        lines.append(f'<Block level="{level}" spacing="{step} {step} {step}">')
+        for index, (first, values) in enumerate(row):
+            ends = [(first[a], first[a] + values.shape[2 - a]) for a in range(3)]
+            name, extent = f"box_{level}_{index}.vti", " ".join(f"{low} {high}" for low, high in ends)
+            box = " ".join(f"{low} {high - 1}" for low, high in ends)
+            lines.append(f'<DataSet index="{index}" amr_box="{box}" file="{name}"/>')
+            numbers = " ".join(repr(float(value)) for value in np.asarray(values, np.float32).ravel())
+            (path.parent / name).write_text(
+                f'<VTKFile type="ImageData"><ImageData WholeExtent="{extent}" Origin="0 0 0" Spacing="{step} {step} {step}"><Piece Extent="{extent}">'
+                f'<CellData><DataArray type="Float32" Name="density" format="ascii">{numbers}</DataArray></CellData></Piece></ImageData></VTKFile>')
+        lines.append("</Block>")
+    path.write_text("\n".join([*lines, "</vtkOverlappingAMR></VTKFile>"]))

@@ -9,7 +9,7 @@ import pytest
 
 import halflight as hl
 
-from amr_files import levels, means, write_plotfile
+from amr_files import levels, means, write_plotfile, write_vthb
 
 
 def blob(x: Any, y: Any, z: Any) -> Any:
@@ -99,3 +99,31 @@ def test_cut_plotfiles_are_refused(tmp_path: Path) -> None:
     data.write_bytes(data.read_bytes()[:-100])
     with pytest.raises(hl.InputError, match="ends before"):
         hl.Volume(folder)
+
+
+def test_patches_are_the_plotfile(tmp_path: Path) -> None:
+    parts = levels(blob)
+    write_plotfile(tmp_path / "plt", ["density"], [parts], kind="<f4")
+    patches = [(level, first, values) for level, row in enumerate(parts) for first, values in row]
+    volume = hl.Volume.from_amr(patches, spacing=1 / 32)
+    np.testing.assert_array_equal(np.asarray(volume), np.asarray(hl.Volume(tmp_path / "plt")))
+    np.testing.assert_allclose(hl.info(volume).origin, 1 / 128)
+    with pytest.raises(ValueError, match="beyond the domain"):
+        hl.Volume.from_amr([*patches, (1, (60, 0, 0), np.zeros((8, 8, 8)))])
+    with pytest.raises(ValueError, match="no patch of level 0"):
+        hl.Volume.from_amr(patches[-1:])
+
+
+@pytest.mark.parametrize("ratio", [2, 4])
+def test_overlapping_amr_of_vtk(tmp_path: Path, ratio: int) -> None:
+    parts = levels(blob, ratio, 16) if ratio == 4 else levels(blob, ratio)
+    cells = 16 if ratio == 4 else 32
+    write_vthb(tmp_path / "a.vthb", parts, ratio, cells)
+    patches = [(level, first, values) for level, row in enumerate(parts) for first, values in row]
+    volume = hl.Volume(tmp_path / "a.vthb")
+    np.testing.assert_array_equal(np.asarray(volume), np.asarray(hl.Volume.from_amr(patches, ratio=ratio, spacing=1 / cells)))
+    np.testing.assert_allclose(hl.info(volume).spacing, 1 / cells / ratio)
+    assert hl.info(volume).arrays[0].name == "density"
+    (tmp_path / "a.vthb").write_text((tmp_path / "a.vthb").read_text().replace("box_1_0.vti", "../box_1_0.vti"))
+    with pytest.raises((hl.InputError, OSError)):
+        hl.Volume(tmp_path / "a.vthb")

@@ -1,0 +1,75 @@
+/* halflight/grids.h - volumes of grids that are no boxes of voxels: meshes of cells, and adaptive grids. */
+#ifndef HALFLIGHT_GRIDS_H
+#define HALFLIGHT_GRIDS_H
+
+#include "volume.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Whether a file is an unstructured grid (.vtu) that hl_volume_load() reads: it has cells with a volume, and
+ * values. Other unstructured grids are meshes (hl_mesh_load()). 0 for files of other formats, and for null.
+ */
+HL_API int hl_volume_reads_cells(hl_context *context, const char *path);
+
+/* A mesh of cells with values, in VTK's terms. All arrays are borrowed during the call. */
+typedef struct hl_cells_description {
+  size_t struct_size;   /* set by hl_cells_description_defaults() */
+  const double *points; /* [point_count][3]: world */
+  size_t point_count;
+  const unsigned char
+      *types;          /* [cell_count]: VTK's numbers: 10 tetrahedra, 12 hexahedra, 13 wedges, 14 pyramids,
+                          ...; cells without a volume are left out, with a warning */
+  const int64_t *ends; /* [cell_count]: where each cell's corners end in `corners` */
+  size_t cell_count;
+  const int64_t *corners; /* [corner_count]: points, from 0; in VTK's order */
+  size_t corner_count;
+  const double *values; /* one for each point, or for each cell: NaN where there is none */
+  int of_cells; /* not 0: values are of cells: a point gets the mean of the cells around it. Default 0 */
+} hl_cells_description;
+
+HL_API void hl_cells_description_defaults(hl_cells_description *description);
+
+/* Samples a mesh of cells at about half of a cell's edge, finer where cells are smaller. Outside of the cells
+ * there is nothing. A warning tells how far the volume is from the mesh's values. *volume is owned by the
+ * caller (release it). */
+HL_API HL_WARN_UNUSED hl_status hl_volume_create_cells(hl_context *context,
+                                                       const hl_cells_description *description,
+                                                       hl_volume **volume, hl_error *error);
+
+/* A box of cells of one level of an adaptive grid. */
+typedef struct hl_patch {
+  int level;           /* from 0, the coarsest */
+  int64_t first[3];    /* its first cell in the level's index space, along x, y, z */
+  size_t count[3];     /* cells along x, y, z */
+  const float *values; /* [count[2]][count[1]][count[0]], means over the cells; borrowed during the call */
+} hl_patch;
+
+/* An adaptive grid. Cell i of a level covers the cells i ratio .. i ratio + ratio - 1 of the next finer one.
+ */
+typedef struct hl_amr_description {
+  size_t struct_size;      /* set by hl_amr_description_defaults() */
+  int levels;              /* 1 to 16 */
+  const int *ratios;       /* [levels - 1]: 2, 4, 8, ...; how much finer level n + 1 is than level n */
+  int64_t first[3];        /* the domain's first cell of level 0; default 0 */
+  size_t count[3];         /* the domain's cells of level 0 along x, y, z */
+  double origin[3];        /* world: the domain's corner with the least coordinates; default 0 */
+  double spacing[3];       /* world: the edges of a cell of level 0; default 1 */
+  const hl_patch *patches; /* [patch_count] */
+  size_t patch_count;
+} hl_amr_description;
+
+HL_API void hl_amr_description_defaults(hl_amr_description *description);
+
+/* Makes a volume of an adaptive grid, without seams where the level changes. Its voxels have the size of the
+ * finest cells. Finer patches count where they cover coarser ones. *volume is owned by the caller (release
+ * it). */
+HL_API HL_WARN_UNUSED hl_status hl_volume_create_amr(hl_context *context,
+                                                     const hl_amr_description *description,
+                                                     hl_volume **volume, hl_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

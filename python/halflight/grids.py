@@ -1,0 +1,140 @@
+"""Volumes of grids that are no boxes of voxels: meshes of cells, and adaptive grids of patches."""
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ._library import context, ffi, lib, made
+
+__all__ = ["Cells", "Patches", "of_vtk"]
+
+
+def _pointer(kind: str, values: Any, dtype: str) -> tuple[Any, Any]:
+    """The values as a C array, and what keeps them."""
+    kept = np.ascontiguousarray(values, dtype)
+    return ffi.cast(f"const {kind} *", kept.__array_interface__["data"][0]), kept
+
+
+@dataclass(frozen=True)
+class Cells:
+    """A mesh of cells with values, as `Volume.from_cells` takes it."""
+
+    points: Any
+    cells: Any
+    types: Any
+    values: Any
+
+    def _corners(self) -> tuple[Any, Any]:
+        """The corners of all cells, and where each cell's end."""
+        cells = np.asarray(self.cells)
+        if cells.dtype.kind not in "iu":
+            raise TypeError("cells are numbers of points: an array of whole numbers")
+        if cells.ndim == 2:
+            return cells.ravel(), np.arange(1, len(cells) + 1) * cells.shape[1]
+        if cells.ndim != 1:
+            raise ValueError(f"cells have the shape {cells.shape}: give (cells, corners), or VTK's list of each cell's number of corners and its corners")
+        ends, at = [], 0
+        while at < len(cells):
+            ends.append(at)
+            at += int(cells[at]) + 1
+        if at > len(cells):
+            raise ValueError("the list of cells ends within a cell")
+        counts = np.array(ends, np.int64)
+        return np.delete(cells, counts), np.cumsum(cells[counts])
+
+    def handle(self) -> Any:
+        """An hl_volume of the mesh."""
+        points, values = np.asarray(self.points), np.asarray(self.values)
+        if points.ndim != 2 or points.shape[1] != 3:
+            raise ValueError(f"points have the shape {points.shape}: give (points, 3)")
+        corners, ends = self._corners()
+        types = np.broadcast_to(np.asarray(self.types, np.uint8), (len(ends),))
+        if values.shape not in ((len(points),), (len(ends),)):
+            raise ValueError(f"values have the shape {values.shape}: give one for each of {len(points)} points or {len(ends)} cells")
+        description = ffi.new("hl_cells_description *")
+        lib.hl_cells_description_defaults(description)
+        description.points, keep_points = _pointer("double", points, "f8")
+        description.types, keep_types = _pointer("unsigned char", types, "u1")
+        description.ends, keep_ends = _pointer("int64_t", ends, "i8")
+        description.corners, keep_corners = _pointer("int64_t", corners, "i8")
+        description.values, keep_values = _pointer("double", values, "f8")
+        description.point_count, description.cell_count, description.corner_count = len(points), len(ends), len(corners)
+        description.of_cells = values.shape != (len(points),)
+        return made(lib.hl_volume_create_cells, "hl_volume", lib.hl_volume_release, context, description)
+
+
+@dataclass(frozen=True)
+class Patches:
+    """An adaptive grid, as `Volume.from_amr` takes it."""
+
+    patches: Iterable[tuple[int, Sequence[int], Any]]
+    ratio: int | Sequence[int] = 2
+    cells: Sequence[int] | None = None
+    first: Sequence[int] = (0, 0, 0)
+    origin: Sequence[float] = (0, 0, 0)
+    spacing: float | Sequence[float] = 1
+
+    def handle(self) -> Any:
+        """An hl_volume of the grid."""
+        patches = [(int(level), tuple(map(int, first)), np.ascontiguousarray(values, np.float32)) for level, first, values in self.patches]
+        if not patches:
+            raise ValueError("there is no patch")
+        for _, first, values in patches:
+            if values.ndim != 3 or len(first) != 3:
+                raise ValueError("a patch is (level, (x, y, z) of its first cell, values [z][y][x])")
+        levels = max(level for level, _, _ in patches) + 1
+        ratios = [self.ratio] * (levels - 1) if isinstance(self.ratio, int) else list(self.ratio)
+        if len(ratios) < levels - 1:
+            raise ValueError(f"{levels} levels have {levels - 1} ratios: {len(ratios)} are given")
+        coarse = [(first, values) for level, first, values in patches if level == 0]
+        if self.cells is None and not coarse:
+            raise ValueError("there is no patch of level 0: say how many cells of it the domain has by cells=(x, y, z)")
+        count = self.cells or [max(first[a] + values.shape[2 - a] for first, values in coarse) - self.first[a] for a in range(3)]
+        description, rows = ffi.new("hl_amr_description *"), ffi.new("hl_patch[]", len(patches))
+        keep = ffi.new("int[]", ratios or [2])
+        lib.hl_amr_description_defaults(description)
+        description.levels, description.ratios = levels, keep
+        description.first, description.count = list(map(int, self.first)), list(map(int, count))
+        description.origin = list(map(float, self.origin))
+        description.spacing = [float(step) for step in np.broadcast_to(np.asarray(self.spacing, float), (3,))]
+        for row, (level, first, values) in zip(rows, patches, strict=True):
+            row.level, row.first, row.count = level, first, values.shape[::-1]
+            row.values = ffi.cast("const float *", values.__array_interface__["data"][0])
+        description.patches, description.patch_count = rows, len(patches)
+        return made(lib.hl_volume_create_amr, "hl_volume", lib.hl_volume_release, context, description)
+
+
+def _structured_cells(size: Sequence[int]) -> Any:
+    """The hexahedra of a grid of points [z][y][x]: (cells, 8)."""
+    number = np.arange(size[0] * size[1] * size[2]).reshape(size[::-1])
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    parts = [number[z : size[2] - 1 + z, y : size[1] - 1 + y, x : size[0] - 1 + x].ravel() for x, y, z in corners]
+    return np.stack(parts, 1)
+
+
+def of_vtk(source: Any) -> tuple[Cells, str | None] | None:
+    """The cells of an unstructured or curvilinear grid of VTK and PyVista, with the active scalars' name; None for anything else."""
+    unstructured = hasattr(source, "GetCellTypesArray") and hasattr(source, "GetCells")
+    curvilinear = hasattr(source, "GetPoints") and hasattr(source, "GetDimensions") and not hasattr(source, "GetSpacing")
+    if not (unstructured or curvilinear) or not hasattr(source, "GetPointData"):
+        return None
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    scalars = source.GetPointData().GetScalars() or source.GetCellData().GetScalars()
+    if scalars is None:
+        raise ValueError(f"{type(source).__name__} has no active scalars: set them, or give arrays to Volume.from_cells()")
+    values = vtk_to_numpy(scalars)
+    if values.ndim > 1:
+        raise ValueError(f"the active scalars have {values.shape[1]} components: give one of them to Volume.from_cells()")
+    points = vtk_to_numpy(source.GetPoints().GetData())
+    if curvilinear:
+        size = [0, 0, 0]
+        source.GetDimensions(size)
+        return Cells(points, _structured_cells(size), 12, values), scalars.GetName()
+    cells = source.GetCells()
+    corners, starts = vtk_to_numpy(cells.GetConnectivityArray()), vtk_to_numpy(cells.GetOffsetsArray())
+    flat = np.insert(corners.astype(np.int64), starts[:-1], np.diff(starts))
+    return Cells(points, flat, vtk_to_numpy(source.GetCellTypesArray()), values), scalars.GetName()

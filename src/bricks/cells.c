@@ -1,0 +1,377 @@
+/* bricks/cells.c - see cells.h.
+ *
+ * Each cell has a level, by its edge. A brick is split where it may meet a cell of a finer level. A lattice
+ * point's coefficient is the value of the cell around it; a tree finds the cells near a brick. */
+#include "bricks/cells.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "bricks/cell_tree.h"
+#include "bricks/inverse.h"
+#include "core/context.h"
+#include "core/memory.h"
+
+enum { SHIFT = 4, SIDE = 1 << SHIFT, STORED = SIDE + BRICK_MARGIN, LEVELS_MOST = 9 };
+
+/* Points along a cell's edge. */
+static const double POINTS_OF_AN_EDGE = 2;
+/* The part of the cells, of those with the shortest edges, whose edge decides the finest spacing. */
+static const double FINEST_PART = 0.01;
+/* Bytes of bricks that are made without a memory limit. */
+static const double BYTES_MOST = 1073741824.0;
+
+typedef struct cell_field {
+  hl_context *context;
+  const hl_cells *cells;
+  const char *subject;
+  hl_cells_place *place;
+  unsigned char *levels; /* owned; [cell_count] */
+  float *edges;          /* owned; [cell_count]; world; 0: the cell is left out */
+  hl_cell_tree tree;
+  hl_bricks_source source;
+  /* for the error */
+  const hl_bricks_leaf *leaves;
+  const hl_bricks *bricks;
+  float *errors; /* owned; [leaves] */
+} cell_field;
+
+/* ---- cells ---- */
+
+static int corner_count(const hl_cell *cell) { return cell->corner[4] == UINT32_MAX ? 4 : 8; }
+
+/* The cell's shape in the world; false if it has no volume or a corner without a value. */
+static bool shape_of(const hl_cells *cells, size_t n, hl_cell_shape *shape) {
+  const hl_cell *cell = &cells->cells[n];
+  shape->is_tetrahedron = corner_count(cell) == 4;
+  for (int c = 0; c < corner_count(cell); c++) {
+    if (!isfinite(cells->values[cell->corner[c]])) return false;
+    for (int axis = 0; axis < 3; axis++) {
+      shape->corner[c][axis] = cells->points[3 * (size_t)cell->corner[c] + (size_t)axis];
+      if (!isfinite(shape->corner[c][axis])) return false;
+    }
+  }
+  return hl_cell_shape_ready(shape);
+}
+
+/* The edge of a regular tetrahedron or of a cube with the cell's volume. */
+static double edge_of(const hl_cell_shape *shape) {
+  double volume = hl_cell_volume(shape);
+  return cbrt(shape->is_tetrahedron ? 6 * sqrt(2) * volume : volume);
+}
+
+static void measure_cells(cell_field *field, double low[3], double high[3], size_t *used) {
+  *used = 0;
+  for (int axis = 0; axis < 3; axis++) low[axis] = INFINITY, high[axis] = -INFINITY;
+  for (size_t n = 0; n < field->cells->cell_count; n++) {
+    hl_cell_shape shape;
+    field->edges[n] = 0;
+    if (!shape_of(field->cells, n, &shape)) continue;
+    double edge = edge_of(&shape);
+    if (!(edge > 1e-30 && edge < 1e30)) continue;
+    field->edges[n] = (float)edge;
+    (*used)++;
+    for (int c = 0; c < (shape.is_tetrahedron ? 4 : 8); c++)
+      for (int axis = 0; axis < 3; axis++) {
+        low[axis] = fmin(low[axis], shape.corner[c][axis]);
+        high[axis] = fmax(high[axis], shape.corner[c][axis]);
+      }
+  }
+}
+
+/* ---- the lattice ---- */
+
+enum { BINS = 512 };
+
+/* A bin of a histogram of edges, of which eight double the edge. */
+static int bin_of(double edge) {
+  int bin = (int)floor(log2(edge) * 8) + BINS / 2;
+  return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
+}
+
+/* The edge below which a part of the cells lies. */
+static double finest_edge(const cell_field *field, size_t used) {
+  size_t counts[BINS] = {0}, sum = 0;
+  for (size_t n = 0; n < field->cells->cell_count; n++)
+    if (field->edges[n] > 0) counts[bin_of((double)field->edges[n])]++;
+  for (int bin = 0; bin < BINS; bin++) {
+    sum += counts[bin];
+    if ((double)sum > FINEST_PART * (double)used) return exp2((bin - BINS / 2 + 0.5) / 8);
+  }
+  return 1;
+}
+
+static int level_of(double edge, double spacing) {
+  double level = floor(log2(edge / POINTS_OF_AN_EDGE / spacing) + 0.25); /* bins are an eighth wide */
+  return level < 0 ? 0 : level > LEVELS_MOST - 1 ? LEVELS_MOST - 1 : (int)level;
+}
+
+/* About how many bytes the bricks need: the directory, and cells by their own volume, with borders and partly
+ * filled bricks. size: of the mesh's box. */
+static double bytes_of(const cell_field *field, double spacing, const double size[3]) {
+  double points = 0, blocks = 1;
+  for (int axis = 0; axis < 3; axis++) blocks *= ceil(size[axis] / spacing / SIDE) + 1;
+  for (size_t n = 0; n < field->cells->cell_count; n++) {
+    double edge = (double)field->edges[n];
+    if (!(edge > 0)) continue;
+    double step = spacing * (double)(1 << level_of(edge, spacing)), across = edge / step;
+    points += (corner_count(&field->cells->cells[n]) == 4 ? 0.118 : 1) * across * across * across;
+  }
+  return points * 2.5 * sizeof(float) + blocks * sizeof(hl_brick_entry);
+}
+
+static double choose_spacing(const cell_field *field, size_t used, const double size[3]) {
+  double spacing = finest_edge(field, used) / POINTS_OF_AN_EDGE, most = BYTES_MOST;
+  uint64_t limit = field->context->options.memory_limit;
+  int doubled = 0;
+  if (limit > 0 && (double)limit / 4 < most) most = (double)limit / 4;
+  while (doubled < 80 && bytes_of(field, spacing, size) > most) spacing *= sqrt(2), doubled++;
+  if (doubled > 0)
+    hl_log(field->context, HL_LOG_WARNING,
+           "%s: its cells are resampled %.3g times as coarse as half of a small cell's edge, as far as "
+           "memory has "
+           "room for",
+           field->subject, pow(2, doubled / 2.0));
+  return spacing;
+}
+
+/* Chooses the lattice. Its points lie half a spacing inside of the mesh's box. */
+static hl_status choose_lattice(cell_field *field, hl_error *error) {
+  double low[3], high[3];
+  size_t used;
+  measure_cells(field, low, high, &used);
+  if (used == 0)
+    return hl_fail(
+        error, HL_ERROR_INPUT,
+        "%s: no cell has a volume and finite values: a mesh of surfaces is given to `halflight render` "
+        "beside a volume, or alone",
+        field->subject);
+  const double size[3] = {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
+  double spacing = choose_spacing(field, used, size);
+  for (int axis = 0; axis < 3; axis++) {
+    double points = fmax(1, ceil((high[axis] - low[axis]) / spacing - 1e-6));
+    field->source.dimension[axis] = (size_t)points;
+    field->place->spacing[axis] = (high[axis] - low[axis]) / points;
+    if (!(field->place->spacing[axis] > 0)) field->place->spacing[axis] = spacing;
+    field->place->origin[axis] = low[axis] + field->place->spacing[axis] / 2;
+  }
+  field->source.levels = 1;
+  for (size_t n = 0; n < field->cells->cell_count; n++) {
+    if (!(field->edges[n] > 0)) continue;
+    field->levels[n] = (unsigned char)level_of((double)field->edges[n], spacing);
+    if (field->levels[n] >= field->source.levels) field->source.levels = field->levels[n] + 1;
+  }
+  return HL_OK;
+}
+
+/* The cell's shape in lattice coordinates of level 0. */
+static bool shape_in_lattice(const cell_field *field, size_t n, hl_cell_shape *shape) {
+  if (!shape_of(field->cells, n, shape)) return false;
+  for (int c = 0; c < (shape->is_tetrahedron ? 4 : 8); c++)
+    for (int axis = 0; axis < 3; axis++)
+      shape->corner[c][axis] = (shape->corner[c][axis] - field->place->origin[axis]) /
+                               field->place->spacing[axis];
+  return hl_cell_shape_ready(shape);
+}
+
+static hl_status make_tree(cell_field *field, hl_error *error) {
+  size_t count = field->cells->cell_count;
+  hl_cell_box *boxes = hl_allocate(field->context, count, sizeof *boxes);
+  if (boxes == NULL) return hl_fail_memory(error, count * sizeof *boxes, field->subject);
+  for (size_t n = 0; n < count; n++) {
+    hl_cell_shape shape;
+    hl_cell_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    bool sound = field->edges[n] > 0 && shape_in_lattice(field, n, &shape);
+    for (int c = 0; sound && c < (shape.is_tetrahedron ? 4 : 8); c++)
+      for (int axis = 0; axis < 3; axis++) {
+        double at = shape.corner[c][axis], margin = 1e-6 * (1 + fabs(at));
+        box.low[axis] = fminf(box.low[axis], (float)(at - margin));
+        box.high[axis] = fmaxf(box.high[axis], (float)(at + margin));
+      }
+    if (!sound) /* a box that nothing meets, in the middle of no place */
+      box = (hl_cell_box){{-3e30f, -3e30f, -3e30f}, {-3e30f, -3e30f, -3e30f}};
+    boxes[n] = box;
+  }
+  return hl_cell_tree_make(field->context, boxes, count, field->subject, &field->tree, error);
+}
+
+/* ---- the source ---- */
+
+/* A box of lattice points that is being filled. */
+typedef struct fill_job {
+  const cell_field *field;
+  int level;
+  const ptrdiff_t *first;
+  const size_t *count;
+  float *out;
+} fill_job;
+
+/* Sets the points of the box that lie in a cell. Of cells that share a point the last in the tree's order
+ * counts, and each call meets all of them. */
+static bool fill_from_cell(void *data, uint32_t n) {
+  const fill_job *job = data;
+  const hl_cell *cell = &job->field->cells->cells[n];
+  const hl_cell_box *box = &job->field->tree.boxes[n];
+  double scale = (double)(1 << job->level);
+  hl_cell_shape shape;
+  ptrdiff_t low[3], high[3], at[3];
+  if (!shape_in_lattice(job->field, n, &shape)) return true;
+  for (int axis = 0; axis < 3; axis++) {
+    low[axis] = (ptrdiff_t)fmax(ceil((double)box->low[axis] / scale), (double)job->first[axis]);
+    high[axis] = (ptrdiff_t)fmin(floor((double)box->high[axis] / scale),
+                                 (double)job->first[axis] + (double)job->count[axis] - 1);
+  }
+  for (at[2] = low[2]; at[2] <= high[2]; at[2]++)
+    for (at[1] = low[1]; at[1] <= high[1]; at[1]++)
+      for (at[0] = low[0]; at[0] <= high[0]; at[0]++) {
+        const double point[3] = {(double)at[0] * scale, (double)at[1] * scale, (double)at[2] * scale};
+        double weights[8], sum = 0;
+        if (!hl_cell_weights(&shape, point, weights)) continue;
+        double base = (double)job->field->cells->values[cell->corner[0]]; /* a constant stays exact */
+        for (int c = 0; c < corner_count(cell); c++)
+          sum += weights[c] * ((double)job->field->cells->values[cell->corner[c]] - base);
+        job->out[((size_t)(at[2] - job->first[2]) * job->count[1] + (size_t)(at[1] - job->first[1])) *
+                     job->count[0] +
+                 (size_t)(at[0] - job->first[0])] = (float)(base + sum);
+      }
+  return true;
+}
+
+/* The box of lattice points in lattice coordinates of level 0. */
+static void bounds_of(int level, const ptrdiff_t first[3], const size_t count[3], double low[3],
+                      double high[3]) {
+  for (int axis = 0; axis < 3; axis++) {
+    low[axis] = (double)first[axis] * (double)(1 << level);
+    high[axis] = ((double)first[axis] + (double)count[axis] - 1) * (double)(1 << level);
+  }
+}
+
+static void fill(void *data, int level, const ptrdiff_t first[3], const size_t count[3], float *out) {
+  fill_job job = {data, level, first, count, out};
+  double low[3], high[3];
+  for (size_t n = 0; n < count[0] * count[1] * count[2]; n++) out[n] = NAN;
+  bounds_of(level, first, count, low, high);
+  hl_cell_tree_visit(&job.field->tree, low, high, fill_from_cell, &job);
+}
+
+/* The finest level of the cells that a brick may meet. */
+typedef struct level_search {
+  const cell_field *field;
+  int wanted, least;
+} level_search;
+
+static bool note_level(void *data, uint32_t cell) {
+  level_search *search = data;
+  if (search->field->levels[cell] < search->least) search->least = search->field->levels[cell];
+  return search->least >= search->wanted; /* one finer cell decides */
+}
+
+static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
+  level_search search = {data, level, LEVELS_MOST};
+  ptrdiff_t first[3];
+  const size_t count[3] = {SIDE + 1, SIDE + 1, SIDE + 1};
+  double low[3], high[3];
+  for (int axis = 0; axis < 3; axis++) first[axis] = (ptrdiff_t)brick[axis] << SHIFT;
+  bounds_of(level, first, count, low, high);
+  hl_cell_tree_visit(&search.field->tree, low, high, note_level, &search);
+  return search.least == LEVELS_MOST ? HL_BRICKS_NOTHING
+         : search.least < level      ? HL_BRICKS_SPLIT
+                                     : HL_BRICKS_LEAF;
+}
+
+/* ---- how far the field is from the mesh ---- */
+
+/* The field at a point of a brick, from the coefficients around it; NaN where some of these are. */
+static double field_at(const float *stored, size_t i, size_t j, size_t k) {
+  static const double weight[3] = {1.0 / 6, 2.0 / 3, 1.0 / 6};
+  double sum = 0;
+  for (size_t z = 0; z < 3; z++)
+    for (size_t y = 0; y < 3; y++)
+      for (size_t x = 0; x < 3; x++)
+        sum += weight[x] * weight[y] * weight[z] *
+               (double)stored[((k + z) * STORED + j + y) * STORED + i + x];
+  return sum;
+}
+
+static void find_error(void *data, size_t index, int worker) {
+  (void)worker;
+  cell_field *field = data;
+  const hl_bricks_leaf *leaf = &field->leaves[index];
+  const hl_bricks *bricks = field->bricks;
+  float own[SIDE * SIDE * SIDE];
+  ptrdiff_t first[3];
+  size_t block[3];
+  const size_t count[3] = {SIDE, SIDE, SIDE};
+  double greatest = 0;
+  for (int axis = 0; axis < 3; axis++) {
+    first[axis] = (ptrdiff_t)leaf->brick[axis] << SHIFT;
+    block[axis] = leaf->brick[axis] << leaf->level;
+  }
+  const hl_brick_entry *entry =
+      &bricks->directory[(block[2] * bricks->directory_size[1] + block[1]) * bricks->directory_size[0] +
+                         block[0]];
+  field->errors[index] = 0;
+  if (entry->slot < 0) return; /* a constant has no error: its coefficients are the mesh's values */
+  fill(field, leaf->level, first, count, own);
+  const float *stored = bricks->pool + (size_t)entry->slot * STORED * STORED * STORED;
+  for (size_t k = 0; k < SIDE; k++)
+    for (size_t j = 0; j < SIDE; j++)
+      for (size_t i = 0; i < SIDE; i++) {
+        double difference = fabs(field_at(stored, i, j, k) - (double)own[(k * SIDE + j) * SIDE + i]);
+        if (difference > greatest) greatest = difference; /* false for NaN */
+      }
+  field->errors[index] = (float)greatest;
+}
+
+static hl_status measure_error(cell_field *field, hl_pool *pool, const hl_bricks_leaf *leaves, size_t count,
+                               const hl_bricks *bricks, hl_error *error) {
+  field->leaves = leaves;
+  field->bricks = bricks;
+  field->errors = hl_allocate(field->context, count, sizeof *field->errors);
+  if (field->errors == NULL) return hl_fail_memory(error, count * sizeof *field->errors, field->subject);
+  hl_pool_run(pool, count, find_error, field);
+  if (hl_pool_cancelled(pool)) return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", field->subject);
+  for (size_t n = 0; n < count; n++)
+    field->place->error = fmax(field->place->error, (double)field->errors[n]);
+  return HL_OK;
+}
+
+/* ---- the whole ---- */
+
+static hl_status build(cell_field *field, hl_pool *pool, hl_bricks *bricks, hl_error *error) {
+  hl_bricks_leaf *leaves = NULL;
+  size_t count = 0;
+  hl_status status = choose_lattice(field, error);
+  if (status == HL_OK) status = make_tree(field, error);
+  if (status == HL_OK)
+    status = hl_bricks_choose(field->context, &field->source, choose, field, &leaves, &count, error);
+  if (status == HL_OK)
+    status = hl_bricks_build(field->context, pool, &field->source, leaves, count, field->subject, bricks,
+                             error);
+  if (status == HL_OK) {
+    status = measure_error(field, pool, leaves, count, bricks, error);
+    if (status != HL_OK) hl_bricks_release(field->context, bricks);
+  }
+  hl_release(field->context, leaves);
+  return status;
+}
+
+hl_status hl_cells_build(hl_context *context, hl_pool *pool, const hl_cells *cells, const char *subject,
+                         hl_bricks *bricks, hl_cells_place *place, hl_error *error) {
+  cell_field field = {.context = context, .cells = cells, .subject = subject, .place = place};
+  field.source = (hl_bricks_source){.shift = SHIFT, .outside = NAN, .fill = fill, .data = &field};
+  *bricks = (hl_bricks){.shift = 0};
+  *place = (hl_cells_place){.error = 0};
+  if (cells->cell_count >= UINT32_MAX)
+    return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: more than 2^32 cells: extract a part of them", subject);
+  field.levels = hl_allocate_zeroed(context, cells->cell_count, sizeof *field.levels);
+  field.edges = hl_allocate(context, cells->cell_count, sizeof *field.edges);
+  hl_status status = field.levels != NULL && field.edges != NULL
+                         ? build(&field, pool, bricks, error)
+                         : hl_fail_memory(error, cells->cell_count * sizeof *field.edges, subject);
+  hl_release(context, field.levels);
+  hl_release(context, field.edges);
+  hl_release(context, field.errors);
+  hl_cell_tree_release(context, &field.tree);
+  return status;
+}

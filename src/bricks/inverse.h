@@ -1,0 +1,25 @@
+/* bricks/inverse.h - where a point lies within a cell: the inverse of the map from a unit cell. */
+#ifndef HL_BRICKS_INVERSE_H
+#define HL_BRICKS_INVERSE_H
+
+#include <stdbool.h>
+
+/* A cell's corners, in any coordinates. Corner n of a hexahedron is at VTK's place in the unit cube: (0,0,0),
+ * (1,0,0), (1,1,0), (0,1,0), and the same with z = 1. Only the first four of a tetrahedron are used. */
+typedef struct hl_cell_shape {
+  bool is_tetrahedron;
+  double corner[8][3];
+  double inverse[3][3]; /* of a tetrahedron: from differences to the first corner to weights */
+} hl_cell_shape;
+
+/* Completes a shape whose corners are set. False if the cell has no volume. */
+bool hl_cell_shape_ready(hl_cell_shape *shape);
+
+/* The corners' weights at a point, whose sum is 1: [8], of a tetrahedron [4]. False if the point lies
+ * outside. */
+bool hl_cell_weights(const hl_cell_shape *shape, const double point[3], double weights[8]);
+
+/* The volume of the cell; of a hexahedron that of its map at the middle. */
+double hl_cell_volume(const hl_cell_shape *shape);
+
+#endif

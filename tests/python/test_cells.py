@@ -1,0 +1,176 @@
+"""Meshes of cells as volumes: constants and linear fields are exact, kinds of cells agree, and broken files are refused."""
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import halflight as hl
+
+from cell_files import CUBES, mesh, lattice, values_at, write_cells, write_curvilinear
+
+
+def blob(x: Any, y: Any, z: Any) -> Any:
+    return np.exp(-((x - 0.45) ** 2 + (y - 0.5) ** 2 + (z - 0.55) ** 2) / (2 * 0.2**2))
+
+
+def greatest_error(edge: float) -> float:
+    """Of the blob, whose second derivatives are 1 / 0.2^2 at most: along each axis the interpolation between points an edge
+    apart errs by edge^2 / 8 of them, and the B-spline of samples half an edge apart by (edge / 2)^2 / 6."""
+    return 3 / 0.2**2 * (edge**2 / 8 + (edge / 2) ** 2 / 6)
+
+
+def linear(x: Any, y: Any, z: Any) -> Any:
+    return 3 + x - 2 * y + 0.5 * z
+
+
+def places_of(info: hl.Info) -> tuple[Any, Any, Any]:
+    """The world's coordinates of the voxels, to be broadcast to [z][y][x]."""
+    x, y, z = (info.origin[a] + info.spacing[a] * np.arange(info.dimensions[a]) for a in range(3))
+    return x[None, None, :], y[None, :, None], z[:, None, None]
+
+
+def inner(voxels: Any, margin: int = 2) -> Any:
+    """Voxels whose neighbours all lie in cells."""
+    return voxels[(slice(margin, -margin),) * 3]
+
+
+@pytest.mark.parametrize("kind", sorted(CUBES))
+@pytest.mark.parametrize("bend", [0, 0.1])
+def test_linear_fields_are_exact(tmp_path: Path, kind: str, bend: float) -> None:
+    places, cells, types = mesh(kind, 9, bend)
+    volume = hl.Volume(write_cells(tmp_path / "a.vtu", places, cells, types, {"f": values_at(linear, places)}))
+    voxels, truth = np.asarray(volume), np.broadcast_to(linear(*places_of(hl.info(volume))), np.asarray(volume).shape)
+    assert np.isfinite(voxels).all()
+    np.testing.assert_allclose(inner(voxels), inner(truth), atol=3e-6)
+
+
+@pytest.mark.parametrize("kind", sorted(CUBES))
+def test_constants_are_exact(tmp_path: Path, kind: str) -> None:
+    places, cells, types = mesh(kind, 6, 0.1)
+    info = hl.info(hl.Volume(write_cells(tmp_path / "a.vtu", places, cells, types, {"f": np.full(len(places), 0.1)})))
+    assert info.range == (float(np.float32(0.1)),) * 2 and info.nonfinite_count == 0
+
+
+def test_spacing_is_half_of_an_edge(tmp_path: Path) -> None:
+    places, cells, types = mesh("hexahedra", 11)
+    info = hl.info(hl.Volume(write_cells(tmp_path / "a.vtu", places, cells, types, {"f": values_at(blob, places)})))
+    assert all(18 <= n <= 22 for n in info.dimensions)
+    np.testing.assert_allclose(info.origin - info.spacing / 2, 0, atol=1e-12)
+    np.testing.assert_allclose(info.origin + info.spacing * (np.array(info.dimensions) - 0.5), 1, atol=1e-12)
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "binary"])
+def test_kinds_of_cells_agree(tmp_path: Path, encoding: str) -> None:
+    for kind in CUBES:
+        places, cells, types = mesh(kind, 21)
+        volume = hl.Volume(write_cells(tmp_path / f"{kind}.vtu", places, cells, types, {"f": values_at(blob, places)}, encoding=encoding))
+        truth = np.broadcast_to(blob(*places_of(hl.info(volume))), np.asarray(volume).shape)
+        assert np.abs(inner(np.asarray(volume) - truth)).max() < greatest_error(1 / 20), kind
+
+
+def test_curvilinear_grids(tmp_path: Path) -> None:
+    places = lattice(21, 0.1)
+    volume = hl.Volume(write_curvilinear(tmp_path / "a.vts", 21, places, values_at(blob, places)))
+    truth = np.broadcast_to(blob(*places_of(hl.info(volume))), np.asarray(volume).shape)
+    assert np.abs(inner(np.asarray(volume) - truth)).max() < greatest_error((1 + 0.1 * np.pi) / 20)  # the bend stretches cells
+
+
+def test_values_of_cells(tmp_path: Path) -> None:
+    places, cells, types = mesh("hexahedra", 9)
+    middles = places[cells].mean(axis=1)
+    path = write_cells(tmp_path / "a.vtu", places, cells, types, None, {"f": values_at(linear, middles)})
+    volume = hl.Volume(path)
+    assert hl.info(volume).arrays[0].of_cells
+    truth = np.broadcast_to(linear(*places_of(hl.info(volume))), np.asarray(volume).shape)
+    np.testing.assert_allclose(inner(np.asarray(volume), 4), inner(truth, 4), atol=3e-6)
+
+
+def test_outside_of_cells_is_nothing(tmp_path: Path) -> None:
+    places, cells, types = mesh("hexahedra", 9)
+    kept = cells[places[cells].mean(axis=1)[:, 0] < 0.5]
+    also = np.concatenate([kept, cells[-1:]])  # the far corner keeps the box
+    volume = hl.Volume(write_cells(tmp_path / "a.vtu", places, also, types[: len(also)], {"f": values_at(linear, places)}))
+    voxels, x = np.asarray(volume), places_of(hl.info(volume))[0].ravel()
+    assert np.isnan(voxels[4, 4, x > 0.6]).all()
+    assert np.isfinite(voxels[4, 4, x < 0.4]).all()
+
+
+def test_vectors_are_magnitudes(tmp_path: Path) -> None:
+    places, cells, types = mesh("tetrahedra", 5)
+    vectors = np.broadcast_to(np.array([3.0, 0, 4]), (len(places), 3))
+    path = write_cells(tmp_path / "a.vtu", places, cells, types, {"v": vectors})
+    with pytest.warns(hl.HalflightWarning, match="magnitude"):
+        assert hl.info(hl.Volume(path)).range == (5, 5)
+    assert hl.info(hl.Volume(path, component=2)).range == (4, 4)
+
+
+def test_the_program_tells_the_error(tmp_path: Path, program: str) -> None:
+    places, cells, types = mesh("tetrahedra", 11)
+    path = write_cells(tmp_path / "a.vtu", places, cells, types, {"f": values_at(blob, places)})
+    text = subprocess.run([program, "info", path], check=True, capture_output=True, text=True).stderr
+    found = re.search(r"corners by ([0-9.e+-]+) at most", text)
+    assert found is not None and 0.001 < float(found[1]) < 0.05
+
+
+def test_surfaces_stay_meshes(tmp_path: Path, program: str) -> None:
+    places, quads = lattice(2), np.array([[0, 1, 3, 2]])
+    path = write_cells(tmp_path / "a.vtu", places, quads, np.array([9], np.uint8), {"f": values_at(linear, places)})
+    with pytest.raises(hl.InputError, match="no cell has a volume"), pytest.warns(hl.HalflightWarning, match="without a volume"):
+        hl.Volume(path)
+    subprocess.run([program, "render", path, "-o", tmp_path / "a.png", "--size", "32x32"], check=True, capture_output=True)
+
+
+@pytest.mark.parametrize(("old", "new", "words"), [
+    ('NumberOfPoints="64"', 'NumberOfPoints="9999999999"', "promises"),
+    ('NumberOfCells="27"', 'NumberOfCells="28"', "ends before|expected a number"),
+    ('Name="offsets"', 'Name="offset"', "no array of offsets"),
+    ("64</DataArray>\n</PointData>", "</DataArray>\n</PointData>", "."),
+])
+def test_broken_files_are_refused(tmp_path: Path, old: str, new: str, words: str) -> None:
+    places, cells, types = mesh("hexahedra", 4)
+    path = write_cells(tmp_path / "a.vtu", places, cells, types, {"f": np.full(len(places), 64, "i8")}, encoding="ascii")
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+    with pytest.raises((hl.InputError, MemoryError), match=words):
+        hl.Volume(path)
+
+
+def test_cells_that_name_no_point_are_refused(tmp_path: Path) -> None:
+    places, cells, types = mesh("hexahedra", 4)
+    cells[3, 5] = 64
+    with pytest.raises(hl.InputError, match="names point 64: there are 64"):
+        hl.Volume(write_cells(tmp_path / "a.vtu", places, cells, types, {"f": values_at(linear, places)}))
+
+
+def test_arrays_are_the_file(tmp_path: Path) -> None:
+    places, cells, types = mesh("wedges", 7, 0.1)
+    values = values_at(blob, places)
+    volume = hl.Volume(write_cells(tmp_path / "a.vtu", places, cells, types, {"f": values}))
+    flat = np.insert(cells, 0, cells.shape[1], axis=1).ravel()
+    for given in (cells, flat):
+        np.testing.assert_array_equal(np.asarray(hl.Volume.from_cells(places, given, types, values)), np.asarray(volume))
+    with pytest.raises(ValueError, match="one for each of 343 points or 432 cells"):
+        hl.Volume.from_cells(places, cells, types, values[:-1])
+    with pytest.raises(ValueError, match="names point 343"):
+        hl.Volume.from_cells(places, cells + 1, types, values)
+
+
+def test_grids_of_vtk(tmp_path: Path) -> None:
+    pytest.importorskip("vtkmodules")
+    from vtkmodules.vtkIOXML import vtkXMLStructuredGridReader, vtkXMLUnstructuredGridReader
+
+    places, cells, types = mesh("tetrahedra", 7, 0.1)
+    write_cells(tmp_path / "a.vtu", places, cells, types, {"density": values_at(blob, places)})
+    write_curvilinear(tmp_path / "a.vts", 7, lattice(7, 0.1), values_at(blob, lattice(7, 0.1)))
+    for reader, name in ((vtkXMLUnstructuredGridReader(), "a.vtu"), (vtkXMLStructuredGridReader(), "a.vts")):
+        reader.SetFileName(str(tmp_path / name))
+        reader.Update()
+        grid = reader.GetOutput()
+        grid.GetPointData().SetActiveScalars("density")
+        np.testing.assert_array_equal(np.asarray(hl.Volume(grid)), np.asarray(hl.Volume(tmp_path / name)))
