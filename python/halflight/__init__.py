@@ -13,6 +13,7 @@ if not getattr(_sys, "_is_gil_enabled", lambda: True)():
     raise ImportError("halflight is not made for Python without the global lock: use the ordinary interpreter")
 
 from ._library import lib as _lib, text_of as _text_of
+from .amr_files import open_amr
 from .camera import Camera
 from .colors import colormaps, srgb
 from .errors import HalflightWarning, InputError, UnsupportedError
@@ -36,5 +37,5 @@ __version__ = _text_of(_lib.hl_version())
 __all__ = [
     "Camera", "Directional", "Disk", "EmissionImage", "Figure", "HalflightWarning", "Image", "Info", "InputError", "Light", "Mesh",
     "Particles", "Point", "Polygon", "Rect", "Renderer", "Scene", "Snapshot", "Spot", "Texture", "TransferFunction", "UnsupportedError", "Volume",
-    "animate", "colormaps", "figure", "from_pyvista", "from_vtk", "info", "limit_memory", "open_snapshot", "presets", "reference", "render", "show", "srgb", "view",
+    "animate", "colormaps", "figure", "from_pyvista", "from_vtk", "info", "limit_memory", "open_amr", "open_snapshot", "presets", "reference", "render", "show", "srgb", "view",
 ]
