@@ -114,7 +114,7 @@ def test_the_program_tells_the_error(tmp_path: Path, program: str) -> None:
     path = write_cells(tmp_path / "a.vtu", places, cells, types, {"f": values_at(blob, places)})
     text = subprocess.run([program, "info", path], check=True, capture_output=True, text=True).stderr
     found = re.search(r"corners by ([0-9.e+-]+) at most", text)
-    assert found is not None and 0.001 < float(found[1]) < 0.05
+    assert found is not None and 0.001 < float(found[1]) < greatest_error(1 / 10)
 
 
 def test_surfaces_stay_meshes(tmp_path: Path, program: str) -> None:
