@@ -59,7 +59,7 @@ def test_pictures():
     particles = Particles(places)
     image = np.asarray(halflight.render(particles.volume(size=64), size=(48, 48)))
     assert image[24, 24].max() > image[2, 2].max() + 0.05
-    colored = np.asarray(halflight.render(particles.colored(places[:, 0], ["red", "blue"], size=64), size=(48, 48), direction=(0, 0, -1), up=(0, 1, 0)))
+    colored = np.asarray(halflight.render(particles.colored(places[:, 0], ["red", "blue"], size=64), size=(48, 48), camera=(0, 0)))
     left, right = colored[24, 18], colored[24, 30]
     assert left[0] > 2 * left[2] and right[2] > 2 * right[0]
 
