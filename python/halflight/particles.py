@@ -119,7 +119,7 @@ class Particles:
         handle = made(lib.hl_volume_from_particles, "hl_volume", lib.hl_volume_release, context, struct)
         return volume_of_handle(handle).replace(**look)
 
-    def colored(self, values: Any, cmap: Any = "viridis", *, clim: Sequence[float] | None = None, depth: float = 3.0,
+    def colored(self, values: Any, cmap: Any = "viridis", *, clim: Sequence[float] | None = None, depth: float = 12.0,
                 name: str = "value", spacing: float | None = None, size: int | None = None) -> list[Volume]:
         """Volumes for one picture: opacity by the logarithm of density, colour by the mean of a quantity.
 
@@ -154,7 +154,7 @@ class Particles:
         bottom, top = density.info().range
         dense = np.linspace(0, 1, _STEPS)
         length = max(density.dimensions) * step / 20
-        opacity = 1 - np.exp(-depth * dense**3 * step / length)
+        opacity = 1 - np.exp(-depth * dense**6 * step / length)
         points = TransferFunction.from_matplotlib(cmap, (0.0, 1.0)).color
         shades = np.stack([np.interp(dense, points[:, 0], points[:, c]) for c in (1, 2, 3)], axis=1)
         pixels = np.empty((_STEPS, _STEPS, 4), np.float32)

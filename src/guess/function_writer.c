@@ -89,9 +89,9 @@ void hl_write_field(hl_function_writer *w) {
 /* Matter over decades of density: what fills most of the space is nearly clear, and the densest is nearly
  * opaque. Rows: fraction of the way from there to the densest, optical depth across the object. */
 void hl_write_particles(hl_function_writer *w) {
-  static const double rows[][2] = {{0, 0}, {0.2, 0.3}, {0.4, 1.5}, {0.6, 6}, {0.8, 25}, {1, 80}};
+  static const double rows[][2] = {{0, 0}, {0.3, 0.05}, {0.5, 0.5}, {0.65, 3}, {0.8, 15}, {1, 80}};
   const hl_data_analysis *a = w->analysis;
-  double from = 0.5 * a->mean, top = fmax(a->top, 1.001 * a->mean);
+  double from = a->mean, top = fmax(a->top, 1.001 * from);
   for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
     hl_add_opacity(w, from + rows[n][0] * (top - from), hl_opacity_for(a, rows[n][1]));
   hl_add_colormap(w, "inferno", from, top, 0.25, 1);
