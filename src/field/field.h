@@ -5,7 +5,10 @@
  * samples look up (lookup_lanes.h).
  *
  * A lattice is walked in slices: planes of cells at a right angle to an axis. A slice's rows lie along
- * `across`, one below the other along `down`, and are padded to whole vectors of lanes. */
+ * `across`, one below the other along `down`, and are padded to whole vectors of lanes.
+ *
+ * Volumes fill cells: a cell takes a part of the light that crosses it. Surfaces fill nothing: they cut the
+ * links between the middles of cells (surface_links.h). */
 #ifndef HL_FIELD_FIELD_H
 #define HL_FIELD_FIELD_H
 
@@ -86,6 +89,12 @@ typedef struct opacity_field {
 
 enum { FIELD_MATTER = 1, FIELD_RECEIVES = 2 };
 
+/* A cell is linked with nine cells of the slice before and with nine of the slice after. */
+enum { FIELD_LINKS = 9 };
+
+/* Of what links a block of FIELD_LANES cells has some that are cut. */
+enum { LINKS_BEFORE = 1, LINKS_AFTER = 2 };
+
 /* ---- the functions of this room that are compiled for each instruction set ---- */
 
 /* Sixteen neighbouring cells along x. */
@@ -105,6 +114,7 @@ typedef void field_opacity_function(const field_block *block, float depth[3][FIE
 typedef struct sky_direction {
   int32_t offset;     /* to the first of four cells of the slice before, in floats */
   float weight[4];    /* of that cell, the next one across, and the two below */
+  int link;           /* the number of the link to that cell: 3 (1 + down) + 1 + across */
   float across, down; /* how far the light moves aside in a slice, squared; in cells */
   int slope; /* the number of the first direction with the same `across` and `down`: mirrored directions pass
                 the same matter */
@@ -124,19 +134,18 @@ typedef struct sky_slice {
   float *field;        /* the slice's first cell */
   size_t across, down; /* floats to the next cell in a row, and in the next row */
   int passing; /* the number of a cell's transmittance, to which a third of this axis's is added; 0: none */
+  const unsigned char *cut; /* [rows][stride / FIELD_LANES]; null: there are no surfaces */
+  unsigned char cut_here;   /* LINKS_BEFORE or LINKS_AFTER: the links that the light comes through */
+  const unsigned char *taken[FIELD_LINKS]; /* [rows + 2][plane_stride], as planes of light; what surfaces take
+                                              of the light that comes through a link, in parts of 255 */
 } sky_slice;
 
 /* Moves the light of all directions one slice on, in one row, and adds it to the cells that something near
  * them receives light in. */
 typedef void sky_row_function(const sky_slice *slice, int32_t row);
 
-/* Adds what surfaces cover of cells, as fractions, to the cells' depths: count is a multiple of FIELD_LANES.
- */
-typedef void field_cover_function(const float *cover, size_t count, float *depth);
-
 typedef struct field_functions {
   field_opacity_function *opacity;
-  field_cover_function *cover;
   sky_row_function *sky_row;
 } field_functions;
 

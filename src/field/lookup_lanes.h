@@ -38,46 +38,11 @@ LANES_INLINE lanes weight_of_cell(lanes trilinear, lanes_int stored, lanes surfa
   return trilinear * lanes_max(counted, lanes_set(LEAST_COUNTED));
 }
 
-/* Turns the transmittances of eight cells, in pairs along x, into their weights, in such pairs. The weights
- * are whole numbers, about SKY_MOST together. Returns one over their sum. */
-LANES_INLINE lanes weigh_cells(const lanes fraction[3], lanes surface, lanes_int pairs[4]) {
-  lanes weight[8], sum = lanes_set(0);
-  for (int pair = 0; pair < 4; pair++) {
-    lanes across = (pair & 1 ? fraction[1] : 1.0f - fraction[1]) *
-                   (pair & 2 ? fraction[2] : 1.0f - fraction[2]),
-          second = across * fraction[0];
-    weight[2 * pair] = weight_of_cell(across - second, pairs[pair] & 0xffff, surface);
-    weight[2 * pair + 1] = weight_of_cell(second, pairs[pair] >> 16, surface);
-    sum = sum + (weight[2 * pair] + weight[2 * pair + 1]);
-  }
-  lanes scale = (float)SKY_MOST / sum;
-  lanes_int total = lanes_set_int(0);
-  for (int pair = 0; pair < 4; pair++) {
-    lanes_int first = lanes_truncate(lanes_fma(weight[2 * pair], scale, lanes_set(0.5f))),
-              second = lanes_truncate(lanes_fma(weight[2 * pair + 1], scale, lanes_set(0.5f)));
-    pairs[pair] = first | second << 16;
-    total = total + (first + second);
-  }
-  return 1.0f / lanes_from_int(total);
-}
-
 /* The first of the eight cells around sixteen positions. */
 typedef struct sky_cells {
   int32_t rows[LANES], columns[LANES]; /* rows count through all slices */
   lanes fraction[3];                   /* of the way to the next cell along each axis */
 } sky_cells;
-
-LANES_INLINE void find_cells(const sky_light *sky, lanes3 position, sky_cells *cells) {
-  const lanes at[3] = {position.x, position.y, position.z};
-  lanes first[3];
-  for (int axis = 0; axis < 3; axis++)
-    first[axis] = place_between_cells(sky, axis, at[axis], &cells->fraction[axis]);
-  /* whole numbers below 2^24, which floats hold exactly */
-  lanes_int row = lanes_truncate(lanes_add_scaled(first[1], first[2], (float)sky->count[1])),
-            column = lanes_truncate(first[0]);
-  memcpy(cells->rows, &row, sizeof cells->rows);
-  memcpy(cells->columns, &column, sizeof cells->columns);
-}
 
 /* The numbers of 16 bits from a lane's first cell to those in the next row, in the next slice and in both. */
 typedef struct sky_steps {
@@ -91,6 +56,122 @@ LANES_INLINE sky_steps steps_of_sky(const sky_light *sky) {
 
 LANES_INLINE const int16_t *cell_of_lane(const sky_light *sky, const sky_cells *cells, int lane) {
   return sky->cells + (size_t)cells->rows[lane] * sky->row_numbers + (size_t)cells->columns[lane] * SKY_CELL;
+}
+
+/* The numbers of 16 bits from the first of eight cells to each of them. */
+LANES_INLINE size_t step_to_cell(const sky_steps *steps, int corner) {
+  return steps->to_pair[corner >> 1] + (corner & 1 ? SKY_CELL : 0);
+}
+
+/* One of eight cells that no surface parts from a position. Derived: of a flat surface that cuts the ways
+ * from a cell to its three neighbours at d[i], the position e lies on the cell's side where the sum of e[i] /
+ * d[i] is below 1. */
+static int cell_on_side(const int16_t *cell, const sky_steps *steps, const float fraction[3]) {
+  int corner = (fraction[0] >= 0.5f) + 2 * (fraction[1] >= 0.5f) + 4 * (fraction[2] >= 0.5f);
+  for (int step = 0; step < 3; step++) {
+    float sum = 0, most = 0;
+    int across = 0;
+    for (int axis = 0; axis < 3; axis++) {
+      const int16_t cut = cell[step_to_cell(steps, corner & ~(1 << axis)) + SKY_CUTS[axis]];
+      if (cut == 0) continue;
+      const float place = (float)cut * (1.0f / SKY_MOST), far = corner >> axis & 1 ? 1 - place : place,
+                  way = corner >> axis & 1 ? 1 - fraction[axis] : fraction[axis];
+      const float part = way / (far > 1e-3f ? far : 1e-3f);
+      sum += part;
+      if (part > most) most = part, across = axis;
+    }
+    if (sum <= 1) return corner;
+    corner ^= 1 << across;
+  }
+  return corner;
+}
+
+/* Of eight cells, one bit each, those that lead to one of them by ways that no surface cuts. open: of each
+ * axis, one bit for each of the first cells of its four ways. */
+static uint32_t cells_from(int corner, const uint32_t open[3]) {
+  uint32_t reached = 1u << corner, before = 0;
+  while (reached != before) {
+    before = reached;
+    for (int axis = 0; axis < 3; axis++)
+      reached |= (reached & open[axis]) << (1 << axis) | (reached >> (1 << axis) & open[axis]);
+  }
+  return reached;
+}
+
+/* Takes the weights of those of a lane's eight cells that surfaces part from the position. weight: [8], LANES
+ * apart. */
+static void weigh_parted_cells(const sky_light *sky, const int16_t *cell, const float fraction[3],
+                               float *weight) {
+  static const uint32_t first[3] = {0x55, 0x33, 0x0f};
+  const sky_steps steps = steps_of_sky(sky);
+  uint32_t open[3] = {first[0], first[1], first[2]}, all = 0;
+  for (int corner = 0; corner < 8; corner++)
+    for (int axis = 0; axis < 3; axis++)
+      if ((first[axis] >> corner & 1) && cell[step_to_cell(&steps, corner) + SKY_CUTS[axis]] != 0)
+        open[axis] &= ~(1u << corner), all = 1;
+  if (all == 0) return;
+  const int own = cell_on_side(cell, &steps, fraction);
+  const uint32_t reached = cells_from(own, open);
+  for (int corner = 0; corner < 8; corner++)
+    if (!(reached >> corner & 1)) weight[corner * LANES] = 0;
+  if (weight[own * LANES] < LEAST_COUNTED) weight[own * LANES] = LEAST_COUNTED;
+}
+
+/* The trilinear weights of eight cells, in pairs along x. */
+LANES_INLINE void weigh_evenly(const lanes fraction[3], lanes weight[8]) {
+  for (int pair = 0; pair < 4; pair++) {
+    lanes across = (pair & 1 ? fraction[1] : 1.0f - fraction[1]) *
+                   (pair & 2 ? fraction[2] : 1.0f - fraction[2]),
+          second = across * fraction[0];
+    weight[2 * pair] = across - second;
+    weight[2 * pair + 1] = second;
+  }
+}
+
+/* The same where surfaces may part cells from the positions. */
+LANES_INLINE void weigh_on_one_side(const sky_light *sky, const sky_cells *cells, uint32_t active,
+                                    lanes weight[8]) {
+  float of[8][LANES], fraction[3][LANES];
+  memcpy(of, weight, sizeof of);
+  memcpy(fraction, cells->fraction, sizeof fraction);
+  for (uint32_t left = active; left != 0; left &= left - 1) {
+    const int lane = __builtin_ctz(left);
+    const float own[3] = {fraction[0][lane], fraction[1][lane], fraction[2][lane]};
+    weigh_parted_cells(sky, cell_of_lane(sky, cells, lane), own, &of[0][lane]);
+  }
+  memcpy(weight, of, sizeof of);
+}
+
+/* Turns the transmittances of eight cells, in pairs along x, into their weights, in such pairs. The weights
+ * are whole numbers, about SKY_MOST together. Returns one over their sum. weight: trilinear. */
+LANES_INLINE lanes weigh_cells(lanes weight[8], lanes surface, lanes_int pairs[4]) {
+  lanes sum = lanes_set(0);
+  for (int pair = 0; pair < 4; pair++) {
+    weight[2 * pair] = weight_of_cell(weight[2 * pair], pairs[pair] & 0xffff, surface);
+    weight[2 * pair + 1] = weight_of_cell(weight[2 * pair + 1], pairs[pair] >> 16, surface);
+    sum = sum + (weight[2 * pair] + weight[2 * pair + 1]);
+  }
+  lanes scale = (float)SKY_MOST / sum;
+  lanes_int total = lanes_set_int(0);
+  for (int pair = 0; pair < 4; pair++) {
+    lanes_int first = lanes_truncate(lanes_fma(weight[2 * pair], scale, lanes_set(0.5f))),
+              second = lanes_truncate(lanes_fma(weight[2 * pair + 1], scale, lanes_set(0.5f)));
+    pairs[pair] = first | second << 16;
+    total = total + (first + second);
+  }
+  return 1.0f / lanes_from_int(total);
+}
+
+LANES_INLINE void find_cells(const sky_light *sky, lanes3 position, sky_cells *cells) {
+  const lanes at[3] = {position.x, position.y, position.z};
+  lanes first[3];
+  for (int axis = 0; axis < 3; axis++)
+    first[axis] = place_between_cells(sky, axis, at[axis], &cells->fraction[axis]);
+  /* whole numbers below 2^24, which floats hold exactly */
+  lanes_int row = lanes_truncate(lanes_add_scaled(first[1], first[2], (float)sky->count[1])),
+            column = lanes_truncate(first[0]);
+  memcpy(cells->rows, &row, sizeof cells->rows);
+  memcpy(cells->columns, &column, sizeof cells->columns);
 }
 
 /* Brings the cells around positions near to the processor: samples wait for memory most of the time
@@ -150,7 +231,10 @@ LANES_INLINE void look_up_sky(const sky_light *sky, lanes3 position, lanes surfa
       memcpy(&pairs[pair][lane], passing + steps.to_pair[pair], sizeof pairs[pair][lane]);
   }
   memcpy(of_lanes, pairs, sizeof of_lanes);
-  found->unit = weigh_cells(cells.fraction, surface, of_lanes);
+  lanes weight[8];
+  weigh_evenly(cells.fraction, weight);
+  if (sky->cut) weigh_on_one_side(sky, &cells, active, weight);
+  found->unit = weigh_cells(weight, surface, of_lanes);
   found->active = active;
   memcpy(pairs, of_lanes, sizeof pairs);
   if (whole) add_cells(sky, &cells, pairs, 2, found);

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "field/surface_cover.h"
+#include "field/surface_links.h"
 
 /* Cells within this many of something visible receive light: look-ups are lifted by up to FIELD_LIFT cells
  * and read the cells around. */
@@ -36,15 +36,12 @@ field_lattice hl_field_lattice(const vec3 *points, int count, double voxel, doub
   return lattice;
 }
 
-void hl_opacity_lay_out(bool with_surfaces, opacity_field *field, opacity_scratch *scratch,
-                        hl_layout *layout) {
+void hl_opacity_lay_out(opacity_field *field, opacity_scratch *scratch, hl_layout *layout) {
   *scratch = (opacity_scratch){.seen = hl_layout_take(layout, hl_field_cells(&field->lattice), 1)};
   for (int a = 0; a < 3; a++) {
     field_slices s = hl_field_slices(&field->lattice, a);
     size_t row = (size_t)s.slices * (size_t)s.rows;
     field->depth[a] = hl_layout_take(layout, 3 * row * (size_t)s.stride, sizeof *field->depth[a]);
-    if (with_surfaces)
-      scratch->cover[a] = hl_layout_take(layout, hl_field_cells(&field->lattice), sizeof *scratch->cover[a]);
     field->flags[a] = hl_layout_take(layout, row * (size_t)(s.stride / FIELD_LANES), 1);
   }
   field->seen = hl_layout_take(layout, hl_field_cells(&field->lattice), 1);
@@ -295,54 +292,10 @@ static size_t floats_along(const field_lattice *lattice, int axis) {
   return 3 * (size_t)s.slices * (size_t)s.rows * (size_t)s.stride;
 }
 
-typedef struct cover_job {
-  opacity_field *field;
-  const field_functions *functions;
-  float *const *cover;
-} cover_job;
-
-/* The depths of what surfaces take of cells that follow each other; false: nothing. */
-static bool depths_of_cover(const cover_job *job, size_t first, int32_t valid, float depth[3][FIELD_LANES]) {
-  bool any = false;
-  for (int a = 0; a < 3; a++) {
-    float covered[FIELD_LANES] = {0};
-    const float *from = job->cover[a] + first;
-    bool covers = false;
-    for (int32_t lane = 0; lane < FIELD_LANES; lane++) {
-      depth[a][lane] = 0;
-      if (lane < valid) covered[lane] = from[lane];
-      covers |= covered[lane] > 0;
-    }
-    if (covers) job->functions->cover(covered, FIELD_LANES, depth[a]);
-    any |= covers;
-  }
-  return any;
-}
-
-/* Adds what surfaces take to the depths of a slab's cells. */
-static void add_cover(void *data, size_t index, int worker) {
-  const cover_job *job = data;
-  const int32_t *count = job->field->lattice.count;
-  (void)worker;
-  for (int32_t y = 0; y < count[1]; y++)
-    for (int32_t x = 0; x < count[0]; x += FIELD_LANES) {
-      const int32_t cell[3] = {x, y, (int32_t)index}, valid = count[0] - x;
-      const size_t first = (index * (size_t)count[1] + (size_t)y) * (size_t)count[0] + (size_t)x;
-      float depth[3][FIELD_LANES];
-      if (depths_of_cover(job, first, valid, depth)) add_depths(job->field, 3, cell, valid, depth);
-    }
-}
-
-/* Adds what surfaces take. Triangles follow each other on one thread: a cell's sum has one order. */
-static void add_surfaces(const field_content *content, const field_functions *functions,
-                         const opacity_scratch *scratch, opacity_field *field, hl_pool *pool) {
-  if (content->surface_count == 0) return;
-  for (int a = 0; a < 3; a++)
-    hl_pool_clear(pool, scratch->cover[a], hl_field_cells(&field->lattice) * sizeof *scratch->cover[a]);
+/* Marks what the eye may see of meshes. */
+static void mark_surfaces(const field_content *content, opacity_field *field) {
   for (size_t i = 0; i < content->surface_count; i++)
-    hl_surface_cover(&content->surfaces[i], field, scratch->cover);
-  hl_pool_run(pool, (size_t)field->lattice.count[2], add_cover,
-              &(cover_job){field, functions, scratch->cover});
+    if (content->surfaces[i].visible) hl_surface_mark_seen(&content->surfaces[i], field);
 }
 
 void hl_opacity_find(const field_content *content, const field_functions *functions,
@@ -360,7 +313,7 @@ void hl_opacity_find(const field_content *content, const field_functions *functi
       field, content, functions, samples_of(field->lattice.cell, content->voxel), (const float(*)[3])reach,
       share, 0,       0};
   find_slabs(&job, pool);
-  add_surfaces(content, functions, scratch, field, pool);
+  mark_surfaces(content, field);
   spread(field, scratch->seen, pool);
   for (int a = 0; a < 3; a++)
     hl_pool_run(pool, (size_t)field->lattice.count[a], find_flags, &(flags_job){field, share, a});

@@ -23,12 +23,10 @@ field_lattice hl_field_lattice(const vec3 *points, int count, double voxel, doub
 /* Memory that finding the opacity needs for a while. */
 typedef struct opacity_scratch {
   unsigned char *seen; /* [z][y][x] */
-  float *cover[3]; /* [z][y][x]; the fractions that surfaces take along each axis; null without surfaces */
 } opacity_scratch;
 
 /* Takes the arrays of a field whose lattice is set, and of its scratch memory. */
-void hl_opacity_lay_out(bool with_surfaces, opacity_field *field, opacity_scratch *scratch,
-                        hl_layout *layout);
+void hl_opacity_lay_out(opacity_field *field, opacity_scratch *scratch, hl_layout *layout);
 
 /* Fills the field's arrays. Of processes that share a picture each samples the volumes in some slabs. */
 void hl_opacity_find(const field_content *content, const field_functions *functions,

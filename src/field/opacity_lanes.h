@@ -199,18 +199,6 @@ LANES_INLINE lanes depth_along(const float (*samples)[FIELD_LANES], int n, int a
   return lanes_max(-lanes_log2(sum * (1.0f / (float)(n * n))), lanes_set(0));
 }
 
-/* Surfaces that cover a cell let at least this fraction of the light through. */
-static const float LEAST_PASSING = 1.0f / 16384;
-
-static void field_cover(const float *cover, size_t count, float *depth) {
-  for (size_t i = 0; i < count; i += FIELD_LANES) {
-    lanes covered = lanes_load(cover + i);
-    if (lanes_bits(covered > 0.0f) == 0) continue;
-    lanes passing = lanes_max(1.0f - covered, lanes_set(LEAST_PASSING));
-    lanes_store(depth + i, lanes_load(depth + i) - lanes_log2(passing));
-  }
-}
-
 static void field_opacity(const field_block *block, float depth[3][FIELD_LANES]) {
   float samples[FIELD_SAMPLES * FIELD_SAMPLES * FIELD_SAMPLES][FIELD_LANES];
   int n = block->samples, any = 0;

@@ -12,7 +12,9 @@
 
 #include <string.h>
 
+#include "field/field_planes.h"
 #include "field/harmonics.h"
+#include "field/surface_links.h"
 #include "scene/sky.h"
 
 /* Cells by which look-ups are lifted off a surface. */
@@ -79,6 +81,7 @@ static void integrate_square(const hl_sky *sky, const field_slices *s, int sign,
 static void set_taps(double u, double v, int32_t plane_stride, sky_direction *direction) {
   double column = floor(u), row = floor(v), fu = u - column, fv = v - row;
   direction->offset = (int32_t)row * plane_stride + (int32_t)column;
+  direction->link = 3 * (1 + (int)row) + 1 + (int)column;
   direction->weight[0] = (float)((1 - fu) * (1 - fv));
   direction->weight[1] = (float)(fu * (1 - fv));
   direction->weight[2] = (float)((1 - fu) * fv);
@@ -133,27 +136,15 @@ static void move_row(void *data, size_t row, int worker) {
   rows->functions->sky_row(&rows->slice, (int32_t)row);
 }
 
-/* The light of one direction in one slice, with a border of light that nothing hides. */
-typedef struct light_planes {
-  int32_t stride; /* of rows */
-  size_t plane;   /* floats of a plane */
-  size_t half;    /* floats of the planes of all directions */
-} light_planes;
-
-static light_planes planes_of(const field_slices *s) {
-  light_planes planes = {.stride = s->stride + 2 * FIELD_LANES};
-  planes.plane = (size_t)planes.stride * (size_t)(s->rows + 2);
-  planes.half = FIELD_DIRECTIONS * planes.plane;
-  return planes;
-}
+/* The floats of the light of all directions in one slice, with a border of light that nothing hides. */
+static size_t light_of_slice(const field_slices *s) { return FIELD_DIRECTIONS * hl_field_planes(s).plane; }
 
 /* The floats of the largest axis's planes, of two slices. */
 static size_t most_light(const sky_content *content) {
   size_t most = 0;
   for (int a = 0; a < 3; a++) {
     field_slices s = hl_field_slices(&content->lattice, a);
-    size_t half = planes_of(&s).half;
-    most = half > most ? half : most;
+    most = light_of_slice(&s) > most ? light_of_slice(&s) : most;
   }
   return 2 * most;
 }
@@ -164,17 +155,33 @@ typedef struct sky_target {
   size_t step[3]; /* floats from cell to cell */
 } sky_target;
 
-/* light: [2][directions][plane]. */
-static void sweep_end(const sky_content *content, const opacity_field *opacity, float *light,
-                      const sky_target *target, int end_index, int first, int channels,
+/* Sets the links through which light comes to a slice. Those with the slice after are that one's own, seen
+ * from their other ends. rising: the light comes from the slice before. */
+static void set_links(const surface_links *links, const field_slices *s, size_t slice, bool rising,
+                      sky_slice *of) {
+  const field_planes planes = hl_field_planes(s);
+  const unsigned char *taken = links->taken + (slice + !rising) * FIELD_LINKS * planes.plane;
+  of->cut = links->cut + slice * (size_t)s->rows * (size_t)(s->stride / FIELD_LANES);
+  of->cut_here = rising ? LINKS_BEFORE : LINKS_AFTER;
+  for (int k = 0; k < FIELD_LINKS; k++) {
+    const int across = k % 3 - 1, down = k / 3 - 1, own = rising ? k : FIELD_LINKS - 1 - k;
+    of->taken[k] = taken + (size_t)own * planes.plane;
+    if (!rising) of->taken[k] += down * planes.stride + across;
+  }
+}
+
+/* light: [2][directions][plane]; links: along the end's axis; null: there are no surfaces. */
+static void sweep_end(const sky_content *content, const opacity_field *opacity, const surface_links *links,
+                      float *light, const sky_target *target, int end_index, int first, int channels,
                       const field_functions *functions, hl_pool *pool) {
   field_slices s = hl_field_slices(&content->lattice, end_index / 2);
-  const light_planes planes = planes_of(&s);
+  const field_planes planes = hl_field_planes(&s);
+  const size_t half = light_of_slice(&s);
   sky_end end;
   set_up_end(content, end_index, first, channels, planes.stride, &end);
   const bool adds_passing = end_index % 2 == 0 && first == 0;
   if (end.count == 0 && !adds_passing) return;
-  hl_pool_fill(pool, light, 2 * planes.half, 1);
+  hl_pool_fill(pool, light, 2 * half, 1);
   for (int32_t i = 0; i < s.slices && !hl_pool_cancelled(pool); i++) {
     size_t slice = (size_t)(end_index % 2 ? i : s.slices - 1 - i),
            at = slice * (size_t)s.rows * (size_t)s.stride;
@@ -186,14 +193,15 @@ static void sweep_end(const sky_content *content, const opacity_field *opacity, 
                         .flags = opacity->flags[s.axis] + at / FIELD_LANES,
                         .stride = s.stride,
                         .columns = s.columns,
-                        .old = light + (i % 2 ? planes.half : 0),
-                        .left = light + (i % 2 ? 0 : planes.half),
+                        .old = light + (i % 2 ? half : 0),
+                        .left = light + (i % 2 ? 0 : half),
                         .plane_stride = planes.stride,
                         .plane = planes.plane,
                         .field = target->field + slice * target->step[s.axis],
                         .across = target->step[s.across],
                         .down = target->step[s.down],
                         .passing = adds_passing ? FIELD_HARMONICS * content->channels : 0}};
+    if (links != NULL) set_links(links, &s, slice, end_index % 2, &rows.slice);
     hl_pool_run(pool, (size_t)s.rows, move_row, &rows);
   }
 }
@@ -201,15 +209,17 @@ static void sweep_end(const sky_content *content, const opacity_field *opacity, 
 /* ---- memory ---- */
 
 /* The floats of a cell while its light is added up; they give way to SKY_CELL numbers of 16 bits. */
-static size_t cell_floats(int channels) {
-  return channels == 1 ? 16 : FIELD_HARMONICS * (size_t)channels + 1;
+static size_t cell_floats(const sky_content *content) {
+  if (content->channels == 1) return 16;
+  return FIELD_HARMONICS * (size_t)content->channels + 1 + (content->content.surface_count > 0 ? 3 : 0);
 }
 
-_Static_assert(16 * sizeof(float) >= SKY_CELL * sizeof(int16_t) && 16 > FIELD_HARMONICS, "room for a cell");
+_Static_assert(16 * sizeof(float) >= SKY_CELL * sizeof(int16_t) && 16 >= FIELD_HARMONICS + 4,
+               "room for a cell");
 
 /* The floats of a row, which begins with a line of the cache. */
 static size_t row_floats(const sky_content *content) {
-  return (cell_floats(content->channels) * (size_t)content->lattice.count[0] + 15) / 16 * 16;
+  return (cell_floats(content) * (size_t)content->lattice.count[0] + 15) / 16 * 16;
 }
 
 /* The floats of all rows. */
@@ -223,13 +233,15 @@ typedef struct passing_arrays {
   opacity_field opacity;
   float *light; /* of sweep_end() */
   opacity_scratch scratch;
+  surface_links links; /* along one axis; of content with surfaces */
   field_matter *matter;
   field_share share;
 } passing_arrays;
 
 static void lay_out(const sky_content *content, passing_arrays *arrays, hl_layout *layout) {
   arrays->opacity.lattice = content->lattice;
-  hl_opacity_lay_out(content->content.surface_count > 0, &arrays->opacity, &arrays->scratch, layout);
+  hl_opacity_lay_out(&arrays->opacity, &arrays->scratch, layout);
+  if (content->content.surface_count > 0) hl_surface_links_lay_out(&content->lattice, &arrays->links, layout);
   arrays->light = hl_layout_take(layout, most_light(content), sizeof(float));
   arrays->matter = hl_layout_take(layout, (size_t)content->content.count, sizeof *arrays->matter);
   hl_field_share_lay_out(content->exchange, (size_t)content->lattice.count[2], &arrays->share, layout);
@@ -251,14 +263,27 @@ static bool attenuates_in_color(const sky_content *content) {
   return false;
 }
 
+/* Finds the links along an axis; their places are the last three floats of cells. Returns null without
+ * surfaces. */
+static const surface_links *find_links(const sky_content *content, const surface_links *links,
+                                       const sky_target *target, float *field, int axis, hl_pool *pool) {
+  const field_content *of = &content->content;
+  link_places places = {.first = field + FIELD_HARMONICS * content->channels + 1 + axis};
+  if (of->surface_count == 0) return NULL;
+  memcpy(places.step, target->step, sizeof places.step);
+  hl_surface_links_find(of->surfaces, of->surface_count, &content->lattice, axis, links, &places, pool);
+  return links;
+}
+
 static void make(const sky_content *content, passing_arrays *arrays, const field_functions *functions,
                  float *field, hl_pool *pool) {
   bool colored = attenuates_in_color(content);
-  size_t cell = cell_floats(content->channels);
+  size_t cell = cell_floats(content);
   const int32_t *count = content->lattice.count;
   sky_target target = {.step = {cell, row_floats(content), row_floats(content) * (size_t)count[1]}};
   field_content matter = content->content;
   matter.matter = arrays->matter;
+  const surface_links *links = NULL;
   for (int pass = 0; pass < (colored ? 3 : 1); pass++) {
     for (int v = 0; v < matter.count; v++) {
       arrays->matter[v] = content->content.matter[v];
@@ -266,9 +291,11 @@ static void make(const sky_content *content, passing_arrays *arrays, const field
     }
     hl_opacity_find(&matter, functions, &arrays->scratch, &arrays->share, &arrays->opacity, pool);
     target.field = field + pass * FIELD_HARMONICS;
-    for (int end = 0; end < ENDS; end++)
-      sweep_end(content, &arrays->opacity, arrays->light, &target, end, pass, colored ? 1 : content->channels,
-                functions, pool);
+    for (int end = 0; end < ENDS; end++) {
+      if (end % 2 == 0) links = find_links(content, &arrays->links, &target, field, end / 2, pool);
+      sweep_end(content, &arrays->opacity, links, arrays->light, &target, end, pass,
+                colored ? 1 : content->channels, functions, pool);
+    }
   }
   if (arrays->share.with != NULL)
     hl_field_share_complete(&arrays->share, false, field, count[2], target.step[2] * sizeof *field);
@@ -302,7 +329,7 @@ static void find_open(const sky_content *content, sky_light *light) {
 
 /* ---- how the field is stored ---- */
 
-enum { MOST_FLOATS = 3 * FIELD_HARMONICS + 1 };
+enum { MOST_FLOATS = 3 * FIELD_HARMONICS + 1 + 3 };
 
 typedef struct store_rows {
   float *field; /* [rows][row_floats()]; becomes the cells, in place */
@@ -352,8 +379,8 @@ static void store_row(void *data, size_t row, int worker) {
 /* Turns the field's floats into what samples look up. */
 static void store(const sky_content *content, void *memory, sky_light *light, hl_pool *pool) {
   const int harmonics = light->channels * FIELD_HARMONICS;
-  store_rows rows = {memory, row_floats(content), cell_floats(light->channels), (size_t)light->count[0],
-                     .used = (size_t)harmonics + 1};
+  store_rows rows = {memory, row_floats(content), cell_floats(content), (size_t)light->count[0],
+                     .used = (size_t)harmonics + 1 + (light->cut ? 3 : 0)};
   for (int i = 0; i < harmonics; i++) {
     const int channel = i / FIELD_HARMONICS;
     rows.scale[i] = light->stored_unit[channel] > 0 ? 1 / light->stored_unit[channel] : 0;
@@ -361,6 +388,10 @@ static void store(const sky_content *content, void *memory, sky_light *light, hl
   }
   rows.scale[harmonics] = SKY_MOST;
   rows.place[harmonics] = SKY_PASSING;
+  for (int a = 0; a < 3; a++) {
+    rows.scale[harmonics + 1 + a] = SKY_MOST;
+    rows.place[harmonics + 1 + a] = SKY_CUTS[a];
+  }
   hl_pool_run(pool, (size_t)light->count[1] * (size_t)light->count[2], store_row, &rows);
   light->cells = memory;
   light->row_numbers = 2 * rows.row_floats;
@@ -373,8 +404,10 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
   sky_light *light = &made->light;
   passing_arrays arrays;
   const size_t bytes = field_bytes(content);
-  *light = (sky_light){
-      .channels = content->channels, .cell = (float)content->lattice.cell, .color = {1, 1, 1}};
+  *light = (sky_light){.channels = content->channels,
+                       .cell = (float)content->lattice.cell,
+                       .color = {1, 1, 1},
+                       .cut = content->content.surface_count > 0};
   vec3_store(light->low, content->lattice.low);
   light->lift = (float)(LIFT_CELLS * content->lattice.cell);
   light->inverse_cell = (float)(1 / content->lattice.cell);

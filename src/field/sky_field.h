@@ -15,6 +15,9 @@ enum { SKY_MOST = 32767 };
  * stands where a harmonic then is number `harmonic` of the sums. At SKY_PASSING, where no harmonic is, stand
  * the cell's transmittance and that of the next cell along x; 1 is SKY_MOST. */
 enum { SKY_CELL = 32, SKY_PASSING = 28 };
+/* Where no harmonic is either: the parts of the way to the next cell along x, y and z at which surfaces cut
+ * it; 0: none does. */
+static const int SKY_CUTS[3] = {23, 30, 31};
 static inline int hl_sky_place(int harmonic) {
   int low = harmonic < 16, i = low ? harmonic : harmonic - 16;
   return i / 4 * 8 + i % 4 + (low ? 0 : 4);
@@ -30,6 +33,7 @@ typedef struct sky_light {
   float low[3], inverse_cell, cell; /* of the lattice */
   float lift; /* by which look-ups are moved off a surface, along its normal; frame units */
   int channels;
+  int cut;                        /* surfaces may cut the ways between cells (SKY_CUTS) */
   float stored_unit[3];           /* [channels]; the light that the number 1 stands for */
   float color[3];                 /* a factor on the field's light */
   float open[3][FIELD_HARMONICS]; /* [channels]; light that nothing hides, without the factor */

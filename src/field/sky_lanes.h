@@ -1,8 +1,8 @@
 /* field/sky_lanes.h - the sky's light moved from slice to slice (derived).
  *
  * Light of one direction that reaches a cell's middle left four cells of the slice before: it is interpolated
- * between them. What the cell itself takes counts for the next slice. Beyond the lattice all light is there.
- */
+ * between them. What the cell itself takes counts for the next slice. Surfaces take their part of what comes
+ * from each of the four cells. Beyond the lattice all light is there. */
 #ifndef HL_FIELD_SKY_LANES_H
 #define HL_FIELD_SKY_LANES_H
 
@@ -50,31 +50,72 @@ LANES_INLINE lanes passing_cells(const lanes squared[3], const sky_direction *di
   return lanes_exp2(lanes_max(-lanes_sqrt(depth), lanes_set(-100.0f)));
 }
 
+/* The fractions of light that pass the links of sixteen cells; at: the first cell's place in a plane. */
+LANES_INLINE void find_open_links(const sky_slice *slice, size_t at, lanes open[FIELD_LINKS]) {
+  for (int k = 0; k < FIELD_LINKS; k++) {
+    float passing[FIELD_LANES];
+    const unsigned char *taken = slice->taken[k] + at;
+    for (int lane = 0; lane < FIELD_LANES; lane++) passing[lane] = (float)(255 - taken[lane]) * (1.0f / 255);
+    open[k] = lanes_load(passing);
+  }
+}
+
+/* The light of a direction that comes to sixteen cells. from: in the slice before. */
+LANES_INLINE lanes light_from(const float *from, int32_t stride, const sky_direction *direction) {
+  lanes light = lanes_load(from) * direction->weight[0];
+  light = lanes_add_scaled(light, lanes_load(from + 1), direction->weight[1]);
+  light = lanes_add_scaled(light, lanes_load(from + stride), direction->weight[2]);
+  return lanes_add_scaled(light, lanes_load(from + stride + 1), direction->weight[3]);
+}
+
+/* The same past surfaces. */
+LANES_INLINE lanes light_past_surfaces(const float *from, int32_t stride, const sky_direction *direction,
+                                       const lanes open[FIELD_LINKS]) {
+  const lanes *link = open + direction->link;
+  lanes light = lanes_load(from) * link[0] * direction->weight[0];
+  light = lanes_add_scaled(light, lanes_load(from + 1) * link[1], direction->weight[1]);
+  light = lanes_add_scaled(light, lanes_load(from + stride) * link[3], direction->weight[2]);
+  return lanes_add_scaled(light, lanes_load(from + stride + 1) * link[4], direction->weight[3]);
+}
+
+/* Moves the light of all directions to sixteen cells, whose place in a plane is `at`. squared: null where no
+ * matter lies in the cells; open: null where no surface cuts their links. */
+LANES_INLINE void move_light(const sky_slice *slice, size_t at, const lanes *squared, const lanes *open,
+                             lanes reaching[FIELD_DIRECTIONS]) {
+  lanes passing[FIELD_DIRECTIONS];
+  for (int d = 0; d < slice->direction_count; d++) {
+    const sky_direction *direction = &slice->directions[d];
+    const float *from = slice->old + (size_t)d * slice->plane + at + direction->offset;
+    lanes light = open == NULL ? light_from(from, slice->plane_stride, direction)
+                               : light_past_surfaces(from, slice->plane_stride, direction, open);
+    reaching[d] = light;
+    if (squared != NULL) {
+      if (direction->slope == d) passing[d] = passing_cells(squared, direction);
+      light = light * passing[direction->slope];
+    }
+    lanes_store(slice->left + (size_t)d * slice->plane + at, light);
+  }
+}
+
 static void sky_row(const sky_slice *slice, int32_t row) {
   const int32_t stride = slice->plane_stride;
   const size_t at_row = (size_t)(row + 1) * (size_t)stride + FIELD_LANES;
   for (int32_t column = 0; column < slice->columns; column += FIELD_LANES) {
     size_t at = at_row + (size_t)column;
-    unsigned char flags = slice->flags[((size_t)row * (size_t)slice->stride + (size_t)column) / FIELD_LANES];
+    const size_t block = ((size_t)row * (size_t)slice->stride + (size_t)column) / FIELD_LANES;
+    unsigned char flags = slice->flags[block];
     const float *depth = slice->depth + (size_t)row * 3 * (size_t)slice->stride + (size_t)column;
-    lanes reaching[FIELD_DIRECTIONS], passing[FIELD_DIRECTIONS], squared[3];
+    lanes reaching[FIELD_DIRECTIONS], squared[3], open[FIELD_LINKS];
     for (int a = 0; a < 3; a++) {
       lanes along = lanes_load(depth + a * slice->stride);
       squared[a] = along * along;
     }
-    for (int d = 0; d < slice->direction_count; d++) {
-      const sky_direction *direction = &slice->directions[d];
-      const float *from = slice->old + (size_t)d * slice->plane + at + direction->offset;
-      lanes light = lanes_load(from) * direction->weight[0];
-      light = lanes_add_scaled(light, lanes_load(from + 1), direction->weight[1]);
-      light = lanes_add_scaled(light, lanes_load(from + stride), direction->weight[2]);
-      light = lanes_add_scaled(light, lanes_load(from + stride + 1), direction->weight[3]);
-      reaching[d] = light;
-      if (flags & FIELD_MATTER) {
-        if (direction->slope == d) passing[d] = passing_cells(squared, direction);
-        light = light * passing[direction->slope];
-      }
-      lanes_store(slice->left + (size_t)d * slice->plane + at, light);
+    const lanes *matter = flags & FIELD_MATTER ? squared : NULL;
+    if (slice->cut != NULL && (slice->cut[block] & slice->cut_here)) {
+      find_open_links(slice, at, open);
+      move_light(slice, at, matter, open, reaching);
+    } else {
+      move_light(slice, at, matter, NULL, reaching);
     }
     if (!(flags & FIELD_RECEIVES)) continue;
     float *cells = slice->field + (size_t)row * slice->down + (size_t)column * slice->across;

@@ -48,7 +48,7 @@ const hot_functions HL_HOT_TABLE = {
              brick_bits,
              HL_READS_COLUMNS},
     .view = {brick_ranges_in_view, coverage_tile},
-    .field = {field_opacity, field_cover, sky_row},
+    .field = {field_opacity, sky_row},
     .fill = {relevant_blocks_tile, splat_tile, gather_tile},
     .surface = {cover_small, see_cluster, cover_cluster, cover_spheres},
     .shadow = {attenuate_tile,

@@ -85,7 +85,7 @@ LANES_INLINE void add_light(const shade_job *job, const shade_light *light, cons
 }
 
 /* Cells by which look-ups of the sky's light are moved off a mesh. */
-static const float MESH_LIFT = 1.25f;
+static const float MESH_LIFT = 1;
 
 /* The sky's light: read a little outside of the surface, whose own matter hides what lies behind it. */
 LANES_INLINE void add_sky(const sky_light *sky, const surface_samples *samples, color_lanes *lit) {
