@@ -119,7 +119,7 @@ class Particles:
         handle = made(lib.hl_volume_from_particles, "hl_volume", lib.hl_volume_release, context, struct)
         return volume_of_handle(handle).replace(**look)
 
-    def colored(self, values: Any, cmap: Any = "viridis", *, clim: Sequence[float] | None = None, depth: float = 12.0,
+    def colored(self, values: Any, cmap: Any = "viridis", *, clim: Sequence[float] | None = None, depth: float = 2.0,
                 name: str = "value", spacing: float | None = None, size: int | None = None) -> list[Volume]:
         """Volumes for one picture: opacity by the logarithm of density, colour by the mean of a quantity.
 
@@ -131,7 +131,7 @@ class Particles:
         clim : (low, high), optional
             The values that the colours spread over; by default percentiles 2 and 98 of `values`.
         depth : float
-            The optical depth of matter of the greatest density through a twentieth of the box.
+            The optical depth of dense matter, of which a thousandth of the places has more, through a twentieth of the box.
         name : str
             What the volume of the mean is called, which is not visible itself.
         spacing, size : optional
@@ -145,18 +145,22 @@ class Particles:
         density = self.volume(spacing=spacing, size=size)
         mean = self.volume(values, spacing=spacing, size=size)
         voxels = np.array(mean)
-        numbers = self._numbers("values", values)
-        low, high = numbers_of("clim", np.percentile(numbers, (2, 98)) if clim is None else clim, 2)
+        given = self._numbers("values", values)
+        low, high = numbers_of("clim", np.percentile(given, (2, 98)) if clim is None else clim, 2)
         if not high > low:
             low, high = low - 0.5, low + 0.5
-        voxels[~np.isfinite(voxels)] = np.mean(numbers)
+        voxels[~np.isfinite(voxels)] = np.mean(given)
         step = float(min(density.info().spacing))
         bottom, top = density.info().range
-        dense = np.linspace(0, 1, _STEPS)
+        # Optical depth is proportional to density, whose logarithm the volume holds.
+        held = np.array(density)
+        dense = np.percentile(held[held > bottom], 99.9) if top > bottom else top
+        rise = 10 ** (np.linspace(bottom, top, _STEPS) - dense)
+        rise[0] = 0
         length = max(density.dimensions) * step / 20
-        opacity = 1 - np.exp(-depth * dense**6 * step / length)
+        opacity = 1 - np.exp(-depth * rise * step / length)
         points = TransferFunction.from_matplotlib(cmap, (0.0, 1.0)).color
-        shades = np.stack([np.interp(dense, points[:, 0], points[:, c]) for c in (1, 2, 3)], axis=1)
+        shades = np.stack([np.interp(np.linspace(0, 1, _STEPS), points[:, 0], points[:, c]) for c in (1, 2, 3)], axis=1)
         pixels = np.empty((_STEPS, _STEPS, 4), np.float32)
         pixels[..., 3] = opacity
         pixels[..., :3] = shades[::-1, None, :] * opacity[None, :, None]
