@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from glob import escape, glob
 from typing import Any
 
 import numpy as np
@@ -105,6 +104,8 @@ def _h5py() -> Any:
 
 def _files(path: str) -> list[str]:
     """All files of a snapshot, in the order of their numbers."""
+    from glob import escape, glob
+
     if os.path.isdir(path):
         found = sorted(glob(os.path.join(escape(path), "*.hdf5")) + glob(os.path.join(escape(path), "*.h5")), key=_number)
         if not found:

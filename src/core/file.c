@@ -274,6 +274,7 @@ static bool reserve(hl_output_memory *memory, size_t end) {
 static bool on_write(void *data, const char *bytes, size_t length) {
   hl_output_memory *memory = data;
   if (memory->place > SIZE_MAX - length || !reserve(memory, memory->place + length)) {
+    memory->full = true;
     errno = ENOMEM;
     return false;
   }

@@ -187,6 +187,8 @@ CASES = {
     "show": ["--labels map.nrrd --show 1,2=red:0.5", "--mask map.nrrd --show 2=red:0.5,rest:0.1", ".seg.nrrd --show 2",
              ".seg.nrrd --show left,block=yellow:0.4 --label-table table.csv --clip x=0:0.6"],
     "ambient": ["--ambient 0.4"],
+    "light-rig": ["--light-rig rim", ".obj --light-rig studio"],
+    "scattering": ["--scattering 0.9"],
     "sky": ["--sky sky.png", "--sky #404080:white", "--sky 0", ".obj --sky sky.png"],
     "light": ["--light 30,20"],
     "light-size": ["--light-size 20"],
@@ -208,7 +210,7 @@ CASES = {
     "quiet": ["", ".seg.nrrd", ".obj", "wall.obj", ".obj wall.obj"],
 }
 # They are for one picture: a line says so, or the option that they go with.
-ONE_PICTURE = {"format": "png", "views": "front,left", "depth": "16", "layers": None, "reference": None, "print-scene": None, "json": None,
+ONE_PICTURE = {"format": "png", "views": "front,left", "depth": "16", "layers": None, "reference": None, "print-scene": None, "print-plan": None, "json": None,
                "light-points": "4", "step": "1", "paths": "4", "rays": "1", "strips-over-ranks": None,
                "volume-over-ranks": None, "frames-over-ranks": None}
 # They are for a series; tests/cli/series/one-look.sh compares their pictures.
