@@ -16,6 +16,7 @@ typedef struct face_job {
   const kernel *kernel;
   const classifier *classifier;
   int axis;
+  int32_t last_cell; /* the last cell of the grid along the axis */
   field_taps across; /* the taps across the face */
   int visible;       /* whether any point is visible */
 } face_job;
@@ -40,7 +41,8 @@ static float value_at(const face_job *job, const field_taps *column, const field
 /* Whether the brick of a point may be visible. The point has a voxel's coordinates along the face. */
 static bool may_be_visible(const face_job *job, int32_t row, int32_t column) {
   int32_t at[3];
-  at[job->axis] = job->across.first + 1; /* the lower voxel of the cell */
+  /* the lower voxel of the cell; a face on the end of the last cell belongs to that cell */
+  at[job->axis] = job->across.first + 1 < job->last_cell ? job->across.first + 1 : job->last_cell;
   at[row_axis(job->axis)] = row;
   at[column_axis(job->axis)] = column;
   for (int a = 0; a < 3; a++) at[a] = (at[a] + 1) / HL_BRICK_CELLS;
@@ -71,6 +73,7 @@ void hl_faces_find(hl_pool *pool, const kernel *kernel, const classifier *classi
                       .kernel = kernel,
                       .classifier = classifier,
                       .axis = axis,
+                      .last_cell = grid->dimension[axis] - 1,
                       .across = hl_field_taps(kernel, (double)face)};
       hl_pool_run(pool, (size_t)grid->dimension[column_axis(axis)], look_along_row, &job);
       grid->face_shows[axis][high] = job.visible != 0;
