@@ -84,7 +84,8 @@ def _described(volume: Volume) -> dict[str, Any]:
 
 def _choices(option: bytes) -> list[str]:
     """The choices of an option that scenes are composed by; none where there is no such option."""
-    choices, found = lib.hl_option_choices(option), []
+    choices = lib.hl_option_choices(option)
+    found: list[str] = []
     while choices != ffi.NULL and choices[len(found)].name != ffi.NULL:
         found.append(text_of(choices[len(found)].name))
     return found
