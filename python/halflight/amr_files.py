@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
+from ._hdf5 import open_file
 from ._library import warn
 from .errors import InputError
 
@@ -38,9 +39,7 @@ def open_amr(path: str | os.PathLike[str], field: str | None = None, **look: Unp
     path = Path(path)
     if path.name.endswith(".hierarchy"):
         return Volume.from_amr(**_enzo(path, field), **look)
-    import h5py
-
-    with h5py.File(path) as file:
+    with open_file(path) as file:
         if "refine level" in file and "bounding box" in file:
             return Volume.from_amr(**_flash(file, field), **look)
         if "num_levels" in file.attrs and "level_0" in file:
@@ -123,8 +122,6 @@ def _chombo(file: Any, field: str | None) -> dict[str, Any]:
 
 def _enzo(path: Path, field: str | None) -> dict[str, Any]:
     """A text that lists grids by their edges, and a group for each grid in files beside it."""
-    import h5py
-
     word = r"\s*=\s*(.+)"
     grids = []
     for text in re.split(r"^Grid\s*=\s*", path.read_text(errors="replace"), flags=re.MULTILINE)[1:]:
@@ -142,7 +139,7 @@ def _enzo(path: Path, field: str | None) -> dict[str, Any]:
     low, high = np.min([grid[1] for grid in roots], axis=0), np.max([grid[2] for grid in roots], axis=0)
     patches, name = list[Patch](), None
     for (number, left, _, size, file), step in zip(grids, steps, strict=True):
-        with h5py.File(path.parent / file) as opened:
+        with open_file(path.parent / file) as opened:
             group = opened[f"Grid{number:08d}"]
             if name is None:
                 name = _chosen([one for one in group if getattr(group[one], "ndim", 0) == 3], field, path)

@@ -136,5 +136,5 @@ def of_vtk(source: Any) -> tuple[Cells, str | None] | None:
         return Cells(points, _structured_cells(size), 12, values), scalars.GetName()
     cells = source.GetCells()
     corners, starts = vtk_to_numpy(cells.GetConnectivityArray()), vtk_to_numpy(cells.GetOffsetsArray())
-    flat = np.insert(corners.astype(np.int64), starts[:-1], np.diff(starts))
+    flat = np.insert(corners.astype(np.int64), starts[:-1].astype(np.int64), np.diff(starts))
     return Cells(points, flat, vtk_to_numpy(source.GetCellTypesArray()), values), scalars.GetName()

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ._hdf5 import open_file
 from ._words import choice
 from .errors import InputError
 from .particles import Particles
@@ -94,14 +95,6 @@ def open_snapshot(path: str | os.PathLike[str], part: str = "gas") -> Snapshot:
     return Snapshot(paths, name, Particles(positions, masses, h=_smoothing(paths, name, masses, header), periodic=_period(header, positions)))
 
 
-def _h5py() -> Any:
-    try:
-        import h5py
-    except ImportError as missing:
-        raise ImportError("snapshots in HDF5 need h5py: pip install h5py") from missing
-    return h5py
-
-
 def _files(path: str) -> list[str]:
     """All files of a snapshot, in the order of their numbers."""
     from glob import escape, glob
@@ -129,7 +122,7 @@ def _groups(paths: list[str], name: str) -> Iterator[Any]:
     found = False
     for path in paths:
         try:
-            file = _h5py().File(path, "r")
+            file = open_file(path)
         except OSError as failure:
             raise InputError(f"{path}: not an HDF5 file that can be read: {failure}") from failure
         with file:
@@ -160,7 +153,7 @@ def _lengths(values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 
 def _header(path: str) -> tuple[dict[str, Any], np.ndarray[Any, Any]]:
-    with _h5py().File(path, "r") as file:
+    with open_file(path) as file:
         header = dict(file["Header"].attrs) if "Header" in file else {}
         code = file["Header"].attrs.get("Code", b"") if "Header" in file else b""
         header["is_swift"] = "SWIFT" in (code.decode() if isinstance(code, bytes) else str(code))

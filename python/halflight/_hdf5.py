@@ -1,0 +1,14 @@
+"""Files of HDF5 are opened by h5py, which the package does not bring."""
+from __future__ import annotations
+
+from typing import Any
+
+
+def open_file(path: Any) -> Any:
+    """An h5py.File for reading; close it, or use it with `with`."""
+    try:
+        import h5py
+    except ImportError as missing:
+        raise ImportError("files of HDF5 need h5py: pip install h5py") from missing
+    library: Any = h5py
+    return library.File(path, "r")
