@@ -120,7 +120,9 @@ static const float *entries_of_slab(view_sheets *sheets, slab_place place) {
   for (size_t i = 0; i < cuts_of(sheets, grid); i++) count += !cuts[i].keep_inside;
   if (count == 0) return enter;
   const sheet_stack *stack = sheets->content->sheets;
-  float top = (float)(place.sheet * stack->spacing), bottom = (float)((place.sheet - 1) * stack->spacing);
+  /* the ends of the slab as covered() rounds them, so that rays which nothing cuts have the sums of a slab
+   * that nothing cuts */
+  float top = (float)(place.sheet * stack->spacing), bottom = top - (float)stack->spacing;
   for (int p = 0; p < TILE_PIXELS; p++) {
     float from = enter[p] > bottom ? enter[p] : bottom, to = enter[TILE_PIXELS + p];
     to = to < top ? to : top;
