@@ -17,7 +17,7 @@ export class FunctionCanvas {
   #histogram;
   #range;
   #shown; // the values from the left edge to the right
-  selected = { kind: "point", index: 0 };
+  #selected = { kind: "point", index: 0 };
   onSelect = () => {};
 
   // get() gives the transfer function, or undefined while labels or isosurfaces have taken its place, which another key may do in the
@@ -39,6 +39,12 @@ export class FunctionCanvas {
     });
     this.element = make("div", { class: "function-area" }, this.#canvas);
     new ResizeObserver(() => this.draw()).observe(this.element);
+  }
+
+  // The chosen point or colour: the last one where a function with fewer has come.
+  get selected() {
+    const { kind, index } = this.#selected, tf = this.#get(), rows = (kind === "point" ? tf?.opacity : tf?.color) ?? [];
+    return { kind, index: Math.max(0, Math.min(index, rows.length - 1)) };
   }
 
   get shown() { return this.#shown; }
@@ -81,7 +87,7 @@ export class FunctionCanvas {
   // ---- hands ----
 
   #select(what) {
-    this.selected = what;
+    this.#selected = what;
     this.onSelect(what);
     this.draw();
   }
