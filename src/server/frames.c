@@ -1,8 +1,10 @@
 /* server/frames.c - pages and their frames: which page renders, which frames are outdated.
  *
- * Each page has a renderer of its own, which keeps what does not change from frame to frame. A frame makes
- * all frames of its page with lower numbers outdated: one that is being rendered stops at its next check for
- * cancellation, and those that wait are not begun. */
+ * Each page has a renderer of its own, which keeps what does not change from frame to frame. A page's other
+ * pictures, small ones and those that it saves, go by lanes, pages of the name NAME-LANE: a lane's renderer
+ * ends when no more of its pictures are asked for. A frame makes all frames of its page with lower numbers
+ * outdated: one that is being rendered stops at its next check for cancellation, and those that wait are not
+ * begun. */
 #define _GNU_SOURCE
 #include <limits.h>
 #include <stdio.h>
@@ -89,6 +91,7 @@ static void release_page(server *s, server_page *page) {
   if (page->renderer != NULL || page->quick != NULL) atomic_store(&s->released, true);
   forget_renderers(page);
   page->name[0] = '\0';
+  page->last_use = 0; /* the next new page takes this place, not that of an idle one */
   page->leaving = false;
   atomic_store(&page->newest, 0);
 }
@@ -111,11 +114,13 @@ static server_page *enter_page(server *s, const char *name, unsigned long long n
   return page;
 }
 
+static bool is_lane(const server_page *page) { return strchr(page->name, '-') != NULL; }
+
 static void leave_page(server *s, server_page *page) {
   pthread_mutex_lock(&s->pages_lock);
   page->users--;
   page->last_seen = server_seconds();
-  if (page->leaving && page->users == 0) release_page(s, page);
+  if ((page->leaving || is_lane(page)) && page->users == 0) release_page(s, page);
   pthread_mutex_unlock(&s->pages_lock);
 }
 

@@ -62,6 +62,23 @@ def looks(browser):
     check(browser.run("document.querySelector('[aria-label=Looks] [aria-pressed=true]')?.textContent") != "translucent", "and the panel follows")
 
 
+def projection_of_surfaces(browser):
+    """A volume with an isosurface becomes a maximum projection, which has none, in one step."""
+    with_surface = "({ ...scene, volumes: scene.volumes.map((volume) => ({ ...volume, iso: [{ value: 100, color: [1, 1, 1], opacity: 1 }] })) })"
+    browser.run(f"halflight.store.change('iso', (scene) => {with_surface})")
+    rest(browser)
+    before = scene_of(browser)["volumes"]
+    press(browser, "mip")
+    browser.wait("halflight.store.scene.render.compositing === 'maximum'")
+    rest(browser)
+    check("iso" not in scene_of(browser)["volumes"][0], "the isosurface has gone")
+    press_named(browser, "Undo")
+    rest(browser)
+    check(scene_of(browser)["volumes"] == before, "undone in one step")
+    press_named(browser, "Undo")
+    rest(browser)
+
+
 def rigs(browser):
     """Four rigs; one after the other is as bright as from the beginning."""
     open_section(browser, "Lights")
@@ -212,6 +229,7 @@ with tempfile.TemporaryDirectory() as folder:
             sweeps(browser, viewer.url)
             points_in_order(browser)
             looks(browser)
+            projection_of_surfaces(browser)
             rigs(browser)
             two_pictures(browser)
             links(browser, viewer.url)

@@ -170,19 +170,23 @@ def closed_while_rendering(viewer, scene):
 
 
 def left(viewer, scene):
-    """A page that leaves gives back its renderers, those of its lanes, what it has opened, and ends its frames."""
+    """A page that leaves gives back its renderers and what it has opened, and ends its frames; those of a lane end with its pictures."""
     before = state(viewer)
     check(before["pages"] == 0, f"no page yet: {before}")
-    for page in ("one", "one-probe", "one-film", "only"):
+    for page in ("one", "only"):
         check(frame(viewer, scene, page)[0] == 200, f"a frame of {page}")
+    pages = state(viewer)
+    for lane in ("one-probe", "one-small", "one-small"):
+        check(frame(viewer, scene, lane)[0] == 200, f"a frame of {lane}")
+    wait_for("the renderers of lanes have ended", lambda: state(viewer)["pages"] == 2 and state(viewer)["held"] == pages["held"])
     with open("torus.nrrd", "rb") as file:
         status, body = request(viewer, "POST", "upload?name=mine.nrrd", file.read())
     start = json.loads(body)
     check(status == 200 and frame(viewer, start["scene"], "one", opened=start["opened"])[0] == 200, "a file of its own")
     during = state(viewer)
-    check(during["pages"] == 4 and during["opened"] == 2 and during["held"] > before["held"], f"what they hold: {during}")
+    check(during["pages"] == 2 and during["opened"] == 2 and during["held"] > before["held"], f"what they hold: {during}")
     check(request(viewer, "POST", f"leave?page=one&opened={start['opened']}")[0] == 204, "it leaves")
-    check(state(viewer)["pages"] == 1 and state(viewer)["opened"] == 1, "and with it its lanes and its file, but no other page")
+    check(state(viewer)["pages"] == 1 and state(viewer)["opened"] == 1, "and with it its file, but no other page")
     check(request(viewer, "POST", "leave?page=only")[0] == 204, "the other, too")
     after = state(viewer)
     check(after["pages"] == 0 and after["held"] == before["held"], f"all is given back: {before} {after}")
@@ -204,7 +208,7 @@ def memory_of_all(scene):
     """Pages that do not fit together each get their frames, within the limit."""
     def held_by(viewer, count):
         for n in range(count):
-            check(frame(viewer, scene, f"page-{n}", side=256)[0] == 200, f"page {n} of {count}")
+            check(frame(viewer, scene, f"page{n}", side=256)[0] == 200, f"page {n} of {count}")
         return state(viewer)["held"]
 
     with Viewer(PROGRAM, "large.nrrd") as viewer:
@@ -227,9 +231,11 @@ def reloads(chromium):
         for _ in range(4):
             browser.open(viewer.url)
             browser.wait("globalThis.halflight?.frames.statistics.stage === 'final'")
+            browser.wait("document.querySelector('[data-busy]') === null")
             wait_for("one page", lambda: state(viewer)["pages"] == 1)
             held.append(state(viewer)["held"])
-        check(len(set(held)) == 1, f"every load holds as much: {held}")
+        # The sizes of pictures while the light sweeps follow the machine's speed, and with them a renderer's buffers.
+        check(max(held) < 1.5 * min(held), f"no load adds its renderers to those of the load before: {held}")
         browser.open("about:blank")
         wait_for("the page has gone", lambda: state(viewer)["pages"] == 0)
         check(state(viewer)["held"] == before["held"], "with all that it held")

@@ -6,9 +6,20 @@ import { make } from "./controls.js";
 const SIDES = { width: 112, height: 80 }; // pixels
 const STEP = 2; // voxels between sheets
 
+// The small pictures of all galleries are made in turn, by one lane of the channel: the viewer has one renderer for them, which ends with
+// the last one. Returns fetch(scene), as a channel's fetchFrame().
+export function smallPictures(channel) {
+  let last = Promise.resolve();
+  return (scene) => {
+    const picture = last.then(() => channel.fetchFrame(scene, { quality: 85, moving: true, lane: "-small" }));
+    last = picture.catch(() => {}); // whoever asked for it is told
+    return picture;
+  };
+}
+
 // names: the choices. made(name) resolves to the scene with one of them; take(name, scene) takes it; isTaken(scene of a choice): whether
-// the viewer shows it now. lane: of the pictures. Returns { element, update, atRest }: atRest() is called when the picture has come to rest.
-export function gallery({ label, names, viewer: { store, channel, failed, frames }, made, take, isTaken, lane }) {
+// the viewer shows it now. Returns { element, update, atRest }: atRest() is called when the picture has come to rest.
+export function gallery({ label, names, viewer: { store, smallPicture, failed, frames }, made, take, isTaken }) {
   const canvases = new Map(), scenes = new Map(); // by name
   const buttons = names.map((name) => {
     const canvas = make("canvas", { "aria-hidden": "true", ...SIDES });
@@ -34,7 +45,7 @@ export function gallery({ label, names, viewer: { store, channel, failed, frames
     const scene = await made(name), image = { ...scene.image, ...SIDES };
     scenes.set(name, scene);
     const small = { ...scene, image, camera: reshaped(store.scene.camera, store.scene.image, image), render: { ...scene.render, sheet_spacing: Math.max(STEP, scene.render.sheet_spacing) } };
-    const frame = await channel.fetchFrame(small, { quality: 85, moving: true, lane });
+    const frame = await smallPicture(small);
     if (frame === null) return false;
     const bitmap = await createImageBitmap(frame.blob), canvas = canvases.get(name);
     canvas.getContext("2d").drawImage(bitmap, 0, 0);

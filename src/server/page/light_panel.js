@@ -14,7 +14,7 @@ function rigsOf(viewer) {
   const { store, start, channel, atRest } = viewer, { lights, sky, ambient } = start.scene;
   const told = (scene) => JSON.stringify([scene.lights, scene.sky]);
   const rigs = gallery({
-    label: "Light rigs", names: start.rigs ?? [], viewer, lane: "-rigs", made: (rig) => channel.completeScene({ ...store.scene, lights, ...(sky ? { sky } : {}), ...(ambient ? { ambient } : {}) }, { rig }),
+    label: "Light rigs", names: start.rigs ?? [], viewer, made: (rig) => channel.completeScene({ ...store.scene, lights, ...(sky ? { sky } : {}), ...(ambient ? { ambient } : {}) }, { rig }),
     isTaken: (scene) => told(scene) === told(store.scene),
     take: (name, made) => store.change(`rig ${name}`, (scene) => ({ ...scene, lights: made.lights, sky: made.sky, ambient: made.ambient })),
   });

@@ -6,6 +6,9 @@ import { gallery } from "./gallery.js";
 const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 const PROJECTION = "mip"; // the look that is no surface and no medium: its greys are a preset
 
+// The scene that a maximum projection can show: it has neither isosurfaces nor meshes.
+const projected = ({ meshes: _, ...scene }) => ({ ...scene, volumes: scene.volumes.map(({ iso: __, ...volume }) => ({ ...volume, transfer_function: { preset: PROJECTION } })) });
+
 // What a look says of a scene.
 const seen = ({ camera: _, lights: __, sky: ___, ambient: ____, image: _____, ...rest }) => rest;
 
@@ -13,7 +16,7 @@ export function lookPanel(viewer) {
   const { store, start, channel } = viewer, { element, body } = section("Looks");
   const names = start.looks ?? [], isOf = () => names.length > 0 && store.scene.volumes.length > 0 && store.scene.volumes.every((volume) => !volume.labels);
   const looks = gallery({
-    label: "Looks", names, viewer, lane: "-looks", made: (look) => channel.completeScene(look === PROJECTION ? { ...store.scene, volumes: store.scene.volumes.map((volume) => ({ ...volume, transfer_function: { preset: PROJECTION } })) } : store.scene, { look }),
+    label: "Looks", names, viewer, made: (look) => channel.completeScene(look === PROJECTION ? projected(store.scene) : store.scene, { look }),
     isTaken: (scene) => same(seen(scene), seen(store.scene)),
     take: (name, made) => store.change(`look ${name}`, ({ camera, image: { width, height } }) => ({ ...made, camera, image: { ...made.image, width, height } })),
   });

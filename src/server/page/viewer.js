@@ -8,6 +8,7 @@ import { copier, exportPanel } from "./export.js";
 import { filmPanel } from "./film_panel.js";
 import { Frames } from "./frames.js";
 import { watchConnection } from "./connection.js";
+import { smallPictures } from "./gallery.js";
 import { followGestures } from "./gestures.js";
 import { functionPanel } from "./function_panel.js";
 import { labelPanel } from "./label_panel.js";
@@ -179,7 +180,7 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
   const root = element.firstElementChild, find = (id) => root.querySelector(`#${id}`);
   const ended = new AbortController();
   const store = new Store(kept?.scene ?? start.scene, kept ?? {}), report = messageBox(find("message"));
-  const viewer = { store, start, channel, report, reopen, root, find, source, startAfresh, copy: copier(report, start.title), current: { volume: 0, light: 0 }, address, atRest: [], frames: () => frames };
+  const viewer = { store, start, channel, smallPicture: smallPictures(channel), report, reopen, root, find, source, startAfresh, copy: copier(report, start.title), current: { volume: 0, light: 0 }, address, atRest: [], frames: () => frames };
   const connection = watchConnection(find("view"), channel, report, () => { frames.move(); viewer.slices.update(); });
   viewer.failed = connection.failed;
   if (restore !== null) viewer.openSession = (file) => openSession(file, restore, viewer);
