@@ -260,42 +260,6 @@ void answer_scene(server *s, const frame_request *request, const composed_choice
   answer->length = strlen(answer->text);
 }
 
-static hl_status write_jpeg(const hl_image *image, const hl_image_write_options *options, int quality,
-                            server_answer *answer, hl_error *error) {
-  int width = hl_image_width(image), height = hl_image_height(image);
-  hl_image_write_options opaque = *options;
-  opaque.background_transparent = 0;
-  uint8_t *rgba = malloc(4 * (size_t)width * (size_t)height);
-  hl_status status = rgba != NULL ? hl_image_to_srgb8(image, &opaque, rgba, 4 * (size_t)width, error)
-                                  : HL_ERROR_MEMORY;
-  if (status == HL_OK) {
-    answer->from_malloc = encode_jpeg(rgba, width, height, quality, &answer->length);
-    answer->type = "image/jpeg";
-    if (answer->from_malloc == NULL) status = HL_ERROR_MEMORY;
-  }
-  free(rgba);
-  if (status == HL_ERROR_MEMORY) snprintf(error->message, sizeof error->message, "no memory for a JPEG");
-  return status;
-}
-
-/* The same bytes as `halflight render` writes of the scene. */
-static hl_status write_exact(const server *s, const hl_scene *scene, const hl_image *image,
-                             hl_image_write_options *options, const frame_request *request,
-                             server_answer *answer, hl_error *error) {
-  char *json = NULL;
-  hl_status status = request->metadata ? hl_scene_to_json(s->options.context, scene, &json, error) : HL_OK;
-  options->scene_json = json;
-  options->png_depth = request->depth;
-  if (status == HL_OK)
-    status = hl_image_encode(s->options.context, image, request->format, options, &answer->bytes,
-                             &answer->length, error);
-  answer->type = strcmp(request->format, "png") == 0   ? "image/png"
-                 : strcmp(request->format, "exr") == 0 ? "image/x-exr"
-                                                       : "application/octet-stream";
-  hl_text_release(s->options.context, json);
-  return status;
-}
-
 /* renderer: the page's, for what moves or for what rests. */
 static hl_status render(server *s, server_page *page, hl_renderer **renderer, const hl_scene *scene,
                         const frame_request *request, server_answer *answer, hl_error *error) {
@@ -305,17 +269,12 @@ static hl_status render(server *s, server_page *page, hl_renderer **renderer, co
   hl_status status = *renderer == NULL ? hl_renderer_create(s->options.context, renderer, error) : HL_OK;
   if (status == HL_OK && strcmp(request->format, "depth") == 0)
     return render_depth(page, scene, answer, error);
+  if (status == HL_OK) status = check_overlay(s, scene, request, error);
   if (status == HL_OK) status = hl_image_create(s->options.context, d->width, d->height, &image, error);
   if (status == HL_OK)
     status = hl_renderer_render(*renderer, scene, hl_image_pixels(image), 4 * (size_t)d->width, NULL, error);
   double rendered = server_seconds();
-  if (status == HL_OK) {
-    hl_image_write_options options;
-    hl_scene_write_options(scene, &options);
-    status = strcmp(request->format, "jpeg") == 0
-                 ? write_jpeg(image, &options, request->quality, answer, error)
-                 : write_exact(s, scene, image, &options, request, answer, error);
-  }
+  if (status == HL_OK) status = write_picture(s, scene, image, request, answer, error);
   hl_image_destroy(image);
   answer->seconds_render = rendered - began;
   answer->seconds_encode = server_seconds() - rendered;

@@ -112,6 +112,7 @@ typedef struct frame_request {
   int quality;        /* of a JPEG */
   int depth;          /* of a PNG: 8 or 16 */
   int metadata;       /* 1: a PNG carries its scene; 0: it does not */
+  int scale_bar, legend; /* 1: drawn over a PNG of 8 bits */
   int moving; /* 1: a quick frame, of coarser volumes where the sheets are wide; 0: the scene as it is */
   const char *text; /* the scene */
   size_t length;
@@ -178,6 +179,14 @@ void answer_slice(server *s, const slice_request *request, server_answer *answer
 bool read_triple(const char *text, double numbers[3]);
 /* Answers how deep lies what the picture's middle pixel shows. */
 hl_status render_depth(server_page *page, const hl_scene *scene, server_answer *answer, hl_error *error);
+
+/* pictures.c */
+/* Finds out whether what the request wants over its picture can be drawn, before the picture is made. */
+hl_status check_overlay(const server *s, const hl_scene *scene, const frame_request *request,
+                        hl_error *error);
+/* Answers with the image as a file of the request's format. */
+hl_status write_picture(const server *s, const hl_scene *scene, const hl_image *image,
+                        const frame_request *request, server_answer *answer, hl_error *error);
 
 /* films.c */
 hl_status render_film(server *s, server_page *page, const hl_scene *scene, const film_request *request,

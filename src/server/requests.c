@@ -295,6 +295,8 @@ static frame_request read_query(struct MHD_Connection *connection, const request
                          .quality = (int)query_number(connection, "quality", LEAST_QUALITY, MOST_QUALITY, 85),
                          .depth = (int)query_number(connection, "depth", 8, 16, 8),
                          .metadata = (int)query_number(connection, "metadata", 0, 1, 1),
+                         .scale_bar = (int)query_number(connection, "scale_bar", 0, 1, 0),
+                         .legend = (int)query_number(connection, "legend", 0, 1, 0),
                          .moving = (int)query_number(connection, "moving", 0, 1, 0),
                          .text = r->body,
                          .length = r->length};
@@ -304,16 +306,24 @@ static bool names_page(const frame_request *wanted) {
   return is_page_name(wanted->page) && wanted->number > 0 && wanted->number <= MOST_NUMBER;
 }
 
+/* What is drawn over pictures is drawn with 8 bits per channel. */
+static bool overlay_fits(const frame_request *wanted) {
+  bool plain = wanted->scale_bar == 0 && wanted->legend == 0;
+  return plain || (wanted->scale_bar >= 0 && wanted->legend >= 0 && strcmp(wanted->format, "png") == 0 &&
+                   wanted->depth == 8);
+}
+
 static void post_frame(server *s, struct MHD_Connection *connection, const request *r,
                        server_answer *answer) {
   frame_request wanted = read_query(connection, r);
   if (names_page(&wanted) && is_format(wanted.format) && wanted.quality > 0 && wanted.metadata >= 0 &&
-      wanted.moving >= 0 && (wanted.depth == 8 || wanted.depth == 16))
+      wanted.moving >= 0 && (wanted.depth == 8 || wanted.depth == 16) && overlay_fits(&wanted))
     answer_frame(s, &wanted, NULL, answer);
   else
     answer_problem(answer, 400,
                    "a frame needs ?page=NAME&number=N&format=jpeg|png|exr|npy (&quality=10..100, "
-                   "&depth=8|16, &metadata=0|1, &moving=0|1)\n");
+                   "&depth=8|16, &metadata=0|1, &moving=0|1; of a png with 8 bits &scale_bar=0|1, "
+                   "&legend=0|1)\n");
 }
 
 /* How deep lies what the middle of a small picture of the scene shows. */

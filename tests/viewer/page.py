@@ -3,6 +3,7 @@
 
 usage: page.py PROGRAM
 """
+import io
 import json
 import os
 import re
@@ -17,7 +18,7 @@ from PIL import Image
 import checks
 from browser import Browser
 from checks import check
-from hands import PROGRAM, STAGE, center, changes, equals_render, press, rest, scene_of, set_control
+from hands import PROGRAM, STAGE, center, changes, equals_render, final_picture, press, rest, scene_of, set_control
 from viewer import Viewer, need_viewer
 
 
@@ -142,6 +143,7 @@ def saved_as_seen(browser):
     """A saved picture that is taller than wide shows as much across as the one on the screen; its sides follow what it is for."""
     os.mkdir("saved")
     browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=os.path.abspath("saved"))
+    check(browser.run("document.getElementById('scale-bar').disabled && document.getElementById('no-unit').textContent.includes('no unit')"), "no bar without a unit")
     seen = browser.run("halflight.store.scene.image.width")
     set_control(browser, "For", "2", "change")
     sides = browser.run("[...document.querySelectorAll('[aria-label$=\"in pixels\"]')].map((input) => +input.value)")
@@ -149,16 +151,42 @@ def saved_as_seen(browser):
     set_control(browser, "For", "8.5cm", "change")
     check(browser.run("+document.querySelector('[aria-label=\"Width in pixels\"]').value") == 1004, "8.5 cm at 300 dpi")
     browser.run("""['Width', 'Height'].forEach((side, n) => { document.querySelector(`[aria-label="${side} in pixels"]`).value = [120, 300][n]; })""")
+    set_control(browser, "Transparent", "")
     press(browser, "save picture")
+    set_control(browser, "Transparent", "")
     end = time.monotonic() + 60
     while not os.path.exists("saved/rings.png"):
         check(time.monotonic() < end, "it is saved")
         time.sleep(0.05)
     with Image.open("saved/rings.png") as image:
         tall = json.loads(image.text["halflight:scene"])
+        check(image.mode == "RGBA" and image.getextrema()[3] == (0, 255), f"nothing is behind it: {image.mode} {image.getextrema()}")
     share = """(camera, image) => import('./camera.js').then((m) => m.worldHeight(camera) * Math.min(1, image.width / image.height))"""
     now, saved = (browser.run(f"({share})({json.dumps(scene['camera'])}, {json.dumps(scene['image'])})") for scene in (scene_of(browser), tall))
     check((tall["image"]["width"], tall["image"]["height"]) == (120, 300) and abs(saved / now - 1) < 1e-9, f"as much across: {saved}, {now}")
+
+
+def saved_with_bar(browser):
+    """A saved picture has the scale bar and the legend that the copied command draws."""
+    browser.run("['scale-bar', 'legend'].forEach((id) => document.getElementById(id).click())")
+    check(browser.run("document.getElementById('scale-bar').checked && document.getElementById('no-unit').hidden"), "the file tells its unit")
+    press(browser, "save picture")
+    browser.wait("document.getElementById('message').textContent.includes('saved')")
+    end = time.monotonic() + 60
+    while not os.path.exists("saved/rings.mrc.png"):
+        check(time.monotonic() < end, "it is saved")
+        time.sleep(0.05)
+    command = browser.run("import('./export.js').then((m) => m.commandLine(halflight.store.scene, 'bar', { scaleBar: true, legend: true }))")
+    os.mkdir("bar")
+    environment = dict(os.environ, PATH=f"{os.path.dirname(PROGRAM)}:{os.environ['PATH']}")
+    subprocess.run(["sh", "-eu", "-c", command], cwd="bar", check=True, env=environment, capture_output=True)
+    with open("saved/rings.mrc.png", "rb") as saved, open("bar/bar.png", "rb") as made:
+        check(saved.read() == made.read(), "the copied command makes the picture")
+    with Image.open("bar/bar.png") as drawn:
+        shown = Image.open(io.BytesIO(final_picture(browser)))
+        check(drawn.convert("RGB").tobytes() != shown.convert("RGB").tobytes(), "something is drawn over it")
+    set_control(browser, "Format", "exr", "change")
+    check(browser.run("document.getElementById('scale-bar').disabled && document.getElementById('legend').disabled"), "EXR holds linear light")
 
 
 def reach(browser):
@@ -210,5 +238,6 @@ with tempfile.TemporaryDirectory() as folder:
             browser.open(map_viewer.url)
             rest(browser)
             check(re.fullmatch(r"[\d.]+ Å", browser.run(bar)), f"a scale in Angstroms: {browser.run(bar)}")
+            saved_with_bar(browser)
         check(browser.problems == [], f"the console has errors: {browser.problems}")
         print(f"{checks.count} checks passed; frames: {counts}")

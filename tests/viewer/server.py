@@ -50,6 +50,11 @@ def small(scene, side=96):
     return scene
 
 
+def pixels(png):
+    with Image.open(io.BytesIO(png)) as image:
+        return image.convert("RGBA").tobytes()
+
+
 def exact_pictures(viewer, scene):
     """A frame in PNG and EXR has the bytes that `halflight render` writes of the same scene, and the scene's bytes too."""
     with open("scene.json", "w") as file:
@@ -65,6 +70,34 @@ def exact_pictures(viewer, scene):
         check("render;dur=" in headers["Server-Timing"], "a frame tells its times")
     status, headers, body = frame(viewer, scene, format="jpeg", quality=70)
     check(status == 200 and body[:3] == b"\xff\xd8\xff" and headers["Content-Type"] == "image/jpeg", "a JPEG frame")
+
+
+def drawn_over(viewer, scene):
+    """A scale bar and a legend are those of `halflight render`, and are refused where the files tell no unit or the format does not hold them."""
+    os.mkdir("drawn")
+
+    def equals(viewer, scene, words, **asked):
+        status, _, body = frame(viewer, scene, **asked)
+        with open("drawn.json", "w") as file:
+            json.dump(scene, file)
+        subprocess.run([PROGRAM, "render", "drawn.json", *words, "-o", "drawn/picture.png", "--quiet"], check=True)
+        with open("drawn/picture.png", "rb") as file:
+            check(status == 200 and body == file.read(), f"{words}: {status} {body[:99] if status != 200 else ''}")
+        return body
+
+    plain, legend = frame(viewer, scene)[2], equals(viewer, scene, ["--legend", "auto"], legend=1)
+    check(pixels(legend) != pixels(plain), "the legend is seen")
+    for asked in ({"scale_bar": 1}, {"legend": 1, "depth": 16}, {"legend": 1, "format": "exr"}, {"legend": 1, "format": "jpeg"}, {"legend": 2}):
+        status, _, body = frame(viewer, scene, **asked)
+        check(status == 400 and body.count(b"\n") <= 1 and (b"unit" in body or b"8 bits" in body), f"{asked}: {status} {body}")
+    subprocess.run([PROGRAM, "convert", "torus.nrrd", "torus.mrc", "--quiet"], check=True)
+    with Viewer(PROGRAM, "torus.mrc") as measured:
+        scene = small(json.loads(request(measured, "GET", "start.json")[2])["scene"], 160)
+        bar = equals(measured, scene, ["--scale-bar", "auto@target", "--legend", "auto"], scale_bar=1, legend=1)
+        check(pixels(bar) != pixels(frame(measured, scene)[2]), "the bar is seen")
+        scene["image"]["background_transparent"] = True
+        scene["camera"] = {"type": "orthographic", "height": 2, **{key: scene["camera"][key] for key in ("position", "target", "up")}}
+        equals(measured, scene, ["--scale-bar", "auto"], scale_bar=1)
 
 
 def complete_scenes(viewer, scene):
@@ -310,6 +343,7 @@ with tempfile.TemporaryDirectory() as folder:
         scene = start["scene"]
         check(os.path.isabs(scene["volumes"][0]["file"]) and len(start["volumes"][0]["histogram"]) == 256, "start.json")
         exact_pictures(viewer, small(scene))
+        drawn_over(viewer, small(scene))
         complete_scenes(viewer, scene)
         refusals(viewer, scene)
         film_scenes(viewer, scene)

@@ -15,13 +15,19 @@ export const fileWord = (title, ending) => quoted(`${stem(title)}${ending}`.repl
 export const sceneText = (scene) => JSON.stringify(scene, null, 2) + "\n";
 
 // A command that needs nothing beside it but the scene's volumes: the scene is its standard input.
-export const commandLine = (scene, title) =>
-  `halflight render - -o ${fileWord(title, ".png")} <<'END'\n${sceneText(scene)}END\n`;
+// over: { scaleBar, legend }, whether they are drawn over the picture. In a perspective picture the bar holds at the camera's target.
+export const commandLine = (scene, title, { scaleBar = false, legend = false } = {}) =>
+  `halflight render - -o ${fileWord(title, ".png")}${scaleBar ? ` --scale-bar auto${scene.camera.type === "orthographic" ? "" : "@target"}` : ""}${legend ? " --legend auto" : ""} <<'END'\n${sceneText(scene)}END\n`;
 
 // The same as a Python program.
-export const pythonProgram = (scene, title) =>
+const annotated = ({ scaleBar = false, legend = false }) => {
+  const words = [...(scaleBar ? ["scale_bar=True", 'depth="target"'] : []), ...(legend ? ["legend=True"] : [])];
+  return words.length > 0 ? `.annotate(${words.join(", ")})` : "";
+};
+
+export const pythonProgram = (scene, title, over = {}) =>
   `import halflight\n\nscene = halflight.Scene.from_json(r"""${sceneText(scene).replaceAll('"""', '\\"\\"\\"')}""")\n` +
-  `halflight.Renderer().render(scene).save("${stem(title).replaceAll(/["\\]/g, "_")}.png")\n`;
+  `halflight.Renderer().render(scene)${annotated(over)}.save("${stem(title).replaceAll(/["\\]/g, "_")}.png")\n`;
 
 export function download(blob, name) {
   const link = make("a", { href: URL.createObjectURL(blob), download: name });
@@ -51,7 +57,7 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
   const width = side("Width in pixels"), height = side("Height in pixels");
   const kind = select({
     label: "Format", choices: [["png", "PNG"], ["png16", "PNG, 16 bits"], ["exr", "EXR, linear float"]],
-    get: () => format, set: (value) => { format = value; },
+    get: () => format, set: (value) => { format = value; update(); },
   });
   // Sides by what the picture is for: multiples of what is seen, or a width in print.
   const sizes = select({
@@ -65,17 +71,29 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
   const transparent = make("input", { type: "checkbox", id: "transparent" });
   const bare = make("input", { type: "checkbox", id: "bare", title: "A PNG without the scene, and without the names of its files" });
 
+  const box = (label, id) => {
+    const input = make("input", { type: "checkbox", id, onchange: () => update() });
+    return { input, element: row(make("label", { for: id }, label), input) };
+  };
+  const bar = box("Scale bar", "scale-bar"), legend = box("Legend", "legend"), unknown = make("p", { class: "facts", id: "no-unit" });
+  const same = make("p", { class: "facts" });
+  bar.input.setAttribute("aria-describedby", "no-unit");
+  const drawsOver = () => channel.drawsOver === true && format === "png"; // they are drawn with 8 bits
+  // Whether the file of a visible volume does not tell the unit of its lengths.
+  const isUnitless = () => start.volumes.some((volume, v) => volume?.unit === null && store.scene.volumes[v]?.visible !== false);
+  const over = () => ({ scaleBar: bar.input.checked && !bar.input.disabled, legend: legend.input.checked && !legend.input.disabled });
+
   async function savePicture() {
     const scene = structuredClone(store.scene), image = scene.image, seen = { width: image.width, height: image.height };
     image.width = Math.round(+width.value) || image.width;
     image.height = Math.round(+height.value) || image.height;
     scene.camera = reshaped(scene.camera, seen, image); // what is seen is in the picture, whatever its shape
-    if (transparent.checked) image.background = "transparent";
+    if (transparent.checked) [image.background_transparent, image.background_sky] = [true, false];
     save.disabled = true;
     report(`rendering ${image.width} × ${image.height} …`);
     try {
       const type = format === "exr" ? "exr" : "png";
-      const frame = await channel.fetchFrame(scene, { format: type, depth: format === "png16" ? 16 : 8, metadata: !bare.checked, lane: "-save" });
+      const frame = await channel.fetchFrame(scene, { format: type, depth: format === "png16" ? 16 : 8, metadata: !bare.checked, lane: "-save", ...over() });
       if (frame !== null) download(frame.blob, `${name}.${type}`);
       report(frame === null ? "cancelled by another save" : `saved ${name}.${type}`);
     } catch (error) {
@@ -92,17 +110,24 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
   body.append(
     row(make("span", { class: "name" }, "Size"), make("span", { class: "pair" }, width, "×", height)), sizes.element, kind.element,
     row(make("label", { for: "transparent" }, "Transparent"), transparent),
-    row(make("label", { for: "bare" }, "No metadata"), bare), row("", save),
+    row(make("label", { for: "bare" }, "No metadata"), bare), bar.element, unknown, legend.element, row("", save),
     row(make("span", { class: "name" }, "Scene"), make("span", { class: "buttons" }, button("save scene", saveScene),
       button("copy scene", () => copy(sceneText(store.scene), "the scene")))),
     row("", make("span", { class: "buttons" },
-      button("copy command", () => copy(commandLine(store.scene, start.title), "the command")),
-      button("copy Python", () => copy(pythonProgram(store.scene, start.title), "the program")))),
-    make("p", { class: "facts" }, "Each of them makes the same picture, byte for byte."));
+      button("copy command", () => copy(commandLine(store.scene, start.title, over()), "the command")),
+      button("copy Python", () => copy(pythonProgram(store.scene, start.title, over()), "the program")))),
+    same);
   function update() {
     for (const [input, key] of [[width, "width"], [height, "height"]])
       if (!isActive(input) && !input.value) input.placeholder = store.scene.image[key];
     kind.update();
+    const unitless = isUnitless();
+    for (const part of [bar, legend]) part.element.hidden = !channel.drawsOver;
+    bar.input.disabled = !drawsOver() || unitless;
+    legend.input.disabled = !drawsOver();
+    unknown.hidden = !channel.drawsOver || (drawsOver() && !unitless);
+    unknown.textContent = drawsOver() ? "No scale bar: the volume's file tells no unit of length." : "Scale bar and legend are drawn with 8 bits: choose PNG.";
+    same.textContent = `Each of them makes the same picture, ${over().scaleBar || over().legend ? "pixel for pixel" : "byte for byte"}.`;
   }
   update();
   return { element, update, savePicture, saveScene };

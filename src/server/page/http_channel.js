@@ -39,6 +39,7 @@ const numbered = (keys) => Object.fromEntries(keys.map((key, n) => [`key${n}`, k
 export class HttpChannel {
   #number = 0;
   #opened;
+  drawsOver = true; // fetchFrame() takes scaleBar and legend
   #page = crypto.getRandomValues(new Uint32Array(2)).reduce((name, n) => name + n.toString(36), "p");
 
   #source;
@@ -102,8 +103,9 @@ export class HttpChannel {
 
   // A picture of the scene: { blob, times }, or null where a newer frame of this page has cancelled it. `lane` sets
   // frames apart that do not cancel each other; `moving` makes a quick picture, of coarser volumes where the sheets are wide.
-  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "" } = {}) {
-    const query = { page: this.#page + lane, number: ++this.#number, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving };
+  // scaleBar, legend: drawn over a PNG of 8 bits; it is refused where the scene's files do not tell a unit of length.
+  async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "", scaleBar = false, legend = false } = {}) {
+    const query = { page: this.#page + lane, number: ++this.#number, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving, scale_bar: +scaleBar, legend: +legend };
     const response = await this.#ask("frame", query, { method: "POST", body: JSON.stringify(scene) });
     if (response.status === 204) return null;
     return { blob: await response.blob(), times: parseTimes(response.headers.get("Server-Timing")) };

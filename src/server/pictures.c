@@ -1,0 +1,99 @@
+/* server/pictures.c - rendered images as the files that a page asks for, with what is drawn over them. */
+#define _GNU_SOURCE
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <halflight/figure.h>
+
+#include "parts.h"
+
+static hl_status write_jpeg(const hl_image *image, const hl_image_write_options *options, int quality,
+                            server_answer *answer, hl_error *error) {
+  int width = hl_image_width(image), height = hl_image_height(image);
+  hl_image_write_options opaque = *options;
+  opaque.background_transparent = 0;
+  uint8_t *rgba = malloc(4 * (size_t)width * (size_t)height);
+  hl_status status = rgba != NULL ? hl_image_to_srgb8(image, &opaque, rgba, 4 * (size_t)width, error)
+                                  : HL_ERROR_MEMORY;
+  if (status == HL_OK) {
+    answer->from_malloc = encode_jpeg(rgba, width, height, quality, &answer->length);
+    answer->type = "image/jpeg";
+    if (answer->from_malloc == NULL) status = HL_ERROR_MEMORY;
+  }
+  free(rgba);
+  if (status == HL_ERROR_MEMORY) snprintf(error->message, sizeof error->message, "no memory for a JPEG");
+  return status;
+}
+
+static bool has_overlay(const frame_request *request) { return request->scale_bar || request->legend; }
+
+/* The page of a figure that the picture fills, with what the request wants over it. In a perspective picture
+ * the bar holds at the depth of the camera's target. */
+static void make_figure(const hl_image *image, const hl_scene *scene, const frame_request *request,
+                        hl_figure *figure, hl_figure_panel *panel) {
+  hl_figure_defaults(figure);
+  *panel = (hl_figure_panel){0};
+  hl_overlay_defaults(&panel->overlay);
+  hl_figure_of_picture(image, scene, 0, figure, panel);
+  panel->overlay.scale_bar = request->scale_bar;
+  panel->overlay.scale_bar_depth = HL_DEPTH_OF_TARGET;
+  panel->overlay.legend = request->legend;
+}
+
+hl_status check_overlay(const server *s, const hl_scene *scene, const frame_request *request,
+                        hl_error *error) {
+  const hl_scene_description *d = hl_scene_describe(scene);
+  hl_context *context = s->options.context;
+  hl_image *trial = NULL;
+  if (!has_overlay(request)) return HL_OK;
+  hl_status status = hl_image_create(context, d->width, d->height, &trial, error);
+  if (status == HL_OK) {
+    hl_figure figure;
+    hl_figure_panel panel;
+    make_figure(trial, scene, request, &figure, &panel);
+    hl_image_destroy(trial);
+    trial = NULL;
+    panel.image = NULL;
+    figure.pixels_per_inch = fmax(1, figure.pixels_per_inch / 8);
+    status = hl_figure_draw(context, &figure, &trial, error);
+  }
+  hl_image_destroy(trial);
+  return status;
+}
+
+/* The same bytes as `halflight render` writes of the scene. */
+static hl_status write_exact(const server *s, const hl_scene *scene, const hl_image *image,
+                             hl_image_write_options *options, const frame_request *request,
+                             server_answer *answer, hl_error *error) {
+  hl_context *context = s->options.context;
+  char *json = NULL;
+  hl_status status = request->metadata ? hl_scene_to_json(context, scene, &json, error) : HL_OK;
+  options->scene_json = json;
+  options->png_depth = request->depth;
+  if (status == HL_OK && has_overlay(request)) {
+    hl_figure figure;
+    hl_figure_panel panel;
+    make_figure(image, scene, request, &figure, &panel);
+    figure.background_transparent = options->background_transparent;
+    status = hl_figure_encode(context, &figure, request->format, options, &answer->bytes, &answer->length,
+                              error);
+  } else if (status == HL_OK) {
+    status = hl_image_encode(context, image, request->format, options, &answer->bytes, &answer->length,
+                             error);
+  }
+  answer->type = strcmp(request->format, "png") == 0   ? "image/png"
+                 : strcmp(request->format, "exr") == 0 ? "image/x-exr"
+                                                       : "application/octet-stream";
+  hl_text_release(context, json);
+  return status;
+}
+
+hl_status write_picture(const server *s, const hl_scene *scene, const hl_image *image,
+                        const frame_request *request, server_answer *answer, hl_error *error) {
+  hl_image_write_options options;
+  hl_scene_write_options(scene, &options);
+  return strcmp(request->format, "jpeg") == 0
+             ? write_jpeg(image, &options, request->quality, answer, error)
+             : write_exact(s, scene, image, &options, request, answer, error);
+}
