@@ -1,7 +1,8 @@
 # shellcheck shell=sh
 # Sourced by the scripts that build for other systems: ziglang's compilers, and libraries from Debian's sources.
 #
-# The caller sets `out`, the folder of its build, `library_target`, zig's name of the system, and `library_flags`, more flags of the compiler.
+# The caller sets `out`, the folder of its build, `library_target`, zig's name of the system, `library_flags`, more flags of the compiler, and
+# `archive_format`, as `zig ar` calls it.
 
 install_zig() {
   root=$out/root
@@ -40,7 +41,7 @@ library() {
       -DHAVE_UNISTD_H -DHAVE_STDINT_H -DHAVE_SYS_TYPES_H -DHAVE_STRTOLL -I"$root/include" -c "$folder/$file.c" -o "$root/objects/$name/$(basename "$file").o"
   done
   rm -f "$root/lib/lib$name.a"
-  "$zig/zig" ar rcs "$root/lib/lib$name.a" "$root/objects/$name"/*.o
+  "$zig/zig" ar --format="$archive_format" rcs "$root/lib/lib$name.a" "$root/objects/$name"/*.o
   rm -rf "$root/objects"
 }
 
@@ -90,8 +91,8 @@ build_math_library() {
   printf '#define hidden __attribute__((__visibility__("hidden")))\n#define weak_alias(old, new)\n' >"$root/math/features.h"
   usual_flags=$library_flags
   library_flags="$library_flags -I$root/math -I$math/internal -include features.h -D_GNU_SOURCE -ffp-contract=off -fno-builtin"
-  library muslmath "$math/math" __cos __math_divzero __math_invalid __math_oflow __math_uflow __math_xflow __math_divzerof __math_invalidf __math_oflowf \
-    __math_uflowf __math_xflowf __rem_pio2 __rem_pio2_large __sin __tan acos asin atan atan2 cbrt cos cosh erf exp exp2f_data exp_data expm1 fmod hypot log \
+  library muslmath "$math/math" __cos __expo2 __math_divzero __math_invalid __math_oflow __math_uflow __math_xflow __math_divzerof __math_invalidf __math_oflowf \
+    __math_uflowf __math_xflowf __rem_pio2 __rem_pio2_large __sin __tan acos asin atan atan2 cbrt cos cosh erf exp exp2 exp2f_data exp_data expm1 fmod hypot log \
     log10 log1p log2 log2_data log_data pow pow_data powf powf_data sin sincos sinh tan tanh
   library_flags=$usual_flags
 }

@@ -11,6 +11,31 @@
 
 #include "platform/processors.h"
 
+/* ---- functions of the system's mathematics that clang calls in place of sin() with cos(), and of pow() ----
+ *
+ * With the bits of the functions that are written in the sources. */
+
+typedef struct sine_and_cosine {
+  double sine, cosine;
+} sine_and_cosine;
+
+sine_and_cosine hl_sincos(double x) __asm__("___sincos_stret");
+double hl_exp10(double x) __asm__("___exp10");
+
+sine_and_cosine hl_sincos(double x) {
+  void sincos(double, double *, double *); /* of musl, which is linked */
+  sine_and_cosine both;
+  sincos(x, &both.sine, &both.cosine);
+  return both;
+}
+
+double hl_exp10(double x) {
+  volatile double ten = 10; /* pow() of the number itself would be a call of this function */
+  return pow(ten, x);
+}
+
+/* ---- files and processes ---- */
+
 int hl_cpu_count(void) {
   long count = sysconf(_SC_NPROCESSORS_ONLN);
   return count > 0 ? (int)count : 1;
