@@ -33,6 +33,7 @@ MORE = {
     "spot": scene(lights=[KEY, {"type": "spot", "position": [-30, -10, 60], "direction": [50, 30, -40], "opening_angle_deg": 40, "intensity": 2}]),
     "room": scene(lights=[{"type": "point", "position": [-20, -20, 60], "radius": 8}], render=soft("sublights")),
     "splat_soft": scene(render={**soft("paper"), "reconstruction": "splat"}),
+    "cells": scene({"file": "cells.vtu", "transfer_function": {"opacity": [[1.5, 0.8], [2.2, 0]], "color": [[0, 1, 0.6, 0.3]]}}),
     "orthographic": scene() | {"camera": {"type": "orthographic", "position": [-60, -40, 70], "target": [20, 20, 20], "up": [0, 0, 1], "height": 50}},
 }
 
@@ -82,6 +83,7 @@ def write_scenes(folder):
     """[(name of a scene's file, names of its files)], all in the folder."""
     write_volumes(folder)
     write_stored_volumes(folder)
+    write_cells(folder / "cells.vtu")
     scenes = SCENES | MORE
     scenes |= {path.stem: json.loads(path.read_text()) for path in sorted((ROOT / "tests" / "golden").glob("*.json"))}
     scenes |= {path.stem: place_example(path, folder) for path in sorted((ROOT / "examples").glob("*.json"))}
@@ -93,12 +95,38 @@ def write_scenes(folder):
     return written
 
 
+def write_particles(path):
+    """A table of 120 particles on a spiral, closer together at its middle."""
+    rows = ((math.sqrt(n) * math.cos(n), math.sqrt(n) * math.sin(n), 2 * math.sin(0.7 * n), 1 + n % 3, 10 + n) for n in range(120))
+    path.write_text("x,y,z,mass,temperature\n" + "".join(",".join(map(repr, row)) + "\n" for row in rows))
+
+
+def write_cells(path):
+    """A VTK file of 64 hexahedra, whose edges are bent, with values at their corners."""
+    side = 5
+    places = [(x, y, z) for z in range(side) for y in range(side) for x in range(side)]
+    at = lambda x, y, z: (z * side + y) * side + x  # noqa: E731
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    cells = [[at(x + a, y + b, z + c) for a, b, c in corners] for x, y, z in places if max(x, y, z) < side - 1]
+    words = lambda numbers: " ".join(map(str, numbers))  # noqa: E731
+    points = words(9 * n for x, y, z in places for n in (x + 0.2 * math.sin(y), y + 0.2 * math.sin(z), z + 0.2 * math.sin(x)))
+    array = '<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="ascii">{}</DataArray>'.format
+    path.write_text(
+        f'<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="{len(places)}" NumberOfCells="{len(cells)}">'
+        f'<PointData>{array("Float32", "distance", 1, words(math.dist(place, (2, 2, 2)) for place in places))}</PointData>'
+        f'<Points>{array("Float32", "Points", 3, points)}</Points>'
+        f'<Cells>{array("Int32", "connectivity", 1, words(n for cell in cells for n in cell))}'
+        f'{array("Int32", "offsets", 1, words(range(8, 8 * len(cells) + 1, 8)))}'
+        f'{array("UInt8", "types", 1, words(12 for _ in cells))}</Cells></Piece></UnstructuredGrid></VTKFile>')
+
+
 def write_dropped(folder, program):
     """Volumes as they are dropped on a page: [(name, names of its files)], all in the folder."""
     subprocess.run([program, "make", "rings", "--size", "20", "--quiet", "-o", folder / "rings.nrrd"], check=True)
     names = [f"rings.{ending}" for ending in ("nii.gz", "vti", "mha", "mrc")]
     for name in names:
         subprocess.run([program, "convert", folder / "rings.nrrd", folder / name, "--quiet"], check=True)
+    write_particles(folder / "particles.csv")
     (folder / "series").mkdir()
     for place in range(9):
         (folder / "series" / f"{place}.dcm").write_bytes(dicom_slice(place))
@@ -112,7 +140,7 @@ def write_dropped(folder, program):
         store.writestr("0/.zarray", json.dumps(array))
         store.writestr("0/0.0.0", zlib.compress(bytes(n % 251 for n in range(480))))
     series = [f"series/{place}.dcm" for place in range(9)]
-    return [(name, [name]) for name in [*names, "image.ome.zarr.zip"]] + [("series", series)]
+    return [(name, [name]) for name in [*names, "image.ome.zarr.zip", "particles.csv"]] + [("series", series)]
 
 
 def write_all(folder, program):
