@@ -48,6 +48,7 @@
 #include "context.h"
 #include "device.h"
 #include "figure.h"
+#include "formats.h"
 #include "grids.h"
 #include "image.h"
 #include "layers.h"

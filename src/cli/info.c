@@ -6,11 +6,13 @@
 
 #include "commands.h"
 #include "host.h"
+#include "info_formats.h"
 #include "input.h"
 #include "json_writer.h"
 
 enum info_option {
   INFO_JSON,
+  INFO_FORMATS,
   INFO_ARRAY,
   INFO_COMPONENT,
   INFO_SERIES,
@@ -26,6 +28,9 @@ static const cli_option info_options[INFO_OPTION_COUNT] = {
                    .kind = OPTION_SWITCH,
                    .group = "Options",
                    .help = "as JSON, with 256 histogram bins"},
+    [INFO_FORMATS] = {.name = "formats",
+                      .kind = OPTION_SWITCH,
+                      .help = "in place of FILE: the formats that this program reads and writes"},
     INPUT_OPTIONS(INFO_ARRAY, NULL),
     [INFO_CHANNEL] = INPUT_OPTION_CHANNEL,
     [INFO_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
@@ -458,7 +463,21 @@ static int info_of_mesh(cli_host *host, const cli_value *values, const char *pat
   return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
 }
 
+/* --formats stands alone or with --json. */
+static int run_formats(const cli_value *values, char **operands) {
+  for (int which = INFO_FORMATS + 1; which < INFO_OPTION_COUNT; which++)
+    if (values[which].given)
+      return fail(EXIT_CODE_USAGE, "--%s is for files, and --formats lists formats",
+                  info_options[which].name);
+  if (operands[0] != NULL)
+    return fail(EXIT_CODE_USAGE, "--formats takes no file: leave '%s' or --formats out", operands[0]);
+  return info_formats(values[INFO_JSON].given);
+}
+
 static int run_info(const cli_value *values, char **operands) {
+  if (values[INFO_FORMATS].given) return run_formats(values, operands);
+  if (operands[0] == NULL)
+    return fail(EXIT_CODE_USAGE, "info needs FILE or --formats: see 'halflight help info'");
   cli_host host;
   cli_host_options options = {.memory_limit = values[INFO_MAX_MEMORY].bytes, .subject = operands[0]};
   int exit_code = host_open(&options, &host);
@@ -480,8 +499,8 @@ static int run_info(const cli_value *values, char **operands) {
 
 const cli_command info_command = {
     .name = "info",
-    .operands = "FILE",
-    .operand_count = 1,
+    .operands = "[FILE]",
+    .operand_most = 1,
     .summary = "show what a volume, a scene or a mesh file holds",
     .description =
         "Shows what a volume file holds: size, type, spacing, orientation, world box, range and histogram.\n"

@@ -45,6 +45,12 @@ static void find_converter(char path[PATH_MAX]) {
   snprintf(path, PATH_MAX, "nanovdb_convert");
 }
 
+bool openvdb_is_there(void) {
+  char path[PATH_MAX];
+  find_converter(path);
+  return strchr(path, '/') != NULL ? access(path, X_OK) == 0 : process_is_there(path);
+}
+
 static hl_status make_workplace(const char *path, workplace *w, hl_error *error) {
   const char *temporary = getenv("TMPDIR");
   if (temporary == NULL || temporary[0] == '\0') temporary = "/tmp";

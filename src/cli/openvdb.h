@@ -10,6 +10,8 @@
  * hold and that it may write. cancelled: asked while it runs. *bytes: to openvdb_release(). */
 hl_status openvdb_convert(const char *path, uint64_t limit, int (*cancelled)(void *user_data),
                           void *user_data, const void **bytes, size_t *byte_count, hl_error *error);
+/* Whether there is a converter. */
+bool openvdb_is_there(void);
 void openvdb_release(const void *bytes, size_t byte_count);
 
 #endif

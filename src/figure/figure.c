@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/door.h"
+#include "core/endings.h"
 #include "figure/page.h"
 #include "text/plain.h"
 
@@ -121,6 +122,17 @@ static figure_format format_of(const char *name) {
   for (size_t n = 0; n < sizeof names / sizeof *names; n++)
     if (hl_plain_equal(name, names[n])) return n < FORMAT_PIXELS ? (figure_format)n : FORMAT_PIXELS;
   return FORMAT_UNKNOWN;
+}
+
+hl_status hl_figure_get_format(size_t index, hl_file_format *format) {
+  static const char *const names[] = {"PDF", "SVG"}, *const endings[] = {".pdf", ".svg"};
+  if (format == NULL || format->struct_size != sizeof *format || index >= sizeof names / sizeof *names)
+    return HL_ERROR_ARGUMENT;
+  const char *missing = hl_page_missing();
+  *format = (hl_file_format){
+      .struct_size = sizeof *format, .name = names[index], .writes = missing == NULL, .missing = missing};
+  hl_endings_add(format->written_endings, endings[index]);
+  return HL_OK;
 }
 
 /* The options of the picture that the figure's pixels are. */

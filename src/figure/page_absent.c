@@ -16,3 +16,5 @@ hl_status hl_page_write(const hl_figure *figure, bool pdf, hl_output *output, hl
   (void)figure, (void)pdf, (void)output;
   return refuse(error);
 }
+
+const char *hl_page_missing(void) { return "cairo and pango"; }

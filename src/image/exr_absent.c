@@ -22,6 +22,7 @@ static hl_image_claim claim(const unsigned char *bytes, size_t length) {
 
 const hl_image_format hl_exr_format = {.extension = ".exr",
                                        .title = "OpenEXR",
+                                       .missing = "OpenEXR",
                                        .mark = {0x76, 0x2f, 0x31, 0x01},
                                        .mark_length = 4,
                                        .encode = encode,

@@ -10,6 +10,7 @@
 
 #include "core/context.h"
 #include "core/door.h"
+#include "core/endings.h"
 #include "core/memory.h"
 #include "text/plain.h"
 
@@ -18,6 +19,31 @@ static const hl_image_format *const formats[] = {&hl_png_format, &hl_exr_format,
                                                  &hl_hdr_format, &hl_tif_format, &hl_tiff_format};
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
+
+/* The first format from n on whose title is not that of the one before. */
+static size_t next_title(size_t n) {
+  while (n > 0 && n < FORMAT_COUNT && strcmp(formats[n]->title, formats[n - 1]->title) == 0) n++;
+  return n;
+}
+
+hl_status hl_image_get_format(size_t index, hl_file_format *format) {
+  if (format == NULL || format->struct_size != sizeof *format) return HL_ERROR_ARGUMENT;
+  size_t first = 0;
+  for (size_t n = 0; n < index && first < FORMAT_COUNT; n++) first = next_title(first + 1);
+  if (first >= FORMAT_COUNT) return HL_ERROR_ARGUMENT;
+  const hl_image_format *f = formats[first];
+  bool available = f->missing == NULL;
+  *format = (hl_file_format){.struct_size = sizeof *format,
+                             .name = f->title,
+                             .reads = available && f->decode != NULL,
+                             .writes = available && f->encode != NULL,
+                             .missing = f->missing};
+  for (size_t n = first; n < next_title(first + 1); n++) {
+    if (f->decode != NULL) hl_endings_add(format->read_endings, formats[n]->extension);
+    if (f->encode != NULL) hl_endings_add(format->written_endings, formats[n]->extension);
+  }
+  return HL_OK;
+}
 
 /* Greatest accepted sizes in bytes: of everything in a file beside its pixels (texts, profiles, thumbnails),
  * and of the file's header. */

@@ -19,6 +19,7 @@ typedef struct hl_image_claim {
 
 typedef struct hl_image_format {
   const char *extension, *title;
+  const char *missing;   /* the library that the format needs and this build lacks; null if there is none */
   unsigned char mark[8]; /* first bytes of every file of the format */
   size_t mark_length;
 

@@ -8,5 +8,7 @@ static hl_status encode(const hl_image *image, const hl_image_write_options *opt
                  "%s: this build has no libtiff: write a .png, or build with -Dtiff=enabled", output->path);
 }
 
-const hl_image_format hl_tif_format = {.extension = ".tif", .title = "TIFF", .encode = encode};
-const hl_image_format hl_tiff_format = {.extension = ".tiff", .title = "TIFF", .encode = encode};
+const hl_image_format hl_tif_format = {
+    .extension = ".tif", .title = "TIFF", .missing = "libtiff", .encode = encode};
+const hl_image_format hl_tiff_format = {
+    .extension = ".tiff", .title = "TIFF", .missing = "libtiff", .encode = encode};

@@ -5,6 +5,7 @@
 
 #include "core/context.h"
 #include "core/door.h"
+#include "core/endings.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "mesh/mesh.h"
@@ -12,11 +13,23 @@
 #include "volume/text.h"
 
 static const struct {
-  const char *ending;
+  const char *name, *ending;
   mesh_reader *read;
-} formats[] = {{".ply", hl_mesh_read_ply},   {".stl", hl_mesh_read_stl},  {".obj", hl_mesh_read_obj},
-               {".gltf", hl_mesh_read_gltf}, {".glb", hl_mesh_read_gltf}, {".vtp", hl_mesh_read_vtp},
-               {".vtu", hl_mesh_read_vtp}};
+} formats[] = {{"PLY", ".ply", hl_mesh_read_ply},          {"STL", ".stl", hl_mesh_read_stl},
+               {"OBJ", ".obj", hl_mesh_read_obj},          {"glTF", ".gltf", hl_mesh_read_gltf},
+               {"binary glTF", ".glb", hl_mesh_read_gltf}, {"VTK PolyData", ".vtp", hl_mesh_read_vtp},
+               {"VTK .vtu", ".vtu", hl_mesh_read_vtp}};
+enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
+
+hl_status hl_mesh_get_format(size_t index, hl_file_format *format) {
+  if (format == NULL || format->struct_size != sizeof *format || index > FORMAT_COUNT)
+    return HL_ERROR_ARGUMENT;
+  bool listed = index < FORMAT_COUNT; /* .vtk files are told apart by their content */
+  *format = (hl_file_format){
+      .struct_size = sizeof *format, .name = listed ? formats[index].name : "VTK .vtk", .reads = 1};
+  hl_endings_add(format->read_endings, listed ? formats[index].ending : ".vtk");
+  return HL_OK;
+}
 
 /* Whether a file's first bytes say that it is PolyData. Other .vtk files are volumes. */
 static bool begins_as_polydata(const char *path) {
@@ -33,7 +46,7 @@ static bool begins_as_polydata(const char *path) {
 }
 
 int hl_mesh_reads_name(const char *path) {
-  for (size_t n = 0; path != NULL && n < sizeof formats / sizeof *formats; n++)
+  for (size_t n = 0; path != NULL && n < FORMAT_COUNT; n++)
     if (hl_text_ends(path, formats[n].ending)) return 1;
   return path != NULL && hl_text_ends(path, ".vtk") && begins_as_polydata(path);
 }
@@ -43,7 +56,7 @@ static mesh_reader *reader_of(const char *path, mesh_text text) {
     return hl_mesh_read_ply;
   if (text.length >= 4 && memcmp(text.bytes, "glTF", 4) == 0) return hl_mesh_read_gltf;
   if (hl_legacy_vtk_has_content(text.bytes, text.length)) return hl_mesh_read_legacy_vtk;
-  for (size_t n = 0; n < sizeof formats / sizeof *formats; n++)
+  for (size_t n = 0; n < FORMAT_COUNT; n++)
     if (hl_text_ends(path, formats[n].ending)) return formats[n].read;
   return hl_text_ends(path, ".vtk") ? hl_mesh_read_legacy_vtk : NULL;
 }

@@ -77,4 +77,5 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
                          : status;
 }
 
-const hl_format hl_format_dat = {.has_content = has_content, .load = load};
+const hl_format hl_format_dat = {
+    .title = "descriptors of bare voxels", .more_endings = ".dat", .has_content = has_content, .load = load};

@@ -94,6 +94,10 @@ typedef struct hl_format {
   const char *name;                       /* the format's name in error lines */
   const char *endings[HL_FORMAT_ENDINGS]; /* extensions of file names that promise `beginning`; null after the
                                            * last */
+  const char *title;                      /* the name in lists of formats; null: `name` */
+  const char *more_endings;               /* further extensions, for lists of formats, between blanks */
+  const char *(*missing)(void);           /* returns the library that the format needs and this build lacks;
+                                           * null if there is none */
   const char *beginning;                  /* the beginning that such files must have, for error lines */
 
   /* Whether a file that starts with these bytes has the format. length: HL_FORMAT_SNIFFED_BYTES, or less if

@@ -226,6 +226,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
 
 const hl_format hl_format_legacy_vtk = {
     .name = ".vtk",
+    .title = "VTK .vtk",
     .endings = {".vtk"},
     .beginning = "\"# vtk DataFile Version\"",
     .has_content = hl_legacy_vtk_has_content,

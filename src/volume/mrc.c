@@ -299,5 +299,8 @@ static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) 
   return status;
 }
 
-const hl_format hl_format_mrc = {
-    .name = "MRC", .has_content = has_content, .claim_name = claim_name, .load = load};
+const hl_format hl_format_mrc = {.name = "MRC",
+                                 .more_endings = ".mrc .mrcs .map .ccp4 .rec .ali .st",
+                                 .has_content = has_content,
+                                 .claim_name = claim_name,
+                                 .load = load};

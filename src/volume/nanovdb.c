@@ -9,6 +9,7 @@ static bool has_content(const unsigned char *bytes, size_t length) {
 }
 
 const hl_format hl_format_nanovdb = {.name = "NanoVDB",
+                                     .missing = hl_nanovdb_missing,
                                      .endings = {".nvdb"},
                                      .beginning = "\"NanoVDB\"",
                                      .has_content = has_content,

@@ -8,3 +8,5 @@ hl_status hl_nanovdb_load(hl_stream **stream, hl_load_request *request, hl_volum
                  "and build anew",
                  (*stream)->path);
 }
+
+const char *hl_nanovdb_missing(void) { return "PNanoVDB.h"; }

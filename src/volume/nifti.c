@@ -405,6 +405,7 @@ static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) 
 
 const hl_format hl_format_nifti = {
     .name = "NIfTI",
+    .more_endings = ".nii .hdr .img",
     .has_content = has_content,
     .claim_name = claim_name,
     .load = load,

@@ -260,6 +260,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
 
 const hl_format hl_format_npy = {
     .name = "NumPy .npy",
+    .more_endings = ".npy",
     .has_content = has_content,
     .load = load,
 };

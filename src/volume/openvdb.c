@@ -41,6 +41,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
 }
 
 const hl_format hl_format_openvdb = {.name = "OpenVDB",
+                                     .missing = hl_nanovdb_missing,
                                      .endings = {".vdb"},
                                      .beginning = "\" BDV\"",
                                      .has_content = has_content,

@@ -106,4 +106,8 @@ static hl_status claim_name(hl_stream **stream, bool *claimed, hl_error *error) 
   return HL_OK;
 }
 
-const hl_format hl_format_raw = {.fits = fits, .claim_name = claim_name, .load = load};
+const hl_format hl_format_raw = {.title = "bare voxels",
+                                 .more_endings = ".raw .raw.gz",
+                                 .fits = fits,
+                                 .claim_name = claim_name,
+                                 .load = load};

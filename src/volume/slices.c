@@ -313,4 +313,4 @@ static hl_status load_bundle(hl_bundle *bundle, hl_load_request *request, bool *
   return status;
 }
 
-const hl_format hl_format_slices = {.load_bundle = load_bundle};
+const hl_format hl_format_slices = {.title = "folders of slices", .load_bundle = load_bundle};

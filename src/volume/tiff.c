@@ -17,6 +17,7 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
 }
 
 const hl_format hl_format_tiff = {.name = "TIFF",
+                                  .missing = hl_tiff_missing,
                                   .endings = {".tif", ".tiff"},
                                   .beginning = "\"II*\" or \"MM\"",
                                   .has_content = has_content,

@@ -11,4 +11,7 @@
 hl_status hl_tiff_load(hl_stream **stream, const hl_bundle *archive, hl_load_request *request,
                        hl_volume **volume, hl_error *error);
 
+/* "libtiff" in builds without it, else null. */
+const char *hl_tiff_missing(void);
+
 #endif

@@ -25,3 +25,5 @@ hl_status hl_slice_find_stack(const hl_slice_file *file, hl_slice_stack *stack, 
   *stack = HL_SLICE_ALONE;
   return HL_OK;
 }
+
+const char *hl_tiff_missing(void) { return "libtiff"; }

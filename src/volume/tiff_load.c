@@ -409,3 +409,5 @@ hl_status hl_tiff_load(hl_stream **stream, const hl_bundle *archive, hl_load_req
   release_file(request->context, &first);
   return status;
 }
+
+const char *hl_tiff_missing(void) { return NULL; }

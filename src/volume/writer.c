@@ -305,15 +305,16 @@ static hl_status make_raw(const char *path, const hl_volume_description *grid, h
 }
 
 static const hl_writer writers[] = {
-    {".nrrd", HL_PACKING_GZIP_VOXELS, PLAIN_TYPES, make_nrrd, NULL, "metre|millimetre|micrometre|angstrom"},
-    {".nii", HL_PACKING_NONE, PLAIN_TYPES, make_nifti, NULL, "micrometre|millimetre|metre"},
-    {".nii.gz", HL_PACKING_GZIP_ALL, PLAIN_TYPES, make_nifti, NULL, "micrometre|millimetre|metre"},
-    {".mha", HL_PACKING_ZLIB_VOXELS, PLAIN_TYPES, make_metaimage, NULL, NULL},
-    {".vti", HL_PACKING_NONE, PLAIN_TYPES, make_vti, "space", NULL},
-    {".mrc", HL_PACKING_NONE, MRC_TYPES, make_mrc, "space", "angstrom"},
-    {".mrc.gz", HL_PACKING_GZIP_ALL, MRC_TYPES, make_mrc, "space", "angstrom"},
-    {".raw", HL_PACKING_NONE, ALL_TYPES, make_raw, "place", NULL},
-    {".raw.gz", HL_PACKING_GZIP_ALL, ALL_TYPES, make_raw, "place", NULL},
+    {"NRRD", ".nrrd", HL_PACKING_GZIP_VOXELS, PLAIN_TYPES, make_nrrd, NULL,
+     "metre|millimetre|micrometre|angstrom"},
+    {"NIfTI", ".nii", HL_PACKING_NONE, PLAIN_TYPES, make_nifti, NULL, "micrometre|millimetre|metre"},
+    {"NIfTI", ".nii.gz", HL_PACKING_GZIP_ALL, PLAIN_TYPES, make_nifti, NULL, "micrometre|millimetre|metre"},
+    {"MetaImage", ".mha", HL_PACKING_ZLIB_VOXELS, PLAIN_TYPES, make_metaimage, NULL, NULL},
+    {"VTK .vti", ".vti", HL_PACKING_NONE, PLAIN_TYPES, make_vti, "space", NULL},
+    {"MRC", ".mrc", HL_PACKING_NONE, MRC_TYPES, make_mrc, "space", "angstrom"},
+    {"MRC", ".mrc.gz", HL_PACKING_GZIP_ALL, MRC_TYPES, make_mrc, "space", "angstrom"},
+    {"bare voxels", ".raw", HL_PACKING_NONE, ALL_TYPES, make_raw, "place", NULL},
+    {"bare voxels", ".raw.gz", HL_PACKING_GZIP_ALL, ALL_TYPES, make_raw, "place", NULL},
 };
 
 const hl_writer *hl_writer_for(const char *path) {
@@ -323,6 +324,10 @@ const hl_writer *hl_writer_for(const char *path) {
     if (length > tail && hl_plain_equal(path + length - tail, writers[n].ending)) return &writers[n];
   }
   return NULL;
+}
+
+const hl_writer *hl_writer_at(size_t index) {
+  return index < sizeof writers / sizeof *writers ? &writers[index] : NULL;
 }
 
 /* The exponent of ten of a unit in metres. */

@@ -25,6 +25,7 @@ typedef struct hl_written_header {
 } hl_written_header;
 
 typedef struct hl_writer {
+  const char *format; /* the name of the format's reader in lists of formats */
   const char *ending; /* end of the file's name */
   hl_packing packing;
   unsigned types; /* bit 1 << hl_voxel_type is set if voxels of this type can be written */
@@ -44,5 +45,8 @@ const char *hl_written_unit(const hl_writer *writer, const char *unit, double *f
 
 /* The writer for a file's name; null if there is none. */
 const hl_writer *hl_writer_for(const char *path);
+
+/* The writers: index from 0 on; null beyond the last. */
+const hl_writer *hl_writer_at(size_t index);
 
 #endif

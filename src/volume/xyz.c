@@ -118,4 +118,5 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   return status;
 }
 
-const hl_format hl_format_xyz = {.name = "XYZ", .claim_name = claim_name, .load = load};
+const hl_format hl_format_xyz = {
+    .name = "XYZ", .more_endings = ".xyz .extxyz", .claim_name = claim_name, .load = load};

@@ -18,7 +18,7 @@ problems = []
 NO_ARITHMETIC = re.compile(
     r"hl_(\w+_(defaults|name|count|retain|release|destroy|describe|summary|text)|version|context_\w+|image_(width|height|pixels|"
     r"pixels_const|add_layer|find_scene)|mesh_reads_name|ranks_\w+|setting_(get|find)|scene_write_options|"
-    r"volume_(unit|label_map|get_array|get_channel|get_segment|get_selection|get_series)|component_of_name|renderer_(create|share|share_over_ranks|use_device))")
+    r"volume_(unit|label_map|get_array|get_channel|get_segment|get_selection|get_series)|\w+_get_(format|packing)|component_of_name|renderer_(create|share|share_over_ranks|use_device))")
 PROGRAM = ("cli", "server", "film", "process")  # rooms of the program, which leaves the locale "C" as it is
 
 declared = set()

@@ -73,7 +73,7 @@ VALUES = {
     "const char * format_name": "\"png\"", "const char * rig": "\"rim\"", "const char *": "\"name\"", "const char **": "&any", "char *": "NULL",
     "const hl_transfer_function *": "&function",
     "const hl_volume_description *": "&description", "const hl_scene_description *": "hl_scene_describe(scene)",
-    "const hl_option *": "&option", "unsigned": "0",
+    "const hl_option *": "&option", "hl_file_format *": "&file_format", "unsigned": "0",
     "const hl_volume_info *": "&info",
     "const hl_image_write_options *": "&write_options", "const hl_reference_options *": "&reference_options",
     "const hl_shapes_options *": "&shapes_options", "const hl_reslice_options *": "&reslice_options",
@@ -110,6 +110,7 @@ static hl_reference_options reference_options;
 static hl_shapes_options shapes_options;
 static hl_option option = {"zoom", "2"};
 static hl_volume_info info;
+static hl_file_format file_format = {.struct_size = sizeof file_format};
 static hl_reslice_options reslice_options;
 static hl_figure figure, other_figure;
 static hl_figure_panel panel, other_panel;
