@@ -482,7 +482,7 @@ static int run_info(const cli_value *values, char **operands) {
   cli_host_options options = {.memory_limit = values[INFO_MAX_MEMORY].bytes, .subject = operands[0]};
   int exit_code = host_open(&options, &host);
   if (exit_code != EXIT_CODE_OK) return exit_code;
-  if (hl_mesh_reads_name(operands[0]) && !hl_volume_reads_cells(host.context, operands[0])) {
+  if (is_mesh_file(host.context, operands[0])) {
     exit_code = info_of_mesh(&host, values, operands[0]);
     host_close(&host);
     return exit_code;

@@ -5,6 +5,7 @@
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <halflight/grids.h>
 #include <math.h>
 #include <poll.h>
 #include <stdio.h>
@@ -251,4 +252,8 @@ hl_status input_load(hl_context *context, const cli_input *input, const hl_volum
   if (input->bytes == NULL) return hl_scene_load(context, input->path, scene, error);
   return hl_scene_from_json(context, (const char *)input->bytes, input->length, NULL, input->title, scene,
                             error);
+}
+
+bool is_mesh_file(hl_context *context, const char *path) {
+  return hl_mesh_reads_name(path) && !hl_volume_reads_cells(context, path);
 }

@@ -1,18 +1,17 @@
 /* cli/render_meshes.c - meshes among the operands of `halflight render`: they are added to the scene of the
  * others, in colours of their own. */
 #include <halflight/compose.h>
-#include <halflight/grids.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "input.h"
 #include "render.h"
 
 void render_part_meshes(hl_context *context, char **operands, char **meshes, char **others) {
   size_t count = 0, left = 0;
   for (size_t n = 0; operands[n] != NULL; n++) {
-    if (hl_mesh_reads_name(operands[n]) && !hl_volume_reads_cells(context, operands[n]))
-      meshes[count++] = operands[n];
+    if (is_mesh_file(context, operands[n])) meshes[count++] = operands[n];
     else others[left++] = operands[n];
   }
   meshes[count] = others[left] = NULL;

@@ -199,7 +199,6 @@ int render_series(const cli_value *values, char **operands) {
   if (job == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
   memcpy(job->values, values, sizeof job->values);
   int exit_code = check_options(job);
-  if (exit_code == EXIT_CODE_OK) exit_code = series_find_files(job, operands);
   cli_host_options options = {.quiet = values[RENDER_QUIET].given,
                               .progress = true,
                               .subject = "",
@@ -209,6 +208,7 @@ int render_series(const cli_value *values, char **operands) {
                               .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice};
   if (exit_code == EXIT_CODE_OK) {
     exit_code = host_open(&options, &job->host);
+    if (exit_code == EXIT_CODE_OK) exit_code = series_find_files(job, operands);
     if (exit_code == EXIT_CODE_OK) exit_code = run(job);
     hl_scene_release(job->scene);
     host_close(&job->host);

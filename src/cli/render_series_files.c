@@ -78,7 +78,7 @@ static int add_pattern(series_job *job, const char *pattern) {
  * finds meshes beside volumes is refused: which of them belongs to which volume is not known. */
 static int part_meshes(series_job *job) {
   int meshes = 0;
-  for (int n = 0; n < job->count; n++) meshes += hl_mesh_reads_name(job->files[n]) != 0;
+  for (int n = 0; n < job->count; n++) meshes += is_mesh_file(job->host.context, job->files[n]);
   job->of_meshes = meshes > 0;
   if (meshes == 0 || meshes == job->count) return EXIT_CODE_OK;
   return fail(EXIT_CODE_USAGE,
@@ -90,7 +90,7 @@ int series_find_files(series_job *job, char **operands) {
   for (; operands[operand_count] != NULL && exit_code == EXIT_CODE_OK; operand_count++) {
     char *operand = operands[operand_count];
     if (is_pattern(operand)) exit_code = add_pattern(job, operand);
-    else if (hl_mesh_reads_name(operand)) job->meshes[job->mesh_count++] = operand;
+    else if (is_mesh_file(job->host.context, operand)) job->meshes[job->mesh_count++] = operand;
     else exit_code = add_file(job, operand);
   }
   if (job->mesh_count == operand_count) { /* no volume, no pattern: they are the series */
