@@ -7,7 +7,7 @@ const SIDES = { width: 112, height: 80 }; // pixels
 const STEP = 2; // voxels between sheets
 
 // The small pictures of all galleries are made in turn, by one lane of the channel: the viewer has one renderer for them, which ends with
-// the last one. Returns fetch(scene), as a channel's fetchFrame().
+// the last one. Returns a function of a scene, which asks as a channel's fetchFrame() does.
 export function smallPictures(channel) {
   let last = Promise.resolve();
   return (scene) => {
