@@ -68,6 +68,7 @@ static void forget_renderers(server_page *page) {
 void pages_end(server *s) {
   for (int p = 0; p < MOST_PAGES; p++) {
     forget_renderers(&s->pages[p]);
+    base_forget(&s->pages[p]);
     pthread_mutex_destroy(&s->pages[p].rendering);
   }
   pthread_mutex_destroy(&s->pages_lock);
@@ -90,6 +91,7 @@ static server_page *find_page(server *s, const char *name) {
 static void release_page(server *s, server_page *page) {
   if (page->renderer != NULL || page->quick != NULL) atomic_store(&s->released, true);
   forget_renderers(page);
+  base_forget(page);
   page->name[0] = '\0';
   page->last_use = 0; /* the next new page takes this place, not that of an idle one */
   page->leaving = false;
@@ -300,13 +302,23 @@ static hl_status make_frame(server *s, server_page *page, const frame_request *r
   return status;
 }
 
-void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer) {
-  if (refuse_closed(s, request->opened, answer)) return;
-  server_page *page = enter_page(s, request->page, request->number);
-  if (page == NULL) {
-    refuse_line(answer, 503, "too many pages render at once: close one");
-    return;
+/* The request with its scene whole; false: refused. *text is the caller's (free()), or null. */
+static bool complete_request(server *s, server_page *page, frame_request *request, char **text,
+                             server_answer *answer) {
+  *text = NULL;
+  if (request->base == 0) {
+    if (!is_lane(page)) base_keep(s, page, request);
+    return true;
   }
+  *text = base_changed(s, page, request, answer);
+  request->text = *text;
+  request->length = *text != NULL ? strlen(*text) : 0;
+  return *text != NULL;
+}
+
+/* The frame of a page that is entered. */
+static void answer_page(server *s, server_page *page, const frame_request *request, const film_request *film,
+                        server_answer *answer) {
   hl_error error = {0};
   pthread_mutex_lock(&page->rendering);
   current.page = page;
@@ -320,9 +332,22 @@ void answer_frame(server *s, const frame_request *request, const film_request *f
   }
   current.page = NULL;
   pthread_mutex_unlock(&page->rendering);
-  leave_page(s, page);
   if (status == HL_OK) answer->status = 200;
   else fail_frame(answer, status, &error);
+}
+
+void answer_frame(server *s, const frame_request *request, const film_request *film, server_answer *answer) {
+  if (refuse_closed(s, request->opened, answer)) return;
+  server_page *page = enter_page(s, request->page, request->number);
+  if (page == NULL) {
+    refuse_line(answer, 503, "too many pages render at once: close one");
+    return;
+  }
+  frame_request whole = *request;
+  char *text;
+  if (complete_request(s, page, &whole, &text, answer)) answer_page(s, page, &whole, film, answer);
+  free(text);
+  leave_page(s, page);
 }
 
 void cancel_frames(server *s, const char *name, unsigned long long number) {

@@ -57,6 +57,8 @@ typedef struct server_page {
   bool leaving;                      /* it is free when the last of them ends; under server.pages_lock */
   unsigned long long last_use;       /* under server.pages_lock */
   double last_seen;                  /* by server_seconds(); under server.pages_lock */
+  char *base; /* owned; the newest scene that came whole, or null; under server.pages_lock */
+  unsigned long long base_number; /* of its frame; under server.pages_lock */
 } server_page;
 
 /* A scene that is open. */
@@ -114,6 +116,8 @@ typedef struct frame_request {
   int metadata;       /* 1: a PNG carries its scene; 0: it does not */
   int scale_bar, legend; /* 1: drawn over a PNG of 8 bits */
   int moving; /* 1: a quick frame, of coarser volumes where the sheets are wide; 0: the scene as it is */
+  long long
+      base; /* the page's frame from whose scene the text tells the difference; 0: it is a whole scene */
   const char *text; /* the scene */
   size_t length;
 } frame_request;
@@ -173,6 +177,12 @@ void answer_open(server *s, const server_file *file, const char *title, server_a
 /* An answer that is an error line. */
 extern const char closed_line[]; /* of what is open no longer: status 410 */
 void refuse_line(server_answer *answer, unsigned status, const char *line);
+
+/* bases.c: see there. They take server.pages_lock, but for base_forget(), whose caller holds it. */
+void base_keep(server *s, server_page *page, const frame_request *request);
+void base_forget(server_page *page);
+/* The whole scene's text (free()); null: refused, status 409 where the page's base is another one. */
+char *base_changed(server *s, server_page *page, const frame_request *request, server_answer *answer);
 
 /* places.c */
 void answer_slice(server *s, const slice_request *request, server_answer *answer);

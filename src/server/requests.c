@@ -298,6 +298,7 @@ static frame_request read_query(struct MHD_Connection *connection, const request
                          .scale_bar = (int)query_number(connection, "scale_bar", 0, 1, 0),
                          .legend = (int)query_number(connection, "legend", 0, 1, 0),
                          .moving = (int)query_number(connection, "moving", 0, 1, 0),
+                         .base = query_number(connection, "base", 1, MOST_NUMBER, 0),
                          .text = r->body,
                          .length = r->length};
 }
@@ -317,12 +318,14 @@ static void post_frame(server *s, struct MHD_Connection *connection, const reque
                        server_answer *answer) {
   frame_request wanted = read_query(connection, r);
   if (names_page(&wanted) && is_format(wanted.format) && wanted.quality > 0 && wanted.metadata >= 0 &&
-      wanted.moving >= 0 && (wanted.depth == 8 || wanted.depth == 16) && overlay_fits(&wanted))
+      wanted.moving >= 0 && wanted.base >= 0 && (wanted.depth == 8 || wanted.depth == 16) &&
+      overlay_fits(&wanted))
     answer_frame(s, &wanted, NULL, answer);
   else
     answer_problem(answer, 400,
                    "a frame needs ?page=NAME&number=N&format=jpeg|png|exr|npy (&quality=10..100, "
-                   "&depth=8|16, &metadata=0|1, &moving=0|1; of a png with 8 bits &scale_bar=0|1, "
+                   "&depth=8|16, &metadata=0|1, &moving=0|1, "
+                   "&base=N; of a png with 8 bits &scale_bar=0|1, "
                    "&legend=0|1)\n");
 }
 

@@ -45,6 +45,33 @@ def hands_on_the_camera(browser):
     changes(browser, "frame everything", lambda: press(browser, "Show all") or browser.wait(f"{STAGE} === 'moving'"), "camera")
 
 
+def uploads(browser):
+    """While something moves, a frame sends what differs from the scene that the viewer holds: few bytes; where it holds none, the scene, and the picture is the same."""
+    x, y = center(browser, "#view")
+    rest(browser)
+    browser.run("""(() => { const asked = globalThis.fetch; globalThis.sent = [];
+      globalThis.fetch = (path, options) => { if (path.startsWith('frame?')) sent.push([path, new TextEncoder().encode(options.body).length]); return asked(path, options); }; })()""")
+    whole = len(browser.run("JSON.stringify(halflight.store.scene)"))
+    for name, act in (("camera", lambda: browser.drag([x - 120, y + 90], [x - 60, y + 110], steps=12)), ("wheel", lambda: browser.wheel(x - 120, y + 90, -60)),
+                      ("light", lambda: browser.drag((dot := center(browser, ".light-dot")), [dot[0] + 40, dot[1] + 20], steps=12)),
+                      ("exposure", lambda: set_control(browser, "Exposure", 0.5))):
+        browser.run("sent.length = 0")
+        act()
+        rest(browser)
+        moving = [size for path, size in browser.run("sent") if "moving=1" in path]
+        check(moving and max(moving) <= 600 < whole, f"{name}: {moving} bytes of a scene of {whole}")
+    page = browser.run("new URLSearchParams(sent.at(-1)[0].slice(6)).get('page')")
+    browser.run(f"sent.length = 0, fetch('leave?page={page}', {{ method: 'POST' }}).then(() => 0)")
+    browser.drag([x - 120, y + 90], [x - 60, y + 110])
+    equals_render(browser, "forgotten")
+    moving = [(size, "base=" in path) for path, size in browser.run("sent") if "moving=1" in path]
+    check(moving[0][0] <= 600 and moving[0][1] and moving[1][0] > 600 and not moving[1][1], f"the viewer has forgotten the scene: {moving}")
+    check(all(size <= 600 for size, _ in moving[2:]), f"and holds the one that came: {moving}")
+    expected = [problem for problem in browser.problems if "409" in problem]
+    check(len(expected) == 1, f"one refusal: {browser.problems}")
+    browser.problems.remove(expected[0])
+
+
 def fingers_on_the_camera(browser):
     x, y = center(browser, "#view")
     at = [x - 120, y + 90]
@@ -224,6 +251,7 @@ with tempfile.TemporaryDirectory() as folder:
         narrow_pages(browser)
         browser.resize(720, 420)
         browser.wait("halflight.store.scene.image.width === 380")
+        uploads(browser)
         hands_on_the_camera(browser)
         fingers_on_the_camera(browser)
         hands_on_the_light(browser)

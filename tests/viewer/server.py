@@ -36,6 +36,7 @@ def request(viewer, method, path, body=None, **headers):
 
 
 numbers = iter(range(1, 10**6))
+later = iter(range(100, 10**6))  # of a page whose first frames have numbers of their own
 
 
 def frame(viewer, scene, page="test", format="png", number=None, **more):
@@ -267,6 +268,38 @@ def quick_frames():
         check(request(viewer, "POST", "frame?page=a&number=1&format=png&moving=2", "{}")[0] == 400, "moving is 0 or 1")
 
 
+def differences(viewer, scene):
+    """A frame of a difference from the page's newest whole scene is the picture of the scene that it makes; other bases and malformed ones are refused."""
+    whole = small(scene, 64)
+    wanted = json.loads(json.dumps(whole))
+    wanted["camera"]["position"][0] += 1.25
+    wanted["image"].pop("exposure", None)
+    wanted["lights"] = wanted["lights"][:1]
+    gone = {"exposure": {"gone": 1}} if "exposure" in whole["image"] else {}
+    part = {"in": {"camera": {"in": {"position": {"in": {"0": {"to": wanted["camera"]["position"][0]}}}}},
+                   "lights": {"to": wanted["lights"]}, "image": {"in": gone}}}
+
+    def asked(part, base, number, page="base"):
+        return request(viewer, "POST", f"frame?page={page}&number={number}&format=png&base={base}", part if isinstance(part, str) else json.dumps(part))
+
+    check(asked(part, 1, 2)[0] == 409, "no scene was sent whole")
+    exact = frame(viewer, wanted, page="exact", number=1)[2]
+    check(frame(viewer, whole, page="base", number=5)[2] != exact, "another picture")
+    status, _, picture = asked(part, 5, 6)
+    check(status == 200 and picture == exact, f"the picture, byte for byte: {status} {picture[:99]}")
+    check(asked(part, 5, 7)[2] == exact, "the base stays as it was")
+    check(asked(part, 4, 8)[0] == 409 and asked(part, 5, 1, "other")[0] == 409, "the base of another frame, or of another page")
+    for wrong in ("", "{", "[]", "{}", '{"in": 1}', '{"in": {"camera": {}}}', '{"in": {"none": {"gone": 1}}}', '{"in": {"lights": {"in": {"99": {"to": 1}}}}}',
+                  '{"in": {"lights": {"in": {"": {"to": 1}}}}}', '{"in": {"lights": {"in": {"0": {"gone": 1}}}}}', '{"to": 1}', '{"to": {}, "to": {}}',
+                  '{"in": {"volumes": {"in": {"0": {"in": {"file": {"to": "/etc/passwd"}}}}}}}', '{"in":' * 9000):
+        status, _, line = asked(wrong, 5, next(later))
+        check(status == 400 and 5 < len(line) < 600, f"{wrong[:60]!r}: {status} {line[:99]}")
+    check(asked(part, 0, next(later))[0] == 400 and asked(part, -1, next(later))[0] == 400 and asked(part, "x", next(later))[0] == 400, "numbers that are none")
+    check(asked(part, 5, next(later))[2] == exact, "it still answers")
+    request(viewer, "POST", "leave?page=base", "")
+    check(asked(part, 5, next(later))[0] == 409, "a page that was closed has no scene")
+
+
 def many_pages(viewer, scene):
     """More pages than are kept: each gets its own camera's picture."""
     pictures = {}
@@ -350,6 +383,7 @@ with tempfile.TemporaryDirectory() as folder:
         no_other_file(viewer, scene)
         headers_protect(viewer)
         newer_frames_cancel(viewer, scene)
+        differences(viewer, scene)
         many_pages(viewer, scene)
         bad_clients(viewer, scene)
         ends_cleanly(viewer, scene)

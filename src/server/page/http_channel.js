@@ -15,18 +15,25 @@
 // - progress(): how far the frame under way is, { part, others }: part from 0 to 1, others: frames of other pages under way.
 
 import { Lost } from "./connection.js";
+import { difference } from "./link.js";
 
-export class Refused extends Error {}
+export class Refused extends Error {
+  constructor(line, status) {
+    super(line);
+    this.status = status;
+  }
+}
 
 const GONE = 410; // what the page had opened is open no longer
+const NO_BASE = 409; // the viewer does not hold the scene that a difference is from
 
 async function check(response) {
   if (response.ok) return response;
   if (response.status === 403) {
     const line = (await response.text()).trim();
-    throw line.includes("token") ? new Lost("The viewer runs anew, under another URL: open the one that it has printed in this tab, which keeps your work.") : new Refused(line);
+    throw line.includes("token") ? new Lost("The viewer runs anew, under another URL: open the one that it has printed in this tab, which keeps your work.") : new Refused(line, response.status);
   }
-  throw new Refused((await response.text()).trim() || `the viewer answered ${response.status}`);
+  throw new Refused((await response.text()).trim() || `the viewer answered ${response.status}`, response.status);
 }
 
 // "render;dur=12.5, encode;dur=3" as { render: 12.5, encode: 3 }, in milliseconds.
@@ -39,6 +46,7 @@ const numbered = (keys) => Object.fromEntries(keys.map((key, n) => [`key${n}`, k
 export class HttpChannel {
   #number = 0;
   #opened;
+  #base = { number: 0, scene: {} }; // the newest scene of this page that was sent whole, and its frame
   drawsOver = true; // fetchFrame() takes scaleBar and legend
   #page = crypto.getRandomValues(new Uint32Array(2)).reduce((name, n) => name + n.toString(36), "p");
 
@@ -106,9 +114,26 @@ export class HttpChannel {
   // scaleBar, legend: drawn over a PNG of 8 bits; it is refused where the scene's files do not tell a unit of length.
   async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "", scaleBar = false, legend = false } = {}) {
     const query = { page: this.#page + lane, number: ++this.#number, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving, scale_bar: +scaleBar, legend: +legend };
-    const response = await this.#ask("frame", query, { method: "POST", body: JSON.stringify(scene) });
+    const response = await (moving && lane === "" && this.#base.number > 0 ? this.#askByDifference(query, scene) : this.#askWhole(query, scene, lane));
     if (response.status === 204) return null;
     return { blob: await response.blob(), times: parseTimes(response.headers.get("Server-Timing")) };
+  }
+
+  #askWhole(query, scene, lane = "") {
+    const body = JSON.stringify(scene);
+    if (lane === "") this.#base = { number: query.number, scene: JSON.parse(body) };
+    return this.#ask("frame", query, { method: "POST", body });
+  }
+
+  // Sends what differs from the scene that the viewer holds; the scene itself where it holds another one, or none.
+  async #askByDifference(query, scene) {
+    const part = difference(this.#base.scene, JSON.parse(JSON.stringify(scene))) ?? { in: {} };
+    try {
+      return await this.#ask("frame", { ...query, base: this.#base.number }, { method: "POST", body: JSON.stringify(part) });
+    } catch (error) {
+      if (error.status !== NO_BASE) throw error;
+    }
+    return this.#askWhole({ ...query, number: ++this.#number }, scene);
   }
 
   // What can be opened in a folder below the one that the viewer was started in: { at, entries }.

@@ -9,7 +9,7 @@ const MOST_BYTES = 1 << 20; // of the text that a link unfolds to
 
 // A difference: { to: value }, { gone: 1 }, or { in: { key: difference } } of an object or an array of the same length; undefined: none.
 export function difference(from, to) {
-  if (JSON.stringify(from) === JSON.stringify(to)) return undefined;
+  if (from === to || JSON.stringify(from) === JSON.stringify(to)) return undefined;
   const both = (test) => test(from) && test(to), isObject = (x) => x !== null && typeof x === "object" && !Array.isArray(x);
   if (!both(isObject) && !(both(Array.isArray) && from.length === to.length && from.length > 0)) return { to };
   const keys = [...new Set([...Object.keys(from), ...Object.keys(to)])];
