@@ -10,22 +10,42 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <halflight/formats.h>
+
 #include "parts.h"
 #include "start/start.h"
 
 enum { MOST_ENTRIES = 2000 };
 
-static const char *const extensions[] = {
-    ".json", ".nrrd", ".nhdr", ".nii", ".nii.gz", ".mha", ".mhd",  ".vti", ".vtk",    ".npy", ".mrc",
-    ".map",  ".ccp4", ".rec",  ".tif", ".tiff",   ".dcm", ".nvdb", ".raw", ".raw.gz", ".zip", NULL};
+/* Whether a name ends with one of these endings, which blanks separate, after at least one other character.
+ * *length: the name's, then without the ending. */
+static bool ends_with_one(const char *name, size_t *length, const char *endings) {
+  while (*(endings += strspn(endings, " ")) != '\0') {
+    size_t end = strcspn(endings, " ");
+    if (*length > end && strncasecmp(name + *length - end, endings, end) == 0) {
+      *length -= end;
+      return true;
+    }
+    endings += end;
+  }
+  return false;
+}
+
+/* Whether a name ends as files do that one of the formats reads. get: hl_volume_get_format() or one like it.
+ */
+static bool ends_as_read(const char *name, size_t *length, hl_status (*get)(size_t, hl_file_format *)) {
+  hl_file_format format = {.struct_size = sizeof format};
+  for (size_t f = 0; get(f, &format) == HL_OK; f++)
+    if (format.reads && ends_with_one(name, length, format.read_endings)) return true;
+  return false;
+}
 
 bool folder_can_open(const char *name) {
   size_t length = strlen(name);
-  for (int e = 0; extensions[e] != NULL; e++) {
-    size_t end = strlen(extensions[e]);
-    if (length > end && strcasecmp(name + length - end, extensions[e]) == 0) return true;
-  }
-  return false;
+  if (ends_with_one(name, &length, ".json .zip") || ends_as_read(name, &length, hl_volume_get_format))
+    return true;
+  return ends_as_read(name, &length, hl_volume_get_packing) &&
+         ends_as_read(name, &length, hl_volume_get_format);
 }
 
 static bool is_folder(const char *path) {

@@ -70,6 +70,22 @@ def folders_are_volumes(viewer):
         check(request(viewer, "POST", "open", file=folder)[0] in (400, 403), f"the folder {folder} is no volume")
 
 
+def damaged(viewer, volume):
+    """What is wrong with a dropped file is told under the name that it was dropped by, in one line."""
+    subprocess.run([PROGRAM, "convert", "first.nrrd", "first.nii.gz", "--quiet"], check=True)
+    with open("first.nii.gz", "rb") as file:
+        packed = file.read()
+    garbage = ["nrrd", "nii", "nii.gz", "mha", "mrc", "npy", "tif", "dcm", "vti", "vtk", "vtu", "nvdb", "mgz", "csv", "raw", "json", "zip", "nrrd.gz"]
+    files = [(f"my scan.{ending}", content) for ending in garbage for content in (b"nonsense" * 9, b"")]
+    files += [("cut.nrrd", volume[:len(volume) // 2]), ("cut.nrrd", volume[:40]), ("cut.nii.gz", packed[:len(packed) // 2]), ("cut.nii.gz", packed[:20]), ("cut_9x9x9_uint8.raw", b"abc"),
+              ("header.nhdr", b"NRRD0004\ntype: uchar\ndimension: 3\nsizes: 4 4 4\nencoding: raw\ndata file: voxels.raw\n\n"),
+              ("scene.json", b'{"halflight": 1, "volumes": [{"file": "../first.nrrd"}]}'), ("scene.json", b'{"halflight": 1, "volumes": [{"file": "/etc/passwd"}]}')]
+    for name, content in files:
+        status, line = request(viewer, "POST", "upload", content, name=name)
+        check(status == 400 and line.startswith(name.encode()) and line.strip().count(b"\n") == 0, f"{name}: {status} {line[:200]}")
+        check(b"halflight-view" not in line and os.environ["TMPDIR"].encode() not in line, f"{name}: a temporary name: {line[:200]}")
+
+
 def uploads_are_checked(viewer):
     with open("first.nrrd", "rb") as file:
         volume = file.read()
@@ -86,6 +102,7 @@ def uploads_are_checked(viewer):
     for name in ("", "a.txt", "../a.nrrd", "a/b.nrrd", ".nrrd", ".hidden.nrrd", "x" * 300 + ".nrrd"):
         check(request(viewer, "POST", "upload", volume, name=name)[0] == 400, f"the name {name[:20]!r} is refused")
     check(request(viewer, "POST", "upload", b"nonsense", name="a.nrrd")[0] == 400, "a file that is none")
+    damaged(viewer, volume)
     left = [name for name in os.listdir(os.environ["TMPDIR"]) if name.startswith("halflight-view")]
     check(left == [], f"nothing is left of them: {left}")
     connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=60)

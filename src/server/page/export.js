@@ -3,7 +3,8 @@
 import { reshaped } from "./camera.js";
 import { button, isActive, make, row, section, select } from "./controls.js";
 
-export const stem = (title) => title.replace(/\.(gz|json|nrrd|nhdr|nii|mha|mhd|vti|vtk|raw|npy|png)$/gi, "").replace(/\.nii$/i, "") || "picture";
+// A title without the endings of a file's name: those of a packing and of a format.
+export const stem = (title) => title.replace(/(?<=.)\.(gz|bz2|xz|zst)$/i, "").replace(/(?<=.)\.[a-z][a-z0-9]*$/i, "") || "picture";
 
 // Shell words in single quotes where they need any.
 export const quoted = (word) => (/^[\w./+:=-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
