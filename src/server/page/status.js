@@ -1,5 +1,7 @@
 // The line below the picture: whether it shows what the scene is now, how far the next picture is, and what others are waited for.
 
+import { make } from "./controls.js";
+
 const ASK_AFTER = 600, ASK_EVERY = 400; // milliseconds of a picture under way, for how far it is
 const STAGES = { moving: "moving", settled: "refining", refining: "refining", final: "final", waiting: "waiting" };
 
@@ -28,7 +30,8 @@ export function statusLine(find, channel) {
     stage.dataset.stage = name;
     if (frame.error || !(frame.bytes > 0)) return;
     const seconds = frame.milliseconds < 1000 ? `${Math.round(frame.milliseconds)} ms` : `${(frame.milliseconds / 1000).toFixed(1)} s`;
-    find("statistics").textContent = `${frame.width} × ${frame.height} · step ${+frame.spacing.toPrecision(2)} voxels · ${seconds} · ${Math.ceil(frame.bytes / 1024)} KiB`;
+    const told = [`${frame.width} × ${frame.height}`, `step ${+frame.spacing.toPrecision(2)} voxels`, seconds, `${Math.ceil(frame.bytes / 1024)} KiB`];
+    find("statistics").replaceChildren(...told.map((part) => make("span", {}, part)));
   }
   return { show, end: () => { number++; clearTimeout(timer); } };
 }
