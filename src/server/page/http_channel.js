@@ -46,7 +46,8 @@ const numbered = (keys) => Object.fromEntries(keys.map((key, n) => [`key${n}`, k
 export class HttpChannel {
   #number = 0;
   #opened;
-  #base = { number: 0, scene: {} }; // the newest scene of this page that was sent whole, and its frame
+  #base = null; // { number, scene }: the newest scene of this page that was sent whole, and its frame; null: the viewer may hold none, or not yet
+  #newest = 0; // the frame of that scene, which may be under way
   drawsOver = true; // fetchFrame() takes scaleBar and legend
   #page = crypto.getRandomValues(new Uint32Array(2)).reduce((name, n) => name + n.toString(36), "p");
 
@@ -67,10 +68,12 @@ export class HttpChannel {
     try {
       response = await fetch(words.size > 0 ? `${path}?${words}` : path, options);
     } catch {
+      this.#base = null;
       throw new Lost("The viewer does not answer: it has ended, or the network is lost.");
     }
     if (response.status === GONE && again && this.#source !== null) {
       this.#opened = (await this.open(this.#source)).opened;
+      if ("base" in query) throw new Refused("the viewer holds no scene of this page", NO_BASE);
       return this.#ask(path, query, options, false);
     }
     return check(response);
@@ -114,15 +117,17 @@ export class HttpChannel {
   // scaleBar, legend: drawn over a PNG of 8 bits; it is refused where the scene's files do not tell a unit of length.
   async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "", scaleBar = false, legend = false } = {}) {
     const query = { page: this.#page + lane, number: ++this.#number, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving, scale_bar: +scaleBar, legend: +legend };
-    const response = await (moving && lane === "" && this.#base.number > 0 ? this.#askByDifference(query, scene) : this.#askWhole(query, scene, lane));
+    const response = await (moving && lane === "" && this.#base !== null ? this.#askByDifference(query, scene) : this.#askWhole(query, scene, lane));
     if (response.status === 204) return null;
     return { blob: await response.blob(), times: parseTimes(response.headers.get("Server-Timing")) };
   }
 
-  #askWhole(query, scene, lane = "") {
+  async #askWhole(query, scene, lane = "") {
     const body = JSON.stringify(scene);
-    if (lane === "") this.#base = { number: query.number, scene: JSON.parse(body) };
-    return this.#ask("frame", query, { method: "POST", body });
+    if (lane === "") [this.#base, this.#newest] = [null, query.number];
+    const response = await this.#ask("frame", query, { method: "POST", body });
+    if (lane === "" && this.#newest === query.number) this.#base = { number: query.number, scene: JSON.parse(body) };
+    return response;
   }
 
   // Sends what differs from the scene that the viewer holds; the scene itself where it holds another one, or none.
