@@ -344,8 +344,7 @@ static void test_same_bytes(void **state) {
 /* ---- places without data ---- */
 
 static double with_holes(uint64_t seed, int level, const ptrdiff_t point[3]) {
-  (void)level;
-  ptrdiff_t place = (point[0] << level) + (point[1] << level) * 2 + (point[2] << level) * 3;
+  ptrdiff_t place = (point[0] + 2 * point[1] + 3 * point[2]) * ((ptrdiff_t)1 << level);
   return place % 64 < 24 ? (double)NAN : octree_random_value(seed, level, point);
 }
 
