@@ -58,47 +58,24 @@ typedef struct vtp_file {
   bool in_piece; /* whether the last piece is open, so that arrays belong to it */
 } vtp_file;
 
-/* Makes room for one more element. */
-static hl_status grow(const vtp_file *file, void **list, size_t count, size_t *room, size_t size,
-                      hl_error *error) {
-  if (count < *room) return HL_OK;
-  size_t wanted = count > 8 ? 2 * count : 16;
-  void *grown = hl_reallocate(file->context, *list, wanted, size);
-  if (grown == NULL) return hl_fail_memory(error, wanted * size, file->xml.stream->path);
-  *list = grown;
-  *room = wanted;
-  return HL_OK;
-}
-
-static hl_status read_count(vtp_file *file, const hl_xml_tag *tag, const char *name, size_t *count,
-                            hl_error *error) {
-  const char *value = hl_xml_attribute(tag, name);
-  if (value == NULL || hl_text_sizes(value, count, 1) == 1) return HL_OK;
-  return hl_vtk_xml_refuse(&file->xml, HL_ERROR_INPUT, name, value, error);
-}
-
 /* Reads the tag of a piece. Pieces without points are ignored: programs that write in parallel leave them. */
 static hl_status read_piece_tag(vtp_file *file, const hl_xml_tag *tag, hl_error *error) {
   vtp_piece piece = {.data = {.context = file->context, .path = file->xml.stream->path},
                      .first_array = file->array_count};
-  hl_status status = read_count(file, tag, "NumberOfPoints", &piece.data.point_count, error);
+  hl_status status = hl_vtk_xml_count(&file->xml, tag, "NumberOfPoints", &piece.data.point_count, error);
   file->in_piece = piece.data.point_count > 0;
   for (int kind = 0; status == HL_OK && kind < CELL_KINDS; kind++)
-    status = read_count(file, tag, count_names[kind], &piece.data.cells[kind].count, error);
+    status = hl_vtk_xml_count(&file->xml, tag, count_names[kind], &piece.data.cells[kind].count, error);
   if (status == HL_OK && file->is_grid)
-    status = read_count(file, tag, "NumberOfCells", &piece.grid.count, error);
+    status = hl_vtk_xml_count(&file->xml, tag, "NumberOfCells", &piece.grid.count, error);
   if (status != HL_OK || !file->in_piece) return status;
   if (file->piece_count == MOST_PIECES)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: has more than %d pieces: save it as one",
                    piece.data.path, MOST_PIECES);
-  status = grow(file, (void **)&file->pieces, file->piece_count, &file->piece_room, sizeof piece, error);
+  status = hl_vtk_xml_grow(file->context, &file->xml, (void **)&file->pieces, file->piece_count,
+                           &file->piece_room, sizeof piece, error);
   if (status == HL_OK) file->pieces[file->piece_count++] = piece;
   return status;
-}
-
-static void copy_name(char to[HL_VTK_NAME_BYTES], const char *name) {
-  to[0] = 0;
-  if (name != NULL && strlen(name) < HL_VTK_NAME_BYTES) strcpy(to, name);
 }
 
 static hl_status read_array_tag(vtp_file *file, const hl_xml_tag *tag, hl_error *error) {
@@ -107,11 +84,13 @@ static hl_status read_array_tag(vtp_file *file, const hl_xml_tag *tag, hl_error 
   vtp_array made = {.section = file->section, .components = 1};
   if (piece->array_count == MOST_ARRAYS) return HL_OK;
   hl_status status = hl_vtk_xml_array_tag(&file->xml, tag, &made.array, error);
-  if (status == HL_OK) status = read_count(file, tag, "NumberOfComponents", &made.components, error);
   if (status == HL_OK)
-    status = grow(file, (void **)&file->arrays, file->array_count, &file->array_room, sizeof made, error);
+    status = hl_vtk_xml_count(&file->xml, tag, "NumberOfComponents", &made.components, error);
+  if (status == HL_OK)
+    status = hl_vtk_xml_grow(file->context, &file->xml, (void **)&file->arrays, file->array_count,
+                             &file->array_room, sizeof made, error);
   if (status != HL_OK) return status;
-  copy_name(made.name, hl_xml_attribute(tag, "Name"));
+  hl_vtk_xml_copy_name(made.name, hl_xml_attribute(tag, "Name"));
   made.active = made.name[0] != 0 && strcmp(made.name, file->active_scalars) == 0;
   if (made.name[0] != 0 && strcmp(made.name, file->active_normals) == 0) strcpy(made.name, "Normals");
   file->arrays[file->array_count++] = made;
@@ -123,12 +102,13 @@ static void begin_section(vtp_file *file, const hl_xml_tag *tag) {
   for (int n = 0; n < SECTION_NONE; n++) {
     if (strcmp(tag->name, section_names[n]) != 0) continue;
     file->section = tag->is_end ? SECTION_NONE : (section)n;
-    copy_name(file->active_scalars, hl_xml_attribute(tag, "Scalars"));
-    copy_name(file->active_normals, hl_xml_attribute(tag, "Normals"));
+    hl_vtk_xml_copy_name(file->active_scalars, hl_xml_attribute(tag, "Scalars"));
+    hl_vtk_xml_copy_name(file->active_normals, hl_xml_attribute(tag, "Normals"));
   }
 }
 
-static hl_status read_tag(vtp_file *file, const hl_xml_tag *tag, hl_error *error) {
+static hl_status read_tag(void *data, const hl_xml_tag *tag, hl_error *error) {
+  vtp_file *file = data;
   if (!tag->is_start) {
     for (int n = 0; n < SECTION_NONE; n++)
       if (strcmp(tag->name, section_names[n]) == 0) file->section = SECTION_NONE;
@@ -146,17 +126,6 @@ static hl_status read_tag(vtp_file *file, const hl_xml_tag *tag, hl_error *error
   if (strcmp(tag->name, "DataArray") == 0) return read_array_tag(file, tag, error);
   if (strcmp(tag->name, "AppendedData") == 0) return hl_vtk_xml_appended_tag(&file->xml, tag, error);
   begin_section(file, tag);
-  return HL_OK;
-}
-
-static hl_status read_tags(vtp_file *file, hl_error *error) {
-  hl_xml_tag tag;
-  bool ended = false;
-  while (!ended && file->xml.appended == 0) {
-    hl_status status = hl_xml_next_tag(file->xml.stream, &tag, &ended, error);
-    if (status == HL_OK && !ended) status = read_tag(file, &tag, error);
-    if (status != HL_OK) return status;
-  }
   return HL_OK;
 }
 
@@ -311,7 +280,7 @@ hl_status hl_mesh_read_vtp(mesh_text text, mesh_parts *parts, hl_error *error) {
   polydata whole = {.context = parts->context, .path = parts->path};
   hl_status status = hl_stream_open_memory(parts->context, parts->path, text.bytes, text.length,
                                            &file.xml.stream, error);
-  if (status == HL_OK) status = read_tags(&file, error);
+  if (status == HL_OK) status = hl_vtk_xml_read_tags(&file.xml, read_tag, &file, error);
   if (status == HL_OK) status = read_pieces(&file, &whole, error);
   if (status == HL_OK) status = hl_polydata_to_parts(&whole, parts, error);
   hl_polydata_release(&whole);

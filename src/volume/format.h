@@ -122,6 +122,9 @@ typedef struct hl_format {
                            hl_error *error);
 } hl_format;
 
+/* All formats, in the order in which a file is offered to them (formats.h); null past the last. */
+extern const hl_format *const hl_formats[];
+
 /* A format's name of a voxel type. name may list alternatives, as in hl_text_is_one_of(). */
 typedef struct hl_named_type {
   const char *name;

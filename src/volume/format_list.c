@@ -11,16 +11,16 @@
 HL_FORMATS
 #undef HL_FORMAT
 
-static const hl_format *const formats[] = {
+const hl_format *const hl_formats[] = {
 #define HL_FORMAT(name) &hl_format_##name,
     HL_FORMATS
 #undef HL_FORMAT
-};
+        NULL};
+enum { FORMATS = sizeof hl_formats / sizeof *hl_formats - 1 };
 
 hl_status hl_volume_get_format(size_t index, hl_file_format *format) {
-  if (format == NULL || format->struct_size != sizeof *format || index >= sizeof formats / sizeof *formats)
-    return HL_ERROR_ARGUMENT;
-  const hl_format *f = formats[index];
+  if (format == NULL || format->struct_size != sizeof *format || index >= FORMATS) return HL_ERROR_ARGUMENT;
+  const hl_format *f = hl_formats[index];
   *format = (hl_file_format){.struct_size = sizeof *format,
                              .name = f->title != NULL ? f->title : f->name,
                              .missing = f->missing != NULL ? f->missing() : NULL};

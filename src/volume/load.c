@@ -10,33 +10,21 @@
 #include "volume/bundle_zip.h"
 #include "volume/decoders.h"
 #include "volume/format.h"
-#include "volume/formats.h"
 #include "volume/text.h"
-
-#define HL_FORMAT(name) extern const hl_format hl_format_##name;
-HL_FORMATS
-#undef HL_FORMAT
-
-static const hl_format *const formats[] = {
-#define HL_FORMAT(name) &hl_format_##name,
-    HL_FORMATS
-#undef HL_FORMAT
-};
-enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
 
 static bool begins(const unsigned char *bytes, size_t length, const char *mark, size_t mark_length) {
   return length >= mark_length && memcmp(bytes, mark, mark_length) == 0;
 }
 
 static const hl_format *by_content(const unsigned char *bytes, size_t length) {
-  for (int n = 0; n < FORMAT_COUNT; n++)
-    if (formats[n]->has_content != NULL && formats[n]->has_content(bytes, length)) return formats[n];
+  for (int n = 0; hl_formats[n] != NULL; n++)
+    if (hl_formats[n]->has_content != NULL && hl_formats[n]->has_content(bytes, length)) return hl_formats[n];
   return NULL;
 }
 
 static const hl_format *by_fit(const hl_stream *stream) {
-  for (int n = 0; n < FORMAT_COUNT; n++)
-    if (formats[n]->fits != NULL && formats[n]->fits(stream)) return formats[n];
+  for (int n = 0; hl_formats[n] != NULL; n++)
+    if (hl_formats[n]->fits != NULL && hl_formats[n]->fits(stream)) return hl_formats[n];
   return NULL;
 }
 
@@ -44,10 +32,10 @@ static const hl_format *by_fit(const hl_stream *stream) {
 static hl_status by_name(hl_stream **stream, const hl_format **format, hl_error *error) {
   bool claimed = false;
   hl_status status = HL_OK;
-  for (int n = 0; n < FORMAT_COUNT && status == HL_OK && !claimed; n++) {
-    if (formats[n]->claim_name == NULL) continue;
-    status = formats[n]->claim_name(stream, &claimed, error);
-    if (claimed) *format = formats[n];
+  for (int n = 0; hl_formats[n] != NULL && status == HL_OK && !claimed; n++) {
+    if (hl_formats[n]->claim_name == NULL) continue;
+    status = hl_formats[n]->claim_name(stream, &claimed, error);
+    if (claimed) *format = hl_formats[n];
   }
   return status;
 }
@@ -105,9 +93,9 @@ static const char *known_but_unsupported(const unsigned char *bytes, size_t leng
 
 static void list_formats(char *text, size_t size) {
   size_t used = 0;
-  for (int n = 0; n < FORMAT_COUNT && used < size; n++)
-    if (formats[n]->name != NULL)
-      used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", formats[n]->name);
+  for (int n = 0; hl_formats[n] != NULL && used < size; n++)
+    if (hl_formats[n]->name != NULL)
+      used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", hl_formats[n]->name);
 }
 
 static bool is_mesh_name(const char *path) {
@@ -128,11 +116,11 @@ static hl_status fail_unknown(const hl_stream *stream, const unsigned char *byte
   if (is_mesh_name(path))
     return hl_fail(error, HL_ERROR_UNSUPPORTED,
                    "%s: a mesh, not a volume: give it to `halflight render` beside a volume, or alone", path);
-  for (int n = 0; n < FORMAT_COUNT; n++)
-    for (int ending = 0; ending < HL_FORMAT_ENDINGS && formats[n]->endings[ending] != NULL; ending++)
-      if (hl_text_ends(path, formats[n]->endings[ending]))
+  for (int n = 0; hl_formats[n] != NULL; n++)
+    for (int ending = 0; ending < HL_FORMAT_ENDINGS && hl_formats[n]->endings[ending] != NULL; ending++)
+      if (hl_text_ends(path, hl_formats[n]->endings[ending]))
         return hl_fail(error, HL_ERROR_INPUT, "%s: the file does not begin with %s, as %s files do", path,
-                       formats[n]->beginning, formats[n]->endings[ending]);
+                       hl_formats[n]->beginning, hl_formats[n]->endings[ending]);
   char known[400] = "";
   list_formats(known, sizeof known);
   return hl_fail(error, HL_ERROR_INPUT,
@@ -183,9 +171,9 @@ static hl_status load_bundle(hl_bundle *bundle, hl_load_request *request, hl_vol
                              hl_error *error) {
   bool claimed = false;
   hl_status status = HL_OK;
-  for (int n = 0; n < FORMAT_COUNT && status == HL_OK && !claimed; n++)
-    if (formats[n]->load_bundle != NULL)
-      status = formats[n]->load_bundle(bundle, request, &claimed, volume, error);
+  for (int n = 0; hl_formats[n] != NULL && status == HL_OK && !claimed; n++)
+    if (hl_formats[n]->load_bundle != NULL)
+      status = hl_formats[n]->load_bundle(bundle, request, &claimed, volume, error);
   if (status != HL_OK || claimed) return status;
   const hl_bundle_entry *only = bundle->is_archive ? only_file(bundle) : NULL;
   if (only != NULL) return load_packed(bundle, only, request, volume, error);

@@ -88,7 +88,8 @@ static hl_status read_box_tag(amr_list *list, const hl_xml_tag *tag, hl_error *e
   return HL_OK;
 }
 
-static hl_status read_tag(amr_list *list, const hl_xml_tag *tag, hl_error *error) {
+static hl_status read_tag(void *data, const hl_xml_tag *tag, hl_error *error) {
+  amr_list *list = data;
   if (strcmp(tag->name, "Block") == 0 && !tag->is_start) list->level = -1;
   if (!tag->is_start) return HL_OK;
   if (strcmp(tag->name, "VTKFile") == 0) {
@@ -105,13 +106,7 @@ static hl_status read_tag(amr_list *list, const hl_xml_tag *tag, hl_error *error
 }
 
 static hl_status read_tags(amr_list *list, hl_error *error) {
-  hl_xml_tag tag;
-  bool ended = false;
-  hl_status status = HL_OK;
-  while (status == HL_OK && !ended) {
-    status = hl_xml_next_tag(list->xml.stream, &tag, &ended, error);
-    if (status == HL_OK && !ended) status = read_tag(list, &tag, error);
-  }
+  hl_status status = hl_vtk_xml_read_tags(&list->xml, read_tag, list, error);
   if (status == HL_OK && list->box_count == 0)
     status = hl_fail(error, HL_ERROR_INPUT, "%s: lists no box with a file", list->xml.stream->path);
   return status;
@@ -228,14 +223,8 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
 }
 
 static bool has_content(const unsigned char *bytes, size_t length) {
-  static const char *const types[] = {"type=\"vtkOverlappingAMR\"", "type=\"vtkHierarchicalBoxDataSet\""};
-  if (!hl_vtk_xml_has_content(bytes, length)) return false;
-  for (size_t n = 0; n < 2; n++) {
-    size_t mark = strlen(types[n]);
-    for (size_t at = 0; at + mark <= length; at++)
-      if (memcmp(bytes + at, types[n], mark) == 0) return true;
-  }
-  return false;
+  static const char *const types[] = {"vtkOverlappingAMR", "vtkHierarchicalBoxDataSet"};
+  return hl_vtk_xml_is_of(bytes, length, types, 2);
 }
 
 const hl_format hl_format_vthb = {

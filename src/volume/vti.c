@@ -158,7 +158,8 @@ static hl_status read_array_tag(vti_header *header, const hl_xml_tag *tag, hl_er
   return HL_OK;
 }
 
-static hl_status read_tag(vti_header *header, const hl_xml_tag *tag, hl_error *error) {
+static hl_status read_tag(void *data, const hl_xml_tag *tag, hl_error *error) {
+  vti_header *header = data;
   if (!tag->is_start) {
     if (strcmp(tag->name, "PointData") == 0 || strcmp(tag->name, "CellData") == 0 ||
         strcmp(tag->name, "Coordinates") == 0)
@@ -182,17 +183,6 @@ static hl_status read_tag(vti_header *header, const hl_xml_tag *tag, hl_error *e
   if (strcmp(tag->name, "PointData") == 0) begin_section(header, tag, SECTION_POINTS);
   if (strcmp(tag->name, "CellData") == 0) begin_section(header, tag, SECTION_CELLS);
   if (strcmp(tag->name, "Coordinates") == 0) begin_section(header, tag, SECTION_COORDINATES);
-  return HL_OK;
-}
-
-static hl_status read_tags(vti_header *header, hl_error *error) {
-  hl_xml_tag tag;
-  bool ended = false;
-  while (!ended && header->xml.appended == 0) {
-    hl_status status = hl_xml_next_tag(header->xml.stream, &tag, &ended, error);
-    if (status == HL_OK && !ended) status = read_tag(header, &tag, error);
-    if (status != HL_OK) return status;
-  }
   return HL_OK;
 }
 
@@ -485,7 +475,7 @@ static hl_status load_image(hl_stream **stream, hl_load_request *request, bool n
                        .active_points = -1,
                        .active_cells = -1,
                        .request = request};
-  hl_status status = read_tags(&header, error);
+  hl_status status = hl_vtk_xml_read_tags(&header.xml, read_tag, &header, error);
   if (status == HL_OK) status = finish_pieces(&header, error);
   if (status == HL_OK) status = read_image(stream, &header, nested, volume, error);
   for (size_t n = 0; n < header.piece_count; n++) hl_release(request->context, header.pieces[n].source);

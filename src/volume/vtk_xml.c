@@ -1,8 +1,10 @@
 /* volume/vtk_xml.c - shared by the readers of all of VTK's XML files. */
 #include "volume/vtk_xml.h"
 
+#include <stdio.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "volume/decoders.h"
 #include "volume/format.h"
 #include "volume/text.h"
@@ -12,6 +14,51 @@ bool hl_vtk_xml_has_content(const unsigned char *bytes, size_t length) {
   while (n < length && hl_is_space((char)bytes[n])) n++;
   return (length - n >= 5 && memcmp(bytes + n, "<?xml", 5) == 0) ||
          (length - n >= 8 && memcmp(bytes + n, "<VTKFile", 8) == 0);
+}
+
+bool hl_vtk_xml_is_of(const unsigned char *bytes, size_t length, const char *const types[], size_t count) {
+  char mark[HL_VTK_NAME_BYTES];
+  if (!hl_vtk_xml_has_content(bytes, length)) return false;
+  for (size_t n = 0; n < count; n++) {
+    size_t mark_length = (size_t)snprintf(mark, sizeof mark, "type=\"%s\"", types[n]);
+    for (size_t at = 0; at + mark_length <= length; at++)
+      if (memcmp(bytes + at, mark, mark_length) == 0) return true;
+  }
+  return false;
+}
+
+hl_status hl_vtk_xml_read_tags(hl_vtk_xml *xml, hl_vtk_xml_tag_fn *read_tag, void *data, hl_error *error) {
+  hl_xml_tag tag;
+  bool ended = false;
+  while (!ended && xml->appended == 0) {
+    hl_status status = hl_xml_next_tag(xml->stream, &tag, &ended, error);
+    if (status == HL_OK && !ended) status = read_tag(data, &tag, error);
+    if (status != HL_OK) return status;
+  }
+  return HL_OK;
+}
+
+hl_status hl_vtk_xml_count(const hl_vtk_xml *xml, const hl_xml_tag *tag, const char *name, size_t *count,
+                           hl_error *error) {
+  const char *value = hl_xml_attribute(tag, name);
+  if (value == NULL || hl_text_sizes(value, count, 1) == 1) return HL_OK;
+  return hl_vtk_xml_refuse(xml, HL_ERROR_INPUT, name, value, error);
+}
+
+void hl_vtk_xml_copy_name(char to[HL_VTK_NAME_BYTES], const char *name) {
+  to[0] = 0;
+  if (name != NULL && strlen(name) < HL_VTK_NAME_BYTES) strcpy(to, name);
+}
+
+hl_status hl_vtk_xml_grow(hl_context *context, const hl_vtk_xml *xml, void **list, size_t count, size_t *room,
+                          size_t size, hl_error *error) {
+  if (count < *room) return HL_OK;
+  size_t wanted = 2 * count + 16;
+  void *grown = hl_reallocate(context, *list, wanted, size);
+  if (grown == NULL) return hl_fail_memory(error, wanted * size, xml->stream->path);
+  *list = grown;
+  *room = wanted;
+  return HL_OK;
 }
 
 hl_status hl_vtk_xml_refuse(const hl_vtk_xml *xml, hl_status code, const char *what, const char *value,

@@ -32,6 +32,25 @@ typedef struct hl_vtk_array {
 /* Whether a file that starts with these bytes is an XML file, VTK's or any other. */
 bool hl_vtk_xml_has_content(const unsigned char *bytes, size_t length);
 
+/* Whether a file that starts with these bytes is an XML file that names one of VTK's types there. types:
+ * [count], as "ImageData". */
+bool hl_vtk_xml_is_of(const unsigned char *bytes, size_t length, const char *const types[], size_t count);
+
+/* Reads the tags up to the appended data or to the file's end, and hands each to the function. */
+typedef hl_status hl_vtk_xml_tag_fn(void *data, const hl_xml_tag *tag, hl_error *error);
+hl_status hl_vtk_xml_read_tags(hl_vtk_xml *xml, hl_vtk_xml_tag_fn *read_tag, void *data, hl_error *error);
+
+/* Reads an attribute that is a number of things; without the attribute *count stays. */
+hl_status hl_vtk_xml_count(const hl_vtk_xml *xml, const hl_xml_tag *tag, const char *name, size_t *count,
+                           hl_error *error);
+
+/* Copies a name; a name that is null or too long becomes an empty one. */
+void hl_vtk_xml_copy_name(char to[HL_VTK_NAME_BYTES], const char *name);
+
+/* Makes room for one more element of a list of `count`. *list: owned, [*room] elements of `size` bytes. */
+hl_status hl_vtk_xml_grow(hl_context *context, const hl_vtk_xml *xml, void **list, size_t count, size_t *room,
+                          size_t size, hl_error *error);
+
 /* Fails for a value that is impossible or, with HL_ERROR_UNSUPPORTED, not read. */
 hl_status hl_vtk_xml_refuse(const hl_vtk_xml *xml, hl_status code, const char *what, const char *value,
                             hl_error *error);

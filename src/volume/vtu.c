@@ -52,25 +52,7 @@ typedef struct grid_file {
   bool is_curvilinear, in_piece;
 } grid_file;
 
-static hl_status grow(const grid_file *file, void **list, size_t count, size_t *room, size_t size,
-                      hl_error *error) {
-  if (count < *room) return HL_OK;
-  size_t wanted = 2 * count + 16;
-  void *grown = hl_reallocate(file->request->context, *list, wanted, size);
-  if (grown == NULL) return hl_fail_memory(error, wanted * size, file->xml.stream->path);
-  *list = grown;
-  *room = wanted;
-  return HL_OK;
-}
-
 /* ---- tags ---- */
-
-static hl_status read_count(const grid_file *file, const hl_xml_tag *tag, const char *name, size_t *count,
-                            hl_error *error) {
-  const char *value = hl_xml_attribute(tag, name);
-  if (value == NULL || hl_text_sizes(value, count, 1) == 1) return HL_OK;
-  return hl_vtk_xml_refuse(&file->xml, HL_ERROR_INPUT, name, value, error);
-}
 
 /* Reads a curvilinear piece's extent "x0 x1 y0 y1 z0 z1" of points. */
 static hl_status read_extent(const grid_file *file, const hl_xml_tag *tag, grid_piece *piece,
@@ -99,22 +81,18 @@ static hl_status read_piece_tag(grid_file *file, const hl_xml_tag *tag, hl_error
   grid_piece piece = {.first_array = file->array_count};
   hl_status status = file->is_curvilinear
                          ? read_extent(file, tag, &piece, error)
-                         : read_count(file, tag, "NumberOfPoints", &piece.point_count, error);
+                         : hl_vtk_xml_count(&file->xml, tag, "NumberOfPoints", &piece.point_count, error);
   if (status == HL_OK && !file->is_curvilinear)
-    status = read_count(file, tag, "NumberOfCells", &piece.cell_count, error);
+    status = hl_vtk_xml_count(&file->xml, tag, "NumberOfCells", &piece.cell_count, error);
   file->in_piece = piece.point_count > 0;
   if (status != HL_OK || !file->in_piece) return status;
   if (file->piece_count == MOST_PIECES)
     return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s: has more than %d pieces: save it as one",
                    file->xml.stream->path, MOST_PIECES);
-  status = grow(file, (void **)&file->pieces, file->piece_count, &file->piece_room, sizeof piece, error);
+  status = hl_vtk_xml_grow(file->request->context, &file->xml, (void **)&file->pieces, file->piece_count,
+                           &file->piece_room, sizeof piece, error);
   if (status == HL_OK) file->pieces[file->piece_count++] = piece;
   return status;
-}
-
-static void copy_name(char to[HL_VTK_NAME_BYTES], const char *name) {
-  to[0] = 0;
-  if (name != NULL && strlen(name) < HL_VTK_NAME_BYTES) strcpy(to, name);
 }
 
 /* Lists an array of values of the first piece in the request. */
@@ -137,13 +115,15 @@ static hl_status read_array_tag(grid_file *file, const hl_xml_tag *tag, hl_error
   grid_array made = {.section = file->section, .components = 1};
   if (piece->array_count == MOST_ARRAYS) return HL_OK;
   hl_status status = hl_vtk_xml_array_tag(&file->xml, tag, &made.array, error);
-  if (status == HL_OK) status = read_count(file, tag, "NumberOfComponents", &made.components, error);
+  if (status == HL_OK)
+    status = hl_vtk_xml_count(&file->xml, tag, "NumberOfComponents", &made.components, error);
   if (status == HL_OK && made.components == 0)
     return hl_vtk_xml_refuse(&file->xml, HL_ERROR_INPUT, "NumberOfComponents", "0", error);
   if (status == HL_OK)
-    status = grow(file, (void **)&file->arrays, file->array_count, &file->array_room, sizeof made, error);
+    status = hl_vtk_xml_grow(file->request->context, &file->xml, (void **)&file->arrays, file->array_count,
+                             &file->array_room, sizeof made, error);
   if (status != HL_OK) return status;
-  copy_name(made.name, hl_xml_attribute(tag, "Name"));
+  hl_vtk_xml_copy_name(made.name, hl_xml_attribute(tag, "Name"));
   file->arrays[file->array_count++] = made;
   piece->array_count++;
   return file->piece_count == 1 ? list_array(file, &made, error) : HL_OK;
@@ -156,11 +136,12 @@ static hl_status read_file_tag(grid_file *file, const hl_xml_tag *tag, hl_error 
                              error);
 }
 
-static hl_status read_tag(grid_file *file, const hl_xml_tag *tag, hl_error *error) {
+static hl_status read_tag(void *data, const hl_xml_tag *tag, hl_error *error) {
+  grid_file *file = data;
   for (int n = 0; n < SECTION_NONE; n++)
     if (strcmp(tag->name, section_names[n]) == 0) {
       file->section = tag->is_start && !tag->is_end ? (section)n : SECTION_NONE;
-      copy_name(file->active, hl_xml_attribute(tag, "Scalars"));
+      hl_vtk_xml_copy_name(file->active, hl_xml_attribute(tag, "Scalars"));
       return HL_OK;
     }
   if (!tag->is_start) return HL_OK;
@@ -171,17 +152,6 @@ static hl_status read_tag(grid_file *file, const hl_xml_tag *tag, hl_error *erro
   if (strcmp(tag->name, "Piece") == 0) return read_piece_tag(file, tag, error);
   if (strcmp(tag->name, "DataArray") == 0) return read_array_tag(file, tag, error);
   if (strcmp(tag->name, "AppendedData") == 0) return hl_vtk_xml_appended_tag(&file->xml, tag, error);
-  return HL_OK;
-}
-
-static hl_status read_tags(grid_file *file, hl_error *error) {
-  hl_xml_tag tag;
-  bool ended = false;
-  while (!ended && file->xml.appended == 0) {
-    hl_status status = hl_xml_next_tag(file->xml.stream, &tag, &ended, error);
-    if (status == HL_OK && !ended) status = read_tag(file, &tag, error);
-    if (status != HL_OK) return status;
-  }
   return HL_OK;
 }
 
@@ -309,7 +279,8 @@ static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **
   grid_file file = {.request = request, .xml.stream = *stream, .section = SECTION_NONE, .chosen_active = -1};
   hl_cell_mesh mesh = {.context = request->context};
   char *path = hl_copy_text(request->context, (*stream)->path); /* arrays open the stream anew */
-  hl_status status = path != NULL ? read_tags(&file, error) : hl_fail_memory(error, 1, "a path");
+  hl_status status = path != NULL ? hl_vtk_xml_read_tags(&file.xml, read_tag, &file, error)
+                                  : hl_fail_memory(error, 1, "a path");
   mesh.subject = path;
   if (status == HL_OK) status = choose(&file, error);
   if (status == HL_OK) status = read_pieces(stream, &file, &mesh, error);
@@ -346,7 +317,7 @@ int hl_volume_reads_cells(hl_context *context, const char *path) {
   if (context == NULL || path == NULL || !hl_text_ends(path, ".vtu")) return 0;
   hl_status status = hl_stream_open(context, path, true, &file.xml.stream, &unused);
   if (status == HL_OK) status = hl_stream_unpack(&file.xml.stream, &unused);
-  if (status == HL_OK) status = read_tags(&file, &unused);
+  if (status == HL_OK) status = hl_vtk_xml_read_tags(&file.xml, read_tag, &file, &unused);
   hl_stream *stream = file.xml.stream;
   for (size_t n = 0; status == HL_OK && n < file.piece_count && !found && request.array_count > 0; n++)
     status = find_cell(&stream, &file, &file.pieces[n], &found, &unused);
@@ -359,14 +330,8 @@ int hl_volume_reads_cells(hl_context *context, const char *path) {
 
 /* Whether the first tag says that the file is such a grid. */
 static bool has_content(const unsigned char *bytes, size_t length) {
-  static const char *const types[] = {"type=\"UnstructuredGrid\"", "type=\"StructuredGrid\""};
-  if (!hl_vtk_xml_has_content(bytes, length)) return false;
-  for (size_t n = 0; n < 2; n++) {
-    size_t mark = strlen(types[n]);
-    for (size_t at = 0; at + mark <= length; at++)
-      if (memcmp(bytes + at, types[n], mark) == 0) return true;
-  }
-  return false;
+  static const char *const types[] = {"UnstructuredGrid", "StructuredGrid"};
+  return hl_vtk_xml_is_of(bytes, length, types, 2);
 }
 
 const hl_format hl_format_vtu = {
