@@ -89,6 +89,11 @@ HL_API void hl_figure_defaults(hl_figure *figure);
 HL_API void hl_figure_of_picture(const hl_image *image, const hl_scene *scene, double width,
                                  hl_figure *figure, hl_figure_panel *panel);
 
+/* Finds out, before pictures are made, whether all that a figure wants can be drawn: draws its page at an
+ * eighth of its pixels, without the panels' images. Errors: those of hl_figure_draw(). */
+HL_API HL_WARN_UNUSED hl_status hl_figure_check(hl_context *context, const hl_figure *figure,
+                                                hl_error *error);
+
 /* Draws the figure as pixels, width x pixels_per_inch / 25.4 by the same of height, rounded. A picture whose
  * pixels fit the page's keeps them bit by bit, as 8-bit sRGB. *image is owned by the caller. */
 HL_API HL_WARN_UNUSED hl_status hl_figure_draw(hl_context *context, const hl_figure *figure, hl_image **image,

@@ -177,13 +177,12 @@ static int make_scenes(figure_job *job) {
 
 /* ---- the page ---- */
 
-static int make_figure(figure_job *job, double height, bool trial, hl_figure *figure,
-                       hl_figure_panel *panels) {
+static int make_figure(figure_job *job, double height, hl_figure *figure, hl_figure_panel *panels) {
   const figure_page *page = &job->page;
   hl_figure_defaults(figure);
   figure->width = page->width;
   figure->height = height;
-  figure->pixels_per_inch = trial ? fmax(1, page->pixels_per_inch / 8) : page->pixels_per_inch;
+  figure->pixels_per_inch = page->pixels_per_inch;
   figure->font_points = page->font_points;
   memcpy(figure->background, page->background, sizeof figure->background);
   figure->background_transparent = page->transparent;
@@ -191,7 +190,7 @@ static int make_figure(figure_job *job, double height, bool trial, hl_figure *fi
   figure->panel_count = (size_t)page->count;
   for (int p = 0; p < page->count; p++) {
     const figure_panel *from = &page->panels[p];
-    panels[p] = (hl_figure_panel){.image = trial ? NULL : from->image,
+    panels[p] = (hl_figure_panel){.image = from->image,
                                   .scene = from->scene,
                                   .left = from->left,
                                   .top = from->top,
@@ -207,11 +206,8 @@ static int make_figure(figure_job *job, double height, bool trial, hl_figure *fi
 static hl_status try_out(figure_job *job, double height, hl_error *error) {
   hl_figure figure;
   hl_figure_panel panels[FIGURE_MOST_PANELS];
-  hl_image *image = NULL;
-  make_figure(job, height, true, &figure, panels);
-  hl_status status = hl_figure_draw(job->host.context, &figure, &image, error);
-  hl_image_destroy(image);
-  return status;
+  make_figure(job, height, &figure, panels);
+  return hl_figure_check(job->host.context, &figure, error);
 }
 
 static hl_status render_panels(figure_job *job, hl_error *error) {
@@ -248,7 +244,7 @@ static int make_and_write(figure_job *job) {
   if (status == HL_OK) {
     hl_figure figure;
     hl_figure_panel panels[FIGURE_MOST_PANELS];
-    make_figure(job, height, false, &figure, panels);
+    make_figure(job, height, &figure, panels);
     status = hl_figure_write(job->host.context, &figure, job->output, NULL, &error);
   }
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);

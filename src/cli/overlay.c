@@ -1,7 +1,6 @@
 /* cli/overlay.c - pictures as files, with what is drawn over them. */
 #include "overlay.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -51,11 +50,7 @@ hl_status overlay_check_scene(hl_context *context, const cli_overlay *overlay, c
   hl_status status = hl_image_create(context, description->width, description->height, &trial, error);
   if (status == HL_OK) {
     make_figure(overlay, trial, scene, &figure, &panel);
-    hl_image_destroy(trial);
-    trial = NULL;
-    panel.image = NULL;
-    figure.pixels_per_inch = fmax(1, figure.pixels_per_inch / 8);
-    status = hl_figure_draw(context, &figure, &trial, error);
+    status = hl_figure_check(context, &figure, error);
   }
   hl_image_destroy(trial);
   return status;

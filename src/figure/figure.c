@@ -9,6 +9,7 @@
 
 #include "core/door.h"
 #include "core/endings.h"
+#include "core/memory.h"
 #include "figure/page.h"
 #include "text/plain.h"
 
@@ -111,6 +112,28 @@ hl_status hl_figure_draw(hl_context *context, const hl_figure *figure, hl_image 
         "figure: %g x %g pixels: each side must be from 1 to %d: change its size or its pixels an inch",
         width, height, (int)MOST_SIDE_PIXELS);
   return hl_page_draw(context, figure, (int)width, (int)height, image, error);
+}
+
+hl_status hl_figure_check(hl_context *context, const hl_figure *figure, hl_error *error) {
+  HL_DOOR;
+  enum { COARSER = 8 };
+  if (context == NULL || figure == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_figure_check: context and figure must not be null");
+  size_t count = figure->panel_count;
+  hl_figure trial = *figure;
+  hl_figure_panel *panels = hl_allocate(context, count + 1, sizeof *panels);
+  hl_image *image = NULL;
+  if (panels == NULL) return hl_fail_memory(error, (count + 1) * sizeof *panels, "a figure's panels");
+  for (size_t p = 0; p < count && figure->panels != NULL; p++) {
+    panels[p] = figure->panels[p];
+    panels[p].image = NULL;
+  }
+  if (figure->panels != NULL) trial.panels = panels;
+  trial.pixels_per_inch = fmax(1, figure->pixels_per_inch / COARSER);
+  hl_status status = hl_figure_draw(context, &trial, &image, error);
+  hl_image_destroy(image);
+  hl_release(context, panels);
+  return status;
 }
 
 /* ---- formats ---- */

@@ -1,6 +1,5 @@
 /* server/pictures.c - rendered images as the files that a page asks for, with what is drawn over them. */
 #define _GNU_SOURCE
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -52,11 +51,7 @@ hl_status check_overlay(const server *s, const hl_scene *scene, const frame_requ
     hl_figure figure;
     hl_figure_panel panel;
     make_figure(trial, scene, request, &figure, &panel);
-    hl_image_destroy(trial);
-    trial = NULL;
-    panel.image = NULL;
-    figure.pixels_per_inch = fmax(1, figure.pixels_per_inch / 8);
-    status = hl_figure_draw(context, &figure, &trial, error);
+    status = hl_figure_check(context, &figure, error);
   }
   hl_image_destroy(trial);
   return status;
