@@ -1,0 +1,39 @@
+/* json/text_writer.h - JSON text as it grows: indented members and elements, each on a line of its own.
+ *
+ * Numbers have the fewest digits that give the same double again; rows of numbers stay on one line. */
+#ifndef HL_JSON_TEXT_WRITER_H
+#define HL_JSON_TEXT_WRITER_H
+
+#include <stdbool.h>
+
+#include "core/context.h"
+
+/* A growing text. After a failed allocation nothing more is written, and `failed` tells so. */
+typedef struct hl_json_writer {
+  hl_context *context;
+  char *text; /* owned; ends with 0 */
+  size_t length, capacity;
+  int depth;
+  const char *beside; /* the folder in which file names start (file_names.h); null if names stay as they
+                       * are */
+  bool first;         /* whether there is no member or element yet at this depth */
+  bool failed;
+} hl_json_writer;
+
+void hl_json_put_text(hl_json_writer *w, const char *text);
+
+/* Writes a comma if needed, a new line, the indentation, and the key if there is one. */
+void hl_json_begin_item(hl_json_writer *w, const char *key);
+
+/* bracket: "{" or "[", and "}" or "]". key: null in a list. */
+void hl_json_open(hl_json_writer *w, const char *key, const char *bracket);
+void hl_json_close(hl_json_writer *w, const char *bracket);
+
+/* Members of an object, or with a null key elements of a list. */
+void hl_json_write_number(hl_json_writer *w, const char *key, double number);
+void hl_json_write_whole(hl_json_writer *w, const char *key, int64_t number);
+void hl_json_write_row(hl_json_writer *w, const char *key, const double *numbers, size_t count);
+void hl_json_write_name(hl_json_writer *w, const char *key, const char *name);
+void hl_json_write_flag(hl_json_writer *w, const char *key, int flag);
+
+#endif
