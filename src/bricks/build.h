@@ -65,21 +65,4 @@ hl_status hl_bricks_build(hl_context *context, hl_pool *pool, const hl_bricks_so
 
 void hl_bricks_release(hl_context *context, hl_bricks *bricks);
 
-/* The number of lattice points of a level along an axis with `dimension` points of level 0. */
-static inline size_t hl_bricks_points(size_t dimension, int level) {
-  return ((dimension - 1 + ((size_t)1 << level) - 1) >> level) + 1;
-}
-
-/* The field as one dense grid of coefficients of a level. Where bricks are coarser, their coefficients are
- * subdivided, and the dense grid's field is the bricks' field exactly. Where bricks are finer, a coefficient
- * is the field's value at its point. size: hl_bricks_points() of each axis. voxels:
- * [size[2]][size[1]][size[0]], of the caller. Stops early if the pool is cancelled. */
-void hl_bricks_to_dense(hl_pool *pool, const hl_bricks *bricks, int level, const size_t size[3],
-                        float *voxels);
-
-/* Allocates *voxels and calls hl_bricks_to_dense(). *voxels is owned by the caller (hl_release). subject:
- * starts error lines. */
-hl_status hl_bricks_evaluate_dense(hl_context *context, hl_pool *pool, const hl_bricks *bricks, int level,
-                                   const char *subject, size_t size[3], float **voxels, hl_error *error);
-
 #endif

@@ -9,6 +9,7 @@
 
 #include "bricks/cell_tree.h"
 #include "bricks/inverse.h"
+#include "bricks/subdivide.h"
 #include "core/context.h"
 #include "core/memory.h"
 
@@ -281,18 +282,6 @@ static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
 
 /* ---- how far the field is from the mesh ---- */
 
-/* The field at a point of a brick, from the coefficients around it; NaN where some of these are. */
-static double field_at(const float *stored, size_t i, size_t j, size_t k) {
-  static const double weight[3] = {1.0 / 6, 2.0 / 3, 1.0 / 6};
-  double sum = 0;
-  for (size_t z = 0; z < 3; z++)
-    for (size_t y = 0; y < 3; y++)
-      for (size_t x = 0; x < 3; x++)
-        sum += weight[x] * weight[y] * weight[z] *
-               (double)stored[((k + z) * STORED + j + y) * STORED + i + x];
-  return sum;
-}
-
 static void find_error(void *data, size_t index, int worker) {
   (void)worker;
   cell_field *field = data;
@@ -317,7 +306,9 @@ static void find_error(void *data, size_t index, int worker) {
   for (size_t k = 0; k < SIDE; k++)
     for (size_t j = 0; j < SIDE; j++)
       for (size_t i = 0; i < SIDE; i++) {
-        double difference = fabs(field_at(stored, i, j, k) - (double)own[(k * SIDE + j) * SIDE + i]);
+        double difference = fabs(
+            hl_field_at_point(stored + (k * STORED + j) * STORED + i, STORED, STORED * STORED) -
+            (double)own[(k * SIDE + j) * SIDE + i]);
         if (difference > greatest) greatest = difference; /* false for NaN */
       }
   field->errors[index] = (float)greatest;

@@ -28,8 +28,8 @@ hl_status hl_patches_add(hl_patches *patches, int level, const size_t first[3], 
                          const float *values, const char *subject, hl_error *error);
 
 /* Makes the field. *bricks is empty on failure. Its origin is {.5, .5, .5}: voxels of level 0 are cells.
- * Where no patch has a value, the field is NaN. Can be called once: coarser cells are overwritten by means of
- * finer ones. */
+ * Where no patch has a value, the field is NaN. The call overwrites coarser cells by means of finer ones, so
+ * that a second call would make another field: it is for one call. */
 hl_status hl_patches_build(hl_patches *patches, hl_pool *pool, const char *subject, hl_bricks *bricks,
                            hl_error *error);
 

@@ -51,3 +51,13 @@ void hl_subdivide(const hl_lattice_box *box, const float *coarse, float *scratch
     for (size_t at = 0; at < slice; at++)
       fine[k * slice + at] = along(by_y + at, from.first[2], slice, box->first[2] + (ptrdiff_t)k);
 }
+
+double hl_field_at_point(const float *first, size_t row, size_t slice) {
+  static const double weight[3] = {1.0 / 6, 2.0 / 3, 1.0 / 6};
+  double sum = 0;
+  for (size_t k = 0; k < 3; k++)
+    for (size_t j = 0; j < 3; j++)
+      for (size_t i = 0; i < 3; i++)
+        sum += weight[i] * weight[j] * weight[k] * (double)first[k * slice + j * row + i];
+  return sum;
+}

@@ -31,4 +31,9 @@ size_t hl_subdivision_scratch(const hl_lattice_box *box);
  * stays the same number. */
 void hl_subdivide(const hl_lattice_box *box, const float *coarse, float *scratch, float *fine);
 
+/* The field at a lattice point, where the cubic B-spline is 1/6, 2/3, 1/6 along each axis. first: the
+ * coefficient one before the point along each axis, among rows `row` and slices `slice` floats apart. NaN
+ * where one of the 27 coefficients is. */
+double hl_field_at_point(const float *first, size_t row, size_t slice);
+
 #endif

@@ -13,13 +13,17 @@ typedef struct brick_place {
   double weight[3][4], slope[3][4];
 } brick_place;
 
-static void find_place(const hl_bricks *bricks, hl_kernel kernel, const double point[3], brick_place *found) {
+/* point: index space of the voxels that stand for the field. */
+static void find_place(const reference_volume *volume, vec3 point, brick_place *found) {
+  const hl_bricks *bricks = volume->grid->bricks;
   const size_t side = (size_t)1 << bricks->shift;
+  const double lattice[3] = {point.x + bricks->origin[0], point.y + bricks->origin[1],
+                             point.z + bricks->origin[2]};
   size_t block[3];
   double x[3];
   for (int axis = 0; axis < 3; axis++) {
     double end = (double)(bricks->directory_size[axis] * side);
-    x[axis] = fmin(fmax(point[axis], 0), end);
+    x[axis] = fmin(fmax(lattice[axis], 0), end);
     block[axis] = (size_t)fmin(floor(x[axis] / (double)side), (double)bricks->directory_size[axis] - 1);
   }
   found->entry = bricks->directory +
@@ -35,7 +39,7 @@ static void find_place(const hl_bricks *bricks, hl_kernel kernel, const double p
     double begin = floor((double)block[axis] / spacing) * (double)side;
     double at = x[axis] / spacing - begin, cell = fmin(floor(at), (double)side - 1);
     found->first += (size_t)cell * stride[axis];
-    hl_reference_weights(kernel, at - cell, found->weight[axis], found->slope[axis]);
+    hl_reference_weights(volume->kernel, at - cell, found->weight[axis], found->slope[axis]);
     for (int tap = 0; tap < 4; tap++) found->slope[axis][tap] /= spacing;
   }
 }
@@ -52,30 +56,18 @@ static double weigh(const brick_place *place, double empty, const double x[4], c
   return sum;
 }
 
-static void to_lattice(const hl_bricks *bricks, vec3 point, double at[3]) {
-  at[0] = point.x + bricks->origin[0];
-  at[1] = point.y + bricks->origin[1];
-  at[2] = point.z + bricks->origin[2];
-}
-
 double hl_reference_bricks_value(const reference_volume *volume, vec3 point) {
-  const hl_bricks *bricks = volume->grid->bricks;
   const double empty = volume->empty_stored;
   brick_place place;
-  double at[3];
-  to_lattice(bricks, point, at);
-  find_place(bricks, volume->kernel, at, &place);
+  find_place(volume, point, &place);
   if (place.entry->slot < 0) return isfinite(place.entry->constant) ? (double)place.entry->constant : empty;
   return weigh(&place, empty, place.weight[0], place.weight[1], place.weight[2]);
 }
 
 vec3 hl_reference_bricks_slope(const reference_volume *volume, vec3 point) {
-  const hl_bricks *bricks = volume->grid->bricks;
   const double empty = volume->empty_stored;
   brick_place place;
-  double at[3];
-  to_lattice(bricks, point, at);
-  find_place(bricks, volume->kernel, at, &place);
+  find_place(volume, point, &place);
   if (place.entry->slot < 0) return (vec3){0, 0, 0};
   return (vec3){weigh(&place, empty, place.slope[0], place.weight[1], place.weight[2]),
                 weigh(&place, empty, place.weight[0], place.slope[1], place.weight[2]),

@@ -12,6 +12,7 @@
 
 #include <halflight/halflight.h>
 
+#include "../dense_bricks.h"
 #include "bricks/build.h"
 #include "core/context.h"
 #include "core/memory.h"

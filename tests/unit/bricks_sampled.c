@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "../dense_bricks.h"
 #include "../octree.h"
 #include "bricks/evaluate.h"
 #include "core/context.h"

@@ -1,14 +1,22 @@
-/* bricks/dense.c - hl_bricks_evaluate_dense(): a field at levels as one dense grid of coefficients.
+/* dense_bricks.h - a field at levels as one dense grid of coefficients: what tests compare bricks with.
  *
  * In: bricks. Out: voxels of one level. Blocks of the dense grid are made by themselves, each in pieces that
  * one brick covers. */
+#ifndef HL_TESTS_DENSE_BRICKS_H
+#define HL_TESTS_DENSE_BRICKS_H
+
 #include <string.h>
 
 #include "bricks/build.h"
 #include "bricks/subdivide.h"
 #include "core/memory.h"
 
-enum { TILE_SHIFT = 4, TILE = 1 << TILE_SHIFT, SCRATCH_FLOATS = 3 * 20 * 20 * 20 };
+/* The number of lattice points of a level along an axis with `dimension` points of level 0. */
+static inline size_t hl_bricks_points(size_t dimension, int level) {
+  return ((dimension - 1 + ((size_t)1 << level) - 1) >> level) + 1;
+}
+
+enum { DENSE_TILE_SHIFT = 4, DENSE_TILE = 1 << DENSE_TILE_SHIFT, DENSE_SCRATCH = 3 * 20 * 20 * 20 };
 
 typedef struct dense_job {
   const hl_bricks *bricks;
@@ -64,20 +72,12 @@ static void subdivide(const stored_brick *brick, int coarser, const hl_lattice_b
   hl_subdivide(box, scratch, further, out);
 }
 
-/* The field's value at a point of the brick's lattice: the cubic B-spline is 1/6, 2/3, 1/6 there. */
+/* The field's value at a point of the brick's lattice. */
 static float value_at(const stored_brick *brick, const ptrdiff_t point[3]) {
-  static const double weight[3] = {1.0 / 6, 2.0 / 3, 1.0 / 6};
-  double sum = 0;
-  for (int k = 0; k < 3; k++)
-    for (int j = 0; j < 3; j++)
-      for (int i = 0; i < 3; i++) {
-        size_t x = (size_t)(point[0] - brick->first[0] - 1 + i),
-               y = (size_t)(point[1] - brick->first[1] - 1 + j),
-               z = (size_t)(point[2] - brick->first[2] - 1 + k);
-        sum += weight[i] * weight[j] * weight[k] *
-               (double)brick->coefficients[(z * brick->side + y) * brick->side + x];
-      }
-  return (float)sum;
+  const size_t row = brick->side, slice = row * row;
+  size_t at[3];
+  for (int axis = 0; axis < 3; axis++) at[axis] = (size_t)(point[axis] - brick->first[axis] - 1);
+  return (float)hl_field_at_point(brick->coefficients + at[2] * slice + at[1] * row + at[0], row, slice);
 }
 
 /* Fills a box from bricks that are finer than its level: point by point. */
@@ -126,13 +126,13 @@ static void fill_box(const dense_job *job, const hl_lattice_box *box, float *scr
 
 /* The side of the boxes, each of which lies in one brick or in bricks that are finer than the level. */
 static int box_shift(const dense_job *job) {
-  return job->bricks->shift < TILE_SHIFT ? job->bricks->shift : TILE_SHIFT;
+  return job->bricks->shift < DENSE_TILE_SHIFT ? job->bricks->shift : DENSE_TILE_SHIFT;
 }
 
 static void make_tile(void *data, size_t index, int worker) {
   (void)worker;
   const dense_job *job = data;
-  float values[TILE * TILE * TILE], scratch[SCRATCH_FLOATS];
+  float values[DENSE_TILE * DENSE_TILE * DENSE_TILE], scratch[DENSE_SCRATCH];
   const size_t tile[3] = {index % job->tiles[0], index / job->tiles[0] % job->tiles[1],
                           index / job->tiles[0] / job->tiles[1]};
   hl_lattice_box box;
@@ -151,8 +151,12 @@ static void make_tile(void *data, size_t index, int worker) {
              values + (k * box.count[1] + j) * box.count[0], box.count[0] * sizeof *values);
 }
 
-void hl_bricks_to_dense(hl_pool *pool, const hl_bricks *bricks, int level, const size_t size[3],
-                        float *voxels) {
+/* The field as one dense grid of coefficients of a level. Where bricks are coarser, their coefficients are
+ * subdivided, and the dense grid's field is the bricks' field exactly. Where bricks are finer, a coefficient
+ * is the field's value at its point. size: hl_bricks_points() of each axis. voxels:
+ * [size[2]][size[1]][size[0]], of the caller. Stops early if the pool is cancelled. */
+static inline void hl_bricks_to_dense(hl_pool *pool, const hl_bricks *bricks, int level, const size_t size[3],
+                                      float *voxels) {
   dense_job job = {.bricks = bricks, .level = level, .voxels = voxels};
   for (int axis = 0; axis < 3; axis++) {
     job.size[axis] = size[axis];
@@ -161,8 +165,11 @@ void hl_bricks_to_dense(hl_pool *pool, const hl_bricks *bricks, int level, const
   hl_pool_run(pool, job.tiles[0] * job.tiles[1] * job.tiles[2], make_tile, &job);
 }
 
-hl_status hl_bricks_evaluate_dense(hl_context *context, hl_pool *pool, const hl_bricks *bricks, int level,
-                                   const char *subject, size_t size[3], float **voxels, hl_error *error) {
+/* Allocates *voxels and calls hl_bricks_to_dense(). *voxels is owned by the caller (hl_release). subject:
+ * starts error lines. */
+static inline hl_status hl_bricks_evaluate_dense(hl_context *context, hl_pool *pool, const hl_bricks *bricks,
+                                                 int level, const char *subject, size_t size[3],
+                                                 float **voxels, hl_error *error) {
   size_t count = 1;
   *voxels = NULL;
   for (int axis = 0; axis < 3; axis++) {
@@ -179,3 +186,5 @@ hl_status hl_bricks_evaluate_dense(hl_context *context, hl_pool *pool, const hl_
   *voxels = NULL;
   return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", subject);
 }
+
+#endif
