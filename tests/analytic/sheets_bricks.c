@@ -14,6 +14,7 @@
 #include "core/context.h"
 #include "reference_stage.h"
 #include "volume/in_bricks.h"
+#include "ways_to_draw.h"
 
 enum { SIDE = 24, FLOATS = SIDE * SIDE * 4, WIDE = 40, MOST_VOXELS = WIDE * WIDE * WIDE };
 
@@ -142,23 +143,7 @@ static void assert_same_in_bricks(stage *set, int shift, bool close, const char 
     fail_msg("%s, bricks of %d: the picture differs by %.4g", what, 1 << shift, difference(packed, made));
 }
 
-static const hl_opacity_point SOFT_EDGE[] = {{0, 0}, {0.35, 0}, {0.6, 0.7}, {1, 0.9}};
-static const hl_opacity_point STEEP[] = {{0, 0}, {0.05, 0.3}, {0.4, 1}};
-
-static void set_method(stage *set, hl_shadows shadows, hl_soft_method method) {
-  set->scene.render.shadows = shadows;
-  set->scene.render.soft_method = method;
-}
-
 static void draw_hard(stage *set) { set_method(set, HL_SHADOWS_HARD, HL_SOFT_CASCADE); }
-static void draw_paper(stage *set) { set_method(set, HL_SHADOWS_SOFT, HL_SOFT_PAPER); }
-static void draw_cascade(stage *set) { set_method(set, HL_SHADOWS_SOFT, HL_SOFT_CASCADE); }
-static void draw_sublights(stage *set) { set_method(set, HL_SHADOWS_SOFT, HL_SOFT_SUBLIGHTS); }
-static void draw_maximum(stage *set) { set->scene.render.compositing = HL_COMPOSITING_MAXIMUM; }
-static void draw_gradient_opacity(stage *set) {
-  set->volumes[0].transfer_function.gradient_opacity = STEEP;
-  set->volumes[0].transfer_function.gradient_opacity_count = 3;
-}
 /* A lattice of voxels leaves out cells in which nothing shows, and samples of the sky's light there. */
 static void draw_sky(stage *set) {
   set->scene.sky.type = HL_SKY_UNIFORM;
@@ -184,20 +169,10 @@ static void draw_cut(stage *set) {
   set->volumes[0].cuts = &ball;
   set->volumes[0].cut_count = 1;
 }
-static void draw_isosurface(stage *set) {
-  static const hl_isosurface surface = {.value = 0.6, .opacity = 1, .color = {0.9, 0.5, 0.3}};
-  set->volumes[0].iso = &surface;
-  set->volumes[0].iso_count = 1;
-}
 static void draw_two(stage *set) {
   set_method(set, HL_SHADOWS_SOFT, HL_SOFT_CASCADE);
   add_noise(set, (const size_t[3]){23, 40, 21}, 3);
 }
-
-typedef struct way {
-  const char *name;
-  void (*draw)(stage *set);
-} way;
 
 static const way ways[] = {{"hard", draw_hard},
                            {"paper", draw_paper},
@@ -214,8 +189,7 @@ static const way ways[] = {{"hard", draw_hard},
 
 static void light_scene(stage *set, hl_scene_volume *volume) {
   volume->shading = HL_SHADING_PHONG;
-  volume->transfer_function.opacity = SOFT_EDGE;
-  volume->transfer_function.opacity_count = sizeof SOFT_EDGE / sizeof *SOFT_EDGE;
+  set_soft_edge(volume);
   set->scene.camera.type = HL_CAMERA_PERSPECTIVE;
   set->scene.camera.fovy_deg = 40;
   stage_add_directional(set, (vec3){-1, 0.5, -1})->angular_diameter_deg = 10;
@@ -296,8 +270,7 @@ static void test_against_reference(void **state) {
     hl_scene_volume *volume = add_octree(&set, 40 + (uint64_t)n, octree_random_value, 2 + n % 3);
     stage_set_opacity(&set, volume, 0.5, 6);
     volume->shading = n % 2 ? HL_SHADING_PHONG : HL_SHADING_NONE;
-    volume->transfer_function.opacity = SOFT_EDGE;
-    volume->transfer_function.opacity_count = sizeof SOFT_EDGE / sizeof *SOFT_EDGE;
+    set_soft_edge(volume);
     volume->transfer_function.unit_distance = 6;
     stage_add_directional(&set, (vec3){-1, 0.5, -1});
     if (n >= 2) draw_gradient_opacity(&set);
@@ -360,8 +333,7 @@ static void test_holes(void **state) {
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) counted += made->histogram[bin];
   assert_true(made->nonfinite_count > 0 && counted > 0);
   assert_true(made->minimum >= 0 && made->maximum <= 1 && made->mean > 0.3 && made->mean < 0.7);
-  volume->transfer_function.opacity = SOFT_EDGE;
-  volume->transfer_function.opacity_count = sizeof SOFT_EDGE / sizeof *SOFT_EDGE;
+  set_soft_edge(volume);
   volume->transfer_function.unit_distance = 6;
   set.scene.width = set.scene.height = SIDE;
   set.scene.camera.height = 12; /* pixels are smaller than voxels: each has one ray */

@@ -13,6 +13,7 @@
 #include "grid/make_grid.h"
 #include "reference_stage.h"
 #include "volume/pages.h"
+#include "ways_to_draw.h"
 
 enum { SIDE = 24, FLOATS = SIDE * SIDE * 4, MOST_VOXELS = 40 * 40 * 40 };
 
@@ -159,25 +160,9 @@ static void test_instruction_sets(void **state) {
 
 /* ---- by every way to draw ---- */
 
-static const hl_opacity_point SOFT_EDGE[] = {{0, 0}, {0.35, 0}, {0.6, 0.7}, {1, 0.9}};
-static const hl_opacity_point STEEP[] = {{0, 0}, {0.05, 0.3}, {0.4, 1}};
-
-static void set_method(stage *set, hl_shadows shadows, hl_soft_method method) {
-  set->scene.render.shadows = shadows;
-  set->scene.render.soft_method = method;
-}
-
 static void draw_hard_splat(stage *set) {
   set_method(set, HL_SHADOWS_HARD, HL_SOFT_CASCADE);
   set->scene.render.reconstruction = HL_RECONSTRUCTION_SPLAT;
-}
-static void draw_paper(stage *set) { set_method(set, HL_SHADOWS_SOFT, HL_SOFT_PAPER); }
-static void draw_cascade(stage *set) { set_method(set, HL_SHADOWS_SOFT, HL_SOFT_CASCADE); }
-static void draw_sublights(stage *set) { set_method(set, HL_SHADOWS_SOFT, HL_SOFT_SUBLIGHTS); }
-static void draw_maximum(stage *set) { set->scene.render.compositing = HL_COMPOSITING_MAXIMUM; }
-static void draw_gradient_opacity(stage *set) {
-  set->volumes[0].transfer_function.gradient_opacity = STEEP;
-  set->volumes[0].transfer_function.gradient_opacity_count = 3;
 }
 static void draw_sky(stage *set) {
   draw_gradient_opacity(set);
@@ -196,20 +181,10 @@ static void draw_clipped(stage *set) {
     set->volumes[0].clip_max[a] = 8.1;
   }
 }
-static void draw_isosurface(stage *set) {
-  static const hl_isosurface surface = {.value = 0.6, .opacity = 1, .color = {0.9, 0.5, 0.3}};
-  set->volumes[0].iso = &surface;
-  set->volumes[0].iso_count = 1;
-}
 static void draw_two(stage *set) {
   set_method(set, HL_SHADOWS_SOFT, HL_SOFT_CASCADE);
   add_noise(set, (const size_t[3]){13, 40, 9}, HL_VOXEL_F32);
 }
-
-typedef struct way {
-  const char *name;
-  void (*draw)(stage *set);
-} way;
 
 static const way ways[] = {{"hard, splat", draw_hard_splat},
                            {"paper", draw_paper},
@@ -230,8 +205,7 @@ static void test_ways(void **state) {
     stage_open(&set);
     hl_scene_volume *volume = add_noise(&set, (const size_t[3]){37, 29, 34}, types[n % 3]);
     volume->shading = HL_SHADING_PHONG;
-    volume->transfer_function.opacity = SOFT_EDGE;
-    volume->transfer_function.opacity_count = sizeof SOFT_EDGE / sizeof *SOFT_EDGE;
+    set_soft_edge(volume);
     set.scene.camera.type = HL_CAMERA_PERSPECTIVE;
     set.scene.camera.fovy_deg = 40;
     stage_add_directional(&set, (vec3){-1, 0.5, -1})->angular_diameter_deg = 10;
