@@ -101,4 +101,7 @@ hl_status input_load(hl_context *context, const cli_input *input, const hl_volum
 /* Whether a file holds a mesh: a VTK file of cells that have a volume and values is a volume. */
 bool is_mesh_file(hl_context *context, const char *path);
 
+/* Orders names (char **) by the numbers in them, for qsort(). */
+int compare_by_number(const void *a, const void *b);
+
 #endif

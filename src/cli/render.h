@@ -205,7 +205,8 @@ int render_overlay_read(const cli_value *values, cli_overlay *overlay);
  * "-.png" and so on. */
 int render_overlay_check_options(const cli_value *values, const char *path);
 
-/* Gives --size a value, as if it were typed. text: room for it, which the value borrows. */
+/* Sets --size to width x height, as if the user had typed it. text: the caller's room for the typed text, to
+ * which the value of --size points afterwards. */
 void render_set_size(cli_value *size, double width, double height, char text[RENDER_SIZE_TEXT]);
 
 /* Sets --size to what --width and --dpi ask for, if it is not given. The picture has the shape of this scene,

@@ -12,14 +12,11 @@
 
 #include "frames.h"
 #include "host.h"
+#include "input.h"
 #include "output.h"
 #include "render.h"
 
 enum { PATH_BYTES = 4096 };
-
-static int by_number(const void *a, const void *b) {
-  return strverscmp(*(char *const *)a, *(char *const *)b);
-}
 
 bool render_are_scenes(char **operands) {
   const char *pattern = operands[0];
@@ -55,7 +52,7 @@ int render_scenes(const cli_value *values, char **operands, render_one_fn *rende
   if (exit_code == EXIT_CODE_OK && own == NULL) exit_code = fail(EXIT_CODE_FAILURE, "out of memory");
   if (exit_code == EXIT_CODE_OK && glob(operands[0], 0, NULL, &found) != 0)
     exit_code = fail(EXIT_CODE_INPUT, "%s: there is no such file", operands[0]);
-  if (found.gl_pathc > 0) qsort(found.gl_pathv, found.gl_pathc, sizeof *found.gl_pathv, by_number);
+  if (found.gl_pathc > 0) qsort(found.gl_pathv, found.gl_pathc, sizeof *found.gl_pathv, compare_by_number);
   for (size_t n = 0; n < found.gl_pathc && exit_code == EXIT_CODE_OK; n++) {
     char path[PATH_BYTES], *one[] = {found.gl_pathv[n], NULL};
     memcpy(own, values, RENDER_OPTION_COUNT * sizeof *own);

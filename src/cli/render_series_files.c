@@ -46,10 +46,6 @@ bool render_is_series(const cli_value *values, char **operands) {
          values[RENDER_RANGE_OF_ALL].given || (output->given && series_has_number(output->text));
 }
 
-static int by_number(const void *a, const void *b) {
-  return strverscmp(*(char *const *)a, *(char *const *)b);
-}
-
 static int fail_names(int count) {
   return fail(EXIT_CODE_FAILURE, "out of memory for the names of %d files", count);
 }
@@ -101,7 +97,7 @@ int series_find_files(series_job *job, char **operands) {
   job->meshes[job->mesh_count] = NULL;
   if (exit_code == EXIT_CODE_OK) exit_code = part_meshes(job);
   if (exit_code != EXIT_CODE_OK) return exit_code;
-  qsort(job->files, (size_t)job->count, sizeof *job->files, by_number);
+  qsort(job->files, (size_t)job->count, sizeof *job->files, compare_by_number);
   job->bad = calloc((size_t)job->count, sizeof *job->bad);
   return job->bad != NULL ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "out of memory");
 }

@@ -28,9 +28,10 @@ enum {
   GRID_MARGIN = 4
 };
 
-/* A look-up tells where something is visible. Its units are 2x2x2 cells, or bricks. Each unit has one byte,
- * for the eight boxes that begin at this unit and have two or three units along each axis: bit i + 2 j + 4 k
- * tells whether the box of 2 + i by 2 + j by 2 + k units shows something. */
+/* Tells which small boxes of the grid show something. A unit is 2x2x2 cells in one look-up, and a brick in
+ * the other. Eight boxes begin at each unit: they are two or three units long along each axis. A unit's byte
+ * has a bit for each of them: bit i + 2 j + 4 k tells whether the box of 2 + i by 2 + j by 2 + k units shows
+ * something. */
 enum { LOOKUP_SIZES = 2, LOOKUP_REACH = 3 /* units along an axis that one look-up covers */ };
 typedef struct cell_lookup {
   int32_t count[3];
@@ -47,8 +48,8 @@ typedef struct grid {
                           * memory. With pages, only bricks tell where something is visible */
   /* The field in bricks; borrowed from the volume; null if there are voxels. The lattice's coordinate is one
    * more than the grid's, so that cells of the grid (floor(p) + 1) are those of the lattice. The grid's
-   * "voxels" are the field's coefficients of level 0. As with pages, only the grid's bricks tell where
-   * something is visible */
+   * "voxels" are the field's coefficients of level 0. Of a field in bricks, as of pages, the look-ups of
+   * 2x2x2 cells do not exist: bricks alone tell where something is visible */
   const hl_bricks *bricks;
   hl_bricks *finite_bricks; /* in the grid's memory; a copy with the empty value where there are no data; null
                              * if all is finite */

@@ -86,8 +86,10 @@ void hl_write_field(hl_function_writer *w) {
   hl_add_colormap(w, "plasma", a->faint, a->solid + 0.6 * (top - a->solid), 0.25, 0.92);
 }
 
-/* Matter over decades of density: what fills most of the space is nearly clear, and the densest is nearly
- * opaque. Rows: fraction of the way from there to the densest, optical depth across the object. */
+/* Densities of particles spread over many powers of ten, so that the values are logarithms. Values below
+ * their mean, which fill most of the space, are clear, and the densest matter is nearly opaque. Each row has
+ * a fraction of the way from the mean to the densest value, and the optical depth of such matter across the
+ * object. */
 void hl_write_particles(hl_function_writer *w) {
   static const double rows[][2] = {{0, 0}, {0.3, 0.05}, {0.5, 0.5}, {0.65, 3}, {0.8, 15}, {1, 80}};
   const hl_data_analysis *a = w->analysis;

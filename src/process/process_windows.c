@@ -13,8 +13,9 @@ enum { STREAMS = 3 };
 
 /* ---- the command line ---- */
 
-/* Appends a word as the C library of the child takes it apart: in quotes, where backslashes before a quote
- * count twice. text: null to count. Returns the end. */
+/* Writes a word into the command line from `at` on, in quotes. The C library of the child splits the line
+ * again: there two backslashes before a quote stand for one. Returns the position after the word. text: null
+ * if the characters are only to be counted. */
 static size_t append_word(wchar_t *text, size_t at, const wchar_t *word) {
   size_t slashes = 0;
 #define PUT(c) (text != NULL ? (void)(text[at] = (c)) : (void)0, at++)
