@@ -27,6 +27,15 @@ def rest(browser):
     })()""")
 
 
+def resize(browser, width, height):
+    """Gives the page a window of width x height pixels, and waits until its picture has the size that this leaves for it."""
+    browser.resize(width, height)
+    browser.wait(f"""innerWidth === {width} && innerHeight === {height} && (() => {{
+      const view = document.getElementById('view');
+      const {{ image }} = halflight.store.scene;
+      return image.width === Math.max(view.clientWidth, 16) && image.height === Math.max(view.clientHeight, 16); }})()""")
+
+
 def scene_of(browser):
     return json.loads(browser.run("JSON.stringify(halflight.store.scene)"))
 

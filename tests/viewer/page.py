@@ -18,7 +18,7 @@ from PIL import Image
 import checks
 from browser import Browser
 from checks import check
-from hands import PROGRAM, STAGE, center, changes, equals_render, final_picture, press, rest, scene_of, set_control
+from hands import PROGRAM, STAGE, center, changes, equals_render, final_picture, press, resize, rest, scene_of, set_control
 from viewer import Viewer, need_viewer
 
 
@@ -145,13 +145,10 @@ def narrow_pages(browser):
     across = """import('./camera.js').then((m) => { const { camera, image } = halflight.store.scene;
       return m.worldHeight(camera) * Math.min(1, image.width / image.height); })"""
     before, camera = browser.run(across), scene_of(browser)["camera"]
-    browser.resize(820, 1180)
-    browser.wait("halflight.store.scene.image.height > halflight.store.scene.image.width")
+    resize(browser, 820, 1180)
     check(abs(browser.run(across) / before - 1) < 1e-9, "a narrow page shows as much across")
     rest(browser)
-    browser.resize(1280, 720)
-    browser.wait("halflight.store.scene.image.height < halflight.store.scene.image.width")
-    rest(browser)  # a slow page takes its new size in steps
+    resize(browser, 1280, 720)
     back = scene_of(browser)["camera"]
     check(max(abs(a - b) for a, b in zip(camera["position"], back["position"])) < 1e-9 * before, "a wide page shows what it showed")
 
@@ -227,7 +224,7 @@ def saved_with_bar(browser):
 def reach(browser):
     """On a phone, on a tablet and on a desk all buttons are in reach, and none is smaller than 24 pixels."""
     for size in ((390, 844), (820, 1180), (1280, 720)):
-        browser.resize(*size)
+        resize(browser, *size)
         browser.run("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
         rest(browser)
         away = browser.run("""[...document.querySelectorAll('header button, #view')].filter((e) => { const b = e.getBoundingClientRect();
@@ -257,8 +254,7 @@ with tempfile.TemporaryDirectory() as folder:
         saved_as_seen(browser)
         reach(browser)
         narrow_pages(browser)
-        browser.resize(720, 420)
-        browser.wait("halflight.store.scene.image.width === 380")
+        resize(browser, 720, 420)
         uploads(browser)
         hands_on_the_camera(browser)
         fingers_on_the_camera(browser)

@@ -17,7 +17,7 @@ import numpy
 import checks
 from browser import Browser
 from checks import check
-from hands import PROGRAM, STAGE, center, changes, copied_command, equals_render, final_picture, rest, scene_of
+from hands import PROGRAM, STAGE, center, changes, copied_command, equals_render, final_picture, resize, rest, scene_of
 from viewer import Viewer, need_viewer
 
 
@@ -211,6 +211,6 @@ with tempfile.TemporaryDirectory() as folder:
         if AXE:
             axe(browser, AXE[0])
         random_hands(browser, viewer)
-        browser.resize(760, 440)
+        resize(browser, 760, 440)
         equals_render(browser, "last")
         print(f"{checks.count} checks passed{'' if AXE else ', without axe-core'}; frames: {browser.run('halflight.frames.statistics')}")
