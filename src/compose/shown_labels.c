@@ -9,7 +9,7 @@
 #include "text/color.h"
 #include "text/edit_distance.h"
 #include "text/plain.h"
-#include "volume/text.h"
+#include "volume/io/text.h"
 
 static hl_status fail_show(const char *item, const char *mend, hl_error *error) {
   return hl_fail(error, HL_ERROR_ARGUMENT, "--show \"%.100s\": %s", item, mend);

@@ -11,9 +11,9 @@ struct hl_context {
   hl_context_options options;       /* callbacks filled in; instruction_set resolved */
   atomic_uint_least64_t held, peak; /* bytes of the context's blocks of memory: now, and the most so far */
   char *scratch_folder;             /* owned; the folder given to hl_context_limit_memory(); may be null */
-  atomic_uint_least64_t paged;      /* bytes of the pages of scratch files (volume/pages.h) held in memory */
-  struct hl_ranks *ranks;           /* borrowed; the ranks over which loaded volumes lie (halflight/ranks.h);
-                                     * may be null */
+  atomic_uint_least64_t paged; /* bytes of the pages of scratch files (volume/store/pages.h) held in memory */
+  struct hl_ranks *ranks;      /* borrowed; the ranks over which loaded volumes lie (halflight/ranks.h);
+                                * may be null */
   struct hl_context *whole; /* the context whose memory is used: for a confined context the context that made
                              * it, else this one */
   int folder;               /* a confined context's folder, as a descriptor; -1 if the context may open no

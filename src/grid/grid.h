@@ -16,7 +16,7 @@
 #include "grid/kernel.h"
 #include "scene/cut.h"
 #include "scene/scene.h"
-#include "volume/pages.h"
+#include "volume/store/pages.h"
 
 enum {
   HL_BRICK_CELLS = 4,
@@ -44,8 +44,8 @@ typedef struct grid {
                           * cell_bounds */
   const void *voxels;    /* [dimension[2]][dimension[1]][dimension[0]]; stored values: the volume's own or
                           * finite_voxels; rows are packed. Null with pages or bricks */
-  const hl_pages *pages; /* the volume's pages (volume/pages.h), or value_pages; null if the voxels are in
-                          * memory. With pages, only bricks tell where something is visible */
+  const hl_pages *pages; /* the volume's pages (volume/store/pages.h), or value_pages; null if the voxels are
+                          * in memory. With pages, only bricks tell where something is visible */
   /* The field in bricks; borrowed from the volume; null if there are voxels. The lattice's coordinate is one
    * more than the grid's, so that cells of the grid (floor(p) + 1) are those of the lattice. The grid's
    * "voxels" are the field's coefficients of level 0. Of a field in bricks, as of pages, the look-ups of

@@ -12,8 +12,8 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "grid/prefilter.h"
-#include "volume/glimpse.h"
-#include "volume/scratch_file.h"
+#include "volume/store/glimpse.h"
+#include "volume/store/scratch_file.h"
 
 static const char subject[] = "values of a volume larger than memory";
 

@@ -2,14 +2,14 @@
  * non-finite values are replaced, or the coefficients of the interpolating kernel.
  *
  * For a volume in memory these values are a copy (make_grid.c). Here they are pages of their own
- * (volume/pages.h), in a scratch file or over ranks. The values in the pages have the same bits as such a
- * copy. */
+ * (volume/store/pages.h), in a scratch file or over ranks. The values in the pages have the same bits as such
+ * a copy. */
 #ifndef HL_GRID_VALUE_PAGES_H
 #define HL_GRID_VALUE_PAGES_H
 
 #include "core/pool.h"
 #include "grid/kernel.h"
-#include "volume/pages.h"
+#include "volume/store/pages.h"
 
 /* Makes the pages. volume: must have pages. empty: replaces values that are not finite. *pages: owned by the
  * caller. Over ranks the call is collective, and so is the release. Coefficients are refused there unless

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 #include "core/error.h"
-#include "volume/glimpse.h"
+#include "volume/store/glimpse.h"
 
 typedef struct hl_sample {
   hl_context *context;

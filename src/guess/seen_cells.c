@@ -9,7 +9,7 @@
 #include "guess/looks.h"
 #include "guess/sample.h"
 #include "scene/cut.h"
-#include "volume/pages.h"
+#include "volume/store/pages.h"
 
 #define FAINT          0.02 /* fraction of the greatest opacity below which voxels at the rim do not count */
 #define LOST           0.04 /* least optical depth of a column that is seen */

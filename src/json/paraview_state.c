@@ -21,9 +21,9 @@
 #include "core/vector.h"
 #include "json/paraview_state.h"
 #include "scene/scene.h"
-#include "volume/text.h"
+#include "volume/io/text.h"
+#include "volume/io/xml.h"
 #include "volume/volume.h"
-#include "volume/xml.h"
 
 enum { BOX_NUMBERS = 8, TERMS = 8, MOST_BOXES = HL_LIMIT_SHAPES / TERMS };
 static const double deviation = 0.3; /* standard deviation of a Gaussian, as a fraction of the box's sides */

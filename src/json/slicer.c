@@ -9,7 +9,7 @@
 #include "core/vector.h"
 #include "json/foreign_nodes.h"
 #include "scene/transfer_function.h"
-#include "volume/text.h"
+#include "volume/io/text.h"
 #include "volume/volume.h"
 
 enum { MOST_COMPONENTS = 4 }; /* the value of VTK_MAX_VRCOMP */

@@ -13,8 +13,8 @@
 #include "json/foreign_nodes.h"
 #include "json/slicer.h"
 #include "text/edit_distance.h"
-#include "volume/text.h"
-#include "volume/xml.h"
+#include "volume/io/text.h"
+#include "volume/io/xml.h"
 
 enum { MOST_PRESETS = 256, NAME_BYTES = 64 };
 

@@ -16,7 +16,7 @@
 #include "scene/check.h"
 #include "scene/function_plane.h"
 #include "scene/scene.h"
-#include "volume/text.h"
+#include "volume/io/text.h"
 
 static bool has(const json_t *object, const char *key) { return json_object_get(object, key) != NULL; }
 

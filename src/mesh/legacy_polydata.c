@@ -4,8 +4,8 @@
 
 #include "core/memory.h"
 #include "mesh/polydata.h"
-#include "volume/legacy_arrays.h"
-#include "volume/numbers.h"
+#include "volume/formats/vtk/legacy_arrays.h"
+#include "volume/io/numbers.h"
 
 typedef struct legacy_file {
   hl_legacy_vtk file; /* must come first: callbacks find the other members by the address of this one */

@@ -9,8 +9,8 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "mesh/mesh.h"
-#include "volume/legacy_arrays.h"
-#include "volume/text.h"
+#include "volume/formats/vtk/legacy_arrays.h"
+#include "volume/io/text.h"
 
 static const struct {
   const char *name, *ending;

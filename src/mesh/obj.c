@@ -10,7 +10,7 @@
 #include "core/memory.h"
 #include "image/srgb.h"
 #include "mesh/obj_materials.h"
-#include "volume/text.h"
+#include "volume/io/text.h"
 
 typedef struct obj_reader {
   mesh_parts *parts;

@@ -10,7 +10,7 @@
 #include "core/memory.h"
 #include "image/srgb.h"
 #include "mesh/gltf.h"
-#include "volume/text.h"
+#include "volume/io/text.h"
 
 const obj_material *hl_obj_find_material(const obj_materials *materials, const char *name) {
   for (size_t n = materials->count; n > 0; n--)

@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "image/srgb.h"
 #include "mesh/mesh.h"
-#include "volume/numbers.h"
+#include "volume/io/numbers.h"
 
 typedef enum ply_type {
   PLY_NONE,

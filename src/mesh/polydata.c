@@ -13,7 +13,7 @@
 #include "core/memory.h"
 #include "image/colormaps.h"
 #include "image/srgb.h"
-#include "volume/text.h"
+#include "volume/io/text.h"
 
 /* Radius for files that give none, as a fraction of the diagonal of the box around all points. */
 static const double RADIUS_PART = 1.0 / 400;

@@ -6,7 +6,7 @@
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
-#include "volume/text.h"
+#include "volume/io/text.h"
 
 enum { HEADER_BYTES = 84, FACET_BYTES = 50 };
 

@@ -9,8 +9,8 @@
 #include "mesh/polydata.h"
 #include "mesh/unstructured.h"
 #include "volume/convert.h"
-#include "volume/numbers.h"
-#include "volume/vtk_xml.h"
+#include "volume/formats/vtk/vtk_xml.h"
+#include "volume/io/numbers.h"
 
 /* Further arrays of a piece are ignored. A file with more than MOST_PIECES pieces is refused. */
 enum { MOST_ARRAYS = 256, MOST_PIECES = 4096 };

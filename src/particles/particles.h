@@ -8,8 +8,9 @@
  * coarse to fine: c[l] = S c[l + 1] + what was spread on level l, where S subdivides a spline's coefficients
  * exactly.
  *
- * In:  places, what each particle carries, and smoothing lengths or none (volume/particles.c).
- * Out: coefficients on the points of level 0. The bytes are the same with any number of threads. */
+ * In:  places, what each particle carries, and smoothing lengths or none
+ * (volume/formats/particles/particles.c). Out: coefficients on the points of level 0. The bytes are the same
+ * with any number of threads. */
 #ifndef HL_PARTICLES_PARTICLES_H
 #define HL_PARTICLES_PARTICLES_H
 

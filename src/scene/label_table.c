@@ -8,7 +8,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "scene/transfer_function.h"
-#include "volume/text.h"
+#include "volume/io/text.h"
 
 enum { MOST_BYTES = 4 << 20, MOST_WORDS = 12 };
 

@@ -10,7 +10,7 @@
 #include "scene/placement.h"
 #include "scene/scene.h"
 #include "volume/coarser.h"
-#include "volume/pages.h"
+#include "volume/store/pages.h"
 
 enum { MOST_LEVELS = 3, LEAST_VOXELS = 64 * 64 * 64 };
 

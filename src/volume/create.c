@@ -14,10 +14,10 @@
 #include "text/json_value.h"
 #include "volume/convert.h"
 #include "volume/exact.h"
-#include "volume/glimpse.h"
 #include "volume/in_bricks.h"
-#include "volume/pages.h"
 #include "volume/statistics.h"
+#include "volume/store/glimpse.h"
+#include "volume/store/pages.h"
 
 const char *hl_component_name(int component) {
   switch (component) {

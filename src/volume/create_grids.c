@@ -6,8 +6,8 @@
 #include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
-#include "volume/amr.h"
-#include "volume/cell_mesh.h"
+#include "volume/formats/amr/amr.h"
+#include "volume/formats/vtk/cell_mesh.h"
 
 /* ---- meshes of cells ---- */
 

@@ -10,7 +10,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "volume/convert.h"
-#include "volume/scratch_file.h"
+#include "volume/store/scratch_file.h"
 
 /* Floats hold all whole numbers up to 2^24. Numbers nearer to 0 count as held, whatever their fraction. */
 #define HELD_BELOW 0x1p24

@@ -7,10 +7,10 @@
 #include "core/door.h"
 #include "core/file.h"
 #include "core/memory.h"
-#include "volume/bundle_zip.h"
-#include "volume/decoders.h"
-#include "volume/format.h"
-#include "volume/text.h"
+#include "volume/formats/format.h"
+#include "volume/io/bundle_zip.h"
+#include "volume/io/decoders.h"
+#include "volume/io/text.h"
 
 static bool begins(const unsigned char *bytes, size_t length, const char *mark, size_t mark_length) {
   return length >= mark_length && memcmp(bytes, mark, mark_length) == 0;

@@ -14,9 +14,9 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "volume/convert.h"
-#include "volume/raw.h"
+#include "volume/formats/raw.h"
+#include "volume/io/writer.h"
 #include "volume/volume.h"
-#include "volume/writer.h"
 
 /* ZLIB_WINDOW is zlib's largest window; GZIP is added to it for gzip (zlib.h). */
 enum { OUT_BYTES = 1 << 18, ZLIB_WINDOW = 15, GZIP = 16 };

@@ -15,7 +15,7 @@
 #include "core/memory.h"
 #include "volume/counts.h"
 #include "volume/exact.h"
-#include "volume/pages.h"
+#include "volume/store/pages.h"
 
 enum { LANES = 8 };
 /* PIECE: voxels between two checks for cancellation, which take a few milliseconds. COPIED_PIECE: voxels that

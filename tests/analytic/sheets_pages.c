@@ -12,7 +12,7 @@
 #include "core/context.h"
 #include "grid/make_grid.h"
 #include "reference_stage.h"
-#include "volume/pages.h"
+#include "volume/store/pages.h"
 #include "ways_to_draw.h"
 
 enum { SIDE = 24, FLOATS = SIDE * SIDE * 4, MOST_VOXELS = 40 * 40 * 40 };

@@ -13,7 +13,7 @@
 #include "core/context.h"
 #include "ranks/ranks.h"
 #include "reference_stage.h"
-#include "volume/pages.h"
+#include "volume/store/pages.h"
 
 enum { SIDE = 24, FLOATS = SIDE * SIDE * 4, MOST_VOXELS = 40 * 40 * 40 };
 

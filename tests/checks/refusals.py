@@ -30,9 +30,9 @@ def check(name, condition, what=""):
 MEND = re.compile(r": (choose|convert|crop|decompress|export|extract|give|install|join|number|pack|raise|reduce|resample|save|shrink|state|take|unpack|write) |"
                   r": (unpack|resample) it")
 # Where the text is put together of parts, which hold the mend.
-PARTS = {"volume/load.c": "%s: %s", "volume/dicom/header.c": "%s: %s: convert it with gdcmconv or dcm2niix",
-         "volume/npy.c": ("save it as", ""), "volume/vti.c": "an XML file whose first element is", "volume/vtu.c": "an XML file whose first element is", "mesh/vtp.c": "an XML file whose first element is",
-         "volume/vtk_xml.c": ("a VTKFile of type", "a DataArray of type", " is not read: save it")}
+PARTS = {"volume/load.c": "%s: %s", "volume/formats/dicom/header.c": "%s: %s: convert it with gdcmconv or dcm2niix",
+         "volume/formats/npy.c": ("save it as", ""), "volume/formats/vtk/vti.c": "an XML file whose first element is", "volume/formats/vtk/vtu.c": "an XML file whose first element is", "mesh/vtp.c": "an XML file whose first element is",
+         "volume/formats/vtk/vtk_xml.c": ("a VTKFile of type", "a DataArray of type", " is not read: save it")}
 
 
 def call_text(text, start):

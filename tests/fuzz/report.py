@@ -17,17 +17,17 @@ BEGIN, END = "<!-- fuzz table -->", "<!-- end of fuzz table -->"
 
 # What a target is for: its title, and the files whose lines count.
 TARGETS = {
-    "nrrd": ("NRRD", ["volume/nrrd.c", "volume/nrrd_header.c"]),
-    "nifti": ("NIfTI", ["volume/nifti.c"]),
-    "metaimage": ("MetaImage", ["volume/metaimage.c"]),
-    "legacy_vtk": ("legacy VTK", ["volume/legacy_vtk.c"]),
-    "vti": ("VTK XML", ["volume/vti.c", "volume/xml.c"]),
-    "npy": ("NumPy", ["volume/npy.c"]),
-    "mrc": ("MRC, CCP4", ["volume/mrc.c"]),
-    "dicom": ("DICOM, zip archives", ["volume/dicom.c", "volume/source.c", "volume/bundle_zip.c"] + [
-        f"volume/dicom/{name}.c" for name in ("directory", "elements", "frame", "header", "jpeg", "jpeg_2000", "jpeg_codes", "jpeg_extended", "jpeg_ls",
+    "nrrd": ("NRRD", ["volume/formats/nrrd.c", "volume/formats/nrrd_header.c"]),
+    "nifti": ("NIfTI", ["volume/formats/nifti.c"]),
+    "metaimage": ("MetaImage", ["volume/formats/metaimage.c"]),
+    "legacy_vtk": ("legacy VTK", ["volume/formats/vtk/legacy_vtk.c"]),
+    "vti": ("VTK XML", ["volume/formats/vtk/vti.c", "volume/io/xml.c"]),
+    "npy": ("NumPy", ["volume/formats/npy.c"]),
+    "mrc": ("MRC, CCP4", ["volume/formats/mrc.c"]),
+    "dicom": ("DICOM, zip archives", ["volume/formats/dicom/dicom.c", "volume/io/source.c", "volume/io/bundle_zip.c"] + [
+        f"volume/formats/dicom/{name}.c" for name in ("directory", "elements", "frame", "header", "jpeg", "jpeg_2000", "jpeg_codes", "jpeg_extended", "jpeg_ls",
                                               "jpeg_lossless", "rle", "set", "stack", "voxels")]),
-    "raw": ("bare voxels, descriptors", ["volume/raw.c"]),
+    "raw": ("bare voxels, descriptors", ["volume/formats/raw.c"]),
     "transfer": ("transfer functions", ["json/foreign_nodes.c", "json/paraview.c", "json/paraview_state.c", "json/slicer.c", "json/slicer_text.c", "json/transfer_function.c"]),
     "shapes": ("shapes", ["json/shapes.c", "json/shapes_volume.c", "shape/"]),
     "picture": ("PNG, OpenEXR, NPY", ["image/png_read.c", "image/exr_read.c", "image/npy.c"]),
@@ -42,18 +42,18 @@ TARGETS["words"] = ("the command line", ["cli/options.c", "cli/options_color.c",
 TARGETS["http"] = ("requests of the viewer", ["server/"])
 TARGETS["obj"] = ("OBJ and its materials", ["mesh/obj"])
 TARGETS["stl"] = ("STL", ["mesh/stl.c"])
-TARGETS["mgh"] = ("FreeSurfer's MGH", ["volume/mgh.c"])
-TARGETS["particle_files"] = ("particles", ["particles/", "volume/particle", "volume/lammps.c", "volume/xyz.c"])
-TARGETS["vtr"] = ("VTK rectilinear grids", ["volume/rectilinear.c"])
-TARGETS["vtu"] = ("VTK's cells", ["volume/vtu.c", "volume/cell_mesh.c", "bricks/cells.c"])
-TARGETS["amrex"] = ("AMReX plotfiles", ["volume/amrex.c", "volume/amr.c", "bricks/patches.c"])
+TARGETS["mgh"] = ("FreeSurfer's MGH", ["volume/formats/mgh.c"])
+TARGETS["particle_files"] = ("particles", ["particles/", "volume/formats/particles/"])
+TARGETS["vtr"] = ("VTK rectilinear grids", ["volume/formats/vtk/rectilinear.c"])
+TARGETS["vtu"] = ("VTK's cells", ["volume/formats/vtk/vtu.c", "volume/formats/vtk/cell_mesh.c", "bricks/cells.c"])
+TARGETS["amrex"] = ("AMReX plotfiles", ["volume/formats/amr/amrex.c", "volume/formats/amr/amr.c", "bricks/patches.c"])
 TARGETS["ply"] = ("PLY", ["mesh/ply.c"])
 TARGETS["gltf"] = ("glTF", ["mesh/gltf"])
 TARGETS["vtp"] = ("VTK PolyData", ["mesh/vtp.c", "mesh/legacy_polydata.c", "mesh/polydata.c"])
-TARGETS["tiff"] = ("TIFF, OME-TIFF, ImageJ", ["volume/tiff"])
-TARGETS["slices"] = ("pictures of slices", ["volume/slice"])
-TARGETS["zarr"] = ("Zarr, OME-Zarr", ["volume/zarr"])
-TARGETS["nanovdb"] = ("NanoVDB", ["volume/nanovdb"])
+TARGETS["tiff"] = ("TIFF, OME-TIFF, ImageJ", ["volume/formats/tiff/"])
+TARGETS["slices"] = ("pictures of slices", ["volume/formats/slices/"])
+TARGETS["zarr"] = ("Zarr, OME-Zarr", ["volume/formats/zarr/"])
+TARGETS["nanovdb"] = ("NanoVDB", ["volume/formats/vdb/"])
 SHARED[2].append("tiff")
 
 root = pathlib.Path(__file__).resolve().parents[2]

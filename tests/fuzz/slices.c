@@ -3,7 +3,7 @@
 #include "core/memory.h"
 #include "target.h"
 #include "volume/convert.h"
-#include "volume/slice_picture.h"
+#include "volume/formats/slices/slice_picture.h"
 
 const uint64_t fuzz_memory_limit = 6 << 20;
 

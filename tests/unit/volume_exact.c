@@ -13,7 +13,7 @@
 
 #include "volume/convert.h"
 #include "volume/exact.h"
-#include "volume/pages.h"
+#include "volume/store/pages.h"
 
 enum { SIDE = 4, COUNT = SIDE * SIDE * SIDE };
 

@@ -13,9 +13,9 @@
 #include "guess/sample.h"
 #include "scene/scene.h"
 #include "volume/brick_bounds.h"
-#include "volume/destination.h"
-#include "volume/glimpse.h"
-#include "volume/pages.h"
+#include "volume/io/destination.h"
+#include "volume/store/glimpse.h"
+#include "volume/store/pages.h"
 
 static hl_context *make_context(void) {
   hl_context *context = NULL;

@@ -9,9 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "volume/decoders.h"
-#include "volume/text.h"
-#include "volume/xml.h"
+#include "volume/io/decoders.h"
+#include "volume/io/text.h"
+#include "volume/io/xml.h"
 
 static bool same_double(double a, double b) {
   return (isnan(a) && isnan(b)) || memcmp(&a, &b, sizeof a) == 0;

@@ -1,0 +1,48 @@
+/* volume/formats/amr/amr.h - volumes of adaptive grids: cells in patches at levels of refinement.
+ *
+ * Files and callers number levels from the coarsest, 0. Each level has an index space of its own: cell i of a
+ * level covers the cells i ratio .. i ratio + ratio - 1 of the next finer level. */
+#ifndef HL_VOLUME_AMR_H
+#define HL_VOLUME_AMR_H
+
+#include "bricks/patches.h"
+#include "volume/volume.h"
+
+enum { HL_AMR_LEVELS_MOST = BRICK_LEVELS_LIMIT };
+
+/* The shape of an adaptive grid. */
+typedef struct hl_amr_shape {
+  int levels;                    /* 1 .. HL_AMR_LEVELS_MOST */
+  int ratio[HL_AMR_LEVELS_MOST]; /* cells of the next finer level along a cell's edge; [levels - 1] are used;
+                                  * each a power of two */
+  ptrdiff_t first[3];            /* index of the first cell of level 0 in the domain */
+  size_t count[3];               /* cells of level 0 in the domain */
+  double origin[3];              /* world: the corner of the domain with the least coordinates */
+  double spacing[3];             /* world: edges of a cell of level 0 */
+} hl_amr_shape;
+
+typedef struct hl_amr {
+  hl_context *context;
+  hl_amr_shape shape;
+  int lattice_level[HL_AMR_LEVELS_MOST]; /* the level of patches.h for each level */
+  hl_patches *patches;                   /* owned */
+  const char *subject;                   /* borrowed; starts error lines */
+} hl_amr;
+
+/* Checks the shape. amr: zeros on failure. */
+hl_status hl_amr_begin(hl_context *context, const hl_amr_shape *shape, const char *subject, hl_amr *amr,
+                       hl_error *error);
+
+/* Adds a patch: the cells first .. first + count - 1 of a level's index space; values: [count[2]][count[1]]
+ * [count[0]], x fastest. */
+hl_status hl_amr_add(hl_amr *amr, int level, const ptrdiff_t first[3], const size_t count[3],
+                     const float *values, hl_error *error);
+
+/* Replaces the size of the finest cells, in the world; all 0: leaves it as it is. */
+void hl_amr_set_spacing(hl_amr *amr, const double spacing[3]);
+
+/* Makes the volume. Its voxels have the size of the finest cells. */
+hl_status hl_amr_finish(hl_amr *amr, hl_volume **volume, hl_error *error);
+void hl_amr_close(hl_amr *amr);
+
+#endif

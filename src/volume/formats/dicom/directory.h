@@ -1,0 +1,12 @@
+/* volume/formats/dicom/directory.h - DICOMDIR: the file that lists the files of a disc (PS3.10, chapter 8).
+ */
+#ifndef HL_VOLUME_DICOM_DIRECTORY_H
+#define HL_VOLUME_DICOM_DIRECTORY_H
+
+#include "volume/io/bundle.h"
+
+/* Adds to the bundle's entries the files that a DICOMDIR names and that exist. Adds nothing if the source is
+ * another kind of DICOM file. */
+hl_status hl_dicom_directory_read(hl_source **source, hl_bundle *bundle, hl_error *error);
+
+#endif

@@ -1,0 +1,107 @@
+/* volume/formats/dicom/header.h - the header of one DICOM file: everything except the pixels.
+ *
+ * Numbers that a file does not state are NAN. Source: DICOM PS3.3 (the attributes), PS3.6 (their tags). */
+#ifndef HL_VOLUME_DICOM_HEADER_H
+#define HL_VOLUME_DICOM_HEADER_H
+
+#include "volume/formats/dicom/elements.h"
+#include "volume/formats/dicom/mosaic.h"
+#include "volume/formats/dicom/palette.h"
+#include "volume/formats/dicom/segments.h"
+#include "volume/formats/dicom/vectors.h"
+
+enum { HL_DICOM_UID_BYTES = 66, HL_DICOM_TEXT_BYTES = 66, HL_DICOM_FRAMES_MOST = 1 << 20 };
+
+typedef enum hl_dicom_codec {
+  HL_DICOM_NATIVE,
+  HL_DICOM_RLE,
+  HL_DICOM_JPEG,
+  HL_DICOM_JPEG_LS,
+  HL_DICOM_JPEG_2000,
+  HL_DICOM_UNKNOWN_CODEC
+} hl_dicom_codec;
+
+/* Attributes that may differ between the frames of a file. */
+typedef struct hl_dicom_frame {
+  double position[3];    /* the centre of the first voxel, in the patient: LPS, millimetres */
+  double orientation[6]; /* unit steps along a row, then along a column */
+  double spacing[2];     /* between rows, then between columns */
+  double slope, intercept;
+  double location;                                  /* along the normal, millimetres: SliceLocation */
+  double volume_position[3], volume_orientation[6]; /* position and orientation in the space of an ultrasound
+                                                     * volume */
+  /* Attributes in which volumes at the same positions differ: echoes, diffusion, phases, times, kinds of
+   * pictures. */
+  double temporal, echo, b_value, diffusion[3], inversion, flip, trigger, kind, acquisition, time, instance;
+  double segment;       /* the number of the segment that the frame shows */
+  uint32_t file, index; /* index of the file in the set, and of the frame in the file */
+  uint32_t tile;        /* number of its tile in a mosaic */
+} hl_dicom_frame;
+
+/* The format of the pixels. */
+typedef struct hl_dicom_pixels {
+  size_t rows, columns, samples;
+  int allocated, stored, high;                         /* bits allocated; bits stored; place of the highest
+                                                        * stored bit */
+  bool is_signed, planar, is_float, big_endian, words; /* words: whether 8-bit pixels lie in 16-bit words */
+  size_t tiles;           /* tiles along each side of a mosaic, each of which is a slice; else 1 */
+  bool inverted;          /* whether the least value is white (MONOCHROME1) */
+  bool is_ybr, is_halved; /* is_ybr: brightness and two colour differences; is_halved: the differences are
+                           * stored only for every other column */
+  bool has_palette;       /* whether pixels of one sample stand for colours, and become three samples of 8
+                           * bits */
+  hl_dicom_codec codec;
+  uint64_t offset, length; /* position and length of the pixel data in the file; the length is not set if they
+                            * are encapsulated */
+  bool encapsulated;
+} hl_dicom_pixels;
+
+typedef struct hl_dicom_header {
+  char syntax[HL_DICOM_UID_BYTES];
+  bool deflated, has_swapped_pixels; /* has_swapped_pixels: big-endian pixels among little-endian elements */
+  char series_uid[HL_DICOM_UID_BYTES], modality[HL_DICOM_TEXT_BYTES], description[HL_DICOM_TEXT_BYTES];
+  char image_type[2 * HL_DICOM_TEXT_BYTES], photometric[HL_DICOM_TEXT_BYTES];
+  double series_number;
+  double rows, columns, samples, allocated, stored, high, representation, planar, frame_count;
+  double padding[2]; /* the padding value and the other end of its range */
+  double slice_spacing, thickness, imager_spacing[2], dose_scale;
+  double window[2]; /* centre and width of the window */
+  hl_dicom_frame base;
+  hl_dicom_frame
+      *frames; /* owned; [frames_told]; the attributes that the file states for single frames; may be null */
+  size_t frames_told, frames_capacity;
+  double *offsets; /* owned; [offset_count]; offsets along the normal of a dose grid's frames */
+  size_t offset_count;
+  double matrix_rows, matrix_columns; /* size of the picture of which the frames are tiles */
+  hl_dicom_mosaic mosaic;
+  hl_dicom_palette palette;
+  hl_dicom_segments segments;
+  hl_dicom_vectors vectors;
+  bool is_volume_space; /* whether positions are in the space of an ultrasound volume, not of the patient */
+  bool has_pixels;
+  hl_dicom_pixels pixels;
+} hl_dicom_header;
+
+/* The size of a slice, which is a tile of a mosaic or the whole picture. */
+static inline size_t hl_dicom_slice_rows(const hl_dicom_pixels *p) { return p->rows / p->tiles; }
+static inline size_t hl_dicom_slice_columns(const hl_dicom_pixels *p) { return p->columns / p->tiles; }
+/* The number of samples of a pixel after it is read. */
+static inline size_t hl_dicom_read_samples(const hl_dicom_pixels *p) {
+  return p->has_palette ? 3 : p->samples;
+}
+
+/* Whether bytes may begin a DICOM file. Such a file has the mark "DICM" or begins with an element. */
+bool hl_dicom_has_mark(const unsigned char *bytes, size_t length);
+bool hl_dicom_may_begin(const unsigned char *bytes, size_t length);
+
+/* Prepares the reader for the elements after the file's meta information, and finds the transfer syntax
+ * there. *source is replaced if the rest of the file is deflated. */
+hl_status hl_dicom_begin(hl_source **source, hl_dicom_header *header, hl_dicom_reader *reader,
+                         hl_error *error);
+
+/* Reads a file's header up to its pixels. Release the header also after a failure. *source may be replaced,
+ * as by hl_dicom_begin(). */
+hl_status hl_dicom_header_read(hl_source **source, hl_dicom_header *header, hl_error *error);
+void hl_dicom_header_release(hl_context *context, hl_dicom_header *header);
+
+#endif

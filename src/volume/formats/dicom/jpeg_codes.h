@@ -1,0 +1,64 @@
+/* volume/formats/dicom/jpeg_codes.h - shared by the JPEG processes with Huffman codes: marker segments,
+ * tables of codes, bits.
+ *
+ * Source: ITU-T T.81. Markers: annex B. Codes: annexes C and F.2.2. */
+#ifndef HL_VOLUME_DICOM_JPEG_CODES_H
+#define HL_VOLUME_DICOM_JPEG_CODES_H
+
+#include "volume/formats/dicom/codecs.h"
+
+enum { HL_JPEG_TABLES = 4, HL_JPEG_LOOK_BITS = 9 };
+
+typedef struct hl_jpeg_table {
+  bool known;
+  unsigned char values[256];
+  int greatest[17];                      /* the greatest code of each length; -1 if there is none */
+  int first[17];                         /* a code less first[length] is the index of its value */
+  uint16_t look[1 << HL_JPEG_LOOK_BITS]; /* length << 8 | value; 0 for a longer code */
+} hl_jpeg_table;
+
+/* One picture that is being read. */
+typedef struct hl_jpeg_reader {
+  const unsigned char *bytes;
+  size_t length, at;
+  uint64_t bits; /* bits that come next, from bit `bit_count` - 1 downwards */
+  int bit_count;
+  size_t missing;                         /* number of bytes read beyond the end */
+  size_t restart;                         /* units between restarts; 0 if there are no restarts */
+  hl_jpeg_table table[2][HL_JPEG_TABLES]; /* tables of DC codes and differences; tables of AC codes */
+} hl_jpeg_reader;
+
+/* The markers of segments. */
+enum {
+  HL_JPEG_FRAME = 0xc0,          /* baseline JPEG */
+  HL_JPEG_FRAME_EXTENDED = 0xc1, /* sequential JPEG with Huffman codes */
+  HL_JPEG_FRAME_LOSSLESS = 0xc3,
+  HL_JPEG_TABLES_OF_CODES = 0xc4,
+  HL_JPEG_SCAN = 0xda,
+  HL_JPEG_QUANTIZATION = 0xdb,
+  HL_JPEG_RESTART_INTERVAL = 0xdd
+};
+
+/* Takes a segment that the reader does not keep itself: any segment except tables of codes and the restart
+ * interval. */
+typedef hl_status hl_jpeg_take_function(void *decoder, int marker, const unsigned char *content,
+                                        size_t length, hl_error *error);
+
+/* Reads the marker segments up to the first scan's codes, including the scan's segment. name: the kind of
+ * JPEG, for error lines. */
+hl_status hl_jpeg_read_headers(hl_jpeg_reader *r, const hl_dicom_packed *packed, const char *name,
+                               hl_jpeg_take_function *take, void *decoder, hl_error *error);
+
+/* Reads bytes until at least 48 bits are held. After a marker or the end, the bits are zeros. */
+void hl_jpeg_fill(hl_jpeg_reader *r);
+
+/* The value of the next code; -1 if there is no such code. At least 32 bits must be held. */
+int hl_jpeg_take_code(hl_jpeg_reader *r, const hl_jpeg_table *table);
+
+/* The signed difference that `count` bits, 1 to 16, stand for (T.81, figure F.12). */
+int hl_jpeg_take_number(hl_jpeg_reader *r, int count);
+
+/* Skips a restart marker. The bits before it are padding. */
+void hl_jpeg_take_restart(hl_jpeg_reader *r);
+
+#endif

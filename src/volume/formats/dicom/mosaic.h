@@ -1,0 +1,22 @@
+/* volume/formats/dicom/mosaic.h - mosaics: pictures that hold all slices of a volume, as Siemens' scanners
+ * write them.
+ *
+ * A mosaic of n slices has ceil(sqrt(n)) tiles along each side, row by row; the last ones may be empty. The
+ * number of slices and their normal are in private elements. Source: the layout that nibabel and dcm2niix
+ * read ("CSA headers"). */
+#ifndef HL_VOLUME_DICOM_MOSAIC_H
+#define HL_VOLUME_DICOM_MOSAIC_H
+
+#include "volume/formats/dicom/elements.h"
+
+typedef struct hl_dicom_mosaic {
+  unsigned header_block, csa_block; /* the private blocks of the groups 0019 and 0029; 0 if not seen */
+  double slices;                    /* number of slices; 0 if not told */
+  double normal[3];                 /* the direction from slice to slice; 0 if not told */
+} hl_dicom_mosaic;
+
+/* Takes an element at the top of a file. Elements that have nothing to do with mosaics change nothing. */
+hl_status hl_dicom_mosaic_take(hl_dicom_reader *reader, const hl_dicom_element *element,
+                               hl_dicom_mosaic *mosaic, hl_error *error);
+
+#endif

@@ -1,0 +1,34 @@
+/* volume/formats/dicom/stack.h - makes evenly spaced slices of a grid from the frames of a series.
+ *
+ * The grid's axes run along the rows, along the columns, and from the first slice to the last. The third axis
+ * need not be the normal, so that the sheared grid of a tilted gantry is kept. */
+#ifndef HL_VOLUME_DICOM_STACK_H
+#define HL_VOLUME_DICOM_STACK_H
+
+#include "volume/formats/dicom/set.h"
+#include "volume/volume.h"
+
+/* A slice of the grid: at a position that has frames, or interpolated between two such positions. */
+typedef struct hl_dicom_slice {
+  size_t place;  /* index of the position at the slice or before it */
+  double weight; /* weight of the next position's frame; 0 if the slice lies at `place` */
+  bool empty;    /* whether the slice lies in a gap between two positions that nothing fills */
+} hl_dicom_slice;
+
+typedef struct hl_dicom_stack {
+  hl_context *context;
+  const hl_dicom_frame *
+      *frames; /* owned; [place_count][times]; for segments: null where a segment has no frame */
+  size_t place_count, times;
+  const hl_dicom_segments *segments; /* for a segmentation by frames, which has a place in `times` for each
+                                      * segment; else null */
+  size_t empty_count;                /* number of empty slices */
+  hl_dicom_slice *slices;            /* owned; [grid.dimensions[2]] */
+  hl_volume_description grid;        /* dimensions, origin, axes, space */
+} hl_dicom_stack;
+
+/* Makes the stack. Release it also after a failure. */
+hl_status hl_dicom_stack_make(const hl_dicom_set *set, size_t series, hl_dicom_stack *stack, hl_error *error);
+void hl_dicom_stack_release(hl_dicom_stack *stack);
+
+#endif

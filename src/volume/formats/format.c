@@ -1,0 +1,296 @@
+/* volume/formats/format.c - shared by the readers of all formats: the choice of an array and a component,
+ * names of types. */
+#include "volume/formats/format.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+#include "volume/colors.h"
+#include "volume/convert.h"
+#include "volume/io/text.h"
+
+hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t components, hl_voxel_type type,
+                        bool of_cells, hl_error *error) {
+  if (request->arrays == NULL)
+    request->arrays = hl_allocate_zeroed(request->context, HL_ARRAYS_MOST, sizeof *request->arrays);
+  if (request->arrays == NULL)
+    return hl_fail_memory(error, HL_ARRAYS_MOST * sizeof *request->arrays, "a list of arrays");
+  request->more = request->array_count == HL_ARRAYS_MOST;
+  if (request->more) return HL_OK;
+  char *copy = hl_copy_text(request->context, name);
+  if (copy == NULL) return hl_fail_memory(error, strlen(name) + 1, "the name of an array");
+  request->arrays[request->array_count++] = (hl_array_entry){copy, components, type, of_cells};
+  return HL_OK;
+}
+
+/* Writes a list of arrays: "density; velocity (3 components); ...". */
+static void list_arrays(const hl_load_request *request, char *text, size_t size) {
+  enum { NAMED = 12 };
+  size_t used = 0;
+  text[0] = 0;
+  for (size_t n = 0; n < request->array_count && n < NAMED && used < size; n++) {
+    const hl_array_entry *array = &request->arrays[n];
+    char shown[HL_PRINTABLE_BYTES], components[40] = "";
+    if (array->components > 1)
+      snprintf(components, sizeof components, " (%zu components)", array->components);
+    used += (size_t)snprintf(
+        text + used, size - used, "%s%s%s%s%s", n > 0 ? "; " : "",
+        array->name[0] != 0 ? hl_text_printable(shown, array->name) : "one without a name", components,
+        array->of_cells ? " of cells" : "", array->type == 0 ? " (not read)" : "");
+  }
+  if (request->array_count > NAMED && used < size) snprintf(text + used, size - used, "; ...");
+}
+
+static hl_status choose_named(hl_load_request *request, const char *path, hl_error *error) {
+  for (int cells = 0; cells < 2; cells++)
+    for (size_t n = 0; n < request->array_count; n++)
+      if (request->arrays[n].of_cells == (cells == 1) &&
+          strcmp(request->arrays[n].name, request->array) == 0) {
+        request->chosen = n;
+        return HL_OK;
+      }
+  char list[600], shown[HL_PRINTABLE_BYTES];
+  list_arrays(request, list, sizeof list);
+  return hl_fail(error, HL_ERROR_INPUT, "%s: there is no array \"%s\": there is %s", path,
+                 hl_text_printable(shown, request->array), list);
+}
+
+/* Whether an array holds no volume: VTK notes in such arrays which values are doubles of others or hidden. */
+static bool is_ghost(const hl_array_entry *array) {
+  return hl_text_is_one_of(array->name, "vtkGhostType|vtkGhostLevels|vtkValidPointMask");
+}
+
+static size_t choose_default(const hl_load_request *request) {
+  for (int cells = 0; cells < 2; cells++)
+    for (size_t n = 0; n < request->array_count; n++) {
+      const hl_array_entry *array = &request->arrays[n];
+      if (array->of_cells == (cells == 1) && array->components == 1 && array->type != 0 && !is_ghost(array))
+        return n;
+    }
+  for (size_t n = 0; n < request->array_count; n++)
+    if (request->arrays[n].type != 0 && !is_ghost(&request->arrays[n])) return n;
+  return 0;
+}
+
+hl_status hl_arrays_choose(hl_load_request *request, const char *path, int active, hl_error *error) {
+  if (request->array != NULL) return choose_named(request, path, error);
+  bool usable = active >= 0 && (size_t)active < request->array_count && !is_ghost(&request->arrays[active]);
+  request->chosen = usable ? (size_t)active : choose_default(request);
+  if (request->array_count < 2) return HL_OK;
+  char list[600], shown[HL_PRINTABLE_BYTES];
+  list_arrays(request, list, sizeof list);
+  const char *name = request->arrays[request->chosen].name;
+  snprintf(request->array_told, sizeof request->array_told,
+           "%.200s: of %zu arrays%s, %s is taken: name another by \"array\" (--array): %s", path,
+           request->array_count, request->more ? " and more" : "",
+           name[0] != 0 ? hl_text_printable(shown, name) : "the one without a name", list);
+  return HL_OK;
+}
+
+/* Chooses one of `count` times, channels or levels. The first is the default. */
+static hl_status choose_step(const char *path, const char *kind, int wanted, size_t count, int *chosen,
+                             hl_error *error) {
+  if (wanted >= 0 && (size_t)wanted >= count && count <= 1)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: there is no %s %d: the file has one, 0: leave \"%s\" (--%s) out", path, kind, wanted,
+                   kind, kind);
+  if (wanted >= 0 && (size_t)wanted >= count)
+    return hl_fail(error, HL_ERROR_INPUT, "%s: there is no %s %d: choose 0 to %zu", path, kind, wanted,
+                   count - 1);
+  *chosen = wanted >= 0 ? wanted : 0;
+  return HL_OK;
+}
+
+hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t times, size_t channels,
+                          hl_error *error) {
+  hl_selection *selection = &request->selection;
+  selection->times = times;
+  selection->channels = channels;
+  hl_status status = choose_step(path, "time", request->time, times, &selection->time, error);
+  if (status == HL_OK)
+    status = choose_step(path, "channel", request->channel, channels, &selection->channel, error);
+  bool time = times > 1 && request->time<0, channel = channels> 1 && request->channel < 0;
+  if (status == HL_OK && (time || channel))
+    snprintf(request->selection_told, sizeof request->selection_told,
+             "%.200s: %zu time step%s and %zu channel%s: %s%s%s %s taken: choose by %s%s%s", path, times,
+             times > 1 ? "s" : "", channels, channels > 1 ? "s" : "", time ? "time 0" : "",
+             time && channel ? " and " : "", channel ? "channel 0" : "", time && channel ? "are" : "is",
+             time ? "\"time\" (--time)" : "", time && channel ? " and " : "",
+             channel ? "\"channel\" (--channel)" : "");
+  return status;
+}
+
+/* ---- channels ---- */
+
+hl_status hl_channels_make(hl_load_request *request, hl_error *error) {
+  size_t count = request->selection.channels;
+  hl_release(request->context, request->channels);
+  request->channels = hl_allocate_zeroed(request->context, count, sizeof *request->channels);
+  return request->channels != NULL ? HL_OK
+                                   : hl_fail_memory(error, count * sizeof *request->channels, "channels");
+}
+
+void hl_channel_name(hl_channel *channel, const char *name) {
+  snprintf(channel->name, sizeof channel->name, "%s", name);
+  for (char *c = channel->name; *c != 0; c++)
+    if ((unsigned char)*c < ' ' || *c == 0x7f) *c = '?';
+}
+
+/* ---- levels ---- */
+
+/* The greatest number of voxels of a level that is chosen by default. More voxels show nothing more in a
+ * picture a thousand pixels across, and take minutes. */
+static const uint64_t VOXELS_OF_A_PICTURE = (uint64_t)1 << 30;
+
+/* Whether a level's longest axis has a voxel for each pixel of the part of the picture that the volume
+ * fills. */
+static bool fills_picture(const hl_level_size *level, int pixels) {
+  size_t longest = 0;
+  for (int axis = 0; axis < 3; axis++)
+    if (level->dimensions[axis] > longest) longest = level->dimensions[axis];
+  return longest >= (size_t)pixels;
+}
+
+/* The number of voxels of a level; UINT64_MAX on overflow. */
+static uint64_t level_voxels(const hl_level_size *level) {
+  uint64_t voxels = 1;
+  for (int axis = 0; axis < 3; axis++)
+    if (__builtin_mul_overflow(voxels, level->dimensions[axis], &voxels)) return UINT64_MAX;
+  return voxels;
+}
+
+static uint64_t level_bytes(const hl_level_size *level) {
+  uint64_t bytes;
+  return __builtin_mul_overflow(level_voxels(level), hl_storage_bytes(hl_voxel_type_storage(level->type)),
+                                &bytes)
+             ? UINT64_MAX
+             : bytes;
+}
+
+hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
+                          size_t count, hl_error *error) {
+  hl_selection *selection = &request->selection;
+  uint64_t limit = request->context->options.memory_limit;
+  selection->levels = count;
+  hl_status status = choose_step(path, "level", request->level, count, &selection->level, error);
+  if (status != HL_OK || request->level >= 0) return status;
+  size_t level = 0;
+  while (level + 1 < count && limit > 0 && level_bytes(&levels[level]) > limit / 2) level++;
+  size_t by_memory = level;
+  while (level + 1 < count && level_voxels(&levels[level]) > VOXELS_OF_A_PICTURE) level++;
+  while (level + 1 < count && request->pixels > 0 && fills_picture(&levels[level + 1], request->pixels))
+    level++;
+  selection->level = (int)level;
+  if (level > 0)
+    hl_log(request->context, HL_LOG_WARNING,
+           "%.300s: level %zu of %zu is taken, %s: choose by \"level\" (--level)", path, level, count,
+           level > by_memory ? "as fine as the picture shows"
+                             : "the finest that the memory limit leaves room for");
+  return HL_OK;
+}
+
+/* Refuses a number that is out of range. */
+static hl_status check_steps(const hl_load_request *request, const char *path, hl_error *error) {
+  const hl_selection *selection = &request->selection;
+  int unused;
+  hl_status status = choose_step(path, "time", request->time, selection->times, &unused, error);
+  if (status == HL_OK)
+    status = choose_step(path, "channel", request->channel, selection->channels, &unused, error);
+  return status == HL_OK ? choose_step(path, "level", request->level, selection->levels, &unused, error)
+                         : status;
+}
+
+/* Chooses the default component, and writes a warning that names it. Colours need no warning. */
+static int default_component(hl_load_request *request, const char *path, bool is_series,
+                             const hl_payload *payload) {
+  size_t components = payload->components;
+  if (!is_series && payload->colors == HL_COLORS_MEANT && hl_can_be_colors(payload->grid.type, components))
+    return HL_COMPONENT_COLOR;
+  bool magnitude = !is_series && components <= 3;
+  if (is_series)
+    snprintf(request->component_told, sizeof request->component_told,
+             "%.200s: a series of volumes: the first, 0, is taken: choose by \"time\" (--time): 0 to %zu",
+             path, components - 1);
+  else
+    snprintf(request->component_told, sizeof request->component_told,
+             "%.200s: voxels of several components: %s is taken: choose by \"component\" (--component): 0 to "
+             "%zu, or magnitude",
+             path, magnitude ? "their magnitude" : "component 0", components - 1);
+  return magnitude ? HL_COMPONENT_MAGNITUDE : 0;
+}
+
+/* In a series, sets *wanted to the component that the caller's time or channel stands for. */
+static hl_status component_of_steps(hl_load_request *request, const char *path, bool is_series,
+                                    const hl_payload *payload, int *wanted, hl_error *error) {
+  hl_selection *selection = &request->selection;
+  if (selection->times == 1 && selection->channels == 1 && is_series) selection->times = payload->components;
+  hl_status status = check_steps(request, path, error);
+  bool named = is_series && ((request->time >= 0 && selection->times > 1) ||
+                             (request->channel >= 0 && selection->channels > 1));
+  if (status != HL_OK || !named) return status;
+  if (request->component != HL_COMPONENT_DEFAULT)
+    return hl_fail(
+        error, HL_ERROR_INPUT,
+        "%s: its components are its time steps and channels: leave \"component\" (--component) out", path);
+  int time = request->time >= 0 ? request->time : 0, channel = request->channel >= 0 ? request->channel : 0;
+  int first; /* the component of the channel's first time step */
+  if (!__builtin_mul_overflow(selection->times, channel, &first) &&
+      !__builtin_add_overflow(first, time, wanted))
+    return HL_OK;
+  return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                 "%s: time %d of channel %d lies too far in the file: save it as a file of its own", path,
+                 time, channel);
+}
+
+hl_status hl_component_choose(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
+                              hl_error *error) {
+  size_t components = payload->components;
+  int wanted = request->component;
+  hl_status status = component_of_steps(request, path, is_series, payload, &wanted, error);
+  if (status != HL_OK) return status;
+  if (components == 1 && (wanted == HL_COMPONENT_DEFAULT || wanted == 0)) {
+    payload->component = request->chosen_component = 0;
+    return HL_OK;
+  }
+  if (components == 1)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: its voxels have one component, 0: leave \"component\" (--component) out", path);
+  if (wanted == HL_COMPONENT_DEFAULT) wanted = default_component(request, path, is_series, payload);
+  if (hl_component_is_colors(wanted) &&
+      (is_series || payload->colors == HL_COLORS_UNREAD || !hl_can_be_colors(payload->grid.type, components)))
+    return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                   "%s: %zu components of %s are not read as colours: these are 3 or 4 of uint8 or uint16: "
+                   "choose another by \"component\" (--component)",
+                   path, components, hl_voxel_type_name(payload->grid.type));
+  if (wanted != HL_COMPONENT_MAGNITUDE && !hl_component_is_colors(wanted) &&
+      (wanted < 0 || (size_t)wanted >= components))
+    return hl_fail(error, HL_ERROR_INPUT, "%s: there is no component %d: choose 0 to %zu, or magnitude", path,
+                   wanted, components - 1);
+  payload->component = request->chosen_component = wanted;
+  if (is_series && wanted >= 0) {
+    request->selection.time = (int)((size_t)wanted % request->selection.times);
+    request->selection.channel = (int)((size_t)wanted / request->selection.times);
+  }
+  return HL_OK;
+}
+
+hl_status hl_component_only(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
+                            hl_error *error) {
+  hl_status status = hl_arrays_add(request, "", payload->components, payload->grid.type, false, error);
+  if (status == HL_OK && request->array != NULL && request->array[0] != 0)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: the file has one array, without a name: leave \"array\" (--array) out", path);
+  request->chosen = 0;
+  return status == HL_OK ? hl_component_choose(request, path, is_series, payload, error) : status;
+}
+
+bool hl_find_type(const hl_named_type *types, size_t count, const char *name, hl_voxel_type *type) {
+  for (size_t n = 0; n < count; n++)
+    if (hl_text_is_one_of(name, types[n].name)) {
+      *type = types[n].type;
+      return true;
+    }
+  return false;
+}

@@ -1,0 +1,141 @@
+/* volume/formats/format.h - the interface between hl_volume_load and the readers of file formats, and the
+ * functions that readers share.
+ *
+ * The reader of a format is one file NAME.c, which defines `const hl_format hl_format_NAME`. formats.h is the
+ * registry of these NAMEs. A reader lists the file's arrays in its request, asks for a choice, and reads the
+ * chosen array. Where the caller did not name an array or component, a warning says which one is read. */
+#ifndef HL_VOLUME_FORMAT_H
+#define HL_VOLUME_FORMAT_H
+
+#include "volume/io/bundle.h"
+#include "volume/io/payload.h"
+
+enum { HL_ARRAYS_MOST = 256 }; /* greatest number of arrays that are listed for one file */
+
+/* The caller's wishes, and the reader's findings in the file. */
+typedef struct hl_load_request {
+  hl_context *context;
+  const char *array;        /* null if the reader may choose */
+  int component;            /* HL_COMPONENT_DEFAULT, HL_COMPONENT_MAGNITUDE, or an index */
+  double spacing[3];        /* world units; all 0 for the file's own */
+  int time, channel, level; /* HL_INDEX_DEFAULT, or an index */
+  int pixels;               /* pixels of the picture's longer side; 0 if unknown */
+  double window[2];         /* set by readers: the data values between which greys are to be shown; equal if
+                             * not told */
+  hl_channel *channels;     /* owned; [selection.channels]; set by readers, where the file describes
+                             * channels */
+  const char *unit;         /* set by readers: the unit of lengths, static; null if not told */
+  bool is_anatomical;       /* set by readers of formats that hold bodies: the volume's anatomical space is
+                             * meant */
+  const char *series;       /* DICOM: number, UID or description; null if the reader may choose */
+  hl_array_entry *arrays;   /* owned; [array_count]; in the file's order */
+  size_t array_count;
+  size_t chosen; /* index of the array that is read */
+  int chosen_component;
+  hl_series_entry *series_list; /* owned; [series_count]; DICOM series */
+  size_t series_count, chosen_series;
+  bool more;              /* whether the file has more than HL_ARRAYS_MOST arrays */
+  hl_selection selection; /* the numbers of times, channels and levels in the file, and the ones that are
+                           * read; the numbers are 1 before the reader sets them */
+  char array_told[1000], component_told[400],
+      selection_told[600]; /* warnings that name the array, component, time and channel chosen by default; ""
+                            * if there are none */
+} hl_load_request;
+
+/* Adds an array to the list. name: "" if the format has no names; type: 0 if arrays of this type cannot be
+ * read. */
+hl_status hl_arrays_add(hl_load_request *request, const char *name, size_t components, hl_voxel_type type,
+                        bool of_cells, hl_error *error);
+
+/* Sets request->chosen. If an array is wanted by name, it is chosen. Otherwise the choice is `active` (an
+ * index; -1 if there is none), else the first array of one component at points, else at cells, else the first
+ * array. The list must not be empty. */
+hl_status hl_arrays_choose(hl_load_request *request, const char *path, int active, hl_error *error);
+
+/* Chooses the component to read, and sets it in the payload, whose `components` and `block` must be known.
+ * The choice is the wanted component, else the only one, else the magnitude of vectors of two or three
+ * components, else the first component. is_series: components are time steps. The time steps of a channel are
+ * together; the payload has the channels that request->selection says, or one. The first is read by default.
+ * Refuses a time, a channel or a level that request->selection does not have. */
+hl_status hl_component_choose(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
+                              hl_error *error);
+
+/* Chooses a time step and a channel, and sets request->selection except its levels. Refuses a number that is
+ * out of range. */
+hl_status hl_steps_choose(hl_load_request *request, const char *path, size_t times, size_t channels,
+                          hl_error *error);
+
+/* Makes request->channels, without names and colours, once the number of channels is known. */
+hl_status hl_channels_make(hl_load_request *request, hl_error *error);
+
+/* Sets the name of a channel. A long name is cut, and unprintable characters become '?'. */
+void hl_channel_name(hl_channel *channel, const char *name);
+
+/* A level of a pyramid. */
+typedef struct hl_level_size {
+  size_t dimensions[3];
+  hl_voxel_type type;
+} hl_level_size;
+
+/* Sets request->selection's level among `count` levels, of which the finest is first. The choice is the
+ * wanted level, else the finest that leaves half of the memory limit free and has at most 2^30 voxels. A
+ * coarser level is chosen if it is as fine as the request's pixels can show. */
+hl_status hl_level_choose(hl_load_request *request, const char *path, const hl_level_size *levels,
+                          size_t count, hl_error *error);
+
+/* For formats with one array without a name: lists the array and chooses the component. */
+hl_status hl_component_only(hl_load_request *request, const char *path, bool is_series, hl_payload *payload,
+                            hl_error *error);
+
+enum { HL_FORMAT_SNIFFED_BYTES = 1024, HL_FORMAT_ENDINGS = 3 };
+
+/* A format's reader. Every member except load may be null. */
+typedef struct hl_format {
+  const char *name;                       /* the format's name in error lines */
+  const char *endings[HL_FORMAT_ENDINGS]; /* extensions of file names that promise `beginning`; null after the
+                                           * last */
+  const char *title;                      /* the name in lists of formats; null: `name` */
+  const char *more_endings;               /* further extensions, for lists of formats, between blanks */
+  const char *(*missing)(void);           /* returns the library that the format needs and this build lacks;
+                                           * null if there is none */
+  const char *beginning;                  /* the beginning that such files must have, for error lines */
+
+  /* Whether a file that starts with these bytes has the format. length: HL_FORMAT_SNIFFED_BYTES, or less if
+   * the file is shorter. */
+  bool (*has_content)(const unsigned char *bytes, size_t length);
+
+  /* Whether the file's name alone proves the format, whatever its bytes are. This is asked of every format
+   * before any has_content(). */
+  bool (*fits)(const hl_stream *stream);
+
+  /* Whether the file's name suggests the format. This is asked only if has_content() of every format is
+   * false. May replace *stream by the file that holds the header. */
+  hl_status (*claim_name)(hl_stream **stream, bool *claimed, hl_error *error);
+
+  /* Reads *stream from its current position. May replace *stream or push decoders on it. The caller closes
+   * it. */
+  hl_status (*load)(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error);
+
+  /* Reads a folder or a zip archive. *claimed: false if it holds nothing of the format; other formats are
+   * asked next. */
+  hl_status (*load_bundle)(hl_bundle *bundle, hl_load_request *request, bool *claimed, hl_volume **volume,
+                           hl_error *error);
+} hl_format;
+
+/* All formats, in the order in which a file is offered to them (formats.h); null past the last. */
+extern const hl_format *const hl_formats[];
+
+/* A format's name of a voxel type. name may list alternatives, as in hl_text_is_one_of(). */
+typedef struct hl_named_type {
+  const char *name;
+  hl_voxel_type type;
+} hl_named_type;
+
+/* Finds the type with this name; false if there is none. */
+bool hl_find_type(const hl_named_type *types, size_t count, const char *name, hl_voxel_type *type);
+
+/* For text headers: fails with "PATH, line N: ...". */
+#define HL_FAIL_LINE(error, code, stream, line, format, ...) \
+  hl_fail_at(error, code, line, 0, "%s, line %d: " format, (stream)->path, line, __VA_ARGS__)
+
+#endif

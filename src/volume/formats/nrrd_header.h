@@ -1,0 +1,47 @@
+/* volume/formats/nrrd_header.h - the content of an NRRD file's header. */
+#ifndef HL_VOLUME_NRRD_HEADER_H
+#define HL_VOLUME_NRRD_HEADER_H
+
+#include "volume/io/file_list.h"
+#include "volume/io/stream.h"
+#include "volume/volume.h"
+
+enum { NRRD_MOST_AXES = 16, NRRD_KIND_BYTES = 32, NRRD_NAME_BYTES = 1024 };
+
+typedef enum nrrd_encoding { NRRD_RAW, NRRD_GZIP, NRRD_BZIP2, NRRD_TEXT, NRRD_HEX } nrrd_encoding;
+
+typedef struct nrrd_axis {
+  size_t size;
+  double spacing, minimum, maximum; /* NaN if not stated */
+  bool is_node;                     /* whether samples lie at cell corners; otherwise at cell centres, as Teem
+                                     * assumes */
+  bool has_direction;
+  double direction[3];
+  char kind[NRRD_KIND_BYTES];
+} nrrd_axis;
+
+typedef struct nrrd_header {
+  const hl_stream *stream; /* for error lines */
+  int line;                /* number of the current line, from 1 */
+  int dimension;           /* 0 if not yet stated */
+  nrrd_axis axis[NRRD_MOST_AXES];
+  hl_voxel_type type; /* 0 if not yet stated */
+  nrrd_encoding encoding;
+  bool has_encoding, has_endian, big_endian, has_sizes, has_directions, has_space_origin;
+  double space_origin[3];
+  const char *unit; /* unit of the space's axes, static; null if there is none, an unknown one, or several */
+  hl_space space;
+  char data_file[NRRD_NAME_BYTES]; /* "" if the voxels are attached, or in several files */
+  hl_file_list files;              /* owned; the list of several data files */
+  bool is_list;                    /* whether the rest of the header is the names of files */
+  size_t line_skip, byte_skip;
+  bool skip_to_last;    /* byte skip is -1: the voxels are the last bytes of the file */
+  hl_segment *segments; /* owned; [segment_count]; segments of a segmentation by Slicer */
+  size_t segment_count;
+} nrrd_header;
+
+/* Reads the header at a stream's beginning, up to the voxels if they follow it. The header's lists must be
+ * empty and have their context. They are owned by the caller, also on failure. */
+hl_status hl_nrrd_read_header(hl_stream *stream, nrrd_header *header, hl_error *error);
+
+#endif

@@ -1,0 +1,63 @@
+/* volume/formats/particles/particle_columns.h - particles as the rows of a text: what the readers of tables,
+ * dumps of LAMMPS and XYZ files share.
+ *
+ * A column is a coordinate, the mass, the smoothing length, or a quantity, as its name says. Columns whose
+ * first entry is no number are left out. The file then has the arrays "log density", "density", and one for
+ * each quantity, which is its mean weighted by mass. */
+#ifndef HL_VOLUME_PARTICLE_COLUMNS_H
+#define HL_VOLUME_PARTICLE_COLUMNS_H
+
+#include "volume/formats/format.h"
+
+enum { HL_PARTICLE_COLUMNS_MOST = 64, HL_PARTICLE_NAME_BYTES = 64 };
+
+typedef enum hl_particle_role {
+  HL_COLUMN_X,
+  HL_COLUMN_Y,
+  HL_COLUMN_Z,
+  HL_COLUMN_MASS,
+  HL_COLUMN_LENGTH,
+  HL_COLUMN_QUANTITY,
+  HL_COLUMN_UNREAD
+} hl_particle_role;
+
+typedef struct hl_particle_column {
+  char name[HL_PARTICLE_NAME_BYTES]; /* printable */
+  hl_particle_role role;
+  bool is_scaled; /* a coordinate from 0 to 1 along the box (LAMMPS xs, ys, zs) */
+  float *values;  /* owned; [room]; null for coordinates and columns that are not read */
+} hl_particle_column;
+
+typedef struct hl_particle_columns {
+  hl_context *context;
+  size_t count, room;     /* particles */
+  double (*positions)[3]; /* owned; [room] */
+  hl_particle_column column[HL_PARTICLE_COLUMNS_MOST];
+  int column_count;
+  double box_low[3], box[3]; /* world: the box of scaled coordinates */
+  double period[3];          /* world; 0: not periodic along the axis */
+} hl_particle_columns;
+
+/* Splits a line at commas, semicolons, tabs and spaces, in place; quotes around a word are removed. Returns
+ * the number of words; at most HL_PARTICLE_COLUMNS_MOST are found. */
+int hl_particle_words(char *line, char *words[HL_PARTICLE_COLUMNS_MOST]);
+
+/* Adds a column by its name. More than HL_PARTICLE_COLUMNS_MOST are left out. */
+void hl_particle_columns_add(hl_particle_columns *columns, const char *name);
+
+/* Whether there are x, y and z. */
+bool hl_particle_columns_are_places(const hl_particle_columns *columns);
+
+/* Adds a particle. line: is changed. number: of the line, for errors. */
+hl_status hl_particle_columns_row(hl_particle_columns *columns, char *line, const hl_stream *stream,
+                                  int number, hl_error *error);
+
+/* Lists the file's arrays, and makes the volume of the chosen one. */
+hl_status hl_particle_columns_volume(const hl_particle_columns *columns, hl_load_request *request,
+                                     const char *path, hl_volume **volume, hl_error *error);
+
+/* Forgets the particles, and keeps the columns' names and memory. */
+void hl_particle_columns_clear(hl_particle_columns *columns);
+void hl_particle_columns_release(hl_particle_columns *columns);
+
+#endif

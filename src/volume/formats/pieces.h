@@ -1,0 +1,23 @@
+/* volume/formats/pieces.h - a volume whose file holds it in pieces. Each piece is read as a volume, and
+ * copied to its place.
+ *
+ * The whole volume and one piece are in memory at a time. Voxels that no piece has are 0. */
+#ifndef HL_VOLUME_PIECES_H
+#define HL_VOLUME_PIECES_H
+
+#include "volume/io/destination.h"
+
+typedef struct hl_pieces {
+  hl_volume_description grid; /* grid of the whole volume */
+  hl_destination to;
+} hl_pieces;
+
+/* Begins with no pieces. grid: must have been checked. Close the pieces also after a failure. */
+hl_status hl_pieces_begin(hl_context *context, const hl_volume_description *grid, const char *path,
+                          hl_pieces *pieces, hl_error *error);
+/* Copies a piece to the voxels from `first` on. Refuses a piece that does not fit. */
+hl_status hl_pieces_put(hl_pieces *pieces, const hl_volume *piece, const size_t first[3], hl_error *error);
+hl_status hl_pieces_adopt(hl_pieces *pieces, hl_volume **volume, hl_error *error);
+void hl_pieces_close(hl_pieces *pieces);
+
+#endif

@@ -1,0 +1,21 @@
+/* volume/formats/raw.h - finds the size and type of voxels in the name of a raw file. */
+#ifndef HL_VOLUME_RAW_H
+#define HL_VOLUME_RAW_H
+
+#include "volume/io/payload.h"
+
+/* Sets *payload to the size and type that the name states, unchecked. False if the name states none. */
+bool hl_raw_name(const char *path, hl_payload *payload);
+
+/* The statement in the name of a slice, or of its folder: "512x512_uint16". */
+typedef struct hl_raw_slice {
+  size_t width, height;
+  hl_voxel_type type;
+  bool big_endian;
+  size_t begin, end; /* its place in the name */
+} hl_raw_slice;
+
+/* Finds the statement in a name of `length` characters. False if there is none. */
+bool hl_raw_slice_name(const char *name, size_t length, hl_raw_slice *slice);
+
+#endif

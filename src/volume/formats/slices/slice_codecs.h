@@ -1,0 +1,55 @@
+/* volume/formats/slices/slice_codecs.h - the decoders of slice_picture.c, one for each kind of picture.
+ *
+ * Each decoder reads the shape, and then, if `samples` is not null, the pixels: [height][width][samples] of
+ * the shape's type, native byte order, in a block that the caller releases, also after a failure. If the file
+ * is too short for its shape, it is refused before anything is allocated. */
+#ifndef HL_VOLUME_SLICE_CODECS_H
+#define HL_VOLUME_SLICE_CODECS_H
+
+#include "volume/exact.h"
+
+/* A picture file in memory. */
+typedef struct hl_slice_file {
+  hl_context *context;
+  const char *path; /* for error lines */
+  const unsigned char *bytes;
+  size_t length;
+  hl_exact *exact; /* notes the slice's numbers; may be null */
+  size_t first;    /* the number of the slice's first voxel in the volume */
+} hl_slice_file;
+
+typedef struct hl_slice_shape {
+  size_t width, height, samples; /* samples: number of samples of a pixel */
+  hl_voxel_type type;
+  bool colors, premultiplied; /* colors: red, green, blue, perhaps alpha; premultiplied: alpha is multiplied
+                               * into the colours */
+} hl_slice_shape;
+
+hl_status hl_slice_read_png(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,
+                            hl_error *error);
+hl_status hl_slice_read_jpeg(const hl_slice_file *file, hl_slice_shape *shape, unsigned char **samples,
+                             hl_error *error);
+
+/* Decodes one component of a TIFF file's first page. voxels: null to read only the shape. */
+hl_status hl_slice_read_tiff(const hl_slice_file *file, hl_slice_shape *shape, int component, void *voxels,
+                             hl_error *error);
+
+/* Whether a file's name is a name of bare voxels. */
+bool hl_slice_is_raw(const char *name);
+/* Reads bare voxels. voxels: null to find only the shape. */
+hl_status hl_slice_read_raw(const hl_slice_file *file, hl_slice_shape *shape, void *voxels, hl_error *error);
+
+/* Compares the pixels that a header promises with bytes_most, the greatest number of decoded bytes. each:
+ * bytes of a sample. */
+hl_status hl_slice_check_size(const hl_slice_file *file, const hl_slice_shape *shape, size_t bytes_most,
+                              hl_error *error);
+
+typedef enum hl_slice_stack {
+  HL_SLICE_ALONE,
+  HL_SLICE_STACK, /* a TIFF file of several pages, which is a volume of its own */
+  HL_SLICE_OF_OME /* an OME-TIFF file, which names all files of its volume */
+} hl_slice_stack;
+
+hl_status hl_slice_find_stack(const hl_slice_file *file, hl_slice_stack *stack, hl_error *error);
+
+#endif

@@ -1,0 +1,19 @@
+/* volume/formats/slices/slice_picture.h - one picture of a folder of slices, decoded from memory: PNG, JPEG,
+ * the first page of a TIFF file, or bare voxels. */
+#ifndef HL_VOLUME_SLICE_PICTURE_H
+#define HL_VOLUME_SLICE_PICTURE_H
+
+#include "volume/formats/slices/slice_codecs.h"
+
+/* Whether a file's name promises a picture that can be a slice. */
+bool hl_slice_is_named(const char *name);
+
+/* Reads a picture's header. Refuses a picture for which the file is too short. */
+hl_status hl_slice_measure(const hl_slice_file *file, hl_slice_shape *shape, hl_error *error);
+
+/* Decodes a picture's component, or an HL_COMPONENT_ value, into width x height stored voxels, or colours
+ * (colors.h). The picture's own shape must equal `shape`. */
+hl_status hl_slice_decode(const hl_slice_file *file, const hl_slice_shape *shape, int component, void *voxels,
+                          hl_error *error);
+
+#endif

@@ -1,0 +1,25 @@
+/* volume/formats/tiff/tiff.c - TIFF and BigTIFF: stacks of pages, OME-TIFF (also of several files), ImageJ's
+ * hyperstacks.
+ */
+#include <string.h>
+
+#include "volume/formats/tiff/tiff.h"
+
+/* Whether the content is TIFF. DICOM files may begin as TIFF files do, so that one file is both (PS3.10,
+ * 7.1); such files are left to the DICOM reader. */
+static bool has_content(const unsigned char *bytes, size_t length) {
+  if (length >= 132 && memcmp(bytes + 128, "DICM", 4) == 0) return false;
+  return length >= 4 && (memcmp(bytes, "II*\0", 4) == 0 || memcmp(bytes, "MM\0*", 4) == 0 ||
+                         memcmp(bytes, "II+\0", 4) == 0 || memcmp(bytes, "MM\0+", 4) == 0);
+}
+
+static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+  return hl_tiff_load(stream, NULL, request, volume, error);
+}
+
+const hl_format hl_format_tiff = {.name = "TIFF",
+                                  .missing = hl_tiff_missing,
+                                  .endings = {".tif", ".tiff"},
+                                  .beginning = "\"II*\" or \"MM\"",
+                                  .has_content = has_content,
+                                  .load = load};

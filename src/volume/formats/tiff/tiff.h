@@ -1,0 +1,17 @@
+/* volume/formats/tiff/tiff.h - reads the pages of a TIFF file. tiff_load.c implements it, or tiff_absent.c in
+ * builds without libtiff. */
+#ifndef HL_VOLUME_TIFF_H
+#define HL_VOLUME_TIFF_H
+
+#include "volume/formats/format.h"
+#include "volume/io/bundle.h"
+
+/* Loads a TIFF file. archive: holds the stream's file and the other files of its volume; null if these are in
+ * the file's folder. */
+hl_status hl_tiff_load(hl_stream **stream, const hl_bundle *archive, hl_load_request *request,
+                       hl_volume **volume, hl_error *error);
+
+/* "libtiff" in builds without it, else null. */
+const char *hl_tiff_missing(void);
+
+#endif

@@ -1,0 +1,80 @@
+/* volume/formats/tiff/tiff_file.h - decodes the pages of a TIFF file by libtiff to the voxels of one
+ * component.
+ *
+ * libtiff reads from a file or from the caller's memory. Its warnings go to the context's log, its errors
+ * become error lines, and each of its allocations is bounded. A tiff_file belongs to one thread. */
+#ifndef HL_VOLUME_TIFF_FILE_H
+#define HL_VOLUME_TIFF_FILE_H
+
+#include <tiffio.h>
+
+#include "volume/exact.h"
+
+/* The description of a page's voxels in its directory. */
+typedef struct tiff_shape {
+  uint32_t width, height, depth; /* depth: number of slices of a page (ImageDepth) */
+  hl_voxel_type type;
+  unsigned bits;       /* bits of a sample in the file */
+  unsigned components; /* number of samples of a pixel */
+  bool planar;         /* whether each component has chunks of its own */
+  bool colors;         /* whether samples are red, green, blue and perhaps alpha, of whole bytes */
+  bool premultiplied;  /* whether alpha is multiplied into the colours */
+} tiff_shape;
+
+enum { TIFF_NO_WARNINGS = 1 << 20 };
+
+typedef struct tiff_file {
+  hl_context *context;
+  char *path;                  /* owned */
+  const unsigned char *memory; /* borrowed; [size]; null if the file is read */
+  uint64_t size, at;
+  int descriptor; /* -1 if there is none */
+  TIFF *tiff;
+  char message[300]; /* the first error of libtiff since this was cleared */
+  int warnings;      /* number of warnings logged so far; set it to TIFF_NO_WARNINGS before opening to log
+                      * none */
+} tiff_file;
+
+/* Opens a file. bytes: the content, or null. quiet: whether the context's `reads` callback is not called, as
+ * from other threads. Close *file also after a failure. */
+hl_status tiff_file_open(hl_context *context, const char *path, const void *bytes, size_t byte_count,
+                         bool quiet, tiff_file *file, hl_error *error);
+void tiff_file_close(tiff_file *file);
+
+/* Fails with libtiff's own message. */
+hl_status tiff_file_fail(const tiff_file *file, const char *what, hl_error *error);
+
+/* Makes the directory at an offset current. level: the number of a reduced picture; 0 for the directory
+ * itself. */
+hl_status tiff_file_go(tiff_file *file, uint64_t offset, int level, hl_error *error);
+
+/* Finds the current directory's shape. Fails if its kind of picture cannot be read. */
+hl_status tiff_file_shape(tiff_file *file, tiff_shape *shape, hl_error *error);
+bool tiff_shapes_equal(const tiff_shape *a, const tiff_shape *b);
+
+/* Finds the offsets of all directories; they are owned by the caller (hl_release). */
+hl_status tiff_file_pages(tiff_file *file, uint64_t **offsets, size_t *count, hl_error *error);
+
+/* The position of the current directory's first pixels in the file, if all of its pixels follow them
+ * uncompressed and each sample has whole bytes; else 0. *bytes: the size of a slice. */
+uint64_t tiff_file_plain(tiff_file *file, const tiff_shape *shape, uint64_t *bytes);
+
+/* Whether the current directory's chunks have enough bytes for a page of its shape, at the best ratio that
+ * its compression can reach. */
+bool tiff_file_can_hold(tiff_file *file, const tiff_shape *shape);
+
+/* The destination of a page's voxels. */
+typedef struct tiff_target {
+  void *voxels;    /* width x height stored voxels, or colours (colors.h) */
+  hl_exact *exact; /* notes the page's numbers; may be null */
+  size_t first;    /* the number of the page's first voxel in the volume */
+  uint32_t slice;  /* for a page of several slices: the number of the slice */
+  uint64_t plain;  /* position of the page's pixels in the file, if their rows follow each other; 0 if libtiff
+                    * must  find them */
+} tiff_target;
+
+/* Decodes a component of the current directory's page, or an HL_COMPONENT_ value. */
+hl_status tiff_file_read(tiff_file *file, const tiff_shape *shape, int component, const tiff_target *target,
+                         hl_error *error);
+
+#endif

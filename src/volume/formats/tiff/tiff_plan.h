@@ -1,0 +1,39 @@
+/* volume/formats/tiff/tiff_plan.h - finds which pages of which files make up the volume. It follows OME-XML
+ * or ImageJ's description, or takes one page after the other. */
+#ifndef HL_VOLUME_TIFF_PLAN_H
+#define HL_VOLUME_TIFF_PLAN_H
+
+#include "volume/formats/format.h"
+
+/* A slice's page. */
+typedef struct tiff_slice {
+  uint32_t file; /* index into the plan's files */
+  uint32_t page; /* index of the directory in its file */
+  bool is_there;
+} tiff_slice;
+
+typedef struct tiff_plan {
+  hl_context *context;
+  tiff_slice *slices; /* owned; [slice_count]; the chosen time step and channel, along z */
+  size_t slice_count;
+  char **files; /* owned; [file_count]; names of files beside the first one; files[0] is null and stands for
+                 * the first file */
+  size_t file_count;
+  double spacing[3]; /* 0 if not told */
+  bool is_told;      /* whether OME-XML or ImageJ's description states the order; otherwise it is the order of
+                      * the pages */
+} tiff_plan;
+
+/* Makes the plan. description: of the first page, or null. pages: number of slices of all pages of the first
+ * file. components: samples of a pixel. depth: slices of a page. resolution: pixels per unit along x and y of
+ * the first page; 0 if not told. Release the plan also after a failure. */
+hl_status tiff_plan_make(hl_load_request *request, const char *path, const char *description, size_t pages,
+                         size_t components, size_t depth, const double resolution[2], tiff_plan *plan,
+                         hl_error *error);
+
+/* The number of pictures that ImageJ's or tifffile's description promises; 0 if none is told. */
+size_t tiff_plan_pages(const char *description, size_t components);
+
+void tiff_plan_release(tiff_plan *plan);
+
+#endif

@@ -1,0 +1,17 @@
+/* volume/formats/vdb/nanovdb.c - NanoVDB: reads sparse grids of smoke, fire and level sets as dense volumes.
+ */
+#include "volume/formats/vdb/nanovdb.h"
+
+#include <string.h>
+
+/* A file of any kind up to version 32.5 begins with "NanoVDB0", and a newer file with "NanoVDB2". */
+static bool has_content(const unsigned char *bytes, size_t length) {
+  return length >= 8 && memcmp(bytes, "NanoVDB", 7) == 0 && (bytes[7] == '0' || bytes[7] == '2');
+}
+
+const hl_format hl_format_nanovdb = {.name = "NanoVDB",
+                                     .missing = hl_nanovdb_missing,
+                                     .endings = {".nvdb"},
+                                     .beginning = "\"NanoVDB\"",
+                                     .has_content = has_content,
+                                     .load = hl_nanovdb_load};

@@ -1,0 +1,122 @@
+/* volume/formats/vdb/nanovdb_bricks.c - see nanovdb_bricks.h.
+ *
+ * In: a grid's tree. Out: bricks of level 0, of 32^3 cells. A brick all of whose coefficients, with its
+ * margins, are one number becomes a constant: no bit of the field changes. Each brick is read twice: first to
+ * learn which ones are constants. Beyond the box of active voxels the voxels at its faces go on, as a dense
+ * volume's do. */
+#include "volume/formats/vdb/nanovdb_bricks.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "bricks/evaluate.h"
+#include "core/memory.h"
+#include "volume/io/parallel.h"
+
+enum { SHIFT = 5, SIDE = 1 << SHIFT, WIDTH = SIDE + BRICK_MARGIN, COEFFICIENTS = WIDTH * WIDTH * WIDTH };
+
+/* The most bricks in the box of active voxels. A damaged or hostile file may tell of any box. */
+enum { MOST_BRICKS = 1 << 22 };
+/* Fewer bytes than this part of the dense volume's. Bricks are sampled more slowly. */
+static const double WORTH_WHILE = 0.6;
+
+typedef struct brick_reader {
+  const nanovdb_grid *grid;
+  const size_t *size; /* voxels of the box along x, y, z */
+  hl_bricks *bricks;
+  float *scratch; /* owned; [threads][2][COEFFICIENTS] */
+} brick_reader;
+
+/* Reads a brick's coefficients. The part of them within the box is read into `box`, and then continued. */
+static hl_status read_brick(const brick_reader *r, size_t number, float *box, float *brick, hl_error *error) {
+  const hl_bricks *bricks = r->bricks;
+  int64_t first[3];
+  size_t low[3], count[3], at[3][WIDTH]; /* at: the place in `box` of each coefficient along an axis */
+  for (int a = 0; a < 3; a++) {
+    int64_t block = (int64_t)(number % bricks->directory_size[a]), last = (int64_t)r->size[a] - 1;
+    number /= bricks->directory_size[a];
+    first[a] = block * SIDE - 1 - (int64_t)bricks->origin[a];
+    int64_t from = first[a] < 0 ? 0 : first[a] > last ? last : first[a], to = first[a] + WIDTH - 1;
+    to = to < 0 ? 0 : to > last ? last : to;
+    low[a] = (size_t)from;
+    count[a] = (size_t)(to - from) + 1;
+    for (int64_t n = 0; n < WIDTH; n++) {
+      int64_t voxel = first[a] + n;
+      at[a][n] = (size_t)((voxel < from ? from : voxel > to ? to : voxel) - from);
+    }
+  }
+  hl_status status = nanovdb_grid_read_box(r->grid, low, count, box, error);
+  for (size_t k = 0; k < WIDTH && status == HL_OK; k++)
+    for (size_t j = 0; j < WIDTH; j++) {
+      const float *row = box + (at[2][k] * count[1] + at[1][j]) * count[0];
+      for (size_t i = 0; i < WIDTH; i++) *brick++ = row[at[0][i]];
+    }
+  return status;
+}
+
+static bool is_constant(const float *brick) {
+  return memcmp(brick, brick + 1, (COEFFICIENTS - 1) * sizeof *brick) == 0;
+}
+
+/* Finds whether a brick is a constant. */
+static hl_status look_at_brick(void *data, size_t number, int worker, hl_error *error) {
+  const brick_reader *r = data;
+  float *box = r->scratch + (size_t)worker * 2 * COEFFICIENTS, *brick = box + COEFFICIENTS;
+  hl_status status = read_brick(r, number, box, brick, error);
+  if (status == HL_OK)
+    r->bricks->directory[number] = (hl_brick_entry){.slot = is_constant(brick) ? -1 : 0,
+                                                    .constant = brick[0]};
+  return status;
+}
+
+static hl_status keep_brick(void *data, size_t number, int worker, hl_error *error) {
+  const brick_reader *r = data;
+  float *box = r->scratch + (size_t)worker * 2 * COEFFICIENTS;
+  int32_t slot = r->bricks->directory[number].slot;
+  return slot < 0 ? HL_OK : read_brick(r, number, box, r->bricks->pool + (size_t)slot * COEFFICIENTS, error);
+}
+
+/* Gives the bricks that are no constants their slots; false if the dense box is better. */
+static bool number_slots(hl_bricks *bricks, const size_t size[3], size_t entries) {
+  for (size_t n = 0; n < entries; n++)
+    if (bricks->directory[n].slot >= 0) bricks->directory[n].slot = (int32_t)bricks->slots++;
+  return (double)hl_bricks_bytes(bricks) <
+         WORTH_WHILE * (double)size[0] * (double)size[1] * (double)size[2] * (double)sizeof(float);
+}
+
+hl_status nanovdb_bricks_read(const nanovdb_grid *grid, const hl_volume_description *description,
+                              hl_bricks *bricks, hl_error *error) {
+  hl_context *context = grid->context;
+  brick_reader r = {.grid = grid, .size = description->dimensions, .bricks = bricks};
+  hl_pool *pool = NULL;
+  size_t entries = 1;
+  *bricks = (hl_bricks){.shift = SHIFT, .levels = 1};
+  for (int a = 0; a < 3; a++) {
+    /* the grid's coordinates are then the voxels' (grid/grid.h), so that pictures are those of a dense volume
+     */
+    bricks->origin[a] = 1;
+    bricks->dimension[a] = description->dimensions[a] + 2;
+    bricks->directory_size[a] = (bricks->dimension[a] + SIDE - 1) / SIDE;
+    if (!hl_multiply(entries, bricks->directory_size[a], &entries) || entries > MOST_BRICKS) return HL_OK;
+  }
+  hl_status status = hl_pool_create(context, 0, &pool, error);
+  if (status != HL_OK) return status;
+  bricks->directory = hl_allocate(context, entries, sizeof *bricks->directory);
+  r.scratch = hl_allocate(context, (size_t)hl_pool_threads(pool) * 2 * COEFFICIENTS, sizeof *r.scratch);
+  bool better = false;
+  if (bricks->directory == NULL || r.scratch == NULL)
+    status = hl_fail_memory(error, entries * sizeof *bricks->directory, grid->path);
+  if (status == HL_OK)
+    status = hl_parallel_read(context, pool, grid->path, entries, look_at_brick, &r, error);
+  if (status == HL_OK) better = number_slots(bricks, r.size, entries);
+  if (better) {
+    bricks->pool = hl_allocate(context, bricks->slots * COEFFICIENTS, sizeof *bricks->pool);
+    status = bricks->pool == NULL
+                 ? hl_fail_memory(error, bricks->slots * COEFFICIENTS * sizeof *bricks->pool, grid->path)
+                 : hl_parallel_read(context, pool, grid->path, entries, keep_brick, &r, error);
+  }
+  hl_release(context, r.scratch);
+  hl_pool_destroy(pool);
+  if (status != HL_OK || !better) hl_bricks_release(context, bricks);
+  return status;
+}

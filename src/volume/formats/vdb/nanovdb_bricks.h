@@ -1,0 +1,16 @@
+/* volume/formats/vdb/nanovdb_bricks.h - a NanoVDB grid of floats as bricks (bricks/bricks.h), without the
+ * empty space between them. */
+#ifndef HL_VOLUME_NANOVDB_BRICKS_H
+#define HL_VOLUME_NANOVDB_BRICKS_H
+
+#include "bricks/build.h"
+#include "volume/formats/vdb/nanovdb_grid.h"
+
+/* Makes bricks whose coefficients are the grid's voxels, if they take less than 0.6 of what the box of all
+ * active voxels takes. grid: of one number a voxel that is a 32-bit float as voxels are stored. description:
+ * nanovdb_grid_describe()'s. *bricks: owned by the caller (hl_bricks_release); without a directory if the
+ * dense box is better, or after a failure. */
+hl_status nanovdb_bricks_read(const nanovdb_grid *grid, const hl_volume_description *description,
+                              hl_bricks *bricks, hl_error *error);
+
+#endif

@@ -1,0 +1,39 @@
+/* volume/formats/vdb/nanovdb_grid.h - the tree of a NanoVDB grid, read through PNanoVDB.h into a dense
+ * volume.
+ *
+ * A grid is a block of memory in which offsets lead from a node to its children. Every look-up goes through
+ * PNanoVDB's check of bounds, by which offsets that lead out of the block read zeros. */
+#ifndef HL_VOLUME_NANOVDB_GRID_H
+#define HL_VOLUME_NANOVDB_GRID_H
+
+#include "volume/exact.h"
+#include "volume/formats/format.h"
+
+typedef struct nanovdb_grid {
+  hl_context *context;
+  const char *path;     /* for error lines */
+  unsigned char *bytes; /* borrowed; [size]; aligned to 64 bytes */
+  size_t size;
+  uint32_t kind; /* the kind of grid, PNANOVDB_GRID_TYPE_ and a name */
+  int component; /* component of vectors and colours, or HL_COMPONENT_MAGNITUDE */
+} nanovdb_grid;
+
+/* The type and the number of components of the voxels of a kind of grid. The type is 0 if the kind is not
+ * read. */
+void nanovdb_kind(uint32_t kind, hl_voxel_type *type, size_t *components);
+
+/* Checks the block, and sets the description's dimensions, origin and axes to the box of the active
+ * voxels. */
+hl_status nanovdb_grid_describe(const nanovdb_grid *grid, hl_volume_description *description,
+                                hl_error *error);
+
+/* Fills voxels [k][j][i] of that box in stored form, and notes their numbers. type: the volume's type. */
+hl_status nanovdb_grid_read(const nanovdb_grid *grid, const hl_volume_description *description, void *voxels,
+                            hl_exact *exact, hl_error *error);
+
+/* Reads voxels [k][j][i] of a part of that box as 32-bit floats, which the grid's values must be. first,
+ * size: of the part, in the box's own indices. */
+hl_status nanovdb_grid_read_box(const nanovdb_grid *grid, const size_t first[3], const size_t size[3],
+                                float *voxels, hl_error *error);
+
+#endif

@@ -1,0 +1,48 @@
+/* volume/formats/vdb/openvdb.c - OpenVDB's own files. The context's `convert` callback has another program
+ * convert them to NanoVDB. */
+#include <stdio.h>
+#include <string.h>
+
+#include "core/context.h"
+#include "volume/formats/vdb/nanovdb.h"
+
+static bool has_content(const unsigned char *bytes, size_t length) {
+  return length >= 4 && memcmp(bytes, " BDV", 4) == 0;
+}
+
+static hl_status fail_unconverted(const char *path, hl_error *error) {
+  return hl_fail(error, HL_ERROR_UNSUPPORTED,
+                 "%s: an OpenVDB file: convert it by `nanovdb_convert NAME.vdb NAME.nvdb` (libnanovdb-tools)",
+                 path);
+}
+
+/* Reads the converted file, under the name of the original file. */
+static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
+  const hl_context_options *options = &request->context->options;
+  const char *path = (*stream)->path;
+  /* A path of the open file. In a confined context `path` would name another file to the program. */
+  char opened[40];
+  const void *bytes = NULL;
+  size_t byte_count = 0;
+  hl_stream *converted = NULL;
+  hl_error reason = {0};
+  if (options->convert == NULL || !hl_stream_is_plain_file(*stream)) return fail_unconverted(path, error);
+  snprintf(opened, sizeof opened, "/proc/self/fd/%d", hl_stream_descriptor(*stream));
+  hl_status status = options->convert(options->user_data, "OpenVDB",
+                                      hl_is_confined(request->context) ? opened : path, &bytes, &byte_count,
+                                      &reason);
+  if (status == HL_ERROR_UNSUPPORTED) return fail_unconverted(path, error);
+  if (status != HL_OK) return hl_fail(error, status, "%s: %.800s", path, reason.message);
+  status = hl_stream_open_memory(request->context, path, bytes, byte_count, &converted, error);
+  if (status == HL_OK) status = hl_nanovdb_load(&converted, request, volume, error);
+  hl_stream_close(converted);
+  if (options->converted != NULL) options->converted(options->user_data, bytes, byte_count);
+  return status;
+}
+
+const hl_format hl_format_openvdb = {.name = "OpenVDB",
+                                     .missing = hl_nanovdb_missing,
+                                     .endings = {".vdb"},
+                                     .beginning = "\" BDV\"",
+                                     .has_content = has_content,
+                                     .load = load};

@@ -1,0 +1,45 @@
+/* volume/formats/vtk/cell_mesh.h - collects a mesh of cells in VTK's terms, piece by piece, and makes a
+ * volume of it. */
+#ifndef HL_VOLUME_CELL_MESH_H
+#define HL_VOLUME_CELL_MESH_H
+
+#include "bricks/cells.h"
+#include "volume/volume.h"
+
+typedef struct hl_cell_mesh {
+  hl_context *context;
+  const char *subject; /* borrowed; starts error lines */
+  double *points;      /* owned; [point_count][3] */
+  float *values;       /* owned; [point_count]; NaN until they are set */
+  hl_cell *cells;      /* owned; [cell_count]; those with a volume */
+  size_t *sources;     /* owned; [cell_count]; the number of the piece's cell from which each comes */
+  size_t point_count, cell_count, cell_room;
+  size_t first_point, first_cell;    /* where the piece that was begun last begins */
+  size_t left_out, flat, simplified; /* cells of unknown kinds, without a volume, and with curved edges */
+} hl_cell_mesh;
+
+/* Begins a piece with `count` points, whose coordinates are copied. points: [count][3]. */
+hl_status hl_cell_mesh_begin_piece(hl_cell_mesh *mesh, const double *points, size_t count, hl_error *error);
+
+/* Adds the piece's cells. types: VTK's numbers, [count]; ends: the end of each cell's corners, [count];
+ * corners: numbers of the piece's points, counted from 0, [corner_count]. */
+hl_status hl_cell_mesh_add_cells(hl_cell_mesh *mesh, const double *types, const double *ends, size_t count,
+                                 const double *corners, size_t corner_count, hl_error *error);
+
+/* Adds the hexahedra of a piece whose points are a curvilinear grid, [size[2]][size[1]][size[0]]. */
+hl_status hl_cell_mesh_add_grid(hl_cell_mesh *mesh, const size_t size[3], hl_error *error);
+
+/* Sets the piece's values. values: [count][components]; component: an index, or HL_COMPONENT_MAGNITUDE.
+ * of_cells: there is one value for each of the piece's cells, and a point gets the mean of the cells around
+ * it. */
+hl_status hl_cell_mesh_set_values(hl_cell_mesh *mesh, const double *values, size_t count, size_t components,
+                                  int component, bool of_cells, hl_error *error);
+
+/* Makes the volume, and tells in warnings what was left out. */
+hl_status hl_cell_mesh_finish(hl_cell_mesh *mesh, hl_volume **volume, hl_error *error);
+void hl_cell_mesh_release(hl_cell_mesh *mesh);
+
+/* Whether VTK's number is a kind of cell with a volume that is read. */
+bool hl_cell_kind_is_read(double type);
+
+#endif

@@ -1,0 +1,16 @@
+/* volume/formats/vtk/rectilinear.h - volumes whose voxels lie on lines that are not evenly spaced: VTK's
+ * rectilinear grids. */
+#ifndef HL_VOLUME_RECTILINEAR_H
+#define HL_VOLUME_RECTILINEAR_H
+
+#include "volume/volume.h"
+
+/* Places a volume by the coordinates of its points along x, y and z. There are counts[axis] of them. The
+ * volume was read as if its steps were 1. of_cells: its values belong to the cells between the points. If the
+ * points are evenly spaced, to a thousandth of a step, only the volume's place changes. Otherwise its values
+ * are resampled: linearly between points, or as the value of the cell at the place. *volume is replaced, and
+ * released on failure. */
+hl_status hl_rectilinear_place(hl_volume **volume, double *const coordinates[3], const size_t counts[3],
+                               bool of_cells, const char *path, hl_error *error);
+
+#endif

@@ -1,0 +1,78 @@
+/* volume/formats/vtk/vtk_xml.h - shared by the readers of all of VTK's XML files: the first tag, the places
+ * of the values of arrays, and their encoding. */
+#ifndef HL_VOLUME_VTK_XML_H
+#define HL_VOLUME_VTK_XML_H
+
+#include "volume/io/decoders.h"
+#include "volume/io/xml.h"
+#include "volume/volume.h"
+
+enum { HL_VTK_NAME_BYTES = 256 };
+
+typedef struct hl_vtk_xml {
+  hl_stream *stream; /* borrowed; the tags are read from it */
+  bool big_endian;
+  hl_vtk_packing packing; /* packing of binary values */
+  size_t header_bytes;    /* bytes of each integer before binary values; 0 if the first tag has not been
+                           * read */
+  uint64_t appended;      /* position in the file of the appended data's first byte; 0 if there are none */
+  bool appended_is_base64;
+} hl_vtk_xml;
+
+typedef enum hl_vtk_encoding { HL_VTK_ASCII, HL_VTK_BINARY, HL_VTK_APPENDED } hl_vtk_encoding;
+
+/* An array of the file. */
+typedef struct hl_vtk_array {
+  char type[HL_VTK_NAME_BYTES];
+  hl_vtk_encoding encoding;
+  uint64_t place; /* position of the values: in the file for inline values, in the appended data for appended
+                   * ones */
+} hl_vtk_array;
+
+/* Whether a file that starts with these bytes is an XML file, VTK's or any other. */
+bool hl_vtk_xml_has_content(const unsigned char *bytes, size_t length);
+
+/* Whether a file that starts with these bytes is an XML file that names one of VTK's types there. types:
+ * [count], as "ImageData". */
+bool hl_vtk_xml_is_of(const unsigned char *bytes, size_t length, const char *const types[], size_t count);
+
+/* Reads the tags up to the appended data or to the file's end, and hands each to the function. */
+typedef hl_status hl_vtk_xml_tag_fn(void *data, const hl_xml_tag *tag, hl_error *error);
+hl_status hl_vtk_xml_read_tags(hl_vtk_xml *xml, hl_vtk_xml_tag_fn *read_tag, void *data, hl_error *error);
+
+/* Reads an attribute that is a number of things; without the attribute *count stays. */
+hl_status hl_vtk_xml_count(const hl_vtk_xml *xml, const hl_xml_tag *tag, const char *name, size_t *count,
+                           hl_error *error);
+
+/* Copies a name; a name that is null or too long becomes an empty one. */
+void hl_vtk_xml_copy_name(char to[HL_VTK_NAME_BYTES], const char *name);
+
+/* Makes room for one more element of a list of `count`. *list: owned, [*room] elements of `size` bytes. */
+hl_status hl_vtk_xml_grow(hl_context *context, const hl_vtk_xml *xml, void **list, size_t count, size_t *room,
+                          size_t size, hl_error *error);
+
+/* Fails for a value that is impossible or, with HL_ERROR_UNSUPPORTED, not read. */
+hl_status hl_vtk_xml_refuse(const hl_vtk_xml *xml, hl_status code, const char *what, const char *value,
+                            hl_error *error);
+
+/* Reads <VTKFile>, which must have the type `wanted`. */
+hl_status hl_vtk_xml_file_tag(hl_vtk_xml *xml, const hl_xml_tag *tag, const char *wanted, hl_error *error);
+
+/* Reads <DataArray>: the place of the values and their encoding. */
+hl_status hl_vtk_xml_array_tag(const hl_vtk_xml *xml, const hl_xml_tag *tag, hl_vtk_array *array,
+                               hl_error *error);
+
+/* Reads <AppendedData>, up to the first byte of its arrays. */
+hl_status hl_vtk_xml_appended_tag(hl_vtk_xml *xml, const hl_xml_tag *tag, hl_error *error);
+
+/* Finds a type by its name in the file. False if there is no such type of numbers. */
+bool hl_vtk_xml_find_type(const char *name, hl_voxel_type *type);
+/* Finds a type like hl_vtk_xml_find_type(). Fails if there is none. */
+hl_status hl_vtk_xml_type(const hl_vtk_xml *xml, const char *name, hl_voxel_type *type, hl_error *error);
+
+/* Opens the file of *stream again at the array's values, and pushes the decoders of the array's encoding.
+ * Binary values must have `promised` bytes. */
+hl_status hl_vtk_xml_open_array(hl_stream **stream, const hl_vtk_xml *xml, const hl_vtk_array *array,
+                                uint64_t promised, hl_error *error);
+
+#endif

@@ -1,0 +1,34 @@
+/* volume/formats/zarr/metadata.h - the JSON files of a Zarr hierarchy. */
+#ifndef HL_VOLUME_ZARR_METADATA_H
+#define HL_VOLUME_ZARR_METADATA_H
+
+#include <jansson.h>
+
+#include "volume/formats/format.h"
+
+enum { HL_ZARR_PATH_BYTES = 512, HL_ZARR_METADATA_BYTES_MOST = 4 << 20 };
+
+/* Reads the JSON object in the file folder + name. *object is null if there is no such file, else owned by
+ * the caller (json_decref). */
+hl_status hl_zarr_metadata_read(const hl_bundle *bundle, const char *folder, const char *name,
+                                json_t **object, hl_error *error);
+
+/* Reads the attributes of the group or array in `folder`, from `zarr.json` or `.zattrs`; null if there are
+ * none. */
+hl_status hl_zarr_attributes_read(const hl_bundle *bundle, const char *folder, json_t **attributes,
+                                  hl_error *error);
+
+/* OME-Zarr's part of the attributes: the member "ome" in version 0.5, all attributes in version 0.4.
+ * Borrowed. */
+const json_t *hl_zarr_ome(const json_t *attributes);
+
+/* Fails with "PATH/FOLDER...: WHAT". */
+__attribute__((format(printf, 5, 6))) hl_status hl_zarr_fail(const hl_bundle *bundle, const char *folder,
+                                                             hl_error *error, hl_status code,
+                                                             const char *format, ...);
+
+/* Writes folder + name + '/' into `joined`. False if that is too long or leads out of the folder ("..", "/").
+ * The names "." and "" stand for the folder itself. */
+bool hl_zarr_join(char joined[HL_ZARR_PATH_BYTES], const char *folder, const char *name);
+
+#endif

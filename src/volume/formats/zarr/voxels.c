@@ -1,0 +1,321 @@
+/* volume/formats/zarr/voxels.c - reads chunks on all threads and puts their voxels in their places.
+ *
+ * A part of the work is one chunk. The chunk's file may be a shard, which holds several chunks; parts of the
+ * same shard follow each other. A missing chunk holds the fill value. */
+#include "volume/formats/zarr/voxels.h"
+
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+#include "volume/convert.h"
+#include "volume/formats/zarr/chunk.h"
+#include "volume/io/parallel.h"
+
+enum {
+  PARALLEL_VOXELS = 1 << 20, /* smaller volumes are read sooner than threads start */
+  PARTS_MOST = 1 << 26,
+  KEY_BYTES = HL_ZARR_PATH_BYTES + HL_ZARR_AXES_MOST * 21 + 8
+};
+
+static const bool native_is_big_endian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
+
+/* A thread's memory for a chunk, and the shard that the thread read last. */
+typedef struct worker {
+  hl_zarr_unpacker unpacker;
+  char key[KEY_BYTES];  /* name of the open file; "" if there is none */
+  hl_source *source;    /* owned; null if the file does not exist */
+  unsigned char *index; /* owned; [16 * chunks_in_shard], followed by a checksum; the shard's index */
+  void *row; /* owned; a row of a chunk, in stored form, on its way to pages or to a rank's slices; null if
+              * all voxels are in memory */
+} worker;
+
+typedef struct reading {
+  const hl_bundle *bundle;
+  const hl_zarr_array *array;
+  const hl_zarr_choice *choice;
+  hl_destination *to;          /* borrowed */
+  size_t stored_bytes;         /* bytes of a voxel */
+  uint64_t size[3];            /* size of the volume */
+  uint64_t files[3], inner[3]; /* along i, j, k: number of files, and number of chunks in each file */
+  uint64_t parts;              /* number of all parts */
+  size_t
+      stride[HL_ZARR_AXES_MOST]; /* along the array's axes: bytes from a voxel to the next one in a chunk */
+  unsigned char fill[4];         /* the fill value in stored form */
+  worker *workers;               /* owned; [threads] */
+  atomic_size_t found;           /* number of chunks that exist */
+} reading;
+
+/* The place of a part, in chunks and in voxels. */
+typedef struct part {
+  uint64_t file[HL_ZARR_AXES_MOST];  /* coordinates of the part's file */
+  uint64_t inner[HL_ZARR_AXES_MOST]; /* index of the chunk within its file */
+  uint64_t begin[3], count[3];       /* the part's voxels in the volume */
+} part;
+
+/* ---- which part is where ---- */
+
+static uint64_t ceiling(uint64_t value, uint64_t divisor) { return value / divisor + (value % divisor != 0); }
+
+static hl_status count_parts(reading *r, hl_error *error) {
+  const hl_zarr_array *array = r->array;
+  r->parts = 1;
+  for (int a = 0; a < 3; a++) {
+    int axis = r->choice->axis[a];
+    r->size[a] = axis < 0 ? 1 : array->shape[axis];
+    r->inner[a] = axis < 0 ? 1 : array->shard[axis];
+    r->files[a] = axis < 0 ? 1 : ceiling(ceiling(r->size[a], array->chunk[axis]), array->shard[axis]);
+    if (__builtin_mul_overflow(r->parts, r->files[a], &r->parts) ||
+        __builtin_mul_overflow(r->parts, r->inner[a], &r->parts) || r->parts > PARTS_MOST)
+      return hl_zarr_fail(r->bundle, array->folder, error, HL_ERROR_UNSUPPORTED,
+                          "more than %d chunks in a volume: write it with larger ones", PARTS_MOST);
+  }
+  return HL_OK;
+}
+
+/* Finds the place of a part. False if the part lies beyond the array's end. */
+static bool place_part(const reading *r, uint64_t number, part *p) {
+  const hl_zarr_array *array = r->array;
+  uint64_t inner[3], file[3];
+  for (int a = 0; a < 3; a++) {
+    inner[a] = number % r->inner[a];
+    number /= r->inner[a];
+  }
+  for (int a = 0; a < 3; a++) {
+    file[a] = number % r->files[a];
+    number /= r->files[a];
+  }
+  for (int axis = 0; axis < array->rank; axis++) {
+    uint64_t chunk = r->choice->index[axis] / array->chunk[axis];
+    p->file[axis] = chunk / array->shard[axis];
+    p->inner[axis] = chunk % array->shard[axis];
+  }
+  for (int a = 0; a < 3; a++) {
+    int axis = r->choice->axis[a];
+    p->begin[a] = 0;
+    p->count[a] = 1;
+    if (axis < 0) continue;
+    p->file[axis] = file[a];
+    p->inner[axis] = inner[a];
+    p->begin[a] = (file[a] * array->shard[axis] + inner[a]) * array->chunk[axis];
+    if (p->begin[a] >= r->size[a]) return false;
+    uint64_t left = r->size[a] - p->begin[a];
+    p->count[a] = left < array->chunk[axis] ? left : array->chunk[axis];
+  }
+  return true;
+}
+
+static void name_file(const hl_zarr_array *array, const part *p, char separator, char key[KEY_BYTES]) {
+  int used = snprintf(key, KEY_BYTES, "%s%s", array->folder, array->has_prefix ? "c" : "");
+  for (int axis = 0; axis < array->rank; axis++) {
+    if (axis > 0 || array->has_prefix) key[used++] = separator;
+    used += snprintf(key + used, KEY_BYTES - (size_t)used, "%llu", (unsigned long long)p->file[axis]);
+  }
+}
+
+/* ---- a chunk's voxels into the volume ---- */
+
+static void fill_row(const reading *r, void *row, size_t first, size_t count) {
+  float wide;
+  uint16_t word;
+  memcpy(&wide, r->fill, sizeof wide);
+  memcpy(&word, r->fill, sizeof word);
+  if (r->stored_bytes == 1) memset(row, r->fill[0], count);
+  for (size_t n = 0; r->stored_bytes == 2 && n < count; n++) ((uint16_t *)row)[n] = word;
+  for (size_t n = 0; r->stored_bytes == 4 && n < count; n++) {
+    ((float *)row)[n] = wide;
+    hl_destination_note(r->to, false, r->array->fill, first + n, 1);
+  }
+}
+
+/* Reads voxels that lie `step` bytes apart and stores them from number `first` on. They pass through a small
+ * buffer unless they lie side by side. */
+static void store_row(const reading *r, const unsigned char *from, size_t step, size_t first, size_t count,
+                      unsigned char *row) {
+  enum { STAGED = 512 };
+  hl_voxel_type type = r->array->type;
+  bool swap = r->array->codecs.big_endian != native_is_big_endian;
+  size_t bytes = hl_voxel_type_bytes(type);
+  if (step == bytes) {
+    hl_destination_note(r->to, swap, from, first, count);
+    hl_voxels_store(type, swap, from, count, row);
+    return;
+  }
+  unsigned char stage[STAGED * 8];
+  for (size_t done = 0; done < count; done += STAGED) {
+    size_t some = count - done < STAGED ? count - done : STAGED;
+    for (size_t n = 0; n < some; n++) memcpy(stage + n * bytes, from + (done + n) * step, bytes);
+    hl_destination_note(r->to, swap, stage, first + done, some);
+    hl_voxels_store(type, swap, stage, some, row + done * r->stored_bytes);
+  }
+}
+
+/* Stores a part. chunk: the part's voxels; null if the part gets the fill value. */
+static void put(const reading *r, const worker *w, const part *p, const unsigned char *chunk) {
+  size_t step[3];
+  for (int a = 0; a < 3; a++) step[a] = r->choice->axis[a] < 0 ? 0 : r->stride[r->choice->axis[a]];
+  for (int axis = 0; axis < r->array->rank && chunk != NULL; axis++)
+    chunk += r->choice->index[axis] % r->array->chunk[axis] * r->stride[axis];
+  for (uint64_t k = 0; k < p->count[2]; k++)
+    for (uint64_t j = 0; j < p->count[1]; j++) {
+      uint64_t first = ((p->begin[2] + k) * r->size[1] + p->begin[1] + j) * r->size[0] + p->begin[0];
+      void *row = w->row != NULL ? w->row : r->to->voxels + first * r->stored_bytes;
+      if (chunk == NULL) fill_row(r, row, first, p->count[0]);
+      else store_row(r, chunk + k * step[2] + j * step[1], step[0], first, p->count[0], row);
+      if (w->row != NULL) hl_destination_store(r->to, first, p->count[0], row);
+    }
+}
+
+/* ---- files and shards ---- */
+
+static hl_status read_index(const reading *r, worker *w, hl_error *error) {
+  const hl_zarr_array *array = r->array;
+  size_t bytes = (size_t)array->chunks_in_shard * 16 + 4 * (size_t)array->index_checks, got = 0;
+  uint64_t size = hl_source_size(w->source);
+  if (size < bytes)
+    return hl_zarr_fail(r->bundle, w->key, error, HL_ERROR_INPUT,
+                        "a shard of %llu bytes, its index alone has %zu: it is cut short",
+                        (unsigned long long)size, bytes);
+  if (w->index == NULL) w->index = hl_allocate(r->bundle->context, bytes, 1);
+  if (w->index == NULL) return hl_fail_memory(error, bytes, "the index of a shard");
+  hl_status status = hl_source_read(w->source, array->index_at_start ? 0 : size - bytes, w->index, bytes,
+                                    &got, error);
+  bool sound = got == bytes && (array->index_checks == 0 || hl_zarr_check_sum(w->index, bytes));
+  return status == HL_OK && !sound
+             ? hl_zarr_fail(r->bundle, w->key, error, HL_ERROR_INPUT, "the index of a shard is damaged")
+             : status;
+}
+
+/* Opens the file of a part, unless it is open already. */
+static hl_status open_file(const reading *r, worker *w, const part *p, hl_error *error) {
+  char key[KEY_BYTES];
+  name_file(r->array, p, r->array->separator, key);
+  if (strcmp(key, w->key) == 0) return HL_OK;
+  hl_source_close(w->source);
+  strcpy(w->key, key);
+  hl_status status = hl_bundle_find(r->bundle, key, true, &w->source, error);
+  if (status == HL_OK && w->source == NULL && r->array->separator_untold && r->array->rank > 1) {
+    name_file(r->array, p, '/', key);
+    status = hl_bundle_find(r->bundle, key, true, &w->source, error);
+  }
+  if (status == HL_OK && w->source != NULL && r->array->is_sharded) status = read_index(r, w, error);
+  if (status != HL_OK) w->key[0] = 0;
+  return status;
+}
+
+static uint64_t little_u64(const unsigned char *bytes) {
+  uint64_t value = 0;
+  for (int n = 7; n >= 0; n--) value = value << 8 | bytes[n];
+  return value;
+}
+
+/* Finds a chunk in its file. *length is 0 if the chunk is missing. */
+static hl_status find_chunk(const reading *r, const worker *w, const part *p, uint64_t *offset,
+                            uint64_t *length, hl_error *error) {
+  uint64_t size = w->source != NULL ? hl_source_size(w->source) : 0, number = 0;
+  *offset = 0;
+  *length = size;
+  if (w->source == NULL || !r->array->is_sharded) return HL_OK;
+  for (int axis = 0; axis < r->array->rank; axis++) number = number * r->array->shard[axis] + p->inner[axis];
+  *offset = little_u64(w->index + 16 * number);
+  *length = little_u64(w->index + 16 * number + 8);
+  if (*offset == UINT64_MAX && *length == UINT64_MAX) *length = 0;
+  else if (*length == 0 || *offset > size || *length > size - *offset)
+    return hl_zarr_fail(r->bundle, w->key, error, HL_ERROR_INPUT, "a chunk lies outside of its shard");
+  return HL_OK;
+}
+
+static hl_status read_part(void *data, size_t number, int index, hl_error *error) {
+  reading *r = data;
+  worker *w = &r->workers[index];
+  part p;
+  uint64_t offset, length = 0;
+  const unsigned char *chunk = NULL;
+  if (!place_part(r, number, &p)) return HL_OK;
+  uint64_t slice = r->size[0] * r->size[1];
+  if (!hl_destination_wants(r->to, p.begin[2] * slice, p.count[2] * slice)) {
+    /* Another rank knows whether the chunk exists. */
+    atomic_fetch_add_explicit(&r->found, 1, memory_order_relaxed);
+    return HL_OK;
+  }
+  hl_status status = open_file(r, w, &p, error);
+  if (status == HL_OK) status = find_chunk(r, w, &p, &offset, &length, error);
+  if (status == HL_OK && w->source != NULL && length > 0) {
+    status = hl_zarr_chunk_read(&w->unpacker, w->source, offset, length, &chunk, error);
+    atomic_fetch_add_explicit(&r->found, 1, memory_order_relaxed);
+  }
+  if (status == HL_OK) put(r, w, &p, chunk);
+  return status;
+}
+
+/* ---- the whole ---- */
+
+static void prepare(reading *r) {
+  const hl_zarr_array *array = r->array;
+  size_t step = hl_voxel_type_bytes(array->type);
+  r->stored_bytes = hl_storage_bytes(hl_voxel_type_storage(array->type));
+  for (int n = array->rank - 1; n >= 0; n--) {
+    int axis = array->codecs.order[n];
+    r->stride[axis] = step;
+    step *= (size_t)array->chunk[axis];
+  }
+  hl_voxels_store(array->type, false, array->fill, 1, r->fill);
+}
+
+/* The number of voxels of a chunk's longest row. */
+static size_t longest_row(const reading *r) {
+  int axis = r->choice->axis[0];
+  uint64_t chunk = axis < 0 ? 1 : r->array->chunk[axis];
+  return (size_t)(chunk < r->size[0] ? chunk : r->size[0]);
+}
+
+static hl_status read_parts(reading *r, hl_pool *pool, hl_error *error) {
+  hl_context *context = r->bundle->context;
+  size_t threads = (size_t)hl_pool_threads(pool), row_bytes = longest_row(r) * r->stored_bytes;
+  hl_status status = HL_OK;
+  r->workers = hl_allocate_zeroed(context, threads, sizeof *r->workers);
+  if (r->workers == NULL) return hl_fail_memory(error, threads * sizeof *r->workers, "threads");
+  for (size_t n = 0; n < threads; n++) {
+    worker *w = &r->workers[n];
+    w->unpacker = (hl_zarr_unpacker){.context = context, .path = r->bundle->path, .array = r->array};
+    if (hl_destination_is_apart(r->to) && (w->row = hl_allocate(context, row_bytes, 1)) == NULL)
+      status = hl_fail_memory(error, row_bytes, r->bundle->path);
+  }
+  if (status == HL_OK)
+    status = hl_parallel_read(context, pool, r->bundle->path, (size_t)r->parts, read_part, r, error);
+  for (size_t n = 0; n < threads; n++) {
+    hl_zarr_unpacker_release(&r->workers[n].unpacker);
+    hl_source_close(r->workers[n].source);
+    hl_release(context, r->workers[n].index);
+    hl_release(context, r->workers[n].row);
+  }
+  hl_release(context, r->workers);
+  return status;
+}
+
+static hl_status read_all(reading *r, hl_error *error) {
+  hl_pool *pool = NULL;
+  bool parallel = r->parts > 1 && r->size[0] * r->size[1] * r->size[2] >= PARALLEL_VOXELS;
+  hl_status status = hl_pool_create(r->bundle->context, parallel ? 0 : 1, &pool, error);
+  if (status == HL_OK) status = read_parts(r, pool, error);
+  hl_pool_destroy(pool);
+  if (status == HL_OK && atomic_load(&r->found) == 0)
+    return hl_zarr_fail(r->bundle, r->array->folder, error, HL_ERROR_INPUT,
+                        "not one of its %llu chunks is there: is the copy whole?",
+                        (unsigned long long)r->parts);
+  return status;
+}
+
+hl_status hl_zarr_voxels_read(const hl_bundle *bundle, const hl_zarr_array *array,
+                              const hl_zarr_choice *choice, const hl_volume_description *grid,
+                              hl_destination *to, hl_error *error) {
+  reading r = {.bundle = bundle, .array = array, .choice = choice, .to = to};
+  atomic_init(&r.found, 0);
+  prepare(&r);
+  hl_status status = count_parts(&r, error);
+  if (status == HL_OK)
+    status = hl_destination_open(bundle->context, grid, HL_DESTINATION_PIECES, bundle->path, to, error);
+  return status == HL_OK ? read_all(&r, error) : status;
+}

@@ -1,0 +1,65 @@
+/* volume/io/bundle.h - many files as one input: a folder, or a zip archive.
+ *
+ * A folder's files are the files in it and in the folders below it, down to a greatest depth and up to a
+ * greatest number. Symbolic links to folders, and links to files outside, are not followed. */
+#ifndef HL_VOLUME_BUNDLE_H
+#define HL_VOLUME_BUNDLE_H
+
+#include "volume/io/source.h"
+
+typedef struct hl_bundle_entry {
+  char *name;          /* owned; relative to the folder, with '/' */
+  uint64_t size;       /* in archives: length of the unpacked file, as the archive claims */
+  uint64_t packed, at; /* in archives: length of the packed file; position of the entry's own header */
+  int method;          /* in archives: 0 is stored, 8 is deflated; other methods cannot be read */
+} hl_bundle_entry;
+
+typedef struct hl_bundle hl_bundle;
+
+struct hl_bundle {
+  hl_context *context;
+  char *path; /* owned; path of the folder or the archive */
+  bool is_archive, is_file, listed;
+  bool is_open;                /* whether `folder` is open, as hl_bundle_find_ready() was called */
+  int folder;                  /* owned; a folder's descriptor */
+  const unsigned char *memory; /* borrowed; [memory_size]; the content of the archive or of the only file;
+                                * null if it is read from files */
+  size_t memory_size;
+  hl_bundle_entry *entries; /* owned; [count], sorted by name; a folder's entries are found by
+                             * hl_bundle_list() */
+  size_t count, capacity;
+  size_t links_passed; /* symbolic links that lead out of the folder or to folders */
+  /* Opens an entry of an archive; see hl_bundle_entry_open(). */
+  hl_status (*open_entry)(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,
+                          hl_source **source, hl_error *error);
+};
+
+enum { HL_BUNDLE_FILES_MOST = 200000, HL_BUNDLE_DEPTH_MOST = 24 };
+
+/* Makes a bundle of a folder. path: an existing folder. */
+hl_status hl_bundle_open_folder(hl_context *context, const char *path, hl_bundle *bundle, hl_error *error);
+/* Makes a bundle of one file. The caller may set `memory` to the file's content. */
+hl_status hl_bundle_of_file(hl_context *context, const char *path, hl_bundle *bundle, hl_error *error);
+void hl_bundle_close(hl_bundle *bundle);
+
+/* Finds a folder's files. Called once. The files of an archive are known without it. */
+hl_status hl_bundle_list(hl_bundle *bundle, hl_error *error);
+
+/* Adds a copy of an entry and of its name. Sort the entries when all are added. */
+hl_status hl_bundle_add(hl_bundle *bundle, hl_bundle_entry entry, hl_error *error);
+void hl_bundle_sort(hl_bundle *bundle);
+
+/* Opens the file of an entry. quiet: the parameter of hl_source_open() with this name. May be called from
+ * several threads. */
+hl_status hl_bundle_entry_open(const hl_bundle *bundle, const hl_bundle_entry *entry, bool quiet,
+                               hl_source **source, hl_error *error);
+
+/* Prepares hl_bundle_find(), which may then be called from several threads. */
+hl_status hl_bundle_find_ready(hl_bundle *bundle, hl_error *error);
+
+/* Opens the file of a name (relative, with '/'), which need not be listed. *source is null if there is no
+ * such file, or if a link leads out of the folder. */
+hl_status hl_bundle_find(const hl_bundle *bundle, const char *name, bool quiet, hl_source **source,
+                         hl_error *error);
+
+#endif

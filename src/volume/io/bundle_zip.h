@@ -1,0 +1,11 @@
+/* volume/io/bundle_zip.h - the files of a zip archive as a bundle. */
+#ifndef HL_VOLUME_BUNDLE_ZIP_H
+#define HL_VOLUME_BUNDLE_ZIP_H
+
+#include "volume/io/bundle.h"
+
+/* Opens a zip archive, the file `path` or the caller's memory, and reads its directory. */
+hl_status hl_bundle_open_zip(hl_context *context, const char *path, const void *bytes, size_t byte_count,
+                             hl_bundle *bundle, hl_error *error);
+
+#endif

@@ -1,0 +1,66 @@
+/* volume/io/destination.h - where a reader puts voxels: memory, the pages of a scratch file where memory has
+ * no room, or, over ranks, this rank's share of the slices.
+ *
+ * In: stored values, in pieces of any size and order, from several threads at once. Out: the volume. */
+#ifndef HL_VOLUME_DESTINATION_H
+#define HL_VOLUME_DESTINATION_H
+
+#include "volume/colors.h"
+#include "volume/exact.h"
+#include "volume/store/pages.h"
+
+typedef struct hl_destination {
+  hl_context *context;
+  const char *path;      /* borrowed; starts the error lines */
+  size_t voxel_bytes;    /* bytes of a stored value, or of a voxel's colours */
+  unsigned char *voxels; /* owned; [k][j][i]; null with pages */
+  hl_pages *pages;       /* owned; null if the voxels are in memory */
+  hl_exact exact;        /* the file's own numbers, where stored values round them */
+  hl_own_voxels *own;    /* owned; this rank's slices, for a volume over ranks, whose `voxels` is null; null
+                          * for other volumes */
+} hl_destination;
+
+typedef enum hl_destination_kind {
+  HL_DESTINATION_PIECES, /* in pages where memory is short, or over ranks */
+  HL_DESTINATION_VOXELS, /* always in memory, as the reader comes back to voxels */
+  HL_DESTINATION_COLORS  /* always in memory; the values are colours (colors.h) */
+} hl_destination_kind;
+
+/* Opens a destination. grid: must have been checked. Close the destination also after a failure. */
+hl_status hl_destination_open(hl_context *context, const hl_volume_description *grid,
+                              hl_destination_kind kind, const char *path, hl_destination *destination,
+                              hl_error *error);
+
+/* Takes a place for `count` voxels from number `first` on: the voxels' own memory, or a block that is
+ * released when the place is put. Every place that was taken must be put. */
+hl_status hl_destination_take(hl_destination *destination, size_t first, size_t count, void **place,
+                              hl_error *error);
+void hl_destination_put(hl_destination *destination, size_t first, size_t count, void *place);
+
+/* Whether any of these voxels is kept. Over ranks other voxels need not be read. */
+bool hl_destination_wants(const hl_destination *destination, size_t first, size_t count);
+
+/* Whether there is no array of all voxels, so that hl_destination_store() copies voxels to their places. */
+static inline bool hl_destination_is_apart(const hl_destination *destination) {
+  return destination->voxels == NULL;
+}
+void hl_destination_store(hl_destination *destination, size_t first, size_t count, const void *values);
+
+/* Notes voxels in the file's own type before they are stored; see hl_exact_note(). */
+static inline void hl_destination_note(hl_destination *destination, bool swap, const void *source,
+                                       size_t first, size_t count) {
+  hl_exact_note(&destination->exact, swap, source, first, count);
+}
+
+/* Makes the volume, which takes over the destination's memory, also on failure. grid: the grid with which the
+ * destination was opened. */
+hl_status hl_destination_adopt(hl_destination *destination, const hl_volume_description *grid,
+                               hl_volume **volume, hl_error *error);
+
+/* Makes the volume like hl_destination_adopt(), of voxels that are colours. */
+hl_status hl_destination_adopt_colors(hl_destination *destination, const hl_color_source *source,
+                                      hl_volume **volume, hl_error *error);
+
+void hl_destination_close(hl_destination *destination);
+
+#endif

@@ -1,0 +1,32 @@
+/* volume/io/jpeg_fault.h - turns libjpeg's errors into a jump with a message. Included only if the build has
+ * libjpeg. */
+#ifndef HL_VOLUME_JPEG_FAULT_H
+#define HL_VOLUME_JPEG_FAULT_H
+
+#include <setjmp.h>
+#include <stdio.h>
+
+#include <jpeglib.h>
+
+typedef struct hl_jpeg_fault {
+  struct jpeg_error_mgr manager; /* libjpeg's member, to which the decoder's `err` points */
+  jmp_buf jump;                  /* where execution goes on after an error */
+  char message[JMSG_LENGTH_MAX]; /* set by the jump: the error's message */
+} hl_jpeg_fault;
+
+static inline void hl_jpeg_stop(j_common_ptr info) {
+  hl_jpeg_fault *fault = (hl_jpeg_fault *)(void *)info->err;
+  info->err->format_message(info, fault->message);
+  longjmp(fault->jump, 1);
+}
+
+static inline void hl_jpeg_pass_over(j_common_ptr info) { (void)info; }
+
+/* Sets up the decoder's errors: an error jumps, and a warning is ignored. The caller sets `jump`. */
+static inline void hl_jpeg_catch(struct jpeg_decompress_struct *info, hl_jpeg_fault *fault) {
+  info->err = jpeg_std_error(&fault->manager);
+  fault->manager.error_exit = hl_jpeg_stop;
+  fault->manager.output_message = hl_jpeg_pass_over;
+}
+
+#endif

@@ -1,0 +1,29 @@
+/* volume/io/numbers.h - reads numbers from a stream, written as text or as binary numbers of any type. */
+#ifndef HL_VOLUME_NUMBERS_H
+#define HL_VOLUME_NUMBERS_H
+
+#include "volume/io/stream.h"
+#include "volume/io/text.h"
+#include "volume/volume.h"
+
+/* Whether a character may stand between numbers of a text. */
+static inline bool hl_is_separator(unsigned char c) { return hl_is_space((char)c) || c == ','; }
+
+/* Reads the next number of a text; *found is false at the end. */
+hl_status hl_next_number(hl_stream *stream, double *value, bool *found, hl_error *error);
+
+/* The coding of numbers. */
+typedef struct hl_number_code {
+  hl_voxel_type type;
+  bool text, big_endian; /* text: decimal numbers of any type */
+} hl_number_code;
+
+/* The number that the bytes of a type stand for. */
+double hl_binary_number(const unsigned char *bytes, hl_voxel_type type, bool big_endian);
+
+/* Reads `count` numbers. *numbers is owned by the caller (hl_release), [count]. Integers are exact up to
+ * 2^53. Fails, before memory is taken, if the stream cannot hold that many. */
+hl_status hl_read_numbers(hl_stream *stream, const hl_number_code *code, uint64_t count, double **numbers,
+                          hl_error *error);
+
+#endif

@@ -1,0 +1,49 @@
+/* volume/io/source.h - bytes at any position of a file, of memory, or of deflated data.
+ *
+ * Streams (stream.h) are read once, in order. A source serves formats whose headers point to other places of
+ * the file. */
+#ifndef HL_VOLUME_SOURCE_H
+#define HL_VOLUME_SOURCE_H
+
+#include <stdbool.h>
+
+#include "core/error.h"
+
+enum { HL_SOURCE_WINDOW_BYTES = 65536 };
+
+typedef struct hl_source hl_source;
+
+/* Opens a regular file. quiet: does not call the context's `reads` callback. For threads other than the
+ * caller's, which may not call it, and for files that were opened before. */
+hl_status hl_source_open(hl_context *context, const char *path, bool quiet, hl_source **source,
+                         hl_error *error);
+/* Opens memory. path: the name in error lines. The bytes must outlive the source. */
+hl_status hl_source_of_memory(hl_context *context, const char *path, const void *bytes, size_t count,
+                              hl_source **source, hl_error *error);
+/* Makes a source of the bytes [begin, begin + count) of *source. The new source replaces *source and owns
+ * it. */
+hl_status hl_source_cut(hl_source **source, uint64_t begin, uint64_t count, hl_error *error);
+/* Makes a source of the data that raw deflate data from position `begin` of *source hold, at most `limit`
+ * bytes. They are inflated when they are first needed, and kept. The new source replaces *source and owns
+ * it. */
+hl_status hl_source_inflate(hl_source **source, uint64_t begin, uint64_t limit, hl_error *error);
+void hl_source_close(hl_source *source); /* null is allowed */
+
+hl_context *hl_source_context(const hl_source *source);
+const char *hl_source_path(const hl_source *source);
+/* The length in bytes; for deflated data an upper bound. */
+uint64_t hl_source_size(const hl_source *source);
+
+/* Shows up to `wanted` bytes (at most HL_SOURCE_WINDOW_BYTES) from `offset` on, fewer only at the end. The
+ * bytes stay valid until the next call. */
+hl_status hl_source_peek(hl_source *source, uint64_t offset, size_t wanted, const unsigned char **bytes,
+                         size_t *available, hl_error *error);
+/* Copies `wanted` bytes from `offset` on. *count is less than wanted only at the end. */
+hl_status hl_source_read(hl_source *source, uint64_t offset, void *bytes, size_t wanted, size_t *count,
+                         hl_error *error);
+/* Reads all bytes; refuses more than `most`. *bytes must be null before, and is owned by the caller
+ * (hl_release), also after a failure. *length: number of bytes. name: the file's name, for error lines. */
+hl_status hl_source_read_whole(hl_source *source, const char *name, uint64_t most, unsigned char **bytes,
+                               size_t *length, hl_error *error);
+
+#endif

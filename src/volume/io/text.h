@@ -1,0 +1,47 @@
+/* volume/io/text.h - words and numbers of text headers, the same in every locale. */
+#ifndef HL_VOLUME_TEXT_H
+#define HL_VOLUME_TEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { HL_NUMBER_CHARACTERS = 128, HL_PRINTABLE_BYTES = 64 };
+
+/* Whether a character is a space, tab, CR, LF, FF or VT. */
+static inline bool hl_is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+/* Converts all of [text, text + length) to a number, correctly rounded. Also accepts nan, inf and infinity in
+ * upper or lower case. False if the text is no number or has HL_NUMBER_CHARACTERS or more characters. */
+bool hl_text_number(const char *text, size_t length, double *value);
+
+/* Converts all of a text to a whole number, also one written as 13.0 or 1e3. False if it is none that 64 bits
+ * with a sign hold. */
+bool hl_text_whole(const char *text, int64_t *whole);
+
+/* Reads numbers separated by white space. Returns their number, or -1 if the text holds anything else or more
+ * than `capacity` numbers. */
+int hl_text_numbers(const char *text, double *values, int capacity);
+
+/* Reads integers from 0 to SIZE_MAX, like hl_text_numbers(). */
+int hl_text_sizes(const char *text, size_t *values, int capacity);
+
+/* Compares without regard to the case of ASCII letters. */
+bool hl_text_equal(const char *a, const char *b);
+bool hl_text_starts(const char *text, const char *prefix);
+bool hl_text_ends(const char *text, const char *suffix);
+
+/* Whether text equals one of the alternatives, which '|' separates: "data file|datafile". */
+bool hl_text_is_one_of(const char *text, const char *alternatives);
+
+/* Cuts white space from both ends, in place; returns the new start. */
+char *hl_text_trim(char *text);
+
+/* Takes the next word (up to white space) at *cursor, and moves *cursor past it. False if there is none or it
+ * is too long. */
+bool hl_text_word(const char **cursor, char *word, size_t capacity);
+
+/* Shortens foreign text for an error line: unprintable bytes become '?'. Returns buffer. */
+const char *hl_text_printable(char buffer[HL_PRINTABLE_BYTES], const char *text);
+
+#endif

@@ -1,0 +1,37 @@
+/* volume/io/unpack.h - unpacks a block whose size is known: deflate, Blosc, LZ4, bzip2 and xz. */
+#ifndef HL_VOLUME_UNPACK_H
+#define HL_VOLUME_UNPACK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "core/error.h"
+
+/* Whether packed data can hold `count` bytes; asked before memory is taken for them. Deflate data are judged
+ * by deflate's best ratio, Blosc data by the block's own header. */
+bool hl_deflate_can_hold(size_t length, size_t count);
+bool hl_blosc_can_hold(const unsigned char *packed, size_t length, size_t count);
+
+/* Unpacks into bytes [0, count). *sound: false if the data are damaged or hold another number of bytes.
+ * Deflate data have zlib's header or gzip's. hl_unpack_blosc() fails in builds without its library. */
+hl_status hl_unpack_deflate(hl_context *context, const unsigned char *packed, size_t length, void *bytes,
+                            size_t count, bool *sound, hl_error *error);
+hl_status hl_unpack_blosc(const char *path, const unsigned char *packed, size_t length, void *bytes,
+                          size_t count, bool *sound, hl_error *error);
+
+/* Unpack a block of LZ4 (without a header), or a stream of bzip2 or xz. They fail in builds without their
+ * libraries. They check whether the data can hold `count` bytes before anything is unpacked. */
+hl_status hl_unpack_lz4(const char *path, const unsigned char *packed, size_t length, void *bytes,
+                        size_t count, bool *sound, hl_error *error);
+hl_status hl_unpack_bzip2(const char *path, const unsigned char *packed, size_t length, void *bytes,
+                          size_t count, bool *sound, hl_error *error);
+hl_status hl_unpack_xz(const char *path, const unsigned char *packed, size_t length, void *bytes,
+                       size_t count, bool *sound, hl_error *error);
+
+/* Whether `length` bytes of a codec with this greatest ratio can hold `count` bytes. */
+static inline bool hl_packed_can_hold(size_t length, size_t count, size_t ratio) {
+  return count / ratio <= length;
+}
+enum { HL_LZ4_RATIO = 255, HL_BZIP2_RATIO = 25000, HL_XZ_RATIO = 8192 };
+
+#endif

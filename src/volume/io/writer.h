@@ -1,0 +1,52 @@
+/* volume/io/writer.h - the formats in which volumes are written. Each has a header, voxels, and at most a few
+ * bytes after them. */
+#ifndef HL_VOLUME_WRITER_H
+#define HL_VOLUME_WRITER_H
+
+#include "volume/volume.h"
+
+enum { HL_WRITER_HEADER_BYTES = 4096, HL_WRITER_SIZE_CHARACTERS = 20 };
+
+typedef enum hl_packing {
+  HL_PACKING_NONE,
+  HL_PACKING_GZIP_ALL,    /* packs the whole file */
+  HL_PACKING_GZIP_VOXELS, /* packs the voxels after the header */
+  HL_PACKING_ZLIB_VOXELS
+} hl_packing;
+
+/* The bytes before and after the voxels. */
+typedef struct hl_written_header {
+  unsigned char bytes[HL_WRITER_HEADER_BYTES];
+  size_t length;
+  const char *end;  /* text after the voxels; null if there is none */
+  const char *unit; /* input: the unit of the grid's lengths, one of the writer's; null if unknown */
+  size_t size_at;   /* position at which the number of the voxels' packed bytes is stated, in
+                     * HL_WRITER_SIZE_CHARACTERS; 0 if nowhere */
+} hl_written_header;
+
+typedef struct hl_writer {
+  const char *format; /* the name of the format's reader in lists of formats */
+  const char *ending; /* end of the file's name */
+  hl_packing packing;
+  unsigned types; /* bit 1 << hl_voxel_type is set if voxels of this type can be written */
+  /* Makes the header. If the format cannot state the grid, fails and names the file. grid: dimensions, type,
+   * origin, axes, space. */
+  hl_status (*make_header)(const char *path, const hl_volume_description *grid, hl_written_header *header,
+                           hl_error *error);
+  const char *loses; /* parts of the placement that the format cannot state, such as "the space"; null if
+                      * there are none */
+  const char *units; /* units of length that the format can state, between '|'; lengths in other units are
+                      * converted to the first. Null if it states none, so that lengths stay as they are */
+} hl_writer;
+
+/* The unit in which a writer writes lengths of this unit, and the factor by which they are multiplied. Null
+ * and 1 if lengths stay as they are, as the volume or the format has no unit. */
+const char *hl_written_unit(const hl_writer *writer, const char *unit, double *factor);
+
+/* The writer for a file's name; null if there is none. */
+const hl_writer *hl_writer_for(const char *path);
+
+/* The writers: index from 0 on; null beyond the last. */
+const hl_writer *hl_writer_at(size_t index);
+
+#endif

@@ -1,0 +1,29 @@
+/* volume/io/xml.h - reads the tags of an XML file one by one. It is enough for VTK's files, and safe with any
+ * others.
+ *
+ * Text between tags, comments and processing instructions are skipped. Document type declarations (and with
+ * them entity definitions and external references) and CDATA are refused. */
+#ifndef HL_VOLUME_XML_H
+#define HL_VOLUME_XML_H
+
+#include "volume/io/stream.h"
+
+enum { HL_XML_TAG_BYTES = 8192, HL_XML_ATTRIBUTES = 32 };
+
+typedef struct hl_xml_tag {
+  char text[HL_XML_TAG_BYTES]; /* memory that the names and values point into */
+  const char *name;
+  bool is_start, is_end; /* both are set for <name/> */
+  int attribute_count;
+  struct {
+    const char *name, *value; /* the five predefined entities are resolved */
+  } attribute[HL_XML_ATTRIBUTES];
+} hl_xml_tag;
+
+/* Reads the next tag. The stream continues after it. *ended: whether there are no more tags. */
+hl_status hl_xml_next_tag(hl_stream *stream, hl_xml_tag *tag, bool *ended, hl_error *error);
+
+/* The value of an attribute; null if the tag does not have it. */
+const char *hl_xml_attribute(const hl_xml_tag *tag, const char *name);
+
+#endif

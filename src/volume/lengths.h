@@ -1,9 +1,0 @@
-/* volume/lengths.h - units of length as microscopes' files name them. */
-#ifndef HL_VOLUME_LENGTHS_H
-#define HL_VOLUME_LENGTHS_H
-
-/* The number of micrometres of a unit, by its symbol or name; 0 if it is no known unit of length. The case of
- * a symbol's letters matters: "mm" is not "Mm". */
-double hl_micrometres(const char *unit);
-
-#endif

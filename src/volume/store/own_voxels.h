@@ -1,0 +1,50 @@
+/* volume/store/own_voxels.h - the block of a volume over ranks that this rank holds.
+ *
+ * In: voxels in the caller's memory, of any type and strides, borrowed; or a block of slices that a reader
+ * fills with stored values. Out: stored values, packed, of any box of the block. */
+#ifndef HL_VOLUME_OWN_VOXELS_H
+#define HL_VOLUME_OWN_VOXELS_H
+
+#include "ranks/blocks.h"
+#include "volume/convert.h"
+
+typedef struct hl_own_voxels {
+  hl_context *context;
+  hl_box box;          /* the box of the whole volume that this rank holds */
+  hl_voxel_type type;  /* type of the voxels in memory; for stored values U8, U16 or F32 */
+  size_t stored_bytes; /* bytes of a stored value */
+  const unsigned char *first;
+  ptrdiff_t stride[3]; /* distances in bytes */
+  unsigned char
+      *slices; /* owned; [count[2]][count[1]][count[0]]; `first` points to it; null if `first` is borrowed */
+  void *row;   /* owned; a row of the voxels' type, if the voxels of a row are not adjacent; else null. Used
+                * with row_lock held */
+  pthread_mutex_t row_lock;
+} hl_own_voxels;
+
+/* Allocates this rank's share of the slices, to be filled. *own is owned by the caller. */
+hl_status hl_own_voxels_allocate(hl_ranks *ranks, const hl_volume_description *whole, hl_own_voxels **own,
+                                 hl_error *error);
+
+/* Borrows the caller's voxels. hl_blocks_share() checks the block against the whole. */
+hl_status hl_own_voxels_borrow(hl_ranks *ranks, const hl_volume_description *whole, const hl_block *block,
+                               hl_own_voxels **own, hl_error *error);
+
+/* Allocates a block of floats with the place and size of another, to be filled in `slices`. *own is owned by
+ * the caller. */
+hl_status hl_own_voxels_like(hl_ranks *ranks, const hl_own_voxels *other, hl_own_voxels **own,
+                             hl_error *error);
+
+void hl_own_voxels_release(hl_own_voxels *own); /* null is allowed */
+
+/* The hl_block_copier of an hl_own_voxels. */
+void hl_own_voxels_copy(const void *own, const hl_box *box, unsigned char *to);
+
+/* Copies `count` voxels from number `first` on, in the block's own order. */
+void hl_own_voxels_run(const hl_own_voxels *own, size_t first, size_t count, unsigned char *to);
+
+static inline size_t hl_own_voxels_count(const hl_own_voxels *own) {
+  return own->box.count[0] * own->box.count[1] * own->box.count[2];
+}
+
+#endif

@@ -1,0 +1,24 @@
+/* volume/store/scratch_file.h - files without a name, for data that memory has no room for. A file is gone
+ * when it is closed, or when the process ends. */
+#ifndef HL_VOLUME_SCRATCH_FILE_H
+#define HL_VOLUME_SCRATCH_FILE_H
+
+#include <stdbool.h>
+#include <sys/types.h>
+
+#include "core/error.h"
+
+/* Makes a file of zeros in the folder, whose space on the disk is taken at once. *file must be closed by the
+ * caller; -1 on failure. */
+hl_status hl_scratch_open(hl_context *context, const char *folder, size_t bytes, int *file, hl_error *error);
+
+/* Makes an empty file in the folder, which grows as it is written. Returns -1, with errno set, on failure. */
+int hl_scratch_open_empty(hl_context *context, const char *folder);
+
+/* Writes all bytes at an offset of the file. False, with errno set, on failure. */
+bool hl_scratch_write(int file, const unsigned char *bytes, size_t count, off_t at);
+
+/* Fails with the error line of hl_scratch_open() for the system's error number. */
+hl_status hl_scratch_fail(const char *folder, size_t bytes, int number, hl_error *error);
+
+#endif
