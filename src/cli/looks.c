@@ -6,11 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/render/render.h"
 #include "commands.h"
 #include "host.h"
 #include "input.h"
 #include "output.h"
-#include "render.h"
 #include "sheet_font.h"
 
 enum looks_option {

@@ -9,7 +9,7 @@
 #include "core/context.h"
 #include "core/file.h"
 #include "core/memory.h"
-#include "scene/transfer_function.h"
+#include "scene/function/transfer_function.h"
 #include "text/color.h"
 #include "text/edit_distance.h"
 

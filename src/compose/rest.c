@@ -7,8 +7,8 @@
 #include <math.h>
 
 #include "compose/composer.h"
-#include "scene/placement.h"
-#include "scene/transfer_function.h"
+#include "scene/function/transfer_function.h"
+#include "scene/geometry/placement.h"
 #include "volume/volume.h"
 
 #define MOST_OPACITY 0.9999 /* per unit distance: an opacity of 1 has no extinction */

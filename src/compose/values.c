@@ -5,7 +5,7 @@
 #include "compose/looks.h"
 #include "core/memory.h"
 #include "guess/looks.h"
-#include "scene/transfer_function.h"
+#include "scene/function/transfer_function.h"
 
 /* Whether options say how values are drawn, or mask them: a mask is of volumes that are no label maps. */
 static bool asks_for_values(const hl_composer *composer, const hl_scene_volume *volume, size_t index) {

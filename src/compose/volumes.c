@@ -6,7 +6,7 @@
 #include "compose/looks.h"
 #include "core/context.h"
 #include "core/memory.h"
-#include "scene/transfer_function.h"
+#include "scene/function/transfer_function.h"
 
 static hl_status change_volume(const hl_composer *composer, const hl_scene_description *description,
                                hl_changed_volumes *changed, size_t index) {

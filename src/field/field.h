@@ -16,7 +16,7 @@
 #include "core/memory.h"
 #include "core/vector.h"
 #include "grid/classifier.h"
-#include "scene/cut.h"
+#include "scene/geometry/cut.h"
 
 enum {
   FIELD_LANES = 16,

@@ -15,7 +15,7 @@
 #include "field/field_planes.h"
 #include "field/harmonics.h"
 #include "field/surface_links.h"
-#include "scene/sky.h"
+#include "scene/light/sky.h"
 
 /* Cells by which look-ups are lifted off a surface. */
 static const double LIFT_CELLS = 0.5;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "figure/overlay.h"
-#include "scene/camera.h"
+#include "scene/geometry/camera.h"
 
 /* What the ends of the world's axes are called: [axis][0: the negative end, 1: the positive one]. */
 typedef const char *axis_names[3][2];

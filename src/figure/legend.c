@@ -10,7 +10,7 @@
 
 #include "figure/overlay.h"
 #include "figure/units.h"
-#include "scene/transfer_function.h"
+#include "scene/function/transfer_function.h"
 #include "text/plain.h"
 
 enum { STEPS_BETWEEN_POINTS = 8, CURVE_STEPS = 256, TICKS_MOST = 6, NUMBER_BYTES = 40 };

@@ -4,7 +4,7 @@
  * of the world; in perspective, at the depth d, 2 d tan(fovy / 2). */
 #include "figure/map.h"
 
-#include "scene/camera.h"
+#include "scene/geometry/camera.h"
 
 hl_map hl_map_of(const hl_camera *camera, hl_rectangle picture) {
   hl_map map = {.eye = vec3_of(camera->position),

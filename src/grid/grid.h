@@ -14,7 +14,7 @@
 #include "core/error.h"
 #include "core/pool.h"
 #include "grid/kernel.h"
-#include "scene/cut.h"
+#include "scene/geometry/cut.h"
 #include "scene/scene.h"
 #include "volume/store/pages.h"
 

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "scene/placement.h"
+#include "scene/geometry/placement.h"
 
 void hl_mask_lattice_set_up(mask_lattice *lattice, const hl_scene_volume *volume) {
   const hl_volume *mask = volume->mask.volume;

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/placement.h"
+#include "scene/geometry/placement.h"
 
 void hl_plane_table_lay_out(const hl_transfer_function *function, plane_table *table, hl_layout *layout) {
   if (!hl_has_plane(function)) return;

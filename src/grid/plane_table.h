@@ -8,7 +8,7 @@
 
 #include "core/memory.h"
 #include "grid/grid.h"
-#include "scene/function_plane.h"
+#include "scene/function/function_plane.h"
 
 enum { PLANE_COLUMNS = 512, PLANE_ROWS = 256, PLANE_STRIDE = PLANE_COLUMNS + 1 };
 

@@ -1,8 +1,8 @@
 /* guess/cut_face.c - see cut_face.h. */
 #include "guess/cut_face.h"
 
-#include "scene/cut.h"
-#include "scene/placement.h"
+#include "scene/geometry/cut.h"
+#include "scene/geometry/placement.h"
 
 static double component(vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 

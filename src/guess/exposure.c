@@ -13,8 +13,8 @@
 #include "core/memory.h"
 #include "guess/cut_face.h"
 #include "guess/sample.h"
-#include "scene/cut.h"
-#include "scene/placement.h"
+#include "scene/geometry/cut.h"
+#include "scene/geometry/placement.h"
 #include "scene/scene.h"
 #include "volume/colors.h"
 

@@ -4,7 +4,7 @@
 #include "core/door.h"
 #include "core/error.h"
 #include "guess/outline.h"
-#include "scene/placement.h"
+#include "scene/geometry/placement.h"
 
 /* Two directions along the floor: those of the world's axes that are most nearly level. */
 static void level_axes(vec3 up, vec3 *u, vec3 *v) {

@@ -13,9 +13,9 @@
 #include "guess/smoothing.h"
 #include "guess/styles.h"
 #include "guess/view.h"
-#include "scene/check.h"
-#include "scene/cut.h"
-#include "scene/draw_labels.h"
+#include "scene/check/check.h"
+#include "scene/geometry/cut.h"
+#include "scene/label/draw_labels.h"
 #include "scene/scene.h"
 
 #define LIGHT_AZIMUTH   -40 /* key light from the upper left, degrees from the line of sight */

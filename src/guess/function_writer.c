@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "guess/analysis.h"
+#include "scene/function/transfer_function.h"
 #include "scene/scene.h"
-#include "scene/transfer_function.h"
 
 #define FLOW_DEPTH   2.0 /* optical depth of a flow all of whose values are shown */
 #define MEDIUM_DEPTH 5.0 /* optical depth of smoke across its own size */

@@ -11,8 +11,8 @@
 #include "core/error.h"
 #include "guess/function_writer.h"
 #include "guess/styles.h"
+#include "scene/function/transfer_function.h"
 #include "scene/scene.h"
-#include "scene/transfer_function.h"
 #include "text/edit_distance.h"
 #include "text/plain.h"
 

@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "guess/looks.h"
 #include "guess/sample.h"
-#include "scene/cut.h"
+#include "scene/geometry/cut.h"
 #include "volume/store/pages.h"
 
 #define FAINT          0.02 /* fraction of the greatest opacity below which voxels at the rim do not count */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/vector.h"
-#include "scene/transfer_function.h"
+#include "scene/function/transfer_function.h"
 
 static double linear_to_srgb(double linear) { /* the curve of IEC 61966-2-1 */
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;

@@ -3,8 +3,8 @@
 
 #include "core/memory.h"
 #include "json/parts.h"
-#include "scene/function_plane.h"
-#include "scene/limits.h"
+#include "scene/check/limits.h"
+#include "scene/function/function_plane.h"
 
 static hl_status read_second(hl_json_reader *reader, const json_t *value, hl_function_plane *plane) {
   static const char *const keys[] = {"volume", NULL};

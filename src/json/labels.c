@@ -10,8 +10,8 @@
 #include "core/memory.h"
 #include "json/parts.h"
 #include "json/settings.h"
-#include "scene/draw_labels.h"
-#include "scene/label_table.h"
+#include "scene/label/draw_labels.h"
+#include "scene/label/label_table.h"
 #include "scene/scene.h"
 
 static const char *const label_keys[] = {"value", "name", "color", "opacity", "visible", "tint", NULL};

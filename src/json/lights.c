@@ -8,8 +8,8 @@
 #include "core/memory.h"
 #include "json/parts.h"
 #include "json/settings.h"
-#include "scene/check.h"
-#include "scene/light_kind.h"
+#include "scene/check/check.h"
+#include "scene/light/light_kind.h"
 #include "scene/scene.h"
 
 static hl_status read_screen(hl_json_reader *reader, const json_t *value, hl_light_texture *texture) {

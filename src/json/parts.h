@@ -5,7 +5,7 @@
 #include <halflight/settings.h>
 
 #include "json/read.h"
-#include "scene/limits.h"
+#include "scene/check/limits.h"
 
 /* The members of a struct that an image is loaded into. */
 typedef struct hl_json_image {

@@ -12,7 +12,7 @@
 #include "json/parts.h"
 #include "json/settings.h"
 #include "json/shapes.h"
-#include "scene/check.h"
+#include "scene/check/check.h"
 #include "scene/scene.h"
 #include "scene/settings.h"
 

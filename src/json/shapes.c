@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "scene/check.h"
+#include "scene/check/check.h"
 #include "shape/shape.h"
 #include "text/edit_distance.h"
 

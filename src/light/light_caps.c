@@ -2,7 +2,7 @@
 #include "light/light_caps.h"
 
 #include "light/light_extent.h"
-#include "scene/light_kind.h"
+#include "scene/light/light_kind.h"
 
 /* Points along each side of a part, of which its middle and spread are means. */
 enum { POINTS_OF_PART = 8 };

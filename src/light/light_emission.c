@@ -3,7 +3,7 @@
 #include "light/light_emission.h"
 
 #include "core/memory.h"
-#include "scene/light_kind.h"
+#include "scene/light/light_kind.h"
 
 /* Samples of the image along either side of a cell. */
 enum { LEAST_SAMPLES = 4, GREATEST_SAMPLES = 32 };

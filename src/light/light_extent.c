@@ -1,7 +1,7 @@
 /* light/light_extent.c - points on a light; moments of the light as seen from the sheets. */
 #include "light/light_extent.h"
 
-#include "scene/light_kind.h"
+#include "scene/light/light_kind.h"
 
 vec3 hl_light_point(const light_source *source, double a, double b) {
   return hl_light_kind(source->light)->point(source->light, source->direction, a, b);

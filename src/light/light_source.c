@@ -1,7 +1,7 @@
 /* light/light_source.c - see light_source.h. */
 #include "light/light_source.h"
 
-#include "scene/light_kind.h"
+#include "scene/light/light_kind.h"
 
 /* Square of the size, as a fraction of its distance, up to which a light is a point: no pixel shows its
  * penumbrae. */

@@ -4,7 +4,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
-#include "scene/light_kind.h"
+#include "scene/light/light_kind.h"
 #include "view/view.h"
 
 /* The light's view through its screen, with the image's pixels. Derived: a sample x

@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "core/vector.h"
 #include "light/light_caps.h"
-#include "scene/light_kind.h"
+#include "scene/light/light_kind.h"
 
 /* ---- the mean over a cap ---- */
 

@@ -1,7 +1,7 @@
 /* light/sublight_points.c - the points that stand for a light as sub-lights. */
 #include "light/light_extent.h"
 
-#include "scene/light_kind.h"
+#include "scene/light/light_kind.h"
 
 /* Sets of points chosen so that every half-plane holds, as nearly as possible, the fraction of the points
  * that it covers of the light's area; found by scripts/light_points, which says how. Points of disks are

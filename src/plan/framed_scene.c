@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "scene/function_plane.h"
+#include "scene/function/function_plane.h"
 #include "scene/scene.h"
 
 /* ---- the scene's lengths and positions, from the world's to the frame's ---- */

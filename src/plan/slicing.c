@@ -1,7 +1,7 @@
 /* plan/slicing.c - chooses the direction of the sheets (section 3.1), and which lights share a sweep. */
 #include "plan/slicing.h"
 
-#include "scene/light_kind.h"
+#include "scene/light/light_kind.h"
 
 /* cos 60 degrees: lights share a sweep only if the eye's direction and each light's are within this angle of
  * the slicing axis. */

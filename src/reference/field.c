@@ -9,7 +9,7 @@
 #include "bricks/bricks.h"
 #include "core/memory.h"
 #include "reference/reference.h"
-#include "scene/draw_labels.h"
+#include "scene/label/draw_labels.h"
 
 /* The positions and weights of the four taps along each axis. */
 typedef struct taps {

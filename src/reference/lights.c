@@ -8,7 +8,7 @@
 
 #include "core/memory.h"
 #include "reference/reference.h"
-#include "scene/light_kind.h"
+#include "scene/light/light_kind.h"
 
 /* ---- the light texture, eq. (2), and the emission image ----
  *

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "reference/reference.h"
-#include "scene/function_plane.h"
+#include "scene/function/function_plane.h"
 
 void hl_reference_find_second(const reference *all, size_t index) {
   reference_volume *volume = &all->volumes[index];

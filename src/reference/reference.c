@@ -10,7 +10,7 @@
 #include "core/door.h"
 #include "core/memory.h"
 #include "reference/reference.h"
-#include "scene/check.h"
+#include "scene/check/check.h"
 
 /* Alpha at which a ray ends. */
 static const double OPAQUE = 1 - 1e-5;

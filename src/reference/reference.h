@@ -33,10 +33,10 @@
 #include "core/error.h"
 #include "core/pool.h"
 #include "core/vector.h"
-#include "scene/function_plane.h"
-#include "scene/light_shape.h"
+#include "scene/function/function_plane.h"
+#include "scene/light/light_shape.h"
+#include "scene/light/sky.h"
 #include "scene/scene.h"
-#include "scene/sky.h"
 
 /* One volume of the scene, prepared for sampling at points of its index space. */
 typedef struct reference_volume {

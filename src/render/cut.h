@@ -2,7 +2,7 @@
 #ifndef HL_RENDER_CUT_H
 #define HL_RENDER_CUT_H
 
-/* A cut's shape (scene/cut.h). */
+/* A cut's shape (scene/geometry/cut.h). */
 typedef struct shade_cut {
   int type, keep_inside;
   float rows[3][4]; /* frame space to the shape's own */

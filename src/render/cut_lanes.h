@@ -4,7 +4,7 @@
 #define HL_RENDER_CUT_LANES_H
 
 #include "render/cut.h"
-#include "scene/cut.h"
+#include "scene/geometry/cut.h"
 #include "view/rays_lanes.h"
 
 LANES_INLINE lanes3 point_in_cut(const shade_cut *cut, lanes3 p) {

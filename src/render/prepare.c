@@ -9,7 +9,7 @@
 #include "grid/make_grid.h"
 #include "grid/relevant.h"
 #include "isosurface/isosurface.h"
-#include "scene/draw_labels.h"
+#include "scene/label/draw_labels.h"
 
 static bool same_points(const void *a, const void *b, size_t bytes) {
   return bytes == 0 || memcmp(a, b, bytes) == 0;

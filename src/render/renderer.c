@@ -17,7 +17,7 @@
 #include "render/prepare.h"
 #include "render/sky.h"
 #include "scatter/scatter.h"
-#include "scene/check.h"
+#include "scene/check/check.h"
 #include "surface/place_surfaces.h"
 
 hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_error *error) {

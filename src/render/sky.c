@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "grid/matter_key.h"
 #include "mesh/mesh.h"
-#include "scene/sky.h"
+#include "scene/light/sky.h"
 
 /* A field has at most so many cells. */
 static const double MOST_CELLS = 1200000;

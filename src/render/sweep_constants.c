@@ -5,7 +5,7 @@
 
 #include "grid/relevant.h"
 #include "image/srgb.h"
-#include "scene/light_kind.h"
+#include "scene/light/light_kind.h"
 #include "volume/colors.h"
 
 enum { SRGB_CODES = 256 };

@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "grid/matter_key.h"
 #include "scatter/parts.h"
-#include "scene/sky.h"
+#include "scene/light/sky.h"
 
 static bool scatters(const hl_scene_volume *volume) {
   return volume->multiple_scattering && volume->casts_shadow && volume->shading != HL_SHADING_FLAT;

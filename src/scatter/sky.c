@@ -1,5 +1,5 @@
 /* scatter/sky.c - the sky's light that enters the grid, along each of its lines from either end. */
-#include "scene/sky.h"
+#include "scene/light/sky.h"
 
 #include <math.h>
 

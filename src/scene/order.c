@@ -7,8 +7,8 @@
 #include "core/key.h"
 #include "core/memory.h"
 #include "mesh/mesh.h"
-#include "scene/function_plane.h"
-#include "scene/placement.h"
+#include "scene/function/function_plane.h"
+#include "scene/geometry/placement.h"
 #include "scene/settings.h"
 #include "volume/volume.h"
 

@@ -7,7 +7,7 @@
 #include "core/context.h"
 #include "core/door.h"
 #include "core/memory.h"
-#include "scene/placement.h"
+#include "scene/geometry/placement.h"
 #include "scene/scene.h"
 #include "volume/coarser.h"
 #include "volume/store/pages.h"

@@ -9,10 +9,10 @@
 #include "core/door.h"
 #include "core/key.h"
 #include "core/memory.h"
-#include "scene/check.h"
-#include "scene/function_plane.h"
-#include "scene/light_kind.h"
-#include "scene/placement.h"
+#include "scene/check/check.h"
+#include "scene/function/function_plane.h"
+#include "scene/geometry/placement.h"
+#include "scene/light/light_kind.h"
 #include "scene/settings.h"
 
 void hl_light_defaults(hl_light *light) {

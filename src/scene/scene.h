@@ -6,13 +6,13 @@
 
 #include <halflight/scene.h>
 
-#include "scene/camera.h"
-#include "scene/cut.h"
-#include "scene/draw_labels.h"
+#include "scene/function/transfer_function.h"
+#include "scene/geometry/camera.h"
+#include "scene/geometry/cut.h"
+#include "scene/geometry/placement.h"
+#include "scene/label/draw_labels.h"
+#include "scene/light/suns.h"
 #include "scene/order.h"
-#include "scene/placement.h"
-#include "scene/suns.h"
-#include "scene/transfer_function.h"
 #include "volume/volume.h"
 
 struct hl_scene {

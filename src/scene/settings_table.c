@@ -7,8 +7,8 @@
 
 #include <halflight/settings.h>
 
-#include "scene/light_kinds.h"
-#include "scene/limits.h"
+#include "scene/check/limits.h"
+#include "scene/light/light_kinds.h"
 #include "scene/settings.h"
 #include "scene/soft_methods.h"
 

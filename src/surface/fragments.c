@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
-#include "scene/limits.h"
+#include "scene/check/limits.h"
 
 _Static_assert(HL_LIMIT_MESHES + HL_LIMIT_VOLUMES * HL_LIMIT_ISO <= 65536, "a fragment's mesh has 16 bits");
 

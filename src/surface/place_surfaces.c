@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
-#include "scene/placement.h"
+#include "scene/geometry/placement.h"
 #include "surface/clusters.h"
 #include "surface/surface_seams.h"
 

@@ -2,7 +2,7 @@
 #include "surface/surfaces.h"
 
 #include "mesh/mesh.h"
-#include "scene/placement.h"
+#include "scene/geometry/placement.h"
 
 void hl_surface_corners(const hl_scene_mesh *mesh, double least, vec3 corners[8]) {
   affine3 placement = hl_scene_mesh_to_world(mesh);

@@ -11,7 +11,7 @@
 #include "core/key.h"
 #include "core/pool.h"
 #include "core/vector.h"
-#include "scene/cut.h"
+#include "scene/geometry/cut.h"
 
 typedef struct surface_mesh {
   const hl_scene_mesh *scene;      /* in frame space; borrowed, of the frame */

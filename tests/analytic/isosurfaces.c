@@ -12,7 +12,7 @@
 #include "isosurface/isosurface.h"
 #include "reference_stage.h"
 #include "render/hot.h"
-#include "scene/placement.h"
+#include "scene/geometry/placement.h"
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE, VOXELS = 44 };
 

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "scene/function_plane.h"
+#include "scene/function/function_plane.h"
 #include "scene/scene.h"
 #include "volume/volume.h"
 

@@ -11,7 +11,7 @@ import re
 import sys
 
 root = pathlib.Path(sys.argv[1])
-code = "\n".join(path.read_text() for path in sorted((root / "src").glob("*/*.[ch]")))
+code = "\n".join(path.read_text() for path in sorted((root / "src").rglob("*.[ch]")))
 programs = {path.stem: path.read_text() for path in (root / "tests").glob("*/*.c")}
 problems = []
 

@@ -64,7 +64,7 @@ def check_source(path, room):
         if "/" not in name:
             if not (path.parent / name).exists():
                 problems.append(f"{place}: {name} is not in this room")
-        elif room in PUBLIC_ONLY and first not in ALLOWED[room]:
+        elif room in PUBLIC_ONLY and first not in ALLOWED[room] | {room}:
             problems.append(f"{place}: {name}: {room} sees <halflight/...> and the rooms of its row alone")
         elif first != room and first not in ALLOWED[room]:
             problems.append(f"{place}: {name}: {room} may not depend on {first}")

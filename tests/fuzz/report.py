@@ -28,7 +28,7 @@ TARGETS = {
         f"volume/formats/dicom/{name}.c" for name in ("directory", "elements", "frame", "header", "jpeg", "jpeg_2000", "jpeg_codes", "jpeg_extended", "jpeg_ls",
                                               "jpeg_lossless", "rle", "set", "stack", "voxels")]),
     "raw": ("bare voxels, descriptors", ["volume/formats/raw.c"]),
-    "transfer": ("transfer functions", ["json/foreign_nodes.c", "json/paraview.c", "json/paraview_state.c", "json/slicer.c", "json/slicer_text.c", "json/transfer_function.c"]),
+    "transfer": ("transfer functions", ["json/foreign/foreign_nodes.c", "json/foreign/paraview.c", "json/foreign/paraview_state.c", "json/foreign/slicer.c", "json/foreign/slicer_text.c", "json/transfer_function.c"]),
     "shapes": ("shapes", ["json/shapes.c", "json/shapes_volume.c", "shape/"]),
     "picture": ("PNG, OpenEXR, NPY", ["image/png_read.c", "image/exr_read.c", "image/npy.c"]),
     "scene": ("scene files", ["json/", "scene/"]),
@@ -36,9 +36,9 @@ TARGETS = {
 SHARED = ("all volume files, what they share included", ["volume/"],
           ["nrrd", "nifti", "metaimage", "legacy_vtk", "vti", "npy", "mrc", "dicom", "raw"])
 
-TARGETS["labels"] = ("label maps, tables of labels", ["label/", "scene/label_list.c", "scene/label_table.c"])
+TARGETS["labels"] = ("label maps, tables of labels", ["label/", "scene/label/label_list.c", "scene/label/label_table.c"])
 TARGETS["keys"] = ("keys of films", ["film/keys.c", "film/film.c"])
-TARGETS["words"] = ("the command line", ["cli/options.c", "cli/options_color.c", "cli/render_options.c"])
+TARGETS["words"] = ("the command line", ["cli/options.c", "cli/render/options.c"])
 TARGETS["http"] = ("requests of the viewer", ["server/"])
 TARGETS["obj"] = ("OBJ and its materials", ["mesh/obj"])
 TARGETS["stl"] = ("STL", ["mesh/stl.c"])

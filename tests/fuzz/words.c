@@ -6,7 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/message.h"
-#include "cli/render.h"
+#include "cli/render/render.h"
 #include "target.h"
 
 const uint64_t fuzz_memory_limit = 1 << 20;

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "scene/function_plane.h"
+#include "scene/function/function_plane.h"
 #include "scene_parts.h"
 
 static char path[] = "/tmp/halflight-state-XXXXXX.pvsm";

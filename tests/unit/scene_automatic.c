@@ -2,7 +2,7 @@
 #include "guess/analysis.h"
 #include "guess/sample.h"
 #include "guess/view.h"
-#include "scene/transfer_function.h"
+#include "scene/function/transfer_function.h"
 #include "scene_parts.h"
 #include "text/edit_distance.h"
 

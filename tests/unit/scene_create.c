@@ -1,7 +1,7 @@
 /* tests/unit/scene_create.c - the immutable scene: deep copies, and every refusal with its exact line. */
 #include "scene_parts.h"
 
-#include "scene/light_kind.h"
+#include "scene/light/light_kind.h"
 
 static void copies_everything(void **state) {
   (void)state;

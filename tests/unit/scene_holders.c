@@ -1,6 +1,6 @@
 /* tests/unit/scene_holders.c - what holds a scanned object is cut away, and nothing else: balls beside boards
  * of which the answer is known. */
-#include "scene/cut.h"
+#include "scene/geometry/cut.h"
 #include "scene_parts.h"
 
 enum { N = 64, COUNT = N * N * N };

@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "scene/label_table.h"
-#include "scene/transfer_function.h"
+#include "scene/function/transfer_function.h"
+#include "scene/label/label_table.h"
 #include "scene_parts.h"
 
 static char path[] = "/tmp/halflight-labels-XXXXXX.seg.nrrd";

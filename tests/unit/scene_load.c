@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "scene/transfer_function.h"
+#include "scene/function/transfer_function.h"
 #include "scene_parts.h"
 
 static char path[] = "/tmp/halflight-function-XXXXXX";

@@ -1,6 +1,6 @@
 /* tests/unit/scene_ranges.c - percentiles of volumes, and functions spread over ranges evenly and by
  * logarithms. */
-#include "scene/transfer_function.h"
+#include "scene/function/transfer_function.h"
 #include "scene_parts.h"
 
 enum { N = 20, COUNT = N * N * N };

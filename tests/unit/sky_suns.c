@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "../asserts.h"
+#include "scene/light/sky.h"
 #include "scene/scene.h"
-#include "scene/sky.h"
 
 enum { WIDTH = 512, HEIGHT = 256, PIXELS = WIDTH * HEIGHT };
 

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "scene/transfer_function.h"
+#include "scene/function/transfer_function.h"
 #include "scene_parts.h"
 
 static char xml[] = "/tmp/halflight-slicer-XXXXXX.xml", vp[] = "/tmp/halflight-slicer-XXXXXX.vp",

@@ -1,0 +1,376 @@
+/* cli/animate/animate.c - `halflight animate INPUT`: a film of a scene in which numbers change from frame to
+ * frame.
+ */
+#define _GNU_SOURCE
+#include "animate.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cli/commands.h"
+#include "cli/frames.h"
+#include "cli/input.h"
+#include "cli/render/render.h"
+#include "cli/render/series.h"
+#include "film/movie.h"
+
+enum {
+  ANIMATE_OUTPUT,
+  ANIMATE_PRESET,
+  ANIMATE_TURNTABLE,
+  ANIMATE_KEY,
+  ANIMATE_EASE,
+  ANIMATE_FRAMES,
+  ANIMATE_FPS,
+  ANIMATE_KEEP_FRAMES,
+  ANIMATE_OPTION_COUNT
+};
+
+#define COUNT_OPTION(word, letters, text)                                                      \
+  {                                                                                            \
+    .name = (word), .kind = OPTION_NUMBERS, .argument = (letters), .help = (text), .count = 1, \
+    .whole = true, .low = 1, .high = 1e6                                                       \
+  }
+
+enum { PRESET_TURNTABLE, PRESET_LIGHT_SWEEP };
+static const cli_choice presets[] = {
+    {"turntable", PRESET_TURNTABLE}, {"light-sweep", PRESET_LIGHT_SWEEP}, {NULL, 0}};
+static const cli_choice easings[] = {{"linear", 0}, {"smooth", 1}, {NULL, 0}};
+
+static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
+    [ANIMATE_OUTPUT] = {.name = "output",
+                        .letter = 'o',
+                        .kind = OPTION_TEXT,
+                        .argument = "OUT",
+                        .group = "Options",
+                        .help = ".mp4, .mov, .mkv, .webm or .gif, or a folder for numbered\n"
+                                "pictures (default: INPUT's name with .mp4)"},
+    [ANIMATE_PRESET] =
+        {.name = "preset",
+         .kind = OPTION_CHOICE,
+         .choices = presets,
+         .help = "a whole turn in four seconds; or the first light\nswept from left to right and back in "
+                 "two"},
+    [ANIMATE_TURNTABLE] = COUNT_OPTION("turntable", "N",
+                                       "turn once about the picture's vertical axis, in N frames"),
+    [ANIMATE_KEY] = {.name = "key",
+                     .kind = OPTION_TEXT,
+                     .argument = "PATH=FRAME:VALUE,...",
+                     .help = "let a number of the scene go from value to value, as\n"
+                             "lights.0.intensity=0:1,48:3; camera.azimuth, .elevation,\n"
+                             ".roll (degrees) and .zoom (factor) turn the camera,\n"
+                             "lights.0.azimuth and .elevation a light, as --light;\n"
+                             "may be given again",
+                     .repeatable = true},
+    [ANIMATE_EASE] = {.name = "ease",
+                      .kind = OPTION_CHOICE,
+                      .choices = easings,
+                      .help = "how --key goes from value to value (default linear);\nsmooth: slowly at both"},
+    [ANIMATE_FRAMES] = COUNT_OPTION("frames", "N", "length (default: the turn's, or up to the last FRAME)"),
+    [ANIMATE_FPS] = {.name = "fps",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "N",
+                     .help = "frames a second of the film (default: 30)",
+                     .count = 1,
+                     .low = 0.1,
+                     .high = 240},
+    [ANIMATE_KEEP_FRAMES] = {.name = "keep-frames",
+                             .kind = OPTION_SWITCH,
+                             .help = "leave the pictures beside the film, in its name with\n\"-frames\""},
+};
+
+/* The options of `render` that say what is shown and how, but not those about one picture or its file. */
+static bool has_render_option(size_t row) {
+  switch ((enum render_option)row) {
+    case RENDER_OUTPUT:
+    case RENDER_FORMAT:
+    case RENDER_DEPTH:
+    case RENDER_LAYERS:
+    case RENDER_VIEWS:
+    case RENDER_WIDTH:
+    case RENDER_DPI:
+    case RENDER_REFERENCE:
+    case RENDER_LIGHT_POINTS:
+    case RENDER_STEP:
+    case RENDER_PATHS:
+    case RENDER_RAYS:
+    case RENDER_STRIPS:
+    case RENDER_VOLUME:
+    case RENDER_PRINT_SCENE:
+    case RENDER_PRINT_PLAN:
+    case RENDER_JSON: return false;
+    default: return true;
+  }
+}
+
+/* One run. */
+typedef struct animate_job {
+  cli_host host;
+  const cli_value *values, *render; /* of the command's own options, and of those of `render` */
+  char **inputs;                    /* null after the last */
+  cli_overlay overlay;              /* owned; drawn over each frame */
+  char *input;
+  char *output; /* owned; a film, or the folder itself */
+  char *folder; /* owned; of the pictures */
+  bool film_wanted;
+  int part, parts; /* part: from 0 */
+  hl_scene *scene; /* owned */
+  film *film;      /* owned */
+} animate_job;
+
+/* ---- where the film goes ---- */
+
+static bool is_film(const char *path) {
+  for (int m = 0; movie_extensions[m] != NULL; m++)
+    if (has_extension(path, movie_extensions[m])) return true;
+  return false;
+}
+
+/* "turn-frames" for "turn.mp4"; of a folder, its own name without a slash at the end. */
+static char *name_folder(const char *output, bool film) {
+  char *folder = NULL;
+  const char *dot = strrchr(output, '.');
+  int length = film && dot != NULL ? (int)(dot - output) : (int)strlen(output);
+  while (length > 1 && output[length - 1] == '/') length--;
+  return asprintf(&folder, "%.*s%s", length, output, film ? "-frames" : "") < 0 ? NULL : folder;
+}
+
+static int choose_output(animate_job *job) {
+  const cli_value *output = &job->values[ANIMATE_OUTPUT];
+  job->output = output->given ? strdup(output->text) : output_default_name(job->input, ".mp4");
+  if (job->output == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  job->film_wanted = is_film(job->output);
+  const char *dot = strrchr(base_name(job->output), '.');
+  if (!job->film_wanted && dot != NULL && dot > base_name(job->output) && dot[1] != '\0')
+    return fail(EXIT_CODE_USAGE,
+                "--output: '%s' must end in .mp4, .mov, .mkv, .webm or .gif, or be a folder for pictures",
+                job->output);
+  job->folder = name_folder(job->output, job->film_wanted);
+  if (job->folder == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  return job->film_wanted ? output_check(job->output, movie_extensions, &job->input, 1) : EXIT_CODE_OK;
+}
+
+static int make_folder(const animate_job *job) {
+  struct stat about;
+  if (mkdir(job->folder, 0777) == 0 ||
+      (errno == EEXIST && stat(job->folder, &about) == 0 && S_ISDIR(about.st_mode)))
+    return EXIT_CODE_OK;
+  return fail(EXIT_CODE_FAILURE, "%s: no folder for the pictures can be made: %s", job->folder,
+              strerror(errno));
+}
+
+/* ---- the film's scene ---- */
+
+static int load(animate_job *job) {
+  bool bare;
+  hl_error error = {0};
+  int exit_code = render_load_inputs(&job->host, job->render, job->inputs, &bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->render, bare, &job->scene);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  hl_status status = overlay_check_scene(job->host.context, &job->overlay, job->scene, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_CHANGE, status, &error);
+}
+
+static double frames_per_second(const animate_job *job) {
+  return job->values[ANIMATE_FPS].given ? job->values[ANIMATE_FPS].number[0] : 30;
+}
+
+/* The sweep's key: from the left, by its own azimuth of 75 degrees to either side, and back, in two seconds.
+ */
+static void write_sweep(const animate_job *job, char text[80]) {
+  int half = (int)fmax(1, frames_per_second(job));
+  snprintf(text, 80, "lights.0.azimuth=0:-75,%d:75,%d:-75", half, 2 * half);
+}
+
+static int plan(animate_job *job) {
+  const cli_value *values = job->values, *preset = &values[ANIMATE_PRESET];
+  const bool frames = values[ANIMATE_FRAMES].given;
+  const bool sweeps = preset->given && preset->choice == PRESET_LIGHT_SWEEP;
+  const char *keys[MAXIMUM_REPEATS + 1];
+  char sweep[80];
+  size_t count = 0;
+  for (int k = 0; k < values[ANIMATE_KEY].count; k++) keys[count++] = values[ANIMATE_KEY].texts[k];
+  write_sweep(job, sweep);
+  if (sweeps) keys[count++] = sweep;
+  int turn = values[ANIMATE_TURNTABLE].given ? (int)values[ANIMATE_TURNTABLE].number[0] : 0;
+  if (preset->given && !sweeps && turn == 0) turn = (int)fmax(1, round(4 * frames_per_second(job)));
+  film_options options = {.context = job->host.context,
+                          .scene = job->scene,
+                          .keys = keys,
+                          .key_count = count,
+                          .smooth = values[ANIMATE_EASE].given ? values[ANIMATE_EASE].choice == 1 : sweeps,
+                          .turntable = turn,
+                          .frames = frames ? (int)values[ANIMATE_FRAMES].number[0] : 0};
+  hl_error error = {0};
+  if (sweeps && !frames && turn == 0 && count == 1) options.frames = 2 * (int)fmax(1, frames_per_second(job));
+  if (turn == 0 && count == 0)
+    return fail(EXIT_CODE_USAGE,
+                "nothing moves: give --turntable N, --preset NAME, or --key PATH=FRAME:VALUE,...");
+  hl_status status = film_create(&options, &job->film, &error);
+  render_name_scene(job->input, false, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_CHANGE, status, &error);
+}
+
+/* ---- the run ---- */
+
+static int count_digits(int frames) {
+  int digits = 4;
+  for (int most = 10000; most < frames; most *= 10) digits++;
+  return digits;
+}
+
+/* Joins the pictures to a film, if all of them are there. */
+static int finish(const animate_job *job, const animate_frames *frames) {
+  double rate = frames_per_second(job);
+  const int count = film_frames(job->film);
+  if (!job->film_wanted || !movie_available()) {
+    if (!job->host.quiet)
+      say("%s: %d pictures, %d of them rendered now%s", job->folder, frames->done, frames->rendered,
+          job->film_wanted ? "; once ffmpeg is installed, the same command joins them to a film" : "");
+    return EXIT_CODE_OK;
+  }
+  if (job->parts > 1 && !animate_is_complete(frames)) {
+    if (!job->host.quiet)
+      say("%s: part %d of %d is there; the run that ends last joins the film", job->folder, job->part + 1,
+          job->parts);
+    return EXIT_CODE_OK;
+  }
+  int exit_code = animate_join(frames, job->output, rate);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  if (job->parts == 1 && !job->values[ANIMATE_KEEP_FRAMES].given) animate_remove_frames(frames);
+  if (!job->host.quiet)
+    say("%s: %d frames, %.3g s at %.4g a second; %d of them rendered now", job->output, count, count / rate,
+        rate, frames->rendered);
+  return EXIT_CODE_OK;
+}
+
+static int run_job(animate_job *job) {
+  int exit_code = load(job);
+  if (exit_code == EXIT_CODE_OK) exit_code = plan(job);
+  if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&job->host.read, job->output, job->input);
+  if (exit_code == EXIT_CODE_OK) exit_code = make_folder(job);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  if (job->film_wanted && !movie_available() && !job->host.quiet)
+    warn("ffmpeg is not installed: numbered pictures go to %s instead of a film", job->folder);
+  animate_frames frames = {.host = &job->host,
+                           .film = job->film,
+                           .folder = job->folder,
+                           .style = {.opaque = job->film_wanted, /* a film has no transparent pixels */
+                                     .no_metadata = job->render[RENDER_NO_METADATA].given,
+                                     .overlay = &job->overlay},
+                           .digits = count_digits(film_frames(job->film))};
+  job->host.own_bar = true;
+  exit_code = animate_render(&frames, job->part, job->parts);
+  return exit_code == EXIT_CODE_OK ? finish(job, &frames) : exit_code;
+}
+
+/* Joins the pictures of a series of files, one for each. */
+static int finish_series(const animate_job *job, const cli_value *values) {
+  bool quiet = values[RENDER_QUIET].given;
+  if (job->parts > 1 || !movie_available()) {
+    if (!quiet && job->parts > 1)
+      say("%s: once all parts are there, the command without --part joins them", job->folder);
+    else if (!quiet) warn("ffmpeg is not installed: the pictures stay in %s", job->folder);
+    return EXIT_CODE_OK;
+  }
+  series_job *files = calloc(1, sizeof *files);
+  if (files == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  memcpy(files->values, values, sizeof files->values);
+  files->pattern = values[RENDER_OUTPUT].text;
+  int exit_code = series_find_files(files, job->inputs);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = animate_join_series(job->folder, files->count, job->output, frames_per_second(job), quiet);
+  if (exit_code == EXIT_CODE_OK && !job->values[ANIMATE_KEEP_FRAMES].given)
+    animate_remove_series(job->folder, files->count);
+  series_release_files(files);
+  free(files);
+  return exit_code;
+}
+
+/* Pictures of a series of files, which are then joined. */
+static int run_series(animate_job *job) {
+  cli_value *values = calloc(RENDER_OPTION_COUNT, sizeof *values);
+  char *pattern = NULL;
+  int exit_code = EXIT_CODE_OK;
+  for (int which = 0; which < ANIMATE_OPTION_COUNT && exit_code == EXIT_CODE_OK; which++)
+    if (job->values[which].given &&
+        (which == ANIMATE_PRESET || which == ANIMATE_TURNTABLE || which == ANIMATE_KEY ||
+         which == ANIMATE_EASE || which == ANIMATE_FRAMES))
+      exit_code = fail(EXIT_CODE_USAGE,
+                       "--%s: in a film of several files time passes from file to file alone",
+                       animate_options[which].name);
+  if (exit_code == EXIT_CODE_OK && (values == NULL || asprintf(&pattern, "%s/%%06d.png", job->folder) < 0))
+    exit_code = fail(EXIT_CODE_FAILURE, "out of memory");
+  if (exit_code == EXIT_CODE_OK && strchr(job->folder, '%') != NULL)
+    exit_code = fail(EXIT_CODE_USAGE, "--output: '%s': a film of several files has no '%%' in its name",
+                     job->output);
+  if (exit_code == EXIT_CODE_OK) {
+    memcpy(values, job->render, RENDER_OPTION_COUNT * sizeof *values);
+    values[RENDER_OUTPUT] = (cli_value){.given = true, .text = pattern, .texts = {pattern}, .count = 1};
+    if (!values[RENDER_BACKGROUND].given || !values[RENDER_BACKGROUND].chosen)
+      exit_code = render_series(values, job->inputs);
+    else exit_code = fail(EXIT_CODE_USAGE, "--background transparent: a film has no transparent pixels");
+  }
+  if (exit_code == EXIT_CODE_OK && job->film_wanted) exit_code = finish_series(job, values);
+  free(values);
+  free(pattern);
+  return exit_code;
+}
+
+static int run_animate(const cli_value *values, char **operands) {
+  animate_job job = {
+      .values = values, .render = values + ANIMATE_OPTION_COUNT, .inputs = operands, .input = operands[0]};
+  const cli_value *render = job.render;
+  cli_host_options options = {.quiet = render[RENDER_QUIET].given,
+                              .progress = true,
+                              .subject = base_name(job.input),
+                              .memory_limit = render[RENDER_MAX_MEMORY].bytes,
+                              .device = render[RENDER_DEVICE].text,
+                              .instruction_set = (hl_instruction_set)render[RENDER_INSTRUCTION_SET].choice,
+                              .data_folder = render[RENDER_DATA].text};
+  int exit_code = frames_read_part(&render[RENDER_PART], &render[RENDER_RANKS], &job.part, &job.parts);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_check_options(render);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(render, &job.overlay);
+  if (exit_code == EXIT_CODE_OK) exit_code = choose_output(&job);
+  bool series = render_has_pattern(operands);
+  if (exit_code == EXIT_CODE_OK && !series && render[RENDER_RANGE_OF_ALL].given)
+    exit_code = fail(EXIT_CODE_USAGE,
+                     "--range-of-all is for a film of several files: give a pattern, as 'flame_*.vti'");
+  if (exit_code == EXIT_CODE_OK && series) exit_code = run_series(&job);
+  if (exit_code == EXIT_CODE_OK && !series) {
+    exit_code = host_open(&options, &job.host);
+    if (exit_code == EXIT_CODE_OK) exit_code = run_job(&job);
+    film_destroy(job.film);
+    hl_scene_release(job.scene);
+    host_close(&job.host);
+  }
+  overlay_release(&job.overlay);
+  free(job.folder);
+  free(job.output);
+  return exit_code;
+}
+
+const cli_command animate_command = {
+    .name = "animate",
+    .operands = "INPUT ...",
+    .operand_count = 1,
+    .operand_most = MAXIMUM_OPERANDS,
+    .summary = "a film: a turn, or numbers of a scene that change",
+    .description =
+        "Renders INPUT, as `halflight render` would with the same options, in frames in which the camera\n"
+        "turns and numbers of the scene change, and joins them to a film by ffmpeg's program; without it,\n"
+        "numbered pictures stay. A pattern of files in quotes ('flame_*.vti') is a film in which time "
+        "passes\n"
+        "from file to file. A run that was stopped goes on where it was: pictures that are there already,\n"
+        "made of their frame's scene, are kept.",
+    .options = animate_options,
+    .option_count = ANIMATE_OPTION_COUNT,
+    .shared = render_options,
+    .shared_count = RENDER_OPTION_COUNT,
+    .has_shared = has_render_option,
+    .run = run_animate,
+};

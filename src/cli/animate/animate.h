@@ -1,0 +1,44 @@
+/* cli/animate/animate.h - shared by the files of `halflight animate`. */
+#ifndef HL_CLI_ANIMATE_ANIMATE_H
+#define HL_CLI_ANIMATE_ANIMATE_H
+
+#include "cli/frames.h"
+#include "cli/host.h"
+#include "film/film.h"
+
+/* The numbered pictures of a film, in a folder: "turn-frames/0000.png". */
+typedef struct animate_frames {
+  cli_host *host;
+  const film *film;
+  const char *folder;
+  frames_style style;
+  int digits; /* of a picture's number */
+  int done;   /* number of pictures that are there already, among those that this run renders */
+  int rendered;
+} animate_frames;
+
+/* The path of a picture; path: [size]. */
+void animate_frame_path(const animate_frames *frames, int frame, char *path, size_t size);
+
+/* Whether the picture is there, made of the frame's own scene. */
+bool animate_frame_is_there(const animate_frames *frames, int frame);
+
+/* Renders the pictures that are missing: every `parts`-th one, beginning with number `part` (from 0). Draws
+ * the bar, with an estimate of the time that is left. Returns the exit code. */
+int animate_render(animate_frames *frames, int part, int parts);
+
+/* Whether all pictures of the film are there. */
+bool animate_is_complete(const animate_frames *frames);
+
+/* Joins the pictures to a film. Returns the exit code. */
+int animate_join(const animate_frames *frames, const char *path, double frames_per_second);
+
+/* Removes the film's pictures, and the folder if it is empty then. */
+void animate_remove_frames(const animate_frames *frames);
+
+/* The same for the pictures of a series of files, "turn-frames/000000.png" and so on. */
+int animate_join_series(const char *folder, int count, const char *output, double frames_per_second,
+                        bool quiet);
+void animate_remove_series(const char *folder, int count);
+
+#endif

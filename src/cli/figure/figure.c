@@ -1,0 +1,325 @@
+/* cli/figure/figure.c - `halflight figure FIGURE.json`: pictures side by side on a page, that share a camera,
+ * a light or a range of values.
+ *
+ * All scenes are made before the first picture: then what cannot be drawn is refused at once. */
+#define _GNU_SOURCE
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "panels.h"
+
+enum {
+  FIGURE_OUTPUT,
+  FIGURE_DATA,
+  FIGURE_THREADS,
+  FIGURE_DEVICE,
+  FIGURE_MAX_MEMORY,
+  FIGURE_QUIET,
+  FIGURE_OPTION_COUNT
+};
+
+static const cli_option figure_options[FIGURE_OPTION_COUNT] = {
+    [FIGURE_OUTPUT] = {.name = "output",
+                       .letter = 'o',
+                       .kind = OPTION_TEXT,
+                       .argument = "OUT",
+                       .group = "Options",
+                       .help =
+                           ".pdf, .svg, .png or .tif (default: FIGURE's name with\n.pdf, in this folder)"},
+    [FIGURE_DATA] = HOST_OPTION_DATA(NULL),
+    [FIGURE_THREADS] = HOST_OPTION_THREADS(NULL),
+    [FIGURE_DEVICE] = HOST_OPTION_DEVICE,
+    [FIGURE_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
+    [FIGURE_QUIET] = HOST_OPTION_QUIET,
+};
+
+typedef struct figure_job {
+  cli_host host;
+  const cli_value *values;
+  char *input, *output; /* output: owned, absolute */
+  figure_page page;
+} figure_job;
+
+/* ---- scenes ---- */
+
+/* Gives a panel the width of its place, in pixels, and the shape that it asks for. */
+static void size_panel(const figure_page *page, figure_panel *panel) {
+  int width = (int)fmax(1, round(panel->width / MILLIMETRES_PER_INCH * page->pixels_per_inch));
+  hl_scene_description shape;
+  hl_scene_description_defaults(&shape);
+  if (panel->scene != NULL) shape = *hl_scene_describe(panel->scene);
+  double aspect = panel->aspect > 0 ? panel->aspect : (double)shape.width / shape.height;
+  render_set_size(&panel->values[RENDER_SIZE], width, width / aspect, panel->size_text);
+}
+
+/* Takes what the first panel shares into a description of another one. */
+static void take_shared(const figure_page *page, hl_scene_description *description,
+                        hl_scene_volume *volumes) {
+  const hl_scene_description *first = hl_scene_describe(page->panels[0].scene);
+  if (page->share_camera) {
+    description->camera = first->camera;
+    memcpy(description->sky.up, first->sky.up, sizeof first->sky.up);
+  }
+  if (page->share_light) {
+    description->lights = first->lights;
+    description->light_count = first->light_count;
+    memcpy(description->ambient, first->ambient, sizeof first->ambient);
+    description->sky = first->sky;
+    description->exposure = first->exposure;
+    description->tone = first->tone;
+    memcpy(description->background, first->background, sizeof first->background);
+  }
+  for (size_t v = 0; page->share_function && v < description->volume_count; v++) {
+    size_t from = v < first->volume_count ? v : first->volume_count - 1;
+    if (first->volume_count > 0) volumes[v].transfer_function = first->volumes[from].transfer_function;
+  }
+}
+
+static int share(figure_job *job, figure_panel *panel) {
+  const figure_page *page = &job->page;
+  if (panel == page->panels || (!page->share_camera && !page->share_light && !page->share_function))
+    return EXIT_CODE_OK;
+  if (panel->inside >= 0 && page->share_camera) return EXIT_CODE_OK; /* an inset has a camera of its own */
+  hl_scene_description description = *hl_scene_describe(panel->scene);
+  hl_scene_volume *volumes = calloc(description.volume_count + 1, sizeof *volumes);
+  if (volumes == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  if (description.volume_count > 0)
+    memcpy(volumes, description.volumes, description.volume_count * sizeof *volumes);
+  description.volumes = volumes;
+  take_shared(page, &description, volumes);
+  hl_scene *shared = NULL;
+  hl_error error = {0};
+  hl_status status = hl_scene_create(job->host.context, &description, &shared, &error);
+  free(volumes);
+  if (status != HL_OK) return host_fail(&job->host, PHASE_CHANGE, status, &error);
+  hl_scene_release(panel->scene);
+  panel->scene = shared;
+  return EXIT_CODE_OK;
+}
+
+static int read_options(figure_job *job, figure_panel *panel) {
+  bool help;
+  int exit_code = options_parse(&render_command, (int)panel->word_count, panel->words, panel->values,
+                                panel->operands, &help);
+  if (exit_code == EXIT_CODE_OK && render_is_series(panel->values, panel->operands))
+    exit_code = fail(EXIT_CODE_INPUT, "%s: a panel is one picture: '%s' stands for several files", job->input,
+                     panel->operands[0]);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  panel->values[RENDER_THREADS] = job->values[FIGURE_THREADS];
+  panel->values[RENDER_QUIET] = job->values[FIGURE_QUIET];
+  exit_code = render_check_options(panel->values);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(panel->values, &panel->overlay);
+  if (exit_code == EXIT_CODE_OK && panel->overlay.overlay.scale_bar && panel->inside >= 0 &&
+      panel->values[RENDER_UNIT].given)
+    panel->overlay.overlay.world_unit = panel->values[RENDER_UNIT].text;
+  return exit_code;
+}
+
+/* Places panels row by row, as wide as the page has room for; insets are placed with their panels. */
+static void place_widths(figure_page *page) {
+  int outer = 0;
+  for (int p = 0; p < page->count; p++) outer += page->panels[p].inside < 0;
+  if (page->columns == 0 || page->columns > outer) page->columns = outer;
+  for (int p = 0; p < page->count; p++) {
+    figure_panel *panel = &page->panels[p];
+    if (panel->inside >= 0) panel->width = panel->part * page->panels[panel->inside].width;
+    else panel->width = (page->width - (page->columns - 1) * page->gap) / page->columns;
+  }
+}
+
+/* Returns the page's height. */
+static double place_panels(figure_page *page) {
+  double top = 0, high = 0;
+  int column = 0;
+  for (int p = 0; p < page->count; p++) {
+    figure_panel *panel = &page->panels[p];
+    const hl_scene_description *scene = hl_scene_describe(panel->scene);
+    panel->height = panel->width * scene->height / scene->width;
+    if (panel->inside >= 0) {
+      const figure_panel *outer = &page->panels[panel->inside];
+      double rim = 0.02 * outer->width;
+      panel->left = panel->right ? outer->left + outer->width - panel->width - rim : outer->left + rim;
+      panel->top = panel->lower ? outer->top + outer->height - panel->height - rim : outer->top + rim;
+      continue;
+    }
+    if (column == page->columns) {
+      top += high + page->gap;
+      high = 0;
+      column = 0;
+    }
+    panel->left = column++ * (panel->width + page->gap);
+    panel->top = top;
+    high = fmax(high, panel->height);
+  }
+  return top + high;
+}
+
+static int make_scenes(figure_job *job) {
+  figure_page *page = &job->page;
+  int exit_code = EXIT_CODE_OK;
+  for (int p = 0; p < page->count && exit_code == EXIT_CODE_OK; p++)
+    exit_code = read_options(job, &page->panels[p]);
+  if (exit_code == EXIT_CODE_OK) place_widths(page);
+  for (int p = 0; p < page->count && exit_code == EXIT_CODE_OK; p++) {
+    figure_panel *panel = &page->panels[p];
+    exit_code = render_load_inputs(&job->host, panel->values, panel->operands, &panel->bare, &panel->scene);
+    if (exit_code != EXIT_CODE_OK) break;
+    size_panel(page, panel);
+    exit_code = render_change_scene(&job->host, panel->values, panel->bare, &panel->scene);
+    if (exit_code == EXIT_CODE_OK) exit_code = share(job, panel);
+  }
+  return exit_code;
+}
+
+/* ---- the page ---- */
+
+static int make_figure(figure_job *job, double height, hl_figure *figure, hl_figure_panel *panels) {
+  const figure_page *page = &job->page;
+  hl_figure_defaults(figure);
+  figure->width = page->width;
+  figure->height = height;
+  figure->pixels_per_inch = page->pixels_per_inch;
+  figure->font_points = page->font_points;
+  memcpy(figure->background, page->background, sizeof figure->background);
+  figure->background_transparent = page->transparent;
+  figure->panels = panels;
+  figure->panel_count = (size_t)page->count;
+  for (int p = 0; p < page->count; p++) {
+    const figure_panel *from = &page->panels[p];
+    panels[p] = (hl_figure_panel){.image = from->image,
+                                  .scene = from->scene,
+                                  .left = from->left,
+                                  .top = from->top,
+                                  .width = from->width,
+                                  .height = from->height,
+                                  .frame = from->inside >= 0,
+                                  .overlay = from->overlay.overlay};
+    panels[p].overlay.letter = from->letter;
+  }
+  return page->count;
+}
+
+static hl_status try_out(figure_job *job, double height, hl_error *error) {
+  hl_figure figure;
+  hl_figure_panel panels[FIGURE_MOST_PANELS];
+  make_figure(job, height, &figure, panels);
+  return hl_figure_check(job->host.context, &figure, error);
+}
+
+static hl_status render_panels(figure_job *job, hl_error *error) {
+  hl_renderer *renderer = NULL;
+  hl_status status = hl_renderer_create(job->host.context, &renderer, error);
+  job->host.own_bar = true;
+  for (int p = 0; p < job->page.count && status == HL_OK; p++) {
+    figure_panel *panel = &job->page.panels[p];
+    const hl_scene_description *scene = hl_scene_describe(panel->scene);
+    char text[40];
+    snprintf(text, sizeof text, "panel %d of %d", p + 1, job->page.count);
+    host_draw_bar(&job->host, (double)p / job->page.count, text);
+    status = hl_image_create(job->host.context, scene->width, scene->height, &panel->image, error);
+    if (status == HL_OK)
+      status = hl_renderer_render(renderer, panel->scene, hl_image_pixels(panel->image),
+                                  4 * (size_t)scene->width, NULL, error);
+  }
+  hl_renderer_destroy(renderer);
+  host_clear_bar(&job->host);
+  return status;
+}
+
+static int make_and_write(figure_job *job) {
+  double started = clock_seconds();
+  hl_error error = {0};
+  int exit_code = make_scenes(job);
+  if (exit_code == EXIT_CODE_OK) exit_code = read_files_protect(&job->host.read, job->output, job->input);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  double height = place_panels(&job->page);
+  hl_status status = try_out(job, height, &error);
+  if (status != HL_OK) return host_fail(&job->host, PHASE_CHANGE, status, &error);
+  status = render_panels(job, &error);
+  if (status == HL_OK && host_interrupted()) status = HL_ERROR_CANCELLED;
+  if (status == HL_OK) {
+    hl_figure figure;
+    hl_figure_panel panels[FIGURE_MOST_PANELS];
+    make_figure(job, height, &figure, panels);
+    status = hl_figure_write(job->host.context, &figure, job->output, NULL, &error);
+  }
+  if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
+  if (!job->host.quiet)
+    say("%s: %d pictures on %.4g x %.4g mm, %.3g s", job->output, job->page.count, job->page.width, height,
+        clock_seconds() - started);
+  return EXIT_CODE_OK;
+}
+
+/* ---- the run ---- */
+
+/* Names in the file are relative to its folder, which becomes the current one; the output's is made absolute
+ * before. */
+static int enter_folder(figure_job *job) {
+  static const char *const extensions[] = {".pdf", ".svg", ".png", ".tif", ".tiff", NULL};
+  const cli_value *given = &job->values[FIGURE_OUTPUT];
+  char *name = given->given ? strdup(given->text) : output_default_name(job->input, ".pdf");
+  if (name == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  char *inputs[] = {job->input, NULL}, *here = getcwd(NULL, 0), *folder = strdup(job->input);
+  int exit_code = output_check(name, extensions, inputs, 1);
+  bool good = here != NULL && folder != NULL &&
+              (name[0] == '/' ? (job->output = strdup(name)) != NULL
+                              : asprintf(&job->output, "%s/%s", here, name) >= 0);
+  if (exit_code == EXIT_CODE_OK && !good) exit_code = fail(EXIT_CODE_FAILURE, "out of memory");
+  if (exit_code == EXIT_CODE_OK) {
+    folder[base_name(folder) - folder] = '\0';
+    if (folder[0] != '\0' && chdir(folder) != 0)
+      exit_code = fail(EXIT_CODE_INPUT, "%s: its folder cannot be entered", job->input);
+  }
+  free(folder);
+  free(here);
+  free(name);
+  return exit_code;
+}
+
+static int run_figure(const cli_value *values, char **operands) {
+  figure_job job = {.values = values, .input = operands[0]};
+  char *data = values[FIGURE_DATA].given ? realpath(values[FIGURE_DATA].text, NULL) : NULL;
+  int exit_code = figure_page_read(job.input, &job.page);
+  if (exit_code == EXIT_CODE_OK) exit_code = enter_folder(&job);
+  cli_host_options options = {.quiet = values[FIGURE_QUIET].given,
+                              .progress = true,
+                              .subject = base_name(job.input),
+                              .memory_limit = values[FIGURE_MAX_MEMORY].bytes,
+                              .device = values[FIGURE_DEVICE].text,
+                              .data_folder = data != NULL ? data : values[FIGURE_DATA].text};
+  if (exit_code == EXIT_CODE_OK) {
+    exit_code = host_open(&options, &job.host);
+    if (exit_code == EXIT_CODE_OK) exit_code = make_and_write(&job);
+    figure_page_release(&job.page);
+    host_close(&job.host);
+  } else {
+    figure_page_release(&job.page);
+  }
+  free(data);
+  free(job.output);
+  return exit_code;
+}
+
+const cli_command figure_command = {
+    .name = "figure",
+    .operands = "FIGURE",
+    .operand_count = 1,
+    .summary = "pictures side by side on a page, for a paper",
+    .description =
+        "Renders the panels of FIGURE (.json), and puts them on a page of a stated width, with letters, "
+        "scale\n"
+        "bars, legends and texts. A panel is \"input\", a file or a list of files, and options of\n"
+        "`halflight render` by their names; \"share\" gives all panels the camera, light or range of the "
+        "first:\n\n"
+        "  {\"width\": \"183mm\", \"columns\": 2, \"share\": [\"camera\", \"light\"], \"options\": "
+        "{\"ortho\": true},\n"
+        "   \"panels\": [{\"input\": \"a.nrrd\", \"scale-bar\": \"auto\"}, {\"input\": \"b.nrrd\", "
+        "\"legend\": \"Dose (Gy)\"}]}",
+    .options = figure_options,
+    .option_count = FIGURE_OPTION_COUNT,
+    .run = run_figure,
+};

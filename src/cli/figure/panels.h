@@ -1,0 +1,43 @@
+/* cli/figure/panels.h - what FIGURE.json of `halflight figure` says: a page, and the pictures on it. */
+#ifndef HL_CLI_FIGURE_PANELS_H
+#define HL_CLI_FIGURE_PANELS_H
+
+#include "cli/render/render.h"
+
+enum { FIGURE_MOST_PANELS = 64 };
+
+/* A picture: what `halflight render` would be told. */
+typedef struct figure_panel {
+  cli_value values[RENDER_OPTION_COUNT]; /* their texts are owned by `words` */
+  char **words;                          /* owned; [word_count]; options and inputs as a command line */
+  size_t word_count;
+  char *operands[MAXIMUM_OPERANDS + 1]; /* null after the last */
+  char *letter;                         /* owned; null: none */
+  double aspect;                        /* width over height; 0: the scene's */
+  int inside;                           /* the panel that this one is an inset of; -1: none */
+  double part;                          /* an inset's width over that panel's */
+  bool right, lower;                    /* the inset's corner */
+  bool bare;
+  char size_text[RENDER_SIZE_TEXT]; /* of --size */
+  hl_scene *scene;                  /* owned */
+  hl_image *image;                  /* owned */
+  cli_overlay overlay;
+  double left, top, width, height; /* millimetres */
+} figure_panel;
+
+typedef struct figure_page {
+  figure_panel *panels; /* owned; [count] */
+  int count;
+  double width, gap; /* millimetres */
+  double pixels_per_inch, font_points;
+  int columns;
+  double background[3];
+  bool transparent;
+  bool share_camera, share_light, share_function; /* of the first panel */
+} figure_page;
+
+/* Reads the file. Call figure_page_release() even after a failure. Returns the exit code. */
+int figure_page_read(const char *path, figure_page *page);
+void figure_page_release(figure_page *page);
+
+#endif

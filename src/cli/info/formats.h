@@ -1,0 +1,10 @@
+/* cli/info/formats.h - `halflight info --formats`. */
+#ifndef HL_CLI_INFO_FORMATS_H
+#define HL_CLI_INFO_FORMATS_H
+
+#include <stdbool.h>
+
+/* Prints what this program reads and writes. Returns the exit code. */
+int info_formats(bool as_json);
+
+#endif

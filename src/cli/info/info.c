@@ -1,0 +1,512 @@
+/* cli/info/info.c - `halflight info FILE`: what a volume, a scene or a mesh file holds. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/host.h"
+#include "cli/input.h"
+#include "cli/json_writer.h"
+#include "formats.h"
+
+enum info_option {
+  INFO_JSON,
+  INFO_FORMATS,
+  INFO_ARRAY,
+  INFO_COMPONENT,
+  INFO_SERIES,
+  INFO_TIME,
+  INFO_CHANNEL,
+  INFO_LEVEL,
+  INFO_MAX_MEMORY,
+  INFO_OPTION_COUNT
+};
+
+static const cli_option info_options[INFO_OPTION_COUNT] = {
+    [INFO_JSON] = {.name = "json",
+                   .kind = OPTION_SWITCH,
+                   .group = "Options",
+                   .help = "as JSON, with 256 histogram bins"},
+    [INFO_FORMATS] = {.name = "formats",
+                      .kind = OPTION_SWITCH,
+                      .help = "in place of FILE: the formats that this program reads and writes"},
+    INPUT_OPTIONS(INFO_ARRAY, NULL),
+    [INFO_CHANNEL] = INPUT_OPTION_CHANNEL,
+    [INFO_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
+};
+
+/* The file's arrays, and which array and component the volume was read from. */
+static void print_json_arrays(json_writer *json, const hl_volume *volume) {
+  hl_volume_array array = {.struct_size = sizeof array}, chosen = {.components = 1};
+  json_open_array(json, "arrays");
+  for (size_t n = 0; hl_volume_get_array(volume, n, &array) == HL_OK; n++) {
+    json_open_object(json, NULL);
+    json_text(json, "name", array.name);
+    json_text(json, "type", hl_voxel_type_name(array.type));
+    json_whole_number(json, "components", array.components);
+    json_bool(json, "of_cells", array.of_cells != 0);
+    json_bool(json, "chosen", array.chosen != 0);
+    json_close(json);
+    if (array.chosen) chosen = array;
+  }
+  json_close(json);
+  json_whole_number(json, "components", chosen.components);
+  const char *word = hl_component_name(chosen.component);
+  if (word != NULL) json_text(json, "component", word);
+  else json_whole_number(json, "component", (uint64_t)chosen.component);
+}
+
+/* How many time steps, channels and resolutions there are, and which were read. */
+static void print_json_selection(json_writer *json, const hl_volume *volume) {
+  hl_volume_selection selection = {.struct_size = sizeof selection};
+  if (hl_volume_get_selection(volume, &selection) != HL_OK) return;
+  json_whole_number(json, "times", selection.times);
+  json_whole_number(json, "time", (uint64_t)selection.time);
+  json_whole_number(json, "channels", selection.channels);
+  json_whole_number(json, "channel", (uint64_t)selection.channel);
+  json_whole_number(json, "levels", selection.levels);
+  json_whole_number(json, "level", (uint64_t)selection.level);
+}
+
+static void print_selection(const hl_volume *volume) {
+  hl_volume_selection s = {.struct_size = sizeof s};
+  if (hl_volume_get_selection(volume, &s) != HL_OK) return;
+  if (s.times > 1) printf("  times       %zu: time %d is shown\n", s.times, s.time);
+  if (s.channels > 1) printf("  channels    %zu: channel %d is shown\n", s.channels, s.channel);
+  if (s.levels > 1) printf("  levels      %zu: level %d is shown\n", s.levels, s.level);
+}
+
+static void print_json_series(json_writer *json, const hl_volume *volume) {
+  hl_volume_series series = {.struct_size = sizeof series};
+  if (hl_volume_series_count(volume) == 0) return;
+  json_open_array(json, "series");
+  for (size_t n = 0; hl_volume_get_series(volume, n, &series) == HL_OK; n++) {
+    const uint64_t dimensions[3] = {series.dimensions[0], series.dimensions[1], series.dimensions[2]};
+    json_open_object(json, NULL);
+    json_text(json, "uid", series.uid);
+    if (isfinite(series.number)) json_number(json, "number", series.number);
+    json_text(json, "modality", series.modality);
+    json_text(json, "description", series.description);
+    json_whole_numbers(json, "dimensions", dimensions, 3);
+    json_bool(json, "chosen", series.chosen != 0);
+    json_close(json);
+  }
+  json_close(json);
+}
+
+static void print_series(const hl_volume *volume) {
+  hl_volume_series s = {.struct_size = sizeof s};
+  size_t count = hl_volume_series_count(volume);
+  for (size_t n = 0; hl_volume_get_series(volume, n, &s) == HL_OK; n++) {
+    printf("  %s  ", n == 0 ? "series    " : "          ");
+    if (isfinite(s.number)) printf("%.0f: ", s.number);
+    printf("%s%s\"%s\", %zu x %zu x %zu%s\n", s.modality, s.modality[0] != '\0' ? " " : "", s.description,
+           s.dimensions[0], s.dimensions[1], s.dimensions[2], s.chosen && count > 1 ? ": is shown" : "");
+  }
+}
+
+/* A colour as "#rrggbb". */
+static const char *color_text(const double srgb[3], char text[8]) {
+  int c[3];
+  for (int n = 0; n < 3; n++) c[n] = (int)lround(255 * fmin(fmax(srgb[n], 0), 1));
+  snprintf(text, 8, "#%02x%02x%02x", c[0] & 255, c[1] & 255, c[2] & 255);
+  return text;
+}
+
+/* Whether the file tells anything of a channel. */
+static bool is_told(const hl_volume_channel *channel) {
+  return channel->name[0] != '\0' || channel->has_color || isfinite(channel->window[0]);
+}
+
+static void print_json_channels(json_writer *json, const hl_volume *volume) {
+  hl_volume_channel channel = {.struct_size = sizeof channel};
+  char color[8];
+  bool any = false;
+  for (size_t n = 0; !any && hl_volume_get_channel(volume, n, &channel) == HL_OK; n++)
+    any = is_told(&channel);
+  if (!any) return;
+  json_open_array(json, "channel_list");
+  for (size_t n = 0; hl_volume_get_channel(volume, n, &channel) == HL_OK; n++) {
+    json_open_object(json, NULL);
+    json_text(json, "name", channel.name);
+    if (channel.has_color) json_text(json, "color", color_text(channel.srgb, color));
+    if (isfinite(channel.window[0])) json_numbers(json, "window", channel.window, 2);
+    json_bool(json, "chosen", channel.chosen != 0);
+    json_close(json);
+  }
+  json_close(json);
+}
+
+static void print_channels(const hl_volume *volume) {
+  hl_volume_channel channel = {.struct_size = sizeof channel};
+  char color[8];
+  for (size_t n = 0; hl_volume_get_channel(volume, n, &channel) == HL_OK; n++) {
+    if (!is_told(&channel)) continue;
+    printf("  channel %-3zu %s", n, channel.name);
+    if (channel.has_color)
+      printf("%s%s", channel.name[0] != '\0' ? ", " : "", color_text(channel.srgb, color));
+    if (isfinite(channel.window[0]))
+      printf(", shown from %.9g to %.9g", channel.window[0], channel.window[1]);
+    printf("\n");
+  }
+}
+
+static void print_json_segments(json_writer *json, const hl_volume *volume) {
+  hl_volume_segment segment = {.struct_size = sizeof segment};
+  char color[8];
+  if (hl_volume_segment_count(volume) == 0) return;
+  json_open_array(json, "segments");
+  for (size_t n = 0; hl_volume_get_segment(volume, n, &segment) == HL_OK; n++) {
+    json_open_object(json, NULL);
+    json_signed_number(json, "value", segment.value);
+    json_text(json, "name", segment.name);
+    json_whole_number(json, "layer", (uint64_t)segment.layer);
+    if (segment.has_color) json_text(json, "color", color_text(segment.srgb, color));
+    json_close(json);
+  }
+  json_close(json);
+}
+
+static void print_segments(const hl_volume *volume) {
+  hl_volume_segment segment = {.struct_size = sizeof segment};
+  char color[8];
+  int layers = 0;
+  for (size_t n = 0; hl_volume_get_segment(volume, n, &segment) == HL_OK; n++)
+    layers = segment.layer > layers ? segment.layer : layers;
+  for (size_t n = 0; hl_volume_get_segment(volume, n, &segment) == HL_OK; n++) {
+    printf("  %s  %" PRId64 ": %s%s%s", n == 0 ? "segments  " : "          ", segment.value, segment.name,
+           segment.name[0] != '\0' && segment.has_color ? ", " : "",
+           segment.has_color ? color_text(segment.srgb, color) : "");
+    if (layers > 0) printf(", layer %d", segment.layer);
+    printf("\n");
+  }
+}
+
+static void print_label_maps(json_writer *json, const char *path, const hl_volume *volume) {
+  const char *name;
+  if (hl_volume_label_map(volume, 0) == NULL) return;
+  if (json != NULL) json_open_array(json, "label_maps");
+  for (size_t n = 0; (name = hl_volume_label_map(volume, n)) != NULL; n++) {
+    if (json != NULL) json_text(json, NULL, name);
+    else printf("  label map   %s/%s: a volume of its own\n", path, name);
+  }
+  if (json != NULL) json_close(json);
+}
+
+/* Whether a file's only array says no more than its type and its time steps, which have lines of their own.
+ */
+static bool is_plain(const hl_volume *volume, const hl_volume_array *array) {
+  hl_volume_selection s = {.struct_size = sizeof s};
+  bool steps = hl_volume_get_selection(volume, &s) == HL_OK && array->components == s.times;
+  return array->name[0] == '\0' && (array->components == 1 || steps);
+}
+
+static void print_arrays(const hl_volume *volume) {
+  hl_volume_array array = {.struct_size = sizeof array};
+  size_t count = hl_volume_array_count(volume);
+  for (size_t n = 0; hl_volume_get_array(volume, n, &array) == HL_OK; n++) {
+    if (count == 1 && is_plain(volume, &array)) return;
+    printf("  %s  %s%s%s", n == 0 ? "arrays    " : "          ", array.name,
+           array.name[0] != '\0' ? ", " : "", hl_voxel_type_name(array.type));
+    if (array.components > 1) printf(", %zu components", array.components);
+    printf("%s%s", array.of_cells ? ", of cells" : "", array.type == 0 ? ", not read" : "");
+    if (array.chosen && array.component == HL_COMPONENT_MAGNITUDE) printf(": the magnitude is shown");
+    else if (array.chosen && array.component == HL_COMPONENT_COLOR) printf(": colours, opacity from alpha");
+    else if (array.chosen && array.component == HL_COMPONENT_LUMINANCE)
+      printf(": colours, opacity from their luminance");
+    else if (array.chosen && array.components > 1) printf(": component %d is shown", array.component);
+    else if (array.chosen && count > 1) printf(": is shown");
+    printf("\n");
+  }
+}
+
+enum { RANGE_BYTES = 2 * HL_NUMBER_TEXT_BYTES + 8 };
+
+/* The range as JSON, with all digits. */
+static void print_json_range(json_writer *json, const hl_volume *volume) {
+  char ends[2][HL_NUMBER_TEXT_BYTES], text[RANGE_BYTES];
+  if (hl_volume_write_range(volume, 0, ends[0]) != HL_OK ||
+      hl_volume_write_range(volume, 1, ends[1]) != HL_OK)
+    return;
+  snprintf(text, sizeof text, "[%s, %s]", ends[0], ends[1]);
+  json_written(json, "range", text);
+}
+
+static void print_json(json_writer *json, const char *path, const hl_volume *volume,
+                       const hl_volume_info *info, const char *kind) {
+  uint64_t dimensions[3] = {info->dimensions[0], info->dimensions[1], info->dimensions[2]};
+  json_open_object(json, NULL);
+  json_text(json, "file", path);
+  json_whole_numbers(json, "dimensions", dimensions, 3);
+  json_text(json, "type", hl_voxel_type_name(info->type));
+  json_numbers(json, "spacing", info->spacing, 3);
+  json_numbers(json, "origin", info->origin, 3);
+  json_open_array(json, "direction");
+  for (int row = 0; row < 3; row++) json_numbers(json, NULL, info->direction[row], 3);
+  json_close(json);
+  double low[3], high[3];
+  hl_volume_world_box(info, low, high);
+  json_open_object(json, "world_box");
+  json_numbers(json, "min", low, 3);
+  json_numbers(json, "max", high, 3);
+  json_close(json);
+  json_text(json, "space", hl_space_name(info->space));
+  json_text(json, "unit", hl_volume_unit(volume));
+  print_json_range(json, volume);
+  json_number(json, "mean", info->mean);
+  json_whole_number(json, "nonfinite_count", info->nonfinite_count);
+  print_json_arrays(json, volume);
+  print_json_selection(json, volume);
+  print_json_channels(json, volume);
+  print_json_series(json, volume);
+  print_json_segments(json, volume);
+  print_label_maps(json, path, volume);
+  json_text(json, "taken_for", kind);
+  json_whole_numbers(json, "histogram", info->histogram, HL_HISTOGRAM_BINS);
+  json_close(json);
+}
+
+/* Prints a histogram of sixteen bars. Their lengths are logarithmic: there are often a thousand times as many
+ * voxels of air as of anything else. */
+static void print_histogram(const hl_volume_info *info) {
+  enum { BARS = 16, LONGEST = 40, BINS = HL_HISTOGRAM_BINS / BARS };
+  uint64_t count[BARS] = {0}, most = 0, total = 0;
+  for (int i = 0; i < HL_HISTOGRAM_BINS; i++) count[i / BINS] += info->histogram[i];
+  for (int i = 0; i < BARS; i++) {
+    most = count[i] > most ? count[i] : most;
+    total += count[i];
+  }
+  if (total == 0) return;
+  double step = (info->range[1] - info->range[0]) / BARS;
+  printf("  histogram   (bars are logarithmic)\n");
+  for (int i = 0; i < BARS; i++) {
+    static const char bar[] = "########################################";
+    int length = (int)lround(LONGEST * log1p((double)count[i]) / log1p((double)most));
+    printf("  %11.5g  %-*.*s %12" PRIu64 " %7.3f %%\n", info->range[0] + i * step, LONGEST, length, bar,
+           count[i], 100 * (double)count[i] / (double)total);
+  }
+  printf("  %11.5g\n", info->range[1]);
+}
+
+/* A data value: whole numbers with all their digits. end: 0, the least, or 1, the greatest. */
+static const char *value_text(const hl_volume *volume, int end, double value,
+                              char text[HL_NUMBER_TEXT_BYTES]) {
+  bool whole = value == floor(value) && fabs(value) <= 0x1p64;
+  if (whole && fabs(value) >= 0x1p53 && hl_volume_write_range(volume, end, text) == HL_OK) return text;
+  snprintf(text, HL_NUMBER_TEXT_BYTES, whole ? "%.20g" : "%.9g", value);
+  return text;
+}
+
+static void print_text(const char *path, const hl_volume *volume, const hl_volume_info *info,
+                       const char *kind) {
+  const double(*d)[3] = info->direction;
+  uint64_t voxels = (uint64_t)info->dimensions[0] * info->dimensions[1] * info->dimensions[2];
+  printf("%s\n", path);
+  printf("  dimensions  %zu x %zu x %zu (%" PRIu64 " voxels)\n", info->dimensions[0], info->dimensions[1],
+         info->dimensions[2], voxels);
+  printf("  type        %s\n", hl_voxel_type_name(info->type));
+  print_arrays(volume);
+  print_selection(volume);
+  print_channels(volume);
+  print_series(volume);
+  print_segments(volume);
+  print_label_maps(NULL, path, volume);
+  printf("  spacing     %.9g, %.9g, %.9g\n", info->spacing[0], info->spacing[1], info->spacing[2]);
+  const char *unit = hl_volume_unit(volume);
+  if (unit != NULL) printf("  unit        %s\n", unit);
+  printf("  origin      %.9g, %.9g, %.9g\n", info->origin[0], info->origin[1], info->origin[2]);
+  for (int axis = 0; axis < 3; axis++)
+    printf("  %s      %c: %.9g, %.9g, %.9g\n", axis == 0 ? "axes  " : "      ", "ijk"[axis], d[0][axis],
+           d[1][axis], d[2][axis]);
+  double low[3], high[3];
+  hl_volume_world_box(info, low, high);
+  printf("  world box   x %.9g to %.9g, y %.9g to %.9g, z %.9g to %.9g\n", low[0], high[0], low[1], high[1],
+         low[2], high[2]);
+  if (info->space != HL_SPACE_UNKNOWN) printf("  space       %s\n", hl_space_name(info->space));
+  char least[HL_NUMBER_TEXT_BYTES], greatest[HL_NUMBER_TEXT_BYTES];
+  printf("  range       %s to %s, mean %.9g\n", value_text(volume, 0, info->range[0], least),
+         value_text(volume, 1, info->range[1], greatest), info->mean);
+  if (info->nonfinite_count > 0)
+    printf("  not finite  %" PRIu64 " voxels, rendered as transparent\n", info->nonfinite_count);
+  printf("  taken for   %s: render chooses its look from this file; --print-scene keeps it\n", kind);
+  print_histogram(info);
+}
+
+/* Tells of one volume. json: null for text. */
+static int tell_volume(cli_host *host, json_writer *json, const char *path, hl_volume *volume) {
+  const char *kind = NULL;
+  hl_volume_info info = {.struct_size = sizeof info};
+  hl_error error = {0};
+  if (hl_volume_get_info(volume, &info) != HL_OK)
+    return fail(EXIT_CODE_FAILURE, "%s: the library does not tell what it read", path);
+  hl_status status = hl_volume_guess(volume, path, &kind, &error);
+  if (status != HL_OK) return host_fail(host, PHASE_RUN, status, &error);
+  if (json != NULL) print_json(json, path, volume, &info, kind);
+  else print_text(path, volume, &info, kind);
+  return EXIT_CODE_OK;
+}
+
+static int info_of_volume(cli_host *host, const cli_value *values, const cli_input *input) {
+  hl_volume *volume = NULL;
+  hl_volume_load_options load;
+  hl_error error = {0};
+  json_writer json = {0};
+  input_load_options(&values[INFO_ARRAY], NULL, &load);
+  hl_status status = input_load_volume(host->context, input, &load, &volume, &error);
+  int exit_code = status == HL_OK
+                      ? tell_volume(host, values[INFO_JSON].given ? &json : NULL, input->title, volume)
+                      : host_fail(host, PHASE_READ, status, &error);
+  hl_volume_release(volume);
+  return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
+}
+
+/* Tells of a scene: its picture, how much of each kind it holds, and each volume as of a file. */
+static int tell_scene(cli_host *host, bool as_json, const char *title, const hl_scene_description *scene) {
+  json_writer json = {0};
+  int exit_code = EXIT_CODE_OK;
+  if (as_json) {
+    json_open_object(&json, NULL);
+    json_text(&json, "file", title);
+    json_whole_number(&json, "width", (uint64_t)scene->width);
+    json_whole_number(&json, "height", (uint64_t)scene->height);
+    json_whole_number(&json, "lights", scene->light_count);
+    json_whole_number(&json, "meshes", scene->mesh_count);
+    json_open_array(&json, "volumes");
+  } else {
+    printf("%s\n  scene       %d x %d pixels, lights %zu, volumes %zu, meshes %zu\n", title, scene->width,
+           scene->height, scene->light_count, scene->volume_count, scene->mesh_count);
+  }
+  for (size_t n = 0; n < scene->volume_count && exit_code == EXIT_CODE_OK; n++) {
+    const hl_scene_volume *volume = &scene->volumes[n];
+    const char *path = volume->file != NULL ? volume->file : title;
+    exit_code = tell_volume(host, as_json ? &json : NULL, path, volume->volume);
+    for (size_t label = 0; !as_json && label < volume->label_count; label++)
+      printf("  %s  %" PRId64 ": %s%s\n", label == 0 ? "labels    " : "          ",
+             volume->labels[label].value,
+             volume->labels[label].name != NULL ? volume->labels[label].name : "",
+             volume->labels[label].visible ? "" : " (hidden)");
+  }
+  if (as_json) {
+    json_close(&json);
+    json_close(&json);
+  }
+  return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
+}
+
+/* Refuses the options that choose among what a volume file holds. */
+static int refuse_reading(const cli_value *values, const char *title, const char *what) {
+  for (int which = INFO_ARRAY; which <= INFO_LEVEL; which++)
+    if (values[which].given)
+      return fail(EXIT_CODE_USAGE, "--%s is for volume files, and '%s' is %s", info_options[which].name,
+                  title, what);
+  return EXIT_CODE_OK;
+}
+
+static int info_of_scene(cli_host *host, const cli_value *values, const cli_input *input) {
+  hl_scene *scene = NULL;
+  hl_error error = {0};
+  int refused = refuse_reading(values, input->title, "a scene: give its volume's file");
+  if (refused != EXIT_CODE_OK) return refused;
+  hl_status status = input_load(host->context, input, NULL, &scene, &error);
+  int exit_code = status == HL_OK
+                      ? tell_scene(host, values[INFO_JSON].given, input->title, hl_scene_describe(scene))
+                      : host_fail(host, PHASE_READ, status, &error);
+  hl_scene_release(scene);
+  return exit_code;
+}
+
+static void print_json_mesh(const char *path, const hl_mesh_description *mesh, const double low[3],
+                            const double high[3]) {
+  json_writer json = {0};
+  json_open_object(&json, NULL);
+  json_text(&json, "file", path);
+  json_whole_number(&json, "vertices", mesh->vertex_count);
+  json_whole_number(&json, "triangles", mesh->triangle_count);
+  json_whole_number(&json, "spheres", mesh->sphere_count);
+  json_whole_number(&json, "lines", mesh->line_count);
+  json_bool(&json, "normals", mesh->normals != NULL);
+  json_text(&json, "colors", mesh->colors != NULL ? "vertices" : mesh->face_colors != NULL ? "faces" : NULL);
+  json_open_object(&json, "box");
+  json_numbers(&json, "min", low, 3);
+  json_numbers(&json, "max", high, 3);
+  json_close(&json);
+  json_close(&json);
+}
+
+static void print_mesh(const char *path, const hl_mesh_description *mesh, const double low[3],
+                       const double high[3]) {
+  printf("%s\n  mesh        %zu triangles of %zu vertices", path, mesh->triangle_count, mesh->vertex_count);
+  if (mesh->sphere_count > 0) printf(", %zu spheres", mesh->sphere_count);
+  if (mesh->line_count > 0) printf(", %zu lines, whose tubes are among the triangles", mesh->line_count);
+  printf("\n  normals     %s\n", mesh->normals != NULL ? "of the file" : "none: faces and edges are found");
+  printf("  colours     %s\n", mesh->colors != NULL        ? "of vertices"
+                               : mesh->face_colors != NULL ? "of faces"
+                                                           : "none");
+  printf("  world box   x %.9g to %.9g, y %.9g to %.9g, z %.9g to %.9g\n", low[0], high[0], low[1], high[1],
+         low[2], high[2]);
+}
+
+static int info_of_mesh(cli_host *host, const cli_value *values, const char *path) {
+  hl_mesh *mesh = NULL;
+  hl_error error = {0};
+  double low[3], high[3];
+  int exit_code = refuse_reading(values, path, "a mesh");
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  hl_status status = hl_mesh_load(host->context, path, &mesh, &error);
+  if (status != HL_OK) return host_fail(host, PHASE_READ, status, &error);
+  if (hl_mesh_get_box(mesh, low, high) != HL_OK)
+    exit_code = fail(EXIT_CODE_FAILURE, "%s: the library does not tell what it read", path);
+  else if (values[INFO_JSON].given) print_json_mesh(path, hl_mesh_describe(mesh), low, high);
+  else print_mesh(path, hl_mesh_describe(mesh), low, high);
+  hl_mesh_release(mesh);
+  return exit_code == EXIT_CODE_OK ? finish_stdout() : exit_code;
+}
+
+/* --formats stands alone or with --json. */
+static int run_formats(const cli_value *values, char **operands) {
+  for (int which = INFO_FORMATS + 1; which < INFO_OPTION_COUNT; which++)
+    if (values[which].given)
+      return fail(EXIT_CODE_USAGE, "--%s is for files, and --formats lists formats",
+                  info_options[which].name);
+  if (operands[0] != NULL)
+    return fail(EXIT_CODE_USAGE, "--formats takes no file: leave '%s' or --formats out", operands[0]);
+  return info_formats(values[INFO_JSON].given);
+}
+
+static int run_info(const cli_value *values, char **operands) {
+  if (values[INFO_FORMATS].given) return run_formats(values, operands);
+  if (operands[0] == NULL)
+    return fail(EXIT_CODE_USAGE, "info needs FILE or --formats: see 'halflight help info'");
+  cli_host host;
+  cli_host_options options = {.memory_limit = values[INFO_MAX_MEMORY].bytes, .subject = operands[0]};
+  int exit_code = host_open(&options, &host);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  if (is_mesh_file(host.context, operands[0])) {
+    exit_code = info_of_mesh(&host, values, operands[0]);
+    host_close(&host);
+    return exit_code;
+  }
+  cli_input input = {0};
+  exit_code = input_open(operands[0], values[INFO_MAX_MEMORY].bytes, &input);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = input.kind == INPUT_VOLUME ? info_of_volume(&host, values, &input)
+                                           : info_of_scene(&host, values, &input);
+  input_close(&input);
+  host_close(&host);
+  return exit_code;
+}
+
+const cli_command info_command = {
+    .name = "info",
+    .operands = "[FILE]",
+    .operand_most = 1,
+    .summary = "show what a volume, a scene or a mesh file holds",
+    .description =
+        "Shows what a volume file holds: size, type, spacing, orientation, world box, range and histogram.\n"
+        "Of a scene, also one in a picture: how much of each kind it has, and the same of each volume.\n"
+        "Of a mesh file: triangles, spheres, lines, normals, colours and the box.",
+    .options = info_options,
+    .option_count = INFO_OPTION_COUNT,
+    .run = run_info,
+};

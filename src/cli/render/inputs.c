@@ -1,0 +1,174 @@
+/* cli/render/inputs.c - one scene from the operands of `halflight render`: a scene, or volumes.
+ *
+ * Each of several volumes keeps the look that it would have alone. Light, background and render settings are
+ * those of the first volume; the camera frames all volumes, and the sheets are as close as the finest of the
+ * volumes needs them.
+ */
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/input.h"
+#include "render.h"
+
+/* Errors of a bare volume's scene lose "/volumes/0/file", as INPUT is that file. An error that already begins
+ * with the input's name, which may begin with a slash too, is left alone. */
+void render_name_scene(const char *input, bool bare, hl_error *error) {
+  char line[sizeof error->message];
+  if (error->message[0] != '/' || strncmp(error->message, input, strlen(input)) == 0) return;
+  static const char file[] = "/volumes/0/file: ";
+  bool itself = bare && strncmp(error->message, file, sizeof file - 1) == 0;
+  snprintf(line, sizeof line, "%s", error->message + (itself ? sizeof file - 1 : 0));
+  snprintf(error->message, sizeof error->message, "%.300s: %.690s",
+           strcmp(input, "-") == 0 ? "standard input" : input, line);
+}
+
+/* Refuses several inputs of which one is no volume, and options for reading volumes beside a scene. */
+static int check_kinds(const cli_value *values, const cli_input *inputs, size_t count) {
+  for (size_t n = 0; n < count && count > 1; n++)
+    if (inputs[n].kind != INPUT_VOLUME)
+      return fail(EXIT_CODE_USAGE,
+                  "'%s' is no volume file: several INPUTs are volumes of one picture, a scene stands alone",
+                  inputs[n].path);
+  if (values[RENDER_SMOOTH].given && render_has_channels(values))
+    return fail(EXIT_CODE_USAGE, "--smooth is for one channel: leave it out, or name one --channel");
+  if (inputs[0].kind == INPUT_VOLUME) return EXIT_CODE_OK;
+  for (int which = RENDER_ARRAY; which <= RENDER_SMOOTH; which++)
+    if (values[which].given)
+      return fail(EXIT_CODE_USAGE,
+                  "--%s is for volume files, and '%s' is a scene: write \"%s\" beside its \"file\"",
+                  render_options[which].name, inputs[0].path, render_options[which].name);
+  return EXIT_CODE_OK;
+}
+
+/* The anatomical space of a bare volume's scene, which the volumes after it are turned into. */
+static hl_space space_of(const hl_scene *scene) {
+  hl_volume_info info = {.struct_size = sizeof info};
+  const hl_scene_description *description = hl_scene_describe(scene);
+  bool known = description->volume_count > 0 &&
+               hl_volume_get_info(description->volumes[0].volume, &info) == HL_OK;
+  return known ? info.space : HL_SPACE_UNKNOWN;
+}
+
+/* The pixels along the picture's longer side, times the zoom: a volume on the command line fills the picture.
+ */
+static int pixels_of(const cli_value *values) {
+  hl_scene_description description;
+  hl_scene_description_defaults(&description);
+  double width = values[RENDER_SIZE].given ? values[RENDER_SIZE].number[0] : description.width;
+  double height = values[RENDER_SIZE].given ? values[RENDER_SIZE].number[1] : description.height;
+  double zoom = values[RENDER_ZOOM].given && values[RENDER_ZOOM].number[0] > 1 ? values[RENDER_ZOOM].number[0]
+                                                                               : 1;
+  double pixels = ceil(fmax(width, height) * zoom);
+  return pixels < INT_MAX ? (int)pixels : INT_MAX;
+}
+
+/* ---- channels ---- */
+
+int render_channels(const cli_value *values, int channels[HL_CHANNELS_MOST], size_t *count) {
+  const cli_value *said = &values[RENDER_CHANNEL];
+  *count = 0;
+  if (!said->given || strcmp(said->text, "all") == 0) return EXIT_CODE_OK;
+  for (const char *text = said->text;; text++) {
+    char *end;
+    long number = strtol(text, &end, 10);
+    if (text[0] < '0' || text[0] > '9' || number > INT_MAX || (*end != ',' && *end != '\0'))
+      return fail(EXIT_CODE_USAGE, "--channel: '%s': give a number from 0 on, several as 0,2, or all",
+                  said->text);
+    if (*count == HL_CHANNELS_MOST)
+      return fail(EXIT_CODE_USAGE, "--channel: '%s': a picture shows %d channels at most", said->text,
+                  HL_CHANNELS_MOST);
+    for (size_t n = 0; n < *count; n++)
+      if (channels[n] == (int)number)
+        return fail(EXIT_CODE_USAGE, "--channel: '%s': channel %ld is there twice", said->text, number);
+    channels[(*count)++] = (int)number;
+    if (*end == '\0') return EXIT_CODE_OK;
+    text = end;
+  }
+}
+
+bool render_has_channels(const cli_value *values) {
+  const cli_value *said = &values[RENDER_CHANNEL];
+  return said->given && (strcmp(said->text, "all") == 0 || strchr(said->text, ',') != NULL);
+}
+
+void render_load_options(const cli_value *values, hl_volume_load_options *options) {
+  int channels[HL_CHANNELS_MOST];
+  size_t count;
+  input_load_options(&values[RENDER_ARRAY], &values[RENDER_SPACING], options);
+  bool one = render_channels(values, channels, &count) == EXIT_CODE_OK && count == 1;
+  options->channel = one ? channels[0] : HL_INDEX_DEFAULT;
+  options->pixels = pixels_of(values);
+}
+
+/* The scene of several channels of one file. */
+static hl_status load_channels(cli_host *host, const cli_value *values, const cli_input *input,
+                               hl_volume_load_options options, hl_scene **scene, hl_error *error) {
+  int channels[HL_CHANNELS_MOST];
+  size_t count;
+  const char *look = render_look_name(values);
+  if (render_channels(values, channels, &count) != EXIT_CODE_OK) count = 0; /* checked before */
+  options.bytes = input->bytes;
+  options.byte_count = input->length;
+  return hl_scene_for_channels(host->context, input->title, &options, channels, count,
+                               look != NULL ? look : "auto", scene, error);
+}
+
+static int load_each(cli_host *host, const cli_value *values, cli_input *inputs, size_t count,
+                     hl_scene **scenes) {
+  hl_volume_load_options options;
+  render_load_options(values, &options);
+  for (size_t n = 0; n < count; n++) {
+    hl_error error = {0};
+    bool bare = inputs[n].kind == INPUT_VOLUME;
+    inputs[n].look = render_look_name(values);
+    inputs[n].smooth = values[RENDER_SMOOTH].given ? &values[RENDER_SMOOTH].number[0] : NULL;
+    hl_status status = bare && render_has_channels(values)
+                           ? load_channels(host, values, &inputs[n], options, &scenes[n], &error)
+                           : input_load(host->context, &inputs[n], bare ? &options : NULL, &scenes[n],
+                                        &error);
+    if (bare) render_name_scene(inputs[n].path, true, &error);
+    if (status != HL_OK) return host_fail(host, PHASE_READ, status, &error);
+    if (options.space == HL_SPACE_UNKNOWN) options.space = space_of(scenes[n]);
+  }
+  return EXIT_CODE_OK;
+}
+
+/* Makes one scene of the scenes of several volumes. */
+static int join(cli_host *host, hl_scene *const *scenes, size_t count, hl_scene **scene) {
+  hl_error error = {0};
+  hl_status status = hl_scene_join(host->context, scenes, count, scene, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
+}
+
+int render_load_volumes(cli_host *host, const cli_value *values, char **operands, bool *bare,
+                        hl_scene **scene) {
+  cli_input inputs[MAXIMUM_OPERANDS] = {{0}};
+  hl_scene *scenes[MAXIMUM_OPERANDS] = {NULL};
+  size_t count = 0;
+  int exit_code = EXIT_CODE_OK;
+  for (; operands[count] != NULL && exit_code == EXIT_CODE_OK; count++)
+    exit_code = input_open(operands[count], values[RENDER_MAX_MEMORY].bytes, &inputs[count]);
+  if (exit_code == EXIT_CODE_OK) exit_code = check_kinds(values, inputs, count);
+  *bare = inputs[0].kind == INPUT_VOLUME;
+  if (exit_code == EXIT_CODE_OK) exit_code = load_each(host, values, inputs, count, scenes);
+  if (exit_code == EXIT_CODE_OK && count > 1) exit_code = join(host, scenes, count, scene);
+  for (size_t n = 0; n < count; n++) {
+    input_close(&inputs[n]);
+    if (n == 0 && count == 1 && exit_code == EXIT_CODE_OK) *scene = scenes[0];
+    else hl_scene_release(scenes[n]);
+  }
+  return exit_code;
+}
+
+int render_load_inputs(cli_host *host, const cli_value *values, char **operands, bool *bare,
+                       hl_scene **scene) {
+  char *meshes[MAXIMUM_OPERANDS + 1], *others[MAXIMUM_OPERANDS + 1];
+  int exit_code = EXIT_CODE_OK;
+  *bare = true;
+  render_part_meshes(host->context, operands, meshes, others);
+  if (others[0] != NULL) exit_code = render_load_volumes(host, values, others, bare, scene);
+  return exit_code == EXIT_CODE_OK ? render_add_meshes(host, meshes, 0, *bare, scene) : exit_code;
+}

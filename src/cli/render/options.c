@@ -1,0 +1,566 @@
+/* cli/render/options.c - the table of options of `halflight render`, and which of them exclude each other. */
+#include <math.h>
+#include <string.h>
+
+#include "cli/frames.h"
+#include "cli/input.h"
+#include "cli/output.h"
+#include "render.h"
+
+static const cli_choice depths[] = {{"8", 8}, {"16", 16}, {NULL, 0}};
+static const cli_choice formats[] = {{"png", 0}, {"exr", 1}, {"npy", 2}, {"tif", 3},
+                                     {"pdf", 4}, {"svg", 5}, {NULL, 0}};
+static const cli_choice axes_choices[] = {
+    {"arrows", HL_AXES_ARROWS}, {"letters", HL_AXES_LETTERS}, {NULL, 0}};
+/* Names that has_extension() takes for the formats'. */
+static const char *const format_extensions[] = {"-.png", "-.exr", "-.npy", "-.tif", "-.pdf", "-.svg"};
+const cli_choice instruction_set_choices[] = {{"auto", HL_INSTRUCTION_SET_AUTO},
+                                              {"scalar", HL_INSTRUCTION_SET_SCALAR},
+                                              {"avx2", HL_INSTRUCTION_SET_AVX2},
+                                              {"avx512", HL_INSTRUCTION_SET_AVX512},
+                                              {"avx512-vbmi", HL_INSTRUCTION_SET_AVX512_VBMI},
+                                              {"neon", HL_INSTRUCTION_SET_NEON},
+                                              {NULL, 0}};
+
+const cli_option render_options[RENDER_OPTION_COUNT] = {
+    [RENDER_OUTPUT] = {.name = "output",
+                       .letter = 'o',
+                       .kind = OPTION_TEXT,
+                       .argument = "OUT",
+                       .group = "Picture",
+                       .help = "file to write: .png, .exr, .npy, .tif, .pdf or .svg\n(default: INPUT's name "
+                               "with .png, in this folder)"},
+    [RENDER_FORMAT] = {.name = "format",
+                       .kind = OPTION_CHOICE,
+                       .choices = formats,
+                       .help = "of OUT, where its name does not say it\n(default png)"},
+    [RENDER_SIZE] = {.name = "size",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "WxH",
+                     .help = "pixels (default 512x512)",
+                     .count = 2,
+                     .separator = 'x',
+                     .whole = true,
+                     .setting_kind = HL_SETTINGS_IMAGE,
+                     .setting = "width"},
+    [RENDER_DEPTH] = {.name = "depth",
+                      .kind = OPTION_CHOICE,
+                      .choices = depths,
+                      .help = "bits per channel of a .png or .tif (default 8)"},
+    [RENDER_NO_METADATA] = FRAMES_OPTION_NO_METADATA,
+    [RENDER_BACKGROUND] = {.name = "background",
+                           .kind = OPTION_COLOR,
+                           .argument = "COLOR|transparent|sky",
+                           .help = "under a .png: linear R,G,B 0..1, #rrggbb or a CSS\nname (both sRGB; "
+                                   "default black, of bare volumes\ndark grey; black for --look mip); sky: "
+                                   "the light from\nall directions itself is seen",
+                           .setting_kind = HL_SETTINGS_IMAGE,
+                           .setting = "background"},
+    [RENDER_EXPOSURE] =
+        {.name = "exposure",
+         .kind = OPTION_NUMBERS,
+         .argument = "STOPS",
+         .help = "a .png shows the volumes' light times 2^STOPS\n(default 0; the background stays)",
+         .count = 1,
+         .setting_kind = HL_SETTINGS_IMAGE,
+         .setting = "exposure"},
+    [RENDER_TONE] = {.name = "tone",
+                     .kind = OPTION_CHOICE,
+                     .help = "how a .png shows light brighter than white\n(default clip)",
+                     .setting_kind = HL_SETTINGS_IMAGE,
+                     .setting = "tone"},
+    [RENDER_LAYERS] =
+        {.name = "layers",
+         .kind = OPTION_SWITCH,
+         .help =
+             "each light, its shadow, ambient, depth, normals:\nchannels of an .exr, files beside an .npy"},
+
+    [RENDER_WIDTH] = {.name = "width",
+                      .kind = OPTION_TEXT,
+                      .argument = "LENGTH",
+                      .group = "Figure",
+                      .help = "width on paper: 89mm, 8.9cm, 3.5in, 252pt; without\n--size the picture has as "
+                              "many pixels as --dpi wants"},
+    [RENDER_DPI] = {.name = "dpi",
+                    .kind = OPTION_NUMBERS,
+                    .argument = "N",
+                    .help = "pixels an inch, which .png and .tif state\n(default 300, with --width)",
+                    .count = 1,
+                    .low = 1,
+                    .high = 10000},
+    [RENDER_SCALE_BAR] = {.name = "scale-bar",
+                          .kind = OPTION_TEXT,
+                          .argument = "auto|LENGTH[@DEPTH]",
+                          .help = "a bar with its length, as 50um; of a perspective\npicture (not --ortho) "
+                                  "@target or at this distance\nfrom the eye"},
+    [RENDER_UNIT] = {.name = "unit",
+                     .kind = OPTION_TEXT,
+                     .argument = "UNIT",
+                     .help =
+                         "of lengths in the volumes' files, where these do\nnot tell it: mm, um, nm, ..."},
+    [RENDER_LEGEND] = {.name = "legend",
+                       .kind = OPTION_TEXT,
+                       .argument = "auto|TITLE",
+                       .help =
+                           "colours and opacity over the values, surfaces, or\nnames of labels; TITLE, as "
+                           "'Density (g/cm3)'"},
+    [RENDER_AXES] = {.name = "axes",
+                     .kind = OPTION_CHOICE,
+                     .choices = axes_choices,
+                     .help = "the world's directions as arrows, or the body's as\nletters at the edges"},
+    [RENDER_ANNOTATE] = {.name = "annotate",
+                         .kind = OPTION_TEXT,
+                         .argument = "TEXT@X,Y[,Z]",
+                         .help = "a text at fractions of the picture from its upper\nleft, or beside a point "
+                                 "X,Y,Z of the world; again for\nmore",
+                         .repeatable = true},
+    [RENDER_FONT_SIZE] = {.name = "font-size",
+                          .kind = OPTION_NUMBERS,
+                          .argument = "POINTS",
+                          .help =
+                              "of letters (default 7, of a picture 89 mm wide where\n--width and --dpi do "
+                              "not say)",
+                          .count = 1,
+                          .low = 1,
+                          .high = 200},
+
+    [RENDER_VIEW] =
+        {.name = "view",
+         .kind = OPTION_CHOICE,
+         .argument = "SIDE",
+         .group = "Camera",
+         .help = "front, back, left, right, top, bottom or iso (the eye\n45 degrees right of front, 35 up; "
+                 "of a file without\n"
+                 "anatomy it sees the octant +x, -y, +z): of the body\nwhere the file knows it; frames anew "
+                 "(default: a\nthree-quarter view, chosen)"},
+    [RENDER_VIEWS] = {.name = "views",
+                      .kind = OPTION_TEXT,
+                      .argument = "SIDE,SIDE,...",
+                      .help = "several sides (front,left,top) on one sheet, or in\nfiles: -o 'head-%s.png'"},
+    [RENDER_UP] = {.name = "up",
+                   .kind = OPTION_NUMBERS,
+                   .argument = "AXIS|X,Y,Z",
+                   .help =
+                       "which way is up: an axis, as +z or -y, or a vector;\nframes anew (default: chosen)",
+                   .count = 3,
+                   .separator = ',',
+                   .low = -INFINITY,
+                   .high = INFINITY},
+    [RENDER_AZIMUTH] = {.name = "azimuth",
+                        .kind = OPTION_NUMBERS,
+                        .argument = "DEG",
+                        .help = "turned about up; 0 is from the front (along +y\nwhere z is up), positive: "
+                                "the eye moves right\n(default: chosen)",
+                        .count = 1,
+                        .low = -360,
+                        .high = 360},
+    [RENDER_ELEVATION] = {.name = "elevation",
+                          .kind = OPTION_NUMBERS,
+                          .argument = "DEG",
+                          .help = "90 looks straight down (default 20)",
+                          .count = 1,
+                          .low = -90,
+                          .high = 90},
+    [RENDER_ROLL] = {.name = "roll",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "DEG",
+                     .help = "positive: the picture turns clockwise (default 0)",
+                     .count = 1,
+                     .low = -360,
+                     .high = 360},
+    [RENDER_ZOOM] = {.name = "zoom",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "FACTOR",
+                     .help = "1 shows everything (default); frames anew",
+                     .count = 1,
+                     .low = 0.001,
+                     .high = 1000},
+    [RENDER_FOVY] = {.name = "fovy",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "DEG",
+                     .help = "perspective with this vertical field of view\n(default 30)",
+                     .count = 1,
+                     .setting_kind = HL_SETTINGS_CAMERA,
+                     .setting = "fovy_deg"},
+    [RENDER_ORTHO] = {.name = "ortho",
+                      .kind = OPTION_SWITCH,
+                      .help = "parallel projection, the same framing"},
+
+    INPUT_OPTIONS(RENDER_ARRAY, "Volume files"),
+    [RENDER_CHANNEL] = {.name = "channel",
+                        .kind = OPTION_TEXT,
+                        .argument = "N|N,N|all",
+                        .help = "of several channels this one, from 0 (default: 0);\nseveral, or all, share "
+                                "a picture, each in a "
+                                "colour\nof its own: the file's, or green, magenta, ..."},
+    [RENDER_SPACING] = INPUT_OPTION_SPACING,
+    [RENDER_SMOOTH] =
+        {.name = "smooth",
+         .kind = OPTION_NUMBERS,
+         .argument = "SIGMA",
+         .help = "smooth the voxels by a Gaussian of so many voxels\nalong each axis; 0: not at all "
+                 "(default: 0.8 where\nbare brains or thick slices make stairs)",
+         .count = 1,
+         .low = 0,
+         .high = 16},
+
+    [RENDER_LOOK] =
+        {.name = "look",
+         .kind = OPTION_CHOICE,
+         .group = "Look (of every volume)",
+         .help = "auto, surface, translucent, xray, smoke or vessels,\nwhich 'halflight looks' shows; or "
+                 "mip: the greatest\nvalue along each ray (default auto: chosen from the\ndata)"},
+    [RENDER_TF] =
+        {.name = "tf",
+         .kind = OPTION_TEXT,
+         .argument = "[NAME=]FILE|PRESET",
+         .help = "transfer function: a JSON file (Halflight's, a\nscene's first, ParaView's; or its .pvsm), "
+                 "Slicer's\n(.vp.json, .vp, presets.xml:NAME) or a preset, see\n'halflight help presets'; of "
+                 "volume "
+                 "NAME alone (again\nfor others; default: chosen from the data)",
+         .repeatable = true},
+    [RENDER_COLORMAP] =
+        {.name = "colormap",
+         .kind = OPTION_TEXT,
+         .argument = "[NAME=]MAP|COLOR",
+         .help = "colours over the values that are seen, see\n'halflight help colormaps'; or one colour (of a"
+                 "\nmaximum projection from black to it), as\n#rrggbb or a CSS name; NAME as for --tf",
+         .repeatable = true},
+    [RENDER_RANGE] = {.name = "range",
+                      .kind = OPTION_NUMBERS,
+                      .argument = "LO,HI",
+                      .help = "values that opacity and colours spread over; or\npercentiles of the data "
+                              "(1%,99.5%)",
+                      .count = 2,
+                      .separator = ',',
+                      .percent = true,
+                      .low = -INFINITY,
+                      .high = INFINITY},
+    [RENDER_RANGE_SCALE] = {.name = "range-scale",
+                            .kind = OPTION_CHOICE,
+                            .help =
+                                "they spread over --range evenly, or evenly over\nthe values' logarithms"},
+    [RENDER_RANGE_OF_ALL] = {.name = "range-of-all",
+                             .kind = OPTION_SWITCH,
+                             .help =
+                                 "of a series of files: as --range with the least and\ngreatest value of all "
+                                 "(default: the first file's look)"},
+    [RENDER_THRESHOLD] = {.name = "threshold",
+                          .kind = OPTION_NUMBERS,
+                          .argument = "V",
+                          .help = "opaque from the value V on, clear below",
+                          .count = 1,
+                          .low = -INFINITY,
+                          .high = INFINITY},
+    [RENDER_ISO] = {.name = "iso",
+                    .kind = OPTION_TEXT,
+                    .argument = "[NAME=]VALUE[:COLOR[:OPACITY]]",
+                    .help = "the surface on which the volume has this value, in\nplace of the transfer "
+                            "function (beside it with "
+                            "--tf\nor --look); again for more (--iso 80:skyblue:0.3)",
+                    .repeatable = true},
+    [RENDER_CLIP] =
+        {.name = "clip",
+         .kind = OPTION_TEXT,
+         .argument = "AXIS=LO:HI",
+         .help = "keep a part along x, y or z: fractions\n(x=0:0.5), or the file's own units (x=10mm:40mm);\n"
+                 "again for other axes",
+         .repeatable = true},
+    [RENDER_CUT_PLANE] = {.name = "cut-plane",
+                          .kind = OPTION_TEXT,
+                          .argument = "X,Y,Z:NX,NY,NZ",
+                          .help = "cut away what lies beyond a plane through a point\n(fractions, or the "
+                                  "file's own units), in a direction;\nagain for more",
+                          .repeatable = true},
+    [RENDER_CUT_BOX] = {.name = "cut-box",
+                        .kind = OPTION_TEXT,
+                        .argument = "AXIS=LO:HI,...",
+                        .help = "cut a box out (x=0.5:,y=:0.5,z=0.5: is an octant);\nagain for more",
+                        .repeatable = true},
+    [RENDER_CUT_SPHERE] = {.name = "cut-sphere",
+                           .kind = OPTION_TEXT,
+                           .argument = "X,Y,Z:RADIUS",
+                           .help = "cut a sphere out (0.5,0.5,1:0.3); again for more",
+                           .repeatable = true},
+    [RENDER_CUT_SHADING] =
+        {.name = "cut-shading",
+         .kind = OPTION_CHOICE,
+         .help = "how surfaces at the faces of cuts and --clip are lit:\nby the face, by the data's "
+                 "gradient, or as a medium",
+         .setting_kind = HL_SETTINGS_VOLUME,
+         .setting = "cut_shading"},
+    [RENDER_CUT_CASTS_SHADOW] = {.name = "cut-casts-shadow",
+                                 .kind = OPTION_SWITCH,
+                                 .help = "what is cut away goes on casting its shadow"},
+    [RENDER_WHOLE] = {.name = "whole",
+                      .kind = OPTION_SWITCH,
+                      .help = "of a bare volume all: with tables, head rests and\ntowels beside a scanned "
+                              "object, which are cut away\notherwise"},
+    [RENDER_SHADING] = {.name = "shading",
+                        .kind = OPTION_CHOICE,
+                        .help = "surfaces, a medium such as smoke, or the\ncolours themselves without light "
+                                "(default phong;\nof smoke none)",
+                        .setting_kind = HL_SETTINGS_VOLUME,
+                        .setting = "shading"},
+    [RENDER_SCATTERING] = {.name = "scattering",
+                           .kind = OPTION_COLOR,
+                           .argument = "ALBEDO",
+                           .help =
+                               "media scatter light again and again, as clouds and\nwax do, and keep this "
+                               "fraction of it each time: 0.9,\nor R,G,B",
+                           .setting_kind = HL_SETTINGS_VOLUME,
+                           .setting = "scattering/albedo"},
+    [RENDER_FLOOR] =
+        {.name = "floor",
+         .kind = OPTION_SWITCH,
+         .help =
+             "a floor below what is seen, three times as wide,\nwhich receives its shadow and is not cut"},
+
+    [RENDER_LABELS] = {.name = "labels",
+                       .kind = OPTION_TEXT,
+                       .argument = "FILE",
+                       .group = "Label maps",
+                       .help =
+                           "a label map or segmentation (.seg.nrrd, NIfTI, ...)\nin the same world: smooth "
+                           "surfaces in colours"},
+    [RENDER_MASK] =
+        {.name = "mask",
+         .kind = OPTION_TEXT,
+         .argument = "FILE",
+         .help = "a label map that reveals, colours and fades the\nvolumes within its labels: those of "
+                 "--show, or all"},
+    [RENDER_LABEL_TABLE] = {.name = "label-table",
+                            .kind = OPTION_TEXT,
+                            .argument = "FILE",
+                            .help =
+                                "names and colours of labels: FreeSurfer's, Slicer's\nor ITK-SNAP's table, "
+                                "or CSV"},
+    [RENDER_SHOW] = {.name = "show",
+                     .kind = OPTION_TEXT,
+                     .argument = "LABEL[=COLOR][:OPACITY],...",
+                     .help = "labels to show, by name or number, or all:\nliver,tumour=red:0.5; with --mask "
+                             "also rest:0.1;\nwithout "
+                             "either INPUT is the label map",
+                     .repeatable = true},
+
+    [RENDER_AMBIENT] = {.name = "ambient",
+                        .kind = OPTION_COLOR,
+                        .argument = "COLOR",
+                        .group = "Light and shadows",
+                        .help = "light from everywhere: a number for grey, linear\nR,G,B, #rrggbb or a CSS "
+                                "name (default 0.2; of bare\nvolumes chosen)",
+                        .setting_kind = HL_SETTINGS_SCENE,
+                        .setting = "ambient"},
+    [RENDER_SKY] =
+        {.name = "sky",
+         .kind = OPTION_TEXT,
+         .argument = "SKY",
+         .help = "light from all directions, which folds and\nhollows get less of: a colour, a "
+                 "gradient\nZENITH:HORIZON[:GROUND], or an image's file\n(.exr, .hdr, .png, .npy); 0: none",
+         .setting_kind = HL_SETTINGS_SKY,
+         .setting = "color"},
+    [RENDER_LIGHT_RIG] = {.name = "light-rig",
+                          .kind = OPTION_CHOICE,
+                          .help = "lights that go with the camera, and a sky, in place\nof the scene's"},
+    [RENDER_LIGHT] = {.name = "light",
+                      .kind = OPTION_NUMBERS,
+                      .argument = "AZ,EL",
+                      .help = "direction of the first light, seen from the\ncamera: 0,0 is a headlight, "
+                              "-40,40 upper left\n(default -40,45)",
+                      .count = 2,
+                      .separator = ',',
+                      .low = -360,
+                      .high = 360},
+    [RENDER_LIGHT_SIZE] = {.name = "light-size",
+                           .kind = OPTION_NUMBERS,
+                           .argument = "DEG",
+                           .help = "angular diameter of the first light; 0 is hard\n(default 7; with --light "
+                                   "in a scene that has no\nlight 0)",
+                           .count = 1,
+                           .setting_kind = HL_SETTINGS_LIGHT,
+                           .setting = "angular_diameter_deg"},
+    [RENDER_SHADOWS] = {.name = "shadows",
+                        .kind = OPTION_CHOICE,
+                        .help = "of all lights that cast any (default soft)",
+                        .setting_kind = HL_SETTINGS_RENDER,
+                        .setting = "shadows"},
+    [RENDER_SOFT_METHOD] = {.name = "soft-method",
+                            .kind = OPTION_CHOICE,
+                            .help = "how soft shadows are made (default cascade)",
+                            .setting_kind = HL_SETTINGS_RENDER,
+                            .setting = "soft_method"},
+    [RENDER_LIGHT_SAMPLES] = {.name = "light-samples",
+                              .kind = OPTION_NUMBERS,
+                              .argument = "M",
+                              .help = "sublights: M x M parts of each light (default 4)",
+                              .count = 1,
+                              .whole = true,
+                              .setting_kind = HL_SETTINGS_RENDER,
+                              .setting = "light_samples"},
+    [RENDER_SHADOW_RESOLUTION] = {.name = "shadow-resolution",
+                                  .kind = OPTION_NUMBERS,
+                                  .argument = "N|auto",
+                                  .help = "longer side of the shadow buffer, in pixels\n(default auto: as "
+                                          "fine as the volumes and the\npicture want)",
+                                  .count = 1,
+                                  .whole = true,
+                                  .setting_kind = HL_SETTINGS_RENDER,
+                                  .setting = "shadow_resolution"},
+    [RENDER_SHADOW_LOOKUP] = {.name = "shadow-lookup",
+                              .kind = OPTION_CHOICE,
+                              .help = "how the shadow buffer is read (default auto: cubic\nor bilinear)",
+                              .setting_kind = HL_SETTINGS_RENDER,
+                              .setting = "shadow_lookup"},
+
+    [RENDER_SHEET_SPACING] =
+        {.name = "sheet-spacing",
+         .kind = OPTION_NUMBERS,
+         .argument = "VOXELS",
+         .group = "Sheets",
+         .help =
+             "distance of sheets in smallest voxel edges\n(default 0.5; of bare volumes 0.125 to 1, chosen)",
+         .count = 1,
+         .setting_kind = HL_SETTINGS_RENDER,
+         .setting = "sheet_spacing"},
+    [RENDER_KERNEL] =
+        {.name = "kernel",
+         .kind = OPTION_CHOICE,
+         .help = "of each voxel (default bspline; of bare label maps\ndrawn by their numbers linear)",
+         .setting_kind = HL_SETTINGS_RENDER,
+         .setting = "kernel"},
+    [RENDER_RECONSTRUCTION] =
+        {.name = "reconstruction",
+         .kind = OPTION_CHOICE,
+         .help = "push footprints, or pull samples: the same\npicture to rounding (default auto)",
+         .setting_kind = HL_SETTINGS_RENDER,
+         .setting = "reconstruction"},
+    [RENDER_SLICING] = {.name = "slicing",
+                        .kind = OPTION_CHOICE,
+                        .help = "direction of the sheets (default half-vector)",
+                        .setting_kind = HL_SETTINGS_RENDER,
+                        .setting = "slicing"},
+
+    [RENDER_REFERENCE] = {.name = "reference",
+                          .kind = OPTION_SWITCH,
+                          .group = "Reference",
+                          .help = "march rays instead: exact, and very slow"},
+    [RENDER_LIGHT_POINTS] = {.name = "light-points",
+                             .kind = OPTION_NUMBERS,
+                             .argument = "N",
+                             .help = "its points on each extended light (default 1024)",
+                             .count = 1,
+                             .whole = true,
+                             .low = 1,
+                             .high = 1000000},
+    [RENDER_STEP] = {.name = "step",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "VOXELS",
+                     .help = "its step in smallest voxel edges (default 0.25)",
+                     .count = 1,
+                     .low = 0.001,
+                     .high = 10},
+    [RENDER_PATHS] = {.name = "paths",
+                      .kind = OPTION_NUMBERS,
+                      .argument = "N",
+                      .help = "its paths a pixel, of light that media scatter\nagain (default 64)",
+                      .count = 1,
+                      .whole = true,
+                      .low = 1,
+                      .high = 1 << 24},
+    [RENDER_RAYS] = {.name = "rays",
+                     .kind = OPTION_NUMBERS,
+                     .argument = "N",
+                     .help =
+                         "its N x N rays through each pixel, at most 8 x 8 (default:\nas many as the sheets "
+                         "average)",
+                     .count = 1,
+                     .whole = true,
+                     .low = 1,
+                     .high = 8},
+
+    [RENDER_DATA] = HOST_OPTION_DATA("Running"),
+    [RENDER_PART] = FRAMES_OPTION_PART(
+        NULL,
+        "of a series of files: every N-th one, from the K-th on,\nso that N runs "
+        "share the work"),
+    [RENDER_RANKS] = FRAMES_OPTION_RANKS,
+    [RENDER_STRIPS] = {.name = "strips-over-ranks",
+                       .kind = OPTION_SWITCH,
+                       .help = "under mpirun: its processes make one picture together,\neach a part of it"},
+    [RENDER_VOLUME] = {.name = "volume-over-ranks",
+                       .kind = OPTION_SWITCH,
+                       .help =
+                           "and each reads and holds its own slices of the\nvolumes, and asks the others for "
+                           "theirs; up to\n--max-memory of them is kept"},
+    [RENDER_THREADS] = HOST_OPTION_THREADS(NULL),
+    [RENDER_INSTRUCTION_SET] =
+        {.name = "instruction-set",
+         .kind = OPTION_CHOICE,
+         .choices = instruction_set_choices,
+         .help = "any gives the same picture (default auto: the\nfastest that the processor has)"},
+    [RENDER_DEVICE] = HOST_OPTION_DEVICE,
+    [RENDER_MAX_MEMORY] = HOST_OPTION_MAX_MEMORY(NULL),
+    [RENDER_PRINT_SCENE] =
+        {.name = "print-scene",
+         .kind = OPTION_SWITCH,
+         .help = "the scene on standard output, no picture: a\nscene file that gives the same bytes"},
+    [RENDER_PRINT_PLAN] = {.name = "print-plan",
+                           .kind = OPTION_SWITCH,
+                           .help = "the frame's plan as JSON on standard output, no\npicture: sheets, "
+                                   "sweeps, lights and their buffers"},
+    [RENDER_JSON] = {.name = "json", .kind = OPTION_SWITCH, .help = "statistics on standard output"},
+    [RENDER_QUIET] = {.name = "quiet", .kind = OPTION_SWITCH, .help = "nothing on standard error but errors"},
+};
+
+/* Exposure, tone and depth are for pictures on a screen. */
+static int check_linear_output(const cli_value *values, bool named) {
+  static const int of_png[] = {RENDER_EXPOSURE, RENDER_TONE, RENDER_DEPTH};
+  const cli_value *output = &values[RENDER_OUTPUT], *format = &values[RENDER_FORMAT];
+  for (size_t n = 0; n < sizeof of_png / sizeof *of_png; n++) {
+    const char *name = render_options[of_png[n]].name;
+    if (!values[of_png[n]].given) continue;
+    if (named && (has_extension(output->text, ".exr") || has_extension(output->text, ".npy")))
+      return fail(EXIT_CODE_USAGE,
+                  "--%s is for .png pictures, not for '%s': .exr and .npy hold linear light as it is", name,
+                  output->text);
+    if (format->given && (format->choice == 1 || format->choice == 2))
+      return fail(EXIT_CODE_USAGE, "--%s is for .png pictures: %s holds linear light as it is", name,
+                  format->text);
+  }
+  return EXIT_CODE_OK;
+}
+
+int render_check_options(const cli_value *values) {
+  const cli_value *output = &values[RENDER_OUTPUT], *format = &values[RENDER_FORMAT];
+  bool named = output->given && strcmp(output->text, "-") != 0;
+  static const int pictures[] = {RENDER_OUTPUT, RENDER_FORMAT,    RENDER_DEPTH, RENDER_NO_METADATA,
+                                 RENDER_LAYERS, RENDER_REFERENCE, RENDER_JSON};
+  const int printed = values[RENDER_PRINT_SCENE].given ? RENDER_PRINT_SCENE : RENDER_PRINT_PLAN;
+  if (values[RENDER_PRINT_SCENE].given && values[RENDER_PRINT_PLAN].given)
+    return fail(EXIT_CODE_USAGE, "--print-scene and --print-plan: standard output takes one of them");
+  for (size_t n = 0; values[printed].given && n < sizeof pictures / sizeof *pictures; n++)
+    if (values[pictures[n]].given)
+      return fail(EXIT_CODE_USAGE, "--%s makes no picture: remove --%s", render_options[printed].name,
+                  render_options[pictures[n]].name);
+  static const int alone[] = {RENDER_LAYERS, RENDER_REFERENCE, RENDER_PRINT_SCENE, RENDER_PRINT_PLAN};
+  int over_ranks = values[RENDER_VOLUME].given ? RENDER_VOLUME : RENDER_STRIPS;
+  for (size_t n = 0; values[over_ranks].given && n < sizeof alone / sizeof *alone; n++)
+    if (values[alone[n]].given)
+      return fail(EXIT_CODE_USAGE, "--%s shares a picture by sheets: remove --%s",
+                  render_options[over_ranks].name, render_options[alone[n]].name);
+  int channels[HL_CHANNELS_MOST];
+  size_t channel_count;
+  int exit_code = render_channels(values, channels, &channel_count);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_check_scene_options(values);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  exit_code = check_linear_output(values, named);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  exit_code = render_overlay_check_options(values, named           ? output->text
+                                                   : format->given ? format_extensions[format->choice]
+                                                                   : ".png");
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  for (int which = RENDER_LIGHT_POINTS; which <= RENDER_RAYS; which++)
+    if (values[which].given && !values[RENDER_REFERENCE].given)
+      return fail(EXIT_CODE_USAGE, "--%s is for --reference: give both or none", render_options[which].name);
+  return render_layers_check(values);
+}

@@ -1,0 +1,343 @@
+/* cli/render/render.c - `halflight render INPUT`: loads a scene, changes it by the options, renders it,
+ * writes the picture and reports. */
+#define _GNU_SOURCE
+#include "render.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/input.h"
+#include "cli/output.h"
+#include "cli/ranks.h"
+
+/* One run, from INPUT to OUT. */
+typedef struct render_job {
+  cli_host host;
+  cli_value values[RENDER_OPTION_COUNT]; /* --size is set by --width */
+  char size_text[RENDER_SIZE_TEXT];      /* of that --size */
+  char **inputs;                         /* [input_count], null after the last */
+  int input_count;
+  char *input;          /* the first */
+  char *output;         /* owned */
+  bool to_stdout;       /* OUT is "-" */
+  bool bare;            /* INPUT is a volume file */
+  hl_scene *scene;      /* owned */
+  hl_image *image;      /* owned */
+  render_layers layers; /* owned */
+  cli_overlay overlay;  /* owned */
+  hl_ranks *ranks;      /* owned; of --strips-over-ranks and --volume-over-ranks; null: alone */
+  double started;       /* seconds of clock_seconds() */
+  render_result result;
+} render_job;
+
+static const char *const format_names[] = {"png", "exr", "npy", "tif", "pdf", "svg"};
+
+/* The extension that --format asks for; .png without it. */
+static const char *wanted_extension(const cli_value *values) {
+  static const char *const extensions[] = {".png", ".exr", ".npy", ".tif", ".pdf", ".svg"};
+  return extensions[values[RENDER_FORMAT].given ? values[RENDER_FORMAT].choice : 0];
+}
+
+/* The name that the picture's name is made from: INPUT's, or "stdin" and "pipe" for pipes. */
+static const char *nameable(const char *input) {
+  if (strcmp(input, "-") == 0) return "stdin";
+  return strncmp(input, "/dev/fd/", 8) == 0 ? "pipe" : input;
+}
+
+/* Whether a text is printed and no picture is made. */
+static bool prints_text(const cli_value *values) {
+  return values[RENDER_PRINT_SCENE].given || values[RENDER_PRINT_PLAN].given;
+}
+
+/* INPUT's name with the format's extension. Where INPUT is NAME.png itself, "NAME-again.png". */
+static char *default_output(const render_job *job) {
+  const char *extension = wanted_extension(job->values);
+  bool again = has_extension(job->input, ".png") && strcmp(extension, ".png") == 0;
+  return output_default_name(nameable(job->input), again ? "-again.png" : extension);
+}
+
+/* Decides where the picture goes: --output, or a name made from INPUT's. */
+static int choose_output(render_job *job) {
+  const cli_value *values = job->values, *output = &values[RENDER_OUTPUT];
+  job->to_stdout = output->given && strcmp(output->text, "-") == 0;
+  job->output = output->given ? strdup(output->text) : default_output(job);
+  if (job->output == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  if (prints_text(values)) return EXIT_CODE_OK;
+  if (job->to_stdout && isatty(STDOUT_FILENO))
+    return fail(EXIT_CODE_USAGE,
+                "--output: standard output is a terminal, which shows no picture: redirect it");
+  if (job->to_stdout && values[RENDER_JSON].given)
+    return fail(EXIT_CODE_USAGE,
+                "--json: standard output is the picture's: give --output a name, or leave --json out");
+  if (job->to_stdout) return EXIT_CODE_OK;
+  if (values[RENDER_FORMAT].given && !has_extension(job->output, wanted_extension(values)))
+    return fail(EXIT_CODE_USAGE, "--format %s: '%s' does not end in %s: rename OUT, or leave --format out",
+                values[RENDER_FORMAT].text, job->output, wanted_extension(values));
+  return output_check(job->output, figure_extensions, job->inputs, job->input_count);
+}
+
+static int job_open(render_job *job) {
+  const cli_value *values = job->values;
+  int exit_code = render_check_options(values);
+  if (exit_code == EXIT_CODE_OK) exit_code = choose_output(job);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_overlay_read(values, &job->overlay);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  cli_host_options options = {.quiet = values[RENDER_QUIET].given,
+                              .progress = true,
+                              .subject = base_name(job->input),
+                              .memory_limit = values[RENDER_MAX_MEMORY].bytes,
+                              .data_folder = values[RENDER_DATA].text,
+                              .device = values[RENDER_DEVICE].text,
+                              .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice,
+                              .mpi = launcher_mpi()};
+  exit_code = host_open(&options, &job->host);
+  int over_ranks = values[RENDER_VOLUME].given ? RENDER_VOLUME : RENDER_STRIPS;
+  if (exit_code == EXIT_CODE_OK && values[over_ranks].given)
+    exit_code = ranks_begin(&job->host, render_options[over_ranks].name, &job->ranks);
+  if (exit_code == EXIT_CODE_OK && values[RENDER_VOLUME].given) hl_ranks_hold_volumes(job->ranks);
+  return exit_code;
+}
+
+/* Refuses to write over a file that the scene needs. */
+static int protect_what_was_read(const render_job *job) {
+  if (job->to_stdout || prints_text(job->values)) return EXIT_CODE_OK;
+  int exit_code = read_files_protect(&job->host.read, job->output, job->input);
+  if (exit_code != EXIT_CODE_OK || !job->values[RENDER_LAYERS].given) return exit_code;
+  return render_layers_protect(&job->host, job->output, hl_scene_describe(job->scene)->light_count,
+                               job->input);
+}
+
+static int job_load(render_job *job) {
+  render_overlay_set_size(job->values, NULL, job->size_text);
+  int exit_code = render_load_inputs(&job->host, job->values, job->inputs, &job->bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK) render_overlay_set_size(job->values, job->scene, job->size_text);
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = render_change_scene(&job->host, job->values, job->bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK) exit_code = protect_what_was_read(job);
+  hl_error error = {0};
+  hl_status status = exit_code == EXIT_CODE_OK && !prints_text(job->values)
+                         ? overlay_check_scene(job->host.context, &job->overlay, job->scene, &error)
+                         : HL_OK;
+  if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_CHANGE, status, &error);
+  job->result.seconds.load = clock_seconds() - job->started;
+  return exit_code;
+}
+
+static uint64_t count_voxels(const hl_scene_description *description) {
+  uint64_t voxels = 0;
+  for (size_t i = 0; i < description->volume_count; i++) {
+    hl_volume_info info = {.struct_size = sizeof info};
+    if (hl_volume_get_info(description->volumes[i].volume, &info) == HL_OK)
+      voxels += (uint64_t)info.dimensions[0] * info.dimensions[1] * info.dimensions[2];
+  }
+  return voxels;
+}
+
+/* The layers to render; null: none. */
+static const hl_layers *wanted_layers(const render_job *job) {
+  return job->values[RENDER_LAYERS].given ? &job->layers.all : NULL;
+}
+
+static hl_status render_reference(render_job *job, const hl_scene_description *description, hl_error *error) {
+  const cli_value *values = job->values;
+  hl_render_statistics *statistics = &job->result.statistics;
+  hl_reference_options options;
+  hl_reference_options_defaults(&options);
+  if (values[RENDER_PATHS].given) options.paths = (int)values[RENDER_PATHS].number[0];
+  if (values[RENDER_LIGHT_POINTS].given) options.light_points = (int)values[RENDER_LIGHT_POINTS].number[0];
+  if (values[RENDER_STEP].given) options.step = values[RENDER_STEP].number[0];
+  options.threads = description->render.threads;
+  options.rays = values[RENDER_RAYS].given ? (int)values[RENDER_RAYS].number[0] : 0;
+  double started = clock_seconds();
+  hl_status status = hl_reference_render_layers(job->host.context, job->scene, &options,
+                                                hl_image_pixels(job->image), 4 * (size_t)description->width,
+                                                wanted_layers(job), error);
+  statistics->seconds_render = clock_seconds() - started;
+  statistics->threads = options.threads > 0 ? options.threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
+  statistics->instruction_set = HL_INSTRUCTION_SET_SCALAR;
+  snprintf(statistics->device, sizeof statistics->device, "cpu");
+  statistics->voxels_total = statistics->voxels_kept = count_voxels(description);
+  return status;
+}
+
+static hl_status render_sheets(render_job *job, const hl_scene_description *description, hl_error *error) {
+  hl_renderer *renderer = NULL;
+  hl_status status = hl_renderer_create(job->host.context, &renderer, error);
+  if (status == HL_OK) status = hl_renderer_share_over_ranks(renderer, job->ranks, error);
+  if (status == HL_OK)
+    status = hl_renderer_render_layers(renderer, job->scene, hl_image_pixels(job->image),
+                                       4 * (size_t)description->width, wanted_layers(job),
+                                       &job->result.statistics, error);
+  hl_renderer_destroy(renderer);
+  return status;
+}
+
+static int job_render(render_job *job) {
+  const hl_scene_description *description = hl_scene_describe(job->scene);
+  hl_error error = {0};
+  job->result.statistics.struct_size = sizeof job->result.statistics;
+  hl_status status = hl_image_create(job->host.context, description->width, description->height, &job->image,
+                                     &error);
+  if (status == HL_OK && job->values[RENDER_LAYERS].given)
+    status = render_layers_create(job->image, description, &job->layers, &error);
+  if (status == HL_OK)
+    status = job->result.reference ? render_reference(job, description, &error)
+                                   : render_sheets(job, description, &error);
+  job->result.description = description;
+  job->result.ranks = job->ranks;
+  job->result.seconds.prepare = job->result.statistics.seconds_prepare;
+  job->result.seconds.render = job->result.statistics.seconds_render;
+  render_name_scene(job->input, job->bare, &error);
+  if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
+  hl_ranks_sum(job->ranks, hl_image_pixels(job->image),
+               4 * (size_t)description->width * (size_t)description->height);
+  if (job->ranks != NULL)
+    status = hl_scene_show_sky(job->scene, hl_image_pixels(job->image), 4 * (size_t)description->width,
+                               &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_RUN, status, &error);
+}
+
+static hl_status write_to_stdout(render_job *job, hl_image_write_options *options, int *exit_code,
+                                 hl_error *error) {
+  unsigned char *bytes = NULL;
+  size_t length = 0;
+  const char *format = format_names[job->values[RENDER_FORMAT].given ? job->values[RENDER_FORMAT].choice : 0];
+  hl_status status = overlay_encode(job->host.context, &job->overlay, job->image, job->scene, format, options,
+                                    &bytes, &length, error);
+  host_clear_bar(&job->host);
+  if (status == HL_OK) *exit_code = output_to_stdout(bytes, length);
+  hl_bytes_release(job->host.context, bytes);
+  return status;
+}
+
+static hl_status describe_frame(const render_job *job, char **text, hl_error *error) {
+  hl_renderer *renderer = NULL;
+  hl_status status = hl_renderer_create(job->host.context, &renderer, error);
+  if (status == HL_OK) status = hl_renderer_plan(renderer, job->scene, text, error);
+  hl_renderer_destroy(renderer);
+  return status;
+}
+
+/* --print-scene, --print-plan: prints the scene that would be rendered, or the plan of its frame. */
+static int job_print(render_job *job) {
+  char *text = NULL;
+  hl_error error = {0};
+  hl_status status = job->values[RENDER_PRINT_PLAN].given
+                         ? describe_frame(job, &text, &error)
+                         : hl_scene_to_json(job->host.context, job->scene, &text, &error);
+  if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
+  host_clear_bar(&job->host);
+  int exit_code = output_to_stdout((const unsigned char *)text, strlen(text));
+  hl_text_release(job->host.context, text);
+  return exit_code;
+}
+
+static int job_write(render_job *job) {
+  double started = clock_seconds();
+  hl_error error = {0};
+  char *scene_json = NULL;
+  int exit_code = EXIT_CODE_OK;
+  hl_status status = host_interrupted() ? HL_ERROR_CANCELLED : HL_OK;
+  if (status == HL_OK && !job->values[RENDER_NO_METADATA].given)
+    status = job->to_stdout
+                 ? hl_scene_to_json(job->host.context, job->scene, &scene_json, &error)
+                 : output_scene_text(job->host.context, job->scene, job->output, &scene_json, &error);
+  if (status == HL_OK) {
+    hl_image_write_options options;
+    hl_scene_write_options(job->scene, &options);
+    if (job->values[RENDER_DEPTH].given) options.png_depth = job->values[RENDER_DEPTH].choice;
+    options.scene_json = scene_json;
+    status = job->to_stdout ? write_to_stdout(job, &options, &exit_code, &error)
+                            : overlay_write(job->host.context, &job->overlay, job->image, job->scene,
+                                            job->output, &options, &error);
+  }
+  hl_text_release(job->host.context, scene_json);
+  job->result.seconds.write = clock_seconds() - started;
+  return status == HL_OK ? exit_code : host_fail(&job->host, PHASE_RUN, status, &error);
+}
+
+/* Finds out, for the report, which kind of data a bare volume was taken for; only if its transfer function
+ * was chosen by this kind. */
+static void find_choice(render_job *job) {
+  const hl_scene_description *description = job->result.description;
+  bool wanted = job->values[RENDER_JSON].given || (!job->host.quiet && isatty(STDERR_FILENO));
+  if (!job->bare || description->volume_count == 0 || job->values[RENDER_TF].given ||
+      render_is_label_map(job->values) ||
+      (job->values[RENDER_LOOK].given && render_look_name(job->values) == NULL) || !wanted)
+    return;
+  if (hl_volume_guess(description->volumes[0].volume, job->input, &job->result.taken_for, NULL) != HL_OK)
+    job->result.taken_for = NULL;
+}
+
+static int job_report(render_job *job) {
+  host_clear_bar(&job->host);
+  job->result.output = job->to_stdout ? "standard output" : job->output;
+  job->result.seconds.total = clock_seconds() - job->started;
+  find_choice(job);
+  if (job->values[RENDER_JSON].given) return render_print_json(&job->result);
+  if (!job->host.quiet) render_print_summary(&job->result);
+  return EXIT_CODE_OK;
+}
+
+static void job_close(render_job *job, int exit_code) {
+  ranks_check(job->ranks, exit_code);
+  overlay_release(&job->overlay);
+  render_layers_release(&job->layers);
+  hl_image_destroy(job->image);
+  hl_scene_release(job->scene);
+  hl_ranks_leave(job->ranks);
+  host_close(&job->host);
+  free(job->output);
+}
+
+static int render_one(const cli_value *values, char **operands) {
+  if (values[RENDER_VIEWS].given && !render_is_series(values, operands))
+    return render_views(values, operands);
+  if (render_is_series(values, operands)) {
+    if (!values[RENDER_STRIPS].given && !values[RENDER_VOLUME].given) return render_series(values, operands);
+    return fail(EXIT_CODE_USAGE,
+                "--%s makes one picture: of several share the pictures by --frames-over-ranks",
+                render_options[values[RENDER_STRIPS].given ? RENDER_STRIPS : RENDER_VOLUME].name);
+  }
+  render_job job = {.inputs = operands, .input = operands[0], .started = clock_seconds()};
+  memcpy(job.values, values, sizeof job.values);
+  while (operands[job.input_count] != NULL) job.input_count++;
+  job.result.input = job.input;
+  job.result.reference = values[RENDER_REFERENCE].given;
+  int exit_code = job_open(&job);
+  if (exit_code == EXIT_CODE_OK) exit_code = job_load(&job);
+  bool picture = !prints_text(values);
+  if (exit_code == EXIT_CODE_OK && !picture) exit_code = job_print(&job);
+  if (exit_code == EXIT_CODE_OK && picture) exit_code = job_render(&job);
+  picture = picture && hl_ranks_rank(job.ranks) == 0;
+  if (exit_code == EXIT_CODE_OK && picture) exit_code = job_write(&job);
+  if (exit_code == EXIT_CODE_OK && picture) exit_code = job_report(&job);
+  job_close(&job, exit_code);
+  return exit_code;
+}
+
+static int run_render(const cli_value *values, char **operands) {
+  if (render_are_scenes(operands)) return render_scenes(values, operands, render_one);
+  return render_one(values, operands);
+}
+
+const cli_command render_command = {
+    .name = "render",
+    .operands = "INPUT ...",
+    .operand_count = 1,
+    .operand_most = MAXIMUM_OPERANDS,
+    .summary = "render a scene (.json) or volume files to a picture",
+    .description =
+        "Renders INPUT, a scene (.json), a .png with a scene in it, or volume files (NRRD, MetaImage,\n"
+        "NIfTI, VTK, NumPy, MRC, TIFF, raw), together where there are several; '-' is standard input.\n"
+        "Meshes (PLY, STL, OBJ, glTF, VTK PolyData) are added to them, or are the picture alone.\n"
+        "A volume needs no options: the camera frames it, the transfer function comes from its\n"
+        "histogram, and a key light from the upper left casts soft shadows. Options override\n"
+        "what the scene says; a default holds where neither says anything.",
+    .options = render_options,
+    .option_count = RENDER_OPTION_COUNT,
+    .run = run_render,
+};

@@ -1,0 +1,235 @@
+/* cli/render/render.h - shared by the files of `halflight render`. */
+#ifndef HL_CLI_RENDER_RENDER_H
+#define HL_CLI_RENDER_RENDER_H
+
+#include "cli/host.h"
+#include "cli/options.h"
+#include "cli/overlay.h"
+
+enum render_option {
+  RENDER_OUTPUT,
+  RENDER_FORMAT,
+  RENDER_SIZE,
+  RENDER_DEPTH,
+  RENDER_NO_METADATA,
+  RENDER_BACKGROUND,
+  RENDER_EXPOSURE,
+  RENDER_TONE,
+  RENDER_LAYERS,
+  RENDER_WIDTH,
+  RENDER_DPI,
+  RENDER_SCALE_BAR,
+  RENDER_UNIT,
+  RENDER_LEGEND,
+  RENDER_AXES,
+  RENDER_ANNOTATE,
+  RENDER_FONT_SIZE,
+  RENDER_VIEW,
+  RENDER_VIEWS,
+  RENDER_UP,
+  RENDER_AZIMUTH,
+  RENDER_ELEVATION,
+  RENDER_ROLL,
+  RENDER_ZOOM,
+  RENDER_FOVY,
+  RENDER_ORTHO,
+  RENDER_ARRAY,
+  RENDER_COMPONENT,
+  RENDER_SERIES,
+  RENDER_TIME,
+  RENDER_CHANNEL,
+  RENDER_LEVEL,
+  RENDER_SPACING,
+  RENDER_SMOOTH,
+  RENDER_LOOK,
+  RENDER_TF,
+  RENDER_COLORMAP,
+  RENDER_RANGE,
+  RENDER_RANGE_SCALE,
+  RENDER_RANGE_OF_ALL,
+  RENDER_THRESHOLD,
+  RENDER_ISO,
+  RENDER_CLIP,
+  RENDER_CUT_PLANE,
+  RENDER_CUT_BOX,
+  RENDER_CUT_SPHERE,
+  RENDER_CUT_SHADING,
+  RENDER_CUT_CASTS_SHADOW,
+  RENDER_WHOLE,
+  RENDER_SHADING,
+  RENDER_SCATTERING,
+  RENDER_FLOOR,
+  RENDER_LABELS,
+  RENDER_MASK,
+  RENDER_LABEL_TABLE,
+  RENDER_SHOW,
+  RENDER_AMBIENT,
+  RENDER_SKY,
+  RENDER_LIGHT_RIG,
+  RENDER_LIGHT,
+  RENDER_LIGHT_SIZE,
+  RENDER_SHADOWS,
+  RENDER_SOFT_METHOD,
+  RENDER_LIGHT_SAMPLES,
+  RENDER_SHADOW_RESOLUTION,
+  RENDER_SHADOW_LOOKUP,
+  RENDER_SHEET_SPACING,
+  RENDER_KERNEL,
+  RENDER_RECONSTRUCTION,
+  RENDER_SLICING,
+  RENDER_REFERENCE,
+  RENDER_LIGHT_POINTS,
+  RENDER_STEP,
+  RENDER_PATHS,
+  RENDER_RAYS,
+  RENDER_DATA,
+  RENDER_PART,
+  RENDER_RANKS,
+  RENDER_STRIPS,
+  RENDER_VOLUME,
+  RENDER_THREADS,
+  RENDER_INSTRUCTION_SET,
+  RENDER_DEVICE,
+  RENDER_MAX_MEMORY,
+  RENDER_PRINT_SCENE,
+  RENDER_PRINT_PLAN,
+  RENDER_JSON,
+  RENDER_QUIET,
+  RENDER_OPTION_COUNT
+};
+
+enum { RENDER_SIZE_TEXT = 32 };
+
+/* Choices that another command has, too. */
+extern const cli_choice instruction_set_choices[];
+
+extern const cli_option render_options[RENDER_OPTION_COUNT];
+
+/* Whether the operands or the options ask for a picture of each of several files; makes these pictures. */
+bool render_is_series(const cli_value *values, char **operands);
+int render_series(const cli_value *values, char **operands);
+/* --views: pictures of several sides. */
+int render_views(const cli_value *values, char **operands);
+
+/* Whether the operand is a pattern of scenes' names, as 'fig*.json'. */
+bool render_are_scenes(char **operands);
+
+/* Makes the picture of one scene; returns the exit code. */
+typedef int render_one_fn(const cli_value *values, char **operands);
+
+/* Renders each scene that the pattern finds; returns the exit code. */
+int render_scenes(const cli_value *values, char **operands, render_one_fn *render_one);
+/* Whether one of the operands stands for several files. */
+bool render_has_pattern(char **operands);
+
+/* Refuses options that contradict each other. */
+int render_check_options(const cli_value *values);
+
+/* Parts operands into meshes, by their names, and others; both lists end with null. */
+void render_part_meshes(hl_context *context, char **operands, char **meshes, char **others);
+/* Loads one mesh, in the colour of the index-th; the caller releases mesh->mesh. */
+hl_status render_load_mesh(hl_context *context, const char *path, size_t index, hl_scene_mesh *mesh,
+                           hl_error *error);
+/* Adds meshes to a scene, in the colours from `first` on; *scene null: makes one for them. bare: the camera
+ * frames them too. */
+int render_add_meshes(cli_host *host, char *const *paths, size_t first, bool bare, hl_scene **scene);
+
+/* Whether the options say that a bare volume is a label map itself. */
+bool render_is_label_map(const cli_value *values);
+
+/* A scene of such a volume's layers, named by --label-table; of its labels those of --show show, and those of
+ * --show that it lacks are passed over. */
+hl_status render_load_label_map(cli_host *host, const cli_value *values, const char *path,
+                                const hl_volume_load_options *reading, hl_scene **scene, hl_error *error);
+
+/* Loads the volumes, or the scene, of operands that are no meshes: the first half of render_load_inputs(). */
+int render_load_volumes(cli_host *host, const cli_value *values, char **operands, bool *bare,
+                        hl_scene **scene);
+
+/* The channels that --channel names; *count: 0: all, or the option was not given. Refuses others. */
+int render_channels(const cli_value *values, int channels[HL_CHANNELS_MOST], size_t *count);
+
+/* Whether the options ask for more than one channel: "all" may be one, too. */
+bool render_has_channels(const cli_value *values);
+
+/* The reading of volumes that the options ask for. */
+void render_load_options(const cli_value *values, hl_volume_load_options *options);
+
+/* Loads the operands into one scene: a scene file, a picture that carries a scene, or one or more volumes,
+ * and meshes; *bare: they are volumes. Several volumes share one world, and each keeps its own look. They are
+ * named like their files without folder and extensions; "-2" and so on is appended to names that are taken.
+ * Returns the exit code. */
+int render_load_inputs(cli_host *host, const cli_value *values, char **operands, bool *bare,
+                       hl_scene **scene);
+
+/* Puts the input's name before an error that begins with a JSON pointer into the scene. */
+void render_name_scene(const char *input, bool bare, hl_error *error);
+
+/* Replaces *scene by one with the options applied (hl_scene_compose()). bare: the scene was made for volume
+ * files. Returns the exit code. */
+int render_change_scene(cli_host *host, const cli_value *values, bool bare, hl_scene **scene);
+
+/* Refuses options about the scene that contradict each other or cannot be read. */
+int render_check_scene_options(const cli_value *values);
+
+/* The library's look that --look asks for; null: none, or a maximum projection. */
+const char *render_look_name(const cli_value *values);
+
+/* The layers that --layers asks for; their buffers are owned by the picture. */
+typedef struct render_layers {
+  hl_layers all;
+  hl_light_layers *lights; /* owned */
+} render_layers;
+
+/* Adds the layers "ambient", "light0", "light0_shadow", ..., "depth_first", "depth_mean", "normal" and
+ * "object" to the picture, "emission" where a volume shines by itself, "sky" and "sky_shadow" where the scene
+ * has a sky. Call render_layers_release() even after a failure.
+ */
+hl_status render_layers_create(hl_image *image, const hl_scene_description *description,
+                               render_layers *layers, hl_error *error);
+void render_layers_release(render_layers *layers);
+
+/* Refuses an .npy OUT if one of its layers' files is a file that the run has read; input: what errors call
+ * the scene. */
+int render_layers_protect(const cli_host *host, const char *output, size_t light_count, const char *input);
+
+/* Refuses --layers for an OUT that cannot hold them. */
+int render_layers_check(const cli_value *values);
+
+/* Reads the options that draw over pictures. Call overlay_release() even after a failure. Returns the exit
+ * code. */
+int render_overlay_read(const cli_value *values, cli_overlay *overlay);
+
+/* Refuses such options if they contradict each other or the file that is written. path: the name of the file,
+ * or
+ * "-.png" and so on. */
+int render_overlay_check_options(const cli_value *values, const char *path);
+
+/* Sets --size to width x height, as if the user had typed it. text: the caller's room for the typed text, to
+ * which the value of --size points afterwards. */
+void render_set_size(cli_value *size, double width, double height, char text[RENDER_SIZE_TEXT]);
+
+/* Sets --size to what --width and --dpi ask for, if it is not given. The picture has the shape of this scene,
+ * or of a bare volume's picture (null). text: room for the text of --size, which the values borrow. */
+void render_overlay_set_size(cli_value *values, const hl_scene *scene, char text[RENDER_SIZE_TEXT]);
+
+typedef struct render_seconds {
+  double load, prepare, render, write, total;
+} render_seconds;
+
+/* The data of a report on a finished rendering. */
+typedef struct render_result {
+  const char *input, *output;
+  const char *taken_for; /* the kind of data that the transfer function was chosen for; null: not chosen */
+  bool reference;
+  const hl_scene_description *description;
+  hl_render_statistics statistics;
+  render_seconds seconds;
+  const hl_ranks *ranks; /* borrowed; the picture's; null: one process */
+} render_result;
+
+/* Prints the statistics as JSON on stdout, or in one line on stderr. */
+int render_print_json(const render_result *result);
+void render_print_summary(const render_result *result);
+
+#endif

@@ -1,0 +1,220 @@
+/* cli/render/series.c - `halflight render 'dump_*.vti' -o 'frames/%04d.png'`: a series of files, a picture of
+ * each.
+ *
+ * Look, camera and lights are those of the first file that can be read, and so are all other files that the
+ * options name (label maps, masks, meshes, skies): they are read with it, before the first picture. Files are
+ * in the order of the numbers in their names, and pictures are numbered from 0 in this order. */
+#define _GNU_SOURCE
+#include "series.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/frames.h"
+
+enum { PATH_BYTES = 4096 };
+
+static void picture_path(const series_job *job, int number, char *path, size_t size) {
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+  snprintf(path, size, job->pattern, number); /* series_has_number() */
+#pragma GCC diagnostic pop
+}
+
+/* ---- before the first picture ---- */
+
+static int check_options(series_job *job) {
+  static const int alone[] = {RENDER_VIEWS,      RENDER_LAYERS, RENDER_REFERENCE, RENDER_PRINT_SCENE,
+                              RENDER_PRINT_PLAN, RENDER_JSON,   RENDER_FORMAT,    RENDER_DEPTH};
+  const cli_value *output = &job->values[RENDER_OUTPUT];
+  for (size_t n = 0; n < sizeof alone / sizeof *alone; n++)
+    if (job->values[alone[n]].given)
+      return fail(EXIT_CODE_USAGE, "--%s is for one picture, not for a series",
+                  render_options[alone[n]].name);
+  if (!output->given || !series_has_number(output->text) || !has_extension(output->text, ".png"))
+    return fail(EXIT_CODE_USAGE,
+                "a series of files needs a number in its pictures' names: -o 'frames/%%04d.png'");
+  job->pattern = output->text;
+  int exit_code = frames_read_part(&job->values[RENDER_PART], &job->values[RENDER_RANKS], &job->part,
+                                   &job->parts);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_check_options(job->values);
+  return exit_code == EXIT_CODE_OK ? render_overlay_read(job->values, &job->overlay) : exit_code;
+}
+
+/* The folder of the pictures is made where it is missing. */
+static int make_folder(const series_job *job) {
+  char path[PATH_BYTES];
+  picture_path(job, 0, path, sizeof path);
+  char *slash = strrchr(path, '/');
+  if (slash == NULL || slash == path) return EXIT_CODE_OK;
+  *slash = '\0';
+  if (mkdir(path, 0777) == 0 || errno == EEXIST) return EXIT_CODE_OK;
+  return fail(EXIT_CODE_FAILURE, "%s: no folder for the pictures can be made: %s", path, strerror(errno));
+}
+
+/* --range-of-all: sets --range to the range of all files that can be read. */
+static int find_range(series_job *job) {
+  cli_value *range = &job->values[RENDER_RANGE];
+  if (!job->values[RENDER_RANGE_OF_ALL].given || range->given || job->of_meshes) return EXIT_CODE_OK;
+  for (int n = 0; n < job->count; n++) {
+    hl_volume *volume = NULL;
+    hl_volume_info info = {.struct_size = sizeof info};
+    host_draw_bar(&job->host, (double)n / job->count, "ranges of all files");
+    int exit_code = series_load_volume(job, n, HL_INDEX_DEFAULT, &volume);
+    if (exit_code == EXIT_CODE_INTERRUPTED) return exit_code;
+    if (volume != NULL && hl_volume_get_info(volume, &info) == HL_OK && info.range[0] < info.range[1]) {
+      if (!range->given || info.range[0] < range->number[0]) range->number[0] = info.range[0];
+      if (!range->given || info.range[1] > range->number[1]) range->number[1] = info.range[1];
+      range->given = true;
+    }
+    hl_volume_release(volume);
+  }
+  return EXIT_CODE_OK;
+}
+
+/* Loads the first file that can be read: a scene of it alone. */
+static int load_first(series_job *job, bool *bare) {
+  int exit_code = EXIT_CODE_INPUT;
+  *bare = true;
+  for (int n = 0; n < job->count && job->scene == NULL; n++) {
+    char *operands[] = {job->files[n], NULL};
+    if (job->bad[n]) continue;
+    exit_code = job->of_meshes ? render_add_meshes(&job->host, operands, 0, true, &job->scene)
+                               : render_load_volumes(&job->host, job->values, operands, bare, &job->scene);
+    if (exit_code == EXIT_CODE_OK && !*bare)
+      return fail(EXIT_CODE_USAGE, "'%s' is no file of a volume or a mesh, which a series is of",
+                  job->files[n]);
+    if (exit_code != EXIT_CODE_OK && exit_code != EXIT_CODE_INPUT && exit_code != EXIT_CODE_UNSUPPORTED)
+      return exit_code;
+    job->bad[n] = exit_code != EXIT_CODE_OK;
+    job->first = n;
+  }
+  return exit_code;
+}
+
+/* The scene of the first file that can be read, with the other files that are in every picture. */
+static int make_scene(series_job *job) {
+  bool bare;
+  render_overlay_set_size(job->values, NULL, job->size_text);
+  int exit_code = load_first(job, &bare);
+  size_t first = job->of_meshes ? 1 : 0;
+  if (exit_code == EXIT_CODE_OK)
+    exit_code = render_add_meshes(&job->host, job->meshes, first, bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->values, bare, &job->scene);
+  return exit_code;
+}
+
+/* ---- pictures ---- */
+
+/* Whether the picture is there, of this scene, and not older than the file. */
+static bool is_there(const series_job *job, int number, const hl_scene *scene, const char *path) {
+  struct stat picture, file;
+  if (overlay_is_any(&job->overlay)) return false; /* the scene that it carries does not tell of it */
+  if (stat(path, &picture) != 0 || stat(job->files[number], &file) != 0 ||
+      picture.st_mtim.tv_sec < file.st_mtim.tv_sec)
+    return false;
+  return frames_have_scene(&job->host, path, scene);
+}
+
+/* Whether the picture is there. The scene's text tells, for which a volume or a mesh need not be read: the
+ * first file's stands in. */
+static bool is_made(series_job *job, int number, const char *path) {
+  hl_scene *scene = NULL;
+  if (access(path, F_OK) != 0 || series_scene_unread(job, number, &scene) != HL_OK) return false;
+  bool there = is_there(job, number, scene, path);
+  hl_scene_release(scene);
+  return there;
+}
+
+static int make_picture(series_job *job, hl_renderer *renderer, int number) {
+  char path[PATH_BYTES];
+  hl_scene *scene = NULL;
+  hl_error error = {0};
+  double began = clock_seconds();
+  picture_path(job, number, path, sizeof path);
+  if (is_made(job, number, path)) {
+    job->done++;
+    return EXIT_CODE_OK;
+  }
+  int exit_code = read_files_protect(&job->host.read, path, job->files[number]);
+  if (exit_code == EXIT_CODE_OK) exit_code = series_scene(job, number, &scene);
+  if (exit_code != EXIT_CODE_OK) {
+    bool bad = job->bad[number];
+    job->failed += bad;
+    return bad ? EXIT_CODE_OK : exit_code;
+  }
+  bool there = is_there(job, number, scene, path); /* of a label map */
+  const frames_style style = {.no_metadata = job->values[RENDER_NO_METADATA].given, .overlay = &job->overlay};
+  hl_status status = there ? HL_OK : frames_render(&job->host, renderer, scene, style, path, &error);
+  hl_scene_release(scene);
+  if (status == HL_ERROR_CANCELLED) return EXIT_CODE_INTERRUPTED;
+  if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
+  job->done++;
+  job->rendered += !there;
+  if (!there) job->seconds += clock_seconds() - began;
+  return EXIT_CODE_OK;
+}
+
+static int make_pictures(series_job *job) {
+  hl_renderer *renderer = NULL;
+  hl_error error = {0};
+  bool quiet = job->host.quiet;
+  if (hl_renderer_create(job->host.context, &renderer, &error) != HL_OK)
+    return host_fail(&job->host, PHASE_SETUP, HL_ERROR_MEMORY, &error);
+  job->wanted = (job->count - job->part + job->parts - 1) / job->parts;
+  job->host.quiet = true; /* warnings were told with the first file */
+  int exit_code = EXIT_CODE_OK;
+  for (int n = job->part; n < job->count && exit_code == EXIT_CODE_OK; n += job->parts) {
+    frames_draw_bar(&job->host, job->done + job->failed, job->wanted, job->rendered, job->seconds);
+    exit_code = host_interrupted() ? EXIT_CODE_INTERRUPTED : make_picture(job, renderer, n);
+  }
+  hl_renderer_destroy(renderer);
+  host_clear_bar(&job->host);
+  job->host.quiet = quiet;
+  if (exit_code == EXIT_CODE_INTERRUPTED)
+    return fail(exit_code, "interrupted with %d of %d pictures: the same command goes on from there",
+                job->done, job->wanted);
+  if (exit_code == EXIT_CODE_OK && !quiet)
+    say("%d pictures, %d of them rendered now, in %.3g s", job->done, job->rendered, job->seconds);
+  if (exit_code == EXIT_CODE_OK && job->failed > 0)
+    return fail(EXIT_CODE_FAILURE, "%d of %d files could not be read, and have no picture", job->failed,
+                job->wanted);
+  return exit_code;
+}
+
+static int run(series_job *job) {
+  int exit_code = make_folder(job);
+  job->host.own_bar = true;
+  if (exit_code == EXIT_CODE_OK) exit_code = find_range(job);
+  if (exit_code == EXIT_CODE_OK) exit_code = make_scene(job);
+  return exit_code == EXIT_CODE_OK ? make_pictures(job) : exit_code;
+}
+
+int render_series(const cli_value *values, char **operands) {
+  series_job *job = calloc(1, sizeof *job);
+  if (job == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  memcpy(job->values, values, sizeof job->values);
+  int exit_code = check_options(job);
+  cli_host_options options = {.quiet = values[RENDER_QUIET].given,
+                              .progress = true,
+                              .subject = "",
+                              .memory_limit = values[RENDER_MAX_MEMORY].bytes,
+                              .data_folder = values[RENDER_DATA].text,
+                              .device = values[RENDER_DEVICE].text,
+                              .instruction_set = (hl_instruction_set)values[RENDER_INSTRUCTION_SET].choice};
+  if (exit_code == EXIT_CODE_OK) {
+    exit_code = host_open(&options, &job->host);
+    if (exit_code == EXIT_CODE_OK) exit_code = series_find_files(job, operands);
+    if (exit_code == EXIT_CODE_OK) exit_code = run(job);
+    hl_scene_release(job->scene);
+    host_close(&job->host);
+  }
+  series_release_files(job);
+  overlay_release(&job->overlay);
+  free(job);
+  return exit_code;
+}

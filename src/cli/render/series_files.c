@@ -1,0 +1,303 @@
+/* cli/render/series_files.c - the files of a series: their names, and the scene of each.
+ *
+ * A series is of volumes, each of which may be a label map itself, or of meshes. Meshes beside volumes are in
+ * every picture. */
+#define _GNU_SOURCE
+#include <glob.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/frames.h"
+#include "cli/input.h"
+#include "series.h"
+
+enum { MOST_LABEL_LAYERS = 64 };
+
+/* ---- names ---- */
+
+static bool is_pattern(const char *path) { return strpbrk(path, "*?[") != NULL && access(path, F_OK) != 0; }
+
+/* True if the text has one "%d" or "%04d", and no other '%' but "%%". */
+bool series_has_number(const char *text) {
+  int numbers = 0;
+  for (const char *c = strchr(text, '%'); c != NULL; c = strchr(c + 1, '%')) {
+    if (c[1] == '%') {
+      c++;
+      continue;
+    }
+    const char *end = c + 1 + strspn(c + 1, "0123456789");
+    if (*end != 'd' || end - c > 3) return false;
+    numbers++;
+  }
+  return numbers == 1;
+}
+
+bool render_has_pattern(char **operands) {
+  bool pattern = false;
+  for (char **operand = operands; *operand != NULL; operand++) pattern = pattern || is_pattern(*operand);
+  return pattern;
+}
+
+bool render_is_series(const cli_value *values, char **operands) {
+  const cli_value *output = &values[RENDER_OUTPUT];
+  return render_has_pattern(operands) || values[RENDER_PART].given || values[RENDER_RANKS].given ||
+         values[RENDER_RANGE_OF_ALL].given || (output->given && series_has_number(output->text));
+}
+
+static int fail_names(int count) {
+  return fail(EXIT_CODE_FAILURE, "out of memory for the names of %d files", count);
+}
+
+static int add_file(series_job *job, const char *path) {
+  char **larger = realloc(job->files, ((size_t)job->count + 1) * sizeof *larger);
+  if (larger != NULL) job->files = larger;
+  if (larger == NULL || (larger[job->count] = strdup(path)) == NULL) return fail_names(job->count);
+  job->count++;
+  return EXIT_CODE_OK;
+}
+
+static int add_pattern(series_job *job, const char *pattern) {
+  glob_t found = {0};
+  int answer = glob(pattern, 0, NULL, &found), exit_code = EXIT_CODE_OK;
+  if (answer != 0)
+    exit_code = answer == GLOB_NOMATCH ? fail(EXIT_CODE_INPUT, "%s: there is no such file", pattern)
+                                       : fail(EXIT_CODE_INPUT, "%s: its folder cannot be read", pattern);
+  for (size_t n = 0; n < found.gl_pathc && exit_code == EXIT_CODE_OK; n++)
+    exit_code = add_file(job, found.gl_pathv[n]);
+  globfree(&found);
+  return exit_code;
+}
+
+/* Meshes that are named one by one are in every picture, unless they are all that there is. A pattern that
+ * finds meshes beside volumes is refused: which of them belongs to which volume is not known. */
+static int part_meshes(series_job *job) {
+  int meshes = 0;
+  for (int n = 0; n < job->count; n++) meshes += is_mesh_file(job->host.context, job->files[n]);
+  job->of_meshes = meshes > 0;
+  if (meshes == 0 || meshes == job->count) return EXIT_CODE_OK;
+  return fail(EXIT_CODE_USAGE,
+              "a pattern that finds meshes beside volumes: name each mesh that shall be in all pictures");
+}
+
+int series_find_files(series_job *job, char **operands) {
+  int exit_code = EXIT_CODE_OK, operand_count = 0;
+  for (; operands[operand_count] != NULL && exit_code == EXIT_CODE_OK; operand_count++) {
+    char *operand = operands[operand_count];
+    if (is_pattern(operand)) exit_code = add_pattern(job, operand);
+    else if (is_mesh_file(job->host.context, operand)) job->meshes[job->mesh_count++] = operand;
+    else exit_code = add_file(job, operand);
+  }
+  if (job->mesh_count == operand_count) { /* no volume, no pattern: they are the series */
+    job->mesh_count = 0;
+    for (int n = 0; n < operand_count && exit_code == EXIT_CODE_OK; n++)
+      exit_code = add_file(job, operands[n]);
+  }
+  job->meshes[job->mesh_count] = NULL;
+  if (exit_code == EXIT_CODE_OK) exit_code = part_meshes(job);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  qsort(job->files, (size_t)job->count, sizeof *job->files, compare_by_number);
+  job->bad = calloc((size_t)job->count, sizeof *job->bad);
+  return job->bad != NULL ? EXIT_CODE_OK : fail(EXIT_CODE_FAILURE, "out of memory");
+}
+
+void series_release_files(series_job *job) {
+  for (int n = 0; n < job->count; n++) free(job->files[n]);
+  free(job->files);
+  free(job->bad);
+}
+
+/* ---- what a file holds ---- */
+
+/* Files are read alike: at the first one's resolution, and only in the anatomical space that it is in. */
+static void reading_of(const series_job *job, hl_volume_load_options *options) {
+  render_load_options(job->values, options);
+  if (job->scene != NULL) options->level = hl_scene_describe(job->scene)->volumes[0].level;
+}
+
+static hl_space space_of(const hl_volume *volume) {
+  hl_volume_info info = {.struct_size = sizeof info};
+  return hl_volume_get_info(volume, &info) == HL_OK ? info.space : HL_SPACE_UNKNOWN;
+}
+
+static int check_space(const series_job *job, int number, const hl_volume *volume) {
+  if (job->scene == NULL) return EXIT_CODE_OK;
+  hl_space space = space_of(volume), first = space_of(hl_scene_describe(job->scene)->volumes[0].volume);
+  if (space == first || space == HL_SPACE_UNKNOWN || first == HL_SPACE_UNKNOWN) return EXIT_CODE_OK;
+  return fail(EXIT_CODE_INPUT,
+              "%s: its axes point elsewhere (RAS or LPS) than those of '%s', the first file: "
+              "'halflight convert' both to one format",
+              job->files[number], job->files[job->first]);
+}
+
+/* Marks the file as bad by the exit code of its reading. */
+static int note(series_job *job, int number, int exit_code) {
+  job->bad[number] = exit_code == EXIT_CODE_INPUT || exit_code == EXIT_CODE_UNSUPPORTED;
+  return exit_code;
+}
+
+int series_load_volume(series_job *job, int number, int channel, hl_volume **volume) {
+  cli_input input = {0};
+  hl_volume_load_options options;
+  hl_error error = {0};
+  if (job->bad[number]) return EXIT_CODE_INPUT;
+  reading_of(job, &options);
+  if (channel >= 0) options.channel = channel;
+  int exit_code = input_open(job->files[number], job->values[RENDER_MAX_MEMORY].bytes, &input);
+  if (exit_code == EXIT_CODE_OK) {
+    hl_status status = input_load_volume(job->host.context, &input, &options, volume, &error);
+    double smooth = job->scene != NULL ? hl_volume_smoothing(hl_scene_describe(job->scene)->volumes[0].volume)
+                                       : 0;
+    if (status == HL_OK && smooth > 0) status = input_smooth(smooth, volume, &error);
+    if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_READ, status, &error);
+  }
+  input_close(&input);
+  return note(job, number, exit_code);
+}
+
+/* ---- the scene of a file ---- */
+
+/* Makes the first file's scene of other volumes; null: of another first mesh. */
+static hl_status make_scene(const series_job *job, hl_scene_volume *volumes, size_t volume_count,
+                            const hl_scene_mesh *mesh, hl_scene **scene, hl_error *error) {
+  hl_scene_description description = *hl_scene_describe(job->scene);
+  hl_scene_mesh *meshes = mesh != NULL ? calloc(description.mesh_count, sizeof *meshes) : NULL;
+  if (mesh != NULL && meshes == NULL) {
+    snprintf(error->message, sizeof error->message, "out of memory: %zu meshes", description.mesh_count);
+    return error->code = HL_ERROR_MEMORY;
+  }
+  if (meshes != NULL) {
+    memcpy(meshes, description.meshes, description.mesh_count * sizeof *meshes);
+    meshes[0] = *mesh;
+    description.meshes = meshes;
+  } else {
+    description.volumes = volumes;
+    description.volume_count = volume_count;
+  }
+  hl_status status = hl_scene_create(job->host.context, &description, scene, error);
+  free(meshes);
+  return status;
+}
+
+/* The volumes of the first file in its scene, one or a channel each; those after them are label maps. */
+static size_t volumes_of_file(const series_job *job) {
+  const hl_scene_description *description = hl_scene_describe(job->scene);
+  size_t count = 1;
+  while (render_has_channels(job->values) && count < description->volume_count && count < HL_CHANNELS_MOST &&
+         description->volumes[count].file != NULL &&
+         strcmp(description->volumes[count].file, description->volumes[0].file) == 0)
+    count++;
+  return count;
+}
+
+/* Volumes in place of the first file's; null: the first file's voxels. Bare label maps have their own labels.
+ * The others, the label maps of --labels, stay. */
+static hl_status scene_of_volumes(const series_job *job, int number, hl_volume *const *loaded,
+                                  hl_scene **scene, hl_error *error) {
+  const hl_scene_description *description = hl_scene_describe(job->scene);
+  hl_scene_volume volumes[HL_CHANNELS_MOST + MOST_LABEL_LAYERS];
+  memcpy(volumes, description->volumes, description->volume_count * sizeof *volumes);
+  hl_label *labels[HL_CHANNELS_MOST] = {NULL};
+  hl_status status = HL_OK;
+  for (size_t n = 0; n < volumes_of_file(job) && status == HL_OK; n++) {
+    volumes[n].file = job->files[number];
+    if (loaded != NULL) volumes[n].volume = loaded[n];
+    if (loaded == NULL || volumes[n].label_count == 0) continue;
+    status = hl_labels_of_volume(job->host.context, loaded[n], NULL, &labels[n], &volumes[n].label_count,
+                                 error);
+    volumes[n].labels = labels[n];
+  }
+  if (status == HL_OK) status = make_scene(job, volumes, description->volume_count, NULL, scene, error);
+  for (size_t n = 0; n < HL_CHANNELS_MOST; n++) hl_labels_release(job->host.context, labels[n]);
+  return status;
+}
+
+static int volume_scene(series_job *job, int number, hl_scene **scene) {
+  hl_volume *loaded[HL_CHANNELS_MOST] = {NULL};
+  size_t count = volumes_of_file(job);
+  hl_error error = {0};
+  int exit_code = EXIT_CODE_OK;
+  for (size_t n = 0; n < count && exit_code == EXIT_CODE_OK; n++) {
+    int channel = count > 1 ? hl_scene_describe(job->scene)->volumes[n].channel : HL_INDEX_DEFAULT;
+    exit_code = series_load_volume(job, number, channel, &loaded[n]);
+  }
+  if (exit_code == EXIT_CODE_OK) exit_code = note(job, number, check_space(job, number, loaded[0]));
+  if (exit_code == EXIT_CODE_OK) {
+    hl_status status = scene_of_volumes(job, number, loaded, scene, &error);
+    if (status != HL_OK) exit_code = note(job, number, host_fail(&job->host, PHASE_READ, status, &error));
+  }
+  for (size_t n = 0; n < count; n++) hl_volume_release(loaded[n]);
+  return exit_code;
+}
+
+/* Gives a layer of a label map what the options say of the first file's. */
+static void take_settings(const hl_scene_volume *from, hl_scene_volume *layer) {
+  hl_scene_volume made = *from;
+  made.volume = layer->volume;
+  made.file = layer->file;
+  made.component = layer->component;
+  made.level = layer->level;
+  made.labels = layer->labels;
+  made.label_count = layer->label_count;
+  *layer = made;
+}
+
+static int label_scene(series_job *job, int number, hl_scene **scene) {
+  const hl_scene_description *description = hl_scene_describe(job->scene);
+  hl_scene_volume volumes[MOST_LABEL_LAYERS];
+  hl_scene *map = NULL;
+  hl_error error = {0};
+  hl_volume_load_options options;
+  reading_of(job, &options);
+  hl_status status = render_load_label_map(&job->host, job->values, job->files[number], &options, &map,
+                                           &error);
+  if (status != HL_OK) return note(job, number, host_fail(&job->host, PHASE_READ, status, &error));
+  const hl_scene_description *layers = hl_scene_describe(map);
+  size_t count = layers->volume_count < MOST_LABEL_LAYERS ? layers->volume_count : MOST_LABEL_LAYERS;
+  for (size_t n = 0; n < count; n++) {
+    size_t like = n < description->volume_count ? n : description->volume_count - 1;
+    volumes[n] = layers->volumes[n];
+    take_settings(&description->volumes[like], &volumes[n]);
+  }
+  int exit_code = count > 0 ? check_space(job, number, volumes[0].volume) : EXIT_CODE_OK;
+  if (exit_code == EXIT_CODE_OK) {
+    status = make_scene(job, volumes, count, NULL, scene, &error);
+    if (status != HL_OK) exit_code = host_fail(&job->host, PHASE_READ, status, &error);
+  }
+  hl_scene_release(map);
+  return note(job, number, exit_code);
+}
+
+/* A mesh in place of the first file's. */
+static int mesh_scene(series_job *job, int number, hl_scene **scene) {
+  hl_scene_mesh mesh = hl_scene_describe(job->scene)->meshes[0], own;
+  hl_error error = {0};
+  hl_status status = render_load_mesh(job->host.context, job->files[number], 0, &own, &error);
+  mesh.mesh = own.mesh;
+  mesh.file = own.file;
+  memcpy(mesh.color, own.color, sizeof mesh.color);
+  if (status == HL_OK) status = make_scene(job, NULL, 0, &mesh, scene, &error);
+  hl_mesh_release(own.mesh);
+  return note(job, number,
+              status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_READ, status, &error));
+}
+
+int series_scene(series_job *job, int number, hl_scene **scene) {
+  if (job->bad[number]) return EXIT_CODE_INPUT;
+  if (job->of_meshes) return mesh_scene(job, number, scene);
+  return render_is_label_map(job->values) ? label_scene(job, number, scene)
+                                          : volume_scene(job, number, scene);
+}
+
+hl_status series_scene_unread(const series_job *job, int number, hl_scene **scene) {
+  hl_scene_mesh mesh;
+  hl_error error = {0};
+  if (!job->of_meshes &&
+      (render_is_label_map(job->values) || hl_scene_describe(job->scene)->volumes[0].label_count > 0))
+    return HL_ERROR_UNSUPPORTED;
+  if (!job->of_meshes) return scene_of_volumes(job, number, NULL, scene, &error);
+  mesh = hl_scene_describe(job->scene)->meshes[0];
+  mesh.file = job->files[number];
+  return make_scene(job, NULL, 0, &mesh, scene, &error);
+}

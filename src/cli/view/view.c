@@ -1,0 +1,297 @@
+/* cli/view/view.c - `halflight view INPUT`: the viewer's server, and the browser that shows its page. */
+#define _GNU_SOURCE
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/input.h"
+#include "cli/output.h"
+#include "cli/render/render.h"
+#ifdef HL_HAS_VIEWER
+#include <dlfcn.h>
+
+#include "browser.h"
+#include "server/module.h"
+#include "token.h"
+#endif
+
+enum { VIEW_PORT, VIEW_NO_BROWSER, VIEW_OPTION_COUNT };
+
+static const cli_option view_options[VIEW_OPTION_COUNT] = {
+    [VIEW_PORT] = {.name = "port",
+                   .kind = OPTION_NUMBERS,
+                   .argument = "N",
+                   .group = "Page",
+                   .help = "of 127.0.0.1, where it is served (default: a free one)",
+                   .count = 1,
+                   .whole = true,
+                   .low = 1,
+                   .high = 65535},
+    [VIEW_NO_BROWSER] = {.name = "no-browser",
+                         .kind = OPTION_SWITCH,
+                         .help =
+                             "only print the URL (default: open a browser too, where\nthere is a screen)"},
+};
+
+/* The options of `render` that say what is shown and how, but not those about one picture or its file. */
+static bool has_render_option(size_t row) {
+  switch ((enum render_option)row) {
+    case RENDER_OUTPUT:
+    case RENDER_FORMAT:
+    case RENDER_SIZE: /* the page's own */
+    case RENDER_DEPTH:
+    case RENDER_NO_METADATA:
+    case RENDER_LAYERS:
+    case RENDER_VIEWS:
+    case RENDER_WIDTH:
+    case RENDER_DPI:
+    case RENDER_SCALE_BAR:
+    case RENDER_UNIT:
+    case RENDER_LEGEND:
+    case RENDER_AXES:
+    case RENDER_ANNOTATE:
+    case RENDER_FONT_SIZE:
+    case RENDER_RANGE_OF_ALL:
+    case RENDER_REFERENCE:
+    case RENDER_LIGHT_POINTS:
+    case RENDER_STEP:
+    case RENDER_PATHS:
+    case RENDER_RAYS:
+    case RENDER_PART:
+    case RENDER_RANKS:
+    case RENDER_STRIPS:
+    case RENDER_VOLUME:
+    case RENDER_PRINT_SCENE:
+    case RENDER_PRINT_PLAN:
+    case RENDER_JSON: return false;
+    default: return true;
+  }
+}
+
+#ifdef HL_HAS_VIEWER
+
+/* One run. */
+typedef struct view_job {
+  cli_host host;
+  const cli_value *values, *render; /* of the command's own options, and of those of `render` */
+  hl_scene *scene;                  /* owned */
+  browser_page page;
+} view_job;
+
+/* ---- the scene ---- */
+
+/* The absolute path of a file, owned by the caller. A text that names no file is copied as it is. */
+static char *absolute_path(const char *file) {
+  char *path = strncmp(file, "/dev/", 5) == 0 ? NULL : realpath(file, NULL);
+  return path != NULL ? path : strdup(file);
+}
+
+/* The absolute path of a file in a folder, owned by the caller. */
+static char *path_below(const char *folder, const char *file) {
+  char *path = NULL;
+  if (strcmp(file, ".") == 0) return strdup(folder);
+  return asprintf(&path, "%s/%s", strcmp(folder, "/") == 0 ? "" : folder, file) >= 0 ? path : NULL;
+}
+
+enum { MOST_PATHS = 1024 };
+
+/* The absolute paths that a changed description borrows. */
+typedef struct path_list {
+  const char *folder; /* where relative names begin; null: in the current folder */
+  char *paths[MOST_PATHS];
+  size_t count;
+} path_list;
+
+static bool make_absolute(const char **file, path_list *list) {
+  if (*file == NULL) return true;
+  if (list->count == MOST_PATHS) return false;
+  char *path = list->folder != NULL ? path_below(list->folder, *file) : absolute_path(*file);
+  if (path == NULL) return false;
+  list->paths[list->count] = path;
+  *file = list->paths[list->count++];
+  return true;
+}
+
+/* The scene with absolute paths, so that the page's scene can be rendered from any folder. folder: where its
+ * names begin; null: in the current folder. */
+static hl_status name_absolutely(view_job *job, const char *folder, hl_scene **scene, hl_error *error) {
+  hl_scene_description d = *hl_scene_describe(*scene);
+  hl_scene_volume *volumes = malloc(d.volume_count * sizeof *volumes + 1);
+  hl_light *lights = malloc(d.light_count * sizeof *lights + 1);
+  hl_scene_mesh *meshes = malloc(d.mesh_count * sizeof *meshes + 1);
+  path_list *list = calloc(1, sizeof *list);
+  bool good = volumes != NULL && lights != NULL && meshes != NULL && list != NULL;
+  if (good) list->folder = folder;
+  for (size_t v = 0; good && v < d.volume_count; v++) {
+    volumes[v] = d.volumes[v];
+    good = make_absolute(&volumes[v].file, list) && make_absolute(&volumes[v].mask.file, list) &&
+           make_absolute(&volumes[v].transfer_function.plane.image.file, list);
+  }
+  for (size_t l = 0; good && l < d.light_count; l++) {
+    lights[l] = d.lights[l];
+    good = make_absolute(&lights[l].texture.file, list) && make_absolute(&lights[l].emission.file, list);
+  }
+  for (size_t m = 0; good && m < d.mesh_count; m++) {
+    meshes[m] = d.meshes[m];
+    good = make_absolute(&meshes[m].file, list);
+  }
+  good = good && make_absolute(&d.sky.file, list);
+  d.volumes = volumes;
+  d.meshes = meshes;
+  d.lights = lights;
+  hl_scene *named = NULL;
+  hl_status status = good ? hl_scene_create(job->host.context, &d, &named, error) : HL_ERROR_MEMORY;
+  if (!good) snprintf(error->message, sizeof error->message, "out of memory for the scene's paths");
+  if (status == HL_OK) {
+    hl_scene_release(*scene);
+    *scene = named;
+  }
+  for (size_t p = 0; list != NULL && p < list->count; p++) free(list->paths[p]);
+  free(list);
+  free(meshes);
+  free(lights);
+  free(volumes);
+  return status;
+}
+
+static int load(view_job *job, char **inputs) {
+  bool bare;
+  int exit_code = render_load_inputs(&job->host, job->render, inputs, &bare, &job->scene);
+  if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->render, bare, &job->scene);
+  if (exit_code != EXIT_CODE_OK) return exit_code;
+  hl_error error = {0};
+  hl_status status = name_absolutely(job, NULL, &job->scene, &error);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_READ, status, &error);
+}
+
+/* A file that a page opens. */
+static hl_status open_file(void *user_data, const server_file *file, hl_scene **scene, hl_error *error) {
+  view_job *job = user_data;
+  hl_volume *volume = NULL;
+  hl_status status;
+  if (has_extension(file->name, ".json")) {
+    status = hl_scene_load(file->confined, file->name, scene, error);
+    return status == HL_OK && file->folder != NULL ? name_absolutely(job, file->folder, scene, error)
+                                                   : status;
+  }
+  char *path = file->folder != NULL ? path_below(file->folder, file->name) : strdup(file->name);
+  status = path != NULL ? hl_volume_load(file->confined, file->name, &volume, error) : HL_ERROR_MEMORY;
+  if (path == NULL) snprintf(error->message, sizeof error->message, "out of memory for a path");
+  if (status == HL_OK) status = hl_scene_for_volume(job->host.context, volume, path, scene, error);
+  hl_volume_release(volume);
+  free(path);
+  return status;
+}
+
+/* ---- the browser ---- */
+
+static void on_ready(void *user_data, const char *url) {
+  view_job *job = user_data;
+  host_clear_bar(&job->host);
+  puts(url);
+  fflush(stdout);
+  if (!job->values[VIEW_NO_BROWSER].given) browser_open(url, &job->page);
+  int port = 0;
+  if (sscanf(url, "http://127.0.0.1:%d/", &port) == 1 && !job->host.quiet)
+    say("from another machine: ssh -L %d:127.0.0.1:%d THIS-MACHINE, then open the same URL; Ctrl-C ends the "
+        "viewer",
+        port, port);
+}
+
+/* The browser has the page: the file that led to it is needed no longer. */
+static void on_visit(void *user_data) { browser_forget(&((view_job *)user_data)->page); }
+
+/* ---- the command ---- */
+
+/* The name of the first INPUT, and how many more there are. */
+static void make_title(char **inputs, char *title, size_t size) {
+  size_t count = 0;
+  while (inputs[count] != NULL) count++;
+  const char *name = strcmp(inputs[0], "-") == 0 ? "standard input" : base_name(inputs[0]);
+  if (count == 1) snprintf(title, size, "%s", name);
+  else snprintf(title, size, "%s and %zu more", name, count - 1);
+}
+
+/* Loads the module, which stays loaded; null after a message. */
+static const server_module *load_module(void) {
+  void *module = dlopen(SERVER_MODULE_FILE, RTLD_NOW);
+  const server_module *found = module != NULL ? dlsym(module, SERVER_MODULE_NAME) : NULL;
+  if (found == NULL) (void)fail(EXIT_CODE_UNSUPPORTED, "the viewer cannot be loaded: %s", dlerror());
+  return found;
+}
+
+static int run_view(const cli_value *values, char **inputs) {
+  const server_module *module = load_module();
+  if (module == NULL) return EXIT_CODE_UNSUPPORTED;
+  view_job job = {.values = values, .render = values + VIEW_OPTION_COUNT};
+  const cli_value *render = job.render;
+  char title[300], problem[300], folder[PATH_MAX];
+  cli_host_options options = {.quiet = render[RENDER_QUIET].given,
+                              .progress = true,
+                              .subject = base_name(inputs[0]),
+                              .memory_limit = render[RENDER_MAX_MEMORY].bytes,
+                              .data_folder = render[RENDER_DATA].text,
+                              .device = render[RENDER_DEVICE].text,
+                              .instruction_set = (hl_instruction_set)render[RENDER_INSTRUCTION_SET].choice,
+                              .cancelled = module->is_outdated,
+                              .progressed = module->progress};
+  int exit_code = render_check_options(render);
+  if (exit_code == EXIT_CODE_OK) exit_code = host_open(&options, &job.host);
+  if (exit_code == EXIT_CODE_OK) exit_code = load(&job, inputs);
+  if (exit_code == EXIT_CODE_OK) {
+    host_clear_bar(&job.host);
+    job.host.bar = false; /* frames are rendered by several threads, which share no bar */
+    make_title(inputs, title, sizeof title);
+    int port = values[VIEW_PORT].given ? (int)values[VIEW_PORT].number[0] : 0;
+    server_options server = {.context = job.host.context,
+                             .scene = job.scene,
+                             .title = title,
+                             .folder = getcwd(folder, sizeof folder),
+                             .open = open_file,
+                             .most_upload_bytes = job.host.memory_limit,
+                             .port = port,
+                             .token = view_token_of_port,
+                             .stopped = host_interrupted,
+                             .user_data = &job,
+                             .ready = on_ready,
+                             .visited = on_visit};
+    if (!module->run(&server, problem, sizeof problem)) exit_code = fail(EXIT_CODE_FAILURE, "%s", problem);
+    browser_forget(&job.page);
+  }
+  hl_scene_release(job.scene);
+  host_close(&job.host);
+  return exit_code;
+}
+
+#else
+
+static int run_view(const cli_value *values, char **inputs) {
+  (void)values, (void)inputs;
+  return fail(EXIT_CODE_UNSUPPORTED,
+              "this build has no viewer: build it with libmicrohttpd and libjpeg (-Dviewer=enabled)");
+}
+
+#endif
+
+const cli_command view_command = {
+    .name = "view",
+    .operands = "INPUT ...",
+    .operand_count = 1,
+    .operand_most = MAXIMUM_OPERANDS,
+    .summary = "look at a scene or volumes in a browser: turn, light, colour",
+    .description =
+        "Opens INPUT, as for render, in a page of the browser, and prints the page's URL on stdout. Turn "
+        "the\n"
+        "volume, drag the light, edit the transfer function; save the picture, the scene, or the command\n"
+        "that renders it. The page is served to this machine alone; Ctrl-C ends the viewer. Options of\n"
+        "render say what the page begins with.",
+    .options = view_options,
+    .option_count = VIEW_OPTION_COUNT,
+    .shared = render_options,
+    .shared_count = RENDER_OPTION_COUNT,
+    .has_shared = has_render_option,
+    .run = run_view,
+};

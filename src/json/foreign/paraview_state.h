@@ -1,0 +1,14 @@
+/* json/foreign/paraview_state.h - the transfer function of a ParaView state. */
+#ifndef HL_JSON_FOREIGN_PARAVIEW_STATE_H
+#define HL_JSON_FOREIGN_PARAVIEW_STATE_H
+
+#include "json/parts.h"
+
+/* Reads the function of the only volume that the state FILE.pvsm shows: colours and opacities, or boxes
+ * (vtkPVTransferFunction2D). Boxes are fitted to this volume as VTK fits them: their range covers the range
+ * of the values, and a quarter of that range as lengths of gradients per mean voxel edge. volume: if null,
+ * the boxes keep the file's numbers. The content is owned by *function, also after a failure. */
+hl_status hl_paraview_read_state(hl_context *context, const char *path, const hl_volume *volume,
+                                 hl_transfer_function *function, hl_error *error);
+
+#endif

@@ -1,0 +1,38 @@
+/* scene/check/checker.h - the checks of single values of a description; their errors begin with a JSON
+ * pointer. */
+#ifndef HL_SCENE_CHECK_CHECKER_H
+#define HL_SCENE_CHECK_CHECKER_H
+
+#include "core/error.h"
+#include "scene/check/limits.h"
+#include "scene/settings.h"
+
+/* The object that is checked: "/lights/3". */
+typedef struct hl_checker {
+  hl_error *error;
+  char place[80];
+} hl_checker;
+
+/* Fails with "PLACE/KEY: PROBLEM". */
+hl_status hl_check_refuse(const hl_checker *check, const char *key, const char *problem);
+
+/* Check one setting, and all settings that an object of this type has (type 0 for kinds without types). */
+hl_status hl_check_key(const hl_checker *check, hl_setting_kind kind, const char *key, const void *object);
+hl_status hl_check_settings(const hl_checker *check, hl_setting_kind kind, const void *object, int type);
+
+/* Checks a number that is in no table of settings: from low to high. */
+hl_status hl_check_range(const hl_checker *check, const char *key, double value, double low, double high,
+                         const char *mend);
+
+/* Check that coordinates are within HL_LIMIT_LENGTH, and that a direction is not zero. */
+hl_status hl_check_point(const hl_checker *check, const char *key, const double v[3]);
+hl_status hl_check_direction(const hl_checker *check, const char *key, const double v[3]);
+
+/* Checks the pixels of an image, [height][width][3], linear RGB. */
+hl_status hl_check_pixels(const hl_checker *check, const float *pixels, int width, int height);
+
+/* Checks that an array exists and has at most `limit` entries. */
+hl_status hl_check_count(const hl_checker *check, const char *key, const void *points, size_t count,
+                         size_t limit);
+
+#endif

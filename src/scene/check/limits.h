@@ -1,0 +1,35 @@
+/* scene/check/limits.h - limits that several checks share; the range of each setting is in settings_table.c.
+ */
+#ifndef HL_SCENE_CHECK_LIMITS_H
+#define HL_SCENE_CHECK_LIMITS_H
+
+#define HL_LIMIT_PIXELS         32768 /* image width and height */
+#define HL_LIMIT_LIGHTS         256
+#define HL_LIMIT_VOLUMES        256
+#define HL_LIMIT_MESHES         256
+#define HL_LIMIT_ISO            64    /* isosurfaces of one volume */
+#define HL_LIMIT_CUTS           64    /* of one volume, and of a scene */
+#define HL_LIMIT_VERTICES       1024  /* of one polygon */
+#define HL_LIMIT_TEXTURE_SIDE   32768 /* pixels of a light's texture */
+#define HL_LIMIT_TEXTURE_PIXELS (1 << 26)
+#define HL_LIMIT_POINTS         65536 /* of one transfer function */
+#define HL_LIMIT_SHAPES         256   /* boxes, or polygons, of a transfer function of two numbers */
+#define HL_LIMIT_PLANE_SIDE     4096  /* pixels of its image */
+#define HL_LIMIT_LENGTH         1e15  /* any coordinate or length: squares and cubes stay finite */
+#define HL_LIMIT_CORNER \
+  1e14 /* of a volume from the origin: a camera that frames it stands within HL_LIMIT_LENGTH */
+#define HL_LIMIT_INTENSITY \
+  1e35 /* large, for light that falls off with the square of distances in nanometres */
+#define HL_LIMIT_BRIGHTNESS    1e20 /* of a light, a voxel's edge away; sums and products still fit floats */
+#define HL_LIMIT_REACH         1e12 /* distances and lengths, in smallest voxel edges */
+#define HL_LIMIT_TEXTURE_VALUE 1e6
+#define HL_LIMIT_RADIANCE      1e6  /* of a sky's colours, and of their factor */
+#define HL_LIMIT_VOXEL_VALUE   1e36 /* differences and sums of such values still fit floats */
+#define HL_LIMIT_LIGHT_SAMPLES 64
+#define HL_LIMIT_THREADS       1024
+#define HL_LIMIT_SLABS_AT_ONCE 64
+#define HL_LIMIT_SHININESS     10000
+#define HL_LIMIT_EMISSION      1e6
+#define HL_LIMIT_EXPOSURE      32 /* stops, either way */
+
+#endif

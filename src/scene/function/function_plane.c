@@ -1,0 +1,253 @@
+/* scene/function/function_plane.c - the boxes, polygons and images of a transfer function of two numbers:
+ * what they show at a point, or on average in a part, of the plane of the two.
+ *
+ * In: a transfer function. Out: extinction and colour, asked of by the tables of grid/plane_table.c, by the
+ * reference and by the outline over the value alone, which framing and exposure go by. */
+#include "scene/function/function_plane.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/vector.h"
+
+/* ---- weights ---- */
+
+/* The integral of a box's weight along an axis, up to x. */
+static double weight_up_to(double low, double high, double edge, double x) {
+  if (x <= low) return 0;
+  if (x >= high) return high - low - edge;
+  if (x < low + edge) return (x - low) * (x - low) / (2 * edge);
+  if (x > high - edge) return high - low - edge - (high - x) * (high - x) / (2 * edge);
+  return x - low - edge / 2;
+}
+
+/* The integral of a Gaussian's weight along an axis, from its middle to x. */
+static double gaussian_up_to(double middle, double deviation, double x) {
+  return deviation * sqrt(HL_PI / 2) * erf((x - middle) / (deviation * sqrt(2)));
+}
+
+/* The mean of a box's Gaussian along an axis, over from..to. */
+static double gaussian_along(const hl_function_box *box, int axis, double from, double to) {
+  double low = box->low[axis], high = box->high[axis], middle = (low + high) / 2,
+         deviation = box->sigma * (high - low), begin = fmax(from, low), end = fmin(to, high);
+  if (begin > end || !(deviation > 0)) return 0;
+  if (!(to > from)) return exp(-(from - middle) * (from - middle) / (2 * deviation * deviation));
+  return (gaussian_up_to(middle, deviation, end) - gaussian_up_to(middle, deviation, begin)) / (to - from);
+}
+
+/* The mean weight of a box along an axis, over from..to. */
+static double weight_along(const hl_function_box *box, int axis, double from, double to) {
+  if (box->sigma > 0) return gaussian_along(box, axis, from, to);
+  double low = box->low[axis], high = box->high[axis], edge = fmin(box->edge[axis], (high - low) / 2);
+  if (to > from && high > low)
+    return (weight_up_to(low, high, edge, to) - weight_up_to(low, high, edge, from)) / (to - from);
+  if (from < low || from > high) return 0;
+  return edge > 0 ? fmin(fmin(from - low, high - from) / edge, 1) : 1;
+}
+
+/* Of a point in the triangle of the apex and two vertices, the apex's barycentric coordinate falls linearly
+ * from 1 at the apex to 0 on the border; negative: the point is outside. */
+static double weight_in_triangle(const double apex[2], const double a[2], const double b[2],
+                                 const double at[2]) {
+  double ax = a[0] - apex[0], ay = a[1] - apex[1], bx = b[0] - apex[0], by = b[1] - apex[1];
+  double x = at[0] - apex[0], y = at[1] - apex[1], area = ax * by - ay * bx;
+  if (area == 0) return -1;
+  double of_a = (x * by - y * bx) / area, of_b = (ax * y - ay * x) / area;
+  return of_a < 0 || of_b < 0 ? -1 : 1 - of_a - of_b;
+}
+
+static double weight_in_polygon(const hl_function_polygon *polygon, const double at[2]) {
+  double greatest = -1;
+  for (size_t v = 0; v < polygon->vertex_count; v++) {
+    size_t next = v + 1 < polygon->vertex_count ? v + 1 : 0;
+    greatest = fmax(greatest,
+                    weight_in_triangle(polygon->apex, polygon->vertices[v], polygon->vertices[next], at));
+  }
+  if (greatest < 0) return 0;
+  return polygon->falloff > 0 ? fmin(greatest / polygon->falloff, 1) : 1;
+}
+
+/* ---- sums ---- */
+
+static double extinction_of(double opacity, double unit) { return -log1p(-fmin(opacity, 0.9999)) / unit; }
+
+static void add(plane_sum *sum, double extinction, const double color[3]) {
+  sum->extinction += extinction;
+  for (int c = 0; c < 3; c++) sum->color[c] += extinction * color[c];
+}
+
+static void add_boxes(const hl_transfer_function *function, const plane_box *part, plane_sum *sum) {
+  for (size_t b = 0; b < function->plane.box_count; b++) {
+    const hl_function_box *box = &function->plane.boxes[b];
+    double weight = weight_along(box, 0, part->low[0], part->high[0]);
+    if (weight > 0) weight *= weight_along(box, 1, part->low[1], part->high[1]);
+    if (weight > 0) add(sum, weight * extinction_of(box->opacity, function->unit_distance), box->color);
+  }
+}
+
+static void add_polygons(const hl_transfer_function *function, const double at[2], double share,
+                         plane_sum *sum) {
+  for (size_t p = 0; p < function->plane.polygon_count; p++) {
+    const hl_function_polygon *polygon = &function->plane.polygons[p];
+    double weight = share * weight_in_polygon(polygon, at);
+    if (weight > 0)
+      add(sum, weight * extinction_of(polygon->opacity, function->unit_distance), polygon->color);
+  }
+}
+
+/* The image's pixel at a point, bilinear. */
+static void sample_image(const hl_function_image *image, const double at[2], double pixel[4]) {
+  const int size[2] = {image->width, image->height};
+  int first[2], next[2];
+  double part[2];
+  for (int a = 0; a < 2; a++) {
+    double t = (at[a] - image->low[a]) / (image->high[a] - image->low[a]);
+    double x = fmin(fmax((a == 0 ? t : 1 - t) * size[a] - 0.5, 0), size[a] - 1);
+    first[a] = (int)x;
+    next[a] = first[a] + 1 < size[a] ? first[a] + 1 : first[a];
+    part[a] = x - first[a];
+  }
+  for (int c = 0; c < 4; c++) {
+    double row[2];
+    for (int y = 0; y < 2; y++) {
+      const float *of_row = image->pixels + 4 * (size_t)(y ? next[1] : first[1]) * (size_t)image->width + c;
+      double a = (double)of_row[4 * (size_t)first[0]], b = (double)of_row[4 * (size_t)next[0]];
+      row[y] = a + part[0] * (b - a);
+    }
+    pixel[c] = row[0] + part[1] * (row[1] - row[0]);
+  }
+}
+
+static void add_image(const hl_transfer_function *function, const double at[2], double share,
+                      plane_sum *sum) {
+  const hl_function_image *image = &function->plane.image;
+  double pixel[4];
+  if (image->pixels == NULL) return;
+  for (int a = 0; a < 2; a++)
+    if (!(at[a] >= image->low[a] && at[a] <= image->high[a])) return;
+  sample_image(image, at, pixel);
+  if (!(pixel[3] > 0)) return;
+  const double color[3] = {pixel[0] / pixel[3], pixel[1] / pixel[3], pixel[2] / pixel[3]};
+  add(sum, share * extinction_of(pixel[3], function->unit_distance), color);
+}
+
+enum { SAMPLES = 3 /* along each side of a part */ };
+
+plane_sum hl_plane_mean(const hl_transfer_function *function, const plane_box *part) {
+  plane_sum sum = {0, {0, 0, 0}};
+  const hl_function_plane *plane = &function->plane;
+  add_boxes(function, part, &sum);
+  if (plane->polygon_count == 0 && plane->image.pixels == NULL) return sum;
+  bool is_point = part->low[0] == part->high[0] && part->low[1] == part->high[1];
+  int samples = is_point ? 1 : SAMPLES;
+  for (int j = 0; j < samples; j++)
+    for (int i = 0; i < samples; i++) {
+      const double at[2] = {part->low[0] + (part->high[0] - part->low[0]) * (i + 0.5) / samples,
+                            part->low[1] + (part->high[1] - part->low[1]) * (j + 0.5) / samples};
+      add_polygons(function, at, 1.0 / (samples * samples), &sum);
+      add_image(function, at, 1.0 / (samples * samples), &sum);
+    }
+  return sum;
+}
+
+/* ---- the box around all shapes ---- */
+
+static void join(plane_box *bounds, const double low[2], const double high[2]) {
+  for (int a = 0; a < 2; a++) {
+    bounds->low[a] = fmin(bounds->low[a], low[a]);
+    bounds->high[a] = fmax(bounds->high[a], high[a]);
+  }
+}
+
+bool hl_plane_bounds(const hl_function_plane *plane, plane_box *bounds) {
+  *bounds = (plane_box){{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+  for (size_t b = 0; b < plane->box_count; b++) join(bounds, plane->boxes[b].low, plane->boxes[b].high);
+  for (size_t p = 0; p < plane->polygon_count; p++)
+    for (size_t v = 0; v < plane->polygons[p].vertex_count; v++)
+      join(bounds, plane->polygons[p].vertices[v], plane->polygons[p].vertices[v]);
+  if (plane->image.pixels != NULL) join(bounds, plane->image.low, plane->image.high);
+  return bounds->low[0] <= bounds->high[0];
+}
+
+/* ---- the outline over the value alone ---- */
+
+enum { OUTLINE_COLUMNS = 257 };
+
+/* The greatest opacity among shapes in a column of the plane, and sums of colours times opacity. */
+typedef struct column {
+  double greatest, opacity, color[3];
+} column;
+
+static void note(column *column, double opacity, const double color[3]) {
+  column->greatest = fmax(column->greatest, opacity);
+  column->opacity += opacity;
+  for (int c = 0; c < 3; c++) column->color[c] += opacity * color[c];
+}
+
+static void note_image(const hl_function_image *image, double from, double to, column *column) {
+  if (image->pixels == NULL || to < image->low[0] || from > image->high[0]) return;
+  double pixel = (image->high[0] - image->low[0]) / image->width;
+  int first = (int)fmax(floor((from - image->low[0]) / pixel - 0.5), 0),
+      last = (int)fmin(ceil((to - image->low[0]) / pixel - 0.5), image->width - 1);
+  for (int y = 0; y < image->height; y++)
+    for (int x = first; x <= last; x++) {
+      const float *at = image->pixels + 4 * ((size_t)y * (size_t)image->width + (size_t)x);
+      double opacity = (double)at[3];
+      if (!(opacity > 0)) continue;
+      const double color[3] = {(double)at[0] / opacity, (double)at[1] / opacity, (double)at[2] / opacity};
+      note(column, opacity, color);
+    }
+}
+
+static column column_between(const hl_function_plane *plane, double from, double to) {
+  column found = {0, 0, {0, 0, 0}};
+  for (size_t b = 0; b < plane->box_count; b++) {
+    const hl_function_box *box = &plane->boxes[b];
+    double middle = fmin(fmax((box->low[0] + box->high[0]) / 2, from), to);
+    double weight = weight_along(box, 0, middle, middle);
+    if (weight > 0) note(&found, 1 - pow(1 - box->opacity, weight), box->color);
+  }
+  for (size_t p = 0; p < plane->polygon_count; p++) {
+    const hl_function_polygon *polygon = &plane->polygons[p];
+    double low = INFINITY, high = -INFINITY;
+    for (size_t v = 0; v < polygon->vertex_count; v++) {
+      low = fmin(low, polygon->vertices[v][0]);
+      high = fmax(high, polygon->vertices[v][0]);
+    }
+    if (to >= low && from <= high) note(&found, polygon->opacity, polygon->color);
+  }
+  note_image(&plane->image, from, to, &found);
+  return found;
+}
+
+/* The outline holds beyond `low` and `high` where the shapes go on there; else it falls to 0. */
+hl_status hl_plane_outline(hl_context *context, double low, double high, hl_transfer_function *function,
+                           hl_error *error) {
+  plane_box bounds;
+  hl_opacity_point *opacity = hl_allocate(context, OUTLINE_COLUMNS + 2, sizeof *opacity);
+  hl_color_point *color = hl_allocate(context, OUTLINE_COLUMNS, sizeof *color);
+  function->opacity = opacity;
+  function->color = color;
+  function->opacity_count = function->color_count = 0;
+  if (opacity == NULL || color == NULL)
+    return hl_fail_memory(error, OUTLINE_COLUMNS * sizeof *color, "a transfer function");
+  bool some = hl_plane_bounds(&function->plane, &bounds) && bounds.low[0] <= high && bounds.high[0] >= low;
+  double from = fmax(bounds.low[0], low), to = fmin(bounds.high[0], high);
+  size_t points = 0, columns = !some ? 0 : to > from ? OUTLINE_COLUMNS : 1;
+  if (!some) opacity[points++] = (hl_opacity_point){low, 0};
+  if (some && bounds.low[0] > low) opacity[points++] = (hl_opacity_point){nextafter(from, -INFINITY), 0};
+  for (size_t n = 0; n < columns; n++) {
+    double step = (to - from) / (OUTLINE_COLUMNS - 1),
+           value = n + 1 == columns ? to : from + step * (double)n;
+    column found = column_between(&function->plane, value - step, value + step);
+    opacity[points++] = (hl_opacity_point){value, fmin(found.greatest, 1)};
+    if (!(found.opacity > 0)) continue;
+    hl_color_point *point = &color[function->color_count++];
+    point->value = value;
+    for (int c = 0; c < 3; c++) point->color[c] = fmin(found.color[c] / found.opacity, 1);
+  }
+  if (some && bounds.high[0] < high) opacity[points++] = (hl_opacity_point){nextafter(to, INFINITY), 0};
+  function->opacity_count = points;
+  return HL_OK;
+}

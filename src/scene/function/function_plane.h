@@ -1,0 +1,56 @@
+/* scene/function/function_plane.h - evaluating transfer functions of two numbers. */
+#ifndef HL_SCENE_FUNCTION_FUNCTION_PLANE_H
+#define HL_SCENE_FUNCTION_FUNCTION_PLANE_H
+
+#include <halflight/scene.h>
+#include <stdbool.h>
+
+#include "core/error.h"
+
+static inline bool hl_has_plane(const hl_transfer_function *function) {
+  return function->plane.second != HL_SECOND_NONE;
+}
+
+/* What the second number is multiplied by before the function takes it. */
+static inline double hl_plane_second_scale(const hl_function_plane *plane) {
+  return plane->second_scale == 0 ? 1 : plane->second_scale;
+}
+
+/* The keys of the two axes' ranges: "value" and "second". */
+extern const char *const hl_plane_range_keys[2];
+
+/* A part of the plane: [value, second number]. */
+typedef struct plane_box {
+  double low[2], high[2];
+} plane_box;
+
+/* The box around all shapes; false where there are none. */
+bool hl_plane_bounds(const hl_function_plane *plane, plane_box *bounds);
+
+/* Sums over all shapes, each a mean over a part of the plane. */
+typedef struct plane_sum {
+  double extinction; /* per world unit */
+  double color[3];   /* linear RGB, times extinction */
+} plane_sum;
+
+/* The function's mean over a part of the plane; at a point where low and high are the same. */
+plane_sum hl_plane_mean(const hl_transfer_function *function, const plane_box *part);
+
+/* Replaces the function's opacity and colour by what the plane shows of each value between low and high: for
+ * the greatest opacity a bound, which is 0 only where nothing shows with any second number. The points are
+ * owned by *function; those before are not freed. */
+hl_status hl_plane_outline(hl_context *context, double low, double high, hl_transfer_function *function,
+                           hl_error *error);
+
+/* Copies the plane; *to owns its arrays and texts, after a failure, too (hl_plane_release). */
+hl_status hl_plane_copy(hl_context *context, const hl_function_plane *from, hl_function_plane *to,
+                        hl_error *error);
+void hl_plane_release(hl_context *context, hl_function_plane *plane);
+
+/* A mark of the plane's content: of other content, another one. */
+uint64_t hl_plane_mark(const hl_function_plane *plane);
+
+/* Checks the plane of a transfer function; place: what errors call the function. */
+hl_status hl_plane_check(const hl_function_plane *plane, const char *place, hl_error *error);
+
+#endif

@@ -1,0 +1,166 @@
+/* scene/function/spread.c - moves a transfer function's points to another range of values, evenly or by
+ * logarithms.
+ *
+ * With t from 0 to 1 over the old range, a point moves to low + t (high - low), or to low (high / low)^t. The
+ * latter bends the straight lines between points, so there each line is divided where t is a multiple of
+ * 1/PIECES. */
+#include <math.h>
+#include <string.h>
+
+#include "core/door.h"
+#include "core/memory.h"
+#include "scene/function/transfer_function.h"
+
+/* A piece of t = 1/PIECES with d = ln(high / low) / PIECES strays from the logarithm by at most d^2 / 8, of
+ * ln(high / low): over six decades by 4e-4 of the range. Derived: the chord's distance from a logarithm. */
+enum { PIECES = 64 };
+
+hl_status hl_transfer_function_visible_range(const hl_volume *volume, const hl_transfer_function *function,
+                                             double range[2], hl_error *error) {
+  HL_DOOR;
+  hl_volume_info info = {.struct_size = sizeof info};
+  if (function == NULL || range == NULL || hl_volume_get_info(volume, &info) != HL_OK)
+    return hl_fail(error, HL_ERROR_ARGUMENT,
+                   "hl_transfer_function_visible_range: null volume, function or range");
+  range[0] = 0;
+  range[1] = 1;
+  if (info.range[0] < info.range[1]) memcpy(range, info.range, sizeof info.range);
+  const hl_opacity_point *points = function->opacity;
+  size_t count = function->opacity_count, first = 0, last = count;
+  while (first < count && points[first].opacity <= 0) first++;
+  while (last > first && points[last - 1].opacity <= 0) last--;
+  if (first == last) return HL_OK; /* nothing is visible */
+  double low = first > 0 ? points[first - 1].value : range[0];
+  double high = last < count ? points[last].value : range[1];
+  if (low > range[0] && low < range[1]) range[0] = low;
+  if (high > range[0] && high < range[1]) range[1] = high;
+  return HL_OK;
+}
+
+/* Points of opacity or colour, as rows of `width` numbers that begin with the value. */
+typedef struct rows {
+  const double *from; /* [count][width] */
+  size_t count, width;
+  double *to; /* [made][width] */
+  size_t made;
+} rows;
+
+/* Appends the row a + f (b - a), with the place t of the old range for its value. */
+static void add_row(rows *r, const double *a, const double *b, double f, double t) {
+  double *row = r->to + r->made++ * r->width;
+  row[0] = t;
+  for (size_t n = 1; n < r->width; n++) row[n] = f <= 0 ? a[n] : f >= 1 ? b[n] : a[n] + f * (b[n] - a[n]);
+}
+
+/* The place of a row in the old range; next to a multiple of 1/PIECES it is the multiple, so that no piece is
+ * empty but for rounding. */
+static double place_of(const double *row, const double old[2]) {
+  double t = (row[0] - old[0]) / (old[1] - old[0]), whole = round(t * PIECES);
+  return fabs(t * PIECES - whole) < 1e-9 ? whole / PIECES : t;
+}
+
+/* Appends the line from row a to the next one, its end left out, where t is from 0 to 1. */
+static void add_line(rows *r, size_t a, const double old[2]) {
+  const double *row = r->from + a * r->width, *next = row + r->width;
+  double start = place_of(row, old), end = place_of(next, old);
+  if (start >= 0 && start <= 1) add_row(r, row, row, 0, start);
+  for (int piece = 0; piece <= PIECES; piece++) {
+    double t = (double)piece / PIECES;
+    if (t > start && t < end) add_row(r, row, next, (t - start) / (end - start), t);
+  }
+}
+
+/* Appends all rows where t is from 0 to 1, divided; at least one. */
+static void divide_rows(rows *r, const double old[2]) {
+  const double *first = r->from, *last = r->from + (r->count - 1) * r->width;
+  double start = place_of(first, old), end = place_of(last, old);
+  if (start > 1) add_row(r, first, first, 0, 1);
+  for (size_t a = 0; a + 1 < r->count; a++) add_line(r, a, old);
+  if (end >= 0 && end <= 1) add_row(r, last, last, 0, end);
+  if (end < 0) add_row(r, last, last, 0, 0);
+}
+
+/* Spreads rows; *to (hl_release) and *made are the new ones. */
+static hl_status spread_rows(hl_context *context, rows *r, const double old[2], const double range[2],
+                             hl_range_scale scale, hl_error *error) {
+  if (r->count == 0) return HL_OK;
+  size_t most = scale == HL_RANGE_LOG ? r->count + PIECES + 2 : r->count;
+  r->to = hl_allocate(context, most * r->width, sizeof *r->to);
+  if (r->to == NULL) return hl_fail_memory(error, most * r->width * sizeof *r->to, "a transfer function");
+  if (scale == HL_RANGE_LINEAR) {
+    double factor = (range[1] - range[0]) / (old[1] - old[0]);
+    memcpy(r->to, r->from, r->count * r->width * sizeof *r->to);
+    r->made = r->count;
+    for (size_t n = 0; n < r->made; n++)
+      r->to[n * r->width] = range[0] + (r->to[n * r->width] - old[0]) * factor;
+    return HL_OK;
+  }
+  divide_rows(r, old);
+  double length = log(range[1] / range[0]);
+  for (size_t n = 0; n < r->made; n++) {
+    double *value = &r->to[n * r->width];
+    *value = *value <= 0 ? range[0] : *value >= 1 ? range[1] : range[0] * exp(*value * length);
+  }
+  return HL_OK;
+}
+
+static hl_status spread_all(hl_context *context, const hl_transfer_function *from, const double old[2],
+                            const double range[2], hl_range_scale scale, hl_transfer_function *to,
+                            hl_error *error) {
+  rows opacity = {.from = (const double *)from->opacity, .count = from->opacity_count, .width = 2};
+  rows color = {.from = (const double *)from->color, .count = from->color_count, .width = 4};
+  rows gradient = {
+      .from = (const double *)from->gradient_opacity, .count = from->gradient_opacity_count, .width = 2};
+  const double none[2] = {0, old[1] - old[0]}, widths[2] = {0, range[1] - range[0]};
+  hl_status status = spread_rows(context, &opacity, old, range, scale, error);
+  if (status == HL_OK) status = spread_rows(context, &color, old, range, scale, error);
+  if (status == HL_OK) status = spread_rows(context, &gradient, none, widths, HL_RANGE_LINEAR, error);
+  to->opacity = (hl_opacity_point *)opacity.to, to->opacity_count = opacity.made;
+  to->color = (hl_color_point *)color.to, to->color_count = color.made;
+  to->gradient_opacity = (hl_opacity_point *)gradient.to, to->gradient_opacity_count = gradient.made;
+  return status;
+}
+
+_Static_assert(sizeof(hl_opacity_point) == 2 * sizeof(double), "opacity points are rows of two numbers");
+_Static_assert(sizeof(hl_color_point) == 4 * sizeof(double), "colour points are rows of four numbers");
+
+hl_status hl_transfer_function_spread(hl_context *context, const hl_transfer_function *from,
+                                      const double old[2], const double range[2], hl_range_scale scale,
+                                      hl_transfer_function *to, hl_error *error) {
+  HL_DOOR;
+  if (context == NULL || from == NULL || old == NULL || range == NULL || to == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_spread: null argument");
+  if (!(old[0] < old[1] && isfinite(old[1] - old[0])))
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_spread: the old range is empty");
+  if (!(range[0] < range[1]) || !isfinite(range[1] - range[0]))
+    return hl_fail(error, HL_ERROR_INPUT, "range %.9g to %.9g is empty: give two values, the lower one first",
+                   range[0], range[1]);
+  if (scale == HL_RANGE_LOG && !(range[0] > 0 && isfinite(range[1] / range[0])))
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "a logarithmic range must be above 0, and %.9g to %.9g is not: give another range, or "
+                   "the linear scale",
+                   range[0], range[1]);
+  hl_transfer_function made = {.unit_distance = from->unit_distance};
+  hl_status status = spread_all(context, from, old, range, scale, &made, error);
+  if (status == HL_OK) *to = made;
+  else hl_transfer_function_release(context, &made);
+  return status;
+}
+
+hl_status hl_transfer_function_colormap_scaled(hl_context *context, const char *name, const double range[2],
+                                               hl_range_scale scale, hl_transfer_function *function,
+                                               hl_error *error) {
+  HL_DOOR;
+  hl_transfer_function even = {0}, scaled = {0};
+  if (range == NULL || function == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_colormap_scaled: null range or function");
+  hl_status status = hl_transfer_function_colormap(context, name, range[0], range[1], &even, error);
+  if (status != HL_OK) return status;
+  status = hl_transfer_function_spread(context, &even, range, range, scale, &scaled, error);
+  hl_transfer_function_release(context, &even);
+  if (status != HL_OK) return status;
+  hl_release(context, (void *)function->color);
+  function->color = scaled.color;
+  function->color_count = scaled.color_count;
+  return HL_OK;
+}

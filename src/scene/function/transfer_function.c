@@ -1,0 +1,139 @@
+/* scene/function/transfer_function.c - evaluates a transfer function at a value and over a range of values.
+ *
+ * Piecewise linear in data values, constant beyond the end points. Two points at one value make a step,
+ * which is continuous from above: at the value itself the second point holds.
+ */
+#include "scene/function/transfer_function.h"
+#include <math.h>
+#include <string.h>
+#include "core/door.h"
+#include "core/memory.h"
+#include "scene/function/function_plane.h"
+#include "text/edit_distance.h"
+
+/* The number of points whose value is <= value; points are spaced by stride bytes and begin with their
+ * value. */
+static size_t count_not_above(const void *points, size_t count, size_t stride, double value) {
+  size_t low = 0, high = count;
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    double at;
+    memcpy(&at, (const char *)points + middle * stride, sizeof at);
+    if (at <= value) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/* points: at least one. */
+static double opacity_between(const hl_opacity_point *points, size_t count, double value) {
+  size_t after = count_not_above(points, count, sizeof *points, value);
+  if (after == 0) return points[0].opacity;
+  if (after == count) return points[after - 1].opacity;
+  const hl_opacity_point *a = &points[after - 1], *b = &points[after];
+  double t = (value - a->value) / (b->value - a->value);
+  return a->opacity + t * (b->opacity - a->opacity);
+}
+
+double hl_transfer_function_opacity(const hl_transfer_function *function, double value) {
+  if (function->opacity_count == 0 || isnan(value)) return 0;
+  return opacity_between(function->opacity, function->opacity_count, value);
+}
+
+double hl_transfer_function_gradient_opacity(const hl_transfer_function *function, double gradient) {
+  if (function->gradient_opacity_count == 0) return 1;
+  return opacity_between(function->gradient_opacity, function->gradient_opacity_count, gradient);
+}
+
+void hl_transfer_function_color(const hl_transfer_function *function, double value, double color[3]) {
+  const hl_color_point *points = function->color;
+  size_t count = function->color_count;
+  if (count == 0) {
+    color[0] = color[1] = color[2] = 1;
+    return;
+  }
+  size_t after = isnan(value) ? 0 : count_not_above(points, count, sizeof *points, value);
+  if (after == 0 || after == count) {
+    memcpy(color, points[after == 0 ? 0 : count - 1].color, 3 * sizeof *color);
+    return;
+  }
+  const hl_color_point *a = &points[after - 1], *b = &points[after];
+  double t = (value - a->value) / (b->value - a->value);
+  for (int channel = 0; channel < 3; channel++)
+    color[channel] = a->color[channel] + t * (b->color[channel] - a->color[channel]);
+}
+
+int hl_transfer_function_visible(const hl_transfer_function *function, double low, double high) {
+  const hl_opacity_point *points = function->opacity;
+  if (!(low <= high)) return 0;
+  if (hl_transfer_function_opacity(function, low) > 0 || hl_transfer_function_opacity(function, high) > 0)
+    return 1;
+  /* Both ends are transparent: linear pieces between can only rise at a point inside, both points of a step
+   * counted. */
+  for (size_t p = count_not_above(points, function->opacity_count, sizeof *points, low);
+       p < function->opacity_count && points[p].value <= high; p++)
+    if (points[p].opacity > 0) return 1;
+  return 0;
+}
+
+/* The set of transparent values is made of intervals whose ends are points of the function, the end itself
+ * left out where a step rises there. So the points, the values just below them, the range's ends and the
+ * target are the candidates. */
+bool hl_transfer_function_transparent(const hl_transfer_function *function, double low, double high,
+                                      double target, double *nearest) {
+  double candidates[3] = {target, low, high}, best = INFINITY;
+  size_t first = count_not_above(function->opacity, function->opacity_count, sizeof *function->opacity, low);
+  for (size_t c = 0; c < 3 + 2 * (function->opacity_count - first); c++) {
+    double value = c < 3 ? candidates[c] : function->opacity[first + (c - 3) / 2].value;
+    if (c >= 3 && c % 2 == 0) value = nextafter(value, -INFINITY);
+    if (value < low) continue;
+    if (value > high) break;
+    if (fabs(value - target) >= best || hl_transfer_function_opacity(function, value) > 0) continue;
+    best = fabs(value - target);
+    *nearest = value;
+  }
+  return best < INFINITY;
+}
+
+void hl_transfer_function_release(hl_context *context, hl_transfer_function *function) {
+  if (context == NULL || function == NULL) return;
+  hl_release(context, (void *)function->opacity);
+  hl_release(context, (void *)function->color);
+  hl_release(context, (void *)function->gradient_opacity);
+  hl_plane_release(context, &function->plane);
+  *function = (hl_transfer_function){0};
+}
+
+static hl_status fail_unknown(const char *name, hl_error *error) {
+  const char *names[HL_COLORMAPS_MOST + 1];
+  char mend[400];
+  size_t index = 0;
+  do names[index] = hl_colormap_name(index);
+  while (names[index++] != NULL);
+  hl_suggest_name(name, names, mend, sizeof mend);
+  return hl_fail(error, HL_ERROR_INPUT, "unknown colormap \"%.80s\": %s", name, mend);
+}
+
+hl_status hl_transfer_function_colormap(hl_context *context, const char *name, double low, double high,
+                                        hl_transfer_function *function, hl_error *error) {
+  HL_DOOR;
+  double ignored[3];
+  if (context == NULL || name == NULL || function == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_transfer_function_colormap: null context, name or function");
+  if (!hl_colormap_evaluate(name, 0, ignored)) return fail_unknown(name, error);
+  if (!(low < high) || !isfinite(high - low))
+    return hl_fail(error, HL_ERROR_INPUT, "colormap range %.9g to %.9g: give two values, the lower one first",
+                   low, high);
+  size_t count = HL_COLORMAP_POINTS;
+  hl_color_point *points = hl_allocate(context, count, sizeof *points);
+  if (points == NULL) return hl_fail_memory(error, count * sizeof *points, "a colormap");
+  for (size_t p = 0; p < count; p++) {
+    double t = (double)p / (double)(count - 1);
+    points[p].value = p + 1 == count ? high : low + t * (high - low);
+    hl_colormap_evaluate(name, t, points[p].color);
+  }
+  hl_release(context, (void *)function->color);
+  function->color = points;
+  function->color_count = count;
+  return HL_OK;
+}

@@ -1,0 +1,169 @@
+/* scene/geometry/camera.c - the camera's axes, views, the camera turned to a view, and directions of lights
+ * as the camera sees them. */
+#include "scene/geometry/camera.h"
+
+#include <string.h>
+
+#include "core/door.h"
+#include "volume/volume.h"
+
+#define STEEP       89.5 /* degrees: steeper views lie too near the view's up for a camera's up */
+#define LEVEL       1e-6 /* sine of an angle: a horizon is level if it leans by no more */
+#define ANGLE_STEPS 1e9  /* steps of a degree that angles found from a camera's rounded coordinates get */
+#define OBLIQUE     0.9  /* cosine: an axis that is closer than this to up cannot be the front */
+
+bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward) {
+  vec3 sight = vec3_subtract(vec3_of(camera->target), vec3_of(camera->position));
+  vec3 given = vec3_normalise(vec3_of(camera->up));
+  *forward = vec3_length(sight) > 0 ? vec3_normalise(sight) : (vec3){0, 1, 0};
+  vec3 sideways = vec3_cross(*forward, given);
+  bool useful = vec3_length(sideways) > 1e-6;
+  if (!useful) {
+    given = fabs(forward->z) < 0.999 ? (vec3){0, 0, 1} : (vec3){0, 1, 0};
+    sideways = vec3_cross(*forward, given);
+  }
+  *right = vec3_normalise(sideways);
+  *up = vec3_cross(*right, *forward);
+  return useful;
+}
+
+void hl_light_direction_beside(double azimuth_deg, double elevation_deg, double direction[3]) {
+  HL_DOOR;
+  if (direction == NULL) return;
+  double azimuth = azimuth_deg * HL_PI / 180, elevation = elevation_deg * HL_PI / 180;
+  direction[0] = -cos(elevation) * sin(azimuth);
+  direction[1] = -sin(elevation);
+  direction[2] = -cos(elevation) * cos(azimuth);
+}
+
+void hl_light_direction(const hl_camera *camera, double azimuth_deg, double elevation_deg,
+                        double direction[3]) {
+  HL_DOOR;
+  if (direction == NULL) return;
+  for (int a = 0; a < 3; a++) direction[a] = 0;
+  if (camera == NULL) return;
+  vec3 right, up, forward;
+  double beside[3];
+  hl_camera_basis(camera, &right, &up, &forward);
+  hl_light_direction_beside(azimuth_deg, elevation_deg, beside);
+  vec3 way = vec3_scale(forward, -beside[2]);
+  way = vec3_add(way, vec3_scale(right, beside[0]));
+  way = vec3_add(way, vec3_scale(up, beside[1]));
+  memcpy(direction, &way, sizeof way);
+}
+
+/* The first volume that tells its space; null: there is none. Anatomy holds while a volume is not turned in
+ * the scene. */
+static const hl_volume *first_in_space(const hl_scene_description *description) {
+  for (size_t v = 0; v < description->volume_count; v++)
+    if (description->volumes[v].volume->space != HL_SPACE_UNKNOWN &&
+        description->volumes[v].rotate_angle_deg == 0)
+      return description->volumes[v].volume;
+  return NULL;
+}
+
+hl_space hl_scene_space(const hl_scene_description *description) {
+  const hl_volume *volume = first_in_space(description);
+  return volume != NULL ? volume->space : HL_SPACE_UNKNOWN;
+}
+
+bool hl_scene_is_anatomical(const hl_scene_description *description) {
+  const hl_volume *volume = first_in_space(description);
+  return volume != NULL && (volume->is_anatomical || volume->space == HL_SPACE_RAS);
+}
+
+static vec3 front_of(hl_space space) { return (vec3){0, space == HL_SPACE_LPS ? -1 : 1, 0}; }
+static vec3 beside(vec3 v, vec3 up) {
+  return vec3_normalise(vec3_subtract(v, vec3_scale(up, vec3_dot(v, up))));
+}
+
+void hl_view_about(const hl_scene_description *description, vec3 given_up, hl_view *view) {
+  vec3 up = vec3_normalise(given_up), x = {1, 0, 0}, y = {0, 1, 0};
+  hl_space space = hl_scene_space(description);
+  vec3 front = vec3_cross(beside(fabs(up.x) < OBLIQUE ? x : y, up), up);
+  if (space != HL_SPACE_UNKNOWN && fabs(vec3_dot(front_of(space), up)) < OBLIQUE)
+    front = beside(front_of(space), up);
+  *view = (hl_view){.up = {up.x, up.y, up.z},
+                    .front = {front.x, front.y, front.z},
+                    .azimuth_deg = HL_VIEW_AZIMUTH,
+                    .elevation_deg = HL_VIEW_ELEVATION};
+}
+
+/* The view's right, as seen by someone who looks at its front. */
+static vec3 right_of_front(const hl_view *view) {
+  return vec3_cross(vec3_of(view->up), vec3_of(view->front));
+}
+
+/* At elevation 90 the picture's up is where forward pointed on the horizon, so that up never jumps. */
+void hl_view_axes(const hl_view *view, vec3 *right, vec3 *up, vec3 *forward) {
+  double azimuth = view->azimuth_deg * HL_PI / 180, elevation = view->elevation_deg * HL_PI / 180,
+         roll = view->roll_deg * HL_PI / 180;
+  vec3 top = vec3_of(view->up), aside = right_of_front(view), ahead = vec3_scale(vec3_of(view->front), -1);
+  vec3 horizon = vec3_add(vec3_scale(ahead, cos(azimuth)), vec3_scale(aside, -sin(azimuth)));
+  vec3 level = vec3_add(vec3_scale(aside, cos(azimuth)), vec3_scale(ahead, sin(azimuth)));
+  vec3 upward = vec3_add(vec3_scale(horizon, sin(elevation)), vec3_scale(top, cos(elevation)));
+  *forward = vec3_add(vec3_scale(horizon, cos(elevation)), vec3_scale(top, -sin(elevation)));
+  *right = vec3_add(vec3_scale(level, cos(roll)), vec3_scale(upward, sin(roll)));
+  *up = vec3_add(vec3_scale(upward, cos(roll)), vec3_scale(level, -sin(roll)));
+}
+
+void hl_camera_place(const hl_view *view, vec3 target, double distance, hl_camera *camera) {
+  vec3 right, up, forward;
+  hl_view_axes(view, &right, &up, &forward);
+  vec3 position = vec3_subtract(target, vec3_scale(forward, distance));
+  if (view->roll_deg == 0 && fabs(view->elevation_deg) < STEEP) up = vec3_of(view->up);
+  memcpy(camera->target, &target, sizeof camera->target);
+  memcpy(camera->position, &position, sizeof camera->position);
+  memcpy(camera->up, &up, sizeof camera->up);
+}
+
+static double distance_of(const hl_camera *camera) {
+  return vec3_length(vec3_subtract(vec3_of(camera->target), vec3_of(camera->position)));
+}
+
+bool hl_view_is_possible(const hl_view *view) {
+  vec3 up = vec3_of(view->up), front = vec3_of(view->front);
+  return fabs(vec3_length(up) - 1) < LEVEL && fabs(vec3_length(front) - 1) < LEVEL &&
+         fabs(vec3_dot(up, front)) < LEVEL && isfinite(view->azimuth_deg) && isfinite(view->elevation_deg) &&
+         isfinite(view->roll_deg);
+}
+
+hl_status hl_camera_turn(const hl_view *view, hl_camera *camera) {
+  HL_DOOR;
+  if (view == NULL || camera == NULL || !hl_view_is_possible(view)) return HL_ERROR_ARGUMENT;
+  double distance = distance_of(camera);
+  if (!(distance > 0 && isfinite(distance))) return HL_ERROR_ARGUMENT;
+  hl_camera_place(view, vec3_of(camera->target), distance, camera);
+  return HL_OK;
+}
+
+/* Which way is up for a camera: its up vector, unless that was made perpendicular to the line of sight from
+ * an axis of the world. Then it is this axis: the first of z, y, x and their opposites for which the picture
+ * is level. */
+static vec3 upright_of(const hl_camera *camera) {
+  static const vec3 axes[] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}, {0, -1, 0}, {-1, 0, 0}};
+  vec3 right, up, forward, given = vec3_normalise(vec3_of(camera->up));
+  if (!hl_camera_basis(camera, &right, &up, &forward)) given = up;
+  if (fabs(given.x) + fabs(given.y) + fabs(given.z) == 1 || fabs(vec3_dot(given, forward)) > LEVEL)
+    return given;
+  for (int a = 0; a < 6; a++)
+    if (fabs(vec3_dot(axes[a], right)) < LEVEL && vec3_dot(axes[a], up) > 0.01) return axes[a];
+  return given;
+}
+
+static double rounded(double degrees) { return round(degrees * ANGLE_STEPS) / ANGLE_STEPS; }
+
+hl_status hl_view_of_camera(const hl_scene_description *description, hl_view *view) {
+  HL_DOOR;
+  if (description == NULL || view == NULL) return HL_ERROR_ARGUMENT;
+  const hl_camera *camera = &description->camera;
+  double distance = distance_of(camera);
+  if (!(distance > 0 && isfinite(distance) && isfinite(vec3_length(vec3_of(camera->up)))))
+    return HL_ERROR_ARGUMENT;
+  hl_view_about(description, upright_of(camera), view);
+  vec3 eye = vec3_subtract(vec3_of(camera->position), vec3_of(camera->target));
+  double across = vec3_dot(eye, right_of_front(view)), near = vec3_dot(eye, vec3_of(view->front));
+  view->elevation_deg = rounded(atan2(vec3_dot(eye, vec3_of(view->up)), hypot(across, near)) * 180 / HL_PI);
+  view->azimuth_deg = rounded(atan2(across, near) * 180 / HL_PI);
+  return HL_OK;
+}

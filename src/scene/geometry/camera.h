@@ -1,0 +1,37 @@
+/* scene/geometry/camera.h - the camera's axes, and directions of view (hl_view). */
+#ifndef HL_SCENE_GEOMETRY_CAMERA_H
+#define HL_SCENE_GEOMETRY_CAMERA_H
+
+#include <halflight/scene.h>
+#include <stdbool.h>
+
+#include "core/vector.h"
+
+/* The camera's unit axes: forward from position to target, up as near to the camera's up as a right angle
+ * allows. False if the camera's up lies along the line of sight: z is used then, or y where the line of sight
+ * is along z. */
+bool hl_camera_basis(const hl_camera *camera, vec3 *right, vec3 *up, vec3 *forward);
+
+#define HL_VIEW_AZIMUTH   30 /* of the three-quarter view, degrees */
+#define HL_VIEW_ELEVATION 20
+
+/* The picture's axes; unit. */
+void hl_view_axes(const hl_view *view, vec3 *right, vec3 *up, vec3 *forward);
+
+/* False where up and front are not unit vectors at a right angle, or an angle is not finite. */
+bool hl_view_is_possible(const hl_view *view);
+
+/* Places the camera at this distance from the target, in the view's direction. */
+void hl_camera_place(const hl_view *view, vec3 target, double distance, hl_camera *camera);
+
+/* The three-quarter view with this direction, of any length, up. Where a volume has anatomy, its front is the
+ * patient's. */
+void hl_view_about(const hl_scene_description *description, vec3 up, hl_view *view);
+
+/* The anatomy of the first volume that has one and is not turned in the scene. */
+hl_space hl_scene_space(const hl_scene_description *description);
+/* Whether hl_scene_space() is known to tell the anatomy, as in files of DICOM and NIfTI: bodies then stand
+ * upright along z. */
+bool hl_scene_is_anatomical(const hl_scene_description *description);
+
+#endif

@@ -1,0 +1,61 @@
+/* scene/geometry/placement.h - the positions of a scene's volumes and lights in the world, and frame space.
+ */
+#ifndef HL_SCENE_GEOMETRY_PLACEMENT_H
+#define HL_SCENE_GEOMETRY_PLACEMENT_H
+
+#include <halflight/scene.h>
+
+#include "scene/light/suns.h"
+#include "volume/volume.h"
+
+/* The volume's scale along x, y or z (axis 0 to 2) of the world of its file. */
+double hl_scene_volume_scale(const hl_scene_volume *volume, int axis);
+
+/* Index space of scene volume -> world: the volume's own placement, then scale, rotate, translate. */
+affine3 hl_scene_volume_index_to_world(const hl_scene_volume *volume);
+
+/* The same for the volume's mask. */
+affine3 hl_scene_mask_index_to_world(const hl_scene_volume *volume);
+
+/* A mesh's own space -> world: scale, rotate, translate. */
+affine3 hl_scene_mesh_to_world(const hl_scene_mesh *mesh);
+
+/* The box that the volume fills in its own index space: voxel cells from -0.5 to n-0.5, cut by clip
+ * (clip is a box in the file's own world; where the grid is oblique to it, its bounds in index space). */
+void hl_scene_volume_box(const hl_scene_volume *volume, double low[3], double high[3]);
+
+/* The smallest edge of a voxel. Without a volume: the longest side of the meshes' box in 200 parts. */
+double hl_scene_smallest_edge(const hl_scene_description *scene);
+
+/* Frame space, in which a scene is rendered: p -> (p - centre) / unit. centre is the middle of the boxes of
+ * all volumes, or, where there are none, of all meshes; unit is the power of two that the smallest voxel edge
+ * is 1 to 2 times as long as. */
+typedef struct hl_frame_space {
+  vec3 centre;
+  double unit;
+} hl_frame_space;
+
+/* The distance, in frame units, below which a light with falloff gets no brighter. */
+#define HL_LEAST_LIGHT_DISTANCE 1e-3
+
+hl_frame_space hl_scene_frame_space(const hl_scene_description *scene); /* of one volume or mesh at least */
+
+/* The empty value, of the volume's surroundings and of voxels that are not finite: the most frequent
+ * transparent value; if no value is transparent, a value below the volume's range, which is then treated as
+ * transparent. */
+double hl_scene_volume_empty_value(const hl_scene_volume *volume);
+
+/* The direction in which a directional or spot light travels, in the world. */
+vec3 hl_light_way(const hl_camera *camera, const hl_light *light);
+
+/* Copies a description with all lights converted to the world, the suns of its sky after them. Images are
+ * shared with `from` and `suns`; the array of lights and the vertices of polygons are owned by *to
+ * (hl_placed_lights_release). */
+hl_status hl_lights_place(hl_context *context, const hl_scene_description *from, const sky_suns *suns,
+                          hl_scene_description *to, hl_error *error);
+void hl_placed_lights_release(hl_context *context, hl_scene_description *placed);
+
+/* The first volume with this name; null: none. */
+const hl_scene_volume *hl_scene_volume_named(const hl_scene_description *scene, const char *name);
+
+#endif

@@ -1,0 +1,258 @@
+/* scene/label/label_table.c - see label_table.h. */
+#include "scene/label/label_table.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "scene/function/transfer_function.h"
+#include "volume/io/text.h"
+
+enum { MOST_BYTES = 4 << 20, MOST_WORDS = 12 };
+
+/* A word of a line: a number or a text. */
+typedef struct word {
+  char *text; /* in the list's names; ends with 0 */
+  double number;
+  int64_t whole;
+  bool is_number, is_whole, has_point;
+} word;
+
+/* The columns of a table with a header that are of use, as BIDS' dseg.tsv has them; -1: none. */
+typedef struct columns {
+  int value, name, color;
+} columns;
+
+static word make_word(char *text, bool quoted) {
+  word made = {.text = text, .has_point = strchr(text, '.') != NULL};
+  made.is_whole = !quoted && hl_text_whole(text, &made.whole);
+  made.is_number = !quoted && hl_text_numbers(text, &made.number, 1) == 1 && isfinite(made.number);
+  return made;
+}
+
+/* The characters that part a line's words. Names have blanks where another character follows the number and
+ * parts the rest: commas, semicolons, or tabs between all of the words. */
+static const char *separators_of(const char *line) {
+  const char *at = line + strspn(line, " \t");
+  at += strspn(at, "-0123456789");
+  at += strspn(at, " ");
+  int tabs = 0;
+  for (const char *c = line; *c != 0; c++) tabs += *c == '\t' && c[1] != '\t';
+  return *at == ',' ? "," : *at == ';' ? ";" : *at == '\t' && tabs >= 4 ? "\t" : " \t,;";
+}
+
+/* Parts a line into words, in place; quotes hold separators together. */
+static int part_line(char *line, word words[MOST_WORDS]) {
+  int count = 0;
+  const char *separators = separators_of(line);
+  for (char *at = line; count < MOST_WORDS;) {
+    while (*at == ' ' || (*at != 0 && strchr(separators, *at) != NULL)) at++;
+    if (*at == 0) break;
+    bool quoted = *at == '"';
+    char *begin = quoted ? ++at : at, *end = at + strcspn(at, quoted ? "\"" : separators);
+    at = end + (*end != 0);
+    *end = 0;
+    while (!quoted && end > begin && end[-1] == ' ') *--end = 0;
+    words[count++] = make_word(begin, quoted);
+  }
+  return count;
+}
+
+/* Parts a line at its tabs alone, in place: names have blanks, and fields may be empty. */
+static int part_at_tabs(char *line, word words[MOST_WORDS]) {
+  int count = 0;
+  for (char *at = line; at != NULL && count < MOST_WORDS;) {
+    char *end = strchr(at, '\t');
+    if (end != NULL) *end = 0;
+    words[count++] = make_word(at, false);
+    at = end != NULL ? end + 1 : NULL;
+  }
+  return count;
+}
+
+static bool is_word(const char *text, size_t length, const char *word) {
+  return strlen(word) == length && memcmp(text, word, length) == 0;
+}
+
+/* Whether a line is the header of a table with tabs, whose columns may be in any order. */
+static bool read_header(const char *line, columns *found) {
+  *found = (columns){-1, -1, -1};
+  if (strchr(line, '\t') == NULL) return false;
+  int column = 0;
+  for (const char *at = line; column < MOST_WORDS; column++) {
+    const size_t length = strcspn(at, "\t");
+    if (is_word(at, length, "index")) found->value = column;
+    else if (is_word(at, length, "name")) found->name = column;
+    else if (is_word(at, length, "color")) found->color = column;
+    if (at[length] == 0) break;
+    at += length + 1;
+  }
+  return found->value >= 0 && found->name >= 0;
+}
+
+/* The colour that begins at a word: three numbers. */
+static bool read_color(const word *words, double color[3]) {
+  bool fractions = true, point = false;
+  for (int c = 0; c < 3; c++) {
+    if (!words[c].is_number || words[c].number < 0 || words[c].number > 255) return false;
+    fractions &= words[c].number <= 1;
+    point |= words[c].has_point;
+  }
+  for (int c = 0; c < 3; c++) color[c] = hl_srgb_decode(words[c].number / (fractions && point ? 1 : 255));
+  return true;
+}
+
+/* Reads one line's label; false: it has none of the forms. */
+static bool read_label(const word *words, int count, hl_label *label) {
+  *label = (hl_label){.value = words[0].whole, .opacity = 1, .visible = 1};
+  if (count >= 5 && !words[1].is_number) {
+    label->name = words[1].text;
+    return read_color(words + 2, label->color);
+  }
+  if (count >= 8 && !words[count - 1].is_number) { /* ITK-SNAP */
+    label->name = words[count - 1].text;
+    label->visible = words[5].number != 0;
+    return read_color(words + 1, label->color);
+  }
+  if (count >= 2 && count < 5 && !words[1].is_number) {
+    label->name = words[1].text;
+    hl_label_distinct_color(label->value, label->color);
+    return true;
+  }
+  return false;
+}
+
+/* "#rrggbb". */
+static bool read_web_color(const char *text, double color[3]) {
+  char *end;
+  if (text[0] != '#' || strspn(text + 1, "0123456789abcdefABCDEF") != 6 || text[7] != 0) return false;
+  const unsigned long rgb = strtoul(text + 1, &end, 16);
+  for (int c = 0; c < 3; c++) color[c] = hl_srgb_decode((double)(rgb >> (16 - 8 * c) & 255) / 255);
+  return true;
+}
+
+/* Reads one line's label by the columns of a table; one without a colour ("n/a") gets one of its own. */
+static bool read_row(const word *words, int count, const columns *at, hl_label *label) {
+  if (at->name >= count) return false;
+  *label = (hl_label){
+      .value = words[at->value].whole, .name = words[at->name].text, .opacity = 1, .visible = 1};
+  if (at->color < 0 || at->color >= count || !read_web_color(words[at->color].text, label->color))
+    hl_label_distinct_color(label->value, label->color);
+  return true;
+}
+
+static int by_value(const void *a, const void *b) {
+  const hl_label *x = a, *y = b;
+  if (x->value != y->value) return x->value < y->value ? -1 : 1;
+  return x->name < y->name ? -1 : x->name > y->name; /* names lie in the order of lines */
+}
+
+static hl_status fail_line(const char *name, size_t line, const char *what, hl_error *error) {
+  return hl_fail(
+      error, HL_ERROR_INPUT,
+      "%s: line %zu: %s: give a label's number, name, red, green and blue, as FreeSurfer, ITK-SNAP "
+      "or CSV tables do",
+      name, line, what);
+}
+
+/* Adds a line's label; lines without one are passed over. */
+static hl_status add_line(const char *name, size_t number, char *line, columns *table, hl_label_list *list,
+                          hl_error *error) {
+  word words[MOST_WORDS];
+  if (table->value < 0 && list->count == 0 && read_header(line, table)) return HL_OK;
+  const bool has_columns = table->value >= 0;
+  const int count = has_columns ? part_at_tabs(line, words) : part_line(line, words);
+  if (count == 0 || words[0].text[0] == '#' || (count == 1 && words[0].text[0] == 0)) return HL_OK;
+  const int value = has_columns ? table->value : 0;
+  if (value >= count || !words[value].is_number)
+    return list->count == 0 && !has_columns ? HL_OK : fail_line(name, number, "begins with no number", error);
+  if (!words[value].is_whole) return fail_line(name, number, "its number is no label's", error);
+  if (list->count == HL_MOST_LABELS) return fail_line(name, number, "too many labels", error);
+  hl_label *label = &list->labels[list->count];
+  if (!(has_columns ? read_row(words, count, table, label) : read_label(words, count, label)))
+    return fail_line(name, number, "is no label", error);
+  list->count++;
+  return HL_OK;
+}
+
+/* Sorts by value; of several lines for one label the last counts. */
+static void sort(hl_label_list *list) {
+  size_t kept = 0;
+  qsort(list->labels, list->count, sizeof *list->labels, by_value);
+  for (size_t n = 0; n < list->count; n++) {
+    if (kept > 0 && list->labels[kept - 1].value == list->labels[n].value) kept--;
+    list->labels[kept++] = list->labels[n];
+  }
+  list->count = kept;
+}
+
+/* Behind the mark of UTF-8 text, if there is one. */
+static char *skip_mark(char *text) { return strncmp(text, "\xef\xbb\xbf", 3) == 0 ? text + 3 : text; }
+
+/* Ends a line at its line feed, its carriage return or both. Returns the next line; null: there is none. */
+static char *end_line(char *line) {
+  char *end = line + strcspn(line, "\r\n");
+  if (*end == 0) return NULL;
+  char *next = end + (end[0] == '\r' && end[1] == '\n' ? 2 : 1);
+  *end = 0;
+  return next;
+}
+
+hl_status hl_label_table_parse(hl_context *context, const char *text, size_t length, const char *name,
+                               hl_label_list *list, hl_error *error) {
+  *list = (hl_label_list){.labels = hl_allocate(context, HL_MOST_LABELS, sizeof *list->labels),
+                          .names = hl_allocate(context, length + 1, 1)};
+  if (list->labels == NULL || list->names == NULL) {
+    hl_label_list_release(context, list);
+    return hl_fail_memory(error, HL_MOST_LABELS * sizeof *list->labels, "a table of labels");
+  }
+  memcpy(list->names, text, length);
+  list->names[length] = 0;
+  hl_status status = HL_OK;
+  size_t number = 1;
+  columns table = {-1, -1, -1};
+  for (char *line = skip_mark(list->names); line != NULL && status == HL_OK; number++) {
+    char *next = end_line(line);
+    status = add_line(name, number, line, &table, list, error);
+    line = next;
+  }
+  if (status == HL_OK && list->count == 0)
+    status = hl_fail(error, HL_ERROR_INPUT,
+                     "%s: no label is in it: give lines of number, name, red, green, blue", name);
+  if (status == HL_OK) sort(list);
+  else hl_label_list_release(context, list);
+  return status;
+}
+
+hl_status hl_label_table_load(hl_context *context, const char *path, hl_label_list *list, hl_error *error) {
+  unsigned char *bytes = NULL;
+  size_t length = 0;
+  *list = (hl_label_list){0};
+  hl_status status = hl_file_read(context, path, MOST_BYTES, &bytes, &length, error);
+  if (status == HL_OK) status = hl_label_table_parse(context, (char *)bytes, length, path, list, error);
+  hl_release(context, bytes);
+  return status;
+}
+
+void hl_label_list_release(hl_context *context, hl_label_list *list) {
+  hl_release(context, list->labels);
+  hl_release(context, list->names);
+  *list = (hl_label_list){0};
+}
+
+/* The golden ratio's fraction, times 2^64. By it successive hues are as far from all earlier ones as can be.
+ * The product with a label, modulo 2^64, is the fraction of the turn, exact for numbers of any size. */
+static const uint64_t GOLDEN = 0x9e3779b97f4a7c15u;
+
+void hl_label_distinct_color(int64_t value, double linear[3]) {
+  static const double strengths[3] = {0.72, 0.5, 0.85};
+  double hue = 6 * (double)((uint64_t)value * GOLDEN >> 11) * 0x1p-53;
+  double strength = strengths[(value < 0 ? 0 - (uint64_t)value : (uint64_t)value) % 3];
+  for (int c = 0; c < 3; c++) {
+    double away = fabs(fmod(hue + 6 - 2 * c, 6) - 3); /* 3: this channel's own hue is opposite */
+    double pure = fmin(fmax(away - 1, 0), 1);
+    linear[c] = hl_srgb_decode(0.92 * (1 - strength * (1 - pure)));
+  }
+}

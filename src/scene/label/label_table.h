@@ -1,0 +1,31 @@
+/* scene/label/label_table.h - names and colours of labels, from a file: FreeSurfer's and Slicer's colour
+ * tables, ITK-SNAP's label descriptions, CSV. */
+#ifndef HL_SCENE_LABEL_LABEL_TABLE_H
+#define HL_SCENE_LABEL_LABEL_TABLE_H
+
+#include <halflight/scene.h>
+
+#include "core/error.h"
+
+enum { HL_MOST_LABELS = 16384 };
+
+/* Labels with their names in one block; owned (hl_label_list_release). */
+typedef struct hl_label_list {
+  hl_label *labels; /* [count]; rising by value */
+  size_t count;
+  char *names; /* what the labels' names point into */
+} hl_label_list;
+
+/* Reads a table. Lines are "number name R G B [A]", "number R G B A visible mesh \"name\"" or either with
+ * commas; colours are sRGB, of 0 to 255 or, where none is above 1 and one has a point, of 0 to 1. Lines that
+ * begin with #, and a first line without a number, are skipped. */
+hl_status hl_label_table_load(hl_context *context, const char *path, hl_label_list *list, hl_error *error);
+/* The same from memory; name: what errors call the text. */
+hl_status hl_label_table_parse(hl_context *context, const char *text, size_t length, const char *name,
+                               hl_label_list *list, hl_error *error);
+void hl_label_list_release(hl_context *context, hl_label_list *list);
+
+/* A colour of its own for each label: hues a golden angle apart. */
+void hl_label_distinct_color(int64_t value, double linear[3]);
+
+#endif

@@ -1,0 +1,83 @@
+/* scene/light/light_kind.h - the interface of a type of light.
+ *
+ * A type of light is a table in a file of its own: what its settings must be together, and its shape as
+ * geometry. light_kinds.h lists the types. Checks, files and everything that renders ask the table: they do
+ * not name a type. (The reference, which shares no code with what it judges, names them.)
+ *
+ * `facing` is a unit vector: from the light to the content, of parallel light its direction. Offsets are from
+ * the light's centre; of parallel light they are from its direction, and directions are points at distance 1.
+ */
+#ifndef HL_SCENE_LIGHT_LIGHT_KIND_H
+#define HL_SCENE_LIGHT_LIGHT_KIND_H
+
+#include "scene/check/reach.h"
+#include "scene/light/light_kinds.h"
+#include "scene/light/light_shape.h"
+
+typedef struct light_kind {
+  /* ---- what it is ---- */
+  bool parallel;      /* it is infinitely far away, and has a direction in place of a position */
+  bool sphere;        /* it looks like the disk that faces whoever looks */
+  bool cone;          /* it shines within a cone around `direction` alone */
+  bool outline;       /* `vertices` say its shape and its place */
+  bool parallelogram; /* the unit square lies along edge1 and edge2 */
+  double deviations;  /* its extent is so many standard deviations of its points */
+
+  /* ---- checks; settings are in their ranges already ---- */
+  hl_status (*check)(const hl_checker *check,
+                     const hl_light *light); /* null: nothing more is to be checked */
+  /* Whether floats hold its places beside the scene's voxels. */
+  hl_status (*check_reach)(const hl_checker *check, const hl_light *light, const hl_frame_space *space);
+
+  /* ---- its shape ---- */
+  vec3 (*centre)(const hl_light *light); /* null: it has none */
+  /* The mean of x x' over all its points, x being their offsets: a rect has (e1 e1' + e2 e2') / 12, a disk
+   * r^2/4 (1 - n n'). */
+  mat3 (*spread)(const hl_light *light, vec3 facing);
+  /* The offset of the point for (a, b) of the unit square: equal areas to equal areas. */
+  vec3 (*point)(const hl_light *light, vec3 facing, double a, double b);
+  /* The plane of its emission image. */
+  emission_plane (*plane)(const hl_light *light, vec3 facing);
+  bool (*has_surface)(const hl_light *light); /* an image can be on it */
+  bool (*is_wide)(const hl_light *light);     /* it is more than a point, or than one direction */
+  /* How long the two sides of the unit square look along a unit vector, in units of length; infinite: not
+   * known. Null where the light is parallel. */
+  void (*apparent_lengths)(const hl_light *light, vec3 along, double length[2]);
+} light_kind;
+
+/* The table of a light's type. */
+const light_kind *hl_light_kind(const hl_light *light);
+
+/* The light's centre, world; not for parallel lights. */
+static inline vec3 hl_light_centre(const hl_light *light) { return hl_light_kind(light)->centre(light); }
+
+/* Spheres, and the directions of parallel light, count as the disk perpendicular to `facing`. */
+static inline mat3 hl_light_spread(const hl_light *light, vec3 facing) {
+  return hl_light_kind(light)->spread(light, facing);
+}
+
+static inline emission_plane hl_emission_plane(const hl_light *light, vec3 facing) {
+  return hl_light_kind(light)->plane(light, facing);
+}
+
+/* Whether a light is wider than a point, or, if it is parallel, than one direction. */
+static inline bool hl_light_is_wide(const hl_light *light) { return hl_light_kind(light)->is_wide(light); }
+
+/* ---- for types whose place is `position` and whose shape is a disk or a sphere of `radius` ---- */
+
+vec3 hl_position_of_light(const hl_light *light);
+hl_status hl_check_round_reach(const hl_checker *check, const hl_light *light, const hl_frame_space *space);
+bool hl_has_radius(const hl_light *light);
+void hl_apparent_diameter(const hl_light *light, vec3 along, double length[2]);
+/* The shape of a disk of this radius that faces along a unit vector: of a sphere whoever looks at it, of a
+ * disk its normal. */
+mat3 hl_round_spread(const hl_light *light, vec3 facing);
+vec3 hl_round_point(const hl_light *light, vec3 facing, double a, double b);
+emission_plane hl_round_plane(const hl_light *light, vec3 facing);
+
+/* The tables, one a file. */
+#define HL_LIGHT_KIND(value, name) extern const light_kind hl_light_kind_##name;
+HL_LIGHT_KINDS
+#undef HL_LIGHT_KIND
+
+#endif

@@ -1,0 +1,53 @@
+/* scene/light/light_shape.h - the shapes of extended lights as geometry: centre, area, points, spread. */
+#ifndef HL_SCENE_LIGHT_LIGHT_SHAPE_H
+#define HL_SCENE_LIGHT_LIGHT_SHAPE_H
+
+#include <halflight/scene.h>
+
+#include "core/vector.h"
+
+typedef struct polygon_shape {
+  vec3 normal; /* unit; zero where there is no area */
+  double area;
+  double diameter; /* of the vertices' bounds: the greatest side */
+  vec3 centre;     /* of area */
+  mat3 spread;     /* mean of (x - centre)(x - centre)' over the area */
+} polygon_shape;
+
+/* vertices: in order around the polygon, of either sense; [count][3]. */
+polygon_shape hl_polygon_shape(const double (*vertices)[3], size_t count);
+
+/* Greatest distance of a vertex from the plane through the centre. */
+double hl_polygon_unevenness(const polygon_shape *shape, const double (*vertices)[3], size_t count);
+
+/* Whether two edges cross each other (touching is not crossing). */
+bool hl_polygon_crosses_itself(const polygon_shape *shape, const double (*vertices)[3], size_t count);
+
+/* The plane of a light's emission image: offsets from the light's centre, or for parallel light from the
+ * direction towards it, at distance 1. */
+typedef struct emission_plane {
+  vec3 middle;    /* of the image */
+  vec3 right, up; /* from there to the middles of its right and top edges */
+} emission_plane;
+
+/* Unit vectors to the right and upwards, as seen by someone who looks against a unit normal. */
+void hl_upright(vec3 normal, vec3 wanted_up, vec3 *right, vec3 *up);
+
+/* The image coordinates of an offset in the plane: s along right and t along up, each from -1 to 1 within the
+ * image. */
+void hl_emission_place(const emission_plane *plane, vec3 offset, double *s, double *t);
+
+/* ---- disks; normal: unit ---- */
+
+/* The offset from the centre of the point for (a, b) of the unit square, equal areas to equal areas. */
+vec3 hl_disk_point(vec3 normal, double radius, double a, double b);
+mat3 hl_disk_spread(vec3 normal, double radius);
+/* The square around the disk. */
+emission_plane hl_disk_plane(vec3 normal, double radius, vec3 wanted_up);
+
+/* ---- second moments ---- */
+
+mat3 hl_outer(vec3 a, vec3 b); /* a b' */
+mat3 hl_add_scaled(mat3 a, mat3 b, double scale);
+
+#endif

@@ -1,0 +1,60 @@
+/* scene/light/rect.c - a light that is a parallelogram, given by its centre and two edges; of one edge
+ * without length, a line. */
+#include "scene/light/light_kind.h"
+
+/* The least area of a parallelogram that an image can be on, as a part of the product of its edges. */
+static const double THIN = 1e-6;
+
+static hl_status reaches(const hl_checker *check, const hl_light *light, const hl_frame_space *space) {
+  hl_status status = hl_check_round_reach(check, light, space);
+  if (status == HL_OK) status = hl_check_reach(check, "edge1", vec3_length(vec3_of(light->edge1)), space);
+  if (status == HL_OK) status = hl_check_reach(check, "edge2", vec3_length(vec3_of(light->edge2)), space);
+  return status;
+}
+
+/* Derived: the mean of t^2 over t in [-1/2, 1/2] is 1/12. */
+static mat3 spread(const hl_light *light, vec3 facing) {
+  (void)facing;
+  mat3 none = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
+  vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
+  return hl_add_scaled(hl_add_scaled(none, hl_outer(edge1, edge1), 1.0 / 12), hl_outer(edge2, edge2),
+                       1.0 / 12);
+}
+
+static vec3 point(const hl_light *light, vec3 facing, double a, double b) {
+  (void)facing;
+  return vec3_add(vec3_scale(vec3_of(light->edge1), a - 0.5), vec3_scale(vec3_of(light->edge2), b - 0.5));
+}
+
+static emission_plane plane(const hl_light *light, vec3 facing) {
+  (void)facing;
+  return (emission_plane){.middle = {0, 0, 0},
+                          .right = vec3_scale(vec3_of(light->edge1), 0.5),
+                          .up = vec3_scale(vec3_of(light->edge2), 0.5)};
+}
+
+static bool has_surface(const hl_light *light) {
+  vec3 edge1 = vec3_of(light->edge1), edge2 = vec3_of(light->edge2);
+  return vec3_length(vec3_cross(edge1, edge2)) > THIN * vec3_length(edge1) * vec3_length(edge2);
+}
+
+static bool is_wide(const hl_light *light) {
+  return vec3_length(vec3_of(light->edge1)) + vec3_length(vec3_of(light->edge2)) > 0;
+}
+
+static void apparent_lengths(const hl_light *light, vec3 along, double length[2]) {
+  length[0] = vec3_length(vec3_cross(vec3_of(light->edge1), along));
+  length[1] = vec3_length(vec3_cross(vec3_of(light->edge2), along));
+}
+
+/* A box is sqrt(12) standard deviations wide. */
+const light_kind hl_light_kind_rect = {.parallelogram = true,
+                                       .deviations = 3.4641016151377544,
+                                       .check_reach = reaches,
+                                       .centre = hl_position_of_light,
+                                       .spread = spread,
+                                       .point = point,
+                                       .plane = plane,
+                                       .has_surface = has_surface,
+                                       .is_wide = is_wide,
+                                       .apparent_lengths = apparent_lengths};

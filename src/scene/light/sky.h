@@ -1,0 +1,27 @@
+/* scene/light/sky.h - the radiance of a sky from a direction. */
+#ifndef HL_SCENE_LIGHT_SKY_H
+#define HL_SCENE_LIGHT_SKY_H
+
+#include <halflight/scene.h>
+
+#include "core/key.h"
+#include "core/vector.h"
+#include "scene/check/checker.h"
+
+/* The sky's own axes: unit vectors in the world, at right angles to each other. */
+typedef struct sky_axes {
+  vec3 right, middle, up; /* middle: towards the image's middle column; right: to the right of it */
+} sky_axes;
+
+sky_axes hl_sky_axes(const hl_sky *sky);
+
+/* The radiance from a direction (unit, world, towards the sky), times the strength; 0 below the horizon of a
+ * hemisphere, and for no sky. */
+void hl_sky_radiance(const hl_sky *sky, const sky_axes *axes, vec3 direction, double radiance[3]);
+
+/* Adds all that the radiance depends on. mark: of the image's pixels (hl_scene.sky_mark). */
+void hl_sky_key_add(hl_key *key, const hl_sky *sky, uint64_t mark);
+
+hl_status hl_sky_check(const hl_sky *sky, hl_error *error);
+
+#endif

@@ -1,0 +1,405 @@
+/* scene/light/suns.c - finds the suns of a sky's image, and makes lights of them.
+ *
+ * The search goes from the brightest pixel on. Around it the spot is a cap of directions: of a ladder of
+ * radii, the one that holds the most light for its size. What a pixel of the cap has beyond the brightest of
+ * the ring around the cap, in each channel, is the sun's; the rest stays in the image, which so has no step
+ * at the cap's rim. Spots that are too wide, or too weak for a light of their own, stay as they are.
+ *
+ * The image is bilinear between the middles of its pixels (scene/light/sky.c), a sum of one tent for each
+ * pixel. Integrals over a tent's directions are those over its row's angle times those over its column's. */
+#include "scene/light/suns.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+#include "scene/light/sky.h"
+
+/* A sun's half angle is at most so wide; light farther from its middle is no part of it. */
+static const double WIDEST = 12 * HL_PI / 180, FARTHEST = 20 * HL_PI / 180;
+/* Radii fall by this factor, from the farthest to less than a pixel. */
+static const double LADDER = 0.70710678118654752;
+/* The ring around a cap is as much wider, and by so many rows of the image. */
+static const double RING = 1.2, RING_ROWS = 1.5;
+/* A sun's brightest pixel is so many times as bright as the mean of the image. */
+static const double FAR_ABOVE = 8;
+/* A sun sends at least this fraction of the image's light. */
+static const double LEAST_SHARE = 0.05;
+/* What surrounds a sun has at most this fraction of its brightest pixel. */
+static const double MOST_AROUND = 0.5;
+
+enum { TRIES = 64 /* spots that are looked at */, STEPS = 16 /* towards the middle of one */ };
+
+/* ---- integrals over a pixel's tent ---- */
+
+/* Over its row's angle to up, a, of the tent times sin a, sin^2 a and sin a cos a: the parts of the solid
+ * angle and of the directions across and along up. */
+typedef struct row_integrals {
+  double area, across, along;
+} row_integrals;
+
+/* Gauss and Legendre's rule of five points: pieces are at most half a turn long, rarely more than a degree.
+ */
+static const double NODES[5] = {-0.906179845938664, -0.538469310105683, 0, 0.538469310105683,
+                                0.906179845938664},
+                    WEIGHTS[5] = {0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366,
+                                  0.236926885056189};
+
+/* Adds the piece from `from` to `to`, cut at `last`; the tent is 0 at `foot` and 1 at `top`, or 1 throughout
+ * where these are the same. */
+static void add_piece(double from, double to, double last, double foot, double top, row_integrals *sum) {
+  to = fmin(to, last);
+  for (int i = 0; i < 5 && to > from; i++) {
+    double a = (from + to) / 2 + (to - from) / 2 * NODES[i];
+    double part = (to - from) / 2 * WEIGHTS[i] * (foot == top ? 1 : (a - foot) / (top - foot));
+    sum->area += part * sin(a);
+    sum->across += part * sin(a) * sin(a);
+    sum->along += part * sin(a) * cos(a);
+  }
+}
+
+static row_integrals integrals_of_row(const hl_sky *sky, int row) {
+  row_integrals sum = {0, 0, 0};
+  double high = HL_PI / sky->height, top = (row + 0.5) * high, last = sky->hemisphere ? HL_PI / 2 : HL_PI;
+  bool first_row = row == 0, last_row = row == sky->height - 1;
+  add_piece(first_row ? 0 : top - high, top, last, first_row ? top : top - high, top, &sum);
+  add_piece(top, last_row ? HL_PI : top + high, last, last_row ? top : top + high, top, &sum);
+  return sum;
+}
+
+/* ---- the image ---- */
+
+typedef struct cap {
+  vec3 middle;
+  double radius;
+} cap;
+
+typedef struct brightest {
+  float brightness; /* sum of the channels; 0: none */
+  int column;
+} brightest;
+
+typedef struct search {
+  const hl_sky *sky;
+  const float *pixels;  /* [height][width][3]; the image without the suns found so far */
+  row_integrals *rows;  /* [height] */
+  double (*columns)[2]; /* [width]: sine and cosine of the angle to the middle column */
+  brightest *peaks;     /* [height]: outside of the caps that are left out */
+  double wide, bend;    /* integrals over a column's tent: of 1, and of the cosine to its middle */
+  cap left_out[TRIES];  /* no sun begins there */
+  int left_out_count;
+  double mean, total; /* brightness of the whole image: mean, and integral */
+} search;
+
+static float brightness_of(const float *pixel) { return pixel[0] + pixel[1] + pixel[2]; }
+
+static vec3 direction_of(const search *all, int row, int column) {
+  double angle = (row + 0.5) * HL_PI / all->sky->height, across = sin(angle);
+  return (vec3){across * all->columns[column][0], across * all->columns[column][1], cos(angle)};
+}
+
+static size_t place_of(const search *all, int row, int column) {
+  return 3 * ((size_t)row * (size_t)all->sky->width + (size_t)column);
+}
+
+static const float *pixel_of(const search *all, int row, int column) {
+  return all->pixels + place_of(all, row, column);
+}
+
+/* The integral of unit vectors over a pixel's tent. */
+static vec3 moment_of(const search *all, int row, int column) {
+  const row_integrals *of = &all->rows[row];
+  double across = of->across * all->bend;
+  return (vec3){across * all->columns[column][0], across * all->columns[column][1], of->along * all->wide};
+}
+
+static bool is_left_out(const search *all, vec3 direction) {
+  for (int i = 0; i < all->left_out_count; i++)
+    if (vec3_dot(direction, all->left_out[i].middle) > cos(all->left_out[i].radius)) return true;
+  return false;
+}
+
+static void find_row_peak(search *all, int row) {
+  brightest *peak = &all->peaks[row];
+  *peak = (brightest){0, 0};
+  if (!(all->rows[row].area > 0)) return;
+  for (int column = 0; column < all->sky->width; column++) {
+    float brightness = brightness_of(pixel_of(all, row, column));
+    if (brightness <= peak->brightness) continue;
+    if (all->left_out_count > 0 && is_left_out(all, direction_of(all, row, column))) continue;
+    *peak = (brightest){brightness, column};
+  }
+}
+
+/* Rows that a cap may touch. */
+static void rows_of_cap(const search *all, const cap *of, int *first, int *end) {
+  double angle = acos(fmin(fmax(of->middle.z, -1), 1)), rows = all->sky->height / HL_PI;
+  *first = (int)fmax(floor((angle - of->radius) * rows - 1), 0);
+  *end = (int)fmin(ceil((angle + of->radius) * rows + 1), all->sky->height);
+}
+
+static void renew_peaks(search *all, const cap *changed) {
+  int first, end;
+  rows_of_cap(all, changed, &first, &end);
+  for (int row = first; row < end; row++) find_row_peak(all, row);
+}
+
+typedef void visit_pixel(const search *all, int row, int column, void *data);
+
+/* The columns of a row that a cap may touch: so many on either side of its middle. Derived: a direction at
+ * the angles a and b to up and t about it has the cosine sin a sin b cos t + cos a cos b to the middle. */
+static int columns_of_cap(const search *all, const cap *of, int row) {
+  double a = (row + 0.5) * HL_PI / all->sky->height, b = acos(fmin(fmax(of->middle.z, -1), 1));
+  double least = (cos(of->radius) - cos(a) * cos(b)) / fmax(sin(a) * sin(b), 1e-12);
+  if (least > 1) return 0;
+  double turn = least < -1 ? HL_PI : acos(least);
+  return (int)fmin(ceil(turn / (2 * HL_PI) * all->sky->width + 1), all->sky->width / 2 + 1.0);
+}
+
+/* Visits the pixels whose middles are farther than `nearest` from the cap's middle, but within the cap.
+ * nearest below 0: all of it. */
+static void visit_cap(const search *all, const cap *of, double nearest, visit_pixel *visit, void *data) {
+  int first, end, width = all->sky->width;
+  rows_of_cap(all, of, &first, &end);
+  double least = cos(of->radius), most = nearest < 0 ? 2 : cos(nearest);
+  int middle = (int)((0.5 + atan2(of->middle.x, of->middle.y) / (2 * HL_PI)) * width);
+  for (int row = first; row < end; row++) {
+    int reach = columns_of_cap(all, of, row), low = middle - reach, high = middle + reach + 1;
+    if (high - low > width) low = 0, high = width;
+    for (int i = low; i < high && all->rows[row].area > 0; i++) {
+      int column = (i + width) % width;
+      double cosine = vec3_dot(direction_of(all, row, column), of->middle);
+      if (cosine >= least && cosine < most) visit(all, row, column, data);
+    }
+  }
+}
+
+/* ---- one spot ---- */
+
+typedef struct center {
+  float least;
+  vec3 sum;
+} center;
+
+static void add_to_center(const search *all, int row, int column, void *data) {
+  center *of = data;
+  float brightness = brightness_of(pixel_of(all, row, column));
+  if (brightness >= of->least)
+    of->sum = vec3_add(of->sum,
+                       vec3_scale(direction_of(all, row, column), all->rows[row].area * (double)brightness));
+}
+
+/* The middle of the spot around a pixel: of what is at least half as bright, as far as a cap about this
+ * middle reaches. */
+static vec3 find_middle(const search *all, int row, int column, double radius) {
+  cap around = {direction_of(all, row, column), radius};
+  for (int i = 0; i < STEPS; i++) {
+    center sum = {brightness_of(pixel_of(all, row, column)) / 2, {0, 0, 0}};
+    visit_cap(all, &around, -1, add_to_center, &sum);
+    vec3 before = around.middle;
+    if (vec3_length(sum.sum) > 0) around.middle = vec3_normalise(sum.sum);
+    if (vec3_length(vec3_subtract(around.middle, before)) < 1e-3 * HL_PI / all->sky->height) break;
+  }
+  return around.middle;
+}
+
+/* What a cap has beyond its surroundings. */
+typedef struct spot {
+  cap cap;
+  float around[3];      /* the greatest of the ring around it */
+  double irradiance[3]; /* of what is beyond */
+  double brightness;    /* the sum of these */
+  vec3 moment;          /* integral of brightness times unit vectors */
+} spot;
+
+static void raise_around(const search *all, int row, int column, void *data) {
+  spot *of = data;
+  const float *pixel = pixel_of(all, row, column);
+  for (int c = 0; c < 3; c++) of->around[c] = pixel[c] > of->around[c] ? pixel[c] : of->around[c];
+}
+
+static void add_beyond(const search *all, int row, int column, void *data) {
+  spot *of = data;
+  const float *pixel = pixel_of(all, row, column);
+  double sum = 0;
+  for (int c = 0; c < 3; c++) {
+    double beyond = fmax((double)pixel[c] - (double)of->around[c], 0);
+    of->irradiance[c] += beyond * all->rows[row].area * all->wide;
+    sum += beyond;
+  }
+  of->moment = vec3_add(of->moment, vec3_scale(moment_of(all, row, column), sum));
+}
+
+/* A spot that is taken out of the image. */
+typedef struct taking {
+  const spot *spot;
+  float *rest; /* the image */
+} taking;
+
+static void take_beyond(const search *all, int row, int column, void *data) {
+  const taking *of = data;
+  const float *around = of->spot->around;
+  float *pixel = of->rest + place_of(all, row, column);
+  for (int c = 0; c < 3; c++) pixel[c] = pixel[c] < around[c] ? pixel[c] : around[c];
+}
+
+static spot measure_spot(const search *all, vec3 middle, double radius) {
+  spot made = {.cap = {middle, radius}};
+  cap ring = {middle, RING * radius + RING_ROWS * HL_PI / all->sky->height};
+  visit_cap(all, &ring, radius, raise_around, &made);
+  visit_cap(all, &made.cap, -1, add_beyond, &made);
+  for (int c = 0; c < 3; c++) made.brightness += made.irradiance[c];
+  return made;
+}
+
+static spot spot_of_radius(const search *all, int row, int column, double radius) {
+  return measure_spot(all, find_middle(all, row, column, radius), radius);
+}
+
+/* The spot around a pixel whose radius holds the most light for its power of 3/4: of an even disk the least
+ * that holds all of it, of a Gaussian spot one with nine tenths; a small sun counts more than a glow around
+ * it that sends as much, and two suns side by side are two. The next wider one is taken where it holds more:
+ * what pixels at the rim have of a disk. */
+static spot find_spot(const search *all, int row, int column) {
+  spot best = {.cap = {direction_of(all, row, column), FARTHEST}}, wider = best;
+  double score = 0, least = 0.5 * HL_PI / all->sky->height;
+  for (double radius = FARTHEST; radius > least; radius *= LADDER) {
+    spot before = wider;
+    wider = spot_of_radius(all, row, column, radius);
+    double of_this = wider.brightness / sqrt(radius * sqrt(radius));
+    if (of_this <= score) continue;
+    score = of_this;
+    best = before.brightness > wider.brightness ? before : wider;
+  }
+  return best;
+}
+
+/* Derived: the mean of the unit vectors of a cap of half angle a is (1 + cos a) / 2 long. */
+static sky_sun sun_of_spot(const spot *of) {
+  sky_sun sun = {.towards = vec3_normalise(of->moment), .straight = vec3_length(of->moment) / of->brightness};
+  memcpy(sun.irradiance, of->irradiance, sizeof sun.irradiance);
+  sun.half_angle = acos(fmin(fmax(2 * sun.straight - 1, -1), 1));
+  return sun;
+}
+
+static bool is_sun(const search *all, const spot *of, float brightest) {
+  if (!(of->brightness >= LEAST_SHARE * all->total)) return false;
+  return brightness_of(of->around) <= MOST_AROUND * (double)brightest && sun_of_spot(of).half_angle <= WIDEST;
+}
+
+/* ---- the search ---- */
+
+static int brightest_row(const search *all) {
+  int best = 0;
+  for (int row = 1; row < all->sky->height; row++)
+    if (all->peaks[row].brightness > all->peaks[best].brightness) best = row;
+  return best;
+}
+
+static void leave_out(search *all, vec3 middle, double radius) {
+  cap *out = &all->left_out[all->left_out_count++];
+  *out = (cap){middle, fmin(2 * radius, FARTHEST)};
+  renew_peaks(all, out);
+}
+
+static size_t image_bytes(const hl_sky *sky) {
+  return (size_t)sky->width * (size_t)sky->height * 3 * sizeof(float);
+}
+
+/* Takes a sun out of the image, of which the first one makes a copy. */
+static hl_status take_out(hl_context *context, search *all, const spot *sun, sky_suns *found,
+                          hl_error *error) {
+  size_t bytes = image_bytes(all->sky);
+  if (found->rest == NULL) {
+    found->rest = hl_allocate(context, bytes, 1);
+    if (found->rest == NULL) return hl_fail_memory(error, bytes, "the suns of a sky's image");
+    memcpy(found->rest, all->pixels, bytes);
+    all->pixels = found->rest;
+  }
+  found->suns[found->count++] = sun_of_spot(sun);
+  visit_cap(all, &sun->cap, -1, take_beyond, &(taking){sun, found->rest});
+  renew_peaks(all, &sun->cap);
+  return HL_OK;
+}
+
+static hl_status find_all(hl_context *context, search *all, sky_suns *found, hl_error *error) {
+  hl_status status = HL_OK;
+  while (status == HL_OK && found->count < HL_MOST_SUNS && all->left_out_count < TRIES) {
+    int row = brightest_row(all), column = all->peaks[row].column;
+    float brightest = all->peaks[row].brightness;
+    if (!((double)brightest > FAR_ABOVE * all->mean)) break;
+    spot best = find_spot(all, row, column);
+    if (is_sun(all, &best, brightest)) status = take_out(context, all, &best, found, error);
+    else leave_out(all, direction_of(all, row, column), best.cap.radius);
+  }
+  return status;
+}
+
+static void set_up(search *all) {
+  const hl_sky *sky = all->sky;
+  double turn = 2 * HL_PI / sky->width, solid_angle = 0;
+  all->wide = turn;
+  all->bend = 2 * (1 - cos(turn)) / turn; /* derived: the integral of (1 - |t| / turn) cos t */
+  for (int column = 0; column < sky->width; column++) {
+    double angle = (column + 0.5 - 0.5 * sky->width) * turn;
+    all->columns[column][0] = sin(angle);
+    all->columns[column][1] = cos(angle);
+  }
+  for (int row = 0; row < sky->height; row++) {
+    double sum = 0;
+    all->rows[row] = integrals_of_row(sky, row);
+    for (int column = 0; column < sky->width; column++)
+      sum += (double)brightness_of(pixel_of(all, row, column));
+    all->total += sum * all->rows[row].area * all->wide;
+    solid_angle += sky->width * all->rows[row].area * all->wide;
+    find_row_peak(all, row);
+  }
+  all->mean = all->total / solid_angle;
+}
+
+hl_status hl_suns_find(hl_context *context, const hl_sky *sky, sky_suns *found, hl_error *error) {
+  *found = (sky_suns){.count = 0};
+  if (sky->type != HL_SKY_IMAGE) return HL_OK;
+  size_t width = (size_t)sky->width, height = (size_t)sky->height;
+  search all = {.sky = sky,
+                .pixels = sky->pixels,
+                .rows = hl_allocate(context, height, sizeof *all.rows),
+                .columns = hl_allocate(context, width, sizeof *all.columns),
+                .peaks = hl_allocate(context, height, sizeof *all.peaks)};
+  hl_status status = HL_OK;
+  if (all.rows == NULL || all.columns == NULL || all.peaks == NULL) {
+    status = hl_fail_memory(error, (width + height) * sizeof *all.columns, "the suns of a sky's image");
+  } else {
+    set_up(&all);
+    status = find_all(context, &all, found, error);
+  }
+  hl_release(context, all.rows);
+  hl_release(context, all.columns);
+  hl_release(context, all.peaks);
+  return status;
+}
+
+void hl_suns_release(hl_context *context, sky_suns *found) {
+  hl_release(context, found->rest);
+  *found = (sky_suns){.count = 0};
+}
+
+/* ---- lights ---- */
+
+/* Derived: a sky of irradiance E from about one direction gives a surface E / pi times the cosine to the mean
+ * of its directions, and a medium E / (4 pi) times its phase function (halflight/scene.h); a light of colour
+ * I gives I times the cosine to its middle, and I times the phase function. So I is E / pi times the length
+ * of that mean, of which a medium takes a quarter over this length (hl_sun_part_of_media). */
+hl_light hl_sun_light(const hl_sky *sky, const sky_sun *sun) {
+  const sky_axes axes = hl_sky_axes(sky);
+  hl_light light;
+  hl_light_defaults(&light);
+  vec3 towards = vec3_add(
+      vec3_add(vec3_scale(axes.right, sun->towards.x), vec3_scale(axes.middle, sun->towards.y)),
+      vec3_scale(axes.up, sun->towards.z));
+  light.type = HL_LIGHT_DIRECTIONAL;
+  light.direction[0] = -towards.x, light.direction[1] = -towards.y, light.direction[2] = -towards.z;
+  light.angular_diameter_deg = 2 * sun->half_angle * 180 / HL_PI;
+  for (int c = 0; c < 3; c++) light.color[c] = sun->irradiance[c] * sky->strength * sun->straight / HL_PI;
+  light.intensity = 1;
+  return light;
+}

@@ -1,0 +1,39 @@
+/* scene/light/suns.h - the suns of a sky's image: compact bright spots, which become lights of their own.
+ *
+ * A sun's light is what its spot has beyond the brightest of its surroundings, taken out of the image: the
+ * rest of the image and the suns together send what the image sends, in each channel. */
+#ifndef HL_SCENE_LIGHT_SUNS_H
+#define HL_SCENE_LIGHT_SUNS_H
+
+#include <halflight/scene.h>
+
+#include "core/error.h"
+#include "core/vector.h"
+
+enum { HL_MOST_SUNS = 4 };
+
+/* An even disk as bright as the spot, with the same first and second moments of direction. */
+typedef struct sky_sun {
+  vec3 towards;         /* unit; x right, y middle, z up: the sky's own axes (scene/light/sky.h) */
+  double half_angle;    /* radians, from the middle to the rim */
+  double straight;      /* the length of the mean of unit vectors to it, below 1 */
+  double irradiance[3]; /* integral of the radiance, without the sky's strength */
+} sky_sun;
+
+typedef struct sky_suns {
+  sky_sun suns[HL_MOST_SUNS]; /* in the order of their spots' brightest pixels */
+  int count;
+  float *rest; /* owned; [height][width][3]: the image without the suns; null where there are none */
+} sky_suns;
+
+/* Finds the suns of a sky that is an image; none for other skies. */
+hl_status hl_suns_find(hl_context *context, const hl_sky *sky, sky_suns *found, hl_error *error);
+void hl_suns_release(hl_context *context, sky_suns *found);
+
+/* The parallel light, in the world, that shines as a sun of this sky does. */
+hl_light hl_sun_light(const hl_sky *sky, const sky_sun *sun);
+
+/* The part of a sun's light that a medium takes. */
+static inline double hl_sun_part_of_media(const sky_sun *sun) { return 1 / (4 * sun->straight); }
+
+#endif
