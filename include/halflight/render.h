@@ -100,9 +100,9 @@ HL_API HL_WARN_UNUSED hl_status hl_scene_show_sky(const hl_scene *scene, float *
 
 /* Plans the frame of a scene as hl_renderer_render() does, and makes no picture. *text: the plan as JSON, one
  * object, for those who ask why a frame takes its time or its memory: the picture's size and tiles, the
- * volumes with the bricks that show anything, and the sweeps, each with the number, spacing and direction of
- * its sheets, and its lights with their shadow buffers. Lengths are the world's. Members may be added.
- * Null-terminated; free with hl_text_release(). */
+ * volumes with the bricks that show anything, the lights, the meshes, and the sweeps, each with the number,
+ * spacing and direction of its sheets, and its lights with their shadow buffers. Lengths are the world's.
+ * Members may be added. Null-terminated; free with hl_text_release(). */
 HL_API HL_WARN_UNUSED hl_status hl_renderer_plan(hl_renderer *renderer, const hl_scene *scene, char **text,
                                                  hl_error *error);
 

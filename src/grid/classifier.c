@@ -13,10 +13,9 @@ static double extinction_of(const hl_transfer_function *function, double value) 
   return -log1p(-alpha) / function->unit_distance;
 }
 
-double hl_transparent_below(const hl_scene_volume *volume, double empty) {
-  bool below_all = empty < volume->volume->minimum &&
-                   hl_transfer_function_opacity(&volume->transfer_function, empty) > 0;
-  return below_all ? (empty + volume->volume->minimum) / 2 : -INFINITY;
+double hl_transparent_below(const hl_volume *volume, const hl_transfer_function *function, double empty) {
+  bool below_all = empty < volume->minimum && hl_transfer_function_opacity(function, empty) > 0;
+  return below_all ? (empty + volume->minimum) / 2 : -INFINITY;
 }
 
 /* Integrates the table exactly, as it is piecewise linear. Over one step the mean extinction is (e0 + e1) /
@@ -133,7 +132,7 @@ static void fill_outside(classifier *classifier) {
 static void fill_tables(const hl_scene_volume *volume, double empty, double low, double high,
                         classifier *classifier) {
   const hl_transfer_function *function = &volume->transfer_function;
-  double nothing = hl_transparent_below(volume, empty);
+  double nothing = hl_transparent_below(volume->volume, &volume->transfer_function, empty);
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES; entry++) {
     double value = low + (high - low) * entry / CLASSIFIER_ENTRIES;
     if (value < nothing) classifier->sums[entry][0] = 0;
@@ -222,8 +221,10 @@ hl_status hl_classifier_create(hl_context *context, const hl_scene_volume *volum
   classifier->offset = (float)((empty - low) * CLASSIFIER_ENTRIES / (high - low));
   classifier->normal_edge = normal_edge(volume, CLASSIFIER_ENTRIES / (high - low));
   if (classifier->plane.sums != NULL)
-    hl_plane_table_fill(volume, second, grid, &(plane_values){low, high, hl_transparent_below(volume, empty)},
-                        CLASSIFIER_ENTRIES, &classifier->plane, classifier->sums);
+    hl_plane_table_fill(
+        volume, second, grid,
+        &(plane_values){low, high, hl_transparent_below(volume->volume, &volume->transfer_function, empty)},
+        CLASSIFIER_ENTRIES, &classifier->plane, classifier->sums);
   fill_tables(volume, empty, low, high, classifier);
   fill_steepness(function, grid->value_scale, classifier);
   return HL_OK;

@@ -75,7 +75,7 @@ void hl_classifier_release(hl_context *context, classifier *classifier);
 /* Data values below the result are transparent, whatever the transfer function says. If the transfer function
  * shows even the empty value, and the empty value lies below all values, the result is the middle between the
  * empty and the least value; else -infinity. */
-double hl_transparent_below(const hl_scene_volume *volume, double empty);
+double hl_transparent_below(const hl_volume *volume, const hl_transfer_function *function, double empty);
 
 /* True if some stored value in [low, high] is visible. */
 bool hl_classifier_span_visible(const classifier *classifier, const grid *grid, float low, float high);

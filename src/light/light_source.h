@@ -54,6 +54,7 @@ typedef struct light_source {
   double of_sky;   /* a sun of the sky, which makes no highlights: the part of its light that a medium takes;
                       else 0 */
   int light_index; /* in the scene */
+  int row;         /* in the frame's list of lights */
   const light_sectors *sectors; /* the frame's, where this is one sector of a light; else null */
   int sector;
   vec3 screen_center, screen_right, screen_up; /* of a light with a texture: the light screen; frame space */

@@ -209,7 +209,7 @@ hl_status hl_frame_set_up_eye(frame *frame, const hl_scene_description *scene, h
 /* ---- the lights ---- */
 
 bool hl_is_lit(const hl_scene_description *scene) {
-  for (size_t i = 0; i < scene->volume_count && !hl_is_maximum(scene); i++)
+  for (size_t i = 0; i < scene->volume_count && !hl_is_maximum(&scene->render); i++)
     if (scene->volumes[i].visible && scene->volumes[i].shading != HL_SHADING_FLAT) return true;
   for (size_t i = 0; i < scene->mesh_count; i++)
     if (scene->meshes[i].visible) return true;

@@ -28,10 +28,8 @@ typedef struct frame {
   light_sectors sectors; /* of lights within the content */
   light_source *lights;  /* [light_count]; owned by the caller; sectors of a light follow each other */
   int light_count;
-  const scene_order *order;    /* of the scene's lists; borrowed */
   const surfaces *surfaces;    /* of the scene's meshes; null: none */
   const surface_tree *contact; /* of what shadow buffers leave light behind (contact.h) */
-  const int *mesh_objects;     /* [meshes]; their numbers in the layer of objects */
 } frame;
 
 /* The eye's view in width x height pixels. */
@@ -44,8 +42,8 @@ hl_status hl_frame_set_up_eye(frame *frame, const hl_scene_description *scene, h
  * do not. */
 bool hl_is_lit(const hl_scene_description *scene);
 
-static inline bool hl_is_maximum(const hl_scene_description *scene) {
-  return scene->render.compositing == HL_COMPOSITING_MAXIMUM;
+static inline bool hl_is_maximum(const hl_render_settings *settings) {
+  return settings->compositing == HL_COMPOSITING_MAXIMUM;
 }
 
 /* Corners of the box around a grid's relevant bricks, of which there is one at least. */

@@ -1,6 +1,8 @@
 /* plan/frame_plan.c - see frame_plan.h. */
 #include "plan/frame_plan.h"
 
+#include <string.h>
+
 #include "core/memory.h"
 
 /* ---- memory ---- */
@@ -9,17 +11,26 @@ hl_status hl_frame_plan_create(hl_context *context, const framed_scene *framed, 
                                hl_error *error) {
   const hl_scene_description *scene = &framed->scene;
   const size_t volumes = scene->volume_count, sources = LIGHT_SECTORS * scene->light_count;
-  plan->framed = framed;
-  plan->frame.order = framed->order;
+  plan->settings = scene->render;
+  plan->width = scene->width;
+  plan->height = scene->height;
+  plan->unit = framed->unit;
+  memcpy(plan->ambient, scene->ambient, sizeof plan->ambient);
   plan->frame.points = hl_allocate(context, (volumes + scene->mesh_count) * 8 + 1,
                                    sizeof *plan->frame.points);
   plan->frame.lights = hl_allocate(context, sources, sizeof *plan->frame.lights);
+  plan->lights = hl_allocate(context, scene->light_count, sizeof *plan->lights);
+  plan->meshes = hl_allocate(context, scene->mesh_count, sizeof *plan->meshes);
   plan->volumes.grids = hl_allocate(context, volumes, sizeof *plan->volumes.grids);
   plan->volumes.list = hl_allocate(context, volumes, sizeof *plan->volumes.list);
   plan->sweeps.sheets = hl_allocate_zeroed(context, sources + 1, sizeof *plan->sweeps.sheets);
-  if (plan->frame.points == NULL || plan->frame.lights == NULL || plan->volumes.grids == NULL ||
-      plan->volumes.list == NULL || plan->sweeps.sheets == NULL)
+  if (plan->frame.points == NULL || plan->frame.lights == NULL || plan->lights == NULL ||
+      plan->meshes == NULL || plan->volumes.grids == NULL || plan->volumes.list == NULL ||
+      plan->sweeps.sheets == NULL)
     return hl_fail_memory(error, sources * sizeof *plan->sweeps.sheets, "the frame");
+  for (size_t i = 0; i < scene->light_count; i++)
+    plan->lights[plan->light_count++] = hl_frame_light(framed, i);
+  for (size_t i = 0; i < scene->mesh_count; i++) plan->meshes[plan->mesh_count++] = hl_frame_mesh(framed, i);
   return HL_OK;
 }
 
@@ -34,6 +45,8 @@ void hl_frame_plan_release(hl_context *context, frame_plan *plan) {
   hl_release(context, plan->seen);
   hl_release(context, plan->volumes.list);
   hl_release(context, plan->volumes.grids);
+  hl_release(context, plan->meshes);
+  hl_release(context, plan->lights);
   hl_release(context, plan->frame.lights);
   hl_release(context, plan->frame.points);
   hl_share_release(context, &plan->share);
@@ -58,7 +71,7 @@ static int choose_measuring_sweep(const frame *frame, plan_sweeps *sweeps) {
 hl_status hl_plan_sweeps(hl_context *context, frame_plan *plan, hl_error *error) {
   plan_sweeps *sweeps = &plan->sweeps;
   int measuring = 0;
-  sweeps->count = hl_frame_sweeps(&plan->frame, hl_plan_settings(plan), sweeps->sheets);
+  sweeps->count = hl_frame_sweeps(&plan->frame, &plan->settings, sweeps->sheets);
   if (hl_layers_measure(plan->layers)) measuring = choose_measuring_sweep(&plan->frame, sweeps);
   plan->tiles_x = hl_tiles(plan->frame.width);
   plan->tiles = (size_t)plan->tiles_x * (size_t)hl_tiles(plan->frame.height);
@@ -75,7 +88,7 @@ hl_status hl_plan_sweeps(hl_context *context, frame_plan *plan, hl_error *error)
 /* Whether some volume that the eye sees has surfaces on which shadows fall. */
 static bool has_surfaces(const plan_volumes *volumes) {
   for (int v = 0; v < volumes->count; v++) {
-    const hl_scene_volume *volume = volumes->list[v].scene;
+    const frame_volume *volume = &volumes->list[v];
     if (volume->visible && volume->receives_shadow && volume->shading == HL_SHADING_PHONG) return true;
   }
   return false;
@@ -85,7 +98,7 @@ static shadow_setup setup_of_light(hl_context *context, const frame_plan *plan, 
                                    const light_plan *light) {
   const frame *frame = &plan->frame;
   return (shadow_setup){.context = context,
-                        .settings = hl_plan_settings(plan),
+                        .settings = &plan->settings,
                         .source = light->source,
                         .emission = light->emission == NULL || light->emission->even ? NULL : light->emission,
                         .sheets = &sweep->geometry->sheets,

@@ -10,23 +10,13 @@
 #include <halflight/layers.h>
 
 #include "field/sky_field.h"
-#include "grid/classifier.h"
 #include "grid/kernel.h"
 #include "light/phase_table.h"
-#include "plan/framed_scene.h"
+#include "plan/frame_objects.h"
 #include "plan/share.h"
 #include "plan/slicing.h"
 #include "scatter/scatter.h"
 #include "shadow/shadow_method.h"
-
-/* A volume of the frame. Its grid is the plan's grid of the same index. */
-typedef struct frame_volume {
-  const hl_scene_volume *scene;     /* borrowed; its look and material, in frame space */
-  const classifier *classifier;     /* borrowed; the transfer function's tables */
-  double empty;                     /* data value beyond the volume */
-  uint64_t version, tables_version; /* of the grid's voxels, and of what follows from the transfer function:
-                                       they rise with each change */
-} frame_volume;
 
 /* The volumes, and how their samples are made. */
 typedef struct plan_volumes {
@@ -39,7 +29,8 @@ typedef struct plan_volumes {
 
 /* Light that does not travel along the sheets. */
 typedef struct plan_fields {
-  const scatter_field *scattered; /* borrowed; light scattered more than once; null: none */
+  bool scatters;                  /* media scatter light more than once */
+  const scatter_field *scattered; /* borrowed; the light that they scatter; null: none */
   const sky_light *sky;           /* borrowed; null: none */
   const phase_tables *phases;     /* borrowed */
 } plan_fields;
@@ -68,8 +59,15 @@ typedef struct plan_sweeps {
 } plan_sweeps;
 
 typedef struct frame_plan {
-  const framed_scene *framed; /* borrowed; the scene in frame space */
-  frame frame;                /* the eye, the lights, the surfaces; its arrays are the plan's own */
+  hl_render_settings settings; /* of the scene; its texts are not used */
+  int width, height;           /* of the picture, pixels */
+  double unit;                 /* world length of 1 in frame space */
+  double ambient[HL_CHANNELS]; /* light from everywhere, R, G, B */
+  frame frame;                 /* the eye, the lights, the surfaces; its arrays are the plan's own */
+  frame_light *lights;         /* owned; [light_count]; a light_source names one by its `row` */
+  int light_count;
+  frame_mesh *meshes; /* owned; [mesh_count] */
+  int mesh_count;
   plan_volumes volumes;
   plan_fields fields;
   plan_sweeps sweeps;
@@ -82,12 +80,8 @@ typedef struct frame_plan {
   int seen_count;
 } frame_plan;
 
-static inline const hl_render_settings *hl_plan_settings(const frame_plan *plan) {
-  return &plan->framed->scene.render;
-}
-
-/* Allocates the arrays of a plan of zeros for a scene in frame space. Release the plan after a failure, too.
- */
+/* Allocates the arrays of a plan of zeros for a scene in frame space, and copies what the scene says of the
+ * picture, the lights and the meshes. Release the plan after a failure, too. */
 hl_status hl_frame_plan_create(hl_context *context, const framed_scene *framed, frame_plan *plan,
                                hl_error *error);
 void hl_frame_plan_release(hl_context *context, frame_plan *plan);

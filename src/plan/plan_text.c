@@ -11,22 +11,40 @@
 static json_t *pair(int first, int second) { return json_pack("[i, i]", first, second); }
 
 static json_t *picture_of(const frame_plan *plan) {
-  const hl_scene_description *scene = &plan->framed->scene;
-  return json_pack("{s: o, s: i, s: o, s: I, s: i, s: i}", "size", pair(scene->width, scene->height),
+  return json_pack("{s: o, s: i, s: o, s: I, s: i, s: i}", "size", pair(plan->width, plan->height),
                    "oversampling", plan->frame.oversampling, "frame_size",
                    pair(plan->frame.width, plan->frame.height), "tiles", (json_int_t)plan->tiles, "part",
                    plan->share.part, "parts", plan->share.parts);
 }
 
+static void add_name(json_t *to, const char *name) {
+  if (name != NULL) json_object_set_new(to, "name", json_string(name));
+}
+
 static json_t *volume_of(const frame_plan *plan, int index) {
   const grid *grid = &plan->volumes.grids[index];
-  json_t *volume = json_pack("{s: [i, i, i], s: I, s: I, s: b}", "dimensions", (int)grid->dimension[0],
-                             (int)grid->dimension[1], (int)grid->dimension[2], "bricks",
-                             (json_int_t)hl_grid_bricks(grid), "visible_bricks",
-                             (json_int_t)grid->relevant_count, "in_pages", grid->pages != NULL);
-  const char *name = plan->volumes.list[index].scene->name;
-  if (name != NULL) json_object_set_new(volume, "name", json_string(name));
+  const frame_volume *from = &plan->volumes.list[index];
+  json_t *volume = json_pack("{s: [i, i, i], s: I, s: I, s: b, s: b, s: b}", "dimensions",
+                             (int)grid->dimension[0], (int)grid->dimension[1], (int)grid->dimension[2],
+                             "bricks", (json_int_t)hl_grid_bricks(grid), "visible_bricks",
+                             (json_int_t)grid->relevant_count, "in_pages", grid->pages != NULL, "visible",
+                             from->visible, "casts_shadow", from->casts_shadow);
+  add_name(volume, from->name);
   return volume;
+}
+
+static json_t *whole_light_of(const frame_light *light) {
+  return json_pack("{s: i, s: b, s: b, s: b}", "light", light->index, "sun", light->sun_part > 0, "wide",
+                   light->is_wide, "image", light->has_image);
+}
+
+static json_t *mesh_of(const frame_mesh *mesh) {
+  json_t *made = json_pack("{s: i, s: I, s: I, s: f, s: b, s: b}", "object", mesh->object, "triangles",
+                           (json_int_t)mesh->triangle_count, "spheres", (json_int_t)mesh->sphere_count,
+                           "opacity", mesh->opacity, "visible", mesh->visible, "casts_shadow",
+                           mesh->casts_shadow);
+  add_name(made, mesh->name);
+  return made;
 }
 
 /* The buffer of a light's shadows, and the memory that the method takes beside it. */
@@ -56,21 +74,21 @@ static json_t *sweep_of(const frame_plan *plan, const sweep_plan *sweep) {
   for (int i = 0; i < sweep->geometry->light_count; i++)
     json_array_append_new(lights, light_of(&sweep->lights[i]));
   return json_pack("{s: i, s: f, s: [f, f, f], s: b, s: b, s: o}", "sheets", sheets->count, "spacing",
-                   sheets->spacing * plan->framed->unit, "normal", sheets->normal.x, sheets->normal.y,
+                   sheets->spacing * plan->unit, "normal", sheets->normal.x, sheets->normal.y,
                    sheets->normal.z, "back_to_front", sweep->geometry->back_to_front, "adds_even_light",
                    sweep->adds_even_light, "lights", lights);
 }
 
 static json_t *root_of(const frame_plan *plan) {
-  json_t *volumes = json_array(), *sweeps = json_array();
-  const surfaces *surfaces = plan->frame.surfaces;
+  json_t *volumes = json_array(), *lights = json_array(), *meshes = json_array(), *sweeps = json_array();
   for (int v = 0; v < plan->volumes.count; v++) json_array_append_new(volumes, volume_of(plan, v));
+  for (int i = 0; i < plan->light_count; i++) json_array_append_new(lights, whole_light_of(&plan->lights[i]));
+  for (int m = 0; m < plan->mesh_count; m++) json_array_append_new(meshes, mesh_of(&plan->meshes[m]));
   for (int s = 0; s < plan->sweeps.count; s++)
     json_array_append_new(sweeps, sweep_of(plan, &plan->sweeps.list[s]));
-  return json_pack("{s: o, s: o, s: i, s: o, s: i, s: b, s: b}", "picture", picture_of(plan), "volumes",
-                   volumes, "meshes", surfaces == NULL ? 0 : (int)surfaces->mesh_count, "sweeps", sweeps,
-                   "channels", plan->channels, "sky", plan->fields.sky != NULL, "multiple_scattering",
-                   plan->fields.scattered != NULL);
+  return json_pack("{s: o, s: o, s: o, s: o, s: o, s: i, s: b, s: b}", "picture", picture_of(plan), "volumes",
+                   volumes, "lights", lights, "meshes", meshes, "sweeps", sweeps, "channels", plan->channels,
+                   "sky", plan->fields.sky != NULL, "multiple_scattering", plan->fields.scattered != NULL);
 }
 
 hl_status hl_plan_text(hl_context *context, const frame_plan *plan, char **text, hl_error *error) {

@@ -149,10 +149,11 @@ void hl_frame_set_up_lights(frame *frame, const framed_scene *framed) {
   const hl_scene_description *scene = &framed->scene;
   frame->sectors = hl_light_sectors(frame->eye_direction, widest_ray(frame));
   frame->light_count = 0;
-  for (size_t i = 0; i < scene->light_count && !hl_is_maximum(scene); i++) {
+  for (size_t i = 0; i < scene->light_count && !hl_is_maximum(&scene->render); i++) {
     const hl_light *light = &scene->lights[i];
     light_source source = hl_light_source(light, &scene->render, frame->middle);
-    source.light_index = frame->order->lights[i];
+    source.light_index = framed->order->lights[i];
+    source.row = (int)i;
     source.of_sky = framed->sun_parts[i];
     if (!hl_is_lit(scene)) source.shadows = HL_SHADOWS_OFF;
     bool narrow = (hl_light_kind(light)->cone && light->opening_angle_deg <= 120) ||

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "grid/relevant.h"
-#include "scatter/scatter.h"
 
 _Static_assert(PLAN_LIGHTS >= MAXIMUM_SWEEP_LIGHTS && PLAN_SECTORS == LIGHT_SECTORS &&
                    PLAN_ENTRIES == CLASSIFIER_ENTRIES && PLAN_KERNEL_POWERS == HL_KERNEL_DEGREE + 1,
@@ -17,20 +16,19 @@ _Static_assert(offsetof(plan_rays, height) == sizeof(sheet_rays) && sizeof(plan_
 
 /* ---- what devices do not make yet ---- */
 
-static const hl_scene_description *scene_of(const frame_plan *plan) { return &plan->framed->scene; }
-static const hl_scene_volume *volume_of(const frame_plan *plan) { return plan->volumes.list[0].scene; }
+static const frame_volume *volume_of(const frame_plan *plan) { return &plan->volumes.list[0]; }
 
 static bool has_no_volume(const frame_plan *plan) {
   return plan->volumes.count == 0 || plan->frame.point_count == 0;
 }
 static bool has_volumes(const frame_plan *plan) { return plan->volumes.count > 1; }
 static bool is_hidden(const frame_plan *plan) { return !volume_of(plan)->visible; }
-static bool is_maximum(const frame_plan *plan) { return hl_is_maximum(scene_of(plan)); }
+static bool is_maximum(const frame_plan *plan) { return hl_is_maximum(&plan->settings); }
 static bool has_layers(const frame_plan *plan) { return plan->layers != NULL; }
 static bool is_shared(const frame_plan *plan) { return plan->share.parts > 1; }
 static bool has_surfaces(const frame_plan *plan) { return plan->frame.surfaces != NULL; }
 static bool has_sky(const frame_plan *plan) { return plan->fields.sky != NULL; }
-static bool scatters(const frame_plan *plan) { return hl_scatter_wanted(scene_of(plan)); }
+static bool scatters(const frame_plan *plan) { return plan->fields.scatters; }
 static bool splats(const frame_plan *plan) { return plan->volumes.splat; }
 static bool has_pages(const frame_plan *plan) { return plan->volumes.grids[0].pages != NULL; }
 static bool has_bricks(const frame_plan *plan) { return plan->volumes.grids[0].bricks != NULL; }
@@ -42,16 +40,15 @@ static bool has_colors(const frame_plan *plan) { return volume_of(plan)->volume-
 static bool is_weighed(const frame_plan *plan) {
   return hl_classifier_is_weighed(plan->volumes.list[0].classifier);
 }
-static bool has_cuts(const frame_plan *plan) { return volume_of(plan)->cut_count > 0; }
+static bool has_cuts(const frame_plan *plan) { return volume_of(plan)->is_cut; }
 static bool is_soft(const frame_plan *plan) {
   for (int i = 0; i < plan->frame.light_count; i++)
     if (plan->frame.lights[i].shadows == HL_SHADOWS_SOFT) return true;
   return false;
 }
 static bool has_images(const frame_plan *plan) {
-  const hl_scene_description *scene = scene_of(plan);
-  for (size_t i = 0; i < scene->light_count; i++)
-    if (scene->lights[i].texture.pixels != NULL || scene->lights[i].emission.pixels != NULL) return true;
+  for (int i = 0; i < plan->light_count; i++)
+    if (plan->lights[i].has_image) return true;
   return false;
 }
 static bool has_phase_tables(const frame_plan *plan) {
@@ -150,7 +147,7 @@ static void plan_matter(const shade_volume *shade, plan_volume *volume) {
   for (int face = 0; face < 6; face++) volume->face_cuts[face] = shade->face_cuts[face / 2][face % 2];
 }
 
-static void plan_material(const shade_volume *shade, const hl_scene_volume *scene, plan_volume *volume) {
+static void plan_material(const shade_volume *shade, const frame_volume *of, plan_volume *volume) {
   volume->ambient = shade->ambient;
   volume->diffuse = shade->diffuse;
   volume->specular = shade->specular;
@@ -163,7 +160,7 @@ static void plan_material(const shade_volume *shade, const hl_scene_volume *scen
   volume->voxel = shade->voxel;
   for (int c = 0; c < HL_CHANNELS; c++) {
     volume->cast[c] = shade->cast[c];
-    volume->weight[c] = scene->casts_shadow ? (float)scene->attenuation_color[c] : 0;
+    volume->weight[c] = of->casts_shadow ? (float)of->attenuation_color[c] : 0;
   }
 }
 
@@ -298,9 +295,8 @@ static size_t floats_of_sheet(const sweep_task *task) {
 }
 
 static int slabs_of_run(const sweep_task *task) {
-  int slabs = hl_plan_settings(task->frame_plan)->slabs_at_once > 0
-                  ? hl_plan_settings(task->frame_plan)->slabs_at_once
-                  : SLABS_OF_RUN;
+  const int wanted = task->frame_plan->settings.slabs_at_once;
+  int slabs = wanted > 0 ? wanted : SLABS_OF_RUN;
   const size_t sheet = floats_of_sheet(task) * sizeof(float),
                slots = task->frame_plan->tiles * TILE_PIXELS * SLOT_BYTES;
   if (slabs > SLABS_OF_RUN) slabs = SLABS_OF_RUN;
@@ -407,7 +403,7 @@ hl_status hl_plan_sweep(hl_context *context, const frame_plan *frame_plan, const
   memcpy(plan->ambient, job->ambient, sizeof plan->ambient);
   plan->emission = job->emission;
   plan_matter(shade, &plan->volume);
-  plan_material(shade, frame_plan->volumes.list[0].scene, &plan->volume);
+  plan_material(shade, &frame_plan->volumes.list[0], &plan->volume);
   const gpu_volume volume = hl_volume_for_device(frame_plan);
   plan->volume.row_bytes = (unsigned)hl_gpu_row_bytes(&volume);
   plan_box_rays(&task->frame_plan->frame.eye, task, &plan->box);

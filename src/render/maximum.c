@@ -15,9 +15,9 @@ static const double LEAST_END = 1e-3, ROUNDINGS = 8;
 
 enum { BISECTIONS = 30 };
 
-static size_t visible_count(const hl_scene_description *scene) {
+static size_t visible_count(const plan_volumes *volumes) {
   size_t count = 0;
-  for (size_t i = 0; i < scene->volume_count; i++) count += scene->volumes[i].visible != 0;
+  for (int i = 0; i < volumes->count; i++) count += volumes->list[i].visible;
   return count;
 }
 
@@ -27,8 +27,8 @@ static size_t floats_of_tile(const maximum_values *maximum) {
 
 enum { SHOWN_ENTRIES = CLASSIFIER_ENTRIES + 2 };
 
-static maximum_values plan(const hl_scene_description *scene, size_t tiles) {
-  return (maximum_values){.volume_count = visible_count(scene), .tiles = tiles};
+static maximum_values plan_values(const frame_plan *plan) {
+  return (maximum_values){.volume_count = visible_count(&plan->volumes), .tiles = plan->tiles};
 }
 
 static void lay_out(maximum_values *maximum, hl_layout *layout) {
@@ -36,9 +36,9 @@ static void lay_out(maximum_values *maximum, hl_layout *layout) {
   maximum->shown = hl_layout_take(layout, maximum->volume_count, SHOWN_ENTRIES * sizeof *maximum->shown);
 }
 
-void hl_maximum_count(const hl_scene_description *scene, size_t tiles, hl_layout *layout) {
-  maximum_values maximum = plan(scene, tiles);
-  if (scene->render.compositing == HL_COMPOSITING_MAXIMUM) lay_out(&maximum, layout);
+void hl_maximum_count(const frame_plan *plan, hl_layout *layout) {
+  maximum_values maximum = plan_values(plan);
+  if (hl_is_maximum(&plan->settings)) lay_out(&maximum, layout);
 }
 
 /* A transfer function over the coordinates of its table. */
@@ -91,7 +91,7 @@ static void fill_step(const shown_values *values, int entry, double below, float
 }
 
 static double end_of(const frame_volume *of, double step) {
-  const hl_volume *volume = of->scene->volume;
+  const hl_volume *volume = of->volume;
   double greatest = fmax(fmax(fabs(volume->minimum), fabs(volume->maximum)), fabs(of->empty));
   return fmax(LEAST_END, ROUNDINGS * FLT_EPSILON * greatest / step);
 }
@@ -100,8 +100,9 @@ static double end_of(const frame_volume *of, double step) {
 static void fill_shown(const frame_volume *volume, const grid *grid, float (*rows)[4]) {
   const classifier *classifier = volume->classifier;
   double empty = volume->empty, step = grid->value_scale / (double)classifier->scale;
-  const shown_values values = {&volume->scene->transfer_function, empty - (double)classifier->offset * step,
-                               step, hl_transparent_below(volume->scene, empty), end_of(volume, fabs(step))};
+  const shown_values values = {volume->function, empty - (double)classifier->offset * step, step,
+                               hl_transparent_below(volume->volume, volume->function, empty),
+                               end_of(volume, fabs(step))};
   double below = -1;
   for (int entry = 0; entry < SHOWN_ENTRIES; entry++) {
     fill_step(&values, entry < CLASSIFIER_ENTRIES ? entry : CLASSIFIER_ENTRIES, below, rows[entry]);
@@ -118,16 +119,15 @@ static void clear_tile(void *data, size_t tile, int worker) {
 
 hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const frame_plan *of, maximum_values *maximum,
                             hl_error *error) {
-  const hl_scene_description *scene = &of->framed->scene;
-  *maximum = plan(scene, of->tiles);
-  if (scene->render.compositing != HL_COMPOSITING_MAXIMUM) return HL_OK;
+  *maximum = plan_values(of);
+  if (!hl_is_maximum(&of->settings)) return HL_OK;
   hl_layout layout = {0};
   while (hl_layout_pass(&layout, context)) lay_out(maximum, &layout);
   if (layout.base == NULL) return hl_fail_memory(error, layout.bytes, "a maximum projection");
   hl_pool_run(pool, of->tiles, clear_tile, maximum);
   size_t rank = 0;
-  for (size_t i = 0; i < scene->volume_count; i++)
-    if (scene->volumes[i].visible)
+  for (int i = 0; i < of->volumes.count; i++)
+    if (of->volumes.list[i].visible)
       fill_shown(&of->volumes.list[i], &of->volumes.grids[i], maximum->shown + SHOWN_ENTRIES * rank++);
   return HL_OK;
 }
@@ -164,7 +164,7 @@ static void color_tile(void *data, size_t tile, int worker) {
   const color_job *job = data;
   const float *values = job->maximum->values + tile * floats_of_tile(job->maximum);
   for (int i = 0; i < job->volumes->count; i++) {
-    if (!job->volumes->list[i].scene->visible) continue;
+    if (!job->volumes->list[i].visible) continue;
     for (int block = 0; block < TILE_BLOCKS; block++)
       color_block(job->volumes->list[i].classifier->color, values + block * BLOCK_PIXELS,
                   job->pixels + (tile * TILE_BLOCKS + (size_t)block) * 4 * BLOCK_PIXELS);

@@ -20,7 +20,7 @@ hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const frame_plan
 void hl_maximum_release(hl_context *context, maximum_values *maximum);
 
 /* Counts what hl_maximum_create() takes. */
-void hl_maximum_count(const hl_scene_description *scene, size_t tiles, hl_layout *layout);
+void hl_maximum_count(const frame_plan *plan, hl_layout *layout);
 
 /* A sweep's action, in place of steps 12 to 16. */
 uint32_t hl_maximum_tile(const sweep *sweep, const tile_slab *slab);

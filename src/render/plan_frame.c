@@ -57,7 +57,6 @@ static hl_status add_surfaces(hl_renderer *renderer, const framed_scene *framed,
     hl_surface_corners(&scene->meshes[i], frame->voxel, frame->points + frame->point_count);
   frame->surfaces = &renderer->cache.surfaces;
   frame->contact = &renderer->cache.contact;
-  frame->mesh_objects = framed->mesh_objects;
   return HL_OK;
 }
 
@@ -90,30 +89,31 @@ static hl_status update_contact(hl_renderer *renderer, const frame *frame, hl_er
 
 /* The number of channels of light attenuation: three where matter absorbs the colours differently, or where
  * an emission image's colours come from different places; else one. */
-static int attenuation_channels(const hl_scene_description *scene) {
-  for (size_t i = 0; i < scene->light_count; i++)
-    if (hl_light_emission_colored(&scene->lights[i])) return 3;
-  for (size_t i = 0; i < scene->volume_count; i++)
-    if (scene->volumes[i].casts_shadow && !hl_is_grey(scene->volumes[i].attenuation_color)) return 3;
-  for (size_t i = 0; i < scene->mesh_count; i++)
-    if (scene->meshes[i].casts_shadow && !hl_is_grey(scene->meshes[i].attenuation_color)) return 3;
+static int attenuation_channels(const frame_plan *plan) {
+  for (int i = 0; i < plan->light_count; i++)
+    if (plan->lights[i].has_colored_image) return 3;
+  for (int i = 0; i < plan->volumes.count; i++)
+    if (plan->volumes.list[i].casts_shadow && !hl_is_grey(plan->volumes.list[i].attenuation_color)) return 3;
+  for (int i = 0; i < plan->mesh_count; i++)
+    if (plan->meshes[i].casts_shadow && !hl_is_grey(plan->meshes[i].attenuation_color)) return 3;
   return 1;
 }
 
 /* Finds the light that is scattered more than once, where the scene asks for it. */
-static hl_status scatter_light(hl_renderer *renderer, const hl_scene_description *scene,
-                               const frame_plan *plan, uint64_t sky_mark, hl_error *error) {
+static hl_status scatter_light(hl_renderer *renderer, const framed_scene *framed, const frame_plan *plan,
+                               uint64_t sky_mark, hl_error *error) {
+  const hl_scene_description *scene = &framed->scene;
   hl_context *context = renderer->context;
-  if (!hl_scatter_wanted(scene)) {
+  if (!plan->fields.scatters) {
     hl_scatter_release(context, &renderer->cache.scattered);
     return HL_OK;
   }
   scatter_volume *volumes = hl_allocate(context, scene->volume_count, sizeof *volumes);
   if (volumes == NULL) return hl_fail_memory(error, scene->volume_count * sizeof *volumes, "the volumes");
   for (size_t v = 0; v < scene->volume_count; v++)
-    volumes[v] = (scatter_volume){&scene->volumes[v], plan->framed->plane_marks[v], &plan->volumes.grids[v],
+    volumes[v] = (scatter_volume){&scene->volumes[v], framed->plane_marks[v], &plan->volumes.grids[v],
                                   &renderer->cache.prepared[v].classifier};
-  const scatter_scene all = {context,  renderer->pool,      scene, plan->framed->sun_parts, volumes,
+  const scatter_scene all = {context,  renderer->pool,      scene, framed->sun_parts, volumes,
                              sky_mark, plan->frame.surfaces};
   hl_layout counted = {0};
   hl_scatter_count(&all, &counted);
@@ -149,8 +149,8 @@ static hl_status update_phases(hl_renderer *renderer, const hl_scene_description
 
 /* Brings the volumes to the frame: their grids, which differ from the prepared ones where the frame does not
  * fill their samples and at faces that touch, and the corners of what they show. */
-static void place_volumes(const hl_renderer *renderer, frame_plan *plan) {
-  const hl_scene_description *scene = &plan->framed->scene;
+static void place_volumes(const hl_renderer *renderer, const framed_scene *framed, frame_plan *plan) {
+  const hl_scene_description *scene = &framed->scene;
   plan_volumes *volumes = &plan->volumes;
   frame *frame = &plan->frame;
   volumes->count = (int)scene->volume_count;
@@ -159,11 +159,11 @@ static void place_volumes(const hl_renderer *renderer, frame_plan *plan) {
   for (size_t i = 0; i < scene->volume_count; i++) {
     const prepared_volume *prepared = &renderer->cache.prepared[i];
     volumes->grids[i] = grid_of_frame(&scene->volumes[i], prepared);
-    volumes->list[i] = (frame_volume){.scene = prepared->scene,
-                                      .classifier = &prepared->classifier,
-                                      .empty = prepared->empty,
-                                      .version = prepared->version,
-                                      .tables_version = prepared->tables_version};
+    volumes->list[i] = hl_frame_volume(framed, i);
+    volumes->list[i].classifier = &prepared->classifier;
+    volumes->list[i].empty = prepared->empty;
+    volumes->list[i].version = prepared->version;
+    volumes->list[i].tables_version = prepared->tables_version;
     if (volumes->grids[i].relevant_count == 0) continue;
     hl_frame_content(&volumes->grids[i], frame->points + frame->point_count);
     frame->point_count += 8;
@@ -173,45 +173,46 @@ static void place_volumes(const hl_renderer *renderer, frame_plan *plan) {
 }
 
 /* The eye, and the lights in frame space. */
-static hl_status place_eye_and_lights(frame_plan *plan, hl_error *error) {
-  const hl_scene_description *scene = &plan->framed->scene;
+static hl_status place_eye_and_lights(const framed_scene *framed, frame_plan *plan, hl_error *error) {
+  const hl_scene_description *scene = &framed->scene;
   frame *frame = &plan->frame;
   hl_status status = hl_frame_set_up_eye(frame, scene, error);
   if (status != HL_OK) return status;
-  frame->spacing = fmin(scene->render.sheet_spacing, hl_is_maximum(scene) ? MAXIMUM_SPACING : GRID_MARGIN) *
+  frame->spacing = fmin(scene->render.sheet_spacing,
+                        hl_is_maximum(&scene->render) ? MAXIMUM_SPACING : GRID_MARGIN) *
                    frame->voxel; /* at most the margin by which volumes continue beyond their faces */
-  hl_frame_set_up_lights(frame, plan->framed);
+  hl_frame_set_up_lights(frame, framed);
   for (int i = 0; i < plan->volumes.count; i++)
     if (rays_start_inside(frame, &plan->volumes.grids[i])) plan->volumes.grids[i].cut = true;
-  plan->channels = attenuation_channels(scene);
+  plan->channels = attenuation_channels(plan);
   return HL_OK;
 }
 
 /* Finds the part of the picture that this renderer makes. */
 static hl_status share_picture(hl_renderer *renderer, frame_plan *plan, hl_error *error) {
-  const hl_scene_description *scene = &plan->framed->scene;
   const share_content content = {&plan->frame, plan->volumes.grids, plan->volumes.count,
                                  &plan->sweeps.sheets[0].sheets};
   hl_layout counted = {0};
   plan->share = (picture_share){.part = renderer->part,
                                 .parts = renderer->parts,
                                 .exchange = renderer->exchange.gather != NULL ? &renderer->exchange : NULL};
-  hl_share_count(scene->width, scene->height, renderer->parts, &counted);
+  hl_share_count(plan->width, plan->height, renderer->parts, &counted);
   hl_status status = hl_renderer_check_room(renderer, counted.most, error);
   return status == HL_OK ? hl_share_create(renderer->context, &content, &plan->share, error) : status;
 }
 
 /* Light that does not travel along the sheets: what is scattered more than once, the sky's, and the tables of
  * phase functions. */
-static hl_status find_fields(hl_renderer *renderer, uint64_t sky_mark, frame_plan *plan, hl_error *error) {
-  const hl_scene_description *scene = &plan->framed->scene;
-  hl_status status = scatter_light(renderer, scene, plan, sky_mark, error);
+static hl_status find_fields(hl_renderer *renderer, const framed_scene *framed, uint64_t sky_mark,
+                             frame_plan *plan, hl_error *error) {
+  const hl_scene_description *scene = &framed->scene;
+  plan->fields.scatters = hl_scatter_wanted(scene);
+  hl_status status = scatter_light(renderer, framed, plan, sky_mark, error);
   if (status == HL_OK) status = update_sky(renderer, scene, plan, sky_mark, error);
   if (status == HL_OK) status = update_phases(renderer, scene, error);
-  plan->fields = (plan_fields){
-      .scattered = renderer->cache.scattered.light != NULL ? &renderer->cache.scattered : NULL,
-      .sky = renderer->cache.sky.light.cells != NULL ? &renderer->cache.sky.light : NULL,
-      .phases = &renderer->cache.phases};
+  plan->fields.scattered = renderer->cache.scattered.light != NULL ? &renderer->cache.scattered : NULL;
+  plan->fields.sky = renderer->cache.sky.light.cells != NULL ? &renderer->cache.sky.light : NULL;
+  plan->fields.phases = &renderer->cache.phases;
   return status;
 }
 
@@ -221,12 +222,12 @@ hl_status hl_plan_frame(hl_renderer *renderer, const framed_scene *framed, const
   plan->layers = request->layers;
   hl_status status = hl_frame_plan_create(context, framed, plan, error);
   if (status != HL_OK) return status;
-  place_volumes(renderer, plan);
+  place_volumes(renderer, framed, plan);
   status = add_surfaces(renderer, framed, &plan->frame, error);
-  if (status == HL_OK) status = place_eye_and_lights(plan, error);
+  if (status == HL_OK) status = place_eye_and_lights(framed, plan, error);
   if (status == HL_OK) status = update_contact(renderer, &plan->frame, error);
   if (status == HL_OK) status = hl_plan_sweeps(context, plan, error);
   if (status == HL_OK) status = share_picture(renderer, plan, error);
-  if (status == HL_OK) status = find_fields(renderer, request->scene->sky_mark, plan, error);
+  if (status == HL_OK) status = find_fields(renderer, framed, request->scene->sky_mark, plan, error);
   return status == HL_OK ? hl_plan_lights(context, plan, error) : status;
 }

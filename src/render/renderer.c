@@ -215,7 +215,7 @@ static void count_frame(const hl_renderer *renderer, const frame_plan *plan,
   statistics->threads = hl_pool_threads(renderer->pool);
   statistics->instruction_set = renderer->context->options.instruction_set;
   for (int i = 0; i < plan->volumes.count; i++) {
-    statistics->voxels_total += hl_volume_voxel_count(plan->volumes.list[i].scene->volume);
+    statistics->voxels_total += hl_volume_voxel_count(plan->volumes.list[i].volume);
     statistics->voxels_kept += renderer->cache.prepared[i].grid.kept_voxels;
   }
 }

@@ -84,7 +84,7 @@ hl_status hl_frame_sky_update(hl_context *context, hl_pool *pool, const hot_func
                               const frame_sky *of, const sky_room *room, sky_field *field, hl_error *error) {
   const hl_scene_description *scene = of->scene;
   bool same = false;
-  if (scene->sky.type == HL_SKY_NONE || hl_is_maximum(scene) || !hl_is_lit(scene) ||
+  if (scene->sky.type == HL_SKY_NONE || hl_is_maximum(&scene->render) || !hl_is_lit(scene) ||
       of->frame->point_count == 0) {
     hl_sky_release(context, field);
     return HL_OK;

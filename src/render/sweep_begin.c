@@ -44,8 +44,7 @@ static const uint64_t RING_BYTES = 64 << 20;
 
 /* Decides how many slabs a stretch has, and how many sheets the lights' buffers keep. */
 static void choose_stretch(sweep *sweep) {
-  int wanted = hl_plan_settings(sweep->frame_plan)->slabs_at_once,
-      stretch = wanted > 0 ? wanted : LONGEST_STRETCH;
+  int wanted = sweep->frame_plan->settings.slabs_at_once, stretch = wanted > 0 ? wanted : LONGEST_STRETCH;
   uint64_t bytes = 0, budget = RING_BYTES * (uint64_t)sweep->geometry->light_count /
                                (uint64_t)(sweep->frame->light_count > 0 ? sweep->frame->light_count : 1);
   for (int i = 0; i < sweep->geometry->light_count; i++) {
@@ -80,7 +79,7 @@ void hl_sweep_set_up(sweep *sweep, const sweep_means *means, const frame_plan *f
                                       .kernel = volumes->kernel,
                                       .splat = volumes->splat},
                           .target = *target,
-                          .act = hl_is_maximum(&frame_plan->framed->scene) ? hl_maximum_tile : hl_light_tile,
+                          .act = hl_is_maximum(&frame_plan->settings) ? hl_maximum_tile : hl_light_tile,
                           .channels = frame_plan->channels,
                           .tiles = frame_plan->tiles,
                           .tiles_x = frame_plan->tiles_x};

@@ -5,7 +5,6 @@
 
 #include "grid/relevant.h"
 #include "image/srgb.h"
-#include "scene/light/light_kind.h"
 #include "volume/colors.h"
 
 enum { SRGB_CODES = 256 };
@@ -38,7 +37,7 @@ static voxel_colors colors_of(const hl_volume *volume, const float *decode) {
 
 static void set_up_colors(const plan_volumes *volumes, sweep_constants *constants) {
   bool any = false;
-  for (int g = 0; g < volumes->count; g++) any = any || volumes->list[g].scene->volume->colors != NULL;
+  for (int g = 0; g < volumes->count; g++) any = any || volumes->list[g].volume->colors != NULL;
   for (int code = 0; any && code < SRGB_CODES; code++)
     constants->srgb_decode[code] = (float)hl_srgb_decode(code / 255.0);
   for (int code = 0; code < SRGB_CODES; code++)
@@ -59,7 +58,7 @@ static void set_up_cuts(const plan_volumes *volumes, sweep_constants *constants)
     shade->cuts = cut;
     shade->cut_count = (int)grid->cut_count;
     shade->light_cut_count = grid->cut_casts_shadow ? 0 : shade->cut_count;
-    shade->cut_shading = (int)volumes->list[g].scene->cut_shading;
+    shade->cut_shading = (int)volumes->list[g].cut_shading;
     for (size_t i = 0; i < grid->cut_count; i++) set_up_cut(grid, &grid->cuts[i], cut++);
   }
 }
@@ -77,7 +76,7 @@ static void find_box_faces(const grid *grid, shade_volume *shade) {
 }
 
 /* A volume's material and what follows from it. */
-static shade_volume material_of(const hl_scene_volume *volume, const plan_fields *fields) {
+static shade_volume material_of(const frame_volume *volume, const plan_fields *fields) {
   shade_volume shade = {
       .phong = volume->shading == HL_SHADING_PHONG,
       .lit = volume->shading != HL_SHADING_FLAT,
@@ -123,21 +122,21 @@ static void set_up_volumes(const frame_plan *plan, const maximum_values *maximum
     const frame_volume *of = &volumes->list[g];
     const grid *grid = &volumes->grids[g];
     shade_volume *shade = &constants->volumes[g];
-    *shade = material_of(of->scene, &plan->fields);
+    *shade = material_of(of, &plan->fields);
     shade->classifier = of->classifier;
     shade->grid = grid;
     shade->kernel = volumes->kernel;
-    shade->object = plan->frame.order->volumes[g] + 1;
-    shade->colors = colors_of(of->scene->volume, constants->srgb_decode);
-    shade->tints = colors_of(of->scene->mask.volume, constants->tint_decode);
+    shade->object = of->object;
+    shade->colors = colors_of(of->volume, constants->srgb_decode);
+    shade->tints = colors_of(of->tints, constants->tint_decode);
     if (maximum != NULL && maximum->values != NULL && shade->visible) {
       shade->rank = rank++;
       shade->shown = (const float(*)[4])(maximum->shown + (size_t)shade->rank * (CLASSIFIER_ENTRIES + 2));
     }
     place_volume(grid, shade);
-    if (of->scene->cut_shading != HL_CUT_SHADING_GRADIENT) find_box_faces(grid, shade);
+    if (of->cut_shading != HL_CUT_SHADING_GRADIENT) find_box_faces(grid, shade);
     shade->mask_faces = shade->phong && shade->classifier->mask.slopes != NULL &&
-                        of->scene->cut_shading == HL_CUT_SHADING_FACE;
+                        of->cut_shading == HL_CUT_SHADING_FACE;
   }
   set_up_cuts(volumes, constants);
 }
@@ -147,25 +146,23 @@ static void set_up_volumes(const frame_plan *plan, const maximum_values *maximum
 static void set_up_light(const frame_plan *plan, const sweep_plan *sweep, int index, shade_light *light) {
   const light_plan *from = &sweep->lights[index];
   const light_source *source = from->source;
-  const hl_light *scene = source->light;
-  const hl_scene_description *whole = &plan->framed->scene;
+  const frame_light *whole = &plan->lights[source->row];
   const sheet_stack *sheets = &sweep->geometry->sheets;
-  *light = (shade_light){
-      .parallel = source->parallel,
-      .shadowed = from->shadow.method != NULL,
-      .inverse_square = scene->falloff == HL_FALLOFF_INVERSE_SQUARE,
-      .sector = hl_sector_fraction(source->sectors, source->sector),
-      .number = index,
-      .parallel_row = source->parallel && hl_light_is_wide(scene) ? (int)(scene - whole->lights) : -1,
-      .cone = hl_light_cone(source, plan->frame.middle, plan->frame.middle_pixel),
-      .nearest = whole->render.shadow_lookup == HL_LOOKUP_NEAREST,
-      .cubic = from->shadow.plan.cubic};
+  *light = (shade_light){.parallel = source->parallel,
+                         .shadowed = from->shadow.method != NULL,
+                         .inverse_square = whole->is_inverse_square,
+                         .sector = hl_sector_fraction(source->sectors, source->sector),
+                         .number = index,
+                         .parallel_row = source->parallel && whole->is_wide ? source->row : -1,
+                         .cone = hl_light_cone(source, plan->frame.middle, plan->frame.middle_pixel),
+                         .nearest = plan->settings.shadow_lookup == HL_LOOKUP_NEAREST,
+                         .cubic = from->shadow.plan.cubic};
   light->of_sky = (float)source->of_sky;
   if (plan->fields.phases->count > 0) light->caps = hl_light_caps(source);
   vec3_store(light->towards, vec3_scale(source->direction, -1));
   vec3_store(light->position, source->position);
   for (int c = 0; c < 3; c++)
-    light->color[c] = (float)(scene->color[c] * scene->intensity *
+    light->color[c] = (float)(whole->color[c] * whole->intensity *
                               (from->emission == NULL ? 1 : from->emission->mean[c]));
   light->path = (float)sheets->spacing;
   if (source->parallel)
@@ -195,7 +192,7 @@ static void set_up_picture(const frame_plan *plan, const sweep_plan *sweep, swee
     vec3_store(shade->through, vec3_scale(eye->direction, spacing / climb));
     vec3_store(shade->towards_eye, vec3_scale(eye->direction, -1));
   }
-  for (int c = 0; c < 3 && first; c++) shade->ambient[c] = (float)plan->framed->scene.ambient[c];
+  for (int c = 0; c < 3 && first; c++) shade->ambient[c] = (float)plan->ambient[c];
 }
 
 void hl_sweep_constants_find(const frame_plan *plan, const sweep_plan *sweep, const maximum_values *maximum,

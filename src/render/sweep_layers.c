@@ -219,8 +219,8 @@ void hl_sweep_layers_batch(const sweep *sweep, const tile_slab *slab, const surf
     const shade_job job = job_of_pass(pass, slab->job);
     float *pixels = pass->pixels + slab->tile * pass->tile_floats;
     if (pass->shade != sweep->content.hot->render.shade) {
-      measure_batch(&job, batch, sweep->frame->mesh_objects[batch->mesh - sweep->frame->surfaces->meshes],
-                    pixels);
+      measure_batch(&job, batch,
+                    sweep->frame_plan->meshes[batch->mesh - sweep->frame->surfaces->meshes].object, pixels);
       continue;
     }
     surface_batch own = *batch;

@@ -114,15 +114,15 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
   for (size_t p = sheets->occupancy.first_patch[tile]; p < sheets->occupancy.first_patch[tile + 1]; p++) {
     if (!hl_patch_is_touched(sheets, p, place.sheet)) continue;
     uint32_t g = sheets->occupancy.patch_grid[p];
-    const hl_scene_volume *scene = sweep->content.volumes[g].scene;
-    if (!scene->casts_shadow) continue;
+    const frame_volume *of = &sweep->content.volumes[g];
+    if (!of->casts_shadow) continue;
     place.patch = p;
     if (hl_patch_relevant(sheets, place, need) == 0) continue;
     patch_slab slab = hl_patch_slab(sheets, place, need, pixels);
     if (slab.blocks == 0) continue;
-    volumes[count] = (attenuate_volume){.classifier = sweep->content.volumes[g].classifier,
+    volumes[count] = (attenuate_volume){.classifier = of->classifier,
                                         .blocks = slab.blocks,
-                                        .surface = scene->shading == HL_SHADING_PHONG,
+                                        .surface = of->shading == HL_SHADING_PHONG,
                                         .voxel = sweep->constants.volumes[g].voxel,
                                         .before = slab.before,
                                         .density = slab.current,
@@ -132,7 +132,7 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
                                         .grid = &sweep->content.grids[g],
                                         .kernel = sweep->content.kernel,
                                         .to_index = sweep->constants.volumes[g].to_index};
-    for (int c = 0; c < HL_CHANNELS; c++) volumes[count].weight[c] = (float)scene->attenuation_color[c];
+    for (int c = 0; c < HL_CHANNELS; c++) volumes[count].weight[c] = (float)of->attenuation_color[c];
     count++;
   }
   return count;

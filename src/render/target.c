@@ -31,9 +31,8 @@ static hl_status take_pixels(hl_renderer *renderer, const frame_request *request
 
 /* Whether sweeps composite into the caller's pixels: where one sweep fills them exactly, in whole tiles. */
 static bool is_in_place(const frame_request *request, const frame_plan *plan) {
-  const hl_scene_description *scene = &plan->framed->scene;
-  const bool whole = scene->width % TILE == 0 && scene->height % TILE == 0 &&
-                     request->row_stride == 4 * (size_t)scene->width;
+  const bool whole = plan->width % TILE == 0 && plan->height % TILE == 0 &&
+                     request->row_stride == 4 * (size_t)plan->width;
   return whole && plan->sweeps.count == 1 && plan->frame.oversampling == 1 &&
          (uintptr_t)request->pixels % 64 == 0;
 }
@@ -45,7 +44,7 @@ hl_status hl_frame_target_create(hl_renderer *renderer, const frame_request *req
   target->in_place = is_in_place(request, plan);
   lay_out_pixels(renderer, plan, target, &counted);
   hl_layer_pixels_count(plan->layers, &plan->frame, plan->tiles, &counted);
-  hl_maximum_count(&plan->framed->scene, plan->tiles, &counted);
+  hl_maximum_count(plan, &counted);
   /* the blocks that one of several sweeps returns rarely fit the next one */
   reserve->keeps = plan->sweeps.count == 1;
   if (!reserve->keeps) hl_reserve_release(reserve);
@@ -87,17 +86,16 @@ static void write_picture(const frame_target *target, const frame_request *reque
                            .oversampling = plan->frame.oversampling,
                            .pixels = request->pixels,
                            .row_stride = request->row_stride,
-                           .width = plan->framed->scene.width,
-                           .height = plan->framed->scene.height};
+                           .width = plan->width,
+                           .height = plan->height};
   if (target->in_place) hl_picture_reorder(&picture, target->tile_rows, pool);
   else hl_picture_write(&picture, pool);
 }
 
 void hl_frame_target_write(hl_renderer *renderer, const frame_request *request, const frame_plan *plan,
                            frame_target *target) {
-  const hl_scene_description *scene = &plan->framed->scene;
-  const layer_grid grid = {scene->width, scene->height, plan->frame.oversampling, (size_t)plan->tiles_x,
-                           (float)plan->framed->unit};
+  const layer_grid grid = {plan->width, plan->height, plan->frame.oversampling, (size_t)plan->tiles_x,
+                           (float)plan->unit};
   if (target->maximum.values != NULL)
     hl_maximum_color(&target->maximum, plan, renderer->pool, target->pixels);
   write_picture(target, request, plan, renderer->pool);

@@ -4,6 +4,7 @@ plan() { halflight render ball_24x24x24_uint8.raw --size 40x30 --quiet "$@" --pr
 methods() { tool json plan.json "[[l['method'], l.get('sublights', 0), min(l['buffer']) > 20, l['sheet_bytes'] > 0] for s in d['sweeps'] for l in s['lights'] if 'method' in l]"; }
 plan
 tool json plan.json "d['picture']['size'], d['picture']['tiles'] >= 6, d['volumes'][0]['dimensions'], d['meshes'], d['sky']"
+tool json plan.json "[(l['light'], l['wide'], l['image'], l['sun']) for l in d['lights']], d['volumes'][0]['visible'], d['volumes'][0]['casts_shadow']"
 tool json plan.json "sorted(l['light'] for s in d['sweeps'] for l in s['lights'])"
 tool json plan.json "sum(s['adds_even_light'] for s in d['sweeps']), sum(s['normal'][a] ** 2 for s in d['sweeps'][:1] for a in (0, 1, 2)) > 0.99"
 methods

@@ -1,0 +1,58 @@
+/* plan/frame_objects.h - the volumes, lights and meshes of a frame, as plain data in frame space.
+ *
+ * In:  the scene that is brought to frame space (framed_scene.h). Out: what back ends ask about the things of
+ * a scene. They see no descriptions. */
+#ifndef HL_PLAN_FRAME_OBJECTS_H
+#define HL_PLAN_FRAME_OBJECTS_H
+
+#include "grid/classifier.h"
+#include "light/light_source.h"
+#include "plan/framed_scene.h"
+
+/* A volume of the frame. Its grid is the plan's grid of the same index. */
+typedef struct frame_volume {
+  const char *name;                     /* borrowed; null: none */
+  const hl_volume *volume;              /* borrowed; for its colours and the range of its values */
+  const hl_volume *tints;               /* borrowed; the colours of its mask; null: none */
+  const hl_transfer_function *function; /* borrowed; lengths are frame space's */
+  const classifier *classifier;         /* borrowed; the transfer function's tables */
+  double empty;                         /* data value beyond the volume */
+  uint64_t version, tables_version; /* of the grid's voxels, and of what follows from the transfer function:
+                                       they rise with each change */
+  int object;                       /* its number in the layer of objects */
+  bool visible, casts_shadow, receives_shadow, multiple_scattering, is_cut;
+  hl_shading shading;
+  hl_cut_shading cut_shading;
+  hl_material material;
+  double anisotropy; /* of the phase function */
+  double albedo[HL_CHANNELS], attenuation_color[HL_CHANNELS];
+} frame_volume;
+
+/* A light of the frame, whole. Where its rays run is told by its light_source, or by one for each sector. */
+typedef struct frame_light {
+  int index;              /* in the scene's list of lights; suns of a sky follow the lights of the list */
+  double sun_part;        /* of a sun of the sky: the part of its light that a medium takes; else 0 */
+  bool is_wide;           /* it has an extent, or its directions have one */
+  bool is_inverse_square; /* samples receive the intensity divided by the square of their distance */
+  bool has_image;         /* it projects a picture, or shows one */
+  bool has_colored_image; /* colours of the picture that it shows come from different places */
+  double color[HL_CHANNELS], intensity; /* frame space */
+} frame_light;
+
+/* A mesh of the frame, or an isosurface of a volume. Its primitives are those of the surfaces' mesh of the
+ * same index. */
+typedef struct frame_mesh {
+  const char *name; /* borrowed; null: none */
+  int object;       /* its number in the layer of objects: an isosurface has that of its volume */
+  bool visible, casts_shadow, receives_shadow;
+  double opacity, attenuation_color[HL_CHANNELS];
+  size_t triangle_count, sphere_count;
+} frame_mesh;
+
+/* framed: it lives until the frame ends. The volume's classifier, value beyond and versions are
+ * left to the caller. */
+frame_volume hl_frame_volume(const framed_scene *framed, size_t index);
+frame_light hl_frame_light(const framed_scene *framed, size_t index);
+frame_mesh hl_frame_mesh(const framed_scene *framed, size_t index);
+
+#endif
