@@ -72,10 +72,12 @@ typedef struct hl_volume_info {
   hl_voxel_type type; /* as in the file */
   double spacing[3];  /* length of each axis, world units */
   double origin[3];
-  double direction[3][3];                /* direction[row][column]; columns are the unit axes */
-  double range[2];                       /* least and greatest finite value; 0, 0 if there is none */
-  double mean;                           /* over finite voxels */
-  uint64_t nonfinite_count;              /* NaN and infinite voxels: transparent when rendered */
+  double direction[3][3];   /* direction[row][column]; columns are the unit axes */
+  double range[2];          /* least and greatest finite value; 0, 0 if there is none. Of a mesh of
+                             * cells or a grid with refinement: of the spline's coefficients, which
+                             * the values between them may exceed near a face */
+  double mean;              /* over finite voxels */
+  uint64_t nonfinite_count; /* NaN and infinite voxels: transparent when rendered */
   uint64_t histogram[HL_HISTOGRAM_BINS]; /* equal bins over range, finite voxels */
   hl_space space;
 } hl_volume_info;

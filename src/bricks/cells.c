@@ -21,6 +21,8 @@ static const double POINTS_OF_AN_EDGE = 2;
 static const double FINEST_PART = 0.01;
 /* Bytes of bricks that are made without a memory limit. */
 static const double BYTES_MOST = 1073741824.0;
+/* Cells with a corner at this distance from the origin, or farther, are left out. */
+static const double FARTHEST = 1e30;
 
 typedef struct cell_field {
   hl_context *context;
@@ -61,6 +63,14 @@ static double edge_of(const hl_cell_shape *shape) {
   return cbrt(shape->is_tetrahedron ? 6 * sqrt(2) * volume : volume);
 }
 
+/* Whether all corners are nearer than FARTHEST; false for NaN. */
+static bool is_near(const hl_cell_shape *shape) {
+  bool near = true;
+  for (int c = 0; c < (shape->is_tetrahedron ? 4 : 8); c++)
+    for (int axis = 0; axis < 3; axis++) near = near && fabs(shape->corner[c][axis]) < FARTHEST;
+  return near;
+}
+
 static void measure_cells(cell_field *field, double low[3], double high[3], size_t *used) {
   *used = 0;
   for (int axis = 0; axis < 3; axis++) low[axis] = INFINITY, high[axis] = -INFINITY;
@@ -69,7 +79,7 @@ static void measure_cells(cell_field *field, double low[3], double high[3], size
     field->edges[n] = 0;
     if (!shape_of(field->cells, n, &shape)) continue;
     double edge = edge_of(&shape);
-    if (!(edge > 1e-30 && edge < 1e30)) continue;
+    if (!(edge > 1e-30 && is_near(&shape))) continue;
     field->edges[n] = (float)edge;
     (*used)++;
     for (int c = 0; c < (shape.is_tetrahedron ? 4 : 8); c++)
@@ -122,17 +132,19 @@ static double bytes_of(const cell_field *field, double spacing, const double siz
 }
 
 static double choose_spacing(const cell_field *field, size_t used, const double size[3]) {
-  double spacing = finest_edge(field, used) / POINTS_OF_AN_EDGE, most = BYTES_MOST;
+  const double wanted = finest_edge(field, used) / POINTS_OF_AN_EDGE;
+  double spacing = wanted, most = BYTES_MOST;
   uint64_t limit = field->context->options.memory_limit;
-  int doubled = 0;
   if (limit > 0 && (double)limit / 4 < most) most = (double)limit / 4;
-  while (doubled < 80 && bytes_of(field, spacing, size) > most) spacing *= sqrt(2), doubled++;
-  if (doubled > 0)
+  for (int axis = 0; axis < 3; axis++) /* a row of blocks alone must not need more */
+    spacing = fmax(spacing, size[axis] / SIDE * sizeof(hl_brick_entry) / most);
+  while (bytes_of(field, spacing, size) > most && spacing < FARTHEST) spacing *= sqrt(2);
+  if (spacing > wanted)
     hl_log(field->context, HL_LOG_WARNING,
            "%s: its cells are resampled %.3g times as coarse as half of a small cell's edge, as far as "
            "memory has "
            "room for",
-           field->subject, pow(2, doubled / 2.0));
+           field->subject, spacing / wanted);
   return spacing;
 }
 

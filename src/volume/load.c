@@ -16,7 +16,10 @@ static bool begins(const unsigned char *bytes, size_t length, const char *mark, 
   return length >= mark_length && memcmp(bytes, mark, mark_length) == 0;
 }
 
+/* The format that claims the first bytes. length: how many there are, which may be more than formats look at.
+ */
 static const hl_format *by_content(const unsigned char *bytes, size_t length) {
+  if (length > HL_FORMAT_SNIFFED_BYTES) length = HL_FORMAT_SNIFFED_BYTES;
   for (int n = 0; hl_formats[n] != NULL; n++)
     if (hl_formats[n]->has_content != NULL && hl_formats[n]->has_content(bytes, length)) return hl_formats[n];
   return NULL;
