@@ -397,6 +397,16 @@ static bool has_place(const hl_volume_description *grid) {
          memcmp(grid->origin, plain.origin, sizeof plain.origin) != 0;
 }
 
+/* Tells, before a long evaluation, that a file gets more voxels than the field has. */
+static void tell_evaluation(const saving *s, const char *path) {
+  const size_t *n = s->grid.dimensions, size = hl_voxel_type_bytes(s->grid.type);
+  if (s->volume->bricks == NULL) return;
+  hl_log(s->context, HL_LOG_WARNING,
+         "%s: the field has detail in some places alone: it is evaluated at all %zu x %zu x %zu voxels, %.1f "
+         "MiB",
+         path, n[0], n[1], n[2], (double)n[0] * (double)n[1] * (double)n[2] * (double)size / (1 << 20));
+}
+
 /* Warns about properties that the file cannot hold. */
 static void tell_losses(const saving *s, const char *path) {
   hl_context *context = s->context;
@@ -452,6 +462,7 @@ hl_status hl_volume_save_with(hl_context *context, const hl_volume *volume, cons
   if (status == HL_OK) status = set_type(&s, options->type, path, error);
   if (status == HL_OK) place_box(&s);
   if (status == HL_OK) status = check_raw_name(&s, path, error);
+  if (status == HL_OK) tell_evaluation(&s, path);
   if (status == HL_OK) status = save(&s, path, error);
   if (status == HL_OK) tell_losses(&s, path);
   hl_release(context, s.sums);
