@@ -67,7 +67,8 @@ typedef struct hl_block {
 
 /* Makes a volume of the blocks of all ranks, which must fill it without overlap. Collective; so is the
  * volume's last hl_volume_release(), and so are functions that read all voxels: hl_volume_percentiles(), and
- * the first frame of each renderer.
+ * the first frame of each renderer, and the first hl_labels_of_volume(), for which
+ * each rank gets a copy of the whole label map.
  * whole: size, type, placement and scale of the whole volume, the same on all ranks; its voxels, strides and
  * `borrow` are not read. Its voxels must be finite. The volume's mean is summed up block by block, so that
  * its last digits depend on the blocks; no other number and no picture does. */

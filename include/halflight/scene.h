@@ -475,7 +475,9 @@ HL_API void hl_scene_release(hl_scene *scene); /* null is allowed */
 /* The labels that a volume's voxels have, 0 left out, rising; all visible and solid. Names and colours are
  * those of the table (a path: FreeSurfer's or Slicer's colour table, ITK-SNAP's label descriptions, CSV;
  * null: none), else of the file (.seg.nrrd), else colours that differ. *labels is owned by the caller
- * (hl_labels_release). HL_ERROR_INPUT where a value is no whole number. */
+ * (hl_labels_release). HL_ERROR_INPUT where a value is no whole number; HL_ERROR_UNSUPPORTED for a map in a
+ * scratch file or in bricks. Of a map over ranks (ranks.h) each rank gets a copy, which the map keeps: the
+ * first call with it is collective. */
 HL_API HL_WARN_UNUSED hl_status hl_labels_of_volume(hl_context *context, const hl_volume *map,
                                                     const char *table, hl_label **labels, size_t *count,
                                                     hl_error *error);

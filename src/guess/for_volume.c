@@ -165,8 +165,8 @@ static hl_status leave_holders_out(hl_context *context, const hl_look *base, con
 }
 
 /* Gives a label map its labels, with their names and colours in its file. A volume whose values cannot be
- * labels after all, or that is larger than memory, gets none and is drawn by its values. *labels: owned by
- * the caller; null: none. */
+ * labels after all, or that is larger than memory, gets none and is drawn by its values, which is told.
+ * *labels: owned by the caller; null: none. */
 static hl_status find_labels(hl_context *context, hl_scene_volume *volume, hl_label **labels,
                              hl_error *error) {
   int is_label_map = 0;
@@ -174,8 +174,10 @@ static hl_status find_labels(hl_context *context, hl_scene_volume *volume, hl_la
   hl_status status = hl_volume_is_label_map(context, volume->volume, &is_label_map, error);
   if (status != HL_OK || !is_label_map) return status;
   status = hl_labels_of_volume(context, volume->volume, NULL, labels, &volume->label_count, &found);
-  if (status == HL_ERROR_INPUT || status == HL_ERROR_UNSUPPORTED) status = HL_OK;
-  else if (status != HL_OK && error != NULL) *error = found;
+  if (status == HL_ERROR_INPUT || status == HL_ERROR_UNSUPPORTED) {
+    hl_log(context, HL_LOG_WARNING, "taken for a label map, and drawn by its values: %s", found.message);
+    status = HL_OK;
+  } else if (status != HL_OK && error != NULL) *error = found;
   volume->labels = *labels;
   return status;
 }

@@ -19,6 +19,7 @@ void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_ex
                     hl_exact *exact) {
   exact->context = context;
   exact->type = type;
+  exact->first = 0;
   exact->count = count;
   exact->place = place;
   atomic_init(&exact->rounds, false);
@@ -142,7 +143,6 @@ static void note_in_memory(hl_exact *exact, bool swap, const unsigned char *from
   for (size_t n = 0; n < count; n++) {
     if (!rounds_number(exact->type, swap, from + n * bytes)) continue;
     if (!exact->rounds) exact->rounds = true;
-    if (exact->place == HL_EXACT_NOWHERE) return;
     unsigned char *numbers = numbers_of(exact);
     if (numbers == NULL) {
       exact->failure = ENOMEM;
@@ -153,9 +153,17 @@ static void note_in_memory(hl_exact *exact, bool swap, const unsigned char *from
 }
 
 void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first, size_t count) {
-  if (exact == NULL || !is_wide(exact->type) || !any_great(exact->type, swap, source, count)) return;
-  if (exact->place == HL_EXACT_IN_FILE) note_in_file(exact, swap, source, first, count);
-  else note_in_memory(exact, swap, source, first, count);
+  if (exact == NULL || !is_wide(exact->type)) return;
+  const size_t begin = first > exact->first ? first : exact->first, own_end = exact->first + exact->count;
+  const size_t end = first + count < own_end ? first + count : own_end;
+  if (begin >= end) return;
+  const unsigned char *from = source;
+  from += (begin - first) * hl_voxel_type_bytes(exact->type);
+  first = begin - exact->first;
+  count = end - begin;
+  if (!any_great(exact->type, swap, from, count)) return;
+  if (exact->place == HL_EXACT_IN_FILE) note_in_file(exact, swap, from, first, count);
+  else note_in_memory(exact, swap, from, first, count);
 }
 
 /* Gives a voxel whose number was not noted the number that its float holds. */
@@ -177,9 +185,9 @@ static void fill_number(hl_voxel_type type, double stored, size_t n, void *numbe
   }
 }
 
-/* Fills in the numbers that were not noted, which their floats hold. A noted number is zero at first. If a
- * voxel's float differs from the float of the noted number, the number was not noted. */
-static void fill_numbers(hl_voxel_type type, const float *stored, size_t count, void *numbers) {
+/* A noted number is zero at first. If a voxel's float differs from the float of the noted number, the number
+ * was not noted. */
+void hl_exact_fill(hl_voxel_type type, const float *stored, size_t count, void *numbers) {
   for (size_t n = 0; n < count; n++)
     if (!((float)hl_exact_number(type, numbers, n) == stored[n]))
       fill_number(type, (double)stored[n], n, numbers);
@@ -190,7 +198,7 @@ hl_status hl_exact_take(hl_exact *exact, const float *stored, void **numbers, hl
   if (exact->failure != 0)
     return hl_fail_memory(error, exact->count * hl_voxel_type_bytes(exact->type), "whole numbers above 2^24");
   *numbers = atomic_exchange(&exact->numbers, NULL);
-  if (*numbers != NULL) fill_numbers(exact->type, stored, exact->count, *numbers);
+  if (*numbers != NULL) hl_exact_fill(exact->type, stored, exact->count, *numbers);
   return HL_OK;
 }
 
@@ -214,7 +222,7 @@ bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, con
     done += (size_t)got;
   }
   memset((unsigned char *)numbers + done, 0, wanted - done);
-  fill_numbers(type, stored, count, numbers);
+  hl_exact_fill(type, stored, count, numbers);
   return true;
 }
 

@@ -3,7 +3,8 @@
  * Stored values of 32-bit and 64-bit integers and of doubles are floats, which hold whole numbers exactly up
  * to 2^24. Where a file has greater numbers that a float rounds (the ids of atlases), the numbers themselves
  * are kept too, in the file's type: for labels, masks, `info`, `convert` and percentiles. Pictures of values
- * use the floats. Beside voxels in pages they lie in a second scratch file.
+ * use the floats. Beside voxels in pages they lie in a second scratch file. Over ranks each rank keeps those
+ * of its own voxels.
  *
  * In: voxels as a file or a caller gives them, in pieces of any size and order, from several threads at once.
  * Out: all numbers, or null where floats hold them all. */
@@ -15,14 +16,13 @@
 
 typedef enum hl_exact_place {
   HL_EXACT_IN_MEMORY,
-  HL_EXACT_IN_FILE, /* in a scratch file, for voxels that lie in pages */
-  HL_EXACT_NOWHERE  /* numbers are not kept; only whether floats round any of them is noted */
+  HL_EXACT_IN_FILE /* in a scratch file, for voxels that lie in pages */
 } hl_exact_place;
 
 typedef struct hl_exact {
   hl_context *context;
   hl_voxel_type type;
-  size_t count; /* number of voxels */
+  size_t first, count; /* which voxels: the number of the first one, 0 but over ranks, and how many */
   hl_exact_place place;
   atomic_bool rounds; /* whether a noted number is rounded by its float */
   atomic_int failure; /* the system's error number if there was no room for the numbers, else 0 */
@@ -37,7 +37,8 @@ void hl_exact_begin(hl_context *context, hl_voxel_type type, size_t count, hl_ex
 
 /* Records the numbers of `count` voxels; the first one is voxel number `first`. source: the numbers as they
  * stand in the file, one after the other, of any alignment. swap: whether the file has the other byte order.
- * If memory or the disk is short, hl_exact_take() fails later. exact: may be null. */
+ * Voxels of other ranks are passed over. If memory or the disk is short, hl_exact_take() fails later. exact:
+ * may be null. */
 void hl_exact_note(hl_exact *exact, bool swap, const void *source, size_t first, size_t count);
 
 /* Takes the numbers out; the caller owns them. stored: the stored values of all voxels, [count]. *numbers is
@@ -50,6 +51,10 @@ hl_status hl_exact_take_file(hl_exact *exact, int *file, hl_error *error);
 bool hl_exact_read(int file, hl_voxel_type type, size_t first, size_t count, const float *stored,
                    void *numbers);
 void hl_exact_release(hl_exact *exact);
+
+/* Gives the voxels whose numbers were not noted the numbers that their floats hold. stored: their stored
+ * values. numbers: [count] of the type; zeros where nothing was noted. */
+void hl_exact_fill(hl_voxel_type type, const float *stored, size_t count, void *numbers);
 
 /* One number of a row. The row has values of the type in native byte order. */
 static inline double hl_exact_number(hl_voxel_type type, const void *row, size_t i) {

@@ -73,11 +73,13 @@ struct hl_volume {
   signed char *slopes;        /* owned; [k][j][i][4]; slopes of a mask's lattice (label/mask.h); null for
                                * other volumes */
   uint32_t (*mask_bricks)[2]; /* owned; bricks of a mask's lattice (label/mask.h); null for other volumes */
-  struct hl_pages *pages;   /* owned (pages.h); the voxels are in a scratch file, or over ranks; null if they
-                             * are in memory */
-  struct hl_bricks *bricks; /* owned (bricks/bricks.h, in_bricks.h); the field itself; null if there are
-                             * voxels. Voxels are found in it when they are asked for */
-  void *owned_voxels;       /* the block to hl_release; null if borrowed */
+  struct hl_pages *pages; /* owned (pages.h); the voxels are in a scratch file, or over ranks; null if they
+                           * are in memory */
+  struct hl_volume *gathered; /* owned (store/gathered.h); of a label map over ranks: all of it in memory;
+                               * null if nobody has asked for its labels */
+  struct hl_bricks *bricks;   /* owned (bricks/bricks.h, in_bricks.h); the field itself; null if there are
+                               * voxels. Voxels are found in it when they are asked for */
+  void *owned_voxels;         /* the block to hl_release; null if borrowed */
   void (*release)(void *release_data, const void *voxels); /* gives borrowed voxels back; may be null */
   void *release_data;
   double value_scale; /* data value = value_scale * stored + value_offset */

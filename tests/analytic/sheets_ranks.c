@@ -13,6 +13,7 @@
 #include "core/context.h"
 #include "ranks/ranks.h"
 #include "reference_stage.h"
+#include "volume/store/gathered.h"
 #include "volume/store/pages.h"
 
 enum { SIDE = 24, FLOATS = SIDE * SIDE * 4, MOST_VOXELS = 40 * 40 * 40 };
@@ -181,6 +182,48 @@ static void test_voxels(void **state) {
     hl_volume_release(packed);
     hl_volume_release(shared);
     free(held.memory);
+  }
+}
+
+/* A label map of 64-bit numbers that floats round, in blocks of any shape: its labels, and the voxels of its
+ * copy in memory. */
+static void test_label_shapes(void **state) {
+  (void)state;
+  static int64_t voxels[MOST_VOXELS];
+  static const int64_t labels[] = {0, -614454278, 614454277, 614454278, (int64_t)1 << 62};
+  for (int n = 0; n < SHAPES; n++) {
+    const size_t *size = shapes[n];
+    hl_box box = part_of(size, hl_ranks_rank(ranks), hl_ranks_size(ranks), (unsigned)n);
+    hl_volume_description whole;
+    hl_volume_description_defaults(&whole);
+    memcpy(whole.dimensions, size, sizeof whole.dimensions);
+    whole.type = HL_VOXEL_I64;
+    hl_block block = {.struct_size = sizeof block, .voxels = voxels};
+    for (int a = 0; a < 3; a++) {
+      block.offset[a] = box.begin[a];
+      block.size[a] = box.count[a];
+    }
+    for (size_t v = 0; v < box.count[0] * box.count[1] * box.count[2]; v++) {
+      size_t i = box.begin[0] + v % box.count[0], j = box.begin[1] + v / box.count[0] % box.count[1],
+             k = box.begin[2] + v / box.count[0] / box.count[1];
+      voxels[v] = labels[(i + 2 * j + 3 * k) % 5];
+    }
+    hl_volume *map = NULL, *copy = NULL;
+    hl_label *found = NULL;
+    size_t count = 0;
+    assert_int_equal(hl_volume_create_over_ranks(ranks, &whole, &block, &map, NULL), HL_OK);
+    assert_int_equal(hl_labels_of_volume(context, map, NULL, &found, &count, NULL), HL_OK);
+    for (size_t c = 1; c < count; c++) assert_true(found[c - 1].value < found[c].value);
+    if (size[0] * size[1] * size[2] > 20) assert_int_equal(count, 4);
+    assert_int_equal(hl_volume_in_memory(map, &copy, NULL), HL_OK);
+    for (size_t v = 0; v < size[0] * size[1] * size[2]; v++) {
+      size_t i = v % size[0], j = v / size[0] % size[1], k = v / size[0] / size[1];
+      int64_t value;
+      assert_int_equal(hl_volume_whole(copy, i, j, k, &value), HL_WHOLE_FOUND);
+      assert_true(value == labels[(i + 2 * j + 3 * k) % 5]);
+    }
+    hl_labels_release(context, found);
+    hl_volume_release(map);
   }
 }
 
@@ -453,14 +496,12 @@ static hl_status make_context(hl_error *error) {
 
 /* usage: sheets_ranks [TESTS [communicator]]: tests whose names match; --time: prints times. */
 int main(int count, char **arguments) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_voxels),
-                                     cmocka_unit_test(test_shapes),
-                                     cmocka_unit_test(test_ways),
-                                     cmocka_unit_test(test_corner),
-                                     cmocka_unit_test(test_few_pages),
-                                     cmocka_unit_test(test_other_values),
-                                     cmocka_unit_test(test_coefficients_refused),
-                                     cmocka_unit_test(test_refused)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_voxels),       cmocka_unit_test(test_label_shapes),
+      cmocka_unit_test(test_shapes),       cmocka_unit_test(test_ways),
+      cmocka_unit_test(test_corner),       cmocka_unit_test(test_few_pages),
+      cmocka_unit_test(test_other_values), cmocka_unit_test(test_coefficients_refused),
+      cmocka_unit_test(test_refused)};
   hl_error error = {0};
   mpi mpi;
   bool by_communicator = count > 2;

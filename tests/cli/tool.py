@@ -27,6 +27,22 @@ def ball(size, path):
         file.write(bytes(value(x, y, z) for z in range(n) for y in range(n) for x in range(n)))
 
 
+def atlas(size, path):
+    """A size^3 label map of 64-bit integers: a ball of four labels, two of which have one float."""
+    n = int(size)
+    middle = n / 2 - 0.5
+
+    def label(x, y, z):
+        if math.dist((x, y, z), (middle,) * 3) > 0.4 * n:
+            return 0
+        return ((997, 182305693), (614454277, 614454278))[z < middle][x < middle]
+
+    with open(path, "wb") as file:
+        file.write(f"NRRD0004\ntype: int64\ndimension: 3\nsizes: {n} {n} {n}\nendian: little\nencoding: raw\n\n".encode())
+        for z in range(n):
+            file.write(struct.pack(f"<{n * n}q", *(label(x, y, z) for y in range(n) for x in range(n))))
+
+
 def read_npy(path):
     """(height, width, channels, numbers) of a float32 array."""
     data = open(path, "rb").read()
@@ -227,7 +243,7 @@ def json_get(path, expression):
     print(eval(expression, {"d": json.load(open(path)), "len": len, "sum": sum, "sorted": sorted, "abs": abs, "max": max, "min": min, "round": round}))
 
 
-COMMANDS = {"ball": ball, "stack": stacks.write, "npy-shape": npy_shape, "brightness": brightness, "coverage": coverage, "ratio": ratio,
+COMMANDS = {"atlas": atlas, "ball": ball, "stack": stacks.write, "npy-shape": npy_shape, "brightness": brightness, "coverage": coverage, "ratio": ratio,
             "shared-pixels": shared_pixels,
             "sum_layers": sum_layers, "exr-holds": exr_holds,
             "png-header": png_header, "png-scene": png_scene, "png-pixel": png_pixel,

@@ -11,7 +11,7 @@
 #include "scene/check/limits.h"
 #include "scene/function/transfer_function.h"
 #include "scene/geometry/placement.h"
-#include "volume/volume.h"
+#include "volume/store/gathered.h"
 
 /* ---- a function over the map's own values ---- */
 
@@ -169,8 +169,10 @@ static hl_status draw_skins(hl_context *context, hl_scene_description *placed, c
 /* Adds the volumes that draw a label map. */
 static hl_status draw_map(hl_context *context, hl_scene_description *placed, const hl_scene_volume *map,
                           drawn_points **points, hl_error *error) {
-  hl_status status = draw_solids(context, placed, map, points, error);
-  return status == HL_OK ? draw_skins(context, placed, map, points, error) : status;
+  hl_scene_volume whole = *map;
+  hl_status status = hl_volume_in_memory(map->volume, &whole.volume, error);
+  if (status == HL_OK) status = draw_solids(context, placed, &whole, points, error);
+  return status == HL_OK ? draw_skins(context, placed, &whole, points, error) : status;
 }
 
 /* Adds a volume with its mask as a lattice. */
@@ -178,7 +180,9 @@ static hl_status draw_masked(hl_context *context, hl_scene_description *placed, 
                              hl_error *error) {
   hl_volume *lattice = NULL;
   if (volume->mask.volume != NULL) {
-    hl_status status = hl_label_mask(context, placed->render.threads, &volume->mask, &lattice, error);
+    hl_mask whole = volume->mask;
+    hl_status status = hl_volume_in_memory(volume->mask.volume, &whole.volume, error);
+    if (status == HL_OK) status = hl_label_mask(context, placed->render.threads, &whole, &lattice, error);
     if (status != HL_OK) return status;
   }
   hl_scene_volume *drawn = (hl_scene_volume *)&placed->volumes[placed->volume_count++];

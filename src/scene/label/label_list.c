@@ -11,7 +11,7 @@
 #include "scene/function/transfer_function.h"
 #include "scene/label/label_table.h"
 #include "scene/scene.h"
-#include "volume/volume.h"
+#include "volume/store/gathered.h"
 
 /* Labels that were found, rising. */
 typedef struct found_labels {
@@ -43,12 +43,6 @@ static hl_status fail_value(double value, hl_error *error) {
 
 /* Labels come in runs: only a value that differs from the voxel before is looked up. */
 static hl_status find_values(const hl_volume *map, found_labels *found, hl_error *error) {
-  if (map->pages != NULL)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "labels of a volume that is larger than memory: raise the memory limit");
-  if (map->bricks != NULL)
-    return hl_fail(error, HL_ERROR_UNSUPPORTED,
-                   "labels of a field in bricks, whose numbers are no names: give a label map of voxels");
   for (size_t k = 0; k < map->dimension[2]; k++)
     for (size_t j = 0; j < map->dimension[1]; j++) {
       const hl_number_row row = hl_volume_numbers(map, j, k, NULL);
@@ -127,12 +121,14 @@ hl_status hl_labels_of_volume(hl_context *context, const hl_volume *map, const c
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_labels_of_volume: null context, volume, labels or count");
   hl_label_list rows = {0};
   found_labels found = {.values = hl_allocate(context, HL_MOST_LABELS, sizeof *found.values)};
+  hl_volume *whole = NULL;
   hl_status status = HL_OK;
   *labels = NULL;
   *count = 0;
   if (found.values == NULL) return hl_fail_memory(error, HL_MOST_LABELS * sizeof *found.values, "labels");
   if (table != NULL) status = hl_label_table_load(context, table, &rows, error);
-  if (status == HL_OK) status = find_values(map, &found, error);
+  if (status == HL_OK) status = hl_volume_in_memory(map, &whole, error);
+  if (status == HL_OK) status = find_values(whole, &found, error);
   hl_label *made = status == HL_OK ? hl_allocate(context, found.count + 1, sizeof *made) : NULL;
   if (status == HL_OK && made == NULL) status = hl_fail_memory(error, found.count * sizeof *made, "labels");
   for (size_t n = 0; status == HL_OK && n < found.count; n++) describe(map, &rows, found.values[n], &made[n]);

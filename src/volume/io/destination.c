@@ -32,6 +32,13 @@ static void warn_of_pictures(hl_context *context, const hl_volume_description *g
            path, bytes / (1 << 20), limit / (1 << 20));
 }
 
+/* The numbers of the voxels that belong to this rank, which are the voxels of adjacent slices. */
+static void own_range(const hl_own_voxels *own, size_t *begin, size_t *end) {
+  size_t slice = own->box.count[0] * own->box.count[1];
+  *begin = own->box.begin[2] * slice;
+  *end = *begin + own->box.count[2] * slice;
+}
+
 hl_status hl_destination_open(hl_context *context, const hl_volume_description *grid,
                               hl_destination_kind kind, const char *path, hl_destination *destination,
                               hl_error *error) {
@@ -39,17 +46,21 @@ hl_status hl_destination_open(hl_context *context, const hl_volume_description *
   size_t bytes = kind == HL_DESTINATION_COLORS ? HL_COLOR_BYTES
                                                : hl_storage_bytes(hl_voxel_type_storage(grid->type));
   *destination = (hl_destination){.context = context, .path = path, .voxel_bytes = bytes};
-  hl_exact_begin(context, kind == HL_DESTINATION_COLORS ? HL_VOXEL_U8 : grid->type, count, HL_EXACT_NOWHERE,
+  hl_exact_begin(context, kind == HL_DESTINATION_COLORS ? HL_VOXEL_U8 : grid->type, count, HL_EXACT_IN_MEMORY,
                  &destination->exact);
-  if (kind == HL_DESTINATION_PIECES && context->ranks != NULL && count >= LEAST_OVER_RANKS / bytes)
-    return hl_own_voxels_allocate(context->ranks, grid, &destination->own, error);
+  if (kind == HL_DESTINATION_PIECES && context->ranks != NULL && count >= LEAST_OVER_RANKS / bytes) {
+    hl_status status = hl_own_voxels_allocate(context->ranks, grid, &destination->own, error);
+    if (status != HL_OK) return status;
+    own_range(destination->own, &destination->exact.first, &count);
+    destination->exact.count = count - destination->exact.first;
+    return HL_OK;
+  }
   if (kind == HL_DESTINATION_PIECES && hl_pages_wanted(context, grid)) {
     warn_of_pictures(context, grid, path);
     destination->exact.place = HL_EXACT_IN_FILE;
     return hl_pages_create(context, context->options.scratch_folder, grid, PAGE_SHIFT, &destination->pages,
                            error);
   }
-  destination->exact.place = HL_EXACT_IN_MEMORY;
   destination->voxels = hl_allocate(context, count, bytes);
   return destination->voxels != NULL ? HL_OK : hl_fail_memory(error, count * bytes, path);
 }
@@ -60,13 +71,6 @@ hl_status hl_destination_take(hl_destination *destination, size_t first, size_t 
   *place = hl_destination_is_apart(destination) ? hl_allocate(destination->context, count, bytes)
                                                 : destination->voxels + first * bytes;
   return *place != NULL ? HL_OK : hl_fail_memory(error, count * bytes, destination->path);
-}
-
-/* The numbers of the voxels that belong to this rank, which are the voxels of adjacent slices. */
-static void own_range(const hl_own_voxels *own, size_t *begin, size_t *end) {
-  size_t slice = own->box.count[0] * own->box.count[1];
-  *begin = own->box.begin[2] * slice;
-  *end = *begin + own->box.count[2] * slice;
 }
 
 bool hl_destination_wants(const hl_destination *destination, size_t first, size_t count) {
@@ -95,21 +99,23 @@ void hl_destination_put(hl_destination *destination, size_t first, size_t count,
 hl_status hl_destination_adopt(hl_destination *destination, const hl_volume_description *grid,
                                hl_volume **volume, hl_error *error) {
   const hl_destination given = *destination;
+  const unsigned char *voxels = given.own != NULL ? given.own->slices : given.voxels;
   void *exact = NULL;
   if (given.own != NULL && given.exact.rounds)
-    hl_log(
-        given.context, HL_LOG_WARNING,
-        "%s: numbers above 2^24 are rounded to 24 bits, as the volume is spread over processes: read it by "
-        "one for exact ones",
-        given.path);
+    hl_log(given.context, HL_LOG_WARNING,
+           "%s: values above 2^24 are rounded to 24 bits, as the volume is spread over processes: read it by "
+           "one "
+           "for exact ones (its labels are exact)",
+           given.path);
   hl_status status = given.pages != NULL
                          ? hl_exact_take_file(&destination->exact, &given.pages->exact_file, error)
-                         : hl_exact_take(&destination->exact, (const float *)(const void *)given.voxels,
-                                         &exact, error);
+                         : hl_exact_take(&destination->exact, (const float *)(const void *)voxels, &exact,
+                                         error);
   if (status != HL_OK) return status;
   destination->voxels = NULL;
   destination->pages = NULL;
   destination->own = NULL;
+  if (given.own != NULL) given.own->exact = exact;
   if (given.own != NULL)
     return hl_volume_over_ranks(given.context->ranks, grid, given.own, PAGE_SHIFT, given.path, volume, error);
   return given.pages != NULL

@@ -5,6 +5,9 @@
 
 #include "core/memory.h"
 
+/* The type that each hl_storage stores. */
+static const hl_voxel_type stored_types[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
+
 static hl_status make(hl_ranks *ranks, hl_own_voxels **own, hl_error *error) {
   *own = hl_allocate_zeroed(ranks->context, 1, sizeof **own);
   if (*own == NULL) return hl_fail_memory(error, sizeof **own, "a rank's voxels");
@@ -34,14 +37,12 @@ static hl_status allocate_slices(hl_own_voxels **own, hl_error *error) {
 
 hl_status hl_own_voxels_allocate(hl_ranks *ranks, const hl_volume_description *whole, hl_own_voxels **own,
                                  hl_error *error) {
-  /* The type that each hl_storage stores. */
-  static const hl_voxel_type stored[] = {HL_VOXEL_U8, HL_VOXEL_U16, HL_VOXEL_F32};
   hl_status status = make(ranks, own, error);
   if (status != HL_OK) return status;
   hl_own_voxels *made = *own;
   const size_t *n = whole->dimensions;
   hl_storage storage = hl_voxel_type_storage(whole->type);
-  made->type = stored[storage];
+  made->type = made->stored = stored_types[storage];
   made->stored_bytes = hl_storage_bytes(storage);
   made->box.begin[2] = hl_ranks_part(ranks, n[2], ranks->rank);
   made->box.count[0] = n[0];
@@ -54,7 +55,7 @@ hl_status hl_own_voxels_like(hl_ranks *ranks, const hl_own_voxels *other, hl_own
                              hl_error *error) {
   hl_status status = make(ranks, own, error);
   if (status != HL_OK) return status;
-  (*own)->type = HL_VOXEL_F32;
+  (*own)->type = (*own)->stored = HL_VOXEL_F32;
   (*own)->stored_bytes = sizeof(float);
   (*own)->box = other->box;
   return allocate_slices(own, error);
@@ -68,6 +69,7 @@ hl_status hl_own_voxels_borrow(hl_ranks *ranks, const hl_volume_description *who
   const ptrdiff_t *given = block->stride_bytes;
   size_t bytes = hl_voxel_type_bytes(whole->type), around[3];
   made->type = whole->type;
+  made->stored = stored_types[hl_voxel_type_storage(whole->type)];
   made->stored_bytes = hl_storage_bytes(hl_voxel_type_storage(whole->type));
   made->first = block->voxels;
   for (int a = 0; a < 3; a++) {
@@ -90,6 +92,7 @@ void hl_own_voxels_release(hl_own_voxels *own) {
   if (own == NULL) return;
   pthread_mutex_destroy(&own->row_lock);
   hl_release(own->context, own->slices);
+  hl_release(own->context, own->exact);
   hl_release(own->context, own->row);
   hl_release(own->context, own);
 }

@@ -10,13 +10,16 @@
 
 typedef struct hl_own_voxels {
   hl_context *context;
-  hl_box box;          /* the box of the whole volume that this rank holds */
-  hl_voxel_type type;  /* type of the voxels in memory; for stored values U8, U16 or F32 */
-  size_t stored_bytes; /* bytes of a stored value */
+  hl_box box;           /* the box of the whole volume that this rank holds */
+  hl_voxel_type type;   /* type of the voxels in memory; for stored values `stored` */
+  hl_voxel_type stored; /* type of the stored values: U8, U16 or F32 */
+  size_t stored_bytes;  /* bytes of a stored value */
   const unsigned char *first;
   ptrdiff_t stride[3]; /* distances in bytes */
   unsigned char
       *slices; /* owned; [count[2]][count[1]][count[0]]; `first` points to it; null if `first` is borrowed */
+  void *exact; /* owned; [count[2]][count[1]][count[0]]; the file's numbers where `slices` round any of them
+                * (volume/exact.h); else null */
   void *row;   /* owned; a row of the voxels' type, if the voxels of a row are not adjacent; else null. Used
                 * with row_lock held */
   pthread_mutex_t row_lock;

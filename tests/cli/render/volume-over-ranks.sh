@@ -28,6 +28,18 @@ done
 halflight render scene.json --quiet --sky skyblue:orange -o sky.npy
 runs 3 "$HALFLIGHT" render scene.json --quiet --sky skyblue:orange --volume-over-ranks -o shared.npy
 cmp sky.npy shared.npy && rm shared.npy sky.npy
+# A label map keeps its numbers of 64 bits, of which floats hold 24: bare, shown in part, beside a volume, over it, in a scene.
+tool atlas 66 atlas.nrrd
+for labels in "atlas.nrrd" "ball.nrrd --labels atlas.nrrd --show 614454278=red,997=green:0.5" \
+  "ball.nrrd --mask atlas.nrrd --show 614454277,rest:0.1"; do
+  halflight render $labels $frame -o labels.npy
+  halflight render $labels $frame --print-scene >labels.json
+  runs 3 "$HALFLIGHT" render $labels $frame --volume-over-ranks -o shared.npy
+  cmp labels.npy shared.npy && rm shared.npy
+  runs 2 "$HALFLIGHT" render labels.json --quiet --volume-over-ranks -o shared.npy
+  cmp labels.npy shared.npy && rm shared.npy
+done
+rm labels.npy
 cat >killed.sh <<'END'
 if [ "${OMPI_COMM_WORLD_RANK-$PMI_RANK}" = 1 ]; then (sleep 1; kill -KILL $$) & fi
 exec "$HALFLIGHT" render ball_176x176x176_uint8.raw --size 900x1600 --sheet-spacing 0.04 --quiet --volume-over-ranks -o shared.npy
