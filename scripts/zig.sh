@@ -2,31 +2,47 @@
 # Sourced by the scripts that build for other systems: ziglang's compilers, and libraries from Debian's sources.
 #
 # The caller sets `out`, the folder of its build, `library_target`, zig's name of the system, `library_flags`, more flags of the compiler, and
-# `archive_format`, as `zig ar` calls it.
+# `archive_format`, as `zig ar` calls it. The compilers lie in out/tools, unless it sets `tools` to another folder.
 
 install_zig() {
-  root=$out/root
+  root=$out/root tools=${tools-$out/tools}
   mkdir -p "$out"
-  [ -x "$out/tools/bin/meson" ] || { python3 -m venv "$out/tools" && "$out/tools/bin/pip" install -q meson==1.12.1 ziglang==0.17.1; }
-  zig=$("$out/tools/bin/python" -c 'import os, ziglang; print(os.path.dirname(ziglang.__file__))')
+  [ -x "$tools/bin/meson" ] || { python3 -m venv "$tools" && "$tools/bin/pip" install -q meson==1.12.1 ziglang==0.17.1; }
+  zig=$("$tools/bin/python" -c 'import os, ziglang; print(os.path.dirname(ziglang.__file__))')
 }
 
-# fetch_sources PACKAGE ...: the sources of Debian packages, with apt's lists in a folder of this build: this machine's own lists may have no
-# sources. Where the security updates that are listed are gone, the release's own sources serve.
-fetch_sources() {
-  packages=$*
+# list_sources [ADDRESS SUITE COMPONENT]: makes the lists that apt_get uses, in a folder of this build, of the sources of this system's release or of
+# another one. The machine's own lists may have no sources.
+list_sources() {
   mkdir -p "$root/apt/lists/partial" "$root/apt/archives/partial" "$root/sources"
-  sources=$root/apt/sources
-  cat /etc/apt/sources.list /etc/apt/sources.list.d/debian.sources 2>/dev/null | sed 's/^deb /deb-src /; s/^Types: .*/Types: deb-src/' >"$sources.sources"
-  grep -q '^deb-src' "$sources.sources" && mv "$sources.sources" "$sources.list"
-  sources=$(ls "$sources".*)
-  set -- -q -o Dir::Etc::sourcelist="$sources" -o Dir::Etc::sourceparts=/dev/null -o Dir::State="$root/apt" \
-    -o Dir::Cache="$root/apt" -o Debug::NoLocking=true -o APT::Sandbox::User=root
-  apt-get "$@" update
+  if [ $# -gt 0 ]; then
+    echo "deb-src $*" >"$root/apt/sources.list"
+  else
+    cat /etc/apt/sources.list /etc/apt/sources.list.d/debian.sources 2>/dev/null | sed 's/^deb /deb-src /; s/^Types: .*/Types: deb-src/' >"$root/apt/sources.sources"
+    grep -q '^deb-src' "$root/apt/sources.sources" && mv "$root/apt/sources.sources" "$root/apt/sources.list"
+  fi
+  apt_get update
+}
+
+apt_get() {
+  apt-get -q -o Dir::Etc::sourcelist="$(ls "$root"/apt/sources.*)" -o Dir::Etc::sourceparts=/dev/null -o Dir::State="$root/apt" \
+    -o Dir::Cache="$root/apt" -o Debug::NoLocking=true -o APT::Sandbox::User=root "$@"
+}
+
+# fetch_sources PACKAGE ...: the sources of Debian packages. Where the security updates that are listed are gone, the release's own sources serve.
+fetch_sources() {
+  list_sources
   release=$(. /etc/os-release && echo "$VERSION_CODENAME")
-  for package in $packages; do
-    (cd "$root/sources" && { apt-get "$@" source --only-source "$package" || apt-get "$@" source --only-source "$package/$release"; })
+  for package in "$@"; do
+    (cd "$root/sources" && { apt_get source --only-source "$package" || apt_get source --only-source "$package/$release"; })
   done
+  rm -rf "$root/apt"
+}
+
+# fetch_original SUITE PACKAGE: a package's sources as their authors published them, of another release of Debian.
+fetch_original() {
+  list_sources http://deb.debian.org/debian "$1" main
+  (cd "$root/sources" && apt_get source --only-source --tar-only "$2" && tar -xf "$2"_*.orig.tar.*)
   rm -rf "$root/apt"
 }
 
@@ -70,9 +86,9 @@ build_base_libraries() {
 # bzip2, LZ4 and Zstandard.
 build_codec_libraries() {
   bzip2=$(echo "$root"/sources/bzip2-*/) lz4=$(echo "$root"/sources/lz4-*/)lib/ zstd=$(echo "$root"/sources/libzstd-*/)lib/
-  cp "$bzip2"bzlib.h "$lz4"lz4.h "$zstd"zstd.h "$zstd"zstd_errors.h "$root/include"
+  cp "$bzip2"bzlib.h "$lz4"lz4.h "$lz4"lz4hc.h "$zstd"zstd.h "$zstd"zstd_errors.h "$root/include"
   library bz2 "$bzip2" blocksort bzlib compress crctable decompress huffman randtable
-  library lz4 "$lz4" lz4
+  library lz4 "$lz4" lz4 lz4hc
   usual_flags=$library_flags
   library_flags="$library_flags -DZSTD_DISABLE_ASM"
   # shellcheck disable=SC2046 # several names
