@@ -337,8 +337,8 @@ LANES_INLINE filled_blocks gather_blocks(const fill_source *source, int tile_x, 
   return blocks;
 }
 
-static filled_blocks gather_tile(const fill_source *source, int tile_x, int tile_y, uint32_t need,
-                                 uint32_t others, float *density) {
+static __attribute__((unused)) filled_blocks gather_tile(const fill_source *source, int tile_x, int tile_y,
+                                                         uint32_t need, uint32_t others, float *density) {
   if (!source->grid->cell_bits_tell) need |= others, others = 0;
   if (tile_is_inside(source, tile_x * TILE, tile_y * TILE))
     return gather_blocks(source, tile_x, tile_y, need, others, 1, density);

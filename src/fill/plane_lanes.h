@@ -159,8 +159,9 @@ static const float SOME_OPACITY = 1e-4f;
 /* The colour in a row where matter shows, in linear RGB: the mean over the part of a way that shows and one
  * column on either side. If the function shows nothing there, the colour is the mean over the whole way. The
  * way runs from one coordinate in the classifier's tables to another. Only active lanes get a result. */
-static __attribute__((noinline)) void color_in_row(const plane_table *table, lanes row, const lanes shown[2],
-                                                   const lanes whole[2], uint32_t active, lanes color[3]) {
+static __attribute__((noinline, unused)) void color_in_row(const plane_table *table, lanes row,
+                                                           const lanes shown[2], const lanes whole[2],
+                                                           uint32_t active, lanes color[3]) {
   plane_row at = split_row(row);
   lanes sums[4];
   colors_between(table, at, column_of(table, shown[0]), column_of(table, shown[1]), sums);

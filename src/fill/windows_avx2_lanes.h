@@ -229,8 +229,9 @@ _Static_assert(LANES * sizeof(window_copies) <= INT16_MAX,
 
 /* Sums gradients over windows. Each window holds as many blocks as fit; one sum takes taps from the copies of
  * all windows. False where a single block does not fit. */
-static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, uint32_t starts,
-                             const tap_slope_weights *w, lanes3 *slope) {
+static __attribute__((unused)) int slopes_of_windows(const grid *grid, const lanes_int cell[3],
+                                                     uint32_t active, uint32_t starts,
+                                                     const tap_slope_weights *w, lanes3 *slope) {
   window_copies copies[LANES];
   voxel_window window;
   __m256i taps = _mm256_setzero_si256();

@@ -276,8 +276,9 @@ static __attribute__((noinline)) lanes3 slopes_of_window_f32(const voxel_window 
 
 /* Sums gradients over windows. Each window holds as many blocks as fit. False where a single block does not
  * fit. */
-static int slopes_of_windows(const grid *grid, const lanes_int cell[3], uint32_t active, uint32_t starts,
-                             const tap_slope_weights *w, lanes3 *slope) {
+static __attribute__((unused)) int slopes_of_windows(const grid *grid, const lanes_int cell[3],
+                                                     uint32_t active, uint32_t starts,
+                                                     const tap_slope_weights *w, lanes3 *slope) {
   voxel_window window;
   if (!has_windows(grid)) return 0;
   for (uint32_t left = active; left != 0;) {

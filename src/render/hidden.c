@@ -42,7 +42,7 @@ static uint32_t cover_tile(const sweep *sweep, const tile_slab *slab) {
   counts->pixels_seen += hl_pixels_of_blocks(seen);
   tile_slab uncovered = *slab;
   uncovered.blocks = seen;
-  uint32_t open = sweep->content.hot->render.cover(
+  uint32_t open = sweep->content.hot->render->cover(
       slab->job, &uncovered, sweep->target.pixels + slab->tile * 4 * TILE_PIXELS, &counts->samples);
   for (uint32_t closed = seen & ~open; closed != 0; closed &= closed - 1)
     shown_from[__builtin_ctz(closed)] = first_shown(sweep, slab->job->sheet);

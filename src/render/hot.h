@@ -14,16 +14,16 @@
 #include "view/occupancy.h"
 
 typedef struct hot_functions {
-  grid_functions grid;
-  view_functions view;
-  field_functions field;
-  fill_functions fill;
-  surface_functions surface;
-  shadow_functions shadow;
-  render_functions render;
+  const grid_functions *grid;
+  const view_functions *view;
+  const field_functions *field;
+  const fill_functions *fill;
+  const surface_functions *surface;
+  const shadow_functions *shadow;
+  const render_functions *render;
 } hot_functions;
 
-/* ---- one table for each instruction set (src/hot/hot.c) ---- */
+/* ---- one table for each instruction set (src/hot/tables.c) ---- */
 
 extern const hot_functions hl_hot_scalar;
 #if defined(__x86_64__)

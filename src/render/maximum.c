@@ -180,6 +180,6 @@ void hl_maximum_color(const maximum_values *maximum, const frame_plan *of, hl_po
 uint32_t hl_maximum_tile(const sweep *sweep, const tile_slab *slab) {
   const maximum_values *maximum = sweep->target.maximum;
   float *values = maximum->values + slab->tile * maximum->volume_count * MAXIMUM_ROWS * TILE_PIXELS;
-  return sweep->content.hot->render.maximum(slab->job, slab, values,
-                                            &sweep->arrays.counts[slab->worker].samples);
+  return sweep->content.hot->render->maximum(slab->job, slab, values,
+                                             &sweep->arrays.counts[slab->worker].samples);
 }

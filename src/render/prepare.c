@@ -237,7 +237,7 @@ static hl_status prepare_volume(const preparation *with, const hl_scene_volume *
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
                              const hl_scene_description *scene, const uint64_t *plane_marks,
                              prepared_volume *prepared, hl_error *error) {
-  const preparation with = {context, pool, &hot->grid, scene->render.kernel,
+  const preparation with = {context, pool, hot->grid, scene->render.kernel,
                             scene->render.compositing == HL_COMPOSITING_MAXIMUM};
   for (size_t i = 0; i < scene->volume_count; i++) {
     const hl_scene_volume *second = second_of(scene, &scene->volumes[i]);

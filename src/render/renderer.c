@@ -147,7 +147,7 @@ static void add_isosurfaces(const hl_renderer *renderer, framed_scene *framed) {
 static hl_status check_volumes_room(hl_renderer *renderer, const hl_scene_description *scene,
                                     const hot_functions *hot, hl_error *error) {
   hl_layout counted = {0};
-  hl_prepare_count(scene, renderer->cache.prepared, &hot->grid, hl_pool_threads(renderer->pool), &counted);
+  hl_prepare_count(scene, renderer->cache.prepared, hot->grid, hl_pool_threads(renderer->pool), &counted);
   return hl_renderer_check_room(renderer, counted.most, error);
 }
 

@@ -77,7 +77,7 @@ static hl_status make(hl_context *context, hl_pool *pool, const hot_functions *h
   hl_layout counted = {0};
   hl_sky_count(content, field, &counted);
   hl_status status = room->check(room->data, counted.most, error);
-  return status == HL_OK ? hl_sky_make(context, pool, content, &hot->field, field, error) : status;
+  return status == HL_OK ? hl_sky_make(context, pool, content, hot->field, field, error) : status;
 }
 
 hl_status hl_frame_sky_update(hl_context *context, hl_pool *pool, const hot_functions *hot,

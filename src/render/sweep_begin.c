@@ -152,7 +152,7 @@ static hl_status begin_light(sweep *sweep, int index, shadow_buffer *buffer, sha
   const sheet_content *content = &sweep->content;
   const texture_use use = {frame->points, frame->point_count, frame->middle, frame->middle_pixel};
   const light_shadow *planned = &sweep->plan->lights[index].shadow;
-  const shadow_means means = {content->pool, content->reserve, &content->hot->shadow};
+  const shadow_means means = {content->pool, content->reserve, content->hot->shadow};
   sweep_light *light = &sweep->lights[index];
   light_shadow *shadow = &light->shadow;
   hl_status status = hl_light_texture_create(content->context, light->source, &use, &light->texture, error);

@@ -69,7 +69,7 @@ void hl_sweep_layers_count(sweep *sweep, hl_layout *layout) {
 static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *lights, int light_count) {
   if (pixels == NULL) return NULL;
   layer_pass *pass = &sweep->layers.passes[sweep->layers.pass_count++];
-  *pass = (layer_pass){.shade = sweep->content.hot->render.shade,
+  *pass = (layer_pass){.shade = sweep->content.hot->render->shade,
                        .lights = lights,
                        .light_count = light_count,
                        .pixels = pixels,
@@ -123,7 +123,7 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
   add_sky_passes(sweep);
   layer_pass *measures = sweep->plan->measures ? add_pass(sweep, pixels->measures, NULL, 0) : NULL;
   if (measures != NULL) {
-    measures->shade = sweep->content.hot->render.measure;
+    measures->shade = sweep->content.hot->render->measure;
     measures->tile_floats = MEASURES * TILE_PIXELS;
   }
   return HL_OK;
@@ -218,14 +218,14 @@ void hl_sweep_layers_batch(const sweep *sweep, const tile_slab *slab, const surf
     const layer_pass *pass = &sweep->layers.passes[i];
     const shade_job job = job_of_pass(pass, slab->job);
     float *pixels = pass->pixels + slab->tile * pass->tile_floats;
-    if (pass->shade != sweep->content.hot->render.shade) {
+    if (pass->shade != sweep->content.hot->render->shade) {
       measure_batch(&job, batch,
                     sweep->frame_plan->meshes[batch->mesh - sweep->frame->surfaces->meshes].object, pixels);
       continue;
     }
     surface_batch own = *batch;
     change_matter(pass->matter, &own.samples);
-    sweep->content.hot->render.surface(&job, &own.samples);
+    sweep->content.hot->render->surface(&job, &own.samples);
     hl_surface_batch_composite(&own, job.back_to_front, pixels);
   }
 }

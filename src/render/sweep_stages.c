@@ -59,9 +59,9 @@ static int fill_image_tile(sweep *sweep, slab_place place, uint32_t need, int wo
 }
 
 uint32_t hl_light_tile(const sweep *sweep, const tile_slab *slab) {
-  uint32_t open = sweep->content.hot->render.shade(slab->job, slab,
-                                                   sweep->target.pixels + slab->tile * 4 * TILE_PIXELS,
-                                                   &sweep->arrays.counts[slab->worker].samples);
+  uint32_t open = sweep->content.hot->render->shade(slab->job, slab,
+                                                    sweep->target.pixels + slab->tile * 4 * TILE_PIXELS,
+                                                    &sweep->arrays.counts[slab->worker].samples);
   hl_sweep_layers_tile(sweep, slab);
   return open;
 }
@@ -153,7 +153,7 @@ static void composite_light_tile(sweep *sweep, light_shadow *shadow, attenuate_j
   if (method->before_tile != NULL) method->before_tile(shadow, tile, &job);
   uint32_t worked = 0;
   for (int i = 0; i < job.volume_count; i++) worked |= job.volumes[i].blocks;
-  attenuated_blocks blocks = sweep->content.hot->shadow.attenuate(&job, tile_x, tile_y);
+  attenuated_blocks blocks = sweep->content.hot->shadow->attenuate(&job, tile_x, tile_y);
   if (method->find_lit == NULL) buffer->tile_lit[tile] = (uint16_t)((need & ~worked) | blocks.lit);
   bool taken = hl_sweep_surfaces_attenuate(sweep, &job, surfaces);
   if (blocks.taken == 0 && !taken) return;

@@ -17,7 +17,7 @@ static hl_status make_fragments(sweep *sweep, const view *view, const sweep_ligh
   const fragments_source source = {
       .context = sweep->content.context,
       .pool = sweep->content.pool,
-      .functions = &sweep->content.hot->surface,
+      .functions = sweep->content.hot->surface,
       .surfaces = sweep->frame->surfaces,
       .view = view,
       .sheets = &sweep->geometry->sheets,
@@ -130,7 +130,7 @@ static void shade_batch(const sweep *sweep, const tile_slab *slab, surface_batch
   hl_surface_batch_place(sweep, slab, batch);
   if (hl_contact_find(sweep, slab, batch, contact))
     batch->samples.contact = (const float(*)[SURFACE_SAMPLES])contact;
-  sweep->content.hot->render.surface(slab->job, &batch->samples);
+  sweep->content.hot->render->surface(slab->job, &batch->samples);
   hl_surface_batch_composite(batch, slab->job->back_to_front,
                              sweep->target.pixels + slab->tile * 4 * TILE_PIXELS);
   hl_sweep_layers_batch(sweep, slab, batch);

@@ -72,12 +72,12 @@ static void enter_cuts(const view_sheets *sheets, slab_place place, float *enter
   float *leave = enter + TILE_PIXELS, *removed = enter + (ptrdiff_t)2 * INTERVAL_FLOATS;
   for (size_t i = first; i < first + cuts_of(sheets, grid); i++) {
     if (!sheets->cuts[i].shape->keep_inside) {
-      sheets->content->hot->view.coverage(&sheets->cut_rays[i], x, y, removed, removed + TILE_PIXELS);
+      sheets->content->hot->view->coverage(&sheets->cut_rays[i], x, y, removed, removed + TILE_PIXELS);
       removed += INTERVAL_FLOATS;
       continue;
     }
     float kept[INTERVAL_FLOATS];
-    sheets->content->hot->view.coverage(&sheets->cut_rays[i], x, y, kept, kept + TILE_PIXELS);
+    sheets->content->hot->view->coverage(&sheets->cut_rays[i], x, y, kept, kept + TILE_PIXELS);
     for (int p = 0; p < TILE_PIXELS; p++) {
       enter[p] = kept[p] > enter[p] ? kept[p] : enter[p];
       leave[p] = kept[TILE_PIXELS + p] < leave[p] ? kept[TILE_PIXELS + p] : leave[p];
@@ -93,9 +93,9 @@ static float *entries_of(view_sheets *sheets, slab_place place) {
   *entry = __atomic_fetch_add(&sheets->entry_count, 1, __ATOMIC_RELAXED);
   float *enter = sheets->entries + *entry * sheets->entry_floats;
   size_t tiles_x = (size_t)sheets->occupancy.tiles_x;
-  sheets->content->hot->view.coverage(&sheets->box_rays[sheets->occupancy.patch_grid[place.patch]],
-                                      (int)(place.tile % tiles_x), (int)(place.tile / tiles_x), enter,
-                                      enter + TILE_PIXELS);
+  sheets->content->hot->view->coverage(&sheets->box_rays[sheets->occupancy.patch_grid[place.patch]],
+                                       (int)(place.tile % tiles_x), (int)(place.tile / tiles_x), enter,
+                                       enter + TILE_PIXELS);
   if (sheets->cuts != NULL) enter_cuts(sheets, place, enter);
   return enter;
 }
@@ -283,7 +283,7 @@ hl_status hl_view_sheets_begin(const sheet_content *content, const view *view, b
                                view_sheets *sheets, hl_error *error) {
   const occupancy_source source = {content->grids, content->volume_count, view, content->sheets, spare};
   *sheets = (view_sheets){.content = content, .view = view, .of_light = of_light};
-  hl_status status = hl_occupancy_build(content->context, content->pool, content->hot->view.brick_ranges,
+  hl_status status = hl_occupancy_build(content->context, content->pool, content->hot->view->brick_ranges,
                                         &source, &sheets->occupancy, error);
   if (status == HL_OK) status = sort_voxels(sheets, error);
   if (status == HL_OK) status = keep_patches(sheets, error);
@@ -326,9 +326,9 @@ static void find_relevant(const view_sheets *sheets, slab_place place, uint32_t 
                         hl_occupancy_has(o, patch, run->first + i + 1))
              << i;
   relevant_blocks relevant = {0};
-  sheets->content->hot->fill.relevant_blocks(run_of_grid(sheets, run->first, (int)o->patch_grid[patch]),
-                                             (int)(place.tile % (size_t)o->tiles_x),
-                                             (int)(place.tile / (size_t)o->tiles_x), slabs, more, &relevant);
+  sheets->content->hot->fill->relevant_blocks(run_of_grid(sheets, run->first, (int)o->patch_grid[patch]),
+                                              (int)(place.tile % (size_t)o->tiles_x),
+                                              (int)(place.tile / (size_t)o->tiles_x), slabs, more, &relevant);
   for (int i = 0; i < RUN_SLABS; i++) run->relevant.blocks[i] |= relevant.blocks[i];
   run->relevant.uncut = relevant.uncut;
   run->asked = (uint16_t)(run->asked | more);
@@ -375,7 +375,7 @@ static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others)
   others &= ~(wanted | kept->need);
   if ((wanted | others) == 0) return;
   const sheet_content *content = b->sheets->content;
-  fill_tile_function *fill = content->splat ? content->hot->fill.splat : content->hot->fill.gather;
+  fill_tile_function *fill = content->splat ? content->hot->fill->splat : content->hot->fill->gather;
   filled_blocks blocks = fill(source_on_sheet(b->sheets, b->patch, b->first + i),
                               (int)(b->tile % (size_t)o->tiles_x), (int)(b->tile / (size_t)o->tiles_x),
                               wanted, others, density_on_sheet(b->sheets, b->patch, b->first + i));

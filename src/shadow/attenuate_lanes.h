@@ -35,7 +35,8 @@ LANES_INLINE covered_span covered_block(const float *enter, const float *leave, 
 }
 
 /* The blocks of a tile with a pixel that some light reaches. */
-static uint32_t lit_blocks_tile(const float *const transmittance[HL_CHANNELS], int channels, size_t stride) {
+static __attribute__((unused)) uint32_t lit_blocks_tile(const float *const transmittance[HL_CHANNELS],
+                                                        int channels, size_t stride) {
   uint32_t lit = 0;
   for (int block = 0; block < TILE_BLOCKS; block++) {
     lanes greatest = lanes_set(0);
@@ -250,7 +251,8 @@ LANES_INLINE attenuated_blocks attenuate_volumes(const attenuate_job *job, int v
 }
 
 /* Compiled once more for one volume with grey shadows, the usual case, which needs no loops. */
-static attenuated_blocks attenuate_tile(const attenuate_job *job, int tile_x, int tile_y) {
+static __attribute__((unused)) attenuated_blocks attenuate_tile(const attenuate_job *job, int tile_x,
+                                                                int tile_y) {
   if (job->volume_count == 1 && job->channels == 1) return attenuate_volumes(job, 1, 1, tile_x, tile_y);
   return attenuate_volumes(job, job->volume_count, job->channels, tile_x, tile_y);
 }

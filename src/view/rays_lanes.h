@@ -109,7 +109,8 @@ LANES_INLINE ray_section section_in_sphere(const box_rays *rays, lanes u, lanes 
   return section;
 }
 
-static void coverage_tile(const box_rays *rays, int tile_x, int tile_y, float *enter, float *leave) {
+static __attribute__((unused)) void coverage_tile(const box_rays *rays, int tile_x, int tile_y, float *enter,
+                                                  float *leave) {
   for (int block = 0; block < TILE_BLOCKS; block++) {
     lanes u = block_u(tile_x * TILE + block % 4 * BLOCK), v = block_v(tile_y * TILE + block / 4 * BLOCK);
     ray_section section = rays->sphere ? section_in_sphere(rays, u, v) : section_in_box(rays, u, v);

@@ -58,7 +58,7 @@ static hl_mesh *mesh_of(const stage *set, double value) {
   const kernel *kernel = hl_kernel_get(set->scene.render.kernel);
   const grid_source source = {volume, kernel, volume->volume->index_to_world,
                               hl_scene_volume_empty_value(volume)};
-  const grid_functions *functions = &hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->grid;
+  const grid_functions *functions = hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->grid;
   hl_status status = hl_pool_create(set->context, 1, &pool, &error);
   if (status == HL_OK) status = hl_grid_create(set->context, pool, functions, &source, &grid, &error);
   if (status == HL_OK) status = hl_isosurface_create(pool, volume, &grid, kernel, value, &mesh, &error);

@@ -166,7 +166,7 @@ static uint64_t prepare_bytes(stage *set, hl_pool *pool, prepared_volume *prepar
   const hot_functions *hot = hl_hot_functions(HL_INSTRUCTION_SET_SCALAR);
   hl_prepared_release_stale(set->context, &set->scene, prepared);
   hl_layout counted = {0};
-  hl_prepare_count(&set->scene, prepared, &hot->grid, 1, &counted);
+  hl_prepare_count(&set->scene, prepared, hot->grid, 1, &counted);
   assert_int_equal(hl_prepare_volumes(set->context, pool, hot, &set->scene, (uint64_t[]){0}, prepared, NULL),
                    HL_OK);
   return counted.most;

@@ -95,7 +95,7 @@ static void test_gathered(void **state) {
       fill_source source;
       make_source(&bench, 1000 * (uint64_t)n + sheet, &grid, &source);
       float scalar[TILE_PIXELS], density[TILE_PIXELS];
-      hl_hot_scalar.fill.gather(&source, 0, 0, ALL_BLOCKS, 0, scalar);
+      hl_hot_scalar.fill->gather(&source, 0, 0, ALL_BLOCKS, 0, scalar);
       for (int i = 0; i < TILE_PIXELS; i++) {
         double at[3];
         bool within = true;
@@ -115,7 +115,7 @@ static void test_gathered(void **state) {
       }
       for (int set = HL_INSTRUCTION_SET_SCALAR; set <= HL_INSTRUCTION_SET_AVX512_VBMI; set++) {
         if (!hl_cpu_has_instruction_set((hl_instruction_set)set)) continue;
-        hl_hot_functions((hl_instruction_set)set)->fill.gather(&source, 0, 0, ALL_BLOCKS, 0, density);
+        hl_hot_functions((hl_instruction_set)set)->fill->gather(&source, 0, 0, ALL_BLOCKS, 0, density);
         assert_memory_equal(density, scalar, sizeof density);
       }
     }

@@ -120,7 +120,7 @@ static void test_bricks_mark_what_they_touch(void **state) {
     occupancy o = {0};
     const occupancy_source source = {&bench.grid, 1, &bench.view, &bench.sheets, round % 2 ? 1.0 : 0.3};
     assert_int_equal(
-        hl_occupancy_build(bench.context, bench.pool, hl_hot_scalar.view.brick_ranges, &source, &o, NULL),
+        hl_occupancy_build(bench.context, bench.pool, hl_hot_scalar.view->brick_ranges, &source, &o, NULL),
         HL_OK);
     check(&bench, &o, counts);
     check_range(&o);

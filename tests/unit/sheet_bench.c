@@ -68,12 +68,12 @@ void bench_open(bench *bench, const size_t dimensions[3], hl_storage storage, co
   affine3 placement = {axes, vec3_scale(middle, -1)};
   const grid_source source = {&bench->scene, hl_kernel_get(HL_KERNEL_BSPLINE), placement,
                               hl_scene_volume_empty_value(&bench->scene)};
-  require(hl_grid_create(bench->context, bench->pool, &hl_hot_functions(hl_cpu_best_instruction_set())->grid,
+  require(hl_grid_create(bench->context, bench->pool, hl_hot_functions(hl_cpu_best_instruction_set())->grid,
                          &source, &bench->grid, &error),
           &error);
   require(hl_classifier_create(bench->context, &bench->scene, NULL, &bench->grid, &bench->classifier, &error),
           &error);
-  hl_grid_mark_relevant(&bench->grid, &hl_hot_functions(hl_cpu_best_instruction_set())->grid,
+  hl_grid_mark_relevant(&bench->grid, hl_hot_functions(hl_cpu_best_instruction_set())->grid,
                         &bench->classifier, bench->pool);
 }
 
@@ -84,7 +84,7 @@ void bench_show(bench *bench, const hl_opacity_point *opacity, size_t count) {
   bench->scene.transfer_function.opacity_count = count;
   require(hl_classifier_create(bench->context, &bench->scene, NULL, &bench->grid, &bench->classifier, &error),
           &error);
-  hl_grid_mark_relevant(&bench->grid, &hl_hot_scalar.grid, &bench->classifier, bench->pool);
+  hl_grid_mark_relevant(&bench->grid, hl_hot_scalar.grid, &bench->classifier, bench->pool);
 }
 
 void bench_look(bench *bench, vec3 direction, vec3 normal, double pixel, double distance, hl_kernel which) {

@@ -130,7 +130,7 @@ typedef struct bound_state {
 
 static void call_bound_rows(const hot_functions *hot, void *state) {
   bound_state *s = state;
-  hot->grid.rows[s->storage](s->rows, s->row_count, s->count, s->out[0], s->out[1]);
+  hot->grid->rows[s->storage](s->rows, s->row_count, s->count, s->out[0], s->out[1]);
 }
 
 static void test_bound_rows(void **unused) {
@@ -161,8 +161,8 @@ typedef struct cells_state {
 
 static void call_bound_cells(const hot_functions *hot, void *state) {
   cells_state *s = state;
-  hot->grid.along(s->storage, s->row, s->count, s->smooth, s->padded, s->out[0], s->out[1]);
-  hot->grid.across(s->low, s->high, (size_t)s->count / 2, s->smooth, s->out[2], s->out[3]);
+  hot->grid->along(s->storage, s->row, s->count, s->smooth, s->padded, s->out[0], s->out[1]);
+  hot->grid->across(s->low, s->high, (size_t)s->count / 2, s->smooth, s->out[2], s->out[3]);
 }
 
 static void test_bound_cells(void **unused) {
@@ -191,7 +191,7 @@ typedef struct bits_state {
 
 static void call_brick_bits(const hot_functions *hot, void *state) {
   bits_state *s = state;
-  s->out = hot->grid.brick_bits(&s->grid, s->brick, s->sign, s->level);
+  s->out = hot->grid->brick_bits(&s->grid, s->brick, s->sign, s->level);
 }
 
 static void test_brick_bits(void **unused) {
@@ -271,9 +271,9 @@ typedef struct fill_state {
 
 static void call_fill(const hot_functions *hot, void *state) {
   fill_state *s = state;
-  fill_tile_function *fill = s->gather ? hot->fill.gather : hot->fill.splat;
-  hot->fill.relevant_blocks(&s->run, s->tile_x, s->tile_y, s->need % (1u << RUN_SLABS), s->need,
-                            &s->out.relevant);
+  fill_tile_function *fill = s->gather ? hot->fill->gather : hot->fill->splat;
+  hot->fill->relevant_blocks(&s->run, s->tile_x, s->tile_y, s->need % (1u << RUN_SLABS), s->need,
+                             &s->out.relevant);
   s->out.filled = fill(&s->source, s->tile_x, s->tile_y, s->need, s->others, s->out.density);
 }
 
@@ -353,7 +353,7 @@ typedef struct coverage_state {
 
 static void call_coverage(const hot_functions *hot, void *state) {
   coverage_state *s = state;
-  hot->view.coverage(&s->rays, 1, 2, s->out[0], s->out[1]);
+  hot->view->coverage(&s->rays, 1, 2, s->out[0], s->out[1]);
 }
 
 static void test_coverage(void **unused) {
@@ -384,7 +384,7 @@ typedef struct ranges_state {
 
 static void call_ranges(const hot_functions *hot, void *state) {
   ranges_state *s = state;
-  hot->view.brick_ranges(&s->view, &s->grid, (const int32_t(*)[BRICKS_AT_ONCE])s->place, &s->out);
+  hot->view->brick_ranges(&s->view, &s->grid, (const int32_t(*)[BRICKS_AT_ONCE])s->place, &s->out);
 }
 
 static void test_brick_ranges(void **unused) {
@@ -555,12 +555,12 @@ typedef struct attenuate_state {
 
 static void call_attenuate(const hot_functions *hot, void *state) {
   attenuate_state *s = state;
-  s->out.blocks = hot->shadow.attenuate(&s->job, 1, 1);
+  s->out.blocks = hot->shadow->attenuate(&s->job, 1, 1);
 }
 
 static void call_lit_blocks(const hot_functions *hot, void *state) {
   attenuate_state *s = state;
-  s->out.lit = hot->shadow.lit_blocks((const float *const *)s->job.transmittance, s->job.channels, TILE);
+  s->out.lit = hot->shadow->lit_blocks((const float *const *)s->job.transmittance, s->job.channels, TILE);
 }
 
 static void set_up_attenuate(attenuate_state *s, uint32_t *seed, int round) {
@@ -650,25 +650,25 @@ typedef struct field_state {
 
 static void call_field(const hot_functions *hot, void *state) {
   field_state *s = state;
-  if (s->which == 0) hot->shadow.blur.rows(&s->blur, 1, 1);
-  if (s->which == 1) hot->shadow.blur.columns(&s->blur, 1, 1);
-  if (s->which == 2) s->out.lit = hot->shadow.cascade->add(&s->field, 1, 1);
-  if (s->which == 3) s->out.lit = hot->shadow.cascade->add_half(&s->field, 1, 1);
-  if (s->which == 4) s->out.lit = hot->shadow.cascade->add_double(&s->field, 1, 1);
-  if (s->which == 5) s->out.lit = hot->shadow.cascade->blur_add(&s->field_blur, 1, 1);
-  if (s->which == 6) hot->shadow.cascade->refill(&s->left, 1, 1);
-  if (s->which == 7) s->out.lit = (int)hot->shadow.cascade->absorbed(&s->absorbed, 1, 1);
-  if (s->which == 8) s->out.lit = hot->shadow.sublights->composite(&s->sublight, 1, 1);
+  if (s->which == 0) hot->shadow->blur.rows(&s->blur, 1, 1);
+  if (s->which == 1) hot->shadow->blur.columns(&s->blur, 1, 1);
+  if (s->which == 2) s->out.lit = hot->shadow->cascade->add(&s->field, 1, 1);
+  if (s->which == 3) s->out.lit = hot->shadow->cascade->add_half(&s->field, 1, 1);
+  if (s->which == 4) s->out.lit = hot->shadow->cascade->add_double(&s->field, 1, 1);
+  if (s->which == 5) s->out.lit = hot->shadow->cascade->blur_add(&s->field_blur, 1, 1);
+  if (s->which == 6) hot->shadow->cascade->refill(&s->left, 1, 1);
+  if (s->which == 7) s->out.lit = (int)hot->shadow->cascade->absorbed(&s->absorbed, 1, 1);
+  if (s->which == 8) s->out.lit = hot->shadow->sublights->composite(&s->sublight, 1, 1);
   if (s->which == 13) {
-    slab_rows rows = hot->shadow.sublights->half_pixel(&s->half_pixel, 1, 1);
+    slab_rows rows = hot->shadow->sublights->half_pixel(&s->half_pixel, 1, 1);
     s->out.lit = (int)(rows ^ rows >> 32);
   }
-  if (s->which == 14) hot->shadow.sublights->composite_row(&s->sublight, 1, 0, 3, s->lit, s->out.touched);
-  if (s->which == 15) s->out.lit = (int)hot->shadow.sublights->lit(&s->dark, 1, 1, s->lit[1]);
-  if (s->which == 9) s->out.lit = hot->shadow.cascade->double_tile(&s->field, 1, 1);
-  if (s->which == 10) hot->shadow.blur.emission(&s->image, 1, 1);
-  if (s->which == 12) s->out.lit = (int)hot->shadow.cascade->split(&s->part, 1, 1);
-  if (s->which == 11) s->out.lit = hot->shadow.cascade->emission_add(&s->field_image, 1, 1);
+  if (s->which == 14) hot->shadow->sublights->composite_row(&s->sublight, 1, 0, 3, s->lit, s->out.touched);
+  if (s->which == 15) s->out.lit = (int)hot->shadow->sublights->lit(&s->dark, 1, 1, s->lit[1]);
+  if (s->which == 9) s->out.lit = hot->shadow->cascade->double_tile(&s->field, 1, 1);
+  if (s->which == 10) hot->shadow->blur.emission(&s->image, 1, 1);
+  if (s->which == 12) s->out.lit = (int)hot->shadow->cascade->split(&s->part, 1, 1);
+  if (s->which == 11) s->out.lit = hot->shadow->cascade->emission_add(&s->field_image, 1, 1);
 }
 
 /* Marks of surfaces in the dark (shadow/attenuate.h) in every seventh pixel; where the chunk began with no
@@ -843,7 +843,7 @@ static void call_shade(const hot_functions *hot, void *state) {
   shade_state *s = state;
   s->out.samples = 0;
   _Alignas(64) unsigned char scratch[2 * SHADE_SCRATCH_BYTES];
-  shade_tile_function *function = s->covers ? hot->render.cover : hot->render.shade;
+  shade_tile_function *function = s->covers ? hot->render->cover : hot->render->shade;
   const tile_slab tile = tile_of(s, scratch);
   s->out.open = function(&s->job, &tile, s->out.pixels, &s->out.samples);
 }
@@ -1026,7 +1026,7 @@ static void call_measure(const hot_functions *hot, void *state) {
   uint64_t samples = 0;
   _Alignas(64) unsigned char scratch[2 * SHADE_SCRATCH_BYTES];
   const tile_slab tile = tile_of(&s->shade, scratch);
-  s->out.open = hot->render.measure(&s->shade.job, &tile, s->out.pixels, &samples);
+  s->out.open = hot->render->measure(&s->shade.job, &tile, s->out.pixels, &samples);
 }
 
 static void test_measure(void **unused) {
@@ -1079,7 +1079,7 @@ static void call_maximum(const hot_functions *hot, void *state) {
   maximum_state *s = state;
   s->out.samples = 0;
   const tile_slab tile = tile_of(&s->shade, NULL);
-  s->out.open = hot->render.maximum(&s->shade.job, &tile, s->out.values, &s->out.samples);
+  s->out.open = hot->render->maximum(&s->shade.job, &tile, s->out.values, &s->out.samples);
 }
 
 static void test_maximum(void **unused) {
@@ -1118,7 +1118,7 @@ typedef struct surface_state {
 
 static void call_surface(const hot_functions *hot, void *state) {
   surface_state *s = state;
-  hot->render.surface(&s->shade.job, &s->out);
+  hot->render->surface(&s->shade.job, &s->out);
 }
 
 static void set_unit_vectors(float to[3][SURFACE_SAMPLES], uint32_t *seed) {

@@ -179,7 +179,7 @@ static void test_against_one_by_one(void **state) {
     place_triangles(&s, &seed);
     set_small_view(&s, round % 4 >= 2);
     uint32_t small =
-        hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->surface.cover_small(&s.small, &s.input, &cover);
+        hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->surface->cover_small(&s.small, &s.input, &cover);
     for (int t = 0; t < SMALL_TRIANGLES; t++) {
       if (!(small >> t & 1)) continue;
       small_count++;
@@ -196,7 +196,7 @@ static void test_not_small(void **state) {
   uint32_t seed = 11;
   set_up s = {0};
   small_cover cover;
-  cover_small_function *function = hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->surface.cover_small;
+  cover_small_function *function = hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->surface->cover_small;
   open_view(&s, false);
   place_triangles(&s, &seed);
   set_small_view(&s, false);
@@ -235,11 +235,11 @@ static void test_instruction_sets(void **state) {
     place_triangles(&s, &seed);
     set_small_view(&s, round % 4 >= 2);
     uint32_t small =
-        hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->surface.cover_small(&s.small, &s.input, &first);
+        hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->surface->cover_small(&s.small, &s.input, &first);
     for (int set = HL_INSTRUCTION_SET_AVX2; set <= HL_INSTRUCTION_SET_AVX512_VBMI; set++) {
       if (!hl_cpu_has_instruction_set((hl_instruction_set)set)) continue;
       const hot_functions *hot = hl_hot_functions((hl_instruction_set)set);
-      assert_int_equal(hot->surface.cover_small(&s.small, &s.input, &other), small);
+      assert_int_equal(hot->surface->cover_small(&s.small, &s.input, &other), small);
       assert_same(&first, &other);
     }
   }
@@ -268,20 +268,20 @@ static void test_cluster(void **state) {
       }
     const cluster_shape shape = {positions[0], CORNERS, corners, normals};
     uint32_t small =
-        hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->surface.cover_small(&s.small, &s.input, &first);
+        hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->surface->cover_small(&s.small, &s.input, &first);
     for (int set = HL_INSTRUCTION_SET_SCALAR; set <= HL_INSTRUCTION_SET_AVX512_VBMI; set++) {
       if (!hl_cpu_has_instruction_set((hl_instruction_set)set)) continue;
       const hot_functions *hot = hl_hot_functions((hl_instruction_set)set);
-      hot->surface.see_cluster(&s.small, &shape, &seen);
+      hot->surface->see_cluster(&s.small, &shape, &seen);
       for (int t = 0; t < SMALL_TRIANGLES; t++)
         for (int i = 0; i < 3; i++) {
           assert_int_equal(seen.x[corners[i][16 + t]], s.input.x[i][t]);
           assert_int_equal(seen.y[corners[i][16 + t]], s.input.y[i][t]);
         }
-      assert_int_equal(hot->surface.cover_cluster(&s.small, &shape, &seen, 16, 0xffff, &other), small);
+      assert_int_equal(hot->surface->cover_cluster(&s.small, &shape, &seen, 16, 0xffff, &other), small);
       assert_int_equal(other.large, first.large);
       assert_same(&first, &other);
-      assert_int_equal(hot->surface.cover_cluster(&s.small, &shape, &seen, 16, 0xff, &other), small & 0xff);
+      assert_int_equal(hot->surface->cover_cluster(&s.small, &shape, &seen, 16, 0xff, &other), small & 0xff);
       assert_int_equal(other.covered[0], first.covered[0] & 0xff);
     }
     covered += (uint32_t)__builtin_popcount(first.covered[0]);
@@ -311,7 +311,7 @@ static void test_tiny(void **state) {
     for (int set = HL_INSTRUCTION_SET_SCALAR; set <= HL_INSTRUCTION_SET_AVX512_VBMI; set++) {
       if (!hl_cpu_has_instruction_set((hl_instruction_set)set)) continue;
       uint32_t small =
-          hl_hot_functions((hl_instruction_set)set)->surface.cover_small(&s.small, &s.input, &cover);
+          hl_hot_functions((hl_instruction_set)set)->surface->cover_small(&s.small, &s.input, &cover);
       for (int t = 0; t < SMALL_TRIANGLES; t++) {
         uint16_t samples[TILE_PIXELS], expected[TILE_PIXELS] = {0};
         pixel_span span = {0};
@@ -402,7 +402,7 @@ static void test_spheres(void **state) {
     for (int set = HL_INSTRUCTION_SET_SCALAR; set <= HL_INSTRUCTION_SET_AVX512_VBMI; set++) {
       if (!hl_cpu_has_instruction_set((hl_instruction_set)set)) continue;
       uint32_t small =
-          hl_hot_functions((hl_instruction_set)set)->surface.cover_spheres(&s.small, &spheres, &cover);
+          hl_hot_functions((hl_instruction_set)set)->surface->cover_spheres(&s.small, &spheres, &cover);
       assert_int_equal(small & cover.large, 0);
       assert_int_equal(small | cover.large, 0xffff);
       assert_int_equal(small & 0x7777, 0x7777);

@@ -58,7 +58,7 @@ static void check_known(expected_function *expected, double margin, double toler
     for (int way = 0; way < 2; way++) {
       int k = round % bench.sheets.count;
       fill_source source = bench_source(&bench, which, k);
-      fill_sheet(&source, way == 0 ? hl_hot_scalar.fill.splat : hl_hot_scalar.fill.gather, sheet);
+      fill_sheet(&source, way == 0 ? hl_hot_scalar.fill->splat : hl_hot_scalar.fill->gather, sheet);
       for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++) {
           vec3 p = bench_position(&bench, k, x, y);
@@ -108,8 +108,8 @@ static void check_agreement(const size_t n[3], hl_storage storage, uint32_t seed
     look_at_random(&bench, &seed, round / 3, 0.35, which);
     for (int k = 0; k < bench.sheets.count; k += 2) {
       fill_source source = bench_source(&bench, which, k);
-      fill_sheet(&source, hl_hot_scalar.fill.splat, splatted);
-      fill_sheet(&source, hl_hot_scalar.fill.gather, gathered);
+      fill_sheet(&source, hl_hot_scalar.fill->splat, splatted);
+      fill_sheet(&source, hl_hot_scalar.fill->gather, gathered);
       for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++) assert_near(splatted[y][x], gathered[y][x], 1e-5 * scale);
     }
@@ -138,7 +138,7 @@ static void test_other_blocks_are_left_alone(void **state) {
   for (int way = 0; way < 2; way++) {
     float density[TILE_PIXELS];
     for (int i = 0; i < TILE_PIXELS; i++) density[i] = -7;
-    fill_tile_function *fill = way == 0 ? hl_hot_scalar.fill.splat : hl_hot_scalar.fill.gather;
+    fill_tile_function *fill = way == 0 ? hl_hot_scalar.fill->splat : hl_hot_scalar.fill->gather;
     assert_int_equal(fill(&source, 1, 1, 0x8421, 0, density).filled, 0x8421);
     for (int i = 0; i < TILE_PIXELS; i++)
       assert_true((density[i] == -7) == !(0x8421 >> (i / BLOCK_PIXELS) & 1));
@@ -176,7 +176,7 @@ static void test_cells_bound_the_reconstruction(void **state) {
   for (int round = 0; round < ORIENTATIONS; round++) {
     look_at_random(&bench, &seed, round, 0.3, HL_KERNEL_BSPLINE);
     fill_source source = bench_source(&bench, HL_KERNEL_BSPLINE, round % bench.sheets.count);
-    fill_sheet(&source, hl_hot_scalar.fill.gather, sheet);
+    fill_sheet(&source, hl_hot_scalar.fill->gather, sheet);
     for (int y = 0; y < SIDE; y++)
       for (int x = 0; x < SIDE; x++) {
         vec3 p = bench_position(&bench, round % bench.sheets.count, x, y);
@@ -280,10 +280,10 @@ static void test_cells_are_what_their_voxels_say(void **state) {
     bench.scene.transfer_function.opacity_count = 2;
     const grid_source source = {&bench.scene, hl_kernel_get(HL_KERNEL_LINEAR), affine3_identity(), 7};
     assert_int_equal(
-        hl_grid_create(bench.context, bench.pool, &hl_hot_scalar.grid, &source, &bench.grid, NULL), HL_OK);
+        hl_grid_create(bench.context, bench.pool, hl_hot_scalar.grid, &source, &bench.grid, NULL), HL_OK);
     assert_int_equal(
         hl_classifier_create(bench.context, &bench.scene, NULL, &bench.grid, &bench.classifier, NULL), HL_OK);
-    hl_grid_mark_relevant(&bench.grid, &hl_hot_scalar.grid, &bench.classifier, bench.pool);
+    hl_grid_mark_relevant(&bench.grid, hl_hot_scalar.grid, &bench.classifier, bench.pool);
     assert_true(check_cells(&bench) > 0);
     bench_close(&bench);
   }
@@ -452,16 +452,16 @@ static void test_relevant_blocks_miss_nothing(void **state) {
     int at = round % (bench.sheets.count - 1);
     fill_source source = bench_source(&bench, HL_KERNEL_BSPLINE, at);
     slab_run run = bench_run(&bench, 0);
-    fill_sheet(&source, hl_hot_scalar.fill.gather, sheet);
+    fill_sheet(&source, hl_hot_scalar.fill->gather, sheet);
     for (int tile = 0; tile < SIDE_TILES * SIDE_TILES; tile++) {
       int tile_x = tile % SIDE_TILES, tile_y = tile / SIDE_TILES;
       relevant_blocks found = {0};
       uint32_t slabs = at > 0 ? 3u << (at - 1) : 1;
-      hl_hot_scalar.fill.relevant_blocks(&run, tile_x, tile_y, slabs, ALL_BLOCKS, &found);
+      hl_hot_scalar.fill->relevant_blocks(&run, tile_x, tile_y, slabs, ALL_BLOCKS, &found);
       uint32_t near = at > 0 ? found.blocks[at - 1] & found.blocks[at] : found.blocks[at];
       float density[TILE_PIXELS];
-      uint32_t relevant = hl_hot_scalar.fill.gather(&source, tile_x, tile_y, 0, near, density).filled;
-      assert_int_equal(hl_hot_scalar.fill.splat(&source, tile_x, tile_y, 0, near, density).filled, relevant);
+      uint32_t relevant = hl_hot_scalar.fill->gather(&source, tile_x, tile_y, 0, near, density).filled;
+      assert_int_equal(hl_hot_scalar.fill->splat(&source, tile_x, tile_y, 0, near, density).filled, relevant);
       assert_int_equal(relevant & ~near, 0);
       left_out += 16 - __builtin_popcount(near);
       left_out_by_bits += __builtin_popcount(near & ~relevant);
@@ -498,9 +498,9 @@ static void test_uncut_slabs_are_not_cut(void **state) {
     for (int tile = 0; tile < SIDE_TILES * SIDE_TILES; tile++) {
       relevant_blocks found = {0};
       _Alignas(64) float enter[TILE_PIXELS], leave[TILE_PIXELS];
-      hl_hot_scalar.view.coverage(&rays, tile % SIDE_TILES, tile / SIDE_TILES, enter, leave);
-      hl_hot_scalar.fill.relevant_blocks(&run, tile % SIDE_TILES, tile / SIDE_TILES, (1u << RUN_SLABS) - 1,
-                                         ALL_BLOCKS, &found);
+      hl_hot_scalar.view->coverage(&rays, tile % SIDE_TILES, tile / SIDE_TILES, enter, leave);
+      hl_hot_scalar.fill->relevant_blocks(&run, tile % SIDE_TILES, tile / SIDE_TILES, (1u << RUN_SLABS) - 1,
+                                          ALL_BLOCKS, &found);
       for (int slab = 0; slab < RUN_SLABS; slab++)
         for (int i = 0; i < TILE_PIXELS; i++) {
           if (!(found.blocks[slab] >> (i / BLOCK_PIXELS) & 1)) continue;

@@ -1,0 +1,7 @@
+/* hot/view.c - the hot functions of views: the bricks that a view sees, and the pixels that a box covers. */
+#include "hot/tables.h"
+
+#include "view/brick_ranges_lanes.h"
+#include "view/rays_lanes.h"
+
+const view_functions HL_HOT(view) = {brick_ranges_in_view, coverage_tile};
