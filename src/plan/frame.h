@@ -29,7 +29,7 @@ typedef struct frame {
   light_source *lights;  /* [light_count]; owned by the caller; sectors of a light follow each other */
   int light_count;
   const surfaces *surfaces;    /* of the scene's meshes; null: none */
-  const surface_tree *contact; /* of what shadow buffers leave light behind (contact.h) */
+  const surface_tree *contact; /* of what shadow buffers leave light behind (render/late/) */
 } frame;
 
 /* The eye's view in width x height pixels. */

@@ -11,6 +11,7 @@
 
 #include "core/memory.h"
 #include "render/surface_point.h"
+#include "surface/late/lateness.h"
 
 /* Sheets by which a sample may lie outside of its slab, and pixels by which it may lie outside of its tile:
  * for rounding. */
@@ -22,9 +23,6 @@ enum { READ_RUN = 8 };
 /* Pixels of a buffer around a look-up's position that are read: the farthest of cubic convolution's, and one
  * for rounding. */
 enum { READ_TAPS = 3 };
-
-/* Pixels by which look-ups at surfaces move away from them (surface_lanes.h). */
-static const double LOOKUP_AWAY = 1.25;
 
 /* Cosine by which the edge of a sector is looked for outside of it: for rounding. */
 static const double SECTOR_SPARE = 1e-3;
@@ -79,7 +77,7 @@ static bool widen(const read_buffer *buffer, const vec3 *points, int count, read
   double farthest = 0, way = 0;
   for (int i = 0; i < count && buffer->moves != NULL; i++)
     farthest = fmax(farthest, place_in(buffer->moves, points[i]).x);
-  if (buffer->moves != NULL) way = LOOKUP_AWAY * farthest / buffer->moves->length[1];
+  if (buffer->moves != NULL) way = (double)LOOKUP_OFFSET * farthest / buffer->moves->length[1];
   double nearest = bounds->nearest - way * buffer->length[0];
   if (!(nearest > 0)) return false;
   for (int a = 0; a < 2; a++) {

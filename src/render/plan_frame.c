@@ -6,7 +6,7 @@
 #include "core/context.h"
 #include "core/memory.h"
 #include "grid/relevant.h"
-#include "render/contact.h"
+#include "render/late/late_surfaces.h"
 #include "render/maximum.h"
 #include "surface/place_surfaces.h"
 

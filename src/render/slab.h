@@ -111,7 +111,7 @@ typedef struct shade_job {
   const scatter_field *scattered; /* light scattered more than once, in the first sweep; null: none */
   const sky_light *sky;           /* null: none, or not in this sweep */
   const float (*near_passing)[TILE_PIXELS]; /* [lights of the sweep][channels]; of one tile, row by row: what
-                                               surfaces near before the samples let through (near_surfaces.h);
+                                               surfaces near before the samples let through (late/);
                                                null: everything */
   float near_u, near_v;                     /* the tile's first pixel */
 } shade_job;

@@ -4,14 +4,11 @@
 
 #include "render/shade_lanes.h"
 #include "render/surface_samples.h"
+#include "surface/late/lateness.h"
 
 LANES_INLINE lanes3 load3(const float v[3][SURFACE_SAMPLES]) {
   return (lanes3){lanes_load(v[0]), lanes_load(v[1]), lanes_load(v[2])};
 }
-
-/* Pixels of a shadow buffer by which look-ups move away from a surface, along its normal: so that they read
- * as little as possible of what lies behind it, and of its own matter. */
-static const float LOOKUP_OFFSET = 1.25f;
 
 /* A position moved away from a surface. Derived: the buffer's column is (r1.p) / (r0.p); a way d at a right
  * angle to the light moves it by about |r1| d / (r0.p). */

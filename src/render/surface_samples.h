@@ -19,7 +19,7 @@ typedef struct surface_samples {
   float behind[3]; /* of this, the fraction where the light comes from behind the surface */
   int receives_shadow;
   const float (*contact)[SURFACE_SAMPLES]; /* [lights of the sweep][channels]; what surfaces close before the
-                                              samples let through (contact.h); null: everything */
+                                              samples let through (late/); null: everything */
 } surface_samples;
 
 #endif

@@ -80,7 +80,7 @@ typedef struct sweep_layers {
   float (*ones)[4];    /* a colour table */
 } sweep_layers;
 
-/* Points that stand for a light where surfaces look for what is close before them (contact.h). */
+/* Points that stand for a light where surfaces look for what is close before them (late/). */
 enum { LIGHT_POINTS_SIDE = 4 };
 typedef struct light_points {
   vec3 offset[LIGHT_POINTS_SIDE * LIGHT_POINTS_SIDE]; /* [count]; from the light's centre (hl_light_point) */
@@ -96,8 +96,8 @@ typedef struct surface_state {
   shade_patch *patches;          /* [threads][volumes] */
   float (*cuts)[TILE_PIXELS];    /* [threads][volumes][2]; where the pieces of slabs begin and end in boxes */
   float (*bounds)[TILE_PIXELS];  /* [threads][2]; where they begin and end */
-  float (*passing)[TILE_PIXELS]; /* [threads][lights][channels]; of near_surfaces.h */
-  float (*contact)[SURFACE_SAMPLES]; /* likewise; of contact.h */
+  float (*passing)[TILE_PIXELS]; /* [threads][lights][channels]; of late_surfaces.h */
+  float (*contact)[SURFACE_SAMPLES]; /* likewise; of late_surfaces.h */
   light_points *points;              /* [lights] */
 } surface_state;
 

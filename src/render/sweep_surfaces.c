@@ -2,10 +2,10 @@
 #include "render/sweep_surfaces.h"
 
 #include "core/memory.h"
-#include "render/contact.h"
-#include "render/near_surfaces.h"
+#include "render/late/late_surfaces.h"
 #include "render/surface_batch.h"
 #include "render/sweep_layers.h"
+#include "surface/late/lateness.h"
 
 /* ---- begin and end ---- */
 

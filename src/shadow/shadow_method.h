@@ -125,7 +125,7 @@ struct shadow_method {
   size_t state_bytes; /* of light_shadow.state, zeros before plan */
   int first_slab; /* for a near light within a slab. 0: the part of this slab beyond the light casts shadows;
                      1: shadows begin with the next slab */
-  /* Surfaces take light out of the buffer that many of its pixels late (render/near_surfaces.h), where its
+  /* Surfaces take light out of the buffer that many of its pixels late (surface/late/lateness.h), where its
    * look-ups are bilinear: methods that blur by a pixel and more take it later. */
   double surface_delay;
   double surface_rise; /* pixels by which surfaces stand above their place in the buffer */

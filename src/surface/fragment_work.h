@@ -7,8 +7,6 @@
 #include "surface/primitive_bins.h"
 #include "surface/small_triangles.h"
 
-enum { MOST_SLABS = 16 }; /* that a fragment fills */
-
 /* Memory for the fragments of many tiles: a chain of blocks, none of which is copied when the next one
  * begins. */
 typedef struct fragment_block {

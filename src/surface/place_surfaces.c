@@ -7,7 +7,7 @@
 #include "mesh/mesh.h"
 #include "scene/geometry/placement.h"
 #include "surface/clusters.h"
-#include "surface/surface_seams.h"
+#include "surface/late/surface_seams.h"
 
 /* Adds to each corner's normal the triangle's cross product, whose length is twice its area: large faces
  * count more. */

@@ -3,8 +3,8 @@
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
+#include "surface/late/seen_seams.h"
 #include "surface/primitive.h"
-#include "surface/seen_seams.h"
 #include "surface/sphere_coverage.h"
 #include "surface/surface_cuts.h"
 #include "surface/surface_plane.h"

@@ -10,21 +10,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "surface/late/lateness.h"
 #include "view/view.h"
 
 enum { SMALL_TRIANGLES = 16, SMALL_SIDE = 4, SMALL_PIXELS = SMALL_SIDE * SMALL_SIDE };
-
-/* The surface's slope in frame units a pixel is no steeper: one that light almost grazes would be delayed
- * without end, and it is hardly lit. */
-#define STEEPEST_SLOPE 12
-
-/* Distances of sheets by which a fragment's slabs may lie above its triangle: the neighbour's fragment of a
- * pixel on their edge lies beyond it, and both must fill one slab for the pixel to be full there. */
-#define SEAM 2
-
-/* The least delay, in distances of sheets: a surface along the sheets must not come to lie in an earlier slab
- * in the light's view than in the eye's, for rounding. */
-#define LEAST_DELAY 0.02
 
 /* A view, and how the fragments of one mesh enter it. Vectors in frame space. */
 typedef struct small_view {

@@ -3,8 +3,8 @@
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
+#include "surface/late/surface_rims.h"
 #include "surface/surface_cuts.h"
-#include "surface/surface_rims.h"
 #include "surface/triangle.h"
 
 /* A range is halved at the middle of its primitives' middles, and by their number where this would make the

@@ -30,7 +30,7 @@ typedef struct surface_tree {
 
 /* Of what a tree is made: of all meshes that take light away, with their spheres; or only of triangles of
  * meshes that are not closed, or that cuts cut, within a distance of an open edge, a cut or a corner
- * (surface_rims.h), in frame units, and of the spheres that cuts cut. */
+ * (late/surface_rims.h), in frame units, and of the spheres that cuts cut. */
 #define ALL_SURFACES INFINITY
 
 /* all: null for none. A tree that was not created is all zero, and may be released. */

@@ -29,7 +29,7 @@ typedef struct surface_mesh {
 } surface_mesh;
 
 typedef struct surface_cluster surface_cluster; /* clusters.h */
-typedef struct surface_seam surface_seam;       /* surface_seams.h */
+typedef struct surface_seam surface_seam;       /* late/surface_seams.h */
 
 /* A primitive is a triangle or a sphere: numbers below triangle_count are triangles, those after it spheres.
  */

@@ -224,7 +224,7 @@ static void test_light_of_part(void **state) {
 
 /* ---- renderers that exchange light ---- */
 
-enum { MOST_PARTS = 8, MOST_POSTS = 20000 };
+enum { MOST_BANDS = 8, MOST_POSTS = 20000 };
 
 /* What a part has sent. */
 typedef struct sent_post {
@@ -236,11 +236,11 @@ typedef struct sent_post {
 typedef struct meeting {
   int parts;
   pthread_barrier_t barrier;
-  const void *from[MOST_PARTS];
+  const void *from[MOST_BANDS];
   pthread_mutex_t lock;
   pthread_cond_t arrived;
-  sent_post posts[MOST_PARTS][MOST_POSTS];
-  int post_count[MOST_PARTS];
+  sent_post posts[MOST_BANDS][MOST_POSTS];
+  int post_count[MOST_BANDS];
 } meeting;
 
 typedef struct part_thread {
@@ -336,11 +336,11 @@ typedef enum exchange_way { WAITING, POSTING, LITTLE_POSTS } exchange_way;
  * the first has used. threads: [parts]. */
 static void render_together(part_thread *threads, int parts, exchange_way how, int width, int height,
                             int frames, void (*prepare)(stage *set), float *pixels) {
-  static float kept[MOST_PARTS][TOGETHER_SIDE * TOGETHER_SIDE * 4];
+  static float kept[MOST_BANDS][TOGETHER_SIDE * TOGETHER_SIDE * 4];
   static meeting meeting;
   meeting = (struct meeting){.parts = parts};
-  pthread_t running[MOST_PARTS];
-  assert_true(parts <= MOST_PARTS && width <= TOGETHER_SIDE && height <= TOGETHER_SIDE);
+  pthread_t running[MOST_BANDS];
+  assert_true(parts <= MOST_BANDS && width <= TOGETHER_SIDE && height <= TOGETHER_SIDE);
   pthread_barrier_init(&meeting.barrier, NULL, (unsigned)parts);
   pthread_mutex_init(&meeting.lock, NULL);
   pthread_cond_init(&meeting.arrived, NULL);
@@ -443,7 +443,7 @@ static void test_exchange(void **state) {
   static float whole[SIDE_X * SIDE_Y * 4], sum[SIDE_X * SIDE_Y * 4];
   for (size_t n = 0; n < SOFT_WAYS; n++) {
     stage set;
-    part_thread threads[MOST_PARTS];
+    part_thread threads[MOST_BANDS];
     stage_open(&set);
     soft_ways[n].draw(&set);
     set.scene.width = SIDE_X;
@@ -519,7 +519,7 @@ static void test_exchanged_sky(void **state) {
   static const int numbers[] = {7, 2, 4, 3};
   enum { SIDE_X = 50, SIDE_Y = 40, PARTS = 8 };
   static float whole[SIDE_X * SIDE_Y * 4], sum[SIDE_X * SIDE_Y * 4];
-  part_thread threads[MOST_PARTS];
+  part_thread threads[MOST_BANDS];
   for (size_t n = 0; n < sizeof skies / sizeof *skies; n++) {
     uint64_t gathered[2];
     render_together(threads, 1, WAITING, SIDE_X, SIDE_Y, 1, skies[n].draw, whole);

@@ -1,18 +1,11 @@
-/* surface/surface_seams.c - see surface_seams.h. */
-#include "surface/surface_seams.h"
+/* surface/late/surface_seams.c - see surface_seams.h. */
+#include "surface/late/surface_seams.h"
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
 #include "surface/clusters.h"
 #include "surface/fragment_order.h"
 #include "surface/primitive.h"
-
-/* In diagonals of the box around all clusters: edges of large triangles are longer, and ends so close lie in
- * one place. */
-static const double LARGE = 1.0 / 64, SAME_PLACE = 1e-5;
-
-/* Edges that follow in the order of their keys and are asked at most: others with the same key are chance. */
-enum { MOST_ASKED = 64 };
 
 /* An edge of a large triangle. */
 typedef struct large_edge {
@@ -43,7 +36,7 @@ static void set_scale(seam_search *search) {
     vec3_bound(hl_surface_vector(all->clusters[c].high), low, high);
   }
   double diagonal = vec3_length(vec3_subtract(vec3_of(high), vec3_of(low)));
-  search->large = LARGE * diagonal;
+  search->large = LARGE_EDGE * diagonal;
   search->same = SAME_PLACE * diagonal;
 }
 
@@ -117,7 +110,7 @@ static void find_at(seam_search *search, size_t i, int way) {
   const large_edge *own = &search->edges[search->order[i].index];
   int found = 0;
   size_t at = i;
-  for (int asked = 0; asked < MOST_ASKED && found < MOST_AT_EDGE / 2; asked++) {
+  for (int asked = 0; asked < MOST_SEAMS_ASKED && found < MOST_AT_EDGE / 2; asked++) {
     if (way > 0 ? at + 1 == search->edge_count : at == 0) return;
     at = way > 0 ? at + 1 : at - 1;
     const large_edge *other = &search->edges[search->order[at].index];

@@ -1,16 +1,15 @@
-/* surface/seen_seams.h - how far fragments of a light's view reach where triangles meet at a corner.
+/* surface/late/seen_seams.h - how far fragments of a light's view reach where triangles meet at a corner.
  *
  * A fragment counts from a delayed height on (fragment_work.h: delay), the later the steeper its triangle is.
  * At a corner the two triangles' delays differ, and rays of other directions than the view's would pass
  * between the end of the one and the start of the other: fragments beside the corner fill the slabs between,
  * too. What the other triangle lights is not darkened: there its own plane goes on, as late. */
-#ifndef HL_SURFACE_SEEN_SEAMS_H
-#define HL_SURFACE_SEEN_SEAMS_H
+#ifndef HL_SURFACE_LATE_SEEN_SEAMS_H
+#define HL_SURFACE_LATE_SEEN_SEAMS_H
 
 #include "surface/fragment_work.h"
+#include "surface/late/lateness.h"
 #include "surface/surface_plane.h"
-
-enum { MOST_SEEN_SEAMS = 12 };
 
 /* A corner as a light's view sees it. */
 typedef struct seen_seam {

@@ -1,13 +1,11 @@
-/* render/near_surfaces.c - see near_surfaces.h. */
-#include "render/near_surfaces.h"
+/* render/late/near_surfaces.c - what surfaces close before a volume's samples take: see late_surfaces.h. */
+#include "render/late/late_surfaces.h"
 
 #include "render/surface_point.h"
+#include "surface/late/lateness.h"
 #include "surface/primitive.h"
 #include "surface/small_triangles.h"
 #include "surface/surface_plane.h"
-
-/* Look-ups by cubic convolution reach so far. */
-static const double CUBIC_DELAY = 1.75;
 
 double hl_surface_delay(const light_shadow *shadow) {
   return shadow->plan.cubic ? CUBIC_DELAY : shadow->method->surface_delay;
@@ -31,10 +29,6 @@ static bool set_piece(const shade_job *job, slab_piece piece, int pixel, near_sa
 }
 
 static double middle_of(const near_sample *sample) { return (sample->low + sample->high) / 2; }
-
-/* Pixels of a buffer that a look-up reads around a sample: behind what is opaque, those that come later than
- * the sample's own count, too. A part that passes must not be taken twice. */
-static const double READ_BESIDE = 1.25;
 
 /* The part of the piece to which a light comes after it has met the plane of the surface, where its buffer
  * will take the surface into account from a later slab on; else 0. */

@@ -1,27 +1,11 @@
-/* render/contact.c - see contact.h. */
-#include "render/contact.h"
+/* render/late/contact.c - what is close before points of surfaces: see late_surfaces.h. */
+#include "render/late/late_surfaces.h"
 
 #include "light/light_extent.h"
 #include "mesh/mesh.h"
-#include "render/hollow.h"
+#include "render/late/hollow.h"
 #include "render/surface_point.h"
-#include "surface/surface_rims.h"
-
-/* A buffer is late by some of its pixels and some sheets. Up to so many times the sum of one of each from a
- * point, the plane of a surface that hides the light from it is close; a ray looks so far. */
-static const double CLOSE = 3, FARTHEST_CLOSE = 10;
-
-/* A ray begins so many pixels away from its point: beyond what rounding may do to it. */
-static const double RAY_START = 0.0005;
-
-/* The greatest sine of the angle between a light and a hollow surface at which the surface is asked whether
- * it shades itself, and the sharpest of its bends, in parts of what a buffer is late by: others are
- * roughness. */
-static const double GRAZING = 0.2, SHARPEST_BEND = 0.12;
-
-/* Where the eye grazes a surface, a pixel's middle is found again up to so many pixels of the picture aside.
- */
-static const double MOST_PIXELS_ASIDE = 8;
+#include "surface/late/lateness.h"
 
 /* Rays that come from so far away from an open edge as a buffer may be late, in voxels, and twice as slanted
  * (a buffer's pixel is at most three quarters of a voxel). */

@@ -1,7 +1,8 @@
-/* render/hollow.c - see hollow.h. */
-#include "render/hollow.h"
+/* render/late/hollow.c - see hollow.h. */
+#include "render/late/hollow.h"
 
 #include "render/surface_point.h"
+#include "surface/late/lateness.h"
 
 static double bend_of_sphere(const float sphere[4], vec3 point, vec3 normal) {
   vec3 inwards = vec3_subtract(hl_surface_vector(sphere), point);
@@ -40,14 +41,12 @@ static double bend_along(const bent_triangle *bent, vec3 along) {
   return -vec3_dot(turn, along);
 }
 
-/* Whether the triangle bends the other way along one of its edges, by more than a part of this bend: then it
- * is rough, or a saddle. */
+/* Whether the triangle bends the other way along one of its edges: then it is rough, or a saddle. */
 static bool bends_both_ways(const bent_triangle *bent, double bend) {
-  const double part = 0.25;
   for (int i = 0; i < 3; i++) {
     vec3 edge = vec3_subtract(bent->at[(i + 1) % 3], bent->at[i]),
          turn = vec3_subtract(bent->normal[(i + 1) % 3], bent->normal[i]);
-    if (vec3_dot(turn, edge) > part * bend * vec3_dot(edge, edge)) return true;
+    if (vec3_dot(turn, edge) > OTHER_BEND * bend * vec3_dot(edge, edge)) return true;
   }
   return false;
 }

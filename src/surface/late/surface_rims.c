@@ -1,14 +1,12 @@
-/* surface/surface_rims.c - see surface_rims.h. */
-#include "surface/surface_rims.h"
+/* surface/late/surface_rims.c - see surface_rims.h. */
+#include "surface/late/surface_rims.h"
 
 #include <string.h>
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
+#include "surface/late/lateness.h"
 #include "surface/surface_cuts.h"
-
-/* Passes over all triangles, forwards and backwards in turn: each follows a distance over an edge or more. */
-enum { PASSES = 8 };
 
 /* Adds each edge's hash to both of its vertices, with the sign of its direction (derived as in mesh.c: the
  * sum is 0 where each edge runs as often one way as the other). */
@@ -24,10 +22,6 @@ static void sum_edges(const surfaces *all, const surface_mesh *mesh, uint64_t *s
     }
   }
 }
-
-/* A mesh with more vertices at corners is rough, unless these are fewer than one in MOST_PARTS: it has no
- * corners of rooms, but rays all over it, which would cost several times the frame. */
-enum { MOST_CORNERS = 4096, MOST_PARTS = 8 };
 
 /* A distance that marks corners. */
 static const float AT_CORNER = -1;
@@ -123,7 +117,7 @@ hl_status hl_surface_rims(hl_context *context, const surfaces *all, const surfac
   begin_distances(all, mesh, search.sum, search.first, search.from_edge);
   begin_at_cuts(all, mesh, search.from_edge);
   bool changed = true;
-  for (int pass = 0; pass < PASSES && changed; pass++) {
+  for (int pass = 0; pass < RIM_PASSES && changed; pass++) {
     changed = false;
     for (uint32_t i = 0; i < mesh->triangle_count; i++)
       changed |= follow_edges(all, mesh, pass % 2 ? mesh->triangle_count - 1 - i : i, (float)distance,

@@ -1,5 +1,5 @@
-/* render/hollow.h - points of hollow surfaces that light almost grazes: whether the surface shades itself
- * there.
+/* render/late/hollow.h - points of hollow surfaces that light almost grazes: whether the surface shades
+ * itself there.
  *
  * Where light grazes a surface, a shadow buffer takes the surface into account ever later (surface_plane.h:
  * the slope of its heights grows without end), and a hollow one meets the light's ray again close by: the
@@ -10,8 +10,8 @@
  * within a ball), the surface is a circle of radius 1 / k in the plane of its normal and the light. A ray
  * that leaves it at an angle whose sine is s meets the circle again after a chord of 2 s / k, if cuts leave
  * the surface there. */
-#ifndef HL_RENDER_HOLLOW_H
-#define HL_RENDER_HOLLOW_H
+#ifndef HL_RENDER_LATE_HOLLOW_H
+#define HL_RENDER_LATE_HOLLOW_H
 
 #include "render/surface_batch.h"
 

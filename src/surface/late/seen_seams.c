@@ -1,12 +1,8 @@
-/* surface/seen_seams.c - see seen_seams.h. */
-#include "surface/seen_seams.h"
+/* surface/late/seen_seams.c - see seen_seams.h. */
+#include "surface/late/seen_seams.h"
 
+#include "surface/late/surface_seams.h"
 #include "surface/primitive.h"
-#include "surface/surface_seams.h"
-
-/* Pixels from a corner within which fragments fill the slabs up to the other triangle, and by which they
- * overlap with it: as many slopes as a pixel's height may differ from the corner's. */
-static const double BESIDE = 1.5, OVERLAP = 1;
 
 static bool set_end(const fragments_source *source, uint32_t vertex, double at[2], double *height) {
   vec3 place = hl_surface_vector(source->surfaces->positions[vertex]);
@@ -51,9 +47,9 @@ double hl_seam_end(const fragments_source *source, const seen_seams *seams, doub
     const seen_seam *seam = &seams->list[i];
     double part = closest_part(seam, u, v), x = seam->at[0][0] + part * (seam->at[1][0] - seam->at[0][0]) - u,
            y = seam->at[0][1] + part * (seam->at[1][1] - seam->at[0][1]) - v;
-    if (x * x + y * y > BESIDE * BESIDE) continue;
+    if (x * x + y * y > BESIDE_SEAM * BESIDE_SEAM) continue;
     double height = seam->height[0] + part * (seam->height[1] - seam->height[0]);
-    end = fmax(end, height + (source->delay + OVERLAP) * hl_plane_slope(&seam->other, u, v));
+    end = fmax(end, height + (source->delay + SEAM_OVERLAP) * hl_plane_slope(&seam->other, u, v));
   }
   return end;
 }

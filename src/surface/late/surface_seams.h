@@ -1,13 +1,14 @@
-/* surface/surface_seams.h - corners: where large triangles of meshes that are not closed meet at an edge and
- * bend.
+/* surface/late/surface_seams.h - corners: where large triangles of meshes that are not closed meet at an edge
+ * and bend.
  *
  * Each triangle may have vertices of its own, or be of another mesh: what counts is where the edges' ends
  * are. In: placed triangles. Out: for each of them its neighbours at corners, of which fragments of a light's
  * view ask (seen_seams.h). */
-#ifndef HL_SURFACE_SURFACE_SEAMS_H
-#define HL_SURFACE_SURFACE_SEAMS_H
+#ifndef HL_SURFACE_LATE_SURFACE_SEAMS_H
+#define HL_SURFACE_LATE_SURFACE_SEAMS_H
 
 #include "core/memory.h"
+#include "surface/late/lateness.h"
 #include "surface/surfaces.h"
 
 /* An edge at which a triangle meets another one, at an angle of more than 40 degrees. */
@@ -15,9 +16,6 @@ struct surface_seam {
   uint32_t triangle, other; /* of surfaces->triangles */
   uint32_t ends[2];         /* of surfaces->positions; the triangle's own */
 };
-
-/* The most triangles that are asked, in the order of clusters, and the most neighbours of an edge. */
-enum { MOST_SEAMED = 1 << 14, MOST_AT_EDGE = 4 };
 
 /* Counts what hl_surface_seams_create() takes at most for a number of triangles. */
 void hl_surface_seams_count(uint64_t triangles, hl_layout *layout);
