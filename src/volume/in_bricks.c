@@ -97,15 +97,19 @@ static void add_value(brick_tally *tally, float value, uint64_t weight, uint64_t
   tally->counted += (double)weight;
 }
 
-/* The range of cells of a level, of those from `first` on that a brick has, whose first points lie in the
- * box; cells are counted from the brick's first. */
-static void range_in_box(const hl_volume *volume, int axis, int level, int64_t first, int64_t count,
-                         int64_t range[2]) {
-  double origin = volume->bricks->origin[axis], step = ldexp(1, level);
-  double low = origin - 0.5, high = origin + (double)volume->dimension[axis] - 0.5;
-  double from = ceil(low / step), to = ceil(high / step); /* the end is outside */
-  range[0] = (int64_t)fmin(fmax(from - (double)first, 0), (double)count);
-  range[1] = (int64_t)fmin(fmax(to - (double)first, 0), (double)count);
+/* The points of level 0 of the volume's box along an axis: range[0] to range[1] - 1. */
+static void points_in_box(const hl_volume *volume, int axis, int64_t range[2]) {
+  double origin = volume->bricks->origin[axis];
+  range[0] = (int64_t)ceil(origin - 0.5);
+  range[1] = (int64_t)ceil(origin + (double)volume->dimension[axis] - 0.5);
+}
+
+/* How many of the box's points along an axis a cell of a level has. */
+static int64_t share_of(const int64_t box[2], int64_t cell, int level) {
+  int64_t first = cell << level, end = (cell + 1) << level;
+  if (first < box[0]) first = box[0];
+  if (end > box[1]) end = box[1];
+  return end > first ? end - first : 0;
 }
 
 /* Adds one block of level 0, and the whole of a brick with its first block. */
@@ -113,25 +117,28 @@ static void add_block(brick_tally *tally, const int64_t block[3], uint64_t *hist
   const hl_bricks *bricks = tally->volume->bricks;
   const hl_brick_entry *entry = hl_bricks_entry(bricks, block);
   int level = entry->slot >= 0 ? entry->level : 0;
-  int64_t side = (int64_t)1 << bricks->shift, range[3][2];
+  int64_t side = (int64_t)1 << bricks->shift, box[3][2], first[3];
   for (int axis = 0; axis < 3; axis++) {
     if ((block[axis] & (((int64_t)1 << level) - 1)) != 0) return;
-    range_in_box(tally->volume, axis, level, block[axis] >> level << bricks->shift, side, range[axis]);
-    if (range[axis][0] >= range[axis][1]) return;
+    first[axis] = block[axis] >> level << bricks->shift;
+    points_in_box(tally->volume, axis, box[axis]);
   }
   if (entry->slot < 0) {
-    uint64_t cells = 1;
-    for (int axis = 0; axis < 3; axis++) cells *= (uint64_t)(range[axis][1] - range[axis][0]);
-    add_value(tally, entry->constant, cells, histogram);
+    int64_t points = 1;
+    for (int axis = 0; axis < 3; axis++) points *= share_of(box[axis], block[axis], bricks->shift);
+    if (points > 0) add_value(tally, entry->constant, (uint64_t)points, histogram);
     return;
   }
   size_t width = hl_brick_width(bricks);
   const float *brick = hl_brick_pool(bricks, entry->slot);
-  for (int64_t k = range[2][0]; k < range[2][1]; k++)
-    for (int64_t j = range[1][0]; j < range[1][1]; j++) {
+  for (int64_t k = 0; k < side; k++)
+    for (int64_t j = 0; j < side; j++) {
+      const int64_t across = share_of(box[2], first[2] + k, level) * share_of(box[1], first[1] + j, level);
       const float *row = brick + ((size_t)(k + 1) * width + (size_t)(j + 1)) * width + 1;
-      for (int64_t i = range[0][0]; i < range[0][1]; i++)
-        add_value(tally, row[i], (uint64_t)1 << 3 * level, histogram);
+      for (int64_t i = 0; i < side && across > 0; i++) {
+        int64_t points = across * share_of(box[0], first[0] + i, level);
+        if (points > 0) add_value(tally, row[i], (uint64_t)points, histogram);
+      }
     }
 }
 

@@ -23,8 +23,8 @@ hl_status hl_volume_check_bricks(const hl_bricks *bricks, const hl_volume_descri
                                  const char *subject, hl_error *error);
 
 /* Finds the statistics of a volume's coefficients: each counts as many times as its cell has cells of level
- * 0. Coefficients of points outside the volume's box do not count, and no range or mean those that are not
- * finite. */
+ * 0 in the volume's box, so that all together count as many times as there are voxels. No range and no mean
+ * counts those that are not finite. */
 hl_status hl_volume_measure_bricks(hl_volume *volume, const char *subject, hl_error *error);
 
 /* The number that stands for a voxel: where voxels stand on points of the lattice, the coefficient of level
