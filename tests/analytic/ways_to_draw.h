@@ -5,9 +5,11 @@
 
 #include "reference_stage.h"
 
+typedef void way_to_draw(stage *set);
+
 typedef struct way {
   const char *name;
-  void (*draw)(stage *set);
+  way_to_draw *draw;
 } way;
 
 static inline void set_method(stage *set, hl_shadows shadows, hl_soft_method method) {
