@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compiles the libraries of libraries.toml that have builds of their own: those by CMake, and those by a configure script.
 
-usage: build_libraries.py ROOT PROCESSOR JOBS
+usage: build_libraries.py ROOT PROCESSOR JOBS     remove ROOT to compile all of them anew
 ROOT has sources/, and in bin/ the compilers cc and c++ and the tools ar and ranlib. What is built goes to ROOT/lib and ROOT/include.
 """
 import pathlib

@@ -28,7 +28,7 @@ def fail(message):
 
 
 def terms(expression):
-    return re.split(" AND ", expression)
+    return expression.split(" AND ")
 
 
 def sources_of(root, source):
@@ -135,4 +135,5 @@ def main():
     print(table(libraries, root))
 
 
-main()
+if __name__ == "__main__":
+    main()
