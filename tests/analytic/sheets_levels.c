@@ -17,7 +17,7 @@
 #include "grid/relevant.h"
 #include "reference_stage.h"
 #include "render/hot.h"
-#include "scene/placement.h"
+#include "scene/geometry/placement.h"
 #include "volume/in_bricks.h"
 #include "ways_in_bricks.h"
 
