@@ -45,7 +45,9 @@ typedef struct slab_run {
   float low[3], high[3];          /* in index space: between low and high the volume's box cuts nothing */
   const run_cut *cuts;            /* [cut_count] */
   int cut_count;
-  float beside; /* the distance beside the slabs up to which cuts count; frame units */
+  float beside;   /* the distance beside the slabs up to which cuts count; frame units */
+  float voxel;    /* the grid's smallest edge; frame units */
+  float steps[3]; /* the distances between voxels along the axes, in units of `voxel` */
 } slab_run;
 
 /* The needed blocks of a tile in which a slab may hold something visible, for each slab. Also whether the

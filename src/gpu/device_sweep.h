@@ -67,6 +67,7 @@ typedef struct plan_volume {
   float inner[PLAN_KERNEL_POWERS], outer[PLAN_KERNEL_POWERS]; /* the kernel's polynomials */
   float to_index[3][4];
   float low[3], high[3], face_low[3], face_high[3]; /* index space: the box, and its faces that cut matter */
+  float steps[3]; /* the distances between voxels along the axes, in units of the smallest edge */
   /* the transfer function's tables (grid/classifier.h) */
   float scale, offset, first_visible, last_visible, normal_edge;
   int bends; /* the table of bent colours is there */

@@ -6,6 +6,9 @@
 #include "core/pool.h"
 #include "grid/classifier.h"
 
+/* Matter so many voxels behind a face is lit as usual, matter nearer to it more and more by the face. */
+#define FACE_VOXELS 2.0f
+
 /* Finds grid->face_shows; called after hl_grid_mark_relevant(). Looks at one point for each voxel of the
  * faces that relevant bricks reach. */
 void hl_faces_find(hl_pool *pool, const kernel *kernel, const classifier *classifier, grid *grid);

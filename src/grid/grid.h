@@ -140,6 +140,16 @@ static inline size_t hl_grid_bricks(const grid *grid) {
   return (size_t)grid->brick_count[0] * (size_t)grid->brick_count[1] * (size_t)grid->brick_count[2];
 }
 
+/* The smallest edge of a voxel; frame units. */
+static inline double hl_smallest_edge(const grid *grid) {
+  double most = 0; /* voxels per frame unit */
+  for (int axis = 0; axis < 3; axis++) {
+    double along = vec3_length(grid->frame_to_index.linear.row[axis]);
+    most = along > most ? along : most;
+  }
+  return 1 / most;
+}
+
 /* The index of the brick with given coordinates. */
 static inline size_t hl_brick_index(const grid *grid, const int32_t b[3]) {
   return ((size_t)b[2] * (size_t)grid->brick_count[1] + (size_t)b[1]) * (size_t)grid->brick_count[0] +

@@ -117,26 +117,46 @@ static double way_to_removed(const reference_volume *volume, vec3 point, vec3 di
   return way;
 }
 
+/* The face through which a ray leaves a volume's matter. */
+typedef struct left_face {
+  vec3 outward;  /* world; a unit vector */
+  vec3 crossing; /* index space */
+  double skin;   /* 1 for points up to a voxel behind the face, 0 for points two voxels behind it */
+} left_face;
+
+static left_face find_left_face(const reference_volume *volume, vec3 point, vec3 direction, bool uncut) {
+  static const double FACE_VOXELS = 2; /* points farther behind a face are lit as usual */
+  const vec3 along = mat3_apply(volume->world_to_index.linear, direction);
+  left_face face = {.skin = 0};
+  double way = hl_reference_leaves_box(volume, point, along, &face.outward);
+  const double cut = uncut ? INFINITY : way_to_removed(volume, point, along);
+  if (cut < fabs(way)) {
+    way = cut;
+    face.outward = hl_reference_cut_normal(volume, vec3_add(point, vec3_scale(along, way)));
+  }
+  const double depth = way * vec3_dot(face.outward, direction) / volume->smallest_edge;
+  if (!(way >= 0) || !(depth < FACE_VOXELS)) return face;
+  face.crossing = vec3_add(point, vec3_scale(along, way));
+  face.skin = fmin(FACE_VOXELS - depth, 1);
+  return face;
+}
+
+double hl_reference_lit_face(const reference_volume *volume, vec3 point, vec3 to_light, bool uncut) {
+  if (volume->described->cut_shading != HL_CUT_SHADING_FACE) return 0;
+  return find_left_face(volume, point, to_light, uncut).skin;
+}
+
 /* A point is seen through a face if the ray from it to the eye crosses the face before any other, and matter
  * is visible there. */
 double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
                              double *surface) {
-  static const double FACE_VOXELS = 2; /* points farther behind a face are lit as usual */
   const hl_scene_volume *described = volume->described;
   if (described->cut_shading == HL_CUT_SHADING_GRADIENT) return 0;
-  const vec3 along = mat3_apply(volume->world_to_index.linear, to_eye);
-  vec3 face = {0, 0, 0};
-  double way = hl_reference_leaves_box(volume, point, along, &face);
-  const double cut = way_to_removed(volume, point, along);
-  if (cut < fabs(way)) {
-    way = cut;
-    face = hl_reference_cut_normal(volume, vec3_add(point, vec3_scale(along, way)));
-  }
-  const double depth = way * vec3_dot(face, to_eye) / volume->smallest_edge;
-  if (!(way >= 0) || !(depth < FACE_VOXELS)) return 0;
-  const vec3 crossing = vec3_add(point, vec3_scale(along, way));
+  const left_face left = find_left_face(volume, point, to_eye, false);
+  const vec3 face = left.outward, crossing = left.crossing;
+  const double skin = left.skin;
+  if (!(skin > 0)) return 0;
   if (!(hl_reference_extinction(volume, hl_reference_value(volume, crossing), crossing) > 0)) return 0;
-  const double skin = fmin(FACE_VOXELS - depth, 1);
   if (described->cut_shading == HL_CUT_SHADING_FACE) {
     vec3 sum = vec3_add(vec3_scale(face, skin), vec3_scale(*normal, *surface * (1 - skin)));
     *normal = vec3_length(sum) > 0 ? vec3_normalise(sum) : sum;

@@ -109,14 +109,18 @@ typedef struct kept_light {
   bool second;
 } kept_light;
 
-/* The light kept in a step. from, to: the values at the step's ends, in the direction of light. */
-static kept_light kept_of_step(const reference_volume *volume, double from, double to, double length) {
+/* The light kept in a step. from, to: the values at the step's ends, in the direction of light. skin: how
+ * much visible matter there belongs to a face that cuts it, 0 to 1. */
+static kept_light kept_of_step(const reference_volume *volume, double from, double to, double length,
+                               double skin) {
   double foot_from = foot_of(volume, from), foot_to = foot_of(volume, to), deep = to - foot_to,
          left = fmin(fabs(deep) / fmax(fabs(from - foot_from), 1e-300), 1);
   double even = length - fabs(to - from) / volume->surface_gradient;
   bool same = foot_from == foot_to, enters = (to - from) * deep > 0;
   left = pow(left, 16) * exp(-fmax(even, 0) / (4 * volume->smallest_edge));
-  if (same) return (kept_light){left, left, false};
+  if (!(extinction_at(volume, to) > 0)) skin = 0;
+  if (same) return (kept_light){fmax(left, skin), fmax(left, skin), false};
+  if (skin > 0) return (kept_light){skin, enters ? 1 : skin, false};
   return (kept_light){0, enters ? 1 : 0, enters && extinction_at(volume, from) > 0};
 }
 
@@ -197,7 +201,8 @@ void hl_reference_outside(const reference *all, const reference_ray *ray, const 
       for (int c = 0; c < 3; c++) depth[c] += here * volume->described->attenuation_color[c];
       total += here;
       if (volume->described->shading != HL_SHADING_PHONG || !beside) continue;
-      kept_light own = kept_of_step(volume, value, known ? nearer : value, walk.length);
+      const double skin = hl_reference_lit_face(volume, part->here, ray->direction, part->uncut);
+      kept_light own = kept_of_step(volume, value, known ? nearer : value, walk.length, skin);
       kept.before += here * own.before;
       kept.within += here * own.within;
       if (!own.second) continue;

@@ -257,6 +257,9 @@ double hl_reference_next_face(const reference_volume *volume, vec3 origin, vec3 
  * the face, falling to 0 away from it. */
 double hl_reference_cut_face(const reference_volume *volume, vec3 point, vec3 to_eye, vec3 *normal,
                              double *surface);
+/* How much matter at a point belongs to the face that light comes through last before it: 1 at the face, 0
+ * two voxels behind it. to_light: a unit vector of the world. uncut: cuts do not count, only the box. */
+double hl_reference_lit_face(const reference_volume *volume, vec3 point, vec3 to_light, bool uncut);
 
 /* The weights of the four taps around a point at t from 0 to 1 after the second, and their slopes (may be
  * null). */

@@ -133,6 +133,9 @@ static void plan_matter(const shade_volume *shade, plan_volume *volume) {
   memcpy(volume->high, shade->high, sizeof volume->high);
   memcpy(volume->face_low, grid->face_low, sizeof volume->face_low);
   memcpy(volume->face_high, grid->face_high, sizeof volume->face_high);
+  for (int axis = 0; axis < 3; axis++)
+    volume->steps[axis] = (float)(1 / (vec3_length(grid->frame_to_index.linear.row[axis]) *
+                                       hl_smallest_edge(grid)));
   volume->scale = classifier->scale;
   volume->offset = classifier->offset;
   volume->first_visible = classifier->first_visible;

@@ -197,16 +197,19 @@ typedef struct own_surface {
 } own_surface;
 
 /* Where the light's way leaves another surface of the volume within the slab, this one has taken what was
- * taken before. light, outside: at the slab's first sheet. */
-LANES_INLINE own_surface find_own_surface(const classifier *classifier, const way_begin *begin, lanes light,
+ * taken before. All that lies near a face which cuts matter belongs to the face's surface. light, outside: at
+ * the slab's first sheet. */
+LANES_INLINE own_surface find_own_surface(const block_density *d, const way_begin *begin, lanes light,
                                           lanes outside) {
+  const classifier *classifier = d->patch->volume->classifier;
   own_surface own = {lanes_set(1.0f), lanes_set(1.0f)};
   lanes_int second = begin->there & (begin->first != begin->foot);
   if (lanes_bits(second) == 0) return own;
   second_surface other = kept_at_foot(classifier, begin->first, begin->start, begin->foot,
                                       lanes_abs(begin->change), light, outside);
-  own.kept = lanes_select(second, other.kept, own.kept);
-  own.passing = lanes_select(second, exp_of_depth(lanes_min(other.ahead, lanes_set(DEEPEST))), own.passing);
+  lanes passing = exp_of_depth(lanes_min(other.ahead, lanes_set(DEEPEST)));
+  own.kept = lanes_select(second, lanes_max(other.kept, d->skin), own.kept);
+  own.passing = lanes_select(second, lanes_max(passing, d->skin), own.passing);
   return own;
 }
 
@@ -219,7 +222,7 @@ LANES_INLINE own_surface find_own_surfaces(const block_density *densities, int c
   lanes_int any = lanes_set_int(0);
   if (count == 1) {
     const way_begin begin = find_begin(densities, towards, way);
-    return find_own_surface(densities->patch->volume->classifier, &begin, light, outside);
+    return find_own_surface(densities, &begin, light, outside);
   }
   for (int i = 0; i < count; i++)
     if (densities[i].there) any |= find_begin(&densities[i], towards, way).there;
@@ -227,7 +230,7 @@ LANES_INLINE own_surface find_own_surfaces(const block_density *densities, int c
     const block_density *d = &densities[i];
     if (!d->there || !d->patch->volume->visible || !d->patch->volume->phong) continue;
     const way_begin begin = find_begin(d, towards, way);
-    own_surface own = find_own_surface(d->patch->volume->classifier, &begin, light, outside);
+    own_surface own = find_own_surface(d, &begin, light, outside);
     sum.kept = lanes_fma(lanes_keep(begin.there | ~any, own.kept), d->extinction, sum.kept);
     sum.passing = lanes_fma(own.passing, d->extinction, sum.passing);
     weight = weight + d->extinction;

@@ -241,9 +241,6 @@ LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
   d->normal = scale3(slope, outward / lanes_max(steepness, lanes_set(1e-18f)));
 }
 
-/* Points so many voxels behind a face are lit as usual, nearer ones more and more by the face. */
-static const float FACE_VOXELS = 2;
-
 /* The face that the eye's ray to a point of a volume comes through last, before it meets the point. */
 typedef struct cut_face {
   lanes way;      /* from the point back to the face; frame units */

@@ -7,6 +7,7 @@
 #include <halflight/render.h>
 
 #include "core/memory.h"
+#include "grid/faces.h"
 #include "render/light_reads.h"
 #include "render/maximum.h"
 #include "render/sweep_layers.h"
@@ -210,6 +211,14 @@ static double longest_way(const sweep *sweep) {
   return least < LEAST_CLIMB ? INFINITY : sweep->geometry->sheets.spacing / least;
 }
 
+/* The way from the faces that cut volumes up to which the lights' surfaces depend on the faces. */
+static double reach_of_faces(const sweep *sweep) {
+  double greatest = 0;
+  for (int g = 0; g < sweep->content.volume_count; g++)
+    greatest = fmax(greatest, hl_smallest_edge(&sweep->content.grids[g]));
+  return (double)FACE_VOXELS * greatest;
+}
+
 static hl_status begin_views(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error) {
   hl_status status = hl_view_sheets_begin(&sweep->content, &sweep->frame->eye, false, PIXEL_TO_SPARE,
                                           &sweep->image, error);
@@ -227,6 +236,10 @@ hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *me
   hl_sweep_constants_find(sweep->frame_plan, sweep->plan, sweep->target.maximum, &sweep->constants);
   for (int i = 0; i < sweep->geometry->light_count; i++) connect_light(sweep, i);
   sweep->image.beside = longest_way(sweep);
+  for (int i = 0; i < sweep->geometry->light_count; i++) {
+    const shadow_buffer *buffer = sweep->lights[i].shadow.buffer;
+    if (buffer != NULL && buffer->has_outside) sweep->lights[i].sheets.beside = reach_of_faces(sweep);
+  }
   status = hl_sweep_layers_begin(sweep, error);
   if (status == HL_OK) status = hl_sweep_surfaces_begin(sweep, error);
   if (status == HL_OK) status = hl_light_reads_find(sweep, error);

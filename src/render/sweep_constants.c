@@ -102,10 +102,7 @@ static shade_volume material_of(const frame_volume *volume, const plan_fields *f
 
 /* Where a volume lies, and how large its voxels are. */
 static void place_volume(const grid *grid, shade_volume *shade) {
-  double finest = 0;
-  for (int axis = 0; axis < 3; axis++)
-    finest = fmax(finest, vec3_length(grid->frame_to_index.linear.row[axis]));
-  shade->voxel = (float)(1 / finest);
+  shade->voxel = (float)hl_smallest_edge(grid);
   affine3_store(shade->to_index, &grid->frame_to_index);
   for (int axis = 0; axis < 3; axis++) {
     shade->low[axis] = (float)grid->box_low[axis];

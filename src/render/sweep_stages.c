@@ -104,6 +104,12 @@ void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker)
 
 /* ---- the lights ---- */
 
+/* Whether faces that cut a volume are surfaces, and one of them is near. */
+static bool faces_are_lit(const hl_scene_volume *volume, const patch_slab *slab) {
+  return volume->shading == HL_SHADING_PHONG && volume->cut_shading == HL_CUT_SHADING_FACE &&
+         slab->enter != NULL && !slab->uncut;
+}
+
 /* Steps 7 to 11 for one tile: its volumes that cast shadows. */
 static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, int worker, uint32_t need,
                            attenuate_volume *volumes) {
@@ -129,6 +135,8 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
                                         .enter = slab.enter,
                                         .leave = slab.leave,
                                         .uncut = slab.uncut,
+                                        .faces = faces_are_lit(scene, &slab) ? slab.run : NULL,
+                                        .slab = slab.slab,
                                         .grid = &sweep->content.grids[g],
                                         .kernel = sweep->content.kernel,
                                         .to_index = sweep->constants.volumes[g].to_index};

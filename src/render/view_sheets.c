@@ -238,8 +238,11 @@ static void reach_run(view_sheets *sheets, int first) {
     run->cuts = sheets->cuts == NULL ? NULL : sheets->cuts + cuts_before(sheets, g);
     run->cut_count = sheets->cuts == NULL ? 0 : (int)cuts_of(sheets, g);
     run->beside = (float)sheets->beside;
+    const double voxel = hl_smallest_edge(grid);
+    run->voxel = (float)voxel;
     for (int axis = 0; axis < 3; axis++) {
-      double reach = sheets->beside * vec3_length(grid->frame_to_index.linear.row[axis]);
+      double steps = vec3_length(grid->frame_to_index.linear.row[axis]), reach = sheets->beside * steps;
+      run->steps[axis] = (float)(1 / (steps * voxel));
       run->low[axis] = (float)(grid->box_low[axis] + reach);
       run->high[axis] = (float)(grid->box_high[axis] - reach);
     }
@@ -450,5 +453,7 @@ patch_slab hl_patch_slab(view_sheets *sheets, slab_place place, uint32_t need, u
                       .enter = enter,
                       .leave = cut ? enter + TILE_PIXELS : NULL,
                       .uncut = uncut,
+                      .run = run_of_grid(sheets, run->first, (int)sheets->occupancy.patch_grid[patch]),
+                      .slab = slab,
                       .blocks = run->shows[slab] & need};
 }

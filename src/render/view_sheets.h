@@ -50,7 +50,8 @@ typedef struct view_sheets {
   const sheet_content *content;
   const view *view;
   bool of_light; /* else the eye's */
-  double beside; /* the eye's view: the longest way of light through a slab, frame units. A light's: 0 */
+  double beside; /* the eye's view: the longest way of light through a slab, frame units. A light's:
+                    FACE_VOXELS where it lights surfaces, else 0 */
   occupancy occupancy;
   voxel_lists *lists;   /* owned; [grids]; splat only */
   int bundle;           /* number of sheets that are filled in one go; a divisor of RUN_SLABS */
@@ -112,6 +113,8 @@ typedef struct patch_slab {
   const float *enter, *leave;    /* of the box, [256] block-major; null where it cuts nothing visible, unset
                                     where uncut */
   int uncut; /* the box cuts nothing in this slab, and no light on its way through it to the eye's pixels */
+  const slab_run *run; /* the run to which the slab belongs, and its number there */
+  int slab;
   uint32_t blocks; /* those in which any density may be visible */
 } patch_slab;
 /* Call after hl_patch_relevant() gave at least one block. need: all blocks that this and the bundle's next

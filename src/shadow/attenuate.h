@@ -19,6 +19,8 @@ typedef struct attenuate_volume {
   float voxel;                /* its smallest edge; frame units */
   float weight[HL_CHANNELS];  /* relative extinction of R, G, B */
   int uncut;                  /* the box does not cut the slab here */
+  const slab_run *faces;      /* the run of the slab where a face is near that is a surface; else null */
+  int slab;                   /* the slab's number in its run */
   const grid *grid;           /* of gradient opacity: the gradient's */
   const kernel *kernel;
   const float (*to_index)[4]; /* frame space to index space */
@@ -60,6 +62,11 @@ typedef struct attenuate_job {
  * slabs. Where values hardly change, matter is no surface (classifier.normal_edge): EVEN_VOXELS of such
  * matter on the light's way divide k and k' by e. In a medium k = k' = 0. Where several volumes share a slab,
  * k and k' are their means, weighted by optical depth.
+ *
+ * A face that cuts matter is a surface, too. Its outside is the face, and light goes deeper into it whatever
+ * the values behind it are: k = k' = 1 for visible matter up to a voxel behind a face through which the light
+ * comes in, falling to the k of the values at FACE_VOXELS behind it. There the eye, too, sees less and less
+ * of the face (render/slab_lanes.h).
  *
  * OUTWARDS_POWER: how soon a surface that light leaves again counts as left: h falls to 2/3 within the
  * outermost voxel or so of an edge, and then 1/25 of what was taken still lights the surface. */

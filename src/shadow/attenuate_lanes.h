@@ -2,6 +2,7 @@
 #ifndef HL_SHADOW_ATTENUATE_LANES_H
 #define HL_SHADOW_ATTENUATE_LANES_H
 
+#include "fill/face_skin_lanes.h"
 #include "fill/steepness_lanes.h"
 #include "grid/classifier_lanes.h"
 #include "shadow/attenuate.h"
@@ -102,6 +103,17 @@ LANES_INLINE lanes power_of_depth(lanes from, lanes to) {
   return left;
 }
 
+/* Matter near a face belongs to the face's surface as far as it is visible where light leaves the slab. b:
+ * the value there; corner: the block's first pixel. */
+LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light kept, table_coordinate b,
+                                     const int corner[2]) {
+  lanes values[3];
+  table_values(volume->classifier->sums, b, values);
+  lanes skin = skin_of_faces(volume->faces, volume->slab, block_u(corner[0]), block_v(corner[1]));
+  skin = lanes_keep(values[0] > 0.0f, skin);
+  return (kept_light){lanes_max(kept.before, skin), lanes_max(kept.within, skin)};
+}
+
 /* The slab's part in a box that ends this near to the slab's own end is rounding. */
 static const float ROUNDING_OF_SPAN = 1e-3f;
 
@@ -113,13 +125,12 @@ LANES_INLINE kept_light kept_in_span(const attenuate_volume *volume, kept_light 
   return (kept_light){lanes_keep(~ends & ~begins, kept.before), lanes_keep(~ends, kept.within)};
 }
 
-/* path: of the light's ray through the slab; extinction: of the slab; at: offset of the block's first pixel.
- */
-LANES_INLINE kept_light kept_in_block(const attenuate_job *job, const attenuate_volume *volume,
-                                      table_coordinate a, table_coordinate b, covered_span span, lanes path,
-                                      lanes extinction, size_t at) {
+/* Of one volume's own values. path: of the light's ray through the slab; extinction: of the slab; at: offset
+ * of the block's first pixel. */
+LANES_INLINE kept_light kept_by_values(const attenuate_job *job, const attenuate_volume *volume,
+                                       table_coordinate a, table_coordinate b, covered_span span, lanes path,
+                                       lanes extinction, size_t at) {
   const lanes none = lanes_set(0), all = lanes_set(1.0f);
-  if (!volume->surface) return (kept_light){none, none};
   lanes way = path * span.length;
   lanes even = way - lanes_abs(b.x - a.x) * (1.0f / volume->classifier->normal_edge);
   const int some_even = lanes_bits(even > 0.0f) != 0;
@@ -129,7 +140,7 @@ LANES_INLINE kept_light kept_in_block(const attenuate_job *job, const attenuate_
     const float foot = volume->classifier->only_outside, side = volume->classifier->side;
     lanes left = power_of_depth(lanes_max((a.x - foot) * side, none), lanes_max((b.x - foot) * side, none));
     if (some_even) left = left * even;
-    return kept_in_span(volume, (kept_light){left, left}, span);
+    return (kept_light){left, left};
   }
   lanes foot_a = lanes_gather(volume->classifier->outside, a.entry),
         foot_b = lanes_gather(volume->classifier->outside, b.entry), deep = b.x - foot_b,
@@ -149,7 +160,7 @@ LANES_INLINE kept_light kept_in_block(const attenuate_job *job, const attenuate_
     kept.before = lanes_select(second, other.kept, kept.before);
     kept.within = lanes_select(second, lanes_fma(of_first, other.kept - 1.0f, all), kept.within);
   }
-  return kept_in_span(volume, kept, span);
+  return kept;
 }
 
 /* The means over volumes, weighted by optical depth. weight: of one volume. */
@@ -200,7 +211,12 @@ LANES_INLINE attenuated_block attenuate_block(const attenuate_job *job, int volu
     }
     for (int c = 0; c < channels; c++) depth[c] = lanes_add_scaled(depth[c], extinction, volume->weight[c]);
     if (job->outside[0] == NULL) continue;
-    kept_light own = kept_in_block(job, volume, a, b, span, path, extinction, (size_t)y * job->stride + x);
+    kept_light own = {lanes_set(0), lanes_set(0)};
+    if (volume->surface) {
+      own = kept_by_values(job, volume, a, b, span, path, extinction, (size_t)y * job->stride + x);
+      if (volume->faces != NULL) own = kept_by_face(volume, own, b, corner);
+      own = kept_in_span(volume, own, span);
+    }
     own.before = lanes_keep(extinction > 0.0f, own.before);
     if (volume_count == 1) kept = own;
     else add_kept(&kept, own, extinction), total = total + extinction;

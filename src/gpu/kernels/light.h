@@ -29,6 +29,7 @@ typedef struct slab_sample {
   int sloped;
   vector slope, normal;
   float surface;
+  float skin; /* 1 at a face that cuts matter, 0 two voxels behind it */
 } slab_sample;
 
 /* ---- the buffer's pixels around a sample ---- */

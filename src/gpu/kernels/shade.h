@@ -61,7 +61,7 @@ DEVICE void place_slab(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *
 DEVICE void find_normal(const volume_data *volume, float density, slab_sample *s) {
   s->sloped = s->sums.extinction > 0.0f;
   s->slope = s->normal = vector_of(0.0f, 0.0f, 0.0f);
-  s->surface = 0.0f;
+  s->surface = s->skin = 0.0f;
 #if !PHONG
   s->sloped = s->sloped && s->sums.extinction * s->part.length * s->path > THIN_DEPTH;
 #endif

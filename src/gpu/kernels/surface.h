@@ -73,6 +73,7 @@ DEVICE float find_skin(const volume_data *volume, const slab_sample *s, vector *
 DEVICE void find_cut_face(const volume_data *volume, slab_sample *s) {
   vector outward;
   float skin = find_skin(volume, s, &outward), rest = 1.0f - skin;
+  s->skin = skin;
   if (volume->plan->cut_shading == CUT_SHADING_FACE) {
     vector sum = add_scaled(scaled(outward, skin), s->normal, s->surface * rest);
     s->normal = scaled(sum, divided(1.0f, greater(root(dot3(sum, sum)), 1e-6f)));
@@ -148,9 +149,33 @@ DEVICE kept_light kept_of_several(const volume_data *volume, table_coordinate a,
   return kept;
 }
 
-/* path: of the light's ray through the slab; extinction: of the slab. */
+/* The skin of two opposite faces, as in fill/face_skin_lanes.h. */
+DEVICE float skin_of_axis(float from, float to, float low, float high, float scale) {
+  const float before[2] = {(from - low) * scale, (high - from) * scale},
+              depth[2] = {(to - low) * scale, (high - to) * scale};
+  float skin = 0.0f;
+  for (int side = 0; side < 2; side++)
+    if (depth[side] > before[side]) skin = greater(skin, limited(FACE_VOXELS - depth[side], 0.0f, 1.0f));
+  return skin;
+}
+
+/* How much the matter on a light's ray belongs to a face of the box where the ray leaves a slab. in_index: of
+ * the sheet before the slab; the next one's follows. */
+DEVICE float skin_of_faces(GLOBAL const plan_volume *volume, GLOBAL const plan_rays *in_index,
+                           int perspective, float u, float v) {
+  const vector from = position_on(in_index, perspective, u, v),
+               to = position_on(in_index + 1, perspective, u, v);
+  float x = skin_of_axis(from.x, to.x, volume->face_low[0], volume->face_high[0], volume->steps[0]);
+  float y = skin_of_axis(from.y, to.y, volume->face_low[1], volume->face_high[1], volume->steps[1]);
+  float z = skin_of_axis(from.z, to.z, volume->face_low[2], volume->face_high[2], volume->steps[2]);
+  return greater(greater(x, y), z);
+}
+
+/* path: of the light's ray through the slab; extinction: of the slab; skin: where visible matter belongs to a
+ * face. */
 DEVICE kept_light kept_in_slab(const volume_data *volume, table_coordinate a, table_coordinate b,
-                               covered_span span, float path, float extinction, float light, float outside) {
+                               covered_span span, float path, float extinction, float skin, float light,
+                               float outside) {
   GLOBAL const plan_volume *plan = volume->plan;
   float way = path * span.length;
   float even = way - magnitude(b.x - a.x) * divided(1.0f, plan->normal_edge);
@@ -164,6 +189,14 @@ DEVICE kept_light kept_in_slab(const volume_data *volume, table_coordinate a, ta
     kept.before = kept.within = left * even;
   }
 #if BOXED
+  if (skin > 0.0f) {
+    float at_end[4];
+    table_values(sums_table(volume->tables), b, 2, at_end);
+    if (at_end[0] > 0.0f) {
+      kept.before = greater(kept.before, skin);
+      kept.within = greater(kept.within, skin);
+    }
+  }
   int ends = span.begin + span.length<1.0f - ROUNDING_OF_SPAN, begins = span.begin> ROUNDING_OF_SPAN;
   if (ends || begins) kept.before = 0.0f;
   if (ends) kept.within = 0.0f;
@@ -221,8 +254,8 @@ DEVICE void passing_to_surface(const volume_data *volume, GLOBAL const plan_ligh
         if (begin.there && begin.first != begin.foot) {
           second_surface other = kept_at_foot(volume->tables, begin.first, begin.start, begin.foot,
                                               magnitude(begin.change), passed, outside);
-          own_kept = other.kept;
-          own_passing = exp_of_depth(lesser(other.ahead, DEEPEST));
+          own_kept = greater(other.kept, s->skin);
+          own_passing = greater(exp_of_depth(lesser(other.ahead, DEEPEST)), s->skin);
         }
       }
       passed = passed * own_passing;

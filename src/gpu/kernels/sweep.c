@@ -138,7 +138,8 @@ KERNEL(12) run_light(SWEEP_ARGUMENTS) {
       step = fill_way(&sweep.volume, in_index + sheet, perspective, u, v, speed, sheet == own_first - 1,
                       &way);
       if ((way.before_shows || way.after_shows) && sheet >= own_first)
-        takes = attenuate_slab(&sweep, light, in_frame + sheet, u, v, way.before, way.after, &in_box, &own);
+        takes = attenuate_slab(&sweep, light, in_index + sheet, in_frame + sheet, u, v, way.before, way.after,
+                               &in_box, &own);
     } else {
       step = !lit || sheet >= slabs.end ? end - sheet : own_first - 1 - sheet;
       way.after_known = way.after_shows = 0;

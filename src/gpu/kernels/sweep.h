@@ -257,8 +257,9 @@ typedef struct light_pixel {
 
 /* Multiplies the light by what a slab lets pass. Returns whether the slab takes any. */
 DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *light,
-                          GLOBAL const plan_rays *in_frame, float u, float v, float before, float after,
-                          const heights_in_box *in_box, light_pixel *pixel) {
+                          GLOBAL const plan_rays *in_index, GLOBAL const plan_rays *in_frame, float u,
+                          float v, float before, float after, const heights_in_box *in_box,
+                          light_pixel *pixel) {
   GLOBAL const device_sweep *plan = sweep->plan;
   GLOBAL const plan_volume *volume = sweep->volume.plan;
   table_coordinate a = coordinate_of_density(volume, before), b = coordinate_of_density(volume, after);
@@ -271,7 +272,10 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
   if (!(extinction > 0.0f)) return 0;
   float path = path_through_sheet(in_frame, !light->parallel, light->slab_path, u, v);
 #if OUTSIDE
-  const kept_light kept = kept_in_slab(&sweep->volume, a, b, part, path, extinction, pixel->passing[0],
+  const float skin = BOXED && volume->cut_shading == CUT_SHADING_FACE
+                         ? skin_of_faces(volume, in_index - 1, !light->parallel, u, v)
+                         : 0.0f;
+  const kept_light kept = kept_in_slab(&sweep->volume, a, b, part, path, extinction, skin, pixel->passing[0],
                                        pixel->passing[CHANNELS]);
 #endif
   for (int c = 0; c < CHANNELS; c++) {

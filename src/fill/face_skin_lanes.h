@@ -1,0 +1,67 @@
+/* fill/face_skin_lanes.h - how much the matter that a light's rays reach belongs to a face that cuts it: a
+ * face of the volume's box, or of a cut. In: a run's rays, box and cuts (fill.h). Out: 1 at a face and up to
+ * a voxel behind it, 0 from FACE_VOXELS behind it on. Only faces that light comes in through count. */
+#ifndef HL_FILL_FACE_SKIN_LANES_H
+#define HL_FILL_FACE_SKIN_LANES_H
+
+#include "fill/fill.h"
+#include "grid/faces.h"
+#include "view/rays_lanes.h"
+
+/* The skin of one face. before, depth: how deep a ray lies behind the face on a slab's first and last sheet;
+ * in voxels. */
+LANES_INLINE lanes skin_of_depth(lanes before, lanes depth) {
+  return lanes_keep(depth > before, lanes_clamp(FACE_VOXELS - depth, 0, 1));
+}
+
+/* The skin of two opposite faces, at the places low and high of an axis. scale: voxels per unit of the axis.
+ */
+LANES_INLINE lanes skin_of_axis(lanes from, lanes to, lanes low, lanes high, lanes scale) {
+  return lanes_max(skin_of_depth((from - low) * scale, (to - low) * scale),
+                   skin_of_depth((high - from) * scale, (high - to) * scale));
+}
+
+LANES_INLINE lanes3 point_in_shape(const run_cut *cut, lanes3 point) {
+  return (lanes3){row_of_point(cut->rows[0], point), row_of_point(cut->rows[1], point),
+                  row_of_point(cut->rows[2], point)};
+}
+
+/* How far a point of a cut's own space lies outside of its shape, in voxels; below 0 inside. scale: voxels
+ * per unit of each axis of that space. */
+LANES_INLINE lanes distance_to_shape(const run_cut *cut, lanes3 at, const float scale[3]) {
+  if (cut->shape->type == HL_CUT_PLANE) return at.x * -scale[0];
+  if (cut->shape->type == HL_CUT_SPHERE) return (lanes_sqrt(dot3(at, at)) - 1.0f) * scale[0];
+  return lanes_max(lanes_max((lanes_abs(at.x) - 1.0f) * scale[0], (lanes_abs(at.y) - 1.0f) * scale[1]),
+                   (lanes_abs(at.z) - 1.0f) * scale[2]);
+}
+
+/* Light may come into a box that is kept through one face close to another one, so that each of its faces is
+ * looked at. */
+LANES_INLINE lanes skin_of_cut(const run_cut *cut, lanes3 from, lanes3 to, float voxel) {
+  const float scale[3] = {1.0f / (cut->size[0] * voxel), 1.0f / (cut->size[1] * voxel),
+                          1.0f / (cut->size[2] * voxel)};
+  const lanes low = lanes_set(-1.0f), high = lanes_set(1.0f);
+  lanes3 a = point_in_shape(cut, from), b = point_in_shape(cut, to);
+  if (cut->shape->type == HL_CUT_BOX && cut->shape->keep_inside)
+    return lanes_max(lanes_max(skin_of_axis(a.x, b.x, low, high, lanes_set(scale[0])),
+                               skin_of_axis(a.y, b.y, low, high, lanes_set(scale[1]))),
+                     skin_of_axis(a.z, b.z, low, high, lanes_set(scale[2])));
+  lanes before = distance_to_shape(cut, a, scale), depth = distance_to_shape(cut, b, scale);
+  return cut->shape->keep_inside ? skin_of_depth(-before, -depth) : skin_of_depth(before, depth);
+}
+
+/* The skin at the last sheet of slab `slab` of a run, for the rays of a block. */
+LANES_INLINE lanes skin_of_faces(const slab_run *run, int slab, lanes u, lanes v) {
+  const grid *grid = run->grid;
+  lanes3 from = rays_positions(&run->rays[slab], u, v), to = rays_positions(&run->rays[slab + 1], u, v);
+  const lanes a[3] = {from.x, from.y, from.z}, b[3] = {to.x, to.y, to.z};
+  lanes skin = lanes_set(0);
+  for (int axis = 0; axis < 3; axis++)
+    skin = lanes_max(skin, skin_of_axis(a[axis], b[axis], lanes_set(grid->face_low[axis]),
+                                        lanes_set(grid->face_high[axis]), lanes_set(run->steps[axis])));
+  for (int i = 0; i < run->cut_count; i++)
+    skin = lanes_max(skin, skin_of_cut(&run->cuts[i], from, to, run->voxel));
+  return skin;
+}
+
+#endif
