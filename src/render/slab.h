@@ -138,12 +138,14 @@ typedef uint32_t shade_tile_function(const shade_job *job, const tile_slab *tile
                                      uint64_t *samples);
 
 /* Measures of the layers depth, normal and object, for sheets that go front to back: alpha; the depth where
- * alpha first reaches 0.01, infinite before, and the object that is met there, 0 before; and sums of depth
- * and normal, weighted by what each sample adds to alpha. pixels: [16 blocks][MEASURES][16]. */
+ * alpha first reaches 0.01, infinite before, and the object that is met there, 0 before; which of the pixel's
+ * sixteen samples a mesh covers there, one bit each; and sums of depth and normal, weighted by what each
+ * sample adds to alpha. pixels: [16 blocks][MEASURES][16]. */
 enum {
   MEASURE_ALPHA,
   MEASURE_DEPTH_FIRST,
   MEASURE_OBJECT,
+  MEASURE_SAMPLES,
   MEASURE_DEPTH,
   MEASURE_NORMAL,
   MEASURES = MEASURE_NORMAL + 3

@@ -195,6 +195,21 @@ static float depth_of_sample(const shade_job *job, const surface_samples *sample
   return eye - dot_of_sample(samples->position, i, towards_eye);
 }
 
+/* The first depth of a pixel that a mesh reaches. The mesh's parts in the pixel are several fragments, which
+ * lie side by side or one behind another: the depth is the mean over the samples at which one of them is met
+ * first. at: the pixel's measures; alpha: before and after the fragment. */
+static void measure_first(const fragment *f, float depth, int object, float before, float after, float *at) {
+  float *first = at + MEASURE_DEPTH_FIRST * BLOCK_PIXELS, *covered = at + MEASURE_SAMPLES * BLOCK_PIXELS;
+  const unsigned known = (unsigned)*covered, met = f->samples & ~known;
+  if (before < FIRST_OPACITY ? after < FIRST_OPACITY
+                             : known == 0 || met == 0 || at[MEASURE_OBJECT * BLOCK_PIXELS] != (float)object)
+    return;
+  const int count = __builtin_popcount(met), all = __builtin_popcount(met | known);
+  *first = known == 0 ? depth : *first + (depth - *first) * (float)count / (float)all;
+  *covered = (float)(known | met);
+  at[MEASURE_OBJECT * BLOCK_PIXELS] = (float)object;
+}
+
 /* The measures of a batch in sheets that go front to back. pixels: the tile's. */
 static void measure_batch(const shade_job *job, const surface_batch *batch, int object, float *pixels) {
   for (int i = 0; i < batch->count; i++) {
@@ -207,9 +222,7 @@ static void measure_batch(const shade_job *job, const surface_batch *batch, int 
     at[MEASURE_DEPTH * BLOCK_PIXELS] += depth * weight;
     for (int c = 0; c < 3; c++)
       at[(MEASURE_NORMAL + c) * BLOCK_PIXELS] += batch->samples.normal[c][i] * weight;
-    if (before >= FIRST_OPACITY || before + weight < FIRST_OPACITY) continue;
-    at[MEASURE_DEPTH_FIRST * BLOCK_PIXELS] = depth;
-    at[MEASURE_OBJECT * BLOCK_PIXELS] = (float)object;
+    measure_first(f, depth, object, before, before + weight, at);
   }
 }
 

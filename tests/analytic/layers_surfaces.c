@@ -94,6 +94,49 @@ static void test_plane(void **state) {
   }
 }
 
+/* An isosurface of a field that is linear is a plane, of many triangles: each pixel has the depth at which
+ * its own ray meets the plane, however many triangles share the pixel. */
+static void test_depth_of_isosurface(void **state) {
+  (void)state;
+  enum { N = 28 };
+  static layer_set made;
+  static float voxels[N * N * N];
+  static const hl_opacity_point clear[] = {{0, 0}};
+  const vec3 rise = {0.02, 0.013, 0.03}, middle = {0.3, -0.2, 0.1};
+  for (int i = 0; i < N * N * N; i++) {
+    const vec3 at = {i % N - N / 2 + 0.5, i / N % N - N / 2 + 0.5, i / N / N - N / 2 + 0.5};
+    voxels[i] = (float)(0.5 - vec3_dot(rise, vec3_subtract(at, middle)));
+  }
+  hl_isosurface iso;
+  hl_isosurface_defaults(&iso);
+  iso.value = 0.5;
+  for (int k = 0; k < 4; k++) {
+    mesh_stage all;
+    open_meshes(&all);
+    if (k % 2 == 1) stage_look(&all.set, (vec3){50, 10, 30}, (vec3){0, 0, 0}, (vec3){0, 1, 0});
+    hl_scene_volume *volume = stage_add_grid(&all.set, (size_t[3]){N, N, N}, (double[3]){1, 1, 1},
+                                             (vec3){-N / 2, -N / 2, -N / 2}, voxels);
+    volume->transfer_function.opacity = clear;
+    volume->transfer_function.opacity_count = 1;
+    volume->iso = &iso;
+    volume->iso_count = 1;
+    stage_add_directional(&all.set, (vec3){0.1, 0.2, -1});
+    render(&all.set, k >= 2, &made);
+    int count = 0;
+    for (int i = 0; i < PIXELS; i++) {
+      vec3 origin, direction;
+      stage_eye_ray(&all.set, i % SIDE, i / SIDE, &origin, &direction);
+      const double depth = vec3_dot(rise, vec3_subtract(middle, origin)) / vec3_dot(rise, direction);
+      const vec3 at = vec3_add(origin, vec3_scale(direction, depth));
+      if (fmax(fabs(at.x), fmax(fabs(at.y), fabs(at.z))) > N / 2 - 3) continue;
+      assert_near(made.first[i], depth, 0.01);
+      count++;
+    }
+    assert_true(count > 200);
+    mesh_stage_close(&all);
+  }
+}
+
 /* Where a ray meets a sphere; infinite: it does not. */
 static double meet_sphere(vec3 origin, vec3 direction, vec3 centre, double radius) {
   vec3 away = vec3_subtract(origin, centre);
@@ -356,9 +399,9 @@ static void test_same_bytes(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plane),        cmocka_unit_test(test_two_spheres),
-      cmocka_unit_test(test_pane_in_haze), cmocka_unit_test(test_shadow_of_pane),
-      cmocka_unit_test(test_own_shadow),   cmocka_unit_test(test_sum_is_the_picture),
-      cmocka_unit_test(test_same_bytes)};
+      cmocka_unit_test(test_depth_of_isosurface), cmocka_unit_test(test_plane),
+      cmocka_unit_test(test_two_spheres),         cmocka_unit_test(test_pane_in_haze),
+      cmocka_unit_test(test_shadow_of_pane),      cmocka_unit_test(test_own_shadow),
+      cmocka_unit_test(test_sum_is_the_picture),  cmocka_unit_test(test_same_bytes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
