@@ -284,10 +284,11 @@ static void test_borders(void **state) {
 
 /* ---- the box's faces ---- */
 
-/* Matter at the far end of x alone. */
+/* Matter at the far end of x alone, and not at the far end of y. */
 static double far_value(uint64_t seed, int level, const ptrdiff_t point[3]) {
   (void)seed;
-  return point[0] * ((ptrdiff_t)1 << level) > CELLS - 6 ? 1 : 0;
+  const ptrdiff_t scale = (ptrdiff_t)1 << level;
+  return point[0] * scale > CELLS - 6 && point[1] * scale < CELLS / 2 ? 1 : 0;
 }
 
 /* The last cell of a lattice of corners ends on the box's far face: the face looks at that cell's brick, and
