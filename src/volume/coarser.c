@@ -1,11 +1,13 @@
-/* volume/coarser.c - see coarser.h. One pass over the rows of the volume. */
+/* volume/coarser.c - see coarser.h. One pass over the rows of the volume, or over its bricks. */
 #include "volume/coarser.h"
 
 #include <math.h>
 #include <string.h>
 
+#include "bricks/coarser.h"
 #include "core/context.h"
 #include "core/memory.h"
+#include "volume/in_bricks.h"
 
 static const double ALIKE =
     1.5; /* axes with steps up to this factor beyond the shortest are halved together */
@@ -27,7 +29,7 @@ static void choose_factors(coarsening *c) {
   double shortest = INFINITY;
   for (int axis = 0; axis < 3; axis++) shortest = fmin(shortest, step_length(c->volume, axis));
   for (int axis = 0; axis < 3; axis++) {
-    c->factor[axis] = step_length(c->volume, axis) < ALIKE * shortest ? 2 : 1;
+    c->factor[axis] = c->volume->bricks != NULL || step_length(c->volume, axis) < ALIKE * shortest ? 2 : 1;
     c->dimension[axis] = (c->volume->dimension[axis] + c->factor[axis] - 1) / c->factor[axis];
   }
 }
@@ -103,30 +105,52 @@ static void inherit(const hl_volume *volume, hl_volume *made) {
   memcpy(made->window, volume->window, sizeof made->window);
 }
 
-hl_status hl_volume_make_coarser(const hl_volume *volume, hl_volume **coarser, hl_error *error) {
+/* The coarser field has no finest level (bricks/coarser.h). */
+static hl_status coarsen_bricks(const coarsening *c, hl_volume **coarser, hl_error *error) {
+  hl_context *context = c->volume->context;
+  hl_volume_description description;
+  hl_bricks bricks = {.shift = 0};
+  hl_pool *pool = NULL;
+  place(c, &description);
+  hl_status status = hl_pool_create(context, 0, &pool, error);
+  if (status == HL_OK)
+    status = hl_bricks_make_coarser(context, pool, c->volume->bricks, "a coarser volume", &bricks, error);
+  hl_pool_destroy(pool);
+  return status == HL_OK
+             ? hl_volume_take_bricks(context, &bricks, &description, "a coarser volume", coarser, error)
+             : status;
+}
+
+static hl_status coarsen_voxels(coarsening *c, hl_volume **coarser, hl_error *error) {
+  const hl_volume *volume = c->volume;
   hl_context *context = volume->context;
-  coarsening c = {.volume = volume};
-  *coarser = NULL;
-  choose_factors(&c);
-  size_t bytes = hl_storage_bytes(volume->storage), rows = c.dimension[1] * c.dimension[2];
-  unsigned char *voxels = hl_allocate(context, c.dimension[0] * rows, bytes);
-  c.row = volume->pages != NULL ? hl_allocate(context, volume->dimension[0], bytes) : NULL;
-  c.sums = hl_allocate(context, c.dimension[0], sizeof *c.sums);
-  c.counts = hl_allocate(context, c.dimension[0], sizeof *c.counts);
-  bool whole = voxels != NULL && (volume->pages == NULL || c.row != NULL) && c.sums != NULL &&
-               c.counts != NULL;
-  hl_status status = whole ? average(&c, voxels, error)
-                           : hl_fail_memory(error, c.dimension[0] * rows * bytes, "a coarser volume");
-  hl_release(context, c.row);
-  hl_release(context, c.sums);
-  hl_release(context, c.counts);
+  size_t bytes = hl_storage_bytes(volume->storage), rows = c->dimension[1] * c->dimension[2];
+  unsigned char *voxels = hl_allocate(context, c->dimension[0] * rows, bytes);
+  c->row = volume->pages != NULL ? hl_allocate(context, volume->dimension[0], bytes) : NULL;
+  c->sums = hl_allocate(context, c->dimension[0], sizeof *c->sums);
+  c->counts = hl_allocate(context, c->dimension[0], sizeof *c->counts);
+  bool whole = voxels != NULL && (volume->pages == NULL || c->row != NULL) && c->sums != NULL &&
+               c->counts != NULL;
+  hl_status status = whole ? average(c, voxels, error)
+                           : hl_fail_memory(error, c->dimension[0] * rows * bytes, "a coarser volume");
+  hl_release(context, c->row);
+  hl_release(context, c->sums);
+  hl_release(context, c->counts);
   if (status != HL_OK) {
     hl_release(context, voxels);
     return status;
   }
   hl_volume_description description;
-  place(&c, &description);
-  status = hl_volume_adopt(context, &description, "a coarser volume", voxels, coarser, error);
+  place(c, &description);
+  return hl_volume_adopt(context, &description, "a coarser volume", voxels, coarser, error);
+}
+
+hl_status hl_volume_make_coarser(const hl_volume *volume, hl_volume **coarser, hl_error *error) {
+  coarsening c = {.volume = volume};
+  *coarser = NULL;
+  choose_factors(&c);
+  hl_status status = volume->bricks != NULL ? coarsen_bricks(&c, coarser, error)
+                                            : coarsen_voxels(&c, coarser, error);
   if (status == HL_OK) inherit(volume, *coarser);
   return status;
 }

@@ -14,6 +14,8 @@
 #include "bricks/evaluate.h"
 #include "core/context.h"
 #include "render/hot.h"
+#include "volume/coarser.h"
+#include "volume/in_bricks.h"
 
 enum { SIDE = 48 }; /* cells of the field along each axis */
 
@@ -146,8 +148,39 @@ static void test_ranges(void **state) {
   close_bench(&bench);
 }
 
+/* ---- without the finest level ---- */
+
+/* A linear field stays what it is, voxel by voxel, each in the middle of eight; a brick that is not of the
+ * finest level keeps its coefficients, and there are no more bricks than before. */
+static void test_coarser(void **state) {
+  (void)state;
+  for (int shift = 2; shift <= 4; shift++) {
+    field_bench bench;
+    open_bench(&bench, 31, octree_linear_value, shift);
+    hl_volume_description grid;
+    hl_volume *fine = NULL, *coarse = NULL;
+    const size_t slots = bench.bricks.slots;
+    hl_volume_description_defaults(&grid);
+    grid.type = HL_VOXEL_F32;
+    for (int a = 0; a < 3; a++) grid.dimensions[a] = SIDE, bench.bricks.origin[a] = 0.5;
+    assert_int_equal(hl_volume_take_bricks(bench.context, &bench.bricks, &grid, "test", &fine, NULL), HL_OK);
+    assert_int_equal(hl_volume_make_coarser(fine, &coarse, NULL), HL_OK);
+    assert_true(coarse->bricks->levels == 3 && coarse->bricks->slots <= slots);
+    for (size_t k = 4; k < SIDE / 2 - 4; k++)
+      for (size_t j = 4; j < SIDE / 2 - 4; j++)
+        for (size_t i = 4; i < SIDE / 2 - 4; i++) {
+          const double at[3] = {2 * (double)i + 1, 2 * (double)j + 1, 2 * (double)k + 1};
+          assert_float_equal(hl_volume_value(coarse, i, j, k), octree_linear_at(at), 1e-4);
+        }
+    assert_float_equal(coarse->index_to_world.offset.x, 0.5, 0);
+    hl_volume_release(fine);
+    hl_volume_release(coarse);
+    close_bench(&bench);
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_coefficients), cmocka_unit_test(test_gathered),
-                                     cmocka_unit_test(test_ranges)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_coefficients), cmocka_unit_test(test_coarser),
+                                     cmocka_unit_test(test_gathered), cmocka_unit_test(test_ranges)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
