@@ -75,5 +75,30 @@ def write_curvilinear(path: Path, points: int, places: Any, values: Any) -> Path
     return path
 
 
+def write_legacy(path: Path, places: Any, cells: Any, types: Any, at_points: dict[str, Any] | None = None,
+                 at_cells: dict[str, Any] | None = None, encoding: str = "binary", version: str = "5.1") -> Path:
+    """A legacy file. Before version 5.1 cells are one list of counts and points."""
+    def numbers(values: Any) -> bytes:
+        values = np.asarray(values).ravel()
+        return " ".join(map(repr, values.tolist())).encode() if encoding == "ascii" else values.astype(values.dtype.newbyteorder(">")).tobytes()
+
+    ends = np.arange(len(cells) + 1) * cells.shape[1]
+    flat = np.insert(cells, 0, cells.shape[1], axis=1).astype("i4")
+    parts: list[str | bytes] = [f"# vtk DataFile Version {version}\nmesh\n{'ASCII' if encoding == 'ascii' else 'BINARY'}\n",
+                                f"DATASET UNSTRUCTURED_GRID\nPOINTS {len(places)} double\n", numbers(places)]
+    if version == "5.1":
+        parts += [f"\nCELLS {len(ends)} {cells.size}\nOFFSETS vtktypeint64\n", numbers(ends.astype("i8")),
+                  "\nCONNECTIVITY vtktypeint64\n", numbers(cells.astype("i8"))]
+    else:
+        parts += [f"\nCELLS {len(cells)} {flat.size}\n", numbers(flat)]
+    parts += [f"\nCELL_TYPES {len(types)}\n", numbers(types.astype("i4"))]
+    for section, count, arrays in (("CELL_DATA", len(cells), at_cells or {}), ("POINT_DATA", len(places), at_points or {})):
+        parts += [f"\n{section} {count}\n"] if arrays else []
+        for name, values in arrays.items():
+            parts += [f"SCALARS {name} double {values.size // count}\nLOOKUP_TABLE default\n", numbers(values), "\n"]
+    path.write_bytes(b"".join(part.encode() if isinstance(part, str) else part for part in parts))
+    return path
+
+
 def values_at(field: Callable[..., Any], places: Any) -> Any:
     return np.asarray(field(*places.T), "f8")

@@ -11,7 +11,7 @@ import pytest
 
 import halflight as hl
 
-from cell_files import CUBES, mesh, lattice, values_at, write_cells, write_curvilinear
+from cell_files import CUBES, mesh, lattice, values_at, write_cells, write_curvilinear, write_legacy
 
 
 def blob(x: Any, y: Any, z: Any) -> Any:
@@ -174,3 +174,64 @@ def test_grids_of_vtk(tmp_path: Path) -> None:
         grid = reader.GetOutput()
         grid.GetPointData().SetActiveScalars("density")
         np.testing.assert_array_equal(np.asarray(hl.Volume(grid)), np.asarray(hl.Volume(tmp_path / name)))
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "binary"])
+@pytest.mark.parametrize("version", ["3.0", "5.1"])
+def test_legacy_grids(tmp_path: Path, encoding: str, version: str) -> None:
+    places, cells, types = mesh("wedges", 7, 0.1)
+    at_points, at_cells = {"f": values_at(blob, places)}, {"g": np.arange(len(cells), dtype="f8")}
+    old = write_legacy(tmp_path / "a.vtk", places, cells, types, at_points, at_cells, encoding, version)
+    new = write_cells(tmp_path / "a.vtu", places, cells, types, at_points, at_cells)
+    for name in ("f", "g"):
+        np.testing.assert_array_equal(np.asarray(hl.Volume(old, array=name)), np.asarray(hl.Volume(new, array=name)))
+    assert hl.info(hl.Volume(old)).range == hl.info(hl.Volume(new)).range  # points come first
+
+
+def test_legacy_curvilinear_grids(tmp_path: Path) -> None:
+    places = lattice(7, 0.1)
+    values = values_at(blob, places)
+    (tmp_path / "a.vtk").write_text("# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET STRUCTURED_GRID\nDIMENSIONS 7 7 7\nPOINTS 343 double\n"
+                                    + " ".join(map(repr, places.ravel().tolist())) + "\nPOINT_DATA 343\nSCALARS density double\n"
+                                    + "LOOKUP_TABLE default\n" + " ".join(map(repr, values.tolist())) + "\n")
+    write_curvilinear(tmp_path / "a.vts", 7, places, values)
+    np.testing.assert_array_equal(np.asarray(hl.Volume(tmp_path / "a.vtk")), np.asarray(hl.Volume(tmp_path / "a.vts")))
+
+
+@pytest.mark.parametrize(("old", "new", "words"), [
+    ("POINTS 64", "POINTS 9999999999", "expected .POINTS number type"),
+    ("POINTS 64", "POINTS 65", "."),
+    ("CELL_TYPES 27", "CELL_TYPES 26", "."),
+    ("CELLS 27 243", "CELLS 28 243", "cell 27 of CELLS has more points"),
+    ("\n8 0 ", "\n999 0 ", "cell 0 of CELLS has more points"),
+    ("POINT_DATA 64", "POINT_DATA 63", "is not read: save the values"),
+    ("POINTS 64 double", "POINTS 64 bit", "are not read"),
+    ("DATASET UNSTRUCTURED_GRID", "DATASET STRUCTURED_GRID\nDIMENSIONS 4 4 5", "DIMENSIONS 4 x 4 x 5, and POINTS has 64"),
+])
+def test_broken_legacy_grids_are_refused(tmp_path: Path, old: str, new: str, words: str) -> None:
+    places, cells, types = mesh("hexahedra", 4)
+    path = write_legacy(tmp_path / "a.vtk", places, cells, types, {"f": values_at(blob, places)}, encoding="ascii", version="3.0")
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    with pytest.raises((hl.InputError, hl.UnsupportedError, MemoryError), match=words):
+        hl.Volume(path)
+
+
+def test_legacy_grids_of_vtk(tmp_path: Path) -> None:
+    pytest.importorskip("vtkmodules")
+    from vtkmodules.vtkIOLegacy import vtkUnstructuredGridWriter
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+    places, cells, types = mesh("tetrahedra", 7, 0.1)
+    reader, writer = vtkXMLUnstructuredGridReader(), vtkUnstructuredGridWriter()
+    reader.SetFileName(str(write_cells(tmp_path / "a.vtu", places, cells, types, {"density": values_at(blob, places)})))
+    reader.Update()
+    writer.SetInputData(reader.GetOutput())
+    for binary in (False, True):
+        for version in (42, 51):
+            writer.SetFileName(str(tmp_path / "a.vtk"))
+            writer.SetFileType(2 if binary else 1)
+            writer.SetFileVersion(version)
+            writer.Write()
+            np.testing.assert_allclose(np.asarray(hl.Volume(tmp_path / "a.vtk")), np.asarray(hl.Volume(tmp_path / "a.vtu")), atol=1e-5)

@@ -134,6 +134,25 @@ hl_status hl_cell_mesh_add_grid(hl_cell_mesh *mesh, const size_t size[3], hl_err
   return status;
 }
 
+/* ---- arrays ---- */
+
+hl_status hl_cell_mesh_choose(hl_load_request *request, const char *path, int active, hl_error *error) {
+  hl_payload payload;
+  if (request->array_count == 0)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: the grid has no values: neither its points nor its cells have an array", path);
+  if (request->spacing[0] > 0)
+    return hl_fail(error, HL_ERROR_INPUT,
+                   "%s: a grid of cells has places of its own: leave \"spacing\" (--spacing) out", path);
+  hl_status status = hl_arrays_choose(request, path, active, error);
+  if (status != HL_OK) return status;
+  hl_payload_defaults(&payload);
+  payload.components = request->arrays[request->chosen].components;
+  payload.colors = HL_COLORS_UNREAD;
+  payload.grid.type = request->arrays[request->chosen].type;
+  return hl_component_choose(request, path, false, &payload, error);
+}
+
 /* ---- values ---- */
 
 static double component_of(const double *values, size_t components, int component) {

@@ -4,6 +4,7 @@
 #define HL_VOLUME_CELL_MESH_H
 
 #include "bricks/cells.h"
+#include "volume/formats/format.h"
 #include "volume/volume.h"
 
 typedef struct hl_cell_mesh {
@@ -17,6 +18,10 @@ typedef struct hl_cell_mesh {
   size_t first_point, first_cell;    /* where the piece that was begun last begins */
   size_t left_out, flat, simplified; /* cells of unknown kinds, without a volume, and with curved edges */
 } hl_cell_mesh;
+
+/* Chooses the array and the component of a grid of cells, whose arrays are listed. active: the array that the
+ * file calls active; -1: none. path: starts error lines. */
+hl_status hl_cell_mesh_choose(hl_load_request *request, const char *path, int active, hl_error *error);
 
 /* Begins a piece with `count` points, whose coordinates are copied. points: [count][3]. */
 hl_status hl_cell_mesh_begin_piece(hl_cell_mesh *mesh, const double *points, size_t count, hl_error *error);

@@ -1,5 +1,5 @@
 /* volume/formats/vtk/legacy_vtk.c - legacy .vtk files with STRUCTURED_POINTS or RECTILINEAR_GRID, ASCII or
- * BINARY (big-endian).
+ * BINARY (big-endian). Grids of cells are passed on to legacy_cells.c.
  *
  * After three lines (mark, title, ASCII or BINARY) come keywords. A first pass lists the arrays under
  * POINT_DATA and CELL_DATA (SCALARS, COLOR_SCALARS, VECTORS, NORMALS, TENSORS, TEXTURE_COORDINATES and the
@@ -12,6 +12,7 @@
 #include "volume/convert.h"
 #include "volume/formats/format.h"
 #include "volume/formats/vtk/legacy_arrays.h"
+#include "volume/formats/vtk/legacy_cells.h"
 #include "volume/formats/vtk/rectilinear.h"
 #include "volume/io/decoders.h"
 #include "volume/io/numbers.h"
@@ -20,7 +21,7 @@
 typedef struct vtk_header {
   hl_legacy_vtk file; /* must come first: callbacks find the header by the address of this member */
   hl_payload payload;
-  bool has_dimensions, is_rectilinear;
+  bool has_dimensions, is_rectilinear, is_of_cells;
   double *coordinates[3]; /* owned; the coordinates of a rectilinear grid; null for other grids */
   size_t counts[3];
   size_t tuples; /* number of values of the volume's array, once it is found */
@@ -108,10 +109,12 @@ static hl_status read_keyword(hl_legacy_vtk *file, const char *keyword, const ch
   char shown[HL_PRINTABLE_BYTES];
   if (hl_text_equal(keyword, "DATASET")) {
     ((vtk_header *)file)->is_rectilinear = hl_text_equal(arguments, "RECTILINEAR_GRID");
-    if (hl_text_equal(arguments, "STRUCTURED_POINTS") || ((vtk_header *)file)->is_rectilinear) return HL_OK;
+    ((vtk_header *)file)->is_of_cells = file->found = hl_legacy_is_of_cells(arguments);
+    if (hl_text_equal(arguments, "STRUCTURED_POINTS") || ((vtk_header *)file)->is_rectilinear || file->found)
+      return HL_OK;
     return HL_FAIL_LINE(error, HL_ERROR_UNSUPPORTED, file->stream, file->line,
-                        "a data set of kind \"%s\" is not read: save it as STRUCTURED_POINTS or "
-                        "RECTILINEAR_GRID (ParaView: Resample To Image)",
+                        "a data set of kind \"%s\" is not read: save it as a grid of points or cells "
+                        "(ParaView: Resample To Image)",
                         hl_text_printable(shown, arguments));
   }
   static const char *const geometry[] = {"DIMENSIONS", "SPACING", "ASPECT_RATIO", "ORIGIN"};
@@ -164,6 +167,7 @@ static hl_status find_volume(hl_stream **stream, hl_load_request *request, vtk_h
     if (error != NULL) *error = first;
     return status;
   }
+  if (header->is_of_cells) return HL_OK;
   if (request->array_count == 0)
     return HL_FAIL_LINE(error, HL_ERROR_INPUT, *stream, header->file.line, "%s",
                         "the file ends without POINT_DATA and SCALARS, which hold the volume");
@@ -219,7 +223,9 @@ static hl_status read_volume(hl_stream **stream, vtk_header *header, hl_volume *
 static hl_status load(hl_stream **stream, hl_load_request *request, hl_volume **volume, hl_error *error) {
   vtk_header header;
   hl_status status = find_volume(stream, request, &header, error);
-  if (status == HL_OK) status = read_volume(stream, &header, volume, error);
+  if (status == HL_OK)
+    status = header.is_of_cells ? hl_legacy_cells_load(stream, request, volume, error)
+                                : read_volume(stream, &header, volume, error);
   release(&header);
   return status;
 }

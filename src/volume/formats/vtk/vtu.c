@@ -248,21 +248,8 @@ static hl_status read_values(hl_stream **stream, grid_file *file, const grid_pie
 static hl_status choose(grid_file *file, hl_error *error) {
   hl_load_request *request = file->request;
   const char *path = file->xml.stream->path;
-  hl_payload payload;
   if (file->piece_count == 0) return hl_fail(error, HL_ERROR_INPUT, "%s: the grid has no points", path);
-  if (request->array_count == 0)
-    return hl_fail(error, HL_ERROR_INPUT,
-                   "%s: the grid has no values: neither PointData nor CellData hold an array", path);
-  if (request->spacing[0] > 0)
-    return hl_fail(error, HL_ERROR_INPUT,
-                   "%s: a grid of cells has places of its own: leave \"spacing\" (--spacing) out", path);
-  hl_status status = hl_arrays_choose(request, path, file->chosen_active, error);
-  if (status != HL_OK) return status;
-  hl_payload_defaults(&payload);
-  payload.components = request->arrays[request->chosen].components;
-  payload.colors = HL_COLORS_UNREAD;
-  payload.grid.type = request->arrays[request->chosen].type;
-  return hl_component_choose(request, path, false, &payload, error);
+  return hl_cell_mesh_choose(request, path, file->chosen_active, error);
 }
 
 static hl_status read_pieces(hl_stream **stream, grid_file *file, hl_cell_mesh *mesh, hl_error *error) {
