@@ -1,4 +1,4 @@
-"""Pyramids of OME-Zarr far beyond memory: the program takes the level that the limit leaves room for, and reads no other."""
+"""Pyramids of OME-Zarr far beyond memory: the program takes the level that the limit leaves room for, and reads none of the finest levels."""
 from __future__ import annotations
 
 import json
