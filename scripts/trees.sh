@@ -7,7 +7,7 @@ make_tree() (
   tree=$1 suite=$2 architecture=$3
   shift 3
   [ ! -f "$tree/complete" ] || return 0
-  mkdir -p "$tree/apt/lists/partial" "$tree/apt/archives/partial" "$tree/usr/bin" "$tree/usr/sbin" "$tree/usr/lib" "$tree/tmp"
+  mkdir -p "$tree/apt/lists/partial" "$tree/apt/archives/partial" "$tree/usr/bin" "$tree/usr/sbin" "$tree/usr/lib" "$tree/tmp" "$tree/var/tmp"
   for folder in bin sbin lib; do ln -sfn "usr/$folder" "$tree/$folder"; done
   [ "$architecture" != amd64 ] || { mkdir -p "$tree/usr/lib64"; ln -sfn usr/lib64 "$tree/lib64"; }
   echo "deb http://deb.debian.org/debian $suite main" >"$tree/apt/sources.list"
