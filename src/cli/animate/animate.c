@@ -64,6 +64,7 @@ static const cli_option animate_options[ANIMATE_OPTION_COUNT] = {
                              "lights.0.intensity=0:1,48:3; camera.azimuth, .elevation,\n"
                              ".roll (degrees) and .zoom (factor) turn the camera,\n"
                              "lights.0.azimuth and .elevation a light, as --light;\n"
+                             "of several files FRAME is a file's number, from 0;\n"
                              "may be given again",
                      .repeatable = true},
     [ANIMATE_EASE] = {.name = "ease",
@@ -186,31 +187,48 @@ static void write_sweep(const animate_job *job, char text[80]) {
   snprintf(text, 80, "lights.0.azimuth=0:-75,%d:75,%d:-75", half, 2 * half);
 }
 
-static int plan(animate_job *job) {
-  const cli_value *values = job->values, *preset = &values[ANIMATE_PRESET];
-  const bool frames = values[ANIMATE_FRAMES].given;
-  const bool sweeps = preset->given && preset->choice == PRESET_LIGHT_SWEEP;
+/* What the options let move, and the texts that the film's options point to. */
+typedef struct motion {
   const char *keys[MAXIMUM_REPEATS + 1];
   char sweep[80];
+  film_options film;
+} motion;
+
+static bool sweeps(const animate_job *job) {
+  return job->values[ANIMATE_PRESET].given && job->values[ANIMATE_PRESET].choice == PRESET_LIGHT_SWEEP;
+}
+
+static void find_motion(const animate_job *job, motion *found) {
+  const cli_value *values = job->values;
   size_t count = 0;
-  for (int k = 0; k < values[ANIMATE_KEY].count; k++) keys[count++] = values[ANIMATE_KEY].texts[k];
-  write_sweep(job, sweep);
-  if (sweeps) keys[count++] = sweep;
+  for (int k = 0; k < values[ANIMATE_KEY].count; k++) found->keys[count++] = values[ANIMATE_KEY].texts[k];
+  write_sweep(job, found->sweep);
+  if (sweeps(job)) found->keys[count++] = found->sweep;
   int turn = values[ANIMATE_TURNTABLE].given ? (int)values[ANIMATE_TURNTABLE].number[0] : 0;
-  if (preset->given && !sweeps && turn == 0) turn = (int)fmax(1, round(4 * frames_per_second(job)));
-  film_options options = {.context = job->host.context,
-                          .scene = job->scene,
-                          .keys = keys,
-                          .key_count = count,
-                          .smooth = values[ANIMATE_EASE].given ? values[ANIMATE_EASE].choice == 1 : sweeps,
-                          .turntable = turn,
-                          .frames = frames ? (int)values[ANIMATE_FRAMES].number[0] : 0};
+  if (values[ANIMATE_PRESET].given && !sweeps(job) && turn == 0)
+    turn = (int)fmax(1, round(4 * frames_per_second(job)));
+  found->film = (film_options){
+      .context = job->host.context,
+      .scene = job->scene,
+      .keys = found->keys,
+      .key_count = count,
+      .smooth = values[ANIMATE_EASE].given ? values[ANIMATE_EASE].choice == 1 : sweeps(job),
+      .turntable = turn};
+}
+
+static int plan(animate_job *job) {
+  const cli_value *frames = &job->values[ANIMATE_FRAMES];
+  motion moving;
   hl_error error = {0};
-  if (sweeps && !frames && turn == 0 && count == 1) options.frames = 2 * (int)fmax(1, frames_per_second(job));
-  if (turn == 0 && count == 0)
+  find_motion(job, &moving);
+  film_options *options = &moving.film;
+  if (options->turntable == 0 && options->key_count == 0)
     return fail(EXIT_CODE_USAGE,
                 "nothing moves: give --turntable N, --preset NAME, or --key PATH=FRAME:VALUE,...");
-  hl_status status = film_create(&options, &job->film, &error);
+  if (frames->given) options->frames = (int)frames->number[0];
+  else if (sweeps(job) && options->turntable == 0 && options->key_count == 1)
+    options->frames = 2 * (int)fmax(1, frames_per_second(job));
+  hl_status status = film_create(options, &job->film, &error);
   render_name_scene(job->input, false, &error);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_CHANGE, status, &error);
 }
@@ -291,18 +309,16 @@ static int finish_series(const animate_job *job, const cli_value *values) {
   return exit_code;
 }
 
-/* Pictures of a series of files, which are then joined. */
+/* Pictures of a series of files, which are then joined. A key's frames are the files' numbers. */
 static int run_series(animate_job *job) {
   cli_value *values = calloc(RENDER_OPTION_COUNT, sizeof *values);
   char *pattern = NULL;
   int exit_code = EXIT_CODE_OK;
-  for (int which = 0; which < ANIMATE_OPTION_COUNT && exit_code == EXIT_CODE_OK; which++)
-    if (job->values[which].given &&
-        (which == ANIMATE_PRESET || which == ANIMATE_TURNTABLE || which == ANIMATE_KEY ||
-         which == ANIMATE_EASE || which == ANIMATE_FRAMES))
-      exit_code = fail(EXIT_CODE_USAGE,
-                       "--%s: in a film of several files time passes from file to file alone",
-                       animate_options[which].name);
+  motion moving;
+  find_motion(job, &moving);
+  const bool moves = moving.film.turntable > 0 || moving.film.key_count > 0;
+  if (job->values[ANIMATE_FRAMES].given)
+    exit_code = fail(EXIT_CODE_USAGE, "--frames: a film of several files has one frame for each of them");
   if (exit_code == EXIT_CODE_OK && (values == NULL || asprintf(&pattern, "%s/%%06d.png", job->folder) < 0))
     exit_code = fail(EXIT_CODE_FAILURE, "out of memory");
   if (exit_code == EXIT_CODE_OK && strchr(job->folder, '%') != NULL)
@@ -312,7 +328,7 @@ static int run_series(animate_job *job) {
     memcpy(values, job->render, RENDER_OPTION_COUNT * sizeof *values);
     values[RENDER_OUTPUT] = (cli_value){.given = true, .text = pattern, .texts = {pattern}, .count = 1};
     if (!values[RENDER_BACKGROUND].given || !values[RENDER_BACKGROUND].chosen)
-      exit_code = render_series(values, job->inputs);
+      exit_code = render_series(values, job->inputs, moves ? &moving.film : NULL);
     else exit_code = fail(EXIT_CODE_USAGE, "--background transparent: a film has no transparent pixels");
   }
   if (exit_code == EXIT_CODE_OK && job->film_wanted) exit_code = finish_series(job, values);

@@ -297,7 +297,8 @@ static int render_one(const cli_value *values, char **operands) {
   if (values[RENDER_VIEWS].given && !render_is_series(values, operands))
     return render_views(values, operands);
   if (render_is_series(values, operands)) {
-    if (!values[RENDER_STRIPS].given && !values[RENDER_VOLUME].given) return render_series(values, operands);
+    if (!values[RENDER_STRIPS].given && !values[RENDER_VOLUME].given)
+      return render_series(values, operands, NULL);
     return fail(EXIT_CODE_USAGE,
                 "--%s makes one picture: of several share the pictures by --frames-over-ranks",
                 render_options[values[RENDER_STRIPS].given ? RENDER_STRIPS : RENDER_VOLUME].name);

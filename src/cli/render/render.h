@@ -105,9 +105,12 @@ extern const cli_choice instruction_set_choices[];
 
 extern const cli_option render_options[RENDER_OPTION_COUNT];
 
-/* Whether the operands or the options ask for a picture of each of several files; makes these pictures. */
+/* Whether the operands or the options ask for a picture of each of several files; makes these pictures.
+ * motion: what moves from file to file (film/film.h); its context, scene and frames are not used; null:
+ * nothing. */
+struct film_options;
 bool render_is_series(const cli_value *values, char **operands);
-int render_series(const cli_value *values, char **operands);
+int render_series(const cli_value *values, char **operands, const struct film_options *motion);
 /* --views: pictures of several sides. */
 int render_views(const cli_value *values, char **operands);
 

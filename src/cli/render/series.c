@@ -96,6 +96,35 @@ static int load_first(series_job *job, bool *bare) {
   return exit_code;
 }
 
+/* Lets pass the time up to a picture: the scene of a file is replaced by that of a film's frame, in which the
+ * keys' numbers have their values there. */
+static hl_status move(const series_job *job, int number, hl_scene **scene, hl_error *error) {
+  if (job->motion == NULL) return HL_OK;
+  film_options options = *job->motion;
+  film *moving = NULL;
+  hl_scene *moved = NULL;
+  options.context = job->host.context;
+  options.scene = *scene;
+  options.frames = job->count;
+  hl_status status = film_create(&options, &moving, error);
+  if (status == HL_OK) status = film_scene(moving, number, &moved, error);
+  film_destroy(moving);
+  if (status != HL_OK) return status;
+  hl_scene_release(*scene);
+  *scene = moved;
+  return HL_OK;
+}
+
+/* Tries the keys with the first file's scene, so that a mistake in them is told before any picture. */
+static int try_motion(series_job *job) {
+  hl_scene *scene = job->scene;
+  hl_error error = {0};
+  hl_scene_retain(scene);
+  hl_status status = move(job, 0, &scene, &error);
+  hl_scene_release(scene);
+  return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_CHANGE, status, &error);
+}
+
 /* The scene of the first file that can be read, with the other files that are in every picture. */
 static int make_scene(series_job *job) {
   bool bare;
@@ -105,7 +134,7 @@ static int make_scene(series_job *job) {
   if (exit_code == EXIT_CODE_OK)
     exit_code = render_add_meshes(&job->host, job->meshes, first, bare, &job->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->values, bare, &job->scene);
-  return exit_code;
+  return exit_code == EXIT_CODE_OK ? try_motion(job) : exit_code;
 }
 
 /* ---- pictures ---- */
@@ -124,8 +153,9 @@ static bool is_there(const series_job *job, int number, const hl_scene *scene, c
  * first file's stands in. */
 static bool is_made(series_job *job, int number, const char *path) {
   hl_scene *scene = NULL;
+  hl_error error = {0};
   if (access(path, F_OK) != 0 || series_scene_unread(job, number, &scene) != HL_OK) return false;
-  bool there = is_there(job, number, scene, path);
+  bool there = move(job, number, &scene, &error) == HL_OK && is_there(job, number, scene, path);
   hl_scene_release(scene);
   return there;
 }
@@ -147,9 +177,10 @@ static int make_picture(series_job *job, hl_renderer *renderer, int number) {
     job->failed += bad;
     return bad ? EXIT_CODE_OK : exit_code;
   }
-  bool there = is_there(job, number, scene, path); /* of a label map */
+  hl_status status = move(job, number, &scene, &error);
+  bool there = status == HL_OK && is_there(job, number, scene, path); /* of a label map */
   const frames_style style = {.no_metadata = job->values[RENDER_NO_METADATA].given, .overlay = &job->overlay};
-  hl_status status = there ? HL_OK : frames_render(&job->host, renderer, scene, style, path, &error);
+  if (status == HL_OK && !there) status = frames_render(&job->host, renderer, scene, style, path, &error);
   hl_scene_release(scene);
   if (status == HL_ERROR_CANCELLED) return EXIT_CODE_INTERRUPTED;
   if (status != HL_OK) return host_fail(&job->host, PHASE_RUN, status, &error);
@@ -194,9 +225,10 @@ static int run(series_job *job) {
   return exit_code == EXIT_CODE_OK ? make_pictures(job) : exit_code;
 }
 
-int render_series(const cli_value *values, char **operands) {
+int render_series(const cli_value *values, char **operands, const film_options *motion) {
   series_job *job = calloc(1, sizeof *job);
   if (job == NULL) return fail(EXIT_CODE_FAILURE, "out of memory");
+  job->motion = motion;
   memcpy(job->values, values, sizeof job->values);
   int exit_code = check_options(job);
   cli_host_options options = {.quiet = values[RENDER_QUIET].given,

@@ -2,6 +2,7 @@
 #ifndef HL_CLI_RENDER_SERIES_H
 #define HL_CLI_RENDER_SERIES_H
 
+#include "film/film.h"
 #include "render.h"
 
 typedef struct series_job {
@@ -20,6 +21,7 @@ typedef struct series_job {
   hl_scene *scene;                    /* owned; of the first file that can be read */
   char size_text[RENDER_SIZE_TEXT];   /* of --size, where --width sets it */
   cli_overlay overlay;                /* owned; drawn over each picture */
+  const film_options *motion;         /* borrowed; what moves from picture to picture; null: nothing */
 } series_job;
 
 /* True if the text has one "%d" or "%04d", and no other '%' but "%%". */

@@ -24,7 +24,25 @@ ls preset turntable | grep -c png
 for n in 8 9 10; do cp rings.nrrd flame_$n.nrrd; done
 halflight animate 'flame_*.nrrd' --size 16x16 --sheet-spacing 4 --quiet -o flames
 ls flames
-halflight animate 'flame_*.nrrd' --turntable 4 -o no 2>&1 || echo $?
+halflight animate 'flame_*.nrrd' --frames 4 -o no 2>&1 || echo $?
+# Keys move in a film of several files, too: a frame of theirs is a file. Made again, no picture is rendered.
+halflight animate 'flame_*.nrrd' --size 16x16 --sheet-spacing 4 --key lights.0.intensity=0:1,2:3 --turntable 6 -o moving 2>&1 |
+  grep -o '3 pictures, 3 of them rendered now'
+for frame in 0 1 2; do
+  tool png-scene moving/00000$frame.png >frame.json
+  tool json frame.json '[d["lights"][0]["intensity"], d["volumes"][0]["file"].split("/")[-1]]'
+done
+halflight render flame_8.nrrd --size 16x16 --sheet-spacing 4 --print-scene >still.json
+"$PYTHON" - still.json frame.json <<'END'
+import json, math, sys
+still, moved = (json.load(open(path))["camera"] for path in sys.argv[1:])
+first, last = ([p - t for p, t in zip(c["position"], c["target"])] for c in (still, moved))
+turned = math.degrees(math.atan2(last[1], last[0]) - math.atan2(first[1], first[0])) % 360
+print(min(round(turned), round(360 - turned)))
+END
+halflight animate 'flame_*.nrrd' --size 16x16 --sheet-spacing 4 --key lights.0.intensity=0:1,2:3 --turntable 6 -o moving 2>&1 |
+  grep -o '3 pictures, 0 of them rendered now'
+halflight animate 'flame_*.nrrd' --size 16x16 --key lights.7.azimuth=0:1,4:2 -o no 2>&1 || echo $?
 halflight animate rings.nrrd --key lights.7.azimuth=0:1,4:2 -o no 2>&1 || echo $?
 if command -v ffmpeg >/dev/null; then
   halflight animate 'flame_*.nrrd' --size 16x16 --sheet-spacing 4 -o flames.mp4 2>&1 | tail -1
