@@ -458,10 +458,16 @@ HL_API HL_WARN_UNUSED hl_status hl_transfer_function_look(hl_context *context, c
                                                           hl_error *error);
 
 /* The kind of data that hl_scene_for_volume() takes a volume for, and chooses its look by: "scanned body",
- * "scanned brain", "scanned matter", "labels", "field", "flow", "signed field", "smoke or cloud" or "one
- * value". file: as for that function. *kind is a constant text. */
+ * "scanned brain", "scanned matter", "vessels" (bright tubes within other matter, as angiography shows them),
+ * "labels", "field", "flow", "signed field", "smoke or cloud", "particles" or "one value". file: as for that
+ * function. *kind is a constant text. */
 HL_API HL_WARN_UNUSED hl_status hl_volume_guess(const hl_volume *volume, const char *file, const char **kind,
                                                 hl_error *error);
+
+/* The look by name (hl_look_name()) that shows a volume best where hl_scene_for_volume() took it for what it
+ * is not, or where its own look shows too little. file: as for that function. *name is a constant text. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_next_look(const hl_volume *volume, const char *file,
+                                                    const char **name, hl_error *error);
 
 /* The scene's own description, valid as long as the scene. To change a scene, change a copy of the
  * description and create another scene. Null for null. */

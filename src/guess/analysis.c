@@ -22,6 +22,10 @@
 #define FOG    0.4   /* least roughness of smoke on fine grids; 0.50 to 0.58 measured on 200 to 320 voxels */
 #define NOISY  1.2   /* roughness above any simulated turbulence's; white noise has 1.7 */
 #define TAIL   0.005 /* fraction of the voxels below `lower`, and of those above `upper` */
+#define CALM   0.003 /* noise below any scanner's, as a fraction of top; that of 8-bit values is half of it */
+#define PEAK   1.2   /* a peak of a histogram rises this far from the valley before it; ... */
+#define HUMP   1.75  /* ... of data without noise, materials do; fields' saddles less: 1.5 and 2.1 measured */
+#define LOBES  0.08  /* fraction of the voxels, at most, that the lobes of a signed quantity show */
 #define FLOOR  0.002 /* least mean of the background, as a fraction of top */
 
 typedef struct distances {
@@ -47,15 +51,15 @@ static void shape_of(const distances *d, double low, double high, double counts[
   }
 }
 
-/* True if the histogram falls all the way, as of a density; false if it has peaks, as of materials. Sums of
- * two bins bridge the gaps of quantised data. The last two bins, which may hold saturated values, and bins of
- * very few voxels are ignored. */
-static bool falls(const distances *d, double low, double high) {
+/* True if the histogram falls all the way, as of a density; false if it has peaks, as of materials, which
+ * rise from the valley before them by the factor `peak`. Sums of two bins bridge the gaps of quantised data.
+ * The last two bins, which may hold saturated values, and bins of very few voxels are ignored. */
+static bool falls(const distances *d, double low, double high, double peak) {
   double counts[BINS], least = INFINITY;
   shape_of(d, low, high, counts);
   for (int bin = 0; bin + 3 < BINS; bin++) {
     double count = counts[bin] + counts[bin + 1];
-    if (count > 1.2 * least + 4 * sqrt(least) && count > 1e-4 * (double)d->count) return false;
+    if (count > peak * least + 4 * sqrt(least) && count > 1e-4 * (double)d->count) return false;
     least = fmin(least, count);
   }
   return true;
@@ -154,9 +158,9 @@ static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spre
   if (roughness < ROUGH) return true;
   distances d = {distance, sample->count};
   measure(sample->values, sample->count, mode, -1, distance);
-  bool one_peak = falls(&d, 0.02, fmax(mode - s->low, 0.03));
+  bool one_peak = falls(&d, 0.02, fmax(mode - s->low, 0.03), PEAK);
   measure(sample->values, sample->count, mode, 1, distance);
-  return roughness < NOISY && one_peak && falls(&d, 0.02, fmax(s->high - mode, 0.03));
+  return roughness < NOISY && one_peak && falls(&d, 0.02, fmax(s->high - mode, 0.03), PEAK);
 }
 
 /* True if more than three tenths of the objects' voxels have the greatest value of all: the inside of a solid
@@ -168,10 +172,22 @@ static bool is_filled_up(const distances *d, const hl_data_analysis *a) {
   return (double)greatest > 0.3 * (double)things;
 }
 
+/* True if the objects are a smooth quantity that falls off. A scanner's noise tells apart what the histogram
+ * leaves open: bumps, which are materials in a scan, and saddles between the summits of a field. */
+static hl_status falls_off(const hl_volume *volume, const hl_sample *sample, const distances *d,
+                           const hl_data_analysis *a, bool *falling, hl_error *error) {
+  double noise = 0;
+  *falling = falls(d, a->faint, a->top, PEAK);
+  if (*falling || !falls(d, a->faint, a->top, HUMP)) return HL_OK;
+  hl_status status = hl_noise(volume, sample, a->background + a->direction * a->faint, a->direction, &noise,
+                              error);
+  *falling = status == HL_OK && noise < CALM * a->top;
+  return status;
+}
+
 static hl_data_kind kind_of(const hl_volume *volume, const hl_sample *sample, const distances *d,
-                            const hl_data_analysis *a) {
+                            bool falling, const hl_data_analysis *a) {
   double roughness = hl_roughness(volume, sample, a->background, a->faint);
-  bool falling = falls(d, a->faint, a->top);
   if (roughness < ROUGH && is_filled_up(d, a)) return HL_DATA_SURFACES;
   bool fog = a->zeroed > 0.4 && is_continuous(sample); /* the air around it is exactly empty */
   if (roughness < ROUGH && roughness > FOG && fog && falling) return HL_DATA_MEDIUM;
@@ -179,18 +195,19 @@ static hl_data_kind kind_of(const hl_volume *volume, const hl_sample *sample, co
   return fog && (falling || has_one_body(d, a->faint, a->top)) ? HL_DATA_MEDIUM : HL_DATA_SURFACES;
 }
 
-/* True if objects have values on both sides of the background, fewer the farther from it. Values on both
- * sides of the data value 0 are not enough: in such data the commonest value may be a material, while air has
- * low values. */
-static bool has_lobes(const hl_sample *sample, const spread *s, double background, float *distance) {
+/* True if objects have values on both sides of the background, fewer the farther from it, which are not a
+ * scanner's noise. Values on both sides of the data value 0 are not enough: in such data the commonest value
+ * may be a material, while air has low values. */
+static bool has_lobes(const hl_volume *volume, const hl_sample *sample, const spread *s, double background,
+                      float *distance) {
   double above = s->high - background, below = background - s->low;
   if (!(fmin(above, below) > 0.25 * fmax(above, below))) return false;
   if (s->signs && fabs(background - s->zero) < 0.01 * (s->high - s->low)) return true;
   distances d = {distance, sample->count};
   measure(sample->values, sample->count, background, -1, distance);
-  bool thins = falls(&d, 0.02, below);
+  bool thins = falls(&d, 0.02, below, PEAK);
   measure(sample->values, sample->count, background, 1, distance);
-  return thins && falls(&d, 0.02, above);
+  return thins && falls(&d, 0.02, above, PEAK) && hl_roughness(volume, sample, background, 0) < NOISY;
 }
 
 /* Chooses the direction of the objects. Where values lie on both sides of the background without being lobes,
@@ -203,13 +220,19 @@ static void choose_side(const spread *s, bool lobes, hl_data_analysis *a) {
   a->direction = 1;
 }
 
-/* Finds the thresholds for objects on both sides of the background. */
+/* Finds the thresholds for objects on both sides of the background. Lobes that fill the grid, as in a
+ * turbulent flow, would hide each other: then the strongest are shown. */
 static hl_status find_two_sided(const hl_sample *sample, distances *d, hl_data_analysis *a, hl_error *error) {
   for (size_t n = 0; n < sample->count; n++)
     d->values[n] = (float)fabs((double)sample->values[n] - a->background);
   if (!hl_sort(sample->context, d->values, d->count))
     return hl_fail_memory(error, d->count * sizeof(float), "a volume's sample");
   find_thresholds(d, NULL, 0, a);
+  double strong = hl_quantile(d->values, d->count, 1 - LOBES);
+  if (!(strong > a->solid)) return HL_OK;
+  a->faint *= strong / a->solid;
+  a->solid = strong;
+  a->dense = hl_threshold_otsu(d->values, d->count, strong);
   return HL_OK;
 }
 
@@ -236,7 +259,7 @@ static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample
   double mode = hl_mode(sample->values, sample->count);
   bool logarithms = volume->is_log_density, flow = !logarithms && is_flow(volume, sample, &s, mode, memory);
   if (flow && s.signs) a->background = s.zero;
-  bool lobes = !logarithms && ((flow && s.signs) || has_lobes(sample, &s, a->background, memory));
+  bool lobes = !logarithms && ((flow && s.signs) || has_lobes(volume, sample, &s, a->background, memory));
   hl_status status = HL_OK;
   if (logarithms) a->background = s.low, a->direction = 1;
   else choose_side(&s, lobes, a);
@@ -248,7 +271,11 @@ static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample
     measure(sample->values, sample->count, a->background, a->direction, d.values);
     measure(sample->border, sample->border_count, a->background, a->direction, memory + d.count);
     find_thresholds(&d, memory + d.count, sample->border_count, a);
-    a->kind = kind_of(volume, sample, &d, a);
+    bool falling = false;
+    status = falls_off(volume, sample, &d, a, &falling, error);
+    a->kind = kind_of(volume, sample, &d, falling, a);
+    if (a->kind == HL_DATA_SURFACES && !(flow && !s.signs))
+      a->vessels = hl_data_find_vessels(volume, sample, d.values, a);
   }
   if (flow && !s.signs) a->kind = HL_DATA_FLOW;
   if (logarithms) a->kind = HL_DATA_PARTICLES;
@@ -286,7 +313,7 @@ static hl_status analyse(const hl_volume *volume, hl_data_analysis *analysis, hl
   analysis->background = sample.low + sample.range * analysis->background;
   analysis->middle = sample.low + sample.range * analysis->middle;
   double *distance[] = {&analysis->faint, &analysis->solid, &analysis->dense, &analysis->top,
-                        &analysis->mean,  &analysis->lower, &analysis->upper};
+                        &analysis->mean,  &analysis->lower, &analysis->upper, &analysis->vessels};
   for (size_t n = 0; n < sizeof distance / sizeof *distance; n++) *distance[n] *= sample.range;
   hl_sample_release(&sample);
   if (status == HL_OK && analysis->kind == HL_DATA_SURFACES) hl_data_find_materials(volume, analysis);

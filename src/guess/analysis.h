@@ -5,7 +5,7 @@
 
 #include <halflight/scene.h>
 #include "core/error.h"
-#include "guess/analysis.h"
+#include "guess/sample.h"
 #include "volume/volume.h"
 
 typedef enum hl_data_kind {
@@ -34,6 +34,7 @@ typedef struct hl_data_analysis {
   double dense_share; /* of the voxels beyond solid: the fraction beyond dense */
   double top;         /* distance that almost no voxel exceeds */
   double mean;        /* mean distance of the voxels beyond faint */
+  double vessels;     /* distance beyond which matter is vessels within other matter; 0: there are none */
   double depth;       /* voxel edges across the objects: cube root of their number of voxels */
   double common;      /* fraction of the voxels whose value is within two fifths of lower and upper around the
                          middle */
@@ -52,6 +53,17 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
 
 /* Finds the materials of scanned objects: sets valleys and material_count. */
 void hl_data_find_materials(const hl_volume *volume, hl_data_analysis *analysis);
+
+/* The least distance from the background beyond which the brightest matter of scanned objects is vessels:
+ * tubes within other matter; 0: it is not. All distances are relative, as the sample's values. distances:
+ * [sample->count]; the sample's, ascending. */
+double hl_data_find_vessels(const hl_volume *volume, const hl_sample *sample, const float *distances,
+                            const hl_data_analysis *analysis);
+
+/* True if the values can be Hounsfield units: they reach from air to denser than water. */
+static inline bool hl_is_hounsfield(const hl_volume *volume) {
+  return volume->minimum <= -500 && volume->minimum >= -10000 && volume->maximum >= 300;
+}
 
 /* ---- label maps: volumes whose values are names of regions ---- */
 

@@ -21,6 +21,10 @@
  * of its sides, where this saves room. */
 #define ASIDE 0.012
 
+/* Matter is flat that is less high than this fraction of its width: it is seen from higher up. */
+#define FLAT           0.25
+#define FLAT_ELEVATION 40 /* degrees */
+
 enum { TURNS = 36, HALVINGS = 48, SECTIONS = 12 };
 
 /* A view to frame; tangents: of half the picture's angles, 0 for parallel projection. */
@@ -244,6 +248,17 @@ hl_status hl_camera_frame_view(const hl_scene_description *description, const hl
   return status;
 }
 
+/* The height of the outline along the view's up, over the lesser of its widths across. */
+static double flatness(const hl_outline *outline, const hl_view *view) {
+  const vec3 up = vec3_of(view->up), front = vec3_of(view->front), side = vec3_cross(up, front);
+  const vec3 along[3] = {up, front, side};
+  double extent[3];
+  for (int a = 0; a < 3; a++)
+    extent[a] = hl_outline_reach(outline, along[a], up, 0) +
+                hl_outline_reach(outline, vec3_scale(along[a], -1), up, 0);
+  return extent[0] / fmin(extent[1], extent[2]);
+}
+
 hl_status hl_view_widen(const hl_scene_description *description, hl_outline *outline, hl_view *view,
                         hl_error *error) {
   static const double turns[] = {
@@ -256,6 +271,7 @@ hl_status hl_view_widen(const hl_scene_description *description, hl_outline *out
   frame_job job;
   hl_status status = begin(&square, 1, &usual, outline, &job, error);
   double most = 0;
+  if (status == HL_OK && flatness(outline, view) < FLAT) view->elevation_deg = FLAT_ELEVATION;
   for (size_t n = 0; status == HL_OK && n < sizeof turns / sizeof *turns; n++) {
     hl_view at = given;
     at.azimuth_deg += turns[n] * HL_VIEW_AZIMUTH;

@@ -14,22 +14,28 @@
 
 #define FLOW_DEPTH   2.0 /* optical depth of a flow all of whose values are shown */
 #define MEDIUM_DEPTH 5.0 /* optical depth of smoke across its own size */
+#define FINE         96 /* voxel edges across an object for which the opacities of solid matter were chosen */
 
 /* Colours in linear RGB at the distances faint, solid, dense and top. */
 typedef struct palette {
   double rim[3], surface[3], dense[3], top[3];
 } palette;
 
+/* In coarse grids the way from the rim of an object to its inside has fewer voxel edges, and each absorbs
+ * more.
+ */
 static void write_solid(hl_function_writer *w, const palette *colors) {
   const hl_data_analysis *a = w->analysis;
-  double ramp = a->solid - a->faint, dense = fmax(a->dense, a->solid + 1e-6 * a->top),
-         top = fmax(a->top, dense * 1.001);
-  hl_add_opacity(w, a->faint, 0);
-  hl_add_opacity(w, a->faint + 0.35 * ramp, 0.08);
-  hl_add_opacity(w, a->faint + 0.7 * ramp, 0.28);
-  hl_add_opacity(w, a->solid, 0.5);
-  hl_add_opacity(w, a->solid + 0.5 * (dense - a->solid), 0.75);
-  hl_add_opacity(w, dense, 0.95);
+  const double ramp = a->solid - a->faint, dense = fmax(a->dense, a->solid + 1e-6 * a->top),
+               top = fmax(a->top, dense * 1.001), edges = fmax(FINE / fmax(a->depth, 1), 1);
+  const double rows[][2] = {{a->faint, 0},
+                            {a->faint + 0.35 * ramp, 0.08},
+                            {a->faint + 0.7 * ramp, 0.28},
+                            {a->solid, 0.5},
+                            {a->solid + 0.5 * (dense - a->solid), 0.75},
+                            {dense, 0.95}};
+  for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
+    hl_add_opacity(w, rows[n][0], 1 - pow(1 - rows[n][1], edges));
   hl_add_color(w, a->faint, colors->rim);
   hl_add_color(w, a->solid, colors->surface);
   hl_add_color(w, dense, colors->dense);

@@ -184,8 +184,8 @@ static bool is_cut_off(const search *s, vec3 point) {
 }
 
 /* Adds planes, `most_planes` at most, each time the one that cuts off most of what is left of a body, as long
- * as it cuts off more than a fraction of the body. True if nearly nothing is left, false if that takes too
- * many planes. Takes away the ends that are cut off. */
+ * as it cuts off more than a fraction of the body; once nearly nothing is left, as long as it cuts off
+ * anything. True if nearly nothing is left. Takes away the ends that are cut off. */
 static bool cut_off(search *s, int most_planes, double fraction, body_ends *ends) {
   const double enough = fraction * (double)ends->count, rest = LEFT * (double)ends->count;
   for (int added = 0;; added++) {
@@ -193,14 +193,14 @@ static bool cut_off(search *s, int most_planes, double fraction, body_ends *ends
     for (size_t n = 0; n < ends->count; n++)
       if (!is_cut_off(s, ends->point[n])) ends->point[left++] = ends->point[n];
     ends->count = left;
-    if ((double)left <= rest) return true;
-    if (added == most_planes || s->plane_count == HL_HOLDER_PLANES) return false;
+    const bool nearly = (double)left <= rest;
+    if (left == 0 || added == most_planes || s->plane_count == HL_HOLDER_PLANES) return nearly;
     for (uint32_t d = 0; d < DIRECTIONS; d++) {
       size_t beyond = 0;
       for (size_t n = 0; n < left; n++) beyond += lies_beyond(s, ends->point[n], d);
       if (beyond > most) most = beyond, s->plane[s->plane_count] = d;
     }
-    if (!((double)most > enough)) return false;
+    if (!((double)most > (nearly ? 0 : enough))) return nearly;
     s->plane_count++;
   }
 }
@@ -328,7 +328,7 @@ static void make_cuts(const search *s, hl_cut planes[HL_HOLDER_PLANES]) {
 hl_status hl_holders_find(const hl_scene_volume *volume, const hl_data_analysis *analysis,
                           hl_cut planes[HL_HOLDER_PLANES], size_t *count, hl_error *error) {
   *count = 0;
-  if (analysis->kind != HL_DATA_SURFACES) return HL_OK;
+  if (analysis->kind != HL_DATA_SURFACES || analysis->vessels > 0) return HL_OK; /* vessels are not held */
   hl_seen seen;
   bool any = false;
   hl_status status = hl_seen_find(volume, &seen, &any, error);

@@ -12,6 +12,7 @@ typedef struct hl_look {
   double key, fill, sky; /* intensities: the light with shadows, the one without, the sky */
   double left;           /* fraction of lights with shadows, for hl_scene_exposure(); 0: no exposure */
   bool on_black;         /* the background of a bare volume */
+  const char *next;      /* the style that shows such data next best */
 } hl_look;
 
 #endif

@@ -29,31 +29,30 @@ typedef enum subject {
   PARTICLES
 } subject;
 
-/* Rows: name, writer, shading, kernel; intensities of key, fill and sky; left; on_black. Where left
+/* Rows: name, writer, shading, kernel; intensities of key, fill and sky; left; on_black; next. Where left
  * is not 0, the exposure scales the intensities afterwards. */
 static const hl_look looks[] = {
     [BODY] = {"scanned body", hl_write_body, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.06, 0.62, 0.75,
-              false},
+              false, "translucent"},
     [BRAIN] = {"scanned brain", hl_write_brain, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.06, 0.62, 0.7,
-               false},
+               false, "translucent"},
     [MATTER] = {"scanned matter", hl_write_matter, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.30, 0.05, 0.56,
-                0.76, false},
-    [LABELS] = {"labels", hl_write_labels, HL_SHADING_PHONG, HL_KERNEL_LINEAR, 0.90, 0.12, 0.44, 0, false},
-    [FIELD] = {"field", hl_write_field, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.40, 0.20, 0.56, 0.65, false},
-    [FLOW] = {"flow", hl_write_flow, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.20, 0.20, 0.50, 0.9, false},
+                0.76, false, "translucent"},
+    [LABELS] = {"labels", hl_write_labels, HL_SHADING_PHONG, HL_KERNEL_LINEAR, 0.90, 0.12, 0.44, 0, false,
+                "surface"},
+    [FIELD] = {"field", hl_write_field, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.40, 0.20, 0.56, 0.65, false,
+               "surface"},
+    [FLOW] = {"flow", hl_write_flow, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.20, 0.20, 0.50, 0.9, false,
+              "translucent"},
     [SIGNED] = {"signed field", hl_write_signed, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.05, 0.15, 0.44, 0.8,
-                false},
+                false, "translucent"},
     [MEDIUM] = {"smoke or cloud", hl_write_medium, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.15, 0, 0.45, 0,
-                false},
+                false, "surface"},
     [CONSTANT] = {"one value", hl_write_constant, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.20, 0.10, 0.44, 0,
-                  false},
+                  false, "surface"},
     [PARTICLES] = {"particles", hl_write_particles, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.15, 0.35, 0.45,
-                   0.85, true},
+                   0.85, true, "xray"},
 };
-
-bool hl_is_hounsfield(const hl_volume *volume) {
-  return volume->minimum <= -500 && volume->minimum >= -10000 && volume->maximum >= 300;
-}
 
 static bool ends_with(const char *text, const char *end) {
   size_t length = text != NULL ? strlen(text) : 0, tail = strlen(end);
@@ -77,7 +76,7 @@ static bool is_mostly_tissue(const hl_volume *volume) {
 
 /* True for a scan of a body: it fills the grid, which trees, vessels and machine parts leave mostly empty. */
 bool hl_is_body(const hl_volume *volume, const char *file, const hl_data_analysis *a) {
-  if (a->kind != HL_DATA_SURFACES || a->direction < 0) return false;
+  if (a->kind != HL_DATA_SURFACES || a->direction < 0 || a->vessels > 0) return false;
   if (hl_is_hounsfield(volume)) return is_mostly_tissue(volume);
   return (volume->is_anatomical || is_anatomical(file)) && a->filled > 0.15;
 }
@@ -86,6 +85,7 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
   subject is = MATTER;
   switch (analysis->kind) {
     case HL_DATA_SURFACES:
+      if (analysis->vessels > 0) return hl_style_find("vessels");
       if (hl_is_body(volume, file, analysis))
         is = analysis->zeroed > 0.4 ? BRAIN : BODY; /* zeros all around: the skull was removed */
       break;
@@ -144,15 +144,32 @@ hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *v
                        error);
 }
 
+/* The look that shows a volume without being asked; of label maps their row. */
+static hl_status find_look(const hl_volume *volume, const char *file, const hl_look **look, hl_error *error) {
+  hl_data_analysis analysis;
+  hl_status status = hl_data_analyse(volume, &analysis, error);
+  if (status != HL_OK) return status;
+  *look = volume->segment_count > 0 ? &looks[LABELS] : hl_look_for(volume, file, &analysis);
+  return HL_OK;
+}
+
 hl_status hl_volume_guess(const hl_volume *volume, const char *file, const char **kind, hl_error *error) {
   HL_DOOR;
   if (volume == NULL || kind == NULL)
     return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_guess: null volume or kind");
-  hl_data_analysis analysis;
-  hl_status status = hl_data_analyse(volume, &analysis, error);
-  const hl_look *look = volume->segment_count > 0 ? &looks[LABELS] : NULL;
-  if (status == HL_OK && look == NULL) look = hl_look_for(volume, file, &analysis);
+  const hl_look *look = NULL;
+  hl_status status = find_look(volume, file, &look, error);
   *kind = status == HL_OK ? look->name : NULL;
+  return status;
+}
+
+hl_status hl_volume_next_look(const hl_volume *volume, const char *file, const char **name, hl_error *error) {
+  HL_DOOR;
+  if (volume == NULL || name == NULL)
+    return hl_fail(error, HL_ERROR_ARGUMENT, "hl_volume_next_look: null volume or name");
+  const hl_look *look = NULL;
+  hl_status status = find_look(volume, file, &look, error);
+  *name = status == HL_OK ? look->next : NULL;
   return status;
 }
 

@@ -11,9 +11,6 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
 /* True for a scan of a body, with its skull or without; file: as in hl_scene_volume. */
 bool hl_is_body(const hl_volume *volume, const char *file, const hl_data_analysis *analysis);
 
-/* True if the values can be Hounsfield units: they reach from air to denser than water. */
-bool hl_is_hounsfield(const hl_volume *volume);
-
 /* Gives a bare volume the shading and the material of its look. */
 void hl_look_material(const hl_look *look, hl_scene_volume *volume);
 

@@ -170,3 +170,38 @@ double hl_roughness(const hl_volume *volume, const hl_sample *sample, double bac
       }
   return first > 0 ? second / first : 0;
 }
+
+/* The difference of second order along each axis at once; NaN where a neighbour is missing. */
+static double mixed_difference(const hl_volume *volume, size_t i, size_t j, size_t k) {
+  static const double weight[3] = {1, -2, 1};
+  double sum = 0;
+  for (size_t z = 0; z < 3; z++)
+    for (size_t y = 0; y < 3; y++)
+      for (size_t x = 0; x < 3; x++)
+        sum += weight[x] * weight[y] * weight[z] *
+               hl_volume_value_within(volume, i + x - 1, j + y - 1, k + z - 1);
+  return sum;
+}
+
+hl_status hl_noise(const hl_volume *volume, const hl_sample *sample, double from, double direction,
+                   double *noise, hl_error *error) {
+  /* White noise of standard deviation 1: the difference has that of the root of (1 + 4 + 1)^3, and the median
+   * of its amount is 0.6745 of its own. */
+  static const double scale = 14.6969 * 0.6745, places = 20000;
+  const size_t *n = volume->dimension, step = hl_lattice_step(n, places);
+  size_t count = 0, capacity = steps_in(n[0], step) * steps_in(n[1], step) * steps_in(n[2], step);
+  float *differences = hl_allocate(sample->context, capacity, sizeof *differences);
+  if (differences == NULL) return hl_fail_memory(error, capacity * sizeof(float), "a volume's noise");
+  for (size_t k = 1; k + 1 < n[2]; k += step)
+    for (size_t j = 1; j + 1 < n[1]; j += step)
+      for (size_t i = 1; i + 1 < n[0]; i += step) {
+        double value = (hl_volume_value_within(volume, i, j, k) - sample->low) / sample->range;
+        if (!(direction * (value - from) > 0)) continue;
+        double difference = fabs(mixed_difference(volume, i, j, k)) / sample->range;
+        if (isfinite(difference)) differences[count++] = (float)difference;
+      }
+  bool sorted = hl_sort(sample->context, differences, count);
+  *noise = sorted && count > 0 ? hl_quantile(differences, count, 0.5) / scale : INFINITY;
+  hl_release(sample->context, differences);
+  return sorted ? HL_OK : hl_fail_memory(error, capacity * sizeof(float), "a volume's noise");
+}

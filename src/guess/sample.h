@@ -44,6 +44,13 @@ double hl_threshold_cross_entropy(const float *ascending, size_t count, double f
  * turbulence and noise more than about 0.7. */
 double hl_roughness(const hl_volume *volume, const hl_sample *sample, double background, double distance);
 
+/* The noise of objects, relative: the standard deviation of the white noise that has their median difference
+ * of second order along each of the three axes, which linear and quadratic changes do not have (after
+ * Immerkaer 1996). Objects have relative values beyond `from` in the direction (+1: above; -1: below). Fails
+ * for lack of memory alone. */
+hl_status hl_noise(const hl_volume *volume, const hl_sample *sample, double from, double direction,
+                   double *noise, hl_error *error);
+
 /* Ascending order; false without memory. */
 bool hl_sort(hl_context *context, float *values, size_t count);
 

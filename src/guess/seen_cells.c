@@ -15,6 +15,7 @@
 #define LOST           0.04 /* least optical depth of a column that is seen */
 #define OPAQUE         0.9999 /* the greatest opacity; an opacity of 1 has no finite depth */
 #define SPECKS_AT_MOST 0.03   /* fraction of the seen cells; more specks than that are matter */
+#define FAINT_RATIO    200    /* a body is a speck that has this many times less optical depth than another */
 
 #define TISSUE          (-300)      /* Hounsfield units: tissue is denser, foam and clothes are not */
 #define BODY_AT_LEAST   0.8         /* fraction of the dense cells */
@@ -187,24 +188,45 @@ static hl_status find_seen_cells(hl_seen *seen, affine3 placement, hl_error *err
 
 /* ---- specks ---- */
 
-static bool is_speck(const hl_bodies *bodies, uint32_t body) {
+static bool is_speck(const hl_bodies *bodies, const double *depth, double most_depth, uint32_t body) {
   uint64_t places = bodies->places[body], most = bodies->places[bodies->largest];
-  return (places <= SPECK && SPECK_RATIO * places <= most) || SMALL_RATIO * places <= most;
+  return (places <= SPECK && SPECK_RATIO * places <= most) || SMALL_RATIO * places <= most ||
+         FAINT_RATIO * depth[body] <= most_depth;
+}
+
+/* The sums of the bodies' optical depths, [bodies->count + 1]; returns the greatest. */
+static double sum_depths(const hl_seen *seen, const hl_bodies *bodies, size_t cells, double *depth) {
+  double most = 0;
+  for (size_t c = 0; c < cells; c++)
+    if (bodies->body[c] != 0) depth[bodies->body[c]] += (double)seen->mean[c];
+  for (uint32_t b = 1; b <= bodies->count; b++) most = fmax(most, depth[b]);
+  return most;
 }
 
 static hl_status forget_specks(hl_seen *seen, hl_error *error) {
+  hl_context *context = seen->volume->context;
+  const size_t cells = (size_t)seen->size[0] * (size_t)seen->size[1] * (size_t)seen->size[2];
   hl_bodies bodies;
-  hl_status status = hl_bodies_find(seen->volume->context, seen->kind, seen->size, &bodies, error);
-  double all = 0, specks = 0;
-  for (uint32_t b = 1; status == HL_OK && b <= bodies.count; b++) {
-    all += bodies.places[b];
-    specks += is_speck(&bodies, b) ? bodies.places[b] : 0;
+  double *depth = NULL, all = 0, specks = 0;
+  hl_status status = hl_bodies_find(context, seen->kind, seen->size, &bodies, error);
+  if (status == HL_OK) {
+    depth = hl_allocate_zeroed(context, (size_t)bodies.count + 1, sizeof *depth);
+    if (depth == NULL)
+      status = hl_fail_memory(error, (size_t)bodies.count * sizeof *depth, "a volume's bodies");
   }
-  size_t cells = (size_t)seen->size[0] * (size_t)seen->size[1] * (size_t)seen->size[2];
-  if (status == HL_OK && specks > 0 && specks <= SPECKS_AT_MOST * all)
-    for (size_t c = 0; c < cells; c++)
-      if (bodies.body[c] != 0 && is_speck(&bodies, bodies.body[c])) seen->kind[c] = HL_SEEN_NOTHING;
-  hl_bodies_release(seen->volume->context, &bodies);
+  if (status == HL_OK) {
+    const double most = sum_depths(seen, &bodies, cells, depth);
+    for (uint32_t b = 1; b <= bodies.count; b++) {
+      all += bodies.places[b];
+      specks += is_speck(&bodies, depth, most, b) ? bodies.places[b] : 0;
+    }
+    if (specks > 0 && specks <= SPECKS_AT_MOST * all)
+      for (size_t c = 0; c < cells; c++)
+        if (bodies.body[c] != 0 && is_speck(&bodies, depth, most, bodies.body[c]))
+          seen->kind[c] = HL_SEEN_NOTHING;
+  }
+  hl_release(context, depth);
+  hl_bodies_release(context, &bodies);
   return status;
 }
 

@@ -75,12 +75,14 @@ static void write_smoke(hl_function_writer *w) {
   hl_add_color(w, 0, grey);
 }
 
-/* The brightest matter alone, as contrast medium shows vessels, in red to cream. */
+/* The brightest matter alone, as contrast medium shows vessels, in red to cream. Where vessels were found,
+ * their edges, which are mixed with the matter around, begin a little below. */
 static void write_vessels(hl_function_writer *w) {
   static const double wall[3] = {0.42, 0.03, 0.02}, blood[3] = {0.75, 0.10, 0.05},
                       bright[3] = {0.95, 0.75, 0.50};
   const hl_data_analysis *a = w->analysis;
-  double from = inner_of(a), top = fmax(a->top, 1.001 * from), way = top - from;
+  double from = a->vessels > 0 ? 0.9 * a->vessels : inner_of(a), top = fmax(a->top, 1.001 * from),
+         way = top - from;
   const opacity_step steps[] = {
       {from, 0}, {from + 0.1 * way, 0.15}, {from + 0.25 * way, 0.7}, {from + 0.5 * way, 0.97}};
   add_steps(w, steps, 4);
@@ -91,13 +93,15 @@ static void write_vessels(hl_function_writer *w) {
   hl_add_color(w, top, bright);
 }
 
-/* Rows: as in looks.c; then whether a bare volume stands before black. */
+/* Rows: as in looks.c. */
 static const hl_look styles[] = {
-    {"surface", write_surface, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.35, 0.06, 0.95, 0.72, false},
-    {"translucent", write_translucent, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.40, 0.25, 0.95, 0.72, false},
-    {"xray", write_xray, HL_SHADING_FLAT, HL_KERNEL_BSPLINE, 1.20, 0, 0, 0, true},
-    {"smoke", write_smoke, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.15, 0, 0.45, 0, false},
-    {"vessels", write_vessels, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.15, 0.90, 0.75, true},
+    {"surface", write_surface, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.35, 0.06, 0.95, 0.72, false,
+     "translucent"},
+    {"translucent", write_translucent, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.40, 0.25, 0.95, 0.72, false,
+     "surface"},
+    {"xray", write_xray, HL_SHADING_FLAT, HL_KERNEL_BSPLINE, 1.20, 0, 0, 0, true, "translucent"},
+    {"smoke", write_smoke, HL_SHADING_NONE, HL_KERNEL_BSPLINE, 1.15, 0, 0.45, 0, false, "surface"},
+    {"vessels", write_vessels, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.45, 0.15, 0.90, 0.75, true, "surface"},
 };
 
 enum { STYLES = sizeof styles / sizeof *styles };

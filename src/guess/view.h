@@ -8,8 +8,8 @@
 #include "scene/scene.h"
 
 /* Turns the view to the one of the three-quarter views (azimuths 30 and 60 from each of the four axes) that
- * is widest, so that a turn needs little more room. outline: of the scene; empty (zeros): it is found; the
- * caller releases it in any case. Fails for lack of memory alone. */
+ * is widest, so that a turn needs little more room; flat matter is seen from higher up. outline: of the
+ * scene; empty (zeros): it is found; the caller releases it in any case. Fails for lack of memory alone. */
 hl_status hl_view_widen(const hl_scene_description *description, hl_outline *outline, hl_view *view,
                         hl_error *error);
 

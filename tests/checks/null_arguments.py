@@ -45,6 +45,7 @@ hl_scene_from_json_like like
 hl_scene_from_json_like name
 hl_scene_for_volume file
 hl_volume_guess file
+hl_volume_next_look file
 hl_labels_of_volume table
 hl_view_choose up
 hl_scene_make_floor up

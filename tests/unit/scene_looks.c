@@ -74,6 +74,54 @@ static double orbital(int i, int j, int k) { /* saturated lobes on nothing */
   return fabs(lobe) < 0.05 ? 0 : fmax(-1, fmin(1, lobe));
 }
 
+/* ---- angiograms: noisy tissue in air, in which something is much brighter ---- */
+
+static double tissue(int i, int j, int k, double share) { /* share: of what is bright in the voxel, 0..1 */
+  if (distance(i, j, k, 24, 24, 24) > 23) return 8 + 6 * noise(i, j, k);
+  return 100 + 280 * fmin(fmax(share, 0), 1) + 40 * noise(i, j, k) + 40 * noise(k, i, j);
+}
+
+/* Three winding vessels from one side to the other. */
+static double angiogram(int i, int j, int k) {
+  double first = hypot(i - 24 - 6 * sin(0.2 * k), j - 15 - 5 * cos(0.15 * k)),
+         second = hypot(j - 30 - 5 * sin(0.17 * i), k - 24 - 6 * cos(0.21 * i)),
+         third = hypot(i - 12 - 0.5 * j, k - 10 - 4 * sin(0.2 * j));
+  return tissue(i, j, k, 2.2 - fmin(first, fmin(second, third)));
+}
+/* An oblique membrane in one half, and beads, that are as bright. */
+static double membrane(int i, int j, int k) {
+  double from = fabs(k - 24 - 0.3 * i + 0.2 * j);
+  return tissue(i, j, k, i < 24 ? 1.2 - from : 0);
+}
+static double beads(int i, int j, int k) {
+  return tissue(i, j, k, 3.5 - distance(i % 16, j % 16, k % 16, 8, 8, 8));
+}
+
+/* ---- a crystal's summits and saddles, with and without a scanner's noise; a flame's temperature, which is
+ * highest in a shell ---- */
+
+static double summits(int i, int j, int k) {
+  double sum = cos(0.4 * i) * cos(0.4 * j) + cos(0.4 * j) * cos(0.4 * k) + cos(0.4 * k) * cos(0.4 * i);
+  return fmax(0, sum) / 3;
+}
+static double crystal(int i, int j, int k) { return floor(255 * summits(i, j, k)); }
+static double noisy_crystal(int i, int j, int k) {
+  double value = summits(i, j, k);
+  return floor(255 * value + (value > 0 ? 12 * (noise(i, j, k) + 0.5) : 0));
+}
+static double flame(int i, int j, int k) {
+  double sway = 3 * sin(0.3 * k), wide = 5 + 0.12 * k, r = hypot(i - 24 - sway, j - 24 + 0.5 * sway) / wide,
+         fuel = exp(-r * r);
+  return 300 + 1800 * (fuel < 0.2 ? fuel / 0.2 : 1 - (fuel - 0.2));
+}
+
+/* Turbulent air lies on both sides of its mean, and so does noise, which is no flow. */
+static double noise_about_a_mean(int i, int j, int k) {
+  double sum = 0;
+  for (int n = 0; n < 6; n++) sum += noise(i + 50 * n, j, k);
+  return 120 + 20 * sum;
+}
+
 static const char *guess(hl_context *context, double (*each)(int, int, int), const char *file) {
   const char *kind = NULL;
   fill(each);
@@ -101,7 +149,15 @@ static void kinds_are_told_apart(void **state) {
                {density, NULL, "flow"},
                {gradient, NULL, "flow"},
                {orbital, NULL, "signed field"},
-               {ball_of_bytes, NULL, "scanned matter"}};
+               {ball_of_bytes, NULL, "scanned matter"},
+               {angiogram, NULL, "vessels"},
+               {angiogram, "a.nii", "vessels"},
+               {membrane, NULL, "scanned matter"},
+               {beads, NULL, "scanned matter"},
+               {crystal, NULL, "field"},
+               {noisy_crystal, NULL, "scanned matter"},
+               {flame, NULL, "field"},
+               {noise_about_a_mean, NULL, "scanned matter"}};
   hl_context *context = make_context();
   for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
     const char *kind = guess(context, cases[n].each, cases[n].file);
@@ -109,6 +165,71 @@ static void kinds_are_told_apart(void **state) {
   }
   assert_string_not_equal(guess(context, whole_noise, NULL), "labels");
   assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* Of an angiogram the tissue is clear, and the vessels are seen. */
+static void angiograms_show_vessels(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_transfer_function f;
+  const char *next = NULL;
+  fill(angiogram);
+  hl_volume *volume = make_volume(context, N, values);
+  assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
+  assert_true(hl_transfer_function_opacity(&f, 140) == 0 && hl_transfer_function_opacity(&f, 380) > 0.9);
+  assert_int_equal(hl_volume_next_look(volume, NULL, &next, NULL), HL_OK);
+  assert_string_equal(next, "surface");
+  hl_transfer_function_release(context, &f);
+  hl_volume_release(volume);
+  assert_int_equal(hl_context_memory_held(context), 0);
+  hl_context_destroy(context);
+}
+
+/* A quantity that lies on both sides of 0 everywhere shows its strongest lobes: few voxels. */
+static void strong_lobes_alone_are_seen(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  hl_transfer_function f;
+  fill(waves);
+  hl_volume *volume = make_volume(context, N, values);
+  assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
+  int seen = 0;
+  for (int v = 0; v < COUNT; v++) seen += hl_transfer_function_opacity(&f, (double)values[v]) > 0.1;
+  assert_true(seen > COUNT / 100 && seen < COUNT / 8);
+  hl_transfer_function_release(context, &f);
+  hl_volume_release(volume);
+  hl_context_destroy(context);
+}
+
+/* The opacity of a ball of a noisy material where it surely is matter. */
+static double opacity_of_ball(hl_context *context, double radius) {
+  hl_transfer_function f;
+  for (int v = 0; v < COUNT; v++) {
+    const int i = v % N, j = v / N % N, k = v / N / N;
+    double r = distance(i, j, k, 24, 24, 24);
+    values[v] = (float)(100 / (1 + exp((r - radius) / 0.7)) + 60 / (1 + exp((r - 0.4 * radius) / 0.7)) +
+                        20 * noise(i, j, k));
+  }
+  hl_volume *volume = make_volume(context, N, values);
+  hl_data_analysis a;
+  assert_int_equal(hl_data_analyse(volume, &a, NULL), HL_OK);
+  assert_int_equal(a.kind, HL_DATA_SURFACES);
+  assert_int_equal(hl_transfer_function_automatic(context, volume, &f, NULL), HL_OK);
+  double opacity = hl_transfer_function_opacity(&f, a.background + a.solid);
+  hl_transfer_function_release(context, &f);
+  hl_volume_release(volume);
+  return opacity;
+}
+
+/* In coarse grids an edge absorbs more: the same matter is as opaque however few voxels it has. */
+static void coarse_matter_is_as_opaque(void **state) {
+  (void)state;
+  hl_context *context = make_context();
+  double large = opacity_of_ball(context, 22), small = opacity_of_ball(context, 11);
+  assert_true(large > 0.7);
+  /* the opacity of half as long an edge, from that of a whole one */
+  assert_true(fabs(1 - sqrt(1 - small) - large) < 0.05);
   hl_context_destroy(context);
 }
 
@@ -445,6 +566,9 @@ static void looks_by_name(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(kinds_are_told_apart),
+      cmocka_unit_test(angiograms_show_vessels),
+      cmocka_unit_test(strong_lobes_alone_are_seen),
+      cmocka_unit_test(coarse_matter_is_as_opaque),
       cmocka_unit_test(skin_is_for_bodies),
       cmocka_unit_test(labels_have_colors_of_their_own),
       cmocka_unit_test(flows_show_their_extremes),

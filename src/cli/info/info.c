@@ -234,7 +234,7 @@ static void print_json_range(json_writer *json, const hl_volume *volume) {
 }
 
 static void print_json(json_writer *json, const char *path, const hl_volume *volume,
-                       const hl_volume_info *info, const char *kind) {
+                       const hl_volume_info *info, const char *kind, const char *next) {
   uint64_t dimensions[3] = {info->dimensions[0], info->dimensions[1], info->dimensions[2]};
   json_open_object(json, NULL);
   json_text(json, "file", path);
@@ -263,6 +263,7 @@ static void print_json(json_writer *json, const char *path, const hl_volume *vol
   print_json_segments(json, volume);
   print_label_maps(json, path, volume);
   json_text(json, "taken_for", kind);
+  json_text(json, "next_look", next);
   json_whole_numbers(json, "histogram", info->histogram, HL_HISTOGRAM_BINS);
   json_close(json);
 }
@@ -299,7 +300,7 @@ static const char *value_text(const hl_volume *volume, int end, double value,
 }
 
 static void print_text(const char *path, const hl_volume *volume, const hl_volume_info *info,
-                       const char *kind) {
+                       const char *kind, const char *next) {
   const double(*d)[3] = info->direction;
   uint64_t voxels = (uint64_t)info->dimensions[0] * info->dimensions[1] * info->dimensions[2];
   printf("%s\n", path);
@@ -330,20 +331,22 @@ static void print_text(const char *path, const hl_volume *volume, const hl_volum
   if (info->nonfinite_count > 0)
     printf("  not finite  %" PRIu64 " voxels, rendered as transparent\n", info->nonfinite_count);
   printf("  taken for   %s: render chooses its look from this file; --print-scene keeps it\n", kind);
+  printf("  next best   --look %s\n", next);
   print_histogram(info);
 }
 
 /* Tells of one volume. json: null for text. */
 static int tell_volume(cli_host *host, json_writer *json, const char *path, hl_volume *volume) {
-  const char *kind = NULL;
+  const char *kind = NULL, *next = NULL;
   hl_volume_info info = {.struct_size = sizeof info};
   hl_error error = {0};
   if (hl_volume_get_info(volume, &info) != HL_OK)
     return fail(EXIT_CODE_FAILURE, "%s: the library does not tell what it read", path);
   hl_status status = hl_volume_guess(volume, path, &kind, &error);
+  if (status == HL_OK) status = hl_volume_next_look(volume, path, &next, &error);
   if (status != HL_OK) return host_fail(host, PHASE_RUN, status, &error);
-  if (json != NULL) print_json(json, path, volume, &info, kind);
-  else print_text(path, volume, &info, kind);
+  if (json != NULL) print_json(json, path, volume, &info, kind, next);
+  else print_text(path, volume, &info, kind, next);
   return EXIT_CODE_OK;
 }
 

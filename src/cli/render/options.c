@@ -157,7 +157,7 @@ const cli_option render_options[RENDER_OPTION_COUNT] = {
     [RENDER_ELEVATION] = {.name = "elevation",
                           .kind = OPTION_NUMBERS,
                           .argument = "DEG",
-                          .help = "90 looks straight down (default 20)",
+                          .help = "90 looks straight down (default 20; of flat\nfields 40)",
                           .count = 1,
                           .low = -90,
                           .high = 90},

@@ -259,8 +259,8 @@ static int job_write(render_job *job) {
   return status == HL_OK ? exit_code : host_fail(&job->host, PHASE_RUN, status, &error);
 }
 
-/* Finds out, for the report, which kind of data a bare volume was taken for; only if its transfer function
- * was chosen by this kind. */
+/* Finds out, for the report, which kind of data a bare volume was taken for, and the next best look; only if
+ * its transfer function was chosen by this kind. */
 static void find_choice(render_job *job) {
   const hl_scene_description *description = job->result.description;
   bool wanted = job->values[RENDER_JSON].given || (!job->host.quiet && isatty(STDERR_FILENO));
@@ -268,8 +268,12 @@ static void find_choice(render_job *job) {
       render_is_label_map(job->values) ||
       (job->values[RENDER_LOOK].given && render_look_name(job->values) == NULL) || !wanted)
     return;
-  if (hl_volume_guess(description->volumes[0].volume, job->input, &job->result.taken_for, NULL) != HL_OK)
+  const hl_volume *volume = description->volumes[0].volume;
+  if (hl_volume_guess(volume, job->input, &job->result.taken_for, NULL) != HL_OK)
     job->result.taken_for = NULL;
+  if (hl_volume_next_look(volume, job->input, &job->result.next_look, NULL) != HL_OK ||
+      job->values[RENDER_LOOK].given)
+    job->result.next_look = NULL;
 }
 
 static int job_report(render_job *job) {

@@ -224,6 +224,7 @@ typedef struct render_seconds {
 typedef struct render_result {
   const char *input, *output;
   const char *taken_for; /* the kind of data that the transfer function was chosen for; null: not chosen */
+  const char *next_look; /* the look that shows such data next best; null: a look was asked for */
   bool reference;
   const hl_scene_description *description;
   hl_render_statistics statistics;

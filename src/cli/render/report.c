@@ -101,6 +101,7 @@ int render_print_json(const render_result *result) {
   json_text(&json, "input", result->input);
   json_text(&json, "output", result->output);
   if (result->taken_for != NULL) json_text(&json, "taken_for", result->taken_for);
+  if (result->next_look != NULL) json_text(&json, "next_look", result->next_look);
   json_whole_number(&json, "width", (uint64_t)description->width);
   json_whole_number(&json, "height", (uint64_t)description->height);
   json_text(&json, "method", result->reference ? "reference" : "sheets");
@@ -137,6 +138,10 @@ void render_print_summary(const render_result *result) {
     say("%s: taken for labels, which are drawn in their colours: --show NAME,... draws some of them, and "
         "--look surface draws what the file shows as one body",
         result->input);
+  else if (result->next_look != NULL)
+    say("%s: taken for %s; the look was chosen from this file alone: --look %s is the next best, 'halflight "
+        "looks' shows all, and --print-scene writes the choice down, for --tf",
+        result->input, result->taken_for, result->next_look);
   else
     say("%s: taken for %s; the transfer function was chosen from this file alone: --print-scene writes it "
         "down, for --tf",

@@ -5,6 +5,7 @@ grep -q '^  type        uint8$' text
 grep -q '^  spacing     1, 1, 1$' text
 grep -q '^  world box   x -0.5 to 15.5, y -0.5 to 15.5, z -0.5 to 15.5$' text
 grep -q '^  taken for   scanned matter' text
+grep -q '^  next best   --look translucent$' text
 grep -q '^  range       0 to 255, mean ' text
 test "$(grep -c '%$' text)" -eq 16
 # The unit of lengths, where the file tells one.

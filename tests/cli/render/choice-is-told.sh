@@ -15,15 +15,17 @@ try:
         text += piece
 except OSError:
     pass
-print(text.count(b"chosen from this file"), text.count(b"scanned matter"))
+print(text.count(b"chosen from this file"), text.count(b"scanned matter"), text.count(b"--look translucent"))
 END
 }
 on_terminal render ball_16x16x16_uint8.raw --size 16x16
 on_terminal render ball_16x16x16_uint8.raw --size 16x16 --tf ct-bone
+on_terminal render ball_16x16x16_uint8.raw --size 16x16 --look surface
 on_terminal render ball_16x16x16_uint8.raw --size 16x16 --quiet
 halflight render ball_16x16x16_uint8.raw --size 16x16 2>text
 grep -c 'chosen from this file' text || true
 halflight render ball_16x16x16_uint8.raw --size 16x16 --json --quiet >a.json
 tool json a.json 'd["taken_for"]'
+tool json a.json 'd["next_look"]'
 halflight render ball_16x16x16_uint8.raw --size 16x16 --json --quiet --tf ct-bone >b.json
 tool json b.json '"taken_for" in d'
