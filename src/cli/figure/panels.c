@@ -339,7 +339,7 @@ static int read_page_numbers(const page_reading *reading, const json_t *root) {
 
 static int check_page_keys(const page_reading *reading, const json_t *root) {
   static const char *const known[] = {"panels",  "width",   "gap",   "dpi",        "font-size", "font_size",
-                                      "columns", "letters", "share", "background", "options"};
+                                      "columns", "letters", "share", "background", "options",   "$schema"};
   const char *key;
   json_t *value;
   json_object_foreach((json_t *)root, key, value) {
