@@ -17,8 +17,9 @@ problems = []
 
 
 def is_defined(function, text):
-    """Whether the text holds the function's head: its name after a type, at the start of a line."""
-    return re.search(rf"^[A-Za-z_][A-Za-z0-9_ *]*[ *]{re.escape(function)}\(", text, re.M) is not None
+    """Whether the text holds the function's head: its name after a type and attributes, at the start of a line."""
+    attributes = r"(?:__attribute__\(\(\w+(?:, \w+)*\)\) )?"
+    return re.search(rf"^[A-Za-z_][A-Za-z0-9_ *]*[ *]{attributes}[A-Za-z0-9_ *]*\b{re.escape(function)}\(", text, re.M) is not None
 
 
 lines = (root / "docs" / "equations.md").read_text().splitlines()
