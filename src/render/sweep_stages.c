@@ -105,7 +105,7 @@ void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker)
 /* ---- the lights ---- */
 
 /* Whether faces that cut a volume are surfaces, and one of them is near. */
-static bool faces_are_lit(const hl_scene_volume *volume, const patch_slab *slab) {
+static bool faces_are_lit(const frame_volume *volume, const patch_slab *slab) {
   return volume->shading == HL_SHADING_PHONG && volume->cut_shading == HL_CUT_SHADING_FACE &&
          slab->enter != NULL && !slab->uncut;
 }
@@ -135,7 +135,7 @@ static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, i
                                         .enter = slab.enter,
                                         .leave = slab.leave,
                                         .uncut = slab.uncut,
-                                        .faces = faces_are_lit(scene, &slab) ? slab.run : NULL,
+                                        .faces = faces_are_lit(of, &slab) ? slab.run : NULL,
                                         .slab = slab.slab,
                                         .grid = &sweep->content.grids[g],
                                         .kernel = sweep->content.kernel,
