@@ -61,8 +61,17 @@ bool pages_begin(server *s) {
 
 static void forget_renderers(server_page *page) {
   hl_renderer_destroy(page->renderer);
-  hl_renderer_destroy(page->quick);
-  page->renderer = page->quick = NULL;
+  page->renderer = NULL;
+  for (int q = 0; q < QUICK_RENDERERS; q++) {
+    hl_renderer_destroy(page->quick[q].renderer);
+    page->quick[q] = (quick_renderer){0};
+  }
+}
+
+static int count_renderers(const server_page *page) {
+  int count = page->renderer != NULL;
+  for (int q = 0; q < QUICK_RENDERERS; q++) count += page->quick[q].renderer != NULL;
+  return count;
 }
 
 void pages_end(server *s) {
@@ -89,7 +98,7 @@ static server_page *find_page(server *s, const char *name) {
 
 /* Frees a page that no request holds. */
 static void release_page(server *s, server_page *page) {
-  if (page->renderer != NULL || page->quick != NULL) atomic_store(&s->released, true);
+  if (count_renderers(page) > 0) atomic_store(&s->released, true);
   forget_renderers(page);
   base_forget(page);
   page->name[0] = '\0';
@@ -151,16 +160,17 @@ void pages_expire(server *s) {
   pthread_mutex_unlock(&s->pages_lock);
 }
 
-int pages_count(server *s, int *rendering) {
-  int count = 0;
-  *rendering = 0;
+pages_state pages_count(server *s) {
+  pages_state state = {0};
   pthread_mutex_lock(&s->pages_lock);
   for (int p = 0; p < MOST_PAGES; p++) {
-    count += s->pages[p].name[0] != '\0';
-    *rendering += s->pages[p].users;
+    const server_page *page = &s->pages[p];
+    state.pages += page->name[0] != '\0';
+    state.rendering += page->users;
+    if (page->users == 0) state.renderers += count_renderers(page);
   }
   pthread_mutex_unlock(&s->pages_lock);
-  return count;
+  return state;
 }
 
 int page_progress(server *s, const char *name, int *others) {
@@ -262,19 +272,35 @@ void answer_scene(server *s, const frame_request *request, const composed_choice
   answer->length = strlen(answer->text);
 }
 
+/* The page's renderer for a scene of coarser volumes. Where all places are taken, the first one is. */
+static hl_renderer **quick_renderer_of(server_page *page, const hl_scene *scene) {
+  const hl_volume *volume = hl_scene_describe(scene)->volumes[0].volume;
+  quick_renderer *found = NULL;
+  for (int q = QUICK_RENDERERS - 1; q >= 0; q--)
+    if (page->quick[q].volume == volume || (found == NULL && page->quick[q].renderer == NULL))
+      found = &page->quick[q];
+  if (found == NULL) found = &page->quick[0];
+  found->volume = volume;
+  return &found->renderer;
+}
+
 /* renderer: the page's, for what moves or for what rests. */
 static hl_status render(server *s, server_page *page, hl_renderer **renderer, const hl_scene *scene,
                         const frame_request *request, server_answer *answer, hl_error *error) {
   const hl_scene_description *d = hl_scene_describe(scene);
   hl_image *image = NULL;
+  hl_render_statistics statistics = {.struct_size = sizeof statistics};
+  const bool is_new = *renderer == NULL;
   double began = server_seconds();
-  hl_status status = *renderer == NULL ? hl_renderer_create(s->options.context, renderer, error) : HL_OK;
+  hl_status status = is_new ? hl_renderer_create(s->options.context, renderer, error) : HL_OK;
   if (status == HL_OK && strcmp(request->format, "depth") == 0)
     return render_depth(page, scene, answer, error);
   if (status == HL_OK) status = check_overlay(s, scene, request, error);
   if (status == HL_OK) status = hl_image_create(s->options.context, d->width, d->height, &image, error);
   if (status == HL_OK)
-    status = hl_renderer_render(*renderer, scene, hl_image_pixels(image), 4 * (size_t)d->width, NULL, error);
+    status = hl_renderer_render(*renderer, scene, hl_image_pixels(image), 4 * (size_t)d->width, &statistics,
+                                error);
+  if (is_new) answer->seconds_once += statistics.seconds_prepare;
   double rendered = server_seconds();
   if (status == HL_OK) status = write_picture(s, scene, image, request, answer, error);
   hl_image_destroy(image);
@@ -290,13 +316,15 @@ static hl_status make_frame(server *s, server_page *page, const frame_request *r
   double began = server_seconds();
   if (server_is_outdated()) return HL_ERROR_CANCELLED;
   hl_status status = read_scene(s, request->opened, request->text, request->length, &scene, error);
+  double parsed = server_seconds();
   if (status == HL_OK && request->moving) status = make_quick(s, request->opened, scene, &quick, error);
   bool coarser = quick != NULL && quick != scene;
   answer->seconds_read = server_seconds() - began;
+  answer->seconds_once = server_seconds() - parsed;
   if (status == HL_OK)
     status = film != NULL ? render_film(s, page, scene, film, answer, error)
-                          : render(s, page, coarser ? &page->quick : &page->renderer, coarser ? quick : scene,
-                                   request, answer, error);
+                          : render(s, page, coarser ? quick_renderer_of(page, quick) : &page->renderer,
+                                   coarser ? quick : scene, request, answer, error);
   hl_scene_release(quick);
   hl_scene_release(scene);
   return status;

@@ -20,8 +20,9 @@ enum {
   PAGE_NAME_LENGTH = 32,
   MOST_PAGES =
       8, /* pages that keep a renderer; a new page takes the place of the one that was idle for longest */
-  MOST_OPENED = 6,   /* scenes; the one that was not used for longest makes room */
-  PATH_BYTES = 4096, /* of a path: Linux's PATH_MAX, which realpath() fills */
+  QUICK_RENDERERS = 3, /* of a page: as many as a preview has copies of a volume */
+  MOST_OPENED = 6,     /* scenes; the one that was not used for longest makes room */
+  PATH_BYTES = 4096,   /* of a path: Linux's PATH_MAX, which realpath() fills */
   MOST_FILM_KEYS = 32,
   MOST_FILM_FRAMES = 100000,
   IDLE_PAGE_SECONDS = 300,   /* after which a page that asks for nothing loses its renderer */
@@ -44,19 +45,26 @@ typedef struct server_asset {
 extern const server_asset server_assets[];
 extern const size_t server_asset_count;
 
+/* A renderer for frames while something moves, of the volumes at one coarser resolution. A renderer prepares
+ * a volume anew when the volume changes, so that each resolution has its own. */
+typedef struct quick_renderer {
+  hl_renderer *renderer;   /* owned; null: not yet made */
+  const hl_volume *volume; /* borrowed; only compared: the first volume of the scenes that it renders */
+} quick_renderer;
+
 /* One page in a browser: its frames are rendered one after the other. */
 typedef struct server_page {
-  char name[PAGE_NAME_LENGTH + 1];   /* "": free */
-  pthread_mutex_t rendering;         /* held while a frame of the page is rendered */
-  hl_renderer *renderer;             /* owned; under `rendering`; null: not yet made */
-  hl_renderer *quick;                /* the same for frames while something moves, of coarser volumes */
-  atomic_ullong newest;              /* the highest number of a requested frame */
-  atomic_int frame_part;             /* thousandths of the frame that is being rendered */
-  atomic_int film_done, film_frames; /* of the film that the page renders; 0 frames: none */
-  int users;                         /* requests that hold the page; under server.pages_lock */
-  bool leaving;                      /* it is free when the last of them ends; under server.pages_lock */
-  unsigned long long last_use;       /* under server.pages_lock */
-  double last_seen;                  /* by server_seconds(); under server.pages_lock */
+  char name[PAGE_NAME_LENGTH + 1];       /* "": free */
+  pthread_mutex_t rendering;             /* held while a frame of the page is rendered */
+  hl_renderer *renderer;                 /* owned; under `rendering`; null: not yet made */
+  quick_renderer quick[QUICK_RENDERERS]; /* under `rendering` */
+  atomic_ullong newest;                  /* the highest number of a requested frame */
+  atomic_int frame_part;                 /* thousandths of the frame that is being rendered */
+  atomic_int film_done, film_frames;     /* of the film that the page renders; 0 frames: none */
+  int users;                             /* requests that hold the page; under server.pages_lock */
+  bool leaving;                          /* it is free when the last of them ends; under server.pages_lock */
+  unsigned long long last_use;           /* under server.pages_lock */
+  double last_seen;                      /* by server_seconds(); under server.pages_lock */
   char *base; /* owned; the newest scene that came whole, or null; under server.pages_lock */
   unsigned long long base_number; /* of its frame; under server.pages_lock */
 } server_page;
@@ -102,7 +110,9 @@ typedef struct server_answer {
   unsigned char *from_malloc; /* owned: free(); or null */
   char problem[1000];         /* an error line, where neither bytes nor text are given */
   double seconds_read, seconds_render,
-      seconds_encode; /* seconds of a frame's steps; all 0: the answer is no frame */
+      seconds_encode;  /* seconds of a frame's steps; all 0: the answer is no frame */
+  double seconds_once; /* those of them that the next frames do not take: what a new renderer has prepared,
+                        * and the wait for coarser volumes */
 } server_answer;
 
 /* The parameters of a request for a frame. */
@@ -156,8 +166,14 @@ void work_begin_for(server *s, const server_opened *opened);
 /* A page was closed: its frames, those of its lanes (NAME-...), and their renderers end. */
 void page_is_gone(server *s, const char *name);
 void pages_expire(server *s); /* renderers of pages that asked for nothing for long; call it now and then */
-/* Those that may hold a renderer; *rendering: the frames that are rendered, or wait for it. */
-int pages_count(server *s, int *rendering);
+/* What the pages of a server are and do. */
+typedef struct pages_state {
+  int pages;     /* those that may hold a renderer */
+  int rendering; /* frames that are rendered, or wait for it */
+  int renderers; /* of pages that render nothing now */
+} pages_state;
+
+pages_state pages_count(server *s);
 /* How far the page's frame is, in thousandths of its step; *others: pages, and lanes of this one, with frames
  * of theirs. */
 int page_progress(server *s, const char *name, int *others);

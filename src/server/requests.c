@@ -69,8 +69,9 @@ static enum MHD_Result send_answer(server *s, struct MHD_Connection *connection,
   hl_text_release(s->options.context, answer->text);
   if (response != NULL && answer->seconds_render > 0) {
     char times[160];
-    snprintf(times, sizeof times, "read;dur=%.3f, render;dur=%.3f, encode;dur=%.3f",
-             1e3 * answer->seconds_read, 1e3 * answer->seconds_render, 1e3 * answer->seconds_encode);
+    snprintf(times, sizeof times, "read;dur=%.3f, render;dur=%.3f, encode;dur=%.3f, once;dur=%.3f",
+             1e3 * answer->seconds_read, 1e3 * answer->seconds_render, 1e3 * answer->seconds_encode,
+             1e3 * answer->seconds_once);
     if (MHD_add_response_header(response, "Server-Timing", times) != MHD_YES) {
       MHD_destroy_response(response);
       return MHD_NO;
@@ -221,16 +222,19 @@ static void answer_opening(server *s, server_answer *answer) {
 
 static void answer_state(server *s, server_answer *answer) {
   char *text = NULL;
-  int open, waiting, rendering, pages = pages_count(s, &rendering);
+  int open, waiting;
+  const pages_state now = pages_count(s);
   unsigned long long turned_away;
   connections_count(&s->connections, &open, &waiting, &turned_away);
-  if (asprintf(
-          &text,
-          "{\"pages\":%d,\"rendering\":%d,\"opened\":%d,\"held\":%llu,\"peak\":%llu,\"connections\":%d,"
-          "\"waiting\":%d,"
-          "\"turned_away\":%llu}",
-          pages, rendering, opened_count(s), (unsigned long long)hl_context_memory_held(s->options.context),
-          (unsigned long long)hl_context_memory_peak(s->options.context), open, waiting, turned_away) < 0)
+  if (asprintf(&text,
+               "{\"pages\":%d,\"rendering\":%d,\"renderers\":%d,\"opened\":%d,\"held\":%llu,\"peak\":%llu,"
+               "\"connections\":%d,"
+               "\"waiting\":%d,"
+               "\"turned_away\":%llu}",
+               now.pages, now.rendering, now.renderers, opened_count(s),
+               (unsigned long long)hl_context_memory_held(s->options.context),
+               (unsigned long long)hl_context_memory_peak(s->options.context), open, waiting,
+               turned_away) < 0)
     text = NULL;
   answer_json(answer, text);
 }

@@ -37,6 +37,21 @@ def sweeps(browser, url):
     check(not browser.run("halflight.store.canUndo"), "the sweep is no step of the history")
 
 
+def coarse_first(browser):
+    """The first picture of a large volume has sheets so far apart that a copy of 128^3 voxels or fewer suits them; that of a small one has not."""
+    spacings = browser.run("""import('./frames.js').then(async ({ Frames }) => {
+      const { scene } = halflight.store, first = (side) => new Promise((resolve) => {
+        const store = { scene: { ...scene, volumes: scene.volumes.slice(0, 1) }, listen() {} };
+        const channel = { fetchFrame: async (asked) => { resolve(asked.render.sheet_spacing); frames.end(); return null; } };
+        const start = { volumes: [{ dimensions: [side, side, side], axes: [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }] };
+        const frames = new Frames({ store, start, channel }, document.createElement('canvas'), () => {});
+        frames.move();
+      });
+      return [await first(64), await first(512), await first(1024)]; })""")
+    check(spacings[1] == 4 and spacings[2] == 8, f"512^3 and 1024^3 voxels: {spacings}")
+    check(spacings[0] < 2, f"64^3 voxels: {spacings}")
+
+
 def pictures_of(browser, label):
     return f"[...document.querySelectorAll('[aria-label={json.dumps(label)}] canvas')]"
 
@@ -227,6 +242,7 @@ with tempfile.TemporaryDirectory() as folder:
     with browser_named(name)(name, (900, 600)) as browser:
         with Viewer(PROGRAM, "ball.nrrd") as viewer:
             sweeps(browser, viewer.url)
+            coarse_first(browser)
             points_in_order(browser)
             looks(browser)
             projection_of_surfaces(browser)

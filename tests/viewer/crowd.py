@@ -224,18 +224,38 @@ def memory_of_all(scene):
         check(now["pages"] < 8, f"idle pages have given way: {now}")
 
 
+def renderers_of_copies(viewer, scene):
+    """Each coarser copy of a volume has a renderer of its own while something moves, so that going back to it prepares nothing again."""
+    def moving(spacing):
+        asked = json.loads(json.dumps(scene))
+        asked["image"].update(width=64, height=64)
+        asked["render"].update(sheet_spacing=spacing)
+        connection = http.client.HTTPConnection("127.0.0.1", viewer.port, timeout=HANG)
+        connection.request("POST", f"/{viewer.token}/frame?page=copies&number={next(numbers)}&format=jpeg&moving=1&opened=0", json.dumps(asked))
+        answer = connection.getresponse()
+        answer.read()
+        connection.close()
+        check(answer.status == 200, f"a frame with sheets {spacing} voxels apart")
+        return state(viewer)["renderers"], {part.split(";dur=")[0]: float(part.split(";dur=")[1]) for part in answer.getheader("Server-Timing").split(", ")}
+
+    counts, times = zip(*[moving(spacing) for spacing in (1, 2, 4, 2, 4, 1)])
+    check(counts == (1, 2, 3, 3, 3, 3), f"one for the volume, and one for each of two copies: {counts}")
+    check(all(0 < now["once"] < now["read"] + now["render"] for now in times[:3]), f"the first frame of each tells what it has prepared: {times}")
+    check(all(now["once"] <= now["read"] for now in times[3:]), f"later ones have prepared nothing: {times}")
+    request(viewer, "POST", "leave?page=copies")
+    check(state(viewer)["renderers"] == 0, "all of them end with the page")
+
+
 def reloads(chromium):
     """A page that is reloaded, and closed, leaves nothing behind."""
     with Viewer(PROGRAM, "torus.nrrd") as viewer, Browser(chromium, (400, 300)) as browser:
-        before, held = state(viewer), []
+        before = state(viewer)
         for _ in range(4):
             browser.open(viewer.url)
             browser.wait("globalThis.halflight?.frames.statistics.stage === 'final'")
             browser.wait("document.querySelector('[data-busy]') === null")
-            wait_for("one page", lambda: state(viewer)["pages"] == 1)
-            held.append(state(viewer)["held"])
-        # The sizes of pictures while the light sweeps follow the machine's speed, and with them a renderer's buffers.
-        check(max(held) < 1.5 * min(held), f"no load adds its renderers to those of the load before: {held}")
+            wait_for("one page with one renderer, as so small a volume has no coarser copies",
+                     lambda: (state(viewer)["pages"], state(viewer)["renderers"]) == (1, 1))
         browser.open("about:blank")
         wait_for("the page has gone", lambda: state(viewer)["pages"] == 0)
         check(state(viewer)["held"] == before["held"], "with all that it held")
@@ -260,6 +280,9 @@ with tempfile.TemporaryDirectory() as folder:
         deadlines(viewer)
         idle_browsers(viewer)
         closed_while_rendering(viewer, scene)
+    subprocess.run([PROGRAM, "make", "fire-ball", "--size", "160", "--quiet", "-o", "larger.nrrd"], check=True)
+    with Viewer(PROGRAM, "larger.nrrd") as viewer:
+        renderers_of_copies(viewer, json.loads(request(viewer, "GET", "start.json")[1])["scene"])
     with Viewer(PROGRAM, "large.nrrd") as viewer:
         large = json.loads(request(viewer, "GET", "start.json")[1])["scene"]
     memory_of_all(large)

@@ -14,8 +14,15 @@ const REST_AFTER = 120; // milliseconds without a change
 const SETTLED_WITHIN = 350; // milliseconds for the first picture of full size, so that it is there half a second after
 const LEAST_PIXELS = 480 * 320; // of a picture while something moves, where the full one has more
 const WIDEST = 8; // voxels between sheets while something moves, at most: the coarsest volumes have voxels of this length
+const SOON_PREPARED = 128 ** 3; // voxels that are prepared in a few tenths of a second
 const SHADOW_PIXELS = 0.5; // of a moving picture's longer side, along that of a shadow buffer
 const ADAPTION = 0.6; // how much of an error in time one frame corrects, as an exponent
+
+// How far the sheets of the first picture are apart, so that the volumes of this picture are soon prepared.
+function firstSpacing(volumes) {
+  const voxels = volumes.reduce((sum, { dimensions: [i, j, k] }) => sum + i * j * k, 0);
+  return Math.min(Math.max(Math.cbrt(voxels / SOON_PREPARED), 1.5), WIDEST);
+}
 
 // Sides that are multiples of 16 render without a copy.
 const rounded = (side) => Math.max(16, Math.round(side / 16) * 16);
@@ -30,7 +37,7 @@ export class Frames {
   #ended = false;
   #generation = 0;
   #timer = 0;
-  #work = 100000; // pixels, for sheets a voxel apart, that take as long as the budget
+  #work; // pixels, for sheets a voxel apart, that take as long as the budget
   #voxels;
   #scene = null; // what the newest picture is, or will be, of
   #animation = null; // { change, began, milliseconds }
@@ -39,6 +46,7 @@ export class Frames {
   // report({ stage, width, height, spacing, milliseconds, bytes, error }) is told of every frame.
   constructor({ store, start, channel }, canvas, report) {
     this.#voxels = start.volumes.map((volume) => Math.min(...volume.axes.map(length)));
+    this.#work = LEAST_PIXELS / firstSpacing(start.volumes);
     this.#store = store;
     this.#channel = channel;
     this.#canvas = canvas;
@@ -110,7 +118,7 @@ export class Frames {
         const frame = await this.#channel.fetchFrame(scene, { quality: 80, moving: true });
         if (frame !== null) {
           await this.#show(frame.blob, scene.image);
-          this.#learn(performance.now() - began);
+          this.#learn(performance.now() - began - (frame.times?.once ?? 0));
           this.statistics.previews++;
           this.#tell("moving", scene, began, frame.blob);
         }
