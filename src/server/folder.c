@@ -42,7 +42,8 @@ static bool ends_as_read(const char *name, size_t *length, hl_status (*get)(size
 
 bool folder_can_open(const char *name) {
   size_t length = strlen(name);
-  if (ends_with_one(name, &length, ".json .zip") || ends_as_read(name, &length, hl_volume_get_format))
+  if (ends_with_one(name, &length, ".json .zip") || ends_as_read(name, &length, hl_volume_get_format) ||
+      ends_as_read(name, &length, hl_mesh_get_format))
     return true;
   return ends_as_read(name, &length, hl_volume_get_packing) &&
          ends_as_read(name, &length, hl_volume_get_format);

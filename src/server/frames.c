@@ -399,33 +399,55 @@ bool film_progress(server *s, const char *name, int *done, int *frames) {
   return found;
 }
 
+/* Answers with the start.json of a scene that is open from now on, or with the error. Releases the scene. */
+static void answer_opened(server *s, hl_scene *scene, const char *title, hl_status status, hl_error *error,
+                          server_answer *answer) {
+  if (status == HL_OK) {
+    server_opened *opened = opened_add(s, scene, title);
+    answer->from_malloc = opened != NULL ? (unsigned char *)strdup(opened->start) : NULL;
+    if (opened != NULL) opened_leave(s, opened);
+    if (answer->from_malloc == NULL) {
+      snprintf(error->message, sizeof error->message, "no memory to open another file");
+      status = HL_ERROR_MEMORY;
+    }
+  }
+  hl_scene_release(scene);
+  if (status != HL_OK) {
+    fail_frame(answer, status, error);
+    return;
+  }
+  answer->status = 200;
+  answer->type = "application/json";
+  answer->length = strlen((const char *)answer->from_malloc);
+}
+
 void answer_open(server *s, const server_file *file, const char *title, server_answer *answer) {
   hl_scene *scene = NULL;
   hl_error error = {0};
   current.page = NULL;
   current.opening = true;
   atomic_store(&s->opening_part, 0);
-  hl_status status = s->options.open(s->options.user_data, file, &scene, &error);
+  hl_status status = s->options.open(s->options.files_data, file, &scene, &error);
   if (status == HL_ERROR_MEMORY) {
     spare_memory(s);
-    status = s->options.open(s->options.user_data, file, &scene, &error);
+    status = s->options.open(s->options.files_data, file, &scene, &error);
   }
   current.opening = false;
-  if (status == HL_OK) {
-    server_opened *opened = opened_add(s, scene, title);
-    answer->from_malloc = opened != NULL ? (unsigned char *)strdup(opened->start) : NULL;
-    if (opened != NULL) opened_leave(s, opened);
-    if (answer->from_malloc == NULL) {
-      snprintf(error.message, sizeof error.message, "no memory to open another file");
-      status = HL_ERROR_MEMORY;
-    }
-  }
-  hl_scene_release(scene);
-  if (status != HL_OK) {
-    fail_frame(answer, status, &error);
-    return;
-  }
-  answer->status = 200;
-  answer->type = "application/json";
-  answer->length = strlen((const char *)answer->from_malloc);
+  answer_opened(s, scene, title, status, &error, answer);
+}
+
+void answer_join(server *s, const frame_request *request, long long with, const char *title,
+                 server_answer *answer) {
+  hl_scene *base = NULL, *joined = NULL;
+  hl_error error = {0};
+  current.page = NULL;
+  if (refuse_closed(s, request->opened, answer) || refuse_closed(s, with, answer)) return;
+  hl_status status = read_scene(s, request->opened, request->text, request->length, &base, &error);
+  server_opened *added = opened_enter(s, with);
+  if (status == HL_OK && added != NULL)
+    status = s->options.join(s->options.files_data, base, added->scene, &joined, &error);
+  if (added != NULL) opened_leave(s, added);
+  opened_close(s, with);
+  hl_scene_release(base);
+  answer_opened(s, joined, title, status, &error, answer);
 }

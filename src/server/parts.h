@@ -190,6 +190,11 @@ bool film_progress(server *s, const char *page, int *done, int *frames);
 /* Opens a file, and answers with its start.json. */
 void answer_open(server *s, const server_file *file, const char *title, server_answer *answer);
 
+/* Adds what is open under the number `with`, and is closed then, to the request's scene; answers with the
+ * start.json of both. */
+void answer_join(server *s, const frame_request *request, long long with, const char *title,
+                 server_answer *answer);
+
 /* An answer that is an error line. */
 extern const char closed_line[]; /* of what is open no longer: status 410 */
 void refuse_line(server_answer *answer, unsigned status, const char *line);

@@ -492,19 +492,30 @@ static void post_upload(server *s, struct MHD_Connection *connection, request *r
   upload_end(&r->upload);
 }
 
+/* What a page has opened is added to its scene. */
+static void post_join(server *s, struct MHD_Connection *connection, const request *r, server_answer *answer) {
+  frame_request wanted = read_query(connection, r);
+  long long with = query_number(connection, "with", 1, MOST_NUMBER, 0);
+  const char *title = query(connection, "title");
+  if (wanted.opened >= 0 && with > 0 && title != NULL && with != wanted.opened)
+    answer_join(s, &wanted, with, title, answer);
+  else answer_problem(answer, 400, "two files are joined by ?opened=N&with=N&title=TITLE\n");
+}
+
 static void answer_post(server *s, struct MHD_Connection *connection, request *r, server_answer *answer) {
   bool frame = strcmp(r->path, "frame") == 0, film = strcmp(r->path, "film") == 0,
-       depth = strcmp(r->path, "depth") == 0;
+       depth = strcmp(r->path, "depth") == 0, join = strcmp(r->path, "join") == 0;
   if (r->uploads) post_upload(s, connection, r, answer);
   else if (strcmp(r->path, "open") == 0) post_open(s, connection, answer);
   else if (strcmp(r->path, "leave") == 0) post_leave(s, connection, answer);
   else if (strcmp(r->path, "cancel") == 0) post_cancel(s, connection, r, answer);
   else if (strcmp(r->path, "slice") == 0) post_slice(s, connection, answer);
-  else if (!frame && !film && !depth && strcmp(r->path, "scene") != 0)
+  else if (!frame && !film && !depth && !join && strcmp(r->path, "scene") != 0)
     answer_problem(answer, 404, "there is nothing here\n");
   else if (r->body == NULL) answer_problem(answer, 400, "the scene is missing\n");
   else if (frame) post_frame(s, connection, r, answer);
   else if (depth) post_depth(s, connection, r, answer);
+  else if (join) post_join(s, connection, r, answer);
   else if (film) post_film(s, connection, r, answer);
   else post_scene(s, connection, r, answer);
 }

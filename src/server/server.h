@@ -18,6 +18,8 @@
  * - GET TOKEN/folder.json?at=: what can be opened in a folder below the one that the viewer was started in
  * - POST TOKEN/open?file=PATH: opens a file there; upload?name=NAME: opens the file in the body. Its
  *   start.json, whose number &opened=N says whose volumes a scene has
+ * - POST TOKEN/join?opened=N&with=M&title=TITLE: a scene file's text in, of what N is; the start.json of that
+ *   scene with all that M is. M is open no longer
  * - GET TOKEN/opening.json: how far a file is read
  * - GET TOKEN/state.json: what the server holds: pages, open scenes, bytes, connections
  *
@@ -45,7 +47,10 @@ typedef struct server_options {
   hl_scene *scene;
   const char *title;  /* the input's name, for the page's title */
   const char *folder; /* absolute; pages may open what lies below it; null: nothing */
-  hl_status (*open)(void *user_data, const server_file *file, hl_scene **scene, hl_error *error);
+  hl_status (*open)(void *files_data, const server_file *file, hl_scene **scene, hl_error *error);
+  /* One scene of what is open and what is added to it. */
+  hl_status (*join)(void *files_data, hl_scene *base, hl_scene *added, hl_scene **scene, hl_error *error);
+  void *files_data;           /* of `open` and `join` */
   uint64_t most_upload_bytes; /* of a file that is dropped; 0: no limit */
   int port;                   /* 0: a free one */
   bool (*token)(int port,

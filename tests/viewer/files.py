@@ -23,7 +23,7 @@ from PIL import Image
 import checks
 from browser import Browser
 from checks import check
-from hands import PROGRAM, center, equals_render, final_picture, open_section, press, rest, scene_of
+from hands import PROGRAM, center, changes, equals_render, final_picture, open_section, press, press_named, rest, scene_of, set_control
 from viewer import Viewer, need_viewer
 
 
@@ -42,7 +42,7 @@ def folder_is_the_border(viewer):
     names = {entry["name"]: entry["folder"] for entry in json.loads(body)["entries"]}
     check(status == 200 and names == {"inside": True, "first.nrrd": False, "second.nrrd": False}, f"the list: {names}")
     inside = json.loads(request(viewer, "GET", "folder.json", at="inside")[1])["entries"]
-    check([entry["name"] for entry in inside] == ["scene.json", "third.nrrd"], f"the folder in it: {inside}")
+    check([entry["name"] for entry in inside] == ["scene.json", "third.nrrd", "triangle.obj"], f"the folder in it: {inside}")
     for at in ("..", "inside/../..", "/etc", "away", "none", "first.nrrd", "a" * 5000):
         check(request(viewer, "GET", "folder.json", at=at)[0] == 404, f"the folder {at[:20]!r} is refused")
     for file in ("../outside/secret.nrrd", "away/secret.nrrd", "link.nrrd", "/etc/passwd", "none.nrrd", "notes.txt", "", "inside"):
@@ -252,6 +252,72 @@ def timeline(browser):
     rest(browser)
 
 
+def joined(viewer, scene):
+    """A mesh is opened alone; volumes and meshes are added to a page's own scene, whose light and direction of view stay."""
+    status, body = request(viewer, "POST", "open", file="inside/triangle.obj")
+    mesh = json.loads(body)
+    check(status == 200 and mesh["volumes"] == [] and mesh["scene"]["meshes"][0]["file"] == os.path.realpath("inside/triangle.obj"), f"a mesh alone: {status}")
+    mine = json.loads(json.dumps(scene))
+    mine["lights"][0]["intensity"] = 0.7
+    status, body = request(viewer, "POST", "join", json.dumps(mine), opened=0, **{"with": mesh["opened"]}, title="both")
+    both = json.loads(body)
+    check(status == 200 and both["title"] == "both" and both["opened"] not in (0, mesh["opened"]), f"they are open together: {status}")
+    check(both["scene"]["lights"] == mine["lights"] and both["scene"]["volumes"] == mine["volumes"], "what the page had done stays")
+    check([one["file"] for one in both["scene"]["meshes"]] == [mesh["scene"]["meshes"][0]["file"]], "with the mesh")
+    check(request(viewer, "POST", "join", json.dumps(mine), opened=0, **{"with": mesh["opened"]}, title="again")[0] == 410, "what was added is open no longer by itself")
+    again = json.loads(request(viewer, "POST", "open", file="inside/triangle.obj")[1])
+    third = json.loads(request(viewer, "POST", "open", file="inside/third.nrrd")[1])
+    both = json.loads(request(viewer, "POST", "join", json.dumps(both["scene"]), opened=both["opened"], **{"with": again["opened"]}, title="three")[1])
+    colors = [one["color"] for one in both["scene"]["meshes"]]
+    check(len(colors) == 2 and colors[0] != colors[1], f"the second mesh has a colour of its own: {colors}")
+    both = json.loads(request(viewer, "POST", "join", json.dumps(both["scene"]), opened=both["opened"], **{"with": third["opened"]}, title="four")[1])
+    names = [os.path.basename(one["file"]) for one in both["scene"]["volumes"]]
+    check(names == ["first.nrrd", "third.nrrd"] and len(both["scene"]["meshes"]) == 2 and len(both["volumes"]) == 2, f"all four: {names}")
+    small = json.loads(json.dumps(both["scene"]))
+    small["image"].update(width=32, height=32)
+    check(request(viewer, "POST", "frame", json.dumps(small), opened=both["opened"], page="join", number=1, format="png")[0] == 200, "and can be rendered")
+    for query in ({}, {"with": 0}, {"with": "x"}, {"with": both["opened"]}):
+        check(request(viewer, "POST", "join", json.dumps(both["scene"]), opened=both["opened"], title="t", **query)[0] == 400, f"{query} is refused")
+    request(viewer, "POST", "leave", page="join", opened=both["opened"])
+
+
+def several_files(browser, url):
+    """Files are added from the list, and several are dropped at once; a reload brings them back; the panel of meshes changes them."""
+    browser.run("sessionStorage.clear()")
+    browser.open(url)
+    browser.wait("document.getElementById('title')?.textContent === 'first.nrrd'")
+    rest(browser)
+    open_section(browser, "Open")
+    browser.wait("[...document.querySelectorAll('.files button')].some((b) => b.textContent === 'second.nrrd')")
+    browser.run("halflight.store.changeRender('shadows', 'hard')")
+    set_control(browser, "Add to what is open", "", section="Open")
+    press(browser, "inside ›")
+    browser.wait("[...document.querySelectorAll('.files button')].some((b) => b.textContent === 'triangle.obj')")
+    press(browser, "triangle.obj")
+    browser.wait("document.getElementById('title').textContent === 'first.nrrd + triangle.obj'")
+    equals_render(browser, "added")
+    both = scene_of(browser)
+    check(len(both["volumes"]) == 1 and len(both["meshes"]) == 1 and both["render"]["shadows"] == "hard", "the mesh is added to what was made")
+    changes(browser, "a mesh that is hidden", lambda: press_named(browser, "Show triangle.obj"), "meshes")
+    check(scene_of(browser)["meshes"][0]["visible"] is False, "its eye")
+    browser.wait("JSON.parse(sessionStorage.getItem('halflight-session')).scene.meshes[0].visible === false")
+    browser.run("window.old = true; 0")
+    browser.call("Page.reload")
+    browser.wait("window.old === undefined && document.getElementById('title')?.textContent === 'first.nrrd + triangle.obj'")
+    rest(browser)
+    check(scene_of(browser)["meshes"][0]["visible"] is False, "a reload goes on with both")
+    browser.run("""(() => {
+      const data = new DataTransfer(), bytes = Uint8Array.from(atob(%s), (c) => c.charCodeAt(0));
+      data.items.add(new File([bytes], 'one.nrrd'));
+      data.items.add(new File(['v 0 0 0\\nv 9 0 0\\nv 0 9 9\\nf 1 2 3\\n'], 'two.obj'));
+      document.querySelector('.viewer').dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
+    })()""" % json.dumps(base64.b64encode(pathlib.Path("first.nrrd").read_bytes()).decode()))
+    browser.wait("document.getElementById('title').textContent === 'one.nrrd + two.obj'")
+    rest(browser)
+    check(len(scene_of(browser)["meshes"]) == 1, "files that are dropped together are one scene")
+    check(browser.problems == [], f"the console has errors: {browser.problems}")
+
+
 def on_the_page(browser):
     """The list and a dropped file open volumes; the film panel makes one."""
     rest(browser)
@@ -317,6 +383,7 @@ with tempfile.TemporaryDirectory() as folder:
         films(viewer, start["scene"])
         fair_shares(viewer, start["scene"])
         folders_are_volumes(viewer)
+        joined(viewer, start["scene"])
         uploads_are_checked(viewer)
     if chromium is not None:
         with Viewer(PROGRAM, "first.nrrd") as viewer, Browser(chromium, (720, 420)) as browser:
@@ -325,4 +392,5 @@ with tempfile.TemporaryDirectory() as folder:
             with open("first.nrrd", "rb") as file:
                 browser.run(f"window.volume = '{base64.b64encode(file.read()).decode()}'; 0")
             on_the_page(browser)
+            several_files(browser, viewer.url)
     print(f"{checks.count} checks passed")

@@ -17,9 +17,7 @@ void render_part_meshes(hl_context *context, char **operands, char **meshes, cha
   meshes[count] = others[left] = NULL;
 }
 
-/* Moves the scene's camera along its direction and zooms so that all that there is now fits into the picture.
- */
-static hl_status frame_anew(hl_scene_description *description, hl_error *error) {
+hl_status render_frame_anew(hl_scene_description *description, hl_error *error) {
   hl_view view;
   hl_status status = hl_view_of_camera(description, &view);
   return status == HL_OK ? hl_camera_frame_view(description, &view, 1, &description->camera, error) : status;
@@ -40,7 +38,7 @@ static hl_status add_meshes(hl_context *context, const hl_scene_mesh *added, siz
   memcpy(meshes + before, added, count * sizeof *meshes);
   description.meshes = meshes;
   description.mesh_count = before + count;
-  hl_status status = bare ? frame_anew(&description, error) : HL_OK;
+  hl_status status = bare ? render_frame_anew(&description, error) : HL_OK;
   if (status == HL_OK) status = hl_scene_create(context, &description, &made, error);
   free(meshes);
   if (status != HL_OK) return status;
@@ -69,6 +67,13 @@ hl_status render_load_mesh(hl_context *context, const char *path, size_t index, 
   return status;
 }
 
+hl_status render_join_meshes(hl_context *context, const hl_scene_mesh *added, size_t count, bool bare,
+                             hl_scene **scene, hl_error *error) {
+  bool alone = *scene == NULL;
+  hl_status status = alone ? begin_scene(context, scene, error) : HL_OK;
+  return status == HL_OK ? add_meshes(context, added, count, bare, alone, scene, error) : status;
+}
+
 /* Loads the meshes; *count of them were, of which the caller releases each. */
 static hl_status load_meshes(hl_context *context, char *const *paths, size_t first, hl_scene_mesh *added,
                              size_t *count, hl_error *error) {
@@ -84,9 +89,7 @@ int render_add_meshes(cli_host *host, char *const *paths, size_t first, bool bar
   hl_error error = {0};
   if (paths[0] == NULL) return EXIT_CODE_OK;
   hl_status status = load_meshes(host->context, paths, first, added, &count, &error);
-  bool alone = *scene == NULL;
-  if (status == HL_OK && alone) status = begin_scene(host->context, scene, &error);
-  if (status == HL_OK) status = add_meshes(host->context, added, count, bare, alone, scene, &error);
+  if (status == HL_OK) status = render_join_meshes(host->context, added, count, bare, scene, &error);
   for (size_t m = 0; m < count; m++) hl_mesh_release(added[m].mesh);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(host, PHASE_READ, status, &error);
 }

@@ -14,6 +14,7 @@
 #include <dlfcn.h>
 
 #include "browser.h"
+#include "files.h"
 #include "server/module.h"
 #include "token.h"
 #endif
@@ -83,107 +84,14 @@ typedef struct view_job {
 
 /* ---- the scene ---- */
 
-/* The absolute path of a file, owned by the caller. A text that names no file is copied as it is. */
-static char *absolute_path(const char *file) {
-  char *path = strncmp(file, "/dev/", 5) == 0 ? NULL : realpath(file, NULL);
-  return path != NULL ? path : strdup(file);
-}
-
-/* The absolute path of a file in a folder, owned by the caller. */
-static char *path_below(const char *folder, const char *file) {
-  char *path = NULL;
-  if (strcmp(file, ".") == 0) return strdup(folder);
-  return asprintf(&path, "%s/%s", strcmp(folder, "/") == 0 ? "" : folder, file) >= 0 ? path : NULL;
-}
-
-enum { MOST_PATHS = 1024 };
-
-/* The absolute paths that a changed description borrows. */
-typedef struct path_list {
-  const char *folder; /* where relative names begin; null: in the current folder */
-  char *paths[MOST_PATHS];
-  size_t count;
-} path_list;
-
-static bool make_absolute(const char **file, path_list *list) {
-  if (*file == NULL) return true;
-  if (list->count == MOST_PATHS) return false;
-  char *path = list->folder != NULL ? path_below(list->folder, *file) : absolute_path(*file);
-  if (path == NULL) return false;
-  list->paths[list->count] = path;
-  *file = list->paths[list->count++];
-  return true;
-}
-
-/* The scene with absolute paths, so that the page's scene can be rendered from any folder. folder: where its
- * names begin; null: in the current folder. */
-static hl_status name_absolutely(view_job *job, const char *folder, hl_scene **scene, hl_error *error) {
-  hl_scene_description d = *hl_scene_describe(*scene);
-  hl_scene_volume *volumes = malloc(d.volume_count * sizeof *volumes + 1);
-  hl_light *lights = malloc(d.light_count * sizeof *lights + 1);
-  hl_scene_mesh *meshes = malloc(d.mesh_count * sizeof *meshes + 1);
-  path_list *list = calloc(1, sizeof *list);
-  bool good = volumes != NULL && lights != NULL && meshes != NULL && list != NULL;
-  if (good) list->folder = folder;
-  for (size_t v = 0; good && v < d.volume_count; v++) {
-    volumes[v] = d.volumes[v];
-    good = make_absolute(&volumes[v].file, list) && make_absolute(&volumes[v].mask.file, list) &&
-           make_absolute(&volumes[v].transfer_function.plane.image.file, list);
-  }
-  for (size_t l = 0; good && l < d.light_count; l++) {
-    lights[l] = d.lights[l];
-    good = make_absolute(&lights[l].texture.file, list) && make_absolute(&lights[l].emission.file, list);
-  }
-  for (size_t m = 0; good && m < d.mesh_count; m++) {
-    meshes[m] = d.meshes[m];
-    good = make_absolute(&meshes[m].file, list);
-  }
-  good = good && make_absolute(&d.sky.file, list);
-  d.volumes = volumes;
-  d.meshes = meshes;
-  d.lights = lights;
-  hl_scene *named = NULL;
-  hl_status status = good ? hl_scene_create(job->host.context, &d, &named, error) : HL_ERROR_MEMORY;
-  if (!good) snprintf(error->message, sizeof error->message, "out of memory for the scene's paths");
-  if (status == HL_OK) {
-    hl_scene_release(*scene);
-    *scene = named;
-  }
-  for (size_t p = 0; list != NULL && p < list->count; p++) free(list->paths[p]);
-  free(list);
-  free(meshes);
-  free(lights);
-  free(volumes);
-  return status;
-}
-
 static int load(view_job *job, char **inputs) {
   bool bare;
   int exit_code = render_load_inputs(&job->host, job->render, inputs, &bare, &job->scene);
   if (exit_code == EXIT_CODE_OK) exit_code = render_change_scene(&job->host, job->render, bare, &job->scene);
   if (exit_code != EXIT_CODE_OK) return exit_code;
   hl_error error = {0};
-  hl_status status = name_absolutely(job, NULL, &job->scene, &error);
+  hl_status status = view_name_absolutely(job->host.context, NULL, &job->scene, &error);
   return status == HL_OK ? EXIT_CODE_OK : host_fail(&job->host, PHASE_READ, status, &error);
-}
-
-/* A file that a page opens. */
-static hl_status open_file(void *user_data, const server_file *file, hl_scene **scene, hl_error *error) {
-  view_job *job = user_data;
-  hl_volume *volume = NULL;
-  hl_status status;
-  if (has_extension(file->name, ".json")) {
-    status = hl_scene_load(file->confined, file->name, scene, error);
-    return status == HL_OK && file->folder != NULL ? name_absolutely(job, file->folder, scene, error)
-                                                   : status;
-  }
-  char *path = file->folder != NULL ? path_below(file->folder, file->name) : strdup(file->name);
-  status = path != NULL ? hl_volume_load(file->confined, file->name, &volume, error) : HL_ERROR_MEMORY;
-  if (path == NULL) snprintf(error->message, sizeof error->message, "out of memory for a path");
-  if (status == HL_OK) status = hl_scene_for_volume(job->host.context, volume, path, scene, error);
-  hl_volume_release(volume);
-  free(path);
-  return status;
 }
 
 /* ---- the browser ---- */
@@ -250,7 +158,9 @@ static int run_view(const cli_value *values, char **inputs) {
                              .scene = job.scene,
                              .title = title,
                              .folder = getcwd(folder, sizeof folder),
-                             .open = open_file,
+                             .open = view_open_file,
+                             .join = view_join,
+                             .files_data = job.host.context,
                              .most_upload_bytes = job.host.memory_limit,
                              .port = port,
                              .token = view_token_of_port,

@@ -53,8 +53,7 @@ export class HttpChannel {
 
   #source;
 
-  // opened: the number of what is open (of start.json), whose volumes the scenes have; source: the path in the viewer's folder
-  // that it was opened by, if it was.
+  // opened: the number of what is open (of start.json), whose volumes the scenes have; source: what open() opens it by, or null.
   constructor(opened = 0, source = null) {
     this.#opened = opened;
     this.#source = source;
@@ -146,9 +145,23 @@ export class HttpChannel {
     return (await this.#ask("folder.json", { at }, {})).json();
   }
 
-  // Opens a file of the folder, or one that the browser has: what is open then, for a channel of its own.
-  async open(file) {
-    return (await this.#ask("open", { file })).json();
+  // Opens a file of the folder, or one that the browser has: what is open then, for a channel of its own. source: a path; "" is what
+  // the viewer began with; of several in a list, the others are added to the first one.
+  async open(source) {
+    const [first, ...others] = [source].flat();
+    let start = first === "" ? await this.start() : await (await this.#ask("open", { file: first })).json();
+    for (const file of others) {
+      const channel = new HttpChannel(start.opened);
+      start = await channel.add(start.scene, await this.open(file), start.title);
+      if (channel.opened > 0) channel.leave();
+    }
+    return start;
+  }
+
+  // Adds what open() or upload() has opened to a scene of what this channel is of: what is open then.
+  async add(scene, added, title) {
+    const query = { opened: 0, with: added.opened, title: `${title} + ${added.title}` };
+    return (await this.#ask("join", query, { method: "POST", body: JSON.stringify(scene) })).json();
   }
 
   async upload(file) {

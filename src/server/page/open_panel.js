@@ -1,18 +1,26 @@
 // The panel that opens another volume: a list of the folder that the viewer was started in, and files that are dropped
 // anywhere on the viewer. Only where the channel can open files: not in notebooks.
 
-import { button, make, section } from "./controls.js";
+import { button, make, section, toggle } from "./controls.js";
 
 const ASK_EVERY = 250; // milliseconds, for how far a file is read
 
 const size = (bytes) => (bytes < 1 << 20 ? `${Math.ceil(bytes / 1024)} KiB` : `${Math.round(bytes / (1 << 20))} MiB`);
 
+// What a page opens both files by, when it is loaded again; null where one of them was dropped.
+function sourceOfBoth({ source, start }, added) {
+  const own = source ?? (start.opened === 0 ? "" : null);
+  return own === null || added === null ? null : [own, added].flat();
+}
+
 export function openPanel(viewer) {
-  const { channel, report, failed, reopen, root } = viewer;
+  const { store, start, channel, report, failed, reopen, root } = viewer;
   const { element, body } = section("Open", false);
   element.hidden = !channel.open;
   const list = make("ul", { class: "files", "aria-label": "Files and folders" }), bar = make("progress", { max: 1, hidden: true, "aria-label": "Reading the file" });
   const where = make("p", { class: "facts" });
+  let adds = false;
+  const add = toggle({ label: "Add to what is open", get: () => adds, set: (on) => { adds = on; } });
 
   async function show(at) {
     try {
@@ -32,8 +40,8 @@ export function openPanel(viewer) {
   }
 
   // Reads a file while the bar tells how far it is; then the viewer shows it.
-  // path: in the viewer's folder; null: the file was dropped.
-  async function load(open, name, path = null) {
+  // path: in the viewer's folder; null: the file was dropped. Resolves to the viewer of it, or to null.
+  async function load(open, name, path = null, added = adds) {
     element.open = true;
     bar.hidden = false;
     bar.removeAttribute("value");
@@ -43,26 +51,35 @@ export function openPanel(viewer) {
       if (part > 0) bar.value = part;
     }, ASK_EVERY);
     try {
-      reopen(await open(), path);
+      const opened = await open();
+      if (!added) return reopen(opened, path);
+      const both = await channel.add(store.scene, opened, start.title);
+      return reopen(both, sourceOfBoth(viewer, path), { scene: both.scene, marks: store.marks, page: store.page, history: null });
     } catch (error) {
       failed(error);
     } finally {
       clearInterval(asking);
       bar.hidden = true;
     }
+    return null;
   }
 
-  viewer.upload = (file) => load(() => channel.upload(file), file.name);
+  viewer.upload = (file, added = adds) => load(() => channel.upload(file), file.name, null, added);
+  // Of several files the others are added to the first one.
+  async function drop([first, ...others]) {
+    if (others.length === 0 && first?.name.endsWith(".json") && viewer.openSession) return viewer.openSession(first);
+    let shown = first ? await viewer.upload(first) : null;
+    for (const file of others) if (shown !== null) shown = await shown.upload(file, true);
+  }
   if (channel.open) {
     root.addEventListener("dragover", (event) => event.preventDefault());
     root.addEventListener("drop", (event) => {
       event.preventDefault();
-      const [file] = event.dataTransfer.files;
-      if (file?.name.endsWith(".json") && viewer.openSession) viewer.openSession(file);
-      else if (file) viewer.upload(file);
+      drop([...event.dataTransfer.files]);
     });
     element.addEventListener("toggle", () => { if (element.open && list.childElementCount === 0) show(""); });
   }
-  body.append(where, bar, list);
+  add.element.hidden = !channel.add;
+  body.append(add.element, where, bar, list);
   return { element, update: () => {} };
 }

@@ -6,16 +6,19 @@ import { isMark } from "./marks.js";
 const KEY = "halflight-session", VERSION = 1;
 const KEEP_AFTER = 300; // milliseconds without a change
 
-// source: the path that the viewer's own list opened, or null for what the viewer began with.
+// source: what the viewer's own list has opened: a path, or several in a list; null for what the viewer began with.
 export const sessionOf = (store, { title }, source) =>
   ({ halflight_session: VERSION, title, source, scene: store.scene, marks: store.marks, page: store.page });
+
+// A path, or a list of paths that are opened together.
+const isSource = (source) => [source].flat().every((path) => typeof path === "string");
 
 // A session, checked for what the page relies on; null: the object is none.
 export function readSession(object) {
   if (object === null || typeof object !== "object" || object.halflight_session !== VERSION || typeof object.scene?.camera !== "object") return null;
   const { source = null, title = "", scene, page = {} } = object, marks = Array.isArray(object.marks) ? object.marks.filter(isMark) : [];
   const known = typeof page === "object" && page !== null && !Array.isArray(page) ? page : {};
-  return { source: typeof source === "string" ? source : null, title: String(title), scene, marks, page: known };
+  return { source: isSource(source) ? source : null, title: String(title), scene, marks, page: known };
 }
 
 // The names of the files that a scene is made of.

@@ -16,6 +16,7 @@ import { sweptLight } from "./light.js";
 import { lightPanel, shadowPanel } from "./light_panel.js";
 import { lookPanel } from "./look_panel.js";
 import { markPanel } from "./mark_panel.js";
+import { meshPanel } from "./mesh_panel.js";
 import { openPanel } from "./open_panel.js";
 import { Overlay } from "./overlay.js";
 import { Pointer } from "./pointer.js";
@@ -35,7 +36,7 @@ import { volumeChooser, volumePanel } from "./volume_panel.js";
 
 // One file each; in the order of the side bar, whose four parts have names.
 const PARTS = {
-  Look: [volumeChooser, lookPanel, functionPanel, labelPanel, surfacePanel, volumePanel], Light: [lightPanel, shadowPanel, skyPanel],
+  Look: [volumeChooser, lookPanel, functionPanel, labelPanel, surfacePanel, meshPanel, volumePanel], Light: [lightPanel, shadowPanel, skyPanel],
   Inside: [cutSwitch, cutPanel, sceneCutPanel, slicePanel, markPanel], "Picture and files": [viewPanel, openPanel, exportPanel, sessionPanel, filmPanel],
 };
 
@@ -172,7 +173,7 @@ function revealIn(root) {
 }
 
 // Fills an empty element with a viewer. channel: how pictures are asked for (http_channel.js); start: what is open;
-// keyboard: where its keys are listened to; reopen(start, source): called where a person opens another file; source: the path
+// keyboard: where its keys are listened to; reopen(start, source, kept): called where a person opens another file; source: the path
 // by which this one was opened; kept: a session (session.js) to go on with; restore(file): opens a session or a scene;
 // startAfresh(): forgets what was done; address: what goes before a link's end. Returns { store, start, frames, overlay, probe, slices, marking, report, end }; end() stops all of it.
 export function mount(element, channel, start, { keyboard = element, reopen = () => {}, source = null, kept = null, restore = null, startAfresh = () => {}, address = "" } = {}) {
@@ -229,5 +230,5 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
   update();
   if (kept === null && !matchMedia("(prefers-reduced-motion: reduce)").matches) frames.animate(sweptLight, SWEEP_TIME);
   else frames.move();
-  return { store, start, frames, overlay: viewer.overlay, probe: viewer.probe, slices: viewer.slices, marking: viewer.marking, report, followLink: viewer.followLink, end: () => { ended.abort(); frames.end(); status.end(); connection.end(); } };
+  return { store, start, frames, overlay: viewer.overlay, probe: viewer.probe, slices: viewer.slices, marking: viewer.marking, report, upload: viewer.upload, followLink: viewer.followLink, end: () => { ended.abort(); frames.end(); status.end(); connection.end(); } };
 }

@@ -1,0 +1,189 @@
+/* cli/view/files.c - see files.h. */
+#define _GNU_SOURCE
+#include "files.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <halflight/compose.h>
+
+#include "cli/input.h"
+#include "cli/output.h"
+#include "cli/render/render.h"
+
+/* ---- names ---- */
+
+/* The absolute path of a file, owned by the caller. A text that names no file is copied as it is. */
+static char *absolute_path(const char *file) {
+  char *path = strncmp(file, "/dev/", 5) == 0 ? NULL : realpath(file, NULL);
+  return path != NULL ? path : strdup(file);
+}
+
+/* The absolute path of a file in a folder, owned by the caller. */
+static char *path_below(const char *folder, const char *file) {
+  char *path = NULL;
+  if (strcmp(file, ".") == 0) return strdup(folder);
+  return asprintf(&path, "%s/%s", strcmp(folder, "/") == 0 ? "" : folder, file) >= 0 ? path : NULL;
+}
+
+enum { MOST_PATHS = 1024 };
+
+/* The absolute paths that a changed description borrows. */
+typedef struct path_list {
+  const char *folder; /* where relative names begin; null: in the current folder */
+  char *paths[MOST_PATHS];
+  size_t count;
+} path_list;
+
+static bool make_absolute(const char **file, path_list *list) {
+  if (*file == NULL) return true;
+  if (list->count == MOST_PATHS) return false;
+  char *path = list->folder != NULL ? path_below(list->folder, *file) : absolute_path(*file);
+  if (path == NULL) return false;
+  list->paths[list->count] = path;
+  *file = list->paths[list->count++];
+  return true;
+}
+
+hl_status view_name_absolutely(hl_context *context, const char *folder, hl_scene **scene, hl_error *error) {
+  hl_scene_description d = *hl_scene_describe(*scene);
+  hl_scene_volume *volumes = malloc(d.volume_count * sizeof *volumes + 1);
+  hl_light *lights = malloc(d.light_count * sizeof *lights + 1);
+  hl_scene_mesh *meshes = malloc(d.mesh_count * sizeof *meshes + 1);
+  path_list *list = calloc(1, sizeof *list);
+  bool good = volumes != NULL && lights != NULL && meshes != NULL && list != NULL;
+  if (good) list->folder = folder;
+  for (size_t v = 0; good && v < d.volume_count; v++) {
+    volumes[v] = d.volumes[v];
+    good = make_absolute(&volumes[v].file, list) && make_absolute(&volumes[v].mask.file, list) &&
+           make_absolute(&volumes[v].transfer_function.plane.image.file, list);
+  }
+  for (size_t l = 0; good && l < d.light_count; l++) {
+    lights[l] = d.lights[l];
+    good = make_absolute(&lights[l].texture.file, list) && make_absolute(&lights[l].emission.file, list);
+  }
+  for (size_t m = 0; good && m < d.mesh_count; m++) {
+    meshes[m] = d.meshes[m];
+    good = make_absolute(&meshes[m].file, list);
+  }
+  good = good && make_absolute(&d.sky.file, list);
+  d.volumes = volumes;
+  d.meshes = meshes;
+  d.lights = lights;
+  hl_scene *named = NULL;
+  hl_status status = good ? hl_scene_create(context, &d, &named, error) : HL_ERROR_MEMORY;
+  if (!good) snprintf(error->message, sizeof error->message, "out of memory for the scene's paths");
+  if (status == HL_OK) {
+    hl_scene_release(*scene);
+    *scene = named;
+  }
+  for (size_t p = 0; list != NULL && p < list->count; p++) free(list->paths[p]);
+  free(list);
+  free(meshes);
+  free(lights);
+  free(volumes);
+  return status;
+}
+
+/* ---- files that pages open ---- */
+
+static hl_status for_volume(hl_context *context, const server_file *file, const char *path, hl_scene **scene,
+                            hl_error *error) {
+  hl_volume *volume = NULL;
+  hl_status status = hl_volume_load(file->confined, file->name, &volume, error);
+  if (status == HL_OK) status = hl_scene_for_volume(context, volume, path, scene, error);
+  hl_volume_release(volume);
+  return status;
+}
+
+static hl_status for_mesh(hl_context *context, const server_file *file, const char *path, hl_scene **scene,
+                          hl_error *error) {
+  hl_scene_mesh mesh;
+  hl_status status = render_load_mesh(file->confined, file->name, 0, &mesh, error);
+  mesh.file = path;
+  if (status == HL_OK) status = render_join_meshes(context, &mesh, 1, true, scene, error);
+  hl_mesh_release(mesh.mesh);
+  return status;
+}
+
+hl_status view_open_file(void *user_data, const server_file *file, hl_scene **scene, hl_error *error) {
+  hl_context *context = user_data;
+  if (has_extension(file->name, ".json")) {
+    hl_status status = hl_scene_load(file->confined, file->name, scene, error);
+    return status == HL_OK && file->folder != NULL ? view_name_absolutely(context, file->folder, scene, error)
+                                                   : status;
+  }
+  char *path = file->folder != NULL ? path_below(file->folder, file->name) : strdup(file->name);
+  if (path == NULL) {
+    snprintf(error->message, sizeof error->message, "out of memory for a path");
+    return HL_ERROR_MEMORY;
+  }
+  *scene = NULL;
+  hl_status status = is_mesh_file(file->confined, file->name) ? for_mesh(context, file, path, scene, error)
+                                                              : for_volume(context, file, path, scene, error);
+  free(path);
+  return status;
+}
+
+/* ---- files that are added ---- */
+
+/* Adds meshes. One that has the first of the colours for meshes takes the next one. */
+static hl_status join_meshes(hl_context *context, const hl_scene_mesh *meshes, size_t count, hl_scene **scene,
+                             hl_error *error) {
+  const size_t before = hl_scene_describe(*scene)->mesh_count;
+  double first[3];
+  hl_surface_color(0, first);
+  hl_scene_mesh *added = malloc(count * sizeof *added + 1);
+  if (added == NULL) {
+    snprintf(error->message, sizeof error->message, "out of memory for %zu meshes", count);
+    return HL_ERROR_MEMORY;
+  }
+  for (size_t m = 0; m < count; m++) {
+    added[m] = meshes[m];
+    if (memcmp(added[m].color, first, sizeof first) == 0) hl_surface_color(before + m, added[m].color);
+  }
+  hl_status status = render_join_meshes(context, added, count, true, scene, error);
+  free(added);
+  return status;
+}
+
+/* The volumes of both, with the light and all other settings of the first. */
+static hl_status join_volumes(hl_context *context, hl_scene *base, hl_scene *added, hl_scene **scene,
+                              hl_error *error) {
+  const hl_scene_description *before = hl_scene_describe(base);
+  hl_scene *both[] = {base, added}, *made = NULL;
+  if (before->volume_count > 0) {
+    hl_status status = hl_scene_join(context, both, 2, &made, error);
+    if (status != HL_OK) return status;
+  }
+  hl_scene_description description = *hl_scene_describe(made != NULL ? made : added);
+  hl_scene_description joined = *before;
+  joined.volumes = description.volumes;
+  joined.volume_count = description.volume_count;
+  joined.render.sheet_spacing = description.render.sheet_spacing;
+  hl_status status = render_frame_anew(&joined, error);
+  if (status == HL_OK) status = hl_scene_create(context, &joined, scene, error);
+  hl_scene_release(made);
+  return status;
+}
+
+hl_status view_join(void *user_data, hl_scene *base, hl_scene *added, hl_scene **scene, hl_error *error) {
+  hl_context *context = user_data;
+  const hl_scene_description *d = hl_scene_describe(added);
+  hl_status status = HL_OK;
+  *scene = NULL;
+  if (hl_scene_describe(base)->render.compositing == HL_COMPOSITING_MAXIMUM && d->mesh_count > 0) {
+    snprintf(error->message, sizeof error->message,
+             "a maximum projection shows no meshes: choose another look first");
+    return HL_ERROR_INPUT;
+  }
+  if (d->volume_count > 0) status = join_volumes(context, base, added, scene, error);
+  else hl_scene_retain(*scene = base);
+  if (status == HL_OK && d->mesh_count > 0)
+    status = join_meshes(context, d->meshes, d->mesh_count, scene, error);
+  if (status == HL_OK) return HL_OK;
+  hl_scene_release(*scene);
+  *scene = NULL;
+  return status;
+}
