@@ -8,10 +8,11 @@
 #include "grid/faces.h"
 #include "view/rays_lanes.h"
 
-/* The skin of one face. before, depth: how deep a ray lies behind the face on a slab's first and last sheet;
- * in voxels. */
+/* The skin of one face, in the middle of a ray's way behind it in a slab. before, depth: how deep the ray
+ * lies behind the face on the slab's first and last sheet; in voxels. */
 LANES_INLINE lanes skin_of_depth(lanes before, lanes depth) {
-  return lanes_keep(depth > before, lanes_clamp(FACE_VOXELS - depth, 0, 1));
+  lanes middle = (lanes_max(before, lanes_set(0)) + depth) * 0.5f;
+  return lanes_keep(depth > before, lanes_clamp(FACE_VOXELS - middle, 0, 1));
 }
 
 /* The skin of two opposite faces, at the places low and high of an axis. scale: voxels per unit of the axis.
@@ -50,7 +51,7 @@ LANES_INLINE lanes skin_of_cut(const run_cut *cut, lanes3 from, lanes3 to, float
   return cut->shape->keep_inside ? skin_of_depth(-before, -depth) : skin_of_depth(before, depth);
 }
 
-/* The skin at the last sheet of slab `slab` of a run, for the rays of a block. */
+/* The skin in slab `slab` of a run, for the rays of a block. */
 LANES_INLINE lanes skin_of_faces(const slab_run *run, int slab, lanes u, lanes v) {
   const grid *grid = run->grid;
   lanes3 from = rays_positions(&run->rays[slab], u, v), to = rays_positions(&run->rays[slab + 1], u, v);

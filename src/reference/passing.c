@@ -109,6 +109,9 @@ typedef struct kept_light {
   bool second;
 } kept_light;
 
+/* k to the power 1 - skin: products over steps do not depend on the steps' length. */
+static double kept_in_skin(double kept, double skin) { return skin > 0 ? pow(kept, 1 - skin) : kept; }
+
 /* The light kept in a step. from, to: the values at the step's ends, in the direction of light. skin: how
  * much visible matter there belongs to a face that cuts it, 0 to 1. */
 static kept_light kept_of_step(const reference_volume *volume, double from, double to, double length,
@@ -119,8 +122,8 @@ static kept_light kept_of_step(const reference_volume *volume, double from, doub
   bool same = foot_from == foot_to, enters = (to - from) * deep > 0;
   left = pow(left, 16) * exp(-fmax(even, 0) / (4 * volume->smallest_edge));
   if (!(extinction_at(volume, to) > 0)) skin = 0;
-  if (same) return (kept_light){fmax(left, skin), fmax(left, skin), false};
-  if (skin > 0) return (kept_light){skin, enters ? 1 : skin, false};
+  if (same) return (kept_light){kept_in_skin(left, skin), kept_in_skin(left, skin), false};
+  if (skin == 1) return (kept_light){1, 1, false};
   return (kept_light){0, enters ? 1 : 0, enters && extinction_at(volume, from) > 0};
 }
 
@@ -201,7 +204,9 @@ void hl_reference_outside(const reference *all, const reference_ray *ray, const 
       for (int c = 0; c < 3; c++) depth[c] += here * volume->described->attenuation_color[c];
       total += here;
       if (volume->described->shading != HL_SHADING_PHONG || !beside) continue;
-      const double skin = hl_reference_lit_face(volume, part->here, ray->direction, part->uncut);
+      const vec3 along = mat3_apply(volume->world_to_index.linear, ray->direction),
+                 between = vec3_add(part->here, vec3_scale(along, -0.5 * walk.length)); /* value and nearer */
+      const double skin = hl_reference_lit_face(volume, between, ray->direction, part->uncut);
       kept_light own = kept_of_step(volume, value, known ? nearer : value, walk.length, skin);
       kept.before += here * own.before;
       kept.within += here * own.within;

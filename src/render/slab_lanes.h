@@ -111,11 +111,6 @@ LANES_INLINE lanes centre_of_way(const block_density *d) {
   return m.from_a / (m.from_a + m.from_b);
 }
 
-/* base^exponent for base in [0, 1] and exponent >= 0. */
-LANES_INLINE lanes power_of_part(lanes base, lanes exponent) {
-  return lanes_exp2(lanes_max(lanes_log2(lanes_max(base, lanes_set(1e-6f))) * exponent, lanes_set(-100.0f)));
-}
-
 /* The fraction of a slab's optical depth at which it is seen on average: int e s exp(-e s) ds / (1 - exp(-e))
  * = 1 / e - exp(-e) / (1 - exp(-e)) = (1 - exp(-e) - e exp(-e)) / (e (1 - exp(-e))) (derived); 1/2 - e / 12
  * for small e. left: exp(-e). For e > 100 it is 0 to a float, and e is cut there. */
@@ -147,8 +142,8 @@ typedef struct block_slab {
  * extinction, mirrored for falling. from_a, from_b: the extinction centre's distances from the way's ends. */
 LANES_INLINE lanes way_of_depth(lanes from_a, lanes from_b, lanes u) {
   lanes_int rising = from_a >= from_b;
-  lanes t = power_of_part(lanes_select(rising, u, 1.0f - u),
-                          lanes_min(from_a, from_b) / lanes_max(from_a, from_b));
+  lanes t = lanes_power_of_part(lanes_select(rising, u, 1.0f - u),
+                                lanes_min(from_a, from_b) / lanes_max(from_a, from_b));
   return lanes_select(rising, t, 1.0f - t);
 }
 

@@ -65,8 +65,8 @@ typedef struct attenuate_job {
  *
  * A face that cuts matter is a surface, too. Its outside is the face, and light goes deeper into it whatever
  * the values behind it are: k = k' = 1 for visible matter up to a voxel behind a face through which the light
- * comes in, falling to the k of the values at FACE_VOXELS behind it. There the eye, too, sees less and less
- * of the face (render/slab_lanes.h).
+ * comes in. Deeper, the k of the values gets the power 1 - skin, where the skin falls from 1 to 0 at
+ * FACE_VOXELS behind the face. There the eye, too, sees less and less of the face (render/slab_lanes.h).
  *
  * OUTWARDS_POWER: how soon a surface that light leaves again counts as left: h falls to 2/3 within the
  * outermost voxel or so of an edge, and then 1/25 of what was taken still lights the surface. */

@@ -103,6 +103,11 @@ LANES_INLINE lanes power_of_depth(lanes from, lanes to) {
   return left;
 }
 
+/* k to the power 1 - skin. Products of such powers do not depend on the distance of sheets. */
+LANES_INLINE lanes kept_in_skin(lanes kept, lanes skin) {
+  return lanes_select(skin > 0.0f, lanes_power_of_part(kept, 1.0f - skin), kept);
+}
+
 /* Matter near a face belongs to the face's surface as far as it is visible where light leaves the slab. b:
  * the value there; corner: the block's first pixel. */
 LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light kept, table_coordinate b,
@@ -111,7 +116,7 @@ LANES_INLINE kept_light kept_by_face(const attenuate_volume *volume, kept_light 
   table_values(volume->classifier->sums, b, values);
   lanes skin = skin_of_faces(volume->faces, volume->slab, block_u(corner[0]), block_v(corner[1]));
   skin = lanes_keep(values[0] > 0.0f, skin);
-  return (kept_light){lanes_max(kept.before, skin), lanes_max(kept.within, skin)};
+  return (kept_light){kept_in_skin(kept.before, skin), kept_in_skin(kept.within, skin)};
 }
 
 /* The slab's part in a box that ends this near to the slab's own end is rounding. */

@@ -357,6 +357,10 @@ LANES_CALL lanes lanes_log2(lanes x) {
   series = lanes_fma(series, t2, lanes_set(1.0f));
   return lanes_add_scaled(lanes_from_int(n), t * series, 2.88539008178f);
 }
+/* base^exponent for base in [0, 1] and exponent >= 0. A base below 1e-6 counts as 1e-6. */
+LANES_CALL lanes lanes_power_of_part(lanes base, lanes exponent) {
+  return lanes_exp2(lanes_max(lanes_log2(lanes_max(base, lanes_set(1e-6f))) * exponent, lanes_set(-100.0f)));
+}
 
 #if defined(__AVX2__) && !defined(__AVX512F__)
 /* The least lane of each of four vectors. */

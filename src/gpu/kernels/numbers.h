@@ -50,7 +50,7 @@ DEVICE float power_of(float base, float exponent) {
   return base > 1e-12f ? power_of_two(greater(log_of_two(safe) * exponent, -100.0f)) : 0.0f;
 }
 
-/* base^exponent for base in [0, 1] and exponent >= 0. */
+/* lanes_power_of_part() */
 DEVICE float power_of_part(float base, float exponent) {
   return power_of_two(greater(log_of_two(greater(base, 1e-6f)) * exponent, -100.0f));
 }

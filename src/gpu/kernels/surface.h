@@ -155,11 +155,14 @@ DEVICE float skin_of_axis(float from, float to, float low, float high, float sca
               depth[2] = {(to - low) * scale, (high - to) * scale};
   float skin = 0.0f;
   for (int side = 0; side < 2; side++)
-    if (depth[side] > before[side]) skin = greater(skin, limited(FACE_VOXELS - depth[side], 0.0f, 1.0f));
+    if (depth[side] > before[side]) {
+      const float middle = (greater(before[side], 0.0f) + depth[side]) * 0.5f;
+      skin = greater(skin, limited(FACE_VOXELS - middle, 0.0f, 1.0f));
+    }
   return skin;
 }
 
-/* How much the matter on a light's ray belongs to a face of the box where the ray leaves a slab. in_index: of
+/* How much the matter on a light's ray belongs to a face of the box in a slab. in_index: of
  * the sheet before the slab; the next one's follows. */
 DEVICE float skin_of_faces(GLOBAL const plan_volume *volume, GLOBAL const plan_rays *in_index,
                            int perspective, float u, float v) {
@@ -193,8 +196,8 @@ DEVICE kept_light kept_in_slab(const volume_data *volume, table_coordinate a, ta
     float at_end[4];
     table_values(sums_table(volume->tables), b, 2, at_end);
     if (at_end[0] > 0.0f) {
-      kept.before = greater(kept.before, skin);
-      kept.within = greater(kept.within, skin);
+      kept.before = power_of_part(kept.before, 1.0f - skin);
+      kept.within = power_of_part(kept.within, 1.0f - skin);
     }
   }
   int ends = span.begin + span.length<1.0f - ROUNDING_OF_SPAN, begins = span.begin> ROUNDING_OF_SPAN;
