@@ -254,6 +254,11 @@ static hl_status cap_face_of(hl_pool *pool, const lattice *lattice, const cap_fa
 
 /* ---- all faces ---- */
 
+/* Whether face n of the box, by axis, the lower one first, ends the volume. */
+static bool ends_volume(const grid *grid, int n) {
+  return fabsf(n % 2 ? grid->face_high[n / 2] : grid->face_low[n / 2]) < FACE_FAR_OUT;
+}
+
 static hl_status cap_box(hl_pool *pool, const lattice *lattice, iso_triangles *made, hl_error *error) {
   const grid *grid = lattice->grid;
   cap_face face = {.cut = grid->cut_count};
@@ -266,8 +271,7 @@ static hl_status cap_box(hl_pool *pool, const lattice *lattice, iso_triangles *m
   for (int n = 0; n < 6 && status == HL_OK; n++) {
     face.axis = n / 2;
     face.height = face.outward = n % 2 ? 1 : -1;
-    if (fabsf(n % 2 ? grid->face_high[n / 2] : grid->face_low[n / 2]) >= FACE_FAR_OUT) continue;
-    status = cap_face_of(pool, lattice, &face, made, error);
+    if (ends_volume(grid, n)) status = cap_face_of(pool, lattice, &face, made, error);
   }
   return status;
 }
@@ -313,4 +317,10 @@ hl_status hl_iso_cap(hl_pool *pool, const lattice *lattice, iso_triangles *made,
   for (size_t i = 0; i < lattice->grid->cut_count && status == HL_OK; i++)
     status = cap_cut(pool, lattice, i, made, error);
   return status;
+}
+
+bool hl_iso_caps_close(const grid *grid) {
+  bool all = true;
+  for (int n = 0; n < 6; n++) all &= ends_volume(grid, n);
+  return all;
 }

@@ -9,4 +9,7 @@
  * volume goes on, get none. */
 hl_status hl_iso_cap(hl_pool *pool, const lattice *lattice, iso_triangles *made, hl_error *error);
 
+/* Whether each face of the box gets a cap, so that surface and caps enclose the inside. */
+bool hl_iso_caps_close(const grid *grid);
+
 #endif

@@ -86,6 +86,7 @@ hl_status hl_isosurface_create(hl_pool *pool, const hl_scene_volume *volume, con
     place(pool, volume, grid, &made);
     status = mesh_of(context, &made, mesh, error);
     if (status == HL_OK) (*mesh)->is_cut = true;
+    if (status == HL_OK && hl_iso_caps_close(grid)) hl_mesh_take_as_closed(*mesh);
   }
   hl_iso_triangles_release(context, &made);
   return status;

@@ -88,3 +88,9 @@ hl_status hl_mesh_find_insides(hl_mesh *mesh, hl_error *error) {
   hl_release(context, search.volume);
   return room ? HL_OK : hl_fail_memory(error, d->vertex_count * 20, "a mesh's closed parts");
 }
+
+void hl_mesh_take_as_closed(hl_mesh *mesh) {
+  mesh->closed = true;
+  for (size_t t = 0; t < mesh->description.triangle_count; t++)
+    if (mesh->insides[t] == 0) mesh->insides[t] = -1;
+}

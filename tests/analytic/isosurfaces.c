@@ -8,6 +8,7 @@
 
 #include "../asserts.h"
 #include "grid/make_grid.h"
+#include "grid/relevant.h"
 #include "isosurface/cubes.h"
 #include "isosurface/isosurface.h"
 #include "reference_stage.h"
@@ -48,8 +49,9 @@ static void open_stage(stage *set) {
 
 /* ---- where the surface lies ---- */
 
-/* The mesh of a scene's only isosurface, in the world. */
-static hl_mesh *mesh_of(const stage *set, double value) {
+/* The mesh of a scene's only isosurface, in the world. goes_on: another volume touches the box's face at the
+ * greatest x. */
+static hl_mesh *mesh_beside(const stage *set, double value, bool goes_on) {
   hl_mesh *mesh = NULL;
   hl_pool *pool = NULL;
   hl_error error = {0};
@@ -61,12 +63,15 @@ static hl_mesh *mesh_of(const stage *set, double value) {
   const grid_functions *functions = hl_hot_functions(HL_INSTRUCTION_SET_SCALAR)->grid;
   hl_status status = hl_pool_create(set->context, 1, &pool, &error);
   if (status == HL_OK) status = hl_grid_create(set->context, pool, functions, &source, &grid, &error);
+  if (status == HL_OK && goes_on) grid.face_high[0] = FACE_FAR_OUT;
   if (status == HL_OK) status = hl_isosurface_create(pool, volume, &grid, kernel, value, &mesh, &error);
   if (status != HL_OK) fail_msg("%s", error.message);
   hl_grid_release(set->context, &grid);
   hl_pool_destroy(pool);
   return mesh;
 }
+
+static hl_mesh *mesh_of(const stage *set, double value) { return mesh_beside(set, value, false); }
 
 static vec3 point_of(const hl_mesh_description *d, const uint32_t corner[3], const double weight[3]) {
   vec3 sum = {0, 0, 0};
@@ -195,6 +200,30 @@ static void test_noise_is_watertight(void **state) {
   assert_true(mesh->closed);
   assert_true(hl_mesh_describe(mesh)->triangle_count > 500);
   hl_mesh_release(mesh);
+  stage_close(&set);
+}
+
+static void clip_ball(hl_scene_volume *ball) {
+  ball->clipped = 1;
+  memcpy(ball->clip_min, (double[3]){-30, -30, -30}, sizeof ball->clip_min);
+  memcpy(ball->clip_max, (double[3]){3.1, 30, 30}, sizeof ball->clip_max);
+}
+
+/* A ball that the box cuts off is closed by its cap, and its inside lies behind all triangles; where another
+ * volume goes on, the ball stays open. */
+static void test_caps_close(void **state) {
+  (void)state;
+  stage set;
+  open_stage(&set);
+  clip_ball(add_ball(&set, (vec3){0, 0, 0}));
+  hl_mesh *closed = mesh_beside(&set, -12 * 12 - 1, false), *open = mesh_beside(&set, -12 * 12 - 1, true);
+  const size_t triangles = hl_mesh_describe(closed)->triangle_count;
+  assert_true(triangles > hl_mesh_describe(open)->triangle_count);
+  assert_true(closed->closed);
+  for (size_t t = 0; t < triangles; t++) assert_int_equal(closed->insides[t], -1);
+  assert_false(open->closed);
+  hl_mesh_release(closed);
+  hl_mesh_release(open);
   stage_close(&set);
 }
 
@@ -365,9 +394,7 @@ static void test_clip(void **state) {
   hl_isosurface surface = surface_of(12, 1);
   hl_scene_volume *ball = add_ball(&set, (vec3){0, 0, 0});
   ball->iso = &surface, ball->iso_count = 1;
-  ball->clipped = 1;
-  memcpy(ball->clip_min, (double[3]){-30, -30, -30}, sizeof ball->clip_min);
-  memcpy(ball->clip_max, (double[3]){3.1, 30, 30}, sizeof ball->clip_max);
+  clip_ball(ball);
   (void)stage_add_directional(&set, (vec3){0, 0, -1});
   stage_render_sheets(&set, pixels);
   double covered = 0;
@@ -377,11 +404,16 @@ static void test_clip(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_ball),       cmocka_unit_test(test_long_voxels),
-      cmocka_unit_test(test_patterns),   cmocka_unit_test(test_noise_is_watertight),
-      cmocka_unit_test(test_silhouette), cmocka_unit_test(test_translucent),
-      cmocka_unit_test(test_shadow),     cmocka_unit_test(test_against_the_reference),
-      cmocka_unit_test(test_threads),    cmocka_unit_test(test_clip)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_ball),
+                                     cmocka_unit_test(test_long_voxels),
+                                     cmocka_unit_test(test_patterns),
+                                     cmocka_unit_test(test_noise_is_watertight),
+                                     cmocka_unit_test(test_caps_close),
+                                     cmocka_unit_test(test_silhouette),
+                                     cmocka_unit_test(test_translucent),
+                                     cmocka_unit_test(test_shadow),
+                                     cmocka_unit_test(test_against_the_reference),
+                                     cmocka_unit_test(test_threads),
+                                     cmocka_unit_test(test_clip)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
