@@ -15,9 +15,6 @@ typedef struct surface_point {
 /* The point at a height, above the first sheet, of the eye's ray that meets a fragment; frame space. */
 vec3 hl_surface_place(const sweep *sweep, const tile_slab *slab, const fragment *f, double height);
 
-/* The normal of a triangle's corner i as it is interpolated, on the side of the triangle's own, flat one. */
-vec3 hl_rounded_normal(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, int i, vec3 flat);
-
 surface_point hl_surface_point_of(const sweep *sweep, const tile_slab *slab, const fragment *f);
 
 #endif

@@ -65,38 +65,29 @@ void hl_clusters_count(const hl_scene_description *scene, hl_layout *layout) {
 
 /* ---- boxes ---- */
 
-static void widen(surface_cluster *cluster, const float point[3], float radius) {
-  for (int axis = 0; axis < 3; axis++) {
-    float low = point[axis], high = low;
-    if (radius > 0) low = nextafterf(low - radius, -INFINITY), high = nextafterf(high + radius, INFINITY);
-    cluster->low[axis] = low < cluster->low[axis] ? low : cluster->low[axis];
-    cluster->high[axis] = high > cluster->high[axis] ? high : cluster->high[axis];
-  }
-}
-
 static void find_box(const surfaces *all, surface_cluster *cluster) {
   for (int axis = 0; axis < 3; axis++) cluster->low[axis] = INFINITY, cluster->high[axis] = -INFINITY;
   for (uint32_t i = cluster->first; i < cluster->first + cluster->count; i++) {
-    uint32_t p = all->order[i];
-    if (!hl_is_triangle(all, p)) {
-      const float *sphere = hl_sphere_of(all, p);
-      widen(cluster, sphere, sphere[3]);
-      continue;
+    const uint32_t p = all->order[i];
+    float low[3], high[3];
+    hl_primitive_kind(all, p)->bound(all, p, low, high);
+    for (int axis = 0; axis < 3; axis++) {
+      cluster->low[axis] = low[axis] < cluster->low[axis] ? low[axis] : cluster->low[axis];
+      cluster->high[axis] = high[axis] > cluster->high[axis] ? high[axis] : cluster->high[axis];
     }
-    for (int k = 0; k < 3; k++) widen(cluster, all->positions[all->triangles[p][k]], 0);
   }
 }
 
 /* ---- cones ---- */
 
 /* The mean of the normals, and the greatest angle from it. Triangles without an area have no normal and are
- * not seen. */
+ * not seen. Primitives without corners have normals of all directions. */
 static void find_cone(const surfaces *all, surface_cluster *cluster) {
   vec3 normals[CLUSTER_SIZE], sum = {0, 0, 0};
   double least = 1;
   cluster->cosine = -1;
   memset(cluster->axis, 0, sizeof cluster->axis);
-  if (!hl_is_triangle(all, cluster->first)) return;
+  if (!hl_has_corners(all, cluster->first)) return;
   for (int i = 0; i < cluster->count; i++) {
     normals[i] = hl_surface_normal(all, all->order[cluster->first + (uint32_t)i]);
     if (vec3_length(normals[i]) < 2) sum = vec3_add(sum, normals[i]); /* else not a number */
@@ -164,7 +155,7 @@ static void describe_task(void *data, size_t task, int worker) {
   for (size_t c = task * A_TASK; c < end_of_task(task, all->cluster_count); c++) {
     find_box(all, &all->clusters[c]);
     find_cone(all, &all->clusters[c]);
-    if (!hl_is_triangle(all, all->clusters[c].first)) continue;
+    if (!hl_has_corners(all, all->clusters[c].first)) continue;
     number_vertices(all, c, &set);
     copy_normals(all, c);
   }
@@ -176,7 +167,7 @@ static void copy_task(void *data, size_t task, int worker) {
   vertex_set set;
   for (size_t c = task * A_TASK; c < end_of_task(task, all->cluster_count); c++) {
     const surface_cluster *cluster = &all->clusters[c];
-    if (!hl_is_triangle(all, cluster->first)) continue;
+    if (!hl_has_corners(all, cluster->first)) continue;
     float *to = all->cluster_positions + 3 * cluster->first_vertex;
     number_vertices(all, c, &set);
     for (uint32_t v = 0; v < cluster->vertices; v++)
@@ -197,12 +188,12 @@ static size_t cut(surface_cluster *clusters, size_t mesh, uint32_t first, uint32
 
 /* Orders the primitives, and cuts them into clusters. */
 static void cut_all(hl_pool *pool, surfaces *all, uint32_t *spare) {
-  static const primitive_kind *const kinds[] = {&hl_primitive_triangle, &hl_primitive_sphere};
   size_t count = 0;
-  for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+  for (size_t k = 0; k < PRIMITIVE_KINDS; k++)
     for (size_t m = 0; m < all->mesh_count; m++) {
       const surface_mesh *mesh = &all->meshes[m];
-      const uint32_t first = kinds[k]->first(all, mesh), own = kinds[k]->count(mesh);
+      const uint32_t first = hl_primitive_kinds[k]->first(all, mesh),
+                     own = hl_primitive_kinds[k]->count(mesh);
       hl_cluster_order_fill(pool, all, first, own, spare);
       count += cut(all->clusters + count, m, first, own);
     }

@@ -18,7 +18,8 @@ struct surface_cluster {
   float axis[3];         /* of the cone; unit */
   float cosine;          /* of the greatest angle between the axis and a normal; below 0: the normals may have
                             any direction */
-  uint32_t first;        /* of all->order: its primitives */
+  uint32_t first; /* of all->order: its primitives; the order keeps each kind's numbers together, so that
+                     primitive `first` has the kind of all of them */
   uint16_t count, mesh;
   uint16_t vertices;   /* of triangles: as in cluster_shape */
   size_t first_vertex; /* in all->cluster_positions */

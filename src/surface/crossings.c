@@ -3,22 +3,11 @@
 
 #include <string.h>
 
-#include "surface/primitive.h"
 #include "surface/sample_rows.h"
-#include "surface/sphere_coverage.h"
+#include "surface/shown_surface.h"
 
 /* Of a pixel's fragments only so many are looked at: a pixel that has more is a thicket. */
 enum { MOST_FRAGMENTS = 32 };
-
-/* Heights of the surface that a fragment shows: of a triangle, or of one side of a sphere. */
-typedef struct shown_surface {
-  surface_plane plane;
-  const float *sphere;     /* null: a triangle */
-  bool leaving;            /* the side of the sphere where rays leave it */
-  bool by_corners;         /* a triangle none of whose corners is cut: its height is rise / part, below */
-  double rise[3], part[3]; /* linear functions of the pixel, as those of surface_plane */
-  sphere_rays rays;        /* of a sphere */
-} shown_surface;
 
 /* The fragments of a pixel, and the surfaces of those that may cross others. */
 typedef struct pixel_fragments {
@@ -39,57 +28,7 @@ static double depth_of(const pixel_fragments *pixel, double height) {
 
 /* The height of a surface at a point of the pixel. */
 static double height_at(const pixel_fragments *pixel, const shown_surface *surface, double u, double v) {
-  const crossing_tile *tile = pixel->tile;
-  vec3 point;
-  u += pixel->x, v += pixel->y;
-  if (surface->by_corners) return hl_plane_linear(surface->rise, u, v) / hl_plane_linear(surface->part, u, v);
-  if (surface->sphere == NULL) return hl_plane_height(&surface->plane, u, v);
-  (void)hl_meet_sphere(&surface->rays, u, v, surface->leaving, &point);
-  return vec3_dot(tile->sheets->normal, point) - tile->sheets->first;
-}
-
-/* The side of a sphere that is nearer to a fragment's height. */
-static void find_side(const pixel_fragments *pixel, const fragment *f, shown_surface *surface) {
-  double u, v, away[2];
-  hl_fragment_middle(f->samples, &u, &v);
-  for (int side = 0; side < 2; side++) {
-    surface->leaving = side;
-    away[side] = fabs(height_at(pixel, surface, u, v) - (double)f->height);
-  }
-  surface->leaving = away[1] < away[0];
-}
-
-/* A linear function that has these values at three points, with so much area, twice, between them. */
-static void set_linear(double f[3], const double x[3], const double y[3], double area,
-                       const double value[3]) {
-  double a = value[1] - value[0], b = value[2] - value[0];
-  f[1] = (a * (y[2] - y[0]) - b * (y[1] - y[0])) / area;
-  f[2] = (b * (x[1] - x[0]) - a * (x[2] - x[0])) / area;
-  f[0] = value[0] - f[1] * x[0] - f[2] * y[0];
-}
-
-/* Heights between a triangle's corners where these are seen: on the grid by which samples are covered. So a
- * triangle that is seen from its edge has heights between those of its corners at all its samples, and meets
- * its neighbours, which its plane does not. Derived: heights over the distance are linear in the picture, as
- * is one over the distance. */
-static void set_corners(const crossing_tile *tile, uint32_t triangle, shown_surface *surface) {
-  const view *view = tile->view;
-  double x[3], y[3], rise[3], part[3];
-  surface->by_corners = false;
-  for (int i = 0; i < 3; i++) {
-    uint32_t vertex = tile->all->triangles[triangle][i];
-    vec3 at = hl_surface_vector(tile->all->positions[vertex]);
-    int32_t seen[2];
-    if (!hl_see_vertex(tile->seen, vertex, seen)) return;
-    x[i] = seen[0] / (double)SUBPIXELS;
-    y[i] = seen[1] / (double)SUBPIXELS;
-    part[i] = view->perspective ? 1 / vec3_dot(view->inverse.row[0], vec3_subtract(at, view->origin)) : 1;
-    rise[i] = (vec3_dot(tile->sheets->normal, at) - tile->sheets->first) * part[i];
-  }
-  double area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
-  surface->by_corners = fabs(area) > 0;
-  set_linear(surface->rise, x, y, area, rise);
-  set_linear(surface->part, x, y, area, part);
+  return hl_shown_height(pixel->tile->sheets, surface, u + pixel->x, v + pixel->y);
 }
 
 static const shown_surface *surface_of(pixel_fragments *pixel, size_t i) {
@@ -98,16 +37,10 @@ static const shown_surface *surface_of(pixel_fragments *pixel, size_t i) {
   shown_surface *surface = &pixel->surfaces[i];
   if (pixel->has_surface >> i & 1) return surface;
   pixel->has_surface |= 1u << i;
-  if (hl_is_triangle(tile->all, f->primitive)) {
-    surface->sphere = NULL;
-    set_corners(tile, f->primitive, surface);
-    hl_plane_of_triangle(tile->view, tile->sheets, tile->all, f->primitive, &surface->plane);
-  } else {
-    surface->by_corners = false;
-    surface->sphere = hl_sphere_of(tile->all, f->primitive);
-    surface->rays = hl_sphere_rays(tile->view, surface->sphere);
-    find_side(pixel, f, surface);
-  }
+  double u, v;
+  hl_fragment_middle(f->samples, &u, &v);
+  surface->raster = hl_primitive_kind(tile->seen->all, f->primitive)->raster;
+  surface->raster->show(tile->seen, tile->sheets, f, u + pixel->x, v + pixel->y, surface);
   return surface;
 }
 
@@ -135,9 +68,7 @@ static bool may_cross(const pixel_fragments *pixel, const fragment *first, const
 static void set_height(const pixel_fragments *pixel, const shown_surface *surface, fragment *f) {
   double u, v;
   hl_fragment_middle(f->samples, &u, &v);
-  double height = height_at(pixel, surface, u, v);
-  if (surface->sphere == NULL) height = fmin(fmax(height, surface->plane.lowest), surface->plane.highest);
-  f->height = (float)height;
+  f->height = (float)fmin(fmax(height_at(pixel, surface, u, v), surface->lowest), surface->highest);
 }
 
 /* Puts samples of fragment i, which lets light through, before fragment j. There are at most as many parts as

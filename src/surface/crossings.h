@@ -12,8 +12,6 @@
 
 /* A tile of the eye's view. All is borrowed. */
 typedef struct crossing_tile {
-  const surfaces *all;
-  const view *view;
   const seen_surfaces *seen;
   const sheet_stack *sheets;
   const fragment_order *order;

@@ -1,4 +1,4 @@
-/* surface/primitive.c - see primitive.h: which mesh a primitive belongs to, and its opacity. */
+/* surface/primitive.c - see primitive.h: which mesh a primitive belongs to, its opacity. */
 #include "surface/primitive.h"
 
 size_t hl_surface_mesh_of(const surfaces *all, uint32_t primitive) {
@@ -18,5 +18,5 @@ uint32_t hl_surface_mesh_end(const surfaces *all, size_t mesh, uint32_t primitiv
 }
 
 float hl_primitive_opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
-  return hl_primitive_kind(all, primitive)->opacity(all, mesh, primitive);
+  return (float)hl_primitive_kind(all, primitive)->opacity(all, mesh, primitive);
 }

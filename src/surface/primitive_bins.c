@@ -4,11 +4,12 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "surface/primitive.h"
+#include "surface/primitive_raster.h"
 
 enum { LEAST_A_TASK = 1 << 8, MOST_TASKS = 32 };
 
-/* A cluster that touches more tiles is taken apart. */
+/* A cluster that touches more tiles is taken apart. Views see the vertices of clusters with corners together;
+ * other clusters are taken apart where they touch more than one tile. */
 enum { MOST_TILES_TOGETHER = 9 };
 
 /* The tiles that a primitive touches, the last ones included; none where x0 is greater than x1. */
@@ -31,31 +32,6 @@ static uint16_t clamp_tile(int32_t tile, int tiles) {
   return (uint16_t)(tile < 0 ? 0 : tile >= tiles ? tiles - 1 : tile);
 }
 
-static void set_triangle_span(const bin_work *work, const int32_t *x, const int32_t *y, int corners,
-                              tile_span *span) {
-  const view *view = work->seen->view;
-  int32_t x0 = x[0], y0 = y[0], x1 = x[0], y1 = y[0];
-  for (int i = 1; i < corners; i++) {
-    x0 = x[i] < x0 ? x[i] : x0;
-    x1 = x[i] > x1 ? x[i] : x1;
-    y0 = y[i] < y0 ? y[i] : y0;
-    y1 = y[i] > y1 ? y[i] : y1;
-  }
-  if (x1 < 0 || y1 < 0 || x0 >= view->width * SUBPIXELS || y0 >= view->height * SUBPIXELS) return;
-  enum { TILE_SHIFT = 12 };
-  _Static_assert(1 << TILE_SHIFT == TILE * SUBPIXELS, "a shift divides by the size of a tile");
-  *span = (tile_span){
-      clamp_tile(x0 >> TILE_SHIFT, work->tiles_x), clamp_tile(y0 >> TILE_SHIFT, work->tiles_y),
-      clamp_tile(x1 >> TILE_SHIFT, work->tiles_x), clamp_tile(y1 >> TILE_SHIFT, work->tiles_y)};
-}
-
-static void find_triangle_span(const bin_work *work, uint32_t triangle, binned wanted, tile_span *span) {
-  seen_polygon polygon;
-  hl_see_triangle(work->seen, triangle, &polygon);
-  if (polygon.count > 0 && (wanted != BINNED_FRONTS || hl_polygon_area(polygon.x, polygon.y) <= 0))
-    set_triangle_span(work, polygon.x, polygon.y, polygon.count, span);
-}
-
 static void set_bounds_span(const bin_work *work, const seen_bounds *bounds, tile_span *span) {
   const double limit = 1 << 20; /* tiles: whole numbers hold them */
   int32_t at[4];
@@ -69,8 +45,8 @@ static void find_span(const bin_work *work, uint32_t primitive, binned wanted, t
   const surfaces *all = work->seen->all;
   seen_bounds bounds;
   *span = (tile_span){1, 1, 0, 0};
-  if (hl_is_triangle(all, primitive)) find_triangle_span(work, primitive, wanted, span);
-  else if (hl_see_sphere(work->seen->view, hl_sphere_of(all, primitive), &bounds))
+  const primitive_raster *raster = hl_primitive_kind(all, primitive)->raster;
+  if (raster->see(work->seen, primitive, wanted == BINNED_FRONTS, &bounds))
     set_bounds_span(work, &bounds, span);
 }
 
@@ -92,7 +68,7 @@ static void find_cluster_span(const bin_work *work, const surface_cluster *clust
   if (box == BOX_UNSEEN) return;
   if (box == BOX_WHOLE) set_bounds_span(work, &bounds, span);
   *whole = box == BOX_WHOLE &&
-           tiles_of(span) <= (hl_is_triangle(work->seen->all, cluster->first) ? MOST_TILES_TOGETHER : 1);
+           tiles_of(span) <= (hl_has_corners(work->seen->all, cluster->first) ? MOST_TILES_TOGETHER : 1);
 }
 
 static void task_range(const bin_work *work, size_t index, size_t *first, size_t *end) {

@@ -3,11 +3,7 @@
 
 #include "core/memory.h"
 #include "mesh/mesh.h"
-#include "surface/late/seen_seams.h"
-#include "surface/primitive.h"
-#include "surface/sphere_coverage.h"
-#include "surface/surface_cuts.h"
-#include "surface/surface_plane.h"
+#include "surface/primitive_raster.h"
 
 bool hl_tile_make_room(hl_context *context, fragment_worker *worker, size_t more) {
   size_t wanted = worker->count + more;
@@ -62,12 +58,6 @@ void hl_add_to_slabs(const fragment_work *work, fragment_worker *worker, fragmen
   }
 }
 
-/* A pixel of a view, and the middle of the samples that a surface covers of it. */
-typedef struct covered_pixel {
-  int x, y;
-  double u, v;
-} covered_pixel;
-
 /* Adds a fragment of a light's view: to the slab at its delayed height, and to those above it that the plane
  * crosses within the pixel, or up to where another triangle begins at a corner. Where the backs are dark
  * there is no delay. */
@@ -89,8 +79,8 @@ static covered_pixel pixel_of(int x, int y, uint16_t samples) {
   return pixel;
 }
 
-static void add_pixel(const fragment_work *work, fragment_worker *worker, const surface_plane *plane,
-                      fragment f, const covered_pixel *at, const seen_seams *seams) {
+void hl_add_pixel(const fragment_work *work, fragment_worker *worker, const surface_plane *plane, fragment f,
+                  const covered_pixel *at, const seen_seams *seams) {
   const fragments_source *source = work->source;
   double height = hl_plane_height(plane, at->u, at->v);
   height = fmin(fmax(height, plane->lowest), plane->highest); /* not a number: the lowest */
@@ -110,9 +100,8 @@ static void add_pixel(const fragment_work *work, fragment_worker *worker, const 
   worker->scratch[worker->count++] = f;
 }
 
-/* The next pixel of the view, from the tile's column at[0] and row at[1] on, of which samples are covered. */
-static bool next_pixel(const view *view, const tile_part *part, const seen_part *seen, int at[2], fragment *f,
-                       covered_pixel *pixel) {
+bool hl_next_pixel(const view *view, const tile_part *part, const seen_part *seen, int at[2], fragment *f,
+                   covered_pixel *pixel) {
   const pixel_span *span = &part->span;
   for (; at[1] <= span->y1; at[0] = span->x0, at[1]++)
     for (; at[0] <= span->x1; at[0]++) {
@@ -126,72 +115,6 @@ static bool next_pixel(const view *view, const tile_part *part, const seen_part 
       return true;
     }
   return false;
-}
-
-static void add_triangle(const fragment_work *work, fragment_worker *worker, tile_part *part, fragment f) {
-  const fragments_source *source = work->source;
-  seen_polygon polygon;
-  seen_seams seams;
-  surface_plane plane;
-  covered_pixel pixel;
-  hl_see_triangle(work->seen, f.primitive, &polygon);
-  if (!hl_cover_tile(&polygon, part->tile_x, part->tile_y, &part->span, part->covered)) return;
-  int at[2] = {part->span.x0, part->span.y0};
-  hl_plane_of_triangle(source->view, source->sheets, source->surfaces, f.primitive, &plane);
-  plane.leaving = work->dark_backs[f.mesh] && hl_plane_linear(plane.way, part->tile_x * TILE + TILE / 2,
-                                                              part->tile_y * TILE + TILE / 2) > 0;
-  const seen_part seen = {part->is_cut ? source->surfaces : NULL, source->view, &plane, NULL, false};
-  hl_see_seams(work, &f, &seams);
-  while (next_pixel(source->view, part, &seen, at, &f, &pixel))
-    add_pixel(work, worker, &plane, f, &pixel, &seams);
-}
-
-/* Whether a light lights nothing of a sphere from within: no light passes it, and the light is outside. */
-static bool has_dark_inside(const fragment_work *work, const float sphere[4], const fragment *f) {
-  const view *view = work->source->view;
-  if (f->opacity < 1 || work->least[f->mesh] < 1) return false;
-  vec3 away = vec3_subtract(view->origin, hl_surface_vector(sphere));
-  return !view->perspective || vec3_length(away) > (double)sphere[3];
-}
-
-/* The side of a sphere that rays enter or leave by. */
-static void add_side(const fragment_work *work, fragment_worker *worker, const tile_part *part, fragment f,
-                     bool leaving) {
-  const fragments_source *source = work->source;
-  const float *sphere = hl_sphere_of(source->surfaces, f.primitive);
-  covered_pixel pixel;
-  int at[2] = {part->span.x0, part->span.y0};
-  bool dark = leaving && !part->is_cut && has_dark_inside(work, sphere, &f);
-  const seen_part seen = {part->is_cut ? source->surfaces : NULL, source->view, NULL, sphere, leaving};
-  const sphere_rays rays = hl_sphere_rays(source->view, sphere);
-  surface_plane plane;
-  hl_plane_begin(source->view, source->sheets, &plane);
-  plane.leaving = dark;
-  while (next_pixel(source->view, part, &seen, at, &f, &pixel)) {
-    vec3 point;
-    if (!hl_meet_sphere(&rays, pixel.u, pixel.v, leaving, &point)) continue;
-    hl_plane_touch_sphere(source->view, source->sheets, sphere, point, &plane);
-    add_pixel(work, worker, &plane, f, &pixel, NULL);
-  }
-}
-
-/* A view sees the far side of an opaque sphere only from within. */
-static bool has_far_side(const fragment_work *work, const float sphere[4], float opacity) {
-  const view *view = work->source->view;
-  if (work->source->rise > 0 || opacity < 1) return true;
-  vec3 away = vec3_subtract(view->origin, hl_surface_vector(sphere));
-  return view->perspective && vec3_length(away) <= 1.01 * (double)sphere[3];
-}
-
-static void add_sphere(const fragment_work *work, fragment_worker *worker, tile_part *part, fragment f) {
-  const fragments_source *source = work->source;
-  const float *sphere = hl_sphere_of(source->surfaces, f.primitive);
-  seen_bounds bounds;
-  if (!hl_see_sphere(source->view, sphere, &bounds) ||
-      !hl_cover_sphere(source->view, sphere, &bounds, part->tile_x, part->tile_y, &part->span, part->covered))
-    return;
-  add_side(work, worker, part, f, false);
-  if (part->is_cut || has_far_side(work, sphere, f.opacity)) add_side(work, worker, part, f, true);
 }
 
 fragment hl_fragment_of(const fragment_work *work, size_t mesh_index, uint32_t primitive) {
@@ -211,6 +134,5 @@ void hl_add_primitive(const fragment_work *work, fragment_worker *worker, tile_p
   if (cut == CUT_LEAVES_NOTHING) return;
   part->is_cut = cut == CUT_LEAVES_SOME;
   fragment f = hl_fragment_of(work, mesh_index, primitive);
-  if (hl_is_triangle(all, primitive)) add_triangle(work, worker, part, f);
-  else add_sphere(work, worker, part, f);
+  hl_primitive_kind(all, primitive)->raster->cover(work, worker, part, &f);
 }

@@ -8,6 +8,9 @@
 
 #include "surface/coverage.h"
 #include "surface/fragment_work.h"
+#include "surface/late/seen_seams.h"
+#include "surface/surface_cuts.h"
+#include "surface/surface_plane.h"
 
 /* The part of a primitive in a tile: what its samples cover, and what cuts leave of that. */
 typedef struct tile_part {
@@ -34,6 +37,22 @@ fragment hl_fragment_of(const fragment_work *work, size_t mesh_index, uint32_t p
  * must be room for MOST_SLABS. */
 void hl_add_to_slabs(const fragment_work *work, fragment_worker *worker, fragment f, double start,
                      int32_t first, int32_t last);
+
+/* A pixel of a view, and the middle of the samples that a surface covers of it. */
+typedef struct covered_pixel {
+  int x, y;
+  double u, v;
+} covered_pixel;
+
+/* The next pixel of the view, from the tile's column at[0] and row at[1] on, of which samples are covered;
+ * false: there is none. */
+bool hl_next_pixel(const view *view, const tile_part *part, const seen_part *seen, int at[2], fragment *f,
+                   covered_pixel *pixel);
+
+/* Adds a fragment that lies at a pixel of a plane, and marks its slab. seams: of a light's view; null: none.
+ */
+void hl_add_pixel(const fragment_work *work, fragment_worker *worker, const surface_plane *plane, fragment f,
+                  const covered_pixel *at, const seen_seams *seams);
 
 /* Adds a primitive's fragments in a tile, and makes room for them. */
 void hl_add_primitive(const fragment_work *work, fragment_worker *worker, tile_part *part, size_t mesh_index,

@@ -1,5 +1,5 @@
 /* surface/sphere.c - the kind of primitive that a sphere is. */
-#include "surface/primitive.h"
+#include "surface/primitive_raster.h"
 
 static uint32_t first_of(const surfaces *all, const surface_mesh *mesh) {
   return all->triangle_count + mesh->first_sphere;
@@ -18,11 +18,16 @@ static void bound(const surfaces *all, uint32_t primitive, float low[3], float h
   }
 }
 
-static float opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
+/* Its own colour; null: it has none. */
+static const float *color_of(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
+  if (mesh->sphere_colors == NULL) return NULL;
+  return mesh->sphere_colors[primitive - all->triangle_count - mesh->first_sphere];
+}
+
+static double opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
   double opacity = mesh->scene->opacity;
-  if (mesh->sphere_colors == NULL) return (float)opacity;
-  float own = mesh->sphere_colors[primitive - all->triangle_count - mesh->first_sphere][3];
-  return (float)(opacity * fmin(fmax((double)own, 0), 1));
+  const float *own = color_of(all, mesh, primitive);
+  return own == NULL ? opacity : opacity * fmin(fmax((double)own[3], 0), 1);
 }
 
 static vec3 normal(const surfaces *all, uint32_t primitive, vec3 met, vec3 point, double *from) {
@@ -35,6 +40,23 @@ static vec3 normal(const surfaces *all, uint32_t primitive, vec3 met, vec3 point
 static void plane(const view *view, const sheet_stack *sheets, const surfaces *all, uint32_t primitive,
                   vec3 met, surface_plane *plane) {
   hl_plane_of_sphere(view, sheets, hl_sphere_of(all, primitive), met, plane);
+}
+
+static vec3 look(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, vec3 at, vec3 *normal,
+                 double color[3]) {
+  hl_primitive_color(mesh, color_of(all, mesh, primitive), color);
+  *normal = vec3_normalise(vec3_subtract(at, hl_surface_vector(hl_sphere_of(all, primitive))));
+  return *normal;
+}
+
+/* A hollow sphere bends by 1 / radius everywhere, and a bulging one by as much the other way. */
+static double bend(const surfaces *all, const surface_mesh *mesh, uint32_t primitive, vec3 at, vec3 normal,
+                   vec3 along) {
+  (void)along;
+  const float *sphere = hl_sphere_of(all, primitive), *color = color_of(all, mesh, primitive);
+  if (color != NULL && color[3] < 1) return 0;
+  vec3 inwards = vec3_subtract(hl_surface_vector(sphere), at);
+  return (vec3_dot(inwards, normal) > 0 ? 1 : -1) / (double)sphere[3];
 }
 
 /* A ray meets a sphere twice: |origin + s way - centre| = r. */
@@ -67,12 +89,16 @@ static bool parts(const surfaces *all, uint32_t primitive, const hull_ball *ball
   return lowest < (double)sphere[3] - least && farthest > (double)sphere[3] + least;
 }
 
-const primitive_kind hl_primitive_sphere = {.first = first_of,
+const primitive_kind hl_primitive_sphere = {.has_corners = false,
+                                            .raster = &hl_raster_sphere,
+                                            .first = first_of,
                                             .count = count_of,
                                             .place = hl_sphere_of,
                                             .bound = bound,
                                             .opacity = opacity,
                                             .normal = normal,
                                             .plane = plane,
+                                            .look = look,
+                                            .bend = bend,
                                             .intersect = intersect,
                                             .parts = parts};

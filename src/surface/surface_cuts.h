@@ -7,11 +7,9 @@
 
 /* The part of a primitive that a view sees: a triangle's, or one side of a sphere. Borrowed. */
 typedef struct seen_part {
-  const surfaces *all; /* null: cuts leave all of it */
-  const view *view;
-  const surface_plane *plane; /* of a triangle */
-  const float *sphere;        /* null: a triangle */
-  bool leaving;               /* the side of a sphere where rays leave it */
+  const surfaces *all;                                  /* null: cuts leave all of it */
+  vec3 (*point)(const void *shape, double u, double v); /* of the part, at a continuous pixel; frame space */
+  const void *shape;                                    /* the function's own */
 } seen_part;
 
 /* What the cuts leave of a primitive of a mesh. */

@@ -74,15 +74,21 @@ static mesh_held held_of(const surface_mesh *mesh, double distance) {
   return isinf(distance) || !mesh->scene->mesh->closed ? HELD_WHOLE : HELD_NOT;
 }
 
-/* near: which triangles, beside the spheres that are cut; null: all, and all spheres. */
+/* Whether a tree for a distance takes a mesh's primitive number i of those of its kind. near: which
+ * primitives with corners it takes, beside the others that are cut; null: all. */
+static bool takes(const surfaces *all, const surface_mesh *mesh, const primitive_kind *kind, uint32_t i,
+                  const bool *near) {
+  if (near == NULL) return true;
+  if (kind->has_corners) return near[i];
+  return mesh->is_cut && hl_surface_cut(all, mesh, kind->first(all, mesh) + i) == CUT_LEAVES_SOME;
+}
+
 static void take_primitives(surface_tree *tree, const surface_mesh *mesh, const bool *near) {
-  const surfaces *all = tree->all;
-  for (uint32_t t = 0; t < mesh->triangle_count; t++)
-    if (near == NULL || near[t]) tree->primitives[tree->count++] = mesh->first_triangle + t;
-  for (uint32_t s = 0; s < mesh->sphere_count && (near == NULL || mesh->is_cut); s++) {
-    const uint32_t sphere = all->triangle_count + mesh->first_sphere + s;
-    if (near == NULL || hl_surface_cut(all, mesh, sphere) == CUT_LEAVES_SOME)
-      tree->primitives[tree->count++] = sphere;
+  for (int k = 0; k < PRIMITIVE_KINDS; k++) {
+    const primitive_kind *kind = hl_primitive_kinds[k];
+    const uint32_t first = kind->first(tree->all, mesh), count = kind->count(mesh);
+    for (uint32_t i = 0; i < count; i++)
+      if (takes(tree->all, mesh, kind, i, near)) tree->primitives[tree->count++] = first + i;
   }
 }
 
@@ -99,7 +105,7 @@ static tree_size size_of(const surfaces *all, double distance) {
   for (size_t m = 0; all != NULL && m < all->mesh_count; m++) {
     const surface_mesh *mesh = &all->meshes[m];
     if (held_of(mesh, distance) == HELD_NOT) continue;
-    size.primitives += mesh->triangle_count + mesh->sphere_count;
+    for (int k = 0; k < PRIMITIVE_KINDS; k++) size.primitives += hl_primitive_kinds[k]->count(mesh);
     size.triangles = mesh->triangle_count > size.triangles ? mesh->triangle_count : size.triangles;
   }
   return size;
@@ -311,19 +317,6 @@ static bool meets_box(const surface_box *box, const box_ray *ray) {
   return nearest <= farthest + 1e-9 * fabs(farthest); /* boxes of flat triangles are flat */
 }
 
-static double opacity_of(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
-  double opacity = mesh->scene->opacity, sum = 0;
-  if (!hl_is_triangle(all, primitive)) {
-    uint32_t sphere = primitive - all->triangle_count - mesh->first_sphere;
-    return mesh->sphere_colors == NULL ? opacity : opacity * (double)mesh->sphere_colors[sphere][3];
-  }
-  if (mesh->face_colors != NULL) opacity *= (double)mesh->face_colors[primitive - mesh->first_triangle][3];
-  if (mesh->colors == NULL) return opacity;
-  for (int i = 0; i < 3; i++)
-    sum += (double)mesh->colors[all->triangles[primitive][i] - mesh->first_vertex][3] / 3;
-  return opacity * sum;
-}
-
 /* number: the ray's, in its bundle. */
 static void meet_leaf(const surface_tree *tree, const surface_box *leaf, const surface_ray *ray, int number,
                       surface_met *met, void *data) {
@@ -337,7 +330,7 @@ static void meet_leaf(const surface_tree *tree, const surface_box *leaf, const s
                     : kind->intersect(all, primitive, ray, distance);
     if (count == 0) continue;
     const surface_mesh *mesh = &all->meshes[hl_surface_mesh_of(all, primitive)];
-    double opacity = fmin(fmax(opacity_of(all, mesh, primitive), 0), 1);
+    double opacity = fmin(fmax(kind->opacity(all, mesh, primitive), 0), 1);
     for (int k = 0; k < count; k++) {
       const vec3 at = vec3_add(ray->origin, vec3_scale(ray->way, distance[k]));
       if (hl_surface_left(all, mesh, at))

@@ -5,9 +5,8 @@
 
 #include "core/memory.h"
 #include "surface/crossings.h"
-#include "surface/primitive.h"
 #include "surface/primitive_fragments.h"
-#include "surface/surface_cuts.h"
+#include "surface/small_batch.h"
 
 /* Fragments of a thread's first block, and the most of one whose tiles are smaller (6 MiB): each block is
  * twice as large as the one before. */
@@ -59,67 +58,12 @@ static void write_marks(const fragment_work *work, fragment_worker *worker, int 
   worker->farthest = -1;
 }
 
-/* ---- small triangles ---- */
+/* ---- small primitives ---- */
 
 static int least(int a, int b) { return a < b ? a : b; }
 static int greatest(int a, int b) { return a > b ? a : b; }
 
-/* Up to sixteen triangles, or spheres, of one mesh. */
-typedef struct small_batch {
-  small_triangles triangles;
-  small_spheres spheres;
-  small_cover cover;
-  small_view view;
-  uint32_t primitives[SMALL_TRIANGLES];
-  float opacity[SMALL_TRIANGLES];
-  int count;
-  bool of_spheres;
-  size_t mesh;
-  bool may_be_covered; /* of a light's view: clusters may lie behind what covers all of their pixels */
-} small_batch;
-
-/* Adds a triangle to a batch; false where the view or the scene's cuts cut it. */
-static bool collect(const fragment_work *work, const tile_part *part, small_batch *batch,
-                    uint32_t primitive) {
-  const surfaces *all = work->source->surfaces;
-  const uint32_t *vertex = all->triangles[primitive];
-  int32_t left = part->tile_x * TILE * SUBPIXELS, top = part->tile_y * TILE * SUBPIXELS;
-  int lane = batch->count;
-  const float *n = batch->view.normal, *corner[3];
-  float normal[3];
-  if (hl_surface_cut(all, &all->meshes[batch->mesh], primitive) != CUT_LEAVES_ALL) return false;
-  for (int i = 0; i < 3; i++) {
-    int32_t at[2];
-    if (!hl_see_vertex(work->seen, vertex[i], at)) return false;
-    corner[i] = all->positions[vertex[i]];
-    batch->triangles.x[i][lane] = at[0] - left;
-    batch->triangles.y[i][lane] = at[1] - top;
-    batch->triangles.height[i][lane] = n[0] * corner[i][0] + n[1] * corner[i][1] + n[2] * corner[i][2] -
-                                       batch->view.first;
-  }
-  hl_corner_product(corner, normal);
-  for (int axis = 0; axis < 3; axis++) {
-    batch->triangles.normal[axis][lane] = normal[axis];
-    batch->triangles.corner[axis][lane] = corner[0][axis];
-  }
-  batch->primitives[batch->count++] = primitive;
-  return true;
-}
-
-/* Adds a sphere to a batch; false where the scene's cuts may cut it, where light passes it, or where its
- * fragments may fill several slabs. */
-static bool collect_sphere(const fragment_work *work, small_batch *batch, uint32_t primitive) {
-  const surfaces *all = work->source->surfaces;
-  const surface_mesh *mesh = &all->meshes[batch->mesh];
-  const float *sphere = hl_sphere_of(all, primitive);
-  if (mesh->is_cut || work->source->rise > 0 || hl_primitive_opacity(all, mesh, primitive) < 1) return false;
-  for (int axis = 0; axis < 3; axis++) batch->spheres.centre[axis][batch->count] = sphere[axis];
-  batch->spheres.radius[batch->count] = sphere[3];
-  batch->primitives[batch->count++] = primitive;
-  return true;
-}
-
-/* Adds what triangle number `lane` of a batch covers of its pixel number k. */
+/* Adds what primitive number `lane` of a batch covers of its pixel number k. */
 static void add_small_pixel(const fragment_work *work, fragment_worker *worker, const small_batch *batch,
                             int lane, int k) {
   const small_cover *cover = &batch->cover;
@@ -141,7 +85,7 @@ static void add_small_pixel(const fragment_work *work, fragment_worker *worker, 
   worker->scratch[worker->count++] = f;
 }
 
-/* The opacities of the triangles in `lanes`. */
+/* The opacities of the primitives in `lanes`. */
 static void find_opacities(const fragment_work *work, small_batch *batch, uint32_t lanes) {
   for (; lanes != 0; lanes &= lanes - 1) {
     int lane = __builtin_ctz(lanes);
@@ -149,7 +93,7 @@ static void find_opacities(const fragment_work *work, small_batch *batch, uint32
   }
 }
 
-/* Adds what small triangles of a batch cover, one bit each in `small`. */
+/* Adds what small primitives of a batch cover, one bit each in `small`. */
 static void add_small(const fragment_work *work, fragment_worker *worker, small_batch *batch,
                       uint32_t small) {
   if (small == 0) return;
@@ -167,10 +111,8 @@ static void add_batch(const fragment_work *work, fragment_worker *worker, tile_p
   if (batch->count == 0 ||
       !hl_tile_make_room(work->source->context, worker, SMALL_TRIANGLES * SMALL_PIXELS * MOST_SLABS))
     return;
-  const surface_functions *functions = work->source->functions;
-  uint32_t all = (1u << batch->count) - 1;
-  uint32_t small = batch->of_spheres ? functions->cover_spheres(&batch->view, &batch->spheres, &batch->cover)
-                                     : functions->cover_small(&batch->view, &batch->triangles, &batch->cover);
+  uint32_t all = (1u << batch->count) - 1,
+           small = batch->kind->raster->cover_small(work->source->functions, batch);
   add_small(work, worker, batch, all & small);
   for (uint32_t left = all & batch->cover.large; left != 0 && !worker->failed; left &= left - 1)
     hl_add_primitive(work, worker, part, batch->mesh, batch->primitives[__builtin_ctz(left)]);
@@ -236,10 +178,10 @@ static void begin_mesh(const fragment_work *work, small_batch *batch, uint32_t p
   const surfaces *all = work->source->surfaces;
   batch->mesh = hl_surface_mesh_of(all, primitive);
   const surface_mesh *mesh = &all->meshes[batch->mesh];
-  batch->of_spheres = !hl_is_triangle(all, primitive);
+  batch->kind = hl_primitive_kind(all, primitive);
   batch->view.dark_backs = work->dark_backs[batch->mesh];
   batch->view.fronts = work->wanted[batch->mesh] == BINNED_FRONTS;
-  of_mesh[0] = hl_primitive_kind(all, primitive)->first(all, mesh);
+  of_mesh[0] = batch->kind->first(all, mesh);
   of_mesh[1] = hl_surface_mesh_end(all, batch->mesh, primitive);
 }
 
@@ -248,8 +190,8 @@ static void add_run(const fragment_work *work, fragment_worker *worker, tile_par
                     primitive_run run) {
   const surfaces *all = work->source->surfaces;
   const surface_cluster *cluster = run.cluster != NO_CLUSTER ? &all->clusters[run.cluster] : NULL;
-  bool triangle = hl_is_triangle(all, run.primitive);
-  if (cluster != NULL && triangle && !all->meshes[batch->mesh].is_cut) {
+  const primitive_kind *kind = batch->kind;
+  if (cluster != NULL && kind->has_corners && !all->meshes[batch->mesh].is_cut) {
     add_batch(work, worker, part, batch);
     if (!worker->failed) add_cluster(work, worker, part, batch, cluster);
     return;
@@ -257,9 +199,8 @@ static void add_run(const fragment_work *work, fragment_worker *worker, tile_par
   uint32_t count = cluster != NULL ? cluster->count : 1;
   for (uint32_t i = 0; i < count && !worker->failed; i++) {
     uint32_t p = cluster != NULL ? all->order[cluster->first + i] : run.primitive;
-    if (cluster != NULL && batch->view.fronts && triangle && !hl_faces_view(work->seen, p)) continue;
-    bool collected = triangle ? collect(work, part, batch, p) : collect_sphere(work, batch, p);
-    if (!collected) hl_add_primitive(work, worker, part, batch->mesh, p);
+    if (cluster != NULL && batch->view.fronts && kind->has_corners && !hl_faces_view(work->seen, p)) continue;
+    if (!kind->raster->collect(work, part, batch, p)) hl_add_primitive(work, worker, part, batch->mesh, p);
     if (batch->count == SMALL_TRIANGLES) add_batch(work, worker, part, batch);
   }
 }
@@ -278,12 +219,7 @@ static float lowest_of(const fragment_work *work, primitive_run run) {
   const surfaces *all = work->source->surfaces;
   const sheet_stack *sheets = work->source->sheets;
   if (run.cluster != NO_CLUSTER) return (float)hl_lowest_height(sheets, &all->clusters[run.cluster]);
-  if (!hl_is_triangle(all, run.primitive)) return (float)-INFINITY;
-  double height = INFINITY;
-  for (int i = 0; i < 3; i++)
-    height = fmin(height, vec3_dot(sheets->normal,
-                                   hl_surface_vector(all->positions[all->triangles[run.primitive][i]])));
-  return (float)(height - sheets->first);
+  return hl_primitive_kind(all, run.primitive)->raster->lowest(all, sheets, run.primitive);
 }
 
 static bool make_room_for_runs(hl_context *context, fragment_worker *worker, size_t count) {
@@ -316,7 +252,7 @@ static void add_primitives(const fragment_work *work, fragment_worker *worker, t
   small_batch batch;
   memset(&batch.triangles, 0, sizeof batch.triangles); /* lanes that stay empty */
   memset(&batch.spheres, 0, sizeof batch.spheres);
-  batch.of_spheres = false;
+  batch.kind = NULL;
   batch.view = work->small;
   batch.view.left = part->tile_x * TILE * SUBPIXELS;
   batch.view.top = part->tile_y * TILE * SUBPIXELS;
@@ -337,8 +273,8 @@ static size_t order_fragments(const fragment_work *work, fragment_worker *worker
   if (worker->count == 0) return 0;
   fragment *list = worker->scratch, *other = list + worker->room;
   size_t kept = hl_sort_by_pixel(list, worker->count, order, worker->keys, other);
-  const crossing_tile crossing = {source->surfaces,    source->view,       work->seen, source->sheets, order,
-                                  part->tile_x * TILE, part->tile_y * TILE};
+  const crossing_tile crossing = {work->seen, source->sheets, order, part->tile_x * TILE,
+                                  part->tile_y * TILE};
   bool parted;
   *sorted = source->of_light || source->unseen ? other : list;
   if (*sorted == other) return kept;

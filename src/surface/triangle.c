@@ -1,5 +1,6 @@
 /* surface/triangle.c - the kind of primitive that a triangle is. */
 #include "surface/triangle.h"
+#include "surface/primitive_raster.h"
 
 static uint32_t first_of(const surfaces *all, const surface_mesh *mesh) {
   (void)all;
@@ -31,14 +32,14 @@ static void bound(const surfaces *all, uint32_t primitive, float low[3], float h
 
 static double clamped(float opacity) { return fmin(fmax((double)opacity, 0), 1); }
 
-static float opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
+static double opacity(const surfaces *all, const surface_mesh *mesh, uint32_t primitive) {
   double opacity = mesh->scene->opacity, sum = 0;
   if (mesh->face_colors != NULL)
-    return (float)(opacity * clamped(mesh->face_colors[primitive - mesh->first_triangle][3]));
-  if (mesh->colors == NULL) return (float)opacity;
+    return opacity * clamped(mesh->face_colors[primitive - mesh->first_triangle][3]);
+  if (mesh->colors == NULL) return opacity;
   for (int i = 0; i < 3; i++)
     sum += clamped(mesh->colors[all->triangles[primitive][i] - mesh->first_vertex][3]);
-  return (float)(opacity * sum / 3);
+  return opacity * sum / 3;
 }
 
 vec3 hl_triangle_normal(const surfaces *all, uint32_t triangle, vec3 point, double *from) {
@@ -72,12 +73,16 @@ static bool parts(const surfaces *all, uint32_t primitive, const hull_ball *ball
   return lowest < -least && highest > least;
 }
 
-const primitive_kind hl_primitive_triangle = {.first = first_of,
+const primitive_kind hl_primitive_triangle = {.has_corners = true,
+                                              .raster = &hl_raster_triangle,
+                                              .first = first_of,
                                               .count = count_of,
                                               .place = place_of,
                                               .bound = bound,
                                               .opacity = opacity,
                                               .normal = normal,
                                               .plane = plane,
+                                              .look = hl_triangle_look,
+                                              .bend = hl_triangle_bend,
                                               .intersect = hl_meet_triangle,
                                               .parts = parts};

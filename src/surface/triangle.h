@@ -1,8 +1,34 @@
-/* surface/triangle.h - where a ray meets a triangle, for loops that inline it. */
+/* surface/triangle.h - of triangles alone: their normals, and where rays meet them. Loops inline these. */
 #ifndef HL_SURFACE_TRIANGLE_H
 #define HL_SURFACE_TRIANGLE_H
 
+#include "mesh/mesh.h"
 #include "surface/primitive.h"
+
+/* A triangle's unit normal; *from: a point's distance from its plane, on the normal's side above 0. */
+vec3 hl_triangle_normal(const surfaces *all, uint32_t triangle, vec3 point, double *from);
+
+/* As in primitive.h: triangle_look.c and late/triangle_bend.c. */
+vec3 hl_triangle_look(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, vec3 at, vec3 *normal,
+                      double color[3]);
+double hl_triangle_bend(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, vec3 at,
+                        vec3 normal, vec3 along);
+
+/* The normal of a triangle's corner: its own where it is at an edge, else its vertex's. */
+static inline vec3 hl_corner_normal(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, int i) {
+  uint32_t edge = mesh->edges != NULL ? mesh->edges[triangle - mesh->first_triangle][i] : HL_NO_EDGE;
+  return hl_surface_vector(edge != HL_NO_EDGE ? all->edge_normals[mesh->first_edge_normal + edge]
+                                              : all->normals[all->triangles[triangle][i]]);
+}
+
+/* The normal of corner i as it is interpolated, on the side of the triangle's own, flat one. */
+static inline vec3 hl_rounded_normal(const surfaces *all, const surface_mesh *mesh, uint32_t triangle, int i,
+                                     vec3 flat) {
+  vec3 own = hl_corner_normal(all, mesh, triangle, i);
+  double along = vec3_dot(own, flat);
+  if (fabs(along) < HL_MESH_ROUNDED) return flat;
+  return along < 0 ? vec3_scale(own, -1) : own;
+}
 
 /* Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection" (1997). */
 static inline int hl_meet_triangle(const surfaces *all, uint32_t primitive, const surface_ray *ray,

@@ -6,6 +6,7 @@
 #include "render/late/hollow.h"
 #include "render/surface_point.h"
 #include "surface/late/lateness.h"
+#include "surface/triangle.h"
 
 /* Rays that come from so far away from an open edge as a buffer may be late, in voxels, and twice as slanted
  * (a buffer's pixel is at most three quarters of a voxel). */
@@ -40,7 +41,7 @@ typedef struct contact_ray {
 
 /* Whether two triangles share a vertex. */
 static bool are_neighbours(const surfaces *all, uint32_t a, uint32_t b) {
-  if (!hl_is_triangle(all, a) || !hl_is_triangle(all, b)) return false;
+  if (!hl_has_corners(all, a) || !hl_has_corners(all, b)) return false;
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++)
       if (all->triangles[a][i] == all->triangles[b][k]) return true;
@@ -179,7 +180,7 @@ static void place_ray(const sweep *sweep, const tile_slab *slab, const surface_b
                        .point = vector_of(batch->samples.position, i),
                        .smooth = vector_of(batch->samples.normal, i)};
   ray->normal = ray->smooth;
-  if (!hl_is_triangle(all, f->primitive)) return;
+  if (!hl_has_corners(all, f->primitive)) return;
   double height;
   if (last != NULL && last->primitive == f->primitive) {
     ray->normal = last->normal;
@@ -264,7 +265,7 @@ static uint32_t samples_within(const sweep *sweep, const surface_batch *batch) {
     return 0;
   for (int i = 0; i < batch->count; i++) {
     uint32_t primitive = batch->fragments[i]->primitive;
-    if (!hl_is_triangle(all, primitive)) continue;
+    if (!hl_has_corners(all, primitive)) continue;
     int inside = batch->mesh->mesh->insides[primitive - batch->mesh->first_triangle];
     vec3 normal = hl_surface_normal(all, primitive);
     double side = inside * vec3_dot(normal, vector_of(batch->samples.towards_eye, i));

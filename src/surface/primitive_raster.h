@@ -1,0 +1,41 @@
+/* surface/primitive_raster.h - what a view sees of a kind of primitive, and how it becomes fragments.
+ *
+ * Each kind of primitive (primitive.h) has one such table. The rooms' files that bin, rasterise and part
+ * fragments ask it. A kind is rasterised in two ways: a small primitive together with up to fifteen others of
+ * its mesh (collect, cover_small), any other primitive by itself (cover). */
+#ifndef HL_SURFACE_PRIMITIVE_RASTER_H
+#define HL_SURFACE_PRIMITIVE_RASTER_H
+
+#include "surface/fragment.h"
+#include "surface/primitive.h"
+#include "surface/seen.h"
+#include "surface/small_triangles.h"
+
+typedef struct fragment_work fragment_work;     /* fragment_work.h */
+typedef struct fragment_worker fragment_worker; /* there */
+typedef struct tile_part tile_part;             /* primitive_fragments.h */
+typedef struct small_batch small_batch;         /* small_batch.h */
+typedef struct shown_surface shown_surface;     /* shown_surface.h */
+
+struct primitive_raster {
+  /* A rectangle around what the view sees of a primitive; false: nothing. fronts: what faces away from the
+   * view is not seen. */
+  bool (*see)(const seen_surfaces *seen, uint32_t primitive, bool fronts, seen_bounds *bounds);
+  /* Its least height above the first sheet, or less. */
+  float (*lowest)(const surfaces *all, const sheet_stack *sheets, uint32_t primitive);
+  /* Adds a primitive to a batch of small ones; false where it may be rasterised by itself alone. */
+  bool (*collect)(const fragment_work *work, const tile_part *part, small_batch *batch, uint32_t primitive);
+  /* Covers a batch's small primitives; returns which are small, one bit each. */
+  uint32_t (*cover_small)(const surface_functions *functions, small_batch *batch);
+  /* Adds one primitive's fragments in a tile; f: what they have in common. The worker has room for them. */
+  void (*cover)(const fragment_work *work, fragment_worker *worker, tile_part *part, const fragment *f);
+  /* The surface that a fragment shows, whose samples have their middle at continuous pixel (u, v). */
+  void (*show)(const seen_surfaces *seen, const sheet_stack *sheets, const fragment *f, double u, double v,
+               shown_surface *shown);
+  /* Its height above the first sheet at a continuous pixel. */
+  double (*height)(const sheet_stack *sheets, const shown_surface *shown, double u, double v);
+};
+
+extern const primitive_raster hl_raster_triangle, hl_raster_sphere;
+
+#endif

@@ -1,0 +1,26 @@
+/* surface/shown_surface.h - the surface that a fragment of the eye's view shows, and its heights there. */
+#ifndef HL_SURFACE_SHOWN_SURFACE_H
+#define HL_SURFACE_SHOWN_SURFACE_H
+
+#include "surface/primitive_raster.h"
+#include "surface/sphere_coverage.h"
+
+struct shown_surface {
+  const primitive_raster *raster; /* of the primitive's kind; the members of other kinds are not set */
+  double lowest, highest;         /* of the primitive; above the first sheet */
+  /* Of a triangle. */
+  surface_plane plane;
+  bool by_corners;         /* none of the corners is cut: the height is rise / part */
+  double rise[3], part[3]; /* linear functions of the pixel, as those of surface_plane */
+  /* Of a sphere. */
+  sphere_rays rays;
+  bool leaving; /* the side where rays leave it */
+};
+
+/* The surface's height above the first sheet at a continuous pixel of the view. */
+static inline double hl_shown_height(const sheet_stack *sheets, const shown_surface *shown, double u,
+                                     double v) {
+  return shown->raster->height(sheets, shown, u, v);
+}
+
+#endif

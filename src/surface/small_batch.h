@@ -1,0 +1,20 @@
+/* surface/small_batch.h - up to sixteen primitives of one kind and one mesh that are rasterised together. */
+#ifndef HL_SURFACE_SMALL_BATCH_H
+#define HL_SURFACE_SMALL_BATCH_H
+
+#include "surface/primitive_raster.h"
+
+struct small_batch {
+  small_triangles triangles;
+  small_spheres spheres;
+  small_cover cover;
+  small_view view;
+  uint32_t primitives[SMALL_TRIANGLES];
+  float opacity[SMALL_TRIANGLES];
+  int count;
+  const primitive_kind *kind; /* of the primitives */
+  size_t mesh;
+  bool may_be_covered; /* of a light's view: clusters may lie behind what covers all of their pixels */
+};
+
+#endif
