@@ -2,7 +2,8 @@
 
 The browser's end of the channel is src/server/page/widget.js. Messages from there ask for frames; each is answered
 by one message with the picture in its buffer. Frames are rendered by a thread of the widget's own, so that a newer
-request can cancel the one under way.
+request can cancel the one under way. While something moves, the page sends what differs from a scene that it has sent
+whole: the thread keeps that scene for each view.
 """
 from __future__ import annotations
 
@@ -33,6 +34,23 @@ _MOST_PIXELS = 64 << 20
 
 class _OutdatedError(Exception):
     """Nobody waits for the frame any more."""
+
+
+class _NoBaseError(Exception):
+    """The scene that a difference is from is not held."""
+
+
+def _changed(base: Any, part: Any) -> Any:
+    """The value of which `part` is the difference from `base`, as src/server/page/link.js makes it; `base` may change."""
+    if "to" in part:
+        return part["to"]
+    for key, inner in part["in"].items():
+        place = int(key) if isinstance(base, list) else key
+        if "gone" in inner:
+            del base[place]
+        else:
+            base[place] = _changed(base.get(place) if isinstance(base, dict) else base[place], inner)
+    return base
 
 
 def _with_files(scene: Scene, names_of_files: list[str | None]) -> Scene:
@@ -140,6 +158,7 @@ class _Frames(threading.Thread):
         self.last: Image | None = None  # the last frame that was wanted as a picture
         self.asked: queue.SimpleQueue[tuple[contextvars.Context, dict[str, Any]] | None] = queue.SimpleQueue()
         self.newest: dict[tuple[str, str], int] = {}
+        self.bases: dict[str, tuple[int, str]] = {}  # by view: the newest scene that it has sent whole, and the number of its frame
         self.renderer, self.quick_renderer = Renderer(), Renderer()
         self.preview: Any = None  # the scene's volumes at coarser resolutions
 
@@ -162,6 +181,8 @@ class _Frames(threading.Thread):
                 answer |= found
             except _OutdatedError:
                 pass
+            except _NoBaseError as problem:
+                answer |= {"problem": str(problem), "no_base": True}
             except Exception as problem:  # the page shows it; the thread goes on
                 answer["problem"] = str(problem)
             # In the request's context, the answer names the request it belongs to: ipykernel 7.4 routes the page's next
@@ -181,8 +202,28 @@ class _Frames(threading.Thread):
     def _do_complete(self, message: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
         return {"text": _composed(self.named.read(message["scene"]), message.get("choices", {})).to_json()}, []
 
+    def _do_leave(self, message: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
+        """A view is closed."""
+        self.bases.pop(message["view"], None)
+        self.newest = {lane: number for lane, number in self.newest.items() if lane[0] != message["view"]}
+        return {}, []
+
+    def _text(self, message: dict[str, Any]) -> str:
+        """The scene's text of a frame that is asked for; a whole one of the view itself is kept for differences from it."""
+        if "base" not in message:
+            if not message.get("lane"):
+                self.bases[message["view"]] = message["number"], message["scene"]
+            return str(message["scene"])
+        number, base = self.bases.get(message["view"], (None, ""))
+        if number != message["base"]:
+            raise _NoBaseError("the kernel no longer holds the scene that this one differs from: send it whole")
+        try:
+            return json.dumps(_changed(json.loads(base), json.loads(message["scene"])))
+        except (AttributeError, IndexError, KeyError, TypeError, ValueError):
+            raise ValueError("the message is no difference from the scene of its base") from None
+
     def _do_frame(self, message: dict[str, Any]) -> tuple[dict[str, Any], list[bytes]]:
-        lane = self._lane(message)
+        lane, text = self._lane(message), self._text(message)
 
         def stop_if_outdated(*_: object) -> None:
             if self.newest[lane] != message["number"]:
@@ -190,7 +231,7 @@ class _Frames(threading.Thread):
 
         stop_if_outdated()
         began = time.monotonic()
-        scene = self.named.read(message["scene"])
+        scene = self.named.read(text)
         if scene.size[0] * scene.size[1] > _MOST_PIXELS:
             raise ValueError(f"{scene.size[0]} x {scene.size[1]} pixels are more than the viewer's {_MOST_PIXELS}")
         read = time.monotonic()
@@ -247,7 +288,7 @@ def _make_class() -> Any:
         def _on_message(self, _: object, message: dict[str, Any], __: object) -> None:
             if message["kind"] == "arrived":
                 self._arrive(message["scene"])
-            elif message["kind"] in ("start", "complete", "frame"):
+            elif message["kind"] in ("start", "complete", "frame", "leave"):
                 self._frames.ask(message)
 
         def _arrive(self, text: str) -> None:

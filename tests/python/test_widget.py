@@ -64,6 +64,35 @@ def test_newer_frames_cancel():
     thread.asked.put(None)
 
 
+def test_moving_frames_are_told_by_differences():
+    """From the newest whole scene of the same view; lanes keep none, and a closed view's is forgotten."""
+    thread, answers = frames_of(halflight.Scene(ARRAY, size=(48, 32)))
+    scene = json.loads(ask(thread, answers, kind="start")[0]["text"])["scene"]
+
+    def frame(number, told, **words):
+        answer, buffers = ask(thread, answers, kind="frame", number=number, scene=json.dumps(told), format="png", depth=8, quality=80, **words)
+        return buffers[0] if buffers else answer["problem"]
+
+    moved = json.loads(json.dumps(scene))
+    moved["camera"]["position"][0] += 5
+    moved["lights"] = [{"type": "directional", "direction": [1, 0, 0]}]
+    del moved["sky"]
+    part = {"in": {"camera": {"in": {"position": {"in": {"0": {"to": moved["camera"]["position"][0]}}}}}, "lights": {"to": moved["lights"]}, "sky": {"gone": 1}}}
+    whole = frame(2, scene)
+    expected = frame(3, moved, lane="small")
+    assert expected != whole and frame(4, part, base=2) == expected
+    assert frame(5, {"in": {}}, base=2) == whole  # the base stays as it came
+    lost = "the kernel no longer holds the scene that this one differs from: send it whole"
+    assert frame(6, part, base=3) == lost and frame(7, part, base=2, view="other") == lost
+    for wrong in ({}, 3, {"in": {"camera": {"in": {"position": {"in": {"9": {"to": 1}}}}}}}, {"in": {"nothing": {"gone": 1}}}):
+        assert frame(8, wrong, base=2) == "the message is no difference from the scene of its base"
+    refused, _ = ask(thread, answers, kind="frame", number=9, scene="{}", base=1, format="png")
+    assert refused["no_base"] is True
+    ask(thread, answers, kind="leave", number=10)
+    assert frame(11, part, base=2) == lost and thread.bases == {}
+    thread.asked.put(None)
+
+
 def test_mistakes_are_answered():
     thread, answers = frames_of(halflight.Scene(ARRAY, size=(32, 32)))
     for text in ("", "{", '{"halflight": 1, "volumes": [{"file": "/etc/passwd"}]}'):

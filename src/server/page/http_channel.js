@@ -15,12 +15,13 @@
 // - progress(): how far the frame under way is, { part, others }: part from 0 to 1, others: frames of other pages under way.
 
 import { Lost } from "./connection.js";
-import { difference } from "./link.js";
+import { HeldScene } from "./held_scene.js";
 
 export class Refused extends Error {
   constructor(line, status) {
     super(line);
     this.status = status;
+    this.noBase = status === NO_BASE;
   }
 }
 
@@ -46,8 +47,7 @@ const numbered = (keys) => Object.fromEntries(keys.map((key, n) => [`key${n}`, k
 export class HttpChannel {
   #number = 0;
   #opened;
-  #base = null; // { number, scene }: the newest scene of this page that was sent whole, and its frame; null: the viewer may hold none, or not yet
-  #newest = 0; // the frame of that scene, which may be under way
+  #held = new HeldScene(() => ++this.#number); // not of the frames in lanes
   drawsOver = true; // fetchFrame() takes scaleBar and legend
   #page = crypto.getRandomValues(new Uint32Array(2)).reduce((name, n) => name + n.toString(36), "p");
 
@@ -67,7 +67,7 @@ export class HttpChannel {
     try {
       response = await fetch(words.size > 0 ? `${path}?${words}` : path, options);
     } catch {
-      this.#base = null;
+      this.#held.forget();
       throw new Lost("The viewer does not answer: it has ended, or the network is lost.");
     }
     if (response.status === GONE && again && this.#source !== null) {
@@ -115,29 +115,11 @@ export class HttpChannel {
   // frames apart that do not cancel each other; `moving` makes a quick picture, of coarser volumes where the sheets are wide.
   // scaleBar, legend: drawn over a PNG of 8 bits; it is refused where the scene's files do not tell a unit of length.
   async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "", scaleBar = false, legend = false } = {}) {
-    const query = { page: this.#page + lane, number: ++this.#number, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving, scale_bar: +scaleBar, legend: +legend };
-    const response = await (moving && lane === "" && this.#base !== null ? this.#askByDifference(query, scene) : this.#askWhole(query, scene, lane));
+    const query = { page: this.#page + lane, opened: 0, format, quality, depth, metadata: +metadata, moving: +moving, scale_bar: +scaleBar, legend: +legend };
+    const ask = (number, body, base) => this.#ask("frame", { ...query, number, ...(base === undefined ? {} : { base }) }, { method: "POST", body });
+    const response = await (lane === "" ? this.#held.send(scene, moving, ask) : ask(++this.#number, JSON.stringify(scene)));
     if (response.status === 204) return null;
     return { blob: await response.blob(), times: parseTimes(response.headers.get("Server-Timing")) };
-  }
-
-  async #askWhole(query, scene, lane = "") {
-    const body = JSON.stringify(scene);
-    if (lane === "") [this.#base, this.#newest] = [null, query.number];
-    const response = await this.#ask("frame", query, { method: "POST", body });
-    if (lane === "" && this.#newest === query.number) this.#base = { number: query.number, scene: JSON.parse(body) };
-    return response;
-  }
-
-  // Sends what differs from the scene that the viewer holds; the scene itself where it holds another one, or none.
-  async #askByDifference(query, scene) {
-    const part = difference(this.#base.scene, JSON.parse(JSON.stringify(scene))) ?? { in: {} };
-    try {
-      return await this.#ask("frame", { ...query, base: this.#base.number }, { method: "POST", body: JSON.stringify(part) });
-    } catch (error) {
-      if (error.status !== NO_BASE) throw error;
-    }
-    return this.#askWhole({ ...query, number: ++this.#number }, scene);
   }
 
   // What can be opened in a folder below the one that the viewer was started in: { at, entries }.

@@ -2,6 +2,7 @@
 // package joins this file and those that it imports to one module (python/halflight/_page.py); the other end of the
 // channel is python/halflight/widget.py.
 
+import { HeldScene } from "./held_scene.js";
 import { mount } from "./viewer.js";
 
 const TELL_AFTER = 150; // milliseconds without a change, after which Python is told the scene
@@ -10,6 +11,7 @@ class WidgetChannel {
   #model;
   #view = Math.random().toString(36).slice(2); // several views of one widget share its messages
   #number = 0;
+  #held = new HeldScene(() => ++this.#number); // not of the frames in lanes
   #waiting = new Map(); // by number: what to do with the answer
 
   constructor(model) {
@@ -20,6 +22,7 @@ class WidgetChannel {
 
   close() {
     this.#model.off("msg:custom", this.listen);
+    this.#model.send({ kind: "leave", view: this.#view, number: ++this.#number });
   }
 
   #answered({ view, number, ...answer }, buffers) {
@@ -29,12 +32,11 @@ class WidgetChannel {
     finish?.(answer, buffers);
   }
 
-  #ask(kind, content) {
-    const number = ++this.#number;
+  #ask(kind, content, number = ++this.#number) {
     this.#model.send({ kind, view: this.#view, number, ...content });
     return new Promise((resolve, reject) => {
       this.#waiting.set(number, (answer, buffers) => {
-        if (answer.problem) reject(new Error(answer.problem));
+        if (answer.problem) reject(Object.assign(new Error(answer.problem), { noBase: answer.no_base === true }));
         else resolve({ ...answer, buffers });
       });
     });
@@ -53,7 +55,9 @@ class WidgetChannel {
   }
 
   async fetchFrame(scene, { format = "jpeg", quality = 85, depth = 8, metadata = true, moving = false, lane = "" } = {}) {
-    const { type, times, buffers } = await this.#ask("frame", { scene: JSON.stringify(scene), format, quality, depth, metadata, moving, lane });
+    const asked = { format, quality, depth, metadata, moving, lane };
+    const ask = (number, body, base) => this.#ask("frame", { ...asked, scene: body, ...(base === undefined ? {} : { base }) }, number);
+    const { type, times, buffers } = await (lane === "" ? this.#held.send(scene, moving, ask) : ask(++this.#number, JSON.stringify(scene)));
     if (type === undefined) return null; // cancelled
     return { blob: new Blob(buffers, { type }), times };
   }
