@@ -226,9 +226,6 @@ def _take_data(taken: _Taken, actor: Any, data: Any, matrix: np.ndarray[Any, Any
         _put_radii(taken, surface, prop, matrix)
     look: dict[str, Any] = {**_material(prop), "opacity": prop.GetOpacity()}
     words: dict[str, Any] = {"scalars": False}
-    if taken.display and surface.GetNumberOfPolys() == 0 and not (
-            prop.GetRenderPointsAsSpheres() if surface.GetNumberOfVerts() else prop.GetRenderLinesAsTubes()):
-        look |= _UNLIT  # VTK draws them flat, turned to the eye
     smooth = prop.GetInterpolation() != 0 and surface.GetPointData().GetNormals() is not None
     if mapped is None:
         look["color"] = taken.color(prop.GetDiffuseColor() if color is None else color).tolist()

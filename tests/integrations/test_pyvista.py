@@ -83,7 +83,7 @@ def test_matrices_opacity_and_cameras():
     compare(made)
     made.remove_all_lights()
     made.add_light(pyvista.Light(position=(3, -3, 6), focal_point=(0, 0, 0), light_type="scene light", color="orange", intensity=0.8))
-    compare(made, brightness=0.08)
+    compare(made)
 
 
 def test_points_lines_and_wires():
@@ -92,8 +92,13 @@ def test_points_lines_and_wires():
     points["number"] = np.arange(60.0)
     made.add_mesh(points, render_points_as_spheres=True, point_size=14, cmap="plasma", show_scalar_bar=False)
     made.add_mesh(pyvista.Spline([(0, 0, 0), (1, 1, 0), (2, 0, 1)], 60), color="red", line_width=8, render_lines_as_tubes=True)
-    made.add_mesh(pyvista.Sphere(radius=0.5, center=(0, 1.5, 0), theta_resolution=8, phi_resolution=8), style="wireframe", color="k", line_width=4)
-    compare(made, brightness=0.1)
+    made.add_mesh(pyvista.Sphere(radius=0.5, center=(0, 1.5, 0), theta_resolution=8, phi_resolution=8), style="wireframe", color="steelblue",
+                  line_width=4, render_lines_as_tubes=True)
+    compare(made)
+    # VTK lights a flat line as if all of it were turned to the eye as far as it goes; of a tube only the middle is.
+    made = plotter()
+    made.add_mesh(pyvista.Sphere(theta_resolution=8, phi_resolution=8), style="wireframe", color="steelblue", line_width=4)
+    compare(made, brightness=0.15)
 
 
 def blob():
