@@ -397,6 +397,17 @@ def test_nextflow_s_script(tmp_path):
     assert (tmp_path / "versions.yml").read_text() == f'"RENDER":\n    halflight: {halflight.__version__}\n'
 
 
+def test_nextflow_s_module_is_groovy():
+    """Nextflow's language is Groovy, whose own parser finds the process and its blocks."""
+    if shutil.which("groovy") is None or shutil.which("java") is None:
+        pytest.skip("groovy and java are not installed")
+    java = pathlib.Path(shutil.which("java")).resolve().parents[1]
+    ran = subprocess.run(["groovy", pathlib.Path(__file__).parent / "nextflow_processes.groovy", FOLDER / "nextflow" / "main.nf"], capture_output=True, text=True,
+                         env=os.environ | {"JAVA_HOME": str(java)})
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stdout == "process HALFLIGHT_RENDER: input output script stub\n"
+
+
 def test_nextflow(tmp_path):
     if shutil.which("nextflow") is None or shutil.which("java") is None:
         pytest.skip("nextflow and java are not installed")
