@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """halflight.show() in a real JupyterLab: its frames, its scene, and that it turns as the page does.
 
-usage: notebook.py BUILD
+usage: notebook.py BUILD [PICTURES]
 JupyterLab and anywidget come from PyPI into a virtual environment of the build folder, once; where they cannot be had,
 the test is skipped.
 """
@@ -34,7 +34,11 @@ picture = halflight.Renderer().render(scene)
 print("PIXELS", hashlib.sha256(picture.to_srgb8().tobytes()).hexdigest(), scene.volumes[0])""",
          """widget.camera = halflight.Camera(position=(120.0, -40.0, 60.0), target=(15.5, 15.5, 15.5))
 widget.lights = [halflight.Directional(direction=(1.0, 0.0, -1.0))]"""]
+# Each host's program, the class of its settings, and the address of a notebook in it.
+HOSTS = {"JupyterLab": ("jupyter-lab", "LabApp", "lab/tree")}
 PANEL = "[...globalThis.jupyterapp?.shell.widgets('main') ?? []].find((w) => w.context?.path === 'show.ipynb')"
+
+
 def skip(reason):
     print(reason)
     sys.exit(77)
@@ -43,7 +47,7 @@ def skip(reason):
 def environment():
     """The virtual environment's folder of programs."""
     folder = BUILD / "jupyter"
-    if not (folder / "bin" / "jupyter-lab").exists():
+    if not all((folder / "bin" / program).exists() for program, _, _ in HOSTS.values()):
         made = subprocess.run([sys.executable, "-m", "venv", folder], capture_output=True, text=True)
         if made.returncode != 0:
             skip("python3-venv is not installed")
@@ -68,22 +72,23 @@ def free_port():
         return any_socket.getsockname()[1]
 
 
-class Lab:
-    """A JupyterLab with one notebook."""
+class Host:
+    """A host with one notebook."""
 
-    def __init__(self, programs, folder):
+    def __init__(self, name, programs, folder):
+        program, settings, address = HOSTS[name]
         notebook = {"nbformat": 4, "nbformat_minor": 5, "metadata": {"kernelspec": {"name": "python3", "display_name": "Python 3"}},
                     "cells": [{"cell_type": "code", "id": f"cell-{n}", "metadata": {}, "outputs": [], "execution_count": None, "source": text}
                               for n, text in enumerate(CELLS)]}
         (pathlib.Path(folder) / "show.ipynb").write_text(json.dumps(notebook))
         port = free_port()
-        self.url = f"http://127.0.0.1:{port}/lab/tree/show.ipynb?token=test"
+        self.url = f"http://127.0.0.1:{port}/{address}/show.ipynb?token=test"
         own = {"PYTHONPATH": str(packages().parent), "HOME": folder, "JUPYTER_CONFIG_DIR": folder + "/config", "JUPYTER_DATA_DIR": folder + "/data",
                "JUPYTER_RUNTIME_DIR": folder + "/run", "IPYTHONDIR": folder + "/ipython"}
         self.process = subprocess.Popen(
-            [programs / "jupyter-lab", "--no-browser", f"--port={port}", "--IdentityProvider.token=test", "--allow-root",
-             "--LabApp.expose_app_in_browser=True", "--ServerApp.root_dir=" + folder, "--LabApp.news_url=None",
-             "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"],
+            [programs / program, "--no-browser", f"--port={port}", "--IdentityProvider.token=test", "--allow-root",
+             f"--{settings}.expose_app_in_browser=True", "--ServerApp.root_dir=" + folder, f"--{settings}.news_url=None",
+             f"--{settings}.check_for_updates_class=jupyterlab.NeverCheckForUpdate"],
             env={**os.environ, **own}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self._wait(port)
 
@@ -94,7 +99,7 @@ class Lab:
                 return
             except OSError:
                 time.sleep(0.1)
-        sys.exit("FAILED: JupyterLab does not start")
+        sys.exit("FAILED: the notebook's server does not start")
 
     def close(self):
         self.process.terminate()
@@ -134,38 +139,54 @@ def output(browser):
     return browser.run("[...document.querySelectorAll('.jp-OutputArea-output')].map((o) => o.textContent).find((t) => t.includes('PIXELS')) ?? ''")
 
 
+RECORD = r"""(() => { globalThis.sent = [];
+  const send = WebSocket.prototype.send;
+  WebSocket.prototype.send = function (message) {
+    const text = typeof message === 'string' ? message : new TextDecoder().decode(message);
+    if (text.includes('"kind":"frame"')) sent.push([/"base":[0-9]/.test(text), /"scene":"((?:[^"\\]|\\.)*)"/.exec(text)[1].length]);
+    return send.call(this, message);
+  }; })()"""
+
+
+def check_viewer(browser, name, picture):
+    browser.wait(f"{PANEL}?.context.isReady === true", timeout=300)
+    run_cell(browser, 0)
+    browser.wait(f"({VIEWER})?.frames.statistics.stage === 'final'", timeout=300)
+    first = pixels(browser)
+    if picture:
+        browser.screenshot(picture)
+    browser.run(RECORD)
+    x, y, width, height = view_box(browser)
+    browser.drag([x + 60, y + height - 60], [x + 160, y + height - 90], steps=12)
+    browser.wait(f"({VIEWER}).frames.statistics.stage === 'final'", timeout=300)
+    sent = browser.run("sent")
+    told = [size for differs, size in sent if differs]
+    check(told and max(told) <= 600, f"{name}: moving frames send what differs: {sent}")
+    turned = pixels(browser)
+    check(turned != first, f"{name}: a drag turns the volume")
+    run_cell(browser, 1)
+    browser.wait("[...document.querySelectorAll('.jp-OutputArea-output')].some((o) => o.textContent.includes('PIXELS'))", timeout=300)
+    found = output(browser)
+    check(turned in found, f"{name}: widget.scene is what is seen, pixel for pixel: {turned} {found}")
+    check("32x32x32 float32>" in found, f"{name}: its volume is the array again: {found}")
+    run_cell(browser, 2)
+    browser.wait(f"({VIEWER}).store.scene.camera.position[0] === 120 && ({VIEWER}).store.scene.lights[0].direction[0] === 1", timeout=300)
+    browser.wait(f"({VIEWER}).frames.statistics.stage === 'final'", timeout=300)
+    check(pixels(browser) not in (first, turned), f"{name}: Python's camera and light are seen")
+    problems = [one for one in browser.problems if "to activate" not in one]  # the host's plugins on a busy machine
+    check(problems == [], f"{name}: the console has errors: {problems}")
+    print(f"{name}: {checks.count} checks passed; frames: {browser.run(f'({VIEWER}).frames.statistics')}")
+
+
 chromium = shutil.which("chromium")
 if chromium is None:
     skip("chromium is not installed")
 programs = environment()
-with tempfile.TemporaryDirectory() as folder, Browser(chromium, (1280, 900)) as browser:
-    lab = Lab(programs, folder)
-    try:
-        browser.open(lab.url)
-        browser.wait(f"{PANEL}?.context.isReady === true", timeout=120)
-        run_cell(browser, 0)
-        browser.wait(f"({VIEWER})?.frames.statistics.stage === 'final'", timeout=90)
-        first = pixels(browser)
-        if len(sys.argv) > 2:
-            browser.screenshot(sys.argv[2])
-        x, y, width, height = view_box(browser)
-        browser.drag([x + 60, y + height - 60], [x + 160, y + height - 90])
-        browser.wait(f"({VIEWER}).frames.statistics.stage === 'final'", timeout=60)
-        turned = pixels(browser)
-        check(turned != first, "a drag turns the volume")
-        run_cell(browser, 1)
-        browser.wait("[...document.querySelectorAll('.jp-OutputArea-output')].some((o) => o.textContent.includes('PIXELS'))", timeout=60)
-        told = output(browser)
-        check(turned in told, f"widget.scene is what is seen, pixel for pixel: {turned} {told}")
-        check("32x32x32 float32>" in told, f"its volume is the array again: {told}")
-        if len(sys.argv) > 2:
-            browser.screenshot(sys.argv[2])
-        run_cell(browser, 2)
-        browser.wait(f"({VIEWER}).store.scene.camera.position[0] === 120 && ({VIEWER}).store.scene.lights[0].direction[0] === 1", timeout=60)
-        browser.wait(f"({VIEWER}).frames.statistics.stage === 'final'", timeout=60)
-        check(pixels(browser) not in (first, turned), "Python's camera and light are seen")
-        problems = [one for one in browser.problems if "to activate" not in one]  # JupyterLab's plugins on a busy machine
-        check(problems == [], f"the console has errors: {problems}")
-        print(f"{checks.count} checks passed; frames: {browser.run(f'({VIEWER}).frames.statistics')}")
-    finally:
-        lab.close()
+for name in HOSTS:
+    with tempfile.TemporaryDirectory() as folder, Browser(chromium, (1280, 900)) as browser:
+        host = Host(name, programs, folder)
+        try:
+            browser.open(host.url)
+            check_viewer(browser, name, sys.argv[2] + f"/{name}.png" if len(sys.argv) > 2 else None)
+        finally:
+            host.close()
