@@ -1,7 +1,6 @@
 /* guess/cut_face.c - see cut_face.h. */
 #include "guess/cut_face.h"
 
-#include "scene/geometry/cut.h"
 #include "scene/geometry/placement.h"
 
 static double component(vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
@@ -19,12 +18,12 @@ static vec3 out_of_shape(const cut_shape *cut, vec3 point) {
   return vec3_scale(to_shape->row[axis], component(q, axis) < 0 ? -1 : 1);
 }
 
-bool hl_cut_face_between(const hl_scene_volume *volume, vec3 before, vec3 here, vec3 *outward) {
+bool hl_cut_face_between(const hl_scene_volume *volume, const cut_shape *cuts, vec3 before, vec3 here,
+                         vec3 *outward) {
   double low[3], high[3];
   for (size_t i = 0; i < volume->cut_count; i++) {
-    cut_shape shape = hl_cut_shape(volume, i);
-    if (hl_cuts_leave(&shape, 1, before)) continue;
-    *outward = vec3_scale(out_of_shape(&shape, here), shape.keep_inside ? 1 : -1);
+    if (hl_cuts_leave(&cuts[i], 1, before)) continue;
+    *outward = vec3_scale(out_of_shape(&cuts[i], here), cuts[i].keep_inside ? 1 : -1);
     return true;
   }
   hl_scene_volume_box(volume, low, high);

@@ -5,9 +5,12 @@
 #include <halflight/scene.h>
 
 #include "core/vector.h"
+#include "scene/geometry/cut.h"
 
 /* Whether a ray comes through such a face between two points of index space, of which the second is left of
- * the volume. *outward: the face's normal, as a gradient of index space, away from what is left. */
-bool hl_cut_face_between(const hl_scene_volume *volume, vec3 before, vec3 here, vec3 *outward);
+ * the volume. cuts: [volume->cut_count]; the shapes of the volume's cuts. *outward: the face's normal, as a
+ * gradient of index space, away from what is left. */
+bool hl_cut_face_between(const hl_scene_volume *volume, const cut_shape *cuts, vec3 before, vec3 here,
+                         vec3 *outward);
 
 #endif

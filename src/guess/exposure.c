@@ -29,6 +29,7 @@ enum { SIDE = 64, TABLE = 1024, MOST_LIGHTS = 4 };
 typedef struct exposure {
   const hl_scene_description *scene;
   const hl_scene_volume *volume;
+  cut_shape *cuts; /* owned; [volume->cut_count] */
   affine3 world_to_index;
   vec3 right, up,
       forward; /* the camera's; lengths: half the picture's width and height at distance 1, and 1 */
@@ -165,7 +166,7 @@ typedef struct ray_face {
 /* before, here: points of index space a step apart, the second at t. */
 static void pass_face(const exposure *e, ray_face *face, double t, vec3 before, vec3 here) {
   vec3 outward;
-  if (!hl_cut_face_between(e->volume, before, here, &outward)) return;
+  if (!hl_cut_face_between(e->volume, e->cuts, before, here, &outward)) return;
   face->normal = vec3_normalise(mat3_apply(mat3_transpose(e->world_to_index.linear), outward));
   face->at = t - e->step / 2;
 }
@@ -183,7 +184,7 @@ static double passing(const exposure *e, vec3 point, vec3 towards) {
       return left;
     double value = hl_volume_value_within(e->volume->volume, (size_t)x, (size_t)y, (size_t)z);
     double clear = isfinite(value) ? 1 - e->opacity[entry_of(e, value)] : 1;
-    if (clear < 1 && hl_scene_volume_left(e->volume, at)) left *= pow(clear, STEPS);
+    if (clear < 1 && hl_cuts_leave(e->cuts, e->volume->cut_count, at)) left *= pow(clear, STEPS);
   }
 }
 
@@ -267,7 +268,7 @@ static pixel look_along(const exposure *e, vec3 origin, vec3 direction) {
     const long at[3] = {lround(place.x), lround(place.y), lround(place.z)};
     double near = hl_volume_value_within(volume, (size_t)at[0], (size_t)at[1], (size_t)at[2]), slope[3],
            own[3], sent[3];
-    if (!hl_scene_volume_left(e->volume, place)) continue;
+    if (!hl_cuts_leave(e->cuts, e->volume->cut_count, place)) continue;
     pass_face(e, &face, t, vec3_subtract(place, vec3_scale(along, e->step)), place);
     if (!isfinite(near)) continue;
     gather_isosurfaces(e, before, near, at, to_eye, &all);
@@ -360,8 +361,10 @@ hl_status hl_scene_exposure(const hl_scene_description *scene, double empty, dou
   if (e == NULL || seen == NULL) status = hl_fail_memory(error, sizeof *seen, "an exposure");
   else if (begin(scene, empty, left, e)) {
     seen->bright_count = seen->surface_count = 0;
-    look(e, seen);
-    status = judge(context, seen, result, error);
+    status = hl_cut_shapes(context, e->volume, &e->cuts, error);
+    if (status == HL_OK) look(e, seen);
+    if (status == HL_OK) status = judge(context, seen, result, error);
+    hl_release(context, e->cuts);
   }
   hl_release(context, seen);
   hl_release(context, e);

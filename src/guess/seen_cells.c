@@ -8,7 +8,6 @@
 #include "core/memory.h"
 #include "guess/looks.h"
 #include "guess/sample.h"
-#include "scene/geometry/cut.h"
 #include "volume/store/pages.h"
 
 #define FAINT          0.02 /* fraction of the greatest opacity below which voxels at the rim do not count */
@@ -117,13 +116,13 @@ static double looked_at(const hl_seen *seen, int axis, int cell) {
 static void forget_cut_cells(hl_seen *seen) {
   const int *n = seen->size;
   const double step = (double)seen->step;
-  if (seen->cut->cut_count == 0) return;
+  if (seen->cut_count == 0) return;
   for (int k = 0; k < n[2]; k++)
     for (int j = 0; j < n[1]; j++)
       for (int i = 0; i < n[0]; i++) {
         double low[3] = {i * step - 0.5, j * step - 0.5, k * step - 0.5};
         double high[3] = {low[0] + step, low[1] + step, low[2] + step};
-        if (hl_scene_volume_removes_box(seen->cut, low, high))
+        if (hl_cuts_remove_box(seen->cuts, seen->cut_count, low, high))
           seen->mean[((size_t)k * (size_t)n[1] + (size_t)j) * (size_t)n[0] + (size_t)i] = 0;
       }
 }
@@ -321,12 +320,13 @@ static hl_status make_cells(hl_seen *seen, hl_error *error) {
 hl_status hl_seen_find(const hl_scene_volume *volume, hl_seen *seen, bool *any, hl_error *error) {
   const hl_transfer_function *function = &volume->transfer_function;
   double greatest = greatest_opacity(function, volume->volume->minimum, volume->volume->maximum);
-  *seen = (hl_seen){.volume = volume->volume, .cut = volume, .function = function};
+  *seen = (hl_seen){.volume = volume->volume, .cut_count = volume->cut_count, .function = function};
   *any = volume->visible && greatest > 0 && find_range(volume, seen);
   if (!*any) return HL_OK;
   seen->faint = (float)(-log1p(-FAINT * fmin(greatest, OPAQUE)) / function->unit_distance * (1 - 1e-6));
   hl_status status = make_table(seen, error);
   if (status == HL_OK) status = make_cells(seen, error);
+  if (status == HL_OK) status = hl_cut_shapes(volume->volume->context, volume, &seen->cuts, error);
   if (status != HL_OK) return status;
   make_means(seen);
   forget_cut_cells(seen);
@@ -345,6 +345,7 @@ void hl_seen_release(hl_seen *seen) {
   hl_release(context, seen->kind);
   hl_release(context, seen->mean);
   hl_release(context, seen->row);
+  hl_release(context, seen->cuts);
 }
 
 /* The least depth per length with which a voxel counts; in a seen cell, half of the cell's mean is enough. */
@@ -374,7 +375,7 @@ static ptrdiff_t first_that_counts(const hl_seen *seen, const voxel_row *row, pt
     float least = least_depth(seen, cells + (size_t)cell);
     for (; i != next; i += way)
       if (depth_at(seen, row->voxels, i) >= least &&
-          hl_scene_volume_left(seen->cut, (vec3){(double)i, (double)row->j, (double)row->k}))
+          hl_cuts_leave(seen->cuts, seen->cut_count, (vec3){(double)i, (double)row->j, (double)row->k}))
         return i;
   }
   return to + way;

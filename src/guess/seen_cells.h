@@ -9,13 +9,15 @@
 
 #include <stdint.h>
 #include "core/error.h"
+#include "scene/geometry/cut.h"
 #include "scene/scene.h"
 
 enum { HL_SEEN_NOTHING = 0, HL_SEEN_BESIDE = 1, HL_SEEN = 2 }; /* BESIDE: next to a seen cell */
 
 typedef struct hl_seen {
   const hl_volume *volume;
-  const hl_scene_volume *cut; /* what its cuts remove is not seen */
+  cut_shape *cuts; /* owned; [cut_count]; what they remove is not seen */
+  size_t cut_count;
   ptrdiff_t first[3], end[3]; /* voxels inside the volume's box */
   size_t step;                /* voxels along each edge of a cell */
   size_t stride;              /* from one examined row to the next, along y and z */

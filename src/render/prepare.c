@@ -47,12 +47,10 @@ static hl_status keep_cuts(hl_context *context, prepared_volume *prepared, const
   hl_release(context, prepared->cuts);
   grid->cuts = prepared->cuts = NULL;
   grid->cut_count = 0;
-  if (scene->cut_count == 0) return HL_OK;
-  prepared->cuts = hl_allocate(context, scene->cut_count, sizeof *prepared->cuts);
-  if (prepared->cuts == NULL) return hl_fail_memory(error, scene->cut_count * sizeof(cut_shape), "cuts");
+  hl_status status = hl_cut_shapes(context, scene, &prepared->cuts, error);
+  if (status != HL_OK) return status;
   for (size_t i = 0; i < scene->cut_count; i++) {
     affine3 *to_shape = &prepared->cuts[i].to_shape;
-    prepared->cuts[i] = hl_cut_shape(scene, i);
     to_shape->offset = vec3_subtract(to_shape->offset, mat3_apply(to_shape->linear, vec3_of(grid->shift)));
   }
   grid->cuts = prepared->cuts;

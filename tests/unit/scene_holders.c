@@ -1,5 +1,6 @@
 /* tests/unit/scene_holders.c - what holds a scanned object is cut away, and nothing else: balls beside boards
  * of which the answer is known. */
+#include "core/memory.h"
 #include "scene/geometry/cut.h"
 #include "scene_parts.h"
 
@@ -78,16 +79,19 @@ static void boards_are_cut_away(void **state) {
     hl_scene *scene = make_scene(context, on_board, turn ? turned : straight);
     const hl_scene_volume *volume = &hl_scene_describe(scene)->volumes[0];
     assert_true(volume->cut_count > 0 && volume->cut_count <= 8);
+    cut_shape *cuts;
+    assert_int_equal(hl_cut_shapes(context, volume, &cuts, NULL), HL_OK);
     int board = 0, left = 0;
     for (int v = 0; v < COUNT; v++) {
       int i = v % N, j = v / N % N, k = v / N / N;
-      bool stays = hl_scene_volume_left(volume, (vec3){i, j, k});
+      bool stays = hl_cuts_leave(cuts, volume->cut_count, (vec3){i, j, k});
       if (from_middle(i, j, k) < 22) assert_true(stays);
       if (!in_board(i, j, k)) continue;
       board++;
       left += stays;
     }
     assert_true(board == 12 * 2 * N && left * 100 <= board);
+    hl_release(context, cuts);
     hl_scene_release(scene);
   }
   hl_context_destroy(context);

@@ -34,6 +34,16 @@ cut_shape hl_cut_shape(const hl_scene_volume *volume, size_t cut) {
   return shape;
 }
 
+hl_status hl_cut_shapes(hl_context *context, const hl_scene_volume *volume, cut_shape **shapes,
+                        hl_error *error) {
+  *shapes = NULL;
+  if (volume->cut_count == 0) return HL_OK;
+  *shapes = hl_allocate(context, volume->cut_count, sizeof **shapes);
+  if (*shapes == NULL) return hl_fail_memory(error, volume->cut_count * sizeof **shapes, "cuts");
+  for (size_t i = 0; i < volume->cut_count; i++) (*shapes)[i] = hl_cut_shape(volume, i);
+  return HL_OK;
+}
+
 static bool same_vector(vec3 a, vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 bool hl_cut_same(const cut_shape *a, const cut_shape *b) {
@@ -60,14 +70,6 @@ static bool is_inside(const cut_shape *cut, vec3 point) {
 bool hl_cuts_leave(const cut_shape *cuts, size_t count, vec3 point) {
   for (size_t i = 0; i < count; i++)
     if (is_inside(&cuts[i], point) != cuts[i].keep_inside) return false;
-  return true;
-}
-
-bool hl_scene_volume_left(const hl_scene_volume *volume, vec3 point) {
-  for (size_t i = 0; i < volume->cut_count; i++) {
-    cut_shape shape = hl_cut_shape(volume, i);
-    if (!hl_cuts_leave(&shape, 1, point)) return false;
-  }
   return true;
 }
 
@@ -124,14 +126,6 @@ bool hl_cuts_leave_box(const cut_shape *cuts, size_t count, const double low[3],
     if (cuts[i].keep_inside ? !is_all_inside(&cuts[i], &e) : !is_all_outside(&cuts[i], &e)) return false;
   }
   return true;
-}
-
-bool hl_scene_volume_removes_box(const hl_scene_volume *volume, const double low[3], const double high[3]) {
-  for (size_t i = 0; i < volume->cut_count; i++) {
-    cut_shape shape = hl_cut_shape(volume, i);
-    if (hl_cuts_remove_box(&shape, 1, low, high)) return true;
-  }
-  return false;
 }
 
 void hl_add_scene_cuts(const hl_scene_description *scene, hl_scene_volume *volume, hl_cut *cuts) {

@@ -22,6 +22,11 @@ cut_shape hl_cut_shape_in_world(const hl_cut *cut);
 /* The shape of volume->cuts[cut]. */
 cut_shape hl_cut_shape(const hl_scene_volume *volume, size_t cut);
 
+/* The shapes of all cuts of a volume. *shapes: [volume->cut_count], which the caller releases; null where the
+ * volume has no cuts. Fails for lack of memory alone. */
+hl_status hl_cut_shapes(hl_context *context, const hl_scene_volume *volume, cut_shape **shapes,
+                        hl_error *error);
+
 /* Gives a copy of a scene's volume the scene's cuts beside its own. cuts: [the volume's and the scene's
  * cut_count], which the volume then borrows. */
 void hl_add_scene_cuts(const hl_scene_description *scene, hl_scene_volume *volume, hl_cut *cuts);
@@ -48,16 +53,10 @@ bool hl_cut_same(const cut_shape *a, const cut_shape *b);
 /* Whether a point of the shapes' space is left by all cuts. */
 bool hl_cuts_leave(const cut_shape *cuts, size_t count, vec3 point);
 
-/* Whether a point of index space is left by the cuts of a volume. */
-bool hl_scene_volume_left(const hl_scene_volume *volume, vec3 point);
-
 /* Whether a box along the axes of the shapes' space is surely cut away: some cut removes all of it. */
 bool hl_cuts_remove_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
 
 /* Whether it is surely left: no cut removes any of it. */
 bool hl_cuts_leave_box(const cut_shape *cuts, size_t count, const double low[3], const double high[3]);
-
-/* Whether the cuts of a volume surely remove a box of index space. */
-bool hl_scene_volume_removes_box(const hl_scene_volume *volume, const double low[3], const double high[3]);
 
 #endif
