@@ -125,6 +125,7 @@ typedef struct frame_request {
   int depth;          /* of a PNG: 8 or 16 */
   int metadata;       /* 1: a PNG carries its scene; 0: it does not */
   int scale_bar, legend; /* 1: drawn over a PNG of 8 bits */
+  const char *unit;      /* of lengths, where the scene's files tell none; null: it is not known */
   int moving; /* 1: a quick frame, of coarser volumes where the sheets are wide; 0: the scene as it is */
   long long
       base; /* the page's frame from whose scene the text tells the difference; 0: it is a whole scene */

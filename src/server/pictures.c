@@ -38,6 +38,7 @@ static void make_figure(const hl_image *image, const hl_scene *scene, const fram
   panel->overlay.scale_bar = request->scale_bar;
   panel->overlay.scale_bar_depth = HL_DEPTH_OF_TARGET;
   panel->overlay.legend = request->legend;
+  panel->overlay.world_unit = request->unit;
 }
 
 hl_status check_overlay(const server *s, const hl_scene *scene, const frame_request *request,

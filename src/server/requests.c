@@ -301,6 +301,7 @@ static frame_request read_query(struct MHD_Connection *connection, const request
                          .metadata = (int)query_number(connection, "metadata", 0, 1, 1),
                          .scale_bar = (int)query_number(connection, "scale_bar", 0, 1, 0),
                          .legend = (int)query_number(connection, "legend", 0, 1, 0),
+                         .unit = query(connection, "unit"),
                          .moving = (int)query_number(connection, "moving", 0, 1, 0),
                          .base = query_number(connection, "base", 1, MOST_NUMBER, 0),
                          .text = r->body,
@@ -330,7 +331,7 @@ static void post_frame(server *s, struct MHD_Connection *connection, const reque
                    "a frame needs ?page=NAME&number=N&format=jpeg|png|exr|npy (&quality=10..100, "
                    "&depth=8|16, &metadata=0|1, &moving=0|1, "
                    "&base=N; of a png with 8 bits &scale_bar=0|1, "
-                   "&legend=0|1)\n");
+                   "&legend=0|1, &unit=TEXT)\n");
 }
 
 /* How deep lies what the middle of a small picture of the scene shows. */

@@ -14,7 +14,7 @@ import tempfile
 import checks
 from checks import check
 from firefox import browser_named
-from hands import PROGRAM, STAGE, center, changes, open_section, press, press_named, rest, scene_of, set_control
+from hands import PROGRAM, STAGE, center, changes, open_section, press, press_named, resize, rest, scene_of, set_control
 from viewer import Viewer, need_viewer
 
 
@@ -56,6 +56,18 @@ def pictures_of(browser, label):
     return f"[...document.querySelectorAll('[aria-label={json.dumps(label)}] canvas')]"
 
 
+def compared_with_before(browser, button, volumes):
+    """One click in the panel shows the look before beside this one, the next click ends that."""
+    browser.run("(() => { const own = window.fetch; window.beside = []; window.fetch = (path, options) => { if (/^frame\\?page=\\w+-compared&/.test(path)) beside.push(options.body); return own(path, options); }; })()")
+    browser.run(f"{button}.click()")
+    browser.wait("!document.querySelector('.compared').hidden")
+    check(json.loads(browser.run("beside.at(-1)"))["volumes"] == volumes, "the other picture has the look before")
+    check(browser.run("[...document.querySelectorAll('.side')].map((s) => s.textContent)") == ["before", "now"], "both sides are named")
+    check(browser.run(f"{button}.getAttribute('aria-pressed')") == "true", "the button says so")
+    browser.run(f"{button}.click()")
+    check(browser.run("document.querySelector('.compared').hidden && document.querySelector('.divider').hidden"), "it ends")
+
+
 def looks(browser):
     """Each look has a small picture of this volume, which differ; a click takes the look, one undo the one before."""
     open_section(browser, "Looks")
@@ -66,9 +78,13 @@ def looks(browser):
       canvas.getContext('2d').getImageData(0, 0, 112, 80).data.reduce((sum, x) => sum + x, 0))""")
     check(len(set(drawn)) >= 4, f"pictures differ: {drawn}")
     before, camera = scene_of(browser)["volumes"], scene_of(browser)["camera"]
+    browser.wait("document.querySelector('[aria-label=Looks] [aria-pressed=true]')?.textContent === 'auto'")  # what it began with
+    beside = "document.querySelector('[aria-label=Looks] + .row button')"
+    check(browser.run(f"{beside}.disabled"), "there is nothing before to compare with")
     press(browser, "translucent")
     browser.wait("halflight.store.canUndo")
     rest(browser)
+    compared_with_before(browser, beside, before)
     check(scene_of(browser)["volumes"] != before and scene_of(browser)["camera"] == camera, "the look is taken, from the same view")
     browser.wait("document.querySelector('[aria-label=Looks] [aria-pressed=true]')?.textContent === 'translucent'")
     press_named(browser, "Undo")
@@ -206,6 +222,10 @@ def cuts_of_the_program(browser, url):
     rest(browser)
     browser.problems.clear()  # the page before has lost its viewer
     cuts = scene_of(browser)["volumes"][0]["cuts"]
+    resize(browser, 820, 600)
+    check(browser.run("(({ scrollWidth, clientWidth }) => scrollWidth <= clientWidth)(document.querySelector('.note'))"), "the button shows all of its text on a tablet")
+    resize(browser, 900, 600)
+    rest(browser)
     note = "document.querySelector('.note')"
     check("show what holds it" in browser.run(f"{note}.textContent") and str(len(cuts)) in browser.run(f"{note}.textContent"), "it is said")
     changes(browser, "show what was cut away", lambda: browser.run(f"{note}.click()"), "volumes")

@@ -175,6 +175,11 @@ def saved_as_seen(browser):
     os.mkdir("saved")
     browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=os.path.abspath("saved"))
     check(browser.run("document.getElementById('scale-bar').disabled && document.getElementById('no-unit').textContent.includes('no unit')"), "no bar without a unit")
+    browser.run("(() => { const unit = document.getElementById('unit'); unit.value = 'mm'; unit.dispatchEvent(new Event('input')); })()")
+    check(browser.run("!document.getElementById('scale-bar').disabled && document.querySelector('.scale text').textContent.endsWith(' mm')"), "with one there is, in the picture, too")
+    command = "import('./export.js').then((m) => m.commandLine(halflight.store.scene, 'a', { scaleBar: true, unit: 'light years' }))"
+    check(" --unit 'light years' --scale-bar auto@target " in browser.run(command), "the copied command names the unit")
+    browser.run("halflight.store.setPage({ unit: '' })")
     seen = browser.run("halflight.store.scene.image.width")
     set_control(browser, "For", "2", "change")
     sides = browser.run("[...document.querySelectorAll('[aria-label$=\"in pixels\"]')].map((input) => +input.value)")

@@ -246,6 +246,26 @@ def follows(browser, what, name, drag, key, ways):
         check(beside < 3, f"{what}: moved by {moved} of {drag}")
 
 
+
+def to_the_crosshair(browser, cuts_now):
+    """A cut goes to the crosshair by one button, which is there while slices are."""
+    move = "[...document.querySelectorAll('button')].find((b) => b.textContent === 'to the crosshair' && b.closest('details').open)"
+    check(browser.run(f"{move}.offsetParent === null"), "no crosshair, no button")
+    browser.run("halflight.store.setPage({ layout: 'beside', cursor: [9, 8, 7] })")
+    box = cuts_now()[1]
+    browser.wait(f"{move}.offsetParent !== null")
+    changes(browser, "a box goes to the crosshair", lambda: browser.run(f"{move}.click()"), "volumes")
+    moved = cuts_now()[1]
+    middle = [(low + high) / 2 for low, high in zip(moved["min"], moved["max"])]
+    check(max(abs(a - b) for a, b in zip(middle, [9, 8, 7])) < 1e-9, f"its middle is there: {middle}")
+    sides = [[high - low for low, high in zip(one["min"], one["max"])] for one in (box, moved)]
+    check(max(abs(a - b) for a, b in zip(*sides)) < 1e-9, f"its sides are as long as before: {sides}")
+    press_named(browser, "Undo")
+    browser.run("halflight.store.setPage({ layout: 'picture' })")
+    rest(browser)
+    check(cuts_now()[1] == box, "undone in one step")
+
+
 def cuts(browser):
     """Cuts of every shape, their numbers, their switch, and what is refused."""
     def cuts_now():
@@ -290,6 +310,7 @@ def cuts(browser):
     box = cuts_now()[1]
     follows(browser, "a box's face", "Box of the cut z, least", (3, 12), "volumes", 1)
     check(cuts_now()[1] == {**box, "min": [*box["min"][:2], cuts_now()[1]["min"][2]]}, "one face moves alone")
+    to_the_crosshair(browser, cuts_now)
     equals_render(browser, "cuts")
     last = cuts_now()
     changes(browser, "all cuts off", lambda: set_control(browser, "All cuts", ""), "volumes")

@@ -88,6 +88,7 @@ def drawn_over(viewer, scene):
 
     plain, legend = frame(viewer, scene)[2], equals(viewer, scene, ["--legend", "auto"], legend=1)
     check(pixels(legend) != pixels(plain), "the legend is seen")
+    equals(viewer, scene, ["--unit", "kpc", "--scale-bar", "auto@target"], scale_bar=1, unit="kpc")
     for asked in ({"scale_bar": 1}, {"legend": 1, "depth": 16}, {"legend": 1, "format": "exr"}, {"legend": 1, "format": "jpeg"}, {"legend": 2}):
         status, _, body = frame(viewer, scene, **asked)
         check(status == 400 and body.count(b"\n") <= 1 and (b"unit" in body or b"8 bits" in body), f"{asked}: {status} {body}")

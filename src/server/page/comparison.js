@@ -1,13 +1,16 @@
-// Two pictures in one: left of a line, which is dragged, the same view with other shadows, or with all that was kept before.
+// Two pictures in one: left of a line, which is dragged, the same view with other shadows, with all that was kept before, or with
+// what the last step has changed.
 
 import { make, row, button, select } from "./controls.js";
 
 const KEY_STEP = 0.05; // of the picture's width
-const NAMES = { off: "without shadows", hard: "hard shadows", soft: "soft shadows", kept: "kept before" };
+const CHOICES = ["off", "hard", "soft", "before", "kept"];
+const NAMES = { off: "without shadows", hard: "hard shadows", soft: "soft shadows", kept: "kept before", before: "before" };
 
 const withShadows = (scene, shadows) => ({ ...scene, render: { ...scene.render, shadows }, lights: scene.lights.map((light) => (light.shadows === "off" ? light : (({ shadows: _, ...rest }) => rest)(light))) });
 
-// Returns { element, update, atRest, compare }: element is a row of the panel of shadows; compare(what) chooses what is shown.
+// Returns { elements, update, atRest, compare, compareButton }: elements are rows of the panel of shadows; compare(what) chooses what is
+// shown; compareButton() makes a row for another panel.
 export function comparison({ store, channel, failed, find, report }) {
   const canvas = make("canvas", { class: "compared", "aria-hidden": "true", hidden: true });
   const left = make("span", { class: "side" }), right = make("span", { class: "side" });
@@ -16,7 +19,7 @@ export function comparison({ store, channel, failed, find, report }) {
     onpointerdown: grab, onkeydown: key,
   }, left, right);
   const view = find("view");
-  let what = "", kept = null, part = 0.5, asked = null;
+  let what = "", kept = null, before = null, part = 0.5, asked = null;
   find("picture").after(canvas);
   find("overlay").after(line);
 
@@ -49,9 +52,10 @@ export function comparison({ store, channel, failed, find, report }) {
 
   // The scene on the left of the line.
   function other(scene) {
-    if (what !== "kept") return withShadows(scene, what);
+    const past = { kept, before }[what];
+    if (past === undefined) return withShadows(scene, what);
     const { width, height } = scene.image;
-    return { ...kept, camera: scene.camera, image: { ...kept.image, width, height } };
+    return { ...past, camera: scene.camera, image: { ...past.image, width, height } };
   }
 
   async function atRest() {
@@ -75,7 +79,12 @@ export function comparison({ store, channel, failed, find, report }) {
   }
 
   function compare(wanted) {
+    if (wanted === "before" && store.before === null) {
+      report("There is nothing before: nothing has been changed.");
+      wanted = "";
+    }
     what = wanted === what ? "" : wanted;
+    if (what === "before") before = store.before;
     line.hidden = what === "";
     canvas.hidden = true;
     asked = null;
@@ -90,19 +99,31 @@ export function comparison({ store, channel, failed, find, report }) {
     canvas.hidden = true; // it is of another view, until the picture has come to rest
   });
   const choice = select({
-    label: "Compare", choices: [["", "nothing"], ...["off", "hard", "soft", "kept"].map((name) => [name, NAMES[name]])], get: () => what,
+    label: "Compare", choices: [["", "nothing"], ...CHOICES.map((name) => [name, NAMES[name]])], get: () => what,
     set: (name) => {
       if (name === "kept" && kept === null) report("Keep this picture first: “keep” remembers it.");
       else if (name !== what) compare(name);
       update();
     }, title: "Left of the line in the picture",
   });
+  // A button for panels whose choices are worth to be seen beside the one before.
+  const buttons = [];
+  function compareButton() {
+    const made = button("compare with before", () => compare("before"), { title: "Beside the picture as it was before the last change; drag the line between them" });
+    buttons.push(made);
+    update();
+    return row("", made);
+  }
   const keep = button("keep", () => { kept = store.scene; report("This look and light is kept: change them, then compare."); }, { title: "Remembers the look and the light of this picture, to compare with later" });
   function update() {
     choice.update();
+    buttons.forEach((one) => {
+      one.setAttribute("aria-pressed", String(what === "before"));
+      one.disabled = what !== "before" && !store.canUndo;
+    });
     left.textContent = NAMES[what] ?? "";
-    right.textContent = what === "kept" ? "now" : NAMES[store.scene.render.shadows] ?? "";
+    right.textContent = what === "kept" || what === "before" ? "now" : NAMES[store.scene.render.shadows] ?? "";
   }
   update();
-  return { elements: [choice.element, row("", keep)], update, atRest, compare };
+  return { elements: [choice.element, row("", keep)], update, atRest, compare, compareButton };
 }

@@ -1,8 +1,9 @@
 // The panels of a volume's cuts and of the scene's, which cut all volumes: planes, boxes and spheres, each with its numbers and
 // a switch. A cut that is switched off is not in the scene; the panel remembers it.
 
-import { corners, middle, placed, worldBox } from "./boxes.js";
-import { isActive, make, row, section, segments, select, shortNumber, tabs, toggle } from "./controls.js";
+import { corners, middle, placed, unplaced, worldBox } from "./boxes.js";
+import { button, isActive, make, row, section, segments, select, shortNumber, tabs, toggle } from "./controls.js";
+import { add, subtract } from "./vector.js";
 
 const PARTS = { plane: [["point", "Point"], ["normal", "Direction"]], box: [["min", "Least"], ["max", "Greatest"]], sphere: [["center", "Centre"], ["radius", "Radius"]] };
 
@@ -12,6 +13,14 @@ function newCut(type, box) {
   if (type === "plane") return { type, point: at, normal: [1, 0, 0] };
   if (type === "box") return { type, min: [at[0], box.min[1] - sides[1] / 10, at[2]], max: [0, 1, 2].map((k) => (k === 1 ? at[1] : box.max[k] + sides[k] / 10)) };
   return { type, center: [at[0], box.min[1], box.max[2]], radius: Math.max(...sides) / 3 };
+}
+
+// The cut, moved so that its middle, or a point of its plane, is at a point.
+function movedTo(cut, point) {
+  if (cut.type === "plane") return { ...cut, point };
+  if (cut.type === "sphere") return { ...cut, center: point };
+  const way = subtract(point, middle(cut));
+  return { ...cut, min: add(cut.min, way), max: add(cut.max, way) };
 }
 
 // A row of one or three numbers.
@@ -37,7 +46,7 @@ function numbers({ label, noun, count, get, set }) {
 // A panel of the cuts of one owner: owner() tells which it is (-1: none, the panel is hidden), cuts() are its cuts, take(name,
 // cuts) changes them, box() is where they cut, transform() where that lies in the scene, others() are rows that follow. While it
 // is open, the chosen cut has handles in the picture.
-function panelOf({ title, noun, overlay, report, owner, cuts: cutsNow, take: takeCuts, box, transform, others }) {
+function panelOf({ title, noun, viewer: { overlay, report, slices }, owner, cuts: cutsNow, take: takeCuts, box, transform, others }) {
   const { element, body } = section(title, false);
   let list = [], chosen = 0, parts = []; // list: { cut, on }, of the owner `of`
   let of = -1;
@@ -89,9 +98,15 @@ function panelOf({ title, noun, overlay, report, owner, cuts: cutsNow, take: tak
     const places = PARTS[cut.type].map(([key, label]) => numbers({
       label, noun, count: key === "radius" ? 1 : 3, get: () => entry()?.cut[key] ?? cut[key], set: (value) => setNumbers(key, value),
     }));
+    const toCrosshair = {
+      element: row("", button("to the crosshair", () => {
+        take(`${chosen} place`, list.map((one, n) => (n === chosen ? { ...one, cut: movedTo(one.cut, unplaced(slices.cursor, transform())) } : one)));
+      }, { title: "Moves the cut to where the crosshair of the slices is" })),
+      update() { this.element.hidden = slices.layout === "picture"; },
+    };
     return [
       toggle({ label: "Cuts", get: () => entry()?.on === true, set: (on) => take(`${chosen} on`, list.map((one, n) => (n === chosen ? { ...one, on } : one))) }),
-      shape, ...places,
+      shape, ...places, toCrosshair,
       segments({ label: "Keep", choices: [["outside", "Outside"], ["inside", "Inside"]], get: () => entry()?.cut.keep ?? "outside", set: (keep) => changeCut("keep", { keep }) }),
     ];
   }
@@ -108,6 +123,7 @@ function panelOf({ title, noun, overlay, report, owner, cuts: cutsNow, take: tak
     if (element.hidden !== owner() < 0 || (owner() >= 0 && follow())) build();
     else parts.forEach((part) => part.update());
   };
+  const updateView = () => parts.forEach((part) => part.update()); // the layout says whether there is a crosshair
   const chosenCut = () => {
     if (owner() >= 0 && follow()) build();
     return element.open && owner() >= 0 && entry()?.on ? entry().cut : null;
@@ -118,7 +134,7 @@ function panelOf({ title, noun, overlay, report, owner, cuts: cutsNow, take: tak
   });
   element.addEventListener("toggle", () => overlay.draw());
   build();
-  return { element, update, rebuild: build };
+  return { element, update, updateView, rebuild: build };
 }
 
 // The switch of everything that is cut away: the cuts and clip boxes of all volumes and the scene's cuts. It says what the
@@ -156,7 +172,8 @@ export function cutSwitch(viewer) {
   return { element, update };
 }
 
-export function cutPanel({ store, start, current, report, overlay }) {
+export function cutPanel(viewer) {
+  const { store, start, current } = viewer;
   const volume = () => store.scene.volumes[current.volume];
   const others = () => [
     select({
@@ -169,20 +186,21 @@ export function cutPanel({ store, start, current, report, overlay }) {
     }),
   ];
   return panelOf({
-    title: "Cuts", noun: "cut", overlay, report, others, transform: () => volume().transform, owner: () => (volume() === undefined ? -1 : current.volume), cuts: () => volume().cuts ?? [],
+    title: "Cuts", noun: "cut", viewer, others, transform: () => volume().transform, owner: () => (volume() === undefined ? -1 : current.volume), cuts: () => volume().cuts ?? [],
     take: (name, change) => store.changeVolume(current.volume, name, change), box: () => worldBox(start.volumes[current.volume]),
   });
 }
 
 // The scene's own cuts, where it has several volumes or such cuts already.
-export function sceneCutPanel({ store, start, report, overlay }) {
+export function sceneCutPanel(viewer) {
+  const { store, start } = viewer;
   function box() {
     const places = start.volumes.flatMap((about, n) => corners(worldBox(about)).map((corner) => placed(corner, store.scene.volumes[n]?.transform)));
     return { min: [0, 1, 2].map((k) => Math.min(...places.map((at) => at[k]))), max: [0, 1, 2].map((k) => Math.max(...places.map((at) => at[k]))) };
   }
   const volumes = () => store.scene.volumes.length;
   return panelOf({
-    title: "Cuts of the scene", noun: "cut of the scene", overlay, report, transform: () => ({}), others: () => [], box, cuts: () => store.scene.cuts ?? [],
+    title: "Cuts of the scene", noun: "cut of the scene", viewer, transform: () => ({}), others: () => [], box, cuts: () => store.scene.cuts ?? [],
     owner: () => (volumes() > 1 || (volumes() > 0 && store.scene.cuts?.length > 0) ? 0 : -1), take: (name, change) => store.change(`scene ${name}`, change),
   });
 }

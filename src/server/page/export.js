@@ -16,13 +16,14 @@ export const fileWord = (title, ending) => quoted(`${stem(title)}${ending}`.repl
 export const sceneText = (scene) => JSON.stringify(scene, null, 2) + "\n";
 
 // A command that needs nothing beside it but the scene's volumes: the scene is its standard input.
-// over: { scaleBar, legend }, whether they are drawn over the picture. In a perspective picture the bar holds at the camera's target.
-export const commandLine = (scene, title, { scaleBar = false, legend = false } = {}) =>
-  `halflight render - -o ${fileWord(title, ".png")}${scaleBar ? ` --scale-bar auto${scene.camera.type === "orthographic" ? "" : "@target"}` : ""}${legend ? " --legend auto" : ""} <<'END'\n${sceneText(scene)}END\n`;
+// over: { scaleBar, legend, unit }: whether they are drawn over the picture, and the unit of lengths where the files tell none. In a
+// perspective picture the bar holds at the camera's target.
+export const commandLine = (scene, title, { scaleBar = false, legend = false, unit = "" } = {}) =>
+  `halflight render - -o ${fileWord(title, ".png")}${unit ? ` --unit ${quoted(unit)}` : ""}${scaleBar ? ` --scale-bar auto${scene.camera.type === "orthographic" ? "" : "@target"}` : ""}${legend ? " --legend auto" : ""} <<'END'\n${sceneText(scene)}END\n`;
 
 // The same as a Python program.
-const annotated = ({ scaleBar = false, legend = false }) => {
-  const words = [...(scaleBar ? ["scale_bar=True", 'depth="target"'] : []), ...(legend ? ["legend=True"] : [])];
+const annotated = ({ scaleBar = false, legend = false, unit = "" }) => {
+  const words = [...(scaleBar ? ["scale_bar=True", 'depth="target"'] : []), ...(unit ? [`unit=${JSON.stringify(unit)}`] : []), ...(legend ? ["legend=True"] : [])];
   return words.length > 0 ? `.annotate(${words.join(", ")})` : "";
 };
 
@@ -76,13 +77,20 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
     const input = make("input", { type: "checkbox", id, onchange: () => update() });
     return { input, element: row(make("label", { for: id }, label), input) };
   };
+  // What the page's lengths are measured in, where no file tells it.
+  const unit = make("input", { type: "text", id: "unit", maxlength: 24, placeholder: "mm, µm, kpc …", oninput: () => store.setPage({ unit: unit.value.trim() }) });
+  const unitRow = row(make("label", { for: "unit", title: "One unit of length of the volume's file" }, "Unit"), unit);
   const bar = box("Scale bar", "scale-bar"), legend = box("Legend", "legend"), unknown = make("p", { class: "facts", id: "no-unit" });
   const same = make("p", { class: "facts" });
   bar.input.setAttribute("aria-describedby", "no-unit");
   const drawsOver = () => channel.drawsOver === true && format === "png"; // they are drawn with 8 bits
   // Whether the file of a visible volume does not tell the unit of its lengths.
   const isUnitless = () => start.volumes.some((volume, v) => volume?.unit === null && store.scene.volumes[v]?.visible !== false);
-  const over = () => ({ scaleBar: bar.input.checked && !bar.input.disabled, legend: legend.input.checked && !legend.input.disabled });
+  const given = () => (isUnitless() ? String(store.page.unit ?? "") : "");
+  const over = () => {
+    const scaleBar = bar.input.checked && !bar.input.disabled;
+    return { scaleBar, legend: legend.input.checked && !legend.input.disabled, ...(scaleBar && given() ? { unit: given() } : {}) };
+  };
 
   async function savePicture() {
     const scene = structuredClone(store.scene), image = scene.image, seen = { width: image.width, height: image.height };
@@ -111,7 +119,7 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
   body.append(
     row(make("span", { class: "name" }, "Size"), make("span", { class: "pair" }, width, "×", height)), sizes.element, kind.element,
     row(make("label", { for: "transparent" }, "Transparent"), transparent),
-    row(make("label", { for: "bare" }, "No metadata"), bare), bar.element, unknown, legend.element, row("", save),
+    row(make("label", { for: "bare" }, "No metadata"), bare), unitRow, bar.element, unknown, legend.element, row("", save),
     row(make("span", { class: "name" }, "Scene"), make("span", { class: "buttons" }, button("save scene", saveScene),
       button("copy scene", () => copy(sceneText(store.scene), "the scene")))),
     row("", make("span", { class: "buttons" },
@@ -122,14 +130,16 @@ export function exportPanel({ store, start, channel, report, failed, copy }) {
     for (const [input, key] of [[width, "width"], [height, "height"]])
       if (!isActive(input) && !input.value) input.placeholder = store.scene.image[key];
     kind.update();
-    const unitless = isUnitless();
+    const unitless = isUnitless() && given() === "";
+    unitRow.hidden = !channel.drawsOver || !isUnitless();
+    if (!isActive(unit)) unit.value = store.page.unit ?? "";
     for (const part of [bar, legend]) part.element.hidden = !channel.drawsOver;
     bar.input.disabled = !drawsOver() || unitless;
     legend.input.disabled = !drawsOver();
     unknown.hidden = !channel.drawsOver || (drawsOver() && !unitless);
-    unknown.textContent = drawsOver() ? "No scale bar: the volume's file tells no unit of length." : "Scale bar and legend are drawn with 8 bits: choose PNG.";
+    unknown.textContent = drawsOver() ? "The volume's file tells no unit of length. With one, a scale bar can be drawn." : "Scale bar and legend are drawn with 8 bits: choose PNG.";
     same.textContent = `Each of them makes the same picture, ${over().scaleBar || over().legend ? "pixel for pixel" : "byte for byte"}.`;
   }
   update();
-  return { element, update, savePicture, saveScene };
+  return { element, update, updateView: update, savePicture, saveScene };
 }

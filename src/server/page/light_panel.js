@@ -1,7 +1,6 @@
 // The panels of lights and shadows.
 
 import { hexOf, linearOf } from "./color.js";
-import { comparison } from "./comparison.js";
 import { color, keyButton, make, row, section, segments, select, slider, tabs, toggle } from "./controls.js";
 import { gallery } from "./gallery.js";
 import { LARGEST_SIZE, newLight, sizeOf, withOtherFrame, withSize } from "./light.js";
@@ -82,7 +81,7 @@ export function lightPanel(viewer) {
   place.classList.add("place");
   own.append(place);
   element.addEventListener("toggle", rigs.atRest);
-  body.append(rigs.element, list.element, handles.element, own, ambient.element);
+  body.append(rigs.element, viewer.comparison.compareButton(), list.element, handles.element, own, ambient.element);
   function update() {
     current.light = Math.min(current.light, Math.max(store.scene.lights.length - 1, 0));
     list.update();
@@ -116,12 +115,9 @@ export function shadowPanel(viewer) {
     label: "Step", low: 0.25, high: 4, exponential: true, unit: "voxels", title: "How far apart the final picture takes samples (its sheets): closer is finer and slower",
     get: () => render().sheet_spacing, set: (value) => store.changeRender("sheet_spacing", +value.toPrecision(3)),
   });
-  const compared = comparison(viewer);
-  viewer.compare = compared.compare;
-  viewer.atRest.push(compared.atRest);
-  body.append(kind.element, ...compared.elements, method.element, samples.element, spacing.element);
+  body.append(kind.element, ...viewer.comparison.elements, method.element, samples.element, spacing.element);
   function update() {
-    for (const part of [kind, method, samples, spacing, compared]) part.update();
+    for (const part of [kind, method, samples, spacing, viewer.comparison]) part.update();
     method.element.hidden = render().shadows !== "soft";
     samples.element.hidden = method.element.hidden || render().soft_method !== "sublights";
   }

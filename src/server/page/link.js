@@ -7,14 +7,15 @@ import { isMark } from "./marks.js";
 const MARK = "#view=";
 const MOST_BYTES = 1 << 20; // of the text that a link unfolds to
 
-// A difference: { to: value }, { gone: 1 }, or { in: { key: difference } } of an object or an array of the same length; undefined: none.
+// A difference: { to: value }, { gone: 1 }, or { in: { key: difference } } of an object or an array of the same length; undefined: none, whatever the order of keys.
 export function difference(from, to) {
   if (from === to || JSON.stringify(from) === JSON.stringify(to)) return undefined;
   const both = (test) => test(from) && test(to), isObject = (x) => x !== null && typeof x === "object" && !Array.isArray(x);
   if (!both(isObject) && !(both(Array.isArray) && from.length === to.length && from.length > 0)) return { to };
   const keys = [...new Set([...Object.keys(from), ...Object.keys(to)])];
   const parts = keys.map((key) => [key, key in to ? (Object.hasOwn(from, key) ? difference(from[key], to[key]) : { to: to[key] }) : { gone: 1 }]);
-  return { in: Object.fromEntries(parts.filter(([, part]) => part !== undefined)) };
+  const left = parts.filter(([, part]) => part !== undefined);
+  return left.length > 0 ? { in: Object.fromEntries(left) } : undefined;
 }
 
 export function changed(from, part) {

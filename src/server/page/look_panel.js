@@ -2,8 +2,8 @@
 
 import { section } from "./controls.js";
 import { gallery } from "./gallery.js";
+import { difference } from "./link.js";
 
-const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 const PROJECTION = "mip"; // the look that is no surface and no medium: its greys are a preset
 
 // The scene that a maximum projection can show: it has neither isosurfaces nor meshes.
@@ -17,12 +17,12 @@ export function lookPanel(viewer) {
   const names = start.looks ?? [], isOf = () => names.length > 0 && store.scene.volumes.length > 0 && store.scene.volumes.every((volume) => !volume.labels);
   const looks = gallery({
     label: "Looks", names, viewer, made: (look) => channel.completeScene(look === PROJECTION ? projected(store.scene) : store.scene, { look }),
-    isTaken: (scene) => same(seen(scene), seen(store.scene)),
+    isTaken: (scene) => difference(seen(scene), seen(store.scene)) === undefined,
     take: (name, made) => store.change(`look ${name}`, ({ camera, image: { width, height } }) => ({ ...made, camera, image: { ...made.image, width, height } })),
   });
   viewer.atRest.push(looks.atRest);
   element.addEventListener("toggle", looks.atRest);
-  body.append(looks.element);
+  body.append(looks.element, viewer.comparison.compareButton());
   function update() {
     element.hidden = !isOf();
     looks.update();

@@ -15,7 +15,7 @@ export const UNITS = { metre: "m", millimetre: "mm", micrometre: "µm", angstrom
 
 // Lengths are those of the first volume's file: { unit, length(a, b), angle }.
 function measures({ store, start }) {
-  const own = (point) => unplaced(point, store.scene.volumes[0]?.transform), unit = UNITS[start.volumes[0]?.unit];
+  const own = (point) => unplaced(point, store.scene.volumes[0]?.transform), unit = UNITS[start.volumes[0]?.unit] ?? store.page.unit;
   return { unit: unit ? ` ${unit}` : "", own };
 }
 

@@ -25,9 +25,11 @@ export function roundLength(most) {
   return [5, 2, 1].map((n) => n * power).find((x) => x <= most * 1.0000001);
 }
 
-// What lengths of the world are measured in: " mm" where volumes tell it, none another, and all keep their size; else nothing.
-function unitOf(scene, volumes) {
+// What lengths of the world are measured in: " mm" where volumes tell it, none another, and all keep their size; what a person has
+// said where none tells it; else nothing.
+function unitOf({ scene, page }, volumes) {
   const told = new Set(volumes.map((volume) => UNITS[volume?.unit]).filter(Boolean));
+  if (told.size === 0 && page.unit) told.add(page.unit);
   return told.size === 1 && scene.volumes.every(({ transform }) => (transform?.scale ?? 1) === 1) ? ` ${[...told][0]}` : "";
 }
 
@@ -123,7 +125,7 @@ export class Overlay {
     const path = `M${right - pixels} ${y - 5}v5h${pixels}v-5`;
     this.#bar.replaceChildren(
       make("svg:path", { d: path, class: "halo" }), make("svg:path", { d: path }),
-      make("svg:text", { x: right - pixels / 2, y: y - 8 }, shortNumber(size) + unitOf(this.#store.scene, this.#start.volumes)));
+      make("svg:text", { x: right - pixels / 2, y: y - 8 }, shortNumber(size) + unitOf(this.#store, this.#start.volumes)));
   }
 
   #drawBox() {

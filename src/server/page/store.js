@@ -132,6 +132,13 @@ export class Store {
     if (steps.length > MOST_STEPS) steps.shift();
   }
 
+  // The scene before the last step, seen as the picture is now; null where there is no step.
+  get before() {
+    if (!this.canUndo) return null;
+    const { rest, image } = this.#undo.at(-1), { camera, image: { width, height } } = this.scene;
+    return { ...rest, camera, image: { ...image, width, height } };
+  }
+
   get canUndo() { return this.#undo.length > 0; }
   get canRedo() { return this.#redo.length > 0; }
   get canUndoCamera() { return this.#undoCamera.length > 0; }

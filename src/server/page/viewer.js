@@ -3,6 +3,7 @@
 import { worldBox } from "./boxes.js";
 import { reshaped } from "./camera.js";
 import { make } from "./controls.js";
+import { comparison } from "./comparison.js";
 import { cutPanel, cutSwitch, sceneCutPanel } from "./cut_panel.js";
 import { copier, exportPanel } from "./export.js";
 import { filmPanel } from "./film_panel.js";
@@ -143,7 +144,7 @@ function actionsOf(viewer, find, root, update) {
     sidebar: () => { root.classList.toggle("bare"); },
     full: () => (document.fullscreenElement ? document.exitFullscreen() : root.requestFullscreen().catch(() => viewer.report("This browser has no full screen here."))),
     cuts: () => viewer.toggleCuts(),
-    compare: () => viewer.compare("off"),
+    compare: () => viewer.comparison.compare("off"),
     theme: installTheme(root, () => { update(); overlay.draw(); }),
     help: () => find("help").showModal(),
     layout: (layout) => () => { if (viewer.slices.available) store.setPage({ layout }); },
@@ -190,6 +191,8 @@ export function mount(element, channel, start, { keyboard = element, reopen = ()
   followGestures(root, store, ended.signal);
   viewer.overlay = new Overlay(find("overlay"), viewer);
   viewer.slices = new Slices(viewer, find("workspace"), find("view"));
+  viewer.comparison = comparison(viewer);
+  viewer.atRest.push(viewer.comparison.atRest);
   viewer.firstView = () => store.setCamera(reshaped(start.scene.camera, start.scene.image, store.scene.image));
   viewer.frameEverything = () => frameEverything(viewer);
   viewer.chooseVolume = (index) => {
