@@ -194,6 +194,24 @@ HL_API void hl_volume_release(hl_volume *volume); /* null is allowed */
 
 HL_API HL_WARN_UNUSED hl_status hl_volume_get_info(const hl_volume *volume, hl_volume_info *info);
 
+/* How far the field of a volume is from what its file says. Meshes of cells, grids with refinement and sparse
+ * grids become a field of bricks when they are loaded; other volumes are their voxels. */
+typedef struct hl_volume_field_error {
+  size_t struct_size; /* set by the caller */
+  double value;       /* data values; NaN: nothing could be compared, as in a mesh of one layer of cells */
+  double of_range;    /* `value` as a part of the volume's range; NaN as `value` */
+  const char
+      *kind; /* "exact": `value` is the greatest difference; "bound": no difference is greater. Static */
+  const char *source; /* what the field was compared with, in words: "the means over the cells". Static */
+} hl_volume_field_error;
+
+/* Tells of a mesh of cells a bound of the difference between the field and the values that its cells
+ * interpolate, where the field does not depend on places outside of the mesh; of a grid with refinement the
+ * greatest difference of a cell's value and the field's mean over the cell; of a sparse grid 0, as its field
+ * is the dense grid's. HL_ERROR_ARGUMENT, and nothing is set, where the volume is its voxels. */
+HL_API HL_WARN_UNUSED hl_status hl_volume_get_field_error(const hl_volume *volume,
+                                                          hl_volume_field_error *field_error);
+
 /* The box around a volume's voxels, half a voxel beyond their outermost centres, in the world of its file:
  * least and greatest x, y, z. Where one of the pointers is null, nothing is done. */
 HL_API void hl_volume_world_box(const hl_volume_info *info, double low[3], double high[3]);

@@ -115,6 +115,28 @@ class FileSegment:
 
 
 @dataclass(frozen=True)
+class FieldError:
+    """How far the field of a volume is from what its file says.
+
+    Attributes
+    ----------
+    value : float or None
+        In data values; None where nothing could be compared, as in a mesh of one layer of cells.
+    of_range : float or None
+        `value` as a part of the volume's range.
+    kind : str
+        "exact": `value` is the greatest difference; "bound": no difference is greater.
+    source : str
+        What the field was compared with, in words.
+    """
+
+    value: float | None
+    of_range: float | None
+    kind: str
+    source: str
+
+
+@dataclass(frozen=True)
 class Info:
     """What a volume holds, as ``halflight info --json`` says it. Values are data values.
 
@@ -152,6 +174,9 @@ class Info:
         Of label maps whose file names its labels.
     channel_list : tuple of FileChannel
         The file's channels, where it tells anything of them.
+    field_error : FieldError or None
+        Of meshes of cells, grids with refinement and sparse grids, whose field is made of what the file says; None for
+        volumes that are their voxels.
     """
 
     dimensions: tuple[int, int, int]
@@ -175,6 +200,7 @@ class Info:
     series: tuple[FileSeries, ...] = ()
     segments: tuple[FileSegment, ...] = ()
     channel_list: tuple[FileChannel, ...] = ()
+    field_error: FieldError | None = None
 
 
 class Volume:
@@ -541,7 +567,14 @@ class Volume:
             range=(self._range_end(0, raw.range[0]), self._range_end(1, raw.range[1])), mean=raw.mean, nonfinite_count=raw.nonfinite_count,
             histogram=np.array(list(raw.histogram), dtype=np.uint64),
             space=None if lib.hl_space_name(raw.space) == ffi.NULL else text_of(lib.hl_space_name(raw.space)),
-            taken_for=text_of(kind[0]), **self._choices())
+            taken_for=text_of(kind[0]), field_error=self._field_error(), **self._choices())
+
+    def _field_error(self) -> FieldError | None:
+        raw = _sized("field_error")
+        if lib.hl_volume_get_field_error(self._handle, raw) != lib.HL_OK:
+            return None
+        known = raw.value == raw.value
+        return FieldError(raw.value if known else None, raw.of_range if known else None, text_of(raw.kind), text_of(raw.source))
 
     def _range_end(self, end: int, value: float) -> float:
         """The least or the greatest value: an int where a float rounds a whole number."""

@@ -7,9 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "bricks/cell_bound.h"
 #include "bricks/cell_tree.h"
-#include "bricks/inverse.h"
-#include "bricks/subdivide.h"
 #include "core/context.h"
 #include "core/memory.h"
 
@@ -33,29 +32,9 @@ typedef struct cell_field {
   float *edges;          /* owned; [cell_count]; world; 0: the cell is left out */
   hl_cell_tree tree;
   hl_bricks_source source;
-  /* for the error */
-  const hl_bricks_leaf *leaves;
-  const hl_bricks *bricks;
-  float *errors; /* owned; [leaves] */
 } cell_field;
 
 /* ---- cells ---- */
-
-static int corner_count(const hl_cell *cell) { return cell->corner[4] == UINT32_MAX ? 4 : 8; }
-
-/* The cell's shape in the world; false if it has no volume or a corner without a value. */
-static bool shape_of(const hl_cells *cells, size_t n, hl_cell_shape *shape) {
-  const hl_cell *cell = &cells->cells[n];
-  shape->is_tetrahedron = corner_count(cell) == 4;
-  for (int c = 0; c < corner_count(cell); c++) {
-    if (!isfinite(cells->values[cell->corner[c]])) return false;
-    for (int axis = 0; axis < 3; axis++) {
-      shape->corner[c][axis] = cells->points[3 * (size_t)cell->corner[c] + (size_t)axis];
-      if (!isfinite(shape->corner[c][axis])) return false;
-    }
-  }
-  return hl_cell_shape_ready(shape);
-}
 
 /* The edge of a regular tetrahedron or of a cube with the cell's volume. */
 static double edge_of(const hl_cell_shape *shape) {
@@ -77,7 +56,7 @@ static void measure_cells(cell_field *field, double low[3], double high[3], size
   for (size_t n = 0; n < field->cells->cell_count; n++) {
     hl_cell_shape shape;
     field->edges[n] = 0;
-    if (!shape_of(field->cells, n, &shape)) continue;
+    if (!hl_cells_shape_in_world(field->cells, n, &shape)) continue;
     double edge = edge_of(&shape);
     if (!(edge > 1e-30 && is_near(&shape))) continue;
     field->edges[n] = (float)edge;
@@ -126,7 +105,7 @@ static double bytes_of(const cell_field *field, double spacing, const double siz
     double edge = (double)field->edges[n];
     if (!(edge > 0)) continue;
     double step = spacing * (double)(1 << level_of(edge, spacing)), across = edge / step;
-    points += (corner_count(&field->cells->cells[n]) == 4 ? 0.118 : 1) * across * across * across;
+    points += (hl_cell_corner_count(&field->cells->cells[n]) == 4 ? 0.118 : 1) * across * across * across;
   }
   return points * 2.5 * sizeof(float) + blocks * sizeof(hl_brick_entry);
 }
@@ -177,16 +156,6 @@ static hl_status choose_lattice(cell_field *field, hl_error *error) {
   return HL_OK;
 }
 
-/* The cell's shape in lattice coordinates of level 0. */
-static bool shape_in_lattice(const cell_field *field, size_t n, hl_cell_shape *shape) {
-  if (!shape_of(field->cells, n, shape)) return false;
-  for (int c = 0; c < (shape->is_tetrahedron ? 4 : 8); c++)
-    for (int axis = 0; axis < 3; axis++)
-      shape->corner[c][axis] = (shape->corner[c][axis] - field->place->origin[axis]) /
-                               field->place->spacing[axis];
-  return hl_cell_shape_ready(shape);
-}
-
 static hl_status make_tree(cell_field *field, hl_error *error) {
   size_t count = field->cells->cell_count;
   hl_cell_box *boxes = hl_allocate(field->context, count, sizeof *boxes);
@@ -194,7 +163,7 @@ static hl_status make_tree(cell_field *field, hl_error *error) {
   for (size_t n = 0; n < count; n++) {
     hl_cell_shape shape;
     hl_cell_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    bool sound = field->edges[n] > 0 && shape_in_lattice(field, n, &shape);
+    bool sound = field->edges[n] > 0 && hl_cells_shape(field->cells, field->place, n, &shape);
     for (int c = 0; sound && c < (shape.is_tetrahedron ? 4 : 8); c++)
       for (int axis = 0; axis < 3; axis++) {
         double at = shape.corner[c][axis], margin = 1e-6 * (1 + fabs(at));
@@ -228,7 +197,7 @@ static bool fill_from_cell(void *data, uint32_t n) {
   double scale = (double)(1 << job->level);
   hl_cell_shape shape;
   ptrdiff_t low[3], high[3], at[3];
-  if (!shape_in_lattice(job->field, n, &shape)) return true;
+  if (!hl_cells_shape(job->field->cells, job->field->place, n, &shape)) return true;
   for (int axis = 0; axis < 3; axis++) {
     low[axis] = (ptrdiff_t)fmax(ceil((double)box->low[axis] / scale), (double)job->first[axis]);
     high[axis] = (ptrdiff_t)fmin(floor((double)box->high[axis] / scale),
@@ -241,7 +210,7 @@ static bool fill_from_cell(void *data, uint32_t n) {
         double weights[8], sum = 0;
         if (!hl_cell_weights(&shape, point, weights)) continue;
         double base = (double)job->field->cells->values[cell->corner[0]]; /* a constant stays exact */
-        for (int c = 0; c < corner_count(cell); c++)
+        for (int c = 0; c < hl_cell_corner_count(cell); c++)
           sum += weights[c] * ((double)job->field->cells->values[cell->corner[c]] - base);
         job->out[((size_t)(at[2] - job->first[2]) * job->count[1] + (size_t)(at[1] - job->first[1])) *
                      job->count[0] +
@@ -292,53 +261,6 @@ static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
                                      : HL_BRICKS_LEAF;
 }
 
-/* ---- how far the field is from the mesh ---- */
-
-static void find_error(void *data, size_t index, int worker) {
-  (void)worker;
-  cell_field *field = data;
-  const hl_bricks_leaf *leaf = &field->leaves[index];
-  const hl_bricks *bricks = field->bricks;
-  float own[SIDE * SIDE * SIDE];
-  ptrdiff_t first[3];
-  size_t block[3];
-  const size_t count[3] = {SIDE, SIDE, SIDE};
-  double greatest = 0;
-  for (int axis = 0; axis < 3; axis++) {
-    first[axis] = (ptrdiff_t)leaf->brick[axis] << SHIFT;
-    block[axis] = leaf->brick[axis] << leaf->level;
-  }
-  const hl_brick_entry *entry =
-      &bricks->directory[(block[2] * bricks->directory_size[1] + block[1]) * bricks->directory_size[0] +
-                         block[0]];
-  field->errors[index] = 0;
-  if (entry->slot < 0) return; /* a constant has no error: its coefficients are the mesh's values */
-  fill(field, leaf->level, first, count, own);
-  const float *stored = bricks->pool + (size_t)entry->slot * STORED * STORED * STORED;
-  for (size_t k = 0; k < SIDE; k++)
-    for (size_t j = 0; j < SIDE; j++)
-      for (size_t i = 0; i < SIDE; i++) {
-        double difference = fabs(
-            hl_field_at_point(stored + (k * STORED + j) * STORED + i, STORED, STORED * STORED) -
-            (double)own[(k * SIDE + j) * SIDE + i]);
-        if (difference > greatest) greatest = difference; /* false for NaN */
-      }
-  field->errors[index] = (float)greatest;
-}
-
-static hl_status measure_error(cell_field *field, hl_pool *pool, const hl_bricks_leaf *leaves, size_t count,
-                               const hl_bricks *bricks, hl_error *error) {
-  field->leaves = leaves;
-  field->bricks = bricks;
-  field->errors = hl_allocate(field->context, count, sizeof *field->errors);
-  if (field->errors == NULL) return hl_fail_memory(error, count * sizeof *field->errors, field->subject);
-  hl_pool_run(pool, count, find_error, field);
-  if (hl_pool_cancelled(pool)) return hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", field->subject);
-  for (size_t n = 0; n < count; n++)
-    field->place->error = fmax(field->place->error, (double)field->errors[n]);
-  return HL_OK;
-}
-
 /* ---- the whole ---- */
 
 static hl_status build(cell_field *field, hl_pool *pool, hl_bricks *bricks, hl_error *error) {
@@ -352,7 +274,8 @@ static hl_status build(cell_field *field, hl_pool *pool, hl_bricks *bricks, hl_e
     status = hl_bricks_build(field->context, pool, &field->source, leaves, count, field->subject, bricks,
                              error);
   if (status == HL_OK) {
-    status = measure_error(field, pool, leaves, count, bricks, error);
+    const hl_cell_mesh_field made = {field->cells, &field->tree, field->place, leaves, count, bricks};
+    status = hl_cell_mesh_bound(field->context, pool, &made, field->subject, &field->place->error, error);
     if (status != HL_OK) hl_bricks_release(field->context, bricks);
   }
   hl_release(field->context, leaves);
@@ -374,7 +297,6 @@ hl_status hl_cells_build(hl_context *context, hl_pool *pool, const hl_cells *cel
                          : hl_fail_memory(error, cells->cell_count * sizeof *field.edges, subject);
   hl_release(context, field.levels);
   hl_release(context, field.edges);
-  hl_release(context, field.errors);
   hl_cell_tree_release(context, &field.tree);
   return status;
 }

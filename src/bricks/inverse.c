@@ -2,6 +2,7 @@
 #include "bricks/inverse.h"
 
 #include <math.h>
+#include <string.h>
 
 /* How far outside of a cell a point may be, in parts of the cell, so that no point falls between two cells.
  */
@@ -79,6 +80,36 @@ double hl_cell_volume(const hl_cell_shape *shape) {
   }
   map_at(shape, middle, weights, value, matrix);
   return fabs(determinant(matrix));
+}
+
+/* The slopes of the values within the unit cell: of a hexahedron at its middle. */
+static void unit_slopes(const hl_cell_shape *shape, const double values[8], double slopes[3]) {
+  static const double middle[3] = {0.5, 0.5, 0.5};
+  double weights[8], corner_slopes[8][3];
+  weights_at(middle, weights, corner_slopes);
+  for (int n = 0; n < 3; n++) {
+    slopes[n] = shape->is_tetrahedron ? values[n + 1] - values[0] : 0;
+    for (int c = 0; c < 8 && !shape->is_tetrahedron; c++) slopes[n] += corner_slopes[c][n] * values[c];
+  }
+}
+
+void hl_cell_affine_of(const hl_cell_shape *shape, const double values[8], hl_cell_affine *affine) {
+  static const double middle[3] = {0.5, 0.5, 0.5};
+  const int corners = shape->is_tetrahedron ? 4 : 8;
+  double slopes[3], weights[8], place[3], jacobian[3][3];
+  unit_slopes(shape, values, slopes);
+  if (shape->is_tetrahedron) memcpy(affine->place, shape->inverse, sizeof affine->place);
+  else {
+    map_at(shape, middle, weights, place, jacobian);
+    invert(jacobian, affine->place);
+  }
+  affine->value = 0;
+  for (int c = 0; c < corners; c++) affine->value += values[c] / corners;
+  for (int axis = 0; axis < 3; axis++) {
+    affine->middle[axis] = affine->slope[axis] = 0;
+    for (int c = 0; c < corners; c++) affine->middle[axis] += shape->corner[c][axis] / corners;
+    for (int n = 0; n < 3; n++) affine->slope[axis] += slopes[n] * affine->place[n][axis];
+  }
 }
 
 static bool tetrahedron_weights(const hl_cell_shape *shape, const double point[3], double weights[8]) {

@@ -19,6 +19,18 @@ bool hl_cell_shape_ready(hl_cell_shape *shape);
  * outside. */
 bool hl_cell_weights(const hl_cell_shape *shape, const double point[3], double weights[8]);
 
+/* An affine function near the values that a cell interpolates, which are the function itself in a
+ * tetrahedron, and affine functions that bound the cell. */
+typedef struct hl_cell_affine {
+  double middle[3];   /* the mean of the corners */
+  double value;       /* the function's, at `middle` */
+  double slope[3];    /* the function's, along x, y, z */
+  double place[3][3]; /* slopes of the three places within the unit cell; of a hexahedron near its middle */
+} hl_cell_affine;
+
+/* Of a shape that hl_cell_shape_ready() completed. values: of its corners. */
+void hl_cell_affine_of(const hl_cell_shape *shape, const double values[8], hl_cell_affine *affine);
+
 /* The volume of the cell; of a hexahedron that of its map at the middle. */
 double hl_cell_volume(const hl_cell_shape *shape);
 

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "bricks/evaluate.h"
 #include "core/context.h"
 #include "core/memory.h"
 
@@ -288,8 +289,91 @@ static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
   return HL_BRICKS_LEAF;
 }
 
+/* ---- how far the field is from the cells ---- */
+
+typedef struct difference_job {
+  const hl_patches *patches;
+  const hl_bricks *bricks;
+  int level;
+  double *differences; /* owned; [size of the level's table]; NaN: nothing was compared */
+} difference_job;
+
+/* The field's mean over a cell of a level, of bricks of this level or finer ones; NaN where a coefficient is
+ * not a number. Derived: the integrals of the four pieces of the cubic B-spline are 1, 11, 11 and 1 of 24. */
+static double mean_over_cell(const hl_bricks *bricks, int level, const size_t cell[3]) {
+  static const double integral[4] = {1.0 / 24, 11.0 / 24, 11.0 / 24, 1.0 / 24};
+  const size_t width = hl_brick_width(bricks), side = (size_t)1 << bricks->shift;
+  int64_t block[3];
+  double sum = 0;
+  for (int axis = 0; axis < 3; axis++) block[axis] = (int64_t)(cell[axis] >> bricks->shift << level);
+  const hl_brick_entry *entry = hl_bricks_entry(bricks, block);
+  if (entry->slot < 0) return (double)entry->constant;
+  if (entry->level < level) {
+    for (size_t n = 0; n < 8; n++) {
+      const size_t finer[3] = {2 * cell[0] + (n & 1), 2 * cell[1] + (n >> 1 & 1), 2 * cell[2] + (n >> 2)};
+      sum += mean_over_cell(bricks, level - 1, finer);
+    }
+    return sum / 8;
+  }
+  const float *first = hl_brick_pool(bricks, entry->slot) +
+                       ((cell[2] % side) * width + cell[1] % side) * width + cell[0] % side;
+  for (size_t k = 0; k < 4; k++)
+    for (size_t j = 0; j < 4; j++)
+      for (size_t i = 0; i < 4; i++)
+        sum += integral[i] * integral[j] * integral[k] * (double)first[(k * width + j) * width + i];
+  return sum;
+}
+
+/* Whether a finer level has a value in a cell. */
+static bool is_refined(const hl_patches *patches, int level, const size_t cell[3], last_block *last) {
+  bool refined = false;
+  for (size_t n = 0; n < 8 && level > 0 && !refined; n++) {
+    const size_t finer[3] = {2 * cell[0] + (n & 1), 2 * cell[1] + (n >> 1 & 1), 2 * cell[2] + (n >> 2)};
+    float value = cell_value(patches, level - 1, finer, last);
+    refined = value == value;
+  }
+  return refined;
+}
+
+static void compare_block(void *data, size_t index, int worker) {
+  (void)worker;
+  difference_job *job = data;
+  const cell_block *block = job->patches->table[job->level].blocks[index];
+  last_block last = {.known = false};
+  double greatest = NAN;
+  for (size_t n = 0; n < BLOCK_CELLS && block != NULL; n++) {
+    const size_t cell[3] = {(size_t)block->at[0] * BLOCK + n % BLOCK,
+                            (size_t)block->at[1] * BLOCK + n / BLOCK % BLOCK,
+                            (size_t)block->at[2] * BLOCK + n / BLOCK / BLOCK};
+    if (isnan(block->value[n]) || is_refined(job->patches, job->level, cell, &last)) continue;
+    double mean = mean_over_cell(job->bricks, job->level, cell);
+    greatest = fmax(greatest, fabs(mean - (double)block->value[n])); /* a NaN counts as absent */
+  }
+  job->differences[index] = greatest;
+}
+
+static hl_status find_difference(const hl_patches *patches, hl_pool *pool, const char *subject,
+                                 const hl_bricks *bricks, double *difference, hl_error *error) {
+  hl_status status = HL_OK;
+  *difference = NAN;
+  for (int level = 0; level < patches->levels && status == HL_OK; level++) {
+    size_t size = patches->table[level].size;
+    if (size == 0) continue;
+    difference_job job = {patches, bricks, level,
+                          hl_allocate(patches->context, size, sizeof *job.differences)};
+    if (job.differences == NULL) return hl_fail_memory(error, size * sizeof *job.differences, subject);
+    hl_pool_run(pool, size, compare_block, &job);
+    if (hl_pool_cancelled(pool)) status = hl_fail(error, HL_ERROR_CANCELLED, "%s: cancelled", subject);
+    for (size_t n = 0; n < size && status == HL_OK; n++) *difference = fmax(*difference, job.differences[n]);
+    hl_release(patches->context, job.differences);
+  }
+  return status;
+}
+
+/* ---- the whole ---- */
+
 hl_status hl_patches_build(hl_patches *patches, hl_pool *pool, const char *subject, hl_bricks *bricks,
-                           hl_error *error) {
+                           double *difference, hl_error *error) {
   hl_bricks_source source = {.shift = SHIFT,
                              .levels = patches->levels,
                              .outside = NAN,
@@ -307,6 +391,9 @@ hl_status hl_patches_build(hl_patches *patches, hl_pool *pool, const char *subje
     status = hl_bricks_build(patches->context, pool, &source, leaves, count, subject, bricks, error);
   for (int axis = 0; axis < 3; axis++) bricks->origin[axis] = 0.5;
   hl_release(patches->context, leaves);
+  if (status != HL_OK) return status;
+  status = find_difference(patches, pool, subject, bricks, difference, error);
+  if (status != HL_OK) hl_bricks_release(patches->context, bricks);
   return status;
 }
 

@@ -28,10 +28,12 @@ hl_status hl_patches_add(hl_patches *patches, int level, const size_t first[3], 
                          const float *values, const char *subject, hl_error *error);
 
 /* Makes the field. *bricks is empty on failure. Its origin is {.5, .5, .5}: voxels of level 0 are cells.
- * Where no patch has a value, the field is NaN. The call overwrites coarser cells by means of finer ones, so
- * that a second call would make another field: it is for one call. */
+ * Where no patch has a value, the field is NaN. *difference: the greatest difference of a cell's value and
+ * the field's mean over the cell, of all cells that no finer cells cover and over which the field has a mean;
+ * NaN if there is no such cell. The call overwrites coarser cells by means of finer ones, so that a second
+ * call would make another field: it is for one call. */
 hl_status hl_patches_build(hl_patches *patches, hl_pool *pool, const char *subject, hl_bricks *bricks,
-                           hl_error *error);
+                           double *difference, hl_error *error);
 
 /* Copies the cells of level 0 to `values`, [domain z][domain y][domain x]: NaN where there is no value. */
 void hl_patches_copy(const hl_patches *patches, float *values);

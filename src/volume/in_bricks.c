@@ -6,6 +6,7 @@
 
 #include "bricks/evaluate.h"
 #include "core/context.h"
+#include "core/door.h"
 
 enum { SHIFT_LEAST = 2, SHIFT_MOST = 8 };
 
@@ -166,5 +167,25 @@ hl_status hl_volume_measure_bricks(hl_volume *volume, const char *subject, hl_er
   volume->minimum = tally.low;
   volume->maximum = tally.high;
   volume->mean = tally.sum / tally.counted;
+  return HL_OK;
+}
+
+/* ---- how far the field is from its source ---- */
+
+void hl_volume_set_field_error(hl_volume *volume, double value, const char *kind, const char *source) {
+  double range = volume->maximum - volume->minimum;
+  volume->field_error = (hl_volume_field_error){.struct_size = sizeof volume->field_error,
+                                                .value = value,
+                                                .of_range = value == 0 ? 0 : value / range,
+                                                .kind = kind,
+                                                .source = source};
+}
+
+hl_status hl_volume_get_field_error(const hl_volume *volume, hl_volume_field_error *field_error) {
+  HL_DOOR;
+  if (volume == NULL || field_error == NULL || field_error->struct_size != sizeof *field_error ||
+      volume->field_error.kind == NULL)
+    return HL_ERROR_ARGUMENT;
+  *field_error = volume->field_error;
   return HL_OK;
 }

@@ -16,6 +16,10 @@
 hl_status hl_volume_take_bricks(hl_context *context, hl_bricks *bricks, const hl_volume_description *grid,
                                 const char *subject, hl_volume **volume, hl_error *error);
 
+/* Notes how far a new volume's field is from its source, for hl_volume_get_field_error(). kind, source:
+ * static. */
+void hl_volume_set_field_error(hl_volume *volume, double value, const char *kind, const char *source);
+
 /* ---- for create.c ---- */
 
 /* Fails where bricks and voxels do not fit each other. */

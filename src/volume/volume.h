@@ -79,7 +79,8 @@ struct hl_volume {
                                * null if nobody has asked for its labels */
   struct hl_bricks *bricks;   /* owned (bricks/bricks.h, in_bricks.h); the field itself; null if there are
                                * voxels. Voxels are found in it when they are asked for */
-  void *owned_voxels;         /* the block to hl_release; null if borrowed */
+  hl_volume_field_error field_error; /* of a field in bricks; its kind is null where it is unknown */
+  void *owned_voxels;                /* the block to hl_release; null if borrowed */
   void (*release)(void *release_data, const void *voxels); /* gives borrowed voxels back; may be null */
   void *release_data;
   double value_scale; /* data value = value_scale * stored + value_offset */

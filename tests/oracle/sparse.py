@@ -52,6 +52,9 @@ def main(root):
     for key in ("dimensions", "range", "mean", "histogram"):
         if key in facts[0] and json.dumps(facts[0][key]) != json.dumps(facts[1][key]):
             sys.exit(f"{key}: {facts[0][key]} of bricks, {facts[1][key]} of voxels")
+    errors = [one.get("field_error") for one in facts]
+    if errors != [{"value": 0, "of_range": 0, "kind": "exact", "source": "the dense grid of the voxels"}, None]:
+        sys.exit(f"field errors: {errors}")
     worst = 0
     for render in ({"soft_method": "cascade"}, {"soft_method": "sublights"}, {"shadows": "hard"}, {"kernel": "linear"}):
         pictures, peaks = [], []

@@ -1,6 +1,7 @@
 """Adaptive grids: constants and linear fields are exact, mass is kept, and broken files are refused in words."""
 from __future__ import annotations
 
+from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
@@ -48,6 +49,17 @@ def test_linear_fields_are_exact(tmp_path: Path, ratio: int) -> None:
     truth = means(linear, cells, (0, 0, 0), (cells,) * 3, 2)
     inner = (slice(4 * ratio, -4 * ratio),) * 3  # a domain's outermost cells go on beyond it
     np.testing.assert_allclose(voxels[inner], truth[inner], atol=2e-6)
+
+
+@pytest.mark.parametrize("ratio", [2, 4])
+def test_the_difference_is_told(tmp_path: Path, ratio: int) -> None:
+    """A constant keeps the means of its cells, a smooth field nearly so, and a step loses much beside it."""
+    exact = hl.info(open_plotfile(tmp_path / "a", lambda x, y, z: 0.75 + 0 * x, ratio=ratio)).field_error
+    assert exact is not None and astuple(exact) == (0, 0, "exact", "the means over the cells")
+    smooth, sharp = (hl.info(open_plotfile(tmp_path / name, field, ratio=ratio)).field_error for name, field in
+                     (("b", blob), ("c", lambda x, y, z: 1 + np.sign(x - 0.5) + 0 * y + 0 * z)))
+    assert smooth is not None and smooth.value is not None and 0 < smooth.value < 0.005
+    assert sharp is not None and sharp.value is not None and 0.1 < sharp.value < 1
 
 
 @pytest.mark.parametrize("ratio", [2, 4])

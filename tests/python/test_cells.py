@@ -1,8 +1,10 @@
 """Meshes of cells as volumes: constants and linear fields are exact, kinds of cells agree, and broken files are refused."""
 from __future__ import annotations
 
+import json
 import re
 import subprocess
+from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
@@ -109,12 +111,76 @@ def test_vectors_are_magnitudes(tmp_path: Path) -> None:
     assert hl.info(hl.Volume(path, component=2)).range == (4, 4)
 
 
-def test_the_program_tells_the_error(tmp_path: Path, program: str) -> None:
+def spline_at(volume: hl.Volume, places: Any) -> Any:
+    """The field at places of the world, from the coefficients that the voxels of a mesh of cells are; NaN where the field
+    depends on a coefficient outside of the mesh."""
+    info, coefficients = hl.info(volume), np.pad(np.asarray(volume), 3, constant_values=np.nan).astype(np.float64)
+    at = (places - info.origin) / info.spacing
+    first = np.floor(at).astype(int)
+    t = at - first
+    weights = np.stack([(1 - t) ** 3, 3 * t**3 - 6 * t**2 + 4, -3 * t**3 + 3 * t**2 + 3 * t + 1, t**3], 1) / 6
+    total = np.zeros(len(places))
+    for k, j, i in np.ndindex(4, 4, 4):
+        weight = weights[:, i, 0] * weights[:, j, 1] * weights[:, k, 2]
+        total += weight * coefficients[first[:, 2] + k + 2, first[:, 1] + j + 2, first[:, 0] + i + 2]
+    return total
+
+
+def places_in_cells(kind: str, places: Any, cells: Any, values: Any, count: int) -> tuple[Any, Any]:
+    """Random places in cells, by random weights of the cells' corners, and the values there."""
+    random = np.random.default_rng(1)
+    chosen = cells[random.integers(0, len(cells), count)]
+    if kind == "tetrahedra":
+        weights = random.dirichlet(np.ones(4), count)
+    else:
+        u, v, w = random.random((3, count))
+        at = [(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v]
+        weights = np.stack([a * (1 - w) for a in at] + [a * w for a in at], 1)
+    return (places[chosen] * weights[..., None]).sum(axis=1), (values[chosen] * weights).sum(axis=1)
+
+
+@pytest.mark.parametrize("kind", ["hexahedra", "tetrahedra"])
+@pytest.mark.parametrize(("bend", "rough"), [(0, False), (0.1, False), (0, True)])
+def test_the_field_keeps_to_its_bound(tmp_path: Path, kind: str, bend: float, rough: bool) -> None:
+    places, cells, types = mesh(kind, 11, bend)
+    values = np.random.default_rng(0).random(len(places)) if rough else values_at(blob, places)
+    volume = hl.Volume(write_cells(tmp_path / "a.vtu", places, cells, types, {"f": values}))
+    told = hl.info(volume).field_error
+    assert told is not None and told.value is not None and told.of_range is not None and told.kind == "bound"
+    at, truth = places_in_cells(kind, places, cells, values, 100000)
+    found = np.nanmax(np.abs(spline_at(volume, at) - truth))
+    assert found <= told.value < 3 * found
+    low, high = hl.info(volume).range
+    assert told.of_range == pytest.approx(told.value / (high - low))
+
+
+@pytest.mark.parametrize("kind", sorted(CUBES))
+def test_the_bound_of_exact_fields_is_none(tmp_path: Path, kind: str) -> None:
+    places, cells, types = mesh(kind, 9, 0.1)
+    for field, most in ((linear, 2e-6), (lambda x, y, z: 0.1 + 0 * x, 0)):
+        told = hl.info(hl.Volume(write_cells(tmp_path / "a.vtu", places, cells, types, {"f": values_at(field, places)}))).field_error
+        assert told is not None and told.value is not None and told.value <= most
+
+
+def test_a_layer_of_cells_has_no_bound(tmp_path: Path) -> None:
+    places, cells, types = mesh("hexahedra", 9)
+    layer = places[cells].mean(axis=1)[:, 2] < 1 / 8
+    volume = hl.Volume(write_cells(tmp_path / "a.vtu", places, cells[layer], types[layer], {"f": values_at(linear, places)}))
+    told = hl.info(volume).field_error
+    assert told is not None and astuple(told) == (None, None, "bound", "the values between the corners of the cells")
+
+
+def test_the_program_tells_the_bound(tmp_path: Path, program: str) -> None:
     places, cells, types = mesh("tetrahedra", 11)
     path = write_cells(tmp_path / "a.vtu", places, cells, types, {"f": values_at(blob, places)})
-    text = subprocess.run([program, "info", path], check=True, capture_output=True, text=True).stderr
-    found = re.search(r"corners by ([0-9.e+-]+) at most", text)
-    assert found is not None and 0.001 < float(found[1]) < greatest_error(1 / 10)
+    run = subprocess.run([program, "info", path, "--json"], check=True, capture_output=True, text=True)
+    found = re.search(r"corners by ([0-9.e+-]+) at most", run.stderr)
+    told, bound = json.loads(run.stdout)["field_error"], hl.info(hl.Volume(path)).field_error
+    assert bound is not None and bound.value is not None
+    assert told == {"value": bound.value, "of_range": bound.of_range, "kind": "bound", "source": bound.source}
+    assert found is not None and float(found[1]) == float(f"{bound.value:.2g}")
+    shown = subprocess.run([program, "info", path], check=True, capture_output=True, text=True).stdout
+    assert f"field       differs from {bound.source} by {bound.value:.2g} at most" in shown
 
 
 def test_surfaces_stay_meshes(tmp_path: Path, program: str) -> None:

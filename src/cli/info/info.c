@@ -233,6 +233,26 @@ static void print_json_range(json_writer *json, const hl_volume *volume) {
   json_written(json, "range", text);
 }
 
+static void print_json_field_error(json_writer *json, const hl_volume *volume) {
+  hl_volume_field_error field_error = {.struct_size = sizeof field_error};
+  if (hl_volume_get_field_error(volume, &field_error) != HL_OK) return;
+  json_open_object(json, "field_error");
+  json_number(json, "value", field_error.value);
+  json_number(json, "of_range", field_error.of_range);
+  json_text(json, "kind", field_error.kind);
+  json_text(json, "source", field_error.source);
+  json_close(json);
+}
+
+static void print_field_error(const hl_volume *volume) {
+  hl_volume_field_error e = {.struct_size = sizeof e};
+  if (hl_volume_get_field_error(volume, &e) != HL_OK) return;
+  if (isnan(e.value)) printf("  field       its difference from %s is unknown\n", e.source);
+  else
+    printf("  field       differs from %s by %.2g%s, %.2g of the range\n", e.source, e.value,
+           strcmp(e.kind, "bound") == 0 ? " at most" : "", e.of_range);
+}
+
 static void print_json(json_writer *json, const char *path, const hl_volume *volume,
                        const hl_volume_info *info, const char *kind, const char *next) {
   uint64_t dimensions[3] = {info->dimensions[0], info->dimensions[1], info->dimensions[2]};
@@ -256,6 +276,7 @@ static void print_json(json_writer *json, const char *path, const hl_volume *vol
   print_json_range(json, volume);
   json_number(json, "mean", info->mean);
   json_whole_number(json, "nonfinite_count", info->nonfinite_count);
+  print_json_field_error(json, volume);
   print_json_arrays(json, volume);
   print_json_selection(json, volume);
   print_json_channels(json, volume);
@@ -330,6 +351,7 @@ static void print_text(const char *path, const hl_volume *volume, const hl_volum
          value_text(volume, 1, info->range[1], greatest), info->mean);
   if (info->nonfinite_count > 0)
     printf("  not finite  %" PRIu64 " voxels, rendered as transparent\n", info->nonfinite_count);
+  print_field_error(volume);
   printf("  taken for   %s: render chooses its look from this file; --print-scene keeps it\n", kind);
   printf("  next best   --look %s\n", next);
   print_histogram(info);

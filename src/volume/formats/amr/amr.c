@@ -118,16 +118,20 @@ hl_status hl_amr_finish(hl_amr *amr, hl_volume **volume, hl_error *error) {
   hl_volume_description grid = grid_of(amr);
   hl_pool *pool = NULL;
   hl_bricks bricks = {.shift = 0};
+  double difference = NAN;
   hl_status status = hl_volume_check_grid(&grid, amr->subject, error);
   if (status != HL_OK) return status;
   if (amr->lattice_level[0] == 0) return make_dense(amr, &grid, volume, error);
   status = hl_pool_create(amr->context, 0, &pool, error);
-  if (status == HL_OK) status = hl_patches_build(amr->patches, pool, amr->subject, &bricks, error);
+  if (status == HL_OK)
+    status = hl_patches_build(amr->patches, pool, amr->subject, &bricks, &difference, error);
   hl_patches_destroy(amr->patches);
   amr->patches = NULL;
   hl_pool_destroy(pool);
-  return status == HL_OK ? hl_volume_take_bricks(amr->context, &bricks, &grid, amr->subject, volume, error)
-                         : status;
+  if (status == HL_OK)
+    status = hl_volume_take_bricks(amr->context, &bricks, &grid, amr->subject, volume, error);
+  if (status == HL_OK) hl_volume_set_field_error(*volume, difference, "exact", "the means over the cells");
+  return status;
 }
 
 void hl_amr_close(hl_amr *amr) {

@@ -232,8 +232,11 @@ static hl_status make_volume(const grid_list *list, const grid_entry *entry, nan
   hl_bricks bricks = {0};
   if (description.type == HL_VOXEL_F32) status = nanovdb_bricks_read(grid, &description, &bricks, error);
   if (status != HL_OK) return status;
-  if (bricks.directory != NULL)
-    return hl_volume_take_bricks(request->context, &bricks, &description, list->path, volume, error);
+  if (bricks.directory != NULL) {
+    status = hl_volume_take_bricks(request->context, &bricks, &description, list->path, volume, error);
+    if (status == HL_OK) hl_volume_set_field_error(*volume, 0, "exact", "the dense grid of the voxels");
+    return status;
+  }
   status = allocate(list, entry, &description, &voxels, error);
   const size_t *n = description.dimensions;
   hl_exact_begin(request->context, description.type, n[0] * n[1] * n[2], HL_EXACT_IN_MEMORY, &exact);

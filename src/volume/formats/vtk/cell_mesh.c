@@ -211,6 +211,20 @@ static void tell(const hl_cell_mesh *mesh) {
            mesh->subject, mesh->flat);
 }
 
+static void tell_difference(const hl_cell_mesh *mesh, double bound) {
+  if (isnan(bound))
+    hl_log(mesh->context, HL_LOG_WARNING,
+           "%s: %zu cells are sampled, at about half of an edge: the mesh is so thin that the volume's "
+           "difference "
+           "from the values between their corners is unknown",
+           mesh->subject, mesh->cell_count);
+  else
+    hl_log(mesh->context, HL_LOG_WARNING,
+           "%s: %zu cells are sampled, at about half of an edge: the volume differs from the values between "
+           "their corners by %.2g at most",
+           mesh->subject, mesh->cell_count, bound);
+}
+
 hl_status hl_cell_mesh_finish(hl_cell_mesh *mesh, hl_volume **volume, hl_error *error) {
   const hl_cells cells = {mesh->points, mesh->values, mesh->point_count, mesh->cells, mesh->cell_count};
   hl_bricks bricks = {.shift = 0};
@@ -230,12 +244,11 @@ hl_status hl_cell_mesh_finish(hl_cell_mesh *mesh, hl_volume **volume, hl_error *
     grid.origin[axis] = place.origin[axis];
     grid.axis[axis][axis] = place.spacing[axis];
   }
-  hl_log(
-      mesh->context, HL_LOG_WARNING,
-      "%s: %zu cells are sampled, at about half of an edge: the volume differs from the values between their "
-      "corners by %.2g at most",
-      mesh->subject, mesh->cell_count, place.error);
-  return hl_volume_take_bricks(mesh->context, &bricks, &grid, mesh->subject, volume, error);
+  tell_difference(mesh, place.error);
+  status = hl_volume_take_bricks(mesh->context, &bricks, &grid, mesh->subject, volume, error);
+  if (status == HL_OK)
+    hl_volume_set_field_error(*volume, place.error, "bound", "the values between the corners of the cells");
+  return status;
 }
 
 void hl_cell_mesh_release(hl_cell_mesh *mesh) {

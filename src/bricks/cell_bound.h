@@ -1,0 +1,29 @@
+/* bricks/cell_bound.h - a bound of the difference between a field in bricks and the mesh of cells that it was
+ * sampled from.
+ *
+ * In:  the mesh, and the field that cells.c made of it.
+ * Out: a number that the difference exceeds nowhere. */
+#ifndef HL_BRICKS_CELL_BOUND_H
+#define HL_BRICKS_CELL_BOUND_H
+
+#include "bricks/build.h"
+#include "bricks/cell_shapes.h"
+#include "bricks/cell_tree.h"
+
+/* A field and its source. All arrays are borrowed. */
+typedef struct hl_cell_mesh_field {
+  const hl_cells *cells;
+  const hl_cell_tree *tree;
+  const hl_cells_place *place;
+  const hl_bricks_leaf *leaves; /* [leaf_count] */
+  size_t leaf_count;
+  const hl_bricks *bricks;
+} hl_cell_mesh_field;
+
+/* Finds the bound. It holds in all cells of the tree, in those lattice cells whose 64 coefficients are all
+ * numbers: where a coefficient lies outside of the mesh, the field ends there. *bound is NaN if there is no
+ * such lattice cell. It is the same number for any number of threads. subject: starts error lines. */
+hl_status hl_cell_mesh_bound(hl_context *context, hl_pool *pool, const hl_cell_mesh_field *field,
+                             const char *subject, double *bound, hl_error *error);
+
+#endif
