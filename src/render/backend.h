@@ -1,8 +1,8 @@
 /* render/backend.h - a back end makes the picture of a plan: the processors, or a device.
  *
- * A renderer asks its back ends in the order of their list. The first that makes ready for a
- * plan makes the frame, sweep by sweep. Where a back end fails that is not the last one, the frame is the
- * next one's, from zeros on. */
+ * A renderer asks its back ends in the order of their list. The first that makes ready for a plan makes the
+ * frame, sweep by sweep. Where a back end fails, the next one in the list makes the frame again, from pixels
+ * of zeros. */
 #ifndef HL_RENDER_BACKEND_H
 #define HL_RENDER_BACKEND_H
 
@@ -11,13 +11,14 @@
 #include "render/target.h"
 
 typedef struct backend {
-  /* Makes ready for a plan's frame. Not HL_OK: another back end makes it; the error says why. */
+  /* Makes ready for a plan's frame. Where this fails, another back end makes the frame, and the error says
+   * why. */
   hl_status (*prepare)(hl_renderer *renderer, const frame_plan *plan, const frame_target *target,
                        hl_error *error);
   /* Makes a sweep of the plan. Sweeps come in their order, each once. */
   hl_status (*run)(hl_renderer *renderer, const frame_plan *plan, int sweep, frame_target *target,
                    hl_render_statistics *statistics, hl_error *error);
-  /* After the last sweep: all pixels of the picture lie in the target. Null: they do already. */
+  /* Brings all pixels of the picture to the target after the last sweep. Null: the sweeps put them there. */
   hl_status (*read)(hl_renderer *renderer, const frame_plan *plan, frame_target *target,
                     hl_render_statistics *statistics, hl_error *error);
 } backend;

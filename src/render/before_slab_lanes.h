@@ -12,7 +12,7 @@
 #include "shadow/shadow_lookup_lanes.h"
 
 /* The four pixels of a shadow buffer around a sample, and the steps to them. Sub-lights have many buffers:
- * four pixels then stand for all, as far from the sample as those buffers' pixels are on average. */
+ * four pixels stand for all of them. They lie as far from the sample as the buffers' pixels do on average. */
 enum { NEAR_PIXELS = 4 };
 typedef struct near_pixels {
   lanes u[NEAR_PIXELS], v[NEAR_PIXELS]; /* from the sample to each pixel; in pixels */
@@ -22,7 +22,7 @@ typedef struct near_pixels {
 /* A light as a slab's samples see it. */
 typedef struct seen_light {
   lanes3 towards;          /* unit direction to the light */
-  lanes path;              /* of the light through the slab */
+  lanes path;              /* length of the light's way through the slab */
   const near_pixels *near; /* the pixels of its buffer around the sample; null: no face of a box is near, or
                               only the nearest pixel is read */
 } seen_light;
@@ -115,8 +115,8 @@ typedef struct ways_before {
   lanes first, last, near[NEAR_PIXELS];
 } ways_before;
 
-/* The two faces of a box across one axis, as distances from the lit position towards the light: of the face
- * ahead and of the one behind. u, v, along: by how much both distances shrink with one pixel's step along u
+/* The two faces of a box across one axis: the distances from the lit position, towards the light, to the face
+ * ahead and to the face behind. u, v, along: by how much both distances shrink with one pixel's step along u
  * or v, and with the whole slab along the eye's ray. */
 typedef struct faces_of_axis {
   lanes ahead, behind, u, v, along;
@@ -124,10 +124,11 @@ typedef struct faces_of_axis {
 
 /* For faces nearly parallel to the light: a step to a near pixel moves such a face far along the light's way.
  * Up to this fraction of the light's way through the box the face counts fully, at twice the fraction not at
- * all: the light to both of its sides then enters the box by another face, far away. */
+ * all: the light to both sides of such a face enters the box by another face, far away. */
 static const float ALONG_FACE = 0.5f;
 
-/* The same as find_faces() returns, for a cut: its face ahead is a plane where the light's ray meets it. */
+/* Does for a cut what find_faces() does for a box: the face ahead is a plane where the light's ray meets the
+ * cut. */
 LANES_INLINE lanes face_of_cut(const shade_cut *cut, lanes3 position, lanes3 towards, const near_pixels *near,
                                lanes through) {
   ray_section way = cross_cut(cut, position, towards);
@@ -144,10 +145,10 @@ LANES_INLINE lanes face_of_cut(const shade_cut *cut, lanes3 position, lanes3 tow
   return lanes_keep(met, close * lanes_clamp(2.0f - reach / through, 0, 1));
 }
 
-/* Finds the distances of a box's faces from the lit position. Derived (slab method): a step s beside a point
- * moves a face on the light's way by -row.s / row.l, l the light's direction. Returns 1 where light to some
- * near pixel may pass beside a face through which the light to this position comes, falling to 0 where the
- * face is twice as far away as the pixels reach. */
+/* Finds the distances of a box's faces from the lit position. Derived (slab method): where a point moves
+ * sideways by s, the face moves along the light's way by -row.s / row.l, where l is the light's direction.
+ * Returns 1 where light to some near pixel may pass beside a face through which the light to this position
+ * comes, falling to 0 where the face is twice as far away as the pixels reach. */
 LANES_INLINE lanes find_faces(const shade_volume *volume, const block_geometry *g, lanes3 towards,
                               const near_pixels *near, faces_of_axis faces[3]) {
   lanes close[3], reach[3], longest = lanes_set(1e30f), likely = lanes_set(0);
@@ -180,8 +181,8 @@ LANES_INLINE lanes find_faces(const shade_volume *volume, const block_geometry *
   return likely;
 }
 
-/* A point beside a sample: u, v and along steps away. within: the light's way from the slab's first sheet to
- * the point. */
+/* A point beside a sample. u, v, along: steps from the sample to the point. within: the light's way from the
+ * slab's first sheet to the point. */
 typedef struct point_beside {
   lanes u, v, along, within;
 } point_beside;

@@ -5,7 +5,7 @@
 /* A cut's shape (scene/geometry/cut.h). */
 typedef struct shade_cut {
   int type, keep_inside;
-  float rows[3][4]; /* frame space to the shape's own */
+  float rows[3][4]; /* maps frame space to the shape's own space */
 } shade_cut;
 
 #endif

@@ -12,7 +12,8 @@ LANES_INLINE lanes3 point_in_cut(const shade_cut *cut, lanes3 p) {
                   row_of_point(cut->rows[2], p)};
 }
 
-/* A speed, or a tiny one in place of 0: crossings then lie far away, to the right sides. */
+/* A speed, or a tiny number in place of 0: a ray that runs along a face then crosses it far away, on the
+ * right side. */
 LANES_INLINE lanes some_speed(lanes speed) {
   return lanes_select(lanes_abs(speed) < 1e-12f, lanes_set(1e-12f), speed);
 }
@@ -40,7 +41,8 @@ LANES_INLINE ray_section cross_cut(const shade_cut *cut, lanes3 from, lanes3 alo
   return way;
 }
 
-/* How far outside of a shape a point is, and the gradient of this number: per frame unit. */
+/* A point's height over a shape, in the shape's own units, above 0 outside; and the gradient of the height
+ * per frame unit. */
 typedef struct cut_height {
   lanes height;
   lanes3 gradient;
@@ -50,7 +52,7 @@ LANES_INLINE lanes row_size(const float row[4]) {
   return lanes_sqrt(lanes_set(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]));
 }
 
-/* A plane's height is -x, a sphere's |q| - 1, a box's that over its highest face. */
+/* The height over a plane is -x, over a sphere |q| - 1, over a box the height over its highest face. */
 LANES_INLINE cut_height height_over_cut(const shade_cut *cut, lanes3 point) {
   lanes3 q = point_in_cut(cut, point);
   if (cut->type == HL_CUT_PLANE) return (cut_height){-q.x, scale3(set3(cut->rows[0]), lanes_set(-1.0f))};

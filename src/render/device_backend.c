@@ -20,13 +20,13 @@ void hl_device_release(hl_renderer *renderer) {
   renderer->device.gpu = NULL;
 }
 
-/* From now on the processors make the frames. */
+/* Lets the processors make all frames from now on. */
 static void give_up(hl_renderer *renderer, const char *reason) {
   hl_device_release(renderer);
   snprintf(renderer->device.problem, sizeof renderer->device.problem, "%.390s", reason);
 }
 
-/* What makes the renderer's frames; null: the processors. */
+/* The name of the device that shall make the renderer's frames. Null: the processors make them. */
 static const char *wanted_device(const hl_renderer *renderer) {
   return renderer->device.wanted[0] != '\0' ? renderer->device.wanted : renderer->context->options.device;
 }
@@ -77,7 +77,7 @@ static hl_status prepare(hl_renderer *renderer, const frame_plan *plan, const fr
   return hl_fail(error, HL_ERROR_UNSUPPORTED, "%s", renderer->device.problem);
 }
 
-/* Makes a sweep and brings its pixels. */
+/* Makes a sweep on the device and brings its pixels to the target. */
 static hl_status make_sweep(hl_renderer *renderer, const planned_sweep *planned, float *pixels,
                             hl_render_statistics *statistics, hl_error *error) {
   hl_gpu *gpu = renderer->device.gpu;
@@ -98,7 +98,8 @@ static hl_status run(hl_renderer *renderer, const frame_plan *plan, int index, f
                              hl_hot_functions(context->options.instruction_set)};
   const sweep_plan *of = &plan->sweeps.list[index];
   float *pixels = hl_frame_target_pixels(target, plan, index);
-  const uint64_t samples = statistics->samples_shaded; /* those of the search are not the device's */
+  const uint64_t samples = statistics->samples_shaded; /* the samples of the search for hidden matter, which
+                                                        * the processors made */
   planned_sweep planned = {0};
   int32_t *shown_from = NULL;
   hl_status status = hl_find_hidden(&means, plan, of, pixels, &shown_from, statistics, error);

@@ -4,11 +4,11 @@
 
 #include "render/backend.h"
 
-/* Chooses what makes the renderer's frames from now on; null: what the context names. False where the name is
- * too long. */
+/* Chooses the device that makes the renderer's frames from now on. Null: the device that the context names.
+ * False where the name is too long. */
 bool hl_device_choose(hl_renderer *renderer, const char *device);
 
-/* The device's volume is no longer one of the renderer's. */
+/* Makes the device forget its copy of the volume, which the renderer no longer has. */
 void hl_device_forget(hl_renderer *renderer);
 void hl_device_release(hl_renderer *renderer);
 

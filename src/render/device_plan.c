@@ -1,7 +1,7 @@
 /* render/device_plan.c - see device_plan.h.
  *
- * What the processors' sweep has in its structs (render/slab.h, shadow/attenuate.h) is copied, number by
- * number: a device then computes with the same floats. */
+ * The numbers in the structs of the processors' sweep (render/slab.h, shadow/attenuate.h) are copied one by
+ * one. So a device computes with the same floats. */
 #include "render/device_plan.h"
 
 #include <string.h>
@@ -55,7 +55,7 @@ static bool has_phase_tables(const frame_plan *plan) {
   return hl_phase_table(plan->fields.phases, volume_of(plan)->anisotropy) != NULL;
 }
 
-/* In this order: the first that applies is told. */
+/* The reasons in the order in which they are tried: the first that applies is told. */
 static const struct {
   bool (*applies)(const frame_plan *plan);
   const char *reason;
@@ -93,7 +93,7 @@ static int storage_of(const grid *grid) {
   return grid->storage == HL_STORAGE_U8 ? 0 : grid->storage == HL_STORAGE_U16 ? 1 : 2;
 }
 
-/* Tables of the grid's cells are asked where the processors ask them. */
+/* The bits of the grid's cells. Null where they tell nothing; the processors do not ask them then, either. */
 static const uint64_t *bits_of_cells(const grid *grid) {
   return grid->cell_bits_tell ? grid->cell_bits : NULL;
 }
@@ -189,7 +189,7 @@ static void plan_brightness(const shade_light *shade, plan_light *light) {
   light->sector_least = shade->sector.least;
 }
 
-/* A sweep that is described. */
+/* A sweep while it is described for a device. */
 typedef struct sweep_task {
   const frame_plan *frame_plan;
   const sweep_plan *plan;
@@ -228,10 +228,10 @@ static void plan_content(const view *view, const sweep_task *task, plan_box *box
 }
 
 /* Derived: on the sheet, one pixel of a parallel light's buffer along u is (grad v x h) / (grad u . (grad v x
- * h)), h the sheets' normal, and likewise along v. The pixels around a sample are one such step away at most,
- * and a face counts where it is up to twice as far; the light's way through the slab is as long as its path.
- * A little is added for rounding. Of near lights pixels grow with distance: all samples count as near a face.
- */
+ * h)), where h is the sheets' normal; the step along v has the same form. The pixels around a sample are at
+ * most one such step away. A face counts where it is up to twice as far away. The light's way through the
+ * slab is as long as its path. A little is added for rounding. The pixels of a near light grow with distance;
+ * for such a light all samples count as near a face. */
 static void plan_margin(const sweep_task *task, int index, plan_light *light) {
   const sheet_stack *sheets = &task->plan->geometry->sheets;
   const light_source *source = task->plan->lights[index].source;
@@ -250,12 +250,13 @@ static void plan_margin(const sweep_task *task, int index, plan_light *light) {
   }
 }
 
-/* Planes of one sheet: of the transmittance in each channel, and of the light at the outside of surfaces. */
+/* The number of planes of one sheet: one per channel for the transmittance, and as many for the light at the
+ * outside of surfaces, where it is kept. */
 static size_t planes_of_sheet(const sweep_task *task, const light_shadow *shadow) {
   return (size_t)task->frame_plan->channels * (shadow->plan.outside ? 2 : 1);
 }
 
-/* Sets a light's buffer; its planes begin at `*floats`, which is raised by theirs. */
+/* Sets a light's buffer. Its planes begin at `*floats`, and their number of floats is added there. */
 static void plan_buffer(const sweep_task *task, int index, int ring, size_t *floats, int *tiles,
                         plan_light *light) {
   const light_shadow *shadow = &task->plan->lights[index].shadow;
@@ -282,10 +283,10 @@ static void plan_buffer(const sweep_task *task, int index, int ring, size_t *flo
   *floats += ((size_t)ring * planes_of_sheet(task, shadow) * buffer.plane + 15) / 16 * 16;
 }
 
-/* The most bytes of the lights' planes together, slabs of a run where memory allows, and where there are no
- * shadows' planes to keep. */
+/* PLANES_BYTES: the most bytes that the planes of all lights take together. SLOTS_BYTES: the most bytes that
+ * the picture's slots of a run of slabs take. */
 static const size_t PLANES_BYTES = (size_t)1 << 30, SLOTS_BYTES = (size_t)1 << 30;
-enum { SLABS_OF_RUN = 32 /* a bit each */, SLOT_BYTES = 40 };
+enum { SLABS_OF_RUN = 32 /* one bit for each slab */, SLOT_BYTES = 40 };
 
 static size_t floats_of_sheet(const sweep_task *task) {
   size_t floats = 0;
@@ -348,7 +349,7 @@ static hl_status plan_all_rays(hl_context *context, const sweep_task *task, plan
 
 /* ---- the sweep ---- */
 
-/* All lights keep the light at the outside of surfaces, or none does. */
+/* Whether the lights keep the light at the outside of surfaces. Either all lights do or none does. */
 static bool keeps_outside(const sweep_task *task) {
   for (int i = 0; i < task->plan->geometry->light_count; i++)
     if (task->plan->lights[i].shadow.method != NULL && task->plan->lights[i].shadow.plan.outside) return true;

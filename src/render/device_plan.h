@@ -7,7 +7,8 @@
 #include "plan/frame_plan.h"
 #include "render/sweep_constants.h"
 
-/* Why a device does not make a frame: a part of a sentence, "its meshes are not there yet". Null: it does. */
+/* Why a device does not make a frame: a part of a sentence, "its meshes are not there yet". Null: a device
+ * makes the frame. */
 const char *hl_reason_for_processors(const frame_plan *plan);
 
 /* The volume that the frame shows. */
@@ -22,8 +23,8 @@ typedef struct planned_sweep {
   plan_rays *rays; /* owned */
 } planned_sweep;
 
-/* shown_from: as a sweep's target has it; borrowed. planned: release it after a failure, too; it must not
- * move. */
+/* shown_from: the first visible slabs, as in a sweep's target; borrowed. planned: release it after a failure,
+ * too; it must not move. */
 hl_status hl_plan_sweep(hl_context *context, const frame_plan *frame_plan, const sweep_plan *plan,
                         const int32_t *shown_from, planned_sweep *planned, hl_error *error);
 void hl_plan_release(hl_context *context, planned_sweep *planned);

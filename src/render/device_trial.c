@@ -111,7 +111,7 @@ static hl_status make_scene(hl_context *context, hl_volume *volume, bool surface
   return hl_scene_create(context, &description, scene, error);
 }
 
-/* A renderer of the trial: with the device lent, or without one. */
+/* Renders a picture of the trial on the owner's device (on_device) or on the processors. */
 static hl_status render(hl_renderer *owner, bool on_device, const hl_scene *scene, int frames, float *pixels,
                         hl_render_statistics *statistics, hl_error *error) {
   hl_renderer *renderer = NULL;
@@ -122,7 +122,7 @@ static hl_status render(hl_renderer *owner, bool on_device, const hl_scene *scen
   if (renderer->device.gpu != NULL) hl_gpu_forget(renderer->device.gpu);
   for (int i = 0; i < frames && status == HL_OK; i++)
     status = hl_renderer_render(renderer, scene, pixels, 4 * PICTURE, statistics, error);
-  if (on_device) owner->device.gpu = renderer->device.gpu; /* null where it failed */
+  if (on_device) owner->device.gpu = renderer->device.gpu; /* null where the device failed */
   if (on_device && renderer->device.gpu == NULL && status == HL_OK)
     status = hl_fail(error, HL_ERROR_UNSUPPORTED, "%s", renderer->device.problem);
   renderer->device.gpu = NULL;
@@ -131,7 +131,7 @@ static hl_status render(hl_renderer *owner, bool on_device, const hl_scene *scen
   return status;
 }
 
-/* faster: the device's second frame must take less time, too. */
+/* faster: the trial asks, too, whether the device's second frame takes less time. */
 static bool try_picture(hl_renderer *renderer, hl_volume *volume, bool surface, bool faster, float *pixels,
                         char *problem) {
   enum { FLOATS = PICTURE * PICTURE * 4 };

@@ -4,8 +4,8 @@
 
 #include "render/renderer_state.h"
 
-/* Whether the renderer's device gives the processors' bytes. faster: and whether it is faster than they are.
- * problem: [GPU_PROBLEM_BYTES]; why not. */
+/* Whether the renderer's device gives the processors' bytes. faster: the device must be faster than the
+ * processors, too. problem: [GPU_PROBLEM_BYTES]; says why the device does not pass. */
 bool hl_device_passes(hl_renderer *renderer, bool faster, char *problem);
 
 #endif

@@ -1,6 +1,6 @@
 /* render/estimate.c - see estimate.h. Adds up the memory of hl_prepare_volumes(), the frame and
- * hl_sweep_begin(). Left out are light textures and the lists of splatted voxels: their sizes are known only
- * when they are made, and the memory limit refuses them then. */
+ * hl_sweep_begin(). It leaves out light textures and the lists of splatted voxels. Their sizes are known only
+ * when they are made; the memory limit may refuse them then. */
 #include "render/estimate.h"
 
 #include "core/context.h"

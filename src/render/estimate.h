@@ -8,17 +8,20 @@
 #include "render/prepare.h"
 #include "render/sweep.h"
 
-/* Counts what the volumes that are not prepared yet take. Call hl_prepared_release_stale() before. */
+/* Counts the bytes that the volumes take which are not prepared yet. Call hl_prepared_release_stale()
+ * before. */
 void hl_prepare_count(const hl_scene_description *scene, const prepared_volume *prepared,
                       const grid_functions *functions, int threads, hl_layout *layout);
 
 /* The bytes that the counted sweeps of a frame take together. */
 size_t hl_sweeps_bytes(const sweeps_memory *sweeps);
 
-/* Whether so many bytes more fit below the context's limit; *estimate is raised to the bytes then held. */
+/* Whether `bytes` more bytes fit below the context's limit. *estimate is raised to the number of bytes that
+ * the context would then hold. */
 hl_status hl_check_room(const hl_context *context, uint64_t bytes, uint64_t *estimate, hl_error *error);
 
-/* The most that the last frame was expected to hold through the context, what was held before included. */
+/* The most bytes that the last frame was expected to hold through the context. The bytes held before the
+ * frame are included. */
 uint64_t hl_renderer_estimate(const hl_renderer *renderer);
 
 #endif

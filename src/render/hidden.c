@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "render/sweep.h"
 
-/* The same sheets, the last one first. */
+/* The same sheets in reverse order. */
 static sweep_sheets turned_round(const sheet_stack *sheets) {
   sweep_sheets turned = {.sheets = *sheets};
   turned.sheets.normal = vec3_scale(sheets->normal, -1);
@@ -20,7 +20,7 @@ static sweep_sheets turned_round(const sheet_stack *sheets) {
  * - k on. */
 static int32_t first_shown(const sweep *sweep, int slab) { return sweep->geometry->sheets.count - slab; }
 
-/* The tile action's data. */
+/* The data of the tile action. */
 typedef struct hidden_search {
   int32_t *shown_from; /* [tiles][16]; first visible slab; 0: the block is not covered yet */
   bool trying;         /* blocks stay open after they are opaque, so that what they cover is counted */
@@ -73,7 +73,7 @@ static hl_status is_worth_while(const sweep *front, bool *worth, hl_error *error
     if (all == NULL) return hl_fail_memory(error, parts * sizeof own, "what is hidden");
     with->gather(with->data, own, sizeof own, all);
   }
-  double seen = 0, covered = 0; /* whole numbers: in any order the same sums */
+  double seen = 0, covered = 0; /* whole numbers, whose sums are the same in any order */
   for (size_t part = 0; part < parts; part++) {
     seen += (double)all[part * COUNTS + SEEN];
     covered += (double)all[part * COUNTS + COVERED];
@@ -83,8 +83,8 @@ static hl_status is_worth_while(const sweep *front, bool *worth, hl_error *error
   return HL_OK;
 }
 
-/* Runs the search for hidden slabs. trying: in the tried tiles alone, where opaque blocks stay open, so that
- * the pixels they cover are counted; else in all other tiles. */
+/* Runs the search for hidden slabs. trying: it searches the tried tiles alone and keeps opaque blocks open,
+ * so that the pixels they cover are counted. Otherwise it searches all other tiles. */
 static hl_status go_through(sweep *front, hidden_search *search, bool trying, hl_error *error) {
   search->trying = trying;
   for (size_t tile = 0; tile < front->tiles; tile++)
@@ -92,10 +92,10 @@ static hl_status go_through(sweep *front, hidden_search *search, bool trying, hl
   return hl_sweep_run(front, error);
 }
 
-/* Tries some tiles; where that pays, goes through the others. front: has begun. */
+/* Searches some tiles, and the others where the result promises a gain. front: a sweep that has begun. */
 static hl_status search_tiles(sweep *front, hidden_search *search, hl_error *error) {
-  /* what is tried must not depend on the part, which would change bytes: parts that exchange nothing all try
-   * the whole picture's tiles */
+  /* The tried tiles must not depend on the part, or bytes would change. So parts that exchange nothing all
+   * try tiles of the whole picture. */
   const picture_share *own = front->share, whole = {.parts = 1};
   bool worth = false;
   if (own->exchange == NULL) front->share = &whole;

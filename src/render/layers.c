@@ -27,7 +27,7 @@ static void lay_out_light(const hl_layers *wanted, const light_source *source, s
   light->open = take_pixels(layout, shadow && of_sky, tiles, COLORS);
 }
 
-/* Takes the pixels alone. The lights are null where the bytes are counted for an estimate. */
+/* Lays out the pixels only. The array of lights is null where bytes are counted for an estimate. */
 static void lay_out(const frame *frame, size_t tiles, layer_pixels *pixels, hl_layout *layout) {
   const hl_layers *wanted = pixels->wanted;
   pixels->ambient = take_pixels(layout, wanted->ambient != NULL, tiles, COLORS);
@@ -102,8 +102,8 @@ static float sum_of(const layer_grid *grid, const float *pixels, int floats, int
   return sum;
 }
 
-/* Writes three channels of a row. divide: by alpha (0 where alpha is 0); otherwise they stay premultiplied.
- * add: to the numbers in `to`. */
+/* Writes three channels of a row. divide: the colours are divided by alpha (0 where alpha is 0); otherwise
+ * they stay premultiplied. add: the colours are added to the numbers in `to`. */
 static void write_colors(const layer_grid *grid, int row, const float *pixels, bool divide, bool add,
                          float *to) {
   float area = (float)(grid->oversampling * grid->oversampling);
@@ -112,14 +112,14 @@ static void write_colors(const layer_grid *grid, int row, const float *pixels, b
     float alpha = divide ? sum_of(grid, pixels, COLORS, column, row, 3, NULL) : area;
     for (int c = 0; c < 3; c++, to++) {
       *to = (add ? *to : 0) + (alpha > 0 ? sum_of(grid, pixels, COLORS, column, row, c, NULL) / alpha : 0);
-      /* each sector of a light is divided by its own sweep's alpha: their sum may exceed 1 */
+      /* The sectors of a light are divided each by the alpha of its own sweep, so their sum may exceed 1. */
       if (divide && *to > 1) *to = 1;
     }
   }
 }
 
-/* Writes three channels of a row: the sky's light that arrives, divided by all of it. The field's directions
- * are few: what arrives may exceed what an open sky sends by rounding. */
+/* Writes three channels of a row: the sky's light that arrives, divided by all of it. The field has few
+ * directions: the light that arrives may exceed the light of an open sky by rounding. */
 static void write_sky_shadow(const layer_grid *grid, int row, const layer_pixels *pixels, float *to) {
   to += 3 * (size_t)row * (size_t)grid->width;
   for (int column = 0; column < grid->width; column++)
@@ -135,8 +135,8 @@ static void write_sky_shadow(const layer_grid *grid, int row, const layer_pixels
     }
 }
 
-/* The object that most pixels of the frame show, of those that make up one pixel of the picture and show any;
- * the least number of several. */
+/* The object that most pixels of the frame show, among the pixels that make up one pixel of the picture and
+ * show any object. Where several objects tie, the one with the least number counts. */
 static float object_of(const layer_grid *grid, const float *pixels, int column, int row) {
   int side = grid->oversampling, most = 0;
   float object = 0;

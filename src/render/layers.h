@@ -21,8 +21,10 @@
 typedef struct light_pixels {
   float *picture, *shadow; /* R G B A */
   size_t light_index;      /* the light's index in the scene; a light in sectors has several entries */
-  bool of_sky;             /* a sun: its picture is part of the sky's, and it has no shadow but: */
-  float *reaching, *open;  /* R G B A; as the sky's */
+  bool of_sky;             /* A sun of the sky: its picture is part of the sky's picture. It has no shadow
+                            * layer, and the next two arrays instead. */
+  float *reaching, *open;  /* R G B A; the sky's pictures of white matter, of this sun's light that arrives
+                            * and of its light with nothing in the way */
 } light_pixels;
 
 enum { COLORS = 4 }; /* R G B A */
@@ -31,17 +33,17 @@ typedef struct layer_pixels {
   const hl_layers *wanted;         /* the caller's; null: none */
   float *ambient, *emission, *sky; /* R G B A */
   float *sky_reaching,
-      *sky_open;        /* R G B A; of white volumes: the sky's light, and all of it that nothing hides */
-  float *measures;      /* MEASURES */
+      *sky_open;        /* R G B A of white volumes: lit by the sky, and by a sky that nothing hides */
+  float *measures;      /* [MEASURES] floats per pixel */
   light_pixels *lights; /* owned; [light_count] */
-  size_t light_count;   /* of the frame */
+  size_t light_count;   /* number of lights of the frame */
   void *memory;         /* owned; holds all pixels */
 } layer_pixels;
 
-/* Allocates the wanted layers of a frame. tiles: how many the frame has. */
+/* Allocates the wanted layers of a frame. tiles: the number of the frame's tiles. */
 hl_status hl_layer_pixels_create(hl_context *context, hl_pool *pool, const hl_layers *wanted,
                                  const frame *frame, size_t tiles, layer_pixels *pixels, hl_error *error);
-/* Counts what hl_layer_pixels_create() takes. */
+/* Counts the memory that hl_layer_pixels_create() takes. */
 void hl_layer_pixels_count(const hl_layers *wanted, const frame *frame, size_t tiles, hl_layout *layout);
 void hl_layer_pixels_release(hl_context *context, layer_pixels *pixels);
 
@@ -50,10 +52,10 @@ hl_light_layers hl_layers_of_light(const hl_layers *wanted, const light_source *
 
 /* How pixels of the frame become pixels of the picture: oversampling x oversampling are averaged. */
 typedef struct layer_grid {
-  int width, height; /* of the picture */
+  int width, height; /* size of the picture */
   int oversampling;
   size_t tiles_x;
-  float unit; /* world length of 1 in frame space */
+  float unit; /* the length in the world of one unit of frame space */
 } layer_grid;
 
 /* Fills the caller's buffers. */

@@ -12,7 +12,7 @@ typedef struct color_lanes {
   lanes c[3];
 } color_lanes;
 
-/* exp(-x), also of negative x: those below -40 are as -40. */
+/* exp(-x), also of negative x. An x below -40 counts as -40. */
 LANES_INLINE lanes exp_of_depth(lanes x) { return lanes_exp_negative(lanes_max(x, lanes_set(-40.0f))); }
 
 /* phi(x) = (1 - exp(-x)) / x, the mean of exp(-x s) over s in [0,1], as numerator (over) and denominator
@@ -122,8 +122,8 @@ typedef struct light_depths {
   lanes near[HL_CHANNELS][NEAR_PIXELS]; /* near a face: from the face to the near pixels on the first sheet */
   lanes_int face;                       /* lanes near a face of a box */
   lanes beside;                         /* near a face: how much the face counts, 0 to 1 */
-  lanes before_enter[HL_CHANNELS], before_more[HL_CHANNELS]; /* near a face: like enter and more, but for the
-                                                                light's way before the slab */
+  /* Near a face: as enter and more, but for the light's way before the slab. */
+  lanes before_enter[HL_CHANNELS], before_more[HL_CHANNELS];
 } light_depths;
 
 /* The greatest optical depth: hardly any light is left, and floats still hold exp(-depth). */
@@ -185,7 +185,7 @@ LANES_INLINE void add_before(int channels, lanes before[HL_CHANNELS][NEAR_PIXELS
   }
 }
 
-/* light->near: null where no face of a box can be near. */
+/* light->near is null where no face of a box can be near. */
 LANES_INLINE light_depths depths_of_light(const shade_job *job, const block_slab *slab,
                                           block_density *densities, int count, const seen_light *light) {
   const lanes3 towards = light->towards;

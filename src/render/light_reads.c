@@ -1,10 +1,10 @@
 /* render/light_reads.c - see light_reads.h.
  *
- * Samples of a picture's tile in a run of slabs lie between rays through the tile's corners and between two
- * sheets: in the convex hull of eight points. Seen from the light, all of it ahead, they lie in the convex
- * hull of the points' images (derived: a projection takes lines to lines). The tiles of the buffer around the
- * images are needed until the run's last slab. Where a light is many sub-lights, the picture reads their
- * buffers, and each has tiles of its own. */
+ * The samples of a picture's tile in a run of slabs lie between rays through the tile's corners and between
+ * two sheets. So they lie in the convex hull of eight points. Where all points lie ahead of the light, the
+ * light sees the samples in the convex hull of the points' images (derived: a projection takes lines to
+ * lines). The tiles of the buffer around the images are needed until the run's last slab. Where a light is
+ * many sub-lights, the picture reads their buffers, and each has tiles of its own. */
 #include "render/light_reads.h"
 
 #include <string.h>
@@ -13,18 +13,18 @@
 #include "render/surface_point.h"
 #include "surface/late/lateness.h"
 
-/* Sheets by which a sample may lie outside of its slab, and pixels by which it may lie outside of its tile:
- * for rounding. */
+/* The number of sheets by which a sample may lie outside of its slab by rounding, and the number of pixels by
+ * which it may lie outside of its tile. */
 static const double SHEET_SPARE = 0.5, PIXEL_SPARE = 1;
 
 /* Slabs of a run. */
 enum { READ_RUN = 8 };
 
-/* Pixels of a buffer around a look-up's position that are read: the farthest of cubic convolution's, and one
- * for rounding. */
+/* How far from a look-up's position pixels of a buffer are read: cubic convolution reads two pixels to each
+ * side, and one more is for rounding. */
 enum { READ_TAPS = 3 };
 
-/* Cosine by which the edge of a sector is looked for outside of it: for rounding. */
+/* The cosine by which a sector's edge is moved outwards, for rounding. */
 static const double SECTOR_SPARE = 1e-3;
 
 /* A buffer that the picture reads: a light's, or a sub-light's. */
@@ -34,8 +34,8 @@ typedef struct read_buffer {
   double length[3];  /* of the rows, without their last numbers */
   int32_t *until;    /* [tiles_y][tiles_x] */
   int tiles_x, tiles_y;
-  const struct read_buffer *moves; /* look-ups at surfaces move away from them by pixels of this buffer, the
-                                      light's first; null: there are no surfaces */
+  const struct read_buffer *moves; /* The buffer by whose pixels look-ups at surfaces move away from the
+                                    * surfaces: the light's first. Null: there are no surfaces. */
 } read_buffer;
 
 /* (w, w u, w v) */
@@ -47,13 +47,13 @@ static vec3 place_in(const read_buffer *buffer, vec3 point) {
   return vec3_of(place);
 }
 
-/* The pixels that some points lie on. */
+/* The rectangle of pixels that some points lie on. */
 typedef struct read_bounds {
   double low[2], high[2];
   double nearest; /* the least w */
 } read_bounds;
 
-/* False where a point does not lie ahead of the light. */
+/* Finds the rectangle; false where a point does not lie ahead of the light. */
 static bool bound_points(const read_buffer *buffer, const vec3 *points, int count, read_bounds *bounds) {
   *bounds = (read_bounds){{INFINITY, INFINITY}, {-INFINITY, -INFINITY}, INFINITY};
   for (int i = 0; i < count; i++) {
@@ -69,10 +69,10 @@ static bool bound_points(const read_buffer *buffer, const vec3 *points, int coun
   return count > 0;
 }
 
-/* Widens the bounds by the pixels that are read beside a sample; false where samples may move to where the
- * light does not shine ahead. Derived: look-ups at surfaces move by at most d = 1.25 w' / |r1'|, w' and r1'
- * being of the buffer that they move by. u = (r1.p) / w moves by (r1.d - u r0.d) / (w + r0.d), at most
- * d (|r1| + |u| |r0|) / (w - d |r0|); v likewise. */
+/* Widens the bounds by the pixels that are read beside a sample. False where samples may move to places that
+ * do not lie ahead of the light. Derived: look-ups at surfaces move by at most d = 1.25 w' / |r1'|, where w'
+ * and r1' belong to the buffer whose pixels measure the move. The column u = (r1.p) / w moves by (r1.d - u
+ * r0.d) / (w + r0.d), which is at most d (|r1| + |u| |r0|) / (w - d |r0|). The row v moves likewise. */
 static bool widen(const read_buffer *buffer, const vec3 *points, int count, read_bounds *bounds) {
   double farthest = 0, way = 0;
   for (int i = 0; i < count && buffer->moves != NULL; i++)
@@ -94,8 +94,8 @@ static int tile_at(double pixel, int tiles) {
   return pixel >= (double)tiles * TILE ? tiles - 1 : (int)(pixel / TILE);
 }
 
-/* Raises `until` in the tiles of the buffer that the hull of some points may read: in all tiles where a point
- * does not lie ahead of the light, or where there are no points. */
+/* Raises `until` in the tiles of the buffer that the hull of some points may read. Where a point does not lie
+ * ahead of the light, or where there are no points, these are all tiles. */
 static void read_hull(const read_buffer *buffer, const vec3 *points, int count, int32_t slab) {
   const int tiles[2] = {buffer->tiles_x, buffer->tiles_y};
   int first[2] = {0, 0}, last[2] = {tiles[0] - 1, tiles[1] - 1};
@@ -112,9 +112,9 @@ static void read_hull(const read_buffer *buffer, const vec3 *points, int count, 
     }
 }
 
-/* Points around the samples of a tile between two heights: eight, or fewer and the eye, where that lies
- * between them or beyond. None where a ray beside the picture does not cross the sheets as those within do.
- */
+/* Points around the samples of a tile between two heights. They are eight points, or fewer points and the eye
+ * where the eye lies between the heights or beyond them. There are none where a ray beside the picture does
+ * not cross the sheets as the rays within it do. */
 static int hull_of(const sweep *sweep, size_t tile, double low, double high, vec3 points[9]) {
   const view *eye = &sweep->frame->eye;
   vec3 normal = sweep->geometry->sheets.normal;
@@ -146,7 +146,7 @@ typedef struct reads_task {
   int buffer_count;
 } reads_task;
 
-/* The reads of the slabs from first to last, both included, in a tile. */
+/* Marks the tiles that the slabs from first to last, both included, read in a tile of the picture. */
 static void read_slabs(const reads_task *task, size_t tile, int first, int last) {
   const sheet_stack *sheets = &task->sweep->geometry->sheets;
   vec3 points[9];
@@ -155,7 +155,7 @@ static void read_slabs(const reads_task *task, size_t tile, int first, int last)
   for (int i = 0; i < task->buffer_count; i++) read_hull(&task->buffers[i], points, count, last);
 }
 
-/* The reads of a tile of the picture, run by run. */
+/* Marks the tiles that a tile of the picture reads, run by run of slabs. */
 static void read_tile(const reads_task *task, size_t tile) {
   const occupancy *occupancy = &task->sweep->image.occupancy;
   int sheets = task->sweep->geometry->sheets.count, first = 0, last = 0;
@@ -171,7 +171,7 @@ static void read_tile(const reads_task *task, size_t tile) {
   if (first > 0) read_slabs(task, tile, first, last);
 }
 
-/* The reads of the surfaces that the eye sees in a tile, in the sectors that light them. */
+/* Marks the tiles that the surfaces read which the eye sees in a tile, for the sectors that light them. */
 static void read_surfaces(const reads_task *task, size_t tile) {
   const sweep *sweep = task->sweep;
   const fragments *all = &sweep->surfaces.image;
@@ -193,8 +193,8 @@ static bool is_exchanged(const sweep *sweep, const light_shadow *shadow) {
          shadow->setup.exchange != NULL;
 }
 
-/* Whether a light is a sector of one within the content, and there are meshes alone: it is then read at their
- * points that the eye sees. */
+/* Whether a light is a sector of a light within the content, and the scene holds meshes only. Such a light is
+ * read only at points of meshes that the eye sees. */
 static bool is_sector_of_meshes(const sweep *sweep, const light_shadow *shadow) {
   return shadow->setup.source->sectors != NULL && sweep->content.volume_count == 0;
 }
@@ -221,7 +221,8 @@ static size_t tiles_of(const light_shadow *shadow) {
   return shadow->sublight_count > 0 ? sublight_tiles(shadow) : hl_view_tiles(&shadow->plan.view);
 }
 
-/* The arrays of a light whose reads are limited. needed_until or sublights_until begins the block. */
+/* Lays out the arrays of a light whose reads are limited. needed_until or sublights_until begins the
+ * block. */
 static void lay_out_light(const sweep *sweep, sweep_light *light, hl_layout *layout) {
   const size_t tiles = tiles_of(&light->shadow);
   int32_t *until = hl_layout_take(layout, tiles, sizeof *until);
@@ -230,7 +231,7 @@ static void lay_out_light(const sweep *sweep, sweep_light *light, hl_layout *lay
   if (is_exchanged(sweep, &light->shadow)) light->owned = hl_layout_take(layout, tiles, sizeof *light->owned);
 }
 
-/* The buffers of all lights whose reads are limited. */
+/* Lays out the buffers of all lights whose reads are limited. */
 static read_buffer *lay_out_buffers(const sweep *sweep, hl_layout *layout) {
   size_t count = 0;
   for (int i = 0; i < sweep->geometry->light_count; i++)
@@ -238,7 +239,7 @@ static read_buffer *lay_out_buffers(const sweep *sweep, hl_layout *layout) {
   return hl_layout_take(layout, count, sizeof(read_buffer));
 }
 
-/* What all parts need of a light. */
+/* Lays out the array of the needs that all parts have of a light. */
 static int32_t *lay_out_needs(const light_shadow *shadow, hl_layout *layout) {
   return hl_layout_take(layout, (size_t)shadow->setup.exchange->parts * tiles_of(shadow), sizeof(int32_t));
 }
@@ -257,15 +258,15 @@ void hl_light_reads_count(sweep *sweep, hl_layout *layout) {
 
 /* ---- owners ---- */
 
-/* The last slab in which bricks or surfaces touch a tile; 0: none do. */
+/* The last slab in which bricks or surfaces touch a tile; 0 where none does. */
 static int32_t last_touched(const occupancy *occupancy, size_t tile) {
   for (int slab = occupancy->sheets - 1; slab > 0; slab--)
     if (hl_occupancy_touches(occupancy, tile, slab)) return slab;
   return 0;
 }
 
-/* The owner of a tile: of the parts that need it longest the first; of a tile that nobody needs, by its
- * place. all: [parts][tiles] */
+/* The part that owns a tile: the first of the parts that need it longest. A tile that no part needs goes to a
+ * part by its place. all: [parts][tiles] */
 static int owner_of(const int32_t *all, size_t tile, size_t tiles, int parts) {
   int owner = 0;
   for (int part = 1; part < parts; part++)
@@ -274,7 +275,7 @@ static int owner_of(const int32_t *all, size_t tile, size_t tiles, int parts) {
   return (int)(tile * (size_t)parts / tiles);
 }
 
-/* Whether this part owns a tile, or one at most `around` tiles beside it. */
+/* Whether this part owns a tile, or a tile that lies at most `around` tiles away. */
 static bool is_owned_around(const sweep_light *light, int tile, int around) {
   const view *view = &light->shadow.buffer->view;
   const int across = hl_tiles(view->width), down = hl_tiles(view->height);
@@ -286,10 +287,10 @@ static bool is_owned_around(const sweep_light *light, int tile, int around) {
   return false;
 }
 
-/* Finds the tiles that this part owns: needs them as long as anything touches them, though the picture may
- * need them no more, so that together the parts know of all light. Where there are surfaces it needs the
- * tiles beside them, too: what surfaces hide in a tile depends on pixels up to a tile beside it
- * (shadow_cascade/cascade_field.h). */
+/* Finds the tiles that this part owns. The part needs an owned tile as long as anything touches it, even
+ * where the picture no longer needs it, so that the parts together know all light. Where there are surfaces,
+ * the part needs the tiles beside an owned tile, too: the light that surfaces hide in a tile depends on
+ * pixels up to a tile beside it (shadow_cascade/cascade_field.h). */
 static hl_status find_owned(sweep *sweep, sweep_light *light, hl_error *error) {
   hl_context *context = sweep->content.context;
   const light_exchange *with = light->shadow.setup.exchange;

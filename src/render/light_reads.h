@@ -5,16 +5,17 @@
 
 #include "render/sweep.h"
 
-/* Finds each light's needed_until, where the picture is shared, or the light is a sector, and the light's
- * method allows it. After the sweep's views, lights and the picture's surfaces have begun. What is left out
- * is never read: pixels do not change. */
+/* Finds needed_until of each light whose method allows it, where the picture is shared or the light is a
+ * sector. Call it after the sweep's views, its lights and the picture's surfaces have begun. Tiles that are
+ * left out are never read, so pixels do not change. */
 hl_status hl_light_reads_find(sweep *sweep, hl_error *error);
 
-/* Adds the tiles that this part of a shared picture owns, whoever needs them. After the lights' surfaces have
- * begun. */
+/* Adds the tiles that this part of a shared picture owns, whichever part needs them. Call it after the
+ * lights' surfaces have begun. */
 hl_status hl_light_reads_find_owned(sweep *sweep, hl_error *error);
 
-/* Counts what finding them takes, for lights whose shadows are planned. Sets no pointers. */
+/* Counts the memory that both functions above take, for lights whose shadows are planned. Sets no
+ * pointers. */
 void hl_light_reads_count(sweep *sweep, hl_layout *layout);
 
 #endif

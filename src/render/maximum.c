@@ -8,9 +8,9 @@
 #include "core/memory.h"
 #include "scene/scene.h"
 
-/* Coordinates come from rounded sums of floats. So the ends of the shown ranges are moved by a few roundings
- * of the greatest voxel, at least by LEAST_END entries: a value at an end is then shown or not as the
- * transfer function says. */
+/* Coordinates come from rounded sums of floats. So the ends of the shown ranges are moved by ROUNDINGS
+ * roundings of the greatest voxel, and at least by LEAST_END entries. A value at an end is then shown exactly
+ * where the transfer function shows it. */
 static const double LEAST_END = 1e-3, ROUNDINGS = 8;
 
 enum { BISECTIONS = 30 };
@@ -44,9 +44,9 @@ void hl_maximum_count(const frame_plan *plan, hl_layout *layout) {
 /* A transfer function over the coordinates of its table. */
 typedef struct shown_values {
   const hl_transfer_function *function;
-  double low, step; /* data values: of coordinate 0, and from one to the next */
-  double nothing;   /* data values below this are no matter */
-  double end;       /* entries by which ends are moved */
+  double low, step; /* data values: the value of coordinate 0, and the step from one coordinate to the next */
+  double nothing;   /* data value below which there is no matter */
+  double end;       /* number of entries by which ends are moved */
 } shown_values;
 
 static bool shows(const shown_values *values, double from, double to) {
@@ -58,7 +58,7 @@ static bool shows(const shown_values *values, double from, double to) {
 /* The greatest, or the least, value that is shown between entry and entry + 1. */
 static double end_of_step(const shown_values *values, int entry, bool greatest) {
   double inside = entry, outside = entry + 1;
-  /* for the greatest value, something is always shown between `inside` and the step's end */
+  /* In the search for the greatest value, something is always shown between `inside` and the step's end. */
   for (int i = 0; i < BISECTIONS; i++) {
     double middle = (inside + outside) / 2;
     bool some = greatest ? shows(values, middle, entry + 1) : shows(values, entry, middle);
@@ -68,7 +68,8 @@ static double end_of_step(const shown_values *values, int entry, bool greatest) 
   return (inside + outside) / 2;
 }
 
-/* True if opacity rises slowly from 0 there, so that the end itself is not shown; false if it jumps. */
+/* True where opacity rises from 0 without a jump, so that the end itself is not shown. False where opacity
+ * jumps. */
 static bool rises_from(const shown_values *values, double from) {
   double near = values->low + (from + values->end) * values->step,
          far = values->low + (from + 2 * values->end) * values->step;
@@ -96,7 +97,7 @@ static double end_of(const frame_volume *of, double step) {
   return fmax(LEAST_END, ROUNDINGS * FLT_EPSILON * greatest / step);
 }
 
-/* rows: [SHOWN_ENTRIES]; fills their columns, SHOWN_FROM and so on. */
+/* Fills the columns SHOWN_FROM, SHOWN_TO and SHOWN_BELOW of a volume's table. rows: [SHOWN_ENTRIES]. */
 static void fill_shown(const frame_volume *volume, const grid *grid, float (*rows)[4]) {
   const classifier *classifier = volume->classifier;
   double empty = volume->empty, step = grid->value_scale / (double)classifier->scale;
@@ -144,7 +145,7 @@ typedef struct color_job {
   float *pixels;
 } color_job;
 
-/* Colours of sixteen pixels of one volume. */
+/* Looks up the colours of sixteen pixels of one volume. */
 static void color_block(float (*table)[4], const float *greatest, float *pixels) {
   for (int lane = 0; lane < BLOCK_PIXELS; lane++) {
     if (!(greatest[lane] >= 0)) continue;

@@ -13,20 +13,20 @@
  * tests/analytic/sheets_maximum.c). */
 #define MAXIMUM_SPACING 0.5
 
-/* The projection's pixels and tables, for the frame of a plan. values stays null where the scene's
- * compositing is another. Released in any case. */
+/* Makes the projection's pixels and tables for the frame of a plan. values stays null where the scene
+ * composites otherwise. Release the result in any case. */
 hl_status hl_maximum_create(hl_context *context, hl_pool *pool, const frame_plan *plan,
                             maximum_values *maximum, hl_error *error);
 void hl_maximum_release(hl_context *context, maximum_values *maximum);
 
-/* Counts what hl_maximum_create() takes. */
+/* Counts the memory that hl_maximum_create() takes. */
 void hl_maximum_count(const frame_plan *plan, hl_layout *layout);
 
 /* A sweep's action, in place of steps 12 to 16. */
 uint32_t hl_maximum_tile(const sweep *sweep, const tile_slab *slab);
 
-/* The picture's pixels, [tiles][16][R G B A][16]: of each channel the greatest among the volumes' colours;
- * alpha 1 where any volume shows something. */
+/* The picture's pixels, [tiles][16][R G B A][16]: each channel is the greatest among the volumes' colours.
+ * Alpha is 1 where any volume shows something. */
 void hl_maximum_color(const maximum_values *maximum, const frame_plan *plan, hl_pool *pool, float *pixels);
 
 #endif

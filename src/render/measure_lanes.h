@@ -5,7 +5,8 @@
 #include "render/shade_lanes.h"
 #include "render/slab_lanes.h"
 
-/* Mean of the volumes' normals, weighted by extinction and by how much of a surface they are. */
+/* The mean of the volumes' normals. The weights are the volumes' extinction, and how much each is a
+ * surface. */
 LANES_INLINE lanes3 normal_of_block(const block_slab *slab, const block_density *densities, int count) {
   lanes inverse = 1.0f / lanes_max(slab->total, lanes_set(1e-30f));
   lanes3 sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
@@ -35,9 +36,9 @@ LANES_INLINE lanes object_of_block(const block_density *densities, int count) {
   return object;
 }
 
-/* Stores the depth at which alpha reaches FIRST_OPACITY, and the object, in the lanes where alpha reaches it
- * in this slab. Derived: with A the alpha before the slab and e the slab's optical depth, the fraction u of e
- * has been passed where (1 - A) exp(-u e) = 1 - FIRST_OPACITY. */
+/* Stores the depth at which alpha reaches FIRST_OPACITY, and the object there, in the lanes where this
+ * happens in this slab. Derived: where A is the alpha before the slab and e the slab's optical depth, a ray
+ * reaches this alpha after the fraction u of e, for which (1 - A) exp(-u e) = 1 - FIRST_OPACITY. */
 LANES_INLINE void mark_first(const shade_job *job, const block_slab *slab, block_density *densities,
                              int count, lanes before, lanes after, float *pixels) {
   lanes_int crossed = (before < FIRST_OPACITY) & (after >= FIRST_OPACITY);

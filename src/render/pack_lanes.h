@@ -6,8 +6,8 @@
 #include "render/slab_lanes.h"
 #include "simd/packing.h"
 
-/* The packed slab that a block's pixels went to. whole: the block has a slab of its own, all sixteen pixels
- * in their places. */
+/* The packed slab that a block's pixels went to. whole: the block has a slab of its own, in which all sixteen
+ * pixels keep their places. */
 typedef struct packed_block {
   lanes_packing packing;
   int slab, whole;
@@ -15,12 +15,13 @@ typedef struct packed_block {
 
 typedef struct packed_tile {
   block_slab slabs[TILE_BLOCKS];
-  int filled[TILE_BLOCKS]; /* lanes of each slab in use */
+  int filled[TILE_BLOCKS]; /* number of used lanes of each slab */
   int slab_count;
   packed_block blocks[TILE_BLOCKS];
 } packed_tile;
 
-/* A block's volumes before they are packed, and those of the slabs: [1 + TILE_BLOCKS][patches]. */
+/* The volumes of a block before it is packed, followed by the volumes of the packed slabs: [1 +
+ * TILE_BLOCKS][patches]. */
 _Static_assert((1 + TILE_BLOCKS) * sizeof(block_density) <= SHADE_SCRATCH_BYTES,
                "a volume's scratch holds its slabs");
 
@@ -34,7 +35,7 @@ LANES_INLINE int add_slab(packed_tile *tile, int patch_count, block_density *den
   return s;
 }
 
-/* The first slab with so many lanes left. */
+/* The first slab with at least lanes_wanted free lanes. */
 LANES_INLINE int slab_with_room(packed_tile *tile, int lanes_wanted, int patch_count,
                                 block_density *densities) {
   for (int s = 0; s < tile->slab_count; s++)
@@ -54,7 +55,7 @@ LANES_INLINE void pack_way(const lanes_packing *packing, const block_density *fr
   into->there = 1;
 }
 
-/* Gives a block all of whose pixels may show something a slab of its own. */
+/* Gives a slab of its own to a block in which all pixels may show something. */
 LANES_INLINE void keep_block(packed_tile *tile, const block_slab *block, const block_density *ways,
                              int patch_count, block_density *densities, packed_block *packed) {
   int s = add_slab(tile, patch_count, densities);
@@ -74,7 +75,7 @@ LANES_INLINE void keep_block(packed_tile *tile, const block_slab *block, const b
   packed->whole = 1;
 }
 
-/* Packs the pixels of a block that have their bit set into a slab. densities: of all slabs. */
+/* Packs the pixels of a block whose bit is set into a slab. densities: the volumes of all slabs. */
 LANES_INLINE void pack_block(packed_tile *tile, const block_slab *block, const block_density *ways,
                              int patch_count, uint32_t bits, block_density *densities, packed_block *packed) {
   int count = __builtin_popcount(bits), s = slab_with_room(tile, count, patch_count, densities),

@@ -15,14 +15,14 @@ LANES_INLINE lanes phase(float g, lanes turn) {
   return lanes_set(1 - g * g) / (squared * lanes_sqrt(squared));
 }
 
-/* An angle for a phase table, and p there. */
+/* A coordinate in the angles of a phase table, and the phase function p at the angle. */
 typedef struct phase_angle {
   lanes_int column;
   lanes fraction; /* from the column to the next one */
   lanes phase;
 } phase_angle;
 
-/* turn: as above. */
+/* turn: -cos, as in phase(). */
 LANES_INLINE phase_angle phase_angle_at(float g, lanes turn) {
   const float size = fabsf(g), per_s = (PHASE_COLUMNS - 1) / (2 * size);
   lanes squared = lanes_max(lanes_line(turn, 2 * g, 1 + g * g), lanes_set((1 - size) * (1 - size)));
@@ -39,7 +39,8 @@ LANES_INLINE lanes row_of_ratio(const phase_table *table, lanes ratio) {
   return lanes_clamp(row, 0, PHASE_CAPS - 1 - 1e-3f);
 }
 
-/* The mean over a cap: row of its size, angle to its middle. */
+/* The mean of the phase function over a cap. row: the row for the cap's size. The angle leads to the cap's
+ * middle. */
 LANES_INLINE lanes mean_in_table(const phase_table *table, lanes row, const phase_angle *angle) {
   lanes square[4];
   lanes_int first = lanes_truncate(row);
@@ -50,8 +51,7 @@ LANES_INLINE lanes mean_in_table(const phase_table *table, lanes row, const phas
   return lanes_fma(far - near, angle->fraction, near) * angle->phase;
 }
 
-/* The row for a cap seen along `way`, not of unit length; inverse: 1 over the
- * square of its length. */
+/* The row for a cap seen along `way`, which need not have unit length. inverse: 1 / |way|^2. */
 LANES_INLINE lanes row_of_cap(const phase_table *table, float size, const light_cap *cap, lanes3 way,
                               lanes inverse) {
   const float *spread = cap->spread;
@@ -64,7 +64,7 @@ LANES_INLINE lanes row_of_cap(const phase_table *table, float size, const light_
   return row_of_ratio(table, ratio);
 }
 
-/* The mean over one cap. */
+/* The mean of the phase function over one cap. */
 LANES_INLINE lanes phase_of_cap(const phase_table *table, float g, const light_cap *cap,
                                 const block_geometry *geometry) {
   const float least = LEAST_LIGHT_DISTANCE * LEAST_LIGHT_DISTANCE;
@@ -75,7 +75,8 @@ LANES_INLINE lanes phase_of_cap(const phase_table *table, float g, const light_c
   return mean_in_table(table, row, &angle);
 }
 
-/* The mean over a light. towards: unit, to its middle; table: of g, null where no light is wide. */
+/* The mean of the phase function over a light. towards: unit vector to the light's middle. table: the table
+ * for g; null where no light is wide. */
 LANES_INLINE lanes phase_of_light(const phase_table *table, float g, const shade_light *light, lanes3 towards,
                                   const block_geometry *geometry) {
   lanes turn = dot3(geometry->towards_eye, towards);

@@ -5,7 +5,7 @@
 
 enum { COLORS = 4 }; /* R G B A */
 
-/* One pixel of the frame, all sweeps. */
+/* Adds one pixel of the frame, from all sweeps. */
 static void add_pixel(const picture *picture, int column, int row, float sum[COLORS]) {
   const float *from = picture->tiles + hl_place_in_tiles(picture->tiles_x, COLORS, column, row);
   for (int c = 0; c < COLORS; c++) sum[c] += from[c * BLOCK_PIXELS];
@@ -47,7 +47,7 @@ static void reorder_row(void *data, size_t index, int worker) {
       const float *from = tiles + hl_place_in_tiles(picture->tiles_x, COLORS, column, row);
       for (int pixel = 0; pixel < BLOCK; pixel++)
         for (int c = 0; c < COLORS; c++)
-          to[COLORS * pixel + c] = 0 + from[c * BLOCK_PIXELS + pixel]; /* as a sum: never -0 */
+          to[COLORS * pixel + c] = 0 + from[c * BLOCK_PIXELS + pixel]; /* the sum with 0 turns -0 into 0 */
     }
 }
 

@@ -12,17 +12,17 @@ typedef struct picture {
   const float *tiles; /* [sweeps][tiles_of_sweep][16][4][16]; R G B A, premultiplied, linear */
   int sweeps;
   size_t tiles_x, tiles_of_sweep;
-  int oversampling;  /* pixels of the frame along a side of the picture's */
+  int oversampling;  /* number of the frame's pixels along a side of a pixel of the picture */
   float *pixels;     /* the caller's; [height][row_stride]; R G B A */
-  size_t row_stride; /* floats */
-  int width, height; /* of the picture */
+  size_t row_stride; /* counted in floats */
+  int width, height; /* size of the picture */
 } picture;
 
 /* Writes the caller's pixels. */
 void hl_picture_write(const picture *picture, hl_pool *pool);
 
-/* The same where the caller's pixels hold the tiles of the only sweep, without oversampling, in whole tiles
- * and without gaps between rows. rows: [threads][tiles_x][16][4][16], for use here. */
+/* Writes the caller's pixels where they already hold the tiles of the only sweep: without oversampling, in
+ * whole tiles and without gaps between rows. rows: [threads][tiles_x][16][4][16], memory for this call. */
 void hl_picture_reorder(const picture *picture, float *rows, hl_pool *pool);
 
 #endif

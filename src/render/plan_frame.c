@@ -60,15 +60,16 @@ static hl_status add_surfaces(hl_renderer *renderer, const framed_scene *framed,
   return HL_OK;
 }
 
-/* A volume that neither shows nor casts a shadow may be the second number of another's function: frames do
- * not fill its samples. */
+/* The grid that the frame uses. A volume that neither shows nor casts a shadow may still be the second number
+ * of another volume's function; frames do not fill its samples. */
 static grid grid_of_frame(const hl_scene_volume *volume, const prepared_volume *prepared) {
   grid grid = prepared->grid;
   if (!volume->visible && !volume->casts_shadow) grid.relevant_count = 0;
   return grid;
 }
 
-/* Brings the tree of what shadow buffers leave light behind up to date; after the frame's lights. */
+/* Brings the tree up to date that finds surfaces where shadow buffers leave light behind. Call it after the
+ * frame's lights are placed. */
 static hl_status update_contact(hl_renderer *renderer, const frame *frame, hl_error *error) {
   surface_tree *tree = &renderer->cache.contact;
   double distance = hl_contact_distance(frame);
@@ -88,7 +89,7 @@ static hl_status update_contact(hl_renderer *renderer, const frame *frame, hl_er
 /* ---- light ---- */
 
 /* The number of channels of light attenuation: three where matter absorbs the colours differently, or where
- * an emission image's colours come from different places; else one. */
+ * the colours of an emission image come from different places; otherwise one. */
 static int attenuation_channels(const frame_plan *plan) {
   for (int i = 0; i < plan->light_count; i++)
     if (plan->lights[i].has_colored_image) return 3;
@@ -99,7 +100,7 @@ static int attenuation_channels(const frame_plan *plan) {
   return 1;
 }
 
-/* Finds the light that is scattered more than once, where the scene asks for it. */
+/* Computes the light that is scattered more than once, where the scene asks for it. */
 static hl_status scatter_light(hl_renderer *renderer, const framed_scene *framed, const frame_plan *plan,
                                uint64_t sky_mark, hl_error *error) {
   const hl_scene_description *scene = &framed->scene;
@@ -147,8 +148,8 @@ static hl_status update_phases(hl_renderer *renderer, const hl_scene_description
 
 /* ---- the plan ---- */
 
-/* Brings the volumes to the frame: their grids, which differ from the prepared ones where the frame does not
- * fill their samples and at faces that touch, and the corners of what they show. */
+/* Brings the volumes to the frame: their grids and the corners of their visible part. A grid differs from the
+ * prepared one where the frame does not fill its samples, and at faces where volumes touch. */
 static void place_volumes(const hl_renderer *renderer, const framed_scene *framed, frame_plan *plan) {
   const hl_scene_description *scene = &framed->scene;
   plan_volumes *volumes = &plan->volumes;
@@ -172,7 +173,7 @@ static void place_volumes(const hl_renderer *renderer, const framed_scene *frame
   frame->voxel = hl_scene_smallest_edge(scene);
 }
 
-/* The eye, and the lights in frame space. */
+/* Places the eye and the lights in frame space. */
 static hl_status place_eye_and_lights(const framed_scene *framed, frame_plan *plan, hl_error *error) {
   const hl_scene_description *scene = &framed->scene;
   frame *frame = &plan->frame;
@@ -201,8 +202,8 @@ static hl_status share_picture(hl_renderer *renderer, frame_plan *plan, hl_error
   return status == HL_OK ? hl_share_create(renderer->context, &content, &plan->share, error) : status;
 }
 
-/* Light that does not travel along the sheets: what is scattered more than once, the sky's, and the tables of
- * phase functions. */
+/* Finds the light that does not travel along the sheets: light scattered more than once, and the sky's light.
+ * Finds the tables of phase functions, too. */
 static hl_status find_fields(hl_renderer *renderer, const framed_scene *framed, uint64_t sky_mark,
                              frame_plan *plan, hl_error *error) {
   const hl_scene_description *scene = &framed->scene;

@@ -5,9 +5,9 @@
 #include "plan/frame_plan.h"
 #include "render/renderer_state.h"
 
-/* Makes the plan of a frame whose volumes and isosurfaces are prepared. Brings what else the renderer keeps
- * up to date: surfaces, scattered light, the sky, phase tables. plan: zeros; borrows from `framed` and the
- * renderer until the frame ends; to be released after an error, too. */
+/* Makes the plan of a frame whose volumes and isosurfaces are prepared. Brings the other things that the
+ * renderer keeps up to date: surfaces, scattered light, the sky, phase tables. plan: must be zeros; borrows
+ * from `framed` and the renderer until the frame ends; must be released after an error, too. */
 hl_status hl_plan_frame(hl_renderer *renderer, const framed_scene *framed, const frame_request *request,
                         frame_plan *plan, hl_error *error);
 

@@ -128,7 +128,7 @@ void hl_prepared_release(hl_context *context, prepared_volume *prepared) {
   *prepared = (prepared_volume){.version = prepared->version, .tables_version = prepared->tables_version};
 }
 
-/* The grid that is kept serves the scene's volume. */
+/* Whether the grid that is kept still serves the scene's volume. */
 static bool has_same_voxels(const prepared_volume *prepared, const hl_scene_volume *scene, hl_kernel kernel) {
   return prepared->volume == scene->volume && prepared->kernel == hl_kernel_of_volume(scene, kernel) &&
          prepared->empty == hl_scene_volume_empty_value(scene) && same_clip(prepared, scene);
@@ -147,7 +147,7 @@ typedef struct preparation {
   hl_pool *pool;
   const grid_functions *functions;
   hl_kernel kernel;
-  bool projected; /* in a maximum projection */
+  bool projected; /* the picture is a maximum projection */
 } preparation;
 
 static void set_up_mask(const preparation *with, prepared_volume *prepared, const hl_scene_volume *scene) {
@@ -155,8 +155,9 @@ static void set_up_mask(const preparation *with, prepared_volume *prepared, cons
   else hl_mask_lattice_set_up(&prepared->classifier.mask, scene);
 }
 
-/* Masks are not in maximum projections. The mask is retained, so that another one has another address, which
- * keys of kept light are made of. Returns whether it is the mask of the frame before. */
+/* Keeps the volume's mask; a maximum projection ignores masks. The mask is retained so that no other mask can
+ * get its address, which is part of the keys of kept light. Returns whether it is the mask of the frame
+ * before. */
 static bool hold_mask(const preparation *with, prepared_volume *prepared, const hl_scene_volume *scene) {
   const mask_lattice before = prepared->classifier.mask;
   hl_volume_retain(scene->mask.volume);
@@ -167,7 +168,7 @@ static bool hold_mask(const preparation *with, prepared_volume *prepared, const 
   return now->factors == before.factors && now->rest == before.rest;
 }
 
-/* The other volume of a function of two numbers; null: there is none. */
+/* The volume of the second number of a function of two numbers; null: there is none. */
 static const hl_scene_volume *second_of(const hl_scene_description *all, const hl_scene_volume *scene) {
   const hl_function_plane *plane = &scene->transfer_function.plane;
   return plane->second == HL_SECOND_VOLUME ? hl_scene_volume_named(all, plane->volume) : NULL;
@@ -178,7 +179,7 @@ static bool same_second(const prepared_volume *prepared, const hl_scene_volume *
   return prepared->second == second->volume && prepared->second_empty == hl_scene_volume_empty_value(second);
 }
 
-/* Retained for the same reason. */
+/* Keeps the second volume, retained for the same reason as the mask. */
 static void hold_second(prepared_volume *prepared, const hl_scene_volume *second) {
   hl_volume *volume = second != NULL ? second->volume : NULL;
   hl_volume_retain(volume);
@@ -266,7 +267,7 @@ static const prepared_iso *known_iso(const prepared_volume *prepared, const hl_s
   return NULL;
 }
 
-/* grid: the prepared one, with open faces. */
+/* grid: the prepared grid, with open faces. */
 static hl_status prepare_iso(hl_context *context, hl_pool *pool, const hl_scene_volume *scene,
                              const grid *grid, prepared_volume *prepared, hl_error *error) {
   prepared_iso *made = hl_allocate_zeroed(context, scene->iso_count, sizeof *made);

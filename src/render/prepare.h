@@ -8,48 +8,49 @@
 #include "grid/grid.h"
 #include "render/hot.h"
 
-/* An isosurface of a volume; kept between frames likewise. */
+/* An isosurface of a volume; kept between frames while its surface stays the same. */
 typedef struct prepared_iso {
   double value;
-  double axis_scale[3]; /* of the volume */
-  hl_mesh *mesh;        /* owned; null: empty */
+  double axis_scale[3]; /* the volume's axes */
+  hl_mesh *mesh;        /* owned; null: the surface is empty */
 } prepared_iso;
 
 /* A volume made ready; kept between frames while its voxels, kernel, clip box and transfer function stay the
  * same. */
 typedef struct prepared_volume {
-  const hl_scene_volume *scene; /* the frame's scene */
+  const hl_scene_volume *scene; /* the volume in the frame's scene */
   hl_volume *volume;            /* retained */
   hl_volume *mask;              /* retained: the mask's lattice; null: none */
   hl_volume *second;            /* retained: the other volume of a function of two numbers; null: none */
-  double second_empty;          /* its empty value */
+  double second_empty;          /* the second volume's empty value */
   grid grid;
   classifier classifier;
   double empty;                  /* data value */
-  hl_kernel kernel;              /* the grid's cells are bounded for this kernel */
-  hl_transfer_function function; /* points owned; the classifier was made of these */
-  uint64_t plane_mark;           /* of the content of the function of two numbers; 0: there is none */
+  hl_kernel kernel;              /* the kernel for which the grid's cells are bounded */
+  hl_transfer_function function; /* The function from which the classifier was made; its points are owned. */
+  uint64_t plane_mark;           /* identifies the content of the function of two numbers; 0: there is none */
   double clip[6];
   int clipped;
-  uint64_t version, tables_version; /* of the grid's voxels, and of all that follows from the transfer
-                                       function: they rise with each change, from 0 on */
+  uint64_t version, tables_version; /* Versions of the grid's voxels, and of everything that follows from the
+                                     * transfer function. They rise with each change, from 0 on. */
   cut_shape *cuts;                  /* owned; the grid's cuts */
   prepared_iso *iso;                /* owned; [iso_count] */
   size_t iso_count;
 } prepared_volume;
 
-/* Brings prepared[0 .. count) up to date with the scene's volumes; reuses what has not changed. scene: in
- * frame space (plan/framed_scene.h). plane_marks: [scene->volume_count]; of functions of two numbers. */
+/* Brings prepared[0 .. count) up to date with the scene's volumes; what has not changed is reused. scene: in
+ * frame space (plan/framed_scene.h). plane_marks: [scene->volume_count]; identify the contents of functions
+ * of two numbers. */
 hl_status hl_prepare_volumes(hl_context *context, hl_pool *pool, const hot_functions *hot,
                              const hl_scene_description *scene, const uint64_t *plane_marks,
                              prepared_volume *prepared, hl_error *error);
 /* Brings the volumes' isosurfaces up to date, after the volumes. */
 hl_status hl_prepare_isosurfaces(hl_context *context, hl_pool *pool, const hl_scene_description *scene,
                                  prepared_volume *prepared, hl_error *error);
-/* Releases those of prepared[0 .. count) whose grids the scene's volumes cannot use any more. */
+/* Releases each volume in prepared[0 .. count) whose grid the scene's volume cannot use any more. */
 void hl_prepared_release_stale(hl_context *context, const hl_scene_description *scene,
                                prepared_volume *prepared);
-/* Counts what preparing one volume takes; kernel: the scene's. */
+/* Counts the memory that preparing one volume takes. kernel: the scene's kernel. */
 void hl_prepared_count(const hl_scene_volume *scene, hl_kernel kernel, const grid_functions *functions,
                        int threads, hl_layout *layout);
 void hl_prepared_release(hl_context *context, prepared_volume *prepared);

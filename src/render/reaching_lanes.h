@@ -91,8 +91,8 @@ LANES_INLINE lanes reaching_face(const shadow_lookup *lookup, const shadow_taps 
   return lanes_select(taps->inside, reached, lanes_set(1.0f));
 }
 
-/* The same for sub-lights: their pixels lie in all positions around the sample, so the mean over the near
- * pixels stands for them. */
+/* Does the same for sub-lights. Their pixels lie in all positions around the sample, so the mean over the
+ * near pixels stands for them. */
 LANES_INLINE void correct_faces(light_depths *depths, int channels, color_lanes *reached) {
   for (int c = 0; c < channels; c++) {
     lanes own = lanes_set(0);
@@ -103,16 +103,16 @@ LANES_INLINE void correct_faces(light_depths *depths, int channels, color_lanes 
   }
 }
 
-/* Where a slab's samples read a light: at the first sheet below them. */
+/* The place where a slab's samples read a light: the first sheet below them. */
 typedef struct light_place {
   const shade_light *light;
-  const shadow_lookup *lookup; /* of that sheet */
-  lanes3 position;             /* of the samples */
+  const shadow_lookup *lookup; /* the look-up on this sheet */
+  lanes3 position;             /* position of the samples */
   shadow_taps taps;
   uint32_t active; /* the lanes with samples */
 } light_place;
 
-/* The light that reaches the slab's first sheet, to media. */
+/* The light that reaches the slab's first sheet, as media receive it. */
 LANES_INLINE color_lanes reaching(const light_place *place, light_depths *depths) {
   const shade_light *light = place->light;
   uint32_t faces = lanes_bits(depths->face) & place->active;
@@ -129,7 +129,9 @@ LANES_INLINE color_lanes reaching(const light_place *place, light_depths *depths
       reached.c[c] = interpolated(place->lookup, &place->taps, light->cubic, c);
     if (faces == 0) continue;
     lanes at_face = reaching_face(place->lookup, &place->taps, depths, c);
-    if (fades) { /* adds the cubic look-up minus the bilinear one, less of it the more the face counts */
+    /* Adds the difference between the cubic look-up and the bilinear one. The difference counts less, the
+     * more the face counts. */
+    if (fades) {
       lanes differ = reached.c[c] - interpolated(place->lookup, &place->taps, 0, c);
       at_face = lanes_max(at_face + lanes_keep(faint, differ * (1.0f - depths->beside)), lanes_set(0));
     }
@@ -166,9 +168,9 @@ LANES_INLINE color_lanes passing_to_media(const shade_job *job, const light_plac
 /* Where the light's way to a volume's sample begins, at the slab's first sheet: coordinates of the
  * classifier's tables. */
 typedef struct way_begin {
-  lanes start, change; /* the value there, and how much it changes for each unit of the way */
-  lanes first, foot;   /* where the surface of that value begins, and where the sample's own surface does */
-  lanes_int there;     /* the volume's matter is visible there, or may be */
+  lanes start, change; /* the value there, and the change of the value per unit of the way */
+  lanes first, foot;   /* where the surface of this value begins, and where the sample's own surface begins */
+  lanes_int there;     /* the volume's matter is visible there, or may be visible */
 } way_begin;
 
 /* A value from which values rise too little to have come from lower ones within the slab counts as the value
@@ -190,15 +192,15 @@ LANES_INLINE way_begin find_begin(const block_density *d, lanes3 towards, lanes 
   return (way_begin){start, change, first, foot, (first != lanes_from_int(entry)) | beyond};
 }
 
-/* What lights a sample's surface of the light at the slab's first sheet. */
+/* How much of the light at the slab's first sheet lights a sample's surface. */
 typedef struct own_surface {
-  lanes kept;    /* the part of what has been taken before the slab that lights it again */
-  lanes passing; /* the part of the other light that comes to the surface within the slab */
+  lanes kept;    /* the fraction of the light taken before the slab that lights the surface again */
+  lanes passing; /* the fraction of the other light that reaches the surface within the slab */
 } own_surface;
 
-/* Where the light's way leaves another surface of the volume within the slab, this one has taken what was
- * taken before. All that lies near a face which cuts matter belongs to the face's surface. light, outside: at
- * the slab's first sheet. */
+/* Where the light's way leaves another surface of the volume within the slab, that surface has taken the
+ * light which was taken before the slab. A sample near a face which cuts matter belongs to the face's
+ * surface. light, outside: at the slab's first sheet. */
 LANES_INLINE own_surface find_own_surface(const block_density *d, const way_begin *begin, lanes light,
                                           lanes outside) {
   const classifier *classifier = d->patch->volume->classifier;
@@ -213,8 +215,8 @@ LANES_INLINE own_surface find_own_surface(const block_density *d, const way_begi
   return own;
 }
 
-/* The mean of find_own_surface() over a slab's volumes, weighted by extinction. Where another volume's matter
- * is at the slab's first sheet, and a volume's own is not, the other one has taken the light. */
+/* The mean of find_own_surface() over a slab's volumes, weighted by extinction. Where another volume has
+ * matter at the slab's first sheet and a volume has none there, the other volume has taken the light. */
 LANES_INLINE own_surface find_own_surfaces(const block_density *densities, int count, lanes3 towards,
                                            lanes way, lanes light, lanes outside) {
   own_surface sum = {lanes_set(0), lanes_set(0)};
@@ -239,8 +241,8 @@ LANES_INLINE own_surface find_own_surfaces(const block_density *densities, int c
   return (own_surface){sum.kept * inverse, sum.passing * inverse};
 }
 
-/* The light at the outside of the surfaces in a slab (shadow/attenuate.h). way: of the light from the slab's
- * first sheet to the samples. */
+/* The light at the outside of the surfaces in a slab (shadow/attenuate.h). way: the light's way from the
+ * slab's first sheet to the samples. */
 LANES_INLINE color_lanes passing_to_surfaces(const light_place *place, const block_density *densities,
                                              int count, lanes3 towards, lanes way) {
   const shade_light *light = place->light;

@@ -30,7 +30,8 @@ hl_status hl_renderer_create(hl_context *context, hl_renderer **renderer, hl_err
   return HL_OK;
 }
 
-/* False if a frame is under way: a callback of its own call, or another thread, wants another one. */
+/* Takes the renderer for one frame. False where a frame is under way: a callback of that frame, or another
+ * thread, wants another frame. */
 static bool take(hl_renderer *renderer) { return !atomic_exchange(&renderer->busy, true); }
 
 static hl_status fail_busy(const char *caller, hl_error *error) {
@@ -102,7 +103,7 @@ static void give_back(hl_renderer *renderer) {
 
 /* ---- a frame ---- */
 
-/* Starts the threads, and makes room for the scene's volumes and lights. */
+/* Starts the threads, and allocates memory for the scene's volumes and lights. */
 static hl_status make_room(hl_renderer *renderer, const hl_scene_description *scene, hl_error *error) {
   hl_context *context = renderer->context;
   if (renderer->pool == NULL || renderer->threads != scene->render.threads ||
@@ -132,7 +133,7 @@ static hl_status make_room(hl_renderer *renderer, const hl_scene_description *sc
   return HL_OK;
 }
 
-/* Adds the volumes' isosurfaces to the meshes. They have their volume's transform and material. */
+/* Adds the volumes' isosurfaces to the meshes. An isosurface has its volume's transform and material. */
 static void add_isosurfaces(const hl_renderer *renderer, framed_scene *framed) {
   hl_scene_description *scene = &framed->scene;
   for (size_t v = 0; v < scene->volume_count; v++)
@@ -171,7 +172,7 @@ static hl_status prepare_scene(hl_renderer *renderer, const frame_request *reque
   return status;
 }
 
-/* All sweeps of a plan by one back end, which is ready. */
+/* Runs all sweeps of a plan by a back end that is ready. */
 static hl_status run_plan(const backend *backend, hl_renderer *renderer, const frame_plan *plan,
                           frame_target *target, hl_render_statistics *statistics, hl_error *error) {
   const int sweeps = plan->frame.point_count > 0 ? plan->sweeps.count : 0;
@@ -186,8 +187,8 @@ static hl_status run_plan(const backend *backend, hl_renderer *renderer, const f
 static const backend *const backends[] = {HL_BACKENDS};
 #undef HL_BACKEND
 
-/* Makes the plan's picture. Where a device fails, it is the processors'; statistics->device_reason says why.
- */
+/* Makes the plan's picture. Where a device fails, the processors make it, and statistics->device_reason says
+ * why. */
 static hl_status make_picture(hl_renderer *renderer, const frame_plan *plan, frame_target *target,
                               hl_render_statistics *statistics, hl_error *error) {
   enum { LAST = sizeof backends / sizeof *backends - 1 };

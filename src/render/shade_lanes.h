@@ -13,11 +13,11 @@
 /* The light that arrives from one light, with its direction (step 14 and the first half of step 15; eqs. 1
  * and 2). */
 typedef struct arriving_light {
-  int dark;               /* it lights nothing; the other fields are not set */
+  int dark;               /* the light lights nothing here; the other fields are not set */
   lanes3 towards;         /* unit */
-  color_lanes full;       /* without attenuation */
-  color_lanes shadowed;   /* with attenuation: on media */
-  color_lanes on_surface; /* the same, on surfaces of volumes */
+  color_lanes full;       /* the light without attenuation */
+  color_lanes shadowed;   /* the light with attenuation, as media receive it */
+  color_lanes on_surface; /* the light with attenuation, as surfaces of volumes receive it */
 } arriving_light;
 
 /* Brightness of a spot light: a smooth step over its cone's edge. */
@@ -26,7 +26,7 @@ LANES_INLINE lanes within_cone(const light_cone *cone, lanes3 towards) {
   return x * x * lanes_line(x, -2.0f, 3.0f);
 }
 
-/* The fraction that a light's sector takes (light_source.h). */
+/* The fraction of a position's light that comes from a light's sector (light_source.h). */
 LANES_INLINE lanes fraction_of_sector(const sector_fraction *sector, lanes3 towards) {
   lanes own = lanes_set(0), sum = lanes_set(1e-30f);
   for (int i = 0; i < sector->count; i++) {
@@ -53,8 +53,8 @@ LANES_INLINE int is_faced(const block_density *densities, int count, lanes_int s
   return lanes_bits(faced & seen) != 0;
 }
 
-/* Where a light's rays come from at a position; its strength there, without color, in arriving->full. Returns
- * the length of its way through the slab. */
+/* Finds the direction from which a light's rays come at a position, and the light's strength there, without
+ * colour, in arriving->full. Returns the length of the light's way through the slab. */
 LANES_INLINE lanes find_direction(const shade_job *job, const shade_light *light, lanes3 position,
                                   arriving_light *arriving) {
   lanes path = lanes_set(light->path), strength = lanes_set(1.0f);
@@ -76,7 +76,7 @@ LANES_INLINE lanes find_direction(const shade_job *job, const shade_light *light
   return path;
 }
 
-/* The light without attenuation, after find_direction(). */
+/* Finds the light without attenuation. Call it after find_direction(). */
 LANES_INLINE void find_full_light(const shade_light *light, lanes3 position, arriving_light *arriving) {
   for (int c = 0; c < 3; c++) arriving->full.c[c] = arriving->full.c[c] * light->color[c];
   if (light->texture.pixels == NULL) return;
@@ -85,7 +85,7 @@ LANES_INLINE void find_full_light(const shade_light *light, lanes3 position, arr
   for (int c = 0; c < 3; c++) arriving->full.c[c] = arriving->full.c[c] * pattern[c];
 }
 
-/* What surfaces near before a slab's samples take of a light. */
+/* Multiplies a light by the fraction that surfaces close before a slab's samples let through. */
 LANES_INLINE void pass_near_surfaces(const shade_job *job, const shade_light *light, const block_slab *slab,
                                      color_lanes *passing) {
   lanes_int column = lanes_truncate(lanes_clamp(slab->u - job->near_u, 0, TILE - 1)),
@@ -95,7 +95,7 @@ LANES_INLINE void pass_near_surfaces(const shade_job *job, const shade_light *li
                     lanes_gather(job->near_passing[light->number * job->channels + c], row * TILE + column);
 }
 
-/* Multiplies a light by what passes everything before a slab's samples. */
+/* Multiplies a light by the fraction that everything before a slab's samples lets through. */
 LANES_INLINE void attenuate_light(const shade_job *job, const shade_light *light, const block_slab *slab,
                                   color_lanes *passing, color_lanes *arriving) {
   lanes transmittance = lanes_set(1.0f);
@@ -106,7 +106,7 @@ LANES_INLINE void attenuate_light(const shade_job *job, const shade_light *light
   }
 }
 
-/* What a slab's visible volumes are in some lane: media, surfaces, or both. */
+/* Whether a slab's visible volumes are media, surfaces, or both in some lane. */
 typedef struct receivers {
   int media, surfaces;
 } receivers;
@@ -159,12 +159,13 @@ LANES_INLINE lanes power(lanes base, lanes exponent) {
   return lanes_keep(base > 1e-12f, lanes_exp2(lanes_max(lanes_log2(safe) * exponent, lanes_set(-100.0f))));
 }
 
-/* Adds light that was scattered more than once. The grid holds a medium that scatters evenly (scatter.h). It
- * lets T^(1 - w g) of a light through where the medium itself lets T through: the difference, the fraction g
- * of what was scattered once, goes on like the light, and the rest, 1 - g, is in the grid. Light scattered
- * twice follows the phase function p of g^2 (derived: the moments of Henyey and Greenstein's function are
- * powers of g, and those of two turns multiply), so what goes on is scattered towards the eye by (p - (1 -
- * g)) / g: with the grid's even part that makes p. */
+/* Adds light that was scattered more than once. The grid holds a medium that scatters evenly (scatter.h).
+ * This medium lets T^(1 - w g) of a light through where the real medium lets T through. The difference is the
+ * fraction g of the light that was scattered once, which goes on like the light. The rest, the fraction 1 -
+ * g, is in the grid. Light scattered twice follows the phase function p of g^2 (derived: the moments of
+ * Henyey and Greenstein's function are powers of g, and the moments of two turns multiply). So the light that
+ * goes on is scattered towards the eye by (p - (1 - g)) / g, which makes p together with the grid's even
+ * part. */
 LANES_INLINE void add_scattered(const shade_job *job, const block_density *d, const block_geometry *g,
                                 const arriving_light *lights, const color_lanes *color, color_lanes *lit) {
   const shade_volume *volume = d->patch->volume;
@@ -191,8 +192,8 @@ LANES_INLINE void add_scattered(const shade_job *job, const block_density *d, co
   for (int c = 0; c < 3; c++) lit->c[c] = lanes_fma(light[c], color->c[c] * volume->albedo[c], lit->c[c]);
 }
 
-/* White surfaces that send on all light: on the side of the light what arrives at their outside, on the other
- * side what passes their matter. */
+/* Adds the light that white surfaces send on. On the side of the light they send on the light that arrives at
+ * their outside, on the other side the light that passes their matter. */
 LANES_INLINE void add_even(const arriving_light *light, int receives_shadow, lanes_int faces, lanes surface,
                            color_lanes *lit) {
   for (int c = 0; c < 3; c++) {
@@ -202,8 +203,8 @@ LANES_INLINE void add_even(const arriving_light *light, int receives_shadow, lan
   }
 }
 
-/* Step 15: eqs. (3) and (4) with the light's centre; a medium scatters by its phase function, its mean over
- * the light. Emission is added; a volume shaded flat has nothing else. */
+/* Step 15: eqs. (3) and (4) with the light's centre; a medium scatters by the mean of its phase function over
+ * the light. Emission is added; a volume shaded flat has emission only. */
 LANES_INLINE color_lanes illuminate(const shade_job *job, const block_density *d, const block_geometry *g,
                                     const arriving_light *lights, color_lanes color) {
   const shade_volume *volume = d->patch->volume;
@@ -255,7 +256,7 @@ LANES_INLINE lanes composite(int back_to_front, lanes opacity, color_lanes lit, 
   return alpha;
 }
 
-/* The colour of a volume's matter where it is seen; known for the active lanes. */
+/* The colour of a volume's matter at the place where it is seen; set in the active lanes. */
 LANES_INLINE color_lanes color_of_matter(const block_density *d, lanes3 position, uint32_t active) {
   const shade_volume *volume = d->patch->volume;
   color_lanes color, own;
@@ -276,7 +277,7 @@ LANES_INLINE color_lanes color_of_matter(const block_density *d, lanes3 position
   return color;
 }
 
-/* Colours of the volumes, lit and averaged weighted by extinction. */
+/* The lit colours of the volumes, averaged with their extinction as weights. */
 LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_slab *slab,
                                         const arriving_light *lights, const block_density *densities,
                                         int count, lanes total) {
@@ -291,14 +292,15 @@ LANES_INLINE color_lanes color_of_block(const shade_job *job, const block_slab *
       color_lanes sky = sky_of_volume(job, slab, d, &color);
       for (int c = 0; c < 3; c++) lit.c[c] = lanes_fma(sky.c[c], color.c[c], lit.c[c]);
     }
-    if (count == 1) return lit; /* its extinction is the total */
+    if (count == 1) return lit; /* with one volume, its extinction is the total */
     lanes weight = lanes_select(d->extinction == total, lanes_set(1.0f), d->extinction * inverse);
     for (int c = 0; c < 3; c++) sum.c[c] = lanes_fma(lit.c[c], weight, sum.c[c]);
   }
   return sum;
 }
 
-/* Weighs slabs, those numbered in `seen`, and drops those of which nothing is left. Returns how many stay. */
+/* Weighs the slabs whose numbers stand in `seen`, and drops slabs of which nothing is left. Returns how many
+ * slabs stay. */
 LANES_INLINE int weigh_slabs(const shade_job *job, packed_tile *tile, block_density *const *of,
                              int patch_count, int *seen, int count, color_lanes *lit) {
   int left = 0;
@@ -311,9 +313,9 @@ LANES_INLINE int weigh_slabs(const shade_job *job, packed_tile *tile, block_dens
   return left;
 }
 
-/* Lights a tile's slabs, each step for all slabs before the next step: a slab's sums are long chains of
- * dependent operations, and the processor works on one slab while another's results are pending. lit: 0 where
- * nothing is seen. */
+/* Lights a tile's slabs. Each step is done for all slabs before the next step: a slab's sums are long chains
+ * of dependent operations, and the processor works on one slab while another slab's results are pending. lit:
+ * 0 where nothing is seen. */
 LANES_INLINE void light_slabs(const shade_job *job, packed_tile *tile, block_density *densities,
                               int patch_count, int weighed, color_lanes *lit, uint64_t *samples) {
   arriving_light lights[TILE_BLOCKS][MAXIMUM_SWEEP_LIGHTS];
@@ -366,9 +368,9 @@ static const unsigned char NEAR_EACH_OTHER[TILE_BLOCKS] = {0,  1,  4,  5,  2, 3,
 static const unsigned char RANK_OF_BLOCK[TILE_BLOCKS] = {0,  1,  4, 5, 2,  3,  6,  7,
                                                          12, 13, 8, 9, 14, 15, 10, 11};
 
-/* The blocks among `blocks` in which something may be seen: one bit each, at the block's rank in the packing
+/* The blocks among `blocks` in which something may be seen, as bits at the blocks' ranks in the packing
  * order. bits: for each block, the pixels in which something may be seen. All blocks are tested before the
- * first is shaded: about half of them show nothing, which the processor cannot predict; tests between
+ * first is shaded. About half of them show nothing, and the processor cannot predict which; tests between
  * shadings would stall its loads. */
 LANES_INLINE uint32_t visible_blocks(const shade_job *job, const shade_patch *patches, int patch_count,
                                      uint32_t blocks, const float *pixels, uint16_t bits[TILE_BLOCKS]) {
@@ -398,8 +400,8 @@ LANES_INLINE uint32_t shade_patches(const shade_job *job, const tile_slab *tile,
     block_slab slab;
     slab_of_block(job, tile, patch_count, block, bits[block], ways, &slab);
     seen |= 1u << block;
-    for (int c = 0; c < 3; c++)
-      __builtin_prefetch(pixels + (block * 4 + c) * BLOCK_PIXELS, 1); /* needed once it is lit */
+    for (int c = 0; c < 3; c++) /* The pixels are needed once the tile is lit. */
+      __builtin_prefetch(pixels + (block * 4 + c) * BLOCK_PIXELS, 1);
     if (bits[block] == 0xffff)
       keep_block(&packed, &slab, ways, patch_count, densities, &packed.blocks[block]);
     else pack_block(&packed, &slab, ways, patch_count, bits[block], densities, &packed.blocks[block]);
@@ -416,7 +418,8 @@ LANES_INLINE uint32_t shade_patches(const shade_job *job, const tile_slab *tile,
   return open;
 }
 
-/* Compiled once more for one volume, the usual case, which needs no loops over volumes. */
+/* The function is compiled a second time for one volume, the usual case, which needs no loops over
+ * volumes. */
 static uint32_t shade_tile(const shade_job *job, const tile_slab *tile, float *pixels, uint64_t *samples) {
   if (tile->patch_count == 1) return shade_patches(job, tile, 1, pixels, samples);
   return shade_patches(job, tile, tile->patch_count, pixels, samples);

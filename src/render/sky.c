@@ -11,7 +11,7 @@
 #include "mesh/mesh.h"
 #include "scene/light/sky.h"
 
-/* A field has at most so many cells. */
+/* The most cells that a field has. */
 static const double MOST_CELLS = 1200000;
 
 /* ---- the key ---- */
@@ -64,7 +64,8 @@ static field_surface surface_of(const surfaces *all, const surface_mesh *mesh) {
       .cut_count = mesh->is_cut ? all->cut_count : 0};
 }
 
-/* One channel will do where the sky has one colour and everything takes light of all colours alike. */
+/* The number of channels of the field. One channel is enough where the sky has one colour and all matter
+ * takes light of all colours alike. */
 static int channels_of(const hl_scene_description *scene) {
   if (scene->sky.type != HL_SKY_UNIFORM) return 3;
   for (size_t v = 0; v < scene->volume_count; v++)

@@ -1,4 +1,5 @@
-/* render/sky.h - a frame's sky: what its field is made of, and whether the last frame's still holds. */
+/* render/sky.h - a frame's sky: the input of its field, and the check whether the last frame's field still
+ * fits. */
 #ifndef HL_RENDER_SKY_H
 #define HL_RENDER_SKY_H
 
@@ -6,18 +7,19 @@
 #include "plan/frame.h"
 #include "render/prepare.h"
 
-/* What a frame's sky lights. */
+/* The scene that a frame's sky lights. */
 typedef struct frame_sky {
   const hl_scene_description *scene; /* in frame space */
   const prepared_volume *volumes;    /* [scene->volume_count] */
-  const grid *grids;                 /* the same */
+  const grid *grids;                 /* [scene->volume_count] */
   const frame *frame;
-  uint64_t mark;                  /* of the pixels of the sky's image */
-  const light_exchange *exchange; /* with the other parts of the picture; null: this renderer finds all */
+  uint64_t mark;                  /* identifies the pixels of the sky's image */
+  const light_exchange *exchange; /* how light is exchanged with the other parts of the picture; null: this
+                                   * renderer finds all light */
 } frame_sky;
 
-/* Checks a field against a frame and makes it anew where it does not fit; without a sky it is released.
- * `room` is asked for the bytes first. */
+/* Checks whether a field fits a frame, and makes it anew where it does not. Without a sky the field is
+ * released. `room` is asked first whether the bytes may be taken. */
 typedef struct sky_room {
   hl_status (*check)(void *data, uint64_t bytes, hl_error *error);
   void *data;

@@ -1,8 +1,8 @@
 /* render/sky_lanes.h - the sky's light that a slab's samples send on.
  *
- * A surface is lit by the light that arrives at its outside. So the field is read outside of the surface
- * whose matter a sample lies in: as far away along the normal as the values of the matter take to fall to
- * those of which nothing is seen, and some cells on, since a cell is larger than a surface and dark where it
+ * A surface is lit by the light that arrives at its outside. So the field is read outside of the surface to
+ * whose matter a sample belongs. The distance along the normal is the way on which the matter's values fall
+ * to values that are not visible, and some cells more: a cell is thicker than a surface, and dark where it
  * holds matter. */
 #ifndef HL_RENDER_SKY_LANES_H
 #define HL_RENDER_SKY_LANES_H
@@ -10,9 +10,10 @@
 #include "render/light_depth_lanes.h"
 #include "render/sky_phase_lanes.h"
 
-/* Light reaches a cell without what the cell itself takes, of which it crosses half on its way to a medium's
- * sample: of its directions in a slice (field/sky_lanes.h) half of sqrt(1 + u^2 + v^2) edges. The mean over
- * all directions is 3 / (4 pi) times the integral of 1 / (1 + u^2 + v^2) over -1 < u, v < 1 (derived). */
+/* The field's light reaches a cell before the cell itself has absorbed any. On its way to a medium's sample
+ * it crosses half of the cell: in a direction of a slice (field/sky_lanes.h), half of sqrt(1 + u^2 + v^2)
+ * edges. The mean over all directions is 3 / (4 pi) times the integral of 1 / (1 + u^2 + v^2) over -1 < u, v
+ * < 1 (derived). */
 static const float HALF_CELL = 0.6107f;
 
 /* Voxels by which a sample is at most moved to the outside of its surface. */
@@ -20,7 +21,7 @@ static const float MOST_TO_OUTSIDE = 8.0f;
 
 /* The way along the normal from a volume's samples to the outside of their surface; frame units. Derived: the
  * values fall by the gradient's length in each unit of the way. Behind the face of a cut there is no such
- * way: what the gradient tells of matter outside of it is not there. */
+ * way: the matter outside of the face, which the gradient describes, is cut away. */
 LANES_INLINE lanes way_to_outside(const block_density *d) {
   const shade_volume *volume = d->patch->volume;
   const classifier *classifier = volume->classifier;
@@ -32,15 +33,16 @@ LANES_INLINE lanes way_to_outside(const block_density *d) {
          (1.0f - d->skin);
 }
 
-/* The sky's light at a sample, in each channel: on a medium, on a surface, and its mean over all directions.
- */
+/* The sky's light at a sample, in each channel: as it lights a medium, as it lights a surface, and its mean
+ * over all directions. */
 typedef struct sky_parts {
   lanes medium[3], surface[3], mean[3];
 } sky_parts;
 
-/* What a volume sends on of the sky's light, without its colour: a medium its albedo. Where it scatters light
- * more than once, the fraction w of a medium's light is in the grid of scattered light (scatter/parts.h), w
- * the albedo with the colour; of a surface, which the sky lights by its own law, w of the mean. */
+/* The fraction of the sky's light that a volume sends on, without its colour. For a medium it is the albedo.
+ * Where the medium scatters light more than once, the fraction w of its light is in the grid of scattered
+ * light (scatter/parts.h), where w is the albedo with the colour. For a surface, which the sky lights by its
+ * own law, w of the mean is in the grid. */
 LANES_INLINE lanes sent_on(const shade_volume *volume, const sky_parts *parts, lanes surface, int c,
                            lanes color) {
   lanes medium = parts->medium[c], on_surface = parts->surface[c];
@@ -54,12 +56,13 @@ LANES_INLINE lanes sent_on(const shade_volume *volume, const sky_parts *parts, l
   return lanes_fma(medium, 1.0f - surface, on_surface);
 }
 
-/* Finds where the sky's light is looked up for a slab's samples: on surfaces at their outside. */
+/* Finds the positions at which the sky's light is looked up for a slab's samples. For surfaces they lie
+ * outside of the surface. */
 LANES_INLINE void place_sky(const shade_job *job, const block_slab *slab, block_density *densities,
                             int count) {
   for (int i = 0; i < count; i++) {
     block_density *d = &densities[i];
-    if (!d->there) continue; /* then it has no patch either */
+    if (!d->there) continue; /* a volume that is not there has no patch, either */
     const shade_volume *volume = d->patch->volume;
     if (!volume->visible || !volume->lit || !volume->receives_shadow) continue;
     d->outside = slab->geometry.position;
@@ -96,7 +99,7 @@ LANES_INLINE void find_arriving_sky(const shade_job *job, const block_slab *slab
   }
 }
 
-/* What a volume's samples make of the sky: factors for its colour. */
+/* The light of the sky that a volume's samples send to the eye, as factors for the volume's colour. */
 LANES_INLINE color_lanes sky_of_volume(const shade_job *job, const block_slab *slab, const block_density *d,
                                        const color_lanes *color) {
   const sky_light *sky = job->sky;

@@ -1,8 +1,9 @@
-/* render/sky_phase_lanes.h - what a medium sends on of the sky's light, by its phase function.
+/* render/sky_phase_lanes.h - the light of the sky that a medium sends to the eye, by its phase function.
  *
- * Harmonics tell the mean of light and phase function up to the second degree: too little for a function that
- * points forwards before a sky of which half is hidden. So the light is taken for an even one and a brighter
- * cap, whose mean a table has (phase_table.h), and harmonics correct that up to the second degree. */
+ * Harmonics give the mean of light and phase function up to the second degree. This is too little where the
+ * function points forwards and half of the sky is hidden. So the light is modelled as even light and a
+ * brighter cap. A table has the mean over the cap (phase_table.h), and harmonics correct the result up to the
+ * second degree. */
 #ifndef HL_RENDER_SKY_PHASE_LANES_H
 #define HL_RENDER_SKY_PHASE_LANES_H
 
@@ -11,14 +12,15 @@
 
 /* Light of one brightness, and more within a cap of directions. */
 typedef struct sky_cap {
-  lanes even, more; /* means over all directions: of the one brightness, of what the cap has more */
-  lanes cosine;     /* of the angle from the cap's middle to its edge */
+  lanes even, more; /* means over all directions: of the even light, and of the light that the cap adds */
+  lanes cosine;     /* cosine of the angle from the cap's middle to its edge */
   lanes3 middle;    /* unit */
 } sky_cap;
 
-/* The cap whose light has the mean and the flux that harmonics tell, and their second degree along the flux.
- * Derived: over a cap the mean of x, the cosine to its middle, is (1 + c) / 2, and that of (3 x^2 - 1) / 2 is
- * c (1 + c) / 2, so that c is their ratio, whatever light is even; but the cap has no more than all light. */
+/* The cap whose light has the mean and the flux that the harmonics give, and their second degree along the
+ * flux. Derived: where x is the cosine to the cap's middle and c the cosine of its edge, the mean of x over
+ * the cap is (1 + c) / 2, and the mean of (3 x^2 - 1) / 2 is c (1 + c) / 2. So c is the ratio of the two,
+ * whatever part of the light is even. The cap never gets more than all light. */
 LANES_INLINE sky_cap cap_of_sky(const lanes *light) {
   sky_cap cap;
   lanes mean = light[0] * (float)HARMONIC_0, least = lanes_set(1e-12f);
@@ -34,7 +36,8 @@ LANES_INLINE sky_cap cap_of_sky(const lanes *light) {
 }
 
 /* The mean of light and Henyey and Greenstein's phase function, whose factors for harmonics are g^l (derived
- * from its series in Legendre polynomials). onwards: where the eye's ray goes; table: null where g is 0. */
+ * from its series in Legendre polynomials). onwards: the direction of the eye's ray; table: null where g is
+ * 0. */
 LANES_INLINE lanes light_of_medium(const phase_table *table, float g, const lanes *light, lanes3 onwards) {
   if (g == 0) return lanes_max(light[0] * (float)HARMONIC_0, lanes_set(0));
   const float size = fabsf(g), most = 1 / ((1 - size) * (1 - size));

@@ -18,11 +18,11 @@
 
 struct surface_samples;
 
-/* The colours of a volume's own voxels, or of its mask. */
+/* The colours of a volume's voxels, or of its mask. */
 typedef struct voxel_colors {
   const unsigned char *voxels; /* [k][j][i][4] (volume/colors.h, label/mask.h); null: there are none */
   int32_t last[3];             /* the greatest index along i, j, k */
-  int32_t step_bytes[3];       /* from voxel to voxel along i, j, k */
+  int32_t step_bytes[3];       /* bytes from a voxel to the next along i, j, k */
   const float *decode;         /* [256]: the linear values of codes */
 } voxel_colors;
 
@@ -31,105 +31,112 @@ typedef struct shade_volume {
   const grid *grid;
   const kernel *kernel;
   int phong, visible, receives_shadow;
-  int lit;     /* 0: shaded flat, no light changes it */
-  int even;    /* surfaces send on all light that arrives, from any angle: in a light's shadow layer */
-  float voxel; /* its smallest edge; frame units */
+  int lit;     /* 0: the volume is shaded flat, and no light changes it */
+  int even;    /* surfaces send on all light that arrives, from any angle; set for the shadow layer of a
+                * light */
+  float voxel; /* the smallest edge of a voxel; frame units */
   float ambient, diffuse, specular, shininess; /* ka kd ks n */
   float emission;                              /* ke; 1 for a volume shaded flat */
-  float cast[HL_CHANNELS];               /* relative extinction towards the lights; 0: casts no shadow */
-  float to_index[3][4], low[3], high[3]; /* frame space to index space, and the box there */
+  float cast[HL_CHANNELS];               /* extinction towards the lights over extinction towards the eye; 0:
+                                          * casts no shadow */
+  float to_index[3][4], low[3], high[3]; /* frame space to index space, and the volume's box there */
   int32_t face_cuts[3][2]; /* [axis][low, high]: -1 where the face of the box cuts visible matter, else 0 */
-  int any_face;            /* some face does */
+  int any_face;            /* some face of the box cuts visible matter */
   const float (*shown)[4]; /* in a maximum projection: SHOWN_FROM and so on, per table entry; else null */
   int rank;                /* among the visible volumes */
   float anisotropy;        /* g of the phase function */
-  const phase_table *phase_once, *phase_twice; /* of g and of g^2; null where g is 0, or no light is wide
-                                                  and there is no sky */
-  voxel_colors colors;                         /* multiply the transfer function's */
-  float albedo[3];                             /* of the medium, times its colour */
-  int absorbs;                                 /* not all of the albedo is 1 */
-  int multiple;                                /* light that was scattered lights it again */
+  const phase_table *phase_once, *phase_twice; /* phase functions for g and for g^2; null where g is 0, or no
+                                                * light is wide and there is no sky */
+  voxel_colors colors;                         /* colours that multiply the transfer function's colours */
+  float albedo[3];                             /* the medium's albedo times its colour */
+  int absorbs;                                 /* some channel of the albedo is not 1 */
+  int multiple;                                /* light scattered more than once lights the volume */
   const shade_cut *cuts;                       /* [cut_count] */
-  int cut_count, light_cut_count;              /* for the eye, and for lights: these, or none */
+  int cut_count, light_cut_count;              /* The number of cuts that count for the eye, and the number
+                                                * for lights: the same number, or 0. */
   int cut_shading;                             /* hl_cut_shading */
   int mask_faces;                              /* normals turn to the faces that the mask leaves */
-  voxel_colors tints;                          /* of the mask: colours go towards these, by their weights */
+  voxel_colors tints;                          /* colours of the mask: the matter's colours move towards them
+                                                * by their weights */
   int object;                                  /* its number in the layer of objects */
 } shade_volume;
 
-/* One volume's densities in a tile, on cache lines of its own: each thread writes its patches beside
- * another's. */
+/* One volume's densities in a tile. Each patch has cache lines of its own, because each thread writes its own
+ * patches. */
 typedef struct shade_patch {
   _Alignas(64) const shade_volume *volume;
   const float *before, *current; /* [256], block-major; on sheets k-1 and k */
-  uint32_t blocks;               /* those with density on either */
+  uint32_t blocks;               /* blocks with density on either sheet */
   const float *enter, *leave;    /* [256], block-major; null: the box does not cut anything visible */
-  int uncut;                     /* the box cuts neither the slab here nor the ways of light through it */
+  int uncut;                     /* the box cuts neither the slab in this tile nor the ways of light through
+                                  * it */
 } shade_patch;
 
 typedef struct shade_light {
   int parallel;
   float towards[3];  /* parallel: unit direction to the light; frame space */
-  float position[3]; /* else: the light's centre; frame space */
+  float position[3]; /* not parallel: the light's centre; frame space */
   float color[3];    /* color * intensity */
-  float of_sky;      /* of a sun of the sky, which makes no highlights: what a medium takes of it; else 0 */
+  float of_sky;      /* the fraction of this light that a medium takes, where the light is a sun of the sky,
+                      * which makes no highlights; else 0 */
   int inverse_square;
   int shadowed;
-  float path; /* of the light through the slab: parallel: sheet spacing / |l.h|; else the sheet spacing, which
-                 samples divide by their own |l.h| */
-  const shadow_lookup *lookups;     /* [planes of the buffer's ring]; of a light with shadows: the light that
-                                       reaches a sample */
-  const sublight_lookup *sublights; /* [sublight_count]; if any, a sample gets the mean of their light */
+  float path; /* length of the light's way through the slab. Parallel: sheet spacing / |l.h|. Else: the sheet
+               * spacing, which each sample divides by its own |l.h| */
+  const shadow_lookup *lookups;     /* [planes of the buffer's ring]; for a light with shadows: how the light
+                                     * that reaches a sample is looked up */
+  const sublight_lookup *sublights; /* [sublight_count]; where there are any, a sample gets the mean of their
+                                     * light */
   int sublight_count, channels;
   light_texture texture;  /* the picture that the light projects */
-  light_cone cone;        /* of a spot light */
-  sector_fraction sector; /* of a light within the content */
-  light_caps caps;        /* of a wide light that is not parallel */
-  int parallel_row;       /* of phase tables; of a wide parallel light, else -1 */
-  int number;             /* among the sweep's lights */
-  int nearest, cubic; /* nearest: the lookup takes the nearest pixel; cubic: by cubic convolution (never of
-                         sub-lights); else bilinearly */
+  light_cone cone;        /* the cone of a spot light */
+  sector_fraction sector; /* the sector of a light within the content */
+  light_caps caps;        /* the caps of a wide light that is not parallel */
+  int parallel_row;       /* the row in phase tables of a wide parallel light; else -1 */
+  int number;             /* the light's number among the sweep's lights */
+  int nearest, cubic;     /* nearest: the look-up takes the nearest pixel; cubic: it interpolates by cubic
+                           * convolution (never for sub-lights); else it interpolates bilinearly */
 } shade_light;
 
 typedef struct shade_job {
   sheet_rays rays;      /* image pixels -> frame space, in the middle between the two sheets */
-  float through[3];     /* parallel: from one sheet to the next along the eye's rays */
+  float through[3];     /* parallel: step from one sheet to the next along the eye's rays */
   float towards_eye[3]; /* parallel: unit direction to the eye */
   float eye[3];         /* frame space; parallel: where depth is 0 */
   float normal[3];      /* h */
-  float path; /* of the eye's ray through the slab: parallel: sheet spacing / |w.h|; perspective: the sheet
-                 spacing, which pixels divide by their own |w.h| */
+  float path; /* length of the eye's ray through the slab. Parallel: sheet spacing / |w.h|. Perspective: the
+               * sheet spacing, which each pixel divides by its own |w.h| */
   int sheet;  /* k: the slab lies between sheets k-1 and k */
-  int plane;  /* of the lights' rings: where the light that reaches sheet k-1 is kept */
-  float height, spacing; /* of sheet k above the first, and to sheet k-1; frame units */
+  int plane;  /* plane in the lights' rings that keeps the light which reaches sheet k-1 */
+  float height, spacing; /* height of sheet k above the first sheet, and distance to sheet k-1; frame units */
   int back_to_front;
   const shade_light *lights;
   int light_count;
   float ambient[3];               /* Ia; zero in all sweeps but the first */
   float emission;                 /* 1 in the first sweep, 0 in the others: volumes' emission is added once */
-  int channels;                   /* of light attenuation: 1 or 3 */
-  const scatter_field *scattered; /* light scattered more than once, in the first sweep; null: none */
-  const sky_light *sky;           /* null: none, or not in this sweep */
-  const float (*near_passing)[TILE_PIXELS]; /* [lights of the sweep][channels]; of one tile, row by row: what
-                                               surfaces near before the samples let through (late/);
-                                               null: everything */
-  float near_u, near_v;                     /* the tile's first pixel */
+  int channels;                   /* number of channels of light attenuation: 1 or 3 */
+  const scatter_field *scattered; /* light scattered more than once; set in the first sweep; null: none */
+  const sky_light *sky;           /* null: no sky, or the sky belongs to another sweep */
+  /* [lights of the sweep][channels]; for one tile, row by row: the fraction that surfaces close before the
+   * samples let through (late/); null: everything. */
+  const float (*near_passing)[TILE_PIXELS];
+  float near_u, near_v; /* the tile's first pixel */
 } shade_job;
 
-/* Bytes of scratch memory for a patch: room for a block, and for up to sixteen slabs into which samples are
+/* Bytes of scratch memory for a patch. It holds a block, and up to sixteen slabs into which samples are
  * packed (pack_lanes.h). */
 enum { SHADE_SCRATCH_BYTES = 17 * 1920 };
 
-/* The slab before the current sheet, in one tile. */
+/* A slab, which ends at the current sheet, in one tile. */
 typedef struct tile_slab {
-  const shade_job *job;       /* the slab's */
-  size_t tile;                /* its index */
-  int x, y;                   /* its column and row */
-  const shade_patch *patches; /* [patch_count]; of the volumes with density */
+  const shade_job *job;       /* the job of the slab */
+  size_t tile;                /* index of the tile */
+  int x, y;                   /* column and row of the tile */
+  const shade_patch *patches; /* [patch_count]; patches of the volumes with density */
   int patch_count;
-  uint32_t blocks; /* those that are open and have density, one bit each */
-  int worker;      /* the thread */
-  void *scratch;   /* [patch_count][SHADE_SCRATCH_BYTES], aligned to 64; the thread owns it */
+  uint32_t blocks; /* open blocks with density, one bit each */
+  int worker;      /* number of the thread */
+  void *scratch;   /* [patch_count][SHADE_SCRATCH_BYTES], aligned to 64; belongs to the thread */
 } tile_slab;
 
 /* Shades the tile's blocks. pixels: [16 blocks][R G B A][16]. Returns the blocks that are still open: some
@@ -137,10 +144,10 @@ typedef struct tile_slab {
 typedef uint32_t shade_tile_function(const shade_job *job, const tile_slab *tile, float *pixels,
                                      uint64_t *samples);
 
-/* Measures of the layers depth, normal and object, for sheets that go front to back: alpha; the depth where
- * alpha first reaches 0.01, infinite before, and the object that is met there, 0 before; which of the pixel's
- * sixteen samples a mesh covers there, one bit each; and sums of depth and normal, weighted by what each
- * sample adds to alpha. pixels: [16 blocks][MEASURES][16]. */
+/* Measures of the layers depth, normal and object, for sheets that go front to back: alpha; the depth at
+ * which alpha first reaches 0.01, infinite until then; the object that is met there, 0 until then; the
+ * samples, of the pixel's sixteen, that a mesh covers there, one bit each; and sums of depth and normal,
+ * weighted by the alpha that each sample adds. pixels: [16 blocks][MEASURES][16]. */
 enum {
   MEASURE_ALPHA,
   MEASURE_DEPTH_FIRST,
@@ -155,24 +162,24 @@ enum {
 #define FIRST_OPACITY 0.01f
 
 /* A maximum projection keeps for each pixel and visible volume, as coordinates in the volume's table: the
- * greatest value so far that is shown, -1 where none is; the value on the sheet before the last slab; and
- * that slab's number, -1 where the box cuts the slab. A tile: [volumes][MAXIMUM_ROWS][16 blocks][16]. */
+ * greatest shown value so far, -1 where there is none; the value on the sheet before the last slab; and this
+ * slab's number, -1 where the box cuts the slab. A tile holds [volumes][MAXIMUM_ROWS][16 blocks][16]. */
 enum { MAXIMUM_GREATEST, MAXIMUM_BEFORE, MAXIMUM_SHEET, MAXIMUM_ROWS };
 
-/* Which values a transfer function shows, one row of four per entry of its table. Between the entry and the
- * next it shows values above SHOWN_FROM up to SHOWN_TO; SHOWN_BELOW is the greatest value below the entry
- * that it shows, -1 if there is none. */
+/* Which values a transfer function shows. Each entry of its table has a row of four numbers. Between an entry
+ * and the next the function shows values above SHOWN_FROM up to SHOWN_TO; SHOWN_BELOW is the greatest value
+ * below the entry that it shows, -1 if there is none. */
 enum { SHOWN_FROM, SHOWN_TO, SHOWN_BELOW };
 
 typedef struct maximum_values {
   float *values;       /* [tiles][volumes][MAXIMUM_ROWS][256]; owned, with `shown` in the same block; null: no
                           maximum       projection */
   float (*shown)[4];   /* [volumes][CLASSIFIER_ENTRIES + 2] */
-  size_t volume_count; /* visible ones */
+  size_t volume_count; /* number of visible volumes */
   size_t tiles;
 } maximum_values;
 
-/* Lights samples of surfaces (surface_samples.h), with the light that reaches the slab. */
+/* Lights samples of surfaces (surface_samples.h) by the light that reaches the slab. */
 typedef void shade_surface_function(const shade_job *job, struct surface_samples *samples);
 
 /* The functions of this room that are compiled for each instruction set. */

@@ -1,23 +1,23 @@
 /* render/slab_color_lanes.h - the transfer function's colour of a volume's matter in a slab, at sixteen
  * samples (step 13).
  *
- * A slab that spans several colours shows their mean. Derived: at the part s of its optical depth e a slab
- * counts with e exp(-e s) / (1 - exp(-e)), on average at u = seen_part(e), which is 1/2 in thin slabs and 1 /
- * e in opaque ones. Even weights over the first 2 u of the depth have the same average place and leave out
- * what is hidden. Depth grows with the integral of extinction over density, so that the mean colour there is
- * (K(f2) - K(f1)) / (T(f2) - T(f1)): T the integral of extinction, K that of extinction times colour, f1 the
- * density where the slab begins, f2 that at which 2 u of its depth are passed. As f2 nears f1 this is the
- * colour of f1. */
+ * A slab that spans several colours shows their mean. Derived: the place in a slab where the part s of its
+ * optical depth e is passed counts with the weight e exp(-e s) / (1 - exp(-e)). The mean of s with this
+ * weight is u = seen_part(e), which is 1/2 in thin slabs and 1 / e in opaque ones. Even weights over the
+ * first 2 u of the depth have the same mean and leave out hidden matter. Depth grows with the integral of
+ * extinction over density. So the mean colour is (K(f2) - K(f1)) / (T(f2) - T(f1)): T is the integral of
+ * extinction, K the integral of extinction times colour, f1 the density where the slab begins, f2 the density
+ * where 2 u of its depth are passed. As f2 nears f1 this is the colour of f1. */
 #ifndef HL_RENDER_SLAB_COLOR_LANES_H
 #define HL_RENDER_SLAB_COLOR_LANES_H
 
 #include "render/light_depth_lanes.h"
 
-/* The least part of T by which T(f2) and T(f1) must differ: their floats have lost more digits where they
- * differ by less. */
+/* The least difference of T(f2) and T(f1), as a part of T. A smaller difference of floats has lost more
+ * digits. */
 static const float LEAST_PART_OF_SHOWN = 0x1p-12f;
 
-/* K of red, green and blue, and T, at a coordinate of the tables. */
+/* K for red, green and blue, and T, at a coordinate of the tables. */
 LANES_INLINE void shown_below(const classifier *classifier, lanes x, lanes sums[4]) {
   table_coordinate at = split_coordinate(x);
   lanes a[4], b[4];
@@ -33,8 +33,9 @@ LANES_INLINE lanes_int is_color_bent(const classifier *classifier, const block_d
   return lanes_abs(bent * (d->after - d->before)) > CLASSIFIER_LEAST_BENDING;
 }
 
-/* Where the part of a way's depth that shows ends, as a coordinate in the tables; *from: where it begins.
- * From back to front d->evenly is 1 - u, and it is the slab's last 2 u. */
+/* The coordinate in the tables at which the visible part of a way's depth ends; *from: the coordinate at
+ * which it begins. From back to front d->evenly is 1 - u, and the visible part is the last 2 u of the
+ * slab. */
 LANES_INLINE lanes end_of_shown(const block_density *d, lanes *from) {
   way_means m = means_of_way(d->before, d->after, &d->sums);
   lanes_int front = d->evenly <= 0.5f;
@@ -44,7 +45,7 @@ LANES_INLINE lanes end_of_shown(const block_density *d, lanes *from) {
   return lanes_fma(d->after - d->before, way_of_depth(m.from_a, m.from_b, part), d->before);
 }
 
-/* The mean colour of a volume's matter, as it shows, linear RGB; known for the active lanes. */
+/* The mean colour of the visible part of a volume's matter, linear RGB; set in the active lanes. */
 LANES_INLINE void color_of_way(const classifier *classifier, const block_density *d, uint32_t active,
                                lanes color[3]) {
   table_values(classifier->color, split_coordinate(coordinate_seen(d)), color);

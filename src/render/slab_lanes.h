@@ -16,10 +16,11 @@ typedef struct block_geometry {
   lanes3 start;       /* where the ray enters the slab */
   lanes3 step_sheet;  /* to the next sheet along the ray */
   lanes3 towards_eye; /* unit */
-  lanes path;         /* of the eye's ray through the sheet; 0 behind the eye */
+  lanes path;         /* length of the eye's ray through the slab; 0 behind the eye */
 } block_geometry;
 
-/* Derived: on the ray E + s W with s = step / H, H = h.W, moving one sheet gives W ds / H. */
+/* Derived: on the ray E + s W, where s = step / H and H = h.W, moving by one sheet moves the point by W ds /
+ * H. */
 LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lanes v) {
   const sheet_rays *rays = &job->rays;
   block_geometry g;
@@ -39,7 +40,7 @@ LANES_INLINE block_geometry geometry_of_block(const shade_job *job, lanes u, lan
   return g;
 }
 
-/* Step 12, at a point of frame space; stored units per frame unit. */
+/* Step 12 at a point of frame space: the gradient in stored units per frame unit. */
 LANES_INLINE lanes3 gradient(const shade_volume *volume, lanes3 point, uint32_t active, uint32_t starts) {
   return gradient_in_frame(volume->grid, volume->kernel, volume->to_index, point, active, starts);
 }
@@ -56,22 +57,22 @@ typedef struct block_density {
   int there; /* the volume may be visible in some of the pixels */
   block_way way;
   lanes before, after; /* coordinates in the tables: where the slab's covered part starts and ends */
-  way_sums sums;       /* between the two */
-  lanes extinction;    /* averaged over the slab, 0 outside the box */
+  way_sums sums;       /* sums between the two coordinates */
+  lanes extinction;    /* extinction averaged over the slab, as 0 outside the box */
   lanes centre;        /* in joined lanes: the extinction's centre of gravity in the slab, 0 to 1 */
-  lanes factor; /* with gradient opacity, a mask or a function of two numbers: what extinction is multiplied
-                   by; sums and extinction have it */
-  lanes row;    /* of the second number, with a function of two numbers (plane_lanes.h) */
-  lanes seen;   /* where its matter is seen: fraction of the way through the slab's covered part */
-  lanes evenly; /* where it would be seen if its extinction were even */
-  lanes_int sloped; /* where the gradient is known */
-  lanes3 slope;     /* where the matter is seen; elsewhere 0 */
+  lanes factor; /* with gradient opacity, a mask or a function of two numbers: the factor of extinction; sums
+                 * and extinction contain it */
+  lanes row;    /* row of the table for the second number, with a function of two numbers (plane_lanes.h) */
+  lanes seen;   /* where the matter is seen, as a fraction of the way through the slab's covered part */
+  lanes evenly; /* where the matter would be seen if its extinction were even */
+  lanes_int sloped; /* lanes in which the gradient is known */
+  lanes3 slope;     /* the gradient where the matter is seen; elsewhere 0 */
   lanes3 normal;    /* unit, away from the matter */
   lanes surface;    /* 1 for a surface, falling to 0 for a medium, which has no normal */
   lanes skin;       /* 1 at a cut's face that is shaded, 0 two voxels behind it */
-  lanes3 outside;   /* where the sky's light is looked up; with a sky that volumes hide from each other */
-  lanes light_first,
-      light_last; /* the light's way within its box to where the slab's covered part starts and ends */
+  lanes3 outside;   /* where the sky's light is looked up; set with a sky that volumes hide from each other */
+  lanes light_first, light_last; /* the light's way within the volume's box to where the slab's covered part
+                                  * starts and ends */
 } block_density;
 
 /* Optical depth below which the gradient hardly changes how much light a slab absorbs. */
@@ -94,7 +95,8 @@ LANES_INLINE block_way way_of_block(const shade_job *job, const shade_patch *pat
   return way;
 }
 
-/* Step 13 for one volume: sums over a part of its way through the slab; ignores its box. */
+/* Step 13 for one volume: finds the sums over a part of the volume's way through the slab. It ignores the
+ * volume's box. */
 LANES_INLINE void classify_way(block_density *d, covered_span part) {
   const classifier *classifier = d->patch->volume->classifier;
   table_coordinate a = coordinate_of_density(classifier, d->way.first),
@@ -111,9 +113,10 @@ LANES_INLINE lanes centre_of_way(const block_density *d) {
   return m.from_a / (m.from_a + m.from_b);
 }
 
-/* The fraction of a slab's optical depth at which it is seen on average: int e s exp(-e s) ds / (1 - exp(-e))
- * = 1 / e - exp(-e) / (1 - exp(-e)) = (1 - exp(-e) - e exp(-e)) / (e (1 - exp(-e))) (derived); 1/2 - e / 12
- * for small e. left: exp(-e). For e > 100 it is 0 to a float, and e is cut there. */
+/* The mean, over the visible light, of the fraction of a slab's optical depth at which matter is seen: int e
+ * s exp(-e s) ds / (1 - exp(-e)) = 1 / e - exp(-e) / (1 - exp(-e)) = (1 - exp(-e) - e exp(-e)) / (e (1 -
+ * exp(-e))) (derived); 1/2 - e / 12 for small e. left: exp(-e). Above e = 100, exp(-e) is 0 as a float, and e
+ * is limited to 100. */
 LANES_INLINE lanes seen_part(lanes e, lanes left) {
   lanes_int thin = e < 0.05f;
   lanes lost = lanes_select(thin, lanes_set(1.0f), 1.0f - left);
@@ -124,11 +127,12 @@ LANES_INLINE lanes seen_part(lanes e, lanes left) {
 
 /* Sixteen pixels' rays through the slab: their geometry, opacity and where the slab is seen. */
 typedef struct block_slab {
-  lanes u, v;              /* the pixels */
+  lanes u, v;              /* coordinates of the pixels */
   lanes_int open;          /* the pixels that can still show something */
   uint32_t starts;         /* the first lane of each block, one bit each */
-  block_geometry geometry; /* its position: where the slab is seen on average, and lit */
-  covered_span part;       /* from where the first volume that is seen begins to where the last one ends */
+  block_geometry geometry; /* the rays, and the position where the slab is seen on average and is lit */
+  covered_span part;       /* from the place where the first visible volume begins to the place where the last
+                            * one ends */
   lanes place;             /* where in the slab the position lies, 0 (first sheet) to 1 */
   lanes_int joined;        /* lanes where one of several volumes fills less than `part` */
   lanes centre;            /* in joined lanes: the extinction's centre of gravity in the slab, 0 to 1 */
@@ -139,7 +143,8 @@ typedef struct block_slab {
 } block_slab;
 
 /* The fraction of the way at which the fraction u of the optical depth is reached: u^(b / a) for rising
- * extinction, mirrored for falling. from_a, from_b: the extinction centre's distances from the way's ends. */
+ * extinction, mirrored for falling extinction. from_a, from_b: the distances of the extinction's centre from
+ * the ends of the way. */
 LANES_INLINE lanes way_of_depth(lanes from_a, lanes from_b, lanes u) {
   lanes_int rising = from_a >= from_b;
   lanes t = lanes_power_of_part(lanes_select(rising, u, 1.0f - u),
@@ -147,8 +152,8 @@ LANES_INLINE lanes way_of_depth(lanes from_a, lanes from_b, lanes u) {
   return lanes_select(rising, t, 1.0f - t);
 }
 
-/* Where boxes share a slab, it is seen where one volume with all the matter would be: the mean of the parts'
- * centres, weighted by extinction, is the centre of the whole. */
+/* Finds where a slab is seen that several boxes share: at the place where one volume with all the matter
+ * would be seen. The mean of the parts' centres, weighted by extinction, is the centre of the whole. */
 LANES_INLINE lanes place_of_joined(block_density *densities, int count, const block_slab *slab, lanes u,
                                    lanes place) {
   lanes length = lanes_max(slab->part.length, lanes_set(1e-6f));
@@ -159,10 +164,11 @@ LANES_INLINE lanes place_of_joined(block_density *densities, int count, const bl
   return lanes_select(slab->joined, lanes_fma(slab->part.length, t, slab->part.begin), place);
 }
 
-/* Finds the position at which the fraction u of the slab's optical depth is reached; a dense slab's matter
- * may lie at one end. Extinction is taken to rise as t^q along the way, with the centre m = (q + 1) / (q + 2)
- * that the tables give; then the fraction u of the depth is reached at t = u^((1 - m) / m) (derived; mirrored
- * where extinction falls). Returns the mean of the volumes' positions, 0 to 1 through the slab. */
+/* Finds the position at which the fraction u of the slab's optical depth is reached. (In a dense slab all
+ * visible matter may lie at one end.) Extinction is taken to rise as t^q along the way, with the centre m =
+ * (q + 1) / (q + 2) that the tables give; then the fraction u of the depth is reached at t = u^((1 - m) / m)
+ * (derived; mirrored where extinction falls). Returns the mean of the volumes' positions, 0 to 1 through the
+ * slab. */
 LANES_INLINE lanes place_of_part(block_density *densities, int count, const block_slab *slab, lanes u) {
   lanes sum = lanes_set(0);
   for (int i = 0; i < count; i++) {
@@ -193,8 +199,8 @@ LANES_INLINE lanes3 seen_position(const block_slab *slab, const block_density *d
   return add_scaled3(g->start, g->step_sheet, lanes_fma(slab->part.length, d->seen, slab->part.begin));
 }
 
-/* Step 12, where the gradient is needed: for surfaces, and in dense slabs, where the light's optical depth
- * differs from the eye's. */
+/* Step 12 where the gradient is needed: for surfaces, and in dense slabs, in which the light's optical depth
+ * differs from the eye's optical depth. */
 LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, block_density *densities,
                               int count) {
   const block_geometry *g = &slab->geometry;
@@ -215,10 +221,10 @@ LANES_INLINE void find_slopes(const shade_job *job, const block_slab *slab, bloc
   }
 }
 
-/* Finds a volume's normal. What a mask hides leaves a face: the visible matter is f m, m the mask's factor,
- * with the slope m grad f + f grad m, in which m itself is taken for 1 (derived). The slope is measured in
- * steps of the transfer function's table: the squares of data values of 1e-27 or 1e30 are beyond floats.
- * Where components are below 1e-19 even so, the normal is shorter than 1. */
+/* Finds a volume's normal. Matter that a mask hides leaves a face. The visible matter is f m, where m is the
+ * mask's factor; its slope is m grad f + f grad m, in which the first m is taken as 1 (derived). The slope is
+ * measured in steps of the transfer function's table, because floats cannot hold the squares of data values
+ * of 1e-27 or 1e30. Where components are still below 1e-19, the normal is shorter than 1. */
 LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
   const shade_volume *volume = d->patch->volume;
   const float scale = fabsf(volume->classifier->scale);
@@ -236,11 +242,12 @@ LANES_INLINE void find_normal(const block_slab *slab, block_density *d) {
   d->normal = scale3(slope, outward / lanes_max(steepness, lanes_set(1e-18f)));
 }
 
-/* The face that the eye's ray to a point of a volume comes through last, before it meets the point. */
+/* The last face that the eye's ray comes through before it meets a point of a volume. */
 typedef struct cut_face {
   lanes way;      /* from the point back to the face; frame units */
-  lanes3 outward; /* its unit normal */
-  lanes_int cuts; /* not where another volume goes on, or where a face of the box has no visible matter */
+  lanes3 outward; /* the face's unit normal */
+  lanes_int cuts; /* lanes in which the face cuts matter: no other volume goes on there, and visible matter
+                   * touches the face of a box */
 } cut_face;
 
 LANES_INLINE void take_nearer(cut_face *nearest, lanes way, lanes3 outward, lanes_int cuts) {
@@ -292,7 +299,7 @@ LANES_INLINE lanes_int shows_on_face(const shade_volume *volume, lanes3 crossing
 
 /* Whether some points are so near to a face of the box that shows matter that they may belong to it. */
 LANES_INLINE int is_near_box_face(const shade_volume *volume, lanes3 point, lanes_int seen) {
-  const float reach = FACE_VOXELS * volume->voxel * 1.001f; /* a little more, for rounding */
+  const float reach = FACE_VOXELS * volume->voxel * 1.001f; /* a little is added for rounding */
   lanes_int near = lanes_set_int(0);
   for (int axis = 0; axis < 3; axis++) {
     const float *row = volume->to_index[axis];
@@ -305,7 +312,7 @@ LANES_INLINE int is_near_box_face(const shade_volume *volume, lanes3 point, lane
 }
 
 /* How much a point belongs to the face of a cut, or of the volume's box, through whose matter it is seen: 1
- * at the face, 0 two voxels behind it. The data's gradient, of even matter, is its noise there. */
+ * at the face, 0 two voxels behind it. The gradient of even matter is only the noise of the data there. */
 LANES_INLINE lanes find_skin(const block_slab *slab, const block_density *d, lanes3 *outward) {
   const shade_volume *volume = d->patch->volume;
   const lanes3 point = seen_position(slab, d), towards_eye = slab->geometry.towards_eye;
@@ -326,7 +333,7 @@ LANES_INLINE lanes find_skin(const block_slab *slab, const block_density *d, lan
   return lanes_keep(shown, lanes_clamp(FACE_VOXELS - depth * (1.0f / volume->voxel), 0, 1));
 }
 
-/* Behind a face the normal turns to the face's own, or the surface to a medium. */
+/* Behind a face, turns a volume's normal to the normal of the face, or makes the surface a medium. */
 LANES_INLINE void find_cut_face(const block_slab *slab, block_density *d) {
   const shade_volume *volume = d->patch->volume;
   lanes3 outward;
@@ -353,7 +360,8 @@ LANES_INLINE void find_normals(const block_slab *slab, block_density *densities,
   }
 }
 
-/* A block's pixels in which something may be seen, one bit each. alpha: of the pixels before the slab. */
+/* The pixels of a block in which something may be seen, one bit each. alpha: the pixels' alpha before the
+ * slab. */
 LANES_INLINE uint32_t visible_in_block(const shade_job *job, const shade_patch *patches, int patch_count,
                                        int block, const float *alpha) {
   lanes_int open = job->back_to_front ? lanes_set_int(-1) : lanes_load(alpha) < PIXEL_OPAQUE,
@@ -365,7 +373,7 @@ LANES_INLINE uint32_t visible_in_block(const shade_job *job, const shade_patch *
 }
 
 /* Sets up a slab for a block of pixels: its volumes and their ways. bits: the pixels in which something may
- * be seen, at least one. patch_count: the tile's, which the compiler may know to be 1. */
+ * be seen, at least one. patch_count: the tile's number of patches, which the compiler may know to be 1. */
 LANES_INLINE void slab_of_block(const shade_job *job, const tile_slab *tile, int patch_count, int block,
                                 uint32_t bits, block_density *densities, block_slab *slab) {
   const shade_patch *patches = tile->patches;
@@ -401,9 +409,9 @@ LANES_INLINE void join_parts(const block_density *densities, int count, block_sl
       slab->joined |= densities[i].way.part.length < slab->part.length;
 }
 
-/* Step 13 for several volumes. Each volume's extinction is that of the part of the slab in its own box. The
- * position at which it is seen, and the light that it absorbs, are found over the part that all boxes cover
- * together: a volume that is cut into several boxes then looks as before. */
+/* Step 13 for several volumes. Each volume's extinction is found over the part of the slab in the volume's
+ * own box. The position at which the slab is seen, and the light that it absorbs, are found over the part
+ * that all boxes cover together. So a volume that is cut into several boxes looks as before. */
 LANES_INLINE void classify_joined(block_density *densities, int count, block_slab *slab) {
   join_parts(densities, count, slab);
   int joined = lanes_bits(slab->joined) != 0;
@@ -418,7 +426,7 @@ LANES_INLINE void classify_joined(block_density *densities, int count, block_sla
   }
 }
 
-/* Adds up the visible volumes' extinction, and finds the pixels in which there is some. */
+/* Adds up the visible volumes' extinction, and finds the pixels in which it is above 0. */
 LANES_INLINE void total_slab(const block_density *densities, int count, block_slab *slab) {
   int joined = lanes_bits(slab->joined) != 0;
   slab->total = slab->centre = lanes_set(0);
@@ -446,12 +454,12 @@ LANES_INLINE void classify_slab(block_density *densities, int count, block_slab 
   total_slab(densities, count, slab);
 }
 
-/* Finds the slab's geometry and opacity, and where it is seen. */
+/* Finds the slab's geometry and opacity, and the place where it is seen. */
 LANES_INLINE void place_slab(const shade_job *job, block_density *densities, int count, block_slab *slab) {
   block_geometry *g = &slab->geometry;
   *g = geometry_of_block(job, slab->u, slab->v);
   slab->depth = lanes_keep(slab->seen,
-                           slab->total * g->path); /* without a pixel, a lane's path is arbitrary */
+                           slab->total * g->path); /* a lane without a pixel has an arbitrary path */
   slab->left = lanes_exp_negative(slab->depth);
   slab->opacity = lanes_keep(slab->seen, 1.0f - slab->left);
   lanes u = seen_part(slab->depth, slab->left);
@@ -510,7 +518,7 @@ LANES_INLINE void weigh_slab(const shade_job *job, block_density *densities, int
 }
 
 /* Steps 12 and 13 for a slab that slab_of_block() set up. Returns the pixels in which something is visible,
- * one bit each. If there are none, the opacity, 0, is the only result that is set. */
+ * one bit each. Where there are none, only the opacity is set, to 0. */
 LANES_INLINE uint32_t find_slab(const shade_job *job, const tile_slab *tile, block_density *densities,
                                 block_slab *slab) {
   const int count = tile->patch_count;

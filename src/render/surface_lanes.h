@@ -10,8 +10,8 @@ LANES_INLINE lanes3 load3(const float v[3][SURFACE_SAMPLES]) {
   return (lanes3){lanes_load(v[0]), lanes_load(v[1]), lanes_load(v[2])};
 }
 
-/* A position moved away from a surface. Derived: the buffer's column is (r1.p) / (r0.p); a way d at a right
- * angle to the light moves it by about |r1| d / (r0.p). */
+/* Moves a position away from a surface. Derived: the buffer's column is (r1.p) / (r0.p); a way d at a right
+ * angle to the light moves the column by about |r1| d / (r0.p). */
 LANES_INLINE lanes3 moved_away(const shade_light *light, const shadow_map *map, lanes3 position,
                                lanes3 normal) {
   const float *row = map->rows[1];
@@ -21,7 +21,7 @@ LANES_INLINE lanes3 moved_away(const shade_light *light, const shadow_map *map, 
   return add_scaled3(position, normal, away);
 }
 
-/* The light that passes everything before the slab. */
+/* The fraction of the light that passes everything before the slab. */
 LANES_INLINE color_lanes light_before_slab(const shade_job *job, const shade_light *light, lanes3 position,
                                            lanes3 normal) {
   const shadow_lookup *lookup = &light->lookups[job->plane];
@@ -34,8 +34,8 @@ LANES_INLINE color_lanes light_before_slab(const shade_job *job, const shade_lig
   return passing;
 }
 
-/* The light on the side that the eye sees. Only what is sent on from any angle can come from behind, through
- * the surface itself. */
+/* The light on the side that the eye sees. Light from behind, through the surface itself, counts only where
+ * the material sends on light from any angle. */
 LANES_INLINE color_lanes light_of_sample(const shade_job *job, const shade_light *light,
                                          const surface_samples *samples, lanes3 position, lanes3 normal,
                                          lanes facing) {
@@ -47,7 +47,8 @@ LANES_INLINE color_lanes light_of_sample(const shade_job *job, const shade_light
   return passing;
 }
 
-/* What surfaces close before the samples let through: the buffer may hold them, or not. */
+/* The fraction of the light that surfaces close before the samples let through. The buffer may hold these
+ * surfaces already, or not yet. */
 LANES_INLINE lanes contact_of(const shade_job *job, const shade_light *light, const surface_samples *samples,
                               int channel) {
   if (samples->contact == NULL) return lanes_set(1.0f);
@@ -84,7 +85,8 @@ LANES_INLINE void add_light(const shade_job *job, const shade_light *light, cons
 /* Cells by which look-ups of the sky's light are moved off a mesh. */
 static const float MESH_LIFT = 1;
 
-/* The sky's light: read a little outside of the surface, whose own matter hides what lies behind it. */
+/* Adds the sky's light. It is read a little outside of the surface, whose own matter hides the sky behind
+ * it. */
 LANES_INLINE void add_sky(const sky_light *sky, const surface_samples *samples, color_lanes *lit) {
   lanes3 normal = load3(samples->normal);
   lanes_int lit_side = dot3(normal, normal) > 0.0f;

@@ -7,19 +7,21 @@
 
 enum { SURFACE_SAMPLES = 16 };
 
-/* Up to sixteen samples of one mesh in one slab. Unused ones repeat the first. */
+/* Up to sixteen samples of one mesh in one slab. Unused samples repeat the first one. */
 typedef struct surface_samples {
   _Alignas(64) float position[3][SURFACE_SAMPLES]; /* frame space */
-  float normal[3][SURFACE_SAMPLES];                /* unit, on the eye's side; 0: black */
+  float normal[3][SURFACE_SAMPLES];                /* unit vector on the eye's side; 0: the sample is black */
   float towards_eye[3][SURFACE_SAMPLES];           /* unit */
   float color[3][SURFACE_SAMPLES];                 /* linear RGB */
   float lit[3][SURFACE_SAMPLES];                   /* the result: the light that leaves towards the eye */
   float ambient, diffuse, specular, shininess, emission; /* ka kd ks n ke */
   float even;      /* the fraction of light that is sent on from any angle, as by a medium */
-  float behind[3]; /* of this, the fraction where the light comes from behind the surface */
+  float behind[3]; /* of the part `even`, the fraction that is sent on where light comes from behind the
+                    * surface */
   int receives_shadow;
-  const float (*contact)[SURFACE_SAMPLES]; /* [lights of the sweep][channels]; what surfaces close before the
-                                              samples let through (late/); null: everything */
+  /* [lights of the sweep][channels]; the fraction of light that surfaces close before the samples let through
+   * (late/); null: everything. */
+  const float (*contact)[SURFACE_SAMPLES];
 } surface_samples;
 
 #endif

@@ -1,5 +1,5 @@
 /* render/sweep.h - one pass over the sheets on the processors: its state, and the stages that the sheet loop
- * calls. What the pass does is the plan's (plan/frame_plan.h), which it only reads.
+ * calls. The plan says what the pass does (plan/frame_plan.h); the pass only reads it.
  *
  * Threads own tiles: an image tile is filled, shaded and composited by one task, a light tile filled and
  * composited by one task, always in the same order, so that the picture does not depend on threads. */
@@ -20,14 +20,14 @@
 typedef struct sweep_light {
   const light_source *source;
   light_shadow shadow;
-  view_sheets sheets;    /* what the shadow buffer's view sees */
-  light_texture texture; /* the picture that the light projects */
-  void *reads;           /* owned; holds the arrays that follow (light_reads.h) */
-  int32_t *needed_until; /* [tiles of the buffer]; the last slab that needs the tile, 0: none does; null: all
-                            slabs need all tiles */
-  int32_t *sublights_until; /* light_shadow's */
-  unsigned char *owned; /* [tiles of the buffer]; 1 where this part of a shared picture tells the others of
-                           the tile; null: it tells them nothing */
+  view_sheets sheets;       /* the sheets of the shadow buffer's view */
+  light_texture texture;    /* the picture that the light projects */
+  void *reads;              /* owned; holds the next three arrays (light_reads.h) */
+  int32_t *needed_until;    /* [tiles of the buffer]; the last slab that needs the tile, 0: no slab needs it;
+                             * null: all slabs need all tiles */
+  int32_t *sublights_until; /* as in light_shadow */
+  unsigned char *owned; /* [tiles of the buffer]; 1 where this part of a shared picture sends the tile to the
+                         * other parts; null: it sends nothing */
 } sweep_light;
 
 static inline bool hl_light_needs(const sweep_light *light, size_t tile, int slab) {
@@ -43,19 +43,19 @@ typedef struct slab_stretch {
 /* One thread's counts, on cache lines of its own. */
 typedef struct sweep_counts {
   _Alignas(64) uint64_t samples, filled_image, filled_light, skipped_image,
-      skipped_light; /* pixels shaded; tiles */
+      skipped_light; /* number of pixels shaded; number of tiles */
   uint64_t pixels_image, pixels_light, pixels_skipped_image, pixels_skipped_light;
   uint64_t pixels_seen, pixels_covered; /* counted only by the sweep of hidden.c */
   double seconds_fill, seconds_shade;   /* of the image stage */
-  double seconds_light;                 /* the light stage */
-  double seconds_composite;             /* the compositing in it */
+  double seconds_light;                 /* of the light stage */
+  double seconds_composite;             /* of the compositing in the light stage */
 } sweep_counts;
 
-/* The matter that a pass shades: the scene's own; white, and sending on the light that arrives from any
- * angle; white; white, and receiving no shadow. */
+/* The matter that a pass shades: the scene's own matter; white matter that sends on light from any angle;
+ * white matter; white matter that receives no shadow. */
 typedef enum layer_matter { MATTER_OWN, MATTER_EVEN, MATTER_WHITE, MATTER_OPEN } layer_matter;
 
-/* One more shading of the sweep's tiles. */
+/* A further shading of the sweep's tiles, for a layer. */
 typedef struct layer_pass {
   shade_tile_function *shade;
   const shade_light *lights; /* [light_count] */
@@ -69,35 +69,38 @@ typedef struct layer_pass {
 } layer_pass;
 
 typedef struct sweep_layers {
-  layer_pass *passes; /* owned with all arrays that follow; [pass_count] */
+  layer_pass *passes; /* owned with all arrays below; [pass_count] */
   int pass_count;
   shade_light *white_lights;                  /* [light_count of the sweep] */
-  shade_volume *even_volumes;                 /* [volume_count]; surfaces send on all light that arrives */
-  shade_volume *white_volumes, *open_volumes; /* [volume_count]; with surfaces; and receiving no shadow */
-  shade_patch *patches;                       /* [threads][volume_count]; of a pass's own volumes */
+  shade_volume *even_volumes;                 /* [volume_count]; white volumes whose surfaces send on all
+                                               * light that arrives */
+  shade_volume *white_volumes, *open_volumes; /* [volume_count]; white volumes, and white volumes that receive
+                                               * no shadow */
+  shade_patch *patches;                       /* [threads][volume_count]; patches of a pass's own volumes */
   classifier *white;   /* [volume_count]; the volumes' tables, borrowed, with white colours */
   sky_light white_sky; /* the sky without its colour */
   float (*ones)[4];    /* a colour table */
 } sweep_layers;
 
-/* Points that stand for a light where surfaces look for what is close before them (late/). */
+/* The points that stand for a light where samples of surfaces look for surfaces close before them (late/). */
 enum { LIGHT_POINTS_SIDE = 4 };
 typedef struct light_points {
   vec3 offset[LIGHT_POINTS_SIDE * LIGHT_POINTS_SIDE]; /* [count]; from the light's centre (hl_light_point) */
-  int count;                                          /* 1 where shadows are hard */
+  int count;                                          /* number of points; 1 where shadows are hard */
   double reach;                                       /* the greatest length of an offset */
 } light_points;
 
 /* The surfaces of the sweep's views; zeros where there are none. */
 typedef struct surface_state {
   fragments image, lights[FRAME_LIGHTS];
-  fragments unseen;              /* of the eye's view: meshes that are not visible and shade volumes */
-  void *memory;                  /* owned; all arrays that follow */
+  fragments unseen;              /* fragments, in the eye's view, of meshes that are not visible and shade
+                                  * volumes */
+  void *memory;                  /* owned; holds all arrays below */
   shade_patch *patches;          /* [threads][volumes] */
   float (*cuts)[TILE_PIXELS];    /* [threads][volumes][2]; where the pieces of slabs begin and end in boxes */
   float (*bounds)[TILE_PIXELS];  /* [threads][2]; where they begin and end */
-  float (*passing)[TILE_PIXELS]; /* [threads][lights][channels]; of late_surfaces.h */
-  float (*contact)[SURFACE_SAMPLES]; /* likewise; of late_surfaces.h */
+  float (*passing)[TILE_PIXELS]; /* [threads][lights][channels]; the result of hl_near_surfaces_find() */
+  float (*contact)[SURFACE_SAMPLES]; /* [threads][lights][channels]; the result of hl_contact_find() */
   light_points *points;              /* [lights] */
 } surface_state;
 
@@ -112,8 +115,8 @@ typedef struct loop_arrays {
   void *memory;                      /* owned; holds the arrays that follow */
   uint16_t *open;                    /* [tiles]; blocks not yet opaque */
   uint32_t *tasks;                   /* [tiles of the image and of all lights]; the stretches' tiles */
-  shade_job *slab_shades;            /* [stretch]; of the picture's slabs */
-  attenuate_job *slab_attenuates;    /* [lights][stretch]; of the lights' slabs */
+  shade_job *slab_shades;            /* [stretch]; jobs for the picture's slabs */
+  attenuate_job *slab_attenuates;    /* [lights][stretch]; jobs for the lights' slabs */
   shade_patch *shade_patches;        /* [threads][volumes] */
   unsigned char *scratch;            /* [threads][volumes][SHADE_SCRATCH_BYTES] */
   attenuate_volume *scratch_volumes; /* [threads][volumes] */
@@ -128,25 +131,28 @@ typedef struct sweep_times {
 
 /* The loop over the sheets. */
 typedef struct sweep_loop {
-  int ring; /* sheets whose light is kept; 1: picture and lights take turns, slab by slab */
+  int ring; /* number of sheets whose light is kept; 1: picture and lights take turns, slab by slab */
   slab_stretch picture_stretch, light_stretch;
-  int task_start[FRAME_LIGHTS + 2]; /* the picture's first task, each light's, and one past the last task */
+  int task_start[FRAME_LIGHTS + 2]; /* index of the picture's first task, of each light's first task, and one
+                                     * past the last task */
   sweep_times times;
 } sweep_loop;
 
 /* The pixels that a sweep makes. */
 typedef struct sweep_target {
   float *pixels;                 /* [tiles][16][4][16]; the sweep's own */
-  const int32_t *shown_from;     /* [tiles][16]; first visible slab per block; null: nothing is hidden */
+  const int32_t *shown_from;     /* [tiles][16]; first visible slab of each block; null: nothing is hidden */
   const layer_pixels *layers;    /* pixels of the layers; null: none */
-  const maximum_values *maximum; /* values of a maximum projection; null, or values null: matter is lit */
+  const maximum_values *maximum; /* values of a maximum projection; null, or with null values: matter is
+                                  * lit */
 } sweep_target;
 
-/* Whose a sweep is: a picture's, or a search that prepares one, which lights nothing (hidden.c). */
+/* The purpose of a sweep: to make a picture, or to search for hidden matter before the picture is made; a
+ * search lights nothing (hidden.c). */
 typedef enum sweep_purpose { SWEEP_PICTURE, SWEEP_SEARCH } sweep_purpose;
 
 struct sweep {
-  /* set by hl_sweep_set_up() */
+  /* hl_sweep_set_up() sets this member and the next ones, down to tiles_x */
   const frame_plan *frame_plan;
   const sweep_plan *plan;
   const sweep_sheets *geometry; /* the plan's */
@@ -155,10 +161,10 @@ struct sweep {
   sheet_content content;
   sweep_target target;
   sweep_purpose purpose;
-  tile_action *act; /* steps 12 to 16, or what takes their place */
-  void *action;     /* of act; the caller's */
-  int channels;     /* of light attenuation: 1 or 3 */
-  size_t tiles;     /* of the picture */
+  tile_action *act; /* the tile action: steps 12 to 16, or the action that replaces them */
+  void *action;     /* data of act; the caller's */
+  int channels;     /* number of channels of light attenuation: 1 or 3 */
+  size_t tiles;     /* number of tiles of the picture */
   int tiles_x;
   /* the views */
   view_sheets image;
@@ -178,13 +184,13 @@ typedef struct sweep_means {
   const hot_functions *hot;
 } sweep_means;
 
-/* A sweep of a plan, without memory: hl_sweep_begin() follows, or hl_sweep_count_memory(). */
+/* Sets up a sweep of a plan, without memory. Call hl_sweep_begin() next, or hl_sweep_count_memory(). */
 void hl_sweep_set_up(sweep *sweep, const sweep_means *means, const frame_plan *frame_plan,
                      const sweep_plan *plan, const sweep_target *target);
 
 /* Finds, before a sweep that goes from back to front, what opaque matter hides from the eye (hidden.c).
- * pixels: the sweep's, zeros, which are zeros afterwards. *shown_from: [tiles][16]; the caller releases it;
- * null where the sweep goes from front to back. */
+ * pixels: the sweep's pixels, which must be zeros and are zeros again afterwards. *shown_from: [tiles][16];
+ * the caller releases it; null where the sweep goes from front to back. */
 hl_status hl_find_hidden(const sweep_means *means, const frame_plan *frame_plan, const sweep_plan *plan,
                          float *pixels, int32_t **shown_from, hl_render_statistics *statistics,
                          hl_error *error);
@@ -192,8 +198,9 @@ hl_status hl_find_hidden(const sweep_means *means, const frame_plan *frame_plan,
 /* The tile action of a lit picture: steps 12 to 16, and the layers (sweep_stages.c). */
 uint32_t hl_light_tile(const sweep *sweep, const tile_slab *slab);
 
-/* Steps 1 to 4, and memory. The caller keeps both arrays from frame to frame: buffers holds one buffer per
- * light of the frame, memory [FRAME_LIGHTS] blocks that the frame's sweeps use in turn. */
+/* Does steps 1 to 4, and allocates the memory. The caller keeps both arrays from frame to frame: buffers
+ * holds one buffer per light of the frame, memory [FRAME_LIGHTS] blocks that the frame's sweeps use in
+ * turn. */
 hl_status hl_sweep_begin(sweep *sweep, shadow_buffer *buffers, shadow_memory *memory, hl_error *error);
 /* Seconds of a clock that never runs backwards. */
 double hl_clock_seconds(void);
@@ -204,20 +211,23 @@ void hl_sweep_open(sweep *sweep);
 void hl_sweep_count(const sweep *sweep, hl_render_statistics *statistics);
 void hl_sweep_end(sweep *sweep);
 
-/* What hl_sweep_begin() takes for the sweeps of a frame that were counted. */
+/* The memory that hl_sweep_begin() takes for those sweeps of a frame that were counted. */
 typedef struct sweeps_memory {
   hl_layout buffers;         /* the lights' shadow buffers, which the renderer keeps between frames */
-  size_t kept[FRAME_LIGHTS]; /* bytes that shadow methods keep between frames; the sweeps use them in turn */
-  hl_layout passing; /* ends with each sweep; without light textures and the lists of splatted voxels */
+  size_t kept[FRAME_LIGHTS]; /* number of bytes that shadow methods keep between frames; the sweeps use them
+                              * in turn */
+  hl_layout passing; /* memory that ends with each sweep; without light textures and the lists of splatted
+                      * voxels */
 } sweeps_memory;
 
-/* Adds what hl_sweep_begin() takes for a sweep that is set up. It then has served: another one is begun. */
+/* Adds the memory that hl_sweep_begin() takes for a sweep that is set up. The sweep cannot be used any more:
+ * to run it, set it up again. */
 void hl_sweep_count_memory(sweep *sweep, sweeps_memory *memory);
 
 /* The sheet loop: steps 3 to 18 (sweep_loop.c). */
 hl_status hl_sweep_run(sweep *sweep, hl_error *error);
 
-/* One tile in one slab (sweep_stages.c). */
+/* The work on one tile in one slab; each function does the steps named beside it (sweep_stages.c). */
 void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker); /* steps 6, 8 to 16 */
 void hl_sweep_attenuate(sweep *sweep, int light, const attenuate_job *job, size_t tile,
                         int worker); /* steps 7 to 11 and 17 */

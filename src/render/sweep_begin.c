@@ -13,7 +13,7 @@
 #include "render/sweep_layers.h"
 #include "render/sweep_surfaces.h"
 
-/* Blocks outside the picture, and those of other parts, are closed from the start. */
+/* Blocks outside the picture and blocks of other parts are closed from the start. */
 void hl_sweep_open(sweep *sweep) {
   for (size_t tile = 0; tile < sweep->tiles; tile++) {
     uint32_t open = 0;
@@ -86,7 +86,7 @@ void hl_sweep_set_up(sweep *sweep, const sweep_means *means, const frame_plan *f
                           .tiles_x = frame_plan->tiles_x};
   for (int i = 0; i < plan->geometry->light_count; i++) {
     sweep->lights[i] = (sweep_light){.source = plan->lights[i].source, .shadow = plan->lights[i].shadow};
-    sweep->lights[i].shadow.state = NULL; /* the plan's */
+    sweep->lights[i].shadow.state = NULL; /* the plan has this state */
   }
   choose_stretch(sweep);
 }
@@ -108,7 +108,7 @@ static void count_light(sweep *sweep, int index, sweeps_memory *memory) {
   hl_view_sheets_count(&sweep->content, &shadow->plan.view, shadow->plan.spare, passing);
 }
 
-/* The tiles of the picture and of all lights that are planned and cast shadows. */
+/* The number of tiles of the picture and of all lights that are planned and cast shadows. */
 static size_t count_tasks(const sweep *sweep) {
   size_t tasks = sweep->tiles;
   for (int i = 0; i < sweep->geometry->light_count; i++)
@@ -175,7 +175,7 @@ static hl_status allocate(sweep *sweep, hl_error *error) {
   return HL_OK;
 }
 
-/* Adds a light's texture and shadow buffer to what all slabs have in common. */
+/* Connects a light's texture and shadow buffer to the constants of all slabs. */
 static void connect_light(sweep *sweep, int index) {
   const light_shadow *shadow = &sweep->lights[index].shadow;
   shade_light *light = &sweep->constants.lights[index];
@@ -188,7 +188,7 @@ static void connect_light(sweep *sweep, int index) {
   sweep->constants.attenuate[index].stride = shadow->buffer->stride;
 }
 
-/* Light that climbs by less than this fraction of its way counts as running along the sheets. */
+/* A light whose rays climb by less than this fraction of their length counts as running along the sheets. */
 static const double LEAST_CLIMB = 0.05;
 
 /* The least rise of a light's rays per length, within the content. Directions within some angle of the normal
@@ -211,7 +211,7 @@ static double longest_way(const sweep *sweep) {
   return least < LEAST_CLIMB ? INFINITY : sweep->geometry->sheets.spacing / least;
 }
 
-/* The way from the faces that cut volumes up to which the lights' surfaces depend on the faces. */
+/* The distance from the faces that cut volumes, up to which the lights' surfaces depend on the faces. */
 static double reach_of_faces(const sweep *sweep) {
   double greatest = 0;
   for (int g = 0; g < sweep->content.volume_count; g++)

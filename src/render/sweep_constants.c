@@ -21,7 +21,7 @@ void hl_sweep_constants_lay_out(const frame_plan *plan, sweep_constants *constan
 
 /* ---- the volumes ---- */
 
-/* Volumes with colours have at most 2^29 voxels. volume: null: there are none. */
+/* A volume with colours has at most 2^29 voxels. volume: null: there are no colours. */
 static voxel_colors colors_of(const hl_volume *volume, const float *decode) {
   voxel_colors colors = {.decode = decode};
   if (volume == NULL || volume->colors == NULL) return colors;
@@ -63,7 +63,7 @@ static void set_up_cuts(const plan_volumes *volumes, sweep_constants *constants)
   }
 }
 
-/* Finds the faces of the box that cut through visible matter which no other volume continues. */
+/* Finds the faces of the box that cut visible matter where no other volume continues it. */
 static void find_box_faces(const grid *grid, shade_volume *shade) {
   for (int axis = 0; axis < 3; axis++) {
     const float at[2] = {grid->face_low[axis], grid->face_high[axis]};
@@ -75,7 +75,7 @@ static void find_box_faces(const grid *grid, shade_volume *shade) {
   }
 }
 
-/* A volume's material and what follows from it. */
+/* A volume's material and the numbers that follow from it. */
 static shade_volume material_of(const frame_volume *volume, const plan_fields *fields) {
   shade_volume shade = {
       .phong = volume->shading == HL_SHADING_PHONG,

@@ -9,9 +9,9 @@
 
 typedef struct sweep_constants {
   shade_volume *volumes; /* [volumes] */
-  shade_cut *cuts;       /* of all volumes, one after the other */
+  shade_cut *cuts;       /* cuts of all volumes, one volume after the other */
   float *srgb_decode;    /* [256]: the linear values of sRGB's codes, for voxels with colours */
-  float *tint_decode;    /* [256]: the linear values of a mask's codes, their squares */
+  float *tint_decode;    /* [256]: the linear values of a mask's codes: the squares of the codes */
   shade_light lights[FRAME_LIGHTS];
   attenuate_job attenuate[FRAME_LIGHTS];
   shade_job shade;
@@ -20,8 +20,8 @@ typedef struct sweep_constants {
 /* Takes the arrays. */
 void hl_sweep_constants_lay_out(const frame_plan *plan, sweep_constants *constants, hl_layout *layout);
 
-/* After the arrays are there: fills them, and all members but what a back end adds for a light's shadow
- * buffer and texture. constants must not move afterwards. maximum: null: matter is lit. */
+/* Fills the arrays, which must be there, and all members but the members that a back end sets for a light's
+ * shadow buffer and texture. constants must not move afterwards. maximum: null: matter is lit. */
 void hl_sweep_constants_find(const frame_plan *plan, const sweep_plan *sweep, const maximum_values *maximum,
                              sweep_constants *constants);
 

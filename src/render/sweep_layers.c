@@ -5,8 +5,8 @@
 
 #include "core/memory.h"
 
-/* Sets up copies of the volumes with white matter: such that pass on all the light that arrives, and as they
- * are, with and without what hides the sky. */
+/* Sets up copies of the volumes with white matter: copies that send on all light that arrives, and copies
+ * that shade as the volumes do, with and without the matter that hides the sky. */
 static void set_up_white_volumes(sweep *sweep) {
   sweep_layers *layers = &sweep->layers;
   for (size_t i = 0; i < CLASSIFIER_ENTRIES + 2; i++)
@@ -38,14 +38,14 @@ static void set_up_white_light(const shade_light *from, shade_light *white) {
   for (int c = 0; c < 3; c++) white->color[c] = 1;
 }
 
-/* Ambient light, emission, the sky, its two pictures of white volumes, measures. */
+/* The passes are ambient light, emission, the sky, its two pictures of white volumes, and measures. */
 enum { MOST_OTHER_PASSES = 6 };
 
 static bool wants_layers(const sweep *sweep) {
   return sweep->target.layers != NULL && sweep->target.layers->wanted != NULL;
 }
 
-/* The passes begin the block. */
+/* Lays out all arrays. The passes begin the block. */
 static void lay_out(sweep *sweep, hl_layout *layout) {
   sweep_layers *layers = &sweep->layers;
   const size_t lights = (size_t)sweep->geometry->light_count, volumes = (size_t)sweep->content.volume_count,
@@ -77,7 +77,8 @@ static layer_pass *add_pass(sweep *sweep, float *pixels, const shade_light *ligh
   return pass;
 }
 
-/* The passes of a light: its picture and its shadow; of a sun of the sky, its parts of the sky's pictures. */
+/* Adds the passes of a light: its picture and its shadow. For a sun of the sky it adds the sun's share of the
+ * sky's two pictures. */
 static void add_light_passes(sweep *sweep, int index) {
   const light_pixels *to = &sweep->target.layers->lights[sweep->geometry->light[index]];
   const shade_light *light = &sweep->constants.lights[index];
@@ -131,7 +132,7 @@ hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error) {
 
 void hl_sweep_layers_end(sweep *sweep) { hl_release(sweep->content.context, sweep->layers.passes); }
 
-/* The tile's patches, of the pass's own volumes. */
+/* The tile's patches, with the pass's own volumes. */
 static const shade_patch *patches_of(const sweep *sweep, const tile_slab *slab, layer_matter matter) {
   const shade_volume *volumes = matter == MATTER_EVEN    ? sweep->layers.even_volumes
                                 : matter == MATTER_WHITE ? sweep->layers.white_volumes
@@ -163,14 +164,14 @@ void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab) {
     const shade_job job = job_of_pass(pass, slab->job);
     tile_slab own = *slab;
     if (pass->matter != MATTER_OWN) own.patches = patches_of(sweep, slab, pass->matter);
-    uint64_t samples = 0; /* statistics count the picture's own samples alone */
+    uint64_t samples = 0; /* statistics count only the samples of the picture itself */
     (void)pass->shade(&job, &own, pass->pixels + slab->tile * pass->tile_floats, &samples);
   }
 }
 
 /* ---- surfaces ---- */
 
-/* Makes samples those of the pass's matter. */
+/* Gives samples the matter of the pass. */
 static void change_matter(layer_matter matter, surface_samples *samples) {
   if (matter == MATTER_OWN) return;
   for (int c = 0; c < 3; c++)
@@ -195,9 +196,10 @@ static float depth_of_sample(const shade_job *job, const surface_samples *sample
   return eye - dot_of_sample(samples->position, i, towards_eye);
 }
 
-/* The first depth of a pixel that a mesh reaches. The mesh's parts in the pixel are several fragments, which
- * lie side by side or one behind another: the depth is the mean over the samples at which one of them is met
- * first. at: the pixel's measures; alpha: before and after the fragment. */
+/* Measures the first depth of a pixel in which a mesh is seen. The mesh's parts in the pixel are several
+ * fragments, which lie side by side or one behind another: the depth is the mean over the samples at which
+ * one of them is met first. at: the pixel's measures; alpha: the pixel's alpha before and after the
+ * fragment. */
 static void measure_first(const fragment *f, float depth, int object, float before, float after, float *at) {
   float *first = at + MEASURE_DEPTH_FIRST * BLOCK_PIXELS, *covered = at + MEASURE_SAMPLES * BLOCK_PIXELS;
   const unsigned known = (unsigned)*covered, met = f->samples & ~known;
@@ -210,7 +212,7 @@ static void measure_first(const fragment *f, float depth, int object, float befo
   at[MEASURE_OBJECT * BLOCK_PIXELS] = (float)object;
 }
 
-/* The measures of a batch in sheets that go front to back. pixels: the tile's. */
+/* Measures a batch, in sheets that go front to back. pixels: the tile's pixels. */
 static void measure_batch(const shade_job *job, const surface_batch *batch, int object, float *pixels) {
   for (int i = 0; i < batch->count; i++) {
     const fragment *f = batch->fragments[i];

@@ -4,11 +4,12 @@
 
 #include "render/surface_batch.h"
 
-/* Begin is called at the end of hl_sweep_begin; tile shades one tile of every layer, and batch, whose samples
- * are placed, the fragments of a tile. */
+/* hl_sweep_layers_begin() is called at the end of hl_sweep_begin(). hl_sweep_layers_tile() shades one tile of
+ * every layer. hl_sweep_layers_batch() shades the fragments of a tile for every layer; the samples of the
+ * batch are placed already. */
 hl_status hl_sweep_layers_begin(sweep *sweep, hl_error *error);
 void hl_sweep_layers_end(sweep *sweep);
-/* Counts what begin takes; sets no pointers. */
+/* Counts the memory that hl_sweep_layers_begin() takes. Sets no pointers. */
 void hl_sweep_layers_count(sweep *sweep, hl_layout *layout);
 void hl_sweep_layers_tile(const sweep *sweep, const tile_slab *slab);
 void hl_sweep_layers_batch(const sweep *sweep, const tile_slab *slab, const surface_batch *batch);

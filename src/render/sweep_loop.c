@@ -1,12 +1,12 @@
 /* render/sweep_loop.c - the loop over the sheets: stretches of slabs, their tiles shared out to the threads.
  *
  * Light never depends on the picture. So the lights' stretch r + 1 and the picture's stretch r are one set of
- * tasks, with one wait for all threads at its end. A picture of stretch r reads the planes of the sheets
- * before its slabs, K of them; meanwhile the lights write K more, and start from the one before: so the
- * buffers keep the planes of 2 K + 1 sheets. A task takes one tile through all slabs of a stretch, in the
- * order of the sheets: bytes depend neither on K nor on threads. Where a light's buffer changes as a whole
- * after a stretch, in many short runs (cascade), threads that have nothing to do in these work on the
- * picture.
+ * tasks, with one wait for all threads at its end. With K slabs in a stretch, the picture's stretch r reads
+ * the planes of the K sheets before its slabs. Meanwhile the lights write K more planes, and start from the
+ * plane before these. So the buffers keep the planes of 2 K + 1 sheets. A task takes one tile through all
+ * slabs of a stretch, in the order of the sheets: bytes depend neither on K nor on threads. Where a light's
+ * buffer changes as a whole after a stretch, in many short runs (cascade), threads that have no work in these
+ * runs work on the picture.
  *
  * Where some light's method cannot be run in stretches, picture and lights take turns, slab by slab. */
 #include "core/context.h"
@@ -14,10 +14,10 @@
 
 /* ---- tasks ---- */
 
-/* A tile in a single slab is little work: then two are one task. */
+/* The number of tiles in a task. A tile in a single slab is little work, so two tiles are one task then. */
 static int tiles_a_task(const sweep *sweep) { return sweep->content.stretch == 1 ? 2 : 1; }
 
-/* Bits of the tiles, in one word, that the sheets of a stretch may touch. */
+/* The tiles that the sheets of a stretch may touch, among the tiles of one word of bits. */
 static uint64_t touched_tiles(const occupancy *occupancy, slab_stretch stretch, size_t word) {
   uint64_t bits = 0;
   for (int sheet = stretch.first - 1; sheet < stretch.end; sheet++)
@@ -25,7 +25,7 @@ static uint64_t touched_tiles(const occupancy *occupancy, slab_stretch stretch, 
   return bits;
 }
 
-/* Bits of the tiles, in one word, that must be carried to the sheets of a stretch. */
+/* The tiles that must be carried to the sheets of a stretch, among the tiles of one word of bits. */
 static uint64_t carried_tiles(const shadow_buffer *buffer, slab_stretch stretch, size_t word) {
   size_t tiles = (size_t)buffer->tiles_x * (size_t)buffer->tiles_y, end = word * 64 + 64;
   uint64_t bits = 0;
@@ -34,7 +34,8 @@ static uint64_t carried_tiles(const shadow_buffer *buffer, slab_stretch stretch,
   return bits;
 }
 
-/* The tiles of a view that a stretch needs. light: whose view it is; null: the picture's. */
+/* Lists the tiles of a view that a stretch needs. light: the light whose view it is; null: the picture's
+ * view. */
 static int list_tiles(const occupancy *occupancy, const sweep_light *light, slab_stretch stretch,
                       uint32_t *list) {
   int count = 0;
@@ -125,8 +126,8 @@ static void reach_light(sweep *sweep, int index) {
     reach_light_slab(sweep, index, sheet, &jobs[sheet - stretch.first]);
 }
 
-/* Sets how the picture looks up the light before the slabs of a stretch; the lights have reached its first
- * slab. */
+/* Sets how the picture looks up the light before the slabs of a stretch. The lights have reached the
+ * stretch's first slab. */
 static void prepare_lookups(sweep *sweep, slab_stretch stretch) {
   for (int i = 0; i < sweep->geometry->light_count; i++) {
     light_shadow *shadow = &sweep->lights[i].shadow;
@@ -138,8 +139,9 @@ static void prepare_lookups(sweep *sweep, slab_stretch stretch) {
 
 /* ---- stretches ---- */
 
-/* Takes the picture and the lights through a stretch each; either may be empty. offers: the picture is only
- * offered to threads that wait for others, until finish_picture(); in stretches of several slabs alone. */
+/* Takes the picture and the lights through a stretch each; either stretch may be empty. offers: until
+ * finish_picture(), threads work on the picture only while they wait for others; used in stretches of several
+ * slabs only. */
 static void run_stretches(sweep *sweep, slab_stretch picture, slab_stretch light, bool offers) {
   hl_pool *pool = sweep->content.pool;
   double start = hl_clock_seconds();
@@ -185,7 +187,7 @@ static bool any_advances(const sweep *sweep, int sheet) {
   return false;
 }
 
-/* The stretch from a sheet on: as long as possible, and no longer than to where a light's buffer changes as a
+/* The stretch that begins at a sheet. It is as long as possible, but ends where a light's buffer changes as a
  * whole. */
 static slab_stretch stretch_from(const sweep *sweep, int first) {
   int longest = sweep->geometry->sheets.count - first, end = first;
@@ -194,7 +196,7 @@ static slab_stretch stretch_from(const sweep *sweep, int first) {
   return (slab_stretch){first, end};
 }
 
-/* Section 5, at the end of a stretch. */
+/* Lets the lights' buffers change as a whole at the end of a stretch (section 5 of the paper). */
 static void advance_lights(sweep *sweep, slab_stretch stretch) {
   double start = hl_clock_seconds();
   int sheet = stretch.end - 1;
@@ -212,6 +214,7 @@ static void advance_lights(sweep *sweep, slab_stretch stretch) {
 
 /* The paper's loop over the sheets (section 3.1, eighteen steps).
  *
+ *
  *    1. transform voxels to the half-way vector's frame      hl_sweep_begin
  *    2. bucket sort them by height                           hl_sweep_begin
  *    3. opacity map = 0                                      hl_sweep_begin
@@ -225,9 +228,9 @@ static void advance_lights(sweep *sweep, slab_stretch stretch) {
  *            (soft: convolve for the next sheet)             advance_lights
  *   18. end
  *
- * The slab between a sheet and the one before is classified, lit and composited, not the sheet: so nothing
- * that a sharp transfer function shows falls between sheets. A slab is lit by the light that has passed the
- * slabs before it. The first and the last sheet lie outside the content. */
+ * Here the slab between two sheets is classified, lit and composited, and not the sheet. So no matter that a
+ * sharp transfer function shows is lost between sheets. A slab is lit by the light that has passed the slabs
+ * before it. The first and the last sheet lie outside the content. */
 hl_status hl_sweep_run(sweep *sweep, hl_error *error) {
   const int sheets = sweep->geometry->sheets.count;
   const bool ahead = sweep->loop.ring > 1;

@@ -1,10 +1,11 @@
-/* render/sweep_stages.c - what is done with one tile in one slab: the picture's, and a light's. */
+/* render/sweep_stages.c - the work on one tile in one slab: a tile of the picture, or a tile of a light's
+ * buffer. */
 #include "core/context.h"
 #include "render/sweep_layers.h"
 #include "render/sweep_surfaces.h"
 
-/* The clock is read at one tile in 32, each sheet at other tiles: enough to measure how a stage's time
- * divides. */
+/* The clock is read at one tile in 32, at other tiles on each sheet. This is enough to measure how a stage's
+ * time divides. */
 static bool is_timed(size_t tile, int sheet) {
   return ((tile * 11 + (tile >> 5) + (size_t)sheet * 5) & 31) == 0;
 }
@@ -27,10 +28,10 @@ static uint32_t shown_blocks(const sweep *sweep, size_t tile, int slab) {
   return shown;
 }
 
-/* Sheets are filled for a run of slabs at a time. */
+/* The last slab of a run. Sheets are filled for one run of slabs at a time. */
 static int last_of_run(int slab) { return (slab - 1) / RUN_SLABS * RUN_SLABS + RUN_SLABS; }
 
-/* Steps 6 and 8 to 11 for one tile: its patches with density in the needed blocks. */
+/* Does steps 6 and 8 to 11 for one tile: finds its patches with density in the needed blocks. */
 static int fill_image_tile(sweep *sweep, slab_place place, uint32_t need, int worker, shade_patch *patches,
                            uint32_t *blocks) {
   size_t tile = place.tile;
@@ -104,13 +105,13 @@ void hl_sweep_shade(sweep *sweep, const shade_job *job, size_t tile, int worker)
 
 /* ---- the lights ---- */
 
-/* Whether faces that cut a volume are surfaces, and one of them is near. */
+/* Whether faces that cut a volume are surfaces, and such a face is near. */
 static bool faces_are_lit(const frame_volume *volume, const patch_slab *slab) {
   return volume->shading == HL_SHADING_PHONG && volume->cut_shading == HL_CUT_SHADING_FACE &&
          slab->enter != NULL && !slab->uncut;
 }
 
-/* Steps 7 to 11 for one tile: its volumes that cast shadows. */
+/* Does steps 7 to 11 for one tile, with the volumes that cast shadows. */
 static int fill_light_tile(sweep *sweep, sweep_light *light, slab_place place, int worker, uint32_t need,
                            attenuate_volume *volumes) {
   size_t tile = place.tile;

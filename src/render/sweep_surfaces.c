@@ -9,7 +9,7 @@
 
 /* ---- begin and end ---- */
 
-/* light: whose view it is; null: the eye's. */
+/* light: the light whose view it is; null: the eye's view. */
 static hl_status make_fragments(sweep *sweep, const view *view, const sweep_light *light,
                                 const occupancy *occupancy, fragments *made, hl_error *error) {
   const light_shadow *shadow = light != NULL ? &light->shadow : NULL;
@@ -32,12 +32,12 @@ static hl_status make_fragments(sweep *sweep, const view *view, const sweep_ligh
   return hl_fragments_create(&source, made, error);
 }
 
-/* The lights' channels. */
+/* The number of arrays in passing for a thread: one for each light and channel. */
 static size_t passings(const sweep *sweep) {
   return (size_t)sweep->geometry->light_count * (size_t)sweep->channels;
 }
 
-/* Each thread's memory for tiles with fragments. */
+/* Lays out the memory of each thread for tiles with fragments. */
 static void lay_out(sweep *sweep, hl_layout *layout) {
   size_t places = (size_t)hl_pool_threads(sweep->content.pool), volumes = (size_t)sweep->content.volume_count;
   surface_state *state = &sweep->surfaces;
@@ -123,7 +123,7 @@ fragment_range hl_sweep_surfaces_reach_light(const sweep *sweep, int light, size
 
 /* ---- the picture: slabs cut at fragments ---- */
 
-/* Steps 14 to 16 for a batch, and its layers. */
+/* Does steps 14 to 16 for a batch, and shades its layers. */
 static void shade_batch(const sweep *sweep, const tile_slab *slab, surface_batch *batch) {
   if (batch->count == 0) return;
   float(*contact)[SURFACE_SAMPLES] = sweep->surfaces.contact + (size_t)slab->worker * passings(sweep);
@@ -137,7 +137,7 @@ static void shade_batch(const sweep *sweep, const tile_slab *slab, surface_batch
   batch->count = 0;
 }
 
-/* The fragments of a slab's round: each pixel's fragment number `round`, from below. */
+/* Finds the fragments of a slab's round: of each pixel, its fragment number `round`, counted from below. */
 static size_t fragments_of_round(fragment_range range, int round, fragment *list) {
   size_t count = 0;
   int number = 0;
@@ -148,7 +148,7 @@ static size_t fragments_of_round(fragment_range range, int round, fragment *list
   return count;
 }
 
-/* Steps 12 to 16 for fragments, which are composited in their order. */
+/* Does steps 12 to 16 for fragments, and composites them in their order. */
 static void shade_fragments(const sweep *sweep, const tile_slab *slab, uint32_t blocks,
                             fragment_range range) {
   surface_batch batch;
@@ -165,8 +165,8 @@ static void shade_fragments(const sweep *sweep, const tile_slab *slab, uint32_t 
   shade_batch(sweep, slab, &batch);
 }
 
-/* Does the sweep's steps for a slab, or a piece of one, whose light the fragments of this and the last few
- * slabs may hide. */
+/* Does the sweep's steps for a slab, or for a piece of a slab, whose light may be hidden by fragments of this
+ * slab and the few slabs before it. */
 static uint32_t act_behind(const sweep *sweep, const tile_slab *slab, slab_piece piece) {
   float(*passing)[TILE_PIXELS] = sweep->surfaces.passing + (size_t)slab->worker * passings(sweep);
   int first = slab->job->sheet - NEAR_SLABS;
@@ -210,7 +210,7 @@ static uint32_t shade_piece(const sweep *sweep, const tile_slab *slab, const flo
   return act_behind(sweep, &piece, (slab_piece){from, to});
 }
 
-/* The blocks, among `blocks`, of which some pixel is not opaque. */
+/* The blocks, among `blocks`, in which some pixel is not opaque. */
 static uint32_t open_blocks(const sweep *sweep, const tile_slab *slab, uint32_t blocks) {
   const float *pixels = sweep->target.pixels + slab->tile * 4 * TILE_PIXELS;
   uint32_t open = 0;
@@ -226,7 +226,7 @@ static uint32_t open_blocks(const sweep *sweep, const tile_slab *slab, uint32_t 
 /* Heights beyond all sheets. */
 static const float BELOW = -1e30f, ABOVE = 1e30f;
 
-/* The slab of a tile with density: cut at the fragments of one round after the other. */
+/* Shades the slab of a tile with density. The slab is cut at the fragments of one round after the other. */
 static void shade_cut_slab(const sweep *sweep, const tile_slab *slab, uint32_t blocks, fragment_range range) {
   fragment list[TILE_PIXELS];
   float *from = sweep->surfaces.bounds[slab->worker * 2], *to = sweep->surfaces.bounds[slab->worker * 2 + 1];
@@ -239,7 +239,7 @@ static void shade_cut_slab(const sweep *sweep, const tile_slab *slab, uint32_t b
     if (count == 0) return;
     shade_fragments(sweep, slab, blocks, (fragment_range){list, count});
     for (int i = 0; i < TILE_PIXELS; i++)
-      from[i] = to[i]; /* above all sheets where the slab was shaded to its end */
+      from[i] = to[i]; /* the height is above all sheets where the slab was shaded to its end */
   }
 }
 
@@ -252,7 +252,7 @@ uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint3
 
 /* ---- the lights ---- */
 
-/* What a pixel becomes behind a surface that lets a part pass. */
+/* The transmittance of a pixel behind a surface that lets the fraction `passing` through. */
 static float behind_surface(const attenuate_job *job, float before, float passing) {
   if (!job->marks || (before >= DARK_AT_START && passing > 0)) return before * passing;
   if (before >= DARK_AT_START) return -LEAST_MARK;

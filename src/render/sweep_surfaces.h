@@ -8,28 +8,31 @@
 /* Whether the frame has meshes that are not visible and shade its volumes. */
 bool hl_sweep_has_unseen(const sweep *sweep);
 
-/* After the sweep's views and lights have begun: the surfaces of the picture; later, when it is known which
- * tiles of their buffers are needed, those of the lights. They do nothing where the frame has no surfaces. */
+/* Makes the surfaces of the picture, after the sweep's views and lights have begun. The second function makes
+ * the surfaces of the lights, when it is known which tiles of their buffers are needed. Both do nothing where
+ * the frame has no surfaces. */
 hl_status hl_sweep_surfaces_begin(sweep *sweep, hl_error *error);
 hl_status hl_sweep_surfaces_begin_lights(sweep *sweep, hl_error *error);
 void hl_sweep_surfaces_end(sweep *sweep);
-/* Counts about what they take (fragments.h), for lights whose shadows are planned. Sets no pointers. */
+/* Counts about the memory that both take (fragments.h), for lights whose shadows are planned. Sets no
+ * pointers. */
 void hl_sweep_surfaces_count(sweep *sweep, hl_layout *layout);
 
-/* The fragments of the eye's view in a slab of a tile; to be asked for once, slabs in rising order. */
+/* The fragments of the eye's view in a slab of a tile. Ask for each slab once, in rising order. */
 fragment_range hl_sweep_surfaces_reach(const sweep *sweep, size_t tile, int slab);
 
 /* Steps 12 to 16 for a tile with fragments: each pixel's slab is cut at its fragments, and its pieces and the
- * fragments are composited in the order of their heights. slab->blocks: those with density; blocks: all that
- * are to be shaded. Returns the blocks that stay open. */
+ * fragments are composited in the order of their heights. slab->blocks: the blocks with density. blocks: all
+ * blocks that shall be shaded. Returns the blocks that stay open. */
 uint32_t hl_sweep_surfaces_tile(const sweep *sweep, const tile_slab *slab, uint32_t blocks,
                                 fragment_range range);
 
-/* Steps 12 to 16 for a tile without fragments in the slab, but maybe in those before it. Returns the blocks
- * that stay open. */
+/* Does steps 12 to 16 for a tile without fragments in the slab; there may be fragments in the slabs before
+ * it. Returns the blocks that stay open. */
 uint32_t hl_sweep_surfaces_beside(const sweep *sweep, const tile_slab *slab);
 
-/* Step 17 for the surfaces of a slab in a tile of a light's buffer. Returns whether any took light. */
+/* Does step 17 for the surfaces of a slab in a tile of a light's buffer. Returns whether any surface took
+ * light. */
 bool hl_sweep_surfaces_attenuate(const sweep *sweep, const attenuate_job *job, fragment_range range);
 fragment_range hl_sweep_surfaces_reach_light(const sweep *sweep, int light, size_t tile, int slab);
 

@@ -9,7 +9,7 @@
 
 static size_t floats_of_sweep(const frame_plan *plan) { return plan->tiles * TILE_PIXELS * 4; }
 
-/* Pixels of the target's own, or rows of tiles beside the caller's pixels. */
+/* Lays out the target's own pixels, or rows of tiles beside the caller's pixels. */
 static void lay_out_pixels(const hl_renderer *renderer, const frame_plan *plan, frame_target *target,
                            hl_layout *layout) {
   const size_t floats = TILE_PIXELS * 4 * sizeof(float), threads = (size_t)hl_pool_threads(renderer->pool);
@@ -29,7 +29,8 @@ static hl_status take_pixels(hl_renderer *renderer, const frame_request *request
   return HL_OK;
 }
 
-/* Whether sweeps composite into the caller's pixels: where one sweep fills them exactly, in whole tiles. */
+/* Whether sweeps composite into the caller's pixels. They do where one sweep fills these pixels exactly, in
+ * whole tiles. */
 static bool is_in_place(const frame_request *request, const frame_plan *plan) {
   const bool whole = plan->width % TILE == 0 && plan->height % TILE == 0 &&
                      request->row_stride == 4 * (size_t)plan->width;
@@ -45,7 +46,7 @@ hl_status hl_frame_target_create(hl_renderer *renderer, const frame_request *req
   lay_out_pixels(renderer, plan, target, &counted);
   hl_layer_pixels_count(plan->layers, &plan->frame, plan->tiles, &counted);
   hl_maximum_count(plan, &counted);
-  /* the blocks that one of several sweeps returns rarely fit the next one */
+  /* a block that one of several sweeps returns rarely fits the next sweep */
   reserve->keeps = plan->sweeps.count == 1;
   if (!reserve->keeps) hl_reserve_release(reserve);
   hl_status status = hl_renderer_check_room(renderer, counted.most, error);

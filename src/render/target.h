@@ -14,17 +14,17 @@ typedef struct frame_target {
   bool in_place;
   float *tile_rows; /* in_place: [threads][tiles_x][16][4][16] */
   layer_pixels layers;
-  maximum_values maximum; /* values null: matter is lit */
+  maximum_values maximum; /* with null values: matter is lit */
 } frame_target;
 
-/* target: zeros; to be released after an error, too. */
+/* target: must be zeros; must be released after an error, too. */
 hl_status hl_frame_target_create(hl_renderer *renderer, const frame_request *request, const frame_plan *plan,
                                  frame_target *target, hl_error *error);
 void hl_frame_target_release(hl_renderer *renderer, frame_target *target);
 
 /* A sweep's pixels. */
 float *hl_frame_target_pixels(const frame_target *target, const frame_plan *plan, int sweep);
-/* Makes all pixels of the picture zeros, again. */
+/* Sets all pixels of the picture to zero again. */
 void hl_frame_target_clear(hl_renderer *renderer, const frame_plan *plan, frame_target *target);
 /* Fills the caller's pixels and layers. */
 void hl_frame_target_write(hl_renderer *renderer, const frame_request *request, const frame_plan *plan,

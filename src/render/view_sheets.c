@@ -7,7 +7,7 @@ enum { INTERVAL_FLOATS = 2 * TILE_PIXELS };
 
 #define NO_ENTRY UINT32_MAX
 
-/* Whether some box cuts anything visible: rays must then know where they enter and leave it. */
+/* Whether some box cuts visible matter: rays must then know where they enter and leave the box. */
 static bool any_cut(const sheet_content *content) {
   bool any = false;
   for (int g = 0; g < content->volume_count; g++) any = any || content->grids[g].cut;
@@ -63,8 +63,8 @@ static void set_up_cuts(view_sheets *sheets) {
       set_up_cut(sheets, &sheets->content->grids[g], &sheets->content->grids[g].cuts[i], at++);
 }
 
-/* Fills a row of entries beyond the box's: shortens the box's sections to the insides that are kept, and
- * stores the sections that cuts remove. */
+/* Fills the part of a row of entries that belongs to cuts: shortens the box's sections to the insides that
+ * are kept, and stores the sections that cuts remove. */
 static void enter_cuts(const view_sheets *sheets, slab_place place, float *enter) {
   int grid = (int)sheets->occupancy.patch_grid[place.patch];
   size_t tiles_x = (size_t)sheets->occupancy.tiles_x, first = cuts_before(sheets, grid);
@@ -100,7 +100,7 @@ static float *entries_of(view_sheets *sheets, slab_place place) {
   return enter;
 }
 
-/* Takes the removed section of a ray from the section of a slab. One section is left: where a cut removes the
+/* Takes the removed section of a ray from the section of a slab. One section remains: where a cut removes the
  * middle of a slab, the second part moves up to the first. */
 static void remove_section(float from, float to, float *enter, float *leave) {
   if (!(from < to) || to <= *enter || from >= *leave) return;
@@ -110,7 +110,7 @@ static void remove_section(float from, float to, float *enter, float *leave) {
   else *leave = *enter;
 }
 
-/* Where a patch's rays enter and leave what cuts leave of a slab; null: see entries_of(). */
+/* Where a patch's rays enter and leave the part of a slab that cuts leave; null: see entries_of(). */
 static const float *entries_of_slab(view_sheets *sheets, slab_place place) {
   float *enter = entries_of(sheets, place), *here = enter + INTERVAL_FLOATS,
         *removed = here + INTERVAL_FLOATS;
@@ -120,8 +120,8 @@ static const float *entries_of_slab(view_sheets *sheets, slab_place place) {
   for (size_t i = 0; i < cuts_of(sheets, grid); i++) count += !cuts[i].keep_inside;
   if (count == 0) return enter;
   const sheet_stack *stack = sheets->content->sheets;
-  /* the ends of the slab as covered() rounds them, so that rays which nothing cuts have the sums of a slab
-   * that nothing cuts */
+  /* The ends of the slab are rounded as in covered(), so that uncut rays have the sums of a slab that nothing
+   * cuts. */
   float top = (float)(place.sheet * stack->spacing), bottom = top - (float)stack->spacing;
   for (int p = 0; p < TILE_PIXELS; p++) {
     float from = enter[p] > bottom ? enter[p] : bottom, to = enter[TILE_PIXELS + p];
@@ -149,7 +149,7 @@ static hl_status sort_voxels(view_sheets *sheets, hl_error *error) {
 }
 
 /* Several sheets of a tile are filled in one go, while the tile's voxels are in the cache: one for each slab
- * of a run, or two where so many would take more than BUNDLE_BYTES. */
+ * of a run, or two where the sheets of a run would take more than BUNDLE_BYTES. */
 enum { BUNDLE_BYTES = 1 << 24, LARGE_BUNDLE = RUN_SLABS, SMALL_BUNDLE = 2 };
 _Static_assert(RUN_SLABS % SMALL_BUNDLE == 0, "a bundle lies within a run");
 
@@ -158,8 +158,8 @@ static int bundle_of_patches(size_t patches) {
                                                                                     : SMALL_BUNDLE;
 }
 
-/* Called after the patches are counted. The entries lie at the end of the block: memory that no patch asks
- * for is never touched. */
+/* Lays out the arrays, after the patches are counted. The entries lie at the end of the block: memory that no
+ * patch asks for is never touched. */
 static void lay_out(view_sheets *sheets, hl_layout *layout) {
   size_t patches = sheets->occupancy.patch_count, grids = (size_t)sheets->content->volume_count;
   sheets->bundle = bundle_of_patches(patches);
@@ -212,7 +212,7 @@ static hl_status keep_patches(view_sheets *sheets, hl_error *error) {
   return HL_OK;
 }
 
-/* Runs are RUN_SLABS slabs long. The first sheet of the run to which the slab before `sheet` belongs. */
+/* The first sheet of the run to which the slab before `sheet` belongs. Runs are RUN_SLABS slabs long. */
 static int first_of_run(int sheet) { return (sheet - 1) / RUN_SLABS * RUN_SLABS; }
 
 static slab_run *run_of_grid(const view_sheets *sheets, int first, int grid) {
@@ -226,8 +226,8 @@ static bool reaches_sheets(const view_sheets *sheets, int grid, int first, int l
   return last >= range->first - 1 && first <= range->last + 1;
 }
 
-/* A slab is cut where a box's face crosses it, or crosses the way of light to a sample in it: that way begins
- * up to `beside` away. */
+/* Finds the slabs of a run that a box cuts. A face of the box may cross the slab, or cross the way of light
+ * to a sample in the slab; this way begins up to `beside` away. */
 static void reach_run(view_sheets *sheets, int first) {
   const sheet_content *content = sheets->content;
   for (int g = 0; g < content->volume_count; g++) {
@@ -252,8 +252,8 @@ static void reach_run(view_sheets *sheets, int first) {
   }
 }
 
-/* Rays are those of the run to which the slab before the sheet belongs, which was reached before: many
- * volumes share a frame. */
+/* Makes the sources of a sheet. Their rays belong to the run of the slab before the sheet, which was reached
+ * before. */
 static void reach_sheet(view_sheets *sheets, int sheet) {
   const sheet_content *content = sheets->content;
   const int run = sheet == 0 ? 0 : first_of_run(sheet);
@@ -305,7 +305,7 @@ void hl_view_sheets_end(view_sheets *sheets) {
   hl_occupancy_release(content->context, &sheets->occupancy);
 }
 
-/* The kept densities of a patch on a sheet; emptied if they were another sheet's. */
+/* The kept densities of a patch on a sheet. They are emptied if they belong to another sheet. */
 static kept_patch *patch_on_sheet(const view_sheets *sheets, size_t patch, int sheet) {
   kept_patch *kept = &sheets->kept[patch * (size_t)sheets->ring + (size_t)(sheet % sheets->ring)];
   if (kept->sheet != sheet) *kept = (kept_patch){.sheet = sheet};
@@ -346,9 +346,9 @@ static float *density_on_sheet(const view_sheets *sheets, size_t patch, int shee
 typedef struct patch_bundle {
   const view_sheets *sheets;
   size_t tile, patch;
-  int first, slabs;             /* the sheet before the bundle; the bundle's number of slabs */
+  int first, slabs;             /* the sheet before the bundle; the number of slabs of the bundle */
   uint32_t relevant[RUN_SLABS]; /* blocks where each slab may show something */
-  uint64_t pixels;              /* filled */
+  uint64_t pixels;              /* number of filled pixels */
 } patch_bundle;
 
 /* The filled blocks of a sheet that show something. */
@@ -369,8 +369,8 @@ static uint32_t beside_visible(const patch_bundle *b, int i) {
          (relevant_in_slab(b, i) & visible_on(b, i + 1));
 }
 
-/* Fills blocks of a sheet that are not filled yet: all wanted blocks, and the other blocks where the sheet's
- * own cells may show something. */
+/* Fills blocks of a sheet that are not filled yet: all wanted blocks, and those other blocks in which the
+ * sheet's own cells may show something. */
 static void fill_sheet(patch_bundle *b, int i, uint32_t wanted, uint32_t others) {
   const occupancy *o = &b->sheets->occupancy;
   kept_patch *kept = patch_on_sheet(b->sheets, b->patch, b->first + i);
@@ -397,7 +397,7 @@ static void fill_sheets(patch_bundle *b) {
   for (int i = 1; i <= b->slabs; i += 2) fill_sheet(b, i, beside_visible(b, i), 0);
 }
 
-/* Fills a bundle of a patch in more blocks. Returns how many pixels were filled. */
+/* Fills a bundle of a patch in more blocks. Returns the number of filled pixels. */
 static uint64_t fill_bundle(const view_sheets *sheets, slab_place place, uint32_t more, patch_run *run) {
   int slab = place.sheet - 1 - run->first;
   patch_bundle b = {.sheets = sheets,
@@ -413,8 +413,8 @@ static uint64_t fill_bundle(const view_sheets *sheets, slab_place place, uint32_
   return b.pixels;
 }
 
-/* The last slab of a row that begins with `slab`, as far as one word of bits tells: a slab is touched by its
- * own sheet or by the one before. */
+/* The last slab of the row of touched slabs that begins with `slab`, as far as one word of bits tells. A slab
+ * is touched through its own sheet or through the sheet before it. */
 static int32_t last_of_row(const occupancy *o, size_t patch, int slab) {
   uint64_t without = ~(o->by_patch[patch * (size_t)o->words + (size_t)(slab / 64)] >> slab % 64);
   return slab + (without == 0 ? 64 : __builtin_ctzll(without));

@@ -1,5 +1,5 @@
-/* render/view_sheets.h - the last sheets of one view, the eye's or a light's: densities of patches, filled
- * when they are asked for and kept for the next slab. */
+/* render/view_sheets.h - the last sheets of one view, the eye's or a light's: the densities of patches, which
+ * are filled on demand and kept for the next slab. */
 #ifndef HL_RENDER_VIEW_SHEETS_H
 #define HL_RENDER_VIEW_SHEETS_H
 
@@ -19,13 +19,13 @@ typedef struct sheet_content {
   const grid *grids;           /* [volume_count], the frame's */
   int volume_count;
   const kernel *kernel;
-  bool splat;  /* else gather */
-  int stretch; /* the most slabs of a view that are reached together */
+  bool splat;  /* densities are splatted; else they are gathered */
+  int stretch; /* the most slabs of a view that are reached in one call */
 } sheet_content;
 
 /* A patch's densities on one sheet, kept for the next slab. */
 typedef struct kept_patch {
-  int32_t sheet;   /* -1: none */
+  int32_t sheet;   /* number of the sheet; -1: none */
   uint16_t need;   /* blocks that are filled */
   uint16_t blocks; /* filled blocks with density */
 } kept_patch;
@@ -40,7 +40,7 @@ typedef struct patch_run {
   uint16_t shows[RUN_SLABS]; /* per slab of the bundle: the filled blocks in which matter is visible */
 } patch_run;
 
-/* Slabs in a row that touch a patch, from the first to the last. */
+/* Consecutive slabs that touch a patch, from the first to the last. */
 typedef struct slab_row {
   int32_t first, last;
 } slab_row;
@@ -49,41 +49,43 @@ typedef struct slab_row {
 typedef struct view_sheets {
   const sheet_content *content;
   const view *view;
-  bool of_light; /* else the eye's */
-  double beside; /* the eye's view: the longest way of light through a slab, frame units. A light's:
-                    FACE_VOXELS where it lights surfaces, else 0 */
+  bool of_light; /* the view of a light; else the eye's */
+  double beside; /* the eye's view: the longest way of light through a slab, frame units. A light's view:
+                  * FACE_VOXELS where the light lights surfaces, else 0 */
   occupancy occupancy;
   voxel_lists *lists;   /* owned; [grids]; splat only */
   int bundle;           /* number of sheets that are filled in one go; a divisor of RUN_SLABS */
   int ring;             /* number of sheets that are kept: bundle + 1; sheet k at k % ring */
   void *memory;         /* borrowed from the reserve; holds all arrays below */
   float *density;       /* [patches][ring][256], block-major */
-  kept_patch *kept;     /* [patches][ring]; what is in density */
-  int reached;          /* number of sheets that have sources: those of a stretch, and of its bundles */
-  fill_source *sources; /* [reached][grids]; of sheet k at k % reached */
-  slab_run *runs;       /* [runs that a stretch may touch][grids]; of run k at k % run_count */
+  kept_patch *kept;     /* [patches][ring]; says which densities are in `density` */
+  int reached;          /* number of sheets that have sources: the sheets of a stretch and of its bundles */
+  fill_source *sources; /* [reached][grids]; the source of sheet k at k % reached */
+  slab_run *runs;       /* [runs that a stretch may touch][grids]; run k at k % run_count */
   int run_count;
   patch_run *patch_runs; /* [patches] */
-  slab_row *rows;        /* [patches]; no slab from the last one asked for up to a row touches its patch */
-  /* the next two: only where a box cuts anything visible; else null */
+  slab_row *rows;        /* [patches]; no slab from the last requested one up to the row touches the row's
+                          * patch */
+  /* the next two exist only where a box cuts visible matter; else they are null */
   uint32_t *entry_of; /* [patches]; its row of entries; NO_ENTRY where none was asked for */
   box_rays *box_rays; /* [grids] */
   float *entries; /* [patches][entry_floats], used up to entry_count: where rays enter a box and leave it */
   uint32_t entry_count; /* atomic */
-  size_t entry_floats;  /* a row: [2][256] for the box and what keeps an inside; where cuts keep an outside,
-                           [2][256] more for the slab at hand, and [2][256] for each of these cuts */
-  /* the next two: of all grids' cuts, one grid after the other; null where there are none for this view */
+  /* Floats of a row: [2][256] for the box and cuts that keep an inside. Where cuts keep an outside, [2][256]
+   * more for the current slab, and [2][256] for each of these cuts. */
+  size_t entry_floats;
+  /* the next two: the cuts of all grids, one grid after the other; null where no cut counts in this view */
   run_cut *cuts;
   box_rays *cut_rays;
 } view_sheets;
 
-/* content and view are borrowed until the end. of_light: cuts that leave shadows do not count. spare: as
- * hl_occupancy_build has it. hl_view_sheets_end releases what a failed begin leaves. */
+/* content and view are borrowed until the end. of_light: cuts that leave shadows do not count. spare: as for
+ * hl_occupancy_build(). After a failure, too, hl_view_sheets_end() must be called. */
 hl_status hl_view_sheets_begin(const sheet_content *content, const view *view, bool of_light, double spare,
                                view_sheets *sheets, hl_error *error);
 void hl_view_sheets_end(view_sheets *sheets);
-/* Counts what hl_view_sheets_begin takes; without the lists of splatted voxels, whose size is known only when
- * they are made. */
+/* Counts the memory that hl_view_sheets_begin() takes. It leaves out the lists of splatted voxels, whose size
+ * is known only when they are made. */
 void hl_view_sheets_count(const sheet_content *content, const view *view, double spare, hl_layout *layout);
 
 /* Call for each slab of a stretch before its patches are asked for; sheets rise from 1. */
@@ -96,29 +98,30 @@ typedef struct slab_place {
 } slab_place;
 
 bool hl_patch_reaches(view_sheets *sheets, size_t patch, int slab);
-/* Whether a slab touches a patch; slabs rise. Where many volumes share a tile, most are before or behind a
- * slab. */
+/* Whether a slab touches a patch. Ask for slabs in rising order. Where many volumes share a tile, most of
+ * them lie before or behind a slab. */
 static inline bool hl_patch_is_touched(view_sheets *sheets, size_t patch, int slab) {
   const slab_row *row = &sheets->rows[patch];
   return slab >= row->first && (slab <= row->last || hl_patch_reaches(sheets, patch, slab));
 }
 
-/* For a patch that the slab touches: the needed blocks in which the slab may show something. May be more than
- * hl_patch_slab() then finds. */
+/* The needed blocks of a patch in which a slab, which touches the patch, may show something. There may be
+ * more of them than hl_patch_slab() then finds. */
 uint32_t hl_patch_relevant(const view_sheets *sheets, slab_place place, uint32_t need);
 
 /* A patch's densities on a slab's two sheets. */
 typedef struct patch_slab {
   const float *before, *current; /* [256] block-major; valid in blocks */
-  const float *enter, *leave;    /* of the box, [256] block-major; null where it cuts nothing visible, unset
-                                    where uncut */
-  int uncut; /* the box cuts nothing in this slab, and no light on its way through it to the eye's pixels */
-  const slab_run *run; /* the run to which the slab belongs, and its number there */
+  const float *enter, *leave;    /* where rays enter and leave the box, [256] block-major; null where the box
+                                  * cuts nothing visible, unset where uncut */
+  int uncut; /* the box cuts nothing in this slab, and nothing on the light's ways through the box to the
+              * eye's pixels */
+  const slab_run *run; /* the run to which the slab belongs, and the slab's number in it */
   int slab;
-  uint32_t blocks; /* those in which any density may be visible */
+  uint32_t blocks; /* blocks in which any density may be visible */
 } patch_slab;
-/* Call after hl_patch_relevant() gave at least one block. need: all blocks that this and the bundle's next
- * slabs may ask for. *pixels is raised by the number of pixels filled. */
+/* Call after hl_patch_relevant() gave at least one block. need: all blocks that this slab and the next slabs
+ * of the bundle may ask for. *pixels is raised by the number of filled pixels. */
 patch_slab hl_patch_slab(view_sheets *sheets, slab_place place, uint32_t need, uint64_t *pixels);
 
 #endif

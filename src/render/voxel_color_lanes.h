@@ -25,8 +25,8 @@ LANES_INLINE void add_corner(const voxel_colors *colors, lanes_int offset, lanes
 
 /* The mean of the eight voxels' linear colours, each weighted trilinearly and by its own weight (colors.h):
  * what colours multiplied by opacity give, divided by the opacity (Porter and Duff, "Compositing digital
- * images", 1984). Beyond the outermost voxels these go on. Returns the mean weight, 0 to 255; where it is 0
- * the colour is black. */
+ * images", 1984). Beyond the outermost voxels their colours continue. Returns the mean weight, 0 to 255;
+ * where it is 0 the colour is black. */
 LANES_INLINE lanes voxel_color_at(const voxel_colors *colors, const float to_index[3][4], lanes3 position,
                                   lanes color[3]) {
   lanes_int near[3], far[3]; /* bytes along each axis */
@@ -54,8 +54,8 @@ LANES_INLINE lanes voxel_color_at(const voxel_colors *colors, const float to_ind
   return sums.weight;
 }
 
-/* Moves colours towards a mask's, by its weights; position: frame space. Where a brick of the mask has one
- * colour, this is the colour of all positions in it. Known for the active lanes. */
+/* Moves colours towards a mask's, by its weights. position: frame space. Where a brick of the mask has one
+ * colour, all positions in it have this colour. The result is set in the active lanes. */
 LANES_INLINE void tint_matter(const voxel_colors *tints, const mask_lattice *mask, lanes3 position,
                               uint32_t active, lanes color[3]) {
   mask_places p = places_in_mask(mask, position);
