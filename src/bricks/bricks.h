@@ -28,23 +28,24 @@
 #include <stdint.h>
 
 enum {
-  BRICK_MARGIN = 3,       /* coefficients of an axis that a brick stores beyond its cells' number */
-  BRICK_LEVELS_LIMIT = 16 /* levels of a field at most */
+  BRICK_MARGIN = 3,       /* number of coefficients of an axis that a brick stores beyond the number of its
+                           * cells */
+  BRICK_LEVELS_LIMIT = 16 /* the most levels of a field */
 };
 
-/* What covers one block of side^3 cells of level 0. */
+/* The entry of one block of side^3 cells of level 0: the brick that covers the block. */
 typedef struct hl_brick_entry {
   int32_t slot;   /* index into the pool; -1: all coefficients of the brick are `constant` */
   int32_t level;  /* level of the brick that covers the block */
-  float constant; /* data value; only where slot is -1 */
+  float constant; /* data value; set only where slot is -1 */
 } hl_brick_entry;
 
 typedef struct hl_bricks {
   int shift;           /* side = 2^shift cells */
   int levels;          /* 1 .. BRICK_LEVELS_LIMIT */
-  size_t dimension[3]; /* lattice points of level 0 along x, y, z, as a dense volume's voxels */
+  size_t dimension[3]; /* lattice points of level 0 along x, y, z, as many as a dense volume has voxels */
   double origin[3];    /* lattice coordinates of the volume's voxel (0,0,0) along x, y, z; not negative */
-  size_t directory_size[3]; /* blocks of level 0 along x, y, z: enough that all points lie in one */
+  size_t directory_size[3]; /* blocks of level 0 along x, y, z; they are enough to hold all points */
   hl_brick_entry
       *directory; /* owned; [z][y][x] blocks of level 0; a brick of level l fills 2^l entries an axis */
   float *pool;    /* owned; [slots][side + 3][side + 3][side + 3], z before y before x; data values */

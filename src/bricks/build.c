@@ -1,8 +1,8 @@
 /* bricks/build.c - hl_bricks_build(): the coefficients of each brick.
  *
- * A brick's coefficients that are not active are subdivided from those of the next coarser level, which are
- * found by the same rule. So each brick is made by itself, from the source alone, and the order of the bricks
- * does not matter. */
+ * A brick's coefficients that are not active are subdivided from the coefficients of the next coarser level,
+ * which are found by the same rule. So each brick is made by itself, from the source alone, and the order of
+ * the bricks does not matter. */
 #include "bricks/build.h"
 
 #include <string.h>
@@ -47,7 +47,7 @@ static bool is_coarser(const hl_bricks *bricks, int level, const ptrdiff_t block
   return bricks->directory[(at[2] * n[1] + at[1]) * n[0] + at[0]].level > level;
 }
 
-/* The cells on which it depends whether a box of coefficients is active. */
+/* The box of cells that decides which coefficients of a box are active. */
 static hl_lattice_box cells_of(const hl_lattice_box *box) {
   hl_lattice_box cells;
   for (int axis = 0; axis < 3; axis++) {
@@ -123,11 +123,12 @@ static size_t mask_floats(const hl_lattice_box *box) {
   return hl_lattice_points(&cells) / sizeof(float) + 1;
 }
 
-/* The scratch floats that assemble() takes for a box, at most. */
+/* The most floats of scratch memory that assemble() takes for a box. */
 static size_t scratch_of(hl_lattice_box box, int levels) {
   size_t sum = 0;
   for (int level = 0; level < levels; level++) {
-    for (int axis = 0; axis < 3; axis++) box.first[axis] &= ~(ptrdiff_t)1; /* even: needs the most */
+    /* An even first point needs the most memory. */
+    for (int axis = 0; axis < 3; axis++) box.first[axis] &= ~(ptrdiff_t)1;
     for (int axis = 0; axis < 3; axis++) box.count[axis] |= 1;
     hl_lattice_box coarse = hl_subdivision_source(&box);
     sum += mask_floats(&box) + hl_lattice_points(&coarse) + hl_lattice_points(&box) +
@@ -191,8 +192,8 @@ static hl_status fail_leaf(const hl_bricks_leaf *leaf, const char *subject, cons
                  leaf->brick[1], leaf->brick[2], leaf->level, what);
 }
 
-/* Calls for the directory's entries of a leaf, those within the directory. Returns false where the leaf lies
- * beyond it. */
+/* The entries of a leaf that lie within the directory. blocks_of() returns false where the leaf lies outside
+ * of the directory. */
 typedef struct leaf_blocks {
   size_t low[3], high[3]; /* blocks low .. high - 1 */
 } leaf_blocks;
@@ -263,7 +264,7 @@ static hl_status make_directory(hl_context *context, const hl_bricks_source *sou
 
 /* ---- the whole ---- */
 
-/* Moves the bricks that are not constant together, and makes the others constants. */
+/* Moves the bricks that are not constant together, and turns the other bricks into constants. */
 static void keep_bricks(const builder *b, size_t count) {
   hl_bricks *bricks = b->bricks;
   size_t points = brick_points(bricks->shift);
@@ -302,7 +303,7 @@ static hl_status make_bricks(hl_context *context, builder *b, size_t count, cons
   keep_bricks(b, count);
   if (bricks->slots == count) return HL_OK;
   float *kept = hl_reallocate(context, bricks->pool, bricks->slots * points, sizeof *kept);
-  if (kept != NULL) bricks->pool = kept; /* without memory for a copy, the larger block stays */
+  if (kept != NULL) bricks->pool = kept; /* where there is no memory for a copy, the larger block stays */
   return HL_OK;
 }
 

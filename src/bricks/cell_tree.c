@@ -10,14 +10,14 @@ enum { CELLS_OF_A_LEAF = 6, DEPTH_MOST = 30 };
 
 static float middle(const hl_cell_box *box, int axis) { return box->low[axis] + box->high[axis]; }
 
-/* The cells of node `n` of a level: order[begin .. end). */
+/* The cells of node `n` of a level are order[begin .. end). */
 static size_t range_begin(const hl_cell_tree *tree, int level, size_t n) {
   /* n count / 2^level without overflow: counts are below 2^32 */
   return (size_t)(((uint64_t)n * (uint64_t)tree->count) >> level);
 }
 
-/* Orders cells so that those before `nth` have no greater middle than it, and those after no smaller one
- * (Hoare's selection). */
+/* Orders cells so that no cell before `nth` has a greater middle than the cell at `nth`, and no cell after it
+ * has a smaller one (Hoare's selection). */
 static void select_nth(const hl_cell_tree *tree, size_t begin, size_t end, size_t nth, int axis) {
   uint32_t *order = tree->order;
   while (end - begin > 1) {

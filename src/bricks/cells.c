@@ -1,7 +1,8 @@
 /* bricks/cells.c - see cells.h.
  *
- * Each cell has a level, by its edge. A brick is split where it may meet a cell of a finer level. A lattice
- * point's coefficient is the value of the cell around it; a tree finds the cells near a brick. */
+ * Each cell has a level, which depends on the length of its edge. A brick is split where it may meet a cell
+ * of a finer level. A lattice point's coefficient is the value of the cell around it; a tree finds the cells
+ * near a brick. */
 #include "bricks/cells.h"
 
 #include <math.h>
@@ -14,11 +15,12 @@
 
 enum { SHIFT = 4, SIDE = 1 << SHIFT, STORED = SIDE + BRICK_MARGIN, LEVELS_MOST = 9 };
 
-/* Points along a cell's edge. */
+/* Number of lattice points along a cell's edge. */
 static const double POINTS_OF_AN_EDGE = 2;
-/* The part of the cells, of those with the shortest edges, whose edge decides the finest spacing. */
+/* The fraction of cells, of the cells with the shortest edges, that may have shorter edges than the edge
+ * which sets the finest spacing. */
 static const double FINEST_PART = 0.01;
-/* Bytes of bricks that are made without a memory limit. */
+/* The most bytes that bricks take where there is no memory limit. */
 static const double BYTES_MOST = 1073741824.0;
 /* Cells with a corner at this distance from the origin, or farther, are left out. */
 static const double FARTHEST = 1e30;
@@ -73,13 +75,13 @@ static void measure_cells(cell_field *field, double low[3], double high[3], size
 
 enum { BINS = 512 };
 
-/* A bin of a histogram of edges, of which eight double the edge. */
+/* The bin of a histogram of edges. Eight bins double the edge. */
 static int bin_of(double edge) {
   int bin = (int)floor(log2(edge) * 8) + BINS / 2;
   return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
 }
 
-/* The edge below which a part of the cells lies. */
+/* The edge that the fraction FINEST_PART of the used cells does not reach. */
 static double finest_edge(const cell_field *field, size_t used) {
   size_t counts[BINS] = {0}, sum = 0;
   for (size_t n = 0; n < field->cells->cell_count; n++)
@@ -92,12 +94,13 @@ static double finest_edge(const cell_field *field, size_t used) {
 }
 
 static int level_of(double edge, double spacing) {
-  double level = floor(log2(edge / POINTS_OF_AN_EDGE / spacing) + 0.25); /* bins are an eighth wide */
+  /* A bin is an eighth of an octave wide. */
+  double level = floor(log2(edge / POINTS_OF_AN_EDGE / spacing) + 0.25);
   return level < 0 ? 0 : level > LEVELS_MOST - 1 ? LEVELS_MOST - 1 : (int)level;
 }
 
-/* About how many bytes the bricks need: the directory, and cells by their own volume, with borders and partly
- * filled bricks. size: of the mesh's box. */
+/* About how many bytes the bricks need: the bytes of the directory and the bytes of cells by their own
+ * volume, with borders and partly filled bricks. size: the size of the mesh's box. */
 static double bytes_of(const cell_field *field, double spacing, const double size[3]) {
   double points = 0, blocks = 1;
   for (int axis = 0; axis < 3; axis++) blocks *= ceil(size[axis] / spacing / SIDE) + 1;
@@ -115,7 +118,7 @@ static double choose_spacing(const cell_field *field, size_t used, const double 
   double spacing = wanted, most = BYTES_MOST;
   uint64_t limit = field->context->options.memory_limit;
   if (limit > 0 && (double)limit / 4 < most) most = (double)limit / 4;
-  for (int axis = 0; axis < 3; axis++) /* a row of blocks alone must not need more */
+  for (int axis = 0; axis < 3; axis++) /* a single row of blocks must not need more */
     spacing = fmax(spacing, size[axis] / SIDE * sizeof(hl_brick_entry) / most);
   while (bytes_of(field, spacing, size) > most && spacing < FARTHEST) spacing *= sqrt(2);
   if (spacing > wanted)
@@ -127,7 +130,7 @@ static double choose_spacing(const cell_field *field, size_t used, const double 
   return spacing;
 }
 
-/* Chooses the lattice. Its points lie half a spacing inside of the mesh's box. */
+/* Chooses the lattice. Its outermost points lie half a spacing inside the mesh's box. */
 static hl_status choose_lattice(cell_field *field, hl_error *error) {
   double low[3], high[3];
   size_t used;
@@ -170,7 +173,7 @@ static hl_status make_tree(cell_field *field, hl_error *error) {
         box.low[axis] = fminf(box.low[axis], (float)(at - margin));
         box.high[axis] = fmaxf(box.high[axis], (float)(at + margin));
       }
-    if (!sound) /* a box that nothing meets, in the middle of no place */
+    if (!sound) /* a box far away from all others, for a cell that no brick meets */
       box = (hl_cell_box){{-3e30f, -3e30f, -3e30f}, {-3e30f, -3e30f, -3e30f}};
     boxes[n] = box;
   }
@@ -188,8 +191,8 @@ typedef struct fill_job {
   float *out;
 } fill_job;
 
-/* Sets the points of the box that lie in a cell. Of cells that share a point the last in the tree's order
- * counts, and each call meets all of them. */
+/* Sets the points of the box that lie in a cell. Where cells share a point, the last cell in the tree's order
+ * counts, and each call meets all of these cells. */
 static bool fill_from_cell(void *data, uint32_t n) {
   const fill_job *job = data;
   const hl_cell *cell = &job->field->cells->cells[n];

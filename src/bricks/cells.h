@@ -1,12 +1,13 @@
-/* bricks/cells.h - meshes of cells with a volume (tetrahedra, hexahedra and what collapses from them), as a
- * field at levels.
+/* bricks/cells.h - meshes of cells with a volume (tetrahedra, hexahedra, and wedges and pyramids as collapsed
+ * hexahedra), as a field at levels.
  *
- * Within a cell, values are interpolated between its corners: linearly in tetrahedra, trilinearly in others.
- * The field's coefficients are these values at lattice points, whose spacing is about half of a cell's edge,
- * so that small cells get finer bricks. Outside of all cells the field is NaN.
+ * Within a cell, values are interpolated between its corners: linearly in tetrahedra, trilinearly in other
+ * cells. The field's coefficients are these values at lattice points, whose spacing is about half of a cell's
+ * edge, so that small cells get finer bricks. Outside of all cells the field is NaN.
  *
- * In:  points, their values, and cells by their corners (readers of files, arrays of callers).
- * Out: hl_bricks, where they stand in the world, and how far the field is from the mesh's values. */
+ * In:  points, their values, and cells by their corners (readers of files, arrays of callers). Out:
+ * hl_bricks, the place of their lattice in the world, and the greatest difference between the field and the
+ * mesh's values. */
 #ifndef HL_BRICKS_CELLS_H
 #define HL_BRICKS_CELLS_H
 
@@ -14,8 +15,8 @@
 #include "bricks/cell_shapes.h"
 
 /* Makes the field. Corners must be below point_count. Voxels are the lattice points of level 0. The finest
- * spacing is made coarser where bricks would need more than a quarter of the context's memory limit, or 2^30
- * bytes, and a warning tells. *bricks is empty on failure. subject: starts error lines. */
+ * spacing is made coarser where bricks would need more than a quarter of the context's memory limit, or more
+ * than 2^30 bytes; a warning then says so. *bricks is empty on failure. subject: starts error lines. */
 hl_status hl_cells_build(hl_context *context, hl_pool *pool, const hl_cells *cells, const char *subject,
                          hl_bricks *bricks, hl_cells_place *place, hl_error *error);
 

@@ -9,8 +9,8 @@ typedef struct coarsening {
   hl_bricks_source source;
 } coarsening;
 
-/* The old field's number for a point of a new level: its coefficient of that spacing where a brick has one.
- */
+/* The number that the old field has at a point of a new level: its coefficient of this spacing where a brick
+ * has one. */
 static float number_at(const hl_bricks *fine, int level, const ptrdiff_t point[3]) {
   int64_t block[3];
   double at[3];
@@ -44,8 +44,8 @@ static bool is_outside(const coarsening *c, const hl_brick_entry *entry) {
   return entry->slot < 0 && entry->constant == c->source.outside;
 }
 
-/* A brick is split where the old field has a brick that is finer than its spacing, and left out where the old
- * field is the outside's number. */
+/* Splits a brick where the old field has a brick of a finer spacing, and leaves it out where the old field is
+ * the number outside. */
 static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
   const coarsening *c = data;
   const size_t blocks = (size_t)2 << level, *size = c->fine->directory_size;
@@ -62,7 +62,7 @@ static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
   return outside ? HL_BRICKS_NOTHING : finer ? HL_BRICKS_SPLIT : HL_BRICKS_LEAF;
 }
 
-/* The first constant of the directory, which is the number around the field where there is one. */
+/* The first constant of the directory. Where there is one, it is the number around the field. */
 static float number_outside(const hl_bricks *bricks) {
   const size_t *n = bricks->directory_size;
   for (size_t at = 0; at < n[0] * n[1] * n[2]; at++)

@@ -5,10 +5,10 @@
 #include "bricks/build.h"
 
 /* Makes a field on a lattice of twice the spacing: level l + 1 of `bricks` becomes level l. Coarser bricks
- * keep their coefficients. Where bricks are of level 0, the coefficients are the field's values at every
- * second point. Point p of the new lattice stands at point 2 p of the old one; origin is set so that a voxel
- * of the new volume stands in the middle of two by two by two voxels. subject: starts error lines. *coarser
- * is empty on failure; owned by the caller (hl_bricks_release). */
+ * keep their coefficients. Where the old bricks have level 0, the new coefficients are the field's values at
+ * every second point. Point p of the new lattice stands at point 2 p of the old one; origin is set so that a
+ * voxel of the new volume stands in the middle of 2x2x2 voxels of the old one. subject: starts error lines.
+ * *coarser is empty on failure; owned by the caller (hl_bricks_release). */
 hl_status hl_bricks_make_coarser(hl_context *context, hl_pool *pool, const hl_bricks *bricks,
                                  const char *subject, hl_bricks *coarser, hl_error *error);
 

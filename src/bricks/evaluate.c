@@ -9,12 +9,13 @@ static int64_t clamp_whole(int64_t at, int64_t low, int64_t high) {
   return at < low ? low : at > high ? high : at;
 }
 
-/* The block whose brick tells the cell, or the coefficient, at a coordinate of level 0. */
+/* The block whose brick has the cell, or the coefficient, at a coordinate of level 0. */
 static int64_t block_of(const hl_bricks *bricks, int axis, int64_t at) {
   return clamp_whole(at, 0, hl_bricks_cells(bricks, axis) - 1) >> bricks->shift;
 }
 
-/* Four coefficients along an axis of a brick, counted from the first that it stores, and their weights. */
+/* Four coefficients along an axis of a brick, and their weights. They are counted from the first coefficient
+ * that the brick stores. */
 typedef struct taps {
   int64_t index[TAPS];
   double weight[TAPS];
@@ -35,7 +36,7 @@ static void weigh_subdivided(int level, int64_t point, double weight[TAPS]) {
   double fine[TAPS] = {0, 1, 0, 0};
   for (int step = 0; step < level; step++) {
     int64_t first = (point >> step) - 1, first_coarse = (point >> (step + 1)) - 1;
-    double coarse[TAPS + 2] = {0}; /* from first_coarse - 1 on */
+    double coarse[TAPS + 2] = {0}; /* begins at coefficient first_coarse - 1 */
     for (int tap = 0; tap < TAPS; tap++) {
       int64_t at = first + tap, j = (at >> 1) - first_coarse + 1;
       if (fine[tap] == 0) continue;
@@ -50,7 +51,7 @@ static void weigh_subdivided(int level, int64_t point, double weight[TAPS]) {
   for (int tap = 0; tap < TAPS; tap++) weight[tap] = fine[tap];
 }
 
-/* Taps without a weight are left out, as they may be no numbers. */
+/* Taps without a weight are left out, because their coefficients may be NaN. */
 static double sum_taps(const hl_bricks *bricks, const float *brick, const taps at[3]) {
   size_t width = hl_brick_width(bricks);
   double sum = 0;

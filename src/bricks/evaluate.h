@@ -1,21 +1,22 @@
 /* bricks/evaluate.h - a field in bricks at single places: coefficients of level 0, values, ranges.
  *
- * The whole field is one B-spline of level 0, because every level's B-splines are sums of those of the next
- * finer level. Its coefficients are those of the bricks of level 0, and the subdivided ones of coarser
- * bricks. All functions continue the field beyond the directory's faces by the value at the faces. */
+ * The whole field is one B-spline of level 0, because the B-splines of each level are sums of B-splines of
+ * the next finer level. Its coefficients are the coefficients of the bricks of level 0, and subdivided
+ * coefficients of coarser bricks. All functions continue the field beyond the directory's faces by the value
+ * at the faces. */
 #ifndef HL_BRICKS_EVALUATE_H
 #define HL_BRICKS_EVALUATE_H
 
 #include "bricks/bricks.h"
 
-/* Coefficients along an axis that a brick stores. */
+/* Number of coefficients along an axis that a brick stores. */
 static inline size_t hl_brick_width(const hl_bricks *bricks) {
   return ((size_t)1 << bricks->shift) + BRICK_MARGIN;
 }
 static inline size_t hl_brick_coefficients(const hl_bricks *bricks) {
   return hl_brick_width(bricks) * hl_brick_width(bricks) * hl_brick_width(bricks);
 }
-/* The number of cells of level 0 along an axis: the field is told from 0 to this coordinate. */
+/* The number of cells of level 0 along an axis. The field is defined from 0 to this coordinate. */
 static inline int64_t hl_bricks_cells(const hl_bricks *bricks, int axis) {
   return (int64_t)bricks->directory_size[axis] << bricks->shift;
 }
@@ -34,14 +35,15 @@ float hl_bricks_coefficient(const hl_bricks *bricks, const int64_t point[3]);
 /* The field's value at a point of the lattice. */
 double hl_bricks_value(const hl_bricks *bricks, const double point[3]);
 
-/* The least and the greatest coefficient on which the cells first .. last of level 0 depend: the field's
- * values there lie between them. */
+/* The least and the greatest of the coefficients on which the cells first .. last of level 0 depend. The
+ * field's values in these cells lie between the two. */
 void hl_bricks_range(const hl_bricks *bricks, const int64_t first[3], const int64_t last[3], float range[2]);
 
-/* Whether all coefficients and constants are finite. Others are places without data. */
+/* Whether all coefficients and constants are finite. Numbers that are not finite stand for places without
+ * data. */
 bool hl_bricks_are_finite(const hl_bricks *bricks);
-/* Copies bricks with `empty` in place of what is not finite. filled: its directory and pool have room for
- * those of `bricks`; the rest is set. */
+/* Copies bricks, with `empty` in place of numbers that are not finite. filled: its directory and pool must
+ * have room for the bricks' directory and pool; the function sets its other members. */
 void hl_bricks_fill_holes(const hl_bricks *bricks, float empty, hl_bricks *filled);
 
 /* The bytes of the directory and the pool. */

@@ -135,7 +135,7 @@ bool hl_cell_weights(const hl_cell_shape *shape, const double point[3], double w
     for (int axis = 0; axis < 3; axis++) {
       double change = 0;
       for (int row = 0; row < 3; row++) change += inverse[axis][row] * (point[row] - value[row]);
-      at[axis] = fmin(fmax(at[axis] + change, -1), 2); /* points that lie farther outside are outside */
+      at[axis] = fmin(fmax(at[axis] + change, -1), 2); /* a point that lies farther outside is outside */
       step = fmax(step, fabs(change));
     }
   }

@@ -9,7 +9,7 @@
 typedef struct hl_cell_shape {
   bool is_tetrahedron;
   double corner[8][3];
-  double inverse[3][3]; /* of a tetrahedron: from differences to the first corner to weights */
+  double inverse[3][3]; /* of a tetrahedron: maps differences from the first corner to weights */
 } hl_cell_shape;
 
 /* Completes a shape whose corners are set. False if the cell has no volume. */

@@ -54,7 +54,7 @@ void hl_patches_destroy(hl_patches *patches) {
 
 /* ---- blocks ---- */
 
-/* The place of a block in a table: where it is, or where it would be put. */
+/* The place of a block in a table: where the block is, or where it would be put. */
 static size_t place_of(const block_table *table, const uint32_t at[3]) {
   uint64_t hash = at[0] * 0x9e3779b97f4a7c15u + at[1] * 0xbf58476d1ce4e5b9u + at[2] * 0x94d049bb133111ebu;
   hash ^= hash >> 29;
@@ -81,7 +81,7 @@ static bool grow_table(hl_context *context, block_table *table) {
   return true;
 }
 
-/* The block at a place, made if there is none; null without memory. */
+/* The block at a place; it is made where there is none. Null where there is no memory. */
 static cell_block *make_block(hl_patches *patches, int level, const uint32_t at[3]) {
   block_table *table = &patches->table[level];
   if (2 * (table->count + 1) > table->size && !grow_table(patches->context, table)) return NULL;
@@ -186,13 +186,13 @@ static hl_status average(hl_patches *patches, const char *subject, hl_error *err
 
 /* ---- the source of the field ---- */
 
-/* The nearest cell of the domain. */
+/* The cell of the domain that is nearest to a cell. */
 static size_t clamp_cell(const hl_patches *patches, int level, int axis, ptrdiff_t cell) {
   size_t cells = patches->domain[axis] >> level;
   return cell < 0 ? 0 : (size_t)cell < cells ? (size_t)cell : cells - 1;
 }
 
-/* The block that was looked up last, for neighbours that lie in the same. */
+/* The block that was looked up last. Neighbouring cells mostly lie in the same block. */
 typedef struct last_block {
   uint32_t at[3];
   const cell_block *block;
@@ -210,15 +210,15 @@ static float cell_value(const hl_patches *patches, int level, const size_t cell[
   return last->block != NULL ? last->block->value[cell_in_block(cell[0], cell[1], cell[2])] : NAN;
 }
 
-/* What a corner's coefficient takes of the four cells along an axis around it. The mean of the middle two
- * would blur: means over cells, means at corners and the cubic B-spline have the variances 1/12, 1/4 and 1/3
- * of a cell's edge squared. The weights -1/6, 2/3, 2/3, -1/6 have the variance -5/12, so that the field is
- * the source's to the fourth order of the edge (derived). */
+/* The weights in a corner's coefficient of the four cells around it along an axis. The mean of the two middle
+ * cells would blur: means over cells, means at corners and the cubic B-spline have the variances 1/12, 1/4
+ * and 1/3 of the squared edge of a cell. The weights -1/6, 2/3, 2/3, -1/6 have the variance -5/12, so that
+ * the field equals the source to the fourth order of the edge (derived). */
 enum { AROUND = 4 };
 static const double around[AROUND] = {-1.0 / 6, 2.0 / 3, 2.0 / 3, -1.0 / 6};
 
-/* The coefficient of a corner. It is kept within the least and the greatest of the eight cells that meet
- * there, so that no shock makes values that no cell has. */
+/* The coefficient of a corner. It is limited to the range of the eight cells that meet at the corner, so that
+ * a shock makes no values that no cell has. */
 static float corner_value(const hl_patches *patches, int level, const ptrdiff_t corner[3], last_block *last) {
   double sum = 0, nearest = 0;
   float least = INFINITY, greatest = -INFINITY;
@@ -239,7 +239,7 @@ static float corner_value(const hl_patches *patches, int level, const ptrdiff_t 
         count++;
       }
   if (count == 0) return NAN;
-  if (!(sum == sum)) sum = nearest / count; /* cells without values are near */
+  if (!(sum == sum)) sum = nearest / count; /* a cell without a value is near */
   return sum < (double)least ? least : sum > (double)greatest ? greatest : (float)sum;
 }
 
@@ -274,9 +274,12 @@ static void cover(void *data, int level, const ptrdiff_t first[3], const size_t 
 
 /* ---- which bricks ---- */
 
-/* A brick is split where the next finer level has a block in it. */
+/* A brick is split where the next finer level has a block within it. */
 static hl_bricks_choice choose(void *data, int level, const size_t brick[3]) {
-  enum { FINER = 1 << (SHIFT + 1 - BLOCK_SHIFT) }; /* blocks of the finer level along a brick's edge */
+  enum {
+    FINER = 1 << (SHIFT + 1 - BLOCK_SHIFT)
+  }; /* number of blocks of the finer level along a brick's
+      * edge */
   const hl_patches *patches = data;
   for (int axis = 0; axis < 3; axis++)
     if (brick[axis] << SHIFT >= patches->domain[axis] >> level) return HL_BRICKS_NOTHING;

@@ -2,24 +2,26 @@
  *
  * A cell's value is the mean over the cell. The field's coefficients stand at the corners of cells, because
  * these nest: a coefficient is the mean of the eight cells around its corner. Cells that finer patches cover
- * count as the means of the finer cells. The cells along a domain's faces go on beyond it.
+ * count as the means of the finer cells. Beyond a domain's faces the values of the cells along the faces
+ * continue.
  *
- * In:  boxes of cells with values (readers of files, arrays of callers).
- * Out: hl_bricks whose level 0 is the finest level of refinement. */
+ * In:  boxes of cells with values (readers of files, arrays of callers). Out: hl_bricks whose level 0 is the
+ * finest level of refinement. */
 #ifndef HL_BRICKS_PATCHES_H
 #define HL_BRICKS_PATCHES_H
 
 #include "bricks/build.h"
 
-/* The cells of all levels that have values, in blocks of 8^3 that are made where a patch needs them. */
+/* All cells that have values, at all levels. They lie in blocks of 8^3 cells, which are made where a patch
+ * needs them. */
 typedef struct hl_patches hl_patches;
 
-/* Makes an empty set. levels: levels of the lattice, of which 0 has the finest cells, and each further one
- * has cells twice as wide. domain: the number of cells of level 0 along x, y, z; a multiple of 2^(levels -
- * 1). */
+/* Makes an empty set. levels: number of levels of the lattice. Level 0 has the finest cells, and each next
+ * level has cells twice as wide. domain: the number of cells of level 0 along x, y, z; a multiple of
+ * 2^(levels - 1). */
 hl_status hl_patches_create(hl_context *context, int levels, const size_t domain[3], hl_patches **patches,
                             hl_error *error);
-void hl_patches_destroy(hl_patches *patches); /* null is allowed */
+void hl_patches_destroy(hl_patches *patches); /* patches may be null */
 
 /* Sets the values of cells first .. first + count - 1 of a level, which must lie within the domain. values:
  * [count[2]][count[1]][count[0]], x fastest. A later patch of the same level overwrites an earlier one. A

@@ -25,8 +25,9 @@ static inline float difference(float other, float d) {
   return change == change || d != d ? change : 0;
 }
 
-/* The coefficient i along an axis. from: the coarse coefficients, of which the first is `first`; step: from
- * one to the next. Written with differences, so that equal coefficients give the same number. */
+/* Coefficient i along an axis. from: the coarse coefficients; their first one has the index `first`. step:
+ * distance from one coefficient to the next. The sums are written with differences, so that equal
+ * coefficients give exactly the same number. */
 static inline float along(const float *from, ptrdiff_t first, size_t step, ptrdiff_t i) {
   const float *d = from + (size_t)(half(i) - first) * step;
   if (i & 1) return d[0] == d[0] ? d[0] + 0.5f * difference(d[step], d[0]) : d[step];

@@ -1,11 +1,11 @@
 /* bricks/subdivide.h - the coefficients of a level from those of the next coarser level: the same field on a
  * lattice twice as fine.
  *
- * Along each axis, with the coarse coefficients d: coefficient 2j is (d[j-1] + 6 d[j] + d[j+1]) / 8, and 2j +
- * 1 is (d[j] + d[j+1]) / 2 (J. Lane, R. Riesenfeld, A theoretical development for the computer generation and
- * display of piecewise polynomial surfaces, 1980). Coefficients that are not numbers stand for places without
- * data: they are left out of the sums, and where all of a sum is left out, the result is not a number either.
- */
+ * Along each axis, with the coarse coefficients d: coefficient 2j is (d[j-1] + 6 d[j] + d[j+1]) / 8, and
+ * coefficient 2j + 1 is (d[j] + d[j+1]) / 2 (J. Lane, R. Riesenfeld, A theoretical development for the
+ * computer generation and display of piecewise polynomial surfaces, 1980). A coefficient that is NaN stands
+ * for a place without data. It is left out of the sums. Where all coefficients of a sum are left out, the
+ * result is NaN. */
 #ifndef HL_BRICKS_SUBDIVIDE_H
 #define HL_BRICKS_SUBDIVIDE_H
 
@@ -24,7 +24,7 @@ static inline size_t hl_lattice_points(const hl_lattice_box *box) {
 /* The points of the next coarser level on which a box depends. */
 hl_lattice_box hl_subdivision_source(const hl_lattice_box *box);
 
-/* The floats of scratch memory that hl_subdivide() needs for a box. */
+/* The number of floats of scratch memory that hl_subdivide() needs for a box. */
 size_t hl_subdivision_scratch(const hl_lattice_box *box);
 
 /* Fills a box. coarse: the coefficients of hl_subdivision_source(box). Boxes are stored [z][y][x]. A constant
@@ -32,8 +32,8 @@ size_t hl_subdivision_scratch(const hl_lattice_box *box);
 void hl_subdivide(const hl_lattice_box *box, const float *coarse, float *scratch, float *fine);
 
 /* The field at a lattice point, where the cubic B-spline is 1/6, 2/3, 1/6 along each axis. first: the
- * coefficient one before the point along each axis, among rows `row` and slices `slice` floats apart. NaN
- * where one of the 27 coefficients is. */
+ * coefficient one before the point along each axis. row, slice: floats from one row, and from one slice, to
+ * the next. The result is NaN where one of the 27 coefficients is NaN. */
 double hl_field_at_point(const float *first, size_t row, size_t slice);
 
 #endif
