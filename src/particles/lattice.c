@@ -1,7 +1,7 @@
 /* particles/lattice.c - chooses the lattice on which particles are spread.
  *
- * In: particles with smoothing lengths, and limits. Out: place, spacing, size and levels. The arithmetic is
- * exact or of correctly rounded operations, so that the choice is the same on every machine. */
+ * In: particles with smoothing lengths, and limits. Out: place, spacing, size and levels. All operations are
+ * exact or correctly rounded, so that the choice is the same on every machine. */
 #include "particles/particles.h"
 
 #include <math.h>
@@ -10,12 +10,13 @@ enum {
   BINS_OF_OCTAVE = 8,
   OCTAVES = 320, /* floats have exponents from -149 to 128 */
   LEVELS_MOST = 8,
-  LEAST_CELLS = 4,   /* cells of the coarsest level along the longest axis */
-  PART_OF_EXTENT = 8 /* kernels beyond the outermost places get an eighth of the extent at most, and a kernel
-                      * of middling size */
+  LEAST_CELLS = 4, /* least number of cells of the coarsest level along the longest axis */
+  /* the lattice goes beyond the outermost places by at most the longest extent over this number, plus the
+   * reach of a kernel of middling size */
+  PART_OF_EXTENT = 8
 };
 
-/* How many particles have a smoothing length in each eighth of an octave. */
+/* The number of particles whose smoothing length lies in each eighth of an octave. */
 typedef struct lengths {
   uint64_t count[OCTAVES * BINS_OF_OCTAVE];
   double most;
@@ -25,13 +26,13 @@ static void count_lengths(const hl_particle_set *set, lengths *l) {
   *l = (lengths){.most = 0};
   for (size_t n = 0; n < set->count; n++) {
     int exponent;
-    double length = (double)set->length[n], part = frexp(length, &exponent); /* part: from 1/2 to 1 */
+    double length = (double)set->length[n], part = frexp(length, &exponent); /* part lies from 1/2 to 1 */
     l->count[(exponent + 160) * BINS_OF_OCTAVE + (int)((part - 0.5) * 2 * BINS_OF_OCTAVE)]++;
     l->most = fmax(l->most, length);
   }
 }
 
-/* A length that this part of the particles stays below: the lower end of its bin. */
+/* A length such that this part of the particles has smaller ones: the lower end of its bin. */
 static double length_below(const lengths *l, size_t count, double part) {
   uint64_t sum = 0;
   int bin = 0;
@@ -42,7 +43,7 @@ static double length_below(const lengths *l, size_t count, double part) {
   return ldexp(0.5 + 0.5 * (bin % BINS_OF_OCTAVE) / BINS_OF_OCTAVE, bin / BINS_OF_OCTAVE - 160);
 }
 
-/* The box that the lattice has to hold; along axes with a period, the period. */
+/* The box that the lattice must hold. Along a periodic axis it is the period. */
 static void find_box(const hl_particle_set *set, const lengths *l, double low[3], double extent[3]) {
   uint32_t least[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX}, greatest[3] = {0, 0, 0};
   double longest = 0;
@@ -61,8 +62,8 @@ static void find_box(const hl_particle_set *set, const lengths *l, double low[3]
     if (!set->periodic[a]) low[a] -= pad, extent[a] += 2 * pad;
 }
 
-/* Levels for the widest kernels, of cells that are `spacing` long on level 0 and `longest` of them along an
- * axis. */
+/* The number of levels that the widest kernels need. Cells are `spacing` long on level 0, and `longest` of
+ * them lie along the longest axis. */
 static int levels_for(double most, double spacing, double longest) {
   int levels = 1;
   while (levels < LEVELS_MOST && most >= 4 * spacing && longest / 2 >= LEAST_CELLS) {
@@ -98,7 +99,7 @@ static bool fits(const hl_particle_limits *limits, const hl_particle_lattice *la
 
 hl_status hl_particles_lattice(const hl_particle_set *set, const hl_particle_limits *limits,
                                const char *subject, hl_particle_lattice *lattice, hl_error *error) {
-  const double finer = 1.02; /* step in which the spacing grows until the lattice fits */
+  const double finer = 1.02; /* factor by which the spacing grows until the lattice fits */
   lengths l;
   double low[3], extent[3];
   count_lengths(set, &l);

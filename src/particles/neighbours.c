@@ -2,13 +2,13 @@
  *
  * In: particles in Morton order. Out: the exact distance of each particle's k-th neighbour, halved. Runs of
  * sixteen particles are the leaves of a tree; eight nodes of a layer are a node of the next. A node knows the
- * box around its particles. A search visits near nodes first, and leaves out those that are farther than the
+ * box around its particles. A search visits near nodes first, and leaves out nodes that are farther than the
  * k-th of the distances found so far.
  *
- * Only one particle of each leaf is searched for in this way. A little more than its k-th distance is a guess
- * for the others of the leaf. All particles that are nearer than that to the leaf's box are gathered at once,
- * and each of the others looks at them in a row. Where fewer than k are within the guess, it is searched for
- * alone. */
+ * Only one particle of each leaf is searched for in this way. A little more than its k-th distance is the
+ * guess for the other particles of the leaf. All particles that are nearer to the leaf's box than the guess
+ * are gathered once, and each other particle of the leaf looks at them one by one. A particle that finds
+ * fewer than k neighbours within the guess is searched for alone. */
 #include "particles/particles.h"
 
 #include <math.h>
@@ -16,11 +16,12 @@
 #include "core/memory.h"
 
 enum {
-  LEAF = 16,          /* particles of a leaf */
-  FANOUT = 8,         /* nodes of a node */
-  LAYERS = 12,        /* at most: 16 * 8^11 particles */
-  FOUND_MOST = 4096,  /* distances that are collected before the farthest are dropped; particles of a crowd */
-  AT_ONCE = 64 * LEAF /* particles of one call */
+  LEAF = 16,          /* number of particles of a leaf */
+  FANOUT = 8,         /* number of child nodes of a node */
+  LAYERS = 12,        /* the most layers: enough for 16 * 8^11 particles */
+  FOUND_MOST = 4096,  /* most distances that are collected before the farthest are dropped; most particles of
+                       * a crowd */
+  AT_ONCE = 64 * LEAF /* number of particles of one call */
 };
 
 typedef struct box {
@@ -29,11 +30,12 @@ typedef struct box {
 
 typedef struct tree {
   const hl_particle_set *set;
-  box *layer[LAYERS]; /* owned; layer 0: the leaves */
+  box *layer[LAYERS]; /* owned; layer 0 has the leaves */
   size_t count[LAYERS];
   int layers;
-  float unit[3];     /* of places, in the least of the units: distances are 0 or at least 1 */
-  double least_unit; /* world */
+  float unit[3];     /* size of a unit of places, in the least unit of the three axes; so distances are 0 or
+                      * at least 1 */
+  double least_unit; /* the least unit; world */
   size_t neighbours; /* k */
 } tree;
 
@@ -41,7 +43,7 @@ typedef struct tree {
 typedef struct search {
   const tree *tree;
   const uint32_t *place;
-  float bound;             /* squared distance that neighbours are below */
+  float bound;             /* squared distance; neighbours are nearer than this */
   float found[FOUND_MOST]; /* squared distances, the particle's own among them */
   size_t count;
 } search;
@@ -85,7 +87,8 @@ static hl_status make_tree(hl_context *context, hl_pool *pool, const char *subje
   return HL_OK;
 }
 
-/* The least squared distance of a place from a box; across the border of a period where that is nearer. */
+/* The least squared distance of a place from a box. It is measured across the border of a period where this
+ * is shorter. */
 static float box_distance(const tree *t, const uint32_t place[3], const box *b) {
   float sum = 0;
   for (int a = 0; a < 3; a++) {
@@ -173,12 +176,12 @@ static float distance_between(const tree *t, const uint32_t a[3], const uint32_t
   return sqrtf(sum);
 }
 
-/* The k-th distance at a particle. bound: another number that it does not exceed. */
+/* The k-th distance at a particle. bound: a number that the k-th distance is known not to exceed. */
 static float search_one(search *s, size_t n, float bound) {
   s->place = s->tree->set->place[n];
   s->count = 0;
-  s->bound = bound * bound * 1.0001f;   /* more than distances are rounded by */
-  if (!(s->bound > 0)) s->bound = 0.5f; /* more than 0, and less than any other distance */
+  s->bound = bound * bound * 1.0001f;   /* the factor exceeds the rounding of distances */
+  if (!(s->bound > 0)) s->bound = 0.5f; /* more than 0, and less than any distance but 0 */
   look_at(s, s->tree->layers - 1, 0);
   drop_far(s);
   return sqrtf(s->bound);
@@ -186,14 +189,15 @@ static float search_one(search *s, size_t n, float bound) {
 
 /* ---- all of a leaf ---- */
 
-/* The particles that those of a leaf may have as neighbours. */
+/* The particles that may be neighbours of the particles of a leaf. */
 typedef struct crowd {
   uint32_t place[3][FOUND_MOST];
-  float distance[FOUND_MOST]; /* squared, from one particle of the leaf */
+  float distance[FOUND_MOST]; /* squared distances from one particle of the leaf */
   size_t count;
 } crowd;
 
-/* The least squared distance of two boxes; across the border of a period where that is nearer. */
+/* The least squared distance of two boxes. It is measured across the border of a period where this is
+ * shorter. */
 static float distance_of_boxes(const tree *t, const box *one, const box *other) {
   float sum = 0;
   for (int a = 0; a < 3; a++) {
@@ -207,7 +211,7 @@ static float distance_of_boxes(const tree *t, const box *one, const box *other) 
   return sum;
 }
 
-/* Gathers the particles below a node that are nearer to a leaf's box than the bound (squared); false: they
+/* Gathers the particles below a node that are nearer to a leaf's box than the bound (squared). False: there
  * are too many. */
 static bool gather(const tree *t, int layer, size_t node, const box *leaf, float bound, crowd *c) {
   if (layer > 0) {
@@ -228,7 +232,7 @@ static bool gather(const tree *t, int layer, size_t node, const box *leaf, float
   return true;
 }
 
-/* The k-th distance at a particle where it is below the bound (squared) of the crowd; else infinite. */
+/* The k-th distance at a particle where it is below the crowd's bound (squared); otherwise infinite. */
 static float search_crowd(search *s, crowd *c, size_t n, float bound) {
   const uint32_t *place = s->tree->set->place[n];
   const float *unit = s->tree->unit;
@@ -261,9 +265,10 @@ static size_t middle_of(const tree *t, size_t leaf, size_t begin, size_t end) {
   return nearest;
 }
 
-/* bound: a number that the k-th distance at the middle does not exceed. Returns the k-th distance there. */
+/* Finds the k-th distances of a leaf's particles. bound: a number that the k-th distance at the middle
+ * particle does not exceed. Returns the k-th distance at this particle. */
 static float search_leaf(search *s, crowd *c, size_t leaf, size_t middle, float bound) {
-  const float more = 1.2f; /* distances of 48th neighbours in even matter differ by 5 % */
+  const float more = 1.2f; /* In even matter, distances of 48th neighbours differ by 5 %. */
   const tree *t = s->tree;
   size_t begin = leaf * LEAF, end = begin + LEAF < t->set->count ? begin + LEAF : t->set->count;
   float at_middle = search_one(s, middle, bound), guess = more * more * at_middle * at_middle;
@@ -294,8 +299,8 @@ static void find_distances(void *data, size_t index, int worker) {
   }
 }
 
-/* Particles at one place with all their neighbours have no length of their own: they get the least of the
- * others. */
+/* Gives a length to particles that lie at one place with all their neighbours and so have none: the least
+ * length of the other particles. */
 static hl_status mend_lengths(hl_particle_set *set, const char *subject, hl_error *error) {
   float least = INFINITY;
   for (size_t n = 0; n < set->count; n++)

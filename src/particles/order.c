@@ -12,15 +12,15 @@
 #include "core/memory.h"
 
 enum {
-  KEY_BITS = 21, /* of a key along each axis */
+  KEY_BITS = 21, /* bits of a key for each axis */
   BUCKET_BITS = 6,
   BUCKETS = 1 << (3 * BUCKET_BITS),
-  FEW = 24 /* particles that are sorted by insertion */
+  FEW = 24 /* up to this number, particles are sorted by insertion */
 };
 
 typedef struct keyed {
   uint64_t key;   /* bits of the place along x, y, z in turns, the highest first */
-  uint32_t index; /* in the input */
+  uint32_t index; /* the particle's index in the input */
 } keyed;
 
 typedef struct ordering {
@@ -46,7 +46,7 @@ static void place_of(const hl_particle_set *set, const double position[3], uint3
   }
 }
 
-/* Moves the lowest 21 bits three apart (the "magic bits" of Morton codes). */
+/* Spreads the lowest 21 bits so that they are three apart (the "magic bits" of Morton codes). */
 static uint64_t apart(uint64_t x) {
   x = (x | x << 32) & 0x1f00000000ffff;
   x = (x | x << 16) & 0x1f0000ff0000ff;
@@ -64,7 +64,7 @@ static uint64_t key_of(const hl_particle_set *set, const uint32_t place[3]) {
   return key;
 }
 
-/* Finds the box of the places, and from it the fixed point. */
+/* Finds the box of the places, and from the box the fixed point. */
 static hl_status find_units(const hl_particle_input *input, const char *subject, hl_particle_set *set,
                             hl_error *error) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, extent = 0;
@@ -94,7 +94,7 @@ static hl_status find_units(const hl_particle_input *input, const char *subject,
   return HL_OK;
 }
 
-/* Counts the particles of each bucket, and lays their keys into the buckets in the input's order. */
+/* Counts the particles of each bucket, and puts their keys into the buckets in the order of the input. */
 static hl_status fill_buckets(hl_context *context, ordering *o, const char *subject, hl_error *error) {
   const int shift = 3 * (KEY_BITS - BUCKET_BITS);
   hl_particle_set *set = o->set;
@@ -126,7 +126,7 @@ static void sort_few(keyed *items, size_t count) {
   }
 }
 
-/* Sorts by the three bits of the key from `shift` on, and then each eighth by the bits below: American flag
+/* Sorts by the three bits of the key from `shift` on, and then each eighth by the lower bits: American flag
  * sort (P. M. McIlroy, K. Bostic, M. D. McIlroy, Engineering radix sort, 1993). */
 static void sort_items(keyed *items, size_t count, int shift) {
   if (count <= FEW || shift < 0) {

@@ -1,14 +1,14 @@
-/* particles/particles.h - particles as a field: the density of what they carry, as B-spline coefficients on a
- * lattice.
+/* particles/particles.h - particles as a field: the density of a quantity that particles carry (mass, say),
+ * as B-spline coefficients on a lattice.
  *
  * A particle is spread by the cubic spline kernel of smoothed particle hydrodynamics (kernel.h), which
  * reaches to twice the particle's smoothing length h. The lattice has levels: level l has the spacing 2^l
  * times the finest one. A particle goes to the coarsest level whose spacing is at most h / 2 (to level 0
  * where none is), so a wide kernel touches no more points than a narrow one. The levels are added up from
- * coarse to fine: c[l] = S c[l + 1] + what was spread on level l, where S subdivides a spline's coefficients
- * exactly.
+ * coarse to fine: c[l] = S c[l + 1] + p[l], where p[l] is the sum of the kernels spread on level l, and S
+ * subdivides a spline's coefficients exactly.
  *
- * In:  places, what each particle carries, and smoothing lengths or none
+ * In:  places, the quantity that each particle carries, and smoothing lengths or none
  * (volume/formats/particles/particles.c). Out: coefficients on the points of level 0. The bytes are the same
  * with any number of threads. */
 #ifndef HL_PARTICLES_PARTICLES_H
@@ -21,21 +21,21 @@
 #include "core/error.h"
 #include "core/pool.h"
 
-/* What a caller has; all arrays are borrowed. */
+/* The particles of a caller; all arrays are borrowed. */
 typedef struct hl_particle_input {
   size_t count;
   const void *positions; /* [count][3]; world; doubles or floats */
   bool is_double;
-  const float *lengths;            /* [count]; smoothing lengths, world units; null: to be found */
+  const float *lengths;            /* [count]; smoothing lengths, world units; null: they must be found */
   double period_low[3], period[3]; /* world: along a periodic axis its begin and its length; length 0: the
                                     * axis is not periodic */
 } hl_particle_input;
 
 /* Particles in the order of a Morton curve: neighbours in the array are mostly neighbours in space. */
 typedef struct hl_particle_set {
-  size_t count;         /* of the particles with a finite place */
+  size_t count;         /* number of particles with a finite place */
   uint32_t (*place)[3]; /* owned; [count]; fixed point: world = low + unit * place. Along a periodic axis 2^32
-                         * units are a period; along others places are below 2^31 */
+                         * units are a period; along other axes places are below 2^31 */
   uint32_t *order;      /* owned; [count]; index of each particle in the input */
   float *length;        /* owned; [count]; smoothing lengths, world units, above 0 */
   double low[3], unit[3]; /* world */
@@ -46,47 +46,50 @@ typedef struct hl_particle_set {
  * periodic. */
 typedef struct hl_particle_lattice {
   int levels;
-  size_t cells[3]; /* of level 0; multiples of 2^(levels - 1) */
+  size_t cells[3]; /* cells of level 0; multiples of 2^(levels - 1) */
   bool periodic[3];
   double low[3];     /* world: point (0,0,0) */
-  double spacing[3]; /* world; of level 0; the same along all axes but periodic ones */
+  double spacing[3]; /* world; spacing of level 0; equal along all axes that are not periodic */
 } hl_particle_lattice;
 
 /* Brings particles into order, and finds smoothing lengths where the input has none. Particles whose place is
- * not finite are left out. Fails where none is left, where a length is not a finite number above 0, and where
- * lengths cannot be found since all particles are at one place. subject: starts the error lines. *set is to
- * be released also after a failure. */
+ * not finite are left out. Fails where no particle is left, where a length is not a finite number above 0,
+ * and where lengths cannot be found because all particles are at one place. subject: starts the error lines.
+ * *set must be released also after a failure. */
 hl_status hl_particles_order(hl_context *context, hl_pool *pool, const hl_particle_input *input,
                              const char *subject, hl_particle_set *set, hl_error *error);
 void hl_particles_release(hl_context *context, hl_particle_set *set);
 
 /* Sets the smoothing length of each particle to half of the distance of its HL_PARTICLES_NEIGHBOURS-th
- * neighbour, so that its kernel reaches to that neighbour; of the last one where there are fewer. */
+ * neighbour, so that its kernel reaches to this neighbour. Where there are fewer neighbours, the last one
+ * counts. */
 enum { HL_PARTICLES_NEIGHBOURS = 48 };
 hl_status hl_particles_find_lengths(hl_context *context, hl_pool *pool, const char *subject,
                                     hl_particle_set *set, hl_error *error);
 
-/* What a lattice may be at most. */
+/* Limits of a lattice. */
 typedef struct hl_particle_limits {
-  double spacing; /* world units: the wanted spacing of the finest level; 0: half of the smoothing length that
-                   * one particle in fifty stays below */
-  size_t points;  /* most points of level 0 */
-  size_t side;    /* most cells of level 0 along an axis; 0: no limit */
+  double spacing; /* world units: the wanted spacing of the finest level. 0: half of a smoothing length such
+                   * that one particle in fifty has a smaller one */
+  size_t points;  /* the most points of level 0 */
+  size_t side;    /* the most cells of level 0 along an axis; 0: no limit */
 } hl_particle_limits;
 
-/* Chooses a lattice around the particles and their kernels. A wanted spacing is kept but for the rounding to
- * whole cells of a period; where it needs more points than allowed, the function fails. */
+/* Chooses a lattice around the particles and their kernels. A wanted spacing is kept, except that it is
+ * rounded to whole cells of a period. Where it needs more points than the limits allow, the function
+ * fails. */
 hl_status hl_particles_lattice(const hl_particle_set *set, const hl_particle_limits *limits,
                                const char *subject, hl_particle_lattice *lattice, hl_error *error);
 
-/* Points of one level along an axis. */
+/* The number of points of one level along an axis. */
 static inline size_t hl_lattice_points(const hl_particle_lattice *lattice, int level, int axis) {
   return (lattice->cells[axis] >> level) + (lattice->periodic[axis] ? 0 : 1);
 }
 
-/* Spreads the weights of the particles. weights: [set->count], in the set's order, per particle; null: 1
- * each. *field: [z][y][x] points of level 0; weight per world volume; owned by the caller (hl_release). The
- * sum of the field times the volume of a cell is the sum of the weights, to the rounding of floats. */
+/* Spreads the weights of the particles. weights: [set->count], one for each particle, in the set's order;
+ * null: each is 1. *field: [z][y][x] points of level 0; weight per world volume; owned by the caller
+ * (hl_release). The sum of the field times the volume of a cell is the sum of the weights, to the rounding of
+ * floats. */
 hl_status hl_particles_spread(hl_context *context, hl_pool *pool, const hl_particle_set *set,
                               const float *weights, const hl_particle_lattice *lattice, const char *subject,
                               float **field, hl_error *error);
@@ -102,7 +105,7 @@ typedef struct hl_particle_level {
   float *field;      /* [z][y][x] points */
 } hl_particle_level;
 
-/* Adds the particles of one level to its field. level: the number of each particle's level, [set->count]. */
+/* Adds the particles of one level to its field. level: [set->count]; the level of each particle. */
 hl_status hl_particles_splat(hl_context *context, hl_pool *pool, const hl_particle_set *set,
                              const float *weights, const uint8_t *level_of, int level,
                              const hl_particle_level *grid, const char *subject, hl_error *error);

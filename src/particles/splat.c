@@ -1,10 +1,10 @@
 /* particles/splat.c - spreads the particles of one level over its lattice.
  *
  * In: particles, their weights and levels. Out: coefficients, added to the level's field. A particle's kernel
- * is narrowed, because the B-spline of a coefficient widens it again: kernel and spline have the variances
- * 3/10 h^2 and s^2 / 3, so h'^2 = h^2 - 10/9 s^2 gives their sum the variance of the kernel (derived). The
- * kernel is sampled at the points and divided by the sum of its samples, so the weight is kept whatever the
- * samples are.
+ * is narrowed, because the B-spline of a coefficient widens it again. Kernel and spline have the variances
+ * 3/10 h^2 and s^2 / 3. So with h'^2 = h^2 - 10/9 s^2 the narrowed kernel and the spline together have the
+ * variance of the kernel (derived). The kernel is sampled at the points and divided by the sum of its
+ * samples, so the weight is kept whatever the samples are.
  *
  * A kernel reaches to less than eight points from its particle. Particles are dealt to tiles of at least
  * sixteen points a side. Tiles that are not neighbours touch different points, so the tiles of one colour of
@@ -19,14 +19,15 @@
 #include "particles/kernel.h"
 
 enum {
-  ROW = 16, /* points that a kernel reaches along an axis, at most */
+  ROW = 16, /* the most points that a kernel reaches along an axis */
   LEAST_TILE = 16
 };
-#define NARROWING 1.11 /* 10/9 */
-/* Least h' in spacings, for kernels that the level does not resolve: some point is always within 2 h'. */
+#define NARROWING 1.11 /* a little less than 10/9 */
+/* The least h' in spacings, for kernels that the level does not resolve: some point is always nearer than 2
+ * h'. */
 #define LEAST_LENGTH 0.7
-/* Greatest h in least spacings: the level above takes wider kernels; where there is none, they are narrowed.
- */
+/* The greatest h in least spacings. The level above takes wider kernels; where there is none, they are
+ * narrowed. */
 #define MOST_LENGTH 3.99
 
 typedef struct splatting {
@@ -35,10 +36,10 @@ typedef struct splatting {
   const hl_particle_level *grid;
   hl_pool *pool;
   size_t tiles[3];
-  uint32_t *begin;            /* owned; [tiles + 1]; where a tile's particles begin in `listed` */
+  uint32_t *begin;            /* owned; [tiles + 1]; the index in `listed` where a tile's particles begin */
   uint32_t *listed;           /* owned; particles by tile, in the set's order */
   double scale[3], offset[3]; /* lattice coordinate = scale * place + offset */
-  double mean_square;         /* of the spacings */
+  double mean_square;         /* the mean of the squared spacings */
   double least_spacing;
   int color;
 } splatting;
@@ -46,9 +47,10 @@ typedef struct splatting {
 /* A particle's samples: rows along x. */
 typedef struct samples {
   float row[ROW * ROW][ROW];
-  int first[3], count[3]; /* points along each axis; along periodic axes they may lie outside of the field */
-  float squared[3][ROW]; /* squared distances from the points of each axis, in h'; 4 and more: out of reach */
-  float sums[ROW];       /* over all rows, of their n-th samples */
+  int first[3], count[3]; /* points along each axis; along periodic axes some may lie outside of the field */
+  float squared[3][ROW];  /* squared distances from the points of each axis, in units of h'; 4 or more is out
+                           * of reach */
+  float sums[ROW];        /* the n-th sum is over the n-th samples of all rows */
 } samples;
 
 static double coordinate(const splatting *s, size_t n, int axis) {
@@ -66,7 +68,7 @@ static size_t tile_of(const splatting *s, size_t n) {
   return (tile[2] * s->tiles[1] + tile[1]) * s->tiles[0] + tile[0];
 }
 
-/* Lists the level's particles by tile. */
+/* Lists the level's particles, tile by tile. */
 static hl_status deal(hl_context *context, splatting *s, const uint8_t *level_of, int level,
                       const char *subject, hl_error *error) {
   size_t tiles = s->tiles[0] * s->tiles[1] * s->tiles[2], count = 0;
@@ -89,7 +91,7 @@ static void sample_row(const float along[ROW], float across, float row[ROW], flo
   for (int i = 0; i < ROW; i++) sums[i] += row[i];
 }
 
-/* Which points along an axis the kernel reaches, and how far they are. */
+/* Finds the points along an axis that the kernel reaches, and their distances. */
 static void measure_axis(const hl_particle_level *grid, int axis, double at, double length, samples *p) {
   double reach = 2 * length / grid->spacing[axis];
   int first = (int)ceil(at - reach), last = (int)floor(at + reach), end = (int)grid->points[axis] - 1;
@@ -105,7 +107,7 @@ static void measure_axis(const hl_particle_level *grid, int axis, double at, dou
   }
 }
 
-/* Samples a particle's kernel; returns the sum. */
+/* Samples a particle's kernel; returns the sum of the samples. */
 static float sample(const splatting *s, size_t n, samples *p) {
   double length = fmin((double)s->set->length[n], MOST_LENGTH * s->least_spacing),
          square = length * length - NARROWING * s->mean_square,
@@ -148,7 +150,7 @@ static void splat_particle(const splatting *s, size_t n, samples *p) {
     }
 }
 
-/* Tiles of the colour along an axis. */
+/* The number of tiles of the colour along an axis. */
 static size_t colored(const splatting *s, int axis) {
   size_t odd = (size_t)(s->color >> axis & 1);
   return (s->tiles[axis] + 1 - odd) / 2;
@@ -175,7 +177,7 @@ hl_status hl_particles_splat(hl_context *context, hl_pool *pool, const hl_partic
   s.least_spacing = fmin(fmin(grid->spacing[0], grid->spacing[1]), grid->spacing[2]);
   for (int a = 0; a < 3; a++) {
     s.tiles[a] = grid->points[a] / (2 * LEAST_TILE) *
-                 2; /* an even number: a period's ends have two colours */
+                 2; /* an even number, so that the two ends of a period have two colours */
     if (s.tiles[a] == 0) s.tiles[a] = 1;
     s.scale[a] = set->unit[a] / grid->spacing[a];
     s.offset[a] = (set->low[a] - grid->low[a]) / grid->spacing[a];

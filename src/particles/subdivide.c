@@ -1,9 +1,9 @@
 /* particles/subdivide.c - the coefficients of a spline on a lattice of half the spacing.
  *
  * Along each axis the even points get (d[j-1] + 6 d[j] + d[j+1]) / 8 and the odd ones (d[j] + d[j+1]) / 2:
- * the two-scale relation of the cubic B-spline. Beyond the outermost points there are no others; what they
- * would have got of the outermost coefficient, 5/8 of it, goes to the outermost point, so that nothing that
- * particles carry is lost (derived). */
+ * the two-scale relation of the cubic B-spline. There are no points beyond the outermost ones. Points there
+ * would have got 5/8 of the outermost coefficient. The outermost point gets this part, so that no weight is
+ * lost (derived). */
 #include "particles/particles.h"
 
 #include "core/memory.h"
@@ -13,7 +13,7 @@ typedef struct subdividing {
   float *room; /* owned; a coarse slice and a row for each worker */
 } subdividing;
 
-/* The coarse coefficients that a fine one is the sum of. */
+/* The coarse coefficients whose weighted sum is a fine coefficient. */
 typedef struct taps {
   size_t index[3];
   float weight[3];
