@@ -16,7 +16,7 @@ static const hl_setting_choice backgrounds[] = {
 static const hl_setting_choice sides[] = {
     {"front", HL_SIDE_FRONT}, {"back", HL_SIDE_BACK},     {"left", HL_SIDE_LEFT}, {"right", HL_SIDE_RIGHT},
     {"top", HL_SIDE_TOP},     {"bottom", HL_SIDE_BOTTOM}, {"iso", HL_SIDE_ISO},   {NULL, 0}};
-/* The value is 2 axis + sign. */
+/* each value is 2 axis + sign */
 static const hl_setting_choice axes[] = {{"+x", 0}, {"-x", 1}, {"+y", 2}, {"-y", 3}, {"+z", 4},
                                          {"-z", 5}, {"x", 0},  {"y", 2},  {"z", 4},  {NULL, 0}};
 static const hl_setting_choice looks[] = {{"auto", HL_LOOK_AUTO},
@@ -97,7 +97,7 @@ const hl_option_row hl_option_rows[HL_ASK_COUNT] = {
 
 const char *hl_option_name(size_t index) { return index < HL_ASK_COUNT ? hl_option_rows[index].name : NULL; }
 
-/* HL_ASK_COUNT: there is none of this name. */
+/* The row of an option; HL_ASK_COUNT: there is no option of this name. */
 static size_t find_row(const char *name) {
   size_t row = 0;
   while (row < HL_ASK_COUNT && (name == NULL || strcmp(hl_option_rows[row].name, name) != 0)) row++;

@@ -1,5 +1,4 @@
-/* compose/asked.h - the options of one call by their place in the table of options, with their values read.
- */
+/* compose/asked.h - the options of one call, ordered as in the table of options, with their values read. */
 #ifndef HL_COMPOSE_ASKED_H
 #define HL_COMPOSE_ASKED_H
 
@@ -19,7 +18,7 @@ typedef enum hl_ask {
   HL_ASK_ZOOM,
   HL_ASK_FOVY,
   HL_ASK_ORTHO,
-  HL_ASK_LOOK, /* from here to HL_ASK_SHADING: how volumes look */
+  HL_ASK_LOOK, /* this option and the next ones, up to HL_ASK_SHADING: the look of volumes */
   HL_ASK_TF,
   HL_ASK_COLORMAP,
   HL_ASK_RANGE,
@@ -45,7 +44,7 @@ typedef enum hl_ask {
   HL_ASK_LIGHT_RIG,
   HL_ASK_LIGHT,
   HL_ASK_LIGHT_SIZE,
-  HL_ASK_SHADOWS, /* from here on: settings of hl_render_settings */
+  HL_ASK_SHADOWS, /* this option and all that follow: settings of hl_render_settings */
   HL_ASK_SOFT_METHOD,
   HL_ASK_LIGHT_SAMPLES,
   HL_ASK_SHADOW_RESOLUTION,
@@ -77,34 +76,34 @@ enum {
 /* The value of one option. */
 typedef struct hl_asked {
   bool given;
-  const char *text;                     /* as given; of an option that repeats the last one */
+  const char *text;                     /* the text as given; where an option is repeated, the last text */
   const char *texts[HL_ASK_MOST_TEXTS]; /* [count] */
   int count;
-  bool chosen; /* one of the choices was given: `choice` is its value */
+  bool chosen; /* one of the choices was given; `choice` is its value */
   int choice;
   double number[3];
-  bool percent[3]; /* the number is a percentile */
+  bool percent[3]; /* whether each number is a percentile */
 } hl_asked;
 
 /* A row of the table of options. */
 typedef struct hl_option_row {
   const char *name;
   hl_option_kind kind;
-  int count;      /* of numbers, 1 to 3 */
-  char separator; /* between numbers */
+  int count;      /* number of numbers, 1 to 3 */
+  char separator; /* character between numbers */
   bool percent;   /* each number may be a percentile */
   bool repeats;
-  const hl_setting_choice *choices; /* null: the setting's, if any */
+  const hl_setting_choice *choices; /* null: the choices of the setting, if there are any */
   hl_setting_kind setting_kind;
-  const char *setting; /* the setting that it sets; null: none */
+  const char *setting; /* the setting that the option sets; null: none */
 } hl_option_row;
 
 extern const hl_option_row hl_option_rows[HL_ASK_COUNT];
 
-/* Reads options into asked: [HL_ASK_COUNT], whose texts are borrowed of the options. */
+/* Reads options into asked: [HL_ASK_COUNT]. The texts in it are borrowed from the options. */
 hl_status hl_options_read(const hl_option *options, size_t count, hl_asked *asked, hl_error *error);
 
-/* The choices of a row, its setting's where it has none of its own; null: none. */
+/* The choices of a row. Where the row has none, they are the choices of its setting; null: there are none. */
 const hl_setting_choice *hl_row_choices(const hl_option_row *row);
 
 #endif

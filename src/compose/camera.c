@@ -1,5 +1,5 @@
-/* compose/camera.c - where the camera stands: "size", "view", "up", "azimuth", "elevation", "roll", "zoom",
- * "fovy" and "ortho". */
+/* compose/camera.c - the options of the camera's place: "size", "view", "up", "azimuth", "elevation", "roll",
+ * "zoom", "fovy" and "ortho". */
 #include <math.h>
 #include <string.h>
 
@@ -60,7 +60,7 @@ static hl_status choose_view(const hl_composer *composer, const hl_scene_descrip
       hl_view_choose(description, side, up->given ? vector : NULL, view, composer->error));
 }
 
-/* Sets the angles that are given; false if none of them changes. */
+/* Sets the angles that are given; false if none of them changes the view. */
 static bool turn_view(const hl_asked *asked, hl_view *view) {
   const hl_view before = *view;
   if (asked[HL_ASK_AZIMUTH].given) view->azimuth_deg = asked[HL_ASK_AZIMUTH].number[0];
@@ -76,7 +76,7 @@ hl_status hl_frame_anew(hl_scene_description *description, hl_error *error) {
   return status == HL_OK ? hl_camera_frame_view(description, &view, 1, &description->camera, error) : status;
 }
 
-/* Frames the camera before it is turned: then all frames of a turn have the same target and distance. */
+/* Frames the camera before it is turned. So all frames of a turn have the same target and distance. */
 static hl_status place(const hl_composer *composer, bool framed, hl_scene_description *description) {
   const hl_asked *asked = composer->asked;
   hl_view view;

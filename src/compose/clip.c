@@ -1,14 +1,14 @@
 /* compose/clip.c - "clip" AXIS=LO:HI: keeps a part of each volume along an axis of its file's world.
  *
  * A bare number is a fraction of the box around the volume's voxels; a number with a unit is a coordinate. An
- * end that is left out stays at the end of the scene's own clip box, or else of the volume.
- */
+ * end that is left out stays at the end of the scene's own clip box; without a clip box it stays at the end
+ * of the volume. */
 #include <string.h>
 
 #include "compose/composer.h"
 #include "compose/coordinates.h"
 
-/* The whole text is a range. */
+/* Reads a text that must be a range to its end. */
 static bool read_range(const char *text, hl_axis_range *range) {
   return hl_read_range(&text, range) && *text == '\0';
 }
@@ -41,7 +41,7 @@ hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume) 
   }
   for (int n = 0; n < clip->count; n++) {
     hl_axis_range range;
-    if (!read_range(clip->texts[n], &range)) continue; /* refused before: hl_check_clip() */
+    if (!read_range(clip->texts[n], &range)) continue; /* hl_check_clip() has refused such a text before */
     double *least = &volume->clip_min[range.axis], *greatest = &volume->clip_max[range.axis];
     *least = hl_coordinate_of(&range.ends[0], *least, low[range.axis], high[range.axis]);
     *greatest = hl_coordinate_of(&range.ends[1], *greatest, low[range.axis], high[range.axis]);

@@ -1,8 +1,7 @@
 /* compose/compose.c - hl_scene_compose(): the order in which options change a scene.
  *
- * A scene cannot be changed: its description is copied and another scene made of the copy. Of the arrays only
- * those that change (lights, volumes, transfer functions) are copied too.
- */
+ * A scene cannot be changed: its description is copied, and another scene is made of the copy. Only arrays
+ * that change (lights, volumes, transfer functions) are copied, too. */
 #include <halflight/compose.h>
 #include <limits.h>
 #include <math.h>
@@ -20,11 +19,12 @@ typedef struct scene_change {
   hl_scene_description description;
   hl_changed_volumes volumes;
   hl_light *lights;      /* owned; [description.light_count] */
-  hl_scene_mesh *meshes; /* owned, with the floor, which is the last; null: no floor is added */
+  hl_scene_mesh *meshes; /* owned, with the mesh of the floor, which is the last one; null: no floor is
+                          * added */
   float *sky;            /* owned; the pixels of the image of "sky"; null: none */
 } scene_change;
 
-/* "floor": adds a mesh below what is seen, when the camera is placed. */
+/* "floor": adds a mesh below everything that is seen. The camera is placed before. */
 static hl_status add_floor(const hl_composer *composer, scene_change *change) {
   hl_scene_description *description = &change->description;
   if (!composer->asked[HL_ASK_FLOOR].given) return HL_OK;
@@ -72,8 +72,8 @@ static void change_settings(const hl_asked *asked, hl_scene_description *descrip
     memcpy(description->background, background->number, sizeof description->background);
 }
 
-/* Smooth labels are splines' coefficients; numbers of labels, which the scene of a bare label map was made
- * for, take no spline. */
+/* Gives smooth labels the kernel that makes splines' coefficients of them. The scene of a bare label map was
+ * made for numbers of labels, which are not interpolated by splines. */
 static void smooth_labels(const hl_composer *composer, hl_scene_description *description) {
   bool labels = false;
   for (size_t v = 0; v < description->volume_count; v++) labels |= description->volumes[v].label_count > 0;
@@ -83,7 +83,7 @@ static void smooth_labels(const hl_composer *composer, hl_scene_description *des
 
 static hl_status change_all(const hl_composer *composer, scene_change *change) {
   hl_scene_description *description = &change->description;
-  /* first: the camera frames what is seen of the volumes */
+  /* the volumes come first, because the camera frames the visible part of them */
   hl_status status = hl_compose_volumes(composer, description, &change->volumes);
   bool seen = change->volumes.seen || (composer->flags & HL_COMPOSE_CHANGED) != 0;
   if (status == HL_OK) smooth_labels(composer, description);
@@ -110,7 +110,7 @@ static void change_release(hl_context *context, scene_change *change) {
   hl_release(context, change->lights);
 }
 
-/* Refuses options with values that make no sense, and options that exclude each other. */
+/* Refuses options whose values make no sense, and options that exclude each other. */
 static hl_status check(const hl_asked *asked, hl_error *error) {
   const hl_asked *range = &asked[HL_ASK_RANGE];
   if (range->given && range->percent[0] == range->percent[1] && range->number[0] >= range->number[1])
@@ -147,7 +147,8 @@ hl_status hl_options_check(const hl_option *options, size_t option_count, hl_err
   return status == HL_OK ? check(asked, error) : status;
 }
 
-/* The scene of a description with its label maps: *scene, or, where no option asks for any, null. */
+/* Makes the scene of a description with its label maps. *scene is null where no option asks for label
+ * maps. */
 static hl_status add_labels(const hl_composer *composer, const hl_scene_description *description,
                             hl_scene **scene) {
   if (!hl_asks_for_labels(composer, description)) return HL_OK;

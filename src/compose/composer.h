@@ -1,4 +1,5 @@
-/* compose/composer.h - one call of hl_scene_compose(), and what its files do for each other. */
+/* compose/composer.h - one call of hl_scene_compose(), and the functions that the files of this room do for
+ * each other. */
 #ifndef HL_COMPOSE_COMPOSER_H
 #define HL_COMPOSE_COMPOSER_H
 
@@ -9,12 +10,12 @@
 typedef struct hl_composer {
   hl_context *context;
   const hl_asked *asked; /* [HL_ASK_COUNT] */
-  unsigned flags;        /* of hl_compose_flag */
+  unsigned flags;        /* members of hl_compose_flag */
   bool bare;             /* HL_COMPOSE_BARE is among them */
   hl_error *error;       /* may be null */
 } hl_composer;
 
-/* The status of a call that fails by the options alone, not by a file. */
+/* The status of a call whose options are to blame, not a file. */
 static inline hl_status hl_blame_options(hl_status status) {
   return status == HL_ERROR_INPUT ? HL_ERROR_ARGUMENT : status;
 }
@@ -24,20 +25,21 @@ static inline hl_status hl_blame_options(hl_status status) {
 /* True if the options replace or change the volumes' transfer functions. */
 bool hl_asks_for_functions(const hl_asked *asked);
 
-/* The transfer function of volume number `index` with the options applied, or `color` where no "colormap" is
- * for this volume and color is not null. Its points are owned by the caller, after a failure too. */
+/* The transfer function of volume number `index` with the options applied. Where color is not null and no
+ * "colormap" is given for this volume, the function has this colour. Its points are owned by the caller,
+ * after a failure too. */
 hl_status hl_compose_function(const hl_composer *composer, const hl_scene_description *description,
                               size_t index, const char *color, hl_transfer_function *function);
 
-/* Refuses "tf", "colormap" and "iso" of NAME=... for names that no volume has. */
+/* Refuses "tf", "colormap" and "iso" with a NAME= that no volume has. */
 hl_status hl_check_volume_names(const hl_composer *composer, const hl_scene_description *description);
 
-/* Whether a text NAME=... or without a name is for volume number `index`; *rest: what stands after the name.
- */
+/* Whether a text, with NAME= or without a name, is for volume number `index`. *rest: the text after the
+ * name. */
 bool hl_text_is_for(const hl_composer *composer, const char *text, const hl_scene_volume *volume,
                     size_t index, const char **rest);
 
-/* The value that a repeated option gives one volume, the last one if there are several; null: none. */
+/* The value that a repeated option gives one volume: the last one of several; null: none. */
 const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_scene_volume *volume,
                         size_t index);
 
@@ -46,9 +48,9 @@ const char *hl_text_for(const hl_composer *composer, hl_ask option, const hl_sce
 /* Refuses values of "iso" that cannot be read. */
 hl_status hl_check_isosurfaces(const hl_asked *iso, hl_error *error);
 
-/* Gives volume number `index` the surfaces of "iso" that are for it, and makes its transfer function, whose
- * points are the caller's, clear where no option sets it. surfaces: room for all values of "iso", which the
- * volume borrows. */
+/* Gives volume number `index` its surfaces of "iso". Where no option sets its transfer function, whose points
+ * belong to the caller, the function becomes clear. surfaces: an array for all values of "iso"; the volume
+ * borrows it. */
 hl_status hl_compose_isosurfaces(const hl_composer *composer, size_t index, hl_scene_volume *volume,
                                  hl_isosurface *surfaces);
 
@@ -59,56 +61,59 @@ hl_status hl_compose_clip(const hl_composer *composer, hl_scene_volume *volume);
 
 hl_status hl_check_cuts(const hl_asked *asked, hl_error *error);
 
-/* How many cuts the options ask for. */
+/* The number of cuts that the options ask for. */
 size_t hl_count_cuts(const hl_asked *asked);
 
-/* Adds the options' cuts to a volume's own. cuts: room for all of them, which the volume borrows. */
+/* Adds the options' cuts to a volume's own cuts. cuts: an array for all of them; the volume borrows it. */
 hl_status hl_compose_cuts(const hl_composer *composer, hl_scene_volume *volume, hl_cut *cuts);
 
-/* Adds them to a scene's own, for all its volumes; fractions are of the box around these. cuts: as above. */
+/* Adds the options' cuts to a scene's own cuts, which cut all volumes. Fractions are fractions of the box
+ * around all volumes. cuts: an array for all of them; the scene borrows it. */
 hl_status hl_compose_scene_cuts(const hl_composer *composer, hl_scene_description *scene, hl_cut *cuts);
 
 /* ---- sky.c ---- */
 
 hl_status hl_check_sky(const hl_asked *sky, hl_error *error);
 
-/* Gives the scene the sky of "sky", if it is asked for: without a sky before, upright as the camera is.
- * *pixels: an image's, borrowed by the description; the caller releases them. */
+/* Gives the scene the sky of "sky" where it is asked for. Where the scene had no sky, the new sky is upright
+ * as the camera is.
+ * *pixels: the pixels of an image, borrowed by the description; the caller releases them. */
 hl_status hl_compose_sky(const hl_composer *composer, hl_scene_description *description, float **pixels);
 
 /* ---- camera.c ---- */
 
-/* Places the camera. seen: what is seen of the volumes has changed, so that a bare camera frames them anew.
- */
+/* Places the camera. seen: the visible part of the volumes has changed, so that a bare camera frames them
+ * anew. */
 hl_status hl_compose_camera(const hl_composer *composer, bool seen, hl_scene_description *description);
 
-/* Moves the camera along its direction and zooms so that all that there is now fits into the picture. */
+/* Moves the camera along its direction and zooms, so that everything in the scene fits into the picture. */
 hl_status hl_frame_anew(hl_scene_description *description, hl_error *error);
 
 /* ---- values.c ---- */
 
-/* *scene: a scene of the description whose bare label maps have no labels where options ask for their values;
- * null: there is none. */
+/* Takes the labels off bare label maps whose values the options ask for. *scene: a new scene of the
+ * description; null: there is no such label map. */
 hl_status hl_compose_values(const hl_composer *composer, const hl_scene_description *description,
                             hl_scene **scene);
 
 /* ---- rest.c ---- */
 
-/* Turns a mask's rest, which "show" says as a fraction of opacity, into the factor of extinction. */
+/* Turns a mask's rest, which "show" gives as a fraction of opacity, into the factor of extinction. */
 void hl_compose_rest(hl_scene_volume *volume);
 
 /* ---- labels.c ---- */
 
-/* Whether the options ask for a label map, or the only, bare volume is one of several layers of labels. */
+/* Whether the options ask for a label map, or the only volume is bare and is one of several layers of
+ * labels. */
 bool hl_asks_for_labels(const hl_composer *composer, const hl_scene_description *description);
 
-/* Replaces *scene by one with the label map of "labels", the mask of "mask", or whose bare volume is shown as
- * a label map. */
+/* Replaces *scene by a scene with the label map of "labels", by one with the mask of "mask", or by one whose
+ * bare volume is shown as a label map. */
 hl_status hl_compose_labels(const hl_composer *composer, hl_scene **scene);
 
 /* ---- idle.c ---- */
 
-/* Tells the log of options that were given and change nothing. */
+/* Logs options that were given and change nothing. */
 void hl_warn_of_idle_options(const hl_composer *composer, const hl_scene_description *description);
 
 #endif

@@ -1,5 +1,6 @@
-/* compose/cuts.c - "cut-plane" POINT:NORMAL, "cut-box" RANGES and "cut-sphere" CENTRE:RADIUS: parts
- * that are cut out of a volume, in its file's world, or of all volumes of a scene, in the scene's. */
+/* compose/cuts.c - "cut-plane" POINT:NORMAL, "cut-box" RANGES and "cut-sphere" CENTRE:RADIUS: parts that are
+ * cut out of volumes. For one volume they are given in its file's world, for all volumes of a scene in the
+ * scene's world. */
 #include <math.h>
 #include <string.h>
 
@@ -7,16 +8,17 @@
 #include "compose/coordinates.h"
 #include "text/plain.h"
 
-/* The options by the type of their cuts. */
+/* The option for each type of cut. */
 static const int option_of[] = {
     [HL_CUT_PLANE] = HL_ASK_CUT_PLANE, [HL_CUT_BOX] = HL_ASK_CUT_BOX, [HL_CUT_SPHERE] = HL_ASK_CUT_SPHERE};
 enum { CUT_TYPES = 3 };
 
-/* A cut as typed: a plane's point or a sphere's centre, and what follows the colon; or a box's ranges. */
+/* A cut as it was typed. For a plane: a point and a normal; for a sphere: a centre and a radius; for a box:
+ * its ranges. */
 typedef struct typed_cut {
   hl_coordinate point[3], radius;
   double normal[3];
-  hl_axis_range box[3]; /* by axis; those not given have no ends */
+  hl_axis_range box[3]; /* one range for each axis; a range that is not given has no ends */
 } typed_cut;
 
 static bool read_point(const char **text, hl_coordinate point[3]) {
@@ -86,7 +88,8 @@ size_t hl_count_cuts(const hl_asked *asked) {
   return count;
 }
 
-/* low, high: the box around the volume's voxels. A box's end that is left out lies beyond it. */
+/* Places a cut. low, high: the box around the volume's voxels. The end of a box that is left out lies beyond
+ * the voxels. */
 static void place_cut(const typed_cut *typed, const double low[3], const double high[3], hl_cut *cut) {
   double longest = 0;
   for (int a = 0; a < 3; a++) {
@@ -101,7 +104,7 @@ static void place_cut(const typed_cut *typed, const double low[3], const double 
   cut->radius = typed->radius.fraction ? typed->radius.number * longest : typed->radius.number;
 }
 
-/* Adds the options' cuts, placed in the box. */
+/* Adds the cuts of the options, placed in the box. */
 static void add_cuts(const hl_asked *asked, const double low[3], const double high[3], hl_cut *cuts,
                      size_t *count) {
   for (int type = 0; type < CUT_TYPES; type++)
@@ -110,7 +113,8 @@ static void add_cuts(const hl_asked *asked, const double low[3], const double hi
       typed_cut typed;
       hl_cut_defaults(cut);
       cut->type = (hl_cut_type)type;
-      if (!read_cut(cut->type, asked[option_of[type]].texts[n], &typed)) continue; /* refused before */
+      /* A text that cannot be read was refused before. */
+      if (!read_cut(cut->type, asked[option_of[type]].texts[n], &typed)) continue;
       place_cut(&typed, low, high, cut);
       ++*count;
     }

@@ -42,8 +42,8 @@ static hl_status refuse_name(const char *option, const char *name, const char *k
 
 /* ---- names ---- */
 
-/* The name of a volume in "tf" NAME=... and others: its name in the scene, else its file's without folder and
- * extensions, else "volume1" and so on. */
+/* The name by which "tf" NAME=... and other options call a volume: its name in the scene, or the name of its
+ * file without folder and extensions, or "volume1" and so on. */
 static void name_of(const hl_scene_volume *volume, size_t index, char *name, size_t size) {
   if (volume->name != NULL) {
     snprintf(name, size, "%s", volume->name);
@@ -56,8 +56,8 @@ static void name_of(const hl_scene_volume *volume, size_t index, char *name, siz
   }
 }
 
-/* The text after "NAME="; null: it is for every volume. A text that names an existing file is that file, even
- * with a '=' in it. */
+/* The text after "NAME="; null: the text has no name and is for every volume. A text that names an existing
+ * file is this file, even with a '=' in its name. */
 static const char *after_name(const hl_context *context, const char *text) {
   const char *equals = strchr(text, '=');
   return equals == NULL || hl_file_kind(context, text) != 0 ? NULL : equals + 1;
@@ -139,9 +139,9 @@ static hl_status load_function(const hl_composer *composer, const char *name, co
   return refuse_name("tf", name, "preset or file", "presets", preset_name, composer->error);
 }
 
-/* Makes values clear below the threshold and nearly opaque, over a voxel's edge, from it on. A ramp below the
- * threshold lets surfaces be shaded without stairs. It is a twentieth of the volume's range wide, but at most
- * half the way from the least value to the threshold. */
+/* Makes values below the threshold clear, and values from the threshold on nearly opaque over a voxel's edge.
+ * A ramp below the threshold lets surfaces be shaded without stairs. The ramp is a twentieth of the volume's
+ * range wide, but at most half the way from the least value to the threshold. */
 static hl_status make_opaque_from(const hl_composer *composer, const hl_volume *volume, double threshold,
                                   hl_transfer_function *function) {
   enum { POINTS = 2 };
@@ -167,7 +167,7 @@ static hl_status make_opaque_from(const hl_composer *composer, const hl_volume *
   return HL_OK;
 }
 
-/* Gives a function the points of `loaded`. Its own opacity is kept if `loaded` has none. */
+/* Gives a function the points of `loaded`. Where `loaded` has no opacity, the function keeps its own. */
 static hl_status replace(const hl_composer *composer, const hl_transfer_function *loaded,
                          hl_transfer_function *function) {
   hl_transfer_function both = *loaded, copy = {0};
@@ -185,7 +185,7 @@ static hl_status replace(const hl_composer *composer, const hl_transfer_function
   return HL_OK;
 }
 
-/* What "range" and "range-scale" say of a volume. */
+/* The range that "range" and "range-scale" give a volume. */
 typedef struct value_range {
   bool given;
   double ends[2];
@@ -210,7 +210,7 @@ static hl_status find_range(const hl_composer *composer, const hl_volume *volume
   return HL_OK;
 }
 
-/* Moves the points so that the values that have opacity become those of the range. */
+/* Moves the points so that the values that had opacity become the values of the range. */
 static hl_status spread(const hl_composer *composer, const hl_volume *volume, const value_range *range,
                         hl_transfer_function *function) {
   hl_transfer_function moved = {0};
@@ -224,8 +224,8 @@ static hl_status spread(const hl_composer *composer, const hl_volume *volume, co
   return hl_blame_options(status);
 }
 
-/* Gives all values one colour. ramp, for maximum projections: from black at range[0] to this colour at
- * range[1]. */
+/* Gives all values one colour. ramp, for maximum projections: colours go from black at range[0] to this
+ * colour at range[1]. */
 static hl_status color_plainly(const hl_composer *composer, const double color[3], bool ramp,
                                const double range[2], hl_transfer_function *function) {
   hl_color_point points[2] = {{range[0], {0}}, {range[1], {0}}};
@@ -234,7 +234,8 @@ static hl_status color_plainly(const hl_composer *composer, const double color[3
   return replace(composer, &colors, function);
 }
 
-/* Colours by a colormap or a colour's name. Without a range they spread over the values that are seen. */
+/* Gives a function the colours of a colormap, or a colour by its name. Without a range the colours spread
+ * over the visible values. */
 static hl_status color_by_name(const hl_composer *composer, const char *name, const hl_volume *volume,
                                value_range range, bool maximum, hl_transfer_function *function) {
   hl_transfer_function colors = {0};
@@ -260,7 +261,7 @@ bool hl_asks_for_functions(const hl_asked *asked) {
          asked[HL_ASK_THRESHOLD].given;
 }
 
-/* "range", "threshold" and "colormap", in this order. */
+/* Applies "range", "threshold" and "colormap", in this order. */
 static hl_status change_function(const hl_composer *composer, const hl_volume *volume, const char *colormap,
                                  bool maximum, hl_transfer_function *function) {
   const hl_asked *threshold = &composer->asked[HL_ASK_THRESHOLD];

@@ -1,4 +1,4 @@
-/* compose/idle.c - options that were given and change nothing are told to the log. */
+/* compose/idle.c - logs options that were given and change nothing. */
 #include "compose/composer.h"
 #include "core/context.h"
 

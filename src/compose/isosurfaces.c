@@ -11,7 +11,7 @@
 
 enum { COLOR_BYTES = 64 };
 
-/* Reads VALUE[:COLOR[:OPACITY]]; false: it is something else. */
+/* Reads VALUE[:COLOR[:OPACITY]]; false: the text is something else. */
 static bool read_iso(const char *text, hl_isosurface *surface) {
   char *rest, color[COLOR_BYTES];
   surface->value = hl_plain_number(text, &rest);
@@ -30,7 +30,7 @@ static bool read_iso(const char *text, hl_isosurface *surface) {
   return rest != opacity && *rest == '\0' && surface->opacity >= 0 && surface->opacity <= 1;
 }
 
-/* The text after "NAME=": a value of "iso" holds no other '='. */
+/* The text after "NAME=". The value of an "iso" has no other '='. */
 static const char *text_of_surface(const char *text) {
   const char *equals = strchr(text, '=');
   return equals != NULL ? equals + 1 : text;
@@ -60,7 +60,7 @@ static hl_status warn_of_range(const hl_composer *composer, const hl_scene_volum
   return HL_OK;
 }
 
-/* Shows nothing of a volume but its surfaces. */
+/* Hides everything of a volume but its surfaces. */
 static void clear_function(hl_transfer_function *function) {
   for (size_t n = 0; n < function->opacity_count; n++) ((hl_opacity_point *)function->opacity)[n].opacity = 0;
 }
@@ -82,7 +82,7 @@ hl_status hl_compose_isosurfaces(const hl_composer *composer, size_t index, hl_s
     hl_isosurface *surface = &surfaces[count];
     hl_isosurface_defaults(surface);
     hl_surface_color(count, surface->color);
-    (void)read_iso(text, surface); /* checked by hl_check_isosurfaces() */
+    (void)read_iso(text, surface); /* hl_check_isosurfaces() has checked the text */
     hl_status status = warn_of_range(composer, volume, surface->value);
     if (status != HL_OK) return status;
     count++;

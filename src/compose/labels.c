@@ -1,5 +1,5 @@
-/* compose/labels.c - "labels", "mask", "label-table" and "show": a label map among the volumes, over them, or
- * the volume itself as one. */
+/* compose/labels.c - "labels", "mask", "label-table" and "show": a label map as one more volume, as a mask
+ * over the volumes, or made of the bare volume itself. */
 #include <string.h>
 
 #include "compose/composer.h"
@@ -7,7 +7,7 @@
 #include "core/door.h"
 #include "core/memory.h"
 
-/* How many layers the volume's file has: components that are neither time steps nor channels. */
+/* The number of layers of the volume's file: components that are neither time steps nor channels. */
 static size_t layers_of(const hl_volume *volume) {
   hl_volume_selection read = {.struct_size = sizeof read};
   if (hl_volume_get_selection(volume, &read) == HL_OK && (read.times > 1 || read.channels > 1)) return 1;
@@ -18,7 +18,8 @@ static size_t layers_of(const hl_volume *volume) {
   return 1;
 }
 
-/* Loads one layer and its labels. reading: how the file is read; the layer is its component. */
+/* Loads one layer and its labels. reading: the options for reading the file; the layer is a component of the
+ * file. */
 static hl_status load_layer(hl_context *context, const char *file, const char *table,
                             const hl_volume_load_options *reading, hl_label_layers *layers, hl_error *error) {
   hl_volume_load_options options = *reading;
@@ -40,7 +41,7 @@ static hl_status load_layer(hl_context *context, const char *file, const char *t
   return status;
 }
 
-/* Loads all layers of the file, of which the list's labels show. */
+/* Loads the layers of the file that have labels, and shows the labels that the list names. */
 static hl_status load_layers(const hl_composer *composer, const char *path, const char *table,
                              const hl_volume_load_options *reading, hl_shown_list *show,
                              hl_label_layers *layers) {
@@ -64,7 +65,7 @@ static void release_layers(hl_context *context, hl_label_layers *layers) {
   }
 }
 
-/* Replaces *scene by a scene of the description. */
+/* Replaces *scene by a new scene, of the description. */
 static hl_status make(const hl_composer *composer, const hl_scene_description *description,
                       hl_scene **scene) {
   hl_scene *made = NULL;
@@ -75,7 +76,7 @@ static hl_status make(const hl_composer *composer, const hl_scene_description *d
   return HL_OK;
 }
 
-/* Makes a scene of the scene's volumes, the first `kept` of them, and the layers. */
+/* Makes a scene of the first `kept` volumes of the scene, and the layers. */
 static hl_status add_layers(const hl_composer *composer, const hl_label_layers *layers, size_t kept,
                             hl_scene **scene) {
   hl_scene_description description = *hl_scene_describe(*scene);
@@ -89,7 +90,7 @@ static hl_status add_layers(const hl_composer *composer, const hl_label_layers *
   description.volumes = volumes;
   hl_status status = make(composer, &description, scene);
   if (status == HL_OK && composer->bare) {
-    description = *hl_scene_describe(*scene); /* labels have become transfer functions */
+    description = *hl_scene_describe(*scene); /* the labels have become transfer functions */
     status = hl_frame_anew(&description, composer->error);
     if (status == HL_OK) status = make(composer, &description, scene);
   }
@@ -97,8 +98,8 @@ static hl_status add_layers(const hl_composer *composer, const hl_label_layers *
   return status;
 }
 
-/* How the file of labels is read: that of "labels" turned into the space of the scene's first volume, that of
- * the scene's only, bare volume, which the label map then replaces, as this volume was. */
+/* How the file of labels is read. itself: the label map takes the place of the scene's only, bare volume and
+ * is read as this volume was. Otherwise it is turned into the space of the scene's first volume. */
 static hl_volume_load_options reading_of(const hl_scene_description *description, bool itself) {
   hl_volume_load_options reading;
   hl_volume_info info = {.struct_size = sizeof info};
@@ -114,7 +115,8 @@ static hl_volume_load_options reading_of(const hl_scene_description *description
   return reading;
 }
 
-/* What "show" says of the matter outside of a mask's labels, "rest:FACTOR"; 0 where it does not. */
+/* The factor that "show" gives the matter outside of a mask's labels, by "rest:FACTOR"; 0 where it gives
+ * none. */
 static double rest_of(hl_shown_list *show) {
   double rest = 0;
   for (size_t s = 0; s < show->count; s++) {
@@ -125,7 +127,7 @@ static double rest_of(hl_shown_list *show) {
   return rest;
 }
 
-/* Makes a scene whose volumes have the mask; those that are label maps stay as they are. */
+/* Makes a scene in which the volumes have the mask. Volumes that are label maps stay as they are. */
 static hl_status put_on_mask(const hl_composer *composer, const hl_mask *mask, hl_scene **scene) {
   hl_scene_description description = *hl_scene_describe(*scene);
   hl_scene_volume *volumes = hl_allocate(composer->context, description.volume_count, sizeof *volumes);
@@ -140,8 +142,8 @@ static hl_status put_on_mask(const hl_composer *composer, const hl_mask *mask, h
   return status;
 }
 
-/* Labels that do not show belong to the rest: the others are moved to the front. Returns how many there are.
- */
+/* Moves the labels that show to the front; labels that do not show belong to the rest. Returns the number of
+ * labels that show. */
 static size_t keep_shown(hl_label *labels, size_t count) {
   size_t kept = 0;
   for (size_t n = 0; n < count; n++)
@@ -149,7 +151,7 @@ static size_t keep_shown(hl_label *labels, size_t count) {
   return kept;
 }
 
-/* "mask": the label map of the file over the scene's volumes. */
+/* "mask": puts the file's label map over the scene's volumes as a mask. */
 static hl_status add_mask(const hl_composer *composer, hl_shown_list *show, hl_label_layers *layers,
                           hl_scene **scene) {
   const hl_scene_description *description = hl_scene_describe(*scene);
@@ -176,7 +178,7 @@ static hl_status add_mask(const hl_composer *composer, hl_shown_list *show, hl_l
   return put_on_mask(composer, &mask, scene);
 }
 
-/* "labels", or the bare volume itself. */
+/* "labels": adds the label map of a file, or makes the bare volume itself a label map. */
 static hl_status add_map(const hl_composer *composer, hl_shown_list *show, hl_label_layers *layers,
                          hl_scene **scene) {
   const hl_asked *asked = composer->asked;
@@ -195,7 +197,7 @@ static hl_status add_map(const hl_composer *composer, hl_shown_list *show, hl_la
                          : status;
 }
 
-/* Whether the scene's only volume was read as its file is, without a choice of what to read. */
+/* Whether the scene's only volume was read without any choice of what to read. */
 static bool is_read_plainly(const hl_scene_volume *volume) {
   hl_scene_volume plain;
   hl_scene_volume_defaults(&plain);
@@ -204,7 +206,8 @@ static bool is_read_plainly(const hl_scene_volume *volume) {
          !(volume->spacing[0] > 0);
 }
 
-/* Whether the only volume is a bare label map whose file has other layers of labels, which show, too. */
+/* Whether the only volume is a bare label map whose file has further layers of labels, which shall show,
+ * too. */
 static bool is_layered(const hl_composer *composer, const hl_scene_description *description) {
   const hl_scene_volume *only = description->volume_count == 1 ? &description->volumes[0] : NULL;
   if (!composer->bare || (composer->flags & HL_COMPOSE_CHANGED) != 0 || only == NULL || only->file == NULL ||
@@ -239,7 +242,7 @@ hl_status hl_compose_labels(const hl_composer *composer, hl_scene **scene) {
   return status;
 }
 
-/* A scene of the layers that have labels. */
+/* Makes a scene of the layers that have labels. */
 static hl_status make_of_layers(const hl_composer *composer, const hl_label_layers *layers,
                                 hl_scene **scene) {
   hl_scene_volume volumes[HL_MOST_LABEL_LAYERS];

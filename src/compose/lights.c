@@ -41,7 +41,7 @@ static hl_status change_first_light(const hl_composer *composer, hl_scene_descri
   return HL_OK;
 }
 
-/* "shadows": sets the scene's shadows, and makes every light that casts any follow them. */
+/* "shadows": sets the scene's shadows, and lets every light that casts shadows follow this setting. */
 static void change_shadows(const hl_composer *composer, hl_scene_description *description, hl_light *lights) {
   if (!composer->asked[HL_ASK_SHADOWS].given) return;
   hl_shadows shadows = (hl_shadows)composer->asked[HL_ASK_SHADOWS].choice;
@@ -51,7 +51,7 @@ static void change_shadows(const hl_composer *composer, hl_scene_description *de
 }
 
 /* Automatic light is made for the whole volume as its transfer function shows it. A bare volume that is cut
- * open, that has isosurfaces or that stands in a light rig gets the light that suits what is seen. */
+ * open, has isosurfaces or stands in a light rig gets light that suits its visible part. */
 static hl_status expose_anew(const hl_composer *composer, hl_scene_description *description,
                              hl_light *lights) {
   double factor = 1;

@@ -8,7 +8,7 @@
 #include "core/context.h"
 #include "image/srgb.h"
 
-#define MIDDLE_GREY 0.18 /* linear; brighter backgrounds get a projection that ends in black */
+#define MIDDLE_GREY 0.18 /* linear; on a brighter background, the projection ends in black */
 
 static bool is_maximum(const hl_asked *asked) {
   return asked[HL_ASK_LOOK].given && asked[HL_ASK_LOOK].choice == HL_LOOK_MIP;
@@ -51,9 +51,9 @@ hl_status hl_compose_volume_look(const hl_composer *composer, hl_scene_volume *v
   return HL_OK;
 }
 
-/* Derived: a grey of the preset, encoded, is the fraction t of the way from black to white that it looks
- * like. The new colour is as far on the way, in encoded values, from the background to the end; from black to
- * white this is the grey itself. */
+/* Derived: a grey of the preset, when encoded, lies at the fraction t of the way from black to white. The new
+ * colour lies at the same fraction, in encoded values, of the way from the background to the end colour.
+ * Where the way goes from black to white, the new colour is the grey itself. */
 void hl_fit_projection(const hl_composer *composer, hl_transfer_function *function) {
   const hl_asked *background = &composer->asked[HL_ASK_BACKGROUND];
   if (!background->given || background->chosen) return;

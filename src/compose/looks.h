@@ -7,31 +7,31 @@
 
 struct hl_composer;
 
-/* The library's look that "look" asks for; null: none, or a maximum projection. */
+/* The library's look that "look" asks for; null: it asks for none, or for a maximum projection. */
 const char *hl_asked_look(const struct hl_composer *composer);
 
-/* True if "look" replaces the volumes' transfer functions: bare volumes are made with their look, and a
- * scene's transfer functions stay in a maximum projection. */
+/* True if "look" replaces the volumes' transfer functions. (Bare volumes are made with their look already,
+ * and in a maximum projection a scene's transfer functions stay.) */
 bool hl_look_replaces_functions(const struct hl_composer *composer);
 
 /* Gives one volume the transfer function (hl_transfer_function_release) and the shading of the look. */
 hl_status hl_compose_volume_look(const struct hl_composer *composer, hl_scene_volume *volume);
 
-/* Makes the greys of a bare volume's maximum projection begin at the colour of "background", so that what is
- * hardly there is not seen, and end at black or white, whichever is farther from it. */
+/* Adapts the greys of a bare volume's maximum projection to "background". They begin at its colour, so that
+ * matter that hardly shows is not seen. They end at black or white, whichever is farther from it. */
 void hl_fit_projection(const struct hl_composer *composer, hl_transfer_function *function);
 
-/* Tells the log what "tf" and what "look" gives the picture where both are asked for. */
+/* Logs what "tf" and "look" each give the picture, where both are asked for. */
 void hl_tell_of_function(const struct hl_composer *composer);
 
-/* Makes the picture a maximum projection, or one with light. */
+/* Makes the picture a maximum projection, or a picture with light. */
 void hl_compose_look(const struct hl_composer *composer, hl_scene_description *description);
 
-/* True if the picture is a maximum projection, by "look" or else by the scene. */
+/* True if the picture is a maximum projection: "look" decides, and where it is not given, the scene. */
 bool hl_is_maximum(const struct hl_composer *composer, const hl_scene_description *description);
 
-/* The colour of volume number `index` among several bare ones in a maximum projection, so that channels
- * differ, as "#rrggbb"; false: none, as the volume is alone or has a "tf". */
+/* The colour, as "#rrggbb", of volume number `index` in a maximum projection of several bare volumes, so that
+ * channels differ. False: there is no colour, because the volume is alone or has a "tf". */
 bool hl_projected_color(const struct hl_composer *composer, const hl_scene_description *description,
                         size_t index, char color[8]);
 

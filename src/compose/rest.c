@@ -1,9 +1,8 @@
 /* compose/rest.c - "rest:FRACTION" of "show" beside a mask: the rest is seen at this fraction of its opacity.
  *
- * hl_mask.rest multiplies extinction. Derived: matter of the optical depth d along a way has the opacity
- * 1 - exp(-d), and 1 - exp(-f d) with its extinction multiplied by f. This is the fraction r of the former
- * for f = -ln(1 - r (1 - exp(-d))) / d, which is r where d is small, and 1 for r = 1.
- */
+ * hl_mask.rest multiplies extinction. Derived: matter of the optical depth d along a way has the opacity 1 -
+ * exp(-d), and 1 - exp(-f d) where its extinction is multiplied by f. The second opacity is the fraction r of
+ * the first one for f = -ln(1 - r (1 - exp(-d))) / d. This factor is r where d is small, and 1 for r = 1. */
 #include <math.h>
 
 #include "compose/composer.h"
@@ -11,10 +10,10 @@
 #include "scene/geometry/placement.h"
 #include "volume/volume.h"
 
-#define MOST_OPACITY 0.9999 /* per unit distance: an opacity of 1 has no extinction */
+#define MOST_OPACITY 0.9999 /* limit, because an opacity of 1 has no finite extinction per unit distance */
 
 /* The optical depth along a typical way: the mean extinction of the visible voxels times the edge of a cube
- * of as many voxels. 0 where no function of the value alone tells it. */
+ * of as many voxels. The result is 0 where opacity does not depend on the value alone. */
 static double typical_depth(const hl_scene_volume *seen) {
   const hl_volume *volume = seen->volume;
   const hl_transfer_function *function = &seen->transfer_function;

@@ -15,7 +15,7 @@ static hl_status fail_show(const char *item, const char *mend, hl_error *error) 
   return hl_fail(error, HL_ERROR_ARGUMENT, "--show \"%.100s\": %s", item, mend);
 }
 
-/* Reads one item, of `length` characters. */
+/* Reads one item, which is `length` characters long. */
 static hl_status read_item(const char *item, size_t length, hl_shown_label *made, hl_error *error) {
   *made = (hl_shown_label){.opacity = 1};
   if (length == 0 || length >= sizeof made->name)
@@ -68,7 +68,8 @@ static bool is_named(const hl_label *label, const hl_shown_label *shown) {
          (hl_text_whole(shown->name, &number) && number == label->value);
 }
 
-/* Shows those labels that the list names, if it names any. "all" leaves those hidden that a table hides. */
+/* Shows the labels that the list names, if it names any. "all" shows every label but those that a table
+ * hides. */
 void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count) {
   for (size_t n = 0; n < count && list->count > 0; n++) {
     const bool hidden = !labels[n].visible;
@@ -82,7 +83,7 @@ void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count) {
       labels[n].opacity = whole ? 1 : shown->opacity;
       if (!shown->colored || whole) continue;
       memcpy(labels[n].color, shown->color, sizeof labels[n].color);
-      labels[n].tint = 1; /* in a mask */
+      labels[n].tint = 1; /* in a mask, the label's colour tints the matter */
     }
   }
 }
@@ -98,8 +99,8 @@ static const char *name_of_label(const void *data, size_t index) {
   return NULL;
 }
 
-/* The labels that there are, by name or else by value: "liver, tumour, 7"; the last words tell how many more.
- */
+/* Writes the labels of the layers by name, or else by value: "liver, tumour, 7". Where not all fit, the last
+ * words give the number of the others. */
 static void list_labels(const hl_label_layers *layers, char *text, size_t size) {
   enum { LISTED = 12 };
   size_t used = 0, count = 0;

@@ -6,8 +6,8 @@
 
 /* One of the labels that "show" names: NAME|NUMBER|all|rest[=COLOR][:OPACITY]. */
 typedef struct hl_shown_label {
-  char name[128], whole[128]; /* whole: all of the text, which may be a name with ":" or "=" in it */
-  const char *wrong;          /* what to do about it unless it is a name; null: nothing */
+  char name[128], whole[128]; /* whole: the text as a whole, which may be a name with ":" or "=" in it */
+  const char *wrong;          /* advice for the error where the text is not a name; null: the text is sound */
   bool all, colored, found;
   double color[3], opacity;
 } hl_shown_label;
@@ -27,10 +27,11 @@ typedef struct hl_label_layers {
 
 hl_status hl_read_shown(const hl_asked *show, hl_shown_list *list, hl_error *error);
 
-/* Shows those labels that the list names, if it names any. "all" leaves those hidden that a table hides. */
+/* Shows the labels that the list names, if it names any. "all" shows every label but those that a table
+ * hides. */
 void hl_show_labels(hl_shown_list *list, hl_label *labels, size_t count);
 
-/* Refuses names that no layer had, with the nearest name or all that there are. */
+/* Refuses names that no layer had. The error has the nearest name, or all names. */
 hl_status hl_check_shown(const hl_shown_list *list, const hl_label_layers *layers, hl_error *error);
 
 #endif

@@ -21,7 +21,7 @@ static bool names_image(const char *text) {
   return false;
 }
 
-/* Reads ZENITH:HORIZON[:GROUND] or one colour; returns the number of colours, 0 for anything else. */
+/* Reads ZENITH:HORIZON[:GROUND] or one colour. Returns the number of colours, 0 for any other text. */
 static int read_colors(const char *text, double colors[GRADIENT_COLORS][3]) {
   const hl_setting *setting = hl_setting_find(HL_SETTINGS_SKY, "color");
   for (int count = 0; count < GRADIENT_COLORS; count++) {
@@ -47,7 +47,7 @@ hl_status hl_check_sky(const hl_asked *sky, hl_error *error) {
       sky->text);
 }
 
-/* An image's colours without alpha: premultiplied, they are the image over black. */
+/* The colours of an image without alpha. They are premultiplied, so the result is the image over black. */
 static float *take_pixels(hl_context *context, const hl_image *image) {
   size_t count = (size_t)hl_image_width(image) * (size_t)hl_image_height(image);
   const float *from = hl_image_pixels_const(image);
@@ -73,7 +73,7 @@ static hl_status load(const hl_composer *composer, const char *path, hl_sky *sky
   return status;
 }
 
-/* One colour is an even sky; black is none. */
+/* Sets the sky's colours: one colour is an even sky, and black is no sky. */
 static void set_colors(const char *text, hl_sky *sky) {
   double colors[GRADIENT_COLORS][3];
   int count = read_colors(text, colors);

@@ -41,19 +41,20 @@ static hl_status change_volume(const hl_composer *composer, const hl_scene_descr
   return hl_compose_isosurfaces(composer, index, volume, own);
 }
 
-/* How many planes hl_scene_for_volume() has cut bare volumes by; before the options' cuts are added. */
+/* The number of planes by which hl_scene_for_volume() has cut bare volumes. Call it before the options' cuts
+ * are added. */
 static size_t count_holder_planes(const hl_scene_description *description) {
   size_t planes = 0;
   for (size_t v = 0; v < description->volume_count; v++) planes += description->volumes[v].cut_count;
   return planes;
 }
 
-/* Whether to give back what hl_scene_for_volume() cut off beside the object. */
+/* Whether the parts beside the object that hl_scene_for_volume() cut off are to be shown again. */
 static bool shows_whole(const hl_composer *composer, const hl_scene_description *description) {
   return composer->bare && composer->asked[HL_ASK_WHOLE].given && count_holder_planes(description) > 0;
 }
 
-/* Says what is not seen of a bare volume. */
+/* Logs which parts of a bare volume are cut off. */
 static void tell_of_holders(const hl_composer *composer, const hl_scene_description *description) {
   size_t planes = count_holder_planes(description);
   if (composer->bare && planes > 0 && !shows_whole(composer, description))
@@ -79,8 +80,8 @@ static bool changes_any(const hl_composer *composer) {
          asked[HL_ASK_CUT_CASTS_SHADOW].given;
 }
 
-/* Makes room for all that may change; the cuts are the one volume's, or those of a scene with several, beside
- * the options'. */
+/* Allocates the arrays for everything that may change. The array of cuts holds the cuts of the one volume, or
+ * of a scene with several volumes, and the options' cuts. */
 static hl_status make_room(const hl_composer *composer, const hl_scene_description *description,
                            hl_changed_volumes *changed) {
   hl_context *context = composer->context;

@@ -1,19 +1,18 @@
-/* compose/volumes.h - what the options change of a scene's volumes, and the arrays that the changed volumes
- * need.
- */
+/* compose/volumes.h - the changes that options make to a scene's volumes, and the arrays that the changed
+ * volumes need. */
 #ifndef HL_COMPOSE_VOLUMES_H
 #define HL_COMPOSE_VOLUMES_H
 
 #include "compose/composer.h"
 
-/* All arrays are owned; null where nothing asks for them. */
+/* The arrays of changed volumes, all of them owned. An array is null where no option asks for it. */
 typedef struct hl_changed_volumes {
   hl_scene_volume *volumes;        /* [count] */
-  hl_transfer_function *functions; /* with their points; [count] */
+  hl_transfer_function *functions; /* [count]; with their points */
   hl_isosurface *surfaces;         /* [count][values of "iso"] */
-  hl_cut *cuts; /* of the one volume, or of a scene with several, with those of the options */
+  hl_cut *cuts; /* cuts of the one volume, or of a scene with several volumes, and the cuts of the options */
   size_t count;
-  bool seen; /* what is seen of the volumes has changed */
+  bool seen; /* the visible part of the volumes has changed */
 } hl_changed_volumes;
 
 /* Changes the description's volumes and cuts, which borrow the arrays. Release them even after a failure. */
