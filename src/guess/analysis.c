@@ -1,10 +1,9 @@
 /* guess/analysis.c - the kind of data in a volume, and the values that divide objects from their background.
  *
  * Nothing here depends on the data's scale and offset. The background is the commonest value on the grid's
- * faces. Of the distances from the background, the threshold of least cross entropy is where objects may
- * begin, the one of greatest variance between classes where they surely are. Smoothness and the shape of the
- * histogram tell simulations, media and scanned objects apart.
- */
+ * faces. Objects may begin at the distance from the background that is the threshold of least cross entropy.
+ * They surely are beyond the threshold of greatest variance between classes. Smoothness and the shape of the
+ * histogram tell simulations, media and scanned objects apart. */
 #include "guess/analysis.h"
 
 #include <math.h>
@@ -16,17 +15,23 @@
 #include "core/memory.h"
 #include "guess/sample.h"
 
-#define BINS   32    /* bins of the histogram by whose shape the kind of data is judged */
-#define ROUGH  0.65  /* roughness (hl_roughness) between simulations below and turbulence or noise above */
-#define SMOOTH 0.18  /* roughness below any scanner's */
+#define BINS 32 /* bins of the histogram whose shape tells the kind of data */
+#define ROUGH                                                                                    \
+  0.65 /* roughness (hl_roughness) that divides simulations, which are smoother, from turbulence \
+        * and noise */
+#define SMOOTH 0.18  /* a roughness that every scanner's data exceed */
 #define FOG    0.4   /* least roughness of smoke on fine grids; 0.50 to 0.58 measured on 200 to 320 voxels */
-#define NOISY  1.2   /* roughness above any simulated turbulence's; white noise has 1.7 */
-#define TAIL   0.005 /* fraction of the voxels below `lower`, and of those above `upper` */
-#define CALM   0.003 /* noise below any scanner's, as a fraction of top; that of 8-bit values is half of it */
-#define PEAK   1.2   /* a peak of a histogram rises this far from the valley before it; ... */
-#define HUMP   1.75  /* ... of data without noise, materials do; fields' saddles less: 1.5 and 2.1 measured */
-#define LOBES  0.08  /* fraction of the voxels, at most, that the lobes of a signed quantity show */
-#define FLOOR  0.002 /* least mean of the background, as a fraction of top */
+#define NOISY  1.2   /* a roughness that no simulated turbulence exceeds; white noise has 1.7 */
+#define TAIL   0.005 /* fraction of the voxels below `lower`, and fraction of the voxels above `upper` */
+#define CALM                                                                                               \
+  0.003          /* a noise that every scanner's data exceed, as a fraction of top; 8-bit values have half \
+                  * of it by rounding */
+#define PEAK 1.2 /* least ratio of a histogram's peak to the valley before it */
+#define HUMP                                                                                                 \
+  1.75              /* least ratio for peaks of materials in data without noise; saddles of fields have 1.5, \
+                     * materials 2.1 (measured) */
+#define LOBES 0.08  /* the greatest fraction of the voxels that the lobes of a signed quantity show */
+#define FLOOR 0.002 /* least mean of the background, as a fraction of top */
 
 typedef struct distances {
   float *values; /* owned; ascending; [count]; relative */
@@ -34,7 +39,7 @@ typedef struct distances {
 } distances;
 
 /* The distances of a sample's values from the background, ascending. A value on the other side of the
- * background counts as distance 0. */
+ * background has the distance 0. */
 static void measure(const float *values, size_t count, double background, double direction, float *distance) {
   for (size_t n = 0; n < count; n++) {
     size_t from = direction > 0 ? n : count - 1 - n;
@@ -42,7 +47,7 @@ static void measure(const float *values, size_t count, double background, double
   }
 }
 
-/* Counts the distances between low and high in equal bins. */
+/* Counts the distances between low and high in bins of equal width. */
 static void shape_of(const distances *d, double low, double high, double counts[BINS]) {
   memset(counts, 0, BINS * sizeof *counts);
   for (size_t n = 0; n < d->count; n++) {
@@ -51,9 +56,10 @@ static void shape_of(const distances *d, double low, double high, double counts[
   }
 }
 
-/* True if the histogram falls all the way, as of a density; false if it has peaks, as of materials, which
- * rise from the valley before them by the factor `peak`. Sums of two bins bridge the gaps of quantised data.
- * The last two bins, which may hold saturated values, and bins of very few voxels are ignored. */
+/* True if the histogram falls all the way, as the histogram of a density does. False if it has peaks, as the
+ * histogram of materials has; a peak rises by the factor `peak` from the valley before it. Sums of two bins
+ * bridge the gaps of quantised data. The last two bins, which may hold saturated values, and bins of very few
+ * voxels are ignored. */
 static bool falls(const distances *d, double low, double high, double peak) {
   double counts[BINS], least = INFINITY;
   shape_of(d, low, high, counts);
@@ -79,8 +85,8 @@ static bool is_continuous(const hl_sample *sample) {
   return levels > 256;
 }
 
-/* True if more than two fifths of the objects' voxels have about the same value, as in the body of a cloud.
- */
+/* True if more than two fifths of the objects' voxels have about the same value, as the body of a cloud
+ * has. */
 static bool has_one_body(const distances *d, double low, double high) {
   double counts[BINS], sum = 0, most = 0;
   shape_of(d, low, high, counts);
@@ -91,15 +97,15 @@ static bool has_one_body(const distances *d, double low, double high) {
   return most > 0.4 * sum;
 }
 
-/* Finds the thresholds and measures of the objects, relative to the sample's range; d: distances to one side
- * of the background. */
+/* Finds the thresholds and measures of the objects, relative to the sample's range. d: the distances to one
+ * side of the background. */
 static void find_thresholds(const distances *d, const float *border, size_t border_count,
                             hl_data_analysis *a) {
   a->top = fmax(hl_quantile(d->values, d->count, 0.9999), 1e-9);
   a->solid = hl_threshold_otsu(d->values, d->count, -1);
   a->faint = fmin(hl_threshold_cross_entropy(d->values, d->count, FLOOR * a->top), a->solid);
   a->dense = hl_threshold_otsu(d->values, d->count, a->solid);
-  /* Most of the border is background: objects begin above its noise. */
+  /* most of the border is background, so objects begin above its noise */
   if (border_count > 0) {
     double middle = hl_quantile(border, border_count, 0.5), upper = hl_quantile(border, border_count, 0.75);
     a->faint = fmax(a->faint, middle + 6 * (upper - middle)); /* 3.5 sigma of one-sided Gaussian noise */
@@ -149,8 +155,8 @@ static spread spread_of(const hl_sample *sample, double background) {
   return s;
 }
 
-/* True if the volume is a flow: its values fill the grid and are smooth, or are rough but have a single peak
- * in their histogram; a scanner's data have noise and several peaks. distance: scratch, [sample->count]. */
+/* True if the volume is a flow: its values fill the grid, and they are smooth, or rough with a single peak in
+ * their histogram. A scanner's data have noise and several peaks. distance: scratch, [sample->count]. */
 static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spread *s, double mode,
                     float *distance) {
   if (!s->fills || !is_floating(volume) || !is_continuous(sample)) return false;
@@ -163,8 +169,8 @@ static bool is_flow(const hl_volume *volume, const hl_sample *sample, const spre
   return roughness < NOISY && one_peak && falls(&d, 0.02, fmax(s->high - mode, 0.03), PEAK);
 }
 
-/* True if more than three tenths of the objects' voxels have the greatest value of all: the inside of a solid
- * shape. */
+/* True if more than three tenths of the objects' voxels have the greatest value: they are the inside of a
+ * solid shape. */
 static bool is_filled_up(const distances *d, const hl_data_analysis *a) {
   size_t things = 0, greatest = 0;
   for (size_t n = d->count; n > 0 && (double)d->values[n - 1] > a->solid; n--, things++)
@@ -172,8 +178,9 @@ static bool is_filled_up(const distances *d, const hl_data_analysis *a) {
   return (double)greatest > 0.3 * (double)things;
 }
 
-/* True if the objects are a smooth quantity that falls off. A scanner's noise tells apart what the histogram
- * leaves open: bumps, which are materials in a scan, and saddles between the summits of a field. */
+/* True if the objects are a smooth quantity that falls off. Where the histogram leaves this open, the noise
+ * of a scanner decides: bumps of the histogram are materials in a scan, and saddles between summits in a
+ * field. */
 static hl_status falls_off(const hl_volume *volume, const hl_sample *sample, const distances *d,
                            const hl_data_analysis *a, bool *falling, hl_error *error) {
   double noise = 0;
@@ -189,15 +196,15 @@ static hl_data_kind kind_of(const hl_volume *volume, const hl_sample *sample, co
                             bool falling, const hl_data_analysis *a) {
   double roughness = hl_roughness(volume, sample, a->background, a->faint);
   if (roughness < ROUGH && is_filled_up(d, a)) return HL_DATA_SURFACES;
-  bool fog = a->zeroed > 0.4 && is_continuous(sample); /* the air around it is exactly empty */
+  bool fog = a->zeroed > 0.4 && is_continuous(sample); /* the air around the matter is exactly empty */
   if (roughness < ROUGH && roughness > FOG && fog && falling) return HL_DATA_MEDIUM;
   if (roughness < ROUGH) return falling || roughness < SMOOTH ? HL_DATA_FIELD : HL_DATA_SURFACES;
   return fog && (falling || has_one_body(d, a->faint, a->top)) ? HL_DATA_MEDIUM : HL_DATA_SURFACES;
 }
 
-/* True if objects have values on both sides of the background, fewer the farther from it, which are not a
- * scanner's noise. Values on both sides of the data value 0 are not enough: in such data the commonest value
- * may be a material, while air has low values. */
+/* True if objects have values on both sides of the background, fewer with rising distance, and these are not
+ * a scanner's noise. Values on both sides of the data value 0 are not enough: in such data the commonest
+ * value may be a material, while air has low values. */
 static bool has_lobes(const hl_volume *volume, const hl_sample *sample, const spread *s, double background,
                       float *distance) {
   double above = s->high - background, below = background - s->low;
@@ -221,7 +228,7 @@ static void choose_side(const spread *s, bool lobes, hl_data_analysis *a) {
 }
 
 /* Finds the thresholds for objects on both sides of the background. Lobes that fill the grid, as in a
- * turbulent flow, would hide each other: then the strongest are shown. */
+ * turbulent flow, would hide each other; there only the strongest lobes are shown. */
 static hl_status find_two_sided(const hl_sample *sample, distances *d, hl_data_analysis *a, hl_error *error) {
   for (size_t n = 0; n < sample->count; n++)
     d->values[n] = (float)fabs((double)sample->values[n] - a->background);
@@ -248,11 +255,12 @@ static void find_middle(const hl_sample *sample, double mode, hl_data_analysis *
   a->common = (double)common / (double)sample->count;
 }
 
-/* memory: scratch, [sample->count + sample->border_count]. */
+/* Analyses the values of a sample. memory: scratch, [sample->count + sample->border_count]. */
 static hl_status analyse_values(const hl_volume *volume, const hl_sample *sample, float *memory,
                                 hl_data_analysis *a, hl_error *error) {
   distances d = {memory, sample->count};
-  bool bordered = sample->border_count > 0; /* else the air is NaN: take the commonest value instead */
+  bool bordered = sample->border_count > 0; /* else the border is NaN, and the commonest value counts
+                                             * instead */
   a->background = bordered ? hl_mode(sample->border, sample->border_count)
                            : hl_mode(sample->values, sample->count);
   spread s = spread_of(sample, a->background);
@@ -321,14 +329,13 @@ static hl_status analyse(const hl_volume *volume, hl_data_analysis *analysis, hl
   return may_be_labels ? hl_data_find_labels(volume, analysis, error) : status;
 }
 
-/* Keeps a copy with the volume. Volumes are constant for their readers; what is found out about them is not.
- */
+/* Keeps a copy with the volume. A volume is constant for its readers; findings about it may be added. */
 static hl_status keep(const hl_volume *volume, const hl_data_analysis *analysis, hl_error *error) {
   hl_data_analysis *kept = hl_allocate(volume->context, 1, sizeof *kept), *before = NULL;
   if (kept == NULL) return hl_fail_memory(error, sizeof *kept, "the analysis of a volume");
   *kept = *analysis;
   if (!atomic_compare_exchange_strong(&((hl_volume *)volume)->analysis, &before, kept))
-    hl_release(volume->context, kept); /* another thread was quicker */
+    hl_release(volume->context, kept); /* another thread kept one before */
   return HL_OK;
 }
 
@@ -346,24 +353,25 @@ hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, h
  *
  * Noise and the edges of smooth shapes may be whole numbers too, but there few neighbours are equal. */
 
-#define IN_BLOCKS                                                                           \
-  0.5 /* a label lies in blocks if more than this fraction of its voxels' neighbours has it \
-       */
+/* A label lies in blocks if more than this fraction of its voxels' neighbours has the same label. */
+#define IN_BLOCKS 0.5
 
 typedef struct tally {
   int64_t value;
-  unsigned int seen, shared; /* neighbours of voxels with this value; those of them that have it too */
+  unsigned int seen, shared; /* number of neighbours of voxels with this value, and number of these that have
+                              * the value, too */
 } tally;
 
 enum { TALLIES = 4 * HL_MOST_LABELS, NO_ROOM = -1 };
 
-/* The values that were met: by their hash, or in the next free place. */
+/* A hash table of the values that were met. Where the place of a hash is taken, the next free place is
+ * used. */
 typedef struct value_table {
-  tally tallies[TALLIES]; /* none seen: a free place */
+  tally tallies[TALLIES]; /* a tally that has seen nothing is a free place */
   size_t count;
 } value_table;
 
-/* The place of a value, new or known; NO_ROOM where there are more values than labels may be. */
+/* The place of a value, known or new; NO_ROOM where there are more values than a label map may have. */
 static int place_of(value_table *table, int64_t value) {
   size_t place = (size_t)(((uint64_t)value * 0x9e3779b97f4a7c15u) >> 32) % TALLIES;
   while (table->tallies[place].seen != 0 && table->tallies[place].value != value)
@@ -373,7 +381,7 @@ static int place_of(value_table *table, int64_t value) {
   return (int)place;
 }
 
-/* Fills in tallies; false at a value that is no whole number, and where there are too many values. */
+/* Fills in tallies. False at a value that is no whole number, and where there are too many values. */
 static bool count_neighbours(const hl_volume *volume, value_table *table) {
   const size_t *n = volume->dimension;
   size_t step = hl_lattice_step(n, HL_LATTICE_PLACES);
@@ -401,8 +409,8 @@ static int compare_values(const void *a, const void *b) {
   return x < y ? -1 : x > y;
 }
 
-/* Lists the labels, in rising order: all values but the background, which is 0 if any value is 0 or less.
- * True if there are two or more and most of them lie in blocks. */
+/* Lists the labels in rising order: all values but the background. The background is 0 if any value is 0 or
+ * less. True if there are two or more labels, and most of them lie in blocks. */
 static bool list(const value_table *table, double least, hl_data_analysis *a) {
   size_t found = 0, in_blocks = 0;
   double background = least <= 0 ? 0 : a->background;
@@ -415,7 +423,7 @@ static bool list(const value_table *table, double least, hl_data_analysis *a) {
   }
   qsort(a->labels, found, sizeof *a->labels, compare_values);
   a->label_count = 0;
-  for (size_t n = 0; n < found; n++) /* doubles round great labels */
+  for (size_t n = 0; n < found; n++) /* doubles round large labels */
     if (n == 0 || a->labels[n] > a->labels[n - 1]) a->labels[a->label_count++] = a->labels[n];
   return found > 1 && 2 * in_blocks > found;
 }

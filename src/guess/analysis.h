@@ -11,7 +11,8 @@
 typedef enum hl_data_kind {
   HL_DATA_SURFACES = 0, /* objects with boundaries: CT, MR, masks */
   HL_DATA_FIELD = 1,    /* a smooth quantity that falls off: densities of simulations */
-  HL_DATA_SIGNED = 2,   /* the same to both sides of a background in the middle: wave functions */
+  HL_DATA_SIGNED = 2,   /* a quantity with the same values to both sides of a background in the middle: wave
+                         * functions */
   HL_DATA_MEDIUM = 3,   /* smoke and clouds */
   HL_DATA_CONSTANT = 4, /* one value everywhere */
   HL_DATA_LABELS = 5,   /* few whole numbers, in blocks: names of regions, not amounts */
@@ -27,49 +28,50 @@ typedef enum hl_data_kind {
 typedef struct hl_data_analysis {
   hl_data_kind kind;
   double background;
-  double direction;   /* +1: objects have values above the background; -1: below */
-  double faint;       /* distance at which objects may begin */
-  double solid;       /* distance beyond which voxels surely belong to objects */
-  double dense;       /* distance that divides the objects into two materials */
-  double dense_share; /* of the voxels beyond solid: the fraction beyond dense */
-  double top;         /* distance that almost no voxel exceeds */
-  double mean;        /* mean distance of the voxels beyond faint */
-  double vessels;     /* distance beyond which matter is vessels within other matter; 0: there are none */
-  double depth;       /* voxel edges across the objects: cube root of their number of voxels */
-  double common;      /* fraction of the voxels whose value is within two fifths of lower and upper around the
-                         middle */
-  double zeroed;      /* fraction of the voxels that have exactly the background's value */
-  double filled;      /* fraction of the voxels beyond solid */
-  double middle;      /* the commonest data value */
-  double lower, upper;           /* differences from the middle, down and up, that hardly any voxel exceeds */
+  double direction;    /* +1: objects have values above the background; -1: below */
+  double faint;        /* distance at which objects may begin */
+  double solid;        /* distance beyond which voxels surely belong to objects */
+  double dense;        /* distance that divides the objects into two materials */
+  double dense_share;  /* fraction of the voxels beyond solid that lie beyond dense */
+  double top;          /* distance that almost no voxel exceeds */
+  double mean;         /* mean distance of the voxels beyond faint */
+  double vessels;      /* distance beyond which matter is vessels within other matter; 0: there are none */
+  double depth;        /* voxel edges across the objects: cube root of their number of voxels */
+  double common;       /* fraction of the voxels whose value lies within two fifths of lower and upper around
+                        * the middle */
+  double zeroed;       /* fraction of the voxels that have exactly the background's value */
+  double filled;       /* fraction of the voxels beyond solid */
+  double middle;       /* the commonest data value */
+  double lower, upper; /* differences from the middle, downwards and upwards, that hardly any voxel
+                        * exceeds */
   double labels[HL_MOST_LABELS]; /* ascending data values, without the background */
   size_t label_count;
   double valleys[HL_MOST_MATERIALS - 1]; /* distances that divide materials, rising; [material_count - 1] */
-  int material_count;                    /* of scanned objects; 0: not asked */
+  int material_count;                    /* number of materials of scanned objects; 0: not asked */
 } hl_data_analysis;
 
-/* Looks at the voxels once: the volume keeps what was found. Fails for lack of memory, and when cancelled. */
+/* Looks at the voxels once; the volume keeps the result. Fails for lack of memory, and when cancelled. */
 hl_status hl_data_analyse(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error);
 
 /* Finds the materials of scanned objects: sets valleys and material_count. */
 void hl_data_find_materials(const hl_volume *volume, hl_data_analysis *analysis);
 
 /* The least distance from the background beyond which the brightest matter of scanned objects is vessels:
- * tubes within other matter; 0: it is not. All distances are relative, as the sample's values. distances:
- * [sample->count]; the sample's, ascending. */
+ * tubes within other matter. 0: this matter is not vessels. All distances are relative, as the sample's
+ * values are. distances: [sample->count]; the distances of the sample, ascending. */
 double hl_data_find_vessels(const hl_volume *volume, const hl_sample *sample, const float *distances,
                             const hl_data_analysis *analysis);
 
-/* True if the values can be Hounsfield units: they reach from air to denser than water. */
+/* True if the values can be Hounsfield units: they reach from air to matter denser than water. */
 static inline bool hl_is_hounsfield(const hl_volume *volume) {
   return volume->minimum <= -500 && volume->minimum >= -10000 && volume->maximum >= 300;
 }
 
 /* ---- label maps: volumes whose values are names of regions ---- */
 
-/* Where the volume is a label map, sets the kind to HL_DATA_LABELS and lists the labels; else changes
- * nothing. A label map has whole numbers: the background's and 2 to HL_MOST_LABELS others, most of which lie
- * in blocks, so that a voxel's neighbours mostly have its own value. Fails for lack of memory. */
+/* Where the volume is a label map, sets the kind to HL_DATA_LABELS and lists the labels; otherwise changes
+ * nothing. The values of a label map are whole numbers: the background and 2 to HL_MOST_LABELS labels. Most
+ * labels lie in blocks, so that a voxel's neighbours mostly have its value. Fails for lack of memory. */
 hl_status hl_data_find_labels(const hl_volume *volume, hl_data_analysis *analysis, hl_error *error);
 
 /* Whether a volume's values are names of regions: its file names segments, or the values look like labels. */

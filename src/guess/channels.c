@@ -20,7 +20,7 @@ typedef struct joined_volumes {
   size_t count;
 } joined_volumes;
 
-/* "head" for scans/head.nii.gz. */
+/* Names a volume "head" after the file scans/head.nii.gz. */
 static void name_after_file(const hl_scene_volume *volume, size_t index, char name[NAME_BYTES]) {
   const char *file = volume->file != NULL ? volume->file : "", *slash = strrchr(file, '/');
   const char *base = slash != NULL ? slash + 1 : file;
@@ -89,7 +89,7 @@ hl_status hl_scene_join(hl_context *context, hl_scene *const *scenes, size_t cou
 
 /* ---- colours ---- */
 
-/* The colour that a volume's file has for the volume's channel. */
+/* The colour that a volume's file gives the volume's channel. */
 static bool told_color(const hl_volume *volume, double srgb[3]) {
   if (volume == NULL || volume->channels == NULL) return false;
   const hl_channel *channel = &volume->channels[volume->selection.channel];
@@ -97,7 +97,7 @@ static bool told_color(const hl_volume *volume, double srgb[3]) {
   return channel->has_color;
 }
 
-/* Whether files tell a colour for each volume, and none twice. */
+/* Whether the files give each volume a colour, and no colour twice. */
 static bool colors_differ(const hl_scene_description *description) {
   double own[3], other[3];
   for (size_t n = 0; n < description->volume_count; n++) {
@@ -121,7 +121,7 @@ hl_status hl_scene_channel_color(const hl_scene_description *description, size_t
 
 /* ---- channels of a file ---- */
 
-/* What is made of each channel. */
+/* The scenes that are made of the channels. */
 typedef struct channel_scenes {
   hl_context *context;
   const char *path, *look;
@@ -130,7 +130,7 @@ typedef struct channel_scenes {
   size_t count;
 } channel_scenes;
 
-/* Writes into the scene of a channel how it was read, and its name. */
+/* Writes the volume's options for reading, and its name, into the scene of a channel. */
 static hl_status name_channel(channel_scenes *made, const hl_volume *volume, hl_scene **scene,
                               hl_error *error) {
   char numbered[24];
@@ -154,7 +154,7 @@ static hl_status name_channel(channel_scenes *made, const hl_volume *volume, hl_
   return HL_OK;
 }
 
-/* *channels: how many the file has. */
+/* Makes the scene of a channel. *channels: the number of channels that the file has. */
 static hl_status add_channel(channel_scenes *made, int channel, size_t *channels, hl_error *error) {
   hl_volume *volume = NULL;
   hl_scene *scene = NULL;
@@ -185,7 +185,7 @@ static hl_status add_channels(channel_scenes *made, const int *channels, size_t 
   return status;
 }
 
-/* Gives each volume its colour in place of those of its look. */
+/* Gives each volume the colour of its channel, which replaces the colours of its look. */
 static hl_status color_channels(hl_context *context, hl_scene **scene, hl_error *error) {
   hl_scene_description description = (*scene)->description;
   hl_scene_volume volumes[HL_CHANNELS_MOST];

@@ -19,7 +19,7 @@
 #include "volume/colors.h"
 
 #define TARGET    0.871 /* linear light of 240 of 255, IEC 61966-2-1 */
-#define BRIGHTEST 0.99  /* fraction of the pixels that are darker */
+#define BRIGHTEST 0.99  /* fraction of the pixels that are darker than the pixel which gets TARGET */
 #define OPAQUE    0.98
 #define FAINT     0.02 /* least opacity of a step at which a ray meets a surface */
 #define THINNEST  0.15 /* fraction of the surfaces that are thinner than hl_exposure.thickness */
@@ -32,13 +32,14 @@ typedef struct exposure {
   cut_shape *cuts; /* owned; [volume->cut_count] */
   affine3 world_to_index;
   vec3 right, up,
-      forward; /* the camera's; lengths: half the picture's width and height at distance 1, and 1 */
-  vec3 towards[MOST_LIGHTS]; /* unit vectors */
+      forward; /* the camera's axes; their lengths are half the picture's width and height at distance 1, and
+                * 1 */
+  vec3 towards[MOST_LIGHTS]; /* unit vectors to the lights */
   double left;               /* fraction of the sky and of lights with shadows that reaches bright media */
   double step;               /* world units */
   double empty;              /* a value of the invisible surroundings */
-  double flat;               /* gradients up to this, in values per world unit, belong to no surface */
-  double opacity[TABLE], color[TABLE][3]; /* over the volume's range */
+  double flat;               /* a gradient up to this, in values per world unit, belongs to no surface */
+  double opacity[TABLE], color[TABLE][3]; /* entries over the volume's range */
 } exposure;
 
 /* The uniform cubic B-spline at a voxel's centre: weights 1/6, 2/3, 1/6, and -1/2, 0, 1/2 for its slope
@@ -71,10 +72,10 @@ static int entry_of(const exposure *e, double value) {
   return t > 0 ? t < TABLE ? (int)t : TABLE - 1 : 0;
 }
 
-/* The light of a sky in a gradient that nothing hides, at a surface or in a medium (normal: null). Derived:
- * at the sine s of the elevation the radiance is h + a |s| + b s, with a = (zenith + ground) / 2 - h and b =
- * (zenith - ground) / 2. Its mean is h + a / 2; weighted by a normal's cosine, s has the mean 2/3 c, c being
- * the normal's own sine, and |s| 1/2 + 5/32 P2(c), to 1 %. */
+/* The light that a sky in a gradient sends, where nothing hides it, to a surface or to a medium (normal:
+ * null). Derived: at the sine s of the elevation the radiance is h + a |s| + b s, with a = (zenith + ground)
+ * / 2 - h and b = (zenith - ground) / 2. Its mean is h + a / 2. Weighted by the cosine of a normal with the
+ * sine c, s has the mean 2/3 c, and |s| has the mean 1/2 + 5/32 P2(c), to 1 %. */
 static void sky_light(const hl_sky *sky, const vec3 *normal, double light[3]) {
   double c = normal != NULL ? vec3_dot(*normal, vec3_normalise(vec3_of(sky->up))) : 0;
   double even = normal != NULL ? 0.5 + 5.0 / 64 * (3 * c * c - 1) : 0.5;
@@ -90,7 +91,7 @@ static void sky_light(const hl_sky *sky, const vec3 *normal, double light[3]) {
 typedef struct sample_light {
   bool surface;
   vec3 normal;
-  double left[MOST_LIGHTS], sky; /* the fractions of each light and of the sky that reach it */
+  double left[MOST_LIGHTS], sky; /* the fraction of each light, and of the sky, that reaches the sample */
 } sample_light;
 
 static sample_light light_by_gradient(const exposure *e, double value, vec3 gradient) {
@@ -103,7 +104,7 @@ static sample_light light_by_gradient(const exposure *e, double value, vec3 grad
   return lit;
 }
 
-/* The light that a sample sends to the eye, eqs. (3) and (4). own: the voxel's colour. */
+/* The light that a sample sends to the eye, eqs. (3) and (4). own: the colour of the voxel itself. */
 static void shade(const exposure *e, const double color[3], const sample_light *lit, vec3 to_eye,
                   const double own[3], double sent[3]) {
   const hl_material *material = &e->volume->material;
@@ -126,8 +127,8 @@ static void shade(const exposure *e, const double color[3], const sample_light *
   for (int c = 0; c < 3; c++) sent[c] = color[c] * own[c] * matt[c] + gloss;
 }
 
-/* The parameters, from the origin on, where a ray enters and leaves the volume's box; false if it misses it.
- */
+/* The parameters, from the origin on, at which a ray enters and leaves the volume's box; false if the ray
+ * misses the box. */
 static bool cross_grid(const hl_scene_volume *volume, vec3 from, vec3 along, double part[2]) {
   double low[3], high[3];
   const double origin[3] = {from.x, from.y, from.z}, direction[3] = {along.x, along.y, along.z};
@@ -142,9 +143,9 @@ static bool cross_grid(const hl_scene_volume *volume, vec3 from, vec3 along, dou
   return part[1] > part[0] && isfinite(part[1]);
 }
 
-/* How thick a surface is, in steps: the depth at which the optical depth becomes 1, from the place on where
- * matter begins to be visible, if values rise there as steeply as at a sample. Infinite where no depth hides
- * anything. steepness: values per step. */
+/* The thickness of a surface in steps: the depth at which the optical depth becomes 1, if values go on rising
+ * as steeply as at a sample. It is measured from the place where matter begins to be visible. Infinite where
+ * no depth hides anything. steepness: values per step. */
 static double thickness_at(const exposure *e, int entry, double value, double steepness) {
   const hl_volume *volume = e->volume->volume;
   double per_entry = (volume->maximum - volume->minimum) / (TABLE - 1), optical_depth = 0;
@@ -157,13 +158,14 @@ static double thickness_at(const exposure *e, int entry, double value, double st
   return INFINITY;
 }
 
-/* The face of a cut that a ray has come through: its normal, in the world, and where on the ray it was. */
+/* The face of a cut that a ray has come through: its normal in the world, and its place on the ray. */
 typedef struct ray_face {
   vec3 normal;
   double at;
 } ray_face;
 
-/* before, here: points of index space a step apart, the second at t. */
+/* Finds the face that a ray comes through between two points. before, here: points of index space, one step
+ * apart; `here` lies at t. */
 static void pass_face(const exposure *e, ray_face *face, double t, vec3 before, vec3 here) {
   vec3 outward;
   if (!hl_cut_face_between(e->volume, e->cuts, before, here, &outward)) return;
@@ -188,9 +190,9 @@ static double passing(const exposure *e, vec3 point, vec3 towards) {
   }
 }
 
-/* The fractions of the lights and of the sky that reach a face: the sky by eight directions, which stand for
- * equal parts of the light on it, sin^2 of their angles from the normal being 1/4 and 3/4 (derived: the
- * cosine's integral over a cap of the hemisphere). */
+/* The fractions of the lights and of the sky that reach a face. Eight directions stand for the sky. Each
+ * stands for an equal part of the sky's light on the face: the sin^2 of their angles from the normal is 1/4
+ * and 3/4 (derived: the integral of the cosine over a cap of the hemisphere). */
 static void light_reaching_face(const exposure *e, vec3 point, vec3 normal, sample_light *lit) {
   enum { DIRECTIONS = 8 };
   const hl_scene_description *scene = e->scene;
@@ -208,8 +210,8 @@ static void light_reaching_face(const exposure *e, vec3 point, vec3 normal, samp
   }
 }
 
-/* Within a voxel and a half behind a face, half way to where the renderer turns from the face's normal to the
- * data's, a sample is lit by the face. */
+/* Lights a sample by the face where it lies within a voxel and a half behind the face. There the renderer has
+ * turned half way from the face's normal to the normal of the data. */
 static void light_by_face(const exposure *e, const ray_face *face, double t, vec3 point, vec3 to_eye,
                           sample_light *lit) {
   bool behind = (t - face->at) * vec3_dot(face->normal, to_eye) < 1.5 * e->step;
@@ -220,11 +222,12 @@ static void light_by_face(const exposure *e, const ray_face *face, double t, vec
 }
 
 typedef struct pixel {
-  double brightness; /* of the brightest channel; -1 where the pixel is mostly background */
-  double thickness;  /* of the first surface that the ray meets, in steps; infinite where it meets none */
+  double brightness; /* brightness of the brightest channel; -1 where the pixel is mostly background */
+  double thickness;  /* thickness of the first surface that the ray meets, in steps; infinite where it meets
+                      * none */
 } pixel;
 
-/* What a ray has gathered. */
+/* The light and opacity that a ray has gathered. */
 typedef struct gathered {
   double alpha, seen[3];
 } gathered;
@@ -235,7 +238,8 @@ static void gather(const double sent[3], double opacity, gathered *all) {
   all->alpha += share;
 }
 
-/* Adds the isosurfaces that a ray crosses between two voxels with these values, the second one `at`. */
+/* Adds the isosurfaces that a ray crosses between two voxels. before: the value at the first voxel; the
+ * second voxel is `at`. */
 static void gather_isosurfaces(const exposure *e, double before, double value, const long at[3], vec3 to_eye,
                                gathered *all) {
   const hl_scene_volume *volume = e->volume;

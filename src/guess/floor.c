@@ -1,4 +1,4 @@
-/* guess/floor.c - a floor below all that a scene shows. */
+/* guess/floor.c - a floor below everything that a scene shows. */
 #include <math.h>
 
 #include "core/door.h"
@@ -6,7 +6,7 @@
 #include "guess/outline.h"
 #include "scene/geometry/placement.h"
 
-/* Two directions along the floor: those of the world's axes that are most nearly level. */
+/* Two directions along the floor: the two axes of the world that are most nearly level. */
 static void level_axes(vec3 up, vec3 *u, vec3 *v) {
   vec3 axis = fabs(up.x) <= fabs(up.y) && fabs(up.x) <= fabs(up.z) ? (vec3){1, 0, 0}
               : fabs(up.y) <= fabs(up.z)                           ? (vec3){0, 1, 0}

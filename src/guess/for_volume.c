@@ -1,4 +1,4 @@
-/* guess/for_volume.c - makes a scene that shows one volume well without being told how. */
+/* guess/for_volume.c - makes a scene that shows one volume well, without any settings. */
 #include "guess/for_volume.h"
 
 #include <string.h>
@@ -22,20 +22,22 @@
 #define LIGHT_ELEVATION 45
 #define FILL_AZIMUTH    0 /* fill light from the eye: it suits a key light from any direction */
 #define FILL_ELEVATION  0
-/* Least memory limit, beside what a volume in memory takes, for a sky, whose field and what making it takes
- * are less than half of that. */
+/* Least memory limit for a sky, beside the memory that a volume takes. The sky's field and the making of it
+ * take less than half of this. */
 #define ROOM_FOR_SKY (512u << 20)
 /* Constant light in place of a sky, as a fraction of the sky's strength. */
 #define INSTEAD 0.35
-/* Sheets across the grid's diagonal. Shaded surfaces need more of them: one normal lights a whole slab. */
+/* Number of sheets across the grid's diagonal. Shaded surfaces need more sheets than media, because one
+ * normal lights a whole slab. */
 #define SHEETS_OF_MEDIA    540
 #define SHEETS_OF_SURFACES 720
-/* Sheets per thickness of a surface (hl_exposure): rings grow with the square of the spacing over the
- * thickness. */
+/* Sheet spacing as a part of a surface's thickness (hl_exposure). Rings grow with the square of the spacing
+ * over the thickness. */
 #define SPACING_PER_THICKNESS 0.28
-/* The same for small grids, across which sheets half as far apart are no more than those of others. */
+/* As SPACING_PER_THICKNESS, for small grids. Even with closer sheets they have no more sheets than other
+ * grids. */
 #define SMALL_GRIDS_SPACING_PER_THICKNESS 0.1
-/* Least spacing of all grids, and of surfaces in small ones; smallest voxel edges. */
+/* Least spacing in all grids, and least spacing for surfaces in small grids; smallest voxel edges. */
 #define LEAST_SPACING       0.25
 #define SMALL_GRIDS_SPACING 0.125
 
@@ -56,8 +58,8 @@ hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *cam
   return status;
 }
 
-/* The key light, and where the look asks for one a fill light from the eye without shadows. *count: 1 or 2.
- */
+/* Chooses the key light and, where the look asks for it, a fill light from the eye without shadows. *count: 1
+ * or 2. */
 static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count) {
   hl_scene_key_light(&lights[0]);
   lights[0].intensity = look->key;
@@ -69,8 +71,8 @@ static void choose_lights(const hl_look *look, hl_light lights[2], size_t *count
   lights[1].shadows = HL_SHADOWS_OFF;
 }
 
-/* True if the memory limit leaves room for a sky. It does not depend on what is held now: all processes that
- * share a volume choose alike. */
+/* True if the memory limit leaves room for a sky. The memory that is held now does not count, so that all
+ * processes that share a volume choose alike. */
 static bool has_room_for_sky(const hl_volume *volume) {
   uint64_t limit = volume->context->options.memory_limit, taken = 0;
   if (volume->voxels != NULL)
@@ -114,9 +116,9 @@ static double even_spacing(const hl_volume *volume, hl_shading shading) {
   return diagonal / edge / sheets;
 }
 
-/* From LEAST_SPACING to 1, or SMALL_GRIDS_SPACING where surfaces are thin. With sheets a voxel apart, coarse
- * grids would show rings on smooth surfaces, and more sheets cost little there. thickness: of surfaces, in
- * smallest voxel edges; infinite: there are none. */
+/* The sheet spacing, from LEAST_SPACING to 1; where surfaces are thin, from SMALL_GRIDS_SPACING. With sheets
+ * a voxel apart, coarse grids would show rings on smooth surfaces, and more sheets cost little there.
+ * thickness: the surfaces' thickness, in smallest voxel edges; infinite: there are none. */
 static double choose_spacing(const hl_volume *volume, hl_shading shading, double thickness) {
   double even = even_spacing(volume, shading);
   double spacing = fmin(fmax(even, LEAST_SPACING), fmax(SPACING_PER_THICKNESS * thickness, LEAST_SPACING));
@@ -147,8 +149,8 @@ static hl_status expose(const hl_look *look, const hl_data_analysis *analysis, h
   return status;
 }
 
-/* Cuts off what holds the object, as the look `base`, which suits the volume, shows it: with any look the
- * same is left. planes: stay in use. */
+/* Cuts off holders of the object, as they show with the look `base`, which suits the volume. So the same part
+ * is left with any look. planes: stay in use. */
 static hl_status leave_holders_out(hl_context *context, const hl_look *base, const hl_data_analysis *analysis,
                                    hl_cut planes[HL_HOLDER_PLANES], hl_scene_volume *volume,
                                    hl_error *error) {
@@ -164,8 +166,9 @@ static hl_status leave_holders_out(hl_context *context, const hl_look *base, con
   return status;
 }
 
-/* Gives a label map its labels, with their names and colours in its file. A volume whose values cannot be
- * labels after all, or that is larger than memory, gets none and is drawn by its values, which is told.
+/* Gives a label map its labels, with the names and colours in its file. A volume whose values cannot be
+ * labels after all, or that is larger than memory, gets none; it is drawn by its values, and a log line says
+ * so.
  * *labels: owned by the caller; null: none. */
 static hl_status find_labels(hl_context *context, hl_scene_volume *volume, hl_label **labels,
                              hl_error *error) {
@@ -182,7 +185,7 @@ static hl_status find_labels(hl_context *context, hl_scene_volume *volume, hl_la
   return status;
 }
 
-/* style: null: the look that suits the volume alone, which of a label map are its labels. */
+/* style: null: the look that suits the volume alone. For a label map this look is its labels. */
 static hl_status make_scene_of(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
                                hl_scene **scene, hl_error *error) {
   hl_data_analysis analysis;
@@ -230,7 +233,8 @@ static hl_status make_scene_of(hl_context *context, hl_volume *volume, const cha
   return status;
 }
 
-/* The scene of the volume, or, where its voxels make stairs, of a smoother one (smoothing.h). */
+/* Makes the scene of the volume. Where the volume's voxels make stairs, it makes the scene of a smoother
+ * volume (smoothing.h). */
 static hl_status make_scene(hl_context *context, hl_volume *volume, const char *file, const hl_look *style,
                             hl_scene **scene, hl_error *error) {
   hl_data_analysis analysis;

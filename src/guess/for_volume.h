@@ -11,11 +11,11 @@ hl_status hl_scene_frame(const hl_scene_description *description, hl_camera *cam
 /* The light of a scene that gives none: soft, from the camera's upper left; it goes with the camera. */
 void hl_scene_key_light(hl_light *light);
 
-/* Constant light beside a sky, as a fraction of its strength, so that no hollow is black. */
+/* Constant light beside a sky, as a fraction of the sky's strength, so that no hollow is black. */
 #define BESIDE_SKY 0.04
 
-/* A sky brighter above than below, so that folds and hollows are darker, and a little constant light beside
- * it. strength 0: the constant light is 0, too, and there is no sky. */
+/* Chooses a sky that is brighter above than below, so that folds and hollows are darker, and a little
+ * constant light beside it. strength 0: there is no sky and no constant light. */
 void hl_scene_choose_sky(double strength, hl_scene_description *description);
 
 #endif

@@ -1,7 +1,7 @@
 /* guess/framing.c - places a camera so that everything seen fills the picture and is in its middle.
  *
- * Each side of the picture is a plane through the eye. How far the outline of the visible voxels reaches
- * towards each side gives the nearest eye that has them all inside. With room for turning, the eye stands
+ * Each side of the picture is a plane through the eye. The reach of the visible voxels' outline towards each
+ * side gives the nearest eye that has all of them in the picture. With room for turning, the eye stands
  * farther away and turns about a fixed target. */
 #include <string.h>
 
@@ -12,7 +12,7 @@
 
 /* The fraction of the picture's half width or height that the visible voxels fill. */
 #define FILLED       0.92 /* seen from one direction */
-#define FILLED_LEAST 0.82 /* at least, where the eye stands back for turning */
+#define FILLED_LEAST 0.82 /* least part, where the eye stands back for turning */
 /* In a turn the outline may reach beyond the picture by this factor, which is less than its invisible rim. */
 #define OVER 1.04
 /* A view replaces an earlier one if it is wider by this factor. */
@@ -21,21 +21,21 @@
  * of its sides, where this saves room. */
 #define ASIDE 0.012
 
-/* Matter is flat that is less high than this fraction of its width: it is seen from higher up. */
+/* Matter counts as flat if its height is less than this fraction of its width. It is seen from higher up. */
 #define FLAT           0.25
 #define FLAT_ELEVATION 40 /* degrees */
 
 enum { TURNS = 36, HALVINGS = 48, SECTIONS = 12 };
 
-/* A view to frame; tangents: of half the picture's angles, 0 for parallel projection. */
+/* A view to frame. tangents: the tangents of half the picture's angles, 0 for parallel projection. */
 typedef struct frame_job {
   const hl_outline *outline;
   vec3 right, up, forward;
   double aspect, tangent_x, tangent_y;
 } frame_job;
 
-/* The eye's coordinates along the view's axes; half_height: half the picture's height, for parallel
- * projection, which has no `forward`. */
+/* The eye's coordinates along the view's axes. half_height: half the picture's height, for parallel
+ * projection, which does not use `forward`. */
 typedef struct frame_place {
   double right, up, forward, half_height;
 } frame_place;
@@ -52,9 +52,9 @@ static double nearest_eye(const frame_job *job, vec3 along, double tangent) {
   return -(reach(job, along, tangent) + reach(job, vec3_scale(along, -1), tangent)) / 2 / tangent;
 }
 
-/* The eye's coordinate along `along`, at this depth, that puts the outline in the middle. Derived: then both
- * sides are seen at the same tangent t, and this depth is that of the nearest eye for t (see above); it
- * grows with t, so t is found by halving. */
+/* The eye's coordinate along `along`, at a given depth, that puts the outline in the middle. Derived: both
+ * sides are then seen at the same tangent t, and the depth is the depth of the nearest eye for t (see above).
+ * The depth grows with t, so t is found by halving. */
 static double middle_from(const frame_job *job, vec3 along, double greatest, double depth) {
   double low = 0, high = greatest;
   for (int n = 0; n < HALVINGS && greatest > 0; n++) {
@@ -65,7 +65,7 @@ static double middle_from(const frame_job *job, vec3 along, double greatest, dou
   return (reach(job, along, high) - reach(job, vec3_scale(along, -1), high)) / 2;
 }
 
-/* The nearest eye, or the least height, with which the outline fills this fraction of the picture. */
+/* The nearest eye, or the least height, with which the outline fills a given fraction of the picture. */
 static frame_place fit(const frame_job *job, double filled) {
   frame_place place = {0};
   if (job->tangent_y > 0) {
@@ -110,7 +110,7 @@ static void look(frame_job *job, const hl_view *view) {
   hl_view_axes(view, &job->right, &job->up, &job->forward);
 }
 
-/* The same for every azimuth. */
+/* As needed(), for every azimuth. */
 static double needed_in_a_turn(const frame_job *job, const hl_view *view, vec3 target) {
   frame_job turned = *job;
   hl_view at = *view;
@@ -130,20 +130,20 @@ static double radius_about(const hl_outline *outline, vec3 target) {
   return greatest;
 }
 
-/* The same for every direction. */
+/* As needed(), for every direction. */
 static double needed_at_all(const frame_job *job, vec3 target) {
   double radius = radius_about(job->outline, target), tangent = fmin(job->tangent_x, job->tangent_y);
-  return tangent > 0 ? radius * sqrt(1 + 1 / (tangent * tangent)) /* over the sine */
+  return tangent > 0 ? radius * sqrt(1 + 1 / (tangent * tangent)) /* radius over the sine */
                      : radius / fmin(1, job->aspect);
 }
 
-/* The eye's distance from a target at this depth or, in parallel projection, half the picture's height. */
+/* The distance of the eye from a target at a depth; in parallel projection, half the picture's height. */
 static double room_of(const frame_job *job, const frame_place *place, double depth) {
   return job->tangent_y > 0 ? depth - place->forward : place->half_height;
 }
 
-/* Moves the target along one axis to where a turn needs least room (golden section; the room is a maximum of
- * linear functions and so convex). */
+/* Moves the target along one axis to the place where a turn needs least room. (Golden section: the room is a
+ * maximum of linear functions and so convex.) */
 static void improve(const frame_job *job, const hl_view *view, vec3 along, double reach_each_way,
                     vec3 *target) {
   const double ratio = (sqrt(5) - 1) / 2;
@@ -158,15 +158,17 @@ static void improve(const frame_job *job, const hl_view *view, vec3 along, doubl
   *target = vec3_add(*target, vec3_scale(along, (low + high) / 2));
 }
 
-/* Moves the eye back to make room for turning. The target may lie at any depth and a little beside the
- * middle, where a turn needs least room. few: the job with a thinned outline, which is faster. Returns the
- * target's depth. */
+/* Moves the eye back to make room for turning. The target is the place where a turn needs least room, at any
+ * depth and up to a little beside the middle. few: the job with a thinned outline, which is faster. Returns
+ * the target's depth. */
 static double make_room(const frame_job *job, const frame_job *few, const hl_view *view, frame_place *place) {
   const frame_place tight = *place, loose = fit(job, FILLED_LEAST);
   double depth = (reach(job, job->forward, 0) - reach(job, vec3_scale(job->forward, -1), 0)) / 2;
-  /* From above or below the picture turns about the line of sight, where any depth needs as much room. */
+  /* Seen from above or below, the picture turns about the line of sight, and every depth needs the same
+   * room. */
   bool depth_matters = fabs(vec3_dot(job->forward, vec3_normalise(vec3_of(view->up)))) < 1 - 1e-9;
-  for (int round = 0; round < 3; round++) { /* the middle depends a little on the distance */
+  /* repeated, because the middle depends a little on the distance. */
+  for (int round = 0; round < 3; round++) {
     centre(job, place);
     double room = room_of(job, place, depth),
            height = 2 * (job->tangent_y > 0 ? room * job->tangent_y : room);
@@ -185,7 +187,7 @@ static double make_room(const frame_job *job, const frame_job *few, const hl_vie
 
 /* ---- cameras ---- */
 
-/* outline: empty (zeros): it is found. */
+/* Begins a job. outline: empty (zeros) means that it is found here. */
 static hl_status begin(const hl_scene_description *description, double zoom, const hl_camera *camera,
                        hl_outline *outline, frame_job *job, hl_error *error) {
   bool perspective = camera->type == HL_CAMERA_PERSPECTIVE, possible = zoom >= 1e-6 && zoom <= 1e6;
@@ -248,7 +250,7 @@ hl_status hl_camera_frame_view(const hl_scene_description *description, const hl
   return status;
 }
 
-/* The height of the outline along the view's up, over the lesser of its widths across. */
+/* The height of the outline along the view's up, divided by the smaller of its two widths. */
 static double flatness(const hl_outline *outline, const hl_view *view) {
   const vec3 up = vec3_of(view->up), front = vec3_of(view->front), side = vec3_cross(up, front);
   const vec3 along[3] = {up, front, side};
@@ -263,7 +265,7 @@ hl_status hl_view_widen(const hl_scene_description *description, hl_outline *out
                         hl_error *error) {
   static const double turns[] = {
       0, -2, 4, 2,
-      1, -3, 5, 3}; /* the three-quarter views to try: turned by these multiples of HL_VIEW_AZIMUTH */
+      1, -3, 5, 3}; /* the three-quarter views to try, turned by these multiples of HL_VIEW_AZIMUTH */
   const hl_camera usual = {.type = HL_CAMERA_PERSPECTIVE, .fovy_deg = 30};
   hl_scene_description square = *description;
   square.width = square.height = 1;

@@ -12,18 +12,17 @@
 #include "scene/function/transfer_function.h"
 #include "scene/scene.h"
 
-#define FLOW_DEPTH   2.0 /* optical depth of a flow all of whose values are shown */
+#define FLOW_DEPTH   2.0 /* optical depth of a flow in which all values are shown */
 #define MEDIUM_DEPTH 5.0 /* optical depth of smoke across its own size */
-#define FINE         96 /* voxel edges across an object for which the opacities of solid matter were chosen */
+#define FINE         96  /* voxel edges across an object; the opacities of solid matter are chosen for it */
 
-/* Colours in linear RGB at the distances faint, solid, dense and top. */
+/* Colours, in linear RGB, at the distances faint, solid, dense and top. */
 typedef struct palette {
   double rim[3], surface[3], dense[3], top[3];
 } palette;
 
-/* In coarse grids the way from the rim of an object to its inside has fewer voxel edges, and each absorbs
- * more.
- */
+/* Writes solid matter. In coarse grids the way from the rim of an object to its inside has fewer voxel edges,
+ * and each edge absorbs more. */
 static void write_solid(hl_function_writer *w, const palette *colors) {
   const hl_data_analysis *a = w->analysis;
   const double ramp = a->solid - a->faint, dense = fmax(a->dense, a->solid + 1e-6 * a->top),
@@ -42,9 +41,9 @@ static void write_solid(hl_function_writer *w, const palette *colors) {
   hl_add_color(w, top, colors->top);
 }
 
-/* Colours of several materials, from the lightest to the densest: of two, aluminium and copper; of more,
- * sage, wood, stone and steel. From one to the next they change within a tenth of the way to the next valley.
- */
+/* Writes colours of several materials, from the lightest to the densest. Two materials are aluminium and
+ * copper; more are sage, wood, stone and steel. From one material to the next, colours change within a tenth
+ * of the way to the next valley. */
 static void color_materials(hl_function_writer *w) {
   static const double two[2][3] = {{0.68, 0.69, 0.70}, {0.72, 0.38, 0.18}};
   static const double more[HL_MOST_MATERIALS][3] = {
@@ -92,10 +91,10 @@ void hl_write_field(hl_function_writer *w) {
   hl_add_colormap(w, "plasma", a->faint, a->solid + 0.6 * (top - a->solid), 0.25, 0.92);
 }
 
-/* Densities of particles spread over many powers of ten, so that the values are logarithms. Values below
- * their mean, which fill most of the space, are clear, and the densest matter is nearly opaque. Each row has
- * a fraction of the way from the mean to the densest value, and the optical depth of such matter across the
- * object. */
+/* Writes the function for particles. Their densities extend over many powers of ten, so the values are
+ * logarithms. Values below the mean, which fill most of the space, are clear, and the densest matter is
+ * nearly opaque. Each row has a fraction of the way from the mean to the densest value, and the optical depth
+ * across the object of matter with this value. */
 void hl_write_particles(hl_function_writer *w) {
   static const double rows[][2] = {{0, 0}, {0.3, 0.05}, {0.5, 0.5}, {0.65, 3}, {0.8, 15}, {1, 80}};
   const hl_data_analysis *a = w->analysis;
@@ -105,8 +104,8 @@ void hl_write_particles(hl_function_writer *w) {
   hl_add_colormap(w, "inferno", from, top, 0.25, 1);
 }
 
-/* The opacities on one side of a flow's middle: common values are clear, rare ones dense. Rows: fraction of
- * the way from the middle to the end of the values, optical depth. */
+/* Adds the opacities on one side of a flow's middle: common values are clear, rare values dense. Each row has
+ * a fraction of the way from the middle to the end of the values, and an optical depth. */
 static void add_rare(hl_function_writer *w, double reach, int side) {
   static const double rarity[][2] = {{0.4, 0}, {0.6, 0.5}, {0.8, 3}, {1, 20}};
   enum { STEPS = sizeof rarity / sizeof *rarity };
@@ -117,7 +116,8 @@ static void add_rare(hl_function_writer *w, double reach, int side) {
   }
 }
 
-/* Shows a flow's extreme values on each side; where no value is common, all values alike. */
+/* Writes the function for a flow: the extreme values on each side; where no value is common, all values
+ * alike. */
 void hl_write_flow(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   double reach = fmax(a->lower, a->upper), middle = a->middle - a->background;
@@ -130,7 +130,8 @@ void hl_write_flow(hl_function_writer *w) {
   hl_add_colormap(w, "plasma", middle - a->lower, middle + a->upper, 0.2, 0.94);
 }
 
-/* Kelly's colours of greatest contrast (1965) without greys and the darkest, then the same lighter. */
+/* Kelly's colours of greatest contrast (1965), without greys and the darkest ones, followed by lighter shades
+ * of these colours. */
 static void label_color(size_t label, double linear[3]) {
   static const unsigned int kelly[] = {0xf3c300, 0x875692, 0xf38400, 0xa1caf1, 0xbe0032, 0xc2b280,
                                        0x008856, 0xe68fac, 0x0067a5, 0xf99379, 0x604e97, 0xf6a600,
@@ -146,7 +147,7 @@ static void label_color(size_t label, double linear[3]) {
 /* Makes a label opaque close to its own number only: between two regions the kernel passes through numbers
  * that belong to neither. */
 static void add_label(hl_function_writer *w, double label, double before, double after, double narrowest) {
-  static const double part = 0.03; /* of the way to the next number */
+  static const double part = 0.03; /* fraction of the way to the next number */
   double down = fmin(fmax(part * (label - before), narrowest), 0.45 * (label - before)),
          up = fmin(fmax(part * (after - label), narrowest), 0.45 * (after - label)),
          at = label - w->analysis->background;
@@ -165,7 +166,7 @@ void hl_write_labels(hl_function_writer *w) {
   for (size_t n = 0; n <= last; n++) {
     double label = a->labels[n], before = n > 0 ? a->labels[n - 1] : label - 1,
            after = n < last ? a->labels[n + 1] : label + 1;
-    if (before < 0 && label > 0) before = 0; /* 0 is a value of the volume, though no label */
+    if (before < 0 && label > 0) before = 0; /* 0 may be a value of the volume, though it is no label */
     if (label < 0 && after > 0) after = 0;
     double color[3];
     label_color(n, color);
@@ -189,7 +190,7 @@ void hl_write_signed(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   static const double cold[3][3] = {{0.10, 0.30, 0.75}, {0.06, 0.18, 0.62}, {0.02, 0.06, 0.35}};
   static const double warm[3][3] = {{0.95, 0.52, 0.20}, {0.85, 0.28, 0.08}, {0.60, 0.08, 0.03}};
-  w->direction = 1; /* both sides are written at once */
+  w->direction = 1; /* the function is for both sides at once */
   double ramp = a->solid - a->faint, top = fmax(a->top, a->solid * 1.001);
   double at[5] = {a->faint, a->faint + 0.5 * ramp, a->solid, a->solid + 0.5 * (top - a->solid), top};
   double opacity[5] = {0, hl_opacity_for(a, 2), hl_opacity_for(a, 15), hl_opacity_for(a, 60),
@@ -238,8 +239,8 @@ double hl_opacity_for(const hl_data_analysis *analysis, double optical_depth) {
   return 1 - exp(-optical_depth / fmax(analysis->depth, 1));
 }
 
-/* Reverses the points where objects lie below the background: points were added with rising distance, so
- * their values fall. */
+/* Reverses the order of the points where objects lie below the background. Points are added with rising
+ * distance, so their values fall there. */
 static void put_in_order(hl_function_writer *w) {
   if (w->direction > 0) return;
   for (size_t a = 0, b = w->opacity_count; a + 1 < b; a++) {

@@ -7,30 +7,31 @@
 
 typedef struct hl_function_writer {
   const hl_data_analysis *analysis;
-  double direction; /* of rising distance: +1 or -1 in data values */
+  double direction; /* direction of rising distance in data values: +1 or -1 */
   hl_opacity_point opacity[4 * HL_MOST_LABELS];
   hl_color_point color[4 * HL_MOST_LABELS];
   size_t opacity_count, color_count;
 } hl_function_writer;
 
-/* The analysis must outlive the writer. */
+/* Begins a function. The analysis must outlive the writer. */
 void hl_begin_function(hl_function_writer *w, const hl_data_analysis *analysis);
 
-/* Add points with rising distance; points beyond the arrays' ends are left out. */
+/* These two add a point. Distances must rise; points beyond the arrays' ends are left out. */
 void hl_add_opacity(hl_function_writer *w, double distance, double opacity);
 void hl_add_color(hl_function_writer *w, double distance, const double color[3]); /* linear RGB */
-/* Adds the range start..end (0 to 1) of a named colormap over the distances from..to. */
+/* Adds a part of a named colormap, from start to end (0 to 1), over the distances from..to. */
 void hl_add_colormap(hl_function_writer *w, const char *name, double from, double to, double start,
                      double end);
 
 /* The opacity per voxel edge that adds up to an optical depth across the objects. */
 double hl_opacity_for(const hl_data_analysis *analysis, double optical_depth);
 
-/* Opacities hold per smallest voxel edge of the volume. *function gets memory of its own. */
+/* Makes the function. Its opacities hold per smallest voxel edge of the volume. *function gets memory of its
+ * own. */
 hl_status hl_finish_function(hl_function_writer *w, hl_context *context, const hl_volume *volume,
                              hl_transfer_function *function, hl_error *error);
 
-/* Write the function of one look each (looks.h). */
+/* Each of these writes the function of one look (looks.h). */
 void hl_write_matter(hl_function_writer *w);
 void hl_write_body(hl_function_writer *w);
 void hl_write_brain(hl_function_writer *w);

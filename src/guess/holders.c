@@ -1,8 +1,7 @@
-/* guess/holders.c - finds what holds a scanned object, as bodies of cells, and planes that cut it off.
+/* guess/holders.c - finds the holders of a scanned object, as bodies of cells, and planes that cut them off.
  *
- * All lengths are in the world of the volume's file. A body's rows of cells are known by their ends: between
- * planes no more is needed, as half spaces are convex.
- */
+ * All lengths are in the world of the volume's file. Of each row of a body's cells only the two ends are
+ * kept: planes need no more, because half spaces are convex. */
 #include "guess/holders.h"
 
 #include <string.h>
@@ -12,29 +11,32 @@
 #include "guess/sample.h"
 #include "guess/seen_cells.h"
 
-#define OBJECT_CELLS  0.8   /* of all cells that are seen, the object has at least this fraction, */
-#define OBJECT_DEPTH  0.95  /* and of their optical depth this */
-#define LEAST         0.005 /* fraction of the object's cells: smaller bodies are specks */
-#define LONG          0.5   /* a holder's length, at least, as a fraction of the object's */
-#define THIN          0.25  /* a holder's thickness, at most, as a fraction of its length */
-#define DENSEST       0.9   /* quantile of the object's matter, ... */
-#define DENSE_AT_MOST 0.005 /* ... which at most this fraction of a holder reaches */
-#define RIM           1.0   /* cells, from the centres of the object's outermost ones to a plane */
-#define CLEAR         1.5   /* cells, from there to the centres of a holder's: they lie wholly beyond */
+#define OBJECT_CELLS  0.8   /* least fraction of all visible cells that the object has */
+#define OBJECT_DEPTH  0.95  /* least fraction of the visible cells' optical depth that the object has */
+#define LEAST         0.005 /* smaller bodies are specks; a fraction of the object's cells */
+#define LONG          0.5   /* least length of a holder, as a fraction of the object's length */
+#define THIN          0.25  /* greatest thickness of a holder, as a fraction of its length */
+#define DENSEST       0.9   /* quantile of the object's matter that counts as dense */
+#define DENSE_AT_MOST 0.005 /* greatest fraction of a holder that is as dense */
+#define RIM           1.0   /* cells from the centres of the object's outermost cells to a plane */
+#define CLEAR                                                                           \
+  1.5 /* cells from a plane to the centres of a holder's cells, which lie wholly beyond \
+       * it */
 
-#define LEFT      0.01 /* fraction of a holder that may be left, in the gap beside the object */
-#define RIM_LEVEL 0.3  /* fraction of the level, from which cells are seen as rims */
-#define MANY      0.1  /* fraction of all rims, at least, for which a plane is added */
+#define LEFT      0.01 /* fraction of a holder that may remain in the gap beside the object */
+#define RIM_LEVEL 0.3  /* fraction of the level from which cells are seen as rims */
+#define MANY      0.1  /* least fraction of all rims that a plane must cut off */
 
 enum { DIRECTIONS = 1000, VOXELS = 4096 };
 enum { FOR_EACH = 4, FOR_RIMS = 4 };     /* most planes for one holder, and for all rims */
-static const uint32_t RIMS = UINT32_MAX; /* in place of a body's number */
+static const uint32_t RIMS = UINT32_MAX; /* stands in place of a body's number */
 
-/* Mean optical depths, as fractions of the greatest cell's, by which cells belong to bodies: faint holders
- * are seen by the first; at the second, foam and clothes no longer join a holder to the object. */
+/* The levels by which cells belong to bodies: mean optical depths, as fractions of the greatest cell's. At
+ * the first level faint holders are seen. At the second one, foam and clothes no longer join a holder to the
+ * object. */
 static const double levels[] = {0.02, 0.1};
 
-/* The two ends of each row of a body's cells. */
+/* The two end cells of each row of a body's cells. */
 typedef struct body_ends {
   vec3 *point;    /* owned; [count]; centres of cells */
   uint32_t *cell; /* owned; [count] */
@@ -46,15 +48,15 @@ typedef struct search {
   hl_context *context;
   const hl_data_analysis *analysis;
   const hl_seen *seen;
-  affine3 cell_to_world; /* of whole numbers of cells to their centres */
+  affine3 cell_to_world; /* maps whole numbers of cells to their centres */
   hl_bodies bodies;
   vec3 direction[DIRECTIONS];
-  double cell_width[DIRECTIONS]; /* of one cell along each direction */
-  double hull[DIRECTIONS];       /* how far the object's centres reach */
+  double cell_width[DIRECTIONS]; /* width of one cell along each direction */
+  double hull[DIRECTIONS];       /* reach of the object's cell centres along each direction */
   double object_length;
   double densest;                   /* distance from the background; NaN: not found yet */
-  float faint;                      /* mean depth of cells in the faintest rims */
-  uint32_t plane[HL_HOLDER_PLANES]; /* numbers of directions */
+  float faint;                      /* mean depth of the cells in the faintest rims */
+  uint32_t plane[HL_HOLDER_PLANES]; /* numbers of the planes' directions */
   size_t plane_count;
 } search;
 
@@ -73,7 +75,7 @@ static void add_end(const search *s, body_ends *ends, int i, int j, int k) {
                     k == n[2] - 1;
 }
 
-/* Fails for lack of memory; release the ends in any case. */
+/* Finds the ends of a body. Fails for lack of memory; release the ends in any case. */
 static hl_status find_ends(const search *s, uint32_t body, body_ends *ends, hl_error *error) {
   const int *n = s->seen->size;
   size_t rows = (size_t)n[1] * (size_t)n[2];
@@ -93,7 +95,7 @@ static hl_status find_ends(const search *s, uint32_t body, body_ends *ends, hl_e
   return HL_OK;
 }
 
-/* How far a body's centres reach along a direction, and its width there, with its cells. */
+/* The reach of a body's cells along a direction, and the body's width there. */
 static double reach(const search *s, const body_ends *ends, int d, double *width) {
   double low = INFINITY, high = -INFINITY;
   for (size_t n = 0; n < ends->count; n++) {
@@ -105,8 +107,8 @@ static double reach(const search *s, const body_ends *ends, int d, double *width
   return high;
 }
 
-/* A quantile of the distances from the background, or with limit the fraction that reaches it, of voxels in
- * the middle of a body's cells. Fails for lack of memory. */
+/* Looks at voxels in the middle of a body's cells. Finds a quantile of their distances from the background
+ * or, with a limit, the fraction of them that reaches the limit. Fails for lack of memory. */
 static hl_status look_at_matter(const search *s, uint32_t body, const double *limit, double *found,
                                 hl_error *error) {
   const hl_seen *seen = s->seen;
@@ -133,7 +135,8 @@ static hl_status look_at_matter(const search *s, uint32_t body, const double *li
 
 /* ---- the object ---- */
 
-/* Finds the bodies at a level, and the object, the largest; *is_one: it is nearly all there is. */
+/* Finds the bodies at a level, and the object, which is the largest of them. *is_one: the object is nearly
+ * everything that is seen. */
 static hl_status find_object(search *s, double level, bool *is_one, hl_error *error) {
   const hl_seen *seen = s->seen;
   const size_t cells = (size_t)seen->size[0] * (size_t)seen->size[1] * (size_t)seen->size[2];
@@ -183,9 +186,9 @@ static bool is_cut_off(const search *s, vec3 point) {
   return cut;
 }
 
-/* Adds planes, `most_planes` at most, each time the one that cuts off most of what is left of a body, as long
- * as it cuts off more than a fraction of the body; once nearly nothing is left, as long as it cuts off
- * anything. True if nearly nothing is left. Takes away the ends that are cut off. */
+/* Adds planes, at most `most_planes`, and removes the ends that they cut off. Each plane is the one that cuts
+ * off most of the rest of a body. It must cut off more than a fraction of the body, or, once nearly nothing
+ * is left, anything at all. True if nearly nothing is left. */
 static bool cut_off(search *s, int most_planes, double fraction, body_ends *ends) {
   const double enough = fraction * (double)ends->count, rest = LEFT * (double)ends->count;
   for (int added = 0;; added++) {
@@ -239,7 +242,7 @@ static hl_status take(search *s, uint32_t body, bool *is_holder, hl_error *error
   return status;
 }
 
-/* True if a plane would cut a body that is no holder. */
+/* Finds whether a plane would cut a body that is no holder. */
 static hl_status is_met(const search *s, uint32_t body, bool *met, hl_error *error) {
   body_ends ends;
   hl_status status = find_ends(s, body, &ends, error);
@@ -252,15 +255,14 @@ static hl_status is_met(const search *s, uint32_t body, bool *met, hl_error *err
   return status;
 }
 
-/* True if a plane could cut off what is at this point. */
+/* True if a plane could cut off a point. */
 static bool is_beside(const search *s, vec3 point) {
   bool beside = false;
   for (uint32_t d = 0; d < DIRECTIONS && !beside; d++) beside = lies_beyond(s, point, d);
   return beside;
 }
 
-/* Cuts off the faint rims of holders: adds planes where they take away much of all that lies beside the
- * object. */
+/* Cuts off the faint rims of holders: adds planes that each take away much of all rims beside the object. */
 static hl_status cut_rims_off(search *s, hl_error *error) {
   const hl_seen *seen = s->seen;
   const size_t cells = (size_t)seen->size[0] * (size_t)seen->size[1] * (size_t)seen->size[2];
@@ -277,7 +279,7 @@ static hl_status cut_rims_off(search *s, hl_error *error) {
   return status;
 }
 
-/* Finds the planes at one level; in doubt none. */
+/* Finds the planes at one level; where in doubt, none. */
 static hl_status find_planes(search *s, double level, hl_error *error) {
   bool is_one = false, doubt = false;
   hl_status status = find_object(s, level, &is_one, error);
@@ -328,7 +330,7 @@ static void make_cuts(const search *s, hl_cut planes[HL_HOLDER_PLANES]) {
 hl_status hl_holders_find(const hl_scene_volume *volume, const hl_data_analysis *analysis,
                           hl_cut planes[HL_HOLDER_PLANES], size_t *count, hl_error *error) {
   *count = 0;
-  if (analysis->kind != HL_DATA_SURFACES || analysis->vessels > 0) return HL_OK; /* vessels are not held */
+  if (analysis->kind != HL_DATA_SURFACES || analysis->vessels > 0) return HL_OK; /* vessels have no holders */
   hl_seen seen;
   bool any = false;
   hl_status status = hl_seen_find(volume, &seen, &any, error);

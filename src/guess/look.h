@@ -1,4 +1,4 @@
-/* guess/look.h - a look: a transfer function, and what light and shading go with it. */
+/* guess/look.h - a look: a transfer function, and the light and shading that go with it. */
 #ifndef HL_GUESS_LOOK_H
 #define HL_GUESS_LOOK_H
 
@@ -6,13 +6,15 @@
 
 typedef struct hl_look {
   const char *name;                     /* the kind of data, in words */
-  void (*write)(hl_function_writer *w); /* the transfer function */
+  void (*write)(hl_function_writer *w); /* writes the transfer function */
   hl_shading shading;
   hl_kernel kernel;
-  double key, fill, sky; /* intensities: the light with shadows, the one without, the sky */
-  double left;           /* fraction of lights with shadows, for hl_scene_exposure(); 0: no exposure */
-  bool on_black;         /* the background of a bare volume */
-  const char *next;      /* the style that shows such data next best */
+  double key, fill, sky; /* intensities of the light with shadows, of the light without shadows, and of the
+                          * sky */
+  double left;           /* fraction of lights with shadows that reaches surfaces, for hl_scene_exposure(); 0:
+                          * no exposure */
+  bool on_black;         /* the background of a bare volume is black */
+  const char *next;      /* the style that is next best for such data */
 } hl_look;
 
 #endif

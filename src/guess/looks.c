@@ -1,7 +1,7 @@
-/* guess/looks.c - chooses a look by a volume's analysis; the table of looks; presets of transfer functions.
+/* guess/looks.c - the table of looks, the choice of a look by a volume's analysis, and presets of transfer
+ * functions.
  *
- * Scans that may be of a body are coloured like skin, all other scans like ivory.
- */
+ * Scans that may be of a body are coloured like skin, all other scans like ivory. */
 #include "guess/looks.h"
 
 #include <math.h>
@@ -59,7 +59,7 @@ static bool ends_with(const char *text, const char *end) {
   return length >= tail && hl_plain_equal(text + length - tail, end);
 }
 
-/* True if the file's format (NIfTI) tells a patient's left and right. */
+/* True if the file's format (NIfTI) tells the left and right of a patient. */
 static bool is_anatomical(const char *file) { return ends_with(file, ".nii") || ends_with(file, ".nii.gz"); }
 
 /* True if more than two fifths of the voxels denser than air are tissue: -200 to 200 Hounsfield units, which
@@ -74,7 +74,8 @@ static bool is_mostly_tissue(const hl_volume *volume) {
   return tissue > 0.4 * matter;
 }
 
-/* True for a scan of a body: it fills the grid, which trees, vessels and machine parts leave mostly empty. */
+/* True for the scan of a body. A body fills the grid; trees, vessels and machine parts leave most of it
+ * empty. */
 bool hl_is_body(const hl_volume *volume, const char *file, const hl_data_analysis *a) {
   if (a->kind != HL_DATA_SURFACES || a->direction < 0 || a->vessels > 0) return false;
   if (hl_is_hounsfield(volume)) return is_mostly_tissue(volume);
@@ -87,7 +88,7 @@ const hl_look *hl_look_for(const hl_volume *volume, const char *file, const hl_d
     case HL_DATA_SURFACES:
       if (analysis->vessels > 0) return hl_style_find("vessels");
       if (hl_is_body(volume, file, analysis))
-        is = analysis->zeroed > 0.4 ? BRAIN : BODY; /* zeros all around: the skull was removed */
+        is = analysis->zeroed > 0.4 ? BRAIN : BODY; /* zeros all around mean that the skull was removed */
       break;
     case HL_DATA_FIELD: is = FIELD; break;
     case HL_DATA_SIGNED: is = SIGNED; break;
@@ -105,8 +106,8 @@ void hl_look_material(const hl_look *look, hl_scene_volume *volume) {
   volume->material = (hl_material){.ambient = 1, .diffuse = 0.85, .specular = 0.15, .shininess = 24};
 }
 
-/* Voxels with colours of their own: white leaves them as they are, and an alpha is the opacity of a voxel,
- * unless a style says otherwise. */
+/* Keeps the colours of voxels that have their own: white leaves them as they are. The alpha of a voxel is its
+ * opacity, unless a style says otherwise. */
 static void keep_colors(hl_function_writer *w, const hl_volume *volume, const hl_look *style) {
   static const double white[3] = {1, 1, 1};
   const double background = w->analysis->background;
@@ -144,7 +145,7 @@ hl_status hl_transfer_function_automatic(hl_context *context, const hl_volume *v
                        error);
 }
 
-/* The look that shows a volume without being asked; of label maps their row. */
+/* The look that shows a volume where no look is asked for; for label maps, their row of the table. */
 static hl_status find_look(const hl_volume *volume, const char *file, const hl_look **look, hl_error *error) {
   hl_data_analysis analysis;
   hl_status status = hl_data_analyse(volume, &analysis, error);
@@ -226,8 +227,8 @@ static const hounsfield_row soft_tissue[] = {
     {60, 0.07, {0.78, 0.30, 0.24}},  {150, 0.12, {0.82, 0.36, 0.26}},   {250, 0.35, {0.92, 0.76, 0.60}},
     {500, 0.90, {0.97, 0.92, 0.84}}, {2000, 0.97, {1.00, 0.98, 0.95}}};
 
-/* The distance from the background of a value in Hounsfield units; hounsfield: the volume is in these units.
- */
+/* The distance from the background of a value in Hounsfield units. hounsfield: whether the volume has these
+ * units. */
 static double distance_of(const hl_function_writer *w, bool hounsfield, double value) {
   const hl_data_analysis *a = w->analysis;
   if (hounsfield) return value - a->background;
@@ -265,7 +266,8 @@ static void write_soft_tissue(hl_function_writer *w, const hl_volume *volume) {
   write_rows(w, volume, soft_tissue, sizeof soft_tissue / sizeof *soft_tissue);
 }
 
-/* A brain without its skull: a soft ramp; grey matter is darker and pinker than white matter. */
+/* Writes a brain without its skull: a soft ramp, in which grey matter is darker and pinker than white
+ * matter. */
 static void write_brain(hl_function_writer *w, const hl_volume *volume) {
   (void)volume;
   const hl_data_analysis *a = w->analysis;
@@ -287,7 +289,7 @@ static void write_smoke(hl_function_writer *w, const hl_volume *volume) {
   hl_write_medium(w);
 }
 
-/* Nested shells: a faint outer one, a firm inner one, a solid core. */
+/* Writes nested shells: a faint outer shell, a firm inner shell, and a solid core. */
 static void write_electron_density(hl_function_writer *w, const hl_volume *volume) {
   (void)volume;
   const hl_data_analysis *a = w->analysis;
@@ -305,8 +307,8 @@ static void write_electron_density(hl_function_writer *w, const hl_volume *volum
   hl_add_colormap(w, "plasma", 0.6 * a->faint, core, 0.25, 0.95);
 }
 
-/* A value that at most one voxel in a hundred thousand exceeds, so that a single bright voxel does not darken
- * the others. */
+/* A value that at most one voxel in a hundred thousand exceeds. So a single bright voxel does not darken all
+ * others. */
 static double almost_greatest(const hl_volume *volume) {
   uint64_t voxels = 0, above = 0;
   for (int bin = 0; bin < HL_HISTOGRAM_BINS; bin++) voxels += volume->histogram[bin];
@@ -317,9 +319,9 @@ static double almost_greatest(const hl_volume *volume) {
              : volume->minimum + (volume->maximum - volume->minimum) * bin / HL_HISTOGRAM_BINS;
 }
 
-/* For maximum projections: greys from the background, which is not shown, to almost the greatest value. Where
- * objects lie below the background, or on both sides of it, greys begin at the least value. A window that the
- * file asks for (DICOM) narrows them. */
+/* Writes the greys of a maximum projection: from the background, which is not shown, to almost the greatest
+ * value. Where objects lie below the background, or on both sides of it, greys begin at the least value. A
+ * window that the file asks for (DICOM) narrows them. */
 static void write_maximum(hl_function_writer *w, const hl_volume *volume) {
   const hl_data_analysis *a = w->analysis;
   bool above = a->direction > 0 && a->kind != HL_DATA_SIGNED;

@@ -1,18 +1,18 @@
-/* guess/materials.c - the materials of scanned objects: peaks of the histogram that valleys part. */
+/* guess/materials.c - the materials of scanned objects: peaks of the histogram with valleys between them. */
 #include <stdbool.h>
 
 #include "guess/analysis.h"
 
 /* A peak counts beside its neighbour where the valley between them is lower than this fraction of the lower
- * peak... */
+ * peak. */
 static const double DEEPEST = 0.35;
-/* ... and it holds at least this fraction of the objects' voxels. */
+/* A peak must also hold at least this fraction of the objects' voxels. */
 static const double LEAST_SHARE = 0.03;
 
-enum { BINS = HL_HISTOGRAM_BINS, REACH = 4 /* bins to each side, of the smoothing */ };
+enum { BINS = HL_HISTOGRAM_BINS, REACH = 4 /* number of bins to each side that smoothing takes in */ };
 
 /* The counts of the objects' bins, by rising distance, smoothed by a tent so that the gaps of quantised data
- * close. Returns how many bins there are; *first: the distance of the first one. */
+ * close. Returns the number of bins. *first: the distance of the first bin. */
 static int object_bins(const hl_volume *volume, const hl_data_analysis *a, double counts[BINS],
                        double *first) {
   double width = (volume->maximum - volume->minimum) / BINS, raw[BINS];
@@ -37,19 +37,21 @@ static int object_bins(const hl_volume *volume, const hl_data_analysis *a, doubl
   return count;
 }
 
-/* The bins from `from` on that belong to one peak: up to the valley before the next peak, or to the end. */
+/* The end of the bins, from `from` on, that belong to one peak: the valley before the next peak, or the end
+ * of all bins. */
 static int end_of_peak(const double *counts, int count, int from) {
   double peak = counts[from], valley = counts[from];
   int at_valley = from;
   for (int n = from; n < count; n++) {
     if (counts[n] < valley) valley = counts[n], at_valley = n;
-    if (valley < DEEPEST * peak && counts[n] > valley / DEEPEST) return at_valley; /* another peak begins */
+    if (valley < DEEPEST * peak && counts[n] > valley / DEEPEST) return at_valley; /* the next peak begins */
     if (counts[n] > peak) peak = valley = counts[n], at_valley = n;
   }
   return count;
 }
 
-/* The first bin after the background's tail: a peak whose highest bin is the first one is no material's. */
+/* The first bin after the background's tail. A peak whose highest bin is the first bin belongs to no
+ * material. */
 static int end_of_tail(const double *counts, int count) {
   int end = end_of_peak(counts, count, 0);
   bool falls = true;
@@ -67,7 +69,7 @@ void hl_data_find_materials(const hl_volume *volume, hl_data_analysis *a) {
     end = end_of_peak(counts, count, from);
     for (int n = from; n < end; n++) pending += counts[n];
     if (end == count || a->material_count == HL_MOST_MATERIALS) break;
-    if (pending < LEAST_SHARE * all) continue; /* too few voxels: they join the next material */
+    if (pending < LEAST_SHARE * all) continue; /* too few voxels for a material; they join the next one */
     double rest = 0;
     for (int n = end; n < count; n++) rest += counts[n];
     if (rest < LEAST_SHARE * all) break;

@@ -1,7 +1,7 @@
 /* guess/outline.c - the outermost visible voxels of a scene, and the range of visible values.
  *
- * Only the first and the last visible voxel of a row can be outermost, and of these only the corners of each
- * slice's convex hull. */
+ * Only the first and the last visible voxel of a row can be outermost. Of these voxels, only the corners of
+ * each slice's convex hull can be outermost. */
 #include "guess/outline.h"
 
 #include <string.h>
@@ -36,7 +36,7 @@ static hl_status add(hl_outline *outline, vec3 point, double radius, hl_error *e
 typedef struct chain {
   ptrdiff_t *i, *j; /* owned */
   int count;
-  int side; /* 1: the last voxels of rows; -1: the first */
+  int side; /* 1: the last voxels of rows; -1: the first voxels */
 } chain;
 
 /* Adds a corner. Derived: an earlier corner is dropped if the chain does not turn outwards there (monotone
@@ -98,7 +98,8 @@ static hl_status add_shown(hl_outline *outline, const hl_scene_volume *volume, h
   return status;
 }
 
-/* Adds what a volume shows: by its transfer function, and within its isosurfaces of the least value. */
+/* Adds the visible part of a volume: by its transfer function, and within its isosurface of the least
+ * value. */
 static hl_status add_volume(hl_outline *outline, const hl_scene_volume *volume, hl_error *error) {
   hl_status status = add_shown(outline, volume, error);
   double least = INFINITY;
@@ -111,7 +112,7 @@ static hl_status add_volume(hl_outline *outline, const hl_scene_volume *volume, 
   return add_shown(outline, &solid, error);
 }
 
-/* Adds what a volume shows of what its scene's cuts leave. */
+/* Adds the visible part of a volume, of the part that its scene's cuts leave. */
 static hl_status add_cut_volume(hl_outline *outline, const hl_scene_description *scene,
                                 const hl_scene_volume *volume, hl_error *error) {
   if (scene->cut_count == 0) return add_volume(outline, volume, error);
@@ -148,7 +149,7 @@ vec3 hl_even_direction(int n, int count) {
   return (vec3){across * cos(angle), across * sin(angle), z};
 }
 
-/* A box around so many points that follow each other, and the greatest radius of any. */
+/* A box around up to POINTS_A_BOX consecutive points, and the greatest of their radii. */
 enum { POINTS_A_BOX = 64 };
 typedef struct points_box {
   double low[3], high[3], radius;
@@ -168,7 +169,7 @@ static void bound_points(const hl_outline *outline, points_box *boxes) {
   }
 }
 
-/* As far as a box's points may lie along a unit vector, with more than rounding adds. */
+/* A bound of how far the box's points reach along a unit vector; it includes the rounding. */
 static double farthest_of_box(const points_box *box, vec3 along) {
   const double way[3] = {along.x, along.y, along.z};
   double sum = box->radius, size = box->radius;
@@ -179,7 +180,7 @@ static double farthest_of_box(const points_box *box, vec3 along) {
   return sum + 1e-12 * size;
 }
 
-/* The first of the points that lie farthest. */
+/* The first of the points that reach farthest. */
 static size_t farthest(const hl_outline *outline, const points_box *boxes, vec3 along) {
   size_t best = 0;
   double most = -INFINITY;
@@ -211,7 +212,7 @@ hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_err
   return status;
 }
 
-/* The points of a mesh that lie farthest either way along the axes and the diagonals between them. */
+/* The points of a mesh that lie farthest in both directions along the axes and the diagonals between them. */
 enum { AXES = 13 };
 typedef struct farthest_points {
   vec3 along[AXES], point[2][AXES];
@@ -254,8 +255,8 @@ static void look_at_mesh(farthest_points *far, const hl_scene_mesh *mesh, bool *
   }
 }
 
-/* Adds the farthest of all corners and spheres of a mesh: a floor touches them, and none is too rare to be
- * seen. */
+/* Adds the farthest of all corners and spheres of a mesh: a floor touches them, and even a single one of them
+ * can be seen. */
 static hl_status add_farthest(hl_outline *outline, const hl_scene_mesh *mesh, hl_error *error) {
   size_t vertices = hl_mesh_describe(mesh->mesh)->vertex_count;
   bool *used = hl_allocate_zeroed(outline->context, vertices, sizeof *used);
@@ -270,8 +271,8 @@ static hl_status add_farthest(hl_outline *outline, const hl_scene_mesh *mesh, hl
   return status;
 }
 
-/* Adds the outermost vertices and spheres of a mesh: those that lie farthest in many directions, of large
- * meshes among some of them. */
+/* Adds the outermost vertices and spheres of a mesh: those that lie farthest in many directions. In a large
+ * mesh only some of its vertices are compared. */
 static hl_status add_mesh(hl_outline *outline, const hl_scene_mesh *mesh, hl_error *error) {
   enum { MOST_CORNERS = 60000 };
   const hl_mesh_description *d = hl_mesh_describe(mesh->mesh);
@@ -326,7 +327,7 @@ double hl_outline_reach(const hl_outline *outline, vec3 along, vec3 forward, dou
  * counts with its opacity times the light that its most transparent neighbour lets through, in and out again.
  */
 
-#define TAIL 0.01 /* fraction of the counts beyond each end of the range */
+#define TAIL 0.01 /* fraction of the counts that lies beyond each end of the range */
 
 enum { BINS = 4096 };
 
@@ -337,7 +338,8 @@ static double least_opacity_around(const hl_volume *volume, const hl_transfer_fu
   double least = 1;
   for (int n = 0; n < 6; n++) {
     size_t next[3] = {at[0], at[1], at[2]};
-    /* a negative index becomes a large one: outside of the grid, like one beyond its end */
+    /* a negative index wraps round to a large one, and so lies outside the grid like an index beyond its
+     * end */
     next[n / 2] += n % 2 == 0 ? 1 : (size_t)-1;
     least = fmin(least, hl_transfer_function_opacity(
                             function, hl_volume_value_within(volume, next[0], next[1], next[2])));
@@ -365,7 +367,7 @@ static double count_seen(const hl_volume *volume, const hl_transfer_function *fu
   return sum;
 }
 
-/* The value below which this fraction of the counts lies. */
+/* The value below which a fraction of the counts lies. */
 static double quantile(const double *counts, double sum, double fraction, double low, double high) {
   double below = 0;
   int bin = 0;
@@ -386,7 +388,7 @@ hl_status hl_transfer_function_seen_range(const hl_volume *volume, const hl_tran
   double sum = high > low ? count_seen(volume, function, low, high, counts) : 0;
   if (!(sum > 0)) return HL_OK;
   double first = quantile(counts, sum, TAIL, low, high), last = quantile(counts, sum, 1 - TAIL, low, high);
-  /* a few outliers left nearly all bins empty: the bins are laid again, between the ends found so far */
+  /* Where a few outliers have left nearly all bins empty, new bins are laid between the ends found so far. */
   if (last - first < 100 * (high - low) / BINS) {
     double bin = (high - low) / BINS, near[BINS] = {0};
     low = fmax(low, first - bin), high = fmin(high, last + bin);

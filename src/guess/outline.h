@@ -5,8 +5,8 @@
 #include "core/vector.h"
 #include "scene/scene.h"
 
-/* Balls around the outermost voxels, half a voxel's diagonal in radius. In every direction they reach as far
- * as all visible voxels do, in perspective too. */
+/* Balls around the outermost voxels, half a voxel's diagonal in radius. In every direction, also in
+ * perspective, the balls reach as far as all visible voxels. */
 typedef struct hl_outline {
   hl_context *context;
   vec3 *point;    /* owned; [count]; world */
@@ -15,12 +15,13 @@ typedef struct hl_outline {
 } hl_outline;
 
 /* The outline of all visible volumes or, where none of them shows anything, the corners of all volumes'
- * boxes. Fails for lack of memory alone; release it even then. description: at least one volume or mesh. */
+ * boxes. Fails only for lack of memory; release the outline even then. description: has at least one volume
+ * or mesh. */
 hl_status hl_outline_find(const hl_scene_description *description, hl_outline *outline, hl_error *error);
 void hl_outline_release(hl_outline *outline);
 
 /* *thinned: the points that reach farthest in 400 directions. In any other direction they reach as far as all
- * points do, less half a per cent of the extent at most. */
+ * points do, or less far by at most half a per cent of the extent. */
 hl_status hl_outline_thin(const hl_outline *outline, hl_outline *thinned, hl_error *error);
 
 /* The greatest of p . along - tangent p . forward over all points of all balls; along is perpendicular to

@@ -1,7 +1,7 @@
-/* guess/rigs.c - lights by name: what a photographer would set up around the object.
+/* guess/rigs.c - light rigs by name: lights as a photographer would set them up around the object.
  *
- * In:  a name, and a scene with its light.
- * Out: other lights and another sky, about as strong together as the light that the scene had. */
+ * In:  a name, and a scene with its light. Out: new lights and a new sky, together about as strong as the
+ * scene's light was. */
 #include <math.h>
 #include <string.h>
 
@@ -14,9 +14,9 @@
 
 /* One light of a rig, seen from the camera. */
 typedef struct rig_light {
-  double azimuth_deg, elevation_deg; /* as of hl_light_direction_beside() */
+  double azimuth_deg, elevation_deg; /* as for hl_light_direction_beside() */
   double diameter_deg;               /* angular diameter */
-  double share;                      /* intensity over the scene's key light's */
+  double share;                      /* intensity as a fraction of the scene's key light */
   double color[3];                   /* linear RGB */
   bool shadows;
 } rig_light;
@@ -24,7 +24,7 @@ typedef struct rig_light {
 typedef struct rig {
   size_t count;
   rig_light lights[HL_LIGHT_RIG_MOST];
-  double sky; /* the sky's strength over the scene's */
+  double sky; /* the sky's strength as a fraction of the scene's sky */
 } rig;
 
 #define WHITE \
@@ -55,7 +55,8 @@ static const rig rigs[RIGS] = {
     [OVERCAST] = {1, {{0, 80, 60, 0.30, WHITE, true}}, 2.2}};
 /* clang-format on */
 
-/* Strength of the sky over the key light's intensity, of scenes that had no sky: as bare volumes have it. */
+/* Strength of the sky over the intensity of the key light, for scenes that had no sky. Bare volumes have the
+ * same ratio. */
 #define SKY_OVER_KEY 0.43
 
 const char *hl_light_rig_name(size_t index) { return index < RIGS ? hl_light_rig_choices[index].name : NULL; }
@@ -66,8 +67,8 @@ static const rig *rig_named(const char *name) {
   return NULL;
 }
 
-/* The intensity that shares are of: the strongest light's, or that of the light that a scene without any
- * would get. */
+/* The intensity whose shares the rig's lights have: the intensity of the scene's strongest light, or of the
+ * light that a scene without lights gets. */
 static double key_intensity(const hl_scene_description *description) {
   hl_light key;
   double strongest = 0;
@@ -77,8 +78,8 @@ static double key_intensity(const hl_scene_description *description) {
   return strongest > 0 ? strongest : key.intensity;
 }
 
-/* What all shares are multiplied by. A medium receives all lamps alike, from wherever they shine: where no
- * volume is shaded, the lamps together are as strong as the key light. */
+/* The factor for all shares. A medium receives all lamps alike, from whatever direction they shine. So where
+ * no volume is shaded, all lamps together are as strong as the key light. */
 static double share_factor(const rig *rig, const hl_scene_description *description) {
   double sum = 0;
   bool media = description->volume_count > 0 && description->mesh_count == 0;

@@ -7,8 +7,8 @@
 
 #include "core/memory.h"
 
-/* An unsigned integer that sorts like the float: the bits of a negative one inverted, of others with the
- * highest bit set. */
+/* An unsigned integer that sorts as the float does. The bits of a negative float are inverted; other floats
+ * get the highest bit set. */
 static uint32_t key_of(float value) {
   uint32_t bits;
   memcpy(&bits, &value, sizeof bits);
@@ -34,7 +34,7 @@ bool hl_sort(hl_context *context, float *values, size_t count) {
   return true;
 }
 
-/* Collects finite voxels with the given step, starting half a step inside, where the range allows. */
+/* Collects finite voxels with a given step, in the allowed range, starting half a step inside the grid. */
 static size_t collect(const hl_sample *sample, const hl_volume *volume, const size_t low[3],
                       const size_t high[3], size_t step, float *values) {
   size_t count = 0, start[3];
@@ -121,7 +121,7 @@ double hl_threshold_otsu(const float *ascending, size_t count, double above) {
   for (size_t s = first; s < count; s++) total += (double)ascending[s];
   for (size_t s = first; s + 1 < count; s++) {
     sum += (double)ascending[s];
-    if (ascending[s] == ascending[s + 1]) continue; /* no threshold between equals */
+    if (ascending[s] == ascending[s + 1]) continue; /* equal values have no threshold between them */
     double w = (double)(s - first + 1), difference = total * w / n - sum;
     double between = difference * difference / (w * (n - w));
     if (between > best) {
@@ -171,7 +171,8 @@ double hl_roughness(const hl_volume *volume, const hl_sample *sample, double bac
   return first > 0 ? second / first : 0;
 }
 
-/* The difference of second order along each axis at once; NaN where a neighbour is missing. */
+/* The difference of second order along all three axes: the second difference along x, of second differences
+ * along y, of second differences along z. NaN where a neighbour is missing. */
 static double mixed_difference(const hl_volume *volume, size_t i, size_t j, size_t k) {
   static const double weight[3] = {1, -2, 1};
   double sum = 0;
@@ -185,8 +186,8 @@ static double mixed_difference(const hl_volume *volume, size_t i, size_t j, size
 
 hl_status hl_noise(const hl_volume *volume, const hl_sample *sample, double from, double direction,
                    double *noise, hl_error *error) {
-  /* White noise of standard deviation 1: the difference has that of the root of (1 + 4 + 1)^3, and the median
-   * of its amount is 0.6745 of its own. */
+  /* In white noise of standard deviation 1, the difference has the standard deviation sqrt((1 + 4 + 1)^3),
+   * and its absolute value has the median 0.6745 times this. */
   static const double scale = 14.6969 * 0.6745, places = 20000;
   const size_t *n = volume->dimension, step = hl_lattice_step(n, places);
   size_t count = 0, capacity = steps_in(n[0], step) * steps_in(n[1], step) * steps_in(n[2], step);

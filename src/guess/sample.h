@@ -1,7 +1,7 @@
 /* guess/sample.h - a sorted sample of a volume's voxels, by which automatic choices are made.
  *
- * Values are relative to the volume's range, 0 its least and 1 its greatest: the data's units do not matter.
- */
+ * Values are relative to the volume's range, where 0 is its least value and 1 its greatest. So the data's
+ * units do not matter. */
 #ifndef HL_GUESS_SAMPLE_H
 #define HL_GUESS_SAMPLE_H
 
@@ -15,16 +15,16 @@ typedef struct hl_sample {
   double low, range; /* data value = low + range * relative value */
   float *values; /* owned; [count]; relative values of finite voxels on a regular sub-lattice, ascending */
   size_t count;
-  float *border; /* owned; [border_count]; the same of voxels on the grid's six faces */
+  float *border; /* owned; [border_count]; relative values of voxels on the grid's six faces, ascending */
   size_t border_count;
-  size_t step; /* voxels from one sample to the next along each axis */
+  size_t step; /* number of voxels from one sample to the next along each axis */
 } hl_sample;
 
-/* Fails for lack of memory alone. Either array may be empty, where voxels are NaN. */
+/* Fails only for lack of memory. Either array may be empty where voxels are NaN. */
 hl_status hl_sample_make(const hl_volume *volume, hl_sample *sample, hl_error *error);
 void hl_sample_release(hl_sample *sample);
 
-/* The value below which the fraction (0..1) of an ascending array lies. */
+/* The value that a fraction (0..1) of an ascending array does not reach. */
 double hl_quantile(const float *ascending, size_t count, double fraction);
 
 /* The commonest value: the densest half of the densest half of ... an ascending array (half-sample mode;
@@ -36,22 +36,23 @@ double hl_mode(const float *ascending, size_t count);
 double hl_threshold_otsu(const float *ascending, size_t count, double above);
 
 /* The threshold with the least cross entropy between the values and the means of the two classes that it
- * makes (Li and Tam 1998), of values of at least 0. floor: the least mean, as 0 has no logarithm. */
+ * makes (Li and Tam 1998). Values must not be below 0. floor: the least mean that is used, because 0 has no
+ * logarithm. */
 double hl_threshold_cross_entropy(const float *ascending, size_t count, double floor);
 
-/* How rough objects are: the sum of |second differences| over the sum of |first differences|, of voxels whose
- * relative value is further than `distance` from `background`. Smooth simulations have less than about 0.5,
- * turbulence and noise more than about 0.7. */
+/* How rough objects are: the sum of |second differences| over the sum of |first differences|, over voxels
+ * whose relative value is farther than `distance` from `background`. Smooth simulations have less than about
+ * 0.5, turbulence and noise more than about 0.7. */
 double hl_roughness(const hl_volume *volume, const hl_sample *sample, double background, double distance);
 
-/* The noise of objects, relative: the standard deviation of the white noise that has their median difference
- * of second order along each of the three axes, which linear and quadratic changes do not have (after
- * Immerkaer 1996). Objects have relative values beyond `from` in the direction (+1: above; -1: below). Fails
- * for lack of memory alone. */
+/* The noise of objects, relative to the range: the standard deviation of white noise with the same median
+ * difference. The difference is of second order along each of the three axes, and so is 0 for linear and
+ * quadratic changes (after Immerkaer 1996). Objects have relative values beyond `from` in the direction (+1:
+ * above; -1: below). Fails only for lack of memory. */
 hl_status hl_noise(const hl_volume *volume, const hl_sample *sample, double from, double direction,
                    double *noise, hl_error *error);
 
-/* Ascending order; false without memory. */
+/* Sorts in ascending order; false where there is no memory. */
 bool hl_sort(hl_context *context, float *values, size_t count);
 
 #endif

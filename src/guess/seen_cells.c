@@ -1,5 +1,5 @@
-/* guess/seen_cells.c - which voxels of a volume count when a picture is framed: optical depths by cells and
- * columns, without specks. */
+/* guess/seen_cells.c - finds the voxels of a volume that count when a picture is framed, by optical depths of
+ * cells and columns, without specks. */
 #include "guess/seen_cells.h"
 
 #include <stdbool.h>
@@ -10,15 +10,17 @@
 #include "guess/sample.h"
 #include "volume/store/pages.h"
 
-#define FAINT          0.02 /* fraction of the greatest opacity below which voxels at the rim do not count */
-#define LOST           0.04 /* least optical depth of a column that is seen */
-#define OPAQUE         0.9999 /* the greatest opacity; an opacity of 1 has no finite depth */
-#define SPECKS_AT_MOST 0.03   /* fraction of the seen cells; more specks than that are matter */
-#define FAINT_RATIO    200    /* a body is a speck that has this many times less optical depth than another */
+#define FAINT  0.02   /* fraction of the greatest opacity below which voxels at the rim do not count */
+#define LOST   0.04   /* least optical depth of a column that counts as seen */
+#define OPAQUE 0.9999 /* limit of opacities, because an opacity of 1 has no finite depth */
+#define SPECKS_AT_MOST                                                                            \
+  0.03                  /* greatest fraction of the seen cells that specks have; more of them are \
+                         * matter */
+#define FAINT_RATIO 200 /* a body is a speck if another body has this many times its optical depth */
 
 #define TISSUE          (-300)      /* Hounsfield units: tissue is denser, foam and clothes are not */
-#define BODY_AT_LEAST   0.8         /* fraction of the dense cells */
-#define HOLDER_AT_LEAST (1.0 / 500) /* fraction of the body's cells */
+#define BODY_AT_LEAST   0.8         /* least fraction of the dense cells that a patient's body has */
+#define HOLDER_AT_LEAST (1.0 / 500) /* least fraction of the body's cells that a holder has */
 #define HOLDER_AT_MOST  (1.0 / 30)
 
 enum { BINS = 4096, SPECK = 3, SPECK_RATIO = 50, SMALL_RATIO = 5000 };
@@ -57,7 +59,8 @@ static hl_status make_table(hl_seen *seen, hl_error *error) {
   }
   for (size_t p = 0; p < seen->function->opacity_count; p++) {
     double bin = (seen->function->opacity[p].value - seen->low) * seen->scale;
-    for (int side = -1; side <= 1; side++) /* a point on the border between two bins makes both bend */
+    /* A point on the border between two bins bends the function in both. */
+    for (int side = -1; side <= 1; side++)
       if (bin + side * 1e-6 >= 0 && bin + side * 1e-6 < BINS) seen->bends[(int)(bin + side * 1e-6)] = 1;
   }
   return HL_OK;
@@ -142,8 +145,8 @@ static void make_means(hl_seen *seen) {
   }
 }
 
-/* Optical depths of the columns along each axis: [j][k], [k][i], [i][j] for x, y, z, the second index running
- * fastest. */
+/* The optical depths of the columns along each axis: [j][k], [k][i], [i][j] for x, y, z; the second index
+ * runs fastest. */
 static void sum_columns(const hl_seen *seen, const double edge[3], float *column[3]) {
   const float *mean = seen->mean;
   const int *n = seen->size;
@@ -193,7 +196,7 @@ static bool is_speck(const hl_bodies *bodies, const double *depth, double most_d
          FAINT_RATIO * depth[body] <= most_depth;
 }
 
-/* The sums of the bodies' optical depths, [bodies->count + 1]; returns the greatest. */
+/* Sums each body's optical depths: [bodies->count + 1]. Returns the greatest sum. */
 static double sum_depths(const hl_seen *seen, const hl_bodies *bodies, size_t cells, double *depth) {
   double most = 0;
   for (size_t c = 0; c < cells; c++)
@@ -231,7 +234,7 @@ static hl_status forget_specks(hl_seen *seen, hl_error *error) {
 
 /* ---- what holds a patient ---- */
 
-/* Whether there is one body of a patient, and beside it head rests, straps or a table. */
+/* Whether the bodies are one body of a patient, and beside it head rests, straps or a table. */
 static bool has_holder(const hl_bodies *bodies) {
   double most = bodies->places[bodies->largest], all = 0;
   bool any = false;
@@ -243,8 +246,8 @@ static bool has_holder(const hl_bodies *bodies) {
   return any && most >= BODY_AT_LEAST * all;
 }
 
-/* In CT scans whose transfer function shows tissue, what holds the patient does not count: where only dense
- * cells are looked at, air or foam separates it from the body. */
+/* In CT scans whose transfer function shows tissue, forgets the holders of the patient. Among dense cells
+ * alone, air or foam separates a holder from the body. */
 static hl_status forget_holders(hl_seen *seen, hl_error *error) {
   hl_context *context = seen->volume->context;
   size_t cells = (size_t)seen->size[0] * (size_t)seen->size[1] * (size_t)seen->size[2];
@@ -264,7 +267,7 @@ static hl_status forget_holders(hl_seen *seen, hl_error *error) {
   return status;
 }
 
-/* Marks the cells around a seen one, which may hold the rim of its matter. */
+/* Marks the cells around a seen cell, which may hold the rim of its matter. */
 static void mark_neighbours(hl_seen *seen, int i, int j, int k) {
   const int *n = seen->size;
   for (int z = k > 0 ? k - 1 : 0; z <= k + 1 && z < n[2]; z++)
@@ -286,7 +289,7 @@ static void mark_beside(hl_seen *seen) {
 
 /* ---- the whole ---- */
 
-/* Voxels whose centres are inside the volume's box. */
+/* Finds the voxels whose centres lie inside the volume's box. */
 static bool find_range(const hl_scene_volume *volume, hl_seen *seen) {
   double low[3], high[3];
   bool any = true;
@@ -348,7 +351,8 @@ void hl_seen_release(hl_seen *seen) {
   hl_release(context, seen->cuts);
 }
 
-/* The least depth per length with which a voxel counts; in a seen cell, half of the cell's mean is enough. */
+/* The least depth per length with which a voxel of a cell counts. In a seen cell, half of the cell's mean is
+ * enough. */
 static float least_depth(const hl_seen *seen, size_t cell) {
   return seen->kind[cell] == HL_SEEN ? fminf(seen->faint, seen->mean[cell] / 2) : seen->faint;
 }
@@ -360,7 +364,7 @@ typedef struct voxel_row {
   size_t cells;
 } voxel_row;
 
-/* The first voxel that counts, from `from` on towards `to`; to + way if there is none. way is 1 or -1. */
+/* The first voxel that counts, from `from` on towards `to`; to + way if there is none. way: 1 or -1. */
 static ptrdiff_t first_that_counts(const hl_seen *seen, const voxel_row *row, ptrdiff_t from, ptrdiff_t to,
                                    int way) {
   const ptrdiff_t step = (ptrdiff_t)seen->step;
@@ -397,7 +401,7 @@ typedef struct flood {
   const unsigned char *marked;
   const int *size;
   uint32_t *body;
-  uint32_t *waiting; /* [places]; each place waits once at most */
+  uint32_t *waiting; /* [places]; each place waits at most once */
 } flood;
 
 static void reach(flood *f, size_t place, uint32_t body, size_t *end) {

@@ -1,9 +1,10 @@
-/* guess/seen_cells.h - which voxels of a volume count when a picture is framed, by a lattice of cells.
+/* guess/seen_cells.h - finds the voxels of a volume that count when a picture is framed, by a lattice of
+ * cells.
  *
  * A cell counts as seen if its columns along at least two of the grid's axes absorb light. Cells that share
- * faces form bodies. Specks, bodies much smaller than the largest, do not count unless all specks together
- * are much; nor does what holds a patient in a CT scan. So neither faint matter nor the single voxels of
- * noise widen the picture. */
+ * faces form bodies. Specks are bodies much smaller than the largest one; they do not count, unless all
+ * specks together are much. Holders of a patient in a CT scan do not count, either. So neither faint matter
+ * nor single voxels of noise widen the picture. */
 #ifndef HL_GUESS_SEEN_CELLS_H
 #define HL_GUESS_SEEN_CELLS_H
 
@@ -12,33 +13,35 @@
 #include "scene/geometry/cut.h"
 #include "scene/scene.h"
 
-enum { HL_SEEN_NOTHING = 0, HL_SEEN_BESIDE = 1, HL_SEEN = 2 }; /* BESIDE: next to a seen cell */
+enum { HL_SEEN_NOTHING = 0, HL_SEEN_BESIDE = 1, HL_SEEN = 2 }; /* BESIDE: the cell is next to a seen cell */
 
 typedef struct hl_seen {
   const hl_volume *volume;
   cut_shape *cuts; /* owned; [cut_count]; what they remove is not seen */
   size_t cut_count;
   ptrdiff_t first[3], end[3]; /* voxels inside the volume's box */
-  size_t step;                /* voxels along each edge of a cell */
-  size_t stride;              /* from one examined row to the next, along y and z */
-  int size[3];                /* cells */
-  float *depth; /* owned; optical depth per world length, for each stored whole number; for floats, for the
-                   low end of each bin */
-  const hl_transfer_function *function; /* for floats: evaluated in bins where it bends */
-  double low, scale;                    /* bin = (value - low) * scale; of floats */
-  unsigned char *bends;                 /* owned; [bins]; of floats */
+  size_t step;                /* number of voxels along each edge of a cell */
+  size_t stride;              /* number of rows from one examined row to the next, along y and z */
+  int size[3];                /* number of cells */
+  float *depth; /* owned; optical depth per world length: for each stored whole number, or, for floats, for
+                 * the low end of each bin */
+  const hl_transfer_function *function; /* for floats: the function, which is evaluated in bins where it
+                                         * bends */
+  double low, scale;                    /* for floats: bin = (value - low) * scale */
+  unsigned char *bends;                 /* owned; [bins]; for floats: whether the function bends in the bin */
   unsigned char *kind;                  /* owned; [size[2]][size[1]][size[0]]; HL_SEEN_... */
-  float *mean;                          /* owned; likewise; mean depth per length of a cell's voxels */
-  void *row;   /* owned; a row of the volume's stored values; null: the volume is in memory */
-  float faint; /* depth per length from which voxels count beside seen cells */
+  float *mean;                          /* owned; [size[2]][size[1]][size[0]]; mean depth per length of a
+                                         * cell's voxels */
+  void *row;   /* owned; memory for a row of the volume's stored values; null: the volume is in memory */
+  float faint; /* depth per length from which voxels beside seen cells count */
 } hl_seen;
 
-/* *any: false where nothing of the volume can be seen. Fails for lack of memory alone; release in any case.
- */
+/* Finds the cells of a volume. *any: false where nothing of the volume can be seen. Fails only for lack of
+ * memory; release the result in any case. */
 hl_status hl_seen_find(const hl_scene_volume *volume, hl_seen *seen, bool *any, hl_error *error);
 void hl_seen_release(hl_seen *seen);
 
-/* The first voxel that counts in the row (j, k), and the last; false: there is none. */
+/* The first and the last voxel that counts in the row (j, k); false: there is none. */
 bool hl_seen_row(const hl_seen *seen, ptrdiff_t j, ptrdiff_t k, ptrdiff_t *first, ptrdiff_t *last);
 
 /* ---- bodies: marked places of a lattice that are connected by their faces ---- */
@@ -47,10 +50,11 @@ typedef struct hl_bodies {
   uint32_t *body;   /* owned; [size[2]][size[1]][size[0]]; number of the body, from 1 to count; 0: none */
   uint32_t *places; /* owned; [count + 1]; each body's number of places */
   uint32_t count;
-  uint32_t largest; /* the body with the most places, the first of equals; 0: there is none */
+  uint32_t largest; /* the body with the most places, the first one of equals; 0: there is none */
 } hl_bodies;
 
-/* marked: not 0 where a place belongs to a body. Fails for lack of memory alone; release in any case. */
+/* Finds the bodies. marked: not 0 where a place belongs to a body. Fails only for lack of memory; release the
+ * result in any case. */
 hl_status hl_bodies_find(hl_context *context, const unsigned char *marked, const int size[3],
                          hl_bodies *bodies, hl_error *error);
 void hl_bodies_release(hl_context *context, hl_bodies *bodies);

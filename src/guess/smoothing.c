@@ -1,9 +1,9 @@
-/* guess/smoothing.c - hl_volume_smooth(), and what makes a bare volume smooth by itself.
+/* guess/smoothing.c - hl_volume_smooth(), and the choice of bare volumes that are smoothed without being
+ * asked for.
  *
- * A brain without its skull was cut out voxel by voxel: all around it is one value, and the first voxel
- * inside is as bright as the matter within. No kernel makes a smooth surface of such a cliff. Slices much
- * thicker than their pixels make terraces.
- */
+ * A brain without its skull was cut out voxel by voxel: around it all voxels have one value, and the first
+ * voxel inside is as bright as the matter within. No kernel makes a smooth surface of such a cliff. Slices
+ * much thicker than their pixels make terraces. */
 #include "guess/smoothing.h"
 
 #include <math.h>
@@ -13,8 +13,8 @@
 #include "guess/looks.h"
 #include "volume/smooth.h"
 
-/* What such volumes are smoothed by, in voxels: the least that leaves no stairs on the gyri of real brains.
- */
+/* The standard deviation, in voxels, by which such volumes are smoothed: the least one that leaves no stairs
+ * on the gyri of real brains. */
 #define SIGMA 0.8
 /* The greatest accepted standard deviation. */
 #define GREATEST_SIGMA 16
@@ -23,9 +23,9 @@
 /* A cliff is a step higher than this part of the way from the background to matter. */
 #define CLIFF 0.3
 /* The least fraction of steps from the background's value to another one that are cliffs. A brain that was
- * cut out has .47; of scans with their own rims the stent has most, .08. */
+ * cut out has .47. Among scans with natural rims the stent has the most, .08. */
 #define LEAST_CLIFFS 0.25
-/* How much thicker than their pixels slices are that make terraces. */
+/* Slices that are thicker than their pixels by this factor make terraces. */
 #define THICK_SLICES 1.5
 
 /* The fraction of the steps between neighbours along i, from the background's exact value to another one,

@@ -12,7 +12,7 @@ typedef struct opacity_step {
   double distance, opacity;
 } opacity_step;
 
-/* Adds steps; where objects lie on both sides of the background, on both. */
+/* Adds steps; where objects lie on both sides of the background, adds them on both sides. */
 static void add_steps(hl_function_writer *w, const opacity_step *steps, int count) {
   w->opacity_count = 0;
   if (w->analysis->kind == HL_DATA_SIGNED) {
@@ -22,12 +22,13 @@ static void add_steps(hl_function_writer *w, const opacity_step *steps, int coun
   for (int n = 0; n < count; n++) hl_add_opacity(w, steps[n].distance, steps[n].opacity);
 }
 
-/* The distance that divides inner matter from outer: objects that are mostly dense have no other inside. */
+/* The distance that divides inner matter from outer matter. Objects that are mostly dense have no other
+ * inside. */
 static double inner_of(const hl_data_analysis *a) {
   return a->dense_share > 0.5 ? a->solid : fmax(a->dense, 1.001 * a->solid);
 }
 
-/* One opaque surface, half way from the background to matter. */
+/* Writes one opaque surface, half way from the background to matter. */
 static void write_surface(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   double ramp = a->solid - a->faint;
@@ -35,7 +36,7 @@ static void write_surface(hl_function_writer *w) {
   add_steps(w, steps, 3);
 }
 
-/* Outer matter as a veil, inner matter opaque. */
+/* Writes outer matter as a veil and inner matter as opaque. */
 static void write_translucent(hl_function_writer *w) {
   const hl_data_analysis *a = w->analysis;
   double inner = inner_of(a), top = fmax(a->top, 1.001 * inner), veil = hl_opacity_for(a, 1.2);
@@ -47,8 +48,8 @@ static void write_translucent(hl_function_writer *w) {
   add_steps(w, steps, 5);
 }
 
-/* Absorption that grows with the square of the distance, so that dense matter shows through, as in an X-ray
- * picture: white on black. */
+/* Writes absorption that grows with the square of the distance, so that dense matter shows through as in an
+ * X-ray picture: white on black. */
 static void write_xray(hl_function_writer *w) {
   enum { STEPS = 24 };
   static const double white[3] = {1, 1, 1}, depth = 0.5;
@@ -75,8 +76,8 @@ static void write_smoke(hl_function_writer *w) {
   hl_add_color(w, 0, grey);
 }
 
-/* The brightest matter alone, as contrast medium shows vessels, in red to cream. Where vessels were found,
- * their edges, which are mixed with the matter around, begin a little below. */
+/* Writes the brightest matter only, from red to cream, as contrast medium shows vessels. Where vessels were
+ * found, their edges begin a little below, because edges are mixed with the matter around them. */
 static void write_vessels(hl_function_writer *w) {
   static const double wall[3] = {0.42, 0.03, 0.02}, blood[3] = {0.75, 0.10, 0.05},
                       bright[3] = {0.95, 0.75, 0.50};
@@ -93,7 +94,7 @@ static void write_vessels(hl_function_writer *w) {
   hl_add_color(w, top, bright);
 }
 
-/* Rows: as in looks.c. */
+/* Rows are as in looks.c. */
 static const hl_look styles[] = {
     {"surface", write_surface, HL_SHADING_PHONG, HL_KERNEL_BSPLINE, 1.35, 0.06, 0.95, 0.72, false,
      "translucent"},

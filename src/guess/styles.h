@@ -4,15 +4,15 @@
 
 #include "guess/look.h"
 
-/* A style of looks; null: there is none of this number, or of this name. */
+/* A style of looks, by number or by name; null: there is no such style. */
 const hl_look *hl_style(size_t index);
 const hl_look *hl_style_find(const char *name);
 
-/* The style that hl_look_name() calls so; null for "auto". Other names are refused. */
+/* The style that has this name in hl_look_name(); null for "auto". Other names are refused. */
 hl_status hl_style_named(const char *name, const hl_look **style, hl_error *error);
 
-/* Writes a style's opacities; the colours are those of the look that suits the volume, except where the style
- * has its own. base: that look. */
+/* Writes a style's opacities. The colours come from the look that suits the volume (base), except where the
+ * style has its own colours. */
 void hl_style_write(const hl_look *style, const hl_look *base, hl_function_writer *w);
 
 #endif

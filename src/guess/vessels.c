@@ -2,29 +2,30 @@
  *
  * Where the few voxels that are far brighter than all others are tubes, the object around them is not what
  * the scan was made for. In Hounsfield units such voxels are bone. A voxel lies in a tube if straight lines
- * through it stay among bright voxels for long in one or two directions only: in a sheet they do so in four
- * or more, in a ball and in noise in none.
- */
+ * through it stay among bright voxels for long in only one or two directions. In a sheet there are four or
+ * more such directions, in a ball and in noise there are none. */
 #include <math.h>
 
 #include "guess/analysis.h"
 #include "guess/sample.h"
 
-#define CONTRAST    3    /* least distance of the brightest matter, as a multiple of the objects' mean */
-#define LEAST_TUBES 0.5  /* of the bright voxels, at least this fraction lies in tubes */
-#define MOST_BRIGHT 0.06 /* of the object's voxels, at most this fraction is bright */
-#define SPREAD      0.4  /* along two axes tubes reach over this fraction of the object, at least */
-#define ELONGATED   2.5 /* a line is long that stays inside this many times as far as the shortest one, ... */
+#define CONTRAST                                                                                       \
+  3                      /* least distance of the brightest matter, as a multiple of the objects' mean \
+                          * distance */
+#define LEAST_TUBES 0.5  /* least fraction of the bright voxels that lies in tubes */
+#define MOST_BRIGHT 0.06 /* greatest fraction of the object's voxels that is bright */
+#define SPREAD      0.4  /* least fraction of the object over which tubes reach, along two axes */
+#define ELONGATED   2.5  /* a line is long if it stays inside this many times as far as the shortest line */
 
-enum { LONG = 5 /* ... and for this many voxels */, REACH = 32, DIRECTIONS = 13, LEVELS = 4 };
+enum { LONG = 5 /* a long line has at least this many voxels */, REACH = 32, DIRECTIONS = 13, LEVELS = 4 };
 enum { MOST_SEEDS = 4000, LEAST_SEEDS = 60 };
 
-/* To one of each pair of opposite neighbours among 26. */
+/* The directions to one of each pair of opposite neighbours, among 26 neighbours. */
 static const int directions[DIRECTIONS][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0},
                                               {1, 0, 1},  {1, 0, -1}, {0, 1, 1}, {0, 1, -1}, {1, 1, 1},
                                               {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
 
-/* Where voxels of a kind were met: their number, and the ranges of their places. */
+/* Voxels of a kind that were met: their number, and the ranges of their places. */
 typedef struct met {
   size_t count, low[3], high[3];
 } met;
@@ -32,8 +33,8 @@ typedef struct met {
 typedef struct vessel_search {
   const hl_volume *volume;
   const hl_sample *sample;
-  const hl_data_analysis *analysis; /* with relative values, as the sample's */
-  double step[DIRECTIONS];          /* length of a step, in the volume's world */
+  const hl_data_analysis *analysis; /* distances are relative, as the sample's values are */
+  double step[DIRECTIONS];          /* length of a step in each direction, in the volume's world */
   double level;                     /* distance from the background beyond which voxels are bright */
 } vessel_search;
 
@@ -54,7 +55,8 @@ static double distance_at(const vessel_search *s, const ptrdiff_t place[3]) {
   return isfinite(value) ? s->analysis->direction * (relative - s->analysis->background) : -INFINITY;
 }
 
-/* How many voxels of a line through a bright voxel are bright without a gap, REACH to either side at most. */
+/* The number of voxels of a line through a bright voxel that are bright without a gap, up to REACH to either
+ * side. */
 static int run_through(const vessel_search *s, const size_t seed[3], const int direction[3]) {
   int run = 1;
   for (int side = -1; side <= 1; side += 2)
@@ -78,7 +80,7 @@ static bool is_in_tube(const vessel_search *s, const size_t seed[3]) {
   return along == 1 || along == 2;
 }
 
-/* Looks at the places of the sample's lattice. every: of so many bright voxels one is examined. */
+/* Looks at the places of the sample's lattice. every: one of this number of bright voxels is examined. */
 static void look(const vessel_search *s, size_t every, met *things, met *bright, met *tubes) {
   const size_t *n = s->volume->dimension, step = s->sample->step;
   *things = *bright = *tubes = (met){0};
@@ -101,8 +103,8 @@ static bool are_spread(const met *tubes, const met *things) {
   return tubes->count > 0 && axes >= 2;
 }
 
-/* True if the voxels beyond the level, of which there are about `expected` in the sample, are vessels. *few:
- * there are few enough of them to tell. */
+/* True if the voxels beyond the level are vessels. expected: about their number in the sample. *few: they are
+ * few enough to be vessels. */
 static bool are_vessels(const vessel_search *s, size_t expected, bool *few) {
   met things, bright, tubes;
   size_t every = expected / MOST_SEEDS + 1;
@@ -126,7 +128,7 @@ double hl_data_find_vessels(const hl_volume *volume, const hl_sample *sample, co
     if (beyond < LEAST_SEEDS) return 0;
     bool few = false;
     if (are_vessels(&s, beyond, &few)) return s.level;
-    if (few) return 0; /* higher levels divide the bright matter itself, by its noise */
+    if (few) return 0; /* higher levels would divide the bright matter itself, by its noise */
     s.level = hl_threshold_otsu(distances, sample->count, s.level);
   }
   return 0;

@@ -1,4 +1,4 @@
-/* guess/view.c - which way is up in a volume whose file does not tell, and views from a side.
+/* guess/view.c - finds which way is up in a volume whose file does not say it, and views from a side.
  *
  * Only the default camera depends on these guesses, never a coordinate. */
 #include "guess/view.h"
@@ -14,16 +14,21 @@
 #include "guess/seen_cells.h"
 #include "scene/scene.h"
 
-#define BEND          3   /* distance, in places of the lattice, over which relief is measured */
-#define BODY_AT_LEAST 0.4 /* fraction of all solid places from which on the largest body decides alone */
-#define CLEARLY       1.1 /* a side turned to the eye must have this many times the other one's relief */
+#define BEND 3 /* distance, in places of the lattice, over which relief is measured */
+#define BODY_AT_LEAST                                                                 \
+  0.4 /* the largest body decides alone if it has at least this fraction of all solid \
+       * places */
+#define CLEARLY                                                                          \
+  1.1 /* the side turned to the eye must have this many times the relief of the opposite \
+       * side */
 
 /* The objects on a coarse lattice. */
 typedef struct shape {
   int size[3];           /* places of the lattice along each axis */
   unsigned char *solid;  /* owned; [size[2]][size[1]][size[0]]; 1 where an object is */
   double *area[3];       /* owned; [size[a]]; solid places in each slice across axis a */
-  int first[3], last[3]; /* slices that hold the objects, except for 0.2 % of them at either end */
+  int first[3], last[3]; /* first and last slice that hold the objects, except for 0.2 % of them at either
+                          * end */
 } shape;
 
 static bool is_oriented(const hl_volume *volume) {
@@ -51,7 +56,8 @@ static bool allocate(hl_context *context, const hl_volume *volume, size_t step, 
   return s->solid != NULL && s->area[0] != NULL && s->area[1] != NULL && s->area[2] != NULL;
 }
 
-/* The lattice reaches both ends of each axis: the last place is the last voxel. */
+/* A voxel's index for a place of the lattice. The lattice reaches both ends of each axis: the last place is
+ * the last voxel. */
 static size_t place_of(const hl_volume *volume, const shape *s, size_t step, int axis, int n) {
   return n + 1 == s->size[axis] ? volume->dimension[axis] - 1 : (size_t)n * step;
 }
@@ -76,8 +82,8 @@ static void fill(const hl_volume *volume, const hl_data_analysis *analysis, size
       }
 }
 
-/* Keeps the largest connected body alone, without a board beside it, say; unless it is one of many small
- * ones. */
+/* Keeps only the largest connected body, without a board beside it, for example. Many small bodies are all
+ * kept. */
 static hl_status forget_others(hl_context *context, shape *s, hl_error *error) {
   hl_bodies bodies;
   hl_status status = hl_bodies_find(context, s->solid, s->size, &bodies, error);
@@ -155,22 +161,23 @@ static double symmetry(const shape *s, int axis) {
   return either > 0 ? both / either : 0;
 }
 
-/* The axis that points up, as +-(axis + 1); +3 (z) where nothing speaks for another one. */
+/* The axis that points up, as +-(axis + 1). It is +3 (z) where nothing speaks for another axis. */
 static int up_of(const shape *s, const hl_volume *volume) {
   double extent[3], most = 0;
   int bottom = 0;
   for (int a = 0; a < 3; a++)
     extent[a] = (s->last[a] - s->first[a]) * vec3_length(mat3_column(volume->index_to_world.linear, a)) *
                 (double)volume->dimension[a] / s->size[a];
-  if (extent[2] > 1.4 * fmax(extent[0], extent[1])) return 3; /* a column stands */
-  for (int a = 0; a < 3; a++)                                 /* cut off by a face of the grid: the bottom */
+  if (extent[2] > 1.4 * fmax(extent[0], extent[1])) return 3; /* a column stands upright */
+  /* The bottom is where a face of the grid cuts the object off. */
+  for (int a = 0; a < 3; a++)
     for (int end = 0; end < 2; end++)
       if (touch(s, a, end) > fmax(most, fmax(0.05, 4 * touch(s, a, !end)))) {
         most = touch(s, a, end);
         bottom = end ? a + 1 : -(a + 1);
       }
   if (bottom != 0) return -bottom;
-  for (int a = 0; a < 3; a++) /* or standing on a plate */
+  for (int a = 0; a < 3; a++) /* or the object stands on a plate */
     for (int end = 0; end < 2; end++)
       if (bluntness(s, a, end) > fmax(most, 0.4) && bluntness(s, a, !end) < 0.1) {
         most = bluntness(s, a, end);
@@ -183,7 +190,7 @@ static int up_of(const shape *s, const hl_volume *volume) {
 }
 
 /* The number of places from one end of an axis to the first solid place, in the row (u, v) of the other two
- * axes; -1: the row has none. */
+ * axes; -1: the row has no solid place. */
 static int depth_at(const shape *s, int axis, int end, int u, int v) {
   int n[3];
   n[(axis + 1) % 3] = u;
@@ -195,8 +202,8 @@ static int depth_at(const shape *s, int axis, int end, int u, int v) {
   return -1;
 }
 
-/* Relief of the side at one end of an axis: the sum of second differences of the depth, each at most 4, so
- * that cliffs do not outweigh all else. */
+/* The relief of the side at one end of an axis: the sum of second differences of the depth. Each is limited
+ * to 4, so that cliffs do not outweigh everything else. */
 static double relief(const shape *s, int axis, int end) {
   int u_axis = (axis + 1) % 3, v_axis = (axis + 2) % 3;
   double sum = 0;
@@ -224,7 +231,7 @@ static bool opposite_shows_more(const shape *s, vec3 v) {
   return relief(s, axis, !end) > CLEARLY * relief(s, axis, end);
 }
 
-/* The three-quarter azimuth from which the sides with most relief are seen; up must be an axis. */
+/* The three-quarter azimuth that shows the sides with most relief. up must be an axis. */
 static double best_azimuth(const shape *s, const hl_view *view) {
   vec3 front = vec3_of(view->front), right = vec3_cross(vec3_of(view->up), front);
   double azimuth = opposite_shows_more(s, front) ? 180 - HL_VIEW_AZIMUTH : HL_VIEW_AZIMUTH;
@@ -258,8 +265,8 @@ hl_status hl_scene_upright(const hl_scene_volume *volume, const hl_data_analysis
 
 static vec3 left_of(hl_space space) { return (vec3){space == HL_SPACE_RAS ? -1 : 1, 0, 0}; }
 
-/* True if the first volume decides which way is up: it is the only one and not rotated, or all volumes are
- * files placed as they are. Other scenes are taken to have z up. */
+/* True if the first volume decides which way is up: it is the only volume and not rotated, or all volumes are
+ * files without a placement. In other scenes z counts as up. */
 static bool first_decides(const hl_scene_description *description) {
   if (description->volume_count == 1) return description->volumes[0].rotate_angle_deg == 0;
   for (size_t v = 0; v < description->volume_count; v++) {
@@ -274,7 +281,7 @@ static bool first_decides(const hl_scene_description *description) {
 hl_status hl_view_automatic(const hl_scene_description *description, hl_outline *outline, hl_view *view,
                             hl_error *error) {
   hl_view_about(description, (vec3){0, 0, 1}, view);
-  /* Programs write left-posterior-superior for any data, so it says little unless the file is DICOM. */
+  /* Programs write left-posterior-superior for any data, so this says little unless the file is DICOM. */
   if (description->volume_count == 0 || hl_scene_is_anatomical(description) || !first_decides(description))
     return HL_OK;
   const hl_scene_volume *first = &description->volumes[0];
@@ -288,8 +295,8 @@ hl_status hl_view_automatic(const hl_scene_description *description, hl_outline 
   return analysis.kind == HL_DATA_SURFACES ? HL_OK : hl_view_widen(description, outline, view, error);
 }
 
-/* The azimuth of a view from the left: of the body's left where the file tells the anatomy, else the viewer's
- * left. */
+/* The azimuth of a view from the left: from the body's left where the file tells the anatomy, otherwise from
+ * the viewer's left. */
 
 static double azimuth_of_left(const hl_scene_description *description, const hl_view *view) {
   hl_space space = hl_scene_space(description);
