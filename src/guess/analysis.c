@@ -16,20 +16,19 @@
 #include "guess/sample.h"
 
 #define BINS 32 /* bins of the histogram whose shape tells the kind of data */
-#define ROUGH                                                                                    \
-  0.65 /* roughness (hl_roughness) that divides simulations, which are smoother, from turbulence \
-        * and noise */
+/* Roughness (hl_roughness) that divides simulations, which are smoother, from turbulence and noise. */
+#define ROUGH  0.65
 #define SMOOTH 0.18  /* a roughness that every scanner's data exceed */
 #define FOG    0.4   /* least roughness of smoke on fine grids; 0.50 to 0.58 measured on 200 to 320 voxels */
 #define NOISY  1.2   /* a roughness that no simulated turbulence exceeds; white noise has 1.7 */
 #define TAIL   0.005 /* fraction of the voxels below `lower`, and fraction of the voxels above `upper` */
-#define CALM                                                                                               \
-  0.003          /* a noise that every scanner's data exceed, as a fraction of top; 8-bit values have half \
-                  * of it by rounding */
+/* A noise that every scanner's data exceed, as a fraction of top; 8-bit values have half of it by
+ * rounding. */
+#define CALM 0.003
 #define PEAK 1.2 /* least ratio of a histogram's peak to the valley before it */
-#define HUMP                                                                                                 \
-  1.75              /* least ratio for peaks of materials in data without noise; saddles of fields have 1.5, \
-                     * materials 2.1 (measured) */
+/* Least ratio for peaks of materials in data without noise; saddles of fields have 1.5, materials 2.1
+ * (measured). */
+#define HUMP  1.75
 #define LOBES 0.08  /* the greatest fraction of the voxels that the lobes of a signed quantity show */
 #define FLOOR 0.002 /* least mean of the background, as a fraction of top */
 

@@ -19,9 +19,8 @@
 #define DENSEST       0.9   /* quantile of the object's matter that counts as dense */
 #define DENSE_AT_MOST 0.005 /* greatest fraction of a holder that is as dense */
 #define RIM           1.0   /* cells from the centres of the object's outermost cells to a plane */
-#define CLEAR                                                                           \
-  1.5 /* cells from a plane to the centres of a holder's cells, which lie wholly beyond \
-       * it */
+/* Cells from a plane to the centres of a holder's cells, which lie wholly beyond it. */
+#define CLEAR 1.5
 
 #define LEFT      0.01 /* fraction of a holder that may remain in the gap beside the object */
 #define RIM_LEVEL 0.3  /* fraction of the level from which cells are seen as rims */

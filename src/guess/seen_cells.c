@@ -13,10 +13,9 @@
 #define FAINT  0.02   /* fraction of the greatest opacity below which voxels at the rim do not count */
 #define LOST   0.04   /* least optical depth of a column that counts as seen */
 #define OPAQUE 0.9999 /* limit of opacities, because an opacity of 1 has no finite depth */
-#define SPECKS_AT_MOST                                                                            \
-  0.03                  /* greatest fraction of the seen cells that specks have; more of them are \
-                         * matter */
-#define FAINT_RATIO 200 /* a body is a speck if another body has this many times its optical depth */
+/* Greatest fraction of the seen cells that specks have; more of them are matter. */
+#define SPECKS_AT_MOST 0.03
+#define FAINT_RATIO    200 /* a body is a speck if another body has this many times its optical depth */
 
 #define TISSUE          (-300)      /* Hounsfield units: tissue is denser, foam and clothes are not */
 #define BODY_AT_LEAST   0.8         /* least fraction of the dense cells that a patient's body has */

@@ -9,9 +9,8 @@
 #include "guess/analysis.h"
 #include "guess/sample.h"
 
-#define CONTRAST                                                                                       \
-  3                      /* least distance of the brightest matter, as a multiple of the objects' mean \
-                          * distance */
+/* Least distance of the brightest matter, as a multiple of the objects' mean distance. */
+#define CONTRAST    3
 #define LEAST_TUBES 0.5  /* least fraction of the bright voxels that lies in tubes */
 #define MOST_BRIGHT 0.06 /* greatest fraction of the object's voxels that is bright */
 #define SPREAD      0.4  /* least fraction of the object over which tubes reach, along two axes */

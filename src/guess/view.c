@@ -15,12 +15,10 @@
 #include "scene/scene.h"
 
 #define BEND 3 /* distance, in places of the lattice, over which relief is measured */
-#define BODY_AT_LEAST                                                                 \
-  0.4 /* the largest body decides alone if it has at least this fraction of all solid \
-       * places */
-#define CLEARLY                                                                          \
-  1.1 /* the side turned to the eye must have this many times the relief of the opposite \
-       * side */
+/* The largest body decides alone if it has at least this fraction of all solid places. */
+#define BODY_AT_LEAST 0.4
+/* The side turned to the eye must have this many times the relief of the opposite side. */
+#define CLEARLY 1.1
 
 /* The objects on a coarse lattice. */
 typedef struct shape {
