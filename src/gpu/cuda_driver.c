@@ -71,9 +71,10 @@ typedef struct cuda_library {
 typedef struct cuda_device {
   const cuda_library *api;
   cuda_device_number number;
-  int architecture;                                        /* 90: compute capability 9.0 */
-  cuda_object context, streams[2], moments[2], reached[2]; /* reached: events of the streams */
-  void *stage; /* owned; pinned memory that downloads pass through: into other memory they are slow */
+  int architecture;                                        /* compute capability times 10: 90 is 9.0 */
+  cuda_object context, streams[2], moments[2], reached[2]; /* reached: events, one for each stream */
+  void *stage; /* owned; pinned memory through which downloads pass, because downloads into other memory are
+                * slow */
   size_t stage_bytes;
 } cuda_device;
 
@@ -156,7 +157,7 @@ static bool fails(gpu_device *device, cuda_status code, const char *what) {
   return true;
 }
 
-/* The context is a thread's own for the time of one call. */
+/* Makes the context the thread's own for the time of one call. */
 static bool enter(gpu_device *device) {
   cuda_device *state = device->state;
   return !fails(device, state->api->cuCtxPushCurrent_v2(state->context), "entering");
@@ -204,9 +205,9 @@ static bool open_cuda(void *library, int index, gpu_device *device) {
   if (!failed) {
     cuda_status code = 0;
     for (int i = 0; i < 2 && code == 0; i++) {
-      code = api->cuStreamCreate(&state->streams[i], 1); /* waits for no other stream */
+      code = api->cuStreamCreate(&state->streams[i], 1); /* flag: the stream waits for no other stream */
       if (code == 0) code = api->cuEventCreate(&state->moments[i], 0);
-      if (code == 0) code = api->cuEventCreate(&state->reached[i], 2); /* without a time */
+      if (code == 0) code = api->cuEventCreate(&state->reached[i], 2); /* flag: the event has no time */
     }
     failed = !leave(device, code, "opening");
   }
@@ -295,7 +296,7 @@ static void release_cuda(gpu_device *device, gpu_buffer *buffer) {
   *buffer = (gpu_buffer){0};
 }
 
-/* From memory that is not pinned, CUDA copies to a buffer of its own before it returns. */
+/* CUDA copies memory that is not pinned to a buffer of its own before it returns. */
 static bool upload_cuda(gpu_device *device, const gpu_buffer *buffer, size_t offset, const void *from,
                         size_t bytes) {
   const cuda_device *state = device->state;

@@ -1,6 +1,7 @@
-/* gpu/device_sweep.h - one sweep of a frame as plain data: all that a device needs besides voxels and tables.
+/* gpu/device_sweep.h - one sweep of a frame as plain data: everything that a device needs except voxels and
+ * tables.
  *
- * The structs have members of 32 bits alone and no pointers. The host fills them (render/device_plan.c), and
+ * The structs have only members of 32 bits, and no pointers. The host fills them (render/device_plan.c), and
  * the kernels read the same text: it is C17, OpenCL C 1.2 and CUDA C++. Lengths are in frame units, positions
  * in frame space, where no comment says otherwise. */
 #ifndef HL_GPU_FRAME_PLAN_H
@@ -10,8 +11,8 @@
 #define PLAN_KERNEL_POWERS 6
 #define PLAN_SECTORS       6
 
-/* Where pixels see one sheet: the members of sheet_rays (view/view.h), and the sheet's height above the
- * first. */
+/* The rays of pixels at one sheet: the members of sheet_rays (view/view.h), and the sheet's height above the
+ * first one. */
 typedef struct plan_rays {
   int perspective;
   float base[3], p0[3], pu[3], pv[3];
@@ -32,45 +33,49 @@ typedef struct plan_box {
   int sphere;
 } plan_box;
 
-/* A light, with the shadow buffer of one that casts shadows. */
+/* A light, and the shadow buffer of a light that casts shadows. */
 typedef struct plan_light {
   int parallel, shadowed, inverse_square, nearest, cubic;
   float towards[3];  /* parallel: unit direction to the light */
-  float position[3]; /* else: the light's centre */
+  float position[3]; /* not parallel: the light's centre */
   float color[3];    /* colour times intensity */
-  float of_sky;      /* what a medium takes of a sun of the sky; else 0 */
+  float of_sky;      /* fraction of the light that a medium takes, where the light is a sun of the sky;
+                      * else 0 */
   float path;        /* as in shade_light (render/slab.h) */
   float cone_axis[3], cone_outer, cone_scale;
   int sector_count, sector;
   float sector_axis[PLAN_SECTORS][3], sector_least;
   /* the shadow buffer */
-  int width, height;  /* pixels */
-  int tiles_x, tiles; /* its tiles */
-  int first_tile;     /* of its tiles among those of all lights */
-  int first_slab;     /* the first slab that light reaches */
+  int width, height;  /* size in pixels */
+  int tiles_x, tiles; /* number of its tiles */
+  int first_tile;     /* index of its first tile among the tiles of all lights */
+  int first_slab;     /* the first slab that the light reaches */
   int stride;         /* floats from row to row of a plane */
   int plane, origin;  /* floats of a plane, and the offset of pixel (0, 0) in it */
-  unsigned planes; /* where the light's planes begin, in units of 16 floats: [ring][1 or 2][channels][plane],
-                      of the transmittance and of the light at the outside of surfaces */
+  /* Where the light's planes begin, in units of 16 floats: [ring][1 or 2][channels][plane]. The first planes
+   * of a sheet are the transmittance, the second ones the light at the outside of surfaces. */
+  unsigned planes;
   float map[3][4]; /* frame space to (w, w u, w v) of the buffer */
   float slab_path; /* as path in attenuate_job (shadow/attenuate.h) */
   plan_box box, content;
-  float margin[3]; /* voxels: farther from the box's faces, no light passes beside them to the pixels around a
-                      sample */
+  float margin[3]; /* voxels: at a sample that is farther than this from the box's faces, no light passes
+                    * beside them to the pixels around it */
 } plan_light;
 
 typedef struct plan_volume {
   int dimension[3], brick_count[3];
-  unsigned row_bytes, slice_rows; /* of the device's voxels: from row to row; rows from slice to slice */
+  unsigned row_bytes, slice_rows; /* for the device's voxels: bytes from row to row; rows from slice to
+                                   * slice */
   float empty;                    /* stored units */
   int has_cell_bits;
   float inner[PLAN_KERNEL_POWERS], outer[PLAN_KERNEL_POWERS]; /* the kernel's polynomials */
   float to_index[3][4];
-  float low[3], high[3], face_low[3], face_high[3]; /* index space: the box, and its faces that cut matter */
+  float low[3], high[3], face_low[3], face_high[3]; /* index space: the box, and those of its faces that cut
+                                                     * matter */
   float steps[3]; /* the distances between voxels along the axes, in units of the smallest edge */
   /* the transfer function's tables (grid/classifier.h) */
   float scale, offset, first_visible, last_visible, normal_edge;
-  int bends; /* the table of bent colours is there */
+  int bends; /* there is a table of bent colours */
   int several_surfaces;
   float only_outside, side;
   /* surfaces at the box's faces (shade_volume in render/slab.h) */
@@ -81,38 +86,39 @@ typedef struct plan_volume {
   float anisotropy;
   float albedo[3];
   int absorbs, receives_shadow;
-  float cast[3];   /* relative extinction towards the lights */
-  float weight[3]; /* relative extinction in shadow buffers */
+  float cast[3];   /* extinction towards the lights over extinction towards the eye */
+  float weight[3]; /* extinction in shadow buffers over extinction towards the eye */
   float voxel;
 } plan_volume;
 
 /* One sweep: all slabs of one slicing direction. */
 typedef struct device_sweep {
-  int sheets, ring;                  /* planes that shadow buffers keep: sheet k's at k % ring */
-  int width, height, tiles_x, tiles; /* of the picture */
+  int sheets, ring;                  /* number of sheets; number of planes that shadow buffers keep: sheet k's
+                                      * plane is k % ring */
+  int width, height, tiles_x, tiles; /* size of the picture */
   int light_count, light_tiles;
   float spacing, path;
   float through[3], towards_eye[3], normal[3];
   float ambient[3], emission;
   plan_volume volume;
-  plan_box box, content; /* the eye's rays, and the volume's box and that of its bricks that show something */
+  plan_box box, content; /* rays in the volume's box, and in the box of its bricks that show something */
   plan_light lights[PLAN_LIGHTS];
 } device_sweep;
 
-/* What kernels are compiled for: the values of the macros of the same names in capitals. */
+/* The variant for which kernels are compiled: values of the macros that have the same names in capitals. */
 typedef struct plan_variant {
   int storage; /* 0: u8, 1: u16, 2: f32 */
-  int bspline; /* the kernel is the cubic B-spline; else any polynomial of degree 5 */
+  int bspline; /* 1: the kernel is the cubic B-spline; else it is any polynomial of degree 5 */
   int eye_perspective;
   int phong, lit, shadowed;
   int outside; /* the lights' buffers keep the light at the outside of surfaces, too */
-  int boxed;   /* the volume's box cuts something visible */
+  int boxed;   /* the volume's box cuts visible matter */
   int back_to_front;
-  int channels; /* of light attenuation: 1 or 3 */
+  int channels; /* number of channels of light attenuation: 1 or 3 */
 } plan_variant;
 
-/* Entries of each of the tables, which follow each other: sums, color and shown with four numbers an entry,
- * outside and bent with one. */
+/* Number of entries of each table. The tables follow each other: sums, color and shown with four numbers for
+ * each entry, outside and bent with one. */
 #define PLAN_ENTRIES      4096
 #define PLAN_TABLE_ROWS   (PLAN_ENTRIES + 2)
 #define PLAN_TABLE_FLOATS (PLAN_TABLE_ROWS * 14)

@@ -9,7 +9,7 @@
 
 #include "gpu/program_cache.h"
 
-extern const char hl_kernel_text[]; /* kernels/text.py */
+extern const char hl_kernel_text[]; /* made by kernels/text.py */
 
 enum {
   KERNEL_FILL,
@@ -33,7 +33,7 @@ enum buffer_use {
   BUFFER_RAYS,
   BUFFER_VOXELS,
   BUFFER_DISTANCES,
-  BUFFER_DISTANCES_MADE, /* half of the way */
+  BUFFER_DISTANCES_MADE, /* distances half-way through the three passes */
   BUFFER_CELL_BITS,
   BUFFER_TABLES,
   BUFFER_PIXELS,
@@ -59,11 +59,11 @@ struct hl_gpu {
   gpu_device device;
   const char *cache_folder;
   gpu_buffer buffers[BUFFERS];
-  uint64_t version, tables_version; /* of the volume on the device; 0: none */
+  uint64_t version, tables_version; /* versions of the volume on the device; 0: there is none */
   known_program programs[MOST_VARIANTS];
   int program_count, launches;
   int32_t brick_count[3];
-  bool has_distances; /* of bricks; else the buffer says which are relevant */
+  bool has_distances; /* the buffer holds distances of bricks; else it says which bricks are relevant */
 };
 
 const gpu_device *hl_gpu_device(const hl_gpu *gpu) { return &gpu->device; }
@@ -91,7 +91,7 @@ static bool find_of_driver(const gpu_driver *driver, gpu_found *found, void *dat
   bool goes_on = true;
   for (int i = 0; i < driver->count(library) && goes_on; i++)
     if (driver->describe(library, i, &info)) goes_on = found(data, driver, library, i, &info);
-  if (goes_on) driver->unload(library); /* else the caller has it */
+  if (goes_on) driver->unload(library); /* else the caller keeps the library open */
   return goes_on;
 }
 
@@ -109,7 +109,7 @@ void hl_gpu_find(const char *driver, gpu_found *found, void *data, char *problem
                                of_driver[d]);
 }
 
-/* What is looked for, and the device that was opened. */
+/* The name that is searched for, and the device that was opened. */
 typedef struct gpu_search {
   const char *wanted;
   gpu_device device;
@@ -117,7 +117,7 @@ typedef struct gpu_search {
   bool met;
 } gpu_search;
 
-/* An ASCII letter as a small one, whatever the locale. */
+/* Turns an ASCII letter into a small letter, whatever the locale. */
 static char small_letter(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
 
 static bool has_word(const char *text, const char *word) {
@@ -182,14 +182,14 @@ void hl_gpu_close(hl_gpu *gpu) {
 
 /* ---- memory ---- */
 
-/* Makes room in a buffer; its content is lost where it grows. */
+/* Makes a buffer large enough. Its content is lost where it grows. */
 static bool reserve(hl_gpu *gpu, enum buffer_use use, size_t bytes) {
   gpu_buffer *buffer = &gpu->buffers[use];
   if (bytes < 64) bytes = 64;
   if (buffer->bytes >= bytes) return true;
   gpu->device.driver->release(&gpu->device, buffer);
   if (use >= BUFFER_PIXELS || use == BUFFER_RAYS)
-    bytes += bytes / 4; /* a turning camera needs a little more or less */
+    bytes += bytes / 4; /* a turning camera needs a little more or less from frame to frame */
   return gpu->device.driver->allocate(&gpu->device, bytes, buffer);
 }
 
@@ -203,9 +203,9 @@ static bool reserve_and_upload(hl_gpu *gpu, enum buffer_use use, const void *fro
 
 static size_t storage_bytes(int storage) { return storage == 0 ? 1 : storage == 1 ? 2 : 4; }
 
-/* Rows begin at multiples of sixteen bytes: kernels load aligned words. An odd number of sixteen bytes:
- * neighbouring rows of a volume whose rows are 256 or 2048 bytes long would share a cache's banks and sets.
- */
+/* Rows begin at multiples of sixteen bytes, because kernels load aligned words. The multiple is odd:
+ * otherwise neighbouring rows of a volume with rows of 256 or 2048 bytes would share a cache's banks and
+ * sets. */
 size_t hl_gpu_row_bytes(const gpu_volume *volume) {
   return ((size_t)volume->dimension[0] * storage_bytes(volume->storage) + 15) / 16 * 16 | 16;
 }
@@ -342,14 +342,14 @@ static bool launch(hl_gpu *gpu, const gpu_program *program, int kernel, int line
 
 static uint32_t groups_of(size_t members) { return (uint32_t)((members + GPU_GROUP - 1) / GPU_GROUP); }
 
-/* floats: a multiple of four. */
+/* floats: the number of floats, a multiple of four. */
 static bool fill(hl_gpu *gpu, const gpu_program *program, enum buffer_use use, size_t floats, float value) {
   uint32_t fours = (uint32_t)(floats / 4);
   const gpu_argument arguments[] = {memory(gpu, use), {.value = fours}, number_of_float(value)};
   return fours == 0 || launch(gpu, program, KERNEL_FILL, 0, groups_of(fours), arguments, 3);
 }
 
-/* Three passes, one along each axis. */
+/* Finds the distances of bricks, by three passes, one along each axis. */
 static bool find_distances(hl_gpu *gpu, const gpu_program *program) {
   size_t bricks = 1;
   bool done = true;
@@ -375,7 +375,7 @@ static size_t light_floats(const gpu_sweep *sweep) {
          (sweep->variant.outside ? 2 : 1);
 }
 
-/* Of samples, and one for each run's list; a multiple of four. */
+/* The number of counters: counters of samples, and one for the list of each run; a multiple of four. */
 static size_t counters_of(const gpu_sweep *sweep) {
   return SAMPLE_COUNTERS + ((size_t)(sweep->plan->sheets / sweep->slabs) + 4) / 4 * 4;
 }
@@ -401,7 +401,7 @@ static bool make_room(hl_gpu *gpu, const gpu_sweep *sweep) {
   return done;
 }
 
-/* Full light, an empty picture. */
+/* Starts a sweep: with full light and an empty picture. */
 static bool reset(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program) {
   const device_sweep *plan = sweep->plan;
   bool done = fill(gpu, program, BUFFER_PIXELS, (size_t)plan->tiles * 1024, 0) &&
@@ -414,10 +414,11 @@ static bool reset(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *progra
   return done;
 }
 
-/* The lines of launches: lighting and compositing samples; finding them, and the lights. */
+/* The lines of launches. LINE_PICTURE lights and composites samples; LINE_AHEAD finds them, and brings the
+ * lights on. */
 enum { LINE_PICTURE, LINE_AHEAD };
 
-/* Members that light samples: enough to fill any device. */
+/* Number of members that light samples, which is enough to fill any device. */
 enum { SHADING_MEMBERS = 1 << 18 };
 
 /* A run of slabs. */
@@ -450,10 +451,10 @@ static bool launch_kernel(hl_gpu *gpu, const gpu_program *program, int kernel, s
                 groups_of(members), arguments, (int)(sizeof arguments / sizeof *arguments));
 }
 
-/* Samples are found and the light is brought on while those of the run before are lit. What is ahead in run r
- * writes other planes of the ring and other lists than what is lit in run r - 1, and follows what was lit in
- * run r - 2. A pixel may be found open though the run before makes it opaque: then its samples are lit in
- * vain. */
+/* Launches a run. While the samples of a run are lit, the samples of the next run are found and the light is
+ * brought on. The work ahead in run r writes other planes of the ring and other lists than the lighting of
+ * run r - 1 reads, and begins after the lighting of run r - 2. A pixel may be found open although the run
+ * before makes it opaque; its samples are then lit in vain. */
 static bool launch_run(hl_gpu *gpu, const gpu_sweep *sweep, const gpu_program *program, device_run run) {
   const gpu_driver *driver = gpu->device.driver;
   const size_t pixels = (size_t)sweep->plan->tiles * 256,

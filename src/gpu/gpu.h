@@ -3,8 +3,8 @@
  *
  * A frame: hl_gpu_prepare() brings the volume and its tables to the device, unless they are there;
  * hl_gpu_run() runs one sweep, and hl_gpu_read() waits for its pixels. Functions that can fail return false
- * and leave a line in hl_gpu_problem(). After a failure the device is closed, and the frame is the
- * processors'. */
+ * and leave a line in hl_gpu_problem(). After a failure the device is closed, and the processors make the
+ * frame. */
 #ifndef HL_GPU_GPU_H
 #define HL_GPU_GPU_H
 
@@ -14,41 +14,44 @@
 
 typedef struct hl_gpu hl_gpu;
 
-/* Calls `found` for each device of the system, until it returns false. driver: null: of all drivers; else of
- * the one with this name. problem: [GPU_PROBLEM_BYTES]; why a driver offers nothing. */
+/* Calls `found` for each device of the system, until it returns false. driver: name of the driver that is
+ * asked; null: all drivers are asked. problem: [GPU_PROBLEM_BYTES]; says why a driver offers no device. */
 typedef bool gpu_found(void *data, const gpu_driver *driver, void *library, int index,
                        const gpu_device_info *info);
 void hl_gpu_find(const char *driver, gpu_found *found, void *data, char *problem);
 
-/* Opens a device. wanted: "gpu" or "auto": the first that is no processor; "cuda" or "opencl": the first of
- * that driver; else the first whose name has `wanted` in it, large and small letters alike. cache_folder: of
- * compiled kernels; borrowed; null: none are kept. Null: `problem`, [GPU_PROBLEM_BYTES], says why. */
+/* Opens a device. wanted: "gpu" or "auto" mean the first device that is no processor; "cuda" or "opencl" mean
+ * the first device of this driver; any other text means the first device with this text in its name, in large
+ * or small letters. cache_folder: folder of compiled kernels; borrowed; null: none are kept. Returns null
+ * after a failure, and `problem`, [GPU_PROBLEM_BYTES], says why. */
 hl_gpu *hl_gpu_open(hl_context *context, const char *wanted, const char *cache_folder, char *problem);
-void hl_gpu_close(hl_gpu *gpu); /* null is allowed */
+void hl_gpu_close(hl_gpu *gpu); /* gpu may be null */
 
 const gpu_device *hl_gpu_device(const hl_gpu *gpu);
 const char *hl_gpu_problem(const hl_gpu *gpu);
 
 /* A volume as the renderer has prepared it; borrowed. */
 typedef struct gpu_volume {
-  uint64_t version, tables_version; /* of the voxels, and of what follows from the transfer function */
+  uint64_t version, tables_version; /* versions of the voxels, and of everything that follows from the
+                                     * transfer function */
   const void *voxels;               /* [z][y][x], rows packed */
-  int storage;                      /* plan_variant's */
+  int storage;                      /* as in plan_variant */
   const int32_t *dimension, *brick_count;
   const unsigned char *relevant;     /* [bricks] */
-  const uint64_t *cell_bits;         /* [bricks]; null: none */
+  const uint64_t *cell_bits;         /* [bricks]; null: there are no bits */
   const float *sums, *color, *shown; /* [PLAN_TABLE_ROWS][4] */
-  const float *outside, *bent;       /* [PLAN_TABLE_ROWS]; bent: null: none */
+  const float *outside, *bent;       /* [PLAN_TABLE_ROWS]; bent may be null: there is no such table */
 } gpu_volume;
 
-/* The bytes of a row of the device's voxels. */
+/* The number of bytes of a row of the device's voxels. */
 size_t hl_gpu_row_bytes(const gpu_volume *volume);
 
 bool hl_gpu_prepare(hl_gpu *gpu, const gpu_volume *volume);
-/* The next volume is another one, whatever its versions. */
+/* Forgets the volume on the device: the next volume is another one, whatever its versions are. */
 void hl_gpu_forget(hl_gpu *gpu);
 
-/* Computes results of numbers (gpu/kernels/trial.h). numbers: [count][3]; results: [count][result_count]. */
+/* Computes the trial's results for some numbers (gpu/kernels/trial.h). numbers: [count][3]; results:
+ * [count][result_count]. */
 bool hl_gpu_try(hl_gpu *gpu, const float *numbers, uint32_t count, float *results, uint32_t result_count);
 
 /* A sweep as plain data; borrowed until hl_gpu_read(). */
@@ -56,20 +59,20 @@ typedef struct gpu_sweep {
   const device_sweep *plan;
   plan_variant variant;
   const plan_rays *rays;     /* [2 + 2 lights][sheets] (gpu/kernels/sweep.h) */
-  const int32_t *shown_from; /* [tiles][16]; back to front: the first slab that is seen; null: 1 */
-  size_t plane_floats;       /* of the planes of all lights together */
-  int slabs;                 /* of a run */
+  const int32_t *shown_from; /* [tiles][16]; from back to front: the first visible slab; null: slab 1 */
+  size_t plane_floats;       /* floats of the planes of all lights together */
+  int slabs;                 /* number of slabs of a run */
 } gpu_sweep;
 
 /* What a sweep took. */
 typedef struct gpu_times {
-  double milliseconds; /* on the device, without copies */
+  double milliseconds; /* time on the device, without copies */
   int launches;
-  uint64_t samples; /* pixels composited, over slabs */
+  uint64_t samples; /* number of pixels composited, summed over slabs */
 } gpu_times;
 
 bool hl_gpu_run(hl_gpu *gpu, const gpu_sweep *sweep);
-/* pixels: [tiles][16][4][16] floats. times: added to. */
+/* Waits for the sweep's pixels. pixels: [tiles][16][4][16] floats. times: the sweep's times are added. */
 bool hl_gpu_read(hl_gpu *gpu, const gpu_sweep *sweep, float *pixels, gpu_times *times);
 
 #endif

@@ -130,7 +130,7 @@ static bool load_opencl(void **library, char *problem) {
   return true;
 }
 
-/* Drivers start threads of their own, which run on: their code stays loaded. */
+/* The threads that drivers start go on running, so the drivers' code stays loaded. */
 static void unload_opencl(void *library) { free(library); }
 
 static int count_opencl(void *library) { return ((const opencl_library *)library)->device_count; }
@@ -302,7 +302,7 @@ static bool download_opencl(gpu_device *device, const gpu_buffer *buffer, size_t
                 "reading memory");
 }
 
-/* One queue, in order, has both lines. */
+/* A single queue, in order, serves both lines. */
 static bool launch_opencl(gpu_device *device, const gpu_program *program, int kernel, int line,
                           uint32_t groups, const gpu_argument *arguments, int argument_count) {
   (void)line;

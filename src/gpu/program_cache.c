@@ -1,7 +1,7 @@
 /* gpu/program_cache.c - see program_cache.h. A file holds the key's length, the key, a number of the
- * program's bytes and the program; it appears whole, by renaming. Drivers crash on spoilt programs: one whose
- * number is wrong is not read. Files of others, and files that others may write, are not read: a driver
- * trusts them. */
+ * program's bytes and the program; it appears as a whole, by renaming. A driver crashes on a damaged program,
+ * so a program whose number is wrong is not read. A driver trusts a program, so files that belong to other
+ * users, or that they may write, are not read. */
 #define _POSIX_C_SOURCE 200809L
 #include "gpu/program_cache.h"
 
@@ -51,7 +51,7 @@ static bool write_all(int file, const void *from, size_t bytes) {
   return true;
 }
 
-/* Reads a file's program, if its key is the wanted one. */
+/* Reads a file's program if its key is the wanted key. */
 static bool read_program(int file, size_t size, const char *key, gpu_binary *binary) {
   char held[PROGRAM_KEY_BYTES];
   uint32_t length = 0;
@@ -90,7 +90,8 @@ static bool is_program(const char *name) {
   return length > suffix && strcmp(name + length - suffix, CACHE_SUFFIX) == 0;
 }
 
-/* Removes the oldest program of a folder that holds more bytes than `most`. Returns whether one went. */
+/* Removes the oldest program of a folder that holds more bytes than `most`. Returns whether a program was
+ * removed. */
 static bool remove_oldest(const char *folder, uint64_t most) {
   char oldest[256] = "", path[4096];
   uint64_t bytes = 0;

@@ -1,12 +1,13 @@
-/* gpu/kernels/dialect.h - the dialect of the kernels: what OpenCL C 1.2, CUDA C++ and C17 say differently.
+/* gpu/kernels/dialect.h - the dialect of the kernels: macros for the differences of OpenCL C 1.2, CUDA C++
+ * and C17.
  *
- * Every float operation is one IEEE operation, rounded to nearest: products and sums are fused where fused()
- * says so and nowhere else. So the kernels give the bytes of the processor's functions (simd/lanes.h), each
- * of which has the same operations in the same order. */
+ * Every float operation is one IEEE operation, rounded to nearest. Products and sums are fused only where
+ * fused() says so. So the kernels give the bytes of the processor's functions (simd/lanes.h), each of which
+ * has the same operations in the same order. */
 #ifndef HL_GPU_DIALECT_H
 #define HL_GPU_DIALECT_H
 
-/* Members of a group, and groups of a tile of 256 pixels. */
+/* Number of members of a group, and number of groups of a tile of 256 pixels. */
 #define GROUP       64
 #define TILE_GROUPS (256 / GROUP)
 
@@ -14,12 +15,12 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 #define GLOBAL __global
-/* Of a pointer to memory that no other pointer of the kernel leads to. */
+/* Marks a pointer to memory to which no other pointer of the kernel leads. */
 #define APART       restrict
 #define DEVICE      static
 #define DEVICE_CALL static
-/* groups: how many an NVIDIA multiprocessor shall hold at once at least, which limits the registers of each
- * member. */
+/* groups: least number of groups that an NVIDIA multiprocessor shall hold at once, which limits the registers
+ * of each member. */
 #define KERNEL(groups) __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void
 typedef uchar byte;
 typedef ushort word16;
@@ -34,15 +35,16 @@ typedef ulong wide;
 #define member_number() ((int)get_local_id(0))
 #define work_number()   ((int)get_global_id(0))
 #define work_count()    ((unsigned)get_global_size(0))
-/* The least of the numbers of members that step together, and whether a condition holds for one of them; here
- * each steps alone, or by one where all of the group must take the same steps. */
+/* The least number among the members that step together, and whether a condition holds for any of these
+ * members. Here each member steps alone; where all members of a group must take the same steps, they step by
+ * one. */
 #define least_of_pack(value)   (value)
 #define any_of_pack(condition) (condition)
 #define least_of_group(value)  1
 #define SHARED_VOTES           __local int votes[GROUP / 16]
 #define UNROLLED
-/* Whether a condition holds for any of the sixteen pixels of the member's block. All members call it. votes:
- * shared by the group, one for each block. */
+/* Whether a condition holds for any of the sixteen pixels of the member's block. All members must call it.
+ * votes: shared by the group, one for each block. */
 #define block_any(votes, condition)                                                               \
   (barrier(CLK_LOCAL_MEM_FENCE),                                                                  \
    (get_local_id(0) & 15) == 0 ? (void)(votes[get_local_id(0) >> 4] = 0) : (void)0,               \
@@ -69,7 +71,7 @@ typedef unsigned long long wide;
 #define member_number()        ((int)threadIdx.x)
 #define work_number()          ((int)(blockIdx.x * blockDim.x + threadIdx.x))
 #define work_count()           (gridDim.x * blockDim.x)
-/* Those of a warp step together. */
+/* the members of a warp step together */
 #define least_of_pack(value)   __reduce_min_sync(__activemask(), value)
 #define any_of_pack(condition) (__any_sync(__activemask(), condition) != 0)
 #define least_of_group(value)  __reduce_min_sync(0xffffffffu, value)
@@ -79,7 +81,7 @@ typedef unsigned long long wide;
 #define block_any(votes, condition) \
   ((votes = (int)(__ballot_sync(0xffffffffu, condition) >> (threadIdx.x & 16) & 0xffffu)) != 0)
 
-#else /* C17, in unit tests */
+#else /* C17, for unit tests */
 
 #define UNROLLED
 #include <math.h>

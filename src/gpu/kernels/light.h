@@ -1,6 +1,7 @@
-/* gpu/kernels/light.h - the light that reaches a sample: the shadow buffer read at its position, and what the
- * slab's own matter absorbs. render/reaching_lanes.h, render/light_depth_lanes.h, render/before_slab_lanes.h
- * and shadow/shadow_lookup_lanes.h for one pixel, one volume and media. */
+/* gpu/kernels/light.h - the light that reaches a sample: the shadow buffer is read at its position, and the
+ * slab's own matter absorbs a part. The functions do for one pixel, one volume and media what
+ * render/reaching_lanes.h, render/light_depth_lanes.h, render/before_slab_lanes.h and
+ * shadow/shadow_lookup_lanes.h do for sixteen pixels. */
 #ifndef HL_GPU_LIGHT_H
 #define HL_GPU_LIGHT_H
 
@@ -13,19 +14,20 @@
 #define DEEPEST     80.0f
 #define EVEN_LIGHT  0.1f
 
-/* Of a light's buffer. */
+/* Number of planes of one sheet in a light's buffer. */
 #define PLANES_OF_SHEET (CHANNELS * (1 + OUTSIDE))
 
 /* A pixel's way through a slab, and where its matter is seen. */
 typedef struct slab_sample {
   vector position, start, step_sheet, towards_eye;
-  float path; /* of the eye's ray through the slab */
+  float path; /* length of the eye's ray through the slab */
   covered_span part;
-  float place;         /* 0 to 1 through the slab */
+  float place;         /* where the slab is seen, 0 to 1 through the slab */
   float before, after; /* coordinates in the tables */
   way_sums sums;
   float extinction, depth, left, opacity;
-  float seen, evenly; /* fractions of the way through the slab's covered part */
+  float seen, evenly; /* where the matter is seen, and would be seen with even extinction: fractions of the
+                       * way through the slab's covered part */
   int sloped;
   vector slope, normal;
   float surface;
@@ -61,7 +63,8 @@ DEVICE shadow_taps taps_of_position(GLOBAL const plan_light *light, vector posit
   return taps;
 }
 
-/* Interpolates between the pixels a b and, in the next row, c d; 1 outside the buffer. */
+/* Interpolates between two pixels a b of a row and c d of the next row; outside the buffer the result is
+ * 1. */
 DEVICE float between_taps(const shadow_taps *taps, float a, float b, float c, float d) {
   float top = fused(b - a, taps->fx, a), bottom = fused(d - c, taps->fx, c);
   return taps->inside ? fused(bottom - top, taps->fy, top) : 1.0f;
@@ -139,7 +142,7 @@ typedef struct light_ways {
 } light_ways;
 
 /* Lengths of the light's way within the volume's box, to where the slab's covered part begins and ends. path:
- * without a box. */
+ * the lengths without a box. */
 DEVICE light_ways ways_in_box(GLOBAL const plan_volume *volume, vector start, vector way, vector towards,
                               light_ways path) {
   float leave_first = 1e30f, leave_last = 1e30f, enter_first = 0.0f, enter_last = 0.0f;
@@ -247,8 +250,8 @@ DEVICE float find_faces(GLOBAL const plan_volume *volume, const slab_sample *s, 
   return likely;
 }
 
-/* The light's way within the box before the slab, at a point u, v and along steps away. within: its way from
- * the slab's first sheet to the point. */
+/* The light's way within the box before the slab, at a point that lies steps u, v and along away. within: the
+ * light's way from the slab's first sheet to the point. */
 DEVICE float way_before(const faces_of_axis faces[3], float u, float v, float along, float within) {
   float leave = 1e30f, enter = within;
   for (int axis = 0; axis < 3; axis++) {
@@ -259,8 +262,8 @@ DEVICE float way_before(const faces_of_axis faces[3], float u, float v, float al
   return greater(leave - enter, 0.0f);
 }
 
-/* Whether a sample is so far from the box's faces that none changes the light's ways to it and to the pixels
- * around. */
+/* Whether a sample is so far from the box's faces that no face changes the light's ways to it and to the
+ * pixels around it. */
 DEVICE int is_deep(GLOBAL const plan_volume *volume, GLOBAL const plan_light *light, const slab_sample *s) {
   int deep = 1;
   for (int axis = 0; axis < 3; axis++) {
@@ -311,8 +314,8 @@ DEVICE void add_face(GLOBAL const plan_volume *volume, const slab_sample *s, vec
   }
 }
 
-/* The light's transmittance from the face to the slab. found: what the buffer holds; own: if the box's matter
- * were even and nothing else in the way. */
+/* Finds the light's transmittance from the face to the slab. found: the transmittance in the buffer. own: the
+ * transmittance if the box's matter were even and nothing else in the way. */
 DEVICE void pass_face(light_depths *depths, int channel, float found, float own) {
   float ratio = 1.0f;
   if (own < 0.999f)
@@ -343,8 +346,8 @@ DEVICE float reaching_face(GLOBAL const plan_light *light, const shadow_taps *ta
 
 #endif
 
-/* The light's transmittance to the sample in each channel, averaged as the eye sees the slab. planes: of the
- * sheet before the slab. */
+/* The light's transmittance to the sample in each channel, averaged as the eye sees the slab. planes: the
+ * planes of the sheet before the slab. */
 DEVICE void passing_light(const volume_data *volume, vector normal, GLOBAL const plan_light *light,
                           const slab_sample *s, vector towards, float path, GLOBAL const float *planes,
                           float passing[CHANNELS]) {

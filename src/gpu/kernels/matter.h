@@ -1,5 +1,5 @@
-/* gpu/kernels/matter.h - the transfer function along a pixel's way through a slab: grid/classifier_lanes.h
- * and parts of render/slab_lanes.h for one pixel. */
+/* gpu/kernels/matter.h - the transfer function along a pixel's way through a slab. The functions do for one
+ * pixel what grid/classifier_lanes.h and parts of render/slab_lanes.h do for sixteen. */
 #ifndef HL_GPU_MATTER_H
 #define HL_GPU_MATTER_H
 
@@ -21,7 +21,7 @@ DEVICE table_coordinate split_coordinate(float x) {
   at.fraction = x - (float)at.entry;
   return at;
 }
-/* Not clamped: where densities show. */
+/* The coordinate of a density in the tables that tell whether it shows. It is not clamped. */
 DEVICE float shown_coordinate(GLOBAL const plan_volume *volume, float density) {
   return fused(density, volume->scale, volume->offset);
 }
@@ -35,7 +35,7 @@ DEVICE GLOBAL const float *shown_table(GLOBAL const float *tables) { return tabl
 DEVICE GLOBAL const float *outside_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 12; }
 DEVICE GLOBAL const float *bent_table(GLOBAL const float *tables) { return tables + PLAN_TABLE_ROWS * 13; }
 
-/* A table's first columns at a coordinate. */
+/* The values of a table's first columns at a coordinate. */
 DEVICE void table_values(GLOBAL const float *table, table_coordinate at, int columns, float values[4]) {
   GLOBAL const float *row = table + at.entry * 4;
   for (int i = 0; i < columns; i++) values[i] = fused(row[4 + i] - row[i], at.fraction, row[i]);

@@ -1,16 +1,16 @@
-/* gpu/kernels/numbers.h - numbers, functions and vectors: those of simd/lanes.h and view/rays_lanes.h, for
- * one pixel. */
+/* gpu/kernels/numbers.h - the numbers, functions and vectors of simd/lanes.h and view/rays_lanes.h, for one
+ * pixel. */
 #ifndef HL_GPU_NUMBERS_H
 #define HL_GPU_NUMBERS_H
 
 #include "gpu/kernels/dialect.h"
 
-/* The second where either is NaN. */
+/* Returns the second number where either is NaN. */
 DEVICE float lesser(float a, float b) { return a < b ? a : b; }
 DEVICE float greater(float a, float b) { return a > b ? a : b; }
 DEVICE float limited(float x, float low, float high) { return lesser(greater(x, low), high); }
 DEVICE float magnitude(float x) { return of_bits(bits_of(x) & 0x7fffffff); }
-/* Greatest integer not above x; |x| < 2^31. */
+/* The greatest integer not above x; |x| must be below 2^31. */
 DEVICE int whole_below(float x) {
   int i = (int)x;
   return (float)i > x ? i - 1 : i;
@@ -28,7 +28,7 @@ DEVICE float power_of_two(float x) {
   return p * of_bits((n + 127) << 23);
 }
 
-/* lanes_exp_negative() */
+/* as lanes_exp_negative() */
 DEVICE float exp_negative(float x) { return power_of_two(greater(x * -1.44269504089f, -123.0f)); }
 
 /* lanes_log2() */
@@ -44,7 +44,7 @@ DEVICE float log_of_two(float x) {
   return fused(t * series, 2.88539008178f, (float)n);
 }
 
-/* power() of render/shade_lanes.h */
+/* as power() in render/shade_lanes.h */
 DEVICE float power_of(float base, float exponent) {
   float safe = greater(base, 1e-12f);
   return base > 1e-12f ? power_of_two(greater(log_of_two(safe) * exponent, -100.0f)) : 0.0f;

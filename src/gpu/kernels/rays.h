@@ -1,5 +1,5 @@
-/* gpu/kernels/rays.h - where a pixel's ray meets a sheet, and where it enters and leaves the volume's box:
- * view/rays_lanes.h for one pixel. */
+/* gpu/kernels/rays.h - where a pixel's ray meets a sheet, and where it enters and leaves the volume's box.
+ * The functions do for one pixel what view/rays_lanes.h does for sixteen. */
 #ifndef HL_GPU_RAYS_H
 #define HL_GPU_RAYS_H
 
@@ -19,7 +19,7 @@ DEVICE vector position_on(GLOBAL const plan_rays *rays, int perspective, float u
   return vector_of(fused(p.x, s, rays->base[0]), fused(p.y, s, rays->base[1]), fused(p.z, s, rays->base[2]));
 }
 
-/* Whether the sheet lies at most `reach` behind the view's origin. */
+/* Whether the sheet lies ahead of the view's origin, or at most `reach` behind it. */
 DEVICE int is_ahead(GLOBAL const plan_rays *rays, float climb, float reach) {
   return fused(magnitude(climb), reach, climb * rays->step) > 0.0f;
 }

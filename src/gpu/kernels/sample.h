@@ -1,5 +1,6 @@
-/* gpu/kernels/sample.h - the density of a point and its gradient: fill/gather_lanes.h and
- * fill/gradient_lanes.h for one pixel, and whether a point's cell may show anything (fill/block_lanes.h). */
+/* gpu/kernels/sample.h - the density at a point and its gradient, as in fill/gather_lanes.h and
+ * fill/gradient_lanes.h but for one pixel; and whether a point's cell may show anything
+ * (fill/block_lanes.h). */
 #ifndef HL_GPU_SAMPLE_H
 #define HL_GPU_SAMPLE_H
 
@@ -13,16 +14,17 @@
 typedef struct volume_data {
   GLOBAL const plan_volume *plan;
   GLOBAL const byte *voxels;
-  GLOBAL const byte *distances; /* [bricks z][y][x]; how many bricks away the next one lies that may show
-                                   anything, along the axis where it is farthest; at most FARTHEST_BRICK */
-  GLOBAL const wide *cell_bits; /* likewise; read where plan->has_cell_bits */
+  GLOBAL const byte *distances; /* [bricks z][y][x]; number of bricks to the nearest brick that may show
+                                 * anything, counted along the axis where it is farthest; at most
+                                 * FARTHEST_BRICK */
+  GLOBAL const wide *cell_bits; /* [bricks z][y][x]; read only where plan->has_cell_bits */
   GLOBAL const float *tables;
 } volume_data;
 
 /* A point's place in the grid; index space, clamped to [-1, n). */
 typedef struct grid_point {
   float at[3];
-  int inside; /* in the grid or at most GRID_MARGIN outside */
+  int inside; /* the point lies in the grid or at most GRID_MARGIN outside */
 } grid_point;
 
 DEVICE grid_point point_in_grid(GLOBAL const plan_volume *volume, vector p) {
@@ -40,8 +42,8 @@ DEVICE grid_point point_in_grid(GLOBAL const plan_volume *volume, vector p) {
   return point;
 }
 
-/* Whether the point's cell may show something (grid/relevant.h). *voxels: how far, along each axis, every
- * cell shows nothing; 0 where the point's own brick may. */
+/* Whether the point's cell may show something (grid/relevant.h). *voxels: the distance along each axis within
+ * which no cell shows anything; 0 where the point's own brick may show something. */
 DEVICE int cell_may_show(const volume_data *volume, const grid_point *point, float *voxels) {
   GLOBAL const plan_volume *plan = volume->plan;
   *voxels = 0.0f;
@@ -65,15 +67,15 @@ DEVICE GLOBAL const byte *first_row(const volume_data *volume, const int cell[3]
   return volume->voxels + row * plan->row_bytes + (unsigned)((cell[0] - 1) * voxel_bytes);
 }
 
-/* A row's weighted sum; and its sum with slopes, from the same voxels. */
+/* The weighted sum of a row; and with it, from the same voxels, the row's sum weighted by slopes. */
 #if STORAGE == STORED_F32
 #define row_sum(row, shift, w) sum_row(row, &(w))
 #else
 #define row_sum(row, shift, w) ((float)weigh(load_row(row, shift), w))
 #endif
 
-/* The weighted sum of the 4x4x4 voxels around a point, less the empty value; the point is inside. Pairs along
- * x are added first, then y, then z. */
+/* The weighted sum of the 4x4x4 voxels around a point, less the empty value. The point must lie inside. Sums
+ * of pairs along x come first, then sums along y, then along z. */
 DEVICE float density_at(const volume_data volume, float x, float y, float z) {
   GLOBAL const plan_volume *plan = volume.plan;
   float weight[3][4], at[3];
@@ -97,7 +99,7 @@ DEVICE float density_at(const volume_data volume, float x, float y, float z) {
   row_weights along = weights_of_row(weight[0]);
   GLOBAL const byte *slice = first_row(&volume, cell);
   const unsigned shift = shift_of_row(slice);
-  slice -= shift >> 3; /* rows are all aligned alike */
+  slice -= shift >> 3; /* all rows have the same alignment */
   const wide row_bytes = plan->row_bytes, slice_bytes = plan->slice_rows * row_bytes;
   float sum = 0.0f;
   UNROLLED for (int k = 0; k < 4; k++, slice += slice_bytes) {
@@ -131,7 +133,7 @@ DEVICE_CALL vector gradient_at(const volume_data volume, vector point) {
   row_weights weights = weights_of_row(weight[0]), slopes = slopes_of_row(slope[0]);
   GLOBAL const byte *slice = first_row(&volume, cell);
   const unsigned shift = shift_of_row(slice);
-  slice -= shift >> 3; /* rows are all aligned alike */
+  slice -= shift >> 3; /* all rows have the same alignment */
   const wide row_bytes = plan->row_bytes, slice_bytes = plan->slice_rows * row_bytes;
   float sum_x = 0.0f, sum_y = 0.0f, sum_z = 0.0f;
   UNROLLED for (int k = 0; k < 4; k++, slice += slice_bytes) {

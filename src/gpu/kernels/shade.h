@@ -1,5 +1,6 @@
 /* gpu/kernels/shade.h - steps 12 to 16 for one pixel: where a slab is seen, its gradient, its colour, the
- * light that it sends to the eye. render/slab_lanes.h and render/shade_lanes.h for one volume. */
+ * light that it sends to the eye. The functions do for one pixel and one volume what render/slab_lanes.h and
+ * render/shade_lanes.h do. */
 #ifndef HL_GPU_SHADE_H
 #define HL_GPU_SHADE_H
 
@@ -7,11 +8,11 @@
 
 #define CLASSIFIER_LEAST_BENDING (1.0f / 256)
 #define LEAST_PART_OF_SHOWN      (1.0f / 4096)
-#define LEAST_LIGHT_DISTANCE     1e-3f /* HL_LEAST_LIGHT_DISTANCE */
+#define LEAST_LIGHT_DISTANCE     1e-3f /* as HL_LEAST_LIGHT_DISTANCE */
 
 /* ---- where the slab is seen ---- */
 
-/* rays: of the slab's middle. */
+/* rays: the rays of the slab's middle. */
 DEVICE void find_geometry(GLOBAL const device_sweep *plan, GLOBAL const plan_rays *rays, float u, float v,
                           slab_sample *s) {
   s->position = position_on(rays, EYE_PERSPECTIVE, u, v);
@@ -84,7 +85,7 @@ DEVICE void shown_below(GLOBAL const float *tables, float x, float sums[4]) {
   table_values(shown_table(tables), split_coordinate(x), 4, sums);
 }
 
-/* The mean colour of the matter, as it shows. */
+/* The mean colour of the visible part of the matter. */
 DEVICE vector color_of_way(const volume_data *volume, const slab_sample *s) {
   GLOBAL const float *tables = volume->tables;
   float values[4];
@@ -134,7 +135,8 @@ DEVICE float fraction_of_sector(GLOBAL const plan_light *light, vector towards) 
   return divided(own, sum);
 }
 
-/* Where a light comes from at a position. Returns the length of its way through the slab. */
+/* Finds the direction from which a light comes at a position. Returns the length of its way through the
+ * slab. */
 DEVICE float find_direction(GLOBAL const device_sweep *plan, GLOBAL const plan_light *light, vector position,
                             vector *towards, float *strength) {
   *strength = 1.0f;
@@ -160,8 +162,8 @@ typedef struct arriving_light {
   float on_medium[3], on_surface[3];
 } arriving_light;
 
-/* Takes from a light what lies before a sample. planes: of the light's buffer, at the sheet before the slab.
- */
+/* Takes from a light the part that matter before a sample absorbs. planes: planes of the light's buffer, at
+ * the sheet before the slab. */
 DEVICE void shadow_sample(GLOBAL const device_sweep *plan, const volume_data *volume,
                           GLOBAL const plan_light *light, GLOBAL const float *planes, const slab_sample *s,
                           vector towards, float path, arriving_light *arriving) {
@@ -183,8 +185,8 @@ DEVICE void shadow_sample(GLOBAL const device_sweep *plan, const volume_data *vo
 #endif
 }
 
-/* Adds what a sample sends to the eye of one light. planes: of the light's buffer, at the sheet before the
- * slab. */
+/* Adds the light that a sample sends on from one light to the eye. planes: planes of the light's buffer, at
+ * the sheet before the slab. */
 DEVICE void add_light(GLOBAL const device_sweep *plan, const volume_data *volume,
                       GLOBAL const plan_light *light, GLOBAL const float *planes, const slab_sample *s,
                       vector color, vector *lit) {
@@ -229,7 +231,8 @@ DEVICE void add_light(GLOBAL const device_sweep *plan, const volume_data *volume
   *lit = vector_of(sum[0], sum[1], sum[2]);
 }
 
-/* The light that a sample sends to the eye. slot: of the buffers' rings, of the sheet before the slab. */
+/* The light that a sample sends to the eye. slot: the slot, in the buffers' rings, of the sheet before the
+ * slab. */
 DEVICE vector color_of_slab(GLOBAL const device_sweep *plan, const volume_data *volume,
                             GLOBAL const float *planes, int slot, const slab_sample *s) {
   GLOBAL const plan_volume *matter = volume->plan;

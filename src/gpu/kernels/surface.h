@@ -12,10 +12,10 @@
 /* ---- the faces of the box ---- */
 
 #define FACE_VOXELS      2.0f
-#define CUT_SHADING_FACE 0 /* HL_CUT_SHADING_FACE */
+#define CUT_SHADING_FACE 0 /* as HL_CUT_SHADING_FACE */
 #define FACES_OF_AXIS    2
 
-/* The density where a ray crosses a face; frame space. */
+/* The density where a ray crosses a face. crossing: in frame space. */
 DEVICE_CALL float density_on_face(const volume_data volume, vector crossing) {
   GLOBAL const plan_volume *plan = volume.plan;
   float at[3];
@@ -69,7 +69,7 @@ DEVICE float find_skin(const volume_data *volume, const slab_sample *s, vector *
   return limited(FACE_VOXELS - depth * divided(1.0f, plan->voxel), 0.0f, 1.0f);
 }
 
-/* Behind a face the normal turns to the face's own, or the surface to a medium. */
+/* Behind a face, turns the normal to the normal of the face, or makes the surface a medium. */
 DEVICE void find_cut_face(const volume_data *volume, slab_sample *s) {
   vector outward;
   float skin = find_skin(volume, s, &outward), rest = 1.0f - skin;
@@ -94,8 +94,8 @@ DEVICE float integral_to(GLOBAL const float *tables, float x) {
   return values[1];
 }
 
-/* kept: the part of what the first surface has taken that counts as the second one's; ahead: the optical
- * depth from `start` to the second one's foot. */
+/* kept: the fraction of the light taken by the first surface that counts as taken by the second one. ahead:
+ * the optical depth from `start` to the second surface's foot. */
 typedef struct second_surface {
   float kept, ahead;
 } second_surface;
@@ -118,7 +118,7 @@ DEVICE second_surface kept_at_foot(GLOBAL const float *tables, float first, floa
 #define OUTWARDS_POWER   16
 #define ROUNDING_OF_SPAN 1e-3f
 
-/* k and k' of shadow/attenuate.h. */
+/* The numbers k and k' of shadow/attenuate.h. */
 typedef struct kept_light {
   float before, within;
 } kept_light;
@@ -129,7 +129,7 @@ DEVICE float power_of_depth(float from, float to) {
   return left;
 }
 
-/* Of a volume with several surfaces. light, outside: T and Y before the slab. */
+/* Finds them for a volume with several surfaces. light, outside: T and Y before the slab. */
 DEVICE kept_light kept_of_several(const volume_data *volume, table_coordinate a, table_coordinate b,
                                   float way, float depth, float even, float light, float outside) {
   GLOBAL const float *feet = outside_table(volume->tables);
@@ -174,8 +174,8 @@ DEVICE float skin_of_faces(GLOBAL const plan_volume *volume, GLOBAL const plan_r
   return greater(greater(x, y), z);
 }
 
-/* path: of the light's ray through the slab; extinction: of the slab; skin: where visible matter belongs to a
- * face. */
+/* path: length of the light's ray through the slab. extinction: the slab's extinction. skin: how much visible
+ * matter belongs to a face. */
 DEVICE kept_light kept_in_slab(const volume_data *volume, table_coordinate a, table_coordinate b,
                                covered_span span, float path, float extinction, float skin, float light,
                                float outside) {
@@ -207,7 +207,7 @@ DEVICE kept_light kept_in_slab(const volume_data *volume, table_coordinate a, ta
   return kept;
 }
 
-/* Y after a slab. before, after: T. */
+/* Y after a slab. before, after: T before and after the slab. */
 DEVICE float pass_outside(float outside, float before, float after, kept_light kept) {
   float light = greater(before, 0.0f), left = greater(after, 0.0f);
   float taken = greater(outside - light, 0.0f);
@@ -216,7 +216,7 @@ DEVICE float pass_outside(float outside, float before, float after, kept_light k
 
 /* ---- the light that lights a sample's surface ---- */
 
-/* Where the light's way to a sample begins, at the slab's first sheet: as in render/reaching_lanes.h. */
+/* Where the light's way to a sample begins, at the slab's first sheet; as in render/reaching_lanes.h. */
 typedef struct way_begin {
   float start, change, first, foot;
   int there;
@@ -240,8 +240,8 @@ DEVICE way_begin find_begin(const volume_data *volume, const slab_sample *s, vec
   return begin;
 }
 
-/* The light at the outside of a sample's surface. way: of the light from the slab's first sheet to the
- * sample. planes: of the sheet before the slab; Y follows T. */
+/* Finds the light at the outside of a sample's surface. way: the light's way from the slab's first sheet to
+ * the sample. planes: planes of the sheet before the slab; Y follows T. */
 DEVICE void passing_to_surface(const volume_data *volume, GLOBAL const plan_light *light,
                                const slab_sample *s, vector towards, float way, GLOBAL const float *planes,
                                float passing[CHANNELS]) {

@@ -1,4 +1,4 @@
-/* gpu/kernels/sweep.c - the kernels' entries. */
+/* gpu/kernels/sweep.c - the kernels' entry points. */
 #include "gpu/kernels/sweep.h"
 #include "gpu/kernels/trial.h"
 
@@ -18,8 +18,9 @@ KERNEL(8) try_arithmetic(GLOBAL const float *from, GLOBAL float *to, unsigned co
   for (int i = 0; i < TRIAL_RESULTS; i++) to[number * TRIAL_RESULTS + (unsigned)i] = result[i];
 }
 
-/* One pass of three that find how many bricks away the next brick lies that may show something: along an
- * axis. x, y, z: the numbers of bricks. relevant: `from` holds 1 for those bricks, in place of distances. */
+/* Finds how many bricks away the next brick lies that may show something: one pass of three, along one axis.
+ * x, y, z: the numbers of bricks. relevant: this pass is the first one, and `from` holds 1 for bricks that
+ * may show something, and no distances. */
 KERNEL(16)
 spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned y, unsigned z, unsigned axis,
                  unsigned relevant) {
@@ -46,7 +47,7 @@ spread_distances(GLOBAL const byte *from, GLOBAL byte *to, unsigned x, unsigned 
   to[number] = (byte)least;
 }
 
-/* What both kernels of slabs are given. */
+/* The arguments of both kernels of slabs. */
 #define SWEEP_ARGUMENTS                                                                                 \
   GLOBAL const device_sweep *APART plan, GLOBAL const plan_rays *APART rays,                            \
       GLOBAL const byte *APART voxels, GLOBAL const byte *APART distances,                              \
@@ -83,13 +84,13 @@ DEVICE sweep_data sweep_of(SWEEP_ARGUMENTS) {
   sweep_of(plan, rays, voxels, distances, cell_bits, tables, pixels, planes, light_state, changed, \
            shown_from, counts, slots, list, masks, first, end, run)
 
-/* Lists what the picture's pixels may see in slabs first to end - 1. */
+/* Lists the samples that the picture's pixels may see in slabs first to end - 1. */
 KERNEL(16) find_samples(SWEEP_ARGUMENTS) {
   const sweep_data sweep = SWEEP_OF_ARGUMENTS;
   sweep.masks[work_number()] = find_slabs(&sweep, work_number(), first, end, counts + 256 + run);
 }
 
-/* Lights what is listed. */
+/* Lights the listed samples. */
 KERNEL(10) shade_samples(SWEEP_ARGUMENTS) {
   const sweep_data sweep = SWEEP_OF_ARGUMENTS;
   const unsigned count = counts[256 + run];

@@ -1,10 +1,10 @@
-/* gpu/kernels/sweep.h - what the kernels do with a run of slabs.
+/* gpu/kernels/sweep.h - the work of the kernels on a run of slabs.
  *
- * A light's buffer: a member takes its pixel through all slabs of the run. The picture, in three steps: each
- * pixel lists the slabs in which it may see something; then each slab of the list is lit, by whichever
- * member; then each pixel composites its own, in order. Lighting one is long, and of some pixels many are
- * seen and of others none: from a list all members get alike. Where neither of a slab's two sheets shows
- * anything, their densities are not even found. */
+ * In a light's buffer, a member takes its pixel through all slabs of the run. The picture takes three steps.
+ * Each pixel lists the slabs in which it may see something. Then each listed slab is lit, by any member. Then
+ * each pixel composites its own slabs, in order. Lighting a slab takes long, and some pixels see many slabs
+ * and others none; from a list all members get equal work. Where neither of a slab's two sheets shows
+ * anything, their densities are not even computed. */
 #ifndef HL_GPU_SWEEP_H
 #define HL_GPU_SWEEP_H
 
@@ -12,10 +12,10 @@
 
 #define PIXEL_OPAQUE (1.0f - 1.0f / 2048)
 
-/* A pixel's way through the sheets: the densities on the last two, where they are known. */
+/* A pixel's way through the sheets: the densities on the last two sheets, where they are known. */
 typedef struct sheet_way {
   int before_known, after_known;
-  int before_shows, after_shows; /* known, and greater than what shows nothing */
+  int before_shows, after_shows; /* the density is known, and greater than densities that do not show */
   float before, after;
 } sheet_way;
 
@@ -26,13 +26,13 @@ DEVICE sheet_way no_sheets(void) {
   return way;
 }
 
-/* Finds the densities of a pixel on a sheet and on the one before, where they are needed: its own where the
- * cell may show something, and both where one of the two shows something. Members of a pack in which one
- * needs its sheet's find theirs along with it. *way has in its `after` what is known of the sheet before;
- * starts: nothing, and only the sheet's own is wanted. rays: of the sheet. speed:
- * voxels that the ray advances from sheet to sheet, along the axis where it is fastest. Returns how many
- * sheets on this one is, and those behind it are, where the ray meets nothing before. The sums are one piece
- * of code, that two passes go through. */
+/* Finds the densities of a pixel on a sheet and on the sheet before, where they are needed. The sheet's own
+ * density is needed where the cell may show something, and both are needed where one of the two shows
+ * something. Where one member of a pack needs its density, all members of the pack find theirs. At the call,
+ * `after` of *way belongs to the sheet before. starts: nothing is known of the sheet before, and only this
+ * sheet's density is wanted. rays: the rays at the sheet. speed: voxels that the ray advances from sheet to
+ * sheet, along the axis where it is fastest. Returns the number of sheets to the next one at which the ray
+ * may meet anything. Two passes go through one piece of code, which computes the sums. */
 DEVICE int fill_way(const volume_data *volume, GLOBAL const plan_rays *rays, int perspective, float u,
                     float v, float speed, int starts, sheet_way *way) {
   GLOBAL const plan_volume *plan = volume->plan;
@@ -84,29 +84,32 @@ DEVICE slab_range slabs_with_content(GLOBAL const plan_box *content, float u, fl
   return range;
 }
 
-/* Voxels from sheet to sheet, a little more for rounding. */
+/* Voxels that a ray advances from sheet to sheet, and a little more for rounding. */
 DEVICE float speed_of_ray(GLOBAL const plan_rays *rays, int perspective, float u, float v) {
   vector a = position_on(rays, perspective, u, v), b = position_on(rays + 1, perspective, u, v);
   float x = magnitude(b.x - a.x), y = magnitude(b.y - a.y), z = magnitude(b.z - a.z);
   return greater(greater(x, greater(y, z)) * 1.01f, 1e-3f);
 }
 
-/* What all members of a kernel read and write. */
+/* The data that all members of a kernel read and write. */
 typedef struct sweep_data {
   GLOBAL const device_sweep *plan;
-  GLOBAL const plan_rays *rays; /* [2 + 2 lights][sheets]: the eye's to index space; the eye's to frame space,
-                                   in the middle of the slab before each sheet; and each light's to both */
+  /* [2 + 2 lights][sheets]: the eye's rays to index space; the eye's rays to frame space, in the middle of
+   * the slab before each sheet; and both for each light. */
+  GLOBAL const plan_rays *rays;
   volume_data volume;
   GLOBAL float *pixels; /* [tiles][16 blocks][R G B A][16] */
-  GLOBAL float *planes; /* of all lights */
+  GLOBAL float *planes; /* planes of all lights */
   GLOBAL float *light;  /* [light tiles][planes of a sheet][256]; at the last sheet that was reached */
   GLOBAL int *changed;  /* [light tiles][256]; the last sheet at which it changed */
   GLOBAL const int *shown_from; /* [tiles][16] */
-  GLOBAL unsigned *counts; /* [256], samples composited, of tile t in t % 256; and [runs], of the lists */
-  GLOBAL float *slots;   /* this and the next two are of every other run; [slabs of a run][256 tiles][4]; of a
-                            pixel's slab: the densities on its two sheets, and   then what it sends to the eye,
-                            and its opacity, -1 where nothing is seen */
-  GLOBAL unsigned *list; /* [slabs of a run * 256 tiles]; the slots in use */
+  GLOBAL unsigned *counts;      /* [256]: number of samples composited, tile t counts at t % 256; and [runs]:
+                                 * lengths of the lists */
+  /* Every other run has its own copy of this array and the next two; [slabs of a run][256 tiles][4]; for a
+   * pixel's slab: the densities on its two sheets; later the light that it sends to the eye, and its opacity,
+   * -1 where nothing is seen. */
+  GLOBAL float *slots;
+  GLOBAL unsigned *list;  /* [slabs of a run * 256 tiles]; the slots in use */
   GLOBAL unsigned *masks; /* [256 tiles]; bit k: the pixel has a slot for the run's k-th slab */
 } sweep_data;
 
@@ -129,7 +132,7 @@ DEVICE covered_span part_of_slab(const heights_in_box *in_box, float height, flo
 
 /* A member's pixel. */
 typedef struct tile_pixel {
-  int tile, member, inside; /* inside: some of its block is in the picture */
+  int tile, member, inside; /* inside: some pixel of its block lies in the picture */
   float u, v;
 } tile_pixel;
 
@@ -148,7 +151,8 @@ DEVICE GLOBAL float *values_of(GLOBAL float *pixels, const tile_pixel *pixel) {
   return pixels + (wide)pixel->tile * 1024 + (pixel->member >> 4) * 64 + (pixel->member & 15);
 }
 
-/* Lists the slabs of a run that a pixel may see; returns a bit for each. count: of the list. */
+/* Lists the slabs of a run that a pixel may see. Returns a bit for each of them. count: the counter of the
+ * list. */
 DEVICE unsigned find_slabs(const sweep_data *sweep, int number, int run_first, int end,
                            GLOBAL unsigned *count) {
   GLOBAL const device_sweep *plan = sweep->plan;
@@ -164,8 +168,7 @@ DEVICE unsigned find_slabs(const sweep_data *sweep, int number, int run_first, i
 #endif
   slab_range slabs = slabs_with_content(&plan->content, pixel.u, pixel.v, plan->spacing, first, end);
   if (slabs.first >= slabs.end) return 0;
-  slabs.first = least_of_pack(
-      slabs.first); /* all of a pack on one sheet: slabs before `first` are left out */
+  slabs.first = least_of_pack(slabs.first); /* a pack works on one sheet: slabs before `first` are left out */
   const float speed = speed_of_ray(sweep->rays + slabs.first - 1, EYE_PERSPECTIVE, pixel.u, pixel.v);
   sheet_way way = no_sheets();
   unsigned mask = 0;
@@ -250,12 +253,12 @@ DEVICE void composite_slabs(const sweep_data *sweep, int number) {
 
 /* ---- the lights ---- */
 
-/* A light's pixel: T, and behind it Y where surfaces have it (shadow/attenuate.h). */
+/* A light's pixel: T, followed by Y where surfaces have it (shadow/attenuate.h). */
 typedef struct light_pixel {
   float passing[PLANES_OF_SHEET];
 } light_pixel;
 
-/* Multiplies the light by what a slab lets pass. Returns whether the slab takes any. */
+/* Multiplies the light by the transmittance of a slab. Returns whether the slab takes any light. */
 DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *light,
                           GLOBAL const plan_rays *in_index, GLOBAL const plan_rays *in_frame, float u,
                           float v, float before, float after, const heights_in_box *in_box,
@@ -290,7 +293,8 @@ DEVICE int attenuate_slab(const sweep_data *sweep, GLOBAL const plan_light *ligh
   return all > 0.0f;
 }
 
-/* Where a slab takes light in some pixels of a block, surfaces end in the others. */
+/* Ends surfaces in a pixel whose slab takes no light, where the slab takes light in other pixels of the
+ * block. */
 DEVICE void leave_surface(light_pixel *pixel) {
   for (int c = 0; c < PLANES_OF_SHEET - CHANNELS; c++)
     pixel->passing[CHANNELS + c] = greater(pixel->passing[c], 0.0f);
@@ -302,7 +306,7 @@ DEVICE int is_lit(const light_pixel *pixel) {
   return lit;
 }
 
-/* The light's number of a tile among those of all lights. */
+/* The number of the light to which a tile belongs, among the tiles of all lights. */
 DEVICE int light_of_tile(GLOBAL const device_sweep *plan, int tile) {
   int light = 0;
   for (int i = 0; i < plan->light_count; i++)

@@ -1,6 +1,6 @@
-/* gpu/kernels/taps.h - the kernel's weights, and four neighbouring voxels along x weighted and added:
- * grid/kernel_lanes.h and fill/row_lanes.h for one pixel. STORAGE and BSPLINE are the variant's
- * (gpu/device_sweep.h). */
+/* gpu/kernels/taps.h - the kernel's weights, and the weighted sum of four neighbouring voxels along x. The
+ * functions do for one pixel what grid/kernel_lanes.h and fill/row_lanes.h do for sixteen. STORAGE and
+ * BSPLINE come from the variant (gpu/device_sweep.h). */
 #ifndef HL_GPU_TAPS_H
 #define HL_GPU_TAPS_H
 
@@ -30,7 +30,7 @@ DEVICE float bspline_inner(float distance) {
 }
 DEVICE float bspline_outer(float rest) { return rest * rest * (rest * (1.0f / 6)); }
 
-/* Weights of the four taps at floor-1 .. floor+2 for a point with fraction t. */
+/* Weights of the four taps at floor-1 .. floor+2, for a point with the fraction t. */
 DEVICE void tap_weights(GLOBAL const plan_volume *volume, float t, float weight[4]) {
   float s = 1.0f - t;
 #if BSPLINE
@@ -62,8 +62,8 @@ DEVICE void tap_slopes(GLOBAL const plan_volume *volume, float t, float slope[4]
   slope[2] = -(slope[0] + slope[1] + slope[3]);
 }
 
-/* Beyond the border its values continue: weights of taps outside are added to the border voxel's, and the
- * four taps move inside. Returns the moved cell. */
+/* Continues the values at the border beyond it: the weights of taps outside are added to the border voxel's
+ * weight, and the four taps move inside. Returns the moved cell. */
 DEVICE int fold_border(int cell, int count, float weight[4]) {
   int first = cell == -1, second = cell == 0, last_but_one = cell == count - 2, last = cell == count - 1;
   float w0 = weight[0], w1 = weight[1], w2 = weight[2], w3 = weight[3];
@@ -123,7 +123,7 @@ DEVICE float slope_row(GLOBAL const byte *row, const row_weights *w) { return su
 
 #if defined(__CUDACC_RTC__) || defined(__CUDACC__)
 #define DOTS 1
-/* Sums of products of bytes, of a without sign and of b with one or without, and c. */
+/* The sum of c and products of bytes: bytes of `a` have no sign, bytes of `b` may have one. */
 DEVICE int dot_bytes(unsigned a, unsigned b, int c) {
   asm("dp4a.u32.u32 %0, %1, %2, %0;" : "+r"(c) : "r"(a), "r"(b));
   return c;
@@ -132,7 +132,8 @@ DEVICE int dot_signed_bytes(unsigned a, unsigned b, int c) {
   asm("dp4a.u32.s32 %0, %1, %2, %0;" : "+r"(c) : "r"(a), "r"(b));
   return c;
 }
-/* The same of two numbers of 16 bits in a, and two bytes of b: the lower ones, and the higher ones. */
+/* The sum of c and products of the two numbers of 16 bits in a and two bytes of b: dot_low() takes the lower
+ * bytes, dot_high() the higher ones. */
 DEVICE int dot_low(unsigned a, unsigned b, int c) {
   asm("dp2a.lo.u32.u32 %0, %1, %2, %0;" : "+r"(c) : "r"(a), "r"(b));
   return c;
@@ -149,11 +150,11 @@ DEVICE int dot_signed_high(unsigned a, unsigned b, int c) {
   asm("dp2a.hi.u32.s32 %0, %1, %2, %0;" : "+r"(c) : "r"(a), "r"(b));
   return c;
 }
-/* Four bytes from `shift` bits on, of two words. */
+/* The four bytes that begin `shift` bits into two words. */
 DEVICE unsigned word_between(unsigned low, unsigned high, unsigned shift) {
   return __funnelshift_r(low, high, shift);
 }
-/* The lowest bytes of four numbers, and the next ones. */
+/* The lowest bytes of four numbers; the next function takes the next bytes. */
 DEVICE unsigned first_bytes(const int x[4]) {
   return __byte_perm(__byte_perm(x[0], x[1], 0x0040), __byte_perm(x[2], x[3], 0x0040), 0x5410);
 }
@@ -196,7 +197,7 @@ DEVICE unsigned second_bytes(const int x[4]) {
 
 #ifdef DOTS
 
-/* Four weights as two bytes each: 256 high + low, with the sign in the high ones. */
+/* Four weights as two bytes each: 256 high + low, where the high byte has the sign. */
 typedef struct row_weights {
   unsigned high, low;
 } row_weights;
@@ -209,11 +210,11 @@ DEVICE row_weights split_weights(const int tap[4]) {
 }
 
 typedef struct row_voxels {
-  unsigned word[2]; /* u8: the first */
+  unsigned word[2]; /* u8 uses only the first word */
 } row_voxels;
 
-/* Aligned words alone are loaded: rows begin at multiples of four bytes, and eight more may be read. shift:
- * bits from the aligned word below the first voxel, at `row`, to it. */
+/* Only aligned words are loaded. Rows begin at multiples of four bytes, and eight bytes more may be read.
+ * shift: number of bits from the aligned word at or below `row`, the first voxel, to this voxel. */
 DEVICE unsigned shift_of_row(GLOBAL const byte *row) { return ((unsigned)(size_t)row & 3u) * 8u; }
 DEVICE row_voxels load_row(GLOBAL const byte *row, unsigned shift) {
   row_voxels voxels;
@@ -237,7 +238,8 @@ DEVICE int weigh_signed(row_voxels voxels, row_weights w) {
   return dot_bytes(voxels.word[0], w.low, dot_signed_bytes(voxels.word[0], w.high, 0) * 256);
 }
 #else
-/* Sums of products with slopes may pass 32 bits on the way, never at the end: they count modulo 2^32. */
+/* Sums of products with slopes may exceed 32 bits on the way, but never at the end: they are computed modulo
+ * 2^32. */
 DEVICE int weigh(row_voxels voxels, row_weights w) {
   int sum = dot_high(voxels.word[1], w.high, dot_low(voxels.word[0], w.high, 0));
   return dot_high(voxels.word[1], w.low, dot_low(voxels.word[0], w.low, (int)((unsigned)sum << 8)));
@@ -278,7 +280,8 @@ DEVICE row_voxels load_row(GLOBAL const byte *row, unsigned shift) {
 DEVICE int weigh(row_voxels v, row_weights w) {
   return v.voxel[0] * w.tap[0] + v.voxel[1] * w.tap[1] + (v.voxel[2] * w.tap[2] + v.voxel[3] * w.tap[3]);
 }
-/* Voxels are taken less 32768, so that all sums fit 32 bits: the four slopes add up to 0. */
+/* The voxels are reduced by 32768, so that all sums fit 32 bits. This changes no result, because the four
+ * slopes add up to 0. */
 DEVICE int weigh_signed(row_voxels v, row_weights w) {
   for (int i = 0; i < 4; i++) v.voxel[i] -= STORAGE == STORED_U16 ? 32768 : 0;
   return weigh(v, w);

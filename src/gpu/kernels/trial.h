@@ -1,5 +1,5 @@
-/* gpu/kernels/trial.h - the arithmetic that a device is tried by: every operation that the kernels are made
- * of. The host compiles the same text (render/device_trial.c) and compares bits. */
+/* gpu/kernels/trial.h - the arithmetic of a device's trial: every operation that kernels consist of. The host
+ * compiles the same text (render/device_trial.c) and compares bits. */
 #ifndef HL_GPU_TRIAL_H
 #define HL_GPU_TRIAL_H
 
