@@ -101,7 +101,7 @@ static void bound_layer_of_bricks(void *data, size_t index, int worker) {
                     job->copies + (size_t)worker * WINDOW * WINDOW * job->copy_bytes);
 }
 
-/* The bounds that were found while the volume's voxels were stored; null if there are none. */
+/* The bounds that were found while the volume's voxels were stored; null: there are none. */
 static void *stored_bounds(const grid *grid) {
   const hl_brick_bounds *bricks = grid->pages != NULL ? grid->pages->bricks : NULL;
   return bricks != NULL && hl_brick_bounds_whole(bricks) ? bricks->bounds : NULL;

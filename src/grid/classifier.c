@@ -67,8 +67,8 @@ static void fill_colors(const hl_transfer_function *function, double low, double
          sizeof classifier->color[0]);
 }
 
-/* Sums the changes of slope at entries that are visible, or beside visible ones. If no way can meet enough of
- * them to count, no sums are kept. */
+/* Sums the changes of slope at entries that are visible or beside visible ones. Where no way can meet changes
+ * that add up to enough to count, no sums are kept. */
 static void sum_bends(classifier *classifier) {
   double sum = 0;
   for (int entry = 0; entry <= CLASSIFIER_ENTRIES + 1; entry++) {
@@ -187,8 +187,8 @@ void hl_classifier_lay_out(const hl_transfer_function *function, classifier *cla
   hl_plane_table_lay_out(function, &classifier->plane, layout);
 }
 
-/* Fills the factors of gradient opacity: the table reaches from a gradient of 0 to that of the last point.
- * Where all are 1, there is none. */
+/* Fills the factors of gradient opacity. The table reaches from a gradient of 0 to the gradient of the last
+ * point. Where all factors are 1, there is no table. */
 static void fill_steepness(const hl_transfer_function *function, double value_scale, classifier *classifier) {
   size_t count = function->gradient_opacity_count;
   if (count == 0) return;

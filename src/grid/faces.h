@@ -6,7 +6,8 @@
 #include "core/pool.h"
 #include "grid/classifier.h"
 
-/* Matter so many voxels behind a face is lit as usual, matter nearer to it more and more by the face. */
+/* Number of voxels behind a face from which on matter is lit as usual. Matter nearer to the face is lit by
+ * the face in part. */
 #define FACE_VOXELS 2.0f
 
 /* Finds grid->face_shows; called after hl_grid_mark_relevant(). Looks at one point for each voxel of the

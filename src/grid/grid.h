@@ -47,9 +47,9 @@ typedef struct grid {
   const hl_pages *pages; /* the volume's pages (volume/store/pages.h), or value_pages; null if the voxels are
                           * in memory. With pages, only bricks tell where something is visible */
   /* The field in bricks; borrowed from the volume; null if there are voxels. The lattice's coordinate is one
-   * more than the grid's, so that cells of the grid (floor(p) + 1) are those of the lattice. The grid's
-   * "voxels" are the field's coefficients of level 0. Of a field in bricks, as of pages, the look-ups of
-   * 2x2x2 cells do not exist: bricks alone tell where something is visible */
+   * more than the grid's, so that cells of the grid (floor(p) + 1) are cells of the lattice. The grid's
+   * "voxels" are the field's coefficients of level 0. A field in bricks has, like pages, no look-ups of 2x2x2
+   * cells: only bricks tell where something is visible */
   const hl_bricks *bricks;
   hl_bricks *finite_bricks; /* in the grid's memory; a copy with the empty value where there are no data; null
                              * if all is finite */

@@ -106,8 +106,9 @@ static bool needs_other_values(const hl_volume *volume, const kernel *kernel) {
   return volume->bricks == NULL && (volume->nonfinite_count > 0 || kernel->interpolates);
 }
 
-/* The greatest number that a cell can have: a grid of voxels has as many voxels. One in bricks ends with the
- * cell that holds the box's end, but no later than the lattice, whose first cell has the number 0. */
+/* The greatest number that a cell can have. In a grid of voxels it is the number of voxels. In a grid of
+ * bricks the last cell holds the box's end, or it is the lattice's last cell; the lattice's first cell has
+ * the number 0. */
 static int32_t greatest_cell(const hl_volume *volume, int axis) {
   if (volume->bricks == NULL) return (int32_t)volume->dimension[axis];
   double end = ceil(volume->bricks->origin[axis] + (double)volume->dimension[axis] - 1.5);

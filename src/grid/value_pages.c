@@ -146,8 +146,8 @@ static hl_volume_description describe(const hl_volume *volume) {
   return grid;
 }
 
-/* The number of slices loaded at once. A page takes that many in one piece; fewer are loaded if they would
- * take more than an eighth of the memory limit. */
+/* The number of slices that are loaded at once: as many as a page takes in one piece, or fewer where these
+ * would take more than an eighth of the memory limit. */
 static size_t slices_at_once(const value_job *job) {
   uint64_t limit = job->volume->context->options.memory_limit, bytes = job->slice * sizeof(float);
   size_t most = 8;
