@@ -1,8 +1,8 @@
-/* field/field.h - light in a lattice of cells over the whole content, the same from wherever the eye looks.
+/* field/field.h - light in a lattice of cells over the whole content, which does not depend on the eye.
  *
- * In: the grids and classifiers of a frame's volumes, its meshes, its sky. Out: how much each cell takes of
- * light that crosses it along each axis (opacity.c), and what of the sky reaches it (sky_field.c), which
- * samples look up (lookup_lanes.h).
+ * In: the grids and classifiers of a frame's volumes, its meshes, its sky. Out: how much light each cell
+ * absorbs along each axis (opacity.c), and the sky's light that reaches each cell (sky_field.c). Samples look
+ * this light up (lookup_lanes.h).
  *
  * A lattice is walked in slices: planes of cells at a right angle to an axis. A slice's rows lie along
  * `across`, one below the other along `down`, and are padded to whole vectors of lanes.
@@ -21,19 +21,19 @@
 enum {
   FIELD_LANES = 16,
   FIELD_HARMONICS = 9,   /* spherical harmonics up to the second degree */
-  FIELD_DIRECTIONS = 36, /* directions about one end of an axis */
+  FIELD_DIRECTIONS = 36, /* number of directions about one end of an axis */
   FIELD_SAMPLES = 4      /* the most samples along an edge of a cell */
 };
 
 typedef struct field_lattice {
   int32_t count[3]; /* cells along x, y and z */
   vec3 low;         /* the lattice's low corner; frame space */
-  double cell;      /* the edge of a cell, a cube; frame units */
+  double cell;      /* the edge of a cell, which is a cube; frame units */
 } field_lattice;
 
 typedef struct field_slices {
   int axis, across, down;
-  int32_t slices, rows, columns, stride; /* stride: columns, padded */
+  int32_t slices, rows, columns, stride; /* stride: number of columns with padding */
 } field_slices;
 
 static inline field_slices hl_field_slices(const field_lattice *lattice, int axis) {
@@ -54,16 +54,18 @@ typedef struct field_matter {
   const grid *grid;
   const classifier *classifier;
   float to_index[3][4];  /* frame space to index space */
-  float low[3], high[3]; /* the box; index space */
-  float cast;            /* relative extinction; 0: it casts no shadow */
+  float low[3], high[3]; /* the volume's box; index space */
+  float cast;            /* extinction towards lights over extinction towards the eye; 0: the volume casts no
+                          * shadow */
   int visible;
   int smooth; /* the voxels are coefficients of the interpolating kernel */
 } field_matter;
 
-/* A mesh's triangles and spheres; frame space. The last number of a colour is opacity; null: 1 everywhere. */
+/* A mesh's triangles and spheres; frame space. The last number of a colour is opacity. Where colours are
+ * null, opacity is 1 everywhere. */
 typedef struct field_surface {
   const float (*positions)[3];
-  const float (*colors)[4]; /* of the positions from first_vertex on */
+  const float (*colors)[4]; /* one for each position from first_vertex on */
   size_t first_vertex;
   const uint32_t (*triangles)[3];  /* [triangle_count]; indices of positions */
   const float (*face_colors)[4];   /* [triangle_count] */
@@ -72,18 +74,19 @@ typedef struct field_surface {
   uint32_t triangle_count, sphere_count;
   double opacity;
   bool visible, casts_shadow;
-  const cut_shape *cuts; /* [cut_count]; of frame space: cut out of the mesh */
+  const cut_shape *cuts; /* [cut_count]; frame space; parts inside these shapes are cut out of the mesh */
   size_t cut_count;
 } field_surface;
 
-/* What light loses in a cell, by the axis along which it crosses it. */
+/* The light that is lost in a cell, for each axis along which light crosses the cell. */
 typedef struct opacity_field {
   field_lattice lattice;
   float *depth[3]; /* [slices][rows][3][stride]; optical depths in powers of 1/2: along the axis, across and
                       down */
   unsigned char
-      *flags[3];       /* [slices][rows][stride / FIELD_LANES]; FIELD_MATTER and FIELD_RECEIVES of its cells;
-                          the latter of slabs whose light this process finds (field_share.h) alone */
+      /* [slices][rows][stride / FIELD_LANES]; FIELD_MATTER and FIELD_RECEIVES for a block of cells;
+       * FIELD_RECEIVES is set only in slabs whose light this process finds (field_share.h). */
+      *flags[3];
   unsigned char *seen; /* [z][y][x]; 1 where something may be visible, or near it */
 } opacity_field;
 
@@ -92,7 +95,7 @@ enum { FIELD_MATTER = 1, FIELD_RECEIVES = 2 };
 /* A cell is linked with nine cells of the slice before and with nine of the slice after. */
 enum { FIELD_LINKS = 9 };
 
-/* Of what links a block of FIELD_LANES cells has some that are cut. */
+/* Which links of a block of FIELD_LANES cells are cut: some to the slice before, some to the slice after. */
 enum { LINKS_BEFORE = 1, LINKS_AFTER = 2 };
 
 /* ---- the functions of this room that are compiled for each instruction set ---- */
@@ -103,21 +106,21 @@ typedef struct field_block {
   int count;
   float corner[3]; /* the low corner of the first cell; frame space */
   float cell;
-  int samples;           /* along an edge of a cell */
+  int samples;           /* number of samples along an edge of a cell */
   const uint32_t *cells; /* [count]; the cells that a volume's bricks reach, one bit each */
 } field_block;
 
 /* Finds the optical depths of the block's cells along x, y and z, in powers of 1/2. */
 typedef void field_opacity_function(const field_block *block, float depth[3][FIELD_LANES]);
 
-/* A direction of the sky, as the slices before an axis's end see it. */
+/* A direction of the sky, as the slices at one end of an axis see it. */
 typedef struct sky_direction {
-  int32_t offset;     /* to the first of four cells of the slice before, in floats */
-  float weight[4];    /* of that cell, the next one across, and the two below */
-  int link;           /* the number of the link to that cell: 3 (1 + down) + 1 + across */
-  float across, down; /* how far the light moves aside in a slice, squared; in cells */
-  int slope; /* the number of the first direction with the same `across` and `down`: mirrored directions pass
-                the same matter */
+  int32_t offset;     /* floats to the first of four cells of the slice before */
+  float weight[4];    /* weights of this cell, of the next one across, and of the two below them */
+  int link;           /* the number of the link to the first cell: 3 (1 + down) + 1 + across */
+  float across, down; /* squares of the cells by which the light moves aside in a slice */
+  int slope; /* the number of the first direction with the same `across` and `down`; mirrored directions pass
+              * the same matter */
   const float *basis; /* [channels x FIELD_HARMONICS]; the integrals of radiance times each harmonic */
 } sky_direction;
 
@@ -127,21 +130,23 @@ typedef struct sky_slice {
   const float *depth;         /* [rows][3][stride] */
   const unsigned char *flags; /* [rows][stride / FIELD_LANES] */
   int32_t stride, columns;
-  const float *old; /* [direction_count] planes: light that leaves the slice before */
-  float *left;      /* the same for this one */
+  const float *old; /* [direction_count] planes: the light that leaves the slice before */
+  float *left;      /* [direction_count] planes: the light that leaves this slice */
   int32_t plane_stride;
   size_t plane;        /* floats from plane to plane */
   float *field;        /* the slice's first cell */
   size_t across, down; /* floats to the next cell in a row, and in the next row */
-  int passing; /* the number of a cell's transmittance, to which a third of this axis's is added; 0: none */
+  int passing; /* the number, in a cell, of its transmittance, to which a third of the transmittance along
+                * this axis is added; 0: none */
   const unsigned char *cut; /* [rows][stride / FIELD_LANES]; null: there are no surfaces */
-  unsigned char cut_here;   /* LINKS_BEFORE or LINKS_AFTER: the links that the light comes through */
-  const unsigned char *taken[FIELD_LINKS]; /* [rows + 2][plane_stride], as planes of light; what surfaces take
-                                              of the light that comes through a link, in parts of 255 */
+  unsigned char cut_here;   /* LINKS_BEFORE or LINKS_AFTER: the side from which the light comes through
+                             * links */
+  const unsigned char *taken[FIELD_LINKS]; /* [rows + 2][plane_stride], laid out as the planes of light; the
+                                            * part of a link's light that surfaces take, in 255ths */
 } sky_slice;
 
-/* Moves the light of all directions one slice on, in one row, and adds it to the cells that something near
- * them receives light in. */
+/* Moves the light of all directions one slice on, in one row. Adds it to the cells that receive light because
+ * something visible is near. */
 typedef void sky_row_function(const sky_slice *slice, int32_t row);
 
 typedef struct field_functions {

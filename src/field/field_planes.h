@@ -5,8 +5,8 @@
 #include "field/field.h"
 
 typedef struct field_planes {
-  int32_t stride; /* of rows */
-  size_t plane;   /* numbers of a plane */
+  int32_t stride; /* stride of rows */
+  size_t plane;   /* number of numbers in a plane */
 } field_planes;
 
 static inline field_planes hl_field_planes(const field_slices *s) {

@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-/* Bytes that a process gets of all others at a time, about, and the least of one. */
+/* GATHERED: about the number of bytes that a process gets from all others at a time. LEAST_PIECE: the least
+ * number from one process. */
 enum { GATHERED = 4 << 20, LEAST_PIECE = 1 << 14 };
 
 void hl_field_share_lay_out(const light_exchange *with, size_t slabs, field_share *share, hl_layout *layout) {
@@ -20,7 +21,7 @@ void hl_field_share_lay_out(const light_exchange *with, size_t slabs, field_shar
 void hl_field_share_ranges(field_share *share, int32_t slabs) {
   uint64_t all = 0, before = 0, parts = (uint64_t)share->with->parts, part = 0;
   for (int32_t z = 0; z < slabs; z++) all += share->weights[z];
-  for (int32_t z = 0; z < slabs; z++) { /* a slab is in the range that its middle is in */
+  for (int32_t z = 0; z < slabs; z++) { /* a slab belongs to the range in which its middle lies */
     uint64_t middle = 2 * before + share->weights[z];
     while (part < parts && part * 2 * all <= middle * parts) share->first[part++] = z;
     before += share->weights[z];
@@ -28,14 +29,14 @@ void hl_field_share_ranges(field_share *share, int32_t slabs) {
   while (part <= parts) share->first[part++] = slabs;
 }
 
-/* The n-th slab of a part; -1: it has fewer. */
+/* The n-th slab of a part; -1: the part has fewer slabs. */
 static int32_t slab_of(const field_share *share, bool ranges, int part, int32_t n, int32_t slabs) {
   int32_t slab = ranges ? share->first[part] + n : part + n * share->with->parts,
           end = ranges ? share->first[part + 1] : slabs;
   return slab < end ? slab : -1;
 }
 
-/* How many slabs the part has that has most. */
+/* The greatest number of slabs that a part has. */
 static int32_t most_slabs(const field_share *share, bool ranges, int32_t slabs) {
   int32_t most = 0;
   for (int part = 0; part < share->with->parts; part++)

@@ -1,7 +1,7 @@
-/* field/field_share.h - how the processes that share a picture find a field together: each one finds some of
- * its slabs, and gets the others from those that have found them.
+/* field/field_share.h - how the processes that share a picture find a field together: each process finds some
+ * of its slabs, and gets the other slabs from the processes that have found them.
  *
- * A slab: all cells of one z. */
+ * A slab is all cells of one z. */
 #ifndef HL_FIELD_FIELD_SHARE_H
 #define HL_FIELD_FIELD_SHARE_H
 
@@ -9,18 +9,18 @@
 #include "core/memory.h"
 
 typedef struct field_share {
-  const light_exchange *with; /* borrowed; null: one process finds all */
+  const light_exchange *with; /* borrowed; null: one process finds everything */
   size_t piece;               /* the most bytes that each process gives at a time */
   unsigned char *own, *all;   /* [piece]; [parts][piece] */
   int32_t *first;             /* [parts + 1]; see hl_field_share_ranges() */
-  uint64_t *weights;          /* [slabs]; for its argument */
+  uint64_t *weights;          /* [slabs]; input of hl_field_share_ranges() */
 } field_share;
 
-/* Takes the share's arrays. with: null: none are needed. */
+/* Takes the share's arrays. with: null: no arrays are needed. */
 void hl_field_share_lay_out(const light_exchange *with, size_t slabs, field_share *share, hl_layout *layout);
 
-/* Cuts the slabs into a range for each process, about equal in the sum of share->weights: those of a process
- * are numbers first[part] to first[part + 1] - 1. All processes have the same weights. */
+/* Cuts the slabs into a range for each process. The sums of share->weights in the ranges are about equal. A
+ * process has the slabs first[part] to first[part + 1] - 1. All processes must have the same weights. */
 void hl_field_share_ranges(field_share *share, int32_t slabs);
 
 /* Whether this process finds a slab, where processes take slabs in turn. */
@@ -28,8 +28,9 @@ static inline bool hl_field_share_turn(const field_share *share, int32_t slab) {
   return share->with == NULL || slab % share->with->parts == share->with->part;
 }
 
-/* Each process has found its own slabs of an array, then all have all. array: [slabs][slab_bytes]. ranges:
- * they are its range; else those of its turn. */
+/* Completes an array of which each process has found its own slabs: afterwards all processes have all slabs.
+ * array: [slabs][slab_bytes]. ranges: a process's own slabs are its range; else they are the slabs of its
+ * turn. */
 void hl_field_share_complete(const field_share *share, bool ranges, void *array, int32_t slabs,
                              size_t slab_bytes);
 

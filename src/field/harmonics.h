@@ -5,7 +5,7 @@
 #include "core/vector.h"
 #include "field/field.h"
 
-/* The harmonics' factors, of unit norm over the sphere. */
+/* The factors of the harmonics, which have unit norm over the sphere. */
 #define HARMONIC_0  0.28209479177387814 /* 1 / sqrt(4 pi) */
 #define HARMONIC_1  0.48860251190291992 /* sqrt(3 / (4 pi)) x, y, z */
 #define HARMONIC_2  1.09254843059207907 /* sqrt(15 / (4 pi)) x y, y z, z x */

@@ -10,15 +10,15 @@
 #include "field/sky_field.h"
 #include "simd/lanes.h"
 
-/* The light that comes to sixteen samples: harmonics in the field's numbers, times the sum of the cells'
+/* The light that reaches sixteen samples: harmonics in the field's numbers, times the sum of the cells'
  * weights. */
 typedef struct sky_rows {
   float of[LANES][2 * LANES]; /* [lane][FIELD_HARMONICS][channels]; set for the active lanes */
-  lanes unit;                 /* one over the sum of the weights */
+  lanes unit;                 /* 1 over the sum of the weights */
   uint32_t active;
 } sky_rows;
 
-/* A position between cells along one axis. Returns the number of the first of the two cells. */
+/* Finds a position between cells along one axis. Returns the number of the first of the two cells. */
 LANES_INLINE lanes place_between_cells(const sky_light *sky, int axis, lanes position, lanes *fraction) {
   lanes at = lanes_line(position - sky->low[axis], sky->inverse_cell, -0.5f);
   at = lanes_clamp(at, 0, (float)sky->count[axis] - 1.001f);
@@ -27,11 +27,12 @@ LANES_INLINE lanes place_between_cells(const sky_light *sky, int axis, lanes pos
   return whole;
 }
 
-/* A cell counts at least this much beside others. */
+/* The least weight of the cell on the position's own side of all surfaces. */
 static const float LEAST_COUNTED = 1.0f / 1024;
 
-/* The weight of a cell beside others: its trilinear weight, times its transmittance, or, on a volume's
- * surface (1), the sixth power of it: cells that matter half fills do not darken what lies outside of it. */
+/* The weight of a cell among the cells around a position. It is the trilinear weight times the cell's
+ * transmittance; on a volume's surface (surface: 1) times the sixth power of the transmittance, so that cells
+ * half filled with matter do not darken the outside of the surface. */
 LANES_INLINE lanes weight_of_cell(lanes trilinear, lanes_int stored, lanes surface) {
   lanes passing = lanes_from_int(stored) * (1.0f / SKY_MOST), squared = passing * passing,
         counted = passing * lanes_fma(surface, squared * squared * passing - 1.0f, lanes_set(1.0f));
@@ -40,11 +41,12 @@ LANES_INLINE lanes weight_of_cell(lanes trilinear, lanes_int stored, lanes surfa
 
 /* The first of the eight cells around sixteen positions. */
 typedef struct sky_cells {
-  int32_t rows[LANES], columns[LANES]; /* rows count through all slices */
-  lanes fraction[3];                   /* of the way to the next cell along each axis */
+  int32_t rows[LANES], columns[LANES]; /* numbers of rows, counted through all slices */
+  lanes fraction[3];                   /* fraction of the way to the next cell along each axis */
 } sky_cells;
 
-/* The numbers of 16 bits from a lane's first cell to those in the next row, in the next slice and in both. */
+/* The distance, in numbers of 16 bits, from a lane's first cell to the cell in the next row, in the next
+ * slice, and in both. */
 typedef struct sky_steps {
   size_t to_pair[4];
 } sky_steps;
@@ -58,14 +60,14 @@ LANES_INLINE const int16_t *cell_of_lane(const sky_light *sky, const sky_cells *
   return sky->cells + (size_t)cells->rows[lane] * sky->row_numbers + (size_t)cells->columns[lane] * SKY_CELL;
 }
 
-/* The numbers of 16 bits from the first of eight cells to each of them. */
+/* The distance, in numbers of 16 bits, from the first of eight cells to each of them. */
 LANES_INLINE size_t step_to_cell(const sky_steps *steps, int corner) {
   return steps->to_pair[corner >> 1] + (corner & 1 ? SKY_CELL : 0);
 }
 
-/* One of eight cells that no surface parts from a position. Derived: of a flat surface that cuts the ways
- * from a cell to its three neighbours at d[i], the position e lies on the cell's side where the sum of e[i] /
- * d[i] is below 1. */
+/* Finds one of eight cells that no surface separates from a position. Derived: where a flat surface cuts the
+ * ways from a cell to its three neighbours at d[i], the position e lies on the cell's side if the sum of e[i]
+ * / d[i] is below 1. */
 static int cell_on_side(const int16_t *cell, const sky_steps *steps, const float fraction[3]) {
   int corner = (fraction[0] >= 0.5f) + 2 * (fraction[1] >= 0.5f) + 4 * (fraction[2] >= 0.5f);
   for (int step = 0; step < 3; step++) {
@@ -86,8 +88,8 @@ static int cell_on_side(const int16_t *cell, const sky_steps *steps, const float
   return corner;
 }
 
-/* Of eight cells, one bit each, those that lead to one of them by ways that no surface cuts. open: of each
- * axis, one bit for each of the first cells of its four ways. */
+/* The cells, of eight, from which a way leads to one cell that no surface cuts; one bit each. open: for each
+ * axis, a bit for the first cell of each of its four ways that no surface cuts. */
 static uint32_t cells_from(int corner, const uint32_t open[3]) {
   uint32_t reached = 1u << corner, before = 0;
   while (reached != before) {
@@ -98,8 +100,8 @@ static uint32_t cells_from(int corner, const uint32_t open[3]) {
   return reached;
 }
 
-/* Takes the weights of those of a lane's eight cells that surfaces part from the position. weight: [8], LANES
- * apart. */
+/* Sets the weight to 0 for those of a lane's eight cells that surfaces separate from the position. weight:
+ * [8], LANES apart. */
 static void weigh_parted_cells(const sky_light *sky, const int16_t *cell, const float fraction[3],
                                float *weight) {
   static const uint32_t first[3] = {0x55, 0x33, 0x0f};
@@ -128,7 +130,7 @@ LANES_INLINE void weigh_evenly(const lanes fraction[3], lanes weight[8]) {
   }
 }
 
-/* The same where surfaces may part cells from the positions. */
+/* Finds the weights where surfaces may separate cells from the positions. */
 LANES_INLINE void weigh_on_one_side(const sky_light *sky, const sky_cells *cells, uint32_t active,
                                     lanes weight[8]) {
   float of[8][LANES], fraction[3][LANES];
@@ -142,8 +144,9 @@ LANES_INLINE void weigh_on_one_side(const sky_light *sky, const sky_cells *cells
   memcpy(weight, of, sizeof of);
 }
 
-/* Turns the transmittances of eight cells, in pairs along x, into their weights, in such pairs. The weights
- * are whole numbers, about SKY_MOST together. Returns one over their sum. weight: trilinear. */
+/* Turns the transmittances of eight cells, in pairs along x, into the cells' weights, in the same pairs. The
+ * weights are whole numbers; their sum is about SKY_MOST. Returns 1 over their sum. weight: trilinear
+ * weights. */
 LANES_INLINE lanes weigh_cells(lanes weight[8], lanes surface, lanes_int pairs[4]) {
   lanes sum = lanes_set(0);
   for (int pair = 0; pair < 4; pair++) {
@@ -174,8 +177,8 @@ LANES_INLINE void find_cells(const sky_light *sky, lanes3 position, sky_cells *c
   memcpy(cells->columns, &column, sizeof cells->columns);
 }
 
-/* Brings the cells around positions near to the processor: samples wait for memory most of the time
- * otherwise. */
+/* Fetches the cells around positions into the processor's cache. Without this, samples would mostly wait for
+ * memory. */
 LANES_INLINE void fetch_sky(const sky_light *sky, lanes3 position, uint32_t active) {
   const sky_steps steps = steps_of_sky(sky);
   sky_cells cells;
@@ -192,8 +195,8 @@ LANES_INLINE void fetch_sky(const sky_light *sky, lanes3 position, uint32_t acti
   }
 }
 
-/* Adds up the eight cells around each active lane's position. pairs: their weights. halves: of a cell, 1 or
- * 2: the first holds the mean of light. */
+/* Adds up the eight cells around each active lane's position. pairs: the cells' weights. halves: number of
+ * halves of a cell that are read, 1 or 2; the first half holds the mean of the light. */
 LANES_INLINE void add_cells(const sky_light *sky, const sky_cells *cells, const int32_t pairs[4][LANES],
                             int halves, sky_rows *found) {
   const sky_steps steps = steps_of_sky(sky);
@@ -213,9 +216,9 @@ LANES_INLINE void add_cells(const sky_light *sky, const sky_cells *cells, const 
   }
 }
 
-/* The light between the eight cells around each of the active lanes' positions. surface: 1 on surfaces of a
- * volume's matter, 0 in media and on meshes. whole: false where only the mean over all directions is asked
- * for. */
+/* Looks up the light between the eight cells around the position of each active lane. surface: 1 on surfaces
+ * of a volume's matter, 0 in media and on meshes. whole: false where only the mean over all directions is
+ * asked for. */
 LANES_INLINE void look_up_sky(const sky_light *sky, lanes3 position, lanes surface, uint32_t active,
                               bool whole, sky_rows *found) {
   const sky_steps steps = steps_of_sky(sky);
@@ -241,7 +244,7 @@ LANES_INLINE void look_up_sky(const sky_light *sky, lanes3 position, lanes surfa
   else add_cells(sky, &cells, pairs, 1, found);
 }
 
-/* Brings a harmonic to lanes; those that are not active get 0. */
+/* Brings a harmonic to lanes; inactive lanes get 0. */
 LANES_INLINE lanes harmonic_of_rows(const sky_light *sky, const sky_rows *rows, int channel, int k) {
   float column[LANES] = {0};
   for (uint32_t left = rows->active; left != 0; left &= left - 1) {
@@ -258,8 +261,8 @@ LANES_INLINE lanes second_degree(const lanes *light, lanes3 d) {
          light[8] * (d.x * d.x - d.y * d.y) * (float)HARMONIC_22;
 }
 
-/* What each harmonic adds to 1 / pi times the integral of light and cosine. The cosine's factors are 1, 2/3
- * and 1/4 (Ramamoorthi and Hanrahan 2001, divided by pi). */
+/* Finds the factor with which each harmonic adds to 1 / pi times the integral of light and cosine. The
+ * cosine's factors are 1, 2/3 and 1/4 (Ramamoorthi and Hanrahan 2001, divided by pi). */
 LANES_INLINE void factors_of_surface(lanes3 normal, lanes factors[FIELD_HARMONICS]) {
   const float first = (float)HARMONIC_1 * (2.0f / 3), second = (float)HARMONIC_2 * 0.25f;
   factors[0] = lanes_set((float)HARMONIC_0);
@@ -273,8 +276,7 @@ LANES_INLINE void factors_of_surface(lanes3 normal, lanes factors[FIELD_HARMONIC
   factors[8] = (normal.x * normal.x - normal.y * normal.y) * ((float)HARMONIC_22 * 0.25f);
 }
 
-/* 1 / pi times the integral of light and cosine, in each channel of the field. Lanes that are not active get
- * 0. */
+/* 1 / pi times the integral of light and cosine, in each channel of the field. Inactive lanes get 0. */
 LANES_INLINE void light_of_surface(const sky_light *sky, const sky_rows *rows, lanes3 normal,
                                    lanes light[3]) {
   typedef float quad __attribute__((vector_size(16)));
@@ -305,7 +307,7 @@ LANES_INLINE void light_of_surface(const sky_light *sky, const sky_rows *rows, l
     light[c] = lanes_max(lanes_load(sums[c]) * (rows->unit * sky->stored_unit[c]), lanes_set(0));
 }
 
-/* The same of light that nothing hides. */
+/* Does the same for light that nothing hides. */
 LANES_INLINE void open_light_of_surface(const sky_light *sky, lanes3 normal, lanes light[3]) {
   lanes factors[FIELD_HARMONICS];
   factors_of_surface(normal, factors);

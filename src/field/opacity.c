@@ -5,8 +5,8 @@
 
 #include "field/surface_links.h"
 
-/* Cells within this many of something visible receive light: look-ups are lifted by up to FIELD_LIFT cells
- * and read the cells around. */
+/* NEAR_CELLS: cells within this distance of something visible receive light. Look-ups are lifted by up to
+ * FIELD_LIFT cells, and read the cells around them. */
 enum { NEAR_CELLS = 3, MOST_CELLS_ALONG = 512, MOST_MATTER = 256 };
 
 field_lattice hl_field_lattice(const vec3 *points, int count, double voxel, double most_cells) {
@@ -20,7 +20,7 @@ field_lattice hl_field_lattice(const vec3 *points, int count, double voxel, doub
     size[a] = fmax(high[a] - low[a], voxel);
     cell = fmax(cell, size[a] / (MOST_CELLS_ALONG - 2 * FIELD_MARGIN - 1));
   }
-  for (;;) { /* grows by steps until the cells are few enough */
+  for (;;) { /* the edge grows until there are few enough cells */
     double cells = 1;
     for (int a = 0; a < 3; a++) cells *= ceil(size[a] / cell) + 2 * FIELD_MARGIN;
     if (cells <= most_cells) break;
@@ -70,7 +70,8 @@ static bool reaches_matter(const grid *grid, const float at[3], const float reac
   return hl_any_brick_relevant(grid, first, last);
 }
 
-/* Whether a volume reaches a box of `side` cells by as many, a cell thick, about `middle` (frame space). */
+/* Whether a volume reaches a box about `middle` (frame space), `side` cells long and wide and one cell
+ * thick. */
 static bool volume_reaches(const opacity_job *job, int volume, const float middle[3], float side) {
   const field_matter *matter = &job->content->matter[volume];
   float at[3], reach[3];
@@ -94,7 +95,7 @@ static uint32_t cells_of(const opacity_job *job, int volume, const float corner[
   return bits;
 }
 
-/* axes: how many of the field's arrays the depths are added to. */
+/* axes: number of the field's arrays to which the depths are added. */
 static void add_depths(opacity_field *field, int axes, const int32_t cell[3], int32_t valid,
                        float depth[3][FIELD_LANES]) {
   for (int a = 0; a < axes; a++) {
@@ -148,8 +149,8 @@ static void find_slab(void *data, size_t index, int worker) {
 
 /* ---- processes that share a picture ---- */
 
-/* How long a slab takes, about: boxes of 4 x 4 cells, and those that volumes reach, whose cells are sampled
- * (a cell that is counts twenty times as much as one that is not). */
+/* Estimates the time that a slab takes. A box of 4 x 4 cells counts 1, and for each volume that reaches it
+ * SAMPLED more, because its cells are then sampled. */
 static void weigh_slab(void *data, size_t index, int worker) {
   enum { BOX = 4, SAMPLED = 20 };
   const opacity_job *job = data;
@@ -170,8 +171,8 @@ static void weigh_slab(void *data, size_t index, int worker) {
   job->share->weights[index] = weight;
 }
 
-/* Puts the depths of a slab that another process has sampled, which are in the third array, into the others.
- */
+/* Spreads the depths of a slab that another process has sampled. They lie in the third array, and go into the
+ * others. */
 static void spread_depths(void *data, size_t index, int worker) {
   const opacity_job *job = data;
   opacity_field *field = job->field;
@@ -281,7 +282,8 @@ static void find_flags(void *data, size_t slice, int worker) {
   }
 }
 
-/* Samples are no farther apart than voxels, as long as they are few. */
+/* The number of samples along a cell's edge: samples are no farther apart than voxels, up to FIELD_SAMPLES
+ * samples. */
 static int samples_of(double cell, double voxel) {
   double samples = ceil(cell / voxel - 0.25);
   return samples < 1 ? 1 : samples > FIELD_SAMPLES ? FIELD_SAMPLES : (int)samples;
@@ -292,7 +294,7 @@ static size_t floats_along(const field_lattice *lattice, int axis) {
   return 3 * (size_t)s.slices * (size_t)s.rows * (size_t)s.stride;
 }
 
-/* Marks what the eye may see of meshes. */
+/* Marks the cells in which the eye may see meshes. */
 static void mark_surfaces(const field_content *content, opacity_field *field) {
   for (size_t i = 0; i < content->surface_count; i++)
     if (content->surfaces[i].visible) hl_surface_mark_seen(&content->surfaces[i], field);

@@ -6,7 +6,7 @@
 #include "field/field.h"
 #include "field/field_share.h"
 
-/* What opacity is found from. */
+/* The content whose opacity is found. */
 typedef struct field_content {
   const field_matter *matter; /* [count] */
   int count;
@@ -15,12 +15,12 @@ typedef struct field_content {
   double voxel; /* the smallest edge of a voxel; frame units */
 } field_content;
 
-/* A lattice of at most `most_cells` cells around points of the content, none of which is smaller than a
- * voxel, with room of FIELD_MARGIN cells on every side. */
+/* Makes a lattice around points of the content. It has at most `most_cells` cells, none smaller than a voxel,
+ * and a margin of FIELD_MARGIN cells on every side. */
 enum { FIELD_MARGIN = 3 };
 field_lattice hl_field_lattice(const vec3 *points, int count, double voxel, double most_cells);
 
-/* Memory that finding the opacity needs for a while. */
+/* Temporary memory for finding the opacity. */
 typedef struct opacity_scratch {
   unsigned char *seen; /* [z][y][x] */
 } opacity_scratch;
@@ -28,7 +28,8 @@ typedef struct opacity_scratch {
 /* Takes the arrays of a field whose lattice is set, and of its scratch memory. */
 void hl_opacity_lay_out(opacity_field *field, opacity_scratch *scratch, hl_layout *layout);
 
-/* Fills the field's arrays. Of processes that share a picture each samples the volumes in some slabs. */
+/* Fills the field's arrays. Where processes share a picture, each of them samples the volumes in some
+ * slabs. */
 void hl_opacity_find(const field_content *content, const field_functions *functions,
                      const opacity_scratch *scratch, field_share *share, opacity_field *field, hl_pool *pool);
 

@@ -1,4 +1,4 @@
-/* field/opacity_lanes.h - what sixteen cells take of light that crosses them along the axes.
+/* field/opacity_lanes.h - how much light sixteen cells absorb along the axes.
  *
  * A cell is sampled on a lattice of its own. Along an axis its transmittance is the mean over the rows of
  * samples, so that a cell that is half filled with dense matter lets half of the light through (derived). */
@@ -8,7 +8,7 @@
 #include "field/field.h"
 #include "simd/lanes.h"
 
-/* The extinction of a volume at a density, per frame unit: the classifier's table, linear. */
+/* A volume's extinction at a density, per frame unit: a linear look-up in the classifier's table. */
 LANES_INLINE float field_extinction(const classifier *classifier, float density) {
   float at = density * classifier->scale + classifier->offset;
   at = at > 0 ? at < CLASSIFIER_ENTRIES ? at : CLASSIFIER_ENTRIES : 0;
@@ -23,8 +23,8 @@ LANES_INLINE float stored_number(const unsigned char *row, hl_storage storage, i
   return ((const float *)(const void *)row)[x];
 }
 
-/* Linear between the voxels around a position of index space; beyond the grid's faces the border continues.
- */
+/* The value at a position of index space, linear between the voxels around it. Beyond the grid's faces the
+ * values at the border continue. */
 LANES_INLINE float linear_value(const grid *grid, hl_storage storage, const float at[3]) {
   int32_t first[3], next[3];
   float fraction[3];
@@ -53,7 +53,7 @@ LANES_INLINE float linear_value(const grid *grid, hl_storage storage, const floa
   return along[0] + (along[1] - along[0]) * fraction[2];
 }
 
-/* The cubic B-spline over coefficients. */
+/* The value of a cubic B-spline over coefficients. */
 LANES_INLINE float smooth_value(const grid *grid, const float at[3]) {
   float weight[3][4], sum = 0;
   int64_t first[3];
@@ -77,8 +77,8 @@ LANES_INLINE float value_at(const field_matter *matter, hl_storage storage, cons
   return matter->smooth ? smooth_value(matter->grid, at) : linear_value(matter->grid, storage, at);
 }
 
-/* The gradient's length at a position of index space, stored units per frame unit; differences are of values
- * a voxel apart. */
+/* The gradient's length at a position of index space, in stored units per frame unit. Differences are taken
+ * over the distance of a voxel. */
 LANES_INLINE float gradient_at_position(const field_matter *matter, hl_storage storage, const float at[3]) {
   float gradient[3] = {0, 0, 0};
   for (int a = 0; a < 3; a++) {
@@ -91,7 +91,7 @@ LANES_INLINE float gradient_at_position(const field_matter *matter, hl_storage s
   return __builtin_sqrtf(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
 }
 
-/* What gradient opacity multiplies extinction by. */
+/* The factor by which gradient opacity multiplies extinction. */
 LANES_INLINE float factor_of_length(const classifier *classifier, float length) {
   float entry = length * classifier->steepness_scale;
   entry = entry < STEEPNESS_ENTRIES ? entry : STEEPNESS_ENTRIES;
@@ -113,13 +113,13 @@ LANES_INLINE int cell_shows(const grid *grid, const float at[3]) {
   return (int)(grid->cell_bits[hl_brick_index(grid, brick)] >> bit & 1);
 }
 
-/* Whether cuts leave a position. */
+/* Whether cuts leave matter at a position. */
 LANES_INLINE int cuts_leave_position(const grid *grid, const float at[3]) {
   return grid->cut_count == 0 || grid->cut_casts_shadow ||
          hl_cuts_leave(grid->cuts, grid->cut_count, (vec3){at[0], at[1], at[2]});
 }
 
-/* point: the same position in frame space. */
+/* point: the position in frame space. */
 LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage storage, const float at[3],
                                           const float point[3]) {
   for (int a = 0; a < 3; a++)
@@ -142,7 +142,7 @@ LANES_INLINE float extinction_at_position(const field_matter *matter, hl_storage
   return extinction;
 }
 
-/* Adds a volume's extinction to the samples of a cell; returns whether there is any. */
+/* Adds a volume's extinction to the samples of a cell. Returns whether any was added. */
 LANES_INLINE int sample_cell(const field_block *block, const field_matter *matter, hl_storage storage,
                              int lane, float (*samples)[FIELD_LANES]) {
   int n = block->samples, any = 0;
@@ -185,8 +185,8 @@ LANES_INLINE int sample_cells(const field_block *block, int volume, float (*samp
   return any;
 }
 
-/* -log2 of the mean over n x n rows of 2^-depth; a row's samples are `along` apart, rows `first` and
- * `second`. */
+/* -log2 of the mean over n x n rows of 2^-depth. along: distance of a row's samples. first, second: distances
+ * of the rows. */
 LANES_INLINE lanes depth_along(const float (*samples)[FIELD_LANES], int n, int along, int first, int second,
                                float scale) {
   lanes sum = lanes_set(0);

@@ -1,13 +1,13 @@
 /* field/sky_field.c - sweeps the light of a sky through a lattice, along the three axes and back.
  *
- * The sphere of directions is cut like a cube: each face, one end of an axis, into squares of equal angles.
- * Light of one direction moves from slice to slice (sky_lanes.h). Cells keep the sum over directions of
- * transmittance times the integrals of radiance and spherical harmonics: enough for a cosine's or a phase
- * function's mean (lookup_lanes.h; Ramamoorthi and Hanrahan, "An efficient representation for irradiance
- * environment maps", 2001). Each cell's sums have one order.
+ * The sphere of directions is cut like a cube. Each face of it is one end of an axis, and is cut into squares
+ * of equal angles. Light of one direction moves from slice to slice (sky_lanes.h). Cells keep the sum over
+ * directions of transmittance times the integrals of radiance and spherical harmonics. This is enough for the
+ * mean over a cosine or a phase function (lookup_lanes.h; Ramamoorthi and Hanrahan, "An efficient
+ * representation for irradiance environment maps", 2001). The sums of a cell always have the same order.
  *
- * Processes that share a picture each sample the volumes in some slabs of cells, and add the light up in
- * some; all of them move all light from slice to slice, which is a fifth of the work. */
+ * Processes that share a picture divide two parts of the work by slabs of cells: sampling the volumes, and
+ * adding the light up. Each process moves all light from slice to slice, which is a fifth of the work. */
 #include "field/sky_field.h"
 
 #include <string.h>
@@ -20,8 +20,8 @@
 /* Cells by which look-ups are lifted off a surface. */
 static const double LIFT_CELLS = 0.5;
 
-/* A cube's face has so many squares along each side: floors of slots, and meshes' flat faces, show where the
- * light of a single direction ends. */
+/* SIDE: number of squares along each side of a cube's face. With fewer, floors of slots and flat faces of
+ * meshes show where the light of a single direction ends. */
 enum { SIDE = 6, ENDS = 6, SIDE_SAMPLES = 64 };
 
 _Static_assert(SIDE *SIDE == FIELD_DIRECTIONS, "room for a cube's face");
@@ -30,20 +30,20 @@ _Static_assert(SIDE *SIDE == FIELD_DIRECTIONS, "room for a cube's face");
 typedef struct sky_end {
   sky_direction directions[FIELD_DIRECTIONS];
   float basis[FIELD_DIRECTIONS][3 * FIELD_HARMONICS];
-  int count; /* those that shine */
+  int count; /* number of directions that shine */
 } sky_end;
 
 /* ---- radiance ---- */
 
-/* How often a square is sampled along each side. */
+/* The number of samples along each side of a square. */
 static int samples_of_sky(const hl_sky *sky) {
   if (sky->type != HL_SKY_IMAGE) return 8;
   int pixels = sky->width / (4 * SIDE) + 1;
   return pixels < 8 ? 8 : pixels > SIDE_SAMPLES ? SIDE_SAMPLES : pixels;
 }
 
-/* The direction of a face's point: x and y from -1 to 1 in equal angles. The slopes are those of a ray that
- * moves one along the axis. */
+/* The direction of a point of a face. x, y: from -1 to 1 in equal angles. slope: how far a ray moves aside
+ * while it moves one along the axis. */
 static vec3 direction_of(const field_slices *s, int sign, double x, double y, double slope[2]) {
   double v[3] = {0, 0, 0};
   slope[0] = tan(HL_PI / 4 * x);
@@ -54,9 +54,9 @@ static vec3 direction_of(const field_slices *s, int sign, double x, double y, do
   return vec3_normalise(vec3_of(v));
 }
 
-/* Adds the integrals of a square of a face. white: an even sky of radiance 1 in place of the sky. Derived:
- * the solid angle of dx dy in equal angles is (pi / 4)^2 (1 + u^2) (1 + v^2) / (1 + u^2 + v^2)^(3/2), u and v
- * the slopes. */
+/* Adds the integrals over a square of a face. white: the sky is taken as an even sky of radiance 1. Derived:
+ * the solid angle of dx dy in equal angles is (pi / 4)^2 (1 + u^2) (1 + v^2) / (1 + u^2 + v^2)^(3/2), where u
+ * and v are the slopes. */
 static void integrate_square(const hl_sky *sky, const field_slices *s, int sign, int square,
                              double integral[3][FIELD_HARMONICS]) {
   const sky_axes axes = hl_sky_axes(sky);
@@ -76,8 +76,8 @@ static void integrate_square(const hl_sky *sky, const field_slices *s, int sign,
   }
 }
 
-/* Sets the four cells that a direction's light comes from. Derived: a ray to the cell's middle left the slice
- * before at (u, v) beside it. */
+/* Sets the four cells from which a direction's light comes. Derived: a ray to the cell's middle crossed the
+ * slice before at (u, v) beside the middle. */
 static void set_taps(double u, double v, int32_t plane_stride, sky_direction *direction) {
   double column = floor(u), row = floor(v), fu = u - column, fv = v - row;
   direction->offset = (int32_t)row * plane_stride + (int32_t)column;
@@ -90,14 +90,14 @@ static void set_taps(double u, double v, int32_t plane_stride, sky_direction *di
   direction->down = (float)(v * v);
 }
 
-/* The number of the first direction that moves aside as far as the last one does. */
+/* The number of the first direction that moves aside as far as the last direction does. */
 static int find_slope(const sky_end *end) {
   const sky_direction *last = &end->directions[end->count - 1], *direction = end->directions;
   while (direction->across != last->across || direction->down != last->down) direction++;
   return (int)(direction - end->directions);
 }
 
-/* first: the channel that the field's first harmonics are of. */
+/* first: the channel of the field's first harmonics. */
 static void set_up_end(const sky_content *content, int end_index, int first, int channels,
                        int32_t plane_stride, sky_end *end) {
   field_slices s = hl_field_slices(&content->lattice, end_index / 2);
@@ -136,10 +136,11 @@ static void move_row(void *data, size_t row, int worker) {
   rows->functions->sky_row(&rows->slice, (int32_t)row);
 }
 
-/* The floats of the light of all directions in one slice, with a border of light that nothing hides. */
+/* The number of floats of the light of all directions in one slice, with a border of light that nothing
+ * hides. */
 static size_t light_of_slice(const field_slices *s) { return FIELD_DIRECTIONS * hl_field_planes(s).plane; }
 
-/* The floats of the largest axis's planes, of two slices. */
+/* The number of floats of two slices' planes, along the axis with the largest slices. */
 static size_t most_light(const sky_content *content) {
   size_t most = 0;
   for (int a = 0; a < 3; a++) {
@@ -149,14 +150,14 @@ static size_t most_light(const sky_content *content) {
   return 2 * most;
 }
 
-/* The field's light: which cells, and which of their harmonics. */
+/* The destination of light in the field: the cells, and those of their harmonics that are added to. */
 typedef struct sky_target {
   float *field;   /* begins with the first cell's first harmonic */
   size_t step[3]; /* floats from cell to cell */
 } sky_target;
 
-/* Sets the links through which light comes to a slice. Those with the slice after are that one's own, seen
- * from their other ends. rising: the light comes from the slice before. */
+/* Sets the links through which light comes to a slice. The links to the slice after belong to that slice;
+ * they are read from their other ends. rising: the light comes from the slice before. */
 static void set_links(const surface_links *links, const field_slices *s, size_t slice, bool rising,
                       sky_slice *of) {
   const field_planes planes = hl_field_planes(s);
@@ -170,7 +171,7 @@ static void set_links(const surface_links *links, const field_slices *s, size_t 
   }
 }
 
-/* light: [2][directions][plane]; links: along the end's axis; null: there are no surfaces. */
+/* light: [2][directions][plane]. links: the links along the end's axis; null: there are no surfaces. */
 static void sweep_end(const sky_content *content, const opacity_field *opacity, const surface_links *links,
                       float *light, const sky_target *target, int end_index, int first, int channels,
                       const field_functions *functions, hl_pool *pool) {
@@ -208,7 +209,8 @@ static void sweep_end(const sky_content *content, const opacity_field *opacity, 
 
 /* ---- memory ---- */
 
-/* The floats of a cell while its light is added up; they give way to SKY_CELL numbers of 16 bits. */
+/* The number of floats of a cell while its light is added up. Afterwards SKY_CELL numbers of 16 bits take
+ * their place. */
 static size_t cell_floats(const sky_content *content) {
   if (content->channels == 1) return 16;
   return FIELD_HARMONICS * (size_t)content->channels + 1 + (content->content.surface_count > 0 ? 3 : 0);
@@ -217,12 +219,12 @@ static size_t cell_floats(const sky_content *content) {
 _Static_assert(16 * sizeof(float) >= SKY_CELL * sizeof(int16_t) && 16 >= FIELD_HARMONICS + 4,
                "room for a cell");
 
-/* The floats of a row, which begins with a line of the cache. */
+/* The number of floats of a row, which begins with a cache line. */
 static size_t row_floats(const sky_content *content) {
   return (cell_floats(content) * (size_t)content->lattice.count[0] + 15) / 16 * 16;
 }
 
-/* The floats of all rows. */
+/* The number of floats of all rows. */
 static size_t field_floats(const sky_content *content) {
   return row_floats(content) * (size_t)content->lattice.count[1] * (size_t)content->lattice.count[2];
 }
@@ -231,9 +233,9 @@ static size_t field_bytes(const sky_content *content) { return field_floats(cont
 
 typedef struct passing_arrays {
   opacity_field opacity;
-  float *light; /* of sweep_end() */
+  float *light; /* memory for sweep_end() */
   opacity_scratch scratch;
-  surface_links links; /* along one axis; of content with surfaces */
+  surface_links links; /* links along one axis, for content with surfaces */
   field_matter *matter;
   field_share share;
 } passing_arrays;
@@ -263,8 +265,8 @@ static bool attenuates_in_color(const sky_content *content) {
   return false;
 }
 
-/* Finds the links along an axis; their places are the last three floats of cells. Returns null without
- * surfaces. */
+/* Finds the links along an axis. The places where they are cut are the last three floats of cells. Returns
+ * null where there are no surfaces. */
 static const surface_links *find_links(const sky_content *content, const surface_links *links,
                                        const sky_target *target, float *field, int axis, hl_pool *pool) {
   const field_content *of = &content->content;
@@ -301,8 +303,8 @@ static void make(const sky_content *content, passing_arrays *arrays, const field
     hl_field_share_complete(&arrays->share, false, field, count[2], target.step[2] * sizeof *field);
 }
 
-/* Finds the light that nothing hides, and, as what hides light takes from each direction's share, a bound of
- * each channel's harmonics. */
+/* Finds the light that nothing hides, and a bound of each channel's harmonics: matter only takes away from
+ * the share of each direction. */
 static void find_open(const sky_content *content, sky_light *light) {
   double sum[3][FIELD_HARMONICS] = {{0}}, bound[3][FIELD_HARMONICS] = {{0}};
   for (int end = 0; end < ENDS; end++) {
@@ -332,11 +334,11 @@ static void find_open(const sky_content *content, sky_light *light) {
 enum { MOST_FLOATS = 3 * FIELD_HARMONICS + 1 + 3 };
 
 typedef struct store_rows {
-  float *field; /* [rows][row_floats()]; becomes the cells, in place */
+  float *field; /* [rows][row_floats()]; turned into cells in place */
   size_t row_floats, cell_floats, columns;
-  size_t used;              /* floats of a cell */
-  float scale[MOST_FLOATS]; /* [used]; factors that make numbers of 16 bits of floats */
-  int place[MOST_FLOATS];   /* [used]; where such a number stands among the cell's */
+  size_t used;              /* number of used floats of a cell */
+  float scale[MOST_FLOATS]; /* [used]; the factors that turn floats into numbers of 16 bits */
+  int place[MOST_FLOATS];   /* [used]; the index of each number among the cell's numbers */
 } store_rows;
 
 static bool is_dark(const float *cell, size_t count) {
@@ -356,14 +358,14 @@ static void store_cell(const store_rows *rows, const float *cell, int16_t number
   for (size_t i = 0; i < rows->used && i < MOST_FLOATS; i++) numbers[rows->place[i]] = (int16_t)whole[i];
 }
 
-/* Stores a row of cells along x. A cell's numbers lie before its floats, or begin where they do. Dark cells,
- * most of them, stay as they are where no brighter cell's floats lay. */
+/* Stores a row of cells along x. The numbers of a cell lie before its floats, or begin where its floats
+ * begin. Most cells are dark; they are zero already, except where the floats of a brighter cell lay. */
 static void store_row(void *data, size_t row, int worker) {
   const store_rows *rows = data;
   const size_t size = rows->cell_floats;
   float *cells = rows->field + row * rows->row_floats;
   int16_t *at = (int16_t *)cells;
-  size_t written = 0; /* the end of the floats that are not zero, in numbers */
+  size_t written = 0; /* the end of the floats that are not zero, counted in numbers */
   (void)worker;
   for (size_t x = 0; x < rows->columns; x++, at += SKY_CELL) {
     const float *cell = cells + x * size;
@@ -376,7 +378,7 @@ static void store_row(void *data, size_t row, int worker) {
   }
 }
 
-/* Turns the field's floats into what samples look up. */
+/* Turns the field's floats into the numbers that samples look up. */
 static void store(const sky_content *content, void *memory, sky_light *light, hl_pool *pool) {
   const int harmonics = light->channels * FIELD_HARMONICS;
   store_rows rows = {memory, row_floats(content), cell_floats(content), (size_t)light->count[0],
@@ -412,7 +414,7 @@ hl_status hl_sky_make(hl_context *context, hl_pool *pool, const sky_content *con
   light->lift = (float)(LIFT_CELLS * content->lattice.cell);
   light->inverse_cell = (float)(1 / content->lattice.cell);
   memcpy(light->count, content->lattice.count, sizeof light->count);
-  if (content->channels == 1) { /* one colour: its light is that of a white sky */
+  if (content->channels == 1) { /* with one channel, the light is the light of a white sky */
     for (int c = 0; c < 3; c++) {
       light->color[c] = (float)(white.color[c] * white.strength);
       white.color[c] = 1;

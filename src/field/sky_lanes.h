@@ -1,16 +1,16 @@
 /* field/sky_lanes.h - the sky's light moved from slice to slice (derived).
  *
  * Light of one direction that reaches a cell's middle left four cells of the slice before: it is interpolated
- * between them. What the cell itself takes counts for the next slice. Surfaces take their part of what comes
- * from each of the four cells. Beyond the lattice all light is there. */
+ * between them. The light that the cell itself absorbs is missing from the next slice on. Surfaces take their
+ * part of the light from each of the four cells. Beyond the lattice nothing hides the light. */
 #ifndef HL_FIELD_SKY_LANES_H
 #define HL_FIELD_SKY_LANES_H
 
 #include "field/field.h"
 #include "simd/lanes.h"
 
-/* Adds sixteen cells' light, times each direction's integrals. Three sums at a time stay in registers while
- * the directions go by; FIELD_HARMONICS is a multiple of three. */
+/* Adds the light of sixteen cells, times the integrals of each direction. Three sums at a time stay in
+ * registers while the directions go by; FIELD_HARMONICS is a multiple of three. */
 LANES_INLINE void add_harmonics(const sky_slice *slice, const lanes *reaching, int32_t column, float *cells,
                                 int count) {
   float sums[3 * FIELD_HARMONICS][FIELD_LANES];
@@ -40,10 +40,10 @@ LANES_INLINE void add_passing(const sky_slice *slice, lanes depth, int32_t colum
 }
 
 /* The transmittance of cells for light that moves by u across and v down while it crosses a slice: its depth
- * is sqrt(d^2 + u^2 a^2 + v^2 b^2), d, a and b those along the axis, across and down. Derived: even matter
- * has one depth d along all axes, and light passes sqrt(1 + u^2 + v^2) cells of it. A surface at a right
- * angle to `down` has b alone; light stays in its cells for 1 / v slices, and passes the depth v b in each.
- */
+ * is sqrt(d^2 + u^2 a^2 + v^2 b^2), where d, a and b are the depths along the axis, across and down. Derived:
+ * even matter has one depth d along all axes, and light passes sqrt(1 + u^2 + v^2) cells of it. A surface at
+ * a right angle to `down` has only the depth b. Light stays in its cells for 1 / v slices, and passes the
+ * depth v b in each of them. */
 LANES_INLINE lanes passing_cells(const lanes squared[3], const sky_direction *direction) {
   lanes depth = lanes_add_scaled(lanes_add_scaled(squared[0], squared[1], direction->across), squared[2],
                                  direction->down);
@@ -60,7 +60,7 @@ LANES_INLINE void find_open_links(const sky_slice *slice, size_t at, lanes open[
   }
 }
 
-/* The light of a direction that comes to sixteen cells. from: in the slice before. */
+/* The light of a direction that comes to sixteen cells. from: the cells of the slice before. */
 LANES_INLINE lanes light_from(const float *from, int32_t stride, const sky_direction *direction) {
   lanes light = lanes_load(from) * direction->weight[0];
   light = lanes_add_scaled(light, lanes_load(from + 1), direction->weight[1]);
@@ -68,7 +68,7 @@ LANES_INLINE lanes light_from(const float *from, int32_t stride, const sky_direc
   return lanes_add_scaled(light, lanes_load(from + stride + 1), direction->weight[3]);
 }
 
-/* The same past surfaces. */
+/* The same light where surfaces cut links. */
 LANES_INLINE lanes light_past_surfaces(const float *from, int32_t stride, const sky_direction *direction,
                                        const lanes open[FIELD_LINKS]) {
   const lanes *link = open + direction->link;
@@ -78,8 +78,8 @@ LANES_INLINE lanes light_past_surfaces(const float *from, int32_t stride, const 
   return lanes_add_scaled(light, lanes_load(from + stride + 1) * link[4], direction->weight[3]);
 }
 
-/* Moves the light of all directions to sixteen cells, whose place in a plane is `at`. squared: null where no
- * matter lies in the cells; open: null where no surface cuts their links. */
+/* Moves the light of all directions to sixteen cells. at: the cells' place in a plane. squared: null where no
+ * matter lies in the cells. open: null where no surface cuts their links. */
 LANES_INLINE void move_light(const sky_slice *slice, size_t at, const lanes *squared, const lanes *open,
                              lanes reaching[FIELD_DIRECTIONS]) {
   lanes passing[FIELD_DIRECTIONS];

@@ -1,9 +1,9 @@
 /* field/surface_links.c - triangles and spheres met by the links of a lattice.
  *
- * Links of one kind, that join a cell with the same neighbour of the slice before, follow each other along
- * straight lines. A surface is seen along these lines: its points are moved aside so that the lines are
- * upright and stand at whole numbers (derived: a line that goes from column c + across to column c has the
- * same c + across h at all heights h). Triangles that share an edge never meet the same line at it. */
+ * Links of one kind join cells with the same neighbour of the slice before. They follow each other along
+ * straight lines. The points of a surface are moved aside so that these lines become upright and stand at
+ * whole numbers (derived: a line that goes from column c + across to column c has the same c + across h at
+ * all heights h). Two triangles that share an edge never both meet a line on the edge. */
 #include "field/surface_links.h"
 
 #include "field/field_planes.h"
@@ -12,18 +12,18 @@
 typedef struct link_lines {
   field_slices slices;
   const surface_links *links;
-  const link_places *places;         /* null: not links between neighbours along the axis */
-  double low[3], cell, inverse_cell; /* of the lattice */
-  double farthest;                   /* that a line which meets the lattice may stand aside */
-  int across, down;                  /* from a cell to the one of the slice before */
+  const link_places *places;         /* null: the links do not join neighbours along the axis */
+  double low[3], cell, inverse_cell; /* low corner and cell of the lattice */
+  double farthest;                   /* the farthest that a line may stand aside and still meet the lattice */
+  int across, down;                  /* columns and rows from a cell to its neighbour in the slice before */
   int kind;
 } link_lines;
 
-/* The lattice's middles are moved aside by so much of a cell along each axis: a wall that stands upright in
- * the middle of cells would otherwise cut the links on both of its sides, or on none. */
+/* The fraction of a cell by which the middles of the lattice's cells are moved along each axis. Without this,
+ * a wall that stands upright in the middle of cells would cut the links on both of its sides, or on none. */
 static const double ASIDE[3] = {1.17e-4, 1.43e-4, 1.61e-4};
 
-/* A place along an axis in cells: 0 in the middle of the first one. */
+/* A place along an axis, in cells; 0 is the middle of the first cell. */
 static double place_along(const link_lines *lines, int axis, double at) {
   return (at - lines->low[axis]) * lines->inverse_cell - (0.5 + ASIDE[axis]);
 }
@@ -51,8 +51,8 @@ void hl_surface_links_lay_out(const field_lattice *lattice, surface_links *links
 
 /* ---- a line meets a surface ---- */
 
-/* Marks the block of a cell, which may lie beyond the lattice, with LINKS_BEFORE or LINKS_AFTER. Tasks of
- * several kinds mark the same blocks. */
+/* Marks the block of a cell, which may lie beyond the lattice, with LINKS_BEFORE or LINKS_AFTER. The tasks of
+ * several kinds of links mark the same blocks. */
 static void mark_block(const link_lines *lines, int32_t slice, int32_t row, int32_t column,
                        unsigned char mark) {
   const field_slices *s = &lines->slices;
@@ -61,7 +61,7 @@ static void mark_block(const link_lines *lines, int32_t slice, int32_t row, int3
   __atomic_fetch_or(&lines->links->cut[at / FIELD_LANES], mark, __ATOMIC_RELAXED);
 }
 
-/* Takes a part of the light of the link at a height of a line. */
+/* Takes a part of the light of the link that lies at a given height of a line. */
 static void cut_link(const link_lines *lines, int32_t across, int32_t down, double height, double opacity) {
   const field_slices *s = &lines->slices;
   if (!(height > -1 && height < s->slices)) return;
@@ -101,9 +101,9 @@ static bool is_left(const field_surface *surface, const link_lines *lines, doubl
 static double lesser(double a, double b) { return a < b ? a : b; }
 static double greater(double a, double b) { return a > b ? a : b; }
 
-/* Where lines stand at whole numbers between two places. */
+/* The whole numbers between two places, where lines stand. */
 typedef struct whole_numbers {
-  int32_t first, last; /* there are none where last is less */
+  int32_t first, last; /* there are none where last < first */
 } whole_numbers;
 
 static int32_t round_down(double x) {
@@ -111,7 +111,7 @@ static int32_t round_down(double x) {
   return whole - (x < whole);
 }
 
-/* most: the farthest that a line which meets the lattice may stand aside. */
+/* most: the farthest that a line may stand aside and still meet the lattice. */
 static whole_numbers whole_between(double low, double high, double most) {
   if (!(low <= most && high >= -most)) return (whole_numbers){0, -1};
   return (whole_numbers){-round_down(-greater(low, -most)), round_down(lesser(high, most))};
@@ -121,14 +121,14 @@ static whole_numbers whole_between_corners(const double at[3], double most) {
   return whole_between(lesser(at[0], lesser(at[1], at[2])), greater(at[0], greater(at[1], at[2])), most);
 }
 
-/* A triangle as the lines see it. */
+/* A triangle, with the lines upright. */
 typedef struct seen_triangle {
   double across[3], down[3], height[3];
-  double area; /* twice, signed */
+  double area; /* twice the area, signed */
   whole_numbers columns, rows;
 } seen_triangle;
 
-/* False: no line meets it. Most small triangles are told by one of their sides. */
+/* False: no line meets the triangle. Most small triangles are excluded by their rows alone. */
 static bool see(const field_surface *surface, uint32_t triangle, const link_lines *lines, seen_triangle *t) {
   const field_slices *s = &lines->slices;
   const uint32_t *corner = surface->triangles[triangle];
@@ -148,8 +148,9 @@ static bool see(const field_surface *surface, uint32_t triangle, const link_line
   return t->columns.first <= t->columns.last && fabs(t->area) > 0;
 }
 
-/* Three times: the edge opposite to a corner, as twice the area between it and the line; of the triangle's
- * sign. A line on an edge belongs to the triangle on one of its sides. */
+/* Whether a line meets the triangle. For each corner, twice the area between the opposite edge and the line
+ * is compared with 0, with the triangle's sign. A line on an edge belongs to the triangle on one of the
+ * edge's sides. */
 static bool meets(const seen_triangle *t, double across, double down, double weight[3]) {
   for (int corner = 0; corner < 3; corner++) {
     int a = (corner + 1) % 3, b = (corner + 2) % 3;
@@ -186,8 +187,9 @@ static void cut_by_triangle(const field_surface *surface, uint32_t triangle, con
 
 /* ---- spheres ---- */
 
-/* A line within the sphere's reach meets it twice. Derived: the point at height h of the line (x, y) is (x -
- * a h, y - b h, h) with the line's slopes a and b; a quadratic equation has the heights on the sphere. */
+/* Cuts the links of a line at a sphere. A line within the sphere's reach meets it twice. Derived: where a and
+ * b are the line's slopes, the point at height h of the line (x, y) is (x - a h, y - b h, h). A quadratic
+ * equation has the heights on the sphere. */
 static void cut_by_sphere(const field_surface *surface, uint32_t sphere, const link_lines *lines) {
   const field_slices *s = &lines->slices;
   const float *from = surface->spheres[sphere];
@@ -218,10 +220,10 @@ static void cut_by_sphere(const field_surface *surface, uint32_t sphere, const l
 typedef struct links_job {
   const field_surface *surfaces; /* [count] */
   size_t count;
-  link_lines lines; /* but for the kind */
+  link_lines lines; /* without the kind, which each task sets */
 } links_job;
 
-/* Finds the links of one kind: those of other kinds are of other tasks. */
+/* Finds the links of one kind; each kind is a task. */
 static void find_kind(void *data, size_t kind, int worker) {
   const links_job *job = data;
   link_lines lines = job->lines;
@@ -269,7 +271,7 @@ static void mark_point(opacity_field *field, const double at[3]) {
   field->seen[index] = 1;
 }
 
-/* Marks points of a triangle no farther apart than a cell. */
+/* Marks the cells at points of a triangle that are at most a cell apart. */
 static void mark_triangle(const field_surface *surface, uint32_t triangle, opacity_field *field) {
   vec3 at[3];
   for (int i = 0; i < 3; i++) {

@@ -1,9 +1,9 @@
 /* field/surface_links.h - which links between the cells of a lattice the surfaces of meshes cut.
  *
- * A link is the straight line between the middles of two cells in slices that follow each other: of a cell
- * with nine cells of the slice before. Light moves from cell to cell along links. A surface takes its part of
- * the light of each link that it meets. So a closed wall lets no light through, however thin it is and
- * however it stands, and it is no thicker than it is. */
+ * A link is the straight line between the middles of two cells in slices that follow each other: a cell has
+ * nine links to the slice before. Light moves from cell to cell along links. A surface takes its part of the
+ * light of each link that it meets. So a closed wall lets no light through, however thin it is and whatever
+ * its direction, and it counts as no thicker than it is. */
 #ifndef HL_FIELD_SURFACE_LINKS_H
 #define HL_FIELD_SURFACE_LINKS_H
 
@@ -13,22 +13,23 @@
 /* The links along one axis. */
 typedef struct surface_links {
   unsigned char
-      *taken;         /* [slices + 1][FIELD_LINKS][rows + 2][stride + 2 FIELD_LANES]; of the light that comes
-                         from the slice before, in parts of 255. A slice's own links; the last slice has none */
+      /* [slices + 1][FIELD_LINKS][rows + 2][stride + 2 FIELD_LANES]; the part, in 255ths, that surfaces take
+       * of the light from the slice before. A slice has its own links; the last slice has none. */
+      *taken;
   unsigned char *cut; /* [slices][rows][stride / FIELD_LANES]; LINKS_BEFORE and LINKS_AFTER */
 } surface_links;
 
-/* Takes arrays that have room for the links along any axis. */
+/* Takes the arrays, which have room for the links along any axis. */
 void hl_surface_links_lay_out(const field_lattice *lattice, surface_links *links, hl_layout *layout);
 
-/* Where the links that join neighbours along an axis are cut. */
+/* The places where links that join neighbours along an axis are cut. */
 typedef struct link_places {
-  float *first;   /* of the first cell */
+  float *first;   /* the number of the first cell */
   size_t step[3]; /* floats from cell to cell along x, y and z */
 } link_places;
 
-/* Finds the links along an axis. places: for each cell the part of the way to the next one along the axis,
- * above 0, at which the first surface lies; it is left as it is where there is none. */
+/* Finds the links along an axis. places: for each cell, the part of the way to the next cell along the axis,
+ * above 0, at which the first surface lies; where there is no surface, it is left as it is. */
 void hl_surface_links_find(const field_surface *surfaces, size_t count, const field_lattice *lattice,
                            int axis, const surface_links *links, const link_places *places, hl_pool *pool);
 
